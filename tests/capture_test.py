@@ -159,11 +159,11 @@ class BadData(Captured):
 
     def test_rejects_duplicate_names(self):
         self.change_cells("cases", ["case"], lambda name: "poke 1, depth 1")
-        self.refused("cases.csv:3: the case 'poke 1, depth 1' is in line 2 already")
+        self.refused("cases.csv:3: the case 'poke 1, depth 1' already occurs in line 2")
 
     def test_rejects_axes_that_point_outward(self):
         self.change_cells("cases", ["axis_x", "axis_y", "axis_z"], lambda a: str(-float(a)))
-        self.refused("cases.csv:2 (poke 1, depth 1): the axis of the tip points out of the body", "turn their signs")
+        self.refused("cases.csv:2 (poke 1, depth 1): the axis of the indenter points out of the body", "change their signs")
 
     def test_finds_tips_without_contact(self):
         self.change_cells("cases", ["touch_x", "center_x"], lambda x: str(float(x) + 0.2))
@@ -187,7 +187,7 @@ class BadData(Captured):
         self.write("quick.toml", Fit.QUICK_OPTIONS)
         done = self.aspic("fit", "data", *Fit.QUICK, "--unknown", "young=uniform", code=3)
         self.assertIn("not reliable (unexplained)", done.stderr)
-        self.assertRegex(done.stdout + done.stderr, r"warning: cases\.csv:\d \('poke \d, depth \d'\) is explained worst: .* \d+ standard")
+        self.assertRegex(done.stdout + done.stderr, r"warning: cases\.csv:\d \('poke \d, depth \d'\) has the worst fit: .* \d+ standard")
 
 
 class MaterialFile(CommandLine):

@@ -176,10 +176,10 @@ class Fit(FitCommand):
                 (("--unknown", "yuong=tets"), "did you mean 'young'?"),
                 (("--unknown", "young=handles:many"), "handles:40"),
                 (("--known", "poisson=0.5"), "poisson = 0.5; must be"),
-                (("--known", "poisson"), "QUANTITY=VALUE is expected"),
+                (("--known", "poisson"), "give QUANTITY=VALUE"),
                 (("--unknown", "young=regions"), "no region labels"),
                 (("-o", "material.obj"), "a material file is a .vtu"),
-                (("--resume",), "no such fit to resume")):
+                (("--resume",), "no fit to resume")):
             self.assertIn(message, self.fit(*arguments, code=2).stderr, arguments)
         self.assertIn("nothing", self.aspic("fit", "nothing", code=2).stderr)
 

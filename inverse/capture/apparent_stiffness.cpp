@@ -10,7 +10,7 @@ namespace aspic {
 namespace {
 
 constexpr double kPoisson = 0.4;
-constexpr double kBondedFootprint = 0.94;  // of a sphere, relative to its radius: see kGlue
+constexpr double kBondedFootprint = 0.94;  // contact radius of a sphere, relative to its radius: see kGlue
 
 double footprint(const Tip& tip, double depth) {
   if (tip.shape == TipShape::disc) return tip.radius;

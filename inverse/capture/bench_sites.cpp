@@ -17,7 +17,7 @@ double triangle_area(const TetMesh& mesh, const Triangle& t) {
   return 0.5 * norm(n);
 }
 
-// Points spread evenly over the triangles that are not held.
+// Points distributed evenly over the triangles that are not held.
 std::vector<Vec3d> random_points(const TetMesh& mesh, const std::vector<Triangle>& triangles,
                                  std::span<const int> fixed, int count, uint64_t seed) {
   std::vector<char> is_fixed(mesh.rest.size(), 0);

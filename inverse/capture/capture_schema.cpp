@@ -10,7 +10,7 @@ namespace {
 
 const Range kPositive{.min = 0, .min_open = true};
 
-// What capture.toml says as scenes do: selections and values per tet.
+// Sections shared with scenes: selections and values per tet.
 void add_sections_of_scenes(Schema& s) {
   const Schema& scenes = scene_schema();
   const auto is_shared = [](const std::string& section) {
@@ -32,11 +32,11 @@ void add_document(Schema& s) {
              .range = {.min = 1, .max = 1},
              .meaning = "of this format"},
             {.name = "name", .accepts = kText, .meaning = "of the data set; default: the folder's name"},
-            {.name = "mesh", .accepts = kText, .required = true, .meaning = "file of the body at rest, of tets"},
+            {.name = "mesh", .accepts = kText, .required = true, .meaning = "tet mesh of the body at rest"},
             {.name = "fixed",
              .accepts = kExpression | kTable | kIntegers,
              .table = "where",
-             .meaning = "vertices that are held; default: none"},
+             .meaning = "held vertices; default: none"},
             {.name = "density",
              .accepts = kNumber | kExpression | kTable,
              .unit = "kg/m^3",

@@ -12,7 +12,7 @@ namespace aspic {
 namespace {
 
 constexpr int kMostCases = 20'000;
-// Where only the force along the axis was measured, the force across is this uncertain, relative to the force.
+// If only the axial force was measured, standard deviation of the lateral force, relative to the force.
 constexpr double kForceAcross = 0.3;
 
 class CaseReader {
@@ -31,12 +31,12 @@ class CaseReader {
       LoadCase load = row();
       const auto [first, is_new] = line_of_.try_emplace(load.name, table_.line());
       if (!is_new)
-        table_.error("the case '" + load.name + "' is in line " + std::to_string(first->second) +
-                     " already; give each case its own name");
+        table_.error("the case '" + load.name + "' already occurs in line " + std::to_string(first->second) +
+                     "; give each case its own name");
       cases.push_back(std::move(load));
       data_.source.case_line.push_back(table_.line());
     }
-    if (cases.empty()) throw InvalidInput(data_.source.cases + ": holds no case; a fit needs at least one");
+    if (cases.empty()) throw InvalidInput(data_.source.cases + ": has no cases; a fit needs at least one");
   }
 
  private:
@@ -60,7 +60,7 @@ class CaseReader {
     if (found) load.pressed = *found;
   }
 
-  // The one of this name; of a blank name, the only one.
+  // Returns the item of this name; for a blank name, the only item.
   template <class Thing>
   const Thing* named(const std::map<std::string, Thing>& things, const std::string& name, const char* what,
                      const char* key) {
@@ -85,7 +85,7 @@ class CaseReader {
     return text;
   }
 
-  // The touch of a row that gives none is that of the last row of its group that did.
+  // A row without a touch uses the last touch of its group.
   void read_tip(LoadCase& load) {
     const double length = settings_.unit("length");
     std::optional<Vec3d> touch = table_.vector("touch_", length), axis = table_.vector("axis_");
@@ -101,11 +101,12 @@ class CaseReader {
       if (!axis) axis = last->second.axis;
     }
     if (!axis && (touch || center)) axis = inward_axis(touch ? *touch : *center);
-    if (axis && norm(*axis) == 0) return table_.error("the axis is 0 0 0; it points out of the tip, into the body");
+    if (axis && norm(*axis) == 0)
+      return table_.error("the axis is 0 0 0; it must point out of the indenter, into the body");
     if (!touch && center && depth) touch = *center - *depth * unit(*axis);
     if (!touch || (!center && !depth))
       return table_.error(
-          "the pose of the tip is incomplete; give touch_x, touch_y, touch_z, where its center was when "
+          "the pose of the indenter is incomplete; give touch_x, touch_y, touch_z, its center when "
           "it touched the body at rest, and center_x, center_y, center_z or depth");
     load.touch = {*touch, *axis, {}};
     load.pose = {center ? *center : *touch + *depth * unit(*axis), turned_axis(load.touch, rotation), rotation};
@@ -121,15 +122,14 @@ class CaseReader {
     load.force = table_.vector("force_", newton * sign);
     const std::optional<double> along = table_.number("force", newton * sign);
     const std::optional<Vec3d> force_sd = table_.deviation("force_sd", newton);
-    if (load.force && along) table_.error("force and force_x, force_y, force_z are given; keep one of them");
+    if (load.force && along) table_.error("force and force_x, force_y, force_z are both given; keep one of them");
     load.force_deviation = force_sd ? *force_sd : default_deviation("force", newton);
     if (along && !load.force) take_force_along_axis(load, *along);
     load.torque = table_.vector("torque_", newton_meter * sign);
     const std::optional<Vec3d> torque_sd = table_.deviation("torque_sd", newton_meter);
     load.torque_deviation = torque_sd ? *torque_sd : default_deviation("torque", newton_meter);
     if ((load.force || load.torque) && !load.tip)
-      table_.error(
-          "has a force or torque but no tip, whose force it would be; give its pose, or leave the force blank");
+      table_.error("has a force or torque but no indenter; give its pose, or leave the force blank");
   }
 
   // A gauge that measures only the axial force does not determine the lateral force.
@@ -144,7 +144,7 @@ class CaseReader {
 
   Vec3d default_deviation(const char* what, double in_si) const {
     const Value* sd = settings_["deviation"].find(what);
-    const double value = sd ? sd->number() * in_si : 0;  // 0: chosen once all are read
+    const double value = sd ? sd->number() * in_si : 0;  // 0: chosen after all rows are read
     return {{value, value, value}};
   }
 
@@ -163,7 +163,7 @@ std::vector<T> in_order(std::vector<T>& values, const std::vector<int>& order) {
   return sorted;
 }
 
-// Groups in the order in which they appear.
+// Sorts groups by first appearance.
 void sort_cases(DataSet& data) {
   std::vector<LoadCase>& cases = data.experiment.cases;
   std::map<std::string, int> rank;

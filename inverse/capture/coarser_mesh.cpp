@@ -15,7 +15,7 @@ namespace {
 
 constexpr double kCoarser = 1.5;
 
-// The shape of a resolved body with longer edges.
+// Lengthens the edges of a resolved shape.
 void coarsen(Value& shape) {
   Member& kind = shape.table().members.front();  // box, cylinder, ...
   Table& table = kind.value.table();
@@ -32,7 +32,7 @@ TetMesh generated_coarser(Value body, const std::filesystem::path& mesher, std::
   return make_body_mesh(body, loader, std::nullopt).tets;
 }
 
-// Of a regular tet with the mean volume.
+// Edge length of a regular tet with the mean volume.
 double edge_length(const TetMesh& mesh) {
   double sum = 0;
   for (int t = 0; t < mesh.tet_count(); ++t) sum += volume(mesh, t);
@@ -55,9 +55,9 @@ std::optional<TetMesh> coarser_mesh(const Scene& scene, const std::filesystem::p
   try {
     TetMesh mesh = body.find("shape") ? generated_coarser(body, mesher, notes) : filled_coarser(model.mesh, mesher);
     if (mesh.tet_count() < model.mesh.tet_count()) return mesh;
-    notes.push_back("no coarser mesh could be made than that of the scene");
+    notes.push_back("no coarser mesh than that of the scene was possible");
   } catch (const InvalidInput& e) {
-    notes.push_back(std::string("no coarser mesh could be made: ") + e.what());
+    notes.push_back(std::string("no coarser mesh was possible: ") + e.what());
   }
   return std::nullopt;
 }

@@ -24,7 +24,7 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr size_t kMostMarkers = 1'000'000, kMostReadings = 5'000'000;
-constexpr double kFarOff = 0.1;  // of the body's size: a marker this far off its surface is none of it
+constexpr double kFarOff = 0.1;  // fraction of the body's size; farther markers are errors
 
 void add_notes(const std::string& what, const std::vector<Finding>& findings, std::vector<std::string>& notes) {
   for (const Finding& f : findings) {
@@ -99,7 +99,7 @@ class DataSetReader {
       selection = {Table{}, where->place};
       selection.table().set("vertices", *where);
       for (const Value& v : where->array())
-        if (v.number() < 0) throw error_at(v.place, "fixed: " + inline_toml(v) + " is no vertex; they count from 0");
+        if (v.number() < 0) throw error_at(v.place, "fixed: " + inline_toml(v) + " is no vertex; count from 0");
     }
     for (const int v : select_vertices(selection, scope()))
       data_.experiment.fixed.push_back(data_.numbering.vertex.from_user(v));
@@ -122,8 +122,8 @@ class DataSetReader {
       const std::string name = given.empty() ? std::to_string(data_.marker_names.size()) : given;
       const int index = static_cast<int>(data_.marker_names.size());
       if (const auto [other, is_new] = marker_of_.try_emplace(name, index); !is_new)
-        table.error("the marker '" + name + "' is in line " + std::to_string(data_.source.marker_line[other->second]) +
-                    " already; give each its own name");
+        table.error("the marker '" + name + "' already occurs in line " +
+                    std::to_string(data_.source.marker_line[other->second]) + "; give each its own name");
       Vec3d gap{};
       data_.experiment.markers.push_back(marker(table, surface, gap));
       data_.marker_names.push_back(name);
@@ -138,7 +138,7 @@ class DataSetReader {
     if (const std::optional<int> vertex = table.integer("vertex")) return marker_at_vertex(table, *vertex);
     const std::optional<Vec3d> p = table.vector("", settings_.unit("length"));
     if (!p) {
-      table.error("the marker has no place; give x, y, z or vertex");
+      table.error("the marker has no position; give x, y, z or vertex");
       return {};
     }
     const ProjectedPoint projected = surface.nearest(*p);
@@ -150,7 +150,7 @@ class DataSetReader {
     return projected.point;
   }
 
-  // Whether another unit would bring the point onto the body.
+  // Suggests a unit if another one would move the point onto the body.
   std::string unit_hint(const SurfaceProjection& surface, const Vec3d& p) const {
     const double length = settings_.unit("length");
     for (const std::string& unit : unit_names("length")) {
@@ -158,7 +158,7 @@ class DataSetReader {
       if (surface.nearest(factor * p).distance < kFarOff * size_ && norm(factor * p) > kFarOff * size_)
         return "in " + unit + " it would not: units = { length = \"" + unit + "\" }";
     }
-    return "correct it, or move the mesh to where the markers are";
+    return "correct it, or align the mesh with the markers";
   }
 
   std::optional<int> stored_vertex(MeasuredTable& table, const char* column) {
@@ -191,7 +191,7 @@ class DataSetReader {
       const std::optional<int> v = stored_vertex(table, ("corner_" + number).c_str());
       const std::optional<double> w = table.number("weight_" + number);
       if (!v || !w) {
-        table.error("corner_1 to corner_3 and weight_1 to weight_3 belong together; some are blank or wrong");
+        table.error("corner_1 to corner_3 and weight_1 to weight_3 must all be given; some are blank or invalid");
         return {};
       }
       point.vertices[i] = *v;
@@ -199,7 +199,7 @@ class DataSetReader {
     }
     for (const int v : point.vertices)
       if (!corner_of_.contains(v)) table.error("a corner of the marker is inside the body; markers lie on its surface");
-    if (std::abs(sum - 1) > 1e-6) table.error("the weights add up to " + number_text(sum) + "; they must to 1");
+    if (std::abs(sum - 1) > 1e-6) table.error("the weights add up to " + number_text(sum) + "; they must sum to 1");
     return point;
   }
 
@@ -212,7 +212,7 @@ class DataSetReader {
               settings_.unit("length") * t["radius"].number(), 0};
       if (const Value* k = t.find("stiffness")) tip.stiffness = k->number();
       if (!tips_.try_emplace(t["name"].text(), tip).second)
-        throw error_at(t["name"].place, "name = " + toml_string(t["name"].text()) + " is that of another tip already");
+        throw error_at(t["name"].place, "name = " + toml_string(t["name"].text()) + " is used by another tip");
     }
   }
 
@@ -228,8 +228,7 @@ class DataSetReader {
       for (Triangle& t : triangles)
         for (int& v : t) v = data_.numbering.vertex.from_user(v);
       if (!patches_.try_emplace(p["name"].text(), std::move(triangles)).second)
-        throw error_at(p["name"].place,
-                       "name = " + toml_string(p["name"].text()) + " is that of another patch already");
+        throw error_at(p["name"].place, "name = " + toml_string(p["name"].text()) + " is used by another patch");
     }
   }
 
@@ -259,7 +258,7 @@ class DataSetReader {
     for (size_t count = 0; table.next(); ++count) {
       if (count == kMostReadings)
         throw InvalidInput(data_.source.positions + ": more than " + std::to_string(kMostReadings) +
-                           " positions; leave out markers or cases");
+                           " positions; remove markers or cases");
       read_position(table, case_of, line_of);
     }
   }
@@ -275,7 +274,7 @@ class DataSetReader {
       table.error("this marker was given for this case in line " + std::to_string(first->second) + " already");
     const Value* usual = settings_["deviation"].find("position");
     const double all = usual ? usual->number() * length : 0;
-    // What counts is how it has moved since rest, where a mesh never lies exactly on the surface that was measured.
+    // Uses the displacement from rest, because the measured surface never matches the mesh exactly.
     data_.experiment.cases[c].positions.push_back({m, *p - gap_[m], sd ? *sd : Vec3d{{all, all, all}}});
     data_.source.position_line[c].push_back(table.line());
   }
@@ -286,7 +285,7 @@ class DataSetReader {
   TetMesh user_mesh_;
   double size_ = 0;  // of the body [m]
   std::map<std::string, int> marker_of_;
-  std::vector<Vec3d> gap_;                             // of each marker at rest, from its point of the surface [m]
+  std::vector<Vec3d> gap_;                             // offset of each marker at rest from its surface point [m]
   std::map<int, std::pair<Triangle, int>> corner_of_;  // a triangle of each vertex of the surface, and which corner
   std::map<std::string, Tip> tips_;
   std::map<std::string, std::vector<Triangle>> patches_;

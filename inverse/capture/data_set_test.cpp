@@ -1,4 +1,4 @@
-// The format of measurements: what is written reads back, what others wrote is understood, what is wrong is named.
+// Format of measurements: round trip, foreign files, and error messages.
 #include "capture/data_set.h"
 
 #include <gmock/gmock.h>
@@ -53,7 +53,7 @@ void expect_equal(const LoadCase& a, const LoadCase& b) {
 
 class DataSetFile : public FolderTest {
  protected:
-  // A data set as a measuring program leaves it; `settings` go before [[tip]].
+  // A data set as written by a measuring program; `settings` are inserted before [[tip]].
   std::filesystem::path measured(const std::string& settings = "") {
     write_mesh(path("rest.msh"), test_box());
     folder.write("markers.csv", "marker,x,y,z\nA,0.05,0.04,0.0601\nB,0.02,0.03,0.06\n");
@@ -128,13 +128,14 @@ TEST_F(DataSetFile, WhatIsLeftOutIsChosenAndTold) {
   EXPECT_EQ(deep.positions[0].deviation[1], 1e-4);
   EXPECT_GT(e.cases[0].positions[0].deviation[1], 0);
   EXPECT_NEAR(data.marker_gap[0], 1e-4, 1e-15);
-  EXPECT_NEAR(deep.positions[0].position[2], 0.0559, 1e-15);  // as far as the marker has gone, from the surface on
+  EXPECT_NEAR(deep.positions[0].position[2], 0.0559,
+              1e-15);  // displacement of the marker, applied to its surface point
   EXPECT_EQ(e.fixed.size(), 30u);
   EXPECT_THAT(data.notes, testing::Contains(HasSubstr("standard deviation of positions")));
   EXPECT_THAT(data.notes, testing::Contains(HasSubstr("layer of the tip")));
 }
 
-TEST_F(DataSetFile, UnitsAndNamesOfColumnsAreThoseOfTheMeasuringProgram) {
+TEST_F(DataSetFile, AcceptsUnitsAndColumnNamesOfOtherPrograms) {
   measured(
       "units = { length = \"mm\", mesh = \"m\", force = \"g\", angle = \"deg\" }\n"
       "columns = { x = \"X [mm]\", y = \"Y [mm]\", z = \"Z [mm]\", cases = { force_z = \"Scale\" } }\n"
@@ -158,7 +159,7 @@ TEST_F(DataSetFile, UnitsAndNamesOfColumnsAreThoseOfTheMeasuringProgram) {
   EXPECT_EQ(data.experiment.fixed.size(), 2u);
 }
 
-TEST_F(DataSetFile, AForceAlongTheAxisLeavesTheForceAcrossOpen) {
+TEST_F(DataSetFile, AxialForceLeavesLateralForceUndetermined) {
   measured();
   folder.write("cases.csv", "case,touch_x,touch_y,touch_z,depth,force,force_sd\n1,0.05,0.04,0.07,0.004,2,0.01\n");
   folder.write("positions.csv", "case,marker,x,y,z\n1,A,0.05,0.04,0.056\n");
@@ -184,13 +185,13 @@ TEST_F(DataSetFile, PatchesAndMarkersAtVerticesAreFound) {
   EXPECT_EQ(data.experiment.fixed.size(), 30u);
 }
 
-TEST_F(DataSetFile, BadCellsAreNamedWithFileLineValueAndRemedyAllAtOnce) {
+TEST_F(DataSetFile, BadCellsAreReportedTogetherWithRemedies) {
   measured();
   folder.write("positions.csv",
                "case,marker,x,y,z,sd\ndeep,A,nan,0.04,0.056,1e-4\ndeep,B,0.02,0.03,0.06,-1\nshallow,A,0.05,,0.06,1e-4\n"
                "shalow,A,0.05,0.04,0.06,1e-4\nshallow,B,0.02,0.03,six,1\nshallow,B,,,,\n");
   const std::string text = refusal();
-  EXPECT_THAT(text, HasSubstr("positions.csv:2: x = 'nan' is no finite number"));
+  EXPECT_THAT(text, HasSubstr("positions.csv:2: x = 'nan' is not a finite number"));
   EXPECT_THAT(text, HasSubstr("positions.csv:3: sd = -1; a standard deviation must be > 0"));
   EXPECT_THAT(text, HasSubstr("positions.csv:4: x, y, z: some are blank"));
   EXPECT_THAT(text,
@@ -204,19 +205,19 @@ TEST_F(DataSetFile, NamesAreGivenOnce) {
   folder.write("cases.csv", "case,touch_x,touch_y,touch_z,depth\n1,0.05,0.04,0.07,0.004\n1,0.05,0.04,0.07,0.004\n");
   folder.write("positions.csv", "case,marker,x,y,z\n1,A,0.05,0.04,0.056\n1,A,0.05,0.04,0.056\n");
   const std::string text = refusal();
-  EXPECT_THAT(text, HasSubstr("markers.csv:3: the marker 'A' is in line 2 already"));
-  EXPECT_THAT(text, HasSubstr("cases.csv:3: the case '1' is in line 2 already"));
+  EXPECT_THAT(text, HasSubstr("markers.csv:3: the marker 'A' already occurs in line 2"));
+  EXPECT_THAT(text, HasSubstr("cases.csv:3: the case '1' already occurs in line 2"));
   EXPECT_THAT(text, HasSubstr("positions.csv:3: this marker was given for this case in line 2 already"));
 }
 
-TEST_F(DataSetFile, AMarkerFarOffTheSurfaceIsRefusedWithAHintAtUnits) {
+TEST_F(DataSetFile, MarkerFarOffSurfaceGetsUnitHint) {
   measured();
   folder.write("markers.csv", "marker,x,y,z\nA,50,40,60\nB,0.02,0.03,0.06\n");
   EXPECT_THAT(refusal(), HasSubstr("markers.csv:2: the marker lies 87.6 m off"));
   EXPECT_THAT(refusal(), HasSubstr("units = { length = \"mm\" }"));
 }
 
-TEST_F(DataSetFile, MissingFilesAndColumnsAndUnknownKeysAreNamed) {
+TEST_F(DataSetFile, MissingFilesColumnsAndUnknownKeysAreNamed) {
   EXPECT_THAT(message_of([&] { read_data_set(folder / "nowhere"); }), HasSubstr("does not exist"));
   EXPECT_THAT(refusal(), HasSubstr("has no capture.toml"));
   measured();
@@ -239,16 +240,16 @@ TEST_F(DataSetFile, MissingFilesAndColumnsAndUnknownKeysAreNamed) {
   EXPECT_THAT(refusal(), HasSubstr("has 4 cells"));
   measured();
   folder.write("cases.csv", "case,group\n");
-  EXPECT_THAT(refusal(), HasSubstr("holds no case"));
+  EXPECT_THAT(refusal(), HasSubstr("has no cases"));
   folder.write("cases.csv", "case,tip,touch_x,touch_y,touch_z\n1,tipp,0.05,0.04,0.07\n");
   EXPECT_THAT(refusal(), HasSubstr("tip = 'tipp' is unknown"));
   folder.write("cases.csv", "case,touch_x,touch_y,touch_z\n1,0.05,0.04,0.07\n");
-  EXPECT_THAT(refusal(), HasSubstr("the pose of the tip is incomplete"));
+  EXPECT_THAT(refusal(), HasSubstr("the pose of the indenter is incomplete"));
   folder.write("cases.csv", "case,force_x,force_y,force_z\n1,0,0,1\n");
-  EXPECT_THAT(refusal(), HasSubstr("no tip, whose force"));
+  EXPECT_THAT(refusal(), HasSubstr("no indenter"));
 }
 
-TEST_F(DataSetFile, AMeshOfTrianglesOrWithInvertedTetsIsRefused) {
+TEST_F(DataSetFile, TriangleMeshesAndInvertedTetsAreRefused) {
   measured();
   TetMesh inverted = test_box();
   std::swap(inverted.tets[3][0], inverted.tets[3][1]);
@@ -258,7 +259,7 @@ TEST_F(DataSetFile, AMeshOfTrianglesOrWithInvertedTetsIsRefused) {
   EXPECT_THAT(refusal(), HasSubstr("tet"));
 }
 
-TEST_F(DataSetFile, AVertexInsideTheBodyAndOneThatIsNotThereAreNoMarkers) {
+TEST_F(DataSetFile, InteriorAndMissingVerticesAreNoMarkers) {
   measured();
   const TetMesh box = test_box();
   int inside = 0;

@@ -65,7 +65,7 @@ class DataSetWriter {
       if (!load.pressed.empty() && std::find(patches_.begin(), patches_.end(), load.pressed) == patches_.end())
         patches_.push_back(load.pressed);
       if (load.tip && !same(load.pose.axis, turned_axis(load.touch, load.pose.rotation)))
-        throw InvalidInput("case '" + load.name + "': the axis of the pose is not that of the touch, turned");
+        throw InvalidInput("case '" + load.name + "': the axis of the pose is not the rotated axis of the touch");
     }
   }
 
@@ -179,14 +179,14 @@ class DataSetWriter {
 
 }  // namespace
 
-// Written beside what it replaces, which is touched only once everything is on the disk. Without capture.toml the
-// folder is no data set, so that goes first and comes last: never do files of two data sets look like one.
+// Writes beside the old data, which are touched only once everything is on disk. A folder without capture.toml is no
+// data set, so that file is removed first and added last: two data sets are never mixed.
 void write_data_set(const fs::path& folder, const DataSet& data, const WriteBeside& beside) {
   const fs::path unfinished = folder / ".aspic-unfinished", settings = "capture.toml";
   std::error_code error;
   fs::remove_all(unfinished, error);
   fs::create_directories(unfinished, error);
-  if (error) throw InvalidInput(folder.string() + ": cannot be made (" + error.message() + "); choose another");
+  if (error) throw InvalidInput(folder.string() + ": cannot be created (" + error.message() + "); choose another");
   try {
     DataSetWriter(unfinished, data).write();
     if (beside) beside(unfinished);

@@ -9,8 +9,8 @@
 namespace aspic {
 namespace {
 
-constexpr double kStill = 4;           // standard deviations of the mean: a motion of what is fixed
-constexpr size_t kMostCompared = 300;  // whose motions are compared
+constexpr double kStill = 4;           // standard deviations of the mean motion of fixed parts
+constexpr size_t kMostCompared = 300;  // limit of compared motions
 constexpr double kSameMotion = 0.02;   // smallest relative difference between two distinct motions
 constexpr int kFewNumbers = 30;
 
@@ -59,8 +59,8 @@ class ContentDiagnosis {
       const LoadCase& load = experiment_.cases[c];
       const int here = 3 * (static_cast<int>(load.positions.size()) + (load.force ? 1 : 0) + (load.torque ? 1 : 0));
       if (here == 0)
-        findings_.error(where(c), "nothing was measured: no position, no force, no torque",
-                        "take the row out, or check that positions name this case");
+        findings_.error(where(c), "no measurements: no position, no force, no torque",
+                        "remove the row, or check that positions name this case");
       numbers += here;
       groups.insert(load.group);
       for (const MarkerReading& r : load.positions) seen.insert(r.marker);
@@ -69,16 +69,16 @@ class ContentDiagnosis {
       findings_.warning(data_.source.positions,
                         "only " + std::to_string(numbers) + " numbers were measured in " +
                             std::to_string(experiment_.cases.size()) + " cases",
-                        "enough for one value of the whole body; more markers or cases tell where it is stiff");
+                        "enough for one value of the whole body; locating stiff parts needs more markers or cases");
     if (groups.size() == 1 && experiment_.cases.size() > 1)
       findings_.note(data_.source.cases, "all cases are of one group",
-                     "poke at several sites: what is far from the tip stays unknown, and no group can be left out to "
+                     "poke at several sites: distant parts stay undetermined, and no group can be held out to "
                      "test the fit");
     const size_t unseen = experiment_.markers.size() - seen.size();
     if (unseen > 0 && !seen.empty())
       findings_.note(data_.source.markers,
                      std::to_string(unseen) + (unseen == 1 ? " marker was" : " markers were") + " never measured",
-                     "check that positions call them the same");
+                     "check their names in positions");
   }
 
   void compare_cases() {
@@ -89,15 +89,15 @@ class ContentDiagnosis {
         const std::string what = "has the same load as '" + cases[a].name + "'";
         if (same_readings(cases[a], cases[b])) {
           findings_.warning(where(b), what + " and the same readings to the last digit",
-                            "a copy counts twice; take it out");
+                            "a copy counts twice; remove it");
         } else {
-          findings_.note(where(b), what, "a repetition: both are fitted");
+          findings_.note(where(b), what, "a repetition; both are fitted");
         }
         break;
       }
   }
 
-  // What is fixed should not move: markers between fixed vertices, as one rigid body.
+  // Fixed parts should not move: examines markers between fixed vertices as one rigid body.
   void examine_rigid_motion() {
     std::vector<char> fixed(experiment_.mesh.rest.size(), 0);
     for (const int v : experiment_.fixed) fixed[v] = 1;
@@ -139,12 +139,12 @@ class ContentDiagnosis {
     const double moved = norm(t), turned = norm(w) * reach, noise = kStill * sd / std::sqrt(n);
     if (std::max(moved, turned) <= noise) return;
     findings_.warning(place,
-                      "what is fixed moved: by " + three_digits(moved) + " m and " + three_digits(norm(w)) +
+                      "fixed vertices moved: by " + three_digits(moved) + " m and " + three_digits(norm(w)) +
                           " rad, seen at " + std::to_string(X.size()) + " markers",
-                      "take this rigid motion out of the positions and the pose of the case, or fix the camera");
+                      "remove this rigid motion from positions and pose of the case, or fix the camera");
   }
 
-  // Motions that are combinations of others, but for noise, by Gram and Schmidt on the cases.
+  // Finds motions that are combinations of others up to noise, by Gram-Schmidt on the cases.
   void examine_rank() {
     const std::vector<LoadCase>& cases = experiment_.cases;
     std::set<std::string> groups;
@@ -181,7 +181,7 @@ class ContentDiagnosis {
                                            [](const LoadCase& load) { return !load.positions.empty(); });
     if (has_positions && motions == 0)
       return findings_.warning(data_.source.positions, "no case moves the markers by more than their noise",
-                               "poke deeper, put markers nearer to the tip, or check sd");
+                               "poke deeper, place markers nearer to the indenter, or check sd");
     if (groups > 1 && rank < groups)
       findings_.warning(data_.source.positions,
                         "the data are rank-deficient: the motions of " + std::to_string(groups) +

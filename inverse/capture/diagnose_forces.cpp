@@ -11,14 +11,14 @@
 namespace aspic {
 namespace {
 
-constexpr double kSoftestPoked = 50, kStiffestPoked = 1.5e7;  // [Pa] Young's moduli of bodies that one pokes
-constexpr double kUnlike = 30;                         // ratio of apparent moduli within one body that is no tissue's
-constexpr double kStriking = 2.5;                      // and one that a wrong force or an inclusion has
-constexpr double kSamePlace = 0.1, kSameDepth = 0.05;  // of pokes that are one, relative to the radius and the depth
-constexpr double kOtherForce = 0.2, kOtherDeviations = 4;  // that forces of one poke should not differ by
-constexpr double kFalling = 0.8;                        // a force that falls below this share of the last, going deeper
-constexpr double kLargest = 1e9, kFinestForce = 1e-12;  // [N] of bodies that one pokes, and of their deviations
-constexpr int kEnough = 6;                              // forces that tell how a gauge rounds
+constexpr double kSoftestPoked = 50, kStiffestPoked = 1.5e7;  // usual Young's moduli of poked bodies [Pa]
+constexpr double kUnlike = 30;                                // implausible ratio of apparent moduli in one body
+constexpr double kStriking = 2.5;                             // suspicious ratio: a wrong force, or an inclusion
+constexpr double kSamePlace = 0.1, kSameDepth = 0.05;         // tolerances of equal pokes, relative to radius and depth
+constexpr double kOtherForce = 0.2, kOtherDeviations = 4;     // limits of force differences between equal pokes
+constexpr double kFalling = 0.8;  // ratio of a force to the previous one below which it falls with depth
+constexpr double kLargest = 1e9, kFinestForce = 1e-12;  // largest plausible force, and finest deviation [N]
+constexpr int kEnough = 6;                              // forces needed to detect rounding by a gauge
 
 class ForceDiagnosis {
  public:
@@ -52,14 +52,14 @@ class ForceDiagnosis {
     }
     if (!has_force && !has_other)
       return findings_.warning(data_.source.cases,
-                               "there is no force at all: only ratios of stiffness can be known, not how stiff the "
-                               "body is",
+                               "there is no force: only ratios of stiffness can be determined, not the level of the "
+                               "stiffness",
                                "measure at least one force, or a case under gravity or pressure");
     if (!without.empty() && has_force)
       findings_.note(where(without.front()),
                      "is one of " + std::to_string(without.size()) + " pokes without a force (of " +
                          std::to_string(cases_.size()) + " cases)",
-                     "its motion is fitted all the same");
+                     "its motion is still fitted");
   }
 
   bool examine_readings() {
@@ -74,15 +74,15 @@ class ForceDiagnosis {
       if (std::min({sd[0], sd[1], sd[2]}) < kFinestForce)
         return refuse(where(c),
                       "the force has a standard deviation of " + three_digits(std::min({sd[0], sd[1], sd[2]})) +
-                          " N: no gauge is so exact",
+                          " N, which no gauge attains",
                       "check the unit of force_sd; leave it blank for 1 % of the largest force");
       if (!load.tip || load_size(load) == 0) continue;
       ++measured;
       zero += norm(*load.force) == 0;
     }
     if (zero > 0 && zero == measured)
-      findings_.error(data_.source.cases, "all forces are 0, though the tip goes into the body",
-                      "leave them blank if none was measured");
+      findings_.error(data_.source.cases, "all forces are 0, although the indenter enters the body",
+                      "leave them blank if they were not measured");
     return true;
   }
 
@@ -91,7 +91,7 @@ class ForceDiagnosis {
     return false;
   }
 
-  // The tip pushes the body the way it goes.
+  // The force must act along the motion of the indenter.
   void examine_signs() {
     std::vector<size_t> against;
     int measured = 0;
@@ -106,11 +106,11 @@ class ForceDiagnosis {
     if (against.empty()) return;
     if (2 * static_cast<int>(against.size()) > measured)
       return findings_.error(where(against.front()),
-                             "the force points against the way of the tip, here and in " +
+                             "the force opposes the motion of the indenter, here and in " +
                                  std::to_string(against.size() - 1) + " other cases",
                              "if the force of the body on the tip was measured, set force_of = \"body\"");
     for (const size_t c : against)
-      findings_.warning(where(c), "the force points against the way of the tip, unlike in the other cases",
+      findings_.warning(where(c), "the force opposes the motion of the indenter, unlike in the other cases",
                         "correct its sign, or leave it blank");
   }
 
@@ -118,10 +118,10 @@ class ForceDiagnosis {
     const std::optional<double> E = apparent_young(data_.experiment);
     if (!E) return;
     const std::string says =
-        "by force, depth and radius of the tip, Young's modulus is about " + three_digits(*E) + " Pa";
+        "force, depth and radius of the indenter imply a Young's modulus of about " + three_digits(*E) + " Pa";
     if (*E >= kSoftestPoked && *E <= kStiffestPoked)
       return findings_.note(data_.source.cases, says,
-                            "if that is far from what the body feels like, check units: force and length");
+                            "if this is implausible for the body, check units: force and length");
     std::string remedy = "check units: force and length";
     for (const std::string& unit : unit_names("force")) {
       const double other = *E * unit_in_si("force", unit);
@@ -131,10 +131,10 @@ class ForceDiagnosis {
         if (unit == "mN" || unit == "g" || unit == "kN") break;
       }
     }
-    findings_.warning(data_.source.cases, says + ", which nothing soft has", remedy);
+    findings_.warning(data_.source.cases, says + ", too large for soft bodies", remedy);
   }
 
-  // Kitchen scales show whole grams.
+  // Kitchen scales show integral grams.
   void examine_rounding() {
     int whole = 0, count = 0;
     double largest = 0;
@@ -151,11 +151,11 @@ class ForceDiagnosis {
     if (count >= kEnough && whole == count && largest >= 20)
       findings_.warning(data_.source.cases,
                         "all " + std::to_string(count) + " forces are whole numbers, up to " + three_digits(largest) +
-                            " N, as scales show grams",
+                            " N, as from scales in grams",
                         "if they are grams, set units = { force = \"g\" }");
   }
 
-  // Of cases whose force is more than noise.
+  // Groups the cases whose force exceeds the noise.
   std::map<std::string, std::vector<size_t>> groups() const {
     std::map<std::string, std::vector<size_t>> groups;
     for (size_t c = 0; c < cases_.size(); ++c)
@@ -164,7 +164,7 @@ class ForceDiagnosis {
     return groups;
   }
 
-  // A poke that seems far stiffer or softer than the others.
+  // Finds pokes with implausibly high or low stiffness.
   void examine_groups() {
     std::vector<double> stiffness;
     const auto by_group = groups();
@@ -183,7 +183,7 @@ class ForceDiagnosis {
         findings_.warning(
             where(members.front()),
             std::string("the body seems much ") + (ratio > 1 ? "stiffer" : "softer") + " here than in the other pokes",
-            "check this force; an inclusion or an edge near the tip explains it as well");
+            "check this force; an inclusion or an edge near the indenter is also possible");
         continue;
       }
       findings_.warning(
@@ -192,7 +192,7 @@ class ForceDiagnosis {
     }
   }
 
-  // The same tip at the same place and depth meets the same force.
+  // Compares forces of the same indenter at the same place and depth.
   void examine_repetitions() {
     for (size_t c = 0; c < cases_.size(); ++c)
       for (size_t first = 0; first < c; ++first) {
@@ -204,7 +204,7 @@ class ForceDiagnosis {
           findings_.warning(where(c),
                             "the force is " + three_digits(now) + " N, but " + three_digits(before) +
                                 " N under the same load in '" + cases_[first].name + "'",
-                            "correct the wrong one, or leave both blank: a fit of both finds neither stiffness");
+                            "correct the wrong one, or leave both blank: a fit of both is wrong for each");
         break;
       }
   }
@@ -235,9 +235,9 @@ class ForceDiagnosis {
       if (is_deeper && norm(*load.force) < kFalling * norm(*last.force) - noise)
         findings_.warning(where(c),
                           "the force falls from " + three_digits(norm(*last.force)) + " N to " +
-                              three_digits(norm(*load.force)) + " N though the tip goes deeper than in '" + last.name +
-                              "'",
-                          "correct its force or its pose; a body that slips or buckles is no equilibrium to fit");
+                              three_digits(norm(*load.force)) + " N although the indenter is deeper than in '" +
+                              last.name + "'",
+                          "correct its force or its pose; a slipping or buckling body cannot be fitted");
     }
   }
 

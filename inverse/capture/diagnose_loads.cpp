@@ -12,13 +12,13 @@
 namespace aspic {
 namespace {
 
-constexpr double kDeep = 0.5;                       // of the body's size: a way that no poke goes
-constexpr double kLoose = 0.05;                     // of the body's size: a gap at the touch that is no round-off
-constexpr double kHuge = 100;                       // of the body's size: a radius that is in another unit
-constexpr double kTurned = 1;                       // [rad] a turn that no glued tip makes
-constexpr double kBackwards = -0.5;                 // cosine between a tip's axis and the way into the body
-constexpr double kCoarse = 4;                       // edges of the surface over the radius of a tip that they blur
-constexpr double kStrongest = 200, kWeakest = 0.1;  // [m/s^2] gravity that was meant
+constexpr double kDeep = 0.5;        // fraction of the body's size; deeper pokes are implausible
+constexpr double kLoose = 0.05;      // fraction of the body's size; larger gaps at the touch are not round-off
+constexpr double kHuge = 100;        // fraction of the body's size; larger radii are in another unit
+constexpr double kTurned = 1;        // [rad] implausible rotation of a bonded indenter
+constexpr double kBackwards = -0.5;  // cosine between the indenter's axis and the direction into the body
+constexpr double kCoarse = 4;        // ratio of surface edges to the indenter's radius that is too coarse
+constexpr double kStrongest = 200, kWeakest = 0.1;  // [m/s^2] range of plausible gravity
 
 class LoadDiagnosis {
  public:
@@ -38,8 +38,8 @@ class LoadDiagnosis {
       examine_pressure(load);
       const bool is_loaded = load.tip || load.pressure != 0 || norm(load.gravity) > 0;
       if (!is_loaded)
-        findings_.warning(where_, "has no load: no tip, no pressure, no gravity",
-                          "it says nothing of the material; give its load, or take the row out");
+        findings_.warning(where_, "has no load: no indenter, no pressure, no gravity",
+                          "it has no information about the material; give its load, or remove the row");
     }
     examine_holds();
   }
@@ -51,19 +51,19 @@ class LoadDiagnosis {
     if (way > kDeep * size_)
       return findings_.error(
           where_,
-          "the tip goes " + three_digits(way) + " m from its touch, the body is " + three_digits(size_) + " m across",
-          "check units: length = \"mm\" or \"cm\"; touch and center are the same point of the tip");
+          "the indenter moves " + three_digits(way) + " m from its touch in a body of " + three_digits(size_) + " m",
+          "check units: length = \"mm\" or \"cm\"; touch and center are the same point of the indenter");
     if (way == 0 && norm(load.pose.rotation) == 0)
-      findings_.note(where_, "the tip is where it touched: the body stays at rest", "poke deeper, or take the row out");
+      findings_.note(where_, "the indenter is at its touch: the body stays at rest", "poke deeper, or remove the row");
     if (load.tip->radius > kHuge * size_)
       return findings_.error(where_,
-                             "the radius of the tip, " + three_digits(load.tip->radius) +
+                             "the radius of the indenter, " + three_digits(load.tip->radius) +
                                  " m, is far larger than the body, " + three_digits(size_) + " m",
                              "correct radius of [[tip]], or units: length");
     if (load.tip->radius > kDeep * size_)
       findings_.warning(where_,
-                        "the radius of the tip, " + three_digits(load.tip->radius) + " m, is large beside the body, " +
-                            three_digits(size_) + " m",
+                        "the radius of the indenter, " + three_digits(load.tip->radius) +
+                            " m, is large relative to the body, " + three_digits(size_) + " m",
                         "check radius of [[tip]] and units: length");
     examine_turn(load);
     examine_touch(load, off);
@@ -73,14 +73,14 @@ class LoadDiagnosis {
   void examine_turn(const LoadCase& load) {
     const double turn = norm(load.pose.rotation);
     if (turn > 2 * std::numbers::pi)
-      return findings_.error(where_, "the tip turns by " + three_digits(turn) + " rad since the touch",
+      return findings_.error(where_, "the indenter rotates by " + three_digits(turn) + " rad since the touch",
                              "it would fit in degrees: units = { angle = \"deg\" }");
     if (turn > kTurned)
-      findings_.warning(where_, "the tip turns by " + three_digits(turn) + " rad since the touch",
+      findings_.warning(where_, "the indenter rotates by " + three_digits(turn) + " rad since the touch",
                         "rotation_x, _y, _z are a rotation vector in rad: check units: angle");
   }
 
-  // Forces under a tip that is smaller than the triangles are the mesh's, not the body's.
+  // Forces of an indenter smaller than the triangles depend on the mesh.
   void examine_resolution(const LoadCase& load) {
     if (told_of_mesh_) return;
     const SurfacePoint near = surface_.nearest(load.touch.center).point;
@@ -90,56 +90,55 @@ class LoadDiagnosis {
     if (edge <= kCoarse * load.tip->radius) return;
     told_of_mesh_ = true;
     findings_.warning(where_,
-                      "the tip, of radius " + three_digits(load.tip->radius) +
-                          " m, is small beside the triangles of the surface, whose edges are " + three_digits(edge) +
+                      "the indenter of radius " + three_digits(load.tip->radius) +
+                          " m is small relative to the edges of the surface triangles, " + three_digits(edge) +
                           " m long",
-                      "the forces of such a mesh are wrong: use one with edges no longer than the tip is wide");
+                      "its forces depend on the mesh: use one with edges no longer than the width of the indenter");
   }
 
   void far_off(const LoadCase& load, double off) {
-    std::string remedy = "check units: length, and that tip and mesh share one coordinate system";
+    std::string remedy = "check units: length, and that indenter and mesh share one coordinate system";
     for (const auto& [factor, unit] : {std::pair{1e-3, "mm"}, {1e-2, "cm"}})
       if (surface_.nearest(factor * load.touch.center).distance < 0.2 * size_ + load.tip->radius)
         remedy = std::string("it would fit in ") + unit + ": units = { length = \"" + unit + "\" }";
     findings_.error(
         where_,
-        "the tip is " + three_digits(off) + " m away from a body of " + three_digits(size_) + " m when it touches",
+        "the indenter is " + three_digits(off) + " m away from a body of " + three_digits(size_) + " m when it touches",
         remedy);
   }
 
   void examine_touch(const LoadCase& load, double off) {
     const Vec3d axis = (1 / norm(load.touch.axis)) * load.touch.axis;
     if (-dot(axis, surface_.nearest(load.touch.center).normal) < kBackwards)
-      return findings_.error(where_, "the axis of the tip points out of the body",
-                             "axis_x, axis_y, axis_z point out of the tip, into the body: turn their signs, or leave "
+      return findings_.error(where_, "the axis of the indenter points out of the body",
+                             "axis_x, axis_y, axis_z point into the body: change their signs, or leave "
                              "them blank");
     Tip tip = *load.tip;
     if (!(tip.stiffness > 0)) tip.stiffness = 1;
     try {
       make_probe(experiment_.mesh, surface_.triangles(), tip, load.touch);
     } catch (const InvalidInput& e) {
-      findings_.error(where_, e.what(), "give touch and axis as they were when the tip touched the body at rest");
+      findings_.error(where_, e.what(), "give touch and axis at the moment when the indenter touched the body at rest");
       return;
     }
     const double gap = tip.shape == TipShape::sphere ? off - tip.radius : off;
     if (tip.contact == TipContact::sliding && gap > std::max(kLoose * size_, load_size(load)))
       return findings_.error(where_,
-                             "the tip touches nothing: it was " + three_digits(gap) +
-                                 " m away from the surface at the touch, and goes " + three_digits(load_size(load)) +
-                                 " m",
-                             "touch is the center of the tip (of a disc: of its flat end) when it begins to touch");
+                             "the indenter does not touch the body: it was " + three_digits(gap) +
+                                 " m from the surface at the touch, and moves " + three_digits(load_size(load)) + " m",
+                             "touch is the center of the indenter (of a disc: of its flat end) at first contact");
     if (tip.contact == TipContact::sliding && gap > kLoose * size_)
       findings_.warning(where_,
-                        "the tip was " + three_digits(gap) + " m away from the surface at the touch, and then goes " +
+                        "the indenter was " + three_digits(gap) + " m from the surface at the touch, and then moves " +
                             three_digits(load_size(load)) + " m",
-                        "touch is the center of the tip (of a disc: of its flat end) when it begins to touch");
+                        "touch is the center of the indenter (of a disc: of its flat end) at first contact");
   }
 
   void examine_gravity(const LoadCase& load) {
     const double g = norm(load.gravity);
     if (g == 0 || (g > kWeakest && g < kStrongest)) return;
     findings_.warning(where_, "gravity is " + three_digits(g) + " m/s^2",
-                      "on Earth it is 9.81; units = { gravity = \"g\" } takes multiples of that");
+                      "on Earth it is 9.81; units = { gravity = \"g\" } reads multiples of it");
   }
 
   void examine_pressure(const LoadCase& load) {
@@ -148,15 +147,15 @@ class LoadDiagnosis {
       findings_.error(where_, "a pressure without a patch", "describe it as [[patch]] and name it in the column patch");
     if (std::abs(load.pressure) > 1e7 || std::abs(load.pressure) < 1)
       findings_.warning(where_, "the pressure is " + three_digits(load.pressure) + " Pa",
-                        "soft bodies are loaded by 10 to 1e6 Pa; check units: pressure");
+                        "usual pressures on soft bodies are 10 to 1e6 Pa; check units: pressure");
   }
 
-  // Three vertices that are not on a line hold a body.
+  // Three vertices that are not collinear hold a body.
   void examine_holds() {
     const std::vector<int>& fixed = experiment_.fixed;
     if (fixed.size() == experiment_.mesh.rest.size())
       return findings_.error(data_.source.settings, "all vertices are fixed: nothing can move",
-                             "say with fixed only what rested on the table: fixed = { lowest = 0.02 }");
+                             "fix only the part on the table: fixed = { lowest = 0.02 }");
     const auto& X = experiment_.mesh.rest;
     double area = 0;
     for (size_t i = 2; i < fixed.size(); ++i)
@@ -171,11 +170,11 @@ class LoadDiagnosis {
     const std::string what =
         fixed.empty() ? "no vertex is fixed" : std::to_string(fixed.size()) + " vertices are fixed, all on one line";
     if (is_glued && is_pulled)
-      return findings_.warning(data_.source.settings, what + ": only the tip holds the body",
-                               "say with fixed what rested on the table: fixed = { lowest = 0.02 }");
+      return findings_.warning(data_.source.settings, what + ": only the indenter holds the body",
+                               "fix the part on the table: fixed = { lowest = 0.02 }");
     findings_.error(data_.source.settings,
-                    what + (is_glued ? ": the body would go with the tip" : ": the body would be pushed away"),
-                    "say with fixed what rested on the table: fixed = { lowest = 0.02 }");
+                    what + (is_glued ? ": the body would follow the indenter" : ": the body would be pushed away"),
+                    "fix the part on the table: fixed = { lowest = 0.02 }");
   }
 
   const DataSet& data_;

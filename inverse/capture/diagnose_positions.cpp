@@ -13,17 +13,17 @@ namespace aspic {
 namespace {
 
 constexpr int kNeighbors = 12;
-constexpr size_t kMostListed = 5;         // of one kind; the rest is counted
-constexpr double kOffSurface = 0.02;      // of the body's size
-constexpr double kSuspicious = 6;         // times what neighbors differ by
-constexpr double kNoticeable = 0.05;      // of the largest motion of the case
-constexpr double kReach = 2;              // of a tip, in radii, within which the surface goes its way
-constexpr double kFar = 1;                // of the body's size: a motion that is none
-constexpr double kFarthest = 10;          // the same of a single marker; larger ones are errors
-constexpr double kLever = 3;              // times the way of the tip: a motion of most markers that is no tip's
-constexpr double kFinestPosition = 1e-9;  // of the body's size: a deviation that no instrument has
+constexpr size_t kMostListed = 5;     // listed findings per kind; others are counted
+constexpr double kOffSurface = 0.02;  // of the body's size
+constexpr double kSuspicious = 6;     // multiple of the differences between neighbors
+constexpr double kNoticeable = 0.05;  // fraction of the largest motion of the case
+constexpr double kReach = 2;          // radii around an indenter within which the surface follows it
+constexpr double kFar = 1;            // fraction of the body's size; larger motions are implausible
+constexpr double kFarthest = 10;      // the same for a single marker; larger motions are errors
+constexpr double kLever = 3;  // multiple of the indenter's displacement; larger median motions have another cause
+constexpr double kFinestPosition = 1e-9;  // fraction of the body's size; no instrument has smaller deviations
 
-// The markers nearest to each at rest, of those given.
+// Indices of the nearest of the given markers at rest, for each marker.
 std::vector<std::vector<int>> neighbors(const std::vector<Vec3d>& X) {
   std::vector<Box> boxes(X.size());
   for (size_t i = 0; i < X.size(); ++i) boxes[i].add(X[i]);
@@ -62,16 +62,16 @@ std::array<Vec3d, 4> solve(std::array<Row4, 4> A, std::array<Vec3d, 4> b) {
 }
 
 struct Expected {
-  Vec3d u{};          // of the marker, by its neighbors
-  double spread = 0;  // median of what the neighbors differ by from such a field
-  double range = 0;   // median of what the neighbors differ by from the marker's expected motion
+  Vec3d u{};          // motion of the marker predicted from its neighbors
+  double spread = 0;  // median deviation of the neighbors from such a field
+  double range = 0;   // median deviation of the neighbors from the marker's expected motion
 };
 
-// The field u = c + B (X - X_i) / reach that has the least sum of differences |u_j - u| over the neighbors, by
-// reweighted least squares: a neighbor that is an outlier itself hardly counts.
+// Fits the field u = c + B (X - X_i) / reach with the least sum of |u_j - u| over the neighbors, by reweighted least
+// squares, which downweights outliers among the neighbors.
 Expected expected(const std::vector<Vec3d>& X, const std::vector<Vec3d>& u, int i, const std::vector<int>& near) {
   constexpr int kSweeps = 8;
-  constexpr double kRidge = 1e-3;  // neighbors in a plane leave the slope across it open
+  constexpr double kRidge = 1e-3;  // regularizes the normal slope for coplanar neighbors
   const double reach = norm(X[near.back()] - X[i]);
   const auto terms = [&](int j) {
     const Vec3d r = (reach > 0 ? 1 / reach : 0) * (X[j] - X[i]);
@@ -110,13 +110,13 @@ class PositionDiagnosis {
 
   void run() {
     examine_gaps();
-    if (!examine_units()) return;     // everything else would be said of each marker
-    if (!examine_readings()) return;  // nor is there a sense in comparing them
+    if (!examine_units()) return;     // otherwise every marker would be reported
+    if (!examine_readings()) return;  // otherwise comparisons are meaningless
     if (!examine_way()) return;
     for (size_t c = 0; c < experiment_.cases.size(); ++c) examine_outliers(static_cast<int>(c));
     if (outliers_ > kMostListed)
       findings_.warning(data_.source.positions, std::to_string(outliers_ - kMostListed) + " more markers are outliers",
-                        "mend the tracking, or raise sd");
+                        "correct the tracking, or increase sd");
   }
 
  private:
@@ -131,14 +131,14 @@ class PositionDiagnosis {
       findings_.warning(data_.source.marker(off[i]),
                         name(off[i]) + " lies " + three_digits(data_.marker_gap[off[i]]) +
                             " m off the surface; it was projected onto it",
-                        "correct its place, or align the mesh with the markers at rest");
+                        "correct its position, or align the mesh with the markers at rest");
     if (off.size() > kMostListed)
       findings_.warning(data_.source.markers,
                         std::to_string(off.size() - kMostListed) + " more markers lie off the surface",
                         "align the mesh with the markers at rest");
   }
 
-  // Motions larger than the body: another unit than that of the markers at rest, or another coordinate system.
+  // Motions larger than the body indicate another unit or coordinate system than at rest.
   bool examine_units() {
     std::vector<double> motion;
     for (const LoadCase& load : experiment_.cases)
@@ -162,7 +162,7 @@ class PositionDiagnosis {
     return false;
   }
 
-  // Readings that no body or instrument gives; their residuals would swamp all others.
+  // Finds implausible readings, whose residuals would dominate all others.
   bool examine_readings() {
     for (size_t c = 0; c < experiment_.cases.size(); ++c) {
       const std::vector<MarkerReading>& readings = experiment_.cases[c].positions;
@@ -171,19 +171,19 @@ class PositionDiagnosis {
         const std::string where = data_.source.position(static_cast<int>(c), static_cast<int>(i));
         const std::string who = name(r.marker) + " in '" + experiment_.cases[c].name + "'";
         if (!(norm(displacement(experiment_, r)) < kFarthest * size_))
-          return refuse(where, who + " is far outside of the body, whose size is " + three_digits(size_) + " m",
-                        "correct its place, or leave the row out");
+          return refuse(where, who + " is far outside the body of size " + three_digits(size_) + " m",
+                        "correct its position, or remove the row");
         const double finest = std::min({r.deviation[0], r.deviation[1], r.deviation[2]});
         if (finest < kFinestPosition * size_)
-          return refuse(where,
-                        who + " has a standard deviation of " + three_digits(finest) + " m: no instrument is so exact",
-                        "check the unit of sd; leave it blank for 1 % of the largest motion");
+          return refuse(
+              where, who + " has a standard deviation of " + three_digits(finest) + " m, which no instrument attains",
+              "check the unit of sd; leave it blank for 1 % of the largest motion");
       }
     }
     return true;
   }
 
-  // The median motion of the markers that a tip alone moves, each position read as use(position, place at rest) says.
+  // Median motion of the markers that only an indenter moves; use(position, rest position) interprets positions.
   template <class Use>
   double usual_motion(const Use& use) const {
     std::vector<double> motion;
@@ -200,7 +200,7 @@ class PositionDiagnosis {
     return load.tip && load.pressure == 0 && norm(load.gravity) == 0;
   }
 
-  // Most of a body goes less far than the tip that pushes it: else positions are not what they are taken for.
+  // Most parts of a body move less than the indenter; otherwise positions have another meaning.
   bool examine_way() {
     std::vector<double> way, noise;
     for (const LoadCase& load : experiment_.cases)
@@ -213,11 +213,11 @@ class PositionDiagnosis {
     const double motion = usual_motion([](const Vec3d& x, const Vec3d&) { return x; });
     if (motion <= kLever * (median(way) + median(noise))) return true;
     const std::string what =
-        "markers move by " + three_digits(motion) + " m, the tip by " + three_digits(median(way)) + " m (medians)";
+        "markers move by " + three_digits(motion) + " m, the indenter by " + three_digits(median(way)) + " m (medians)";
     if (median(way) == 0)
-      return refuse(data_.source.positions, what, "say in cases.csv where the tip went: depth, or center");
+      return refuse(data_.source.positions, what, "give the pose of the indenter in cases.csv: depth, or center");
     if (usual_motion([](const Vec3d& x, const Vec3d& X) { return X + x; }) < motion / kLever)
-      return refuse(data_.source.positions, what, "these are motions; give places: add those of the markers at rest");
+      return refuse(data_.source.positions, what, "these are displacements; add the positions at rest");
     for (const auto& [i, j] : {std::pair{0, 1}, {0, 2}, {1, 2}})
       if (usual_motion([i = i, j = j](Vec3d x, const Vec3d&) { return std::swap(x[i], x[j]), x; }) < motion / kLever)
         return refuse(data_.source.positions, what,
@@ -233,7 +233,7 @@ class PositionDiagnosis {
     return false;
   }
 
-  // About how far the tip of a case moves a point of the surface: its way, falling like its radius over the distance.
+  // Estimated motion of a surface point by the indenter: its displacement, decaying like its radius over the distance.
   static double by_tip(const LoadCase& load, const Vec3d& X) {
     if (!load.tip) return 0;
     const double distance = norm(X - load.touch.center);
@@ -260,15 +260,15 @@ class PositionDiagnosis {
     }
     for (size_t i = 0; i < u.size(); ++i) {
       const double tolerated = kSuspicious * (spread[i] + norm(readings[i].deviation));
-      // The top of a sharp dent differs from its neighbors, but no more than they among themselves, nor than a tip
-      // that goes so far moves a point so near.
+      // The top of a sharp dent differs from its neighbors, but not by more than they differ from each other, nor by
+      // more than the estimated motion by the indenter.
       if (excess[i] > std::max({tolerated, kNoticeable * largest, range[i], by_tip(experiment_.cases[c], X[i])}) &&
           ++outliers_ <= kMostListed)
         findings_.warning(data_.source.position(c, static_cast<int>(i)),
                           name(readings[i].marker) + " in '" + experiment_.cases[c].name + "' is " +
-                              three_digits(excess[i]) + " m away from where its neighbors go, which differ by " +
+                              three_digits(excess[i]) + " m away from the motion of its neighbors, which differ by " +
                               three_digits(spread[i]) + " m",
-                          "mend the tracking, leave the row out, or raise its sd");
+                          "correct the tracking, remove the row, or increase its sd");
     }
   }
 

@@ -23,7 +23,7 @@ auto finding(Severity severity, const std::string& where, const std::string& wha
                Field(&DataFinding::what, HasSubstr(what)), Field(&DataFinding::remedy, HasSubstr(remedy)));
 }
 
-// With lines as if it had been read.
+// Adds line numbers as if the data had been read.
 DataSet data_in_lines(int pokes = 3, int depths = 2) {
   DataSet data = test_data(pokes, depths);
   for (size_t m = 0; m < data.experiment.markers.size(); ++m)
@@ -38,10 +38,10 @@ DataSet data_in_lines(int pokes = 3, int depths = 2) {
   return data;
 }
 
-TEST(Diagnosis, OfGoodDataIsOnlyWhatTheySayOfTheStiffness) {
+TEST(Diagnosis, OfGoodDataReportsOnlyStiffness) {
   const auto findings = diagnose(data_in_lines());
   ASSERT_EQ(findings.size(), 1u);
-  EXPECT_THAT(findings[0], finding(Severity::note, "cases.csv", "Young's modulus is about 7.4"));
+  EXPECT_THAT(findings[0], finding(Severity::note, "cases.csv", "Young's modulus of about 7.4"));
 }
 
 TEST(Diagnosis, ForcesInGramsOrMillinewtonsAreNoticed) {
@@ -52,7 +52,7 @@ TEST(Diagnosis, ForcesInGramsOrMillinewtonsAreNoticed) {
   }
   EXPECT_THAT(diagnose(data), Contains(finding(Severity::warning, "cases.csv", "whole numbers", "force = \"g\"")));
   for (LoadCase& load : data.experiment.cases) load.force = Vec3d{{0, 0, -9000.5}};
-  EXPECT_THAT(diagnose(data), Contains(finding(Severity::warning, "cases.csv", "which nothing soft has", "mN")));
+  EXPECT_THAT(diagnose(data), Contains(finding(Severity::warning, "cases.csv", "too large for soft bodies", "mN")));
 }
 
 TEST(Diagnosis, OnePokeInAnotherUnitIsNoticed) {
@@ -62,7 +62,7 @@ TEST(Diagnosis, OnePokeInAnotherUnitIsNoticed) {
   EXPECT_THAT(diagnose(data), Contains(finding(Severity::warning, "cases.csv:4", "times as stiff here", "as mN are")));
 }
 
-// The cases of the first poke once more, as a group of their own, with other forces.
+// Repeats the cases of the first poke as another group with other forces.
 void repeat_first_poke(DataSet& data, double factor) {
   for (const size_t c : {0, 1}) {
     LoadCase again = data.experiment.cases[c];
@@ -96,7 +96,7 @@ TEST(Diagnosis, OnePokeFourTimesAsStiffIsNoticed) {
   EXPECT_THAT(diagnose(data), Contains(finding(Severity::warning, "poke 2", "much stiffer here", "check this force")));
 }
 
-TEST(Diagnosis, AForceBelowItsNoiseSaysNothingOfTheStiffness) {
+TEST(Diagnosis, ForceBelowNoiseGivesNoStiffness) {
   DataSet data = data_in_lines(4);
   for (const size_t c : {2, 3}) data.experiment.cases[c].force = 0.01 * *data.experiment.cases[c].force;
   EXPECT_THAT(diagnose(data), Not(Contains(finding(Severity::warning, "cases.csv:4", "as stiff here"))));
@@ -104,17 +104,17 @@ TEST(Diagnosis, AForceBelowItsNoiseSaysNothingOfTheStiffness) {
   EXPECT_THAT(diagnose(data), Contains(finding(Severity::warning, "cases.csv:4", "1/100 times as stiff here")));
 }
 
-TEST(Diagnosis, ForcesOfTheBodyOnTheTipAreNoticed) {
+TEST(Diagnosis, ForcesOnTheIndenterAreReported) {
   DataSet data = data_in_lines();
   data.experiment.cases[1].force = -1.0 * *data.experiment.cases[1].force;
   EXPECT_THAT(diagnose(data),
-              Contains(finding(Severity::warning, "cases.csv:3", "against the way of the tip", "sign")));
+              Contains(finding(Severity::warning, "cases.csv:3", "opposes the motion of the indenter", "sign")));
   data = data_in_lines();
   for (LoadCase& load : data.experiment.cases) load.force = -1.0 * *load.force;
   EXPECT_THAT(diagnose(data), Contains(finding(Severity::error, "cases.csv:2", "against", "force_of = \"body\"")));
 }
 
-// As from the column `force`, which leaves the force across open.
+// Like the column `force`, which leaves the lateral force undetermined.
 void measure_along_axis(LoadCase& load, double force) {
   const Vec3d& a = load.pose.axis;
   load.force = force * a;
@@ -133,12 +133,13 @@ DataSet data_of_one_axis(const Vec3d& axis) {
   return data;
 }
 
-TEST(Diagnosis, ForcesOfAGaugeOfOneAxisAreExaminedLikeOthers) {
+TEST(Diagnosis, SingleAxisForcesAreExaminedLikeOthers) {
   for (const Vec3d& axis : {Vec3d{{0, 0, -1}}, Vec3d{{0.48, 0.36, -0.8}}}) {
     DataSet data = data_of_one_axis(axis);
     EXPECT_THAT(diagnose(data), Each(Field(&DataFinding::severity, Severity::note)));
     measure_along_axis(data.experiment.cases[1], -1);
-    EXPECT_THAT(diagnose(data), Contains(finding(Severity::warning, "cases.csv:3", "against the way of the tip")));
+    EXPECT_THAT(diagnose(data),
+                Contains(finding(Severity::warning, "cases.csv:3", "opposes the motion of the indenter")));
     measure_along_axis(data.experiment.cases[1], 0.2);
     EXPECT_THAT(diagnose(data), Contains(finding(Severity::warning, "cases.csv:3", "the force falls")));
     measure_along_axis(data.experiment.cases[0], 500);
@@ -159,7 +160,7 @@ TEST(Diagnosis, PositionsThatNoTipExplainsAreErrors) {
     return diagnose(data);
   };
   EXPECT_THAT(with([](LoadCase&, MarkerReading& r, const Vec3d& X) { r.position = r.position - X; }),
-              Contains(finding(Severity::error, "positions.csv", "markers move by", "these are motions")));
+              Contains(finding(Severity::error, "positions.csv", "markers move by", "these are displacements")));
   EXPECT_THAT(with([](LoadCase&, MarkerReading& r, const Vec3d&) { std::swap(r.position[0], r.position[2]); }),
               Contains(finding(Severity::error, "positions.csv", "markers move by", "x and z seem to be swapped")));
   EXPECT_THAT(with([](LoadCase&, MarkerReading& r, const Vec3d&) { r.position[1] += 0.05; }),
@@ -168,7 +169,7 @@ TEST(Diagnosis, PositionsThatNoTipExplainsAreErrors) {
                 load.pose = load.touch;
                 r.position[1] += 0.01;
               }),
-              Contains(finding(Severity::error, "positions.csv", "the tip by 0 m", "where the tip went")));
+              Contains(finding(Severity::error, "positions.csv", "the indenter by 0 m", "the pose of the indenter")));
 }
 
 TEST(Diagnosis, WithoutAnyForceOnlyRatiosCanBeKnown) {
@@ -181,7 +182,7 @@ TEST(Diagnosis, WithoutAnyForceOnlyRatiosCanBeKnown) {
   EXPECT_THAT(diagnose(data), Contains(finding(Severity::note, "cases.csv:3", "one of 5 pokes without a force")));
 }
 
-TEST(Diagnosis, AForceThatFallsAsTheTipGoesDeeperIsNoticed) {
+TEST(Diagnosis, ForceThatFallsWithDepthIsReported) {
   DataSet data = data_in_lines();
   std::swap(data.experiment.cases[2].force, data.experiment.cases[3].force);
   EXPECT_THAT(diagnose(data), Contains(finding(Severity::warning, "cases.csv:5", "the force falls from 1 N to 0.5 N")));
@@ -199,12 +200,12 @@ TEST(Diagnosis, LengthsInMillimetersAreNoticed) {
   EXPECT_THAT(findings, Contains(finding(Severity::error, "positions.csv", "markers move by", "in mm they would fit")));
 }
 
-TEST(Diagnosis, AMarkerThatLeavesItsNeighborsIsNamedAndOthersAreNot) {
+TEST(Diagnosis, OnlyMarkersThatLeaveNeighborsAreNamed) {
   DataSet data = data_in_lines();
   data.experiment.cases[3].positions[17].position[0] += 0.006;
   const auto findings = diagnose(data);
-  EXPECT_THAT(findings,
-              Contains(finding(Severity::warning, data.source.position(3, 17), "away from where its neighbors")));
+  EXPECT_THAT(findings, Contains(finding(Severity::warning, data.source.position(3, 17),
+                                         "away from the motion of its neighbors")));
   EXPECT_EQ(std::count_if(findings.begin(), findings.end(),
                           [](const DataFinding& f) { return f.what.find("neighbors") != std::string::npos; }),
             1);
@@ -230,9 +231,9 @@ TEST(Diagnosis, RigidMotionOfWhatIsFixedIsNoticed) {
     }
   };
   measure({}, 0);
-  EXPECT_THAT(diagnose(data), Not(Contains(finding(Severity::warning, "", "what is fixed moved"))));
+  EXPECT_THAT(diagnose(data), Not(Contains(finding(Severity::warning, "", "fixed vertices moved"))));
   measure({{0.001, 0, 0}}, 0);
-  EXPECT_THAT(diagnose(data), Contains(finding(Severity::warning, "cases.csv:2", "what is fixed moved: by 0.001 m")));
+  EXPECT_THAT(diagnose(data), Contains(finding(Severity::warning, "cases.csv:2", "fixed vertices moved: by 0.001 m")));
   measure({}, 0.02);
   EXPECT_THAT(diagnose(data), Contains(finding(Severity::warning, "cases.csv:2", "0.02 rad")));
 }
@@ -276,19 +277,19 @@ TEST(Diagnosis, CopiesRepetitionsAndCasesWithoutLoadAreNoticed) {
   EXPECT_THAT(diagnose(data), Contains(finding(Severity::warning, "again", "has no load")));
 }
 
-TEST(Diagnosis, ATipThatTouchesNothingAndABodyThatNothingHoldsAreErrors) {
+TEST(Diagnosis, MissingContactAndMissingSupportAreErrors) {
   DataSet data = data_in_lines();
   for (LoadCase& load : data.experiment.cases) load.touch.center[2] += 0.02;
   EXPECT_THAT(diagnose(data), Contains(finding(Severity::error, "cases.csv:2", "touches nothing")));
   data = data_in_lines();
   for (LoadCase& load : data.experiment.cases)
     load.tip->contact = TipContact::sliding, load.touch.center[2] += 0.02, load.pose.center[2] += 0.02;
-  EXPECT_THAT(diagnose(data), Contains(finding(Severity::error, "cases.csv:2", "touches nothing", "begins to touch")));
+  EXPECT_THAT(diagnose(data), Contains(finding(Severity::error, "cases.csv:2", "touches nothing", "first contact")));
   data = data_in_lines();
   data.experiment.fixed.clear();
-  EXPECT_THAT(diagnose(data), Contains(finding(Severity::error, "capture.toml", "go with the tip")));
+  EXPECT_THAT(diagnose(data), Contains(finding(Severity::error, "capture.toml", "follow the indenter")));
   data.experiment.cases[1].gravity = {{0, 0, -9.81}};
-  EXPECT_THAT(diagnose(data), Contains(finding(Severity::warning, "capture.toml", "only the tip holds")));
+  EXPECT_THAT(diagnose(data), Contains(finding(Severity::warning, "capture.toml", "only the indenter holds")));
   for (LoadCase& load : data.experiment.cases) load.tip->contact = TipContact::sliding;
   EXPECT_THAT(diagnose(data), Contains(finding(Severity::error, "capture.toml", "pushed away", "fixed")));
   data = data_in_lines();
@@ -303,7 +304,7 @@ TEST(Diagnosis, ReadingsThatNoInstrumentGivesAreErrors) {
   EXPECT_THAT(diagnose(data), Contains(finding(Severity::error, data.source.position(1, 3), "far outside", "correct")));
   data = data_in_lines();
   data.experiment.cases[1].positions[3].deviation[1] = 1e-300;
-  EXPECT_THAT(diagnose(data), Contains(finding(Severity::error, data.source.position(1, 3), "so exact", "blank")));
+  EXPECT_THAT(diagnose(data), Contains(finding(Severity::error, data.source.position(1, 3), "attains", "blank")));
   data = data_in_lines();
   data.experiment.cases[2].force = Vec3d{{0, 0, -1e300}};
   EXPECT_THAT(diagnose(data), Contains(finding(Severity::error, "cases.csv:4", "the force is larger", "blank")));
@@ -315,7 +316,7 @@ TEST(Diagnosis, ReadingsThatNoInstrumentGivesAreErrors) {
   EXPECT_THAT(diagnose(data), Contains(finding(Severity::error, "cases.csv", "all forces are 0", "blank")));
 }
 
-TEST(Diagnosis, PosesInsideOutOrTurnedTooFarAreNoticed) {
+TEST(Diagnosis, InvertedOrOverRotatedPosesAreReported) {
   DataSet data = data_in_lines();
   for (LoadCase& load : data.experiment.cases) load.touch.axis = load.pose.axis = {{0, 0, 1}};
   EXPECT_THAT(diagnose(data), Contains(finding(Severity::error, "cases.csv:2", "points out of the body", "signs")));
@@ -326,14 +327,14 @@ TEST(Diagnosis, PosesInsideOutOrTurnedTooFarAreNoticed) {
   EXPECT_THAT(diagnose(data), Contains(finding(Severity::error, "cases.csv:3", "turns by 30 rad", "deg")));
 }
 
-TEST(Diagnosis, ATipOfAnotherSizeThanBodyOrTrianglesIsNoticed) {
+TEST(Diagnosis, IndenterSizeUnlikeBodyOrTrianglesIsReported) {
   DataSet data = data_in_lines();
   for (LoadCase& load : data.experiment.cases) load.tip->radius = 100;
   EXPECT_THAT(diagnose(data), Contains(finding(Severity::error, "cases.csv:2", "far larger than the body", "units")));
   data = data_in_lines();
   for (LoadCase& load : data.experiment.cases) load.tip->radius = 0.003, load.touch.center[2] = 0.063;
   EXPECT_THAT(diagnose(data),
-              Contains(finding(Severity::warning, "cases.csv:2", "small beside the triangles", "edges")));
+              Contains(finding(Severity::warning, "cases.csv:2", "small relative to the edges", "edges")));
 }
 
 }  // namespace

@@ -43,12 +43,12 @@ std::vector<std::string> lines_of(const std::string& text) {
   return lines;
 }
 
-// The first line in which two texts differ: "smooth = "h1" then, smooth = "tv" now".
+// First difference of two texts: "smooth = "h1" then, smooth = "tv" now".
 std::string difference(const std::string& then, const std::string& now) {
   const std::vector<std::string> a = lines_of(then), b = lines_of(now);
   for (size_t i = 0; i < std::max(a.size(), b.size()); ++i) {
     const std::string one = i < a.size() ? a[i] : "nothing", other = i < b.size() ? b[i] : "nothing";
-    if (one != other) return "it was begun with '" + one + "', now it says '" + other + "'";
+    if (one != other) return "it was started with '" + one + "', now it says '" + other + "'";
   }
   return "";
 }
@@ -85,9 +85,9 @@ FitFolder FitFolder::open(const fs::path& material, const std::string& options, 
   const bool is_begun = fs::exists(options_file(path)), is_unfinished = !journals(path).empty();
   if (existing != ExistingFit::refuse) refuse_links(path, [](const fs::path&) { return true; });
   if (existing == ExistingFit::resume) {
-    if (!is_begun) throw InvalidInput(path.string() + ": no such fit to resume; start it without --resume");
+    if (!is_begun) throw InvalidInput(path.string() + ": no fit to resume; start it without --resume");
     if (!is_unfinished)
-      throw InvalidInput(path.string() + ": this fit is complete; --force makes it anew, -o writes another");
+      throw InvalidInput(path.string() + ": this fit is complete; --force replaces it, -o writes another");
     const std::string change = difference(read_file(options_file(path)), options);
     if (!change.empty())
       throw InvalidInput(path.string() + ": cannot be resumed: " + change + " (the same command, or --force)");
@@ -98,14 +98,13 @@ FitFolder FitFolder::open(const fs::path& material, const std::string& options, 
     return folder;
   }
   if (existing == ExistingFit::refuse && is_unfinished)
-    throw InvalidInput(path.string() +
-                       ": holds a fit that was interrupted; --resume continues it, --force replaces it");
+    throw InvalidInput(path.string() + ": contains an interrupted fit; --resume continues it, --force replaces it");
   if (existing == ExistingFit::refuse && (is_begun || fs::exists(material)))
     throw InvalidInput((is_begun ? path : material).string() + ": exists; --force replaces it, -o writes another");
   fs::create_directories(path, error);
   if (error) throw InvalidInput(path.string() + ": cannot be created: " + error.message());
   if (!is_there) folder.lock_ = std::make_shared<const RunLock>(path);
-  // Until it is finished there is a journal, so that a fit that was killed at once does not pass for a complete one.
+  // A journal exists until the end, so that a fit killed at its start does not count as complete.
   const fs::path begun = path / "begun.journal";
   write_file(begun, "");
   for (const fs::path& file : journals(path))

@@ -18,11 +18,11 @@ namespace {
 constexpr int kMostTets = 5'000'000;  // of a refined mesh
 constexpr double kUsualYoung = 1e5, kUsualPoisson = 0.4;
 
-// "young=tets" in two.
+// Splits "young=tets".
 std::pair<std::string, std::string> halves(const std::string& text, const std::string& example) {
   const size_t equals = text.find('=');
   if (equals == std::string::npos || equals == 0 || equals + 1 == text.size())
-    throw InvalidInput("'" + text + "': QUANTITY=VALUE is expected, such as " + example);
+    throw InvalidInput("'" + text + "': give QUANTITY=VALUE, such as " + example);
   return {text.substr(0, equals), text.substr(equals + 1)};
 }
 
@@ -33,7 +33,7 @@ bool has(const std::vector<std::string>& names, const std::string& name) {
 void check_quantity(const std::string& quantity, const FitPlan& plan) {
   const std::vector<std::string> all = quantities_of(plan.model);
   if (!has(all, quantity))
-    throw InvalidInput("'" + quantity + "' is no quantity of the model " + plan.model + suggestion(quantity, all));
+    throw InvalidInput("'" + quantity + "' is not a quantity of the model " + plan.model + suggestion(quantity, all));
 }
 
 bool is_unknown(const FitPlan& plan, const std::string& quantity) {
@@ -44,7 +44,7 @@ bool is_known(const FitPlan& plan, const std::string& quantity) {
   return std::any_of(plan.known.begin(), plan.known.end(), [&](const auto& k) { return k.first == quantity; });
 }
 
-// A fit begins inside of the range, though what is usual may be its end (no growth, no share).
+// An interior initial guess, even if the usual value is the end of the range (no growth, no share).
 double inside(const ExtraParameter& extra) {
   const double margin = 0.1 * std::min(1.0, extra.max - extra.min);
   return std::clamp(extra.fallback, extra.min + margin, extra.max - margin);
@@ -116,7 +116,7 @@ std::pair<std::string, double> parse_known(const std::string& text) {
   double value = 0;
   const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), value);
   if (error != std::errc() || end != word.data() + word.size() || !std::isfinite(value))
-    throw InvalidInput("'" + text + "': '" + word + "' is no finite number");
+    throw InvalidInput("'" + text + "': '" + word + "' is not a finite number");
   return {quantity, value};
 }
 
@@ -134,7 +134,7 @@ FitPlan completed(FitPlan plan, const Experiment& experiment) {
   for (size_t i = 0; i < plan.unknowns.size(); ++i) {
     const std::string& quantity = plan.unknowns[i].quantity;
     check_quantity(quantity, plan);
-    if (is_known(plan, quantity)) throw InvalidInput(quantity + " is both known and unknown; leave one of the two out");
+    if (is_known(plan, quantity)) throw InvalidInput(quantity + " is both known and unknown; remove one of the two");
     for (size_t j = 0; j < i; ++j)
       if (plan.unknowns[j].quantity == quantity)
         throw InvalidInput(quantity + " is unknown twice; keep one --unknown for it");
@@ -142,7 +142,7 @@ FitPlan completed(FitPlan plan, const Experiment& experiment) {
       throw InvalidInput("'" + text_of(plan.unknowns[i]) +
                          "': the mesh of the data has no region labels (try handles:40 or tets)");
   }
-  // Whatever was not spoken of: the stiffness in every tet, all else as one value.
+  // Default: stiffness per tet, all others uniform.
   for (const std::string& quantity : quantities)
     if (!is_unknown(plan, quantity) && !is_known(plan, quantity))
       plan.unknowns.push_back({.quantity = quantity,
@@ -151,8 +151,8 @@ FitPlan completed(FitPlan plan, const Experiment& experiment) {
                                .guess = 0});
   for (Unknown& u : plan.unknowns)
     if (u.guess == 0) u.guess = usual_value(u.quantity, plan.model, experiment);
-  // Standard deviations with those of the correction for the mesh are wider than what is random: the discrepancy
-  // principle would take that for noise and smooth the field away.
+  // Standard deviations that include the mesh correction exceed the random errors. The discrepancy principle would
+  // treat the difference as noise and oversmooth the field.
   const bool is_field = std::any_of(plan.unknowns.begin(), plan.unknowns.end(),
                                     [](const Unknown& u) { return u.spread == Spread::tets; });
   if (is_field && plan.mesh_errors && plan.fit.weight_rule == "auto") plan.fit.weight_rule = "evidence";
@@ -162,7 +162,7 @@ FitPlan completed(FitPlan plan, const Experiment& experiment) {
     if (!has(groups, group))
       throw InvalidInput("leave_out '" + group + "': the data have no such group" + suggestion(group, groups));
   if (!plan.left_out.empty() && without_groups(experiment, plan.left_out).cases.empty())
-    throw InvalidInput("leave_out leaves no case to be fitted; name fewer groups");
+    throw InvalidInput("leave_out leaves no case to fit; name fewer groups");
   return plan;
 }
 

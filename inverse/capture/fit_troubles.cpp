@@ -11,7 +11,7 @@
 namespace aspic {
 namespace {
 
-constexpr double kSoftest = 1e-2, kStiffest = 1e13;  // Young's moduli that a body can have [Pa]
+constexpr double kSoftest = 1e-2, kStiffest = 1e13;  // plausible Young's moduli [Pa]
 constexpr double kUnexplained = 4;                   // |r|^2 per reading: twice the standard deviations
 
 }  // namespace
@@ -22,8 +22,8 @@ std::string words_of_runaway(const DataSet& data, const MaterialParameters& mate
   const std::vector<LoadCase>& cases = data.experiment.cases;
   const bool has_positions =
       std::any_of(cases.begin(), cases.end(), [](const LoadCase& c) { return !c.positions.empty(); });
-  return "the readings do not determine the stiffness: it ran to " + three_digits(young) + " Pa; check the units of " +
-         (has_positions ? "lengths and forces" : "lengths and forces, and state the positions of some markers") +
+  return "the readings do not determine the stiffness: it is " + three_digits(young) + " Pa; check the units of " +
+         (has_positions ? "lengths and forces" : "lengths and forces, and give positions of some markers") +
          ", and that loads and readings belong to the same body";
 }
 
@@ -36,7 +36,7 @@ std::string words_of_failure(const DataSet& data, const FitReport& report, const
   if (found == cases.end())
     return report.words + (why.empty() ? "" : " (" + why + ")") + "; aspic fit --check lists suspicious rows";
   return report.words + "\n" + data.source.load_case(static_cast<int>(found - cases.begin())) + ": " +
-         why.substr(0, why.find("; ")) + "; check its load and its pose, or take the row out";
+         why.substr(0, why.find("; ")) + "; check its load and its pose, or remove the row";
 }
 
 std::string words_of_worst_row(const DataSet& data, const std::vector<std::string>& left_out, const Misfit& misfit,
@@ -53,8 +53,8 @@ std::string words_of_worst_row(const DataSet& data, const std::vector<std::strin
     if (mean > worst) worst = mean, worst_case = static_cast<int>(c);
   }
   return data.source.load_case(worst_case) + " ('" + data.experiment.cases[worst_case].name +
-         "') is explained worst: its readings are missed by " + std::to_string(std::lround(std::sqrt(worst))) +
-         " standard deviations; check this row, or state deviations that cover the errors of mesh and model";
+         "') has the worst fit: its readings are missed by " + std::to_string(std::lround(std::sqrt(worst))) +
+         " standard deviations; check this row, or give deviations that cover the errors of mesh and model";
 }
 
 bool is_left_out(const std::vector<std::string>& left_out, const LoadCase& c) {

@@ -8,11 +8,11 @@ namespace aspic {
 namespace {
 
 constexpr double kMissed = 4;                             // standard deviations, root mean square over a group
-constexpr double kDisagree = 1.5;                         // ratio of the stiffnesses that two groups ask for
+constexpr double kDisagree = 1.5;                         // ratio of the stiffnesses implied by two groups
 constexpr double kCoarse = 1;                             // relative error of a force on the mesh: a factor of 2
 constexpr double kTooManySquares = 2.25;                  // |r|^2 per reading
 constexpr double kPoorPosition = 0.05, kPoorForce = 0.1;  // held-out errors beyond noise, relative to the peak
-constexpr double kWorse = 1.1;                            // of held-out errors, field by one value
+constexpr double kWorse = 1.1;                            // ratio of held-out errors, field to one value
 
 std::string three_significant(double value) {
   char text[32];
@@ -20,7 +20,7 @@ std::string three_significant(double value) {
   return text;
 }
 
-// The readings of a group against what is shown of it.
+// Compares the readings of a group with the predictions.
 class GroupMisfit {
  public:
   explicit GroupMisfit(std::string name) : name_(std::move(name)) {}
@@ -33,15 +33,14 @@ class GroupMisfit {
   }
 
   const std::string& name() const { return name_; }
-  // What is missed most, and by how many standard deviations.
+  // Reading type with the largest error, in standard deviations.
   std::pair<std::string, double> missed_most() const {
     std::pair<std::string, double> worst = {"positions", positions_.rms()};
     if (forces_.rms() > worst.second) worst = {"forces", forces_.rms()};
     if (torques_.rms() > worst.second) worst = {"torques", torques_.rms()};
     return worst;
   }
-  // The stiffness that forces and torques ask for, relative to the fitted one, and its standard deviation; 0: not
-  // known.
+  // Stiffness implied by forces and torques, relative to the fitted one, and its standard deviation; 0: unknown.
   double stiffness() const { return squares_ > 0 ? product_ / squares_ : 0; }
   double stiffness_deviation() const { return squares_ > 0 ? 1 / std::sqrt(squares_) : 0; }
 
@@ -51,7 +50,7 @@ class GroupMisfit {
     int count = 0;
     double rms() const { return count > 0 ? std::sqrt(squares / count) : 0; }
   };
-  // A vector counts as `numbers` readings: its length in standard deviations, or that of each coordinate.
+  // A vector counts as `numbers` readings: its length in standard deviations, or each coordinate.
   static void add(const Vec3d& error, const Vec3d& deviation, int numbers, Sum& sum) {
     for (int i = 0; i < 3; ++i) sum.squares += error[i] * error[i] / (deviation[i] * deviation[i]);
     sum.count += numbers;
@@ -82,8 +81,8 @@ std::vector<GroupMisfit> fitted_groups(const DataSet& data, const FitOutcome& ou
   return groups;
 }
 
-// Held-out errors of positions and forces relative to the peaks, root mean square over the groups, without the noise of
-// the readings; < 0: there is none.
+// Held-out errors of positions and forces relative to the peaks: root mean square over the groups, with the noise of
+// readings subtracted; < 0: none.
 struct HeldOutErrors {
   double position = -1, force = -1;
 };
@@ -121,10 +120,9 @@ class Reasons {
 
   void add_against_field() {
     if (!outcome_.mesh_errors_settle)
-      add("mesh_not_settled",
-          "the correction for the mesh and the material do not settle: refine the mesh (option refine)");
+      add("mesh_not_settled", "the mesh correction and the material do not converge: refine the mesh (option refine)");
     for (const std::string& where : outcome_.at_bound)
-      add("at_bound", where + " lies at its bound: the readings do not determine it");
+      add("at_bound", where + " is at its bound: the readings do not determine it");
     add_missed_groups();
     add_worse_than_one_value();
   }
@@ -134,7 +132,7 @@ class Reasons {
       if (outcome_.cases[c].relative_mesh_error > kCoarse) {
         add("mesh_too_coarse", "'" + data_.experiment.cases[c].name + "': the mesh changes the force by a factor of " +
                                    three_significant(1 + outcome_.cases[c].relative_mesh_error) +
-                                   "; refine it around the tip (option refine) or use a wider tip");
+                                   "; refine it around the indenter (option refine) or use a wider one");
         break;
       }
     add_disagreement();
@@ -151,9 +149,8 @@ class Reasons {
  private:
   void add_poor_predictions(const HeldOutErrors& errors) {
     if (errors.position > kPoorPosition || errors.force > kPoorForce)
-      add("predicts_badly",
-          "held-out groups are predicted with errors of " + percents(errors) +
-              " beyond the noise: fit fewer values, measure more, or trust it only where it was poked");
+      add("predicts_badly", "held-out groups are predicted with errors of " + percents(errors) +
+                                " beyond the noise: fit fewer values, measure more, or trust it only near pokes");
   }
 
   void add_missed_groups() {
@@ -190,9 +187,9 @@ class Reasons {
     const double deviation = std::hypot(stiffest->stiffness_deviation() / stiffest->stiffness(),
                                         softest->stiffness_deviation() / softest->stiffness());
     if (ratio > kDisagree && std::log(ratio) > kMissed * deviation)
-      add("groups_disagree", "the forces of '" + stiffest->name() + "' ask for a body " + three_significant(ratio) +
+      add("groups_disagree", "the forces of '" + stiffest->name() + "' imply a body " + three_significant(ratio) +
                                  " times as stiff as those of '" + softest->name() +
-                                 "': one of them is wrong, or the body is not what is fitted");
+                                 "': one of them is wrong, or the model does not fit the body");
   }
 
   const DataSet& data_;
@@ -212,7 +209,7 @@ FitVerdict verdict(const DataSet& data, const FitOutcome& outcome) {
   FitVerdict result;
   if (outcome.interrupted) {
     result.reasons = {{"interrupted", "the same command with --resume continues the fit"}};
-    result.text = "Interrupted: this is the material that was reached.";
+    result.text = "Interrupted: this is the current estimate.";
     return result;
   }
   Reasons reasons(data, outcome);

@@ -1,4 +1,4 @@
-// Each reason of the verdict, from results that are made by hand: nothing is solved.
+// Reasons of the verdict, from hand-made results without solves.
 #include "capture/fit_verdict.h"
 
 #include <gmock/gmock.h>
@@ -16,7 +16,7 @@ const DataSet& three_pokes() {
   return data;
 }
 
-// A fit that explains every reading to the last digit.
+// A fit that explains every reading exactly.
 FitOutcome perfect(const DataSet& data = three_pokes()) {
   FitOutcome outcome;
   outcome.report.status = Status::converged;
@@ -102,7 +102,7 @@ TEST(FitVerdict, ValuesAtTheirBoundsAreNotGood) {
   FitOutcome outcome = perfect();
   outcome.at_bound = {"young in 3 tets"};
   EXPECT_THAT(reasons(outcome), ElementsAre("at_bound"));
-  EXPECT_THAT(verdict(three_pokes(), outcome).text, HasSubstr("young in 3 tets lies at its bound"));
+  EXPECT_THAT(verdict(three_pokes(), outcome).text, HasSubstr("young in 3 tets is at its bound"));
 }
 
 TEST(FitVerdict, GroupsMissedByFourDeviationsAreNamed) {
@@ -114,7 +114,7 @@ TEST(FitVerdict, GroupsMissedByFourDeviationsAreNamed) {
   EXPECT_THAT(verdict(three_pokes(), outcome).text, HasSubstr("the forces of 'poke 2' are missed by 4.5 standard"));
 }
 
-// The mean over all readings of a group would hide its few forces behind its many markers.
+// The mean over all readings of a group would hide few forces among many markers.
 TEST(FitVerdict, PositionsOfAGroupAreJudgedByThemselves) {
   FitOutcome outcome = perfect();
   for (const size_t c : {0, 1})
@@ -139,7 +139,7 @@ TEST(FitVerdict, LeftOutGroupsDoNotCountAsMissed) {
   EXPECT_THAT(reasons(outcome), ElementsAre());
 }
 
-TEST(FitVerdict, FieldsThatPredictWorseThanOneValueAreNotGood) {
+TEST(FitVerdict, FieldsPredictingWorseThanOneValueFail) {
   FitOutcome outcome = perfect();
   outcome.held_out = held_out(0.04, 0.05);
   outcome.held_out_of_one_value = held_out(0.04, 0.05);
@@ -148,7 +148,7 @@ TEST(FitVerdict, FieldsThatPredictWorseThanOneValueAreNotGood) {
   EXPECT_THAT(reasons(outcome), ElementsAre("held_out_worse"));
 }
 
-// One poke of three with forces four times as large: the fit lies between them.
+// One of three pokes has fourfold forces, so the fit is a compromise.
 TEST(FitVerdict, GroupsWhoseForcesContradictEachOtherAreNamed) {
   FitOutcome outcome = perfect();
   for (size_t c = 0; c < 6; ++c) {
@@ -160,7 +160,7 @@ TEST(FitVerdict, GroupsWhoseForcesContradictEachOtherAreNamed) {
   for (const size_t c : {0, 1}) outcome.cases[c].force_deviation = {{0.15, 0.15, 0.15}};
   EXPECT_THAT(reasons(outcome), ElementsAre("groups_disagree"));
   EXPECT_THAT(verdict(three_pokes(), outcome).text,
-              testing::AllOf(HasSubstr("'poke 1' ask for a body 2.75 times as stiff"), HasSubstr("'poke 2'")));
+              testing::AllOf(HasSubstr("'poke 1' imply a body 2.75 times as stiff"), HasSubstr("'poke 2'")));
 }
 
 TEST(FitVerdict, TooManySquaresPerReadingAreNotGood) {
@@ -182,8 +182,8 @@ TEST(FitVerdict, PoorHeldOutPredictionsAreNotGood) {
   EXPECT_THAT(reasons(outcome), ElementsAre());
 }
 
-// A poke that moves the body little is read with a noise that is large beside it.
-TEST(FitVerdict, NoiseOfHeldOutReadingsIsNoPoorPrediction) {
+// A small motion has a relatively large noise.
+TEST(FitVerdict, NoiseOfHeldOutReadingsIsTolerated) {
   DataSet data = three_pokes();
   for (LoadCase& load : data.experiment.cases)
     for (MarkerReading& reading : load.positions) reading.deviation = {{5e-4, 5e-4, 5e-4}};
@@ -194,9 +194,9 @@ TEST(FitVerdict, NoiseOfHeldOutReadingsIsNoPoorPrediction) {
   EXPECT_THAT(reasons(outcome, data), ElementsAre("predicts_badly"));
 }
 
-TEST(FitVerdict, OneValueInPlaceOfAFieldIsNotGood) {
+TEST(FitVerdict, OneValueInsteadOfFieldIsNotGood) {
   FitOutcome outcome = perfect();
-  outcome.against_field = {{"at_bound", "young in 3 tets lies at its bound"}};
+  outcome.against_field = {{"at_bound", "young in 3 tets is at its bound"}};
   EXPECT_THAT(reasons(outcome), ElementsAre("field_rejected"));
   EXPECT_THAT(verdict(three_pokes(), outcome).text, HasSubstr("one value replaces the field: young in 3 tets"));
 }

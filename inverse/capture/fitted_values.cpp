@@ -19,7 +19,7 @@ std::string unit_of(const std::string& quantity, const std::string& model) {
   return "";
 }
 
-// Tets whose values tell most: the only one, one of each region, or the extremes and the middle of a field.
+// Representative tets: the only one, one per region, or minimum, median and maximum of a field.
 std::vector<std::pair<std::string, int>> telling_tets(const FittedQuantity& quantity, const TetMesh& mesh) {
   const std::vector<double>& v = quantity.values;
   if (v.empty()) return {};
@@ -42,7 +42,7 @@ std::vector<std::pair<std::string, int>> telling_tets(const FittedQuantity& quan
 }
 
 constexpr double kAtEnd = 0.9995;  // of a range from -1 to 1
-constexpr double kNearWall = 0.9;  // of the farthest that a field can be from its guess
+constexpr double kNearWall = 0.9;  // fraction of the largest distance of a field from its guess
 
 bool is_field_of_powers(const Unknown& u) {
   return u.quantity == "young" && (u.spread == Spread::tets || u.spread == Spread::handles);
@@ -54,7 +54,7 @@ bool is_at_bound(const ParameterMap& map, int unknown, double fitted) {
   return std::abs(map.place_in_range(unknown, fitted)) > kAtEnd;
 }
 
-// A quantity of every tet, fitted or known.
+// Quantity of a tet, fitted or known.
 double quantity_of(const MaterialParameters& m, const std::string& name, const MaterialInfo& info) {
   if (name == "young") return young_modulus(m.lame);
   if (name == "poisson") return poisson_ratio(m.lame);
@@ -128,7 +128,7 @@ std::string words_of_mesh(const FitOutcome& outcome) {
   if (outcome.mesh_error < 0) return words;
   char percent[16];
   std::snprintf(percent, sizeof percent, "%.2g", 100 * outcome.mesh_error);
-  return words + "; positions err by " + percent + " % of the peak motion, which was taken off";
+  return words + "; positions err by " + percent + " % of the peak motion, which was corrected";
 }
 
 }  // namespace aspic

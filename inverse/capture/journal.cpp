@@ -19,14 +19,14 @@ fs::path with_ending(const fs::path& stem, const char* ending) {
   return path;
 }
 
-const char* const kRemedy = "; start anew with --force";
+const char* const kRemedy = "; restart with --force";
 
 }  // namespace
 
-// In front of the numbers of an answer.
+// Header of an answer.
 struct Journal::Head {
-  std::uint64_t question = 0;  // a hash of what was asked
-  std::uint32_t count = 0;     // of the numbers that were answered
+  std::uint64_t question = 0;  // hash of the question
+  std::uint32_t count = 0;     // number of values in the answer
   Kind kind = Kind::evaluate;
   unsigned char ok = 0;
   unsigned char padding[2] = {};
@@ -112,8 +112,7 @@ bool Journal::replayed(const Head& asked, std::span<double> answer) {
   if (is_same && head.ok)
     in_.read(reinterpret_cast<char*>(answer.data()), static_cast<std::streamsize>(answer.size_bytes()));
   if (!is_same || !in_)
-    throw InvalidInput(journal_path_.string() + ": this program takes another way than the one that wrote it" +
-                       kRemedy);
+    throw InvalidInput(journal_path_.string() + ": this program differs from the one that wrote it" + kRemedy);
   position_ += sizeof head + (head.ok ? answer.size_bytes() : 0);
   return head.ok != 0;
 }
@@ -134,8 +133,8 @@ void Journal::save_state() {
                                  .integers = {{"journal_bytes", static_cast<std::int64_t>(out_.size())}}});
 }
 
-// The last thing that was replayed is a linearization: from the state there, the model finds the same equilibria and
-// matrices again.
+// The last replayed entry is a linearization. From the state there, the model finds the same equilibria and matrices
+// again.
 void Journal::catch_up() {
   if (!is_behind_) return;
   is_behind_ = false;
@@ -143,7 +142,7 @@ void Journal::catch_up() {
   state_.set(resumed_state_);
   std::vector<double> r(static_cast<size_t>(model_.residual_count()));
   if (!model_.evaluate(resumed_p_, r) || !model_.linearize())
-    throw InvalidInput(state_path_.string() + ": the model cannot be evaluated where it was" + kRemedy);
+    throw InvalidInput(state_path_.string() + ": the model cannot be evaluated at the stored state" + kRemedy);
 }
 
 }  // namespace aspic

@@ -15,8 +15,8 @@ namespace {
 
 using ::testing::HasSubstr;
 
-// r = [x - 1, 10 (x^2 - p_1)] with x^3 + x = p_0 solved by Newton's method from the x before, to a loose tolerance: the
-// last digits of r depend on where it starts, as those of an equilibrium do.
+// r = [x - 1, 10 (x^2 - p_1)] with x^3 + x = p_0 solved by Newton's method from the previous x to a loose tolerance:
+// the last digits of r depend on the initial guess, like those of an equilibrium.
 class Looser : public LeastSquares {
  public:
   int unknowns() const override { return 2; }
@@ -52,7 +52,7 @@ class Looser : public LeastSquares {
   int calls = 0, limit = 1 << 20;
 };
 
-// Gradient descent with halved steps: every digit of an answer reaches the end.
+// Gradient descent with halved steps, for which every digit of an answer affects the result.
 std::vector<double> descended(LeastSquares& model, int iterations) {
   std::vector<double> p = {30, 3}, r(2), g(2), Jg(2), trial(2);
   const auto cost = [&] { return r[0] * r[0] + r[1] * r[1]; };
@@ -63,7 +63,7 @@ std::vector<double> descended(LeastSquares& model, int iterations) {
     model.multiply_transposed(r, g);
     model.multiply(g, Jg);
     double step = (g[0] * g[0] + g[1] * g[1]) / (Jg[0] * Jg[0] + Jg[1] * Jg[1]);
-    if (i == 1) step *= 1e5;  // where nothing is defined
+    if (i == 1) step *= 1e5;  // leaves the domain
     for (int k = 0; k < 60; ++k, step *= 0.5) {
       for (int j = 0; j < 2; ++j) trial[j] = p[j] - step * g[j];
       if (model.evaluate(trial, r) && cost() < before) break;
@@ -85,7 +85,7 @@ class JournalTest : public FolderTest {
   int calls = 0;  // of the whole fit
 };
 
-TEST_F(JournalTest, KilledAtAnyCallItGoesOnToTheSameBits) {
+TEST_F(JournalTest, KilledAtAnyCallItResumesBitReproducibly) {
   const std::vector<double> expected = whole();
   ASSERT_GT(calls, 50);
   for (int limit = 1; limit < calls; limit += 3) {
@@ -139,7 +139,7 @@ TEST_F(JournalTest, OtherDataAndOtherProgramsAreRefused) {
                 std::vector<double> r(2);
                 journal.evaluate(std::vector<double>{1, 2}, r);
               }),
-              HasSubstr("takes another way than the one that wrote it; start anew with --force"));
+              HasSubstr("differs from the one that wrote it; restart with --force"));
   write_file(path("whole.journal"), "short");
   EXPECT_THAT(message_of([&] { resumed("f"); }), HasSubstr("has 5 bytes where"));
 }

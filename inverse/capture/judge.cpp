@@ -10,8 +10,8 @@
 namespace aspic {
 namespace {
 
-constexpr int kPoints = 20;     // in a tet of the fit, where the truth is looked up
-constexpr size_t kPhases = 8;   // more values are a field
+constexpr int kPoints = 20;     // points per tet of the fit at which the truth is evaluated
+constexpr size_t kPhases = 8;   // more values are treated as a field
 constexpr double kSame = 1e-6;  // relative difference of values of one phase
 
 // Evenly spread over a tet: barycentric coordinates (i + 1/4) / 4 with i + j + k + l = 3.
@@ -35,7 +35,7 @@ double weighted_mean(const std::vector<double>& weight, const std::vector<double
          std::accumulate(weight.begin(), weight.end(), 0.0);
 }
 
-// The z that parts the values best in two: the greatest variance between the parts.
+// Threshold with the greatest variance between the two classes of z.
 double otsu_threshold(const std::vector<double>& weight, const std::vector<double>& z) {
   std::vector<size_t> order(z.size());
   std::iota(order.begin(), order.end(), 0u);
@@ -105,7 +105,7 @@ class Judge {
     }
   }
 
-  // Of the points of a tet, those of a phase.
+  // Number of points of a tet in a phase.
   int points_in(size_t t, double level) const {
     int count = 0;
     for (int i = 0; i < kPoints; ++i) count += std::abs(truth_at(t, i) - level) <= kSame * std::abs(level) ? 1 : 0;

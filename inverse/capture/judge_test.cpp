@@ -10,7 +10,7 @@
 namespace aspic {
 namespace {
 
-// A unit cube whose upper half is `contrast` times as stiff as the lower.
+// Unit cube whose upper half is `contrast` times as stiff as the lower half.
 FittedMaterial layers(int cells, double contrast, double level = 1e4) {
   FittedMaterial material{.mesh = make_box({{0, 0, 0}}, {{1, 1, 1}}, {cells, cells, cells}), .model = "neo_hookean"};
   std::vector<double> young;
@@ -38,7 +38,7 @@ TEST(Judge, TheTruthHasNoErrorOnAnotherMesh) {
   EXPECT_LT(found[0].coverage, 0) << "no intervals";
 }
 
-TEST(Judge, OneValueMissesLayersByHalfTheLogarithmOfTheirContrast) {
+TEST(Judge, OneValueMissesLayersByHalfLogContrast) {
   FittedMaterial one = layers(4, 1, 2e4);
   const Judgment found = judge(one, layers(4, 4))[0];
   EXPECT_NEAR(found.error, std::log(2.0), 1e-12);
@@ -67,8 +67,9 @@ TEST(Judge, CountsTetsWhoseIntervalHoldsTheTruth) {
   EXPECT_DOUBLE_EQ(judge(fitted, layers(4, 4))[0].coverage, 1);
 }
 
-TEST(Judge, ATetThatTwoPhasesShareHasTheMeanOfTheirLogarithms) {
-  const Judgment found = judge(layers(3, 1, 2e4), layers(8, 4))[0];  // the middle of three layers of cells is shared
+TEST(Judge, SharedTetHasMeanLogarithmOfPhases) {
+  const Judgment found =
+      judge(layers(3, 1, 2e4), layers(8, 4))[0];  // both phases share the middle of three layers of cells
   EXPECT_NEAR(found.level, 0, 0.02);
   EXPECT_NEAR(found.error, std::log(2.0) * std::sqrt(2.0 / 3 + 1.0 / 3 * 0.4), 0.1);
   EXPECT_NEAR(found.phases[0].fitted, 2e4, 1e-6);

@@ -11,9 +11,9 @@ namespace {
 
 constexpr int kPasses = 8;
 constexpr double kSettled = 1e-3;       // relative change of a value
-constexpr double kSettledField = 0.03;  // root mean square of more than kFewValues, which noise leaves open far more
+constexpr double kSettledField = 0.03;  // root mean square of more than kFewValues, whose noise is larger
 constexpr size_t kFewValues = 50;
-// Guesses that are tried when the first one is so soft that the loads crush the body.
+// Initial guesses to try if the first is so soft that the loads crush the body.
 constexpr double kStiffer[] = {1, 10, 100, 0.1};
 
 std::vector<Unknown> stiffer(std::vector<Unknown> unknowns, double factor) {
@@ -29,7 +29,7 @@ std::string suffix(double factor) {
 
 bool is_many(const std::vector<double>& p) { return p.size() > kFewValues; }
 
-// The largest change of a few values. Of many, single ones are known far less well than a fit converges.
+// Largest change of a few values. Among many values, single ones are determined less accurately than fits converge.
 double change_between(const std::vector<double>& before, const std::vector<double>& after) {
   double largest = 0, squares = 0;
   for (size_t i = 0; i < before.size(); ++i) {
@@ -77,7 +77,7 @@ bool MaterialFit::has_many_values() const {
                      [](const Unknown& u) { return u.spread == Spread::tets || u.spread == Spread::handles; });
 }
 
-// One value per quantity explains most of the data, and is where the fields begin.
+// One value per quantity explains most of the data and is the initial guess of fields.
 bool MaterialFit::fit_single_values(const std::string& name) {
   begin(FitStage::uniform, "one value for the whole body");
   FitOptions options = plan_.fit;
@@ -108,17 +108,17 @@ bool MaterialFit::has_single_values(FitModel& model, const FitReport& report) {
 bool MaterialFit::take_off_mesh_errors() {
   if (is_stopped()) return false;
   if (simulated_.is_too_large_for_mesh_errors()) {
-    add_warnings({"what the mesh gets wrong was NOT computed: the mesh that is simulated has " +
+    add_warnings({"the discretization error was NOT computed: the simulated mesh has " +
                   std::to_string(simulated_.mesh().tet_count()) + " tets, and " +
                   std::to_string(SimulatedData::kTooFine) +
-                  " are the most; the material explains what the mesh gets wrong (a coarser mesh, or a smaller "
+                  " are the maximum; the material includes this error (use a coarser mesh, or a smaller "
                   "option refine)"});
     return plan_.mesh_errors = false;
   }
-  begin(FitStage::mesh_errors, "what the mesh gets wrong, by one of eight times as many tets");
+  begin(FitStage::mesh_errors, "discretization error, by a mesh of eight times as many tets");
   const std::string failure = simulated_.take_off_mesh_errors(plan_, material_);
   if (!failure.empty()) {
-    add_warnings({"what the mesh gets wrong was NOT computed: on the finer mesh " + failure});
+    add_warnings({"the discretization error was NOT computed: on the finer mesh " + failure});
     return plan_.mesh_errors = false;
   }
   outcome_.mesh_error = simulated_.mesh_error();
@@ -141,15 +141,15 @@ void MaterialFit::fit_until_mesh_errors_settle(std::optional<FitModel>& model) {
     if (pass > 0 && change < (is_many(p) ? kSettledField : kSettled)) return;
     if (pass == kPasses) {
       outcome_.mesh_errors_settle = false;
-      return add_warnings({"what the mesh gets wrong and the material do not settle: after " + std::to_string(kPasses) +
+      return add_warnings({"discretization error and material do not converge: after " + std::to_string(kPasses) +
                            " rounds it still changes by " + std::to_string(change) +
-                           " (of log E); a finer mesh (option refine) makes both smaller"});
+                           " (of log E); refine the mesh (option refine)"});
     }
     options.weight = outcome_.report.weight;
     start = p;
     material_ = model->map.parameters(p);
     model.reset();
-    take_off_mesh_errors();  // else the last ones stay
+    take_off_mesh_errors();  // otherwise the last errors remain
   }
 }
 
@@ -176,7 +176,7 @@ void MaterialFit::fall_back(std::vector<FitReason> reasons) {
   plan_.unknowns = outcome_.plan.unknowns = single_values(plan_.unknowns);
   plan_.fit.method = plan_.fit.weight_rule = "auto";
   plan_.fit.weight = -1;
-  begin(FitStage::uniform, "one value for the whole body, as the data do not support a field");
+  begin(FitStage::uniform, "one value for the whole body, because the data do not support a field");
   fit_and_describe();
 }
 
@@ -210,7 +210,7 @@ FitReport MaterialFit::fit_stage(FitStage which, FitModel& model, const FitOptio
   FitOptions stoppable = options;
   stoppable.stop = StopToken([&] {
     if (!is_stopped()) return false;
-    if (model.journal) model.journal->stop_writing();  // a resumed fit does not repeat what follows
+    if (model.journal) model.journal->stop_writing();  // a resumed fit does not repeat later evaluations
     return true;
   });
   FitReport report = fit(model.data(), *model.prior, start.empty() ? model.map.guess() : start, stoppable, observe);

@@ -7,7 +7,7 @@
 namespace aspic {
 namespace {
 
-// What was believed of single tets beforehand remains.
+// Keeps the prior of single tets.
 void set_deviations(const std::vector<double>& deviation, int unknown, Posterior& belief) {
   for (size_t t = 0; t < deviation.size(); ++t) {
     double& own = belief.deviation[unknown][t];

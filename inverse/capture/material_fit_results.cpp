@@ -9,9 +9,9 @@
 namespace aspic {
 namespace {
 
-constexpr double kLearnt = 1;  // directions that data tell, if they tell anything
+constexpr double kLearnt = 1;  // number of determined directions below which the data are uninformative
 
-// The prediction that r is counted of: with layers as stiff as the readings say.
+// Prediction that r is computed from, with the layer stiffness implied by the readings.
 void put_layers_in(std::span<const double> r, const LoadCase& fitted, CasePrediction& shown) {
   auto residual = r.begin();
   const auto put = [&](const Vec3d& reading, const Vec3d& deviation, Vec3d& to) {
@@ -27,7 +27,7 @@ void put_layers_in(std::span<const double> r, const LoadCase& fitted, CasePredic
 
 void MaterialFit::learn_uncertainty(FitModel& model) {
   if (!plan_.uncertainty || is_stopped()) return;
-  begin(FitStage::uncertainty, "what the data do not say");
+  begin(FitStage::uncertainty, "uncertainty");
   const FitReport& report = outcome_.report;
   WithUncertainLayers about_fit(model.recorded());
   outcome_.posterior = posterior(about_fit, *model.prior, report.weight, model.map, mesh(), report.p);
@@ -38,13 +38,13 @@ void MaterialFit::learn_uncertainty(FitModel& model) {
     std::erase_if(outcome_.posterior->warnings,
                   [](const std::string& warning) { return warning.starts_with("the weight of the regularizer"); });
     add_warnings(
-        {"the data say next to nothing of how the stiffness varies: the deviations are those of what was "
-         "believed beforehand (--unknown young=uniform fits that value)"});
+        {"the data hardly determine how the stiffness varies: the deviations are those of the "
+         "prior (--unknown young=uniform fits one value)"});
   }
   add_warnings(outcome_.posterior->warnings);
 }
 
-// The material of p, its values for people, and what it predicts for the cases that were fitted.
+// Stores the material of p, its values for display, and predictions for the fitted cases.
 void MaterialFit::describe(FitModel& model, std::span<const double> p) {
   const Posterior* belief = outcome_.posterior && outcome_.posterior->ok ? &*outcome_.posterior : nullptr;
   outcome_.quantities = fitted_quantities(model.map, mesh(), p, belief);
@@ -82,7 +82,7 @@ void MaterialFit::describe(FitModel& model, std::span<const double> p) {
   }
 }
 
-// The cases of a group as a material predicts them.
+// Predicts the cases of a group with a material.
 void MaterialFit::predict_group(const std::string& group, const ParameterMap& map, std::span<const double> p,
                                 const UsePrediction& use) {
   const Experiment part = subset(simulated_.all(), [&](const LoadCase& c) { return c.group == group; });
@@ -107,7 +107,7 @@ void MaterialFit::predict_left_out(const ParameterMap& map, std::span<const doub
 void MaterialFit::cross_validate_groups(FitModel& model) {
   if (!plan_.cross_validation || is_stopped()) return;
   CrossValidation held_out = cross_validated(model, outcome_.report, plan_.fit);
-  if (outcome_.interrupted) return;  // the last group is not to be trusted
+  if (outcome_.interrupted) return;  // the last group may be incomplete
   add_warnings(held_out.warnings);
   for (const HeldOut& group : held_out.groups)
     if (group.ok)
@@ -124,12 +124,12 @@ CrossValidation MaterialFit::cross_validated(FitModel& model, const FitReport& r
   options.stop = StopToken([this] { return is_stopped(); });
   const auto observe = [&](int group, int groups, const std::string& name) {
     begin(FitStage::cross_validation,
-          "'" + name + "' is left out (" + std::to_string(group + 1) + " of " + std::to_string(groups) + ")");
+          "'" + name + "' is held out (" + std::to_string(group + 1) + " of " + std::to_string(groups) + ")");
   };
   return cross_validate(simulated_.fitted(), model.map, *model.prior, report, options, plan_.equilibrium, observe);
 }
 
-// What a field has to surpass.
+// Baseline for a field.
 void MaterialFit::cross_validate_one_value() {
   FitOptions options = plan_.fit;
   options.method = options.weight_rule = "auto";
@@ -145,7 +145,7 @@ void MaterialFit::find_next_poke(FitModel& model) {
   const std::vector<LoadCase>& cases = simulated_.fitted().cases;
   const bool has_tip = std::any_of(cases.begin(), cases.end(), [](const LoadCase& c) { return c.tip.has_value(); });
   if (!outcome_.posterior || !outcome_.posterior->ok || !has_tip || is_stopped()) return;
-  begin(FitStage::next_poke, "where a poke would tell most");
+  begin(FitStage::next_poke, "most informative next poke");
   NextPoke next =
       next_poke(simulated_.fitted(), mesh(), model.map, *outcome_.posterior, outcome_.report.p, {}, plan_.equilibrium);
   add_warnings(next.warnings);

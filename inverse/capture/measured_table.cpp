@@ -65,7 +65,7 @@ std::optional<double> MeasuredTable::number(std::string_view column, double unit
   const std::optional<double> value = csv_.try_number(found->second);
   if (value && std::isfinite(*value)) return *value * unit;
   error(csv_.columns()[found->second] + " = " + shown(csv_.text(found->second)) +
-        " is no finite number; correct it, or leave the cell blank where nothing was measured");
+        " is not a finite number; correct it, or leave the cell blank if nothing was measured");
   return std::nullopt;
 }
 

@@ -25,7 +25,7 @@ std::vector<Triangle> listed_triangles(const std::filesystem::path& file, const 
     if (outward.contains(t)) {
       triangles.push_back(t);
     } else {
-      table.error("a, b, c are no triangle of the surface; they are its corners, vertices counted from 0");
+      table.error("a, b, c are not a triangle of the surface; give its corners, counted from 0");
     }
   }
   if (triangles.empty() && errors.is_empty()) throw error_at(name.place, "the table has no triangle");

@@ -1,5 +1,5 @@
-// From a scene to its material again: the virtual bench, then a fit, judged against the truth. bench/results/capture.md
-// has more and harder cases.
+// Recovers the material of scenes: virtual bench, fit, comparison with the truth. bench/results/capture.md has more and
+// harder cases.
 #include <gtest/gtest.h>
 
 #include "capture/capture_cases_test.h"
@@ -35,7 +35,7 @@ class Recovery : public FolderTest {
     plan.uncertainty = plan.cross_validation = false;
     return plan;
   }
-  static double factor(const Synthesis& made, const FitPlan& plan) {  // fitted by true E, of one phase
+  static double factor(const Synthesis& made, const FitPlan& plan) {  // ratio of fitted and true E of one phase
     const FitOutcome outcome = fit_material(made.data, plan, {}, {});
     EXPECT_TRUE(outcome.has_material()) << outcome.failure;
     const Phase phase = judge(outcome.material, made.truth).at(0).phases.at(0);
@@ -50,8 +50,8 @@ TEST_F(Recovery, OfAHomogeneousCubeToAThousandth) {
   EXPECT_NEAR(factor(synthesize(scene, options), plan("young=uniform")), 1, 1e-3);
 }
 
-// Hung by its base, on a mesh of three cells that makes it 20 % too stiff.
-TEST_F(Recovery, OnACoarseMeshNeedsWhatThatGetsWrong) {
+// A hanging body on a mesh of three cells, which is 20 % too stiff.
+TEST_F(Recovery, OnCoarseMeshNeedsErrorCorrection) {
   SynthesisOptions options = bench(0, 0);
   options.gravity = {{{0, 0, -1}}, {{1, 0, 0}}};
   options.mesh = make_box({{0, 0, 0}}, {{0.1, 0.1, 0.1}}, {3, 3, 3});
@@ -59,11 +59,11 @@ TEST_F(Recovery, OnACoarseMeshNeedsWhatThatGetsWrong) {
   FitPlan fit = plan("young=uniform");
   EXPECT_LT(factor(made, fit), 0.9);
   fit.mesh_errors = true;
-  EXPECT_NEAR(factor(made, fit), 1, 0.03);  // the truth has a ninth of the error itself
+  EXPECT_NEAR(factor(made, fit), 1, 0.03);  // the truth itself has a ninth of the error
 }
 
-// Poked by a glued sphere on a mesh of four cells: what it gets wrong around the tip must not look like a layer of
-// another stiffness, and that like another E.
+// Poked by a bonded sphere on a mesh of four cells: the discretization error at the indenter must not act like another
+// layer stiffness, which would change E.
 TEST_F(Recovery, MeshErrorsMakeNoPokeWorse) {
   SynthesisOptions options = bench(3, 0);
   options.contact = TipContact::bonded;
@@ -94,7 +94,7 @@ TEST_F(Recovery, OfTwoLayersAtOnePercentNoise) {
   EXPECT_LT(found.largest, 4 * deviation) << "four standard deviations: once in 16 000 times by chance";
 }
 
-// A stiffness per tet, of which nobody says how many parts there are nor where.
+// A stiffness per tet, with unknown number and locations of parts.
 TEST_F(Recovery, OfTwoPartsThatNobodyNamed) {
   const Scene scene = block("Z < 0.05 ? 6e4 : 2e4", 4);
   SynthesisOptions options = bench(4, 0.01);

@@ -21,8 +21,8 @@ namespace {
 
 constexpr double kTipRadius = 0.08;       // relative to the size of the body
 constexpr double kUsualGravity = 9.81;    // [m/s^2]
-constexpr double kLeastArm = 0.01;        // of a force about the center of the tip, relative to its radius
-constexpr double kLeastDeviation = 1e-4;  // of exact data, relative to the largest motion or force
+constexpr double kLeastArm = 0.01;        // lever arm of a force about the indenter's center, relative to its radius
+constexpr double kLeastDeviation = 1e-4;  // minimum deviation of exact data, relative to the largest motion or force
 
 double volume_of(const TetMesh& mesh) {
   double sum = 0;
@@ -36,7 +36,7 @@ class Bench {
       : model_(scene.simulation.model()), options_(options), size_(std::cbrt(volume_of(model_.mesh))) {
     if (model_.bodies.size() != 1)
       throw InvalidInput(scene.name + ": has " + std::to_string(model_.bodies.size()) +
-                         " bodies; a bench holds one: take the others out");
+                         " bodies; the bench measures one: remove the others");
     result_.data.name = scene.name;
     result_.truth = true_material(scene);
     set_up_truth();
@@ -44,7 +44,7 @@ class Bench {
     place_markers();
     add_pokes();
     add_gravity();
-    if (truth_.cases.empty()) throw InvalidInput(scene.name + ": nothing is measured; ask for pokes or gravity");
+    if (truth_.cases.empty()) throw InvalidInput(scene.name + ": nothing is measured; give pokes or gravity");
   }
 
   Synthesis run(const SynthesisObserver& observe) {
@@ -56,20 +56,20 @@ class Bench {
  private:
   Experiment& data() { return result_.data.experiment; }
 
-  // The body of the scene; its springs, weights and motions are left out.
+  // Uses the body of the scene without its springs, weights and motions.
   void set_up_truth() {
     truth_.mesh = model_.mesh;
     truth_.density = model_.density;
     for (const Pin& pin : model_.pins) {
       require_full(pin);
       truth_.fixed.insert(truth_.fixed.end(), pin.vertices.begin(), pin.vertices.end());
-      if (pin.motion) result_.notes.push_back("the pin '" + pin.name + "' moves in the scene; here it holds still");
+      if (pin.motion) result_.notes.push_back("the pin '" + pin.name + "' moves in the scene; here it is fixed");
     }
     std::sort(truth_.fixed.begin(), truth_.fixed.end());
     if (truth_.fixed.empty())
-      throw InvalidInput("nothing holds the body, which a poke would push away; give the scene a [[body.pin]]");
+      throw InvalidInput("nothing holds the body against pokes; add a [[body.pin]] to the scene");
     if (!model_.loads.empty())
-      result_.notes.push_back("loads and springs of the scene are left out: what is poked is the body at rest");
+      result_.notes.push_back("loads and springs of the scene are ignored: the body at rest is poked");
   }
 
   void set_up_data(const Scene& scene) {
@@ -77,7 +77,7 @@ class Bench {
     if (!mesh) mesh = coarser_mesh(scene, options_.mesher, result_.notes);
     if (!mesh) {
       result_.notes.push_back(
-          "the data have the mesh of the scene: an inverse crime, whose fits look better than they "
+          "the data have the mesh of the scene: an inverse crime, with fits that look better than they "
           "are (give a coarser one with --mesh)");
       mesh = to_user(model_.numbering, model_.mesh);
     }
@@ -89,7 +89,7 @@ class Bench {
     data().fixed = held_vertices(truth_.mesh, truth_.fixed, data().mesh);
     if (data().fixed.size() < 3)
       throw InvalidInput("only " + std::to_string(data().fixed.size()) +
-                         " vertices of the data's mesh lie where the body is held; it is too coarse, or elsewhere");
+                         " vertices of the data's mesh are where the body is held; it is too coarse, or elsewhere");
     on_truth_ = std::make_unique<SurfaceProjection>(truth_.mesh);
     on_data_ = std::make_unique<SurfaceProjection>(data().mesh);
   }
@@ -97,8 +97,7 @@ class Bench {
   void label_regions() {
     const std::vector<double>& young = *result_.truth.find("young");
     const std::vector<double> levels = levels_of(young);
-    if (levels.empty())
-      throw InvalidInput("the stiffness varies from tet to tet; there are no regions that could be labeled");
+    if (levels.empty()) throw InvalidInput("the stiffness varies from tet to tet; there are no regions to label");
     data().mesh.region.clear();
     for (const double E : sample(result_.truth, young, data().mesh)) {
       const auto next = std::ranges::lower_bound(levels, E * (1 - 1e-6));
@@ -106,7 +105,7 @@ class Bench {
     }
   }
 
-  // Material points of the data's surface; where the surfaces differ, they move as the nearest of the truth.
+  // Material points of the data's surface. Where the surfaces differ, they follow the nearest point of the truth.
   void place_markers() {
     for (const ProjectedPoint& p :
          marker_sites(data().mesh, *on_data_, data().fixed, options_.markers, options_.seed)) {
@@ -124,7 +123,7 @@ class Bench {
     return {options_.shape, options_.contact, options_.tip_radius > 0 ? options_.tip_radius : kTipRadius * size_, 0};
   }
 
-  // The largest modulus of Young of the tets around the sites.
+  // Largest Young's modulus around the sites.
   double young_around(const std::vector<PokeSite>& sites) const {
     std::vector<char> is_site(truth_.mesh.rest.size(), 0);
     for (const PokeSite& s : sites) is_site[s.vertex] = 1;
@@ -140,10 +139,10 @@ class Bench {
     Tip with = tip();
     const auto sites = poke_sites(truth_.mesh, truth_.fixed, 2 * with.radius, options_.pokes);
     if (sites.empty())
-      throw InvalidInput("there is no site that a tip of radius " + three_digits(with.radius) +
-                         " m can poke; take a smaller one (--tip), or hold less of the body");
+      throw InvalidInput("there is no site for a tip of radius " + three_digits(with.radius) +
+                         " m; use a smaller one (--tip), or hold less of the body");
     if (static_cast<int>(sites.size()) < options_.pokes)
-      result_.notes.push_back("only " + std::to_string(sites.size()) + " sites were found that a tip of radius " +
+      result_.notes.push_back("only " + std::to_string(sites.size()) + " sites were found for a tip of radius " +
                               number_text(with.radius) + " m can poke");
     with.stiffness = layer_stiffness(with, young_around(sites));
     for (size_t s = 0; s < sites.size(); ++s)
@@ -173,7 +172,7 @@ class Bench {
     }
   }
 
-  // Markers below the tip are hidden.
+  // Adds a case without the markers hidden by the indenter.
   void add_case(LoadCase load, const Vec3d& shift, const Vec3d& site) {
     for (size_t m = 0; m < truth_.markers.size(); ++m)
       if (!load.tip || squared_norm(truth_rest_[m] - site) > load.tip->radius * load.tip->radius)
@@ -185,7 +184,7 @@ class Bench {
     asked_.push_back(std::move(load));
   }
 
-  // Each poke from the last depth; what has no equilibrium ends its poke.
+  // Solves each poke from the previous depth; a case without equilibrium ends its poke.
   void measure(const SynthesisObserver& observe) {
     const std::vector<MaterialParameters> parameters(model_.elasticity.front()->parameters().begin(),
                                                      model_.elasticity.front()->parameters().end());
@@ -197,7 +196,7 @@ class Bench {
       SynthesisStep step{c + 1, count, load.name, {}, 0, {}};
       if (c > 0 && load.group != truth_.cases[c - 1].group) last.clear();
       if (load.group == failed_group) {
-        step.failure = "left out: a smaller load has no equilibrium";
+        step.failure = "omitted: a smaller load has no equilibrium";
       } else {
         LoadedBody body(truth_, load, result_.truth.model, parameters, {});
         if (body.solve(parameters, last)) {
@@ -212,7 +211,7 @@ class Bench {
       }
       if (!step.failure.empty()) {
         ++result_.failed;
-        result_.notes.push_back(load.name + " is left out: " + step.failure);
+        result_.notes.push_back(load.name + " is omitted: " + step.failure);
       }
       if (observe) observe(step);
       if (options_.stop.stopped()) {
@@ -260,7 +259,7 @@ class Bench {
   double size_;  // of the body [m]
   Synthesis result_;
   Experiment truth_;             // on the mesh of the scene, with the same markers and cases
-  std::vector<LoadCase> asked_;  // as the data will have them
+  std::vector<LoadCase> asked_;  // requested cases of the data
   std::vector<Vec3d> marker_rest_, truth_rest_;
   std::unique_ptr<SurfaceProjection> on_truth_, on_data_;
   double largest_motion_ = 0, largest_force_ = 0, largest_torque_ = 0;
@@ -270,9 +269,9 @@ void check(const SynthesisOptions& o) {
   const auto require = [](bool holds, const char* what) {
     if (!holds) throw InvalidInput(what);
   };
-  require(o.pokes >= 0 && o.pokes <= 1000, "pokes: 0 to 1000 are possible");
-  require(o.depths >= 1 && o.depths <= 100, "depths: 1 to 100 are possible");
-  require(o.markers >= 0 && o.markers <= 100'000, "markers: 0 to 100000 are possible");
+  require(o.pokes >= 0 && o.pokes <= 1000, "pokes must be 0 to 1000");
+  require(o.depths >= 1 && o.depths <= 100, "depths must be 1 to 100");
+  require(o.markers >= 0 && o.markers <= 100'000, "markers must be 0 to 100000");
   require(o.markers > 0 || o.forces || o.torques, "without markers, forces and torques there is nothing to measure");
   require(o.noise >= 0 && o.force_noise >= 0 && std::isfinite(o.noise + o.force_noise), "noise must be >= 0");
   require(o.tip_radius >= 0 && std::isfinite(o.tip_radius), "the radius of the tip must be > 0");
@@ -286,7 +285,7 @@ void check(const SynthesisOptions& o) {
 void require_full(const Pin& pin) {
   if (!pin.directions.empty())
     throw InvalidInput("pin '" + pin.name +
-                       "' holds its vertices along some directions only; captured data know vertices that are held in "
+                       "' holds its vertices along some directions only; captured data need vertices held in "
                        "all (remove its axes or direction)");
 }
 

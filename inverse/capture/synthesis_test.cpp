@@ -1,4 +1,4 @@
-// A virtual bench measures what its truth does.
+// The virtual bench measures the behavior of its truth.
 #include "capture/synthesis.h"
 
 #include <gmock/gmock.h>
@@ -39,8 +39,8 @@ TEST_F(VirtualBench, RefusesPinsAlongSomeDirections) {
                              HasSubstr("remove its axes or direction")));
 }
 
-// The truth, seen by the misfit of a fit on the same mesh, explains exact data.
-TEST_F(VirtualBench, ExactDataOnTheSameMeshAreExplainedByTheTruth) {
+// The truth explains exact data in a misfit on the same mesh.
+TEST_F(VirtualBench, TruthExplainsExactDataOnSameMesh) {
   const Scene block = scene();
   for (const TipContact contact : {TipContact::bonded, TipContact::sliding}) {
     SynthesisOptions options = exact();
@@ -65,7 +65,7 @@ TEST_F(VirtualBench, ExactDataOnTheSameMeshAreExplainedByTheTruth) {
   }
 }
 
-TEST_F(VirtualBench, DataHaveACoarserMeshThatIsHeldInTheSamePlaces) {
+TEST_F(VirtualBench, DataHaveCoarserMeshWithSameSupports) {
   const Synthesis made = synthesize(scene(), exact());
   const Experiment& e = made.data.experiment;
   EXPECT_LT(e.mesh.tet_count(), made.truth.mesh.tet_count());
@@ -74,7 +74,7 @@ TEST_F(VirtualBench, DataHaveACoarserMeshThatIsHeldInTheSamePlaces) {
   for (const int v : e.fixed) EXPECT_NEAR(e.mesh.rest[v][2], 0, 1e-12);
   for (const double density : e.density) EXPECT_EQ(density, 1100);
   ASSERT_EQ(e.markers.size(), 30u);
-  double least = INFINITY;  // farthest points: none is near another
+  double least = INFINITY;  // farthest-point sampling: no two are close
   for (size_t a = 0; a < e.markers.size(); ++a)
     for (size_t b = 0; b < a; ++b) {
       const Vec3d d = position(e.markers[a], e.mesh.rest) - position(e.markers[b], e.mesh.rest);
@@ -84,7 +84,7 @@ TEST_F(VirtualBench, DataHaveACoarserMeshThatIsHeldInTheSamePlaces) {
   for (const LoadCase& load : e.cases) EXPECT_GT(dot(*load.force, load.pose.center - load.touch.center), 0);
 }
 
-TEST_F(VirtualBench, NoiseIsWhatItIsSaidToBeAndComesFromTheSeed) {
+TEST_F(VirtualBench, NoiseHasStatedDeviationsAndDependsOnSeed) {
   const Scene block = scene();
   SynthesisOptions noisy = exact();
   noisy.noise = 0.01, noisy.force_noise = 0.02;
@@ -115,7 +115,7 @@ TEST_F(VirtualBench, ItsDiagnosisFindsNothingWrong) {
     EXPECT_EQ(f.severity, Severity::note) << f.where << ": " << f.what;
 }
 
-TEST_F(VirtualBench, WithoutForcesThereAreNoneAndItCanBeStopped) {
+TEST_F(VirtualBench, OmitsForcesOnRequestAndCanBeStopped) {
   SynthesisOptions options = exact();
   options.forces = false;
   int seen = 0;

@@ -28,7 +28,7 @@ StressColumn stress_column(const CsvReader& csv, const std::string& file) {
     if (csv.has(unit.column)) found.push_back({csv.column(unit.column), unit.pascals});
   if (found.size() == 1) return found.front();
   throw InvalidInput(file + ":1: has " + (found.empty() ? "no" : "more than one") +
-                     " column of stresses; give the nominal stress as one of stress_Pa, stress_kPa, stress_MPa");
+                     " column of stresses; give the nominal stress in one column stress_Pa, stress_kPa or stress_MPa");
 }
 
 }  // namespace
@@ -51,7 +51,7 @@ std::vector<TestCurve> read_test_curves(const std::filesystem::path& path) {
     const bool is_shear = deformation == Deformation::simple_shear;
     if (!std::isfinite(l) || std::abs(l) > kLargestStretch || (!is_shear && l <= 0))
       fail("stretch = " + csv.text(stretch) + "; give length over rest length, 1 at rest");
-    if (!std::isfinite(s)) fail("the stress " + csv.text(stress.index) + " is no number; leave the row out");
+    if (!std::isfinite(s)) fail("the stress " + csv.text(stress.index) + " is not a number; remove the row");
     const auto same = [&](const TestCurve& curve) { return curve.deformation == deformation; };
     auto curve = std::find_if(curves.begin(), curves.end(), same);
     if (curve == curves.end()) curve = curves.insert(curve, {std::string(name(deformation)), deformation, {}, {}});

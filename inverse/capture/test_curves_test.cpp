@@ -1,4 +1,4 @@
-// The curves of data/rubber: read, fitted, and compared with the errors that others publish for them.
+// Curves of data/rubber: read, fitted, and compared with published errors.
 #include "capture/test_curves.h"
 
 #include <gmock/gmock.h>
@@ -37,15 +37,15 @@ TEST(RubberCurves, AreWholeAndInPascals) {
   EXPECT_NEAR(rubber("bitoh_2011")[0].stress.front(), 233.1, 1e-9);
 }
 
-// Of a neo-Hookean solid and Treloar's uniaxial curve, Calibration-Hyperelasticity has mu = 0.28539 MPa, R^2 = 0.82864.
-TEST(RubberCurves, GiveTheNeoHookeanModulusAndErrorThatArePublished) {
+// Neo-Hookean solid for Treloar's uniaxial curve: Calibration-Hyperelasticity gives mu = 0.28539 MPa, R^2 = 0.82864.
+TEST(RubberCurves, GiveThePublishedNeoHookeanModulusAndError) {
   const auto curves = rubber("treloar_1944");
   const CurveFit fit = fit_curves({curves[0]}, {.material = "neo_hookean_isochoric", .weighting = Weighting::absolute});
   EXPECT_NEAR(fit.r_squared, 0.828636, 5e-4);
   EXPECT_NEAR(fit.parameters.lame.mu, 2 * 0.28538e6, 0.02 * 0.57e6);
 }
 
-TEST(RubberCurves, AreFittedByTheSplineWithinThePublishedErrors) {
+TEST(RubberCurves, SplineFitsWithinPublishedErrors) {
   const CurveFitOptions spline{.material = "spline", .weighting = Weighting::absolute, .starts = 2};
   {  // root mean square 0.0637 MPa of a formula found by symbolic regression, R^2 = 0.99523 of Ogden's with 6 constants
     const auto curves = rubber("treloar_1944");
@@ -66,15 +66,15 @@ TEST(RubberCurves, AreFittedByTheSplineWithinThePublishedErrors) {
   }
 }
 
-// Silicone: the best published fit leaves a root mean square of 0.0199 MPa in tension, of a formula that need
-// not be polyconvex. No sum of convex functions of |F| and |cof F| is below 0.0212; the spline comes near.
-TEST(RubberCurves, OfSiliconeAreFittedByTheSplineNearlyAsWellAsPublished) {
+// Silicone: the best published fit has a root mean square of 0.0199 MPa in tension, by a formula that need not be
+// polyconvex. No sum of convex functions of |F| and |cof F| is below 0.0212; the spline is close to it.
+TEST(RubberCurves, SplineFitsSiliconeNearlyAsPublished) {
   auto curves = rubber("meunier_2008");
   TestCurve& pull = curves[0];
   ASSERT_EQ(pull.stretch[15], 0.96);
   pull.stretch.erase(pull.stretch.begin(), pull.stretch.begin() + 16);
   pull.stress.erase(pull.stress.begin(), pull.stress.begin() + 16);
-  curves[1].stretch.resize(12), curves[1].stress.resize(12);  // those that were used there
+  curves[1].stretch.resize(12), curves[1].stress.resize(12);  // the points used in the publication
   curves[2].stretch.resize(16), curves[2].stress.resize(16);
   const auto error = [&](const char* material) {
     return rms(fit_curves(curves, {.material = material, .weighting = Weighting::absolute, .starts = 2}), curves);
@@ -103,7 +103,7 @@ TEST(ReadTestCurves, NamesTheRowAndTheRemedy) {
   EXPECT_THAT(refusal("test,stretch,stress\nuniaxial,1.1,1\n"), HasSubstr("stress_MPa"));
   EXPECT_THAT(refusal("test,stretch,stress_Pa\nuniaxial,1.1,1\nbiaxial,1.1,1\n"), HasSubstr(".csv:3: "));
   EXPECT_THAT(refusal("test,stretch,stress_Pa\nuniaxial,0,1\n"), HasSubstr("1 at rest"));
-  EXPECT_THAT(refusal("test,stretch,stress_Pa\nuniaxial,1.1,nan\n"), HasSubstr("leave the row out"));
+  EXPECT_THAT(refusal("test,stretch,stress_Pa\nuniaxial,1.1,nan\n"), HasSubstr("remove the row"));
   EXPECT_THAT(refusal("test,stretch,stress_Pa\n"), HasSubstr("no rows"));
   EXPECT_THAT(refusal("# pulled\n\ntest,stretch,stress_Pa\nuniaxial,1.1,1\nuniaxial,0,1"), HasSubstr(".csv:5: "));
 }

@@ -9,7 +9,7 @@ FittedMaterial true_material(const Scene& scene) {
   const Model& model = scene.simulation.model();
   if (model.bodies.size() != 1)
     throw InvalidInput(scene.name + ": has " + std::to_string(model.bodies.size()) +
-                       " bodies; a bench holds one: take the others out");
+                       " bodies; the bench measures one: remove the others");
   const Value body = read_toml(scene.resolved, scene.name).find("body")->array().front();
   if (!body["elastic"].boolean())
     throw InvalidInput(scene.name + ": the body is not elastic; there is no material to measure");

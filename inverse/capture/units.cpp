@@ -7,7 +7,7 @@
 namespace aspic {
 namespace {
 
-constexpr double kStandardGravity = 9.80665;  // standard gravity [m/s^2], by which scales turn forces into masses
+constexpr double kStandardGravity = 9.80665;  // standard gravity [m/s^2], which scales use to convert forces to masses
 
 struct Unit {
   const char* quantity;

@@ -11,9 +11,9 @@
 namespace aspic {
 namespace {
 
-constexpr double kDeviation = 0.01;  // of the largest motion or force, where no standard deviation is given
-constexpr double kLayer = 1e5;       // stiffness of a bonded tip's layer times the radius, over Young's modulus
-constexpr double kSoftLayer = 200;   // of a sliding one
+constexpr double kDeviation = 0.01;  // fraction of the largest motion or force, used without a given standard deviation
+constexpr double kLayer = 1e5;       // layer stiffness of a bonded indenter times the radius, over Young's modulus
+constexpr double kSoftLayer = 200;   // the same for a sliding indenter
 
 }  // namespace
 
@@ -42,7 +42,7 @@ void choose_deviations(DataSet& data) {
   }
   const auto note = [&](int what, const char* name, double largest, const char* unit) {
     if (chosen[what])
-      data.notes.push_back(std::string("no standard deviation of ") + name + ": taken as 1 % of the largest, " +
+      data.notes.push_back(std::string("no standard deviation of ") + name + ": using 1 % of the largest, " +
                            number_text(kDeviation * largest) + " " + unit + " (deviation in capture.toml sets it)");
   };
   note(0, "positions", motion, "m");

@@ -25,7 +25,7 @@ struct LinearFit {
   std::string failure;
   FitReport report;
   std::vector<MaterialParameters> parameters;
-  std::vector<double> x;  // of the first case
+  std::vector<double> x;  // positions of the first case
 };
 
 LinearFit fit_linear(const Experiment& experiment, Spread spread, const BickelOptions& options) {
@@ -36,8 +36,8 @@ LinearFit fit_linear(const Experiment& experiment, Spread spread, const BickelOp
   done.report = fit(misfit, *prior, map.guess(), options.fit);
   std::vector<double> r(static_cast<size_t>(misfit.residual_count()));
   if (done.report.p.empty() || !misfit.evaluate(done.report.p, r)) {
-    done.failure = experiment.cases.front().name + ": no linear material explains it: " +
-                   (misfit.failure().empty() ? done.report.words : misfit.failure());
+    done.failure = experiment.cases.front().name +
+                   ": no linear material fits it: " + (misfit.failure().empty() ? done.report.words : misfit.failure());
     return done;
   }
   done.parameters = map.parameters(done.report.p);
@@ -52,7 +52,7 @@ Experiment only(const Experiment& experiment, const LoadCase& load) {
   return one;
 }
 
-// How far two pokes are apart: where they touch, and by how much they go in.
+// Distance of two pokes: difference of touch and of displacement.
 double apart(const LoadCase& a, const LoadCase& b) {
   const Vec3d touch = a.touch.center - b.touch.center;
   const Vec3d way = (a.pose.center - a.touch.center) - (b.pose.center - b.touch.center);
@@ -69,7 +69,7 @@ std::vector<MaterialParameters> parameters_of(const StrainExample& example) {
 
 struct Examples {
   std::vector<StrainExample> list;
-  std::vector<int> cases;  // of the training
+  std::vector<int> cases;  // training cases
   std::string failure;
 };
 Examples explain_all(const Experiment& training, const BickelOptions& options) {

@@ -81,7 +81,7 @@ TEST(StrainSpaceModuli, StayWithinTheWidenedRangeOfTheExamples) {
   }
 }
 
-TEST(StrainSpaceModuli, OfExamplesWithTheSameStrainAreTheirMean) {
+TEST(StrainSpaceModuli, OfExamplesWithEqualStrainAreTheirMean) {
   const TetMesh mesh = cube();
   const StrainSpaceModuli moduli(
       mesh, std::vector{example(mesh, diagonal(1.1, 1, 1), 1e5), example(mesh, diagonal(1.1, 1, 1), 4e5)});
@@ -113,12 +113,12 @@ std::vector<double> perturbed(const TetMesh& mesh, const Mat3d& F) {
   return x;
 }
 
-TEST(IncrementalElasticity, WithConstantModuliHasTheForcesOfALinearCorotatedEnergy) {
+TEST(IncrementalElasticity, WithConstantModuliMatchesLinearCorotatedEnergy) {
   const TetMesh mesh = cube(2);
   const StrainSpaceModuli moduli(mesh, std::vector{example(mesh, diagonal(1.1, 1, 1), 2e5)});
   IncrementalElasticity body(mesh, moduli);
   std::vector<double> x = perturbed(mesh, turn(0.4) * diagonal(1.1, 0.95, 1));
-  body.accept(perturbed(mesh, turn(-0.2)));  // an increment on the way changes nothing
+  body.accept(perturbed(mesh, turn(-0.2)));  // an intermediate increment changes nothing
   std::vector<double> g(x.size(), 0.0);
   body.add_gradient(x, g);
   const Lame lame = lame_from_young_poisson(2e5, 0.3);
@@ -160,7 +160,7 @@ TEST(IncrementalElasticity, HasTheStiffnessOfItsForcesAtRest) {
   for (size_t i = 0; i < x.size(); ++i) EXPECT_NEAR(Kd[i], (above[i] - below[i]) / (2 * h), 1e-5 * largest);
 }
 
-// Once around the square of the stretches along x and y, from rest to rest.
+// Work around a square in the stretches along x and y, from rest to rest.
 double loop_work(IncrementalElasticity& body, const TetMesh& mesh, int increments) {
   const double a = 0.2;
   const std::array<std::array<double, 2>, 5> corners = {{{0, 0}, {a, 0}, {a, a}, {0, a}, {0, 0}}};
@@ -179,8 +179,8 @@ std::vector<StrainExample> unlike_examples(const TetMesh& mesh) {
           example(mesh, diagonal(1.2, 1.2, 1), 2e5)};
 }
 
-// This is what is wrong with moduli that are interpolated in strain space: a closed loop makes or takes work.
-TEST(IncrementalElasticity, LeavesWorkAndStressBehindAfterAClosedLoop) {
+// Defect of moduli interpolated in strain space: a closed loop produces or consumes work.
+TEST(IncrementalElasticity, LeavesWorkAndStressAfterClosedLoop) {
   const TetMesh mesh = cube();
   const StrainSpaceModuli moduli(mesh, unlike_examples(mesh));
   double coarse = 0, fine = 0, finest = 0;
@@ -189,14 +189,14 @@ TEST(IncrementalElasticity, LeavesWorkAndStressBehindAfterAClosedLoop) {
     *work = loop_work(body, mesh, increments);
     EXPECT_GT(std::sqrt(squared_norm(body.stress(0))), 1e3) << "at rest again";
   }
-  const double stored = 0.5 * 2e5 * 0.2 * 0.2 * kSide * kSide * kSide;  // of the order of what the loop stores
+  const double stored = 0.5 * 2e5 * 0.2 * 0.2 * kSide * kSide * kSide;  // order of magnitude of the stored energy
   EXPECT_GT(std::abs(finest), 0.05 * stored);
-  // It is no matter of the increments: the work has a limit.
+  // The increments are not the cause: the work converges.
   EXPECT_LT(std::abs(coarse - finest), 0.01 * std::abs(finest));
   EXPECT_LT(std::abs(fine - finest), std::abs(coarse - finest));
 }
 
-TEST(IncrementalElasticity, TakesNoWorkAroundALoopWithConstantModuli) {
+TEST(IncrementalElasticity, NeedsNoLoopWorkWithConstantModuli) {
   const TetMesh mesh = cube();
   const StrainSpaceModuli moduli(mesh, std::vector{example(mesh, diagonal(1.2, 1, 1), 2e5)});
   IncrementalElasticity body(mesh, moduli);
@@ -204,7 +204,7 @@ TEST(IncrementalElasticity, TakesNoWorkAroundALoopWithConstantModuli) {
   EXPECT_NEAR(std::sqrt(squared_norm(body.stress(0))), 0, 1e-8);
 }
 
-// The same loop with every energy of the list that is defined along it.
+// The same loop with every energy that is defined along it.
 TEST(Energies, TakeNoWorkAroundAClosedLoop) {
   const TetMesh mesh = cube();
   const std::vector<MaterialParameters> parameters(mesh.tets.size(),
@@ -285,7 +285,7 @@ TEST(Simulate, IsTheLinearBodyWhereAllExamplesAgree) {
   const HeldOut h = compare(subset(e, [&](const LoadCase& c) { return &c == &e.cases[3]; }), std::vector{p.prediction});
   EXPECT_LT(h.relative_position_error(), 0.01);  // the volume term differs by what is of second order in the strain
   EXPECT_LT(h.relative_force_error(), 0.1);
-  // And where the tip has gone back, nothing is left.
+  // After retraction no deformation remains.
   const BickelPrediction back = simulate(e, e.cases[3], moduli, kGel, Path::load_and_back);
   ASSERT_TRUE(back.ok) << back.failure;
   EXPECT_NEAR(back.work, 0, 1e-4 * p.work);
@@ -313,8 +313,8 @@ TEST(Predict, EveryBaselineFindsAHomogeneousLinearBody) {
   }
 }
 
-// One modulus misses the forces of a strongly stiffening body; examples of two depths miss them less, if their moduli
-// are taken for what they were fitted as, of the whole way from rest. Increments with these moduli are too soft.
+// One modulus misses the forces of a strongly stiffening body. Examples of two depths miss them less if their moduli
+// are used as fitted, as secant moduli from rest. Increments with these moduli are too soft.
 TEST(Predict, OneModulusMissesAStiffeningBody) {
   const MaterialParameters tissue{lame_from_young_poisson(1e4, 0.35), {8}};
   const Experiment e = poked_gel("fung", tissue);

@@ -11,12 +11,12 @@ namespace aspic {
 namespace {
 
 constexpr double kFirstBoxDamping = 1e-3, kLeastBoxDamping = 1e-12, kLargestBoxDamping = 1e16;
-constexpr double kNegligible = 1e-24;    // part of the |r|^2 of the guess: exact data are met to round-off
+constexpr double kNegligible = 1e-24;    // relative to |r|^2 of the guess: exact data are fitted to round-off
 constexpr double kUndetermined = 1e-13;  // a pivot below this part of its diagonal entry
 
 using Vector = std::vector<double>;
 
-// A small symmetric matrix, row by row.
+// Small symmetric matrix, row-major.
 class Square {
  public:
   explicit Square(int n) : n_(n), a_(static_cast<size_t>(n) * n, 0.0) {}
@@ -24,7 +24,7 @@ class Square {
   double operator()(int i, int j) const { return a_[static_cast<size_t>(i) * n_ + j]; }
   int size() const { return n_; }
 
-  // L L' in the lower triangle; false: not positive definite beyond round-off.
+  // Factorizes L L' in the lower triangle; false: not positive definite beyond round-off.
   bool factorize() {
     for (int j = 0; j < n_; ++j) {
       const double diagonal = (*this)(j, j);
@@ -54,8 +54,8 @@ class Square {
   Vector a_;
 };
 
-// argmin d'A d / 2 + g'd over lower <= d <= upper, where 0 is allowed, by the primal active-set method; false: A is not
-// positive definite.
+// argmin d'A d / 2 + g'd over lower <= d <= upper, where 0 is feasible, by the primal active-set method. False: A is
+// not positive definite.
 class BoundedQuadratic {
  public:
   BoundedQuadratic(const Square& A, const Vector& g, const Vector& lower, const Vector& upper)
@@ -89,7 +89,7 @@ class BoundedQuadratic {
     for (size_t a = 0; a < inner.size(); ++a) d[inner[a]] = b[a];
     return true;
   }
-  // From d towards `to` up to the first bound, which then holds; true: there was one.
+  // Moves d toward `to` up to the first bound, which becomes active; true: there was one.
   bool go(Vector& d, const Vector& to) {
     double part = 1;
     size_t first = d.size();
@@ -104,7 +104,7 @@ class BoundedQuadratic {
     d[first] = side_[first] < 0 ? lower_[first] : upper_[first];
     return true;
   }
-  // The bound that holds with the largest force from the wrong side is given up; true: there was one.
+  // Releases the active bound with the largest multiplier of the wrong sign; true: there was one.
   bool release(const Vector& d) {
     double most = 0;
     size_t worst = d.size();
@@ -161,7 +161,7 @@ class Run {
     return std::all_of(r.begin(), r.end(), [](double x) { return std::isfinite(x); });
   }
 
-  // J column by column, g = J' r, and which unknowns have an effect.
+  // Computes J column by column, g = J' r, and which parameters have an effect.
   bool linearize(const Vector& r) {
     if (!problem_.linearize()) return false;
     J_.assign(static_cast<size_t>(n_), Vector(static_cast<size_t>(m_)));
@@ -196,7 +196,7 @@ class Run {
     return squared_norm(linear);
   }
 
-  // Moves p and r; false: no damping helps.
+  // Updates p and r; false: no damping gives a decrease.
   bool step(Vector& p, Vector& r, double& damping, BoundedFit& fit) {
     const double before = squared_norm(r);
     for (; damping < kLargestBoxDamping; damping *= 4) {
@@ -212,7 +212,7 @@ class Run {
       for (size_t a = 0; a < free_.size(); ++a) q[free_[a]] = clipped(free_[a], p[free_[a]] + d[a]);
       const double decrease = before - predicted(p, q, r);
       if (decrease <= options_.tolerance * before) {
-        fit.is_converged = damping < 1;  // else the step was short for its damping, and says nothing
+        fit.is_converged = damping < 1;  // otherwise damping limited the step, which shows no convergence
         if (fit.is_converged) return true;
       }
       Vector trial(static_cast<size_t>(m_));

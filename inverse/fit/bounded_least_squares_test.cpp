@@ -100,7 +100,7 @@ TEST(MinimizeWithin, HasTheDeviationsOfLinearRegression) {
 }
 
 TEST(MinimizeWithin, CallsWhatTheResidualsDoNotSeeUndetermined) {
-  LinearProblem problem;  // only p0 + p1 matters, and p2 not at all
+  LinearProblem problem;  // only p0 + p1 matters; p2 has no effect
   problem.n = 3, problem.m = 4;
   problem.A = {1, 1, 0, 1, 1, 0, 1, 1, 0, 2, 2, 0};
   problem.b = {1, 1.1, 0.9, 2};
@@ -132,7 +132,7 @@ struct Decay : LeastSquares {
   }
 };
 
-TEST(MinimizeWithin, StepsAroundPlacesWhereTheResidualsAreNotDefined) {
+TEST(MinimizeWithin, AvoidsPointsWithUndefinedResiduals) {
   Decay problem;
   const std::vector<Bounds> bounds = {{0, 100}, {0, 100}};
   const BoundedFit fit = minimize_within(problem, std::vector<double>{9, 3.9}, bounds);

@@ -16,7 +16,7 @@ void CommonErrors::Direction::take_off(std::span<double> r) const {
   add_scaled(-taken * dot(unit, part), unit, part);
 }
 
-// n as those before leave it.
+// Returns n whitened by the previous errors.
 std::vector<double> CommonErrors::beside_others(int first, const std::vector<double>& n) const {
   std::vector<double> all(static_cast<size_t>(first) + n.size(), 0.0);
   std::copy(n.begin(), n.end(), all.begin() + first);
@@ -25,7 +25,7 @@ std::vector<double> CommonErrors::beside_others(int first, const std::vector<dou
   return {all.begin() + first, all.end()};
 }
 
-// One after another: (I + n n')^(-1/2) = I - (1 - 1 / sqrt(1 + |n|^2)) n n' / |n|^2.
+// Sequentially: (I + n n')^(-1/2) = I - (1 - 1 / sqrt(1 + |n|^2)) n n' / |n|^2.
 void CommonErrors::add(int first, std::vector<double> n) {
   n = beside_others(first, n);
   const double length = norm(n);

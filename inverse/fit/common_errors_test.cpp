@@ -32,7 +32,7 @@ TEST(CommonErrors, AlongAnUnboundedOneNothingIsLeft) {
   CommonErrors errors;
   errors.add(3, {n.begin(), n.end()});
   errors.add_unbounded({m.begin(), m.end()});
-  errors.add_unbounded({m.begin(), m.end()});  // says nothing more
+  errors.add_unbounded({m.begin(), m.end()});  // no further information
   Eigen::MatrixXd L = Eigen::MatrixXd::Identity(6, 6);
   for (int j = 0; j < 6; ++j) errors.apply({L.col(j).data(), 6});
   EXPECT_LT((L * m).norm(), 1e-12 * m.norm());
@@ -43,7 +43,7 @@ TEST(CommonErrors, AlongAnUnboundedOneNothingIsLeft) {
   EXPECT_NEAR(whitened.trace(), 5, 1e-12);
 }
 
-// |dr|^2 of a body that is stiffer everywhere.
+// |dr|^2 for a uniformly stiffer body.
 double information_of_scale(bool with_force, bool with_layers) {
   PokedBlock block;
   for (const auto& site : PokedBlock::sites()) block.add_poke(site, 0.006, 1e-4, with_force);
@@ -57,7 +57,7 @@ double information_of_scale(bool with_force, bool with_layers) {
   return dot(dr, dr);
 }
 
-TEST(CommonErrors, PositionsAloneDoNotTellTheScaleThroughTheLayer) {
+TEST(CommonErrors, PositionsAloneDoNotDetermineScale) {
   EXPECT_GT(information_of_scale(false, false), 100) << "what leaks through the layer, at a noise of 1e-4";
   EXPECT_LT(information_of_scale(false, true), 1e-8);
 }

@@ -15,7 +15,7 @@ std::vector<std::string> groups_of(const Experiment& experiment) {
   return groups;
 }
 
-// Sums of squares first, see finish().
+// Adds sums of squares, see finish().
 void add_case(const Experiment& experiment, const LoadCase& measured, const CasePrediction& predicted, HeldOut& h) {
   for (size_t i = 0; i < measured.positions.size(); ++i) {
     const MarkerReading& reading = measured.positions[i];
@@ -82,7 +82,7 @@ CrossValidation cross_validate(const Experiment& experiment, const ParameterMap&
   CrossValidation result;
   const std::vector<std::string> groups = groups_of(experiment);
   if (groups.size() < 2) {
-    result.warnings.push_back("nothing can be left out: all cases belong to one group (give each poke its own)");
+    result.warnings.push_back("nothing can be held out: all cases belong to one group (give each poke its own)");
     return result;
   }
   options.weight = fitted.weight;

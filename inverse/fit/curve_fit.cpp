@@ -12,8 +12,8 @@
 namespace aspic {
 namespace {
 
-constexpr double kLeastRelative = 0.05;  // of the largest stress, below which per cents are not of the point itself
-constexpr double kPowers = 100;          // a range over more than this is looked at by logarithms
+constexpr double kLeastRelative = 0.05;  // relative to the largest stress; floor of relative errors
+constexpr double kPowers = 100;          // larger ranges use logarithms
 
 constexpr double kInf = std::numeric_limits<double>::infinity();
 
@@ -21,7 +21,7 @@ void check(const TestCurve& curve) {
   const std::string where = "curve '" + curve.name + "': ";
   if (curve.stretch.empty() || curve.stretch.size() != curve.stress.size())
     throw InvalidInput(where + "has " + std::to_string(curve.stretch.size()) + " stretches and " +
-                       std::to_string(curve.stress.size()) + " stresses; give as many of each");
+                       std::to_string(curve.stress.size()) + " stresses; give the same number of each");
   for (size_t i = 0; i < curve.stretch.size(); ++i) {
     const bool positive = curve.deformation == Deformation::simple_shear || curve.stretch[i] > 0;
     if (!std::isfinite(curve.stretch[i]) || !positive || std::abs(curve.stretch[i]) > 1e3)
@@ -86,7 +86,7 @@ CurveMisfit::CurveMisfit(const std::vector<TestCurve>& curves, const CurveFitOpt
   for (const ExtraParameter& extra : info_.extra) names.push_back(extra.name);
   for (const std::string& held : options.held)
     if (std::find(names.begin(), names.end(), held) == names.end())
-      throw InvalidInput("'" + held + "' is no parameter of " + info_.name + suggestion(held, names));
+      throw InvalidInput("'" + held + "' is not a parameter of " + info_.name + suggestion(held, names));
   bounds_.push_back({-kInf, kInf});
   for (size_t k = 0; k < names.size(); ++k) {
     if (std::count(options.held.begin(), options.held.end(), names[k])) continue;
@@ -152,7 +152,7 @@ void CurveMisfit::multiply_transposed(std::span<const double> w, std::span<doubl
   }
 }
 
-// Of a neo-Hookean solid, whose stress is proportional to mu.
+// Estimate for a neo-Hookean solid, whose stress is proportional to mu.
 double CurveMisfit::fitted_shear() const {
   double product = 0, square = 0;
   size_t at = 0;
@@ -166,7 +166,7 @@ double CurveMisfit::fitted_shear() const {
     }
   if (!(product > 0))
     throw InvalidInput(
-        "the stresses pull where the stretches push; give both with the same sign convention: l > 1 and "
+        "stresses and stretches have opposite signs; use one sign convention: l > 1 and "
         "stress > 0 in tension");
   return product / square;
 }

@@ -16,13 +16,13 @@ namespace {
 
 std::string words(const MinimizeReport& report) {
   const std::string status(to_string(report.status));
-  if (report.status == Status::undefined) return "the energy is not finite where the solve starts (" + status + ")";
+  if (report.status == Status::undefined) return "the energy is not finite at the initial guess (" + status + ")";
   return "no equilibrium was found: " + status + " after " + std::to_string(report.iterations) +
-         " iterations, a residual force of " + number(report.reached) + " N is left and " + number(report.threshold) +
+         " iterations; residual force " + number(report.reached) + " N, tolerance " + number(report.threshold) +
          " N was asked for";
 }
 
-// With parts along all modes of a body, the same on every system.
+// Fills b with parts along all modes of a body, identically on every system.
 void fill_without_pattern(std::span<double> b) {
   for (size_t i = 0; i < b.size(); ++i) b[i] = std::sin(1.0 + 12.9898 * static_cast<double>(i % 100'003));
 }
@@ -72,7 +72,7 @@ struct Equilibrium::Impl {
     linear_x.clear();
     use(parameters);
     tell_terms(x);
-    K.block = E.hessian(x, {Definiteness::exact}).block;  // a copy: E may overwrite its own
+    K.block = E.hessian(x, {Definiteness::exact}).block;  // copied, because E may overwrite it
     if (!is_analyzed) solver->analyze(E.pattern());
     is_analyzed = true;
     solver->begin();
@@ -80,8 +80,8 @@ struct Equilibrium::Impl {
     linear_x.assign(x.begin(), x.end());
     linear_parameters = parameters;
     if (as_cholesky(*solver)) return true;
-    // Conjugate gradients tell an indefinite matrix when they meet negative curvature: at the latest when the residual
-    // is smaller than the part of b along any one mode.
+    // Conjugate gradients detect an indefinite matrix by negative curvature, at the latest when the residual is smaller
+    // than the part of b along any mode.
     fill_without_pattern(b);
     pins.set_zero(b);
     const SolveReport report = solver->solve(b, u, 0.01 / std::sqrt(static_cast<double>(b.size())));
@@ -123,7 +123,7 @@ struct Equilibrium::Impl {
     return report;
   }
 
-  // The elastic terms hold those of the last solve or those of the linearization.
+  // Sets the parameters of the elastic terms to those of the last solve or the linearization.
   void use(const std::vector<MaterialParameters>& wanted) {
     if (in_force == &wanted) return;
     theta.set(wanted);

@@ -21,7 +21,7 @@ std::vector<double> solved(Equilibrium& body, const std::vector<MaterialParamete
   return {body.x().begin(), body.x().end()};
 }
 
-TEST(Equilibrium, TangentsHaveTaylorSlope2ForEveryParameterOfEveryMaterial) {
+TEST(Equilibrium, TangentsHaveTaylorSlope2ForEveryMaterial) {
   for (const MaterialInfo& info : materials()) {
     Sagging body(info.name);
     Equilibrium equilibrium(std::move(body.model), body.rest, kExact);
@@ -32,7 +32,7 @@ TEST(Equilibrium, TangentsHaveTaylorSlope2ForEveryParameterOfEveryMaterial) {
       const std::vector<double> dtheta = change_of(body, k);
       std::vector<double> dx(body.rest.size());
       ASSERT_TRUE(equilibrium.tangent(dtheta, dx).ok);
-      // The beam's strains are so small that the other parameters of a spline act on it as good as linearly.
+      // The strains of the beam are so small that the other parameters of a spline act almost linearly.
       if (info.name == "spline" && k > 2) continue;
       EXPECT_GT(norm(dx), 1e-3) << info.name << " " << k;
       taylor::expect_slope_2([&](double eps) { return solved(equilibrium, changed(body, dtheta, eps)); }, dx, 0.1,
@@ -41,7 +41,7 @@ TEST(Equilibrium, TangentsHaveTaylorSlope2ForEveryParameterOfEveryMaterial) {
   }
 }
 
-TEST(Equilibrium, AdjointsHaveTaylorSlope2InYoungsModulusAndPoissonsRatio) {
+TEST(Equilibrium, AdjointsHaveTaylorSlope2ForElasticConstants) {
   Sagging body("stable_neo_hookean");
   Equilibrium equilibrium(std::move(body.model), body.rest, kExact);
   const std::vector<double> x = solved(equilibrium, body.parameters);
@@ -79,7 +79,7 @@ TEST(Equilibrium, AdjointsHaveTaylorSlope2InYoungsModulusAndPoissonsRatio) {
   }
 }
 
-TEST(Equilibrium, AdjointIsTheTransposeOfTheTangentWithEveryLinearSolver) {
+TEST(Equilibrium, AdjointIsTransposedTangentWithEverySolver) {
   for (const std::string& linear : linear_solver_names()) {
     Sagging body("mooney_rivlin");
     EquilibriumOptions options = kExact;
@@ -100,7 +100,7 @@ TEST(Equilibrium, AdjointIsTheTransposeOfTheTangentWithEveryLinearSolver) {
   }
 }
 
-TEST(Equilibrium, DerivativesBelongToTheLinearizationWhateverIsSolvedAfterwards) {
+TEST(Equilibrium, DerivativesKeepTheirLinearizationAfterFurtherSolves) {
   Sagging body("fung");
   Equilibrium equilibrium(std::move(body.model), body.rest, kExact);
   solved(equilibrium, body.parameters);
@@ -119,7 +119,7 @@ TEST(Equilibrium, DerivativesBelongToTheLinearizationWhateverIsSolvedAfterwards)
   EXPECT_LE(norm(other) - norm({equilibrium.x().begin(), equilibrium.x().end()}), 1e-12);
 }
 
-TEST(Equilibrium, AnAdjointCostsOneFactorizationAndOneSolveWhileTheForwardSolveTakesSeveral) {
+TEST(Equilibrium, AdjointNeedsOneFactorizationAndOneSolve) {
   Sagging body("neo_hookean");
   Equilibrium equilibrium(std::move(body.model), body.rest, {.linear = "cholesky", .adjoint = "cholesky"});
   equilibrium.set_parameters(body.parameters);
@@ -129,7 +129,7 @@ TEST(Equilibrium, AnAdjointCostsOneFactorizationAndOneSolveWhileTheForwardSolveT
   EXPECT_GE(forward.gradients, 4);
 }
 
-TEST(Equilibrium, AStraightColumnUnderTooMuchLoadIsNotTakenForAnEquilibrium) {
+TEST(Equilibrium, OverloadedStraightColumnIsNoEquilibrium) {
   Model model = make_model(make_box({{0, 0, 0}}, {{4, 0.3, 0.3}}, {20, 2, 2}), {.young = 1e5, .gravity = {}});
   model.pins.push_back(
       {"ends", vertices_where(model.mesh, [](const Vec3d& X) { return X[0] < 1e-9 || X[0] > 4 - 1e-9; }), {}});
@@ -161,7 +161,7 @@ TEST(Equilibrium, ABodyThatNothingHoldsHasNoDerivatives) {
   EXPECT_NE(equilibrium.failure().find("holds"), std::string::npos);
 }
 
-TEST(Equilibrium, ASolveThatFailsSaysSoAndChangesNothing) {
+TEST(Equilibrium, FailedSolveIsReportedAndChangesNothing) {
   Sagging body("neo_hookean");
   Equilibrium equilibrium(std::move(body.model), body.rest, {.max_iterations = 1});
   equilibrium.set_parameters(body.parameters);

@@ -6,8 +6,8 @@
 namespace aspic {
 namespace {
 
-// -2 log of the probability of the data under `factor` times the weight of the fit, up to a constant: along direction k
-// they found the amplitude a = c (1 + d) / d, c being that of the fit, which scatters as N(0, 1 / factor + 1 / d).
+// -2 log of the evidence with `factor` times the weight of the fit, up to a constant. Along direction k the data give
+// the amplitude a = c (1 + d) / d, where the fit has c; a has the distribution N(0, 1 / factor + 1 / d).
 double surprise(double factor, const Spectrum& s, std::span<const double> amplitudes) {
   double sum = 0;
   for (size_t k = 0; k < s.d.size(); ++k) {

@@ -11,16 +11,16 @@
 namespace aspic {
 namespace {
 
-// How far a radial function reaches, in the largest distance of a tet from the nearest center. Every tet then lies well
-// inside the support of a function, and some overlap.
+// Radius of a radial function, relative to the largest distance of a tet from the nearest center. Every tet is well
+// inside the support of a function, and functions overlap.
 constexpr double kReach = 2.5;
 
 struct Centers {
   std::vector<Vec3d> at;
-  double radius = 0;  // the largest distance of a point from the nearest center
+  double radius = 0;  // largest distance of a point from the nearest center
 };
 
-// Farthest-point sampling, from the point next to the middle of all.
+// Farthest-point sampling, starting near the mean of all points.
 Centers spread_centers(const std::vector<Vec3d>& points, int count) {
   Vec3d middle{};
   for (const Vec3d& x : points) middle = middle + (1.0 / static_cast<double>(points.size())) * x;

@@ -10,7 +10,7 @@
 namespace aspic {
 namespace {
 
-constexpr double kLittle = 0.2;  // part of a sum of squares that is not worth a word
+constexpr double kLittle = 0.2;  // negligible part of a sum of squares
 
 std::string number_words(double x, const char* format = "%.3g") {
   char buffer[32];

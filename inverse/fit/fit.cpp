@@ -12,7 +12,7 @@
 namespace aspic {
 namespace {
 
-constexpr int kFew = 50;  // unknowns for which a dense Jacobian is worth it
+constexpr int kFew = 50;  // parameters up to which a dense Jacobian is efficient
 
 struct NamedMethod {
   const char* name;
@@ -55,13 +55,13 @@ void check(const FitOptions& o) {
   if (std::isnan(o.weight) || std::isinf(o.weight)) throw InvalidInput("the weight of a fit must be finite");
 }
 
-// Away from the guess along a smooth random direction, such as the prior would draw.
+// Moves away from the guess along a smooth random direction drawn from the prior.
 std::vector<double> scattered(FitRun& run, std::span<const double> guess, int start) {
   std::vector<double> p(guess.begin(), guess.end());
   if (start == 0) return p;
   std::mt19937_64 random(static_cast<uint64_t>(start));
   std::vector<double> v(p.size()), d(p.size());
-  for (double& vi : v)  // sums of uniform numbers, the same with every standard library
+  for (double& vi : v)  // sums of uniform numbers, which are equal for every standard library
     for (int k = 0; k < 4; ++k) vi += static_cast<double>(random() >> 11) * 0x1p-53 - 0.5;
   run.solve_prior(guess, v, d);
   const double size = max_abs(d);
@@ -74,23 +74,23 @@ std::string ending(Status status) {
     case Status::converged:
       return "converged";
     case Status::round_off:
-      return "converged as far as the equilibria are exact";
+      return "converged to the accuracy of the equilibria";
     case Status::iteration_limit:
-      return "stopped at the largest number of iterations: not converged";
+      return "stopped at the maximum number of iterations: not converged";
     case Status::interrupted:
-      return "stopped on demand: not converged";
+      return "stopped on request: not converged";
     case Status::budget:
-      return "stopped when the time was up: not converged";
+      return "stopped at the time limit: not converged";
     case Status::undefined:
       return "the model or its Jacobian could not be evaluated";
     case Status::no_descent:
-      return "no direction leads to a better fit";
+      return "no direction improves the fit";
     default:
-      return "stuck: no step leads to a better fit";
+      return "stuck: no step improves the fit";
   }
 }
 
-// Everything that depends on where it starts.
+// State that depends on the initial guess.
 struct Attempt {
   Status status = Status::undefined;
   FitPoint point;
@@ -126,7 +126,7 @@ FitReport fit(LeastSquares& misfit, Regularizer& regularizer, std::span<const do
       options.method == "auto" ? kMethods[few ? 0 : 1] : named<NamedMethod>(kMethods, "method", options.method);
   const NamedRule rule = options.weight_rule == "auto" ? kRules[few ? 0 : 1]
                                                        : named<NamedRule>(kRules, "weight rule", options.weight_rule);
-  const bool is_quadratic = method.method == levenberg_marquardt;  // the last digits cost little
+  const bool is_quadratic = method.method == levenberg_marquardt;  // quadratic convergence makes the last digits cheap
   FitRun run(misfit, regularizer, options, observe);
   run.weight = options.weight >= 0 ? options.weight : 1;
 
@@ -140,7 +140,7 @@ FitReport fit(LeastSquares& misfit, Regularizer& regularizer, std::span<const do
     if (run.evaluate(scattered(run, guess, start), now.point)) {
       now.status = choose(run, now.point, goal, method.method);
       now.objective = now.point.objective(run.weight);
-      choose = fit_with_weight;  // the weight is comparable only if it is the same for all
+      choose = fit_with_weight;  // weights must be equal for comparison
     }
     now.words = run.report.words;
     now.weight = run.weight;
@@ -163,7 +163,7 @@ FitReport fit(LeastSquares& misfit, Regularizer& regularizer, std::span<const do
   std::vector<double> r(best.point.r.size());
   if (!report.p.empty() && std::isfinite(best.objective) && !misfit.evaluate(report.p, r)) {
     report.status = Status::undefined;
-    report.words = "the model could not be evaluated again where the fit ended";
+    report.words = "the model could not be evaluated again at the end of the fit";
   }
   return report;
 }

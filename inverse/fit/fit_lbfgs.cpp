@@ -1,5 +1,5 @@
-// L-BFGS in the inner product of the prior: the library's minimizer, on f with the preconditioner s R''. One gradient
-// per iteration and no product with J'J: for when products cost more than iterations.
+// L-BFGS in the inner product of the prior: the library's minimizer for f with the preconditioner s R''. One gradient
+// per iteration and no product with J'J, for when products cost more than iterations.
 #include <cmath>
 
 #include "base/check.h"
@@ -9,7 +9,7 @@
 namespace aspic {
 namespace {
 
-// Its decrements are by a rough Hessian, so that one alone may be small by chance.
+// Its decrements use an approximate Hessian, so a single small one may be accidental.
 constexpr int kSuccessive = 5;
 
 class FitObjective : public Objective, public HasPreconditioner {
@@ -39,7 +39,7 @@ class FitObjective : public Objective, public HasPreconditioner {
     return run_.options.max_step / std::max(max_abs(d), 1e-300);
   }
 
-  // s R'' at the first iterate, with the curvature s of f along the first direction.
+  // s R'' at the first iterate, with s the curvature of f along the first direction.
   bool precondition(std::span<const double> r, std::span<double> z) override {
     run_.solve_prior(origin_, r, z);
     if (scale_ == 0) scale_ = curvature(z);

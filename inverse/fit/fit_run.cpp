@@ -7,7 +7,7 @@
 namespace aspic {
 namespace {
 
-// Relative, of |r|^2: equilibria leave residual forces of 1e-9.
+// Relative to |r|^2: equilibria have residual forces of 1e-9.
 constexpr double kNoise = 1e-10;
 constexpr double kSufficientDecrease = 1e-4;
 constexpr double kShortest = 1e-6;
@@ -30,7 +30,7 @@ bool FitRun::evaluate(std::span<const double> p, FitPoint& point) {
 }
 
 bool FitRun::linearize(const FitPoint& at) {
-  if (at.p != evaluated_) {  // a trial was evaluated since
+  if (at.p != evaluated_) {  // another trial was evaluated since
     FitPoint again;
     if (!evaluate(at.p, again)) return false;
   }
@@ -91,7 +91,7 @@ bool search_along(FitRun& run, FitPoint& at, std::span<const double> d, double s
     for (size_t i = 0; i < p.size(); ++i) p[i] = at.p[i] + step.length * d[i];
     ++step.trials;
     if (!run.evaluate(p, trial)) {
-      step.length *= 0.5;  // twice as cautious where nothing is known
+      step.length *= 0.5;  // smaller steps near the boundary of the domain
       continue;
     }
     if (trial.objective(run.weight) <= before + kSufficientDecrease * step.length * slope + noise) {

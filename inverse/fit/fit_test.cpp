@@ -23,7 +23,7 @@ std::vector<double> normal(size_t n, unsigned seed) {
   return v;
 }
 
-// r = (A phi(p) - b) / deviation with phi(p) = p + bend p^2 / 2 entry by entry.
+// r = (A phi(p) - b) / deviation with phi(p) = p + bend p^2 / 2 component by component.
 class CurvedModel : public LeastSquares {
  public:
   CurvedModel(int unknowns, int residuals, double bend, double deviation)
@@ -34,7 +34,7 @@ class CurvedModel : public LeastSquares {
         A_(normal(static_cast<size_t>(unknowns) * residuals, 3)),
         b_(residuals) {}
 
-  // b from these, with noise.
+  // Generates b from these parameters, with noise.
   void observe(std::span<const double> p, double noise) {
     std::vector<double> r(m_);
     std::fill(b_.begin(), b_.end(), 0.0);
@@ -42,7 +42,7 @@ class CurvedModel : public LeastSquares {
     const std::vector<double> e = normal(r.size(), 4);
     for (int i = 0; i < m_; ++i) b_[i] = r[i] * deviation_ + noise * deviation_ * e[i];
   }
-  // A low-pass model: row i averages all that is near.
+  // Low-pass model: each row averages neighbors.
   void blur(double width) {
     for (int i = 0; i < m_; ++i)
       for (int j = 0; j < n_; ++j) {
@@ -80,7 +80,7 @@ class CurvedModel : public LeastSquares {
   }
   const std::vector<double>& last() const { return p_; }
 
-  double bound = 1e9;  // beyond it, nothing can be evaluated
+  double bound = 1e9;  // the model is undefined beyond it
   bool breaks = false;
   int evaluations = 0;
 
@@ -143,7 +143,7 @@ TEST_P(Methods, FindFewUnknownsFromExactData) {
   EXPECT_EQ(report.method, GetParam());
 }
 
-// The minimizer of a quadratic is where its gradient is 0, found by differences of nothing but the definition.
+// The minimizer of a quadratic has zero gradient, computed by differences of the definition.
 TEST_P(Methods, EndWhereTheGradientIsZero) {
   Bar bar;
   CurvedModel model(bar.map.size(), 40, 0, 0.1);
@@ -191,7 +191,7 @@ TEST_P(Methods, NeverCallAFailureSuccess) {
   const FitReport nowhere = fit(model, *few.prior, few.map.guess(), {.method = GetParam()});
   EXPECT_EQ(nowhere.status, Status::undefined);
   EXPECT_THAT(nowhere.words, HasSubstr("could not be evaluated"));
-  model.bound = 1e-3;  // the data pull where nothing can be evaluated
+  model.bound = 1e-3;  // the data favor points outside the domain
   EXPECT_FALSE(
       is_success(fit(model, *few.prior, few.map.guess(), {.method = GetParam(), .max_iterations = 30}).status));
 }
@@ -233,7 +233,7 @@ TEST(Fit, ObjectiveNeverGrowsAtOneWeight) {
     EXPECT_LE(report.history[i].objective, report.history[i - 1].objective * (1 + 1e-9));
 }
 
-// The whole point of the rule: |r|^2 is what the noise alone would leave.
+// Purpose of the rule: |r|^2 equals the expectation of the noise.
 TEST(Fit, DiscrepancyLeavesTheNoise) {
   Bar bar;
   for (Smoothness smoothness : {Smoothness::h1, Smoothness::total_variation}) {
@@ -258,11 +258,11 @@ TEST(Fit, SaysWhenTheModelCannotExplainTheData) {
   const auto R = make_regularizer(bar.mesh, bar.map, {});
   const FitReport report = fit(model, *R, bar.map.guess(), {.max_iterations = 300, .weight_rule = "discrepancy"});
   EXPECT_TRUE(is_success(report.status)) << report.words;
-  EXPECT_THAT(report.words, HasSubstr("stated too small"));
+  EXPECT_THAT(report.words, HasSubstr("too small"));
 }
 
-// The same, whether the search begins far above or far below.
-TEST(Fit, FindsTheWeightUnderWhichTheDataAreMostProbable) {
+// The result is the same for initial weights far above and far below.
+TEST(Fit, FindsWeightOfLargestEvidence) {
   Bar bar;
   CurvedModel model(bar.map.size(), 200, 0, 0.02);
   model.blur(0.03);
@@ -273,7 +273,7 @@ TEST(Fit, FindsTheWeightUnderWhichTheDataAreMostProbable) {
     const FitReport report =
         fit(model, *R, bar.map.guess(), {.max_iterations = 300, .weight_rule = "evidence", .first_weight = first});
     ASSERT_TRUE(is_success(report.status)) << report.words;
-    EXPECT_THAT(report.words, HasSubstr("most probable"));
+    EXPECT_THAT(report.words, HasSubstr("maximizes the evidence"));
     EXPECT_LT(2 * report.misfit, 200 * 1.2);
     found.push_back(report.weight);
   }
@@ -294,7 +294,7 @@ TEST(Fit, FindsTheCornerOfTheLCurve) {
   EXPECT_LT(2 * report.misfit, 2.0 * 200);
 }
 
-// phi has two branches, p and -2 / bend - p: started on the wrong side of the ridge, a descent ends at the other one.
+// phi has two branches, p and -2 / bend - p. From the wrong side of the ridge a descent ends at the other one.
 TEST(Fit, KeepsTheBestOfManyStarts) {
   Few few;
   CurvedModel model(3, 8, 1, 0.05);

@@ -1,5 +1,5 @@
-// How much to believe the prior, chosen from the data [Morozov 1966; Hansen 1998; MacKay 1992]: fits at one weight
-// after another, each from the last.
+// Selects the weight of the prior from the data [Morozov 1966; Hansen 1998; MacKay 1992]: fits with a sequence of
+// weights, each starting from the last.
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -12,15 +12,15 @@
 namespace aspic {
 namespace {
 
-constexpr double kLargestFall = 1.0 / 30;  // of the weight from one trial to the next
+constexpr double kLargestFall = 1.0 / 30;  // decrease of the weight between trials
 constexpr int kTrials = 24;
-constexpr double kStagnation = 0.02;  // of the logarithm of |r|^2 per factor e of the weight
+constexpr double kStagnation = 0.02;  // change of log |r|^2 per factor e of the weight
 constexpr double kRange = 1e12;       // between the first weight and the last
-constexpr double kSettled = 0.3;      // of the logarithm of the weight that the data support
+constexpr double kSettled = 0.3;      // change of the log weight of largest evidence
 constexpr int kEvidenceTrials = 8;
-constexpr int kBestSeen = 64;  // directions that the weight is judged by: to about sqrt(2 / 64)
+constexpr int kBestSeen = 64;  // directions used to select the weight: relative error sqrt(2 / 64)
 
-// The weight at which prior and data pull equally along the steepest descent in the norm of the prior.
+// Weight at which prior and data have equal slopes along the steepest descent in the norm of the prior.
 std::optional<double> balanced_weight(FitRun& run, const FitPoint& at) {
   if (!run.linearize(at)) return {};
   std::vector<double> g(at.p.size()), d(g.size()), Rd(g.size(), 0.0), Jd(at.r.size());
@@ -34,7 +34,8 @@ std::optional<double> balanced_weight(FitRun& run, const FitPoint& at) {
   return weight;
 }
 
-// Far above, |r|^2 need not be known better than by one step; near the number of residuals, within its own scatter.
+// Far above the number of residuals one step determines |r|^2 well enough; near it, accuracy within its scatter is
+// needed.
 constexpr double kFar = 0.5;  // of log (|r|^2 / number)
 
 double log_ratio(const FitRun& run, double misfit) { return std::log(std::max(2 * misfit / run.residuals(), 1e-300)); }
@@ -61,7 +62,7 @@ bool go_to(FitRun& run, FitPoint& at, const WeightTrial& trial) {
   return at.p == trial.p || run.evaluate(trial.p, at);
 }
 
-// The weight where |r|^2 = the number of residuals, from what was tried.
+// Finds the weight with |r|^2 = number of residuals from the trials.
 class Discrepancy {
  public:
   explicit Discrepancy(int residuals)
@@ -104,7 +105,7 @@ class Discrepancy {
   std::optional<Known> first_, last_, too_large_, too_small_;
 };
 
-// The largest weight that explains the data about as well as any.
+// Largest weight whose fit is about as good as the best.
 const WeightTrial& most_cautious(const std::vector<WeightTrial>& trials) {
   const auto less = [](const WeightTrial& a, const WeightTrial& b) { return a.misfit < b.misfit; };
   const double best = std::min_element(trials.begin(), trials.end(), less)->misfit;
@@ -114,8 +115,8 @@ const WeightTrial& most_cautious(const std::vector<WeightTrial>& trials) {
   return *chosen;
 }
 
-// Of the circle through three points: its curvature, positive where the curve turns as at the corner of an L that is
-// walked downwards and to the right, by falling misfit and growing roughness.
+// Curvature of the circle through three points, positive where the curve bends like the corner of an L traversed
+// downward and to the right, with decreasing misfit and increasing roughness.
 double curvature(const WeightTrial& a, const WeightTrial& b, const WeightTrial& c) {
   const auto x = [](const WeightTrial& t) { return std::log(std::max(t.misfit, 1e-300)); };
   const auto y = [](const WeightTrial& t) { return std::log(std::max(t.roughness, 1e-300)); };
@@ -131,10 +132,10 @@ std::string words_of(Discrepancy::Verdict verdict, double squares, int residuals
       return "the weight leaves " + found;
     case Discrepancy::Verdict::explained_by_guess:
       return "the guess already explains the data within their standard deviations (" + found +
-             "): they may be stated too large";
+             "): they may be too large";
     case Discrepancy::Verdict::unexplained:
-      return "no material of this kind explains the data within their standard deviations (" + found +
-             "): they may be stated too small, or the model may be wrong";
+      return "no material of this model explains the data within their standard deviations (" + found +
+             "): they may be too small, or the model may be wrong";
     case Discrepancy::Verdict::try_on:
       break;
   }
@@ -168,7 +169,7 @@ Status fit_by_evidence(FitRun& run, FitPoint& at, FitGoal& goal, FitMethod metho
   const std::optional<double> balanced = balanced_weight(run, at);
   if (!balanced) return Status::undefined;
   run.weight = run.options.first_weight > 0 ? run.options.first_weight : 0.1 * *balanced;
-  run.report.words = "the search for the weight that the data support did not settle";
+  run.report.words = "the search for the weight of largest evidence did not converge";
   for (int i = 0; i < kEvidenceTrials; ++i) {
     if (const Status status = fit_loosely(run, at, goal, method); !is_success(status)) return status;
     run.report.weights.push_back(trial_at(run, at));
@@ -178,7 +179,7 @@ Status fit_by_evidence(FitRun& run, FitPoint& at, FitGoal& goal, FitMethod metho
     if (!s.ok) return Status::undefined;
     const double factor = supported_weight(run.prior(), run.weight, at.p, s).factor;
     if (std::abs(std::log(factor)) < kSettled) {
-      run.report.words = "the weight is the one under which the data are most probable";
+      run.report.words = "the weight maximizes the evidence of the data";
       break;
     }
     run.weight *= std::clamp(factor, kLargestFall, 1 / kLargestFall);
@@ -204,7 +205,7 @@ Status fit_by_l_curve(FitRun& run, FitPoint& at, FitGoal& goal, FitMethod method
     if (const double k = curvature(trials[i - 1], trials[i], trials[i + 1]); k > sharpest) sharpest = k, corner = i;
   run.report.words =
       sharpest > 0 ? "the weight is at the corner of the L-curve, of " + std::to_string(trials.size()) + " weights"
-                   : "the L-curve has no corner: the smallest weight was taken";
+                   : "the L-curve has no corner: the smallest weight is used";
   if (!go_to(run, at, trials[corner])) return Status::undefined;
   return method(run, at, goal);
 }

@@ -1,5 +1,6 @@
-// Gauss-Newton for fields: (J'J + weight R'') d = -g by conjugate gradients, inexactly [Nash 2000]. Preconditioned by
-// weight R'', they need about as many iterations as the data see directions that the prior leaves open.
+// Gauss-Newton for fields: inexact conjugate gradients for (J'J + weight R'') d = -g [Nash 2000]. With the
+// preconditioner weight R'' the number of iterations is about the number of directions that the data determine better
+// than the prior.
 #include <algorithm>
 #include <cmath>
 
@@ -8,9 +9,9 @@
 namespace aspic {
 namespace {
 
-// Iterations continue while the k-th adds more than this, in parts of the average of all so far, to the predicted
-// decrease [Nash 2000, sec. 6]. The residual says nothing here: directions that the data see clearly dominate it, and
-// are found first. A step costs as much as some twenty inner iterations, so these go far.
+// Continues while iteration k contributes more than this, relative to the average so far, to the predicted decrease
+// [Nash 2000, sec. 6]. The residual is no criterion: well determined directions dominate it and converge first. A step
+// costs about twenty inner iterations, so these are accurate.
 constexpr double kWorthwhile = 0.05;
 
 struct Solution {

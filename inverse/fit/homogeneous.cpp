@@ -13,9 +13,9 @@ namespace {
 constexpr std::array<std::string_view, 4> kNames = {"uniaxial", "equibiaxial", "planar", "simple_shear"};
 
 constexpr int kMaxStretchIterations = 100;
-constexpr double kLargestStep = 0.3;   // of ln t in one iteration
+constexpr double kLargestStep = 0.3;   // per iteration, of ln t
 constexpr double kTolerance = 1e-13;   // of ln t
-constexpr double kMostStretch = 1e12;  // further away no state is looked for
+constexpr double kMostStretch = 1e12;  // limit of the search
 
 Mat3d stretched(double x, double y, double z) { return {{x, 0, 0, 0, y, 0, 0, 0, z}}; }
 
@@ -55,7 +55,7 @@ struct Kinematics {
   }
 };
 
-// Stress, and its rate when the parameter `k` of mu, lambda, extra... moves (k < 0: when F moves by dF).
+// Stress and its derivative with respect to parameter `k` of mu, lambda, extra... (k < 0: in direction dF).
 template <class M>
 Mat3<Dual<double>> stress_and_rate(const Mat3d& F, const Mat3d& dF, const MaterialParameters& m, int k) {
   using Real = Dual<double>;
@@ -65,8 +65,8 @@ Mat3<Dual<double>> stress_and_rate(const Mat3d& F, const Mat3d& dF, const Materi
   return M::pk1(dual_matrix(F, dF), M::params(p));
 }
 
-// ln t at which the free faces carry no traction, by Newton's method with short steps. The traction is looked at as
-// t P_tt, which keeps its sign and does not blow up as t -> 0.
+// Solves for ln t with traction-free faces by Newton's method with short steps. Uses t P_tt, which keeps the sign of
+// the traction and is bounded as t -> 0.
 template <class M>
 bool find_free_stretch(const Kinematics& body, const MaterialParameters& m, double& t) {
   const int axis = body.free_axis();

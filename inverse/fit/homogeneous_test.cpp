@@ -22,7 +22,7 @@ constexpr Deformation kAll[] = {Deformation::uniaxial, Deformation::equibiaxial,
                                 Deformation::simple_shear};
 
 // [Treloar 1944]: with mu the stresses of the incompressible neo-Hookean solid.
-TEST(HomogeneousState, OfAnIncompressibleNeoHookeanSolidIsTheTextbookFormula) {
+TEST(HomogeneousState, OfIncompressibleNeoHookeanMatchesTextbook) {
   const MaterialParameters m{{2, 1}, {}};
   for (const double l : {0.5, 0.9, 1.3, 4.0}) {
     const auto stress = [&](Deformation d) {
@@ -36,7 +36,7 @@ TEST(HomogeneousState, OfAnIncompressibleNeoHookeanSolidIsTheTextbookFormula) {
 }
 
 // Mooney-Rivlin: 2 (c10 + c01 / l) (l - 1 / l^2), 2 (c10 + c01 l^2) (l - 1 / l^5), 2 (c10 + c01) (l - 1 / l^3).
-TEST(HomogeneousState, OfAnIncompressibleMooneyRivlinSolidIsTheTextbookFormula) {
+TEST(HomogeneousState, OfIncompressibleMooneyRivlinMatchesTextbook) {
   const double c10 = 0.7, c01 = 0.3;
   const MaterialParameters m{{2 * (c10 + c01), 1}, {c01 / (c10 + c01)}};
   for (const double l : {0.6, 1.5, 3.0}) {
@@ -69,7 +69,7 @@ TEST(HomogeneousState, LeavesTheFreeFacesWithoutTraction) {
   });
 }
 
-TEST(HomogeneousState, GrowsIncompressibleAsThePoissonRatioNearsOneHalf) {
+TEST(HomogeneousState, BecomesIncompressibleAsPoissonApproachesOneHalf) {
   for (const char* material : {"neo_hookean_isochoric", "mooney_rivlin", "fung", "spline"}) {
     const MaterialInfo& info = material_info(material);
     for (const Deformation d : kAll) {
@@ -110,7 +110,7 @@ TEST(HomogeneousState, HasTheSlopesThatDifferencesShow) {
 }
 
 TEST(HomogeneousState, IsNotFoundWhereTheMaterialHasNone) {
-  // St. Venant-Kirchhoff with free sides: l^2 > 1 + 1/nu leaves no side that is free of traction.
+  // St. Venant-Kirchhoff with free sides: for l^2 > 1 + 1/nu no lateral stretch is traction-free.
   const MaterialParameters m{lame_from_young_poisson(1, 0.4), {}};
   EXPECT_TRUE(homogeneous_state("stvk", m, Deformation::uniaxial, 1.8, Volume::compressible).is_found);
   EXPECT_FALSE(homogeneous_state("stvk", m, Deformation::uniaxial, 2.0, Volume::compressible).is_found);

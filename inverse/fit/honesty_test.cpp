@@ -39,8 +39,7 @@ void add(const Posterior& posterior, const ParameterMap& map, const std::vector<
   }
 }
 
-// The truth is drawn from the prior; log E differs by about 0.6 from place to place, its deviation after the fit is a
-// half of that.
+// Draws the truth from the prior. log E varies by about 0.6; its posterior standard deviation is half of that.
 TEST(Honesty, IntervalsOfAFieldHoldTheTruth) {
   constexpr double kWeight = 4;
   constexpr int kSeeds = 12;
@@ -117,7 +116,7 @@ PokedBlock poked(bool with_force) {
   return block;
 }
 
-TEST(Honesty, WithoutAForceOnlyRatiosOfStiffnessAreKnown) {
+TEST(Honesty, WithoutForceOnlyStiffnessRatiosAreDetermined) {
   for (const bool with_force : {false, true}) {
     PokedBlock block = poked(with_force);
     const ParameterMap map = block.map();
@@ -131,7 +130,7 @@ TEST(Honesty, WithoutAForceOnlyRatiosOfStiffnessAreKnown) {
     const Posterior posterior = aspic::posterior(about_fit, *prior, 4, map, block.experiment.mesh, report.p);
     EXPECT_EQ(posterior.scale_is_unknown, !with_force);
     ASSERT_FALSE(posterior.unseen.empty());
-    if (!with_force) {  // all that is left of the scale is the prior: 2 / sqrt(weight)
+    if (!with_force) {  // the prior alone determines the scale: 2 / sqrt(weight)
       EXPECT_EQ(posterior.unseen[0].words, "young of the whole body");
       EXPECT_LT(posterior.unseen[0].information, 0.1);
       EXPECT_NEAR(posterior.unseen[0].deviation, 1, 0.1);
@@ -139,12 +138,12 @@ TEST(Honesty, WithoutAForceOnlyRatiosOfStiffnessAreKnown) {
     } else {
       EXPECT_LT(posterior.unseen[0].deviation, 0.5);
     }
-    // The layer, had it been known, would have passed for a force.
+    // A known layer stiffness would act like a force measurement.
     EXPECT_FALSE(aspic::posterior(misfit, *prior, 4, map, block.experiment.mesh, report.p).scale_is_unknown);
   }
 }
 
-TEST(Honesty, NuisanceIsTheDerivativeByTheStiffnessOfTheLayer) {
+TEST(Honesty, NuisanceIsDerivativeByLayerStiffness) {
   PokedBlock block = poked(true);
   const ParameterMap map = block.map();
   const auto residuals_at = [&](double log_factor) {
@@ -171,8 +170,8 @@ TEST(Honesty, NuisanceIsTheDerivativeByTheStiffnessOfTheLayer) {
   EXPECT_LT(error, 1e-5 * size);
 }
 
-// Directions of the covariance by sampling rows and columns agree at a real fit.
-TEST(Honesty, AllWaysToTheEigenpairsAgreeAtAFit) {
+// Eigenpairs by sampling, rows and columns agree at a real fit.
+TEST(Honesty, AllEigenpairMethodsAgreeAtFit) {
   PokedBlock block = poked(true);
   const ParameterMap map = block.map();
   const auto prior = make_regularizer(block.experiment.mesh, map, {.prior_deviation = 1});

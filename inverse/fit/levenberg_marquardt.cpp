@@ -1,6 +1,6 @@
-// Levenberg-Marquardt for few unknowns: the Jacobian is made column by column (or row by row, where residuals are
-// fewer), (J'J + weight R'' + damping D) d = -g is solved directly, and the damping follows the ratio of the decrease
-// to the one predicted [Madsen et al. 2004, alg. 3.16]. D is the diagonal, so units do not matter.
+// Levenberg-Marquardt for few parameters: computes the Jacobian by columns (or rows, if residuals are fewer), solves
+// (J'J + weight R'' + damping D) d = -g directly, and adapts the damping to the ratio of actual and predicted decrease
+// [Madsen et al. 2004, alg. 3.16]. D is the diagonal, which makes it independent of units.
 #include <algorithm>
 #include <cmath>
 
@@ -10,12 +10,12 @@
 namespace aspic {
 namespace {
 
-constexpr double kNear = 0.01;  // of the minimum, in standard deviations: few unknowns are worth it
+constexpr double kNear = 0.01;  // distance from the minimum in standard deviations; cheap for few parameters
 
 constexpr double kFirstDamping = 1e-3, kLeastDamping = 1e-14, kLargestDamping = 1e12;
-constexpr double kUnseen = 1e-14;  // diagonal entries below this part of the largest are as good as 0
+constexpr double kUnseen = 1e-14;  // relative to the largest diagonal entry; smaller ones count as 0
 
-// A symmetric matrix of n x n numbers.
+// Symmetric n x n matrix.
 class Curvature {
  public:
   explicit Curvature(int n) : n_(n), a_(static_cast<size_t>(n) * n, 0.0) {
@@ -91,7 +91,7 @@ struct MarquardtDamping {
   }
 };
 
-// g' A^-1 g, of the undamped system where that is definite.
+// g' A^-1 g for the undamped system if it is positive definite.
 double squared_decrement(Curvature& A, std::span<const double> g, std::vector<double>& d) {
   for (double damping = 0; damping < 1; damping = std::max(kLeastDamping, 100 * damping))
     if (A.step(g, damping, d)) return std::max(0.0, -dot(g, d));

@@ -14,7 +14,7 @@
 namespace aspic {
 namespace {
 
-constexpr double kSmallestPart = 1.0 / 64;  // of a load
+constexpr double kSmallestPart = 1.0 / 64;  // smallest load step
 constexpr char kAxis[] = "xyz";
 
 Vec3d at(const SurfacePoint& point, std::span<const double> x) {
@@ -38,9 +38,9 @@ void require_positive(const Vec3d& deviation, const std::string& what) {
                          "; it must be positive");
 }
 
-// A bonded tip on a triangle with a held corner would press its own layer against the support: a force that is
-// proportional to the conventional stiffness of the layer and independent of the material. Such triangles carry no
-// layer, unless the tip touches few others.
+// A bonded indenter on a triangle with a held corner would press its layer against the support, with a force that
+// depends on the conventional layer stiffness and not on the material. Such triangles get no layer, unless the indenter
+// touches few others.
 std::unique_ptr<Probe> make_probe_beside_support(const Experiment& experiment, const Tip& tip, const TipPose& touch) {
   const TetMesh& mesh = experiment.mesh;
   const std::vector<Triangle> surface = boundary_triangles(mesh, 0, mesh.tet_count());
@@ -53,7 +53,7 @@ std::unique_ptr<Probe> make_probe_beside_support(const Experiment& experiment, c
   const auto touched = [&](const std::vector<Triangle>& part) {
     return touched_points_at_rest(mesh, part, tip, touch);
   };
-  auto probe = make_probe(mesh, surface, tip, touch);  // refuses bad tips
+  auto probe = make_probe(mesh, surface, tip, touch);  // throws for invalid indenters
   return 2 * touched(free) < touched(surface) ? std::move(probe) : make_probe(mesh, free, tip, touch);
 }
 
@@ -72,9 +72,8 @@ LoadedBody::LoadedBody(const Experiment& experiment, const LoadCase& load, const
 
 const LoadCase& LoadedBody::readable(const Experiment& experiment, const LoadCase& load) {
   if (load.positions.empty() && !load.force && !load.torque)
-    throw InvalidInput(load.name + ": nothing was measured; give positions of markers, a force or a torque");
-  if (!load.tip && (load.force || load.torque))
-    throw InvalidInput(load.name + ": a force or torque needs the tip that it acts through");
+    throw InvalidInput(load.name + ": no measurements; give positions of markers, a force or a torque");
+  if (!load.tip && (load.force || load.torque)) throw InvalidInput(load.name + ": a force or torque needs an indenter");
   for (const MarkerReading& reading : load.positions) {
     if (reading.marker < 0 || reading.marker >= static_cast<int>(experiment.markers.size()))
       throw InvalidInput(load.name + ": marker " + std::to_string(reading.marker) + " is unknown; there are " +
@@ -138,7 +137,7 @@ bool LoadedBody::try_from(std::span<const double> start) {
   return is_success(report.status);
 }
 
-// From rest, by parts that are halved where one fails and doubled again after a success.
+// Load stepping from rest; the step is halved on failure and doubled on success.
 bool LoadedBody::load_in_parts() {
   start_ = rest_;
   double done = 0, part = 0.5;
@@ -192,7 +191,7 @@ void LoadedBody::restore(std::span<const double> x) {
   prediction_.x = accepted_;
 }
 
-// What comes next depends on nothing but the point of the linearization, whatever was tried since.
+// Later results depend only on the linearization point, not on trials in between.
 bool LoadedBody::linearize(std::span<const MaterialParameters> parameters) {
   equilibrium_.set_x(accepted_);
   prediction_.x = accepted_;

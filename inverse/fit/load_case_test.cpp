@@ -7,8 +7,8 @@
 namespace aspic {
 namespace {
 
-// A block that stands on z = 0, touched at its side by a bonded tip, whose layer is far stiffer than the block. A part
-// of the footprint lies on triangles with held corners.
+// A block on z = 0, touched at its side by a bonded indenter with a layer much stiffer than the block. Part of the
+// footprint is on triangles with held corners.
 Experiment poked_beside_support(double height) {
   Experiment e;
   e.mesh = make_box({{0, 0, 0}}, {{0.1, 0.1, 0.1}}, {6, 6, 6});

@@ -24,7 +24,7 @@ void add_squares(const ParameterMap& map, std::span<const double> v, double scal
   }
 }
 
-// diag F (C - W W') F': what lies in none of the directions W.
+// diag F (C - W W') F': the variance outside the directions W.
 Fields unseen_exactly(PosteriorGaussian& belief, const ParameterMap& map) {
   Fields unseen = zero_fields(map);
   std::vector<double> a(belief.size()), z(belief.size());
@@ -43,7 +43,7 @@ Fields unseen_exactly(PosteriorGaussian& belief, const ParameterMap& map) {
   return unseen;
 }
 
-// The mean square of samples of the prior without their part in W.
+// Mean square of prior samples without their part in W.
 Fields unseen_by_samples(PosteriorGaussian& belief, const ParameterMap& map, const MarginalOptions& options) {
   Fields unseen = zero_fields(map);
   std::mt19937_64 random(options.seed);

@@ -109,7 +109,7 @@ std::vector<double> stepped(std::span<const double> p, const std::vector<double>
   return result;
 }
 
-TEST(Misfit, IsZeroForTheMaterialThatWasMeasuredAndNotForOthers) {
+TEST(Misfit, IsZeroOnlyForTheMeasuredMaterial) {
   Gel gel;
   const ParameterMap map = gel.map();
   const std::vector<double> truth = stepped(map.guess(), Numbers(3)(map.size()), 0.5);
@@ -144,7 +144,7 @@ TEST(Misfit, JacobianHasTaylorSlope2) {
   }
 }
 
-TEST(Misfit, TransposedProductIsTheTransposeAlsoAfterOtherPointsWereTried) {
+TEST(Misfit, TransposedProductIsTransposeAfterOtherTrials) {
   Gel gel;
   const ParameterMap map = gel.map();
   gel.measure(map, std::vector<double>(map.guess().begin(), map.guess().end()), 1);
@@ -161,7 +161,7 @@ TEST(Misfit, TransposedProductIsTheTransposeAlsoAfterOtherPointsWereTried) {
   EXPECT_NEAR(dot(w, dr), dot(pbar, dp), 1e-10 * norm(w) * norm(dr));
 }
 
-TEST(Misfit, BitsDoNotDependOnTheNumberOfThreads) {
+TEST(Misfit, IsBitReproducibleForAnyThreads) {
   const int before = thread_count();
   std::vector<std::vector<double>> results;
   for (const int threads : {1, 2, 8}) {
@@ -182,7 +182,7 @@ TEST(Misfit, BitsDoNotDependOnTheNumberOfThreads) {
   EXPECT_EQ(results[0], results[2]);
 }
 
-TEST(Misfit, StartsFromTheTangentSoThatASmallStepTakesFewIterations) {
+TEST(Misfit, TangentStartNeedsFewIterationsForSmallSteps) {
   Gel gel;
   const ParameterMap map = gel.map();
   Misfit misfit(gel.experiment, map);
@@ -198,7 +198,7 @@ TEST(Misfit, StartsFromTheTangentSoThatASmallStepTakesFewIterations) {
             3 * cases);  // the tangent leaves 1e-4 of the step, then 1e-8
 }
 
-TEST(Misfit, ALoadThatIsTooMuchForOneSolveIsAppliedInParts) {
+TEST(Misfit, LoadTooLargeForOneSolveIsStepped) {
   Gel gel;
   gel.experiment.cases = {gel.poke(0.03, 0.02)};  // 40 % of the height
   const ParameterMap map = gel.map();
@@ -214,7 +214,7 @@ TEST(Misfit, ALoadThatIsTooMuchForOneSolveIsAppliedInParts) {
   for (size_t i = 0; i < r.size(); ++i) EXPECT_NEAR(r[i], in_parts[i], 1e-5 * norm(r));
 }
 
-TEST(Misfit, AFailureNamesTheCaseAndDoesNoHarm) {
+TEST(Misfit, FailureNamesTheCaseAndChangesNothing) {
   Gel gel;
   const ParameterMap map = gel.map();
   Misfit misfit(gel.experiment, map);
@@ -230,7 +230,7 @@ TEST(Misfit, AFailureNamesTheCaseAndDoesNoHarm) {
 }
 
 // Eight tets of the simulation are made of what one tet of the map is made of.
-TEST(Misfit, OnARefinedMeshHasDerivativesPerTetOfTheMap) {
+TEST(Misfit, OnRefinedMeshHasDerivativesPerMapTet) {
   Gel gel;
   gel.experiment.cases.resize(1);
   const ParameterMap map = gel.map();
@@ -274,7 +274,7 @@ TEST(Misfit, RefusesCasesThatCannotBeRead) {
   };
   refused([](Gel& gel) { gel.experiment.cases.clear(); }, "no load case");
   refused([](Gel& gel) { gel.experiment.cases[4].positions.clear(); }, "hung: nothing was measured");
-  refused([](Gel& gel) { gel.experiment.cases[4].force = Vec3d{}; }, "hung: a force or torque needs the tip");
+  refused([](Gel& gel) { gel.experiment.cases[4].force = Vec3d{}; }, "hung: a force or torque needs an indenter");
   refused([](Gel& gel) { gel.experiment.cases[0].positions[2].marker = 1000; }, "marker 1000 is unknown");
   refused([](Gel& gel) { gel.experiment.cases[0].positions[2].deviation[1] = 0; }, "deviation along y is 0");
   refused([](Gel& gel) { gel.experiment.cases[1].force_deviation[0] = std::nan(""); }, "force");

@@ -34,10 +34,10 @@ Instruments instruments(const Experiment& experiment, const NextPokeOptions& opt
     if (!tip) tip = c.tip;
     result.depth = std::max(result.depth, norm(c.pose.center - c.touch.center));
   }
-  if (!tip) throw InvalidInput("no case has a tip, so there is no next poke (give the tip to poke with)");
+  if (!tip) throw InvalidInput("no case has an indenter, so there is no next poke (give an indenter)");
   result.tip = *tip;
   if (options.depth > 0) result.depth = options.depth;
-  if (!(result.depth > 0)) throw InvalidInput("how deep the next poke is to go is not known (give its depth)");
+  if (!(result.depth > 0)) throw InvalidInput("the depth of the next poke is unknown (give its depth)");
   result.position = median(position), result.force = median(force), result.torque = median(torque);
   return result;
 }
@@ -166,7 +166,7 @@ NextPoke next_poke(const Experiment& experiment, const TetMesh& mesh, const Para
   }
   if (result.candidates.empty())
     result.warnings.push_back(
-        "there is no place for a tip: every vertex of the surface is nearer to a held one than its radius");
+        "there is no site for an indenter: all surface vertices are nearer to a held one than its radius");
   std::ranges::stable_sort(result.candidates, [](const PokeCandidate& a, const PokeCandidate& b) {
     return a.ok != b.ok ? a.ok : a.gain > b.gain;
   });

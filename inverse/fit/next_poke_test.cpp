@@ -32,7 +32,7 @@ struct PokeStudy {
   }
 };
 
-TEST(NextPoke, ToldGainAndDeviationsAreThoseOfThePokeOnceItIsMade) {
+TEST(NextPoke, PredictedGainAndDeviationsMatchActualPoke) {
   PokeStudy study;
   Posterior before = study.posterior_of(study.block.experiment);
   const NextPoke next = next_poke(study.block.experiment, study.block.experiment.mesh, study.map, before, study.p,
@@ -101,7 +101,7 @@ TEST(NextPoke, NeedsATip) {
                InvalidInput);
 }
 
-TEST(PokeSites, LieOnTheFreeFlatSurfaceFarFromEachOther) {
+TEST(PokeSites, AreFarApartOnFreeFlatSurface) {
   const TetMesh mesh = make_box({{0, 0, 0}}, {{1, 1, 0.5}}, {8, 8, 4});
   std::vector<int> fixed;
   for (int v = 0; v < mesh.vertex_count(); ++v)

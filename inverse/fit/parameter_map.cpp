@@ -13,7 +13,7 @@ namespace {
 
 enum class Role { young, poisson, extra };
 
-// One unknown as it is computed with.
+// Internal representation of a fitted quantity.
 struct Fitted {
   Role role = Role::young;
   int extra = 0;  // index into MaterialParameters::extra
@@ -53,7 +53,7 @@ void check_guess(const Unknown& u, const Range& range) {
                      six_digits(range.lower) + " and " + six_digits(range.upper) + ", and not at an end");
 }
 
-// A range over several powers of ten is looked at by its logarithm.
+// Ranges over several powers of ten use logarithms.
 QuantityScale scale_of(const ExtraParameter& extra) {
   constexpr double kPowers = 100;
   if (extra.min == 0 && extra.max > kPowers) return QuantityScale::powers_from_zero(extra.max);
@@ -84,7 +84,7 @@ void set_quantity(const Unknown& u, const MaterialInfo& info, Fitted& f) {
     f.scale = scale_of(extra);
     return;
   }
-  throw InvalidInput("'" + u.quantity + "' is no quantity of " + info.name + suggestion(u.quantity, known));
+  throw InvalidInput("'" + u.quantity + "' is not a quantity of " + info.name + suggestion(u.quantity, known));
 }
 
 FieldBasis make_basis(const TetMesh& mesh, const Unknown& u) {
@@ -93,12 +93,12 @@ FieldBasis make_basis(const TetMesh& mesh, const Unknown& u) {
       return FieldBasis::uniform(mesh.tet_count());
     case Spread::regions:
       if (mesh.region.empty())
-        throw InvalidInput("'" + u.quantity + "' is wanted per region, but the mesh has none (try uniform or handles)");
+        throw InvalidInput("'" + u.quantity + "' is fitted per region, but the mesh has none (try uniform or handles)");
       return FieldBasis::regions(mesh.region);
     case Spread::handles:
       if (u.handles < 1 || u.handles > mesh.tet_count())
-        throw InvalidInput("'" + u.quantity + "' is wanted at " + std::to_string(u.handles) +
-                           " handles; there can be 1 to " + std::to_string(mesh.tet_count()) + ", one per tet");
+        throw InvalidInput("'" + u.quantity + "' is fitted at " + std::to_string(u.handles) + " handles; use 1 to " +
+                           std::to_string(mesh.tet_count()) + ", one per tet");
       return FieldBasis::radial(mesh, u.handles);
     case Spread::tets:
       break;
@@ -122,7 +122,7 @@ struct ParameterMap::Impl {
     return found == fitted.end() ? nullptr : &*found;
   }
 
-  // dtheta/dz of one unknown in every tet: only E and nu change two entries of theta.
+  // dtheta/dz of one quantity in every tet; only E and nu change two entries of theta.
   struct Slopes {
     std::vector<Lame> lame;     // empty for an extra
     std::vector<double> extra;  // empty for E and nu
@@ -176,10 +176,10 @@ ParameterMap::ParameterMap(const TetMesh& mesh, std::string material, std::vecto
   impl_->known = std::move(known);
   for (const MaterialParameters& m : impl_->known)
     impl_->elastic.push_back({young_modulus(m.lame), poisson_ratio(m.lame)});
-  if (unknowns.empty()) throw InvalidInput("nothing is to be fitted (try young)");
+  if (unknowns.empty()) throw InvalidInput("there is no parameter to fit (try young)");
   for (const Unknown& u : unknowns) {
     for (const Unknown& other : impl_->unknowns)
-      if (other.quantity == u.quantity) throw InvalidInput("'" + u.quantity + "' is to be fitted twice");
+      if (other.quantity == u.quantity) throw InvalidInput("'" + u.quantity + "' is fitted twice");
     Fitted f;
     set_quantity(u, info, f);
     f.basis = make_basis(mesh, u);

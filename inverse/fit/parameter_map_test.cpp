@@ -80,7 +80,7 @@ TEST(QuantityScale, StaysInsideItsRange) {
   EXPECT_NEAR(b.slope(0) / b.value(0), 1, 1e-14) << "in the middle of its range it is a logarithm";
 }
 
-TEST(QuantityScale, OfPowersFromZeroTakesSmallAndLargeValuesInLikeSteps) {
+TEST(QuantityScale, OfPowersResolvesSmallAndLargeValues) {
   const QuantityScale growth = QuantityScale::powers_from_zero(1000);
   double last = growth.fitted(0.5);
   for (const double q : {1.0, 3.0, 10.0, 30.0, 100.0, 300.0}) {  // linearly, 0.5 to 1 would be 1/400 of 100 to 300
@@ -124,7 +124,7 @@ TEST(FieldBasis, GivesEveryHandleItsTets) {
   EXPECT_THAT(share, Each(testing::Gt(0.5)));
 }
 
-TEST(ParameterMap, StartsAtTheGuessAndKeepsWhatIsKnown) {
+TEST(ParameterMap, StartsAtGuessAndKeepsKnownValues) {
   const TetMesh mesh = two_layers();
   const ParameterMap map(mesh, "mooney_rivlin", known(mesh, 0.75), {{"young", Spread::handles, 5, 4e4}});
   for (const MaterialParameters& m : map.parameters(map.guess())) {
@@ -216,7 +216,7 @@ INSTANTIATE_TEST_SUITE_P(
 
 TEST(ParameterMap, RefusesWhatCannotBeFitted) {
   TetMesh mesh = two_layers();
-  EXPECT_THAT(refusal(mesh, "fung", {}), HasSubstr("nothing is to be fitted"));
+  EXPECT_THAT(refusal(mesh, "fung", {}), HasSubstr("there is no parameter to fit"));
   EXPECT_THAT(refusal(mesh, "fung", {{.quantity = "yuong"}}), HasSubstr("did you mean 'young'?"));
   EXPECT_THAT(refusal(mesh, "neo_hookean", {{"b", Spread::uniform, 0, 1}}), HasSubstr("no quantity of neo_hookean"));
   EXPECT_THAT(refusal(mesh, "fung", {{"young", Spread::uniform, 0, -2}}), HasSubstr("must be positive"));

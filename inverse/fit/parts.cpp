@@ -8,7 +8,7 @@
 namespace aspic {
 namespace {
 
-// Every tet by itself, with a deviation of 1 for one of mean volume: what a change of single tets is measured in.
+// Independent tets with standard deviation 1 at mean volume: the metric for changes of single tets.
 class Independent : public Gaussian {
  public:
   explicit Independent(std::vector<double> precision) : precision_(std::move(precision)) {}
@@ -31,7 +31,7 @@ Independent one_by_one(const ParameterMap& map, int unknown, const std::vector<d
   return Independent(std::move(precision));
 }
 
-// What is moved by one more linearization is not known better than that.
+// The change by one more linearization is a lower bound of the uncertainty.
 void widen(PartsEstimate& estimate, std::span<const double> before) {
   for (size_t t = 0; t < before.size(); ++t)
     estimate.deviation[t] = std::hypot(estimate.deviation[t], estimate.mean[t] - before[t]);

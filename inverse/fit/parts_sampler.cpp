@@ -12,12 +12,12 @@
 namespace aspic {
 namespace {
 
-constexpr double kWidest = 2;       // of a level about where it began: a deviation of log E
-constexpr double kLargestMove = 1;  // of a level, from one linearization to the next
+constexpr double kWidest = 2;       // standard deviation of a level (log E) about its initial value
+constexpr double kLargestMove = 1;  // limit of the change of a level between linearizations
 
 struct Neighbor {
   int tet;
-  double area;  // of the face between, by the mean
+  double area;  // area of the common face, relative to the mean
 };
 
 std::vector<std::vector<Neighbor>> neighbors_of(const TetMesh& mesh) {
@@ -108,7 +108,7 @@ class Sampler {
     for (int j = 0; j < rank_; ++j) to[j] += scale * r[j];
   }
 
-  // The levels, given who belongs to them: a normal distribution.
+  // Samples the levels for given memberships from a normal distribution.
   void move_levels() {
     const int K = static_cast<int>(levels_.size());
     std::vector<std::vector<double>> S(K, std::vector<double>(rank_, 0.0));
@@ -170,7 +170,7 @@ class Sampler {
   int rank_, tets_;
   std::vector<double> start_, levels_;
   std::vector<double> d_, slope_, origin_, force_;  // along each direction
-  std::vector<double> rows_, own_;                  // of each tet: its directions; its own curvature
+  std::vector<double> rows_, own_;                  // per tet: directions; own curvature
   std::vector<int> label_;
   std::mt19937_64 random_;
   std::normal_distribution<double> normal_;

@@ -1,4 +1,4 @@
-// Parts of a body that shows every tet, through noise: their values, places and intervals are known.
+// Sampling of parts from noisy readings of every tet, with known values, locations and intervals.
 #include "fit/parts_sampler.h"
 
 #include <gtest/gtest.h>
@@ -42,7 +42,7 @@ struct Body {
   }
 };
 
-TEST(PartsSampler, FindsTheValuesAndThePlacesOfTwoParts) {
+TEST(PartsSampler, FindsValuesAndLocationsOfTwoParts) {
   const Body body(1.2);
   const PartsEstimate e = body.estimate({0.2, 0.8});
   EXPECT_NEAR(e.levels[0], 0, 0.06);

@@ -24,7 +24,7 @@ std::vector<Patch> patches(const TetMesh& mesh, std::span<const Triangle> surfac
 
 struct Normal {
   Vec3d mean{};         // of length 1, outward
-  double flatness = 0;  // 1: all normals around are the same
+  double flatness = 0;  // 1: all surrounding normals are equal
 };
 
 Normal normal_around(const std::vector<Patch>& all, const std::vector<Triangle>& surface, const TetMesh& mesh, int v,
@@ -56,7 +56,8 @@ std::vector<int> free_vertices(const TetMesh& mesh, const std::vector<Triangle>&
   std::vector<char> is_fixed(mesh.rest.size(), 0), is_on_surface(mesh.rest.size(), 0), is_beside(mesh.rest.size(), 0);
   for (const int v : fixed) is_fixed[v] = 1;
   for (const Triangle& t : surface) {
-    const bool is_held = std::ranges::any_of(t, [&](int v) { return is_fixed[v] != 0; });  // a tip would press on it
+    const bool is_held =
+        std::ranges::any_of(t, [&](int v) { return is_fixed[v] != 0; });  // an indenter would press on it
     for (const int v : t) is_on_surface[v] = 1, is_beside[v] |= is_held ? 1 : 0;
   }
   std::vector<int> result;
@@ -80,7 +81,8 @@ std::vector<PokeSite> poke_sites(const TetMesh& mesh, std::span<const int> fixed
   std::vector<double> distance(all.size(), std::numeric_limits<double>::infinity());
   Vec3d mean{};
   for (const PokeSite& s : all) mean = mean + (1.0 / static_cast<double>(all.size())) * mesh.rest[s.vertex];
-  for (size_t i = 0; i < all.size(); ++i) distance[i] = norm(mesh.rest[all[i].vertex] - mean);  // begins far outside
+  for (size_t i = 0; i < all.size(); ++i)
+    distance[i] = norm(mesh.rest[all[i].vertex] - mean);  // initially far outside
   while (static_cast<int>(chosen.size()) < count && !all.empty()) {
     const size_t next = std::ranges::max_element(distance) - distance.begin();
     if (!chosen.empty() && !(distance[next] > 0)) break;

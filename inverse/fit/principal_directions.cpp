@@ -17,7 +17,7 @@ std::vector<double> volume_parts(const TetMesh& mesh) {
   return part;
 }
 
-// G = diag(part)^1/2 F, for all unknowns one below the other: |G p|^2 is the mean square of the fields of p.
+// G = diag(part)^1/2 F for all stacked quantities: |G p|^2 is the mean square of the fields of p.
 class WeightedFields {
  public:
   WeightedFields(const ParameterMap& map, const TetMesh& mesh) : map_(map), root_(volume_parts(mesh)) {

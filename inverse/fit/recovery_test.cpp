@@ -1,4 +1,4 @@
-// Fits of real bodies to what they themselves would show: with exact data the material is found again.
+// Fits of bodies to their own predictions: exact data recover the material.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -14,7 +14,7 @@ namespace {
 
 constexpr double kCubeSide = 0.1, kCubeYoung = 2e4;  // [m], [Pa]
 
-// A cube that stands on the ground, pushed down by a tip at two places, each to two depths.
+// Cube on the ground, pushed down by an indenter at two places to two depths each.
 Experiment poked_cube() {
   Experiment e;
   TetMesh& mesh = e.mesh = make_box({{0, 0, 0}}, {{kCubeSide, kCubeSide, kCubeSide}}, {3, 3, 4});
@@ -50,7 +50,7 @@ ParameterMap map_of(const Experiment& e, std::vector<Unknown> unknowns, const st
 
 const EquilibriumOptions kSynthetic{.tolerance = 1e-13};
 
-// Measurements of a body with these parameters, with noise in standard deviations.
+// Simulated measurements of a body with these parameters, with noise in standard deviations.
 void measure(Experiment& e, const ParameterMap& map, const std::vector<double>& p, double noise = 0) {
   Misfit body(e, map, kSynthetic);
   std::vector<double> r(body.residual_count());
@@ -84,7 +84,7 @@ TEST(Recovery, FindsOneModulusAgainFromExactData) {
   EXPECT_NEAR(map.values(0, report.p)[0], kCubeYoung, 1e-6 * kCubeYoung);
 }
 
-TEST(Recovery, FindsModulusRatioAndStiffeningAgainFromExactData) {
+TEST(Recovery, RecoversModulusRatioAndStiffeningFromExactData) {
   Experiment e = poked_cube();
   const ParameterMap map = map_of(e,
                                   {{"young", Spread::uniform, 0, 0.5 * kCubeYoung},
@@ -109,7 +109,7 @@ TEST(Recovery, FindsTwoLayersAgainFromExactData) {
   for (int i = 0; i < 2; ++i) EXPECT_NEAR(report.p[i], truth[i], 1e-6);
 }
 
-TEST(Recovery, OfAFieldLeavesTheNoiseAndTellsTheStiffLayer) {
+TEST(Recovery, OfFieldLeavesNoiseAndFindsStiffLayer) {
   Experiment e = poked_cube();
   const ParameterMap map = map_of(e, {{"young", Spread::tets, 0, kCubeYoung}});
   std::vector<double> truth;

@@ -15,7 +15,7 @@ namespace aspic {
 namespace {
 
 constexpr double kRichardson = 4.0 / 3;  // 1 / (1 - 1/2^2)
-constexpr double kMostMultiple = 10;     // of the force whose error is known
+constexpr double kMostMultiple = 10;     // multiple of the force with known error
 
 class Refinement {
  public:
@@ -82,7 +82,7 @@ class Refinement {
     return parts;
   }
 
-  // The middle of an edge is held where a triangle of the surface or a tet around it is.
+  // Holds the midpoint of an edge if a surrounding surface triangle or tet is held.
   void hold() {
     fine_.fixed = coarse_.fixed;
     std::vector<char> is_held(coarse_.mesh.rest.size(), 0);
@@ -136,7 +136,7 @@ Predictions predicted(const Experiment& experiment, const std::string& material,
   return result;
 }
 
-// F on fine meshes from F on the mesh and on the next finer one: log |F| is extrapolated.
+// Force on fine meshes from F on the mesh and on the refined one; extrapolates log |F|.
 double factor_in_limit(const Wrench& coarse, const Wrench& fine) {
   const double on_mesh = norm(coarse.force), on_fine = norm(fine.force);
   return on_mesh > 0 && on_fine > 0 ? std::pow(on_fine / on_mesh, kRichardson - 1) : 1;
@@ -144,7 +144,7 @@ double factor_in_limit(const Wrench& coarse, const Wrench& fine) {
 
 Wrench scaled(const Wrench& w, double factor) { return {factor * w.force, factor * w.torque}; }
 
-// How many times `known` the other force is, along it. A force against it is noise, and has no error.
+// Ratio of the other force to `known` along it. An opposite force is noise and has no error.
 double multiple_of(const Vec3d& known, const Vec3d& other) {
   const double squares = dot(known, known);
   return squares > 0 ? std::clamp(dot(known, other) / squares, 0.0, kMostMultiple) : 1;

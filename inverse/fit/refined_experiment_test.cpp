@@ -43,7 +43,7 @@ std::vector<MaterialParameters> material(const Experiment& e) {
   return std::vector<MaterialParameters>(e.mesh.tets.size(), {lame_from_young_poisson(kColumnYoung, 0.3), {}});
 }
 
-// The mean sag of the corners of the top, which every mesh has.
+// Mean sag of the top corners, which all meshes have.
 double sag(const Experiment& e) {
   const auto parameters = material(e);
   LoadedBody body(e, e.cases[0], "neo_hookean", parameters, {});
@@ -78,7 +78,7 @@ TEST(RefinedExperiment, HasTheSameBodyMarkersAndHolds) {
 }
 
 TEST(RefinedExperiment, TellsWhatAFarFinerMeshWouldSay) {
-  // Between meshes of 3 and 12 cells the error falls to a sixteenth, if it falls with the square.
+  // Between meshes of 3 and 12 cells a quadratic error decreases to a sixteenth.
   const Experiment coarse = column(3);
   const MeshErrors errors = mesh_errors(coarse, "neo_hookean", material(coarse));
   ASSERT_EQ(errors.cases.size(), 1u) << errors.failure;
@@ -89,7 +89,7 @@ TEST(RefinedExperiment, TellsWhatAFarFinerMeshWouldSay) {
   EXPECT_NEAR(mean, 16.0 / 15 * difference, 0.15 * std::abs(difference));
 }
 
-TEST(RefinedExperiment, ErrorsAreTakenOffTheMeasurementsAndMakeThemLessCertain) {
+TEST(RefinedExperiment, ErrorsCorrectMeasurementsAndIncreaseTheirDeviations) {
   Experiment e = column(2);
   MeshErrors errors{{MeshError{}}, ""};
   errors.cases[0].markers.assign(e.markers.size(), Vec3d{{3e-5, 0, 0}});
@@ -99,7 +99,7 @@ TEST(RefinedExperiment, ErrorsAreTakenOffTheMeasurementsAndMakeThemLessCertain) 
   EXPECT_NEAR(better.cases[0].positions[0].deviation[1], std::sqrt(2.0) * 1e-5, 1e-12);
 }
 
-// Forces of one direction, of which the mesh makes 0.8 (or 2.5) times what they are in the limit of fine meshes.
+// Parallel forces, for which the mesh gives 0.8 (or 2.5) times the limit of fine meshes.
 Experiment pushed(double measured) {
   Experiment e = column(2);
   e.cases[0].positions.clear();

@@ -14,15 +14,15 @@ namespace {
 
 constexpr double kDeviationOfNoPrior = 100;
 
-// Of a field: beyond a factor of 100 from its guess (of log E, 4.6) values are held back, whatever the weight. Where
-// the weight is low, nothing else keeps tets that the data hardly see from running to 0 or infinity.
+// A penalty limits values of fields to a factor of 100 from the guess (4.6 in log E) for any weight. With small
+// weights, poorly determined tets would otherwise diverge to 0 or infinity.
 constexpr double kFarthest = kFarthestOfField, kWall = 1e4;
 
 double excess(double distance) { return std::copysign(std::max(0.0, std::abs(distance) - kFarthest), distance); }
 
 double inverse_square(double x) { return 1 / (x * x); }
 
-// The entries of p of one quantity and their prior.
+// Entries of p of one quantity, and their prior.
 class Belief {
  public:
   Belief(double guess, double deviation) : guess_(guess), precision_(inverse_square(deviation)) {}
@@ -133,7 +133,7 @@ class FieldBelief : public Belief {
     basis_.add_transposed(zbar, pbar);
   }
 
-  // The matrix over the tets: roughness, then the diagonal.
+  // Matrix over the tets: roughness plus diagonal.
   std::vector<MatrixPlace> field_places() const {
     std::vector<MatrixPlace> places = is_smooth_ ? roughness_.places() : std::vector<MatrixPlace>{};
     for (int t = 0; t < basis_.tet_count(); ++t) places.push_back({t, t});

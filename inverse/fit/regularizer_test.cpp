@@ -41,8 +41,8 @@ ParameterMap map_of(const TetMesh& mesh, std::vector<Unknown> unknowns) {
                       std::move(unknowns));
 }
 
-// z = g.X has L^2 / (2 V) int |g|^2 = |g|^2 / 2 in the unit cube; faces on its surface have no neighbors, which costs
-// a part of the order of the size of a tet.
+// z = g.X has L^2 / (2 V) int |g|^2 = |g|^2 / 2 in the unit cube. Surface faces have no neighbors, so the error is of
+// the order of the tet size.
 TEST(FieldRoughness, OfALinearFieldTendsToItsIntegral) {
   double before = kInfinity;
   for (int cells : {4, 8, 16}) {
@@ -57,7 +57,7 @@ TEST(FieldRoughness, OfALinearFieldTendsToItsIntegral) {
   EXPECT_LT(before, 0.02);
 }
 
-TEST(FieldRoughness, DependsLittleOnTheMeshAndNotOnItsSize) {
+TEST(FieldRoughness, DependsLittleOnMeshNotOnSize) {
   const auto wave = [](double size) { return [size](Vec3d X) { return std::sin(3 * X[0] / size) * X[1] / size; }; };
   for (double sharpness : {kInfinity, 10.0}) {
     const TetMesh coarse = box(6), fine = box(12), large = box(6, 1000);
@@ -67,8 +67,8 @@ TEST(FieldRoughness, DependsLittleOnTheMeshAndNotOnItsSize) {
   }
 }
 
-// H1 of a jump grows as the mesh is refined, total variation does not: that is why it keeps edges.
-TEST(FieldRoughness, OfAJumpIsBoundedForTotalVariationOnly) {
+// H1 of a jump grows with mesh refinement, total variation does not, so that it preserves edges.
+TEST(FieldRoughness, OfJumpIsBoundedOnlyForTotalVariation) {
   const auto jump = [](Vec3d X) { return X[0] < 0.5 ? 0.0 : 2.0; };
   const TetMesh coarse = box(4), fine = box(12);
   EXPECT_GT(FieldRoughness(fine).value(field(fine, jump)), 2.5 * FieldRoughness(coarse).value(field(coarse, jump)));
@@ -115,7 +115,7 @@ TEST_P(Regularizers, GradientIsThatOfTheValue) {
   EXPECT_EQ(report.hessian.passed, is_quadratic()) << "that of total variation is lagged";
 }
 
-TEST(RegularizerWall, HoldsFieldsBackBeyondAFactorOfAHundred) {
+TEST(RegularizerWall, LimitsFieldsToFactorOfHundred) {
   const TetMesh mesh = box(2);
   const ParameterMap map = map_of(mesh, {{.guess = 1e5}});
   const auto R = make_regularizer(mesh, map, {.smoothness = Smoothness::h1});
@@ -140,7 +140,7 @@ TEST(RegularizerWall, HoldsFieldsBackBeyondAFactorOfAHundred) {
                                                     p);
   EXPECT_TRUE(report.gradient.passed) << report.gradient.smallest_error;
   EXPECT_TRUE(report.hessian.passed) << report.hessian.smallest_error;
-  R->solve(shifted(0), v, 0, back);  // the matrix of another place is not kept
+  R->solve(shifted(0), v, 0, back);  // the matrix of another point is not reused
   R->add_hessian_product(p, v, 1, Hv);
   R->solve(p, Hv, 0, back);
   for (size_t i = 0; i < v.size(); ++i) EXPECT_NEAR(back[i], v[i], 1e-8);
@@ -169,7 +169,7 @@ TEST_P(Regularizers, SolveInvertsTheHessian) {
     for (size_t i = 0; i < v.size(); ++i) v[i] += shift * z[i];
     R_->solve(p, v, shift, back);
     for (size_t i = 0; i < z.size(); ++i) ASSERT_NEAR(back[i], z[i], 1e-9);
-    for (double& pi : p) pi *= 1.1;  // total variation needs another matrix
+    for (double& pi : p) pi *= 1.1;  // total variation needs a new matrix
   }
 }
 
@@ -209,7 +209,7 @@ INSTANTIATE_TEST_SUITE_P(Of, Regularizers,
                                          Regularization{"PriorAlone", kEverySpread, {Smoothness::none, 1}}),
                          [](const auto& each) { return each.param.name; });
 
-TEST(Regularizer, SpreadsTheMeanOfAFieldByTheDeviation) {
+TEST(Regularizer, MeanOfFieldHasTheStandardDeviation) {
   const TetMesh mesh = box(3);
   const ParameterMap map = map_of(mesh, {{"young", Spread::tets, 0, 1e5}});
   const auto R = make_regularizer(mesh, map, {Smoothness::h1, 1.5});

@@ -1,5 +1,5 @@
-// Why a force is needed: V is proportional to all moduli together, so argmin V under prescribed positions does not
-// change with them. Shown with equilibria in large deformation.
+// Necessity of a force: V is proportional to all moduli, so argmin V under prescribed positions does not depend on
+// their scale. Shown for equilibria under large deformation.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -37,7 +37,7 @@ std::vector<double> solved_with_factor(Equilibrium& body, double factor) {
   return {body.x().begin(), body.x().end()};
 }
 
-TEST(Scale, OfAllModuliMovesNothingWhereOnlyPositionsArePrescribed) {
+TEST(Scale, OfModuliMovesNothingWithPrescribedPositions) {
   Model model = gel_cube();
   const auto pushed = [](const Vec3d& X) {
     return X[2] > kSize - 1e-9 && std::abs(X[0] - kSize / 2) < 0.03 && std::abs(X[1] - kSize / 2) < 0.03;
@@ -80,7 +80,7 @@ struct Poked {
   }
 };
 
-TEST(Scale, OfAllModuliAndOfTheProbesLayerMovesNothing) {
+TEST(Scale, OfModuliAndProbeLayerMovesNothing) {
   Poked soft(100), stiff(1000);  // the layer ten times stiffer
   const std::vector<double> x = solved_with_factor(*soft.body, 1), y = solved_with_factor(*stiff.body, 10);
   const double motion = largest_difference(x, soft.rest);
@@ -90,8 +90,8 @@ TEST(Scale, OfAllModuliAndOfTheProbesLayerMovesNothing) {
   for (int i = 0; i < 3; ++i) EXPECT_NEAR(at_y.force[i], 10 * at_x.force[i], 1e-8 * std::abs(at_y.force[2]));
 }
 
-// With the layer as it is, a little is seen of the scale however stiff it is, for its glue fades out to nothing. That
-// is what the layer's stiffness as a nuisance takes out of the residuals.
+// With a fixed layer the scale leaks into positions for any layer stiffness, because the glue fades out to zero.
+// Treating the layer stiffness as a nuisance removes this from the residuals.
 TEST(Scale, LeaksThroughTheLayer) {
   for (const double layer : {1e2, 1e3, 1e4}) {
     Poked poked(layer);

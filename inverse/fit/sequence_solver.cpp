@@ -10,7 +10,7 @@
 namespace aspic {
 namespace {
 
-constexpr size_t kRemembered = 6;     // solutions: more cost as many products as they save
+constexpr size_t kRemembered = 6;     // more solutions cost as many products as they save
 constexpr int kMaxCgIterations = 50;  // with a factor of another matrix
 
 // y += s x
@@ -23,7 +23,7 @@ void scale(double s, std::span<double> x) {
   for (double& xi : x) xi *= s;
 }
 
-// The factor of a solver, whichever matrix it is of.
+// Kept factor of a solver, for any matrix.
 class KeptFactor : public ApproximateInverse {
  public:
   explicit KeptFactor(LinearSolver& solver) : solver_(solver) {}
@@ -107,7 +107,7 @@ void SequenceSolver::note(const SolveReport& report, double tolerance) {
   digits_ += digits;
 }
 
-// The mean cost of a digit falls as long as the next one costs less.
+// The mean cost per digit decreases while the next digit costs less.
 bool SequenceSolver::is_worn() const { return digits_ == 0 || rate_ > spent_ / digits_; }
 
 // By modified Gram-Schmidt in the inner product of H [Fischer 1998].
@@ -126,7 +126,7 @@ void SequenceSolver::project(const BlockSparse& H, std::span<const double> b, st
       add(-along, image_[j], Hv);
     }
     const double own = dot(v, Hv);
-    const double inverse_length = own > 1e-12 * whole ? 1 / std::sqrt(own) : 0;  // 0: nothing new in it
+    const double inverse_length = own > 1e-12 * whole ? 1 / std::sqrt(own) : 0;  // 0: linearly dependent
     scale(inverse_length, v);
     scale(inverse_length, Hv);
     add(dot(v, b), v, x);

@@ -19,7 +19,7 @@ double relative_residual(const BlockSparse& H, std::span<const double> b, std::s
   return std::sqrt(left / size);
 }
 
-// Softens row by row, so that no matrix is a multiple of another.
+// Softens rows differently, so that no matrix is a multiple of another.
 void change(Matrix& H, double part) {
   for (int row = 0; row < H.rows(); ++row)
     for (int r = 0; r < 3; ++r)
@@ -30,7 +30,7 @@ struct Count {
   int factorizations = 0, iterations = 0;
 };
 
-// Right-hand sides without anything in common: nothing is known but the factor.
+// Unrelated right-hand sides, for which only the factor helps.
 Count solve_sequence(SequenceSolver& solver, Matrix H, int length, double change_of_each) {
   Count count;
   std::vector<double> x(3 * static_cast<size_t>(H.rows()));
@@ -67,7 +67,7 @@ TEST(SequenceSolver, SolvesWithEverySolver) {
   }
 }
 
-TEST(SequenceSolver, AMatrixThatIsIndefiniteIsReportedWhateverFactorIsAtHand) {
+TEST(SequenceSolver, IndefiniteMatrixIsReportedWithAnyFactor) {
   Matrix H = lattice();
   SequenceSolver solver("cholesky", 1e-9);
   const std::vector<double> b = random_vector(3 * H.rows(), 1), c = random_vector(3 * H.rows(), 2);

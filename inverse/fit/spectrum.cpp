@@ -37,7 +37,7 @@ std::vector<double> powers(std::span<const double> values, double exponent) {
   return result;
 }
 
-// How many of descending values are more than round-off beside the first.
+// Number of descending values above round-off relative to the first.
 int numerical_rank(std::span<const double> values, double relative) {
   int rank = 0;
   while (rank < static_cast<int>(values.size()) && values[rank] > relative * std::max(values[0], 1e-300)) ++rank;
@@ -69,7 +69,7 @@ Columns products(LeastSquares& data, const Columns& V) {  // J V
   return JV;
 }
 
-// J V from the rows of J or by one product per column, whichever is fewer.
+// J V by rows of J or by one product per column, whichever needs fewer.
 Columns dense_products(LeastSquares& data, const Columns& V) {
   if (V.count() <= data.residual_count()) return products(data, V);
   const Columns rows = columns_of_transposed(data);
@@ -79,7 +79,7 @@ Columns dense_products(LeastSquares& data, const Columns& V) {
   return JV;
 }
 
-// All of them: with C^-1 = U diag(l) U', the columns of Q = U diag(l)^-1/2 are orthonormal in the norm of C^-1.
+// All eigenpairs: with C^-1 = U diag(l) U', the columns of Q = U diag(l)^-1/2 are orthonormal in the norm of C^-1.
 Spectrum all_eigenpairs(LeastSquares& data, Gaussian& before) {
   const int n = data.unknowns();
   std::vector<double> precision(static_cast<size_t>(n) * n), unit(n, 0.0);
@@ -115,7 +115,7 @@ Spectrum of_factor(const Columns& B, Gaussian& before) {
   return s;
 }
 
-// A growing basis Q, orthonormal in the norm of C^-1, of the range of C J'.
+// Growing basis Q of the range of C J', orthonormal in the norm of C^-1.
 class RandomRange {
  public:
   RandomRange(LeastSquares& data, Gaussian& before, unsigned seed)
@@ -126,7 +126,7 @@ class RandomRange {
         dual_(data.unknowns()),
         JQ_(data.residual_count()) {}
 
-  // False: there is no further direction.
+  // Returns false if there is no further direction.
   bool grow() {
     const int n = data_.unknowns();
     std::normal_distribution<double> normal;

@@ -103,7 +103,7 @@ TEST(Spectrum, DenseTakesTheCheaperSideOfTheJacobian) {
   EXPECT_EQ(wide.transposed_products, 20);
 }
 
-TEST(Spectrum, SaysWhatARankThatIsTooSmallMisses) {
+TEST(Spectrum, ReportsInformationMissedByLowRank) {
   test::LinearModel data = test::averages(300, 200, 30, 5);
   test::QuadraticBelief belief = test::chain_belief(300, 1, 2);
   const std::vector<double> p(300);
@@ -115,7 +115,7 @@ TEST(Spectrum, SaysWhatARankThatIsTooSmallMisses) {
   EXPECT_LE(many.missed, 0.1);
 }
 
-TEST(Spectrum, OfAJacobianThatIsNotFiniteIsNone) {
+TEST(Spectrum, OfNonFiniteJacobianIsEmpty) {
   for (const int dense : {600, 40, 10}) {
     test::LinearModel data = test::averages(80, 30, 1, 5);
     test::QuadraticBelief belief = test::chain_belief(80, 1, 2);

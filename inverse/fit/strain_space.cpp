@@ -9,14 +9,14 @@
 namespace aspic {
 namespace {
 
-constexpr double kRidge = 1e-3;       // of the mean distance between examples: they are smoothed by as much
-constexpr double kSameStrain = 1e-9;  // examples closer together than this say the same
-constexpr double kWidened = 0.5;      // by which log E may leave the range of the examples
+constexpr double kRidge = 1e-3;       // ridge relative to the mean distance between examples, which smooths them
+constexpr double kSameStrain = 1e-9;  // closer examples count as equal
+constexpr double kWidened = 0.5;      // extension of the range of log E beyond the examples
 constexpr double kLeastPoisson = -0.9, kLargestPoisson = 0.495;
 
 double distance(const Mat3d& a, const Mat3d& b) { return std::sqrt(squared_norm(a - b)); }
 
-// A small square system with two right-hand sides, by elimination with pivots from the rows.
+// Small square system with two right-hand sides, solved by elimination with partial pivoting.
 struct StrainColumns {
   double log_young, poisson;
 };
@@ -90,7 +90,7 @@ Mat3d deformation_gradient(const TetMesh& mesh, const Mat3d& rest_inverse, int t
 }
 
 StrainSpaceModuli::StrainSpaceModuli(const TetMesh& mesh, std::span<const StrainExample> examples) {
-  if (examples.empty()) throw InvalidInput("there is no example to interpolate");
+  if (examples.empty()) throw InvalidInput("there are no examples to interpolate");
   for (const StrainExample& example : examples) check(mesh, example);
   for (int t = 0; t < mesh.tet_count(); ++t) {
     const Mat3d rest_inverse = inverse(edge_matrix(mesh, t));

@@ -12,7 +12,7 @@
 namespace aspic {
 namespace {
 
-// |J e|^2 for a common shift of log E: the stiffness of everything times a factor.
+// |J e|^2 for a common shift of log E: scaled stiffness of the whole body.
 double information_of_scale(LeastSquares& data, const ParameterMap& map, int young) {
   std::vector<double> shift(map.size(), 0.0), dr(data.residual_count());
   const auto [first, count] = map.range(young);
@@ -28,14 +28,14 @@ int index_of(const ParameterMap& map, const char* quantity) {
 }
 
 void warn_of_scale(LeastSquares& data, const ParameterMap& map, Posterior& result) {
-  constexpr double kNothing = 1e-2;  // the data alone would know E up to a factor of e^10
+  constexpr double kNothing = 1e-2;  // limit at which data alone determine E up to a factor of e^10
   const int young = index_of(map, "young");
   if (young < 0) return;
   result.scale_is_unknown = information_of_scale(data, map, young) < kNothing;
   if (result.scale_is_unknown)
     result.warnings.push_back(
-        "without any force, torque, weight or pressure only ratios of stiffness are known: all of young could be "
-        "larger or smaller by a common factor, and what is shown of its level is the guess (measure one force)");
+        "without any force, torque, weight or pressure only ratios of stiffness are determined: all of young could be "
+        "larger or smaller by a common factor, and its level is the initial guess (measure one force)");
 }
 
 double informed(const Spectrum& s) {
@@ -44,8 +44,8 @@ double informed(const Spectrum& s) {
   return sum;
 }
 
-// |r|^2 of right standard deviations lies between residuals - informed (all that could be was fitted) and residuals,
-// within the scatter of chi^2.
+// With correct standard deviations |r|^2 is between residuals - informed (complete fit) and residuals, within the
+// scatter of chi^2.
 void judge_noise(double misfit, int residuals, Posterior& result, Spectrum& s) {
   const double free = std::max(residuals - informed(s), 1.0);
   const double lower = free - 3 * std::sqrt(2 * free), upper = residuals + 3 * std::sqrt(2.0 * residuals);
@@ -56,7 +56,7 @@ void judge_noise(double misfit, int residuals, Posterior& result, Spectrum& s) {
     result.warnings.push_back(formatted(
         "|r|^2 is %.3g per reading, clearly more than 1: the standard deviations of the readings are too small, the "
         "weight "
-        "of the regularizer is too large, or the model cannot do what the body does; all intervals are %.3g times "
+        "of the regularizer is too large, or the model cannot represent the body; all intervals are %.3g times "
         "wider "
         "for it",
         misfit / residuals, result.noise_factor));
@@ -73,7 +73,7 @@ void judge_weight(Regularizer& prior, double weight, std::span<const double> p, 
   if (!(weight > 0) || s.d.empty()) return;
   const auto [best, gain] = supported_weight(prior, weight, p, s);
   result.suggested_weight = weight * best;
-  constexpr double kClear = 8;  // by chance it is exceeded once in 200 times (chi^2 of one degree)
+  constexpr double kClear = 8;  // exceeded by chance once in 200 cases (chi^2, one degree of freedom)
   if (gain < kClear) return;
   result.warnings.push_back(formatted(
       best < 1 ? "the weight of the regularizer, %.3g, is %.2g times larger than what the data support (%.3g): details "
@@ -84,12 +84,12 @@ void judge_weight(Regularizer& prior, double weight, std::span<const double> p, 
 }
 
 void warn_of_rank(Posterior& result) {
-  constexpr double kMuch = 3;  // deviations twice too large
+  constexpr double kMuch = 3;  // standard deviations that are twice too large
   const Spectrum& s = result.belief->spectrum();
   if (s.missed > kMuch)
     result.warnings.push_back(formatted(
-        "only the %d best seen directions were looked at; each of the others may be known %.2g times better than "
-        "is shown, none worse",
+        "only the %d best determined directions were computed; the others may be determined %.2g times better than "
+        "shown, none worse",
         s.W.count(), std::sqrt(1 + s.missed)));
 }
 
@@ -144,14 +144,14 @@ Posterior posterior(LeastSquares& data, Regularizer& prior, double weight, const
   Posterior result;
   std::vector<double> r(data.residual_count());
   if (!data.evaluate(p, r) || !data.linearize()) {
-    result.warnings.push_back("nothing is known of the uncertainty: at the fit no stable equilibrium was found");
+    result.warnings.push_back("the uncertainty is unknown: no stable equilibrium was found at the fit");
     return result;
   }
   warn_of_scale(data, map, result);
   PriorGaussian before(prior, weight, p);
   Spectrum s = spectrum(data, before, options.spectrum);
   if (!s.ok) {
-    result.warnings.push_back("nothing is known of the uncertainty: a derivative at the fit could not be computed");
+    result.warnings.push_back("the uncertainty is unknown: a derivative at the fit could not be computed");
     return result;
   }
   const double roughness = prior.value(p), squares = dot(r, r);

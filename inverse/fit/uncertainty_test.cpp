@@ -22,7 +22,7 @@ ParameterMap make_map(const TetMesh& mesh, std::vector<Unknown> unknowns) {
 
 TetMesh bar(int cells) { return make_box({{0, 0, 0}}, {{0.01 * cells, 0.01, 0.01}}, {cells, 1, 1}, BoxCut::five); }
 
-// A field over the tets of a bar, averages of which were measured with standard deviation 1.
+// A field over the tets of a bar, with measured averages of standard deviation 1.
 struct Field {
   TetMesh mesh;
   ParameterMap map;
@@ -87,7 +87,7 @@ TEST(Posterior, IsSampledWithinTheErrorThatItReports) {
       EXPECT_LT(std::abs(error), 4.5 * posterior.deviation_error);
       squares += error * error / f.map.size();
     }
-    EXPECT_GT(std::sqrt(squares), 0.1 * posterior.deviation_error);  // it is no excuse either
+    EXPECT_GT(std::sqrt(squares), 0.1 * posterior.deviation_error);  // the error estimate is not excessive
   }
 }
 
@@ -110,7 +110,7 @@ TEST(Posterior, OfTwoQuantitiesKeepsThemApart) {
 
 // ---------------------------------------------------------------------------------------------------- coverage
 
-TEST(Posterior, IntervalsOf95PercentHoldTheTruthAsOften) {
+TEST(Posterior, IntervalsContainTruthAtStatedRate) {
   constexpr int kSeeds = 600;
   Field f(8, 25);
   int one = 0, all = 0;
@@ -127,13 +127,13 @@ TEST(Posterior, IntervalsOf95PercentHoldTheTruthAsOften) {
     }
   }
   const double error = std::sqrt(0.95 * 0.05 / kSeeds);
-  EXPECT_NEAR(one / double(kSeeds), 0.95, 3.3 * error);  // 999 of 1000 times
+  EXPECT_NEAR(one / double(kSeeds), 0.95, 3.3 * error);  // fails once in 1000 cases
   EXPECT_NEAR(all / double(kSeeds * f.map.size()), 0.95, 3.3 * error);
 }
 
 // ---------------------------------------------------------------------------------------------------- scale
 
-// Rows of averages that do not change when log E is shifted everywhere.
+// Rows of averages that are invariant under a common shift of log E.
 Field ratios_only() {
   Field f(6, 40);
   const Eigen::VectorXd mean = f.data.J.rowwise().mean();
@@ -151,14 +151,14 @@ TEST(Posterior, TellsThatOnlyRatiosOfStiffnessAreKnown) {
   EXPECT_LT(blind.unseen[0].information, 0.5);
   EXPECT_THAT(blind.warnings, testing::Contains(HasSubstr("measure one force")));
 
-  f.data.J.row(0).setConstant(10.0 / f.map.size());  // a force that is known to 10 %
+  f.data.J.row(0).setConstant(10.0 / f.map.size());  // a force known to 10 %
   f.measure(3);
   const Posterior sees = f.posterior();
   EXPECT_FALSE(sees.scale_is_unknown);
   EXPECT_LT(sees.deviation[0][0], blind.deviation[0][0]);
 }
 
-TEST(Posterior, DoesNotTakeTheStiffnessOfAContactForAForce) {
+TEST(Posterior, ContactStiffnessIsNoForceInformation) {
   Field f = ratios_only();
   std::mt19937_64 random(1);
   const Eigen::VectorXd leak = 3 * test::normal_vector(f.data.residual_count(), random);
@@ -184,10 +184,10 @@ TEST(Posterior, IsContentWithTheRightNoiseAndWeight) {
     EXPECT_NEAR(posterior.noise_factor, 1, 0.2);
     EXPECT_EQ(posterior.applied_factor, 1);
   }
-  EXPECT_LE(warned, 3);  // each judgment is wrong by chance about once in 200 times
+  EXPECT_LE(warned, 3);  // each verdict is wrong by chance about once in 200 cases
 }
 
-TEST(Posterior, WidensWhenTheMeasurementsScatterMoreThanTheySay) {
+TEST(Posterior, WidensIfMeasurementsScatterMoreThanStated) {
   Field f(8, 300, 1);
   f.measure(1, 3);
   const Posterior posterior = f.posterior();
@@ -214,7 +214,7 @@ TEST(Posterior, DoesNotNarrowWhenTheyScatterLess) {
 TEST(Posterior, TellsWhichWeightTheDataSupport) {
   Field f(30, 300, 20);
   f.measure(1);
-  for (const double weight : {0.01, 1.0, 100.0}) {  // for linear residuals, what is suggested is the same
+  for (const double weight : {0.01, 1.0, 100.0}) {  // the suggested weight does not depend on it for linear residuals
     const Posterior posterior = f.posterior(weight);
     EXPECT_GT(posterior.suggested_weight, 0.5) << weight;
     EXPECT_LT(posterior.suggested_weight, 2) << weight;
@@ -223,7 +223,7 @@ TEST(Posterior, TellsWhichWeightTheDataSupport) {
   }
 }
 
-TEST(Posterior, HasItsLargestEvidenceNearTheWeightOfTheTruth) {
+TEST(Posterior, HasLargestEvidenceNearTrueWeight) {
   Field f(30, 300, 1);
   f.measure(2);
   const double right = f.posterior(1).log_evidence;
