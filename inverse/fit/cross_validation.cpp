@@ -77,29 +77,29 @@ HeldOut compare(const Experiment& left_out, std::span<const CasePrediction> pred
 }
 
 CrossValidation cross_validate(const Experiment& experiment, const ParameterMap& map, Regularizer& regularizer,
-                               const FitReport& fitted, FitOptions options, const EquilibriumOptions& equilibrium,
-                               const CrossValidationObserver& observe) {
+                               const FitReport& fitted, const CrossValidationOptions& chosen) {
   CrossValidation result;
   const std::vector<std::string> groups = groups_of(experiment);
   if (groups.size() < 2) {
     result.warnings.push_back("nothing can be held out: all cases belong to one group (give each poke its own)");
     return result;
   }
+  FitOptions options = chosen.fit;
   options.weight = fitted.weight;
   options.starts = 1;
   for (size_t g = 0; g < groups.size(); ++g) {
-    if (observe) observe(static_cast<int>(g), static_cast<int>(groups.size()), groups[g]);
+    if (chosen.observe) chosen.observe(static_cast<int>(g), static_cast<int>(groups.size()), groups[g]);
     if (options.stop.stopped()) break;
     HeldOut& h = result.groups.emplace_back();
     h.group = groups[g];
     const Experiment seen = subset(experiment, [&](const LoadCase& c) { return c.group != h.group; });
     const Experiment left_out = subset(experiment, [&](const LoadCase& c) { return c.group == h.group; });
-    Misfit misfit(seen, map, equilibrium);
+    Misfit misfit(seen, map, chosen.equilibrium);
     WithUncertainLayers data(misfit);
     const FitReport report = fit(data, regularizer, fitted.p, options);
     h.p = report.p;
     if (is_success(report.status) || report.status == Status::iteration_limit)
-      predict(left_out, map, equilibrium, h);
+      predict(left_out, map, chosen.equilibrium, h);
     else
       h.failure = "the fit to the other cases failed: " + report.words;
     if (!h.ok) result.warnings.push_back(h.group + " could not be predicted: " + h.failure);

@@ -104,13 +104,13 @@ void set_words(const ParameterMap& map, const TetMesh& mesh, const Posterior& po
                     words_of_change(what, posterior.deviation[unknown][t], candidate.deviation[unknown][t]);
 }
 
-void judge(const Experiment& experiment, const TetMesh& mesh, const ParameterMap& map, Posterior& posterior,
-           std::span<const double> p, const NextPokeOptions& options, const EquilibriumOptions& equilibrium,
-           PokeCandidate& candidate) {
+void judge(const Experiment& experiment, const FittedField& fitted, Posterior& posterior,
+           const NextPokeOptions& options, PokeCandidate& candidate) {
+  const auto& [map, mesh, p] = fitted;
   Experiment one = subset(experiment, [](const LoadCase&) { return false; });
   one.cases = {candidate.load};
   try {
-    Misfit misfit(one, map, equilibrium);
+    Misfit misfit(one, map, options.equilibrium);
     WithUncertainLayers data(misfit);
     std::vector<double> r(misfit.residual_count());
     if (!data.evaluate(p, r) || !data.linearize()) {
@@ -150,8 +150,9 @@ std::vector<double> spread_gain(const TetMesh& mesh, const std::vector<PokeCandi
 
 }  // namespace
 
-NextPoke next_poke(const Experiment& experiment, const TetMesh& mesh, const ParameterMap& map, Posterior& posterior,
-                   std::span<const double> p, const NextPokeOptions& options, const EquilibriumOptions& equilibrium) {
+NextPoke next_poke(const Experiment& experiment, const FittedField& fitted, Posterior& posterior,
+                   const NextPokeOptions& options) {
+  const TetMesh& mesh = fitted.mesh;
   ASPIC_CHECK(posterior.ok);
   const Instruments with = instruments(experiment, options);
   NextPoke result;
@@ -160,7 +161,7 @@ NextPoke next_poke(const Experiment& experiment, const TetMesh& mesh, const Para
   for (const PokeSite& site : poke_sites(mesh, fixed, with.tip.radius, options.sites)) {
     PokeCandidate candidate{.vertex = site.vertex, .site = mesh.rest[site.vertex], .inward = site.inward};
     candidate.load = load_at(experiment, with, candidate.site, candidate.inward);
-    judge(experiment, mesh, map, posterior, p, options, equilibrium, candidate);
+    judge(experiment, fitted, posterior, options, candidate);
     if (!candidate.ok) result.warnings.push_back(candidate.load.name + " could not be judged: " + candidate.failure);
     result.candidates.push_back(std::move(candidate));
   }

@@ -81,8 +81,7 @@ std::vector<PokeSite> poke_sites(const TetMesh& mesh, std::span<const int> fixed
   std::vector<double> distance(all.size(), std::numeric_limits<double>::infinity());
   Vec3d mean{};
   for (const PokeSite& s : all) mean = mean + (1.0 / static_cast<double>(all.size())) * mesh.rest[s.vertex];
-  for (size_t i = 0; i < all.size(); ++i)
-    distance[i] = norm(mesh.rest[all[i].vertex] - mean);  // initially far outside
+  for (size_t i = 0; i < all.size(); ++i) distance[i] = norm(mesh.rest[all[i].vertex] - mean);  // initially far outside
   while (static_cast<int>(chosen.size()) < count && !all.empty()) {
     const size_t next = std::ranges::max_element(distance) - distance.begin();
     if (!chosen.empty() && !(distance[next] > 0)) break;
