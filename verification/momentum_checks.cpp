@@ -88,7 +88,7 @@ void check_angular_euler(const Subject& subject, Findings& found) {
   found.expect_small("backward_euler: |dL - h sum v_new x M v_old| / |L0|, largest of 10 steps", worst, 1e-8,
                      "each solve leaves 1e-13 of the forces that balance");
   found.expect("backward_euler: the formula is put to a test (sum |dL| > 1e-3 |L0|)",
-               {lost > 1e-3 * first ? 1 : 0, 1, 0}, "yes or no");
+               {lost > 1e-3 * first ? 1.0 : 0.0, 1, 0}, "yes or no");
 }
 
 }  // namespace

@@ -36,7 +36,7 @@ void check_time_order(const Subject& subject, Findings& found) {
         curve.y.push_back(affine_motion_error(taken, curve.x.back(), held));
       }
       found.expect(integrator + ": order, " + words(held),
-                   {order_between(curve.y[curve.y.size() - 2], curve.y.back()), order, 0.2},
+                   {order_between(curve.y[curve.y.size() - 2], curve.y.back()), static_cast<double>(order), 0.2},
                    "the next term of the error is some h of the first: up to a tenth of the order at these steps");
       if (held == Held::on_one_face) plot.curves.push_back(curve);
     }
@@ -50,7 +50,8 @@ void check_driven_order(const Subject& subject, Findings& found) {
     const double h = 0.004;
     const std::string taken = subject.taken_for(integrator);
     found.expect(integrator + ": order",
-                 {order_between(driven_oscillator_error(taken, h), driven_oscillator_error(taken, h / 2)), order, 0.1},
+                 {order_between(driven_oscillator_error(taken, h), driven_oscillator_error(taken, h / 2)),
+                  static_cast<double>(order), 0.1},
                  "the next term of the error at w h = 0.04");
   }
 }

@@ -71,11 +71,12 @@ void check_edges(const Subject& subject, Findings& found) {
       if (std::any_of(own.states.begin(), own.states.end(), is_here)) continue;
       const double psi = taken.psi(F);
       if (info.barrier)
-        found.expect(info.name + ", " + name + ": refused with psi = +inf", {std::isinf(psi) && psi > 0, 1, 0},
+        found.expect(info.name + ", " + name + ": refused with psi = +inf",
+                     {std::isinf(psi) && psi > 0 ? 1.0 : 0.0, 1, 0},
                      "yes or no; it is what the formula says, or more than a number can hold");
       else
         found.expect(info.name + ", " + name + ": psi, P and H are finite",
-                     {std::isfinite(psi + max_abs(taken.pk1(F).a) + max_abs(taken.hessian(F).a)), 1, 0},
+                     {std::isfinite(psi + max_abs(taken.pk1(F).a) + max_abs(taken.hessian(F).a)) ? 1.0 : 0.0, 1, 0},
                      "yes or no; the closest rotation jumps there, so there is no derivative");
     }
   }

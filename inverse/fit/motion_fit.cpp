@@ -73,7 +73,7 @@ class MotionMinimizer {
                                   .criterion = Criterion::first_gradient,
                                   .line_search = {.tolerance = 1e-6},
                                   .stop = StopToken([&] { return is_done || f_.stop().stopped(); })};
-    const MinimizeReport found = minimizer.minimize(f_, direction, x, f_.at_iterate(), options, observe);
+    const MinimizeReport found = minimizer.minimize(f_, direction, {x, f_.at_iterate()}, options, observe);
     if (is_done || is_success(found.status)) return Status::converged;
     if (found.status == Status::stuck && found.decrement <= tolerance(kRoundOff, kRoundOffInNoise))
       return Status::converged;

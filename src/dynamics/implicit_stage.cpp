@@ -49,9 +49,9 @@ void ImplicitStage::predict(const StepTools& tools, const StageOptions& options)
   }
 }
 
-MinimizeReport ImplicitStage::minimize(const StepTools& tools, const StageOptions& options, const Motion& motion,
-                                       StepSolve& solve) {
-  q_.assign(motion.q.begin(), motion.q.end());
+MinimizeReport ImplicitStage::minimize(const StepTools& tools, const StageOptions& options,
+                                       const StageUnknowns& unknowns, StepSolve& solve) {
+  q_.assign(unknowns.q.begin(), unknowns.q.end());
   MinimizeOptions minimize = options.once ? one_iteration(tools.options) : tools.options;
   minimize.h = options.beta;
   minimize.stop = tools.options.stop.at_fraction(options.part);
@@ -65,8 +65,8 @@ MinimizeReport ImplicitStage::minimize(const StepTools& tools, const StageOption
     return report;
   }
   MinimizeReport lead;
-  const GuessContext known{.q = motion.q,
-                           .qdot = motion.v,
+  const GuessContext known{.q = unknowns.q,
+                           .qdot = unknowns.v,
                            .ahead = options.ahead,
                            .time = options.time,
                            .predicted = predicted_,
@@ -81,16 +81,16 @@ MinimizeReport ImplicitStage::minimize(const StepTools& tools, const StageOption
   return report;
 }
 
-bool ImplicitStage::solve(const StepTools& tools, const StageOptions& options, const Motion& motion, StepSolve& solve,
-                          StepForces& forces) {
+bool ImplicitStage::solve(const StepTools& tools, const StageOptions& options, const StageUnknowns& unknowns,
+                          StepSolve& solve, StepForces& forces) {
   const double beta = options.beta;
-  const auto& [q, v, acc] = motion;
+  const auto& [q, v, acc] = unknowns;
   predict(tools, options);
   const StepContext context{a, beta, options.time, tools.start.q};
   tools.E.set_potential_step(context);
   tools.E.set_damping_step(context);
   tools.E.begin_step(predicted_, 1, beta * beta);
-  if (!solve.add(minimize(tools, options, motion, solve))) return false;
+  if (!solve.add(minimize(tools, options, unknowns, solve))) return false;
 
   std::copy(q_.begin(), q_.end(), q.begin());
   for (size_t i = 0; i < q.size(); ++i) v[i] = (q[i] - a[i]) / beta;

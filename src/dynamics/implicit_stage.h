@@ -22,7 +22,7 @@ struct StageOptions {
   const PinPath* path = nullptr;     // velocities and accelerations of pinned vertices; null: differences of positions
 };
 
-struct Motion {
+struct StageUnknowns {
   std::span<double> q, v, acc;  // [m], [m/s], [m/s^2]
 };
 
@@ -32,12 +32,13 @@ class ImplicitStage {
 
   // On entry q and v hold the latest positions and velocities. Writes q*, v* and acc, or returns false and leaves q and
   // v.
-  bool solve(const StepTools& tools, const StageOptions& options, const Motion& motion, StepSolve& solve,
+  bool solve(const StepTools& tools, const StageOptions& options, const StageUnknowns& unknowns, StepSolve& solve,
              StepForces& forces);
 
  private:
   void predict(const StepTools& tools, const StageOptions& options);
-  MinimizeReport minimize(const StepTools& tools, const StageOptions& options, const Motion& motion, StepSolve& solve);
+  MinimizeReport minimize(const StepTools& tools, const StageOptions& options, const StageUnknowns& unknowns,
+                          StepSolve& solve);
 
   Guesser guesser_;
   std::vector<double> predicted_, q_;  // q~, the minimizer's positions

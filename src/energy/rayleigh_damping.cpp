@@ -2,6 +2,7 @@
 
 #include "base/check.h"
 #include "base/parallel.h"
+#include "math/vectors.h"
 
 namespace aspic {
 namespace {
