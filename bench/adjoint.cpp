@@ -104,14 +104,14 @@ bool bench_motion(int n, const std::string& linear, const Arguments& arguments) 
   for (int run = 0; run <= arguments.runs; ++run) {
     Stopwatch stopwatch;
     if (const TrajectoryReport report = trajectory.simulate(end); !report.ok) {
-      std::printf("motion, n = %d: %s\n", n, report.failure.c_str());
+      std::printf("motion, n = %d: %s\n", n, report.message.c_str());
       return false;
     }
     const double forward = stopwatch.lap().processor;
     const TrajectoryReport report = trajectory.differentiate(end, gradient);
     const double both = stopwatch.lap().processor;
     if (!report.ok) {
-      std::printf("motion, n = %d: %s\n", n, report.failure.c_str());
+      std::printf("motion, n = %d: %s\n", n, report.message.c_str());
       return false;
     }
     if (run == 0) continue;

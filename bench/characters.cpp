@@ -17,6 +17,7 @@
 #include "bench/stopwatch.h"
 #include "dynamics/model_builder.h"
 #include "dynamics/simulation.h"
+#include "math/vectors.h"
 
 namespace aspic::bench {
 namespace {

@@ -1,4 +1,5 @@
 #include "bench/kernel_report.h"
+#include "math/vectors.h"
 
 #include <algorithm>
 #include <cstdio>

@@ -39,13 +39,4 @@ void Results::write(const std::filesystem::path& path) const {
   file.close();
 }
 
-double median(std::vector<double> values) {
-  if (values.empty()) return 0;
-  const size_t middle = values.size() / 2;
-  std::nth_element(values.begin(), values.begin() + middle, values.end());
-  const double upper = values[middle];
-  if (values.size() % 2 == 1) return upper;
-  return 0.5 * (upper + *std::max_element(values.begin(), values.begin() + middle));
-}
-
 }  // namespace aspic::bench

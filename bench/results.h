@@ -28,6 +28,4 @@ class Results {
   std::vector<Row> rows_;
 };
 
-double median(std::vector<double> values);  // 0 without values
-
 }  // namespace aspic::bench

@@ -128,9 +128,9 @@ Captured capture(const VirtualCapture& setup) {
     const CasePrediction& found = model.prediction(c);
     for (int m = 0; m < setup.markers; ++m) {
       const Vec3d u = found.markers[m] - rest_position(source, m);
-      motion = std::max(motion, std::sqrt(dot(u, u)));
+      motion = std::max(motion, norm(u));
     }
-    force = std::max(force, std::sqrt(dot(found.wrench.force, found.wrench.force)));
+    force = std::max(force, norm(found.wrench.force));
   }
 
   Captured data{experiment_on(setup, setup.cells), {}, {}};

@@ -6,6 +6,7 @@
 #include "base/error.h"
 #include "capture/data_set.h"
 #include "capture/journal.h"
+#include "capture/motion_table.h"
 #include "capture/test_curves.h"
 #include "io/atomic_file.h"
 #include "io/checkpoint.h"
@@ -102,6 +103,16 @@ void curves(std::string_view bytes) {
   const fs::path path = folder_of_process() / "curves.csv";
   put_file(path, bytes);
   require(!read_test_curves(path).empty(), "a table that is read has a curve");
+}
+
+void motion_table(std::string_view bytes) {
+  const TetMesh mesh = small_box();
+  const fs::path path = folder_of_process() / "positions.csv";
+  put_file(path, bytes);
+  std::vector<std::string> notes;
+  const MotionData data = attach_markers(read_motion_table(path), mesh, at_rest(mesh), 0.01, notes);
+  require_printable(notes);
+  for (const MotionSample& sample : data.samples) require(sample.time > 0 && sample.sigma > 0, "samples are valid");
 }
 
 void journal(std::string_view bytes) {

@@ -28,6 +28,7 @@ std::span<const Target> targets() {
       {"material", material},
       {"data_set", data_set},
       {"curves", curves},
+      {"motion_table", motion_table},
       {"toml", toml},
       {"scene", scene},
       {"values", values},

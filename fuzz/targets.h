@@ -40,6 +40,7 @@ void journal(std::string_view bytes);
 void material(std::string_view bytes);
 void data_set(std::string_view bytes);  // files in one text
 void curves(std::string_view bytes);
+void motion_table(std::string_view bytes);
 // Scenes.
 void toml(std::string_view bytes);
 void scene(std::string_view bytes);   // builds the scene, with at most a few hundred tets

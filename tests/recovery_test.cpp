@@ -43,7 +43,7 @@ Vec3d corner(std::span<const double> q, int v) { return {{q[3 * v], q[3 * v + 1]
 // Dihedral angle at edge a b between the faces through c and d [rad].
 double dihedral(const Vec3d& a, const Vec3d& b, const Vec3d& c, const Vec3d& d) {
   const Vec3d m = cross(b - a, c - a), n = cross(b - a, d - a), s = cross(m, n);
-  return std::atan2(std::sqrt(dot(s, s)), dot(m, n));
+  return std::atan2(norm(s), dot(m, n));
 }
 
 // Largest winding number of the tets around an interior edge; 1 unless the shape is folded.

@@ -28,7 +28,7 @@ void write_samples(const std::filesystem::path& folder) {
   Pc2File cache = Pc2File::create(folder / "skin.pc2", 5);
   for (int sample = 0; sample < 3; ++sample) {
     const std::string name = "body_" + std::to_string(sample) + ".vtu";
-    write_vtu(folder / name, sample_points(sample), tets, {velocity}, {stress, body});
+    write_vtu(folder / name, sample_points(sample), tets, {{velocity}, {stress, body}});
     frames.emplace_back(0.1 * sample, name);
     cache.append(sample_points(sample));
   }
@@ -41,7 +41,7 @@ void write_samples(const std::filesystem::path& folder) {
   std::vector<Tet> chain;
   for (int i = 0; i < 40000; ++i) many.insert(many.end(), {i * 0.1, i * 0.01, 1.0 / (i + 1)});
   for (int i = 0; i + 3 < 40000; ++i) chain.push_back({i, i + 1, i + 2, i + 3});
-  write_vtu(folder / "large.vtu", many, chain, {}, {});
+  write_vtu(folder / "large.vtu", many, chain);
 }
 
 }  // namespace

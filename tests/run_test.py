@@ -267,7 +267,7 @@ class Render(CommandLine):
         self.assertIn("--size 9x: write WIDTHxHEIGHT", render("-o", "a.png", "--step", "1", "--size", "9x"))
         self.assertIn("one picture needs --step", render("-o", "a.png"))
         self.assertIn("a video needs even width and height", render("-o", "a.mp4", "--size", "101x100"))
-        self.assertIn("a.bmp: pictures become", render("-o", "a.bmp"))
+        self.assertIn("a.bmp: must be .png", render("-o", "a.bmp"))
         self.assertIn("choose one of displacement", render("-o", "a.png", "--step", "1", "--color", "stress"))
         self.assertIn("choose one of front", render("-o", "a.png", "--step", "1", "--view", "above"))
         self.assertFalse((self.folder / "a.png").exists())

@@ -73,11 +73,11 @@ void check_elastica(const Subject& subject, Findings& found) {
     const double reference = loads[k].drop;
     exact.x.push_back(loads[k].load), exact.y.push_back(reference);
     found.expect(
-        name + ": drop / L, limit", richardson(values, 2), reference, (subject.quick ? 0.02 : 2.5e-3) * reference,
+        name + ": drop / L, limit", {richardson(values, 2), reference, (subject.quick ? 0.02 : 2.5e-3) * reference},
         subject.quick ? "4 cells through the height are at the end of locking"
                       : "shear adds 0.6 (h/L)^2 = 4e-4, the law as much at strains of 5 %, the extrapolation some");
     if (values.size() >= 3)
-      orders.expect(name + ": order of the last three meshes", extrapolate(values).order, 2, 0.35,
+      orders.expect(name + ": order of the last three meshes", {extrapolate(values).order, 2, 0.35},
                     "locking is over once there are 4 cells through the height; from 4 to 16 the next term counts");
   }
   found.rows.insert(found.rows.end(), orders.rows.begin(), orders.rows.end());

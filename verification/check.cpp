@@ -24,13 +24,13 @@ bool Findings::passes() const {
   return !rows.empty() && std::all_of(rows.begin(), rows.end(), [](const Row& row) { return row.passes(); });
 }
 
-void Findings::expect(std::string quantity, double measured, double reference, double tolerance, std::string reason,
-                      std::string unit) {
+void Findings::expect(std::string quantity, const Comparison& numbers, std::string reason, std::string unit) {
+  const auto [measured, reference, tolerance] = numbers;
   rows.push_back({std::move(quantity), measured, reference, tolerance, std::move(unit), std::move(reason)});
 }
 
 void Findings::expect_small(std::string quantity, double measured, double bound, std::string reason, std::string unit) {
-  expect(std::move(quantity), measured, 0, bound, std::move(reason), std::move(unit));
+  expect(std::move(quantity), {measured, 0, bound}, std::move(reason), std::move(unit));
 }
 
 Findings run_check(const Check& check, const Subject& subject) {
@@ -42,7 +42,7 @@ Findings run_check(const Check& check, const Subject& subject) {
   } catch (const std::exception& error) {
     trouble = error.what();
   }
-  if (!trouble.empty()) findings.expect("could not be computed", kNan, kNan, 0, trouble);
+  if (!trouble.empty()) findings.expect("could not be computed", {kNan, kNan, 0}, trouble);
   return findings;
 }
 

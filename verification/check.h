@@ -17,6 +17,10 @@ struct Subject {
   std::string taken_for(const std::string& name) const;  // the replacement of `name`, or `name`
 };
 
+struct Comparison {
+  double measured, reference, tolerance;
+};
+
 // One judged value.
 struct Row {
   std::string quantity;
@@ -49,8 +53,7 @@ struct Findings {
   std::vector<Plot> plots;
 
   bool passes() const;  // at least one row, and all rows pass
-  void expect(std::string quantity, double measured, double reference, double tolerance, std::string reason,
-              std::string unit = "");
+  void expect(std::string quantity, const Comparison& numbers, std::string reason, std::string unit = "");
   // Expects a value of zero.
   void expect_small(std::string quantity, double measured, double bound, std::string reason, std::string unit = "");
 };

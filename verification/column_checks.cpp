@@ -56,7 +56,7 @@ void check_frequency(const Subject& subject, Findings& found) {
     values.push_back(torsional_frequency(n, subject.taken_for("neo_hookean_log"), subject.stiffness));
   const double reference = std::sqrt(kTorsion / kPolar) / (4 * kLength);
   found.expect(
-      "first torsional frequency, limit", richardson(values, 2), reference, (subject.quick ? 0.01 : 2e-3) * reference,
+      "first torsional frequency, limit", {richardson(values, 2), reference, (subject.quick ? 0.01 : 2e-3) * reference},
       "what the extrapolation with order 2 leaves; the inertia and the stiffness of warping, which the formula "
       "leaves out, change it by 1e-4",
       "Hz");
@@ -186,13 +186,13 @@ void check_large_twist(const Subject& subject, Findings& found) {
                      "each solve leaves 1e-12 of the forces");
   found.expect_small("|E / E0 - 1|, largest of all steps", twist.energy_error, 2e-3,
                      "the midpoint rule conserves it to order 2; half a millisecond is 1/700 of a swing");
-  found.expect("the same with steps twice as long, ratio", coarse.energy_error / twist.energy_error, 4, 1,
+  found.expect("the same with steps twice as long, ratio", {coarse.energy_error / twist.energy_error, 4, 1},
                "order 2; the next term of the error");
-  found.expect("smallest det F of all tets and steps", twist.least_det_F, 1, 0.3,
+  found.expect("smallest det F of all tets and steps", {twist.least_det_F, 1, 0.3},
                "no tet comes near to inversion; with K / mu = 9.7 volumes change less than shapes");
   found.expect(
       "largest turn of the top, over that of small turns",
-      *std::max_element(twist.angle.begin(), twist.angle.end()) * swing_rate() / base.spin, 1, 0.15,
+      {*std::max_element(twist.angle.begin(), twist.angle.end()) * swing_rate() / base.spin, 1, 0.15},
       "linear tets at nu = 0.45 are too stiff, by less the finer they are, and nearly a whole turn is not small");
   found.expect_small("what a quarter turn changes", asymmetry(mesh, twist.q, twist.q, {{0, 1, 0, -1, 0, 0, 0, 0, 1}}),
                      1e-9, "each solve leaves 1e-12 of the forces", "m");

@@ -52,10 +52,10 @@ void check_cook(const Subject& subject, Findings& found, const Cook& cook, doubl
     limit.x.push_back(n), limit.y.push_back(reference);
   }
   const double error = reference - curve.y.back(), before = reference - curve.y[curve.y.size() - 2];
-  found.expect(cook.material + ": u_y at (48, 52), limit of the last three meshes", limit_of(curve.y), reference,
-               (subject.quick ? 0.02 : 1e-3) * reference,
+  found.expect(cook.material + ": u_y at (48, 52), limit of the last three meshes",
+               {limit_of(curve.y), reference, (subject.quick ? 0.02 : 1e-3) * reference},
                "the next term of the error; the reference is known to 2e-4 of itself");
-  found.expect(cook.material + ": order of the error, last two meshes", std::log2(before / error), 1.65, 0.36,
+  found.expect(cook.material + ": order of the error, last two meshes", {std::log2(before / error), 1.65, 0.36},
                "between 1.29, that of the singular corner (0, 44), and 2, that of the rest");
   found.plots.push_back(
       {"Cook's membrane, " + cook.material, "cells along an edge", "u_y at (48, 52)", Scales::linear, {curve, limit}});

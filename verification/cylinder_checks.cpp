@@ -57,12 +57,12 @@ void check_cylinder(const Subject& subject, Findings& found) {
     }
     const double tolerance = subject.quick ? 0.02 : 2e-3;
     const std::string reason = "what the extrapolation with order 2 leaves: the next term of the error";
-    found.expect(material + ": torque / (E b^3), limit", richardson(torque, 2), exact.torque, tolerance * exact.torque,
-                 reason);
-    found.expect(material + ": axial force / (E b^2), limit", richardson(force, 2), exact.force,
-                 tolerance * std::abs(exact.force), reason);
-    found.expect(material + ": change of the radius / b, limit", richardson(outer, 2) - 1, exact.radius(1) - 1,
-                 tolerance * std::abs(exact.radius(1) - 1), reason);
+    found.expect(material + ": torque / (E b^3), limit",
+                 {richardson(torque, 2), exact.torque, tolerance * exact.torque}, reason);
+    found.expect(material + ": axial force / (E b^2), limit",
+                 {richardson(force, 2), exact.force, tolerance * std::abs(exact.force)}, reason);
+    found.expect(material + ": change of the radius / b, limit",
+                 {richardson(outer, 2) - 1, exact.radius(1) - 1, tolerance * std::abs(exact.radius(1) - 1)}, reason);
   }
 }
 

@@ -39,7 +39,7 @@ void check_differences(const Subject& subject, Findings& found) {
       found.expect_small(info.name + ": smallest error of the " + name, check->smallest_error, 1e-6,
                          "where the error h^2 of the difference meets its round-off 1e-16 / h");
       if (!std::isnan(check->order))  // quadratic energies have only round-off error
-        orders.expect(info.name + ": order of the error of the " + name, check->order, 2, 0.2,
+        orders.expect(info.name + ": order of the error of the " + name, {check->order, 2, 0.2},
                       "a line fitted over the decades before round-off");
     }
     plot.curves.push_back({info.name, report.hessian.step, report.hessian.error});

@@ -13,9 +13,10 @@ void check_oscillator(const Subject& subject, Findings& found) {
   for (const std::string& integrator : integrators_in_time()) {
     const Oscillation expected = expected_oscillations().at(integrator);
     const Oscillation measured = measured_oscillation(subject.taken_for(integrator));
-    found.expect(integrator + ": energy left after a period", measured.energy_left, expected.energy_left,
-                 6e-7 * std::max(1.0, expected.energy_left), "the last printed digit of the reference");
-    found.expect(integrator + ": frequency ratio", measured.frequency_ratio, expected.frequency_ratio, 6e-6,
+    found.expect(integrator + ": energy left after a period",
+                 {measured.energy_left, expected.energy_left, 6e-7 * std::max(1.0, expected.energy_left)},
+                 "the last printed digit of the reference");
+    found.expect(integrator + ": frequency ratio", {measured.frequency_ratio, expected.frequency_ratio, 6e-6},
                  "the last printed digit of the reference");
   }
 }
@@ -58,8 +59,8 @@ void check_symplectic_euler(const Subject& subject, Findings& found, Plot& plot)
   const std::string reason =
       "1 / (1 +- w h / 2) is reached when a step ends at that phase; of 1000 steps, one "
       "comes within 1e-3 of it";
-  found.expect(name + ": least energy / first", least, 1 / 1.05, 1e-6, reason);
-  found.expect(name + ": largest energy / first", most, 1 / 0.95, 1e-6, reason);
+  found.expect(name + ": least energy / first", {least, 1 / 1.05, 1e-6}, reason);
+  found.expect(name + ": largest energy / first", {most, 1 / 0.95, 1e-6}, reason);
   found.expect_small(name + ": drift of v^2/2 + w^2 x^2/2 - h/2 w^2 x v, relative", drift, 1e-11,
                      "round-off of 1000 steps");
   plot.curves.push_back(curve);

@@ -29,8 +29,8 @@ void check_table(const Subject& subject, Findings& found) {
     const std::string what =
         std::string(row.material) + ", nu = " + number(row.poisson) + ", l = " + number(row.stretch);
     const std::string reason = "half of the last printed digit of the reference";
-    found.expect(what + ": lateral stretch", box.lateral, row.expected.lateral, 0.51e-8, reason);
-    found.expect(what + ": stress / E", box.stress, row.expected.stress, 0.51e-8, reason);
+    found.expect(what + ": lateral stretch", {box.lateral, row.expected.lateral, 0.51e-8}, reason);
+    found.expect(what + ": stress / E", {box.stress, row.expected.stress, 0.51e-8}, reason);
   }
   found.expect_small("largest force on the free vertex inside, relative", inner, 1e-13,
                      "round-off: linear tets hold the exact state");

@@ -4,6 +4,7 @@
 #include <stdexcept>
 
 #include "base/check.h"
+#include "math/vectors.h"
 
 namespace aspic::verify {
 
@@ -37,20 +38,11 @@ std::vector<double> frequencies(const Model& model, int count) {
   return found;
 }
 
-double largest(std::span<const double> values) {
-  double most = 0;
-  for (const double x : values) {
-    if (std::isnan(x)) return x;
-    most = std::fmax(most, std::abs(x));
-  }
-  return most;
-}
-
 double largest_difference(std::span<const double> a, std::span<const double> b) {
   ASPIC_CHECK(a.size() == b.size());
   std::vector<double> d(a.size());
   for (size_t i = 0; i < a.size(); ++i) d[i] = a[i] - b[i];
-  return largest(d);
+  return max_abs(d);
 }
 
 }  // namespace aspic::verify

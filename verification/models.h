@@ -35,7 +35,6 @@ void take_steps(Simulation& simulation, int count, const std::string& what);
 std::vector<Mode> lowest_modes(const Model& model, int count);
 std::vector<double> frequencies(const Model& model, int count);  // frequencies of lowest_modes() [Hz]
 
-double largest(std::span<const double> values);  // largest absolute value; NaN if one is NaN
-double largest_difference(std::span<const double> a, std::span<const double> b);  // of entries; equal sizes
+double largest_difference(std::span<const double> a, std::span<const double> b);  // max_abs(a - b)
 
 }  // namespace aspic::verify

@@ -35,8 +35,8 @@ void check_time_order(const Subject& subject, Findings& found) {
         curve.x.push_back((order == 4 ? 0.04 : 0.01) / (1 << i));
         curve.y.push_back(affine_motion_error(taken, curve.x.back(), held));
       }
-      found.expect(integrator + ": order, " + words(held), order_between(curve.y[curve.y.size() - 2], curve.y.back()),
-                   order, 0.2,
+      found.expect(integrator + ": order, " + words(held),
+                   {order_between(curve.y[curve.y.size() - 2], curve.y.back()), static_cast<double>(order), 0.2},
                    "the next term of the error is some h of the first: up to a tenth of the order at these steps");
       if (held == Held::on_one_face) plot.curves.push_back(curve);
     }
@@ -50,7 +50,8 @@ void check_driven_order(const Subject& subject, Findings& found) {
     const double h = 0.004;
     const std::string taken = subject.taken_for(integrator);
     found.expect(integrator + ": order",
-                 order_between(driven_oscillator_error(taken, h), driven_oscillator_error(taken, h / 2)), order, 0.1,
+                 {order_between(driven_oscillator_error(taken, h), driven_oscillator_error(taken, h / 2)),
+                  static_cast<double>(order), 0.1},
                  "the next term of the error at w h = 0.04");
   }
 }
@@ -72,7 +73,7 @@ void check_time_floor(const Subject& subject, Findings& found) {
   const std::string taken = subject.taken_for("tr_bdf2");
   const double fine = affine_motion_error(taken, 0.0005, Held::on_one_face);
   const double coarse = affine_motion_error(taken, 0.01, Held::on_one_face);
-  found.expect("tr_bdf2: error at 10 ms / error at 0.5 ms", coarse / fine, 400, 40,
+  found.expect("tr_bdf2: error at 10 ms / error at 0.5 ms", {coarse / fine, 400, 40},
                "20 times smaller steps; a tenth for the next term of the error");
   for (const std::string integrator : {"backward_euler", "bdf2", "tr_bdf2", "midpoint"}) {
     std::vector<double> errors;
@@ -96,8 +97,10 @@ void check_space_order(const Subject& subject, Findings& found) {
     }
     const double tolerance = subject.quick ? 0.15 : 0.1;
     const std::string reason = "the next term of the error is some h of the first, with 8 or 16 cells along an edge";
-    found.expect(info.name + ": order in L2", order_between(l2.y[l2.y.size() - 2], l2.y.back()), 2, tolerance, reason);
-    found.expect(info.name + ": order in H1", order_between(h1.y[h1.y.size() - 2], h1.y.back()), 1, tolerance, reason);
+    found.expect(info.name + ": order in L2", {order_between(l2.y[l2.y.size() - 2], l2.y.back()), 2, tolerance},
+                 reason);
+    found.expect(info.name + ": order in H1", {order_between(h1.y[h1.y.size() - 2], h1.y.back()), 1, tolerance},
+                 reason);
     if (info.name != "neo_hookean_log" && info.name != "stable_neo_hookean" && info.name != "stvk") continue;
     plot.curves.push_back(l2);
     plot.curves.push_back(h1);

@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "math/vectors.h"
 #include "mesh/generators.h"
 #include "verification/families.h"
 #include "verification/statics.h"
@@ -38,7 +39,7 @@ Patch patch_error(const TetMesh& mesh, const std::string& material, double poiss
     for (size_t t = r; t < cauchy.size(); t += 6) least = std::min(least, cauchy[t]), most = std::max(most, cauchy[t]);
     spread = std::max(spread, most - least);
   }
-  return {position, spread / largest(cauchy)};
+  return {position, spread / max_abs(cauchy)};
 }
 
 void check_patch(const Subject& subject, Findings& found) {
@@ -104,8 +105,8 @@ void check_planes(const Subject& subject, Findings& found) {
                                ", stretch " + std::to_string(row.stretch).substr(0, 3) +
                                (is_turned ? ", planes turned" : "");
       const std::string reason = "half a digit of the table";
-      found.expect(name + ": lateral stretch", pulled.lateral, row.expected.lateral, kHalfDigit, reason);
-      found.expect(name + ": reaction / area", pulled.stress, row.expected.stress, kHalfDigit, reason, "Pa");
+      found.expect(name + ": lateral stretch", {pulled.lateral, row.expected.lateral, kHalfDigit}, reason);
+      found.expect(name + ": reaction / area", {pulled.stress, row.expected.stress, kHalfDigit}, reason, "Pa");
       found.expect_small(name + ": sum of the reactions / pull", pulled.balance, 1e-11, "the solve leaves 1e-13");
     }
   }

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <utility>
 
+#include "math/vectors.h"
 #include "optimize/derivative_check.h"
 #include "verification/families.h"
 #include "verification/law.h"
@@ -40,13 +41,13 @@ const std::array<Edge, 4> kEdges = {{{"F = 0", {}},
 double automatic_error(const Law& own, const Law& taken, const Mat3d& F) {
   const Jet<double> expected = own.differentiated(F);
   const Mat9d H = hessian(expected);
-  double stiffness = largest(H.a);
-  if (stiffness == 0) stiffness = largest(own.hessian(identity3<double>()).a);  // stable_neo_hookean at F = 0
+  double stiffness = max_abs(H.a);
+  if (stiffness == 0) stiffness = max_abs(own.hessian(identity3<double>()).a);  // stable_neo_hookean at F = 0
   const double size = 1 + std::sqrt(squared_norm(F));
   const double errors[] = {std::abs(taken.psi(F) - expected.value) / (stiffness * size * size),
                            largest_difference(taken.pk1(F).a, gradient(expected).a) / (stiffness * size),
                            largest_difference(taken.hessian(F).a, H.a) / stiffness};
-  return largest(errors);
+  return max_abs(errors);
 }
 
 void check_automatic(const Subject& subject, Findings& found) {
@@ -56,7 +57,7 @@ void check_automatic(const Subject& subject, Findings& found) {
     for (const auto& [kind, states] : by_kind(own.states)) {
       std::vector<double> errors;
       for (const Mat3d& F : states) errors.push_back(automatic_error(own, taken, F));
-      found.expect_small(info.name + ", " + kind + ": psi, P and H", largest(errors), 1e-12, reason);
+      found.expect_small(info.name + ", " + kind + ": psi, P and H", max_abs(errors), 1e-12, reason);
     }
   }
 }
@@ -70,11 +71,12 @@ void check_edges(const Subject& subject, Findings& found) {
       if (std::any_of(own.states.begin(), own.states.end(), is_here)) continue;
       const double psi = taken.psi(F);
       if (info.barrier)
-        found.expect(info.name + ", " + name + ": refused with psi = +inf", std::isinf(psi) && psi > 0, 1, 0,
+        found.expect(info.name + ", " + name + ": refused with psi = +inf",
+                     {std::isinf(psi) && psi > 0 ? 1.0 : 0.0, 1, 0},
                      "yes or no; it is what the formula says, or more than a number can hold");
       else
         found.expect(info.name + ", " + name + ": psi, P and H are finite",
-                     std::isfinite(psi + largest(taken.pk1(F).a) + largest(taken.hessian(F).a)), 1, 0,
+                     {std::isfinite(psi + max_abs(taken.pk1(F).a) + max_abs(taken.hessian(F).a)) ? 1.0 : 0.0, 1, 0},
                      "yes or no; the closest rotation jumps there, so there is no derivative");
     }
   }
@@ -124,7 +126,7 @@ void check_slopes(const Subject& subject, Findings& found) {
                          "where the error h^2 of the difference meets its round-off, 1e-16 / h of psi, which is 1e5 of "
                          "what it changes by where |F| = 2e-3");
       if (!std::isnan(order))
-        orders.expect(info.name + ", " + kind + ": lowest order", order, 2, 0.2,
+        orders.expect(info.name + ", " + kind + ": lowest order", {order, 2, 0.2},
                       "a line fitted over the decades before round-off");
     }
   }

@@ -21,7 +21,7 @@ TriMesh octahedral_sphere(int cuts) {
     const auto middle = [&](int a, int b) {
       const auto [place, is_new] = middles.emplace(std::minmax(a, b), sphere.vertex_count());
       const Vec3d sum = sphere.vertices[a] + sphere.vertices[b];
-      if (is_new) sphere.vertices.push_back((1 / std::sqrt(dot(sum, sum))) * sum);
+      if (is_new) sphere.vertices.push_back((1 / norm(sum)) * sum);
       return place->second;
     };
     std::vector<Triangle> finer;
@@ -40,8 +40,7 @@ TetMesh hollow_sphere(const TriMesh& surface, int layers, double a, double b) {
   TetMesh mesh;
   const int n = surface.vertex_count();
   for (int k = 0; k <= layers; ++k)
-    for (const Vec3d& X : surface.vertices)
-      mesh.rest.push_back(((a + (b - a) * k / layers) / std::sqrt(dot(X, X))) * X);
+    for (const Vec3d& X : surface.vertices) mesh.rest.push_back(((a + (b - a) * k / layers) / norm(X)) * X);
   for (int k = 0; k < layers; ++k)
     for (Triangle t : surface.triangles) {
       std::sort(t.begin(), t.end());
@@ -62,7 +61,7 @@ Inflation blown_up(int level, const std::string& material, double poisson, doubl
   const int layers = 3 << (level - 1);
   const TetMesh mesh = hollow_sphere(surface, layers, 1, 2);
   const auto at_radius = [&](double R) {
-    return vertices_where(mesh, [R](const Vec3d& X) { return std::abs(std::sqrt(dot(X, X)) - R) < 1e-9; });
+    return vertices_where(mesh, [R](const Vec3d& X) { return std::abs(norm(X) - R) < 1e-9; });
   };
   const std::vector<int> inside = at_radius(1), outside = at_radius(2);
   Model model = make_model(mesh, {.material = material, .young = 1, .poisson = poisson, .gravity = {}});
@@ -93,10 +92,10 @@ void check_sphere(const Subject& subject, Findings& found) {
     }
     const double tolerance = subject.quick ? 0.03 : 1e-3;
     const std::string reason = "what the extrapolation with order 2 leaves: the next term of the error";
-    found.expect(material + ": growth of the outer radius, limit", richardson(outer, 2) - 2, exact.outer - 2,
-                 tolerance * (exact.outer - 2), reason, "m");
-    found.expect(material + ": nominal stress inside / E, limit", richardson(force, 2), exact.force,
-                 tolerance * exact.force, reason);
+    found.expect(material + ": growth of the outer radius, limit",
+                 {richardson(outer, 2) - 2, exact.outer - 2, tolerance * (exact.outer - 2)}, reason, "m");
+    found.expect(material + ": nominal stress inside / E, limit",
+                 {richardson(force, 2), exact.force, tolerance * exact.force}, reason);
   }
 }
 
@@ -144,8 +143,8 @@ void check_half_space(const Subject& subject, Findings& found) {
     for (const int axis : {2, 0}) {
       if (std::abs(exact[axis]) < 1e-9) continue;
       found.expect(std::string(names[k]) + ": displacement along " + (axis == 2 ? "z" : "x") + ", limit",
-                   richardson({by_mesh[0][k][axis], by_mesh[1][k][axis]}, 2), exact[axis],
-                   (subject.quick ? 0.1 : 0.02) * exact[2],
+                   {richardson({by_mesh[0][k][axis], by_mesh[1][k][axis]}, 2), exact[axis],
+                    (subject.quick ? 0.1 : 0.02) * exact[2]},
                    "extrapolated with order 2, 8 or 16 cells from the force: the point load disturbs that order", "m");
     }
   }
@@ -185,8 +184,9 @@ void check_torsion(const Subject& subject, Findings& found) {
   std::vector<double> values;
   for (const int n : subject.quick ? std::vector<int>{3, 6} : std::vector<int>{6, 12})
     values.push_back(torsional_stiffness(n, material, subject.stiffness));
-  found.expect("torque / (G twist a^4), limit", richardson(values, 2), 0.1405770,
-               (subject.quick ? 0.03 : 3e-3) * 0.140577, "what the extrapolation with order 2 leaves");
+  found.expect("torque / (G twist a^4), limit",
+               {richardson(values, 2), 0.1405770, (subject.quick ? 0.03 : 3e-3) * 0.140577},
+               "what the extrapolation with order 2 leaves");
 }
 
 }  // namespace

@@ -146,7 +146,7 @@ Check made_of(std::function<void(const Subject&, Findings&)> run) {
 
 TEST(RunCheck, WhatThrowsOrFindsNothingFails) {
   const Findings thrown = run_check(made_of([](const Subject&, Findings& found) {
-                                      found.expect("before", 1, 1, 0, "exact");
+                                      found.expect("before", {1, 1, 0}, "exact");
                                       throw std::runtime_error("the solver gave up");
                                     }),
                                     {});

@@ -77,8 +77,7 @@ fs::path folder_of(const CaptureArguments& arguments, const std::string& name) {
 void show(const SynthesisStep& step) {
   const Vec3d& f = step.wrench.force;
   fmt::print("{:>4} of {}: {}: {}\n", step.done, step.of, step.name,
-             step.failure.empty() ? fmt::format("{:.4g} N, {} iterations", std::sqrt(dot(f, f)), step.iterations)
-                                  : step.failure);
+             step.failure.empty() ? fmt::format("{:.4g} N, {} iterations", norm(f), step.iterations) : step.failure);
   std::fflush(stdout);
 }
 

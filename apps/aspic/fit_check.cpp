@@ -24,8 +24,6 @@ std::string_view word(Severity severity) {
   return severity == Severity::error ? "error" : severity == Severity::warning ? "warning" : "note";
 }
 
-double length(const Vec3d& v) { return std::sqrt(dot(v, v)); }
-
 // Returns the cases of each group in the order of the data.
 std::vector<std::vector<const LoadCase*>> cases_by_group(const Experiment& experiment) {
   std::vector<std::vector<const LoadCase*>> groups;
@@ -42,8 +40,8 @@ Chart force_against_depth(const Experiment& experiment) {
     Series series{group.front()->group, {0}, {0}, SeriesStyle::line_and_points};
     for (const LoadCase* load : group) {
       if (!load->tip || !load->force) continue;
-      series.x.push_back(1e3 * length(load->pose.center - load->touch.center));
-      series.y.push_back(length(*load->force));
+      series.x.push_back(1e3 * norm(load->pose.center - load->touch.center));
+      series.y.push_back(norm(*load->force));
     }
     if (series.x.size() > 1 && chart.series.size() < kMostSeries) chart.series.push_back(std::move(series));
   }
@@ -59,8 +57,8 @@ Chart motion_against_distance(const Experiment& experiment) {
     Series series{load.name, {}, {}, SeriesStyle::points};
     for (const MarkerReading& reading : load.positions) {
       const Vec3d X = position(experiment.markers[reading.marker], experiment.mesh.rest);
-      series.x.push_back(1e3 * length(X - load.touch.center));
-      series.y.push_back(1e3 * length(reading.position - X));
+      series.x.push_back(1e3 * norm(X - load.touch.center));
+      series.y.push_back(1e3 * norm(reading.position - X));
     }
     chart.series.push_back(std::move(series));
   }

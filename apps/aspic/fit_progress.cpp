@@ -49,6 +49,10 @@ void FitProgress::show(FitStage stage, const FitIteration& i, int residuals) {
   const std::string line =
       fmt::format("{:<10} iteration {:>3}  |r|^2 {:.4g} per reading  weight {:.3g}  step {:.2g}  {}", stage_text(stage),
                   i.index, 2 * i.misfit / std::max(residuals, 1), i.weight, i.step, duration_text(seconds()));
+  show(line);
+}
+
+void FitProgress::show(const std::string& line) {
   if (every_iteration_) return message(line);
   if (!terminal_ && seconds() - shown_at_ < kLineInterval) return;
   shown_at_ = seconds();

@@ -111,6 +111,7 @@ int run_program(int argc, char** argv) {
   add_compare(app, action);
   add_materials(app, action);
   add_fit_curves(app, action);
+  add_fit_motion(app, action);
   add_closed_loop(app, action);
   add_minimize(app, action);
   add_capture(app, action);

@@ -146,7 +146,7 @@ TEST_F(Refusals, OfMeshesWithoutAnythingToDraw) {
     return message_of([&] { draw({{folder / name, picture}}); });
   };
   EXPECT_THAT(refused({}), HasSubstr("no surface"));
-  EXPECT_THAT(refused(from_the_front({{"empty", {}}})), HasSubstr("'empty' has no triangle"));
+  EXPECT_THAT(refused(from_the_front({{"empty", {}}})), HasSubstr("'empty' has no finite triangle"));
   TriMesh burst = beam();
   for (Vec3d& x : burst.vertices) x[0] = NAN;
   EXPECT_THAT(refused(from_the_front({{"burst", burst}})), HasSubstr("'burst' has no finite triangle"));

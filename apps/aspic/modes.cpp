@@ -17,6 +17,7 @@
 #include "base/stop_token.h"
 #include "io/atomic_file.h"
 #include "io/csv.h"
+#include "mesh/box.h"
 #include "scene/run_directory.h"
 #include "scene/scene.h"
 
@@ -41,16 +42,6 @@ struct Frame {
   StepReport report;
 };
 
-double size_of(const TetMesh& mesh) {
-  double size = 0;
-  for (int axis = 0; axis < 3; ++axis) {
-    const auto less = [axis](const Vec3d& a, const Vec3d& b) { return a[axis] < b[axis]; };
-    const auto [low, high] = std::minmax_element(mesh.rest.begin(), mesh.rest.end(), less);
-    size = std::max(size, (*high)[axis] - (*low)[axis]);
-  }
-  return size;
-}
-
 double largest_displacement(std::span<const double> shape) {
   double square = 0;
   for (size_t i = 0; i < shape.size(); i += 3)
@@ -67,7 +58,7 @@ void move_to_rest(Simulation& simulation) {
 // Moves the simulation to start + amplitude * shape, as step `number` at the time `number`. The amplitude is halved
 // until no tet is inverted.
 Frame show_mode(Simulation& simulation, const State& start, const Mode& mode, int number) {
-  double amplitude = kAmplitude * size_of(simulation.model().mesh);
+  double amplitude = kAmplitude * longest_side(bounding_box(simulation.model().mesh.rest));
   const double largest = largest_displacement(mode.shape);
   while (true) {
     Simulation::Snapshot snapshot{.state = start, .start = start, .steps_taken = number};

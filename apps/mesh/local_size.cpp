@@ -162,7 +162,7 @@ double LocalSize::operator()(const Vec3d& x) const {
   double reach = squared_reach();
   tree_.for_each_near(x, reach, [&](int i) {
     const Vec3d away = x - points_[i];
-    best = std::min(best, sizes_[i] + kGrowth * std::sqrt(dot(away, away)));
+    best = std::min(best, sizes_[i] + kGrowth * norm(away));
     reach = squared_reach();
   });
   return best;

@@ -29,7 +29,7 @@ double average_edge(const TetMesh& mesh) {
   for (int t = 0; t < mesh.tet_count(); ++t) {
     const TetCorners X = corners(mesh, t);
     for (int a = 0; a < 4; ++a)
-      for (int b = 0; b < a; ++b) sum += length(X[a] - X[b]) / 6;
+      for (int b = 0; b < a; ++b) sum += norm(X[a] - X[b]) / 6;
   }
   return sum / mesh.tet_count();
 }

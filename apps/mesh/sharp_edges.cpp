@@ -27,7 +27,7 @@ std::vector<std::array<int, 2>> sharp_edges(const TriMesh& body, double most) {
 
 double distance(const TriMesh& body, int a, int b) {
   const Vec3d edge = body.vertices[b] - body.vertices[a];
-  return std::sqrt(dot(edge, edge));
+  return norm(edge);
 }
 
 double chain_length(const TriMesh& body, const Chain& chain) {
@@ -116,7 +116,7 @@ std::vector<bool> in_needles(const TriMesh& body, const std::vector<Chain>& chai
   std::vector<End> ends;
   const auto add = [&](int corner, int next, size_t chain) {
     const Vec3d edge = body.vertices[next] - body.vertices[corner];
-    ends.push_back({corner, (1 / std::sqrt(dot(edge, edge))) * edge, chain});
+    ends.push_back({corner, (1 / norm(edge)) * edge, chain});
   };
   for (size_t c = 0; c < chains.size(); ++c) {
     add(chains[c].front(), chains[c][1], c);

@@ -23,12 +23,12 @@ Vec3d area_vector(const TriMesh& mesh, int triangle) {
 
 double area(const TriMesh& mesh, int triangle) {
   const Vec3d n = area_vector(mesh, triangle);
-  return std::sqrt(dot(n, n));
+  return norm(n);
 }
 
 Vec3d unit_normal(const TriMesh& mesh, int triangle) {
   const Vec3d n = area_vector(mesh, triangle);
-  const double length = std::sqrt(dot(n, n));
+  const double length = norm(n);
   return length > 0 ? (1 / length) * n : Vec3d{};
 }
 

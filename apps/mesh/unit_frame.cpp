@@ -31,7 +31,7 @@ Vec3d extent(const std::vector<Vec3d>& points) {
 
 double diagonal(const std::vector<Vec3d>& points) {
   const Vec3d span = extent(points);
-  return std::sqrt(dot(span, span));
+  return norm(span);
 }
 
 UnitFrame unit_frame(const std::string& name, const std::vector<Vec3d>& points) {

@@ -49,11 +49,11 @@ bool is_finite(const std::vector<float>& points) {
   return std::all_of(points.begin(), points.end(), [](float x) { return std::isfinite(x); });
 }
 
-// At an even rate, linear between the moments that are remembered; up to where positions stop being finite.
+// Samples the snapshots at an even rate by linear interpolation, until a position is not finite.
 Motion motion_of(const ShownSide& shown, const Format& format) {
-  const std::vector<Moment>& moments = shown.side.timeline().moments();
-  const double begin = moments.front().state.time, duration = moments.back().state.time - begin;
-  if (moments.size() < 2 || !(duration > 0)) throw InvalidInput("nothing has moved yet; play first, then export");
+  const std::vector<Snapshot>& snapshots = shown.side.history().timeline().snapshots();
+  const double begin = snapshots.front().state.time, duration = snapshots.back().state.time - begin;
+  if (snapshots.size() < 2 || !(duration > 0)) throw InvalidInput("nothing has moved yet; play first, then export");
   const double per_frame = format.bytes_per_vertex * shown.surface.vertex_count();
   const double most = std::min<double>(format.most_frames, std::floor(kMostBytes / std::max(per_frame, 1.0)));
   if (most < 2)
@@ -65,10 +65,10 @@ Motion motion_of(const ShownSide& shown, const Format& format) {
   const double every = std::max({shown.side.simulation().options().h, 1 / kMostPerSecond, longest});
   Motion motion{.per_second = 1 / every};
   const int count = 1 + static_cast<int>(std::floor(duration / every + 1e-6));
-  auto next = moments.begin() + 1;
+  auto next = snapshots.begin() + 1;
   for (int k = 0; k < count; ++k) {
     const double time = begin + k * every;
-    while (next + 1 != moments.end() && next->state.time < time) ++next;
+    while (next + 1 != snapshots.end() && next->state.time < time) ++next;
     const State &before = (next - 1)->state, &after = next->state;
     const double s = std::clamp((time - before.time) / (after.time - before.time), 0.0, 1.0);
     std::vector<double> x(after.q.size());

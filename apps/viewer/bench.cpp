@@ -121,7 +121,7 @@ void Bench::record(const Touch& touch, const TipPose& pose, int depths, const St
   const double back = touch.tip.shape == TipShape::sphere ? touch.tip.radius : 0;
   const Vec3d site = touch.rest.center + back * touch.rest.axis;
   for (size_t m = 0; m < truth_rest_.size(); ++m)
-    if (length(truth_rest_[m] - site) > touch.tip.radius)
+    if (norm(truth_rest_[m] - site) > touch.tip.radius)
       load.positions.push_back({static_cast<int>(m), {}, {{1, 1, 1}}});
   load.force = Vec3d{}, load.force_deviation = {{1, 1, 1}};
   const double deepest = dot(pose.center - touch.begun.center, touch.begun.axis);
@@ -155,14 +155,14 @@ void Bench::add(const LoadCase& load, const CasePrediction& found, double depth)
   LoadCase read = as_data(load);
   double motion = 0;
   for (size_t k = 0; k < read.positions.size(); ++k)
-    motion = std::max(motion, length(found.markers[k] - truth_rest_[read.positions[k].marker]));
+    motion = std::max(motion, norm(found.markers[k] - truth_rest_[read.positions[k].marker]));
   const auto disturbed = [&](Vec3d value, double deviation) {
     for (int i = 0; i < 3; ++i) value[i] += deviation * normal(random);
     return value;
   };
   const auto with = [](double deviation) { return Vec3d{{deviation, deviation, deviation}}; };
   const double counted = std::max(options_.noise, kLeastDeviation);
-  const double largest = motion > 0 ? motion : load.tip->radius, force = std::max(length(found.wrench.force), 1e-300);
+  const double largest = motion > 0 ? motion : load.tip->radius, force = std::max(norm(found.wrench.force), 1e-300);
   for (size_t k = 0; k < read.positions.size(); ++k) {
     MarkerReading& reading = read.positions[k];
     const Vec3d moved = found.markers[k] - truth_rest_[reading.marker];

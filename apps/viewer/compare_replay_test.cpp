@@ -63,7 +63,7 @@ TEST(Comparison, OfOtherMeshesIsGrabbedAtTheNearestPoint) {
   page.steps(2);
 }
 
-TEST(Comparison, ThatCannotBeLoadedLeavesEverything) {
+TEST(Comparison, ThatFailsToLoadChangesNothing) {
   Page page;
   page.steps(2);
   page.refused({{"do", "compare"}, {"overrides", {"time.stpe=0.005"}}, {"label", ""}});
@@ -115,13 +115,13 @@ void expect_same_replayed(Page& page) {
   EXPECT_EQ(other.send({{"ask", "recording"}}), recording);
 }
 
-TEST(Recording, RepeatsASessionToTheSameBits) {
+TEST(Recording, RepeatsASessionBitForBit) {
   Page page;
   play_with(page);
   expect_same_replayed(page);
 }
 
-TEST(Recording, RepeatsAComparisonToTheSameBits) {
+TEST(Recording, RepeatsAComparisonBitForBit) {
   Page page;
   page.send({{"do", "compare"}, {"overrides", {"time.step=0.005"}}, {"label", "h/2"}});
   play_with(page);
@@ -134,7 +134,7 @@ TEST(Recording, RepeatsAComparisonToTheSameBits) {
   expect_same_replayed(page);
 }
 
-TEST(Recording, AfterAResetBeginsWithTheSettingsThatWereLeft) {
+TEST(Recording, BeginsWithTheSettingsAfterAReset) {
   Page page;
   play_with(page);
   page.send({{"do", "reset"}});
@@ -144,7 +144,7 @@ TEST(Recording, AfterAResetBeginsWithTheSettingsThatWereLeft) {
   expect_same_replayed(page);
 }
 
-TEST(Recording, WhoeverSteersTakesOver) {
+TEST(Recording, EndsReplayAtACommand) {
   Page page;
   play_with(page);
   const Json recording = page.send({{"ask", "recording"}});

@@ -22,8 +22,8 @@ void evaluate_elasticity(const View& view, TetFields& fields) {
 
 // Values that vertices have by themselves: 3 components each, of which the length is shown.
 double vertex_value(const std::string& field, const View& view, const Surface& surface, int vertex) {
-  if (field == "speed") return length(surface.position(vertex, view.simulation.state().qdot));
-  return length(surface.position(vertex, view.x) - surface.rest[vertex]);
+  if (field == "speed") return norm(surface.position(vertex, view.simulation.state().qdot));
+  return norm(surface.position(vertex, view.x) - surface.rest[vertex]);
 }
 
 }  // namespace

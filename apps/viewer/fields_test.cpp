@@ -16,7 +16,7 @@ Mat3d random_gradient(std::mt19937& random) {
   return F;
 }
 
-TEST(Stretches, TheLargestByTheCosineFormulaIsThatOfTheEigenvalues) {
+TEST(Stretches, LargestByCosineFormulaEqualsEigenvalue) {
   std::mt19937 random(1);
   for (int i = 0; i < 1000; ++i) {
     const Mat3d F = random_gradient(random);
@@ -25,7 +25,7 @@ TEST(Stretches, TheLargestByTheCosineFormulaIsThatOfTheEigenvalues) {
   }
 }
 
-TEST(Stretches, TheLargestIsRightWhereStretchesAreEqual) {
+TEST(Stretches, LargestIsRightForEqualStretches) {
   const double cases[][3] = {{2, 2, 2}, {2, 2, 1}, {2, 1, 1}, {2, 2, 0}, {2, 0, 0}, {2, -2, 1}};
   for (const auto& diagonal : cases) {
     Mat3d F{};
@@ -35,7 +35,7 @@ TEST(Stretches, TheLargestIsRightWhereStretchesAreEqual) {
   EXPECT_EQ(largest_stretch(Mat3d{}), 0);
 }
 
-TEST(Stretches, TheLargestOfABlownUpTetIsNotANumber) {
+TEST(Stretches, LargestOfABlownUpTetIsNaN) {
   Mat3d F = identity3<double>();
   F(0, 0) = std::numeric_limits<double>::infinity();
   EXPECT_FALSE(std::isfinite(largest_stretch(F)));

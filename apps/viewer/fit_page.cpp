@@ -180,7 +180,7 @@ class FitPack {
                    {"leftOut", outcome.left_out},
                    {"ok", outcome.ok},
                    {"pressure", load.pressure},
-                   {"gravity", length(load.gravity)},
+                   {"gravity", norm(load.gravity)},
                    {"tip", nullptr},
                    {"force", nullptr},
                    {"torque", nullptr}};
@@ -257,7 +257,7 @@ class FitPack {
     return {{"site", vector(poke.site)},
             {"inward", vector(poke.inward)},
             {"radius", poke.load.tip ? poke.load.tip->radius : 0.0},
-            {"depth", length(poke.load.pose.center - poke.load.touch.center)},
+            {"depth", norm(poke.load.pose.center - poke.load.touch.center)},
             {"gain", number_json(poke.gain)},
             {"words", poke.words}};
   }

@@ -55,7 +55,7 @@ FitOutcome fitted(const DataSet& data) {
   return fit_material(data, plan, {}, {});
 }
 
-TEST(FitPage, HoldsWhatWasMeasuredAndFound) {
+TEST(FitPage, HasMeasurementsAndResults) {
   const DataSet data = measured_block(2);
   const FitOutcome outcome = fitted(data);
   ASSERT_TRUE(outcome.has_material()) << outcome.failure;

@@ -161,7 +161,7 @@ Json iteration_reply(Side& side, int step, int iteration, const StopToken& stop)
   Json reply = std::move(look).reply();
   reply["step"] = step;
   reply["iteration"] = iteration;
-  reply["text"] = in_words(report, side.rows().find(step));
+  reply["text"] = in_words(report, side.history().rows().find(step));
   return reply;
 }
 

@@ -67,7 +67,7 @@ TEST(Mouse, EnergiesBalanceWithItsWork) {
   }
 }
 
-TEST(Mouse, EnergiesBalanceWhenStepsAreTakenInParts) {
+TEST(Mouse, EnergiesBalanceWithSingleIterations) {
   Page page(kBeam, {"time.adaptive.tolerance=1e-4"});
   page.steps(1);
   page.grab_end({1, 0.4, 0.1});
@@ -75,7 +75,7 @@ TEST(Mouse, EnergiesBalanceWhenStepsAreTakenInParts) {
   expect_balance(page, 1);
 }
 
-TEST(Mouse, TheTargetIsWhereTheCursorIsAtTheEndOfAStep) {
+TEST(Mouse, ReachesTheCursorAtTheEndOfAStep) {
   Page page;
   page.grab_end({1, 0.1, 0.1});
   page.send({{"do", "move"}, {"target", {1, 0.2, 0.1}}});
@@ -95,7 +95,7 @@ TEST(Mouse, StiffnessIsRefusedUnlessPositive) {
   EXPECT_EQ(number(page.scene()["stiffness"]), 5.5);
 }
 
-TEST(Mouse, RefusesPointsAndTargetsThatAreNone) {
+TEST(Mouse, RefusesInvalidPointsAndTargets) {
   Page page;
   const int triangles = static_cast<int>(page.geometry().triangles.size() / 3);
   const auto grab = [&](const Json& triangle, const Json& weights, const Json& target) {
@@ -114,7 +114,7 @@ TEST(Mouse, RefusesPointsAndTargetsThatAreNone) {
   EXPECT_TRUE(page.side()["grab"].is_null());
 }
 
-TEST(Pins, HoldWhereTheyWereBrushedAndLetGo) {
+TEST(Pins, HoldBrushedVerticesUntilFreed) {
   Page page;
   page.steps(5);
   const Picture then = page.picture();
@@ -136,7 +136,7 @@ TEST(Pins, HoldWhereTheyWereBrushedAndLetGo) {
   EXPECT_LT(page.picture().positions[3 * end[0] + 1], then.positions[3 * end[0] + 1] - 1e-3F);
 }
 
-TEST(Pins, OfTheSceneCanBeTakenAway) {
+TEST(Pins, OfTheSceneCanBeRemoved) {
   Page page;
   const Json clamp = page.pins();
   page.send({{"do", "pin"}, {"side", "a"}, {"vertices", clamp}, {"pinned", false}});
@@ -149,7 +149,7 @@ TEST(Pins, OfTheSceneCanBeTakenAway) {
   EXPECT_TRUE(page.pins().empty());  // taken away at the start
 }
 
-TEST(Pins, GoBackWithTheTimeline) {
+TEST(Pins, AreRewoundWithTheTimeline) {
   Page page;
   page.steps(3);
   page.send({{"do", "pin"}, {"side", "a"}, {"vertices", {page.geometry().vertex.size() - 1}}, {"pinned", true}});

@@ -38,7 +38,7 @@ class Writer {
 int8_t component(double x) { return static_cast<int8_t>(std::lround(127 * std::clamp(x, -1.0, 1.0))); }
 
 void put_normal(Writer& writer, const Vec3d& n) {
-  const double size = std::sqrt(dot(n, n));
+  const double size = norm(n);
   const bool is_known = size > 0 && std::isfinite(size);
   for (int r = 0; r < 3; ++r) writer.put(is_known ? component(n[r] / size) : int8_t{r == 2 ? int8_t{127} : int8_t{0}});
   writer.put(int8_t{0});

@@ -15,7 +15,7 @@ Json rows_of(const Mat3d& A) {
 
 Json corner_positions(const Side& side, int tet) {
   Json list = Json::array();
-  for (const int v : side.model().mesh.tets[tet]) list.push_back(json_of(aspic::point(side.view().x, v)));
+  for (const int v : side.model().mesh.tets[tet]) list.push_back(json_of(aspic::point(side.positions(), v)));
   return list;
 }
 
@@ -32,13 +32,15 @@ Json tet_field(const Model& model, const std::string& name, int tet) {
 
 }  // namespace
 
-Json vertex_reply(const Side& side, const Surface& surface, int vertex) {
+Json vertex_reply(const ShownSide& shown, int vertex) {
+  const Side& side = shown.side;
+  const Surface& surface = shown.surface;
   const Model& model = side.model();
-  const View view = side.view();
+  const View view = shown.view();
   Json values = Json::object();
   FieldValues evaluate;
   std::vector<float> all(surface.rest.size());
-  for (const Field& field : side.fields()) {
+  for (const Field& field : shown.fields()) {
     evaluate.evaluate(field.name, view, surface, all);
     values[field.name] = all[vertex];
   }
@@ -52,15 +54,16 @@ Json vertex_reply(const Side& side, const Surface& surface, int vertex) {
           {"position", json_of(surface.position(vertex, view.x))},
           {"velocity", json_of(surface.position(vertex, side.simulation().state().qdot))},
           {"mass", mass},
-          {"pinned", side.is_pinned(surface.anchor(vertex))},
+          {"pinned", side.pins().has(surface.anchor(vertex))},
           {"values", std::move(values)}};
 }
 
-Json tet_reply(const Side& side, const Surface& surface, int triangle) {
+Json tet_reply(const ShownSide& shown, int triangle) {
+  const Side& side = shown.side;
   const Model& model = side.model();
-  const int t = surface.tet[triangle];
-  const TetFields fields = tet_fields_at(side.view());
-  const Mat3d F = deformation_gradient(model.mesh, t, side.view().x);
+  const int t = shown.surface.tet[triangle];
+  const TetFields fields = tet_fields_at(shown.view());
+  const Mat3d F = deformation_gradient(model.mesh, t, side.positions());
   Json vertices = Json::array();
   for (const int v : model.mesh.tets[t]) vertices.push_back(model.numbering.vertex.to_user(v));
   const double size = volume(model.mesh, t);
@@ -81,9 +84,10 @@ Json tet_reply(const Side& side, const Surface& surface, int triangle) {
           {"density", model.density[t]}};
 }
 
-Json worst_reply(const Side& side) {
+Json worst_reply(const ShownSide& shown) {
+  const Side& side = shown.side;
   const Model& model = side.model();
-  const TetFields fields = tet_fields_at(side.view());
+  const TetFields fields = tet_fields_at(shown.view());
   Json items = Json::array();
   const auto add_tet = [&](const char* what, const char* unit, const std::vector<double>& values, double sign) {
     int worst = 0;
@@ -102,13 +106,13 @@ Json worst_reply(const Side& side) {
   add_tet("largest energy density", "J/m^3", fields.energy_density, 1);
   add_tet("largest von Mises stress", "Pa", fields.von_mises, 1);
   add_tet("worst shape at rest", "", quality, -1);
-  if (const StepRow* last = side.rows().last(); last && last->report.worst_vertex >= 0)
+  if (const StepRow* last = side.history().rows().last(); last && last->report.worst_vertex >= 0)
     items.push_back({{"what", "largest residual of the last step"},
                      {"value", last->report.worst_residual},
                      {"unit", "N"},
                      {"tet", -1},
                      {"vertex", model.numbering.vertex.to_user(last->report.worst_vertex)},
-                     {"positions", Json::array({json_of(aspic::point(side.view().x, last->report.worst_vertex))})}});
+                     {"positions", Json::array({json_of(aspic::point(side.positions(), last->report.worst_vertex))})}});
   return {{"items", std::move(items)}};
 }
 

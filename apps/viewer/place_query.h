@@ -1,12 +1,12 @@
-// What a page asks about a place of a simulation: one vertex, one tet, or the places that are worst off.
+// Replies to questions about a place: one vertex, one tet, or the places with extreme values.
 #pragma once
-#include "viewer/side.h"
+#include "viewer/session_messages.h"
 
 namespace aspic::viewer {
 
-// The replies of web/src/protocol.ts. Vertices and triangles are those of the surface, in range.
-Json vertex_reply(const Side& side, const Surface& surface, int vertex);
-Json tet_reply(const Side& side, const Surface& surface, int triangle);
-Json worst_reply(const Side& side);
+// web/src/protocol.ts declares the replies. Vertices and triangles are those of the shown surface, in range.
+Json vertex_reply(const ShownSide& shown, int vertex);
+Json tet_reply(const ShownSide& shown, int triangle);
+Json worst_reply(const ShownSide& shown);
 
 }  // namespace aspic::viewer

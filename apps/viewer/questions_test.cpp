@@ -19,7 +19,7 @@ struct Twin {
   const Model& model() const { return scene.simulation.model(); }
 };
 
-TEST(Pictures, ShowWhatTheModelSaysByTheUsersNumbers) {
+TEST(Pictures, AgreeWithTheModelInUserNumbers) {
   Page page;
   const Twin twin(kBeam, 5);
   page.steps(5);
@@ -166,7 +166,7 @@ TEST(Questions, AboutTheWorstPlaces) {
   EXPECT_GE(items[4]["vertex"].get<int>(), 0);
 }
 
-TEST(Questions, AboutAnIterationAreAnsweredForAnyStepThatIsHeldAndChangeNothing) {
+TEST(Questions, AboutIterationsOfStoredStepsChangeNothing) {
   Page page, untouched;
   for (Page* p : {&page, &untouched}) {
     p->steps(2);
@@ -208,7 +208,7 @@ TEST(Questions, AboutTheStepUnderWay) {
   EXPECT_EQ(reply["value"], page.rows()[1]["iterations"][0]["value"]);
 }
 
-TEST(Questions, AboutAnIterationAreGivenUpWhenSomethingElseIsToBeDone) {
+TEST(Questions, AboutAnIterationStopOnRequest) {
   Side side(load_steered(Page::scene_file(kBeam), {}, {}, 1e18), size_t{1} << 20);
   side.step(StopToken());
   const std::vector<double> q = side.simulation().state().q;

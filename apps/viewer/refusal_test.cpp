@@ -15,7 +15,7 @@ std::string why(const Answer& answer) {
   return json.value("why", "");
 }
 
-TEST(Refusals, OfWhatIsNoMessage) {
+TEST(Refusals, OfInvalidMessages) {
   Page page;
   const std::string deep(100'000, '[');
   std::string blank;
@@ -82,7 +82,7 @@ TEST(Session, AnExplicitSchemeThatBlowsUpStopsPlaying) {
   EXPECT_TRUE(page.rows().back()["converged"].get<bool>());
 }
 
-TEST(Session, AnInterruptionBetweenStepsIsForgotten) {
+TEST(Session, IgnoresAnInterruptionBetweenSteps) {
   Page page;
   page.send({{"do", "play"}});
   page.session().interrupt();
@@ -90,7 +90,7 @@ TEST(Session, AnInterruptionBetweenStepsIsForgotten) {
   EXPECT_EQ(page.side()["step"], 1);
 }
 
-TEST(Session, AStepUnderWayIsDroppedWhenInterrupted) {
+TEST(Session, DropsAnInterruptedStep) {
   // Each step would take a thousand million iterations.
   Page page(kBeam, {"solver.method=gradient_descent", "solver.max_iterations=1000000000", "solver.tolerance=0",
                     "material.young=1e7"});
@@ -240,7 +240,7 @@ class Mutations {
   std::mt19937 random_;
 };
 
-TEST(Refusals, AnythingAtRandomIsAnsweredAndTheSimulationGoesOn) {
+TEST(Refusals, AnswerRandomMessagesWithoutStopping) {
   const std::string small = R"([[body]]
 shape = { box = { upper = [1, 0.5, 0.5], cells = [2, 1, 1] } }
 [[body.pin]]

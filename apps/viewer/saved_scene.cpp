@@ -81,7 +81,7 @@ Value place(double time, const Vec3d& position) {
 }
 
 void add_drags(const Side& side, Table& document) {
-  const std::vector<Side::Pull>& pulls = side.pulls();
+  const std::vector<History::Pull>& pulls = side.history().pulls();
   for (size_t k = 0; k < pulls.size();) {
     const Grab& first = pulls[k].grab;
     Array path = {place(first.from_time, first.from)};
@@ -149,11 +149,12 @@ void set_pins(const VerticesOfPin& before, const VerticesOfPin& now, Table& body
 
 void add_pins(const Side& side, Table& document, std::vector<std::string>& notes) {
   const Model& model = side.model();
-  const auto scene = by_body(model, side.scene_pins()), start = by_body(model, side.start_pins());
+  const auto scene = by_body(model, side.pins().of_scene());
+  const auto start = by_body(model, *side.history().timeline().nearest(0).pins);
   Array& bodies = document.find("body")->array();
   for (size_t b = 0; b < bodies.size(); ++b)
     if (scene[b] != start[b]) set_pins(scene[b], start[b], bodies[b].table());
-  if (start != by_body(model, side.pins()))
+  if (start != by_body(model, *side.pins().now()))
     notes.emplace_back("pins that were changed after the first step are not saved; change them at the start");
 }
 
@@ -191,7 +192,7 @@ SavedScene saved_scene(const Side& side, SavedHand hand) {
   Table document = side.steered().document;
   add_pins(side, document, saved.notes);
   if (hand == SavedHand::with_drags) add_drags(side, document);
-  if (side.touched()) saved.notes.emplace_back("the tip of the probe is not saved");
+  if (side.tools().indenter.touch()) saved.notes.emplace_back("the tip of the probe is not saved");
   put_in_order(document);
   saved.files.push_back({saved.name + ".toml", "# Saved by the viewer, with all values. To run it: aspic run " +
                                                    saved.name + ".toml\n" + to_toml(document)});

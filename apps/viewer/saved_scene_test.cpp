@@ -66,7 +66,7 @@ TEST(SavedScene, RepeatsTheSessionsFirstSteps) {
   EXPECT_EQ(hash_after(saved["text"].get<std::string>(), 3), hash_of_last(page));
 }
 
-TEST(SavedScene, RepeatsADragToTheBit) {
+TEST(SavedScene, RepeatsADragBitForBit) {
   Page page;
   page.steps(1);
   page.grab_end({1, 0.3, 0.1});
@@ -82,7 +82,7 @@ TEST(SavedScene, RepeatsADragToTheBit) {
   EXPECT_EQ(hash_after(toml, 8), hash_of_last(page));
 }
 
-TEST(SavedScene, ForgetsDragsThatWereTakenBack) {
+TEST(SavedScene, OmitsRewoundDrags) {
   Page page;
   page.grab_end({1, 0.3, 0.1});
   page.steps(2);
@@ -104,14 +104,14 @@ TEST(SavedScene, KeepsPinsSetAtTheStart) {
   EXPECT_EQ(hash_after(saved["text"].get<std::string>(), 2), hash_of_last(page));
 }
 
-TEST(SavedScene, NotesPinsThatWereSetLater) {
+TEST(SavedScene, NotesLaterPins) {
   Page page;
   page.steps(1);
   page.send({{"do", "pin"}, {"side", "a"}, {"vertices", {page.pins()[0]}}, {"pinned", false}});
   EXPECT_THAT(page.send({{"ask", "scene"}, {"side", "a"}})["notes"].dump(), HasSubstr("pins"));
 }
 
-TEST(SavedScene, BringsItsMeshAlong) {
+TEST(SavedScene, IncludesItsMesh) {
   const TestFolder folder;
   Page page;
   page.send({{"do", "load"}, {"scene", mesh_scene(folder.path())}});
@@ -152,7 +152,7 @@ TEST(Upload, RefusesNamesThatLeadElsewhere) {
     EXPECT_THAT(page.refused(upload(name, "")), HasSubstr("is refused")) << name;
 }
 
-TEST(Upload, RefusesWhatIsNotPacked) {
+TEST(Upload, RefusesUnpackedFiles) {
   Page page;
   EXPECT_THAT(page.refused(upload("a.toml", "!")), HasSubstr("base64"));
   EXPECT_THAT(page.refused(upload("a.toml", "aGVsbG8=")), HasSubstr("a.toml"));

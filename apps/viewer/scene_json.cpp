@@ -6,6 +6,13 @@ namespace aspic::viewer {
 
 Json json_of(const Vec3d& x) { return {x[0], x[1], x[2]}; }
 
+Json tip_json(const Tip& tip) {
+  return {{"shape", tip.shape == TipShape::disc ? "disc" : "sphere"},
+          {"contact", tip.contact == TipContact::sliding ? "sliding" : "bonded"},
+          {"radius", tip.radius},
+          {"stiffness", tip.stiffness}};
+}
+
 Json fields_json(const std::vector<Field>& fields) {
   Json list = Json::array();
   for (const Field& field : fields)
@@ -20,7 +27,7 @@ Json fields_json(const std::vector<Field>& fields) {
 
 Vec3d up_of(const Table& document) {
   const Vec3d gravity = document.find("gravity")->vector();
-  const double size = std::sqrt(dot(gravity, gravity));
+  const double size = norm(gravity);
   return size > 0 ? (-1 / size) * gravity : Vec3d{{0, 1, 0}};
 }
 

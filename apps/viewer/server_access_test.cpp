@@ -12,7 +12,7 @@ TEST(Access, HasAnotherTokenOf128BitsEachTime) {
   EXPECT_NE(a.token(), b.token());
 }
 
-TEST(Access, KnowsItsTokenOnlyWhole) {
+TEST(Access, RequiresTheWholeToken) {
   const Access access(80);
   EXPECT_TRUE(access.is_token(access.token()));
   EXPECT_FALSE(access.is_token(""));
@@ -23,7 +23,7 @@ TEST(Access, KnowsItsTokenOnlyWhole) {
   EXPECT_FALSE(access.is_token(wrong));
 }
 
-TEST(Access, AnswersToTheNamesOfThisMachineAlone) {
+TEST(Access, AcceptsOnlyNamesOfThisMachine) {
   const Access access(8080);
   EXPECT_TRUE(access.is_host("127.0.0.1:8080"));
   EXPECT_TRUE(access.is_host("localhost:8080"));
@@ -31,7 +31,7 @@ TEST(Access, AnswersToTheNamesOfThisMachineAlone) {
     EXPECT_FALSE(access.is_host(host)) << host;
 }
 
-TEST(Access, TakesItsOwnPagesForItsOwn) {
+TEST(Access, AcceptsItsOwnPages) {
   const Access access(8080);
   EXPECT_TRUE(access.is_origin("http://127.0.0.1:8080"));
   EXPECT_TRUE(access.is_origin("http://localhost:8080"));

@@ -5,7 +5,7 @@
 namespace aspic::viewer {
 namespace {
 
-TEST(MessageHead, TellsWhatAMessageDoes) {
+TEST(MessageHead, HasTheCommandOfAMessage) {
   const MessageHead play = parse_head(R"({"do":"play","id":7})");
   EXPECT_TRUE(play.is_message);
   EXPECT_EQ(play.does, "play");
@@ -15,12 +15,12 @@ TEST(MessageHead, TellsWhatAMessageDoes) {
   EXPECT_EQ(question.does, "");
 }
 
-TEST(MessageHead, LooksAtTheOutermostObjectAlone) {
+TEST(MessageHead, ReadsOnlyTheOutermostObject) {
   EXPECT_EQ(parse_head(R"({"recording":{"do":"pause","id":9},"do":"replay"})").does, "replay");
   EXPECT_EQ(parse_head(R"({"recording":{"do":"pause","id":9},"do":"replay"})").id, "null");
 }
 
-TEST(MessageHead, OfWhatIsNoMessageIsEmpty) {
+TEST(MessageHead, OfAnInvalidMessageIsEmpty) {
   for (const char* text : {"", "{", "7", "null", "[]", R"(["do"])", R"({"do":7})", R"({"do":""})", "{\"do\":\"\xff\"}"})
     EXPECT_FALSE(parse_head(text).is_message) << text;
   EXPECT_EQ(parse_head(R"({"do":"play","id":"7"})").id, "null");

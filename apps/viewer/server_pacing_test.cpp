@@ -19,7 +19,7 @@ TEST(Pacing, IsDueAtOnceAndThenAtTheSpeed) {
   }
 }
 
-TEST(Pacing, CatchesUpWithASmallDelayButForgetsALargeOne) {
+TEST(Pacing, CatchesUpWithSmallDelaysOnly) {
   Pacing pacing;
   pacing.due(0, 1, kStart);
   EXPECT_LT(pacing.due(0.01, 1, kStart + milliseconds(50)), kStart + milliseconds(50));

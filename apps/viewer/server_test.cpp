@@ -87,7 +87,7 @@ json hello(TestPage& page) {
   return message;
 }
 
-TEST_F(ServerTest, ServesThePageToWhoKnowsTheToken) {
+TEST_F(ServerTest, ServesThePageWithTheToken) {
   const HttpAnswer answer = ask(*server_, {.target = with_token("/")});
   EXPECT_EQ(answer.status, 200);
   EXPECT_EQ(answer.body, "<p>the page</p>");
@@ -98,7 +98,7 @@ TEST_F(ServerTest, ServesThePageToWhoKnowsTheToken) {
   }
 }
 
-TEST_F(ServerTest, ForbidsThePageToTalkToAnyoneElse) {
+TEST_F(ServerTest, ForbidsOtherConnectionsOfThePage) {
   const http::fields fields = ask(*server_, {.target = with_token("/")}).fields;
   EXPECT_THAT(std::string(fields["Content-Security-Policy"]), HasSubstr("default-src 'none'"));
   EXPECT_EQ(fields["Referrer-Policy"], "no-referrer");
@@ -171,7 +171,7 @@ TEST_F(ServerTest, GivesTheRoleOfAClosedPageToTheNext) {
   EXPECT_EQ(third.next("role")["steers"], true);
 }
 
-TEST_F(ServerTest, SendsAPictureWhenThePageIsReadyAndThereIsAnotherOne) {
+TEST_F(ServerTest, SendsNewPicturesToReadyPages) {
   constexpr std::chrono::milliseconds kNothingCame(150);
   TestPage page(*server_);
   EXPECT_TRUE(page.next_picture());  // the first one unasked
@@ -185,7 +185,7 @@ TEST_F(ServerTest, SendsAPictureWhenThePageIsReadyAndThereIsAnotherOne) {
   EXPECT_TRUE(page.next_picture());
 }
 
-TEST_F(ServerTest, GoesOnWhenAPageIsDropped) {
+TEST_F(ServerTest, ContinuesWithoutADroppedPage) {
   TestPage stays(*server_);
   hello(stays);
   stays.send(R"({"do":"play"})");
@@ -239,7 +239,7 @@ TEST_F(ServerTest, LogsAFloodOnlyInPart) {
   EXPECT_LT(log_.all().size(), 100u);
 }
 
-TEST_F(ServerTest, RefusesLongMessagesAndClosesOnVeryLongOnes) {
+TEST_F(ServerTest, RefusesLongMessagesAndClosesOnLongerOnes) {
   TestPage page(*server_);
   hello(page);
   page.send(R"({"do":"load","id":5,"scene":")" + std::string(2 << 20, 'x') + R"("})");
@@ -349,12 +349,12 @@ TEST_F(ServerTest, SaysGoodbyeAtItsEnd) {
   EXPECT_EQ(page.reason(), "aspic has ended");
 }
 
-TEST_F(ServerTest, TellsThatAPortIsTaken) {
+TEST_F(ServerTest, ReportsAPortInUse) {
   EXPECT_THAT([&] { Server({.port = server_->port(), .page = ""}); },
               testing::ThrowsMessage<InvalidInput>(HasSubstr("leave --port out")));
 }
 
-TEST(ServerWithoutSession, ServesThePageAndTakesWhatItSends) {
+TEST(ServerWithoutSession, ServesThePageAndItsUploads) {
   std::vector<std::string> received;
   Server server({.page = "recorded", .post = [&](const std::string& path, std::string_view body) -> std::string {
                    if (path != "/frame") throw InvalidInput(path + ": nothing is expected there");

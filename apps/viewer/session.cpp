@@ -1,48 +1,95 @@
 #include "viewer/session.h"
 
-#include <algorithm>
+#include <fmt/format.h>
+
+#include <iterator>
 #include <new>
-#include <utility>
 
 #include "base/error.h"
-#include "viewer/session_impl.h"
+#include "viewer/bench_desk.h"
+#include "viewer/picture.h"
 
 namespace aspic::viewer {
 namespace {
 
-constexpr size_t kMostBytes = 32 << 20;  // of a text: recordings are long
+constexpr size_t kMostBytes = 32 << 20;  // of a text; recordings are long
+
+// Throws InvalidInput for a name that is not in the table.
+template <class Table>
+const auto& named(const Table& table, const std::string& name, const char* kind) {
+  if (const auto found = table.find(name); found != table.end()) return found->second;
+  std::vector<std::string> known;
+  for (const auto& [key, unused] : table) known.push_back(key);
+  throw InvalidInput(fmt::format("unknown {} '{}'{}", kind, name, suggestion(name, known)));
+}
 
 }  // namespace
 
-// ---------------------------------------------------------------- messages
-
-void Session::Impl::tell_state() {
-  for (ShownSide* shown : {a.get(), b.get()}) {
-    if (!shown || shown->told_steps >= shown->side.steps_taken()) continue;
-    tell(steps_message(*shown, shown->told_steps));
-    shown->told_steps = shown->side.steps_taken();
+struct Session::Impl {
+  explicit Impl(SessionOptions o) : options(std::move(o)) {
+    stage.body_changed = [this] { desk.check_body(); };
+    commands["take"] = {plain([] {}), false};  // the server assigns the roles
+    add_hand_commands(stage, commands);
+    add_indenter_commands(stage, commands);
+    add_scene_commands(options, stage, playback, commands);
+    desk.add_to(commands);
+    add_questions(options, stage, playback, desk.fit(), questions);
   }
-  tell(text({{"kind", "state"},
-             {"playing", playing},
-             {"speed", speed},
-             {"rate", playing ? rate : 0},
-             {"replaying", replaying.has_value()},
-             {"a", state_of(*a)},
-             {"b", b ? state_of(*b) : Json()}}));
+
+  Json answer(const Json& message);
+  void carry_out(const Json& message, Role role);
+
+  SessionOptions options;
+  Commands commands;
+  Questions questions;
+  Stage stage{options};
+  Playback playback{stage, commands};
+  BenchDesk desk{options, stage, playback};
+  PictureEncoder encoder;
+};
+
+Json Session::Impl::answer(const Json& message) {
+  const std::string name = Arguments(message, "message").text("ask", 100);
+  Arguments arguments(message, name);
+  arguments.value("ask");
+  arguments.value("id");  // identifies the reply
+  return named(questions, name, "question")(arguments);
 }
 
-void Session::Impl::tell_side(const ShownSide& shown) {
-  tell(scene_message(shown, field));
-  tell(geometry_message(shown));
-  tell(steps_message(shown, 0));
-  tell(pins_message(shown));
+void Session::Impl::carry_out(const Json& message, Role role) {
+  const std::string name = Arguments(message, "message").text("do", 100);
+  const Command& command = named(commands, name, "command");
+  if (role != Role::steers && name != "take")
+    throw InvalidInput("this page only watches; take over the steering first");
+  const bool ends_replay = playback.is_replaying() && command.takes_over;
+  Arguments arguments(message, name);
+  if (arguments.has("id")) arguments.value("id");
+  arguments.value("do");
+  command.carry_out(arguments);
+  if (ends_replay) playback.end_replay();
+  if (name != "take") playback.send_state();
 }
 
-Answer Session::Impl::handle(std::string_view text, Role role) {
+Session::Session(const std::filesystem::path& scene, const std::vector<std::string>& overrides, SessionOptions options)
+    : impl_(std::make_unique<Impl>(std::move(options))) {
+  impl_->playback.install(impl_->stage.loaded(scene, overrides));
+  impl_->stage.take_messages();
+}
+Session::~Session() = default;
+
+Messages Session::greeting(Role role) const {
+  Messages messages = {hello(impl_->options.lessons, role)};
+  for (const ShownSide& shown : impl_->stage.sides()) impl_->stage.send_all(shown);
+  impl_->desk.send();
+  impl_->playback.send_state();
+  std::ranges::move(impl_->stage.take_messages(), std::back_inserter(messages));
+  return messages;
+}
+
+Answer Session::handle(std::string_view text, Role role) {
   Answer answer;
   Json id;
-  news.clear();
-  stop = false;
+  impl_->playback.allow();
   try {
     const Json message = parse_json(text, kMostBytes);
     if (message.is_object() && message.contains("id")) {
@@ -51,9 +98,9 @@ Answer Session::Impl::handle(std::string_view text, Role role) {
     }
     Json reply;
     if (message.is_object() && message.contains("ask")) {
-      reply = query(message);
+      reply = impl_->answer(message);
     } else {
-      command(message, role);
+      impl_->carry_out(message, role);
     }
     if (!id.is_null()) answer.to_sender.push_back(viewer::text({{"kind", "reply"}, {"id", id}, {"reply", reply}}));
   } catch (const std::bad_alloc&) {
@@ -61,170 +108,42 @@ Answer Session::Impl::handle(std::string_view text, Role role) {
   } catch (const std::exception& e) {
     answer.to_sender.push_back(refusal(id, e.what()));
   }
-  answer.to_all = std::move(news);
-  news.clear();
+  answer.to_all = impl_->stage.take_messages();
   return answer;
 }
 
-// ---------------------------------------------------------------- sides
-
-std::unique_ptr<ShownSide> Session::Impl::loaded(const std::string& name, const std::filesystem::path& path,
-                                                 const std::vector<std::string>& overrides) {
-  Busy busy(options);
-  return std::make_unique<ShownSide>(
-      ShownSide{name,
-                {},
-                Side(load_steered(path, overrides, busy.announce(), options.most_tets), options.timeline_bytes),
-                {},
-                0});
+Messages Session::advance(const std::function<bool()>& is_next_due) {
+  impl_->playback.advance(is_next_due);
+  return impl_->stage.take_messages();
 }
 
-void Session::Impl::show_surface(ShownSide& shown) {
-  const Scene& scene = shown.side.steered().scene;
-  shown.surface = wants_skin && has_fine_skin(scene) ? fine_surface(scene) : boundary_of(shown.side.model());
-  shown.generation = ++generation;
-}
-
-void Session::Impl::install(std::unique_ptr<ShownSide> first, std::unique_ptr<ShownSide> second,
-                            std::optional<Recording::Comparison> compared) {
-  const bool had_b = b != nullptr;
-  a = std::move(first);
-  b = std::move(second);
-  if (b) b->side.set_stiffness(a->side.stiffness());  // one mouse, one spring, however stiff the bodies
-  comparison = std::move(compared);
-  base_overrides = a->side.steered().overrides;
-  log.clear();
-  replaying.reset();
-  playing = false;
-  wants_skin = true;
-  ++version;
-  for (ShownSide* shown : {a.get(), b.get()}) {
-    if (!shown) continue;
-    show_surface(*shown);
-    if (comparison) shown->label = shown == b.get() ? comparison->label : "";
-  }
-  keep_bench();
-  if (!a->side.has_field(field)) field.clear();
-  for (const ShownSide* shown : {a.get(), b.get()})
-    if (shown) tell_side(*shown);
-  if (had_b && !b) tell(text({{"kind", "end_compare"}}));
-  tell_state();
-}
-
-ShownSide& Session::Impl::next() {
-  // An unstable side stays where it is, and the other continues.
-  if (!b || b->side.is_blown_up()) return *a;
-  if (a->side.is_blown_up()) return *b;
-  if (a->side.iteration() >= 0) return *a;
-  if (b->side.iteration() >= 0) return *b;
-  const double h = std::min(a->side.simulation().options().h, b->side.simulation().options().h);
-  return b->side.time() < a->side.time() - kSameTime * h ? *b : *a;
-}
-
-// ---------------------------------------------------------------- steps
-
-StopToken Session::Impl::stop_token() {
-  return StopToken([this] { return stop.load(std::memory_order_relaxed); });
-}
-
-void Session::Impl::note_progress(Progress progress) {
-  if (progress == Progress::interrupted) return;
-  ++version;
-  if (progress == Progress::blown_up && next().side.is_blown_up()) playing = false;
-}
-
-void Session::Impl::take_turn() {
-  if (replaying) repeat_due_events();
-  ShownSide& shown = next();
-  Progress progress = Progress::interrupted;
-  try {
-    progress = shown.side.step(stop_token());
-  } catch (...) {
-    shown.side.rewind(shown.side.steps_taken());
-    throw;
-  }
-  note_progress(progress);
-}
-
-void Session::Impl::advance(const std::function<bool()>& is_next_due) {
-  news.clear();
-  stop = false;
-  if (!playing) return;
-  try {
-    do {
-      take_turn();
-      if (replaying && is_replay_done()) {
-        replaying.reset();
-        playing = false;
-      }
-    } while (playing && is_next_due && is_next_due());
-  } catch (const std::exception& e) {
-    playing = false;
-    replaying.reset();
-    tell(refusal(nullptr, e.what()));
-  }
-  tell_state();
-}
-
-// ---------------------------------------------------------------- the class
-
-Session::Session(const std::filesystem::path& scene, const std::vector<std::string>& overrides, SessionOptions options)
-    : impl_(std::make_unique<Impl>(std::move(options))) {
-  impl_->install(impl_->loaded("a", scene, overrides), nullptr, std::nullopt);
-  impl_->news.clear();
-}
-Session::~Session() = default;
-
-Messages Session::greeting(Role role) const {
-  Messages messages = {hello(impl_->options.lessons, role)};
-  Messages pending = std::move(impl_->news);
-  impl_->news.clear();
-  for (const ShownSide* shown : {impl_->a.get(), impl_->b.get()})
-    if (shown) impl_->tell_side(*shown);
-  impl_->tell_capture();
-  impl_->tell_state();
-  for (Message& message : impl_->news) messages.push_back(std::move(message));
-  impl_->news = std::move(pending);
-  return messages;
-}
-
-Answer Session::handle(std::string_view text, Role role) { return impl_->handle(text, role); }
-
-std::optional<FitTask> Session::take_fit() { return std::exchange(impl_->capture.wanted, std::nullopt); }
-bool Session::wants_fit() const { return impl_->capture.is_fitting; }
+std::optional<FitTask> Session::take_fit() { return impl_->desk.fit().take_task(); }
+bool Session::wants_fit() const { return impl_->desk.fit().is_running(); }
 
 Messages Session::note_fit(const FitNews& news) {
-  impl_->news.clear();
-  impl_->note_fit(news);
-  return std::move(impl_->news);
+  impl_->desk.add(news);
+  return impl_->stage.take_messages();
 }
 
-bool Session::is_playing() const { return impl_->playing; }
-double Session::speed() const { return impl_->speed; }
-double Session::time() const { return impl_->next().side.time(); }
-void Session::note_rate(double rate) { impl_->rate = rate; }
-
-Messages Session::advance(const std::function<bool()>& is_next_due) {
-  impl_->advance(is_next_due);
-  return std::move(impl_->news);
-}
+bool Session::is_playing() const { return impl_->playback.is_playing(); }
+double Session::speed() const { return impl_->playback.speed(); }
+double Session::time() const { return impl_->stage.next().side.time(); }
+void Session::note_rate(double rate) { impl_->playback.set_rate(rate); }
+void Session::interrupt() { impl_->playback.interrupt(); }
 
 Messages Session::pictures() const {
   Messages messages;
-  for (const ShownSide* shown : {impl_->a.get(), impl_->b.get()}) {
-    if (!shown) continue;
-    const Side& side = shown->side;
+  for (const ShownSide& shown : impl_->stage.sides()) {
+    const Side& side = shown.side;
     const int step = side.steps_taken() + (side.iteration() >= 0 ? 1 : 0);
-    const bool shows = side.has_field(impl_->field);
-    messages.push_back({true, impl_->encoder.encode({shown->number(), shown->generation},
-                                                    {step, side.iteration(), side.time(), shows ? impl_->field : ""},
-                                                    side.view(), shown->surface)});
+    const std::string field = shown.has_field(impl_->stage.field()) ? impl_->stage.field() : "";
+    messages.push_back(
+        {true, impl_->encoder.encode({shown.number(), shown.generation}, {step, side.iteration(), side.time(), field},
+                                     shown.view(), shown.surface)});
   }
   return messages;
 }
 
-long Session::picture_version() const { return impl_->version; }
-
-void Session::interrupt() { impl_->stop = true; }
+long Session::picture_version() const { return impl_->stage.version(); }
 
 }  // namespace aspic::viewer

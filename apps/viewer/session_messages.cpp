@@ -1,9 +1,12 @@
 #include "viewer/session_messages.h"
 
+#include <algorithm>
+
 #include "base/printable.h"
 #include "mesh/box_tree.h"
 #include "viewer/picture.h"
 #include "viewer/scene_json.h"
+#include "viewer/settings.h"
 
 namespace aspic::viewer {
 namespace {
@@ -14,29 +17,44 @@ Box box_of(std::span<const double> q) {
   return box;
 }
 
-const char* name_of(TipShape shape) { return shape == TipShape::disc ? "disc" : "sphere"; }
-const char* name_of(TipContact contact) { return contact == TipContact::sliding ? "sliding" : "bonded"; }
-
 Json probe_json(const Side& side) {
-  const Touch* touch = side.touched();
+  const Indenter& indenter = side.tools().indenter;
+  const Touch* touch = indenter.touch();
   if (!touch) return nullptr;
-  const TipPose &begun = touch->begun, &pose = side.tip_pose(), &wanted = side.wanted_pose();
-  const Wrench wrench = side.tip_wrench();
-  return {{"shape", name_of(touch->tip.shape)},
-          {"contact", name_of(touch->tip.contact)},
-          {"radius", touch->tip.radius},
-          {"stiffness", touch->tip.stiffness},
-          {"begun", json_of(begun.center)},
-          {"center", json_of(pose.center)},
-          {"axis", json_of(pose.axis)},
-          {"depth", dot(pose.center - begun.center, begun.axis)},
-          {"wanted", dot(wanted.center - begun.center, begun.axis)},
-          {"force", json_of(wrench.force)},
-          {"torque", json_of(wrench.torque)},
-          {"points", side.touched_points()}};
+  const HeldTip& tip = *side.steered().tip;
+  const TipPose &begun = touch->begun, &pose = indenter.place(), &wanted = indenter.wanted();
+  const Wrench wrench = tip.wrench(side.positions());
+  Json json = tip_json(touch->tip);
+  json.update({{"begun", json_of(begun.center)},
+               {"center", json_of(pose.center)},
+               {"axis", json_of(pose.axis)},
+               {"depth", dot(pose.center - begun.center, begun.axis)},
+               {"wanted", dot(wanted.center - begun.center, begun.axis)},
+               {"force", json_of(wrench.force)},
+               {"torque", json_of(wrench.torque)},
+               {"points", tip.touched_points(side.positions())}});
+  return json;
+}
+
+Json grab_json(const Side& side) {
+  const Hand& hand = side.tools().hand;
+  if (!hand.is_grabbing()) return nullptr;
+  return {{"point", json_of(hand.point(side.positions()))},
+          {"target", json_of(hand.wanted())},
+          {"force", json_of(hand.force(side.positions()))}};
 }
 
 }  // namespace
+
+std::vector<Field> ShownSide::fields() const {
+  std::vector<Field> fields = fields_of(side.model());
+  for (const TetField& own : further) fields.push_back(own.field);
+  return fields;
+}
+
+bool ShownSide::has_field(const std::string& field) const {
+  return std::ranges::any_of(fields(), [&](const Field& f) { return f.name == field; });
+}
 
 Message text(const Json& json) { return {false, json.dump(-1, ' ', false, Json::error_handler_t::replace)}; }
 
@@ -61,7 +79,7 @@ Message scene_message(const ShownSide& shown, const std::string& field) {
   const SteeredScene& steered = shown.side.steered();
   const Simulation& simulation = steered.scene.simulation;
   const Model& model = simulation.model();
-  const Box box = box_of(shown.side.start().q);
+  const Box box = box_of(shown.side.history().start().q);
   Json bodies = Json::array();
   for (const BodyRange& body : model.bodies) bodies.push_back(body.name);
   Json body_tets = Json::array();
@@ -88,10 +106,10 @@ Message scene_message(const ShownSide& shown, const std::string& field) {
                {"implicit", simulation.integrator().is_implicit},
                {"solver", simulation.integrator().is_implicit ? simulation.solver_description() : ""},
                {"potentials", simulation.potential_names()},
-               {"fields", fields_json(shown.side.fields())},
+               {"fields", fields_json(shown.fields())},
                {"field", field},
                {"settings", settings_json(steered.document)},
-               {"stiffness", shown.side.stiffness()}});
+               {"stiffness", shown.side.tools().hand.stiffness()}});
 }
 
 Message geometry_message(const ShownSide& shown) {
@@ -99,24 +117,20 @@ Message geometry_message(const ShownSide& shown) {
 }
 
 Message steps_message(const ShownSide& shown, int from) {
-  return text({{"kind", "steps"}, {"side", shown.name}, {"from", from}, {"steps", shown.side.rows().after(from)}});
+  return text(
+      {{"kind", "steps"}, {"side", shown.name}, {"from", from}, {"steps", shown.side.history().rows().after(from)}});
 }
 
 Message pins_message(const ShownSide& shown) {
   Json vertices = Json::array();
   for (int v = 0; v < shown.surface.vertex_count(); ++v)
-    if (shown.side.is_pinned(shown.surface.anchor(v))) vertices.push_back(v);
+    if (shown.side.pins().has(shown.surface.anchor(v))) vertices.push_back(v);
   return text({{"kind", "pins"}, {"side", shown.name}, {"vertices", std::move(vertices)}});
 }
 
 Json state_of(const ShownSide& shown) {
   const Side& side = shown.side;
-  const StepRow* last = side.rows().last();
-  Json grab;
-  if (side.is_grabbed())
-    grab = {{"point", json_of(side.grabbed_point())},
-            {"target", json_of(side.mouse_target())},
-            {"force", json_of(side.mouse_force())}};
+  const StepRow* last = side.history().rows().last();
   Json state = {{"probe", probe_json(side)},
                 {"step", side.steps_taken()},
                 {"time", side.time()},
@@ -124,7 +138,7 @@ Json state_of(const ShownSide& shown) {
                 {"timeline", {{"first", 0}, {"last", side.steps_taken()}}},
                 {"status", last ? std::string(to_string(last->report.status)) : ""},
                 {"words", last ? to_json(last->why) : Json()},
-                {"grab", std::move(grab)}};
+                {"grab", grab_json(side)}};
   if (side.iteration() >= 0)
     for (const IterationRow& row : side.iterations()) state["iterations"].push_back(to_json(row));
   return state;

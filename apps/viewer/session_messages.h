@@ -1,25 +1,29 @@
-// The messages of a session that are text.
+// The messages of a session, and the side of a comparison that they show.
 #pragma once
-#include "viewer/command_log.h"
+#include "viewer/fields.h"
 #include "viewer/session.h"
 #include "viewer/side.h"
 
 namespace aspic::viewer {
 
-// A side as the page sees it.
+// A side as the pages display it.
 struct ShownSide {
   std::string name = "a";
   std::string label;  // in a comparison
   Side side;
-  Surface surface;
-  uint32_t generation = 1;                                               // of its geometry
-  int told_steps = 0;                                                    // whose rows the pages have
-  std::vector<std::string> loaded_overrides = side.steered().overrides;  // before any setting was changed
+  Surface surface = {};
+  uint32_t generation = 1;                                               // of the geometry
+  int sent_steps = 0;                                                    // number of steps whose rows were sent
+  std::vector<std::string> loaded_overrides = side.steered().overrides;  // before any change of settings
+  std::vector<TetField> further = {};                                    // fields beside those of the model
 
   int number() const { return name == "a" ? 0 : 1; }
+  std::vector<Field> fields() const;
+  bool has_field(const std::string& field) const;
+  View view() const { return {side.simulation(), side.positions(), further}; }
 };
 
-Message text(const Json& json);  // whatever bytes file names consist of
+Message text(const Json& json);  // replaces invalid UTF-8, as in file names
 Message hello(const std::vector<Lesson>& lessons, Role role);
 Message scene_message(const ShownSide& shown, const std::string& field);
 Message geometry_message(const ShownSide& shown);

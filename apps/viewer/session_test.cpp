@@ -6,7 +6,7 @@
 namespace aspic::viewer {
 namespace {
 
-TEST(Session, GreetsAPageWithTheSceneItsGeometryStepsPinsAndState) {
+TEST(Session, GreetsAPageWithItsWholeState) {
   Page page;
   EXPECT_EQ(page.scene()["name"].get<std::string>().substr(0, 5), "scene");
   EXPECT_EQ(page.scene()["tets"], 6 * 6 * 2 * 2);
@@ -33,7 +33,7 @@ TEST(Session, StepsAndPlaysAndPauses) {
   EXPECT_EQ(page.rows()[4]["step"], 5);
 }
 
-TEST(Session, PlayingAfterLookingAtIterationsGivesTheSameBits) {
+TEST(Session, IsBitReproducibleAfterSingleIterations) {
   for (const char* integrator : {"backward_euler", "tr_bdf2", "midpoint", "symplectic_euler"}) {
     const std::vector<std::string> overrides = {std::string("time.integrator=") + integrator, "time.step=0.0005"};
     Page whole(kBeam, overrides), looked(kBeam, overrides);
@@ -52,7 +52,7 @@ TEST(Session, PlayingAfterLookingAtIterationsGivesTheSameBits) {
   }
 }
 
-TEST(Session, AnIterationShowsItsIterateAndTheLastOneCompletesTheStep) {
+TEST(Session, LastIterationCompletesTheStep) {
   Page page, whole;
   whole.steps(1);
   const size_t iterations = whole.rows()[0]["iterations"].size();
@@ -74,7 +74,7 @@ TEST(Session, AnIterationShowsItsIterateAndTheLastOneCompletesTheStep) {
   EXPECT_EQ(page.picture().positions, whole.picture().positions);
 }
 
-TEST(Session, RewindingAndSteppingAgainGivesTheSameBits) {
+TEST(Session, IsBitReproducibleAfterRewinding) {
   Page page;
   page.grab_end({1.2, 0.3, 0});
   page.steps(3);
@@ -91,7 +91,7 @@ TEST(Session, RewindingAndSteppingAgainGivesTheSameBits) {
   EXPECT_TRUE(page.rows().empty());
 }
 
-TEST(Session, ALongHistoryIsThinnedOutWithinItsBound) {
+TEST(Session, ThinsOutALongHistory) {
   Page page(kBeam, {}, {.timeline_bytes = 200'000});
   page.steps(60);
   page.send({{"do", "rewind"}, {"step", 41}});

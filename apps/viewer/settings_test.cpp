@@ -13,7 +13,7 @@ Json setting(const Page& page, const std::string& key, const std::string& side =
   return {};
 }
 
-TEST(Settings, AreTheOnesOfTheSchemaWithTheirValues) {
+TEST(Settings, HaveTheValuesOfTheSchema) {
   Page page;
   const Json young = setting(page, "material.young");
   EXPECT_EQ(young["value"], 1e5);
@@ -30,7 +30,7 @@ TEST(Settings, AreTheOnesOfTheSchemaWithTheirValues) {
   for (const Json& s : scene["settings"]) EXPECT_FALSE(s["meaning"].get<std::string>().empty()) << s["key"];
 }
 
-TEST(Settings, CanEachBeSetToWhatTheyAre) {
+TEST(Settings, AcceptTheirCurrentValues) {
   Page page;
   page.steps(2);
   const Json scene = page.scene();
@@ -89,7 +89,7 @@ TEST(Settings, AFormulaStaysText) {
   EXPECT_EQ(setting(page, "material.young")["value"], 2e5);
 }
 
-TEST(Settings, WrongOnesAreRefusedInWordsAndNothingChanges) {
+TEST(Settings, RefuseWrongValuesWithoutAnyChange) {
   Page page, untouched;
   page.steps(2);
   const Json before = page.scene();
@@ -121,7 +121,7 @@ TEST(Settings, WrongOnesAreRefusedInWordsAndNothingChanges) {
   EXPECT_EQ(page.picture().positions, untouched.picture().positions);
 }
 
-TEST(Settings, OfTheSolverNeedNoOtherScene) {
+TEST(Settings, OfTheSolverKeepTheScene) {
   Page page;
   page.steps(2);
   page.send({{"do", "set"}, {"key", "solver.method"}, {"value", "lbfgs"}});
@@ -133,7 +133,7 @@ TEST(Settings, OfTheSolverNeedNoOtherScene) {
   EXPECT_NE(scene["text"].get<std::string>().find("lbfgs"), std::string::npos);
 }
 
-TEST(Settings, AnotherStepLengthGoesOnFromTheTimeThatIs) {
+TEST(Settings, StepLengthKeepsTheTime) {
   Page page;
   page.steps(3);
   page.send({{"do", "set"}, {"key", "time.step"}, {"value", 0.002}});
@@ -167,7 +167,7 @@ where = { lowest = 0.01 }
   EXPECT_EQ(page.picture().positions[3 * v], before.positions[3 * v]);
 }
 
-TEST(Settings, AreOfAllBodies) {
+TEST(Settings, ApplyToAllBodies) {
   Page page(R"([[body]]
 name = "one"
 shape = { box = { upper = [0.2, 0.2, 0.2], cells = [1, 1, 1] } }

@@ -8,15 +8,16 @@
 #include "base/error.h"
 #include "base/free_memory.h"
 #include "scene/scene_document.h"
+#include "viewer/settings.h"
 
 namespace aspic::viewer {
 namespace {
 
 namespace fs = std::filesystem;
 
-constexpr double kBytesPerTet = 3000;  // with matrices, skin and what is kept for rewinding; multigrid takes a third
+constexpr double kBytesPerTet = 3000;  // with matrices, skin and snapshots; multigrid uses a third
 
-// Anything else might never end when it is read.
+// Reading a device or a pipe may never end.
 void require_file(const fs::path& path) {
   std::error_code error;
   if (fs::is_regular_file(path, error)) return;
@@ -24,7 +25,7 @@ void require_file(const fs::path& path) {
                                  fs::exists(path, error) ? "is no file" : "no such file"));
 }
 
-// What is simulated now stays until the other scene is there, and both sides of a comparison have tets.
+// The current scene stays in memory during loading, and a comparison has two sides.
 TetLimit tets_that_fit(double most) {
   const double share = 0.25 * static_cast<double>(free_memory());
   if (most * kBytesPerTet < share) return {.tets = most, .why = "are allowed here", .counts_files = true};
@@ -32,6 +33,11 @@ TetLimit tets_that_fit(double most) {
           .why = fmt::format("fit into the {:.1f} GB that a session may take here, a quarter of the free memory",
                              share / 1e9),
           .counts_files = true};
+}
+
+// Such a setting does not change the loaded model.
+bool needs_only_solver(const std::string& key) {
+  return key.starts_with("solver.") && key != "solver.mass" && key != "solver.initial_guess";
 }
 
 }  // namespace
@@ -58,16 +64,27 @@ SteeredScene load_steered(const fs::path& path, const std::vector<std::string>& 
   return {std::move(scene), mouse, mouse_load, tip, tip_load, std::move(document), path, overrides, most_tets};
 }
 
-bool is_of_solver_alone(const std::string& key) {
-  return key.starts_with("solver.") && key != "solver.mass" && key != "solver.initial_guess";
-}
-
-Table overridden(const SteeredScene& steered, const std::string& override_text) {
-  return read_scene_document(steered.scene.resolved, steered.path.string(), {override_text});
+SceneChange changed_scene(const SteeredScene& steered, const std::string& override_text, const Announce& announce) {
+  SceneChange change{.overrides = with_override(steered.overrides, override_text)};
+  const bool drops = override_text.find('=') == std::string::npos;  // restores the value in the scene file
+  const Simulation& simulation = steered.scene.simulation;
+  if (!drops && needs_only_solver(key_of(override_text))) {
+    change.document = read_scene_document(steered.scene.resolved, steered.path.string(), {override_text});
+    change.solver = solver_options(*change.document.find("solver"));
+    SimulationOptions options = simulation.options();
+    options.solver = *change.solver;
+    if (const auto conflict = find_conflict(options)) throw InvalidInput(conflict->reason);
+    return change;
+  }
+  change.reloaded = load_steered(steered.path, change.overrides, announce, steered.most_tets);
+  if (change.reloaded->scene.simulation.model().mesh.vertex_count() != simulation.model().mesh.vertex_count())
+    throw InvalidInput(fmt::format("{} changes the mesh; load the scene anew with it", override_text));
+  change.reloaded->tip->set(steered.tip->poke());
+  return change;
 }
 
 double usual_stiffness(const Model& model) {
-  // The mean of log E: a stiff core does not decide for the flesh around it.
+  // The mean of log E limits the influence of a stiff core.
   double logs = 0, volumes = 0;
   int tets = 0;
   for (const auto& [name, young] : model.tet_fields) {
@@ -81,7 +98,7 @@ double usual_stiffness(const Model& model) {
     }
   }
   if (tets > 0) return std::exp(logs / volumes) * std::cbrt(6 * std::sqrt(2.0) * volumes / tets);
-  // Without elasticity: a swing of about two hertz.
+  // Without elasticity: an oscillation of about 2 Hz.
   double mass = 0;
   for (const double m : model.mass->vertex_mass()) mass += m;
   return std::max(100 * mass, 1e-9);

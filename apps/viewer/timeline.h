@@ -1,4 +1,4 @@
-// The states of the steps taken, within a bound of memory: where rewinding can go.
+// The snapshots to which a session can rewind, within a bound of memory.
 #pragma once
 #include <memory>
 #include <optional>
@@ -11,21 +11,21 @@
 
 namespace aspic::viewer {
 
-// Between two steps. Everything that the next ones depend on, besides the settings.
-struct Moment {
-  int step = 0;  // taken so far
+// The state between two steps: everything except the settings that the next steps depend on.
+struct Snapshot {
+  int step = 0;  // number of steps taken
   State state;
   std::optional<State> previous;  // see Simulation::Snapshot
   double level = 0;               // see Simulation::Snapshot
   double outside_work = 0;        // see Simulation::Snapshot
-  double start_time = 0, h = 0;   // [s] see Side::snapshot_of
+  double start_time = 0, h = 0;   // [s] see History
   std::string integrator;
-  Grab grab;                                     // resting, after what was done at this moment
-  Poke poke;                                     // resting
-  std::shared_ptr<const std::vector<Pin>> pins;  // after what was done at this moment
-  Grab acted;                                    // in the step that led here
-  Poke poked;                                    // in that step
-  long settings = 0;                             // with which that step was taken
+  Grab grab;                                     // resting, after the edits before the next step
+  Poke poke;                                     // resting, after these edits
+  std::shared_ptr<const std::vector<Pin>> pins;  // after these edits
+  Grab acted;                                    // in the last step
+  Poke poked;                                    // in the last step
+  long settings = 0;                             // counter of the settings of the last step
 
   size_t bytes() const;
 };
@@ -34,23 +34,19 @@ class Timeline {
  public:
   explicit Timeline(size_t most_bytes) : most_bytes_(most_bytes) {}
 
-  void add(Moment moment);  // of a later step than all others; the first one always stays
-  const std::vector<Moment>& moments() const { return moments_; }  // ascending; the first one is the start
-  Moment& last() { return moments_.back(); }
-  const Moment& nearest(int step) const;                       // of that step, or the next earlier one that is held
-  const Moment* find(int step) const;                          // null: not held
-  const Moment* at_time(double time, double tolerance) const;  // the latest one then [s]; null: not held
+  void add(Snapshot snapshot);  // Requires a later step than those of all others. The first snapshot always remains.
+  const std::vector<Snapshot>& snapshots() const { return snapshots_; }  // in ascending order of steps
+  const Snapshot& last() const { return snapshots_.back(); }
+  const Snapshot& nearest(int step) const;                       // the latest one up to that step
+  const Snapshot* find(int step) const;                          // null: none
+  const Snapshot* at_time(double time, double tolerance) const;  // the latest one at that time [s]; null: none
   void drop_after(int step);
-  void clear() { moments_.clear(), bytes_ = 0; }
-  bool is_empty() const { return moments_.empty(); }
-  size_t bytes() const { return bytes_; }
-  size_t size() const { return moments_.size(); }
 
  private:
-  void thin_out();  // every other one of the older half goes
+  void thin_out();  // drops every other snapshot of the older half
 
   size_t most_bytes_, bytes_ = 0;
-  std::vector<Moment> moments_;
+  std::vector<Snapshot> snapshots_;
 };
 
 }  // namespace aspic::viewer

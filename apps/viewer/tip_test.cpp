@@ -66,7 +66,7 @@ void expect_balance_of_tip(Page& page) {
   }
 }
 
-TEST(Tip, PressesTheBodyInAndIsPushedBack) {
+TEST(Tip, IndentsTheBodyAndMeasuresTheForce) {
   Page page(kSlab, {"time.integrator=\"quasi_static\""});
   page.send(touch_message(page, {{"radius", 0.03}}));
   page.steps(1);
@@ -115,7 +115,7 @@ TEST(Tip, EnergiesBalanceWithItsWork) {
     }
 }
 
-TEST(Tip, GoesBackWithTheTimelineAndRepeatsToTheSameBits) {
+TEST(Tip, IsBitReproducibleAfterRewinding) {
   Page page(kSlab);
   page.steps(2);
   page.send(touch_message(page));
@@ -135,7 +135,7 @@ TEST(Tip, GoesBackWithTheTimelineAndRepeatsToTheSameBits) {
   EXPECT_TRUE(page.side()["probe"].is_null());
 }
 
-TEST(Tip, ARecordingRepeatsIt) {
+TEST(Tip, IsRepeatedByARecording) {
   Page page(kSlab);
   page.steps(1);
   page.send(touch_message(page, {{"contact", "sliding"}}));
@@ -151,7 +151,7 @@ TEST(Tip, ARecordingRepeatsIt) {
   EXPECT_NEAR(number(page.side()["probe"]["depth"]), 0.008, 1e-15);
 }
 
-TEST(Tip, StaysThroughANewSetting) {
+TEST(Tip, SurvivesANewSetting) {
   Page page(kSlab, {"time.integrator=\"quasi_static\""});
   page.send(touch_message(page));
   page.send({{"do", "press"}, {"depth", 0.008}});
@@ -163,7 +163,7 @@ TEST(Tip, StaysThroughANewSetting) {
   EXPECT_GT(size(page.side()["probe"]["force"]), 1.8 * before);
 }
 
-TEST(Tip, BothSidesOfAComparisonAreTouchedAlike) {
+TEST(Tip, TouchesBothSidesOfAComparison) {
   Page page(kSlab, {"time.integrator=\"quasi_static\""});
   page.send({{"do", "compare"}, {"overrides", {"material.young=1e4"}}, {"label", "softer"}});
   page.send(touch_message(page));
@@ -174,7 +174,7 @@ TEST(Tip, BothSidesOfAComparisonAreTouchedAlike) {
   EXPECT_GT(size(a["force"]), 1.5 * size(b["force"]));
 }
 
-TEST(Tip, RefusesWhatIsNoTip) {
+TEST(Tip, RefusesInvalidTips) {
   Page page(kSlab);
   EXPECT_NE(page.refused({{"do", "press"}, {"depth", 0.01}}).find("no tip"), std::string::npos);
   page.refused(touch_message(page, {{"radius", 0}}));

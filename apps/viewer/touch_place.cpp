@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "math/polar3.h"
+#include "mesh/box.h"
 #include "mesh/tet_shape.h"
 #include "viewer/fields.h"
 
@@ -28,25 +29,23 @@ double mean_young(const Model& model) {
   return 1e5;
 }
 
-Vec3d unit(const Vec3d& v) { return (1 / length(v)) * v; }
+Vec3d unit(const Vec3d& v) { return (1 / norm(v)) * v; }
 
 }  // namespace
 
 double usual_radius(const Surface& cage) {
-  Vec3d lower = cage.rest.front(), upper = lower;
-  for (const Vec3d& X : cage.rest)
-    for (int r = 0; r < 3; ++r) lower[r] = std::min(lower[r], X[r]), upper[r] = std::max(upper[r], X[r]);
+  const Box box = bounding_box(cage.rest);
   double edges = 0;
-  for (const auto& [a, b] : cage.edges) edges += length(cage.rest[a] - cage.rest[b]);
+  for (const auto& [a, b] : cage.edges) edges += norm(cage.rest[a] - cage.rest[b]);
   const double edge = edges / std::max<double>(1, static_cast<double>(cage.edges.size()));
-  return std::max(kShareOfBody * length(upper - lower), kEdges * edge);
+  return std::max(kShareOfBody * norm(box.upper - box.lower), kEdges * edge);
 }
 
 double usual_layer(const Model& model, double radius) { return kLayer * mean_young(model) / radius; }
 
 Vec3d rotation_vector(const Mat3d& R) {
   const Vec3d twice_sine = {{R(2, 1) - R(1, 2), R(0, 2) - R(2, 0), R(1, 0) - R(0, 1)}};
-  const double sine = length(twice_sine) / 2, cosine = (trace(R) - 1) / 2;
+  const double sine = norm(twice_sine) / 2, cosine = (trace(R) - 1) / 2;
   const double angle = std::atan2(sine, cosine);
   if (cosine > -0.9) return (sine > 1e-9 ? angle / (2 * sine) : 0.5) * twice_sine;
   // Near half a turn: (R + R') / 2 - cos I = (1 - cos) a a'

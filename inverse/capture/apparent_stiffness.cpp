@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "capture/case_table.h"
+#include "math/vectors.h"
 
 namespace aspic {
 namespace {
@@ -21,7 +22,7 @@ double footprint(const Tip& tip, double depth) {
 
 std::optional<double> apparent_young(const LoadCase& load) {
   if (!load.tip || !load.force) return std::nullopt;
-  const double depth = load_size(load), force = std::sqrt(dot(*load.force, *load.force));
+  const double depth = load_size(load), force = norm(*load.force);
   if (!(depth > 0) || !(force > 0)) return std::nullopt;
   return force * (1 - kPoisson * kPoisson) / (2 * footprint(*load.tip, depth) * depth);
 }
@@ -31,12 +32,6 @@ std::optional<double> apparent_young(const Experiment& experiment) {
   for (const LoadCase& load : experiment.cases)
     if (const auto E = apparent_young(load)) values.push_back(*E);
   return values.empty() ? std::nullopt : std::optional(median(std::move(values)));
-}
-
-double median(std::vector<double> values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
 }
 
 }  // namespace aspic

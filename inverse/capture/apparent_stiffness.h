@@ -12,6 +12,4 @@ std::optional<double> apparent_young(const LoadCase& load);
 // Median over all cases; empty without cases.
 std::optional<double> apparent_young(const Experiment& experiment);
 
-double median(std::vector<double> values);  // requires at least one value
-
 }  // namespace aspic

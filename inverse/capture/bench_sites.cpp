@@ -14,7 +14,7 @@ constexpr int kCandidates = 20;  // per marker
 
 double triangle_area(const TetMesh& mesh, const Triangle& t) {
   const Vec3d n = cross(mesh.rest[t[1]] - mesh.rest[t[0]], mesh.rest[t[2]] - mesh.rest[t[0]]);
-  return 0.5 * std::sqrt(dot(n, n));
+  return 0.5 * norm(n);
 }
 
 // Points distributed evenly over the triangles that are not held.

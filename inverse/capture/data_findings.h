@@ -31,8 +31,6 @@ void diagnose_forces(const DataSet& data, DataFindings& findings);     // units,
 void diagnose_positions(const DataSet& data, DataFindings& findings);  // units, outliers, markers off the surface
 void diagnose_content(const DataSet& data, DataFindings& findings);    // rigid motion, insufficient data, repetitions
 
-double norm(const Vec3d& v);
-double size_of(const TetMesh& mesh);                                             // diagonal of the bounding box [m]
 std::string three_digits(double value);                                          // "1.23e+04"
 std::string factor_text(double factor);                                          // "1000 times", "1/100 times"
 Vec3d displacement(const Experiment& experiment, const MarkerReading& reading);  // [m]

@@ -13,6 +13,7 @@
 #include "capture/units.h"
 #include "capture/unstated_values.h"
 #include "io/mesh_file.h"
+#include "mesh/box.h"
 #include "scene/placement.h"
 #include "scene/selection.h"
 #include "scene/tables.h"

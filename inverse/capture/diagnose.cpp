@@ -4,7 +4,7 @@
 
 #include "capture/data_findings.h"
 #include "capture/surface_projection.h"
-#include "scene/placement.h"
+#include "mesh/box.h"
 
 namespace aspic {
 
@@ -12,13 +12,6 @@ std::vector<DataFinding> DataFindings::take() {
   std::stable_sort(list_.begin(), list_.end(),
                    [](const DataFinding& a, const DataFinding& b) { return a.severity < b.severity; });
   return std::move(list_);
-}
-
-double norm(const Vec3d& v) { return std::sqrt(dot(v, v)); }
-
-double size_of(const TetMesh& mesh) {
-  const Box box = bounding_box(mesh.rest);
-  return norm(box.upper - box.lower);
 }
 
 std::string three_digits(double value) {

@@ -6,6 +6,7 @@
 #include "capture/case_table.h"
 #include "capture/data_findings.h"
 #include "capture/units.h"
+#include "math/vectors.h"
 
 namespace aspic {
 namespace {

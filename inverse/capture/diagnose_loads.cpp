@@ -6,6 +6,7 @@
 #include "capture/case_table.h"
 #include "capture/data_findings.h"
 #include "capture/surface_projection.h"
+#include "mesh/box.h"
 #include "scene/placement.h"
 
 namespace aspic {

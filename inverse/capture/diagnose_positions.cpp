@@ -6,6 +6,8 @@
 #include "capture/case_table.h"
 #include "capture/data_findings.h"
 #include "capture/surface_projection.h"
+#include "math/vectors.h"
+#include "mesh/box.h"
 
 namespace aspic {
 namespace {

@@ -11,11 +11,16 @@
 
 namespace aspic {
 
+// Where the evaluations of a model are stored; nowhere if the memory has no folder.
+struct StoredModel {
+  const FitMemory& memory;
+  std::string name, fingerprint;
+};
+
 struct FitModel {
-  // `simulated`: the fitted cases on the simulated mesh; stored by reference. If `memory` has a folder, the model is
-  // stored there as `name`.
+  // `simulated`: the fitted cases on the simulated mesh; stored by reference.
   FitModel(const Experiment& data, const Experiment& simulated, const FitPlan& plan, std::vector<Unknown> unknowns,
-           const FitMemory& memory, const std::string& name, const std::string& fingerprint);
+           const StoredModel& stored);
 
   LeastSquares& recorded() { return journal ? static_cast<LeastSquares&>(*journal) : misfit; }
   LeastSquares& data() { return *with_layers; }  // the residuals to minimize

@@ -41,7 +41,7 @@ std::string words_of_failure(const DataSet& data, const FitReport& report, const
 
 std::string words_of_worst_row(const DataSet& data, const std::vector<std::string>& left_out, const Misfit& misfit,
                                std::span<const double> r) {
-  const double count = static_cast<double>(r.size()), usual = inner_product(r, r) / count;
+  const double count = static_cast<double>(r.size()), usual = dot(r, r) / count;
   if (!(usual > std::max(kUnexplained, 1 + 5 * std::sqrt(2 / count)))) return "";
   double worst = 0;
   int worst_case = 0, fitted = 0;
@@ -49,7 +49,7 @@ std::string words_of_worst_row(const DataSet& data, const std::vector<std::strin
     if (is_left_out(left_out, data.experiment.cases[c])) continue;
     const auto [first, number] = misfit.residuals_of(fitted++);
     const std::span<const double> own = r.subspan(first, number);
-    const double mean = number > 0 ? inner_product(own, own) / number : 0;
+    const double mean = number > 0 ? dot(own, own) / number : 0;
     if (mean > worst) worst = mean, worst_case = static_cast<int>(c);
   }
   return data.source.load_case(worst_case) + " ('" + data.experiment.cases[worst_case].name +

@@ -81,8 +81,6 @@ std::vector<GroupMisfit> fitted_groups(const DataSet& data, const FitOutcome& ou
   return groups;
 }
 
-double squared_length(const Vec3d& v) { return dot(v, v); }
-
 // Held-out errors of positions and forces relative to the peaks: root mean square over the groups, with the noise of
 // readings subtracted; < 0: none.
 struct HeldOutErrors {
@@ -101,8 +99,8 @@ HeldOutErrors beyond_noise(const DataSet& data, const CrossValidation& held_out)
     double positions = 0, forces = 0;  // sums of variances
     for (const LoadCase& load : data.experiment.cases) {
       if (load.group != group.group) continue;
-      for (const MarkerReading& reading : load.positions) positions += squared_length(reading.deviation);
-      if (load.force) forces += squared_length(load.force_deviation);
+      for (const MarkerReading& reading : load.positions) positions += squared_norm(reading.deviation);
+      if (load.force) forces += squared_norm(load.force_deviation);
     }
     add(0, group.position_error, positions / std::max(group.readings, 1), group.peak_motion);
     add(1, group.force_error, forces / std::max(group.forces, 1), group.peak_force);

@@ -79,7 +79,7 @@ std::vector<FittedQuantity> fitted_quantities(const ParameterMap& map, const Tet
     if (belief) q.deviation = belief->deviation[u], q.reduction = belief->reduction[u];
     for (const auto& [where, tet] : telling_tets(q, mesh)) {
       ValueRow& row = q.rows.emplace_back(ValueRow{where, q.values[tet], {}});
-      if (belief) row.interval = interval(*belief, map, p, index, tet);
+      if (belief) row.interval = interval(*belief, map, p, {index, tet});
     }
   }
   return result;

@@ -85,7 +85,7 @@ bool MaterialFit::fit_single_values(const std::string& name) {
   options.weight = -1;
   for (const double factor : kStiffer) {
     FitModel model(data_.experiment, simulated_.fitted(), plan_, stiffer(single_values(plan_.unknowns), factor),
-                   memory_, name + suffix(factor), fingerprint_);
+                   {memory_, name + suffix(factor), fingerprint_});
     const FitReport report = fit_stage(FitStage::uniform, model, options);
     outcome_.uniform = outcome_.report = report;
     if (!has_failed(report)) return has_single_values(model, report);
@@ -133,7 +133,8 @@ void MaterialFit::fit_until_mesh_errors_settle(std::optional<FitModel>& model) {
   FitOptions options = plan_.fit;
   for (int pass = 0;; ++pass) {
     const std::string name = pass == 0 ? stage : stage + "_corrected" + std::to_string(pass);
-    model.emplace(data_.experiment, simulated_.fitted(), plan_, plan_.unknowns, memory_, name, fingerprint_);
+    model.emplace(data_.experiment, simulated_.fitted(), plan_, plan_.unknowns,
+                  StoredModel{memory_, name, fingerprint_});
     outcome_.report = fit_stage(is_one_value ? FitStage::uniform : FitStage::field, *model, options, start);
     const std::vector<double>& p = outcome_.report.p;
     if (!plan_.mesh_errors || !is_success(outcome_.report.status)) return;

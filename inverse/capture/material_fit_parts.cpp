@@ -38,7 +38,7 @@ std::vector<double> MaterialFit::divided(FitModel& model) {
   const int fewest = plan_.parts > 0 ? plan_.parts : 2, most = plan_.parts > 0 ? plan_.parts : kMostParts;
   for (int count = fewest; count <= most && !found.are_kept && !is_stopped(); ++count, ++found.tried) {
     begin(FitStage::parts, std::to_string(count) + " parts");
-    const Parts parts = find_parts(model.data(), model.map, mesh(), report.p, unknown, count);
+    const Parts parts = find_parts(model.data(), {model.map, mesh(), report.p}, unknown, count);
     found.squares = parts.squares;
     found.are_kept = are_as_good(parts, 2 * report.misfit, outcome_.residuals);
     if (!found.are_kept) continue;

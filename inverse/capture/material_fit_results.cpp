@@ -4,7 +4,7 @@
 #include "capture/fit_troubles.h"
 #include "capture/fitted_values.h"
 #include "capture/material_fit.h"
-#include "fit/columns.h"
+#include "math/vectors.h"
 
 namespace aspic {
 namespace {
@@ -30,11 +30,11 @@ void MaterialFit::learn_uncertainty(FitModel& model) {
   begin(FitStage::uncertainty, "uncertainty");
   const FitReport& report = outcome_.report;
   WithUncertainLayers about_fit(model.recorded());
-  outcome_.posterior = posterior(about_fit, *model.prior, report.weight, model.map, mesh(), report.p);
+  outcome_.posterior = posterior(about_fit, *model.prior, report.weight, {model.map, mesh(), report.p});
   // If the initial guess already explains the data, weight rules raise the weight, and the prior would look like data.
   const bool is_learnt = !outcome_.posterior->ok || outcome_.posterior->informed >= kLearnt;
   if (!is_learnt && plan_.fit.weight <= 0 && report.weight > 1) {
-    outcome_.posterior = posterior(about_fit, *model.prior, 1, model.map, mesh(), report.p);
+    outcome_.posterior = posterior(about_fit, *model.prior, 1, {model.map, mesh(), report.p});
     std::erase_if(outcome_.posterior->warnings,
                   [](const std::string& warning) { return warning.starts_with("the weight of the regularizer"); });
     add_warnings(
@@ -126,7 +126,7 @@ CrossValidation MaterialFit::cross_validated(FitModel& model, const FitReport& r
     begin(FitStage::cross_validation,
           "'" + name + "' is held out (" + std::to_string(group + 1) + " of " + std::to_string(groups) + ")");
   };
-  return cross_validate(simulated_.fitted(), model.map, *model.prior, report, options, plan_.equilibrium, observe);
+  return cross_validate(simulated_.fitted(), model.map, *model.prior, report, {options, plan_.equilibrium, observe});
 }
 
 // Baseline for a field.
@@ -134,7 +134,7 @@ void MaterialFit::cross_validate_one_value() {
   FitOptions options = plan_.fit;
   options.method = options.weight_rule = "auto";
   options.weight = -1;
-  FitModel one(data_.experiment, simulated_.fitted(), plan_, single_values(plan_.unknowns), {}, "", "");
+  FitModel one(data_.experiment, simulated_.fitted(), plan_, single_values(plan_.unknowns), {{}, "", ""});
   const FitReport report = fit(one.data(), *one.prior, one.map.guess(), options);
   if (!is_success(report.status)) return;
   CrossValidation held_out = cross_validated(one, report, options);
@@ -146,8 +146,8 @@ void MaterialFit::find_next_poke(FitModel& model) {
   const bool has_tip = std::any_of(cases.begin(), cases.end(), [](const LoadCase& c) { return c.tip.has_value(); });
   if (!outcome_.posterior || !outcome_.posterior->ok || !has_tip || is_stopped()) return;
   begin(FitStage::next_poke, "most informative next poke");
-  NextPoke next =
-      next_poke(simulated_.fitted(), mesh(), model.map, *outcome_.posterior, outcome_.report.p, {}, plan_.equilibrium);
+  NextPoke next = next_poke(simulated_.fitted(), {model.map, mesh(), outcome_.report.p}, *outcome_.posterior,
+                            {.equilibrium = plan_.equilibrium});
   add_warnings(next.warnings);
   if (!next.candidates.empty() && next.candidates.front().ok) outcome_.next_poke = next.candidates.front();
 }

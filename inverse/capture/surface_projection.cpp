@@ -42,8 +42,7 @@ ProjectedPoint SurfaceProjection::nearest(const Vec3d& p) const {
   const auto& [a, b, c] = triangles_[best];
   const auto& X = mesh_.rest;
   const Vec3d n = cross(X[b] - X[a], X[c] - X[a]);
-  return {
-      {triangles_[best], weights_at(foot, X[a], X[b], X[c])}, foot, (1 / std::sqrt(dot(n, n))) * n, std::sqrt(reach)};
+  return {{triangles_[best], weights_at(foot, X[a], X[b], X[c])}, foot, (1 / norm(n)) * n, std::sqrt(reach)};
 }
 
 Vec3d position(const SurfacePoint& point, const std::vector<Vec3d>& X) {

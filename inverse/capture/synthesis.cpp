@@ -30,8 +30,6 @@ double volume_of(const TetMesh& mesh) {
   return sum;
 }
 
-double distance_squared(const Vec3d& a, const Vec3d& b) { return dot(a - b, a - b); }
-
 class Bench {
  public:
   Bench(const Scene& scene, const SynthesisOptions& options)
@@ -177,7 +175,7 @@ class Bench {
   // Adds a case without the markers hidden by the indenter.
   void add_case(LoadCase load, const Vec3d& shift, const Vec3d& site) {
     for (size_t m = 0; m < truth_.markers.size(); ++m)
-      if (!load.tip || distance_squared(truth_rest_[m], site) > load.tip->radius * load.tip->radius)
+      if (!load.tip || squared_norm(truth_rest_[m] - site) > load.tip->radius * load.tip->radius)
         load.positions.push_back({static_cast<int>(m), {}, {{1, 1, 1}}});
     if (load.positions.empty() && load.tip) load.force = Vec3d{}, load.force_deviation = {{1, 1, 1}};
     truth_.cases.push_back(load);

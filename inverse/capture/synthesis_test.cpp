@@ -78,7 +78,7 @@ TEST_F(VirtualBench, DataHaveCoarserMeshWithSameSupports) {
   for (size_t a = 0; a < e.markers.size(); ++a)
     for (size_t b = 0; b < a; ++b) {
       const Vec3d d = position(e.markers[a], e.mesh.rest) - position(e.markers[b], e.mesh.rest);
-      least = std::min(least, std::sqrt(dot(d, d)));
+      least = std::min(least, norm(d));
     }
   EXPECT_GT(least, 0.01);
   for (const LoadCase& load : e.cases) EXPECT_GT(dot(*load.force, load.pose.center - load.touch.center), 0);

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <optional>
 
 #include "base/check.h"
 #include "fit/incremental_body.h"
@@ -57,8 +58,7 @@ double apart(const LoadCase& a, const LoadCase& b) {
   const Vec3d touch = a.touch.center - b.touch.center;
   const Vec3d way = (a.pose.center - a.touch.center) - (b.pose.center - b.touch.center);
   const Vec3d gravity = a.gravity - b.gravity;
-  return std::sqrt(dot(touch, touch) + dot(way, way)) + std::sqrt(dot(gravity, gravity)) +
-         std::abs(a.pressure - b.pressure);
+  return std::sqrt(dot(touch, touch) + dot(way, way)) + norm(gravity) + std::abs(a.pressure - b.pressure);
 }
 
 std::vector<MaterialParameters> parameters_of(const StrainExample& example) {
@@ -88,16 +88,14 @@ Examples explain_all(const Experiment& training, const BickelOptions& options) {
 }
 
 // One case with a given linear material.
-bool predict_linear(const Experiment& experiment, const LoadCase& load, const std::vector<MaterialParameters>& known,
-                    const BickelOptions& options, CasePrediction& prediction, std::string& failure) {
+std::optional<CasePrediction> predict_linear(const Experiment& experiment, const LoadCase& load,
+                                             const std::vector<MaterialParameters>& known, const BickelOptions& options,
+                                             std::string& failure) {
   const Experiment one = only(experiment, load);
   LoadedBody body(one, one.cases.front(), kLinear, known, options.equilibrium);
-  if (!body.solve(known, {})) {
-    failure = body.failure();
-    return false;
-  }
-  prediction = body.prediction();
-  return true;
+  if (body.solve(known, {})) return body.prediction();
+  failure = body.failure();
+  return std::nullopt;
 }
 
 }  // namespace
@@ -143,12 +141,16 @@ HeldOut predict(Baseline baseline, const Experiment& training, const Experiment&
     failed.failure = why;
     return failed;
   };
+  const auto predict_case = [&](size_t c, const std::vector<MaterialParameters>& known) {
+    auto prediction = predict_linear(left_out, left_out.cases[c], known, options, failed.failure);
+    if (prediction) predictions[c] = std::move(*prediction);
+    return prediction.has_value();
+  };
   if (baseline == Baseline::homogeneous) {
     const LinearFit linear = fit_linear(training, Spread::uniform, options);
     if (!linear.ok) return fails(linear.failure);
     for (size_t c = 0; c < predictions.size(); ++c)
-      if (!predict_linear(left_out, left_out.cases[c], linear.parameters, options, predictions[c], failed.failure))
-        return failed;
+      if (!predict_case(c, linear.parameters)) return failed;
     return compare(left_out, predictions);
   }
   const Examples examples = explain_all(training, options);
@@ -170,9 +172,7 @@ HeldOut predict(Baseline baseline, const Experiment& training, const Experiment&
       if (apart(training.cases[examples.cases[i]], left_out.cases[c]) <
           apart(training.cases[examples.cases[nearest]], left_out.cases[c]))
         nearest = i;
-    if (!predict_linear(left_out, left_out.cases[c], parameters_of(examples.list[nearest]), options, predictions[c],
-                        failed.failure))
-      return failed;
+    if (!predict_case(c, parameters_of(examples.list[nearest]))) return failed;
   }
   return compare(left_out, predictions);
 }

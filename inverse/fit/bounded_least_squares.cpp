@@ -5,7 +5,7 @@
 #include <limits>
 
 #include "base/check.h"
-#include "fit/columns.h"
+#include "math/vectors.h"
 
 namespace aspic {
 namespace {

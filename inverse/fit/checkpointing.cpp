@@ -7,10 +7,10 @@
 namespace aspic {
 namespace {
 
-// beta(s, r) = (s + r)! / (s! r!): longest chain that s slots can reverse with at most r forward repetitions per step;
-// 0 for r < 0.
+// beta(s, r) = (s + r)! / (s! r!): the length of the longest chain that s slots can reverse if each step is taken
+// forward at most r times; 0 for r < 0.
 int64_t reach(int slots, int repeats) {
-  constexpr int64_t kEnough = int64_t{1} << 32;  // longer than any chain
+  constexpr int64_t kEnough = int64_t{1} << 32;  // more than the steps of any chain
   if (repeats < 0) return 0;
   int64_t beta = 1;
   for (int i = 1; i <= std::min(slots, repeats) && beta < kEnough; ++i)
@@ -24,46 +24,46 @@ int repeats_for(int steps, int slots) {
   return r;
 }
 
-// Number of steps to the next stored state that minimizes the repetitions of both parts.
-int next_store(int steps, int slots) {
+// Returns the number of steps before the next stored state, so that both parts are reversed with the fewest repeats.
+int steps_to_next_store(int steps, int slots) {
   const int r = repeats_for(steps, slots);
   const int64_t behind = std::min(reach(slots - 1, r), steps - reach(slots, r - 2));
   return static_cast<int>(std::clamp<int64_t>(steps - behind, 1, steps - 1));
 }
 
-bool advance(int steps, const ChainWalk& walk) {
+bool advance(int steps, const ChainOperations& chain) {
   for (int i = 0; i < steps; ++i)
-    if (!walk.advance()) return false;
+    if (!chain.advance()) return false;
   return true;
 }
 
-// Reverses points begin ... end - 1 from point `begin`, which is stored in `slot`. There are `slots` slots from there
-// on.
-bool reverse(int begin, int end, int slot, int slots, const ChainWalk& walk) {
+// Reverses the steps begin ... end - 1. The current state is at point `begin` and stored in `slot`, the first of
+// `slots` slots.
+bool reverse(int begin, int end, int slot, int slots, const ChainOperations& chain) {
   const int steps = end - begin;
-  if (steps == 1) return walk.reverse(begin);
+  if (steps == 1) return chain.reverse(begin);
   if (slots == 1) {
     for (int point = end - 1; point >= begin; --point) {
-      if (point < end - 1) walk.restore(slot);
-      if (!advance(point - begin, walk) || !walk.reverse(point)) return false;
+      if (point < end - 1) chain.restore(slot);
+      if (!advance(point - begin, chain) || !chain.reverse(point)) return false;
     }
     return true;
   }
-  const int middle = begin + next_store(steps, slots);
-  if (!advance(middle - begin, walk)) return false;
-  walk.store(slot + 1);
-  if (!reverse(middle, end, slot + 1, slots - 1, walk)) return false;
-  walk.restore(slot);
-  return reverse(begin, middle, slot, slots, walk);
+  const int middle = begin + steps_to_next_store(steps, slots);
+  if (!advance(middle - begin, chain)) return false;
+  chain.store(slot + 1);
+  if (!reverse(middle, end, slot + 1, slots - 1, chain)) return false;
+  chain.restore(slot);
+  return reverse(begin, middle, slot, slots, chain);
 }
 
 }  // namespace
 
-bool walk_backwards(int steps, int slots, const ChainWalk& walk) {
+bool reverse_chain(int steps, int slots, const ChainOperations& chain) {
   ASPIC_CHECK(slots >= 1);
   if (steps == 0) return true;
-  walk.store(0);
-  return reverse(0, steps, 0, slots, walk);
+  chain.store(0);
+  return reverse(0, steps, 0, slots, chain);
 }
 
 // r steps - beta(s + 1, r - 1) [Griewank and Walther 2000].

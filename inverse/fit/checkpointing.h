@@ -5,22 +5,23 @@
 
 namespace aspic {
 
-// Callbacks of a reversal. The chain has points 0 ... steps; step i leads from point i to i + 1.
-struct ChainWalk {
-  std::function<bool()> advance;          // one step forward; false: failure, which ends the reversal
+// Operations on the current state, which is at one point of the chain. Points are 0 ... steps; step i leads from point
+// i to i + 1. A callback that returns false has failed and ends the reversal.
+struct ChainOperations {
+  std::function<bool()> advance;          // takes one step forward
   std::function<void(int slot)> store;    // stores the current state
-  std::function<void(int slot)> restore;  // restores a stored state
-  // Reverses step `step`; the state is that of point `step`, and all later steps are reversed. The first call, for
-  // steps - 1, also makes the last forward step. False: ends the reversal.
+  std::function<void(int slot)> restore;  // replaces the current state by a stored one
+  // Reverses one step. The current state is at point `step`, and all later steps have been reversed. The first call,
+  // for steps - 1, must also take the last step of the chain forward.
   std::function<bool(int step)> reverse;
 };
 
-// Starts at point 0 and calls reverse(steps - 1), reverse(steps - 2) ... reverse(0). Stores at most `slots` (>= 1)
-// states at a time, in slots 0 ... slots - 1, with the minimum number of advance() calls. Returns false if a callback
-// failed.
-bool walk_backwards(int steps, int slots, const ChainWalk& walk);
+// Calls reverse(steps - 1), reverse(steps - 2) ... reverse(0). The current state is at point 0 at first. At most
+// `slots` (at least 1) states are stored at a time, in slots 0 ... slots - 1, with the minimum number of calls of
+// advance() for that. Returns false if a callback failed.
+bool reverse_chain(int steps, int slots, const ChainOperations& chain);
 
-// Number of advance() calls.
+// Returns the number of calls of advance().
 int64_t checkpointing_advances(int steps, int slots);
 
 }  // namespace aspic

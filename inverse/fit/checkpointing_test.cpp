@@ -9,15 +9,15 @@
 namespace aspic {
 namespace {
 
-// Runs through a chain whose states are their own numbers, and checks every call.
-struct Walker {
+// A chain whose states are their own numbers, with checks of every call.
+struct NumberChain {
   int at = 0, next_reverse;
   int64_t advances = 0;
   size_t most_stored = 0;
   std::map<int, int> slots;
 
-  explicit Walker(int steps) : next_reverse(steps - 1) {}
-  ChainWalk walk(int slot_count) {
+  explicit NumberChain(int steps) : next_reverse(steps - 1) {}
+  ChainOperations operations(int slot_count) {
     return {.advance = [this] { return ++at, ++advances, true; },
             .store =
                 [this, slot_count](int slot) {
@@ -35,7 +35,7 @@ struct Walker {
   }
 };
 
-// Minimum number of advances by exhaustive search for the next stored state.
+// The minimum number of advances, by trying every place for the next state.
 int64_t least_advances(int steps, int slots) {
   static std::map<std::pair<int, int>, int64_t> known;
   if (steps == 1) return 0;
@@ -48,36 +48,36 @@ int64_t least_advances(int steps, int slots) {
   return known[{steps, slots}] = least;
 }
 
-TEST(Checkpointing, NeedsMinimumStepsForItsStates) {
+TEST(Checkpointing, TakesMinimumNumberOfSteps) {
   for (int slots = 1; slots <= 9; ++slots)
     for (int steps = 1; steps <= 120; ++steps) {
-      Walker walker(steps);
-      EXPECT_TRUE(walk_backwards(steps, slots, walker.walk(slots)));
-      EXPECT_EQ(walker.next_reverse, -1);
-      EXPECT_LE(walker.most_stored, static_cast<size_t>(slots));
-      EXPECT_EQ(walker.advances, least_advances(steps, slots)) << steps << " steps, " << slots << " states";
-      EXPECT_EQ(walker.advances, checkpointing_advances(steps, slots)) << steps << " steps, " << slots << " states";
+      NumberChain chain(steps);
+      EXPECT_TRUE(reverse_chain(steps, slots, chain.operations(slots)));
+      EXPECT_EQ(chain.next_reverse, -1);
+      EXPECT_LE(chain.most_stored, static_cast<size_t>(slots));
+      EXPECT_EQ(chain.advances, least_advances(steps, slots)) << steps << " steps, " << slots << " states";
+      EXPECT_EQ(chain.advances, checkpointing_advances(steps, slots)) << steps << " steps, " << slots << " states";
     }
 }
 
 TEST(Checkpointing, ReversesLongChainsWithFewRepeats) {
   for (const auto& [steps, slots] : {std::pair{10'000, 10}, {1'000, 1'000}, {50'000, 40}}) {
-    Walker walker(steps);
-    EXPECT_TRUE(walk_backwards(steps, slots, walker.walk(slots)));
-    EXPECT_EQ(walker.advances, checkpointing_advances(steps, slots));
+    NumberChain chain(steps);
+    EXPECT_TRUE(reverse_chain(steps, slots, chain.operations(slots)));
+    EXPECT_EQ(chain.advances, checkpointing_advances(steps, slots));
   }
   EXPECT_EQ(checkpointing_advances(1'000, 1'000), 999);  // everything is stored
   EXPECT_LT(checkpointing_advances(50'000, 40), 4 * 50'000);
 }
 
-TEST(Checkpointing, EndsWhereAStepFails) {
+TEST(Checkpointing, EndsAtFailedStep) {
   for (const int steps : {0, 1, 7}) {
-    Walker walker(steps);
-    ChainWalk walk = walker.walk(3);
-    walk.reverse = [](int step) { return step != 0; };
-    EXPECT_EQ(walk_backwards(steps, 3, walk), steps == 0);
-    walk.advance = [] { return false; };
-    EXPECT_EQ(walk_backwards(steps, 3, walk), steps == 0);
+    NumberChain chain(steps);
+    ChainOperations operations = chain.operations(3);
+    operations.reverse = [](int step) { return step != 0; };
+    EXPECT_EQ(reverse_chain(steps, 3, operations), steps == 0);
+    operations.advance = [] { return false; };
+    EXPECT_EQ(reverse_chain(steps, 3, operations), steps == 0);
   }
 }
 

@@ -7,20 +7,6 @@
 
 namespace aspic {
 
-double dot(std::span<const double> x, std::span<const double> y) {
-  ASPIC_CHECK(x.size() == y.size());
-  return parallel_sum(static_cast<int>(x.size()), [&](int first, int last) {
-    double sum = 0;
-    for (int i = first; i < last; ++i) sum += x[i] * y[i];
-    return sum;
-  });
-}
-
-void add_scaled(double s, std::span<const double> x, std::span<double> y) {
-  ASPIC_CHECK(x.size() == y.size());
-  for (size_t i = 0; i < x.size(); ++i) y[i] += s * x[i];
-}
-
 std::vector<double> product_transposed(const Columns& A, std::span<const double> v) {
   std::vector<double> c(A.count());
   parallel_for(A.count(), [&](int j) { c[j] = dot(A[j], v); });

@@ -1,8 +1,9 @@
 // Tall matrices: a few hundred columns with many rows.
 #pragma once
-#include <cmath>
 #include <span>
 #include <vector>
+
+#include "math/vectors.h"
 
 namespace aspic {
 
@@ -23,11 +24,6 @@ class Columns {
   int rows_ = 0;
   std::vector<double> values_;  // column-major
 };
-
-double dot(std::span<const double> x, std::span<const double> y);
-inline double squared_norm(std::span<const double> x) { return dot(x, x); }
-inline double norm(std::span<const double> x) { return std::sqrt(dot(x, x)); }
-void add_scaled(double s, std::span<const double> x, std::span<double> y);  // y += s x
 
 std::vector<double> product_transposed(const Columns& A, std::span<const double> v);               // A' v
 std::vector<double> product_transposed(const Columns& A, const Columns& B);                        // A' B, column-major

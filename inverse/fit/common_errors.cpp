@@ -1,9 +1,8 @@
 #include "fit/common_errors.h"
+#include "math/vectors.h"
 
 #include <algorithm>
 #include <cmath>
-
-#include "fit/columns.h"
 
 namespace aspic {
 namespace {
@@ -29,16 +28,16 @@ std::vector<double> CommonErrors::beside_others(int first, const std::vector<dou
 // Sequentially: (I + n n')^(-1/2) = I - (1 - 1 / sqrt(1 + |n|^2)) n n' / |n|^2.
 void CommonErrors::add(int first, std::vector<double> n) {
   n = beside_others(first, n);
-  const double length = std::sqrt(dot(n, n));
+  const double length = norm(n);
   if (!(length > 0) || !std::isfinite(length)) return;
   for (double& x : n) x /= length;
   directions_.push_back({first, std::move(n), 1 - 1 / std::hypot(1, length)});
 }
 
 void CommonErrors::add_unbounded(std::vector<double> n) {
-  const double before = std::sqrt(dot(n, n));
+  const double before = norm(n);
   n = beside_others(0, n);
-  const double length = std::sqrt(dot(n, n));
+  const double length = norm(n);
   if (!(length > kRoundOff * before) || !std::isfinite(length)) return;
   for (double& x : n) x /= length;
   directions_.push_back({0, std::move(n), 1});

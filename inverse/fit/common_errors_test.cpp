@@ -4,8 +4,8 @@
 
 #include <Eigen/Dense>
 
-#include "fit/columns.h"
 #include "fit/poked_block_test.h"
+#include "math/vectors.h"
 
 namespace aspic {
 namespace {

@@ -15,25 +15,22 @@ std::vector<std::string> groups_of(const Experiment& experiment) {
   return groups;
 }
 
-double squared_length(const Vec3d& v) { return dot(v, v); }
-
 // Adds sums of squares, see finish().
 void add_case(const Experiment& experiment, const LoadCase& measured, const CasePrediction& predicted, HeldOut& h) {
   for (size_t i = 0; i < measured.positions.size(); ++i) {
     const MarkerReading& reading = measured.positions[i];
-    const double error = squared_length(predicted.markers[i] - reading.position);
+    const double error = squared_norm(predicted.markers[i] - reading.position);
     h.peak_motion =
-        std::max(h.peak_motion,
-                 std::sqrt(squared_length(reading.position - at_rest(experiment, experiment.markers[reading.marker]))));
+        std::max(h.peak_motion, norm(reading.position - at_rest(experiment, experiment.markers[reading.marker])));
     h.largest_error = std::max(h.largest_error, std::sqrt(error));
     h.position_error += error;
-    h.position_noise += squared_length(reading.deviation);
+    h.position_noise += squared_norm(reading.deviation);
     ++h.readings;
   }
   if (!measured.force) return;
-  h.peak_force = std::max(h.peak_force, std::sqrt(squared_length(*measured.force)));
-  h.force_error += squared_length(predicted.wrench.force - *measured.force);
-  h.force_noise += squared_length(measured.force_deviation);
+  h.peak_force = std::max(h.peak_force, norm(*measured.force));
+  h.force_error += squared_norm(predicted.wrench.force - *measured.force);
+  h.force_noise += squared_norm(measured.force_deviation);
   ++h.forces;
 }
 
@@ -80,29 +77,29 @@ HeldOut compare(const Experiment& left_out, std::span<const CasePrediction> pred
 }
 
 CrossValidation cross_validate(const Experiment& experiment, const ParameterMap& map, Regularizer& regularizer,
-                               const FitReport& fitted, FitOptions options, const EquilibriumOptions& equilibrium,
-                               const CrossValidationObserver& observe) {
+                               const FitReport& fitted, const CrossValidationOptions& chosen) {
   CrossValidation result;
   const std::vector<std::string> groups = groups_of(experiment);
   if (groups.size() < 2) {
     result.warnings.push_back("nothing can be held out: all cases belong to one group (give each poke its own)");
     return result;
   }
+  FitOptions options = chosen.fit;
   options.weight = fitted.weight;
   options.starts = 1;
   for (size_t g = 0; g < groups.size(); ++g) {
-    if (observe) observe(static_cast<int>(g), static_cast<int>(groups.size()), groups[g]);
+    if (chosen.observe) chosen.observe(static_cast<int>(g), static_cast<int>(groups.size()), groups[g]);
     if (options.stop.stopped()) break;
     HeldOut& h = result.groups.emplace_back();
     h.group = groups[g];
     const Experiment seen = subset(experiment, [&](const LoadCase& c) { return c.group != h.group; });
     const Experiment left_out = subset(experiment, [&](const LoadCase& c) { return c.group == h.group; });
-    Misfit misfit(seen, map, equilibrium);
+    Misfit misfit(seen, map, chosen.equilibrium);
     WithUncertainLayers data(misfit);
     const FitReport report = fit(data, regularizer, fitted.p, options);
     h.p = report.p;
     if (is_success(report.status) || report.status == Status::iteration_limit)
-      predict(left_out, map, equilibrium, h);
+      predict(left_out, map, chosen.equilibrium, h);
     else
       h.failure = "the fit to the other cases failed: " + report.words;
     if (!h.ok) result.warnings.push_back(h.group + " could not be predicted: " + h.failure);

@@ -45,9 +45,14 @@ HeldOut compare(const Experiment& left_out, std::span<const CasePrediction> pred
 // Called before each group is held out.
 using CrossValidationObserver = std::function<void(int group, int groups, const std::string& name)>;
 
+struct CrossValidationOptions {
+  FitOptions fit = {};
+  EquilibriumOptions equilibrium = {};
+  CrossValidationObserver observe = {};
+};
+
 // `fitted`: fit of all cases; its p is the initial guess and its weight is kept.
 CrossValidation cross_validate(const Experiment& experiment, const ParameterMap& map, Regularizer& regularizer,
-                               const FitReport& fitted, FitOptions options = {},
-                               const EquilibriumOptions& equilibrium = {}, const CrossValidationObserver& observe = {});
+                               const FitReport& fitted, const CrossValidationOptions& options = {});
 
 }  // namespace aspic

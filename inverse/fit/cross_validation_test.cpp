@@ -85,7 +85,7 @@ TEST(CrossValidation, ReportsAGroupThatCannotBePredicted) {
   };
   const CrossValidation result =
       cross_validate(study.block.experiment, map, *prior, {.p = {map.guess().begin(), map.guess().end()}, .weight = 1},
-                     {.stop = StopToken([&] { return is_done; })}, {.max_iterations = 20}, observe);
+                     {{.stop = StopToken([&] { return is_done; })}, {.max_iterations = 20}, observe});
   ASSERT_EQ(result.groups.size(), 1u);
   EXPECT_FALSE(result.groups[0].ok);
   EXPECT_THAT(result.warnings, ElementsAre(HasSubstr("left could not be predicted")));

@@ -6,8 +6,8 @@
 #include <random>
 
 #include "base/error.h"
-#include "fit/columns.h"
 #include "fit/formatted.h"
+#include "math/vectors.h"
 
 namespace aspic {
 namespace {
@@ -16,12 +16,6 @@ constexpr double kLeastRelative = 0.05;  // relative to the largest stress; floo
 constexpr double kPowers = 100;          // larger ranges use logarithms
 
 constexpr double kInf = std::numeric_limits<double>::infinity();
-
-double largest(const std::vector<double>& x) {
-  double most = 0;
-  for (const double xi : x) most = std::fmax(most, std::abs(xi));
-  return most;
-}
 
 void check(const TestCurve& curve) {
   const std::string where = "curve '" + curve.name + "': ";
@@ -36,7 +30,7 @@ void check(const TestCurve& curve) {
     if (!std::isfinite(curve.stress[i]))
       throw InvalidInput(where + "point " + std::to_string(i + 1) + " has no finite stress");
   }
-  if (!(largest(curve.stress) > 0)) throw InvalidInput(where + "all stresses are 0; there is nothing to fit");
+  if (!(max_abs(curve.stress) > 0)) throw InvalidInput(where + "all stresses are 0; there is nothing to fit");
 }
 
 double lambda_of(double mu, double poisson) { return 2 * mu * poisson / (1 - 2 * poisson); }
@@ -50,7 +44,7 @@ double scale_of(const TestCurve& curve, size_t point, Weighting weighting, doubl
     case Weighting::relative:
       break;
   }
-  return std::fmax(std::abs(curve.stress[point]), kLeastRelative * largest(curve.stress));
+  return std::fmax(std::abs(curve.stress[point]), kLeastRelative * max_abs(curve.stress));
 }
 
 struct Squares {
@@ -76,7 +70,7 @@ CurveErrors errors_of(const TestCurve& curve, std::span<const double> predicted)
   e.relative = squares.relative();
   e.r_squared = squares.r_squared();
   for (size_t i = 0; i < predicted.size(); ++i)
-    e.largest = std::fmax(e.largest, std::abs(predicted[i] - curve.stress[i]) / largest(curve.stress));
+    e.largest = std::fmax(e.largest, std::abs(predicted[i] - curve.stress[i]) / max_abs(curve.stress));
   return e;
 }
 

@@ -24,13 +24,13 @@ struct Centers {
 Centers spread_centers(const std::vector<Vec3d>& points, int count) {
   Vec3d middle{};
   for (const Vec3d& x : points) middle = middle + (1.0 / static_cast<double>(points.size())) * x;
-  const auto nearer = [&](const Vec3d& a, const Vec3d& b) { return length(a - middle) < length(b - middle); };
+  const auto nearer = [&](const Vec3d& a, const Vec3d& b) { return norm(a - middle) < norm(b - middle); };
   Vec3d next = *std::min_element(points.begin(), points.end(), nearer);
   std::vector<double> distance(points.size(), std::numeric_limits<double>::infinity());
   Centers centers;
   for (int i = 0; i < count; ++i) {
     centers.at.push_back(next);
-    for (size_t t = 0; t < points.size(); ++t) distance[t] = std::min(distance[t], length(points[t] - next));
+    for (size_t t = 0; t < points.size(); ++t) distance[t] = std::min(distance[t], norm(points[t] - next));
     const auto farthest = std::max_element(distance.begin(), distance.end());
     next = points[farthest - distance.begin()];
     centers.radius = *farthest;
@@ -86,7 +86,7 @@ FieldBasis FieldBasis::radial(const TetMesh& mesh, int count) {
     const size_t begin = basis.weight_.size();
     double sum = 0;
     for (int j = 0; j < count; ++j) {
-      const double w = wendland(length(x - centers.at[j]) / (kReach * centers.radius));
+      const double w = wendland(norm(x - centers.at[j]) / (kReach * centers.radius));
       if (w == 0) continue;
       basis.index_.push_back(j);
       basis.weight_.push_back(w);

@@ -29,7 +29,7 @@ FieldRoughness::FieldRoughness(const TetMesh& mesh, double sharpness) : eps_(1 /
   for_each_group(faces_of(mesh), [&](const GroupedElement<3>* begin, const GroupedElement<3>* end) {
     if (end != begin + 2) return;
     const int a = begin[0].place, b = begin[1].place;
-    pairs_.push_back({a, b, size / length(centroid(corners(mesh, a)) - centroid(corners(mesh, b)))});
+    pairs_.push_back({a, b, size / norm(centroid(corners(mesh, a)) - centroid(corners(mesh, b)))});
   });
 }
 

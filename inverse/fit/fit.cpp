@@ -64,8 +64,8 @@ std::vector<double> scattered(FitRun& run, std::span<const double> guess, int st
   for (double& vi : v)  // sums of uniform numbers, which are equal for every standard library
     for (int k = 0; k < 4; ++k) vi += static_cast<double>(random() >> 11) * 0x1p-53 - 0.5;
   run.solve_prior(guess, v, d);
-  const double size = largest_entry(d);
-  if (size > 0) add_multiple(run.options.scatter / size, d, p);
+  const double size = max_abs(d);
+  if (size > 0) add_scaled(run.options.scatter / size, d, p);
   return p;
 }
 

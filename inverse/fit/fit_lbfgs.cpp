@@ -36,7 +36,7 @@ class FitObjective : public Objective, public HasPreconditioner {
     if (!is_same(p, at_)) std::swap(at_, trial_);
   }
   double max_step(std::span<const double>, std::span<const double> d) override {
-    return run_.options.max_step / std::max(largest_entry(d), 1e-300);
+    return run_.options.max_step / std::max(max_abs(d), 1e-300);
   }
 
   // s R'' at the first iterate, with s the curvature of f along the first direction.
@@ -56,7 +56,7 @@ class FitObjective : public Objective, public HasPreconditioner {
     std::vector<double> Hd(d.size()), Rd(d.size(), 0.0);
     run_.multiply_curvature(at_, d, Hd);
     run_.add_prior_product(at_, d, 1, Rd);
-    return inner_product(d, Hd) / inner_product(d, Rd);
+    return dot(d, Hd) / dot(d, Rd);
   }
   const BlockSparse& evaluate_hessian(std::span<const double>, const Projection&) override {
     check_failed("a fit has no Hessian of blocks", __FILE__, __LINE__);
@@ -80,8 +80,7 @@ Status fit_by_lbfgs(FitRun& run, FitPoint& at, FitGoal& goal) {
   bool is_done = false;
   const auto observe = [&](const LiveIteration& i) {
     const double decrement = std::sqrt(std::max(0.0, 2 * i.decrement));
-    run.note({.decrement = decrement, .step = i.alpha * largest_entry(i.d), .trials = static_cast<int>(i.tried.size())},
-             at);
+    run.note({.decrement = decrement, .step = i.alpha * max_abs(i.d), .trials = static_cast<int>(i.tried.size())}, at);
     small = goal.is_reached(decrement) ? small + 1 : 0;
     if (small == kSuccessive)
       ended = Status::converged;
@@ -96,7 +95,7 @@ Status fit_by_lbfgs(FitRun& run, FitPoint& at, FitGoal& goal) {
                                 .criterion = Criterion::first_gradient,
                                 .line_search = {.tolerance = 1e-6},
                                 .stop = StopToken([&] { return is_done || run.is_stopped(); })};
-  const MinimizeReport report = minimizer.minimize(f, direction, p, f.at_iterate(), options, observe);
+  const MinimizeReport report = minimizer.minimize(f, direction, {p, f.at_iterate()}, options, observe);
   return report.status == Status::interrupted ? ended : report.status;
 }
 

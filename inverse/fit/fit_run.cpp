@@ -18,27 +18,13 @@ bool is_finite(std::span<const double> v) {
 
 }  // namespace
 
-double inner_product(std::span<const double> a, std::span<const double> b) {
-  return std::inner_product(a.begin(), a.end(), b.begin(), 0.0);
-}
-
-double largest_entry(std::span<const double> v) {
-  double largest = 0;
-  for (double x : v) largest = std::max(largest, std::abs(x));
-  return largest;
-}
-
-void add_multiple(double factor, std::span<const double> v, std::span<double> to) {
-  for (size_t i = 0; i < v.size(); ++i) to[i] += factor * v[i];
-}
-
 bool FitRun::evaluate(std::span<const double> p, FitPoint& point) {
   point.p.assign(p.begin(), p.end());
   point.r.resize(static_cast<size_t>(residuals()));
   ++report.evaluations;
   if (!is_finite(p) || !data_.evaluate(p, point.r)) return false;
   evaluated_ = point.p;
-  point.misfit = inner_product(point.r, point.r) / 2;
+  point.misfit = dot(point.r, point.r) / 2;
   point.roughness = regularizer_.value(p);
   return std::isfinite(point.misfit) && std::isfinite(point.roughness);
 }
@@ -98,7 +84,7 @@ bool is_lost_in_noise(double decrement, double objective) {
 
 bool search_along(FitRun& run, FitPoint& at, std::span<const double> d, double slope, FitStep& step) {
   const double before = at.objective(run.weight), noise = kNoise * std::abs(before);
-  step.length = std::min(1.0, run.options.max_step / largest_entry(d));
+  step.length = std::min(1.0, run.options.max_step / max_abs(d));
   FitPoint trial;
   std::vector<double> p(at.p.size());
   for (; step.length > kShortest && !run.is_stopped(); step.length *= 0.5) {

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "fit/fit.h"
+#include "math/vectors.h"
 
 namespace aspic {
 
@@ -14,10 +15,6 @@ struct FitPoint {
 
   double objective(double weight) const { return misfit + weight * roughness; }
 };
-
-double inner_product(std::span<const double> a, std::span<const double> b);
-double largest_entry(std::span<const double> v);  // largest |v_i|
-void add_multiple(double factor, std::span<const double> v, std::span<double> to);
 
 class FitRun {
  public:

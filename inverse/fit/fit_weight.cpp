@@ -25,11 +25,11 @@ std::optional<double> balanced_weight(FitRun& run, const FitPoint& at) {
   if (!run.linearize(at)) return {};
   std::vector<double> g(at.p.size()), d(g.size()), Rd(g.size(), 0.0), Jd(at.r.size());
   run.multiply_transposed(at.r, g);
-  if (largest_entry(g) == 0) return 1;
+  if (max_abs(g) == 0) return 1;
   run.solve_prior(at.p, g, d);
   run.multiply(d, Jd);
   run.add_prior_product(at, d, 1, Rd);
-  const double weight = inner_product(Jd, Jd) / inner_product(d, Rd);
+  const double weight = dot(Jd, Jd) / dot(d, Rd);
   if (!(weight > 0) || !std::isfinite(weight)) return {};
   return weight;
 }

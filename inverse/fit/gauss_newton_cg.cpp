@@ -31,26 +31,26 @@ class InnerSolver {
     for (size_t i = 0; i < n; ++i) r[i] = -g[i];
     precondition(r, z);
     q = z;
-    double rz = inner_product(r, z);
+    double rz = dot(r, z);
     double decrease = 0;  // -g.d
     while (rz > 0 && s.iterations < run_.options.max_inner && !run_.is_stopped()) {
       run_.multiply_curvature(at_, q, Hq);
-      const double curvature = inner_product(q, Hq);
+      const double curvature = dot(q, Hq);
       if (!(curvature > 0) || !std::isfinite(curvature)) {
         s.ok = s.iterations > 0 && std::isfinite(curvature);
         break;
       }
       ++s.iterations;
-      add_multiple(rz / curvature, q, s.d);
-      add_multiple(-rz / curvature, Hq, r);
+      add_scaled(rz / curvature, q, s.d);
+      add_scaled(-rz / curvature, Hq, r);
       precondition(r, z);
       const double added = rz * rz / curvature, before = rz;
       decrease += added;
       if (s.iterations * added <= kWorthwhile * decrease) break;
-      rz = inner_product(r, z);
+      rz = dot(r, z);
       for (size_t i = 0; i < n; ++i) q[i] = z[i] + rz / before * q[i];
     }
-    s.decrement = std::sqrt(std::max(0.0, -inner_product(g, s.d)));
+    s.decrement = std::sqrt(std::max(0.0, -dot(g, s.d)));
     return s;
   }
 
@@ -73,7 +73,7 @@ Status gauss_newton_cg(FitRun& run, FitPoint& at, FitGoal& goal) {
     if (run.is_stopped()) return run.stop_status();
     if (!run.linearize(at)) return Status::undefined;
     run.gradient(at, g);
-    if (largest_entry(g) == 0) return Status::converged;
+    if (max_abs(g) == 0) return Status::converged;
     const Solution newton = InnerSolver(run, at).solve(g);
     if (run.is_stopped()) return run.stop_status();  // the direction may be truncated
     if (!newton.ok || !(newton.decrement > 0)) return Status::no_descent;
@@ -83,7 +83,7 @@ Status gauss_newton_cg(FitRun& run, FitPoint& at, FitGoal& goal) {
     FitStep step;
     const bool found = search_along(run, at, newton.d, -newton.decrement * newton.decrement, step);
     const FitIteration done{.decrement = newton.decrement,
-                            .step = step.length * largest_entry(newton.d),
+                            .step = step.length * max_abs(newton.d),
                             .inner = newton.iterations,
                             .trials = step.trials};
     run.note(done, at);

@@ -33,7 +33,7 @@ void add(const Posterior& posterior, const ParameterMap& map, const std::vector<
          const std::vector<double>& truth, Coverage& coverage) {
   const std::vector<double> E = map.values(0, truth);
   for (int t = 0; t < static_cast<int>(E.size()); ++t) {
-    const Interval i = interval(posterior, map, p, 0, t);
+    const Interval i = interval(posterior, map, p, {0, t});
     coverage.inside += i.lower < E[t] && E[t] < i.upper;
     ++coverage.all;
   }
@@ -56,7 +56,7 @@ TEST(Honesty, IntervalsOfAFieldHoldTheTruth) {
     Misfit misfit(block.experiment, map);
     WithUncertainLayers data(misfit);
     const FitReport report = fitted(data, *prior, map, kWeight);
-    const Posterior posterior = aspic::posterior(data, *prior, kWeight, map, block.experiment.mesh, report.p);
+    const Posterior posterior = aspic::posterior(data, *prior, kWeight, {map, block.experiment.mesh, report.p});
     ASSERT_TRUE(posterior.ok);
     EXPECT_FALSE(posterior.scale_is_unknown);
     EXPECT_NEAR(posterior.noise_factor, 1, 0.1);
@@ -95,10 +95,10 @@ TEST(Honesty, IntervalsOfTwoLayersHoldTheTruth) {
     Misfit misfit(block.experiment, map);
     WithUncertainLayers data(misfit);
     const FitReport report = fitted(data, *prior, map);
-    const Posterior posterior = aspic::posterior(data, *prior, 1, map, mesh, report.p);
+    const Posterior posterior = aspic::posterior(data, *prior, 1, {map, mesh, report.p});
     for (int layer = 0; layer < 2; ++layer) {
       const int t = static_cast<int>(std::ranges::find(mesh.region, layer) - mesh.region.begin());
-      const Interval i = interval(posterior, map, report.p, 0, t);
+      const Interval i = interval(posterior, map, report.p, {0, t});
       coverage.inside += i.lower < std::exp(truth[layer]) && std::exp(truth[layer]) < i.upper;
       ++coverage.all;
     }
@@ -127,7 +127,7 @@ TEST(Honesty, WithoutForceOnlyStiffnessRatiosAreDetermined) {
     WithUncertainLayers data(misfit);
     const FitReport report = fitted(data, *prior, map, 4);
     WithUncertainLayers about_fit(misfit);
-    const Posterior posterior = aspic::posterior(about_fit, *prior, 4, map, block.experiment.mesh, report.p);
+    const Posterior posterior = aspic::posterior(about_fit, *prior, 4, {map, block.experiment.mesh, report.p});
     EXPECT_EQ(posterior.scale_is_unknown, !with_force);
     ASSERT_FALSE(posterior.unseen.empty());
     if (!with_force) {  // the prior alone determines the scale: 2 / sqrt(weight)
@@ -139,7 +139,7 @@ TEST(Honesty, WithoutForceOnlyStiffnessRatiosAreDetermined) {
       EXPECT_LT(posterior.unseen[0].deviation, 0.5);
     }
     // A known layer stiffness would act like a force measurement.
-    EXPECT_FALSE(aspic::posterior(misfit, *prior, 4, map, block.experiment.mesh, report.p).scale_is_unknown);
+    EXPECT_FALSE(aspic::posterior(misfit, *prior, 4, {map, block.experiment.mesh, report.p}).scale_is_unknown);
   }
 }
 
@@ -179,8 +179,8 @@ TEST(Honesty, AllEigenpairMethodsAgreeAtFit) {
   const std::vector<double> p(map.guess().begin(), map.guess().end());
   std::mt19937_64 random(4);
   block.measure(map, p, random);
-  const Posterior dense = posterior(misfit, *prior, 1, map, block.experiment.mesh, p);
-  const Posterior sampled = posterior(misfit, *prior, 1, map, block.experiment.mesh, p, {.spectrum = {.dense = 10}});
+  const Posterior dense = posterior(misfit, *prior, 1, {map, block.experiment.mesh, p});
+  const Posterior sampled = posterior(misfit, *prior, 1, {map, block.experiment.mesh, p}, {.spectrum = {.dense = 10}});
   ASSERT_LT(sampled.belief->spectrum().W.count(), map.size());
   for (int t = 0; t < map.size(); ++t) {
     EXPECT_GT(sampled.deviation[0][t], dense.deviation[0][t] * (1 - 1e-6));

@@ -4,7 +4,7 @@
 
 #include "energy/linear_load.h"
 #include "energy/pressure.h"
-#include "fit/columns.h"
+#include "math/vectors.h"
 #include "mesh/surface.h"
 #include "mesh/vertices.h"
 

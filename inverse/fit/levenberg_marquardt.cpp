@@ -73,7 +73,7 @@ void make_curvature(FitRun& run, const FitPoint& at, Curvature& A) {
     e[j] = 0;
     const std::span Jj(J.data() + static_cast<size_t>(j) * m, static_cast<size_t>(m));
     for (int i = 0; i < n; ++i)
-      A.at(i, j) = column[i] + inner_product({J.data() + static_cast<size_t>(i) * m, static_cast<size_t>(m)}, Jj);
+      A.at(i, j) = column[i] + dot({J.data() + static_cast<size_t>(i) * m, static_cast<size_t>(m)}, Jj);
   }
 }
 
@@ -94,7 +94,7 @@ struct MarquardtDamping {
 // g' A^-1 g for the undamped system if it is positive definite.
 double squared_decrement(Curvature& A, std::span<const double> g, std::vector<double>& d) {
   for (double damping = 0; damping < 1; damping = std::max(kLeastDamping, 100 * damping))
-    if (A.step(g, damping, d)) return std::max(0.0, -inner_product(g, d));
+    if (A.step(g, damping, d)) return std::max(0.0, -dot(g, d));
   return std::nan("");
 }
 
@@ -110,7 +110,7 @@ Status levenberg_marquardt(FitRun& run, FitPoint& at, FitGoal& goal) {
     if (!run.linearize(at)) return Status::undefined;
     run.gradient(at, g);
     make_curvature(run, at, A);
-    if (largest_entry(g) == 0) return Status::converged;
+    if (max_abs(g) == 0) return Status::converged;
     const double decrement = std::sqrt(squared_decrement(A, g, d));
     if (!std::isfinite(decrement)) return Status::no_descent;
     if (goal.is_reached(decrement) && decrement <= kNear) return Status::converged;
@@ -122,19 +122,19 @@ Status levenberg_marquardt(FitRun& run, FitPoint& at, FitGoal& goal) {
     FitPoint trial;
     bool found = false;
     for (; !found && damping.value < kLargestDamping && !run.is_stopped(); ++done.trials) {
-      if (!A.step(g, damping.value, d) || largest_entry(d) > run.options.max_step) {
+      if (!A.step(g, damping.value, d) || max_abs(d) > run.options.max_step) {
         damping.punish();
         continue;
       }
       for (size_t i = 0; i < n; ++i) p[i] = at.p[i] + d[i];
-      const double predicted = -inner_product(g, d) - A.along(d) / 2;
+      const double predicted = -dot(g, d) - A.along(d) / 2;
       const bool defined = run.evaluate(p, trial);
       const double ratio = defined ? (before - trial.objective(run.weight)) / predicted : -1;
       found = ratio > 0;
       found ? damping.reward(std::min(ratio, 1.0)) : damping.punish();
     }
     if (found) {
-      done.step = largest_entry(d);
+      done.step = max_abs(d);
       std::swap(at, trial);
     }
     run.note(done, at);

@@ -24,7 +24,7 @@ Vec3d at(const SurfacePoint& point, std::span<const double> x) {
   return sum;
 }
 
-Vec3d unit(const Vec3d& v) { return (1 / std::sqrt(dot(v, v))) * v; }
+Vec3d unit(const Vec3d& v) { return (1 / norm(v)) * v; }
 
 TipPose between(const TipPose& a, const TipPose& b, double part) {
   const auto mix = [part](const Vec3d& x, const Vec3d& y) { return (1 - part) * x + part * y; };

@@ -9,18 +9,12 @@
 #include "fit/common_errors.h"
 #include "fit/cross_validation.h"
 #include "fit/field_words.h"
+#include "math/vectors.h"
 #include "mesh/surface.h"
 #include "mesh/tet_shape.h"
 
 namespace aspic {
 namespace {
-
-double median(std::vector<double> values) {
-  if (values.empty()) return 0;
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::ranges::nth_element(values, middle);
-  return *middle;
-}
 
 // What is read at every poke, and how well: as on the average of the experiment.
 struct Instruments {
@@ -33,12 +27,12 @@ Instruments instruments(const Experiment& experiment, const NextPokeOptions& opt
   Instruments result;
   std::optional<Tip> tip = options.tip;
   for (const LoadCase& c : experiment.cases) {
-    for (const MarkerReading& r : c.positions) position.push_back(length(r.deviation) / std::sqrt(3.0));
-    if (c.force) force.push_back(length(c.force_deviation) / std::sqrt(3.0));
-    if (c.torque) torque.push_back(length(c.torque_deviation) / std::sqrt(3.0));
+    for (const MarkerReading& r : c.positions) position.push_back(norm(r.deviation) / std::sqrt(3.0));
+    if (c.force) force.push_back(norm(c.force_deviation) / std::sqrt(3.0));
+    if (c.torque) torque.push_back(norm(c.torque_deviation) / std::sqrt(3.0));
     if (!c.tip) continue;
     if (!tip) tip = c.tip;
-    result.depth = std::max(result.depth, length(c.pose.center - c.touch.center));
+    result.depth = std::max(result.depth, norm(c.pose.center - c.touch.center));
   }
   if (!tip) throw InvalidInput("no case has an indenter, so there is no next poke (give an indenter)");
   result.tip = *tip;
@@ -57,7 +51,7 @@ LoadCase load_at(const Experiment& experiment, const Instruments& with, const Ve
   load.pose = load.touch;
   load.pose.center = load.touch.center + with.depth * inward;
   for (size_t m = 0; m < experiment.markers.size() && with.position > 0; ++m)
-    if (length(at_rest(experiment, experiment.markers[m]) - site) > with.tip.radius)  // the tip hides the others
+    if (norm(at_rest(experiment, experiment.markers[m]) - site) > with.tip.radius)  // the tip hides the others
       load.positions.push_back({static_cast<int>(m), {}, {{with.position, with.position, with.position}}});
   if (with.force > 0) load.force = Vec3d{}, load.force_deviation = {{with.force, with.force, with.force}};
   if (with.torque > 0) load.torque = Vec3d{}, load.torque_deviation = {{with.torque, with.torque, with.torque}};
@@ -110,13 +104,13 @@ void set_words(const ParameterMap& map, const TetMesh& mesh, const Posterior& po
                     words_of_change(what, posterior.deviation[unknown][t], candidate.deviation[unknown][t]);
 }
 
-void judge(const Experiment& experiment, const TetMesh& mesh, const ParameterMap& map, Posterior& posterior,
-           std::span<const double> p, const NextPokeOptions& options, const EquilibriumOptions& equilibrium,
-           PokeCandidate& candidate) {
+void judge(const Experiment& experiment, const FittedField& fitted, Posterior& posterior,
+           const NextPokeOptions& options, PokeCandidate& candidate) {
+  const auto& [map, mesh, p] = fitted;
   Experiment one = subset(experiment, [](const LoadCase&) { return false; });
   one.cases = {candidate.load};
   try {
-    Misfit misfit(one, map, equilibrium);
+    Misfit misfit(one, map, options.equilibrium);
     WithUncertainLayers data(misfit);
     std::vector<double> r(misfit.residual_count());
     if (!data.evaluate(p, r) || !data.linearize()) {
@@ -156,8 +150,9 @@ std::vector<double> spread_gain(const TetMesh& mesh, const std::vector<PokeCandi
 
 }  // namespace
 
-NextPoke next_poke(const Experiment& experiment, const TetMesh& mesh, const ParameterMap& map, Posterior& posterior,
-                   std::span<const double> p, const NextPokeOptions& options, const EquilibriumOptions& equilibrium) {
+NextPoke next_poke(const Experiment& experiment, const FittedField& fitted, Posterior& posterior,
+                   const NextPokeOptions& options) {
+  const TetMesh& mesh = fitted.mesh;
   ASPIC_CHECK(posterior.ok);
   const Instruments with = instruments(experiment, options);
   NextPoke result;
@@ -166,7 +161,7 @@ NextPoke next_poke(const Experiment& experiment, const TetMesh& mesh, const Para
   for (const PokeSite& site : poke_sites(mesh, fixed, with.tip.radius, options.sites)) {
     PokeCandidate candidate{.vertex = site.vertex, .site = mesh.rest[site.vertex], .inward = site.inward};
     candidate.load = load_at(experiment, with, candidate.site, candidate.inward);
-    judge(experiment, mesh, map, posterior, p, options, equilibrium, candidate);
+    judge(experiment, fitted, posterior, options, candidate);
     if (!candidate.ok) result.warnings.push_back(candidate.load.name + " could not be judged: " + candidate.failure);
     result.candidates.push_back(std::move(candidate));
   }

@@ -18,6 +18,7 @@ struct NextPokeOptions {
   std::optional<Tip> tip;  // default: that of the experiment
   double depth = 0;        // depth of the indentation [m]; 0: maximum so far
   SpectrumOptions spectrum{.dense = 64, .max_rank = 48};
+  EquilibriumOptions equilibrium = {};
 };
 
 struct PokeCandidate {
@@ -39,9 +40,8 @@ struct NextPoke {
 
 // At the fit of `posterior`. `mesh`: mesh of the map, which is that of the experiment or its unrefined mesh. Throws
 // InvalidInput without an indenter.
-NextPoke next_poke(const Experiment& experiment, const TetMesh& mesh, const ParameterMap& map, Posterior& posterior,
-                   std::span<const double> p, const NextPokeOptions& options = {},
-                   const EquilibriumOptions& equilibrium = {});
+NextPoke next_poke(const Experiment& experiment, const FittedField& fitted, Posterior& posterior,
+                   const NextPokeOptions& options = {});
 
 // `count` sites for an indenter of this radius: free surface vertices where the surface is about flat over its
 // width, each as far as possible from the previous ones.

@@ -25,18 +25,19 @@ struct PokeStudy {
     std::mt19937_64 random(3);
     block.measure(map, p, random);
   }
+  FittedField field() const { return {map, block.experiment.mesh, p}; }
   Posterior posterior_of(const Experiment& experiment) {
     Misfit misfit(experiment, map);
     WithUncertainLayers data(misfit);
-    return posterior(data, *prior, 1, map, experiment.mesh, p);
+    return posterior(data, *prior, 1, {map, experiment.mesh, p});
   }
 };
 
 TEST(NextPoke, PredictedGainAndDeviationsMatchActualPoke) {
   PokeStudy study;
   Posterior before = study.posterior_of(study.block.experiment);
-  const NextPoke next = next_poke(study.block.experiment, study.block.experiment.mesh, study.map, before, study.p,
-                                  {.sites = 5, .spectrum = {.dense = 600}});
+  const NextPoke next =
+      next_poke(study.block.experiment, study.field(), before, {.sites = 5, .spectrum = {.dense = 600}});
   ASSERT_EQ(next.candidates.size(), 5u);
   for (const PokeCandidate& candidate : {next.candidates.front(), next.candidates.back()}) {
     ASSERT_TRUE(candidate.ok) << candidate.failure;
@@ -63,8 +64,7 @@ TEST(NextPoke, PredictedGainAndDeviationsMatchActualPoke) {
 TEST(NextPoke, IsWhereNothingIsKnownYet) {
   PokeStudy study;
   Posterior before = study.posterior_of(study.block.experiment);
-  const NextPoke next =
-      next_poke(study.block.experiment, study.block.experiment.mesh, study.map, before, study.p, {.sites = 16});
+  const NextPoke next = next_poke(study.block.experiment, study.field(), before, {.sites = 16});
   ASSERT_FALSE(next.candidates.empty());
   const PokeCandidate& best = next.candidates.front();
   EXPECT_GE(best.site[0], 0.5 * PokedBlock::kSide);
@@ -83,10 +83,10 @@ TEST(NextPoke, IsWhereNothingIsKnownYet) {
 TEST(NextPoke, FewDirectionsTellNearlyAsMuchAsAll) {
   PokeStudy study;
   Posterior before = study.posterior_of(study.block.experiment);
-  const NextPoke all = next_poke(study.block.experiment, study.block.experiment.mesh, study.map, before, study.p,
-                                 {.sites = 6, .spectrum = {.dense = 600}});
-  const NextPoke few = next_poke(study.block.experiment, study.block.experiment.mesh, study.map, before, study.p,
-                                 {.sites = 6, .spectrum = {.dense = 10, .max_rank = 24}});
+  const NextPoke all =
+      next_poke(study.block.experiment, study.field(), before, {.sites = 6, .spectrum = {.dense = 600}});
+  const NextPoke few =
+      next_poke(study.block.experiment, study.field(), before, {.sites = 6, .spectrum = {.dense = 10, .max_rank = 24}});
   for (size_t i = 0; i < all.candidates.size(); ++i) {
     EXPECT_LE(few.candidates[i].gain, all.candidates[i].gain * (1 + 1e-6));
     EXPECT_GT(few.candidates[i].gain, all.candidates[i].gain * 0.85);
@@ -97,8 +97,7 @@ TEST(NextPoke, NeedsATip) {
   PokeStudy study;
   Posterior before = study.posterior_of(study.block.experiment);
   for (LoadCase& load : study.block.experiment.cases) load.tip.reset();
-  EXPECT_THROW(next_poke(study.block.experiment, study.block.experiment.mesh, study.map, before, study.p),
-               InvalidInput);
+  EXPECT_THROW(next_poke(study.block.experiment, study.field(), before), InvalidInput);
 }
 
 TEST(PokeSites, AreFarApartOnFreeFlatSurface) {

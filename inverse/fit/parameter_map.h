@@ -60,4 +60,11 @@ class ParameterMap {
   std::unique_ptr<Impl> impl_;
 };
 
+// The parameters of a fit and where they apply. `mesh` is that of the map.
+struct FittedField {
+  const ParameterMap& map;
+  const TetMesh& mesh;
+  std::span<const double> p;
+};
+
 }  // namespace aspic

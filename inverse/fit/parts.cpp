@@ -39,8 +39,8 @@ void widen(PartsEstimate& estimate, std::span<const double> before) {
 
 }  // namespace
 
-Parts find_parts(LeastSquares& model, const ParameterMap& map, const TetMesh& mesh, std::span<const double> p,
-                 int unknown, int count, const PartsOptions& options) {
+Parts find_parts(LeastSquares& model, const FittedField& field, int unknown, int count, const PartsOptions& options) {
+  const auto& [map, mesh, p] = field;
   const auto [first, tets] = map.range(unknown);
   std::vector<double> volumes;
   double total = 0;
@@ -58,7 +58,7 @@ Parts find_parts(LeastSquares& model, const ParameterMap& map, const TetMesh& me
     const Spectrum s = spectrum(model, prior, {.max_rank = is_last ? options.rank : options.rank / 4});
     if (!s.ok) return parts;
     model.multiply_transposed(r, g);
-    parts.estimate = sample_parts(mesh, s, g, first, z, levels, noise_factor, options);
+    parts.estimate = sample_parts({mesh, s, g, first, z, noise_factor}, levels, options);
     levels = parts.estimate.levels;
     if (is_last) widen(parts.estimate, z);
     std::copy(parts.estimate.mean.begin(), parts.estimate.mean.end(), z.begin());

@@ -18,8 +18,8 @@ struct Parts {
 
 // Finds `count` parts of `unknown`, a quantity per tet, starting from the clusters of the field p. Each pass linearizes
 // the model at the mean of the previous samples; the change of the last pass increases the standard deviations.
-Parts find_parts(LeastSquares& model, const ParameterMap& map, const TetMesh& mesh, std::span<const double> p,
-                 int unknown, int count, const PartsOptions& options = {});
+Parts find_parts(LeastSquares& model, const FittedField& field, int unknown, int count,
+                 const PartsOptions& options = {});
 
 // Whether the parts fit the measurements about as well as the field, with |r|^2 = `field_squares`, or within the noise.
 bool are_as_good(const Parts& parts, double field_squares, int residuals);

@@ -34,7 +34,7 @@ std::vector<std::vector<Neighbor>> neighbors_of(const TetMesh& mesh) {
   for_each_group(faces, [&](const GroupedElement<3>* begin, const GroupedElement<3>* end) {
     if (end != begin + 2) return;
     const auto& v = begin[0].vertices;
-    const double area = length(cross(mesh.rest[v[1]] - mesh.rest[v[0]], mesh.rest[v[2]] - mesh.rest[v[0]])) / 2;
+    const double area = norm(cross(mesh.rest[v[1]] - mesh.rest[v[0]], mesh.rest[v[2]] - mesh.rest[v[0]])) / 2;
     sum += area, ++count;
     all[begin[0].place].push_back({begin[1].place, area});
     all[begin[1].place].push_back({begin[0].place, area});
@@ -53,15 +53,15 @@ int nearest(const std::vector<double>& levels, double z) {
 
 class Sampler {
  public:
-  Sampler(const TetMesh& mesh, const Spectrum& s, std::span<const double> gradient, int first,
-          std::span<const double> z, std::vector<double> levels, double noise_factor, const PartsOptions& options)
+  Sampler(const LinearizedField& field, std::vector<double> levels, const PartsOptions& options)
       : options_(options),
-        neighbors_(neighbors_of(mesh)),
-        rank_(s.dual.count()),
-        tets_(static_cast<int>(z.size())),
+        neighbors_(neighbors_of(field.mesh)),
+        rank_(field.spectrum.dual.count()),
+        tets_(static_cast<int>(field.z.size())),
         start_(levels),
         levels_(std::move(levels)),
         random_(options.seed) {
+    const auto& [mesh, s, gradient, first, z, noise_factor] = field;
     const double relief = 1 / (noise_factor * noise_factor);
     std::vector<double> g(gradient.begin(), gradient.end());
     slope_ = product_transposed(s.W, g);
@@ -201,10 +201,8 @@ std::vector<double> gathered_levels(std::span<const double> z, std::span<const d
   return levels;
 }
 
-PartsEstimate sample_parts(const TetMesh& mesh, const Spectrum& spectrum, std::span<const double> gradient, int first,
-                           std::span<const double> z, std::vector<double> levels, double noise_factor,
-                           const PartsOptions& options) {
-  return Sampler(mesh, spectrum, gradient, first, z, std::move(levels), noise_factor, options).run();
+PartsEstimate sample_parts(const LinearizedField& field, std::vector<double> levels, const PartsOptions& options) {
+  return Sampler(field, std::move(levels), options).run();
 }
 
 }  // namespace aspic

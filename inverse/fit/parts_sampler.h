@@ -29,10 +29,17 @@ struct PartsEstimate {
 // Clusters of z by volume, ascending: k-means in one dimension. Fewer if some coincide.
 std::vector<double> gathered_levels(std::span<const double> z, std::span<const double> volume, int count);
 
-// `spectrum` and `gradient` (J'r) belong to the linearization; z are its entries from `first` on, one per tet; all
-// others are constant. `noise_factor` multiplies standard deviations.
-PartsEstimate sample_parts(const TetMesh& mesh, const Spectrum& spectrum, std::span<const double> gradient, int first,
-                           std::span<const double> z, std::vector<double> levels, double noise_factor,
-                           const PartsOptions& options);
+// A field of one value per tet and its linearized model. All other parameters are constant.
+struct LinearizedField {
+  const TetMesh& mesh;
+  const Spectrum& spectrum;          // of the linearization
+  std::span<const double> gradient;  // J'r
+  int first;                         // entry of the parameters at which the field begins
+  std::span<const double> z;         // the field, one value per tet
+  double noise_factor;               // multiplies standard deviations
+};
+
+// Samples labels and levels from the initial `levels`.
+PartsEstimate sample_parts(const LinearizedField& field, std::vector<double> levels, const PartsOptions& options);
 
 }  // namespace aspic

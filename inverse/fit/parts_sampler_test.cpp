@@ -38,7 +38,8 @@ struct Body {
       unit[t] = 0;
       gradient.push_back(-read[t] / (kNoise * kNoise));
     }
-    return sample_parts(mesh, s, gradient, 0, std::vector<double>(size(), 0.0), std::move(levels), 1, {.sweeps = 200});
+    return sample_parts({mesh, s, gradient, 0, std::vector<double>(size(), 0.0), 1}, std::move(levels),
+                        {.sweeps = 200});
   }
 };
 

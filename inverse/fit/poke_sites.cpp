@@ -33,11 +33,11 @@ Normal normal_around(const std::vector<Patch>& all, const std::vector<Triangle>&
   double area = 0;
   for (size_t k = 0; k < all.size(); ++k) {
     const bool touches = std::ranges::find(surface[k], v) != surface[k].end();
-    if (!touches && length(all[k].center - mesh.rest[v]) > radius) continue;
+    if (!touches && norm(all[k].center - mesh.rest[v]) > radius) continue;
     sum = sum + all[k].area;
-    area += length(all[k].area);
+    area += norm(all[k].area);
   }
-  const double size = length(sum);
+  const double size = norm(sum);
   return {size > 0 ? (1 / size) * sum : Vec3d{}, area > 0 ? size / area : 0};
 }
 
@@ -56,12 +56,13 @@ std::vector<int> free_vertices(const TetMesh& mesh, const std::vector<Triangle>&
   std::vector<char> is_fixed(mesh.rest.size(), 0), is_on_surface(mesh.rest.size(), 0), is_beside(mesh.rest.size(), 0);
   for (const int v : fixed) is_fixed[v] = 1;
   for (const Triangle& t : surface) {
-    const bool is_held = std::ranges::any_of(t, [&](int v) { return is_fixed[v] != 0; });  // would carry the indenter
+    const bool is_held =
+        std::ranges::any_of(t, [&](int v) { return is_fixed[v] != 0; });  // an indenter would press on it
     for (const int v : t) is_on_surface[v] = 1, is_beside[v] |= is_held ? 1 : 0;
   }
   std::vector<int> result;
   for (int v = 0; v < mesh.vertex_count(); ++v) {
-    const auto is_near = [&](int f) { return length(mesh.rest[f] - mesh.rest[v]) <= radius; };
+    const auto is_near = [&](int f) { return norm(mesh.rest[f] - mesh.rest[v]) <= radius; };
     if (is_on_surface[v] && !is_beside[v] && std::ranges::none_of(fixed, is_near)) result.push_back(v);
   }
   return result;
@@ -80,14 +81,14 @@ std::vector<PokeSite> poke_sites(const TetMesh& mesh, std::span<const int> fixed
   std::vector<double> distance(all.size(), std::numeric_limits<double>::infinity());
   Vec3d mean{};
   for (const PokeSite& s : all) mean = mean + (1.0 / static_cast<double>(all.size())) * mesh.rest[s.vertex];
-  for (size_t i = 0; i < all.size(); ++i) distance[i] = length(mesh.rest[all[i].vertex] - mean);  // starts far out
+  for (size_t i = 0; i < all.size(); ++i) distance[i] = norm(mesh.rest[all[i].vertex] - mean);  // initially far outside
   while (static_cast<int>(chosen.size()) < count && !all.empty()) {
     const size_t next = std::ranges::max_element(distance) - distance.begin();
     if (!chosen.empty() && !(distance[next] > 0)) break;
     if (chosen.empty()) std::ranges::fill(distance, std::numeric_limits<double>::infinity());
     chosen.push_back(all[next]);
     for (size_t i = 0; i < all.size(); ++i)
-      distance[i] = std::min(distance[i], length(mesh.rest[all[i].vertex] - mesh.rest[all[next].vertex]));
+      distance[i] = std::min(distance[i], norm(mesh.rest[all[i].vertex] - mesh.rest[all[next].vertex]));
   }
   return chosen;
 }

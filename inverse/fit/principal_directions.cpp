@@ -49,9 +49,9 @@ void orthonormalize(Columns& A) {
   Columns Q(A.rows());
   for (int j = 0; j < A.count(); ++j) {
     const std::span<double> a = A[j];
-    const double length = std::sqrt(dot(a, a));
+    const double length = norm(a);
     for (int pass = 0; pass < 2; ++pass) add_product(Q, product_transposed(Q, a), -1, a);
-    const double rest = std::sqrt(dot(a, a));
+    const double rest = norm(a);
     if (!(rest > 1e-10 * length)) continue;
     for (double& x : a) x /= rest;
     Q.push_back(a);
@@ -65,7 +65,7 @@ double root_mean_square(const ParameterMap& map, const TetMesh& mesh, std::span<
   const WeightedFields G(map, mesh);
   std::vector<double> g(G.size());
   G.multiply(p, g);
-  return std::sqrt(dot(g, g));
+  return norm(g);
 }
 
 std::vector<PrincipalDirection> principal_directions(PosteriorGaussian& belief, const ParameterMap& map,

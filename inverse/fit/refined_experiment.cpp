@@ -56,7 +56,7 @@ class Refinement {
     const std::array<std::array<int, 6>, 3> ways = {
         {{ab, cd, ac, bc, bd, ad}, {ac, bd, ab, bc, cd, ad}, {ad, bc, ab, bd, cd, ac}}};
     const auto diagonal = [&](const std::array<int, 6>& way) {
-      return length(fine_.mesh.rest[way[0]] - fine_.mesh.rest[way[1]]);
+      return norm(fine_.mesh.rest[way[0]] - fine_.mesh.rest[way[1]]);
     };
     const auto& way = *std::min_element(
         ways.begin(), ways.end(), [&](const auto& p, const auto& q) { return diagonal(p) < diagonal(q) * (1 - 1e-9); });
@@ -138,7 +138,7 @@ Predictions predicted(const Experiment& experiment, const std::string& material,
 
 // Force on fine meshes from F on the mesh and on the refined one; extrapolates log |F|.
 double factor_in_limit(const Wrench& coarse, const Wrench& fine) {
-  const double on_mesh = length(coarse.force), on_fine = length(fine.force);
+  const double on_mesh = norm(coarse.force), on_fine = norm(fine.force);
   return on_mesh > 0 && on_fine > 0 ? std::pow(on_fine / on_mesh, kRichardson - 1) : 1;
 }
 
@@ -152,7 +152,7 @@ double multiple_of(const Vec3d& known, const Vec3d& other) {
 
 void shift(Vec3d& value, Vec3d& deviation, const Vec3d& error) {
   value = value - error;
-  for (int i = 0; i < 3; ++i) deviation[i] = std::hypot(deviation[i], kUncertain * length(error));
+  for (int i = 0; i < 3; ++i) deviation[i] = std::hypot(deviation[i], kUncertain * norm(error));
 }
 
 }  // namespace
@@ -166,13 +166,13 @@ Wrench MeshError::for_force_in_limit(const Vec3d& force) const {
 }
 
 double MeshError::force_factor() const {
-  const double on_mesh = length(force_on_mesh);
-  return on_mesh > 0 ? length(force_on_mesh + wrench.force) / on_mesh : 1;
+  const double on_mesh = norm(force_on_mesh);
+  return on_mesh > 0 ? norm(force_on_mesh + wrench.force) / on_mesh : 1;
 }
 
 double MeshError::relative_force_error() const {
-  const double smaller = std::min(length(force_on_mesh), length(force_on_mesh + wrench.force));
-  return smaller > 0 ? length(wrench.force) / smaller : 0;
+  const double smaller = std::min(norm(force_on_mesh), norm(force_on_mesh + wrench.force));
+  return smaller > 0 ? norm(wrench.force) / smaller : 0;
 }
 
 Experiment refined(const Experiment& experiment) { return Refinement(experiment).take(); }

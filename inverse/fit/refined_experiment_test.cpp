@@ -70,7 +70,7 @@ TEST(RefinedExperiment, HasTheSameBodyMarkersAndHolds) {
   ASSERT_EQ(fine.markers.size(), coarse.markers.size());
   for (size_t m = 0; m < fine.markers.size(); ++m) {
     const Vec3d d = place(fine.markers[m], fine.mesh) - place(coarse.markers[m], coarse.mesh);
-    EXPECT_NEAR(std::sqrt(dot(d, d)), 0, 1e-15);
+    EXPECT_NEAR(norm(d), 0, 1e-15);
     const auto& v = fine.markers[m].vertices;
     EXPECT_TRUE(surface.contains({v.begin(), v.end()})) << "a marker lies on a triangle of the surface";
     for (const double w : fine.markers[m].weights) EXPECT_GE(w, -1e-12);

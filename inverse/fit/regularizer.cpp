@@ -69,13 +69,12 @@ class ValueBelief : public Belief {
 
 class FieldBelief : public Belief {
  public:
-  FieldBelief(const TetMesh& mesh, const FieldBasis& basis, Smoothness smoothness, double sharpness, double guess,
-              double deviation)
-      : Belief(guess, deviation),
+  FieldBelief(const TetMesh& mesh, const FieldBasis& basis, const RegularizerOptions& options, double guess)
+      : Belief(guess, options.prior_deviation),
         basis_(basis),
-        roughness_(mesh,
-                   smoothness == Smoothness::total_variation ? sharpness : std::numeric_limits<double>::infinity()),
-        is_smooth_(smoothness != Smoothness::none) {}
+        roughness_(mesh, options.smoothness == Smoothness::total_variation ? options.sharpness
+                                                                           : std::numeric_limits<double>::infinity()),
+        is_smooth_(options.smoothness != Smoothness::none) {}
 
   double value(std::span<const double> p) const override {
     const std::vector<double> z = field(p);
@@ -204,8 +203,7 @@ class SumOfBeliefs : public Regularizer {
       if (spread == Spread::uniform || spread == Spread::regions)
         belief = std::make_unique<ValueBelief>(guess, options.prior_deviation);
       else
-        belief = std::make_unique<FieldBelief>(mesh, map.basis(static_cast<int>(u)), options.smoothness,
-                                               options.sharpness, guess, options.prior_deviation);
+        belief = std::make_unique<FieldBelief>(mesh, map.basis(static_cast<int>(u)), options, guess);
       parts_.push_back({static_cast<size_t>(first), static_cast<size_t>(count), std::move(belief)});
     }
   }

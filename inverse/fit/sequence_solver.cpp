@@ -4,8 +4,8 @@
 #include <cmath>
 
 #include "base/parallel.h"
-#include "fit/columns.h"
 #include "linalg/auto_solver.h"
+#include "math/vectors.h"
 
 namespace aspic {
 namespace {

@@ -31,12 +31,13 @@ inline double dot(const std::vector<double>& a, const std::vector<double>& b) {
 }
 inline double norm(const std::vector<double>& a) { return std::sqrt(dot(a, a)); }
 
-// Over four decades of eps below `largest`, where f's own noise must stay far below largest^2 1e-8 of its curvature.
+// Over some decades of eps below `largest`, where the noise of f must stay far below the curvature term.
 inline void expect_slope_2(const std::function<std::vector<double>(double eps)>& f,
-                           const std::vector<double>& derivative, double largest, const std::string& what) {
+                           const std::vector<double>& derivative, double largest, const std::string& what,
+                           int decades = 4) {
   const std::vector<double> f0 = f(0);
   double before = 0;
-  for (int decade = 0; decade <= 4; ++decade) {
+  for (int decade = 0; decade <= decades; ++decade) {
     const double eps = largest * std::pow(10, -decade);
     std::vector<double> rest = f(eps);
     for (size_t i = 0; i < rest.size(); ++i) rest[i] -= f0[i] + eps * derivative[i];

@@ -19,11 +19,11 @@ namespace aspic {
 namespace {
 
 constexpr char kIntegrator[] = "backward_euler";
-constexpr double kUsable = 1e-9;  // residual of a solve that stagnates in round-off
+constexpr double kUsable = 1e-9;  // relative residual at which a solve may stagnate in round-off
 
 void require_gradient(const Model& model, const TrajectoryOptions& options) {
   if (options.integrator != kIntegrator)
-    throw InvalidInput("gradients of trajectories need integrator = 'backward_euler', not '" + options.integrator +
+    throw InvalidInput("a trajectory has a gradient for integrator = 'backward_euler', not for '" + options.integrator +
                        "'");
   if (!(options.h > 0) || !std::isfinite(options.h))
     throw InvalidInput("the time step is " + std::to_string(options.h) + " s; it must be positive");
@@ -33,30 +33,6 @@ void require_gradient(const Model& model, const TrajectoryOptions& options) {
     if (!dynamic_cast<const Damping*>(D.get()))
       throw InvalidInput("the damping '" + std::string(D->name()) + "' has no derivatives, so a trajectory with it " +
                          "has no gradient");
-}
-
-// Acceleration [m/s^2] of the load 'gravity'; zero without such a load. Empty: the load is not the weight of the
-// densities.
-std::optional<Vec3d> acceleration_of_weight(const Model& model, std::span<const double> q) {
-  const Energy* load = nullptr;
-  for (const auto& V : model.loads)
-    if (V->name() == "gravity") {
-      if (load) return std::nullopt;
-      load = V.get();
-    }
-  if (!load) return Vec3d{};
-  std::vector<double> force(q.size()), weight(q.size());
-  ActiveTerm(*load).add_gradient(q, -1, force);
-  Vec3d total{};
-  for (size_t i = 0; i < force.size(); ++i) total[i % 3] += force[i];
-  const Vec3d acceleration = (1 / model.mass->total()) * total;
-  double error = 0, size = 0;
-  for (size_t i = 0; i < force.size(); ++i) {
-    const double expected = model.mass->vertex_mass()[i / 3] * acceleration[i % 3];
-    error = std::max(error, std::abs(force[i] - expected));
-    size = std::max(size, std::abs(expected));
-  }
-  return error <= 1e-9 * size ? std::optional(acceleration) : std::nullopt;
 }
 
 }  // namespace
@@ -76,8 +52,9 @@ struct Trajectory::Impl {
     minimize.tolerance = o.tolerance;
     minimize.max_iterations = o.max_iterations;
     minimize.h = o.h;
+    minimize.stop = o.stop.discarding();
     place_pins();
-    weight = acceleration_of_weight(model, start.q);
+    gravity = gravity_of(model, start.q);
     for (auto* v : {&qbar, &vbar, &rhs, &mu, &moved, &Mmu}) v->resize(start.q.size());
     slots.resize(std::min(o.stored_states, std::max(1, o.steps)));
   }
@@ -87,24 +64,32 @@ struct Trajectory::Impl {
     integrator->set_pin_velocity(pins, options.h, start);
   }
 
-  double time_of(int number) const { return start.time + number * options.h; }
+  double time_of(int step) const { return start.time + step * options.h; }
 
   void begin() {
     report = {};
     now = start;
     point = 0;
+    visited = -1;
     newton.begin();
     solver.begin();
   }
 
-  bool fail(int step, const std::string& words) {
+  bool fail(int step, const std::string& reason) {
     char time[32];
     std::snprintf(time, sizeof time, "%.4g", time_of(step));
-    report.failure = "the step from " + std::string(time) + " s (step " + std::to_string(step) + "): " + words;
+    report.message = "the step from " + std::string(time) + " s (step " + std::to_string(step) + "): " + reason;
     return false;
   }
 
-  // Steps from `now` to `end`, which may alias.
+  // Adds the value of the objective at a point when the motion reaches it for the first time.
+  void visit(int number, const State& state) {
+    if (number <= visited) return;
+    visited = number;
+    report.value += (*objective)(number, state, {}, {});
+  }
+
+  // Takes a step from `now` to `end`, which may be the same object.
   bool step(State& end) {
     Stopwatch stopwatch;
     const SolveTools solve{model, pins, E, minimizer, newton, minimize, observe, InitialGuess::best};
@@ -123,70 +108,71 @@ struct Trajectory::Impl {
 
   bool advance() {
     if (!step(now)) return false;
-    ++point;
+    visit(++point, now);
     return true;
   }
 
-  TrajectoryReport simulate(const TrajectoryObjective& objective) {
+  TrajectoryReport simulate(const TrajectoryObjective& function) {
     begin();
+    objective = &function;
+    visit(0, now);
     report.ok = true;
-    for (;;) {
-      report.value += objective(point, now, {}, {});
-      if (point == options.steps) break;
-      report.ok = advance();
-      if (!report.ok) break;
-    }
+    while (report.ok && point < options.steps) report.ok = advance();
     return report;
   }
 
-  TrajectoryReport differentiate(const TrajectoryObjective& objective, TrajectoryGradient& gradient) {
+  TrajectoryReport differentiate(const TrajectoryObjective& function, TrajectoryGradient& gradient) {
     begin();
+    objective = &function;
     reset(gradient);
     for (auto* v : {&qbar, &vbar}) std::fill(v->begin(), v->end(), 0.0);
-    const ChainWalk walk{.advance = [this] { return advance(); },
-                         .store =
-                             [this](int slot) {
-                               slots[slot] = {now, point};
-                             },
-                         .restore = [this](int slot) { now = slots[slot].state, point = slots[slot].point; },
-                         .reverse =
-                             [&](int step_number) {
-                               ASPIC_CHECK(point == step_number);
-                               if (step_number == options.steps - 1) {
-                                 if (!step(after)) return false;
-                                 report.value += objective(options.steps, after, qbar, vbar);
-                               }
-                               if (!reverse_step(gradient)) return false;
-                               report.value += objective(point, now, qbar, vbar);
-                               std::swap(after.q, now.q), std::swap(after.qdot, now.qdot);
-                               return true;
-                             }};
-    if (options.steps == 0) report.value += objective(0, now, qbar, vbar);
-    report.ok = walk_backwards(options.steps, static_cast<int>(slots.size()), walk);
+    visit(0, now);
+    if (options.steps == 0) function(0, now, qbar, vbar);
+    const ChainOperations chain{.advance = [this] { return advance(); },
+                                .store =
+                                    [this](int slot) {
+                                      slots[slot] = {now, point};
+                                    },
+                                .restore = [this](int slot) { now = slots[slot].state, point = slots[slot].point; },
+                                .reverse = [&](int step_number) { return reverse(step_number, gradient); }};
+    report.ok = reverse_chain(options.steps, static_cast<int>(slots.size()), chain);
     pins.set_zero(qbar);
-    pins.set_zero(vbar);  // their velocities are prescribed
+    pins.set_zero(vbar);  // the pins prescribe these velocities
     gradient.q.assign(qbar.begin(), qbar.end());
     gradient.qdot.assign(vbar.begin(), vbar.end());
     return report;
   }
 
+  bool reverse(int step_number, TrajectoryGradient& gradient) {
+    ASPIC_CHECK(point == step_number);
+    if (step_number == options.steps - 1) {
+      if (!step(after)) return false;
+      visit(options.steps, after);
+      (*objective)(options.steps, after, qbar, vbar);
+    }
+    if (!reverse_step(gradient)) return false;
+    (*objective)(point, now, qbar, vbar);
+    std::swap(after.q, now.q), std::swap(after.qdot, now.qdot);
+    return true;
+  }
+
   void reset(TrajectoryGradient& gradient) const {
     gradient.elastic.assign(theta.size(), 0.0);
-    gradient.density.assign(weight ? model.mesh.tet_count() : 0, 0.0);
-    gradient.density_words =
-        weight ? "" : "the load 'gravity' is not the weight of the bodies, so how it changes with density is not known";
+    gradient.density.assign(gravity ? model.mesh.tet_count() : 0, 0.0);
+    gradient.density_message = gravity ? "" : "the load 'gravity' is not the weight of the body";
     gradient.damping.resize(model.damping.size());
     for (size_t k = 0; k < model.damping.size(); ++k) gradient.damping[k].assign(damping(k).coefficient_count(), 0.0);
   }
 
   const Damping& damping(size_t k) const { return static_cast<const Damping&>(*model.damping[k]); }
 
-  // Propagates cotangents from `after` to `now`.
+  // Replaces the derivatives with respect to `after` by those with respect to `now`.
   bool reverse_step(TrajectoryGradient& gradient) {
     Stopwatch stopwatch;
     const double h = options.h, f = h * h;
-    tell_step();
-    pins.set_zero(qbar);  // their positions are prescribed
+    if (options.stop.stopped()) return fail(point, "stopped");
+    begin_step();
+    pins.set_zero(qbar);  // the pins prescribe these positions
     for (size_t i = 0; i < rhs.size(); ++i) rhs[i] = qbar[i] + vbar[i] / h;
     pins.set_zero(rhs);
     if (!solve()) return false;
@@ -196,14 +182,14 @@ struct Trajectory::Impl {
     for (size_t i = 0; i < mu.size(); ++i) vbar[i] = h * Mmu[i];
     theta.add_gradient(after.q, mu, -f, gradient.elastic);
     for (size_t k = 0; k < model.damping.size(); ++k) add_damping(k, f, gradient.damping[k], gradient);
-    if (weight) add_density(f, gradient.density);
+    if (gravity) add_density(f, gradient.density);
     pins.set_zero(qbar);
     report.adjoint_seconds += stopwatch.lap();
     return true;
   }
 
-  // Like the integrator.
-  void tell_step() {
+  // Prepares the terms as the integrator does.
+  void begin_step() {
     const StepContext context{now.q, options.h, time_of(point + 1), now.q};
     E.set_potential_step(context);
     E.set_damping_step(context);
@@ -233,19 +219,19 @@ struct Trajectory::Impl {
                       {.start = qbar, .coefficients = coefficients, .elastic = elastic});
   }
 
-  // mu' dg/drho of inertia, weight, and mass-proportional damping.
+  // Adds -mu' dg/drho of inertia, weight and mass-proportional damping.
   void add_density(double f, std::span<double> density) {
     const TetMesh& mesh = model.mesh;
-    for (size_t i = 0; i < moved.size(); ++i) moved[i] = after.q[i] - moved[i];  // q1 - q0 - h v0
+    for (size_t i = 0; i < moved.size(); ++i) moved[i] -= after.q[i];  // q0 + h v0 - q1
     for (size_t k = 0; k < model.damping.size(); ++k)
       for (size_t i = 0; i < moved.size(); ++i)
         if (const double a = damping(k).mass_factor(static_cast<int>(i / 3)); a != 0)
-          moved[i] += options.h * a * (after.q[i] - now.q[i]);
-    add_density_gradient(mesh, model.mass->kind(), mu, moved, -1, density);
+          moved[i] -= options.h * a * (after.q[i] - now.q[i]);
+    add_density_gradient(mesh, model.mass->kind(), mu, moved, density);
     for (int t = 0; t < mesh.tet_count(); ++t) {
       double work = 0;
       for (const int v : mesh.tets[t])
-        for (int r = 0; r < 3; ++r) work += mu[3 * v + r] * (*weight)[r];
+        for (int r = 0; r < 3; ++r) work += mu[3 * v + r] * (*gravity)[r];
       density[t] += f * volume(mesh, t) / 4 * work;
     }
   }
@@ -261,19 +247,20 @@ struct Trajectory::Impl {
   Pins pins;
   IncrementalPotential E;
   Newton newton;
-  SequenceSolver solver;  // for H, backward in time
+  SequenceSolver solver;  // of H, backward
   std::unique_ptr<Integrator> integrator;
   ElasticParameters theta;
   Minimizer minimizer;
   MinimizeOptions minimize;
   IterationObserver observe;
-  std::optional<Vec3d> weight;  // acceleration of the load 'gravity'
+  std::optional<Vec3d> gravity;  // acceleration of the load 'gravity'
   TrajectoryReport report;
-  State now, after;  // current state; next state during the reversal
-  int point = 0;
+  const TrajectoryObjective* objective = nullptr;
+  State now, after;  // the current state; in the backward pass, the state after it
+  int point = 0, visited = -1;
   std::vector<Stored> slots;
   std::vector<double> qbar, vbar;
-  // Scratch. moved: the flight q0 + h v0.
+  // Scratch. moved: q0 + h v0.
   State before, next;
   StepForces forces;
   std::vector<double> rhs, mu, moved, Mmu;
@@ -285,6 +272,7 @@ Trajectory::~Trajectory() = default;
 Trajectory::Trajectory(Trajectory&&) noexcept = default;
 
 const Model& Trajectory::model() const { return impl_->model; }
+Model Trajectory::release_model() && { return std::move(impl_->model); }
 void Trajectory::set_parameters(std::span<const MaterialParameters> parameters) { impl_->theta.set(parameters); }
 
 void Trajectory::set_start(const State& start) {
@@ -297,6 +285,28 @@ void Trajectory::set_start(const State& start) {
 TrajectoryReport Trajectory::simulate(const TrajectoryObjective& objective) { return impl_->simulate(objective); }
 TrajectoryReport Trajectory::differentiate(const TrajectoryObjective& objective, TrajectoryGradient& gradient) {
   return impl_->differentiate(objective, gradient);
+}
+
+std::optional<Vec3d> gravity_of(const Model& model, std::span<const double> q) {
+  const Energy* load = nullptr;
+  for (const auto& V : model.loads)
+    if (V->name() == "gravity") {
+      if (load) return std::nullopt;
+      load = V.get();
+    }
+  if (!load) return Vec3d{};
+  std::vector<double> force(q.size()), weight(q.size());
+  ActiveTerm(*load).add_gradient(q, -1, force);
+  Vec3d total{};
+  for (size_t i = 0; i < force.size(); ++i) total[i % 3] += force[i];
+  const Vec3d acceleration = (1 / model.mass->total()) * total;
+  double error = 0, size = 0;
+  for (size_t i = 0; i < force.size(); ++i) {
+    const double expected = model.mass->vertex_mass()[i / 3] * acceleration[i % 3];
+    error = std::max(error, std::abs(force[i] - expected));
+    size = std::max(size, std::abs(expected));
+  }
+  return error <= 1e-9 * size ? std::optional(acceleration) : std::nullopt;
 }
 
 }  // namespace aspic

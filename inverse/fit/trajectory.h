@@ -1,15 +1,17 @@
-// The motion of a body over implicit time steps, and the gradient of a function of that motion with respect to the
-// material of every tet, density, damping and the initial state: one linear solve per step, backwards in time.
+// The motion of a body by backward Euler, and the gradient of a function of that motion with respect to the material of
+// every tet, density, damping and the initial state: one linear solve per step, backward in time.
 //   step      g(q1; q0, v0) = M (q1 - q0 - h v0) + h^2 (dV/dx(q1) + dD/dx(q1; q0)) = 0,  v1 = (q1 - q0) / h
 //   adjoint   H mu = qbar1 + vbar1 / h,  H = M + h^2 (V'' + D''),  thetabar -= mu' dg/dtheta,
 //             vbar0 = h M mu,  qbar0 = M mu - h^2 (d2D/dx dq0)' mu - vbar1 / h
 #pragma once
 #include <functional>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
 
+#include "base/stop_token.h"
 #include "dynamics/model.h"
 #include "dynamics/state.h"
 
@@ -18,48 +20,50 @@ namespace aspic {
 struct TrajectoryOptions {
   double h = 0.01;  // [s]
   int steps = 100;
-  std::string integrator = "backward_euler";  // the only one with a gradient so far
-  double tolerance = 1e-9;                    // of each step's residual, relative to the forces that balance
+  std::string integrator = "backward_euler";  // the only one with a gradient
+  double tolerance = 1e-9;                    // of the residual of each step, relative to the forces in balance
   int max_iterations = 200;
   std::string linear = "auto";      // solver of Newton's steps
-  std::string adjoint = "auto";     // solver of the steps backwards, see linear_solver_names()
-  double adjoint_tolerance = 1e-8;  // relative residual of those; errors of the gradient are some times larger
-  int stored_states = 100;          // at a time; steps between them are repeated
+  std::string adjoint = "auto";     // solver of the adjoint steps, see linear_solver_names()
+  double adjoint_tolerance = 1e-8;  // relative residual of adjoint solves; the gradient error is a few times larger
+  int stored_states = 100;          // maximum number at a time; steps between them are repeated
+  StopToken stop = {};              // polled in every step
 };
 
-// The part of a state in what is minimized, for point 0 (the start) to `steps`: returns its value and adds its
-// derivatives to qbar and vbar, 3 numbers per vertex; empty when only the value is wanted. It may be called for the
-// same point more than once.
+// The contribution of the state at one point of the motion, 0 (the start) to `steps`, to the function. A simulation
+// calls it once per point, in ascending order, with empty spans, and adds up the returned values. A gradient then calls
+// it once more per point, in descending order: it must add its derivatives to qbar and vbar, 3 numbers per vertex.
 using TrajectoryObjective = std::function<double(int point, const State& state, std::span<double> qbar,  //
                                                  std::span<double> vbar)>;
 
 struct TrajectoryGradient {
-  std::vector<double> elastic;               // to mu, lambda, ... of every tet: ElasticParameters
-  std::vector<double> density;               // of every tet; empty where it is not known, see density_words
-  std::string density_words;                 // why not
-  std::vector<std::vector<double>> damping;  // to Damping's coefficients, of each term of Model::damping
-  std::vector<double> q, qdot;               // to the initial state; pinned vertices have no position to choose
+  std::vector<double> elastic;               // with respect to mu, lambda, ... of every tet, as in ElasticParameters
+  std::vector<double> density;               // of every tet; empty if it cannot be computed, see density_message
+  std::string density_message;               // the reason
+  std::vector<std::vector<double>> damping;  // with respect to the coefficients of each term of Model::damping
+  std::vector<double> q, qdot;               // with respect to the initial state; 0 at pinned vertices
 };
 
 struct TrajectoryReport {
   bool ok = false;
-  std::string failure;                                  // in words
+  std::string message;                                  // the reason for a failure
   double value = 0;                                     // of the objective
-  long steps = 0;                                       // forward, with those that are repeated
+  long steps = 0;                                       // forward, including repeated ones
   long newton_iterations = 0, factorizations = 0;       // forward
-  long adjoint_solves = 0, adjoint_factorizations = 0;  // backwards; factors or preconditioners made
+  long adjoint_solves = 0, adjoint_factorizations = 0;  // backward; computed factors or preconditioners
   long adjoint_iterations = 0, adjoint_products = 0;    // of conjugate gradients; products with H
   double forward_seconds = 0, adjoint_seconds = 0;      // wall time
 };
 
 class Trajectory {
  public:
-  // Throws InvalidInput for what has no gradient: other integrators, terms of damping without derivatives.
+  // Throws InvalidInput for other integrators and for damping terms without derivatives.
   Trajectory(Model model, State start, const TrajectoryOptions& options);
   ~Trajectory();
   Trajectory(Trajectory&&) noexcept;
 
   const Model& model() const;
+  Model release_model() &&;                                             // the trajectory must not be used afterwards
   void set_parameters(std::span<const MaterialParameters> parameters);  // one per tet
   void set_start(const State& start);
 
@@ -70,5 +74,9 @@ class Trajectory {
   struct Impl;
   std::unique_ptr<Impl> impl_;
 };
+
+// Returns the acceleration [m/s^2] of the load 'gravity', zero without such a load; nothing if its forces are not the
+// weight of the vertex masses. `q`: any positions.
+std::optional<Vec3d> gravity_of(const Model& model, std::span<const double> q);
 
 }  // namespace aspic

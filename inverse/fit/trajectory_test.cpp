@@ -24,8 +24,8 @@ TrajectoryOptions exact() {
   return options;
 }
 
-// All supported parameters: a beam of different tets with a wall, a rotating crank, a spring with moving target, weight
-// and three kinds of damping.
+// A model with every kind of parameter: a beam of unlike tets with a wall, a crank that turns, a spring whose target
+// moves, weight and three kinds of damping.
 struct Swinging {
   std::string material = "mooney_rivlin";
   std::vector<MaterialParameters> elastic;
@@ -33,7 +33,7 @@ struct Swinging {
   double mass_factor = 2, stiffness_factor = 4e-3;
   State start;
   MassKind mass = MassKind::consistent;
-  bool slides = false;  // the wall and the crank constrain only some directions
+  bool slides = false;  // the wall and the crank hold some directions only
   TetMesh mesh = make_box({{0, 0, 0}}, {{1.2, 0.4, 0.3}}, {5, 2, 1});
 
   explicit Swinging(const std::string& name = "mooney_rivlin") : material(name) {
@@ -100,7 +100,7 @@ TrajectoryObjective distance_from_rest(const TetMesh& mesh, int steps) {
 double value_of(const Swinging& body, const TrajectoryOptions& options) {
   Trajectory trajectory(body.model(), body.start, options);
   const TrajectoryReport report = trajectory.simulate(distance_from_rest(body.mesh, options.steps));
-  EXPECT_TRUE(report.ok) << report.failure;
+  EXPECT_TRUE(report.ok) << report.message;
   return report.value;
 }
 
@@ -109,12 +109,12 @@ TrajectoryGradient gradient_of(const Swinging& body, const TrajectoryOptions& op
   Trajectory trajectory(body.model(), body.start, options);
   TrajectoryGradient gradient;
   const TrajectoryReport report = trajectory.differentiate(distance_from_rest(body.mesh, options.steps), gradient);
-  EXPECT_TRUE(report.ok) << report.failure;
+  EXPECT_TRUE(report.ok) << report.message;
   if (out) *out = report;
   return gradient;
 }
 
-// A perturbation of one kind of parameter by eps, and the derivative from the gradient.
+// A change of all parameters of one kind by eps, and its rate by the gradient.
 struct Kind {
   std::string name;
   std::function<void(Swinging&, double eps)> change;
@@ -144,7 +144,7 @@ Kind elastic_kind(const std::string& name, const Swinging& body, int k) {
           }};
 }
 
-// One of the vectors of the body.
+// The same for one of the vectors of the body.
 Kind vector_kind(const std::string& name, const std::vector<double>& rate,
                  const std::function<std::vector<double>&(Swinging&)>& vector,
                  const std::function<const std::vector<double>&(const TrajectoryGradient&)>& gradient,
@@ -206,7 +206,7 @@ void expect_slopes_2(const Swinging& body) {
   }
 }
 
-TEST(Trajectory, GradientHasTaylorSlope2ForEveryParameter) {
+TEST(Trajectory, GradientHasTaylorSlope2ForEveryKindOfParameter) {
   expect_slopes_2(Swinging("mooney_rivlin"));
   expect_slopes_2(Swinging("fung"));
   expect_slopes_2(Swinging("corotated"));
@@ -221,7 +221,7 @@ TEST(Trajectory, GradientWithRollersHasTaylorSlope2) {
   expect_slopes_2(body);
 }
 
-TEST(Trajectory, LumpedMassGradientHasTaylorSlope2) {
+TEST(Trajectory, DensityGradientWithLumpedMassHasTaylorSlope2) {
   Swinging body;
   body.mass = MassKind::lumped;
   const TrajectoryGradient gradient = gradient_of(body, exact());
@@ -236,7 +236,7 @@ TEST(Trajectory, LumpedMassGradientHasTaylorSlope2) {
           {kind.slope(gradient)}, kind.largest, kind.name);
 }
 
-TEST(Trajectory, GradientIsBitwiseIndependentOfStoredStates) {
+TEST(Trajectory, GradientIsBitReproducibleForAnyStoredStates) {
   const Swinging body;
   TrajectoryOptions options = exact();
   options.steps = 13;
@@ -256,7 +256,7 @@ TEST(Trajectory, GradientIsBitwiseIndependentOfStoredStates) {
   }
 }
 
-TEST(Trajectory, IsThatOfTheSimulation) {
+TEST(Trajectory, AgreesWithSimulation) {
   const Swinging body;
   const TrajectoryOptions options = exact();
   SimulationOptions same{.h = options.h, .solver = {}};
@@ -277,7 +277,7 @@ TEST(Trajectory, IsThatOfTheSimulation) {
   EXPECT_EQ(report.value, options.steps + 1);
 }
 
-TEST(Trajectory, BackwardStepNeedsOneSolveWithKeptFactor) {
+TEST(Trajectory, AdjointStepTakesOneSolveWithKeptFactor) {
   const Swinging body;
   TrajectoryOptions options;
   options.h = 0.02;
@@ -292,7 +292,7 @@ TEST(Trajectory, BackwardStepNeedsOneSolveWithKeptFactor) {
   EXPECT_EQ(report.steps, options.steps);
 }
 
-TEST(Trajectory, AStepThatDoesNotConvergeIsReported) {
+TEST(Trajectory, UnconvergedStepIsReported) {
   const Swinging body;
   TrajectoryOptions options;
   options.max_iterations = 1;
@@ -300,10 +300,10 @@ TEST(Trajectory, AStepThatDoesNotConvergeIsReported) {
   TrajectoryGradient gradient;
   const TrajectoryReport report = trajectory.differentiate(distance_from_rest(body.mesh, options.steps), gradient);
   EXPECT_FALSE(report.ok);
-  EXPECT_NE(report.failure.find("step 0): Newton's method did not converge"), std::string::npos) << report.failure;
+  EXPECT_NE(report.message.find("step 0): Newton's method did not converge"), std::string::npos) << report.message;
 }
 
-TEST(Trajectory, RefusesWhatHasNoGradient) {
+TEST(Trajectory, RefusesModelsWithoutGradient) {
   const Swinging body;
   const auto refused = [&](TrajectoryOptions options, Model model, const std::string& expected) {
     try {
@@ -322,7 +322,7 @@ TEST(Trajectory, RefusesWhatHasNoGradient) {
   refused({}, std::move(strange), "'wind' has no derivatives");
 }
 
-TEST(Trajectory, LoadOtherThanWeightGivesNoDensityGradient) {
+TEST(Trajectory, LoadOtherThanWeightHasNoDensityGradient) {
   const Swinging body;
   Model model = body.model();
   std::vector<double> force(body.start.q.size());
@@ -333,7 +333,7 @@ TEST(Trajectory, LoadOtherThanWeightGivesNoDensityGradient) {
   TrajectoryGradient gradient;
   EXPECT_TRUE(trajectory.differentiate(distance_from_rest(body.mesh, options.steps), gradient).ok);
   EXPECT_TRUE(gradient.density.empty());
-  EXPECT_NE(gradient.density_words, "");
+  EXPECT_NE(gradient.density_message, "");
 }
 
 }  // namespace

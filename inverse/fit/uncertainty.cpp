@@ -138,8 +138,9 @@ double log_evidence(double misfit, double weight, double roughness, const Spectr
 
 }  // namespace
 
-Posterior posterior(LeastSquares& data, Regularizer& prior, double weight, const ParameterMap& map, const TetMesh& mesh,
-                    std::span<const double> p, const PosteriorOptions& options) {
+Posterior posterior(LeastSquares& data, Regularizer& prior, double weight, const FittedField& fitted,
+                    const PosteriorOptions& options) {
+  const auto& [map, mesh, p] = fitted;
   ASPIC_CHECK(map.size() == static_cast<int>(p.size()) && data.unknowns() == map.size());
   Posterior result;
   std::vector<double> r(data.residual_count());
@@ -168,8 +169,9 @@ Posterior posterior(LeastSquares& data, Regularizer& prior, double weight, const
   return result;
 }
 
-Interval interval(const Posterior& posterior, const ParameterMap& map, std::span<const double> p, int unknown, int tet,
+Interval interval(const Posterior& posterior, const ParameterMap& map, std::span<const double> p, const TetQuantity& of,
                   double deviations) {
+  const auto [unknown, tet] = of;
   const double z = map.fitted_values(unknown, p)[tet], s = deviations * posterior.deviation[unknown][tet];
   return {map.value(unknown, z - s), map.value(unknown, z + s)};
 }

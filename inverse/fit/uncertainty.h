@@ -45,16 +45,20 @@ struct Posterior {
 
 // Evaluates and linearizes `data` at the p of the fit; with indenters, data must be a Misfit WithUncertainLayers, made
 // for this call. The posterior's `belief` refers to the prior.
-Posterior posterior(LeastSquares& data, Regularizer& prior, double weight, const ParameterMap& map, const TetMesh& mesh,
-                    std::span<const double> p, const PosteriorOptions& options = {});
+Posterior posterior(LeastSquares& data, Regularizer& prior, double weight, const FittedField& fitted,
+                    const PosteriorOptions& options = {});
 
 inline constexpr double kDeviations95 = 1.959964;  // quantile of the normal distribution: 95 %, two-sided
+
+struct TetQuantity {
+  int unknown, tet;
+};
 
 struct Interval {
   double lower = 0, upper = 0;  // SI units
 };
 // Interval of a quantity in a tet with the probability of +-`deviations` standard deviations.
-Interval interval(const Posterior& posterior, const ParameterMap& map, std::span<const double> p, int unknown, int tet,
+Interval interval(const Posterior& posterior, const ParameterMap& map, std::span<const double> p, const TetQuantity& of,
                   double deviations = kDeviations95);
 
 // "young between 80 and 130 kPa", "poisson between 0.41 and 0.46".

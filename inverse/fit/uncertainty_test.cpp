@@ -49,7 +49,7 @@ struct Field {
     return (data.J.transpose() * data.J + belief.curvature).inverse().diagonal().cwiseSqrt();
   }
   Posterior posterior(double weight = 1, const PosteriorOptions& options = {}) {
-    return aspic::posterior(data, belief, weight, map, mesh, fit(weight), options);
+    return aspic::posterior(data, belief, weight, {map, mesh, fit(weight)}, options);
   }
 };
 
@@ -100,7 +100,7 @@ TEST(Posterior, OfTwoQuantitiesKeepsThemApart) {
   test::QuadraticBelief belief = test::chain_belief(n + 1, 0.5, 1);
   data.b.setZero();
   const std::vector<double> p(map.guess().begin(), map.guess().end());
-  const Posterior posterior = aspic::posterior(data, belief, 1, map, mesh, p);
+  const Posterior posterior = aspic::posterior(data, belief, 1, {map, mesh, p});
   const Eigen::VectorXd exact = (data.J.transpose() * data.J + belief.curvature).inverse().diagonal().cwiseSqrt();
   for (int t = 0; t < n; ++t) {
     EXPECT_NEAR(posterior.deviation[0][t] / posterior.applied_factor, exact(t), 0.3 * exact(t));
@@ -117,9 +117,9 @@ TEST(Posterior, IntervalsContainTruthAtStatedRate) {
   for (unsigned seed = 0; seed < kSeeds; ++seed) {
     f.measure(seed);
     const std::vector<double> p = f.fit();
-    const Posterior posterior = aspic::posterior(f.data, f.belief, 1, f.map, f.mesh, p, {.directions = 0});
+    const Posterior posterior = aspic::posterior(f.data, f.belief, 1, {f.map, f.mesh, p}, {.directions = 0});
     for (int t = 0; t < f.map.size(); ++t) {
-      const Interval i = interval(posterior, f.map, p, 0, t);
+      const Interval i = interval(posterior, f.map, p, {0, t});
       const double E = std::exp(f.truth(t));
       const bool inside = i.lower < E && E < i.upper;
       all += inside;
@@ -167,7 +167,7 @@ TEST(Posterior, ContactStiffnessIsNoForceInformation) {
   EXPECT_FALSE(f.posterior().scale_is_unknown);
   f.data.nuisances = {-leak};  // scaling contact and body together changes nothing
   WithUncertainLayers data(f.data);
-  const Posterior posterior = aspic::posterior(data, f.belief, 1, f.map, f.mesh, f.fit());
+  const Posterior posterior = aspic::posterior(data, f.belief, 1, {f.map, f.mesh, f.fit()});
   EXPECT_TRUE(posterior.scale_is_unknown);
   EXPECT_LT(posterior.unseen[0].information, 0.5);
 }
@@ -238,7 +238,7 @@ TEST(Posterior, WithoutAnEquilibriumIsNone) {
   Field f(2, 5);
   data.J = f.data.J;
   const std::vector<double> p(f.map.size());
-  const Posterior posterior = aspic::posterior(data, f.belief, 1, f.map, f.mesh, p);
+  const Posterior posterior = aspic::posterior(data, f.belief, 1, {f.map, f.mesh, p});
   EXPECT_FALSE(posterior.ok);
   EXPECT_THAT(posterior.warnings, ElementsAre(HasSubstr("no stable equilibrium")));
 }
@@ -265,7 +265,7 @@ TEST(Interval, IsInUnitsOfTheQuantity) {
   const ParameterMap map = make_map(mesh, {{.spread = Spread::uniform, .guess = 1e5}});
   Posterior posterior;
   posterior.deviation = {std::vector<double>(mesh.tets.size(), std::log(1.3))};
-  const Interval i = interval(posterior, map, map.guess(), 0, 2, 1);
+  const Interval i = interval(posterior, map, map.guess(), {0, 2}, 1);
   EXPECT_NEAR(i.lower, 1e5 / 1.3, 1e-6);
   EXPECT_NEAR(i.upper, 1.3e5, 1e-6);
   EXPECT_EQ(words_of_interval(map.unknowns()[0], {80e3, 130e3}), "young between 80 and 130 kPa");

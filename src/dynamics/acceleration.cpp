@@ -10,27 +10,25 @@ constexpr double kAccelerationTolerance = 1e-12;  // the mass matrix is well con
 
 }  // namespace
 
-void Acceleration::add_damping(const StepTools& tools, std::span<const double> q, std::span<const double> v, double h,
-                               double scale) {
-  for (size_t i = 0; i < q.size(); ++i) drift_[i] = q[i] + h * v[i];
+void Acceleration::add_damping(const StepTools& tools, const MotionPoint& at, double h, double scale) {
+  for (size_t i = 0; i < at.q.size(); ++i) drift_[i] = at.q[i] + h * at.v[i];
   for (const ActiveTerm& D : tools.E.damping()) D.add_gradient(drift_, scale, damping_);
 }
 
-bool Acceleration::solve(const StepTools& tools, double time, std::span<const double> q, std::span<const double> v,
-                         DampingDifference difference, double weight, std::span<double> acc, StepForces& forces,
+bool Acceleration::solve(const StepTools& tools, const MotionPoint& at, std::span<double> acc, StepForces& forces,
                          Work& work) {
-  const size_t n = q.size();
+  const size_t n = at.q.size();
   for (auto* w : {&gradient_, &damping_, &drift_, &force_, &scratch_}) w->assign(n, 0.0);
-  const StepContext context{q, tools.h, time};
+  const StepContext context{at.q, tools.h, at.time};
   tools.E.set_potential_step(context);
   tools.E.set_damping_step(context);
-  for (const ActiveTerm& V : tools.E.potential()) V.add_gradient(q, 1, gradient_);
+  for (const ActiveTerm& V : tools.E.potential()) V.add_gradient(at.q, 1, gradient_);
   ++work.gradients;
-  if (difference == DampingDifference::forward) {
-    add_damping(tools, q, v, tools.h, 1);
+  if (at.difference == DampingDifference::forward) {
+    add_damping(tools, at, tools.h, 1);
   } else {
-    add_damping(tools, q, v, tools.h, 0.5);
-    add_damping(tools, q, v, -tools.h, -0.5);
+    add_damping(tools, at, tools.h, 0.5);
+    add_damping(tools, at, -tools.h, -0.5);
   }
 
   tools.pins.copy_held(acc, scratch_);
@@ -46,9 +44,9 @@ bool Acceleration::solve(const StepTools& tools, double time, std::span<const do
   tools.pins.set_zero(scratch_);
   for (size_t i = 0; i < n; ++i) {
     acc[i] += scratch_[i];
-    forces.gradient[i] += weight * gradient_[i];
-    forces.damping[i] += weight * damping_[i];
-    forces.acceleration[i] += weight * acc[i];
+    forces.gradient[i] += at.weight * gradient_[i];
+    forces.damping[i] += at.weight * damping_[i];
+    forces.acceleration[i] += at.weight * acc[i];
   }
   return solved.ok;
 }

@@ -15,19 +15,24 @@ enum class DampingDifference {
   central,  // half the difference to q - h v: second order
 };
 
+struct MotionPoint {
+  double time;                   // [s]
+  std::span<const double> q, v;  // [m], [m/s]
+  DampingDifference difference;
+  double weight;  // of its forces in those of the step
+};
+
 class Acceleration {
  public:
-  // On entry `acc` holds the accelerations of pinned vertices, on return all of them [m/s^2]. `time` is that of q and
-  // v. Adds the forces times `weight` to `forces`. Returns false if the mass solve failed.
-  bool solve(const StepTools& tools, double time, std::span<const double> q, std::span<const double> v,
-             DampingDifference difference, double weight, std::span<double> acc, StepForces& forces, Work& work);
+  // On entry `acc` holds the accelerations of pinned vertices, on return all of them [m/s^2]. Adds the forces times
+  // at.weight to `forces`. Returns false if the mass solve failed.
+  bool solve(const StepTools& tools, const MotionPoint& at, std::span<double> acc, StepForces& forces, Work& work);
 
   // Returns a bound of the residual M acc + G + C that the mass solve leaves [N].
   double noise() const { return noise_; }
 
  private:
-  void add_damping(const StepTools& tools, std::span<const double> q, std::span<const double> v, double h,
-                   double scale);
+  void add_damping(const StepTools& tools, const MotionPoint& at, double h, double scale);
   SolveReport solve_mass(const StepTools& tools, std::span<const double> force, std::span<double> acc);
 
   std::unique_ptr<LinearSolver> solver_;

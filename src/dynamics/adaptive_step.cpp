@@ -57,9 +57,10 @@ bool AdaptiveStep::take(Integrator& integrator, const StepTools& tools, Part& pa
   return is_success(failure_);
 }
 
-AdaptiveStep::Verdict AdaptiveStep::attempt(Integrator& integrator, const StepTools& whole, int first, int size) {
+AdaptiveStep::Verdict AdaptiveStep::attempt(Integrator& integrator, const StepTools& whole, Pair pair) {
   // Substeps of explicit schemes do not poll the token themselves.
   if (whole.options.stop.requested()) return failure_ = Status::interrupted, Verdict::interrupted;
+  const auto [first, size] = pair;
   const int half = size / 2;
   const State *before = has_previous_ ? &previous_ : nullptr, *now = remembers_ ? &now_ : nullptr;
   const auto unsuccessful = [&] { return failure_ == Status::interrupted ? Verdict::interrupted : Verdict::rejected; };
@@ -98,8 +99,8 @@ double AdaptiveStep::error(const Pins& pins, double h) const {
   return largest;
 }
 
-void AdaptiveStep::keep(Integrator& integrator, const StepTools& whole, Ledger& ledger, int first, int size,
-                        StepReport& report) {
+void AdaptiveStep::keep(Integrator& integrator, const StepTools& whole, Pair pair, Ledger& ledger, StepReport& report) {
+  const auto [first, size] = pair;
   const int half = size / 2;
   const auto enter = [&](const StepTools& tools, const Part& part) {
     const BoundedEnergies bounded = ledger.add(tools, integrator, part.end, part.forces, report);
@@ -132,10 +133,10 @@ StepSolve AdaptiveStep::advance(Integrator& integrator, const StepTools& whole, 
   const int first_level = level_;
   for (int done = 0; done < kTicks;) {
     const int size = kTicks >> level_;
-    const Verdict verdict = attempt(integrator, whole, done, size);
+    const Verdict verdict = attempt(integrator, whole, {done, size});
     if (verdict == Verdict::interrupted) level_ = first_level;  // the step will be repeated in the same way
     if (verdict == Verdict::accepted) {
-      keep(integrator, whole, ledger, done, size, report);
+      keep(integrator, whole, {done, size}, ledger, report);
       done += size;
       const double predicted =
           error_ *

@@ -33,9 +33,13 @@ class AdaptiveStep {
   };
   enum class Verdict { accepted, rejected, interrupted };
 
-  Verdict attempt(Integrator& integrator, const StepTools& whole, int first, int size);
+  struct Pair {  // of substeps, in ticks from the start of the step
+    int first, size;
+  };
+
+  Verdict attempt(Integrator& integrator, const StepTools& whole, Pair pair);
   bool take(Integrator& integrator, const StepTools& tools, Part& part);
-  void keep(Integrator& integrator, const StepTools& whole, Ledger& ledger, int first, int size, StepReport& report);
+  void keep(Integrator& integrator, const StepTools& whole, Pair pair, Ledger& ledger, StepReport& report);
   double error(const Pins& pins, double h) const;  // of the pair, as a multiple of the tolerance
 
   const Model& model_;

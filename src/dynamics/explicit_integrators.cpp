@@ -21,8 +21,8 @@ class ExplicitEuler : public Integrator {
     set_pin_acceleration(tools, end);
     MinimizeReport report;
     report.iterations = 1;
-    const bool solved =
-        force_.solve(tools, start.time, end.q, end.qdot, DampingDifference::forward, 1, acceleration_, forces, report);
+    const MotionPoint at{start.time, end.q, end.qdot, DampingDifference::forward, 1};
+    const bool solved = force_.solve(tools, at, acceleration_, forces, report);
     update(h, acceleration_, end);
     end.time = tools.end_time;
     tools.pins.place(end.time, end.q);

@@ -26,7 +26,7 @@ class BackwardEuler : public Integrator {
                                .ahead = tools.h,
                                .tries_last_increment = false,  // equal to the extrapolated guess
                                .once = facts().takes_one_iteration};
-    stage_.solve(tools, nullptr, options, end.q, end.qdot, acceleration_, solve, forces);
+    stage_.solve(tools, options, {end.q, end.qdot, acceleration_}, solve, forces);
     end.time = tools.end_time;
     return solve;
   }
@@ -59,8 +59,8 @@ class Bdf2 : public Integrator {
     forces.reset(n);
     end = now;
     path_.sample(tools.pins, now.time, tools.end_time, pin_path_points(facts().order));
-    const StageOptions options{.beta = 2 * tools.h / 3, .time = tools.end_time, .ahead = tools.h};
-    stage_.solve(tools, &path_, options, end.q, end.qdot, acceleration_, solve, forces);
+    const StageOptions options{.beta = 2 * tools.h / 3, .time = tools.end_time, .ahead = tools.h, .path = &path_};
+    stage_.solve(tools, options, {end.q, end.qdot, acceleration_}, solve, forces);
     end.time = tools.end_time;
     return solve;
   }
@@ -90,7 +90,7 @@ class QuasiStatic : public Integrator {
     const Guess guess = guesser_.guess(tools, tools.guess, {start.q, start.qdot, 0, tools.end_time}, end.q, lead);
     solve.guess = guess.used;
     const MinimizeReport report =
-        tools.minimizer.minimize(tools.E, tools.direction, end.q, guess.value, tools.options, tools.observe);
+        tools.minimizer.minimize(tools.E, tools.direction, {end.q, guess.value}, tools.options, tools.observe);
     solve.add(report);
     add_work(lead, solve.work);
     solve.decrement = report.decrement;

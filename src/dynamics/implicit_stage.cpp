@@ -24,8 +24,9 @@ void note_end(const IncrementalPotential& E, const MinimizeReport& report, StepS
 
 // With x'' of the pinned vertices known, q~ = x(t*) - beta^2 x'' adds their inertia M_fp x'' to the free vertices, and
 // a = x(t*) - beta x' their contribution to damping.
-void ImplicitStage::predict(const StepTools& tools, const PinPath* path, const StageOptions& options) {
+void ImplicitStage::predict(const StepTools& tools, const StageOptions& options) {
   const double beta = options.beta;
+  const PinPath* path = options.path;
   predicted_.resize(a.size());
   if (!path) {
     for (size_t i = 0; i < a.size(); ++i) predicted_[i] = a[i] + beta * b[i];
@@ -48,9 +49,9 @@ void ImplicitStage::predict(const StepTools& tools, const PinPath* path, const S
   }
 }
 
-MinimizeReport ImplicitStage::minimize(const StepTools& tools, const StageOptions& options, std::span<const double> q,
-                                       std::span<const double> v, StepSolve& solve) {
-  q_.assign(q.begin(), q.end());
+MinimizeReport ImplicitStage::minimize(const StepTools& tools, const StageOptions& options,
+                                       const StageUnknowns& unknowns, StepSolve& solve) {
+  q_.assign(unknowns.q.begin(), unknowns.q.end());
   MinimizeOptions minimize = options.once ? one_iteration(tools.options) : tools.options;
   minimize.h = options.beta;
   minimize.stop = tools.options.stop.at_fraction(options.part);
@@ -64,8 +65,8 @@ MinimizeReport ImplicitStage::minimize(const StepTools& tools, const StageOption
     return report;
   }
   MinimizeReport lead;
-  const GuessContext known{.q = q,
-                           .qdot = v,
+  const GuessContext known{.q = unknowns.q,
+                           .qdot = unknowns.v,
                            .ahead = options.ahead,
                            .time = options.time,
                            .predicted = predicted_,
@@ -73,26 +74,28 @@ MinimizeReport ImplicitStage::minimize(const StepTools& tools, const StageOption
                            .tries_last_increment = options.tries_last_increment};
   const Guess guess = guesser_.guess(tools, tools.guess, known, q_, lead);
   solve.guess = guess.used;
-  MinimizeReport report = tools.minimizer.minimize(tools.E, tools.direction, q_, guess.value, minimize, tools.observe);
+  MinimizeReport report =
+      tools.minimizer.minimize(tools.E, tools.direction, {q_, guess.value}, minimize, tools.observe);
   note_end(tools.E, report, solve);
   add_work(lead, report);
   return report;
 }
 
-bool ImplicitStage::solve(const StepTools& tools, const PinPath* path, const StageOptions& options, std::span<double> q,
-                          std::span<double> v, std::span<double> acc, StepSolve& solve, StepForces& forces) {
+bool ImplicitStage::solve(const StepTools& tools, const StageOptions& options, const StageUnknowns& unknowns,
+                          StepSolve& solve, StepForces& forces) {
   const double beta = options.beta;
-  predict(tools, path, options);
+  const auto& [q, v, acc] = unknowns;
+  predict(tools, options);
   const StepContext context{a, beta, options.time, tools.start.q};
   tools.E.set_potential_step(context);
   tools.E.set_damping_step(context);
   tools.E.begin_step(predicted_, 1, beta * beta);
-  if (!solve.add(minimize(tools, options, q, v, solve))) return false;
+  if (!solve.add(minimize(tools, options, unknowns, solve))) return false;
 
   std::copy(q_.begin(), q_.end(), q.begin());
   for (size_t i = 0; i < q.size(); ++i) v[i] = (q[i] - a[i]) / beta;
   for (size_t i = 0; i < q.size(); ++i) acc[i] = (v[i] - b[i]) / beta;
-  if (path) {  // avoids the round-off of the two differences
+  if (const PinPath* path = options.path) {  // avoids the round-off of the two differences
     path->place_velocity(options.time, v);
     path->place_acceleration(options.time, acc);
   }

@@ -19,21 +19,26 @@ struct StageOptions {
   bool tries_last_increment = true;  // see GuessContext
   double part = 1;                   // fraction of the step's time budget at which this stage ends
   bool once = false;                 // one Newton iteration from the known positions, without line search
+  const PinPath* path = nullptr;     // velocities and accelerations of pinned vertices; null: differences of positions
+};
+
+struct StageUnknowns {
+  std::span<double> q, v, acc;  // [m], [m/s], [m/s^2]
 };
 
 class ImplicitStage {
  public:
   std::vector<double> a, b;  // set before solve() [m, m/s]
 
-  // On entry `q` and `v` hold the latest positions and velocities. Writes q*, v* and acc, or returns false and leaves q
-  // and v. With a path, pinned vertices take their velocities and accelerations from it.
-  bool solve(const StepTools& tools, const PinPath* path, const StageOptions& options, std::span<double> q,
-             std::span<double> v, std::span<double> acc, StepSolve& solve, StepForces& forces);
+  // On entry q and v hold the latest positions and velocities. Writes q*, v* and acc, or returns false and leaves q and
+  // v.
+  bool solve(const StepTools& tools, const StageOptions& options, const StageUnknowns& unknowns, StepSolve& solve,
+             StepForces& forces);
 
  private:
-  void predict(const StepTools& tools, const PinPath* path, const StageOptions& options);
-  MinimizeReport minimize(const StepTools& tools, const StageOptions& options, std::span<const double> q,
-                          std::span<const double> v, StepSolve& solve);
+  void predict(const StepTools& tools, const StageOptions& options);
+  MinimizeReport minimize(const StepTools& tools, const StageOptions& options, const StageUnknowns& unknowns,
+                          StepSolve& solve);
 
   Guesser guesser_;
   std::vector<double> predicted_, q_;  // q~, the minimizer's positions

@@ -23,8 +23,6 @@ constexpr double kLeastStrain = 1e-9;
 // one whose tets are smaller by less to 1e-2, since forces grow with areas.
 constexpr double kSoft = 100;
 
-double squared(const Vec3d& v) { return dot(v, v); }
-
 BlockPattern pattern_of(const Model& model) {
   Couplings couplings;
   model.mass->add_couplings(couplings);
@@ -56,7 +54,7 @@ std::vector<double> longest_edge(const TetMesh& mesh) {
   for (const Tet& tet : mesh.tets) {
     double square = 0;
     for (int a = 0; a < 4; ++a)
-      for (int b = 0; b < a; ++b) square = std::max(square, squared(mesh.rest[tet[a]] - mesh.rest[tet[b]]));
+      for (int b = 0; b < a; ++b) square = std::max(square, squared_norm(mesh.rest[tet[a]] - mesh.rest[tet[b]]));
     for (const int v : tet) longest[v] = std::max(longest[v], std::sqrt(square));
   }
   return longest;
@@ -241,7 +239,7 @@ void IncrementalPotential::add_part_noise(std::span<const double> q, double weig
 void IncrementalPotential::add_part_norms(std::span<const double> v, bool is_exact) {
   if (parts_.empty()) return;
   for (Part& part : parts_) part.sum = 0;
-  for (int i = 0; i < pattern_.rows(); ++i) parts_[part_of_[i]].sum += squared(pins_.free_part(i, point(v, i)));
+  for (int i = 0; i < pattern_.rows(); ++i) parts_[part_of_[i]].sum += squared_norm(pins_.free_part(i, point(v, i)));
   for (Part& part : parts_) {
     part.scale += std::sqrt(part.sum);
     if (is_exact) part.exact += std::sqrt(part.sum);
@@ -251,7 +249,7 @@ void IncrementalPotential::add_part_norms(std::span<const double> v, bool is_exa
 void IncrementalPotential::measure_parts(std::span<const double> g, std::span<GradientPart> parts) {
   if (parts_.empty()) return whole_.measure_parts(g, parts);
   for (Part& part : parts_) part.sum = 0;
-  for (int i = 0; i < pattern_.rows(); ++i) parts_[part_of_[i]].sum += squared(point(g, i));
+  for (int i = 0; i < pattern_.rows(); ++i) parts_[part_of_[i]].sum += squared_norm(point(g, i));
   for (size_t k = 0; k < parts_.size(); ++k) parts[k] = {std::sqrt(parts_[k].sum), parts_[k].scale};
 }
 
@@ -377,7 +375,7 @@ void IncrementalPotential::measure_parts(const TetMesh& mesh, std::span<const do
   for (int v = 0; v < mesh.vertex_count(); ++v) {
     Part& part = parts_[part_of_[v]];
     const Vec3d offset = mesh.rest[v] - (1.0 / size[part_of_[v]]) * center[part_of_[v]];
-    part.radius = std::max(part.radius, std::sqrt(squared(offset)));
+    part.radius = std::max(part.radius, norm(offset));
     part.rest_stiffness = std::hypot(part.rest_stiffness, std::sqrt(squared_norm(H_.block[pattern_.diagonal(v)])));
     part.mass_norm = std::hypot(part.mass_norm, std::sqrt(3.0) * model_.mass->vertex_mass()[v]);
     for (int r = 0; r < 3; ++r) growth[3 * v + r] = offset[r];

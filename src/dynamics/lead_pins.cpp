@@ -58,7 +58,7 @@ Evaluation lead_pins(const StepTools& tools, double time, std::span<const double
       return there;
     }
     const MinimizeReport spent =
-        tools.minimizer.minimize(tools.E, tools.direction, reached, there, rough(tools.options), tools.observe);
+        tools.minimizer.minimize(tools.E, tools.direction, {reached, there}, rough(tools.options), tools.observe);
     add_work(spent, work);
     if (spent.status == Status::interrupted) break;
     part *= 2;

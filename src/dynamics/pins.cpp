@@ -31,7 +31,7 @@ Mat3d pseudo_inverse(const Mat3d& M, std::span<const Vec3d> directions) {
   if (squared_norm(M * M - M) < 1e-28) return M;  // orthonormal directions; exact along axes
   if (directions.size() == 3) return inverse(M);
   Vec3d k = cross(directions[0], directions[1]);
-  k = (1 / std::sqrt(dot(k, k))) * k;
+  k = (1 / norm(k)) * k;
   const Mat3d K = projector({&k, 1});
   return inverse(M + K) - K;
 }

@@ -19,8 +19,6 @@ using namespace testing_models;
 
 const Vec3d kX{{1, 0, 0}}, kY{{0, 1, 0}}, kZ{{0, 0, 1}};
 
-double norm(const Vec3d& v) { return std::sqrt(dot(v, v)); }
-
 // Turns (1, 0, 0) into (2, 2, 1) / 3 and so on.
 const Mat3d kTurn =
     from_columns<double>({{2. / 3, 2. / 3, 1. / 3}}, {{-2. / 3, 1. / 3, 2. / 3}}, {{1. / 3, -2. / 3, 2. / 3}});

@@ -39,7 +39,7 @@ class Body {
   }
 
   RigidMotion described(const Twist& m, int body) const {
-    const double turn = std::sqrt(dot(m.w, m.w));
+    const double turn = norm(m.w);
     if (turn < 1e-6) return {body, upright(m.t)};
     return {body, upright(m.w), true, rounded(center_ + (size_ / (turn * turn)) * cross(m.w, m.t), 1e-9 * size_)};
   }
@@ -58,7 +58,7 @@ class Body {
     double most = 0;
     for (int r = 0; r < 3; ++r)
       if (std::abs(d[r]) > std::abs(most) * (1 + 1e-6)) most = d[r];
-    return rounded(((most < 0 ? -1 : 1) / std::sqrt(dot(d, d))) * d, 1e-6);
+    return rounded(((most < 0 ? -1 : 1) / norm(d)) * d, 1e-6);
   }
 
   // Replaces components within round-off of zero by +0.

@@ -84,8 +84,9 @@ class RungeKutta : public Integrator {
                                .time = time_of(tools, i),
                                .weight = t_.b[i],
                                .ahead = tools.h * (c_[i] - (i > 0 ? c_[i - 1] : 0)),
-                               .part = part_of_budget(i)};
-    return stage_.solve(tools, &path_, options, q_[i], v_[i], acc_[i], solve, forces);
+                               .part = part_of_budget(i),
+                               .path = &path_};
+    return stage_.solve(tools, options, {q_[i], v_[i], acc_[i]}, solve, forces);
   }
 
   bool evaluate(const StepTools& tools, int i, StepSolve& solve, StepForces& forces) {
@@ -97,8 +98,8 @@ class RungeKutta : public Integrator {
     path_.place_acceleration(time, acc_[i]);
     MinimizeReport report;
     report.iterations = facts().is_implicit ? 0 : 1;
-    const bool solved =
-        force_.solve(tools, time, q_[i], v_[i], DampingDifference::central, t_.b[i], acc_[i], forces, report);
+    const MotionPoint at{time, q_[i], v_[i], DampingDifference::central, t_.b[i]};
+    const bool solved = force_.solve(tools, at, acc_[i], forces, report);
     forces.add_round_off(tools.E, t_.b[i] * force_.noise());
     const bool finite = std::all_of(acc_[i].begin(), acc_[i].end(), [](double x) { return std::isfinite(x); });
     report.status = finite && solved ? Status::converged : Status::undefined;

@@ -8,6 +8,7 @@
 
 #include "dynamics/incremental_potential.h"
 #include "linalg/linear_solver.h"
+#include "math/vectors.h"
 
 namespace aspic {
 namespace {
@@ -15,14 +16,6 @@ namespace {
 constexpr int kIterations = 100;
 constexpr double kSettled = 1e-3;             // relative change of h^2 between two iterations
 constexpr double kPowerStepTolerance = 1e-6;  // of M
-
-double product(std::span<const double> a, std::span<const double> b) {
-  double sum = 0;
-  for (size_t i = 0; i < a.size(); ++i) sum += a[i] * b[i];
-  return sum;
-}
-
-double norm(std::span<const double> v) { return std::sqrt(product(v, v)); }
 
 int largest_vertex(std::span<const double> v) {
   int largest = -1;
@@ -73,8 +66,8 @@ class PowerIteration {
     M_.multiply(u_, Mu_);
     K_.multiply(u_, Ku_);
     C_.multiply(u_, Cu_);
-    const double m = product(u_, Mu_);
-    return {product(u_, Cu_) / m, product(u_, Ku_) / m};
+    const double m = dot(u_, Mu_);
+    return {dot(u_, Cu_) / m, dot(u_, Ku_) / m};
   }
   void multiply(double stiffness, double damping) {
     for (size_t j = 0; j < u_.size(); ++j) Ku_[j] = stiffness * Ku_[j] + damping * Cu_[j];

@@ -20,7 +20,7 @@ double mean_edge(const TetMesh& mesh) {
     for (size_t i = 0; i < 4; ++i)
       for (size_t j = 0; j < i; ++j) {
         const Vec3d e = mesh.rest[t[i]] - mesh.rest[t[j]];
-        sum += std::sqrt(dot(e, e));
+        sum += norm(e);
       }
   return mesh.tets.empty() ? 1 : sum / (6 * static_cast<double>(mesh.tets.size()));
 }

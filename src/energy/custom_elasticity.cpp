@@ -10,6 +10,7 @@ struct CustomMaterial {
   using Params = MaterialParametersOver<T>;
 
   std::shared_ptr<const CustomDensity> density;
+  int extra;  // number of its entries in MaterialParameters::extra
 
   template <class T>
   static Params<T> params(const Params<T>& p) {
@@ -27,8 +28,8 @@ struct CustomMaterial {
 
 ElasticityMaker custom_material(std::string name, int extra, std::shared_ptr<const CustomDensity> density) {
   return [=](const TetMesh& mesh, int first, std::span<const MaterialParameters> parameters) {
-    return std::make_unique<MaterialTerm<CustomMaterial>>(name, mesh, first, parameters, extra,
-                                                          CustomMaterial{density});
+    return std::make_unique<MaterialTerm<CustomMaterial>>(name, mesh, first, parameters,
+                                                          CustomMaterial{density, extra});
   };
 }
 

@@ -82,7 +82,7 @@ void add_traction(const std::vector<Vec3d>& X, const Triangle& triangle, const V
                   std::span<double> force) {
   const auto [a, b, c] = triangle;
   const Vec3d n = cross(X[b] - X[a], X[c] - X[a]);
-  const double area = std::sqrt(dot(n, n)) / 2;
+  const double area = norm(n) / 2;
   for (const int v : triangle)
     for (int r = 0; r < 3; ++r) force[3 * v + r] += area / 3 * traction[r];
 }

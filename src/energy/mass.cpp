@@ -132,7 +132,7 @@ void MassMatrix::assign_to(double scale, BlockSparse& H) const {
 }
 
 void add_density_gradient(const TetMesh& mesh, MassKind kind, std::span<const double> w, std::span<const double> y,
-                          double scale, std::span<double> gradient) {
+                          std::span<double> gradient) {
   parallel_chunks(mesh.tet_count(), [&](int first, int last) {
     for (int t = first; t < last; ++t) {
       Vec3d w_sum{}, y_sum{};
@@ -143,7 +143,7 @@ void add_density_gradient(const TetMesh& mesh, MassKind kind, std::span<const do
           own += w[3 * v + r] * y[3 * v + r];
         }
       const double product = kind == MassKind::lumped ? own / 4 : (dot(w_sum, y_sum) + own) / 20;
-      gradient[t] += scale * volume(mesh, t) * product;
+      gradient[t] += volume(mesh, t) * product;
     }
   });
 }

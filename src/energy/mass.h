@@ -40,8 +40,8 @@ class MassMatrix {
   std::vector<int64_t> target_slot_;  // of the columns up to the diagonal
 };
 
-// gradient += scale d(w' M y)/d(density), one number per tet; w and y hold 3 numbers per vertex.
+// gradient += d(w' M y)/d(density), one number per tet; w and y hold 3 numbers per vertex.
 void add_density_gradient(const TetMesh& mesh, MassKind kind, std::span<const double> w, std::span<const double> y,
-                          double scale, std::span<double> gradient);
+                          std::span<double> gradient);
 
 }  // namespace aspic

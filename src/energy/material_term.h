@@ -22,12 +22,12 @@ class MaterialTerm : public TetTerm<M, TetElasticity> {
   using Term::batch_count, Term::batches_, Term::F, Term::for_each_batch, Term::material_, Term::params_, Term::reduce;
 
  public:
-  // Tets [first, first + parameters.size()) of the mesh. Of MaterialParameters::extra, the material has `extra`.
+  // Tets [first, first + parameters.size()) of the mesh.
   MaterialTerm(std::string name, const TetMesh& mesh, int first, std::span<const MaterialParameters> parameters,
-               int extra, M material = {})
+               M material = {})
       : Term(std::move(name), mesh, first, own_params(parameters), std::move(material)),
         first_(first),
-        parameter_count_(2 + extra),
+        parameter_count_(2 + extra_count(Term::material_)),
         parameters_(parameters.begin(), parameters.end()) {}
 
   double min_det_F(Positions x) const override {
@@ -80,18 +80,17 @@ class MaterialTerm : public TetTerm<M, TetElasticity> {
   }
 
   void add_hessian_derivatives(Positions x, std::span<const double> u, std::span<const double> w,
-                               Definiteness definiteness, double scale, std::span<double> dx,
-                               std::span<double> gradient) const override {
+                               Definiteness definiteness, const HessianDerivatives& out) const override {
     for_each_batch([&](int i) {
       const TetBatch& tets = batches_[i];
-      const Pack weight = Pack(scale) * tets.volume;
+      const Pack weight = Pack(out.scale) * tets.volume;
       const Mat3<Pack> F_i = F(i, x);
       // As a sum of products along one direction each: H itself has one, which stands on both sides.
       const auto add = [&](const Pack& factor, const Mat3<Pack>& U, const Mat3<Pack>& W) {
-        if (!dx.empty()) tets.scatter_gradient(second_stress_rate(i, F_i, U, W), factor * weight, dx);
-        for (int k = 0; k < (gradient.empty() ? 0 : parameter_count_); ++k) {
+        if (!out.x.empty()) tets.scatter_gradient(second_stress_rate(i, F_i, U, W), factor * weight, out.x);
+        for (int k = 0; k < (out.parameters.empty() ? 0 : parameter_count_); ++k) {
           const Pack sum = factor * weight * inner(U, second_parameter_rate(i, F_i, W, k));
-          for (int l = 0; l < tets.count; ++l) gradient[entry(i, l, k)] += sum[l];
+          for (int l = 0; l < tets.count; ++l) out.parameters[entry(i, l, k)] += sum[l];
         }
       };
       const Mat3<Pack> U = F(i, u), W = F(i, w);
@@ -110,6 +109,14 @@ class MaterialTerm : public TetTerm<M, TetElasticity> {
   }
 
  private:
+  // Number of entries of MaterialParameters::extra that the material uses.
+  static int extra_count(const M& material) {
+    if constexpr (requires { M::info(); })
+      return static_cast<int>(M::info().extra.size());
+    else
+      return material.extra;
+  }
+
   static std::vector<typename Term::template Params<double>> own_params(
       std::span<const MaterialParameters> parameters) {
     std::vector<typename Term::template Params<double>> own;
@@ -178,8 +185,7 @@ class MaterialTerm : public TetTerm<M, TetElasticity> {
 template <class M>
 std::unique_ptr<TetElasticity> make_tet_term(const TetMesh& mesh, int first,
                                              std::span<const MaterialParameters> parameters) {
-  const int extra = static_cast<int>(M::info().extra.size());
-  return std::make_unique<MaterialTerm<M>>("elasticity", mesh, first, parameters, extra);
+  return std::make_unique<MaterialTerm<M>>("elasticity", mesh, first, parameters);
 }
 
 }  // namespace aspic

@@ -149,19 +149,6 @@ TEST(ParameterDerivatives, BelongToTheParametersThatWereSet) {
   }
 }
 
-// u . H w of the assembled Hessian, with as many tets projected as there are.
-double hessian_product(const TwoBodies& bodies, TetElasticity& V, const BlockPattern& pattern,
-                       const std::vector<double>& x, const std::vector<double>& u, const std::vector<double>& w,
-                       Definiteness definiteness, int* projected = nullptr) {
-  BlockSparse H(pattern);
-  const int count = V.add_hessian(x, 1, {definiteness}, H);
-  if (projected) *projected = count;
-  std::vector<double> Hw(w.size());
-  H.multiply(w, Hw);
-  EXPECT_EQ(x.size(), bodies.x.size());
-  return dot(u, Hw);
-}
-
 void expect_hessian_derivatives(const MaterialInfo& info, Definiteness definiteness) {
   TwoBodies bodies(info);
   for (size_t v = 0; v < bodies.mesh.rest.size(); ++v) bodies.x[3 * v] *= 0.75;  // so that some tets lose convexity
@@ -175,18 +162,25 @@ void expect_hessian_derivatives(const MaterialInfo& info, Definiteness definiten
   const std::vector<double> direction = numbers(bodies.x.size());
   std::vector<double> change = numbers(bodies.parameters.size() * bodies.count());
   std::vector<double> dx(bodies.x.size()), dtheta(change.size());
-  V->add_hessian_derivatives(bodies.x, u, w, definiteness, 1, dx, {});
-  V->add_hessian_derivatives(bodies.x, u, w, definiteness, 1, {}, dtheta);
+  V->add_hessian_derivatives(bodies.x, u, w, definiteness, {.x = dx});
+  V->add_hessian_derivatives(bodies.x, u, w, definiteness, {.parameters = dtheta});
 
   constexpr double kStep = 1e-7;  // so short that no eigenvalue passes the one at which it is raised
   const auto difference = [&](const auto& at) {
     return (8 * (at(kStep) - at(-kStep)) - (at(2 * kStep) - at(-2 * kStep))) / (12 * kStep);
   };
   int projected = 0;
+  const auto uHw = [&](const std::vector<double>& x) {
+    BlockSparse H(pattern);
+    projected = V->add_hessian(x, 1, {definiteness}, H);
+    std::vector<double> Hw(w.size());
+    H.multiply(w, Hw);
+    return dot(u, Hw);
+  };
   const double by_x = difference([&](double eps) {
     std::vector<double> x = bodies.x;
     for (size_t i = 0; i < x.size(); ++i) x[i] += eps * direction[i];
-    return hessian_product(bodies, *V, pattern, x, u, w, definiteness, &projected);
+    return uHw(x);
   });
   if (definiteness != Definiteness::exact && info.name != "linear") {
     EXPECT_GT(projected, 0) << info.name;
@@ -194,7 +188,7 @@ void expect_hessian_derivatives(const MaterialInfo& info, Definiteness definiten
   EXPECT_NEAR(dot(dx, direction), by_x, 1e-6 * std::max(1.0, std::abs(by_x))) << info.name;
   const double by_theta = difference([&](double eps) {
     V->set_parameters(bodies.changed(change, eps));
-    return hessian_product(bodies, *V, pattern, bodies.x, u, w, definiteness);
+    return uHw(bodies.x);
   });
   EXPECT_NEAR(dot(dtheta, change), by_theta, 1e-6 * std::max(1.0, std::abs(by_theta))) << info.name;
 }

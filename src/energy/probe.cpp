@@ -23,7 +23,6 @@ constexpr int kMostCutsAfar = 64;    // of an edge of a triangle that only a tip
 using Corners = std::array<Vec3d, 3>;
 
 std::string text(double value) { return (std::ostringstream() << value).str(); }
-double norm(const Vec3d& v) { return std::sqrt(dot(v, v)); }
 Corners corners_of(Positions x, const Triangle& t) { return {point(x, t[0]), point(x, t[1]), point(x, t[2])}; }
 Vec3d combine(const Corners& x, const Barycentric& b) { return b[0] * x[0] + b[1] * x[1] + b[2] * x[2]; }
 Vec3d area_vector(const Corners& x) { return 0.5 * cross(x[1] - x[0], x[2] - x[0]); }

@@ -2,6 +2,7 @@
 
 #include "base/check.h"
 #include "base/parallel.h"
+#include "math/vectors.h"
 
 namespace aspic {
 namespace {
@@ -87,20 +88,12 @@ class RayleighDamping : public Damping {
       for (size_t i = 0; i < x.size(); ++i) gradients.start[i] -= s * product_of[i];
     }
     if (stiffness_factor_ == 0) return;
-    elasticity_->add_hessian_derivatives(start.shape, w, u, kDefiniteness, s * stiffness_factor_, gradients.start,
-                                         gradients.elastic);
+    elasticity_->add_hessian_derivatives(start.shape, w, u, kDefiniteness,
+                                         {s * stiffness_factor_, gradients.start, gradients.elastic});
   }
 
  private:
   static constexpr Definiteness kDefiniteness = Definiteness::clamped;  // of K
-
-  static double dot(std::span<const double> a, std::span<const double> b) {
-    return parallel_sum(static_cast<int>(a.size()), [&](int first, int last) {
-      double sum = 0;
-      for (int i = first; i < last; ++i) sum += a[i] * b[i];
-      return sum;
-    });
-  }
 
   struct Start : Context {  // of the step
     explicit Start(const BlockPattern& pattern) : C(pattern) {}

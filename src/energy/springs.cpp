@@ -145,7 +145,7 @@ class VertexSprings : public Energy {
 
   static double length(Positions x, const Spring& s) {
     const Vec3d u = point(x, s.a) - point(x, s.b);
-    return std::sqrt(dot(u, u));
+    return norm(u);
   }
 
   std::string name_;
@@ -173,7 +173,7 @@ std::vector<Spring> edge_springs(const TetMesh& mesh, int first, int count, doub
   std::vector<Spring> springs;
   for (const auto& [a, b] : edges) {
     const Vec3d u = mesh.rest[a] - mesh.rest[b];
-    springs.push_back({a, b, std::sqrt(dot(u, u)), stiffness});
+    springs.push_back({a, b, norm(u), stiffness});
   }
   return springs;
 }

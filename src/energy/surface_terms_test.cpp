@@ -53,8 +53,6 @@ std::vector<double> shaken(double amount, unsigned seed = 3) {
   return x;
 }
 
-double norm(const Vec3d& v) { return std::sqrt(dot(v, v)); }
-
 // Points up at the top face z = 0.6, from inside the rest shape: 0.05 deep.
 const TipPose kTouch = {.center = {{0.45, 0.35, 0.6 + 0.2}}, .axis = {{0, 0, -1}}, .rotation = {}};
 const TipPose kFlatTouch = {.center = {{0.45, 0.35, 0.6}}, .axis = {{0, 0, -2}}, .rotation = {}};

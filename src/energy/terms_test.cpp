@@ -260,7 +260,7 @@ TEST(LinearLoad, APressureOnAClosedSurfaceHasNoResultant) {
   for (const Triangle& triangle : boundary_triangles(small_mesh(), 0, small_mesh().tet_count())) {
     const auto& X = small_mesh().rest;
     const Vec3d n = cross(X[triangle[1]] - X[triangle[0]], X[triangle[2]] - X[triangle[0]]);
-    add_traction(X, triangle, (-1 / std::sqrt(dot(n, n))) * n, force);
+    add_traction(X, triangle, (-1 / norm(n)) * n, force);
   }
   double sum[3] = {0, 0, 0};
   for (size_t i = 0; i < force.size(); ++i) sum[i % 3] += force[i];

@@ -20,6 +20,13 @@ struct TetFields {
   std::vector<double> von_mises;       // [Pa]
 };
 
+// Sums of derivatives; an empty span is skipped.
+struct HessianDerivatives {
+  double scale = 1;
+  std::span<double> x;           // 3 numbers per vertex
+  std::span<double> parameters;  // TetElasticity::parameter_count() numbers per tet
+};
+
 class TetElasticity : public SteadyEnergy {
  public:
   virtual double min_det_F(Positions x) const = 0;                  // smallest det F of all tets [1]
@@ -36,11 +43,9 @@ class TetElasticity : public SteadyEnergy {
                                    std::span<double> g) const = 0;
   virtual void add_parameter_gradient(Positions x, std::span<const double> w, double scale,
                                       std::span<double> gradient) const = 0;
-  // Derivatives of u . H(x) w, where H is the Hessian of add_hessian: dx += scale d/dx, gradient += scale d/dtheta. An
-  // empty span is skipped.
+  // Adds scale times the derivatives of u . H(x) w with respect to x and theta, where H is the Hessian of add_hessian.
   virtual void add_hessian_derivatives(Positions x, std::span<const double> u, std::span<const double> w,
-                                       Definiteness definiteness, double scale, std::span<double> dx,
-                                       std::span<double> gradient) const = 0;
+                                       Definiteness definiteness, const HessianDerivatives& out) const = 0;
 };
 
 // Makes the elastic energy of tets [first, first + parameters.size()) of the mesh, which need not outlive it. Throws

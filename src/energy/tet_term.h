@@ -81,7 +81,7 @@ class TetTerm : public Base {
     projected.assign(batches_.size(), 0);
     for_each_batch([&](int i) {
       if (i + 1 < batch_count()) batches_[i + 1].prefetch_blocks(H);
-      projected[i] = add_batch_hessian(i, x, p[i], Pack(scale), projection, H);
+      projected[i] = add_batch_hessian({i, p[i], Pack(scale) * batches_[i].volume}, x, projection, H);
     });
     return std::accumulate(projected.begin(), projected.end(), 0);
   }
@@ -152,11 +152,16 @@ class TetTerm : public Base {
     }
   }
 
+  struct WeightedBatch {
+    int i;
+    const Params<Pack>& params;
+    Pack weight;
+  };
+
   // Returns how many lanes were projected.
-  char add_batch_hessian(int i, Positions x, const Params<Pack>& p, Pack scale, const Projection& projection,
-                         BlockSparse& H) const {
+  char add_batch_hessian(const WeightedBatch& batch, Positions x, const Projection& projection, BlockSparse& H) const {
+    const auto& [i, p, weight] = batch;
     const TetBatch& tets = batches_[i];
-    const Pack weight = scale * tets.volume;
     if constexpr (requires { typename M::Law; }) {
       if (projection.kind == Definiteness::exact) {
         const Mat3<Pack> Ds = tets.edges(x);

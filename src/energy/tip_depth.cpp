@@ -13,7 +13,7 @@ struct Polar {
   Vec3d direction;
 };
 Polar polar(const Vec3d& v) {
-  const double length = std::sqrt(dot(v, v));
+  const double length = norm(v);
   return {length, length > 0 ? (1 / length) * v : Vec3d{}};
 }
 

@@ -115,7 +115,7 @@ MeshContent parse_binary(ByteCursor bytes, int count) {
 Vec3d normal(const TriMesh& mesh, const Triangle& triangle) {
   const Vec3d& a = mesh.vertices[triangle[0]];
   const Vec3d n = cross(mesh.vertices[triangle[1]] - a, mesh.vertices[triangle[2]] - a);
-  const double length = std::sqrt(dot(n, n));
+  const double length = norm(n);
   return length > 0 && std::isfinite(length) ? (1 / length) * n : Vec3d{{0, 0, 0}};
 }
 

@@ -21,11 +21,14 @@ struct Field {
   FieldType type = FieldType::float64;
 };
 
-struct Vtu {
+struct VtuFields {
+  std::vector<Field> point_fields = {}, cell_fields = {};
+  std::vector<Field> file_fields = {};  // <FieldData> of any length; text is skipped
+};
+
+struct Vtu : VtuFields {
   TetMesh mesh;       // points are rest positions; region is set if the file has a cell field "region"
   TriMesh triangles;  // triangle cells if there are no tets
-  std::vector<Field> point_fields, cell_fields;
-  std::vector<Field> file_fields;  // <FieldData> of any length; text is skipped
 };
 
 // Reads ascii, inline base64 and appended data, raw or zlib-compressed. Splits quads and skips lines and points. Throws
@@ -37,8 +40,7 @@ std::vector<double> read_vtu_points(const std::filesystem::path& path);
 
 // Writes inline base64, zlib-compressed, with points in double precision. The output is reproducible.
 void write_vtu(const std::filesystem::path& path, std::span<const double> points, const std::vector<Tet>& tets,
-               const std::vector<Field>& point_fields, const std::vector<Field>& cell_fields,
-               const std::vector<Field>& file_fields = {});
+               const VtuFields& fields = {});
 
 // Writes the index of a time series: (time [s], file name relative to the index).
 void write_pvd(const std::filesystem::path& path, const std::vector<std::pair<double, std::string>>& frames);

@@ -101,7 +101,7 @@ TEST_F(VtuFile, WrittenGridsReadBackExactly) {
   velocity.values[0] = std::numeric_limits<double>::infinity();
   velocity.values[1] = std::numeric_limits<double>::denorm_min();
 
-  write_vtu(path("a.vtu"), points, tets, {velocity}, {stress, region});
+  write_vtu(path("a.vtu"), points, tets, {{velocity}, {stress, region}});
   const Vtu vtu = read_vtu(path("a.vtu"));
 
   ASSERT_EQ(vtu.mesh.vertex_count(), kPoints);
@@ -120,14 +120,15 @@ TEST_F(VtuFile, WrittenGridsReadBackExactly) {
   EXPECT_EQ(vtu.cell_fields[1].type, FieldType::int32);
   EXPECT_EQ(vtu.mesh.region[6], 1);
 
-  write_vtu(path("b.vtu"), points, vtu.mesh.tets, vtu.point_fields, vtu.cell_fields);
+  write_vtu(path("b.vtu"), points, vtu.mesh.tets, {vtu.point_fields, vtu.cell_fields});
   EXPECT_EQ(read_file(path("a.vtu")), read_file(path("b.vtu")));
 }
 
 TEST_F(VtuFile, FileFieldsHaveIndependentLengths) {
   const std::vector<double> points = {0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1};
-  write_vtu(path("a.vtu"), points, {{0, 1, 2, 3}}, {}, {{"young", 1, {1e5}}},
-            {{"model <neo>", 1, {1}, FieldType::int32}, {"lines", 2, {1, 2, 3, 4, 5, 6}}});
+  write_vtu(path("a.vtu"), points, {{0, 1, 2, 3}},
+            {.cell_fields = {{"young", 1, {1e5}}},
+             .file_fields = {{"model <neo>", 1, {1}, FieldType::int32}, {"lines", 2, {1, 2, 3, 4, 5, 6}}}});
   const Vtu vtu = read_vtu(path("a.vtu"));
   ASSERT_EQ(vtu.file_fields.size(), 2u);
   EXPECT_EQ(vtu.file_fields[0].name, "model <neo>");
@@ -150,7 +151,7 @@ TEST_F(VtuFile, FileFieldsHaveIndependentLengths) {
 
 TEST_F(VtuFile, ThePointsAloneAreThoseOfTheWhole) {
   const std::vector<double> points = {0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1.0 / 3};
-  write_vtu(path("tet.vtu"), points, {{0, 1, 2, 3}}, {}, {});
+  write_vtu(path("tet.vtu"), points, {{0, 1, 2, 3}});
   EXPECT_EQ(read_vtu_points(path("tet.vtu")), points);
   std::string text = read_file(path("tet.vtu"));
   write_file(path("tet.vtu"), text.replace(text.find("NumberOfPoints=\"4\""), 18, "NumberOfPoints=\"9\""));
@@ -158,7 +159,7 @@ TEST_F(VtuFile, ThePointsAloneAreThoseOfTheWhole) {
 }
 
 TEST_F(VtuFile, EmptyGridsAreWrittenAndRead) {
-  write_vtu(path("a.vtu"), {}, {}, {}, {});
+  write_vtu(path("a.vtu"), {}, {});
   const Vtu vtu = read_vtu(path("a.vtu"));
   EXPECT_EQ(vtu.mesh.tet_count(), 0);
   EXPECT_EQ(vtu.triangles.vertex_count(), 0);
@@ -285,15 +286,15 @@ TEST_F(VtuFile, RefusesOtherCompressors) {
 }
 
 TEST_F(VtuFile, RefusesEveryTruncation) {
-  write_vtu(path("a.vtu"), std::vector<double>{0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1}, {{0, 1, 2, 3}}, {},
-            {{"region", 1, {3}, FieldType::int32}});
+  write_vtu(path("a.vtu"), std::vector<double>{0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1}, {{0, 1, 2, 3}},
+            {.cell_fields = {{"region", 1, {3}, FieldType::int32}}});
   const std::string whole = read_file(path("a.vtu"));
   for (size_t n = 0; n + 1 < whole.size(); ++n) EXPECT_NE(message(whole.substr(0, n)), "") << n;
 }
 
 // For any change of a byte the result is a mesh or an InvalidInput; anything else ends the test.
 TEST_F(VtuFile, SurvivesEveryChangedByte) {
-  write_vtu(path("a.vtu"), std::vector<double>{0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1}, {{0, 1, 2, 3}}, {}, {});
+  write_vtu(path("a.vtu"), std::vector<double>{0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1}, {{0, 1, 2, 3}});
   const std::string whole = read_file(path("a.vtu"));
   int refused = 0;
   for (size_t n = 0; n < whole.size(); ++n) {
@@ -326,7 +327,7 @@ TEST_F(VtuFile, RefusesCompressedSizesThatDoNotFit) {
 
 TEST_F(VtuFile, AMissingFileIsNamed) {
   EXPECT_THROW(read_vtu(path("missing.vtu")), InvalidInput);
-  EXPECT_THROW(write_vtu(path("no/such/folder.vtu"), {}, {}, {}, {}), InvalidInput);
+  EXPECT_THROW(write_vtu(path("no/such/folder.vtu"), {}, {}), InvalidInput);
 }
 
 }  // namespace

@@ -58,12 +58,17 @@ void append_compressed(std::string_view bytes, std::string& text) {
   append_base64(data, text);
 }
 
-void append_array(std::string_view type, std::string_view name, int components, std::string_view bytes,
-                  std::string& text, const std::string& attributes = "") {
-  text += "<DataArray type=\"" + std::string(type) + "\" Name=\"" + xml_escaped(name) + "\"";
+struct ArrayTag {
+  std::string_view type, name;
+  int components = 1;
+  std::string attributes = "";
+};
+
+void append_array(const ArrayTag& tag, std::string_view bytes, std::string& text) {
+  text += "<DataArray type=\"" + std::string(tag.type) + "\" Name=\"" + xml_escaped(tag.name) + "\"";
   // Omitted for scalars, which meshio would otherwise return as a column.
-  if (components != 1) text += " NumberOfComponents=\"" + std::to_string(components) + "\"";
-  text += attributes + " format=\"binary\">\n";
+  if (tag.components != 1) text += " NumberOfComponents=\"" + std::to_string(tag.components) + "\"";
+  text += tag.attributes + " format=\"binary\">\n";
   append_compressed(bytes, text);
   text += "\n</DataArray>\n";
 }
@@ -72,11 +77,11 @@ void append_field(const Field& field, const std::string& attributes, std::string
   const std::span<const double> values = field.values;
   switch (field.type) {
     case FieldType::float64:
-      return append_array("Float64", field.name, field.components, bytes_of<double>(values), text, attributes);
+      return append_array({"Float64", field.name, field.components, attributes}, bytes_of<double>(values), text);
     case FieldType::float32:
-      return append_array("Float32", field.name, field.components, bytes_of<float>(values), text, attributes);
+      return append_array({"Float32", field.name, field.components, attributes}, bytes_of<float>(values), text);
     case FieldType::int32:
-      return append_array("Int32", field.name, field.components, bytes_of<int32_t>(values), text, attributes);
+      return append_array({"Int32", field.name, field.components, attributes}, bytes_of<int32_t>(values), text);
   }
 }
 
@@ -102,31 +107,30 @@ void append_cells(const std::vector<Tet>& tets, std::string& text) {
   const std::span<const int> corners(tets.empty() ? nullptr : tets.front().data(), 4 * tets.size());
   std::vector<int64_t> offsets(tets.size());
   for (size_t i = 0; i < tets.size(); ++i) offsets[i] = 4 * static_cast<int64_t>(i + 1);
-  append_array("Int32", "connectivity", 1, bytes_of<int32_t>(corners), text);
-  append_array("Int64", "offsets", 1, bytes_of<int64_t>(std::span<const int64_t>(offsets)), text);
-  append_array("UInt8", "types", 1, std::string(tets.size(), static_cast<char>(kVtkTet)), text);
+  append_array({"Int32", "connectivity"}, bytes_of<int32_t>(corners), text);
+  append_array({"Int64", "offsets"}, bytes_of<int64_t>(std::span<const int64_t>(offsets)), text);
+  append_array({"UInt8", "types"}, std::string(tets.size(), static_cast<char>(kVtkTet)), text);
 }
 
 }  // namespace
 
 void write_vtu(const std::filesystem::path& path, std::span<const double> points, const std::vector<Tet>& tets,
-               const std::vector<Field>& point_fields, const std::vector<Field>& cell_fields,
-               const std::vector<Field>& file_fields) {
+               const VtuFields& fields) {
   const size_t point_count = points.size() / 3;
   std::string text =
       "<?xml version=\"1.0\"?>\n"
       "<VTKFile type=\"UnstructuredGrid\" version=\"1.0\" byte_order=\"LittleEndian\" header_type=\"UInt32\" "
       "compressor=\"vtkZLibDataCompressor\">\n<UnstructuredGrid>\n";
-  append_file_fields(file_fields, text);
+  append_file_fields(fields.file_fields, text);
   text += "<Piece NumberOfPoints=\"" + std::to_string(point_count) + "\" NumberOfCells=\"" +
           std::to_string(tets.size()) + "\">\n<Points>\n";
-  append_array("Float64", "Points", 3, bytes_of<double>(points), text);
+  append_array({"Float64", "Points", 3}, bytes_of<double>(points), text);
   text += "</Points>\n<Cells>\n";
   append_cells(tets, text);
   text += "</Cells>\n<PointData>\n";
-  append_fields(point_fields, point_count, text);
+  append_fields(fields.point_fields, point_count, text);
   text += "</PointData>\n<CellData>\n";
-  append_fields(cell_fields, tets.size(), text);
+  append_fields(fields.cell_fields, tets.size(), text);
   text += "</CellData>\n</Piece>\n</UnstructuredGrid>\n</VTKFile>\n";
   write_file(path, text);
 }

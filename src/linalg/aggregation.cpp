@@ -54,7 +54,7 @@ class Aggregation {
     for (const int v : part)
       for (const int w : in_.graph.around(v)) {
         const Vec3d e = in_.position[w] - in_.position[v];
-        sum += std::sqrt(dot(e, e));
+        sum += norm(e);
         ++count;
       }
     return count > 0 ? sum / static_cast<double>(count) : 0;

@@ -175,8 +175,8 @@ bool Cholesky::factorize_supernode(const BlockSparse& H, int s, DenseCholesky& k
   if (!kernels.factorize(f.panel, static_cast<int>(f.rows), columns, f.rows)) return false;
   if (!pivots_are_sound(H, s, f.panel)) return false;
   if (below == 0) return true;
-  kernels.put_outer_product(DenseCholesky::Product::set, f.panel + columns, f.rows, columns, f.update_matrix(), below,
-                            below);
+  const ConstMatrix L21{f.panel + columns, f.rows, below, columns};
+  kernels.put_outer_product(DenseCholesky::Product::set, L21, f.update_matrix(), below);
   for_each_strip(f.width, f.width + f.below, [&](int first, int last) { add_children(s, f, first, last); });
   return true;
 }

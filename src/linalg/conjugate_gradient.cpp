@@ -5,6 +5,7 @@
 
 #include "base/check.h"
 #include "base/parallel.h"
+#include "math/vectors.h"
 
 namespace aspic {
 namespace {
@@ -12,14 +13,6 @@ namespace {
 // Down to here the recurrence for the residual is as good as measuring it.
 constexpr double kTrusted = 1e-6;
 constexpr double kTolerable = 1.3;
-
-double dot(std::span<const double> a, std::span<const double> b) {
-  return parallel_sum(static_cast<int>(a.size()), [&](int first, int last) {
-    double sum = 0;
-    for (int i = first; i < last; ++i) sum += a[i] * b[i];
-    return sum;
-  });
-}
 
 }  // namespace
 
@@ -53,7 +46,7 @@ SolveReport ConjugateGradient::solve(std::span<const double> b, std::span<double
   SolveReport report;
   std::fill(x.begin(), x.end(), 0.0);
   std::copy(b.begin(), b.end(), r_.begin());
-  double residual = std::sqrt(dot(r_, r_));
+  double residual = norm(r_);
   const double b_norm = residual;
   if (b_norm == 0) {
     report.ok = true;

@@ -63,25 +63,34 @@ void put_whole(const Tile& t, double* C, ptrdiff_t stride) {
   }
 }
 
-// Only the entries in the first `rows` rows and `columns` columns with row + shift >= column.
+struct Part {  // of a tile: entries in the first `rows` rows and `columns` columns with row + shift >= column
+  int rows, columns, shift;
+};
+
 template <Product kind>
-void put_part(const Tile& t, double* C, ptrdiff_t stride, int rows, int columns, int shift) {
+void put_part(const Tile& t, double* C, ptrdiff_t stride, Part part) {
   double sum[kTileRows];
-  for (int c = 0; c < columns; ++c, C += stride) {
+  for (int c = 0; c < part.columns; ++c, C += stride) {
     store(sum, t.sum[c][0]);
     store(sum + kPackWidth, t.sum[c][1]);
-    for (int r = std::max(0, c - shift); r < rows; ++r) C[r] = kind == Product::set ? -sum[r] : C[r] - sum[r];
+    for (int r = std::max(0, c - part.shift); r < part.rows; ++r) C[r] = kind == Product::set ? -sum[r] : C[r] - sum[r];
   }
 }
 
 struct Operand {  // strip s of the rows starts at data + s * strip_step; its columns are `stride` apart
   const double* data;
   ptrdiff_t strip_step, stride;
+  int columns;
 };
 
-// C -= A B' or C = -A B' on the tiles of one cache block, which begins at (row, column) of C.
+struct Block {
+  int row, column, rows, columns;
+};
+
+// C -= A B' or C = -A B' on the tiles of one cache block of C.
 template <Product kind>
-void put_block(Operand A, Operand B, int depth, LowerMatrix C, int row, int column, int rows, int columns) {
+void put_block(Operand A, Operand B, LowerMatrix C, Block block) {
+  const auto [row, column, rows, columns] = block;
   const int shift = row - column;
   for (int j = 0; j < columns; j += kTileColumns) {
     const double* b = B.data + j / kTileColumns * B.strip_step;
@@ -90,23 +99,22 @@ void put_block(Operand A, Operand B, int depth, LowerMatrix C, int row, int colu
     const int first = std::max(0, (j - shift) / kTileRows * kTileRows);
     for (int i = first; i < rows; i += kTileRows) {
       if (i + kTileRows - 1 + shift < j) continue;
-      const Tile t = product(A.data + i / kTileRows * A.strip_step, A.stride, b, B.stride, depth);
+      const Tile t = product(A.data + i / kTileRows * A.strip_step, A.stride, b, B.stride, A.columns);
       double* c = C_column + i;
       const int tile_rows = std::min(kTileRows, rows - i), tile_columns = std::min(kTileColumns, columns - j);
       const bool whole = tile_rows == kTileRows && tile_columns == kTileColumns && i + shift >= j + kTileColumns - 1;
       if (whole) {
         put_whole<kind>(t, c, stride);
       } else {
-        put_part<kind>(t, c, stride, tile_rows, tile_columns, i + shift - j);
+        put_part<kind>(t, c, stride, {tile_rows, tile_columns, i + shift - j});
       }
     }
   }
 }
 
-void put_block(Product kind, Operand A, Operand B, int depth, LowerMatrix C, int row, int column, int rows,
-               int columns) {
-  if (kind == Product::set) return put_block<Product::set>(A, B, depth, C, row, column, rows, columns);
-  put_block<Product::subtract>(A, B, depth, C, row, column, rows, columns);
+void put_block(Product kind, Operand A, Operand B, LowerMatrix C, Block block) {
+  if (kind == Product::set) return put_block<Product::set>(A, B, C, block);
+  put_block<Product::subtract>(A, B, C, block);
 }
 
 // Copies strips of `strip` rows so that each is contiguous; missing rows of the last strip become zero.
@@ -216,15 +224,15 @@ bool DenseCholesky::factorize(double* A, int rows, int columns, ptrdiff_t stride
   const int left = (columns / 2 + kBaseColumns - 1) / kBaseColumns * kBaseColumns, right = columns - left;
   double* C = A + left + left * stride;
   if (!factorize(A, rows, left, stride)) return false;
-  put_outer_product(Product::subtract, A + left, stride, left, {C, stride}, rows - left, right);
+  put_outer_product(Product::subtract, {A + left, stride, rows - left, left}, {C, stride}, right);
   return factorize(C, rows - left, right, stride);
 }
 
-void DenseCholesky::put_outer_product(Product kind, const double* A, ptrdiff_t A_stride, int depth, LowerMatrix C,
-                                      int rows, int columns) {
+void DenseCholesky::put_outer_product(Product kind, ConstMatrix A, LowerMatrix C, int columns) {
+  const int rows = A.rows, depth = A.columns;
   if (rows < kPackedFromRows) {
-    const Operand left{A, kTileRows, A_stride}, right{A, kTileColumns, A_stride};
-    return put_block(kind, left, right, depth, C, 0, 0, rows, columns);
+    const Operand left{A.data, kTileRows, A.stride, depth}, right{A.data, kTileColumns, A.stride, depth};
+    return put_block(kind, left, right, C, {0, 0, rows, columns});
   }
   for (int j = 0; j < columns; j += kColumnBlock)
     for (int p = 0; p < depth; p += kDepthBlock) {
@@ -232,17 +240,17 @@ void DenseCholesky::put_outer_product(Product kind, const double* A, ptrdiff_t A
       const int blocks = block_count(rows - j);
       const auto pack_columns = [&](int task) {
         const int c = task * kPackedColumns;
-        pack_strips<kTileColumns>(A + j + c + p * A_stride, A_stride, std::min(kPackedColumns, width - c), d,
+        pack_strips<kTileColumns>(A.data + j + c + p * A.stride, A.stride, std::min(kPackedColumns, width - c), d,
                                   packed_right_.data() + static_cast<ptrdiff_t>(c) * d);
       };
-      const Operand right{packed_right_.data(), static_cast<ptrdiff_t>(kTileColumns) * d, kTileColumns};
+      const Operand right{packed_right_.data(), static_cast<ptrdiff_t>(kTileColumns) * d, kTileColumns, d};
       const auto put_rows = [&](int task) {
         const int block = blocks - 1 - task;  // the longest first
         const int i = j + block * kRowBlock, height = std::min(kRowBlock, rows - i);
         double* packed = packed_left_.data() + static_cast<ptrdiff_t>(block) * kRowBlock * d;
-        pack_strips<kTileRows>(A + i + p * A_stride, A_stride, height, d, packed);
-        const Operand left{packed, static_cast<ptrdiff_t>(kTileRows) * d, kTileRows};
-        put_block(p == 0 ? kind : Product::subtract, left, right, d, C, i, j, height, width);
+        pack_strips<kTileRows>(A.data + i + p * A.stride, A.stride, height, d, packed);
+        const Operand left{packed, static_cast<ptrdiff_t>(kTileRows) * d, kTileRows, d};
+        put_block(p == 0 ? kind : Product::subtract, left, right, C, {i, j, height, width});
       };
       const bool share = static_cast<double>(rows - j) * width * d > kParallelFrom;
       for_each(share, (width + kPackedColumns - 1) / kPackedColumns, pack_columns);

@@ -23,9 +23,8 @@ class DenseCholesky {
   bool factorize(double* A, int rows, int columns, std::ptrdiff_t stride);
 
   enum class Product { set, subtract };
-  // C(i, j) = -S or C(i, j) -= S, S = sum_p A(i, p) A(j, p), for i in [j, rows), j in [0, columns), p in [0, depth).
-  void put_outer_product(Product kind, const double* A, std::ptrdiff_t A_stride, int depth, LowerMatrix C, int rows,
-                         int columns);
+  // C(i, j) = -S or C(i, j) -= S, S = sum_p A(i, p) A(j, p), for i in [j, A.rows) and j in [0, columns).
+  void put_outer_product(Product kind, ConstMatrix A, LowerMatrix C, int columns);
 
  private:
   std::vector<double> packed_left_, packed_right_;

@@ -1,10 +1,19 @@
-// Where the entries of a dense lower triangle or trapezoid are.
+// Storage of dense matrices, lower triangles and trapezoids.
 #pragma once
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
 
 namespace aspic {
+
+// Column-major and read-only: entry (i, j) is data[i + j * stride].
+struct ConstMatrix {
+  const double* data;
+  std::ptrdiff_t stride;
+  int rows, columns;
+
+  ConstMatrix columns_from(int first, int count) const { return {data + first * stride, stride, rows, count}; }
+};
 
 // Column-major; either all columns have `rows` entries, or strips of kStrip columns begin at their own diagonal, which
 // takes little more than half the memory of a square.

@@ -5,6 +5,7 @@
 #include <cstring>
 
 #include "base/parallel.h"
+#include "linalg/lower_matrix.h"
 #include "math/pack.h"
 
 namespace aspic {
@@ -39,19 +40,21 @@ void subtract_columns(const double* A, ptrdiff_t stride, int rows, const double*
     for (int c = 0; c < n; ++c) y[i] -= A[c * stride + i] * x[c];
 }
 
-void subtract_rows(const double* A, ptrdiff_t stride, int rows, int columns, const double* x, double* y) {
+void subtract_rows(ConstMatrix A, const double* x, double* y) {
   int c = 0;
-  for (; c + 6 <= columns; c += 6) subtract_columns<6>(A + c * stride, stride, rows, x + c, y);
-  if (c < columns) subtract_columns<3>(A + c * stride, stride, rows, x + c, y);
+  for (; c + 6 <= A.columns; c += 6) subtract_columns<6>(A.data + c * A.stride, A.stride, A.rows, x + c, y);
+  if (c < A.columns) subtract_columns<3>(A.data + c * A.stride, A.stride, A.rows, x + c, y);
 }
 
+bool is_shared(ConstMatrix A) { return static_cast<ptrdiff_t>(A.rows) * A.columns >= kShareFrom; }
+
 // y -= A x
-void subtract_product(const double* A, ptrdiff_t stride, int rows, int columns, const double* x, double* y) {
-  if (rows <= 0) return;
-  if (static_cast<ptrdiff_t>(rows) * columns < kShareFrom) return subtract_rows(A, stride, rows, columns, x, y);
-  parallel_for((rows + kRowChunk - 1) / kRowChunk, [&](int chunk) {
+void subtract_product(ConstMatrix A, const double* x, double* y) {
+  if (A.rows <= 0) return;
+  if (!is_shared(A)) return subtract_rows(A, x, y);
+  parallel_for((A.rows + kRowChunk - 1) / kRowChunk, [&](int chunk) {
     const int first = chunk * kRowChunk;
-    subtract_rows(A + first, stride, std::min(kRowChunk, rows - first), columns, x, y + first);
+    subtract_rows({A.data + first, A.stride, std::min(kRowChunk, A.rows - first), A.columns}, x, y + first);
   });
 }
 
@@ -72,19 +75,19 @@ void subtract_dots(const double* A, ptrdiff_t stride, int rows, const double* y,
   }
 }
 
-void subtract_column_dots(const double* A, ptrdiff_t stride, int rows, int columns, const double* y, double* x) {
+void subtract_column_dots(ConstMatrix A, const double* y, double* x) {
   int c = 0;
-  for (; c + 6 <= columns; c += 6) subtract_dots<6>(A + c * stride, stride, rows, y, x + c);
-  if (c < columns) subtract_dots<3>(A + c * stride, stride, rows, y, x + c);
+  for (; c + 6 <= A.columns; c += 6) subtract_dots<6>(A.data + c * A.stride, A.stride, A.rows, y, x + c);
+  if (c < A.columns) subtract_dots<3>(A.data + c * A.stride, A.stride, A.rows, y, x + c);
 }
 
 // x -= A' y
-void subtract_transposed_product(const double* A, ptrdiff_t stride, int rows, int columns, const double* y, double* x) {
-  if (rows <= 0) return;
-  if (static_cast<ptrdiff_t>(rows) * columns < kShareFrom) return subtract_column_dots(A, stride, rows, columns, y, x);
-  parallel_for((columns + kColumnChunk - 1) / kColumnChunk, [&](int chunk) {
+void subtract_transposed_product(ConstMatrix A, const double* y, double* x) {
+  if (A.rows <= 0) return;
+  if (!is_shared(A)) return subtract_column_dots(A, y, x);
+  parallel_for((A.columns + kColumnChunk - 1) / kColumnChunk, [&](int chunk) {
     const int first = chunk * kColumnChunk;
-    subtract_column_dots(A + first * stride, stride, rows, std::min(kColumnChunk, columns - first), y, x + first);
+    subtract_column_dots(A.columns_from(first, std::min(kColumnChunk, A.columns - first)), y, x + first);
   });
 }
 
@@ -117,18 +120,18 @@ void solve_forward(const double* L, int rows, int columns, double* x, double* y)
     const int n = std::min(kTriangle, columns - j);
     const double* triangle = L + j * (stride + 1);
     solve_triangle(triangle, stride, n, x + j);
-    subtract_product(triangle + n, stride, columns - j - n, n, x + j, x + j + n);
+    subtract_product({triangle + n, stride, columns - j - n, n}, x + j, x + j + n);
   }
-  subtract_product(L + columns, stride, rows - columns, columns, x, y);
+  subtract_product({L + columns, stride, rows - columns, columns}, x, y);
 }
 
 void solve_backward(const double* L, int rows, int columns, double* x, const double* y) {
   const ptrdiff_t stride = rows;
-  subtract_transposed_product(L + columns, stride, rows - columns, columns, y, x);
+  subtract_transposed_product({L + columns, stride, rows - columns, columns}, y, x);
   for (int j = (columns - 1) / kTriangle * kTriangle; j >= 0; j -= kTriangle) {
     const int n = std::min(kTriangle, columns - j);
     const double* triangle = L + j * (stride + 1);
-    subtract_transposed_product(triangle + n, stride, columns - j - n, n, x + j + n, x + j);
+    subtract_transposed_product({triangle + n, stride, columns - j - n, n}, x + j + n, x + j);
     solve_transposed_triangle(triangle, stride, n, x + j);
   }
 }

@@ -1,5 +1,6 @@
 // Small dense algebra over any scalar T: double, Pack or Jet. Matrices are column-major, so `a` is vec(F).
 #pragma once
+#include <cmath>
 
 namespace aspic {
 
@@ -45,6 +46,11 @@ template <class T>
 T dot(const Vec3<T>& x, const Vec3<T>& y) {
   return x[0] * y[0] + x[1] * y[1] + x[2] * y[2];
 }
+template <class T>
+T squared_norm(const Vec3<T>& x) {
+  return dot(x, x);
+}
+inline double norm(const Vec3d& x) { return std::sqrt(dot(x, x)); }
 template <class T>
 Vec3<T> cross(const Vec3<T>& x, const Vec3<T>& y) {
   return {{x[1] * y[2] - x[2] * y[1], x[2] * y[0] - x[0] * y[2], x[0] * y[1] - x[1] * y[0]}};

@@ -1,55 +1,12 @@
 // Binary tree of axis-aligned boxes over items in Morton order. Finds the items whose boxes overlap a box, are near a
 // point, or lie on a ray.
 #pragma once
-#include <algorithm>
-#include <limits>
 #include <span>
 #include <vector>
 
-#include "mesh/tet_mesh.h"
+#include "mesh/box.h"
 
 namespace aspic {
-
-struct Box {
-  static constexpr double kInfinity = std::numeric_limits<double>::infinity();
-  Vec3d lower = {{kInfinity, kInfinity, kInfinity}}, upper = {{-kInfinity, -kInfinity, -kInfinity}};
-
-  void add(const Vec3d& x) {
-    for (int axis = 0; axis < 3; ++axis) {
-      lower[axis] = std::min(lower[axis], x[axis]);
-      upper[axis] = std::max(upper[axis], x[axis]);
-    }
-  }
-  bool overlaps(const Box& other) const {
-    for (int axis = 0; axis < 3; ++axis)
-      if (lower[axis] > other.upper[axis] || upper[axis] < other.lower[axis]) return false;
-    return true;
-  }
-  bool contains(const Vec3d& x) const { return overlaps({x, x}); }
-  double squared_distance(const Vec3d& x) const {
-    double sum = 0;
-    for (int axis = 0; axis < 3; ++axis) {
-      const double away = std::max({lower[axis] - x[axis], x[axis] - upper[axis], 0.0});
-      sum += away * away;
-    }
-    return sum;
-  }
-  // Returns the parameter s >= 0 at which origin + s direction enters the box; infinity if it misses.
-  double entry(const Vec3d& origin, const Vec3d& direction) const {
-    double first = 0, last = kInfinity;
-    for (int axis = 0; axis < 3; ++axis) {
-      if (direction[axis] == 0) {
-        if (origin[axis] < lower[axis] || origin[axis] > upper[axis]) return kInfinity;
-        continue;
-      }
-      double in = (lower[axis] - origin[axis]) / direction[axis], out = (upper[axis] - origin[axis]) / direction[axis];
-      if (out < in) std::swap(in, out);
-      first = std::max(first, in);
-      last = std::min(last, out);
-    }
-    return first <= last ? first : kInfinity;
-  }
-};
 
 class BoxTree {
  public:

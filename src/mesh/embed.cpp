@@ -17,7 +17,7 @@ namespace {
 void check_finite(const TriMesh& skin) {
   for (int v = 0; v < skin.vertex_count(); ++v) {
     const Vec3d& x = skin.vertices[v];
-    if (!(length(x) <= kLargestCoordinate))
+    if (!(norm(x) <= kLargestCoordinate))
       throw InvalidInput("skin vertex " + std::to_string(v) +
                          " is not finite or beyond 1e30 m, where distances overflow; correct the file");
   }

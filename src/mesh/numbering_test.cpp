@@ -58,7 +58,7 @@ TEST(Numbering, BringsNeighborsTogetherAndIsUndone) {
   EXPECT_LT(mean_reach(stored), 0.4 * mean_reach(mesh));
   EXPECT_EQ(back.tets, mesh.tets);
   EXPECT_EQ(back.region, mesh.region);
-  for (int v = 0; v < mesh.vertex_count(); ++v) EXPECT_EQ(length(back.rest[v] - mesh.rest[v]), 0);
+  for (int v = 0; v < mesh.vertex_count(); ++v) EXPECT_EQ(norm(back.rest[v] - mesh.rest[v]), 0);
   for (int t = 0; t < mesh.tet_count(); ++t) EXPECT_EQ(volume(stored, numbering.tet.from_user(t)), volume(mesh, t));
 }
 

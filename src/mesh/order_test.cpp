@@ -15,7 +15,7 @@ namespace {
 
 double path_length(const std::vector<Vec3d>& points, const std::vector<int>& order) {
   double sum = 0;
-  for (size_t i = 1; i < order.size(); ++i) sum += length(points[order[i]] - points[order[i - 1]]);
+  for (size_t i = 1; i < order.size(); ++i) sum += norm(points[order[i]] - points[order[i - 1]]);
   return sum;
 }
 
@@ -56,7 +56,7 @@ TEST(HilbertOrder, StepsFromCellToNeighboringCell) {
   const std::vector<int> order = hilbert_order(grid);
   for (size_t i = 1; i < order.size(); ++i) {
     if (order[i] == 512 || order[i - 1] == 512) continue;
-    EXPECT_EQ(length(grid[order[i]] - grid[order[i - 1]]), 1) << i;
+    EXPECT_EQ(norm(grid[order[i]] - grid[order[i - 1]]), 1) << i;
   }
 }
 

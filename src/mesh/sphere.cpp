@@ -92,7 +92,7 @@ class Ball {
       shell += weight;
     }
     if (shell == 0) return {};
-    return (radius_ * shell / shells_ / std::sqrt(dot(direction, direction))) * direction;
+    return (radius_ * shell / shells_ / norm(direction)) * direction;
   }
 
   double radius_;

@@ -16,7 +16,7 @@ constexpr int kOppositeEdges[6][2] = {{2, 3}, {3, 1}, {1, 2}, {0, 3}, {2, 0}, {0
 
 double longest_edge(const TetCorners& X) {
   double longest = 0;
-  for (const auto& [a, b] : kEdges) longest = std::max(longest, length(X[b] - X[a]));
+  for (const auto& [a, b] : kEdges) longest = std::max(longest, norm(X[b] - X[a]));
   return longest;
 }
 
@@ -26,7 +26,7 @@ std::array<double, 2> dihedral_range(const TetCorners& X) {
     const Vec3d edge = X[kEdges[e][1]] - X[kEdges[e][0]];
     const Vec3d m = cross(edge, X[kOppositeEdges[e][0]] - X[kEdges[e][0]]);
     const Vec3d n = cross(edge, X[kOppositeEdges[e][1]] - X[kEdges[e][0]]);
-    const double angle = std::atan2(length(cross(m, n)), dot(m, n));
+    const double angle = std::atan2(norm(cross(m, n)), dot(m, n));
     smallest = std::min(smallest, angle);
     largest = std::max(largest, angle);
   }

@@ -20,8 +20,6 @@ inline constexpr int kTetFaces[4][3] = {{1, 2, 3}, {0, 3, 2}, {0, 1, 3}, {0, 2, 
 inline Vec3d centroid(const TetCorners& X) { return 0.25 * ((X[0] + X[1]) + (X[2] + X[3])); }
 inline Vec3d centroid(const TetMesh& mesh, int tet) { return centroid(corners(mesh, tet)); }
 
-inline double length(const Vec3d& x) { return std::sqrt(dot(x, x)); }
-
 inline double signed_volume(const TetCorners& X) {
   return determinant(from_columns(X[1] - X[0], X[2] - X[0], X[3] - X[0])) / 6;
 }

@@ -112,13 +112,12 @@ bool is_degenerate(const TriangleCorners& t) {
   double size = 0, longest = 0;
   for (int c = 0; c < 3; ++c) {
     const Vec3d edge = t[(c + 1) % 3] - t[c];
-    longest = std::max(longest, std::sqrt(dot(edge, edge)));
+    longest = std::max(longest, norm(edge));
     for (int axis = 0; axis < 3; ++axis) size = std::max(size, std::abs(t[c][axis]));
   }
   const Vec3d normal = cross(t[1] - t[0], t[2] - t[0]);
   // Round-off of the corners changes the cross product by about this amount.
-  return !(std::sqrt(dot(normal, normal)) >
-           4 * std::numeric_limits<double>::epsilon() * std::max(size, longest) * longest);
+  return !(norm(normal) > 4 * std::numeric_limits<double>::epsilon() * std::max(size, longest) * longest);
 }
 
 bool meet(const TriangleCorners& s, const TriangleCorners& t) {

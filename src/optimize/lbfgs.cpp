@@ -3,15 +3,13 @@
 #include <algorithm>
 #include <cmath>
 
+#include "math/vectors.h"
+
 namespace aspic {
 namespace {
 
 // Pairs with a smaller cosine between s and y carry no reliable curvature.
 constexpr double kLeastCosine = 1e-8;
-
-void add_multiple(double factor, std::span<const double> v, std::span<double> to) {
-  for (size_t i = 0; i < v.size(); ++i) to[i] += factor * v[i];
-}
 
 }  // namespace
 
@@ -61,12 +59,12 @@ bool LBFGS::compute(const Iterate& at, std::span<double> d, DirectionReport& rep
   for (int age = 0; age < count_; ++age) {
     Pair& pair = recent(age);
     pair.weight = pair.rho * E.dot(pair.s, r_);
-    add_multiple(-pair.weight, pair.y, r_);
+    add_scaled(-pair.weight, pair.y, r_);
   }
   if (!B_.apply(E, at.x, r_, d, report) || !scale(at, d, report)) return false;
   for (int age = count_ - 1; age >= 0; --age) {
     const Pair& pair = recent(age);
-    add_multiple(pair.weight - pair.rho * E.dot(pair.y, d), pair.s, d);
+    add_scaled(pair.weight - pair.rho * E.dot(pair.y, d), pair.s, d);
   }
   return true;
 }

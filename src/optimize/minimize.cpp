@@ -253,22 +253,17 @@ Minimizer& Minimizer::operator=(Minimizer&&) noexcept = default;
 
 std::span<const double> Minimizer::thresholds() const { return impl_->convergence.thresholds(); }
 
-MinimizeReport Minimizer::minimize(Objective& E, SearchDirection& direction, std::span<double> x,
+MinimizeReport Minimizer::minimize(Objective& E, SearchDirection& direction, InitialIterate initial,
                                    const MinimizeOptions& options, const IterationObserver& observe) {
-  MinimizeReport report = minimize(E, direction, x, E.evaluate(x), options, observe);
-  ++report.values;
-  return report;
-}
-
-MinimizeReport Minimizer::minimize(Objective& E, SearchDirection& direction, std::span<double> x,
-                                   const Evaluation& value, const MinimizeOptions& options,
-                                   const IterationObserver& observe) {
   if (judges_direction(options.criterion) && !direction.estimates_minimizer())
     throw InvalidInput("criterion = '" + std::string(to_string(options.criterion)) +
                        "' needs the method newton or newton_cg: directions of " + std::string(direction.name()) +
                        " do not tell how far the minimum is (try 'scale')");
-  Progress at{E, direction, x, options, value};
-  return impl_->minimize(at, observe);
+  const Evaluation value = initial.value ? *initial.value : E.evaluate(initial.x);
+  Progress at{E, direction, initial.x, options, value};
+  MinimizeReport report = impl_->minimize(at, observe);
+  if (!initial.value) ++report.values;
+  return report;
 }
 
 }  // namespace aspic

@@ -1,8 +1,10 @@
 // Gradient-based minimization: compute a direction, search along it, repeat until converged. The search direction and
 // the line search are exchangeable.
 #pragma once
+#include <concepts>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string_view>
 #include <vector>
@@ -91,6 +93,16 @@ struct MinimizeReport : Work {
 
 using IterationObserver = std::function<void(const LiveIteration&)>;
 
+// The point at which a minimization starts; x receives the result.
+struct InitialIterate {
+  template <std::convertible_to<std::span<double>> Vector>
+  InitialIterate(Vector&& initial) : x(initial) {}
+  InitialIterate(std::span<double> initial, const Evaluation& E_of_x) : x(initial), value(E_of_x) {}
+
+  std::span<double> x;              // 3 numbers per block row
+  std::optional<Evaluation> value;  // E(x), if it is known
+};
+
 // Keeps its scratch vectors, so that repeated calls allocate nothing.
 class Minimizer {
  public:
@@ -99,12 +111,9 @@ class Minimizer {
   Minimizer(Minimizer&&) noexcept;
   Minimizer& operator=(Minimizer&&) noexcept;
 
-  // Minimizes E from the initial guess x, 3 numbers per block row, and writes the best iterate to x. Throws
-  // InvalidInput if the criterion tests directions and those of the method do not estimate the minimizer.
-  MinimizeReport minimize(Objective& E, SearchDirection& direction, std::span<double> x, const MinimizeOptions& options,
-                          const IterationObserver& observe = {});
-  // The same, with E(x) given.
-  MinimizeReport minimize(Objective& E, SearchDirection& direction, std::span<double> x, const Evaluation& value,
+  // Minimizes E from initial.x and writes the best iterate there. Throws InvalidInput if the criterion tests
+  // directions and those of the method do not estimate the minimizer.
+  MinimizeReport minimize(Objective& E, SearchDirection& direction, InitialIterate initial,
                           const MinimizeOptions& options, const IterationObserver& observe = {});
 
   // Returns the bound of |g| of each part in the last minimization, if its criterion tests the gradient.

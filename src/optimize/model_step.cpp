@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "math/vectors.h"
+
 namespace aspic {
 namespace {
 
@@ -10,20 +12,14 @@ namespace {
 // truncation and round-off errors balance.
 constexpr double kWidth = 1.5e-8;
 
-double largest_entry(std::span<const double> v) {
-  double largest = 0;
-  for (const double vi : v) largest = std::max(largest, std::abs(vi));
-  return largest;
-}
-
 }  // namespace
 
 double ModelStep::along(const Iterate& at, std::span<const double> p, DirectionReport& report) {
   const auto& [E, x, g, accuracy, stop] = at;
-  const double size = largest_entry(p);
+  const double size = max_abs(p);
   if (!(size > 0) || !std::isfinite(size)) return 0;
   for (auto* v : {&ahead_, &gradient_}) v->resize(x.size());
-  const double width = kWidth * std::max(1e-3 * E.scales().x, largest_entry(x)) / size;
+  const double width = kWidth * std::max(1e-3 * E.scales().x, max_abs(x)) / size;
   for (size_t i = 0; i < x.size(); ++i) ahead_[i] = x[i] + width * p[i];
   E.gradient(ahead_, gradient_);
   ++report.gradients;

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "math/vectors.h"
+
 namespace aspic {
 namespace {
 
@@ -13,18 +15,12 @@ double residual(std::span<const double> g, size_t vertex) {
   return std::max({std::abs(g[3 * vertex]), std::abs(g[3 * vertex + 1]), std::abs(g[3 * vertex + 2])});
 }
 
-double largest_residual(std::span<const double> g) {
-  double largest = 0;
-  for (size_t v = 0; 3 * v < g.size(); ++v) largest = std::max(largest, residual(g, v));
-  return largest;
-}
-
 }  // namespace
 
 Projection ProgressiveProjection::at(std::span<const double> g) {
   covers_all_ = false;
   if (threshold_ == kNone) return {};
-  const double largest = largest_residual(g);
+  const double largest = max_abs(g);
   covers_all_ = threshold_ < kAll * largest;
   if (covers_all_) return {Definiteness::clamped};
   if (threshold_ >= largest) return {};
@@ -35,7 +31,7 @@ Projection ProgressiveProjection::at(std::span<const double> g) {
 
 // The threshold is always below the largest residual, so that the selection grows.
 void ProgressiveProjection::tighten(std::span<const double> g) {
-  const double largest = largest_residual(g);
+  const double largest = max_abs(g);
   threshold_ = kTighten * (threshold_ == kNone ? largest : std::min(threshold_, largest));
 }
 

@@ -53,7 +53,7 @@ std::vector<Vec3d> directions_of(const Value& pin) {  // empty: all
     const Vec3d d = given->vector();
     const double largest = std::max({std::abs(d[0]), std::abs(d[1]), std::abs(d[2])});
     const Vec3d n = (1 / largest) * d;
-    return {(1 / std::sqrt(dot(n, n))) * n};
+    return {(1 / norm(n)) * n};
   }
   std::vector<Vec3d> axes;
   for (const char axis : pin["axes"].text())
@@ -154,8 +154,8 @@ void add_springs_between(Builder& builder, const PlacedBody& body, const Value& 
       throw error_at(pair.place, "between: a spring from vertex " + std::to_string(a) + " to itself");
     const Vec3d d = body.mesh.rest[a] - other->mesh.rest[b];
     const Value* length = scene.find("rest_length");
-    builder.springs.push_back({body.model_vertex(a), other->model_vertex(b),
-                               length ? length->number() : std::sqrt(dot(d, d)), scene["stiffness"].number()});
+    builder.springs.push_back({body.model_vertex(a), other->model_vertex(b), length ? length->number() : norm(d),
+                               scene["stiffness"].number()});
   }
 }
 
@@ -189,7 +189,7 @@ class LoadDensity {
   bool depends_on_time() const { return vector_ ? vector_->depends_on_time() : pressure_->depends_on_time(); }
   Vec3d at(const Vec3d& X, const Vec3d& n, double time) const {
     try {
-      return vector_ ? vector_->at(X, time) : (-pressure_->at(X, time) / std::sqrt(dot(n, n))) * n;
+      return vector_ ? vector_->at(X, time) : (-pressure_->at(X, time) / norm(n)) * n;
     } catch (const InvalidInput& e) {  // possibly long after the scene was read
       throw error_at(place_, e.what());
     }
@@ -237,8 +237,7 @@ void add_tractions(const Builder& builder, const PlacedBody& body, std::vector<L
     LoadGroup group{LoadDensity(scene), {}};
     for (const Triangle& t : select_triangles(scene["where"], builder.scope(body), boundary)) {
       const Vec3d n = cross(X[t[1]] - X[t[0]], X[t[2]] - X[t[0]]);
-      group.patches.push_back(
-          {(1.0 / 3) * (X[t[0]] + X[t[1]] + X[t[2]]), n, in_model(body, t), std::sqrt(dot(n, n)) / 2 / 3});
+      group.patches.push_back({(1.0 / 3) * (X[t[0]] + X[t[1]] + X[t[2]]), n, in_model(body, t), norm(n) / 2 / 3});
     }
     groups.push_back(std::move(group));
   }
@@ -342,9 +341,9 @@ void add_damping(PlacedBody& body, size_t index, MassKind kind, SceneFiles& file
 
 }  // namespace
 
-void add_actions(std::vector<PlacedBody>& bodies, const Vec3d& gravity, MassKind mass, SceneFiles& files, Model& model,
-                 std::vector<std::string>& notes) {
-  const double g = std::sqrt(dot(gravity, gravity));
+void add_actions(const SceneActions& actions, Model& model) {
+  const auto& [bodies, gravity, mass, files, notes] = actions;
+  const double g = norm(gravity);
   Builder builder{bodies, g > 0 ? (-1 / g) * gravity : Vec3d{{0, 1, 0}}, model, notes, {}, {}, 0};
   for (const PlacedBody& body : bodies) add_pins(builder, body);
   add_loads(builder, gravity);

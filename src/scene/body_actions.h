@@ -21,8 +21,15 @@ struct PlacedBody {
   int model_vertex(int own) const { return first_vertex + numbering.vertex.from_user(own); }
 };
 
-// Adds pins, loads and damping to a model that has its mesh, mass and elasticity. `gravity` in [m/s^2].
-void add_actions(std::vector<PlacedBody>& bodies, const Vec3d& gravity, MassKind mass, SceneFiles& files, Model& model,
-                 std::vector<std::string>& notes);
+struct SceneActions {
+  std::vector<PlacedBody>& bodies;
+  Vec3d gravity;  // [m/s^2]
+  MassKind mass;
+  SceneFiles& files;
+  std::vector<std::string>& notes;  // receives notes for the user
+};
+
+// Adds pins, loads and damping to a model that has its mesh, mass and elasticity. Throws InvalidInput.
+void add_actions(const SceneActions& actions, Model& model);
 
 }  // namespace aspic

@@ -169,7 +169,7 @@ class FromFile {
     for (const Vec3d& X : fitted_.mesh.rest) own.add(X);
     for (const Vec3d& X : centroids()) other.add(X);
     const Vec3d diagonal = own.upper - own.lower;
-    if (!(sampling_.farthest > kElsewhere * std::sqrt(dot(diagonal, diagonal)))) return;
+    if (!(sampling_.farthest > kElsewhere * norm(diagonal))) return;
     const std::string& frame = table_.find("frame")->text();
     throw error_at(place_, file_ + " has a mesh from " + text(own) + "; body '" + body_.name() + "' lies from " +
                                text(other) + " in the frame '" + frame + "', up to " + four_digits(sampling_.farthest) +

@@ -122,7 +122,7 @@ void note_weight(const PlacedBody& body, const Means& mean, const Vec3d& gravity
 void note_diamond(const PlacedBody& body, const Means& mean, std::vector<std::string>& notes) {
   if (!(mean.young > kDiamond)) return;
   const Box box = bounding_box(body.mesh.rest);
-  const double length = std::sqrt(dot(box.upper - box.lower, box.upper - box.lower));
+  const double length = norm(box.upper - box.lower);
   double factor = 1e3;
   while (factor < 1e9 && mean.young / factor > kSoft) factor *= 1e3;
   notes.push_back("body '" + body.name() + "': stiffer than diamond (1.2e12 Pa), it vibrates at " +

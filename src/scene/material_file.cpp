@@ -52,8 +52,6 @@ std::string model_of(const Vtu& vtu, const std::string& file) {
   return model;
 }
 
-double distance(const Vec3d& a, const Vec3d& b) { return std::sqrt(dot(a - b, a - b)); }
-
 }  // namespace
 
 const std::vector<double>* FittedMaterial::find(const std::string& quantity) const {
@@ -121,7 +119,7 @@ void write_material(const std::filesystem::path& path, const FittedMaterial& mat
     }
   std::vector<Field> model;
   if (!material.model.empty()) model.push_back({kModelField + material.model, 1, {1}, FieldType::int32});
-  write_vtu(path, rest_positions(material.mesh), material.mesh.tets, {}, fields, model);
+  write_vtu(path, rest_positions(material.mesh), material.mesh.tets, {{}, fields, model});
 }
 
 MaterialSampling sampling(const FittedMaterial& material, std::span<const Vec3d> centroids) {
@@ -133,7 +131,7 @@ MaterialSampling sampling(const FittedMaterial& material, std::span<const Vec3d>
   });
   Box box;
   for (const Vec3d& X : material.mesh.rest) box.add(X);
-  const double tolerance = 1e-9 * distance(box.upper, box.lower);
+  const double tolerance = 1e-9 * norm(box.upper - box.lower);
   MaterialSampling result;
   result.is_same_mesh = count == material.mesh.tet_count();
   std::vector<char> is_taken(material.mesh.tets.size());
@@ -144,7 +142,7 @@ MaterialSampling sampling(const FittedMaterial& material, std::span<const Vec3d>
       ++result.outside;
       result.farthest = std::max(result.farthest, std::sqrt(place[t].squared_distance));
     }
-    result.is_same_mesh &= !is_taken[from] && distance(centroid(material.mesh, from), centroids[t]) <= tolerance;
+    result.is_same_mesh &= !is_taken[from] && norm(centroid(material.mesh, from) - centroids[t]) <= tolerance;
     is_taken[from] = 1;
   }
   return result;

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "base/error.h"
+#include "mesh/box.h"
 #include "mesh/vertices.h"
 #include "scene/overrides.h"
 #include "scene/placement.h"
@@ -26,11 +27,6 @@ constexpr double kPull = 0.25;     // sideways displacement of the top / height
 double one_digit(double x) {
   const double unit = std::pow(10.0, std::floor(std::log10(x)));
   return std::round(x / unit) * unit;
-}
-
-double largest_extent(const Box& box) {
-  const Vec3d size = box.upper - box.lower;
-  return std::max({size[0], size[1], size[2]});
 }
 
 // Returns a fraction of the height that contains more than one point of the body.
@@ -57,7 +53,7 @@ Stiffness stiffness_for(const TetMesh& mesh, double base) {
   std::vector<int> held = vertices_where(mesh, [&](const Vec3d& X) { return X[1] <= box.lower[1] + base * height; });
   const double depth = sag(mesh, std::move(held),
                            {.young = least, .poisson = kPoisson, .density = kDensity, .gravity = {{0, -kGravity, 0}}});
-  const double share = depth / (kSag * largest_extent(box));
+  const double share = depth / (kSag * longest_side(box));
   if (!(share > 1)) return {one_digit(least), "under its own weight the body is compressed by about 5 %"};
   if (share < kStiffest)
     return {one_digit(share * least), "under its own weight the body sinks by about 5 % of its size"};
@@ -91,7 +87,7 @@ Defaults defaults_for(const std::filesystem::path& path, TetMesh mesh, double sc
   for (Vec3d& P : mesh.rest) P = scale * P;
   const std::vector<Vec3d>& X = mesh.rest;
   const Box box = bounding_box(X);
-  const double height = box.upper[1] - box.lower[1], extent = largest_extent(file_box);
+  const double height = box.upper[1] - box.lower[1], extent = longest_side(file_box);
   const double base = base_fraction(X, box);
   const bool has_file = is_overridden("material.file", overrides);  // which defines model and parameters
   const bool needs_young = !has_file && !is_overridden("material.young", overrides);
@@ -133,7 +129,7 @@ Defaults defaults_for(const std::filesystem::path& path, TetMesh mesh, double sc
 }
 
 double guessed_scale(const std::vector<Vec3d>& X) {
-  const double extent = largest_extent(bounding_box(X));
+  const double extent = longest_side(bounding_box(X));
   return extent >= kSmallest && extent <= kLargest ? 1 : 1 / extent;
 }
 
@@ -156,7 +152,7 @@ SceneSource scene_of_mesh(const std::filesystem::path& path, const std::vector<s
   LoadedMesh mesh = load_mesh(path, size ? size->number() : 0, loader);
   if (mesh.tets.rest.empty() || mesh.tets.tets.empty())
     throw InvalidInput(file + ": contains no tets and no triangles; use a mesh with tets or a closed surface");
-  const double extent = largest_extent(bounding_box(mesh.tets.rest));
+  const double extent = longest_side(bounding_box(mesh.tets.rest));
   if (!(extent > 0) || !std::isfinite(extent)) throw InvalidInput(file + ": all vertices coincide; use another mesh");
 
   double scale = guessed_scale(mesh.tets.rest);

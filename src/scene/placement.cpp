@@ -46,7 +46,7 @@ Mat3d rotation_of(const Value& body) {
 
 std::vector<Vec3d> twisted(const Value& twist, const std::vector<Vec3d>& X, const Vec3d& center) {
   const Vec3d axis = twist["axis"].vector();
-  const Vec3d a = (1 / std::sqrt(dot(axis, axis))) * axis;
+  const Vec3d a = (1 / norm(axis)) * axis;
   double low = INFINITY, high = -INFINITY;
   for (const Vec3d& P : X) low = std::min(low, dot(a, P - center)), high = std::max(high, dot(a, P - center));
   const double rate = high > low ? kRadians * twist["angle_deg"].number() / (high - low) : 0;
@@ -74,7 +74,7 @@ std::vector<Vec3d> displaced_by_file(Value& deform, const std::vector<Vec3d>& X,
 
 Mat3d rotation(const Vec3d& axis, double angle) {
   // Rodrigues: R = cos I + sin [a] + (1 - cos) a a'
-  const Vec3d a = (1 / std::sqrt(dot(axis, axis))) * axis;
+  const Vec3d a = (1 / norm(axis)) * axis;
   const double c = std::cos(angle), s = std::sin(angle);
   Mat3d R;
   for (int i = 0; i < 3; ++i)
@@ -149,12 +149,6 @@ Vec3d VectorField::at(const Vec3d& X, double t) const {
 
 bool VectorField::depends_on_time() const {
   return std::any_of(formula_.begin(), formula_.end(), [](const Expression& f) { return f.depends_on_time(); });
-}
-
-Box bounding_box(const std::vector<Vec3d>& X) {
-  Box box;
-  for (const Vec3d& P : X) box.add(P);
-  return box;
 }
 
 }  // namespace aspic

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "math/small.h"
-#include "mesh/box_tree.h"
+#include "mesh/box.h"
 #include "scene/expression.h"
 #include "scene/scene_files.h"
 #include "scene/value.h"
@@ -43,7 +43,5 @@ class VectorField {
   std::vector<double> number_;  // NaN: the formula applies
   std::vector<Expression> formula_;
 };
-
-Box bounding_box(const std::vector<Vec3d>& X);
 
 }  // namespace aspic

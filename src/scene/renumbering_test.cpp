@@ -73,8 +73,8 @@ class Files {
     std::vector<double> u;
     for (size_t i = 0; i < 3 * mesh.rest.size(); ++i) u.push_back(0.01 * std::sin(static_cast<double>(i * i)));
     write("u.csv", csv_of(numbering.vertex.from_user(u, 3), 3));
-    write_vtu(folder / "rho.vtu", {mesh.rest[0].a, 3 * mesh.rest.size()}, mesh.tets, {},
-              {{"rho", 1, numbering.tet.from_user(per_tet(bar(), 1000))}});
+    write_vtu(folder / "rho.vtu", {mesh.rest[0].a, 3 * mesh.rest.size()}, mesh.tets,
+              {.cell_fields = {{"rho", 1, numbering.tet.from_user(per_tet(bar(), 1000))}}});
   }
 
   fs::path scene(const std::string& options = "") const {

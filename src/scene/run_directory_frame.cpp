@@ -73,8 +73,8 @@ void write_frame(const std::filesystem::path& path, const Simulation& simulation
       {"velocity", 3, vertex.to_user(state.qdot, 3), real}};
   std::vector<Field> fields = cell_fields(simulation, real);
   for (Field& field : fields) field.values = tet.to_user(field.values, field.components);
-  write_vtu(path, vertex.to_user(state.q, 3), to_user(model.numbering, model.mesh).tets, point_fields, fields,
-            file_fields(state.time, report));
+  write_vtu(path, vertex.to_user(state.q, 3), to_user(model.numbering, model.mesh).tets,
+            {point_fields, fields, file_fields(state.time, report)});
 }
 
 }  // namespace aspic

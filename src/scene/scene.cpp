@@ -21,23 +21,38 @@ void copy_file(const fs::path& source, const fs::path& target) {
   write_file(target, read_file(source));
 }
 
-}  // namespace
+struct SceneInput {
+  SceneSource source;
+  SceneFiles files;
+};
 
-Scene load_scene(const fs::path& path, const SceneOptions& options) {
+SceneInput read_scene(const fs::path& path, const SceneOptions& options) {
   if (path.extension() == ".toml") {
     SceneSource source{read_scene_document(read_toml_text(path), path.string(), options.overrides),
                        path.stem().string(),
                        path.string(),
                        {},
                        {}};
-    return build_scene(std::move(source), SceneFiles(path.parent_path(), options.allow_outside), options);
+    return {std::move(source), SceneFiles(path.parent_path(), options.allow_outside)};
   }
   SceneFiles files("", true);  // the user named the mesh
   std::vector<std::string> notes;
   MeshLoader loader{files, options.mesher, notes, options.announce, options.limit, 0, options.mesher_seconds};
   SceneSource source = scene_of_mesh(path, options.overrides, loader);
   source.notes.insert(source.notes.begin(), notes.begin(), notes.end());
-  return build_scene(std::move(source), std::move(files), options);
+  return {std::move(source), std::move(files)};
+}
+
+}  // namespace
+
+SceneModel load_scene_model(const fs::path& path, const SceneOptions& options) {
+  SceneInput input = read_scene(path, options);
+  return build_scene_model(std::move(input.source), std::move(input.files), options);
+}
+
+Scene load_scene(const fs::path& path, const SceneOptions& options) {
+  SceneInput input = read_scene(path, options);
+  return build_scene(std::move(input.source), std::move(input.files), options);
 }
 
 void write_inputs(const Scene& scene, const fs::path& folder) {

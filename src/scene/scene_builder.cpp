@@ -79,7 +79,7 @@ class SceneBuilder {
   SceneBuilder(SceneSource source, SceneFiles files, const SceneOptions& options)
       : source_(std::move(source)), files_(std::move(files)), options_(options) {}
 
-  Scene build() {
+  SceneModel build_model() {
     note_version();
     add_bodies();
     mesh_loader().report_if_many(model_.mesh.tet_count(),
@@ -89,19 +89,30 @@ class SceneBuilder {
     if (options_.amend) options_.amend(model_);
     State state = start();
     const SimulationOptions options = options_of(source_.document, source_.notes);
-    const int steps = steps_of(*source_.document.find("time"));
     put_in_order(source_.document);
-    std::string resolved = to_toml(source_.document);
     for (std::string& note : source_.notes) note = printable(note);
+    return {printable(source_.name),
+            std::move(source_.document),
+            std::move(source_.notes),
+            std::move(model_),
+            std::move(state),
+            options,
+            std::move(files_.kept_files)};
+  }
+
+  Scene build() {
+    SceneModel scene = build_model();
+    const int steps = steps_of(*scene.document.find("time"));
+    const OutputOptions output = output_of(*scene.document.find("output"));
     try {
-      return {printable(source_.name),
-              std::move(resolved),
-              std::move(source_.notes),
-              Simulation(std::move(model_), std::move(state), options),
+      return {std::move(scene.name),
+              to_toml(scene.document),
+              std::move(scene.notes),
+              Simulation(std::move(scene.model), std::move(scene.start), scene.options),
               std::move(skins_),
               steps,
-              output_of(*source_.document.find("output")),
-              std::move(files_.kept_files),
+              output,
+              std::move(scene.input_files),
               std::move(files_.kept_meshes)};
     } catch (const InvertedStart& e) {
       throw InvalidInput(
@@ -175,7 +186,7 @@ class SceneBuilder {
       export_moduli(parameters);
     }
     model_.mass = std::make_unique<MassMatrix>(model_.mesh, model_.density, kind);
-    add_actions(bodies_, source_.document.find("gravity")->vector(), kind, files_, model_, source_.notes);
+    add_actions({bodies_, source_.document.find("gravity")->vector(), kind, files_, source_.notes}, model_);
     for (const PlacedBody& body : bodies_) note_parts(body, model_, source_.notes);
   }
 
@@ -220,6 +231,10 @@ class SceneBuilder {
 };
 
 }  // namespace
+
+SceneModel build_scene_model(SceneSource source, SceneFiles files, const SceneOptions& options) {
+  return SceneBuilder(std::move(source), std::move(files), options).build_model();
+}
 
 Scene build_scene(SceneSource source, SceneFiles files, const SceneOptions& options) {
   return SceneBuilder(std::move(source), std::move(files), options).build();

@@ -7,6 +7,7 @@
 
 #include "scene/body_mesh.h"
 #include "scene/scene.h"
+#include "scene/scene_model.h"
 #include "scene/value.h"
 
 namespace aspic {
@@ -19,7 +20,8 @@ struct SceneSource {
   std::vector<std::string> notes;
 };
 
-// Throws InvalidInput.
+// Both throw InvalidInput.
+SceneModel build_scene_model(SceneSource source, SceneFiles files, const SceneOptions& options);
 Scene build_scene(SceneSource source, SceneFiles files, const SceneOptions& options);
 
 }  // namespace aspic

@@ -48,6 +48,6 @@ inline Vec3d rest(const Scene& scene, int vertex) {
   return model.mesh.rest[model.numbering.vertex.from_user(vertex)];
 }
 
-inline double distance(const Vec3d& a, const Vec3d& b) { return std::sqrt(dot(a - b, a - b)); }
+inline double distance(const Vec3d& a, const Vec3d& b) { return norm(a - b); }
 
 }  // namespace aspic

@@ -115,11 +115,12 @@ TEST(Scene, BrokenMeshIsRejectedWithDiagnosis) {
 TEST(Scene, LongWorkIsAnnounced) {
   const auto announced = [](const std::string& cells) {
     const TestFolder folder;
-    std::vector<std::string> announced;
+    std::vector<std::string> announcements;
     const std::string text =
         "[[body]]\nname = \"box\"\nshape = { box = { upper = [1, 1, 1], cells = " + cells + " } }\n";
-    load_scene(folder.write("s.toml", text), {.announce = [&](const std::string& what) { announced.push_back(what); }});
-    return announced;
+    load_scene(folder.write("s.toml", text),
+               {.announce = [&](const std::string& what) { announcements.push_back(what); }});
+    return announcements;
   };
   EXPECT_THAT(announced("[2, 2, 2]"), testing::IsEmpty());
   EXPECT_THAT(announced("[50, 50, 20]"),

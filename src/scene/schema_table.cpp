@@ -246,18 +246,10 @@ void add_output(Schema& s) {
 
 void add_material(Schema& s) {
   constexpr unsigned kField = kNumber | kExpression | kTable;
-  const auto field = [&](const char* name, const char* unit, const char* fallback, Range range, const char* meaning,
-                         const char* reason, bool required) {
-    add_key(s, "material",
-            {.name = name,
-             .accepts = kField,
-             .unit = unit,
-             .fallback = fallback,
-             .required = required,
-             .range = range,
-             .table = "field",
-             .meaning = meaning,
-             .reason = reason});
+  const auto field = [&](Key key) {
+    key.accepts = kField;
+    key.table = "field";
+    add_key(s, "material", key);
   };
   std::vector<std::string> models;
   for (const MaterialInfo& m : materials()) models.push_back(m.name);
@@ -270,14 +262,27 @@ void add_material(Schema& s) {
            .choices = models,
            .meaning = "strain energy density; `aspic materials` prints the formulas",
            .reason = "stays finite for inverted elements"});
-  field("density", "kg/m^3", "1000.0", kPositive, "density at rest", "water and soft tissue", false);
-  field("young", "Pa", "1e5", kPositive, "Young's modulus E", "soft silicone rubber", false);
-  field("poisson", "", "0.3", {.min = -1, .max = 0.5, .min_open = true, .max_open = true}, "Poisson's ratio nu",
-        "linear tets lock above 0.45", false);
-  field("lambda", "Pa", "", {}, "first Lame constant, > -2/3 mu", "", true);
-  field("mu", "Pa", "", kPositive, "second Lame constant", "", true);
-  field("shear", "Pa", "", kPositive, "shear modulus", "", true);
-  field("bulk", "Pa", "", kPositive, "bulk modulus", "", true);
+  field({.name = "density",
+         .unit = "kg/m^3",
+         .fallback = "1000.0",
+         .range = kPositive,
+         .meaning = "density at rest",
+         .reason = "water and soft tissue"});
+  field({.name = "young",
+         .unit = "Pa",
+         .fallback = "1e5",
+         .range = kPositive,
+         .meaning = "Young's modulus E",
+         .reason = "soft silicone rubber"});
+  field({.name = "poisson",
+         .fallback = "0.3",
+         .range = {.min = -1, .max = 0.5, .min_open = true, .max_open = true},
+         .meaning = "Poisson's ratio nu",
+         .reason = "linear tets lock above 0.45"});
+  field({.name = "lambda", .unit = "Pa", .required = true, .meaning = "first Lame constant, > -2/3 mu"});
+  field({.name = "mu", .unit = "Pa", .required = true, .range = kPositive, .meaning = "second Lame constant"});
+  field({.name = "shear", .unit = "Pa", .required = true, .range = kPositive, .meaning = "shear modulus"});
+  field({.name = "bulk", .unit = "Pa", .required = true, .range = kPositive, .meaning = "bulk modulus"});
   add_key(s, "material",
           {.name = "file",
            .accepts = kText,

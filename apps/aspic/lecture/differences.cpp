@@ -42,9 +42,9 @@ DifferenceErrors errors_of_differences(const KnownMotion& motion, double t) {
     const Vector first = scaled(plus(q, -1, before), 1 / h);
     const Vector second = scaled(plus(plus(after, -2, q), 1, before), 1 / (h * h));
     errors.h.push_back(h);
-    errors.first.push_back(largest(plus(first, -1, qdot)));
-    errors.second.push_back(largest(plus(second, -1, qddot)));
-    errors.second_ahead.push_back(largest(plus(second, -1, motion.derivative(2, t + h))));
+    errors.first.push_back(max_abs(plus(first, -1, qdot)));
+    errors.second.push_back(max_abs(plus(second, -1, qddot)));
+    errors.second_ahead.push_back(max_abs(plus(second, -1, motion.derivative(2, t + h))));
   }
   return errors;
 }
@@ -83,12 +83,12 @@ void show_differences(const Stage& stage, Sheet& sheet) {
   const Vector from_positions = plus(scaled(step.q_t, 2), -1, previous);
   const Vector from_velocity = plus(step.q_t, step.h, step.qdot);
   const Vector misprint = plus(step.q_t, -step.h, step.qdot);
-  const double error = largest(plus(from_velocity, -1, from_positions));
-  sheet.at_most("|(q_i + h qdot_i) - (2 q_i - q_(i-1))|", error, 4 * kEpsilon * largest(step.q_t), "m",
+  const double error = max_abs(plus(from_velocity, -1, from_positions));
+  sheet.at_most("|(q_i + h qdot_i) - (2 q_i - q_(i-1))|", error, 4 * kEpsilon * max_abs(step.q_t), "m",
                 "four roundings of numbers of the size of q");
   sheet.at_least("|(q_i - h qdot_i) - (2 q_i - q_(i-1))|, the misprinted sign",
-                 largest(plus(misprint, -1, from_positions)), 1e-4, "m", "it is off by 2 h qdot");
-  sheet.show("2 h |qdot_i|", 2 * step.h * largest(step.qdot), "m");
+                 max_abs(plus(misprint, -1, from_positions)), 1e-4, "m", "it is off by 2 h qdot");
+  sheet.show("2 h |qdot_i|", 2 * step.h * max_abs(step.qdot), "m");
 
   const Vector ghost = step.predicted, now = step.q_t;
   const StepReport report = step.scene.simulation.step();
@@ -126,7 +126,7 @@ Trajectory follow(Scene scene, int tip) {
   const Pins pins(model.pins, simulation.state().q);
   const double h = simulation.options().h;
   Trajectory path;
-  path.noise = 4 * kEpsilon * largest(simulation.state().q) / (h * h) *
+  path.noise = 4 * kEpsilon * max_abs(simulation.state().q) / (h * h) *
                norm(mass_times(model, Vector(simulation.state().q.size(), 1.0)));
   for (int i = 0; i < kComparedSteps; ++i) {
     const State old = simulation.state();
@@ -172,15 +172,15 @@ void show_explicit_or_implicit(const Stage& stage, Sheet& sheet) {
                      .add(b.at_old[i])
                      .add(b.at_new[i]));
   sheet.remark("time.integrator switches: symplectic_euler takes dV/dq at q_i, backward_euler at q_(i+1).");
-  sheet.at_most("explicit: |M q'' + dV/dq(q_i)|", largest(a.at_old), a.noise, "N",
+  sheet.at_most("explicit: |M q'' + dV/dq(q_i)|", max_abs(a.at_old), a.noise, "N",
                 "M times four roundings of q over h^2, as q'' comes from three positions");
-  sheet.at_least("explicit: the same with q_(i+1) / with q_i", largest(a.at_new) / largest(a.at_old), 1e3, "",
+  sheet.at_least("explicit: the same with q_(i+1) / with q_i", max_abs(a.at_new) / max_abs(a.at_old), 1e3, "",
                  "it is not the implicit equation");
-  sheet.at_most("implicit: |M q'' + dV/dq(q_(i+1))|", largest(b.at_new), b.threshold + b.noise, "N",
+  sheet.at_most("implicit: |M q'' + dV/dq(q_(i+1))|", max_abs(b.at_new), b.threshold + b.noise, "N",
                 "what the steps were asked for");
-  sheet.at_least("implicit: the same with q_i / with q_(i+1)", largest(b.at_old) / largest(b.at_new), 1e3, "",
+  sheet.at_least("implicit: the same with q_i / with q_(i+1)", max_abs(b.at_old) / max_abs(b.at_new), 1e3, "",
                  "it is not the explicit equation");
-  sheet.show("largest difference of the tip", largest(plus(a.tip, -1, b.tip)), "m", "both are of first order in h");
+  sheet.show("largest difference of the tip", max_abs(plus(a.tip, -1, b.tip)), "m", "both are of first order in h");
   sheet.draw("tip.svg", "The highest vertex, sideways; same start, same h",
              Chart{"explicit or implicit",
                    {"time [s]"},

@@ -38,8 +38,6 @@ Vec3d pull_by_differences(const ActiveTerm& leash, const Vector& q) {
   return force;
 }
 
-double length(const Vec3d& v) { return std::sqrt(dot(v, v)); }
-
 }  // namespace
 
 void show_drag(const Stage& stage, Sheet& sheet) {
@@ -61,9 +59,9 @@ void show_drag(const Stage& stage, Sheet& sheet) {
     const Vector& q = simulation.state().q;
     leash.begin_step({.start = q, .time = report.time});
     const Vec3d F = pull(leash, q);
-    mismatch = std::max(mismatch, length(F - pull_by_differences(leash, q)));
+    mismatch = std::max(mismatch, norm(F - pull_by_differences(leash, q)));
     time.push_back(report.time);
-    force.push_back(length(F));
+    force.push_back(norm(F));
     ear.push_back(
         std::hypot(q[3 * tip] - rest[3 * tip], q[3 * tip + 1] - rest[3 * tip + 1], q[3 * tip + 2] - rest[3 * tip + 2]));
     table.append(
@@ -102,7 +100,7 @@ Drag drag(Scene scene) {
     result.time.push_back(report.time);
     result.energy.push_back(report.kinetic + report.potential_total);
     const Vector& q = scene.simulation.state().q;
-    if (largest(q) < 3) result.shape = q;
+    if (max_abs(q) < 3) result.shape = q;
   });
   return result;
 }

@@ -132,11 +132,11 @@ void show_printed_forward_euler(const Stage& stage, Sheet& sheet) {
   const Vector printed = as_printed(scene("symplectic_euler"), kSteps);
   const Vector symplectic = simulated(scene("symplectic_euler"), kSteps);
   const Vector classical = simulated(scene("forward_euler"), kSteps);
-  const double bound = 2.0 * kSteps * kSteps * kEpsilon * largest(printed);
+  const double bound = 2.0 * kSteps * kSteps * kEpsilon * max_abs(printed);
   sheet.at_most(fmt::format("|printed formula - symplectic_euler| after {} steps", kSteps),
-                largest(plus(printed, -1, symplectic)), bound, "m",
+                max_abs(plus(printed, -1, symplectic)), bound, "m",
                 "n^2 roundings of q: a second difference sums them up twice");
-  sheet.at_least("|printed formula - classical forward_euler|", largest(plus(printed, -1, classical)), 1e4 * bound, "m",
+  sheet.at_least("|printed formula - classical forward_euler|", max_abs(plus(printed, -1, classical)), 1e4 * bound, "m",
                  "another scheme, not another rounding");
   check_oscillator(sheet);
 }
@@ -157,7 +157,7 @@ void show_backward_euler(const Stage& stage, Sheet& sheet) {
   const Run implicit = run(simulation, kSteps, [&](const StepReport& report) {
     const Vector dv = plus(simulation.state().qdot, -1, before.qdot);
     const double excess =
-        report.potential_total + inner(dv, mass_times(model, dv)) / 2 - before_energy;  // E minus E(q_i), over h^2
+        report.potential_total + dot(dv, mass_times(model, dv)) / 2 - before_energy;  // E minus E(q_i), over h^2
     worst = std::max(worst, excess / first);
     before = simulation.state();
     before_energy = report.kinetic + report.potential_total;

@@ -18,7 +18,7 @@ struct SlopeCheck {
 
 // Compares (V(q + s d) - V(q - s d)) / 2s with d'dV/dq.
 SlopeCheck check_slope(const Model& model, const Vector& q, const Vector& d) {
-  const double exact = inner(gradient_of_potential(model, q), d);
+  const double exact = dot(gradient_of_potential(model, q), d);
   SlopeCheck check;
   for (int k = 2; k <= 11; ++k) {
     const double s = std::pow(10, -0.5 * k);

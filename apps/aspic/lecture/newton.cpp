@@ -133,7 +133,7 @@ struct Curve {
 };
 
 Curve curve_through(const LiveIteration& it, double sufficient_decrease) {
-  Curve curve{it.index, inner(it.g, it.d), 0, it.value, {it.tried.begin(), it.tried.end()}, {}};
+  Curve curve{it.index, dot(it.g, it.d), 0, it.value, {it.tried.begin(), it.tried.end()}, {}};
   constexpr double kSmall = 1e-5;
   const Vector ahead = plus(it.x, kSmall, it.d), behind = plus(it.x, -kSmall, it.d);
   curve.measured_slope = (it.E.value(ahead) - it.E.value(behind)) / (2 * kSmall);

@@ -56,14 +56,6 @@ Vector mass_times(const Model& model, std::span<const double> a) {
   return Ma;
 }
 
-double norm(std::span<const double> v) { return std::sqrt(inner(v, v)); }
-
-double largest(std::span<const double> v) {
-  double size = 0;
-  for (const double x : v) size = std::max(size, std::abs(x));
-  return size;
-}
-
 Vector plus(std::span<const double> a, double factor, std::span<const double> b) {
   Vector sum(a.begin(), a.end());
   for (size_t i = 0; i < sum.size(); ++i) sum[i] += factor * b[i];
@@ -74,12 +66,6 @@ Vector scaled(std::span<const double> a, double factor) {
   Vector product(a.begin(), a.end());
   for (double& x : product) x *= factor;
   return product;
-}
-
-double inner(std::span<const double> a, std::span<const double> b) {
-  double sum = 0;
-  for (size_t i = 0; i < a.size(); ++i) sum += a[i] * b[i];
-  return sum;
 }
 
 Vector smooth_direction(const OpenStep& step) {

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "dynamics/incremental_potential.h"
+#include "math/vectors.h"
 #include "scene/scene.h"
 
 namespace aspic::cli::lecture {
@@ -36,11 +37,8 @@ Vector gradient_of_potential(const Model& model, std::span<const double> q);  //
 double potential(const Model& model, std::span<const double> q);              // V(q)
 Vector mass_times(const Model& model, std::span<const double> a);             // M a
 
-double norm(std::span<const double> v);
-double largest(std::span<const double> v);                                         // largest absolute value of an entry
 Vector plus(std::span<const double> a, double factor, std::span<const double> b);  // a + factor b
 Vector scaled(std::span<const double> a, double factor);
-double inner(std::span<const double> a, std::span<const double> b);
 // Fixed smooth displacement of the free vertices with amplitude 1.
 Vector smooth_direction(const OpenStep& step);
 

@@ -71,9 +71,9 @@ void show_optimization(const Stage& stage, Sheet& sheet) {
   step.E.gradient(minimum, g_minimum);
   // E is at least as curved as the inertia where V is convex, so a gradient g means a distance of at most g / m.
   const double bound = (norm(g_root) + norm(g_minimum) + 2 * step.E.scales().gradient_round_off) / step.smallest_mass();
-  sheet.at_most("|root of the equation - minimizer of E|", largest(plus(root.q, -1, minimum)), bound, "m",
+  sheet.at_most("|root of the equation - minimizer of E|", max_abs(plus(root.q, -1, minimum)), bound, "m",
                 "what is left of both gradients over the least eigenvalue of M");
-  sheet.at_most("the bound itself", bound, 1e-3 * largest(plus(minimum, -1, step.q_t)), "m",
+  sheet.at_most("the bound itself", bound, 1e-3 * max_abs(plus(minimum, -1, step.q_t)), "m",
                 "so that it is below a thousandth of the motion of the step");
   sheet.show("iterations of root finding", static_cast<double>(root.residuals.size()) - 1, "");
   sheet.show("iterations of minimizing", report.iterations, "");

@@ -26,7 +26,7 @@ Departure departure(Objective& E, const Vector& x, const Vector& d) {
   E.hessian(x, {Definiteness::exact}).multiply(d, Hd);
   Departure result;
   for (const double s : {1.0, 0.5, 0.25, 0.125, 0.0625}) {
-    const double model = value + s * inner(g, d) + s * s / 2 * inner(d, Hd);
+    const double model = value + s * dot(g, d) + s * s / 2 * dot(d, Hd);
     result.s.push_back(s);
     result.error.push_back(std::abs(E.value(plus(x, s, d)) - model));
   }
@@ -64,7 +64,7 @@ Vector swelling(const OpenStep& step) {
   Vector d(step.start.size());
   for (size_t i = 0; i < d.size(); ++i) d[i] = step.start[i] - step.start[i % 3];
   step.pins.set_zero(d);
-  return scaled(d, 0.05 / largest(d));
+  return scaled(d, 0.05 / max_abs(d));
 }
 
 void show_on_rosenbrock(Sheet& sheet) {

@@ -10,6 +10,7 @@
 #include "base/error.h"
 #include "io/mesh_file.h"
 #include "io/tetrahedralize.h"
+#include "mesh/box.h"
 #include "scene/scene_files.h"
 
 namespace aspic::cli::lecture {
@@ -19,13 +20,7 @@ namespace fs = std::filesystem;
 
 double largest_extent(const std::vector<Vec3d>& X, const fs::path& path) {
   if (X.empty()) throw InvalidInput(path.string() + ": has no vertices");
-  Vec3d lower = X[0], upper = X[0];
-  for (const Vec3d& P : X)
-    for (int r = 0; r < 3; ++r) {
-      lower[r] = std::min(lower[r], P[r]);
-      upper[r] = std::max(upper[r], P[r]);
-    }
-  const double extent = std::max({upper[0] - lower[0], upper[1] - lower[1], upper[2] - lower[2]});
+  const double extent = longest_side(bounding_box(X));
   if (!(extent > 0) || !std::isfinite(extent)) throw InvalidInput(path.string() + ": has no extent");
   return extent;
 }

@@ -57,14 +57,14 @@ Vector position_of(VelocityForm& form, const Vector& v) {
 double distance(const std::vector<Vector>& q, const std::vector<Vector>& v, VelocityForm& form) {
   if (q.size() != v.size()) return INFINITY;
   double most = 0;
-  for (size_t k = 0; k < q.size(); ++k) most = std::max(most, largest(plus(position_of(form, v[k]), -1, q[k])));
+  for (size_t k = 0; k < q.size(); ++k) most = std::max(most, max_abs(plus(position_of(form, v[k]), -1, q[k])));
   return most;
 }
 
 // E(v) as on the slide, from its parts.
 double printed_E(const OpenStep& step, const Vector& v) {
   const Vector dv = plus(v, -1, scaled(plus(step.predicted, -1, step.q_t), 1 / step.h));
-  return inner(dv, mass_times(step.model(), dv)) / 2 + potential(step.model(), plus(step.q_t, step.h, v));
+  return dot(dv, mass_times(step.model(), dv)) / 2 + potential(step.model(), plus(step.q_t, step.h, v));
 }
 
 }  // namespace
@@ -95,11 +95,11 @@ void show_velocity_form(const Stage& stage, Sheet& sheet) {
   Newton newton_q(make_linear_solver("cholesky")), newton_v(make_linear_solver("cholesky"));
   const auto q = iterates(step.E, newton_q, step.start, 50), v = iterates(form, newton_v, v0, 50);
   // The error of H d = -g is the round-off of the gradient over the smallest eigenvalue of H >= M.
-  const double noise = 4 * step.E.scales().gradient_round_off / step.smallest_mass() + 4 * kEpsilon * largest(step.q_t);
+  const double noise = 4 * step.E.scales().gradient_round_off / step.smallest_mass() + 4 * kEpsilon * max_abs(step.q_t);
   sheet.show("Newton iterations", static_cast<double>(q.size()) - 1, "");
   sheet.at_most("Newton: largest distance between the iterates of both forms", distance(q, v, form), noise, "m",
                 "round-off of the gradient over the least eigenvalue of M");
-  sheet.at_least("Newton: length of the first step", largest(plus(q[1], -1, q[0])), 1e3 * noise, "m",
+  sheet.at_least("Newton: length of the first step", max_abs(plus(q[1], -1, q[0])), 1e3 * noise, "m",
                  "the iterates do move");
 
   GradientDescent descent;
@@ -126,7 +126,7 @@ void show_velocity_form(const Stage& stage, Sheet& sheet) {
       "gradient descent takes different paths, and Newton's method the same.");
   CsvFile table = sheet.table("iterates.csv", {"iteration", "newton_distance_m"});
   for (size_t k = 0; k < std::min(q.size(), v.size()); ++k)
-    table.append(CsvRow().add(static_cast<int>(k)).add(largest(plus(position_of(form, v[k]), -1, q[k]))));
+    table.append(CsvRow().add(static_cast<int>(k)).add(max_abs(plus(position_of(form, v[k]), -1, q[k]))));
 }
 
 }  // namespace aspic::cli::lecture

@@ -1,0 +1,45 @@
+// The commands and questions of a page, by name. docs/viewer_protocol.md describes them.
+#pragma once
+#include <functional>
+#include <map>
+#include <string>
+
+#include "viewer/arguments.h"
+
+namespace aspic {
+struct Model;
+struct Tip;
+class StopToken;
+}  // namespace aspic
+
+namespace aspic::viewer {
+
+class FitState;
+class Playback;
+class Stage;
+struct SessionOptions;
+struct Surface;
+
+struct Command {
+  std::function<void(Arguments& arguments)> carry_out;  // throws InvalidInput
+  bool takes_over = true;                               // changes the physics, which ends a replay
+};
+// The function of a command without members.
+template <class Act>
+std::function<void(Arguments&)> plain(Act act) {
+  return [act](Arguments& arguments) { arguments.finish(), act(); };
+}
+using Commands = std::map<std::string, Command>;
+using Questions = std::map<std::string, std::function<Json(Arguments& arguments)>>;
+
+void add_hand_commands(Stage& stage, Commands& commands);      // grab, move, release, stiffness, pin
+void add_indenter_commands(Stage& stage, Commands& commands);  // touch, press, lift
+// set, load, lesson, compare, end_compare, replay, color, surface
+void add_scene_commands(const SessionOptions& options, Stage& stage, Playback& playback, Commands& commands);
+void add_questions(const SessionOptions& options, Stage& stage, const Playback& playback, const FitState& fit,
+                   Questions& questions);
+
+// The tip that a command describes, with defaults for what it leaves out. Throws InvalidInput.
+Tip tip_of(Arguments& arguments, const Model& model, const Surface& cage);
+
+}  // namespace aspic::viewer

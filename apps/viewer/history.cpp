@@ -1,0 +1,93 @@
+#include "viewer/history.h"
+
+#include <fmt/format.h>
+
+#include "base/error.h"
+
+namespace aspic::viewer {
+
+History::History(const Simulation& simulation, size_t timeline_bytes)
+    : start_(std::make_shared<const State>(simulation.snapshot().start)),
+      start_time_(start_->time),
+      timeline_(timeline_bytes) {}
+
+double History::end_of_next_step(const Simulation& simulation) const {
+  return start_time_ + (simulation.steps_taken() + 1) * simulation.options().h;
+}
+
+Snapshot History::snapshot_of(const Simulation& simulation) const {
+  Simulation::Snapshot now = simulation.snapshot();
+  return {.step = now.steps_taken,
+          .state = std::move(now.state),
+          .previous = std::move(now.previous),
+          .level = now.level,
+          .outside_work = now.outside_work,
+          .start_time = start_time_,
+          .h = simulation.options().h,
+          .integrator = simulation.options().integrator,
+          .settings = settings_};
+}
+
+void History::add(Snapshot snapshot) { timeline_.add(std::move(snapshot)); }
+
+void History::add(Snapshot snapshot, StepRow row) {
+  if (snapshot.acted.stiffness > 0) pulls_.push_back({snapshot.step, snapshot.acted});
+  rows_.add(std::move(row));
+  add(std::move(snapshot));
+}
+
+void History::replace_last(Snapshot snapshot) {
+  const Snapshot& last = timeline_.last();
+  snapshot.acted = last.acted;
+  snapshot.poked = last.poked;
+  snapshot.settings = last.settings;
+  timeline_.drop_after(snapshot.step - 1);
+  add(std::move(snapshot));
+}
+
+Snapshot History::return_to(int step) {
+  Snapshot snapshot = timeline_.nearest(step);
+  timeline_.drop_after(snapshot.step);
+  rows_.drop_after(snapshot.step);
+  while (!pulls_.empty() && pulls_.back().step > snapshot.step) pulls_.pop_back();
+  return snapshot;
+}
+
+// A simulation counts steps from its start. After a change of the step length it continues from its state, and the
+// start moves to where the same number of steps of the new length would have begun.
+Simulation::Snapshot History::simulation_state(const Snapshot& snapshot, const SimulationOptions& options) const {
+  const bool is_same_step = options.h == snapshot.h;
+  State start = *start_;
+  start.time = is_same_step ? snapshot.start_time : snapshot.state.time - snapshot.step * options.h;
+  return {.state = snapshot.state,
+          .start = std::move(start),
+          .steps_taken = snapshot.step,
+          .level = snapshot.level,
+          .previous = is_same_step && options.integrator == snapshot.integrator ? snapshot.previous : std::nullopt,
+          .outside_work = snapshot.outside_work};
+}
+
+void History::restore(const Snapshot& snapshot, Simulation& simulation) {
+  const Simulation::Snapshot state = simulation_state(snapshot, simulation.options());
+  simulation.restore(state);
+  start_time_ = state.start.time;
+}
+
+const Snapshot* History::restore_start_of(int step, Simulation& simulation) const {
+  const int taken = simulation.steps_taken();
+  const bool is_next = step == taken + 1;
+  const Snapshot* before = timeline_.find(step - 1);
+  const Snapshot* after = is_next ? nullptr : timeline_.find(step);
+  if (!before || (!is_next && !after))
+    throw InvalidInput(fmt::format("step {} cannot be repeated: {}", step,
+                                   step < 1 || step > taken + 1
+                                       ? fmt::format("there are steps 1 to {}", taken + 1)
+                                       : "where it began is no longer remembered (look at a later one)"));
+  if (after && after->settings != settings_)
+    throw InvalidInput(
+        fmt::format("step {} was taken with other settings or pins than now, so it cannot be repeated", step));
+  simulation.restore(simulation_state(*before, simulation.options()));
+  return after;
+}
+
+}  // namespace aspic::viewer

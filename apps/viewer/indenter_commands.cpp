@@ -1,0 +1,110 @@
+// The commands of the indenter: touch, press and lift.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/error.h"
+#include "mesh/box.h"
+#include "mesh/tet_shape.h"
+#include "viewer/commands.h"
+#include "viewer/scene_json.h"
+#include "viewer/stage.h"
+#include "viewer/touch_place.h"
+
+namespace aspic::viewer {
+namespace {
+
+constexpr double kDeepestTip = 10;  // relative to the size of the body
+
+double size_of(const Surface& surface) {
+  const Box box = bounding_box(surface.rest);
+  return norm(box.upper - box.lower);
+}
+
+double positive(Arguments& arguments, const char* key, double most) {
+  const double value = arguments.number(key);
+  if (!(value > 0 && value <= most))
+    refuse(key, value, fmt::format("a positive number, at most {:g}, is expected", most));
+  return value;
+}
+
+Json command_of(const SurfacePoint& point, const Tip& tip) {
+  Json command = tip_json(tip);
+  command.update({{"do", "touch"}, {"side", "a"}, {"triangle", point.triangle}, {"weights", json_of(point.weights)}});
+  return command;
+}
+
+// The tip touches the boundary of the tets, even if a skin is shown.
+void touch(Stage& stage, Arguments& arguments) {
+  const ShownSide& touched = stage.named(arguments);
+  const int triangle = arguments.integer("triangle", 0, touched.surface.triangle_count() - 1);
+  const SurfacePoint shown_point{triangle, arguments.weights("weights")};
+  const Model& model = stage.a().side.model();
+  const Tip tip = tip_of(arguments, model, boundary_of(model));
+  arguments.finish();
+  const Surface& surface = stage.a().surface;
+  const SurfacePoint point = &touched == stage.b() ? same_point(touched.surface, shown_point, surface) : shown_point;
+  std::vector<std::shared_ptr<const Touch>> touches;
+  for (const ShownSide& shown : stage.sides()) {
+    const Surface cage = boundary_of(shown.side.model());
+    const SurfacePoint here = same_point(surface, point, cage);
+    touches.push_back(std::make_shared<const Touch>(
+        touch_at(shown.side.model(), cage, here, tip, shown.side.simulation().state().q)));
+  }
+  for (size_t s = 0; s < touches.size(); ++s)
+    stage.sides()[s].side.edit([&](Tools& tools, Positions) { tools.indenter.touch(touches[s]); });
+  stage.record(command_of(point, tip));
+}
+
+void press(Stage& stage, Arguments& arguments) {
+  const double depth = arguments.number("depth");
+  const Vec3d shift = arguments.has("shift") ? arguments.vector("shift") : Vec3d{};
+  arguments.finish();
+  if (!stage.a().side.tools().indenter.touch())
+    throw InvalidInput("press: there is no tip; let it touch the body first");
+  const double most = kDeepestTip * size_of(stage.a().surface);
+  if (!(std::abs(depth) <= most && norm(shift) <= most))
+    throw InvalidInput(fmt::format("press: further than {:g} m; choose less", most));
+  Json done = {{"do", "press"}, {"depth", depth}};
+  if (dot(shift, shift) > 0) done["shift"] = json_of(shift);
+  stage.record(std::move(done));
+  for (ShownSide& shown : stage.sides())
+    if (const Touch* touch = shown.side.tools().indenter.touch())
+      shown.side.aim([&](Tools& tools) { tools.indenter.move(pressed(*touch, depth, shift)); });
+}
+
+void lift(Stage& stage) {
+  if (!stage.a().side.tools().indenter.touch()) return;
+  stage.record({{"do", "lift"}});
+  for (ShownSide& shown : stage.sides())
+    if (shown.side.tools().indenter.touch()) shown.side.edit([](Tools& tools, Positions) { tools.indenter.lift(); });
+}
+
+}  // namespace
+
+Tip tip_of(Arguments& touch, const Model& model, const Surface& cage) {
+  Tip tip{.radius = usual_radius(cage)};
+  if (touch.has("shape")) {
+    const Json& shape = touch.value("shape");
+    if (shape != "sphere" && shape != "disc") refuse("touch.shape", shape, "'sphere' or 'disc' is expected");
+    tip.shape = shape == "disc" ? TipShape::disc : TipShape::sphere;
+  }
+  if (touch.has("contact")) {
+    const Json& contact = touch.value("contact");
+    if (contact != "bonded" && contact != "sliding")
+      refuse("touch.contact", contact, "'bonded' or 'sliding' is expected");
+    tip.contact = contact == "sliding" ? TipContact::sliding : TipContact::bonded;
+  }
+  if (touch.has("radius")) tip.radius = positive(touch, "radius", kDeepestTip * size_of(cage));
+  tip.stiffness = touch.has("stiffness") ? positive(touch, "stiffness", 1e20) : usual_layer(model, tip.radius);
+  return tip;
+}
+
+void add_indenter_commands(Stage& stage, Commands& commands) {
+  commands["touch"] = {[&](Arguments& a) { touch(stage, a); }};
+  commands["press"] = {[&](Arguments& a) { press(stage, a); }};
+  commands["lift"] = {plain([&] { lift(stage); })};
+}
+
+}  // namespace aspic::viewer

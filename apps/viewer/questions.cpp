@@ -1,0 +1,120 @@
+// The questions of a page: they change nothing, and any page may send them.
+#include <fmt/format.h>
+
+#include <limits>
+
+#include "base/error.h"
+#include "io/atomic_file.h"
+#include "io/external_program.h"
+#include "io/mesh_file.h"
+#include "viewer/animation.h"
+#include "viewer/commands.h"
+#include "viewer/fit_state.h"
+#include "viewer/function_query.h"
+#include "viewer/iteration_query.h"
+#include "viewer/place_query.h"
+#include "viewer/playback.h"
+#include "viewer/saved_scene.h"
+
+namespace aspic::viewer {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr int kMostTets = 500'000;  // of a mesh for a page: about 60 MB of text
+constexpr int kMostInt = std::numeric_limits<int>::max();
+
+// The deformed mesh with the vertex and tet numbers of the user.
+std::string mesh_text(const ShownSide& shown, const std::string& format) {
+  const Model& model = shown.side.model();
+  if (model.mesh.tet_count() > kMostTets)
+    throw InvalidInput(
+        fmt::format("a mesh of {} tets; at most {} are given to a page (a run writes its frames: "
+                    "aspic run)",
+                    model.mesh.tet_count(), kMostTets));
+  const TemporaryFolder folder;
+  const fs::path path = folder.path() / ("mesh." + format);
+  const Positions x = shown.side.positions();
+  if (format == "obj" || format == "ply") {
+    TriMesh mesh{shown.surface.rest, shown.surface.triangles};
+    for (int v = 0; v < mesh.vertex_count(); ++v) mesh.vertices[v] = shown.surface.position(v, x);
+    write_mesh(path, mesh);
+  } else {
+    TetMesh mesh = model.mesh;
+    for (size_t v = 0; v < mesh.rest.size(); ++v)
+      for (int r = 0; r < 3; ++r) mesh.rest[v][r] = x[3 * v + r];
+    write_mesh(path, to_user(model.numbering, mesh));
+  }
+  return read_file(path);
+}
+
+Json mesh_reply(const ShownSide& shown, const Json& format) {
+  for (const char* known : {"obj", "ply", "vtu", "msh", "mesh"})
+    if (format == known)
+      return {{"name", fmt::format("{}_{:06}.{}", shown.side.steered().scene.name, shown.side.steps_taken(), known)},
+              {"text", mesh_text(shown, known)}};
+  refuse("mesh.format", format, "'obj', 'ply', 'vtu', 'msh' or 'mesh' is expected");
+}
+
+Json gallery_reply(const Gallery& gallery) {
+  Json reply = {{"scenes", Json::array()}, {"recent", Json::array()}};
+  for (const OfferedScene& scene : gallery.scenes)
+    reply["scenes"].push_back({{"name", scene.name}, {"about", scene.about}, {"path", scene.path.string()}});
+  for (const fs::path& path : gallery.recent) reply["recent"].push_back(path.string());
+  return reply;
+}
+
+}  // namespace
+
+void add_questions(const SessionOptions& options, Stage& stage, const Playback& playback, const FitState& fit,
+                   Questions& questions) {
+  const auto add = [&](const char* name, auto reply) {
+    questions[name] = [&stage, reply](Arguments& arguments) { return reply(stage.named(arguments), arguments); };
+  };
+  add("vertex", [](ShownSide& shown, Arguments& arguments) {
+    const int vertex = arguments.integer("vertex", 0, shown.surface.vertex_count() - 1);
+    arguments.finish();
+    return vertex_reply(shown, vertex);
+  });
+  add("tet", [](ShownSide& shown, Arguments& arguments) {
+    const int triangle = arguments.integer("triangle", 0, shown.surface.triangle_count() - 1);
+    arguments.finish();
+    return tet_reply(shown, triangle);
+  });
+  add("iteration", [&playback](ShownSide& shown, Arguments& arguments) {
+    const int step = arguments.integer("step", 1, kMostInt), iteration = arguments.integer("iteration", 0, kMostInt);
+    arguments.finish();
+    return iteration_reply(shown.side, step, iteration, playback.stop_token());
+  });
+  const auto add_file = [&](const char* name, auto reply_of) {
+    add(name, [reply_of](ShownSide& shown, Arguments& arguments) {
+      const Json& format = arguments.value("format");
+      arguments.finish();
+      return reply_of(shown, format);
+    });
+  };
+  add_file("mesh", mesh_reply);
+  add_file("animation", animation_reply);
+  const auto add_plain = [&](const char* name, auto reply_of) {
+    add(name, [reply_of](ShownSide& shown, Arguments& arguments) {
+      arguments.finish();
+      return reply_of(shown);
+    });
+  };
+  add_plain("worst", worst_reply);
+  add_plain("scene", [](ShownSide& s) { return scene_reply(saved_scene(s.side, SavedHand::with_drags)); });
+  add_plain("scene_files",
+            [](ShownSide& s) { return scene_files_reply(saved_scene(s.side, SavedHand::without_drags)); });
+  questions["function"] = function_reply;
+  questions["gallery"] = [&](Arguments& arguments) {
+    arguments.finish();
+    return gallery_reply(options.gallery ? options.gallery() : Gallery{});
+  };
+  questions["recording"] = [&](Arguments& arguments) {
+    arguments.finish();
+    fit.require_saved_material();
+    return to_json(stage.recording());
+  };
+}
+
+}  // namespace aspic::viewer

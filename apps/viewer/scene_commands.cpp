@@ -1,0 +1,160 @@
+// The commands about what is simulated and shown: settings, scenes, comparisons, replays, colors and surfaces.
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "base/error.h"
+#include "viewer/commands.h"
+#include "viewer/playback.h"
+#include "viewer/settings.h"
+#include "viewer/upload.h"
+
+namespace aspic::viewer {
+namespace {
+
+using Overrides = std::vector<std::string>;
+using Uploaded = std::shared_ptr<const TemporaryFolder>;
+
+constexpr size_t kMostRecordingBytes = size_t{32} << 20;
+
+void set(const SessionOptions& options, Stage& stage, Arguments& arguments) {
+  const std::string key = arguments.text("key", 200);
+  const Json value = arguments.value("value");
+  const ShownSide* only = arguments.has("side") ? &stage.named(arguments) : nullptr;
+  arguments.finish();
+  const auto is_compared = [&] {  // such a key keeps its values
+    return stage.comparison() &&
+           std::ranges::any_of(stage.comparison()->overrides, [&](const std::string& o) { return key_of(o) == key; });
+  };
+  struct Prepared {
+    ShownSide& shown;
+    SceneChange change;
+  };
+  std::vector<Prepared> prepared;
+  Busy busy(options);
+  for (ShownSide& shown : stage.sides()) {
+    if (only ? only != &shown : &shown == stage.b() && is_compared()) continue;
+    const SteeredScene& steered = shown.side.steered();
+    const std::string change = value.is_null() ? setting_key(key) : setting_override(steered.document, key, value);
+    prepared.push_back({shown, changed_scene(steered, change, std::ref(busy))});
+  }
+  for (Prepared& p : prepared) {
+    p.shown.side.apply(std::move(p.change));
+    stage.send_scene(p.shown);
+  }
+  stage.body_changed();
+  Json done = {{"do", "set"}, {"key", key}, {"value", value}};
+  if (only) done["side"] = only->name;
+  stage.record(std::move(done));
+}
+
+// Returns the files that the page brought along; null: none.
+Uploaded load(const SessionOptions& options, Stage& stage, Playback& playback, Arguments& arguments) {
+  const std::string path = arguments.text("scene");
+  const Overrides overrides = arguments.has("overrides") ? arguments.texts("overrides") : Overrides{};
+  Uploaded files;
+  if (arguments.has("files")) files = written_upload(arguments.value("files"));
+  arguments.finish();
+  const std::filesystem::path place = files ? uploaded_file(*files, path) : std::filesystem::path(path);
+  playback.install(stage.loaded(place, overrides));
+  if (!files && options.note_loaded) options.note_loaded(place);
+  return files;
+}
+
+const Lesson& lesson_of(const std::vector<Lesson>& lessons, const std::string& id) {
+  std::vector<std::string> known;
+  for (const Lesson& lesson : lessons) {
+    known.push_back(lesson.id);
+    if (lesson.id != id) continue;
+    if (!lesson.missing.empty()) throw InvalidInput(lesson.missing);
+    return lesson;
+  }
+  throw InvalidInput(fmt::format("no lesson '{}'{}", id, suggestion(id, known)));
+}
+
+Overrides with_overrides(Overrides overrides, const Overrides& further) {
+  for (const std::string& text : further) overrides = with_override(std::move(overrides), text);
+  return overrides;
+}
+
+void lesson(const SessionOptions& options, Stage& stage, Playback& playback, Arguments& arguments) {
+  const std::string id = arguments.text("lesson", 200);
+  arguments.finish();
+  const Lesson& lesson = lesson_of(options.lessons, id);
+  if (lesson.scene.empty()) return;  // only its panel is opened
+  std::optional<Recording> recording;
+  if (lesson.recording) recording = read_recording(parse_json(lesson.recording(), kMostRecordingBytes));
+  std::optional<Recording::Comparison> compared;
+  std::optional<Overrides> of_b;
+  if (!lesson.comparison.empty()) {
+    compared = {lesson.comparison.front().overrides, lesson.comparison.front().label};
+    of_b = with_overrides(lesson.overrides, compared->overrides);
+  }
+  std::vector<ShownSide> sides = stage.loaded(lesson.scene, lesson.overrides, of_b);
+  stage.set_field(lesson.field);
+  playback.install(std::move(sides), std::move(compared), std::move(recording));
+}
+
+void compare(Stage& stage, Playback& playback, Arguments& arguments) {
+  Recording::Comparison compared{arguments.texts("overrides"), arguments.text("label", 200)};
+  arguments.finish();
+  for (const std::string& text : compared.overrides)
+    if (text.find('=') == std::string::npos)  // with_override() would drop a setting
+      throw InvalidInput("overrides: '" + text + "' is not KEY=VALUE");
+  const SteeredScene& steered = stage.a().side.steered();
+  std::vector<ShownSide> sides =
+      stage.loaded(steered.path, steered.overrides, with_overrides(steered.overrides, compared.overrides));
+  playback.install(std::move(sides), std::move(compared));
+}
+
+void replay(Stage& stage, Playback& playback, Arguments& arguments) {
+  Recording recording = read_recording(arguments.value("recording"));
+  arguments.finish();
+  std::optional<Recording::Comparison> compared = recording.compare;
+  std::optional<Overrides> of_b;
+  if (compared) of_b = with_overrides(recording.overrides, compared->overrides);
+  std::vector<ShownSide> sides = stage.loaded(recording.scene, recording.overrides, of_b);
+  playback.install(std::move(sides), std::move(compared), std::move(recording));
+}
+
+void color(Stage& stage, Arguments& arguments) {
+  const std::string name = arguments.text("field", 100);
+  arguments.finish();
+  std::vector<std::string> known;
+  for (const Field& f : stage.a().fields()) known.push_back(f.name);
+  if (!name.empty() && !stage.a().has_field(name))
+    throw InvalidInput(fmt::format("no field '{}'{}", name, suggestion(name, known)));
+  stage.set_field(name);
+  stage.mark_changed();
+  for (const ShownSide& shown : stage.sides()) stage.send_scene(shown);
+}
+
+void surface(Stage& stage, Arguments& arguments) {
+  const std::string which = arguments.text("which", 20);
+  arguments.finish();
+  if (which != "skin" && which != "cage") refuse("surface.which", which, "'skin' or 'cage' is expected");
+  stage.show_surface(which == "skin");
+  for (const ShownSide& shown : stage.sides()) {
+    stage.send_scene(shown);
+    stage.send(geometry_message(shown));
+    stage.send(pins_message(shown));
+  }
+  stage.record({{"do", "surface"}, {"which", which}});
+}
+
+}  // namespace
+
+void add_scene_commands(const SessionOptions& options, Stage& stage, Playback& playback, Commands& commands) {
+  commands["set"] = {[&](Arguments& a) { set(options, stage, a); }};
+  commands["load"] = {[&, latest = Uploaded()](Arguments& a) mutable {
+    if (Uploaded files = load(options, stage, playback, a)) latest = std::move(files);
+  }};
+  commands["lesson"] = {[&](Arguments& a) { lesson(options, stage, playback, a); }, false};
+  commands["compare"] = {[&](Arguments& a) { compare(stage, playback, a); }};
+  commands["end_compare"] = {plain([&] { stage.end_comparison(); })};
+  commands["replay"] = {[&](Arguments& a) { replay(stage, playback, a); }, false};
+  commands["color"] = {[&](Arguments& a) { color(stage, a); }, false};
+  commands["surface"] = {[&](Arguments& a) { surface(stage, a); }};
+}
+
+}  // namespace aspic::viewer

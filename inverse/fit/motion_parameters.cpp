@@ -1,0 +1,226 @@
+#include "fit/motion_parameters.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/error.h"
+#include "dynamics/model_builder.h"
+#include "energy/linear_load.h"
+#include "energy/rayleigh_damping.h"
+#include "fit/quantity_scale.h"
+#include "mesh/tet_shape.h"
+
+namespace aspic {
+namespace {
+
+const char* const kAxes[] = {"_x", "_y", "_z"};
+const QuantityScale kPoisson = QuantityScale::bounded(-1, 0.5);
+
+bool are_equal(const std::vector<double>& values) {
+  const auto [least, largest] = std::minmax_element(values.begin(), values.end());
+  return *largest - *least <= 1e-9 * std::abs(*largest);
+}
+
+double mean(const std::vector<double>& values, const std::vector<double>& volume) {
+  if (are_equal(values)) return values[0];
+  double sum = 0, total = 0;
+  for (size_t t = 0; t < values.size(); ++t) sum += volume[t] * values[t], total += volume[t];
+  return sum / total;
+}
+
+Vec3d node(std::span<const double> x, size_t vertex) { return {{x[3 * vertex], x[3 * vertex + 1], x[3 * vertex + 2]}}; }
+
+double speed_of(const Vec3d& v) { return std::sqrt(dot(v, v)); }
+
+}  // namespace
+
+std::vector<std::string> MotionParameters::names() {
+  return {"young",     "poisson",  "density",         "mass_damping", "stiffness_damping",
+          "viscosity", "velocity", "angular_velocity"};
+}
+
+MotionParameters::MotionParameters(MotionModel model, const std::vector<std::string>& names, const MotionScales& scales)
+    : model_(std::move(model)), gravity_(gravity_of(model_.model, model_.start.q)) {
+  const Model& m = model_.model;
+  if (m.bodies.size() > 1 || m.elasticity.size() != 1)
+    throw InvalidInput("the model has " + std::to_string(m.bodies.size()) +
+                       " bodies; a motion is fitted to one body, so keep only the one with the markers");
+  const auto material = m.elasticity[0]->parameters();
+  material_.assign(material.begin(), material.end());
+  density_ = m.density;
+  for (int t = 0; t < m.mesh.tet_count(); ++t) volume_.push_back(volume(m.mesh, t));
+  for (size_t v = 0; v < m.mass->vertex_mass().size(); ++v)
+    center_ = center_ + m.mass->vertex_mass()[v] / m.mass->total() * node(model_.start.q, v);
+  if (names.empty()) throw InvalidInput("no parameter to fit is given" + suggestion("", MotionParameters::names()));
+  for (size_t i = 0; i < names.size(); ++i) {
+    if (std::find(names.begin(), names.begin() + i, names[i]) != names.begin() + i)
+      throw InvalidInput("the parameter '" + names[i] + "' is given twice");
+    add(names[i], scales);
+  }
+}
+
+void MotionParameters::add(const std::string& name, const MotionScales& scales) {
+  const MotionValues guess = values({});
+  if ((name == "young" || name == "poisson") && !(guess.young > 0))
+    throw InvalidInput("'" + name + "' cannot be fitted: the body has no elasticity");
+  if (name == "young") {
+    add_positive(Kind::young, {name, "Pa", guess.young});
+  } else if (name == "poisson") {
+    std::vector<double> poisson;
+    for (const MaterialParameters& p : material_) poisson.push_back(poisson_ratio(p.lame));
+    if (!are_equal(poisson))
+      throw InvalidInput("'poisson' cannot be fitted: it differs from tet to tet (try --set material.poisson=0.4)");
+    entries_.push_back({Kind::poisson});
+    parameters_.push_back({name, "", guess.poisson});
+  } else if (name == "density") {
+    if (!gravity_) throw InvalidInput("'density' cannot be fitted: the load 'gravity' is not the weight of the body");
+    add_positive(Kind::density, {name, "kg/m^3", guess.density});
+  } else if (name == "mass_damping") {
+    add_positive(Kind::mass_damping, guess.mass_damping > 0 ? MotionParameter{name, "1/s", guess.mass_damping}
+                                                            : MotionParameter{name, "1/s", 1 / scales.duration,
+                                                                              "1 / duration of the data"});
+  } else if (name == "stiffness_damping") {
+    add_positive(Kind::stiffness_damping, guess.stiffness_damping > 0
+                                              ? MotionParameter{name, "s", guess.stiffness_damping}
+                                              : MotionParameter{name, "s", scales.time_step, "the time step"});
+  } else if (name == "viscosity") {
+    if (guess.viscosity > 0) return add_positive(Kind::viscosity, {name, "Pa s", guess.viscosity});
+    const double viscosity = scales.time_step * std::max(guess.young, guess.density * scales.speed * scales.speed);
+    if (!(viscosity > 0)) throw InvalidInput("'viscosity' needs a guess > 0 (try --set damping.viscosity=1)");
+    add_positive(Kind::viscosity, {name, "Pa s", viscosity, "young * time step"});
+    model_.viscosity.assign(volume_.size(), viscosity);
+  } else if (name == "velocity") {
+    const double speed = std::max(scales.speed, speed_of(guess.velocity));
+    add_vector(Kind::velocity, {name, "m/s"}, guess.velocity, speed > 0 ? speed : 1);
+  } else if (name == "angular_velocity") {
+    const double speed = std::max(scales.speed / scales.size, speed_of(guess.angular_velocity));
+    add_vector(Kind::angular_velocity, {name, "rad/s"}, guess.angular_velocity, speed > 0 ? speed : 1);
+  } else {
+    throw InvalidInput("unknown parameter '" + name + "'" + suggestion(name, names()));
+  }
+}
+
+void MotionParameters::add_positive(Kind kind, const MotionParameter& parameter) {
+  entries_.push_back({kind});
+  parameters_.push_back(parameter);
+  parameters_.back().can_vanish =
+      kind == Kind::mass_damping || kind == Kind::stiffness_damping || kind == Kind::viscosity;
+}
+
+void MotionParameters::add_vector(Kind kind, const MotionParameter& parameter, const Vec3d& guess, double unit) {
+  for (int axis = 0; axis < 3; ++axis) {
+    entries_.push_back({kind, axis, unit});
+    parameters_.push_back({parameter.name + kAxes[axis], parameter.unit, guess[axis]});
+  }
+}
+
+double MotionParameters::value(int i, double p) const {
+  const auto& [kind, axis, unit] = entries_[i];
+  const double guess = parameters_[i].guess;
+  if (kind == Kind::velocity || kind == Kind::angular_velocity) return guess + unit * p;
+  return kind == Kind::poisson ? kPoisson.value(kPoisson.fitted(guess) + p) : guess * std::exp(p);
+}
+
+double MotionParameters::slope(int i, double p) const {
+  const auto& [kind, axis, unit] = entries_[i];
+  if (kind == Kind::velocity || kind == Kind::angular_velocity) return unit;
+  return kind == Kind::poisson ? kPoisson.slope(kPoisson.fitted(parameters_[i].guess) + p) : value(i, p);
+}
+
+double MotionParameters::number(Kind kind, std::span<const double> p, double fallback) const {
+  for (size_t i = 0; i < p.size(); ++i)
+    if (entries_[i].kind == kind) return value(static_cast<int>(i), p[i]);
+  return fallback;
+}
+
+Vec3d MotionParameters::vector(Kind kind, std::span<const double> p, const Vec3d& fallback) const {
+  Vec3d v = fallback;
+  for (size_t i = 0; i < p.size(); ++i)
+    if (entries_[i].kind == kind) v[entries_[i].axis] = value(static_cast<int>(i), p[i]);
+  return v;
+}
+
+double MotionParameters::factor(Kind kind, std::span<const double> p) const {
+  for (size_t i = 0; i < p.size(); ++i)
+    if (entries_[i].kind == kind) return std::exp(p[i]);
+  return 1;
+}
+
+MotionValues MotionParameters::values(std::span<const double> p) const {
+  std::vector<double> young, poisson;
+  for (const MaterialParameters& m : material(p)) {
+    young.push_back(m.lame.mu > 0 ? young_modulus(m.lame) : 0);
+    poisson.push_back(m.lame.mu > 0 ? poisson_ratio(m.lame) : 0);
+  }
+  return {.young = mean(young, volume_),
+          .poisson = mean(poisson, volume_),
+          .density = mean(density(p), volume_),
+          .mass_damping = number(Kind::mass_damping, p, model_.mass_damping),
+          .stiffness_damping = number(Kind::stiffness_damping, p, model_.stiffness_damping),
+          .viscosity = model_.viscosity.empty() ? 0 : mean(viscosity(p), volume_),
+          .velocity = vector(Kind::velocity, p, model_.velocity),
+          .angular_velocity = vector(Kind::angular_velocity, p, model_.angular_velocity)};
+}
+
+std::vector<MaterialParameters> MotionParameters::material(std::span<const double> p) const {
+  std::vector<MaterialParameters> material = material_;
+  const double stiffer = factor(Kind::young, p), poisson = number(Kind::poisson, p, 2);  // 2: not fitted
+  for (MaterialParameters& m : material) {
+    if (poisson < 1) m.lame = lame_from_young_poisson(young_modulus(m.lame), poisson);
+    m.lame.mu *= stiffer, m.lame.lambda *= stiffer;
+  }
+  return material;
+}
+
+std::vector<double> MotionParameters::density(std::span<const double> p) const {
+  std::vector<double> density = density_;
+  for (double& rho : density) rho *= factor(Kind::density, p);
+  return density;
+}
+
+std::vector<double> MotionParameters::viscosity(std::span<const double> p) const {
+  std::vector<double> viscosity = model_.viscosity;
+  for (double& eta : viscosity) eta *= factor(Kind::viscosity, p);
+  return viscosity;
+}
+
+Vec3d MotionParameters::arm(size_t vertex) const { return node(model_.start.q, vertex) - center_; }
+
+State MotionParameters::start(std::span<const double> p) const {
+  State start = model_.start;
+  const Vec3d v = vector(Kind::velocity, p, model_.velocity) - model_.velocity;
+  const Vec3d w = vector(Kind::angular_velocity, p, model_.angular_velocity) - model_.angular_velocity;
+  for (size_t i = 0; i < start.qdot.size() / 3; ++i) {
+    const Vec3d change = v + cross(w, arm(i));
+    for (int axis = 0; axis < 3; ++axis) start.qdot[3 * i + axis] += change[axis];
+  }
+  return start;
+}
+
+void MotionParameters::set_density(const std::vector<double>& density) {
+  Model& m = model_.model;
+  m.density = density;
+  *m.mass = MassMatrix(m.mesh, m.density, m.mass->kind());
+  for (auto& load : m.loads)
+    if (load->name() == "gravity") load = make_linear_load("gravity", weights(*m.mass, *gravity_));
+}
+
+void MotionParameters::set_damping(std::span<const double> p) {
+  Model& m = model_.model;
+  const double a = number(Kind::mass_damping, p, model_.mass_damping);
+  const double b = number(Kind::stiffness_damping, p, model_.stiffness_damping);
+  m.damping.clear();
+  if (a > 0 || b > 0) m.damping.push_back(make_rayleigh_damping(*m.mass, a, m.elasticity[0].get(), b));
+  const std::vector<double> eta = viscosity(p);
+  if (std::any_of(eta.begin(), eta.end(), [](double e) { return e > 0; }))
+    m.damping.push_back(make_strain_rate_damping(m.mesh, 0, eta));
+}
+
+Trajectory MotionParameters::trajectory(std::span<const double> p, const TrajectoryOptions& options) {
+  if (factor(Kind::density, p) != 1 || model_.model.density != density_) set_density(density(p));
+  set_damping(p);
+  model_.model.elasticity[0]->set_parameters(material(p));
+  return {std::move(model_.model), start(p), options};
+}
+
+}  // namespace aspic
