@@ -12,7 +12,7 @@ WEB = {  # folder of web/src: the folders it may import besides the files direct
     "view": "plots",
 }
 LIBRARIES = {  # first part of a third-party header: the files that may include it
-    "Eigen": r"src/linalg/.*\.cpp|bench/naive.*|.*_test\.(cpp|h)",
+    "Eigen": r"(src/linalg|inverse/fit)/.*\.cpp|bench/naive.*|.*_test\.(cpp|h)",
     "Spectra": r"src/linalg/.*\.cpp",
     "metis.h": r"src/linalg/.*\.cpp",
     "muParser.h": r"src/scene/expression\.cpp",

@@ -111,7 +111,7 @@ TEST(Diagnosis, ForcesOnTheIndenterAreReported) {
               Contains(finding(Severity::warning, "cases.csv:3", "opposes the motion of the indenter", "sign")));
   data = data_in_lines();
   for (LoadCase& load : data.experiment.cases) load.force = -1.0 * *load.force;
-  EXPECT_THAT(diagnose(data), Contains(finding(Severity::error, "cases.csv:2", "against", "force_of = \"body\"")));
+  EXPECT_THAT(diagnose(data), Contains(finding(Severity::error, "cases.csv:2", "opposes", "force_of = \"body\"")));
 }
 
 // Like the column `force`, which leaves the lateral force undetermined.
@@ -146,7 +146,7 @@ TEST(Diagnosis, SingleAxisForcesAreExaminedLikeOthers) {
     measure_along_axis(data.experiment.cases[1], 1000);
     EXPECT_THAT(diagnose(data), Contains(finding(Severity::warning, "cases.csv:2", "times as stiff here")));
     for (LoadCase& load : data.experiment.cases) measure_along_axis(load, -1);
-    EXPECT_THAT(diagnose(data), Contains(finding(Severity::error, "cases.csv:2", "against", "force_of = \"body\"")));
+    EXPECT_THAT(diagnose(data), Contains(finding(Severity::error, "cases.csv:2", "opposes", "force_of = \"body\"")));
   }
 }
 
@@ -250,7 +250,7 @@ TEST(Diagnosis, TooFewAndRankDeficientDataAreNoticed) {
   EXPECT_THAT(diagnose(few), Contains(finding(Severity::warning, "positions.csv", "only 9 numbers")));
   few.experiment.cases[0].positions.clear();
   few.experiment.cases[0].force.reset();
-  EXPECT_THAT(diagnose(few), Contains(finding(Severity::error, "cases.csv:2", "nothing was measured")));
+  EXPECT_THAT(diagnose(few), Contains(finding(Severity::error, "cases.csv:2", "no measurements")));
 
   DataSet same = data_in_lines();
   for (size_t c = 2; c < same.experiment.cases.size(); ++c)
@@ -284,7 +284,8 @@ TEST(Diagnosis, MissingContactAndMissingSupportAreErrors) {
   data = data_in_lines();
   for (LoadCase& load : data.experiment.cases)
     load.tip->contact = TipContact::sliding, load.touch.center[2] += 0.02, load.pose.center[2] += 0.02;
-  EXPECT_THAT(diagnose(data), Contains(finding(Severity::error, "cases.csv:2", "touches nothing", "first contact")));
+  EXPECT_THAT(diagnose(data),
+              Contains(finding(Severity::error, "cases.csv:2", "does not touch the body", "first contact")));
   data = data_in_lines();
   data.experiment.fixed.clear();
   EXPECT_THAT(diagnose(data), Contains(finding(Severity::error, "capture.toml", "follow the indenter")));
@@ -323,8 +324,8 @@ TEST(Diagnosis, InvertedOrOverRotatedPosesAreReported) {
   data = data_in_lines();
   data.experiment.cases[0].pose.rotation = {{0, 0, 3}};
   data.experiment.cases[1].pose.rotation = {{0, 0, 30}};
-  EXPECT_THAT(diagnose(data), Contains(finding(Severity::warning, "cases.csv:2", "turns by 3 rad", "angle")));
-  EXPECT_THAT(diagnose(data), Contains(finding(Severity::error, "cases.csv:3", "turns by 30 rad", "deg")));
+  EXPECT_THAT(diagnose(data), Contains(finding(Severity::warning, "cases.csv:2", "rotates by 3 rad", "angle")));
+  EXPECT_THAT(diagnose(data), Contains(finding(Severity::error, "cases.csv:3", "rotates by 30 rad", "deg")));
 }
 
 TEST(Diagnosis, IndenterSizeUnlikeBodyOrTrianglesIsReported) {

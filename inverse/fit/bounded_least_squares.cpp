@@ -1,8 +1,11 @@
 #include "fit/bounded_least_squares.h"
 
+#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <limits>
+#include <optional>
 
 #include "base/check.h"
 #include "math/vectors.h"
@@ -16,49 +19,23 @@ constexpr double kUndetermined = 1e-13;  // a pivot below this part of its diago
 
 using Vector = std::vector<double>;
 
-// Small symmetric matrix, row-major.
-class Square {
- public:
-  explicit Square(int n) : n_(n), a_(static_cast<size_t>(n) * n, 0.0) {}
-  double& operator()(int i, int j) { return a_[static_cast<size_t>(i) * n_ + j]; }
-  double operator()(int i, int j) const { return a_[static_cast<size_t>(i) * n_ + j]; }
-  int size() const { return n_; }
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
 
-  // Factorizes L L' in the lower triangle; false: not positive definite beyond round-off.
-  bool factorize() {
-    for (int j = 0; j < n_; ++j) {
-      const double diagonal = (*this)(j, j);
-      for (int k = 0; k < j; ++k) (*this)(j, j) -= (*this)(j, k) * (*this)(j, k);
-      if (!((*this)(j, j) > kUndetermined * diagonal)) return false;
-      (*this)(j, j) = std::sqrt((*this)(j, j));
-      for (int i = j + 1; i < n_; ++i) {
-        for (int k = 0; k < j; ++k) (*this)(i, j) -= (*this)(i, k) * (*this)(j, k);
-        (*this)(i, j) /= (*this)(j, j);
-      }
-    }
-    return true;
-  }
-  void solve(Vector& x) const {
-    for (int i = 0; i < n_; ++i) {
-      for (int k = 0; k < i; ++k) x[i] -= (*this)(i, k) * x[k];
-      x[i] /= (*this)(i, i);
-    }
-    for (int i = n_; i-- > 0;) {
-      for (int k = i + 1; k < n_; ++k) x[i] -= (*this)(k, i) * x[k];
-      x[i] /= (*this)(i, i);
-    }
-  }
-
- private:
-  int n_;
-  Vector a_;
-};
+// Cholesky factorization of a matrix that is positive definite beyond round-off, otherwise nothing.
+std::optional<Eigen::LLT<MatrixXd>> factorized(const MatrixXd& A) {
+  Eigen::LLT<MatrixXd> factor(A);
+  const MatrixXd& L = factor.matrixLLT();
+  if (factor.info() != Eigen::Success) return std::nullopt;
+  if (!(L.diagonal().array().square() > kUndetermined * A.diagonal().array()).all()) return std::nullopt;
+  return factor;
+}
 
 // argmin d'A d / 2 + g'd over lower <= d <= upper, where 0 is feasible, by the primal active-set method. False: A is
 // not positive definite.
 class BoundedQuadratic {
  public:
-  BoundedQuadratic(const Square& A, const Vector& g, const Vector& lower, const Vector& upper)
+  BoundedQuadratic(const MatrixXd& A, const Vector& g, const Vector& lower, const Vector& upper)
       : A_(A), g_(g), lower_(lower), upper_(upper), side_(g.size(), 0) {}
 
   bool minimize(Vector& d) {
@@ -74,19 +51,16 @@ class BoundedQuadratic {
  private:
   bool solve_free(Vector& d) const {
     std::vector<int> inner;
-    for (size_t i = 0; i < g_.size(); ++i)
+    VectorXd held = VectorXd::Zero(std::ssize(d));
+    for (size_t i = 0; i < g_.size(); ++i) {
       if (side_[i] == 0) inner.push_back(static_cast<int>(i));
-    Square B(static_cast<int>(inner.size()));
-    Vector b(inner.size());
-    for (size_t a = 0; a < inner.size(); ++a) {
-      b[a] = -g_[inner[a]];
-      for (size_t j = 0; j < g_.size(); ++j)
-        if (side_[j] != 0) b[a] -= entry(inner[a], j) * d[j];
-      for (size_t c = 0; c <= a; ++c) B(static_cast<int>(a), static_cast<int>(c)) = entry(inner[a], inner[c]);
+      if (side_[i] != 0) held[i] = d[i];
     }
-    if (!B.factorize()) return false;
-    B.solve(b);
-    for (size_t a = 0; a < inner.size(); ++a) d[inner[a]] = b[a];
+    const auto factor = factorized(A_(inner, inner));
+    if (!factor) return false;
+    const VectorXd right = -(Eigen::Map<const VectorXd>(g_.data(), std::ssize(g_)) + A_ * held);
+    const VectorXd solution = factor->solve(right(inner));
+    for (size_t a = 0; a < inner.size(); ++a) d[inner[a]] = solution[a];
     return true;
   }
   // Moves d toward `to` up to the first bound, which becomes active; true: there was one.
@@ -110,7 +84,7 @@ class BoundedQuadratic {
     size_t worst = d.size();
     for (size_t i = 0; i < d.size(); ++i) {
       double slope = g_[i], size = std::abs(g_[i]);
-      for (size_t j = 0; j < d.size(); ++j) slope += entry(i, j) * d[j], size += std::abs(entry(i, j) * d[j]);
+      for (size_t j = 0; j < d.size(); ++j) slope += A_(i, j) * d[j], size += std::abs(A_(i, j) * d[j]);
       const double wrong = side_[i] * slope / (size > 0 ? size : 1);
       if (side_[i] != 0 && wrong > 1e-12 && wrong > most) most = wrong, worst = i;
     }
@@ -118,11 +92,8 @@ class BoundedQuadratic {
     side_[worst] = 0;
     return true;
   }
-  double entry(size_t i, size_t j) const {
-    return i >= j ? A_(static_cast<int>(i), static_cast<int>(j)) : A_(static_cast<int>(j), static_cast<int>(i));
-  }
 
-  const Square& A_;
+  const MatrixXd& A_;
   const Vector &g_, &lower_, &upper_;
   std::vector<int> side_;  // -1, 1: held at the lower, upper bound
 };
@@ -153,6 +124,9 @@ class Run {
   }
 
  private:
+  std::span<double> column(int i) { return {J_.col(i).data(), static_cast<size_t>(m_)}; }
+  std::span<const double> column(int i) const { return {J_.col(i).data(), static_cast<size_t>(m_)}; }
+
   double clipped(int i, double x) const { return std::clamp(x, bounds_[i].lower, bounds_[i].upper); }
 
   bool evaluate(const Vector& p, Vector& r, BoundedFit& fit) {
@@ -164,35 +138,31 @@ class Run {
   // Computes J column by column, g = J' r, and which parameters have an effect.
   bool linearize(const Vector& r) {
     if (!problem_.linearize()) return false;
-    J_.assign(static_cast<size_t>(n_), Vector(static_cast<size_t>(m_)));
-    g_.assign(static_cast<size_t>(n_), 0.0);
+    J_.resize(m_, n_);
+    g_.resize(static_cast<size_t>(n_));
     free_.clear();
     Vector unit(static_cast<size_t>(n_), 0.0);
     for (int i = 0; i < n_; ++i) {
       unit[i] = 1;
-      problem_.multiply(unit, J_[i]);
+      problem_.multiply(unit, column(i));
       unit[i] = 0;
-      for (int k = 0; k < m_; ++k) g_[i] += J_[i][k] * r[k];
-      if (squared_norm(J_[i]) > 0) free_.push_back(i);
+      g_[i] = dot(column(i), r);
+      if (squared_norm(column(i)) > 0) free_.push_back(i);
     }
     return true;
   }
 
-  Square normal_matrix(const std::vector<int>& which, double damping) const {
-    Square A(static_cast<int>(which.size()));
-    for (int a = 0; a < A.size(); ++a)
-      for (int b = 0; b <= a; ++b) {
-        for (int k = 0; k < m_; ++k) A(a, b) += J_[which[a]][k] * J_[which[b]][k];
-        if (a == b) A(a, a) *= 1 + damping;
-      }
+  MatrixXd normal_matrix(const std::vector<int>& which, double damping) const {
+    const MatrixXd J = J_(Eigen::all, which);
+    MatrixXd A = J.transpose() * J;
+    A.diagonal() *= 1 + damping;
     return A;
   }
 
   // |r + J d|^2
   double predicted(const Vector& p, const Vector& q, const Vector& r) const {
     Vector linear = r;
-    for (int i = 0; i < n_; ++i)
-      for (int k = 0; k < m_; ++k) linear[k] += J_[i][k] * (q[i] - p[i]);
+    for (int i = 0; i < n_; ++i) add_scaled(q[i] - p[i], column(i), linear);
     return squared_norm(linear);
   }
 
@@ -200,7 +170,7 @@ class Run {
   bool step(Vector& p, Vector& r, double& damping, BoundedFit& fit) {
     const double before = squared_norm(r);
     for (; damping < kLargestBoxDamping; damping *= 4) {
-      const Square A = normal_matrix(free_, damping);
+      const MatrixXd A = normal_matrix(free_, damping);
       Vector g, lower, upper, d;
       for (const int i : free_) {
         g.push_back(g_[i]);
@@ -235,24 +205,21 @@ class Run {
     for (int i = 0; i < n_; ++i) {
       fit.at_bound[i] = p[i] <= bounds_[i].lower || p[i] >= bounds_[i].upper;
       if (fit.at_bound[i]) fit.deviation[i] = 0;
-      if (!fit.at_bound[i] && squared_norm(J_[i]) > 0) inner.push_back(i);
+      if (!fit.at_bound[i] && squared_norm(column(i)) > 0) inner.push_back(i);
     }
     const int freedom = m_ - static_cast<int>(inner.size());
-    Square A = normal_matrix(inner, 0);
-    if (freedom <= 0 || !A.factorize()) return;
-    for (size_t a = 0; a < inner.size(); ++a) {
-      Vector column(inner.size(), 0.0);
-      column[a] = 1;
-      A.solve(column);
-      fit.deviation[inner[a]] = std::sqrt(2 * fit.objective / freedom * column[a]);
-    }
+    const auto factor = factorized(normal_matrix(inner, 0));
+    if (freedom <= 0 || !factor) return;
+    const MatrixXd covariance = factor->solve(MatrixXd::Identity(std::ssize(inner), std::ssize(inner)));
+    for (size_t a = 0; a < inner.size(); ++a)
+      fit.deviation[inner[a]] = std::sqrt(2 * fit.objective / freedom * covariance(a, a));
   }
 
   LeastSquares& problem_;
   std::span<const Bounds> bounds_;
   const BoundedFitOptions& options_;
   int n_, m_;
-  std::vector<Vector> J_;
+  MatrixXd J_;
   Vector g_;
   std::vector<int> free_;
 };

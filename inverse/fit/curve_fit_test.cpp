@@ -133,7 +133,7 @@ TEST(FitCurves, RefuseWhatMakesNoSense) {
   EXPECT_THAT(refusal({}, {}), HasSubstr("no curve"));
   EXPECT_THAT(refusal({good}, {.material = "funk"}), HasSubstr("'fung'"));
   EXPECT_THAT(refusal({good}, {.poisson = 0.5}), HasSubstr("0.49"));
-  EXPECT_THAT(refusal({good}, {.material = "fung", .held = {"c"}}), HasSubstr("'c' is no parameter"));
+  EXPECT_THAT(refusal({good}, {.material = "fung", .held = {"c"}}), HasSubstr("'c' is not a parameter"));
   EXPECT_THAT(refusal({{"pull", Deformation::uniaxial, {1.1, -1}, {1, 2}}}, {}), HasSubstr("point 2"));
   EXPECT_THAT(refusal({{"pull", Deformation::uniaxial, {1.1}, {NAN}}}, {}), HasSubstr("no finite stress"));
   EXPECT_THAT(refusal({{"pull", Deformation::uniaxial, {1.1, 1.2}, {-1, -2}}}, {}), HasSubstr("sign"));

@@ -1,11 +1,12 @@
 // Levenberg-Marquardt for few parameters: computes the Jacobian by columns (or rows, if residuals are fewer), solves
 // (J'J + weight R'' + damping D) d = -g directly, and adapts the damping to the ratio of actual and predicted decrease
 // [Madsen et al. 2004, alg. 3.16]. D is the diagonal, which makes it independent of units.
+#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 
 #include "fit/fit_run.h"
-#include "linalg/scalar_cholesky.h"
 
 namespace aspic {
 namespace {
@@ -15,66 +16,46 @@ constexpr double kNear = 0.01;  // distance from the minimum in standard deviati
 constexpr double kFirstDamping = 1e-3, kLeastDamping = 1e-14, kLargestDamping = 1e12;
 constexpr double kUnseen = 1e-14;  // relative to the largest diagonal entry; smaller ones count as 0
 
-// Symmetric n x n matrix.
-class Curvature {
- public:
-  explicit Curvature(int n) : n_(n), a_(static_cast<size_t>(n) * n, 0.0) {
-    for (int i = 0; i < n; ++i)
-      for (int j = 0; j <= i; ++j) places_.push_back({i, j});
-    cholesky_.analyze(n, places_);
-  }
-  double& at(int i, int j) { return a_[static_cast<size_t>(i) * n_ + j]; }
-  void clear() { std::fill(a_.begin(), a_.end(), 0.0); }
-  // d = -(A + damping D)^-1 g; false: not positive definite.
-  bool step(std::span<const double> g, double damping, std::span<double> d) {
-    std::vector<double> entries;
-    double largest = 0;
-    for (int i = 0; i < n_; ++i) largest = std::max(largest, at(i, i));
-    for (const auto& [i, j] : places_)
-      entries.push_back(at(i, j) + (i == j ? damping * std::max(at(i, i), kUnseen * largest) : 0));
-    if (!cholesky_.factorize(entries)) return false;
-    for (int i = 0; i < n_; ++i) d[i] = -g[i];
-    cholesky_.solve(d, d);
-    return true;
-  }
-  double along(std::span<const double> d) {
-    double sum = 0;
-    for (int i = 0; i < n_; ++i)
-      for (int j = 0; j < n_; ++j) sum += d[i] * at(i, j) * d[j];
-    return sum;
-  }
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
 
- private:
-  int n_;
-  std::vector<double> a_;
-  std::vector<MatrixPlace> places_;
-  ScalarCholesky cholesky_;
-};
+Eigen::Map<const VectorXd> as_vector(std::span<const double> v) { return {v.data(), std::ssize(v)}; }
 
-// A = J'J + weight R''
-void make_curvature(FitRun& run, const FitPoint& at, Curvature& A) {
+// d = -(A + damping D)^-1 g; false: not positive definite.
+bool find_step(const MatrixXd& A, std::span<const double> g, double damping, std::span<double> d) {
+  MatrixXd damped = A;
+  damped.diagonal() += damping * A.diagonal().cwiseMax(kUnseen * A.diagonal().maxCoeff());
+  const Eigen::LLT<MatrixXd> factor(damped);
+  if (factor.info() != Eigen::Success) return false;
+  Eigen::Map<VectorXd>(d.data(), std::ssize(d)) = -factor.solve(as_vector(g));
+  return true;
+}
+
+// J'J + weight R''
+MatrixXd curvature(FitRun& run, const FitPoint& at) {
   const int n = run.unknowns(), m = run.residuals();
-  std::vector<double> J(static_cast<size_t>(n) * m), unit, line;  // column by column
   const bool by_columns = n <= m;
-  unit.assign(static_cast<size_t>(by_columns ? n : m), 0.0);
-  line.resize(static_cast<size_t>(by_columns ? m : n));
-  for (size_t k = 0; k < unit.size(); ++k) {
+  MatrixXd J(m, n), A(n, n);
+  std::vector<double> unit(by_columns ? n : m, 0.0), line(by_columns ? m : n);
+  for (int k = 0; k < std::ssize(unit); ++k) {
     unit[k] = 1;
     by_columns ? run.multiply(unit, line) : run.multiply_transposed(unit, line);
     unit[k] = 0;
-    for (size_t l = 0; l < line.size(); ++l) J[by_columns ? k * m + l : l * m + k] = line[l];
+    if (by_columns)
+      J.col(k) = as_vector(line);
+    else
+      J.row(k) = as_vector(line);
   }
-  A.clear();
-  std::vector<double> e(static_cast<size_t>(n), 0.0), column(static_cast<size_t>(n));
+  A.noalias() = J.transpose() * J;
+  std::vector<double> e(n, 0.0), column(n);
   for (int j = 0; j < n; ++j) {
     e[j] = 1;
     std::fill(column.begin(), column.end(), 0.0);
     run.add_prior_product(at, e, run.weight, column);
     e[j] = 0;
-    const std::span Jj(J.data() + static_cast<size_t>(j) * m, static_cast<size_t>(m));
-    for (int i = 0; i < n; ++i)
-      A.at(i, j) = column[i] + dot({J.data() + static_cast<size_t>(i) * m, static_cast<size_t>(m)}, Jj);
+    A.col(j) += as_vector(column);
   }
+  return A;
 }
 
 struct MarquardtDamping {
@@ -92,9 +73,9 @@ struct MarquardtDamping {
 };
 
 // g' A^-1 g for the undamped system if it is positive definite.
-double squared_decrement(Curvature& A, std::span<const double> g, std::vector<double>& d) {
+double squared_decrement(const MatrixXd& A, std::span<const double> g, std::vector<double>& d) {
   for (double damping = 0; damping < 1; damping = std::max(kLeastDamping, 100 * damping))
-    if (A.step(g, damping, d)) return std::max(0.0, -dot(g, d));
+    if (find_step(A, g, damping, d)) return std::max(0.0, -dot(g, d));
   return std::nan("");
 }
 
@@ -102,14 +83,13 @@ double squared_decrement(Curvature& A, std::span<const double> g, std::vector<do
 
 Status levenberg_marquardt(FitRun& run, FitPoint& at, FitGoal& goal) {
   const size_t n = at.p.size();
-  Curvature A(run.unknowns());
   std::vector<double> g(n), d(n), p(n);
   MarquardtDamping damping;
   for (;;) {
     if (run.is_stopped()) return run.stop_status();
     if (!run.linearize(at)) return Status::undefined;
     run.gradient(at, g);
-    make_curvature(run, at, A);
+    const MatrixXd A = curvature(run, at);
     if (max_abs(g) == 0) return Status::converged;
     const double decrement = std::sqrt(squared_decrement(A, g, d));
     if (!std::isfinite(decrement)) return Status::no_descent;
@@ -122,12 +102,12 @@ Status levenberg_marquardt(FitRun& run, FitPoint& at, FitGoal& goal) {
     FitPoint trial;
     bool found = false;
     for (; !found && damping.value < kLargestDamping && !run.is_stopped(); ++done.trials) {
-      if (!A.step(g, damping.value, d) || max_abs(d) > run.options.max_step) {
+      if (!find_step(A, g, damping.value, d) || max_abs(d) > run.options.max_step) {
         damping.punish();
         continue;
       }
       for (size_t i = 0; i < n; ++i) p[i] = at.p[i] + d[i];
-      const double predicted = -dot(g, d) - A.along(d) / 2;
+      const double predicted = -dot(g, d) - as_vector(d).dot(A * as_vector(d)) / 2;
       const bool defined = run.evaluate(p, trial);
       const double ratio = defined ? (before - trial.objective(run.weight)) / predicted : -1;
       found = ratio > 0;

@@ -273,7 +273,7 @@ TEST(Misfit, RefusesCasesThatCannotBeRead) {
     }
   };
   refused([](Gel& gel) { gel.experiment.cases.clear(); }, "no load case");
-  refused([](Gel& gel) { gel.experiment.cases[4].positions.clear(); }, "hung: nothing was measured");
+  refused([](Gel& gel) { gel.experiment.cases[4].positions.clear(); }, "hung: no measurements");
   refused([](Gel& gel) { gel.experiment.cases[4].force = Vec3d{}; }, "hung: a force or torque needs an indenter");
   refused([](Gel& gel) { gel.experiment.cases[0].positions[2].marker = 1000; }, "marker 1000 is unknown");
   refused([](Gel& gel) { gel.experiment.cases[0].positions[2].deviation[1] = 0; }, "deviation along y is 0");

@@ -218,7 +218,7 @@ TEST(ParameterMap, RefusesWhatCannotBeFitted) {
   TetMesh mesh = two_layers();
   EXPECT_THAT(refusal(mesh, "fung", {}), HasSubstr("there is no parameter to fit"));
   EXPECT_THAT(refusal(mesh, "fung", {{.quantity = "yuong"}}), HasSubstr("did you mean 'young'?"));
-  EXPECT_THAT(refusal(mesh, "neo_hookean", {{"b", Spread::uniform, 0, 1}}), HasSubstr("no quantity of neo_hookean"));
+  EXPECT_THAT(refusal(mesh, "neo_hookean", {{"b", Spread::uniform, 0, 1}}), HasSubstr("not a quantity of neo_hookean"));
   EXPECT_THAT(refusal(mesh, "fung", {{"young", Spread::uniform, 0, -2}}), HasSubstr("must be positive"));
   EXPECT_THAT(refusal(mesh, "fung", {{"young", Spread::uniform, 0, NAN}}), HasSubstr("must be positive"));
   EXPECT_THAT(refusal(mesh, "fung", {{"poisson", Spread::uniform, 0, 0.5}}), HasSubstr("between -1 and 0.5"));

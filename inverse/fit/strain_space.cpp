@@ -1,7 +1,9 @@
 #include "fit/strain_space.h"
 
+#include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 
 #include "base/error.h"
 #include "math/polar3.h"
@@ -16,45 +18,18 @@ constexpr double kLeastPoisson = -0.9, kLargestPoisson = 0.495;
 
 double distance(const Mat3d& a, const Mat3d& b) { return std::sqrt(squared_norm(a - b)); }
 
-// Small square system with two right-hand sides, solved by elimination with partial pivoting.
-struct StrainColumns {
-  double log_young, poisson;
-};
-void solve(std::vector<double>& A, std::vector<StrainColumns>& b) {
-  const size_t n = b.size();
-  for (size_t k = 0; k < n; ++k) {
-    size_t pivot = k;
-    for (size_t i = k + 1; i < n; ++i)
-      if (std::abs(A[i * n + k]) > std::abs(A[pivot * n + k])) pivot = i;
-    for (size_t j = 0; j < n; ++j) std::swap(A[k * n + j], A[pivot * n + j]);
-    std::swap(b[k], b[pivot]);
-    for (size_t i = k + 1; i < n; ++i) {
-      const double factor = A[i * n + k] / A[k * n + k];
-      for (size_t j = k; j < n; ++j) A[i * n + j] -= factor * A[k * n + j];
-      b[i].log_young -= factor * b[k].log_young, b[i].poisson -= factor * b[k].poisson;
-    }
-  }
-  for (size_t i = n; i-- > 0;) {
-    for (size_t j = i + 1; j < n; ++j) {
-      b[i].log_young -= A[i * n + j] * b[j].log_young;
-      b[i].poisson -= A[i * n + j] * b[j].poisson;
-    }
-    b[i].log_young /= A[i * n + i], b[i].poisson /= A[i * n + i];
-  }
-}
+using Eigen::MatrixXd;
 
 // -|e_i - e_j| is positive definite for weights that sum to 0; a ridge separates examples of equal strain.
-std::vector<double> interpolation_matrix(const std::vector<Mat3d>& strains) {
-  const size_t n = strains.size(), size = n + 1;
-  std::vector<double> A(size * size, 0.0);
-  double sum = 0;
-  for (size_t i = 0; i < n; ++i)
-    for (size_t j = 0; j < n; ++j) sum += -(A[i * size + j] = -distance(strains[i], strains[j]));
-  const double mean = sum / static_cast<double>(n * n);
-  for (size_t i = 0; i < n; ++i) {
-    A[i * size + i] += std::fmax(kRidge * mean, kSameStrain);
-    A[i * size + n] = A[n * size + i] = 1;
-  }
+MatrixXd interpolation_matrix(const std::vector<Mat3d>& strains) {
+  const Eigen::Index n = std::ssize(strains);
+  MatrixXd A = MatrixXd::Zero(n + 1, n + 1);
+  for (Eigen::Index i = 0; i < n; ++i)
+    for (Eigen::Index j = 0; j < n; ++j) A(i, j) = -distance(strains[i], strains[j]);
+  const double mean = -A.topLeftCorner(n, n).mean();
+  A.diagonal().head(n).array() += std::fmax(kRidge * mean, kSameStrain);
+  A.row(n).head(n).setOnes();
+  A.col(n).head(n).setOnes();
   return A;
 }
 
@@ -94,28 +69,25 @@ StrainSpaceModuli::StrainSpaceModuli(const TetMesh& mesh, std::span<const Strain
   for (const StrainExample& example : examples) check(mesh, example);
   for (int t = 0; t < mesh.tet_count(); ++t) {
     const Mat3d rest_inverse = inverse(edge_matrix(mesh, t));
+    const Eigen::Index n = std::ssize(examples);
     std::vector<Mat3d> strains;
-    std::vector<StrainColumns> b;
-    for (const StrainExample& example : examples) {
+    MatrixXd b = MatrixXd::Zero(n + 1, 2);  // columns: log E, nu
+    for (Eigen::Index i = 0; i < n; ++i) {
+      const StrainExample& example = examples[i];
       strains.push_back(corotated_strain(deformation_gradient(mesh, rest_inverse, t, example.x)));
-      b.push_back({std::log(example.young[t]), example.poisson[t]});
+      b(i, 0) = std::log(example.young[t]), b(i, 1) = example.poisson[t];
     }
-    const auto by_young = [](const StrainColumns& p, const StrainColumns& q) { return p.log_young < q.log_young; };
-    const auto by_poisson = [](const StrainColumns& p, const StrainColumns& q) { return p.poisson < q.poisson; };
-    const auto [soft, stiff] = std::minmax_element(b.begin(), b.end(), by_young);
-    const auto [least, largest] = std::minmax_element(b.begin(), b.end(), by_poisson);
+    const auto log_young = b.col(0).head(n), poisson = b.col(1).head(n);
     Tet tet{{},
             0,
             0,
-            soft->log_young - kWidened,
-            stiff->log_young + kWidened,
-            std::fmax(kLeastPoisson, least->poisson - 0.05),
-            std::fmin(kLargestPoisson, largest->poisson + 0.05)};
-    b.push_back({0, 0});
-    std::vector<double> A = interpolation_matrix(strains);
-    solve(A, b);
-    for (size_t i = 0; i < strains.size(); ++i) tet.samples.push_back({strains[i], b[i].log_young, b[i].poisson});
-    tet.log_young = b.back().log_young, tet.poisson = b.back().poisson;
+            log_young.minCoeff() - kWidened,
+            log_young.maxCoeff() + kWidened,
+            std::fmax(kLeastPoisson, poisson.minCoeff() - 0.05),
+            std::fmin(kLargestPoisson, poisson.maxCoeff() + 0.05)};
+    const MatrixXd weights = interpolation_matrix(strains).partialPivLu().solve(b);
+    for (Eigen::Index i = 0; i < n; ++i) tet.samples.push_back({strains[i], weights(i, 0), weights(i, 1)});
+    tet.log_young = weights(n, 0), tet.poisson = weights(n, 1);
     tets_.push_back(std::move(tet));
   }
 }
