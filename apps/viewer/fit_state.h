@@ -18,10 +18,10 @@ class FitState {
  public:
   explicit FitState(Stage& stage) : stage_(stage) {}
 
-  void start(const Bench* bench);       // which must exist until drop(); throws InvalidInput without cases
-  void stop();                          // after the iteration under way; the result remains
-  void drop(std::string summary = {});  // the task and its result
-  bool add(const FitNews& news);        // false: they concern an earlier task
+  void start(const Bench* bench);       // must outlive the fit, until drop(); throws InvalidInput without cases
+  void stop();                          // ends the fit after the current iteration; the result remains
+  void drop(std::string summary = {});  // drops the task and its result
+  bool add(const FitNews& news);        // false: the news is of an earlier task
   std::optional<FitTask> take_task() { return std::exchange(wanted_, std::nullopt); }
   bool is_running() const { return is_running_; }
   const std::string& summary() const { return known_.summary; }

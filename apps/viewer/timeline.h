@@ -20,8 +20,8 @@ struct Snapshot {
   double outside_work = 0;        // see Simulation::Snapshot
   double start_time = 0, h = 0;   // [s] see History
   std::string integrator;
-  Grab grab;                                     // resting, after the edits before the next step
-  Poke poke;                                     // resting, after these edits
+  Grab grab;                                     // at rest, after the edits before the next step
+  Poke poke;                                     // at rest, after these edits
   std::shared_ptr<const std::vector<Pin>> pins;  // after these edits
   Grab acted;                                    // in the last step
   Poke poked;                                    // in the last step
