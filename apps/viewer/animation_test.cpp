@@ -1,4 +1,4 @@
-// Animations that a session hands to its page.
+// Animations that a session sends to its page.
 #include <gmock/gmock.h>
 
 #include "io/base64.h"

@@ -20,8 +20,7 @@ Json parse_json(std::string_view text, size_t most);
 
 class Arguments {
  public:
-  // `name`: the command, for messages. Throws InvalidInput if `object` is not a JSON object. `object` must outlive
-  // this.
+  // `name`: the command, for messages. `object` must outlive this. Throws InvalidInput if it is not a JSON object.
   Arguments(const Json& object, std::string name);
 
   bool has(const char* key) const { return object_.contains(key); }

@@ -40,10 +40,8 @@ class Bench {
   void forget_all();
 
   const DataSet& data() const { return data_; }
-  const std::vector<double>& depths() const { return depths_; }  // indentation of each case [m]
-  const std::vector<Vec3d>& marker_rest() const {
-    return truth_rest_;
-  }  // rest positions on the surface of the scene's body [m]
+  const std::vector<double>& depths() const { return depths_; }          // indentation of each case [m]
+  const std::vector<Vec3d>& marker_rest() const { return truth_rest_; }  // positions on the surface at rest [m]
   const FittedMaterial& truth() const { return truth_; }
   bool is_same_mesh() const { return is_same_mesh_; }  // data set and scene share a mesh: an inverse crime
   const std::vector<std::string>& notes() const { return notes_; }

@@ -28,7 +28,7 @@ Value of(int number) { return {static_cast<std::int64_t>(number), {}}; }
 Value of(const Vec3d& v) { return {Array{of(v[0]), of(v[1]), of(v[2])}, {}}; }
 Value of(Table table) { return {std::move(table), {}}; }
 
-// The body of a vertex, and the vertex by the user's number in it.
+// The body of a vertex, and the user's number of the vertex in it.
 struct BodyVertex {
   size_t body = 0;
   int vertex = 0;
