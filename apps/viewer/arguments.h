@@ -24,11 +24,11 @@ class Arguments {
   Arguments(const Json& object, std::string name);
 
   bool has(const char* key) const { return object_.contains(key); }
-  const Json& value(const char* key);                     // of any type; this and all below throw InvalidInput
+  const Json& value(const char* key);                     // any type; this and all below throw InvalidInput
   double number(const char* key);                         // a finite number
   int integer(const char* key, int lowest, int highest);  // within both bounds, inclusive
   bool boolean(const char* key);
-  std::string text(const char* key, size_t most = 4096);  // of at most `most` bytes
+  std::string text(const char* key, size_t most = 4096);  // at most `most` bytes
   Vec3d vector(const char* key);                          // three finite numbers
   Vec3d weights(const char* key);                         // barycentric coordinates, from 0 to 1 with sum 1
   std::vector<std::string> texts(const char* key);        // at most 200 strings of at most 4096 bytes

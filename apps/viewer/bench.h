@@ -49,7 +49,7 @@ class Bench {
   std::vector<PokeSite> sites(double radius, int count) const;  // points on the mesh of the scene
   // Maps values per tet of the data set's mesh to the tets of the scene, in the order of its model.
   std::vector<double> on_scene(std::span<const double> of_data) const;
-  std::vector<double> true_young() const;  // of the true material, in the order of the data set's mesh [Pa]
+  std::vector<double> true_young() const;  // E per tet in the order of the data set's mesh [Pa]
 
  private:
   void set_up_mesh(const Scene& scene);
@@ -59,14 +59,14 @@ class Bench {
 
   BenchOptions options_;
   FittedMaterial truth_;                        // in the user's numbering
-  std::vector<MaterialParameters> parameters_;  // of the true material, in the order of its mesh
+  std::vector<MaterialParameters> parameters_;  // true material in the order of its mesh
   Experiment body_;                             // the true body with the markers and without cases
   Vec3d gravity_{};
   DataSet data_;
   bool is_same_mesh_ = false;
   std::vector<std::string> notes_;
   std::unique_ptr<SurfaceProjection> on_truth_, on_data_;
-  std::vector<Vec3d> marker_rest_, truth_rest_;  // on the surfaces of the data set and of the true body [m]
+  std::vector<Vec3d> marker_rest_, truth_rest_;  // positions on the surfaces of data set and true body [m]
   std::vector<double> depths_;
   std::vector<int> data_tet_;  // tet of the data set that contains each tet of the scene
   uint64_t recorded_ = 0;      // number of cases so far; seeds the noise of each case

@@ -23,7 +23,7 @@ namespace fs = std::filesystem;
 using Clock = std::chrono::steady_clock;
 
 constexpr std::chrono::seconds kLongestSilence(180);
-constexpr std::chrono::milliseconds kPeriod(50);  // of checks of the browser and the stop token
+constexpr std::chrono::milliseconds kPeriod(50);  // interval of checks of browser and stop token
 
 fs::path find_browser() {
   for (const char* name : {"chromium", "chromium-browser", "google-chrome"}) {

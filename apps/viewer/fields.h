@@ -11,7 +11,7 @@ namespace aspic::viewer {
 struct Field {
   std::string name, label, unit;
   bool is_diverging = false;
-  double center = 0;    // of a diverging color map
+  double center = 0;    // center of a diverging color map
   bool is_log = false;  // displayed on a logarithmic scale
 };
 std::vector<Field> fields_of(const Model& model);

@@ -74,7 +74,7 @@ class Listener {
   const StopToken& stop_;
   FitPlan plan_;
   FitStage stage_ = FitStage::uniform;
-  std::optional<ParameterMap> map_;  // of the current stage
+  std::optional<ParameterMap> map_;  // parameters of the current stage
 };
 
 void append(FitNews& to, FitNews more) {

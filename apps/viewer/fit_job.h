@@ -24,7 +24,7 @@ struct FitNews {
   std::string stage;                     // description; empty: unchanged
   std::vector<FitIteration> iterations;  // new iterations of this stage
   bool is_new_stage = false;             // earlier iterations are obsolete
-  std::vector<double> young;             // of each tet of the data set [Pa]; empty: unchanged
+  std::vector<double> young;             // E of each tet of the data set [Pa]; empty: unchanged
   std::optional<FitOutcome> outcome;
   std::string failure;  // the task could not start
   bool has_ended = false;

@@ -82,7 +82,7 @@ std::vector<int> evenly(int count, int wanted) {
 struct Frame {
   int index = 0;
   std::vector<float> x;                    // 3 per point
-  std::vector<std::vector<float>> values;  // of the fields that change and are not computed from x
+  std::vector<std::vector<float>> values;  // values of kMoving fields
 };
 
 const std::string kDisplacement = "displacement";  // computed from the positions

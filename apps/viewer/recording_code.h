@@ -17,8 +17,7 @@ class ArrayPack {
   void add(const std::string& name, const std::vector<uint32_t>& numbers);
   void add(const std::string& name, const std::vector<uint8_t>& numbers);
 
-  // Returns the length of the JSON (u32), the JSON, zeros up to a multiple of 4, and the arrays. head["arrays"] is the
-  // table of contents.
+  // Returns the length of the JSON (u32), the JSON, zeros up to a multiple of 4, and the arrays. Sets head["arrays"].
   std::string bytes(Json head) const;
 
  private:

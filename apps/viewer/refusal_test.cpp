@@ -1,4 +1,4 @@
-// Whatever arrives: nothing is thrown, nothing hangs, nothing changes that was not asked for.
+// Invalid and random messages: no exception, no hang, no unrequested change.
 #include <atomic>
 #include <random>
 #include <thread>
@@ -45,7 +45,7 @@ TEST(Refusals, OfPagesThatWatchButMayAsk) {
   EXPECT_EQ(page.session().handle(R"({"do": "take"})", Role::watches).to_sender.size(), 0u);
 }
 
-TEST(Refusals, OfScenesThatCannotBeLoadedKeepTheOldOne) {
+TEST(Refusals, OfInvalidScenesKeepTheCurrentOne) {
   Page page;
   page.steps(2);
   for (const char* path : {"", "/nowhere/at_all.toml", "/dev/zero", "/tmp", "/etc/hostname"})
@@ -91,7 +91,7 @@ TEST(Session, IgnoresAnInterruptionBetweenSteps) {
 }
 
 TEST(Session, DropsAnInterruptedStep) {
-  // Each step would take a thousand million iterations.
+  // Each step would need a billion iterations.
   Page page(kBeam, {"solver.method=gradient_descent", "solver.max_iterations=1000000000", "solver.tolerance=0",
                     "material.young=1e7"});
   const Picture before = page.picture();
@@ -221,7 +221,7 @@ class Mutations {
         }
         [[fallthrough]];
       default:
-        break;  // as it is
+        break;  // unchanged
     }
     return message;
   }

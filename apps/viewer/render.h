@@ -29,7 +29,7 @@ class VideoFile {
  public:
   // .mp4, .webm or .gif. Throws InvalidInput for another extension and when ffmpeg is missing.
   VideoFile(std::filesystem::path path, double frames_per_second);
-  ~VideoFile();  // without finish(): no file
+  ~VideoFile();  // removes the file without finish()
   VideoFile(const VideoFile&) = delete;
   VideoFile& operator=(const VideoFile&) = delete;
 

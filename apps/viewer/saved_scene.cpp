@@ -20,7 +20,7 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr size_t kMostReplyBytes = size_t{40} << 20;
-constexpr double kSameTime = 1e-6;  // of a step
+constexpr double kSameTime = 1e-6;  // fraction of a step
 const char* const kByHand = "by_hand";
 
 Value of(double number) { return {number, {}}; }
@@ -100,7 +100,7 @@ void add_drags(const Side& side, Table& document) {
 
 // ---------------------------------------------------------------- pins by hand
 
-using VerticesOfPin = std::map<std::string, std::vector<int>>;  // by the name of the pin in its body
+using VerticesOfPin = std::map<std::string, std::vector<int>>;  // key: name of the pin in its body
 
 std::vector<VerticesOfPin> by_body(const Model& model, const std::vector<Pin>& pins) {
   std::vector<VerticesOfPin> found(model.bodies.size());

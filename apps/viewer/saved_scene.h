@@ -13,7 +13,7 @@ std::string saved_name(const Scene& scene);  // valid as a file name, without ex
 enum class SavedHand { with_drags, without_drags };
 
 struct SavedScene {
-  std::string name;                // of the scene, valid as a file name
+  std::string name;                // name of the scene, valid as a file name
   std::vector<ZipEntry> files;     // the first one is "NAME.toml"; the others are below "inputs/"
   std::vector<std::string> notes;  // descriptions of unsaved parts
 };

@@ -23,7 +23,7 @@ namespace asio = boost::asio;
 using asio::ip::tcp;
 using boost::system::error_code;
 
-constexpr size_t kMaxConnections = 64;  // without pages
+constexpr size_t kMaxConnections = 64;  // maximum number of connections without pages
 constexpr std::chrono::milliseconds kRetryPeriod(100);
 constexpr std::chrono::milliseconds kGoodbye(300);
 

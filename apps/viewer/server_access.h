@@ -12,7 +12,7 @@ class Access {
 
   bool is_host(std::string_view host) const;      // 127.0.0.1 or localhost, with the port
   bool is_origin(std::string_view origin) const;  // a page of this server
-  bool is_token(std::string_view text) const;     // in constant time
+  bool is_token(std::string_view text) const;     // compares in constant time
 
   const std::string& token() const { return token_; }
   int port() const { return port_; }

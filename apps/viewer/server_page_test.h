@@ -44,7 +44,7 @@ struct HttpAnswer {
 struct HttpQuestion {
   http::verb verb = http::verb::get;
   std::string target = "/", host = {}, origin = {}, body = {};
-  bool upgrade = false;  // to a WebSocket
+  bool upgrade = false;  // requests a WebSocket
 };
 
 // Sends one request. Without `host`, uses the host of the server.

@@ -1,4 +1,4 @@
-// Steps, iterations, rewinding: what playing and looking do to a simulation.
+// Steps, iterations and rewinding of a session.
 #include "viewer/session_test.h"
 
 #include <cmath>

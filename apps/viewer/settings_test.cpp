@@ -1,4 +1,4 @@
-// Changing a scene while it runs.
+// Changes of settings during a simulation.
 #include <cmath>
 
 #include "viewer/session_test.h"

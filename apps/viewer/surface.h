@@ -31,8 +31,8 @@ struct Surface {
 };
 
 bool has_fine_skin(const Scene& scene);
-Surface fine_surface(const Scene& scene);  // of all bodies
-Surface boundary_of(const Model& model);   // of all bodies
+Surface fine_surface(const Scene& scene);  // fine skins of all bodies
+Surface boundary_of(const Model& model);   // boundary of the tets of all bodies
 
 // A point of the surface in barycentric coordinates of a tet.
 struct TetPoint {
