@@ -30,7 +30,7 @@ TEST(AnimationOfASession, HasAFrameForEachStep) {
   EXPECT_THAT(exported(page, "glb"), StartsWith("glTF"));
 }
 
-TEST(AnimationOfASession, EndsWhereTheBodyIs) {
+TEST(AnimationOfASession, EndsAtTheCurrentPositions) {
   Page page(kBeam, {"time.step=0.02"});
   page.steps(2);
   const std::string bytes = exported(page, "glb");

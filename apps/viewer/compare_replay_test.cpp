@@ -160,7 +160,7 @@ TEST(Recording, EndsReplayAtACommand) {
   EXPECT_EQ(page.side()["step"], 4);
 }
 
-TEST(Recording, MalformedOnesAreRefused) {
+TEST(Recording, RefusesMalformedRecordings) {
   Page page;
   page.steps(1);
   Json good = page.send({{"ask", "recording"}});

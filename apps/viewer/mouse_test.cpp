@@ -85,7 +85,7 @@ TEST(Mouse, ReachesTheCursorWithinAStep) {
   EXPECT_NEAR(vec(grab["force"])[1], k * (0.2 - vec(grab["point"])[1]), 1e-9 * k);
 }
 
-TEST(Mouse, StiffnessIsRefusedUnlessPositive) {
+TEST(Mouse, RefusesNonpositiveStiffness) {
   Page page;
   const double before = number(page.scene()["stiffness"]);
   for (const Json& value : {Json(-1), Json(0), Json("stiff"), Json(1e300), Json()})

@@ -96,7 +96,7 @@ material = { young = 1e5 }
 where = "x < 0.01"
 )";
 
-TEST(Pictures, OfAFineSkinOrOfItsCage) {
+TEST(Pictures, ShowAFineSkinOrItsCage) {
   const TestFolder folder;
   Page source;  // provides a deformed beam as cage and its surface as skin
   const auto save = [&](const char* format, const std::string& name) {
@@ -129,7 +129,7 @@ TEST(Pictures, OfAFineSkinOrOfItsCage) {
   EXPECT_GT(decoded(session.pictures()[0].bytes).positions.size(), 12u);
 }
 
-TEST(Questions, AboutAVertexAndATet) {
+TEST(Questions, DescribeAVertexAndATet) {
   Page page;
   page.steps(3);
   const Json vertex = page.send({{"ask", "vertex"}, {"side", "a"}, {"vertex", 20}});
@@ -156,7 +156,7 @@ TEST(Questions, AboutAVertexAndATet) {
   }
 }
 
-TEST(Questions, AboutTheWorstPlaces) {
+TEST(Questions, FindTheWorstPlaces) {
   Page page;
   page.steps(3);
   const Json items = page.send({{"ask", "worst"}, {"side", "a"}})["items"];
@@ -197,7 +197,7 @@ TEST(Questions, AboutIterationsOfStoredStepsChangeNothing) {
             std::string::npos);
 }
 
-TEST(Questions, AboutTheStepUnderWay) {
+TEST(Questions, SampleTheCurrentStep) {
   Page page;
   page.steps(1);
   page.send({{"do", "iterate"}});
@@ -234,7 +234,7 @@ TEST(Questions, AnExplicitStepHasNoIterations) {
       std::string::npos);
 }
 
-TEST(Questions, ForAMeshAndTheScene) {
+TEST(Questions, ReturnTheMeshAndTheScene) {
   Page page;
   page.steps(2);
   for (const char* format : {"obj", "ply", "vtu", "msh", "mesh"}) {
@@ -247,7 +247,7 @@ TEST(Questions, ForAMeshAndTheScene) {
   EXPECT_NE(scene["text"].get<std::string>().find("[[body]]"), std::string::npos);
 }
 
-TEST(Questions, AboutAFunction) {
+TEST(Questions, MinimizeAFunction) {
   Page page;
   const auto ask = [&](const Json& changes) {
     Json question = {{"ask", "function"},          {"name", "rosenbrock"}, {"start", {-1.2, 1}},

@@ -146,7 +146,7 @@ Json upload(const std::string& name, const std::string& gzip) {
   return {{"do", "load"}, {"scene", name}, {"files", {{{"name", name}, {"gzip", gzip}}}}};
 }
 
-TEST(Upload, RefusesNamesThatLeadElsewhere) {
+TEST(Upload, RefusesNamesOutsideTheUpload) {
   Page page;
   for (const char* name : {"../a.toml", "/tmp/a.toml", "a/../../b.toml", "", ".", "a\nb.toml", "c:\\a.toml"})
     EXPECT_THAT(page.refused(upload(name, "")), HasSubstr("is refused")) << name;

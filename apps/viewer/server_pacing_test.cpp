@@ -36,7 +36,7 @@ TEST(Pacing, RestartsAtAnotherSpeedOrEarlierTime) {
   EXPECT_EQ(pacing.due(0.2, 2, kStart), kStart);
 }
 
-TEST(Rate, IsSimulatedTimePerTimePassed) {
+TEST(Rate, IsSimulatedTimePerWallTime) {
   Rate rate;
   rate.start(1, kStart);
   EXPECT_FALSE(rate.update(1.1, kStart + milliseconds(100)));

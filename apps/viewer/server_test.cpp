@@ -145,7 +145,7 @@ TEST_F(ServerTest, LetsOnlyTheFirstPageSteer) {
   EXPECT_EQ(second.next("steps")["steps"].size(), 1u);
 }
 
-TEST_F(ServerTest, GivesTheRoleToAPageThatTakesIt) {
+TEST_F(ServerTest, GivesTheRoleToARequestingPage) {
   TestPage first(*server_), second(*server_);
   hello(first);
   hello(second);
@@ -231,7 +231,7 @@ TEST_F(ServerTest, RefusesMalformedMessagesAndLogsThem) {
   EXPECT_FALSE(page.next("steps").is_null());
 }
 
-TEST_F(ServerTest, LogsAFloodOnlyInPart) {
+TEST_F(ServerTest, LimitsTheLogOfRefusedMessages) {
   TestPage page(*server_);
   hello(page);
   for (int i = 0; i < 500; ++i) page.send("{");
@@ -259,7 +259,7 @@ TEST_F(ServerTest, ClosesOnBinaryWithAReason) {
   EXPECT_EQ(page.reason(), "only text is understood here");
 }
 
-TEST_F(ServerTest, WaitsForNoPageThatDoesNotRead) {
+TEST_F(ServerTest, DoesNotWaitForUnreadMessages) {
   constexpr size_t kMoreThanSocketsHold = size_t{16} << 20;
   TestPage slow(*server_), quick(*server_);
   hello(quick);
@@ -273,7 +273,7 @@ TEST_F(ServerTest, WaitsForNoPageThatDoesNotRead) {
   }
 }
 
-TEST_F(ServerTest, InterruptsASlowStepForWhatIsUrgent) {
+TEST_F(ServerTest, InterruptsASlowStepForUrgentCommands) {
   write_file(folder_.path() / "slow.toml", kSlowScene);
   TestPage page(*server_);
   hello(page);
@@ -286,7 +286,7 @@ TEST_F(ServerTest, InterruptsASlowStepForWhatIsUrgent) {
   EXPECT_TRUE(server_->stop(kTooLong));
 }
 
-TEST_F(ServerTest, SurvivesBytesThatAreNoHttp) {
+TEST_F(ServerTest, SurvivesInvalidHttp) {
   for (const std::string& garbage : {std::string("\0\1\2\r\n\r\n", 7), std::string("GET\r\n\r\n"),
                                      std::string(20'000, 'a'), std::string("\x16\x03\x01\x02\x00\x01", 6)}) {
     asio::io_context network;
