@@ -6,7 +6,7 @@ namespace aspic::viewer {
 namespace {
 
 constexpr size_t kInboxRequests = 1000, kInboxBytes = size_t{64} << 20;
-constexpr std::chrono::milliseconds kSlow(300);  // longer work gives way to urgent requests
+constexpr std::chrono::milliseconds kSlow(300);  // urgent requests interrupt longer work
 constexpr std::chrono::microseconds kBetweenPictures(16'600);
 
 }  // namespace
@@ -145,7 +145,7 @@ void SimulationThread::carry_out(const Request& request) {
   if (!answer.to_sender.empty() && request.page != kNoPage) audience_.tell(request.page, std::move(answer.to_sender));
 }
 
-// The fit runs beside the simulation; its news is handled between two steps.
+// The fit runs in parallel with the simulation. Its news is handled between two steps.
 void SimulationThread::serve_fit() {
   if (std::optional<FitTask> task = session_.take_fit())
     fit_ = std::make_unique<FitJob>(*std::move(task), [this] {

@@ -46,7 +46,7 @@ struct Request {
 class SimulationThread {
  public:
   SimulationThread(Session& session, Audience& audience);
-  ~SimulationThread();  // waits for the end of the step under way
+  ~SimulationThread();  // waits for the end of the current step
 
   bool add(Request request);  // false: the inbox is full
   void want_pictures();       // shows the next pictures that differ from the last ones

@@ -30,7 +30,7 @@ struct Lesson {
   std::string missing;           // reason why it cannot be shown; empty: none
   std::filesystem::path scene;   // empty: the scene stays
   std::vector<std::string> overrides;
-  std::string field;  // for the colors of the body; empty: none
+  std::string field;  // field of the colors; empty: none
   struct Comparison {
     std::vector<std::string> overrides;
     std::string label;
@@ -88,7 +88,7 @@ class Session {
   Messages pictures() const;     // one for each side
   long picture_version() const;  // changes with the pictures
 
-  // Drops the step under way at its next iteration. May be called from any thread.
+  // Drops the current step at its next iteration. May be called from any thread.
   void interrupt();
 
  private:

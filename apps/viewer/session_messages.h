@@ -15,7 +15,7 @@ struct ShownSide {
   uint32_t generation = 1;                                               // generation of the geometry
   int sent_steps = 0;                                                    // number of steps whose rows were sent
   std::vector<std::string> loaded_overrides = side.steered().overrides;  // before any change of settings
-  std::vector<TetField> further = {};                                    // fields beside those of the model
+  std::vector<TetField> further = {};                                    // fields in addition to those of the model
 
   int number() const { return name == "a" ? 0 : 1; }
   std::vector<Field> fields() const;

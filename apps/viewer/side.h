@@ -12,7 +12,7 @@ namespace aspic::viewer {
 
 enum class Progress {
   interrupted,  // nothing changed
-  iterated,     // one more iterate of the step under way is shown
+  iterated,     // the next iterate of the current step is shown
   stepped,      // a step is complete
   blown_up      // a step is complete, but its state is not finite
 };

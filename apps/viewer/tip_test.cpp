@@ -190,7 +190,7 @@ TEST(Tip, RefusesInvalidTips) {
   EXPECT_EQ(number(page.side()["probe"]["wanted"]), 0);
 }
 
-TEST(RotationVector, IsThatOfTheRotation) {
+TEST(RotationVector, IsAxisTimesAngle) {
   for (const double angle : {0.0, 1e-12, 0.3, 2.0, 3.0, 3.1415, 3.14159265358979}) {
     const Vec3d a = {{2.0 / 3, -1.0 / 3, 2.0 / 3}};
     const Mat3d turn = {0, a[2], -a[1], -a[2], 0, a[0], a[1], -a[0], 0};
