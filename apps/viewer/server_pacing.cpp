@@ -7,7 +7,7 @@ namespace {
 
 using Seconds = std::chrono::duration<double>;
 
-constexpr Seconds kForgotten(0.1);    // delays of at least this are not made up for
+constexpr Seconds kForgotten(0.1);    // longer delays are not made up for
 constexpr Seconds kLongestWait(1e4);  // for speeds near zero
 constexpr Seconds kRateWindow(0.5);
 
