@@ -108,7 +108,7 @@ TEST(BenchCounts, TheCountsDoNotDependOnTheThreads) {
   for (const NamedCount& named : kCounts) EXPECT_EQ(counts[0].*named.count, counts[1].*named.count) << named.name;
 }
 
-TEST(BenchCounts, ASteadyStepOfTheBeamAllocatesOnlyItsReport) {
+TEST(BenchCounts, SteadyBeamStepAllocatesOnlyItsReport) {
   for (const std::string& solver : linear_solver_names()) {
     Simulation simulation = make_beam_simulation(falling_beam(7), solver);
     for (int i = 0; i < 2; ++i) simulation.step();

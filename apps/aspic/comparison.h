@@ -8,7 +8,7 @@
 namespace aspic::cli {
 
 struct WorkPoint {
-  int iteration = 0, gradients = 0, hessians = 0;  // totals so far
+  int iteration = 0, gradients = 0, hessians = 0;  // totals up to this point
   double seconds = 0;
   double value = 0, gradient_norm = 0;  // E and |g| at this point
 };

@@ -13,7 +13,7 @@ class FitProgress {
   FitProgress(std::FILE* stream, bool every_iteration);
   void begin(FitStage stage, const std::string& what);
   void show(FitStage stage, const FitIteration& iteration, int residuals);
-  void show(const std::string& line);     // if enough time has passed since the last one
+  void show(const std::string& line);     // skipped soon after the previous one
   void message(const std::string& line);  // separate line above the progress
   void finish();
 

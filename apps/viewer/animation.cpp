@@ -18,19 +18,19 @@
 namespace aspic::viewer {
 namespace {
 
-constexpr double kMostPerSecond = 120;  // frames
-constexpr double kMostBytes = 36e6;     // of a file, estimated
-constexpr int kMostMorphTargets = 240;  // more are slow in every program that reads them
+constexpr double kMostPerSecond = 120;  // maximum number of frames per second
+constexpr double kMostBytes = 36e6;     // maximum estimated size of a file
+constexpr int kMostMorphTargets = 240;  // more targets are slow in all programs that read them
 
 struct Format {
   const char* name;
-  double bytes_per_vertex;  // and frame
+  double bytes_per_vertex;  // per frame
   int most_frames;
 };
 constexpr Format kFormats[] = {{"usd", 34, 3000}, {"pc2", 12, 20'000}, {"glb", 12, kMostMorphTargets}};
 
 struct Motion {
-  std::vector<double> times;  // evenly spread [s]
+  std::vector<double> times;  // equidistant times [s]
   std::vector<std::vector<float>> frames;
   double per_second = 0;
 };
@@ -89,7 +89,7 @@ std::string usd_text(const std::string& name, const Surface& surface, const Moti
   return read_file(path);
 }
 
-// A point cache needs the mesh that it moves.
+// Returns a ZIP archive of the point cache and the mesh that it moves.
 std::string pc2_archive(const std::string& name, const Surface& surface, const Motion& motion) {
   const TemporaryFolder folder;
   const auto cache = folder.path() / "motion.pc2", mesh_path = folder.path() / "mesh.obj";

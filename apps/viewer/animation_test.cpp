@@ -1,4 +1,4 @@
-// Animations that a session hands to its page.
+// Animations that a session sends to its page.
 #include <gmock/gmock.h>
 
 #include "io/base64.h"
@@ -30,7 +30,7 @@ TEST(AnimationOfASession, HasAFrameForEachStep) {
   EXPECT_THAT(exported(page, "glb"), StartsWith("glTF"));
 }
 
-TEST(AnimationOfASession, EndsWhereTheBodyIs) {
+TEST(AnimationOfASession, EndsAtTheCurrentPositions) {
   Page page(kBeam, {"time.step=0.02"});
   page.steps(2);
   const std::string bytes = exported(page, "glb");

@@ -11,9 +11,9 @@
 namespace aspic::viewer {
 namespace {
 
-constexpr int kDeepestNesting = 12;  // of a message
-constexpr size_t kMostTexts = 200;   // of a list
-constexpr size_t kLongest = 4096;    // [bytes]
+constexpr int kDeepestNesting = 12;  // maximum depth of a message
+constexpr size_t kMostTexts = 200;   // maximum length of a list
+constexpr size_t kLongest = 4096;    // maximum length of a text [bytes]
 
 std::string shown(const Json& value) { return shortened(value.dump(-1, ' ', true, Json::error_handler_t::replace)); }
 
@@ -97,7 +97,7 @@ Vec3d Arguments::vector(const char* key) {
   return x;
 }
 
-// As a page computes them: exact but for rounding to single precision.
+// Clamps the weights and scales their sum to 1, because a page computes them in single precision.
 Vec3d Arguments::weights(const char* key) {
   Vec3d weights = vector(key);
   double sum = 0;

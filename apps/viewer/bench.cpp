@@ -17,8 +17,8 @@
 namespace aspic::viewer {
 namespace {
 
-constexpr double kLeastDeviation = 1e-4;  // of exact readings
-constexpr uint64_t kApart = 1'000'003;    // seeds of two cases
+constexpr double kLeastDeviation = 1e-4;  // relative sigma of exact readings
+constexpr uint64_t kApart = 1'000'003;    // distance between the seeds of two cases
 
 Vec3d gravity_of(const Scene& scene) {
   const Table document = read_toml(scene.resolved, scene.name);
@@ -139,7 +139,7 @@ void Bench::record(const Touch& touch, const TipPose& pose, int depths, const St
   }
 }
 
-// Touch and pose are relative to the surface, which in the mesh of the data may lie a little elsewhere.
+// Touch and pose are relative to the surface, and the surface of the data set's mesh may differ slightly.
 LoadCase Bench::as_data(const LoadCase& load) const {
   LoadCase data = load;
   const Vec3d site = load.touch.center + (load.tip->shape == TipShape::sphere ? load.tip->radius : 0) * load.touch.axis;

@@ -1,5 +1,5 @@
-// The virtual bench: what a probe and cameras measure at the body of a scene, case by case, as a data set. The body is
-// at rest in every case, on its own mesh; the data set has that mesh, or a coarser one.
+// The virtual bench: simulates the measurements of a probe and cameras on the body of a scene as a data set of load
+// cases. The body is at rest in each case. The data set has the mesh of the body or a coarser one.
 #pragma once
 #include <cstdint>
 #include <memory>
@@ -18,58 +18,58 @@ namespace aspic::viewer {
 
 struct BenchOptions {
   int markers = 100;
-  double noise = 0.01;  // standard deviation: of positions relative to the case's largest motion, of its force relative
-                        // to the force
+  double noise = 0.01;  // standard deviation of the positions relative to the largest displacement of the case, and of
+                        // the force relative to the force
   uint64_t seed = 1;
-  bool same_mesh = true;  // the fit has the mesh of the body: an inverse crime
+  bool same_mesh = true;  // the fit uses the mesh of the body: an inverse crime
 };
 
 class Bench {
  public:
-  // Of the scene's one body, held where its pins hold it. Throws InvalidInput.
+  // Requires a scene with one body that its pins hold. Throws InvalidInput otherwise.
   Bench(const Scene& scene, const BenchOptions& options);
   ~Bench();
 
   const BenchOptions& options() const { return options_; }
-  void set_options(const BenchOptions& options);  // other markers: refused by InvalidInput once there are cases
+  void set_options(const BenchOptions& options);  // throws InvalidInput: other markers after the first case
 
-  // Presses a tip in, in equal parts up to that pose, and reads each part. Throws InvalidInput, with what was read
-  // kept, when the body finds no rest or `stop` stops.
+  // Moves a tip to that pose in `depths` equal increments and measures after each one. Throws InvalidInput if the body
+  // finds no equilibrium or `stop` stops. The earlier measurements remain.
   void record(const Touch& touch, const TipPose& pose, int depths, const StopToken& stop);
-  void forget(int c);  // a case
+  void forget(int c);  // drops case c
   void forget_all();
 
   const DataSet& data() const { return data_; }
-  const std::vector<double>& depths() const { return depths_; }          // of each case [m]
-  const std::vector<Vec3d>& marker_rest() const { return truth_rest_; }  // on the surface of the scene's body [m]
+  const std::vector<double>& depths() const { return depths_; }          // indentation of each case [m]
+  const std::vector<Vec3d>& marker_rest() const { return truth_rest_; }  // positions on the surface at rest [m]
   const FittedMaterial& truth() const { return truth_; }
-  bool is_same_mesh() const { return is_same_mesh_; }  // of the data and of the scene: an inverse crime
+  bool is_same_mesh() const { return is_same_mesh_; }  // data set and scene share a mesh: an inverse crime
   const std::vector<std::string>& notes() const { return notes_; }
 
-  std::vector<PokeSite> sites(double radius, int count) const;  // on the mesh of the scene
-  // Values of each tet of the data's mesh for each tet of the scene's, by the order of its model.
+  std::vector<PokeSite> sites(double radius, int count) const;  // points on the mesh of the scene
+  // Maps values per tet of the data set's mesh to the tets of the scene, in the order of its model.
   std::vector<double> on_scene(std::span<const double> of_data) const;
-  std::vector<double> true_young() const;  // by the order of the data's mesh
+  std::vector<double> true_young() const;  // E per tet in the order of the data set's mesh [Pa]
 
  private:
   void set_up_mesh(const Scene& scene);
   void place_markers();
-  LoadCase as_data(const LoadCase& load) const;  // with the tip where the surface of the data's mesh is
+  LoadCase as_data(const LoadCase& load) const;  // moves the tip to the surface of the data set's mesh
   void add(const LoadCase& load, const CasePrediction& found, double depth);
 
   BenchOptions options_;
-  FittedMaterial truth_;                        // by the user's numbers
-  std::vector<MaterialParameters> parameters_;  // of the truth, by the order of its mesh
-  Experiment body_;                             // the truth, with the markers and no case
+  FittedMaterial truth_;                        // in the user's numbering
+  std::vector<MaterialParameters> parameters_;  // true material in the order of its mesh
+  Experiment body_;                             // the true body with the markers and without cases
   Vec3d gravity_{};
   DataSet data_;
   bool is_same_mesh_ = false;
   std::vector<std::string> notes_;
   std::unique_ptr<SurfaceProjection> on_truth_, on_data_;
-  std::vector<Vec3d> marker_rest_, truth_rest_;  // on the surfaces of data and truth [m]
+  std::vector<Vec3d> marker_rest_, truth_rest_;  // positions on the surfaces of data set and true body [m]
   std::vector<double> depths_;
-  std::vector<int> data_tet_;  // in which each tet of the scene lies
-  uint64_t recorded_ = 0;      // cases so far: each has noise of its own
+  std::vector<int> data_tet_;  // tet of the data set that contains each tet of the scene
+  uint64_t recorded_ = 0;      // number of cases so far; seeds the noise of each case
   int groups_ = 0;
 };
 

@@ -14,7 +14,7 @@ namespace {
 constexpr int kMostMarkers = 5'000, kMostSites = 200, kMostDepths = 20;
 constexpr size_t kMostCases = 1'000;
 
-// The body at rest does not depend on the other settings.
+// Returns whether a setting changes the body at rest.
 bool is_of_the_body(const std::string& override_text) {
   for (const char* other : {"solver", "time", "damping", "output"})
     if (key_of(override_text).starts_with(other)) return false;

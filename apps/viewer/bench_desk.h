@@ -1,4 +1,4 @@
-// The desk of the virtual bench: records cases with the indenter, saves them as a data set, and starts fits of them.
+// Bench commands: record load cases with the indenter, save them as a data set, and start fits.
 #pragma once
 #include <memory>
 #include <string>
@@ -16,7 +16,7 @@ class BenchDesk {
 
   void check_body();  // drops the bench and the fit if the body of side a is no longer the measured one
   void add(const FitNews& news);
-  void send() const;  // the whole state
+  void send() const;  // sends the state of bench and fit
   FitState& fit() { return fit_; }
 
  private:
@@ -25,7 +25,7 @@ class BenchDesk {
   void poke_all(Arguments& arguments);
   void forget(Arguments& arguments);
   void save_capture(Arguments& arguments);
-  Bench& bench();  // set up at the first call
+  Bench& bench();  // creates the bench at the first call
   int case_count() const { return bench_ ? static_cast<int>(bench_->data().experiment.cases.size()) : 0; }
   void require_room(size_t cases);  // throws InvalidInput
 
@@ -35,7 +35,7 @@ class BenchDesk {
   FitState fit_;
   BenchOptions wanted_;
   std::unique_ptr<Bench> bench_;  // null: not set up
-  std::string body_;              // the measured one, see body_text()
+  std::string body_;              // measured body, see body_text()
 };
 
 }  // namespace aspic::viewer

@@ -61,7 +61,7 @@ FitNews finished(const FitTask& task, Page& page) {
   return last;
 }
 
-TEST(Bench, RecordsThePoseOfTheTipWithItsForceAtRest) {
+TEST(Bench, RecordsPoseAndEquilibriumForceOfTheTip) {
   Page page(kBlock, {"time.integrator=\"quasi_static\""});
   page.send({{"do", "bench"}, {"noise", 0}, {"markers", 30}, {"same_mesh", false}});
   EXPECT_EQ(page.capture()["markers"]["triangles"].size(), 30u);
@@ -76,7 +76,7 @@ TEST(Bench, RecordsThePoseOfTheTipWithItsForceAtRest) {
   ASSERT_EQ(cases.size(), 3u);
   EXPECT_EQ(cases[2]["name"], "poke 1, depth 3");
   EXPECT_NEAR(number(cases[0]["depth"]), 0.002, 1e-12);
-  for (int r = 0; r < 3; ++r)  // the simulation, at rest, is as far from equilibrium as its solver stopped
+  for (int r = 0; r < 3; ++r)  // within the tolerance of the solver
     EXPECT_NEAR(number(cases[2]["force"][r]), number(probe["force"][r]), 1e-3 * number(cases[2]["push"]));
   EXPECT_GT(number(cases[1]["push"]), number(cases[0]["push"]));
   page.send({{"do", "forget"}, {"case", 1}});
@@ -98,7 +98,7 @@ TEST(Bench, NoiseIsSeededAndHasTheWantedSize) {
   EXPECT_NE(forces[0], forces[2]);
 }
 
-TEST(Bench, SavesADataSetThatCanBeReadAgain) {
+TEST(Bench, SavesAReadableDataSet) {
   const TestFolder folder;
   const std::string path = (folder.path() / "poked").string();
   Page page(kBlock);
@@ -136,7 +136,7 @@ TEST(Bench, FindsAndSimulatesTheStifferHalf) {
   EXPECT_GT(number(fit["stiffest"]) / number(fit["softest"]), 2);
   EXPECT_FALSE(fit["iterations"].empty());
 
-  // Shown as colors.
+  // The colors show it.
   EXPECT_EQ(page.scene()["field"], "fitted_young");
   const Picture picture = page.picture();
   double soft = 0, stiff = 0;
@@ -152,9 +152,9 @@ TEST(Bench, FindsAndSimulatesTheStifferHalf) {
   page.send({{"do", "simulate_fit"}});
   EXPECT_EQ(page.scene("b")["label"], "fitted material");
   EXPECT_EQ(page.scene("b")["field"], "young");
-  EXPECT_EQ(page.capture()["cases"].size(), 6u);  // the bench stays
+  EXPECT_EQ(page.capture()["cases"].size(), 6u);  // the bench remains
 
-  // A recording names no file that vanishes.
+  // A recording refers to no temporary file.
   EXPECT_NE(page.refused({{"ask", "recording"}}).find("save the data set"), std::string::npos);
   const TestFolder folder;
   page.send({{"do", "save_capture"}, {"folder", (folder.path() / "poked").string()}});
@@ -180,7 +180,7 @@ TEST(Bench, EstimatesTheErrorOfACoarserMesh) {
     const std::optional<FitTask> task = page.session().take_fit();
     ASSERT_TRUE(task);
     EXPECT_EQ(task->plan.mesh_errors, !same_mesh);
-    for (const LoadCase& load : task->data.experiment.cases) {  // deviations are the instruments' own alone
+    for (const LoadCase& load : task->data.experiment.cases) {  // only the sigma of the instruments
       const Vec3d& f = *load.force;
       EXPECT_NEAR(load.force_deviation[0], 0.02 * std::hypot(f[0], f[1], f[2]), 0.2 * load.force_deviation[0]);
     }
@@ -214,7 +214,7 @@ TEST(Bench, AStoppedFitKeepsItsResult) {
   run_fit(*task, tell, StopToken([&] { return !page.session().wants_fit(); }));
   EXPECT_FALSE(page.capture()["fit"]["running"]);
   EXPECT_LE(iterations, 5);
-  page.send({{"do", "fit"}});  // may be begun again
+  page.send({{"do", "fit"}});  // may start again
 }
 
 TEST(Bench, IgnoresNewsOfADroppedFit) {
@@ -250,12 +250,12 @@ TEST(Bench, RefusesImpossibleMeasurements) {
   page.refused(poke(0, 1));
   page.refused({{"do", "poke_all"}, {"sites", 3}, {"depths", 1}, {"depth", -1}});
   page.refused({{"do", "simulate_fit"}});
-  page.send({{"do", "stop_fit"}});  // there is none
+  page.send({{"do", "stop_fit"}});  // without a fit
   page.send({{"do", "pin"}, {"side", "a"}, {"vertices", page.pins()}, {"pinned", false}});
   EXPECT_NE(page.refused({{"do", "bench"}}).find("nothing holds"), std::string::npos);
 }
 
-TEST(FitJob, RunsInAThreadOfItsOwnAndStops) {
+TEST(FitJob, RunsInItsOwnThreadAndStops) {
   Page page(kBlock);
   page.send({{"do", "bench"}, {"markers", 30}});
   page.send(poke(2, 1));

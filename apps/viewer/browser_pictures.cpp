@@ -23,7 +23,7 @@ namespace fs = std::filesystem;
 using Clock = std::chrono::steady_clock;
 
 constexpr std::chrono::seconds kLongestSilence(180);
-constexpr std::chrono::milliseconds kPeriod(50);  // of looking at the browser and at who may stop it
+constexpr std::chrono::milliseconds kPeriod(50);  // interval of checks of browser and stop token
 
 fs::path find_browser() {
   for (const char* name : {"chromium", "chromium-browser", "google-chrome"}) {
@@ -37,7 +37,7 @@ fs::path find_browser() {
       "(Debian: apt-get install chromium)");
 }
 
-// Without a graphics card, a window, or a word to anyone; whatever it writes goes into `folder`.
+// Command of a headless browser without GPU and network services. It writes only into `folder`.
 std::vector<std::string> browser_command(const fs::path& folder, const std::string& address) {
   const fs::path browser = find_browser(), env = find_program("env", {}, "");
   std::vector<std::string> command = {env.string(),
@@ -61,12 +61,12 @@ std::vector<std::string> browser_command(const fs::path& folder, const std::stri
                                       "--disable-sync",
                                       "--no-default-browser-check",
                                       "--no-first-run"};
-  if (::geteuid() == 0) command.emplace_back("--no-sandbox");  // the sandbox refuses to serve root
+  if (::geteuid() == 0) command.emplace_back("--no-sandbox");  // the sandbox does not work for root
   command.push_back(address);
   return command;
 }
 
-// What the page has sent so far, passed from the server's thread to the waiting one.
+// Passes the pictures of the page from the server's thread to the waiting thread.
 class Arrivals {
  public:
   Arrivals(const PageOfPictures& page, const Pictures& pictures) : page_(page), pictures_(pictures) {}
@@ -88,7 +88,7 @@ class Arrivals {
     return "";
   }
 
-  // False: not yet. Throws what went wrong.
+  // Returns whether all pictures have arrived. Rethrows errors of the page.
   bool wait(std::chrono::milliseconds period) {
     std::unique_lock lock(mutex_);
     changed_.wait_for(lock, period);

@@ -1,4 +1,4 @@
-// The viewer's page in a browser without a window: it draws pictures for this program.
+// Pictures that the viewer's page draws in a headless browser.
 #pragma once
 #include <functional>
 #include <string>
@@ -10,13 +10,13 @@ namespace aspic::viewer {
 
 struct PageOfPictures {
   std::string page;   // HTML
-  std::string query;  // of its address, after the token: "&render=1"; see web/src/main.ts
+  std::string query;  // end of the address, after the token: "&render=1"; see web/src/main.ts
 
-  // What the page asks for, by number. Called from another thread. Empty: it has all it needs.
+  // Returns the part of the data with that index. Called from another thread. Empty: the page contains all data.
   std::function<std::string(int index)> part = {};
 };
 
-using Pictures = std::function<void(int index, int count, std::string_view png)>;  // in order
+using Pictures = std::function<void(int index, int count, std::string_view png)>;  // called in order
 
 enum class RenderEnd { done, interrupted };
 

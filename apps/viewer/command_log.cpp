@@ -12,7 +12,7 @@ namespace {
 
 bool does(const Event& event, const char* what) { return event.command.at("do") == what; }
 
-// What a command replaces when it is given again; empty: nothing.
+// Key of the value that a command sets. A later command with the same key replaces it. Empty: none.
 std::string meaning(const Event& event) {
   for (const char* lasting : {"stiffness", "surface"})
     if (does(event, lasting)) return lasting;
@@ -74,7 +74,7 @@ Recording read_recording(const Json& json) {
 }
 
 void CommandLog::add(Event event) {
-  // Of moves between two steps only the last one counts.
+  // Only the last move between two steps has an effect.
   for (const char* what : {"move", "press"})
     if (does(event, what) && !events_.empty() && does(events_.back(), what) && events_.back().step == event.step &&
         events_.back().b == event.b)

@@ -1,4 +1,4 @@
-// What was done to a simulation, by step: enough to repeat it to the same bits.
+// The commands of a session with their steps. A replay of them is bit-reproducible.
 #pragma once
 #include <deque>
 #include <optional>
@@ -9,9 +9,9 @@
 
 namespace aspic::viewer {
 
-struct Event {   // NOLINT(bugprone-exception-escape): to move JSON throws nothing
-  int step = 1;  // carried out before this step of side a
-  int b = -1;    // and when side b had taken this number of steps; -1: no side b
+struct Event {   // NOLINT(bugprone-exception-escape): a move of JSON does not throw
+  int step = 1;  // step of side a that follows the command
+  int b = -1;    // number of steps of side b before the command; -1: no side b
   Json command;
 };
 
@@ -27,7 +27,7 @@ struct Recording {
   int steps = 0;
 };
 Json to_json(const Recording& recording);
-Recording read_recording(const Json& json);  // throws InvalidInput; the commands are looked at when it is their turn
+Recording read_recording(const Json& json);  // throws InvalidInput; the replay validates the commands
 
 class CommandLog {
  public:
@@ -35,12 +35,12 @@ class CommandLog {
 
   void clear() { events_.clear(), is_complete_ = true; }
   void add(Event event);
-  // Side a went back to the end of a step, which undoes what was done after it. Settings and the stiffness of the
-  // mouse stay as they are: what set them last is done again there.
+  // Drops the commands after a step of side a. Settings and the stiffness of the mouse keep their values: the latest
+  // commands that set them move to that step.
   void rewind(int step, int b);
   void forget_side_b();
   const std::vector<Event>& events() const { return events_; }
-  bool is_complete() const { return is_complete_; }  // not too many to be kept
+  bool is_complete() const { return is_complete_; }  // false: more than kMostEvents
 
  private:
   std::vector<Event> events_;

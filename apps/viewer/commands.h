@@ -1,4 +1,4 @@
-// The commands and questions of a page, by name. docs/viewer_protocol.md describes them.
+// The table of the commands and questions of a page. docs/viewer_protocol.md describes them.
 #pragma once
 #include <functional>
 #include <map>
@@ -39,7 +39,7 @@ void add_scene_commands(const SessionOptions& options, Stage& stage, Playback& p
 void add_questions(const SessionOptions& options, Stage& stage, const Playback& playback, const FitState& fit,
                    Questions& questions);
 
-// The tip that a command describes, with defaults for what it leaves out. Throws InvalidInput.
+// Returns the tip that a command describes, with defaults for missing members. Throws InvalidInput.
 Tip tip_of(Arguments& arguments, const Model& model, const Surface& cage);
 
 }  // namespace aspic::viewer

@@ -1,4 +1,4 @@
-// Two sides, and a session repeated.
+// Comparisons of two sides, and replays of sessions.
 #include <cmath>
 
 #include "viewer/session_test.h"
@@ -39,7 +39,7 @@ TEST(Comparison, IsGrabbedPinnedAndSetOnBothSides) {
   page.send({{"do", "pin"}, {"side", "b"}, {"vertices", {30}}, {"pinned", true}});
   EXPECT_EQ(page.pins("a"), page.pins("b"));
   page.send({{"do", "set"}, {"key", "material.density"}, {"value", 900}});
-  page.send({{"do", "set"}, {"key", "material.young"}, {"value", 2e5}});  // what is compared stays apart
+  page.send({{"do", "set"}, {"key", "material.young"}, {"value", 2e5}});  // compared keys keep their values
   page.send({{"do", "color"}, {"field", "density"}});
   for (const int side : {0, 1}) EXPECT_EQ(page.picture(side).max, 900);
   page.send({{"do", "color"}, {"field", "young"}});
@@ -53,7 +53,7 @@ TEST(Comparison, IsGrabbedPinnedAndSetOnBothSides) {
   page.refused({{"ask", "worst"}, {"side", "b"}});
 }
 
-TEST(Comparison, OfOtherMeshesIsGrabbedAtTheNearestPoint) {
+TEST(Comparison, GrabsOtherMeshesAtTheNearestPoint) {
   Page page;
   page.send({{"do", "compare"}, {"overrides", {"body.beam.shape.box.cells=[12, 4, 4]"}}, {"label", "fine"}});
   page.grab_end({1, 0.5, 0});
@@ -71,7 +71,7 @@ TEST(Comparison, ThatFailsToLoadChangesNothing) {
   EXPECT_EQ(page.side()["step"], 2);
 }
 
-// Everything that is recorded, at several steps, with detours.
+// Sends all recorded commands at several steps, with rewinding.
 void play_with(Page& page) {
   page.steps(2);
   page.grab_end({1, 0.4, 0.1});
@@ -160,7 +160,7 @@ TEST(Recording, EndsReplayAtACommand) {
   EXPECT_EQ(page.side()["step"], 4);
 }
 
-TEST(Recording, MalformedOnesAreRefused) {
+TEST(Recording, RefusesMalformedRecordings) {
   Page page;
   page.steps(1);
   Json good = page.send({{"ask", "recording"}});
@@ -177,7 +177,7 @@ TEST(Recording, MalformedOnesAreRefused) {
   refused([](Json& r) { r["events"] = {{{"step", 1}, {"command", {{"do", 7}}}}}; });
   refused([](Json& r) { r["steps"] = -1; });
   EXPECT_EQ(page.side()["step"], 1);
-  Json late = good;  // found out when its turn comes
+  Json late = good;  // refused during the replay
   late["events"] = {{{"step", 1}, {"command", {{"do", "stiffness"}}}}};
   page.send({{"do", "replay"}, {"recording", late}});
   page.advance();

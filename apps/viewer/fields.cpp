@@ -20,7 +20,7 @@ void evaluate_elasticity(const View& view, TetFields& fields) {
   for (const auto& V : view.simulation.model().elasticity) V->evaluate(view.x, fields);
 }
 
-// Values that vertices have by themselves: 3 components each, of which the length is shown.
+// Returns the value of a vertex field: the length of its 3 components.
 double vertex_value(const std::string& field, const View& view, const Surface& surface, int vertex) {
   if (field == "speed") return norm(surface.position(vertex, view.simulation.state().qdot));
   return norm(surface.position(vertex, view.x) - surface.rest[vertex]);

@@ -11,18 +11,18 @@ namespace aspic::viewer {
 struct Field {
   std::string name, label, unit;
   bool is_diverging = false;
-  double center = 0;    // of a diverging one
-  bool is_log = false;  // looked at on a logarithmic scale
+  double center = 0;    // center of a diverging color map
+  bool is_log = false;  // displayed on a logarithmic scale
 };
 std::vector<Field> fields_of(const Model& model);
 
-// Values per tet that the model does not know of, such as those of a fit.
+// Values per tet from outside the model, such as those of a fit.
 struct TetField {
   Field field;
-  std::vector<double> values;  // by the order of the model
+  std::vector<double> values;  // in the order of the model
 };
 
-// A simulation as it is looked at: between steps, or at an iterate of the step under way.
+// The displayed state of a simulation: between steps, or at an iterate of the current step.
 struct View {
   const Simulation& simulation;
   std::span<const double> x;
@@ -31,7 +31,7 @@ struct View {
 
 class FieldValues {
  public:
-  // One value per vertex of the surface, of a field of the model. Values of tets are averaged by volume.
+  // Computes a field of the model, one value per vertex of the surface. Averages values of tets by volume.
   void evaluate(const std::string& field, const View& view, const Surface& surface, std::span<float> values);
 
  private:
@@ -43,8 +43,8 @@ class FieldValues {
 
 TetFields tet_fields_at(const View& view);
 Mat3d deformation_gradient(const TetMesh& mesh, int tet, std::span<const double> x);
-Vec3d stretches(const Mat3d& F);  // largest first, never negative
-// The first of them by the cosine formula for eigenvalues of F'F [Smith 1961]: to about 1e-8 and six times faster.
+Vec3d stretches(const Mat3d& F);  // in descending order, never negative
+// The largest stretch by the cosine formula for eigenvalues of F'F [Smith 1961]. Accurate to 1e-8, six times faster.
 double largest_stretch(const Mat3d& F);
 
 }  // namespace aspic::viewer

@@ -25,7 +25,7 @@ const char* words_of(FitStage stage) {
   return "";
 }
 
-// The unknowns as a stage has them: first one value each.
+// The parameterization of a stage. The first stage has one value per quantity.
 std::vector<Unknown> unknowns_of(const FitPlan& plan, FitStage stage) {
   std::vector<Unknown> unknowns = plan.unknowns;
   if (stage == FitStage::uniform)
@@ -58,7 +58,7 @@ class Listener {
     return news;
   }
 
-  // Stages alternate: what the mesh gets wrong is computed anew for what was fitted.
+  // Stages alternate: the discretization error is recomputed for each fitted material.
   void hear(FitStage stage, const FitIteration& iteration, std::span<const double> p) {
     FitNews news = stage == stage_ ? FitNews{} : beginning(stage);
     if (stage == FitStage::uniform || stage == FitStage::field) {
@@ -74,7 +74,7 @@ class Listener {
   const StopToken& stop_;
   FitPlan plan_;
   FitStage stage_ = FitStage::uniform;
-  std::optional<ParameterMap> map_;  // of the stage under way
+  std::optional<ParameterMap> map_;  // parameters of the current stage
 };
 
 void append(FitNews& to, FitNews more) {

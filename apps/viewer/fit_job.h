@@ -1,4 +1,4 @@
-// A fit in a thread of its own: start, news, stop. The listener requests the news when it is woken.
+// A fit in its own thread. The owner requests news after each call of `wake`.
 #pragma once
 #include <atomic>
 #include <functional>
@@ -18,15 +18,15 @@ struct FitTask {
   FitPlan plan;
 };
 
-// What has become known since the news before.
+// Progress since the previous news.
 struct FitNews {
-  long task = 0;                         // which
-  std::string stage;                     // in words; empty: as before
-  std::vector<FitIteration> iterations;  // new ones of this stage; `is_new_stage`: earlier ones are void
-  bool is_new_stage = false;
-  std::vector<double> young;  // of each tet of the data [Pa]; empty: as before
+  long task = 0;                         // number of the task
+  std::string stage;                     // description; empty: unchanged
+  std::vector<FitIteration> iterations;  // new iterations of this stage
+  bool is_new_stage = false;             // earlier iterations are obsolete
+  std::vector<double> young;             // E of each tet of the data set [Pa]; empty: unchanged
   std::optional<FitOutcome> outcome;
-  std::string failure;  // the task could not be begun
+  std::string failure;  // the task could not start
   bool has_ended = false;
 };
 
@@ -36,10 +36,10 @@ void run_fit(const FitTask& task, const std::function<void(FitNews)>& tell, cons
 class FitJob {
  public:
   FitJob(FitTask task, std::function<void()> wake);  // `wake`: called from the thread of the fit
-  ~FitJob();                                         // stops it and waits for that
+  ~FitJob();                                         // stops the fit and waits for its end
 
-  void stop() { stopping_ = true; }  // ends after its iteration under way, with what was reached
-  std::optional<FitNews> news();     // none: nothing is new
+  void stop() { stopping_ = true; }  // ends after the current iteration and keeps its result
+  std::optional<FitNews> news();     // none: no progress
   bool has_ended() const { return has_ended_; }
 
  private:
@@ -47,7 +47,7 @@ class FitJob {
 
   std::function<void()> wake_;
   std::atomic<bool> stopping_ = false, has_ended_ = false;
-  std::mutex mutex_;  // of what follows
+  std::mutex mutex_;  // guards the members below
   std::optional<FitNews> pending_;
   std::thread thread_;
 };

@@ -20,7 +20,7 @@ namespace {
 constexpr std::string_view kFitBegin = "<script type=\"application/json\" id=\"fit\">\"", kFitEnd = "\"</script>";
 constexpr float kNotANumber = std::numeric_limits<float>::quiet_NaN();
 
-// JSON knows no infinity and no NaN: null.
+// Returns null for infinity and NaN, which JSON cannot represent.
 Json number_json(double value) { return std::isfinite(value) ? Json(value) : Json(); }
 Json vector(const Vec3d& v) { return {number_json(v[0]), number_json(v[1]), number_json(v[2])}; }
 

@@ -1,4 +1,4 @@
-// A fit as one HTML file that needs nothing else: the viewer's page with everything that was measured and found inside.
+// A fit as one self-contained HTML file: the viewer's page with measurements and results.
 #pragma once
 #include <string>
 #include <vector>
@@ -7,7 +7,7 @@
 
 namespace aspic::viewer {
 
-// `history`: the iterations of the fit itself, in their order.
+// `history`: the iterations of the fit in ascending order.
 std::string fit_page(const DataSet& data, const FitOutcome& outcome, const std::vector<FitIteration>& history);
 
 }  // namespace aspic::viewer

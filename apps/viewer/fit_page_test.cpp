@@ -15,7 +15,7 @@ namespace {
 
 using testing::HasSubstr;
 
-// What the page holds, as its script unpacks it.
+// The data of the page, unpacked as by its script.
 struct Unpacked {
   explicit Unpacked(const std::string& html) {
     const std::string begin = "<script type=\"application/json\" id=\"fit\">\"";

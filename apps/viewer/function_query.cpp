@@ -18,7 +18,7 @@ namespace aspic::viewer {
 namespace {
 
 constexpr int kMostIterations = 500, kMostSamples = 101;
-constexpr double kFarthestStart = 1e6;  // of a start
+constexpr double kFarthestStart = 1e6;  // maximum coordinate of a start
 
 struct Problem {
   std::unique_ptr<PlanarFunction> function;
@@ -35,7 +35,7 @@ Problem problem_of(const std::string& name, const Planar& start) {
                   .formula = name,
                   .remarks = "derivatives by differences",
                   .minimizer = std::nullopt};
-  // What is worth looking at is not known: around the start and the origin.
+  // Without a known range, shows the start and the origin.
   for (int i = 0; i < 2; ++i) {
     const double reach = std::max(2.0, 1.25 * std::abs(start[i]));
     problem.lower[i] = -reach, problem.upper[i] = reach;
@@ -43,7 +43,7 @@ Problem problem_of(const std::string& name, const Planar& start) {
   return problem;
 }
 
-// [solver] of a scene, as the page may set it.
+// Reads the keys of [solver] that the page may set.
 SolverOptions options_of(const Json& settings) {
   if (!settings.is_object() || settings.size() > 40) refuse("function.settings", settings, "an object is expected");
   std::vector<std::string> overrides;
@@ -61,7 +61,7 @@ SolverOptions options_of(const Json& settings) {
   return options;
 }
 
-struct Seen {  // of the minimization
+struct Seen {  // the recorded minimization
   std::vector<IterationRow> rows;
   Json path = Json::array();
   std::vector<CurvePoint> curve;

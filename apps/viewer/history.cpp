@@ -54,7 +54,7 @@ Snapshot History::return_to(int step) {
 }
 
 // A simulation counts steps from its start. After a change of the step length it continues from its state, and the
-// start moves to where the same number of steps of the new length would have begun.
+// start moves to the time from which the same number of steps of the new length reaches that state.
 Simulation::Snapshot History::simulation_state(const Snapshot& snapshot, const SimulationOptions& options) const {
   const bool is_same_step = options.h == snapshot.h;
   State start = *start_;

@@ -15,9 +15,9 @@ class History {
   const State& start() const { return *start_; }
   const Timeline& timeline() const { return timeline_; }
   const StepRows& rows() const { return rows_; }
-  struct Pull {  // by the hand, in one step
+  struct Pull {  // pull of the hand in one step
     int step = 0;
-    Grab grab;  // from the start of the step to its end
+    Grab grab;  // motion from the start of the step to its end
   };
   const std::vector<Pull>& pulls() const { return pulls_; }
   double end_of_next_step(const Simulation& simulation) const;  // [s]

@@ -11,13 +11,13 @@
 namespace aspic::viewer {
 namespace {
 
-constexpr size_t kMostOfPath = 1000;                      // iterates
-constexpr size_t kMostPathBytes = size_t{128} << 20;      // that are held until the plane is known
-constexpr double kTetsOfSlice = 2e7, kTetsOfCurve = 1e7;  // to evaluate: together half a second of one processor
+constexpr size_t kMostOfPath = 1000;                      // maximum number of iterates of a path
+constexpr size_t kMostPathBytes = size_t{128} << 20;      // maximum memory of iterates before the plane is known
+constexpr double kTetsOfSlice = 2e7, kTetsOfCurve = 1e7;  // evaluations of tets: 0.5 s of CPU time together
 
 int slice_samples(int tets) {
   const int samples = static_cast<int>(std::sqrt(kTetsOfSlice / std::max(tets, 1)));
-  return std::clamp(samples | 1, 9, 41);  // odd: one of them is the iterate
+  return std::clamp(samples | 1, 9, 41);  // odd, so that one sample is the iterate
 }
 
 int curve_samples(int tets) { return std::clamp(static_cast<int>(kTetsOfCurve / std::max(tets, 1)), 31, 101); }
@@ -28,8 +28,8 @@ double scalar_product(std::span<const double> a, std::span<const double> b) {
   return sum;
 }
 
-// Follows a step while it is repeated, and looks around one of its iterations while that is there. A step of several
-// stages is several minimizations: iterations are counted over all of them, and the path is that of the one meant.
+// Observes a repeated step and samples E around one of its iterations. A step of several stages has several
+// minimizations: the count of iterations includes all of them, the path only the one with that iteration.
 class Look {
  public:
   Look(int iteration, double sufficient_decrease, int tets, const StopToken& stop)
@@ -37,7 +37,7 @@ class Look {
 
   void follow(const LiveIteration& live);
   bool is_met() const { return !x_.empty(); }
-  int iterations() const { return count_; }  // so far
+  int iterations() const { return count_; }  // number up to now
   Json reply() &&;
 
  private:
@@ -55,8 +55,8 @@ class Look {
   const StopToken& stop_;
 
   int count_ = 0;
-  std::vector<Iterate> before_;  // of this minimization, until the plane is known
-  bool is_of_path_ = true;       // no later minimization has begun
+  std::vector<Iterate> before_;  // iterates of this minimization, until the plane is known
+  bool is_of_path_ = true;       // false: a later minimization has started
   double value_ = 0, alpha_ = 0;
   std::vector<Trial> tried_;
   std::vector<CurvePoint> curve_;
@@ -96,7 +96,7 @@ void Look::take(const LiveIteration& live) {
 }
 
 Json Look::on_plane(std::span<const double> x, double value) const {
-  if (slice_.across.empty()) return nullptr;  // given up
+  if (slice_.across.empty()) return nullptr;  // no plane
   std::vector<double> away(x.begin(), x.end());
   for (size_t i = 0; i < away.size(); ++i) away[i] -= x_[i];
   const auto along = [&](const std::vector<double>& u) {

@@ -6,7 +6,7 @@
 namespace aspic::viewer {
 namespace {
 
-TEST(Mouse, PullsTheBodyTowardsTheCursorWithStiffnessTimesDistance) {
+TEST(Mouse, PullsWithStiffnessTimesDistance) {
   Page page;
   page.grab_end({1, 0.5, 0.1});
   page.steps(30);
@@ -15,7 +15,7 @@ TEST(Mouse, PullsTheBodyTowardsTheCursorWithStiffnessTimesDistance) {
   EXPECT_EQ(target, (std::vector<double>{1, 0.5, 0.1}));
   const double k = number(page.scene()["stiffness"]);
   for (int r = 0; r < 3; ++r) EXPECT_NEAR(force[r], k * (target[r] - point[r]), 1e-9 * k);
-  EXPECT_GT(point[1], 0.15);  // it began at 0.1 and would sag
+  EXPECT_GT(point[1], 0.15);  // starts at 0.1 and would sag
 }
 
 TEST(Mouse, IsReleased) {
@@ -29,7 +29,7 @@ TEST(Mouse, IsReleased) {
   EXPECT_EQ(number(page.rows()[3]["potential"].back()), 0);
 }
 
-// kinetic + potential changes from row to row by exactly what the row says, whatever the mouse does in between.
+// Checks that kinetic + potential energy changes from row to row by the work and losses of the row.
 void expect_balance(Page& page, size_t first) {
   ASSERT_EQ(page.scene()["potentials"].back(), "mouse");
   for (size_t i = first; i < page.rows().size(); ++i) {
@@ -63,7 +63,7 @@ TEST(Mouse, EnergiesBalanceWithItsWork) {
     double work = 0;
     for (const Json& row : page.rows()) work += number(row["mouse_work"]);
     EXPECT_GT(work, 0);
-    for (const Json& row : page.rows()) EXPECT_NEAR(number(row["pin_work"]), 0, 1e-12);  // nothing else moves
+    for (const Json& row : page.rows()) EXPECT_NEAR(number(row["pin_work"]), 0, 1e-12);  // no other motion
   }
 }
 
@@ -75,7 +75,7 @@ TEST(Mouse, EnergiesBalanceWithSingleIterations) {
   expect_balance(page, 1);
 }
 
-TEST(Mouse, ReachesTheCursorAtTheEndOfAStep) {
+TEST(Mouse, ReachesTheCursorWithinAStep) {
   Page page;
   page.grab_end({1, 0.1, 0.1});
   page.send({{"do", "move"}, {"target", {1, 0.2, 0.1}}});
@@ -85,7 +85,7 @@ TEST(Mouse, ReachesTheCursorAtTheEndOfAStep) {
   EXPECT_NEAR(vec(grab["force"])[1], k * (0.2 - vec(grab["point"])[1]), 1e-9 * k);
 }
 
-TEST(Mouse, StiffnessIsRefusedUnlessPositive) {
+TEST(Mouse, RefusesNonpositiveStiffness) {
   Page page;
   const double before = number(page.scene()["stiffness"]);
   for (const Json& value : {Json(-1), Json(0), Json("stiff"), Json(1e300), Json()})
@@ -128,7 +128,7 @@ TEST(Pins, HoldBrushedVerticesUntilFreed) {
   for (const int v : end)
     for (int r = 0; r < 3; ++r)
       EXPECT_EQ(page.picture().positions[3 * v + r], then.positions[3 * v + r]) << "vertex " << v;
-  page.send({{"do", "set"}, {"key", "material.young"}, {"value", 2e5}});  // loads the scene again
+  page.send({{"do", "set"}, {"key", "material.young"}, {"value", 2e5}});  // reloads the scene
   page.steps(3);
   EXPECT_EQ(page.picture().positions[3 * end[0] + 1], then.positions[3 * end[0] + 1]);
   page.send({{"do", "pin"}, {"side", "a"}, {"vertices", end}, {"pinned", false}});
@@ -146,7 +146,7 @@ TEST(Pins, OfTheSceneCanBeRemoved) {
   const int v = clamp[0];
   EXPECT_NEAR(page.picture().positions[3 * v + 1] - before.positions[3 * v + 1], -9.81 * 0.01 * 0.01 * 55, 1e-4);
   page.send({{"do", "reset"}});
-  EXPECT_TRUE(page.pins().empty());  // taken away at the start
+  EXPECT_TRUE(page.pins().empty());  // removed at the start
 }
 
 TEST(Pins, AreRewoundWithTheTimeline) {

@@ -3,7 +3,7 @@
 #include "base/check.h"
 #include "io/gzip.h"
 
-// The bytes of ASPIC_PAGE, a file that the build has made, without a detour through the compiler.
+// The assembler embeds the file ASPIC_PAGE of the build.
 asm(".section .rodata\n"
     ".balign 16\n"
     "aspic_page_begin:\n"

@@ -1,4 +1,4 @@
-// The page of the viewer, reports and pictures: one HTML file with its scripts and styles, part of the program.
+// The page of the viewer, reports and pictures: one HTML file with its scripts and styles, embedded in the program.
 #pragma once
 #include <string>
 #include <string_view>
@@ -7,7 +7,7 @@ namespace aspic::viewer {
 
 const std::string& page();
 
-// The page with `html` where a recorded run belongs, before its script.
+// Returns the page with `html` at the place of a recorded run, before its script.
 std::string page_with(std::string_view html);
 
 }  // namespace aspic::viewer

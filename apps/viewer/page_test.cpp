@@ -16,7 +16,7 @@ TEST(Page, IsOneFileWithItsStylesAndScripts) {
   EXPECT_THAT(page(), Not(HasSubstr("<!-- s")));  // every place is filled
 }
 
-TEST(Page, TakesARecordingOnce) {
+TEST(Page, EmbedsARecordingOnce) {
   const std::string filled = page_with("<i>recorded $& \\1</i>");
   EXPECT_EQ(filled.size(), page().size() + 21 - std::string_view("<!-- recording -->").size());
   EXPECT_LT(filled.find("<i>recorded $& \\1</i>"), filled.find("<script>"));

@@ -83,7 +83,7 @@ std::string PictureEncoder::encode(const Stamp& stamp, const PictureOptions& opt
     smallest = std::numeric_limits<float>::infinity(), largest = -smallest;
     for (const float value : value_)
       if (std::isfinite(value)) smallest = std::min(smallest, value), largest = std::max(largest, value);
-    if (smallest > largest) smallest = largest = 0;  // nothing is finite
+    if (smallest > largest) smallest = largest = 0;  // no finite value
   }
 
   Writer writer(kPictureHeader + n * (has_values ? 20 : 16));

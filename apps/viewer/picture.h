@@ -16,14 +16,14 @@ std::string encode_geometry(const Stamp& stamp, const Surface& surface, const Nu
 
 struct PictureOptions {
   int step = 0;
-  int iteration = -1;  // -1: of a whole step
+  int iteration = -1;  // -1: the end of a step
   double time = 0;     // [s]
   std::string field;   // empty: none
 };
 
 class PictureEncoder {
  public:
-  // Allocates nothing but the message, once surfaces of this size were encoded before.
+  // Allocates only the message if a surface of this size was encoded before.
   std::string encode(const Stamp& stamp, const PictureOptions& options, const View& view, const Surface& surface);
 
  private:

@@ -7,7 +7,7 @@
 namespace aspic::viewer {
 namespace {
 
-constexpr int kMostCatchingUp = 100'000;  // steps of side b for one of side a
+constexpr int kMostCatchingUp = 100'000;  // maximum number of steps of side b per step of side a
 
 }  // namespace
 

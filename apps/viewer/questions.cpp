@@ -1,4 +1,4 @@
-// The questions of a page: they change nothing, and any page may send them.
+// The questions of a page. They change no state, and any page may send them.
 #include <fmt/format.h>
 
 #include <limits>
@@ -21,7 +21,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr int kMostTets = 500'000;  // of a mesh for a page: about 60 MB of text
+constexpr int kMostTets = 500'000;  // maximum size of a mesh for a page: about 60 MB of text
 constexpr int kMostInt = std::numeric_limits<int>::max();
 
 // The deformed mesh with the vertex and tet numbers of the user.

@@ -1,4 +1,4 @@
-// What a page can ask, and what pictures show.
+// Questions of a page, and the contents of pictures.
 #include <algorithm>
 #include <cmath>
 
@@ -10,7 +10,7 @@
 namespace aspic::viewer {
 namespace {
 
-// The same scene without a page: what is shown must be this.
+// The same scene without a page: the reference for pictures.
 struct Twin {
   Scene scene;
   explicit Twin(const std::string& toml, int steps) : scene(load_scene(Page::scene_file(toml))) {
@@ -30,11 +30,11 @@ TEST(Pictures, AgreeWithTheModelInUserNumbers) {
   EXPECT_EQ(picture.generation, geometry.generation);
   EXPECT_EQ(picture.step, 5);
   EXPECT_EQ(picture.time, twin.scene.simulation.state().time);
-  // Without a mouse that pulls, its term leaves no trace but in the order of sums.
+  // The term of an idle mouse changes only the order of sums.
   for (size_t v = 0; v < geometry.vertex.size(); ++v)
     for (int r = 0; r < 3; ++r)
       EXPECT_NEAR(picture.positions[3 * v + r], q[3 * geometry.vertex[v] + r], 1e-6) << "vertex " << v;
-  EXPECT_EQ(geometry.edges.size() / 2, geometry.triangles.size() / 3 * 3 / 2);  // of a closed surface
+  EXPECT_EQ(geometry.edges.size() / 2, geometry.triangles.size() / 3 * 3 / 2);  // a closed surface
 }
 
 TEST(Pictures, HaveUnitNormalsThatPointOutwards) {
@@ -96,9 +96,9 @@ material = { young = 1e5 }
 where = "x < 0.01"
 )";
 
-TEST(Pictures, OfAFineSkinOrOfItsCage) {
+TEST(Pictures, ShowAFineSkinOrItsCage) {
   const TestFolder folder;
-  Page source;  // its deformed beam serves as a cage, its surface as a skin
+  Page source;  // provides a deformed beam as cage and its surface as skin
   const auto save = [&](const char* format, const std::string& name) {
     folder.write(name, source.send({{"ask", "mesh"}, {"side", "a"}, {"format", format}})["text"].get<std::string>());
   };
@@ -129,7 +129,7 @@ TEST(Pictures, OfAFineSkinOrOfItsCage) {
   EXPECT_GT(decoded(session.pictures()[0].bytes).positions.size(), 12u);
 }
 
-TEST(Questions, AboutAVertexAndATet) {
+TEST(Questions, DescribeAVertexAndATet) {
   Page page;
   page.steps(3);
   const Json vertex = page.send({{"ask", "vertex"}, {"side", "a"}, {"vertex", 20}});
@@ -156,7 +156,7 @@ TEST(Questions, AboutAVertexAndATet) {
   }
 }
 
-TEST(Questions, AboutTheWorstPlaces) {
+TEST(Questions, FindTheWorstPlaces) {
   Page page;
   page.steps(3);
   const Json items = page.send({{"ask", "worst"}, {"side", "a"}})["items"];
@@ -183,7 +183,7 @@ TEST(Questions, AboutIterationsOfStoredStepsChangeNothing) {
     EXPECT_NEAR(reply["path"][2]["t"].get<double>(), 0, 1e-9);
     if (step > 6) continue;
     const Json& row = page.rows()[step - 1];
-    EXPECT_EQ(reply["value"], row["iterations"][1]["value"]);  // the very same minimization
+    EXPECT_EQ(reply["value"], row["iterations"][1]["value"]);  // the same minimization
     EXPECT_EQ(reply["alpha"], row["iterations"][1]["alpha"]);
     EXPECT_EQ(reply["path"].size(), row["iterations"].size() + 1);
   }
@@ -197,7 +197,7 @@ TEST(Questions, AboutIterationsOfStoredStepsChangeNothing) {
             std::string::npos);
 }
 
-TEST(Questions, AboutTheStepUnderWay) {
+TEST(Questions, SampleTheCurrentStep) {
   Page page;
   page.steps(1);
   page.send({{"do", "iterate"}});
@@ -234,7 +234,7 @@ TEST(Questions, AnExplicitStepHasNoIterations) {
       std::string::npos);
 }
 
-TEST(Questions, ForAMeshAndTheScene) {
+TEST(Questions, ReturnTheMeshAndTheScene) {
   Page page;
   page.steps(2);
   for (const char* format : {"obj", "ply", "vtu", "msh", "mesh"}) {
@@ -247,7 +247,7 @@ TEST(Questions, ForAMeshAndTheScene) {
   EXPECT_NE(scene["text"].get<std::string>().find("[[body]]"), std::string::npos);
 }
 
-TEST(Questions, AboutAFunction) {
+TEST(Questions, MinimizeAFunction) {
   Page page;
   const auto ask = [&](const Json& changes) {
     Json question = {{"ask", "function"},          {"name", "rosenbrock"}, {"start", {-1.2, 1}},

@@ -16,7 +16,7 @@ RecordedSurface numbered(std::string name, Surface surface, const Numbering& num
   return recorded;
 }
 
-// Vertices with the same tets around them share a place.
+// Assigns one place to all vertices with the same adjacent tets.
 void find_places(RecordedBody& body) {
   std::map<std::vector<int>, uint32_t> known;
   body.places.tets_start.push_back(0);
@@ -33,7 +33,7 @@ void find_places(RecordedBody& body) {
   }
 }
 
-// Keeps the vertices of the model that carry a surface, and numbers the carriers by them.
+// Keeps the vertices of the model that carry a surface, and renumbers the carriers.
 void keep_carriers(const Model& model, RecordedBody& body) {
   std::vector<int> point(model.mesh.rest.size(), -1);
   const auto for_carriers = [&](auto act) {

@@ -25,12 +25,12 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// Frames in memory, of numbers that are not yet made small: no more than could become a text of the allowed size.
+// Bounds the memory of unpacked frames relative to the maximum size of the text.
 constexpr double kBytesInMemoryPerByteOfText = 12;
-// A new choice of frames aims a little below the limit: fewer frames are each a little harder to compress.
+// Target size relative to the limit when frames are omitted, since fewer frames compress slightly worse.
 constexpr double kAim = 0.95;
 
-// What is known up to the newest checkpoint of the run: everything before it is on the disk.
+// The complete part of the run, up to its latest checkpoint.
 struct Known {
   std::vector<double> frame_times;  // [s]
   int steps = 0;
@@ -52,7 +52,7 @@ Known known(const RunLayout& layout, const std::string& scene_text) {
   return result;
 }
 
-// The step that ended at the time of each frame; the start is step 0.
+// Returns the step that ends at the time of each frame. The start is step 0.
 std::vector<int> steps_of_frames(const Known& known, const RunTables& tables, const fs::path& run) {
   std::vector<int> steps;
   size_t step = 0;
@@ -67,7 +67,7 @@ std::vector<int> steps_of_frames(const Known& known, const RunTables& tables, co
   return steps;
 }
 
-// `wanted` of `count` indices, evenly spread, the first and the last among them.
+// Returns `wanted` of `count` indices, evenly spread, including the first and the last.
 std::vector<int> evenly(int count, int wanted) {
   std::vector<int> indices;
   if (wanted >= count) {
@@ -82,10 +82,10 @@ std::vector<int> evenly(int count, int wanted) {
 struct Frame {
   int index = 0;
   std::vector<float> x;                    // 3 per point
-  std::vector<std::vector<float>> values;  // of the fields that change and do not follow from x
+  std::vector<std::vector<float>> values;  // values of kMoving fields
 };
 
-const std::string kDisplacement = "displacement";  // follows from the positions
+const std::string kDisplacement = "displacement";  // computed from the positions
 const std::set<std::string> kMoving = {"von_mises", "energy_density", "det_F", "stretch"};
 
 std::vector<float> flat(const std::vector<Vec3d>& points) {
@@ -134,7 +134,7 @@ class Recorder {
     return static_cast<int>(std::clamp(most, 2.0, 1e9));
   }
 
-  // Of the fields of a live session all but those that positions do not tell.
+  // Chooses the fields of a live session that positions determine.
   void choose_fields() {
     const bool knows_interior = positions_->are_of_model();
     for (const Field& field : fields_of(scene_.simulation.model())) {
@@ -256,8 +256,8 @@ class Recorder {
   std::vector<int> step_of_frame_;
   std::unique_ptr<RunPositions> positions_;
   RecordedBody body_;
-  std::vector<Field> fields_;  // that can be shown; none where the interior is not known, but for the displacement
-  std::vector<std::string> moving_, fixed_;  // those of them that are stored: for each frame, once
+  std::vector<Field> fields_;                // fields to show; only the displacement if the run has no interior
+  std::vector<std::string> moving_, fixed_;  // names of the fields stored per frame and once
   std::vector<std::vector<float>> fixed_values_;
   FieldValues evaluator_;
 };

@@ -1,4 +1,4 @@
-// A run directory as one text for the viewer's page: what a live session would have sent, its surfaces and their
+// Packs a run directory into one text for the viewer's page: the messages of a live session, the surfaces and their
 // motion. web/src/recording.ts reads it.
 #pragma once
 #include <filesystem>
@@ -10,18 +10,18 @@
 namespace aspic::viewer {
 
 struct RecordingOptions {
-  size_t max_bytes = 10'000'000;  // of the text; frames are left out, evenly, until it fits
+  size_t max_bytes = 10'000'000;  // maximum size of the text; omits frames evenly to fit
 };
 
 struct RecordedRun {
-  std::string text;  // base64 of gzip: letters, digits, +, / and =
+  std::string text;  // gzip in base64
   int frames_of_run = 0, frames = 0;
-  std::string note;  // what was left out; empty: nothing
+  std::string note;  // summary of omitted data; empty: none
 };
 
-// `scene` is that of the run. Holds a bounded number of frames in memory, however long the run is, and no wall times:
-// the same results give the same text. Throws InvalidInput for a directory without a run, for damaged files, and when
-// not even two frames fit.
+// `scene`: the scene of the run. Memory is bounded for runs of any length. Equal results give equal texts, since wall
+// times are omitted. Throws InvalidInput for a directory without a run, for damaged files, and if two frames do not
+// fit.
 RecordedRun record(const std::filesystem::path& run, const Scene& scene, const RecordingOptions& options = {});
 
 }  // namespace aspic::viewer

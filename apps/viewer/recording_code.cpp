@@ -60,7 +60,7 @@ void ArrayPack::add(const std::string& name, const std::vector<uint8_t>& numbers
 
 std::string ArrayPack::bytes(Json head) const {
   head["arrays"] = list_;
-  // Text that is no UTF-8, such as the name of a file, is mended rather than refused.
+  // Replaces invalid UTF-8, such as that of a file name.
   const std::string json = head.dump(-1, ' ', false, Json::error_handler_t::replace);
   std::string bytes;
   append_bytes(bytes, static_cast<uint32_t>(json.size()));
@@ -112,7 +112,7 @@ void ValueCode::add(std::span<const float> values) {
     min = std::min(min, value);
     max = std::max(max, value);
   }
-  if (min > max) min = max = 0;  // nothing is finite
+  if (min > max) min = max = 0;  // no finite value
   ranges_.push_back(min);
   ranges_.push_back(max);
   const double size = double{max} - double{min};

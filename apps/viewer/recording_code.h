@@ -1,4 +1,4 @@
-// How a recording is packed: numbers made small, then compressed. web/src/recording.ts undoes it.
+// The codes of a recording: quantized numbers, then compression. web/src/recording.ts decodes them.
 #pragma once
 #include <cstdint>
 #include <span>
@@ -10,14 +10,14 @@
 
 namespace aspic::viewer {
 
-// Arrays one after another, each at a multiple of 4 bytes, with a list of what is where.
+// A sequence of arrays, each at a multiple of 4 bytes, with a table of contents.
 class ArrayPack {
  public:
   void add(const std::string& name, const std::vector<float>& numbers);
   void add(const std::string& name, const std::vector<uint32_t>& numbers);
   void add(const std::string& name, const std::vector<uint8_t>& numbers);
 
-  // u32 length of the JSON, the JSON, zeros up to a multiple of 4, the arrays. The list becomes head["arrays"].
+  // Returns the length of the JSON (u32), the JSON, zeros up to a multiple of 4, and the arrays. Sets head["arrays"].
   std::string bytes(Json head) const;
 
  private:
@@ -27,22 +27,22 @@ class ArrayPack {
   std::string bytes_;
 };
 
-// The box of points over all frames. Frames of a motion that blew up, more than 1000 times as large as the first, would
-// leave no digits for the others: they do not count, and their points are put onto its faces.
+// The bounding box of the points over all frames. Frames that blew up to more than 1000 times the first size are
+// excluded, since they would leave no digits for the others. Their points are clamped to the box.
 struct PositionRange {
   Vec3d lower, upper;
 
   explicit PositionRange(std::span<const float> first);  // 3 numbers per point
-  void add(std::span<const float> x);                    // of another frame
+  void add(std::span<const float> x);                    // adds another frame
   Vec3d size() const { return upper - lower; }
 
  private:
-  double largest_ = 0;  // extent of a frame that counts
+  double largest_ = 0;  // largest extent of an included frame
 };
 
-// Positions as whole numbers 0 .. 65535 over the box, frame by frame as the difference to the straight line through
-// the two frames before, modulo 65536, folded so that small differences of either sign are small; first the low bytes
-// of a frame, then the high bytes.
+// Positions as integers 0 .. 65535 over the box. Each frame stores the differences to the linear extrapolation of the
+// previous two frames, modulo 65536, folded so that small differences of either sign are small. The low bytes of a
+// frame precede its high bytes.
 class PositionCode {
  public:
   explicit PositionCode(const PositionRange& range) : range_(range) {}
@@ -55,8 +55,8 @@ class PositionCode {
   std::vector<uint8_t> bytes_;
 };
 
-// Values as whole numbers 0 .. 254 over the range of their frame, 255 for what is not finite; frame by frame as the
-// difference to the frame before, modulo 256.
+// Values as integers 0 .. 254 over the range of their frame, 255 for nonfinite values. Each frame stores the
+// differences to the previous frame, modulo 256.
 class ValueCode {
  public:
   void add(std::span<const float> values);

@@ -33,7 +33,7 @@ TEST_F(RunRecording, ThinsOutFramesEvenlyBelowTheSizeLimit) {
   const double apart = 120.0 / (thin.frames - 1);
   for (size_t i = 0; i < steps.size(); ++i) EXPECT_NEAR(steps[i], apart * static_cast<double>(i), 1.01);
   EXPECT_EQ(decoded.head["scenes"][0]["notes"][0], thin.note);
-  EXPECT_EQ(decoded.head["steps"].size(), 120u);  // tables stay whole
+  EXPECT_EQ(decoded.head["steps"].size(), 120u);  // tables stay complete
   EXPECT_THAT(refusal(directory, 3000), HasSubstr("raise --max-size"));
 }
 
@@ -52,7 +52,7 @@ TEST_F(RunRecording, ShowsAKilledRunUpToItsCheckpoint) {
   {
     RunDirectory directory = RunDirectory::create(path("run"), scene, ExistingRun::refuse);
     for (int i = 0; i < 5; ++i) directory.on_step(scene.simulation.step(), scene.simulation);
-  }  // dropped without finish(), as a killed process drops it
+  }  // dropped without finish(), as by a killed process
   write_file(path("run/steps.csv"), read_file(path("run/steps.csv")) + "6,0.0");
   EXPECT_EQ(recording(path("run")).frames, 6);
 }
@@ -145,7 +145,7 @@ where = "y < 1e-6"
   const Report report = make_report(path("run"), scene);
   EXPECT_EQ(report.frames, 31);
   const size_t recorded = report.html.size() - page().size();
-  EXPECT_LT(recorded * 201 / 31, 5'000'000u);  // of 200 steps
+  EXPECT_LT(recorded * 201 / 31, 5'000'000u);  // extrapolated to 200 steps
 }
 
 }  // namespace

@@ -9,14 +9,14 @@ namespace {
 
 Table document_of(const Scene& scene) { return read_scene_document(scene.resolved, "scene.toml"); }
 
-// After the bodies: the directory may have any name, and the same run in another one gives the same recording.
+// Names the scene after its bodies. The recording does not depend on the name of the directory.
 std::string name_of(const Scene& scene) {
   std::string name;
   for (const BodyRange& body : scene.simulation.model().bodies) name += (name.empty() ? "" : ", ") + body.name;
   return shortened(name);
 }
 
-// What the scene asks for; the summary of the run names the solver that `auto` chose.
+// The solver that the scene requests. The summary of the run names the choice of `auto`.
 std::string solver_words(const Table& document) {
   const Value& solver = *document.find("solver");
   return solver["method"].text() + ", " + solver["linear"].text() + " for the linear systems";

@@ -1,4 +1,4 @@
-// What a recorded run says about itself, as the messages of web/src/protocol.ts.
+// The description of a recorded run in the messages of web/src/protocol.ts.
 #pragma once
 #include <nlohmann/json.hpp>
 #include <string>
@@ -15,10 +15,10 @@ struct RecordedScene {
   const RecordedBody& body;
   const std::vector<Field>& fields;
   const RunTables& tables;
-  Vec3d lower, upper;  // box around the start [m]
+  Vec3d lower, upper;  // bounding box of the start [m]
   std::string note;    // empty: none
 };
 Json hello_message(const RecordedScene& recorded);
-Json scene_messages(const RecordedScene& recorded);  // one for each surface
+Json scene_messages(const RecordedScene& recorded);  // one message per surface
 
 }  // namespace aspic::viewer

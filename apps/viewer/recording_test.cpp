@@ -12,7 +12,7 @@ namespace {
 namespace fs = std::filesystem;
 using testing::HasSubstr;
 
-TEST_F(RunRecording, RoundsPositionsByAtMostHalfACodeStep) {
+TEST_F(RunRecording, RoundsPositionsToTheNearestCode) {
   const fs::path directory = run("run");
   const Decoded decoded(recording(directory).text);
   ASSERT_EQ(decoded.frame_count(), 13);

@@ -63,7 +63,7 @@ class Decoded {
 
   int frame_count() const { return static_cast<int>(head["frames"]["step"].size()); }
 
-  // 3 per point.
+  // Returns 3 coordinates per point.
   std::vector<double> positions(int frame) const {
     const std::vector<uint8_t> bytes = array<uint8_t>("positions");
     const size_t n = bytes.size() / 2 / static_cast<size_t>(frame_count());
@@ -82,7 +82,7 @@ class Decoded {
     return x;
   }
 
-  // One per place.
+  // Returns one value per place.
   std::vector<double> values(const std::string& field, int frame) const {
     const std::vector<uint8_t> codes = array<uint8_t>("field." + field);
     const std::vector<float> range = array<float>("field." + field + ".range");
@@ -105,7 +105,7 @@ class Decoded {
 
 class RunRecording : public FolderTest {
  protected:
-  // Writes a run of the beam with further scene text. 0 steps: those of the scene.
+  // Writes a run of the beam with further scene text. 0 steps: the number in the scene.
   std::filesystem::path run(const std::string& name, const std::string& more = "", int steps = 0,
                             bool is_traced = false) {
     write_file(path("beam.toml"), kRecordedBeam + more);

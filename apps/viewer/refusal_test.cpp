@@ -1,4 +1,4 @@
-// Whatever arrives: nothing is thrown, nothing hangs, nothing changes that was not asked for.
+// Invalid and random messages: no exception, no hang, no unrequested change.
 #include <atomic>
 #include <random>
 #include <thread>
@@ -15,7 +15,7 @@ std::string why(const Answer& answer) {
   return json.value("why", "");
 }
 
-TEST(Refusals, OfInvalidMessages) {
+TEST(Refusals, AnswerInvalidMessages) {
   Page page;
   const std::string deep(100'000, '[');
   std::string blank;
@@ -36,7 +36,7 @@ TEST(Refusals, NameTheNearestKnownCommand) {
   EXPECT_NE(page.refused({{"ask", "worts"}, {"side", "a"}}).find("did you mean 'worst'"), std::string::npos);
 }
 
-TEST(Refusals, OfPagesThatWatchButMayAsk) {
+TEST(Refusals, LimitWatchingPagesToQuestions) {
   Page page;
   EXPECT_NE(why(page.session().handle(R"({"do": "play"})", Role::watches)).find("only watches"), std::string::npos);
   EXPECT_FALSE(page.session().is_playing());
@@ -45,7 +45,7 @@ TEST(Refusals, OfPagesThatWatchButMayAsk) {
   EXPECT_EQ(page.session().handle(R"({"do": "take"})", Role::watches).to_sender.size(), 0u);
 }
 
-TEST(Refusals, OfScenesThatCannotBeLoadedKeepTheOldOne) {
+TEST(Refusals, OfInvalidScenesKeepTheCurrentScene) {
   Page page;
   page.steps(2);
   for (const char* path : {"", "/nowhere/at_all.toml", "/dev/zero", "/tmp", "/etc/hostname"})
@@ -91,7 +91,7 @@ TEST(Session, IgnoresAnInterruptionBetweenSteps) {
 }
 
 TEST(Session, DropsAnInterruptedStep) {
-  // Each step would take a thousand million iterations.
+  // Each step would need a billion iterations.
   Page page(kBeam, {"solver.method=gradient_descent", "solver.max_iterations=1000000000", "solver.tolerance=0",
                     "material.young=1e7"});
   const Picture before = page.picture();
@@ -221,7 +221,7 @@ class Mutations {
         }
         [[fallthrough]];
       default:
-        break;  // as it is
+        break;  // unchanged
     }
     return message;
   }

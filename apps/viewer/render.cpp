@@ -33,7 +33,7 @@ std::string query(const RenderOptions& options) {
   return text;
 }
 
-// A GIF has 256 colors, the best ones for all of its pictures, and no more than 50 pictures a second.
+// A GIF has one palette of 256 colors for all pictures, and at most 50 pictures per second.
 std::vector<std::string> coder_of(const std::string& extension) {
   if (extension == ".gif")
     return {"-vf", "fps=fps='min(50,source_fps)',split[a][b];[a]palettegen[p];[b][p]paletteuse=dither=bayer"};
@@ -59,7 +59,7 @@ struct VideoFile::Impl {
                           .lifetime = Lifetime::own_group});
   }
   ~Impl() {
-    ffmpeg.reset();  // before its file goes
+    ffmpeg.reset();  // ends before its file is removed
     std::error_code none;
     fs::remove(unfinished, none);
   }

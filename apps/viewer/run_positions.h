@@ -1,4 +1,4 @@
-// Where everything was in each frame of a run, read from its directory one frame at a time.
+// The positions in each frame of a run, read from its directory frame by frame.
 #pragma once
 #include <memory>
 #include <vector>
@@ -11,12 +11,12 @@ namespace aspic::viewer {
 class RunPositions {
  public:
   virtual ~RunPositions() = default;
-  virtual std::vector<double> frame(int index) = 0;  // 3 per point [m]; throws InvalidInput naming the file
-  // Of the model, in the order of its mesh; else of the skins, one after another: all that is known of the interior.
+  virtual std::vector<double> frame(int index) = 0;  // 3 coordinates per point [m]; throws InvalidInput with the file
+  // true: vertices of the model in the order of its mesh. false: vertices of the skins, without the interior.
   virtual bool are_of_model() const = 0;
 };
 
-// The first `frames` frames, of bodies where they were written, else of skins. Throws InvalidInput: neither was.
+// Reads the first `frames` frames of bodies or, if none were written, of skins. Throws InvalidInput without either.
 std::unique_ptr<RunPositions> run_positions(const RunLayout& layout, const Scene& scene, int frames);
 
 }  // namespace aspic::viewer

@@ -21,7 +21,7 @@ constexpr std::string_view kPotential = "potential_", kTotal = "potential_total"
   throw InvalidInput(file.string() + ": the row of step " + std::to_string(step) + " is not where it belongs");
 }
 
-// From columns such as reaction_beam.wall_x; none in runs of earlier versions.
+// Reads the names of pins from columns such as reaction_beam.wall_x. Earlier versions did not write them.
 std::vector<std::string> pins_of(const CsvReader& table) {
   constexpr std::string_view kForce = "reaction_", kMoment = "reaction_moment_", kEnd = "_x";
   std::vector<std::string> pins;
@@ -86,7 +86,7 @@ std::vector<StepRow> read_steps(const fs::path& file, int last_step, std::vector
   const size_t step = table.column("step");
   std::vector<StepRow> steps;
   while (static_cast<int>(steps.size()) < last_step && table.next()) {
-    if (table.integer(step) == 0) continue;  // the start; runs of earlier versions have no row of it
+    if (table.integer(step) == 0) continue;  // the start, which earlier versions did not write
     StepRow& row = steps.emplace_back();
     StepReport& report = row.report;
     reader.read(report);
@@ -150,7 +150,7 @@ std::vector<TraceFolder> trace_folders(const RunLayout& layout) {
   return folders;
 }
 
-// Finds the iteration that a row of a trace is about: a step of several minimizations counts from 0 in each.
+// Finds the iteration of a row of a trace. Each minimization of a step counts from 0.
 class IterationFinder {
  public:
   explicit IterationFinder(const StepRow& step) {
@@ -169,7 +169,7 @@ class IterationFinder {
   std::map<std::pair<int, int>, size_t> place_;
 };
 
-// Of the steps after `first` and up to `last`.
+// Reads the trials of the steps after `first` up to `last`.
 void read_trials(const fs::path& file, std::vector<StepRow>& steps, int first, int last) {
   CsvReader table(file);
   const size_t step = table.column("step"), solve = table.column("solve"), iteration = table.column("iteration"),

@@ -1,4 +1,4 @@
-// The tables of a run directory as what they were written from.
+// Reads the tables of a run directory back into step reports.
 #pragma once
 #include <string>
 #include <vector>
@@ -10,10 +10,10 @@ namespace aspic::viewer {
 
 struct RunTables {
   std::vector<std::string> potentials;  // names of the terms of V, as in StepReport::potential
-  std::vector<StepRow> steps;           // 1, 2, ...; no wall times, no explanations, no trials without a trace
+  std::vector<StepRow> steps;           // steps 1, 2, ... without wall times and explanations; trials only with a trace
 };
 
-// Steps 1 to `last_step`; of the traces of a resumed run, the last one counts for each step.
+// Reads steps 1 to `last_step`. Uses the latest trace of each step of a resumed run.
 // Throws InvalidInput with file and line.
 RunTables read_run_tables(const RunLayout& layout, int last_step);
 

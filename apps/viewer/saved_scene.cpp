@@ -20,7 +20,7 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr size_t kMostReplyBytes = size_t{40} << 20;
-constexpr double kSameTime = 1e-6;  // of a step
+constexpr double kSameTime = 1e-6;  // fraction of a step
 const char* const kByHand = "by_hand";
 
 Value of(double number) { return {number, {}}; }
@@ -28,7 +28,7 @@ Value of(int number) { return {static_cast<std::int64_t>(number), {}}; }
 Value of(const Vec3d& v) { return {Array{of(v[0]), of(v[1]), of(v[2])}, {}}; }
 Value of(Table table) { return {std::move(table), {}}; }
 
-// The body of a vertex, and the vertex by the user's number in it.
+// The body of a vertex, and the user's number of the vertex in it.
 struct BodyVertex {
   size_t body = 0;
   int vertex = 0;
@@ -100,7 +100,7 @@ void add_drags(const Side& side, Table& document) {
 
 // ---------------------------------------------------------------- pins by hand
 
-using VerticesOfPin = std::map<std::string, std::vector<int>>;  // by the name of the pin in its body
+using VerticesOfPin = std::map<std::string, std::vector<int>>;  // key: name of the pin in its body
 
 std::vector<VerticesOfPin> by_body(const Model& model, const std::vector<Pin>& pins) {
   std::vector<VerticesOfPin> found(model.bodies.size());

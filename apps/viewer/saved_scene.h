@@ -1,4 +1,4 @@
-// A session's scene as files that run anywhere: the TOML with all its values, and what it refers to beside it.
+// The scene of a session as portable files: the TOML with all values and the files that it refers to.
 #pragma once
 #include <string>
 #include <vector>
@@ -8,27 +8,27 @@
 
 namespace aspic::viewer {
 
-std::string saved_name(const Scene& scene);  // fit for a file, without extension
+std::string saved_name(const Scene& scene);  // valid as a file name, without extension
 
 enum class SavedHand { with_drags, without_drags };
 
 struct SavedScene {
-  std::string name;                // of the scene, fit for a file
+  std::string name;                // name of the scene, valid as a file name
   std::vector<ZipEntry> files;     // the first one is "NAME.toml"; the others are below "inputs/"
-  std::vector<std::string> notes;  // what could not be saved
+  std::vector<std::string> notes;  // descriptions of unsaved parts
 };
 
-// The settings of now, from the start of the run, with the pins that were put before the first step. With drags: what
-// the mouse did is a [[body.grab]] along the path that it took, and the run is long enough for it. Throws InvalidInput
-// when a file cannot be read any more.
+// The scene starts with the current settings and with the pins set before the first step. With drags, each pull of the
+// mouse becomes a [[body.grab]] along its path, and the run is long enough for it. Throws InvalidInput if a file is no
+// longer readable.
 SavedScene saved_scene(const Side& side, SavedHand hand);
 
-// {"name", "text"} of a scene without other files, {"name", "base64"} of a ZIP archive of one with them.
+// Returns {"name", "text"} for a scene without other files, otherwise {"name", "base64"} of a ZIP archive.
 Json scene_reply(const SavedScene& saved);
-// {"scene", "files", "notes"}: what the command "load" takes.
+// Returns {"scene", "files", "notes"}, the arguments of the command "load".
 Json scene_files_reply(const SavedScene& saved);
 
-// {"name", "base64"} of a file for the page. Throws InvalidInput when it is too large for it.
+// Returns {"name", "base64"} of a file for the page. Throws InvalidInput if the file is too large.
 Json file_reply(const std::string& name, const std::string& bytes);
 
 }  // namespace aspic::viewer

@@ -1,4 +1,4 @@
-// What a session saves runs on any machine, and does what the session did.
+// The saved scene of a session is portable and repeats the session.
 #include <gmock/gmock.h>
 
 #include <filesystem>
@@ -25,7 +25,7 @@ std::string from_base64(const std::string& text) {
   return bytes;
 }
 
-// What a page would send back, written to a folder: the path of the scene.
+// Writes the files of a reply to a folder and returns the path of the scene.
 fs::path written(const Json& reply, const fs::path& folder) {
   for (const Json& file : reply.at("files")) {
     const fs::path path = folder / file.at("name").get<std::string>();
@@ -146,7 +146,7 @@ Json upload(const std::string& name, const std::string& gzip) {
   return {{"do", "load"}, {"scene", name}, {"files", {{{"name", name}, {"gzip", gzip}}}}};
 }
 
-TEST(Upload, RefusesNamesThatLeadElsewhere) {
+TEST(Upload, RefusesNamesOutsideTheUpload) {
   Page page;
   for (const char* name : {"../a.toml", "/tmp/a.toml", "a/../../b.toml", "", ".", "a\nb.toml", "c:\\a.toml"})
     EXPECT_THAT(page.refused(upload(name, "")), HasSubstr("is refused")) << name;

@@ -1,4 +1,4 @@
-// The commands about what is simulated and shown: settings, scenes, comparisons, replays, colors and surfaces.
+// The commands for settings, scenes, comparisons, replays, colors and surfaces.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -48,7 +48,7 @@ void set(const SessionOptions& options, Stage& stage, Arguments& arguments) {
   stage.record(std::move(done));
 }
 
-// Returns the files that the page brought along; null: none.
+// Returns the uploaded files of the page; null: none.
 Uploaded load(const SessionOptions& options, Stage& stage, Playback& playback, Arguments& arguments) {
   const std::string path = arguments.text("scene");
   const Overrides overrides = arguments.has("overrides") ? arguments.texts("overrides") : Overrides{};
@@ -81,7 +81,7 @@ void lesson(const SessionOptions& options, Stage& stage, Playback& playback, Arg
   const std::string id = arguments.text("lesson", 200);
   arguments.finish();
   const Lesson& lesson = lesson_of(options.lessons, id);
-  if (lesson.scene.empty()) return;  // only its panel is opened
+  if (lesson.scene.empty()) return;  // opens only its panel
   std::optional<Recording> recording;
   if (lesson.recording) recording = read_recording(parse_json(lesson.recording(), kMostRecordingBytes));
   std::optional<Recording::Comparison> compared;

@@ -1,4 +1,4 @@
-// What the messages about a live and a recorded scene have in common.
+// The common parts of the messages about live and recorded scenes.
 #pragma once
 #include "energy/probe.h"
 #include "scene/value.h"
@@ -10,6 +10,6 @@ namespace aspic::viewer {
 Json json_of(const Vec3d& x);
 Json tip_json(const Tip& tip);  // {"shape", "contact", "radius", "stiffness"}
 Json fields_json(const std::vector<Field>& fields);
-Vec3d up_of(const Table& document);  // against gravity; along y where there is none
+Vec3d up_of(const Table& document);  // opposite to gravity; the y axis without gravity
 
 }  // namespace aspic::viewer

@@ -23,7 +23,7 @@ namespace asio = boost::asio;
 using asio::ip::tcp;
 using boost::system::error_code;
 
-constexpr size_t kMaxConnections = 64;  // that are no pages yet
+constexpr size_t kMaxConnections = 64;  // maximum number of connections without pages
 constexpr std::chrono::milliseconds kRetryPeriod(100);
 constexpr std::chrono::milliseconds kGoodbye(300);
 
@@ -38,7 +38,7 @@ tcp::acceptor listen(asio::io_context& network, int port) {
 
 }  // namespace
 
-// One thread does all of the network, another one the simulation.
+// One thread serves the network, another one runs the simulation.
 struct Server::Impl {
   explicit Impl(ServerOptions given)
       : options(std::move(given)),
@@ -76,7 +76,7 @@ struct Server::Impl {
     });
   }
 
-  // Without a free descriptor, accepting fails at once, again and again.
+  // Accepting fails immediately while no file descriptor is free.
   void accept_later() {
     retry.expires_after(kRetryPeriod);
     retry.async_wait([this](const error_code& error) {
@@ -84,15 +84,15 @@ struct Server::Impl {
     });
   }
 
-  // The oldest connection that has shown no token makes room for a new one, so that nobody can lock a browser out. When
-  // all have shown it, the oldest of them.
+  // Closes the oldest connection without a valid token, so that idle connections cannot exclude a browser. If all have
+  // a valid token, closes the oldest one.
   void cut_off_one() {
     const auto& all = service.connections;
     const auto stranger = std::find_if(all.begin(), all.end(), [](const auto* one) { return !one->has_token(); });
     (stranger == all.end() ? all.front() : *stranger)->cut_off();
   }
 
-  // The pages are notified, but not waited for long.
+  // Notifies the pages and waits briefly for them.
   void close_network() {
     if (!thread.joinable()) return;
     asio::post(network, [this] {
@@ -107,7 +107,7 @@ struct Server::Impl {
   }
 
   ServerOptions options;
-  HttpService service;  // outlives the network's last connections
+  HttpService service;  // must outlive all connections of the network
   asio::io_context network{1};
   tcp::acceptor acceptor;
   asio::steady_timer retry;

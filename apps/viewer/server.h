@@ -1,5 +1,5 @@
-// Serves the viewer's page, and a session to it, to browsers on this machine: loopback only, nothing without the token
-// of the printed address. Pages come and go; one steers, the others watch.
+// HTTP server of the viewer's page and its session for browsers on this machine. It listens on the loopback interface
+// only and requires the token of the printed address. One page steers, the others watch.
 #pragma once
 #include <chrono>
 #include <functional>
@@ -12,31 +12,31 @@ namespace aspic::viewer {
 class Session;
 
 struct ServerOptions {
-  int port = 0;                // 0: any free one
+  int port = 0;                // 0: any free port
   std::string page;            // HTML
-  Session* session = nullptr;  // none: the page alone is served, as of a recorded run
+  Session* session = nullptr;  // null: serves only the page, for a recorded run
 
-  // Called with what the page sends by POST, one after the other; what it returns is the answer. An InvalidInput is
-  // answered in its words, status 400. Empty: nothing can be sent.
+  // Handles the POST requests of the page one by one and returns the response. The server responds to an InvalidInput
+  // with its message and status 400. Empty: POST requests are refused.
   std::function<std::string(const std::string& path, std::string_view body)> post = {};
 
-  std::function<void(const std::string& line)> log = {};  // what went wrong with a page; called from any thread
+  std::function<void(const std::string& line)> log = {};  // receives the errors of pages; called from any thread
 };
 
 class Server {
  public:
-  // Listens from now on. Throws InvalidInput: the port cannot be had.
+  // Starts to listen. Throws InvalidInput if the port is not available.
   explicit Server(ServerOptions options);
-  ~Server();  // waits for the session's step under way
+  ~Server();  // waits for the end of the current step
 
   std::string address() const;  // "http://127.0.0.1:PORT/?token=..."
   int port() const;
 
-  void announce(const std::string& what);  // notifies the pages of a long operation; "": it is done
+  void announce(const std::string& what);  // notifies the pages of a long operation; "": of its end
 
-  void check() const;  // throws what has ended the simulation, if anything has
+  void check() const;  // rethrows the exception that ended the simulation, if any
 
-  // Closes every connection and interrupts the step under way; false: that has not ended within `patience`.
+  // Closes all connections and interrupts the current step. Returns false if it has not ended within `patience`.
   bool stop(std::chrono::milliseconds patience);
 
  private:

@@ -1,5 +1,5 @@
-// Access to the server requires the token and a page of this server. The host name of the request is checked, too, as a
-// hostile site may let its own name point to 127.0.0.1 (DNS rebinding).
+// Access to the server requires the token and a page of this server. It also requires the host name of this machine,
+// because a hostile site may resolve its own name to 127.0.0.1 (DNS rebinding).
 #pragma once
 #include <string>
 #include <string_view>
@@ -8,11 +8,11 @@ namespace aspic::viewer {
 
 class Access {
  public:
-  explicit Access(int port);  // with a new random token of 128 bits
+  explicit Access(int port);  // creates a random token of 128 bits
 
   bool is_host(std::string_view host) const;      // 127.0.0.1 or localhost, with the port
   bool is_origin(std::string_view origin) const;  // a page of this server
-  bool is_token(std::string_view text) const;     // in a time that does not tell how much of it is right
+  bool is_token(std::string_view text) const;     // compares in constant time
 
   const std::string& token() const { return token_; }
   int port() const { return port_; }
@@ -23,7 +23,7 @@ class Access {
 };
 
 struct Target {
-  std::string path, token;  // of "/path?token=..."
+  std::string path, token;  // the parts of "/path?token=..."
 };
 Target parse_target(std::string_view target);
 

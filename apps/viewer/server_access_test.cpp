@@ -5,7 +5,7 @@
 namespace aspic::viewer {
 namespace {
 
-TEST(Access, HasAnotherTokenOf128BitsEachTime) {
+TEST(Access, CreatesANew128BitTokenEachTime) {
   const Access a(80), b(80);
   EXPECT_EQ(a.token().size(), 32u);
   EXPECT_EQ(a.token().find_first_not_of("0123456789abcdef"), std::string::npos);
@@ -39,7 +39,7 @@ TEST(Access, AcceptsItsOwnPages) {
     EXPECT_FALSE(access.is_origin(origin)) << origin;
 }
 
-TEST(Target, IsAPathAndAToken) {
+TEST(Target, SplitsPathAndToken) {
   EXPECT_EQ(parse_target("/").path, "/");
   EXPECT_EQ(parse_target("/").token, "");
   EXPECT_EQ(parse_target("/session?token=ab").path, "/session");

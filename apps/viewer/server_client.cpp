@@ -9,12 +9,12 @@ namespace beast = boost::beast;
 namespace websocket = beast::websocket;
 using boost::system::error_code;
 
-constexpr size_t kLongestMessage = size_t{16} << 20;  // from the page: a recorded session
-constexpr size_t kQueueBytes = size_t{64} << 20;      // to the page
+constexpr size_t kLongestMessage = size_t{16} << 20;  // received, such as a recorded session
+constexpr size_t kQueueBytes = size_t{64} << 20;      // unsent
 constexpr size_t kQueueMessages = 20'000;
 constexpr std::chrono::seconds kHandshake(10), kIdle(30), kCloseHandshake(2);
 
-// A page that has gone, for whatever reason of the network, is no news.
+// Returns an empty reason for a page that disconnected.
 std::string reason(const error_code& error) {
   if (error == websocket::error::message_too_big) return "it sent a message of more than 16 MiB";
   if (error == beast::error::timeout) return "it did not answer any more";
@@ -87,7 +87,7 @@ void Client::close(const std::string& why) {
   give_up_later();
 }
 
-// A page that does not even read the goodbye is cut off.
+// Cuts off a page that does not read the closing message.
 void Client::give_up_later() {
   patience_.expires_after(kCloseHandshake);
   patience_.async_wait([self = shared_from_this()](const error_code& error) {

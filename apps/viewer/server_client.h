@@ -1,4 +1,4 @@
-// A page at the other end of a WebSocket. Lives in the network's thread.
+// The WebSocket connection of a page. Used only by the network's thread.
 #pragma once
 #include <boost/asio/steady_timer.hpp>
 #include <boost/beast/core.hpp>
@@ -21,14 +21,14 @@ class Client : public std::enable_shared_from_this<Client> {
   struct Events {
     std::function<void(Client&)> opened;
     std::function<void(Client&, std::string)> received;
-    std::function<void(Client&, const std::string& why)> left;  // once, if it had opened; why: empty when it just went
+    std::function<void(Client&, const std::string& why)> left;  // once, after `opened`; why: empty for an ordinary end
   };
 
   Client(PageId id, Socket socket, Events events);
 
   void accept(const HttpRequest& request);
   void send(std::shared_ptr<const Message> message);
-  void close(const std::string& why);  // politely, but not waiting long
+  void close(const std::string& why);  // sends the reason and waits briefly
   void cut_off();
 
   PageId id() const { return id_; }

@@ -14,12 +14,12 @@ namespace http = beast::http;
 using boost::system::error_code;
 
 constexpr uint32_t kLongestHead = 8 << 10;
-constexpr uint64_t kLongestBody = uint64_t{64} << 20;  // a large picture
+constexpr uint64_t kLongestBody = uint64_t{64} << 20;  // fits a large picture
 constexpr std::chrono::seconds kHeadTime(10), kBodyTime(60);
 
 std::string view(beast::string_view text) { return {text.data(), text.size()}; }
 
-// What a browser lets the page do: run what it brings along, talk to this server, and nothing else.
+// Content security policy: the page may run its own scripts and connect to this server only.
 std::string content_policy(int port) {
   return fmt::format(
       "default-src 'none'; script-src 'unsafe-inline'; style-src 'unsafe-inline'; img-src data: blob:; font-src data:; "
@@ -28,7 +28,7 @@ std::string content_policy(int port) {
       port);
 }
 
-// A page that was reloaded after it hid the token finds it where the tab keeps it.
+// A page hides the token in its address. After a reload it finds the token in the storage of its tab.
 constexpr std::string_view kReload = R"(<script>
 const token = sessionStorage.getItem("aspic.token");
 if (token && !new URL(location.href).searchParams.has("token")) location.replace("/?token=" + encodeURIComponent(token));
@@ -67,7 +67,7 @@ void HttpConnection::serve() {
   });
 }
 
-// The reason not to serve this request, if there is one.
+// Returns the refusal of a request that must not be served, or none.
 std::optional<HttpConnection::Response> HttpConnection::refusal(const Client::HttpRequest& request) const {
   const Access& access = service_.access;
   if (!access.is_host(view(request[http::field::host])))
@@ -145,7 +145,7 @@ void HttpConnection::answer(Response response) {
   const auto kept = std::make_shared<Response>(std::move(response));
   stream_.expires_after(kBodyTime);
   http::async_write(stream_, *kept, [self = shared_from_this(), kept](const error_code&, size_t) {
-    error_code ignored;  // the other side may be gone
+    error_code ignored;  // the peer may have disconnected
     self->stream_.socket().shutdown(boost::asio::ip::tcp::socket::shutdown_send, ignored);
   });
 }

@@ -1,5 +1,5 @@
-// One HTTP request: who asks is checked, then the page is served, what it sends taken in, or its WebSocket handed on.
-// Lives in the network's thread.
+// One HTTP request: checks access, then serves the page, receives an upload, or hands the WebSocket to the room. Used
+// only by the network's thread.
 #pragma once
 #include <boost/beast/core.hpp>
 #include <boost/beast/http.hpp>
@@ -18,9 +18,9 @@ namespace aspic::viewer {
 struct HttpService {
   const Access& access;
   const ServerOptions& options;
-  std::function<bool()> is_full;  // no further page may come
+  std::function<bool()> is_full;  // the maximum number of pages is connected
   std::function<void(Client::Socket, const Client::HttpRequest&)> upgrade;
-  std::list<class HttpConnection*> connections;  // now, the oldest first
+  std::list<class HttpConnection*> connections;  // current ones, the oldest first
 };
 
 class HttpConnection : public std::enable_shared_from_this<HttpConnection> {
@@ -29,7 +29,7 @@ class HttpConnection : public std::enable_shared_from_this<HttpConnection> {
   ~HttpConnection();
 
   void serve();
-  bool has_token() const { return has_token_; }  // its request was accepted
+  bool has_token() const { return has_token_; }  // a valid token was received
   void cut_off() { stream_.close(); }
 
  private:
@@ -45,7 +45,7 @@ class HttpConnection : public std::enable_shared_from_this<HttpConnection> {
 
   boost::beast::tcp_stream stream_;
   HttpService& service_;
-  std::list<HttpConnection*>::iterator place_;  // among the connections
+  std::list<HttpConnection*>::iterator place_;  // position in service_.connections
   bool has_token_ = false;
   boost::beast::flat_buffer buffer_;
   boost::beast::http::request_parser<boost::beast::http::string_body> parser_;

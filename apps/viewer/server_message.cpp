@@ -5,7 +5,7 @@
 namespace aspic::viewer {
 
 MessageHead parse_head(std::string_view text) {
-  // Of what lies deeper than the members of the message nothing is kept.
+  // Keeps only the members of the message itself, without nested values.
   const auto is_shallow = [](int depth, nlohmann::json::parse_event_t, const nlohmann::json&) { return depth <= 1; };
   const nlohmann::json message = nlohmann::json::parse(text, is_shallow, /*allow_exceptions=*/false);
   MessageHead head{.id = "null"};

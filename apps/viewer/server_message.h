@@ -1,4 +1,4 @@
-// What the server itself must know of a page's message; the rest is the session's.
+// The part of a page's message that the server needs; the session reads the rest.
 #pragma once
 #include <string>
 #include <string_view>
@@ -6,7 +6,7 @@
 namespace aspic::viewer {
 
 struct MessageHead {
-  bool is_message = false;  // an object that does or asks something
+  bool is_message = false;  // an object with "do" or "ask"
   std::string does;         // "play"; empty for a question
   std::string id;           // as JSON: "7", or "null"
 };

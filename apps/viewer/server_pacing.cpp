@@ -7,8 +7,8 @@ namespace {
 
 using Seconds = std::chrono::duration<double>;
 
-constexpr Seconds kForgotten(0.1);    // so far behind, or more
-constexpr Seconds kLongestWait(1e4);  // a speed near zero
+constexpr Seconds kForgotten(0.1);    // longer delays are not made up for
+constexpr Seconds kLongestWait(1e4);  // for speeds near zero
 constexpr Seconds kRateWindow(0.5);
 
 }  // namespace

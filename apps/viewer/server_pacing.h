@@ -1,4 +1,4 @@
-// When the next step is due, so that simulated time passes at the speed that was asked for; and how fast it does pass.
+// The time of the next step at a requested speed of simulated time, and the measured speed.
 #pragma once
 #include <chrono>
 
@@ -8,23 +8,23 @@ class Pacing {
  public:
   using Clock = std::chrono::steady_clock;
 
-  // The next step after simulated time `time` [s] at `speed` [s of simulation per s]. Who is behind is not made to
-  // catch up: lost time is forgotten.
+  // Returns when the step after simulated time `time` [s] is due at `speed` [simulated s / s]. A long delay is not made
+  // up for.
   Clock::time_point due(double time, double speed, Clock::time_point now);
   void pause() { speed_ = 0; }
 
  private:
-  Clock::time_point start_;  // when `start_time_` was simulated
+  Clock::time_point start_;  // wall time of `start_time_`
   double start_time_ = 0, last_time_ = 0, speed_ = 0;
 };
 
-// Simulated time per wall time over about the last half second.
+// Simulated time per wall time, averaged over about half a second.
 class Rate {
  public:
   using Clock = Pacing::Clock;
 
   void start(double time, Clock::time_point now);
-  bool update(double time, Clock::time_point now);  // whether value() is another one
+  bool update(double time, Clock::time_point now);  // returns whether value() has changed
   double value() const { return value_; }
 
  private:

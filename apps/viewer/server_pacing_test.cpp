@@ -10,7 +10,7 @@ using Time = Pacing::Clock::time_point;
 
 const Time kStart = Time() + std::chrono::hours(1);
 
-TEST(Pacing, IsDueAtOnceAndThenAtTheSpeed) {
+TEST(Pacing, FollowsTheSpeedAfterTheFirstStep) {
   Pacing pacing;
   EXPECT_EQ(pacing.due(0, 0.5, kStart), kStart);
   for (int step = 1; step <= 10; ++step) {
@@ -28,7 +28,7 @@ TEST(Pacing, CatchesUpWithSmallDelaysOnly) {
   EXPECT_GT(pacing.due(0.03, 1, late), late);
 }
 
-TEST(Pacing, StartsAnewWithAnotherSpeedOrAnEarlierTime) {
+TEST(Pacing, RestartsAtAnotherSpeedOrEarlierTime) {
   Pacing pacing;
   pacing.due(1, 1, kStart);
   EXPECT_GT(pacing.due(1.5, 1, kStart), kStart);
@@ -36,7 +36,7 @@ TEST(Pacing, StartsAnewWithAnotherSpeedOrAnEarlierTime) {
   EXPECT_EQ(pacing.due(0.2, 2, kStart), kStart);
 }
 
-TEST(Rate, IsSimulatedTimePerTimePassed) {
+TEST(Rate, IsSimulatedTimePerWallTime) {
   Rate rate;
   rate.start(1, kStart);
   EXPECT_FALSE(rate.update(1.1, kStart + milliseconds(100)));

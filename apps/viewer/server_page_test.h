@@ -1,4 +1,4 @@
-// A page as the tests play it: one WebSocket, read with a time-out that only a failing test meets.
+// A page for tests: one WebSocket with a time-out that only a failing test reaches.
 #pragma once
 #include <boost/asio/ip/tcp.hpp>
 #include <boost/asio/read.hpp>
@@ -44,10 +44,10 @@ struct HttpAnswer {
 struct HttpQuestion {
   http::verb verb = http::verb::get;
   std::string target = "/", host = {}, origin = {}, body = {};
-  bool upgrade = false;  // to a WebSocket
+  bool upgrade = false;  // requests a WebSocket
 };
 
-// One request; without `host`, with the right one.
+// Sends one request. Without `host`, uses the host of the server.
 inline HttpAnswer ask(const Server& server, const HttpQuestion& question) {
   asio::io_context network;
   beast::tcp_stream stream(network);
@@ -93,7 +93,7 @@ class TestPage {
   void send_binary(const std::string& bytes) { write(bytes, true); }
   void ready() { send("ready"); }
 
-  // The next frame; none when the connection has ended, or nothing came within `patience`.
+  // Returns the next frame, or none if the connection has ended or nothing arrives within `patience`.
   std::optional<std::string> read(std::chrono::milliseconds patience = kTooLong) {
     if (!is_reading_) {
       is_reading_ = true;
@@ -113,7 +113,7 @@ class TestPage {
     return frame;
   }
 
-  // The next text of this kind; pictures and other texts are passed over. Null when the connection ends before it.
+  // Returns the next text of this kind and skips all others. Returns null if the connection ends first.
   json next(const std::string& kind) {
     while (const auto frame = read()) {
       if (was_binary_) continue;

@@ -15,11 +15,10 @@ namespace {
 using std::chrono::steady_clock;
 
 constexpr std::chrono::milliseconds kUrgencyPeriod(50);
-constexpr size_t kLongestCommand = size_t{1} << 20;  // except a recorded session, and a scene with its files
-constexpr int kComplaints = 5;                       // in one second
+constexpr size_t kLongestCommand = size_t{1} << 20;  // except recordings and uploaded scenes
+constexpr int kComplaints = 5;                       // maximum logged per second
 
-// Commands that do not wait for the end of a slow step.
-// The steering page does not wait for the answer to a question.
+// Returns the slow work that a command interrupts. The commands of kUrgent interrupt a step, others only a question.
 Urgency urgency_of(std::string_view command) {
   constexpr std::array<std::string_view, 9> kUrgent = {"pause",  "reset",  "load",    "set",        "rewind",
                                                        "lesson", "replay", "compare", "end_compare"};
@@ -77,7 +76,7 @@ void Room::leave(PageId id, const std::string& why) {
   if (steers_ == id) steer(pages_.empty() ? kNoPage : pages_.front().client->id());
 }
 
-// The hand that held the body is gone with the page that steered.
+// Releases the body if the previous steering page held it.
 void Room::steer(PageId id) {
   if (steers_ == id) return;
   steers_ = id;
@@ -105,7 +104,7 @@ void Room::receive(PageId id, std::string text) {
   if (text.size() > kLongestCommand && head.does != "replay" && head.does != "load")
     return send(*page, refusal_text(head.id, "this message is longer than 1 MiB"));
   if (head.does == "take") return take(*page, head.id);
-  if (text.empty()) text = " ";  // refused like any other text that is no message
+  if (text.empty()) text = " ";  // refused as an invalid message
   const bool steers = steers_ == id;
   if (steers && (head.does == "grab" || head.does == "release")) is_holding_ = head.does == "grab";
   const Urgency urgency = steers ? urgency_of(head.does) : Urgency::none;
@@ -124,7 +123,7 @@ void Room::take(Page& page, const std::string& id) {
   if (id != "null") send(page, fmt::format(R"({{"kind":"reply","id":{},"reply":null}})", id));
 }
 
-// As long as something urgent waits, the step under way is asked again and again whether it takes long.
+// Checks periodically whether the current step is slow, as long as an urgent request waits.
 void Room::watch_urgency() {
   is_watching_urgency_ = true;
   urgency_.expires_after(kUrgencyPeriod);
@@ -142,7 +141,7 @@ void Room::offer(Page& page) {
   for (const auto& picture : pictures_) page.client->send(picture);
 }
 
-// At once, so that nothing which the page answers to its greeting finds it half greeted.
+// Sends all messages in one task, so that no request of the page is handled between them.
 void Room::greet(PageId id, Messages messages) {
   post([this, id, sent = std::move(messages)]() mutable {
     send_all(id, std::move(sent));

@@ -1,5 +1,5 @@
-// The pages that are connected, and what each of them may do. Lives in the network's thread; what the simulation says
-// comes in through the Audience.
+// The connected pages and their roles. Used only by the network's thread. The simulation sends its messages through
+// the interface Audience.
 #pragma once
 #include <boost/asio/io_context.hpp>
 #include <boost/asio/steady_timer.hpp>
@@ -24,11 +24,11 @@ class Room : public Audience {
   void open(SimulationThread& simulation) { simulation_ = &simulation; }
   bool is_full() const { return pages_.size() >= kMaxPages; }
   void admit(Client::Socket socket, const Client::HttpRequest& request);
-  void close(const std::string& why);  // for good
-  void cut_off();                      // who has not gone after that
+  void close(const std::string& why);  // closes all pages and admits no others
+  void cut_off();                      // cuts off the pages that are still connected
   void announce(const std::string& what);
 
-  // Audience: from the simulation's thread.
+  // Audience: called from the simulation's thread.
   void greet(PageId page, Messages messages) override;
   void tell(PageId page, Messages messages) override;
   void tell_all(Messages messages) override;
@@ -39,7 +39,7 @@ class Room : public Audience {
     std::shared_ptr<Client> client;
     bool was_told_to_steer = false;
     bool is_greeted = false;
-    bool wants_picture = true;  // the first one unasked
+    bool wants_picture = true;  // true: the first one needs no request
     long seen = -1;             // version of its last picture
   };
 
@@ -65,9 +65,9 @@ class Room : public Audience {
   std::chrono::steady_clock::time_point complaints_since_;
   int complaints_ = 0;
 
-  std::vector<Page> pages_;  // in the order of their arrival
+  std::vector<Page> pages_;  // in order of arrival
   PageId last_id_ = kNoPage, steers_ = kNoPage;
-  bool is_holding_ = false;                               // the page that steers has grabbed the body
+  bool is_holding_ = false;                               // the steering page has grabbed the body
   std::vector<std::shared_ptr<const Message>> pictures_;  // the last ones shown
   long version_ = -1;
 };

@@ -6,7 +6,7 @@ namespace aspic::viewer {
 namespace {
 
 constexpr size_t kInboxRequests = 1000, kInboxBytes = size_t{64} << 20;
-constexpr std::chrono::milliseconds kSlow(300);  // what an urgent request does not wait for
+constexpr std::chrono::milliseconds kSlow(300);  // urgent requests interrupt longer work
 constexpr std::chrono::microseconds kBetweenPictures(16'600);
 
 }  // namespace
@@ -92,7 +92,7 @@ void SimulationThread::run() {
   }
 }
 
-// Until something arrives, the next step is due, or a picture that somebody waits for.
+// Waits until a request arrives, the next step is due, or a requested picture is due.
 void SimulationThread::wait() {
   const bool playing = session_.is_playing();
   const bool has_news = shown_ != session_.picture_version();
@@ -123,7 +123,7 @@ bool SimulationThread::is_woken() const {
   return woken_;
 }
 
-// Lets interrupt() reach this work, for what is at least that urgent, and nothing that comes after it.
+// Runs work that requests of at least this urgency may interrupt. Later work is not affected.
 template <class Work>
 auto SimulationThread::interruptibly(Urgency for_what, Work work) {
   {
@@ -145,7 +145,7 @@ void SimulationThread::carry_out(const Request& request) {
   if (!answer.to_sender.empty() && request.page != kNoPage) audience_.tell(request.page, std::move(answer.to_sender));
 }
 
-// The fit runs beside the simulation; its news is handled between two steps.
+// The fit runs in parallel with the simulation. Its news is handled between two steps.
 void SimulationThread::serve_fit() {
   if (std::optional<FitTask> task = session_.take_fit())
     fit_ = std::make_unique<FitJob>(*std::move(task), [this] {

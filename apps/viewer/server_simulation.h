@@ -1,5 +1,5 @@
-// The thread that owns the session: carries out what the pages ask for in the order of arrival, and steps when it is
-// due. Knows no network; every other thread talks to it through its inbox.
+// The thread that owns the session. It carries out the requests of the pages in order of arrival and takes each step
+// when it is due. Other threads add requests to its inbox.
 #pragma once
 #include <atomic>
 #include <condition_variable>
@@ -16,10 +16,10 @@
 
 namespace aspic::viewer {
 
-using PageId = long;                  // of a connected page
+using PageId = long;                  // number of a connected page
 inline constexpr PageId kNoPage = 0;  // the server itself
 
-// Who receives what the session says; called on the simulation's thread.
+// Receives the messages of the session. Called on the simulation's thread.
 class Audience {
  public:
   virtual ~Audience() = default;
@@ -29,33 +29,33 @@ class Audience {
   virtual void show(Messages pictures, long version) = 0;
 };
 
-// What a request does not wait for when that takes long: it is interrupted.
+// The slow work that a request interrupts.
 enum class Urgency { none, before_questions, before_steps };
 
-enum class Aim { none, mouse, tip };  // what a request moves
+enum class Aim { none, mouse, tip };  // the tool that a request moves
 
 struct Request {
   PageId page = kNoPage;
   Role role = Role::watches;
-  std::string text;  // empty: the page has just come, and is to be greeted
+  std::string text;  // empty: greets a new page
   Urgency urgency = Urgency::none;
   bool is_question = false;
-  Aim aim = Aim::none;  // superseded by one that directly follows with the same
+  Aim aim = Aim::none;  // a directly following request with the same aim replaces this one
 };
 
 class SimulationThread {
  public:
   SimulationThread(Session& session, Audience& audience);
-  ~SimulationThread();  // waits for the end of the step under way
+  ~SimulationThread();  // waits for the end of the current step
 
-  bool add(Request request);  // false: too many wait already
-  void want_pictures();       // newer ones than those that were shown last, as soon as there are any
+  bool add(Request request);  // false: the inbox is full
+  void want_pictures();       // shows the next pictures that differ from the last ones
 
-  // Interrupts what is under way if something more urgent waits and it takes long. False: nothing urgent waits.
+  // Interrupts slow work if a more urgent request waits. Returns false if none waits.
   bool interrupt_if_slow();
 
-  bool stop(std::chrono::milliseconds patience);  // false: the step under way has not ended
-  void check() const;                             // throws what ended the thread
+  bool stop(std::chrono::milliseconds patience);  // false: the current step has not ended
+  void check() const;                             // rethrows the exception that ended the thread
 
  private:
   using Clock = Pacing::Clock;
@@ -74,7 +74,7 @@ class SimulationThread {
   Session& session_;
   Audience& audience_;
 
-  // Of the thread alone.
+  // Used by the thread alone.
   Pacing pacing_;
   Rate rate_;
   bool was_playing_ = false;
@@ -82,13 +82,13 @@ class SimulationThread {
   std::optional<long> shown_;
   std::unique_ptr<FitJob> fit_;
 
-  mutable std::mutex mutex_;  // of everything below
+  mutable std::mutex mutex_;  // guards everything below
   std::condition_variable changed_, ended_;
   std::deque<Request> inbox_;
   size_t inbox_bytes_ = 0;
   bool woken_ = false, stopping_ = false, has_ended_ = false, pictures_wanted_ = false;
-  std::optional<Clock::time_point> busy_since_;   // the session works, and may be interrupted
-  Urgency gives_way_to_ = Urgency::before_steps;  // then: by what is at least as urgent
+  std::optional<Clock::time_point> busy_since_;   // start of the current interruptible work
+  Urgency gives_way_to_ = Urgency::before_steps;  // minimum urgency that interrupts this work
   std::exception_ptr failure_;
 
   std::thread thread_;

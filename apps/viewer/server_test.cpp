@@ -26,7 +26,7 @@ shape = { box = { upper = [0.2, 0.2, 0.2], cells = [2, 2, 2] } }
 material = { young = 1e5, poisson = 0.3, density = 1000 }
 )";
 
-// A step that takes hours: gradient descent on a stiff beam.
+// A step of several hours: gradient descent on a stiff beam.
 constexpr char kSlowScene[] = R"(
 [time]
 step = 1.0
@@ -80,7 +80,7 @@ class ServerTest : public testing::Test {
   std::optional<Server> server_;
 };
 
-// The first message of a page that has just come.
+// Returns the first message to a new page.
 json hello(TestPage& page) {
   const json message = page.next("hello");
   EXPECT_FALSE(message.is_null());
@@ -134,7 +134,7 @@ TEST_F(ServerTest, OpensTheSessionToItsOwnPagesAlone) {
   EXPECT_EQ(status(with_token("/"), own), 404);
 }
 
-TEST_F(ServerTest, LetsTheFirstPageSteerAndTheOthersWatch) {
+TEST_F(ServerTest, LetsOnlyTheFirstPageSteer) {
   TestPage first(*server_);
   EXPECT_EQ(hello(first)["steers"], true);
   TestPage second(*server_);
@@ -145,7 +145,7 @@ TEST_F(ServerTest, LetsTheFirstPageSteerAndTheOthersWatch) {
   EXPECT_EQ(second.next("steps")["steps"].size(), 1u);
 }
 
-TEST_F(ServerTest, HandsTheRoleToThePageThatTakesIt) {
+TEST_F(ServerTest, GivesTheRoleToARequestingPage) {
   TestPage first(*server_), second(*server_);
   hello(first);
   hello(second);
@@ -159,7 +159,7 @@ TEST_F(ServerTest, HandsTheRoleToThePageThatTakesIt) {
   EXPECT_FALSE(first.next("steps").is_null());
 }
 
-TEST_F(ServerTest, GivesTheRoleOfAClosedPageToTheNext) {
+TEST_F(ServerTest, PassesTheRoleOfAClosedPageOn) {
   std::optional<TestPage> first(*server_);
   TestPage second(*server_), third(*server_);
   hello(*first);
@@ -174,13 +174,13 @@ TEST_F(ServerTest, GivesTheRoleOfAClosedPageToTheNext) {
 TEST_F(ServerTest, SendsNewPicturesToReadyPages) {
   constexpr std::chrono::milliseconds kNothingCame(150);
   TestPage page(*server_);
-  EXPECT_TRUE(page.next_picture());  // the first one unasked
+  EXPECT_TRUE(page.next_picture());  // the first one needs no request
   page.ready();
   EXPECT_FALSE(page.next_picture(kNothingCame));  // nothing has moved
   page.send(R"({"do":"step"})");
   EXPECT_TRUE(page.next_picture());
   page.send(R"({"do":"step"})");
-  EXPECT_FALSE(page.next_picture(kNothingCame));  // it still draws
+  EXPECT_FALSE(page.next_picture(kNothingCame));  // the page is not ready
   page.ready();
   EXPECT_TRUE(page.next_picture());
 }
@@ -206,7 +206,7 @@ TEST_F(ServerTest, GreetsAPageThatReloads) {
     TestPage page(*server_);
     EXPECT_EQ(hello(page)["steers"], true) << i;
     page.drop();
-    // Until the server has seen the page go, the next one only watches.
+    // The next page only watches until the server detects the end of the first one.
     TestPage next(*server_);
     if (!hello(next)["steers"]) {
       EXPECT_EQ(next.next("role")["steers"], true);
@@ -231,7 +231,7 @@ TEST_F(ServerTest, RefusesMalformedMessagesAndLogsThem) {
   EXPECT_FALSE(page.next("steps").is_null());
 }
 
-TEST_F(ServerTest, LogsAFloodOnlyInPart) {
+TEST_F(ServerTest, LimitsTheLogOfRefusedMessages) {
   TestPage page(*server_);
   hello(page);
   for (int i = 0; i < 500; ++i) page.send("{");
@@ -259,7 +259,7 @@ TEST_F(ServerTest, ClosesOnBinaryWithAReason) {
   EXPECT_EQ(page.reason(), "only text is understood here");
 }
 
-TEST_F(ServerTest, WaitsForNoPageThatDoesNotRead) {
+TEST_F(ServerTest, DoesNotWaitForUnreadMessages) {
   constexpr size_t kMoreThanSocketsHold = size_t{16} << 20;
   TestPage slow(*server_), quick(*server_);
   hello(quick);
@@ -273,7 +273,7 @@ TEST_F(ServerTest, WaitsForNoPageThatDoesNotRead) {
   }
 }
 
-TEST_F(ServerTest, InterruptsASlowStepForWhatIsUrgent) {
+TEST_F(ServerTest, InterruptsASlowStepForUrgentCommands) {
   write_file(folder_.path() / "slow.toml", kSlowScene);
   TestPage page(*server_);
   hello(page);
@@ -286,7 +286,7 @@ TEST_F(ServerTest, InterruptsASlowStepForWhatIsUrgent) {
   EXPECT_TRUE(server_->stop(kTooLong));
 }
 
-TEST_F(ServerTest, SurvivesBytesThatAreNoHttp) {
+TEST_F(ServerTest, SurvivesInvalidHttp) {
   for (const std::string& garbage : {std::string("\0\1\2\r\n\r\n", 7), std::string("GET\r\n\r\n"),
                                      std::string(20'000, 'a'), std::string("\x16\x03\x01\x02\x00\x01", 6)}) {
     asio::io_context network;
@@ -296,7 +296,7 @@ TEST_F(ServerTest, SurvivesBytesThatAreNoHttp) {
     asio::write(socket, asio::buffer(garbage), ignored);
     socket.shutdown(tcp::socket::shutdown_send, ignored);
     std::string answer;
-    asio::read(socket, asio::dynamic_buffer(answer), ignored);  // until it closes
+    asio::read(socket, asio::dynamic_buffer(answer), ignored);  // until the server closes
   }
   EXPECT_EQ(ask(*server_, {.target = with_token("/")}).status, 200);
 }
@@ -307,13 +307,13 @@ TEST_F(ServerTest, BoundsConnectionsAndPages) {
     std::vector<tcp::socket> idle;
     for (int i = 0; i < 200; ++i) idle.emplace_back(network).connect(endpoint_of(*server_));
     TestPage page(*server_);
-    EXPECT_FALSE(page.is_refused());  // an idle connection makes room for it
+    EXPECT_FALSE(page.is_refused());  // the server closes an idle connection instead
     EXPECT_EQ(ask(*server_, {.target = with_token("/")}).status, 200);
   }
   std::vector<std::unique_ptr<TestPage>> pages;
   while (pages.size() < 16) {
     auto page = std::make_unique<TestPage>(*server_);
-    if (page->is_refused()) continue;  // the idle connections are not yet gone
+    if (page->is_refused()) continue;  // the idle connections are not closed yet
     hello(*page);
     pages.push_back(std::move(page));
   }
@@ -338,7 +338,7 @@ TEST_F(ServerTest, ServesABrowserBesideSlowConnections) {
   }
 }
 
-TEST_F(ServerTest, SaysGoodbyeAtItsEnd) {
+TEST_F(ServerTest, SendsAReasonAtItsEnd) {
   TestPage page(*server_);
   hello(page);
   page.send(R"({"do":"play"})");

@@ -12,7 +12,7 @@
 namespace aspic::viewer {
 namespace {
 
-constexpr size_t kMostBytes = 32 << 20;  // of a text; recordings are long
+constexpr size_t kMostBytes = 32 << 20;  // maximum size of a text, for recordings
 
 // Throws InvalidInput for a name that is not in the table.
 template <class Table>

@@ -30,7 +30,7 @@ struct Lesson {
   std::string missing;           // reason why it cannot be shown; empty: none
   std::filesystem::path scene;   // empty: the scene stays
   std::vector<std::string> overrides;
-  std::string field;  // for the colors of the body; empty: none
+  std::string field;  // field of the colors; empty: none
   struct Comparison {
     std::vector<std::string> overrides;
     std::string label;
@@ -46,7 +46,7 @@ struct OfferedScene {
 };
 
 struct Gallery {
-  std::vector<OfferedScene> scenes;           // of the program
+  std::vector<OfferedScene> scenes;           // scenes of the program
   std::vector<std::filesystem::path> recent;  // loaded before, newest first
 };
 
@@ -56,7 +56,7 @@ struct SessionOptions {
   std::function<void(const std::filesystem::path& scene)> note_loaded = {};  // for Gallery::recent
   size_t timeline_bytes = size_t{256} << 20;                                 // memory for snapshots, per side
   double most_tets = 1e18;                                     // per side; also limited by the free memory
-  std::function<void(const std::string& what)> announce = {};  // of a long operation; "" at its end
+  std::function<void(const std::string& what)> announce = {};  // announces a long operation; "" at its end
 };
 
 enum class Role { steers, watches };
@@ -88,7 +88,7 @@ class Session {
   Messages pictures() const;     // one for each side
   long picture_version() const;  // changes with the pictures
 
-  // Drops the step under way at its next iteration. May be called from any thread.
+  // Drops the current step at its next iteration. May be called from any thread.
   void interrupt();
 
  private:

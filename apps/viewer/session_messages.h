@@ -9,13 +9,13 @@ namespace aspic::viewer {
 // A side as the pages display it.
 struct ShownSide {
   std::string name = "a";
-  std::string label;  // in a comparison
+  std::string label;  // label in a comparison
   Side side;
   Surface surface = {};
-  uint32_t generation = 1;                                               // of the geometry
+  uint32_t generation = 1;                                               // generation of the geometry
   int sent_steps = 0;                                                    // number of steps whose rows were sent
   std::vector<std::string> loaded_overrides = side.steered().overrides;  // before any change of settings
-  std::vector<TetField> further = {};                                    // fields beside those of the model
+  std::vector<TetField> further = {};                                    // fields in addition to those of the model
 
   int number() const { return name == "a" ? 0 : 1; }
   std::vector<Field> fields() const;

@@ -1,4 +1,4 @@
-// Steps, iterations, rewinding: what playing and looking do to a simulation.
+// Steps, iterations and rewinding of a session.
 #include "viewer/session_test.h"
 
 #include <cmath>
@@ -43,7 +43,7 @@ TEST(Session, IsBitReproducibleAfterSingleIterations) {
     ASSERT_EQ(whole.side()["step"], 4);
     looked.steps(1);
     looked.send({{"do", "iterate"}});
-    looked.send({{"do", "step"}});  // the rest of step 2, if there is any
+    looked.send({{"do", "step"}});  // the rest of step 2, if any
     for (int i = 0; i < 500 && looked.side()["step"] < 4; ++i) looked.send({{"do", "iterate"}});
     ASSERT_EQ(looked.side()["step"], 4);
     if (looked.side()["iteration"] != -1) looked.send({{"do", "step"}});

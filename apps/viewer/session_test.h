@@ -1,4 +1,4 @@
-// What the tests of the session share: scenes, and a page that talks to it.
+// Scenes and a page for the tests of sessions.
 #pragma once
 #include <gtest/gtest.h>
 
@@ -34,7 +34,7 @@ inline double sum(const Json& list) {
   return total;
 }
 
-// The last message of a kind.
+// Returns the last message of a kind.
 inline Json last(const Messages& messages, const std::string& kind) {
   Json found;
   for (const Message& message : messages) {
@@ -66,7 +66,7 @@ std::vector<T> take(const std::string& bytes, size_t at, size_t count) {
   return values;
 }
 
-// As web/src/protocol.ts does.
+// Decodes a picture like web/src/protocol.ts.
 inline Picture decoded(const std::string& bytes) {
   EXPECT_EQ(take<uint32_t>(bytes, 0), 2u);
   Picture picture{.side = take<int>(bytes, 4), .generation = take<int>(bytes, 8), .step = take<int>(bytes, 16)};
@@ -124,7 +124,7 @@ class Page {
     EXPECT_EQ(answer["kind"], "reply") << answer;
     return answer["reply"];
   }
-  std::string refused(const Json& message) {  // in these words
+  std::string refused(const Json& message) {  // returns the refusal
     const Json answer = ask(message);
     EXPECT_EQ(answer["kind"], "refused") << message << " was not refused";
     return answer.value("why", "");
@@ -148,7 +148,7 @@ class Page {
   const Geometry& geometry(const std::string& name = "a") { return geometry_[name]; }
   Picture picture(int side = 0) { return decoded(session_.pictures().at(side).bytes); }
 
-  // A triangle at the free end, and its middle.
+  // Returns a triangle at the free end.
   int end_triangle() {
     const Geometry& g = geometry();
     for (size_t t = 0; t < g.triangles.size() / 3; ++t) {

@@ -56,7 +56,7 @@ const Key& schema_key(const std::string& key) {
   return scene_schema().key(key.substr(first, dot - first), key.substr(dot + 1));
 }
 
-// What a complete document has there: of the first body, for a key of bodies. Null: nothing.
+// Returns the value of a key in a complete document; null: none. Keys of bodies refer to the first body.
 const Value* find(const Table& document, const std::string& key) {
   const Table* table = &document;
   if (key.starts_with("material.") || key.starts_with("damping."))
@@ -107,7 +107,7 @@ bool is_number_text(const std::string& text) {
   return error == std::errc() && end == text.data() + text.size() && std::isfinite(number);
 }
 
-// As TOML. A whole number is written as one where the key takes no other.
+// Returns the value as TOML. Numbers of integer keys have no fraction.
 std::string toml_of(const std::string& name, const Key& key, const Json& value) {
   if (value.is_boolean()) return value.get<bool>() ? "true" : "false";
   if (value.is_number()) {

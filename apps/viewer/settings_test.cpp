@@ -1,4 +1,4 @@
-// Changing a scene while it runs.
+// Changes of settings during a simulation.
 #include <cmath>
 
 #include "viewer/session_test.h"
@@ -79,7 +79,7 @@ TEST(Settings, NullDropsTheOverrideAndKeepsTheState) {
             std::string::npos);
 }
 
-TEST(Settings, AFormulaStaysText) {
+TEST(Settings, KeepAFormulaAsText) {
   Page page;
   page.send({{"do", "set"}, {"key", "material.young"}, {"value", "1e5 * (1 + X)"}});
   EXPECT_EQ(setting(page, "material.young")["value"], "1e5 * (1 + X)");

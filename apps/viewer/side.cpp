@@ -108,7 +108,7 @@ void Side::rewind(int step) {
   tools_.indenter.return_to(snapshot.poke);
   try {
     rest();
-  } catch (const InvalidInput&) {  // that shape of the body has no surface at this place
+  } catch (const InvalidInput&) {  // the new shape has no surface at this place
     tools_.indenter.lift();
     rest();
   }

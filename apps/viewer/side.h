@@ -12,7 +12,7 @@ namespace aspic::viewer {
 
 enum class Progress {
   interrupted,  // nothing changed
-  iterated,     // one more iterate of the step under way is shown
+  iterated,     // the next iterate of the current step is shown
   stepped,      // a step is complete
   blown_up      // a step is complete, but its state is not finite
 };
@@ -29,25 +29,25 @@ class Side {
   const PinSet& pins() const { return pins_; }
   int steps_taken() const { return simulation().steps_taken(); }
   double time() const { return simulation().state().time; }  // [s]
-  int iteration() const { return iteration_; }               // of the step under way; -1 between steps
-  const std::vector<IterationRow>& iterations() const { return iterations_.rows(); }  // of the step under way
+  int iteration() const { return iteration_; }               // index in the current step; -1 between steps
+  const std::vector<IterationRow>& iterations() const { return iterations_.rows(); }  // rows of the current step
   bool is_blown_up() const { return is_blown_up_; }
   Positions positions() const { return iteration_ >= 0 ? Positions(iterate_) : Positions(simulation().state().q); }
 
-  Progress step(const StopToken& stop);     // the rest of the step under way, or the next one
-  Progress iterate(const StopToken& stop);  // one more iteration of the step under way, or the first of the next
+  Progress step(const StopToken& stop);     // the rest of the current step, or the next one
+  Progress iterate(const StopToken& stop);  // one iteration of the current or next step
   // Restores the latest snapshot up to that step, and releases the hand.
   void rewind(int step);
   // Repeats a step with an observer, and restores the current state. Throws InvalidInput if it cannot be repeated.
   StepReport repeat(int step, const IterationObserver& observe, const StopToken& stop);
 
-  // Each of these ends the step under way.
+  // Each of these ends the current step.
   void apply(SceneChange change);
   // Changes the tools between two steps, at positions x. Throws InvalidInput without any change.
   void edit(const std::function<void(Tools& tools, Positions x)>& change);
   void aim(const std::function<void(Tools& tools)>& change);  // changes only the wanted places of the tools
   void pin(const std::vector<int>& vertices, bool pinned);    // vertices of the model
-  // Stiffness of the spring of the hand [N/m]. Ends the step under way only if the hand holds the body.
+  // Stiffness of the spring of the hand [N/m]. Ends the current step only if the hand holds the body.
   void set_stiffness(double stiffness);
 
  private:

@@ -46,14 +46,14 @@ class Stage {
   std::vector<ShownSide>& sides() { return sides_; }
   ShownSide& a() { return sides_.front(); }
   ShownSide* b() { return sides_.size() > 1 ? &sides_[1] : nullptr; }  // null: no comparison
-  ShownSide& named(Arguments& arguments);                              // by the argument "side"
+  ShownSide& named(Arguments& arguments);                              // side in the argument "side"
   ShownSide& next();                                                   // the side behind in time
   std::optional<Comparison>& comparison() { return comparison_; }
 
   // ---- how they are shown
-  const std::string& field() const { return field_; }  // for the colors of the bodies; empty: none
+  const std::string& field() const { return field_; }  // field of the colors; empty: none
   void set_field(std::string field) { field_ = std::move(field); }
-  void show_surface(bool wants_skin);  // of all sides
+  void show_surface(bool wants_skin);  // applies to all sides
   long version() const { return version_; }
   void mark_changed() { ++version_; }
 
@@ -74,10 +74,10 @@ class Stage {
   const SessionOptions& options_;
   std::vector<ShownSide> sides_;
   std::optional<Comparison> comparison_;
-  std::vector<std::string> base_overrides_;  // overrides of side a at the begin of the record
+  std::vector<std::string> base_overrides_;  // overrides of side a at the start of the record
   CommandLog log_;
   std::string field_;
-  uint32_t generation_ = 0;  // of the newest geometry
+  uint32_t generation_ = 0;  // generation of the latest geometry
   long version_ = 0;
   Messages outgoing_;
 };

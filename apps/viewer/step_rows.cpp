@@ -53,7 +53,7 @@ std::vector<std::string> pin_names(const Model& model) {
 
 namespace {
 
-// By the names of the pins: three numbers of the force [N], three of the moment [N m].
+// An object from the name of each pin to its force [N] and moment [N m], 6 numbers.
 Json reactions(const StepRow& row) {
   Json all = Json::object();
   const std::vector<Resultant>& sums = row.report.resultants.pins;

@@ -1,4 +1,4 @@
-// What the page hears of each step, kept within a bound of memory.
+// The rows of the step table, within a memory bound.
 #pragma once
 #include <deque>
 #include <string>
@@ -16,10 +16,10 @@ struct IterationRow {
 };
 Json to_json(const IterationRow& row);
 
-// The iterations of a step as far as they are kept: one of very many would fill memory and page.
+// The iterations of a step, up to a maximum that protects memory and page.
 class IterationRows {
  public:
-  static constexpr size_t kMost = 5'000;  // iterations and trials
+  static constexpr size_t kMost = 5'000;  // maximum number of iterations and trials
 
   void begin() { rows_.clear(), size_ = 0; }
   void add(const LiveIteration& live);
@@ -31,16 +31,16 @@ class IterationRows {
   size_t size_ = 0;
 };
 Json to_json(const std::vector<Trial>& tried);
-Json to_json(const Explanation& why);  // null when there is nothing to explain
+Json to_json(const Explanation& why);  // null: no explanation
 
 struct StepRow {
-  static constexpr size_t kMostReactions = 8;  // shown: vertices that are pinned by hand are a pin each
+  static constexpr size_t kMostReactions = 8;  // maximum shown: each vertex pinned by hand is a pin
   StepReport report;
   std::vector<IterationRow> iterations;
-  double mouse_work = 0;               // within the step, and by what was done with the mouse before it [J]
-  double probe_work = 0;               // of the probe [J]
-  double pin_work = 0;                 // by pins and by the other targets [J]
-  std::vector<std::string> pins = {};  // the names of report.resultants.pins
+  double mouse_work = 0;               // work of the mouse in the step and in the edits before it [J]
+  double probe_work = 0;               // work of the probe [J]
+  double pin_work = 0;                 // work of the pins and prescribed motions [J]
+  std::vector<std::string> pins = {};  // names of report.resultants.pins
   Explanation why;
 };
 Json to_json(const StepRow& row);
@@ -48,14 +48,14 @@ std::vector<std::string> pin_names(const Model& model);
 
 class StepRows {
  public:
-  static constexpr size_t kMostSteps = 20'000;     // rows of earlier steps are forgotten
-  static constexpr size_t kMostDetails = 300'000;  // iterations and trials; those of earlier steps are forgotten
+  static constexpr size_t kMostSteps = 20'000;     // rows of earlier steps are dropped
+  static constexpr size_t kMostDetails = 300'000;  // iterations and trials; those of earlier steps are dropped
 
   void add(StepRow row);
   void drop_after(int step);
   const StepRow* last() const { return rows_.empty() ? nullptr : &rows_.back(); }
   const StepRow* find(int step) const;
-  Json after(int step) const;  // an array
+  Json after(int step) const;  // an array of rows
 
  private:
   void forget_details_of(StepRow& row);

@@ -120,7 +120,7 @@ TetPoint tet_point(const Surface& surface, const TetMesh& mesh, int triangle, co
         if (point.vertices[i] == surface.anchor(corners[c])) point.weights[i] = corner_weights[c];
     return point;
   }
-  // In the tet that carries the nearest corner.
+  // Uses the tet that carries the nearest corner.
   int nearest = 0;
   Vec3d rest{};
   for (int c = 0; c < 3; ++c) {

@@ -7,7 +7,7 @@
 namespace aspic::viewer {
 namespace {
 
-constexpr size_t kPinBytes = sizeof(Pin) + 64;  // of a vertex pinned by hand
+constexpr size_t kPinBytes = sizeof(Pin) + 64;  // size of a pin set by hand
 
 }  // namespace
 

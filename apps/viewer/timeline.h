@@ -20,12 +20,12 @@ struct Snapshot {
   double outside_work = 0;        // see Simulation::Snapshot
   double start_time = 0, h = 0;   // [s] see History
   std::string integrator;
-  Grab grab;                                     // resting, after the edits before the next step
-  Poke poke;                                     // resting, after these edits
+  Grab grab;                                     // at rest, after the edits before the next step
+  Poke poke;                                     // at rest, after these edits
   std::shared_ptr<const std::vector<Pin>> pins;  // after these edits
-  Grab acted;                                    // in the last step
-  Poke poked;                                    // in the last step
-  long settings = 0;                             // counter of the settings of the last step
+  Grab acted;                                    // motion in the last step
+  Poke poked;                                    // motion in the last step
+  long settings = 0;                             // counter of settings at the last step
 
   size_t bytes() const;
 };

@@ -29,7 +29,7 @@ double size(const Json& json) {
   return std::sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]);
 }
 
-// A triangle of the upper side, near its middle.
+// Returns a triangle near the middle of the upper side.
 int middle_triangle(Page& page) {
   const auto& g = page.geometry();
   int best = -1;
@@ -72,14 +72,14 @@ TEST(Tip, IndentsTheBodyAndMeasuresTheForce) {
   page.steps(1);
   const Json begun = page.side()["probe"];
   EXPECT_EQ(number(begun["depth"]), 0);
-  EXPECT_NEAR(vec(begun["center"])[2], 0.08 + 0.03, 1e-6);  // single precision of the weights does not move it up
+  EXPECT_NEAR(vec(begun["center"])[2], 0.08 + 0.03, 1e-6);  // unaffected by the single precision of the weights
   page.send({{"do", "press"}, {"depth", 0.01}});
   page.steps(1);
   const Json probe = page.side()["probe"];
   EXPECT_NEAR(number(probe["depth"]), 0.01, 1e-12);
   EXPECT_NEAR(vec(probe["center"])[2], 0.08 + 0.03 - 0.01, 1e-6);
-  EXPECT_LT(vec(probe["force"])[2], 0);  // on the body
-  // A rigid punch of radius a: F = 2 a E / (1 - nu^2) d; a layer of finite thickness is stiffer.
+  EXPECT_LT(vec(probe["force"])[2], 0);  // force on the body
+  // A rigid punch of radius a has F = 2 a E / (1 - nu^2) d. A layer of finite thickness is stiffer.
   EXPECT_GT(size(probe["force"]), kYoung * 0.015 * 0.01);
   EXPECT_LT(size(probe["force"]), 50 * kYoung * 0.03 * 0.01);
   EXPECT_GT(probe["points"].get<int>(), 10);
@@ -190,7 +190,7 @@ TEST(Tip, RefusesInvalidTips) {
   EXPECT_EQ(number(page.side()["probe"]["wanted"]), 0);
 }
 
-TEST(RotationVector, IsThatOfTheRotation) {
+TEST(RotationVector, IsAxisTimesAngle) {
   for (const double angle : {0.0, 1e-12, 0.3, 2.0, 3.0, 3.1415, 3.14159265358979}) {
     const Vec3d a = {{2.0 / 3, -1.0 / 3, 2.0 / 3}};
     const Mat3d turn = {0, a[2], -a[1], -a[2], 0, a[0], a[1], -a[0], 0};

@@ -46,7 +46,7 @@ class Hand : public Tool<Grab, Vec3d> {
   explicit Hand(double stiffness) : stiffness_(stiffness) {}
 
   bool is_grabbing() const { return held_.stiffness > 0; }
-  double stiffness() const { return stiffness_; }  // of the current grab and the next ones [N/m]
+  double stiffness() const { return stiffness_; }  // stiffness of current and later grabs [N/m]
   Vec3d point(Positions x) const { return held_.point(x); }
   Vec3d force(Positions x) const { return is_grabbing() ? held_.stiffness * (place() - point(x)) : Vec3d{}; }  // [N]
   double energy(Positions x) const { return held_.value(x, place()); }                                         // [J]

@@ -12,7 +12,7 @@ namespace aspic::viewer {
 namespace {
 
 constexpr double kShareOfBody = 0.08;  // radius / diagonal
-constexpr double kEdges = 0.8;         // radius / mean edge, at least: a tip that falls between vertices feels one tet
+constexpr double kEdges = 0.8;         // minimum of radius / mean edge: a tip between vertices would touch one tet only
 constexpr double kLayer = 100;
 
 double mean_young(const Model& model) {
@@ -48,7 +48,7 @@ Vec3d rotation_vector(const Mat3d& R) {
   const double sine = norm(twice_sine) / 2, cosine = (trace(R) - 1) / 2;
   const double angle = std::atan2(sine, cosine);
   if (cosine > -0.9) return (sine > 1e-9 ? angle / (2 * sine) : 0.5) * twice_sine;
-  // Near half a turn: (R + R') / 2 - cos I = (1 - cos) a a'
+  // Near a rotation by pi: (R + R') / 2 - cos I = (1 - cos) a a'.
   const Mat3d A = 0.5 * (R + transpose(R)) - cosine * identity3<double>();
   int best = 0;
   for (int c = 1; c < 3; ++c)

@@ -14,10 +14,10 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr size_t kLongestName = 200;  // [bytes]
-// A scene may read from the folder above its own, so that one, too, is the upload's.
+// A scene may read from its parent folder. The upload therefore has a parent folder, too.
 const char* const kScenes = "files";
 
-// Throws InvalidInput for a name that leads elsewhere.
+// Throws InvalidInput for a name outside the upload.
 fs::path confined(const std::string& name) {
   const fs::path path = name;
   bool is_plain = !name.empty() && name.size() <= kLongestName && path.is_relative() && !path.has_root_path();

@@ -206,7 +206,7 @@ void expect_slopes_2(const Swinging& body) {
   }
 }
 
-TEST(Trajectory, GradientHasTaylorSlope2ForEveryKindOfParameter) {
+TEST(Trajectory, GradientHasTaylorSlope2ForEveryParameter) {
   expect_slopes_2(Swinging("mooney_rivlin"));
   expect_slopes_2(Swinging("fung"));
   expect_slopes_2(Swinging("corotated"));
@@ -221,7 +221,7 @@ TEST(Trajectory, GradientWithRollersHasTaylorSlope2) {
   expect_slopes_2(body);
 }
 
-TEST(Trajectory, DensityGradientWithLumpedMassHasTaylorSlope2) {
+TEST(Trajectory, LumpedMassDensityGradientHasTaylorSlope2) {
   Swinging body;
   body.mass = MassKind::lumped;
   const TrajectoryGradient gradient = gradient_of(body, exact());

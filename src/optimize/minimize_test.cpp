@@ -147,7 +147,7 @@ class Deceptive : public Rosenbrock {
   double gradient_round_off_, gradient_scale_;
 };
 
-TEST(Minimize, FailedLineSearchIsSuccessOnlyNearRoundOff) {
+TEST(Minimize, AcceptsFailedLineSearchOnlyNearRoundOff) {
   const std::vector<double> start = {0, 0, 0};  // |g| = 2
   const auto status = [&](double gradient_round_off, double gradient_scale = 1e4) {
     Deceptive f(gradient_round_off, gradient_scale);

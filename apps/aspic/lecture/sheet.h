@@ -40,7 +40,7 @@ class Sheet {
   void remark(std::string text) { remarks_.push_back(std::move(text)); }
 
   CsvFile table(const std::string& name, const std::vector<std::string>& columns) const;
-  void keep(const Scene& scene) const;  // writes NAME.toml beside the data, ready to run
+  void keep(const Scene& scene) const;  // writes NAME.toml next to the data, ready to run
   template <class Picture>
   void draw(const std::string& name, const std::string& caption, const Picture& picture) {
     draw_by(name, caption, [&](const std::filesystem::path& path) { cli::draw(path, picture); });
