@@ -129,6 +129,10 @@ class FitMotion(CommandLine):
         expected = 1e-3 / sum(3 * (STEP * k) ** 2 for k in range(1, 5)) ** 0.5
         self.assertAlmostEqual(found["velocity_x"]["deviation"], expected, delta=1e-5 * expected)
         self.assertLess(report["chi_squared"], 1e-12)
+        rows = rows_of_flight(damping=3, steps=9)  # a damping that the fit does not know
+        self.write("damped.csv", table([(*row, 1e-5) for row in rows], "time,marker,x,y,z,sigma"))
+        text = self.aspic("fit-motion", "cube.toml", "damped.csv", "--fit", "velocity", "-o", "damped").stdout
+        self.assertRegex(text, r"residuals are [1-9].* times the stated sigma")
 
     def test_is_bit_reproducible_for_any_threads(self):
         self.beam(duration=0.1)

@@ -24,6 +24,8 @@
 namespace aspic::cli {
 namespace {
 
+constexpr double kLargeChiSquared = 2;  // residuals 1.4 times the stated sigma
+
 namespace fs = std::filesystem;
 
 struct FitMotionArguments {
@@ -54,12 +56,18 @@ std::string deviation_text(const FittedMotionValue& value) {
   return std::isfinite(value.deviation) ? fmt::format("{:.2g}", value.deviation) : "-";
 }
 
-void print_table(const MotionFitReport& report) {
+void print_table(const MotionFitReport& report, bool has_sigma) {
   fmt::print("{:<20} {:>12} {:>12} {:>10}  unit\n", "parameter", "guess", "fitted", "sd");
   for (const FittedMotionValue& v : report.values)
     fmt::print("{:<20} {:>12.6g} {:>12.6g} {:>10}  {}{}\n", v.parameter.name, v.parameter.guess, v.value,
                deviation_text(v), v.parameter.unit, v.message.empty() ? "" : "  not determined: " + v.message);
   fmt::print("root mean square distance {:.4g} m before, {:.4g} m after\n", report.before.rms, report.after.rms);
+  if (has_sigma && report.chi_squared > kLargeChiSquared)
+    fmt::print(
+        "residuals are {:.3g} times the stated sigma, and so are the standard deviations: the model does not explain "
+        "the "
+        "motion (check mesh, fitted parameters and markers)\n",
+        std::sqrt(report.chi_squared));
   fmt::print("{} after {} iterations, {} simulations, {} gradients\n",
              report.stopped ? "stopped" : std::string(to_string(report.status)), report.iterations, report.simulations,
              report.gradients);
@@ -184,7 +192,7 @@ int run(const FitMotionArguments& arguments) {
   if (arguments.json) {
     fmt::print("{}", json);
   } else {
-    print_table(report);
+    print_table(report, objective.data().has_sigma);
     fmt::print("fitted scene: {}\n", printable((folder / "fitted.toml").string()));
   }
   return exit_code(report);

@@ -162,14 +162,14 @@ class Attachment {
                             formatted("%.3g", projected.distance) + " m off the surface of the body, whose size is " +
                             formatted("%.3g", size_) + " m";
     if (projected.distance > kFarOff * size_)
-      errors_.add(where(row) + ": " + off + "; " + remedy(row.position));
+      errors_.add(where(row) + ": " + off + "; " + remedy(row.position, projected.distance));
     else if (projected.distance > kOff * size_)
       notes.push_back(off + "; this offset is kept constant");
   }
 
-  std::string remedy(const Vec3d& p) const {
+  std::string remedy(const Vec3d& p, double distance) const {
     for (const std::string& unit : unit_names("length"))
-      if (surface_.nearest(unit_in_si("length", unit) * p).distance <= kFarOff * size_)
+      if (distance > size_ && surface_.nearest(unit_in_si("length", unit) * p).distance <= kFarOff * size_)
         return "the positions seem to be in " + unit + ", convert them to m";
     return "correct it, or move the body with `translate` to where the markers are";
   }

@@ -105,10 +105,12 @@ std::vector<double> hessian(MotionObjective& f, const MotionPoint& at) {
   return H;
 }
 
-// Standard deviation of the noise in units of sigma; infinite without redundant data.
+// Standard deviation of the residuals in units of sigma; infinite if it is neither stated nor estimated from redundant
+// data. A stated sigma is a lower bound, because errors of the model add to the noise.
 double noise(const MotionObjective& f, const MotionPoint& at) {
-  if (f.data().has_sigma) return 1;
-  return redundancy(f) > 0 ? std::sqrt(2 * at.value / redundancy(f)) : INFINITY;
+  const double estimate = redundancy(f) > 0 ? std::sqrt(2 * at.value / redundancy(f)) : INFINITY;
+  if (!f.data().has_sigma) return estimate;
+  return std::isfinite(estimate) ? std::max(1.0, estimate) : 1;
 }
 
 void find_deviations(MotionObjective& f, MotionFitReport& report) {
