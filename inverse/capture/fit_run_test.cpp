@@ -8,7 +8,7 @@
 #include "base/error.h"
 #include "capture/fit_folder.h"
 #include "capture/fit_verdict.h"
-#include "capture/poked_block_test.h"
+#include "capture/quick_plan_test.h"
 #include "fit/refined_experiment.h"
 #include "io/atomic_file.h"
 #include "io/folder_test.h"
@@ -21,19 +21,6 @@ namespace fs = std::filesystem;
 using ::testing::AllOf;
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
-
-const DataSet& block() {
-  static const DataSet data = measured_block(3);
-  return data;
-}
-
-FitPlan quick_plan(const std::vector<std::string>& unknowns = {"young=regions"}) {
-  FitPlan plan;
-  for (const std::string& text : unknowns) plan.unknowns.push_back(parse_unknown(text));
-  plan.known = {{"poisson", 0.4}};
-  plan.uncertainty = plan.cross_validation = false;
-  return plan;
-}
 
 const FittedQuantity& young(const FitOutcome& outcome) { return outcome.quantities.at(0); }
 
@@ -382,50 +369,6 @@ TEST_F(FitMemoryTest, FolderRejectsOtherOptionsOfItsFit) {
   EXPECT_THAT(opened(ExistingFit::resume, options), HasSubstr("this fit is complete"));
   EXPECT_THAT(opened(ExistingFit::refuse, options), HasSubstr("exists; --force replaces it"));
   EXPECT_EQ(opened(ExistingFit::overwrite, options), "");
-}
-
-TEST(FitPlan, UnknownsAreRead) {
-  EXPECT_EQ(text_of(parse_unknown("young=tets")), "young=tets");
-  EXPECT_EQ(text_of(parse_unknown("b=handles:40")), "b=handles:40");
-  EXPECT_EQ(parse_known("poisson=0.45").second, 0.45);
-  const auto refused = [](const std::string& text) { return message_of([&] { parse_unknown(text); }); };
-  EXPECT_THAT(refused("young"), HasSubstr("give QUANTITY=VALUE"));
-  EXPECT_THAT(refused("young=tet"), HasSubstr("did you mean 'tets'?"));
-  EXPECT_THAT(refused("young=handles:0"), HasSubstr("whole number above 0"));
-  EXPECT_THAT(message_of([] { parse_known("poisson=much"); }), HasSubstr("'much' is not a finite number"));
-}
-
-TEST(FitPlan, CorrectedFieldsAreWeighedByTheirEvidence) {
-  FitPlan plan = quick_plan({"young=tets"});
-  EXPECT_EQ(completed(plan, block().experiment).fit.weight_rule, "auto");
-  plan.mesh_errors = true;
-  EXPECT_EQ(completed(plan, block().experiment).fit.weight_rule, "evidence");
-  plan.fit.weight_rule = "l_curve";
-  EXPECT_EQ(completed(plan, block().experiment).fit.weight_rule, "l_curve");
-  EXPECT_EQ(completed(quick_plan({"young=regions"}), block().experiment).fit.weight_rule, "auto");
-}
-
-TEST(FitPlan, WhatDoesNotFitTogetherIsRefused) {
-  const auto refused = [](const FitPlan& plan) { return message_of([&] { completed(plan, block().experiment); }); };
-  EXPECT_THAT(refused(quick_plan({"yuong=tets"})), HasSubstr("did you mean 'young'?"));
-  EXPECT_THAT(refused(quick_plan({"b=uniform"})), HasSubstr("'b' is not a quantity of the model neo_hookean"));
-  EXPECT_THAT(refused(quick_plan({"poisson=uniform"})), HasSubstr("both known and unknown"));
-  EXPECT_THAT(refused(quick_plan({"young=tets", "young=uniform"})), HasSubstr("unknown twice"));
-  FitPlan plan = quick_plan();
-  plan.known = {{"poisson", 0.5}};
-  EXPECT_THAT(refused(plan), HasSubstr("poisson = 0.5; must be"));
-  plan = quick_plan();
-  plan.left_out = {"poke 9"};
-  EXPECT_THAT(refused(plan), HasSubstr("the data have no such group"));
-  plan.left_out = {"poke 1", "poke 2", "poke 3"};
-  EXPECT_THAT(refused(plan), HasSubstr("leaves no case"));
-  plan = quick_plan();
-  plan.model = "neo_hokean";
-  EXPECT_THAT(refused(plan), HasSubstr("did you mean 'neo_hookean'?"));
-  Experiment bare = block().experiment;
-  bare.mesh.region.clear();
-  EXPECT_THAT(message_of([&] { completed(quick_plan(), bare); }), HasSubstr("no region labels"));
-  EXPECT_THAT(groups_of(block().experiment), ElementsAre("poke 1", "poke 2", "poke 3"));
 }
 
 }  // namespace

@@ -43,7 +43,7 @@ Poke pressed(double depth, TipContact contact = TipContact::bonded) {
   return poke;
 }
 
-TEST(HeldTip, ItsPoseMovesAlongALineAndRestsBeforeAndAfter) {
+TEST(HeldTip, PoseMovesLinearlyWithinTheStep) {
   const Poke poke = pressed(0.1);
   EXPECT_EQ(poke.pose(0).center[2], 0.8);
   EXPECT_NEAR(poke.pose(1.5).center[2], 0.775, 1e-15);

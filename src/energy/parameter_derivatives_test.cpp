@@ -193,7 +193,7 @@ void expect_hessian_derivatives(const MaterialInfo& info, Definiteness definiten
   EXPECT_NEAR(dot(dtheta, change), by_theta, 1e-6 * std::max(1.0, std::abs(by_theta))) << info.name;
 }
 
-TEST(ParameterDerivatives, OfTheHessianAreThoseOfTheTrueAndOfTheProjectedOne) {
+TEST(ParameterDerivatives, MatchDifferencesOfExactAndModifiedHessians) {
   for (const MaterialInfo& info : materials())
     for (const Definiteness d : {Definiteness::exact, Definiteness::clamped, Definiteness::absolute})
       expect_hessian_derivatives(info, d);

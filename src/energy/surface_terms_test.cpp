@@ -89,7 +89,7 @@ TEST(Probe, DerivativesAreThoseOfTheEnergy) {
   }
 }
 
-TEST(Probe, ItsForceIsTheOppositeOfWhatTheBodyFeelsAndItsTorqueTheMoment) {
+TEST(Probe, WrenchBalancesForcesOnTheBody) {
   for (const Case& c : kCases) {
     const auto V = probe(c);
     const std::vector<double> x = shaken(0.02);
@@ -109,7 +109,7 @@ TEST(Probe, ItsForceIsTheOppositeOfWhatTheBodyFeelsAndItsTorqueTheMoment) {
   }
 }
 
-TEST(Probe, ProductsOfTheWrenchAreItsDerivativesAndTransposesOfEachOther) {
+TEST(Probe, WrenchProductsAreDerivativesAndTransposes) {
   for (const Case& c : kCases) {
     const auto V = probe(c);
     const std::vector<double> x = shaken(0.02), dx = shaken(0.1, 5);
@@ -130,7 +130,7 @@ TEST(Probe, ProductsOfTheWrenchAreItsDerivativesAndTransposesOfEachOther) {
   }
 }
 
-TEST(Probe, ABondedTipThatMovesWithTheBodyPullsNothing) {
+TEST(Probe, BondedTipMovingWithTheBodyHasNoForce) {
   const Mat3d quarter_turn = {0, 1, 0, -1, 0, 0, 0, 0, 1};  // about z
   for (const Case& c : {kCases[0], kCases[1]}) {
     const auto V = probe(c);
@@ -148,7 +148,7 @@ TEST(Probe, ABondedTipThatMovesWithTheBodyPullsNothing) {
   }
 }
 
-TEST(Probe, MovedAndTurnedWithTheBodyItsEnergyStaysAndItsForceTurns) {
+TEST(Probe, IsInvariantUnderRigidMotions) {
   const Mat3d quarter_turn = {0, 1, 0, -1, 0, 0, 0, 0, 1};
   for (const Case& c : {kCases[2], kCases[3]}) {
     const auto V = probe(c);
@@ -202,7 +202,7 @@ TEST(Probe, ASlidingDiscPressesWithItsDepth) {
 }
 
 // From the air to more than the depth at which the layer is no longer soft.
-TEST(Probe, PressedIntoTheBodyItsEnergyIsTheWorkOfItsForce) {
+TEST(Probe, EnergyIsTheWorkOfIndentation) {
   for (const Case& c : {kCases[2], kCases[3]}) {
     const auto V = probe(c);
     const std::vector<double> x = box_at_rest();
@@ -222,7 +222,7 @@ TEST(Probe, PressedIntoTheBodyItsEnergyIsTheWorkOfItsForce) {
   }
 }
 
-TEST(Probe, ProjectedHessiansArePositiveSemidefiniteWhereTheExactOneIsNot) {
+TEST(Probe, ModifiedHessiansArePositiveSemidefinite) {
   const std::vector<double> x = shaken(0.02);
   for (const Case& c : {kCases[2], kCases[3]}) {
     const auto V = probe(c);
@@ -259,7 +259,7 @@ TEST(Probe, ATipInTheAirDoesNothing) {
   }
 }
 
-TEST(Probe, RefusesATipThatTouchesNothingAndOneWithoutSizeOrLayer) {
+TEST(Probe, RejectsTipsWithoutContactSizeOrLayer) {
   Case c = kCases[0];
   c.touch.center[2] += 1;
   EXPECT_THROW(probe(c), InvalidInput);
@@ -271,7 +271,7 @@ TEST(Probe, RefusesATipThatTouchesNothingAndOneWithoutSizeOrLayer) {
   EXPECT_THROW(make_probe(box_mesh(), surface(), kCases[0].tip, without_axis), InvalidInput);
 }
 
-TEST(TipDepth, OfADiscIsTwiceDifferentiableAcrossItsRim) {
+TEST(TipDepth, OfDiscIsTwiceDifferentiableAcrossItsRim) {
   const Tip tip = {TipShape::disc, TipContact::sliding, 0.2, 1};
   const TipPose pose = {.center = {}, .axis = {{0, 0, -1}}, .rotation = {}};
   Mat3d last{};
@@ -305,7 +305,7 @@ TEST(Pressure, DerivativesAreThoseOfTheEnergy) {
   }
 }
 
-TEST(Pressure, OnAClosedSurfaceIsPressureTimesVolumeAndHasNoResultant) {
+TEST(Pressure, OnClosedSurfaceHasNoResultant) {
   const auto V = make_pressure(box_mesh(), surface(), 3);
   const std::vector<double> x = shaken(0.05);
   double volume = 0;  // of the deformed body
@@ -326,7 +326,7 @@ TEST(Pressure, OnAClosedSurfaceIsPressureTimesVolumeAndHasNoResultant) {
   EXPECT_LT(norm(torque), 1e-14);
 }
 
-TEST(Pressure, OnAPatchThatMovesAlongItsNormalIsTheForceOnItsArea) {
+TEST(Pressure, OnMovingPatchIsPressureTimesArea) {
   const auto V = make_pressure(box_mesh(), top(), 3);
   std::vector<double> x = box_at_rest();
   for (size_t i = 2; i < x.size(); i += 3) x[i] *= 0.9;

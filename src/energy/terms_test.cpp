@@ -71,7 +71,7 @@ void expect_consistent(Energy& V, const std::vector<double>& x, const std::strin
   expect_consistent(ActiveTerm(V, step), pattern, x, what);
 }
 
-TEST(TetElasticity, DerivativesAreThoseOfTheEnergyForEveryMaterial) {
+TEST(TetElasticity, DerivativesMatchDifferencesForEveryMaterial) {
   for (const MaterialInfo& info : materials()) {
     auto V = make_tet_elasticity(info.name, small_mesh(), 0, heterogeneous_parameters(info));
     expect_consistent(*V, deformed(0.03), info.name);
@@ -93,7 +93,7 @@ TEST(GrabSpring, DerivativesAreThoseOfTheEnergy) {
   EXPECT_TRUE(report.hessian.passed) << report.hessian.smallest_error;
 }
 
-TEST(GrabSpring, ItsTargetMovesAlongALineAndRestsBeforeAndAfter) {
+TEST(GrabSpring, TargetMovesLinearlyWithinTheStep) {
   const Grab grab{.stiffness = 1, .from = {{0, 0, 0}}, .to = {{2, 4, 8}}, .from_time = 1, .to_time = 3};
   EXPECT_EQ(grab.target(0)[1], 0);
   EXPECT_EQ(grab.target(1.5)[1], 1);
@@ -146,7 +146,7 @@ TEST(TetElasticity, NeitherRenumberingNorMirroringChangesTheEnergy) {
   EXPECT_NEAR(make_tet_elasticity(info.name, mirrored, 0, parameters)->value(reflected), V, 1e-12 * V);
 }
 
-TEST(TetElasticity, ABarrierMaterialIsInfiniteWhenATetIsInverted) {
+TEST(TetElasticity, BarrierMaterialIsInfiniteForInvertedTets) {
   const MaterialInfo& info = material_info("neo_hookean_log");
   const auto V = make_tet_elasticity(info.name, small_mesh(), 0, heterogeneous_parameters(info));
   std::vector<double> x = deformed(0);
@@ -173,7 +173,7 @@ Eigen::VectorXd eigenvalues(TetElasticity& V, const std::vector<double>& x, Defi
   return Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(dense).eigenvalues();
 }
 
-TEST(TetElasticity, ProjectedHessiansArePositiveSemidefiniteWhereTheExactOneIsNot) {
+TEST(TetElasticity, ModifiedHessiansArePositiveSemidefinite) {
   std::vector<double> x = deformed(0.25);
   for (double& xi : x) xi *= 0.5;  // squeezed
   for (const MaterialInfo& info : materials()) {
@@ -188,7 +188,7 @@ TEST(TetElasticity, ProjectedHessiansArePositiveSemidefiniteWhereTheExactOneIsNo
   }
 }
 
-TEST(TetElasticity, TheClampedHessianOfADefiniteStateIsTheExactOne) {
+TEST(TetElasticity, ClampedHessianOfDefiniteStateIsExact) {
   for (const MaterialInfo& info : materials()) {
     const auto V = make_tet_elasticity(info.name, small_mesh(), 0, heterogeneous_parameters(info));
     std::vector<double> rest;
@@ -198,7 +198,7 @@ TEST(TetElasticity, TheClampedHessianOfADefiniteStateIsTheExactOne) {
   }
 }
 
-TEST(StrainRateDamping, DerivativesAreThoseOfTheDissipationAndRotationCostsNothing) {
+TEST(StrainRateDamping, DerivativesMatchDissipationAndRotationIsFree) {
   auto D = make_strain_rate_damping(small_mesh(), 0, std::vector<double>(small_mesh().tet_count(), 2.0));
   const std::vector<double> start = deformed(0.02);
   const StepContext step{start, 0.1, 0.1};
@@ -255,7 +255,7 @@ TEST(LinearLoad, GravityOfTheBodyIsItsWeight) {
   expect_consistent(*load, deformed(0.05), "load");
 }
 
-TEST(LinearLoad, APressureOnAClosedSurfaceHasNoResultant) {
+TEST(LinearLoad, PressureOnClosedSurfaceHasNoResultant) {
   std::vector<double> force(3 * small_mesh().rest.size(), 0.0);
   for (const Triangle& triangle : boundary_triangles(small_mesh(), 0, small_mesh().tet_count())) {
     const auto& X = small_mesh().rest;
@@ -267,7 +267,7 @@ TEST(LinearLoad, APressureOnAClosedSurfaceHasNoResultant) {
   for (const double s : sum) EXPECT_NEAR(s, 0, 1e-14);
 }
 
-TEST(MassMatrix, ConsistentAndLumpedGiveTheSameMassAndMomentum) {
+TEST(MassMatrix, ConsistentAndLumpedHaveEqualMassAndMomentum) {
   const std::vector<double> density(small_mesh().tet_count(), 5.0);
   const MassMatrix consistent(small_mesh(), density, MassKind::consistent),
       lumped(small_mesh(), density, MassKind::lumped);
@@ -279,7 +279,7 @@ TEST(MassMatrix, ConsistentAndLumpedGiveTheSameMassAndMomentum) {
   for (size_t i = 0; i < a.size(); ++i) EXPECT_NEAR(a[i], b[i], 1e-14);
 }
 
-TEST(MassMatrix, TheConsistentOneIntegratesSquaresOfLinearFieldsExactly) {
+TEST(MassMatrix, ConsistentIntegratesSquaresOfLinearFieldsExactly) {
   const MassMatrix mass(small_mesh(), std::vector<double>(small_mesh().tet_count(), 1.0), MassKind::consistent);
   std::vector<double> x(3 * small_mesh().rest.size(), 0.0), Mx(x.size());
   for (int v = 0; v < small_mesh().vertex_count(); ++v) x[3 * v] = small_mesh().rest[v][0];
@@ -302,7 +302,7 @@ TEST(MassMatrix, MeasuresDistancesAsItMultiplies) {
   }
 }
 
-TEST(MassMatrix, AddedIntoAMatrixItIsTheSameOperator) {
+TEST(MassMatrix, AddedToMatrixIsTheSameOperator) {
   MassMatrix mass(small_mesh(), std::vector<double>(small_mesh().tet_count(), 1.0), MassKind::consistent);
   Couplings couplings;
   mass.add_couplings(couplings);

@@ -119,7 +119,7 @@ void expect_kernels_to_match(const TetMesh& mesh, const std::vector<double>& x, 
   EXPECT_LE(block_error, tolerance * largest_block) << what << ", " << static_cast<int>(definiteness);
 }
 
-TEST(TetKernels, AgreeWithTheFormulasOfEveryMaterialForAnyNumberOfTets) {
+TEST(TetKernels, MatchFormulasForAnyNumberOfTets) {
   for (int tets = 1; tets <= 2 * kPackWidth + 1; ++tets) {
     TetMesh mesh = make_mesh(1);
     mesh.tets.resize(tets);
@@ -128,13 +128,13 @@ TEST(TetKernels, AgreeWithTheFormulasOfEveryMaterialForAnyNumberOfTets) {
   }
 }
 
-TEST(TetKernels, AgreeWithTheFormulasWhenTetsShareVerticesAcrossBatchesAndGroups) {
+TEST(TetKernels, MatchFormulasAcrossBatchesAndGroups) {
   const TetMesh mesh = make_mesh(20);  // 360 tets
   for_each_material(
       [&]<class M>() { expect_kernels_to_match<M>(mesh, moved(mesh, 0.02, 1), Definiteness::exact, 1e-12); });
 }
 
-TEST(TetKernels, AgreeWithTheFormulasWhereTetsAreInsideOut) {
+TEST(TetKernels, MatchFormulasForInvertedTets) {
   const TetMesh mesh = make_mesh(4);
   const std::vector<double> x = moved(mesh, 1.5, 1);
   EXPECT_LT(
@@ -176,7 +176,7 @@ Sums sums_with_threads(int threads, const TetMesh& mesh, const std::vector<doubl
   return sums;
 }
 
-TEST(TetKernels, GiveTheSameBitsForAnyNumberOfThreads) {
+TEST(TetKernels, AreBitReproducibleForAnyThreads) {
   const TetMesh mesh = make_box({{0, 0, 0}}, {{1, 1, 1}}, {12, 9, 7});  // 36 groups
   const std::vector<double> x = moved(mesh, 0.1, 3);
   const Sums alone = sums_with_threads(1, mesh, x);

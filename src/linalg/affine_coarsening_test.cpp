@@ -172,7 +172,7 @@ TEST(AffineCoarsening, DropsWhatDependsOnOtherFunctions) {
   }
 }
 
-TEST(AffineCoarsening, HasTheRowsAndThePatternOfItsAggregates) {
+TEST(AffineCoarsening, HasRowsAndPatternOfItsAggregates) {
   const Matrix H = uneven_lattice();
   std::vector<char> excluded(H.rows(), 0);
   excluded[5] = excluded[100] = 1;
@@ -219,7 +219,7 @@ TEST(MatrixRestriction, IsTheDenseProductOnBothLevels) {
   }
 }
 
-TEST(MatrixRestriction, IsTheDenseProductForRandomMatricesAndDroppedFunctions) {
+TEST(MatrixRestriction, EqualsTheDenseProduct) {
   for (const unsigned seed : {1U, 2U, 3U}) {
     Matrix H = random_dominant(80, random_couplings(80, 90, seed), seed);  // some rows touch nothing: aggregates of one
     const std::vector<double> random = random_vector(240, seed + 10);

@@ -18,7 +18,7 @@ TEST(LinearSolver, IsMadeByName) {
   for (const std::string& name : linear_solver_names()) EXPECT_EQ(make_linear_solver(name)->name(), name);
 }
 
-TEST(LinearSolver, MisspeltNameIsAnErrorWithTheNearestOne) {
+TEST(LinearSolver, MisspeltNameIsRejectedWithSuggestion) {
   try {
     make_linear_solver("colesky");
     FAIL();
@@ -27,7 +27,7 @@ TEST(LinearSolver, MisspeltNameIsAnErrorWithTheNearestOne) {
   }
 }
 
-TEST(CostPrediction, IsWithinAFactorOfThreeOfTheExactCounts) {
+TEST(CostPrediction, IsWithinFactorThreeOfExactCounts) {
   for (const Lattice& box : {Lattice{9, 9, 9}, Lattice{16, 16, 16}, Lattice{28, 7, 7}, Lattice{60, 8, 8}}) {
     const Matrix H = spring_lattice(box);
     const CostPrediction predicted = predict_cholesky(*H.pattern);
@@ -62,7 +62,7 @@ TEST(AutoSolver, ChoosesByTheMatrix) {
   }
 }
 
-TEST(AutoSolver, FactorizesForManyRightHandSidesWhereItIteratesForOne) {
+TEST(AutoSolver, FactorizesForManyRightHandSides) {
   const Matrix H = spring_lattice({28, 7, 7, 1, 1});
   for (const int solves : {1, 20}) {
     AutoSolver solver(std::numeric_limits<int64_t>::max(), solves);
@@ -72,7 +72,7 @@ TEST(AutoSolver, FactorizesForManyRightHandSidesWhereItIteratesForOne) {
   }
 }
 
-TEST(AutoSolver, PredictsIterationsOfSoftBodiesWithinAFactorOfTwo) {
+TEST(AutoSolver, PredictsIterationsWithinFactorTwo) {
   for (const double stiffness : {1.0, 10.0, 100.0}) {  // stiffer ones need fewer than predicted: size limits them
     const Matrix H = spring_lattice({.nx = 12, .ny = 6, .nz = 6, .stiffness = stiffness});
     const std::vector<double> b = random_vector(3 * H.rows(), 5);
@@ -107,7 +107,7 @@ TEST(PredictIterations, LeavesOutRowsBesideRollers) {
   }
 }
 
-TEST(PredictIterations, ExpectsTheMostOfABodyAtRestWhateverItsRoundOff) {
+TEST(PredictIterations, IgnoresRoundOffOfBodyAtRest) {
   for (const double sign : {-1, 1}) {
     Matrix H = spring_lattice({.nx = 6, .ny = 6, .nz = 6, .stiffness = 1, .mass = 0});
     for (int row = 0; row < H.rows(); ++row)
@@ -169,7 +169,7 @@ TEST(AutoSolver, CountsWhatWasTriedFirst) {
   }
 }
 
-TEST(AutoSolver, OfANewSequenceDoesNotDependOnThoseBefore) {
+TEST(AutoSolver, NewSequenceIsIndependentOfEarlierOnes) {
   const Matrix hard = hard_lattice();
   for (const double stiffness : {1.0, 1e4}) {  // for block_jacobi and multigrid
     const Matrix other = spring_lattice({.nx = 16, .ny = 16, .nz = 16, .stiffness = stiffness});
@@ -201,7 +201,7 @@ TEST(AutoSolver, OfANewSequenceDoesNotDependOnThoseBefore) {
   }
 }
 
-TEST(AutoSolver, AtADeadlineDoesNotTryAnotherChoiceAndDescends) {
+TEST(AutoSolver, AtDeadlineKeepsItsChoiceAndDescends) {
   double now = 0;
   const WallClock clock = [&] { return now++; };
   const Matrix hard = hard_lattice(), stiff = spring_lattice({28, 7, 7, 1e4, 1});

@@ -105,7 +105,7 @@ struct PlainProduct {
 };
 
 // A task works through 512 rows, or a sixteenth of them, or 8192: couplings within, between and far from tasks.
-TEST(BlockSparse, ProductIsThatOfItsBlocksForAnyThreadCountAndNumberOfTasks) {
+TEST(BlockSparse, ProductMatchesBlocksForAnyThreads) {
   const int threads = thread_count();
   for (const int rows : {1, 511, 512, 513, 1023, 1024, 1025, 2 * 8192 + 1, 16 * 8192, 16 * 8192 + 1}) {
     Couplings couplings = random_couplings(rows, rows, 11);
@@ -145,7 +145,7 @@ TEST(BlockSparse, SetZeroClearsEveryBlock) {
   for (const Mat3d& block : H.values.block) ASSERT_EQ(squared_norm(block), 0);
 }
 
-TEST(BlockSparse, ProductHasTheSameBitsForAnyThreadCount) {
+TEST(BlockSparse, ProductIsBitReproducibleForAnyThreads) {
   const Matrix H = spring_lattice({.nx = 30, .ny = 14, .nz = 14});
   const std::vector<double> x = random_vector(3 * H.rows(), 10);
   const int threads = thread_count();

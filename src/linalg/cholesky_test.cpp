@@ -79,7 +79,7 @@ TEST(Cholesky, SolvesTheEmptySystem) {
   EXPECT_TRUE(solver.solve({}, {}, 1e-10).ok);
 }
 
-TEST(Cholesky, ResidualIsRoundOffOnALargeStiffLattice) {
+TEST(Cholesky, ResidualIsRoundOffOnStiffLattice) {
   // Large enough for the packed kernels: the widest separator has about 15 x 15 vertices.
   const Matrix H = spring_lattice({.nx = 28, .ny = 14, .nz = 14, .stiffness = 1e4});
   const std::vector<double> b = random_vector(3 * H.rows(), 11);
@@ -91,7 +91,7 @@ TEST(Cholesky, ResidualIsRoundOffOnALargeStiffLattice) {
   EXPECT_LE(relative_residual(H.values, b, x), 1e-11);
 }
 
-TEST(Cholesky, FollowsTheValuesAndIsReusableAfterAFailure) {
+TEST(Cholesky, IsReusableAfterNewValuesAndFailures) {
   Matrix H = spring_lattice({.nx = 6, .ny = 5, .nz = 5, .stiffness = 10});
   const std::vector<double> b = random_vector(3 * H.rows(), 12);
   std::vector<double> x(b.size());
@@ -142,7 +142,7 @@ TEST(Cholesky, RefusesAFactorThatDoesNotFit) {
   EXPECT_FALSE(roomy.refused());
 }
 
-TEST(Cholesky, CostOfAFullMatrixIsThatOfDenseCholesky) {
+TEST(Cholesky, CostOfFullMatrixIsThatOfDenseCholesky) {
   constexpr int kRows = 60, kSize = 3 * kRows;
   Couplings all;
   for (int i = 0; i < kRows; ++i)
@@ -171,7 +171,7 @@ TEST(Cholesky, HasTheSameBitsForAnyThreadCount) {
   set_thread_count(threads);
 }
 
-TEST(Cholesky, FindsANegativePivotWhereverItIsOnAnyNumberOfThreads) {
+TEST(Cholesky, FindsNegativePivotsForAnyThreads) {
   Matrix H = spring_lattice({.nx = 16, .ny = 8, .nz = 8, .stiffness = 10});
   const int threads = thread_count();
   for (const int count : {1, 2, 3, 8}) {

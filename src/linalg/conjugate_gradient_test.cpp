@@ -49,7 +49,7 @@ TEST(ConjugateGradient, ReachesTheToleranceAndSaysSo) {
   }
 }
 
-TEST(ConjugateGradient, IsExactAfterOneIterationForABlockDiagonalMatrix) {
+TEST(ConjugateGradient, SolvesBlockDiagonalMatrixInOneIteration) {
   const Matrix H = random_dominant(10, {}, 3);
   const std::vector<double> b = random_vector(30, 4);
   std::vector<double> x(30);
@@ -121,7 +121,7 @@ TEST(BlockInverse, OfAnIndefiniteBlockHasTheAbsoluteEigenvalues) {
   EXPECT_FALSE(invert_made_definite({{NAN, 0, 0, 0, 1, 0, 0, 0, 1}}, inverse));
 }
 
-TEST(ConjugateGradient, WithBlocksMadeDefiniteItDescendsWhereADiagonalBlockIsIndefinite) {
+TEST(ConjugateGradient, ModifiedBlocksGiveDescentForIndefiniteDiagonal) {
   Matrix H = spring_lattice({.nx = 3, .ny = 3, .nz = 3});
   Mat3d& block = H.values.block[H.pattern->diagonal(7)];
   block = -1.0 * block;
@@ -202,7 +202,7 @@ Matrix stiffened_lattice() {
   return H;
 }
 
-TEST(ConjugateGradient, KeepsMultigridFromOneMatrixToTheNextAndIsStillRight) {
+TEST(ConjugateGradient, ReusesMultigridForTheNextMatrix) {
   const Matrix first = spring_lattice(soft(100)), second = spring_lattice(soft(110));
   Sequence sequence(*first.pattern);
   sequence.solve(first.values);
@@ -232,7 +232,7 @@ TEST(ConjugateGradient, MakesMultigridAnewWhenIterationsHaveGrown) {
   EXPECT_EQ(sequence.made, 2);
 }
 
-TEST(ConjugateGradient, OfANewSequenceDoesNotDependOnThoseBefore) {
+TEST(ConjugateGradient, NewSequenceIsIndependentOfEarlierOnes) {
   const Matrix first = spring_lattice(soft(100));
   BlockSparse second(*first.pattern), stiffened(*first.pattern);
   second.block = spring_lattice(soft(110)).values.block;
@@ -255,7 +255,7 @@ TEST(ConjugateGradient, OfANewSequenceDoesNotDependOnThoseBefore) {
   }
 }
 
-TEST(ConjugateGradient, AtItsDeadlineHasCountedItsWorkAndDescends) {
+TEST(ConjugateGradient, AtDeadlineReportsWorkAndDescends) {
   const Matrix H = spring_lattice(soft(1e4));
   const std::vector<double> b = random_vector(3 * H.rows(), 12);
   double now = 0;

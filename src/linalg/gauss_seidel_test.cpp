@@ -195,7 +195,7 @@ TEST(GaussSeidel, HasTheSameBitsForAnyThreadCount) {
   }
 }
 
-TEST(GaussSeidel, SaysThatTheDiagonalBlockOfAVertexIsIndefinite) {
+TEST(GaussSeidel, ReportsIndefiniteDiagonalBlocks) {
   for (const int rows_per_vertex : {1, 4}) {
     Matrix H = vertex_matrix(30, rows_per_vertex, 11);
     const Groups groups = make_groups(graph_of_vertices(*H.pattern, rows_per_vertex), 3);

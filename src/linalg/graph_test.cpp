@@ -27,7 +27,7 @@ void expect_graph(const Graph& graph, const std::vector<std::set<int>>& expected
   }
 }
 
-TEST(Graph, HasTheCouplingsOfThePatternBothWaysInOrder) {
+TEST(Graph, HasCouplingsInBothDirectionsInOrder) {
   for (const int rows : {0, 1, 2, 40}) {
     const Couplings couplings = random_couplings(rows, 2 * rows, 1);
     expect_graph(graph_of(make_pattern(rows, couplings)), neighbors(rows, couplings));
@@ -63,7 +63,7 @@ TEST(Quotient, MayHaveEmptyGroupsOrNone) {
   expect_graph(quotient(graph, std::vector{0, -1, 1}, 2), {{}, {}});  // a path through the vertex in between is none
 }
 
-TEST(GreedyColoring, NeighborsDifferAndNoColorIsHigherThanNeeded) {
+TEST(GreedyColoring, NeighborsDifferAndColorsAreLowestPossible) {
   for (const unsigned seed : {1U, 2U, 3U, 4U}) {
     const int rows = 100;
     const Graph graph = graph_of(make_pattern(rows, random_couplings(rows, 120 * static_cast<int>(seed), seed)));

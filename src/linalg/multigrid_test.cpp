@@ -41,7 +41,7 @@ std::optional<int> iterations(const BlockSparse& H, double tolerance, const Mult
   return report.iterations;
 }
 
-TEST(Multigrid, IsTheInverseWhereThereIsOnlyTheCoarsestLevel) {
+TEST(Multigrid, CoarsestLevelAloneIsTheInverse) {
   const Matrix H = spring_lattice({.nx = 4, .ny = 4, .nz = 4});
   Multigrid multigrid = made(H.values);
   EXPECT_EQ(multigrid.level_count(), 1);
@@ -66,7 +66,7 @@ TEST(Multigrid, WithTwoLevelsIsSymmetricAndPositive) {
   }
 }
 
-TEST(Multigrid, WithManyLevelsIsPositiveAndScalesWithItsArgument) {
+TEST(Multigrid, WithManyLevelsIsPositiveAndHomogeneous) {
   const Matrix H = spring_lattice({.nx = 20, .ny = 10, .nz = 10, .stiffness = 1e3});
   Multigrid multigrid = made(H.values, kManyLevels);
   ASSERT_GE(multigrid.level_count(), 4);
@@ -120,7 +120,7 @@ TEST(Multigrid, TakesHardlyMoreIterationsForFinerMeshes) {
   }
 }
 
-TEST(Multigrid, TakesFewIterationsForStiffAndForFreeBodies) {
+TEST(Multigrid, NeedsFewIterationsForStiffAndFreeBodies) {
   const Lattice box = {.nx = 24, .ny = 8, .nz = 8};
   for (const double stiffness : {1.0, 1e4, 1e8})
     for (const double mass : {1.0, 1e-6}) {
@@ -176,7 +176,7 @@ TEST(Multigrid, LeavesPinnedRowsAsTheyAre) {
     for (int k = 0; k < 3; ++k) EXPECT_EQ(z[3 * row + k], static_cast<float>(b[3 * row + k])) << row;
 }
 
-TEST(Multigrid, DoesNotMindThatPinnedRowsHaveAnotherScale) {
+TEST(Multigrid, IsIndependentOfTheScaleOfPinnedRows) {
   std::vector<int> count;
   for (const double scale : {1.0, 1e-8, 1e8}) {
     Matrix H = spring_lattice({16, 8, 8, 100 * scale, scale});
@@ -294,7 +294,7 @@ TEST(Multigrid, MeetsNegativeCurvatureThatNoLevelShows) {
   EXPECT_GE(met, 3);
 }
 
-TEST(Multigrid, KeptFromADefiniteMatrixFindsTheNextOneIndefinite) {
+TEST(Multigrid, ReusedForIndefiniteMatrixReportsIt) {
   const Matrix H = spring_lattice({16, 6, 6, 10, 1});
   BlockSparse next(*H.pattern);
   next.block = spring_lattice({16, 6, 6, 10, -0.1}).values.block;

@@ -9,7 +9,7 @@
 namespace aspic {
 namespace {
 
-TEST(RowColoring, EachRowHasOneColorThatNoNeighborHas) {
+TEST(RowColoring, ColorsOfNeighborsDiffer) {
   Couplings couplings;  // a grid of 7 x 5 rows with diagonals one way
   for (int i = 0; i < 7; ++i)
     for (int j = 0; j < 5; ++j) {

@@ -60,7 +60,7 @@ TEST(Subtrees, OfManyBodiesShareTasks) {
 
 // Replays a factorization; tasks may run at the same time, so what any of them holds at any moment must be disjoint
 // from all that another one ever uses.
-TEST(Subtrees, UpdateMatricesThatLiveAtTheSameTimeDoNotOverlap) {
+TEST(Subtrees, LiveUpdateMatricesDoNotOverlap) {
   const Supernodes s = supernodes_of(spring_lattice({.nx = 16, .ny = 10, .nz = 10}));
   const Subtrees t = make_subtrees(s);
   std::vector<int> waiting;

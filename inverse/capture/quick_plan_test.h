@@ -1,0 +1,24 @@
+// Measurements of a block and a plan that fits them quickly.
+#pragma once
+#include <string>
+#include <vector>
+
+#include "capture/fit_run.h"
+#include "capture/poked_block_test.h"
+
+namespace aspic {
+
+inline const DataSet& block() {
+  static const DataSet data = measured_block(3);
+  return data;
+}
+
+inline FitPlan quick_plan(const std::vector<std::string>& unknowns = {"young=regions"}) {
+  FitPlan plan;
+  for (const std::string& text : unknowns) plan.unknowns.push_back(parse_unknown(text));
+  plan.known = {{"poisson", 0.4}};
+  plan.uncertainty = plan.cross_validation = false;
+  return plan;
+}
+
+}  // namespace aspic
