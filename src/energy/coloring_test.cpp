@@ -8,7 +8,7 @@
 namespace aspic {
 namespace {
 
-TEST(Coloring, EqualColorsShareNoVertexAndCoverAllGroups) {
+TEST(Coloring, ColorsShareNoVertexAndCoverAllGroups) {
   std::mt19937 random(1);
   std::vector<std::vector<int>> groups(200);
   for (auto& group : groups)

@@ -130,7 +130,7 @@ TEST(Probe, WrenchProductsAreDerivativesAndTransposes) {
   }
 }
 
-TEST(Probe, BondedTipMovingWithTheBodyHasNoForce) {
+TEST(Probe, BondedTipMovingWithBodyHasNoForce) {
   const Mat3d quarter_turn = {0, 1, 0, -1, 0, 0, 0, 0, 1};  // about z
   for (const Case& c : {kCases[0], kCases[1]}) {
     const auto V = probe(c);

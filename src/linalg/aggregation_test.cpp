@@ -67,7 +67,7 @@ Aggregates valid_aggregates(const AggregationInput& in) {
   return aggregates;
 }
 
-TEST(Aggregation, OfBoxHasCompactPartsOfTheRequestedSize) {
+TEST(Aggregation, BoxHasCompactPartsOfRequestedSize) {
   const Matrix H = spring_lattice({.nx = 15, .ny = 11, .nz = 11});
   const Graph graph = graph_of(*H.pattern);
   for (const int size : {8, 48}) {

@@ -142,7 +142,7 @@ TEST(Cholesky, RefusesAFactorThatDoesNotFit) {
   EXPECT_FALSE(roomy.refused());
 }
 
-TEST(Cholesky, CostOfFullMatrixIsThatOfDenseCholesky) {
+TEST(Cholesky, CostOfFullMatrixMatchesDenseCholesky) {
   constexpr int kRows = 60, kSize = 3 * kRows;
   Couplings all;
   for (int i = 0; i < kRows; ++i)
