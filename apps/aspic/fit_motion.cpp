@@ -219,7 +219,7 @@ mass, stiffness and viscosity of damping), velocity, angular_velocity (three num
 
 Files: fitted.toml (the scene with the fitted values), fit.json, residuals.csv, fit.svg (needs gnuplot).
 
-Exit codes: 0 done, 2 bad input, 3 not converged, 4 --time-limit came first, 130 interrupted by ctrl-C, 143 by kill:
+Exit codes: 0 done, 2 bad input, 3 not converged, 4 --time-limit came first, 130 interrupted by Ctrl-C, 143 by kill:
 the best values so far are written.)");
   command->add_option("SCENE", arguments->scene, "Scene (.toml) or mesh")->required();
   command->add_option("POSITIONS", arguments->positions, "Table of marker positions (.csv)")->required();
