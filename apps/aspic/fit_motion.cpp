@@ -64,9 +64,8 @@ void print_table(const MotionFitReport& report, bool has_sigma) {
   fmt::print("root mean square distance {:.4g} m before, {:.4g} m after\n", report.before.rms, report.after.rms);
   if (has_sigma && report.chi_squared > kLargeChiSquared)
     fmt::print(
-        "residuals are {:.3g} times the stated sigma, and so are the standard deviations: the model does not explain "
-        "the "
-        "motion (check mesh, fitted parameters and markers)\n",
+        "residuals are {:.3g} times the stated sigma, and standard deviations are multiplied by this factor: the model "
+        "does not explain the motion (check mesh, fitted parameters and markers)\n",
         std::sqrt(report.chi_squared));
   fmt::print("{} after {} iterations, {} simulations, {} gradients\n",
              report.stopped ? "stopped" : std::string(to_string(report.status)), report.iterations, report.simulations,

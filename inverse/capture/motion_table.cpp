@@ -12,6 +12,7 @@
 #include "capture/units.h"
 #include "fit/formatted.h"
 #include "io/csv_reader.h"
+#include "mesh/box.h"
 #include "scene/value.h"
 
 namespace aspic {
@@ -100,13 +101,7 @@ class TableReader {
 class Attachment {
  public:
   Attachment(const MotionTable& table, const TetMesh& mesh, const State& start, double h)
-      : table_(table), body_(at_start(mesh, start)), surface_(body_), time_(start.time), h_(h) {
-    Vec3d low = body_.rest[0], high = low;
-    for (const Vec3d& x : body_.rest)
-      for (int axis = 0; axis < 3; ++axis)
-        low[axis] = std::min(low[axis], x[axis]), high[axis] = std::max(high[axis], x[axis]);
-    size_ = length(high - low);
-  }
+      : table_(table), body_(at_start(mesh, start)), surface_(body_), time_(start.time), h_(h), size_(size_of(body_)) {}
 
   MotionData attach(std::vector<std::string>& notes) {
     MotionData data{.has_sigma = table_.has_sigma};
@@ -144,7 +139,6 @@ class Attachment {
       for (int axis = 0; axis < 3; ++axis) body.rest[v][axis] = start.q[3 * v + axis];
     return body;
   }
-  static double length(const Vec3d& v) { return std::sqrt(dot(v, v)); }
   std::string where(const MotionRow& row) const { return table_.file + ":" + std::to_string(row.line); }
 
   void refuse_time(const MotionRow& row, bool is_early) {
@@ -177,7 +171,7 @@ class Attachment {
   const MotionTable& table_;
   TetMesh body_;
   SurfaceProjection surface_;
-  double time_, h_, size_ = 0;
+  double time_, h_, size_;
   ErrorList errors_;
 };
 

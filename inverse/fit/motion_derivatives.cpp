@@ -22,8 +22,8 @@ double MotionParameters::derivative(const Entry& entry, double slope, std::span<
     for (size_t t = 0; t < values.size(); ++t) sum += values[t] * derivatives[t];
     return sum;
   }
-  for (size_t v = 0; v < g.qdot.size() / 3; ++v) {
-    const Vec3d dv{{g.qdot[3 * v], g.qdot[3 * v + 1], g.qdot[3 * v + 2]}};
+  for (int v = 0; v < static_cast<int>(g.qdot.size() / 3); ++v) {
+    const Vec3d dv = point(g.qdot, v);
     sum += kind == Kind::velocity ? dv[entry.axis] : cross(arm(v), dv)[entry.axis];
   }
   return slope * sum;

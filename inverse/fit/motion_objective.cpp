@@ -7,6 +7,8 @@
 #include "base/error.h"
 #include "fit/columns.h"
 #include "fit/scaled_inverse.h"
+#include "math/vectors.h"
+#include "mesh/box.h"
 
 namespace aspic {
 namespace {
@@ -16,8 +18,6 @@ constexpr double kFloor = 1e-7;       // eigenvalue of the scaled J'J: weaker co
 constexpr double kLargestMove = 1;    // of p in one iteration
 constexpr double kAtStep = 1e-6;      // of a time step: samples this close to a step are at the step
 constexpr double kSteps = 1e6;        // maximum number
-
-double squared_length(const Vec3d& v) { return dot(v, v); }
 
 Vec3d point_at(const SurfacePoint& marker, const State& state) {
   Vec3d x{};
@@ -35,13 +35,9 @@ MotionScales scales_of(const MotionModel& model, const MotionData& data, double 
     const Vec3d path =
         sample.position - data.offset[sample.marker] - point_at(data.markers[sample.marker], model.start);
     scales.duration = std::max(scales.duration, time);
-    scales.speed = std::max(scales.speed, std::sqrt(dot(path, path)) / time);
+    scales.speed = std::max(scales.speed, norm(path) / time);
   }
-  Vec3d low = model.model.mesh.rest[0], high = low;
-  for (const Vec3d& X : model.model.mesh.rest)
-    for (int axis = 0; axis < 3; ++axis)
-      low[axis] = std::min(low[axis], X[axis]), high[axis] = std::max(high[axis], X[axis]);
-  scales.size = std::sqrt(dot(high - low, high - low));
+  scales.size = size_of(model.model.mesh);
   return scales;
 }
 
@@ -75,8 +71,8 @@ MotionObjective::MotionObjective(MotionModel model, MotionData data, const std::
     const double whole = std::abs(steps - std::round(steps)) < kAtStep ? std::round(steps) : std::floor(steps);
     places_.push_back({static_cast<int>(whole), std::max(0.0, steps - whole) < kAtStep ? 0 : steps - whole});
     const Vec3d path = sample.position - data_.offset[sample.marker] - point_at(data_.markers[sample.marker], start);
-    square += squared_length(path);
-    resting_ += squared_length(path) / (2 * sample.sigma * sample.sigma);
+    square += squared_norm(path);
+    resting_ += squared_norm(path) / (2 * sample.sigma * sample.sigma);
   }
   travel_ = std::sqrt(square / static_cast<double>(places_.size()));
   options_.steps = places_.back().step + (places_.back().next > 0 ? 1 : 0);
@@ -117,8 +113,8 @@ void MotionObjective::finish(MotionPoint& result) const {
     const MotionSample& measured = data_.samples[s];
     result.simulated[s] = result.simulated[s] + data_.offset[measured.marker];
     const Vec3d residual = result.simulated[s] - measured.position;
-    square += squared_length(residual);
-    result.value += squared_length(residual) / (2 * measured.sigma * measured.sigma);
+    square += squared_norm(residual);
+    result.value += squared_norm(residual) / (2 * measured.sigma * measured.sigma);
   }
   result.rms = std::sqrt(square / static_cast<double>(result.simulated.size()));
 }
@@ -163,7 +159,7 @@ bool MotionObjective::linearize(const MotionPoint& at) {
     double square = 0;
     for (size_t s = 0; ahead.ok && s < data_.samples.size(); ++s) {
       const Vec3d rate = 1 / move * (ahead.simulated[s] - at.simulated[s]);
-      square += squared_length(rate);
+      square += squared_norm(rate);
       for (int axis = 0; axis < 3; ++axis) J[i][3 * s + axis] = rate[axis] / data_.samples[s].sigma;
     }
     held_[i] = std::sqrt(square / static_cast<double>(data_.samples.size())) <= kInsensitive * travel_;
@@ -197,9 +193,7 @@ void MotionObjective::note_iterate(std::span<const double> x) {
 }
 
 double MotionObjective::max_step(std::span<const double>, std::span<const double> d) {
-  double largest = 0;
-  for (const double di : d) largest = std::max(largest, std::abs(di));
-  return kLargestMove / std::max(largest, 1e-300);
+  return kLargestMove / std::max(max_abs(d), 1e-300);
 }
 
 bool MotionObjective::precondition(std::span<const double> r, std::span<double> z) {

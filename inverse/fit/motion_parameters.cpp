@@ -28,10 +28,6 @@ double mean(const std::vector<double>& values, const std::vector<double>& volume
   return sum / total;
 }
 
-Vec3d node(std::span<const double> x, size_t vertex) { return {{x[3 * vertex], x[3 * vertex + 1], x[3 * vertex + 2]}}; }
-
-double speed_of(const Vec3d& v) { return std::sqrt(dot(v, v)); }
-
 }  // namespace
 
 std::vector<std::string> MotionParameters::names() {
@@ -49,8 +45,8 @@ MotionParameters::MotionParameters(MotionModel model, const std::vector<std::str
   material_.assign(material.begin(), material.end());
   density_ = m.density;
   for (int t = 0; t < m.mesh.tet_count(); ++t) volume_.push_back(volume(m.mesh, t));
-  for (size_t v = 0; v < m.mass->vertex_mass().size(); ++v)
-    center_ = center_ + m.mass->vertex_mass()[v] / m.mass->total() * node(model_.start.q, v);
+  for (int v = 0; v < m.mesh.vertex_count(); ++v)
+    center_ = center_ + m.mass->vertex_mass()[v] / m.mass->total() * point(model_.start.q, v);
   if (names.empty()) throw InvalidInput("no parameter to fit is given" + suggestion("", MotionParameters::names()));
   for (size_t i = 0; i < names.size(); ++i) {
     if (std::find(names.begin(), names.begin() + i, names[i]) != names.begin() + i)
@@ -90,10 +86,10 @@ void MotionParameters::add(const std::string& name, const MotionScales& scales) 
     add_positive(Kind::viscosity, {name, "Pa s", viscosity, "young * time step"});
     model_.viscosity.assign(volume_.size(), viscosity);
   } else if (name == "velocity") {
-    const double speed = std::max(scales.speed, speed_of(guess.velocity));
+    const double speed = std::max(scales.speed, norm(guess.velocity));
     add_vector(Kind::velocity, {name, "m/s"}, guess.velocity, speed > 0 ? speed : 1);
   } else if (name == "angular_velocity") {
-    const double speed = std::max(scales.speed / scales.size, speed_of(guess.angular_velocity));
+    const double speed = std::max(scales.speed / scales.size, norm(guess.angular_velocity));
     add_vector(Kind::angular_velocity, {name, "rad/s"}, guess.angular_velocity, speed > 0 ? speed : 1);
   } else {
     throw InvalidInput("unknown parameter '" + name + "'" + suggestion(name, names()));
@@ -184,13 +180,13 @@ std::vector<double> MotionParameters::viscosity(std::span<const double> p) const
   return viscosity;
 }
 
-Vec3d MotionParameters::arm(size_t vertex) const { return node(model_.start.q, vertex) - center_; }
+Vec3d MotionParameters::arm(int vertex) const { return point(model_.start.q, vertex) - center_; }
 
 State MotionParameters::start(std::span<const double> p) const {
   State start = model_.start;
   const Vec3d v = vector(Kind::velocity, p, model_.velocity) - model_.velocity;
   const Vec3d w = vector(Kind::angular_velocity, p, model_.angular_velocity) - model_.angular_velocity;
-  for (size_t i = 0; i < start.qdot.size() / 3; ++i) {
+  for (int i = 0; i < static_cast<int>(start.qdot.size() / 3); ++i) {
     const Vec3d change = v + cross(w, arm(i));
     for (int axis = 0; axis < 3; ++axis) start.qdot[3 * i + axis] += change[axis];
   }

@@ -86,7 +86,7 @@ class MotionParameters {
   double derivative(const Entry& entry, double slope, std::span<const double> p, const TrajectoryGradient& g) const;
   double material_derivative(const Entry& entry, double slope, std::span<const double> p,
                              const TrajectoryGradient& g) const;
-  Vec3d arm(size_t vertex) const;  // from the center of mass, at the start
+  Vec3d arm(int vertex) const;  // from the center of mass, at the start
 
   MotionModel model_;
   std::vector<MaterialParameters> material_;
