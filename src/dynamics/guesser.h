@@ -37,7 +37,9 @@ class Guesser {  // holds the scratch vectors
   // Writes the candidate to trial_. Returns false if it does not exist.
   bool propose(const StepTools& tools, InitialGuess candidate, const GuessContext& known);
 
-  std::vector<double> trial_;
+  void stop_at_contact(const StepTools& tools, std::span<const double> from);
+
+  std::vector<double> trial_, path_;
 };
 
 }  // namespace aspic

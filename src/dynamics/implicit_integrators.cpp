@@ -2,6 +2,7 @@
 #include <algorithm>
 
 #include "dynamics/implicit_stage.h"
+#include "dynamics/lagged.h"
 #include "dynamics/lead_pins.h"
 #include "dynamics/runge_kutta.h"
 #include "dynamics/runge_kutta_tables.h"
@@ -89,11 +90,8 @@ class QuasiStatic : public Integrator {
     MinimizeReport lead;
     const Guess guess = guesser_.guess(tools, tools.guess, {start.q, start.qdot, 0, tools.end_time}, end.q, lead);
     solve.guess = guess.used;
-    const MinimizeReport report =
-        tools.minimizer.minimize(tools.E, tools.direction, {end.q, guess.value}, tools.options, tools.observe);
-    solve.add(report);
+    solve.add(minimize_lagged(tools, tools.options, {end.q, guess.value}, solve));
     add_work(lead, solve.work);
-    solve.decrement = report.decrement;
     std::fill(end.qdot.begin(), end.qdot.end(), 0.0);
     forces.add(tools.E, 1, end.q, {}, solve.work);
     forces.add_bounds(tools, Asked::residual, 1, end.q);

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "dynamics/lagged.h"
 #include "dynamics/lead_pins.h"
 
 namespace aspic {
@@ -14,10 +15,6 @@ MinimizeOptions one_iteration(const MinimizeOptions& options) {
   one.line_search.test = DecreaseTest::none;
   one.line_search.alpha_max = 1;
   return one;
-}
-
-void note_end(const IncrementalPotential& E, const MinimizeReport& report, StepSolve& solve) {
-  solve.decrement = std::max(solve.decrement, report.decrement / E.scales().gradient_unit);
 }
 
 }  // namespace
@@ -61,7 +58,7 @@ MinimizeReport ImplicitStage::minimize(const StepTools& tools, const StageOption
     MinimizeReport report = tools.minimizer.minimize(tools.E, tools.direction, q_, minimize, tools.observe);
     // The scheme takes one iteration, whatever the gradient is; the residual is in the report.
     if (report.status == Status::iteration_limit) report.status = Status::converged;
-    note_end(tools.E, report, solve);
+    solve.decrement = std::max(solve.decrement, report.decrement / tools.E.scales().gradient_unit);
     return report;
   }
   MinimizeReport lead;
@@ -74,9 +71,7 @@ MinimizeReport ImplicitStage::minimize(const StepTools& tools, const StageOption
                            .tries_last_increment = options.tries_last_increment};
   const Guess guess = guesser_.guess(tools, tools.guess, known, q_, lead);
   solve.guess = guess.used;
-  MinimizeReport report =
-      tools.minimizer.minimize(tools.E, tools.direction, {q_, guess.value}, minimize, tools.observe);
-  note_end(tools.E, report, solve);
+  MinimizeReport report = minimize_lagged(tools, minimize, {q_, guess.value}, solve);
   add_work(lead, report);
   return report;
 }

@@ -124,6 +124,13 @@ void IncrementalPotential::begin_step(std::span<const double> predicted, double 
   gradient_round_off_ = 0;  // known after the first Hessian
 }
 
+bool IncrementalPotential::update_lagged(std::span<const double> q) {
+  bool any = false;
+  for (ActiveTerm& D : damping_) any |= D.update_lagged(q);
+  if (any) iterate_.clear();  // the forces known there are those of the earlier coefficients
+  return any;
+}
+
 Evaluation IncrementalPotential::evaluate(std::span<const double> q) {
   double E = 0, magnitude = factor_ * growth_stiffness_;
   const auto add = [&](double term) { E += term, magnitude += std::abs(term); };
@@ -289,7 +296,7 @@ const BlockSparse& IncrementalPotential::metric() {
 
 double IncrementalPotential::max_step(std::span<const double> q, std::span<const double> d) {
   double alpha = std::numeric_limits<double>::infinity();
-  for (const ActiveTerm& V : potential_) alpha = std::min(alpha, V.energy().max_step(q, d));
+  for (const ActiveTerm& V : potential_) alpha = std::min(alpha, V.max_step(q, d));
   return alpha;
 }
 

@@ -74,9 +74,19 @@ bool Guesser::propose(const StepTools& tools, InitialGuess candidate, const Gues
   return true;
 }
 
+// Shortens the path from `from` to the candidate where bodies would touch.
+void Guesser::stop_at_contact(const StepTools& tools, std::span<const double> from) {
+  if (!tools.model.contact) return;
+  path_.resize(trial_.size());
+  for (size_t i = 0; i < path_.size(); ++i) path_[i] = trial_[i] - from[i];
+  const double step = tools.E.max_step(from, path_);
+  if (step >= 1) return;
+  for (size_t i = 0; i < path_.size(); ++i) trial_[i] = from[i] + step * path_[i];
+}
+
 Guess Guesser::guess(const StepTools& tools, InitialGuess wanted, const GuessContext& known, std::span<double> q,
                      MinimizeReport& work) {
-  const bool is_other = wanted != InitialGuess::best && wanted != InitialGuess::current;
+  const bool is_other = wanted != InitialGuess::best && wanted != InitialGuess::current && !tools.model.contact;
   if (is_other && propose(tools, wanted, known)) {
     const Evaluation value = tools.E.evaluate(trial_);
     ++work.values;
@@ -89,9 +99,12 @@ Guess Guesser::guess(const StepTools& tools, InitialGuess wanted, const GuessCon
   std::copy(known.q.begin(), known.q.end(), q.begin());
   Guess best = {InitialGuess::current, lead_pins(tools, known.time, known.q, q, work)};
   if (wanted == InitialGuess::current) return best;
+  if (tools.model.contact && !std::isfinite(best.value.value)) return best;  // pins are where no free path leads
   for (const InitialGuess candidate : kAhead) {
     if (candidate == InitialGuess::last_increment && !known.tries_last_increment) continue;
+    if (tools.model.contact && wanted != InitialGuess::best && wanted != candidate) continue;
     if (!propose(tools, candidate, known)) continue;
+    stop_at_contact(tools, q);
     const Evaluation value = tools.E.evaluate(trial_);
     ++work.values;
     // Skips a body at rest. The comparison is false for NaN.

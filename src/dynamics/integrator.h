@@ -58,7 +58,8 @@ struct StepForces {
 // The solves of a step: counts are sums over its stages, the status is the worst one.
 struct StepSolve {
   MinimizeReport work = {.status = Status::converged};
-  double decrement = 0;  // maximum over the stages [J]
+  double decrement = 0;  // maximum over the minimizations [J]
+  int passes = 0;        // minimizations until lagged coefficients settled, maximum over the stages
   InitialGuess guess = InitialGuess::none;
 
   // Returns false if the step cannot continue from this stage.

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <vector>
 
 namespace aspic {
@@ -17,6 +18,14 @@ MinimizeOptions rough(const MinimizeOptions& options) {
   few.tolerance = 1e-2;
   few.stop = options.stop.without_deadline();  // a step needs a start
   return few;
+}
+
+// Returns whether the straight path from x to y is free of contact.
+bool is_free(const StepTools& tools, std::span<const double> x, std::span<const double> y) {
+  if (!tools.model.contact) return true;
+  std::vector<double> d(y.begin(), y.end());
+  for (size_t i = 0; i < d.size(); ++i) d[i] -= x[i];
+  return tools.E.max_step(x, d) >= 1;
 }
 
 }  // namespace
@@ -35,7 +44,7 @@ Evaluation lead_pins(const StepTools& tools, double time, std::span<const double
   tools.pins.place(time, q);
   const Evaluation at_once = tools.E.evaluate(q);
   ++work.values;
-  if (std::isfinite(at_once.value)) return at_once;
+  if (std::isfinite(at_once.value) && is_free(tools, from, q)) return at_once;
   const std::vector<double> to(q.begin(), q.end());
 
   std::vector<double> reached(from.begin(), from.end()), trial = reached, between = reached;
@@ -47,7 +56,7 @@ Evaluation lead_pins(const StepTools& tools, double time, std::span<const double
     tools.pins.copy_held(between, trial);
     const Evaluation there = tools.E.evaluate(trial);
     ++work.values;
-    if (!std::isfinite(there.value)) {
+    if (!std::isfinite(there.value) || !is_free(tools, reached, trial)) {
       part /= 2;
       continue;
     }
@@ -63,7 +72,7 @@ Evaluation lead_pins(const StepTools& tools, double time, std::span<const double
     if (spent.status == Status::interrupted) break;
     part *= 2;
   }
-  return at_once;
+  return tools.model.contact ? Evaluation{std::numeric_limits<double>::infinity()} : at_once;
 }
 
 }  // namespace aspic

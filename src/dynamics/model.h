@@ -14,6 +14,8 @@
 
 namespace aspic {
 
+class Barrier;
+
 // A part of the mesh: vertices and tets of a body are consecutive.
 struct BodyRange {
   std::string name;
@@ -47,6 +49,7 @@ struct Model {
   std::vector<std::unique_ptr<Energy>> loads;              // the other terms of V: gravity, springs, tractions
   std::vector<std::unique_ptr<Energy>> damping;            // incremental potentials that dissipate
   std::vector<Pin> pins;
+  const Barrier* contact = nullptr;  // among the loads; null: bodies pass through each other
 };
 
 }  // namespace aspic

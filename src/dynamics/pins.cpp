@@ -6,17 +6,12 @@
 
 #include "base/check.h"
 #include "base/parallel.h"
+#include "math/vectors.h"
 
 namespace aspic {
 namespace {
 
 constexpr double kLeastSine = 1e-6;  // smallest sine of the angle between a direction and the span of the others
-
-Vec3d vec_at(std::span<const double> x, int vertex) { return {{x[3 * vertex], x[3 * vertex + 1], x[3 * vertex + 2]}}; }
-
-void set_vec(const Vec3d& value, int vertex, std::span<double> x) {
-  for (int r = 0; r < 3; ++r) x[3 * vertex + r] = value[r];
-}
 
 Mat3d projector(std::span<const Vec3d> directions) {  // for orthonormal ones
   Mat3d sum{};
@@ -155,6 +150,20 @@ void Pins::set_identity(BlockSparse& H) const {
     for (int i = first; i < last; ++i)
       if (!is_free(i)) H.block[pattern.diagonal(i)] = with_identity(i, H.block[pattern.diagonal(i)]);
   });
+  for (Stencil& stencil : H.stencils) set_zero(stencil);
+}
+
+// K = Q K Q for the blocks of a stencil, whose pinned rows leave it.
+void Pins::set_zero(Stencil& stencil) const {
+  for (int i = 1, k = 0; i < 4; ++i)
+    for (int j = 0; j < i; ++j, ++k) {
+      if (stencil.row[i] < 0 || stencil.row[j] < 0) continue;
+      Mat3d& K = stencil.block[k];
+      if (kind_[stencil.row[i]] >= 0) K = K - projector_[kind_[stencil.row[i]]] * K;
+      if (kind_[stencil.row[j]] >= 0) K = K - K * projector_[kind_[stencil.row[j]]];
+    }
+  for (int& row : stencil.row)
+    if (row >= 0 && holds(row)) row = -1;
 }
 
 }  // namespace aspic

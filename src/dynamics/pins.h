@@ -39,6 +39,7 @@ class Pins {
   };
 
   void add_directions();
+  void set_zero(Stencil& stencil) const;
 
   const std::vector<Pin>* pins_;
   std::vector<double> start_;

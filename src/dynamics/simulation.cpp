@@ -7,6 +7,8 @@
 
 #include "base/error.h"
 #include "base/stopwatch.h"
+#include "contact/barrier.h"
+#include "contact/friction.h"
 #include "dynamics/adaptive_step.h"
 #include "dynamics/integrator.h"
 #include "dynamics/ledger.h"
@@ -41,6 +43,9 @@ struct Simulation::Impl {
     if (!integrator->facts().is_static()) require_mass(model, *pins);
     pins->place(state.time, state.q);
     require_finite_energy(model, state.q);
+    require_apart(model, state.q, integrator->facts());
+    if (model.contact && options.adaptive.tolerance > 0)
+      throw InvalidInput("contact needs steps of one length; remove adaptive.tolerance and choose a smaller step");
     if (!integrator->facts().is_static()) integrator->set_pin_velocity(*pins, options.h, state);
     if (options.adaptive.tolerance > 0) adaptive.emplace(model, options.adaptive.tolerance, remembers());
     ledger.begin(model, state.q);
@@ -86,6 +91,7 @@ struct Simulation::Impl {
       }
       if (!integrator->facts().is_implicit) outside_work += outside_work_of(report);
       note_lost_velocity(with, report);
+      note_friction(report);
       if (!is_finite(report)) {
         if (is_success(report.status)) report.status = Status::undefined;
         take_back(with, with.end_time, report);
@@ -144,6 +150,14 @@ struct Simulation::Impl {
     return reached > kBlownUp * allowed;
   }
 
+  void note_friction(StepReport& report) const {
+    if (!model.contact) return;
+    std::vector<double> force(state.q.size());
+    for (const ActiveTerm& D : E->damping())
+      if (dynamic_cast<const Friction*>(&D.energy())) D.add_gradient(state.q, 1, force);
+    for (size_t i = 0; i < force.size(); ++i) report.friction_loss += force[i] * (state.q[i] - before.q[i]);
+  }
+
   // Velocities are differences of rounded positions.
   void note_lost_velocity(const StepTools& with, StepReport& report) const {
     if (!integrator->facts().is_implicit || integrator->facts().is_static() || !is_success(report.status)) return;
@@ -192,6 +206,12 @@ struct Simulation::Impl {
 
   void describe_state(StepReport& report) const {
     report.time = state.time;
+    if (model.contact) {
+      const ContactSummary contact = model.contact->summary(state.q);
+      report.contacts = contact.contacts;
+      report.min_gap = contact.contacts > 0 ? contact.min_gap : 0;
+      report.max_pressure = contact.max_pressure;
+    }
     report.min_det_F = INFINITY;
     for (const auto& V : model.elasticity) report.min_det_F = std::min(report.min_det_F, V->min_det_F(state.q));
     report.state_hash = state_hash(state, model.numbering.vertex);
@@ -208,6 +228,7 @@ struct Simulation::Impl {
     report.objective = solved.work.value;
     report.objective_gradient = solved.work.gradient_norm;
     report.decrement = solved.decrement;
+    report.friction_passes = solved.passes;
     report.lost_accuracy = solved.work.lost_accuracy;
     report.initial_guess = solved.guess;
   }

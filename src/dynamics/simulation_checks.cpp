@@ -2,8 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 
 #include "base/error.h"
+#include "contact/barrier.h"
+#include "mesh/self_intersection.h"
 
 namespace aspic {
 namespace {
@@ -12,6 +15,12 @@ std::string listed(const std::vector<int>& indices) {
   std::string text;
   for (size_t i = 0; i < std::min<size_t>(indices.size(), 5); ++i) text += (i ? ", " : "") + std::to_string(indices[i]);
   return text + (indices.size() > 5 ? ", ..." : "");
+}
+
+std::string coordinates(const Vec3d& x) {
+  char text[100];
+  std::snprintf(text, sizeof text, "%.4g, %.4g, %.4g", x[0], x[1], x[2]);
+  return text;
 }
 
 std::string joined(const std::vector<std::string>& names) {
@@ -69,6 +78,38 @@ void require_finite_energy(const Model& model, std::span<const double> x) {
     throw InvertedStart("the initial shape has infinite energy: " + std::to_string(inverted.size()) +
                         " tets are inverted or flat (" + listed(model.numbering.tet.to_user(inverted)) + ")");
   }
+}
+
+void require_apart(const Model& model, std::span<const double> x, const IntegratorFacts& integrator) {
+  if (!model.contact) return;
+  if (!integrator.is_implicit || integrator.takes_one_iteration || integrator.ends_beyond_minimum)
+    throw InvalidInput("contact needs an integrator that minimizes and ends at the minimum, not '" +
+                       std::string(integrator.name) + "'; choose backward_euler, or quasi_static for equilibria");
+  const ContactMesh& contact = model.contact->mesh();
+  TriMesh surface{contact.rest, contact.triangles};
+  for (int p = 0; p < contact.point_count(); ++p)
+    if (contact.row[p] >= 0) surface.vertices[p] = point(x, contact.row[p]);
+  const auto part_of = [&](int triangle) { return contact.parts[contact.part[contact.triangles[triangle][0]]].name; };
+  const SelfIntersections found = self_intersections(surface, 1000);
+  if (!found.pairs.empty()) {
+    const auto [s, t] = found.pairs.front();
+    const Vec3d& at = surface.vertices[contact.triangles[s][0]];
+    throw InvalidInput("surfaces intersect in the initial state: " + part_of(s) + " and " + part_of(t) + " near (" +
+                       coordinates(at) + ") m, " + std::to_string(found.pairs.size()) +
+                       (found.is_complete ? "" : " or more") + " pairs of triangles; move them apart");
+  }
+  for (const ContactPlane& plane : contact.planes)
+    for (int p = 0; p < contact.point_count(); ++p)
+      if (contact.row[p] >= 0 && !(dot(plane.normal, surface.vertices[p] - plane.origin) > 0))
+        throw InvalidInput("body '" + contact.parts[contact.part[p]].name + "' starts behind the plane '" +
+                           contact.parts[plane.part].name + "', at vertex " +
+                           std::to_string(model.numbering.vertex.to_user(contact.row[p])) + "; move it");
+  if (const int p = model.contact->self_touching_point(); p >= 0)
+    throw InvalidInput("body '" + contact.parts[contact.part[p]].name + "' touches itself at rest, at vertex " +
+                       std::to_string(model.numbering.vertex.to_user(contact.row[p])) +
+                       "; merge the coincident vertices (aspic check MESH --repair) or leave a gap");
+  if (!std::isfinite(model.contact->value(x, {})))
+    throw InvalidInput("surfaces touch in the initial state; leave a gap between them");
 }
 
 std::optional<SolverConflict> find_conflict(const SimulationOptions& options) {

@@ -150,6 +150,13 @@ std::vector<StepField>& fields() {
       real<&R::worst_residual>({"worst_residual", "N", "its residual"}, kJson),
       real<&R::min_det_F>({"min_det_F", "1", "smallest volume ratio of any tet; negative: inverted"}, kMeasured),
       real<&R::kinetic>({"kinetic", "J", "kinetic energy"}, kMeasured),
+      optional(count<&R::contacts>({"contacts", "", "pairs of surface features in contact"}, kMeasured)),
+      optional(real<&R::min_gap>({"min_gap", "m", "smallest distance between surfaces in contact; 0 without contacts"},
+                                 kMeasured)),
+      optional(real<&R::max_pressure>({"max_pressure", "Pa", "largest contact pressure"}, kMeasured)),
+      optional(real<&R::friction_loss>({"friction_loss", "J", "share of friction in `damping_loss`"}, kMeasured)),
+      optional(count<&R::friction_passes>(
+          {"friction_passes", "", "minimizations until the normal forces of friction settled"}, kCount)),
       {"potential", "J", "energy of each term of V; a dead load has -f . x, not zero at rest",
        StepFieldType::potentials, kTable | kJson | kViewer},
       real<&R::potential_total>({"potential_total", "J", "sum of the potential energies"}, kTable | kFrame | kJson),

@@ -2,7 +2,6 @@
 #pragma once
 #include <cstdint>
 #include <functional>
-#include <limits>
 #include <string>
 #include <vector>
 
@@ -54,6 +53,13 @@ struct StepReport : Work {  // of all solves of the step and of this report
   double lost_accuracy = 0;       // share of weight, inertia or velocities lost to round-off, if above 1e-3; else 0
   double decrement = 0;           // -g.d / 2 of the last iteration, maximum over solves [J]; 0 without iterations
   double min_det_F = 0;
+
+  // Contact at the end of the step.
+  int contacts = 0;          // pairs of features closer than their reach
+  double min_gap = 0;        // smallest distance of these [m]; 0 without any
+  double max_pressure = 0;   // [Pa]
+  double friction_loss = 0;  // part of damping_loss [J]
+  int friction_passes = 0;  // minimizations until the normal forces settled; 1 without friction, 0 without minimization
 
   // The ledger: kinetic + potential changes by pin_work - damping_loss - numerical_loss + residual_work. [J]
   double kinetic = 0;

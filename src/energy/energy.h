@@ -58,8 +58,11 @@ class Energy {
   // elements.
   virtual int add_hessian(Positions x, const Context& context, double scale, const Projection& projection,
                           BlockSparse& H) const = 0;
-  // Returns an upper bound of the steps alpha for which the term allows x + alpha d.
-  virtual double max_step(Positions /*x*/, std::span<const double> /*d*/) const {
+  // Updates coefficients that lag behind the minimization, such as the normal forces in friction, to their values at
+  // x. Returns whether the term has any.
+  virtual bool update_lagged(Positions /*x*/, Context& /*context*/) const { return false; }
+  // Returns an upper bound of the steps alpha for which the term allows the path from x to x + alpha d.
+  virtual double max_step(Positions /*x*/, const Context& /*context*/, std::span<const double> /*d*/) const {
     return std::numeric_limits<double>::infinity();
   }
 };
@@ -82,6 +85,7 @@ class ActiveTerm {
   ActiveTerm(const Energy& energy, const StepContext& step) : ActiveTerm(energy) { begin_step(step); }
 
   void begin_step(const StepContext& step) { energy_->begin_step(step, *context_); }
+  bool update_lagged(Positions x) { return energy_->update_lagged(x, *context_); }
   const Energy& energy() const { return *energy_; }
   const Energy::Context& context() const { return *context_; }
   std::string_view name() const { return energy_->name(); }
@@ -90,6 +94,7 @@ class ActiveTerm {
   void add_gradient(Positions x, double scale, std::span<double> g) const {
     energy_->add_gradient(x, *context_, scale, g);
   }
+  double max_step(Positions x, std::span<const double> d) const { return energy_->max_step(x, *context_, d); }
   int add_hessian(Positions x, double scale, const Projection& projection, BlockSparse& H) const {
     return energy_->add_hessian(x, *context_, scale, projection, H);
   }

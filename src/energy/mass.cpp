@@ -129,6 +129,7 @@ void MassMatrix::assign_to(double scale, BlockSparse& H) const {
       add_row(i, scale, H);
     }
   });
+  H.stencils.clear();
 }
 
 void add_density_gradient(const TetMesh& mesh, MassKind kind, std::span<const double> w, std::span<const double> y,

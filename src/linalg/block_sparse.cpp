@@ -7,6 +7,7 @@
 #include "base/check.h"
 #include "base/parallel.h"
 #include "math/lanes.h"
+#include "math/vectors.h"
 
 namespace aspic {
 namespace {
@@ -122,6 +123,7 @@ void BlockSparse::set_zero() {
     std::fill(begin + pattern->row_start[first], begin + pattern->row_start[last], Mat3d{});
   };
   parallel_chunks(pattern->rows(), clear_rows);
+  stencils.clear();
 }
 
 void BlockSparse::multiply(std::span<const double> x, std::span<double> y) const {
@@ -152,6 +154,11 @@ void BlockSparse::multiply(std::span<const double> x, std::span<double> y) const
     }
   };
   parallel_for((rows + size - 1) / size, rows_of_task);
+  for (const Stencil& stencil : stencils)
+    for_each_block(stencil, [&](int i, int j, const Mat3d& K) {
+      add_vec(K * vec_at(x, j), i, y);
+      add_vec(transpose(K) * vec_at(x, i), j, y);
+    });
 }
 
 }  // namespace aspic

@@ -1,6 +1,7 @@
 // Symmetric sparse matrices of 3x3 blocks. The pattern is symbolic and shared; the values change.
 // Only the lower triangle is stored: block (r, c) with c <= r stands for block (c, r) as its transpose.
 #pragma once
+#include <array>
 #include <cstdint>
 #include <span>
 #include <utility>
@@ -33,9 +34,25 @@ struct BlockPattern {
 
 BlockPattern make_pattern(int rows, Couplings couplings);  // every diagonal block is included
 
+// A symmetric matrix that couples up to four block rows, such as a pair of surfaces in contact. Its diagonal blocks are
+// added to those of a BlockSparse matrix; the stencil holds the others.
+struct Stencil {
+  std::array<int, 4> row = {-1, -1, -1, -1};  // different; -1: none
+  std::array<Mat3d, 6> block = {};            // (row[i], row[j]) for j < i at i (i - 1) / 2 + j
+};
+
+// Calls visit(i, j, K) for the blocks K = (i, j) of a stencil, i != j. Block (j, i) is K'.
+template <class Visit>
+void for_each_block(const Stencil& stencil, Visit visit) {
+  for (int i = 1, k = 0; i < 4; ++i)
+    for (int j = 0; j < i; ++j, ++k)
+      if (stencil.row[i] >= 0 && stencil.row[j] >= 0) visit(stencil.row[i], stencil.row[j], stencil.block[k]);
+}
+
 struct BlockSparse {
   const BlockPattern* pattern = nullptr;
-  std::vector<Mat3d> block;  // one per entry of pattern->column
+  std::vector<Mat3d> block;       // one per entry of pattern->column
+  std::vector<Stencil> stencils;  // further summands, whose pattern may change
 
   explicit BlockSparse(const BlockPattern& p) : pattern(&p), block(p.block_count()) {}
   void set_zero();

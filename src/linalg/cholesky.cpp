@@ -9,6 +9,7 @@
 #include "base/check.h"
 #include "base/free_memory.h"
 #include "base/parallel.h"
+#include "linalg/conjugate_gradient.h"
 #include "linalg/ordering.h"
 #include "linalg/triangular_solve.h"
 #include "math/pack.h"
@@ -64,6 +65,19 @@ void for_each_block(const BlockPattern& p, const Supernodes& s, int j, Visit vis
 }
 
 std::string megabytes(int64_t bytes) { return std::to_string((bytes + 500'000) / 1'000'000) + " MB"; }
+
+// The factorization as a preconditioner.
+class FactorInverse : public ApproximateInverse {
+ public:
+  explicit FactorInverse(Cholesky& factor) : factor_(factor) {}
+  std::string_view name() const override { return "cholesky"; }
+  void analyze(const BlockPattern&) override {}
+  bool factorize(const BlockSparse&) override { return true; }
+  void apply(std::span<const double> r, std::span<double> z) override { factor_.substitute(r, z); }
+
+ private:
+  Cholesky& factor_;
+};
 
 }  // namespace
 
@@ -155,6 +169,11 @@ bool Cholesky::factorize(const BlockSparse& H) {
   for (size_t i = 0; i < subtrees_.top.size() && definite; ++i)
     definite = factorize_supernode(H, subtrees_.top[i], kernels_.back());
   if (definite) H_ = &H;
+  if (definite && !H.stencils.empty()) {
+    with_stencils_ = std::make_unique<ConjugateGradient>(std::make_unique<FactorInverse>(*this));
+    with_stencils_->analyze(*pattern_);
+    with_stencils_->factorize(H);
+  }
   return definite;
 }
 
@@ -231,6 +250,7 @@ bool Cholesky::pivots_are_sound(const BlockSparse& H, int s, const double* panel
 
 SolveReport Cholesky::solve(std::span<const double> b, std::span<double> x, double tolerance) {
   ASPIC_CHECK(H_ && b.size() == permuted_.size() && x.size() == b.size());
+  if (!H_->stencils.empty()) return with_stencils_->solve(b, x, tolerance);
   SolveReport report;
   substitute(b, x);
   const double b_norm = norm(b);

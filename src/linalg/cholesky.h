@@ -1,6 +1,7 @@
 // Sparse Cholesky H = P' L L' P: multifrontal and supernodal [Duff and Reid 1983; Liu 1992], on blocks of 3.
 #pragma once
 #include <limits>
+#include <memory>
 
 #include "linalg/dense_cholesky.h"
 #include "linalg/elimination.h"
@@ -17,7 +18,8 @@ class Cholesky : public LinearSolver {
   std::string_view name() const override { return "cholesky"; }
   std::string description() const override;
   void analyze(const BlockPattern& pattern) override;
-  // False: H is not positive definite, or the factor does not fit into memory (refused()).
+  // Factorizes H without its stencils. False: H is not positive definite, or the factor does not fit into memory
+  // (refused()).
   bool factorize(const BlockSparse& H) override;
   SolveReport solve(std::span<const double> b, std::span<double> x, double tolerance) override;
 
@@ -57,6 +59,8 @@ class Cholesky : public LinearSolver {
   std::vector<double> workspace_;          // update matrices; in a solve, what is below the columns
   std::vector<int64_t> target_;            // where in L_ each block of H begins
   std::vector<double> permuted_, residual_;
+  // Conjugate gradients for matrices with stencils, preconditioned by the factorization of the matrix without them.
+  std::unique_ptr<LinearSolver> with_stencils_;
 };
 
 }  // namespace aspic

@@ -38,6 +38,7 @@ bool ConjugateGradient::factorize(const BlockSparse& H) {
     first_rate_ = rate_ = 0;
   }
   H_ = is_made_ ? &H : nullptr;
+  if (is_made_ && !correction_.factorize(H)) correction_.drop();  // negative curvature ends the iteration
   return is_made_;
 }
 
@@ -101,7 +102,7 @@ SolveReport ConjugateGradient::solve(std::span<const double> b, std::span<double
 }
 
 void ConjugateGradient::precondition(SolveReport& report) {
-  preconditioner_->apply(r_, z_);
+  correction_.apply(*preconditioner_, r_, z_);
   report.cycles += preconditioner_->is_multigrid();
 }
 

@@ -2,6 +2,7 @@
 #pragma once
 #include "linalg/block_jacobi.h"
 #include "linalg/linear_solver.h"
+#include "linalg/row_correction.h"
 
 namespace aspic {
 
@@ -30,6 +31,7 @@ class ConjugateGradient : public LinearSolver {
   double measure(std::span<const double> b, std::span<const double> x, SolveReport& report);  // r = b - H x; |r|
 
   std::unique_ptr<ApproximateInverse> preconditioner_;
+  RowCorrection correction_;  // for the stencils of H
   int max_iterations_ = 10'000;
   StopToken stop_;
   const BlockSparse* H_ = nullptr;

@@ -3,7 +3,21 @@
 #include <span>
 #include <vector>
 
+#include "math/small.h"
+
 namespace aspic {
+
+// The i-th of consecutive vectors of 3 numbers.
+inline Vec3d vec_at(std::span<const double> x, int i) {
+  const size_t k = 3 * static_cast<size_t>(i);
+  return {{x[k], x[k + 1], x[k + 2]}};
+}
+inline void set_vec(const Vec3d& value, int i, std::span<double> x) {
+  for (int r = 0; r < 3; ++r) x[3 * static_cast<size_t>(i) + r] = value[r];
+}
+inline void add_vec(const Vec3d& value, int i, std::span<double> x) {
+  for (int r = 0; r < 3; ++r) x[3 * static_cast<size_t>(i) + r] += value[r];
+}
 
 double dot(std::span<const double> x, std::span<const double> y);  // requires equal sizes
 double squared_norm(std::span<const double> x);

@@ -1,7 +1,8 @@
-// Binary tree of axis-aligned boxes over items in Morton order. Finds the items whose boxes overlap a box, are near a
-// point, or lie on a ray.
+// Binary tree of axis-aligned boxes over items in Morton order. Finds the items whose boxes overlap a box or those of
+// another tree, are near a point, or lie on a ray.
 #pragma once
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "mesh/box.h"
@@ -13,36 +14,82 @@ class BoxTree {
   explicit BoxTree(std::span<const Box> boxes);
   std::span<const int> items() const { return items_; }  // in Morton order
 
+  // Replaces the boxes of the items and keeps their order. Requires as many boxes as before. Queries stay correct, but
+  // visit more nodes after the items have moved past each other.
+  void refit(std::span<const Box> boxes);
+  // Sum of the sides of all boxes of the tree, relative to that of the items; grows as the order becomes unfit.
+  double looseness() const;
+
   // Calls visit(item) for the items whose box overlaps `box` until it returns false.
   template <class Visit>
   void for_each_overlap(const Box& box, Visit visit) const {
-    if (!items_.empty()) overlap({0, 0, static_cast<int>(items_.size())}, box, visit);
+    if (!items_.empty()) overlap(root(), box, visit);
+  }
+
+  // Calls visit(item, other_item) for the pairs of an item of part `part` of this tree and an item of `other` whose
+  // boxes overlap, until it returns false. The items are in parts of consecutive items, which threads may visit at the
+  // same time.
+  int part_count() const { return static_cast<int>(parts_.size()); }
+  template <class Visit>
+  void for_each_pair(int part, const BoxTree& other, Visit visit) const {
+    if (!other.items_.empty()) pairs<false>(parts_[part], other, other.root(), visit);
+  }
+  // The same for pairs of items of this tree, each visited once for all parts together.
+  template <class Visit>
+  void for_each_own_pair(int part, Visit visit) const {
+    pairs<true>(parts_[part], *this, root(), visit);
   }
 
   // Calls visit(item) for the items whose box has a squared distance of at most `reach` from x, roughly from near to
   // far. `visit` may lower `reach`.
   template <class Visit>
   void for_each_near(const Vec3d& x, const double& reach, Visit visit) const {
-    if (!items_.empty()) near({0, 0, static_cast<int>(items_.size())}, x, reach, visit);
+    if (!items_.empty()) near(root(), x, reach, visit);
   }
 
   // Calls visit(item) for the items whose box the ray enters at a parameter of at most `reach`, which visit may lower.
   template <class Visit>
   void for_each_on_ray(const Vec3d& origin, const Vec3d& direction, const double& reach, Visit visit) const {
-    if (!items_.empty()) along({0, 0, static_cast<int>(items_.size())}, origin, direction, reach, visit);
+    if (!items_.empty()) along(root(), origin, direction, reach, visit);
   }
 
  private:
+  static constexpr int kPart = 64;  // items; enough work for a thread
+  static constexpr int kBlock = 4;  // items of two nodes whose pairs are tested one by one
+
   // A node and its items [begin, end). Its left child follows it; a subtree of n items has 2 n - 1 nodes.
   struct Node {
     int index, begin, end;
-    bool is_leaf() const { return end - begin == 1; }
+    int count() const { return end - begin; }
+    bool is_leaf() const { return count() == 1; }
     int middle() const { return begin + (end - begin) / 2; }
     Node left() const { return {index + 1, begin, middle()}; }
     Node right() const { return {index + 2 * (middle() - begin), middle(), end}; }
   };
 
-  Box bound(Node node, std::span<const Box> boxes);
+  Node root() const { return {0, 0, static_cast<int>(items_.size())}; }
+  void add_parts(Node node);
+  // Bounds the nodes below `node` that have more than `above` items, given those that have fewer.
+  void bound(Node node, std::span<const Box> boxes, int above);
+
+  // Descends the node with more items. A pair of items of one tree is visited where the first one comes earlier.
+  template <bool kIsOwn, class Visit>
+  bool pairs(Node node, const BoxTree& tree, Node other, Visit& visit) const {
+    if (kIsOwn && other.end <= node.begin + 1) return true;
+    if (!bounds_[node.index].overlaps(tree.bounds_[other.index])) return true;
+    if (node.count() <= kBlock && other.count() <= kBlock) return block_pairs<kIsOwn>(node, tree, other, visit);
+    if (node.count() > other.count())
+      return pairs<kIsOwn>(node.left(), tree, other, visit) && pairs<kIsOwn>(node.right(), tree, other, visit);
+    return pairs<kIsOwn>(node, tree, other.left(), visit) && pairs<kIsOwn>(node, tree, other.right(), visit);
+  }
+
+  template <bool kIsOwn, class Visit>
+  bool block_pairs(Node node, const BoxTree& tree, Node other, Visit& visit) const {
+    for (int i = node.begin; i < node.end; ++i)
+      for (int j = kIsOwn ? std::max(other.begin, i + 1) : other.begin; j < other.end; ++j)
+        if (leaves_[i].overlaps(tree.leaves_[j]) && !visit(items_[i], tree.items_[j])) return false;
+    return true;
+  }
 
   template <class Visit>
   bool overlap(Node node, const Box& box, Visit& visit) const {
@@ -72,6 +119,8 @@ class BoxTree {
 
   std::vector<int> items_;
   std::vector<Box> bounds_;  // in preorder
+  std::vector<Box> leaves_;  // of items_
+  std::vector<Node> parts_;  // the largest subtrees of at most kPart items
 };
 
 }  // namespace aspic

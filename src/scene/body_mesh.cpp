@@ -74,28 +74,6 @@ TetMesh box_mesh(const Value& box, const MeshLoader& loader) {
 // A tet of edge length s has the volume s^3 / (6 sqrt 2).
 double tets_in(double volume, double size) { return volume * 6 * std::sqrt(2.0) / (size * size * size); }
 
-TetMesh shape_mesh(const Value& shape, const MeshLoader& loader) {
-  const auto number = [](const Value& table, const char* key) { return table[key].number(); };
-  if (const Value* box = shape.find("box")) return box_mesh(*box, loader);
-  if (const Value* c = shape.find("cylinder")) {
-    const double r = number(*c, "radius"), h = number(*c, "height"), size = number(*c, "size");
-    check_count(tets_in_cylinder(r, h, size), *c, loader);
-    return make_cylinder(r, h, size);
-  }
-  if (const Value* s = shape.find("sphere")) {
-    const double r = number(*s, "radius"), size = number(*s, "size");
-    check_count(tets_in(4.19, size / r), *s, loader);
-    return make_sphere(r, size);
-  }
-  const Value& t = shape["torus"];
-  const double major = number(t, "major_radius"), minor = number(t, "minor_radius"), size = number(t, "size");
-  if (!(minor < major))
-    throw error_at(t["minor_radius"].place,
-                   "minor_radius = " + number_text(minor) + "; must be below major_radius = " + number_text(major));
-  check_count(tets_in_torus(major, minor, size), t, loader);
-  return make_torus(major, minor, size);
-}
-
 bool is_tetgen(const fs::path& path) { return path.extension() == ".node" || path.extension() == ".ele"; }
 
 // Returns the name of a mesh file in the results. A TetGen mesh has two files.
@@ -175,6 +153,28 @@ void check_size(const fs::path& path, const MeshLoader& loader) {
 }
 
 }  // namespace
+
+TetMesh shape_mesh(const Value& shape, const MeshLoader& loader) {
+  const auto number = [](const Value& table, const char* key) { return table[key].number(); };
+  if (const Value* box = shape.find("box")) return box_mesh(*box, loader);
+  if (const Value* c = shape.find("cylinder")) {
+    const double r = number(*c, "radius"), h = number(*c, "height"), size = number(*c, "size");
+    check_count(tets_in_cylinder(r, h, size), *c, loader);
+    return make_cylinder(r, h, size);
+  }
+  if (const Value* s = shape.find("sphere")) {
+    const double r = number(*s, "radius"), size = number(*s, "size");
+    check_count(tets_in(4.19, size / r), *s, loader);
+    return make_sphere(r, size);
+  }
+  const Value& t = shape["torus"];
+  const double major = number(t, "major_radius"), minor = number(t, "minor_radius"), size = number(t, "size");
+  if (!(minor < major))
+    throw error_at(t["minor_radius"].place,
+                   "minor_radius = " + number_text(minor) + "; must be below major_radius = " + number_text(major));
+  check_count(tets_in_torus(major, minor, size), t, loader);
+  return make_torus(major, minor, size);
+}
 
 void MeshLoader::report(const std::string& what) const {
   if (announce) announce(printable(what));

@@ -38,6 +38,8 @@ struct MeshLoader {
 // warnings become notes.
 LoadedMesh load_mesh(const std::filesystem::path& path, double size, MeshLoader& loader);
 
+TetMesh shape_mesh(const Value& shape, const MeshLoader& loader);  // generates one of the table's shapes
+
 struct BodyMesh {
   TetMesh tets;         // the placed rest shape, checked
   TriMesh skin;         // placed alike

@@ -11,6 +11,7 @@
 #include "scene/body_material.h"
 #include "scene/body_notes.h"
 #include "scene/placement.h"
+#include "scene/scene_contact.h"
 #include "scene/schema.h"
 #include "scene/solver_options.h"
 
@@ -187,6 +188,8 @@ class SceneBuilder {
     }
     model_.mass = std::make_unique<MassMatrix>(model_.mesh, model_.density, kind);
     add_actions({bodies_, source_.document.find("gravity")->vector(), kind, files_, source_.notes}, model_);
+    MeshLoader loader = mesh_loader();
+    add_scene_contact(source_.document, loader, model_);
     for (const PlacedBody& body : bodies_) note_parts(body, model_, source_.notes);
   }
 

@@ -4,8 +4,6 @@
 namespace aspic {
 namespace {
 
-const Range kLength{.min = 0, .min_open = true};
-
 void add_body(Schema& s) {
   s.sections.push_back({"body", "[[body]]",
                         "A soft body: its rest mesh, placed by scale, rotate, translate in this order; material; "
@@ -28,20 +26,13 @@ void add_body(Schema& s) {
             {.name = "skin",
              .accepts = kText,
              .meaning = "surface file embedded in the tets, placed like `mesh`; default: the filled surface, or the "
-                        "boundary of the tets"},
-            {.name = "scale",
-             .accepts = kNumber | kNumbers,
-             .fallback = "1.0",
-             .range = kLength,
-             .meaning = "scale factor about the origin",
-             .reason = "the file is in meters"},
-            {.name = "rotate", .accepts = kTable, .table = "rotate", .meaning = "rotation about the origin"},
-            {.name = "translate",
-             .accepts = kNumbers,
-             .unit = "m",
-             .fallback = "[0.0, 0.0, 0.0]",
-             .meaning = "translation",
-             .reason = "stays where it is"},
+                        "boundary of the tets"}});
+  add_placement_keys(s, "body");
+  add_keys(s, "body",
+           {{.name = "friction",
+             .accepts = kNumber,
+             .range = kNotNegative,
+             .meaning = "coefficient of friction in contact; default: contact.friction"},
             {.name = "elastic",
              .accepts = kBoolean,
              .fallback = "true",
@@ -74,7 +65,7 @@ void add_body(Schema& s) {
 void add_shapes(Schema& s) {
   const auto length = [&](const char* section, const char* name, const char* meaning) {
     add_key(s, section,
-            {.name = name, .accepts = kNumber, .unit = "m", .required = true, .range = kLength, .meaning = meaning});
+            {.name = name, .accepts = kNumber, .unit = "m", .required = true, .range = kPositive, .meaning = meaning});
   };
   const auto shape = [&](const char* name, const char* meaning) {
     add_key(s, "shape", {.name = name, .accepts = kTable, .table = name, .meaning = meaning});
@@ -104,7 +95,7 @@ void add_shapes(Schema& s) {
              .accepts = kNumber,
              .unit = "m",
              .required = true,
-             .range = kLength,
+             .range = kPositive,
              .meaning = "approximate edge length"},
             {.name = "cut",
              .accepts = kText,
@@ -169,6 +160,23 @@ void add_placement(Schema& s) {
 }
 
 }  // namespace
+
+void add_placement_keys(Schema& s, const char* section) {
+  add_keys(s, section,
+           {{.name = "scale",
+             .accepts = kNumber | kNumbers,
+             .fallback = "1.0",
+             .range = kPositive,
+             .meaning = "scale factor about the origin",
+             .reason = "the file is in meters"},
+            {.name = "rotate", .accepts = kTable, .table = "rotate", .meaning = "rotation about the origin"},
+            {.name = "translate",
+             .accepts = kNumbers,
+             .unit = "m",
+             .fallback = "[0.0, 0.0, 0.0]",
+             .meaning = "translation",
+             .reason = "stays where it is"}});
+}
 
 void add_body_sections(Schema& s) {
   add_body(s);

@@ -336,6 +336,7 @@ const Schema& scene_schema() {
     add_body_sections(s);
     add_material(s);
     add_action_sections(s);
+    add_contact_sections(s);
     return s;
   }();
   return schema;

@@ -20,7 +20,7 @@ constexpr size_t kLongestLine = size_t{1} << 20;
 constexpr size_t kMostBeyond = 100000;  // limit of the count of excess lines for the message
 
 // Splits a line at its separators.
-std::vector<std::string_view> words_of(std::string_view line) {
+std::vector<std::string_view> split_words(std::string_view line) {
   std::vector<std::string_view> words;
   while (true) {
     const size_t begin = line.find_first_not_of(",; \t\r");
@@ -121,7 +121,7 @@ std::vector<double> read_number_table(const fs::path& path, size_t columns, size
     ++line_number;
     const std::string where = path.string() + ":" + std::to_string(line_number) + ": ";
     if (line.size() > kLongestLine) throw InvalidInput(where + "is too long for a line of a table");
-    const std::vector<std::string_view> words = words_of(line);
+    const std::vector<std::string_view> words = split_words(line);
     if (words.empty() || words[0].starts_with('#')) continue;
     double number = 0;
     const bool is_header = may_be_header && std::isalpha(static_cast<unsigned char>(words[0][0])) &&

@@ -1,0 +1,48 @@
+// The barrier energy of contact [Li 2020; Li 2023]: V = sum of kappa w b(d) over points and the nearest features of the
+// surfaces around them, where w is the area of a point. The constants stay fixed during a run, so that the energy is a
+// function of the positions alone. A guard of shorter reach keeps edges from crossing.
+#pragma once
+#include <memory>
+
+#include "contact/contact_laws.h"
+#include "contact/contact_mesh.h"
+#include "contact/contact_stencil.h"
+#include "energy/energy.h"
+
+namespace aspic {
+
+// What touches at given positions.
+struct ContactSummary {
+  int contacts = 0;                                          // pairs below their reach
+  double min_gap = std::numeric_limits<double>::infinity();  // smallest distance of any two surfaces below reach [m]
+  double max_pressure = 0;                                   // [Pa]
+};
+
+class Barrier : public Energy {
+ public:
+  Barrier(ContactMesh mesh, const ContactOptions& options);
+  ~Barrier() override;
+
+  std::string_view name() const override { return "contact"; }
+  double value(Positions x, const Context& context) const override;
+  void add_gradient(Positions x, const Context& context, double scale, std::span<double> g) const override;
+  int add_hessian(Positions x, const Context& context, double scale, const Projection& projection,
+                  BlockSparse& H) const override;
+  // Returns a step of at most 1 along which no surfaces touch.
+  double max_step(Positions x, const Context& context, std::span<const double> d) const override;
+
+  const ContactMesh& mesh() const;
+  const ContactLaws& laws() const;
+  // Returns a point that has no distance to its own body at rest; -1: there is none.
+  int self_touching_point() const;
+  ContactSummary summary(Positions x) const;
+
+  // The stencils at x with a gap below their reach, in an order that depends on x alone.
+  std::shared_ptr<const std::vector<ContactStencil>> stencils(Positions x) const;
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace aspic

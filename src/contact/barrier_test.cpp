@@ -1,0 +1,179 @@
+#include "contact/barrier.h"
+
+#include <gtest/gtest.h>
+
+#include <random>
+
+#include "contact/barrier_function.h"
+#include "math/vectors.h"
+#include "mesh/generators.h"
+#include "mesh/surface.h"
+
+namespace aspic {
+namespace {
+
+// Two boxes of 0.1 m one above the other, with a gap.
+struct Boxes {
+  TetMesh mesh;
+  std::vector<double> x;
+  std::unique_ptr<Barrier> barrier;
+
+  Boxes(double gap, double shift, double turn) {
+    ContactMesh contact;
+    for (const double z : {0.0, 0.1 + gap}) {
+      TetMesh box = make_box({}, {{0.1, 0.1, 0.1}}, {3, 3, 3});
+      const int first = mesh.vertex_count();
+      std::vector<int> rows;
+      for (Vec3d X : box.rest) {
+        rows.push_back(mesh.vertex_count());
+        if (z > 0) {
+          const double c = std::cos(turn), s = std::sin(turn);
+          X = {{c * X[0] - s * X[1] + shift, s * X[0] + c * X[1] + shift, X[2] + z}};
+        }
+        mesh.rest.push_back(X);
+      }
+      for (Tet t : box.tets) {
+        for (int& v : t) v += first;
+        mesh.tets.push_back(t);
+      }
+      const std::vector<Triangle> surface = boundary_triangles(box, 0, box.tet_count());
+      contact.add({.name = z > 0 ? "upper" : "lower", .young = 1e5}, std::span(mesh.rest).subspan(first), surface,
+                  rows);
+    }
+    for (const Vec3d& X : mesh.rest) x.insert(x.end(), X.a, X.a + 3);
+    barrier = std::make_unique<Barrier>(std::move(contact), ContactOptions{.reach = 2e-3});
+  }
+  double value() const { return barrier->value(x, {}); }
+  std::vector<double> gradient(const std::vector<double>& at) const {
+    std::vector<double> g(at.size());
+    barrier->add_gradient(at, {}, 1, g);
+    return g;
+  }
+  void shake(double size) {
+    std::mt19937 random(3);
+    std::uniform_real_distribution<double> uniform(-size, size);
+    for (double& xi : x) xi += uniform(random);
+  }
+};
+
+TEST(BarrierFunction, DerivativesMatchDifferences) {
+  for (const double gap : {1e-5, 1e-4, 5e-4, 9.9e-4}) {
+    const double e = 1e-4 * gap;
+    const BarrierValue low = barrier(gap - e, 1e-3), b = barrier(gap, 1e-3), high = barrier(gap + e, 1e-3);
+    EXPECT_NEAR(b.first, (high.value - low.value) / (2 * e), 1e-6 * std::abs(b.first) + 1e-7);
+    EXPECT_NEAR(b.second, (high.first - low.first) / (2 * e), 1e-6 * b.second + 1e-6);
+  }
+  EXPECT_EQ(barrier(1e-3, 1e-3).second, 0);
+  EXPECT_TRUE(std::isinf(barrier(0, 1e-3).value));
+}
+
+TEST(Barrier, GradientMatchesDifferences) {
+  for (const double turn : {0.0, 0.3}) {
+    Boxes boxes(4e-4, 0.013, turn);
+    boxes.shake(1e-4);
+    ASSERT_GT(boxes.value(), 0);
+    const std::vector<double> g = boxes.gradient(boxes.x);
+    const double size = max_abs(g);
+    for (size_t i = 0; i < boxes.x.size(); ++i) {
+      if (g[i] == 0) continue;
+      const double e = 1e-9, x = boxes.x[i];
+      boxes.x[i] = x + e;
+      const double high = boxes.value();
+      boxes.x[i] = x - e;
+      const double low = boxes.value();
+      boxes.x[i] = x;
+      EXPECT_NEAR(g[i], (high - low) / (2 * e), 1e-5 * size) << i;
+    }
+  }
+}
+
+TEST(Barrier, ExactHessianMatchesDifferences) {
+  Boxes boxes(4e-4, 0.013, 0.3);
+  boxes.shake(1e-4);
+  const int n = boxes.mesh.vertex_count();
+  const BlockPattern pattern = make_pattern(n, {});
+  BlockSparse H(pattern);
+  boxes.barrier->add_hessian(boxes.x, {}, 1, {}, H);
+  ASSERT_FALSE(H.stencils.empty());
+  std::mt19937 random(5);
+  std::uniform_real_distribution<double> uniform(-1, 1);
+  std::vector<double> v(3 * n), Hv(3 * n), high = boxes.x, low = boxes.x;
+  for (double& vi : v) vi = uniform(random);
+  H.multiply(v, Hv);
+  const double e = 1e-9;
+  add_scaled(e, v, high);
+  add_scaled(-e, v, low);
+  const std::vector<double> g_high = boxes.gradient(high), g_low = boxes.gradient(low);
+  for (int i = 0; i < 3 * n; ++i) EXPECT_NEAR(Hv[i], (g_high[i] - g_low[i]) / (2 * e), 1e-4 * max_abs(Hv)) << i;
+}
+
+TEST(Barrier, ModifiedHessianIsSemidefinite) {
+  Boxes boxes(4e-4, 0.013, 0.3);
+  boxes.shake(1e-4);
+  const BlockPattern pattern = make_pattern(boxes.mesh.vertex_count(), {});
+  std::mt19937 random(5);
+  std::normal_distribution<double> normal;
+  for (const Definiteness kind : {Definiteness::clamped, Definiteness::absolute}) {
+    BlockSparse H(pattern);
+    boxes.barrier->add_hessian(boxes.x, {}, 1, {kind}, H);
+    for (int k = 0; k < 100; ++k) {
+      std::vector<double> v(boxes.x.size()), Hv(v.size());
+      for (double& vi : v) vi = normal(random);
+      H.multiply(v, Hv);
+      EXPECT_GE(dot(v, Hv), -1e-12 * norm(v) * norm(Hv));
+    }
+  }
+}
+
+TEST(Barrier, ForcesBalance) {
+  Boxes boxes(4e-4, 0.013, 0.3);
+  boxes.shake(1e-4);
+  const std::vector<double> g = boxes.gradient(boxes.x);
+  Vec3d force{}, moment{};
+  double size = 0;
+  for (int v = 0; v < boxes.mesh.vertex_count(); ++v) {
+    force = force + vec_at(g, v);
+    moment = moment + cross(vec_at(boxes.x, v), vec_at(g, v));
+    size += norm(vec_at(g, v));
+  }
+  EXPECT_LT(norm(force), 1e-12 * size);
+  EXPECT_LT(norm(moment), 1e-12 * size);
+}
+
+TEST(Barrier, PressureOfFlatSurfacesIsUniform) {
+  const Boxes boxes(1e-3, 0, 0);
+  const std::vector<double> g = boxes.gradient(boxes.x);
+  const ContactMesh& contact = boxes.barrier->mesh();
+  const double pressure = -1e4 * barrier(1e-3, 2e-3).first;  // kappa |b'|
+  for (int p = 0; p < contact.point_count(); ++p) {
+    const Vec3d& X = contact.rest[p];
+    const bool is_on_face = std::abs(X[2] - 0.1) < 2e-3;
+    const bool is_on_border = X[0] < 1e-3 || X[0] > 0.099 || X[1] < 1e-3 || X[1] > 0.099;
+    const Vec3d force = vec_at(g, contact.row[p]);
+    if (is_on_face && !is_on_border) {
+      EXPECT_NEAR(std::abs(force[2]), pressure * contact.area[p], 1e-12);
+    }
+    if (!is_on_face) {
+      EXPECT_EQ(norm(force), 0);
+    }
+  }
+  const ContactSummary summary = boxes.barrier->summary(boxes.x);
+  EXPECT_GT(summary.contacts, 0);
+  EXPECT_NEAR(summary.min_gap, 1e-3, 1e-15);
+}
+
+TEST(Barrier, StepStopsBeforeSurfacesTouch) {
+  Boxes boxes(0.02, 0.013, 0.3);
+  EXPECT_EQ(boxes.value(), 0);
+  std::vector<double> d(boxes.x.size());
+  for (int v = boxes.mesh.vertex_count() / 2; v < boxes.mesh.vertex_count(); ++v) d[3 * v + 2] = -0.1;
+  const double step = boxes.barrier->max_step(boxes.x, {}, d);
+  EXPECT_LT(step, 0.2);
+  EXPECT_GT(step, 0.17);
+  add_scaled(step, d, boxes.x);
+  EXPECT_TRUE(std::isfinite(boxes.value()));
+  EXPECT_GT(boxes.value(), 0);
+}
+
+}  // namespace
+}  // namespace aspic

@@ -1,0 +1,47 @@
+#include "contact/contact_laws.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace aspic {
+namespace {
+
+constexpr double kReach = 1.0 / 50;      // of the mean edge
+constexpr double kStiffness = 1.0 / 10;  // of Young's modulus
+
+// The finer surface integrates: its points sample the pressure between the points of the coarser one.
+double share_of_finer(double own, double other) {
+  if (std::isinf(other)) return 1;
+  const double a = own * own * own, b = other * other * other;
+  return a + b > 0 ? b / (a + b) : 0.5;
+}
+
+double smaller_young(const ContactPart& a, const ContactPart& b) {
+  const double infinite = std::numeric_limits<double>::infinity();
+  const double E = std::min(a.is_obstacle ? infinite : a.young, b.is_obstacle ? infinite : b.young);
+  return std::isfinite(E) ? E : 0;
+}
+
+}  // namespace
+
+ContactLaws::ContactLaws(const ContactMesh& mesh, const ContactOptions& options)
+    : parts_(mesh.parts.size()), law_(parts_ * parts_) {
+  for (size_t i = 0; i < parts_; ++i)
+    for (size_t j = 0; j < parts_; ++j) {
+      const ContactPart &a = mesh.parts[i], &b = mesh.parts[j];
+      if (a.is_obstacle && b.is_obstacle) continue;
+      law_[i * parts_ + j] = {.reach = options.reach > 0 ? options.reach : kReach * std::min(a.mean_edge, b.mean_edge),
+                              .stiffness = options.stiffness > 0 ? options.stiffness : kStiffness * smaller_young(a, b),
+                              .share = i == j ? 0.5 : share_of_finer(a.mean_triangle, b.mean_triangle),
+                              .friction = std::sqrt(a.friction * b.friction)};
+    }
+}
+
+double ContactLaws::largest_reach() const {
+  double largest = 0;
+  for (const ContactLaw& law : law_) largest = std::max(largest, law.reach);
+  return largest;
+}
+
+}  // namespace aspic

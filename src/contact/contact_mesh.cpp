@@ -1,0 +1,76 @@
+#include "contact/contact_mesh.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <map>
+
+namespace aspic {
+namespace {
+
+double triangle_area(const ContactMesh& mesh, const Triangle& t) {
+  const auto& X = mesh.rest;
+  return norm(cross(X[t[1]] - X[t[0]], X[t[2]] - X[t[0]])) / 2;
+}
+
+}  // namespace
+
+void ContactMesh::add(const ContactPart& given, std::span<const Vec3d> X, std::span<const Triangle> surface,
+                      std::span<const int> rows) {
+  ContactPart own = given;
+  const int number = static_cast<int>(parts.size());
+  own.first_point = point_count();
+  std::vector<int> point(X.size(), -1);
+  for (const Triangle& t : surface)
+    for (const int v : t) point[v] = 0;
+  for (size_t v = 0; v < X.size(); ++v) {
+    if (point[v] < 0) continue;
+    point[v] = point_count();
+    rest.push_back(X[v]);
+    row.push_back(rows.empty() ? -1 : rows[v]);
+    part.push_back(number);
+  }
+  own.point_count = point_count() - own.first_point;
+  area.resize(rest.size(), 0.0);
+  point_share.resize(rest.size(), 1);
+
+  std::map<Edge, int> number_of;
+  for (const Triangle& t : surface) {
+    const Triangle corners = {point[t[0]], point[t[1]], point[t[2]]};
+    const double size = triangle_area(*this, triangles.emplace_back(corners));
+    own.mean_triangle += size / static_cast<double>(surface.size());
+    for (const int p : corners) area[p] += size / 3, --point_share[p];
+    auto& own_edges = edges_of.emplace_back();
+    for (int k = 0; k < 3; ++k) {
+      Edge edge = {corners[(k + 1) % 3], corners[(k + 2) % 3]};
+      if (edge[0] > edge[1]) std::swap(edge[0], edge[1]);
+      const auto [found, is_new] = number_of.try_emplace(edge, edge_count());
+      if (is_new) {
+        edges.push_back(edge);
+        edge_area.push_back(0);
+        edge_share.push_back(1);
+      }
+      --edge_share[found->second];
+      edge_area[found->second] += size / 3;
+      own_edges[k] = found->second;
+    }
+  }
+  for (const auto& [edge, index] : number_of) {
+    own.mean_edge += norm(rest[edge[1]] - rest[edge[0]]) / static_cast<double>(number_of.size());
+    for (const int p : edge) point_share[p] -= edge_share[index];
+  }
+  parts.push_back(own);
+}
+
+void ContactMesh::add_plane(const std::string& name, double friction, const Vec3d& origin, const Vec3d& normal) {
+  const double infinite = std::numeric_limits<double>::infinity();
+  planes.push_back({origin, (1 / norm(normal)) * normal, static_cast<int>(parts.size())});
+  parts.push_back({.name = name,
+                   .is_obstacle = true,
+                   .first_point = point_count(),
+                   .mean_edge = infinite,
+                   .mean_triangle = infinite,
+                   .friction = friction});
+}
+
+}  // namespace aspic

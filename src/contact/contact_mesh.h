@@ -1,0 +1,60 @@
+// The surfaces that may touch, with all their points, edges and triangles in one numbering.
+#pragma once
+#include <array>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "mesh/tet_mesh.h"
+
+namespace aspic {
+
+using Edge = std::array<int, 2>;
+
+// A body or an obstacle.
+struct ContactPart {
+  std::string name;
+  bool is_obstacle = false;  // its points are not variables
+  int first_point = 0, point_count = 0;
+  double mean_edge = 0;      // [m]
+  double mean_triangle = 0;  // [m^2]
+  double young = 0;          // of a body, smallest of its tets [Pa]
+  double friction = 0;       // coefficient
+};
+
+// The half-space that an infinite plane bounds.
+struct ContactPlane {
+  Vec3d origin, normal;  // normal: unit vector into the free half-space
+  int part;
+};
+
+// The sum of a function of the distance over the triangles near a point, plus these shares of the sums over their edges
+// and points, counts each nearest feature once: 1 - (number of triangles) for an edge, and for a point 1 - (number of
+// triangles) - (sum over its edges). On a closed surface these are -1 and 1, on the border of an open one 0.
+struct ContactMesh {
+  std::vector<ContactPart> parts;
+  std::vector<Vec3d> rest;                   // of each point: at rest, or of an obstacle at time 0 [m]
+  std::vector<int> row;                      // of each point: its vertex of the model; -1: of an obstacle
+  std::vector<int> part;                     // of each point
+  std::vector<double> area;                  // of each point: a third of its triangles [m^2]
+  std::vector<int> point_share;              // of each point
+  std::vector<Triangle> triangles;           // points
+  std::vector<Edge> edges;                   // points, ascending
+  std::vector<int> edge_share;               // of each edge
+  std::vector<double> edge_area;             // of each edge: a third of its triangles [m^2]
+  std::vector<std::array<int, 3>> edges_of;  // of each triangle: edges opposite to its corners
+
+  std::vector<ContactPlane> planes;
+
+  int point_count() const { return static_cast<int>(rest.size()); }
+  int triangle_count() const { return static_cast<int>(triangles.size()); }
+  int edge_count() const { return static_cast<int>(edges.size()); }
+
+  // Adds a surface. `triangles` refer to `X`; `row` gives the vertex of the model of each X, or is empty for an
+  // obstacle. Points without triangles are left out.
+  void add(const ContactPart& part, std::span<const Vec3d> X, std::span<const Triangle> surface,
+           std::span<const int> row);
+  void add_plane(const std::string& name, double friction, const Vec3d& origin, const Vec3d& normal);
+};
+
+}  // namespace aspic

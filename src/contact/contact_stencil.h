@@ -1,0 +1,31 @@
+// One summand of the barrier energy, at given positions.
+#pragma once
+#include <array>
+#include <span>
+
+#include "contact/barrier_function.h"
+#include "linalg/projection.h"
+#include "mesh/distance.h"
+
+namespace aspic {
+
+struct ContactStencil {
+  Distance distance;                            // of the points below
+  std::array<int, 4> point = {-1, -1, -1, -1};  // numbers in the ContactMesh: of a point and a triangle, edge or point,
+                                                // or of two edges
+  double weight = 0;                            // factor of b [N]
+  double reach = 0;                             // distance at which b begins [m]
+  double area = 0;                              // that `weight` stands for, with its sign; 0 for two edges [m^2]
+  std::array<int, 2> parts = {};
+  // Two edges: eps in the factor that vanishes where they are parallel, (2 - c/eps) c/eps for the squared norm c of
+  // their cross product below eps [Li 2020, section 6.2] [m^4]. 0: no factor.
+  double parallel = 0;
+
+  BarrierValue b() const { return barrier(distance.d, reach); }
+  double value(std::span<const Vec3d> x) const;  // [J] for the positions of all points of the mesh
+  std::array<Vec3d, 4> gradient(std::span<const Vec3d> x) const;
+  // The Hessian, with negative eigenvalues filtered unless it is exact.
+  DistanceHessian hessian(std::span<const Vec3d> x, Definiteness kind) const;
+};
+
+}  // namespace aspic

@@ -1,0 +1,29 @@
+// Coulomb friction as a dissipation potential of a step [Li 2020, section 5]: D = sum of mu lambda f(|u|) over the
+// stencils of a barrier, where u is the tangential relative displacement since the start of the step and lambda the
+// normal force. f(y) = y^2 / e - y^3 / (3 e^2) below e = speed * h, and y - e / 3 beyond: bodies at rest creep at less
+// than this speed. Normal forces and tangents lag behind the minimization, see Energy::update_lagged().
+#pragma once
+#include "contact/barrier.h"
+
+namespace aspic {
+
+class Friction : public Energy {
+ public:
+  // `speed`: largest speed at which stuck surfaces creep [m/s]. `barrier` must outlive this.
+  Friction(const Barrier& barrier, double speed) : barrier_(barrier), speed_(speed) {}
+
+  std::string_view name() const override { return "friction"; }
+  std::unique_ptr<Context> make_context() const override;
+  void begin_step(const StepContext& step, Context& context) const override;
+  bool update_lagged(Positions x, Context& context) const override;
+  double value(Positions x, const Context& context) const override;
+  void add_gradient(Positions x, const Context& context, double scale, std::span<double> g) const override;
+  int add_hessian(Positions x, const Context& context, double scale, const Projection& projection,
+                  BlockSparse& H) const override;
+
+ private:
+  const Barrier& barrier_;
+  double speed_;
+};
+
+}  // namespace aspic

@@ -1,0 +1,229 @@
+#include "contact/stencil_search.h"
+
+#include <algorithm>
+#include <array>
+#include <limits>
+#include <stdexcept>
+#include <utility>
+
+#include "base/parallel.h"
+
+namespace aspic {
+namespace {
+
+constexpr const char* kTooMany = "contact: too many pairs of surface features are close to each other";
+constexpr double kParallel = 1e-3;  // squared sine of the angle below which edges count as parallel
+
+bool equal(std::span<const Vec3d> a, std::span<const Vec3d> b) {
+  return std::equal(a.begin(), a.end(), b.begin(), b.end(),
+                    [](const Vec3d& x, const Vec3d& y) { return x[0] == y[0] && x[1] == y[1] && x[2] == y[2]; });
+}
+
+// Boxes around the lines from x to x + d, with a margin for later, similar lines.
+std::vector<Box> swept(std::span<const Vec3d> x, std::span<const Vec3d> d, double margin) {
+  constexpr double kLonger = 0.2;
+  std::vector<Box> boxes = swept_boxes(x, d);
+  for (size_t p = 0; p < x.size(); ++p) {
+    const double by = margin + (d.empty() ? 0 : kLonger * norm(d[p]));
+    for (int axis = 0; axis < 3; ++axis) boxes[p].lower[axis] -= by, boxes[p].upper[axis] += by;
+  }
+  return boxes;
+}
+
+ContactRange range_of(const ContactMesh& mesh, std::span<const Vec3d> x, std::span<const Vec3d> d, double margin) {
+  return {swept(x, d, margin), swept(relative_to_parts(mesh, x), relative_to_parts(mesh, d), margin)};
+}
+
+// The features of one part near a point, each with the number of times that it counts.
+class NearFeatures {
+ public:
+  struct Entry {
+    std::array<int, 3> feature;  // points, ascending; -1 before the first
+    int share;
+    Distance distance;         // from the point (0) to the feature, whose points follow
+    std::array<int, 4> point;  // of the query
+  };
+
+  // `among`: the points of the query that `distance` refers to.
+  void add(const Distance& distance, const std::array<int, 4>& among, int share) {
+    Entry entry{.feature = {-1, -1, -1}, .share = share, .distance = distance, .point = among};
+    for (int k = 1; k < distance.count; ++k) entry.feature[3 - k] = among[distance.point[k]];
+    std::sort(entry.feature.begin(), entry.feature.end());
+    for (Entry& known : entries_)
+      if (known.feature == entry.feature) return void(known.share += share);
+    entries_.push_back(entry);
+  }
+  // Returns whether this is the first visit.
+  bool visits(std::vector<int>& visited, int index) {
+    if (std::find(visited.begin(), visited.end(), index) != visited.end()) return false;
+    visited.push_back(index);
+    return true;
+  }
+  bool visits_edge(int e) { return visits(edges_, e); }
+  bool visits_point(int p) { return visits(points_, p); }
+  void clear() { entries_.clear(), edges_.clear(), points_.clear(); }
+  std::span<const Entry> entries() const { return entries_; }
+
+ private:
+  std::vector<Entry> entries_;
+  std::vector<int> edges_, points_;
+};
+
+Distance point_point_distance(const Vec3d& x, const Vec3d& y) {
+  Distance distance;
+  distance.r = x - y;
+  distance.d = norm(distance.r);
+  return distance;
+}
+
+}  // namespace
+
+StencilSearch::StencilSearch(const ContactMesh& mesh, const ContactLaws& laws)
+    : mesh_(mesh), laws_(laws), cap_(mesh.point_count(), std::numeric_limits<double>::infinity()), finder_(mesh, laws) {
+  const double margin = 2 * laws.largest_reach();
+  const std::vector<Vec3d> still(mesh.rest.size());
+  const auto near = find(range_of(mesh, mesh.rest, still, margin));
+  if (!near) throw std::length_error(kTooMany);
+  for (int p = 0; p < mesh.point_count(); ++p)
+    for (const int t : near->triangles_near(p)) {
+      const auto& [a, b, c] = mesh.triangles[t];
+      if (mesh.part[p] != mesh.part[a]) continue;
+      const auto& X = mesh.rest;
+      cap_[p] = std::min(cap_[p], point_triangle_distance({X[p], X[a], X[b], X[c]}).d / 2);
+    }
+}
+
+int StencilSearch::self_touching_point() const {
+  const auto found = std::find(cap_.begin(), cap_.end(), 0.0);
+  return found == cap_.end() ? -1 : static_cast<int>(found - cap_.begin());
+}
+
+std::shared_ptr<const ContactCandidates> StencilSearch::find(ContactRange range) const {
+  auto found = finder_.find(std::move(range));
+  return found ? std::make_shared<const ContactCandidates>(*std::move(found)) : nullptr;
+}
+
+std::shared_ptr<const ContactCandidates> StencilSearch::along(std::span<const Vec3d> points,
+                                                              std::span<const Vec3d> d) const {
+  std::vector<Vec3d> end(points.begin(), points.end());
+  for (size_t p = 0; p < end.size(); ++p) end[p] = end[p] + d[p];
+  const std::scoped_lock lock(mutex_);
+  if (!candidates_ || !candidates_->cover(mesh_, points) || !candidates_->cover(mesh_, end))
+    candidates_ = find(range_of(mesh_, points, d, laws_.largest_reach()));
+  return candidates_;
+}
+
+std::shared_ptr<const ContactStencils> StencilSearch::at(std::span<const Vec3d> points) const {
+  const std::scoped_lock lock(mutex_);
+  if (stencils_ && equal(points, points_)) return stencils_;
+  if (!candidates_ || !candidates_->cover(mesh_, points))
+    candidates_ = find(range_of(mesh_, points, std::vector<Vec3d>(points.size()), laws_.largest_reach()));
+  if (!candidates_) throw std::length_error(kTooMany);
+  points_.assign(points.begin(), points.end());
+  stencils_ = std::make_shared<const ContactStencils>(stencils(*candidates_, points));
+  return stencils_;
+}
+
+ContactStencils StencilSearch::stencils(const ContactCandidates& candidates, std::span<const Vec3d> points) const {
+  const auto collect = [](int count, const auto& find) {
+    std::vector<ContactStencils> found(count / kChunkSize + 1);
+    parallel_chunks(count, [&](int first, int last) {
+      for (int i = first; i < last; ++i) find(i, found[first / kChunkSize]);
+    });
+    return found;
+  };
+  ContactStencils all;
+  const auto append = [&all](const std::vector<ContactStencils>& chunks) {
+    for (const ContactStencils& chunk : chunks) all.insert(all.end(), chunk.begin(), chunk.end());
+  };
+  append(collect(mesh_.point_count(), [&](int p, ContactStencils& found) {
+    add_point(candidates, points, p, found);
+    add_planes(points, p, found);
+  }));
+  append(collect(static_cast<int>(candidates.edge_pairs.size()),
+                 [&](int k, ContactStencils& found) { add_edges(candidates.edge_pairs[k], points, found); }));
+  return all;
+}
+
+void StencilSearch::add_point(const ContactCandidates& candidates, std::span<const Vec3d> x, int p,
+                              ContactStencils& found) const {
+  const int own = mesh_.part[p];
+  NearFeatures near;
+  int other = -1;
+  double reach = 0;
+  const auto finish = [&] {
+    for (const NearFeatures::Entry& entry : near.entries()) {
+      if (entry.share == 0) continue;
+      const ContactLaw& law = laws_(own, other);
+      const double area = entry.share * law.share * mesh_.area[p];
+      found.push_back({entry.distance, entry.point, law.stiffness * area, reach, area, {own, other}});
+    }
+    near.clear();
+  };
+  for (const int t : candidates.triangles_near(p)) {  // ascending, so the parts are
+    const Triangle& corner = mesh_.triangles[t];
+    if (mesh_.part[corner[0]] != other) {
+      finish();
+      other = mesh_.part[corner[0]];
+      reach = laws_(own, other).reach;
+      if (own == other) reach = std::min(reach, cap_[p]);
+    }
+    if (laws_(own, other).share == 0) continue;
+    const Distance to_triangle = point_triangle_distance({x[p], x[corner[0]], x[corner[1]], x[corner[2]]});
+    if (!(to_triangle.d < reach)) continue;
+    near.add(to_triangle, {p, corner[0], corner[1], corner[2]}, 1);
+    for (const int e : mesh_.edges_of[t]) {
+      const auto& [a, b] = mesh_.edges[e];
+      if (mesh_.edge_share[e] == 0 || a == p || b == p || !near.visits_edge(e)) continue;
+      const Distance to_edge = point_edge_distance({x[p], x[a], x[b]});
+      if (to_edge.d < reach) near.add(to_edge, {p, a, b, -1}, mesh_.edge_share[e]);
+    }
+    for (const int q : corner) {
+      if (mesh_.point_share[q] == 0 || !near.visits_point(q)) continue;
+      const Distance to_point = point_point_distance(x[p], x[q]);
+      if (to_point.d < reach) near.add(to_point, {p, q, -1, -1}, mesh_.point_share[q]);
+    }
+  }
+  finish();
+}
+
+// A plane is a face with its foot in the middle.
+void StencilSearch::add_planes(std::span<const Vec3d> x, int p, ContactStencils& found) const {
+  if (mesh_.row[p] < 0) return;
+  for (const ContactPlane& plane : mesh_.planes) {
+    const ContactLaw& law = laws_(mesh_.part[p], plane.part);
+    const double gap = dot(plane.normal, x[p] - plane.origin);
+    if (!(gap < law.reach)) continue;
+    const Distance to_foot{.r = gap * plane.normal, .d = gap};
+    const Distance distance{.type = DistanceType::vertex_face,
+                            .count = 4,
+                            .point = {0, 1, 2, 3},
+                            .c = {1, -1, 0, 0},
+                            .r = to_foot.r,
+                            .d = gap,
+                            .edge = tangents(to_foot)};
+    const double area = law.share * mesh_.area[p];
+    found.push_back({.distance = distance,
+                     .point = {p, -1, -1, -1},
+                     .weight = law.stiffness * area,
+                     .reach = law.reach,
+                     .area = area,
+                     .parts = {mesh_.part[p], plane.part}});
+  }
+}
+
+void StencilSearch::add_edges(const EdgePair& pair, std::span<const Vec3d> x, ContactStencils& found) const {
+  const Edge &a = mesh_.edges[pair.first], &b = mesh_.edges[pair.second];
+  const Distance distance = edge_edge_distance({x[a[0]], x[a[1]], x[b[0]], x[b[1]]});
+  if (!(distance.d < pair.reach)) return;
+  const int i = mesh_.part[a[0]], j = mesh_.part[b[0]];
+  const auto& X = mesh_.rest;
+  found.push_back({.distance = distance,
+                   .point = {a[0], a[1], b[0], b[1]},
+                   .weight = laws_(i, j).stiffness * (mesh_.edge_area[pair.first] + mesh_.edge_area[pair.second]) / 4,
+                   .reach = pair.reach,
+                   .parts = {i, j},
+                   .parallel = kParallel * squared_norm(X[a[1]] - X[a[0]]) * squared_norm(X[b[1]] - X[b[0]])});
+}
+
+}  // namespace aspic

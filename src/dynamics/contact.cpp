@@ -1,0 +1,23 @@
+#include "dynamics/contact.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "contact/friction.h"
+#include "mesh/box.h"
+
+namespace aspic {
+
+void add_contact(ContactMesh mesh, const ContactOptions& options, double creep, Model& model) {
+  const bool has_friction =
+      std::any_of(mesh.parts.begin(), mesh.parts.end(), [](const ContactPart& part) { return part.friction > 0; });
+  auto barrier = std::make_unique<Barrier>(std::move(mesh), options);
+  model.contact = barrier.get();
+  model.loads.push_back(std::move(barrier));
+  if (!has_friction) return;
+  constexpr double kCreep = 1e-4, kGravity = 9.81;
+  const double speed = creep > 0 ? creep : kCreep * std::sqrt(kGravity * size_of(model.mesh));
+  model.damping.push_back(std::make_unique<Friction>(*model.contact, speed));
+}
+
+}  // namespace aspic

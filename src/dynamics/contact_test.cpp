@@ -1,0 +1,164 @@
+// Bodies in contact with a plane, against analytic solutions.
+#include "dynamics/contact.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "base/error.h"
+#include "dynamics/model_builder.h"
+#include "dynamics/simulation.h"
+#include "mesh/generators.h"
+#include "mesh/self_intersection.h"
+#include "mesh/surface.h"
+
+namespace aspic {
+namespace {
+
+constexpr double kYoung = 1e6;
+
+ModelBuilder block(const Vec3d& gravity) {
+  ModelBuilder builder(make_box({{-0.05, 0.001, -0.05}}, {{0.05, 0.051, 0.05}}, {4, 2, 4}), "block");
+  builder.material("neo_hookean", {.young = kYoung, .poisson = 0.3}).density(1000).gravity(gravity);
+  return builder;
+}
+
+// A block above the plane y = 0.
+Simulation above_plane(const Vec3d& gravity, double friction, double h, double creep = 0) {
+  Model model = block(gravity).build();
+  ContactMesh contact;
+  std::vector<int> rows(model.mesh.rest.size());
+  for (size_t i = 0; i < rows.size(); ++i) rows[i] = static_cast<int>(i);
+  const std::vector<Triangle> surface = boundary_triangles(model.mesh, 0, model.mesh.tet_count());
+  contact.add({.name = "block", .young = kYoung, .friction = friction}, model.mesh.rest, surface, rows);
+  contact.add_plane("floor", friction, {}, {{0, 1, 0}});
+  add_contact(std::move(contact), {}, creep, model);
+  SimulationOptions options;
+  options.h = h;
+  return Simulation(std::move(model), options);
+}
+
+Vec3d center(const Simulation& simulation, std::span<const double> q) {
+  const std::vector<double> w = weights(*simulation.model().mass, {{1, 0, 0}});
+  Vec3d sum{};
+  double mass = 0;
+  for (int v = 0; v < simulation.model().mesh.vertex_count(); ++v) {
+    sum = sum + w[3 * v] * point(q, v);
+    mass += w[3 * v];
+  }
+  return (1 / mass) * sum;
+}
+
+TEST(Contact, FallingBlockComesToRestAbovePlane) {
+  Simulation simulation = above_plane({{0, -9.81, 0}}, 0.5, 0.01);
+  StepReport report;
+  double lowest = INFINITY, dissipated = 0, work = 0;
+  const double start = simulation.start_report().potential_total + simulation.kinetic_energy();
+  for (int i = 0; i < 60; ++i) {
+    report = simulation.step();
+    ASSERT_TRUE(is_success(report.status)) << i << " " << to_string(report.status);
+    for (int v = 0; v < simulation.model().mesh.vertex_count(); ++v)
+      lowest = std::min(lowest, simulation.state().q[3 * v + 1]);
+    dissipated += report.damping_loss + report.numerical_loss;
+    work += report.residual_work;
+  }
+  EXPECT_GT(lowest, 0);
+  EXPECT_LT(report.kinetic, 1e-8);
+  EXPECT_EQ(report.contacts, 25);
+  EXPECT_GT(report.min_gap, 0);
+  // The pressure of the weight, up to the quadrature near the border.
+  EXPECT_NEAR(report.max_pressure, 1000 * 9.81 * 0.05, 300);
+  // The ledger closes with friction and contact.
+  EXPECT_NEAR(start, report.potential_total + report.kinetic + dissipated - work, 1e-9 * std::abs(start));
+}
+
+// Slides with a = g (sin - mu cos) [backward Euler: x_n = a h^2 n (n + 1) / 2], or sticks.
+TEST(Contact, BlockOnInclineSlidesOrSticks) {
+  const double mu = 0.5, h = 0.01, g = 9.81;
+  for (const double tangent : {0.45, 0.55}) {
+    const double angle = std::atan(tangent);
+    const double along = g * std::sin(angle), down = g * std::cos(angle);
+    Simulation simulation = above_plane({{along, -down, 0}}, mu, h);
+    std::vector<double> x;
+    for (int i = 0; i < 100; ++i) {
+      const StepReport report = simulation.step();
+      ASSERT_TRUE(is_success(report.status)) << i << " " << to_string(report.status);
+      x.push_back(center(simulation, simulation.state().q)[0]);
+    }
+    const double creep = 1e-4 * std::sqrt(g * 0.15);
+    if (tangent < mu) {
+      EXPECT_LT(std::abs(x[99] - x[49]), creep * 0.5);
+    }
+    const double a = g * (std::sin(angle) - mu * std::cos(angle));
+    if (tangent > mu) {
+      EXPECT_NEAR((x[99] - 2 * x[79] + x[59]) / 0.04, a, 0.01 * a);
+    }
+  }
+}
+
+// The test for intersections is exact and shares no code with contact.
+TEST(Contact, CollidingBlocksNeverIntersect) {
+  TetMesh mesh = make_box({{-0.05, 0.01, -0.05}}, {{0.05, 0.06, 0.05}}, {3, 2, 3});
+  TetMesh other = make_box({{-0.05, 0.2, -0.05}}, {{0.05, 0.25, 0.05}}, {4, 2, 4});
+  const int first = mesh.vertex_count();
+  for (const Vec3d& X : other.rest)  // tilted, so that an edge hits first
+    mesh.rest.push_back({{0.8 * X[0] + 0.6 * X[1] - 0.13, 0.8 * X[1] - 0.6 * X[0], X[2] + 0.02 * X[0] / 0.05}});
+  for (const Tet& t : other.tets) mesh.tets.push_back({t[0] + first, t[1] + first, t[2] + first, t[3] + first});
+  ModelBuilder builder(mesh, "blocks");
+  builder.material("neo_hookean", {.young = 2e4, .poisson = 0.4}).density(1000).gravity({{0, -9.81, 0}});
+  Model model = builder.build();
+  std::vector<int> rows(mesh.rest.size());
+  for (size_t i = 0; i < rows.size(); ++i) rows[i] = static_cast<int>(i);
+  TriMesh surface{mesh.rest, boundary_triangles(mesh, 0, mesh.tet_count())};
+  ContactMesh contact;
+  contact.add({.name = "blocks", .young = 2e4}, mesh.rest, surface.triangles, rows);
+  contact.add_plane("floor", 0, {}, {{0, 1, 0}});
+  add_contact(std::move(contact), {}, 0, model);
+  State start = at_rest(model.mesh);
+  for (size_t v = first; v < mesh.rest.size(); ++v) start.qdot[3 * v + 1] = -4;
+  SimulationOptions options;
+  options.h = 0.01;
+  Simulation simulation(std::move(model), start, options);
+  int contacts = 0;
+  for (int i = 0; i < 40; ++i) {
+    const StepReport report = simulation.step();
+    ASSERT_TRUE(is_success(report.status)) << i << " " << to_string(report.status);
+    contacts += report.contacts;
+    for (size_t v = 0; v < rows.size(); ++v) {
+      surface.vertices[v] = point(simulation.state().q, static_cast<int>(v));
+      ASSERT_GT(surface.vertices[v][1], 0) << i;
+    }
+    ASSERT_TRUE(self_intersections(surface).pairs.empty()) << i;
+  }
+  EXPECT_GT(contacts, 100);
+}
+
+TEST(Contact, IntersectingStartIsRefused) {
+  Model model = block({}).build();
+  ContactMesh contact;
+  std::vector<int> rows(model.mesh.rest.size());
+  for (size_t i = 0; i < rows.size(); ++i) rows[i] = static_cast<int>(i);
+  contact.add({.name = "block", .young = kYoung}, model.mesh.rest,
+              boundary_triangles(model.mesh, 0, model.mesh.tet_count()), rows);
+  const TetMesh box = make_box({{0, 0, 0}}, {{0.2, 0.2, 0.2}}, {1, 1, 1});
+  contact.add({.name = "ledge", .is_obstacle = true}, box.rest, boundary_triangles(box, 0, box.tet_count()), {});
+  add_contact(std::move(contact), {}, 0, model);
+  try {
+    const Simulation simulation(std::move(model), SimulationOptions());
+    FAIL() << "accepted";
+  } catch (const InvalidInput& e) {
+    EXPECT_NE(std::string(e.what()).find("block and ledge"), std::string::npos) << e.what();
+  }
+}
+
+TEST(Contact, ScenesWithoutItHaveEmptyReports) {
+  SimulationOptions options;
+  Simulation simulation(block({}).build(), options);
+  const StepReport report = simulation.step();
+  EXPECT_EQ(report.contacts, 0);
+  EXPECT_EQ(report.min_gap, 0);
+  EXPECT_EQ(report.friction_loss, 0);
+}
+
+}  // namespace
+}  // namespace aspic

@@ -1,0 +1,166 @@
+#include "mesh/close_pairs.h"
+
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+#include <limits>
+
+#include "base/check.h"
+#include "base/parallel.h"
+
+namespace aspic {
+namespace {
+
+constexpr double kMostLoose = 1.5;  // relative to the looseness of a new tree
+
+using Pairs = std::vector<std::array<int, 2>>;
+
+// Rounds outward.
+void inflate(Box& box, double radius) {
+  constexpr double kOutward = 4 * std::numeric_limits<double>::epsilon();
+  for (int axis = 0; axis < 3; ++axis) {
+    const double largest = std::max(std::abs(box.lower[axis]), std::abs(box.upper[axis]));
+    const double by = radius + kOutward * (largest + radius);
+    box.lower[axis] -= by;
+    box.upper[axis] += by;
+  }
+}
+
+bool is_bounded(const Box& box) {
+  return std::all_of(box.lower.a, box.lower.a + 3, [](double x) { return std::isfinite(x); }) &&
+         std::all_of(box.upper.a, box.upper.a + 3, [](double x) { return std::isfinite(x); });
+}
+
+template <class Points>
+Box primitive_box(const Points& points, std::span<const Box> path, double radius) {
+  Box box;
+  for (const int point : points) {
+    if (!is_bounded(path[point])) return {};
+    box.add(path[point].lower);
+    box.add(path[point].upper);
+  }
+  inflate(box, radius);
+  return box;
+}
+
+// `points_of(i)` returns the positions of primitive i as a range of indices.
+template <class PointsOf>
+void bound_primitives(const PointsOf& points_of, std::span<const Box> path, std::span<const double> radius,
+                      std::vector<Box>& boxes) {
+  ASPIC_CHECK(radius.empty() || radius.size() == boxes.size());
+  parallel_chunks(static_cast<int>(boxes.size()), [&](int first, int last) {
+    for (int i = first; i < last; ++i) boxes[i] = primitive_box(points_of(i), path, radius.empty() ? 0 : radius[i]);
+  });
+}
+
+template <class A, class B>
+bool share_point(const A& a, const B& b) {
+  for (const int i : a)
+    for (const int j : b)
+      if (i == j) return true;
+  return false;
+}
+
+// Collects pairs from several threads. Stops them when there are more than `limit`.
+class PairCollector {
+ public:
+  PairCollector(int parts, size_t limit) : found_(parts), limit_(limit) {}
+
+  // Returns whether the search continues.
+  bool add(int part, int a, int b) {
+    found_[part].push_back({a, b});
+    if (found_[part].size() % kBatch == 0) count_ += kBatch;
+    return count_ <= limit_;
+  }
+
+  bool overflows() const {
+    size_t sum = 0;
+    for (const Pairs& part : found_) sum += part.size();
+    return sum > limit_;
+  }
+
+  // Sorts the pairs by a count of the first members, of which there are `firsts`, and in order of the second members.
+  Pairs sorted(int firsts) const {
+    std::vector<size_t> start(firsts + 1, 0);
+    for (const Pairs& part : found_)
+      for (const auto& [a, b] : part) ++start[a + 1];
+    for (int i = 0; i < firsts; ++i) start[i + 1] += start[i];
+    Pairs all(start[firsts]);
+    std::vector<size_t> next(start.begin(), start.end() - 1);
+    for (const Pairs& part : found_)
+      for (const auto& pair : part) all[next[pair[0]]++] = pair;
+    parallel_chunks(firsts, [&](int first, int last) {
+      for (int i = first; i < last; ++i)
+        std::sort(all.begin() + static_cast<std::ptrdiff_t>(start[i]),
+                  all.begin() + static_cast<std::ptrdiff_t>(start[i + 1]));
+    });
+    return all;
+  }
+
+ private:
+  static constexpr size_t kBatch = 1024;
+
+  std::vector<Pairs> found_;
+  size_t limit_;
+  std::atomic<size_t> count_ = 0;  // in full batches
+};
+
+}  // namespace
+
+std::vector<Box> swept_boxes(std::span<const Vec3d> x, std::span<const Vec3d> dx) {
+  ASPIC_CHECK(dx.empty() || dx.size() == x.size());
+  std::vector<Box> boxes(x.size());
+  parallel_chunks(static_cast<int>(x.size()), [&](int first, int last) {
+    for (int i = first; i < last; ++i) {
+      boxes[i].add(x[i]);
+      if (!dx.empty()) boxes[i].add(x[i] + dx[i]);
+    }
+  });
+  return boxes;
+}
+
+void PairFinder::Tree::fit() {
+  if (!tree.empty()) {
+    tree.front().refit(boxes);
+    if (!(tree.front().looseness() > kMostLoose * looseness)) return;
+    tree.clear();
+  }
+  tree.emplace_back(boxes);
+  looseness = tree.front().looseness();
+}
+
+ClosePairs PairFinder::find(const PairQuery& query) {
+  const auto& vertices = primitives_.vertices;
+  const auto& edges = primitives_.edges;
+  const auto& triangles = primitives_.triangles;
+  vertices_.boxes.resize(vertices.size());
+  edges_.boxes.resize(edges.size());
+  triangles_.boxes.resize(triangles.size());
+  bound_primitives([&](int i) { return std::array<int, 1>{vertices[i]}; }, query.path, query.vertex_radius,
+                   vertices_.boxes);
+  bound_primitives([&](int i) { return edges[i]; }, query.path, query.edge_radius, edges_.boxes);
+  bound_primitives([&](int i) { return triangles[i]; }, query.path, query.triangle_radius, triangles_.boxes);
+  for (Tree* tree : {&vertices_, &edges_, &triangles_}) tree->fit();
+
+  const BoxTree &of_vertices = *vertices_, &of_edges = *edges_;
+  PairCollector vertex_triangle(of_vertices.part_count(), query.limit), edge_edge(of_edges.part_count(), query.limit);
+  parallel_for(of_vertices.part_count(), [&](int part) {
+    of_vertices.for_each_pair(part, *triangles_, [&](int v, int t) {
+      if (share_point(std::array<int, 1>{vertices[v]}, triangles[t])) return true;
+      if (query.filter && !query.filter->accepts_vertex_triangle(v, t)) return true;
+      return vertex_triangle.add(part, v, t);
+    });
+  });
+  parallel_for(of_edges.part_count(), [&](int part) {
+    of_edges.for_each_own_pair(part, [&](int e, int f) {
+      const auto [a, b] = std::minmax(e, f);
+      if (share_point(edges[a], edges[b])) return true;
+      if (query.filter && !query.filter->accepts_edge_edge(a, b)) return true;
+      return edge_edge.add(part, a, b);
+    });
+  });
+  if (vertex_triangle.overflows() || edge_edge.overflows()) return {.is_complete = false};
+  return {vertex_triangle.sorted(static_cast<int>(vertices.size())), edge_edge.sorted(static_cast<int>(edges.size()))};
+}
+
+}  // namespace aspic

@@ -1,0 +1,198 @@
+#include "mesh/close_pairs.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <random>
+
+#include "base/parallel.h"
+#include "mesh/generators.h"
+#include "mesh/surface.h"
+#include "mesh/topology.h"
+
+namespace aspic {
+namespace {
+
+using PairList = std::vector<std::array<int, 2>>;
+
+struct Scene {
+  SurfacePrimitives primitives;
+  std::vector<Vec3d> x, dx;
+  std::vector<double> vertex_radius, edge_radius, triangle_radius;
+
+  void add(const TriMesh& mesh, const Vec3d& shift) {
+    const int first = static_cast<int>(x.size());
+    for (const Vec3d& p : mesh.vertices) {
+      primitives.vertices.push_back(static_cast<int>(x.size()));
+      x.push_back(p + shift);
+    }
+    for (const auto& [a, b, c] : mesh.triangles) primitives.triangles.push_back({a + first, b + first, c + first});
+    for_each_edge(edge_uses(mesh.triangles), [&](const EdgeUse* use, const EdgeUse*) {
+      primitives.edges.push_back({use->edge[0] + first, use->edge[1] + first});
+    });
+  }
+  void set_radius(double radius) {
+    vertex_radius.assign(primitives.vertices.size(), radius);
+    triangle_radius.assign(primitives.triangles.size(), radius);
+    edge_radius.assign(primitives.edges.size(), radius / 4);
+  }
+};
+
+ClosePairs find(PairFinder& finder, const Scene& scene, const PairFilter* filter = nullptr, size_t limit = 1 << 20) {
+  const std::vector<Box> path = swept_boxes(scene.x, scene.dx);
+  return finder.find({path, scene.vertex_radius, scene.edge_radius, scene.triangle_radius, filter, limit});
+}
+
+template <class Points>
+Box inflated_box(const Scene& scene, const Points& points, double radius) {
+  Box box;
+  for (const int i : points) box.add(scene.x[i]), box.add(scene.x[i] + scene.dx[i]);
+  const Vec3d by = {{radius, radius, radius}};
+  return {box.lower - by, box.upper + by};
+}
+
+// All pairs of boxes, one by one.
+ClosePairs brute_force(const Scene& scene) {
+  const auto& [vertices, edges, triangles] = scene.primitives;
+  ClosePairs pairs;
+  std::vector<Box> of_edge, of_triangle;
+  for (size_t e = 0; e < edges.size(); ++e) of_edge.push_back(inflated_box(scene, edges[e], scene.edge_radius[e]));
+  for (size_t t = 0; t < triangles.size(); ++t)
+    of_triangle.push_back(inflated_box(scene, triangles[t], scene.triangle_radius[t]));
+  for (int v = 0; v < static_cast<int>(vertices.size()); ++v) {
+    const Box box = inflated_box(scene, std::array{vertices[v]}, scene.vertex_radius[v]);
+    for (int t = 0; t < static_cast<int>(triangles.size()); ++t)
+      if (box.overlaps(of_triangle[t]) &&
+          std::find(triangles[t].begin(), triangles[t].end(), vertices[v]) == triangles[t].end())
+        pairs.vertex_triangle.push_back({v, t});
+  }
+  for (int a = 0; a < static_cast<int>(edges.size()); ++a)
+    for (int b = a + 1; b < static_cast<int>(edges.size()); ++b)
+      if (of_edge[a].overlaps(of_edge[b]) &&
+          !lists_vertex_twice(std::array{edges[a][0], edges[a][1], edges[b][0], edges[b][1]}))
+        pairs.edge_edge.push_back({a, b});
+  return pairs;
+}
+
+// Two spheres that nearly touch; random displacements.
+Scene two_spheres(unsigned seed, double speed) {
+  Scene scene;
+  const TriMesh sphere = boundary_surface(make_sphere(1, 0.25)).surface;
+  scene.add(sphere, {{0.013, 0.021, 0.034}});
+  scene.add(sphere, {{2.03, 0.1, 0.05}});
+  scene.set_radius(0.02);
+  std::mt19937 random(seed);
+  std::normal_distribution<double> normal(0, speed);
+  scene.dx.resize(scene.x.size());
+  for (Vec3d& dx : scene.dx) dx = {{normal(random), normal(random), normal(random)}};
+  return scene;
+}
+
+void expect_equal(const ClosePairs& a, const ClosePairs& b) {
+  EXPECT_TRUE(a.vertex_triangle == b.vertex_triangle);
+  EXPECT_TRUE(a.edge_edge == b.edge_edge);
+  EXPECT_EQ(a.is_complete, b.is_complete);
+}
+
+TEST(PairFinder, AgreesWithBruteForceWhileSurfacesMove) {
+  Scene scene = two_spheres(1, 0.02);
+  PairFinder finder(scene.primitives);
+  for (int step = 0; step < 5; ++step) {
+    const ClosePairs pairs = find(finder, scene);
+    expect_equal(pairs, brute_force(scene));
+    EXPECT_GT(pairs.vertex_triangle.size(), 10);
+    EXPECT_GT(pairs.edge_edge.size(), 100);
+    for (size_t i = 0; i < scene.x.size(); ++i) scene.x[i] = scene.x[i] + scene.dx[i];
+  }
+}
+
+TEST(PairFinder, AgreesWithBruteForceAfterPositionsAreShuffled) {
+  Scene scene = two_spheres(2, 0.01);
+  PairFinder finder(scene.primitives);
+  find(finder, scene);
+  std::shuffle(scene.x.begin(), scene.x.end(), std::mt19937(3));
+  expect_equal(find(finder, scene, nullptr, 1 << 24), brute_force(scene));
+}
+
+TEST(PairFinder, DoesNotDependOnThreadsOrEarlierQueries) {
+  const Scene scene = two_spheres(4, 0.05), other = two_spheres(5, 0.5);
+  const int threads = thread_count();
+  set_thread_count(1);
+  PairFinder fresh(scene.primitives), used(scene.primitives);
+  const ClosePairs expected = find(fresh, scene);
+  set_thread_count(3);
+  find(used, other);
+  expect_equal(find(used, scene), expected);
+  set_thread_count(threads);
+}
+
+TEST(PairFinder, ReportsOverflowWithEmptyLists) {
+  const Scene scene = two_spheres(6, 0.01);
+  PairFinder finder(scene.primitives);
+  const size_t count = std::max(find(finder, scene).vertex_triangle.size(), find(finder, scene).edge_edge.size());
+  EXPECT_TRUE(find(finder, scene, nullptr, count).is_complete);
+  const ClosePairs overflow = find(finder, scene, nullptr, count - 1);
+  EXPECT_FALSE(overflow.is_complete);
+  EXPECT_TRUE(overflow.vertex_triangle.empty() && overflow.edge_edge.empty());
+}
+
+// Pairs of different surfaces.
+class BetweenSurfaces : public PairFilter {
+ public:
+  explicit BetweenSurfaces(const SurfacePrimitives& primitives)
+      : primitives_(primitives), middle_(static_cast<int>(primitives.vertices.size()) / 2) {}
+  bool accepts_vertex_triangle(int v, int t) const override {
+    return is_second(primitives_.vertices[v]) != is_second(primitives_.triangles[t][0]);
+  }
+  bool accepts_edge_edge(int a, int b) const override {
+    return is_second(primitives_.edges[a][0]) != is_second(primitives_.edges[b][0]);
+  }
+
+ private:
+  bool is_second(int point) const { return point >= middle_; }
+  const SurfacePrimitives& primitives_;
+  int middle_;
+};
+
+TEST(PairFinder, AppliesFilterOfCaller) {
+  const Scene scene = two_spheres(7, 0.02);
+  PairFinder finder(scene.primitives);
+  const BetweenSurfaces filter(scene.primitives);
+  ClosePairs expected = brute_force(scene);
+  std::erase_if(expected.vertex_triangle, [&](const auto& p) { return !filter.accepts_vertex_triangle(p[0], p[1]); });
+  std::erase_if(expected.edge_edge, [&](const auto& p) { return !filter.accepts_edge_edge(p[0], p[1]); });
+  EXPECT_FALSE(expected.vertex_triangle.empty());
+  expect_equal(find(finder, scene, &filter), expected);
+}
+
+TEST(PairFinder, OmitsPositionsThatAreNotFinite) {
+  Scene scene = two_spheres(8, 0.02);
+  ClosePairs expected = brute_force(scene);
+  const int bad = expected.vertex_triangle[0][0];
+  const auto is_touched = [&](const auto& points) {
+    return std::find(points.begin(), points.end(), bad) != points.end();
+  };
+  std::erase_if(expected.vertex_triangle,
+                [&](const auto& p) { return p[0] == bad || is_touched(scene.primitives.triangles[p[1]]); });
+  std::erase_if(expected.edge_edge, [&](const auto& p) {
+    return is_touched(scene.primitives.edges[p[0]]) || is_touched(scene.primitives.edges[p[1]]);
+  });
+  for (const double value : {std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity()}) {
+    PairFinder finder(scene.primitives);
+    scene.x[bad] = {{0, value, 0}};
+    expect_equal(find(finder, scene), expected);
+  }
+}
+
+TEST(PairFinder, AcceptsEmptyLists) {
+  PairFinder finder({});
+  EXPECT_TRUE(finder.find({}).is_complete);
+  PairFinder vertices({{0, 1}, {}, {}});
+  const std::vector<Box> path = swept_boxes(std::vector<Vec3d>(2), {});
+  EXPECT_TRUE(vertices.find({path}).vertex_triangle.empty());
+}
+
+}  // namespace
+}  // namespace aspic

@@ -1,0 +1,121 @@
+#include "scene/scene_contact.h"
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+
+#include "base/error.h"
+#include "dynamics/contact.h"
+#include "io/mesh_file.h"
+#include "mesh/surface.h"
+#include "scene/placement.h"
+#include "scene/schema.h"
+
+namespace aspic {
+namespace {
+
+// Smallest Young's modulus of the elastic tets of a body; 0 without any.
+double smallest_young(const Model& model, const BodyRange& body) {
+  double smallest = 0;
+  for (int t = body.first_tet; t < body.first_tet + body.tet_count; ++t) {
+    const double E = model.tet_fields[0].second[t];
+    if (E > 0 && (smallest == 0 || E < smallest)) smallest = E;
+  }
+  return smallest;
+}
+
+double friction_of(const Value& table, double fallback) {
+  const Value* own = table.find("friction");
+  return own ? own->number() : fallback;
+}
+
+TriMesh surface_of(Value& obstacle, MeshLoader& loader) {
+  if (const Value* shape = obstacle.find("shape")) return boundary_surface(shape_mesh(*shape, loader)).surface;
+  const Value mesh = obstacle["mesh"];
+  const std::filesystem::path path = loader.files.find(mesh);
+  try {
+    TriMesh surface = read_tri_mesh(path);
+    check_fingerprint(obstacle.table(), "hash", fingerprint_of_file(path), path.string());
+    obstacle.table().set("mesh", {loader.files.keep(path, obstacle["name"].text()), {}});
+    return surface;
+  } catch (const InvalidInput& e) {
+    throw error_at(mesh.place, std::string("mesh = ") + toml_string(mesh.text()) + ": " + e.what());
+  }
+}
+
+void add_obstacle(Value& obstacle, double friction, MeshLoader& loader, ContactMesh& contact) {
+  const std::string name = obstacle["name"].text();
+  if (const Value* plane = obstacle.find("plane")) {
+    const Value& normal = (*plane)["normal"];
+    if (!(norm(normal.vector()) > 0)) throw error_at(normal.place, "normal has length 0; try [0, 1, 0]");
+    return contact.add_plane(name, friction, (*plane)["origin"].vector(), normal.vector());
+  }
+  TriMesh surface = surface_of(obstacle, loader);
+  const AffineMap place = placement_of(obstacle);
+  for (Vec3d& X : surface.vertices) {
+    X = place(X);
+    if (!std::isfinite(X[0] + X[1] + X[2])) throw error_at(obstacle.place, "obstacle '" + name + "' is not finite");
+  }
+  if (surface.triangles.empty()) throw error_at(obstacle.place, "obstacle '" + name + "' has no triangles");
+  contact.add({.name = name, .is_obstacle = true, .friction = friction}, surface.vertices, surface.triangles, {});
+}
+
+void complete_names(std::vector<Value>& obstacles) {
+  std::set<std::string> names;
+  for (size_t i = 0; i < obstacles.size(); ++i) {
+    if (!obstacles[i].find("name")) obstacles[i].table().set("name", {"obstacle" + std::to_string(i + 1), {}});
+    const Value& name = obstacles[i]["name"];
+    if (!names.insert(name.text()).second)
+      throw error_at(name.place, "two obstacles are called '" + name.text() + "'; names must differ");
+  }
+}
+
+}  // namespace
+
+void add_scene_contact(Table& document, MeshLoader& loader, Model& model) {
+  Value* obstacles = document.find("obstacle");
+  if (!document.find("contact") && !obstacles) return;
+  if (!document.find("contact")) {
+    Table defaults;
+    defaults.set("friction", {0.0, {}});
+    document.set("contact", {defaults, {}});
+  }
+  const Value& options = *document.find("contact");
+  const double friction = options["friction"].number();
+  const auto number = [&options](const char* key) {
+    const Value* value = options.find(key);
+    return value ? value->number() : 0.0;
+  };
+  ContactMesh contact;
+  const std::vector<Value>& bodies = document.find("body")->array();
+  for (size_t b = 0; b < model.bodies.size(); ++b) {
+    const BodyRange& body = model.bodies[b];
+    std::vector<int> rows(model.mesh.rest.size());
+    for (size_t v = 0; v < rows.size(); ++v) rows[v] = static_cast<int>(v);
+    contact.add({.name = body.name, .young = smallest_young(model, body), .friction = friction_of(bodies[b], friction)},
+                model.mesh.rest, boundary_triangles(model.mesh, body.first_tet, body.tet_count), rows);
+  }
+  if (obstacles) {
+    complete_names(obstacles->array());
+    for (Value& obstacle : obstacles->array()) add_obstacle(obstacle, friction_of(obstacle, friction), loader, contact);
+  }
+  const ContactOptions given{.reach = number("reach"), .stiffness = number("stiffness")};
+  for (const ContactPart& part : contact.parts)
+    if (!part.is_obstacle && given.reach > part.mean_edge)
+      throw error_at(options["reach"].place, "reach = " + number_text(given.reach) + "; body '" + part.name +
+                                                 "' has edges of " + number_text(part.mean_edge) +
+                                                 " m, and contact must begin closer than that (try " +
+                                                 number_text(part.mean_edge / 50) + ")");
+  if (given.stiffness == 0)
+    for (const ContactPart& part : contact.parts)
+      if (!part.is_obstacle && part.young == 0)
+        throw error_at(options.place, "body '" + part.name +
+                                          "' is not elastic, so contact has no default stiffness; "
+                                          "set contact.stiffness [Pa]");
+  add_contact(std::move(contact), given, number("creep"), model);
+  const ContactLaws& laws = model.contact->laws();
+  loader.notes.push_back("contact begins at " + number_text(laws.largest_reach()) + " m" +
+                         (given.reach > 0 ? "" : " (a fiftieth of the mean edge of the finer surface)"));
+}
+
+}  // namespace aspic

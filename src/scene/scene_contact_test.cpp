@@ -1,0 +1,59 @@
+// Contact and obstacles of scenes.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "contact/barrier.h"
+#include "scene/scene.h"
+#include "scene/scene_cases_test.h"
+
+namespace aspic {
+namespace {
+
+using ::testing::AllOf;
+using ::testing::HasSubstr;
+
+constexpr const char* kFloor = "\n[[obstacle]]\nplane = { origin = [0, -0.5, 0] }\n";
+
+TEST(SceneContact, ObstacleSwitchesContactOn) {
+  const TestFolder folder;
+  const Scene scene = load_scene(folder.write("scene.toml", kCube + kFloor));
+  const Barrier* contact = scene.simulation.model().contact;
+  ASSERT_NE(contact, nullptr);
+  ASSERT_EQ(contact->mesh().parts.size(), 2U);
+  EXPECT_EQ(contact->mesh().parts[1].name, "obstacle1");
+  EXPECT_THAT(scene.resolved, AllOf(HasSubstr("friction = 0.0"), HasSubstr("name = \"obstacle1\"")));
+  EXPECT_EQ(load_scene(folder.write("free.toml", kCube)).simulation.model().contact, nullptr);
+}
+
+TEST(SceneContact, ResolvedSceneIsTheSame) {
+  const TestFolder folder;
+  const Scene scene = load_scene(folder.write("scene.toml", kCube + kFloor));
+  write_inputs(scene, folder / "run");
+  const Scene again = load_scene(folder.write("run/resolved.toml", scene.resolved));
+  EXPECT_EQ(again.resolved, scene.resolved);
+}
+
+// Pins that an obstacle blocks end the run; they never jump to its other side.
+TEST(SceneContact, PinsDoNotPassThroughObstacles) {
+  const TestFolder folder;
+  const std::string pins = "[[body.pin]]\nwhere = \"all\"\nmotion = { displacement = [0, \"-1000 * t\", 0] }\n";
+  const std::string slab =
+      "[[obstacle]]\nshape = { box = { lower = [-9, -1, -9], upper = [9, -0.9, 9], cells = [1, 1, 1] } }\n";
+  Scene scene = load_scene(folder.write("scene.toml", kCube + pins + slab));
+  bool has_failed = false;
+  for (int i = 0; i < 3 && !has_failed; ++i) has_failed = !is_success(scene.simulation.step().status);
+  EXPECT_TRUE(has_failed);
+  for (size_t k = 1; k < scene.simulation.state().q.size(); k += 3) EXPECT_GT(scene.simulation.state().q[k], -0.9);
+}
+
+TEST(SceneContact, RejectsBadInput) {
+  EXPECT_THAT(refusal(kCube + "\n[[obstacle]]\nplane = { normal = [0, 0, 0] }\n"), HasSubstr("normal has length 0"));
+  EXPECT_THAT(refusal(kCube + "\n[[obstacle]]\nmesh = \"none.obj\"\n"), HasSubstr("none.obj"));
+  EXPECT_THAT(refusal(kCube + "\n[[obstacle]]\nplane = { origin = [0, 0.5, 0] }\n"),
+              HasSubstr("starts behind the plane"));
+  EXPECT_THAT(refusal(kCube + "\n[contact]\nreach = 100\n"), HasSubstr("contact must begin closer"));
+  EXPECT_THAT(refusal(kCube + "\n[contact]\nfriction = -1\n"), HasSubstr("must be >= 0"));
+}
+
+}  // namespace
+}  // namespace aspic

@@ -1,0 +1,70 @@
+// Schema of contact and obstacles.
+#include "scene/schema_table.h"
+
+namespace aspic {
+
+void add_contact_sections(Schema& s) {
+  add_keys(s, "scene",
+           {{.name = "contact",
+             .accepts = kTable,
+             .table = "contact",
+             .meaning = "switches contact on: bodies touch each other, themselves and obstacles"},
+            {.name = "obstacle",
+             .accepts = kTables,
+             .table = "obstacle",
+             .meaning = "rigid bodies at rest; they switch contact on"}});
+  s.sections.push_back({"contact", "[contact]", "Contact with friction. The defaults suit most scenes."});
+  add_keys(
+      s, "contact",
+      {{.name = "friction",
+        .accepts = kNumber,
+        .fallback = "0.0",
+        .range = kNotNegative,
+        .meaning = "coefficient of friction of bodies and obstacles without their own; that of a pair is the "
+                   "geometric mean",
+        .reason = "none; rubber on a smooth floor has 0.3 to 0.8"},
+       {.name = "reach",
+        .accepts = kNumber,
+        .unit = "m",
+        .range = kPositive,
+        .meaning = "distance at which contact forces begin; default: a fiftieth of the mean edge of the finer "
+                   "surface"},
+       {.name = "stiffness",
+        .accepts = kNumber,
+        .unit = "Pa",
+        .range = kPositive,
+        .meaning = "pressure scale of contact forces; default: a tenth of the smaller Young's modulus"},
+       {.name = "creep",
+        .accepts = kNumber,
+        .unit = "m/s",
+        .range = kPositive,
+        .meaning = "largest speed of surfaces that stick; default: 1e-4 sqrt(9.81 m/s^2 L) for bodies of size L"}});
+
+  s.sections.push_back({"obstacle", "[[obstacle]]",
+                        "A rigid body at rest: a plane, a surface from a file, or a shape. Surfaces and shapes are "
+                        "placed by scale, rotate, translate in this order."});
+  add_keys(s, "obstacle",
+           {{.name = "name", .accepts = kText, .meaning = "default: obstacle1, obstacle2, ..."},
+            {.name = "plane", .accepts = kTable, .table = "plane", .meaning = "an infinite plane"},
+            {.name = "mesh", .accepts = kText, .required = true, .meaning = "triangle mesh, open or closed"},
+            {.name = "hash", .accepts = kText, .meaning = "hash of the file, in resolved scenes"},
+            {.name = "shape", .accepts = kTable, .table = "shape", .meaning = "the boundary of a generated shape"},
+            {.name = "friction", .accepts = kNumber, .range = kNotNegative, .meaning = "default: contact.friction"}});
+  add_placement_keys(s, "obstacle");
+  s.alternatives.push_back({"obstacle", {{"plane"}, {"mesh", "hash"}, {"shape"}}, true});
+  s.sections.push_back({"plane", "plane = { ... } in an [[obstacle]]", "A half-space that bodies stay out of."});
+  add_keys(s, "plane",
+           {{.name = "origin",
+             .accepts = kNumbers,
+             .unit = "m",
+             .fallback = "[0.0, 0.0, 0.0]",
+             .meaning = "a point of the plane",
+             .reason = "a floor at height 0"},
+            {.name = "normal",
+             .accepts = kNumbers,
+             .fallback = "[0.0, 1.0, 0.0]",
+             .meaning = "direction of the free side, any length but 0",
+             .reason = "a floor under gravity along -y"}});
+}
+
+}  // namespace aspic
