@@ -180,6 +180,12 @@ class Verify(CommandLine):
         self.assertIn("<svg", page)
         self.assertNotRegex(page, r'(src|href)="http')
 
+    def test_page_has_formulas_above_material_checks(self):
+        self.verify("--only", "uniaxial_table")
+        page = (self.folder / "out/verify/index.html").read_text()
+        if "render" in self.aspic("--help").stdout:  # formulas are made with the viewer's page
+            self.assertLess(page.index("<mi>ψ</mi>"), page.index("aspic verify --only materials/uniaxial_table"))
+
     def test_a_wrong_integrator_or_material_fails(self):
         text = self.verify("--only", "free_fall", "--instead", "bdf2=backward_euler", code=3)
         self.assertIn("FAIL  bdf2:", text)

@@ -9,7 +9,8 @@ if(TARGET aspic_viewer)
   target_compile_definitions(test_viewer PRIVATE ASPIC_SOURCE_DIR="${CMAKE_SOURCE_DIR}")
 
   add_aspic_tests(test_lessons ${CMAKE_SOURCE_DIR}/apps/aspic/lecture/lessons_test.cpp
-    ${CMAKE_SOURCE_DIR}/apps/aspic/gallery_test.cpp ${CMAKE_SOURCE_DIR}/apps/aspic/step_fields_test.cpp)
+    ${CMAKE_SOURCE_DIR}/apps/aspic/formulas_test.cpp ${CMAKE_SOURCE_DIR}/apps/aspic/gallery_test.cpp
+    ${CMAKE_SOURCE_DIR}/apps/aspic/step_fields_test.cpp)
   target_link_libraries(test_lessons PRIVATE aspic_commands)
   target_compile_definitions(test_lessons PRIVATE ASPIC_SOURCE_DIR="${CMAKE_SOURCE_DIR}")
 

@@ -59,7 +59,7 @@ void check_elastica(const Subject& subject, Findings& found) {
   std::vector<std::vector<double>> by_mesh;
   Plot plot{"drop of the tip (dashed: the elastica)", "P L^2 / (E I)", "drop / L", Scales::linear, {}};
   for (const int n : cells) {
-    by_mesh.push_back(drops(n, subject.taken_for("neo_hookean_log"), loads));
+    by_mesh.push_back(drops(n, subject.replacement("neo_hookean_log"), loads));
     Curve curve{std::to_string(n) + " cells through the height", {0}, {0}};
     for (size_t k = 0; k < loads.size(); ++k) curve.x.push_back(loads[k].load), curve.y.push_back(by_mesh.back()[k]);
     plot.curves.push_back(curve);

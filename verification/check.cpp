@@ -13,7 +13,7 @@ constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 
 }  // namespace
 
-std::string Subject::taken_for(const std::string& name) const {
+std::string Subject::replacement(const std::string& name) const {
   const auto found = instead.find(name);
   return found == instead.end() ? name : found->second;
 }

@@ -14,7 +14,7 @@ struct Subject {
   std::map<std::string, std::string> instead;  // replaced materials, integrators, cuts, to see checks fail
   double stiffness = 1;  // factor of the moduli where all materials agree (small strains), to see checks fail
 
-  std::string taken_for(const std::string& name) const;  // the replacement of `name`, or `name`
+  std::string replacement(const std::string& name) const;  // the replacement of `name`, or `name`
 };
 
 struct Comparison {

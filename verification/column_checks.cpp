@@ -53,7 +53,7 @@ double torsional_frequency(int n, const std::string& material, double stiffness)
 void check_frequency(const Subject& subject, Findings& found) {
   std::vector<double> values;
   for (const int n : subject.quick ? std::vector<int>{4, 8} : std::vector<int>{8, 16})
-    values.push_back(torsional_frequency(n, subject.taken_for("neo_hookean_log"), subject.stiffness));
+    values.push_back(torsional_frequency(n, subject.replacement("neo_hookean_log"), subject.stiffness));
   const double reference = std::sqrt(kTorsion / kPolar) / (4 * kLength);
   found.expect(
       "first torsional frequency, limit", {richardson(values, 2), reference, (subject.quick ? 0.01 : 2e-3) * reference},
@@ -174,9 +174,9 @@ void check_large_twist(const Subject& subject, Findings& found) {
                     5e-4,
                     105,
                     subject.stiffness,
-                    subject.taken_for("neo_hookean_isochoric"),
-                    subject.taken_for("midpoint"),
-                    subject.taken_for("five") == "five" ? BoxCut::five : BoxCut::kuhn};
+                    subject.replacement("neo_hookean_isochoric"),
+                    subject.replacement("midpoint"),
+                    subject.replacement("five") == "five" ? BoxCut::five : BoxCut::kuhn};
   const Twist twist = twisted(base);
   Column slower = base, mirrored = base;
   slower.h *= 2, mirrored.spin *= -1;

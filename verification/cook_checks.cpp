@@ -48,7 +48,7 @@ void check_cook(const Subject& subject, Findings& found, const Cook& cook, doubl
   const std::vector<int> cells = subject.quick ? std::vector<int>{8, 16, 32} : std::vector<int>{16, 32, 64, 128};
   Curve curve{"linear tets", {}, {}}, limit{"reference", {}, {}, CurveStyle::dashed};
   for (const int n : cells) {
-    curve.x.push_back(n), curve.y.push_back(tip(n, cook, subject.taken_for(cook.material)));
+    curve.x.push_back(n), curve.y.push_back(tip(n, cook, subject.replacement(cook.material)));
     limit.x.push_back(n), limit.y.push_back(reference);
   }
   const double error = reference - curve.y.back(), before = reference - curve.y[curve.y.size() - 2];

@@ -52,7 +52,7 @@ void check_cylinder(const Subject& subject, Findings& found) {
     const Torsion exact = twisted_cylinder(material, kCylinderPoisson, kTwist);
     std::vector<double> torque, force, outer;
     for (const int n : rings) {
-      const Twisted one = twisted(n, subject.taken_for(material), exact);
+      const Twisted one = twisted(n, subject.replacement(material), exact);
       torque.push_back(one.torque), force.push_back(one.force), outer.push_back(one.outer);
     }
     const double tolerance = subject.quick ? 0.02 : 2e-3;

@@ -26,7 +26,7 @@ void check_differences(const Subject& subject, Findings& found) {
   Plot plot = error_plot();
   Findings orders;  // appended after the errors
   for (const MaterialInfo& info : materials()) {
-    const std::string taken = subject.taken_for(info.name);
+    const std::string taken = subject.replacement(info.name);
     auto V = make_tet_elasticity(
         taken, mesh, 0,
         std::vector<MaterialParameters>(mesh.tet_count(), material_parameters(taken, {.young = 1, .poisson = 0.4})));

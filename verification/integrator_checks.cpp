@@ -12,7 +12,7 @@ namespace {
 void check_oscillator(const Subject& subject, Findings& found) {
   for (const std::string& integrator : integrators_in_time()) {
     const Oscillation expected = expected_oscillations().at(integrator);
-    const Oscillation measured = measured_oscillation(subject.taken_for(integrator));
+    const Oscillation measured = measured_oscillation(subject.replacement(integrator));
     found.expect(integrator + ": energy left after a period",
                  {measured.energy_left, expected.energy_left, 6e-7 * std::max(1.0, expected.energy_left)},
                  "the last printed digit of the reference");
@@ -23,7 +23,7 @@ void check_oscillator(const Subject& subject, Findings& found) {
 
 Curve energy_curve(const Subject& subject, const std::string& integrator, int steps, double& worst_factor,
                    double factor) {
-  Simulation simulation = oscillator({.h = 0.01, .integrator = subject.taken_for(integrator), .solver = {}});
+  Simulation simulation = oscillator({.h = 0.01, .integrator = subject.replacement(integrator), .solver = {}});
   Curve curve{integrator, {0}, {1}, CurveStyle::line};
   const double first = oscillator_energy(simulation);
   for (int i = 0; i < steps; ++i) {
@@ -38,7 +38,7 @@ Curve energy_curve(const Subject& subject, const std::string& integrator, int st
 
 void check_symplectic_euler(const Subject& subject, Findings& found, Plot& plot) {
   const std::string name = "symplectic_euler";
-  Simulation simulation = oscillator({.h = 0.01, .integrator = subject.taken_for(name), .solver = {}});
+  Simulation simulation = oscillator({.h = 0.01, .integrator = subject.replacement(name), .solver = {}});
   const double E = oscillator_energy(simulation);
   // q moves with the new velocity, so the shadow energy contains - h/2 w^2 x v.
   const auto shadow = [&] {
@@ -82,7 +82,7 @@ void check_euler_energies(const Subject& subject, Findings& found) {
 void check_free_fall(const Subject& subject, Findings& found) {
   for (const std::string& integrator : integrators_in_time()) {
     found.expect_small(integrator + ": distance from the closed form after 10 steps",
-                       free_fall_error(subject.taken_for(integrator), expected_fall(integrator, kFallSteps)), 1e-13,
+                       free_fall_error(subject.replacement(integrator), expected_fall(integrator, kFallSteps)), 1e-13,
                        "round-off of 10 solves for positions of 1 m", "m");
   }
 }

@@ -36,7 +36,7 @@ void check_forces(const Subject& subject, Findings& found) {
   const TetMesh mesh = small_box();
   const std::vector<double> x = deformed(mesh);
   for (const MaterialInfo& info : materials()) {
-    const auto V = heterogeneous(subject.taken_for(info.name), mesh);
+    const auto V = heterogeneous(subject.replacement(info.name), mesh);
     std::vector<double> g(x.size());
     V->add_gradient(x, 1, g);
     Vec3d sum{}, moment{};
@@ -66,7 +66,7 @@ void check_rigid_motions(const Subject& subject, Findings& found) {
   }
   for (const MaterialInfo& info : materials()) {
     if (info.name == "linear") continue;
-    const auto V = heterogeneous(subject.taken_for(info.name), mesh);
+    const auto V = heterogeneous(subject.replacement(info.name), mesh);
     found.expect_small(info.name + ": |V(Rx + t) / V(x) - 1|", std::abs(V->value(moved) / V->value(x) - 1), 1e-13,
                        "round-off, enlarged by coordinates of 5 m beside strains of 0.1");
   }
@@ -107,7 +107,7 @@ std::vector<double> falling_beam(TetMesh mesh, const Vec3d& gravity, double h, c
 TetMesh beam_mesh(double size) { return make_box({{0, 0, 0}}, {{4 * size, size, size}}, {8, 2, 2}); }
 
 void check_numbering(const Subject& subject, Findings& found) {
-  const ModelOptions options{.material = subject.taken_for("neo_hookean_log"), .young = 1e5};
+  const ModelOptions options{.material = subject.replacement("neo_hookean_log"), .young = 1e5};
   const Vec3d gravity{{0.5, -9.81, 2}};
   const TetMesh mesh = beam_mesh(1);
   const std::vector<double> q = falling_beam(mesh, gravity, 0.02, options);
@@ -129,7 +129,7 @@ void check_numbering(const Subject& subject, Findings& found) {
 }
 
 void check_units(const Subject& subject, Findings& found) {
-  const std::string material = subject.taken_for("neo_hookean_log");
+  const std::string material = subject.replacement("neo_hookean_log");
   // Lengths and times scale by a, moduli and densities by b.
   const auto run = [&](double a, double b) {
     std::vector<double> q = falling_beam(beam_mesh(a), {{0, -9.81 / a, 0}}, 0.02 * a,

@@ -17,7 +17,7 @@ std::string number(double x) {
 
 StretchedBox measured(const Subject& subject, const std::string& material, double poisson, double l,
                       const Uniaxial& expected) {
-  const std::string taken = subject.taken_for(material);
+  const std::string taken = subject.replacement(material);
   return stretched_box(taken, material_parameters(taken, {.young = 1, .poisson = poisson}), l, expected.lateral);
 }
 

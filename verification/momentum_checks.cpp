@@ -40,7 +40,7 @@ void check_linear(const Subject& subject, Findings& found) {
   const double h = 0.005;
   const Vec3d gravity{{0, -9.81, 0}};
   for (const std::string integrator : {"backward_euler", "bdf2", "tr_bdf2", "midpoint", "trapezoid"}) {
-    Simulation simulation = spinning_box(subject.taken_for(integrator), h, gravity, 1e4);
+    Simulation simulation = spinning_box(subject.replacement(integrator), h, gravity, 1e4);
     const Vec3d start = momenta(simulation).linear;
     double worst = 0;
     for (int i = 1; i <= 20; ++i) {
@@ -55,7 +55,7 @@ void check_linear(const Subject& subject, Findings& found) {
 
 void check_angular(const Subject& subject, Findings& found) {
   const std::string name = "midpoint";
-  Simulation simulation = spinning_box(subject.taken_for(name), 0.02, {}, 1e4);
+  Simulation simulation = spinning_box(subject.replacement(name), 0.02, {}, 1e4);
   const Vec3d start = momenta(simulation).angular;
   double worst = 0;
   for (int i = 0; i < 50; ++i) {
@@ -69,7 +69,7 @@ void check_angular(const Subject& subject, Findings& found) {
 // L = sum q x M v changes by h sum v_new x (M v_old), so backward Euler does not conserve it.
 void check_angular_euler(const Subject& subject, Findings& found) {
   const double h = 0.01;
-  Simulation simulation = spinning_box(subject.taken_for("backward_euler"), h, {}, 1e4);
+  Simulation simulation = spinning_box(subject.replacement("backward_euler"), h, {}, 1e4);
   double worst = 0, lost = 0;
   const double first = norm(momenta(simulation).angular);
   for (int i = 0; i < 10; ++i) {

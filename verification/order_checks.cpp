@@ -27,7 +27,7 @@ void check_time_order(const Subject& subject, Findings& found) {
   Plot plot{"error after 0.4 s, one face held", "time step h [s]", "largest error [m]", Scales::logarithmic, {}};
   for (const std::string& integrator : integrators_in_time()) {
     const int order = make_integrator(integrator)->facts().order;
-    const std::string taken = subject.taken_for(integrator);
+    const std::string taken = subject.replacement(integrator);
     for (const Held held : {Held::on_one_face, Held::nowhere, Held::on_the_boundary}) {
       Curve curve{integrator, {}, {}, CurveStyle::line_and_points};
       const int count = subject.quick ? 3 : 4;
@@ -48,7 +48,7 @@ void check_driven_order(const Subject& subject, Findings& found) {
   for (const std::string& integrator : integrators_in_time()) {
     const int order = make_integrator(integrator)->facts().order;
     const double h = 0.004;
-    const std::string taken = subject.taken_for(integrator);
+    const std::string taken = subject.replacement(integrator);
     found.expect(integrator + ": order",
                  {order_between(driven_oscillator_error(taken, h), driven_oscillator_error(taken, h / 2)),
                   static_cast<double>(order), 0.1},
@@ -68,9 +68,10 @@ double without_terms(std::vector<double> errors, int order) {
 }
 
 void check_time_floor(const Subject& subject, Findings& found) {
-  found.expect_small("rk4, h = 2.5 ms: error", affine_motion_error(subject.taken_for("rk4"), 0.0025, Held::on_one_face),
-                     1e-10, "the fourth order holds down to the accuracy of the solves", "m");
-  const std::string taken = subject.taken_for("tr_bdf2");
+  found.expect_small("rk4, h = 2.5 ms: error",
+                     affine_motion_error(subject.replacement("rk4"), 0.0025, Held::on_one_face), 1e-10,
+                     "the fourth order holds down to the accuracy of the solves", "m");
+  const std::string taken = subject.replacement("tr_bdf2");
   const double fine = affine_motion_error(taken, 0.0005, Held::on_one_face);
   const double coarse = affine_motion_error(taken, 0.01, Held::on_one_face);
   found.expect("tr_bdf2: error at 10 ms / error at 0.5 ms", {coarse / fine, 400, 40},
@@ -78,7 +79,7 @@ void check_time_floor(const Subject& subject, Findings& found) {
   for (const std::string integrator : {"backward_euler", "bdf2", "tr_bdf2", "midpoint"}) {
     std::vector<double> errors;
     for (int i = 0; i < 6; ++i)
-      errors.push_back(affine_motion_error(subject.taken_for(integrator), 0.01 / (1 << i), Held::on_one_face));
+      errors.push_back(affine_motion_error(subject.replacement(integrator), 0.01 / (1 << i), Held::on_one_face));
     found.expect_small(integrator + ", 10 to 0.3 ms: error without its first five terms",
                        without_terms(errors, make_integrator(integrator)->facts().order), 1e-10,
                        "nothing but the powers of h from the order on, down to the accuracy of the solves", "m");
@@ -91,7 +92,7 @@ void check_space_order(const Subject& subject, Findings& found) {
   for (const MaterialInfo& info : materials()) {
     Curve l2{info.name + ", L2", {}, {}}, h1{info.name + ", H1", {}, {}};
     for (const int n : cells) {
-      const SpaceError error = manufactured_error(info.name, subject.taken_for(info.name), 0.3, n);
+      const SpaceError error = manufactured_error(info.name, subject.replacement(info.name), 0.3, n);
       l2.x.push_back(error.h), l2.y.push_back(error.l2);
       h1.x.push_back(error.h), h1.y.push_back(error.h1);
     }

@@ -54,7 +54,7 @@ void check_patch(const Subject& subject, Findings& found) {
   }
   for (const Shape& shape : shapes)
     for (const MaterialInfo& info : materials()) {
-      const Patch patch = patch_error(shape.mesh, subject.taken_for(info.name), 0.4);
+      const Patch patch = patch_error(shape.mesh, subject.replacement(info.name), 0.4);
       const std::string reason = "the solve leaves 1e-13 of the forces";
       found.expect_small(info.name + ", " + shape.name + ": largest error of a position / size", patch.position, 1e-12,
                          reason);
@@ -100,7 +100,7 @@ void check_planes(const Subject& subject, Findings& found) {
     if (is_steep || (subject.quick && row.stretch != 1.5)) continue;
     for (const bool is_turned : {false, true}) {
       const Pulled pulled =
-          pull_between_planes(row, subject.taken_for(row.material), is_turned ? turn : identity3<double>());
+          pull_between_planes(row, subject.replacement(row.material), is_turned ? turn : identity3<double>());
       const std::string name = std::string(row.material) + ", nu = " + std::to_string(row.poisson).substr(0, 4) +
                                ", stretch " + std::to_string(row.stretch).substr(0, 3) +
                                (is_turned ? ", planes turned" : "");

@@ -53,7 +53,7 @@ double automatic_error(const Law& own, const Law& taken, const Mat3d& F) {
 void check_automatic(const Subject& subject, Findings& found) {
   const std::string reason = "round-off, relative to the stiffness and to |F|";
   for (const MaterialInfo& info : materials()) {
-    const Law &own = law(info.name), &taken = law(subject.taken_for(info.name));
+    const Law &own = law(info.name), &taken = law(subject.replacement(info.name));
     for (const auto& [kind, states] : by_kind(own.states)) {
       std::vector<double> errors;
       for (const Mat3d& F : states) errors.push_back(automatic_error(own, taken, F));
@@ -65,7 +65,7 @@ void check_automatic(const Subject& subject, Findings& found) {
 // Documented values where there is no derivative to compare.
 void check_edges(const Subject& subject, Findings& found) {
   for (const MaterialInfo& info : materials()) {
-    const Law &own = law(info.name), &taken = law(subject.taken_for(info.name));
+    const Law &own = law(info.name), &taken = law(subject.replacement(info.name));
     for (const auto& [name, F] : kEdges) {
       const auto is_here = [&name = name](const NamedState& state) { return state.name == name; };
       if (std::any_of(own.states.begin(), own.states.end(), is_here)) continue;
@@ -112,7 +112,7 @@ void check_slopes(const Subject& subject, Findings& found) {
   const std::vector<double> here(9, 0.0);
   Findings orders;  // appended after the errors
   for (const MaterialInfo& info : materials()) {
-    const Law &own = law(info.name), &taken = law(subject.taken_for(info.name));
+    const Law &own = law(info.name), &taken = law(subject.replacement(info.name));
     for (const auto& [kind, states] : by_kind(own.states)) {
       double order = NAN, smallest = 0;  // lowest order; largest of the smallest errors
       for (const Mat3d& F : states) {

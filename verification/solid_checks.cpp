@@ -87,7 +87,7 @@ void check_sphere(const Subject& subject, Findings& found) {
     const Inflation exact = inflated_sphere(material, poisson, 1, 2, inner);
     std::vector<double> outer, force;
     for (const int level : levels) {
-      const Inflation one = blown_up(level, subject.taken_for(material), poisson, inner);
+      const Inflation one = blown_up(level, subject.replacement(material), poisson, inner);
       outer.push_back(one.outer), force.push_back(one.force);
     }
     const double tolerance = subject.quick ? 0.03 : 1e-3;
@@ -135,7 +135,7 @@ void check_half_space(const Subject& subject, Findings& found) {
   const double poisson = 0.3;
   const std::vector<int> cells = subject.quick ? std::vector<int>{4, 8} : std::vector<int>{8, 16};
   std::vector<std::vector<Vec3d>> by_mesh;
-  for (const int n : cells) by_mesh.push_back(under_point_load(n, subject.taken_for("linear"), poisson));
+  for (const int n : cells) by_mesh.push_back(under_point_load(n, subject.replacement("linear"), poisson));
   const std::vector<Vec3d> points = {{{0.5, 0, 0}}, {{0.5, 0, 0.5}}, {{0, 0, 0.5}}};
   const char* names[] = {"on the surface", "at 45 degrees", "below the force"};
   for (size_t k = 0; k < points.size(); ++k) {
@@ -180,7 +180,7 @@ double torsional_stiffness(int n, const std::string& material, double shear) {
 }
 
 void check_torsion(const Subject& subject, Findings& found) {
-  const std::string material = subject.taken_for("linear");
+  const std::string material = subject.replacement("linear");
   std::vector<double> values;
   for (const int n : subject.quick ? std::vector<int>{3, 6} : std::vector<int>{6, 12})
     values.push_back(torsional_stiffness(n, material, subject.stiffness));

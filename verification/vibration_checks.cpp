@@ -53,7 +53,7 @@ void expect_limits(Findings& found, const ModeReferences& modes, const std::vect
 }
 
 void check_bar(const Subject& subject, Findings& found) {
-  const std::string material = subject.taken_for("neo_hookean_log");
+  const std::string material = subject.replacement("neo_hookean_log");
   std::vector<std::vector<double>> by_mesh;
   for (const int n : {8, 16, 32}) {
     TetMesh mesh = make_box({{0, 0, 0}}, {{1, 0.02, 0.02}}, {n, 1, 1});
@@ -80,7 +80,8 @@ void check_beam(const Subject& subject, Findings& found) {
   const std::vector<std::string> names = {"first", "second", "third"};
   const std::vector<int> cells = subject.quick ? std::vector<int>{4, 8} : std::vector<int>{4, 8, 16};
   for (const int n : cells)
-    by_mesh.push_back(frequencies(strip(n, subject.taken_for("neo_hookean_log"), subject.stiffness * kLayerYoung), 3));
+    by_mesh.push_back(
+        frequencies(strip(n, subject.replacement("neo_hookean_log"), subject.stiffness * kLayerYoung), 3));
   for (size_t k = 0; k < names.size(); ++k) {
     Curve curve{names[k], {}, {}};
     for (size_t i = 0; i < cells.size(); ++i) {
@@ -111,7 +112,7 @@ void check_tapered_membrane(const Subject& subject, Findings& found) {
                                              [](double x, double y) {
                                                return std::array{10 * x, (y - 0.5) * (5 - 4 * x)};
                                              }),
-                                  subject.taken_for("neo_hookean_log"), moduli.young, moduli.poisson, 8000),
+                                  subject.replacement("neo_hookean_log"), moduli.young, moduli.poisson, 8000),
                     6));
   expect_limits(found,
                 {{"mode 1", "mode 2", "mode 3", "mode 4", "mode 5", "mode 6"},
@@ -160,8 +161,8 @@ void check_pendulum(const Subject& subject, Findings& found) {
   const double angle = std::numbers::pi / 2 + std::atan2(w, l);  // angle from the vertical
   const double reference = 4 * std::comp_ellint_1(std::sin(angle / 2)) * std::sqrt(inertia / (9.81 * d));
   for (const std::string integrator : {"midpoint", "tr_bdf2"}) {
-    const double coarse = swing_period(subject.taken_for(integrator), 0.01);
-    const double fine = swing_period(subject.taken_for(integrator), 0.005);
+    const double coarse = swing_period(subject.replacement(integrator), 0.01);
+    const double fine = swing_period(subject.replacement(integrator), 0.005);
     found.expect(integrator + ": period, extrapolated in h",
                  {richardson({coarse, fine}, 2), reference, 2e-4 * reference},
                  "the bar bends and stretches by 1e-5 of its length; h^4", "s");

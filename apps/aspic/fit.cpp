@@ -49,7 +49,7 @@ ExistingFit existing(const FitArguments& arguments) {
   return arguments.force ? ExistingFit::overwrite : ExistingFit::refuse;
 }
 
-std::string words_of(const DataFinding& finding) {
+std::string describe(const DataFinding& finding) {
   return finding.where + ": " + finding.what + (finding.remedy.empty() ? "" : "; ") + finding.remedy;
 }
 
@@ -58,8 +58,8 @@ void heed_findings(const DataSet& data, const fs::path& path) {
   constexpr int kMostTold = 3;
   std::vector<std::string> errors, warnings;
   for (const DataFinding& finding : diagnose(data)) {
-    if (finding.severity == Severity::error) errors.push_back(words_of(finding));
-    if (finding.severity == Severity::warning) warnings.push_back(words_of(finding));
+    if (finding.severity == Severity::error) errors.push_back(describe(finding));
+    if (finding.severity == Severity::warning) warnings.push_back(describe(finding));
   }
   if (!errors.empty()) {
     errors.push_back(fmt::format("(aspic fit --check {} prints details)", path.string()));

@@ -87,7 +87,7 @@ void print_fit(std::FILE* stream, const DataSet& data, const FitOutcome& outcome
   const FitReport& report = outcome.report;
   fmt::print(stream, "fit        {}: {} iterations, {} equilibria of {} cases; {}, weight {:.3g}\n", report.words,
              report.iterations, outcome.counts.equilibria, data.experiment.cases.size(), report.method, report.weight);
-  fmt::print(stream, "mesh       {}\n", words_of_mesh(outcome));
+  fmt::print(stream, "mesh       {}\n", describe_mesh(outcome));
   print_misfit(stream, outcome);
   print_values(stream, outcome);
   print_parts(stream, outcome);

@@ -46,7 +46,7 @@ fs::path shipped_scenes() { return shipped_file("scenes/lecture").parent_path();
 
 RecentScenes::RecentScenes(fs::path file) : file_(std::move(file)) {}
 
-fs::path RecentScenes::usual_file() {
+fs::path RecentScenes::default_file() {
   const auto folder = [](const char* variable) {
     const char* value = std::getenv(variable);
     return value && fs::path(value).is_absolute() ? fs::path(value) : fs::path();

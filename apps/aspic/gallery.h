@@ -20,7 +20,7 @@ class RecentScenes {
   static constexpr size_t kMost = 12;
 
   explicit RecentScenes(std::filesystem::path file);
-  static std::filesystem::path usual_file();  // empty if the user has no such folder
+  static std::filesystem::path default_file();  // empty if the user has no such folder
 
   void note(const std::filesystem::path& scene) const;
   std::vector<std::filesystem::path> read() const;  // existing files only

@@ -120,7 +120,7 @@ Minimization minimize(const Problem& problem, const MinimizeArguments& arguments
 double distance(const Planar& a, const Planar& b) { return std::hypot(a[0] - b[0], a[1] - b[1]); }
 
 // Explains the status, with a remedy.
-std::string in_words(const Minimization& done) {
+std::string describe(const Minimization& done) {
   const MinimizeReport& report = done.report;
   switch (report.status) {
     case Status::converged:
@@ -162,7 +162,7 @@ void print_minimum(const Problem& problem, const Minimization& done) {
   const MinimizeReport& report = done.report;
   fmt::print("{:>4} {:>13.6g} {:>13.6g} {:>15.8g} {:>10.3g}\n\n", report.iterations, done.end[0], done.end[1],
              report.value, std::abs(report.gradient_norm));
-  fmt::print("{}\n", in_words(done));
+  fmt::print("{}\n", describe(done));
   fmt::print("f = {:.12g} at ({:.10g}, {:.10g}); |g| = {:.3g}; residual {:.3g}, tolerance {:.3g}\n", report.value,
              done.end[0], done.end[1], std::abs(report.gradient_norm), std::abs(report.reached), report.threshold);
   fmt::print("evaluations: {} of f, {} of its gradient, {} of its Hessian ({} projected)\n", report.values,

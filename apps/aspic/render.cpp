@@ -16,7 +16,7 @@
 #include "base/error.h"
 #include "io/atomic_file.h"
 #include "scene/run_directory.h"
-#include "viewer/report.h"
+#include "viewer/recording.h"
 
 namespace aspic::cli {
 namespace {
@@ -124,7 +124,7 @@ int render(const RenderArguments& arguments) {
     throw InvalidInput(fmt::format("{}: is not the directory of a run", arguments.run.string()));
 
   const Scene scene = load_scene(scene_of_run(arguments.run));
-  const viewer::Report report = viewer::make_report(arguments.run, scene, {.max_bytes = kMostBytes});
+  const viewer::RecordedRun report = viewer::make_report(arguments.run, scene, {.max_bytes = kMostBytes});
   if (!report.note.empty()) fmt::print("note: {} of {} frames are drawn\n", report.frames, report.frames_of_run);
   const std::unique_ptr<Output> output = open_output(arguments, options);
   catch_interrupts();
@@ -137,7 +137,7 @@ int render(const RenderArguments& arguments) {
     std::fflush(stdout);
   };
   const viewer::RenderEnd end =
-      viewer::render(report.html, options, take, StopToken([] { return interrupt_signal() != 0; }));
+      viewer::render(report.text, options, take, StopToken([] { return interrupt_signal() != 0; }));
   if (is_terminal && drawn > 0) fmt::print("\n");
   if (end == viewer::RenderEnd::interrupted) return exit_signal + interrupt_signal();
   output->finish(drawn);

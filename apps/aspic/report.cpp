@@ -1,5 +1,5 @@
 // `aspic report`: writes a run as one self-contained HTML file, as runs do at their end.
-#include "viewer/report.h"
+#include "viewer/recording.h"
 
 #include <fmt/format.h>
 
@@ -24,13 +24,13 @@ constexpr double kMegabyte = 1e6;
 
 struct ReportArguments {
   fs::path run, out;
-  double max_size = viewer::ReportOptions().max_bytes / kMegabyte;
+  double max_size = viewer::RecordingOptions().max_bytes / kMegabyte;
 };
 
 // "out/bunny/report.html: 201 frames, 2.2 MB"
-std::string written(const fs::path& file, const viewer::Report& report) {
+std::string written(const fs::path& file, const viewer::RecordedRun& report) {
   return fmt::format("{}: {} frames, {:.1f} MB", file.string(), report.frames,
-                     static_cast<double>(report.html.size()) / kMegabyte);
+                     static_cast<double>(report.text.size()) / kMegabyte);
 }
 
 int report(const ReportArguments& arguments) {
@@ -40,9 +40,9 @@ int report(const ReportArguments& arguments) {
   if (!std::isfinite(arguments.max_size)) throw InvalidInput("--max-size: give a finite number of megabytes");
   const Scene scene = load_scene(scene_of_run(arguments.run));
   const auto max_bytes = static_cast<size_t>(arguments.max_size * kMegabyte);
-  const viewer::Report report = viewer::make_report(arguments.run, scene, {.max_bytes = max_bytes});
+  const viewer::RecordedRun report = viewer::make_report(arguments.run, scene, {.max_bytes = max_bytes});
   const fs::path file = arguments.out.empty() ? RunLayout(arguments.run).report() : arguments.out;
-  write_file(file, report.html);
+  write_file(file, report.text);
   if (!report.note.empty()) fmt::print("note: {}\n", report.note);
   fmt::print("{}; open it in a browser\n", written(file, report));
   return exit_done;
@@ -53,9 +53,9 @@ int report(const ReportArguments& arguments) {
 void write_run_report(const fs::path& run, const Scene& scene, std::FILE* stream) {
   if (!scene.output.report) return;
   try {
-    const viewer::Report report = viewer::make_report(run, scene);
+    const viewer::RecordedRun report = viewer::make_report(run, scene);
     const fs::path file = RunLayout(run).report();
-    write_file(file, report.html);
+    write_file(file, report.text);
     if (!stream) return;
     fmt::print(stream, "           browser: open {}\n", written(file, report));
     if (!report.note.empty()) fmt::print(stream, "           {}\n", report.note);
@@ -69,7 +69,7 @@ void add_report(CLI::App& app, Action& action) {
   CLI::App* command = app.add_subcommand("report", "Writes an HTML page of a run: playback, plots, certificate, scene");
   command->footer(R"(
 Examples:
-  aspic report out/bunny                      write out/bunny/report.html, as the run does at its end
+  aspic report out/bunny                      write out/bunny/report.text, as the run does at its end
   aspic report out/bunny -o bunny.html        another file; it needs no server and no network
   aspic report out/long --max-size 40         more frames of a long run
 

@@ -3,14 +3,17 @@
 
 #include <cmath>
 #include <nlohmann/json.hpp>
+#include <utility>
 
 #include "aspic/commands.h"
+#include "aspic/formulas.h"
 #include "aspic/plot.h"
 #include "aspic/report_page.h"
 #include "aspic/verify_text.h"
 #include "base/error.h"
 #include "io/atomic_file.h"
 #include "io/external_program.h"
+#include "material/registry.h"
 
 namespace aspic::cli {
 namespace {
@@ -79,6 +82,17 @@ void add_overview(ReportPage& page, const std::vector<Verification>& results) {
   page.table({"", "check", "rows", "name"}, rows);
 }
 
+// Strain energy densities of the materials, where the program has their formulas.
+void add_densities(ReportPage& page) {
+  if (formulas_of(materials().front().name).empty()) return;
+  page.heading("Strain energy densities");
+  page.paragraph("I1 = tr F'F, J = det F; mu and lambda are the Lame constants of E and nu.");
+  for (const MaterialInfo& info : materials()) {
+    page.paragraph(info.name);
+    for (const std::string& formula : formulas_of(info.name)) page.formula(formula);
+  }
+}
+
 void add_judged(ReportPage& page, const Verification& result, const std::vector<Figure>& figures) {
   page.heading(result.check->title);
   page.verdict(result.findings.passes() ? Verdict::pass : Verdict::fail, result.findings.passes() ? "pass" : "fail",
@@ -119,7 +133,10 @@ void write_verification(const fs::path& folder, const std::vector<Verification>&
   page.code(version_text());
   add_overview(page, results);
   bool draws = true;
+  std::string family;
   for (const Verification& result : results) {
+    if (result.check->family != std::exchange(family, result.check->family) && family == "materials")
+      add_densities(page);
     std::vector<Figure> figures;
     try {
       if (draws) figures = drawn(result, pictures.path());

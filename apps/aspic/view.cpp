@@ -16,7 +16,7 @@
 #include "base/parallel.h"
 #include "scene/run_directory.h"
 #include "viewer/page.h"
-#include "viewer/report.h"
+#include "viewer/recording.h"
 #include "viewer/server.h"
 #include "viewer/session.h"
 
@@ -75,11 +75,11 @@ int serve_until_interrupted(Server& server) {
 int view_run(const ViewArguments& arguments) {
   if (!arguments.overrides.empty() || arguments.play)
     throw InvalidInput("--set and --play need a scene; a run has already been simulated");
-  const viewer::Report report =
+  const viewer::RecordedRun report =
       viewer::make_report(arguments.input, load_scene(scene_of_run(arguments.input)), {.max_bytes = kLargestRun});
   if (!report.note.empty()) fmt::print("note: {}\n", report.note);
   fmt::print("{}: {} frames of a run\n", arguments.input.string(), report.frames);
-  Server server({.port = arguments.port, .page = report.html, .log = log_line});
+  Server server({.port = arguments.port, .page = report.text, .log = log_line});
   catch_interrupts();
   print_address(server, arguments.no_browser);
   return serve_until_interrupted(server);
@@ -92,7 +92,7 @@ int view_scene(const ViewArguments& arguments) {
     if (!what.empty()) fmt::print("{} ...\n", what);
     std::fflush(stdout);
   };
-  const RecentScenes recent(RecentScenes::usual_file());
+  const RecentScenes recent(RecentScenes::default_file());
   Session session(arguments.input, arguments.overrides,
                   {.lessons = lecture::lessons(fs::path("out") / "lecture" / "meshes"),
                    .gallery =

@@ -1,4 +1,4 @@
-#include "viewer/animation.h"
+#include "viewer/replies.h"
 
 #include <fmt/format.h>
 
@@ -105,11 +105,9 @@ std::string pc2_archive(const std::string& name, const Surface& surface, const M
 
 }  // namespace
 
-Json animation_reply(const ShownSide& shown, const Json& format) {
-  const auto known =
-      std::find_if(std::begin(kFormats), std::end(kFormats), [&](const Format& f) { return format == f.name; });
-  if (known == std::end(kFormats)) refuse("animation.format", format, "'usd', 'pc2' or 'glb' is expected");
-  const Motion motion = motion_of(shown, *known);
+Json animation_reply(const ShownSide& shown, const std::string& format) {
+  const Motion motion =
+      motion_of(shown, *std::ranges::find_if(kFormats, [&](const Format& f) { return format == f.name; }));
   const std::string name = saved_name(shown.side.steered().scene);
   Json reply;
   if (format == "usd") {

@@ -38,16 +38,16 @@ Json parse_json(std::string_view text, size_t most) {
   }
 }
 
-void refuse(const std::string& key, const Json& value, const std::string& what_would_do) {
-  throw InvalidInput(fmt::format("{} = {}: {}", key, shown(value), what_would_do));
+void refuse(const std::string& key, const Json& value, const std::string& expected) {
+  throw InvalidInput(fmt::format("{} = {}: {}", key, shown(value), expected));
 }
 
 Arguments::Arguments(const Json& object, std::string name) : object_(object), name_(std::move(name)) {
   if (!object.is_object()) refuse(name_, object, "an object is expected, such as {\"do\": \"play\"}");
 }
 
-void Arguments::fail(const char* key, const std::string& what_would_do) const {
-  refuse(name_ + "." + key, object_.at(key), what_would_do);
+void Arguments::fail(const char* key, const std::string& expected) const {
+  refuse(name_ + "." + key, object_.at(key), expected);
 }
 
 const Json& Arguments::value(const char* key) {
@@ -83,6 +83,14 @@ std::string Arguments::text(const char* key, size_t most) {
   if (text.size() > most) fail(key, fmt::format("a text of at most {} bytes is expected", most));
   if (text.find('\0') != std::string::npos) fail(key, "a text without zero bytes is expected");
   return text;
+}
+
+std::string Arguments::choice(const char* key, const std::vector<std::string>& choices) {
+  const Json& v = value(key);
+  for (const std::string& known : choices)
+    if (v == known) return known;
+  const auto last = choices.end() - 1;
+  fail(key, fmt::format("'{}' or '{}' is expected", fmt::join(choices.begin(), last, "', '"), *last));
 }
 
 Vec3d Arguments::vector(const char* key) {

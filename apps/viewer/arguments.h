@@ -16,7 +16,7 @@ using Json = nlohmann::json;
 Json parse_json(std::string_view text, size_t most);
 
 // Throws InvalidInput: "KEY = VALUE: " and the description of valid values.
-[[noreturn]] void refuse(const std::string& key, const Json& value, const std::string& what_would_do);
+[[noreturn]] void refuse(const std::string& key, const Json& value, const std::string& expected);
 
 class Arguments {
  public:
@@ -28,15 +28,16 @@ class Arguments {
   double number(const char* key);                         // a finite number
   int integer(const char* key, int lowest, int highest);  // within both bounds, inclusive
   bool boolean(const char* key);
-  std::string text(const char* key, size_t most = 4096);  // at most `most` bytes
-  Vec3d vector(const char* key);                          // three finite numbers
-  Vec3d weights(const char* key);                         // barycentric coordinates, from 0 to 1 with sum 1
-  std::vector<std::string> texts(const char* key);        // at most 200 strings of at most 4096 bytes
-  std::vector<int> indices(const char* key, int count);   // integers from 0 to count - 1
-  void finish() const;                                    // throws InvalidInput for members that were not read
+  std::string text(const char* key, size_t most = 4096);                         // at most `most` bytes
+  std::string choice(const char* key, const std::vector<std::string>& choices);  // one of at least two
+  Vec3d vector(const char* key);                                                 // three finite numbers
+  Vec3d weights(const char* key);                        // barycentric coordinates, from 0 to 1 with sum 1
+  std::vector<std::string> texts(const char* key);       // at most 200 strings of at most 4096 bytes
+  std::vector<int> indices(const char* key, int count);  // integers from 0 to count - 1
+  void finish() const;                                   // throws InvalidInput for members that were not read
 
  private:
-  [[noreturn]] void fail(const char* key, const std::string& what_would_do) const;
+  [[noreturn]] void fail(const char* key, const std::string& expected) const;
 
   const Json& object_;
   std::string name_;

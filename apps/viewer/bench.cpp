@@ -36,8 +36,7 @@ std::vector<int> held_by(const Model& model) {
     held.insert(held.end(), pin.vertices.begin(), pin.vertices.end());
   }
   std::sort(held.begin(), held.end());
-  if (held.empty())
-    throw InvalidInput("nothing holds the body, which the probe would push away; pin it first (brush, B)");
+  if (held.empty()) throw InvalidInput("no pin holds the body against the indenter; pin it first (brush, B)");
   return held;
 }
 
@@ -68,8 +67,7 @@ void Bench::set_up_mesh(const Scene& scene) {
   is_same_mesh_ = !mesh;
   if (!mesh) {
     mesh = to_user(scene.simulation.model().numbering, body_.mesh);
-    notes_.emplace_back(
-        "Fitted on the very mesh that was measured: an inverse crime, the fit looks better than it is.");
+    notes_.emplace_back("The fit uses the mesh of the measurements (an inverse crime): it looks better than it is.");
   }
   data_.numbering = locality_numbering(*mesh);
   Experiment& data = data_.experiment;
@@ -111,7 +109,7 @@ void Bench::set_options(const BenchOptions& options) {
   if (!same_markers) place_markers();
 }
 
-// Markers below the tip are hidden from the cameras.
+// Markers below the indenter are hidden from the cameras.
 void Bench::record(const Touch& touch, const TipPose& pose, int depths, const StopToken& stop) {
   LoadCase load;
   load.group = fmt::format("poke {}", groups_ + 1);
@@ -127,12 +125,12 @@ void Bench::record(const Touch& touch, const TipPose& pose, int depths, const St
   const double deepest = dot(pose.center - touch.begun.center, touch.begun.axis);
   std::vector<double> last;
   for (int d = 1; d <= depths; ++d) {
-    if (stop.stopped()) throw InvalidInput("interrupted; what was recorded is kept");
+    if (stop.stopped()) throw InvalidInput("interrupted; the measurements so far are kept");
     load.name = fmt::format("{}, depth {}", load.group, d);
     load.pose = between(touch.begun, pose, static_cast<double>(d) / depths);
     LoadedBody body(body_, load, truth_.model, parameters_, {});
     if (!body.solve(parameters_, last))
-      throw InvalidInput(fmt::format("the body finds no rest under this tip: {}; press less deep", body.failure()));
+      throw InvalidInput(fmt::format("no equilibrium under this indenter: {}; press less deep", body.failure()));
     last = body.prediction().x;
     if (d == 1) ++groups_;
     add(load, body.prediction(), deepest * d / depths);

@@ -33,8 +33,8 @@ class Bench {
   const BenchOptions& options() const { return options_; }
   void set_options(const BenchOptions& options);  // throws InvalidInput: other markers after the first case
 
-  // Moves a tip to that pose in `depths` equal increments and measures after each one. Throws InvalidInput if the body
-  // finds no equilibrium or `stop` stops. The earlier measurements remain.
+  // Moves an indenter to that pose in `depths` equal increments and measures after each one. Throws InvalidInput if the
+  // body finds no equilibrium or `stop` stops. The earlier measurements remain.
   void record(const Touch& touch, const TipPose& pose, int depths, const StopToken& stop);
   void forget(int c);  // drops case c
   void forget_all();
@@ -54,7 +54,7 @@ class Bench {
  private:
   void set_up_mesh(const Scene& scene);
   void place_markers();
-  LoadCase as_data(const LoadCase& load) const;  // moves the tip to the surface of the data set's mesh
+  LoadCase as_data(const LoadCase& load) const;  // moves the indenter to the surface of the data set's mesh
   void add(const LoadCase& load, const CasePrediction& found, double depth);
 
   BenchOptions options_;

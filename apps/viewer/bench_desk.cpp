@@ -70,7 +70,7 @@ void BenchDesk::add_to(Commands& commands) {
 Bench& BenchDesk::bench() {
   if (bench_) return *bench_;
   Busy busy(options_);
-  busy("setting up the bench: markers, and a mesh for the fit");
+  busy("setting up the markers and the mesh of the fit");
   bench_ = std::make_unique<Bench>(stage_.a().side.steered().scene, wanted_);
   body_ = body_text(stage_.a().side);
   return *bench_;
@@ -91,7 +91,7 @@ void BenchDesk::add(const FitNews& news) {
 
 void BenchDesk::require_room(size_t cases) {
   if (bench().data().experiment.cases.size() + cases > kMostCases)
-    throw InvalidInput(fmt::format("at most {} cases are kept; forget some", kMostCases));
+    throw InvalidInput(fmt::format("a data set has at most {} cases; forget some", kMostCases));
 }
 
 // ---------------------------------------------------------------- commands
@@ -107,7 +107,7 @@ void BenchDesk::set_bench(Arguments& arguments) {
   if (arguments.has("same_mesh")) wanted.same_mesh = arguments.boolean("same_mesh");
   arguments.finish();
   if (wanted.same_mesh != wanted_.same_mesh) {
-    if (case_count() > 0) throw InvalidInput("the recorded cases are those of the other mesh; forget them first");
+    if (case_count() > 0) throw InvalidInput("the recorded cases belong to the other mesh; forget them first");
     bench_.reset();
     fit_.drop();
   } else if (bench_) {
@@ -123,12 +123,12 @@ void BenchDesk::record(Arguments& arguments) {
   arguments.finish();
   const Indenter& indenter = stage_.a().side.tools().indenter;
   const Touch* touch = indenter.touch();
-  if (!touch) throw InvalidInput("record: there is no tip; let it touch the body first");
+  if (!touch) throw InvalidInput("record: there is no indenter; place it on the body first");
   if (norm(indenter.wanted().center - touch->begun.center) == 0)
-    throw InvalidInput("record: the tip only touches; press it in first");
+    throw InvalidInput("record: the indentation depth is 0; press the indenter in first");
   require_room(depths);
   Busy busy(options_);
-  busy("waiting until the body is at rest under the tip");
+  busy("computing the equilibrium under the indenter");
   try {
     bench().record(*touch, indenter.wanted(), depths, playback_.stop_token());
   } catch (...) {
@@ -145,9 +145,9 @@ void BenchDesk::poke_all(Arguments& arguments) {
   const Tip tip = tip_of(arguments, model, boundary_of(model));
   arguments.finish();
   if (!(depth > 0 && depth <= 10 * tip.radius))
-    refuse("poke_all.depth", depth, "a positive depth, at most ten radii of the tip, is expected [m]");
+    refuse("poke_all.depth", depth, "a positive depth, at most ten radii of the indenter, is expected [m]");
   const std::vector<PokeSite> places = bench().sites(tip.radius, sites);
-  if (places.empty()) throw InvalidInput("there is no free and flat place for this tip; choose a smaller radius");
+  if (places.empty()) throw InvalidInput("there is no free and flat place for this indenter; choose a smaller radius");
   require_room(places.size() * depths);
   Busy busy(options_);
   const StopToken stop = playback_.stop_token();
@@ -164,8 +164,7 @@ void BenchDesk::poke_all(Arguments& arguments) {
     if (stop.stopped()) break;
   }
   send();
-  if (failed > 0)
-    throw InvalidInput(fmt::format("{} of {} pokes were not recorded whole: {}", failed, places.size(), why));
+  if (failed > 0) throw InvalidInput(fmt::format("{} of {} pokes are incomplete: {}", failed, places.size(), why));
 }
 
 void BenchDesk::forget(Arguments& arguments) {
@@ -183,7 +182,7 @@ void BenchDesk::forget(Arguments& arguments) {
 void BenchDesk::save_capture(Arguments& arguments) {
   const std::string folder = arguments.text("folder");
   arguments.finish();
-  if (case_count() == 0) throw InvalidInput("nothing is recorded yet; record a case first");
+  if (case_count() == 0) throw InvalidInput("no case is recorded yet; record one first");
   if (std::filesystem::exists(folder)) throw InvalidInput(folder + ": exists already; choose a new folder");
   write_data_set(folder, bench_->data());
   fit_.save_material(folder);
@@ -191,7 +190,7 @@ void BenchDesk::save_capture(Arguments& arguments) {
 
 void BenchDesk::send() const {
   Json json = {{"kind", "capture"},
-               {"radius", usual_radius(boundary_of(stage_.a().side.model()))},
+               {"radius", default_radius(boundary_of(stage_.a().side.model()))},
                {"noise", wanted_.noise},
                {"seed", wanted_.seed},
                {"words", fit_.summary()},

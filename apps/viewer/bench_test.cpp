@@ -67,7 +67,7 @@ TEST(Bench, RecordsPoseAndEquilibriumForceOfTheTip) {
   EXPECT_EQ(page.capture()["markers"]["triangles"].size(), 30u);
   EXPECT_FALSE(page.capture()["same_mesh"]);
   touch(page);
-  EXPECT_NE(page.refused({{"do", "record"}}).find("press it in"), std::string::npos);
+  EXPECT_NE(page.refused({{"do", "record"}}).find("press the indenter in"), std::string::npos);
   page.send({{"do", "press"}, {"depth", 0.006}});
   page.steps(1);
   const Json probe = page.side()["probe"];
@@ -102,7 +102,7 @@ TEST(Bench, SavesAReadableDataSet) {
   const TestFolder folder;
   const std::string path = (folder.path() / "poked").string();
   Page page(kBlock);
-  EXPECT_NE(page.refused({{"do", "save_capture"}, {"folder", path}}).find("nothing is recorded"), std::string::npos);
+  EXPECT_NE(page.refused({{"do", "save_capture"}, {"folder", path}}).find("no case is recorded"), std::string::npos);
   page.send({{"do", "bench"}, {"markers", 30}});
   page.send(poke(2, 2));
   page.send({{"do", "save_capture"}, {"folder", path}});
@@ -116,7 +116,7 @@ TEST(Bench, SavesAReadableDataSet) {
 
 TEST(Bench, FindsAndSimulatesTheStifferHalf) {
   Page page(kBlock);
-  EXPECT_NE(page.refused({{"do", "fit"}}).find("nothing is recorded"), std::string::npos);
+  EXPECT_NE(page.refused({{"do", "fit"}}).find("no case is recorded"), std::string::npos);
   page.send({{"do", "bench"}, {"markers", 60}, {"noise", 0.002}, {"same_mesh", true}});
   EXPECT_TRUE(page.capture()["same_mesh"]);
   page.send(poke(6, 1));
@@ -188,7 +188,7 @@ TEST(Bench, EstimatesTheErrorOfACoarserMesh) {
     run_fit(*task, [&](const FitNews& news) {
       if (!news.stage.empty()) stages.push_back(news.stage);
     });
-    EXPECT_EQ(std::ranges::count(stages, "what the mesh gets wrong, by a finer one") > 0, !same_mesh);
+    EXPECT_EQ(std::ranges::count(stages, "discretization error, by a finer mesh") > 0, !same_mesh);
     EXPECT_GT(std::ranges::count(stages, "a value for every tet"), 0);
   }
 }
@@ -252,7 +252,7 @@ TEST(Bench, RefusesImpossibleMeasurements) {
   page.refused({{"do", "simulate_fit"}});
   page.send({{"do", "stop_fit"}});  // without a fit
   page.send({{"do", "pin"}, {"side", "a"}, {"vertices", page.pins()}, {"pinned", false}});
-  EXPECT_NE(page.refused({{"do", "bench"}}).find("nothing holds"), std::string::npos);
+  EXPECT_NE(page.refused({{"do", "bench"}}).find("no pin holds"), std::string::npos);
 }
 
 TEST(FitJob, RunsInItsOwnThreadAndStops) {

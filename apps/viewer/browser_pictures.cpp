@@ -82,7 +82,7 @@ class Arrivals {
     } else if (path == "/end") {
       is_whole_ = true;
     } else {
-      failure_ = path == "/failed" ? std::string(body) : "the page sent something unknown";
+      failure_ = path == "/failed" ? std::string(body) : "the page sent an unknown message";
     }
     changed_.notify_all();
     return "";

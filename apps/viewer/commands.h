@@ -39,7 +39,7 @@ void add_scene_commands(const SessionOptions& options, Stage& stage, Playback& p
 void add_questions(const SessionOptions& options, Stage& stage, const Playback& playback, const FitState& fit,
                    Questions& questions);
 
-// Returns the tip that a command describes, with defaults for missing members. Throws InvalidInput.
+// Returns the indenter that a command describes, with defaults for missing members. Throws InvalidInput.
 Tip tip_of(Arguments& arguments, const Model& model, const Surface& cage);
 
 }  // namespace aspic::viewer

@@ -46,6 +46,12 @@ std::vector<Field> fields_of(const Model& model) {
   return fields;
 }
 
+const std::vector<double>* tet_field(const Model& model, std::string_view name) {
+  for (const auto& [known, values] : model.tet_fields)
+    if (known == name) return &values;
+  return nullptr;
+}
+
 TetFields tet_fields_at(const View& view) {
   TetFields fields;
   evaluate_elasticity(view, fields);
@@ -83,8 +89,7 @@ std::span<const double> FieldValues::tet_values(const std::string& field, const 
   for (const TetField& own : view.further)
     if (own.field.name == field) return own.values;
   if (field == "density") return model.density;
-  for (const auto& [name, values] : model.tet_fields)
-    if (name == field) return values;
+  if (const auto* values = tet_field(model, field)) return *values;
   const int tets = model.mesh.tet_count();
   if (field == "quality" || field == "stretch") {
     tet_.resize(tets);

@@ -2,6 +2,7 @@
 #pragma once
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "viewer/surface.h"
@@ -15,6 +16,7 @@ struct Field {
   bool is_log = false;  // displayed on a logarithmic scale
 };
 std::vector<Field> fields_of(const Model& model);
+const std::vector<double>* tet_field(const Model& model, std::string_view name);  // null: none
 
 // Values per tet from outside the model, such as those of a fit.
 struct TetField {

@@ -5,22 +5,22 @@
 namespace aspic::viewer {
 namespace {
 
-const char* words_of(FitStage stage) {
+const char* name_of(FitStage stage) {
   switch (stage) {
     case FitStage::uniform:
       return "one value for the whole body";
     case FitStage::mesh_errors:
-      return "what the mesh gets wrong, by a finer one";
+      return "discretization error, by a finer mesh";
     case FitStage::field:
       return "a value for every tet";
     case FitStage::uncertainty:
-      return "how certain it is";
+      return "uncertainty";
     case FitStage::parts:
-      return "the parts of which it is made";
+      return "segmentation into parts";
     case FitStage::cross_validation:
-      return "each poke left out";
+      return "leave-one-out cross-validation";
     case FitStage::next_poke:
-      return "where the next poke would tell most";
+      return "most informative next poke";
   }
   return "";
 }
@@ -35,12 +35,12 @@ std::vector<Unknown> unknowns_of(const FitPlan& plan, FitStage stage) {
 
 class Listener {
  public:
-  Listener(const FitTask& task, const std::function<void(FitNews)>& tell, const StopToken& stop)
-      : task_(task), tell_(tell), stop_(stop), plan_(completed(task.plan, task.data.experiment)) {}
+  Listener(const FitTask& task, const std::function<void(FitNews)>& report, const StopToken& stop)
+      : task_(task), report_(report), stop_(stop), plan_(completed(task.plan, task.data.experiment)) {}
 
   FitOutcome run() {
     const FitCallbacks callbacks{
-        .begin = [this](FitStage stage, const std::string&) { tell_(beginning(stage)); },
+        .begin = [this](FitStage stage, const std::string&) { report_(beginning(stage)); },
         .iterate = [this](FitStage stage, const FitIteration& i, std::span<const double> p) { hear(stage, i, p); },
         .stop = stop_};
     return fit_material(task_.data, task_.plan, {}, callbacks);
@@ -49,7 +49,7 @@ class Listener {
  private:
   FitNews beginning(FitStage stage) {
     stage_ = stage;
-    FitNews news{.stage = words_of(stage)};
+    FitNews news{.stage = name_of(stage)};
     if (stage == FitStage::uniform || stage == FitStage::field) {
       news.is_new_stage = true;
       map_.emplace(task_.data.experiment.mesh, plan_.model, known_parameters(plan_, task_.data.experiment),
@@ -66,11 +66,11 @@ class Listener {
       for (size_t u = 0; u < plan_.unknowns.size(); ++u)
         if (plan_.unknowns[u].quantity == "young") news.young = map_->values(static_cast<int>(u), p);
     }
-    tell_(std::move(news));
+    report_(std::move(news));
   }
 
   const FitTask& task_;
-  const std::function<void(FitNews)>& tell_;
+  const std::function<void(FitNews)>& report_;
   const StopToken& stop_;
   FitPlan plan_;
   FitStage stage_ = FitStage::uniform;
@@ -89,25 +89,25 @@ void append(FitNews& to, FitNews more) {
 
 }  // namespace
 
-void run_fit(const FitTask& task, const std::function<void(FitNews)>& tell, const StopToken& stop) {
+void run_fit(const FitTask& task, const std::function<void(FitNews)>& report, const StopToken& stop) {
   FitNews last{.has_ended = true};
   try {
-    last.outcome = Listener(task, tell, stop).run();
+    last.outcome = Listener(task, report, stop).run();
     for (const FittedQuantity& quantity : last.outcome->quantities)
       if (quantity.name == "young") last.young = quantity.values;
   } catch (const std::exception& e) {
     last.failure = e.what();
   }
-  tell(std::move(last));
+  report(std::move(last));
 }
 
 FitJob::FitJob(FitTask task, std::function<void()> wake) : wake_(std::move(wake)) {
   thread_ = std::thread([this, task = std::move(task)] {
-    const auto tell = [&](FitNews news) {
+    const auto report = [&](FitNews news) {
       news.task = task.number;
       add(std::move(news));
     };
-    run_fit(task, tell, StopToken([this] { return stopping_.load(); }));
+    run_fit(task, report, StopToken([this] { return stopping_.load(); }));
   });
 }
 

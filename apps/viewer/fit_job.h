@@ -31,7 +31,7 @@ struct FitNews {
 };
 
 // Runs the task on this thread and reports its progress.
-void run_fit(const FitTask& task, const std::function<void(FitNews)>& tell, const StopToken& stop = {});
+void run_fit(const FitTask& task, const std::function<void(FitNews)>& report, const StopToken& stop = {});
 
 class FitJob {
  public:

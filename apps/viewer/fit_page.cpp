@@ -129,7 +129,7 @@ class FitPack {
         {"interrupted", outcome_.interrupted},
         {"method", r.method},
         {"rule", outcome_.plan.fit.weight_rule},
-        {"mesh", words_of_mesh(outcome_)},
+        {"mesh", describe_mesh(outcome_)},
         {"iterations", r.iterations},
         {"weight", number_json(r.weight)},
         {"misfit", number_json(r.misfit)},

@@ -75,9 +75,9 @@ double error_of(const Bench& bench, const std::vector<double>& young) {
 }  // namespace
 
 void FitState::start(const Bench* bench) {
-  if (is_running_) throw InvalidInput("a fit is under way; stop it first");
+  if (is_running_) throw InvalidInput("a fit is running; stop it first");
   if (!bench || bench->data().experiment.cases.empty())
-    throw InvalidInput("nothing is recorded yet: poke the body and record, or let it be poked all over");
+    throw InvalidInput("no case is recorded yet; record one first, or poke the whole body");
   FitTask task{++task_, bench->data(), plan_for(*bench)};
   task.plan = completed(std::move(task.plan), task.data.experiment);
   drop();
@@ -131,7 +131,7 @@ std::vector<TetField> FitState::fields() const {
       {{"fit_error", "log of fitted / true modulus", "", true, 0}, bench_->on_scene(log_error)}};
   if (!known_.sigma.empty())
     fields.push_back(
-        {{"young_deviation", "deviation of log E (0.1: known to 10 %)", ""}, bench_->on_scene(known_.sigma)});
+        {{"young_deviation", "standard deviation of log E (0.1: 10 %)", ""}, bench_->on_scene(known_.sigma)});
   return fields;
 }
 
@@ -175,7 +175,7 @@ void FitState::simulate(Playback& playback) {
   stage_.mark_changed();
 }
 
-// A recording of the comparison names the saved file from now on.
+// Later recordings of the comparison refer to the saved file.
 void FitState::save_material(const std::filesystem::path& folder) {
   if (!has_material()) return;
   known_.file = std::filesystem::absolute(folder) / kMaterialFile;
@@ -187,8 +187,7 @@ void FitState::save_material(const std::filesystem::path& folder) {
 
 void FitState::require_saved_material() const {
   if (is_of_temporary(stage_.comparison(), folder_.get()))
-    throw InvalidInput(
-        "side B has the fitted material, which is in no file; save the data set, and the material with it");
+    throw InvalidInput("the fitted material of side B is not saved; save the data set, which includes it");
 }
 
 Json FitState::json() const {

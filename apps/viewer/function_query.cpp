@@ -1,4 +1,4 @@
-#include "viewer/function_query.h"
+#include "viewer/replies.h"
 
 #include <fmt/format.h>
 
@@ -11,7 +11,6 @@
 #include "scene/expression_function.h"
 #include "scene/scene_document.h"
 #include "scene/solver_options.h"
-#include "viewer/iteration_query.h"
 #include "viewer/settings.h"
 
 namespace aspic::viewer {
@@ -33,7 +32,7 @@ Problem problem_of(const std::string& name, const Planar& start) {
       return {make_test_function(name), known.formula, known.remarks, known.minimizer, known.lower, known.upper};
   Problem problem{.function = std::make_unique<ExpressionFunction>(name),
                   .formula = name,
-                  .remarks = "derivatives by differences",
+                  .remarks = "derivatives by finite differences",
                   .minimizer = std::nullopt};
   // Without a known range, shows the start and the origin.
   for (int i = 0; i < 2; ++i) {
@@ -71,12 +70,12 @@ struct Seen {  // the recorded minimization
 
 Json point(double x, double y, double value) { return {{"x", x}, {"y", y}, {"value", value}}; }
 
-std::string in_words(const MinimizeReport& report) {
+std::string describe(const MinimizeReport& report) {
   switch (report.status) {
     case Status::converged:
       return fmt::format("converged after {} iterations", report.iterations);
     case Status::round_off:
-      return fmt::format("as good as double precision allows, after {} iterations", report.iterations);
+      return fmt::format("reached the round-off floor after {} iterations", report.iterations);
     case Status::iteration_limit:
       return fmt::format("not converged: the limit of {} iterations was reached", report.iterations);
     case Status::stuck:
@@ -160,7 +159,7 @@ Json function_reply(Arguments& question) {
           {"samples", samples},
           {"value", surface_values(f, problem, samples)},
           {"status", to_string(report.status)},
-          {"text", in_words(report)},
+          {"text", describe(report)},
           {"path", std::move(seen.path)},
           {"iterations", std::move(rows)},
           {"model", to_json(seen.model)},

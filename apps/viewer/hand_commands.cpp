@@ -17,12 +17,11 @@ constexpr double kFarthestTarget = 1000;  // distance of a target, relative to t
 
 Vec3d target_of(Arguments& arguments, const Side& side) {
   const Vec3d target = arguments.vector("target");
-  Box box;
-  for (const Vec3d& X : side.model().mesh.rest) box.add(X);
+  const Box box = bounding_box(side.model().mesh.rest);
   const Vec3d extent = box.upper - box.lower, away = target - 0.5 * (box.lower + box.upper);
   const double reach = kFarthestTarget * norm(extent);
   if (!(dot(away, away) <= reach * reach))
-    throw InvalidInput(fmt::format("target: further than {:g} m from the body; choose a nearer one", reach));
+    throw InvalidInput(fmt::format("target: it is more than {:g} m away from the body; choose a nearer one", reach));
   return target;
 }
 

@@ -82,7 +82,7 @@ const Snapshot* History::restore_start_of(int step, Simulation& simulation) cons
     throw InvalidInput(fmt::format("step {} cannot be repeated: {}", step,
                                    step < 1 || step > taken + 1
                                        ? fmt::format("there are steps 1 to {}", taken + 1)
-                                       : "where it began is no longer remembered (look at a later one)"));
+                                       : "its initial state is no longer stored; choose a later step"));
   if (after && after->settings != settings_)
     throw InvalidInput(
         fmt::format("step {} was taken with other settings or pins than now, so it cannot be repeated", step));

@@ -5,7 +5,6 @@
 #include <cmath>
 
 #include "base/error.h"
-#include "mesh/box.h"
 #include "mesh/tet_shape.h"
 #include "viewer/commands.h"
 #include "viewer/scene_json.h"
@@ -16,11 +15,6 @@ namespace aspic::viewer {
 namespace {
 
 constexpr double kDeepestTip = 10;  // relative to the size of the body
-
-double size_of(const Surface& surface) {
-  const Box box = bounding_box(surface.rest);
-  return norm(box.upper - box.lower);
-}
 
 double positive(Arguments& arguments, const char* key, double most) {
   const double value = arguments.number(key);
@@ -35,7 +29,7 @@ Json command_of(const SurfacePoint& point, const Tip& tip) {
   return command;
 }
 
-// The tip touches the boundary of the tets, even if a skin is shown.
+// The indenter touches the boundary of the tets, even if a skin is shown.
 void touch(Stage& stage, Arguments& arguments) {
   const ShownSide& touched = stage.named(arguments);
   const int triangle = arguments.integer("triangle", 0, touched.surface.triangle_count() - 1);
@@ -62,10 +56,10 @@ void press(Stage& stage, Arguments& arguments) {
   const Vec3d shift = arguments.has("shift") ? arguments.vector("shift") : Vec3d{};
   arguments.finish();
   if (!stage.a().side.tools().indenter.touch())
-    throw InvalidInput("press: there is no tip; let it touch the body first");
+    throw InvalidInput("press: there is no indenter; place it on the body first");
   const double most = kDeepestTip * size_of(stage.a().surface);
   if (!(std::abs(depth) <= most && norm(shift) <= most))
-    throw InvalidInput(fmt::format("press: further than {:g} m; choose less", most));
+    throw InvalidInput(fmt::format("press: depth and shift are limited to {:g} m", most));
   Json done = {{"do", "press"}, {"depth", depth}};
   if (dot(shift, shift) > 0) done["shift"] = json_of(shift);
   stage.record(std::move(done));
@@ -84,20 +78,12 @@ void lift(Stage& stage) {
 }  // namespace
 
 Tip tip_of(Arguments& touch, const Model& model, const Surface& cage) {
-  Tip tip{.radius = usual_radius(cage)};
-  if (touch.has("shape")) {
-    const Json& shape = touch.value("shape");
-    if (shape != "sphere" && shape != "disc") refuse("touch.shape", shape, "'sphere' or 'disc' is expected");
-    tip.shape = shape == "disc" ? TipShape::disc : TipShape::sphere;
-  }
-  if (touch.has("contact")) {
-    const Json& contact = touch.value("contact");
-    if (contact != "bonded" && contact != "sliding")
-      refuse("touch.contact", contact, "'bonded' or 'sliding' is expected");
-    tip.contact = contact == "sliding" ? TipContact::sliding : TipContact::bonded;
-  }
+  Tip tip{.radius = default_radius(cage)};
+  if (touch.has("shape") && touch.choice("shape", {"sphere", "disc"}) == "disc") tip.shape = TipShape::disc;
+  if (touch.has("contact") && touch.choice("contact", {"bonded", "sliding"}) == "sliding")
+    tip.contact = TipContact::sliding;
   if (touch.has("radius")) tip.radius = positive(touch, "radius", kDeepestTip * size_of(cage));
-  tip.stiffness = touch.has("stiffness") ? positive(touch, "stiffness", 1e20) : usual_layer(model, tip.radius);
+  tip.stiffness = touch.has("stiffness") ? positive(touch, "stiffness", 1e20) : default_layer(model, tip.radius);
   return tip;
 }
 

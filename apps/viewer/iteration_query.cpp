@@ -1,4 +1,4 @@
-#include "viewer/iteration_query.h"
+#include "viewer/replies.h"
 
 #include <fmt/format.h>
 
@@ -106,15 +106,24 @@ Json Look::on_plane(std::span<const double> x, double value) const {
   return {{"s", along(d_)}, {"t", along(slice_.across)}, {"value", value}};
 }
 
+// Returns one member of all points.
+template <class Point>
+Json column(const std::vector<Point>& points, double Point::*member) {
+  Json list = Json::array();
+  for (const Point& point : points) list.push_back(point.*member);
+  return list;
+}
+
 Json slice_json(const Slice& slice) {
-  Json s = Json::array(), t = Json::array(), value = Json::array(), model = Json::array();
-  for (int column = 0; column < slice.columns; ++column) s.push_back(slice.point[column].s);
+  Json s = Json::array(), t = Json::array();
+  for (int i = 0; i < slice.columns; ++i) s.push_back(slice.point[i].s);
   for (int row = 0; row < slice.rows; ++row) t.push_back(slice.point[static_cast<size_t>(row) * slice.columns].t);
-  for (const SlicePoint& point : slice.point) {
-    value.push_back(point.value);
-    model.push_back(point.model);
-  }
-  return {{"columns", slice.columns}, {"rows", slice.rows}, {"s", s}, {"t", t}, {"value", value}, {"model", model}};
+  return {{"columns", slice.columns},
+          {"rows", slice.rows},
+          {"s", s},
+          {"t", t},
+          {"value", column(slice.point, &SlicePoint::value)},
+          {"model", column(slice.point, &SlicePoint::model)}};
 }
 
 Json Look::reply() && {
@@ -127,7 +136,7 @@ Json Look::reply() && {
           {"path", std::move(path_)}};
 }
 
-std::string in_words(const StepReport& report, const StepRow* row) {
+std::string describe(const StepReport& report, const StepRow* row) {
   std::string text = fmt::format("{} after {} iterations", to_string(report.status), report.iterations);
   if (row && !row->why.cause.empty()) text += fmt::format(": {}; {}", row->why.cause, row->why.remedy);
   return text;
@@ -136,16 +145,11 @@ std::string in_words(const StepReport& report, const StepRow* row) {
 }  // namespace
 
 Json to_json(const std::vector<CurvePoint>& curve) {
-  Json alpha = Json::array(), value = Json::array(), model = Json::array(), textbook = Json::array(),
-       slide = Json::array();
-  for (const CurvePoint& point : curve) {
-    alpha.push_back(point.alpha);
-    value.push_back(point.value);
-    model.push_back(point.model);
-    textbook.push_back(point.textbook_bound);
-    slide.push_back(point.slide_bound);
-  }
-  return {{"alpha", alpha}, {"value", value}, {"model", model}, {"textbook", textbook}, {"slide", slide}};
+  return {{"alpha", column(curve, &CurvePoint::alpha)},
+          {"value", column(curve, &CurvePoint::value)},
+          {"model", column(curve, &CurvePoint::model)},
+          {"textbook", column(curve, &CurvePoint::textbook_bound)},
+          {"slide", column(curve, &CurvePoint::slide_bound)}};
 }
 
 Json iteration_reply(Side& side, int step, int iteration, const StopToken& stop) {
@@ -161,7 +165,7 @@ Json iteration_reply(Side& side, int step, int iteration, const StopToken& stop)
   Json reply = std::move(look).reply();
   reply["step"] = step;
   reply["iteration"] = iteration;
-  reply["text"] = in_words(report, side.history().rows().find(step));
+  reply["text"] = describe(report, side.history().rows().find(step));
   return reply;
 }
 

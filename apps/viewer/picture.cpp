@@ -60,8 +60,7 @@ std::string encode_geometry(const Stamp& stamp, const Surface& surface, const Nu
   for (const auto& edge : surface.edges)
     for (const int v : edge) writer.put(static_cast<uint32_t>(v));
   for (const int t : surface.tet) writer.put(static_cast<uint32_t>(numbering.tet.to_user(t)));
-  for (int v = 0; v < surface.vertex_count(); ++v)
-    writer.put(surface.is_fine ? kNoVertex : static_cast<uint32_t>(numbering.vertex.to_user(surface.anchor(v))));
+  for (int v = 0; v < surface.vertex_count(); ++v) writer.put(surface.user_number(v, numbering));
   return writer.take();
 }
 

@@ -1,4 +1,4 @@
-#include "viewer/place_query.h"
+#include "viewer/replies.h"
 
 #include "energy/energy.h"
 #include "mesh/tet_shape.h"
@@ -24,10 +24,9 @@ Mat3d cauchy_of(const TetFields& fields, int tet) {
   return {{s[0], s[3], s[5], s[3], s[1], s[4], s[5], s[4], s[2]}};
 }
 
-Json tet_field(const Model& model, const std::string& name, int tet) {
-  for (const auto& [field, values] : model.tet_fields)
-    if (field == name) return values[tet];
-  return nullptr;
+Json value_of(const Model& model, const char* field, int tet) {
+  const std::vector<double>* values = tet_field(model, field);
+  return values ? Json((*values)[tet]) : Json();
 }
 
 }  // namespace
@@ -79,8 +78,8 @@ Json tet_reply(const ShownSide& shown, int triangle) {
           {"energy", size * fields.energy_density[t]},
           {"volume", size},
           {"quality", mean_ratio(corners(model.mesh, t))},
-          {"young", tet_field(model, "young", t)},
-          {"poisson", tet_field(model, "poisson", t)},
+          {"young", value_of(model, "young", t)},
+          {"poisson", value_of(model, "poisson", t)},
           {"density", model.density[t]}};
 }
 

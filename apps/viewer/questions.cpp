@@ -7,13 +7,10 @@
 #include "io/atomic_file.h"
 #include "io/external_program.h"
 #include "io/mesh_file.h"
-#include "viewer/animation.h"
 #include "viewer/commands.h"
 #include "viewer/fit_state.h"
-#include "viewer/function_query.h"
-#include "viewer/iteration_query.h"
-#include "viewer/place_query.h"
 #include "viewer/playback.h"
+#include "viewer/replies.h"
 #include "viewer/saved_scene.h"
 
 namespace aspic::viewer {
@@ -29,8 +26,7 @@ std::string mesh_text(const ShownSide& shown, const std::string& format) {
   const Model& model = shown.side.model();
   if (model.mesh.tet_count() > kMostTets)
     throw InvalidInput(
-        fmt::format("a mesh of {} tets; at most {} are given to a page (a run writes its frames: "
-                    "aspic run)",
+        fmt::format("a mesh of {} tets; the page exports at most {}. Use aspic run, which writes frames of any size",
                     model.mesh.tet_count(), kMostTets));
   const TemporaryFolder folder;
   const fs::path path = folder.path() / ("mesh." + format);
@@ -48,12 +44,9 @@ std::string mesh_text(const ShownSide& shown, const std::string& format) {
   return read_file(path);
 }
 
-Json mesh_reply(const ShownSide& shown, const Json& format) {
-  for (const char* known : {"obj", "ply", "vtu", "msh", "mesh"})
-    if (format == known)
-      return {{"name", fmt::format("{}_{:06}.{}", shown.side.steered().scene.name, shown.side.steps_taken(), known)},
-              {"text", mesh_text(shown, known)}};
-  refuse("mesh.format", format, "'obj', 'ply', 'vtu', 'msh' or 'mesh' is expected");
+Json mesh_reply(const ShownSide& shown, const std::string& format) {
+  return {{"name", fmt::format("{}_{:06}.{}", shown.side.steered().scene.name, shown.side.steps_taken(), format)},
+          {"text", mesh_text(shown, format)}};
 }
 
 Json gallery_reply(const Gallery& gallery) {
@@ -86,15 +79,16 @@ void add_questions(const SessionOptions& options, Stage& stage, const Playback& 
     arguments.finish();
     return iteration_reply(shown.side, step, iteration, playback.stop_token());
   });
-  const auto add_file = [&](const char* name, auto reply_of) {
-    add(name, [reply_of](ShownSide& shown, Arguments& arguments) {
-      const Json& format = arguments.value("format");
-      arguments.finish();
-      return reply_of(shown, format);
-    });
-  };
-  add_file("mesh", mesh_reply);
-  add_file("animation", animation_reply);
+  add("mesh", [](ShownSide& shown, Arguments& arguments) {
+    const std::string format = arguments.choice("format", {"obj", "ply", "vtu", "msh", "mesh"});
+    arguments.finish();
+    return mesh_reply(shown, format);
+  });
+  add("animation", [](ShownSide& shown, Arguments& arguments) {
+    const std::string format = arguments.choice("format", {"usd", "pc2", "glb"});
+    arguments.finish();
+    return animation_reply(shown, format);
+  });
   const auto add_plain = [&](const char* name, auto reply_of) {
     add(name, [reply_of](ShownSide& shown, Arguments& arguments) {
       arguments.finish();

@@ -4,7 +4,7 @@
 
 #include "base/error.h"
 #include "scene/scene.h"
-#include "viewer/iteration_query.h"
+#include "viewer/replies.h"
 #include "viewer/session_test.h"
 
 namespace aspic::viewer {

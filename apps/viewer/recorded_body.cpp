@@ -3,6 +3,8 @@
 #include <map>
 #include <utility>
 
+#include "viewer/pin_set.h"
+
 namespace aspic::viewer {
 namespace {
 
@@ -10,9 +12,7 @@ RecordedSurface numbered(std::string name, Surface surface, const Numbering& num
   RecordedSurface recorded{.name = std::move(name), .surface = std::move(surface)};
   for (const int t : recorded.surface.tet) recorded.tet.push_back(static_cast<uint32_t>(numbering.tet.to_user(t)));
   for (int v = 0; v < recorded.surface.vertex_count(); ++v)
-    recorded.vertex.push_back(recorded.surface.is_fine
-                                  ? kNoVertex
-                                  : static_cast<uint32_t>(numbering.vertex.to_user(recorded.surface.anchor(v))));
+    recorded.vertex.push_back(recorded.surface.user_number(v, numbering));
   return recorded;
 }
 
@@ -51,13 +51,6 @@ void keep_carriers(const Model& model, RecordedBody& body) {
   for_carriers([&](int& v) { v = point[v]; });
 }
 
-std::vector<uint8_t> pinned_vertices(const Model& model) {
-  std::vector<uint8_t> is_pinned(model.mesh.rest.size(), 0);
-  for (const Pin& pin : model.pins)
-    for (const int v : pin.vertices) is_pinned[v] = 1;
-  return is_pinned;
-}
-
 std::vector<double> lumped_mass(const Model& model) {
   std::vector<double> mass(model.mesh.rest.size(), 0.0);
   for (size_t t = 0; t < model.density.size(); ++t)
@@ -74,10 +67,10 @@ RecordedBody body_with_interior(const Scene& scene) {
   body.surfaces.push_back(numbered("cage", boundary_of(model), model.numbering));
   find_places(body);
   keep_carriers(model, body);
-  const std::vector<uint8_t> is_pinned = pinned_vertices(model);
+  const PinSet pins(model);
   const std::vector<double> mass = lumped_mass(model);
   for (const int v : body.source) {
-    body.is_pinned.push_back(is_pinned[v]);
+    body.is_pinned.push_back(pins.has(v));
     body.mass.push_back(mass[v]);
   }
   return body;
@@ -91,12 +84,12 @@ RecordedBody body_of_skins(const Scene& scene) {
   body.rest = skins.rest;
   body.surfaces.push_back(numbered(skins.is_fine ? "skin" : "cage", std::move(skins), model.numbering));
   RecordedSurface& recorded = body.surfaces[0];
-  const std::vector<uint8_t> is_pinned = pinned_vertices(model);
+  const PinSet pins(model);
   const std::vector<double> mass = lumped_mass(model);
   for (int v = 0; v < recorded.surface.vertex_count(); ++v) {
     const int anchor = recorded.surface.anchor(v);
     body.source.push_back(v);
-    body.is_pinned.push_back(recorded.surface.is_fine ? 0 : is_pinned[anchor]);
+    body.is_pinned.push_back(recorded.surface.is_fine ? 0 : pins.has(anchor));
     body.mass.push_back(recorded.surface.is_fine ? 0 : mass[anchor]);
     recorded.surface.carrier[v] = {v, v, v, v};
     recorded.surface.weights[v] = {1, 0, 0, 0};

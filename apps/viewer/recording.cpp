@@ -1,5 +1,7 @@
 #include "viewer/recording.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -13,12 +15,14 @@
 #include "io/base64.h"
 #include "io/checkpoint.h"
 #include "io/gzip.h"
+#include "scene/scene_document.h"
 #include "viewer/fields.h"
+#include "viewer/page.h"
 #include "viewer/recorded_body.h"
 #include "viewer/recording_code.h"
-#include "viewer/recording_messages.h"
 #include "viewer/run_positions.h"
 #include "viewer/run_tables.h"
+#include "viewer/scene_json.h"
 
 namespace aspic::viewer {
 namespace {
@@ -41,14 +45,13 @@ Known known(const RunLayout& layout, const std::string& scene_text) {
   const Checkpoint checkpoint = read_newest_checkpoint(layout.checkpoint()).checkpoint;
   if (checkpoint.fingerprint != fingerprint(scene_text))
     throw InvalidInput(layout.root().string() +
-                       ": scene.toml was changed after the run began; put back the one that "
-                       "the run was computed with, or run again");
+                       ": scene.toml was changed after the start of the run; restore the original, or run again");
   const int64_t steps = checkpoint.integer("steps_taken");
   if (steps < 0 || steps > std::numeric_limits<int>::max())
     throw InvalidInput(layout.root().string() + ": the checkpoint counts " + std::to_string(steps) +
                        " steps; it is damaged");
   Known result{checkpoint.array("frame_times"), static_cast<int>(steps)};
-  if (result.frame_times.empty()) throw InvalidInput(layout.root().string() + ": the checkpoint counts no frame");
+  if (result.frame_times.empty()) throw InvalidInput(layout.root().string() + ": the checkpoint has no frames");
   return result;
 }
 
@@ -67,13 +70,10 @@ std::vector<int> steps_of_frames(const Known& known, const RunTables& tables, co
   return steps;
 }
 
-// Returns `wanted` of `count` indices, evenly spread, including the first and the last.
+// Returns at most `wanted` of `count` indices, evenly spread, including the first and the last.
 std::vector<int> evenly(int count, int wanted) {
   std::vector<int> indices;
-  if (wanted >= count) {
-    for (int i = 0; i < count; ++i) indices.push_back(i);
-    return indices;
-  }
+  wanted = std::min(wanted, count);
   for (int i = 0; i < wanted; ++i)
     indices.push_back(static_cast<int>(std::lround(static_cast<double>(i) * (count - 1) / std::max(1, wanted - 1))));
   return indices;
@@ -95,12 +95,20 @@ std::vector<float> flat(const std::vector<Vec3d>& points) {
   return numbers;
 }
 
+// Names the scene after its bodies. The recording does not depend on the name of the directory.
+std::string name_of(const Scene& scene) {
+  std::string name;
+  for (const BodyRange& body : scene.simulation.model().bodies) name += (name.empty() ? "" : ", ") + body.name;
+  return shortened(name);
+}
+
 class Recorder {
  public:
   Recorder(const fs::path& run, const Scene& scene, const RecordingOptions& options)
       : layout_(run),
         scene_(scene),
         options_(options),
+        document_(read_scene_document(scene.resolved, "scene.toml")),
         scene_text_(read_file(layout_.scene())),
         known_(known(layout_, scene_text_)),
         tables_(read_run_tables(layout_, known_.steps)),
@@ -168,12 +176,12 @@ class Recorder {
   std::string left_out(int frames) const {
     if (frames == frame_count()) return "";
     return std::to_string(frames) + " of the run's " + std::to_string(frame_count()) +
-           " frames are shown, evenly spread, so that the page stays below its limit (--max-size)";
+           " frames are included, at even intervals, to respect the size limit (--max-size)";
   }
 
   [[noreturn]] void refuse(size_t bytes) const {
-    throw InvalidInput(layout_.root().string() + ": two frames and the tables alone take " +
-                       std::to_string(bytes / 1'000'000 + 1) + " MB, more than there is room for; raise --max-size");
+    throw InvalidInput(layout_.root().string() + ": two frames and the tables need " +
+                       std::to_string(bytes / 1'000'000 + 1) + " MB, more than the limit; raise --max-size");
   }
 
   std::string packed(const std::vector<Frame>& frames, const std::vector<int>& chosen, const std::string& note) const {
@@ -181,10 +189,8 @@ class Recorder {
     add_body(pack);
     const PositionRange range = add_motion(pack, frames, chosen);
     Json head = {{"format", 1}};
-    const PositionRange start(frames.front().x);
-    const RecordedScene recorded{scene_, body_, fields_, tables_, start.lower, start.upper, note};
-    head["hello"] = hello_message(recorded);
-    head["scenes"] = scene_messages(recorded);
+    head["hello"] = hello();
+    head["scenes"] = scene_messages(box_of(std::span<const float>(frames.front().x)), note);
     head["toml"] = scene_text_;
     head["steps"] = Json::array();
     for (const StepRow& row : tables_.steps) head["steps"].push_back(to_json(row));
@@ -200,6 +206,41 @@ class Recorder {
     std::string text;
     append_base64(gzipped(pack.bytes(std::move(head))), text);
     return text;
+  }
+
+  Json hello() const {
+    const Value* version = document_.find("version");
+    return {{"kind", "hello"}, {"protocol", 1}, {"version", version ? version->text() : ""},
+            {"steers", true},  {"live", false}, {"lessons", Json::array()}};
+  }
+
+  // Returns one message per surface. The solver is the requested one: the summary of the run names the choice of
+  // `auto`.
+  Json scene_messages(const Box& start, const std::string& note) const {
+    const Value& solver = *document_.find("solver");
+    const bool is_implicit = scene_.simulation.integrator().is_implicit;
+    Json message = scene_json(scene_, document_, start, fields_);
+    message.update({{"side", "a"},
+                    {"name", name_of(scene_)},
+                    {"label", ""},
+                    {"path", ""},
+                    {"overrides", Json::array()},
+                    {"loaded_overrides", Json::array()},
+                    {"notes", Json::array()},
+                    {"solver", is_implicit ? fmt::format("{}, {} for the linear systems", solver["method"].text(),
+                                                         solver["linear"].text())
+                                           : ""},
+                    {"potentials", tables_.potentials},
+                    {"field", ""},
+                    {"stiffness", 0}});
+    if (!note.empty()) message["notes"].push_back(note);
+    Json messages = Json::array();
+    for (size_t i = 0; i < body_.surfaces.size(); ++i) {
+      message["generation"] = i + 1;
+      message["surface"] = body_.surfaces[i].name;
+      messages.push_back(message);
+    }
+    return messages;
   }
 
   void add_body(ArrayPack& pack) const {
@@ -250,6 +291,7 @@ class Recorder {
   RunLayout layout_;
   const Scene& scene_;
   RecordingOptions options_;
+  Table document_;  // with all values
   std::string scene_text_;
   Known known_;
   RunTables tables_;
@@ -266,6 +308,16 @@ class Recorder {
 
 RecordedRun record(const fs::path& run, const Scene& scene, const RecordingOptions& options) {
   return Recorder(run, scene, options).record();
+}
+
+RecordedRun make_report(const fs::path& run, const Scene& scene, const RecordingOptions& options) {
+  constexpr std::string_view kBegin = "<script type=\"application/json\" id=\"recording\">\"", kEnd = "\"</script>";
+  const size_t page_alone = page_with("").size() + kBegin.size() + kEnd.size();
+  if (page_alone >= options.max_bytes)
+    throw InvalidInput(fmt::format("--max-size: the page alone has {:.1f} MB; allow more", page_alone / 1e6));
+  RecordedRun report = record(run, scene, {.max_bytes = options.max_bytes - page_alone});
+  report.text = page_with(fmt::format("{}{}{}", kBegin, report.text, kEnd));
+  return report;
 }
 
 }  // namespace aspic::viewer

@@ -14,7 +14,7 @@ struct RecordingOptions {
 };
 
 struct RecordedRun {
-  std::string text;  // gzip in base64
+  std::string text;  // gzip in base64; of a report: HTML
   int frames_of_run = 0, frames = 0;
   std::string note;  // summary of omitted data; empty: none
 };
@@ -23,5 +23,8 @@ struct RecordedRun {
 // times are omitted. Throws InvalidInput for a directory without a run, for damaged files, and if two frames do not
 // fit.
 RecordedRun record(const std::filesystem::path& run, const Scene& scene, const RecordingOptions& options = {});
+
+// Returns one self-contained HTML file: the viewer's page with the recording. Throws InvalidInput like record().
+RecordedRun make_report(const std::filesystem::path& run, const Scene& scene, const RecordingOptions& options = {});
 
 }  // namespace aspic::viewer

@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "io/number_text.h"
+#include "viewer/scene_json.h"
 
 namespace aspic::viewer {
 namespace {
@@ -18,26 +19,6 @@ void pad(std::string& bytes) { bytes.append((4 - bytes.size() % 4) % 4, '\0'); }
 uint16_t folded(int difference) {
   const auto small = static_cast<int16_t>(static_cast<uint16_t>(difference));
   return static_cast<uint16_t>((static_cast<uint32_t>(small) << 1) ^ static_cast<uint32_t>(small >> 15));
-}
-
-struct FrameBox {
-  Vec3d lower, upper;
-
-  double extent() const {
-    const Vec3d size = upper - lower;
-    return std::max({size[0], size[1], size[2]});
-  }
-};
-
-FrameBox box_of(std::span<const float> x) {
-  constexpr double kFar = std::numeric_limits<double>::infinity();
-  FrameBox box{{{kFar, kFar, kFar}}, {{-kFar, -kFar, -kFar}}};
-  for (size_t i = 0; i < x.size(); ++i) {
-    const int axis = static_cast<int>(i % 3);
-    box.lower[axis] = std::min<double>(box.lower[axis], x[i]);
-    box.upper[axis] = std::max<double>(box.upper[axis], x[i]);
-  }
-  return box;
 }
 
 }  // namespace
@@ -71,15 +52,15 @@ std::string ArrayPack::bytes(Json head) const {
 
 PositionRange::PositionRange(std::span<const float> first) {
   constexpr double kBlownUp = 1000;
-  const FrameBox box = box_of(first);
+  const Box box = box_of(first);
   lower = box.lower;
   upper = box.upper;
-  largest_ = kBlownUp * box.extent();
+  largest_ = kBlownUp * longest_side(box);
 }
 
 void PositionRange::add(std::span<const float> x) {
-  const FrameBox box = box_of(x);
-  if (largest_ > 0 && !(box.extent() <= largest_)) return;
+  const Box box = box_of(x);
+  if (largest_ > 0 && !(longest_side(box) <= largest_)) return;
   for (int axis = 0; axis < 3; ++axis) {
     lower[axis] = std::min(lower[axis], box.lower[axis]);
     upper[axis] = std::max(upper[axis], box.upper[axis]);

@@ -5,8 +5,8 @@
 
 #include "base/hash.h"
 #include "viewer/page.h"
+#include "viewer/recording.h"
 #include "viewer/recording_test.h"
-#include "viewer/report.h"
 
 namespace aspic::viewer {
 namespace {
@@ -24,7 +24,7 @@ TEST_F(RunRecording, ThinsOutFramesEvenlyBelowTheSizeLimit) {
   EXPECT_LE(thin.text.size(), limit);
   EXPECT_LT(thin.frames, 121);
   EXPECT_EQ(thin.frames_of_run, 121);
-  EXPECT_THAT(thin.note, HasSubstr("of the run's 121 frames are shown"));
+  EXPECT_THAT(thin.note, HasSubstr("of the run's 121 frames are included"));
   const Decoded decoded(thin.text);
   const std::vector<int> steps = decoded.head["frames"]["step"];
   ASSERT_EQ(static_cast<int>(steps.size()), thin.frames);
@@ -80,7 +80,7 @@ TEST_F(RunRecording, RefusesDamagedFilesByName) {
               HasSubstr("iterations.csv: cannot be read"));
   EXPECT_THAT(
       after([](const fs::path& d) { write_file(d / "scene.toml", read_file(d / "scene.toml") + "# changed\n"); }),
-      HasSubstr("scene.toml was changed after the run began"));
+      HasSubstr("scene.toml was changed after the start of the run"));
 }
 
 TEST_F(RunRecording, HasCertificatesOnlyIfTheRunHasThem) {
@@ -142,9 +142,9 @@ where = "y < 1e-6"
   ASSERT_GT(scene.simulation.model().mesh.vertex_count(), 3000);
   RunDirectory directory = RunDirectory::create(path("run"), scene, ExistingRun::refuse);
   take_steps(scene, directory, 30);
-  const Report report = make_report(path("run"), scene);
+  const RecordedRun report = make_report(path("run"), scene);
   EXPECT_EQ(report.frames, 31);
-  const size_t recorded = report.html.size() - page().size();
+  const size_t recorded = report.text.size() - page().size();
   EXPECT_LT(recorded * 201 / 31, 5'000'000u);  // extrapolated to 200 steps
 }
 

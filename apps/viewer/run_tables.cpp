@@ -18,7 +18,7 @@ namespace fs = std::filesystem;
 constexpr std::string_view kPotential = "potential_", kTotal = "potential_total";
 
 [[noreturn]] void fail_order(const fs::path& file, int step) {
-  throw InvalidInput(file.string() + ": the row of step " + std::to_string(step) + " is not where it belongs");
+  throw InvalidInput(file.string() + ": the row of step " + std::to_string(step) + " is out of order");
 }
 
 // Reads the names of pins from columns such as reaction_beam.wall_x. Earlier versions did not write them.

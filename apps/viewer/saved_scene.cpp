@@ -192,7 +192,7 @@ SavedScene saved_scene(const Side& side, SavedHand hand) {
   Table document = side.steered().document;
   add_pins(side, document, saved.notes);
   if (hand == SavedHand::with_drags) add_drags(side, document);
-  if (side.tools().indenter.touch()) saved.notes.emplace_back("the tip of the probe is not saved");
+  if (side.tools().indenter.touch()) saved.notes.emplace_back("the indenter is not saved");
   put_in_order(document);
   saved.files.push_back({saved.name + ".toml", "# Saved by the viewer, with all values. To run it: aspic run " +
                                                    saved.name + ".toml\n" + to_toml(document)});
@@ -203,9 +203,8 @@ SavedScene saved_scene(const Side& side, SavedHand hand) {
 Json file_reply(const std::string& name, const std::string& bytes) {
   if (bytes.size() > kMostReplyBytes)
     throw InvalidInput(
-        fmt::format("{}: {} MB; at most {} MB are given to a page (aspic run SCENE writes files of any "
-                    "size)",
-                    name, bytes.size() / 1'000'000, kMostReplyBytes / 1'000'000));
+        fmt::format("{}: {} MB; the page exports at most {} MB. Use aspic run, which writes files of any size", name,
+                    bytes.size() / 1'000'000, kMostReplyBytes / 1'000'000));
   return {{"name", name}, {"base64", base64(bytes)}};
 }
 

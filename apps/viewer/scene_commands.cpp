@@ -130,9 +130,8 @@ void color(Stage& stage, Arguments& arguments) {
 }
 
 void surface(Stage& stage, Arguments& arguments) {
-  const std::string which = arguments.text("which", 20);
+  const std::string which = arguments.choice("which", {"skin", "cage"});
   arguments.finish();
-  if (which != "skin" && which != "cage") refuse("surface.which", which, "'skin' or 'cage' is expected");
   stage.show_surface(which == "skin");
   for (const ShownSide& shown : stage.sides()) {
     stage.send_scene(shown);

@@ -1,6 +1,6 @@
 #include "viewer/scene_json.h"
 
-#include <cmath>
+#include "viewer/settings.h"
 
 namespace aspic::viewer {
 
@@ -12,6 +12,8 @@ Json tip_json(const Tip& tip) {
           {"radius", tip.radius},
           {"stiffness", tip.stiffness}};
 }
+
+namespace {
 
 Json fields_json(const std::vector<Field>& fields) {
   Json list = Json::array();
@@ -25,10 +27,36 @@ Json fields_json(const std::vector<Field>& fields) {
   return list;
 }
 
+// Opposite to gravity; the y axis without gravity.
 Vec3d up_of(const Table& document) {
   const Vec3d gravity = document.find("gravity")->vector();
   const double size = norm(gravity);
   return size > 0 ? (-1 / size) * gravity : Vec3d{{0, 1, 0}};
+}
+
+}  // namespace
+
+Json scene_json(const Scene& scene, const Table& document, const Box& start, const std::vector<Field>& fields) {
+  const Simulation& simulation = scene.simulation;
+  const Model& model = simulation.model();
+  Json message = {{"kind", "scene"},
+                  {"has_skin", has_fine_skin(scene)},
+                  {"vertices", model.mesh.vertex_count()},
+                  {"tets", model.mesh.tet_count()},
+                  {"bodies", Json::array()},
+                  {"body_tets", Json::array()},
+                  {"lower", json_of(start.lower)},
+                  {"upper", json_of(start.upper)},
+                  {"up", json_of(up_of(document))},
+                  {"h", simulation.options().h},
+                  {"implicit", simulation.integrator().is_implicit},
+                  {"fields", fields_json(fields)},
+                  {"settings", settings_json(document)}};
+  for (const BodyRange& body : model.bodies) {
+    message["bodies"].push_back(body.name);
+    message["body_tets"].push_back(body.first_tet);
+  }
+  return message;
 }
 
 }  // namespace aspic::viewer

@@ -1,6 +1,7 @@
 // The common parts of the messages about live and recorded scenes.
 #pragma once
 #include "energy/probe.h"
+#include "mesh/box.h"
 #include "scene/value.h"
 #include "viewer/arguments.h"
 #include "viewer/fields.h"
@@ -9,7 +10,17 @@ namespace aspic::viewer {
 
 Json json_of(const Vec3d& x);
 Json tip_json(const Tip& tip);  // {"shape", "contact", "radius", "stiffness"}
-Json fields_json(const std::vector<Field>& fields);
-Vec3d up_of(const Table& document);  // opposite to gravity; the y axis without gravity
+
+// Returns the bounding box of points with 3 numbers each. Ignores NaN.
+template <class Real>
+Box box_of(std::span<const Real> x) {
+  Box box;
+  for (size_t i = 0; i + 2 < x.size(); i += 3) box.add({{x[i], x[i + 1], x[i + 2]}});
+  return box;
+}
+
+// Returns the members of the message "scene" that live and recorded scenes share. `document`: the scene with all
+// values. `start`: the bounding box of its first state.
+Json scene_json(const Scene& scene, const Table& document, const Box& start, const std::vector<Field>& fields);
 
 }  // namespace aspic::viewer

@@ -31,8 +31,8 @@ tcp::acceptor listen(asio::io_context& network, int port) {
   try {
     return {network, tcp::endpoint(asio::ip::address_v4::loopback(), static_cast<unsigned short>(port))};
   } catch (const boost::system::system_error& error) {
-    throw InvalidInput(fmt::format("port {}: cannot be listened at ({}); leave --port out to get a free one", port,
-                                   error.code().message()));
+    throw InvalidInput(
+        fmt::format("port {}: not available ({}); leave --port out to use a free one", port, error.code().message()));
   }
 }
 

@@ -17,7 +17,7 @@ constexpr std::chrono::seconds kHandshake(10), kIdle(30), kCloseHandshake(2);
 // Returns an empty reason for a page that disconnected.
 std::string reason(const error_code& error) {
   if (error == websocket::error::message_too_big) return "it sent a message of more than 16 MiB";
-  if (error == beast::error::timeout) return "it did not answer any more";
+  if (error == beast::error::timeout) return "it no longer answers";
   if (error.category() == make_error_code(websocket::error::closed).category() && error != websocket::error::closed)
     return "it broke the WebSocket protocol: " + error.message();
   return "";
@@ -59,7 +59,7 @@ void Client::read() {
 void Client::send(std::shared_ptr<const Message> message) {
   if (!is_open_ || is_closing_) return;
   if (queued_bytes_ > kQueueBytes || queue_.size() > kQueueMessages)
-    return close("this page takes too long to read what it is sent");
+    return close("this page reads its messages too slowly");
   queued_bytes_ += message->bytes.size();
   queue_.push_back(std::move(message));
   if (queue_.size() == 1) write();
@@ -84,11 +84,11 @@ void Client::close(const std::string& why) {
   constexpr size_t kLongestReason = 123;  // [RFC 6455, section 5.5]
   stream_.async_close({websocket::close_code::policy_error, why.substr(0, kLongestReason)},
                       [self = shared_from_this()](const error_code&) { self->end(""); });
-  give_up_later();
+  cut_off_later();
 }
 
 // Cuts off a page that does not read the closing message.
-void Client::give_up_later() {
+void Client::cut_off_later() {
   patience_.expires_after(kCloseHandshake);
   patience_.async_wait([self = shared_from_this()](const error_code& error) {
     if (!error) self->cut_off();

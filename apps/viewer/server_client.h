@@ -37,7 +37,7 @@ class Client : public std::enable_shared_from_this<Client> {
   void read();
   void write();
   void end(const std::string& why);
-  void give_up_later();
+  void cut_off_later();
 
   PageId id_;
   boost::beast::websocket::stream<boost::beast::tcp_stream> stream_;

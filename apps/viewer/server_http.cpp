@@ -34,11 +34,11 @@ const token = sessionStorage.getItem("aspic.token");
 if (token && !new URL(location.href).searchParams.has("token")) location.replace("/?token=" + encodeURIComponent(token));
 </script>)";
 
-std::string words_page(const std::string& words) {
+std::string text_page(const std::string& text) {
   return fmt::format(
       "<!doctype html><html lang=\"en\"><meta charset=\"utf-8\"><title>Aspic</title>"
       "<style>body {{ font: 1.1rem sans-serif; max-width: 36em; margin: 4em auto }}</style><p>{}</p>{}</html>\n",
-      words, kReload);
+      text, kReload);
 }
 
 }  // namespace
@@ -77,8 +77,8 @@ std::optional<HttpConnection::Response> HttpConnection::refusal(const Client::Ht
     return failure(Status::forbidden, "Another site may not use this server.");
   if (!access.is_token(parse_target(view(request.target())).token))
     return failure(Status::forbidden,
-                   "The token in the address is missing or wrong: open the whole address that aspic printed; it is "
-                   "another one each time.");
+                   "The token in the address is missing or wrong: open the whole address that aspic printed. It "
+                   "changes with every start.");
   return std::nullopt;
 }
 
@@ -91,7 +91,7 @@ void HttpConnection::handle_head() {
   if (beast::websocket::is_upgrade(request)) {
     if (path != "/session" || !has_session) return answer(failure(Status::not_found, "There is no session here."));
     if (request[http::field::origin].empty())
-      return answer(failure(Status::forbidden, "A WebSocket is for this server's page alone; it names its origin."));
+      return answer(failure(Status::forbidden, "A WebSocket requires the origin of this server's page."));
     if (service_.is_full()) return answer(failure(Status::service_unavailable, "Too many pages are open already."));
     stream_.expires_never();
     return service_.upgrade(stream_.release_socket(), request);
@@ -109,7 +109,7 @@ void HttpConnection::handle_head() {
     });
     return;
   }
-  Response refused = failure(Status::method_not_allowed, "This server cannot do that.");
+  Response refused = failure(Status::method_not_allowed, "This server does not support this method.");
   refused.set(http::field::allow, service_.options.post ? "GET, POST" : "GET");
   answer(std::move(refused));
 }
@@ -122,8 +122,8 @@ void HttpConnection::handle_body(const std::string& path) {
   }
 }
 
-HttpConnection::Response HttpConnection::failure(Status status, const std::string& words) const {
-  return response(status, "text/html; charset=utf-8", words_page(words));
+HttpConnection::Response HttpConnection::failure(Status status, const std::string& text) const {
+  return response(status, "text/html; charset=utf-8", text_page(text));
 }
 
 HttpConnection::Response HttpConnection::response(Status status, const std::string& type, std::string body) const {

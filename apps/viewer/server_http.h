@@ -39,7 +39,7 @@ class HttpConnection : public std::enable_shared_from_this<HttpConnection> {
   void handle_head();
   void handle_body(const std::string& path);
   std::optional<Response> refusal(const Client::HttpRequest& request) const;
-  Response failure(Status status, const std::string& words) const;
+  Response failure(Status status, const std::string& text) const;
   Response response(Status status, const std::string& type, std::string body) const;
   void answer(Response response);
 

@@ -65,9 +65,9 @@ void Room::enter(std::shared_ptr<Client> client) {
   pages_.push_back({.client = std::move(client)});
   if (is_closed_ || pages_.size() > kMaxPages) return pages_.back().client->close("too many pages are open");
   if (steers_ == kNoPage) steers_ = id;
-  pages_.back().was_told_to_steer = steers_ == id;
+  pages_.back().sent_steers = steers_ == id;
   const Role role = steers_ == id ? Role::steers : Role::watches;
-  if (!simulation_->add({.page = id, .role = role})) pages_.back().client->close("too much is under way; try again");
+  if (!simulation_->add({.page = id, .role = role})) pages_.back().client->close("the server is busy; try again");
 }
 
 void Room::leave(PageId id, const std::string& why) {
@@ -82,13 +82,13 @@ void Room::steer(PageId id) {
   steers_ = id;
   if (is_holding_) simulation_->add({.page = kNoPage, .role = Role::steers, .text = R"({"do":"release"})"});
   is_holding_ = false;
-  for (Page& page : pages_) tell_role(page);
+  for (Page& page : pages_) send_role(page);
 }
 
-void Room::tell_role(Page& page) {
+void Room::send_role(Page& page) {
   const bool steers = steers_ == page.client->id();
-  if (!page.is_greeted || page.was_told_to_steer == steers) return;
-  page.was_told_to_steer = steers;
+  if (!page.is_greeted || page.sent_steers == steers) return;
+  page.sent_steers = steers;
   send(page, fmt::format(R"({{"kind":"role","steers":{}}})", steers));
 }
 
@@ -100,7 +100,7 @@ void Room::receive(PageId id, std::string text) {
     return offer(*page);
   }
   const MessageHead head = parse_head(text);
-  if (!head.is_message) complain("a page sent what is no message of the viewer's protocol; it was refused");
+  if (!head.is_message) complain("refused a message of a page that does not follow the viewer's protocol");
   if (text.size() > kLongestCommand && head.does != "replay" && head.does != "load")
     return send(*page, refusal_text(head.id, "this message is longer than 1 MiB"));
   if (head.does == "take") return take(*page, head.id);
@@ -114,7 +114,7 @@ void Room::receive(PageId id, std::string text) {
                                           .urgency = urgency,
                                           .is_question = head.does.empty(),
                                           .aim = head.id == "null" ? aim_of(head.does) : Aim::none});
-  if (!is_added) return send(*page, refusal_text(head.id, "too many messages wait for the step under way"));
+  if (!is_added) return send(*page, refusal_text(head.id, "too many messages wait for the current step"));
   if (urgency != Urgency::none && !is_watching_urgency_) watch_urgency();
 }
 
@@ -148,12 +148,12 @@ void Room::greet(PageId id, Messages messages) {
     Page* page = find(id);
     if (!page) return;
     page->is_greeted = true;
-    tell_role(*page);
+    send_role(*page);
     offer(*page);
   });
 }
 
-void Room::tell(PageId id, Messages messages) {
+void Room::reply(PageId id, Messages messages) {
   post([this, id, sent = std::move(messages)]() mutable { send_all(id, std::move(sent)); });
 }
 
@@ -162,7 +162,7 @@ void Room::send_all(PageId id, Messages messages) {
     if (Page* page = find(id)) page->client->send(std::make_shared<const Message>(std::move(message)));
 }
 
-void Room::tell_all(Messages messages) {
+void Room::broadcast(Messages messages) {
   post([this, sent = std::move(messages)]() mutable {
     for (Message& message : sent) {
       const auto shared = std::make_shared<const Message>(std::move(message));
@@ -182,7 +182,8 @@ void Room::show(Messages pictures, long version) {
 }
 
 void Room::announce(const std::string& what) {
-  tell_all({{.is_binary = false, .bytes = fmt::format(R"({{"kind":"busy","what":{}}})", nlohmann::json(what).dump())}});
+  broadcast(
+      {{.is_binary = false, .bytes = fmt::format(R"({{"kind":"busy","what":{}}})", nlohmann::json(what).dump())}});
 }
 
 void Room::close(const std::string& why) {
@@ -203,7 +204,7 @@ void Room::complain(const std::string& line) {
     complaints_ = 0;
   }
   if (++complaints_ <= kComplaints) log_(line);
-  if (complaints_ == kComplaints) log_("further messages of this second are left out");
+  if (complaints_ == kComplaints) log_("further messages within this second are omitted");
 }
 
 }  // namespace aspic::viewer

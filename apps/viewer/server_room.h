@@ -30,14 +30,14 @@ class Room : public Audience {
 
   // Audience: called from the simulation's thread.
   void greet(PageId page, Messages messages) override;
-  void tell(PageId page, Messages messages) override;
-  void tell_all(Messages messages) override;
+  void reply(PageId page, Messages messages) override;
+  void broadcast(Messages messages) override;
   void show(Messages pictures, long version) override;
 
  private:
   struct Page {
     std::shared_ptr<Client> client;
-    bool was_told_to_steer = false;
+    bool sent_steers = false;
     bool is_greeted = false;
     bool wants_picture = true;  // true: the first one needs no request
     long seen = -1;             // version of its last picture
@@ -49,7 +49,7 @@ class Room : public Audience {
   void receive(PageId id, std::string text);
   void take(Page& page, const std::string& id);
   void steer(PageId id);
-  void tell_role(Page& page);
+  void send_role(Page& page);
   void offer(Page& page);
   void watch_urgency();
   void complain(const std::string& line);

@@ -141,8 +141,8 @@ void SimulationThread::carry_out(const Request& request) {
   if (request.text.empty()) return audience_.greet(request.page, session_.greeting(request.role));
   const Urgency gives_way_to = request.is_question ? Urgency::before_questions : Urgency::before_steps;
   Answer answer = interruptibly(gives_way_to, [&] { return session_.handle(request.text, request.role); });
-  if (!answer.to_all.empty()) audience_.tell_all(std::move(answer.to_all));
-  if (!answer.to_sender.empty() && request.page != kNoPage) audience_.tell(request.page, std::move(answer.to_sender));
+  if (!answer.to_all.empty()) audience_.broadcast(std::move(answer.to_all));
+  if (!answer.to_sender.empty() && request.page != kNoPage) audience_.reply(request.page, std::move(answer.to_sender));
 }
 
 // The fit runs in parallel with the simulation. Its news is handled between two steps.
@@ -156,7 +156,7 @@ void SimulationThread::serve_fit() {
   if (!fit_) return;
   if (!session_.wants_fit()) fit_->stop();
   const bool has_ended = fit_->has_ended();
-  if (const std::optional<FitNews> news = fit_->news()) audience_.tell_all(session_.note_fit(*news));
+  if (const std::optional<FitNews> news = fit_->news()) audience_.broadcast(session_.note_fit(*news));
   if (has_ended) fit_.reset();
 }
 
@@ -176,7 +176,7 @@ void SimulationThread::play() {
     const Clock::time_point then = Clock::now();
     return then < together && !is_woken() && pacing_.due(session_.time(), session_.speed(), then) <= then;
   };
-  audience_.tell_all(interruptibly(Urgency::before_steps, [&] { return session_.advance(is_next_due); }));
+  audience_.broadcast(interruptibly(Urgency::before_steps, [&] { return session_.advance(is_next_due); }));
   if (rate_.update(session_.time(), Clock::now())) session_.note_rate(rate_.value());
   next_step_ = pacing_.due(session_.time(), session_.speed(), Clock::now());
 }

@@ -24,8 +24,8 @@ class Audience {
  public:
   virtual ~Audience() = default;
   virtual void greet(PageId page, Messages messages) = 0;
-  virtual void tell(PageId page, Messages messages) = 0;
-  virtual void tell_all(Messages messages) = 0;
+  virtual void reply(PageId page, Messages messages) = 0;
+  virtual void broadcast(Messages messages) = 0;
   virtual void show(Messages pictures, long version) = 0;
 };
 

@@ -226,7 +226,7 @@ TEST_F(ServerTest, RefusesMalformedMessagesAndLogsThem) {
     page.send(text);
     EXPECT_FALSE(page.next("refused").is_null()) << text;
   }
-  EXPECT_THAT(log_.all(), Contains(HasSubstr("no message of the viewer's protocol")));
+  EXPECT_THAT(log_.all(), Contains(HasSubstr("does not follow the viewer's protocol")));
   page.send(R"({"do":"step"})");
   EXPECT_FALSE(page.next("steps").is_null());
 }

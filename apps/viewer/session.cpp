@@ -59,8 +59,7 @@ Json Session::Impl::answer(const Json& message) {
 void Session::Impl::carry_out(const Json& message, Role role) {
   const std::string name = Arguments(message, "message").text("do", 100);
   const Command& command = named(commands, name, "command");
-  if (role != Role::steers && name != "take")
-    throw InvalidInput("this page only watches; take over the steering first");
+  if (role != Role::steers && name != "take") throw InvalidInput("this page only watches; press Steer first");
   const bool ends_replay = playback.is_replaying() && command.takes_over;
   Arguments arguments(message, name);
   if (arguments.has("id")) arguments.value("id");

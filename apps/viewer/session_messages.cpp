@@ -3,19 +3,11 @@
 #include <algorithm>
 
 #include "base/printable.h"
-#include "mesh/box_tree.h"
 #include "viewer/picture.h"
 #include "viewer/scene_json.h"
-#include "viewer/settings.h"
 
 namespace aspic::viewer {
 namespace {
-
-Box box_of(std::span<const double> q) {
-  Box box;
-  for (size_t i = 0; i + 2 < q.size(); i += 3) box.add({{q[i], q[i + 1], q[i + 2]}});
-  return box;
-}
 
 Json probe_json(const Side& side) {
   const Indenter& indenter = side.tools().indenter;
@@ -78,38 +70,22 @@ Message hello(const std::vector<Lesson>& lessons, Role role) {
 Message scene_message(const ShownSide& shown, const std::string& field) {
   const SteeredScene& steered = shown.side.steered();
   const Simulation& simulation = steered.scene.simulation;
-  const Model& model = simulation.model();
-  const Box box = box_of(shown.side.history().start().q);
-  Json bodies = Json::array();
-  for (const BodyRange& body : model.bodies) bodies.push_back(body.name);
-  Json body_tets = Json::array();
-  for (const BodyRange& body : model.bodies) body_tets.push_back(body.first_tet);
-  return text({{"kind", "scene"},
-               {"side", shown.name},
-               {"generation", shown.generation},
-               {"name", steered.scene.name},
-               {"label", shown.label},
-               {"path", steered.path.string()},
-               {"overrides", steered.overrides},
-               {"loaded_overrides", shown.loaded_overrides},
-               {"notes", steered.scene.notes},
-               {"surface", shown.surface.is_fine ? "skin" : "cage"},
-               {"has_skin", has_fine_skin(steered.scene)},
-               {"vertices", model.mesh.vertex_count()},
-               {"tets", model.mesh.tet_count()},
-               {"bodies", std::move(bodies)},
-               {"body_tets", std::move(body_tets)},
-               {"lower", json_of(box.lower)},
-               {"upper", json_of(box.upper)},
-               {"up", json_of(up_of(steered.document))},
-               {"h", simulation.options().h},
-               {"implicit", simulation.integrator().is_implicit},
-               {"solver", simulation.integrator().is_implicit ? simulation.solver_description() : ""},
-               {"potentials", simulation.potential_names()},
-               {"fields", fields_json(shown.fields())},
-               {"field", field},
-               {"settings", settings_json(steered.document)},
-               {"stiffness", shown.side.tools().hand.stiffness()}});
+  const Box start = box_of(std::span<const double>(shown.side.history().start().q));
+  Json message = scene_json(steered.scene, steered.document, start, shown.fields());
+  message.update({{"side", shown.name},
+                  {"generation", shown.generation},
+                  {"name", steered.scene.name},
+                  {"label", shown.label},
+                  {"path", steered.path.string()},
+                  {"overrides", steered.overrides},
+                  {"loaded_overrides", shown.loaded_overrides},
+                  {"notes", steered.scene.notes},
+                  {"surface", shown.surface.is_fine ? "skin" : "cage"},
+                  {"solver", simulation.integrator().is_implicit ? simulation.solver_description() : ""},
+                  {"potentials", simulation.potential_names()},
+                  {"field", field},
+                  {"stiffness", shown.side.tools().hand.stiffness()}});
+  return text(message);
 }
 
 Message geometry_message(const ShownSide& shown) {

@@ -95,7 +95,7 @@ Json setting_json(const Table& document, const Row& row, const Value& value) {
   const size_t bodies = document.find("body")->array().size();
   std::string meaning = key.meaning;
   if (bodies > 1 && (row.key.starts_with("material.") || row.key.starts_with("damping.")))
-    meaning += fmt::format(" (shown: that of the first body; a new value is for all {})", bodies);
+    meaning += fmt::format(" (value of the first body; a change applies to all {})", bodies);
   return {{"key", row.key},     {"label", row.label},          {"group", row.group},         {"unit", key.unit},
           {"meaning", meaning}, {"kind", kind_of(key, value)}, {"value", value_json(value)}, {"min", row.min},
           {"max", row.max},     {"log", row.is_log},           {"choices", key.choices}};
@@ -130,10 +130,14 @@ std::string toml_of(const std::string& name, const Key& key, const Json& value) 
   return "[" + list + "]";
 }
 
-void check_known(const std::string& key, const std::vector<std::string>& known) {
-  if (std::find(known.begin(), known.end(), key) != known.end()) return;
-  throw InvalidInput(fmt::format("'{}' is no setting that can change while the simulation runs{}", shortened(key),
-                                 suggestion(key, known)));
+// Throws InvalidInput for a key that is not a setting; with a document: not a setting of it.
+void check_known(const std::string& key, const Table* document) {
+  std::vector<std::string> known;
+  for (const Row& row : rows())
+    if (!document || find(*document, row.key)) known.push_back(row.key);
+  if (std::ranges::find(known, key) != known.end()) return;
+  throw InvalidInput(
+      fmt::format("'{}' cannot be changed while the simulation runs{}", shortened(key), suggestion(key, known)));
 }
 
 }  // namespace
@@ -146,17 +150,12 @@ Json settings_json(const Table& document) {
 }
 
 std::string setting_override(const Table& document, const std::string& key, const Json& value) {
-  std::vector<std::string> known;
-  for (const Row& row : rows())
-    if (find(document, row.key)) known.push_back(row.key);
-  check_known(key, known);
+  check_known(key, &document);
   return key + "=" + toml_of(key, schema_key(key), value);
 }
 
 std::string setting_key(const std::string& key) {
-  std::vector<std::string> known;
-  for (const Row& row : rows()) known.push_back(row.key);
-  check_known(key, known);
+  check_known(key, nullptr);
   return key;
 }
 

@@ -3,13 +3,14 @@
 #include <utility>
 
 #include "base/error.h"
+#include "viewer/touch_place.h"
 
 namespace aspic::viewer {
 
 Side::Side(SteeredScene steered, size_t timeline_bytes)
     : steered_(std::move(steered)),
       pins_(model()),
-      tools_{Hand(usual_stiffness(model()))},
+      tools_{Hand(default_stiffness(model()))},
       history_(simulation(), timeline_bytes) {
   history_.add(snapshot());
 }

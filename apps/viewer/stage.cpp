@@ -88,7 +88,8 @@ void Stage::rewind_record() {
 }
 
 Recording Stage::recording() {
-  if (!log_.is_complete()) throw InvalidInput("too much was done to be recorded; reset begins a new recording");
+  if (!log_.is_complete())
+    throw InvalidInput("the session has too many commands to be saved; reset starts a new recording");
   return {a().side.steered().path.string(), base_overrides_, comparison_, log_.events(), a().side.steps_taken()};
 }
 

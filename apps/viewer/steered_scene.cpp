@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <cmath>
 
 #include "base/error.h"
@@ -22,17 +21,17 @@ void require_file(const fs::path& path) {
   std::error_code error;
   if (fs::is_regular_file(path, error)) return;
   throw InvalidInput(fmt::format("{}: {}; a scene (.toml) or a mesh is expected", path.string(),
-                                 fs::exists(path, error) ? "is no file" : "no such file"));
+                                 fs::exists(path, error) ? "not a file" : "no such file"));
 }
 
 // The current scene stays in memory during loading, and a comparison has two sides.
 TetLimit tets_that_fit(double most) {
   const double share = 0.25 * static_cast<double>(free_memory());
   if (most * kBytesPerTet < share) return {.tets = most, .why = "are allowed here", .counts_files = true};
-  return {.tets = std::floor(share / kBytesPerTet),
-          .why = fmt::format("fit into the {:.1f} GB that a session may take here, a quarter of the free memory",
-                             share / 1e9),
-          .counts_files = true};
+  return {
+      .tets = std::floor(share / kBytesPerTet),
+      .why = fmt::format("fit into the {:.1f} GB that a session may use, a quarter of the free memory", share / 1e9),
+      .counts_files = true};
 }
 
 // Such a setting does not change the loaded model.
@@ -81,27 +80,6 @@ SceneChange changed_scene(const SteeredScene& steered, const std::string& overri
     throw InvalidInput(fmt::format("{} changes the mesh; load the scene anew with it", override_text));
   change.reloaded->tip->set(steered.tip->poke());
   return change;
-}
-
-double usual_stiffness(const Model& model) {
-  // The mean of log E limits the influence of a stiff core.
-  double logs = 0, volumes = 0;
-  int tets = 0;
-  for (const auto& [name, young] : model.tet_fields) {
-    if (name != "young") continue;
-    for (int t = 0; t < model.mesh.tet_count(); ++t) {
-      if (!(young[t] > 0)) continue;
-      const double v = volume(model.mesh, t);
-      logs += v * std::log(young[t]);
-      volumes += v;
-      ++tets;
-    }
-  }
-  if (tets > 0) return std::exp(logs / volumes) * std::cbrt(6 * std::sqrt(2.0) * volumes / tets);
-  // Without elasticity: an oscillation of about 2 Hz.
-  double mass = 0;
-  for (const double m : model.mass->vertex_mass()) mass += m;
-  return std::max(100 * mass, 1e-9);
 }
 
 }  // namespace aspic::viewer

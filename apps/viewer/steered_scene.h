@@ -39,8 +39,4 @@ struct SceneChange {
 // Replaces the override of a key; a key alone drops its override. Throws InvalidInput.
 SceneChange changed_scene(const SteeredScene& steered, const std::string& override_text, const Announce& announce);
 
-// Default stiffness of the mouse spring: E times the edge length of a tet [N/m]. A stiffer spring would invert the tets
-// at the mouse.
-double usual_stiffness(const Model& model);
-
 }  // namespace aspic::viewer

@@ -13,6 +13,17 @@ size_t details_of(const StepRow& row) {
   return count;
 }
 
+// An object from the name of each pin to its force [N] and moment [N m], 6 numbers.
+Json reactions(const StepRow& row) {
+  Json all = Json::object();
+  const std::vector<Resultant>& sums = row.report.resultants.pins;
+  for (size_t i = 0; i < std::min({sums.size(), row.pins.size(), StepRow::kMostReactions}); ++i) {
+    const auto& [f, m] = sums[i];
+    all[row.pins[i]] = {f[0], f[1], f[2], m[0], m[1], m[2]};
+  }
+  return all;
+}
+
 }  // namespace
 
 Json to_json(const std::vector<Trial>& tried) {
@@ -50,21 +61,6 @@ std::vector<std::string> pin_names(const Model& model) {
   for (const Pin& pin : model.pins) names.push_back(pin.name);
   return names;
 }
-
-namespace {
-
-// An object from the name of each pin to its force [N] and moment [N m], 6 numbers.
-Json reactions(const StepRow& row) {
-  Json all = Json::object();
-  const std::vector<Resultant>& sums = row.report.resultants.pins;
-  for (size_t i = 0; i < std::min({sums.size(), row.pins.size(), StepRow::kMostReactions}); ++i) {
-    const auto& [f, m] = sums[i];
-    all[row.pins[i]] = {f[0], f[1], f[2], m[0], m[1], m[2]};
-  }
-  return all;
-}
-
-}  // namespace
 
 Json to_json(const StepRow& row) {
   const StepReport& report = row.report;

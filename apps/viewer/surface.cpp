@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "mesh/box.h"
 #include "mesh/incidence.h"
 #include "mesh/surface.h"
 #include "mesh/tet_shape.h"
@@ -50,6 +51,10 @@ int Surface::anchor(int vertex) const {
   return carrier[vertex][std::max_element(w.begin(), w.end()) - w.begin()];
 }
 
+uint32_t Surface::user_number(int vertex, const Numbering& numbering) const {
+  return is_fine ? kNoVertex : static_cast<uint32_t>(numbering.vertex.to_user(anchor(vertex)));
+}
+
 Vec3d Surface::position(int vertex, std::span<const double> x) const {
   Vec3d sum{};
   for (int i = 0; i < 4; ++i) {
@@ -61,6 +66,11 @@ Vec3d Surface::position(int vertex, std::span<const double> x) const {
 
 bool Surface::has_same_shape(const Surface& other) const {
   return rest.size() == other.rest.size() && triangles == other.triangles;
+}
+
+double size_of(const Surface& surface) {
+  const Box box = bounding_box(surface.rest);
+  return norm(box.upper - box.lower);
 }
 
 bool has_fine_skin(const Scene& scene) {

@@ -25,11 +25,13 @@ struct Surface {
   int vertex_count() const { return static_cast<int>(rest.size()); }
   int triangle_count() const { return static_cast<int>(triangles.size()); }
   std::span<const int> tets_at(int vertex) const;
-  int anchor(int vertex) const;  // the model vertex with the largest weight
+  int anchor(int vertex) const;                                        // the model vertex with the largest weight
+  uint32_t user_number(int vertex, const Numbering& numbering) const;  // kNoVertex for a point of a fine skin
   Vec3d position(int vertex, std::span<const double> x) const;
   bool has_same_shape(const Surface& other) const;  // equal triangles and number of vertices
 };
 
+double size_of(const Surface& surface);  // diagonal of the bounding box at rest [m]
 bool has_fine_skin(const Scene& scene);
 Surface fine_surface(const Scene& scene);  // fine skins of all bodies
 Surface boundary_of(const Model& model);   // boundary of the tets of all bodies

@@ -176,7 +176,7 @@ TEST(Tip, TouchesBothSidesOfAComparison) {
 
 TEST(Tip, RefusesInvalidTips) {
   Page page(kSlab);
-  EXPECT_NE(page.refused({{"do", "press"}, {"depth", 0.01}}).find("no tip"), std::string::npos);
+  EXPECT_NE(page.refused({{"do", "press"}, {"depth", 0.01}}).find("no indenter"), std::string::npos);
   page.refused(touch_message(page, {{"radius", 0}}));
   page.refused(touch_message(page, {{"radius", 1e9}}));
   page.refused(touch_message(page, {{"shape", "cone"}}));

@@ -51,9 +51,16 @@ class Hand : public Tool<Grab, Vec3d> {
   Vec3d force(Positions x) const { return is_grabbing() ? held_.stiffness * (place() - point(x)) : Vec3d{}; }  // [N]
   double energy(Positions x) const { return held_.value(x, place()); }                                         // [J]
 
-  void grab(const TetPoint& point, const Vec3d& target, Positions x);
+  void grab(const TetPoint& point, const Vec3d& target, Positions x) {
+    held_ = {.vertices = point.vertices, .weights = point.weights, .stiffness = stiffness_};
+    held_.from = held_.to = held_.point(x);
+    move(target);
+  }
   void release() { held_ = {}; }
-  void set_stiffness(double stiffness);
+  void set_stiffness(double stiffness) {
+    stiffness_ = stiffness;
+    if (is_grabbing()) held_.stiffness = stiffness;
+  }
 
  private:
   double stiffness_;

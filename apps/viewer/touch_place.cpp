@@ -4,7 +4,6 @@
 #include <cmath>
 
 #include "math/polar3.h"
-#include "mesh/box.h"
 #include "mesh/tet_shape.h"
 #include "viewer/fields.h"
 
@@ -12,36 +11,54 @@ namespace aspic::viewer {
 namespace {
 
 constexpr double kShareOfBody = 0.08;  // radius / diagonal
-constexpr double kEdges = 0.8;         // minimum of radius / mean edge: a tip between vertices would touch one tet only
+constexpr double kEdges = 0.8;  // minimum of radius / mean edge: an indenter between vertices would touch one tet only
 constexpr double kLayer = 100;
 
-double mean_young(const Model& model) {
-  for (const auto& [name, young] : model.tet_fields) {
-    if (name != "young") continue;
-    double logs = 0, volumes = 0;
-    for (int t = 0; t < model.mesh.tet_count(); ++t) {
-      if (!(young[t] > 0)) continue;
-      logs += volume(model.mesh, t) * std::log(young[t]);
-      volumes += volume(model.mesh, t);
-    }
-    if (volumes > 0) return std::exp(logs / volumes);
+// The volume and Young's modulus of the elastic tets. The mean of log E limits the influence of a stiff core.
+struct Elastic {
+  int tets = 0;
+  double volume = 0, logs = 0;  // [m^3], integral of log E
+
+  double young() const { return std::exp(logs / volume); }
+};
+
+Elastic elastic_part(const Model& model) {
+  Elastic part;
+  const std::vector<double>* young = tet_field(model, "young");
+  for (int t = 0; young && t < model.mesh.tet_count(); ++t) {
+    if (!((*young)[t] > 0)) continue;
+    const double v = volume(model.mesh, t);
+    part.logs += v * std::log((*young)[t]);
+    part.volume += v;
+    ++part.tets;
   }
-  return 1e5;
+  return part;
 }
 
 Vec3d unit(const Vec3d& v) { return (1 / norm(v)) * v; }
 
 }  // namespace
 
-double usual_radius(const Surface& cage) {
-  const Box box = bounding_box(cage.rest);
+double default_stiffness(const Model& model) {
+  const Elastic part = elastic_part(model);
+  if (part.tets > 0) return part.young() * std::cbrt(6 * std::sqrt(2.0) * part.volume / part.tets);
+  // Without elasticity: an oscillation of about 2 Hz.
+  double mass = 0;
+  for (const double m : model.mass->vertex_mass()) mass += m;
+  return std::max(100 * mass, 1e-9);
+}
+
+double default_radius(const Surface& cage) {
   double edges = 0;
   for (const auto& [a, b] : cage.edges) edges += norm(cage.rest[a] - cage.rest[b]);
   const double edge = edges / std::max<double>(1, static_cast<double>(cage.edges.size()));
-  return std::max(kShareOfBody * norm(box.upper - box.lower), kEdges * edge);
+  return std::max(kShareOfBody * size_of(cage), kEdges * edge);
 }
 
-double usual_layer(const Model& model, double radius) { return kLayer * mean_young(model) / radius; }
+double default_layer(const Model& model, double radius) {
+  const Elastic part = elastic_part(model);
+  return kLayer * (part.tets > 0 ? part.young() : 1e5) / radius;
+}
 
 Vec3d rotation_vector(const Mat3d& R) {
   const Vec3d twice_sine = {{R(2, 1) - R(1, 2), R(0, 2) - R(2, 0), R(1, 0) - R(0, 1)}};

@@ -1,16 +1,21 @@
-// The place where a tip touches a body: a point of its surface and the inward normal.
+// The place where an indenter touches a body, a point of its surface and the inward normal, and the default sizes of
+// the tools.
 #pragma once
 #include "energy/held_tip.h"
 #include "viewer/surface.h"
 
 namespace aspic::viewer {
 
-// Default radius of a tip: about a twelfth of the body, and wide enough for its triangles [m].
-double usual_radius(const Surface& cage);
-// Default stiffness of the layer: 100 times that of the body under the tip. It yields 1% of the depth [Pa/m].
-double usual_layer(const Model& model, double radius);
+// Default stiffness of the mouse spring: E times the edge length of a tet [N/m]. A stiffer spring would invert the tets
+// at the mouse.
+double default_stiffness(const Model& model);
 
-// `cage`: the boundary of the tets, at the positions x. The tip turns with the tet behind the triangle.
+// Default radius of an indenter: about a twelfth of the body, and wide enough for its triangles [m].
+double default_radius(const Surface& cage);
+// Default stiffness of the layer: 100 times that of the body under the indenter. It yields 1% of the depth [Pa/m].
+double default_layer(const Model& model, double radius);
+
+// `cage`: the boundary of the tets, at the positions x. The indenter turns with the tet behind the triangle.
 Touch touch_at(const Model& model, const Surface& cage, const SurfacePoint& point, const Tip& tip,
                std::span<const double> x);
 

@@ -25,7 +25,7 @@ fs::path confined(const std::string& name) {
   for (const char c : name) is_plain = is_plain && static_cast<unsigned char>(c) >= ' ' && c != '\\' && c != ':';
   if (!is_plain)
     throw InvalidInput(
-        fmt::format("load.files: the name '{}' is refused; a relative path of at most {} bytes without "
+        fmt::format("load.files: invalid name '{}'; a relative path of at most {} bytes without "
                     "'..' is expected",
                     printable(shortened(name)), kLongestName));
   return path;

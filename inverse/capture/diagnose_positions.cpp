@@ -185,7 +185,7 @@ class PositionDiagnosis {
 
   // Median motion of the markers that only an indenter moves; use(position, rest position) interprets positions.
   template <class Use>
-  double usual_motion(const Use& use) const {
+  double default_motion(const Use& use) const {
     std::vector<double> motion;
     for (const LoadCase& load : experiment_.cases)
       for (const MarkerReading& r : load.positions) {
@@ -210,16 +210,16 @@ class PositionDiagnosis {
           noise.push_back(norm(r.deviation));
         }
     if (way.empty()) return true;
-    const double motion = usual_motion([](const Vec3d& x, const Vec3d&) { return x; });
+    const double motion = default_motion([](const Vec3d& x, const Vec3d&) { return x; });
     if (motion <= kLever * (median(way) + median(noise))) return true;
     const std::string what =
         "markers move by " + three_digits(motion) + " m, the indenter by " + three_digits(median(way)) + " m (medians)";
     if (median(way) == 0)
       return refuse(data_.source.positions, what, "give the pose of the indenter in cases.csv: depth, or center");
-    if (usual_motion([](const Vec3d& x, const Vec3d& X) { return X + x; }) < motion / kLever)
+    if (default_motion([](const Vec3d& x, const Vec3d& X) { return X + x; }) < motion / kLever)
       return refuse(data_.source.positions, what, "these are displacements; add the positions at rest");
     for (const auto& [i, j] : {std::pair{0, 1}, {0, 2}, {1, 2}})
-      if (usual_motion([i = i, j = j](Vec3d x, const Vec3d&) { return std::swap(x[i], x[j]), x; }) < motion / kLever)
+      if (default_motion([i = i, j = j](Vec3d x, const Vec3d&) { return std::swap(x[i], x[j]), x; }) < motion / kLever)
         return refuse(data_.source.positions, what,
                       std::string("the columns ") + "xyz"[i] + " and " + "xyz"[j] + " seem to be swapped");
     findings_.warning(

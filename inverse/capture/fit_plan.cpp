@@ -50,7 +50,7 @@ double inside(const ExtraParameter& extra) {
   return std::clamp(extra.fallback, extra.min + margin, extra.max - margin);
 }
 
-double usual_value(const std::string& quantity, const std::string& model, const Experiment& experiment) {
+double default_value(const std::string& quantity, const std::string& model, const Experiment& experiment) {
   if (quantity == "young") return apparent_young(experiment).value_or(kUsualYoung);
   if (quantity == "poisson") return kUsualPoisson;
   for (const ExtraParameter& extra : material_info(model).extra)
@@ -150,7 +150,7 @@ FitPlan completed(FitPlan plan, const Experiment& experiment) {
                                .handles = 0,
                                .guess = 0});
   for (Unknown& u : plan.unknowns)
-    if (u.guess == 0) u.guess = usual_value(u.quantity, plan.model, experiment);
+    if (u.guess == 0) u.guess = default_value(u.quantity, plan.model, experiment);
   // Standard deviations that include the mesh correction exceed the random errors. The discrepancy principle would
   // treat the difference as noise and oversmooth the field.
   const bool is_field = std::any_of(plan.unknowns.begin(), plan.unknowns.end(),
@@ -229,7 +229,7 @@ std::vector<MaterialParameters> known_parameters(const FitPlan& plan, const Expe
       if (known == quantity) return number;
     for (const Unknown& u : plan.unknowns)
       if (u.quantity == quantity) return u.guess;
-    return usual_value(quantity, plan.model, experiment);
+    return default_value(quantity, plan.model, experiment);
   };
   MaterialParameters parameters;
   parameters.lame = lame_from_young_poisson(value("young"), value("poisson"));

@@ -16,7 +16,7 @@ constexpr double kUnexplained = 4;                   // |r|^2 per reading: twice
 
 }  // namespace
 
-std::string words_of_runaway(const DataSet& data, const MaterialParameters& material) {
+std::string describe_runaway(const DataSet& data, const MaterialParameters& material) {
   const double young = young_modulus(material.lame);
   if (young >= kSoftest && young <= kStiffest) return "";
   const std::vector<LoadCase>& cases = data.experiment.cases;
@@ -27,7 +27,7 @@ std::string words_of_runaway(const DataSet& data, const MaterialParameters& mate
          ", and that loads and readings belong to the same body";
 }
 
-std::string words_of_failure(const DataSet& data, const FitReport& report, const std::string& why) {
+std::string describe_failure(const DataSet& data, const FitReport& report, const std::string& why) {
   const auto is_named = [&](const LoadCase& c) {
     return why.starts_with(c.name + ",") || why.starts_with(c.name + ":");
   };
@@ -39,7 +39,7 @@ std::string words_of_failure(const DataSet& data, const FitReport& report, const
          why.substr(0, why.find("; ")) + "; check its load and its pose, or remove the row";
 }
 
-std::string words_of_worst_row(const DataSet& data, const std::vector<std::string>& left_out, const Misfit& misfit,
+std::string describe_worst_row(const DataSet& data, const std::vector<std::string>& left_out, const Misfit& misfit,
                                std::span<const double> r) {
   const double count = static_cast<double>(r.size()), usual = dot(r, r) / count;
   if (!(usual > std::max(kUnexplained, 1 + 5 * std::sqrt(2 / count)))) return "";

@@ -12,13 +12,13 @@ namespace aspic {
 
 // Explains a stiffness beyond any material, caused by readings that no stiffness can fit, such as forces of another
 // body. Empty if the stiffness is plausible.
-std::string words_of_runaway(const DataSet& data, const MaterialParameters& material);
+std::string describe_runaway(const DataSet& data, const MaterialParameters& material);
 
 // Explains a fit without a material, with the row of the first unsolved case.
-std::string words_of_failure(const DataSet& data, const FitReport& report, const std::string& why);
+std::string describe_failure(const DataSet& data, const FitReport& report, const std::string& why);
 
 // Names the row with the largest residual r of the fitted cases if it is far above the noise; otherwise empty.
-std::string words_of_worst_row(const DataSet& data, const std::vector<std::string>& left_out, const Misfit& misfit,
+std::string describe_worst_row(const DataSet& data, const std::vector<std::string>& left_out, const Misfit& misfit,
                                std::span<const double> r);
 
 bool is_left_out(const std::vector<std::string>& left_out, const LoadCase& c);

@@ -121,7 +121,7 @@ FittedMaterial fitted_material(const DataSet& data, const ParameterMap& map, std
   return material;
 }
 
-std::string words_of_mesh(const FitOutcome& outcome) {
+std::string describe_mesh(const FitOutcome& outcome) {
   std::string words = "a material per tet of " + std::to_string(outcome.material.mesh.tet_count()) + ", simulated on " +
                       std::to_string(outcome.simulated_tets) +
                       (outcome.plan.refine > 0 ? " (refine = " + std::to_string(outcome.plan.refine) + ")" : " tets");

@@ -21,6 +21,6 @@ FittedMaterial fitted_material(const DataSet& data, const ParameterMap& map, std
 std::vector<std::string> values_at_bound(const ParameterMap& map, std::span<const double> p);
 
 // "a material per tet of 384, simulated on 3072 (refine = 1); positions err by ...".
-std::string words_of_mesh(const FitOutcome& outcome);
+std::string describe_mesh(const FitOutcome& outcome);
 
 }  // namespace aspic

@@ -89,7 +89,7 @@ bool MaterialFit::fit_single_values(const std::string& name) {
     const FitReport report = fit_stage(FitStage::uniform, model, options);
     outcome_.uniform = outcome_.report = report;
     if (!has_failed(report)) return has_single_values(model, report);
-    outcome_.failure = words_of_failure(data_, report, model.misfit.failure());
+    outcome_.failure = describe_failure(data_, report, model.misfit.failure());
   }
   return false;
 }
@@ -98,7 +98,7 @@ bool MaterialFit::has_single_values(FitModel& model, const FitReport& report) {
   for (size_t u = 0; u < plan_.unknowns.size(); ++u)
     plan_.unknowns[u].guess = model.map.values(static_cast<int>(u), report.p).front();
   material_ = model.map.parameters(report.p);
-  outcome_.failure = words_of_runaway(data_, material_.front());
+  outcome_.failure = describe_runaway(data_, material_.front());
   if (!outcome_.failure.empty()) return false;
   if (report.status != Status::interrupted) return true;
   describe(model, report.p);
@@ -187,10 +187,10 @@ void MaterialFit::fit_and_describe() {
   FitModel& model = *last;
   const FitReport& report = outcome_.report;
   if (has_failed(report) || report.status == Status::no_descent) {
-    outcome_.failure = words_of_failure(data_, report, model.misfit.failure());
+    outcome_.failure = describe_failure(data_, report, model.misfit.failure());
     return;
   }
-  outcome_.failure = words_of_runaway(data_, model.map.parameters(report.p).front());
+  outcome_.failure = describe_runaway(data_, model.map.parameters(report.p).front());
   if (!outcome_.failure.empty()) return;
   if (!is_over(report)) return describe(model, report.p);
   learn_uncertainty(model);

@@ -58,7 +58,7 @@ void MaterialFit::describe(FitModel& model, std::span<const double> p) {
   const bool ok = about_fit.evaluate(p, r);
   if (ok) {
     outcome_.report.misfit = dot(r, r) / 2;
-    if (const std::string words = words_of_worst_row(data_, plan_.left_out, model.misfit, r); !words.empty())
+    if (const std::string words = describe_worst_row(data_, plan_.left_out, model.misfit, r); !words.empty())
       add_warnings({words});
   }
   int fitted = 0;

@@ -28,6 +28,9 @@ void require_motion(const SceneModel& scene, const std::vector<std::string>& nam
                        "'; a motion is fitted with --set time.integrator=backward_euler");
   if (scene.options.adaptive.tolerance > 0)
     throw InvalidInput(file + ": adaptive time steps; a motion is fitted with --set time.adaptive.tolerance=0");
+  if (scene.model.contact)
+    throw InvalidInput(file +
+                       ": has contact, whose derivatives are not implemented; remove [contact] and [[obstacle]]");
   if (scene.model.bodies.size() != 1)
     throw InvalidInput(file + ": has " + std::to_string(scene.model.bodies.size()) +
                        " bodies; a motion is fitted to one, so keep only the body with the markers");

@@ -124,7 +124,7 @@ double curvature(const WeightTrial& a, const WeightTrial& b, const WeightTrial& 
   return lengths > 0 ? 2 * (vx * uy - ux * vy) / lengths : 0;
 }
 
-std::string words_of(Discrepancy::Verdict verdict, double squares, int residuals) {
+std::string describe(Discrepancy::Verdict verdict, double squares, int residuals) {
   const std::string found = "|r|^2 = " + number(squares) + " of " + std::to_string(residuals) + " residuals";
   switch (verdict) {
     case Discrepancy::Verdict::fits:
@@ -160,7 +160,7 @@ Status fit_by_discrepancy(FitRun& run, FitPoint& at, FitGoal& goal, FitMethod me
   if (verdict == Discrepancy::Verdict::unexplained && !go_to(run, at, most_cautious(trials))) return Status::undefined;
   const Status status = method(run, at, goal);
   if (rule.is_met(at.misfit)) verdict = Discrepancy::Verdict::fits;
-  run.report.words = words_of(verdict, 2 * at.misfit, run.residuals());
+  run.report.words = describe(verdict, 2 * at.misfit, run.residuals());
   return status;
 }
 

@@ -8,7 +8,7 @@
 #include "base/error.h"
 #include "fit/common_errors.h"
 #include "fit/cross_validation.h"
-#include "fit/field_words.h"
+#include "fit/field_text.h"
 #include "math/vectors.h"
 #include "mesh/surface.h"
 #include "mesh/tet_shape.h"
@@ -44,7 +44,7 @@ Instruments instruments(const Experiment& experiment, const NextPokeOptions& opt
 
 LoadCase load_at(const Experiment& experiment, const Instruments& with, const Vec3d& site, const Vec3d& inward) {
   LoadCase load;
-  load.name = load.group = "poke at " + words_of_point(site);
+  load.name = load.group = "poke at " + describe_point(site);
   load.tip = with.tip;
   load.touch.axis = inward;
   load.touch.center = with.tip.shape == TipShape::sphere ? site - with.tip.radius * inward : site;
@@ -74,7 +74,7 @@ void set_deviation(const ParameterMap& map, const Posterior& posterior, const Sp
 }
 
 // "..., known within a factor of 1.9, would be within 1.2", with 95 %.
-std::string words_of_change(const Unknown& unknown, double before, double after) {
+std::string describe_change(const Unknown& unknown, double before, double after) {
   char text[160];
   const double a = kDeviations95 * before, b = kDeviations95 * after;
   if (unknown.quantity == "young")
@@ -99,9 +99,9 @@ void set_words(const ParameterMap& map, const TetMesh& mesh, const Posterior& po
   }
   const size_t t = std::ranges::max_element(best) - best.begin();
   const Unknown& what = map.unknowns()[unknown];
-  const std::string where = what.spread == Spread::uniform ? "of the whole body" : words_of_place(mesh, best);
-  candidate.words = "at " + words_of_point(candidate.site) + ": " + what.quantity + " " + where +
-                    words_of_change(what, posterior.deviation[unknown][t], candidate.deviation[unknown][t]);
+  const std::string where = what.spread == Spread::uniform ? "of the whole body" : describe_place(mesh, best);
+  candidate.words = "at " + describe_point(candidate.site) + ": " + what.quantity + " " + where +
+                    describe_change(what, posterior.deviation[unknown][t], candidate.deviation[unknown][t]);
 }
 
 void judge(const Experiment& experiment, const FittedField& fitted, Posterior& posterior,

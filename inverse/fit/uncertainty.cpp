@@ -5,7 +5,7 @@
 
 #include "base/check.h"
 #include "fit/evidence.h"
-#include "fit/field_words.h"
+#include "fit/field_text.h"
 #include "fit/formatted.h"
 #include "fit/principal_directions.h"
 
@@ -98,7 +98,7 @@ void tell_seen(const ParameterMap& map, const TetMesh& mesh, int count, Posterio
   for (int k = 0; k < std::min(count, s.W.count()) && s.d[k] >= 1; ++k) {
     Direction direction{.information = s.d[k], .p = {s.W[k].begin(), s.W[k].end()}};
     direction.deviation = root_mean_square(map, mesh, s.W[k]) / std::sqrt(1 + s.d[k]);
-    direction.words = words_of_direction(mesh, map, direction.p);
+    direction.words = describe_direction(mesh, map, direction.p);
     result.seen.push_back(std::move(direction));
   }
 }
@@ -113,7 +113,7 @@ void tell_unseen(const ParameterMap& map, const TetMesh& mesh, int count, Poster
     belief.before().precision(direction.p, y);
     const double length = std::sqrt(dot(direction.p, y));
     for (double& x : direction.p) x /= length;
-    direction.words = words_of_direction(mesh, map, direction.p);
+    direction.words = describe_direction(mesh, map, direction.p);
     result.unseen.push_back(std::move(direction));
   }
 }
@@ -176,7 +176,7 @@ Interval interval(const Posterior& posterior, const ParameterMap& map, std::span
   return {map.value(unknown, z - s), map.value(unknown, z + s)};
 }
 
-std::string words_of_interval(const Unknown& unknown, const Interval& interval) {
+std::string describe_interval(const Unknown& unknown, const Interval& interval) {
   const bool is_pressure = unknown.quantity == "young";
   double unit = 1;
   const char* name = is_pressure ? " Pa" : "";

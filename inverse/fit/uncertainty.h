@@ -62,6 +62,6 @@ Interval interval(const Posterior& posterior, const ParameterMap& map, std::span
                   double deviations = kDeviations95);
 
 // "young between 80 and 130 kPa", "poisson between 0.41 and 0.46".
-std::string words_of_interval(const Unknown& unknown, const Interval& interval);
+std::string describe_interval(const Unknown& unknown, const Interval& interval);
 
 }  // namespace aspic

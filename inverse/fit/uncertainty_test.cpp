@@ -4,7 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "fit/common_errors.h"
-#include "fit/field_words.h"
+#include "fit/field_text.h"
 #include "fit/linear_models_test.h"
 #include "mesh/generators.h"
 
@@ -268,9 +268,9 @@ TEST(Interval, IsInUnitsOfTheQuantity) {
   const Interval i = interval(posterior, map, map.guess(), {0, 2}, 1);
   EXPECT_NEAR(i.lower, 1e5 / 1.3, 1e-6);
   EXPECT_NEAR(i.upper, 1.3e5, 1e-6);
-  EXPECT_EQ(words_of_interval(map.unknowns()[0], {80e3, 130e3}), "young between 80 and 130 kPa");
-  EXPECT_EQ(words_of_interval(map.unknowns()[0], {1.5, 700}), "young between 1.5 and 700 Pa");
-  EXPECT_EQ(words_of_interval({.quantity = "poisson"}, {0.41, 0.46}), "poisson between 0.41 and 0.46");
+  EXPECT_EQ(describe_interval(map.unknowns()[0], {80e3, 130e3}), "young between 80 and 130 kPa");
+  EXPECT_EQ(describe_interval(map.unknowns()[0], {1.5, 700}), "young between 1.5 and 700 Pa");
+  EXPECT_EQ(describe_interval({.quantity = "poisson"}, {0.41, 0.46}), "poisson between 0.41 and 0.46");
 }
 
 // ---------------------------------------------------------------------------------------------------- words
@@ -281,25 +281,25 @@ TEST(DirectionWords, NamePlacesRegionsAndContrasts) {
   const ParameterMap tets = make_map(mesh, {{.guess = 1}}),
                      regions = make_map(mesh, {{.spread = Spread::regions, .guess = 1}});
   std::vector<double> p(tets.size(), -0.3);
-  EXPECT_EQ(words_of_direction(mesh, tets, p), "young of the whole body");
+  EXPECT_EQ(describe_direction(mesh, tets, p), "young of the whole body");
   p.assign(p.size(), 0);
   for (int t = 45; t < 50; ++t) p[t] = -2;
-  EXPECT_THAT(words_of_direction(mesh, tets, p),
+  EXPECT_THAT(describe_direction(mesh, tets, p),
               testing::MatchesRegex("young around \\(0\\.09.*\\) m \\(10 % of the body\\)"));
   for (int t = 0; t < 5; ++t) p[t] = 2.1;
-  EXPECT_THAT(words_of_direction(mesh, tets, p),
+  EXPECT_THAT(describe_direction(mesh, tets, p),
               testing::MatchesRegex("young around \\(0\\.00.*\\) m .* against around \\(0\\.09.*"));
-  EXPECT_EQ(words_of_direction(mesh, regions, std::vector<double>{1, 1}), "young of the whole body");
-  EXPECT_EQ(words_of_direction(mesh, regions, std::vector<double>{0, -1}), "young of region 7");
-  EXPECT_EQ(words_of_direction(mesh, regions, std::vector<double>{1, -1.1}), "young of region 7 against region 1");
+  EXPECT_EQ(describe_direction(mesh, regions, std::vector<double>{1, 1}), "young of the whole body");
+  EXPECT_EQ(describe_direction(mesh, regions, std::vector<double>{0, -1}), "young of region 7");
+  EXPECT_EQ(describe_direction(mesh, regions, std::vector<double>{1, -1.1}), "young of region 7 against region 1");
 }
 
 TEST(DirectionWords, NameEveryQuantityThatTakesPart) {
   const TetMesh mesh = bar(2);
   const ParameterMap map = make_map(mesh, {{.spread = Spread::uniform, .guess = 1},
                                            {.quantity = "poisson", .spread = Spread::uniform, .guess = 0.3}});
-  EXPECT_EQ(words_of_direction(mesh, map, std::vector<double>{1, 0.1}), "young of the whole body");
-  EXPECT_EQ(words_of_direction(mesh, map, std::vector<double>{1, 0.9}),
+  EXPECT_EQ(describe_direction(mesh, map, std::vector<double>{1, 0.1}), "young of the whole body");
+  EXPECT_EQ(describe_direction(mesh, map, std::vector<double>{1, 0.9}),
             "young of the whole body with poisson of the whole body");
 }
 

@@ -1,11 +1,11 @@
 // Exports the motion so far as a file for other programs.
-import { element, labeled, messageOf, openDialog, saveFile } from "./dom";
+import { element, fileName, labeled, openForm, saveFile, selectOf } from "./dom";
 import { Gif } from "./gif";
 import type { Page } from "./page";
 import type { FileReply, Query, Recording, SideName, State } from "./protocol";
 import type { Store } from "./store";
 import { bytesOf } from "./upload";
-import { fileName, type Video } from "./video";
+import type { Video } from "./video";
 
 type Format = Extract<Query, { ask: "animation" }>["format"];
 const kFormats: Record<Format | "video" | "gif", string> = {
@@ -17,39 +17,27 @@ const kFormats: Record<Format | "video" | "gif", string> = {
 };
 
 export function openAnimation(store: Store, page: Page, video: Video): void {
-  const format = element("select", {}, ...Object.entries(kFormats).map(([value, text]) => element("option", { value }, text)));
-  const side = element("select", {}, element("option", { value: "a" }, "A"), element("option", { value: "b" }, "B"));
-  const submit = element("button", { type: "submit", class: "primary" }, "Export");
-  const problem = element("p", { class: "problem", role: "alert" });
-  const form = element(
-    "form",
-    {},
-    labeled("Format", format),
-    store.side("b") ? labeled("Side", side) : null,
-    problem,
-    element("div", { class: "actions" }, submit),
+  const format = selectOf(kFormats);
+  const side = selectOf({ a: "A", b: "B" });
+  const run = (): Promise<void> => {
+    if (format.value === "video") return videoOfSession(store, video);
+    if (format.value === "gif") return gifOfSession(store, page, video);
+    return saveAnimation(store, page, side.value as SideName, format.value as Format);
+  };
+  openForm(
+    "Export the motion",
+    [
+      element("p", {}, "The surface at the steps in the timeline, from the start to now, including drags."),
+      labeled("Format", format),
+      store.side("b") ? labeled("Side", side) : null,
+    ],
+    "Export",
+    run,
+    [
+      element("p", { class: "faint" }, "Videos and GIFs of any size: save the scene (Shift+T), then on a command line"),
+      element("pre", {}, "aspic run SCENE.toml --out out\naspic render out -o motion.gif   (or .mp4, .webm)"),
+    ],
   );
-  const dialog = openDialog("Export the motion", [
-    element("p", {}, "The surface at the steps in the timeline, from the start to now, including drags."),
-    form,
-    element("p", { class: "faint" }, "Videos and GIFs of any size: save the scene (Shift+T), then on a command line"),
-    element("pre", {}, "aspic run SCENE.toml --out out\naspic render out -o motion.gif   (or .mp4, .webm)"),
-  ]);
-  form.addEventListener("submit", (event) => {
-    event.preventDefault();
-    submit.disabled = true;
-    problem.textContent = "";
-    const made =
-      format.value === "video"
-        ? videoOfSession(store, video)
-        : format.value === "gif"
-          ? gifOfSession(store, page, video)
-          : saveAnimation(store, page, side.value as SideName, format.value as Format);
-    made
-      .then(() => dialog.close())
-      .catch((reason: unknown) => (problem.textContent = messageOf(reason)))
-      .finally(() => (submit.disabled = false));
-  });
 }
 
 async function saveAnimation(store: Store, page: Page, side: SideName, format: Format): Promise<void> {

@@ -1,5 +1,5 @@
 // Dialog that opens a second simulation beside the first.
-import { button, element, labeled, messageOf, openDialog } from "./dom";
+import { button, element, labeled, openForm } from "./dom";
 import type { Page } from "./page";
 import { faultOfOverrides, parseOverrides, presets } from "./presets";
 import type { Scene } from "./protocol";
@@ -30,37 +30,24 @@ export function makeCompareButton(store: Store, page: Page): HTMLElement {
 function openCompare(store: Store, scene: Scene): void {
   const label = element("input", { type: "text", maxlength: "60", required: true });
   const overrides = element("textarea", { rows: "4", spellcheck: "false", placeholder: "material.young=1e6" });
-  const problem = element("p", { class: "problem", role: "alert" });
   const choices = presets(scene).map((preset) =>
     button({ text: preset.title, title: preset.overrides.join("\n") }, () => {
       label.value = preset.label;
       overrides.value = preset.overrides.join("\n");
-      problem.textContent = "";
     }),
   );
-  const submit = element("button", { type: "submit", class: "primary" }, "Compare");
-  const form = element(
-    "form",
-    {},
+  const run = async (): Promise<void> => {
+    const lines = parseOverrides(overrides.value);
+    const fault = faultOfOverrides(lines);
+    if (fault !== "") throw new Error(fault);
+    await store.source.request({ do: "compare", overrides: lines, label: label.value.trim() || "B" });
+  };
+  const fields = [
     element("p", {}, "Side A does not change. Side B is the same scene with these differences:"),
     element("div", { class: "choices" }, ...choices),
     labeled("Overrides of side B, one KEY=VALUE per line", overrides),
     labeled("Name of side B", label),
-    problem,
-    element("div", { class: "actions" }, submit),
-  );
-  const dialog = openDialog("Compare two simulations", [form]);
-  form.addEventListener("submit", (event) => {
-    event.preventDefault();
-    const lines = parseOverrides(overrides.value);
-    problem.textContent = faultOfOverrides(lines);
-    if (problem.textContent !== "") return;
-    submit.disabled = true;
-    store.source
-      .request({ do: "compare", overrides: lines, label: label.value.trim() || "B" })
-      .then(() => dialog.close())
-      .catch((reason: unknown) => (problem.textContent = messageOf(reason)))
-      .finally(() => (submit.disabled = false));
-  });
+  ];
+  openForm("Compare two simulations", fields, "Compare", run);
   choices[0]?.focus();
 }

@@ -2,7 +2,7 @@
 import { makeDivider } from "./divider";
 import { button, element } from "./dom";
 import { whenNarrow } from "./narrow";
-import type { Page, Panel } from "./page";
+import { fieldsOf, type Page, type Panel } from "./page";
 import { keyName } from "./shortcuts";
 
 const kKeys: Record<string, string> = { energy: "e", microscope: "m", landscape: "a", functions: "f", certificate: "q", capture: "k" };
@@ -109,7 +109,7 @@ export class Dock {
   }
 
   private restore(saved: unknown): void {
-    const { panel, height } = (saved ?? {}) as { panel?: unknown; height?: unknown };
+    const { panel, height } = fieldsOf(saved);
     if (typeof height === "number" && Number.isFinite(height)) this.height = height;
     else if (height === null) this.height = null;
     if (panel === null) this.show(null);

@@ -15,6 +15,10 @@ export function element<Tag extends keyof HTMLElementTagNameMap>(
   return made;
 }
 
+export function listOf(texts: readonly string[]): HTMLUListElement {
+  return element("ul", {}, ...texts.map((text) => element("li", {}, text)));
+}
+
 // Outlines in a square of 24 units.
 const kIcons = {
   play: "M7 4l13 8-13 8z",
@@ -27,17 +31,16 @@ const kIcons = {
 } as const;
 export type IconName = keyof typeof kIcons;
 
-export function icon(name: IconName): SVGSVGElement {
-  const kSvg = "http://www.w3.org/2000/svg";
-  const svg = document.createElementNS(kSvg, "svg");
-  svg.setAttribute("viewBox", "0 0 24 24");
-  svg.setAttribute("aria-hidden", "true");
-  svg.setAttribute("class", "icon");
-  const path = document.createElementNS(kSvg, "path");
-  path.setAttribute("d", kIcons[name]);
-  path.setAttribute("fill-rule", "evenodd");
-  svg.append(path);
-  return svg;
+export function svgElement(tag: string, attributes: Record<string, string>, ...children: SVGElement[]): SVGElement {
+  const made = document.createElementNS("http://www.w3.org/2000/svg", tag);
+  for (const [name, value] of Object.entries(attributes)) made.setAttribute(name, value);
+  made.append(...children);
+  return made;
+}
+
+export function icon(name: IconName): SVGElement {
+  const path = svgElement("path", { d: kIcons[name], "fill-rule": "evenodd" });
+  return svgElement("svg", { viewBox: "0 0 24 24", "aria-hidden": "true", class: "icon" }, path);
 }
 
 export interface ButtonOptions {
@@ -78,6 +81,34 @@ export function openDialog(title: string, content: Child[], className = ""): HTM
   document.body.append(dialog);
   dialog.showModal();
   return dialog;
+}
+
+// Opens a dialog with a form. It closes when `run` has succeeded; otherwise it shows why it failed.
+export function openForm(title: string, fields: Child[], submit: string, run: () => Promise<unknown>, after: Child[] = []): void {
+  const problem = element("p", { class: "problem", role: "alert" });
+  const submitter = element("button", { type: "submit", class: "primary" }, submit);
+  const form = element("form", {}, ...fields, problem, element("div", { class: "actions" }, submitter));
+  const dialog = openDialog(title, [form, ...after]);
+  form.addEventListener("click", () => (problem.textContent = ""));
+  form.addEventListener("submit", (event) => {
+    event.preventDefault();
+    submitter.disabled = true;
+    run()
+      .then(() => dialog.close())
+      .catch((reason: unknown) => (problem.textContent = messageOf(reason)))
+      .finally(() => (submitter.disabled = false));
+  });
+}
+
+// A list of values with their texts.
+export function selectOf(texts: Record<string, string>): HTMLSelectElement {
+  return element("select", {}, ...Object.entries(texts).map(([value, text]) => element("option", { value }, text)));
+}
+
+// File name from letters, digits and characters that every file system accepts.
+export function fileName(name: string, extension: string): string {
+  const plain = name.replace(/[^\w.-]+/g, "_").replace(/^[_.]+|_+$/g, "");
+  return `${plain || "aspic"}.${extension}`;
 }
 
 export function saveFile(name: string, content: Blob): void {

@@ -1,14 +1,14 @@
 // The file menu: scenes, workspaces, mouse recordings, deformed meshes.
 import { openAnimation } from "./animation";
-import { chooseFile, element, labeled, messageOf, openDialog, saveFile } from "./dom";
+import { chooseFile, fileName, labeled, messageOf, openForm, saveFile, selectOf } from "./dom";
 import { openGallery } from "./gallery";
 import { makeMenu } from "./menu";
 import type { Page } from "./page";
-import type { Query, Recording, SceneReply, TextReply } from "./protocol";
+import type { Query, Recording, SceneReply, SideName, TextReply } from "./protocol";
 import { shortcutButton } from "./shortcuts";
 import type { Store } from "./store";
 import { bytesOf, isSceneOrMesh, prepareUpload } from "./upload";
-import { fileName, type Video } from "./video";
+import type { Video } from "./video";
 import { isWorkspace, openWorkspace, parseRecording, parseWorkspace, saveWorkspace } from "./workspace";
 
 const kLargestFile = 50e6; // largest workspace or recording [bytes]
@@ -45,27 +45,19 @@ export class Files {
   }
 
   private try(work: Promise<unknown>): void {
-    work.catch((reason: unknown) => this.page.notice(messageOf(reason), "error"));
+    work.catch(this.page.report);
   }
 
   private openMesh(): void {
-    const format = element("select", {}, ...kFormats.map((name) => element("option", { value: name }, name)));
-    const side = element("select", {}, element("option", { value: "a" }, "A"), element("option", { value: "b" }, "B"));
-    const submit = element("button", { type: "submit", class: "primary" }, "Save");
-    const form = element(
-      "form",
-      {},
+    const format = selectOf(Object.fromEntries(kFormats.map((name) => [name, name])));
+    const side = selectOf({ a: "A", b: "B" });
+    const fields = [
       labeled("obj and ply contain the surface; vtu, msh and mesh the tets", format),
       this.store.side("b") ? labeled("Side", side) : null,
-      element("div", { class: "actions" }, submit),
+    ];
+    openForm("Save the deformed mesh", fields, "Save", () =>
+      this.saveText({ ask: "mesh", side: side.value as SideName, format: format.value as (typeof kFormats)[number] }),
     );
-    const dialog = openDialog("Save the deformed mesh", [form]);
-    form.addEventListener("submit", (event) => {
-      event.preventDefault();
-      dialog.close();
-      const chosen = format.value as (typeof kFormats)[number];
-      this.try(this.saveText({ ask: "mesh", side: side.value === "b" ? "b" : "a", format: chosen }));
-    });
   }
 
   private async saveScene(): Promise<void> {

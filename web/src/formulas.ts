@@ -1,8 +1,10 @@
-// Formulas of the lecture and of named functions. The build converts their TeX to MathML.
+// Formulas of the lecture, of named functions and of materials. The build converts their TeX to MathML.
 import { element } from "./dom";
 import source from "./formulas.json";
+import type { Setting } from "./protocol";
 
 const formulas: Record<string, string[]> = source;
+const kSymbols = "I₁ = tr FᵀF, J = det F, K: bulk modulus; μ and λ: Lamé constants of E and ν";
 
 // Formulas of a lesson. Its id begins with the name of the demonstration that has them.
 export function formulasOf(id: string): string[] {
@@ -10,10 +12,23 @@ export function formulasOf(id: string): string[] {
   return name ? formulas[name]! : [];
 }
 
-export function formulaElements(id: string): HTMLElement[] {
-  return formulasOf(id).map((text) => {
-    const shown = element("div", { class: "formula" });
+function elements(list: string[], title?: string): HTMLElement[] {
+  return list.map((text) => {
+    const shown = element("div", { class: "formula", title });
     shown.innerHTML = text;
     return shown;
   });
+}
+
+export function formulaElements(id: string): HTMLElement[] {
+  return elements(formulasOf(id));
+}
+
+export function materialModel(settings: Setting[]): string {
+  return String(settings.find(({ key }) => key === "material.model")?.value ?? "");
+}
+
+// Strain energy density of a material model.
+export function materialFormulas(model: string): HTMLElement[] {
+  return elements(formulas[model] ?? [], kSymbols);
 }

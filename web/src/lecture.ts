@@ -1,6 +1,6 @@
 // Lecture mode: the pages of the lecture as a list, each opening its demonstration. A recorded mouse plays until the
 // reader drags the body.
-import { button, element, messageOf } from "./dom";
+import { button, element } from "./dom";
 import { formulaElements } from "./formulas";
 import type { Page } from "./page";
 import type { FunctionQuestion, Lesson } from "./protocol";
@@ -109,7 +109,7 @@ export class Lecture {
     try {
       await this.store.source.request({ do: "lesson", lesson: lesson.id });
     } catch (reason) {
-      return this.page.notice(messageOf(reason), "error");
+      return this.page.report(reason);
     }
     this.page.emit("cleared", undefined);
     this.current = lesson;

@@ -5,7 +5,7 @@ import { Pack } from "./pack";
 import type { Tell } from "./program";
 import type { Field, Geometry, Vec3 } from "./protocol";
 import { edgesOf, normalsOf } from "./recording";
-import { Body, type Box } from "./view/body";
+import { Body, type Box, boxOf } from "./view/body";
 import { lookingFrom, sceneAxes } from "./view/cameras";
 import { type DisplaySettings, kDefaults } from "./view/display";
 import { along, dot, type Lens, minus } from "./view/lens";
@@ -86,21 +86,11 @@ class Panel {
     }
     const none = new Uint32Array(0);
     this.geometry = { side: "a", generation: 0, rest: positions, triangles, edges, tet: none, vertex: none };
-    this.box = boxOf(positions, (x) => x);
+    this.box = boxOf(positions);
     const { lower, upper } = boxOf(positions, (x) => outlook.seen(x));
     this.middle = [0, 1, 2].map((c) => (lower[c] + upper[c]) / 2) as Vec3;
     this.size = minus(upper, lower);
   }
-}
-
-function boxOf(positions: Float32Array, place: (x: Vec3) => Vec3): Box {
-  const box: Box = { lower: [Infinity, Infinity, Infinity], upper: [-Infinity, -Infinity, -Infinity] };
-  for (let i = 0; i < positions.length; i += 3)
-    place([positions[i], positions[i + 1], positions[i + 2]]).forEach((value, c) => {
-      box.lower[c] = Math.min(box.lower[c], value);
-      box.upper[c] = Math.max(box.upper[c], value);
-    });
-  return box;
 }
 
 class Painter {
@@ -152,18 +142,7 @@ class Painter {
     stage.renderer.setSize(lens.width, lens.height, false);
     stage.place({ ...panel.box, up: head.up });
     const body = new Body(panel.geometry);
-    body.show({
-      side: "a",
-      generation: 0,
-      step: 0,
-      iteration: -1,
-      time: 0,
-      positions: panel.geometry.rest,
-      normals: panel.normals,
-      values: panel.values,
-      min: 0,
-      max: 0,
-    });
+    body.show({ positions: panel.geometry.rest, normals: panel.normals, values: panel.values });
     stage.show(body);
     body.apply(settings);
     body.color(panel.values && head.range ? colors(head.range) : null, "viridis");

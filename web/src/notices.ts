@@ -1,5 +1,5 @@
 // Messages of the page: state of the connection, activity of the program, refusals, notices and errors.
-import { button, element } from "./dom";
+import { button, element, messageOf } from "./dom";
 import type { LiveSource } from "./live";
 import type { Page } from "./page";
 import type { Store } from "./store";
@@ -53,7 +53,5 @@ export function showOwnErrors(page: Page): void {
   addEventListener("error", (event) => {
     if (!event.message.startsWith("ResizeObserver loop")) tell(event.message);
   });
-  addEventListener("unhandledrejection", (event) => {
-    tell(event.reason instanceof Error ? event.reason.message : String(event.reason));
-  });
+  addEventListener("unhandledrejection", (event) => tell(messageOf(event.reason)));
 }

@@ -3,6 +3,19 @@
 const kTypes = { u8: Uint8Array, u16: Uint16Array, u32: Uint32Array, f32: Float32Array };
 export type Numbers = Uint8Array | Uint16Array | Uint32Array | Float32Array;
 
+// Text of the page's element with this id, as the program writes it; null if there is none.
+export function embedded(id: string): string | null {
+  const found = document.getElementById(id);
+  return found ? (JSON.parse(found.textContent ?? "") as string) : null;
+}
+
+// Bytes of base64 of gzip.
+export async function unpacked(text: string): Promise<ArrayBuffer> {
+  const packed = Uint8Array.from(atob(text.trim()), (character) => character.charCodeAt(0));
+  const stream = new Blob([packed]).stream().pipeThrough(new DecompressionStream("gzip"));
+  return new Response(stream).arrayBuffer();
+}
+
 export class Pack<Head> {
   readonly head: Head;
   readonly arrays = new Map<string, Numbers>();

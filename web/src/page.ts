@@ -1,5 +1,6 @@
 // State that the parts of the page share beside the messages: choices of the reader, keyboard shortcuts, and the
 // contents of a workspace file.
+import { messageOf } from "./dom";
 import { Emitter } from "./emitter";
 import type { PanelName, SideName, Vec3 } from "./protocol";
 
@@ -30,6 +31,11 @@ export interface Keeper {
   restore(saved: unknown): void; // accepts any value and ignores what does not fit
 }
 
+// Fields of a saved value; none if it is not an object.
+export function fieldsOf(saved: unknown): Record<string, unknown> {
+  return typeof saved === "object" && saved !== null ? (saved as Record<string, unknown>) : {};
+}
+
 export interface Shortcut {
   key: string; // KeyboardEvent.key, with "Shift+" before it if needed: " ", "s", "Shift+R", "1"
   does: string; // description in the list of shortcuts
@@ -50,9 +56,18 @@ export class Page extends Emitter<Events> {
     this.shortcuts.set(shortcut.key, shortcut);
   }
 
+  // Calls back when colors or sizes have changed.
+  onLook(run: () => void): void {
+    this.on("theme", run);
+    this.on("layout", run);
+  }
+
   notice(text: string, kind: "info" | "error" = "info"): void {
     this.emit("notice", { text, kind });
   }
+
+  // Shows why something failed; for `catch`.
+  readonly report = (reason: unknown): void => this.notice(messageOf(reason), "error");
 }
 
 // A tab of the dock.

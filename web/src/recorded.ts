@@ -1,7 +1,9 @@
 // Source of messages from a recorded run inside the page: it plays, pauses and rewinds, but cannot be changed.
+import { unpacked } from "./pack";
 import type { Command, Picture, Query, State, TextReply, Vec3, VertexReply } from "./protocol";
-import { carried, normalsOf, type RecordedSurface, type Recording, unpack } from "./recording";
+import { carried, normalsOf, type RecordedSurface, Recording } from "./recording";
 import type { Incoming, Source } from "./source";
+import { vectorAt } from "./view/lens";
 
 // Clock that calls back once per frame of the screen. Tests use their own.
 export interface Pulse {
@@ -12,12 +14,6 @@ const kScreen: Pulse = { now: () => performance.now(), next: (callback) => reque
 
 const kUnchangeable = "a recorded run cannot be changed; aspic view SCENE runs it live";
 const kNotRecorded = "a recorded run does not contain this; aspic view SCENE computes it";
-
-// Text of the page's recording; null if the page belongs to a program.
-export function findRecording(): string | null {
-  const element = document.getElementById("recording");
-  return element ? (JSON.parse(element.textContent ?? "") as string) : null;
-}
 
 export class RecordedSource implements Source {
   readonly live = false;
@@ -40,11 +36,11 @@ export class RecordedSource implements Source {
 
   start(receive: (incoming: Incoming) => void): void {
     this.receive = receive;
-    unpack(this.text).then(
-      (recording) => this.greet(recording),
-      (error: unknown) =>
-        this.refuse(`the recording in this page is damaged (${String(error)}); make it again with aspic report`),
-    );
+    const damaged = (error: unknown): void =>
+      this.refuse(`the recording in this page is damaged (${String(error)}); make it again with aspic report`);
+    unpacked(this.text)
+      .then((bytes) => new Recording(bytes))
+      .then((recording) => this.greet(recording), damaged);
   }
 
   send(command: Command): void {
@@ -269,7 +265,7 @@ export class RecordedSource implements Source {
     const { geometry, corners, weights, scene } = this.surface;
     if (!(vertex in geometry.vertex)) throw new Error(`there is no vertex ${vertex}`);
     const positions = carried(this.surface, recording.positions(this.frame));
-    const at = (x: Float32Array): Vec3 => [x[3 * vertex], x[3 * vertex + 1], x[3 * vertex + 2]];
+    const at = (x: Float32Array): Vec3 => vectorAt(x, vertex);
     const user = geometry.vertex[vertex];
     const isFine = user === 0xffffffff;
     const values: VertexReply["values"] = {};

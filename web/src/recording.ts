@@ -24,12 +24,6 @@ export interface RecordedSurface {
   place: Uint32Array;
 }
 
-export async function unpack(text: string): Promise<Recording> {
-  const packed = Uint8Array.from(atob(text.trim()), (character) => character.charCodeAt(0));
-  const stream = new Blob([packed]).stream().pipeThrough(new DecompressionStream("gzip"));
-  return new Recording(await new Response(stream).arrayBuffer());
-}
-
 // Code of a value that is not a number. Other codes are 0 to 254 within the range of their frame.
 const kNoNumber = 255;
 

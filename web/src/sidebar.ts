@@ -2,7 +2,7 @@
 import { makeDivider } from "./divider";
 import { element } from "./dom";
 import { whenNarrow } from "./narrow";
-import type { Page } from "./page";
+import { fieldsOf, type Page } from "./page";
 import { shortcutButton } from "./shortcuts";
 
 const kNarrowest = 160; // smallest width [px]
@@ -48,7 +48,7 @@ export class Sidebar {
   }
 
   private restore(saved: unknown): void {
-    const { hidden, width } = (saved ?? {}) as { hidden?: unknown; width?: unknown };
+    const { hidden, width } = fieldsOf(saved);
     if (typeof width === "number" && width >= kNarrowest && width <= innerWidth * kShare) this.resize(width);
     if (typeof hidden === "boolean") this.hide(hidden);
   }

@@ -10,6 +10,10 @@ export interface StepFields {
   residual_threshold: MaybeNumber; // its threshold [N]
   min_det_F: MaybeNumber; // smallest volume ratio of any tet; negative: inverted [1]
   kinetic: MaybeNumber; // kinetic energy [J]
+  contacts: number; // pairs of surface features in contact
+  min_gap: MaybeNumber; // smallest distance between surfaces in contact; 0 without contacts [m]
+  max_pressure: MaybeNumber; // largest contact pressure [Pa]
+  friction_loss: MaybeNumber; // share of friction in damping_loss [J]
   potential: MaybeNumber[]; // energy of each term of V; a dead load has -f . x, not zero at rest [J]
   pin_work: MaybeNumber; // work of moving pins, moving spring targets and time-dependent loads in this step [J]
   damping_loss: MaybeNumber; // energy dissipated by damping [J]
@@ -33,6 +37,10 @@ export const kUnknownStep: StepFields = {
   residual_threshold: null,
   min_det_F: null,
   kinetic: null,
+  contacts: 0,
+  min_gap: null,
+  max_pressure: null,
+  friction_loss: null,
   potential: [],
   pin_work: null,
   damping_loss: null,

@@ -51,6 +51,12 @@ export class Store extends Emitter<Events> {
     return this.sides[name];
   }
 
+  // "A: its label", or "A" without one.
+  title(name: SideName): string {
+    const label = this.sides[name]?.scene.label ?? "";
+    return label === "" ? name.toUpperCase() : `${name.toUpperCase()}: ${label}`;
+  }
+
   private receive(incoming: Incoming): void {
     if ("geometry" in incoming) return this.receiveGeometry(incoming.geometry);
     if ("picture" in incoming) return this.receivePicture(incoming.picture);

@@ -1,5 +1,5 @@
 // Light or dark, and font size: the reader's choice, otherwise the system's.
-import type { Page } from "./page";
+import { fieldsOf, type Page } from "./page";
 import { recall, remember } from "./storage";
 
 export type ThemeName = "light" | "dark";
@@ -52,7 +52,7 @@ export class Theme {
   }
 
   private restore(saved: unknown): void {
-    const { theme, font } = (saved ?? {}) as { theme?: unknown; font?: unknown };
+    const { theme, font } = fieldsOf(saved);
     if (theme === "light" || theme === "dark") this.show(theme);
     if (typeof font === "number") this.setFontSize(font);
   }

@@ -1,5 +1,5 @@
 // Slider over the steps that the program still holds. Dragging it rewinds.
-import { element, messageOf } from "./dom";
+import { element } from "./dom";
 import { Newest } from "./newest";
 import type { Page } from "./page";
 import type { State } from "./protocol";
@@ -24,7 +24,7 @@ export function makeTimeline(store: Store, page: Page): HTMLElement {
   const ends = element("span", { class: "faint ends" });
   const rewind = new Newest<number>(
     (step) => store.source.request({ do: "rewind", step }),
-    (reason) => page.notice(messageOf(reason), "error"),
+    page.report,
   );
   let held = false;
   slider.addEventListener("pointerdown", () => (held = true));

@@ -1,5 +1,5 @@
 // Toolbar: time controls, and buttons that open everything else.
-import { button, element, icon, messageOf } from "./dom";
+import { button, element, icon } from "./dom";
 import { statusName } from "./names";
 import type { Page } from "./page";
 import type { SideName, SideState, State } from "./protocol";
@@ -33,7 +33,7 @@ function makeTransport(store: Store, page: Page): HTMLElement {
     wanted = !(wanted ?? store.state?.playing ?? false);
     source
       .request({ do: wanted ? "play" : "pause" })
-      .catch((reason: unknown) => page.notice(messageOf(reason), "error"))
+      .catch(page.report)
       .finally(() => (wanted = null));
   };
   const play = shortcutButton(

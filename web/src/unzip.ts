@@ -1,5 +1,5 @@
 // Reads ZIP archives of the program: files stored or deflated, without encryption.
-export interface ZipFile {
+export interface NamedBytes {
   name: string;
   bytes: Uint8Array<ArrayBuffer>;
 }
@@ -14,9 +14,9 @@ const kMostFiles = 1000;
 const damaged = (): Error => new Error("the ZIP archive is damaged or of an unsupported kind");
 
 // `most`: limit of bytes of all files together, so that a small archive cannot exhaust the memory.
-export async function unzip(archive: ArrayBuffer, most: number): Promise<ZipFile[]> {
+export async function unzip(archive: ArrayBuffer, most: number): Promise<NamedBytes[]> {
   const view = new DataView(archive);
-  const files: ZipFile[] = [];
+  const files: NamedBytes[] = [];
   let left = most;
   try {
     const end = endOf(view);

@@ -1,15 +1,10 @@
 // Packs files of the reader's machine for the command "load": a scene with its meshes, or a single mesh.
 import type { UploadedFile } from "./protocol";
-import { unzip } from "./unzip";
+import { type NamedBytes, unzip } from "./unzip";
 
 const kMostBytes = 200e6; // limit for all files together
 const kMostPacked = 15e6; // longest message that the program accepts, in characters
 const kMeshes = ["msh", "vtu", "mesh", "ele", "node", "obj", "ply", "stl", "off"];
-
-export interface NamedBytes {
-  name: string;
-  bytes: Uint8Array<ArrayBuffer>;
-}
 
 export interface Upload {
   scene: string; // the name of one of the files

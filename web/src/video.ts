@@ -1,5 +1,5 @@
 // Screenshots and videos of the views.
-import { button, element, messageOf, saveFile } from "./dom";
+import { button, element, fileName, messageOf, saveFile } from "./dom";
 import type { Page } from "./page";
 import { shortcutButton } from "./shortcuts";
 import type { Store } from "./store";
@@ -15,11 +15,6 @@ const kBitsPerSecond = 8_000_000;
 const kChunk = 250; // length of a chunk [ms]
 const kLongestWait = 30_000; // longest wait for the first picture of a slow encoder [ms]
 const kTypes = ["video/mp4;codecs=avc1", "video/webm;codecs=vp9", "video/webm;codecs=vp8", "video/webm", "video/mp4"];
-
-export function fileName(name: string, extension: string): string {
-  const plain = name.replace(/[^\w.-]+/g, "_").replace(/^[_.]+|_+$/g, "");
-  return `${plain || "aspic"}.${extension}`;
-}
 
 const hasPicture = (chunks: Blob[]): boolean => chunks.some(({ size }) => size > 0);
 

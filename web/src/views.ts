@@ -43,8 +43,7 @@ export class Views {
   private showLabels(): void {
     const comparing = this.store.side("b") !== null;
     for (const [side, { label }] of this.shown) {
-      const words = this.store.side(side)?.scene.label ?? "";
-      label.textContent = !comparing ? "" : words === "" ? side.toUpperCase() : `${side.toUpperCase()}: ${words}`;
+      label.textContent = comparing ? this.store.title(side) : "";
       label.hidden = !comparing;
     }
   }

@@ -1,10 +1,9 @@
 // Workspace file: the scene with its settings, the comparison, and the reader's choices in the page.
-import { saveFile } from "./dom";
+import { fileName, saveFile } from "./dom";
 import type { Page } from "./page";
 import type { Recording, SceneFilesReply, SettingValue, UploadedFile } from "./protocol";
 import type { Store } from "./store";
 import { isTooLarge } from "./upload";
-import { fileName } from "./video";
 
 export interface Workspace {
   aspic_workspace: 1;

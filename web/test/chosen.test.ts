@@ -1,6 +1,6 @@
 import assert from "node:assert/strict";
 import { test } from "node:test";
-import { chosenOf, type Chosen } from "../src/plots/chosen";
+import { Chosen } from "../src/plots/chosen";
 import { Page } from "../src/page";
 import type { IterationReply, Query, Scene, ServerMessage, StepRow } from "../src/protocol";
 import type { Incoming, Source } from "../src/source";
@@ -47,7 +47,7 @@ const settled = (): Promise<void> => new Promise((resolve) => setTimeout(resolve
 function opened(): { source: Stub; chosen: Chosen } {
   const source = new Stub();
   const store = new Store(source);
-  const chosen = chosenOf(store, new Page());
+  const chosen = new Chosen(store, new Page());
   store.start();
   source.say({ kind: "scene", side: "a", generation: 1, potentials: [] } as unknown as Scene);
   source.say({ kind: "steps", side: "a", from: 0, steps: rows(0, 5) });

@@ -1,6 +1,6 @@
 import assert from "node:assert/strict";
 import { test } from "node:test";
-import { fileName } from "../src/video";
+import { fileName } from "../src/dom";
 import { isWorkspace, parseRecording, parseWorkspace } from "../src/workspace";
 
 test("a saved workspace reads back equal", () => {

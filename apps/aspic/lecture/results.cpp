@@ -6,7 +6,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
-#include "aspic/lecture/formulas.h"
+#include "aspic/formulas.h"
 #include "io/atomic_file.h"
 
 namespace aspic::cli::lecture {

@@ -1,5 +1,5 @@
 // The recorded load cases and the controls that record more.
-import { button, element, messageOf } from "../dom";
+import { button, element } from "../dom";
 import type { Page } from "../page";
 import { numberField } from "../plots/dom";
 import { plural, withUnit } from "../plots/numbers";
@@ -98,7 +98,7 @@ export class CaseList {
       await this.store.source.request(command);
       return true;
     } catch (reason) {
-      this.page.notice(messageOf(reason), "error");
+      this.page.report(reason);
       return false;
     }
   }

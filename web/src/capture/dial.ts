@@ -1,9 +1,8 @@
 // A dial with a needle, like a spring balance. Its scale grows with the value.
-import { element } from "../dom";
+import { element, svgElement } from "../dom";
 import { prefixOf, short } from "../plots/numbers";
 import { roundStep } from "../view/ranges";
 
-const kSvg = "http://www.w3.org/2000/svg";
 const kFrom = -120; // angle of zero, from the top [degrees]
 const kSweep = 240;
 const kParts = 5; // intervals of the scale
@@ -20,23 +19,23 @@ export function fullScale(value: number, before: number): number {
 
 export class Dial {
   readonly element = element("div", { class: "dial", "aria-hidden": "true" });
-  private readonly needle = shape("line", { x1: "0", y1: "6", x2: "0", y2: "-36", class: "dial-needle" });
+  private readonly needle = svgElement("line", { x1: "0", y1: "6", x2: "0", y2: "-36", class: "dial-needle" });
   private readonly numbers: SVGElement[] = [];
-  private readonly svg = shape("svg", { viewBox: "-50 -50 100 88" });
+  private readonly svg = svgElement("svg", { viewBox: "-50 -50 100 88" });
   private full = 0;
 
   constructor(private readonly unit: string) {
     const [x, y] = onCircle(40, kFrom);
-    this.svg.append(shape("path", { d: `M${x} ${y}A40 40 0 1 1 ${-x} ${y}`, class: "dial-scale" }));
+    this.svg.append(svgElement("path", { d: `M${x} ${y}A40 40 0 1 1 ${-x} ${y}`, class: "dial-scale" }));
     for (let i = 0; i <= kParts; ++i) {
       const angle = kFrom + (kSweep * i) / kParts;
       const [[x1, y1], [x2, y2], [x3, y3]] = [onCircle(40, angle), onCircle(36, angle), onCircle(29, angle)];
-      this.svg.append(shape("line", { x1: `${x1}`, y1: `${y1}`, x2: `${x2}`, y2: `${y2}`, class: "dial-tick" }));
-      const number = shape("text", { x: `${x3}`, y: `${y3 + 2.4}`, class: "dial-number" });
+      this.svg.append(svgElement("line", { x1: `${x1}`, y1: `${y1}`, x2: `${x2}`, y2: `${y2}`, class: "dial-tick" }));
+      const number = svgElement("text", { x: `${x3}`, y: `${y3 + 2.4}`, class: "dial-number" });
       this.numbers.push(number);
       this.svg.append(number);
     }
-    this.svg.append(this.needle, shape("circle", { r: "3", class: "dial-hub" }));
+    this.svg.append(this.needle, svgElement("circle", { r: "3", class: "dial-hub" }));
     this.element.append(this.svg);
     this.show(0);
   }
@@ -60,10 +59,4 @@ export class Dial {
 function onCircle(radius: number, degrees: number): [number, number] {
   const angle = (degrees * Math.PI) / 180;
   return [radius * Math.sin(angle), -radius * Math.cos(angle)];
-}
-
-function shape(tag: string, attributes: Record<string, string>): SVGElement {
-  const made = document.createElementNS(kSvg, tag);
-  for (const [name, value] of Object.entries(attributes)) made.setAttribute(name, value);
-  return made;
 }

@@ -1,5 +1,5 @@
 // The fit: starts it, shows its convergence, compares it with the truth, and simulates it.
-import { button, element, messageOf } from "../dom";
+import { button, element } from "../dom";
 import type { Page } from "../page";
 import { checkbox } from "../plots/dom";
 import { short, withUnit } from "../plots/numbers";
@@ -95,7 +95,7 @@ export class FitForm {
   }
 
   private send(command: Command): void {
-    this.store.source.request(command).catch((reason: unknown) => this.page.notice(messageOf(reason), "error"));
+    this.store.source.request(command).catch(this.page.report);
   }
 }
 

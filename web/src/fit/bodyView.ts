@@ -4,11 +4,12 @@ import "../view/view.css";
 import * as THREE from "three";
 import { element } from "../dom";
 import type { Geometry, Vec3 } from "../protocol";
-import { Body } from "../view/body";
+import { Body, boxOf } from "../view/body";
 import type { CameraRig } from "../view/cameras";
 import type { MapName } from "../view/colorMaps";
 import { kDefaults } from "../view/display";
 import { kSkinPoint } from "../view/labels";
+import { length, minus } from "../view/lens";
 import { Overlay, readStyle } from "../view/overlay";
 import { logRange, type ColorRange } from "../view/ranges";
 import { Stage } from "../view/stage";
@@ -43,23 +44,15 @@ export class FittedBody {
   readonly boundary: Boundary;
   readonly lower: Vec3;
   readonly upper: Vec3;
+  readonly size: number; // length of the box's diagonal [m]
 
   constructor(
     readonly mesh: TetMesh,
     readonly up: Vec3,
   ) {
     this.boundary = boundaryOf(mesh);
-    const lower: Vec3 = [Infinity, Infinity, Infinity];
-    const upper: Vec3 = [-Infinity, -Infinity, -Infinity];
-    mesh.points.forEach((x, i) => {
-      lower[i % 3] = Math.min(lower[i % 3], x);
-      upper[i % 3] = Math.max(upper[i % 3], x);
-    });
-    [this.lower, this.upper] = [lower, upper];
-  }
-
-  get size(): number {
-    return Math.hypot(this.upper[0] - this.lower[0], this.upper[1] - this.lower[1], this.upper[2] - this.lower[2]);
+    ({ lower: this.lower, upper: this.upper } = boxOf(mesh.points));
+    this.size = length(minus(this.upper, this.lower));
   }
 
   plane(cut: Cut | null): Plane | null {
@@ -163,7 +156,7 @@ export class BodyView {
     this.stage?.show(this.body);
     const packed = new Int8Array(4 * corners);
     for (let i = 0; i < corners; ++i) for (let k = 0; k < 3; ++k) packed[4 * i + k] = Math.round(127 * normals[3 * i + k]);
-    this.body.show({ side: "a", generation: 1, step: 0, iteration: -1, time: 0, positions, normals: packed, values: new Float32Array(corners), min: 0, max: 0 });
+    this.body.show({ positions, normals: packed, values: null });
     this.stage?.moved();
     this.applyDisplay();
     this.recolor();
@@ -175,7 +168,7 @@ export class BodyView {
     if (shown) {
       const values = new Float32Array(soup.corner.length);
       for (let i = 0; i < values.length; ++i) values[i] = shown.values[soup.tet[Math.floor(i / 3)]];
-      body.show({ side: "a", generation: 1, step: 0, iteration: -1, time: 0, positions: body.current, normals: body.shading, values, min: 0, max: 0 });
+      body.show({ positions: body.current, normals: body.shading, values });
     }
     body.color(shown && this.range(shown), shown?.map ?? "viridis");
     this.redraw();

@@ -3,17 +3,13 @@ import type uPlot from "uplot";
 import { Chart, type Curve } from "../plots/chart";
 import { short, withUnit } from "../plots/numbers";
 import type { Palette } from "../plots/palette";
+import { nearest } from "../plots/table";
 import type { MaybeNumber } from "../protocol";
 import { closeness, histogram, type FitHead, type GroupCurve } from "./data";
 
 // Value at x, or the last value if `at` is null.
 function valueAt(x: readonly number[], column: readonly MaybeNumber[], at: number | null): MaybeNumber {
-  if (at === null) return column[column.length - 1] ?? null;
-  let nearest = 0;
-  x.forEach((value, i) => {
-    if (Math.abs(value - at) < Math.abs(x[nearest] - at)) nearest = i;
-  });
-  return column[nearest] ?? null;
+  return column[at === null ? column.length - 1 : nearest(x, at)] ?? null;
 }
 
 // Error bars of one standard deviation, in device pixels.
@@ -49,7 +45,6 @@ function around(values: readonly MaybeNumber[], includeZero: boolean): [number, 
 }
 
 export function loadChart(name: string, curve: GroupCurve): Chart {
-  const chart = new Chart();
   const hasHeldOut = curve.heldOut.some((v) => v !== null);
   const hasFitted = curve.fitted.some((v) => v !== null);
   const shape = curve.x.length > 2 ? "line" : "both";
@@ -62,19 +57,16 @@ export function loadChart(name: string, curve: GroupCurve): Chart {
   ];
   const columns: Record<string, MaybeNumber[]> = { measured: curve.measured, fitted: curve.fitted, heldOut: curve.heldOut };
   const spread = curve.measured.flatMap((m, i) => (m === null ? [] : [m - curve.deviation[i], m + curve.deviation[i]]));
-  chart.configure({
+  return Chart.of(curve.x, curves.map((c) => columns[c.key]), {
     label: `${name}: ${curve.yLabel} against ${curve.xLabel}, measured and fitted`,
     x: { label: curve.xLabel, unit: curve.xUnit },
     y: { label: curve.yLabel, unit: curve.yUnit },
     curves,
-    legend: "top",
     read: (key, x) => [withUnit(valueAt(curve.x, columns[key], x), curve.yUnit, 3)],
     xRange: () => around(curve.x, true),
     yRange: () => around([...spread, ...curve.fitted, ...curve.heldOut], true),
     paint: (u, colors) => paintErrorBars(u, colors, curve),
   });
-  chart.show(curve.x, curves.map((c) => columns[c.key]));
-  return chart;
 }
 
 const kLimit = 4; // range of the histogram in standard deviations
@@ -82,12 +74,11 @@ const kBins = 32;
 
 // Histogram of residuals beside the expected counts for normally distributed noise.
 export function histogramChart(values: readonly number[]): Chart {
-  const chart = new Chart();
   const { middle, count } = histogram(values, kLimit, kBins);
   const width = (2 * kLimit) / kBins;
   const normal = middle.map((r) => (values.length * width * Math.exp((-r * r) / 2)) / Math.sqrt(2 * Math.PI));
   const columns: Record<string, number[]> = { count, normal };
-  chart.configure({
+  return Chart.of(middle, [count, normal], {
     label: "Histogram of the residuals",
     x: { label: "residual [standard deviations]" },
     y: { label: "readings" },
@@ -95,20 +86,16 @@ export function histogramChart(values: readonly number[]): Chart {
       { key: "count", label: "residuals", meaning: "(fitted − measured) / standard deviation; values beyond ±4 are in the outermost bins", color: "series1", shape: "bars" },
       { key: "normal", label: "normal", meaning: "expected from noise with the given standard deviations", color: "series2", width: 2 },
     ],
-    legend: "top",
     read: (key, x) => (x === null ? [] : [short(valueAt(middle, columns[key], x), 3)]),
     xRange: () => [-kLimit, kLimit],
     yRange: () => [0, 1.08 * Math.max(...count, ...normal, 1)],
   });
-  chart.show(middle, [count, normal]);
-  return chart;
 }
 
 export function caseChart(names: readonly string[], ofCase: readonly MaybeNumber[]): Chart {
-  const chart = new Chart();
   const x = ofCase.map((_, i) => i + 1);
   const one = ofCase.map(() => 1);
-  chart.configure({
+  return Chart.of(x, [[...ofCase], one], {
     label: "Root mean square of the residuals of each case",
     x: { label: "case", integer: true },
     y: { label: "rms [standard deviations]" },
@@ -116,13 +103,10 @@ export function caseChart(names: readonly string[], ofCase: readonly MaybeNumber
       { key: "rms", label: "of a case", color: "series1", shape: "bars" },
       { key: "one", label: "as expected", meaning: "1: consistent with the standard deviations", color: "series2", dash: [6, 4] },
     ],
-    legend: "top",
     read: (key, at) => (key === "rms" && at !== null ? [short(valueAt(x, ofCase, at), 3)] : []),
     caption: (at) => (at === null ? "" : (names[Math.min(names.length - 1, Math.max(0, Math.round(at) - 1))] ?? "")),
     yRange: () => [0, 1.1 * Math.max(1, ...ofCase.map((v) => v ?? 0))],
   });
-  chart.show(x, [[...ofCase], one]);
-  return chart;
 }
 
 const log10 = (value: MaybeNumber): MaybeNumber => (value !== null && value > 0 ? Math.log10(value) : null);
@@ -134,12 +118,11 @@ export function weightChart(head: FitHead): Chart | null {
     .filter((w): w is { x: number; misfit: number; weight: number } => w.x !== null && w.misfit !== null && w.weight !== null)
     .sort((a, b) => a.x - b.x);
   if (trials.length < 2) return null;
-  const chart = new Chart();
   const x = trials.map((t) => t.x);
   const misfit = trials.map((t) => closeness(t.misfit, head.counts.residuals) ?? 0);
   const log = Math.max(...misfit) > 30 * Math.min(...misfit);
   const target = trials.map(() => 1);
-  chart.configure({
+  return Chart.of(x, [misfit, target], {
     label: "Misfit against roughness for every trial weight",
     x: { label: "roughness R, as a power of ten" },
     y: { label: "|r|² per reading", log },
@@ -147,14 +130,11 @@ export function weightChart(head: FitHead): Chart | null {
       { key: "trials", label: "trial weights", color: "series1", width: 2, shape: "both" },
       { key: "target", label: "noise", meaning: "1: consistent with the standard deviations", color: "series7", dash: [6, 4] },
     ],
-    legend: "top",
     read: (key, at) => (key === "trials" && at !== null ? [`weight ${short(valueAt(x, trials.map((t) => t.weight), at), 3)}`] : []),
     xRange: () => around([...x, log10(head.fit.roughness)], false),
     yRange: () => (log ? null : around([...misfit, 1], true)),
     paint: (u, colors) => paintChosen(u, colors, log10(head.fit.roughness), closeness(head.fit.misfit, head.counts.residuals), `chosen: ${short(head.fit.weight, 3)}`),
   });
-  chart.show(x, [misfit, target]);
-  return chart;
 }
 
 function paintChosen(u: uPlot, colors: Palette, x: MaybeNumber, y: MaybeNumber, words: string): void {
@@ -178,7 +158,6 @@ function paintChosen(u: uPlot, colors: Palette, x: MaybeNumber, y: MaybeNumber, 
 // History of all iterations in order, over all starts and weights.
 export function historyChart(head: FitHead): Chart | null {
   if (head.history.length < 2) return null;
-  const chart = new Chart();
   const x = head.history.map((_, i) => i + 1);
   const positive = (value: MaybeNumber): MaybeNumber => (value !== null && value > 0 ? value : null);
   const columns: Record<string, MaybeNumber[]> = {
@@ -191,14 +170,11 @@ export function historyChart(head: FitHead): Chart | null {
     { key: "prior", label: "weight · R", meaning: "penalty of smoothness and prior", color: "series3", width: 2, shape: "both" },
     { key: "decrement", label: "decrement", meaning: "distance from the minimum in posterior standard deviations", color: "series2", width: 1.5, dash: [6, 4], shape: "both" },
   ];
-  chart.configure({
+  return Chart.of(x, curves.map((c) => columns[c.key]), {
     label: "Misfit, prior and decrement over the iterations",
     x: { label: "iteration", integer: true },
     y: { label: "", log: true },
     curves,
-    legend: "top",
     read: (key, at) => [short(valueAt(x, columns[key], at), 3)],
   });
-  chart.show(x, curves.map((c) => columns[c.key]));
-  return chart;
 }

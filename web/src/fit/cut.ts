@@ -1,6 +1,7 @@
 // The body as a map shows it: the surface on one side of a plane, and the cut through its tets. No two triangles share
 // corners, so each has the value of its tet.
 import type { Vec3 } from "../protocol";
+import { along, cross, dot, minus, unit, vectorAt } from "../view/lens";
 
 export interface TetMesh {
   points: Float32Array; // 3 coordinates per vertex [m]
@@ -61,9 +62,8 @@ export function boundaryOf({ points, tets }: TetMesh): Boundary {
 }
 
 function areaVector(x: Float32Array, a: number, b: number, c: number): Vec3 {
-  const u = [0, 1, 2].map((k) => x[3 * b + k] - x[3 * a + k]);
-  const v = [0, 1, 2].map((k) => x[3 * c + k] - x[3 * a + k]);
-  return [u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2], u[0] * v[1] - u[1] * v[0]];
+  const at = vectorAt(x, a);
+  return cross(minus(vectorAt(x, b), at), minus(vectorAt(x, c), at));
 }
 
 class SoupMaker {
@@ -109,16 +109,11 @@ interface Corner {
   vertex: number;
 }
 
-const mixed = (a: Vec3, b: Vec3, t: number): Vec3 => [a[0] + t * (b[0] - a[0]), a[1] + t * (b[1] - a[1]), a[2] + t * (b[2] - a[2])];
-
-function unit(v: Vec3): Vec3 {
-  const size = Math.hypot(...v) || 1;
-  return [v[0] / size, v[1] / size, v[2] / size];
-}
+const mixed = (a: Vec3, b: Vec3, t: number): Vec3 => along(a, t, minus(b, a));
 
 // Faces around a vertex that differ by more than this form an edge and are not shaded smoothly.
 const kCrease = Math.cos((30 * Math.PI) / 180);
-const isCrease = (n: Vec3, face: Vec3): boolean => n[0] * face[0] + n[1] * face[1] + n[2] * face[2] < kCrease;
+const isCrease = (n: Vec3, face: Vec3): boolean => dot(n, face) < kCrease;
 
 // Part of a polygon on the kept side [Sutherland and Hodgman 1974].
 function clipped(polygon: Corner[], height: (x: Vec3) => number): Corner[] {
@@ -148,36 +143,29 @@ export function section(corners: readonly Vec3[], heights: readonly number[], no
   else if (a.length === 1) polygon = b.map((k) => at(k, a[0]));
   else polygon = [at(b[0], a[0]), at(b[0], a[1]), at(b[1], a[1]), at(b[1], a[0])];
   const [p, q, r] = polygon;
-  const u = [q[0] - p[0], q[1] - p[1], q[2] - p[2]];
-  const v = [r[0] - p[0], r[1] - p[1], r[2] - p[2]];
-  const turn = (u[1] * v[2] - u[2] * v[1]) * normal[0] + (u[2] * v[0] - u[0] * v[2]) * normal[1] + (u[0] * v[1] - u[1] * v[0]) * normal[2];
-  return turn < 0 ? polygon.reverse() : polygon;
+  return dot(cross(minus(q, p), minus(r, p)), normal) < 0 ? polygon.reverse() : polygon;
 }
 
 // Part of the body below a plane, closed by the cut; null: the whole body.
 export function bodyBelow(mesh: TetMesh, boundary: Boundary, plane: Plane | null): Soup {
   const { points, tets } = mesh;
-  const point = (v: number): Vec3 => [points[3 * v], points[3 * v + 1], points[3 * v + 2]];
-  const normal = (v: number): Vec3 => unit([boundary.normals[3 * v], boundary.normals[3 * v + 1], boundary.normals[3 * v + 2]]);
-  const height = (x: Vec3): number => (plane ? x[0] * plane.normal[0] + x[1] * plane.normal[1] + x[2] * plane.normal[2] - plane.offset : -1);
+  const height = (x: Vec3): number => (plane ? dot(x, plane.normal) - plane.offset : -1);
   const maker = new SoupMaker();
   for (let f = 0; f < boundary.tet.length; ++f) {
     const [a, b, c] = boundary.triangles.subarray(3 * f, 3 * f + 3);
     const face = unit(areaVector(points, a, b, c));
     const corners = [a, b, c].map((vertex) => {
-      const n = normal(vertex);
-      return { x: point(vertex), n: isCrease(n, face) ? face : n, vertex };
+      const n = unit(vectorAt(boundary.normals, vertex));
+      return { x: vectorAt(points, vertex), n: isCrease(n, face) ? face : n, vertex };
     });
     maker.add(plane ? clipped(corners, height) : corners, boundary.tet[f]);
   }
   if (!plane) return maker.soup();
   for (let t = 0; t < tets.length / 4; ++t) {
-    const corners = [0, 1, 2, 3].map((k) => point(tets[4 * t + k]));
+    const corners = [0, 1, 2, 3].map((k) => vectorAt(points, tets[4 * t + k]));
     const polygon = section(corners, corners.map(height), plane.normal);
-    maker.add(
-      polygon.map((x) => ({ x, n: plane.normal, vertex: -1 })),
-      t,
-    );
+    const flat = polygon.map((x) => ({ x, n: plane.normal, vertex: -1 }));
+    maker.add(flat, t);
   }
   return maker.soup();
 }

@@ -1,6 +1,7 @@
 // A fit inside the page, as apps/viewer/fit_page.cpp packs it, and quantities derived from it.
-import { Pack } from "../pack";
+import { Pack, unpacked } from "../pack";
 import type { MaybeNumber, Vec3 } from "../protocol";
+import { dot, length, minus, unit, vectorAt } from "../view/lens";
 
 export interface ValueRow {
   where: string;
@@ -120,26 +121,10 @@ export interface FitHead {
 
 export type Fit = Pack<FitHead>;
 
-// Text of the page's fit; null if the page shows something else.
-export function findFit(): string | null {
-  const element = document.getElementById("fit");
-  return element ? (JSON.parse(element.textContent ?? "") as string) : null;
-}
-
 export async function unpackFit(text: string): Promise<Fit> {
-  const packed = Uint8Array.from(atob(text.trim()), (character) => character.charCodeAt(0));
-  const stream = new Blob([packed]).stream().pipeThrough(new DecompressionStream("gzip"));
-  const fit = new Pack<FitHead>(await new Response(stream).arrayBuffer());
+  const fit = new Pack<FitHead>(await unpacked(text));
   if (fit.head.format !== 1) throw new Error(`the fit has format ${String(fit.head.format)}; this page reads format 1`);
   return fit;
-}
-
-export const length = (v: Vec3): number => Math.hypot(v[0], v[1], v[2]);
-export const minus = (a: Vec3, b: Vec3): Vec3 => [a[0] - b[0], a[1] - b[1], a[2] - b[2]];
-export const dot = (a: Vec3, b: Vec3): number => a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-
-export function vectorAt(list: Float32Array, i: number): Vec3 {
-  return [list[3 * i], list[3 * i + 1], list[3 * i + 2]];
 }
 
 // |r|^2 per reading: 1 when the residuals match the standard deviations.
@@ -161,17 +146,12 @@ export function groupsOf(cases: readonly Case[]): { name: string; cases: number[
 // Unit direction of the tip's travel since first contact; its axis if it has not moved.
 export function travel(tip: Tip): Vec3 {
   const way = minus(tip.center, tip.touch);
-  const size = length(way);
-  const along = size > 1e-12 ? way : tip.axis;
-  const unit = length(along) || 1;
-  return [along[0] / unit, along[1] / unit, along[2] / unit];
+  return unit(length(way) > 1e-12 ? way : tip.axis);
 }
 
 function turnAxis(tip: Tip): Vec3 {
   const turn = tip.turn ?? tip.axis;
-  const along = length(turn) > 1e-12 ? turn : tip.axis;
-  const unit = length(along) || 1;
-  return [along[0] / unit, along[1] / unit, along[2] / unit];
+  return unit(length(turn) > 1e-12 ? turn : tip.axis);
 }
 
 export const depthOf = (tip: Tip): number => length(minus(tip.center, tip.touch));

@@ -1,6 +1,6 @@
 // The report of a fit: fitted values, their uncertainty, and how well they explain the measurements.
 import "./fit.css";
-import { button, element, messageOf, type Child } from "../dom";
+import { button, element, listOf, messageOf, type Child } from "../dom";
 import { Page } from "../page";
 import type { Chart } from "../plots/chart";
 import { plural, short, withUnit } from "../plots/numbers";
@@ -12,6 +12,7 @@ import { closeness, groupCurve, groupsOf, residuals, unpackFit, verdict, type Fi
 import { FittedBody } from "./bodyView";
 import { Maps } from "./maps";
 import { Misfits } from "./misfits";
+import { numberTable } from "./numberTable";
 
 function section(title: string, about: string, ...children: Child[]): HTMLElement {
   return element("section", { "aria-label": title }, element("h2", {}, title), about ? element("p", { class: "about" }, about) : null, ...children);
@@ -49,12 +50,8 @@ function valueTable(quantities: readonly Quantity[]): HTMLElement {
       element("td", { class: "number" }, valueText(r.value, q.unit)),
       element("td", { class: "number" }, r.lower === null ? "–" : `${valueText(r.lower, q.unit)} to ${valueText(r.upper, q.unit)}`),
     );
-  return element(
-    "table",
-    { class: "values" },
-    element("thead", {}, element("tr", {}, ...["quantity", "where", "value", "95 % interval"].map((title, i) => element("th", { scope: "col", class: i > 1 ? "number" : "" }, title)))),
-    element("tbody", {}, ...quantities.flatMap((q) => q.rows.map((r, i) => row(q, r, i === 0)))),
-  );
+  const rows = quantities.flatMap((q) => q.rows.map((r, i) => row(q, r, i === 0)));
+  return numberTable(["quantity", "where", "value", "95 % interval"], 2, element("tbody", {}, ...rows));
 }
 
 function heldOutTable(groups: readonly HeldOutGroup[]): HTMLElement {
@@ -69,22 +66,12 @@ function heldOutTable(groups: readonly HeldOutGroup[]): HTMLElement {
     ];
     return element("tr", {}, element("th", { scope: "row" }, g.group), ...cells.map((text) => element("td", { class: "number" }, text)));
   };
-  return element(
-    "table",
-    { class: "values" },
-    element("thead", {}, element("tr", {}, ...titles.map((title, i) => element("th", { scope: "col", class: i > 0 ? "number" : "" }, title)))),
-    element("tbody", {}, ...groups.map(row)),
-  );
+  return numberTable(titles, 1, element("tbody", {}, ...groups.map(row)));
 }
 
 function words(title: string, list: readonly string[], className: string): HTMLElement | null {
   if (list.length === 0) return null;
-  return element("div", { class: `words ${className}` }, element("h3", {}, title), element("ul", {}, ...list.map((text) => element("li", {}, text))));
-}
-
-function reasonList(reasons: readonly string[]): HTMLElement | null {
-  if (reasons.length === 0) return null;
-  return element("ul", {}, ...reasons.map((text) => element("li", {}, text)));
+  return element("div", { class: `words ${className}` }, element("h3", {}, title), listOf(list));
 }
 
 function figure(title: string, chart: Chart): HTMLElement {
@@ -138,7 +125,7 @@ class FitReport {
     return section(
       "Result",
       "",
-      element("div", { class: `verdict ${said.kind}` }, element("p", {}, said.text), reasonList(said.reasons)),
+      element("div", { class: `verdict ${said.kind}` }, element("p", {}, said.text), said.reasons.length > 0 ? listOf(said.reasons) : null),
       cards(this.fit),
       element("div", { class: "columns" }, element("div", {}, valueTable(head.quantities)), element("div", {}, words("Warnings", head.warnings, "warnings"), next, words("Assumptions", head.notes, ""))),
     );

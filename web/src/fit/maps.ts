@@ -3,6 +3,7 @@ import { element } from "../dom";
 import { checkbox, choice } from "../plots/dom";
 import type { Vec3 } from "../protocol";
 import { sceneAxes, type CameraRig } from "../view/cameras";
+import { vectorAt } from "../view/lens";
 import type { MapName } from "../view/colorMaps";
 import { makeArrows, makeBalls } from "./arrows";
 import { BodyView, type Cut, type FittedBody, type Note, type Shown } from "./bodyView";
@@ -122,7 +123,9 @@ export class Maps {
     for (const view of this.views) {
       const objects = [];
       const notes: Note[] = [];
-      if (this.showsMarkers) objects.push(makeBalls(vectors(this.fit.floats("markers")), 0.006 * size, "#1b1f27"));
+      const markers = this.fit.floats("markers");
+      const centers = Array.from({ length: markers.length / 3 }, (_, i) => vectorAt(markers, i));
+      if (this.showsMarkers) objects.push(makeBalls(centers, 0.006 * size, "#1b1f27"));
       if (poke) {
         const back = (by: number): Vec3 => [0, 1, 2].map((k) => poke.site[k] - by * poke.inward[k]) as Vec3;
         objects.push(makeArrows([{ from: back(0.2 * size), to: poke.site }], 0.008 * size, "#d55e00"));
@@ -138,8 +141,4 @@ function cutInFront(up: Vec3): Cut {
   const front = sceneAxes(up).front.toArray();
   const axis = [0, 1, 2].reduce((best, k) => (Math.abs(front[k]) > Math.abs(front[best]) ? k : best)) as 0 | 1 | 2;
   return { axis, at: 0.5, other: front[axis] < 0 };
-}
-
-function vectors(list: Float32Array): Vec3[] {
-  return Array.from({ length: list.length / 3 }, (_, i) => [list[3 * i], list[3 * i + 1], list[3 * i + 2]] as Vec3);
 }

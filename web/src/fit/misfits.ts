@@ -6,8 +6,10 @@ import { short, withUnit } from "../plots/numbers";
 import type { Vec3 } from "../protocol";
 import type { CameraRig } from "../view/cameras";
 import { makeArrows, makeBalls, type Arrow } from "./arrows";
+import { numberTable } from "./numberTable";
 import { BodyView, type FittedBody, type Note } from "./bodyView";
-import { length, markerName, vectorAt, worstMarkers, type Fit, type WorstMarker } from "./data";
+import { length, vectorAt } from "../view/lens";
+import { markerName, worstMarkers, type Fit, type WorstMarker } from "./data";
 
 const kArrows = 60;
 const kRows = 10;
@@ -28,17 +30,11 @@ export class Misfits {
     this.view.showWires(false);
     const cases: [string, string][] = [["all", "all cases"], ...fit.head.cases.map((c, i): [string, string] => [String(i), c.name])];
     const pick = choice("worst markers of", "Case whose residuals are drawn", cases, "all", (value) => this.show(value === "all" ? null : Number(value)));
-    const titles = ["marker", "case", "error", "standard deviations"];
     this.element = element(
       "div",
       { class: "map-row misfits" },
       element("div", { class: "map plot-panel" }, pick.element, this.view.element, this.note),
-      element(
-        "table",
-        { class: "values" },
-        element("thead", {}, element("tr", {}, ...titles.map((t, i) => element("th", { scope: "col", class: i > 1 ? "number" : "" }, t)))),
-        this.table,
-      ),
+      numberTable(["marker", "case", "error", "standard deviations"], 2, this.table),
     );
     this.show(null);
   }

@@ -13,11 +13,7 @@ const kHint =
   "Click the body to touch it with a tip. Drag on to press it in; the gauge shows the force. Stiff places need a larger force: " +
   "many pokes together reveal the stiffness inside.";
 
-export function makeCapturePanel(store: Store, page: Page, display: Display): Panel {
-  return new CapturePanel(store, page, display);
-}
-
-class CapturePanel implements Panel {
+export class CapturePanel implements Panel {
   readonly name = "capture";
   readonly title = "Capture";
   readonly isTall = true;
@@ -27,7 +23,7 @@ class CapturePanel implements Panel {
   private readonly cases: CaseList;
   private readonly fit: FitForm;
   private isSetUp = false;
-  private readonly hint = element("p", { class: "capture-hint" }, kHint);
+  private readonly hint = element("p", { class: "capture-note faint" }, kHint);
 
   constructor(
     private readonly store: Store,
@@ -46,8 +42,7 @@ class CapturePanel implements Panel {
     store.on("state", follow);
     store.on("role", follow);
     store.on("capture", () => this.showBench());
-    page.on("theme", () => this.gauge.chart.retheme());
-    page.on("layout", () => this.gauge.chart.retheme());
+    page.onLook(() => this.gauge.chart.retheme());
   }
 
   // The mouse moves the probe while the panel is open.

@@ -43,6 +43,10 @@ function reactionText(row: StepRow, first: 0 | 3): string | null {
   return pins.length ? pins.map(([pin, values]) => `${pin} (${vector(values)})`).join("; ") : null;
 }
 
+function largestFirst(title: string, meaning: string, value: (row: StepRow) => MaybeNumber): Column {
+  return { title, meaning, value, worse: (row) => value(row) ?? kUnknown };
+}
+
 export const kColumns: Column[] = [
   { title: "step", meaning: "number of the time step", value: (row) => row.step },
   { title: "time [s]", meaning: "at the end of the step", value: (row) => row.time },
@@ -53,32 +57,18 @@ export const kColumns: Column[] = [
     worse: (row) => (row.converged ? 0 : 1),
     isBad: (row) => !row.converged,
   },
-  {
-    title: "residual [N]",
-    meaning: "norm of M a + dV/dx + dD/dx over free vertices",
-    value: (row) => row.residual,
-    worse: (row) => row.residual ?? kUnknown,
-  },
+  largestFirst("residual [N]", "norm of M a + dV/dx + dD/dx over free vertices", (row) => row.residual),
   { title: "wanted [N]", meaning: "largest residual of a converged step", value: (row) => row.residual_threshold || null },
   {
-    title: "residual / wanted",
-    meaning: "above 1: the step missed the threshold",
-    value: excess,
-    worse: (row) => excess(row) ?? kUnknown,
+    ...largestFirst("residual / wanted", "above 1: the step missed the threshold", excess),
     isBad: (row) => (excess(row) ?? 0) > 1,
   },
-  {
-    title: "decrement [J]",
-    meaning: "decrease of E that the last direction predicts: a measure of the distance from the minimum",
-    value: (row) => row.decrement,
-    worse: (row) => row.decrement ?? kUnknown,
-  },
-  {
-    title: "iterations",
-    meaning: "of the minimizer",
-    value: (row) => row.iterations.length,
-    worse: (row) => row.iterations.length,
-  },
+  largestFirst(
+    "decrement [J]",
+    "decrease of E that the last direction predicts: a measure of the distance from the minimum",
+    (row) => row.decrement,
+  ),
+  largestFirst("iterations", "of the minimizer", (row) => row.iterations.length),
   {
     title: "min det F",
     meaning: "smallest volume of a tet relative to its rest volume; below 0: inverted",

@@ -1,5 +1,5 @@
 // Energy plot: the forms of energy, and what added or removed it.
-import type { Page, Panel } from "../page";
+import { fieldsOf, type Page, type Panel } from "../page";
 import type { MaybeNumber, SideName } from "../protocol";
 import type { Store } from "../store";
 import { Chart, type Curve } from "../plots/chart";
@@ -7,12 +7,12 @@ import {
   button,
   checkbox,
   choice,
-  download,
   downloadCanvas,
   element,
   fileName,
   numberField,
   oncePerFrame,
+  saveFile,
 } from "../plots/dom";
 import { balanceText, calmRange, explosionText, Ledger, ledgerColumns } from "../plots/ledger";
 import type { LedgerColumn } from "../plots/ledger";
@@ -30,11 +30,7 @@ const kWindows = [
   ["typed", "last ... s"],
 ] as const;
 
-export function makeEnergyPanel(store: Store, page: Page): Panel {
-  return new EnergyPanel(store, page);
-}
-
-class EnergyPanel implements Panel {
+export class EnergyPanel implements Panel {
   readonly name = "energy";
   readonly title = "Energy";
   readonly element = element("div", { class: "plot-panel", role: "group", "aria-label": "Energy plot" });
@@ -81,8 +77,7 @@ class EnergyPanel implements Panel {
       this.redraw();
     });
     store.on("state", () => this.redraw());
-    page.on("theme", () => this.chart.retheme());
-    page.on("layout", () => this.chart.retheme());
+    page.onLook(() => this.chart.retheme());
     page.keep("energy", { save: () => this.save(), restore: (saved) => this.restore(saved) });
     for (const side of kSides) this.newScene(side);
   }
@@ -278,7 +273,7 @@ class EnergyPanel implements Panel {
     if (!first) return;
     const table = second ? merged(first, second) : first;
     const text = csv(["step", ...names], [table.x, ...table.columns], table.x.length);
-    download(fileName(this.sceneName(), "energy.csv"), new Blob([text], { type: "text/csv" }));
+    saveFile(fileName(`${this.sceneName()}_energy`, "csv"), new Blob([text], { type: "text/csv" }));
   }
 
   private savePng(): void {
@@ -286,7 +281,7 @@ class EnergyPanel implements Panel {
     const picture = this.chart.picture(
       `${this.sceneName()}: energy${sides.length > 1 ? ` (${sides[0]}; dashed: ${sides[1]})` : ""}`,
     );
-    if (picture) downloadCanvas(fileName(this.sceneName(), "energy.png"), picture);
+    if (picture) downloadCanvas(fileName(`${this.sceneName()}_energy`, "png"), picture);
   }
 
   private save(): unknown {
@@ -299,8 +294,7 @@ class EnergyPanel implements Panel {
   }
 
   private restore(saved: unknown): void {
-    if (typeof saved !== "object" || saved === null) return;
-    const kept = saved as Partial<Record<"window" | "typed" | "log" | "hidden", unknown>>;
+    const kept = fieldsOf(saved);
     if (kWindows.some(([name]) => name === kept.window)) this.windows.select.value = kept.window as string;
     if (Number(kept.typed) > 0) this.typed.input.value = String(kept.typed);
     this.logSwitch.input.checked = kept.log === true;

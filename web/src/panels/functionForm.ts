@@ -39,7 +39,6 @@ export interface Preset {
   name: string;
   start: [number, number];
   settings: Record<string, SettingValue>;
-  log: boolean;
   model: boolean; // whether the quadratic model is visible
   iteration: number;
 }
@@ -52,7 +51,6 @@ export const kPresets: Preset[] = [
     name: "quadratic",
     start: [0.3, 1.3],
     settings: { method: "gradient_descent", max_iterations: 200 },
-    log: false,
     model: false,
     iteration: 0,
   },
@@ -63,7 +61,6 @@ export const kPresets: Preset[] = [
     name: "rosenbrock",
     start: [-0.2, -0.2],
     settings: { method: "newton", "line_search.test": "none", definiteness: "exact" },
-    log: false,
     model: true,
     iteration: 1,
   },
@@ -74,7 +71,6 @@ export const kPresets: Preset[] = [
     name: "rosenbrock",
     start: [-0.2, -0.2],
     settings: { method: "newton", "line_search.test": "textbook" },
-    log: false,
     model: true,
     iteration: 1,
   },
@@ -85,7 +81,6 @@ export const kPresets: Preset[] = [
     name: "two_bump",
     start: [-0.2, 0.6],
     settings: { method: "newton", definiteness: "absolute" },
-    log: false,
     model: true,
     iteration: 0,
   },

@@ -1,7 +1,8 @@
 // Functions of two variables, minimized by the methods of the simulation: the lecture's surfaces, from any initial
 // point.
+import { messageOf } from "../dom";
 import { Newest } from "../newest";
-import type { Page, Panel } from "../page";
+import { fieldsOf, type Page, type Panel } from "../page";
 import type { FunctionQuestion, FunctionReply } from "../protocol";
 import type { Store } from "../store";
 import { button, checkbox, downloadCanvas, element, fileName } from "../plots/dom";
@@ -16,15 +17,7 @@ import { pictureOf, type FunctionPicture } from "./functionPicture";
 const kSamples = 81;
 const kPlayEvery = 700; // [ms]
 
-export interface FunctionsPanel extends Panel {
-  open(question: FunctionQuestion): void;
-}
-
-export function makeFunctionsPanel(store: Store, page: Page): FunctionsPanel {
-  return new PlanarPanel(store, page);
-}
-
-class PlanarPanel implements FunctionsPanel {
+export class FunctionsPanel implements Panel {
   readonly name = "functions";
   readonly title = "Functions";
   readonly isTall = true; // a surface needs room
@@ -63,7 +56,7 @@ class PlanarPanel implements FunctionsPanel {
   private shows = ""; // name of the preset shown
   private readonly questions = new Newest<FunctionQuestion>(
     (question) => this.send(question),
-    (reason) => this.fail(reason instanceof Error ? reason.message : String(reason)),
+    (reason) => this.fail(messageOf(reason)),
   );
   private asked = false; // whether a question was sent
   private visible = false;
@@ -107,8 +100,7 @@ class PlanarPanel implements FunctionsPanel {
     });
     this.view.dragged = (at, done) => this.drag(at.x, at.y, done);
     this.view.nudged = (dx, dy) => this.nudge(dx, dy);
-    page.on("theme", () => this.retheme());
-    page.on("layout", () => this.retheme());
+    page.onLook(() => this.retheme());
     page.keep("functions", {
       save: () => this.form.question(this.iteration, kSamples),
       restore: (saved) => this.restore(saved),
@@ -131,7 +123,7 @@ class PlanarPanel implements FunctionsPanel {
   }
 
   private openPreset(preset: Preset): void {
-    this.log.input.checked = preset.log;
+    this.log.input.checked = false;
     this.model.input.checked = preset.model;
     this.open({ ...preset, samples: kSamples });
     this.shows = preset.shows;
@@ -255,7 +247,7 @@ class PlanarPanel implements FunctionsPanel {
         `f = ${this.reply.formula}: iteration ${this.iteration} of ${this.reply.iterations.length}`,
         this.shown?.signs ?? [],
       );
-    if (picture) downloadCanvas(fileName(name, this.iteration) + ".png", picture);
+    if (picture) downloadCanvas(fileName(`${name}_${this.iteration}`, "png"), picture);
   }
 
   private restore(saved: unknown): void {
@@ -266,7 +258,7 @@ class PlanarPanel implements FunctionsPanel {
     this.form.fill({
       name: kept.name,
       start,
-      settings: typeof kept.settings === "object" && kept.settings !== null ? kept.settings : {},
+      settings: fieldsOf(kept.settings) as FunctionQuestion["settings"],
     });
     if (this.visible) this.formChanged();
     else this.asked = false;

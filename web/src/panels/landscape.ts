@@ -1,8 +1,8 @@
 // Energy landscape of one iteration: E over the plane through its direction d, and the quadratic model beside it.
-import type { Page, Panel } from "../page";
+import { fieldsOf, type Page, type Panel } from "../page";
 import type { IterationReply, MaybeNumber } from "../protocol";
 import type { Store } from "../store";
-import { chosenOf, type Chosen } from "../plots/chosen";
+import type { Chosen } from "../plots/chosen";
 import { button, checkbox, downloadCanvas, element, fileName, oncePerFrame } from "../plots/dom";
 import { gridOf, isInside, minimizerOf, quadraticFrom, quadraticAt } from "../plots/grid";
 import { legendOf, type Sign } from "../plots/legend";
@@ -10,16 +10,11 @@ import { plural, short } from "../plots/numbers";
 import { SurfaceView } from "../plots/surface";
 import type { Mark, SurfaceContent } from "../plots/surfaceBody";
 
-export function makeLandscapePanel(store: Store, page: Page): Panel {
-  return new LandscapePanel(store, page);
-}
-
-class LandscapePanel implements Panel {
+export class LandscapePanel implements Panel {
   readonly name = "landscape";
   readonly title = "Landscape";
   readonly isTall = true; // a surface needs room
   readonly element = element("div", { class: "plot-panel", role: "group", "aria-label": "Energy landscape" });
-  private readonly chosen: Chosen;
   private readonly view = new SurfaceView();
   private readonly follow = checkbox("follow", "Follow the newest step", true, (on) => this.chosen.follow(on));
   private readonly model = checkbox("quadratic model", "Show the quadratic model of E", true, () =>
@@ -43,8 +38,8 @@ class LandscapePanel implements Panel {
   constructor(
     private readonly store: Store,
     page: Page,
+    private readonly chosen: Chosen,
   ) {
-    this.chosen = chosenOf(store, page);
     const bar = element("div", { class: "plot-bar" });
     bar.append(
       button("◀", "The iteration before", () => this.chosen.walk(-1)),
@@ -65,11 +60,8 @@ class LandscapePanel implements Panel {
     );
     const fill = element("div", { class: "plot-fill" }, this.view.element);
     this.element.append(bar, element("div", { class: "plot-columns plot-fill" }, fill, side));
-    this.chosen.on("changed", this.refresh);
-    this.chosen.on("rows", this.refresh);
-    this.chosen.on("looked", this.refresh);
-    page.on("theme", () => this.view.retheme());
-    page.on("layout", () => this.view.retheme());
+    for (const event of ["changed", "rows", "looked"] as const) this.chosen.on(event, this.refresh);
+    page.onLook(() => this.view.retheme());
     page.keep("landscape", {
       save: () => ({ model: this.model.input.checked, log: this.log.input.checked }),
       restore: (saved) => this.restore(saved),
@@ -195,12 +187,11 @@ class LandscapePanel implements Panel {
     const name = this.store.side(this.chosen.side)?.scene.name ?? "scene";
     const picture =
       this.reply && this.view.picture(`${name}: energy landscape of step ${step}, iteration ${iteration}`, this.signs);
-    if (picture) downloadCanvas(fileName(name, "landscape", step, iteration) + ".png", picture);
+    if (picture) downloadCanvas(fileName(`${name}_landscape_${step}_${iteration}`, "png"), picture);
   }
 
   private restore(saved: unknown): void {
-    if (typeof saved !== "object" || saved === null) return;
-    const kept = saved as { model?: unknown; log?: unknown };
+    const kept = fieldsOf(saved);
     this.model.input.checked = kept.model !== false;
     this.log.input.checked = kept.log === true;
     this.draw();

@@ -1,27 +1,22 @@
 // The minimization in detail: steps, iterations of one step, and line search of one iteration.
 import { statusName } from "../names";
-import type { Page, Panel } from "../page";
+import { fieldsOf, type Page, type Panel } from "../page";
 import type { IterationRow, SideName, StepRow, WorstReply } from "../protocol";
 import type { Store } from "../store";
-import { chosenOf, type Chosen } from "../plots/chosen";
+import type { Chosen } from "../plots/chosen";
 import { button, checkbox, choice, element, oncePerFrame } from "../plots/dom";
 import { plural, short, withUnit } from "../plots/numbers";
-import { Rows } from "../plots/rows";
+import { Rows, type RowColumn } from "../plots/rows";
 import type { Search } from "../plots/search";
 import { stepText, totalSeconds } from "../plots/words";
 import { kCharts, StepChart, type ChartName } from "./stepCharts";
 
-export function makeMicroscopePanel(store: Store, page: Page): Panel {
-  return new MicroscopePanel(store, page);
-}
-
 const kOrder: ChartName[] = ["convergence", "search", "time", "steps", "alpha", "inner"];
 
-class MicroscopePanel implements Panel {
+export class MicroscopePanel implements Panel {
   readonly name = "microscope";
   readonly title = "Microscope";
   readonly element = element("div", { class: "plot-panel", role: "group", "aria-label": "Solver microscope" });
-  private readonly chosen: Chosen;
   private readonly sides = choice("", "Which side of the comparison", [], "a", (side) =>
     this.chosen.chooseSide(side as SideName),
   );
@@ -49,8 +44,8 @@ class MicroscopePanel implements Panel {
   constructor(
     private readonly store: Store,
     private readonly page: Page,
+    private readonly chosen: Chosen,
   ) {
-    this.chosen = chosenOf(store, page);
     const worst = button(
       "Worst elements",
       "List the tets with the worst values and mark them on the body",
@@ -59,13 +54,9 @@ class MicroscopePanel implements Panel {
     const bar = element("div", { class: "plot-bar" }, this.sides.element, this.follow.element, worst, this.words);
     const tables = element("div", { class: "microscope-tables" }, this.steps.element, this.iterations.element);
     this.element.append(bar, this.worst, element("div", { class: "microscope plot-fill" }, tables, this.grid));
-    this.chosen.on("changed", this.redraw);
-    this.chosen.on("rows", this.redraw);
-    this.chosen.on("looked", this.redraw);
-    store.on("scene", this.redraw);
-    store.on("gone", this.redraw);
-    page.on("theme", () => this.charts.forEach((chart) => chart.retheme()));
-    page.on("layout", () => this.charts.forEach((chart) => chart.retheme()));
+    for (const event of ["changed", "rows", "looked"] as const) this.chosen.on(event, this.redraw);
+    for (const event of ["scene", "gone"] as const) store.on(event, this.redraw);
+    page.onLook(() => this.charts.forEach((chart) => chart.retheme()));
     page.keep("microscope", { save: () => ({ charts: this.names }), restore: (saved) => this.restore(saved) });
     new ResizeObserver(() => this.arrange()).observe(this.grid);
   }
@@ -94,67 +85,35 @@ class MicroscopePanel implements Panel {
     return !step || step.status === "under way" ? "" : step.converged ? "success" : "failed";
   }
 
-  private stepColumns(): ConstructorParameters<typeof Rows>[0]["columns"] {
+  private stepColumns(): RowColumn[] {
     const of = (text: (step: StepRow) => string) => (row: number) => {
       const step = this.stepAt(row);
       return step ? text(step) : "";
     };
     return [
-      { title: "step", meaning: "number of the time step; the newest is first", text: of((s) => String(s.step)) },
-      {
-        title: "status",
-        meaning: "status of the minimization",
-        left: true,
-        class: "status",
-        text: of((s) => statusText(s)),
-      },
-      { title: "it.", meaning: "iterations of the minimizer", text: of((s) => String(s.iterations.length)) },
-      {
-        title: "resid.",
-        meaning: "residual relative to its threshold",
-        text: of(residualText),
-      },
-      { title: "took", meaning: "wall time", class: "spare", text: of((s) => withUnit(s.seconds, "s", 3)) },
+      column("step", "number of the time step; the newest is first", of((s) => String(s.step))),
+      { ...column("status", "status of the minimization", of(statusText), "status"), left: true },
+      column("it.", "iterations of the minimizer", of((s) => String(s.iterations.length))),
+      column("resid.", "residual relative to its threshold", of(residualText)),
+      column("took", "wall time", of((s) => withUnit(s.seconds, "s", 3)), "spare"),
     ];
   }
 
-  private iterationColumns(): ConstructorParameters<typeof Rows>[0]["columns"] {
+  private iterationColumns(): RowColumn[] {
     const of = (text: (it: IterationRow) => string) => (row: number) => {
       const iteration = this.iterationAt(row);
       return iteration ? text(iteration) : "";
     };
     return [
-      { title: "#", meaning: "iteration of the step", text: (row) => this.mark(row) },
-      { title: "E", meaning: "the objective before the iteration", text: of((it) => short(it.value, 5)) },
-      { title: "|g|", meaning: "norm of its gradient", text: of((it) => short(it.gradient_norm, 3)) },
-      {
-        title: "decr.",
-        meaning: "−g·d / 2: decrease that the quadratic model predicts",
-        text: of((it) => short(it.decrement, 3)),
-      },
-      {
-        title: "α",
-        meaning: "accepted step length; 0: no acceptable step",
-        text: of((it) => (it.alpha === 0 ? "none" : short(it.alpha, 3))),
-      },
-      {
-        title: "trials",
-        meaning: "of the line search",
-        text: of((it) => (it.trials.length > 0 ? String(it.trials.length) : "–")),
-      },
-      {
-        title: "proj.",
-        meaning: "elements with a modified Hessian",
-        class: "spare",
-        text: of((it) => String(it.projected_elements)),
-      },
-      {
-        title: "inner",
-        meaning: "iterations of the linear solver",
-        class: "spare",
-        text: of((it) => String(it.linear_iterations)),
-      },
-      { title: "took", meaning: "wall time", class: "spare", text: of((it) => withUnit(totalSeconds(it), "s", 3)) },
+      column("#", "iteration of the step", (row) => this.mark(row)),
+      column("E", "the objective before the iteration", of((it) => short(it.value, 5))),
+      column("|g|", "norm of its gradient", of((it) => short(it.gradient_norm, 3))),
+      column("decr.", "−g·d / 2: decrease that the quadratic model predicts", of((it) => short(it.decrement, 3))),
+      column("α", "accepted step length; 0: no acceptable step", of((it) => (it.alpha === 0 ? "none" : short(it.alpha, 3)))),
+      column("trials", "of the line search", of((it) => (it.trials.length > 0 ? String(it.trials.length) : "–"))),
+      column("proj.", "elements with a modified Hessian", of((it) => String(it.projected_elements)), "spare"),
+      column("inner", "iterations of the linear solver", of((it) => String(it.linear_iterations)), "spare"),
+      column("took", "wall time", of((it) => withUnit(totalSeconds(it), "s", 3)), "spare"),
     ];
   }
 
@@ -189,9 +148,7 @@ class MicroscopePanel implements Panel {
     const two = this.store.side("b") !== null;
     this.sides.element.hidden = !two;
     if (!two) return;
-    const options = (["a", "b"] as const).map(
-      (side) => new Option(sideTitle(side, this.store.side(side)?.scene.label ?? ""), side),
-    );
+    const options = (["a", "b"] as const).map((side) => new Option(this.store.title(side), side));
     const text = options.map((option) => option.text).join();
     if (this.sides.element.dataset.text !== text) this.sides.select.replaceChildren(...options);
     this.sides.element.dataset.text = text;
@@ -278,7 +235,7 @@ class MicroscopePanel implements Panel {
         reply.items.map((item) => ({ positions: item.positions, text: text(item) })),
       );
     } catch (reason) {
-      this.page.notice(reason instanceof Error ? reason.message : String(reason), "error");
+      this.page.report(reason);
     }
   }
 
@@ -287,7 +244,7 @@ class MicroscopePanel implements Panel {
   }
 
   private restore(saved: unknown): void {
-    const charts = (saved as { charts?: unknown } | null)?.charts;
+    const { charts } = fieldsOf(saved);
     if (!Array.isArray(charts)) return;
     this.names = kOrder.map((name, i) =>
       kCharts.some(([known]) => known === charts[i]) ? (charts[i] as ChartName) : name,
@@ -297,8 +254,8 @@ class MicroscopePanel implements Panel {
   }
 }
 
-function sideTitle(side: SideName, label: string): string {
-  return label === "" ? side.toUpperCase() : `${side.toUpperCase()}: ${label}`;
+function column(title: string, meaning: string, text: (row: number) => string, className?: string): RowColumn {
+  return { title, meaning, text, class: className };
 }
 
 function residualText(step: StepRow): string {

@@ -1,6 +1,8 @@
 // The certificate of a run: totals, a table of its steps with the worst first, and the scene as text.
 import "./report.css";
-import { button, element, messageOf, saveFile } from "../dom";
+import { button, element, saveFile } from "../dom";
+import { materialFormulas, materialModel } from "../formulas";
+import { choiceName } from "../names";
 import type { Page, Panel } from "../page";
 import { plural, short } from "../plots/numbers";
 import type { MaybeNumber, StepRow, TextReply } from "../protocol";
@@ -113,7 +115,7 @@ function makeScene(store: Store, page: Page): HTMLElement {
       file = await store.source.ask<TextReply>({ ask: "scene", side: "a" });
       code.textContent = file.text;
     } catch (error) {
-      page.notice(messageOf(error), "error");
+      page.report(error);
     }
   };
   details.addEventListener("toggle", () => void load());
@@ -126,8 +128,10 @@ export function makeReportPanel(store: Store, page: Page): Panel {
   const notes = element("ul", { class: "notes" });
   const notesTitle = element("summary");
   const aboutScene = element("details", {}, notesTitle, notes);
+  const materialTitle = element("summary");
+  const material = element("details", { open: true }, materialTitle);
   const table = new StepTable(store);
-  const panel = element("div", { class: "report" }, list, aboutScene, makeScene(store, page), table.element);
+  const panel = element("div", { class: "report" }, list, material, aboutScene, makeScene(store, page), table.element);
   let visible = false;
   let due = false;
   let drawn = -kPause; // time of the last drawing
@@ -136,6 +140,10 @@ export function makeReportPanel(store: Store, page: Page): Panel {
     drawn = performance.now();
     const side = store.side("a");
     drawTotals(list, side?.steps ?? []);
+    const model = materialModel(side?.scene.settings ?? []);
+    material.hidden = model === "";
+    materialTitle.textContent = `Material model: ${choiceName("material.model", model)}`;
+    material.replaceChildren(materialTitle, ...materialFormulas(model));
     const reported = side?.scene.notes ?? [];
     aboutScene.hidden = reported.length === 0;
     notesTitle.textContent = `Choices of the program for this scene: ${plural(reported.length, "note")}`;

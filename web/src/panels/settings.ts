@@ -1,7 +1,8 @@
 // Settings of the simulation: built from the program's list, sent while a slider moves, and restored if the program
 // refuses them.
 import { GUI, type Controller } from "lil-gui";
-import { button, element, messageOf } from "../dom";
+import { button, element, selectOf } from "../dom";
+import { materialFormulas, materialModel } from "../formulas";
 import { backTo, History, toLoaded, type SettingChange } from "../history";
 import { kMaterials } from "../materials";
 import { Newest } from "../newest";
@@ -45,6 +46,7 @@ export class Settings {
   private newest = { key: "", at: 0 }; // the latest change
   private loaded = ""; // scene that the history belongs to
   private material: Controller | null = null;
+  private readonly density = element("div", { class: "density", "aria-label": "Strain energy density" });
 
   constructor(
     root: HTMLElement,
@@ -103,6 +105,7 @@ export class Settings {
       row?.mark(differs ? `A: ${valueText(setting.value)}, B: ${valueText(twin.value)}` : "");
     }
     this.showMaterial(scene);
+    this.density.replaceChildren(...materialFormulas(materialModel(scene.settings)));
     this.mouse.display(scene.stiffness);
     this.surface.value = scene.surface;
     this.surface.closest("label")?.toggleAttribute("hidden", !scene.has_skin);
@@ -121,7 +124,11 @@ export class Settings {
       this.folders.push(folder);
       if (closed.has(group)) folder.close();
       if (group === "Material") this.addMaterials(folder, settings);
-      for (const setting of settings) if (setting.group === group) this.addSetting(folder, setting);
+      for (const setting of settings) {
+        if (setting.group !== group) continue;
+        this.addSetting(folder, setting);
+        if (setting.key === "material.model") folder.$children.append(this.density);
+      }
     }
     this.spring.domElement.parentElement?.append(this.spring.domElement); // keeps it last
   }
@@ -212,7 +219,7 @@ export class Settings {
     try {
       for (const change of changes) await this.store.source.request({ do: "set", ...change });
     } catch (reason) {
-      this.page.notice(messageOf(reason), "error");
+      this.page.report(reason);
     }
     this.update();
   }
@@ -220,7 +227,7 @@ export class Settings {
   private addSetting(folder: GUI, setting: Setting): void {
     const sender = new Newest<SettingValue>(
       (value) => this.store.source.request({ do: "set", key: setting.key, value, ...this.side() }),
-      (reason) => this.page.notice(messageOf(reason), "error"),
+      this.page.report,
       () => this.update(),
     );
     this.senders.set(setting.key, sender);
@@ -244,7 +251,7 @@ export class Settings {
     row.$name.title = "Stiffness of the spring between the mouse and the dragged point";
     const sender = new Newest<number>(
       (value) => this.store.source.request({ do: "stiffness", value }),
-      (reason) => this.page.notice(messageOf(reason), "error"),
+      this.page.report,
       () => this.update(),
     );
     row.onChange((value: SettingValue) => sender.push(Number(value)));
@@ -252,12 +259,9 @@ export class Settings {
   }
 
   private makeSurface(): HTMLSelectElement {
-    const select = element(
-      "select",
-      { "data-steers": true, title: "Visible surface: the fine skin embedded in the tets, or the boundary of the tets" },
-      element("option", { value: "skin" }, "fine skin"),
-      element("option", { value: "cage" }, "cage of tets"),
-    );
+    const select = selectOf({ skin: "fine skin", cage: "cage of tets" });
+    select.dataset.steers = "";
+    select.title = "Visible surface: the fine skin embedded in the tets, or the boundary of the tets";
     select.addEventListener("change", () => {
       this.store.source.send({ do: "surface", which: select.value === "cage" ? "cage" : "skin" });
     });

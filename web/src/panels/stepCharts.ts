@@ -25,6 +25,8 @@ export type ChartName = (typeof kCharts)[number][0];
 const kStages = ["hessian", "factorize", "solve", "line_search", "gradient"] as const;
 const kStageColors = ["series1", "series2", "series3", "series4", "series5"] as const;
 
+const kIteration = { label: "iteration", integer: true };
+
 interface Plan {
   options: Pick<ChartOptions, "label" | "x" | "y"> & { curves: Curve[] };
   x: number[];
@@ -52,16 +54,11 @@ function convergence(rows: readonly IterationRow[]): Plan {
   return {
     options: {
       label: "Convergence over the iterations",
-      x: { label: "iteration", integer: true },
+      x: kIteration,
       y: { label: "", log: true },
       curves: [
         curve("gradient", "|g|", "norm of the gradient before the iteration", "series1"),
-        curve(
-          "energy",
-          "E − lowest E",
-          "objective before the iteration, above its lowest value in this step",
-          "series2",
-        ),
+        curve("energy", "E − lowest E", "objective before the iteration, above its lowest value in this step", "series2"),
         curve("decrement", "decrement", "−g·d / 2: decrease that the quadratic model predicts", "series3"),
       ],
     },
@@ -82,7 +79,7 @@ function counted(
   return {
     options: {
       label: `${label} over the iterations`,
-      x: { label: "iteration", integer: true },
+      x: kIteration,
       y: { label: "" },
       curves: [curve("value", label, meaning, "series1", shape)],
     },
@@ -101,17 +98,12 @@ function stages(rows: readonly IterationRow[]): Plan {
   return {
     options: {
       label: "Time by stage over the iterations",
-      x: { label: "iteration", integer: true },
+      x: kIteration,
       y: { label: "time", unit: "s" },
-      curves: order.map((stage) =>
-        curve(
-          stage,
-          stage.replace("_", " "),
-          "wall time of this stage",
-          kStageColors[kStages.indexOf(stage)]!,
-          "bars",
-        ),
-      ),
+      curves: order.map((stage) => {
+        const color = kStageColors[kStages.indexOf(stage)]!;
+        return curve(stage, stage.replace("_", " "), "wall time of this stage", color, "bars");
+      }),
     },
     x: rows.map((_, i) => i),
     columns,
@@ -153,13 +145,7 @@ function planOf(name: Exclude<ChartName, "search">, chosen: Chosen, steps: reado
     case "inner":
       return counted(rows, "inner iterations", "of the iterative linear solver", (r) => r.linear_iterations, "bars");
     case "projected":
-      return counted(
-        rows,
-        "projected elements",
-        "elements with a modified Hessian",
-        (r) => r.projected_elements,
-        "bars",
-      );
+      return counted(rows, "projected elements", "elements with a modified Hessian", (r) => r.projected_elements, "bars");
     case "steps":
       return overSteps(steps, width);
   }
@@ -220,7 +206,7 @@ export class StepChart {
       const read = (key: string, x: number | null): string[] => this.read(key, x);
       const paint = (u: uPlot, colors: Palette): void => this.paintChosen(u, colors);
       const xRange = (): [number, number] | null => this.xRange();
-      this.chart.configure({ ...plan.options, legend: "top", read, paint, xRange, clicked: (x) => this.clicked(x) });
+      this.chart.configure({ ...plan.options, read, paint, xRange, clicked: (x) => this.clicked(x) });
     }
     this.chart.show(plan.x, plan.columns);
   }
@@ -228,12 +214,8 @@ export class StepChart {
   private read(key: string, x: number | null): string[] {
     const plan = this.plan;
     if (!plan || x === null || plan.x.length === 0) return [];
-    return [
-      plan.text(
-        plan.options.curves.findIndex((c) => c.key === key),
-        nearest(plan.x, x),
-      ),
-    ];
+    const column = plan.options.curves.findIndex((c) => c.key === key);
+    return [plan.text(column, nearest(plan.x, x))];
   }
 
   private xRange(): [number, number] | null {

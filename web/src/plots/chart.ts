@@ -6,6 +6,7 @@ import "./plots.css";
 import type { MaybeNumber } from "../protocol";
 import { axis, padded, ranged, type Axis } from "./axes";
 import { element, oncePerFrame } from "./dom";
+import { lineHeight, titled } from "./legend";
 import { cssOf, inkOf, palette, sameLook, type Color, type Palette } from "./palette";
 
 export interface Curve {
@@ -23,7 +24,7 @@ export interface ChartOptions {
   x: Axis;
   y: Axis & { log?: boolean };
   curves: Curve[];
-  legend: "side" | "top";
+  legend?: "side" | "top"; // top by default
   read: (key: string, x: number | null) => string[]; // values for the legend at x, or at the end if x is null
   caption?: (x: number | null) => string; // text above the values
   xRange?: () => [number, number] | null;
@@ -59,9 +60,17 @@ export class Chart {
     this.plot.addEventListener("keydown", (event) => this.walk(event));
   }
 
+  // A chart whose content does not change.
+  static of(x: number[], columns: MaybeNumber[][], options: ChartOptions): Chart {
+    const chart = new Chart();
+    chart.configure(options);
+    chart.show(x, columns);
+    return chart;
+  }
+
   configure(options: ChartOptions): void {
     this.options = options;
-    this.element.dataset.legend = options.legend;
+    this.element.dataset.legend = options.legend ?? "top";
     this.plot.setAttribute("aria-label", `${options.label}. The arrow keys move through its values.`);
     this.buildLegend();
     this.rebuild();
@@ -109,21 +118,10 @@ export class Chart {
     const source = this.chart.ctx.canvas;
     const scale = uPlot.pxRatio;
     const colors = palette(this.element);
-    const line = colors.fontSize * 1.5 * scale;
+    const line = lineHeight(colors, scale);
     const shown = this.entries.filter((entry) => !this.hidden.has(entry.key));
     const columns = Math.max(1, Math.floor(source.width / (line * 12)));
-    const canvas = document.createElement("canvas");
-    canvas.width = source.width;
-    canvas.height = source.height + line * (1.6 + Math.ceil(shown.length / columns) + 0.5);
-    const pen = canvas.getContext("2d")!;
-    pen.fillStyle = colors.panel;
-    pen.fillRect(0, 0, canvas.width, canvas.height);
-    pen.drawImage(source, 0, line * 1.6);
-    pen.textBaseline = "middle";
-    pen.fillStyle = colors.text;
-    pen.font = `600 ${colors.fontSize * scale}px sans-serif`;
-    pen.fillText(title, line * 0.5, line * 0.8);
-    pen.font = `${colors.fontSize * 0.86 * scale}px sans-serif`;
+    const { canvas, pen } = titled(source, title, colors, scale, Math.ceil(shown.length / columns));
     shown.forEach((entry, i) => {
       const left = line * 0.5 + (i % columns) * ((canvas.width - line) / columns);
       const y = source.height + line * (2.1 + Math.floor(i / columns));

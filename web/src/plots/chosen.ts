@@ -233,12 +233,3 @@ function unfinished(step: number, time: number, iterations: IterationRow[]): Ste
   const work = { mouse_work: null, probe_work: null, explanation: null };
   return { ...kUnknownStep, step, time, status: "under way", converged: true, iterations, ...work };
 }
-
-const known = new WeakMap<Page, Chosen>();
-
-// The instance of this page.
-export function chosenOf(store: Store, page: Page): Chosen {
-  const chosen = known.get(page) ?? new Chosen(store, page);
-  known.set(page, chosen);
-  return chosen;
-}

@@ -1,7 +1,7 @@
 // Builders of the plots' controls.
-import { element, saveFile } from "../dom";
+import { element, fileName, saveFile } from "../dom";
 
-export { element, saveFile as download };
+export { element, fileName, saveFile };
 
 export function button(text: string, title: string, click: () => void): HTMLButtonElement {
   const made = element("button", { type: "button", title, class: "plot-button" }, text);
@@ -9,12 +9,13 @@ export function button(text: string, title: string, click: () => void): HTMLButt
   return made;
 }
 
-export interface Switch {
+// An input with its label.
+export interface Field {
   element: HTMLLabelElement;
   input: HTMLInputElement;
 }
 
-export function checkbox(text: string, title: string, on: boolean, change: (on: boolean) => void): Switch {
+export function checkbox(text: string, title: string, on: boolean, change: (on: boolean) => void): Field {
   const input = element("input", { type: "checkbox" });
   input.checked = on;
   input.addEventListener("change", () => change(input.checked));
@@ -40,11 +41,6 @@ export function choice(
   return { element: element("label", { class: "plot-field", title }, ...(text ? [text + " "] : []), select), select };
 }
 
-export interface NumberField {
-  element: HTMLLabelElement;
-  input: HTMLInputElement;
-}
-
 // `change` receives only finite numbers.
 export function numberField(
   text: string,
@@ -52,7 +48,7 @@ export function numberField(
   value: number,
   limits: { min?: number; max?: number; step?: number | "any" },
   change: (value: number) => void,
-): NumberField {
+): Field {
   const input = element("input", { type: "number", "aria-label": text || title, step: String(limits.step ?? "any") });
   if (limits.min !== undefined) input.min = String(limits.min);
   if (limits.max !== undefined) input.max = String(limits.max);
@@ -66,11 +62,6 @@ export function numberField(
 
 export function downloadCanvas(name: string, canvas: HTMLCanvasElement): void {
   canvas.toBlob((blob) => blob && saveFile(name, blob), "image/png");
-}
-
-// File name from letters, digits and characters that every file system accepts.
-export function fileName(...parts: (string | number)[]): string {
-  return parts.join("_").replace(/[^A-Za-z0-9._-]+/g, "_");
 }
 
 // Returns a function that calls `draw` at most once per frame.

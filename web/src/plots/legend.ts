@@ -18,6 +18,30 @@ export function legendOf(signs: readonly Sign[]): HTMLDListElement {
   return list;
 }
 
+// A picture with its title above and room for `rows` lines of a legend below, where the pen writes next. `scale`:
+// pixels per CSS pixel. Lines are `line` pixels high.
+export function titled(source: HTMLCanvasElement, title: string, colors: Palette, scale: number, rows: number): {
+  canvas: HTMLCanvasElement;
+  pen: CanvasRenderingContext2D;
+} {
+  const line = lineHeight(colors, scale);
+  const canvas = document.createElement("canvas");
+  canvas.width = source.width;
+  canvas.height = source.height + line * (2 + rows);
+  const pen = canvas.getContext("2d")!;
+  pen.fillStyle = colors.panel;
+  pen.fillRect(0, 0, canvas.width, canvas.height);
+  pen.drawImage(source, 0, line * 1.5);
+  pen.textBaseline = "middle";
+  pen.fillStyle = colors.text;
+  pen.font = `600 ${colors.fontSize * scale}px sans-serif`;
+  pen.fillText(title, line * 0.5, line * 0.75);
+  pen.font = `${colors.fontSize * 0.84 * scale}px sans-serif`;
+  return { canvas, pen };
+}
+
+export const lineHeight = (colors: Palette, scale: number): number => colors.fontSize * 1.5 * scale;
+
 // The same legend on a canvas, in columns.
 export function paintLegend(
   pen: CanvasRenderingContext2D,

@@ -1,30 +1,9 @@
 // Colors of the page, read from the style sheet.
-const kNames = {
-  text: "--text",
-  faint: "--faint",
-  line: "--line",
-  panel: "--panel",
-  raised: "--raised",
-  accent: "--accent",
-  good: "--good",
-  bad: "--bad",
-  series1: "--series-1",
-  series2: "--series-2",
-  series3: "--series-3",
-  series4: "--series-4",
-  series5: "--series-5",
-  series6: "--series-6",
-  series7: "--series-7",
-  series8: "--series-8",
-  series9: "--series-9",
-  series10: "--series-10",
-  series11: "--series-11",
-  series12: "--series-12",
-  series13: "--series-13",
-  series14: "--series-14",
-} as const;
+const kPlain = ["text", "faint", "line", "panel", "raised", "accent", "good", "bad"] as const;
+const kSeries = [1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14] as const;
+const kNames = [...kPlain, ...kSeries.map((i) => `series${i}` as const)];
 
-type Name = keyof typeof kNames;
+type Name = (typeof kNames)[number];
 export type Color = Name | `hsl(${string}`; // name in the style sheet, or a computed color
 
 // Unlimited sequence of colors with distant hues.
@@ -32,14 +11,22 @@ export function furtherColor(i: number): Color {
   return `hsl(${((137.508 * i) % 360).toFixed(1)} ${i % 2 === 0 ? 60 : 35}% 50%)`;
 }
 
+function isName(color: Color): color is Name {
+  return (kNames as string[]).includes(color);
+}
+
+function variableOf(name: Name): string {
+  return `--${name.replace(/(\d+)/, "-$1")}`;
+}
+
 // Color as a canvas expects it.
 export function inkOf(colors: Palette, color: Color): string {
-  return color in kNames ? colors[color as Name] : color;
+  return isName(color) ? colors[color] : color;
 }
 
 // Color as a style sheet expects it.
 export function cssOf(color: Color): string {
-  return color in kNames ? `var(${kNames[color as Name]})` : color;
+  return isName(color) ? `var(${variableOf(color)})` : color;
 }
 
 export interface Palette extends Record<Name, string> {
@@ -54,7 +41,7 @@ export function sameLook(a: Palette | null, b: Palette): boolean {
 export function palette(of: HTMLElement): Palette {
   const style = getComputedStyle(of);
   const colors = Object.fromEntries(
-    Object.entries(kNames).map(([name, variable]) => [name, style.getPropertyValue(variable).trim() || "#888888"]),
+    kNames.map((name) => [name, style.getPropertyValue(variableOf(name)).trim() || "#888888"]),
   ) as Record<Name, string>;
   const fontSize = Number.parseFloat(style.fontSize) || 14;
   return { ...colors, fontSize, font: `${fontSize * 0.86}px ${style.fontFamily || "sans-serif"}` };

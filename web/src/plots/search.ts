@@ -63,7 +63,6 @@ export class SearchChart {
       x: { label: "α" },
       y: { label: `${this.symbol} − ${this.symbol}(α = 0)` },
       curves: curvesOf(search, this.symbol),
-      legend: "top",
       read: (key, alpha) => this.read(key, alpha),
       xRange: () => alphaRange(search.curve.alpha, search.trials),
       yRange: () => this.range(),

@@ -3,8 +3,8 @@ import * as THREE from "three";
 import { OrbitControls } from "three/addons/controls/OrbitControls.js";
 import { element, oncePerFrame } from "./dom";
 import { sample, type Point } from "./grid";
-import { legendColumns, paintLegend, type Sign } from "./legend";
-import { inkOf, palette, sameLook, type Palette } from "./palette";
+import { legendColumns, lineHeight, paintLegend, titled, type Sign } from "./legend";
+import { cssOf, inkOf, palette, sameLook, type Palette } from "./palette";
 import { SurfaceBody, type SurfaceContent } from "./surfaceBody";
 import { axisLabels, placed, type Placed } from "./surfaceLabels";
 import "./plots.css";
@@ -86,26 +86,14 @@ export class SurfaceView {
     this.draw();
     const source = this.renderer.domElement;
     const scale = source.width / Math.max(1, this.element.clientWidth);
-    const line = this.colors.fontSize * 1.5 * scale;
-    const canvas = document.createElement("canvas");
-    canvas.width = source.width;
-    const rows = Math.ceil(legend.length / legendColumns(canvas.width, line));
-    canvas.height = source.height + line * (2 + rows);
-    const pen = canvas.getContext("2d")!;
-    pen.fillStyle = this.colors.panel;
-    pen.fillRect(0, 0, canvas.width, canvas.height);
-    pen.drawImage(source, 0, line * 1.5);
-    pen.textBaseline = "middle";
-    pen.font = `${this.colors.fontSize * 0.82 * scale}px sans-serif`;
+    const line = lineHeight(this.colors, scale);
+    const rows = Math.ceil(legend.length / legendColumns(source.width, line));
+    const { canvas, pen } = titled(source, title, this.colors, scale, rows);
     for (const { label, x, y } of this.placedLabels()) {
       pen.fillStyle = inkOf(this.colors, label.color);
       pen.fillText(label.text, x * scale, y * scale + line * 1.5);
     }
-    pen.fillStyle = this.colors.text;
     paintLegend(pen, legend, this.colors, source.height + line * 1.6, line);
-    pen.fillStyle = this.colors.text;
-    pen.font = `600 ${this.colors.fontSize * scale}px sans-serif`;
-    pen.fillText(title, line * 0.5, line * 0.75);
     return canvas;
   }
 
@@ -207,7 +195,7 @@ export class SurfaceView {
     const made = this.placedLabels().map(({ label, x, y }) => {
       const span = element("span", { class: "surface-label" }, label.text);
       span.style.transform = `translate(${x.toFixed(1)}px, calc(${y.toFixed(1)}px - 50%))`;
-      span.style.color = `var(--${label.color.replace(/(\d)/, "-$1")})`;
+      span.style.color = cssOf(label.color);
       return span;
     });
     this.overlay.replaceChildren(...made);

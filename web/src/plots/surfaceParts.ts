@@ -9,8 +9,7 @@ export class Frame {
   readonly width: number;
   readonly depth: number;
   readonly tall = 0.95;
-  readonly height: (value: number) => number; // in [0, 1]
-  readonly shade: (value: number) => number; // color, in [0, 1]
+  readonly height: (value: number) => number; // in [0, 1]; also the color
 
   constructor(
     readonly grid: Grid,
@@ -23,7 +22,6 @@ export class Frame {
     this.width = (ratio >= 1 ? 2 : 2 * ratio) * stretch;
     this.depth = ratio >= 1 ? 2 / ratio : 2;
     this.height = heightOf(range, scale);
-    this.shade = this.height;
   }
 
   place(x: number, y: number, value: number, lift = 0): THREE.Vector3 {
@@ -62,7 +60,7 @@ export function surfaceGeometry(frame: Frame, values: readonly MaybeNumber[], co
     const place = frame.place(x[k % x.length]!, y[Math.floor(k / x.length)]!, value ?? frame.range.low);
     place.toArray(positions, 3 * k);
     if (colored) {
-      const [r, g, b] = colorAt("viridis", frame.shade(value ?? frame.range.low));
+      const [r, g, b] = colorAt("viridis", frame.height(value ?? frame.range.low));
       color.setRGB(r / 255, g / 255, b / 255, THREE.SRGBColorSpace).toArray(colors, 3 * k);
     }
   });

@@ -6,11 +6,23 @@ import { bodiesOf, bodyColors, bodyTexels } from "./bodies";
 import { mapTexels, type MapName } from "./colorMaps";
 import type { DisplaySettings } from "./display";
 import { kSkinPoint } from "./labels";
+import { vectorAt } from "./lens";
 import { makeFieldUniforms, makePinMaterial, makeSurfaceMaterial } from "./shading";
 
 export interface Box {
   lower: Vec3;
   upper: Vec3;
+}
+
+// Bounding box of points with three coordinates each, as `seen` shows them.
+export function boxOf(points: Float32Array, seen: (x: Vec3) => Vec3 = (x) => x): Box {
+  const box: Box = { lower: [Infinity, Infinity, Infinity], upper: [-Infinity, -Infinity, -Infinity] };
+  for (let i = 0; i < points.length / 3; ++i)
+    seen(vectorAt(points, i)).forEach((x, c) => {
+      box.lower[c] = Math.min(box.lower[c], x);
+      box.upper[c] = Math.max(box.upper[c], x);
+    });
+  return box;
 }
 
 const kBoxSamples = 2000;
@@ -99,7 +111,7 @@ export class Body {
     return this.normals.array as Int8Array;
   }
 
-  show(picture: Picture): void {
+  show(picture: Pick<Picture, "positions" | "normals" | "values">): void {
     this.positions.array = picture.positions;
     this.normals.array = picture.normals;
     this.positions.needsUpdate = true;

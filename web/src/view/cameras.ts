@@ -2,7 +2,7 @@
 import { Matrix4, Quaternion, Vector3 } from "three";
 import { Emitter } from "../emitter";
 import type { Vec3 } from "../protocol";
-import type { Keeper } from "../page";
+import { fieldsOf, type Keeper } from "../page";
 import type { Lens } from "./lens";
 
 // orbit: turns about any axis; turntable: turns about `up` and the horizontal, so that the horizon stays level; flat:
@@ -147,8 +147,7 @@ export class CameraRig extends Emitter<{ changed: void }> implements Keeper {
   }
 
   restore(saved: unknown): void {
-    if (typeof saved !== "object" || saved === null) return;
-    const camera = saved as Record<string, unknown>;
+    const camera = fieldsOf(saved);
     const mode = kCameraModes.find((name) => name === camera.mode);
     const target = numbers(camera.target, 3);
     const orientation = numbers(camera.orientation, 4);

@@ -1,6 +1,6 @@
 // Display settings that the views of both sides share.
 import { Emitter } from "../emitter";
-import type { Keeper } from "../page";
+import { fieldsOf, type Keeper } from "../page";
 import type { Field, Scene, SideName, TipChoice, Vec3 } from "../protocol";
 import { CameraRig } from "./cameras";
 import { kMapNames, type MapName } from "./colorMaps";
@@ -112,8 +112,7 @@ export class Display extends Emitter<{ changed: void; camera: void; range: void 
   readonly cameraKeeper: Keeper = {
     save: () => ({ a: this.cameras.a.save(), b: this.cameras.b.save() }),
     restore: (saved) => {
-      if (typeof saved !== "object" || saved === null) return;
-      const { a, b } = saved as Record<string, unknown>;
+      const { a, b } = fieldsOf(saved);
       this.cameras.a.restore(a);
       this.cameras.b.restore(b);
     },
@@ -164,9 +163,8 @@ export class Display extends Emitter<{ changed: void; camera: void; range: void 
   }
 
   restore(saved: unknown): void {
-    if (typeof saved !== "object" || saved === null) return;
     const changes: Record<string, unknown> = {};
-    for (const [key, value] of Object.entries(saved)) {
+    for (const [key, value] of Object.entries(fieldsOf(saved))) {
       const known = key as keyof DisplaySettings;
       if (!Object.hasOwn(kDefaults, key) || typeof value !== typeof kDefaults[known]) continue;
       if (kChoices[known] && !kChoices[known].includes(value as string)) continue;

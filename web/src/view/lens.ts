@@ -25,6 +25,11 @@ export const along = (a: Vec3, t: number, d: Vec3): Vec3 => [a[0] + t * d[0], a[
 export const length = (a: Vec3): number => Math.hypot(a[0], a[1], a[2]);
 export const isFinite3 = (a: Vec3): boolean => a.every(Number.isFinite);
 
+// Entry i of a list with three coordinates per entry.
+export function vectorAt(list: ArrayLike<number>, i: number): Vec3 {
+  return [list[3 * i], list[3 * i + 1], list[3 * i + 2]];
+}
+
 export function cross(a: Vec3, b: Vec3): Vec3 {
   return [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]];
 }

@@ -1,6 +1,6 @@
 // Positions of the markers on the present surface.
 import type { Capture, Vec3 } from "../protocol";
-import { along, length, minus } from "./lens";
+import { along, length, minus, vectorAt } from "./lens";
 import type { Dot } from "./overlay";
 import type { Surface } from "./picking";
 import { inwardNormal } from "./pressing";
@@ -10,10 +10,8 @@ export function markersOn(surface: Pick<Surface, "positions" | "triangles">, { t
   return triangles.flatMap((triangle, i) => {
       if (3 * triangle + 2 >= corners.length) return []; // the markers belong to another surface, which is about to arrive
       let at: Vec3 = [0, 0, 0];
-      for (let c = 0; c < 3; ++c) {
-        const v = 3 * corners[3 * triangle + c];
-        at = along(at, weights[3 * i + c]!, [positions[v], positions[v + 1], positions[v + 2]]);
-      }
+      for (let c = 0; c < 3; ++c)
+        at = along(at, weights[3 * i + c]!, vectorAt(positions, corners[3 * triangle + c]));
       const [x, y, z] = inwardNormal(positions, corners, triangle);
       return [{ at, normal: [-x, -y, -z] as Vec3 }];
   });

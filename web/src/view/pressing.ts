@@ -1,6 +1,6 @@
 // How the mouse presses a tip in: the direction on the screen that leads into the body, and the depth per pixel.
 import type { Vec3 } from "../protocol";
-import { along, cross, minus, pixelsPerMeter, project, unit, type Lens } from "./lens";
+import { along, cross, minus, pixelsPerMeter, project, unit, vectorAt, type Lens } from "./lens";
 
 export interface Way {
   direction: [number, number]; // on the screen
@@ -10,11 +10,7 @@ export interface Way {
 const kSlant = 0.3; // sine of the angle between the tip's axis and the line of sight below which dragging down presses in
 
 export function inwardNormal(positions: ArrayLike<number>, triangles: ArrayLike<number>, triangle: number): Vec3 {
-  const corner = (c: number): Vec3 => {
-    const v = 3 * triangles[3 * triangle + c];
-    return [positions[v], positions[v + 1], positions[v + 2]];
-  };
-  const [a, b, c] = [corner(0), corner(1), corner(2)];
+  const [a, b, c] = [0, 1, 2].map((k) => vectorAt(positions, triangles[3 * triangle + k]));
   return unit(cross(minus(c, a), minus(b, a)));
 }
 

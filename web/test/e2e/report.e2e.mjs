@@ -62,6 +62,7 @@ test("a report has certificate, energies and scene", async () => {
   const panel = page.getByRole("tabpanel", { name: "Certificate" });
   await panel.locator("tbody tr").nth(kSteps - 1).waitFor();
   assert.equal(await panel.locator("tbody tr").count(), kSteps);
+  assert.match(await panel.locator(".formula").first().textContent(), /ψ/);
   await keepPicture(page, "report_certificate");
   await page.getByLabel("only steps that did not converge").check();
   const failed = await panel.locator("tbody tr").count();

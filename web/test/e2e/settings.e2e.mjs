@@ -1,7 +1,7 @@
 // Every control of the settings: a valid value is accepted, any other is refused with a message and restored.
 import assert from "node:assert/strict";
 import { test } from "node:test";
-import { answered, openSession, pressAndWait, setPlaying, settingOf, startProgram, toTheStart } from "./harness.mjs";
+import { answered, keepPicture, openSession, pressAndWait, setPlaying, settingOf, startProgram, toTheStart } from "./harness.mjs";
 
 const program = await startProgram("scenes/cantilever.toml");
 const same = (a, b) => JSON.stringify(a) === JSON.stringify(b);
@@ -83,6 +83,18 @@ test("every setting accepts another value", async () => {
   }
   await backToTheScene(opened);
   assert.deepEqual(heard.scenes.a.settings, settings, "loading the scene brings every setting back");
+  await close();
+});
+
+test("the material's energy density follows its choice", async () => {
+  const { page, close } = await openSettings();
+  const density = page.getByLabel("Strain energy density");
+  const shown = await density.textContent();
+  assert.match(shown, /ψ/);
+  await rowOf(page, "material.model").locator("select").selectOption("stvk");
+  await page.waitForFunction((before) => document.querySelector(".density").textContent !== before, shown);
+  assert.match(await density.textContent(), /ψ[^]*E/);
+  await keepPicture(page, "density");
   await close();
 });
 

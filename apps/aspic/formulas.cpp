@@ -1,8 +1,8 @@
-#include "aspic/lecture/formulas.h"
+#include "aspic/formulas.h"
 
 #include <map>
 
-namespace aspic::cli::lecture {
+namespace aspic::cli {
 
 std::vector<std::string> formulas_of(const std::string& key) {
   static const std::map<std::string, std::vector<std::string>> formulas = {
@@ -14,4 +14,4 @@ std::vector<std::string> formulas_of(const std::string& key) {
   return found == formulas.end() ? std::vector<std::string>{} : found->second;
 }
 
-}  // namespace aspic::cli::lecture
+}  // namespace aspic::cli

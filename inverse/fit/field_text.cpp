@@ -1,4 +1,4 @@
-#include "fit/field_words.h"
+#include "fit/field_text.h"
 
 #include <algorithm>
 #include <cmath>
@@ -45,7 +45,7 @@ std::vector<double> part_with_sign(std::span<const double> f, double sign) {
   return part;
 }
 
-std::string words_of_regions(const TetMesh& mesh, std::span<const double> f, double sign, double little) {
+std::string describe_regions(const TetMesh& mesh, std::span<const double> f, double sign, double little) {
   std::map<int, Moments> regions;
   for (int t = 0; t < mesh.tet_count(); ++t) {
     Moments& m = regions[mesh.region[t]];
@@ -59,30 +59,30 @@ std::string words_of_regions(const TetMesh& mesh, std::span<const double> f, dou
   return (count > 1 ? "regions " : "region ") + words;
 }
 
-std::string words_of_sign(const TetMesh& mesh, const Unknown& unknown, std::span<const double> f, double sign,
+std::string describe_sign(const TetMesh& mesh, const Unknown& unknown, std::span<const double> f, double sign,
                           double little) {
-  if (unknown.spread == Spread::regions) return words_of_regions(mesh, f, sign, little);
-  return words_of_place(mesh, part_with_sign(f, sign));
+  if (unknown.spread == Spread::regions) return describe_regions(mesh, f, sign, little);
+  return describe_place(mesh, part_with_sign(f, sign));
 }
 
-std::string words_of_field(const TetMesh& mesh, const Unknown& unknown, std::span<const double> f) {
+std::string describe_field(const TetMesh& mesh, const Unknown& unknown, std::span<const double> f) {
   const Moments m = moments(mesh, f);
   if (m.first * m.first > (1 - kLittle) * m.volume * m.second) return "of the whole body";
   const double sign = m.positive >= m.second / 2 ? 1 : -1;
   const double lesser = std::min(m.positive, m.second - m.positive), little = kLittle / 2 * m.second;
   const std::string join = unknown.spread == Spread::regions ? "of " : "";
-  std::string words = join + words_of_sign(mesh, unknown, f, sign, little);
-  if (lesser > kLittle * m.second) words += " against " + words_of_sign(mesh, unknown, f, -sign, little);
+  std::string words = join + describe_sign(mesh, unknown, f, sign, little);
+  if (lesser > kLittle * m.second) words += " against " + describe_sign(mesh, unknown, f, -sign, little);
   return words;
 }
 
 }  // namespace
 
-std::string words_of_point(const Vec3d& x) {
+std::string describe_point(const Vec3d& x) {
   return "(" + number_words(x[0]) + ", " + number_words(x[1]) + ", " + number_words(x[2]) + ") m";
 }
 
-std::string words_of_place(const TetMesh& mesh, std::span<const double> field) {
+std::string describe_place(const TetMesh& mesh, std::span<const double> field) {
   int peak = 0;
   double second = 0, fourth = 0, total = 0;
   for (int t = 0; t < mesh.tet_count(); ++t) {
@@ -95,11 +95,11 @@ std::string words_of_place(const TetMesh& mesh, std::span<const double> field) {
   for (int i = 0; i < 3; ++i)
     if (std::abs(x[i]) < negligible) x[i] = 0;
   const double part = fourth > 0 ? second * second / (fourth * total) : 1;
-  return "around " + words_of_point(x) + " (" + number_words(100 * part, part < 0.1 ? "%.1g" : "%.2g") +
+  return "around " + describe_point(x) + " (" + number_words(100 * part, part < 0.1 ? "%.1g" : "%.2g") +
          " % of the body)";
 }
 
-std::string words_of_direction(const TetMesh& mesh, const ParameterMap& map, std::span<const double> dp) {
+std::string describe_direction(const TetMesh& mesh, const ParameterMap& map, std::span<const double> dp) {
   std::vector<std::vector<double>> fields;
   double sum = 0;
   std::vector<double> squares;
@@ -112,7 +112,7 @@ std::string words_of_direction(const TetMesh& mesh, const ParameterMap& map, std
   for (size_t u = 0; u < fields.size(); ++u) {
     if (!(squares[u] > kLittle * sum)) continue;
     const Unknown& unknown = map.unknowns()[u];
-    words += (words.empty() ? "" : " with ") + unknown.quantity + " " + words_of_field(mesh, unknown, fields[u]);
+    words += (words.empty() ? "" : " with ") + unknown.quantity + " " + describe_field(mesh, unknown, fields[u]);
   }
   return words;
 }
