@@ -5,16 +5,11 @@
 
 #include "base/parallel.h"
 #include "contact/stencil_search.h"
+#include "contact/step_bound.h"
 #include "math/vectors.h"
-#include "mesh/ccd.h"
 
 namespace aspic {
 namespace {
-
-constexpr double kLanding = 0.5;  // gap at which a step ends, relative to the reach
-
-constexpr double kFar = 0.1;              // of the size of a part
-constexpr double kShortest = 1.0 / 1024;  // step that is worth a search for pairs
 
 std::vector<double> sizes_of(const ContactMesh& mesh) {
   std::vector<double> sizes;
@@ -25,9 +20,6 @@ std::vector<double> sizes_of(const ContactMesh& mesh) {
   }
   return sizes;
 }
-
-// As in StepRule.
-double landing_gap(double gap, double reach) { return gap > reach ? kLanding * reach : 0.2 * gap; }
 
 }  // namespace
 
@@ -47,16 +39,6 @@ struct Barrier::Impl {
     for (int i = 0; i < mesh.point_count(); ++i)
       if (mesh.row[i] >= 0) u[i] = point(d, mesh.row[i]);
     return u;
-  }
-
-  // A step of at most 1 on which no point moves further than kFar relative to its part. Longer ones have too many
-  // candidates.
-  double longest_step(std::span<const Vec3d> u) const {
-    double step = 1;
-    const std::vector<Vec3d> relative = relative_to_parts(mesh, u);
-    for (int i = 0; i < mesh.point_count(); ++i)
-      if (const double far = norm(relative[i]), most = kFar * sizes[mesh.part[i]]; far * step > most) step = most / far;
-    return step;
   }
 
   ContactMesh mesh;
@@ -136,50 +118,8 @@ int Barrier::add_hessian(Positions x, const Context&, double scale, const Projec
 }
 
 double Barrier::max_step(Positions x, const Context&, std::span<const double> d) const {
-  const ContactMesh& mesh = impl_->mesh;
-  const std::vector<Vec3d> p = impl_->points(x);
-  std::vector<Vec3d> u = impl_->displacements(d);
-  double limit = impl_->longest_step(u);
-  for (Vec3d& ui : u) ui = limit * ui;
-  std::shared_ptr<const ContactCandidates> candidates;
-  while (!(candidates = impl_->search.along(p, u))) {
-    limit /= 2;
-    for (Vec3d& ui : u) ui = 0.5 * ui;
-    if (limit < kShortest) return 0;
-  }
-  const auto smallest = [](int count, const auto& step_of) {
-    std::vector<double> steps(count / kChunkSize + 1, 1.0);
-    parallel_chunks(count, [&](int first, int last) {
-      double step = 1;
-      for (int i = first; i < last; ++i) step = std::min(step, step_of(i, step));
-      steps[first / kChunkSize] = step;
-    });
-    return *std::min_element(steps.begin(), steps.end());
-  };
-  const auto step_of_point = [&](int i, double step) {
-    if (mesh.row[i] >= 0)
-      for (const ContactPlane& plane : mesh.planes) {
-        const double gap = dot(plane.normal, p[i] - plane.origin), rate = dot(plane.normal, u[i]);
-        const double reach = impl_->laws(mesh.part[i], plane.part).reach;
-        if (rate < 0) step = std::min(step, std::max(0.0, (gap - landing_gap(gap, reach)) / -rate));
-      }
-    for (const int t : candidates->triangles_near(i)) {
-      const auto& [a, b, c] = mesh.triangles[t];
-      const MovingPair moving{PairKind::point_triangle, {p[i], p[a], p[b], p[c]}, {u[i], u[a], u[b], u[c]}};
-      const double reach = impl_->laws(mesh.part[i], mesh.part[a]).reach;
-      step = largest_step(moving, {.landing = kLanding * reach, .horizon = step}).alpha;
-    }
-    return step;
-  };
-  const auto step_of_edges = [&](int k, double step) {
-    const EdgePair& pair = candidates->edge_pairs[k];
-    const auto& [a, b] = mesh.edges[pair.first];
-    const auto& [e, f] = mesh.edges[pair.second];
-    const MovingPair moving{PairKind::edge_edge, {p[a], p[b], p[e], p[f]}, {u[a], u[b], u[e], u[f]}};
-    return largest_step(moving, {.landing = kLanding * pair.reach, .horizon = step}).alpha;
-  };
-  return limit * std::min(smallest(mesh.point_count(), step_of_point),
-                          smallest(static_cast<int>(candidates->edge_pairs.size()), step_of_edges));
+  return StepBound(impl_->mesh, impl_->laws, impl_->search, impl_->sizes)
+      .largest(impl_->points(x), impl_->displacements(d));
 }
 
 ContactSummary Barrier::summary(Positions x) const {

@@ -1,101 +1,246 @@
 #include "contact/contact_candidates.h"
 
 #include <algorithm>
+#include <cmath>
 #include <numeric>
 
+#include "math/polar3.h"
 #include "mesh/distance.h"
 
 namespace aspic {
 namespace {
 
-// Accepts pairs within one body, or between a body and any other part.
-class PartFilter : public PairFilter {
- public:
-  PartFilter(const ContactMesh& mesh, bool within_parts) : mesh_(mesh), within_parts_(within_parts) {}
-  bool accepts_vertex_triangle(int p, int t) const override { return accepts(p, mesh_.triangles[t][0]); }
-  bool accepts_edge_edge(int a, int b) const override { return accepts(mesh_.edges[a][0], mesh_.edges[b][0]); }
+// More margin means fewer searches but more pairs.
+constexpr double kMargin = 0.05;  // of the mean edge at a point
+constexpr double kLonger = 0.2;   // of its displacement
+constexpr double kRounding = 1e-6;
+constexpr double kLeastShrink = 0.9;  // for which candidates are complete
 
- private:
-  bool accepts(int p, int q) const {
-    return (mesh_.part[p] == mesh_.part[q]) == within_parts_ && (mesh_.row[p] >= 0 || mesh_.row[q] >= 0);
-  }
-  const ContactMesh& mesh_;
-  bool within_parts_;
+// Half the reach at least, for the distances at rest.
+std::vector<double> margins(const ContactMesh& mesh, double least) {
+  std::vector<double> length(mesh.rest.size(), 0.0);
+  std::vector<int> count(mesh.rest.size(), 0);
+  for (const Edge& edge : mesh.edges)
+    for (const int p : edge) length[p] += norm(mesh.rest[edge[1]] - mesh.rest[edge[0]]), ++count[p];
+  for (size_t p = 0; p < length.size(); ++p)
+    length[p] = mesh.row[p] < 0 ? least : std::max(least, kMargin * length[p] / std::max(1, count[p]));
+  return length;
+}
+
+struct Frame {
+  Vec3d center{};
+  Mat3d rotation = identity3<double>();  // from the rest pose
 };
 
-SurfacePrimitives primitives_of(const ContactMesh& mesh) {
-  SurfacePrimitives primitives{
-      .vertices = std::vector<int>(mesh.rest.size()), .edges = mesh.edges, .triangles = mesh.triangles};
-  std::iota(primitives.vertices.begin(), primitives.vertices.end(), 0);
-  return primitives;
+Vec3d mean(std::span<const Vec3d> points) {
+  Vec3d sum{};
+  for (const Vec3d& x : points) sum = sum + x;
+  return (1.0 / static_cast<double>(points.size())) * sum;
+}
+
+Frame frame_of(std::span<const Vec3d> X, std::span<const Vec3d> x) {
+  const Vec3d center = mean(x), rest_center = mean(X);
+  Mat3d A{};
+  for (size_t i = 0; i < x.size(); ++i)
+    for (int c = 0; c < 3; ++c)
+      for (int r = 0; r < 3; ++r) A(r, c) += (x[i][r] - center[r]) * (X[i][c] - rest_center[c]);
+  return {center, closest_rotation(A)};
 }
 
 }  // namespace
 
-CandidateFinder::CandidateFinder(const ContactMesh& mesh, const ContactLaws& laws)
-    : mesh_(mesh),
-      laws_(laws),
-      finder_(primitives_of(mesh)),
-      point_radius_(mesh.rest.size(), laws.largest_reach()),
-      edge_radius_(mesh.edges.size(), kEdgeReach * laws.largest_reach() / 2) {}
-
 // At most half the distance at rest within a body, whose own edges must not repel each other at rest.
-double CandidateFinder::reach_of(const Edge& a, const Edge& b) const {
-  const int i = mesh_.part[a[0]], j = mesh_.part[b[0]];
-  const double reach = kEdgeReach * laws_(i, j).reach;
-  if (i != j) return reach;
-  const auto& X = mesh_.rest;
-  return std::min(reach, pair_distance(PairKind::edge_edge, {X[a[0]], X[a[1]], X[b[0]], X[b[1]]}).d / 2);
+double edge_reach(const ContactMesh& mesh, const ContactLaws& laws, const EdgePair& pair) {
+  const auto& [a, b] = mesh.edges[pair.first];
+  const auto& [e, f] = mesh.edges[pair.second];
+  const double reach = kEdgeReach * laws(mesh.part[a], mesh.part[e]).reach;
+  if (mesh.part[a] != mesh.part[e]) return reach;
+  const auto& X = mesh.rest;
+  return std::min(reach, pair_distance(PairKind::edge_edge, {X[a], X[b], X[e], X[f]}).d / 2);
 }
 
-bool CandidateFinder::add(const std::vector<Box>& boxes, bool within_parts, ClosePairs& all) {
-  const PartFilter filter(mesh_, within_parts);
-  const ClosePairs found = finder_.find({.path = boxes,
-                                         .vertex_radius = point_radius_,
-                                         .edge_radius = edge_radius_,
-                                         .triangle_radius = {},
-                                         .filter = &filter});
-  const auto append = [](const auto& more, auto& to) { to.insert(to.end(), more.begin(), more.end()); };
-  append(found.vertex_triangle, all.vertex_triangle);
-  append(found.edge_edge, all.edge_edge);
-  return found.is_complete;
-}
+// Accepts pairs that can come closer than their reach while their points stay in their boxes.
+class CandidateSearch::Near : public PairFilter {
+ public:
+  Near(const CandidateSearch& search, int a, int b)
+      : search_(search),
+        first_point_(search.mesh_.parts[a].first_point),
+        edges_a_(std::span(search.mesh_.edges).subspan(search.surfaces_[a].first_edge)),
+        edges_b_(std::span(search.mesh_.edges).subspan(search.surfaces_[b].first_edge)),
+        triangles_b_(std::span(search.mesh_.triangles).subspan(search.surfaces_[b].first_triangle)),
+        reach_((1 + kRounding) * search.laws_(a, b).reach),
+        shrink_(search.least_shrink()) {}
 
-std::optional<ContactCandidates> CandidateFinder::find(ContactRange range) {
-  ContactCandidates candidates{.range = std::move(range)};
-  ClosePairs pairs;
-  if (!add(candidates.range.relative, true, pairs) || !add(candidates.range.absolute, false, pairs)) return {};
-  std::sort(pairs.vertex_triangle.begin(), pairs.vertex_triangle.end());
-  std::sort(pairs.edge_edge.begin(), pairs.edge_edge.end());
-  candidates.triangle_start.assign(mesh_.rest.size() + 1, 0);
-  for (const auto& [p, t] : pairs.vertex_triangle) {
-    ++candidates.triangle_start[p + 1];
-    candidates.triangle.push_back(t);
+  bool accepts_vertex_triangle(int v, int t) const override {
+    const int p = first_point_ + v;
+    const auto& [a, b, c] = triangles_b_[t];
+    const auto& x = search_.center_;
+    const auto& r = search_.radius_;
+    return shrink_ * point_triangle_distance({x[p], x[a], x[b], x[c]}).d <=
+           reach_ + r[p] + std::max({r[a], r[b], r[c]});
   }
-  std::partial_sum(candidates.triangle_start.begin(), candidates.triangle_start.end(),
-                   candidates.triangle_start.begin());
-  candidates.edge_pairs.reserve(pairs.edge_edge.size());
-  for (const auto& [a, b] : pairs.edge_edge)
-    candidates.edge_pairs.push_back({a, b, reach_of(mesh_.edges[a], mesh_.edges[b])});
-  return candidates;
+  bool accepts_edge_edge(int first, int second) const override {
+    const auto& [a, b] = edges_a_[first];
+    const auto& [e, f] = edges_b_[second];
+    const auto& x = search_.center_;
+    const auto& r = search_.radius_;
+    return shrink_ * edge_edge_distance({x[a], x[b], x[e], x[f]}).d <=
+           kEdgeReach * reach_ + std::max(r[a], r[b]) + std::max(r[e], r[f]);
+  }
+
+ private:
+  const CandidateSearch& search_;
+  int first_point_;
+  std::span<const Edge> edges_a_, edges_b_;
+  std::span<const Triangle> triangles_b_;
+  double reach_, shrink_;
+};
+
+CandidateSearch::CandidateSearch(PairScope scope, const ContactMesh& mesh, const ContactLaws& laws)
+    : scope_(scope), mesh_(mesh), laws_(laws), margin_(margins(mesh, laws.largest_reach())) {
+  int edge = 0, triangle = 0;
+  for (int part = 0; part < static_cast<int>(mesh.parts.size()); ++part) {
+    SurfacePrimitives primitives{.vertices = std::vector<int>(mesh.parts[part].point_count)};
+    std::iota(primitives.vertices.begin(), primitives.vertices.end(), mesh.parts[part].first_point);
+    const int first_edge = edge, first_triangle = triangle;
+    for (; edge < mesh.edge_count() && mesh.part[mesh.edges[edge][0]] == part; ++edge)
+      primitives.edges.push_back(mesh.edges[edge]);
+    for (; triangle < mesh.triangle_count() && mesh.part[mesh.triangles[triangle][0]] == part; ++triangle)
+      primitives.triangles.push_back(mesh.triangles[triangle]);
+    surfaces_.push_back({first_edge, first_triangle, PairFinder(std::move(primitives))});
+  }
 }
 
-bool ContactCandidates::cover(const ContactMesh& mesh, std::span<const Vec3d> points) const {
-  const std::vector<Vec3d> relative = relative_to_parts(mesh, points);
-  for (size_t p = 0; p < points.size(); ++p)
-    if (!range.absolute[p].contains(points[p]) || !range.relative[p].contains(relative[p])) return false;
+CandidateSearch::Path CandidateSearch::path(std::span<const Vec3d> x, std::span<const Vec3d> d) const {
+  Path path{{x.begin(), x.end()}, {x.begin(), x.end()}, std::vector<double>(x.size(), 1.0)};
+  for (size_t i = 0; i < d.size(); ++i) path.to[i] = x[i] + d[i];
+  if (scope_ == PairScope::between_parts) return path;
+  for (const ContactPart& part : mesh_.parts) {
+    if (part.is_obstacle || part.point_count == 0) continue;
+    const auto of_part = [&](auto& points) { return std::span(points).subspan(part.first_point, part.point_count); };
+    const Frame from = frame_of(of_part(mesh_.rest), of_part(x));
+    Frame to = d.empty() ? from : frame_of(of_part(mesh_.rest), of_part(path.to));
+    const double cosine = (trace(transpose(from.rotation) * to.rotation) - 1) / 2;
+    double shrink = std::sqrt(std::max(0.0, (1 + cosine) / 2)) - kRounding;
+    if (!(shrink >= kLeastShrink)) to.rotation = from.rotation, shrink = 1;
+    for (Vec3d& p : of_part(path.from)) p = transpose(from.rotation) * (p - from.center);
+    for (Vec3d& p : of_part(path.to)) p = transpose(to.rotation) * (p - to.center);
+    std::fill_n(path.shrink.begin() + part.first_point, part.point_count, shrink);
+  }
+  return path;
+}
+
+double CandidateSearch::least_shrink() const { return scope_ == PairScope::within_parts ? kLeastShrink : 1; }
+
+bool CandidateSearch::covers(std::span<const Vec3d> x) const {
+  for (size_t p = 0; p < x.size(); ++p)
+    if (!boxes_[p].contains(x[p])) return false;
   return true;
 }
 
-std::vector<Vec3d> relative_to_parts(const ContactMesh& mesh, std::span<const Vec3d> points) {
-  std::vector<Vec3d> relative(points.begin(), points.end());
-  for (const ContactPart& part : mesh.parts) {
-    const auto own = std::span(relative).subspan(part.first_point, part.point_count);
-    Vec3d mean{};
-    for (const Vec3d& x : own) mean = mean + (1.0 / part.point_count) * x;
-    for (Vec3d& x : own) x = x - mean;
+// Sets the boxes around a path.
+void CandidateSearch::surround(const Path& path) {
+  const size_t n = path.from.size();
+  boxes_.assign(n, {});
+  radius_.resize(n);
+  for (size_t p = 0; p < n; ++p) {
+    Box& box = boxes_[p];
+    box.add(path.from[p]);
+    box.add(path.to[p]);
+    const double by = margin_[p] + kLonger * norm(path.to[p] - path.from[p]);
+    Vec3d far;
+    for (int axis = 0; axis < 3; ++axis) {
+      box.lower[axis] -= by;
+      box.upper[axis] += by;
+      far[axis] = std::max(path.from[p][axis] - box.lower[axis], box.upper[axis] - path.from[p][axis]);
+    }
+    radius_[p] = norm(far);
   }
-  return relative;
+  center_ = path.from;
+}
+
+std::optional<PathCandidates> CandidateSearch::along(std::span<const Vec3d> x, std::span<const Vec3d> d) {
+  Path wanted = path(x, d);
+  if (!candidates_ || !covers(wanted.from) || !covers(wanted.to)) {
+    surround(wanted);
+    candidates_ = find();
+  }
+  if (!candidates_) return {};
+  PathCandidates found{candidates_, std::vector<double>(x.size()), std::move(wanted.shrink)};
+  for (size_t p = 0; p < x.size(); ++p)
+    found.moved[p] = std::max(norm(wanted.from[p] - center_[p]), norm(wanted.to[p] - center_[p]));
+  return found;
+}
+
+// Appends the pairs, in numbers of the mesh. Returns false if there are too many.
+bool CandidateSearch::find_pairs(ClosePairs& all) {
+  const size_t limit = PairQuery{}.limit;
+  const auto append = [&](const ClosePairs& found, int a, int b) {
+    for (const auto& [v, t] : found.vertex_triangle)
+      all.vertex_triangle.push_back({mesh_.parts[a].first_point + v, surfaces_[b].first_triangle + t});
+    for (const auto& [e, f] : found.edge_edge)
+      all.edge_edge.push_back({surfaces_[a].first_edge + e, surfaces_[b].first_edge + f});
+    return found.is_complete && all.vertex_triangle.size() <= limit && all.edge_edge.size() <= limit;
+  };
+  const int parts = static_cast<int>(surfaces_.size());
+  // Half of what a gap in the boxes may exceed their distance by.
+  const double widest = *std::max_element(radius_.begin(), radius_.end());
+  const double radius = (laws_.largest_reach() / 2 + (1 - least_shrink()) * widest) / least_shrink();
+  const std::vector<double> radii(std::max({mesh_.rest.size(), mesh_.edges.size(), mesh_.triangles.size()}), radius);
+  const auto query_of = [&](int part, const PairFilter* filter) {
+    const SurfacePrimitives& own = surfaces_[part].finder.primitives();
+    return PairQuery{.path = boxes_,
+                     .vertex_radius = std::span(radii).first(own.vertices.size()),
+                     .edge_radius = std::span(radii).first(own.edges.size()),
+                     .triangle_radius = std::span(radii).first(own.triangles.size()),
+                     .filter = filter};
+  };
+  if (scope_ == PairScope::within_parts) {
+    for (int a = 0; a < parts; ++a) {
+      if (mesh_.parts[a].is_obstacle) continue;
+      const Near near(*this, a, a);
+      if (!append(surfaces_[a].finder.find(query_of(a, &near)), a, a)) return false;
+    }
+    return true;
+  }
+  std::vector<Box> bounds(parts);
+  for (int a = 0; a < parts; ++a) {
+    surfaces_[a].finder.place(query_of(a, nullptr));
+    bounds[a] = surfaces_[a].finder.bounds();
+  }
+  for (int a = 0; a < parts; ++a)
+    for (int b = a + 1; b < parts; ++b) {
+      if (!bounds[a].overlaps(bounds[b]) || (mesh_.parts[a].is_obstacle && mesh_.parts[b].is_obstacle)) continue;
+      const PairFinder &first = surfaces_[a].finder, &second = surfaces_[b].finder;
+      const Near near(*this, a, b), back(*this, b, a);
+      if (!append(first.find_between(second, true, &near, limit), a, b)) return false;
+      if (!append(second.find_between(first, false, &back, limit), b, a)) return false;
+    }
+  return true;
+}
+
+std::shared_ptr<const ContactCandidates> CandidateSearch::find() {
+  ClosePairs pairs;
+  if (!find_pairs(pairs)) return nullptr;
+  std::sort(pairs.vertex_triangle.begin(), pairs.vertex_triangle.end());
+  std::sort(pairs.edge_edge.begin(), pairs.edge_edge.end());
+  ContactCandidates candidates;
+  candidates.start.assign(mesh_.rest.size() + 1, 0);
+  candidates.triangles.reserve(pairs.vertex_triangle.size());
+  candidates.edge_pairs.reserve(pairs.edge_edge.size());
+  const auto& x = center_;
+  for (const auto& [p, t] : pairs.vertex_triangle) {
+    const auto& [a, b, c] = mesh_.triangles[t];
+    ++candidates.start[p + 1];
+    candidates.triangles.push_back({t, (1 - kRounding) * point_triangle_distance({x[p], x[a], x[b], x[c]}).d});
+  }
+  std::partial_sum(candidates.start.begin(), candidates.start.end(), candidates.start.begin());
+  for (const auto& [first, second] : pairs.edge_edge) {
+    const Edge &a = mesh_.edges[first], &b = mesh_.edges[second];
+    const double gap = (1 - kRounding) * edge_edge_distance({x[a[0]], x[a[1]], x[b[0]], x[b[1]]}).d;
+    candidates.edge_pairs.push_back({first, second, gap});
+  }
+  return std::make_shared<const ContactCandidates>(std::move(candidates));
 }
 
 }  // namespace aspic

@@ -1,5 +1,7 @@
-// Pairs of a point and a triangle, or of two edges, that may come close while the points stay in given boxes.
+// Pairs of a point and a triangle, or of two edges, that may come close while the points stay near given positions.
 #pragma once
+#include <algorithm>
+#include <memory>
 #include <optional>
 #include <span>
 #include <vector>
@@ -13,46 +15,87 @@ namespace aspic {
 // Reach of the guard between two edges, relative to the reach of their surfaces.
 inline constexpr double kEdgeReach = 0.25;
 
-struct EdgePair {
-  int first, second;  // edges, first < second
-  double reach;       // [m]
+// The gaps below were measured when the candidates were searched [m].
+struct NearTriangle {
+  int triangle;
+  double gap;
 };
 
-// Boxes around the paths of points: in space, and relative to the mean of the points of their part. Pairs within a part
-// depend on the latter alone, so that bodies that move fast have few.
-struct ContactRange {
-  std::vector<Box> absolute, relative;
+struct EdgePair {
+  int first, second;  // edges, first < second
+  double gap;
 };
 
 struct ContactCandidates {
-  ContactRange range;                // the pairs are complete while each point stays in its boxes
-  std::vector<int> triangle_start;   // of each point in `triangle`, and the end
-  std::vector<int> triangle;         // near each point, ascending
-  std::vector<EdgePair> edge_pairs;  // ascending
+  std::vector<int> start;               // of each point in `triangles`, and the end
+  std::vector<NearTriangle> triangles;  // near each point, ascending
+  std::vector<EdgePair> edge_pairs;     // ascending
 
-  bool cover(const ContactMesh& mesh, std::span<const Vec3d> points) const;
-  std::span<const int> triangles_near(int point) const {
-    return std::span(triangle).subspan(triangle_start[point], triangle_start[point + 1] - triangle_start[point]);
+  std::span<const NearTriangle> near(int point) const {
+    return std::span(triangles).subspan(start[point], start[point + 1] - start[point]);
   }
 };
 
-// The positions, or displacements, relative to the mean of their part.
-std::vector<Vec3d> relative_to_parts(const ContactMesh& mesh, std::span<const Vec3d> points);
+// Candidates for a path of all points. Between frames that differ by a rotation of angle a, lines of points that are
+// fixed to them come closer by the factor cos(a / 2): the singular values of (1 - t) I + t R are at least that.
+struct PathCandidates {
+  std::shared_ptr<const ContactCandidates> pairs;
+  std::vector<double> moved;   // of each point, its largest distance from where the gaps were measured [m]
+  std::vector<double> shrink;  // of each point, cos(a / 2) of its part
 
-class CandidateFinder {
+  // Lower bounds of the gap along the path.
+  double least_gap(int point, const NearTriangle& near, const Triangle& t) const {
+    return shrink[point] * near.gap - moved[point] - std::max({moved[t[0]], moved[t[1]], moved[t[2]]});
+  }
+  double least_gap(const EdgePair& pair, const Edge& a, const Edge& b) const {
+    return shrink[a[0]] * pair.gap - std::max(moved[a[0]], moved[a[1]]) - std::max(moved[b[0]], moved[b[1]]);
+  }
+};
+
+// The reach between two edges [m].
+double edge_reach(const ContactMesh& mesh, const ContactLaws& laws, const EdgePair& pair);
+
+enum class PairScope {
+  within_parts,   // of one body; in a frame that moves and rotates with it
+  between_parts,  // of different parts, at least one of which is a body
+};
+
+class CandidateSearch {
  public:
-  CandidateFinder(const ContactMesh& mesh, const ContactLaws& laws);  // both must outlive this
-  // Finds all pairs whose gap can be below their reach. Returns nothing if they are more than the limit of PairQuery.
-  std::optional<ContactCandidates> find(ContactRange range);
+  CandidateSearch(PairScope scope, const ContactMesh& mesh, const ContactLaws& laws);  // both must outlive this
+
+  // Returns all pairs whose gap can be below their reach on the lines from x to x + d, and some others; an empty d is
+  // zero. Nothing: they are more than the limit of PairQuery. Results are kept for later, similar positions.
+  std::optional<PathCandidates> along(std::span<const Vec3d> x, std::span<const Vec3d> d);
 
  private:
-  bool add(const std::vector<Box>& boxes, bool within_parts, ClosePairs& all);
-  double reach_of(const Edge& a, const Edge& b) const;
+  struct Path {
+    std::vector<Vec3d> from, to;
+    std::vector<double> shrink;  // of each point
+  };
+  // The primitives of a part: their first numbers in the mesh, and trees over them.
+  struct Surface {
+    int first_edge = 0, first_triangle = 0;
+    PairFinder finder;
+  };
+  class Near;
 
+  Path path(std::span<const Vec3d> x, std::span<const Vec3d> d) const;
+  double least_shrink() const;
+  bool covers(std::span<const Vec3d> x) const;
+  void surround(const Path& path);
+  bool find_pairs(ClosePairs& all);
+  std::shared_ptr<const ContactCandidates> find();
+
+  PairScope scope_;
   const ContactMesh& mesh_;
   const ContactLaws& laws_;
-  PairFinder finder_;
-  std::vector<double> point_radius_, edge_radius_;
+  std::vector<double> margin_;  // of each point, by which its box is larger than its path [m]
+  std::vector<Surface> surfaces_;
+  std::vector<Box> boxes_;      // of each point; the candidates are complete while it stays inside
+  std::vector<Vec3d> center_;   // of each point
+  std::vector<double> radius_;  // of each point, largest distance of its box from its center
+  std::shared_ptr<const ContactCandidates> candidates_;
 };
 
 }  // namespace aspic

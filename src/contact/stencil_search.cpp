@@ -19,21 +19,6 @@ bool equal(std::span<const Vec3d> a, std::span<const Vec3d> b) {
                     [](const Vec3d& x, const Vec3d& y) { return x[0] == y[0] && x[1] == y[1] && x[2] == y[2]; });
 }
 
-// Boxes around the lines from x to x + d, with a margin for later, similar lines.
-std::vector<Box> swept(std::span<const Vec3d> x, std::span<const Vec3d> d, double margin) {
-  constexpr double kLonger = 0.2;
-  std::vector<Box> boxes = swept_boxes(x, d);
-  for (size_t p = 0; p < x.size(); ++p) {
-    const double by = margin + (d.empty() ? 0 : kLonger * norm(d[p]));
-    for (int axis = 0; axis < 3; ++axis) boxes[p].lower[axis] -= by, boxes[p].upper[axis] += by;
-  }
-  return boxes;
-}
-
-ContactRange range_of(const ContactMesh& mesh, std::span<const Vec3d> x, std::span<const Vec3d> d, double margin) {
-  return {swept(x, d, margin), swept(relative_to_parts(mesh, x), relative_to_parts(mesh, d), margin)};
-}
-
 // The features of one part near a point, each with the number of times that it counts.
 class NearFeatures {
  public:
@@ -79,15 +64,16 @@ Distance point_point_distance(const Vec3d& x, const Vec3d& y) {
 }  // namespace
 
 StencilSearch::StencilSearch(const ContactMesh& mesh, const ContactLaws& laws)
-    : mesh_(mesh), laws_(laws), cap_(mesh.point_count(), std::numeric_limits<double>::infinity()), finder_(mesh, laws) {
-  const double margin = 2 * laws.largest_reach();
-  const std::vector<Vec3d> still(mesh.rest.size());
-  const auto near = find(range_of(mesh, mesh.rest, still, margin));
+    : mesh_(mesh),
+      laws_(laws),
+      cap_(mesh.point_count(), std::numeric_limits<double>::infinity()),
+      within_(PairScope::within_parts, mesh, laws),
+      between_(PairScope::between_parts, mesh, laws) {
+  const auto near = within_.along(mesh.rest, {});
   if (!near) throw std::length_error(kTooMany);
   for (int p = 0; p < mesh.point_count(); ++p)
-    for (const int t : near->triangles_near(p)) {
+    for (const auto& [t, gap] : near->pairs->near(p)) {
       const auto& [a, b, c] = mesh.triangles[t];
-      if (mesh.part[p] != mesh.part[a]) continue;
       const auto& X = mesh.rest;
       cap_[p] = std::min(cap_[p], point_triangle_distance({X[p], X[a], X[b], X[c]}).d / 2);
     }
@@ -98,33 +84,23 @@ int StencilSearch::self_touching_point() const {
   return found == cap_.end() ? -1 : static_cast<int>(found - cap_.begin());
 }
 
-std::shared_ptr<const ContactCandidates> StencilSearch::find(ContactRange range) const {
-  auto found = finder_.find(std::move(range));
-  return found ? std::make_shared<const ContactCandidates>(*std::move(found)) : nullptr;
-}
-
-std::shared_ptr<const ContactCandidates> StencilSearch::along(std::span<const Vec3d> points,
-                                                              std::span<const Vec3d> d) const {
-  std::vector<Vec3d> end(points.begin(), points.end());
-  for (size_t p = 0; p < end.size(); ++p) end[p] = end[p] + d[p];
+std::optional<PathCandidates> StencilSearch::along(PairScope scope, std::span<const Vec3d> points,
+                                                   std::span<const Vec3d> d) const {
   const std::scoped_lock lock(mutex_);
-  if (!candidates_ || !candidates_->cover(mesh_, points) || !candidates_->cover(mesh_, end))
-    candidates_ = find(range_of(mesh_, points, d, laws_.largest_reach()));
-  return candidates_;
+  return (scope == PairScope::within_parts ? within_ : between_).along(points, d);
 }
 
 std::shared_ptr<const ContactStencils> StencilSearch::at(std::span<const Vec3d> points) const {
   const std::scoped_lock lock(mutex_);
   if (stencils_ && equal(points, points_)) return stencils_;
-  if (!candidates_ || !candidates_->cover(mesh_, points))
-    candidates_ = find(range_of(mesh_, points, std::vector<Vec3d>(points.size()), laws_.largest_reach()));
-  if (!candidates_) throw std::length_error(kTooMany);
+  auto between = between_.along(points, {}), within = within_.along(points, {});
+  if (!between || !within) throw std::length_error(kTooMany);
   points_.assign(points.begin(), points.end());
-  stencils_ = std::make_shared<const ContactStencils>(stencils(*candidates_, points));
+  stencils_ = std::make_shared<const ContactStencils>(stencils({*std::move(between), *std::move(within)}, points));
   return stencils_;
 }
 
-ContactStencils StencilSearch::stencils(const ContactCandidates& candidates, std::span<const Vec3d> points) const {
+ContactStencils StencilSearch::stencils(const Candidates& candidates, std::span<const Vec3d> points) const {
   const auto collect = [](int count, const auto& find) {
     std::vector<ContactStencils> found(count / kChunkSize + 1);
     parallel_chunks(count, [&](int first, int last) {
@@ -137,15 +113,21 @@ ContactStencils StencilSearch::stencils(const ContactCandidates& candidates, std
     for (const ContactStencils& chunk : chunks) all.insert(all.end(), chunk.begin(), chunk.end());
   };
   append(collect(mesh_.point_count(), [&](int p, ContactStencils& found) {
-    add_point(candidates, points, p, found);
+    for (const PathCandidates& of_scope : candidates) add_point(of_scope, points, p, found);
     add_planes(points, p, found);
   }));
-  append(collect(static_cast<int>(candidates.edge_pairs.size()),
-                 [&](int k, ContactStencils& found) { add_edges(candidates.edge_pairs[k], points, found); }));
+  for (const PathCandidates& of_scope : candidates) {
+    const auto& pairs = of_scope.pairs->edge_pairs;
+    append(collect(static_cast<int>(pairs.size()), [&](int k, ContactStencils& found) {
+      const Edge &a = mesh_.edges[pairs[k].first], &b = mesh_.edges[pairs[k].second];
+      const double reach = kEdgeReach * laws_(mesh_.part[a[0]], mesh_.part[b[0]]).reach;
+      if (of_scope.least_gap(pairs[k], a, b) < reach) add_edges(pairs[k], points, found);
+    }));
+  }
   return all;
 }
 
-void StencilSearch::add_point(const ContactCandidates& candidates, std::span<const Vec3d> x, int p,
+void StencilSearch::add_point(const PathCandidates& candidates, std::span<const Vec3d> x, int p,
                               ContactStencils& found) const {
   const int own = mesh_.part[p];
   NearFeatures near;
@@ -160,7 +142,8 @@ void StencilSearch::add_point(const ContactCandidates& candidates, std::span<con
     }
     near.clear();
   };
-  for (const int t : candidates.triangles_near(p)) {  // ascending, so the parts are
+  for (const NearTriangle& candidate : candidates.pairs->near(p)) {  // ascending, so the parts are
+    const int t = candidate.triangle;
     const Triangle& corner = mesh_.triangles[t];
     if (mesh_.part[corner[0]] != other) {
       finish();
@@ -168,7 +151,7 @@ void StencilSearch::add_point(const ContactCandidates& candidates, std::span<con
       reach = laws_(own, other).reach;
       if (own == other) reach = std::min(reach, cap_[p]);
     }
-    if (laws_(own, other).share == 0) continue;
+    if (laws_(own, other).share == 0 || candidates.least_gap(p, candidate, corner) >= reach) continue;
     const Distance to_triangle = point_triangle_distance({x[p], x[corner[0]], x[corner[1]], x[corner[2]]});
     if (!(to_triangle.d < reach)) continue;
     near.add(to_triangle, {p, corner[0], corner[1], corner[2]}, 1);
@@ -215,13 +198,14 @@ void StencilSearch::add_planes(std::span<const Vec3d> x, int p, ContactStencils&
 void StencilSearch::add_edges(const EdgePair& pair, std::span<const Vec3d> x, ContactStencils& found) const {
   const Edge &a = mesh_.edges[pair.first], &b = mesh_.edges[pair.second];
   const Distance distance = edge_edge_distance({x[a[0]], x[a[1]], x[b[0]], x[b[1]]});
-  if (!(distance.d < pair.reach)) return;
+  const double reach = edge_reach(mesh_, laws_, pair);
+  if (!(distance.d < reach)) return;
   const int i = mesh_.part[a[0]], j = mesh_.part[b[0]];
   const auto& X = mesh_.rest;
   found.push_back({.distance = distance,
                    .point = {a[0], a[1], b[0], b[1]},
                    .weight = laws_(i, j).stiffness * (mesh_.edge_area[pair.first] + mesh_.edge_area[pair.second]) / 4,
-                   .reach = pair.reach,
+                   .reach = reach,
                    .parts = {i, j},
                    .parallel = kParallel * squared_norm(X[a[1]] - X[a[0]]) * squared_norm(X[b[1]] - X[b[0]])});
 }

@@ -1,8 +1,10 @@
 // Finds the stencils of the barrier at given positions. They depend on the positions alone; candidates of earlier
 // positions only save time.
 #pragma once
+#include <array>
 #include <memory>
 #include <mutex>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -20,16 +22,15 @@ class StencilSearch {
   // Returns the stencils with a gap below their reach, in an order that depends on the positions alone. May be called
   // by several threads. Throws std::length_error if more pairs are close than memory holds.
   std::shared_ptr<const ContactStencils> at(std::span<const Vec3d> points) const;
-  // Returns candidates for all positions on the lines from `points` to `points` + `d`; null: they are too many.
-  std::shared_ptr<const ContactCandidates> along(std::span<const Vec3d> points, std::span<const Vec3d> d) const;
+  // Returns candidates for all positions on the lines from `points` to `points` + `d`; nothing if they are too many.
+  std::optional<PathCandidates> along(PairScope scope, std::span<const Vec3d> points, std::span<const Vec3d> d) const;
 
   int self_touching_point() const;  // without any distance to its own body at rest; -1: none
 
  private:
-  std::shared_ptr<const ContactCandidates> find(ContactRange range) const;  // null: too many
-  ContactStencils stencils(const ContactCandidates& candidates, std::span<const Vec3d> points) const;
-  void add_point(const ContactCandidates& candidates, std::span<const Vec3d> points, int p,
-                 ContactStencils& found) const;
+  using Candidates = std::array<PathCandidates, 2>;  // between parts and within them
+  ContactStencils stencils(const Candidates& candidates, std::span<const Vec3d> points) const;
+  void add_point(const PathCandidates& candidates, std::span<const Vec3d> points, int p, ContactStencils& found) const;
   void add_planes(std::span<const Vec3d> points, int p, ContactStencils& found) const;
   void add_edges(const EdgePair& pair, std::span<const Vec3d> points, ContactStencils& found) const;
 
@@ -37,8 +38,7 @@ class StencilSearch {
   const ContactLaws& laws_;
   std::vector<double> cap_;  // of the reach of each point to its own body: half its distance at rest [m]
   mutable std::mutex mutex_;
-  mutable CandidateFinder finder_;
-  mutable std::shared_ptr<const ContactCandidates> candidates_;
+  mutable CandidateSearch within_, between_;
   mutable std::vector<Vec3d> points_;  // of stencils_
   mutable std::shared_ptr<const ContactStencils> stencils_;
 };

@@ -20,6 +20,8 @@ class BoxTree {
   // Sum of the sides of all boxes of the tree, relative to that of the items; grows as the order becomes unfit.
   double looseness() const;
 
+  Box bounds() const { return items_.empty() ? Box{} : bounds_[root().index]; }  // of all items
+
   // Calls visit(item) for the items whose box overlaps `box` until it returns false.
   template <class Visit>
   void for_each_overlap(const Box& box, Visit visit) const {

@@ -129,19 +129,32 @@ void PairFinder::Tree::fit() {
   looseness = tree.front().looseness();
 }
 
+void PairFinder::place(const PairQuery& query) {
+  vertices_.boxes.resize(primitives_.vertices.size());
+  edges_.boxes.resize(primitives_.edges.size());
+  triangles_.boxes.resize(primitives_.triangles.size());
+  bound_primitives([&](int i) { return std::array<int, 1>{primitives_.vertices[i]}; }, query.path, query.vertex_radius,
+                   vertices_.boxes);
+  bound_primitives([&](int i) { return primitives_.edges[i]; }, query.path, query.edge_radius, edges_.boxes);
+  bound_primitives([&](int i) { return primitives_.triangles[i]; }, query.path, query.triangle_radius,
+                   triangles_.boxes);
+  for (Tree* tree : {&vertices_, &edges_, &triangles_}) tree->fit();
+}
+
+Box PairFinder::bounds() const {
+  Box all;
+  for (const Tree* tree : {&vertices_, &edges_, &triangles_}) {
+    all.add((**tree).bounds().lower);
+    all.add((**tree).bounds().upper);
+  }
+  return all;
+}
+
 ClosePairs PairFinder::find(const PairQuery& query) {
+  place(query);
   const auto& vertices = primitives_.vertices;
   const auto& edges = primitives_.edges;
   const auto& triangles = primitives_.triangles;
-  vertices_.boxes.resize(vertices.size());
-  edges_.boxes.resize(edges.size());
-  triangles_.boxes.resize(triangles.size());
-  bound_primitives([&](int i) { return std::array<int, 1>{vertices[i]}; }, query.path, query.vertex_radius,
-                   vertices_.boxes);
-  bound_primitives([&](int i) { return edges[i]; }, query.path, query.edge_radius, edges_.boxes);
-  bound_primitives([&](int i) { return triangles[i]; }, query.path, query.triangle_radius, triangles_.boxes);
-  for (Tree* tree : {&vertices_, &edges_, &triangles_}) tree->fit();
-
   const BoxTree &of_vertices = *vertices_, &of_edges = *edges_;
   PairCollector vertex_triangle(of_vertices.part_count(), query.limit), edge_edge(of_edges.part_count(), query.limit);
   parallel_for(of_vertices.part_count(), [&](int part) {
@@ -161,6 +174,26 @@ ClosePairs PairFinder::find(const PairQuery& query) {
   });
   if (vertex_triangle.overflows() || edge_edge.overflows()) return {.is_complete = false};
   return {vertex_triangle.sorted(static_cast<int>(vertices.size())), edge_edge.sorted(static_cast<int>(edges.size()))};
+}
+
+ClosePairs PairFinder::find_between(const PairFinder& other, bool has_edges, const PairFilter* filter,
+                                    size_t limit) const {
+  const BoxTree &of_vertices = *vertices_, &of_edges = *edges_;
+  PairCollector vertex_triangle(of_vertices.part_count(), limit), edge_edge(of_edges.part_count(), limit);
+  parallel_for(of_vertices.part_count(), [&](int part) {
+    of_vertices.for_each_pair(part, *other.triangles_, [&](int v, int t) {
+      return (filter && !filter->accepts_vertex_triangle(v, t)) || vertex_triangle.add(part, v, t);
+    });
+  });
+  if (has_edges)
+    parallel_for(of_edges.part_count(), [&](int part) {
+      of_edges.for_each_pair(part, *other.edges_, [&](int a, int b) {
+        return (filter && !filter->accepts_edge_edge(a, b)) || edge_edge.add(part, a, b);
+      });
+    });
+  if (vertex_triangle.overflows() || edge_edge.overflows()) return {.is_complete = false};
+  return {vertex_triangle.sorted(static_cast<int>(primitives_.vertices.size())),
+          edge_edge.sorted(static_cast<int>(primitives_.edges.size()))};
 }
 
 }  // namespace aspic

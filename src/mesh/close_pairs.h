@@ -16,10 +16,10 @@ struct SurfacePrimitives {
   std::vector<Triangle> triangles;
 };
 
-// Sorted pairs of places in the lists of a SurfacePrimitives.
+// Sorted pairs of places in the lists of a SurfacePrimitives, or of two.
 struct ClosePairs {
   std::vector<std::array<int, 2>> vertex_triangle;  // (vertex, triangle)
-  std::vector<std::array<int, 2>> edge_edge;        // (a, b) with a < b
+  std::vector<std::array<int, 2>> edge_edge;        // (a, b); a < b in one list
   bool is_complete = true;                          // false: more pairs than the limit; both lists are empty
 };
 
@@ -28,7 +28,7 @@ class PairFilter {
  public:
   virtual ~PairFilter() = default;
   virtual bool accepts_vertex_triangle(int vertex, int triangle) const = 0;  // places in the lists
-  virtual bool accepts_edge_edge(int a, int b) const = 0;                    // a < b
+  virtual bool accepts_edge_edge(int a, int b) const = 0;                    // a < b in one list
 };
 
 struct PairQuery {
@@ -52,6 +52,13 @@ class PairFinder {
   // query alone; trees of earlier queries only save time. O(n log n + pairs) while the surfaces are locally apart, with
   // memory for the pairs. Positions that are not finite are in no pair.
   ClosePairs find(const PairQuery& query);
+
+  // Replaces the boxes by those of the query, for find_between().
+  void place(const PairQuery& query);
+  Box bounds() const;  // of all primitives, as placed
+  // Finds the pairs of a vertex of this and a triangle of `other`, and if `has_edges` of an edge of each, whose boxes
+  // overlap. Both are placed. `filter` and `limit` are as in PairQuery; the vertices of both count as different.
+  ClosePairs find_between(const PairFinder& other, bool has_edges, const PairFilter* filter, size_t limit) const;
 
  private:
   // Rebuilt when motion has made it loose.

@@ -186,6 +186,39 @@ TEST(PairFinder, OmitsPositionsThatAreNotFinite) {
   }
 }
 
+// The two spheres as two lists; positions are common to both.
+std::array<SurfacePrimitives, 2> halves(const SurfacePrimitives& all) {
+  std::array<SurfacePrimitives, 2> half;
+  const int middle = static_cast<int>(all.vertices.size()) / 2;
+  for (const int v : all.vertices) half[v >= middle].vertices.push_back(v);
+  for (const auto& e : all.edges) half[e[0] >= middle].edges.push_back(e);
+  for (const auto& t : all.triangles) half[t[0] >= middle].triangles.push_back(t);
+  return half;
+}
+
+TEST(PairFinder, FindsPairsBetweenTwoLists) {
+  const Scene scene = two_spheres(9, 0.05);
+  PairFinder together(scene.primitives);
+  const BetweenSurfaces filter(scene.primitives);
+  const ClosePairs expected = find(together, scene, &filter);
+  const auto half = halves(scene.primitives);
+  const int vertices = static_cast<int>(half[0].vertices.size()), edges = static_cast<int>(half[0].edges.size()),
+            triangles = static_cast<int>(half[0].triangles.size());
+  const std::vector<Box> path = swept_boxes(scene.x, scene.dx);
+  const PairQuery query{path, std::span(scene.vertex_radius).first(vertices), std::span(scene.edge_radius).first(edges),
+                        std::span(scene.triangle_radius).first(triangles)};
+  PairFinder a(half[0]), b(half[1]);
+  a.place(query);
+  b.place(query);
+  ClosePairs found = a.find_between(b, true, nullptr, query.limit);
+  for (auto& [v, t] : found.vertex_triangle) t += triangles;
+  for (auto& [e, f] : found.edge_edge) f += edges;
+  for (const auto& [v, t] : b.find_between(a, false, nullptr, query.limit).vertex_triangle)
+    found.vertex_triangle.push_back({v + vertices, t});
+  expect_equal(found, expected);
+  EXPECT_FALSE(a.find_between(b, true, nullptr, 10).is_complete);
+}
+
 TEST(PairFinder, AcceptsEmptyLists) {
   PairFinder finder({});
   EXPECT_TRUE(finder.find({}).is_complete);
