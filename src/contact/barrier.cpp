@@ -117,6 +117,37 @@ int Barrier::add_hessian(Positions x, const Context&, double scale, const Projec
   return modified;
 }
 
+int Barrier::add_stops(Positions x, const Context&, std::span<const double> d, double scale, std::span<double> g,
+                       BlockSparse& H) const {
+  const std::vector<Vec3d> p = impl_->points(x);
+  const std::vector<Impact> impacts =
+      StepBound(impl_->mesh, impl_->laws, impl_->search, impl_->sizes).impacts(p, impl_->displacements(d));
+  for (const Impact& impact : impacts) {
+    const Vec3d n = impact.distance.normal();
+    double gap = 0;
+    std::array<int, 4> row = {-1, -1, -1, -1};
+    std::array<double, 4> c = {};
+    for (int k = 0; k < impact.distance.count; ++k) {
+      const int own = impact.point[impact.distance.point[k]];
+      if (own < 0) continue;
+      gap += impact.distance.c[k] * dot(n, p[own]);
+      row[k] = impl_->mesh.row[own];
+      c[k] = impact.distance.c[k];
+    }
+    const double k = scale * impact.stiffness;
+    Stencil added{.row = row};
+    for (int i = 0; i < 4; ++i) {
+      if (row[i] < 0) continue;
+      add_vec((k * (gap - impact.offset - impact.landing) * c[i]) * n, row[i], g);
+      Mat3d& diagonal = H.block[H.pattern->diagonal(row[i])];
+      diagonal = diagonal + (k * c[i] * c[i]) * outer(n, n);
+      for (int j = 0; j < i; ++j) added.block[i * (i - 1) / 2 + j] = (k * c[i] * c[j]) * outer(n, n);
+    }
+    H.stencils.push_back(added);
+  }
+  return static_cast<int>(impacts.size());
+}
+
 double Barrier::max_step(Positions x, const Context&, std::span<const double> d) const {
   return StepBound(impl_->mesh, impl_->laws, impl_->search, impl_->sizes)
       .largest(impl_->points(x), impl_->displacements(d));

@@ -30,6 +30,8 @@ class Barrier : public Energy {
                   BlockSparse& H) const override;
   // Returns a step of at most 1 along which no surfaces touch.
   double max_step(Positions x, const Context& context, std::span<const double> d) const override;
+  int add_stops(Positions x, const Context& context, std::span<const double> d, double scale, std::span<double> g,
+                BlockSparse& H) const override;
 
   const ContactMesh& mesh() const;
   const ContactLaws& laws() const;

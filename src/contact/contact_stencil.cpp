@@ -11,13 +11,6 @@ EigenvalueFilter filter_of(Definiteness kind) {
   return kind == Definiteness::absolute ? EigenvalueFilter::absolute : EigenvalueFilter::clamp;
 }
 
-Mat3d outer(const Vec3d& a, const Vec3d& b) {
-  Mat3d M;
-  for (int c = 0; c < 3; ++c)
-    for (int r = 0; r < 3; ++r) M(r, c) = a[r] * b[c];
-  return M;
-}
-
 // c = |u x v|^2 for the directions u = x1 - x0 and v = x3 - x2 of two edges, with its derivatives.
 struct CrossSquared {
   double value;

@@ -11,6 +11,7 @@ namespace {
 
 constexpr double kLanding = 0.5;          // gap at which a step ends, relative to the reach
 constexpr double kFar = 0.1;              // of the size of a part
+constexpr double kSpring = 6.4;        // of springs at the landing, as that of the barrier at half its reach
 constexpr double kShortest = 1.0 / 1024;  // step that is worth a search for pairs
 
 // As in StepRule.
@@ -59,42 +60,55 @@ double StepBound::to_planes(std::span<const Vec3d> p, std::span<const Vec3d> u, 
   return step;
 }
 
-double StepBound::to_triangles(const Line& line, int i, double step) const {
-  const auto& [p, u, candidates] = line;
-  for (const NearTriangle& near : candidates.pairs->near(i)) {
-    const auto& [a, b, c] = mesh_.triangles[near.triangle];
-    const double reach = laws_(mesh_.part[i], mesh_.part[a]).reach;
-    if (candidates.least_gap(i, near, {a, b, c}) > reach) continue;
-    const MovingPair moving{PairKind::point_triangle, {p[i], p[a], p[b], p[c]}, {u[i], u[a], u[b], u[c]}};
-    step = largest_step(moving, {.landing = kLanding * reach, .horizon = step}).alpha;
+MovingPair StepBound::pair(const Line& line, PairKind kind, const std::array<int, 4>& point) {
+  MovingPair moving{kind, {}, {}};
+  for (int k = 0; k < 4; ++k) moving.x[k] = line.p[point[k]], moving.dx[k] = line.u[point[k]];
+  return moving;
+}
+
+double StepBound::to_triangle(const Line& line, int i, const NearTriangle& near, double step) const {
+  const Triangle& t = mesh_.triangles[near.triangle];
+  const double reach = laws_(mesh_.part[i], mesh_.part[t[0]]).reach;
+  if (line.candidates.least_gap(i, near, t) > reach) return step;
+  return largest_step(pair(line, PairKind::point_triangle, {i, t[0], t[1], t[2]}),
+                      {.landing = kLanding * reach, .horizon = step})
+      .alpha;
+}
+
+double StepBound::of_edges(const Line& line, const EdgePair& edges, double step) const {
+  const Edge &a = mesh_.edges[edges.first], &b = mesh_.edges[edges.second];
+  if (line.candidates.least_gap(edges, a, b) > kEdgeReach * laws_(mesh_.part[a[0]], mesh_.part[b[0]]).reach)
+    return step;
+  return largest_step(pair(line, PairKind::edge_edge, {a[0], a[1], b[0], b[1]}),
+                      {.landing = kLanding * edge_reach(mesh_, laws_, edges), .horizon = step})
+      .alpha;
+}
+
+// Scales u to a line that has few enough candidates, and `factor` with it. Nothing: there is none worth it.
+std::optional<StepBound::Line> StepBound::line(PairScope scope, std::span<const Vec3d> p, std::vector<Vec3d>& u,
+                                               double& factor) const {
+  std::optional<PathCandidates> candidates;
+  for (factor = 1; !(candidates = search_.along(scope, p, u)); factor /= 2) {
+    if (factor < kShortest) return {};
+    scale(0.5, u);
   }
-  return step;
+  return Line{p, u, *std::move(candidates)};
 }
 
-double StepBound::of_edges(const Line& line, int number, double step) const {
-  const auto& [p, u, candidates] = line;
-  const EdgePair& pair = candidates.pairs->edge_pairs[number];
-  const auto& [a, b] = mesh_.edges[pair.first];
-  const auto& [e, f] = mesh_.edges[pair.second];
-  if (candidates.least_gap(pair, {a, b}, {e, f}) > kEdgeReach * laws_(mesh_.part[a], mesh_.part[e]).reach) return step;
-  const MovingPair moving{PairKind::edge_edge, {p[a], p[b], p[e], p[f]}, {u[a], u[b], u[e], u[f]}};
-  return largest_step(moving, {.landing = kLanding * edge_reach(mesh_, laws_, pair), .horizon = step}).alpha;
-}
-
-// Scales u to a line that has few enough candidates and no contact in the scope. Returns the factor.
+// Scales u to a line without contact in the scope. Returns the factor.
 double StepBound::among(PairScope scope, std::span<const Vec3d> p, std::vector<Vec3d>& u) const {
   double factor = 1;
-  std::optional<PathCandidates> candidates;
-  while (!(candidates = search_.along(scope, p, u))) {
-    factor /= 2;
-    scale(0.5, u);
-    if (factor < kShortest) return 0;
-  }
-  const Line line{p, u, *std::move(candidates)};
-  const auto& edge_pairs = line.candidates.pairs->edge_pairs;
-  const double step = std::min(
-      smallest(mesh_.point_count(), [&](int i, double most) { return to_triangles(line, i, most); }),
-      smallest(static_cast<int>(edge_pairs.size()), [&](int k, double most) { return of_edges(line, k, most); }));
+  const std::optional<Line> found = line(scope, p, u, factor);
+  if (!found) return 0;
+  const ContactCandidates& pairs = *found->candidates.pairs;
+  const double to_triangles = smallest(mesh_.point_count(), [&](int i, double most) {
+    for (const NearTriangle& near : pairs.near(i)) most = to_triangle(*found, i, near, most);
+    return most;
+  });
+  const double between_edges = smallest(static_cast<int>(pairs.edge_pairs.size()), [&](int k, double most) {
+    return of_edges(*found, pairs.edge_pairs[k], most);
+  });
+  const double step = std::min(to_triangles, between_edges);
   scale(step, u);
   return factor * step;
 }
@@ -109,6 +123,84 @@ double StepBound::largest(std::span<const Vec3d> p, std::vector<Vec3d> u) const 
   for (const PairScope scope : {PairScope::between_parts, PairScope::within_parts})
     if (step > 0) step *= among(scope, p, u);
   return step;
+}
+
+std::vector<Impact> StepBound::with_planes(std::span<const Vec3d> p, std::span<const Vec3d> u) const {
+  std::vector<Impact> found;
+  for (const ContactPlane& plane : mesh_.planes)
+    for (int i = 0; i < mesh_.point_count(); ++i) {
+      if (mesh_.row[i] < 0) continue;
+      const ContactLaw& law = laws_(mesh_.part[i], plane.part);
+      const double gap = dot(plane.normal, p[i] - plane.origin), landing = landing_gap(gap, law.reach);
+      if (!(gap + dot(plane.normal, u[i]) < landing)) continue;
+      found.push_back({.point = {i, -1, -1, -1},
+                       .distance = {.r = plane.normal, .d = 1},
+                       .offset = dot(plane.normal, plane.origin),
+                       .landing = landing,
+                       .stiffness = kSpring * law.stiffness * mesh_.area[i] / law.reach});
+    }
+  return found;
+}
+
+Impact StepBound::impact(const MovingPair& pair, const std::array<int, 4>& point, double alpha) const {
+  std::array<Vec3d, 4> there;
+  for (int k = 0; k < 4; ++k) there[k] = pair.x[k] + alpha * pair.dx[k];
+  const Distance distance = pair_distance(pair.kind, there);
+  return {.point = point, .distance = distance, .landing = distance.d};
+}
+
+void StepBound::add_point_impacts(const Line& line, std::vector<Impact>& found) const {
+  const ContactCandidates& pairs = *line.candidates.pairs;
+  std::vector<double> alpha(mesh_.point_count(), 1.0);
+  std::vector<int> first(mesh_.point_count(), -1);  // triangle that each point meets first
+  parallel_chunks(mesh_.point_count(), [&](int begin, int end) {
+    for (int i = begin; i < end; ++i)
+      for (const NearTriangle& near : pairs.near(i))
+        if (const double step = to_triangle(line, i, near, alpha[i]); step < alpha[i])
+          alpha[i] = step, first[i] = near.triangle;
+  });
+  for (int i = 0; i < mesh_.point_count(); ++i) {
+    if (first[i] < 0) continue;
+    const Triangle& t = mesh_.triangles[first[i]];
+    const ContactLaw& law = laws_(mesh_.part[i], mesh_.part[t[0]]);
+    const std::array<int, 4> point = {i, t[0], t[1], t[2]};
+    Impact& added = found.emplace_back(impact(pair(line, PairKind::point_triangle, point), point, alpha[i]));
+    const double area = std::min({mesh_.area[i], mesh_.area[t[0]], mesh_.area[t[1]], mesh_.area[t[2]]});
+    added.stiffness = kSpring * law.stiffness * area / law.reach;
+  }
+}
+
+void StepBound::add_edge_impacts(const Line& line, std::vector<Impact>& found) const {
+  const auto& pairs = line.candidates.pairs->edge_pairs;
+  std::vector<double> alpha(pairs.size(), 1.0), first(mesh_.edge_count(), 1.0);
+  parallel_chunks(static_cast<int>(pairs.size()), [&](int begin, int end) {
+    for (int k = begin; k < end; ++k) alpha[k] = of_edges(line, pairs[k], 1);
+  });
+  for (size_t k = 0; k < pairs.size(); ++k)
+    for (const int e : {pairs[k].first, pairs[k].second}) first[e] = std::min(first[e], alpha[k]);
+  for (size_t k = 0; k < pairs.size(); ++k) {
+    if (!(alpha[k] < 1) || first[pairs[k].first] < alpha[k] || first[pairs[k].second] < alpha[k]) continue;
+    const Edge &a = mesh_.edges[pairs[k].first], &b = mesh_.edges[pairs[k].second];
+    const ContactLaw& law = laws_(mesh_.part[a[0]], mesh_.part[b[0]]);
+    const std::array<int, 4> point = {a[0], a[1], b[0], b[1]};
+    Impact& added = found.emplace_back(impact(pair(line, PairKind::edge_edge, point), point, alpha[k]));
+    const double area = std::min(mesh_.edge_area[pairs[k].first], mesh_.edge_area[pairs[k].second]);
+    added.stiffness = kSpring * law.stiffness * area / law.reach;
+  }
+}
+
+std::vector<Impact> StepBound::impacts(std::span<const Vec3d> p, std::vector<Vec3d> u) const {
+  scale(longest(u), u);
+  std::vector<Impact> found = with_planes(p, u);
+  for (const PairScope scope : {PairScope::between_parts, PairScope::within_parts}) {
+    double factor = 1;
+    const std::optional<Line> on_line = line(scope, p, u, factor);
+    if (!on_line) continue;
+    add_point_impacts(*on_line, found);
+    add_edge_impacts(*on_line, found);
+    if (!found.empty()) break;
+  }
+  return found;
 }
 
 }  // namespace aspic

@@ -1,11 +1,23 @@
-// The largest step along a line on which no surfaces touch.
+// The largest step along a line on which no surfaces touch, and what bounds it.
 #pragma once
+#include <optional>
 #include <span>
 #include <vector>
 
 #include "contact/stencil_search.h"
+#include "mesh/ccd.h"
 
 namespace aspic {
+
+// A pair that meets along a line, where it has its landing gap: the gap after a displacement of its points by u_i is
+// about n . sum c_i (x_i + u_i) - offset.
+struct Impact {
+  std::array<int, 4> point = {-1, -1, -1, -1};  // of the ContactMesh
+  Distance distance;                            // at the landing
+  double offset = 0;                            // n . origin of a plane [m]
+  double landing = 0;                           // gap [m]
+  double stiffness = 0;                         // of a spring that keeps the gap [N/m]
+};
 
 class StepBound {
  public:
@@ -16,6 +28,9 @@ class StepBound {
 
   // Returns a step of at most 1 from the positions p of all points along u.
   double largest(std::span<const Vec3d> p, std::vector<Vec3d> u) const;
+  // Returns the first impact of each point and the pairs of edges each of which is the first of both: with obstacles
+  // and between parts, or if there are none, within parts.
+  std::vector<Impact> impacts(std::span<const Vec3d> p, std::vector<Vec3d> u) const;
 
  private:
   // A line from p to p + u and the candidates along it.
@@ -26,8 +41,14 @@ class StepBound {
   double longest(std::span<const Vec3d> u) const;
   double among(PairScope scope, std::span<const Vec3d> p, std::vector<Vec3d>& u) const;
   double to_planes(std::span<const Vec3d> p, std::span<const Vec3d> u, int i, double step) const;
-  double to_triangles(const Line& line, int i, double step) const;
-  double of_edges(const Line& line, int pair, double step) const;
+  static MovingPair pair(const Line& line, PairKind kind, const std::array<int, 4>& point);
+  double to_triangle(const Line& line, int i, const NearTriangle& near, double step) const;
+  double of_edges(const Line& line, const EdgePair& edges, double step) const;
+  std::vector<Impact> with_planes(std::span<const Vec3d> p, std::span<const Vec3d> u) const;
+  std::optional<Line> line(PairScope scope, std::span<const Vec3d> p, std::vector<Vec3d>& u, double& factor) const;
+  Impact impact(const MovingPair& pair, const std::array<int, 4>& point, double alpha) const;
+  void add_point_impacts(const Line& line, std::vector<Impact>& found) const;
+  void add_edge_impacts(const Line& line, std::vector<Impact>& found) const;
 
   const ContactMesh& mesh_;
   const ContactLaws& laws_;

@@ -300,6 +300,16 @@ double IncrementalPotential::max_step(std::span<const double> q, std::span<const
   return alpha;
 }
 
+const BlockSparse* IncrementalPotential::add_stops(std::span<const double> q, std::span<const double> d,
+                                                   std::span<double> g) {
+  int added = 0;
+  for (const ActiveTerm& V : potential_) added += V.add_stops(q, d, factor_, g, H_);
+  if (added == 0) return nullptr;
+  pins_.set_zero(g);
+  pins_.set_identity(H_);
+  return &H_;
+}
+
 double IncrementalPotential::free_norm(std::span<const double> v) const {
   return std::sqrt(parallel_sum(pattern_.rows(), [&](int first, int last) {
     double sum = 0;

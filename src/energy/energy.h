@@ -65,6 +65,13 @@ class Energy {
   virtual double max_step(Positions /*x*/, const Context& /*context*/, std::span<const double> /*d*/) const {
     return std::numeric_limits<double>::infinity();
   }
+  // Adds springs to a quadratic model g'd + d'Hd / 2 of V around x, such that its minimizer avoids what bounds the steps
+  // along the given d: g += scale dS/dd at d = 0, H += scale d2S/dd2 for the energy S of the springs. Returns the number
+  // of springs.
+  virtual int add_stops(Positions /*x*/, const Context& /*context*/, std::span<const double> /*d*/, double /*scale*/,
+                        std::span<double> /*g*/, BlockSparse& /*H*/) const {
+    return 0;
+  }
 };
 
 // A term that depends only on x.
@@ -97,6 +104,9 @@ class ActiveTerm {
   double max_step(Positions x, std::span<const double> d) const { return energy_->max_step(x, *context_, d); }
   int add_hessian(Positions x, double scale, const Projection& projection, BlockSparse& H) const {
     return energy_->add_hessian(x, *context_, scale, projection, H);
+  }
+  int add_stops(Positions x, std::span<const double> d, double scale, std::span<double> g, BlockSparse& H) const {
+    return energy_->add_stops(x, *context_, d, scale, g, H);
   }
 
  private:

@@ -5,8 +5,6 @@
 namespace aspic {
 namespace {
 
-Mat3d outer(const Vec3d& a, const Vec3d& b) { return from_columns(b[0] * a, b[1] * a, b[2] * a); }
-
 // Length and direction; no direction at zero, where that of a point inside a tip does not matter.
 struct Polar {
   double length;

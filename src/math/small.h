@@ -143,4 +143,9 @@ Mat3<T> from_columns(const Vec3<T>& x, const Vec3<T>& y, const Vec3<T>& z) {
   return {{x[0], x[1], x[2], y[0], y[1], y[2], z[0], z[1], z[2]}};
 }
 
+template <class T>
+Mat3<T> outer(const Vec3<T>& a, const Vec3<T>& b) {  // a b'
+  return from_columns(b[0] * a, b[1] * a, b[2] * a);
+}
+
 }  // namespace aspic

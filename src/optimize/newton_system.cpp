@@ -1,5 +1,8 @@
 #include "optimize/newton_system.h"
 
+#include <algorithm>
+#include <cmath>
+
 #include "base/stopwatch.h"
 
 namespace aspic {
@@ -37,7 +40,11 @@ bool NewtonSystem::solve(NewtonTask& task, const Projection& projection) {
   const bool is_exact = projection.kind == Definiteness::exact;
   exact_ = is_exact ? &H : nullptr;
   if (is_definite && solve_factorized(task)) {
-    if (is_exact && !report.truncated && !report.stopped) kept_.keep(task.E, H, task.x);
+    if (avoid_stops(task)) {
+      exact_ = nullptr;  // it has springs now
+    } else if (is_exact && !report.truncated && !report.stopped) {
+      kept_.keep(task.E, H, task.x);
+    }
     return true;
   }
   const bool is_modified = !is_exact && projection.vertices.empty();
@@ -74,11 +81,38 @@ bool NewtonSystem::solve_with_kept(NewtonTask& task, const InnerAccuracy& accura
   return false;
 }
 
-bool NewtonSystem::solve_factorized(NewtonTask& task) {
+bool NewtonSystem::avoid_stops(NewtonTask& task) {
+  constexpr int kRounds = 4;
+  constexpr double kLong = 0.5;    // step that is worth taking
+  constexpr double kFinest = 1e-9;  // relative residual
+  auto* bounded = dynamic_cast<HasStops*>(&task.E);
+  if (!bounded || task.report.truncated) return false;
+  bool has_springs = false;
+  g_.assign(task.g.begin(), task.g.end());
+  double reach = task.E.max_step(task.x, task.d);
+  for (int round = 0; round < kRounds && reach < kLong && !is_late(task.report); ++round) {
+    const BlockSparse* H = bounded->add_stops(task.x, task.d, g_);
+    if (!H) break;
+    has_springs = true;
+    d_.assign(task.d.begin(), task.d.end());
+    ++task.report.factorizations;
+    const double forcing = task.forcing * gradient_norm_ / std::sqrt(task.E.dot(g_, g_));  // springs pull hard
+    const bool is_solved = solver_->factorize(*H) && solve_factorized(task, g_, std::max(forcing, kFinest));
+    const double next = is_solved && task.E.dot(task.g, task.d) < 0 ? task.E.max_step(task.x, task.d) : 0;
+    if (next <= reach) {
+      std::copy(d_.begin(), d_.end(), task.d.begin());
+      break;
+    }
+    reach = next;
+  }
+  return has_springs;
+}
+
+bool NewtonSystem::solve_factorized(NewtonTask& task, std::span<const double> g, double forcing) {
   DirectionReport& report = task.report;
   Stopwatch stopwatch;
   const double begin = stop_.now();
-  const SolveReport solved = solver_->solve(task.g, task.d, task.forcing);
+  const SolveReport solved = solver_->solve(g, task.d, forcing);
   if (solved.iterations > 0) report.stoppable_seconds += stop_.now() - begin;
   report.stopped = report.stopped || solved.stopped;
   report.add(solved);

@@ -47,7 +47,10 @@ class NewtonSystem {
   }
 
  private:
-  bool solve_factorized(NewtonTask& task);
+  bool solve_factorized(NewtonTask& task) { return solve_factorized(task, task.g, task.forcing); }
+  bool solve_factorized(NewtonTask& task, std::span<const double> g, double forcing);
+  // Solves again, with springs, as long as something bounds the step along d. Returns whether any were added.
+  bool avoid_stops(NewtonTask& task);
   bool solve_semidefinite(const BlockSparse& H, NewtonTask& task);
 
   std::unique_ptr<LinearSolver> solver_;
@@ -60,6 +63,7 @@ class NewtonSystem {
   StopToken stop_;
   bool is_first_ = true;
   double gradient_norm_ = 0;
+  std::vector<double> g_, d_;  // with springs; the last direction
 };
 
 }  // namespace aspic

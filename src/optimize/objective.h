@@ -73,6 +73,15 @@ class HasPreconditioner {
   virtual bool precondition(std::span<const double> r, std::span<double> z) = 0;
 };
 
+// Objectives whose feasible steps may be short, such as those with contact.
+class HasStops {
+ public:
+  virtual ~HasStops() = default;
+  // Adds springs to the last Hessian and to g, such that the minimizer of g'd + d'Hd / 2 avoids what bounds the steps
+  // from x along the given d. Returns the Hessian, or null if nothing was added.
+  virtual const BlockSparse* add_stops(std::span<const double> x, std::span<const double> d, std::span<double> g) = 0;
+};
+
 // Round-off counts as convergence only below this fraction of the forces that the gradient is the sum of.
 inline constexpr double kResolved = 1e-3;
 
