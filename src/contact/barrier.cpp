@@ -99,7 +99,6 @@ int Barrier::add_hessian(Positions x, const Context&, double scale, const Projec
   int modified = 0;
   for (size_t k = 0; k < stencils->size(); ++k) {
     Stencil added;
-    bool is_coupled = false;
     modified += kind_of((*stencils)[k]) != Definiteness::exact;
     for (int i = 0; i < 4; ++i) {
       const int own = (*stencils)[k].point[i];
@@ -107,12 +106,9 @@ int Barrier::add_hessian(Positions x, const Context&, double scale, const Projec
       if (added.row[i] < 0) continue;
       Mat3d& diagonal = H.block[H.pattern->diagonal(added.row[i])];
       diagonal = diagonal + scale * hessians[k](i, i);
-      for (int j = 0; j < i; ++j) {
-        added.block[i * (i - 1) / 2 + j] = scale * hessians[k](i, j);
-        is_coupled = is_coupled || (added.row[j] >= 0 && squared_norm(hessians[k](i, j)) > 0);
-      }
+      for (int j = 0; j < i; ++j) added.block[i * (i - 1) / 2 + j] = scale * hessians[k](i, j);
     }
-    if (is_coupled) H.stencils.push_back(added);
+    H.stencils.push_back(added);
   }
   return modified;
 }

@@ -170,6 +170,7 @@ bool AutoSolver::factorize_with_choice() {
 bool AutoSolver::factorize(const BlockSparse& H) {
   H_ = &H;
   if (!is_chosen_) choice_ = cheapest(H);
+  if (choice_ == kBlockJacobi && !H.stencils.empty()) choice_ = kMultigrid;  // stiff rows, which the prediction ignores
   is_chosen_ = has_chosen_ = true;
   return factorize_with_choice();
 }
