@@ -55,6 +55,8 @@ const ContactMesh& Barrier::mesh() const { return impl_->mesh; }
 const ContactLaws& Barrier::laws() const { return impl_->laws; }
 int Barrier::self_touching_point() const { return impl_->search.self_touching_point(); }
 
+std::vector<Vec3d> Barrier::points(Positions x) const { return impl_->points(x); }
+
 std::shared_ptr<const std::vector<ContactStencil>> Barrier::stencils(Positions x) const {
   return impl_->search.at(impl_->points(x));
 }

@@ -39,6 +39,8 @@ class Barrier : public Energy {
   int self_touching_point() const;
   ContactSummary summary(Positions x) const;
 
+  // Positions of the points of the mesh.
+  std::vector<Vec3d> points(Positions x) const;
   // The stencils at x with a gap below their reach, in an order that depends on x alone.
   std::shared_ptr<const std::vector<ContactStencil>> stencils(Positions x) const;
 

@@ -10,12 +10,19 @@ namespace {
 
 constexpr double kStaticReach = 1e-2;  // width of f in statics, relative to the reach of the barrier
 
+// What may slide along a surface.
 struct Slider {
-  std::array<int, 4> row;  // -1: an obstacle
-  std::array<double, 4> weight;
-  std::array<Vec3d, 2> tangent;
+  std::array<int, 4> row = {-1, -1, -1, -1};  // -1: an obstacle
+  std::array<double, 4> weight = {};
+  std::array<Vec3d, 2> tangent = {};
   double force;  // mu lambda [N]
   double width;  // e [m]
+};
+
+// A normal force, and the stencil of the features between which it acts.
+struct Traction {
+  const ContactStencil* at;
+  Vec3d force{};  // [N]
 };
 
 struct FrictionContext : Energy::Context {
@@ -33,6 +40,39 @@ Dissipation dissipation(double y, double e) {
   if (y >= e) return {y - e / 3, 1, 0};
   const double s = y / e;
   return {y * s * (1 - s / 3), s * (2 - s), 2 * (1 - s) / e};
+}
+
+// Whether both stencils are of the same point and the same other part.
+bool is_of_same_point(const ContactStencil& a, const ContactStencil& b) {
+  return a.area != 0 && b.area != 0 && a.point[0] == b.point[0] && a.parts == b.parts;
+}
+
+// The normal force between a point and a part, or between two edges. In a concave crease it is the sum over two faces
+// less that over their edge.
+Traction traction_of(std::span<const ContactStencil> stencils, std::span<const Vec3d> points) {
+  Traction traction{.at = stencils.data()};
+  double largest = 0;
+  for (const ContactStencil& stencil : stencils) {
+    const auto g = stencil.gradient(points);
+    const Vec3d force = stencil.area != 0 ? -1.0 * g[0] : -1.0 * (g[0] + g[1]);
+    traction.force = traction.force + force;
+    if (const double size = stencil.weight > 0 ? norm(force) : 0; size > largest)
+      largest = size, traction.at = &stencil;
+  }
+  return traction;
+}
+
+Slider slider_of(const ContactMesh& mesh, const Traction& traction, double force, double width) {
+  const Distance& at = traction.at->distance;
+  Slider slider{.force = force, .width = width};
+  slider.tangent = tangents({.r = traction.force, .d = norm(traction.force)});
+  for (int k = 0; k < at.count; ++k) {
+    const int p = traction.at->point[at.point[k]];
+    if (p < 0 || mesh.row[p] < 0) continue;
+    slider.row[k] = mesh.row[p];
+    slider.weight[k] = at.c[k];
+  }
+  return slider;
 }
 
 // The tangential relative displacement since the start.
@@ -56,24 +96,18 @@ void Friction::begin_step(const StepContext& step, Context& context) const {
 
 bool Friction::update_lagged(Positions x, Context& context) const {
   auto& own = static_cast<FrictionContext&>(context);
-  const ContactMesh& mesh = barrier_.mesh();
+  const std::vector<Vec3d> points = barrier_.points(x);
+  const auto stencils = barrier_.stencils(x);
   own.sliders.clear();
-  for (const ContactStencil& stencil : *barrier_.stencils(x)) {
-    const ContactLaw& law = barrier_.laws()(stencil.parts[0], stencil.parts[1]);
-    const double lambda = -stencil.weight * stencil.b().first;
-    if (!(law.friction * lambda > 0)) continue;
-    Slider slider{.row = {-1, -1, -1, -1},
-                  .weight = {},
-                  .tangent = tangents(stencil.distance),
-                  .force = law.friction * lambda,
-                  .width = context.h > 0 ? speed_ * context.h : kStaticReach * law.reach};
-    for (int k = 0; k < stencil.distance.count; ++k) {
-      const int p = stencil.point[stencil.distance.point[k]];
-      if (p < 0 || mesh.row[p] < 0) continue;
-      slider.row[k] = mesh.row[p];
-      slider.weight[k] = stencil.distance.c[k];
-    }
-    own.sliders.push_back(slider);
+  for (size_t k = 0; k < stencils->size();) {
+    const size_t first = k;
+    for (++k; k < stencils->size() && is_of_same_point((*stencils)[first], (*stencils)[k]);) ++k;
+    const Traction traction = traction_of(std::span(*stencils).subspan(first, k - first), points);
+    const ContactLaw& law = barrier_.laws()(traction.at->parts[0], traction.at->parts[1]);
+    const double force = law.friction * norm(traction.force);
+    if (!(force > 0)) continue;
+    const double width = context.h > 0 ? speed_ * context.h : kStaticReach * law.reach;
+    own.sliders.push_back(slider_of(barrier_.mesh(), traction, force, width));
   }
   return true;
 }
