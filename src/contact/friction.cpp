@@ -15,8 +15,9 @@ struct Slider {
   std::array<int, 4> row = {-1, -1, -1, -1};  // -1: an obstacle
   std::array<double, 4> weight = {};
   std::array<Vec3d, 2> tangent = {};
-  double force;  // mu lambda [N]
-  double width;  // e [m]
+  double force = 0;  // mu lambda [N]
+  double width = 0;  // e [m]
+  double share = 1;  // of the force, in a mixture
 };
 
 // A normal force, and the stencil of the features between which it acts.
@@ -27,7 +28,7 @@ struct Traction {
 
 struct FrictionContext : Energy::Context {
   std::vector<double> start;
-  std::vector<Slider> sliders;
+  std::vector<Slider> sliders, mixture;
 };
 
 const FrictionContext& friction(const Energy::Context& context) { return static_cast<const FrictionContext&>(context); }
@@ -92,9 +93,10 @@ void Friction::begin_step(const StepContext& step, Context& context) const {
   auto& own = static_cast<FrictionContext&>(context);
   own.start.assign(step.start.begin(), step.start.end());
   update_lagged(step.shape.empty() ? step.start : step.shape, context);
+  own.mixture = own.sliders;
 }
 
-bool Friction::update_lagged(Positions x, Context& context) const {
+void Friction::update_lagged(Positions x, Context& context) const {
   auto& own = static_cast<FrictionContext&>(context);
   const std::vector<Vec3d> points = barrier_.points(x);
   const auto stencils = barrier_.stencils(x);
@@ -109,7 +111,19 @@ bool Friction::update_lagged(Positions x, Context& context) const {
     const double width = context.h > 0 ? speed_ * context.h : kStaticReach * law.reach;
     own.sliders.push_back(slider_of(barrier_.mesh(), traction, force, width));
   }
-  return true;
+}
+
+void Friction::mix_lagged(double weight, Context& context) const {
+  constexpr double kForgotten = 1e-3;
+  auto& own = static_cast<FrictionContext&>(context);
+  for (Slider& slider : own.mixture) slider.force *= 1 - weight, slider.share *= 1 - weight;
+  std::erase_if(own.mixture, [](const Slider& slider) { return slider.share < kForgotten; });
+  for (Slider slider : own.sliders) {
+    slider.force *= weight;
+    slider.share *= weight;
+    own.mixture.push_back(slider);
+  }
+  own.sliders = own.mixture;
 }
 
 double Friction::value(Positions x, const Context& context) const {

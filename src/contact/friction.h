@@ -15,7 +15,9 @@ class Friction : public Energy {
   std::string_view name() const override { return "friction"; }
   std::unique_ptr<Context> make_context() const override;
   void begin_step(const StepContext& step, Context& context) const override;
-  bool update_lagged(Positions x, Context& context) const override;
+  bool is_lagged() const override { return true; }
+  void update_lagged(Positions x, Context& context) const override;
+  void mix_lagged(double weight, Context& context) const override;
   double value(Positions x, const Context& context) const override;
   void add_gradient(Positions x, const Context& context, double scale, std::span<double> g) const override;
   int add_hessian(Positions x, const Context& context, double scale, const Projection& projection,

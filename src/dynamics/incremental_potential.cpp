@@ -124,11 +124,17 @@ void IncrementalPotential::begin_step(std::span<const double> predicted, double 
   gradient_round_off_ = 0;  // known after the first Hessian
 }
 
-bool IncrementalPotential::update_lagged(std::span<const double> q) {
-  bool any = false;
-  for (ActiveTerm& D : damping_) any |= D.update_lagged(q);
-  if (any) iterate_.clear();  // the forces known there are those of the earlier coefficients
-  return any;
+bool IncrementalPotential::is_lagged() const {
+  return std::any_of(damping_.begin(), damping_.end(), [](const ActiveTerm& D) { return D.energy().is_lagged(); });
+}
+
+void IncrementalPotential::update_lagged(std::span<const double> q) {
+  for (ActiveTerm& D : damping_) D.update_lagged(q);
+  if (is_lagged()) iterate_.clear();  // the forces known there are those of the earlier coefficients
+}
+
+void IncrementalPotential::mix_lagged(double weight) {
+  for (ActiveTerm& D : damping_) D.mix_lagged(weight);
 }
 
 Evaluation IncrementalPotential::evaluate(std::span<const double> q) {

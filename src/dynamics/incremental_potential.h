@@ -23,8 +23,10 @@ class IncrementalPotential : public Objective, public HasMetric, public HasParts
   void set_damping_step(const StepContext& step);
   void begin_step(std::span<const double> predicted, double inertia /* w */, double factor /* f */);
 
-  // Updates coefficients that lag behind the minimization to their values at q. Returns whether there are any.
-  bool update_lagged(std::span<const double> q);
+  // Coefficients that lag behind the minimization, see Energy.
+  bool is_lagged() const;
+  void update_lagged(std::span<const double> q);
+  void mix_lagged(double weight);
 
   Evaluation evaluate(std::span<const double> q) override;
   void gradient(std::span<const double> q, std::span<double> g) override;

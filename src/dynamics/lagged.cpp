@@ -8,28 +8,46 @@ namespace aspic {
 namespace {
 
 constexpr int kMostPasses = 50;
+constexpr int kPatience = 10;       // passes before mixtures, which end alternation
+constexpr double kMixed = 0.5;
+constexpr double kRough = 100;      // first tolerance, relative to the one asked for
+constexpr double kRoughest = 1e-2;  // and its maximum
+constexpr double kReduction = 0.1;  // of the forces by one pass
 
 }  // namespace
 
+// The first minimization and each further one end when the forces have fallen enough for an update of the coefficients
+// to be worth more than further iterations.
 MinimizeReport minimize_lagged(const StepTools& tools, const MinimizeOptions& options, InitialIterate initial,
                                StepSolve& solve) {
-  const auto minimize = [&](InitialIterate at) {
-    const MinimizeReport report = tools.minimizer.minimize(tools.E, tools.direction, at, options, tools.observe);
+  const auto minimize = [&](InitialIterate at, const MinimizeOptions& how) {
+    const MinimizeReport report = tools.minimizer.minimize(tools.E, tools.direction, at, how, tools.observe);
     solve.decrement = std::max(solve.decrement, report.decrement / tools.E.scales().gradient_unit);
     return report;
   };
-  MinimizeReport report = minimize(initial);
+  if (!tools.E.is_lagged()) return minimize(initial, options);
+  MinimizeOptions rough = options, none = options;
+  rough.tolerance = std::max(options.tolerance, std::min(kRough * options.tolerance, kRoughest));
+  none.max_iterations = 0;
+  MinimizeReport report = minimize(initial, rough);
   int passes = 1;
-  for (; is_success(report.status) && tools.E.update_lagged(initial.x); ++passes) {
+  for (; is_success(report.status); ++passes) {
     if (passes == kMostPasses) {
       report.status = Status::inaccurate;
       break;
     }
-    MinimizeReport next = minimize({initial.x});
-    const bool is_settled = next.iterations == 0;
-    add_work(report, next);
-    report = next;
-    if (is_settled) break;
+    tools.E.update_lagged(initial.x);
+    const auto add = [&](const MinimizeReport& next) {
+      const MinimizeReport before = report;
+      report = next;
+      add_work(before, report);
+    };
+    add(minimize({initial.x}, none));
+    if (report.status != Status::iteration_limit) break;
+    const double reduced = report.threshold > 0 ? kReduction * report.reached / report.threshold : 1;
+    rough.tolerance = options.tolerance * std::max(1.0, reduced);
+    tools.E.mix_lagged(passes < kPatience ? 1 : kMixed);
+    add(minimize({initial.x}, rough));
   }
   solve.passes = std::max(solve.passes, passes);
   return report;
