@@ -73,13 +73,15 @@ def case(name, bodies, obstacles=(), planes=(), h=.005, steps=20, contact="", gr
 
 
 def ledger_faults(rows):
-    """The energies of the ledger balance up to round-off of its largest term."""
+    """The energies of the ledger balance up to round-off of its largest term, and no step gains energy."""
     faults = []
     for row in rows[1:]:
         terms = [abs(float(row[k])) for k in row if k in ("kinetic", "damping_loss", "numerical_loss", "pin_work",
                                                            "residual_work") or k.startswith("potential_")]
         if not abs(float(row["ledger_error"])) <= 1e-9 * max(terms):
             faults.append(f"step {row['step']}: ledger error {row['ledger_error']}, largest term {max(terms):.3g}")
+        if row["energy_bound"] == "broken":
+            faults.append(f"step {row['step']}: energy above its bound by {row['energy_slack']}")
     return faults[:3]
 
 

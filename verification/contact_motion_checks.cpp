@@ -64,13 +64,14 @@ TouchingModel flying_boxes(double size, double young, double density) {
   return given;
 }
 
-Simulation flying(const TouchingModel& given, double h, double tolerance) {
+Simulation flying(const TouchingModel& given, double h, double tolerance, const Mat3d& turn = identity3<double>()) {
   Model model = make_touching(given);
   State start = at_rest(model.mesh);
   for (const size_t body : {0, 1}) {
     const auto [first, end] = vertices_of(given, body);
+    const Vec3d velocity = turn * (body == 0 ? Vec3d{{1, 0.5, 0}} : Vec3d{{-1, 0, 0}});
     for (int v = first; v < end; ++v)
-      start.qdot[3 * v] = body == 0 ? 1 : -1, start.qdot[3 * v + 1] = body == 0 ? 0.5 : 0;
+      for (int k = 0; k < 3; ++k) start.qdot[3 * v + k] = velocity[k];
   }
   SimulationOptions options{.h = h, .solver = {}};
   options.solver.minimize.tolerance = tolerance;
@@ -204,6 +205,41 @@ void check_contact_units(const Subject& subject, Findings& found) {
   }
 }
 
+// The same motion in a turned and shifted frame, and with the vertices in reverse order.
+void check_frames(const Subject& subject, Findings& found) {
+  const double c = std::cos(1.0), s = std::sin(1.0);
+  const Mat3d R = Mat3d{{c, s, 0, -s, c, 0, 0, 0, 1}} * Mat3d{{1, 0, 0, 0, s, c, 0, -c, s}};
+  const Vec3d shift{{0.3, -0.2, 0.1}};
+  const int steps = subject.quick ? 10 : 20;
+  const auto end_of = [steps](const TouchingModel& given, const Mat3d& turn) {
+    Simulation simulation = flying(given, 1e-3, 1e-11, turn);
+    take_steps(simulation, steps, "boxes in another frame");
+    return simulation.state().q;
+  };
+  const TouchingModel given = flying_boxes(1, 1e5, 1000);
+  const std::vector<double> q = end_of(given, identity3<double>());
+  TouchingModel turned = given, reversed = given;
+  for (TouchingBody& body : turned.bodies)
+    for (Vec3d& X : body.mesh.rest) X = R * X + shift;
+  for (TouchingBody& body : reversed.bodies) {
+    std::reverse(body.mesh.rest.begin(), body.mesh.rest.end());
+    for (Tet& tet : body.mesh.tets)
+      for (int& v : tet) v = body.mesh.vertex_count() - 1 - v;
+  }
+  const std::vector<double> p = end_of(turned, R), r = end_of(reversed, identity3<double>());
+  double by_turn = 0, by_order = 0;
+  for (const size_t body : {0, 1}) {
+    const auto [first, end] = vertices_of(given, body);
+    for (int v = first; v < end; ++v) {
+      by_turn = std::max(by_turn, norm(point(p, v) - (R * point(q, v) + shift)));
+      by_order = std::max(by_order, norm(point(r, first + end - 1 - v) - point(q, v)));
+    }
+  }
+  const std::string reason = "each solve leaves 1e-11 of the forces; the motion of a step is 1e-3 m";
+  found.expect_small("largest change by another frame", by_turn, 1e-9, reason, "m");
+  found.expect_small("largest change by another numbering", by_order, 1e-9, reason, "m");
+}
+
 }  // namespace
 
 void add_contact_motion_checks(std::vector<Check>& checks) {
@@ -228,6 +264,13 @@ void add_contact_motion_checks(std::vector<Check>& checks) {
                     "Backward Euler loses energy in every step; the ledger closes",
                     {},
                     check_bounce});
+  checks.push_back({"contact",
+                    "frames",
+                    "Neither frame nor numbering changes contact",
+                    "The boxes turned and shifted, and with vertices in reverse order.",
+                    "The equations know neither",
+                    {},
+                    check_frames});
   checks.push_back({"contact",
                     "units",
                     "Units do not change contact",
