@@ -36,10 +36,11 @@ class Exact(Folder):
     def test_edges_and_triangles(self):
         meets = lambda p, q: exact.edge_meets_triangle(p, q, self.TRIANGLE)
         for p, q in (((.2, .2, -1.), (.2, .2, 1.)), ((.2, .2, 0.), (.2, .2, 1.)), ((2., .2, 0.), (-1., .2, 0.)),
-                     ((.5, .5, 0.), (1., 1., 0.)), ((0., 0., -1.), (0., 0., 1.)), ((.5, -1., -1.), (.5, 1., 1.))):
+                     ((.5, .5, 0.), (1., 1., 0.)), ((0., 0., -1.), (0., 0., 1.)), ((.5, -1., -1.), (.5, 1., 1.)), ((1., 0., 0.), (3., 0., 0.))):
             self.assertTrue(meets(p, q), (p, q))
         for p, q in (((.2, .2, 1e-300), (.2, .2, 1.)), ((2., 2., 0.), (1., 1., 0.)), ((.6, .6, -1.), (.6, .6, 1.)),
-                     ((-1e-300, .5, -1.), (-1e-300, .5, 1.)), ((1., 1., 1.), (2., 2., 1.))):
+                     ((-1e-300, .5, -1.), (-1e-300, .5, 1.)), ((2., 0., 0.), (3., 0., 0.)),
+                     ((1., 1., 1.), (2., 2., 1.))):
             self.assertFalse(meets(p, q), (p, q))
 
     def test_a_point_is_inside_or_outside(self):
@@ -113,6 +114,7 @@ class Shapes(Folder):
 
     def test_pins_against_obstacles(self):
         self.run_cases(contact_cases.pinned(15))
+        self.run_cases(contact_cases.driven(4))
 
 
 class Extremes(Folder):

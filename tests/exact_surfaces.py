@@ -103,8 +103,9 @@ def coplanar_meet(p, q, triangle):
     for k in range(3):
         a, b = triangle[k], triangle[k - 2]
         if (side_in_plane(p, q, a, axes) * side_in_plane(p, q, b, axes) <= 0 and
-                side_in_plane(a, b, p, axes) * side_in_plane(a, b, q, axes) <= 0):
-            return True
+                side_in_plane(a, b, p, axes) * side_in_plane(a, b, q, axes) <= 0 and
+                all(min(p[i], q[i]) <= max(a[i], b[i]) and min(a[i], b[i]) <= max(p[i], q[i]) for i in axes)):
+            return True  # the last condition decides for edges on one line
     return False
 
 
