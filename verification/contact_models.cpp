@@ -5,6 +5,7 @@
 
 #include "contact/barrier_function.h"
 #include "dynamics/contact.h"
+#include "mesh/self_intersection.h"
 #include "mesh/surface.h"
 
 namespace aspic::verify {
@@ -75,6 +76,22 @@ Vec3d contact_force(const Simulation& simulation) {
   Vec3d sum{};
   for (int v = 0; v < simulation.model().mesh.vertex_count(); ++v) sum = sum + point(g, v);
   return sum;
+}
+
+void expect_contact(const std::string& name, const Simulation& simulation, Findings& found) {
+  const Barrier& contact = *simulation.model().contact;
+  const std::vector<double>& q = simulation.state().q;
+  TriMesh surface{contact.mesh().rest, contact.mesh().triangles};
+  bool is_free = true;
+  for (int p = 0; p < contact.mesh().point_count(); ++p) {
+    const int row = contact.mesh().row[p];
+    if (row >= 0) surface.vertices[p] = point(q, row);
+    for (const ContactPlane& plane : contact.mesh().planes)
+      is_free = is_free && (row < 0 || dot(plane.normal, surface.vertices[p] - plane.origin) > 0);
+  }
+  const ContactSummary summary = contact.summary(q);
+  is_free = is_free && summary.contacts > 0 && summary.min_gap > 0 && self_intersections(surface).pairs.empty();
+  found.expect(name + "contacts exist, and nothing intersects", {is_free ? 1.0 : 0.0, 1, 0}, "yes or no");
 }
 
 double gap_of_pressure(const ContactLaw& law, double p) {

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "contact/barrier.h"
+#include "verification/check.h"
 #include "verification/models.h"
 
 namespace aspic::verify {
@@ -38,6 +39,9 @@ Vec3d mass_mean(const Model& model, std::span<const double> values);
 
 // Resultant of all contact forces on the model [N].
 Vec3d contact_force(const Simulation& simulation);
+
+// Expects contacts, positive gaps, and by exact predicates no intersections.
+void expect_contact(const std::string& name, const Simulation& simulation, Findings& found);
 
 // The gap at which the barrier exerts the pressure p: kappa |b'(gap)| = p.
 double gap_of_pressure(const ContactLaw& law, double p);

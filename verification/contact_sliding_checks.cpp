@@ -80,6 +80,7 @@ void check_incline(const Subject& subject, Findings& found) {
                  share < 1.1 ? "1e-3, and a fifth of a percent above the threshold speeds pass the smoothed range"
                              : "1e-3: shear of the block and the solver's tolerance",
                  "m");
+    expect_contact("tan(angle) = " + std::to_string(share).substr(0, 5) + " mu: ", simulation, found);
   }
 }
 
@@ -96,6 +97,7 @@ void check_slide_to_rest(const Subject& subject, Findings& found) {
                "1e-3: the block shears and its pressure is uneven", "m");
   found.expect_small("speed at the end", std::abs(mass_mean(simulation.model(), simulation.state().qdot)[0]),
                      creep_of(simulation), "a block at rest creeps slower than the limit", "m/s");
+  expect_contact("", simulation, found);
 }
 
 // Boxes on each other on a slight slope.
@@ -114,6 +116,7 @@ void check_stack(const Subject& subject, Findings& found) {
   take_steps(simulation, 50, "stack of boxes");
   const std::vector<double> before = simulation.state().q;
   take_steps(simulation, steps, "stack of boxes");
+  expect_contact("", simulation, found);
   const double slip = creep_of(simulation) * (1 - std::sqrt(1 - tangent / mu));
   for (int i = 0; i < boxes; ++i) {
     const auto [first, end] = vertices_of(given, i);

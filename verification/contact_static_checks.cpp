@@ -41,7 +41,8 @@ Vec3d far_displacement(const Vec3d& X, double P) {
   return {{out * X[0], down, out * X[2]}};
 }
 
-Hertz pressed_sphere(int n, double reach, const std::string& material, double stiffness) {
+Hertz pressed_sphere(int n, const std::string& material, double stiffness, Findings& found) {
+  const double reach = 1e-5;  // a fiftieth of about a quarter of an element in the patch
   const std::vector<double> at = graded(n, 1.4);
   const int cells = static_cast<int>(at.size()) - 1;
   TetMesh mesh = make_box({{0, 0, 0}}, {{1, 1, 1}}, {cells, cells, cells});
@@ -80,6 +81,7 @@ Hertz pressed_sphere(int n, double reach, const std::string& material, double st
   model.pins.push_back({"x", x_plane, {}, {{{1, 0, 0}}}});
   model.pins.push_back({"z", z_plane, {}, {{{0, 0, 1}}}});
   const Simulation simulation = equilibrium(std::move(model), 4, "sphere on a plane", 1e-8);
+  expect_contact("", simulation, found);
 
   // Fits p^2 = p0^2 (1 - r^2 / a^2), a line in r^2, to the inner pressures.
   const Barrier& contact = *simulation.model().contact;
@@ -99,7 +101,7 @@ Hertz pressed_sphere(int n, double reach, const std::string& material, double st
 
 void check_hertz(const Subject& subject, Findings& found) {
   const int n = subject.quick ? 8 : 12;
-  const Hertz measured = pressed_sphere(n, 1e-5, subject.replacement("neo_hookean_log"), subject.stiffness);
+  const Hertz measured = pressed_sphere(n, subject.replacement("neo_hookean_log"), subject.stiffness, found);
   const double F = measured.force, a = std::cbrt(3 * F * kRadius / (4 * kModulus)), p0 = 3 * F / (2 * pi * a * a);
   found.expect("radius of contact", {measured.radius, a, (subject.quick ? 0.5 / n : 0.03) * a},
                "the border of contact lies within an element, of which there are 12 (quick: 8) in the radius", "m");
@@ -124,7 +126,7 @@ struct Blocks {
 
 constexpr double kShortened = 0.05;  // of the height of both blocks, 1
 
-Pressed pressed_blocks(const Blocks& blocks, double young) {
+Pressed pressed_blocks(const Blocks& blocks, double young, Findings& found) {
   const double gap = 1e-3;
   const auto [n, up, only_facing] = blocks;
   TouchingModel given{.bodies = {{make_box({{0, 0, 0}}, {{1, 0.5, 1}}, {n, n, n})},
@@ -145,6 +147,7 @@ Pressed pressed_blocks(const Blocks& blocks, double young) {
   model.pins.push_back({"top", moved, [down](const Vec3d& X, double t) { return X - Vec3d{{0, t * down, 0}}; }});
   const ContactLaw law = model.contact->laws()(1, 0);
   const Simulation simulation = equilibrium(std::move(model), 4, "pressed blocks", 1e-10);
+  expect_contact(std::to_string(n) + " and " + std::to_string(up) + " cells: ", simulation, found);
   double p = young * kShortened;  // solves p = E (shortened + gap of p)
   for (int i = 0; i < 100; ++i) p = young * (kShortened + gap_of_pressure(law, p));
   const double wider = gap_of_pressure(law, 0.6 * p) - gap_of_pressure(law, p);
@@ -179,7 +182,7 @@ void check_patch(const Subject& subject, Findings& found) {
           {"2 : 1", 2 * n, 0.01, "1 %: coarse points lie on fine ones"},
           {"3 : 2", 3 * n / 2, load_scatter(2, 3),
            "nodal loads deviate by up to s (1 / r - 1) for the ratio r of areas and s = r^3 / (1 + r^3)"}}) {
-      const Pressed one = pressed_blocks({n, upper, true}, E);
+      const Pressed one = pressed_blocks({n, upper, true}, E, found);
       const double mean_bound = upper == n ? 1e-9 : upper == 2 * n ? 1e-3 : bound * bound / n;
       const std::string mean_reason =
           upper == n ? reason
@@ -191,7 +194,7 @@ void check_patch(const Subject& subject, Findings& found) {
                    mean_reason);
       found.expect_small(cells + ": stress in the second layers, largest relative deviation", one.second_layer, bound,
                          reason);
-      const Pressed whole = pressed_blocks({n, upper, false}, E);
+      const Pressed whole = pressed_blocks({n, upper, false}, E, found);
       found.expect(
           cells + ", whole surfaces: mean pressure / E",
           {whole.mean, whole.reference / E, whole.border * whole.reference},
@@ -202,7 +205,7 @@ void check_patch(const Subject& subject, Findings& found) {
 void check_refinement(const Subject& subject, Findings& found) {
   std::vector<double> error;
   for (const int n : subject.quick ? std::vector<int>{3, 6} : std::vector<int>{3, 6, 12})
-    error.push_back(pressed_blocks({n, n + n / 3, false}, 1).mean / kShortened - 1);
+    error.push_back(pressed_blocks({n, n + n / 3, false}, 1, found).mean / kShortened - 1);
   for (size_t i = 1; i < error.size(); ++i)
     found.expect("order, cells halved " + std::to_string(i) + " times", {std::log2(error[i - 1] / error[i]), 1, 0.15},
                  "the gap is a part of the reach that depends on pressure, which changes by a few percent");
@@ -211,7 +214,7 @@ void check_refinement(const Subject& subject, Findings& found) {
 }
 
 // Height of a settled soft block on the floor and of another one on it.
-std::vector<double> heights_at_rest(const ContactOptions& constants) {
+std::vector<double> heights_at_rest(const ContactOptions& constants, Findings& found) {
   TouchingModel given{.bodies = {{make_box({{0, 0.001, 0}}, {{0.1, 0.051, 0.1}}, {3, 2, 3})},
                                  {make_box({{0.02, 0.053, 0.02}}, {{0.08, 0.103, 0.08}}, {2, 2, 2})}},
                       .has_floor = true,
@@ -220,6 +223,7 @@ std::vector<double> heights_at_rest(const ContactOptions& constants) {
   given.contact = constants;
   Simulation simulation = simulate(make_touching(given), {.h = 0.05, .solver = {}});
   take_steps(simulation, 40, "blocks come to rest");
+  expect_contact("", simulation, found);
   std::vector<double> heights;
   for (const size_t body : {0, 1}) {
     const auto [first, end] = vertices_of(given, body);
@@ -230,11 +234,11 @@ std::vector<double> heights_at_rest(const ContactOptions& constants) {
 
 void check_constants(const Subject&, Findings& found) {
   const double reach = 8e-4, stiffness = 1e4;
-  const std::vector<double> base = heights_at_rest({reach, stiffness});
+  const std::vector<double> base = heights_at_rest({reach, stiffness}, found);
   for (const auto& [name, constants] : {std::pair{"half the reach", ContactOptions{reach / 2, stiffness}},
                                         {"half the stiffness", ContactOptions{reach, stiffness / 2}},
                                         {"ten times the stiffness", ContactOptions{reach, 10 * stiffness}}}) {
-    const std::vector<double> other = heights_at_rest(constants);
+    const std::vector<double> other = heights_at_rest(constants, found);
     for (const size_t body : {0, 1})
       found.expect_small(std::string(name) + ": motion of block " + std::to_string(body + 1),
                          std::abs(other[body] - base[body]), 2 * reach,
