@@ -78,7 +78,7 @@ void scene(std::string_view bytes) {
 
 // A box falls onto the surface in the file.
 void obstacle(std::string_view bytes) {
-  constexpr int kMostPolls = 200;
+  constexpr int kMostPolls = 40;
   const fs::path folder = folder_of_process();
   put_file(folder / "obstacle.obj", bytes);
   put_file(

@@ -82,7 +82,7 @@ def impact(seed):
                           f"angular_velocity = [0, {chance.uniform(-1, 1) * speed / size:.2g}, {speed / size:.2g}]"))
     steps = chance.choice([6, 20])
     return case(f"impact {seed}", parts, h=2 * size / speed / steps, steps=steps, gravity=(0, 0, 0),
-                contact=f"friction = {chance.choice([0, 0, .3, 1])}", codes=(0, 3))
+                contact=f"friction = {chance.choice([0, 0, .3, 1])}", codes=(0, 3), limit=300)
 
 
 def blow(seed):
@@ -96,7 +96,7 @@ def blow(seed):
     mesh = placed(mesh, [-x for x in middle])
     reach = max(math.hypot(*p) for p in mesh[0]) + .01
     flying = body("flying", placed(mesh, (0, reach, 0)), young=young, density=density, more=f"velocity = [0, {-speed:.3g}, 0]")
-    rest = dict(h=reach / speed / chance.choice([1, 4]), steps=6, gravity=(0, 0, 0), contact=f"friction = {chance.choice([0, .3])}", codes=(0, 3))
+    rest = dict(h=reach / speed / chance.choice([1, 4]), steps=6, gravity=(0, 0, 0), contact=f"friction = {chance.choice([0, .3])}", codes=(0, 3), limit=300)
     if chance.random() < .5:
         return case(f"blow {seed}", [flying], obstacles=[("sheet", sheet(20, cells=chance.randint(1, 5)))], check=stays_above(0), **rest)
     wall = chance.choice([.05, .5])
