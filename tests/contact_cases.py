@@ -35,9 +35,20 @@ def degenerate_shapes(steps):
         yield case(f"{upper} on {lower}{' crossed' if turn else ''}", [body("upper", mesh, more="velocity = [0, -1, 0]")],
                    obstacles=[("lower", surface_text(SHAPES[lower]()))], steps=steps, contact="friction = 0.2",
                    check=touches, codes=(0, 3), limit=120)
+    for cells in (3, 8):
+        fine = placed(box((-.5, 0, -.5), (.5, .5, .5), (cells, cells // 2, cells)), (.013, 3.02, .027))
+        yield case(f"box of {cells} cells on spike", [body("box", fine, more="velocity = [0, -1, 0]")],
+                   obstacles=[("spike", surface_text(spike()))], steps=min(steps, 25), check=gap_above(1e-6))
     yield case("box slides over internal edges",
                [body("slider", placed(box((-.25, 0, -.25), (.25, .5, .25), (2, 2, 2)), (-.5, 1.02, 0)), more="velocity = [2, -0.5, 0]")],
                obstacles=[("lower", surface_text(internal_edges()))], steps=steps, check=straight, limit=120)
+
+
+def gap_above(least):
+    def check(outcome):
+        gaps = [float(r["min_gap"]) for r in outcome.rows if int(r["contacts"])]
+        return [] if gaps and min(gaps) > least else [f"smallest gap {min(gaps, default=0):.2g} m, below {least}"]
+    return check
 
 
 def straight(outcome):
