@@ -166,6 +166,11 @@ TEST(Contact, IntersectingStartIsRefused) {
   }
 }
 
+TEST(Contact, GapBelowRoundOffIsRefused) {
+  EXPECT_THROW(above_plane({}, 0, 0.01, 0, 1e-15), InvalidInput);
+  EXPECT_NO_THROW(above_plane({}, 0, 0.01, 0, 1e-12));
+}
+
 TEST(Contact, ScenesWithoutItHaveEmptyReports) {
   SimulationOptions options;
   Simulation simulation(block({}).build(), options);
