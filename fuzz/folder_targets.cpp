@@ -4,6 +4,7 @@
 #include <string>
 
 #include "base/error.h"
+#include "base/stop_token.h"
 #include "capture/data_set.h"
 #include "capture/journal.h"
 #include "capture/motion_table.h"
@@ -73,6 +74,23 @@ void scene(std::string_view bytes) {
   for (const double q : built.simulation.state().q) require(std::isfinite(q), "positions are finite");
   require_printable(built.notes);
   for (const BodyRange& body : built.simulation.model().bodies) require_printable({body.name});
+}
+
+// A box falls onto the surface in the file.
+void obstacle(std::string_view bytes) {
+  constexpr int kMostPolls = 40;
+  const fs::path folder = folder_of_process();
+  put_file(folder / "obstacle.obj", bytes);
+  put_file(
+      folder / "falling.toml",
+      "[time]\nduration = 0.02\n[contact]\nfriction = 0.5\n[[body]]\nvelocity = [0, -9, 0]\nshape = { box = { lower = "
+      "[0, 0.05, 0], upper = [1, 1, 1], cells = [1, 1, 1] } }\n[[obstacle]]\nmesh = \"obstacle.obj\"\n");
+  Scene built = load_scene(folder / "falling.toml", small_scenes());
+  require_printable(built.notes);
+  int polls = 0;
+  const StopToken stop([&polls] { return ++polls > kMostPolls; });
+  for (int i = 0; i < built.steps; ++i) built.simulation.step({}, stop);
+  for (const double q : built.simulation.state().q) require(std::isfinite(q), "positions are finite");
 }
 
 void material(std::string_view bytes) {

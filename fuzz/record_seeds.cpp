@@ -115,6 +115,17 @@ std::vector<Seed> scene_seeds() {
       {"scene", "torus",
        with_body("shape = { torus = { major_radius = 1, minor_radius = 0.3, size = 0.6 } }\nmaterial = { "
                  "model = \"stvk\", young = \"1e5 * (1 + X)\" }")},
+      {"scene", "contact",
+       "[contact]\nfriction = 0.5\nreach = 0.01\nstiffness = 1e4\ncreep = 1e-3\n" + with_body(box_shape) +
+           "[[obstacle]]\nname = \"floor\"\nplane = { origin = [0, -1, 0], normal = [0, 1, 0] }\n"},
+      {"scene", "obstacles",
+       with_body(box_shape) + "[[obstacle]]\nmesh = \"skin.obj\"\ntranslate = [0, -3, 0]\nfriction = "
+                              "1\n[[obstacle]]\nshape = { sphere = { "
+                              "radius = 1, size = 0.7 } }\nscale = 0.5\nrotate = { axis = [0, 0, 1], angle_deg = 30 "
+                              "}\ntranslate = [4, 0, 0]\n"},
+      {"obstacle", "sheet", "v -2 0 -2\nv 2 0 -2\nv 0 0 4\nf 1 2 3\n"},
+      {"obstacle", "fan",
+       "v 0 0 -2\nv 0 0 2\nv 2 0 0\nv -2 0 0\nv 0 -2 0\nf 1 2 3\nf 1 2 4\nf 1 2 5\nf 1 1 5\nf 1 2 3\n"},
       {"values", "one", "young\n1e5\n2e5\n"},
       {"values", "three", "# three\n1, 2, 3\n4; 5; 6\n"},
       {"scene", "fill", with_body("mesh = \"skin.obj\"\nmesh_size = 0.5")},

@@ -31,6 +31,7 @@ std::span<const Target> targets() {
       {"motion_table", motion_table},
       {"toml", toml},
       {"scene", scene},
+      {"obstacle", obstacle},
       {"values", values},
       {"expression", expression},
       {"overrides", overrides},

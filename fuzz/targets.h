@@ -43,8 +43,9 @@ void curves(std::string_view bytes);
 void motion_table(std::string_view bytes);
 // Scenes.
 void toml(std::string_view bytes);
-void scene(std::string_view bytes);   // builds the scene, with at most a few hundred tets
-void values(std::string_view bytes);  // a table of numbers per element
+void scene(std::string_view bytes);     // builds the scene, with at most a few hundred tets
+void obstacle(std::string_view bytes);  // OBJ, with a body that falls onto it
+void values(std::string_view bytes);    // a table of numbers per element
 void expression(std::string_view bytes);
 void overrides(std::string_view bytes);  // one per line
 

@@ -20,6 +20,9 @@ const std::vector<Check>& checks() {
     add_cylinder_checks(list);
     add_vibration_checks(list);
     add_column_checks(list);
+    add_contact_sliding_checks(list);
+    add_contact_static_checks(list);
+    add_contact_motion_checks(list);
     return list;
   }();
   return all;

@@ -175,5 +175,30 @@ TEST(Barrier, StepStopsBeforeSurfacesTouch) {
   EXPECT_GT(boxes.value(), 0);
 }
 
+// The share of a tip in the integral is (fine / coarse triangle)^3, about 1e-8 here.
+TEST(Barrier, GuardsTipsOfCoarseSurfaces) {
+  const TetMesh box = make_box({{-0.5, 0, -0.5}}, {{0.5, 0.2, 0.5}}, {10, 2, 10});
+  std::vector<int> rows;
+  std::vector<double> x;
+  for (const Vec3d& X : box.rest) {
+    rows.push_back(static_cast<int>(rows.size()));
+    x.insert(x.end(), X.a, X.a + 3);
+  }
+  const double reach = 2e-3, gap = reach / 20;
+  ContactMesh contact;
+  contact.add({.name = "box", .young = 1e5}, box.rest, boundary_triangles(box, 0, box.tet_count()), rows);
+  const std::vector<Vec3d> spike = {{{-2, -3, -2}}, {{2, -3, -2}}, {{2, -3, 2}}, {{-2, -3, 2}}, {{0.013, -gap, 0.027}}};
+  contact.add({.name = "spike", .is_obstacle = true}, spike,
+              std::vector<Triangle>{{0, 4, 1}, {1, 4, 2}, {2, 4, 3}, {3, 4, 0}, {0, 1, 2}, {0, 2, 3}}, {});
+  const Barrier barrier(std::move(contact), ContactOptions{.reach = reach});
+  std::vector<double> g(x.size());
+  barrier.add_gradient(x, {}, 1, g);
+  double force = 0;
+  for (size_t i = 1; i < g.size(); i += 3) force -= g[i];
+  const double area = barrier.mesh().parts[0].mean_triangle, kappa = barrier.laws()(1, 0).stiffness;
+  const double expected = -kappa * area * aspic::barrier(gap, reach / 4).first;
+  EXPECT_NEAR(force, expected, 1e-3 * expected);
+}
+
 }  // namespace
 }  // namespace aspic

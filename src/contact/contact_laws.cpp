@@ -34,7 +34,8 @@ ContactLaws::ContactLaws(const ContactMesh& mesh, const ContactOptions& options)
       law_[i * parts_ + j] = {.reach = options.reach > 0 ? options.reach : kReach * std::min(a.mean_edge, b.mean_edge),
                               .stiffness = options.stiffness > 0 ? options.stiffness : kStiffness * smaller_young(a, b),
                               .share = i == j ? 0.5 : share_of_finer(a.mean_triangle, b.mean_triangle),
-                              .friction = std::sqrt(a.friction * b.friction)};
+                              .friction = std::sqrt(a.friction * b.friction),
+                              .guard = i == j ? 0 : std::min(a.mean_triangle, b.mean_triangle)};
     }
 }
 

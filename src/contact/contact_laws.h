@@ -11,6 +11,7 @@ struct ContactLaw {
   double stiffness = 0;  // kappa [Pa]
   double share = 0;      // of the integral over the first surface; that over the second one has the rest
   double friction = 0;   // coefficient
+  double guard = 0;      // least area of a point near the guards' reach [m^2]
 };
 
 struct ContactOptions {

@@ -15,7 +15,7 @@ struct ContactStencil {
                                                 // or of two edges
   double weight = 0;                            // factor of b [N]
   double reach = 0;                             // distance at which b begins [m]
-  double area = 0;                              // that `weight` stands for, with its sign; 0 for two edges [m^2]
+  double area = 0;                              // that `weight` stands for, with its sign; 0: a guard [m^2]
   std::array<int, 2> parts = {};
   // Two edges: eps in the factor that vanishes where they are parallel, (2 - c/eps) c/eps for the squared norm c of
   // their cross product below eps [Li 2020, section 6.2] [m^4]. 0: no factor.

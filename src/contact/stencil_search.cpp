@@ -139,6 +139,14 @@ void StencilSearch::add_point(const PathCandidates& candidates, std::span<const 
       const ContactLaw& law = laws_(own, other);
       const double area = entry.share * law.share * mesh_.area[p];
       found.push_back({entry.distance, entry.point, law.stiffness * area, reach, area, {own, other}});
+      // Points of a much coarser surface have next to no share: a tip would pierce the other surface.
+      const double guard = std::min(law.guard, mesh_.area[p]) - law.share * mesh_.area[p];
+      if (guard > 0 && entry.distance.d < kEdgeReach * reach)
+        found.push_back({.distance = entry.distance,
+                         .point = entry.point,
+                         .weight = law.stiffness * guard * entry.share,
+                         .reach = kEdgeReach * reach,
+                         .parts = {own, other}});
     }
     near.clear();
   };

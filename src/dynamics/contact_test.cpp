@@ -17,15 +17,15 @@ namespace {
 
 constexpr double kYoung = 1e6;
 
-ModelBuilder block(const Vec3d& gravity) {
-  ModelBuilder builder(make_box({{-0.05, 0.001, -0.05}}, {{0.05, 0.051, 0.05}}, {4, 2, 4}), "block");
+ModelBuilder block(const Vec3d& gravity, double gap = 0.001) {
+  ModelBuilder builder(make_box({{-0.05, gap, -0.05}}, {{0.05, gap + 0.05, 0.05}}, {4, 2, 4}), "block");
   builder.material("neo_hookean", {.young = kYoung, .poisson = 0.3}).density(1000).gravity(gravity);
   return builder;
 }
 
 // A block above the plane y = 0.
-Simulation above_plane(const Vec3d& gravity, double friction, double h, double creep = 0) {
-  Model model = block(gravity).build();
+Simulation above_plane(const Vec3d& gravity, double friction, double h, double creep = 0, double gap = 0.001) {
+  Model model = block(gravity, gap).build();
   ContactMesh contact;
   std::vector<int> rows(model.mesh.rest.size());
   for (size_t i = 0; i < rows.size(); ++i) rows[i] = static_cast<int>(i);
@@ -96,6 +96,21 @@ TEST(Contact, BlockOnInclineSlidesOrSticks) {
   }
 }
 
+// The barrier of the first gap is 1e6 times stiffer than the block, and gone after the block has been thrown off.
+TEST(Contact, TinyGapAtRestKeepsThresholds) {
+  Simulation simulation = above_plane({{0, -9.81, 0}}, 0, 0.01, 0, 1e-9);
+  const double weight = 1000 * 9.81 * 0.1 * 0.05 * 0.1;
+  StepReport report;
+  for (int i = 0; i < 100; ++i) {
+    report = simulation.step();
+    ASSERT_TRUE(is_success(report.status)) << i << " " << to_string(report.status);
+    if (i > 0) {
+      ASSERT_LT(report.residual_threshold, 1e-3 * weight) << i;
+    }
+  }
+  EXPECT_NEAR(report.max_pressure, 1000 * 9.81 * 0.05, 300);
+}
+
 // The test for intersections is exact and shares no code with contact.
 TEST(Contact, CollidingBlocksNeverIntersect) {
   TetMesh mesh = make_box({{-0.05, 0.01, -0.05}}, {{0.05, 0.06, 0.05}}, {3, 2, 3});
@@ -149,6 +164,11 @@ TEST(Contact, IntersectingStartIsRefused) {
   } catch (const InvalidInput& e) {
     EXPECT_NE(std::string(e.what()).find("block and ledge"), std::string::npos) << e.what();
   }
+}
+
+TEST(Contact, GapBelowRoundOffIsRefused) {
+  EXPECT_THROW(above_plane({}, 0, 0.01, 0, 1e-15), InvalidInput);
+  EXPECT_NO_THROW(above_plane({}, 0, 0.01, 0, 1e-12));
 }
 
 TEST(Contact, ScenesWithoutItHaveEmptyReports) {

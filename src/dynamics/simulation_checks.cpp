@@ -3,9 +3,11 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <limits>
 
 #include "base/error.h"
 #include "contact/barrier.h"
+#include "math/vectors.h"
 #include "mesh/self_intersection.h"
 
 namespace aspic {
@@ -108,7 +110,8 @@ void require_apart(const Model& model, std::span<const double> x, const Integrat
     throw InvalidInput("body '" + contact.parts[contact.part[p]].name + "' touches itself at rest, at vertex " +
                        std::to_string(model.numbering.vertex.to_user(contact.row[p])) +
                        "; merge the coincident vertices (aspic check MESH --repair) or leave a gap");
-  if (!std::isfinite(model.contact->value(x, {})))
+  const double least_gap = 1e3 * std::numeric_limits<double>::epsilon() * max_abs(x);  // as in largest_step()
+  if (!std::isfinite(model.contact->value(x, {})) || model.contact->summary(x).min_gap < least_gap)
     throw InvalidInput("surfaces touch in the initial state; leave a gap between them");
 }
 

@@ -1,0 +1,135 @@
+#!/usr/bin/env python3
+"""Hard cases of contact through the program, with exact checks of every frame. tools/contact_cases runs longer ones.
+
+usage: ASPIC=path/to/aspic contact_test.py [TestCase...]"""
+import pathlib
+import shutil
+import subprocess
+import tempfile
+import tomllib
+import unittest
+
+import contact_cases
+import contact_scenes
+import exact_surfaces as exact
+from contact_scenes import ASPIC, body, case
+from contact_shapes import box, placed, spike
+
+SCENES = pathlib.Path(__file__).resolve().parents[1] / "scenes"
+
+
+class Folder(unittest.TestCase):
+    def setUp(self):
+        self.folder = pathlib.Path(tempfile.mkdtemp(prefix="aspic_contact_"))
+        self.addCleanup(shutil.rmtree, self.folder)
+
+    def run_cases(self, cases):
+        for number, one in enumerate(cases):
+            with self.subTest(one.name):
+                outcome = contact_scenes.run(one, self.folder / str(number))
+                self.assertEqual(outcome.faults, [], outcome.line())
+
+
+class Exact(Folder):
+    TRIANGLE = ((0., 0., 0.), (1., 0., 0.), (0., 1., 0.))
+
+    def test_edges_and_triangles(self):
+        meets = lambda p, q: exact.edge_meets_triangle(p, q, self.TRIANGLE)
+        for p, q in (((.2, .2, -1.), (.2, .2, 1.)), ((.2, .2, 0.), (.2, .2, 1.)), ((2., .2, 0.), (-1., .2, 0.)),
+                     ((.5, .5, 0.), (1., 1., 0.)), ((0., 0., -1.), (0., 0., 1.)), ((.5, -1., -1.), (.5, 1., 1.)), ((1., 0., 0.), (3., 0., 0.))):
+            self.assertTrue(meets(p, q), (p, q))
+        for p, q in (((.2, .2, 1e-300), (.2, .2, 1.)), ((2., 2., 0.), (1., 1., 0.)), ((.6, .6, -1.), (.6, .6, 1.)),
+                     ((-1e-300, .5, -1.), (-1e-300, .5, 1.)), ((2., 0., 0.), (3., 0., 0.)),
+                     ((1., 1., 1.), (2., 2., 1.))):
+            self.assertFalse(meets(p, q), (p, q))
+
+    def test_a_point_is_inside_or_outside(self):
+        points, tets = box()
+        surface = exact.Surface("box", points, exact.boundary(tets), False)
+        self.assertTrue(exact.is_closed(surface))
+        for point, expected in (((0., .5, 0.), True), ((.49, .01, .49), True), ((.51, .5, 0.), False), ((0., -1e-300, 0.), False)):
+            self.assertEqual(exact.is_inside(point, surface), expected, point)
+
+    def test_bodies_without_contact_intersect(self):
+        crossing = case("crossing", [body("lower", spike()), body("upper", placed(spike(), (0, 6.05, 0), flip=True), more="velocity = [0, -10, 0]")],
+                        h=.01, steps=5, gravity=(0, 0, 0))
+        crossing.scene = crossing.scene.replace("[contact]\n", "")
+        faults = contact_scenes.run(crossing, self.folder).faults
+        self.assertTrue(any("intersections" in fault for fault in faults), faults)
+
+
+def toml_text(value):
+    if isinstance(value, dict):
+        return "{ " + ", ".join(f"{key} = {toml_text(v)}" for key, v in value.items()) + " }"
+    if isinstance(value, list):
+        return "[" + ", ".join(map(toml_text, value)) + "]"
+    return f'"{value}"' if isinstance(value, str) else repr(value).lower() if isinstance(value, bool) else repr(value)
+
+
+class Scenes(Folder):
+    """Every scene with contact, all frames. Obstacles that move are left out."""
+
+    def obstacle(self, given, number):
+        """The surface of an obstacle, from a body of the same shape at the same place."""
+        place = {key: given[key] for key in ("scale", "rotate", "translate") if key in given}
+        if "mesh" in given:
+            self.assertEqual(set(place) - {"translate"}, set(), "only translations are known here")
+            points, triangles = exact.read_obj(SCENES / given["mesh"])
+            shift = place.get("translate", [0, 0, 0])
+            return exact.Surface(given["name"], [tuple(a + b for a, b in zip(p, shift)) for p in points], triangles, True)
+        keys = {"shape": given["shape"], **place, "material": {"young": 1e5, "poisson": .3, "density": 1000}}
+        folder = self.folder / f"obstacle{number}"
+        folder.mkdir()
+        (folder / "scene.toml").write_text("gravity = [0, 0, 0]\n[time]\nduration = 0.01\n[[body]]\n" +
+                                           "".join(f"{k} = {toml_text(v)}\n" for k, v in keys.items()))
+        subprocess.run([ASPIC, "run", "scene.toml", "--out", "run", "--quiet"], cwd=folder, check=True, timeout=60)
+        return exact.body_surfaces(folder / "run/frames/body_000000.vtu")[0]._replace(name="obstacle", is_obstacle=True)
+
+    def test_frames_do_not_intersect(self):
+        checked = 0
+        for path in sorted(SCENES.glob("**/*.toml")):
+            scene = tomllib.loads(path.read_text())
+            if "contact" not in scene and "obstacle" not in scene:
+                continue
+            checked += 1
+            with self.subTest(path.name):
+                out = self.folder / path.stem
+                subprocess.run([ASPIC, "run", path, "--out", out, "--quiet"], timeout=300, check=True)
+                still = [o for o in scene.get("obstacle", []) if "motion" not in o]
+                planes = [(o["plane"].get("origin", [0, 0, 0]), o["plane"].get("normal", [0, 1, 0])) for o in still if "plane" in o]
+                surfaces = [self.obstacle(o, i) for i, o in enumerate(still) if "shape" in o or "mesh" in o]
+                frames = [exact.body_surfaces(p) for p in sorted((out / "frames").glob("body_*.vtu"))]
+                self.assertEqual(contact_scenes.surface_faults(frames, surfaces, planes), [])
+                self.assertGreater(len(frames), 10)
+        self.assertGreater(checked, 0)
+
+
+class Shapes(Folder):
+    def test_degenerate_shapes(self):
+        self.run_cases(contact_cases.degenerate_shapes(20))
+
+    def test_slivers_and_bad_surfaces(self):
+        self.run_cases(c for c in contact_cases.slivers(8) if "1000" not in c.name)
+        self.run_cases(contact_cases.bad_surfaces(10))
+
+    def test_pins_against_obstacles(self):
+        self.run_cases(contact_cases.pinned(15))
+        self.run_cases(contact_cases.driven(4))
+
+
+class Extremes(Folder):
+    def test_steps_moduli_and_friction(self):
+        self.run_cases(contact_cases.numbers(10))
+
+    def test_bullets(self):
+        self.run_cases(c for c in contact_cases.bullets(10) if "free" not in c.name)
+
+    def test_parallel_edges(self):
+        self.run_cases(contact_cases.sliding_edges(60))
+
+    def test_random_impacts(self):
+        self.run_cases(contact_cases.GROUPS["impacts"](8))
+
+
+if __name__ == "__main__":
+    unittest.main()

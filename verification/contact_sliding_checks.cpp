@@ -1,0 +1,169 @@
+// Blocks that stick and slide.
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+
+#include "mesh/generators.h"
+#include "verification/contact_models.h"
+#include "verification/families.h"
+
+namespace aspic::verify {
+namespace {
+
+constexpr double kGravity = 9.81;  // [m/s^2]
+
+// The state of rest under gravity across the slope without friction, reached by long steps.
+State at_rest_on_floor(TouchingModel given) {
+  given.friction = 0;
+  given.gravity[0] = 0;
+  Simulation simulation = simulate(make_touching(given), {.h = 0.05, .solver = {}});
+  take_steps(simulation, 40, "coming to rest");
+  State state = simulation.state();
+  state.time = 0;
+  std::fill(state.qdot.begin(), state.qdot.end(), 0.0);
+  return state;
+}
+
+struct Slope {
+  double tangent = 0, friction = 0, speed = 0;  // of the incline, coefficient, initial speed down the slope [m/s]
+  double h = 0.01;
+  std::string integrator;
+};
+
+// A block on an incline, in the frame of the incline: x points down. It starts in equilibrium without friction.
+Simulation block_on_slope(const Slope& slope) {
+  const double angle = std::atan(slope.tangent);
+  TouchingModel given{.bodies = {{make_box({{-0.05, 0.0005, -0.05}}, {{0.05, 0.0255, 0.05}}, {4, 1, 4})}},
+                      .has_floor = true,
+                      .friction = slope.friction};
+  given.bodies[0].young = 1e8;    // shear by the weight moves the center by 1e-6 m
+  given.contact.stiffness = 1e5;  // rather than 1e7: pressures of 250 Pa are far below
+  given.gravity = {{kGravity * std::sin(angle), -kGravity * std::cos(angle), 0}};
+  State start = at_rest_on_floor(given);
+  for (size_t i = 0; i < start.qdot.size(); i += 3) start.qdot[i] = slope.speed;
+  SimulationOptions options{.h = slope.h, .integrator = slope.integrator, .solver = {}};
+  return Simulation(make_touching(given), start, options);
+}
+
+double along(const Simulation& simulation) { return mass_mean(simulation.model(), simulation.state().q)[0]; }
+
+double creep_of(const Simulation& simulation) {  // the default of [contact] creep
+  Vec3d lower = simulation.model().mesh.rest[0], upper = lower;
+  for (const Vec3d& X : simulation.model().mesh.rest)
+    for (int k = 0; k < 3; ++k) lower[k] = std::min(lower[k], X[k]), upper[k] = std::max(upper[k], X[k]);
+  return 1e-4 * std::sqrt(kGravity * norm(upper - lower));
+}
+
+void check_incline(const Subject& subject, Findings& found) {
+  const double mu = 0.5;
+  const int steps = subject.quick ? 20 : 100;
+  const std::string integrator = subject.replacement("backward_euler");
+  for (const double share : {0.995, 0.9}) {  // of the critical slope
+    Simulation simulation = block_on_slope({.tangent = share * mu, .friction = mu, .integrator = integrator});
+    take_steps(simulation, 5, "sticking block");
+    const double before = along(simulation), h = simulation.options().h;
+    take_steps(simulation, steps, "sticking block");
+    const double speed = (along(simulation) - before) / (steps * h);
+    const double creep = creep_of(simulation) * (1 - std::sqrt(1 - share));
+    found.expect(
+        "tan(angle) = " + std::to_string(share).substr(0, 5) + " mu: creep of the block", {speed, creep, 0.02 * creep},
+        "the smoothed law slides at speed * (1 - sqrt(1 - tan / mu)); pressure is not uniform under the block", "m/s");
+  }
+  for (const double share : {1.005, 1.2}) {
+    Simulation simulation = block_on_slope({.tangent = share * mu, .friction = mu, .integrator = integrator});
+    const double before = along(simulation), h = simulation.options().h, angle = std::atan(share * mu);
+    take_steps(simulation, steps, "sliding block");
+    const double a = kGravity * (std::sin(angle) - mu * std::cos(angle));
+    const double expected = a * h * h * steps * (steps + 1) / 2;
+    const double allowed = 1e-3 * expected + (share < 1.1 ? 2 : 0) * creep_of(simulation) * h * steps;
+    found.expect("tan(angle) = " + std::to_string(share).substr(0, 5) + " mu: distance",
+                 {along(simulation) - before, expected, allowed},
+                 share < 1.1 ? "1e-3, and a fifth of a percent above the threshold speeds pass the smoothed range"
+                             : "1e-3: shear of the block and the solver's tolerance",
+                 "m");
+    expect_contact("tan(angle) = " + std::to_string(share).substr(0, 5) + " mu: ", simulation, found);
+  }
+}
+
+void check_slide_to_rest(const Subject& subject, Findings& found) {
+  const double mu = 0.3, speed = 1, a = mu * kGravity;
+  const int steps = subject.quick ? 20 : 80;
+  const double h = speed / (a * steps);  // so that it stops at the end of a step
+  Simulation simulation =
+      block_on_slope({.friction = mu, .speed = speed, .h = h, .integrator = subject.replacement("backward_euler")});
+  const double before = along(simulation);
+  double loss = 0;
+  for (int i = 0; i < steps + 10; ++i) {
+    const StepReport report = simulation.step();
+    if (!is_success(report.status)) throw std::runtime_error("sliding block: a step did not converge");
+    loss += report.friction_loss;
+  }
+  const double expected = speed * speed / (2 * a) - speed * h / 2;
+  found.expect("distance", {along(simulation) - before, expected, 1e-3 * expected},
+               "1e-3: the block shears and its pressure is uneven", "m");
+  const double weight = 1000 * 0.1 * 0.025 * 0.1 * kGravity;  // of the block [N]
+  found.expect("loss by friction / (mu m g distance)", {loss / (mu * weight * (along(simulation) - before)), 1, 1e-3},
+               "1e-3: the block shears and its pressure is uneven");
+  found.expect_small("speed at the end", std::abs(mass_mean(simulation.model(), simulation.state().qdot)[0]),
+                     creep_of(simulation), "a block at rest creeps slower than the limit", "m/s");
+  expect_contact("", simulation, found);
+}
+
+// Boxes on each other on a slight slope.
+void check_stack(const Subject& subject, Findings& found) {
+  const double mu = 0.5, tangent = 0.1, angle = std::atan(tangent), h = 0.02;
+  const int boxes = 3, steps = subject.quick ? 20 : 100;
+  TouchingModel given{.has_floor = true, .friction = mu};
+  for (int i = 0; i < boxes; ++i) {
+    const double low = 0.0005 + i * 0.1005, half = 0.05 - 0.003 * i;
+    given.bodies.push_back(
+        {make_box({{-half, low, -half}}, {{half, low + 0.1, half}}, {2 + i % 2, 2, 2 + i % 2}), 1e8});
+  }
+  given.gravity = {{kGravity * std::sin(angle), -kGravity * std::cos(angle), 0}};
+  SimulationOptions options{.h = h, .integrator = subject.replacement("backward_euler"), .solver = {}};
+  Simulation simulation(make_touching(given), options);
+  take_steps(simulation, 50, "stack of boxes");
+  const std::vector<double> before = simulation.state().q;
+  take_steps(simulation, steps, "stack of boxes");
+  expect_contact("", simulation, found);
+  const double slip = creep_of(simulation) * (1 - std::sqrt(1 - tangent / mu));
+  for (int i = 0; i < boxes; ++i) {
+    const auto [first, end] = vertices_of(given, i);
+    const Vec3d moved = mass_mean(simulation.model(), simulation.state().q, first, end) -
+                        mass_mean(simulation.model(), before, first, end);
+    found.expect("box " + std::to_string(i + 1) + ": creep",
+                 {moved[0] / (steps * h), (i + 1) * slip, 0.01 * (i + 1) * slip},
+                 "each of the surfaces below creeps by the smoothed law; 1 % for the boxes that still settle", "m/s");
+    found.expect_small("box " + std::to_string(i + 1) + ": motion across the slope", std::abs(moved[2]),
+                       1e-3 * h * steps * slip,
+                       "nothing acts there, a thousandth of the creep for meshes without symmetry", "m");
+  }
+}
+
+}  // namespace
+
+void add_contact_sliding_checks(std::vector<Check>& checks) {
+  checks.push_back({"contact",
+                    "incline",
+                    "A block on an incline sticks below the angle of friction and slides above it",
+                    "mu = 0.5; slopes of 0.9, 0.995, 1.005 and 1.2 mu.",
+                    "Coulomb's law; backward Euler slides x_n = a h^2 n (n + 1) / 2 with a = g (sin - mu cos)",
+                    {},
+                    check_incline});
+  checks.push_back({"contact",
+                    "slide_to_rest",
+                    "A sliding block comes to rest",
+                    "1 m/s on a level floor, mu = 0.3.",
+                    "v^2 / (2 mu g) - v h / 2, the sum of the positions of backward Euler",
+                    {},
+                    check_slide_to_rest});
+  checks.push_back({"contact",
+                    "stack",
+                    "A stack of boxes stays at rest",
+                    "Three stiff boxes on a slope of 0.1, mu = 0.5.",
+                    "The creep of the smoothed law of friction, s (1 - sqrt(1 - tan / mu)) per surface",
+                    {},
+                    check_stack});
+}
+
+}  // namespace aspic::verify
