@@ -114,7 +114,7 @@ void Friction::update_lagged(Positions x, Context& context) const {
 }
 
 void Friction::mix_lagged(double weight, Context& context) const {
-  constexpr double kForgotten = 1e-3;
+  constexpr double kForgotten = 1e-2;
   auto& own = static_cast<FrictionContext&>(context);
   for (Slider& slider : own.mixture) slider.force *= 1 - weight, slider.share *= 1 - weight;
   std::erase_if(own.mixture, [](const Slider& slider) { return slider.share < kForgotten; });

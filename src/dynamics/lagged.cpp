@@ -8,11 +8,12 @@ namespace aspic {
 namespace {
 
 constexpr int kMostPasses = 50;
-constexpr int kPatience = 10;       // passes before mixtures, which end alternation
-constexpr double kMixed = 0.5;
 constexpr double kRough = 100;      // first tolerance, relative to the one asked for
 constexpr double kRoughest = 1e-2;  // and its maximum
 constexpr double kReduction = 0.1;  // of the forces by one pass
+
+// Mixtures with earlier coefficients end alternation.
+double share_of_update(int passes) { return passes < 8 ? 1 : passes < 16 ? 0.5 : passes < 32 ? 0.2 : 0.1; }
 
 }  // namespace
 
@@ -46,7 +47,7 @@ MinimizeReport minimize_lagged(const StepTools& tools, const MinimizeOptions& op
     if (report.status != Status::iteration_limit) break;
     const double reduced = report.threshold > 0 ? kReduction * report.reached / report.threshold : 1;
     rough.tolerance = options.tolerance * std::max(1.0, reduced);
-    tools.E.mix_lagged(passes < kPatience ? 1 : kMixed);
+    tools.E.mix_lagged(share_of_update(passes));
     add(minimize({initial.x}, rough));
   }
   solve.passes = std::max(solve.passes, passes);
