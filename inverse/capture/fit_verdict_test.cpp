@@ -20,7 +20,7 @@ const DataSet& three_pokes() {
 FitOutcome perfect(const DataSet& data = three_pokes()) {
   FitOutcome outcome;
   outcome.report.status = Status::converged;
-  outcome.report.words = "converged";
+  outcome.report.message = "converged";
   for (const LoadCase& load : data.experiment.cases) {
     CaseOutcome& own = outcome.cases.emplace_back();
     own.ok = true;

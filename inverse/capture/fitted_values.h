@@ -8,9 +8,9 @@
 
 namespace aspic {
 
-// `belief`: posterior of the same fit; null: unknown.
+// `posterior`: posterior of the same fit; null: unknown.
 std::vector<FittedQuantity> fitted_quantities(const ParameterMap& map, const TetMesh& mesh, std::span<const double> p,
-                                              const Posterior* belief);
+                                              const Posterior* posterior);
 
 // In the user's numbering, with standard deviations and reductions beside the values.
 FittedMaterial fitted_material(const DataSet& data, const ParameterMap& map, std::span<const double> p,

@@ -52,7 +52,7 @@ struct FitReport {
   std::vector<FitIteration> history;
   std::vector<WeightTrial> weights;  // all tried weights, ascending
   std::vector<double> starts;        // final objective per initial guess; NaN: failed
-  std::string words;                 // reason for the end, as a sentence
+  std::string message;               // reason for the end, as a sentence
 };
 
 // Starts from `guess`, or from the p of a stopped fit (with its weight as `first_weight`). Throws InvalidInput for

@@ -28,30 +28,17 @@ struct Kinematics {
   int stress_entry() const { return deformation == Deformation::simple_shear ? 3 : 0; }  // in vec(P)
 
   Mat3d F(double t) const {
-    switch (deformation) {
-      case Deformation::uniaxial:
-        return stretched(l, t, t);
-      case Deformation::equibiaxial:
-        return stretched(l, l, t);
-      case Deformation::planar:
-        return stretched(l, 1, t);
-      case Deformation::simple_shear:
-        break;
-    }
+    if (deformation == Deformation::uniaxial) return stretched(l, t, t);
+    if (deformation == Deformation::equibiaxial) return stretched(l, l, t);
+    if (deformation == Deformation::planar) return stretched(l, 1, t);
     Mat3d F = identity3<double>();
     F(0, 1) = l;
     return F;
   }
   Mat3d dF_dt() const { return deformation == Deformation::uniaxial ? stretched(0, 1, 1) : stretched(0, 0, 1); }
   double isochoric_t() const {
-    switch (deformation) {
-      case Deformation::uniaxial:
-        return 1 / std::sqrt(l);
-      case Deformation::equibiaxial:
-        return 1 / (l * l);
-      default:
-        return 1 / l;
-    }
+    if (deformation == Deformation::uniaxial) return 1 / std::sqrt(l);
+    return 1 / (deformation == Deformation::equibiaxial ? l * l : l);
   }
 };
 

@@ -18,6 +18,6 @@ struct Marginals {
   double relative_error = 0;                       // largest standard error of a standard deviation; 0: exact
 };
 
-Marginals marginals(PosteriorGaussian& belief, const ParameterMap& map, const MarginalOptions& options = {});
+Marginals marginals(PosteriorGaussian& gaussian, const ParameterMap& map, const MarginalOptions& options = {});
 
 }  // namespace aspic

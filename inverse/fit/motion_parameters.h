@@ -77,7 +77,7 @@ class MotionParameters {
   void add(const std::string& name, const MotionScales& scales);
   void add_positive(Kind kind, const MotionParameter& parameter);
   void add_vector(Kind kind, const MotionParameter& parameter, const Vec3d& guess, double unit);
-  double number(Kind kind, std::span<const double> p, double fallback) const;
+  std::optional<double> fitted(Kind kind, std::span<const double> p) const;
   Vec3d vector(Kind kind, std::span<const double> p, const Vec3d& fallback) const;
   double factor(Kind kind, std::span<const double> p) const;  // exp(p); 1 if the quantity is not fitted
   void set_density(const std::vector<double>& density);
