@@ -314,7 +314,7 @@ TEST_F(FitMemoryTest, InterruptedFitResumesBitReproducibly) {
     const fs::path memory = path("part" + std::to_string(limit));
     const FitOutcome part = fitted(memory, JournalStart::anew, limit);
     EXPECT_TRUE(part.interrupted);
-    EXPECT_TRUE(part.has_material()) << "what was reached is kept";
+    EXPECT_TRUE(part.has_material()) << "the current estimate is kept";
     const FitOutcome resumed = fitted(memory, JournalStart::resume, 1000);
     EXPECT_EQ(iterations, all);
     EXPECT_EQ(resumed.report.p, whole.report.p) << "interrupted after " << limit;

@@ -64,7 +64,7 @@ void judge_noise(double misfit, int residuals, Posterior& result, Spectrum& s) {
     result.warnings.push_back(formatted(
         "|r|^2 is %.3g per reading, clearly less than 1: the standard deviations, with those of a correction for the "
         "mesh, "
-        "are too large, or noise was fitted (a larger weight helps); the intervals are not made narrower for it",
+        "are too large, or noise was fitted (a larger weight helps); the intervals are not narrowed",
         misfit / residuals));
   }
 }
