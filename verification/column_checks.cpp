@@ -14,7 +14,7 @@
 namespace aspic::verify {
 namespace {
 
-constexpr double kLength = 6;                             // of a column of side 1 [m]
+constexpr double kLength = 6;                             // length of a column of side 1 [m]
 constexpr double kTorsion = 0.1405770, kPolar = 1.0 / 6;  // Saint-Venant's constant, polar moment of area [m^4]
 
 // n x n x 6n cells about the z axis. For even n, quarter turns and reflections map the mesh to itself.
@@ -93,7 +93,7 @@ struct Twist {
   double impulse_error = 0;  // maximum over steps of |dL - h moment of the foot| / |L0|
   double energy_error = 0;   // maximum over steps of |E - E0| / E0
   double least_det_F = 1;
-  std::vector<double> time, angle;  // of the top [s], [rad]
+  std::vector<double> time, angle;  // time and angle of the top [s], [rad]
   std::vector<double> q;            // at the end
 };
 

@@ -15,7 +15,7 @@
 namespace aspic {
 namespace {
 
-constexpr int kMostTets = 5'000'000;  // of a refined mesh
+constexpr int kMostTets = 5'000'000;  // limit of a refined mesh
 constexpr double kUsualYoung = 1e5, kUsualPoisson = 0.4;
 
 // Splits "young=tets".

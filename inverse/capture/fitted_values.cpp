@@ -41,7 +41,7 @@ std::vector<std::pair<std::string, int>> telling_tets(const FittedQuantity& quan
           {is_young ? "stiffest tet" : "highest", order.back()}};
 }
 
-constexpr double kAtEnd = 0.9995;  // of a range from -1 to 1
+constexpr double kAtEnd = 0.9995;  // end of a range from -1 to 1
 constexpr double kNearWall = 0.9;  // fraction of the largest distance of a field from its guess
 
 bool is_field_of_powers(const Unknown& u) {

@@ -43,7 +43,7 @@ std::vector<double> MaterialFit::divided(FitModel& model) {
     found.are_kept = are_as_good(parts, 2 * report.misfit, outcome_.residuals);
     if (!found.are_kept) continue;
     outcome_.report.misfit = parts.squares / 2;
-    std::erase_if(outcome_.warnings, is_about_misfit);  // of the field
+    std::erase_if(outcome_.warnings, is_about_misfit);  // warnings about the misfit of the field
     return keep(parts, model.map, unknown, found);
   }
   return report.p;

@@ -140,7 +140,7 @@ struct Equilibrium::Impl {
   Newton newton;
   Minimizer minimizer;
   MinimizeOptions minimize;
-  std::unique_ptr<LinearSolver> solver;  // of K
+  std::unique_ptr<LinearSolver> solver;  // factorization of K
   BlockSparse K;
   ElasticParameters theta;
   std::vector<MaterialParameters> parameters, linear_parameters;

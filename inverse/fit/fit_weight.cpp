@@ -35,7 +35,7 @@ std::optional<double> balanced_weight(FitRun& run, const FitPoint& at) {
 }
 
 // Far above the number of residuals one step suffices for |r|^2; near it, accuracy must be within its scatter.
-constexpr double kFar = 0.5;  // of log (|r|^2 / number)
+constexpr double kFar = 0.5;  // distance of log (|r|^2 / number)
 
 double log_ratio(const FitRun& run, double misfit) { return std::log(std::max(2 * misfit / run.residuals(), 1e-300)); }
 double scatter(const FitRun& run) { return std::sqrt(0.5 * std::sqrt(2.0 * run.residuals())); }

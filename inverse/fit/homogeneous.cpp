@@ -14,7 +14,7 @@ constexpr std::array<std::string_view, 4> kNames = {"uniaxial", "equibiaxial", "
 
 constexpr int kMaxStretchIterations = 100;
 constexpr double kLargestStep = 0.3;   // per iteration, of ln t
-constexpr double kTolerance = 1e-13;   // of ln t
+constexpr double kTolerance = 1e-13;   // tolerance of ln t
 constexpr double kMostStretch = 1e12;  // limit of the search
 
 Mat3d stretched(double x, double y, double z) { return {{x, 0, 0, 0, y, 0, 0, 0, z}}; }
@@ -60,7 +60,7 @@ bool find_free_stretch(const Kinematics& body, const MaterialParameters& m, doub
   for (int i = 0; i < kMaxStretchIterations; ++i) {
     const Mat3<Dual<double>> P = stress_and_rate<M>(body.F(t), t * body.dF_dt(), m, -1);
     const double traction = P(axis, axis).value, slope = P(axis, axis).rate;
-    const double rate = traction + slope;  // of t P_tt / t by ln t
+    const double rate = traction + slope;  // derivative of t P_tt / t by ln t
     double step = rate > 0 ? -traction / rate : -std::copysign(kLargestStep, traction);
     if (!std::isfinite(step)) return false;
     step = std::fmax(-kLargestStep, std::fmin(kLargestStep, step));

@@ -6,7 +6,7 @@
 namespace aspic {
 namespace {
 
-using Fields = std::vector<std::vector<double>>;  // of each unknown in each tet
+using Fields = std::vector<std::vector<double>>;  // a value per parameter and tet
 
 Fields zero_fields(const ParameterMap& map) {
   Fields fields;

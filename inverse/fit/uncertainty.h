@@ -29,7 +29,7 @@ struct PosteriorOptions {
 
 struct Posterior {
   bool ok = false;                             // false: only `warnings` are valid
-  std::vector<std::vector<double>> deviation;  // of each parameter in each tet, on the fitted scale (log E)
+  std::vector<std::vector<double>> deviation;  // sigma of each parameter in each tet, on the fitted scale (log E)
   std::vector<std::vector<double>> reduction;  // 1 - posterior / prior variance: 0 no information, 1 complete
   double deviation_error = 0;                  // largest relative standard error of `deviation`; 0: exact
   double informed = 0;                         // number of directions determined by the data: sum of d / (1 + d)

@@ -34,7 +34,7 @@ struct Staging {
   const char* demonstration;  // its key
   const char* part = "";      // appended to the title if a demonstration has several lessons
   const char* look;
-  const char* panel;
+  const char* panel = "energy";
   const char* scene = "";  // scene of scenes/lecture; empty: none
   const char* field = "";  // field for colors
   Shape shape = Shape::real_mesh;
@@ -81,32 +81,27 @@ const std::vector<Staging>& stagings() {
            "The colors show Young's modulus: stiff skin over soft fat over muscle. Play: the indenter sinks in, and "
            "the energy V in the plot grows faster than the square of its depth because the tissue stiffens. Color "
            "by von Mises stress to see where it is loaded.",
-       .panel = "energy",
        .scene = "03_tissue",
        .field = "young",
        .shape = Shape::of_the_scene},
       {.demonstration = "05-09_equation_of_motion",
        .look = "Play: V falls while T rises, and vice versa, as M q'' = -dV/dq exchanges them. Shift and click "
                "on a vertex to read where its three entries stand in q.",
-       .panel = "energy",
        .scene = "05_swing"},
       {.demonstration = "08-10_springs_beside_elements",
        .look = "The same mesh twice, elements on the left and springs along the edges on the right: both obey the same "
                "equation with another V. Springs do not resist changes of volume and sag differently.",
-       .panel = "energy",
        .scene = "08_springs_beside_elements"},
       {.demonstration = "10-18_differences",
        .look = "The same motion in steps of h and of h/2: differences of q approximate its derivatives, more "
                "accurately for shorter steps. See how the two bodies drift apart, and how much more T the shorter "
                "steps keep.",
-       .panel = "energy",
        .scene = "05_swing",
        .comparison = {{{"time.step=0.005"}, "h / 2"}}},
       {.demonstration = "19-22_explicit_or_implicit",
        .look =
            "With steps this short both schemes give the same motion; where dV/dq is evaluated hardly matters. Make h "
            "ten times as long and play again: only one of them stays stable.",
-       .panel = "energy",
        .scene = "05_swing",
        .shape = Shape::of_the_scene,
        .overrides = {"time.step=5e-4", "solver.mass=lumped"},
@@ -114,7 +109,6 @@ const std::vector<Staging>& stagings() {
       {.demonstration = "23_printed_forward_euler",
        .look = "Left the printed formula, which is symplectic Euler, right the classical forward Euler, both with the "
                "same h. T + V of the printed one stays in a band, that of the classical one grows until it explodes.",
-       .panel = "energy",
        .scene = "05_swing",
        .shape = Shape::of_the_scene,
        .overrides = {"time.step=5e-4", "solver.mass=lumped", "time.integrator=symplectic_euler", "gravity=[0, 0, 0]"},
@@ -123,14 +117,12 @@ const std::vector<Staging>& stagings() {
        .look =
            "Left backward Euler, right the explicit scheme with the same h = 0.01 s. The explicit one explodes within "
            "a few steps; backward Euler needs a minimization per step and dissipates energy.",
-       .panel = "energy",
        .scene = "05_swing",
        .overrides = {"gravity=[0, 0, 0]"},
        .comparison = {{{"time.integrator=symplectic_euler"}, "explicit"}}},
       {.demonstration = "25_drag",
        .look = "A recorded mouse pulls the highest point by a spring: the line shows the spring, the number its force. "
                "Take over at any time and pull; the energy plot shows the work of the mouse.",
-       .panel = "energy",
        .scene = "25_drag",
        .overrides = {"spring=[]"},
        .drag = slow_drag()},
@@ -148,7 +140,6 @@ const std::vector<Staging>& stagings() {
        .part = "explicit",
        .look = "The same mouse drags both: left implicit, right explicit. The explicit scheme explodes within a few "
                "steps and ends; the implicit one continues, and stays stable whatever you do with the mouse.",
-       .panel = "energy",
        .scene = "33_mouse",
        .overrides = {"spring=[]"},
        .comparison = {{{"time.integrator=symplectic_euler"}, "explicit"}},
@@ -157,7 +148,6 @@ const std::vector<Staging>& stagings() {
        .part = "linearized",
        .look = "The same mouse drags both: left one minimization per step, right one linear system per step. Where the "
                "body bends far, the linear system is inaccurate and the energy grows.",
-       .panel = "energy",
        .scene = "33_mouse",
        .overrides = {"spring=[]"},
        .comparison = {{{"time.integrator=linearly_implicit_euler"}, "linearized"}},
@@ -195,11 +185,10 @@ const std::vector<Staging>& stagings() {
        .panel = "functions",
        .function = question("rosenbrock", -0.8, 0.3, {{"method", "newton"}})},
       {.demonstration = "53+62_pure_newton",
-       .look =
-           "Take one step (S): left Newton's method with a line search, right without. Left E falls in every "
-           "iteration. "
-           "Choose B above the table: right E jumps far up in the first iteration, the iterates end outside the range "
-           "of numbers, and the body stays squashed because its step has no result.",
+       .look = "Take one step (S): left Newton's method with a line search, right without. Left E falls in every "
+               "iteration. Choose B above the table: right E jumps far up in the first iteration, the iterates end "
+               "outside the range "
+               "of numbers, and the body stays squashed because its step has no result.",
        .panel = "microscope",
        .scene = "53_hard_step",
        .comparison = {{{"solver.line_search.test=none"}, "without line search"}}},
