@@ -55,16 +55,13 @@ void judge_noise(double misfit, int residuals, Posterior& result, Spectrum& s) {
     for (double& d : s.d) d /= result.noise_factor * result.noise_factor;
     result.warnings.push_back(formatted(
         "|r|^2 is %.3g per reading, clearly more than 1: the standard deviations of the readings are too small, the "
-        "weight "
-        "of the regularizer is too large, or the model cannot represent the body; all intervals are %.3g times "
-        "wider "
-        "for it",
+        "weight of the regularizer is too large, or the model cannot represent the body; all intervals are %.3g times "
+        "wider",
         misfit / residuals, result.noise_factor));
   } else if (misfit < lower) {
     result.warnings.push_back(formatted(
         "|r|^2 is %.3g per reading, clearly less than 1: the standard deviations, with those of a correction for the "
-        "mesh, "
-        "are too large, or noise was fitted (a larger weight helps); the intervals are not narrowed",
+        "mesh, are too large, or noise was fitted (a larger weight helps); the intervals are not narrowed",
         misfit / residuals));
   }
 }
