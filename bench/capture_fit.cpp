@@ -102,7 +102,7 @@ int measure(Choices& choices) {
   std::printf(
       "%s: %s\n%.1f s of wall time, %.1f s of processors, %d iterations, %d evaluations, %d products with J or J'\n"
       "relative error of log E %.3f, contrast %.2f of %.2f, outside %.3f of the truth\n",
-      report.method.c_str(), report.words.c_str(), stopwatch.seconds(), stopwatch.cpu_seconds(), report.iterations,
+      report.method.c_str(), report.message.c_str(), stopwatch.seconds(), stopwatch.cpu_seconds(), report.iterations,
       report.evaluations, report.products, found.error, found.contrast, choices.setup.contrast, found.outside);
   record(choices, misfit, report, stopwatch, found);
   return is_success(report.status) ? 0 : 1;

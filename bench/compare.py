@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Holds two builds against each other: compare.py OLD_BUILD NEW_BUILD [--runs N] [--wall] BENCH ARGS...
+"""Compares two builds: compare.py OLD_BUILD NEW_BUILD [--runs N] [--wall] BENCH ARGS...
 
 Runs bin/bench_BENCH of both build folders in turn, so that whatever else the machine does meets both alike, and judges
 the ratios new / old of the pairs: their median with a 95 % interval, and "faster", "slower" or "no difference".

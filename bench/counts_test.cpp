@@ -1,4 +1,4 @@
-// The beam takes no more work than the committed counts. Counts, unlike times, do not depend on the load of the
+// The work of the beam does not exceed the committed counts. Counts, unlike times, do not depend on the load of the
 // machine.
 #include <gtest/gtest.h>
 

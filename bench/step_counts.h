@@ -17,15 +17,15 @@ struct NamedCount {
   long StepCounts::*count;
 };
 inline constexpr std::array<NamedCount, 9> kCounts = {{
-    {"iterations", &StepCounts::iterations},                // of the minimizer
-    {"trials", &StepCounts::trials},                        // of the line search
+    {"iterations", &StepCounts::iterations},                // iterations of the minimizer
+    {"trials", &StepCounts::trials},                        // trials of the line search
     {"values", &StepCounts::values},                        // evaluations of E, each over all elements
     {"gradients", &StepCounts::gradients},                  // evaluations of the gradient
     {"hessians", &StepCounts::hessians},                    // evaluations of the Hessian
     {"factorizations", &StepCounts::factorizations},        //
     {"linear_iterations", &StepCounts::linear_iterations},  //
-    {"products", &StepCounts::products},                    // with the matrix
-    {"cycles", &StepCounts::cycles},                        // of multigrid
+    {"products", &StepCounts::products},                    // products with the matrix
+    {"cycles", &StepCounts::cycles},                        // cycles of multigrid
 }};
 
 inline void add_counts(const StepReport& report, StepCounts& counts) {

@@ -1,5 +1,5 @@
-// Writes the seeds of all targets, each small, and the generated dictionaries: "seeds fuzz" writes to fuzz/corpus and
-// fuzz/dictionaries. Meshes come from the library's writers and from examples of its tests.
+// Writes the seeds of all targets, each small, to FOLDER/corpus and the generated dictionaries to FOLDER/dictionaries.
+// Meshes come from the library's writers and from examples of its tests.
 #include <cstdio>
 #include <filesystem>
 #include <string>

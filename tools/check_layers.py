@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Fails when a module includes what it must not. The layers are the arrows of the picture in docs/architecture.md."""
+"""Fails if a module includes a header of a module that it must not use, by the arrows in docs/architecture.md."""
 import pathlib
 import re
 import sys

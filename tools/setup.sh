@@ -4,7 +4,7 @@
 build_dir=$root/build/release
 log_dir=$root/build/log
 
-# A name after ':' is the program to look for where it is not called like its package.
+# package:program, if the names differ.
 core_programs="g++ cmake ninja-build:ninja ccache"
 plot_programs="gnuplot-nox:gnuplot"
 core_packages="libeigen3-dev libspectra-dev libmetis-dev libmuparser-dev libtomlplusplus-dev nlohmann-json3-dev libcli11-dev
@@ -76,7 +76,7 @@ Neither root nor sudo is available to install them. Ask an administrator to run:
   $by_hand"
 }
 
-# missing PACKAGES PROGRAMS: prints the packages that are missing of two lists.
+# missing PACKAGES PROGRAMS: prints the missing packages of both lists.
 missing() {
   if command -v dpkg-query >/dev/null 2>&1; then
     missing_packages $1
@@ -84,12 +84,12 @@ missing() {
   missing_programs $2
 }
 
-# need PACKAGES PROGRAMS: what is missing of either list is installed.
+# need PACKAGES PROGRAMS: installs the missing packages of both lists.
 need() {
   install_packages $(missing "$1" "$2")
 }
 
-# configured NAME=VALUE...: whether the build folder was configured with all of these.
+# configured NAME=VALUE...: succeeds if the build folder was configured with all of these.
 configured() {
   [ -f "$build_dir/build.ninja" ] || return 1
   for setting in "$@"; do

@@ -74,11 +74,11 @@ void check_elastica(const Subject& subject, Findings& found) {
     exact.x.push_back(loads[k].load), exact.y.push_back(reference);
     found.expect(
         name + ": drop / L, limit", {richardson(values, 2), reference, (subject.quick ? 0.02 : 2.5e-3) * reference},
-        subject.quick ? "4 cells through the height are at the end of locking"
-                      : "shear adds 0.6 (h/L)^2 = 4e-4, the law as much at strains of 5 %, the extrapolation some");
+        subject.quick ? "locking ends at 4 cells through the height"
+                      : "shear adds 0.6 (h/L)^2 = 4e-4; the material at 5 % strain and the extrapolation add as much");
     if (values.size() >= 3)
       orders.expect(name + ": order of the last three meshes", {extrapolate(values).order, 2, 0.35},
-                    "locking is over once there are 4 cells through the height; from 4 to 16 the next term counts");
+                    "with 4 to 16 cells through the height, the next term of the error contributes");
   }
   found.rows.insert(found.rows.end(), orders.rows.begin(), orders.rows.end());
   plot.curves.push_back(exact);
@@ -94,8 +94,8 @@ void add_bending_checks(std::vector<Check>& checks) {
                     "L / h = 40, nu = 0, a dead load at the tip. Linear tets lock in shear: the limit is judged, and "
                     "the trend.",
                     "The elastica, by elliptic integrals",
-                    {"Bisshopp1945"},
-                    check_elastica});
+                    check_elastica,
+                    {"Bisshopp1945"}});
 }
 
 }  // namespace aspic::verify

@@ -61,10 +61,10 @@ struct Findings {
 struct Check {
   std::string family, name;  // "integrators", "free_fall"; on the command line family/name
   std::string title;
-  std::string problem;              // computed quantity, in a sentence or two
-  std::string reference;            // source of the reference values
-  std::vector<std::string> source;  // keys of docs/references.bib; empty: derived in `reference`
+  std::string problem;    // computed quantity, in a sentence or two
+  std::string reference;  // source of the reference values
   std::function<void(const Subject&, Findings&)> run;
+  std::vector<std::string> source = {};  // keys of docs/references.bib; empty: derived in `reference`
 
   std::string key() const { return family + "/" + name; }
 };

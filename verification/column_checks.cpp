@@ -14,7 +14,7 @@
 namespace aspic::verify {
 namespace {
 
-constexpr double kLength = 6;                             // of a column of side 1 [m]
+constexpr double kLength = 6;                             // length of a column of side 1 [m]
 constexpr double kTorsion = 0.1405770, kPolar = 1.0 / 6;  // Saint-Venant's constant, polar moment of area [m^4]
 
 // n x n x 6n cells about the z axis. For even n, quarter turns and reflections map the mesh to itself.
@@ -55,11 +55,11 @@ void check_frequency(const Subject& subject, Findings& found) {
   for (const int n : subject.quick ? std::vector<int>{4, 8} : std::vector<int>{8, 16})
     values.push_back(torsional_frequency(n, subject.replacement("neo_hookean_log"), subject.stiffness));
   const double reference = std::sqrt(kTorsion / kPolar) / (4 * kLength);
-  found.expect(
-      "first torsional frequency, limit", {richardson(values, 2), reference, (subject.quick ? 0.01 : 2e-3) * reference},
-      "what the extrapolation with order 2 leaves; the inertia and the stiffness of warping, which the formula "
-      "leaves out, change it by 1e-4",
-      "Hz");
+  found.expect("first torsional frequency, limit",
+               {richardson(values, 2), reference, (subject.quick ? 0.01 : 2e-3) * reference},
+               "error of the extrapolation with order 2; the inertia and the stiffness of warping, which the formula "
+               "leaves out, change it by 1e-4",
+               "Hz");
 }
 
 // [Gil2014]: 17 MPa, nu = 0.45, 1100 kg/m^3, clamped at the foot, initial spin Omega sin(pi Z / 2 L).
@@ -93,7 +93,7 @@ struct Twist {
   double impulse_error = 0;  // maximum over steps of |dL - h moment of the foot| / |L0|
   double energy_error = 0;   // maximum over steps of |E - E0| / E0
   double least_det_F = 1;
-  std::vector<double> time, angle;  // of the top [s], [rad]
+  std::vector<double> time, angle;  // time and angle of the top [s], [rad]
   std::vector<double> q;            // at the end
 };
 
@@ -183,7 +183,7 @@ void check_large_twist(const Subject& subject, Findings& found) {
   const Twist coarse = twisted(slower), other = twisted(mirrored);
   const TetMesh mesh = column_mesh(base.n);
   found.expect_small("|dL - h moment of the foot| / |L0|, largest of all steps", twist.impulse_error, 1e-9,
-                     "each solve leaves 1e-12 of the forces");
+                     "each solve has a relative residual of 1e-12");
   found.expect_small("|E / E0 - 1|, largest of all steps", twist.energy_error, 2e-3,
                      "the midpoint rule conserves it to order 2; half a millisecond is 1/700 of a swing");
   found.expect("the same with steps twice as long, ratio", {coarse.energy_error / twist.energy_error, 4, 1},
@@ -194,11 +194,12 @@ void check_large_twist(const Subject& subject, Findings& found) {
       "largest turn of the top, over that of small turns",
       {*std::max_element(twist.angle.begin(), twist.angle.end()) * swing_rate() / base.spin, 1, 0.15},
       "linear tets at nu = 0.45 are too stiff, by less the finer they are, and nearly a whole turn is not small");
-  found.expect_small("what a quarter turn changes", asymmetry(mesh, twist.q, twist.q, {{0, 1, 0, -1, 0, 0, 0, 0, 1}}),
-                     1e-9, "each solve leaves 1e-12 of the forces", "m");
+  found.expect_small("largest change by a quarter turn",
+                     asymmetry(mesh, twist.q, twist.q, {{0, 1, 0, -1, 0, 0, 0, 0, 1}}), 1e-9,
+                     "each solve has a relative residual of 1e-12", "m");
   found.expect_small("the motion with the opposite spin against the mirror image",
                      asymmetry(mesh, twist.q, other.q, {{-1, 0, 0, 0, 1, 0, 0, 0, 1}}), 1e-9,
-                     "each solve leaves 1e-12 of the forces", "m");
+                     "each solve has a relative residual of 1e-12", "m");
   found.plots.push_back(turn_plot(base, twist));
 }
 
@@ -211,17 +212,17 @@ void add_column_checks(std::vector<Check>& checks) {
                     "1 x 1 x 6 m, nu = 0.3; the foot does not turn and may warp, the top is free. Of the lowest modes, "
                     "the one that turns.",
                     "sqrt(G J / (rho I)) / (4 L) with Saint-Venant's J = 0.140577 a^4 and I = a^4 / 6",
-                    {"Timoshenko1970"},
-                    check_frequency});
+                    check_frequency,
+                    {"Timoshenko1970"}});
   checks.push_back({"vibration",
                     "twisting_column",
                     "The twisting column",
-                    "1 x 1 x 6 m, clamped at the foot, set going about its axis at 105 sin(pi Z / 2 L) per second, "
-                    "0.1 s. What is exactly known: the law of angular momentum, the symmetries, energy to the order of "
+                    "1 x 1 x 6 m, clamped at the foot, rotating about its axis at 105 sin(pi Z / 2 L) per second, "
+                    "0.1 s. Exact references: the law of angular momentum, the symmetries, energy to the order of "
                     "the midpoint rule.",
-                    "The problem is published with pictures; its exact properties are judged",
-                    {"Gil2014", "Bonet2015"},
-                    check_large_twist});
+                    "Published in pictures only; the exact properties are checked",
+                    check_large_twist,
+                    {"Gil2014", "Bonet2015"}});
 }
 
 }  // namespace aspic::verify

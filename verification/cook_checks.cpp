@@ -87,8 +87,8 @@ void add_cook_checks(std::vector<Check>& checks) {
        "Plane strain, neo_hookean_log, E = 250, nu = 0.3, a load of 100 on the right edge. The error of the "
        "singular corner at the wall is of order 1.29.",
        reference,
-       {"Cook1974", "Pelteret2016", "Williams1952"},
-       check_logarithmic});
+       check_logarithmic,
+       {"Cook1974", "Pelteret2016", "Williams1952"}});
   checks.push_back(
       {"statics",
        "cook_published",
@@ -97,8 +97,8 @@ void add_cook_checks(std::vector<Check>& checks) {
        "as large a deflection.",
        reference + "; neo_hookean_isochoric, which has K/2 (J - 1)^2 in place of its K/4 (J^2 - 1 - 2 ln J), "
                    "14.73",
-       {"Cook1974", "Pelteret2016", "Williams1952"},
-       check_split});
+       check_split,
+       {"Cook1974", "Pelteret2016", "Williams1952"}});
 }
 
 }  // namespace aspic::verify

@@ -56,7 +56,7 @@ void check_cylinder(const Subject& subject, Findings& found) {
       torque.push_back(one.torque), force.push_back(one.force), outer.push_back(one.outer);
     }
     const double tolerance = subject.quick ? 0.02 : 2e-3;
-    const std::string reason = "what the extrapolation with order 2 leaves: the next term of the error";
+    const std::string reason = "error of the extrapolation with order 2: the next term";
     found.expect(material + ": torque / (E b^3), limit",
                  {richardson(torque, 2), exact.torque, tolerance * exact.torque}, reason);
     found.expect(material + ": axial force / (E b^2), limit",
@@ -69,15 +69,16 @@ void check_cylinder(const Subject& subject, Findings& found) {
 }  // namespace
 
 void add_cylinder_checks(std::vector<Check>& checks) {
-  checks.push_back({"statics",
-                    "twisted_cylinder",
-                    "Finite torsion of a round cylinder",
-                    "A round cylinder of fixed length is twisted by 1 rad per radius, nu = 0.3, its ends as the exact "
-                    "solution has them, its side free. It pushes against its ends: the effect of Poynting.",
-                    "The ordinary differential equation of the radius, by shooting, from the printed formula of the "
-                    "material in principal stretches",
-                    {"Rivlin1949", "Ogden1997"},
-                    check_cylinder});
+  checks.push_back(
+      {"statics",
+       "twisted_cylinder",
+       "Finite torsion of a round cylinder",
+       "A round cylinder of fixed length is twisted by 1 rad per radius, nu = 0.3, its ends as in the exact "
+       "solution, its side free. Its ends are under pressure (Poynting effect).",
+       "The ordinary differential equation of the radius, by shooting, from the printed formula of the "
+       "material in principal stretches",
+       check_cylinder,
+       {"Rivlin1949", "Ogden1997"}});
 }
 
 }  // namespace aspic::verify

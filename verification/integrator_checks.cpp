@@ -95,24 +95,20 @@ void add_integrator_checks(std::vector<Check>& checks) {
                     "Damping and frequency of a harmonic oscillator",
                     "Masses on springs, w h = 0.1, every integrator: the factor per step, read off four positions.",
                     "The eigenvalue of each scheme's amplification matrix",
-                    {"Hairer1996"},
-                    check_oscillator});
+                    check_oscillator,
+                    {"Hairer1996"}});
   checks.push_back({"integrators",
                     "euler_energies",
                     "What Euler's three methods do to energy",
                     "m = 1 kg, k = 100 N/m, h = 0.01 s. Forward Euler multiplies the energy by 1 + w^2 h^2, backward "
                     "Euler divides by it, symplectic Euler conserves a shadow energy.",
                     "Closed forms of the three maps",
-                    {"Hairer1996"},
-                    check_euler_energies});
-  checks.push_back({"integrators",
-                    "free_fall",
-                    "Free fall of an elastic box",
+                    check_euler_energies,
+                    {"Hairer1996"}});
+  checks.push_back({"integrators", "free_fall", "Free fall of an elastic box",
                     "After n steps a box has fallen g h^2 n(n+1)/2 with backward, linearly implicit and symplectic "
                     "Euler, g h^2 n(n-1)/2 with forward Euler, and g h^2 n^2/2 with the others.",
-                    "The recurrence of each scheme under a constant force",
-                    {},
-                    check_free_fall});
+                    "The recurrence of each scheme under a constant force", check_free_fall});
 }
 
 }  // namespace aspic::verify

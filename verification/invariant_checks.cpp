@@ -154,34 +154,18 @@ void check_units(const Subject& subject, Findings& found) {
 }  // namespace
 
 void add_invariant_checks(std::vector<Check>& checks) {
-  checks.push_back({"invariants",
-                    "forces",
-                    "Internal forces have no resultant and no moment",
-                    "A deformed box whose moduli differ from tet to tet, every material.",
-                    "Newton's third law",
-                    {},
+  checks.push_back({"invariants", "forces", "Internal forces have no resultant and no moment",
+                    "A deformed box whose moduli differ from tet to tet, every material.", "Newton's third law",
                     check_forces});
-  checks.push_back({"invariants",
-                    "rigid_motions",
-                    "The energy does not see rigid motions",
-                    "The same box, rotated and moved: every material but linear.",
-                    "Frame indifference",
-                    {},
+  checks.push_back({"invariants", "rigid_motions", "The energy is invariant under rigid motions",
+                    "The same box, rotated and moved: every material but linear.", "Frame indifference",
                     check_rigid_motions});
-  checks.push_back({"invariants",
-                    "numbering",
-                    "Neither numbering nor mirror changes a motion",
+  checks.push_back({"invariants", "numbering", "Motions are invariant under renumbering and reflection",
                     "A cantilever falls for ten steps; vertices and tets are renumbered, or z is reflected.",
-                    "The equations know neither",
-                    {},
-                    check_numbering});
-  checks.push_back({"invariants",
-                    "units",
-                    "Units do not change a motion",
+                    "The symmetry of the equations", check_numbering});
+  checks.push_back({"invariants", "units", "Motions are independent of units",
                     "The same cantilever in other units of length and time, of modulus and density.",
-                    "The equations are homogeneous",
-                    {},
-                    check_units});
+                    "The equations are homogeneous", check_units});
 }
 
 }  // namespace aspic::verify

@@ -7,7 +7,7 @@
 namespace aspic::verify {
 
 // V = k/2 sum (z - Z)^2 over all or the given vertices holds them in their planes z = const, or those of another axis.
-// With k far above the stiffness of the cells this gives plane strain.
+// A stiffness k far above that of the cells gives plane strain.
 std::unique_ptr<Energy> make_plane_hold(const TetMesh& mesh, double stiffness, int axis = 2,
                                         std::vector<int> vertices = {});
 

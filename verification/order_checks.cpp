@@ -11,16 +11,9 @@ namespace {
 
 double order_between(double coarse, double fine) { return std::log2(coarse / fine); }
 
-const char* words(Held held) {
-  switch (held) {
-    case Held::nowhere:
-      return "free";
-    case Held::on_one_face:
-      return "one face held";
-    case Held::on_the_boundary:
-      return "all faces held";
-  }
-  return "";
+const char* text_of(Held held) {
+  constexpr const char* kTexts[] = {"free", "one face held", "all faces held"};
+  return kTexts[static_cast<size_t>(held)];
 }
 
 void check_time_order(const Subject& subject, Findings& found) {
@@ -35,9 +28,9 @@ void check_time_order(const Subject& subject, Findings& found) {
         curve.x.push_back((order == 4 ? 0.04 : 0.01) / (1 << i));
         curve.y.push_back(affine_motion_error(taken, curve.x.back(), held));
       }
-      found.expect(integrator + ": order, " + words(held),
+      found.expect(integrator + ": order, " + text_of(held),
                    {order_between(curve.y[curve.y.size() - 2], curve.y.back()), static_cast<double>(order), 0.2},
-                   "the next term of the error is some h of the first: up to a tenth of the order at these steps");
+                   "the next term of the error has the relative size h; it changes the order by up to 0.1");
       if (held == Held::on_one_face) plot.curves.push_back(curve);
     }
   }
@@ -70,7 +63,7 @@ double without_terms(std::vector<double> errors, int order) {
 void check_time_floor(const Subject& subject, Findings& found) {
   found.expect_small("rk4, h = 2.5 ms: error",
                      affine_motion_error(subject.replacement("rk4"), 0.0025, Held::on_one_face), 1e-10,
-                     "the fourth order holds down to the accuracy of the solves", "m");
+                     "the fourth order is visible down to the accuracy of the solves", "m");
   const std::string taken = subject.replacement("tr_bdf2");
   const double fine = affine_motion_error(taken, 0.0005, Held::on_one_face);
   const double coarse = affine_motion_error(taken, 0.01, Held::on_one_face);
@@ -82,7 +75,7 @@ void check_time_floor(const Subject& subject, Findings& found) {
       errors.push_back(affine_motion_error(subject.replacement(integrator), 0.01 / (1 << i), Held::on_one_face));
     found.expect_small(integrator + ", 10 to 0.3 ms: error without its first five terms",
                        without_terms(errors, make_integrator(integrator)->facts().order), 1e-10,
-                       "nothing but the powers of h from the order on, down to the accuracy of the solves", "m");
+                       "only powers of h from the order upward, down to the accuracy of the solves", "m");
   }
 }
 
@@ -97,7 +90,7 @@ void check_space_order(const Subject& subject, Findings& found) {
       h1.x.push_back(error.h), h1.y.push_back(error.h1);
     }
     const double tolerance = subject.quick ? 0.15 : 0.1;
-    const std::string reason = "the next term of the error is some h of the first, with 8 or 16 cells along an edge";
+    const std::string reason = "the next term of the error has the relative size h, with 8 or 16 cells along an edge";
     found.expect(info.name + ": order in L2", {order_between(l2.y[l2.y.size() - 2], l2.y.back()), 2, tolerance},
                  reason);
     found.expect(info.name + ": order in H1", {order_between(h1.y[h1.y.size() - 2], h1.y.back()), 1, tolerance},
@@ -118,32 +111,32 @@ void add_order_checks(std::vector<Check>& checks) {
                     "A cube of irregular tets under the body force that belongs to a smooth deformation of up to 17 % "
                     "strain, held around: errors of position and of deformation gradient, every material.",
                     "Linear elements: 2 in L2, 1 in H1",
-                    {"Roache1998"},
-                    check_space_order});
-  checks.push_back({"orders",
-                    "time",
-                    "Order in time by a manufactured motion",
-                    "A box moves by x = X + s(t) B X under the nodal forces that keep it going, held nowhere, on one "
-                    "face or all around: linear tets represent the motion exactly, so all error is that of time.",
-                    "The order of the scheme",
-                    {"Hairer1996"},
-                    check_time_order});
+                    check_space_order,
+                    {"Roache1998"}});
   checks.push_back(
       {"orders",
-       "time_floor",
-       "Orders hold down to the accuracy of the solves",
-       "The same motion with short steps. Halved steps tell the terms of the error that begin with the order "
-       "apart; a share of another order would be left over.",
+       "time",
+       "Order in time by a manufactured motion",
+       "A box moves by x = X + s(t) B X under the nodal forces that keep it going, held nowhere, on one "
+       "face or all around: linear tets represent the motion exactly, so only time integration has an error.",
        "The order of the scheme",
-       {"Hairer1996"},
-       check_time_floor});
+       check_time_order,
+       {"Hairer1996"}});
+  checks.push_back({"orders",
+                    "time_floor",
+                    "Orders are measured down to the accuracy of the solves",
+                    "The same motion with short steps. Halving the steps separates the terms of the error by "
+                    "order; a term of a lower order would remain.",
+                    "The order of the scheme",
+                    check_time_floor,
+                    {"Hairer1996"}});
   checks.push_back({"orders",
                     "time_damped",
                     "Order in time with damping and a moving target",
                     "x'' + 2 x' + 100 (x - s(t)) = 0 with s such that x = cos 3t; position and velocity after 1 s.",
                     "The order of the scheme",
-                    {"Hairer1996"},
-                    check_driven_order});
+                    check_driven_order,
+                    {"Hairer1996"}});
 }
 
 }  // namespace aspic::verify

@@ -91,7 +91,7 @@ void check_sphere(const Subject& subject, Findings& found) {
       outer.push_back(one.outer), force.push_back(one.force);
     }
     const double tolerance = subject.quick ? 0.03 : 1e-3;
-    const std::string reason = "what the extrapolation with order 2 leaves: the next term of the error";
+    const std::string reason = "error of the extrapolation with order 2: the next term";
     found.expect(material + ": growth of the outer radius, limit",
                  {richardson(outer, 2) - 2, exact.outer - 2, tolerance * (exact.outer - 2)}, reason, "m");
     found.expect(material + ": nominal stress inside / E, limit",
@@ -186,7 +186,7 @@ void check_torsion(const Subject& subject, Findings& found) {
     values.push_back(torsional_stiffness(n, material, subject.stiffness));
   found.expect("torque / (G twist a^4), limit",
                {richardson(values, 2), 0.1405770, (subject.quick ? 0.03 : 3e-3) * 0.140577},
-               "what the extrapolation with order 2 leaves");
+               "error of the extrapolation with order 2");
 }
 
 }  // namespace
@@ -198,23 +198,23 @@ void add_solid_checks(std::vector<Check>& checks) {
                     "Radii 1 and 2 m, nu = 0.3; the inner radius is blown up to 1.5 m, the outside is free.",
                     "The ordinary differential equation of the radius, by shooting, from the printed formula of the "
                     "material in principal stretches",
-                    {"Ogden1997"},
-                    check_sphere});
+                    check_sphere,
+                    {"Ogden1997"}});
   checks.push_back({"statics",
                     "half_space",
                     "A point load on a half-space",
-                    "A block under a force at one vertex, its far faces moved as the exact solution says; nu = 0.3.",
+                    "A block under a force at one vertex, its far faces moved as in the exact solution; nu = 0.3.",
                     "Boussinesq's solution",
-                    {"Johnson1985"},
-                    check_half_space});
+                    check_half_space,
+                    {"Johnson1985"}});
   checks.push_back({"statics",
                     "torsion",
                     "Torsion of a square column",
                     "1 x 1 x 6, the ends held plane and turned by 1e-4; twist measured in the middle third, where "
                     "sections warp freely.",
                     "Saint-Venant's torsional constant of a square, 0.140577 a^4",
-                    {"Timoshenko1970"},
-                    check_torsion});
+                    check_torsion,
+                    {"Timoshenko1970"}});
 }
 
 }  // namespace aspic::verify

@@ -18,7 +18,7 @@ struct UniaxialReference {
   double poisson, stretch;
   Uniaxial expected;
 };
-// For Young's modulus 1 Pa; computed independently of this library and printed to 8 decimals.
+// Table for Young's modulus 1 Pa; computed independently of this library and printed to 8 decimals.
 const std::vector<UniaxialReference>& uniaxial_table();
 
 // A distorted box of linear tets with vertices at an affine map with stretch l, and t near `guess` such that the sides

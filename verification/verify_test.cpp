@@ -144,7 +144,7 @@ TEST(RadialReference, ThrowsWhereItDoesNotConverge) {
 }
 
 Check made_of(std::function<void(const Subject&, Findings&)> run) {
-  return {"family", "name", "title", "problem", "reference", {}, std::move(run)};
+  return {"family", "name", "title", "problem", "reference", std::move(run)};
 }
 
 TEST(RunCheck, WhatThrowsOrFindsNothingFails) {

@@ -91,13 +91,13 @@ void check_beam(const Subject& subject, Findings& found) {
     plot.curves.push_back(curve);
   }
   expect_limits(found, {names, reference, std::vector<double>(3, subject.quick ? 5e-3 : 1e-3)}, by_mesh,
-                "the shear factor 5/6 of the beam theory and what the extrapolation leaves");
+                "the shear factor 5/6 of the beam theory and the error of the extrapolation");
   expect_limits(found,
                 {{"first, slender beam", "second, slender beam", "third, slender beam"},
                  {0.80770, 5.06177, 14.17311},
                  {3e-3, 0.02, 0.04}},
                 {by_mesh.end() - 2, by_mesh.end()},
-                "Euler and Bernoulli leave out shear and rotary inertia, which take off 0.16, 1.1 and 2.7 %");
+                "Euler and Bernoulli neglect shear and rotary inertia, which lower it by 0.16, 1.1 and 2.7 %");
   found.plots.push_back(plot);
 }
 
@@ -178,31 +178,31 @@ void add_vibration_checks(std::vector<Check>& checks) {
                     "Waves along a bar, clamped at one end",
                     "E = 1e7 Pa, 1000 kg/m^3, 1 m, nu = 0, held sideways; 8, 16 and 32 cells.",
                     "f = (2k - 1) sqrt(E / rho) / (4 L)",
-                    {"Weaver1990"},
-                    check_bar});
+                    check_bar,
+                    {"Weaver1990"}});
   checks.push_back({"vibration",
                     "beam",
                     "Bending of a clamped beam",
                     "1 x 0.05 m of the same material. Linear tets are too stiff in bending by an error of order h^2; "
                     "the limit is judged, and the trend.",
                     "Timoshenko's beam with the shear factor 5/6, and Euler and Bernoulli's for a slender one",
-                    {"Timoshenko1921"},
-                    check_beam});
+                    check_beam,
+                    {"Timoshenko1921"}});
   checks.push_back({"vibration",
                     "tapered_membrane",
                     "NAFEMS FV32: in-plane vibration of a tapered membrane",
                     "10 m long, 5 m high at the clamped edge and 1 m at the other; E = 200 GPa, nu = 0.3, 8000 kg/m^3, "
                     "plane stress.",
                     "The published frequencies",
-                    {"Abbassian1987"},
-                    check_tapered_membrane});
+                    check_tapered_membrane,
+                    {"Abbassian1987"}});
   checks.push_back({"vibration",
                     "pendulum",
                     "A stiff bar swings from one edge",
                     "1 x 0.1 x 0.1 m, released when level: large swings, seven turns.",
                     "4 K(sin(a/2)) sqrt(I / (m g d)), K the complete elliptic integral",
-                    {"Landau1976"},
-                    check_pendulum});
+                    check_pendulum,
+                    {"Landau1976"}});
 }
 
 }  // namespace aspic::verify

@@ -29,16 +29,9 @@ struct CheckArguments {
 
 constexpr size_t kIndicesShown = 8;
 
-std::string_view to_string(Severity severity) {
-  switch (severity) {
-    case Severity::error:
-      return "error";
-    case Severity::warning:
-      return "warning";
-    case Severity::note:
-      return "note";
-  }
-  return "";
+const char* to_string(Severity severity) {
+  constexpr const char* kNames[] = {"error", "warning", "note"};
+  return kNames[static_cast<size_t>(severity)];
 }
 
 void print(const Finding& finding) {

@@ -54,8 +54,8 @@ std::string describe(const DataFinding& finding) {
 }
 
 // Rejects data sets with errors and prints the first warnings of others.
-void heed_findings(const DataSet& data, const fs::path& path) {
-  constexpr int kMostTold = 3;
+void check_findings(const DataSet& data, const fs::path& path) {
+  constexpr int kMostPrinted = 3;
   std::vector<std::string> errors, warnings;
   for (const DataFinding& finding : diagnose(data)) {
     if (finding.severity == Severity::error) errors.push_back(describe(finding));
@@ -66,9 +66,9 @@ void heed_findings(const DataSet& data, const fs::path& path) {
     throw InvalidInput(errors);
   }
   const int count = static_cast<int>(warnings.size());
-  for (int i = 0; i < std::min(count, kMostTold); ++i) fmt::print(stderr, "warning: {}\n", warnings[i]);
-  if (count > kMostTold)
-    fmt::print(stderr, "warning: and {} more: aspic fit --check {}\n", count - kMostTold, printable(path.string()));
+  for (int i = 0; i < std::min(count, kMostPrinted); ++i) fmt::print(stderr, "warning: {}\n", warnings[i]);
+  if (count > kMostPrinted)
+    fmt::print(stderr, "warning: and {} more: aspic fit --check {}\n", count - kMostPrinted, printable(path.string()));
 }
 
 // Runs one fit and notifies its observers.
@@ -179,7 +179,7 @@ int run(const FitArguments& arguments) {
   if (arguments.out.extension() != ".vtu")
     throw InvalidInput(arguments.out.string() + ": a material file is a .vtu; choose such a name with -o");
   const DataSet data = read_data_set(arguments.data);
-  heed_findings(data, arguments.data);
+  check_findings(data, arguments.data);
   plan = completed(std::move(plan), data.experiment);
   const std::string options = "# aspic fit\ndata = \"" + fingerprint_of(data.experiment) + "\"\n" + text_of(plan);
   FitFolder folder = FitFolder::open(arguments.out, options, existing(arguments));

@@ -153,7 +153,7 @@ void write_figures(const std::filesystem::path& file, const FitOutcome& outcome,
                    const FitFigures& figures) {
   const FitReport& report = outcome.report;
   Json json = {{"converged", is_success(report.status)},
-               {"words", report.words},
+               {"words", report.message},
                {"verdict", json_of(judged)},
                {"unknowns", outcome.unknowns},
                {"residuals", outcome.residuals},

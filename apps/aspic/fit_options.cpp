@@ -111,9 +111,9 @@ bool read_fit_options(const std::filesystem::path& file, FitPlan& plan) {
   Table document = file.empty() ? Table() : read_toml(read_toml_text(file), file.string());
   check_and_complete(document, file.string(), options_schema(), "fit");
   const auto option = [&](const char* key) -> const Value& { return *document.find(key); };
-  plan.belief.smoothness = smoothness_named(option("smooth").text());
+  plan.regularizer.smoothness = smoothness_named(option("smooth").text());
   const Value &prior = option("prior"), &weight = option("weight");
-  plan.belief.prior_deviation = prior.is_text() ? std::numeric_limits<double>::infinity() : prior.number();
+  plan.regularizer.prior_deviation = prior.is_text() ? std::numeric_limits<double>::infinity() : prior.number();
   plan.fit.weight = weight.is_text() ? -1 : weight.number();
   plan.fit.weight_rule = option("rule").text();
   plan.fit.method = option("method").text();

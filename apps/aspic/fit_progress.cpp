@@ -11,25 +11,10 @@
 namespace aspic::cli {
 namespace {
 
-std::string stage_text(FitStage stage) {
-  switch (stage) {
-    case FitStage::uniform:
-      return "one value";
-    case FitStage::mesh_errors:
-      return "the mesh";
-    case FitStage::field:
-      return "fit";
-    case FitStage::uncertainty:
-      return "uncertainty";
-    case FitStage::parts:
-      return "parts";
-    case FitStage::cross_validation:
-      return "held out";
-    case FitStage::next_poke:
-      break;
-  }
-  return "next poke";
-}
+// In the order of FitStage.
+constexpr const char* kStageTexts[] = {"one value", "the mesh", "fit", "uncertainty", "parts", "held out", "next poke"};
+
+const char* stage_text(FitStage stage) { return kStageTexts[static_cast<size_t>(stage)]; }
 
 }  // namespace
 

@@ -85,7 +85,7 @@ std::string value_text(double value, const std::string& unit) {
 
 void print_fit(std::FILE* stream, const DataSet& data, const FitOutcome& outcome) {
   const FitReport& report = outcome.report;
-  fmt::print(stream, "fit        {}: {} iterations, {} equilibria of {} cases; {}, weight {:.3g}\n", report.words,
+  fmt::print(stream, "fit        {}: {} iterations, {} equilibria of {} cases; {}, weight {:.3g}\n", report.message,
              report.iterations, outcome.counts.equilibria, data.experiment.cases.size(), report.method, report.weight);
   fmt::print(stream, "mesh       {}\n", describe_mesh(outcome));
   print_misfit(stream, outcome);
@@ -95,7 +95,7 @@ void print_fit(std::FILE* stream, const DataSet& data, const FitOutcome& outcome
     fmt::print(stream, "learned    the data determine {:.1f} of {} directions of the material\n",
                outcome.posterior->informed, outcome.unknowns);
   print_held_out(stream, outcome);
-  if (outcome.next_poke) fmt::print(stream, "next poke  {}\n", outcome.next_poke->words);
+  if (outcome.next_poke) fmt::print(stream, "next poke  {}\n", outcome.next_poke->description);
   for (const std::string& warning : outcome.warnings) fmt::print(stream, "warning: {}\n", warning);
 }
 

@@ -69,41 +69,24 @@ figcaption { color: #555; font-size: .9rem; margin-top: .3rem; }
 std::string escaped(std::string_view text) {
   std::string result;
   for (const char c : text) {
-    switch (c) {
-      case '&':
-        result += "&amp;";
-        break;
-      case '<':
-        result += "&lt;";
-        break;
-      case '>':
-        result += "&gt;";
-        break;
-      case '"':
-        result += "&quot;";
-        break;
-      default:
-        // HTML forbids other control characters.
-        result += static_cast<unsigned char>(c) < 0x20 && c != '\n' && c != '\t' ? ' ' : c;
+    if (c == '&') {
+      result += "&amp;";
+    } else if (c == '<') {
+      result += "&lt;";
+    } else if (c == '>') {
+      result += "&gt;";
+    } else if (c == '"') {
+      result += "&quot;";
+    } else {  // HTML forbids other control characters.
+      result += static_cast<unsigned char>(c) < 0x20 && c != '\n' && c != '\t' ? ' ' : c;
     }
   }
   return result;
 }
 
-std::string_view css_class(Verdict verdict) {
-  switch (verdict) {
-    case Verdict::pass:
-      return "pass";
-    case Verdict::fail:
-      return "fail";
-    case Verdict::neutral:
-      break;
-  }
-  return "neutral";
-}
-
 std::string badge(Verdict verdict, std::string_view text) {
-  return fmt::format("<span class=\"badge {}\">{}</span>", css_class(verdict), escaped(text));
+  constexpr const char* kClasses[] = {"pass", "fail", "neutral"};
+  return fmt::format("<span class=\"badge {}\">{}</span>", kClasses[static_cast<size_t>(verdict)], escaped(text));
 }
 
 bool is_number(const std::string& text) {

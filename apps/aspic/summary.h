@@ -29,7 +29,7 @@ struct RunTotals {
   double time = 0;                                 // end of the last step [s]
   int with_inverted_tets = 0, first_inverted = 0;  // steps that end with an inverted tet: number, first
   double least_det_F = 1;                          // over all tets at the ends of steps
-  std::vector<Resultant> reactions;                // of each pin in the last step
+  std::vector<Resultant> reactions;                // reaction of each pin in the last step
 
   void add(const StepReport& report);
 };

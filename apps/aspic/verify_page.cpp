@@ -21,25 +21,14 @@ namespace {
 namespace fs = std::filesystem;
 using Json = nlohmann::ordered_json;
 
-SeriesStyle style_of(verify::CurveStyle style) {
-  switch (style) {
-    case verify::CurveStyle::line:
-      return SeriesStyle::line;
-    case verify::CurveStyle::dashed:
-      return SeriesStyle::dashed;
-    case verify::CurveStyle::points:
-      return SeriesStyle::points;
-    case verify::CurveStyle::line_and_points:
-      return SeriesStyle::line_and_points;
-  }
-  return SeriesStyle::line;
-}
+// Both enumerations have the same order.
+static_assert(static_cast<int>(SeriesStyle::line_and_points) == static_cast<int>(verify::CurveStyle::line_and_points));
 
 Chart chart_of(const verify::Plot& plot) {
   const AxisScale scale = plot.scales == verify::Scales::logarithmic ? AxisScale::logarithmic : AxisScale::linear;
   Chart chart{plot.title, {.label = plot.x_label, .scale = scale}, {.label = plot.y_label, .scale = scale}, {}};
   for (const verify::Curve& curve : plot.curves)
-    chart.series.push_back({curve.label, curve.x, curve.y, style_of(curve.style), curve.color});
+    chart.series.push_back({curve.label, curve.x, curve.y, static_cast<SeriesStyle>(curve.style), curve.color});
   return chart;
 }
 

@@ -13,7 +13,7 @@ struct BodyDomain {
   std::vector<std::vector<Vec3d>> sharp;  // chains of points whose edges are preserved
   std::vector<Vec3d> seeds;               // points of the surface from which refinement starts
   size_t most_vertices = 0;               // at which refinement stops
-  bool has_blade = false;                 // a body with a blade has slivers; optimizing them would take minutes
+  bool has_blade = false;                 // a body with a blade has slivers, whose optimization needs minutes
 };
 
 // Returns no tets if none fits.

@@ -32,7 +32,7 @@ constexpr const char* kExamples =
     "  aspic-mesh --implicit \"(sqrt(x^2+y^2)-1)^2+z^2-0.16\" --bounds -2 -2 -1 2 2 1 -o torus.mesh\n"
     "  aspic-mesh liver.inr.gz -o liver.msh --size 8 --region-size 2=4\n"
     "  aspic-mesh scan.ply -o scan.msh --rebuild\n"
-    "Exit codes: 0 done, 2 bad input, or a result that differs from the shape, 4 time limit, 1 anything else.\n\n";
+    "Exit codes: 0 done, 2 bad input, or a result that differs from the shape, 4 time limit, 1 internal error.\n\n";
 
 struct Arguments {
   std::string input, output, expression;

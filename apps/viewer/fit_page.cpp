@@ -124,7 +124,7 @@ class FitPack {
   Json fit_json() const {
     const FitReport& r = outcome_.report;
     return {
-        {"words", r.words},
+        {"words", r.message},
         {"success", is_success(r.status)},
         {"interrupted", outcome_.interrupted},
         {"method", r.method},
@@ -259,7 +259,7 @@ class FitPack {
             {"radius", poke.load.tip ? poke.load.tip->radius : 0.0},
             {"depth", norm(poke.load.pose.center - poke.load.touch.center)},
             {"gain", number_json(poke.gain)},
-            {"words", poke.words}};
+            {"words", poke.description}};
   }
 
   const DataSet& data_;

@@ -111,7 +111,7 @@ bool FitState::add(const FitNews& news) {
     known_.outcome = news.outcome;
     known_.file.clear();
     known_.failure = news.outcome->failure;
-    known_.summary = news.outcome->report.words;
+    known_.summary = news.outcome->report.message;
     for (const FittedQuantity& quantity : news.outcome->quantities)
       if (quantity.name == "young") known_.sigma = quantity.deviation;
   }
@@ -214,7 +214,7 @@ Json FitState::json() const {
   }
   if (known_.outcome && known_.outcome->next_poke) {
     const PokeCandidate& next = *known_.outcome->next_poke;
-    fit["next"] = {{"site", json_of(next.site)}, {"words", next.words}};
+    fit["next"] = {{"site", json_of(next.site)}, {"words", next.description}};
   }
   return fit;
 }

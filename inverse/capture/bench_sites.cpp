@@ -65,7 +65,7 @@ std::vector<int> held_vertices(const TetMesh& truth, std::span<const int> held, 
   const Embedding where = embed(truth, {mesh.rest, {}});
   std::vector<int> vertices;
   for (int v = 0; v < mesh.vertex_count(); ++v) {
-    double share = 0;  // of the corners that carry the vertex
+    double share = 0;  // share of the corners that carry the vertex
     for (int i = 0; i < 4; ++i) share += is_held[where.vertices[v][i]] ? where.weights[v][i] : 0;
     if (share > 0.99) vertices.push_back(v);
   }

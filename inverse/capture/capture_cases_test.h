@@ -12,7 +12,7 @@ namespace aspic {
 
 inline TetMesh test_box() { return make_box({{0, 0, 0}}, {{0.1, 0.08, 0.06}}, {5, 4, 3}); }
 
-// Of a smooth motion that grows with the depth, without noise: no equilibrium, but it looks like one.
+// Data set of a smooth motion that grows with the depth, without noise; similar to an equilibrium.
 inline DataSet test_data(int pokes = 3, int depths = 2) {
   DataSet data;
   data.name = "box";

@@ -153,7 +153,7 @@ class CaseReader {
   DataSet& data_;
   MeasuredTable table_;
   std::map<std::string, int> line_of_;
-  std::map<std::string, TipPose> touch_of_;  // of groups
+  std::map<std::string, TipPose> touch_of_;  // touch of each group
 };
 
 template <class T>

@@ -283,7 +283,7 @@ class DataSetReader {
   ErrorList errors_;
   DataSet data_;
   TetMesh user_mesh_;
-  double size_ = 0;  // of the body [m]
+  double size_ = 0;  // size of the body [m]
   std::map<std::string, int> marker_of_;
   std::vector<Vec3d> gap_;                             // offset of each marker at rest from its surface point [m]
   std::map<int, std::pair<Triangle, int>> corner_of_;  // a triangle of each vertex of the surface, and which corner

@@ -115,12 +115,12 @@ class ContentDiagnosis {
         u.push_back(displacement(experiment_, r));
         deviation = std::max(deviation, norm(r.deviation));
       }
-      if (!X.empty()) tell_rigid_motion(where(c), X, u, deviation);
+      if (!X.empty()) examine_motion_of_fixed(where(c), X, u, deviation);
     }
   }
 
-  void tell_rigid_motion(const std::string& place, const std::vector<Vec3d>& X, const std::vector<Vec3d>& u,
-                         double sd) {
+  void examine_motion_of_fixed(const std::string& place, const std::vector<Vec3d>& X, const std::vector<Vec3d>& u,
+                               double sd) {
     const double n = static_cast<double>(X.size());
     Vec3d center{}, t{}, moment{};
     for (size_t i = 0; i < X.size(); ++i) center = center + (1 / n) * X[i], t = t + (1 / n) * u[i];
@@ -173,10 +173,10 @@ class ContentDiagnosis {
       for (double& x : u) x /= std::sqrt(left);
       basis.push_back(std::move(u));
     }
-    tell_rank(motions, groups.size(), basis.size());
+    report_rank(motions, groups.size(), basis.size());
   }
 
-  void tell_rank(int motions, size_t groups, size_t rank) {
+  void report_rank(int motions, size_t groups, size_t rank) {
     const bool has_positions = std::any_of(experiment_.cases.begin(), experiment_.cases.end(),
                                            [](const LoadCase& load) { return !load.positions.empty(); });
     if (has_positions && motions == 0)

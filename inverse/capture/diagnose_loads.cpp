@@ -82,13 +82,13 @@ class LoadDiagnosis {
 
   // Forces of an indenter smaller than the triangles depend on the mesh.
   void examine_resolution(const LoadCase& load) {
-    if (told_of_mesh_) return;
+    if (reported_coarse_) return;
     const SurfacePoint near = surface_.nearest(load.touch.center).point;
     const auto& X = experiment_.mesh.rest;
     double edge = 0;
     for (int i = 0; i < 3; ++i) edge = std::max(edge, norm(X[near.vertices[i]] - X[near.vertices[(i + 1) % 3]]));
     if (edge <= kCoarse * load.tip->radius) return;
-    told_of_mesh_ = true;
+    reported_coarse_ = true;
     findings_.warning(where_,
                       "the indenter of radius " + three_digits(load.tip->radius) +
                           " m is small relative to the edges of the surface triangles, " + three_digits(edge) +
@@ -183,7 +183,7 @@ class LoadDiagnosis {
   SurfaceProjection surface_;
   double size_;
   std::string where_;
-  bool told_of_mesh_ = false;
+  bool reported_coarse_ = false;
 };
 
 }  // namespace

@@ -14,7 +14,7 @@ namespace {
 
 constexpr int kNeighbors = 12;
 constexpr size_t kMostListed = 5;     // listed findings per kind; others are counted
-constexpr double kOffSurface = 0.02;  // of the body's size
+constexpr double kOffSurface = 0.02;  // fraction of the body's size
 constexpr double kSuspicious = 6;     // multiple of the differences between neighbors
 constexpr double kNoticeable = 0.05;  // fraction of the largest motion of the case
 constexpr double kReach = 2;          // radii around an indenter within which the surface follows it

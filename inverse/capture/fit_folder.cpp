@@ -48,7 +48,7 @@ std::string difference(const std::string& then, const std::string& now) {
   const std::vector<std::string> a = lines_of(then), b = lines_of(now);
   for (size_t i = 0; i < std::max(a.size(), b.size()); ++i) {
     const std::string one = i < a.size() ? a[i] : "nothing", other = i < b.size() ? b[i] : "nothing";
-    if (one != other) return "it was started with '" + one + "', now it says '" + other + "'";
+    if (one != other) return "the stored option is '" + one + "', the new one is '" + other + "'";
   }
   return "";
 }
@@ -56,23 +56,9 @@ std::string difference(const std::string& then, const std::string& now) {
 }  // namespace
 
 const char* to_string(FitStage stage) {
-  switch (stage) {
-    case FitStage::uniform:
-      return "uniform";
-    case FitStage::mesh_errors:
-      return "mesh_errors";
-    case FitStage::field:
-      return "field";
-    case FitStage::uncertainty:
-      return "uncertainty";
-    case FitStage::parts:
-      return "parts";
-    case FitStage::cross_validation:
-      return "cross_validation";
-    case FitStage::next_poke:
-      break;
-  }
-  return "next_poke";
+  constexpr const char* kNames[] = {"uniform", "mesh_errors",      "field",    "uncertainty",
+                                    "parts",   "cross_validation", "next_poke"};
+  return kNames[static_cast<size_t>(stage)];
 }
 
 FitFolder FitFolder::open(const fs::path& material, const std::string& options, ExistingFit existing) {

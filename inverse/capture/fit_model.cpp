@@ -5,7 +5,7 @@ namespace aspic {
 FitModel::FitModel(const Experiment& data, const Experiment& simulated, const FitPlan& plan,
                    std::vector<Unknown> unknowns, const StoredModel& stored)
     : map(data.mesh, plan.model, known_parameters(plan, data), std::move(unknowns)),
-      prior(make_regularizer(data.mesh, map, plan.belief)),
+      prior(make_regularizer(data.mesh, map, plan.regularizer)),
       misfit(simulated, map, plan.equilibrium) {
   const FitMemory& memory = stored.memory;
   if (!memory.folder.empty()) {

@@ -15,7 +15,7 @@
 namespace aspic {
 namespace {
 
-constexpr int kMostTets = 5'000'000;  // of a refined mesh
+constexpr int kMostTets = 5'000'000;  // limit of a refined mesh
 constexpr double kUsualYoung = 1e5, kUsualPoisson = 0.4;
 
 // Splits "young=tets".
@@ -98,17 +98,9 @@ Unknown parse_unknown(const std::string& text) {
 }
 
 std::string text_of(const Unknown& unknown) {
-  switch (unknown.spread) {
-    case Spread::uniform:
-      return unknown.quantity + "=uniform";
-    case Spread::regions:
-      return unknown.quantity + "=regions";
-    case Spread::handles:
-      return unknown.quantity + "=handles:" + std::to_string(unknown.handles);
-    case Spread::tets:
-      break;
-  }
-  return unknown.quantity + "=tets";
+  constexpr const char* kSpreads[] = {"uniform", "regions", "handles:", "tets"};
+  return unknown.quantity + "=" + kSpreads[static_cast<size_t>(unknown.spread)] +
+         (unknown.spread == Spread::handles ? std::to_string(unknown.handles) : "");
 }
 
 std::pair<std::string, double> parse_known(const std::string& text) {
@@ -177,8 +169,8 @@ std::string text_of(const FitPlan& plan) {
   }
   for (const auto& [quantity, value] : plan.known) add("known." + quantity, number_text(value));
   const char* smooth[] = {"none", "h1", "tv"};
-  add("smooth", quoted(smooth[static_cast<int>(plan.belief.smoothness)]));
-  add("prior_deviation", number_text(plan.belief.prior_deviation));
+  add("smooth", quoted(smooth[static_cast<int>(plan.regularizer.smoothness)]));
+  add("prior_deviation", number_text(plan.regularizer.prior_deviation));
   add("method", quoted(plan.fit.method));
   add("rule", quoted(plan.fit.weight_rule));
   add("weight", plan.fit.weight < 0 ? quoted("auto") : number_text(plan.fit.weight));

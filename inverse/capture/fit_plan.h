@@ -16,7 +16,7 @@ struct FitPlan {
   std::string model = "neo_hookean";
   std::vector<Unknown> unknowns;                      // empty: young per tet, all others uniform; guess 0: automatic
   std::vector<std::pair<std::string, double>> known;  // uniform, not fitted: {"poisson", 0.45}
-  RegularizerOptions belief;
+  RegularizerOptions regularizer;
   FitOptions fit;
   EquilibriumOptions equilibrium;
   std::vector<std::string> left_out;  // groups of cases to predict instead of fitting

@@ -7,7 +7,7 @@ namespace aspic {
 FitOutcome fit_material(const DataSet& data, const FitPlan& plan, const FitMemory& memory,
                         const FitCallbacks& callbacks) {
   FitOutcome outcome = MaterialFit(data, plan, memory, callbacks).run();
-  if (outcome.posterior) outcome.posterior->belief.reset();  // refers to the prior, which no longer exists
+  if (outcome.posterior) outcome.posterior->gaussian.reset();  // refers to the prior, which no longer exists
   return outcome;
 }
 

@@ -27,8 +27,9 @@ struct ValueRow {
 struct FittedQuantity {
   std::string name, unit;
   Spread spread = Spread::uniform;
-  std::vector<double> values;                // one per tet, in the order of the data set [SI]
-  std::vector<double> deviation, reduction;  // of each value on the fitted scale (log E); empty: unknown
+  std::vector<double> values;  // one per tet, in the order of the data set [SI]
+  // Standard deviation and reduction of each value on the fitted scale (log E); empty: unknown.
+  std::vector<double> deviation, reduction;
   std::vector<ValueRow> rows;
 };
 
@@ -44,7 +45,7 @@ struct CaseOutcome {
   // Standard deviations used by the fit, including those of the mesh correction [m], [N].
   std::vector<Vec3d> marker_deviation;
   Vec3d force_deviation{}, torque_deviation{};
-  double relative_mesh_error = 0;  // of the force: |limit - mesh| over the smaller of both
+  double relative_mesh_error = 0;  // relative error of the force: |limit - mesh| over the smaller of both
 };
 
 // Parts of a divided stiffness field.
@@ -63,7 +64,7 @@ struct FitReason {
 
 struct FitOutcome {
   FitPlan plan;                      // completed
-  FitReport report;                  // of the last started stage
+  FitReport report;                  // report of the last started stage
   std::optional<FitReport> uniform;  // first of two stages: one value per quantity
   std::vector<FittedQuantity> quantities;
   FittedMaterial material;               // in the user's numbering
@@ -71,7 +72,7 @@ struct FitOutcome {
   std::vector<FitReason> against_field;  // why one value replaces the requested field; empty: it does not
   bool mesh_errors_settle = true;        // false: they did not converge with the material
   std::vector<std::string> at_bound;     // quantities: "young in 3 tets"
-  double mesh_error = -1;                // of the positions: root mean square over the largest motion; < 0: unknown
+  double mesh_error = -1;  // error of the positions: root mean square over the largest motion; < 0: unknown
   std::optional<Posterior> posterior;
   std::optional<FoundParts> parts;
   std::optional<CrossValidation> held_out;

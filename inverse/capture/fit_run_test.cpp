@@ -27,7 +27,7 @@ const FittedQuantity& young(const FitOutcome& outcome) { return outcome.quantiti
 TEST(FitRun, FindsTheLayersOfABlock) {
   const FitOutcome outcome = fit_material(block(), quick_plan(), {}, {});
   ASSERT_TRUE(outcome.has_material()) << outcome.failure;
-  EXPECT_TRUE(is_success(outcome.report.status)) << outcome.report.words;
+  EXPECT_TRUE(is_success(outcome.report.status)) << outcome.report.message;
   ASSERT_EQ(young(outcome).rows.size(), 2u);
   EXPECT_EQ(young(outcome).rows[0].where, "region 1");
   EXPECT_NEAR(young(outcome).rows[0].value, kSoftLayer, 0.01 * kSoftLayer);
@@ -60,7 +60,7 @@ TEST(FitRun, DefaultFitsStiffnessOfEveryTet) {
   EXPECT_EQ(outcome.unknowns, block().experiment.mesh.tet_count() + 1);
 }
 
-TEST(FitRun, DataThatSayNothingLeaveWhatWasBelieved) {
+TEST(FitRun, UninformativeDataKeepThePrior) {
   DataSet data = block();
   for (LoadCase& load : data.experiment.cases) {
     load.positions.clear();
@@ -314,7 +314,7 @@ TEST_F(FitMemoryTest, InterruptedFitResumesBitReproducibly) {
     const fs::path memory = path("part" + std::to_string(limit));
     const FitOutcome part = fitted(memory, JournalStart::anew, limit);
     EXPECT_TRUE(part.interrupted);
-    EXPECT_TRUE(part.has_material()) << "what was reached is kept";
+    EXPECT_TRUE(part.has_material()) << "the current estimate is kept";
     const FitOutcome resumed = fitted(memory, JournalStart::resume, 1000);
     EXPECT_EQ(iterations, all);
     EXPECT_EQ(resumed.report.p, whole.report.p) << "interrupted after " << limit;
@@ -355,7 +355,7 @@ TEST_F(FitMemoryTest, FolderRejectsOtherOptionsOfItsFit) {
   };
   EXPECT_THAT(opened(ExistingFit::refuse, options), HasSubstr("--resume continues it, --force replaces it"));
   FitPlan other = quick_plan();
-  other.belief.smoothness = Smoothness::total_variation;
+  other.regularizer.smoothness = Smoothness::total_variation;
   EXPECT_THAT(opened(ExistingFit::resume, text_of(completed(other, block().experiment))),
               AllOf(HasSubstr("'smooth = \"h1\"'"), HasSubstr("'smooth = \"tv\"'")));
   {

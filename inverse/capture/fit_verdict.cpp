@@ -213,7 +213,7 @@ FitVerdict verdict(const DataSet& data, const FitOutcome& outcome) {
     return result;
   }
   Reasons reasons(data, outcome);
-  if (!is_success(outcome.report.status)) reasons.add("not_converged", outcome.report.words);
+  if (!is_success(outcome.report.status)) reasons.add("not_converged", outcome.report.message);
   for (const FitReason& reason : outcome.against_field)
     reasons.add("field_rejected", "one value replaces the field: " + reason.text);
   reasons.add_against_field();

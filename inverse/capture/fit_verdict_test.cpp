@@ -20,7 +20,7 @@ const DataSet& three_pokes() {
 FitOutcome perfect(const DataSet& data = three_pokes()) {
   FitOutcome outcome;
   outcome.report.status = Status::converged;
-  outcome.report.words = "converged";
+  outcome.report.message = "converged";
   for (const LoadCase& load : data.experiment.cases) {
     CaseOutcome& own = outcome.cases.emplace_back();
     own.ok = true;
@@ -50,7 +50,7 @@ CrossValidation held_out(double position_error, double force_error) {
   return result;
 }
 
-// Of the third poke, by peaks of 0.01 m and 1 N.
+// Held-out errors of the third poke, with peaks of 0.01 m and 1 N.
 CrossValidation held_out_poke(double position_error, double force_error) {
   const std::vector<LoadCase>& cases = three_pokes().experiment.cases;
   CrossValidation result = held_out(position_error, force_error);

@@ -41,7 +41,7 @@ std::vector<std::pair<std::string, int>> telling_tets(const FittedQuantity& quan
           {is_young ? "stiffest tet" : "highest", order.back()}};
 }
 
-constexpr double kAtEnd = 0.9995;  // of a range from -1 to 1
+constexpr double kAtEnd = 0.9995;  // end of a range from -1 to 1
 constexpr double kNearWall = 0.9;  // fraction of the largest distance of a field from its guess
 
 bool is_field_of_powers(const Unknown& u) {
@@ -66,7 +66,7 @@ double quantity_of(const MaterialParameters& m, const std::string& name, const M
 }  // namespace
 
 std::vector<FittedQuantity> fitted_quantities(const ParameterMap& map, const TetMesh& mesh, std::span<const double> p,
-                                              const Posterior* belief) {
+                                              const Posterior* posterior) {
   std::vector<FittedQuantity> result;
   for (size_t u = 0; u < map.unknowns().size(); ++u) {
     const Unknown& unknown = map.unknowns()[u];
@@ -76,10 +76,10 @@ std::vector<FittedQuantity> fitted_quantities(const ParameterMap& map, const Tet
     q.unit = unit_of(q.name, map.material());
     q.spread = unknown.spread;
     q.values = map.values(index, p);
-    if (belief) q.deviation = belief->deviation[u], q.reduction = belief->reduction[u];
+    if (posterior) q.deviation = posterior->deviation[u], q.reduction = posterior->reduction[u];
     for (const auto& [where, tet] : telling_tets(q, mesh)) {
       ValueRow& row = q.rows.emplace_back(ValueRow{where, q.values[tet], {}});
-      if (belief) row.interval = interval(*belief, map, p, {index, tet});
+      if (posterior) row.interval = interval(*posterior, map, p, {index, tet});
     }
   }
   return result;
@@ -122,13 +122,13 @@ FittedMaterial fitted_material(const DataSet& data, const ParameterMap& map, std
 }
 
 std::string describe_mesh(const FitOutcome& outcome) {
-  std::string words = "a material per tet of " + std::to_string(outcome.material.mesh.tet_count()) + ", simulated on " +
-                      std::to_string(outcome.simulated_tets) +
-                      (outcome.plan.refine > 0 ? " (refine = " + std::to_string(outcome.plan.refine) + ")" : " tets");
-  if (outcome.mesh_error < 0) return words;
+  std::string text = "a material per tet of " + std::to_string(outcome.material.mesh.tet_count()) + ", simulated on " +
+                     std::to_string(outcome.simulated_tets) +
+                     (outcome.plan.refine > 0 ? " (refine = " + std::to_string(outcome.plan.refine) + ")" : " tets");
+  if (outcome.mesh_error < 0) return text;
   char percent[16];
   std::snprintf(percent, sizeof percent, "%.2g", 100 * outcome.mesh_error);
-  return words + "; positions err by " + percent + " % of the peak motion, which was corrected";
+  return text + "; positions err by " + percent + " % of the peak motion, which was corrected";
 }
 
 }  // namespace aspic

@@ -62,7 +62,7 @@ class Journal : public LeastSquares {
   OutputFile out_;
   std::ifstream in_;
   std::uint64_t position_ = 0, end_ = 0;  // position and end of the replayed part [bytes]
-  std::vector<double> p_;                 // of the last successful evaluation
+  std::vector<double> p_;                 // p of the last successful evaluation
   std::vector<double> resumed_p_, resumed_state_;
   bool is_behind_ = false;  // the model has not yet been restored to the replayed state
 };

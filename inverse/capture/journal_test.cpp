@@ -98,7 +98,7 @@ TEST_F(JournalTest, KilledAtAnyCallItResumesBitReproducibly) {
     Looser model;
     Journal journal(model, model.state(), path("a"), "f", JournalStart::resume);
     EXPECT_EQ(descended(journal, 12), expected) << "killed at call " << limit;
-    EXPECT_LE(model.calls, calls - limit + 30) << "what was answered is not asked again";
+    EXPECT_LE(model.calls, calls - limit + 30) << "stored evaluations are not repeated";
   }
 }
 

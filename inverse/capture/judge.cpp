@@ -147,9 +147,9 @@ class Judge {
 
   const FittedMaterial& fitted_;
   const FittedMaterial& truth_;
-  std::vector<int> tet_;  // of the truth, at each point
+  std::vector<int> tet_;  // tet of the truth at each point
   std::vector<double> volume_;
-  const std::vector<double>* true_values_ = nullptr;  // of the quantity in question
+  const std::vector<double>* true_values_ = nullptr;  // true values of the judged parameter
   bool is_log_ = true;
 };
 

@@ -8,10 +8,10 @@ namespace aspic {
 namespace {
 
 // Keeps the prior of single tets.
-void set_deviations(const std::vector<double>& deviation, int unknown, Posterior& belief) {
+void set_deviations(const std::vector<double>& deviation, int unknown, Posterior& posterior) {
   for (size_t t = 0; t < deviation.size(); ++t) {
-    double& own = belief.deviation[unknown][t];
-    double& reduction = belief.reduction[unknown][t];
+    double& own = posterior.deviation[unknown][t];
+    double& reduction = posterior.reduction[unknown][t];
     const double before = own * own / std::max(1 - reduction, 1e-12);
     own = deviation[t];
     reduction = std::clamp(1 - own * own / before, 0.0, 1.0);
@@ -43,7 +43,7 @@ std::vector<double> MaterialFit::divided(FitModel& model) {
     found.are_kept = are_as_good(parts, 2 * report.misfit, outcome_.residuals);
     if (!found.are_kept) continue;
     outcome_.report.misfit = parts.squares / 2;
-    std::erase_if(outcome_.warnings, is_about_misfit);  // of the field
+    std::erase_if(outcome_.warnings, is_about_misfit);  // warnings about the misfit of the field
     return keep(parts, model.map, unknown, found);
   }
   return report.p;

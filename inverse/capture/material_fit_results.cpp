@@ -46,8 +46,8 @@ void MaterialFit::learn_uncertainty(FitModel& model) {
 
 // Stores the material of p, its values for display, and predictions for the fitted cases.
 void MaterialFit::describe(FitModel& model, std::span<const double> p) {
-  const Posterior* belief = outcome_.posterior && outcome_.posterior->ok ? &*outcome_.posterior : nullptr;
-  outcome_.quantities = fitted_quantities(model.map, mesh(), p, belief);
+  const Posterior* posterior = outcome_.posterior && outcome_.posterior->ok ? &*outcome_.posterior : nullptr;
+  outcome_.quantities = fitted_quantities(model.map, mesh(), p, posterior);
   outcome_.material = fitted_material(data_, model.map, p, outcome_.quantities);
   outcome_.at_bound = values_at_bound(model.map, p);
   outcome_.counts = model.misfit.counts();
@@ -58,8 +58,8 @@ void MaterialFit::describe(FitModel& model, std::span<const double> p) {
   const bool ok = about_fit.evaluate(p, r);
   if (ok) {
     outcome_.report.misfit = dot(r, r) / 2;
-    if (const std::string words = describe_worst_row(data_, plan_.left_out, model.misfit, r); !words.empty())
-      add_warnings({words});
+    if (const std::string worst = describe_worst_row(data_, plan_.left_out, model.misfit, r); !worst.empty())
+      add_warnings({worst});
   }
   int fitted = 0;
   for (size_t c = 0; c < outcome_.cases.size(); ++c) {

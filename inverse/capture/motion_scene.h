@@ -25,7 +25,7 @@ MotionScene load_motion_scene(const std::filesystem::path& path, const std::vect
 struct FittedScene {
   std::filesystem::path source, folder;
   std::vector<std::string> overrides, names;  // as for load_motion_scene()
-  const Value& body;                          // of the scene
+  const Value& body;                          // body of the scene
 };
 
 // Writes the scene with the parameters p. Throws InvalidInput.

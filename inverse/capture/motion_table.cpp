@@ -19,7 +19,7 @@ namespace aspic {
 namespace {
 
 constexpr double kFarOff = 0.1, kOff = 0.01;  // distances from the surface over the size of the body: error, note
-constexpr double kAtStart = 1e-6;             // of a time step
+constexpr double kAtStart = 1e-6;             // fraction of a time step
 constexpr double kLongest = 1e6;              // motion, in time steps
 constexpr size_t kMostMarkers = 100'000;
 

@@ -59,7 +59,7 @@ inline Experiment poked_block(int cells) {
   return e;
 }
 
-// With what would be read, had the layers these moduli.
+// Returns the experiment with the readings for these moduli of the layers.
 inline DataSet measured_block(int cells) {
   DataSet data{.name = "block", .experiment = poked_block(cells)};
   Experiment& e = data.experiment;

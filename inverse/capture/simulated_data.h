@@ -23,9 +23,9 @@ class SimulatedData {
   // Corrects the measurements by the discretization error for a material. Returns the reason if
   // this is impossible, so that nothing changes; otherwise empty.
   std::string take_off_mesh_errors(const FitPlan& plan, const std::vector<MaterialParameters>& material);
-  // Of the positions: root mean square over the largest motion; < 0: unknown.
+  // Error of the positions: root mean square over the largest motion; < 0: unknown.
   double mesh_error() const;
-  // Of the force of case c, see MeshError; 0: unknown.
+  // Relative discretization error of the force of case c, see MeshError; 0: unknown.
   double relative_force_error(size_t c) const { return errors_.empty() ? 0 : errors_[c].relative_force_error(); }
   double force_factor(size_t c) const { return errors_.empty() ? 1 : errors_[c].force_factor(); }
   // Prediction for case c, corrected to a finer mesh.

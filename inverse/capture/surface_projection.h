@@ -19,7 +19,7 @@ class SurfaceProjection {
  public:
   explicit SurfaceProjection(const TetMesh& mesh);  // stores a reference to the mesh
 
-  const std::vector<Triangle>& triangles() const { return triangles_; }  // of the boundary, outward oriented
+  const std::vector<Triangle>& triangles() const { return triangles_; }  // boundary triangles, outward oriented
   ProjectedPoint nearest(const Vec3d& p) const;
 
  private:

@@ -256,7 +256,7 @@ class Bench {
 
   const Model& model_;
   const SynthesisOptions& options_;
-  double size_;  // of the body [m]
+  double size_;  // size of the body [m]
   Synthesis result_;
   Experiment truth_;             // on the mesh of the scene, with the same markers and cases
   std::vector<LoadCase> asked_;  // requested cases of the data

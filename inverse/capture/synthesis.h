@@ -25,7 +25,7 @@ struct SynthesisOptions {
   TipContact contact = TipContact::bonded;
   int markers = 100;
   double noise = 0.01;        // standard deviation of positions, relative to the largest motion
-  double force_noise = 0.01;  // of forces and torques, relative to the largest
+  double force_noise = 0.01;  // noise of forces and torques, relative to the largest
   bool forces = true, torques = false;
   bool regions = false;          // label the tets of the data by true value, as for known anatomy
   std::vector<Vec3d> gravity;    // one case per direction, 9.81 m/s^2

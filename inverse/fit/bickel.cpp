@@ -37,8 +37,8 @@ LinearFit fit_linear(const Experiment& experiment, Spread spread, const BickelOp
   done.report = fit(misfit, *prior, map.guess(), options.fit);
   std::vector<double> r(static_cast<size_t>(misfit.residual_count()));
   if (done.report.p.empty() || !misfit.evaluate(done.report.p, r)) {
-    done.failure = experiment.cases.front().name +
-                   ": no linear material fits it: " + (misfit.failure().empty() ? done.report.words : misfit.failure());
+    done.failure = experiment.cases.front().name + ": no linear material fits it: " +
+                   (misfit.failure().empty() ? done.report.message : misfit.failure());
     return done;
   }
   done.parameters = map.parameters(done.report.p);

@@ -23,7 +23,7 @@ struct BoundedFit {
   std::vector<double> p;
   std::vector<bool> at_bound;
   double objective = 0;           // |r|^2 / 2
-  std::vector<double> deviation;  // of p, from the scatter of the residuals; 0 at a bound, infinite if undetermined
+  std::vector<double> deviation;  // sigma of p, from the scatter of r; 0 at a bound, infinite if undetermined
   int iterations = 0, evaluations = 0;
 };
 

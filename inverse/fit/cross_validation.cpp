@@ -101,7 +101,7 @@ CrossValidation cross_validate(const Experiment& experiment, const ParameterMap&
     if (is_success(report.status) || report.status == Status::iteration_limit)
       predict(left_out, map, chosen.equilibrium, h);
     else
-      h.failure = "the fit to the other cases failed: " + report.words;
+      h.failure = "the fit to the other cases failed: " + report.message;
     if (!h.ok) result.warnings.push_back(h.group + " could not be predicted: " + h.failure);
   }
   result.position_error = root_mean_square(

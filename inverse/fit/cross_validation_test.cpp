@@ -21,7 +21,7 @@ struct HeldOutStudy {
     const auto prior = make_regularizer(block.experiment.mesh, map, {});
     Misfit misfit(block.experiment, map);
     const FitReport fitted = fit(misfit, *prior, map.guess(), {.weight = weight});
-    EXPECT_TRUE(is_success(fitted.status)) << fitted.words;
+    EXPECT_TRUE(is_success(fitted.status)) << fitted.message;
     return cross_validate(block.experiment, map, *prior, fitted);
   }
   void measure(const std::vector<double>& log_young) {

@@ -36,14 +36,8 @@ void check(const TestCurve& curve) {
 double lambda_of(double mu, double poisson) { return 2 * mu * poisson / (1 - 2 * poisson); }
 
 double scale_of(const TestCurve& curve, size_t point, Weighting weighting, double scatter) {
-  switch (weighting) {
-    case Weighting::absolute:
-      return scatter;
-    case Weighting::balanced:
-      return std::sqrt(squared_norm(curve.stress));
-    case Weighting::relative:
-      break;
-  }
+  if (weighting == Weighting::absolute) return scatter;
+  if (weighting == Weighting::balanced) return std::sqrt(squared_norm(curve.stress));
   return std::fmax(std::abs(curve.stress[point]), kLeastRelative * max_abs(curve.stress));
 }
 

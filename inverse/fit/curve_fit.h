@@ -38,7 +38,7 @@ struct FittedParameter {
 struct CurveErrors {
   std::string name;
   std::vector<double> predicted;  // [Pa]
-  double rms = 0;                 // of predicted - measured [Pa]
+  double rms = 0;                 // root mean square of predicted - measured [Pa]
   double relative = 0;            // |predicted - measured| / |measured|, norms over the points
   double largest = 0;             // largest |predicted - measured| over the largest |measured|
   double r_squared = 0;           // 1 - sum of squares / sum of squares about the mean of the measurements

@@ -14,7 +14,7 @@
 namespace aspic {
 namespace {
 
-std::string words(const MinimizeReport& report) {
+std::string message_of(const MinimizeReport& report) {
   const std::string status(to_string(report.status));
   if (report.status == Status::undefined) return "the energy is not finite at the initial guess (" + status + ")";
   return "no equilibrium was found: " + status + " after " + std::to_string(report.iterations) +
@@ -48,7 +48,7 @@ struct Equilibrium::Impl {
     linear_x.reserve(x.size());
   }
 
-  void tell_terms(std::span<const double> at) {
+  void update_terms(std::span<const double> at) {
     const StepContext context{at, 0, 0};
     E.set_potential_step(context);
     E.set_damping_step(context);
@@ -58,12 +58,12 @@ struct Equilibrium::Impl {
   MinimizeReport solve(const IterationObserver& observe) {
     use(parameters);
     std::copy(x.begin(), x.end(), trial.begin());
-    tell_terms(x);
+    update_terms(x);
     const MinimizeReport report = minimizer.minimize(E, newton, trial, minimize, observe);
     if (is_success(report.status)) {
       std::swap(x, trial);
     } else {
-      failure = words(report);
+      failure = message_of(report);
     }
     return report;
   }
@@ -71,7 +71,7 @@ struct Equilibrium::Impl {
   bool factorize() {
     linear_x.clear();
     use(parameters);
-    tell_terms(x);
+    update_terms(x);
     K.block = E.hessian(x, {Definiteness::exact}).block;  // copied, because E may overwrite it
     if (!is_analyzed) solver->analyze(E.pattern());
     is_analyzed = true;
@@ -140,7 +140,7 @@ struct Equilibrium::Impl {
   Newton newton;
   Minimizer minimizer;
   MinimizeOptions minimize;
-  std::unique_ptr<LinearSolver> solver;  // of K
+  std::unique_ptr<LinearSolver> solver;  // factorization of K
   BlockSparse K;
   ElasticParameters theta;
   std::vector<MaterialParameters> parameters, linear_parameters;

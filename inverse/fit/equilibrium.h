@@ -14,8 +14,8 @@
 namespace aspic {
 
 struct EquilibriumOptions {
-  double tolerance = 1e-9;           // of the residual force, relative to the balancing forces
-  int max_iterations = 200;          // of Newton's method
+  double tolerance = 1e-9;           // tolerance of the residual force, relative to the balancing forces
+  int max_iterations = 200;          // maximum iterations of Newton's method
   std::string linear = "auto";       // solver of Newton steps
   std::string adjoint = "auto";      // solver of tangents and adjoints, see linear_solver_names()
   int solves = 20;                   // approximate number of those per linearization, for "auto"

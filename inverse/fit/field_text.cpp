@@ -12,7 +12,7 @@ namespace {
 
 constexpr double kLittle = 0.2;  // negligible part of a sum of squares
 
-std::string number_words(double x, const char* format = "%.3g") {
+std::string formatted(double x, const char* format = "%.3g") {
   char buffer[32];
   std::snprintf(buffer, sizeof buffer, format, x == 0 ? 0.0 : x);
   return buffer;
@@ -52,11 +52,11 @@ std::string describe_regions(const TetMesh& mesh, std::span<const double> f, dou
     const double v = volume(mesh, t);
     m.first += v * f[t], m.second += v * f[t] * f[t];
   }
-  std::string words;
+  std::string text;
   int count = 0;
   for (const auto& [label, m] : regions)
-    if (sign * m.first > 0 && m.second > little) words += (count++ ? ", " : "") + std::to_string(label);
-  return (count > 1 ? "regions " : "region ") + words;
+    if (sign * m.first > 0 && m.second > little) text += (count++ ? ", " : "") + std::to_string(label);
+  return (count > 1 ? "regions " : "region ") + text;
 }
 
 std::string describe_sign(const TetMesh& mesh, const Unknown& unknown, std::span<const double> f, double sign,
@@ -71,15 +71,15 @@ std::string describe_field(const TetMesh& mesh, const Unknown& unknown, std::spa
   const double sign = m.positive >= m.second / 2 ? 1 : -1;
   const double lesser = std::min(m.positive, m.second - m.positive), little = kLittle / 2 * m.second;
   const std::string join = unknown.spread == Spread::regions ? "of " : "";
-  std::string words = join + describe_sign(mesh, unknown, f, sign, little);
-  if (lesser > kLittle * m.second) words += " against " + describe_sign(mesh, unknown, f, -sign, little);
-  return words;
+  std::string text = join + describe_sign(mesh, unknown, f, sign, little);
+  if (lesser > kLittle * m.second) text += " against " + describe_sign(mesh, unknown, f, -sign, little);
+  return text;
 }
 
 }  // namespace
 
 std::string describe_point(const Vec3d& x) {
-  return "(" + number_words(x[0]) + ", " + number_words(x[1]) + ", " + number_words(x[2]) + ") m";
+  return "(" + formatted(x[0]) + ", " + formatted(x[1]) + ", " + formatted(x[2]) + ") m";
 }
 
 std::string describe_place(const TetMesh& mesh, std::span<const double> field) {
@@ -95,8 +95,7 @@ std::string describe_place(const TetMesh& mesh, std::span<const double> field) {
   for (int i = 0; i < 3; ++i)
     if (std::abs(x[i]) < negligible) x[i] = 0;
   const double part = fourth > 0 ? second * second / (fourth * total) : 1;
-  return "around " + describe_point(x) + " (" + number_words(100 * part, part < 0.1 ? "%.1g" : "%.2g") +
-         " % of the body)";
+  return "around " + describe_point(x) + " (" + formatted(100 * part, part < 0.1 ? "%.1g" : "%.2g") + " % of the body)";
 }
 
 std::string describe_direction(const TetMesh& mesh, const ParameterMap& map, std::span<const double> dp) {
@@ -108,13 +107,13 @@ std::string describe_direction(const TetMesh& mesh, const ParameterMap& map, std
     squares.push_back(moments(mesh, fields.back()).second);
     sum += squares.back();
   }
-  std::string words;
+  std::string text;
   for (size_t u = 0; u < fields.size(); ++u) {
     if (!(squares[u] > kLittle * sum)) continue;
     const Unknown& unknown = map.unknowns()[u];
-    words += (words.empty() ? "" : " with ") + unknown.quantity + " " + describe_field(mesh, unknown, fields[u]);
+    text += (text.empty() ? "" : " with ") + unknown.quantity + " " + describe_field(mesh, unknown, fields[u]);
   }
-  return words;
+  return text;
 }
 
 }  // namespace aspic

@@ -95,7 +95,7 @@ struct Attempt {
   Status status = Status::undefined;
   FitPoint point;
   double weight = 0, objective = std::numeric_limits<double>::quiet_NaN();
-  std::string words;
+  std::string message;
 };
 
 bool is_better(const Attempt& a, const Attempt& b) {
@@ -135,14 +135,14 @@ FitReport fit(LeastSquares& misfit, Regularizer& regularizer, std::span<const do
   for (int start = 0; start < options.starts; ++start) {
     Attempt now;
     run.start = start;
-    run.report.words.clear();
+    run.report.message.clear();
     FitGoal goal{.tolerance = options.tolerance, .enough = is_quadratic ? 0 : options.enough};
     if (run.evaluate(scattered(run, guess, start), now.point)) {
       now.status = choose(run, now.point, goal, method.method);
       now.objective = now.point.objective(run.weight);
       choose = fit_with_weight;  // weights must be equal for comparison
     }
-    now.words = run.report.words;
+    now.message = run.report.message;
     now.weight = run.weight;
     run.report.starts.push_back(now.objective);
     if (start == 0 || is_better(now, best)) best = std::move(now);
@@ -157,13 +157,13 @@ FitReport fit(LeastSquares& misfit, Regularizer& regularizer, std::span<const do
   report.roughness = best.point.roughness;
   report.method = method.name;
   report.iterations = static_cast<int>(report.history.size());
-  report.words = ending(best.status) + (best.words.empty() ? "" : "; " + best.words);
+  report.message = ending(best.status) + (best.message.empty() ? "" : "; " + best.message);
   std::sort(report.weights.begin(), report.weights.end(),
             [](const WeightTrial& a, const WeightTrial& b) { return a.weight < b.weight; });
   std::vector<double> r(best.point.r.size());
   if (!report.p.empty() && std::isfinite(best.objective) && !misfit.evaluate(report.p, r)) {
     report.status = Status::undefined;
-    report.words = "the model could not be evaluated again at the end of the fit";
+    report.message = "the model could not be evaluated again at the end of the fit";
   }
   return report;
 }

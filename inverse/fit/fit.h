@@ -13,12 +13,12 @@ namespace aspic {
 
 struct FitOptions {
   std::string method = "auto";       // "levenberg_marquardt" (few parameters), "gauss_newton_cg", "lbfgs" (fields)
-  double tolerance = 1e-3;           // of FitIteration::decrement, relative to the first one
+  double tolerance = 1e-3;           // tolerance of FitIteration::decrement, relative to the first one
   double enough = 0.3;               // absolute threshold for fields, in standard deviations of the posterior
   int max_iterations = 100;          // total over all stages
-  int max_inner = 100;               // of conjugate gradients, per iteration
+  int max_inner = 100;               // maximum iterations of conjugate gradients, per iteration
   double max_step = 3;               // per entry of p and iteration: log E by 3, E by 20
-  double weight = -1;                // of the regularizer; < 0: chosen by `weight_rule`
+  double weight = -1;                // weight of the regularizer; < 0: chosen by `weight_rule`
   std::string weight_rule = "auto";  // weight_rule_names(); auto: "prior" (1) for few parameters, else "discrepancy"
   double first_weight = 0;           // first weight of a rule; 0: prior and data about equal
   int starts = 1;                    // number of initial guesses; the best result is kept
@@ -52,7 +52,7 @@ struct FitReport {
   std::vector<FitIteration> history;
   std::vector<WeightTrial> weights;  // all tried weights, ascending
   std::vector<double> starts;        // final objective per initial guess; NaN: failed
-  std::string words;                 // reason for the end, as a sentence
+  std::string message;               // reason for the end, as a sentence
 };
 
 // Starts from `guess`, or from the p of a stopped fit (with its weight as `first_weight`). Throws InvalidInput for

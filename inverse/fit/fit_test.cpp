@@ -138,7 +138,7 @@ TEST_P(Methods, FindFewUnknownsFromExactData) {
   model.observe(truth, 0);
   const FitReport report =
       fit(model, *few.prior, few.map.guess(), {.method = GetParam(), .tolerance = 1e-9, .enough = 0, .weight = 1});
-  EXPECT_TRUE(is_success(report.status)) << report.words;
+  EXPECT_TRUE(is_success(report.status)) << report.message;
   EXPECT_LT(largest_difference(report.p, truth), 1e-7);
   EXPECT_EQ(report.method, GetParam());
 }
@@ -153,7 +153,7 @@ TEST_P(Methods, EndWhereTheGradientIsZero) {
   const FitReport report =
       fit(model, *R, bar.map.guess(),
           {.method = GetParam(), .tolerance = 1e-6, .enough = 0, .max_iterations = 500, .weight = 2});
-  ASSERT_TRUE(is_success(report.status)) << report.words;
+  ASSERT_TRUE(is_success(report.status)) << report.message;
   std::vector<double> r(40), g(report.p.size()), first(report.p.size());
   const auto gradient = [&](std::span<const double> p, std::span<double> to) {
     model.evaluate(p, r);
@@ -176,7 +176,7 @@ TEST_P(Methods, TakeAFailedEvaluationAsTooFar) {
   model.bound = 1.0;
   const FitReport report =
       fit(model, *few.prior, few.map.guess(), {.method = GetParam(), .tolerance = 1e-8, .enough = 0, .weight = 0});
-  EXPECT_TRUE(is_success(report.status)) << report.words;
+  EXPECT_TRUE(is_success(report.status)) << report.message;
   EXPECT_LT(largest_difference(report.p, truth), 1e-5);
 }
 
@@ -190,7 +190,7 @@ TEST_P(Methods, NeverCallAFailureSuccess) {
   model.bound = -1;
   const FitReport nowhere = fit(model, *few.prior, few.map.guess(), {.method = GetParam()});
   EXPECT_EQ(nowhere.status, Status::undefined);
-  EXPECT_THAT(nowhere.words, HasSubstr("could not be evaluated"));
+  EXPECT_THAT(nowhere.message, HasSubstr("could not be evaluated"));
   model.bound = 1e-3;  // the data favor points outside the domain
   EXPECT_FALSE(
       is_success(fit(model, *few.prior, few.map.guess(), {.method = GetParam(), .max_iterations = 30}).status));
@@ -228,7 +228,7 @@ TEST(Fit, ObjectiveNeverGrowsAtOneWeight) {
   model.observe(bar.truth(), 1);
   const auto R = make_regularizer(bar.mesh, bar.map, {Smoothness::total_variation});
   const FitReport report = fit(model, *R, bar.map.guess(), {.weight = 1});
-  ASSERT_TRUE(is_success(report.status)) << report.words;
+  ASSERT_TRUE(is_success(report.status)) << report.message;
   for (size_t i = 1; i < report.history.size(); ++i)
     EXPECT_LE(report.history[i].objective, report.history[i - 1].objective * (1 + 1e-9));
 }
@@ -242,7 +242,7 @@ TEST(Fit, DiscrepancyLeavesTheNoise) {
     model.observe(bar.truth(), 1);
     const auto R = make_regularizer(bar.mesh, bar.map, {smoothness});
     const FitReport report = fit(model, *R, bar.map.guess(), {.weight_rule = "discrepancy"});
-    ASSERT_TRUE(is_success(report.status)) << report.words;
+    ASSERT_TRUE(is_success(report.status)) << report.message;
     EXPECT_NEAR(2 * report.misfit, 200, 0.15 * 200);
     EXPECT_GE(report.weights.size(), 2u);
     EXPECT_LT(report.weights.front().misfit, report.weights.back().misfit);
@@ -257,8 +257,8 @@ TEST(Fit, SaysWhenTheModelCannotExplainTheData) {
   model.observe(bar.truth(), 10);  // noise ten times what is stated
   const auto R = make_regularizer(bar.mesh, bar.map, {});
   const FitReport report = fit(model, *R, bar.map.guess(), {.max_iterations = 300, .weight_rule = "discrepancy"});
-  EXPECT_TRUE(is_success(report.status)) << report.words;
-  EXPECT_THAT(report.words, HasSubstr("too small"));
+  EXPECT_TRUE(is_success(report.status)) << report.message;
+  EXPECT_THAT(report.message, HasSubstr("too small"));
 }
 
 // The result is the same for initial weights far above and far below.
@@ -272,8 +272,8 @@ TEST(Fit, FindsWeightOfLargestEvidence) {
   for (const double first : {1e-2, 1.0, 1e4}) {
     const FitReport report =
         fit(model, *R, bar.map.guess(), {.max_iterations = 300, .weight_rule = "evidence", .first_weight = first});
-    ASSERT_TRUE(is_success(report.status)) << report.words;
-    EXPECT_THAT(report.words, HasSubstr("maximizes the evidence"));
+    ASSERT_TRUE(is_success(report.status)) << report.message;
+    EXPECT_THAT(report.message, HasSubstr("maximizes the evidence"));
     EXPECT_LT(2 * report.misfit, 200 * 1.2);
     found.push_back(report.weight);
   }
@@ -288,8 +288,8 @@ TEST(Fit, FindsTheCornerOfTheLCurve) {
   model.observe(bar.truth(), 1);
   const auto R = make_regularizer(bar.mesh, bar.map, {});
   const FitReport report = fit(model, *R, bar.map.guess(), {.weight_rule = "l_curve"});
-  ASSERT_TRUE(is_success(report.status)) << report.words;
-  EXPECT_THAT(report.words, HasSubstr("corner"));
+  ASSERT_TRUE(is_success(report.status)) << report.message;
+  EXPECT_THAT(report.message, HasSubstr("corner"));
   EXPECT_GT(2 * report.misfit, 0.5 * 200);
   EXPECT_LT(2 * report.misfit, 2.0 * 200);
 }

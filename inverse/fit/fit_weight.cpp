@@ -35,7 +35,7 @@ std::optional<double> balanced_weight(FitRun& run, const FitPoint& at) {
 }
 
 // Far above the number of residuals one step suffices for |r|^2; near it, accuracy must be within its scatter.
-constexpr double kFar = 0.5;  // of log (|r|^2 / number)
+constexpr double kFar = 0.5;  // distance of log (|r|^2 / number)
 
 double log_ratio(const FitRun& run, double misfit) { return std::log(std::max(2 * misfit / run.residuals(), 1e-300)); }
 double scatter(const FitRun& run) { return std::sqrt(0.5 * std::sqrt(2.0 * run.residuals())); }
@@ -160,7 +160,7 @@ Status fit_by_discrepancy(FitRun& run, FitPoint& at, FitGoal& goal, FitMethod me
   if (verdict == Discrepancy::Verdict::unexplained && !go_to(run, at, most_cautious(trials))) return Status::undefined;
   const Status status = method(run, at, goal);
   if (rule.is_met(at.misfit)) verdict = Discrepancy::Verdict::fits;
-  run.report.words = describe(verdict, 2 * at.misfit, run.residuals());
+  run.report.message = describe(verdict, 2 * at.misfit, run.residuals());
   return status;
 }
 
@@ -168,7 +168,7 @@ Status fit_by_evidence(FitRun& run, FitPoint& at, FitGoal& goal, FitMethod metho
   const std::optional<double> balanced = balanced_weight(run, at);
   if (!balanced) return Status::undefined;
   run.weight = run.options.first_weight > 0 ? run.options.first_weight : 0.1 * *balanced;
-  run.report.words = "the search for the weight of largest evidence did not converge";
+  run.report.message = "the search for the weight of largest evidence did not converge";
   for (int i = 0; i < kEvidenceTrials; ++i) {
     if (const Status status = fit_loosely(run, at, goal, method); !is_success(status)) return status;
     run.report.weights.push_back(trial_at(run, at));
@@ -178,7 +178,7 @@ Status fit_by_evidence(FitRun& run, FitPoint& at, FitGoal& goal, FitMethod metho
     if (!s.ok) return Status::undefined;
     const double factor = supported_weight(run.prior(), run.weight, at.p, s).factor;
     if (std::abs(std::log(factor)) < kSettled) {
-      run.report.words = "the weight maximizes the evidence of the data";
+      run.report.message = "the weight maximizes the evidence of the data";
       break;
     }
     run.weight *= std::clamp(factor, kLargestFall, 1 / kLargestFall);
@@ -202,7 +202,7 @@ Status fit_by_l_curve(FitRun& run, FitPoint& at, FitGoal& goal, FitMethod method
   double sharpest = 0;
   for (size_t i = 1; i + 1 < trials.size(); ++i)
     if (const double k = curvature(trials[i - 1], trials[i], trials[i + 1]); k > sharpest) sharpest = k, corner = i;
-  run.report.words =
+  run.report.message =
       sharpest > 0 ? "the weight is at the corner of the L-curve, of " + std::to_string(trials.size()) + " weights"
                    : "the L-curve has no corner: the smallest weight is used";
   if (!go_to(run, at, trials[corner])) return Status::undefined;

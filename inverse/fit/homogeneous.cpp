@@ -14,7 +14,7 @@ constexpr std::array<std::string_view, 4> kNames = {"uniaxial", "equibiaxial", "
 
 constexpr int kMaxStretchIterations = 100;
 constexpr double kLargestStep = 0.3;   // per iteration, of ln t
-constexpr double kTolerance = 1e-13;   // of ln t
+constexpr double kTolerance = 1e-13;   // tolerance of ln t
 constexpr double kMostStretch = 1e12;  // limit of the search
 
 Mat3d stretched(double x, double y, double z) { return {{x, 0, 0, 0, y, 0, 0, 0, z}}; }
@@ -28,30 +28,17 @@ struct Kinematics {
   int stress_entry() const { return deformation == Deformation::simple_shear ? 3 : 0; }  // in vec(P)
 
   Mat3d F(double t) const {
-    switch (deformation) {
-      case Deformation::uniaxial:
-        return stretched(l, t, t);
-      case Deformation::equibiaxial:
-        return stretched(l, l, t);
-      case Deformation::planar:
-        return stretched(l, 1, t);
-      case Deformation::simple_shear:
-        break;
-    }
+    if (deformation == Deformation::uniaxial) return stretched(l, t, t);
+    if (deformation == Deformation::equibiaxial) return stretched(l, l, t);
+    if (deformation == Deformation::planar) return stretched(l, 1, t);
     Mat3d F = identity3<double>();
     F(0, 1) = l;
     return F;
   }
   Mat3d dF_dt() const { return deformation == Deformation::uniaxial ? stretched(0, 1, 1) : stretched(0, 0, 1); }
   double isochoric_t() const {
-    switch (deformation) {
-      case Deformation::uniaxial:
-        return 1 / std::sqrt(l);
-      case Deformation::equibiaxial:
-        return 1 / (l * l);
-      default:
-        return 1 / l;
-    }
+    if (deformation == Deformation::uniaxial) return 1 / std::sqrt(l);
+    return 1 / (deformation == Deformation::equibiaxial ? l * l : l);
   }
 };
 
@@ -73,7 +60,7 @@ bool find_free_stretch(const Kinematics& body, const MaterialParameters& m, doub
   for (int i = 0; i < kMaxStretchIterations; ++i) {
     const Mat3<Dual<double>> P = stress_and_rate<M>(body.F(t), t * body.dF_dt(), m, -1);
     const double traction = P(axis, axis).value, slope = P(axis, axis).rate;
-    const double rate = traction + slope;  // of t P_tt / t by ln t
+    const double rate = traction + slope;  // derivative of t P_tt / t by ln t
     double step = rate > 0 ? -traction / rate : -std::copysign(kLargestStep, traction);
     if (!std::isfinite(step)) return false;
     step = std::fmax(-kLargestStep, std::fmin(kLargestStep, step));

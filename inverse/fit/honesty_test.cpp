@@ -20,7 +20,7 @@ std::vector<double> draw(Regularizer& prior, const ParameterMap& map, double wei
 
 FitReport fitted(LeastSquares& data, Regularizer& prior, const ParameterMap& map, double weight = 1) {
   const FitReport report = fit(data, prior, map.guess(), {.tolerance = 1e-4, .weight = weight});
-  EXPECT_TRUE(is_success(report.status)) << report.words;
+  EXPECT_TRUE(is_success(report.status)) << report.message;
   return report;
 }
 
@@ -131,7 +131,7 @@ TEST(Honesty, WithoutForceOnlyStiffnessRatiosAreDetermined) {
     EXPECT_EQ(posterior.scale_is_unknown, !with_force);
     ASSERT_FALSE(posterior.unseen.empty());
     if (!with_force) {  // the prior alone determines the scale: 2 / sqrt(weight)
-      EXPECT_EQ(posterior.unseen[0].words, "young of the whole body");
+      EXPECT_EQ(posterior.unseen[0].description, "young of the whole body");
       EXPECT_LT(posterior.unseen[0].information, 0.1);
       EXPECT_NEAR(posterior.unseen[0].deviation, 1, 0.1);
       EXPECT_GT(posterior.seen.size(), 0u);  // ratios are
@@ -181,7 +181,7 @@ TEST(Honesty, AllEigenpairMethodsAgreeAtFit) {
   block.measure(map, p, random);
   const Posterior dense = posterior(misfit, *prior, 1, {map, block.experiment.mesh, p});
   const Posterior sampled = posterior(misfit, *prior, 1, {map, block.experiment.mesh, p}, {.spectrum = {.dense = 10}});
-  ASSERT_LT(sampled.belief->spectrum().W.count(), map.size());
+  ASSERT_LT(sampled.gaussian->spectrum().W.count(), map.size());
   for (int t = 0; t < map.size(); ++t) {
     EXPECT_GT(sampled.deviation[0][t], dense.deviation[0][t] * (1 - 1e-6));
     EXPECT_LT(sampled.deviation[0][t], dense.deviation[0][t] * 1.05);

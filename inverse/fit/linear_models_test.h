@@ -1,4 +1,4 @@
-// Least squares and beliefs whose posterior is known exactly.
+// Least squares and priors whose posterior is known exactly.
 #pragma once
 #include <Eigen/Dense>
 #include <cmath>
@@ -55,11 +55,11 @@ class LinearModel : public LeastSquares {
 };
 
 // R = |G (p - guess)|^2 / 2
-class QuadraticBelief : public Regularizer {
+class QuadraticPrior : public Regularizer {
  public:
   Eigen::MatrixXd G, curvature;
   Eigen::VectorXd guess;
-  QuadraticBelief(Eigen::MatrixXd root, Eigen::VectorXd mean)
+  QuadraticPrior(Eigen::MatrixXd root, Eigen::VectorXd mean)
       : G(std::move(root)), curvature(G.transpose() * G), guess(std::move(mean)) {}
 
   double value(std::span<const double> p) const override { return (G * (as_vector(p) - guess)).squaredNorm() / 2; }
@@ -93,7 +93,7 @@ class QuadraticBelief : public Regularizer {
 };
 
 // Differences along a chain of n values, and each about its guess.
-inline QuadraticBelief chain_belief(int n, double smooth, double deviation, double guess = 0) {
+inline QuadraticPrior chain_prior(int n, double smooth, double deviation, double guess = 0) {
   Eigen::MatrixXd G = Eigen::MatrixXd::Zero(2 * n - 1, n);
   for (int i = 0; i + 1 < n; ++i) G(i, i) = smooth, G(i, i + 1) = -smooth;
   for (int i = 0; i < n; ++i) G(n - 1 + i, i) = 1 / deviation;

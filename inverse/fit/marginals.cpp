@@ -6,7 +6,7 @@
 namespace aspic {
 namespace {
 
-using Fields = std::vector<std::vector<double>>;  // of each unknown in each tet
+using Fields = std::vector<std::vector<double>>;  // a value per parameter and tet
 
 Fields zero_fields(const ParameterMap& map) {
   Fields fields;
@@ -25,9 +25,9 @@ void add_squares(const ParameterMap& map, std::span<const double> v, double scal
 }
 
 // diag F (C - W W') F': the variance outside the directions W.
-Fields unseen_exactly(PosteriorGaussian& belief, const ParameterMap& map) {
+Fields unseen_exactly(PosteriorGaussian& gaussian, const ParameterMap& map) {
   Fields unseen = zero_fields(map);
-  std::vector<double> a(belief.size()), z(belief.size());
+  std::vector<double> a(gaussian.size()), z(gaussian.size());
   for (size_t u = 0; u < unseen.size(); ++u) {
     std::vector<double> unit(unseen[u].size(), 0.0);
     for (size_t t = 0; t < unit.size(); ++t) {
@@ -35,8 +35,8 @@ Fields unseen_exactly(PosteriorGaussian& belief, const ParameterMap& map) {
       unit[t] = 1;
       map.add_fitted_transposed(static_cast<int>(u), unit, a);
       unit[t] = 0;
-      belief.before().covariance(a, z);
-      const std::vector<double> seen = product_transposed(belief.spectrum().W, a);
+      gaussian.before().covariance(a, z);
+      const std::vector<double> seen = product_transposed(gaussian.spectrum().W, a);
       unseen[u][t] = std::max(dot(a, z) - dot(seen, seen), 0.0);
     }
   }
@@ -44,13 +44,13 @@ Fields unseen_exactly(PosteriorGaussian& belief, const ParameterMap& map) {
 }
 
 // Mean square of prior samples without their part in W.
-Fields unseen_by_samples(PosteriorGaussian& belief, const ParameterMap& map, const MarginalOptions& options) {
+Fields unseen_by_samples(PosteriorGaussian& gaussian, const ParameterMap& map, const MarginalOptions& options) {
   Fields unseen = zero_fields(map);
   std::mt19937_64 random(options.seed);
-  std::vector<double> x(belief.size());
+  std::vector<double> x(gaussian.size());
   for (int s = 0; s < options.samples; ++s) {
-    belief.before().sample(random, x);
-    add_product(belief.spectrum().W, product_transposed(belief.spectrum().dual, x), -1, x);
+    gaussian.before().sample(random, x);
+    add_product(gaussian.spectrum().W, product_transposed(gaussian.spectrum().dual, x), -1, x);
     add_squares(map, x, 1.0 / options.samples, unseen);
   }
   return unseen;
@@ -58,8 +58,8 @@ Fields unseen_by_samples(PosteriorGaussian& belief, const ParameterMap& map, con
 
 }  // namespace
 
-Marginals marginals(PosteriorGaussian& belief, const ParameterMap& map, const MarginalOptions& options) {
-  const Spectrum& s = belief.spectrum();
+Marginals marginals(PosteriorGaussian& gaussian, const ParameterMap& map, const MarginalOptions& options) {
+  const Spectrum& s = gaussian.spectrum();
   Marginals m{.before = zero_fields(map), .after = zero_fields(map)};
   for (int k = 0; k < s.W.count(); ++k) {
     add_squares(map, s.W[k], 1, m.before);
@@ -69,7 +69,7 @@ Marginals marginals(PosteriorGaussian& belief, const ParameterMap& map, const Ma
   size_t values = 0;
   for (const auto& field : m.before) values += field.size();
   const bool exact = values <= static_cast<size_t>(options.exact);
-  const Fields unseen = exact ? unseen_exactly(belief, map) : unseen_by_samples(belief, map, options);
+  const Fields unseen = exact ? unseen_exactly(gaussian, map) : unseen_by_samples(gaussian, map, options);
   for (size_t u = 0; u < unseen.size(); ++u)
     for (size_t t = 0; t < unseen[u].size(); ++t) {
       m.before[u][t] += unseen[u][t];

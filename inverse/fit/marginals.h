@@ -14,10 +14,10 @@ struct MarginalOptions {
 };
 
 struct Marginals {
-  std::vector<std::vector<double>> before, after;  // of each parameter in each tet, on the fitted scale (log E)
+  std::vector<std::vector<double>> before, after;  // sigma of each parameter in each tet, on the fitted scale (log E)
   double relative_error = 0;                       // largest standard error of a standard deviation; 0: exact
 };
 
-Marginals marginals(PosteriorGaussian& belief, const ParameterMap& map, const MarginalOptions& options = {});
+Marginals marginals(PosteriorGaussian& gaussian, const ParameterMap& map, const MarginalOptions& options = {});
 
 }  // namespace aspic

@@ -20,7 +20,7 @@ Vec3d at_rest(const Experiment& experiment, const SurfacePoint& point) {
 struct Misfit::Impl {
   struct Case {
     std::unique_ptr<LoadedBody> body;
-    int first = 0;                        // of its residuals
+    int first = 0;                        // index of its first residual
     std::vector<double> start, thetabar;  // scratch
     bool ok = false;
   };
@@ -185,7 +185,7 @@ struct Misfit::Impl {
   int residual_count = 0;
   int per_tet = 2, parts = 1;  // parameters of a tet; tets that are simulated by tets of the map
   bool has_solved = false, is_linearized = false;
-  std::vector<double> accepted_p, linear_p;  // of the last successful evaluation, and of the Jacobian
+  std::vector<double> accepted_p, linear_p;  // p of the last successful evaluation, and of the Jacobian
   std::vector<MaterialParameters> accepted_parameters;
   std::vector<double> dp, dtheta, dtheta_of_parts;  // scratch
   std::string failure;

@@ -15,9 +15,9 @@ constexpr int kIterations = 4;  // minimum number per preconditioner
 // value per degree of freedom: a twentieth of a standard deviation.
 constexpr double kDecrease = 1e-18, kDecreaseInNoise = 1e-3;
 constexpr double kRoundOff = 1e-12, kRoundOffInNoise = 1e-2;  // the same if the line search found no step
-constexpr double kHessianDifference = 1e-3;                   // of p
+constexpr double kHessianDifference = 1e-3;                   // difference of p
 constexpr double kWeakest = 1e-5;        // eigenvalue of the scaled Hessian below which a direction is not determined
-constexpr double kLargestDeviation = 1;  // of p: a factor of e
+constexpr double kLargestDeviation = 1;  // sigma of p: a factor of e
 constexpr double kVanished = -5;         // p of a damping coefficient that has fallen to less than 1 % of its guess
 
 double redundancy(const MotionObjective& f) {  // degrees of freedom

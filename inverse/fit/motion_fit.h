@@ -33,7 +33,7 @@ struct MotionFitReport {
   Status status = Status::undefined;
   bool stopped = false;   // by the stop token; there are no standard deviations
   std::string message;    // the reason for a failure
-  std::vector<double> p;  // of MotionParameters
+  std::vector<double> p;  // values of MotionParameters
   std::vector<FittedMotionValue> values;
   MotionPoint before, after;
   double chi_squared = 0;  // sum of squared residuals / sigma^2 per degree of freedom

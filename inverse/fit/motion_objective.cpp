@@ -13,10 +13,10 @@
 namespace aspic {
 namespace {
 
-constexpr double kDifference = 1e-4;  // of p, for J
+constexpr double kDifference = 1e-4;  // difference of p, for J
 constexpr double kFloor = 1e-7;       // eigenvalue of the scaled J'J: weaker combinations of parameters are held
-constexpr double kLargestMove = 1;    // of p in one iteration
-constexpr double kAtStep = 1e-6;      // of a time step: samples this close to a step are at the step
+constexpr double kLargestMove = 1;    // largest change of p in one iteration
+constexpr double kAtStep = 1e-6;      // fraction of a time step: samples this close to a step are at the step
 constexpr double kSteps = 1e6;        // maximum number
 
 Vec3d point_at(const SurfacePoint& marker, const State& state) {

@@ -28,7 +28,7 @@ struct MotionData {
 // The objective at one p.
 struct MotionPoint {
   bool ok = false;
-  std::string message;  // of a simulation that failed
+  std::string message;  // diagnostic of a failed simulation
   std::vector<double> p;
   double value = 0;              // sum of |simulated - measured|^2 / (2 sigma^2)
   std::vector<double> gradient;  // with respect to p
@@ -71,7 +71,7 @@ class MotionObjective : public Objective, public HasPreconditioner {
   static constexpr double kInsensitive = 1e-6;
 
  private:
-  struct Place {  // of a sample in time: between point `step` and the next one, with the weight of the latter
+  struct Place {  // place of a sample in time: between point `step` and the next one, with the weight of the latter
     int step = 0;
     double next = 0;
   };
@@ -91,7 +91,7 @@ class MotionObjective : public Objective, public HasPreconditioner {
   int simulations_ = 0, gradients_ = 0;
   MotionPoint at_, trial_;
   std::vector<bool> held_;
-  std::vector<double> inverse_;  // of J'J, row by row
+  std::vector<double> inverse_;  // inverse of J'J, row by row
 };
 
 }  // namespace aspic

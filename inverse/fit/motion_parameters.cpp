@@ -123,10 +123,10 @@ double MotionParameters::slope(int i, double p) const {
   return kind == Kind::poisson ? kPoisson.slope(kPoisson.fitted(parameters_[i].guess) + p) : value(i, p);
 }
 
-double MotionParameters::number(Kind kind, std::span<const double> p, double fallback) const {
+std::optional<double> MotionParameters::fitted(Kind kind, std::span<const double> p) const {
   for (size_t i = 0; i < p.size(); ++i)
     if (entries_[i].kind == kind) return value(static_cast<int>(i), p[i]);
-  return fallback;
+  return {};
 }
 
 Vec3d MotionParameters::vector(Kind kind, std::span<const double> p, const Vec3d& fallback) const {
@@ -151,8 +151,8 @@ MotionValues MotionParameters::values(std::span<const double> p) const {
   return {.young = mean(young, volume_),
           .poisson = mean(poisson, volume_),
           .density = mean(density(p), volume_),
-          .mass_damping = number(Kind::mass_damping, p, model_.mass_damping),
-          .stiffness_damping = number(Kind::stiffness_damping, p, model_.stiffness_damping),
+          .mass_damping = fitted(Kind::mass_damping, p).value_or(model_.mass_damping),
+          .stiffness_damping = fitted(Kind::stiffness_damping, p).value_or(model_.stiffness_damping),
           .viscosity = model_.viscosity.empty() ? 0 : mean(viscosity(p), volume_),
           .velocity = vector(Kind::velocity, p, model_.velocity),
           .angular_velocity = vector(Kind::angular_velocity, p, model_.angular_velocity)};
@@ -160,9 +160,10 @@ MotionValues MotionParameters::values(std::span<const double> p) const {
 
 std::vector<MaterialParameters> MotionParameters::material(std::span<const double> p) const {
   std::vector<MaterialParameters> material = material_;
-  const double stiffer = factor(Kind::young, p), poisson = number(Kind::poisson, p, 2);  // 2: not fitted
+  const double stiffer = factor(Kind::young, p);
+  const std::optional<double> poisson = fitted(Kind::poisson, p);
   for (MaterialParameters& m : material) {
-    if (poisson < 1) m.lame = lame_from_young_poisson(young_modulus(m.lame), poisson);
+    if (poisson) m.lame = lame_from_young_poisson(young_modulus(m.lame), *poisson);
     m.lame.mu *= stiffer, m.lame.lambda *= stiffer;
   }
   return material;
@@ -203,8 +204,8 @@ void MotionParameters::set_density(const std::vector<double>& density) {
 
 void MotionParameters::set_damping(std::span<const double> p) {
   Model& m = model_.model;
-  const double a = number(Kind::mass_damping, p, model_.mass_damping);
-  const double b = number(Kind::stiffness_damping, p, model_.stiffness_damping);
+  const double a = fitted(Kind::mass_damping, p).value_or(model_.mass_damping);
+  const double b = fitted(Kind::stiffness_damping, p).value_or(model_.stiffness_damping);
   m.damping.clear();
   if (a > 0 || b > 0) m.damping.push_back(make_rayleigh_damping(*m.mass, a, m.elasticity[0].get(), b));
   const std::vector<double> eta = viscosity(p);

@@ -15,12 +15,12 @@ struct MotionValues {
   double density = 0;                    // mean over the volume [kg/m^3]
   double mass_damping = 0;               // Rayleigh a of C = a M + b K [1/s]
   double stiffness_damping = 0;          // Rayleigh b [s]
-  double viscosity = 0;                  // of strain-rate damping, mean over the volume [Pa s]
+  double viscosity = 0;                  // viscosity of strain-rate damping, mean over the volume [Pa s]
   Vec3d velocity{}, angular_velocity{};  // [m/s], [rad/s] about the center of mass
 };
 
 struct MotionModel {
-  Model model;  // of one body; its damping is replaced by that of the members below
+  Model model;  // model of one body; its damping is replaced by that of the members below
   State start;  // with the velocities below
   double mass_damping = 0, stiffness_damping = 0;
   std::vector<double> viscosity = {};  // one per tet [Pa s]; empty: none
@@ -30,7 +30,7 @@ struct MotionModel {
 // Characteristic sizes, for initial guesses and for the units of velocities.
 struct MotionScales {
   double time_step = 0, duration = 0;  // [s]
-  double speed = 0, size = 0;          // of the measured motion [m/s], of the body [m]
+  double speed = 0, size = 0;          // speed of the measured motion [m/s], size of the body [m]
 };
 
 struct MotionParameter {
@@ -52,7 +52,7 @@ class MotionParameters {
 
   int size() const { return static_cast<int>(parameters_.size()); }
   const std::vector<MotionParameter>& parameters() const { return parameters_; }
-  double value(int i, double p) const;  // of a parameter, in its unit
+  double value(int i, double p) const;  // value of a parameter, in its unit
   double slope(int i, double p) const;  // dvalue/dp
   MotionValues values(std::span<const double> p) const;
   std::vector<MaterialParameters> material(std::span<const double> p) const;  // one per tet
@@ -71,13 +71,13 @@ class MotionParameters {
   enum class Kind { young, poisson, density, mass_damping, stiffness_damping, viscosity, velocity, angular_velocity };
   struct Entry {
     Kind kind;
-    int axis = 0;     // of a velocity
-    double unit = 1;  // of p, for a velocity
+    int axis = 0;     // axis of a velocity
+    double unit = 1;  // unit of p, for a velocity
   };
   void add(const std::string& name, const MotionScales& scales);
   void add_positive(Kind kind, const MotionParameter& parameter);
   void add_vector(Kind kind, const MotionParameter& parameter, const Vec3d& guess, double unit);
-  double number(Kind kind, std::span<const double> p, double fallback) const;
+  std::optional<double> fitted(Kind kind, std::span<const double> p) const;
   Vec3d vector(Kind kind, std::span<const double> p, const Vec3d& fallback) const;
   double factor(Kind kind, std::span<const double> p) const;  // exp(p); 1 if the quantity is not fitted
   void set_density(const std::vector<double>& density);
@@ -92,7 +92,7 @@ class MotionParameters {
   std::vector<MaterialParameters> material_;
   std::vector<double> density_, volume_;
   std::optional<Vec3d> gravity_;
-  Vec3d center_{};  // of mass
+  Vec3d center_{};  // center of mass
   std::vector<Entry> entries_;
   std::vector<MotionParameter> parameters_;
 };

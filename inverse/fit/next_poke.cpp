@@ -84,7 +84,8 @@ std::string describe_change(const Unknown& unknown, double before, double after)
   return text;
 }
 
-void set_words(const ParameterMap& map, const TetMesh& mesh, const Posterior& posterior, PokeCandidate& candidate) {
+void set_description(const ParameterMap& map, const TetMesh& mesh, const Posterior& posterior,
+                     PokeCandidate& candidate) {
   size_t unknown = 0;
   double largest = -1;
   std::vector<double> best;
@@ -100,8 +101,8 @@ void set_words(const ParameterMap& map, const TetMesh& mesh, const Posterior& po
   const size_t t = std::ranges::max_element(best) - best.begin();
   const Unknown& what = map.unknowns()[unknown];
   const std::string where = what.spread == Spread::uniform ? "of the whole body" : describe_place(mesh, best);
-  candidate.words = "at " + describe_point(candidate.site) + ": " + what.quantity + " " + where +
-                    describe_change(what, posterior.deviation[unknown][t], candidate.deviation[unknown][t]);
+  candidate.description = "at " + describe_point(candidate.site) + ": " + what.quantity + " " + where +
+                          describe_change(what, posterior.deviation[unknown][t], candidate.deviation[unknown][t]);
 }
 
 void judge(const Experiment& experiment, const FittedField& fitted, Posterior& posterior,
@@ -117,7 +118,7 @@ void judge(const Experiment& experiment, const FittedField& fitted, Posterior& p
       candidate.failure = misfit.failure();
       return;
     }
-    const Spectrum s = spectrum(data, *posterior.belief, options.spectrum);
+    const Spectrum s = spectrum(data, *posterior.gaussian, options.spectrum);
     if (!s.ok) {
       candidate.failure = "a derivative could not be computed";
       return;
@@ -128,7 +129,7 @@ void judge(const Experiment& experiment, const FittedField& fitted, Posterior& p
     candidate.failure = error.what();
     return;
   }
-  set_words(map, mesh, posterior, candidate);
+  set_description(map, mesh, posterior, candidate);
   candidate.ok = true;
 }
 

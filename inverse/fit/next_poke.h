@@ -28,8 +28,9 @@ struct PokeCandidate {
   bool ok = false;
   std::string failure;                         // why it has no result
   double gain = 0;                             // [nats]
-  std::vector<std::vector<double>> deviation;  // of each parameter in each tet, with this poke
-  std::string words;  // "at (0, 0.1, 0.02) m: young around ..., known within a factor of 1.9, would be within 1.2"
+  std::vector<std::vector<double>> deviation;  // sigma of each parameter in each tet, with this indentation
+  std::string
+      description;  // "at (0, 0.1, 0.02) m: young around ..., known within a factor of 1.9, would be within 1.2"
 };
 
 struct NextPoke {

@@ -49,8 +49,8 @@ TEST(NextPoke, PredictedGainAndDeviationsMatchActualPoke) {
     measured.measure(study.map, study.p, random);
     const Posterior after = study.posterior_of(measured.experiment);
     double gain = 0;  // 1/2 log det(C / C after)
-    for (const double d : after.belief->spectrum().d) gain += std::log1p(d) / 2;
-    for (const double d : before.belief->spectrum().d) gain -= std::log1p(d) / 2;
+    for (const double d : after.gaussian->spectrum().d) gain += std::log1p(d) / 2;
+    for (const double d : before.gaussian->spectrum().d) gain -= std::log1p(d) / 2;
     // Alone, the poke has no information of the others about the layer of the tip.
     EXPECT_LT(candidate.gain, gain * (1 + 1e-6));
     EXPECT_GT(candidate.gain, 0.85 * gain);
@@ -70,8 +70,8 @@ TEST(NextPoke, IsWhereNothingIsKnownYet) {
   EXPECT_GE(best.site[0], 0.5 * PokedBlock::kSide);
   EXPECT_LT(next.candidates.back().site[0], 0.4 * PokedBlock::kSide);
   EXPECT_LT(next.candidates.back().gain, 0.8 * best.gain);
-  EXPECT_THAT(best.words, HasSubstr("young around"));
-  EXPECT_THAT(best.words, HasSubstr("would be within"));
+  EXPECT_THAT(best.description, HasSubstr("young around"));
+  EXPECT_THAT(best.description, HasSubstr("would be within"));
   for (size_t i = 1; i < next.candidates.size(); ++i) {
     EXPECT_LE(next.candidates[i].gain, next.candidates[i - 1].gain);
     EXPECT_GT(next.candidates[i].gain, 0);

@@ -19,7 +19,7 @@ struct Fitted {
   int extra = 0;  // index into MaterialParameters::extra
   QuantityScale scale;
   FieldBasis basis;
-  int first = 0;  // of its entries in p
+  int first = 0;  // index of its first entry in p
   double guess = 0;
 
   std::span<const double> part(std::span<const double> p) const { return p.subspan(first, basis.size()); }
@@ -112,7 +112,7 @@ struct ParameterMap::Impl {
   std::string material;
   int per_tet = 2;
   std::vector<MaterialParameters> known;
-  std::vector<Elastic> elastic;  // of `known`
+  std::vector<Elastic> elastic;  // elastic constants of `known`
   std::vector<Unknown> unknowns;
   std::vector<Fitted> fitted;
   std::vector<double> guess;

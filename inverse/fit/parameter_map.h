@@ -38,7 +38,7 @@ class ParameterMap {
   const std::vector<Unknown>& unknowns() const;
   const std::string& material() const;
   std::span<const double> guess() const;         // size() numbers
-  std::pair<int, int> range(int unknown) const;  // of its entries in p: first, count
+  std::pair<int, int> range(int unknown) const;  // its entries in p: first, count
   const FieldBasis& basis(int unknown) const;
 
   std::vector<MaterialParameters> parameters(std::span<const double> p) const;  // one per tet

@@ -21,9 +21,9 @@ struct PartsOptions {
 };
 
 struct PartsEstimate {
-  std::vector<double> levels;              // of z, ascending: mean over the samples
-  std::vector<std::vector<double>> share;  // of each part in each tet: relative frequency
-  std::vector<double> mean, deviation;     // of z in each tet
+  std::vector<double> levels;              // values of z, ascending: mean over the samples
+  std::vector<std::vector<double>> share;  // share of each part in each tet: relative frequency
+  std::vector<double> mean, deviation;     // mean and sigma of z in each tet
 };
 
 // Clusters of z by volume, ascending: k-means in one dimension. Fewer if some coincide.
@@ -32,7 +32,7 @@ std::vector<double> gathered_levels(std::span<const double> z, std::span<const d
 // A field of one value per tet and its linearized model. All other parameters are constant.
 struct LinearizedField {
   const TetMesh& mesh;
-  const Spectrum& spectrum;          // of the linearization
+  const Spectrum& spectrum;          // spectrum of the linearization
   std::span<const double> gradient;  // J'r
   int first;                         // entry of the parameters at which the field begins
   std::span<const double> z;         // the field, one value per tet

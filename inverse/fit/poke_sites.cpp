@@ -23,7 +23,7 @@ std::vector<Patch> patches(const TetMesh& mesh, std::span<const Triangle> surfac
 }
 
 struct Normal {
-  Vec3d mean{};         // of length 1, outward
+  Vec3d mean{};         // unit vector, outward
   double flatness = 0;  // 1: all surrounding normals are equal
 };
 

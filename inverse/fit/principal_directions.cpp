@@ -68,27 +68,27 @@ double root_mean_square(const ParameterMap& map, const TetMesh& mesh, std::span<
   return norm(g);
 }
 
-std::vector<PrincipalDirection> principal_directions(PosteriorGaussian& belief, const ParameterMap& map,
+std::vector<PrincipalDirection> principal_directions(PosteriorGaussian& gaussian, const ParameterMap& map,
                                                      const TetMesh& mesh, int count) {
   constexpr int kSpare = 5, kIterations = 8;
   const WeightedFields G(map, mesh);
   const int rows = G.size();
-  Columns X(rows, std::min({count + kSpare, rows, belief.size()}));
+  Columns X(rows, std::min({count + kSpare, rows, gaussian.size()}));
   std::mt19937_64 random(3);
   std::normal_distribution<double> normal;
   for (int j = 0; j < X.count(); ++j)
     for (double& x : X[j]) x = normal(random);
 
   // Subspace iteration with G C G'.
-  std::vector<double> a(belief.size());
+  std::vector<double> a(gaussian.size());
   DenseEigen e;
   for (int iteration = 0; iteration < kIterations; ++iteration) {
     orthonormalize(X);
     Columns Y(rows, X.count());
-    std::vector<double> z(belief.size());
+    std::vector<double> z(gaussian.size());
     for (int j = 0; j < X.count(); ++j) {
       G.multiply_transposed(X[j], a);
-      belief.covariance(a, z);
+      gaussian.covariance(a, z);
       G.multiply(z, Y[j]);
     }
     e = dense_eigen(X.count(), product_transposed(X, Y));
@@ -96,12 +96,12 @@ std::vector<PrincipalDirection> principal_directions(PosteriorGaussian& belief, 
   }
 
   std::vector<PrincipalDirection> directions;
-  std::vector<double> z(belief.size());
+  std::vector<double> z(gaussian.size());
   for (int j = 0; j < std::min(count, X.count()); ++j) {
     G.multiply_transposed(X[j], a);
-    belief.before().covariance(a, z);
-    PrincipalDirection d{.before = dot(a, z), .p = std::vector<double>(belief.size())};
-    belief.covariance(a, d.p);
+    gaussian.before().covariance(a, z);
+    PrincipalDirection d{.before = dot(a, z), .p = std::vector<double>(gaussian.size())};
+    gaussian.covariance(a, d.p);
     d.after = dot(a, d.p);
     if (d.after > 0) directions.push_back(std::move(d));
   }

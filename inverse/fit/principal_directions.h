@@ -14,7 +14,7 @@ struct PrincipalDirection {
 };
 
 // The `count` largest components, descending by `after`.
-std::vector<PrincipalDirection> principal_directions(PosteriorGaussian& belief, const ParameterMap& map,
+std::vector<PrincipalDirection> principal_directions(PosteriorGaussian& gaussian, const ParameterMap& map,
                                                      const TetMesh& mesh, int count);
 
 // Root mean square over the body of all fitted quantities for p.

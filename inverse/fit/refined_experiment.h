@@ -38,7 +38,7 @@ struct MeshErrors {
   std::string failure;           // why
 };
 
-// For a material with one parameter set per tet of the experiment's mesh or of its unrefined mesh.
+// Requires one parameter set per tet of the experiment's mesh or of its unrefined mesh.
 MeshErrors mesh_errors(const Experiment& experiment, const std::string& material,
                        std::span<const MaterialParameters> parameters, const EquilibriumOptions& options = {});
 

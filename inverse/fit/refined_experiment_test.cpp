@@ -131,7 +131,7 @@ TEST(RefinedExperiment, CorrectionsScaleWithTheForce) {
     EXPECT_NEAR((*load.force)[2], 0.8 * measured, 1e-12);
     EXPECT_NEAR(load.force_deviation[2], std::hypot(0.1, 0.2 * measured / 3), 1e-12);
     EXPECT_NEAR(errors.cases[0].for_force_on_mesh({{0, 0, 0.8 * measured}}).force[2], 0.2 * measured, 1e-12)
-        << "a prediction gets back what was taken off";
+        << "the mesh error is added to predictions again";
   }
   EXPECT_DOUBLE_EQ(errors.cases[0].relative_force_error(), 0.25);
 }

@@ -23,10 +23,10 @@ double excess(double distance) { return std::copysign(std::max(0.0, std::abs(dis
 double inverse_square(double x) { return 1 / (x * x); }
 
 // Entries of p of one quantity, and their prior.
-class Belief {
+class Prior {
  public:
-  Belief(double guess, double deviation) : guess_(guess), precision_(inverse_square(deviation)) {}
-  virtual ~Belief() = default;
+  Prior(double guess, double deviation) : guess_(guess), precision_(inverse_square(deviation)) {}
+  virtual ~Prior() = default;
   virtual double value(std::span<const double> p) const = 0;
   virtual void add_gradient(std::span<const double> p, double scale, std::span<double> g) const = 0;
   virtual void add_product(std::span<const double> p, std::span<const double> v, double scale,
@@ -42,9 +42,9 @@ class Belief {
   double guess_, precision_;
 };
 
-class ValueBelief : public Belief {
+class ValuePrior : public Prior {
  public:
-  using Belief::Belief;
+  using Prior::Prior;
 
   double value(std::span<const double> p) const override {
     double sum = 0;
@@ -67,10 +67,10 @@ class ValueBelief : public Belief {
   }
 };
 
-class FieldBelief : public Belief {
+class FieldPrior : public Prior {
  public:
-  FieldBelief(const TetMesh& mesh, const FieldBasis& basis, const RegularizerOptions& options, double guess)
-      : Belief(guess, options.prior_deviation),
+  FieldPrior(const TetMesh& mesh, const FieldBasis& basis, const RegularizerOptions& options, double guess)
+      : Prior(guess, options.prior_deviation),
         basis_(basis),
         roughness_(mesh, options.smoothness == Smoothness::total_variation ? options.sharpness
                                                                            : std::numeric_limits<double>::infinity()),
@@ -192,45 +192,45 @@ class FieldBelief : public Belief {
   std::vector<double> made_p_;
 };
 
-class SumOfBeliefs : public Regularizer {
+class SumOfPriors : public Regularizer {
  public:
-  SumOfBeliefs(const TetMesh& mesh, const ParameterMap& map, const RegularizerOptions& options) {
+  SumOfPriors(const TetMesh& mesh, const ParameterMap& map, const RegularizerOptions& options) {
     for (size_t u = 0; u < map.unknowns().size(); ++u) {
       const auto [first, count] = map.range(static_cast<int>(u));
       const double guess = map.guess()[first];
       const Spread spread = map.unknowns()[u].spread;
-      std::unique_ptr<Belief> belief;
+      std::unique_ptr<Prior> prior;
       if (spread == Spread::uniform || spread == Spread::regions)
-        belief = std::make_unique<ValueBelief>(guess, options.prior_deviation);
+        prior = std::make_unique<ValuePrior>(guess, options.prior_deviation);
       else
-        belief = std::make_unique<FieldBelief>(mesh, map.basis(static_cast<int>(u)), options, guess);
-      parts_.push_back({static_cast<size_t>(first), static_cast<size_t>(count), std::move(belief)});
+        prior = std::make_unique<FieldPrior>(mesh, map.basis(static_cast<int>(u)), options, guess);
+      parts_.push_back({static_cast<size_t>(first), static_cast<size_t>(count), std::move(prior)});
     }
   }
 
   double value(std::span<const double> p) const override {
     double sum = 0;
-    for (const Part& part : parts_) sum += part.belief->value(part.of(p));
+    for (const Part& part : parts_) sum += part.prior->value(part.of(p));
     return sum;
   }
   void add_gradient(std::span<const double> p, double scale, std::span<double> g) const override {
-    for (const Part& part : parts_) part.belief->add_gradient(part.of(p), scale, part.of(g));
+    for (const Part& part : parts_) part.prior->add_gradient(part.of(p), scale, part.of(g));
   }
   void add_hessian_product(std::span<const double> p, std::span<const double> v, double scale,
                            std::span<double> y) const override {
-    for (const Part& part : parts_) part.belief->add_product(part.of(p), part.of(v), scale, part.of(y));
+    for (const Part& part : parts_) part.prior->add_product(part.of(p), part.of(v), scale, part.of(y));
   }
   void solve(std::span<const double> p, std::span<const double> v, double shift, std::span<double> z) override {
-    for (const Part& part : parts_) part.belief->solve(part.of(p), part.of(v), shift, part.of(z));
+    for (const Part& part : parts_) part.prior->solve(part.of(p), part.of(v), shift, part.of(z));
   }
   void add_noise(std::span<const double> p, std::mt19937_64& random, std::span<double> g) const override {
-    for (const Part& part : parts_) part.belief->add_noise(part.of(p), random, part.of(g));
+    for (const Part& part : parts_) part.prior->add_noise(part.of(p), random, part.of(g));
   }
 
  private:
   struct Part {
     size_t first, count;
-    std::unique_ptr<Belief> belief;
+    std::unique_ptr<Prior> prior;
 
     template <class T>
     std::span<T> of(std::span<T> v) const {
@@ -244,10 +244,11 @@ class SumOfBeliefs : public Regularizer {
 
 std::unique_ptr<Regularizer> make_regularizer(const TetMesh& mesh, const ParameterMap& map,
                                               const RegularizerOptions& options) {
-  if (!(options.prior_deviation > 0)) throw InvalidInput("the deviation of the prior must be positive (try 2)");
+  if (!(options.prior_deviation > 0))
+    throw InvalidInput("the standard deviation of the prior must be positive (try 2)");
   if (!(options.sharpness > 0 && std::isfinite(options.sharpness)))
     throw InvalidInput("the sharpness of total variation must be positive and finite (try 10)");
-  return std::make_unique<SumOfBeliefs>(mesh, map, options);
+  return std::make_unique<SumOfPriors>(mesh, map, options);
 }
 
 }  // namespace aspic

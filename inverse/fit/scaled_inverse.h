@@ -7,7 +7,7 @@ namespace aspic {
 
 struct ScaledInverse {
   std::vector<double> inverse;  // n x n; zero rows and columns for zero rows of A
-  std::vector<double> weakest;  // of each variable: the smallest eigenvalue in whose eigenvector it takes part
+  std::vector<double> weakest;  // smallest eigenvalue whose eigenvector involves each variable
 };
 
 enum class Weak { raised, dropped };  // eigenvalues below the floor: replaced by it, or left out of the inverse

@@ -110,7 +110,7 @@ void SequenceSolver::note(const SolveReport& report, double tolerance) {
 // The mean cost per digit decreases while the next digit costs less.
 bool SequenceSolver::is_worn() const { return digits_ == 0 || rate_ > spent_ / digits_; }
 
-// By modified Gram-Schmidt in the inner product of H [Fischer 1998].
+// Orthogonalizes by modified Gram-Schmidt in the inner product of H [Fischer 1998].
 void SequenceSolver::project(const BlockSparse& H, std::span<const double> b, std::span<double> x) {
   std::fill(x.begin(), x.end(), 0.0);
   for (std::vector<Vector>* vectors : {&basis_, &image_}) vectors->resize(kRemembered);

@@ -38,12 +38,12 @@ class Spectra : public testing::TestWithParam<SpectrumCase> {
  protected:
   static constexpr double kWeight = 2;
   test::LinearModel data = test::averages(GetParam().unknowns, GetParam().residuals, 30, 5);
-  test::QuadraticBelief belief = test::chain_belief(GetParam().unknowns, 1, 2);
+  test::QuadraticPrior prior = test::chain_prior(GetParam().unknowns, 1, 2);
   std::vector<double> p = std::vector<double>(static_cast<size_t>(GetParam().unknowns), 0.0);
-  PriorGaussian before{belief, kWeight, p};
+  PriorGaussian before{prior, kWeight, p};
   const double floor = 1 / (100.0 * 100.0 * GetParam().unknowns);
   Eigen::MatrixXd precision =
-      kWeight * belief.curvature + floor * Eigen::MatrixXd::Identity(belief.G.cols(), belief.G.cols());
+      kWeight * prior.curvature + floor * Eigen::MatrixXd::Identity(prior.G.cols(), prior.G.cols());
   Eigen::MatrixXd hessian = data.J.transpose() * data.J;
 };
 
@@ -92,9 +92,9 @@ INSTANTIATE_TEST_SUITE_P(Ways, Spectra,
 
 TEST(Spectrum, DenseTakesTheCheaperSideOfTheJacobian) {
   test::LinearModel tall = test::averages(20, 50, 1, 1), wide = test::averages(50, 20, 1, 1);
-  test::QuadraticBelief belief20 = test::chain_belief(20, 1, 2), belief50 = test::chain_belief(50, 1, 2);
+  test::QuadraticPrior prior20 = test::chain_prior(20, 1, 2), prior50 = test::chain_prior(50, 1, 2);
   const std::vector<double> p20(20), p50(50);
-  PriorGaussian before20(belief20, 1, p20), before50(belief50, 1, p50);
+  PriorGaussian before20(prior20, 1, p20), before50(prior50, 1, p50);
   spectrum(tall, before20);
   spectrum(wide, before50);
   EXPECT_EQ(tall.products, 20);
@@ -105,9 +105,9 @@ TEST(Spectrum, DenseTakesTheCheaperSideOfTheJacobian) {
 
 TEST(Spectrum, ReportsInformationMissedByLowRank) {
   test::LinearModel data = test::averages(300, 200, 30, 5);
-  test::QuadraticBelief belief = test::chain_belief(300, 1, 2);
+  test::QuadraticPrior prior = test::chain_prior(300, 1, 2);
   const std::vector<double> p(300);
-  PriorGaussian before(belief, 1, p);
+  PriorGaussian before(prior, 1, p);
   const Spectrum few = spectrum(data, before, {.dense = 10, .max_rank = 10});
   EXPECT_LE(few.W.count(), 18);
   EXPECT_GT(few.missed, 1);
@@ -118,10 +118,10 @@ TEST(Spectrum, ReportsInformationMissedByLowRank) {
 TEST(Spectrum, OfNonFiniteJacobianIsEmpty) {
   for (const int dense : {600, 40, 10}) {
     test::LinearModel data = test::averages(80, 30, 1, 5);
-    test::QuadraticBelief belief = test::chain_belief(80, 1, 2);
+    test::QuadraticPrior prior = test::chain_prior(80, 1, 2);
     data.J(7, 3) = std::nan("");
     const std::vector<double> p(80);
-    PriorGaussian before(belief, 1, p);
+    PriorGaussian before(prior, 1, p);
     const Spectrum s = spectrum(data, before, {.dense = dense});
     EXPECT_FALSE(s.ok);
     EXPECT_EQ(s.W.count(), 0);
@@ -130,18 +130,18 @@ TEST(Spectrum, OfNonFiniteJacobianIsEmpty) {
 
 TEST(Spectrum, OfDataThatSayNothingIsEmpty) {
   test::LinearModel data = test::averages(80, 90, 0, 5);
-  test::QuadraticBelief belief = test::chain_belief(80, 1, 2);
+  test::QuadraticPrior prior = test::chain_prior(80, 1, 2);
   const std::vector<double> p(80);
-  PriorGaussian before(belief, 1, p);
+  PriorGaussian before(prior, 1, p);
   const Spectrum s = spectrum(data, before, {.dense = 10});
   EXPECT_EQ(s.W.count(), 0);
   EXPECT_EQ(s.missed, 0);
 }
 
 TEST(PriorGaussian, HoldsWhatTheRegularizerLeavesFree) {
-  test::QuadraticBelief belief = test::chain_belief(10, 1, 1e30);  // only differences
+  test::QuadraticPrior prior = test::chain_prior(10, 1, 1e30);  // only differences
   const std::vector<double> p(10);
-  PriorGaussian before(belief, 1, p);
+  PriorGaussian before(prior, 1, p);
   const std::vector<double> ones(10, 0.1);  // the mean
   std::vector<double> z(10);
   before.covariance(ones, z);
@@ -149,9 +149,9 @@ TEST(PriorGaussian, HoldsWhatTheRegularizerLeavesFree) {
 }
 
 TEST(PriorGaussian, SamplesHaveItsCovariance) {
-  test::QuadraticBelief belief = test::chain_belief(6, 1, 0.7);
+  test::QuadraticPrior prior = test::chain_prior(6, 1, 0.7);
   const std::vector<double> p(6);
-  PriorGaussian before(belief, 3, p);
+  PriorGaussian before(prior, 3, p);
   const Eigen::MatrixXd C = covariance(before);
   constexpr int kSamples = 4000;
   Eigen::MatrixXd mean = Eigen::MatrixXd::Zero(6, 6);

@@ -247,7 +247,7 @@ struct Trajectory::Impl {
   Pins pins;
   IncrementalPotential E;
   Newton newton;
-  SequenceSolver solver;  // of H, backward
+  SequenceSolver solver;  // solver for H, backward in time
   std::unique_ptr<Integrator> integrator;
   ElasticParameters theta;
   Minimizer minimizer;

@@ -21,7 +21,7 @@ struct TrajectoryOptions {
   double h = 0.01;  // [s]
   int steps = 100;
   std::string integrator = "backward_euler";  // the only one with a gradient
-  double tolerance = 1e-9;                    // of the residual of each step, relative to the forces in balance
+  double tolerance = 1e-9;  // tolerance of the residual of each step, relative to the balancing forces
   int max_iterations = 200;
   std::string linear = "auto";      // solver of Newton's steps
   std::string adjoint = "auto";     // solver of the adjoint steps, see linear_solver_names()
@@ -38,7 +38,7 @@ using TrajectoryObjective = std::function<double(int point, const State& state, 
 
 struct TrajectoryGradient {
   std::vector<double> elastic;               // with respect to mu, lambda, ... of every tet, as in ElasticParameters
-  std::vector<double> density;               // of every tet; empty if it cannot be computed, see density_message
+  std::vector<double> density;               // value per tet; empty if it cannot be computed, see density_message
   std::string density_message;               // the reason
   std::vector<std::vector<double>> damping;  // with respect to the coefficients of each term of Model::damping
   std::vector<double> q, qdot;               // with respect to the initial state; 0 at pinned vertices
@@ -47,11 +47,11 @@ struct TrajectoryGradient {
 struct TrajectoryReport {
   bool ok = false;
   std::string message;                                  // the reason for a failure
-  double value = 0;                                     // of the objective
+  double value = 0;                                     // value of the objective
   long steps = 0;                                       // forward, including repeated ones
   long newton_iterations = 0, factorizations = 0;       // forward
   long adjoint_solves = 0, adjoint_factorizations = 0;  // backward; computed factors or preconditioners
-  long adjoint_iterations = 0, adjoint_products = 0;    // of conjugate gradients; products with H
+  long adjoint_iterations = 0, adjoint_products = 0;    // iterations of conjugate gradients; products with H
   double forward_seconds = 0, adjoint_seconds = 0;      // wall time
 };
 

@@ -55,16 +55,13 @@ void judge_noise(double misfit, int residuals, Posterior& result, Spectrum& s) {
     for (double& d : s.d) d /= result.noise_factor * result.noise_factor;
     result.warnings.push_back(formatted(
         "|r|^2 is %.3g per reading, clearly more than 1: the standard deviations of the readings are too small, the "
-        "weight "
-        "of the regularizer is too large, or the model cannot represent the body; all intervals are %.3g times "
-        "wider "
-        "for it",
+        "weight of the regularizer is too large, or the model cannot represent the body; all intervals are %.3g times "
+        "wider",
         misfit / residuals, result.noise_factor));
   } else if (misfit < lower) {
     result.warnings.push_back(formatted(
         "|r|^2 is %.3g per reading, clearly less than 1: the standard deviations, with those of a correction for the "
-        "mesh, "
-        "are too large, or noise was fitted (a larger weight helps); the intervals are not made narrower for it",
+        "mesh, are too large, or noise was fitted (a larger weight helps); the intervals are not narrowed",
         misfit / residuals));
   }
 }
@@ -85,7 +82,7 @@ void judge_weight(Regularizer& prior, double weight, std::span<const double> p, 
 
 void warn_of_rank(Posterior& result) {
   constexpr double kMuch = 3;  // standard deviations that are twice too large
-  const Spectrum& s = result.belief->spectrum();
+  const Spectrum& s = result.gaussian->spectrum();
   if (s.missed > kMuch)
     result.warnings.push_back(formatted(
         "only the %d best determined directions were computed; the others may be determined %.2g times better than "
@@ -93,27 +90,27 @@ void warn_of_rank(Posterior& result) {
         s.W.count(), std::sqrt(1 + s.missed)));
 }
 
-void tell_seen(const ParameterMap& map, const TetMesh& mesh, int count, Posterior& result) {
-  const Spectrum& s = result.belief->spectrum();
+void describe_seen(const ParameterMap& map, const TetMesh& mesh, int count, Posterior& result) {
+  const Spectrum& s = result.gaussian->spectrum();
   for (int k = 0; k < std::min(count, s.W.count()) && s.d[k] >= 1; ++k) {
     Direction direction{.information = s.d[k], .p = {s.W[k].begin(), s.W[k].end()}};
     direction.deviation = root_mean_square(map, mesh, s.W[k]) / std::sqrt(1 + s.d[k]);
-    direction.words = describe_direction(mesh, map, direction.p);
+    direction.description = describe_direction(mesh, map, direction.p);
     result.seen.push_back(std::move(direction));
   }
 }
 
-void tell_unseen(const ParameterMap& map, const TetMesh& mesh, int count, Posterior& result) {
-  PosteriorGaussian& belief = *result.belief;
-  for (PrincipalDirection& principal : principal_directions(belief, map, mesh, count)) {
+void describe_unseen(const ParameterMap& map, const TetMesh& mesh, int count, Posterior& result) {
+  PosteriorGaussian& gaussian = *result.gaussian;
+  for (PrincipalDirection& principal : principal_directions(gaussian, map, mesh, count)) {
     Direction direction{.information = principal.before / principal.after - 1,
                         .deviation = std::sqrt(principal.after),
                         .p = std::move(principal.p)};
     std::vector<double> y(direction.p.size());
-    belief.before().precision(direction.p, y);
+    gaussian.before().precision(direction.p, y);
     const double length = std::sqrt(dot(direction.p, y));
     for (double& x : direction.p) x /= length;
-    direction.words = describe_direction(mesh, map, direction.p);
+    direction.description = describe_direction(mesh, map, direction.p);
     result.unseen.push_back(std::move(direction));
   }
 }
@@ -160,11 +157,11 @@ Posterior posterior(LeastSquares& data, Regularizer& prior, double weight, const
   judge_weight(prior, weight, p, s, result);
   judge_noise(squares, data.residual_count(), result, s);
   result.informed = informed(s);
-  result.belief = std::make_shared<PosteriorGaussian>(std::move(before), std::move(s));
+  result.gaussian = std::make_shared<PosteriorGaussian>(std::move(before), std::move(s));
   warn_of_rank(result);
-  set_fields(marginals(*result.belief, map, options.marginals), result);
-  tell_seen(map, mesh, options.directions, result);
-  tell_unseen(map, mesh, options.directions, result);
+  set_fields(marginals(*result.gaussian, map, options.marginals), result);
+  describe_seen(map, mesh, options.directions, result);
+  describe_unseen(map, mesh, options.directions, result);
   result.ok = true;
   return result;
 }

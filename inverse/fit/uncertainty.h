@@ -15,10 +15,10 @@
 namespace aspic {
 
 struct Direction {
-  double information = 0;  // prior variance / posterior variance - 1 along it; < 1: not determined by the data
-  double deviation = 0;    // posterior standard deviation along it: root mean square over the body on the fitted scale
-  std::vector<double> p;   // unit length in the norm of the prior
-  std::string words;       // "young of the whole body"
+  double information = 0;   // prior variance / posterior variance - 1 along it; < 1: not determined by the data
+  double deviation = 0;     // posterior standard deviation along it: root mean square over the body on the fitted scale
+  std::vector<double> p;    // unit length in the norm of the prior
+  std::string description;  // "young of the whole body"
 };
 
 struct PosteriorOptions {
@@ -29,7 +29,7 @@ struct PosteriorOptions {
 
 struct Posterior {
   bool ok = false;                             // false: only `warnings` are valid
-  std::vector<std::vector<double>> deviation;  // of each parameter in each tet, on the fitted scale (log E)
+  std::vector<std::vector<double>> deviation;  // sigma of each parameter in each tet, on the fitted scale (log E)
   std::vector<std::vector<double>> reduction;  // 1 - posterior / prior variance: 0 no information, 1 complete
   double deviation_error = 0;                  // largest relative standard error of `deviation`; 0: exact
   double informed = 0;                         // number of directions determined by the data: sum of d / (1 + d)
@@ -40,11 +40,11 @@ struct Posterior {
   double suggested_weight = 0;                 // weight of the regularizer supported by the data; 0: none
   double log_evidence = 0;                     // log evidence of the weight, up to a constant
   std::vector<std::string> warnings;           // messages for users
-  std::shared_ptr<PosteriorGaussian> belief;
+  std::shared_ptr<PosteriorGaussian> gaussian;
 };
 
 // Evaluates and linearizes `data` at the p of the fit; with indenters, data must be a Misfit WithUncertainLayers, made
-// for this call. The posterior's `belief` refers to the prior.
+// for this call. The posterior's `gaussian` refers to the prior.
 Posterior posterior(LeastSquares& data, Regularizer& prior, double weight, const FittedField& fitted,
                     const PosteriorOptions& options = {});
 

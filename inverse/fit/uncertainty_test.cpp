@@ -27,29 +27,29 @@ struct Field {
   TetMesh mesh;
   ParameterMap map;
   test::LinearModel data;
-  test::QuadraticBelief belief;
+  test::QuadraticPrior prior;
   Eigen::VectorXd truth;
 
   explicit Field(int cells, int residuals, double strength = 5)
       : mesh(bar(cells)),
         map(make_map(mesh, {{.guess = 1}})),  // log E = 0
         data(test::averages(map.size(), residuals, strength, 4)),
-        belief(test::chain_belief(map.size(), 2, 1.5)) {}
+        prior(test::chain_prior(map.size(), 2, 1.5)) {}
 
   void measure(unsigned seed, double noise = 1) {
     std::mt19937_64 random(seed);
-    truth = belief.draw(1, random);
+    truth = prior.draw(1, random);
     data.b = data.J * truth + noise * test::normal_vector(data.residual_count(), random);
   }
   std::vector<double> fit(double weight = 1) const {
-    const Eigen::MatrixXd H = data.J.transpose() * data.J + weight * belief.curvature;
-    return test::as_std(H.llt().solve(data.J.transpose() * data.b + weight * belief.curvature * belief.guess));
+    const Eigen::MatrixXd H = data.J.transpose() * data.J + weight * prior.curvature;
+    return test::as_std(H.llt().solve(data.J.transpose() * data.b + weight * prior.curvature * prior.guess));
   }
   Eigen::VectorXd exact_deviation() const {
-    return (data.J.transpose() * data.J + belief.curvature).inverse().diagonal().cwiseSqrt();
+    return (data.J.transpose() * data.J + prior.curvature).inverse().diagonal().cwiseSqrt();
   }
   Posterior posterior(double weight = 1, const PosteriorOptions& options = {}) {
-    return aspic::posterior(data, belief, weight, {map, mesh, fit(weight)}, options);
+    return aspic::posterior(data, prior, weight, {map, mesh, fit(weight)}, options);
   }
 };
 
@@ -60,7 +60,7 @@ bool has_warning(const Posterior& posterior, const std::string& part) {
 TEST(Posterior, HasTheDeviationsOfTheNormalEquations) {
   Field f(12, 40);
   f.measure(1);
-  const Eigen::VectorXd exact = f.exact_deviation(), before = f.belief.curvature.inverse().diagonal().cwiseSqrt();
+  const Eigen::VectorXd exact = f.exact_deviation(), before = f.prior.curvature.inverse().diagonal().cwiseSqrt();
   for (const int dense : {600, 50, 0}) {  // all pairs, rows, sampled
     const Posterior posterior = f.posterior(1, {.spectrum = {.dense = dense, .negligible = 0}});
     ASSERT_TRUE(posterior.ok);
@@ -97,11 +97,11 @@ TEST(Posterior, OfTwoQuantitiesKeepsThemApart) {
   const ParameterMap map =
       make_map(mesh, {{.guess = 1}, {.quantity = "poisson", .spread = Spread::uniform, .guess = 0.3}});
   test::LinearModel data = test::averages(n + 1, 6, 5, 2);
-  test::QuadraticBelief belief = test::chain_belief(n + 1, 0.5, 1);
+  test::QuadraticPrior prior = test::chain_prior(n + 1, 0.5, 1);
   data.b.setZero();
   const std::vector<double> p(map.guess().begin(), map.guess().end());
-  const Posterior posterior = aspic::posterior(data, belief, 1, {map, mesh, p});
-  const Eigen::VectorXd exact = (data.J.transpose() * data.J + belief.curvature).inverse().diagonal().cwiseSqrt();
+  const Posterior posterior = aspic::posterior(data, prior, 1, {map, mesh, p});
+  const Eigen::VectorXd exact = (data.J.transpose() * data.J + prior.curvature).inverse().diagonal().cwiseSqrt();
   for (int t = 0; t < n; ++t) {
     EXPECT_NEAR(posterior.deviation[0][t] / posterior.applied_factor, exact(t), 0.3 * exact(t));
     EXPECT_EQ(posterior.deviation[1][t], posterior.deviation[1][0]);
@@ -117,7 +117,7 @@ TEST(Posterior, IntervalsContainTruthAtStatedRate) {
   for (unsigned seed = 0; seed < kSeeds; ++seed) {
     f.measure(seed);
     const std::vector<double> p = f.fit();
-    const Posterior posterior = aspic::posterior(f.data, f.belief, 1, {f.map, f.mesh, p}, {.directions = 0});
+    const Posterior posterior = aspic::posterior(f.data, f.prior, 1, {f.map, f.mesh, p}, {.directions = 0});
     for (int t = 0; t < f.map.size(); ++t) {
       const Interval i = interval(posterior, f.map, p, {0, t});
       const double E = std::exp(f.truth(t));
@@ -147,7 +147,7 @@ TEST(Posterior, TellsThatOnlyRatiosOfStiffnessAreKnown) {
   const Posterior blind = f.posterior();
   EXPECT_TRUE(blind.scale_is_unknown);
   ASSERT_FALSE(blind.unseen.empty());
-  EXPECT_EQ(blind.unseen[0].words, "young of the whole body");
+  EXPECT_EQ(blind.unseen[0].description, "young of the whole body");
   EXPECT_LT(blind.unseen[0].information, 0.5);
   EXPECT_THAT(blind.warnings, testing::Contains(HasSubstr("measure one force")));
 
@@ -167,7 +167,7 @@ TEST(Posterior, ContactStiffnessIsNoForceInformation) {
   EXPECT_FALSE(f.posterior().scale_is_unknown);
   f.data.nuisances = {-leak};  // scaling contact and body together changes nothing
   WithUncertainLayers data(f.data);
-  const Posterior posterior = aspic::posterior(data, f.belief, 1, {f.map, f.mesh, f.fit()});
+  const Posterior posterior = aspic::posterior(data, f.prior, 1, {f.map, f.mesh, f.fit()});
   EXPECT_TRUE(posterior.scale_is_unknown);
   EXPECT_LT(posterior.unseen[0].information, 0.5);
 }
@@ -195,7 +195,7 @@ TEST(Posterior, WidensIfMeasurementsScatterMoreThanStated) {
   EXPECT_EQ(posterior.applied_factor, posterior.noise_factor);
   EXPECT_THAT(posterior.warnings, testing::Contains(HasSubstr("per reading, clearly more than 1")));
   const Eigen::VectorXd exact =
-      (f.data.J.transpose() * f.data.J / std::pow(posterior.noise_factor, 2) + f.belief.curvature)
+      (f.data.J.transpose() * f.data.J / std::pow(posterior.noise_factor, 2) + f.prior.curvature)
           .inverse()
           .diagonal()
           .cwiseSqrt();
@@ -238,7 +238,7 @@ TEST(Posterior, WithoutAnEquilibriumIsNone) {
   Field f(2, 5);
   data.J = f.data.J;
   const std::vector<double> p(f.map.size());
-  const Posterior posterior = aspic::posterior(data, f.belief, 1, {f.map, f.mesh, p});
+  const Posterior posterior = aspic::posterior(data, f.prior, 1, {f.map, f.mesh, p});
   EXPECT_FALSE(posterior.ok);
   EXPECT_THAT(posterior.warnings, ElementsAre(HasSubstr("no stable equilibrium")));
 }
@@ -254,8 +254,8 @@ TEST(Posterior, TellsWhereTheDataSeeAndWhereNot) {
   EXPECT_GT(posterior.seen[0].information, 100);
   EXPECT_LT(posterior.unseen[0].information, 1);
   EXPECT_GT(posterior.unseen[0].deviation, posterior.seen[0].deviation);
-  EXPECT_THAT(posterior.seen[0].words, HasSubstr("young around (0.0"));
-  EXPECT_THAT(posterior.unseen[0].words, HasSubstr("young around (0.1"));
+  EXPECT_THAT(posterior.seen[0].description, HasSubstr("young around (0.0"));
+  EXPECT_THAT(posterior.unseen[0].description, HasSubstr("young around (0.1"));
   EXPECT_GT(posterior.reduction[0][3], 0.9);
   EXPECT_LT(posterior.reduction[0][99], 0.01);
 }
@@ -273,7 +273,7 @@ TEST(Interval, IsInUnitsOfTheQuantity) {
   EXPECT_EQ(describe_interval({.quantity = "poisson"}, {0.41, 0.46}), "poisson between 0.41 and 0.46");
 }
 
-// ---------------------------------------------------------------------------------------------------- words
+// ---------------------------------------------------------------------------------------------------- descriptions
 
 TEST(DirectionWords, NamePlacesRegionsAndContrasts) {
   TetMesh mesh = bar(10);  // five tets per cell

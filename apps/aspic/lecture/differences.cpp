@@ -94,7 +94,7 @@ void show_differences(const Stage& stage, Sheet& sheet) {
   const StepReport report = step.scene.simulation.step();
   const Vector r = step.residual(step.scene.simulation.state().q);
   sheet.at_most("|M (q_(i+1) - q~) / h^2 + dV/dq(q_(i+1))| of the step", norm(r) / (step.h * step.h),
-                report.residual_threshold, "N", "what the step was asked for");
+                report.residual_threshold, "N", "tolerance of the step");
   std::vector<double> ahead;
   for (size_t i = 0; i < now.size(); i += 3)
     ahead.push_back(1e3 * std::hypot(ghost[i] - now[i], ghost[i + 1] - now[i + 1], ghost[i + 2] - now[i + 2]));
@@ -177,7 +177,7 @@ void show_explicit_or_implicit(const Stage& stage, Sheet& sheet) {
   sheet.at_least("explicit: the same with q_(i+1) / with q_i", max_abs(a.at_new) / max_abs(a.at_old), 1e3, "",
                  "it is not the implicit equation");
   sheet.at_most("implicit: |M q'' + dV/dq(q_(i+1))|", max_abs(b.at_new), b.threshold + b.noise, "N",
-                "what the steps were asked for");
+                "tolerance of the steps");
   sheet.at_least("implicit: the same with q_i / with q_(i+1)", max_abs(b.at_old) / max_abs(b.at_new), 1e3, "",
                  "it is not the explicit equation");
   sheet.show("largest difference of the tip", max_abs(plus(a.tip, -1, b.tip)), "m", "both are of first order in h");

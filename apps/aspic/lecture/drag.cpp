@@ -70,14 +70,14 @@ void show_drag(const Stage& stage, Sheet& sheet) {
   });
   const double strongest = *std::max_element(force.begin(), force.end());
   sheet.equals("steps that converged", scene.steps - result.unconverged, scene.steps, "", "all of them");
-  sheet.at_least("farthest that the dragged part moves", *std::max_element(ear.begin(), ear.end()), 0.05, "m",
-                 "it follows the cursor, which goes 0.25 m");
-  sheet.at_least("strongest pull of the cursor", strongest, 1, "N", "the body resists");
+  sheet.at_least("largest motion of the dragged part", *std::max_element(ear.begin(), ear.end()), 0.05, "m",
+                 "it follows the cursor, which moves by 0.25 m");
+  sheet.at_least("largest force of the cursor", strongest, 1, "N", "the body resists");
   sheet.at_most("|force - derivative of the springs' energy|", mismatch, 1e-9 * strongest, "N",
                 "V is quadratic, so its central differences are exact but for round-off");
-  sheet.at_most("what the energy balance of a step leaves over", result.largest_ledger_error, 1e-9, "",
+  sheet.at_most("largest energy imbalance of a step", result.largest_ledger_error, 1e-9, "",
                 "work of the cursor = kinetic + potential + losses, an identity");
-  sheet.draw("force.svg", "The pull of the cursor",
+  sheet.draw("force.svg", "Force of the cursor",
              Chart{"force of the spring", {"time [s]"}, {"force [N]"}, {{"", time, force}}});
   sheet.draw(
       "drag.png", "At rest, and dragged (0.35 s)",
@@ -125,16 +125,16 @@ void show_explosion(const Stage& stage, Sheet& sheet) {
   double made = 0;
   for (const StepReport& report : implicit.run.reports) made = std::max(made, -report.numerical_loss);
   sheet.show("backward_euler: largest energy", implicit.run.largest_energy, "J");
-  sheet.at_most("backward_euler: most energy that a step made of nothing", made, 1e-9 * implicit.run.largest_energy,
-                "J", "it only ever loses some: kinetic + potential <= what the cursor put in");
+  sheet.at_most("backward_euler: largest energy gain of a step", made, 1e-9 * implicit.run.largest_energy, "J",
+                "it dissipates: kinetic + potential <= work of the cursor");
   sheet.at_most("backward_euler: energy at the end / largest", implicit.energy.back() / implicit.run.largest_energy,
-                0.2, "", "the swing dies down once the cursor has stopped");
-  const std::string why = "explodes: far more than the implicit scheme ever holds; inf where numbers end";
+                0.2, "", "the motion decays after the cursor has stopped");
+  const std::string why = "explodes: far above the maximum of the implicit scheme; inf after overflow";
   for (int i = 0; i < 2; ++i)
     sheet.at_least(drags[i].integrator + ": largest energy / that of backward_euler",
                    drags[i].run.largest_energy / implicit.run.largest_energy, 1e3, "", why);
   for (int i = 0; i < 2; ++i)
-    sheet.show(drags[i].integrator + ": steps before numbers end", static_cast<double>(drags[i].time.size()), "",
+    sheet.show(drags[i].integrator + ": steps before overflow", static_cast<double>(drags[i].time.size()), "",
                fmt::format("of {}", scene.steps));
   Chart chart{"the same motion of the mouse", {"time [s]"}, {"energy [J]", AxisScale::logarithmic}, {}};
   MeshPicture picture{.panels = {}, .eye = {{0.3, 0.3, 1}}, .up = {{0, 1, 0}}, .size = {1000, 480}};
@@ -143,7 +143,7 @@ void show_explosion(const Stage& stage, Sheet& sheet) {
     chart.series.push_back({d.integrator, d.time, d.energy});
     picture.panels.push_back({d.integrator, surface_at(scene.simulation.model(), d.shape)});
   }
-  sheet.draw("energy.svg", "Kinetic and potential energy; a curve ends where numbers do", chart);
+  sheet.draw("energy.svg", "Kinetic and potential energy; a curve ends at overflow", chart);
   sheet.draw("side_by_side.png", "Each scheme when it was last within 3 m of the origin; orange is turned inside out",
              picture);
 }

@@ -20,11 +20,11 @@ void show_fine_mesh(const Stage& stage, Sheet& sheet) {
   });
   const Model& model = scene.simulation.model();
   const TriMesh surface = surface_at(model, scene.simulation.state().q);
-  sheet.at_least("tets", model.mesh.tet_count(), kTets, "", "the slide's mesh is finer than can be counted");
+  sheet.at_least("tets", model.mesh.tet_count(), kTets, "", "the mesh of the slide is very fine");
   sheet.show("vertices", model.mesh.vertex_count(), "");
   sheet.equals("steps that converged", kSteps - result.unconverged, kSteps, "", "all of them");
-  sheet.at_most("what the energy balance of a step leaves over", result.largest_ledger_error, 1e-9, "",
-                "the balance is an identity; sums of 1e5 terms keep 11 digits");
+  sheet.at_most("largest energy imbalance of a step", result.largest_ledger_error, 1e-9, "",
+                "the balance is an identity; sums of 1e5 terms have 11 digits");
   sheet.at_least("smallest det F", result.reports.back().min_det_F, 1e-3, "", "no tet is inverted or flat");
   sheet.show("wall time per step", seconds / kSteps, "s");
   sheet.draw("mesh.png",

@@ -135,7 +135,7 @@ void show_printed_forward_euler(const Stage& stage, Sheet& sheet) {
   const double bound = 2.0 * kSteps * kSteps * kEpsilon * max_abs(printed);
   sheet.at_most(fmt::format("|printed formula - symplectic_euler| after {} steps", kSteps),
                 max_abs(plus(printed, -1, symplectic)), bound, "m",
-                "n^2 roundings of q: a second difference sums them up twice");
+                "n^2 roundings of q: a second difference sums them twice");
   sheet.at_least("|printed formula - classical forward_euler|", max_abs(plus(printed, -1, classical)), 1e4 * bound, "m",
                  "another scheme, not another rounding");
   check_oscillator(sheet);
@@ -174,7 +174,7 @@ void show_backward_euler(const Stage& stage, Sheet& sheet) {
   sheet.at_least("explicit, same h: largest energy / first", explicit_run.largest_energy / first, 1e3, "",
                  "h is far above its stable step");
   sheet.at_least("backward Euler: linear systems per step", static_cast<double>(implicit.iterations) / kSteps, 1, "",
-                 "harder to solve: the explicit step solves with M alone, which never changes");
+                 "harder to solve: an explicit step solves with the constant M only");
   sheet.draw("energy.svg", "Kinetic and potential energy of the swing with backward Euler",
              Chart{"more stable", {"time [s]"}, {"energy / first"}, {{"backward_euler", time, energy}}});
 }

@@ -32,9 +32,9 @@ enum class Shape { of_the_scene, real_mesh };
 // Viewer settings of a demonstration.
 struct Staging {
   const char* demonstration;  // its key
-  const char* part;           // appended to the title if a demonstration has several lessons
+  const char* part = "";      // appended to the title if a demonstration has several lessons
   const char* look;
-  const char* panel;
+  const char* panel = "energy";
   const char* scene = "";  // scene of scenes/lecture; empty: none
   const char* field = "";  // field for colors
   Shape shape = Shape::real_mesh;
@@ -70,7 +70,6 @@ RecordedDrag slow_drag() {
 const std::vector<Staging>& stagings() {
   static const std::vector<Staging> list = {
       {.demonstration = "02_fine_mesh",
-       .part = "",
        .look =
            "The thin wires are the edges of tets at the surface: come closer to see them. So that it moves while you "
            "watch, this mesh has fewer tets than the slide's; aspic lecture 2 simulates more than 100 000. Press S, "
@@ -78,90 +77,69 @@ const std::vector<Staging>& stagings() {
        .panel = "microscope",
        .scene = "02_fine_mesh"},
       {.demonstration = "03_tissue",
-       .part = "",
        .look =
            "The colors show Young's modulus: stiff skin over soft fat over muscle. Play: the indenter sinks in, and "
            "the energy V in the plot grows faster than the square of its depth because the tissue stiffens. Color "
            "by von Mises stress to see where it is loaded.",
-       .panel = "energy",
        .scene = "03_tissue",
        .field = "young",
        .shape = Shape::of_the_scene},
       {.demonstration = "05-09_equation_of_motion",
-       .part = "",
-       .look =
-           "Play: while V falls T rises, and back again, as M q'' = -dV/dq trades one for the other. Shift and click "
-           "on a vertex to read where its three entries stand in q.",
-       .panel = "energy",
+       .look = "Play: V falls while T rises, and vice versa, as M q'' = -dV/dq exchanges them. Shift and click "
+               "on a vertex to read where its three entries stand in q.",
        .scene = "05_swing"},
       {.demonstration = "08-10_springs_beside_elements",
-       .part = "",
        .look = "The same mesh twice, elements on the left and springs along the edges on the right: both obey the same "
-               "equation with another V. The springs know nothing of volumes and sag differently.",
-       .panel = "energy",
+               "equation with another V. Springs do not resist changes of volume and sag differently.",
        .scene = "08_springs_beside_elements"},
       {.demonstration = "10-18_differences",
-       .part = "",
-       .look = "The same motion in steps of h and of h/2: differences of q stand for its derivatives, the better the "
-               "shorter the step. See how the two bodies drift apart, and how much more T the shorter steps keep.",
-       .panel = "energy",
+       .look = "The same motion in steps of h and of h/2: differences of q approximate its derivatives, more "
+               "accurately for shorter steps. See how the two bodies drift apart, and how much more T the shorter "
+               "steps keep.",
        .scene = "05_swing",
        .comparison = {{{"time.step=0.005"}, "h / 2"}}},
       {.demonstration = "19-22_explicit_or_implicit",
-       .part = "",
        .look =
            "With steps this short both schemes give the same motion; where dV/dq is evaluated hardly matters. Make h "
-           "ten times as long and play again: only one of them survives it.",
-       .panel = "energy",
+           "ten times as long and play again: only one of them stays stable.",
        .scene = "05_swing",
        .shape = Shape::of_the_scene,
        .overrides = {"time.step=5e-4", "solver.mass=lumped"},
        .comparison = {{{"time.integrator=symplectic_euler"}, "explicit"}}},
       {.demonstration = "23_printed_forward_euler",
-       .part = "",
        .look = "Left the printed formula, which is symplectic Euler, right the classical forward Euler, both with the "
                "same h. T + V of the printed one stays in a band, that of the classical one grows until it explodes.",
-       .panel = "energy",
        .scene = "05_swing",
        .shape = Shape::of_the_scene,
        .overrides = {"time.step=5e-4", "solver.mass=lumped", "time.integrator=symplectic_euler", "gravity=[0, 0, 0]"},
        .comparison = {{{"time.integrator=forward_euler"}, "classical"}}},
       {.demonstration = "24_backward_euler",
-       .part = "",
        .look =
            "Left backward Euler, right the explicit scheme with the same h = 0.01 s. The explicit one explodes within "
-           "a few steps; backward Euler pays with a minimization per step, and with some energy.",
-       .panel = "energy",
+           "a few steps; backward Euler needs a minimization per step and dissipates energy.",
        .scene = "05_swing",
        .overrides = {"gravity=[0, 0, 0]"},
        .comparison = {{{"time.integrator=symplectic_euler"}, "explicit"}}},
       {.demonstration = "25_drag",
-       .part = "",
        .look = "A recorded mouse pulls the highest point by a spring: the line shows the spring, the number its force. "
-               "Take over at any time and pull yourself; what the mouse put in is its work in the energy plot.",
-       .panel = "energy",
+               "Take over at any time and pull; the energy plot shows the work of the mouse.",
        .scene = "25_drag",
        .overrides = {"spring=[]"},
        .drag = slow_drag()},
       {.demonstration = "26-31_optimization",
-       .part = "",
-       .look =
-           "Take single steps and choose an iteration: the gradient of E is what the equation leaves over. Where it "
-           "is zero E is at its minimum, and the equation holds.",
+       .look = "Take single steps and choose an iteration: the gradient of E is the residual of the equation. Where it "
+               "is zero, E has its minimum and the equation holds.",
        .panel = "microscope",
        .scene = "05_swing"},
       {.demonstration = "32_one_minimization_per_step",
-       .part = "",
-       .look =
-           "Take one iteration at a time: the body moves a little, E falls, and the time stands still. Only when the "
-           "minimization has converged the step is complete.",
+       .look = "Take one iteration at a time: the body moves a little and E falls at a fixed time. The step "
+               "is complete when the minimization has converged.",
        .panel = "microscope",
        .scene = "05_swing"},
       {.demonstration = "33-34_explosion",
        .part = "explicit",
        .look = "The same mouse drags both: left implicit, right explicit. The explicit scheme explodes within a few "
                "steps and ends; the implicit one continues, and stays stable whatever you do with the mouse.",
-       .panel = "energy",
        .scene = "33_mouse",
        .overrides = {"spring=[]"},
        .comparison = {{{"time.integrator=symplectic_euler"}, "explicit"}},
@@ -169,29 +147,27 @@ const std::vector<Staging>& stagings() {
       {.demonstration = "33-34_explosion",
        .part = "linearized",
        .look = "The same mouse drags both: left one minimization per step, right one linear system per step. Where the "
-               "body bends far the linear system is wrong, and energy comes out of nothing.",
-       .panel = "energy",
+               "body bends far, the linear system is inaccurate and the energy grows.",
        .scene = "33_mouse",
        .overrides = {"spring=[]"},
        .comparison = {{{"time.integrator=linearly_implicit_euler"}, "linearized"}},
        .drag = wild_drag()},
       {.demonstration = "36-40_velocity_form",
-       .part = "",
        .look =
            "Choose an iteration: with q = q_i + h v the same E is a function of the velocities, its minimum the same "
-           "motion. Nothing of what you see would change but the labels of the axes.",
+           "motion. Only the labels of the axes would change.",
        .panel = "microscope",
        .scene = "05_swing"},
       {.demonstration = "38-42_gradient_descent",
        .part = "Rosenbrock's valley",
-       .look = "Each step goes straight downhill and meets the other side of the valley: the path zig-zags. 200 "
+       .look = "Each step follows the steepest descent across the valley, so the path zig-zags. 200 "
                "iterations are not enough. Drag the start elsewhere, or choose Newton's method for the same start.",
        .panel = "functions",
        .function = question("rosenbrock", -1, -0.5, {{"method", "gradient_descent"}})},
       {.demonstration = "38-42_gradient_descent",
        .part = "two bumps",
        .look = "Where the level lines are nearly circles the gradient points at the minimum and a few dozen iterations "
-               "are enough. Drag the start to the other side of the bump and see which way it goes.",
+               "are enough. Drag the start to the other side of the bump and compare the paths.",
        .panel = "functions",
        .function = question("two_bump", -0.3, 0.9, {{"method", "gradient_descent"}})},
       {.demonstration = "38-42_gradient_descent",
@@ -204,30 +180,24 @@ const std::vector<Staging>& stagings() {
        .overrides = {"solver.tolerance=1e-3", "solver.max_iterations=20000"},
        .comparison = {{{"solver.method=gradient_descent"}, "gradient descent"}}},
       {.demonstration = "43-51_quadratic_model",
-       .part = "",
        .look = "The second surface is the quadratic model: it touches E at the iterate and has the same slope and "
                "curvature there. Newton's step goes to the model's lowest point; step through the iterations.",
        .panel = "functions",
        .function = question("rosenbrock", -0.8, 0.3, {{"method", "newton"}})},
       {.demonstration = "53+62_pure_newton",
-       .part = "",
-       .look =
-           "Take one step (S): left Newton's method with a line search, right without. Left E falls in every "
-           "iteration. "
-           "Choose B above the table: right E jumps far up in the first iteration, the iterates end outside the range "
-           "of numbers, and the body stays squashed because its step has no result.",
+       .look = "Take one step (S): left Newton's method with a line search, right without. Left E falls in every "
+               "iteration. Choose B above the table: right E jumps far up in the first iteration, the iterates end "
+               "outside the range "
+               "of numbers, and the body stays squashed because its step has no result.",
        .panel = "microscope",
        .scene = "53_hard_step",
        .comparison = {{{"solver.line_search.test=none"}, "without line search"}}},
       {.demonstration = "54-59_overshoot",
-       .part = "",
-       .look =
-           "The model promises E = 0 at its minimum, but there the true E is a hundred times as high as at the start. "
-           "A quarter of the same step lies lower: the line search finds it.",
+       .look = "The minimum of the model is E = 0, but the true E there is a hundred times as high as at the start. "
+               "A quarter of the same step lies lower: the line search finds it.",
        .panel = "functions",
        .function = question("rosenbrock", 0, 0, {{"method", "newton"}})},
       {.demonstration = "60-61_backtracking",
-       .part = "",
        .look = "Take one step and choose an iteration with several trials: those above the line are rejected, alpha "
                "shrinks by p until one lies below. Change \u03b1_max, c and p in the settings, Line search, and step "
                "again.",

@@ -64,7 +64,7 @@ void show_equation_of_motion(const Stage& stage, Sheet& sheet) {
                 std::abs(observed_order(two_steps, {check.error.begin(), check.error.begin() + 3}) - 2), 0.1, "",
                 "central differences are of second order; the next term is 1 % here");
   sheet.at_most("dV/dq against differences of V, relative", *std::min_element(check.error.begin(), check.error.end()),
-                1e-8, "", "the best width loses a third of the 16 digits, the sum over the tets some more");
+                1e-8, "", "the best width has two thirds of the 16 digits; the sum over the tets loses more");
 
   // One explicit step yields the acceleration used by the program.
   Scene moving = stage.on_real_mesh("05_swing", {"time.integrator=symplectic_euler", "time.step=1e-5"});
@@ -139,13 +139,13 @@ void show_springs_beside_elements(const Stage& stage, Sheet& sheet) {
                  1e-4, "m", "it sags under its weight");
   sheet.at_least("largest mean drop of the springs", *std::max_element(drop_springs.begin(), drop_springs.end()), 1e-4,
                  "m", "it sags under its weight");
-  sheet.at_most("what the energy balance of a step leaves over", result.largest_ledger_error, 1e-9, "",
+  sheet.at_most("largest energy imbalance of a step", result.largest_ledger_error, 1e-9, "",
                 "the balance is an identity for both kinds of V");
   sheet.show("volume of the elements at the end / at rest",
              volume_of(model, elements, q) / volume_of(model, elements, start.q), "");
   sheet.show("volume of the springs at the end / at rest",
              volume_of(model, springs, q) / volume_of(model, springs, start.q), "",
-             "springs along edges know nothing of volumes");
+             "springs along edges do not resist changes of volume");
   sheet.draw("drop.svg", "Mean drop under gravity",
              Chart{"one mesh, two potentials V",
                    {"time [s]"},

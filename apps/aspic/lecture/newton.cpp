@@ -68,12 +68,12 @@ void show_pure_newton(const Stage& stage, Sheet& sheet) {
                fmt::format("it is meant to fail within {} iterations", kMostIterations));
   sheet.at_least("without line search: iterations that raise E", rises(pure), 1, "", "it overshoots");
   const double last = pure.report.gradient_norm / pure.report.threshold;
-  sheet.at_least("without line search: |gradient| at the end / what was asked for",
-                 std::isfinite(last) ? last : INFINITY, 1e3, "", "it is not even near");
+  sheet.at_least("without line search: |gradient| at the end / tolerance", std::isfinite(last) ? last : INFINITY, 1e3,
+                 "", "far from converged");
   sheet.equals("with line search: converged", is_success(careful.report.status), 1, "", "on the same step");
   sheet.show("with line search: iterations", careful.report.iterations, "");
   sheet.equals("with line search: iterations that raise E", rises(careful), 0, "", "each trial must decrease E");
-  sheet.at_most("with line search: |gradient| at the end / what was asked for",
+  sheet.at_most("with line search: |gradient| at the end / tolerance",
                 careful.report.gradient_norm / careful.report.threshold, 1, "", "converged");
   const auto chart = [&](const std::string& label, Vector Attempt::*y) {
     return Chart{"one step of a real mesh",
@@ -105,7 +105,7 @@ void show_overshoot(const Stage&, Sheet& sheet) {
   // By hand at (0, 0): E = 1, g = (-2, 0), H = diag(2, 200), d = (1, 0), the model is 0 and E is 100 at (1, 0).
   sheet.at_most("distance of the model's minimizer from (1, 0)", std::hypot(full[0] - 1, full[1]), 1e-12, "",
                 "H d = -g by hand");
-  sheet.at_most("the model's change at its minimizer", model.at(full) - start, -1 + 1e-12, "", "it promises E = 0");
+  sheet.at_most("the model's change at its minimizer", model.at(full) - start, -1 + 1e-12, "", "its minimum is E = 0");
   sheet.at_most("|E at the model's minimizer - 100|", std::abs(problem.function->at(full) - 100), 1e-10, "",
                 "by hand: 100 (0 - 1)^2");
   sheet.at_least("E there / at the start", problem.function->at(full) / start, 2, "", "Newton overshoots");
@@ -190,7 +190,7 @@ void check_settings(OpenStep& step, Sheet& sheet) {
     alpha *= other.shrink;
   }
   sheet.at_least("alpha_max = 2, p = 0.7, c = 0.3: trials", static_cast<double>(curve.tried.size()), 2, "",
-                 "something was rejected");
+                 "at least one was rejected");
   sheet.at_most("the same: |alpha_k / (alpha_max p^k) - 1|", worst, 1e-14, "", "the sequence of the slide");
 }
 
@@ -226,8 +226,8 @@ void show_backtracking(const Stage& stage, Sheet& sheet) {
   sheet.equals("tol = 1e-10 on the same: converged", fine.status == Status::converged, 1, "", "1/4 is accepted");
   sheet.remark(
       "\"Or you get stuck\": when no alpha >= tol decreases E enough, the minimization ends as `stuck`, never as "
-      "converged. The reasons are a tol that is too large (as provoked here), a wrong gradient, or an E whose "
-      "differences drown in round-off.");
+      "converged. The reasons are a tol that is too large (as here), a wrong gradient, or an E whose "
+      "differences are below round-off.");
 }
 
 }  // namespace aspic::cli::lecture

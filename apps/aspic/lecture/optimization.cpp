@@ -57,8 +57,8 @@ void show_optimization(const Stage& stage, Sheet& sheet) {
       check_derivatives(differentiable(step.E), q,
                         {.length = 0.1 / std::sqrt(static_cast<double>(q.size())), .fixed = fixed_entries(step)});
   write_derivatives(sheet, check);
-  sheet.at_most("the gradient of what? of E: against differences of E, relative", check.gradient.smallest_error, 1e-8,
-                "", "the best width loses a third of the 16 digits, the sum over the tets some more");
+  sheet.at_most("gradient of E against differences of E, relative", check.gradient.smallest_error, 1e-8, "",
+                "the best width has two thirds of the 16 digits; the sum over the tets loses more");
   sheet.at_most("order of that error, distance from 2", std::abs(check.gradient.order - 2), 0.2, "",
                 "central differences are of second order");
 
@@ -72,13 +72,13 @@ void show_optimization(const Stage& stage, Sheet& sheet) {
   // E is at least as curved as the inertia where V is convex, so a gradient g means a distance of at most g / m.
   const double bound = (norm(g_root) + norm(g_minimum) + 2 * step.E.scales().gradient_round_off) / step.smallest_mass();
   sheet.at_most("|root of the equation - minimizer of E|", max_abs(plus(root.q, -1, minimum)), bound, "m",
-                "what is left of both gradients over the least eigenvalue of M");
+                "remaining norm of both gradients over the least eigenvalue of M");
   sheet.at_most("the bound itself", bound, 1e-3 * max_abs(plus(minimum, -1, step.q_t)), "m",
-                "so that it is below a thousandth of the motion of the step");
+                "it must be below a thousandth of the motion of the step");
   sheet.show("iterations of root finding", static_cast<double>(root.residuals.size()) - 1, "");
   sheet.show("iterations of minimizing", report.iterations, "");
   sheet.at_most("E at the minimizer - E at the start", step.E.value(minimum) - step.E.value(step.start), 0, "kg m^2",
-                "it is a minimum");
+                "a minimum is not above the start");
   CsvFile residuals = sheet.table("root_finding.csv", {"iteration", "residual_kg_m"});
   Vector iteration;
   for (size_t i = 0; i < root.residuals.size(); ++i) {

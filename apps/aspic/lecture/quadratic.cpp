@@ -101,7 +101,7 @@ void show_quadratic_model(const Stage& stage, Sheet& sheet) {
   const DerivativeReport check = check_derivatives(
       differentiable(form), v, {.length = 10 / std::sqrt(static_cast<double>(v.size())), .fixed = fixed_entries(step)});
   sheet.at_most("gradient of E(v) against differences of E(v), relative", check.gradient.smallest_error, 1e-8, "",
-                "M (v - v_i) + h dV/dq; the best width loses a third of the 16 digits and the sum some more");
+                "M (v - v_i) + h dV/dq; the best width has two thirds of the 16 digits; the sum loses more");
   sheet.at_most("Hessian of E(v) against differences of the gradient, relative", check.hessian.smallest_error, 1e-8, "",
                 "M + h^2 d2V/dq2");
 

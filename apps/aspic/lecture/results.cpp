@@ -39,18 +39,9 @@ PageVerdict verdict_of(int page, const std::vector<Result>& results) {
   return !any ? PageVerdict::nothing_to_check : passes ? PageVerdict::pass : PageVerdict::fail;
 }
 
-std::string to_text(PageVerdict verdict) {
-  switch (verdict) {
-    case PageVerdict::pass:
-      return "pass";
-    case PageVerdict::fail:
-      return "fail";
-    case PageVerdict::nothing_to_check:
-      return "nothing to check";
-    case PageVerdict::not_available:
-      return "not available";
-  }
-  return "";
+const char* to_text(PageVerdict verdict) {
+  constexpr const char* kTexts[] = {"pass", "fail", "nothing to check", "not available"};
+  return kTexts[static_cast<size_t>(verdict)];
 }
 
 Verdict badge(PageVerdict verdict) {

@@ -26,31 +26,14 @@ bool has_gnuplot() {
 }  // namespace
 
 std::string to_string(Relation relation) {
-  switch (relation) {
-    case Relation::at_most:
-      return "<=";
-    case Relation::at_least:
-      return ">=";
-    case Relation::equals:
-      return "=";
-    case Relation::shown:
-      return "";
-  }
-  return "";
+  constexpr const char* kTexts[] = {"<=", ">=", "=", ""};
+  return kTexts[static_cast<size_t>(relation)];
 }
 
 bool Measure::holds() const {
-  switch (relation) {
-    case Relation::at_most:
-      return value <= bound;
-    case Relation::at_least:
-      return value >= bound;
-    case Relation::equals:
-      return value == bound;
-    case Relation::shown:
-      return true;
-  }
-  return false;
+  if (relation == Relation::at_most) return value <= bound;
+  if (relation == Relation::at_least) return value >= bound;
+  return relation == Relation::shown || value == bound;
 }
 
 Sheet::Sheet(std::filesystem::path folder) : folder_(std::move(folder)) {
@@ -118,8 +101,8 @@ bool Sheet::passes() const {
 }
 
 bool Sheet::can_draw() {
-  if (!has_gnuplot() && !told_missing_) remark("no charts: gnuplot is not installed (Debian package gnuplot-nox)");
-  told_missing_ = !has_gnuplot();
+  if (!has_gnuplot() && !reported_missing_) remark("no charts: gnuplot is not installed (Debian package gnuplot-nox)");
+  reported_missing_ = !has_gnuplot();
   return has_gnuplot();
 }
 

@@ -71,7 +71,7 @@ class Sheet {
   std::vector<std::string> remarks_;
   std::vector<Figure> figures_;
   std::vector<MeshFigure> meshes_;  // pending pictures
-  bool told_missing_ = false;
+  bool reported_missing_ = false;
 };
 
 }  // namespace aspic::cli::lecture

@@ -128,9 +128,9 @@ void show_tissue(const Stage& stage, Sheet& sheet) {
   sheet.show("compression of the fat under the indenter", strain[1], "");
   sheet.show("compression of the muscle there", strain[0], "");
   sheet.at_least("compression of fat / of muscle", strain[1] / strain[0], 2, "",
-                 "the layers show: fat is 10 times softer than muscle, but stiffens where it is squeezed");
+                 "fat is 10 times softer than muscle, but stiffens under compression");
   sheet.at_least("force of the layered / of a uniform slab of fat", layered.force.back() / soft.force.back(), 1.5, "",
-                 "layers that are stiffer stiffen the whole");
+                 "stiffer layers stiffen the slab");
   sheet.remark("The layers' moduli are given here; 'aspic capture' and 'aspic fit' estimate them from pokes.");
 
   sheet.draw("force.svg", "Force against depth",

@@ -108,11 +108,11 @@ void show_velocity_form(const Stage& stage, Sheet& sheet) {
              descent_scaled = iterates(same_values, descent, step.start, 5);
   sheet.at_most("gradient descent on E(q) and on E(v): largest distance of 5 iterates",
                 distance(descent_q, descent_v, form), noise, "m",
-                "the factor h^2 between the values undoes the change of variables");
+                "the factor h^2 between the values cancels the change of variables");
   Newton newton_scaled(make_linear_solver("cholesky"));
   const auto newton_s = iterates(same_values, newton_scaled, step.start, 50);
   sheet.at_most("Newton on E(q) / h^2 and on E(v): largest distance", distance(newton_s, v, form), noise, "m",
-                "Newton's method knows neither units nor variables");
+                "Newton's method is invariant under linear changes of variables");
   const double ratio =
       norm(plus(descent_scaled[1], -1, descent_scaled[0])) / norm(plus(descent_v[1], -1, descent_v[0])) / h;
   sheet.show("gradient descent on E(q) / h^2: first step / that on E(v)", ratio, "",
@@ -122,7 +122,7 @@ void show_velocity_form(const Stage& stage, Sheet& sheet) {
                  "gradient descent depends on the units of the variables");
   sheet.remark(
       "Newton's iterates are the same points in both forms. So are those of gradient descent, because E(q) = h^2 E(v): "
-      "the factor h^2 undoes the change of variables. Of one and the same function, E(q) / h^2 over q and E(v) over v, "
+      "the factor h^2 cancels the change of variables. For the same function, E(q) / h^2 over q and E(v) over v, "
       "gradient descent takes different paths, and Newton's method the same.");
   CsvFile table = sheet.table("iterates.csv", {"iteration", "newton_distance_m"});
   for (size_t k = 0; k < std::min(q.size(), v.size()); ++k)
