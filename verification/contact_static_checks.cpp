@@ -256,29 +256,16 @@ void add_contact_static_checks(std::vector<Check>& checks) {
        "Around the lowest point, E = 1, nu = 0.3; far boundaries move as a half-space under a point force. "
        "Radius and pressure by a fit of p^2 in r^2.",
        "Hertz: a^3 = 3 F R (1 - nu^2) / (4 E), p0 = 3 F / (2 pi a^2), approach a^2 / R",
-       {"Johnson1985"},
-       check_hertz});
-  checks.push_back({"contact",
-                    "patch",
-                    "Uniform pressure between unmatched meshes",
+       check_hertz,
+       {"Johnson1985"}});
+  checks.push_back({"contact", "patch", "Uniform pressure between unmatched meshes",
                     "Two blocks are pressed together by 1 %, nu = 0.",
-                    "p = E (strain + gap), with the gap at which the barrier exerts p",
-                    {},
-                    check_patch});
-  checks.push_back({"contact",
-                    "refinement",
-                    "Contact converges with the mesh",
-                    "The same blocks; the reach is a fiftieth of the edges.",
-                    "p = E strain",
-                    {},
-                    check_refinement});
-  checks.push_back({"contact",
-                    "constants",
-                    "Reach and stiffness of contact do not matter",
+                    "p = E (strain + gap), with the gap at which the barrier exerts p", check_patch});
+  checks.push_back({"contact", "refinement", "Contact converges with the mesh",
+                    "The same blocks; the reach is a fiftieth of the edges.", "p = E strain", check_refinement});
+  checks.push_back({"contact", "constants", "Reach and stiffness of contact do not matter",
                     "Two soft blocks on each other at rest on the floor.",
-                    "A state of rest moves by less than twice the reach",
-                    {},
-                    check_constants});
+                    "A state of rest moves by less than twice the reach", check_constants});
 }
 
 }  // namespace aspic::verify

@@ -21,6 +21,7 @@ struct ContactStencil {
   // their cross product below eps [Li 2020, section 6.2] [m^4]. 0: no factor.
   double parallel = 0;
 
+  bool is_of_edges() const { return parallel > 0; }
   BarrierValue b() const { return barrier(distance.d, reach); }
   double value(std::span<const Vec3d> x) const;  // [J] for the positions of all points of the mesh
   std::array<Vec3d, 4> gradient(std::span<const Vec3d> x) const;

@@ -45,7 +45,7 @@ Dissipation dissipation(double y, double e) {
 
 // Whether both stencils are of the same point and the same other part.
 bool is_of_same_point(const ContactStencil& a, const ContactStencil& b) {
-  return a.area != 0 && b.area != 0 && a.point[0] == b.point[0] && a.parts == b.parts;
+  return !a.is_of_edges() && !b.is_of_edges() && a.point[0] == b.point[0] && a.parts == b.parts;
 }
 
 // The normal force between a point and a part, or between two edges. In a concave crease it is the sum over two faces
@@ -55,7 +55,7 @@ Traction traction_of(std::span<const ContactStencil> stencils, std::span<const V
   double largest = 0;
   for (const ContactStencil& stencil : stencils) {
     const auto g = stencil.gradient(points);
-    const Vec3d force = stencil.area != 0 ? -1.0 * g[0] : -1.0 * (g[0] + g[1]);
+    const Vec3d force = stencil.is_of_edges() ? -1.0 * (g[0] + g[1]) : -1.0 * g[0];
     traction.force = traction.force + force;
     if (const double size = stencil.weight > 0 ? norm(force) : 0; size > largest)
       largest = size, traction.at = &stencil;

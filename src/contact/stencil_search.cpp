@@ -159,7 +159,7 @@ void StencilSearch::add_point(const PathCandidates& candidates, std::span<const 
       reach = laws_(own, other).reach;
       if (own == other) reach = std::min(reach, cap_[p]);
     }
-    if (laws_(own, other).share == 0 || candidates.least_gap(p, candidate, corner) >= reach) continue;
+    if (laws_(own, other).stiffness == 0 || candidates.least_gap(p, candidate, corner) >= reach) continue;
     const Distance to_triangle = point_triangle_distance({x[p], x[corner[0]], x[corner[1]], x[corner[2]]});
     if (!(to_triangle.d < reach)) continue;
     near.add(to_triangle, {p, corner[0], corner[1], corner[2]}, 1);

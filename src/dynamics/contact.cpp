@@ -8,6 +8,11 @@
 
 namespace aspic {
 
+double default_creep(double gravity, const Model& model) {
+  constexpr double kCreep = 1e-4;
+  return kCreep * std::sqrt(gravity * size_of(model.mesh));
+}
+
 void add_contact(ContactMesh mesh, const ContactOptions& options, double creep, Model& model) {
   const bool has_friction =
       std::any_of(mesh.parts.begin(), mesh.parts.end(), [](const ContactPart& part) { return part.friction > 0; });
@@ -15,8 +20,7 @@ void add_contact(ContactMesh mesh, const ContactOptions& options, double creep, 
   model.contact = barrier.get();
   model.loads.push_back(std::move(barrier));
   if (!has_friction) return;
-  constexpr double kCreep = 1e-4, kGravity = 9.81;
-  const double speed = creep > 0 ? creep : kCreep * std::sqrt(kGravity * size_of(model.mesh));
+  const double speed = creep > 0 ? creep : default_creep(9.81, model);
   model.damping.push_back(std::make_unique<Friction>(*model.contact, speed));
 }
 

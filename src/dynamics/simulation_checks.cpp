@@ -92,7 +92,10 @@ void require_apart(const Model& model, std::span<const double> x, const Integrat
   for (int p = 0; p < contact.point_count(); ++p)
     if (contact.row[p] >= 0) surface.vertices[p] = point(x, contact.row[p]);
   const auto part_of = [&](int triangle) { return contact.parts[contact.part[contact.triangles[triangle][0]]].name; };
-  const SelfIntersections found = self_intersections(surface, 1000);
+  SelfIntersections found = self_intersections(surface, 100'000);
+  std::erase_if(found.pairs, [&](const auto& pair) {  // obstacles may intersect each other and themselves
+    return contact.row[contact.triangles[pair[0]][0]] < 0 && contact.row[contact.triangles[pair[1]][0]] < 0;
+  });
   if (!found.pairs.empty()) {
     const auto [s, t] = found.pairs.front();
     const Vec3d& at = surface.vertices[contact.triangles[s][0]];

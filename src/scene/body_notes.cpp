@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 
 #include "energy/tet_elasticity.h"
 #include "mesh/components.h"
@@ -63,12 +62,6 @@ double extent(const std::vector<Vec3d>& X, const Vec3d& direction) {
   double low = INFINITY, high = -INFINITY;
   for (const Vec3d& x : X) low = std::min(low, dot(x, direction)), high = std::max(high, dot(x, direction));
   return high - low;
-}
-
-std::string three_digits(double x) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.3g", x);
-  return text;
 }
 
 // Suggests a change that multiplies the stiffness, by the keys of the material.

@@ -208,6 +208,10 @@ class Explainer {
   }
 
   Explanation inaccurate() const {
+    if (report_.friction_passes > 1)
+      return {"normal forces and friction did not settle after " + std::to_string(report_.friction_passes) +
+                  " minimizations",
+              "contact.friction", smaller_steps() + ", or less friction"};
     if (simulation_.options().adaptive.tolerance < kFinest) return too_fine();
     return {"the error estimate of the smallest substep, time.step / 2^20, exceeds its share",
             "time.adaptive.tolerance = " + text(simulation_.options().adaptive.tolerance),

@@ -112,9 +112,11 @@ void add_scene_contact(Table& document, MeshLoader& loader, Model& model) {
         throw error_at(options.place, "body '" + part.name +
                                           "' is not elastic, so contact has no default stiffness; "
                                           "set contact.stiffness [Pa]");
-  add_contact(std::move(contact), given, number("creep"), model);
+  const double weight = norm(document.find("gravity")->vector());
+  const double creep = options.find("creep") || weight == 0 ? number("creep") : default_creep(weight, model);
+  add_contact(std::move(contact), given, creep, model);
   const ContactLaws& laws = model.contact->laws();
-  loader.notes.push_back("contact begins at " + number_text(laws.largest_reach()) + " m" +
+  loader.notes.push_back("contact begins at " + three_digits(laws.largest_reach()) + " m" +
                          (given.reach > 0 ? "" : " (a fiftieth of the mean edge of the finer surface)"));
 }
 
