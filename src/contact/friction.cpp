@@ -17,6 +17,7 @@ struct Slider {
   std::array<Vec3d, 2> tangent = {};
   double force;  // mu lambda [N]
   double width;  // e [m]
+  Vec3d moved = {};  // of the obstacle during the step [m]
 };
 
 // A normal force, and the stencil of the features between which it acts.
@@ -27,6 +28,7 @@ struct Traction {
 
 struct FrictionContext : Energy::Context {
   std::vector<double> start;
+  double obstacle_time = 0;  // of obstacles at the start [s]
   std::vector<Slider> sliders;
 };
 
@@ -75,9 +77,14 @@ Slider slider_of(const ContactMesh& mesh, const Traction& traction, double force
   return slider;
 }
 
+// 1 if the obstacle of a stencil is its second feature, else -1.
+double side(const ContactMesh& mesh, const ContactStencil& stencil) {
+  return mesh.parts[stencil.parts[0]].is_obstacle ? -1 : 1;
+}
+
 // The tangential relative displacement since the start.
 std::array<double, 2> slip(const Slider& slider, Positions x, Positions start) {
-  Vec3d d{};
+  Vec3d d = -1.0 * slider.moved;
   for (int i = 0; i < 4; ++i)
     if (slider.row[i] >= 0) d = d + slider.weight[i] * (point(x, slider.row[i]) - point(start, slider.row[i]));
   return {dot(slider.tangent[0], d), dot(slider.tangent[1], d)};
@@ -91,13 +98,22 @@ void Friction::begin_step(const StepContext& step, Context& context) const {
   Energy::begin_step(step, context);
   auto& own = static_cast<FrictionContext&>(context);
   own.start.assign(step.start.begin(), step.start.end());
-  update_lagged(step.shape.empty() ? step.start : step.shape, context);
+  own.obstacle_time = step.obstacle_time.value_or(step.time - step.h);
+  lag(step.shape.empty() ? step.start : step.shape, own.obstacle_time, context);
 }
 
 bool Friction::update_lagged(Positions x, Context& context) const {
+  lag(x, context.time, context);
+  return true;
+}
+
+void Friction::lag(Positions x, double time, Context& context) const {
   auto& own = static_cast<FrictionContext&>(context);
-  const std::vector<Vec3d> points = barrier_.points(x);
-  const auto stencils = barrier_.stencils(x);
+  const std::vector<Vec3d> points = barrier_.points(x, time);
+  const auto stencils = barrier_.stencils(x, time);
+  std::vector<Vec3d> start, end;
+  if (barrier_.has_moving_obstacle())
+    start = barrier_.points(x, own.obstacle_time), end = barrier_.points(x, context.time);
   own.sliders.clear();
   for (size_t k = 0; k < stencils->size();) {
     const size_t first = k;
@@ -107,9 +123,23 @@ bool Friction::update_lagged(Positions x, Context& context) const {
     const double force = law.friction * norm(traction.force);
     if (!(force > 0)) continue;
     const double width = context.h > 0 ? speed_ * context.h : kStaticReach * law.reach;
-    own.sliders.push_back(slider_of(barrier_.mesh(), traction, force, width));
+    Slider& slider = own.sliders.emplace_back(slider_of(barrier_.mesh(), traction, force, width));
+    if (start.empty()) continue;
+    slider.moved = side(barrier_.mesh(), *traction.at) * barrier_.obstacle_displacement(*traction.at, start, end);
   }
-  return true;
+}
+
+double Friction::obstacle_work(Positions x, const Context& context) const {
+  const FrictionContext& own = friction(context);
+  double work = 0;
+  for (const Slider& slider : own.sliders) {
+    const auto u = slip(slider, x, own.start);
+    const double y = std::hypot(u[0], u[1]);
+    if (y == 0) continue;
+    const double size = slider.force * dissipation(y, slider.width).first / y;
+    for (int a = 0; a < 2; ++a) work -= size * u[a] * dot(slider.tangent[a], slider.moved);
+  }
+  return work;
 }
 
 double Friction::value(Positions x, const Context& context) const {

@@ -31,7 +31,7 @@ Simulation above_plane(const Vec3d& gravity, double friction, double h, double c
   for (size_t i = 0; i < rows.size(); ++i) rows[i] = static_cast<int>(i);
   const std::vector<Triangle> surface = boundary_triangles(model.mesh, 0, model.mesh.tet_count());
   contact.add({.name = "block", .young = kYoung, .friction = friction}, model.mesh.rest, surface, rows);
-  contact.add_plane("floor", friction, {}, {{0, 1, 0}});
+  contact.add_plane({.name = "floor", .friction = friction}, {}, {{0, 1, 0}});
   add_contact(std::move(contact), {}, creep, model);
   SimulationOptions options;
   options.h = h;
@@ -112,7 +112,7 @@ TEST(Contact, CollidingBlocksNeverIntersect) {
   TriMesh surface{mesh.rest, boundary_triangles(mesh, 0, mesh.tet_count())};
   ContactMesh contact;
   contact.add({.name = "blocks", .young = 2e4}, mesh.rest, surface.triangles, rows);
-  contact.add_plane("floor", 0, {}, {{0, 1, 0}});
+  contact.add_plane({.name = "floor", .friction = 0}, {}, {{0, 1, 0}});
   add_contact(std::move(contact), {}, 0, model);
   State start = at_rest(model.mesh);
   for (size_t v = first; v < mesh.rest.size(); ++v) start.qdot[3 * v + 1] = -4;

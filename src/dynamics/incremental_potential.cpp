@@ -7,6 +7,7 @@
 
 #include "base/check.h"
 #include "base/parallel.h"
+#include "contact/barrier.h"
 #include "mesh/components.h"
 
 namespace aspic {
@@ -110,6 +111,11 @@ IncrementalPotential::IncrementalPotential(const Model& model, const Pins& pins)
 
 void IncrementalPotential::set_potential_step(const StepContext& step) {
   for (ActiveTerm& V : potential_) V.begin_step(step);
+}
+
+void IncrementalPotential::move_obstacles(double time) {
+  for (ActiveTerm& V : potential_)
+    if (&V.energy() == model_.contact) V.begin_step({.h = V.context().h, .time = time});
 }
 
 void IncrementalPotential::set_damping_step(const StepContext& step) {

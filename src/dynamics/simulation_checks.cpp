@@ -80,15 +80,17 @@ void require_finite_energy(const Model& model, std::span<const double> x) {
   }
 }
 
-void require_apart(const Model& model, std::span<const double> x, const IntegratorFacts& integrator) {
+void require_apart(const Model& model, const State& start, const IntegratorFacts& integrator) {
   if (!model.contact) return;
+  const std::vector<double>& x = start.q;
+  const double time = start.time;
   if (!integrator.is_implicit || integrator.takes_one_iteration || integrator.ends_beyond_minimum)
     throw InvalidInput("contact needs an integrator that minimizes and ends at the minimum, not '" +
                        std::string(integrator.name) + "'; choose backward_euler, or quasi_static for equilibria");
   const ContactMesh& contact = model.contact->mesh();
-  TriMesh surface{contact.rest, contact.triangles};
-  for (int p = 0; p < contact.point_count(); ++p)
-    if (contact.row[p] >= 0) surface.vertices[p] = point(x, contact.row[p]);
+  Energy::Context at_start;
+  at_start.time = time;
+  const TriMesh surface{model.contact->points(x, time), contact.triangles};
   const auto part_of = [&](int triangle) { return contact.parts[contact.part[contact.triangles[triangle][0]]].name; };
   const SelfIntersections found = self_intersections(surface, 1000);
   if (!found.pairs.empty()) {
@@ -100,7 +102,7 @@ void require_apart(const Model& model, std::span<const double> x, const Integrat
   }
   for (const ContactPlane& plane : contact.planes)
     for (int p = 0; p < contact.point_count(); ++p)
-      if (contact.row[p] >= 0 && !(dot(plane.normal, surface.vertices[p] - plane.origin) > 0))
+      if (contact.row[p] >= 0 && !(dot(plane.normal, surface.vertices[p] - surface.vertices[plane.point]) > 0))
         throw InvalidInput("body '" + contact.parts[contact.part[p]].name + "' starts behind the plane '" +
                            contact.parts[plane.part].name + "', at vertex " +
                            std::to_string(model.numbering.vertex.to_user(contact.row[p])) + "; move it");
@@ -108,7 +110,7 @@ void require_apart(const Model& model, std::span<const double> x, const Integrat
     throw InvalidInput("body '" + contact.parts[contact.part[p]].name + "' touches itself at rest, at vertex " +
                        std::to_string(model.numbering.vertex.to_user(contact.row[p])) +
                        "; merge the coincident vertices (aspic check MESH --repair) or leave a gap");
-  if (!std::isfinite(model.contact->value(x, {})))
+  if (!std::isfinite(model.contact->value(x, at_start)))
     throw InvalidInput("surfaces touch in the initial state; leave a gap between them");
 }
 
