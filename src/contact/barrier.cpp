@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <mutex>
+#include <set>
 
 #include "base/error.h"
 #include "base/parallel.h"
@@ -68,8 +69,8 @@ struct Barrier::Impl {
   std::vector<double> sizes;  // of the parts at rest [m]
   ContactLaws laws;
   StencilSearch search;
-  bool has_motion = std::any_of(mesh.parts.begin(), mesh.parts.end(),
-                                [](const ContactPart& part) { return part.motion != nullptr; });
+  bool has_motion =
+      std::any_of(mesh.parts.begin(), mesh.parts.end(), [](const ContactPart& part) { return part.motion != nullptr; });
   mutable std::mutex mutex;
   mutable std::vector<Vec3d> placed;  // the last result of obstacles()
   mutable double placed_at = 0;
@@ -175,8 +176,8 @@ int Barrier::add_hessian(Positions x, const Context& context, double scale, cons
   return modified;
 }
 
-int Barrier::add_stops(Positions x, const Context& context, std::span<const double> d, double scale, std::span<double> g,
-                       BlockSparse& H) const {
+int Barrier::add_stops(Positions x, const Context& context, std::span<const double> d, double scale,
+                       std::span<double> g, BlockSparse& H) const {
   const std::vector<Vec3d> p = impl_->points(x, context.time);
   const std::vector<Impact> impacts =
       StepBound(impl_->mesh, impl_->laws, impl_->search, impl_->sizes).impacts(p, impl_->displacements(d));
@@ -217,6 +218,25 @@ double Barrier::max_step(Positions x, std::span<const double> d, double from, do
   for (size_t i = 0; i < u.size(); ++i)
     if (impl_->mesh.row[i] < 0) u[i] = end[i] - start[i];
   return StepBound(impl_->mesh, impl_->laws, impl_->search, impl_->sizes).largest(start, std::move(u));
+}
+
+std::vector<std::string> Barrier::blocked_parts(Positions x, double from, double to) const {
+  const ContactMesh& mesh = impl_->mesh;
+  const std::vector<Vec3d> start = impl_->points(x, from), end = impl_->points(x, to);
+  const StepBound bound(mesh, impl_->laws, impl_->search, impl_->sizes);
+  std::vector<std::string> names;
+  for (const ContactPart& obstacle : mesh.parts) {
+    if (!obstacle.motion) continue;
+    std::vector<Vec3d> u(start.size());
+    const int count = std::max(obstacle.point_count, 1);
+    for (int p = obstacle.first_point; p < obstacle.first_point + count; ++p) u[p] = end[p] - start[p];
+    std::set<int> bodies;
+    for (const Impact& impact : bound.impacts(start, std::move(u)))
+      for (const int p : impact.point)
+        if (p >= 0 && mesh.row[p] >= 0) bodies.insert(mesh.part[p]);
+    for (const int body : bodies) names.push_back(obstacle.name + " and " + mesh.parts[body].name);
+  }
+  return names;
 }
 
 ContactSummary Barrier::summary(Positions x, double time) const {

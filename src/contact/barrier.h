@@ -41,6 +41,8 @@ class Barrier : public Energy {
   int self_touching_point() const;
   ContactSummary summary(Positions x, double time) const;
   bool has_moving_obstacle() const;
+  // The moving obstacles and bodies, as "plate and ball", that would meet if obstacles moved and bodies stayed at x.
+  std::vector<std::string> blocked_parts(Positions x, double from, double to) const;
 
   // Positions of the points of the mesh. Throws InvalidInput if obstacles are not finite.
   std::vector<Vec3d> points(Positions x, double time) const;

@@ -15,8 +15,8 @@ struct Slider {
   std::array<int, 4> row = {-1, -1, -1, -1};  // -1: an obstacle
   std::array<double, 4> weight = {};
   std::array<Vec3d, 2> tangent = {};
-  double force;  // mu lambda [N]
-  double width;  // e [m]
+  double force;      // mu lambda [N]
+  double width;      // e [m]
   Vec3d moved = {};  // of the obstacle during the step [m]
 };
 

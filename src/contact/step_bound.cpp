@@ -11,7 +11,7 @@ namespace {
 
 constexpr double kLanding = 0.5;          // gap at which a step ends, relative to the reach
 constexpr double kFar = 0.1;              // of the size of a part
-constexpr double kSpring = 6.4;        // of springs at the landing, as that of the barrier at half its reach
+constexpr double kSpring = 6.4;           // of springs at the landing, as that of the barrier at half its reach
 constexpr double kShortest = 1.0 / 1024;  // step that is worth a search for pairs
 
 // As in StepRule.

@@ -24,14 +24,19 @@ ModelBuilder block(const Vec3d& gravity) {
 }
 
 // A block above the plane y = 0.
-Simulation above_plane(const Vec3d& gravity, double friction, double h, double creep = 0) {
+Simulation above_plane(const Vec3d& gravity, double friction, double h, double creep = 0, Motion motion = {}) {
   Model model = block(gravity).build();
   ContactMesh contact;
   std::vector<int> rows(model.mesh.rest.size());
   for (size_t i = 0; i < rows.size(); ++i) rows[i] = static_cast<int>(i);
   const std::vector<Triangle> surface = boundary_triangles(model.mesh, 0, model.mesh.tet_count());
   contact.add({.name = "block", .young = kYoung, .friction = friction}, model.mesh.rest, surface, rows);
-  contact.add_plane({.name = "floor", .friction = friction}, {}, {{0, 1, 0}});
+  ContactPart floor{.name = "floor", .friction = friction};
+  if (motion)
+    floor.motion = [motion](double time, std::span<const Vec3d> start, std::span<Vec3d> x) {
+      for (size_t i = 0; i < x.size(); ++i) x[i] = motion(start[i], time);
+    };
+  contact.add_plane(floor, {}, {{0, 1, 0}});
   add_contact(std::move(contact), {}, creep, model);
   SimulationOptions options;
   options.h = h;
@@ -93,6 +98,66 @@ TEST(Contact, BlockOnInclineSlidesOrSticks) {
     if (tangent > mu) {
       EXPECT_NEAR((x[99] - 2 * x[79] + x[59]) / 0.04, a, 0.01 * a);
     }
+  }
+}
+
+// A belt pulls with mu g until the block has its speed; friction loses half of the work of the belt.
+TEST(Contact, MovingPlaneDragsBlockAndLedgerCloses) {
+  constexpr double mu = 0.5, g = 9.81, speed = 0.4;
+  Simulation simulation = above_plane({{0, -g, 0}}, mu, 0.01, 0, [](const Vec3d& start, double time) {
+    return start + Vec3d{{speed * time, 0, 0}};
+  });
+  const double start = simulation.start_report().potential_total + simulation.kinetic_energy();
+  double sum = start, belt = 0;
+  for (int i = 0; i < 60; ++i) {
+    const StepReport report = simulation.step();
+    ASSERT_TRUE(is_success(report.status)) << i << " " << to_string(report.status);
+    belt += report.obstacle_work;
+    sum += report.obstacle_work + report.residual_work - report.damping_loss - report.numerical_loss;
+    EXPECT_NEAR(sum, report.potential_total + report.kinetic, 1e-9 * std::abs(start)) << i;
+    EXPECT_GE(report.friction_loss, -1e-12);
+  }
+  const Vec3d v = center(simulation, simulation.state().qdot);
+  EXPECT_NEAR(v[0], speed, 0.01 * speed);
+  const double mass = 1000 * 0.1 * 0.05 * 0.1;
+  EXPECT_NEAR(belt, mass * speed * speed, 0.05 * mass * speed * speed);
+}
+
+TEST(Contact, RisingPlaneLiftsBlock) {
+  Simulation simulation = above_plane({{0, -9.81, 0}}, 0, 0.01, 0, [](const Vec3d& start, double time) {
+    return start + Vec3d{{0, 0.5 * time, 0}};
+  });
+  for (int i = 0; i < 30; ++i) {
+    const StepReport report = simulation.step();
+    ASSERT_TRUE(is_success(report.status)) << i << " " << to_string(report.status);
+    for (int v = 0; v < simulation.model().mesh.vertex_count(); ++v)
+      ASSERT_GT(simulation.state().q[3 * v + 1], 0.5 * report.time);
+  }
+  EXPECT_NEAR(center(simulation, simulation.state().qdot)[1], 0.5, 0.1);
+}
+
+// A pinned body blocks the plane, which stays where it was when later steps try again.
+TEST(Contact, BlockedObstacleEndsUndefined) {
+  Model model = block({}).build();
+  std::vector<int> rows(model.mesh.rest.size());
+  for (size_t i = 0; i < rows.size(); ++i) rows[i] = static_cast<int>(i);
+  model.pins.push_back({"all", rows, {}});
+  ContactMesh contact;
+  contact.add({.name = "block", .young = kYoung}, model.mesh.rest,
+              boundary_triangles(model.mesh, 0, model.mesh.tet_count()), rows);
+  const auto jump = [](double time, std::span<const Vec3d> start, std::span<Vec3d> x) {
+    for (size_t i = 0; i < x.size(); ++i) x[i] = start[i] + Vec3d{{0, 100 * time, 0}};
+  };
+  const TetMesh plate = make_box({{-0.2, -0.1, -0.2}}, {{0.2, -0.05, 0.2}}, {1, 1, 1});
+  contact.add({.name = "plate", .is_obstacle = true, .motion = jump}, plate.rest,
+              boundary_triangles(plate, 0, plate.tet_count()), {});
+  add_contact(std::move(contact), {}, 0, model);
+  SimulationOptions options;
+  options.h = 0.01;
+  Simulation simulation(std::move(model), options);
+  for (int i = 0; i < 3; ++i) {
+    EXPECT_EQ(simulation.step().status, Status::undefined);
+    EXPECT_EQ(simulation.obstacle_time(), 0);
   }
 }
 

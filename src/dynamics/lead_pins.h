@@ -14,9 +14,9 @@ struct ContactPath {
 bool is_free(const StepTools& tools, const ContactPath& path);
 
 // Boundary-condition continuation: moves the pinned vertices of q from their positions in `from` to those at `time`,
-// and obstacles from those at the start of the step, and keeps the energy finite. If that would invert elements of a barrier material, the pins move in fractions, and a few
-// iterations move the free vertices after each. The energy stays infinite if no fraction is small enough. Returns E at
-// q and adds the counts to `work`.
+// and obstacles from those at the start of the step, and keeps the energy finite. If that would invert elements of a
+// barrier material, the pins move in fractions, and a few iterations move the free vertices after each. The energy
+// stays infinite if no fraction is small enough. Returns E at q and adds the counts to `work`.
 Evaluation lead_pins(const StepTools& tools, double time, std::span<const double> from, std::span<double> q,
                      MinimizeReport& work);
 

@@ -249,8 +249,8 @@ struct Simulation::Impl {
   Ledger ledger;
   int steps_taken = 0;
   double obstacle_time = state.time;  // see Simulation::obstacle_time()
-  MinimizeOptions minimize;   // of the current step
-  double report_seconds = 0;  // time that the last report took, with a time budget [s]
+  MinimizeOptions minimize;           // of the current step
+  double report_seconds = 0;          // time that the last report took, with a time budget [s]
 };
 
 Simulation::Simulation(Model model, State initial, SimulationOptions options) {

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <map>
+#include <utility>
 
 #include "base/error.h"
 #include "contact/barrier.h"
@@ -43,6 +45,26 @@ std::optional<SolverConflict> budget_conflict(const SimulationOptions& options, 
     reason = "needs a line search, which test = 'none' turns off: else E may rise before time is up";
   if (reason.empty()) return std::nullopt;
   return SolverConflict{"time_budget", "time_budget = " + std::to_string(budget) + " " + reason};
+}
+
+// Lists the first pairs of parts that intersect, each with a place.
+void require_no_intersection(const ContactMesh& contact, const TriMesh& surface) {
+  constexpr size_t kMostListed = 10;
+  const SelfIntersections found = self_intersections(surface, 1000);
+  if (found.pairs.empty()) return;
+  const auto part_of = [&](int triangle) { return contact.part[contact.triangles[triangle][0]]; };
+  std::map<std::pair<int, int>, int> places;  // a triangle of each pair of parts
+  for (const auto& [s, t] : found.pairs) places.try_emplace(std::minmax(part_of(s), part_of(t)), s);
+  std::string text;
+  size_t listed = 0;
+  for (const auto& [parts, triangle] : places) {
+    if (listed++ == kMostListed) break;
+    text += (text.empty() ? "" : "; ") + contact.parts[parts.first].name + " and " + contact.parts[parts.second].name +
+            " near (" + coordinates(surface.vertices[contact.triangles[triangle][0]]) + ") m";
+  }
+  throw InvalidInput("surfaces intersect in the initial state: " + text + (places.size() > kMostListed ? "; ..." : "") +
+                     " (" + std::to_string(found.pairs.size()) + (found.is_complete ? "" : " or more") +
+                     " pairs of triangles); move them apart");
 }
 
 }  // namespace
@@ -91,15 +113,7 @@ void require_apart(const Model& model, const State& start, const IntegratorFacts
   Energy::Context at_start;
   at_start.time = time;
   const TriMesh surface{model.contact->points(x, time), contact.triangles};
-  const auto part_of = [&](int triangle) { return contact.parts[contact.part[contact.triangles[triangle][0]]].name; };
-  const SelfIntersections found = self_intersections(surface, 1000);
-  if (!found.pairs.empty()) {
-    const auto [s, t] = found.pairs.front();
-    const Vec3d& at = surface.vertices[contact.triangles[s][0]];
-    throw InvalidInput("surfaces intersect in the initial state: " + part_of(s) + " and " + part_of(t) + " near (" +
-                       coordinates(at) + ") m, " + std::to_string(found.pairs.size()) +
-                       (found.is_complete ? "" : " or more") + " pairs of triangles; move them apart");
-  }
+  require_no_intersection(contact, surface);
   for (const ContactPlane& plane : contact.planes)
     for (int p = 0; p < contact.point_count(); ++p)
       if (contact.row[p] >= 0 && !(dot(plane.normal, surface.vertices[p] - surface.vertices[plane.point]) > 0))

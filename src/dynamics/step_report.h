@@ -61,7 +61,8 @@ struct StepReport : Work {  // of all solves of the step and of this report
   double friction_loss = 0;  // part of damping_loss [J]
   int friction_passes = 0;  // minimizations until the normal forces settled; 1 without friction, 0 without minimization
 
-  // The ledger: kinetic + potential changes by pin_work + obstacle_work - damping_loss - numerical_loss + residual_work. [J]
+  // The ledger: kinetic + potential changes by pin_work + obstacle_work - damping_loss - numerical_loss +
+  // residual_work. [J]
   double kinetic = 0;
   std::vector<double> potential;  // one per term of V, named by Simulation::potential_names()
   double potential_total = 0;

@@ -83,7 +83,7 @@ bool NewtonSystem::solve_with_kept(NewtonTask& task, const InnerAccuracy& accura
 
 bool NewtonSystem::avoid_stops(NewtonTask& task) {
   constexpr int kRounds = 4;
-  constexpr double kLong = 0.5;    // step that is worth taking
+  constexpr double kLong = 0.5;     // step that is worth taking
   constexpr double kFinest = 1e-9;  // relative residual
   auto* bounded = dynamic_cast<HasStops*>(&task.E);
   if (!bounded || task.report.truncated) return false;

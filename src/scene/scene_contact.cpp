@@ -71,11 +71,9 @@ void add_obstacle(Value& obstacle, double friction, MeshLoader& loader, ContactM
     if (!std::isfinite(X[0] + X[1] + X[2])) throw error_at(obstacle.place, "obstacle '" + name + "' is not finite");
   }
   if (surface.triangles.empty()) throw error_at(obstacle.place, "obstacle '" + name + "' has no triangles");
-  contact.add({.name = name,
-               .is_obstacle = true,
-               .friction = friction,
-               .motion = motion_of(obstacle, surface.vertices)},
-              surface.vertices, surface.triangles, {});
+  contact.add(
+      {.name = name, .is_obstacle = true, .friction = friction, .motion = motion_of(obstacle, surface.vertices)},
+      surface.vertices, surface.triangles, {});
 }
 
 void complete_names(std::vector<Value>& obstacles) {

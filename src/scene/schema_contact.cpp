@@ -40,9 +40,10 @@ void add_contact_sections(Schema& s) {
         .range = kPositive,
         .meaning = "largest speed of surfaces that stick; default: 1e-4 sqrt(9.81 m/s^2 L) for bodies of size L"}});
 
-  s.sections.push_back({"obstacle", "[[obstacle]]",
-                        "A surface with prescribed motion, or at rest: a plane, a triangle mesh, or a shape. Meshes and shapes are "
-                        "placed by scale, rotate, translate in this order."});
+  s.sections.push_back(
+      {"obstacle", "[[obstacle]]",
+       "A surface with prescribed motion, or at rest: a plane, a triangle mesh, or a shape. Meshes and shapes are "
+       "placed by scale, rotate, translate in this order."});
   add_keys(s, "obstacle",
            {{.name = "name", .accepts = kText, .meaning = "default: obstacle1, obstacle2, ..."},
             {.name = "plane", .accepts = kTable, .table = "plane", .meaning = "an infinite plane"},
