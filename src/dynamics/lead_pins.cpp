@@ -10,7 +10,7 @@
 namespace aspic {
 namespace {
 
-constexpr double kSmallestPart = 1.0 / 1024, kSmallestInContact = 1e-6;
+constexpr double kSmallestPart = 1.0 / 1024;
 constexpr int kMostParts = 200;
 
 MinimizeOptions rough(const MinimizeOptions& options) {
@@ -53,8 +53,7 @@ Evaluation lead_pins(const StepTools& tools, double time, std::span<const double
 
   std::vector<double> reached(from.begin(), from.end()), trial = reached, between = reached;
   double done = 0, part = 0.5;
-  const double smallest = tools.model.contact ? kSmallestInContact : kSmallestPart;
-  for (int i = 0; i < kMostParts && part >= smallest; ++i) {
+  for (int i = 0; i < kMostParts && part >= kSmallestPart; ++i) {
     const double next = std::min(1.0, done + part);
     for (size_t k = 0; k < trial.size(); ++k) between[k] = next < 1 ? from[k] + next * (to[k] - from[k]) : to[k];
     trial = reached;
