@@ -43,7 +43,7 @@ Model make_touching(const TouchingModel& given) {
         mesh.rest, surface, rows);
     first_tet += body.mesh.tet_count();
   }
-  if (given.has_floor) contact.add_plane("floor", given.friction, {}, {{0, 1, 0}});
+  if (given.has_floor) contact.add_plane({.name = "floor", .friction = given.friction}, {}, {{0, 1, 0}});
   add_contact(std::move(contact), given.contact, given.creep, model);
   return model;
 }
@@ -89,7 +89,7 @@ void expect_contact(const std::string& name, const Simulation& simulation, Findi
     for (const ContactPlane& plane : contact.mesh().planes)
       is_free = is_free && (row < 0 || dot(plane.normal, surface.vertices[p] - plane.origin) > 0);
   }
-  const ContactSummary summary = contact.summary(q);
+  const ContactSummary summary = contact.summary(q, simulation.obstacle_time());
   is_free = is_free && summary.contacts > 0 && summary.min_gap > 0 && self_intersections(surface).pairs.empty();
   found.expect(name + "contacts exist, and nothing intersects", {is_free ? 1.0 : 0.0, 1, 0}, "yes or no");
 }

@@ -86,7 +86,7 @@ Hertz pressed_sphere(int n, const std::string& material, double stiffness, Findi
   // Fits p^2 = p0^2 (1 - r^2 / a^2), a line in r^2, to the inner pressures.
   const Barrier& contact = *simulation.model().contact;
   std::vector<double> pressure(contact.mesh().point_count());
-  for (const ContactStencil& stencil : *contact.stencils(simulation.state().q))
+  for (const ContactStencil& stencil : *contact.stencils(simulation.state().q, simulation.obstacle_time()))
     pressure[stencil.point[0]] -= stencil.weight / stencil.area * stencil.b().first;
   double count = 0, x = 0, y = 0, xx = 0, xy = 0;
   for (size_t i = 0; i < pressure.size(); ++i) {

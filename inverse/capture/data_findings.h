@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "capture/data_set.h"
+#include "scene/value.h"
 
 namespace aspic {
 
@@ -31,7 +32,6 @@ void diagnose_forces(const DataSet& data, DataFindings& findings);     // units,
 void diagnose_positions(const DataSet& data, DataFindings& findings);  // units, outliers, markers off the surface
 void diagnose_content(const DataSet& data, DataFindings& findings);    // rigid motion, insufficient data, repetitions
 
-std::string three_digits(double value);                                          // "1.23e+04"
 std::string factor_text(double factor);                                          // "1000 times", "1/100 times"
 Vec3d displacement(const Experiment& experiment, const MarkerReading& reading);  // [m]
 

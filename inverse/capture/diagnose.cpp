@@ -14,13 +14,6 @@ std::vector<DataFinding> DataFindings::take() {
   return std::move(list_);
 }
 
-std::string three_digits(double value) {
-  std::ostringstream text;
-  text.precision(3);
-  text << value;
-  return text.str();
-}
-
 std::string factor_text(double factor) {
   return factor >= 1 ? three_digits(factor) + " times" : "1/" + three_digits(1 / factor) + " times";
 }

@@ -2,7 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <mutex>
+#include <set>
 
+#include "base/error.h"
 #include "base/parallel.h"
 #include "contact/stencil_search.h"
 #include "contact/step_bound.h"
@@ -27,9 +30,30 @@ struct Barrier::Impl {
   Impl(ContactMesh m, const ContactOptions& options)
       : mesh(std::move(m)), sizes(sizes_of(mesh)), laws(mesh, options), search(mesh, laws) {}
 
-  // Positions of all points: variables from x, obstacles from the mesh.
-  std::vector<Vec3d> points(Positions x) const {
+  // Positions of all points, of which only those of obstacles are set.
+  std::vector<Vec3d> obstacles(double time) const {
     std::vector<Vec3d> p = mesh.rest;
+    for (const ContactPart& part : mesh.parts) {
+      if (!part.motion) continue;
+      const size_t count = std::max(part.point_count, 1);  // a plane has its origin
+      part.motion(time, std::span(mesh.rest).subspan(part.first_point, count),
+                  std::span(p).subspan(part.first_point, count));
+      for (const Vec3d& y : std::span(p).subspan(part.first_point, count))
+        if (!std::isfinite(y[0] + y[1] + y[2]))
+          throw InvalidInput("obstacle '" + part.name + "' has no finite position at t = " + std::to_string(time) +
+                             " s; correct its motion");
+    }
+    return p;
+  }
+
+  // Positions of all points: variables from x, obstacles at the time.
+  std::vector<Vec3d> points(Positions x, double time) const {
+    std::vector<Vec3d> p;
+    {
+      const std::scoped_lock lock(mutex);
+      if (placed.empty() || time != placed_at) placed = obstacles(time), placed_at = time;
+      p = placed;
+    }
     for (int i = 0; i < mesh.point_count(); ++i)
       if (mesh.row[i] >= 0) p[i] = point(x, mesh.row[i]);
     return p;
@@ -45,6 +69,11 @@ struct Barrier::Impl {
   std::vector<double> sizes;  // of the parts at rest [m]
   ContactLaws laws;
   StencilSearch search;
+  bool has_motion =
+      std::any_of(mesh.parts.begin(), mesh.parts.end(), [](const ContactPart& part) { return part.motion != nullptr; });
+  mutable std::mutex mutex;
+  mutable std::vector<Vec3d> placed;  // the last result of obstacles()
+  mutable double placed_at = 0;
 };
 
 Barrier::Barrier(ContactMesh mesh, const ContactOptions& options)
@@ -55,14 +84,46 @@ const ContactMesh& Barrier::mesh() const { return impl_->mesh; }
 const ContactLaws& Barrier::laws() const { return impl_->laws; }
 int Barrier::self_touching_point() const { return impl_->search.self_touching_point(); }
 
-std::vector<Vec3d> Barrier::points(Positions x) const { return impl_->points(x); }
+bool Barrier::has_moving_obstacle() const { return impl_->has_motion; }
 
-std::shared_ptr<const std::vector<ContactStencil>> Barrier::stencils(Positions x) const {
-  return impl_->search.at(impl_->points(x));
+std::vector<Vec3d> Barrier::points(Positions x, double time) const { return impl_->points(x, time); }
+
+std::shared_ptr<const std::vector<ContactStencil>> Barrier::stencils(Positions x, double time) const {
+  return impl_->search.at(impl_->points(x, time));
 }
 
-double Barrier::value(Positions x, const Context&) const {
-  const std::vector<Vec3d> p = impl_->points(x);
+Vec3d Barrier::obstacle_displacement(const ContactStencil& stencil, std::span<const Vec3d> start,
+                                     std::span<const Vec3d> end) const {
+  Vec3d sum{};
+  for (int k = 0; k < stencil.distance.count; ++k)
+    if (const int p = stencil.point[stencil.distance.point[k]]; p >= 0 && impl_->mesh.row[p] < 0)
+      sum = sum + std::abs(stencil.distance.c[k]) * (end[p] - start[p]);
+  for (const ContactPlane& plane : impl_->mesh.planes)
+    if (plane.part == stencil.parts[1]) sum = sum + (end[plane.point] - start[plane.point]);
+  return sum;
+}
+
+double Barrier::obstacle_work(Positions x, double from, double to) const {
+  if (!impl_->has_motion) return 0;
+  const std::vector<Vec3d> start = impl_->points(x, from), end = impl_->points(x, to);
+  double work = 0;
+  for (const ContactStencil& stencil : *impl_->search.at(end)) {
+    const auto g = stencil.gradient(end);
+    Vec3d on_plane{};
+    for (int k = 0; k < 4; ++k) {
+      const int p = stencil.point[k];
+      if (p < 0) continue;
+      on_plane = on_plane - g[k];
+      if (impl_->mesh.row[p] < 0) work += dot(g[k], end[p] - start[p]);
+    }
+    for (const ContactPlane& plane : impl_->mesh.planes)
+      if (plane.part == stencil.parts[1]) work += dot(on_plane, end[plane.point] - start[plane.point]);
+  }
+  return work;
+}
+
+double Barrier::value(Positions x, const Context& context) const {
+  const std::vector<Vec3d> p = impl_->points(x, context.time);
   const auto stencils = impl_->search.at(p);
   return parallel_sum(static_cast<int>(stencils->size()), [&](int first, int last) {
     double sum = 0;
@@ -71,8 +132,8 @@ double Barrier::value(Positions x, const Context&) const {
   });
 }
 
-void Barrier::add_gradient(Positions x, const Context&, double scale, std::span<double> g) const {
-  const std::vector<Vec3d> p = impl_->points(x);
+void Barrier::add_gradient(Positions x, const Context& context, double scale, std::span<double> g) const {
+  const std::vector<Vec3d> p = impl_->points(x, context.time);
   const auto stencils = impl_->search.at(p);
   std::vector<std::array<Vec3d, 4>> forces(stencils->size());
   parallel_chunks(static_cast<int>(stencils->size()), [&](int first, int last) {
@@ -85,9 +146,9 @@ void Barrier::add_gradient(Positions x, const Context&, double scale, std::span<
     }
 }
 
-int Barrier::add_hessian(Positions x, const Context&, double scale, const Projection& projection,
+int Barrier::add_hessian(Positions x, const Context& context, double scale, const Projection& projection,
                          BlockSparse& H) const {
-  const std::vector<Vec3d> p = impl_->points(x);
+  const std::vector<Vec3d> p = impl_->points(x, context.time);
   const auto stencils = impl_->search.at(p);
   const auto kind_of = [&](const ContactStencil& stencil) {
     for (const int own : stencil.point)
@@ -115,9 +176,9 @@ int Barrier::add_hessian(Positions x, const Context&, double scale, const Projec
   return modified;
 }
 
-int Barrier::add_stops(Positions x, const Context&, std::span<const double> d, double scale, std::span<double> g,
-                       BlockSparse& H) const {
-  const std::vector<Vec3d> p = impl_->points(x);
+int Barrier::add_stops(Positions x, const Context& context, std::span<const double> d, double scale,
+                       std::span<double> g, BlockSparse& H) const {
+  const std::vector<Vec3d> p = impl_->points(x, context.time);
   const std::vector<Impact> impacts =
       StepBound(impl_->mesh, impl_->laws, impl_->search, impl_->sizes).impacts(p, impl_->displacements(d));
   for (const Impact& impact : impacts) {
@@ -146,13 +207,40 @@ int Barrier::add_stops(Positions x, const Context&, std::span<const double> d, d
   return static_cast<int>(impacts.size());
 }
 
-double Barrier::max_step(Positions x, const Context&, std::span<const double> d) const {
+double Barrier::max_step(Positions x, const Context& context, std::span<const double> d) const {
   return StepBound(impl_->mesh, impl_->laws, impl_->search, impl_->sizes)
-      .largest(impl_->points(x), impl_->displacements(d));
+      .largest(impl_->points(x, context.time), impl_->displacements(d));
 }
 
-ContactSummary Barrier::summary(Positions x) const {
-  const std::vector<Vec3d> p = impl_->points(x);
+double Barrier::max_step(Positions x, std::span<const double> d, double from, double to) const {
+  const std::vector<Vec3d> start = impl_->points(x, from), end = impl_->points(x, to);
+  std::vector<Vec3d> u = impl_->displacements(d);
+  for (size_t i = 0; i < u.size(); ++i)
+    if (impl_->mesh.row[i] < 0) u[i] = end[i] - start[i];
+  return StepBound(impl_->mesh, impl_->laws, impl_->search, impl_->sizes).largest(start, std::move(u));
+}
+
+std::vector<std::string> Barrier::blocked_parts(Positions x, double from, double to) const {
+  const ContactMesh& mesh = impl_->mesh;
+  const std::vector<Vec3d> start = impl_->points(x, from), end = impl_->points(x, to);
+  const StepBound bound(mesh, impl_->laws, impl_->search, impl_->sizes);
+  std::vector<std::string> names;
+  for (const ContactPart& obstacle : mesh.parts) {
+    if (!obstacle.motion) continue;
+    std::vector<Vec3d> u(start.size());
+    const int count = std::max(obstacle.point_count, 1);
+    for (int p = obstacle.first_point; p < obstacle.first_point + count; ++p) u[p] = end[p] - start[p];
+    std::set<int> bodies;
+    for (const Impact& impact : bound.impacts(start, std::move(u)))
+      for (const int p : impact.point)
+        if (p >= 0 && mesh.row[p] >= 0) bodies.insert(mesh.part[p]);
+    for (const int body : bodies) names.push_back(obstacle.name + " and " + mesh.parts[body].name);
+  }
+  return names;
+}
+
+ContactSummary Barrier::summary(Positions x, double time) const {
+  const std::vector<Vec3d> p = impl_->points(x, time);
   const auto stencils = impl_->search.at(p);
   ContactSummary summary{.contacts = static_cast<int>(stencils->size())};
   std::vector<double> pressure(p.size(), 0.0);

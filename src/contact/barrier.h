@@ -30,6 +30,8 @@ class Barrier : public Energy {
                   BlockSparse& H) const override;
   // Returns a step of at most 1 along which no surfaces touch.
   double max_step(Positions x, const Context& context, std::span<const double> d) const override;
+  // The same while obstacles move from their positions at the first time to those at the second one [s].
+  double max_step(Positions x, std::span<const double> d, double from, double to) const;
   int add_stops(Positions x, const Context& context, std::span<const double> d, double scale, std::span<double> g,
                 BlockSparse& H) const override;
 
@@ -37,12 +39,20 @@ class Barrier : public Energy {
   const ContactLaws& laws() const;
   // Returns a point that has no distance to its own body at rest; -1: there is none.
   int self_touching_point() const;
-  ContactSummary summary(Positions x) const;
+  ContactSummary summary(Positions x, double time) const;
+  bool has_moving_obstacle() const;
+  // The moving obstacles and bodies, as "plate and ball", that would meet if obstacles moved and bodies stayed at x.
+  std::vector<std::string> blocked_parts(Positions x, double from, double to) const;
 
-  // Positions of the points of the mesh.
-  std::vector<Vec3d> points(Positions x) const;
+  // Positions of the points of the mesh. Throws InvalidInput if obstacles are not finite.
+  std::vector<Vec3d> points(Positions x, double time) const;
+  // The displacement of the obstacle at its side of a stencil, while obstacles move from `start` to `end` (points).
+  Vec3d obstacle_displacement(const ContactStencil& stencil, std::span<const Vec3d> start,
+                              std::span<const Vec3d> end) const;
   // The stencils at x with a gap below their reach, in an order that depends on x alone.
-  std::shared_ptr<const std::vector<ContactStencil>> stencils(Positions x) const;
+  std::shared_ptr<const std::vector<ContactStencil>> stencils(Positions x, double time) const;
+  // Work on the barrier of obstacles that move between two times, with their forces at x and the second time [J].
+  double obstacle_work(Positions x, double from, double to) const;
 
  private:
   struct Impl;

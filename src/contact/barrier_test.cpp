@@ -157,7 +157,7 @@ TEST(Barrier, PressureOfFlatSurfacesIsUniform) {
       EXPECT_EQ(norm(force), 0);
     }
   }
-  const ContactSummary summary = boxes.barrier->summary(boxes.x);
+  const ContactSummary summary = boxes.barrier->summary(boxes.x, 0);
   EXPECT_GT(summary.contacts, 0);
   EXPECT_NEAR(summary.min_gap, 1e-3, 1e-15);
 }

@@ -62,15 +62,18 @@ void ContactMesh::add(const ContactPart& given, std::span<const Vec3d> X, std::s
   parts.push_back(own);
 }
 
-void ContactMesh::add_plane(const std::string& name, double friction, const Vec3d& origin, const Vec3d& normal) {
-  const double infinite = std::numeric_limits<double>::infinity();
-  planes.push_back({origin, (1 / norm(normal)) * normal, static_cast<int>(parts.size())});
-  parts.push_back({.name = name,
-                   .is_obstacle = true,
-                   .first_point = point_count(),
-                   .mean_edge = infinite,
-                   .mean_triangle = infinite,
-                   .friction = friction});
+void ContactMesh::add_plane(const ContactPart& given, const Vec3d& origin, const Vec3d& normal) {
+  ContactPart own = given;
+  own.is_obstacle = true;
+  own.first_point = point_count();
+  own.mean_edge = own.mean_triangle = std::numeric_limits<double>::infinity();
+  planes.push_back({origin, (1 / norm(normal)) * normal, static_cast<int>(parts.size()), point_count()});
+  rest.push_back(origin);
+  row.push_back(-1);
+  part.push_back(static_cast<int>(parts.size()));
+  area.push_back(0);
+  point_share.push_back(0);
+  parts.push_back(own);
 }
 
 }  // namespace aspic

@@ -1,6 +1,7 @@
 // The surfaces that may touch, with all their points, edges and triangles in one numbering.
 #pragma once
 #include <array>
+#include <functional>
 #include <span>
 #include <string>
 #include <vector>
@@ -11,6 +12,9 @@ namespace aspic {
 
 using Edge = std::array<int, 2>;
 
+// Writes the positions of all points of an obstacle at a time [s], from those at the start [m].
+using ObstacleMotion = std::function<void(double time, std::span<const Vec3d> start, std::span<Vec3d> x)>;
+
 // A body or an obstacle.
 struct ContactPart {
   std::string name;
@@ -20,12 +24,14 @@ struct ContactPart {
   double mean_triangle = 0;  // [m^2]
   double young = 0;          // of a body, smallest of its tets [Pa]
   double friction = 0;       // coefficient
+  ObstacleMotion motion;     // of an obstacle; empty: at rest
 };
 
 // The half-space that an infinite plane bounds.
 struct ContactPlane {
-  Vec3d origin, normal;  // normal: unit vector into the free half-space
+  Vec3d origin, normal;  // origin: at the start. normal: unit vector into the free half-space
   int part;
+  int point;  // number of the origin in the mesh
 };
 
 // The sum of a function of the distance over the triangles near a point, plus these shares of the sums over their edges
@@ -54,7 +60,8 @@ struct ContactMesh {
   // obstacle. Points without triangles are left out.
   void add(const ContactPart& part, std::span<const Vec3d> X, std::span<const Triangle> surface,
            std::span<const int> row);
-  void add_plane(const std::string& name, double friction, const Vec3d& origin, const Vec3d& normal);
+  // Adds a plane, whose motion moves its origin.
+  void add_plane(const ContactPart& part, const Vec3d& origin, const Vec3d& normal);
 };
 
 }  // namespace aspic

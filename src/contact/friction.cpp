@@ -18,6 +18,7 @@ struct Slider {
   double force = 0;  // mu lambda [N]
   double width = 0;  // e [m]
   double share = 1;  // of the force, in a mixture
+  Vec3d moved = {};  // of the obstacle during the step [m]
 };
 
 // A normal force, and the stencil of the features between which it acts.
@@ -28,6 +29,7 @@ struct Traction {
 
 struct FrictionContext : Energy::Context {
   std::vector<double> start;
+  double obstacle_time = 0;  // of obstacles at the start [s]
   std::vector<Slider> sliders, mixture;
 };
 
@@ -76,9 +78,14 @@ Slider slider_of(const ContactMesh& mesh, const Traction& traction, double force
   return slider;
 }
 
+// 1 if the obstacle of a stencil is its second feature, else -1.
+double side(const ContactMesh& mesh, const ContactStencil& stencil) {
+  return mesh.parts[stencil.parts[0]].is_obstacle ? -1 : 1;
+}
+
 // The tangential relative displacement since the start.
 std::array<double, 2> slip(const Slider& slider, Positions x, Positions start) {
-  Vec3d d{};
+  Vec3d d = -1.0 * slider.moved;
   for (int i = 0; i < 4; ++i)
     if (slider.row[i] >= 0) d = d + slider.weight[i] * (point(x, slider.row[i]) - point(start, slider.row[i]));
   return {dot(slider.tangent[0], d), dot(slider.tangent[1], d)};
@@ -92,14 +99,20 @@ void Friction::begin_step(const StepContext& step, Context& context) const {
   Energy::begin_step(step, context);
   auto& own = static_cast<FrictionContext&>(context);
   own.start.assign(step.start.begin(), step.start.end());
-  update_lagged(step.shape.empty() ? step.start : step.shape, context);
+  own.obstacle_time = step.obstacle_time.value_or(step.time - step.h);
+  lag(step.shape.empty() ? step.start : step.shape, own.obstacle_time, context);
   own.mixture = own.sliders;
 }
 
-void Friction::update_lagged(Positions x, Context& context) const {
+void Friction::update_lagged(Positions x, Context& context) const { lag(x, context.time, context); }
+
+void Friction::lag(Positions x, double time, Context& context) const {
   auto& own = static_cast<FrictionContext&>(context);
-  const std::vector<Vec3d> points = barrier_.points(x);
-  const auto stencils = barrier_.stencils(x);
+  const std::vector<Vec3d> points = barrier_.points(x, time);
+  const auto stencils = barrier_.stencils(x, time);
+  std::vector<Vec3d> start, end;
+  if (barrier_.has_moving_obstacle())
+    start = barrier_.points(x, own.obstacle_time), end = barrier_.points(x, context.time);
   own.sliders.clear();
   for (size_t k = 0; k < stencils->size();) {
     const size_t first = k;
@@ -109,7 +122,9 @@ void Friction::update_lagged(Positions x, Context& context) const {
     const double force = law.friction * norm(traction.force);
     if (!(force > 0)) continue;
     const double width = context.h > 0 ? speed_ * context.h : kStaticReach * law.reach;
-    own.sliders.push_back(slider_of(barrier_.mesh(), traction, force, width));
+    Slider& slider = own.sliders.emplace_back(slider_of(barrier_.mesh(), traction, force, width));
+    if (start.empty()) continue;
+    slider.moved = side(barrier_.mesh(), *traction.at) * barrier_.obstacle_displacement(*traction.at, start, end);
   }
 }
 
@@ -124,6 +139,19 @@ void Friction::mix_lagged(double weight, Context& context) const {
     own.mixture.push_back(slider);
   }
   own.sliders = own.mixture;
+}
+
+double Friction::obstacle_work(Positions x, const Context& context) const {
+  const FrictionContext& own = friction(context);
+  double work = 0;
+  for (const Slider& slider : own.sliders) {
+    const auto u = slip(slider, x, own.start);
+    const double y = std::hypot(u[0], u[1]);
+    if (y == 0) continue;
+    const double size = slider.force * dissipation(y, slider.width).first / y;
+    for (int a = 0; a < 2; ++a) work -= size * u[a] * dot(slider.tangent[a], slider.moved);
+  }
+  return work;
 }
 
 double Friction::value(Positions x, const Context& context) const {

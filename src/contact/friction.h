@@ -20,10 +20,14 @@ class Friction : public Energy {
   void mix_lagged(double weight, Context& context) const override;
   double value(Positions x, const Context& context) const override;
   void add_gradient(Positions x, const Context& context, double scale, std::span<double> g) const override;
+  // Work on friction of obstacles that move during the step [J].
+  double obstacle_work(Positions x, const Context& context) const;
   int add_hessian(Positions x, const Context& context, double scale, const Projection& projection,
                   BlockSparse& H) const override;
 
  private:
+  void lag(Positions x, double time, Context& context) const;
+
   const Barrier& barrier_;
   double speed_;
 };

@@ -183,7 +183,7 @@ void StencilSearch::add_planes(std::span<const Vec3d> x, int p, ContactStencils&
   if (mesh_.row[p] < 0) return;
   for (const ContactPlane& plane : mesh_.planes) {
     const ContactLaw& law = laws_(mesh_.part[p], plane.part);
-    const double gap = dot(plane.normal, x[p] - plane.origin);
+    const double gap = dot(plane.normal, x[p] - x[plane.point]);
     if (!(gap < law.reach)) continue;
     const Distance to_foot{.r = gap * plane.normal, .d = gap};
     const Distance distance{.type = DistanceType::vertex_face,

@@ -53,7 +53,8 @@ double StepBound::longest(std::span<const Vec3d> u) const {
 double StepBound::to_planes(std::span<const Vec3d> p, std::span<const Vec3d> u, int i, double step) const {
   if (mesh_.row[i] < 0) return step;
   for (const ContactPlane& plane : mesh_.planes) {
-    const double gap = dot(plane.normal, p[i] - plane.origin), rate = dot(plane.normal, u[i]);
+    const double gap = dot(plane.normal, p[i] - p[plane.point]);
+    const double rate = dot(plane.normal, u[i] - u[plane.point]);
     const double reach = laws_(mesh_.part[i], plane.part).reach;
     if (rate < 0) step = std::min(step, std::max(0.0, (gap - landing_gap(gap, reach)) / -rate));
   }
@@ -131,11 +132,11 @@ std::vector<Impact> StepBound::with_planes(std::span<const Vec3d> p, std::span<c
     for (int i = 0; i < mesh_.point_count(); ++i) {
       if (mesh_.row[i] < 0) continue;
       const ContactLaw& law = laws_(mesh_.part[i], plane.part);
-      const double gap = dot(plane.normal, p[i] - plane.origin), landing = landing_gap(gap, law.reach);
-      if (!(gap + dot(plane.normal, u[i]) < landing)) continue;
+      const double gap = dot(plane.normal, p[i] - p[plane.point]), landing = landing_gap(gap, law.reach);
+      if (!(gap + dot(plane.normal, u[i] - u[plane.point]) < landing)) continue;
       found.push_back({.point = {i, -1, -1, -1},
                        .distance = {.r = plane.normal, .d = 1},
-                       .offset = dot(plane.normal, plane.origin),
+                       .offset = dot(plane.normal, p[plane.point]),
                        .landing = landing,
                        .stiffness = kSpring * law.stiffness * mesh_.area[i] / law.reach});
     }

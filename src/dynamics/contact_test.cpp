@@ -24,15 +24,25 @@ ModelBuilder block(const Vec3d& gravity, double gap = 0.001) {
 }
 
 // A block above the plane y = 0.
-Simulation above_plane(const Vec3d& gravity, double friction, double h, double creep = 0, double gap = 0.001) {
-  Model model = block(gravity, gap).build();
+struct PlaneScene {
+  double creep = 0, gap = 0.001;
+  Motion motion = {};  // of the plane
+};
+
+Simulation above_plane(const Vec3d& gravity, double friction, double h, const PlaneScene& given = {}) {
+  Model model = block(gravity, given.gap).build();
   ContactMesh contact;
   std::vector<int> rows(model.mesh.rest.size());
   for (size_t i = 0; i < rows.size(); ++i) rows[i] = static_cast<int>(i);
   const std::vector<Triangle> surface = boundary_triangles(model.mesh, 0, model.mesh.tet_count());
   contact.add({.name = "block", .young = kYoung, .friction = friction}, model.mesh.rest, surface, rows);
-  contact.add_plane("floor", friction, {}, {{0, 1, 0}});
-  add_contact(std::move(contact), {}, creep, model);
+  ContactPart floor{.name = "floor", .friction = friction};
+  if (given.motion)
+    floor.motion = [motion = given.motion](double time, std::span<const Vec3d> start, std::span<Vec3d> x) {
+      for (size_t i = 0; i < x.size(); ++i) x[i] = motion(start[i], time);
+    };
+  contact.add_plane(floor, {}, {{0, 1, 0}});
+  add_contact(std::move(contact), {}, given.creep, model);
   SimulationOptions options;
   options.h = h;
   return Simulation(std::move(model), options);
@@ -98,7 +108,7 @@ TEST(Contact, BlockOnInclineSlidesOrSticks) {
 
 // The barrier of the first gap is 1e6 times stiffer than the block, and gone after the block has been thrown off.
 TEST(Contact, TinyGapAtRestKeepsThresholds) {
-  Simulation simulation = above_plane({{0, -9.81, 0}}, 0, 0.01, 0, 1e-9);
+  Simulation simulation = above_plane({{0, -9.81, 0}}, 0, 0.01, {.gap = 1e-9});
   const double weight = 1000 * 9.81 * 0.1 * 0.05 * 0.1;
   StepReport report;
   for (int i = 0; i < 100; ++i) {
@@ -109,6 +119,66 @@ TEST(Contact, TinyGapAtRestKeepsThresholds) {
     }
   }
   EXPECT_NEAR(report.max_pressure, 1000 * 9.81 * 0.05, 300);
+}
+
+// A belt pulls with mu g until the block has its speed; friction loses half of the work of the belt.
+TEST(Contact, MovingPlaneDragsBlockAndLedgerCloses) {
+  constexpr double mu = 0.5, g = 9.81, speed = 0.4;
+  Simulation simulation = above_plane({{0, -g, 0}}, mu, 0.01, {.motion = [](const Vec3d& start, double time) {
+                                        return start + Vec3d{{speed * time, 0, 0}};
+                                      }});
+  const double start = simulation.start_report().potential_total + simulation.kinetic_energy();
+  double sum = start, belt = 0;
+  for (int i = 0; i < 60; ++i) {
+    const StepReport report = simulation.step();
+    ASSERT_TRUE(is_success(report.status)) << i << " " << to_string(report.status);
+    belt += report.obstacle_work;
+    sum += report.obstacle_work + report.residual_work - report.damping_loss - report.numerical_loss;
+    EXPECT_NEAR(sum, report.potential_total + report.kinetic, 1e-9 * std::abs(start)) << i;
+    EXPECT_GE(report.friction_loss, -1e-12);
+  }
+  const Vec3d v = center(simulation, simulation.state().qdot);
+  EXPECT_NEAR(v[0], speed, 0.01 * speed);
+  const double mass = 1000 * 0.1 * 0.05 * 0.1;
+  EXPECT_NEAR(belt, mass * speed * speed, 0.05 * mass * speed * speed);
+}
+
+TEST(Contact, RisingPlaneLiftsBlock) {
+  Simulation simulation = above_plane({{0, -9.81, 0}}, 0, 0.01, {.motion = [](const Vec3d& start, double time) {
+                                        return start + Vec3d{{0, 0.5 * time, 0}};
+                                      }});
+  for (int i = 0; i < 30; ++i) {
+    const StepReport report = simulation.step();
+    ASSERT_TRUE(is_success(report.status)) << i << " " << to_string(report.status);
+    for (int v = 0; v < simulation.model().mesh.vertex_count(); ++v)
+      ASSERT_GT(simulation.state().q[3 * v + 1], 0.5 * report.time);
+  }
+  EXPECT_NEAR(center(simulation, simulation.state().qdot)[1], 0.5, 0.1);
+}
+
+// A pinned body blocks the plane, which stays where it was when later steps try again.
+TEST(Contact, BlockedObstacleEndsUndefined) {
+  Model model = block({}).build();
+  std::vector<int> rows(model.mesh.rest.size());
+  for (size_t i = 0; i < rows.size(); ++i) rows[i] = static_cast<int>(i);
+  model.pins.push_back({"all", rows, {}});
+  ContactMesh contact;
+  contact.add({.name = "block", .young = kYoung}, model.mesh.rest,
+              boundary_triangles(model.mesh, 0, model.mesh.tet_count()), rows);
+  const auto jump = [](double time, std::span<const Vec3d> start, std::span<Vec3d> x) {
+    for (size_t i = 0; i < x.size(); ++i) x[i] = start[i] + Vec3d{{0, 100 * time, 0}};
+  };
+  const TetMesh plate = make_box({{-0.2, -0.1, -0.2}}, {{0.2, -0.05, 0.2}}, {1, 1, 1});
+  contact.add({.name = "plate", .is_obstacle = true, .motion = jump}, plate.rest,
+              boundary_triangles(plate, 0, plate.tet_count()), {});
+  add_contact(std::move(contact), {}, 0, model);
+  SimulationOptions options;
+  options.h = 0.01;
+  Simulation simulation(std::move(model), options);
+  for (int i = 0; i < 3; ++i) {
+    EXPECT_EQ(simulation.step().status, Status::undefined);
+    EXPECT_EQ(simulation.obstacle_time(), 0);
+  }
 }
 
 // The test for intersections is exact and shares no code with contact.
@@ -127,7 +197,7 @@ TEST(Contact, CollidingBlocksNeverIntersect) {
   TriMesh surface{mesh.rest, boundary_triangles(mesh, 0, mesh.tet_count())};
   ContactMesh contact;
   contact.add({.name = "blocks", .young = 2e4}, mesh.rest, surface.triangles, rows);
-  contact.add_plane("floor", 0, {}, {{0, 1, 0}});
+  contact.add_plane({.name = "floor", .friction = 0}, {}, {{0, 1, 0}});
   add_contact(std::move(contact), {}, 0, model);
   State start = at_rest(model.mesh);
   for (size_t v = first; v < mesh.rest.size(); ++v) start.qdot[3 * v + 1] = -4;
@@ -167,8 +237,8 @@ TEST(Contact, IntersectingStartIsRefused) {
 }
 
 TEST(Contact, GapBelowRoundOffIsRefused) {
-  EXPECT_THROW(above_plane({}, 0, 0.01, 0, 1e-15), InvalidInput);
-  EXPECT_NO_THROW(above_plane({}, 0, 0.01, 0, 1e-12));
+  EXPECT_THROW(above_plane({}, 0, 0.01, {.gap = 1e-15}), InvalidInput);
+  EXPECT_NO_THROW(above_plane({}, 0, 0.01, {.gap = 1e-12}));
 }
 
 TEST(Contact, ScenesWithoutItHaveEmptyReports) {

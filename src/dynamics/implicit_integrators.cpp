@@ -83,7 +83,7 @@ class QuasiStatic : public Integrator {
     StepSolve solve;
     forces.reset(start.q.size());
     end = start;
-    const StepContext context{start.q, 0, tools.end_time};
+    const StepContext context{start.q, 0, tools.end_time, {}, tools.obstacle_start};
     tools.E.set_potential_step(context);
     tools.E.set_damping_step(context);
     tools.E.begin_step(start.q, 0, 1);

@@ -81,7 +81,7 @@ bool ImplicitStage::solve(const StepTools& tools, const StageOptions& options, c
   const double beta = options.beta;
   const auto& [q, v, acc] = unknowns;
   predict(tools, options);
-  const StepContext context{a, beta, options.time, tools.start.q};
+  const StepContext context{a, beta, options.time, tools.start.q, tools.obstacle_start};
   tools.E.set_potential_step(context);
   tools.E.set_damping_step(context);
   tools.E.begin_step(predicted_, 1, beta * beta);

@@ -113,6 +113,11 @@ void IncrementalPotential::set_potential_step(const StepContext& step) {
   for (ActiveTerm& V : potential_) V.begin_step(step);
 }
 
+void IncrementalPotential::move_obstacles(double time) {
+  for (ActiveTerm& V : potential_)
+    if (&V.energy() == model_.contact) V.begin_step({.h = V.context().h, .time = time});
+}
+
 void IncrementalPotential::set_damping_step(const StepContext& step) {
   for (ActiveTerm& D : damping_) D.begin_step(step);
 }

@@ -21,6 +21,7 @@ class IncrementalPotential : public Objective, public HasMetric, public HasParts
   // Set the step for subsequent evaluations of the terms of V and of D. Called before begin_step().
   void set_potential_step(const StepContext& step);
   void set_damping_step(const StepContext& step);
+  void move_obstacles(double time);  // after set_potential_step()
   void begin_step(std::span<const double> predicted, double inertia /* w */, double factor /* f */);
 
   // Coefficients that lag behind the minimization, see Energy.

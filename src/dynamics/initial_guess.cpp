@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "base/error.h"
+#include "contact/barrier.h"
 #include "dynamics/guesser.h"
 #include "dynamics/integrator.h"
 #include "dynamics/lead_pins.h"
@@ -94,6 +95,18 @@ Guess Guesser::guess(const StepTools& tools, InitialGuess wanted, const GuessCon
       std::copy(trial_.begin(), trial_.end(), q.begin());
       return {wanted, value};
     }
+  }
+
+  // Bodies that move with the obstacles need no continuation.
+  for (const InitialGuess candidate : kAhead) {
+    if (!tools.model.contact || !tools.model.contact->has_moving_obstacle()) break;
+    if ((wanted != InitialGuess::best && wanted != candidate) || !propose(tools, candidate, known)) continue;
+    if (!is_free(tools, {known.q, trial_, tools.obstacle_start, known.time})) continue;
+    const Evaluation value = tools.E.evaluate(trial_);
+    ++work.values;
+    if (!std::isfinite(value.value)) continue;
+    std::copy(trial_.begin(), trial_.end(), q.begin());
+    return {candidate, value};
   }
 
   std::copy(known.q.begin(), known.q.end(), q.begin());

@@ -31,6 +31,8 @@ struct StepTools : SolveTools {
   const State& start;     // start of the step
   const State* previous;  // start of the previous step; null if unknown
   double h, end_time;     // length and end of the step [s]
+  // Times of the obstacles at start and end; that at the end is the same in a step that was dropped [s].
+  double obstacle_start = 0, obstacle_end = 0;
 };
 
 enum class Asked { nothing, residual };  // of a solve

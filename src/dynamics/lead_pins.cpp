@@ -5,6 +5,8 @@
 #include <limits>
 #include <vector>
 
+#include "contact/barrier.h"
+
 namespace aspic {
 namespace {
 
@@ -20,15 +22,14 @@ MinimizeOptions rough(const MinimizeOptions& options) {
   return few;
 }
 
-// Returns whether the straight path from x to y is free of contact.
-bool is_free(const StepTools& tools, std::span<const double> x, std::span<const double> y) {
-  if (!tools.model.contact) return true;
-  std::vector<double> d(y.begin(), y.end());
-  for (size_t i = 0; i < d.size(); ++i) d[i] -= x[i];
-  return tools.E.max_step(x, d) >= 1;
-}
-
 }  // namespace
+
+bool is_free(const StepTools& tools, const ContactPath& path) {
+  if (!tools.model.contact) return true;
+  std::vector<double> d(path.to.begin(), path.to.end());
+  for (size_t i = 0; i < d.size(); ++i) d[i] -= path.from[i];
+  return tools.model.contact->max_step(path.from, d, path.start_time, path.end_time) >= 1;
+}
 
 void add_work(const MinimizeReport& spent, MinimizeReport& work) {
   work.add(spent);
@@ -44,7 +45,10 @@ Evaluation lead_pins(const StepTools& tools, double time, std::span<const double
   tools.pins.place(time, q);
   const Evaluation at_once = tools.E.evaluate(q);
   ++work.values;
-  if (std::isfinite(at_once.value) && is_free(tools, from, q)) return at_once;
+  const auto time_at = [&](double part) {
+    return part < 1 ? tools.obstacle_start + part * (time - tools.obstacle_start) : time;
+  };
+  if (std::isfinite(at_once.value) && is_free(tools, {from, q, time_at(0), time})) return at_once;
   const std::vector<double> to(q.begin(), q.end());
 
   std::vector<double> reached(from.begin(), from.end()), trial = reached, between = reached;
@@ -54,9 +58,10 @@ Evaluation lead_pins(const StepTools& tools, double time, std::span<const double
     for (size_t k = 0; k < trial.size(); ++k) between[k] = next < 1 ? from[k] + next * (to[k] - from[k]) : to[k];
     trial = reached;
     tools.pins.copy_held(between, trial);
+    tools.E.move_obstacles(time_at(next));
     const Evaluation there = tools.E.evaluate(trial);
     ++work.values;
-    if (!std::isfinite(there.value) || !is_free(tools, reached, trial)) {
+    if (!std::isfinite(there.value) || !is_free(tools, {reached, trial, time_at(done), time_at(next)})) {
       part /= 2;
       continue;
     }

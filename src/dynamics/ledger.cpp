@@ -4,6 +4,9 @@
 #include <cmath>
 #include <limits>
 
+#include "contact/barrier.h"
+#include "contact/friction.h"
+
 namespace aspic {
 namespace {
 
@@ -24,16 +27,38 @@ class LongSum {
   double high_ = 0, low_ = 0;
 };
 
-// V += sign * (energy of each load). Returns their sum.
-double add_load_energies(std::span<const ActiveTerm> loads, std::span<const double> x, double sign,
-                         std::vector<double>& V) {
+// V += sign * (energy of each load except contact, which may be infinite). Returns their sum.
+double add_load_energies(const StepTools& tools, std::span<const double> x, double sign, std::vector<double>& V) {
+  const std::span<const ActiveTerm> loads = tools.E.loads();
   double sum = 0;
   for (size_t k = 0; k < loads.size(); ++k) {
+    if (&loads[k].energy() == tools.model.contact) continue;
     const double value = loads[k].value(x);
     V[k] += sign * value;
     sum += value;
   }
   return sum;
+}
+
+struct ObstacleWork {
+  double contact = 0, friction = 0;  // [J]
+};
+
+// Also adds the loss of friction to the report.
+ObstacleWork work_of_obstacles(const StepTools& tools, const State& end, StepReport& report) {
+  ObstacleWork work;
+  if (!tools.model.contact) return work;
+  work.contact = tools.model.contact->obstacle_work(end.q, tools.obstacle_start, tools.obstacle_end);
+  std::vector<double> force(end.q.size());
+  for (const ActiveTerm& D : tools.E.damping()) {
+    const auto* friction = dynamic_cast<const Friction*>(&D.energy());
+    if (!friction || tools.obstacle_start == tools.obstacle_end) continue;
+    work.friction += friction->obstacle_work(end.q, D.context());
+    D.add_gradient(end.q, 1, force);
+  }
+  report.friction_loss = work.friction;
+  for (size_t i = 0; i < force.size(); ++i) report.friction_loss += force[i] * (end.q[i] - tools.start.q[i]);
+  return work;
 }
 
 }  // namespace
@@ -54,11 +79,17 @@ double Ledger::target_work(const StepTools& tools, int order, const State& end, 
   const size_t loads = tools.E.loads().size();
   for (auto* v : {&early_, &late_}) v->assign(loads, 0.0);
   tools.E.set_potential_step(before);
-  loads_before = add_load_energies(tools.E.loads(), start.q, -1, early_);
-  const double at_end = order > 1 ? add_load_energies(tools.E.loads(), end.q, -1, late_) : 0;
+  loads_before = add_load_energies(tools, start.q, -1, early_);
+  const double at_end = order > 1 ? add_load_energies(tools, end.q, -1, late_) : 0;
   tools.E.set_potential_step(after);
-  const double early = add_load_energies(tools.E.loads(), start.q, 1, early_) - loads_before;
-  const double late = order > 1 ? add_load_energies(tools.E.loads(), end.q, 1, late_) - at_end : 0;
+  tools.E.move_obstacles(tools.obstacle_end);
+  const double early = add_load_energies(tools, start.q, 1, early_) - loads_before;
+  const double late = order > 1 ? add_load_energies(tools, end.q, 1, late_) - at_end : 0;
+  if (const Barrier* contact = tools.model.contact) {
+    Energy::Context before_step;
+    before_step.time = tools.obstacle_start;
+    loads_before += contact->value(start.q, before_step);
+  }
   report.target_work.resize(loads);
   for (size_t k = 0; k < loads; ++k) report.target_work[k] += order > 1 ? (early_[k] + late_[k]) / 2 : early_[k];
   return order > 1 ? (early + late) / 2 : early;
@@ -125,7 +156,7 @@ void Ledger::allow_moved_pins(const StepTools& tools, const State& end, BoundedE
     V += value, bounded.magnitude += std::abs(value);
   }
   ++work.values;
-  tools.E.set_damping_step({start.q, tools.h, tools.end_time, start.q});
+  tools.E.set_damping_step({start.q, tools.h, tools.end_time, start.q, tools.obstacle_start});
   for (const ActiveTerm& term : tools.E.damping()) D += term.value(moved_);
   for (size_t i = 0; i < moved_.size(); ++i) moved_[i] = (moved_[i] - start.q[i]) / tools.h - start.qdot[i];
   T = kinetic_energy(*tools.model.mass, moved_, momentum_);
@@ -228,13 +259,17 @@ BoundedEnergies Ledger::add(const StepTools& tools, const Integrator& integrator
   const double kinetic_gain = report.kinetic - kinetic_before,
                potential_gain = report.potential_total - potential_before;
   const double pin_work = reaction_work + target;
-  const double loss = (inertia_work - kinetic_gain) + gradient_work - (potential_gain - target);
+  const ObstacleWork obstacles = work_of_obstacles(tools, end, report);
+  const double loss = (inertia_work - kinetic_gain) + gradient_work - (potential_gain - target - obstacles.contact);
+  const double dissipated = damping_work + obstacles.friction;
   note_residual(tools, forces, report);
   report.pin_work += pin_work;
-  report.damping_loss += damping_work;
+  report.obstacle_work += obstacles.contact + obstacles.friction;
+  report.damping_loss += dissipated;
   report.numerical_loss += loss;
   report.residual_work += residual_work;
-  report.ledger_error += kinetic_gain + potential_gain - pin_work + damping_work + loss - residual_work;
+  report.ledger_error += kinetic_gain + potential_gain - pin_work - (obstacles.contact + obstacles.friction) +
+                         dissipated + loss - residual_work;
 
   add_resultants(tools, end, forces, report.resultants);
 
@@ -244,6 +279,7 @@ BoundedEnergies Ledger::add(const StepTools& tools, const Integrator& integrator
                              .reached = report.potential_total + jump,
                              .magnitude = magnitude,
                              .round_off = round_off + kLastDigits * tools.E.growth_stiffness()};
+  pins_moved |= tools.model.contact && tools.model.contact->has_moving_obstacle();
   if (pins_moved && integrator.facts().is_backward_euler) allow_moved_pins(tools, end, bounded, report);
   return bounded;
 }

@@ -2,7 +2,7 @@
 // acceleration a (see StepForces),
 //   r = M a + G + C,
 // r is the reaction of the pins on pinned vertices and the residual of the solves on free ones, and
-//   dT + dV = reaction . dx + (work of moving targets) - C . dx - numerical_loss + residual . dx
+//   dT + dV = reaction . dx + (work of moving targets and obstacles) - C . dx - numerical_loss + residual . dx
 // holds exactly, where the integrator itself loses
 //   numerical_loss = (a' M dx - dT) + G . dx - (dV - work of moving targets):
 // zero for midpoint with linear forces, 1/2 dv' M dv + dV/dx . dx - dV for backward Euler.

@@ -8,7 +8,6 @@
 #include "base/error.h"
 #include "base/stopwatch.h"
 #include "contact/barrier.h"
-#include "contact/friction.h"
 #include "dynamics/adaptive_step.h"
 #include "dynamics/integrator.h"
 #include "dynamics/ledger.h"
@@ -43,7 +42,7 @@ struct Simulation::Impl {
     if (!integrator->facts().is_static()) require_mass(model, *pins);
     pins->place(state.time, state.q);
     require_finite_energy(model, state.q);
-    require_apart(model, state.q, integrator->facts());
+    require_apart(model, state, integrator->facts());
     if (model.contact && options.adaptive.tolerance > 0)
       throw InvalidInput("contact needs steps of one length; remove adaptive.tolerance and choose a smaller step");
     if (!integrator->facts().is_static()) integrator->set_pin_velocity(*pins, options.h, state);
@@ -65,7 +64,7 @@ struct Simulation::Impl {
   // The arguments of a step that starts at `before`.
   StepTools tools(const IterationObserver& observe, double end_time) {
     const SolveTools solve{model, *pins, *E, minimizer, *direction, minimize, observe, guess};
-    return {solve, before, has_previous ? &previous : nullptr, options.h, end_time};
+    return {solve, before, has_previous ? &previous : nullptr, options.h, end_time, obstacle_time, end_time};
   }
 
   StepReport step(const IterationObserver& observe, const StopToken& stop) {
@@ -91,15 +90,17 @@ struct Simulation::Impl {
       }
       if (!integrator->facts().is_implicit) outside_work += outside_work_of(report);
       note_lost_velocity(with, report);
-      note_friction(report);
       if (!is_finite(report)) {
         if (is_success(report.status)) report.status = Status::undefined;
         take_back(with, with.end_time, report);
-      } else if (is_success(report.status) && has_blown_up(report)) {
-        report.status = Status::unstable;
-      } else if (remembers()) {
-        previous = adaptive ? adaptive->previous() : before;
-        has_previous = true;
+      } else {
+        obstacle_time = with.end_time;
+        if (is_success(report.status) && has_blown_up(report)) {
+          report.status = Status::unstable;
+        } else if (remembers()) {
+          previous = adaptive ? adaptive->previous() : before;
+          has_previous = true;
+        }
       }
     }
     if (!is_interrupted) report.step = ++steps_taken;
@@ -150,14 +151,6 @@ struct Simulation::Impl {
     return reached > kBlownUp * allowed;
   }
 
-  void note_friction(StepReport& report) const {
-    if (!model.contact) return;
-    std::vector<double> force(state.q.size());
-    for (const ActiveTerm& D : E->damping())
-      if (dynamic_cast<const Friction*>(&D.energy())) D.add_gradient(state.q, 1, force);
-    for (size_t i = 0; i < force.size(); ++i) report.friction_loss += force[i] * (state.q[i] - before.q[i]);
-  }
-
   // Velocities are differences of rounded positions.
   void note_lost_velocity(const StepTools& with, StepReport& report) const {
     if (!integrator->facts().is_implicit || integrator->facts().is_static() || !is_success(report.status)) return;
@@ -182,6 +175,7 @@ struct Simulation::Impl {
   // Sets the time of the terms of V, as between steps.
   void stand_at(double time) const {
     E->set_potential_step({state.q, integrator->facts().is_static() ? 0 : options.h, time});
+    E->move_obstacles(obstacle_time);
   }
 
   // Restores the state at the start of the step, with the given time; moving targets are at that time. A multistep
@@ -189,7 +183,7 @@ struct Simulation::Impl {
   void take_back(const StepTools& with, double time, StepReport& report) {
     report.residual = report.residual_threshold = report.residual_round_off = 0;
     report.worst_vertex = -1;
-    report.pin_work = report.damping_loss = 0;
+    report.pin_work = report.obstacle_work = report.damping_loss = report.friction_loss = 0;
     report.numerical_loss = report.residual_work = report.ledger_error = report.energy_slack = 0;
     report.energy_bound = EnergyBound::none;
     report.target_work.clear();
@@ -197,7 +191,8 @@ struct Simulation::Impl {
     state = before;
     state.time = time;
     has_previous = has_previous && time == before.time;
-    const StepTools stand_still = tools(with.observe, time);
+    StepTools stand_still = tools(with.observe, time);
+    stand_still.obstacle_end = obstacle_time;
     stand_at(time);
     forces.reset(state.q.size());
     for (const ActiveTerm& V : E->potential()) V.add_gradient(state.q, 1, forces.gradient);
@@ -207,7 +202,7 @@ struct Simulation::Impl {
   void describe_state(StepReport& report) const {
     report.time = state.time;
     if (model.contact) {
-      const ContactSummary contact = model.contact->summary(state.q);
+      const ContactSummary contact = model.contact->summary(state.q, obstacle_time);
       report.contacts = contact.contacts;
       report.min_gap = contact.contacts > 0 ? contact.min_gap : 0;
       report.max_pressure = contact.max_pressure;
@@ -253,8 +248,9 @@ struct Simulation::Impl {
   double outside_work = 0;          // see Snapshot
   Ledger ledger;
   int steps_taken = 0;
-  MinimizeOptions minimize;   // of the current step
-  double report_seconds = 0;  // time that the last report took, with a time budget [s]
+  double obstacle_time = state.time;  // see Simulation::obstacle_time()
+  MinimizeOptions minimize;           // of the current step
+  double report_seconds = 0;          // time that the last report took, with a time budget [s]
 };
 
 Simulation::Simulation(Model model, State initial, SimulationOptions options) {
@@ -279,6 +275,7 @@ const Model& Simulation::model() const { return impl_->model; }
 const State& Simulation::state() const { return impl_->state; }
 const SimulationOptions& Simulation::options() const { return impl_->options; }
 int Simulation::steps_taken() const { return impl_->steps_taken; }
+double Simulation::obstacle_time() const { return impl_->obstacle_time; }
 
 std::vector<std::string> Simulation::potential_names() const {
   std::vector<std::string> names;
@@ -367,6 +364,7 @@ Simulation::Snapshot Simulation::snapshot() const {
           impl_->steps_taken,
           impl_->adaptive ? double(impl_->adaptive->level()) : 0,
           impl_->has_previous ? std::optional(impl_->previous) : std::nullopt,
+          impl_->obstacle_time,
           impl_->outside_work};
 }
 
@@ -382,6 +380,7 @@ void Simulation::restore(const Snapshot& snapshot) {
   impl_->start = snapshot.start;
   impl_->steps_taken = snapshot.steps_taken;
   impl_->outside_work = snapshot.outside_work;
+  impl_->obstacle_time = snapshot.obstacle_time.value_or(snapshot.state.time);
   *impl_->pins = Pins(impl_->model.pins, impl_->start.q);
   impl_->has_previous = impl_->remembers() && snapshot.previous;
   if (impl_->has_previous) impl_->previous = *snapshot.previous;

@@ -71,11 +71,13 @@ class Simulation {
     State state;
     State start;  // the state at time 0, to which pins and ledger refer
     int steps_taken = 0;
-    double level = 0;               // the next substep has the length h / 2^level
-    std::optional<State> previous;  // at the start of the last step or substep, if the integrator keeps it
-    double outside_work = 0;        // sum over steps of |work of moving pins and targets|, explicit schemes [J]
+    double level = 0;                          // the next substep has the length h / 2^level
+    std::optional<State> previous;             // at the start of the last step or substep, if the integrator keeps it
+    std::optional<double> obstacle_time = {};  // empty: that of the state
+    double outside_work = 0;  // sum over steps of |work of moving pins and targets|, explicit schemes [J]
   };
   Snapshot snapshot() const;
+  double obstacle_time() const;            // at which obstacles are: that of the state unless they were blocked [s]
   void restore(const Snapshot& snapshot);  // throws InvalidInput if the sizes do not match the model
 
  private:

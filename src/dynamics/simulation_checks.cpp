@@ -4,6 +4,8 @@
 #include <cmath>
 #include <cstdio>
 #include <limits>
+#include <map>
+#include <utility>
 
 #include "base/error.h"
 #include "contact/barrier.h"
@@ -47,6 +49,29 @@ std::optional<SolverConflict> budget_conflict(const SimulationOptions& options, 
   return SolverConflict{"time_budget", "time_budget = " + std::to_string(budget) + " " + reason};
 }
 
+// Lists the first pairs of parts that intersect, each with a place.
+void require_no_intersection(const ContactMesh& contact, const TriMesh& surface) {
+  constexpr size_t kMostListed = 10;
+  SelfIntersections found = self_intersections(surface, 100'000);
+  std::erase_if(found.pairs, [&](const auto& pair) {  // obstacles may intersect each other and themselves
+    return contact.row[contact.triangles[pair[0]][0]] < 0 && contact.row[contact.triangles[pair[1]][0]] < 0;
+  });
+  if (found.pairs.empty()) return;
+  const auto part_of = [&](int triangle) { return contact.part[contact.triangles[triangle][0]]; };
+  std::map<std::pair<int, int>, int> places;  // a triangle of each pair of parts
+  for (const auto& [s, t] : found.pairs) places.try_emplace(std::minmax(part_of(s), part_of(t)), s);
+  std::string text;
+  size_t listed = 0;
+  for (const auto& [parts, triangle] : places) {
+    if (listed++ == kMostListed) break;
+    text += (text.empty() ? "" : "; ") + contact.parts[parts.first].name + " and " + contact.parts[parts.second].name +
+            " near (" + coordinates(surface.vertices[contact.triangles[triangle][0]]) + ") m";
+  }
+  throw InvalidInput("surfaces intersect in the initial state: " + text + (places.size() > kMostListed ? "; ..." : "") +
+                     " (" + std::to_string(found.pairs.size()) + (found.is_complete ? "" : " or more") +
+                     " pairs of triangles); move them apart");
+}
+
 }  // namespace
 
 void require_mass(const Model& model, const Pins& pins) {
@@ -82,30 +107,21 @@ void require_finite_energy(const Model& model, std::span<const double> x) {
   }
 }
 
-void require_apart(const Model& model, std::span<const double> x, const IntegratorFacts& integrator) {
+void require_apart(const Model& model, const State& start, const IntegratorFacts& integrator) {
   if (!model.contact) return;
+  const std::vector<double>& x = start.q;
+  const double time = start.time;
   if (!integrator.is_implicit || integrator.takes_one_iteration || integrator.ends_beyond_minimum)
     throw InvalidInput("contact needs an integrator that minimizes and ends at the minimum, not '" +
                        std::string(integrator.name) + "'; choose backward_euler, or quasi_static for equilibria");
   const ContactMesh& contact = model.contact->mesh();
-  TriMesh surface{contact.rest, contact.triangles};
-  for (int p = 0; p < contact.point_count(); ++p)
-    if (contact.row[p] >= 0) surface.vertices[p] = point(x, contact.row[p]);
-  const auto part_of = [&](int triangle) { return contact.parts[contact.part[contact.triangles[triangle][0]]].name; };
-  SelfIntersections found = self_intersections(surface, 100'000);
-  std::erase_if(found.pairs, [&](const auto& pair) {  // obstacles may intersect each other and themselves
-    return contact.row[contact.triangles[pair[0]][0]] < 0 && contact.row[contact.triangles[pair[1]][0]] < 0;
-  });
-  if (!found.pairs.empty()) {
-    const auto [s, t] = found.pairs.front();
-    const Vec3d& at = surface.vertices[contact.triangles[s][0]];
-    throw InvalidInput("surfaces intersect in the initial state: " + part_of(s) + " and " + part_of(t) + " near (" +
-                       coordinates(at) + ") m, " + std::to_string(found.pairs.size()) +
-                       (found.is_complete ? "" : " or more") + " pairs of triangles; move them apart");
-  }
+  Energy::Context at_start;
+  at_start.time = time;
+  const TriMesh surface{model.contact->points(x, time), contact.triangles};
+  require_no_intersection(contact, surface);
   for (const ContactPlane& plane : contact.planes)
     for (int p = 0; p < contact.point_count(); ++p)
-      if (contact.row[p] >= 0 && !(dot(plane.normal, surface.vertices[p] - plane.origin) > 0))
+      if (contact.row[p] >= 0 && !(dot(plane.normal, surface.vertices[p] - surface.vertices[plane.point]) > 0))
         throw InvalidInput("body '" + contact.parts[contact.part[p]].name + "' starts behind the plane '" +
                            contact.parts[plane.part].name + "', at vertex " +
                            std::to_string(model.numbering.vertex.to_user(contact.row[p])) + "; move it");
@@ -114,7 +130,7 @@ void require_apart(const Model& model, std::span<const double> x, const Integrat
                        std::to_string(model.numbering.vertex.to_user(contact.row[p])) +
                        "; merge the coincident vertices (aspic check MESH --repair) or leave a gap");
   const double least_gap = 1e3 * std::numeric_limits<double>::epsilon() * max_abs(x);  // as in largest_step()
-  if (!std::isfinite(model.contact->value(x, {})) || model.contact->summary(x).min_gap < least_gap)
+  if (!std::isfinite(model.contact->value(x, at_start)) || model.contact->summary(x, time).min_gap < least_gap)
     throw InvalidInput("surfaces touch in the initial state; leave a gap between them");
 }
 

@@ -25,7 +25,7 @@ class InvertedStart : public InvalidInput {
 void require_mass(const Model& model, const Pins& pins);                    // requires mass at every free vertex
 void require_finite_energy(const Model& model, std::span<const double> x);  // requires a finite initial energy
 // Requires that no surfaces of a contact intersect or touch, and that the integrator can keep them apart.
-void require_apart(const Model& model, std::span<const double> x, const IntegratorFacts& integrator);
+void require_apart(const Model& model, const State& start, const IntegratorFacts& integrator);
 void require_possible(const SimulationOptions& options);
 
 }  // namespace aspic

@@ -163,6 +163,7 @@ std::vector<StepField>& fields() {
       real<&R::pin_work>(
           {"pin_work", "J", "work of moving pins, moving spring targets and time-dependent loads in this step"},
           kMeasured),
+      optional(real<&R::obstacle_work>({"obstacle_work", "J", "work of moving obstacles"}, kMeasured)),
       real<&R::damping_loss>({"damping_loss", "J", "energy dissipated by damping"}, kMeasured),
       real<&R::numerical_loss>({"numerical_loss", "J", "energy dissipated by the integrator"}, kMeasured),
       real<&R::residual_work>({"residual_work", "J", "work of the residual"}, kMeasured),

@@ -61,11 +61,13 @@ struct StepReport : Work {  // of all solves of the step and of this report
   double friction_loss = 0;  // part of damping_loss [J]
   int friction_passes = 0;  // minimizations until the normal forces settled; 1 without friction, 0 without minimization
 
-  // The ledger: kinetic + potential changes by pin_work - damping_loss - numerical_loss + residual_work. [J]
+  // The ledger: kinetic + potential changes by pin_work + obstacle_work - damping_loss - numerical_loss +
+  // residual_work. [J]
   double kinetic = 0;
   std::vector<double> potential;  // one per term of V, named by Simulation::potential_names()
   double potential_total = 0;
   double pin_work = 0;              // of moving pins and moving targets in this step
+  double obstacle_work = 0;         // of moving obstacles on bodies, including friction, in this step
   std::vector<double> target_work;  // the share of the moving targets of each of Model::loads
   double damping_loss = 0;          // of damping terms in this step
   double numerical_loss = 0;        // of the integrator in this step

@@ -2,6 +2,7 @@
 #pragma once
 #include <limits>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string_view>
 
@@ -20,6 +21,7 @@ struct StepContext {
   double time = 0;  // time at which forces act [s]: the end of the step, or its start in explicit schemes
   // Positions at which coefficients that depend on x are evaluated. Empty: at `start`.
   Positions shape = {};
+  std::optional<double> obstacle_time = {};  // of moving obstacles at the start [s]; empty: time - h
 };
 
 // An energy is a function of the positions x and of a context. Evaluations change neither the energy nor the context,

@@ -5,6 +5,7 @@
 #include <limits>
 #include <optional>
 
+#include "contact/barrier.h"
 #include "dynamics/explanation_places.h"
 #include "dynamics/pins.h"
 #include "dynamics/rigid_motions.h"
@@ -158,6 +159,9 @@ class Explainer {
   }
 
   Explanation undefined_start() const {
+    if (const std::string names = blocked_obstacles(); !names.empty())
+      return {"obstacles cannot move to their next positions: bodies are in the way and do not yield", names,
+              smaller_steps() + ", or move the obstacles more slowly"};
     const Explanation pins = pressed_by_pins();
     if (!pins.cause.empty()) return pins;
     const WorstTet worst = most_squashed(model_.mesh, placed());
@@ -176,6 +180,15 @@ class Explainer {
     return {"the energy at the start of the step is not a finite number",
             vertex_name(model_, fastest) + " is fastest: " + text(most) + " m/s",
             smaller_steps() + ", and look for forces, pins or velocities that are too large"};
+  }
+
+  // The obstacles that did not move with the time and the bodies on their paths.
+  std::string blocked_obstacles() const {
+    if (!model_.contact || simulation_.obstacle_time() == report_.time) return "";
+    std::string names;
+    for (const std::string& pair : model_.contact->blocked_parts(x_, simulation_.obstacle_time(), report_.time))
+      names += (names.empty() ? "" : "; ") + pair;
+    return names;
   }
 
   // Explains iterations that led to a state of infinite energy.

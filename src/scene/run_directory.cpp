@@ -101,6 +101,8 @@ Checkpoint to_checkpoint(const Simulation& simulation, const std::string& scene,
                        {"history", to_history(snapshot, vertex)},
                        {"outside_work", {snapshot.outside_work}},
                        {"frame_times", frame_times}};
+  if (snapshot.obstacle_time && *snapshot.obstacle_time != snapshot.state.time)
+    checkpoint.arrays.emplace_back("obstacle_time", std::vector<double>{*snapshot.obstacle_time});
   return checkpoint;
 }
 
@@ -130,6 +132,8 @@ Simulation::Snapshot to_snapshot(const Checkpoint& checkpoint, const Model& mode
   snapshot.state = state_of(checkpoint, "", model);
   snapshot.start = state_of(checkpoint, "start_", model);
   snapshot.outside_work = only_number(checkpoint, "outside_work");
+  for (const auto& [name, values] : checkpoint.arrays)
+    if (name == "obstacle_time") snapshot.obstacle_time = only_number(checkpoint, "obstacle_time");
   read_history(checkpoint.array("history"), model.numbering.vertex, snapshot);
   return snapshot;
 }

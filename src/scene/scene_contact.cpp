@@ -8,6 +8,7 @@
 #include "dynamics/contact.h"
 #include "io/mesh_file.h"
 #include "mesh/surface.h"
+#include "scene/motion.h"
 #include "scene/placement.h"
 #include "scene/schema.h"
 
@@ -43,12 +44,25 @@ TriMesh surface_of(Value& obstacle, MeshLoader& loader) {
   }
 }
 
+ObstacleMotion motion_of(const Value& obstacle, const std::vector<Vec3d>& starts) {
+  const Motion motion = make_motion(obstacle["motion"], starts);
+  if (!motion) return nullptr;
+  return [motion](double time, std::span<const Vec3d> start, std::span<Vec3d> x) {
+    for (size_t i = 0; i < x.size(); ++i) x[i] = motion(start[i], time);
+  };
+}
+
 void add_obstacle(Value& obstacle, double friction, MeshLoader& loader, ContactMesh& contact) {
   const std::string name = obstacle["name"].text();
   if (const Value* plane = obstacle.find("plane")) {
     const Value& normal = (*plane)["normal"];
     if (!(norm(normal.vector()) > 0)) throw error_at(normal.place, "normal has length 0; try [0, 1, 0]");
-    return contact.add_plane(name, friction, (*plane)["origin"].vector(), normal.vector());
+    const Value& motion = obstacle["motion"];
+    if (!motion.is_text() && motion.find("rotate"))
+      throw error_at(motion.place, "planes do not rotate; use shape = { box = { ... } }");
+    const Vec3d origin = (*plane)["origin"].vector();
+    return contact.add_plane({.name = name, .friction = friction, .motion = motion_of(obstacle, {origin})}, origin,
+                             normal.vector());
   }
   TriMesh surface = surface_of(obstacle, loader);
   const AffineMap place = placement_of(obstacle);
@@ -57,7 +71,9 @@ void add_obstacle(Value& obstacle, double friction, MeshLoader& loader, ContactM
     if (!std::isfinite(X[0] + X[1] + X[2])) throw error_at(obstacle.place, "obstacle '" + name + "' is not finite");
   }
   if (surface.triangles.empty()) throw error_at(obstacle.place, "obstacle '" + name + "' has no triangles");
-  contact.add({.name = name, .is_obstacle = true, .friction = friction}, surface.vertices, surface.triangles, {});
+  contact.add(
+      {.name = name, .is_obstacle = true, .friction = friction, .motion = motion_of(obstacle, surface.vertices)},
+      surface.vertices, surface.triangles, {});
 }
 
 void complete_names(std::vector<Value>& obstacles) {

@@ -46,7 +46,19 @@ TEST(SceneContact, PinsDoNotPassThroughObstacles) {
   for (size_t k = 1; k < scene.simulation.state().q.size(); k += 3) EXPECT_GT(scene.simulation.state().q[k], -0.9);
 }
 
+TEST(SceneContact, ObstacleMovesByFormula) {
+  const TestFolder folder;
+  const Scene scene =
+      load_scene(folder.write("scene.toml", kCube + kFloor + "motion = { displacement = [0, \"-t\", 0] }\n"));
+  const Barrier& contact = *scene.simulation.model().contact;
+  EXPECT_TRUE(contact.has_moving_obstacle());
+  EXPECT_DOUBLE_EQ(contact.points(scene.simulation.state().q, 2).back()[1], -2.5);
+}
+
 TEST(SceneContact, RejectsBadInput) {
+  EXPECT_THAT(refusal(kCube + kFloor + "motion = { rotate = { axis = [0, 1, 0], rate_deg = 9 } }\n"),
+              HasSubstr("planes do not rotate"));
+  EXPECT_THAT(refusal(kCube + kFloor + "motion = { displacement = [0, \"0/t\", 0] }\n"), HasSubstr("scene.toml"));
   EXPECT_THAT(refusal(kCube + "\n[[obstacle]]\nplane = { normal = [0, 0, 0] }\n"), HasSubstr("normal has length 0"));
   EXPECT_THAT(refusal(kCube + "\n[[obstacle]]\nmesh = \"none.obj\"\n"), HasSubstr("none.obj"));
   EXPECT_THAT(refusal(kCube + "\n[[obstacle]]\nplane = { origin = [0, 0.5, 0] }\n"),

@@ -68,7 +68,7 @@ void add_where(Schema& s) {
 
 void add_motion(Schema& s) {
   s.sections.push_back({"motion", "motion = \"fixed\" or { ... }",
-                        "Motion of pinned vertices or spring targets from their positions at time 0."});
+                        "Motion of pinned vertices, spring targets or obstacles from their positions at time 0."});
   add_keys(s, "motion",
            {{.name = "linear", .accepts = kTable, .table = "linear", .meaning = "constant velocity"},
             {.name = "rotate", .accepts = kTable, .table = "spin", .meaning = "constant rotation"},

@@ -12,7 +12,7 @@ void add_contact_sections(Schema& s) {
             {.name = "obstacle",
              .accepts = kTables,
              .table = "obstacle",
-             .meaning = "rigid bodies at rest; they switch contact on"}});
+             .meaning = "surfaces with prescribed motion; they switch contact on"}});
   s.sections.push_back({"contact", "[contact]", "Contact with friction. The defaults suit most scenes."});
   add_keys(
       s, "contact",
@@ -40,15 +40,23 @@ void add_contact_sections(Schema& s) {
         .range = kPositive,
         .meaning = "largest speed of surfaces that stick; default: 1e-4 sqrt(9.81 m/s^2 L) for bodies of size L"}});
 
-  s.sections.push_back({"obstacle", "[[obstacle]]",
-                        "A rigid body at rest: a plane, a surface from a file, or a shape. Surfaces and shapes are "
-                        "placed by scale, rotate, translate in this order."});
+  s.sections.push_back(
+      {"obstacle", "[[obstacle]]",
+       "A surface with prescribed motion, or at rest: a plane, a triangle mesh, or a shape. Meshes and shapes are "
+       "placed by scale, rotate, translate in this order."});
   add_keys(s, "obstacle",
            {{.name = "name", .accepts = kText, .meaning = "default: obstacle1, obstacle2, ..."},
             {.name = "plane", .accepts = kTable, .table = "plane", .meaning = "an infinite plane"},
             {.name = "mesh", .accepts = kText, .required = true, .meaning = "triangle mesh, open or closed"},
             {.name = "hash", .accepts = kText, .meaning = "hash of the file, in resolved scenes"},
             {.name = "shape", .accepts = kTable, .table = "shape", .meaning = "the boundary of a generated shape"},
+            {.name = "motion",
+             .accepts = kText | kTable,
+             .fallback = "\"fixed\"",
+             .choices = {"fixed"},
+             .table = "motion",
+             .meaning = "prescribed motion; planes do not rotate",
+             .reason = "most obstacles are at rest"},
             {.name = "friction", .accepts = kNumber, .range = kNotNegative, .meaning = "default: contact.friction"}});
   add_placement_keys(s, "obstacle");
   s.alternatives.push_back({"obstacle", {{"plane"}, {"mesh", "hash"}, {"shape"}}, true});

@@ -16,6 +16,7 @@ export interface StepFields {
   friction_loss: MaybeNumber; // share of friction in damping_loss [J]
   potential: MaybeNumber[]; // energy of each term of V; a dead load has -f . x, not zero at rest [J]
   pin_work: MaybeNumber; // work of moving pins, moving spring targets and time-dependent loads in this step [J]
+  obstacle_work: MaybeNumber; // work of moving obstacles [J]
   damping_loss: MaybeNumber; // energy dissipated by damping [J]
   numerical_loss: MaybeNumber; // energy dissipated by the integrator [J]
   residual_work: MaybeNumber; // work of the residual [J]
@@ -43,6 +44,7 @@ export const kUnknownStep: StepFields = {
   friction_loss: null,
   potential: [],
   pin_work: null,
+  obstacle_work: null,
   damping_loss: null,
   numerical_loss: null,
   residual_work: null,
