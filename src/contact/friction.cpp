@@ -17,7 +17,6 @@ struct Slider {
   std::array<Vec3d, 2> tangent = {};
   double force = 0;  // mu lambda [N]
   double width = 0;  // e [m]
-  double share = 1;  // of the force, in a mixture
   Vec3d moved = {};  // of the obstacle during the step [m]
 };
 
@@ -27,10 +26,17 @@ struct Traction {
   Vec3d force{};  // [N]
 };
 
+// The sliders of one update of the normal forces, as part of a mixture.
+struct Update {
+  double share;
+  std::vector<Slider> sliders;
+};
+
 struct FrictionContext : Energy::Context {
   std::vector<double> start;
   double obstacle_time = 0;  // of obstacles at the start [s]
-  std::vector<Slider> sliders, mixture;
+  std::vector<Slider> sliders;
+  std::vector<Update> mixture;  // whose shares add up to 1
 };
 
 const FrictionContext& friction(const Energy::Context& context) { return static_cast<const FrictionContext&>(context); }
@@ -101,7 +107,7 @@ void Friction::begin_step(const StepContext& step, Context& context) const {
   own.start.assign(step.start.begin(), step.start.end());
   own.obstacle_time = step.obstacle_time.value_or(step.time - step.h);
   lag(step.shape.empty() ? step.start : step.shape, own.obstacle_time, context);
-  own.mixture = own.sliders;
+  own.mixture = {{1, own.sliders}};
 }
 
 void Friction::update_lagged(Positions x, Context& context) const { lag(x, context.time, context); }
@@ -129,16 +135,19 @@ void Friction::lag(Positions x, double time, Context& context) const {
 }
 
 void Friction::mix_lagged(double weight, Context& context) const {
-  constexpr double kForgotten = 1e-2;
+  constexpr double kForgotten = 1e-3;
   auto& own = static_cast<FrictionContext&>(context);
-  for (Slider& slider : own.mixture) slider.force *= 1 - weight, slider.share *= 1 - weight;
-  std::erase_if(own.mixture, [](const Slider& slider) { return slider.share < kForgotten; });
-  for (Slider slider : own.sliders) {
-    slider.force *= weight;
-    slider.share *= weight;
-    own.mixture.push_back(slider);
-  }
-  own.sliders = own.mixture;
+  double rest = 1;
+  for (Update& update : own.mixture) update.share *= 1 - weight;
+  std::erase_if(own.mixture, [](const Update& update) { return update.share < kForgotten; });
+  for (const Update& update : own.mixture) rest -= update.share;
+  own.mixture.push_back({rest, own.sliders});
+  own.sliders.clear();
+  for (const Update& update : own.mixture)
+    for (Slider slider : update.sliders) {
+      slider.force *= update.share;
+      own.sliders.push_back(slider);
+    }
 }
 
 double Friction::obstacle_work(Positions x, const Context& context) const {

@@ -13,7 +13,7 @@ constexpr double kRoughest = 1e-2;  // and its maximum
 constexpr double kReduction = 0.1;  // of the forces by one pass
 
 // Mixtures with earlier coefficients end alternation.
-double share_of_update(int passes) { return passes < 8 ? 1 : passes < 16 ? 0.5 : passes < 32 ? 0.2 : 0.1; }
+double share_of_update(int passes) { return passes < 8 ? 1 : passes < 20 ? 0.5 : 0.2; }
 
 }  // namespace
 
