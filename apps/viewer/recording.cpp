@@ -86,7 +86,7 @@ struct Frame {
 };
 
 const std::string kDisplacement = "displacement";  // computed from the positions
-const std::set<std::string> kMoving = {"von_mises", "energy_density", "det_F", "stretch"};
+const std::set<std::string> kMoving = {"von_mises", "energy_density", "det_F", "stretch", "contact_pressure"};
 
 std::vector<float> flat(const std::vector<Vec3d>& points) {
   std::vector<float> numbers;
@@ -191,6 +191,7 @@ class Recorder {
     Json head = {{"format", 1}};
     head["hello"] = hello();
     head["scenes"] = scene_messages(box_of(std::span<const float>(frames.front().x)), note);
+    head["obstacles"] = obstacles_json(scene_.simulation.model());
     head["toml"] = scene_text_;
     head["steps"] = Json::array();
     for (const StepRow& row : tables_.steps) head["steps"].push_back(to_json(row));

@@ -182,18 +182,30 @@ double Barrier::max_step(Positions x, const Context&, std::span<const double> d)
                           smallest(static_cast<int>(candidates->edge_pairs.size()), step_of_edges));
 }
 
-ContactSummary Barrier::summary(Positions x) const {
+std::vector<ContactPoint> Barrier::contact_points(Positions x) const {
+  if (!std::all_of(x.begin(), x.end(), [](double xi) { return std::isfinite(xi); })) return {};
   const std::vector<Vec3d> p = impl_->points(x);
   const auto stencils = impl_->search.at(p);
-  ContactSummary summary{.contacts = static_cast<int>(stencils->size())};
-  std::vector<double> pressure(p.size(), 0.0);
+  std::vector<ContactPoint> at(p.size());
   for (const ContactStencil& stencil : *stencils) {
-    summary.min_gap = std::min(summary.min_gap, stencil.distance.d);
     if (stencil.area == 0) continue;
+    ContactPoint& point = at[stencil.point[0]];
     const double kappa = stencil.weight / stencil.area;
-    pressure[stencil.point[0]] -= std::copysign(kappa, stencil.area) * stencil.b().first;
+    point.gap = std::min(point.gap, stencil.distance.d);
+    point.pressure -= std::copysign(kappa, stencil.area) * stencil.b().first;
   }
-  for (const double at_point : pressure) summary.max_pressure = std::max(summary.max_pressure, at_point);
+  std::vector<ContactPoint> touching;
+  for (size_t i = 0; i < at.size(); ++i)
+    if (std::isfinite(at[i].gap)) touching.push_back({impl_->mesh.row[i], p[i], at[i].gap, at[i].pressure});
+  return touching;
+}
+
+ContactSummary Barrier::summary(Positions x) const {
+  const auto stencils = this->stencils(x);
+  ContactSummary summary{.contacts = static_cast<int>(stencils->size())};
+  for (const ContactStencil& stencil : *stencils) summary.min_gap = std::min(summary.min_gap, stencil.distance.d);
+  for (const ContactPoint& point : contact_points(x))
+    summary.max_pressure = std::max(summary.max_pressure, point.pressure);
   return summary;
 }
 

@@ -18,6 +18,14 @@ struct ContactSummary {
   double max_pressure = 0;                                   // [Pa]
 };
 
+// A point of a surface that is closer to another surface than the reach.
+struct ContactPoint {
+  int row = -1;  // vertex of the model; -1: of an obstacle
+  Vec3d position{};
+  double gap = std::numeric_limits<double>::infinity();  // [m]
+  double pressure = 0;                                   // [Pa]
+};
+
 class Barrier : public Energy {
  public:
   Barrier(ContactMesh mesh, const ContactOptions& options);
@@ -35,6 +43,8 @@ class Barrier : public Energy {
   const ContactLaws& laws() const;
   // Returns a point that has no distance to its own body at rest; -1: there is none.
   int self_touching_point() const;
+  // In the order of the points of the mesh. Empty if a position is not finite.
+  std::vector<ContactPoint> contact_points(Positions x) const;
   ContactSummary summary(Positions x) const;
 
   // The stencils at x with a gap below their reach, in an order that depends on x alone.
