@@ -11,6 +11,8 @@
 namespace aspic::viewer {
 namespace {
 
+const std::string kContactPressure = "contact_pressure";
+
 void evaluate_elasticity(const View& view, TetFields& fields) {
   const size_t tets = view.simulation.model().mesh.tets.size();
   fields.energy_density.assign(tets, 0.0);
@@ -34,6 +36,7 @@ std::vector<Field> fields_of(const Model& model) {
       {"von_mises", "von Mises stress", "Pa"},      {"energy_density", "energy density", "J/m^3"},
       {"det_F", "volume ratio det F", "", true, 1}, {"stretch", "largest stretch", "", true, 1},
       {"density", "density at rest", "kg/m^3"},     {"quality", "shape of tets at rest (1: regular)", ""}};
+  if (model.contact) fields.push_back({kContactPressure, "contact pressure", "Pa"});
   for (const auto& [name, unused] : model.tet_fields) {
     if (name == "young") {
       fields.push_back({.name = name, .label = "Young's modulus", .unit = "Pa", .is_log = true});
@@ -50,6 +53,11 @@ const std::vector<double>* tet_field(const Model& model, std::string_view name) 
   for (const auto& [known, values] : model.tet_fields)
     if (known == name) return &values;
   return nullptr;
+}
+
+std::vector<ContactPoint> contact_points(const View& view) {
+  const Barrier* contact = view.simulation.model().contact;
+  return contact ? contact->contact_points(view.x, view.simulation.obstacle_time()) : std::vector<ContactPoint>();
 }
 
 TetFields tet_fields_at(const View& view) {
@@ -110,6 +118,13 @@ void FieldValues::evaluate(const std::string& field, const View& view, const Sur
   if (field == "displacement" || field == "speed") {
     for (int v = 0; v < surface.vertex_count(); ++v)
       values[v] = static_cast<float>(vertex_value(field, view, surface, v));
+    return;
+  }
+  if (field == kContactPressure) {
+    pressure_.assign(view.x.size(), 0.0);  // along the first axis
+    for (const ContactPoint& contact : contact_points(view))
+      if (contact.row >= 0) pressure_[3 * static_cast<size_t>(contact.row)] = contact.pressure;
+    for (int v = 0; v < surface.vertex_count(); ++v) values[v] = static_cast<float>(surface.position(v, pressure_)[0]);
     return;
   }
   const std::span<const double> of_tet = tet_values(field, view);

@@ -5,6 +5,7 @@
 #include <string_view>
 #include <vector>
 
+#include "contact/barrier.h"
 #include "viewer/surface.h"
 
 namespace aspic::viewer {
@@ -40,9 +41,10 @@ class FieldValues {
   std::span<const double> tet_values(const std::string& field, const View& view);
 
   TetFields fields_;
-  std::vector<double> tet_;
+  std::vector<double> tet_, pressure_;
 };
 
+std::vector<ContactPoint> contact_points(const View& view);  // empty without contact
 TetFields tet_fields_at(const View& view);
 Mat3d deformation_gradient(const TetMesh& mesh, int tet, std::span<const double> x);
 Vec3d stretches(const Mat3d& F);  // in descending order, never negative

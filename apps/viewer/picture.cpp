@@ -84,8 +84,8 @@ std::string PictureEncoder::encode(const Stamp& stamp, const PictureOptions& opt
       if (std::isfinite(value)) smallest = std::min(smallest, value), largest = std::max(largest, value);
     if (smallest > largest) smallest = largest = 0;  // no finite value
   }
-
-  Writer writer(kPictureHeader + n * (has_values ? 20 : 16));
+  const std::vector<ContactPoint> contacts = contact_points(view);
+  Writer writer(kPictureHeader + n * (has_values ? 20 : 16) + 16 * contacts.size());
   writer.put(kPicture);
   writer.put(static_cast<uint32_t>(stamp.side));
   writer.put(stamp.generation);
@@ -96,11 +96,15 @@ std::string PictureEncoder::encode(const Stamp& stamp, const PictureOptions& opt
   writer.put(static_cast<uint32_t>(has_values));
   writer.put(smallest);
   writer.put(largest);
-  writer.skip_to(kPictureHeader);
+  writer.put(static_cast<uint32_t>(contacts.size()));
   for (const Vec3d& x : position_) writer.put_point(x);
   for (const Vec3d& normal : normal_) put_normal(writer, normal);
   if (has_values)
     for (const float value : value_) writer.put(value);
+  for (const ContactPoint& contact : contacts) {
+    writer.put_point(contact.position);
+    writer.put(static_cast<float>(contact.pressure));
+  }
   return writer.take();
 }
 

@@ -27,6 +27,8 @@ void find_places(RecordedBody& body) {
       recorded.place.push_back(found->second);
       if (!is_new) continue;
       body.places.rest.push_back(recorded.surface.rest[v]);
+      body.places.carrier.push_back(recorded.surface.carrier[v]);
+      body.places.weights.push_back(recorded.surface.weights[v]);
       body.places.tets.insert(body.places.tets.end(), around.begin(), around.end());
       body.places.tets_start.push_back(static_cast<int>(body.places.tets.size()));
     }

@@ -11,6 +11,7 @@
 #include <utility>
 
 #include "base/error.h"
+#include "contact/barrier.h"
 #include "io/atomic_file.h"
 #include "io/base64.h"
 #include "io/checkpoint.h"
@@ -86,7 +87,7 @@ struct Frame {
 };
 
 const std::string kDisplacement = "displacement";  // computed from the positions
-const std::set<std::string> kMoving = {"von_mises", "energy_density", "det_F", "stretch"};
+const std::set<std::string> kMoving = {"von_mises", "energy_density", "det_F", "stretch", "contact_pressure"};
 
 std::vector<float> flat(const std::vector<Vec3d>& points) {
   std::vector<float> numbers;
@@ -191,6 +192,8 @@ class Recorder {
     Json head = {{"format", 1}};
     head["hello"] = hello();
     head["scenes"] = scene_messages(box_of(std::span<const float>(frames.front().x)), note);
+    const Model& model = scene_.simulation.model();
+    head["obstacles"] = obstacles_json(model, 0);
     head["toml"] = scene_text_;
     head["steps"] = Json::array();
     for (const StepRow& row : tables_.steps) head["steps"].push_back(to_json(row));
@@ -200,6 +203,8 @@ class Recorder {
       const size_t index = static_cast<size_t>(frames[i].index);
       head["frames"]["step"].push_back(step_of_frame_[index]);
       head["frames"]["time"].push_back(known_.frame_times[index]);
+      if (model.contact && model.contact->has_moving_obstacle())
+        head["frames"]["obstacles"].push_back(obstacles_json(model, known_.frame_times[index]));
     }
     head["lower"] = range.lower.a;
     head["size"] = range.size().a;

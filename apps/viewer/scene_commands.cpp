@@ -135,7 +135,7 @@ void surface(Stage& stage, Arguments& arguments) {
   stage.show_surface(which == "skin");
   for (const ShownSide& shown : stage.sides()) {
     stage.send_scene(shown);
-    stage.send(geometry_message(shown));
+    stage.send_shape(shown);
     stage.send(pins_message(shown));
   }
   stage.record({{"do", "surface"}, {"which", which}});

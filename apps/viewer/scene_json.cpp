@@ -1,5 +1,7 @@
 #include "viewer/scene_json.h"
 
+#include "contact/barrier.h"
+#include "contact/obstacle_surface.h"
 #include "viewer/settings.h"
 
 namespace aspic::viewer {
@@ -14,6 +16,25 @@ Json tip_json(const Tip& tip) {
 }
 
 namespace {
+
+// The box of the bodies and the obstacles below them, unless these are so large that the bodies would be tiny.
+Box with_obstacles(const Box& bodies, const Model& model) {
+  constexpr double kLargest = 4;  // relative to the bodies
+  Box all = bodies;
+  if (!model.contact) return all;
+  const double limit = kLargest * norm(bodies.upper - bodies.lower);
+  for (const ObstacleSurface& obstacle : obstacle_surfaces(model.contact->mesh(), model.contact->obstacle_points(0))) {
+    Box both = all;
+    if (obstacle.plane) {
+      const Vec3d center = 0.5 * (bodies.lower + bodies.upper);
+      both.add(center - dot(obstacle.plane->normal, center - obstacle.plane->origin) * obstacle.plane->normal);
+    } else {
+      for (const Vec3d& x : obstacle.surface.vertices) both.add(x);
+    }
+    if (norm(both.upper - both.lower) <= limit) all = both;
+  }
+  return all;
+}
 
 Json fields_json(const std::vector<Field>& fields) {
   Json list = Json::array();
@@ -36,17 +57,35 @@ Vec3d up_of(const Table& document) {
 
 }  // namespace
 
+Json obstacles_json(const Model& model, double time) {
+  Json list = Json::array();
+  if (!model.contact) return list;
+  for (const ObstacleSurface& obstacle :
+       obstacle_surfaces(model.contact->mesh(), model.contact->obstacle_points(time))) {
+    Json plane, points = Json::array(), triangles = Json::array();
+    if (obstacle.plane)
+      plane = {{"origin", json_of(obstacle.plane->origin)}, {"normal", json_of(obstacle.plane->normal)}};
+    for (const Vec3d& x : obstacle.surface.vertices)
+      for (int axis = 0; axis < 3; ++axis) points.push_back(x[axis]);
+    for (const Triangle& t : obstacle.surface.triangles)
+      for (const int v : t) triangles.push_back(v);
+    list.push_back({{"name", obstacle.name}, {"plane", plane}, {"points", points}, {"triangles", triangles}});
+  }
+  return list;
+}
+
 Json scene_json(const Scene& scene, const Table& document, const Box& start, const std::vector<Field>& fields) {
   const Simulation& simulation = scene.simulation;
   const Model& model = simulation.model();
+  const Box seen = with_obstacles(start, model);
   Json message = {{"kind", "scene"},
                   {"has_skin", has_fine_skin(scene)},
                   {"vertices", model.mesh.vertex_count()},
                   {"tets", model.mesh.tet_count()},
                   {"bodies", Json::array()},
                   {"body_tets", Json::array()},
-                  {"lower", json_of(start.lower)},
-                  {"upper", json_of(start.upper)},
+                  {"lower", json_of(seen.lower)},
+                  {"upper", json_of(seen.upper)},
                   {"up", json_of(up_of(document))},
                   {"h", simulation.options().h},
                   {"implicit", simulation.integrator().is_implicit},

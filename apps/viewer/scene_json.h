@@ -19,8 +19,11 @@ Box box_of(std::span<const Real> x) {
   return box;
 }
 
+// Returns the obstacles of the message "obstacles"; empty without contact.
+Json obstacles_json(const Model& model, double time);
+
 // Returns the members of the message "scene" that live and recorded scenes share. `document`: the scene with all
-// values. `start`: the bounding box of its first state.
+// values. `start`: the bounding box of its first state, which the message extends by obstacles.
 Json scene_json(const Scene& scene, const Table& document, const Box& start, const std::vector<Field>& fields);
 
 }  // namespace aspic::viewer

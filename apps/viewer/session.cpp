@@ -6,6 +6,7 @@
 #include <new>
 
 #include "base/error.h"
+#include "contact/barrier.h"
 #include "viewer/bench_desk.h"
 #include "viewer/picture.h"
 
@@ -136,6 +137,8 @@ Messages Session::pictures() const {
     const Side& side = shown.side;
     const int step = side.steps_taken() + (side.iteration() >= 0 ? 1 : 0);
     const std::string field = shown.has_field(impl_->stage.field()) ? impl_->stage.field() : "";
+    const Barrier* contact = side.model().contact;
+    if (contact && contact->has_moving_obstacle()) messages.push_back(obstacles_message(shown));
     messages.push_back(
         {true, impl_->encoder.encode({shown.number(), shown.generation}, {step, side.iteration(), side.time(), field},
                                      shown.view(), shown.surface)});

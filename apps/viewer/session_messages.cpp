@@ -92,6 +92,13 @@ Message geometry_message(const ShownSide& shown) {
   return {true, encode_geometry({shown.number(), shown.generation}, shown.surface, shown.side.model().numbering)};
 }
 
+Message obstacles_message(const ShownSide& shown) {
+  return text({{"kind", "obstacles"},
+               {"side", shown.name},
+               {"generation", shown.generation},
+               {"obstacles", obstacles_json(shown.side.model(), shown.side.simulation().obstacle_time())}});
+}
+
 Message steps_message(const ShownSide& shown, int from) {
   return text(
       {{"kind", "steps"}, {"side", shown.name}, {"from", from}, {"steps", shown.side.history().rows().after(from)}});

@@ -27,6 +27,7 @@ Message text(const Json& json);  // replaces invalid UTF-8, as in file names
 Message hello(const std::vector<Lesson>& lessons, Role role);
 Message scene_message(const ShownSide& shown, const std::string& field);
 Message geometry_message(const ShownSide& shown);
+Message obstacles_message(const ShownSide& shown);
 Message steps_message(const ShownSide& shown, int from);
 Message pins_message(const ShownSide& shown);
 Json state_of(const ShownSide& shown);

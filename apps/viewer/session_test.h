@@ -48,7 +48,7 @@ inline Json last(const Messages& messages, const std::string& kind) {
 struct Picture {
   int side = 0, generation = 0, step = 0, iteration = -1;
   double time = 0;
-  std::vector<float> positions, values;
+  std::vector<float> positions, values, contacts;
   std::vector<int8_t> normals;
   float min = 0, max = 0;
 };
@@ -76,7 +76,9 @@ inline Picture decoded(const std::string& bytes) {
   const bool has_values = take<uint32_t>(bytes, 32) == 1;
   picture.min = take<float>(bytes, 36);
   picture.max = take<float>(bytes, 40);
-  EXPECT_EQ(bytes.size(), 48 + n * (has_values ? 20 : 16));
+  const size_t end = 48 + n * (has_values ? 20 : 16), contacts = take<uint32_t>(bytes, 44);
+  EXPECT_EQ(bytes.size(), end + 16 * contacts);
+  picture.contacts = take<float>(bytes, end, 4 * contacts);
   picture.positions = take<float>(bytes, 48, 3 * n);
   picture.normals = take<int8_t>(bytes, 48 + 12 * n, 4 * n);
   if (has_values) picture.values = take<float>(bytes, 48 + 16 * n, n);
@@ -141,6 +143,7 @@ class Page {
 
   Json state() const { return state_; }
   Json capture() const { return capture_; }
+  Json obstacles() const { return obstacles_; }  // the latest message
   Json side(const std::string& name = "a") const { return state_.at(name); }
   Json scene(const std::string& name = "a") const { return scene_.at(name); }
   const std::vector<Json>& rows(const std::string& name = "a") { return rows_[name]; }
@@ -197,6 +200,7 @@ class Page {
       if (kind == "state") state_ = json;
       if (kind == "capture") capture_ = json;
       if (kind == "scene") scene_[side] = json;
+      if (kind == "obstacles") obstacles_ = json;
       if (kind == "pins") pins_[side] = json["vertices"];
       if (kind != "steps") continue;
       auto& rows = rows_[side];
@@ -207,7 +211,7 @@ class Page {
 
   Session session_;
   int id_ = 0;
-  Json state_, capture_, scene_ = Json::object(), pins_ = Json::object();
+  Json state_, capture_, obstacles_, scene_ = Json::object(), pins_ = Json::object();
   std::map<std::string, std::vector<Json>> rows_;
   std::map<std::string, Geometry> geometry_;
 };

@@ -93,9 +93,14 @@ Recording Stage::recording() {
   return {a().side.steered().path.string(), base_overrides_, comparison_, log_.events(), a().side.steps_taken()};
 }
 
+void Stage::send_shape(const ShownSide& shown) {
+  send(geometry_message(shown));
+  if (shown.side.model().contact) send(obstacles_message(shown));
+}
+
 void Stage::send_all(const ShownSide& shown) {
   send_scene(shown);
-  send(geometry_message(shown));
+  send_shape(shown);
   send(steps_message(shown, 0));
   send(pins_message(shown));
 }

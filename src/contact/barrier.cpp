@@ -86,6 +86,8 @@ int Barrier::self_touching_point() const { return impl_->search.self_touching_po
 
 bool Barrier::has_moving_obstacle() const { return impl_->has_motion; }
 
+std::vector<Vec3d> Barrier::obstacle_points(double time) const { return impl_->obstacles(time); }
+
 std::vector<Vec3d> Barrier::points(Positions x, double time) const { return impl_->points(x, time); }
 
 std::shared_ptr<const std::vector<ContactStencil>> Barrier::stencils(Positions x, double time) const {
@@ -239,18 +241,30 @@ std::vector<std::string> Barrier::blocked_parts(Positions x, double from, double
   return names;
 }
 
-ContactSummary Barrier::summary(Positions x, double time) const {
+std::vector<ContactPoint> Barrier::contact_points(Positions x, double time) const {
+  if (!std::all_of(x.begin(), x.end(), [](double xi) { return std::isfinite(xi); })) return {};
   const std::vector<Vec3d> p = impl_->points(x, time);
   const auto stencils = impl_->search.at(p);
-  ContactSummary summary{.contacts = static_cast<int>(stencils->size())};
-  std::vector<double> pressure(p.size(), 0.0);
+  std::vector<ContactPoint> at(p.size());
   for (const ContactStencil& stencil : *stencils) {
-    summary.min_gap = std::min(summary.min_gap, stencil.distance.d);
     if (stencil.area == 0) continue;
+    ContactPoint& point = at[stencil.point[0]];
     const double kappa = stencil.weight / stencil.area;
-    pressure[stencil.point[0]] -= std::copysign(kappa, stencil.area) * stencil.b().first;
+    point.gap = std::min(point.gap, stencil.distance.d);
+    point.pressure -= std::copysign(kappa, stencil.area) * stencil.b().first;
   }
-  for (const double at_point : pressure) summary.max_pressure = std::max(summary.max_pressure, at_point);
+  std::vector<ContactPoint> touching;
+  for (size_t i = 0; i < at.size(); ++i)
+    if (std::isfinite(at[i].gap)) touching.push_back({impl_->mesh.row[i], p[i], at[i].gap, at[i].pressure});
+  return touching;
+}
+
+ContactSummary Barrier::summary(Positions x, double time) const {
+  const auto stencils = this->stencils(x, time);
+  ContactSummary summary{.contacts = static_cast<int>(stencils->size())};
+  for (const ContactStencil& stencil : *stencils) summary.min_gap = std::min(summary.min_gap, stencil.distance.d);
+  for (const ContactPoint& point : contact_points(x, time))
+    summary.max_pressure = std::max(summary.max_pressure, point.pressure);
   return summary;
 }
 

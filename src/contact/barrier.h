@@ -18,6 +18,14 @@ struct ContactSummary {
   double max_pressure = 0;                                   // [Pa]
 };
 
+// A point of a surface that is closer to another surface than the reach.
+struct ContactPoint {
+  int row = -1;  // vertex of the model; -1: of an obstacle
+  Vec3d position{};
+  double gap = std::numeric_limits<double>::infinity();  // [m]
+  double pressure = 0;                                   // [Pa]
+};
+
 class Barrier : public Energy {
  public:
   Barrier(ContactMesh mesh, const ContactOptions& options);
@@ -39,11 +47,15 @@ class Barrier : public Energy {
   const ContactLaws& laws() const;
   // Returns a point that has no distance to its own body at rest; -1: there is none.
   int self_touching_point() const;
+  // In the order of the points of the mesh. Empty if a position is not finite.
+  std::vector<ContactPoint> contact_points(Positions x, double time) const;
   ContactSummary summary(Positions x, double time) const;
   bool has_moving_obstacle() const;
   // The moving obstacles and bodies, as "plate and ball", that would meet if obstacles moved and bodies stayed at x.
   std::vector<std::string> blocked_parts(Positions x, double from, double to) const;
 
+  // Positions of the points of the mesh, with bodies at rest.
+  std::vector<Vec3d> obstacle_points(double time) const;
   // Positions of the points of the mesh. Throws InvalidInput if obstacles are not finite.
   std::vector<Vec3d> points(Positions x, double time) const;
   // The displacement of the obstacle at its side of a stencil, while obstacles move from `start` to `end` (points).

@@ -5,6 +5,7 @@
 #include <random>
 
 #include "contact/barrier_function.h"
+#include "contact/obstacle_surface.h"
 #include "math/vectors.h"
 #include "mesh/generators.h"
 #include "mesh/surface.h"
@@ -198,6 +199,41 @@ TEST(Barrier, GuardsTipsOfCoarseSurfaces) {
   const double area = barrier.mesh().parts[0].mean_triangle, kappa = barrier.laws()(1, 0).stiffness;
   const double expected = -kappa * area * aspic::barrier(gap, reach / 4).first;
   EXPECT_NEAR(force, expected, 1e-3 * expected);
+}
+
+// Every point of the two facing sides touches, with the pressure kappa |b'| of its gap.
+TEST(Barrier, ContactPointsHavePressureOfTheirGap) {
+  const double gap = 5e-4;
+  const Boxes boxes(gap, 0, 0);
+  const std::vector<ContactPoint> points = boxes.barrier->contact_points(boxes.x, 0);
+  ASSERT_EQ(points.size(), 32U);
+  const double kappa = boxes.barrier->laws()(0, 1).stiffness;
+  for (const ContactPoint& point : points) {
+    EXPECT_NEAR(point.gap, gap, 1e-12);
+    EXPECT_NEAR(point.pressure, -kappa * barrier(gap, 2e-3).first, 1e-6 * kappa);
+    EXPECT_EQ(point.position[2] < 0.1 + gap / 2, point.row < boxes.mesh.vertex_count() / 2);
+  }
+  EXPECT_DOUBLE_EQ(boxes.barrier->summary(boxes.x, 0).max_pressure, points.front().pressure);
+}
+
+TEST(ObstacleSurface, PlaneIsASquareBelowTheBodies) {
+  ContactMesh mesh;
+  const std::vector<Vec3d> X = {{{0, 1, 0}}, {{1, 1, 0}}, {{0, 1, 1}}};
+  mesh.add({.name = "body"}, X, std::vector<Triangle>{{0, 1, 2}}, std::vector<int>{0, 1, 2});
+  mesh.add_plane("slope", 0, {{0, 0, 0}}, {{1, 2, 0}});
+  mesh.add({.name = "sheet", .is_obstacle = true}, X, std::vector<Triangle>{{0, 2, 1}}, {});
+  const std::vector<ObstacleSurface> surfaces = obstacle_surfaces(mesh, mesh.rest);
+  ASSERT_EQ(surfaces.size(), 2U);
+  EXPECT_EQ(surfaces[0].name, "slope");
+  const TriMesh& square = surfaces[0].surface;
+  ASSERT_EQ(square.vertex_count(), 4);
+  for (const Vec3d& x : square.vertices) EXPECT_NEAR(x[0] + 2 * x[1], 0, 1e-12);
+  const auto& [a, b, c] = square.triangles[0];
+  const Vec3d normal = cross(square.vertices[b] - square.vertices[a], square.vertices[c] - square.vertices[a]);
+  EXPECT_GT(normal[1], 0) << "the square faces the bodies";
+  EXPECT_FALSE(surfaces[1].plane);
+  EXPECT_EQ(surfaces[1].surface.triangles, (std::vector<Triangle>{{0, 2, 1}}));
+  EXPECT_DOUBLE_EQ(surfaces[1].surface.vertices[1][0], 1);
 }
 
 }  // namespace

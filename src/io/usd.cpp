@@ -107,6 +107,12 @@ void write_samples(OutputFile& file, const std::string& attribute, const std::ve
 
 void write_mesh_prim(OutputFile& file, const UsdMesh& mesh, const std::string& name, const std::vector<double>& codes) {
   file.append("\n    def Mesh \"" + name + "\"\n    {\n" + topology(mesh.triangles));
+  if (mesh.is_fixed) {
+    const std::vector<float> x = mesh.points(0);
+    file.append("        float3[] extent = " + extent_text(x) + "\n        point3f[] points = " + points_text(x) +
+                "\n    }\n");
+    return;
+  }
   write_samples(file, "float3[] extent", codes, [&](int sample) { return extent_text(mesh.points(sample)); });
   write_samples(file, "point3f[] points", codes, [&](int sample) { return points_text(mesh.points(sample)); });
   file.append("    }\n");

@@ -14,6 +14,7 @@ struct UsdMesh {
   std::string name;  // becomes a USD identifier; a number makes it unique where necessary
   std::span<const Triangle> triangles;
   std::function<std::vector<float>(int sample)> points;  // 3 per vertex [m]
+  bool is_fixed = false;                                 // the first sample is that of all times
 };
 
 // Writes times[i] [s] as the time of sample i. A time code is time times `codes_per_second`, which should be the rate

@@ -75,5 +75,14 @@ TEST_F(UsdScene, AFailureLeavesTheOldFileAlone) {
   EXPECT_THROW(write_usd(path("no/folder.usda"), {}, {0}, 1), InvalidInput);
 }
 
+TEST_F(UsdScene, FixedMeshHasOneSample) {
+  const std::vector<Triangle> triangles = {{0, 1, 2}};
+  const auto points = [](int) { return std::vector<float>{0, 0, 0, 1, 0, 0, 0, 1, 0}; };
+  write_usd(path("a.usda"), {{"floor", triangles, points, true}}, {0, 1}, 1);
+  const std::string text = read_file(path("a.usda"));
+  EXPECT_THAT(text, HasSubstr("point3f[] points = [(0, 0, 0), (1, 0, 0), (0, 1, 0)]"));
+  EXPECT_THAT(text, testing::Not(HasSubstr("timeSamples")));
+}
+
 }  // namespace
 }  // namespace aspic

@@ -42,7 +42,11 @@ std::vector<double> read_vtu_points(const std::filesystem::path& path);
 void write_vtu(const std::filesystem::path& path, std::span<const double> points, const std::vector<Tet>& tets,
                const VtuFields& fields = {});
 
-// Writes the index of a time series: (time [s], file name relative to the index).
-void write_pvd(const std::filesystem::path& path, const std::vector<std::pair<double, std::string>>& frames);
+void write_surface_vtu(const std::filesystem::path& path, const TriMesh& surface, const VtuFields& fields = {});
+
+// Writes the index of a time series: (time [s], file name relative to the index). `fixed`: a second file of every time;
+// empty: none.
+void write_pvd(const std::filesystem::path& path, const std::vector<std::pair<double, std::string>>& frames,
+               const std::string& fixed = "");
 
 }  // namespace aspic

@@ -330,5 +330,14 @@ TEST_F(VtuFile, AMissingFileIsNamed) {
   EXPECT_THROW(write_vtu(path("no/such/folder.vtu"), {}, {}), InvalidInput);
 }
 
+TEST_F(VtuFile, WrittenSurfacesReadBack) {
+  const TriMesh surface{{{{0, 0, 0}}, {{1, 0, 0}}, {{0, 1, 0}}, {{0, 0, 0.1}}}, {{0, 1, 2}, {0, 3, 1}}};
+  write_surface_vtu(path("a.vtu"), surface, {.cell_fields = {{"obstacle", 1, {0, 1}, FieldType::int32}}});
+  const Vtu read = read_vtu(path("a.vtu"));
+  EXPECT_EQ(read.triangles.triangles, surface.triangles);
+  EXPECT_EQ(read.triangles.vertices[3][2], 0.1);
+  EXPECT_EQ(read.cell_fields.at(0).values, (std::vector<double>{0, 1}));
+}
+
 }  // namespace
 }  // namespace aspic

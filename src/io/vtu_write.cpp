@@ -1,6 +1,7 @@
 #include <zlib.h>
 
 #include <algorithm>
+#include <array>
 #include <bit>
 #include <cstdint>
 #include <cstring>
@@ -102,20 +103,21 @@ void append_file_fields(const std::vector<Field>& fields, std::string& text) {
   text += "</FieldData>\n";
 }
 
-void append_cells(const std::vector<Tet>& tets, std::string& text) {
-  constexpr uint8_t kVtkTet = 10;
-  const std::span<const int> corners(tets.empty() ? nullptr : tets.front().data(), 4 * tets.size());
-  std::vector<int64_t> offsets(tets.size());
-  for (size_t i = 0; i < tets.size(); ++i) offsets[i] = 4 * static_cast<int64_t>(i + 1);
+template <size_t kCorners>
+void append_cells(const std::vector<std::array<int, kCorners>>& cells, std::string& text) {
+  constexpr uint8_t kVtkTriangle = 5, kVtkTet = 10;
+  constexpr uint8_t kType = kCorners == 4 ? kVtkTet : kVtkTriangle;
+  const std::span<const int> corners(cells.empty() ? nullptr : cells.front().data(), kCorners * cells.size());
+  std::vector<int64_t> offsets(cells.size());
+  for (size_t i = 0; i < cells.size(); ++i) offsets[i] = static_cast<int64_t>(kCorners * (i + 1));
   append_array({"Int32", "connectivity"}, bytes_of<int32_t>(corners), text);
   append_array({"Int64", "offsets"}, bytes_of<int64_t>(std::span<const int64_t>(offsets)), text);
-  append_array({"UInt8", "types"}, std::string(tets.size(), static_cast<char>(kVtkTet)), text);
+  append_array({"UInt8", "types"}, std::string(cells.size(), static_cast<char>(kType)), text);
 }
 
-}  // namespace
-
-void write_vtu(const std::filesystem::path& path, std::span<const double> points, const std::vector<Tet>& tets,
-               const VtuFields& fields) {
+template <class Cell>
+void write(const std::filesystem::path& path, std::span<const double> points, const std::vector<Cell>& cells,
+           const VtuFields& fields) {
   const size_t point_count = points.size() / 3;
   std::string text =
       "<?xml version=\"1.0\"?>\n"
@@ -123,16 +125,29 @@ void write_vtu(const std::filesystem::path& path, std::span<const double> points
       "compressor=\"vtkZLibDataCompressor\">\n<UnstructuredGrid>\n";
   append_file_fields(fields.file_fields, text);
   text += "<Piece NumberOfPoints=\"" + std::to_string(point_count) + "\" NumberOfCells=\"" +
-          std::to_string(tets.size()) + "\">\n<Points>\n";
+          std::to_string(cells.size()) + "\">\n<Points>\n";
   append_array({"Float64", "Points", 3}, bytes_of<double>(points), text);
   text += "</Points>\n<Cells>\n";
-  append_cells(tets, text);
+  append_cells(cells, text);
   text += "</Cells>\n<PointData>\n";
   append_fields(fields.point_fields, point_count, text);
   text += "</PointData>\n<CellData>\n";
-  append_fields(fields.cell_fields, tets.size(), text);
+  append_fields(fields.cell_fields, cells.size(), text);
   text += "</CellData>\n</Piece>\n</UnstructuredGrid>\n</VTKFile>\n";
   write_file(path, text);
+}
+
+}  // namespace
+
+void write_vtu(const std::filesystem::path& path, std::span<const double> points, const std::vector<Tet>& tets,
+               const VtuFields& fields) {
+  write(path, points, tets, fields);
+}
+
+void write_surface_vtu(const std::filesystem::path& path, const TriMesh& surface, const VtuFields& fields) {
+  std::vector<double> points;
+  for (const Vec3d& x : surface.vertices) points.insert(points.end(), x.a, x.a + 3);
+  write(path, points, surface.triangles, fields);
 }
 
 }  // namespace aspic

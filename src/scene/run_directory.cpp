@@ -16,6 +16,7 @@
 #include "io/vtu.h"
 #include "scene/run_directory_frame.h"
 #include "scene/run_directory_layout.h"
+#include "scene/run_directory_obstacles.h"
 #include "scene/run_directory_skins.h"
 #include "scene/run_directory_tables.h"
 #include "scene/run_lock.h"
@@ -166,7 +167,10 @@ void check_same_scene(const RunLayout& layout, const Scene& scene, const Checkpo
 
 struct RunDirectory::Impl {
   Impl(RunLayout where, const Scene& scene)
-      : layout(std::move(where)), output(scene.output), scene_fingerprint(fingerprint(scene.resolved)) {}
+      : layout(std::move(where)),
+        output(scene.output),
+        scene_fingerprint(fingerprint(scene.resolved)),
+        has_obstacles(!obstacles_of(scene).empty()) {}
 
   // Frame index of `time`; times are sums of rounded steps, hence the tolerance.
   double frame_slot(double time) const { return std::floor(time / output.every + 1e-6); }
@@ -179,7 +183,7 @@ struct RunDirectory::Impl {
     std::vector<std::pair<double, std::string>> frames;
     for (const double time : frame_times)
       frames.emplace_back(time, RunLayout::frame_file(static_cast<int>(frames.size())));
-    if (output.vtu) write_pvd(layout.index(), frames);
+    if (output.vtu) write_pvd(layout.index(), frames, has_obstacles ? RunLayout::obstacle_file() : "");
   }
 
   // Frames that the checkpoint counts are not computed again.
@@ -223,6 +227,7 @@ struct RunDirectory::Impl {
   std::optional<RunLock> lock;
   OutputOptions output;
   std::string scene_fingerprint;
+  bool has_obstacles;
   std::vector<double> frame_times;  // [s]
   RunTables tables;
   std::optional<RunSkins> skins;
@@ -247,6 +252,7 @@ RunDirectory RunDirectory::create(const fs::path& path, const Scene& scene, Exis
   write_file(layout.scene(), scene.resolved);
   if (output.vtu || output.obj || output.ply) create_folder(layout.frames());
   if ((output.pc2 || output.usd) && !scene.skins.empty()) create_folder(layout.skins());
+  write_obstacles(layout, scene);
   impl->skins = RunSkins::create(layout, scene);
   impl->add_frame(scene.simulation, nullptr);
   impl->save_checkpoint(scene.simulation);

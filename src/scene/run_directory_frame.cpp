@@ -1,7 +1,9 @@
 #include "scene/run_directory_frame.h"
 
+#include <limits>
 #include <utility>
 
+#include "contact/barrier.h"
 #include "dynamics/step_fields.h"
 #include "io/vtu.h"
 
@@ -60,6 +62,22 @@ std::vector<Field> file_fields(double time, const StepReport* report) {
   return fields;
 }
 
+// Contact at the vertices, in the storage order of the model.
+void add_contact_fields(const Simulation& simulation, FieldType real, std::vector<Field>& fields) {
+  const Model& model = simulation.model();
+  if (!model.contact) return;
+  const size_t n = model.mesh.rest.size();
+  Field pressure{"contact_pressure", 1, std::vector<double>(n, 0.0), real};
+  Field gap{"contact_gap", 1, std::vector<double>(n, std::numeric_limits<double>::quiet_NaN()), real};
+  for (const ContactPoint& point : model.contact->contact_points(simulation.state().q, simulation.obstacle_time())) {
+    if (point.row < 0) continue;
+    pressure.values[point.row] = point.pressure;
+    gap.values[point.row] = point.gap;
+  }
+  fields.push_back(std::move(pressure));
+  fields.push_back(std::move(gap));
+}
+
 }  // namespace
 
 void write_frame(const std::filesystem::path& path, const Simulation& simulation, const StepReport* report,
@@ -68,9 +86,10 @@ void write_frame(const std::filesystem::path& path, const Simulation& simulation
   const Model& model = simulation.model();
   const State& state = simulation.state();
   const auto& [vertex, tet] = model.numbering;
-  const std::vector<Field> point_fields = {
-      {"displacement", 3, vertex.to_user(displacement(model.mesh, state.q), 3), real},
-      {"velocity", 3, vertex.to_user(state.qdot, 3), real}};
+  std::vector<Field> point_fields = {{"displacement", 3, displacement(model.mesh, state.q), real},
+                                     {"velocity", 3, state.qdot, real}};
+  add_contact_fields(simulation, real, point_fields);
+  for (Field& field : point_fields) field.values = vertex.to_user(field.values, field.components);
   std::vector<Field> fields = cell_fields(simulation, real);
   for (Field& field : fields) field.values = tet.to_user(field.values, field.components);
   write_vtu(path, vertex.to_user(state.q, 3), to_user(model.numbering, model.mesh).tets,

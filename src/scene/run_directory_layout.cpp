@@ -40,6 +40,11 @@ bool is_skin_file(const fs::path& file) {
   return file.filename().string().starts_with("skin_") && (file.extension() == ".obj" || file.extension() == ".pc2");
 }
 
+bool is_obstacle_file(const fs::path& file) {
+  const std::string name = file.filename().string();
+  return name == "obstacles.vtu" || (name.starts_with("obstacle_") && file.extension() == ".obj");
+}
+
 bool is_unfinished(const fs::path& file) {
   const std::string name = file.filename().string();
   return name.starts_with(".aspic-") || name == "run.usda.unfinished" || name == "checkpoint.previous.bin.new";
@@ -74,7 +79,7 @@ bool is_name_of_run(const fs::path& file) {
   const RunLayout layout("");
   for (const fs::path& known : {layout.scene(), layout.steps(), layout.iterations(), layout.timings(),
                                 layout.checkpoint(), previous_checkpoint(layout.checkpoint()), layout.index(),
-                                layout.usd(), layout.report(), layout.frames(), layout.skins()})
+                                layout.usd(), layout.report(), layout.frames(), layout.skins(), layout.obstacles()})
     if (name == known.filename()) return true;
   return name.starts_with("trace") || is_unfinished(file);
 }
@@ -146,6 +151,7 @@ void RunLayout::remove_run(const std::vector<fs::path>& needed) const {
     files.push_back(file);
   }
   for (const fs::path& file : files_in(skins(), is_skin_file)) files.push_back(file);
+  for (const fs::path& file : files_in(obstacles(), is_obstacle_file)) files.push_back(file);
   std::vector<fs::path> folders = trace_folders(root_);
   for (const fs::path& folder : folders) {
     for (const fs::path& file : files_in(folder, is_trace_file)) files.push_back(file);
@@ -159,7 +165,7 @@ void RunLayout::remove_run(const std::vector<fs::path>& needed) const {
     };
     if (std::none_of(needed.begin(), needed.end(), is_same)) remove_file(file);
   }
-  folders.insert(folders.end(), {frames(), skins(), root_ / "inputs"});
+  folders.insert(folders.end(), {frames(), skins(), obstacles(), root_ / "inputs"});
   for (const fs::path& folder : folders) {
     std::error_code not_empty;
     fs::remove(folder, not_empty);
@@ -175,7 +181,7 @@ void RunLayout::remove_frames_from(int first) const {
 }
 
 void RunLayout::remove_unfinished() const {
-  for (const fs::path& folder : {root_, frames(), skins(), root_ / "inputs"}) {
+  for (const fs::path& folder : {root_, frames(), skins(), obstacles(), root_ / "inputs"}) {
     for (const fs::path& file : files_in(folder, is_unfinished)) remove_file(file);
   }
 }

@@ -21,9 +21,12 @@ class RunLayout {
   std::filesystem::path report() const { return root_ / "report.html"; }
   std::filesystem::path frames() const { return root_ / "frames"; }
   std::filesystem::path skins() const { return root_ / "skins"; }
+  std::filesystem::path obstacles() const { return root_ / "obstacles"; }
   std::filesystem::path trace(int first_step) const;  // "trace", or "trace_after_12" of a run resumed there
 
   static std::string frame_file(int frame);  // "frames/body_000123.vtu", relative to the root
+  static std::string obstacle_file() { return "obstacles/obstacles.vtu"; }
+  std::filesystem::path obstacle(const std::string& name) const { return obstacles() / ("obstacle_" + name + ".obj"); }
   std::filesystem::path skin_frame(const std::string& skin, int frame, const std::string& extension) const;
   std::filesystem::path skin_rest(const std::string& skin) const { return skins() / ("skin_" + skin + ".obj"); }
   std::filesystem::path skin_cache(const std::string& skin) const { return skins() / ("skin_" + skin + ".pc2"); }

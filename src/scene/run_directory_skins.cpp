@@ -5,6 +5,7 @@
 
 #include "io/mesh_file.h"
 #include "io/usd.h"
+#include "scene/run_directory_obstacles.h"
 
 namespace aspic {
 namespace {
@@ -21,6 +22,12 @@ TriMesh moved(const TriMesh& rest, const std::vector<double>& x) {
   return mesh;
 }
 
+std::vector<float> flat(const std::vector<Vec3d>& points) {
+  std::vector<float> numbers;
+  for (const Vec3d& x : points) numbers.insert(numbers.end(), x.a, x.a + 3);
+  return numbers;
+}
+
 }  // namespace
 
 RunSkins::RunSkins(const RunLayout& layout, const Scene& scene)
@@ -28,6 +35,8 @@ RunSkins::RunSkins(const RunLayout& layout, const Scene& scene)
       output_(scene.output),
       skins_(scene.skins),
       names_(names_of(scene.skins)),
+      contact_(scene.simulation.model().contact),
+      obstacles_(obstacles_of(scene)),
       frame_rate_(1 / std::max(scene.output.every, scene.simulation.options().h)) {}
 
 RunSkins RunSkins::create(const RunLayout& layout, const Scene& scene) {
@@ -71,9 +80,20 @@ void RunSkins::write_usd(const std::vector<double>& frame_times) {
   if (!output_.usd || skins_.empty()) return;
   std::vector<UsdMesh> meshes;
   for (size_t i = 0; i < skins_.size(); ++i) {
-    meshes.push_back(
-        {skins_[i].body, skins_[i].rest.triangles, [this, i](int frame) { return caches_[i].sample(frame); }});
+    meshes.push_back({.name = skins_[i].body, .triangles = skins_[i].rest.triangles, .points = [this, i](int frame) {
+                        return caches_[i].sample(frame);
+                      }});
   }
+  for (size_t i = 0; i < obstacles_.size(); ++i)
+    meshes.push_back({.name = obstacles_[i].name,
+                      .triangles = obstacles_[i].surface.triangles,
+                      .points =
+                          [&, i](int frame) {
+                            if (!obstacles_[i].is_moving) return flat(obstacles_[i].surface.vertices);
+                            const auto points = contact_->obstacle_points(frame_times[frame]);
+                            return flat(obstacle_surfaces(contact_->mesh(), points)[i].surface.vertices);
+                          },
+                      .is_fixed = !obstacles_[i].is_moving});
   aspic::write_usd(layout_.usd(), meshes, frame_times, frame_rate_);
   frames_in_usd_ = frame_times.size();
 }

@@ -3,6 +3,7 @@
 #include <span>
 #include <vector>
 
+#include "contact/obstacle_surface.h"
 #include "io/pc2.h"
 #include "scene/run_directory_layout.h"
 #include "scene/scene.h"
@@ -29,8 +30,10 @@ class RunSkins {
   OutputOptions output_;
   std::vector<Skin> skins_;
   std::vector<std::string> names_;
-  double frame_rate_;            // [1/s]
-  std::vector<Pc2File> caches_;  // one per skin, when PC2 or USD is wanted: USD is assembled from them
+  const Barrier* contact_;                  // null: there is none
+  std::vector<ObstacleSurface> obstacles_;  // at time 0
+  double frame_rate_;                       // [1/s]
+  std::vector<Pc2File> caches_;             // one per skin, when PC2 or USD is wanted: USD is assembled from them
   size_t frames_in_usd_ = 0;
   std::vector<double> x_;  // scratch
 };

@@ -3,6 +3,11 @@
 #include <gtest/gtest.h>
 
 #include "contact/barrier.h"
+#include "io/atomic_file.h"
+#include "io/folder_test.h"
+#include "io/mesh_file.h"
+#include "io/vtu.h"
+#include "scene/run_directory.h"
 #include "scene/scene.h"
 #include "scene/scene_cases_test.h"
 
@@ -65,6 +70,59 @@ TEST(SceneContact, RejectsBadInput) {
               HasSubstr("starts behind the plane"));
   EXPECT_THAT(refusal(kCube + "\n[contact]\nreach = 100\n"), HasSubstr("contact must begin closer"));
   EXPECT_THAT(refusal(kCube + "\n[contact]\nfriction = -1\n"), HasSubstr("must be >= 0"));
+}
+
+// The files of a run that a cube on the floor takes one step of.
+class ObstacleFiles : public FolderTest {
+ protected:
+  ObstacleFiles() {
+    const std::string floor = "\n[[obstacle]]\nname = \"floor\"\nplane = { origin = [0, -1e-3, 0] }\n";
+    const std::string slab =
+        "[[obstacle]]\nname = \"slab\"\nshape = { box = { lower = [2, 0, 0], upper = [3, 1, 1], cells = [1, 1, 1] } "
+        "}\n";
+    const std::string output = "[output]\nobj = true\nusd = true\n";
+    write_file(path("scene.toml"), kCube + floor + slab + output);
+    Scene scene = load_scene(path("scene.toml"));
+    RunDirectory run = RunDirectory::create(path("run"), scene, ExistingRun::refuse);
+    run.on_step(scene.simulation.step(), scene.simulation);
+    run.finish(scene.simulation);
+  }
+};
+
+TEST_F(ObstacleFiles, FramesHavePressureAndGap) {
+  const Vtu frame = read_vtu(path("run/frames/body_000001.vtu"));
+  const auto& fields = frame.point_fields;
+  ASSERT_EQ(fields.size(), 4U);
+  EXPECT_EQ(fields[2].name, "contact_pressure");
+  EXPECT_EQ(fields[3].name, "contact_gap");
+  int touching = 0;
+  for (size_t v = 0; v < frame.mesh.rest.size(); ++v) {
+    const bool is_base = frame.mesh.rest[v][1] < 0.1;
+    EXPECT_EQ(fields[2].values[v] > 0, is_base);
+    EXPECT_EQ(std::isfinite(fields[3].values[v]), is_base);
+    if (is_base) EXPECT_NEAR(fields[3].values[v], frame.mesh.rest[v][1] + 1e-3, 1e-8);
+    touching += is_base;
+  }
+  EXPECT_EQ(touching, 9);
+}
+
+TEST_F(ObstacleFiles, AreWrittenOnceForAllFrames) {
+  const Vtu all = read_vtu(path("run/obstacles/obstacles.vtu"));
+  EXPECT_EQ(all.triangles.vertex_count(), 4 + 8);
+  EXPECT_EQ(all.triangles.triangle_count(), 2 + 12);
+  EXPECT_EQ(all.cell_fields.at(0).values.back(), 1);
+  EXPECT_THAT(
+      read_file(path("run/run.pvd")),
+      HasSubstr("part=\"0\" file=\"frames/body_000001.vtu\"/>\n<DataSet timestep=\"0.01\" group=\"\" part=\"1\" "
+                "file=\"obstacles/obstacles.vtu\"/>"));
+  EXPECT_EQ(read_tri_mesh(path("run/obstacles/obstacle_slab.obj")).triangle_count(), 12);
+  EXPECT_THAT(read_file(path("run/run.usda")), HasSubstr("def Mesh \"floor\""));
+}
+
+TEST_F(ObstacleFiles, OverwritingRemovesThem) {
+  write_file(path("free.toml"), kCube);
+  RunDirectory::create(path("run"), load_scene(path("free.toml")), ExistingRun::overwrite);
+  EXPECT_FALSE(std::filesystem::exists(path("run/obstacles")));
 }
 
 }  // namespace

@@ -137,7 +137,7 @@ class Painter {
   private draw(panel: Panel, lens: Lens, outlook: Outlook, head: MeshPicture): void {
     // Glare and the color of inner sides would hide colors that represent values.
     const meaning: Partial<DisplaySettings> = panel.values ? { shininess: 0, inside: "same" } : {};
-    const settings: DisplaySettings = { ...kDefaults, wires: head.wires, ground: false, ...meaning };
+    const settings: DisplaySettings = { ...kDefaults, wires: head.wires, ...meaning };
     const { stage } = this;
     stage.renderer.setSize(lens.width, lens.height, false);
     stage.place({ ...panel.box, up: head.up });

@@ -89,6 +89,7 @@ export type ServerMessage =
   | { kind: "role"; steers: boolean }
   | Scene
   | { kind: "end_compare" } // side b is removed
+  | Obstacles
   | { kind: "steps"; side: SideName; from: number; steps: StepRow[] } // rows of steps from+1, ...; all later rows are invalid
   | Capture
   | { kind: "pins"; side: SideName; vertices: number[] } // vertices of the surface
@@ -134,7 +135,7 @@ export interface Scene {
   tets: number;
   bodies: string[];
   body_tets: number[]; // first tet of each body, in the user's numbering
-  lower: Vec3; // bounding box of the initial state
+  lower: Vec3; // bounding box of the initial state, with obstacles that are not much larger
   upper: Vec3;
   up: Vec3; // direction against gravity
   h: number; // time step [s]
@@ -145,6 +146,21 @@ export interface Scene {
   field: string; // field shown; "": none
   settings: Setting[];
   stiffness: number; // stiffness of the mouse's spring [N/m]
+}
+
+// The obstacles of a scene with contact, in their present positions.
+export interface Obstacles {
+  kind: "obstacles";
+  side: SideName;
+  generation: number; // generation of the geometry
+  obstacles: Obstacle[];
+}
+
+export interface Obstacle {
+  name: string;
+  plane: { origin: Vec3; normal: Vec3 } | null; // infinite; the normal points to the bodies
+  points: number[]; // 3 per point [m]; of a plane: a square below the bodies
+  triangles: number[];
 }
 
 export interface Field {
@@ -322,8 +338,9 @@ export interface IterationReply {
   value: number; // E
   alpha: number;
   trials: TrialRow[];
+  max_step: MaybeNumber; // largest alpha that contact allows; null: all of the curve
   curve: { alpha: number[]; value: MaybeNumber[]; model: MaybeNumber[]; textbook: MaybeNumber[]; slide: MaybeNumber[] };
-  slice: { columns: number; rows: number; s: number[]; t: number[]; value: MaybeNumber[]; model: MaybeNumber[] };
+  slice: { columns: number; rows: number; s: number[]; t: number[]; value: MaybeNumber[]; model: MaybeNumber[]; blocked: number[] }; // blocked: samples that contact keeps x from reaching
   path: { s: number; t: number; value: MaybeNumber }[]; // iterates of the step, projected onto the plane; at most 1000
   text: string; // summary of the step's result
 }
@@ -392,7 +409,7 @@ export interface Geometry {
 }
 
 // Header of 48 bytes: u32 kind = 2, u32 side, u32 generation, u32 vertices n, u32 step, i32 iteration (-1: complete
-// step), f64 time, u32 has values, f32 smallest and f32 largest value, 4 reserved.
+// step), f64 time, u32 has values, f32 smallest and f32 largest value, u32 contact points k.
 export interface Picture {
   side: SideName;
   generation: number;
@@ -404,6 +421,7 @@ export interface Picture {
   values: Float32Array | null; // n values of Scene.field
   min: number; // smallest value on the surface; equal to max for a constant field
   max: number;
+  contacts: Float32Array; // 4 k: points closer to another surface than the reach [m], and the pressure there [Pa]
 }
 
 function sideOf(view: DataView): SideName {
@@ -431,6 +449,7 @@ export function decode(bytes: ArrayBuffer): { geometry: Geometry } | { picture: 
   }
   if (kind !== kPicture) throw new Error(`unknown binary message ${kind}`);
   const hasValues = view.getUint32(32, true) === 1;
+  const end = 48 + (hasValues ? 20 : 16) * n;
   return {
     picture: {
       side: sideOf(view),
@@ -443,6 +462,7 @@ export function decode(bytes: ArrayBuffer): { geometry: Geometry } | { picture: 
       positions: new Float32Array(bytes, 48, 3 * n),
       normals: new Int8Array(bytes, 48 + 12 * n, 4 * n),
       values: hasValues ? new Float32Array(bytes, 48 + 16 * n, n) : null,
+      contacts: new Float32Array(bytes, end, 4 * view.getUint32(44, true)),
     },
   };
 }

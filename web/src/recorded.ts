@@ -1,6 +1,6 @@
 // Source of messages from a recorded run inside the page: it plays, pauses and rewinds, but cannot be changed.
 import { unpacked } from "./pack";
-import type { Command, Picture, Query, State, TextReply, Vec3, VertexReply } from "./protocol";
+import type { Command, Obstacle, Picture, Query, State, TextReply, Vec3, VertexReply } from "./protocol";
 import { carried, normalsOf, type RecordedSurface, Recording } from "./recording";
 import type { Incoming, Source } from "./source";
 import { vectorAt } from "./view/lens";
@@ -12,6 +12,7 @@ export interface Pulse {
 }
 const kScreen: Pulse = { now: () => performance.now(), next: (callback) => requestAnimationFrame(callback) };
 
+const kContactPressure = "contact_pressure"; // name of the field
 const kUnchangeable = "a recorded run cannot be changed; aspic view SCENE runs it live";
 const kNotRecorded = "a recorded run does not contain this; aspic view SCENE computes it";
 
@@ -102,10 +103,15 @@ export class RecordedSource implements Source {
     return this.opened().head.frames;
   }
 
-  // Bounding box of all positions of all frames.
+  // Bounding box of the scene and all positions of all frames.
   get box(): { lower: Vec3; upper: Vec3 } {
     const { lower, size } = this.opened().head;
-    return { lower, upper: [lower[0] + size[0], lower[1] + size[1], lower[2] + size[2]] };
+    const { scene } = this.surface;
+    const axes = [0, 1, 2] as const;
+    return {
+      lower: axes.map((c) => Math.min(lower[c], scene.lower[c])) as Vec3,
+      upper: axes.map((c) => Math.max(lower[c] + size[c], scene.upper[c])) as Vec3,
+    };
   }
 
   // Smallest and largest value of a field on the surface during the run.
@@ -148,8 +154,14 @@ export class RecordedSource implements Source {
     const { scene, geometry } = this.surface;
     this.receive({ message: { ...scene, field: this.field } });
     this.receive({ geometry });
+    this.sendObstacles(this.opened().head.obstacles);
     const vertices = [...geometry.vertex.keys()].filter((vertex) => this.isPinned(vertex));
     this.receive({ message: { kind: "pins", side: "a", vertices } });
+  }
+
+  private sendObstacles(obstacles: Obstacle[] | undefined): void {
+    const { generation } = this.surface.scene;
+    if (obstacles?.length) this.receive({ message: { kind: "obstacles", side: "a", generation, obstacles } });
   }
 
   private isPinned(vertex: number): boolean {
@@ -211,6 +223,7 @@ export class RecordedSource implements Source {
     this.waiting = this.drawing;
     if (this.drawing) return;
     this.drawing = true;
+    this.sendObstacles(this.opened().head.frames.obstacles?.[this.frame]);
     this.receive({ picture: this.picture() });
   }
 
@@ -232,7 +245,17 @@ export class RecordedSource implements Source {
       values,
       min: finite.reduce((a, b) => Math.min(a, b), finite[0] ?? 0),
       max: finite.reduce((a, b) => Math.max(a, b), finite[0] ?? 0),
+      contacts: this.contacts(positions),
     };
+  }
+
+  // The vertices with contact pressure, as in Picture.
+  private contacts(positions: Float32Array): Float32Array {
+    const { fields } = this.surface.scene;
+    if (!fields.some(({ name }) => name === kContactPressure)) return new Float32Array(0);
+    const pressure = this.opened().values(kContactPressure, this.frame, this.surface, positions);
+    const touching = [...pressure.keys()].filter((vertex) => pressure[vertex] > 0);
+    return Float32Array.from(touching.flatMap((vertex) => [...vectorAt(positions, vertex), pressure[vertex]]));
   }
 
   private tellState(): void {

@@ -1,15 +1,16 @@
 // Reads a recorded run, as apps/viewer/recording.h writes it. The page's element "recording" contains base64 of gzip of
 // a pack of arrays.
 import { Pack } from "./pack";
-import type { Geometry, Hello, Scene, StepRow, Vec3 } from "./protocol";
+import type { Geometry, Hello, Obstacle, Scene, StepRow, Vec3 } from "./protocol";
 
 export interface RecordingHead {
   format: 1;
   hello: Hello;
   scenes: Scene[]; // one scene per surface; the first is shown initially
+  obstacles?: Obstacle[]; // missing in recordings of earlier versions
   toml: string; // the complete scene
   steps: StepRow[];
-  frames: { step: number[]; time: number[] };
+  frames: { step: number[]; time: number[]; obstacles?: Obstacle[][] }; // obstacles: of each frame, if any move
   lower: Vec3; // bounding box of all positions of all frames
   size: Vec3;
 }

@@ -1,6 +1,6 @@
 // State of the page: the last message of each kind. Panels read it and subscribe to changes.
 import { Emitter } from "./emitter";
-import type { Capture, Geometry, Hello, Picture, Scene, SideName, State, StepRow } from "./protocol";
+import type { Capture, Geometry, Hello, Obstacle, Picture, Scene, SideName, State, StepRow } from "./protocol";
 import type { Incoming, Source } from "./source";
 
 const kMostRows = 20_000; // same limit as in the program
@@ -12,6 +12,7 @@ export interface Side {
   picture: Picture | null;
   steps: StepRow[]; // consecutive steps, from 1 unless the first were dropped
   pins: number[];
+  obstacles: Obstacle[];
 }
 
 interface Events {
@@ -20,6 +21,7 @@ interface Events {
   scene: SideName; // a side has been added, or its settings have changed
   gone: SideName;
   geometry: SideName;
+  obstacles: SideName;
   picture: SideName;
   steps: { side: SideName; from: number };
   pins: SideName;
@@ -94,6 +96,12 @@ export class Store extends Emitter<Events> {
         side.pins = message.vertices;
         return this.emit("pins", message.side);
       }
+      case "obstacles": {
+        const side = this.sides[message.side];
+        if (!side || side.scene.generation !== message.generation) return;
+        side.obstacles = message.obstacles;
+        return this.emit("obstacles", message.side);
+      }
       case "capture":
         this.capture = message;
         return this.emit("capture", message);
@@ -119,7 +127,7 @@ export class Store extends Emitter<Events> {
   private receiveScene(scene: Scene): void {
     const known = this.sides[scene.side];
     if (known && known.scene.generation === scene.generation) known.scene = scene;
-    else this.sides[scene.side] = { scene, geometry: null, picture: null, steps: known?.steps ?? [], pins: [] };
+    else this.sides[scene.side] = { scene, geometry: null, picture: null, steps: known?.steps ?? [], pins: [], obstacles: [] };
     this.emit("scene", scene.side);
   }
 

@@ -2,7 +2,7 @@
 import assert from "node:assert/strict";
 import { test } from "node:test";
 import { gzipSync } from "node:zlib";
-import type { Picture, Scene, ServerMessage, State, StepRow, TextReply, VertexReply } from "../src/protocol";
+import type { Obstacle, Picture, Scene, ServerMessage, State, StepRow, TextReply, VertexReply } from "../src/protocol";
 import { RecordedSource } from "../src/recorded";
 import { stepsToShow } from "../src/render";
 import type { Incoming } from "../src/source";
@@ -41,7 +41,11 @@ const kScene = {
   ],
 } as unknown as Scene;
 
-function recordingText(): string {
+const kFloor: Obstacle = { name: "floor", plane: { origin: [0, 0, 0], normal: [0, 1, 0] }, points: [], triangles: [] };
+
+function recordingText(hasContact = false): string {
+  const pressure = { ...kField, name: "contact_pressure", label: "contact pressure", unit: "Pa" };
+  const scene = hasContact ? { ...kScene, fields: [...kScene.fields, pressure] } : kScene;
   const arrays: [string, "u8" | "u32" | "f32", Uint8Array | Uint32Array | Float32Array][] = [
     ["point.rest", "f32", new Float32Array(9)],
     ["point.mass", "f32", Float32Array.of(1, 2, 3)],
@@ -56,6 +60,8 @@ function recordingText(): string {
     ["field.stress", "u8", Uint8Array.of(0, 254, 0, 0, 255 - 0, 1, 0, 0, 0, 0)],
     ["field.stress.range", "f32", Float32Array.of(0, 10, 0, 10, 0, 20, 0, 20, 0, 20)],
     ["field.young", "f32", Float32Array.of(5, 6)],
+    ["field.contact_pressure", "u8", Uint8Array.of(0, 0, 0, 254, 0, 0, 0, 0, 0, 0)],
+    ["field.contact_pressure.range", "f32", Float32Array.of(0, 0, 0, 50, 0, 50, 0, 50, 0, 50)],
   ];
   let at = 0;
   const blocks: Uint8Array[] = [];
@@ -72,7 +78,8 @@ function recordingText(): string {
   const head = {
     format: 1,
     hello: { kind: "hello", live: false },
-    scenes: [kScene],
+    scenes: [scene],
+    obstacles: hasContact ? [kFloor] : [],
     toml: "name = 1\n",
     steps: all,
     frames: { step: [0, 10, 20, 30, 40], time: [0, 0.1, 0.2, 0.3, 0.4] },
@@ -132,8 +139,8 @@ class Reader {
   }
 }
 
-async function opened(): Promise<Reader> {
-  const reader = new Reader(recordingText());
+async function opened(hasContact = false): Promise<Reader> {
+  const reader = new Reader(recordingText(hasContact));
   await reader.start();
   reader.source.ready();
   return reader;
@@ -237,4 +244,16 @@ test("video pictures use the latest earlier frame", () => {
   assert.deepEqual(stepsToShow(frames, { step: null, every: 0.05 }), [0, 0, 10, 10, 20, 20, 30, 30, 40]);
   assert.deepEqual(stepsToShow(frames, { step: null, every: 0.2 }), [0, 20, 40]);
   assert.deepEqual(stepsToShow(frames, { step: 17, every: 0 }), [17]);
+});
+
+test("a recording with contact has obstacles, and points where it presses", async () => {
+  const reader = await opened(true);
+  const sent = reader.messages.find((message) => message.kind === "obstacles");
+  assert.ok(sent?.kind === "obstacles");
+  assert.deepEqual(sent.obstacles, [kFloor]);
+  assert.equal(reader.picture.contacts.length, 0, "nothing touches at the start");
+  await reader.source.request({ do: "step" });
+  reader.source.ready();
+  const { contacts, positions } = reader.picture;
+  assert.deepEqual([...contacts], [...positions.slice(3, 6), 50, ...positions.slice(6, 9), 50]);
 });

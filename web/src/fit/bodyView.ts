@@ -188,7 +188,7 @@ export class BodyView {
   private applyDisplay(): void {
     const style = this.style();
     this.body?.apply({ ...kDefaults, wires: this.wires, bodyColor: "#b9c3d0", inside: "same" });
-    this.stage?.apply({ ...kDefaults, ground: false }, style);
+    this.stage?.apply(kDefaults, style);
     this.redraw();
   }
 
@@ -209,6 +209,7 @@ export class BodyView {
       axes: true,
       gridStep: 0,
       bar,
+      contact: null,
       bodies: [],
       labels: [],
       highlights: this.notes.map(({ at, words }) => ({ positions: [at], text: words })),

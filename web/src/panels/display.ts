@@ -106,7 +106,8 @@ function addDisplay(folder: Folder, display: Display, views: () => View[]): void
   addField(folder, display, views);
   folder.add("wires", "Wires");
   folder.add("fill", "Fill");
-  folder.add("ground", "Ground");
+  folder.add("obstacles", "Obstacles");
+  folder.add("contacts", "Contact points");
   folder.add("shadows", "Shadows");
   folder.add("clip", "Cut", { no: "off", "across x": "x", "across y": "y", "across z": "z" });
   folder.slider("clipAt", "Cut at", 0, 1, 0.001);

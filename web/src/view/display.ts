@@ -23,7 +23,8 @@ export const kDefaults = {
   shininess: 40,
   ownBackground: false, // otherwise the background of the theme
   background: "#ffffff",
-  ground: true,
+  obstacles: true,
+  contacts: true,
   shadows: true,
   axes: true,
   pins: true,

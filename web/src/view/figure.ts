@@ -1,18 +1,20 @@
 // The body of one side on the stage, according to its scene, its newest picture and the display.
-import type { Field, SideName } from "../protocol";
+import type { Field, SideName, StepRow } from "../protocol";
 import type { Side, Store } from "../store";
 import { bodyColors } from "./bodies";
 import { Body } from "./body";
+import { largestPressure } from "./contacts";
 import type { Display } from "./display";
 import type { Style } from "./overlay";
 import type { Surface } from "./picking";
-import type { ColorRange } from "./ranges";
+import { RunningRange, type ColorRange } from "./ranges";
 import type { Stage } from "./stage";
 
 export class Figure {
   body: Body | null = null; // null without a stage
   private valuesOf = ""; // field of the body's values
   private lost = false;
+  private readonly pressures = new RunningRange(); // of the contact points [Pa]
 
   constructor(
     private readonly store: Store,
@@ -43,8 +45,14 @@ export class Figure {
     this.body = new Body(side.geometry, side.scene.body_tets);
     stage.show(this.body);
     this.body.setPins(side.pins);
+    this.pressures.reset();
+    this.takeObstacles();
     this.takePicture();
     return true;
+  }
+
+  takeObstacles(): void {
+    this.stage?.showObstacles(this.side?.obstacles ?? []);
   }
 
   takePicture(): void {
@@ -55,6 +63,9 @@ export class Figure {
     const field = this.field();
     if (field && !this.isLost()) this.display.feed(this.name, field, side.picture.min, side.picture.max);
     this.color();
+    const { contacts } = side.picture;
+    this.pressures.feed(this.name, 0, largestPressure(contacts));
+    this.stage?.showContacts(contacts, this.largestPressure());
     this.stage?.moved();
   }
 
@@ -97,10 +108,23 @@ export class Figure {
     return field && range ? { field, range } : null;
   }
 
+  // The contact points of the picture, and the step that it ends; null without any.
+  contact(): { largest: number; row: StepRow | null } | null {
+    const picture = this.side?.picture;
+    if (!this.body || !picture || !this.display.settings.contacts || picture.contacts.length === 0) return null;
+    const steps = this.side?.steps ?? [];
+    const row = picture.iteration < 0 ? steps[picture.step - (steps[0]?.step ?? 0)] : null;
+    return { largest: this.largestPressure(), row: row ?? null };
+  }
+
   surface(): Surface | null {
     if (!this.body?.root.visible || !this.side) return null;
     const { current, geometry } = this.body;
     return { positions: current, triangles: geometry.triangles, clip: this.display.clip(this.side.scene) };
+  }
+
+  private largestPressure(): number {
+    return this.pressures.get()?.high ?? 0;
   }
 
   private drop(): void {

@@ -1,8 +1,9 @@
 // Text and thin shapes over a view, drawn with a 2-D canvas and readable over any background.
 import { short, ticks as tickTexts } from "../plots/numbers";
 import type { Highlight } from "../page";
-import type { Field, Vec3 } from "../protocol";
+import type { Field, StepRow, Vec3 } from "../protocol";
 import { colorAt, type MapName } from "./colorMaps";
+import { contactText, kContactMap } from "./contacts";
 import { apart, type Box } from "./labels";
 import { dot as dotProduct, isBehind, minus, project, type Lens } from "./lens";
 import { fraction, logTicks, ticks, type ColorRange } from "./ranges";
@@ -214,6 +215,24 @@ function colors(ink: Ink, { left, top, width, height }: Place, map: MapName, var
   context.lineWidth = 1;
   context.strokeStyle = ink.text;
   context.strokeRect(left - 0.5, top - 0.5, width + 1, height + 1.5);
+}
+
+// Draws the colors of the contact points with a summary in the upper right corner.
+export function contactLegend(ink: Ink, lens: Lens, largest: number, row: StepRow | null): void {
+  const { context, em } = ink;
+  const right = lens.width - 1.2 * em;
+  if (row) text(ink, contactText(row), right, 3.1 * em, "right");
+  const width = 8 * em;
+  const most = valueText(largest, "Pa", 3);
+  const left = right - context.measureText(most).width - 0.5 * em - width;
+  const top = 1.1 * em;
+  for (let x = 0; x < width; ++x) {
+    const [r, g, b] = colorAt(kContactMap, x / width);
+    context.fillStyle = `rgb(${r}, ${g}, ${b})`;
+    context.fillRect(left + x, top, 1.5, em);
+  }
+  text(ink, most, right, top + em / 2, "right");
+  text(ink, "contact pressure 0", left - 0.5 * em, top + em / 2, "right");
 }
 
 export function gridNote(ink: Ink, lens: Lens, step: number): void {

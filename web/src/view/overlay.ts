@@ -1,6 +1,6 @@
 // The 2-D canvas over a view: axes, color bar, numbers, highlights, the mouse's spring and the brush.
 import type { Highlight } from "../page";
-import type { Field, Vec3 } from "../protocol";
+import type { Field, StepRow, Vec3 } from "../protocol";
 import type { MapName } from "./colorMaps";
 import type { DisplaySettings } from "./display";
 import type { Label } from "./labels";
@@ -12,6 +12,7 @@ export interface Marks {
   axes: boolean;
   gridStep: number; // [m]; 0: no grid
   bar: { field: Field; range: ColorRange; map: MapName } | null;
+  contact: { largest: number; row: StepRow | null } | null; // pressure of the last color [Pa], and the step shown
   bodies: { name: string; color: string }[]; // entries of the legend; empty: no legend
   labels: Label[];
   highlights: Highlight[];
@@ -79,6 +80,7 @@ export class Overlay {
     if (what.axes) marks.axes(ink, lens);
     if (what.gridStep > 0) marks.gridNote(ink, lens, what.gridStep);
     marks.bodyLegend(ink, lens, what.bodies);
+    if (what.contact) marks.contactLegend(ink, lens, what.contact.largest, what.contact.row);
     for (const dot of what.dots) marks.surfaceDot(ink, lens, dot.at, dot.normal, dot.ring);
     if (what.spring) marks.spring(ink, lens, what.spring.point, what.spring.target, what.spring.force);
     if (what.brush) marks.ring(ink, what.brush.at, what.brush.radius, what.brush.words);

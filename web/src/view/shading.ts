@@ -71,7 +71,9 @@ export function makePinMaterial(lift: { value: number }): THREE.PointsMaterial {
     shader.vertexShader = shader.vertexShader
       .replace("#include <common>", "#include <common>\nuniform float lift;")
       .replace("#include <project_vertex>", kPinPosition);
-    shader.fragmentShader = shader.fragmentShader.replace("#include <map_particle_fragment>", kPinColor);
+    shader.fragmentShader = shader.fragmentShader
+      .replace("#include <color_fragment>", "")
+      .replace("#include <map_particle_fragment>", `#include <color_fragment>\n${kPinColor}`);
   };
   return material;
 }
@@ -122,7 +124,7 @@ const kGroundColor = /* glsl */ `
   vec2 cell = (vPlane - gridOrigin) / gridStep;
   vec2 blur = max(fwidth(cell), 1e-6);
   vec2 line = clamp(1.0 - abs(fract(cell - 0.5) - 0.5) / blur, 0.0, 1.0) * (1.0 - smoothstep(0.15, 0.5, blur));
-  float grid = 0.4 * max(line.x, line.y);
+  float grid = 0.1 + 0.4 * max(line.x, line.y);
   float shade = opacity * (1.0 - getShadowMask());
   float fade = 1.0 - smoothstep(0.35, 1.0, length(vPlane) / ${kGroundRadius.toFixed(1)});
   float cover = 1.0 - (1.0 - shade) * (1.0 - grid);

@@ -1,19 +1,20 @@
-// The three.js scene around a body: lights, ground, camera and renderer. The unit of length is the radius of the
+// The three.js scene around a body: lights, obstacles, camera and renderer. The unit of length is the radius of the
 // scene's box, so that bodies of micrometers and of kilometers suit the GPU's single precision.
 import * as THREE from "three";
-import type { ProbeState, Scene, Vec3 } from "../protocol";
+import type { Obstacle, ProbeState, Scene, Vec3 } from "../protocol";
 import type { Body, Box } from "./body";
 import { sceneAxes } from "./cameras";
+import { ContactDots } from "./contacts";
 import type { DisplaySettings } from "./display";
 import { dot, isInside, length, minus, type Lens } from "./lens";
+import { ObstacleBodies } from "./obstacles";
 import type { Clip } from "./picking";
 import { roundStep } from "./ranges";
-import { kGroundRadius, makeGroundMaterial } from "./shading";
+import { kGroundRadius } from "./shading";
 import { TipBody } from "./tipBody";
 
 const kFarthest = 1e4; // limit for a body that bursts; beyond it depths lose their digits
 const kFar = 30; // far plane in radii of the scene, and in heights of the view
-const kGap = 0.12; // gap between the box and the ground below it
 
 export class Stage {
   readonly renderer: THREE.WebGLRenderer; // the constructor throws without WebGL
@@ -25,19 +26,14 @@ export class Stage {
   private center: Vec3 = [0, 0, 0];
   private up: Vec3 = [0, 0, 1];
   private body: Body | null = null;
-  private floor = 0; // height of the ground along `up` [m]
   private readonly scene = new THREE.Scene();
   private readonly perspective = new THREE.PerspectiveCamera();
   private readonly orthographic = new THREE.OrthographicCamera();
   private readonly sky = new THREE.HemisphereLight("#ffffff", "#c4bfb8", 1.9);
   private readonly sun = new THREE.DirectionalLight("#fffaf0", 1.9);
   private readonly lamp = new THREE.DirectionalLight("#ffffff", 0.55); // light at the camera
-  private readonly ground: THREE.Mesh<THREE.CircleGeometry, THREE.ShadowMaterial>;
-  private readonly grid = {
-    gridStep: { value: 1 },
-    gridOrigin: { value: new THREE.Vector2() },
-    gridColor: { value: new THREE.Color() },
-  };
+  private readonly obstacles = new ObstacleBodies();
+  private readonly contacts = new ContactDots();
   private readonly tip = new TipBody();
   private readonly lit = new THREE.Sphere(new THREE.Vector3(), 0); // region that the shadow map covers
 
@@ -46,30 +42,22 @@ export class Stage {
     this.renderer.localClippingEnabled = true;
     this.renderer.shadowMap.enabled = true;
     this.renderer.shadowMap.autoUpdate = false;
-    this.ground = new THREE.Mesh(new THREE.CircleGeometry(kGroundRadius, 96), makeGroundMaterial(this.grid));
-    this.ground.receiveShadow = true;
-    this.ground.renderOrder = -1;
     this.sun.castShadow = true;
     this.sun.shadow.mapSize.set(1024, 1024);
     this.sun.shadow.radius = 6;
     this.sun.shadow.bias = -0.0008;
     this.extras.matrixAutoUpdate = false;
-    this.scene.add(this.extras, this.sky, this.sun, this.sun.target, this.lamp, this.lamp.target, this.ground, this.tip.root);
+    this.extras.add(this.contacts.root);
+    this.scene.add(this.extras, this.sky, this.sun, this.sun.target, this.lamp, this.lamp.target, this.obstacles.root, this.tip.root);
   }
 
-  // Places ground and lights around the bounding box of a scene.
+  // Places lights around the bounding box of a scene.
   place(scene: Pick<Scene, "lower" | "upper" | "up">): void {
     this.center = [0, 1, 2].map((c) => (scene.lower[c] + scene.upper[c]) / 2) as Vec3;
     this.radius = Math.max(length(minus(scene.upper, scene.lower)) / 2, 1e-12);
     const { right, front, up } = sceneAxes(scene.up);
     this.up = up.toArray();
-    this.floor = lowest({ lower: scene.lower, upper: scene.upper }, this.up) - kGap * this.radius;
     this.gridStep = roundStep(this.radius / 4);
-    this.grid.gridStep.value = this.gridStep / this.radius;
-    // Grid lines pass through the origin of the scene.
-    const away = (axis: THREE.Vector3): number => -dot(axis.toArray(), this.center) / this.radius;
-    this.grid.gridOrigin.value.set(away(right), away(front.clone().negate()));
-    this.ground.quaternion.setFromRotationMatrix(new THREE.Matrix4().makeBasis(right, front.clone().negate(), up));
     this.sky.position.copy(up);
     this.lit.radius = 0;
     this.sun.userData.from = up.clone().multiplyScalar(1.6).add(front).addScaledVector(right, -0.7).normalize();
@@ -78,11 +66,24 @@ export class Stage {
   show(body: Body): void {
     this.remove();
     this.body = body;
-    const scale = 1 / this.radius;
-    const [x, y, z] = this.center;
-    body.root.matrix.makeScale(scale, scale, scale).multiply(new THREE.Matrix4().makeTranslation(-x, -y, -z));
+    body.root.matrix.copy(this.toStage());
     this.extras.matrix.copy(body.root.matrix);
     this.scene.add(body.root);
+  }
+
+  showObstacles(obstacles: readonly Obstacle[]): void {
+    this.obstacles.show(obstacles, this.up, this.toStage());
+    this.obstacles.follow(this.center, this);
+    this.renderer.shadowMap.needsUpdate = true;
+  }
+
+  get hasGround(): boolean {
+    return this.obstacles.hasGround;
+  }
+
+  // `contacts`: as in Picture. `largest`: pressure of the last color [Pa].
+  showContacts(contacts: Float32Array, largest: number): void {
+    this.contacts.show(contacts, largest);
   }
 
   showTip(tip: ProbeState | null, color: string): void {
@@ -96,20 +97,20 @@ export class Stage {
     this.body = null;
   }
 
-  // Updates the shadow of a moved body, and keeps the ground below it.
+  // Updates the shadow of a moved body, and keeps the shown parts of planes below it.
   moved(): void {
     const box = this.body?.box;
     if (!box) return;
-    const low = lowest(box, this.up) - 0.02 * this.radius;
-    this.floor = Math.max(Math.min(this.floor, low), this.floor - 20 * this.radius);
+    this.obstacles.follow(middleOf(box), this);
     this.lightUp(box);
     this.renderer.shadowMap.needsUpdate = true;
   }
 
   apply(settings: DisplaySettings, colors: { background: string; grid: string }): void {
     this.scene.background = new THREE.Color(colors.background);
-    this.ground.visible = settings.ground;
-    this.grid.gridColor.value.set(colors.grid);
+    this.obstacles.root.visible = settings.obstacles;
+    this.obstacles.color(colors.grid);
+    this.contacts.root.visible = settings.contacts;
     this.sun.castShadow = settings.shadows;
     this.renderer.shadowMap.needsUpdate = true;
   }
@@ -120,7 +121,7 @@ export class Stage {
       const inside = (dot(clip.normal, this.center) - clip.offset) / this.radius; // depth of the scene's middle [radii]
       planes.push(new THREE.Plane(new THREE.Vector3(...clip.normal), inside));
     }
-    this.body?.clip(planes);
+    for (const shown of [this.body, this.obstacles, this.contacts]) shown?.clip(planes);
     this.renderer.shadowMap.needsUpdate = true;
   }
 
@@ -130,8 +131,7 @@ export class Stage {
     camera.quaternion.copy(orientation);
     this.lamp.position.copy(camera.position);
     this.lamp.target.position.copy(camera.position).add(new THREE.Vector3(...lens.forward));
-    const drop = (this.floor - dot(this.up, this.center)) / this.radius;
-    this.ground.position.set(...this.up).multiplyScalar(drop);
+    this.contacts.adapt(this.renderer.getPixelRatio());
     if (this.body) this.adapt(this.body, lens, pinColor);
     this.renderer.render(this.scene, camera);
   }
@@ -139,15 +139,21 @@ export class Stage {
   dispose(): void {
     this.remove();
     this.tip.dispose();
-    this.ground.geometry.dispose();
-    this.ground.material.dispose();
+    this.obstacles.dispose();
+    this.contacts.dispose();
     this.sun.dispose();
     this.renderer.dispose();
     this.renderer.forceContextLoss(); // browsers allow about sixteen contexts
   }
 
-  private toUnits(point: Vec3): THREE.Vector3 {
+  toUnits(point: Vec3): THREE.Vector3 {
     return new THREE.Vector3(...minus(point, this.center)).divideScalar(this.radius);
+  }
+
+  private toStage(): THREE.Matrix4 {
+    const scale = 1 / this.radius;
+    const [x, y, z] = this.center;
+    return new THREE.Matrix4().makeScale(scale, scale, scale).multiply(new THREE.Matrix4().makeTranslation(-x, -y, -z));
   }
 
   private camera(lens: Lens): THREE.PerspectiveCamera | THREE.OrthographicCamera {
@@ -177,7 +183,7 @@ export class Stage {
   }
 
   private adapt(body: Body, lens: Lens, pinColor: string): void {
-    const middle = body.box ? ([0, 1, 2].map((c) => (body.box!.lower[c] + body.box!.upper[c]) / 2) as Vec3) : this.center;
+    const middle = body.box ? middleOf(body.box) : this.center;
     const depth = Math.max(dot(minus(middle, lens.eye), lens.forward), 1e-3 * this.radius);
     const half = lens.extent > 0 ? lens.extent : lens.slope * depth;
     const pixels = lens.height / 2 / half; // pixels per meter
@@ -209,7 +215,6 @@ export class Stage {
   }
 }
 
-// Smallest height of a box along `up`.
-function lowest(box: Box, up: Vec3): number {
-  return [0, 1, 2].reduce((sum, c) => sum + up[c] * (up[c] > 0 ? box.lower[c] : box.upper[c]), 0);
+function middleOf(box: Box): Vec3 {
+  return [0, 1, 2].map((c) => (box.lower[c] + box.upper[c]) / 2) as Vec3;
 }

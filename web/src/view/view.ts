@@ -173,6 +173,7 @@ export class View implements Touched {
     const { store, display, page, stop } = this;
     stop.push(store.on("scene", mine(() => this.takeScene())));
     stop.push(store.on("geometry", mine(() => this.takeGeometry())));
+    stop.push(store.on("obstacles", mine(() => this.takeObstacles())));
     stop.push(store.on("picture", mine(() => this.takePicture())));
     stop.push(store.on("pins", mine(() => this.showPins(this.figure.side?.pins ?? []))));
     stop.push(store.on("state", () => this.takeState()));
@@ -210,6 +211,11 @@ export class View implements Touched {
   private takeGeometry(): void {
     if (!this.figure.takeGeometry()) return;
     this.card.close();
+    this.applyDisplay();
+  }
+
+  private takeObstacles(): void {
+    this.figure.takeObstacles();
     this.applyDisplay();
   }
 
@@ -278,8 +284,9 @@ export class View implements Touched {
     const brushes = settings.tool === "pin" && cursor;
     return {
       axes: settings.axes,
-      gridStep: settings.ground && this.figure.body && this.stage ? this.stage.gridStep : 0,
+      gridStep: this.figure.body && this.stage?.hasGround ? this.stage.gridStep : 0,
       bar: shown && { ...shown, map: this.display.map(shown.field) },
+      contact: this.figure.contact(),
       bodies: shown ? [] : this.figure.bodies(),
       labels: this.labels(lens),
       highlights: [...this.highlights, ...this.card.marks],

@@ -1,0 +1,89 @@
+// Obstacles and contact points in the messages of a session and in recordings.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "viewer/recording_test.h"
+#include "viewer/session_test.h"
+
+namespace aspic::viewer {
+namespace {
+
+const std::string kRestingCube = R"(
+gravity = [0, -9.81, 0]
+[time]
+step = 0.01
+duration = 0.1
+[contact]
+[[body]]
+name = "cube"
+shape = { box = { upper = [0.1, 0.1, 0.1], cells = [2, 2, 2] } }
+translate = [0, 0.0005, 0]
+material = { model = "neo_hookean", young = 1e5, poisson = 0.3, density = 1000 }
+[[obstacle]]
+name = "floor"
+plane = {}
+[[obstacle]]
+name = "step"
+shape = { box = { lower = [0.15, 0, 0], upper = [0.25, 0.05, 0.1], cells = [1, 1, 1] } }
+)";
+
+TEST(ContactView, SendsObstaclesWithGeometry) {
+  Page page(kRestingCube);
+  const Json message = page.obstacles();
+  EXPECT_EQ(message["generation"], page.scene()["generation"]);
+  const Json& list = message["obstacles"];
+  ASSERT_EQ(list.size(), 2U);
+  EXPECT_EQ(list[0]["name"], "floor");
+  EXPECT_EQ(vec(list[0]["plane"]["normal"]), (std::vector<double>{0, 1, 0}));
+  EXPECT_EQ(list[0]["triangles"].size(), 6U);
+  for (size_t k = 1; k < 12; k += 3) EXPECT_NEAR(number(list[0]["points"][k]), 0, 1e-15);
+  EXPECT_TRUE(list[1]["plane"].is_null());
+  EXPECT_EQ(list[1]["points"].size(), 24U);
+  EXPECT_EQ(list[1]["triangles"].size(), 36U);
+}
+
+TEST(ContactView, SceneBoxCoversObstacles) {
+  Page page(kRestingCube);
+  EXPECT_DOUBLE_EQ(vec(page.scene()["upper"])[0], 0.25);
+  EXPECT_DOUBLE_EQ(vec(page.scene()["lower"])[1], 0);
+}
+
+TEST(ContactView, PicturesHaveContactPoints) {
+  Page page(kRestingCube);
+  page.steps(20);
+  page.send({{"do", "color"}, {"field", "contact_pressure"}});
+  const Picture picture = page.picture();
+  ASSERT_EQ(picture.contacts.size(), 4U * 9U);
+  double largest = 0;
+  for (size_t i = 0; i < picture.contacts.size(); i += 4) {
+    EXPECT_GT(picture.contacts[i + 1], 0);
+    EXPECT_LT(picture.contacts[i + 1], 2e-3);
+    largest = std::max<double>(largest, picture.contacts[i + 3]);
+  }
+  EXPECT_NEAR(largest, number(page.rows().back()["max_pressure"]), 1e-5 * largest);
+  EXPECT_GT(largest, 100);
+  EXPECT_FLOAT_EQ(picture.max, *std::max_element(picture.values.begin(), picture.values.end()));
+  const auto touching = std::count_if(picture.values.begin(), picture.values.end(), [](float p) { return p > 0; });
+  EXPECT_EQ(touching, 9);
+}
+
+TEST(ContactView, ScenesWithoutContactHaveNoContactPoints) {
+  Page page;
+  page.steps(1);
+  EXPECT_TRUE(page.picture().contacts.empty());
+  EXPECT_TRUE(page.obstacles().is_null());
+}
+
+TEST_F(RunRecording, HasObstaclesAndContactPressure) {
+  const Decoded recorded(
+      recording(run("run", "[[obstacle]]\nname = \"floor\"\nplane = { origin = [0, -0.001, 0] }\n")).text);
+  ASSERT_EQ(recorded.head["obstacles"].size(), 1U);
+  EXPECT_EQ(recorded.head["obstacles"][0]["name"], "floor");
+  const std::vector<float> ranges = recorded.array<float>("field.contact_pressure.range");
+  EXPECT_GT(*std::max_element(ranges.begin(), ranges.end()), 500);
+  EXPECT_TRUE(Decoded(recording(run("free")).text).head["obstacles"].empty());
+}
+
+}  // namespace
+}  // namespace aspic::viewer

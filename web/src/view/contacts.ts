@@ -1,0 +1,70 @@
+// Contact points in 3-D, colored by pressure. They shine through bodies, which hide their undersides.
+import * as THREE from "three";
+import { short } from "../plots/numbers";
+import type { StepRow } from "../protocol";
+import { colorAt } from "./colorMaps";
+import { makePinMaterial } from "./shading";
+import { valueText } from "./values";
+
+export const kContactMap = "viridis";
+const kSize = 10; // [px]
+
+// Colors of the points, linear RGB. `largest`: pressure of the last color [Pa].
+export function contactColors(contacts: Float32Array, largest: number): Float32Array {
+  const colors = new Float32Array((3 * contacts.length) / 4);
+  const color = new THREE.Color();
+  for (let i = 0; 4 * i < contacts.length; ++i) {
+    const [r, g, b] = colorAt(kContactMap, largest > 0 ? contacts[4 * i + 3] / largest : 0);
+    color.setRGB(r / 255, g / 255, b / 255, THREE.SRGBColorSpace).toArray(colors, 3 * i);
+  }
+  return colors;
+}
+
+export function largestPressure(contacts: Float32Array): number {
+  let largest = 0;
+  for (let i = 3; i < contacts.length; i += 4) largest = Math.max(largest, contacts[i]);
+  return largest;
+}
+
+// Summary of the contact at the end of a step.
+export function contactText(row: Pick<StepRow, "contacts" | "min_gap" | "max_pressure">): string {
+  if (row.contacts === 0) return "no contacts";
+  const count = row.contacts === 1 ? "1 contact" : `${short(row.contacts)} contacts`;
+  return `${count}, smallest gap ${valueText(row.min_gap, "m", 3)}, largest pressure ${valueText(row.max_pressure, "Pa", 3)}`;
+}
+
+export class ContactDots {
+  readonly root: THREE.Points;
+  private readonly lift = { value: 0 };
+  private readonly shape = new THREE.BufferGeometry();
+  private readonly material = makePinMaterial(this.lift);
+
+  constructor() {
+    this.material.vertexColors = true;
+    this.material.depthTest = false;
+    this.root = new THREE.Points(this.shape, this.material);
+    this.root.frustumCulled = false;
+    this.root.renderOrder = 3;
+    this.show(new Float32Array(0), 0);
+  }
+
+  show(contacts: Float32Array, largest: number): void {
+    const places = new THREE.InterleavedBuffer(contacts, 4);
+    this.shape.setAttribute("position", new THREE.InterleavedBufferAttribute(places, 3, 0));
+    this.shape.setAttribute("color", new THREE.BufferAttribute(contactColors(contacts, largest), 3));
+    this.shape.setDrawRange(0, contacts.length / 4);
+  }
+
+  adapt(ratio: number): void {
+    this.material.size = kSize * ratio;
+  }
+
+  clip(planes: THREE.Plane[]): void {
+    this.material.clippingPlanes = planes;
+  }
+
+  dispose(): void {
+    this.shape.dispose();
+    this.material.dispose();
+  }
+}
