@@ -92,7 +92,7 @@ Hertz pressed_sphere(int n, const std::string& material, double stiffness, Findi
   for (size_t i = 0; i < pressure.size(); ++i) {
     const Vec3d X = contact.mesh().rest[i];
     const double r2 = X[0] * X[0] + X[2] * X[2], p2 = pressure[i] * pressure[i];
-    if (r2 > 0.8 * 0.8 * kPatch * kPatch) continue;
+    if (contact.mesh().row[i] < 0 || r2 > 0.8 * 0.8 * kPatch * kPatch) continue;
     count += 1, x += r2, y += p2, xx += r2 * r2, xy += r2 * p2;
   }
   const double slope = (count * xy - x * y) / (count * xx - x * x), top = (y - slope * x) / count;

@@ -220,7 +220,7 @@ TEST(ObstacleSurface, PlaneIsASquareBelowTheBodies) {
   ContactMesh mesh;
   const std::vector<Vec3d> X = {{{0, 1, 0}}, {{1, 1, 0}}, {{0, 1, 1}}};
   mesh.add({.name = "body"}, X, std::vector<Triangle>{{0, 1, 2}}, std::vector<int>{0, 1, 2});
-  mesh.add_plane("slope", 0, {{0, 0, 0}}, {{1, 2, 0}});
+  mesh.add_plane({.name = "slope"}, {{0, 0, 0}}, {{1, 2, 0}});
   mesh.add({.name = "sheet", .is_obstacle = true}, X, std::vector<Triangle>{{0, 2, 1}}, {});
   const std::vector<ObstacleSurface> surfaces = obstacle_surfaces(mesh, mesh.rest);
   ASSERT_EQ(surfaces.size(), 2U);
