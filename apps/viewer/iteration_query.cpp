@@ -57,7 +57,7 @@ class Look {
   int count_ = 0;
   std::vector<Iterate> before_;  // iterates of this minimization, until the plane is known
   bool is_of_path_ = true;       // false: a later minimization has started
-  double value_ = 0, alpha_ = 0;
+  double value_ = 0, alpha_ = 0, max_step_ = 0;
   std::vector<Trial> tried_;
   std::vector<CurvePoint> curve_;
   Slice slice_;
@@ -92,6 +92,7 @@ void Look::take(const LiveIteration& live) {
   x_.assign(live.x.begin(), live.x.end());
   d_.assign(live.d.begin(), live.d.end());
   curve_ = curve_along(live, sufficient_decrease_, curve_samples(tets_), stop_);
+  max_step_ = curve_.empty() ? 0 : largest_step(live, curve_.back().alpha);
   slice_ = slice_through(live, slice_samples(tets_), stop_);
 }
 
@@ -118,12 +119,16 @@ Json slice_json(const Slice& slice) {
   Json s = Json::array(), t = Json::array();
   for (int i = 0; i < slice.columns; ++i) s.push_back(slice.point[i].s);
   for (int row = 0; row < slice.rows; ++row) t.push_back(slice.point[static_cast<size_t>(row) * slice.columns].t);
+  Json blocked = Json::array();
+  for (size_t i = 0; i < slice.point.size(); ++i)
+    if (slice.point[i].is_blocked) blocked.push_back(i);
   return {{"columns", slice.columns},
           {"rows", slice.rows},
           {"s", s},
           {"t", t},
           {"value", column(slice.point, &SlicePoint::value)},
-          {"model", column(slice.point, &SlicePoint::model)}};
+          {"model", column(slice.point, &SlicePoint::model)},
+          {"blocked", blocked}};
 }
 
 Json Look::reply() && {
@@ -131,6 +136,7 @@ Json Look::reply() && {
   return {{"value", value_},
           {"alpha", alpha_},
           {"trials", viewer::to_json(tried_)},
+          {"max_step", max_step_},
           {"curve", viewer::to_json(curve_)},
           {"slice", slice_json(slice_)},
           {"path", std::move(path_)}};

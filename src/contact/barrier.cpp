@@ -262,7 +262,9 @@ std::vector<ContactPoint> Barrier::contact_points(Positions x, double time) cons
 ContactSummary Barrier::summary(Positions x, double time) const {
   const auto stencils = this->stencils(x, time);
   ContactSummary summary{.contacts = static_cast<int>(stencils->size())};
-  for (const ContactStencil& stencil : *stencils) summary.min_gap = std::min(summary.min_gap, stencil.distance.d);
+  for (const ContactStencil& stencil : *stencils)
+    if (stencil.distance.d < summary.min_gap)
+      summary.min_gap = stencil.distance.d, summary.parts = stencil.parts, summary.reach = stencil.reach;
   for (const ContactPoint& point : contact_points(x, time))
     summary.max_pressure = std::max(summary.max_pressure, point.pressure);
   return summary;

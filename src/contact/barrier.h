@@ -15,6 +15,8 @@ namespace aspic {
 struct ContactSummary {
   int contacts = 0;                                          // pairs below their reach
   double min_gap = std::numeric_limits<double>::infinity();  // smallest distance of any two surfaces below reach [m]
+  std::array<int, 2> parts = {-1, -1};                       // that have this gap
+  double reach = 0;                                          // of their features [m]
   double max_pressure = 0;                                   // [Pa]
 };
 

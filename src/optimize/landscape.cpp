@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "base/check.h"
 
@@ -52,20 +53,33 @@ Vector samples_along(const LiveIteration& at, int samples) {
   return alphas;
 }
 
+bool is_free(Objective& E, std::span<const double> x, std::span<const double> d) { return E.max_step(x, d) >= 1; }
+
 }  // namespace
+
+double largest_step(const LiveIteration& at, double last) {
+  if (const double step = at.E.max_step(at.x, at.d); step < std::min(1.0, last)) return step;
+  Vector d(at.d.begin(), at.d.end());
+  for (double& di : d) di *= last;
+  const double step = at.E.max_step(at.x, d);
+  return step < 1 ? step * last : std::numeric_limits<double>::infinity();
+}
 
 std::vector<CurvePoint> curve_along(const LiveIteration& at, double c, int samples, const StopToken& stop) {
   ASPIC_CHECK(samples >= 2);
   const double slope = at.E.dot(at.g, at.d), curvature = at.E.dot(at.d, product(exact_hessian(at), at.d));
   const Vector alphas = samples_along(at, samples);
+  const double most = largest_step(at, alphas.back());
   std::vector<CurvePoint> curve(samples);
-  Vector x(at.x.size());
+  Vector x(at.x.size()), back(at.d.begin(), at.d.end());
+  for (double& di : back) di *= alphas.front();
+  const double least = is_free(at.E, at.x, back) ? alphas.front() : 0;
   for (int i = 0; i < samples; ++i) {
     if (stop.stopped()) return {};
     CurvePoint& point = curve[i];
     const double alpha = point.alpha = alphas[i];
     for (size_t k = 0; k < x.size(); ++k) x[k] = at.x[k] + alpha * at.d[k];
-    point.value = at.E.value(x);
+    point.value = alpha < least || alpha > most ? std::numeric_limits<double>::infinity() : at.E.value(x);
     point.model = at.value + alpha * slope + alpha * alpha / 2 * curvature;
     point.textbook_bound = at.value + c * alpha * slope;
     point.slide_bound = at.value + c * slope;
@@ -82,14 +96,16 @@ Slice slice_through(const LiveIteration& at, int samples, const StopToken& stop)
   const double gd = E.dot(at.g, at.d), gv = E.dot(at.g, v);
   const double dHd = E.dot(at.d, Hd), dHv = E.dot(v, Hd), vHv = E.dot(v, Hv);
   Slice slice{samples, samples, {}, {}};
-  Vector x(at.x.size());
+  Vector x(at.x.size()), d(at.x.size());
   for (int row = 0; row < samples; ++row)
     for (int column = 0; column < samples; ++column) {
       if (stop.stopped()) return {};
       const double s = between(-0.5, 1.5, column, samples), t = between(-1, 1, row, samples);
-      for (size_t k = 0; k < x.size(); ++k) x[k] = at.x[k] + s * at.d[k] + t * v[k];
-      slice.point.push_back(
-          {s, t, E.value(x), at.value + s * gd + t * gv + s * s / 2 * dHd + s * t * dHv + t * t / 2 * vHv});
+      for (size_t k = 0; k < x.size(); ++k) d[k] = s * at.d[k] + t * v[k];
+      for (size_t k = 0; k < x.size(); ++k) x[k] = at.x[k] + d[k];
+      const bool is_blocked = !is_free(E, at.x, d);
+      slice.point.push_back({s, t, is_blocked ? std::numeric_limits<double>::infinity() : E.value(x),
+                             at.value + s * gd + t * gv + s * s / 2 * dHd + s * t * dHv + t * t / 2 * vHv, is_blocked});
     }
   slice.across = std::move(v);
   return slice;

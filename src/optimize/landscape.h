@@ -9,7 +9,7 @@ namespace aspic {
 
 struct CurvePoint {
   double alpha = 0;
-  double value = 0;           // E(x + alpha d); +inf where undefined
+  double value = 0;           // E(x + alpha d); +inf where undefined or beyond the largest step
   double model = 0;           // E + alpha g.d + alpha^2/2 d'Hd with the exact Hessian H
   double textbook_bound = 0;  // E + c alpha g.d: the sufficient decrease
   double slide_bound = 0;     // E + c g.d
@@ -25,9 +25,13 @@ std::vector<CurvePoint> curve_along(const LiveIteration& iteration, double c, in
 // of -g, or of H g if d is parallel to g.
 struct SlicePoint {
   double s = 0, t = 0;
-  double value = 0;  // E; +inf where undefined
-  double model = 0;  // its quadratic model at x
+  double value = 0;         // E; +inf where undefined or blocked
+  double model = 0;         // its quadratic model at x
+  bool is_blocked = false;  // the straight path from x is not free
 };
+
+// The largest alpha up to `last` for which the path from x to x + alpha d is free; infinity: all of them.
+double largest_step(const LiveIteration& iteration, double last);
 
 struct Slice {
   int columns = 0, rows = 0;      // samples along s and along t

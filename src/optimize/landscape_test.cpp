@@ -107,5 +107,41 @@ TEST(Landscape, SamplingChangesNoBit) {
   EXPECT_EQ(minimum(false), minimum(true));
 }
 
+// A wall at x = -0.7 that straight paths must not cross.
+class WalledRosenbrock : public Rosenbrock {
+ public:
+  double max_step(std::span<const double> x, std::span<const double> d) override {
+    return d[0] > 0 ? std::min(1.0, (-0.7 - x[0]) / d[0]) : 1;
+  }
+};
+
+TEST(Landscape, MarksWhatLargestStepDoesNotReach) {
+  WalledRosenbrock f;
+  std::vector<double> x = {-0.8, 0.6, 0};
+  const auto look = [](const LiveIteration& iteration) {
+    ASSERT_GT(iteration.d[0], 0);
+    const double most = 0.1 / iteration.d[0];
+    EXPECT_NEAR(largest_step(iteration, 2 * most), most, 1e-12);
+    EXPECT_EQ(largest_step(iteration, 0.5 * most), std::numeric_limits<double>::infinity());
+    int beyond = 0;
+    for (const CurvePoint& point : curve_along(iteration, 1e-4)) {
+      EXPECT_EQ(std::isfinite(point.value), point.alpha <= most) << point.alpha;
+      beyond += point.alpha > most;
+    }
+    EXPECT_GT(beyond, 0);
+    const Slice slice = slice_through(iteration, 21);
+    int blocked = 0;
+    for (const SlicePoint& point : slice.point) {
+      const double at = -0.8 + point.s * iteration.d[0] + point.t * slice.across[0];
+      if (std::abs(at + 0.7) > 1e-9) EXPECT_EQ(point.is_blocked, at > -0.7);
+      EXPECT_EQ(std::isfinite(point.value), !point.is_blocked);
+      blocked += point.is_blocked;
+    }
+    EXPECT_GT(blocked, 0);
+    EXPECT_LT(blocked, 21 * 21);
+  };
+  Minimizer().minimize(f, GradientDescent(), x, {.max_iterations = 1}, look);
+}
+
 }  // namespace
 }  // namespace aspic

@@ -46,6 +46,8 @@ class Explainer {
   Explanation explain() const {
     const bool is_unsolved = report_.status == Status::stuck || report_.status == Status::no_descent ||
                              report_.status == Status::iteration_limit;
+    if (is_unsolved)
+      if (const std::optional<Explanation> contact = squeezed_gap()) return *contact;
     if (is_unsolved && is_static())
       if (const std::optional<RigidMotion> motion = free_rigid_motion(model_, simulation_.snapshot().start.q))
         return not_held(*motion);
@@ -218,6 +220,19 @@ class Explainer {
     return {"the substeps became too short for the 16 digits of positions",
             "time.adaptive.tolerance = " + text(simulation_.options().adaptive.tolerance),
             "time.adaptive.tolerance = 1e-06"};
+  }
+
+  // Two parts that are pressed together so hard that only short steps keep them apart.
+  std::optional<Explanation> squeezed_gap() const {
+    constexpr double kSmall = 0.02;  // relative to the reach
+    if (!model_.contact) return {};
+    const ContactSummary contact = model_.contact->summary(x_, simulation_.obstacle_time());
+    if (!(contact.min_gap < kSmall * contact.reach)) return {};
+    const auto& parts = model_.contact->mesh().parts;
+    return Explanation{"contact allows only short steps: the gap between " + parts[contact.parts[0]].name + " and " +
+                           parts[contact.parts[1]].name + " is " + text(contact.min_gap) + " m, " +
+                           text(contact.min_gap / contact.reach) + " of the distance at which contact begins",
+                       "contact", smaller_steps() + ", or a slower impact, or a larger contact.reach"};
   }
 
   Explanation inaccurate() const {

@@ -154,6 +154,7 @@ export class LandscapePanel implements Panel {
       });
     } else signs.push({ sign: "✕", color: "series11", text: "no step was found along d" });
     signs.push({ sign: "•─", color: "text", text: "iterates, projected" });
+    if (reply.slice.blocked.length > 0) signs.push({ sign: "▇", color: "bad", text: "beyond the largest step that contact allows" });
     this.signs = signs;
     const end = grid.x[grid.x.length - 1]!;
     return {
@@ -162,6 +163,7 @@ export class LandscapePanel implements Panel {
       axes: { x: "s: along d (1 = full step)", y: "t: across", value: "E" },
       model: showModel ? reply.slice.model : null,
       path: reply.path.map((p) => ({ x: p.s, y: p.t, value: p.value })),
+      blocked: reply.slice.blocked,
       draped: false,
       direction: { from: { x: 0, y: 0 }, to: { x: Math.min(1, end), y: 0 } },
       marks,
@@ -177,7 +179,9 @@ export class LandscapePanel implements Panel {
       "Newton's method steps to the minimum of the orange model. Where the model differs from the surface, the line search shortens the step.",
     ];
     if (cut !== null) sentences.push(`Walls above E = ${short(cut, 4)} are cut off.`);
-    if (reply.slice.value.some((v: MaybeNumber) => v === null)) sentences.push("Holes: E is infinite there.");
+    const blocked = new Set(reply.slice.blocked);
+    if (reply.slice.value.some((v: MaybeNumber, i) => v === null && !blocked.has(i))) sentences.push("Holes: E is infinite there.");
+    if (blocked.size > 0) sentences.push("The red region is beyond contact: no straight path from x leads there.");
     if (this.log.input.checked) sentences.push("Heights are logarithmic.");
     return sentences.join(" ");
   }

@@ -186,6 +186,7 @@ export class MicroscopePanel implements Panel {
     return {
       curve: seen.reply.curve,
       trials: seen.reply.trials,
+      maxStep: seen.reply.max_step,
       test: typeof test === "string" ? test : "textbook",
       about,
     };

@@ -5,10 +5,12 @@ import { Chart, type Curve } from "./chart";
 import { short } from "./numbers";
 import type { Palette } from "./palette";
 import { nearest } from "./table";
+import { paintVerticalLine } from "./verticalLine";
 
 export interface Search {
   curve: IterationReply["curve"];
   trials: TrialRow[];
+  maxStep?: MaybeNumber; // largest alpha that contact allows
   test: string; // acceptance test: "textbook", "slide" or "none"
   about?: string; // the iteration, where it is not clear from the context
 }
@@ -66,7 +68,10 @@ export class SearchChart {
       read: (key, alpha) => this.read(key, alpha),
       xRange: () => alphaRange(search.curve.alpha, search.trials),
       yRange: () => this.range(),
-      paint: (u, colors) => this.paintTrials(u, colors),
+      paint: (u, colors) => {
+        this.paintLimit(u, colors);
+        this.paintTrials(u, colors);
+      },
     });
     const { alpha } = search.curve;
     this.chart.show(alpha, this.columns());
@@ -109,6 +114,25 @@ export class SearchChart {
     return [short(this.columns()[column]?.[nearest(this.search.curve.alpha, alpha)], 4)];
   }
 
+  // Draws the largest step that contact allows.
+  private paintLimit(u: uPlot, colors: Palette): void {
+    const { maxStep } = this.search!;
+    if (maxStep === null || maxStep === undefined) return;
+    paintVerticalLine(u, maxStep, colors.bad, 0.6);
+    const scale = u.bbox.width / u.over.clientWidth || 1;
+    const x = u.valToPos(maxStep, "x", true);
+    const pen = u.ctx;
+    pen.save();
+    pen.font = `${colors.fontSize * 0.82 * scale}px sans-serif`;
+    pen.fillStyle = colors.bad;
+    pen.textBaseline = "bottom";
+    const text = limitText(maxStep);
+    const isRight = x + 6 * scale + pen.measureText(text).width < u.bbox.left + u.bbox.width;
+    pen.textAlign = isRight ? "left" : "right";
+    pen.fillText(text, x + (isRight ? 6 : -6) * scale, u.bbox.top + u.bbox.height - 6 * scale);
+    pen.restore();
+  }
+
   // Draws rejected trials as crosses and the accepted one as a dot. Values outside of the axis are drawn at its edge.
   private paintTrials(u: uPlot, colors: Palette): void {
     const { trials } = this.search!;
@@ -143,6 +167,10 @@ export class SearchChart {
     }
     pen.restore();
   }
+}
+
+export function limitText(maxStep: number): string {
+  return `contact: α ≤ ${short(maxStep, 3)}`;
 }
 
 function mark(pen: CanvasRenderingContext2D, accepted: boolean, x: number, y: number, r: number, color: string): void {

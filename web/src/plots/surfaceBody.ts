@@ -7,7 +7,7 @@ import type { MaybeNumber } from "../protocol";
 import { clipped, heightRange, isInside, sample, valueAtHeight, type Grid, type Point } from "./grid";
 import { inkOf, type Color, type Palette } from "./palette";
 import type { Label } from "./surfaceLabels";
-import { Frame, gridLines, levelLines, markTexture, surfaceGeometry, type MarkShape } from "./surfaceParts";
+import { blockedGeometry, Frame, gridLines, levelLines, markTexture, surfaceGeometry, type MarkShape } from "./surfaceParts";
 
 const kNumbered = 40; // iterates with numbers, besides the last one
 
@@ -25,6 +25,7 @@ export interface SurfaceContent {
   axes: { x: string; y: string; value: string };
   model: MaybeNumber[] | null; // on the same grid
   path: (Point & { value: MaybeNumber })[];
+  blocked?: readonly number[]; // samples of the grid that cannot be reached
   draped: boolean; // the path follows the surface; otherwise it is straight from point to point
   direction: { from: Point; to: Point } | null;
   marks: Mark[];
@@ -51,6 +52,7 @@ export class SurfaceBody {
     );
     this.surface = this.addSurface();
     if (content.model) this.addModel(content.model);
+    if (content.blocked?.length) this.addBlocked(content.blocked);
     this.addBox();
     this.addPath();
     for (const mark of content.marks) this.addMark(mark);
@@ -102,6 +104,11 @@ export class SurfaceBody {
     const lines = new THREE.LineBasicMaterial({ color: color, transparent: true, opacity: 0.65 });
     mesh.renderOrder = 1;
     this.group.add(mesh, new THREE.LineSegments(gridLines(this.frame, model, 14), lines));
+  }
+
+  private addBlocked(samples: readonly number[]): void {
+    const material = new THREE.MeshBasicMaterial({ color: this.colors.bad, side: THREE.DoubleSide, transparent: true, opacity: 0.3 });
+    this.group.add(new THREE.Mesh(blockedGeometry(this.frame, samples), material));
   }
 
   private addBox(): void {

@@ -80,6 +80,23 @@ export function surfaceGeometry(frame: Frame, values: readonly MaybeNumber[], co
   return geometry;
 }
 
+// Cells with one of these samples at a corner, in the plane below the surface.
+export function blockedGeometry(frame: Frame, samples: readonly number[]): THREE.BufferGeometry {
+  const blocked = new Set(samples);
+  const { x, y } = frame.grid;
+  const points: THREE.Vector3[] = [];
+  for (let j = 0; j + 1 < y.length; ++j)
+    for (let i = 0; i + 1 < x.length; ++i) {
+      const a = j * x.length + i;
+      if (![a, a + 1, a + x.length, a + x.length + 1].some((k) => blocked.has(k))) continue;
+      const [p, q, r, s] = [[i, j], [i + 1, j], [i + 1, j + 1], [i, j + 1]].map(
+        ([column, row]) => new THREE.Vector3(frame.across(x[column!]!), -0.02, frame.away(y[row!]!)),
+      );
+      points.push(p!, q!, r!, p!, r!, s!);
+    }
+  return new THREE.BufferGeometry().setFromPoints(points);
+}
+
 // Grid lines, about `lines` in each direction.
 export function gridLines(frame: Frame, values: readonly MaybeNumber[], lines: number): THREE.BufferGeometry {
   const { x, y } = frame.grid;
