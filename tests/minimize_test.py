@@ -163,7 +163,7 @@ class Verify(CommandLine):
         self.assertFalse((self.folder / "out").exists())
 
     def test_rows_state_measurement_reference_and_reason(self):
-        text = self.verify("--only", "free_fall", "--only", "numbering")
+        text = self.verify("--only", "free_fall", "--only", "invariants/numbering")
         self.assertRegex(text, r"pass  backward_euler: distance from the closed form .* \+- 1e-13 m")
         self.assertIn("(round-off of 10 solves", text)
         self.assertEqual([check["check"] for check in self.results()], ["invariants/numbering", "integrators/free_fall"])

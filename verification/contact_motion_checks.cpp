@@ -251,8 +251,8 @@ void add_contact_motion_checks(std::vector<Check>& checks) {
   checks.push_back({"contact", "bounce", "A bounce gains no energy", "A soft box falls askew onto the floor.",
                     "Backward Euler loses energy in every step; the ledger closes", check_bounce});
   checks.push_back({"contact", "frames", "Neither frame nor numbering changes contact",
-                    "The boxes turned and shifted, and with vertices in reverse order.", "The equations know neither",
-                    check_frames});
+                    "The boxes turned and shifted, and with vertices in reverse order.",
+                    "The equations depend on neither", check_frames});
   checks.push_back({"contact", "units", "Units do not change contact",
                     "The boxes in other units of length and time, of modulus and density.",
                     "The equations are homogeneous", check_contact_units});

@@ -140,7 +140,8 @@ TEST(Landscape, MarksWhatLargestStepDoesNotReach) {
     EXPECT_GT(blocked, 0);
     EXPECT_LT(blocked, 21 * 21);
   };
-  Minimizer().minimize(f, GradientDescent(), x, {.max_iterations = 1}, look);
+  GradientDescent direction;
+  Minimizer().minimize(f, direction, {x}, {.max_iterations = 1}, look);
 }
 
 }  // namespace
