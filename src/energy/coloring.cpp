@@ -11,9 +11,9 @@ constexpr int64_t kFronts = 8;
 
 }  // namespace
 
-// Fronts advance through equal parts of the list. A color takes the next group of each front, or lets the front wait
-// where the group would touch one that is already in. Neighbors in the list so come soon after each other, while what
-// they share is still in a cache; with as few colors as possible, each would pass over the whole mesh.
+// Divides the list into equal parts. A color gets the next group of each part, unless the group shares a vertex with
+// one that has this color already. So neighbors in the list have colors that follow each other, while their shared data
+// are in a cache. With the fewest possible colors, each color would pass over the whole mesh.
 ColorClasses color_groups(std::span<const std::vector<int>> vertices_of_group, int vertex_count) {
   const int64_t groups = static_cast<int64_t>(vertices_of_group.size());
   std::vector<int> next, end;
@@ -22,7 +22,7 @@ ColorClasses color_groups(std::span<const std::vector<int>> vertices_of_group, i
     end.push_back(static_cast<int>((front + 1) * groups / kFronts));
   }
   ColorClasses colors;
-  std::vector<int> last_color(vertex_count, -1);  // that touches a vertex
+  std::vector<int> last_color(vertex_count, -1);  // last color with a group at each vertex
   for (int64_t left = groups; left > 0; left -= static_cast<int64_t>(colors.back().size())) {
     const int color = static_cast<int>(colors.size());
     std::vector<int>& members = colors.emplace_back();

@@ -1,4 +1,4 @@
-// Springs of a hand along paths that are known beforehand: what a drag in the viewer was, as a part of a scene. Each
+// Springs whose ends move along given paths, such as recorded drags of the viewer. Each
 // spring acts from the first time of its path to the last one, and is absent before and after.
 #pragma once
 #include <vector>

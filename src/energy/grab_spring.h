@@ -1,5 +1,5 @@
-// V(x) = k/2 |sum_i w_i x_i - target(t)|^2: a spring between a point of a tet and a hand that moves. Which point, and
-// where the hand goes, may change between steps.
+// V(x) = k/2 |sum_i w_i x_i - target(t)|^2: a spring between a point of a tet and a moving target. Both may
+// change between steps.
 #pragma once
 #include <array>
 

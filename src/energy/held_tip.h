@@ -9,8 +9,8 @@ namespace aspic {
 
 struct Touch {
   Tip tip;
-  TipPose rest;   // in which the tip touches the body at rest
-  TipPose begun;  // in which the hand put it on the body as it was then
+  TipPose rest;   // pose in which the tip touches the body at rest
+  TipPose begun;  // pose in which the hand first put the tip on the body
 };
 
 // What the hand does. The pose changes along a line from one time to another, and rests before and after. [m, rad, s]
@@ -35,8 +35,8 @@ class HeldTip : public Energy {
   const Poke& poke() const { return poke_; }
   // Where the poke ends:
   double value(Positions x) const;        // [J]
-  Wrench wrench(Positions x) const;       // of the tip on the body
-  int touched_points(Positions x) const;  // of the surface; 0: the tip is in the air, or there is none
+  Wrench wrench(Positions x) const;       // force and moment of the tip on the body
+  int touched_points(Positions x) const;  // number of surface points that the tip touches; 0 without a tip
 
   double value(Positions x, const Context&) const override;
   void add_gradient(Positions x, const Context&, double scale, std::span<double> g) const override;
@@ -50,7 +50,7 @@ class HeldTip : public Energy {
   TetMesh mesh_;  // without tets
   std::vector<Triangle> surface_;
   Poke poke_;
-  std::unique_ptr<Probe> probe_;  // of the poke; null without a tip
+  std::unique_ptr<Probe> probe_;  // energy of the poke; null without a tip
   const BlockPattern* pattern_ = nullptr;
 };
 

@@ -137,7 +137,7 @@ void add_density_gradient(const TetMesh& mesh, MassKind kind, std::span<const do
   parallel_chunks(mesh.tet_count(), [&](int first, int last) {
     for (int t = first; t < last; ++t) {
       Vec3d w_sum{}, y_sum{};
-      double own = 0;  // of each vertex with itself
+      double own = 0;  // diagonal entry of each vertex
       for (const int v : mesh.tets[t])
         for (int r = 0; r < 3; ++r) {
           w_sum[r] += w[3 * v + r], y_sum[r] += y[3 * v + r];

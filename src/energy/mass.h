@@ -33,7 +33,7 @@ class MassMatrix {
 
   MassKind kind_;
   std::vector<double> lumped_;
-  // Row by row, columns ascending; half of what is stored could be had from the other half, but not in one stream.
+  // Both triangles of the symmetric matrix, row by row, columns ascending: products then read memory in order.
   std::vector<int64_t> row_start_, lower_start_;  // lower_start_ counts only the columns up to the diagonal
   std::vector<int> column_;
   std::vector<double> entry_;         // [kg]

@@ -85,7 +85,7 @@ class MaterialTerm : public TetTerm<M, TetElasticity> {
       const TetBatch& tets = batches_[i];
       const Pack weight = Pack(out.scale) * tets.volume;
       const Mat3<Pack> F_i = F(i, x);
-      // As a sum of products along one direction each: H itself has one, which stands on both sides.
+      // A sum of products along one direction each, since H has the same direction on both sides.
       const auto add = [&](const Pack& factor, const Mat3<Pack>& U, const Mat3<Pack>& W) {
         if (!out.x.empty()) tets.scatter_gradient(second_stress_rate(i, F_i, U, W), factor * weight, out.x);
         for (int k = 0; k < (out.parameters.empty() ? 0 : parameter_count_); ++k) {

@@ -17,7 +17,8 @@ void add_cross(Mat9d& K, int i, int j, const Vec3d& q) {
   }
 }
 
-// Of one triangle: m the mean displacement, d_k the displacement of corner k from that of corner 0, E_k its edge.
+// The volume that one triangle sweeps: m is the mean displacement, d_k the displacement of corner k from that of corner
+// 0, E_k its edge.
 //   swept = m . A,   A = (E1 x E2 + (E1 x d2 + d1 x E2) / 2 + d1 x d2 / 3) / 2
 struct Sweep {
   Vec3d m, A, w1, w2;  // w_k = E_k / 2 + d_k / 3, so that dA = (w1 x delta2 + delta1 x w2) / 2

@@ -16,8 +16,8 @@ namespace aspic {
 namespace {
 
 constexpr double kSoftening = 0.02;  // e / radius
-constexpr double kEdge = 0.125;      // of the glue of a disc, relative to the radius
-constexpr double kLongestEdge = 64;  // of a triangle near the tip, relative to the radius
+constexpr double kEdge = 0.125;      // width of the glue of a disc / radius
+constexpr double kLongestEdge = 64;  // longest edge of a triangle near the tip / radius
 constexpr int kMostCutsAfar = 64;    // of an edge of a triangle that only a tip on the way might touch
 
 using Corners = std::array<Vec3d, 3>;
@@ -77,8 +77,8 @@ struct Response {
 struct Patch {
   Triangle vertices;
   const std::vector<Barycentric>* points;
-  double area = 0;   // of each part, at rest [m^2]
-  size_t first = 0;  // of its points, among all
+  double area = 0;   // area of each part at rest [m^2]
+  size_t first = 0;  // number of its first point
 };
 
 class ProbeTerm : public Probe {
@@ -261,8 +261,8 @@ class ProbeTerm : public Probe {
   PlacedTip placed_;
   PartCentroids centroids_;
   std::vector<Patch> patches_;
-  std::vector<double> weight_;  // of the points of a bonded tip
-  std::vector<Vec3d> offset_;   // of them: X - c_touch
+  std::vector<double> weight_;  // weight of each point of a bonded tip
+  std::vector<Vec3d> offset_;   // X - c_touch of each point of a bonded tip
   std::vector<std::array<int64_t, 9>> slot_;
 };
 

@@ -1,5 +1,5 @@
 // A rigid tip that touches the surface of a body: V(x) = sum over points of the surface of area k phi, an elastic layer
-// that is stiff beside the body, so that poses of the tip are known and its force is measured.
+// much stiffer than the body: the pose of the tip is given, and its force results.
 //   sliding: phi grows with the depth d of the point below the surface of the tip, without friction:
 //            phi' = d^2 / (2 e) up to d = e, then d - e / 2, where e = radius / 50
 //   bonded:  phi = |x - target|^2 / 2 for the points that the tip touches at rest, which follow it as if glued to it
@@ -78,9 +78,9 @@ class Probe : public SteadyEnergy {
 // disc, whose glue thins out over an eighth of the radius on either side of its edge.
 inline constexpr double kGlue = 0.5;
 
-// `surface`: boundary triangles of the mesh, outward oriented. `touch`: the pose in which the tip touches the body at
-// rest; where it is to begin with. Throws InvalidInput when a bonded tip touches nothing there, and when a triangle
-// that it touches is more than 32 times as long as the tip is wide.
+// `surface`: boundary triangles of the mesh, outward oriented. `touch`: the initial pose, in which the tip touches the
+// body at rest. Throws InvalidInput if a bonded tip touches nothing there, or if a triangle that it touches is more
+// than 32 times as long as the tip is wide.
 std::unique_ptr<Probe> make_probe(const TetMesh& mesh, std::span<const Triangle> surface, const Tip& tip,
                                   const TipPose& touch);
 

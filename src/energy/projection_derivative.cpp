@@ -22,7 +22,7 @@ SymmetricEigen<9, Pack> raised_product_derivative(const Mat9<Pack>& A, const Mat
   const Pack floor = max(Pack(kEigenvalueFloor) * largest, Pack(std::numeric_limits<double>::min()));
 
   std::array<Pack, 9> f, slope, a, b;
-  Pack raised = 0.0;  // of the floor's own change
+  Pack raised = 0.0;  // sum of the changes of the threshold
   for (int k = 0; k < 9; ++k) {
     const Pack l = kind == Definiteness::absolute ? abs(e.values[k]) : e.values[k];
     f[k] = max(l, floor);

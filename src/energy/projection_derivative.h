@@ -1,4 +1,4 @@
-// The derivative of u' f(A) w for a symmetric A whose low eigenvalues f raises, as element Hessians are made definite
+// The derivative of u' f(A) w for a symmetric A whose low eigenvalues f raises, as in modified element Hessians
 // (filter_eigenvalues in math/definite.h): d(u' f(A) w) = sum_k values[k] q_k' dA q_k.
 #pragma once
 #include "linalg/projection.h"
@@ -8,8 +8,8 @@
 
 namespace aspic {
 
-// Of the Daleckii-Krein theorem [Higham 2008, theorem 3.11]; f raises eigenvalues in all lanes, whether they need it or
-// not. `kind` is clamped or absolute; eigenvalues that cross what f is cut at have no derivative.
+// The divided differences of the Daleckii-Krein theorem [Higham 2008, theorem 3.11]; f raises eigenvalues in all lanes,
+// whether they need it or not. `kind` is clamped or absolute; eigenvalues at the threshold of f have no derivative.
 SymmetricEigen<9, Pack> raised_product_derivative(const Mat9<Pack>& A, const Mat3<Pack>& u, const Mat3<Pack>& w,
                                                   Definiteness kind);
 

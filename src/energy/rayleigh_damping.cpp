@@ -95,7 +95,7 @@ class RayleighDamping : public Damping {
  private:
   static constexpr Definiteness kDefiniteness = Definiteness::clamped;  // of K
 
-  struct Start : Context {  // of the step
+  struct Start : Context {  // data of the start of the step
     explicit Start(const BlockPattern& pattern) : C(pattern) {}
     std::vector<double> x, shape;  // at the start of the step, and where K is taken
     BlockSparse C;                 // a M + b K(shape) [kg/s]
@@ -106,7 +106,7 @@ class RayleighDamping : public Damping {
   };
   static const Product& product(Positions x, const Start& start) {
     thread_local Product scratch;
-    Product& p = scratch;  // of this thread, for all
+    Product& p = scratch;  // shared by all damping terms of this thread
     p.u.resize(x.size()), p.Cu.resize(x.size());
     parallel_chunks(static_cast<int>(x.size()), [&](int first, int last) {
       for (int i = first; i < last; ++i) p.u[i] = x[i] - start.x[i];

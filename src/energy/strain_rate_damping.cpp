@@ -101,7 +101,7 @@ class StrainRateDamping : public TetTerm<GreenStrainRate, Damping> {
   }
 
  private:
-  struct Start : Context {  // of the step
+  struct Start : Context {  // data of the start of the step
     std::vector<double> x;
     std::vector<Params<Pack>> params;  // E_start and 1/h
   };

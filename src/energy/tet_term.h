@@ -77,7 +77,7 @@ class TetTerm : public Base {
                   BlockSparse& H) const override {
     const std::vector<Params<Pack>>& p = params(context);
     thread_local std::vector<char> scratch;  // per batch: how many lanes were projected
-    std::vector<char>& projected = scratch;  // of this thread, for all
+    std::vector<char>& projected = scratch;  // shared by all terms of this thread
     projected.assign(batches_.size(), 0);
     for_each_batch([&](int i) {
       if (i + 1 < batch_count()) batches_[i + 1].prefetch_blocks(H);
@@ -101,7 +101,7 @@ class TetTerm : public Base {
   template <class Body, class Combine>
   double reduce(const Body& body, const Combine& combine, double start) const {
     thread_local std::vector<double> scratch;
-    std::vector<double>& partial = scratch;  // of this thread, for all
+    std::vector<double>& partial = scratch;  // shared by all terms of this thread
     partial.resize(group_count());
     parallel_for(group_count(), [&](int group) {
       double result = start;
@@ -113,7 +113,7 @@ class TetTerm : public Base {
     return result;
   }
 
-  // Of each batch, in a step.
+  // Parameters of each batch in a step.
   virtual const std::vector<Params<Pack>>& params(const Energy::Context&) const { return params_; }
 
   [[no_unique_address]] M material_;  // empty but for a CustomDensity
@@ -128,7 +128,7 @@ class TetTerm : public Base {
     return order;
   }
 
-  // Coarse enough for threads and to meet again what is in a cache, fine enough to color small meshes.
+  // Number of tets per group: large enough for threads and caches, small enough to color small meshes.
   static size_t group_size(size_t tets) { return std::clamp<size_t>(std::bit_floor(tets / 128), 128, 1024); }
 
   // A batch takes each k-th tet of the group: lanes that are neighbors would add to the same blocks, and each would

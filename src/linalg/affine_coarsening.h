@@ -17,12 +17,12 @@ namespace aspic {
 using FourValues = std::array<double, 4>;
 
 struct AffineCoarsening {
-  std::vector<int> aggregate;            // of each fine row; -1: the row takes no part
+  std::vector<int> aggregate;            // aggregate of each fine row; -1: none
   std::vector<int> row_start, row;       // fine rows of each aggregate, ascending
   std::vector<FourValues> weight;        // w_0 ... w_3 at each fine row
   std::vector<FourValues> coarse_value;  // (1, X, Y, Z) at each coarse row, for the next level
-  Graph graph;                           // of the aggregates
-  BlockPattern pattern;                  // of the coarse matrix, 4 rows per aggregate
+  Graph graph;                           // neighbors of each aggregate
+  BlockPattern pattern;                  // coarse matrix, 4 rows per aggregate
   int count() const { return static_cast<int>(row_start.size()) - 1; }
   std::span<const int> rows_of(int a) const {
     return std::span(row).subspan(row_start[a], row_start[a + 1] - row_start[a]);
@@ -41,7 +41,7 @@ class MatrixRestriction {
   void run(const AffineCoarsening& coarsening, const BlockSparse& fine, BlockSparse& coarse);
 
  private:
-  // Of the coarse blocks that an aggregate shares with another: entry k of block (m, n) is lane n of block[m][k].
+  // The coarse blocks that an aggregate shares with another one: entry k of block (m, n) is lane n of block[m][k].
   struct Neighbor {
     Quad<double> block[4][9];
     Quad<double> row[9];  // of one fine row i: sum over j of H_ij w_jn

@@ -47,7 +47,7 @@ class Aggregation {
     return {longest, high[longest] - low[longest]};
   }
 
-  // Of the edges that leave the vertices of the part, on average.
+  // Mean length of the edges that leave the vertices of the part.
   double edge_length(std::span<const int> part) const {
     double sum = 0;
     int64_t count = 0;

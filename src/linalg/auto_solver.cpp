@@ -191,7 +191,7 @@ SolveReport AutoSolver::solve(std::span<const double> b, std::span<double> x, do
     total.ok = report.ok;
     total.indefinite = report.indefinite;
     total.relative_residual = report.relative_residual;
-    total.iterations += report.iterations;  // what was tried first was paid for
+    total.iterations += report.iterations;  // includes failed attempts
     total.products += report.products;
     total.cycles += report.cycles;
     total.stopped = report.stopped;

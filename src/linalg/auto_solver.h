@@ -20,8 +20,8 @@ CostPrediction predict_cholesky(const BlockPattern& pattern);
 double predict_iterations(const BlockSparse& H);
 double predict_iterations(const BlockSparse& H, std::vector<char>& scratch);
 
-// Chooses for each sequence of matrices, by its first one, what is predicted to be cheapest: a factorization, conjugate
-// gradients with multigrid, or with block-Jacobi. A choice that turns out wrong gives way to the next in the order
+// Predicts the cheapest solver for each sequence of matrices from its first one: a factorization, conjugate gradients
+// with multigrid, or with block-Jacobi. A choice that turns out wrong is replaced by the next in the order
 // block_jacobi, multigrid, cholesky, the last if its factor fits into memory. The matrices at hand decide, never clocks
 // or earlier sequences, so a resumed run takes the same path; only where the factor comes close to the memory that is
 // free may two runs differ.

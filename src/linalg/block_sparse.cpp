@@ -14,8 +14,8 @@ namespace {
 
 constexpr int kPrefetchAhead = 4096;  // bytes
 
-// Rows that one task of a product works through, in a fixed order. Large ones, because blocks between tasks are read
-// twice; small enough for several threads and their caches.
+// Rows per task of a product. Blocks between tasks are read twice, so tasks are large, but small enough for several
+// threads and their caches.
 int rows_per_task(int rows) { return std::clamp(rows / 16, 512, 8192); }
 
 // Turns counts, stored one place to the right, into starts.

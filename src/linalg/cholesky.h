@@ -26,13 +26,13 @@ class Cholesky : public LinearSolver {
   // x = (L L')^-1 b with the last factor, whatever became of its matrix: a preconditioner of matrices alike. False:
   // there is none.
   bool substitute(std::span<const double> b, std::span<double> x);
-  double substitutions_per_factorization() const;  // of the same cost, roughly; 0: there is no factor
+  double substitutions_per_factorization() const;  // cost of a factorization in substitutions; 0: there is no factor
 
   const CholeskyAnalysis& analysis() const { return supernodes_.cost; }  // valid after analyze()
   bool refused() const { return refused_; }                              // the last factorize() for want of memory
 
  private:
-  struct Front;  // where a supernode's panel and update matrix are
+  struct Front;  // the panel and the update matrix of a supernode
   bool allocate();
   void find_targets();
   Front front(int s);
@@ -50,14 +50,14 @@ class Cholesky : public LinearSolver {
   const BlockPattern* pattern_ = nullptr;
   const BlockSparse* H_ = nullptr;
   bool allocated_ = false, refused_ = false;
-  int64_t free_bytes_ = 0;  // what was free when the factor was refused
+  int64_t free_bytes_ = 0;  // free memory when the factor was refused
   Supernodes supernodes_;
   Subtrees subtrees_;
-  std::vector<int> last_child_, sibling_;  // of the supernodal tree; children in reverse
-  std::vector<DenseCholesky> kernels_;     // of each task, then of the top
+  std::vector<int> last_child_, sibling_;  // supernodal tree; children in reverse order
+  std::vector<DenseCholesky> kernels_;     // one per task, then that of the top
   std::vector<double> L_;                  // the panels, column-major
-  std::vector<double> workspace_;          // update matrices; in a solve, what is below the columns
-  std::vector<int64_t> target_;            // where in L_ each block of H begins
+  std::vector<double> workspace_;          // update matrices; in a solve, the rows below the columns
+  std::vector<int64_t> target_;            // index in L_ of each block of H
   std::vector<double> permuted_, residual_;
   // Conjugate gradients for matrices with stencils, preconditioned by the factorization of the matrix without them.
   std::unique_ptr<LinearSolver> with_stencils_;

@@ -21,9 +21,9 @@ struct Supernodes {
   std::vector<int> parent;           // -1 for a root; children come before their parents
   std::vector<int64_t> row_start;    // row lists below the columns: count() + 1 entries
   std::vector<int> row;              // ascending within a supernode; empty until list_rows()
-  std::vector<int> in_parent;        // where the parent's front has this row
-  std::vector<int> run_end;          // entries from here to there are neighbors in the parent's front, too
-  std::vector<int64_t> value_start;  // where the dense panel of a supernode begins: count() + 1 entries
+  std::vector<int> in_parent;        // place of this row in the parent's front
+  std::vector<int> run_end;          // end of the entries from here that are neighbors in the parent's front, too
+  std::vector<int64_t> value_start;  // first value of each supernode's dense panel: count() + 1 entries
   CholeskyAnalysis cost;
 
   int count() const { return static_cast<int>(first.size()) - 1; }

@@ -12,8 +12,8 @@
 namespace aspic {
 namespace {
 
-// Multiplications, of some 0.1 ns each. A loop over the tasks of a color is shared where that takes longer than
-// waking.
+// Multiplications, of about 0.1 ns each, from which on threads share a loop over the tasks of a color: below, waking
+// them takes longer.
 constexpr double kWorkPerTask = 12'000, kWorkWorthSharing = 40'000;
 constexpr int kPrefetchAhead = 4096;  // bytes; takes 6 % off the benchmark beam of 95 000 vertices
 

@@ -16,8 +16,8 @@ constexpr int kLeastReduction = 2;  // of rows, from one level to the next; with
 constexpr double kRegular = 1e-12;  // added to the coarsest diagonal: a free body without mass is singular
 constexpr double kAccurate = 0.25;  // a coarse residual reduced to this is small enough
 constexpr int kAggregatesPerTask = 8;
-// Steps of conjugate gradients on the first coarse level, and on those below or where the stiffness jumps: there more
-// of them do not help.
+// Steps of conjugate gradients on the first coarse level, and on deeper levels or where the stiffness jumps, where more
+// steps do not help.
 constexpr int kFirstSteps = 3, kSteps = 2;
 
 void find_isolated_rows(const BlockSparse& H, std::vector<char>& isolated) {
@@ -111,7 +111,7 @@ void Multigrid::build(const BlockSparse& H) {
   const BlockPattern* pattern = H.pattern;
   Graph graph = graph_of(*pattern);
   std::vector<Vec3d> position = pattern->rest_position;
-  position.resize(pattern->rows());  // where they are not known, aggregates are moved as a whole
+  position.resize(pattern->rows());  // rows without a known position move with their aggregate
   std::vector<FourValues> value;
   for (const Vec3d& X : position) value.push_back({1, X[0], X[1], X[2]});
   std::vector<double> modulus = pattern->rest_modulus;

@@ -48,12 +48,12 @@ class Multigrid : public ApproximateInverse {
     AffineCoarsening coarsening;
     MatrixRestriction restriction;
     std::unique_ptr<BlockSparse> coarse;  // P' H P; none on a last level that is smoothed only
-    std::vector<float> weight;            // of the coarsening, 4 per row in the order of the smoother
-    std::vector<int> coarse_place;        // of each aggregate in the order of the next level
+    std::vector<float> weight;            // coarsening, 4 per row in the order of the smoother
+    std::vector<int> coarse_place;        // place of each aggregate in the order of the next level
     std::vector<float> b, x;              // H x = b
     std::vector<float> r;                 // b - H x
-    std::vector<Direction> directions;    // of the K-cycle
-    std::vector<float> sum;               // of the K-cycle: the solution so far
+    std::vector<Direction> directions;    // search directions of the K-cycle
+    std::vector<float> sum;               // solution of the K-cycle so far
   };
   bool ends_densely() const { return levels_.empty() || levels_.back().coarse; }
   void build(const BlockSparse& H);

@@ -24,7 +24,8 @@ struct Neighbors {
 
 }  // namespace
 
-// Greedy: each free row takes free neighbors, or those of a neighbor; what stands alone fills up blocks in the end.
+// Greedy: each free row is joined with free neighbors, or neighbors of neighbors. Remaining rows fill up blocks at the
+// end.
 void ScalarCholesky::put_together(std::span<const MatrixPlace> places) {
   const int rows = static_cast<int>(slot_.size());
   const Neighbors graph(rows, places);

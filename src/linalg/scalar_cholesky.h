@@ -25,10 +25,10 @@ class ScalarCholesky {
  private:
   void put_together(std::span<const MatrixPlace> places);
 
-  std::vector<int> slot_;                  // of each row: 3 block row + number in it
-  std::unique_ptr<BlockPattern> pattern_;  // where it stays
+  std::vector<int> slot_;                  // slot of each row: 3 block row + component
+  std::unique_ptr<BlockPattern> pattern_;  // at a fixed address
   std::unique_ptr<BlockSparse> A_;
-  std::vector<size_t> target_;  // of each place in the values of A_
+  std::vector<size_t> target_;  // index of each place in the values of A_
   std::unique_ptr<Cholesky> cholesky_;
   std::vector<double> b_, x_;
 };

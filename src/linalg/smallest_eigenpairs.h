@@ -10,7 +10,7 @@ namespace aspic {
 // and write vectors of `size` entries and are called one after another; what one of them throws, the caller receives.
 struct ShiftedPencil {
   int size = 0;
-  int dimension = 0;  // of the subspace
+  int dimension = 0;  // dimension of the subspace
   double shift = 0;
   std::function<void(std::span<double> x)> project;                                   // onto the subspace
   std::function<void(std::span<const double> x, std::span<double> y)> multiply_mass;  // y = M x

@@ -12,12 +12,12 @@ struct Subtrees {
   struct Task {  // the supernodes [first, last): whole subtrees
     int first, last;
     double flops;
-    int rows, columns;  // of the largest front, of the widest panel
+    int rows, columns;  // rows of the largest front, columns of the widest panel
   };
   std::vector<Task> tasks;            // the longest first
   std::vector<int> top;               // all other supernodes, children before parents
-  int top_rows = 0, top_columns = 0;  // of the largest front, of the widest panel
-  std::vector<int64_t> panel_start;   // where each supernode's panel lies among all panels: tasks are kReadAhead apart
+  int top_rows = 0, top_columns = 0;  // rows of its largest front, columns of its widest panel
+  std::vector<int64_t> panel_start;   // offset of each supernode's panel; tasks are kReadAhead apart
   int64_t panels = 0;                 // [doubles]
   std::vector<int64_t> update_start;  // where each supernode's update matrix lies in the workspace
   int64_t workspace = 0;              // [doubles]
