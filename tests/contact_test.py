@@ -69,7 +69,7 @@ def toml_text(value):
 class Scenes(Folder):
     """Every scene with contact, all frames. Obstacles that move are left out."""
 
-    def obstacle(self, given, number):
+    def obstacle(self, given):
         """The surface of an obstacle, from a body of the same shape at the same place."""
         place = {key: given[key] for key in ("scale", "rotate", "translate") if key in given}
         if "mesh" in given:
@@ -78,8 +78,7 @@ class Scenes(Folder):
             shift = place.get("translate", [0, 0, 0])
             return exact.Surface(given["name"], [tuple(a + b for a, b in zip(p, shift)) for p in points], triangles, True)
         keys = {"shape": given["shape"], **place, "material": {"young": 1e5, "poisson": .3, "density": 1000}}
-        folder = self.folder / f"obstacle{number}"
-        folder.mkdir()
+        folder = pathlib.Path(tempfile.mkdtemp(dir=self.folder))
         (folder / "scene.toml").write_text("gravity = [0, 0, 0]\n[time]\nduration = 0.01\n[[body]]\n" +
                                            "".join(f"{k} = {toml_text(v)}\n" for k, v in keys.items()))
         subprocess.run([ASPIC, "run", "scene.toml", "--out", "run", "--quiet"], cwd=folder, check=True, timeout=60)
@@ -97,7 +96,7 @@ class Scenes(Folder):
                 subprocess.run([ASPIC, "run", path, "--out", out, "--quiet"], timeout=300, check=True)
                 still = [o for o in scene.get("obstacle", []) if "motion" not in o]
                 planes = [(o["plane"].get("origin", [0, 0, 0]), o["plane"].get("normal", [0, 1, 0])) for o in still if "plane" in o]
-                surfaces = [self.obstacle(o, i) for i, o in enumerate(still) if "shape" in o or "mesh" in o]
+                surfaces = [self.obstacle(o) for o in still if "shape" in o or "mesh" in o]
                 frames = [exact.body_surfaces(p) for p in sorted((out / "frames").glob("body_*.vtu"))]
                 self.assertEqual(contact_scenes.surface_faults(frames, surfaces, planes), [])
                 self.assertGreater(len(frames), 10)
