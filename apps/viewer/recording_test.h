@@ -54,7 +54,8 @@ class Decoded {
       const std::map<std::string, size_t> sizes = {{"u8", 1}, {"u32", 4}, {"f32", 4}};
       EXPECT_EQ(sizes.at(entry["type"]), sizeof(T));
       std::vector<T> numbers(entry["count"].get<size_t>());
-      std::memcpy(numbers.data(), bytes_.data() + start_ + entry["at"].get<size_t>(), numbers.size() * sizeof(T));
+      if (!numbers.empty())
+        std::memcpy(numbers.data(), bytes_.data() + start_ + entry["at"].get<size_t>(), numbers.size() * sizeof(T));
       return numbers;
     }
     ADD_FAILURE() << "no array " << name;

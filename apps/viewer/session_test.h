@@ -62,7 +62,7 @@ T take(const std::string& bytes, size_t at) {
 template <class T>
 std::vector<T> take(const std::string& bytes, size_t at, size_t count) {
   std::vector<T> values(count);
-  std::memcpy(values.data(), bytes.data() + at, count * sizeof(T));
+  if (count > 0) std::memcpy(values.data(), bytes.data() + at, count * sizeof(T));
   return values;
 }
 
