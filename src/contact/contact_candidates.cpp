@@ -11,10 +11,10 @@ namespace aspic {
 namespace {
 
 // More margin means fewer searches but more pairs.
-constexpr double kMargin = 0.05;  // of the mean edge at a point
-constexpr double kLonger = 0.2;   // of its displacement
+constexpr double kMargin = 0.03;  // of the mean edge at a point
+constexpr double kLonger = 0.1;   // of its displacement
 constexpr double kRounding = 1e-6;
-constexpr double kLeastShrink = 0.9;  // for which candidates are complete
+constexpr double kLeastShrink = 0.98;  // for which candidates are complete
 
 // Half the reach at least, for the distances at rest.
 std::vector<double> margins(const ContactMesh& mesh, double least) {

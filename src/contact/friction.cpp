@@ -89,12 +89,57 @@ double side(const ContactMesh& mesh, const ContactStencil& stencil) {
   return mesh.parts[stencil.parts[0]].is_obstacle ? -1 : 1;
 }
 
-// The tangential relative displacement since the start.
-std::array<double, 2> slip(const Slider& slider, Positions x, Positions start) {
+using Slip = std::array<double, 2>;  // tangential relative displacement since the start
+using Stiffness = std::array<std::array<double, 2>, 2>;
+
+Slip slip(const Slider& slider, Positions x, Positions start) {
   Vec3d d = -1.0 * slider.moved;
   for (int i = 0; i < 4; ++i)
     if (slider.row[i] >= 0) d = d + slider.weight[i] * (point(x, slider.row[i]) - point(start, slider.row[i]));
   return {dot(slider.tangent[0], d), dot(slider.tangent[1], d)};
+}
+
+Slip change_of_slip(const Slider& slider, std::span<const double> d) {
+  Vec3d sum{};
+  for (int i = 0; i < 4; ++i)
+    if (slider.row[i] >= 0) sum = sum + slider.weight[i] * point(d, slider.row[i]);
+  return {dot(slider.tangent[0], sum), dot(slider.tangent[1], sum)};
+}
+
+void add_force(const Slider& slider, const Slip& f, std::span<double> g) {
+  const Vec3d force = f[0] * slider.tangent[0] + f[1] * slider.tangent[1];
+  for (int i = 0; i < 4; ++i)
+    if (slider.row[i] >= 0) add_vec(slider.weight[i] * force, slider.row[i], g);
+}
+
+void add_stiffness(const Slider& slider, const Stiffness& k, double scale, BlockSparse& H) {
+  Mat3d K{};
+  for (int a = 0; a < 2; ++a)
+    for (int b = 0; b < 2; ++b)
+      for (int c = 0; c < 3; ++c)
+        for (int r = 0; r < 3; ++r) K(r, c) += scale * k[a][b] * slider.tangent[a][r] * slider.tangent[b][c];
+  Stencil added{.row = slider.row};
+  int variables = 0;
+  for (int i = 0; i < 4; ++i) {
+    if (slider.row[i] < 0) continue;
+    ++variables;
+    Mat3d& diagonal = H.block[H.pattern->diagonal(slider.row[i])];
+    diagonal = diagonal + (slider.weight[i] * slider.weight[i]) * K;
+    for (int j = 0; j < i; ++j) added.block[i * (i - 1) / 2 + j] = (slider.weight[i] * slider.weight[j]) * K;
+  }
+  if (variables > 1) H.stencils.push_back(added);
+}
+
+// The Hessian of a slider with respect to its slip.
+Stiffness stiffness(const Slider& slider, const Slip& u) {
+  const double y = std::hypot(u[0], u[1]);
+  const Dissipation f = dissipation(y, slider.width);
+  const double across = y > 0 ? f.first / y : 2 / slider.width, along = f.second;
+  Stiffness k;
+  for (int a = 0; a < 2; ++a)
+    for (int b = 0; b < 2; ++b)
+      k[a][b] = slider.force * ((a == b ? across : 0) + (y > 0 ? (along - across) * u[a] * u[b] / (y * y) : 0));
+  return k;
 }
 
 }  // namespace
@@ -180,39 +225,37 @@ void Friction::add_gradient(Positions x, const Context& context, double scale, s
     const double y = std::hypot(u[0], u[1]);
     if (y == 0) continue;
     const double size = scale * slider.force * dissipation(y, slider.width).first / y;
-    const Vec3d force = (size * u[0]) * slider.tangent[0] + (size * u[1]) * slider.tangent[1];
-    for (int i = 0; i < 4; ++i)
-      if (slider.row[i] >= 0) add_vec(slider.weight[i] * force, slider.row[i], g);
+    add_force(slider, {size * u[0], size * u[1]}, g);
   }
 }
 
 // f is convex, so the Hessian needs no modification.
 int Friction::add_hessian(Positions x, const Context& context, double scale, const Projection&, BlockSparse& H) const {
   const FrictionContext& own = friction(context);
-  for (const Slider& slider : own.sliders) {
-    const auto u = slip(slider, x, own.start);
-    const double y = std::hypot(u[0], u[1]);
-    const Dissipation f = dissipation(y, slider.width);
-    const double across = y > 0 ? f.first / y : 2 / slider.width, along = f.second;
-    Mat3d K{};
-    for (int a = 0; a < 2; ++a)
-      for (int b = 0; b < 2; ++b) {
-        const double k = (a == b ? across : 0) + (y > 0 ? (along - across) * u[a] * u[b] / (y * y) : 0);
-        for (int c = 0; c < 3; ++c)
-          for (int r = 0; r < 3; ++r) K(r, c) += scale * slider.force * k * slider.tangent[a][r] * slider.tangent[b][c];
-      }
-    Stencil added{.row = slider.row};
-    int variables = 0;
-    for (int i = 0; i < 4; ++i) {
-      if (slider.row[i] < 0) continue;
-      ++variables;
-      Mat3d& diagonal = H.block[H.pattern->diagonal(slider.row[i])];
-      diagonal = diagonal + (slider.weight[i] * slider.weight[i]) * K;
-      for (int j = 0; j < i; ++j) added.block[i * (i - 1) / 2 + j] = (slider.weight[i] * slider.weight[j]) * K;
-    }
-    if (variables > 1) H.stencils.push_back(added);
-  }
+  for (const Slider& slider : own.sliders)
+    add_stiffness(slider, stiffness(slider, slip(slider, x, own.start)), scale, H);
   return 0;
+}
+
+// A slider that d carries backward past its start is likely to stick: Newton's method on f would overshoot, for f'' = 0
+// while it slides. Its model becomes that of a stuck slider, whose force is 2 f u / e.
+int Friction::add_stops(Positions x, const Context& context, std::span<const double> d, double scale,
+                        std::span<double> g, BlockSparse& H) const {
+  const FrictionContext& own = friction(context);
+  int count = 0;
+  for (const Slider& slider : own.sliders) {
+    const Slip u = slip(slider, x, own.start), du = change_of_slip(slider, d);
+    const double y = std::hypot(u[0], u[1]), e = slider.width;
+    if (y <= e || u[0] * (u[0] + du[0]) + u[1] * (u[1] + du[1]) > -y * e) continue;
+    ++count;
+    Stiffness added = stiffness(slider, u);
+    for (int a = 0; a < 2; ++a)
+      for (int b = 0; b < 2; ++b) added[a][b] = (a == b ? 2 * slider.force / e : 0) - added[a][b];
+    add_stiffness(slider, added, scale, H);
+    const double size = scale * slider.force * (2 / e - 1 / y);
+    add_force(slider, {size * u[0], size * u[1]}, g);
+  }
+  return count;
 }
 
 }  // namespace aspic

@@ -24,6 +24,8 @@ class Friction : public Energy {
   double obstacle_work(Positions x, const Context& context) const;
   int add_hessian(Positions x, const Context& context, double scale, const Projection& projection,
                   BlockSparse& H) const override;
+  int add_stops(Positions x, const Context& context, std::span<const double> d, double scale, std::span<double> g,
+                BlockSparse& H) const override;
 
  private:
   void lag(Positions x, double time, Context& context) const;

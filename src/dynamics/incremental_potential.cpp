@@ -313,9 +313,11 @@ double IncrementalPotential::max_step(std::span<const double> q, std::span<const
 }
 
 const BlockSparse* IncrementalPotential::add_stops(std::span<const double> q, std::span<const double> d,
-                                                   std::span<double> g) {
+                                                   double max_step, std::span<double> g) {
   int added = 0;
-  for (const ActiveTerm& V : potential_) added += V.add_stops(q, d, factor_, g, H_);
+  if (max_step < kUsefulStep)
+    for (const ActiveTerm& V : potential_) added += V.add_stops(q, d, factor_, g, H_);
+  for (const ActiveTerm& D : damping_) added += D.add_stops(q, d, factor_, g, H_);
   if (added == 0) return nullptr;
   pins_.set_zero(g);
   pins_.set_identity(H_);

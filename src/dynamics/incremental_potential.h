@@ -35,7 +35,8 @@ class IncrementalPotential : public Objective, public HasMetric, public HasParts
   void note_iterate(std::span<const double> q) override;
   const BlockSparse& metric() override;  // M, with rows of the identity for pinned vertices
   double max_step(std::span<const double> q, std::span<const double> d) override;
-  const BlockSparse* add_stops(std::span<const double> q, std::span<const double> d, std::span<double> g) override;
+  const BlockSparse* add_stops(std::span<const double> q, std::span<const double> d, double max_step,
+                               std::span<double> g) override;
   // x: the radius of the body [m]. value: the energy of doubling the size of the body, in units of E, without constant
   // offsets of the potential. gradient_unit: f, because g is a force times f.
   ObjectiveScales scales() const override {

@@ -8,9 +8,8 @@ namespace aspic {
 namespace {
 
 constexpr int kMostPasses = 50;
-constexpr double kRough = 100;      // first tolerance, relative to the one asked for
-constexpr double kRoughest = 1e-2;  // and its maximum
-constexpr double kReduction = 0.1;  // of the forces by one pass
+constexpr double kRough = 1e4;      // first tolerance, relative to the one asked for
+constexpr double kReduction = 0.3;  // of the forces by one pass
 
 // Mixtures with earlier coefficients end alternation.
 double share_of_update(int passes) { return passes < 8 ? 1 : passes < 20 ? 0.5 : 0.2; }
@@ -28,7 +27,7 @@ MinimizeReport minimize_lagged(const StepTools& tools, const MinimizeOptions& op
   };
   if (!tools.E.is_lagged()) return minimize(initial, options);
   MinimizeOptions rough = options, none = options;
-  rough.tolerance = std::max(options.tolerance, std::min(kRough * options.tolerance, kRoughest));
+  rough.tolerance = kRough * options.tolerance;
   none.max_iterations = 0;
   MinimizeReport report = minimize(initial, rough);
   int passes = 1;

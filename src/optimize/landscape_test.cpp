@@ -133,7 +133,9 @@ TEST(Landscape, MarksWhatLargestStepDoesNotReach) {
     int blocked = 0;
     for (const SlicePoint& point : slice.point) {
       const double at = -0.8 + point.s * iteration.d[0] + point.t * slice.across[0];
-      if (std::abs(at + 0.7) > 1e-9) EXPECT_EQ(point.is_blocked, at > -0.7);
+      if (std::abs(at + 0.7) > 1e-9) {
+        EXPECT_EQ(point.is_blocked, at > -0.7);
+      }
       EXPECT_EQ(std::isfinite(point.value), !point.is_blocked);
       blocked += point.is_blocked;
     }

@@ -83,15 +83,14 @@ bool NewtonSystem::solve_with_kept(NewtonTask& task, const InnerAccuracy& accura
 
 bool NewtonSystem::avoid_stops(NewtonTask& task) {
   constexpr int kRounds = 4;
-  constexpr double kLong = 0.5;     // step that is worth taking
   constexpr double kFinest = 1e-9;  // relative residual
   auto* bounded = dynamic_cast<HasStops*>(&task.E);
   if (!bounded || task.report.truncated) return false;
   bool has_springs = false;
   g_.assign(task.g.begin(), task.g.end());
   double reach = task.E.max_step(task.x, task.d);
-  for (int round = 0; round < kRounds && reach < kLong && !is_late(task.report); ++round) {
-    const BlockSparse* H = bounded->add_stops(task.x, task.d, g_);
+  for (int round = 0; round < kRounds && !is_late(task.report); ++round) {
+    const BlockSparse* H = bounded->add_stops(task.x, task.d, reach, g_);
     if (!H) break;
     has_springs = true;
     d_.assign(task.d.begin(), task.d.end());
@@ -99,7 +98,7 @@ bool NewtonSystem::avoid_stops(NewtonTask& task) {
     const double forcing = task.forcing * gradient_norm_ / std::sqrt(task.E.dot(g_, g_));  // springs pull hard
     const bool is_solved = solver_->factorize(*H) && solve_factorized(task, g_, std::max(forcing, kFinest));
     const double next = is_solved && task.E.dot(task.g, task.d) < 0 ? task.E.max_step(task.x, task.d) : 0;
-    if (next <= reach) {
+    if (next < std::min(reach, kUsefulStep)) {
       std::copy(d_.begin(), d_.end(), task.d.begin());
       break;
     }

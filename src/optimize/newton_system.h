@@ -49,7 +49,7 @@ class NewtonSystem {
  private:
   bool solve_factorized(NewtonTask& task) { return solve_factorized(task, task.g, task.forcing); }
   bool solve_factorized(NewtonTask& task, std::span<const double> g, double forcing);
-  // Solves again, with springs, as long as something bounds the step along d. Returns whether any were added.
+  // Solves again, with springs, as long as the direction meets stops. Returns whether any were added.
   bool avoid_stops(NewtonTask& task);
   bool solve_semidefinite(const BlockSparse& H, NewtonTask& task);
 

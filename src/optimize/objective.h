@@ -73,13 +73,18 @@ class HasPreconditioner {
   virtual bool precondition(std::span<const double> r, std::span<double> z) = 0;
 };
 
-// Objectives whose feasible steps may be short, such as those with contact.
+// A step along a Newton direction that is worth taking as it is.
+inline constexpr double kUsefulStep = 0.5;
+
+// Objectives whose feasible steps may be short, or whose gradients have kinks, such as those with contact and friction.
 class HasStops {
  public:
   virtual ~HasStops() = default;
-  // Adds springs to the last Hessian and to g, such that the minimizer of g'd + d'Hd / 2 avoids what bounds the steps
-  // from x along the given d. Returns the Hessian, or null if nothing was added.
-  virtual const BlockSparse* add_stops(std::span<const double> x, std::span<const double> d, std::span<double> g) = 0;
+  // Adds springs to the last Hessian and to g, such that the minimizer of g'd + d'Hd / 2 stops at kinks that the given
+  // d crosses and, if max_step < kUsefulStep, before what bounds the steps along d. max_step: the largest feasible step
+  // from x along d. Returns the Hessian, or null if nothing was added.
+  virtual const BlockSparse* add_stops(std::span<const double> x, std::span<const double> d, double max_step,
+                                       std::span<double> g) = 0;
 };
 
 // Round-off counts as convergence only below this fraction of the forces that the gradient is the sum of.
