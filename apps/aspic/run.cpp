@@ -308,7 +308,7 @@ void add_run(CLI::App& app, Action& action) {
   CLI::App* command = app.add_subcommand("run", "Simulates a scene, or a mesh with defaults");
   command->footer(R"(
 Examples:
-  aspic run bunny.obj                             fill the surface with tets; it falls and hangs
+  aspic run bunny.obj                             fill the surface with tets; it falls onto a floor
   aspic run scenes/bunny.toml                     results in out/bunny
   aspic run beam.toml --set material.young=2e5 time.step=0.005 --out out/soft
   aspic run beam.toml --resume                    continue an interrupted run, bit-reproducibly

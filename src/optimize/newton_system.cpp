@@ -82,7 +82,7 @@ bool NewtonSystem::solve_with_kept(NewtonTask& task, const InnerAccuracy& accura
 }
 
 bool NewtonSystem::avoid_stops(NewtonTask& task) {
-  constexpr int kRounds = 4;
+  constexpr int kRounds = 2;
   constexpr double kFinest = 1e-9;  // relative residual
   auto* bounded = dynamic_cast<HasStops*>(&task.E);
   if (!bounded || task.report.truncated) return false;

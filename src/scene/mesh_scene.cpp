@@ -2,9 +2,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 #include "base/error.h"
+#include "contact/barrier.h"
 #include "mesh/box.h"
+#include "mesh/self_intersection.h"
+#include "mesh/surface.h"
 #include "mesh/vertices.h"
 #include "scene/overrides.h"
 #include "scene/placement.h"
@@ -22,6 +26,7 @@ constexpr double kDensity = 1000;                // [kg/m^3]
 constexpr double kPoisson = 0.4;
 constexpr double kGravity = 9.81;  // [m/s^2]
 constexpr double kPull = 0.25;     // sideways displacement of the top / height
+constexpr double kFall = 0.2;      // height of the fall / largest extent
 
 // Rounds to one significant digit.
 double one_digit(double x) {
@@ -76,10 +81,60 @@ bool is_overridden(const std::string& key, const std::vector<std::string>& overr
   return false;
 }
 
+// Returns why the mesh cannot have contact; empty if it can.
+std::string contact_obstacle(const TetMesh& mesh) {
+  const TriMesh surface = boundary_surface(mesh).surface;
+  if (const auto pairs = self_intersections(surface, 1).pairs; !pairs.empty()) {
+    const Vec3d& at = surface.vertices[surface.triangles[pairs.front()[0]][0]];
+    return "its surface intersects itself near (" + number_text(at[0]) + ", " + number_text(at[1]) + ", " +
+           number_text(at[2]) + ")";
+  }
+  ContactMesh contact;
+  std::vector<int> rows(surface.vertices.size());
+  std::iota(rows.begin(), rows.end(), 0);
+  contact.add({.young = 1}, surface.vertices, surface.triangles, rows);
+  const Barrier barrier(std::move(contact), {});
+  return barrier.self_touching_point() < 0 ? "" : "its surface touches itself";
+}
+
+// How the body of the defaults is held: by a floor, or by pins.
+struct Support {
+  bool is_floor = true;
+  std::string reason;  // of pins; empty: an override asks for them
+};
+
+Support support_for(const TetMesh& mesh, const std::vector<std::string>& overrides) {
+  for (const char* key : {"pin", "deform", "time.integrator", "time.adaptive"})
+    if (is_overridden(key, overrides)) return {false, ""};
+  const std::string obstacle = contact_obstacle(mesh);
+  return {obstacle.empty(), obstacle};
+}
+
 struct Defaults {
   std::string toml;
   std::vector<Choice> choices;
 };
+
+// The part of the scene that holds the body, and its notes.
+Defaults floor_below(const Box& box) {
+  const double fall = one_digit(kFall * longest_side(box)), height = box.lower[1] - fall;
+  return {"[contact]\nfriction = 0.3\n[[obstacle]]\nname = \"floor\"\nplane = { origin = [0.0, " + number_text(height) +
+              ", 0.0] }\n",
+          {{"obstacle", "obstacle: a floor " + number_text(fall) + " m below the body, which falls onto it"},
+           {"contact.friction", "contact.friction = 0.3: dry rubber or wood"}}};
+}
+
+Defaults pinned_at_base(const Box& box, double base, const std::string& reason) {
+  const double height = box.upper[1] - box.lower[1];
+  const std::string pull =
+      number_text(kPull * height) + " * ((Y - " + number_text(box.lower[1]) + ") / " + number_text(height) + ")^2";
+  return {
+      "deform = { displacement = [" + toml_string(pull) +
+          ", 0.0, 0.0] }\n[[body.pin]]\nname = \"base\"\nwhere = { lowest = " + number_text(base) + " }\n",
+      {{"pin", "pin: the lowest " + number_text(100 * base) + " % of the height is fixed, as if glued to the ground" +
+                   (reason.empty() ? "" : ": contact with a floor is impossible, because " + reason)},
+       {"deform", "deform: top pulled sideways by a quarter of the height, then released"}}};
+}
 
 Defaults defaults_for(const std::filesystem::path& path, TetMesh mesh, double scale,
                       const std::vector<std::string>& overrides) {
@@ -87,20 +142,19 @@ Defaults defaults_for(const std::filesystem::path& path, TetMesh mesh, double sc
   for (Vec3d& P : mesh.rest) P = scale * P;
   const std::vector<Vec3d>& X = mesh.rest;
   const Box box = bounding_box(X);
-  const double height = box.upper[1] - box.lower[1], extent = longest_side(file_box);
+  const double extent = longest_side(file_box);
   const double base = base_fraction(X, box);
   const bool has_file = is_overridden("material.file", overrides);  // which defines model and parameters
   const bool needs_young = !has_file && !is_overridden("material.young", overrides);
   const auto [young, reason] = needs_young ? stiffness_for(mesh, base) : Stiffness{};
-  const std::string pull =
-      number_text(kPull * height) + " * ((Y - " + number_text(box.lower[1]) + ") / " + number_text(height) + ")^2";
+  const Support support = support_for(mesh, overrides);
+  const Defaults held = support.is_floor ? floor_below(box) : pinned_at_base(box, base, support.reason);
 
   Defaults d;
   d.toml = "gravity = [0.0, -9.81, 0.0]\n[time]\nstep = 0.01\nduration = 2.0\n[[body]]\nmesh = " +
            toml_string(path.string()) + "\nscale = " + number_text(scale) + "\nmaterial = { " +
            (has_file ? "" : "model = \"neo_hookean_log\", ") + "young = " + number_text(young) +
-           ", poisson = 0.4, density = 1000.0 }\ndeform = { displacement = [" + toml_string(pull) +
-           ", 0.0, 0.0] }\n[[body.pin]]\nname = \"base\"\nwhere = { lowest = " + number_text(base) + " }\n";
+           ", poisson = 0.4, density = 1000.0 }\n" + held.toml;
   const std::string size = number_text(extent);
   if (scale == 1) {
     d.choices.push_back(
@@ -119,10 +173,7 @@ Defaults defaults_for(const std::filesystem::path& path, TetMesh mesh, double sc
                        "material.poisson = 0.4: rubber or flesh within the limits of linear tets "
                        "well"});
   d.choices.push_back({"material.density", "material.density = 1000 kg/m^3: water and soft tissue"});
-  d.choices.push_back({"pin", "pin: the lowest " + number_text(100 * base) +
-                                  " % of the height is fixed, as if glued to "
-                                  "the ground"});
-  d.choices.push_back({"deform", "deform: top pulled sideways by a quarter of the height, then released"});
+  d.choices.insert(d.choices.end(), held.choices.begin(), held.choices.end());
   d.choices.push_back({"time.step", "time.step = 0.01 s: resolves oscillations of a few hertz"});
   d.choices.push_back({"time.duration", "time.duration = 2 s: several oscillations"});
   return d;
@@ -145,7 +196,7 @@ SceneSource scene_of_mesh(const std::filesystem::path& path, const std::vector<s
   const std::string minimal =
       "[time]\n[[body]]\nmesh = " + toml_string(file) +
       "\nmaterial = { young = 1e5, poisson = 0.4 }\ndeform = { displacement = [0, 0, 0] }\n[[body.pin]]\nname = "
-      "\"base\"\nwhere = { lowest = 0.05 }\n";
+      "\"base\"\nwhere = { lowest = 0.05 }\n[contact]\n[[obstacle]]\nplane = {}\n";
   const Table first = read(minimal);
   const Value& body = first.find("body")->array().front();
   const Value* size = body.find("mesh_size");

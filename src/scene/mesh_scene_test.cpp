@@ -17,7 +17,7 @@ using ::testing::Contains;
 using ::testing::HasSubstr;
 using ::testing::Not;
 
-TEST(MeshAlone, NotesItsDefaults) {
+TEST(MeshAlone, FallsOntoFloor) {
   const TestFolder folder;
   write_mesh(folder / "tower.msh", make_box({{0, 0, 0}}, {{40, 100, 40}}, {3, 8, 3}));
   Scene scene = load_scene(folder / "tower.msh");
@@ -25,12 +25,44 @@ TEST(MeshAlone, NotesItsDefaults) {
   EXPECT_EQ(scene.steps, 200);
   EXPECT_THAT(scene.notes, Contains(AllOf(HasSubstr("100"), HasSubstr("becomes 1 m"))));
   EXPECT_THAT(scene.notes, Contains(HasSubstr("material.young = 2e+05 Pa")));
+  EXPECT_THAT(scene.notes, Contains(HasSubstr("a floor 0.2 m below the body")));
+  EXPECT_TRUE(scene.simulation.model().pins.empty());
+  int contacts = 0;
+  for (int step = 0; step < 40; ++step) {
+    const StepReport report = scene.simulation.step();
+    EXPECT_TRUE(is_success(report.status));
+    contacts += report.contacts;
+  }
+  EXPECT_GT(contacts, 0);
+  for (size_t k = 1; k < scene.simulation.state().q.size(); k += 3) EXPECT_GT(scene.simulation.state().q[k], -0.2);
+}
+
+// Contact needs other integrators, and pins that are overridden must exist.
+TEST(MeshAlone, IsPinnedIfOverridesNeedPins) {
+  const TestFolder folder;
+  write_mesh(folder / "tower.msh", make_box({{0, 0, 0}}, {{40, 100, 40}}, {3, 8, 3}));
+  Scene scene = load_scene(folder / "tower.msh", {.overrides = {"time.integrator=\"trapezoid\""}});
+  EXPECT_EQ(scene.simulation.model().contact, nullptr);
   EXPECT_EQ(scene.simulation.model().pins[0].vertices.size(), 16u);
-  double reach = 0;
+  EXPECT_THAT(scene.notes, Contains(HasSubstr("as if glued to the ground")));
+  double speed = 0;
   for (int step = 0; step < 3; ++step) EXPECT_TRUE(is_success(scene.simulation.step().status));
   for (size_t i = 0; i < scene.simulation.state().q.size(); i += 3)
-    reach = std::max(reach, scene.simulation.state().qdot[i] * -1);
-  EXPECT_GT(reach, 0.1);  // the top swings back, meters per second
+    speed = std::max(speed, scene.simulation.state().qdot[i] * -1);
+  EXPECT_GT(speed, 0.1);  // the top swings back, meters per second
+}
+
+TEST(MeshAlone, IsPinnedIfItIntersectsItself) {
+  const TestFolder folder;
+  TetMesh two = make_box({{0, 0, 0}}, {{1, 1, 1}}, {2, 2, 2});
+  const TetMesh inside = make_box({{0.5, 0.5, 0.5}}, {{1.5, 1.6, 1.7}}, {2, 2, 2});
+  for (const Tet& t : inside.tets) two.tets.push_back({t[0] + 27, t[1] + 27, t[2] + 27, t[3] + 27});
+  two.rest.insert(two.rest.end(), inside.rest.begin(), inside.rest.end());
+  write_mesh(folder / "two.msh", two);
+  Scene scene = load_scene(folder / "two.msh");
+  EXPECT_THAT(scene.notes,
+              Contains(AllOf(HasSubstr("pin: "), HasSubstr("because its surface intersects itself near ("))));
+  EXPECT_TRUE(is_success(scene.simulation.step().status));
 }
 
 // A body that widens upwards from its pins needs a stiffer material than a column of its height.
@@ -57,7 +89,7 @@ TEST(MeshAlone, NamesFreeParts) {
   for (const Tet& t : above.tets) two.tets.push_back({t[0] + 27, t[1] + 27, t[2] + 27, t[3] + 27});
   two.rest.insert(two.rest.end(), above.rest.begin(), above.rest.end());
   write_mesh(folder / "two.msh", two);
-  EXPECT_THAT(load_scene(folder / "two.msh").notes,
+  EXPECT_THAT(load_scene(folder / "two.msh", {.overrides = {"deform.displacement=[0,0,0]"}}).notes,
               Contains(AllOf(HasSubstr("2 parts"), HasSubstr("no pin holds 1 of them (the first holds tet 48)"))));
 }
 

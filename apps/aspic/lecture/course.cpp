@@ -34,6 +34,12 @@ const std::vector<Demonstration>& demonstrations() {
        "the equation of motion",
        "M q'' = -dV/dq; q stacks the positions of the vertices of a finite element mesh.",
        show_equation_of_motion},
+      {"06_chutes",
+       {6},
+       "bodies tumble down chutes",
+       "Soft bodies fall on chutes and slide down. Contact is one more summand of V: a barrier energy that is infinite "
+       "where surfaces touch, so that the minimizer never intersects.",
+       show_chutes},
       {"08-10_springs_beside_elements",
        {8, 10},
        "masses and springs beside finite elements",
@@ -107,10 +113,7 @@ std::vector<const Demonstration*> demonstrations_of(int page) {
   return found;
 }
 
-bool is_unavailable(int page) { return page == 6; }
-
 std::string reason_for_none(int page) {
-  if (is_unavailable(page)) return "bunnies fall on chutes: needs contact, which Aspic does not have yet";
   return demonstrations_of(page).empty() ? "neither a formula nor a demonstration" : "";
 }
 

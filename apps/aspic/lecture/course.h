@@ -51,12 +51,12 @@ std::vector<const Demonstration*> demonstrations_of(int page);
 
 // Returns why a page has no demonstration; empty if it has one.
 std::string reason_for_none(int page);
-bool is_unavailable(int page);  // shows something that is not supported yet
 
 // The demonstrations, by file.
 void show_fine_mesh(const Stage& stage, Sheet& sheet);
 void show_tissue(const Stage& stage, Sheet& sheet);
 void show_equation_of_motion(const Stage& stage, Sheet& sheet);
+void show_chutes(const Stage& stage, Sheet& sheet);
 void show_springs_beside_elements(const Stage& stage, Sheet& sheet);
 void show_differences(const Stage& stage, Sheet& sheet);
 void show_explicit_or_implicit(const Stage& stage, Sheet& sheet);

@@ -88,6 +88,12 @@ const std::vector<Staging>& stagings() {
        .look = "Play: V falls while T rises, and vice versa, as M q'' = -dV/dq exchanges them. Shift and click "
                "on a vertex to read where its three entries stand in q.",
        .scene = "05_swing"},
+      {.demonstration = "06_chutes",
+       .look =
+           "Play: the bodies fall on the chutes, slide and tumble to the floor. Dots are contact points, colored by "
+           "pressure. Drag a body against the other, or up a chute: nothing intersects. The energy plot has a curve "
+           "for contact.",
+       .scene = "06_chutes"},
       {.demonstration = "08-10_springs_beside_elements",
        .look = "The same mesh twice, elements on the left and springs along the edges on the right: both obey the same "
                "equation with another V. Springs do not resist changes of volume and sag differently.",
@@ -299,25 +305,14 @@ Lesson lesson_of(const Demonstration& demonstration, const Staging& staging, con
   return lesson;
 }
 
-Lesson missing_page(int page) {
-  return {.id = fmt::format("{:02}", page),
-          .pages = std::to_string(page),
-          .title = fmt::format("page {}", page),
-          .missing = reason_for_none(page)};
-}
-
 }  // namespace
 
 std::vector<Lesson> lessons(const std::filesystem::path& cache) {
   const Place place = find_place(cache);
   std::vector<Lesson> list;
-  int page = 1;  // next page to examine for unavailable ones
-  for (const Demonstration& demonstration : demonstrations()) {
-    for (; page < demonstration.pages.front(); ++page)
-      if (is_unavailable(page)) list.push_back(missing_page(page));
+  for (const Demonstration& demonstration : demonstrations())
     for (const Staging& staging : stagings())
       if (staging.demonstration == demonstration.key) list.push_back(lesson_of(demonstration, staging, place));
-  }
   return list;
 }
 

@@ -25,10 +25,9 @@ std::string bound_text(const Measure& m) {
   return m.relation == Relation::shown ? "" : fmt::format("{} {}", to_string(m.relation), short_text(m.bound));
 }
 
-enum class PageVerdict { pass, fail, nothing_to_check, not_available };
+enum class PageVerdict { pass, fail, nothing_to_check };
 
 PageVerdict verdict_of(int page, const std::vector<Result>& results) {
-  if (is_unavailable(page)) return PageVerdict::not_available;
   bool any = false, passes = true;
   for (const Result& result : results) {
     const std::vector<int>& pages = result.demonstration->pages;
@@ -40,7 +39,7 @@ PageVerdict verdict_of(int page, const std::vector<Result>& results) {
 }
 
 const char* to_text(PageVerdict verdict) {
-  constexpr const char* kTexts[] = {"pass", "fail", "nothing to check", "not available"};
+  constexpr const char* kTexts[] = {"pass", "fail", "nothing to check"};
   return kTexts[static_cast<size_t>(verdict)];
 }
 
@@ -162,8 +161,7 @@ void print(const Result& result) {
 
 std::string count_text(const std::vector<Result>& results) {
   std::string text;
-  for (const PageVerdict verdict :
-       {PageVerdict::pass, PageVerdict::fail, PageVerdict::nothing_to_check, PageVerdict::not_available}) {
+  for (const PageVerdict verdict : {PageVerdict::pass, PageVerdict::fail, PageVerdict::nothing_to_check}) {
     const std::vector<int> pages = pages_with(verdict, results);
     if (pages.empty() && verdict != PageVerdict::fail) continue;
     text += fmt::format("{}{} page{}: {}", text.empty() ? "" : "; ", pages.size(), pages.size() == 1 ? "" : "s",

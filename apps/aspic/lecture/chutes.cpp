@@ -1,0 +1,100 @@
+// Page 6: bodies that tumble down chutes.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <limits>
+
+#include "aspic/lecture/course.h"
+#include "aspic/lecture/run_scene.h"
+#include "contact/barrier.h"
+#include "contact/obstacle_surface.h"
+#include "mesh/box.h"
+#include "mesh/self_intersection.h"
+#include "mesh/surface.h"
+
+namespace aspic::cli::lecture {
+namespace {
+
+// The overrides that place the center of each body where the scene places the origin of its shape.
+std::vector<std::string> centered(const Stage& stage) {
+  const Scene one = stage.on_real_mesh("05_swing");
+  const Box box = bounding_box(one.simulation.model().mesh.rest);
+  const Vec3d center = 0.5 * (box.lower + box.upper);
+  std::vector<std::string> overrides;
+  for (const Vec3d& at : {Vec3d{{-0.7, 4.1, 0}}, Vec3d{{2.2, 1.95, 0}}}) {
+    const Vec3d t = at - center;
+    overrides.push_back(fmt::format("body.{}.translate=[{}, {}, {}]", overrides.size(), t[0], t[1], t[2]));
+  }
+  return overrides;
+}
+
+// Bodies and chutes as one surface, and the speed of each vertex; NaN for obstacles.
+ShadedSurface all_surfaces(const Simulation& simulation) {
+  const Model& model = simulation.model();
+  const State& state = simulation.state();
+  const BoundarySurface bodies = boundary_surface(model.mesh);
+  ShadedSurface all{.caption = fmt::format("t = {:.1f} s", state.time), .surface = surface_at(model, state.q)};
+  for (const int v : bodies.tet_vertex) all.values.push_back(norm(point(state.qdot, v)));
+  const Barrier& contact = *model.contact;
+  const std::vector<Vec3d> points = contact.obstacle_points(simulation.obstacle_time());
+  for (const ObstacleSurface& obstacle : obstacle_surfaces(contact.mesh(), points)) {
+    if (obstacle.plane) continue;
+    const int first = static_cast<int>(all.surface.vertices.size());
+    for (const Triangle& t : obstacle.surface.triangles)
+      all.surface.triangles.push_back({t[0] + first, t[1] + first, t[2] + first});
+    for (const Vec3d& x : obstacle.surface.vertices) {
+      all.surface.vertices.push_back(x);
+      all.values.push_back(std::numeric_limits<double>::quiet_NaN());
+    }
+  }
+  return all;
+}
+
+}  // namespace
+
+void show_chutes(const Stage& stage, Sheet& sheet) {
+  Scene scene = stage.on_real_mesh("06_chutes", centered(stage));
+  sheet.keep(scene);
+  const Model& model = scene.simulation.model();
+  sheet.show("vertices", model.mesh.vertex_count(), "");
+
+  double gap = std::numeric_limits<double>::infinity(), lowest = gap, friction = 0;
+  int contacts = 0, intersections = 0;
+  std::vector<ShadedSurface> panels;
+  CsvFile table = sheet.table("chutes.csv", {"time_s", "contacts", "min_gap_m", "max_pressure_Pa", "friction_loss_J"});
+  const int every = std::max(1, scene.steps / 4);
+  const Run result = run(scene.simulation, scene.steps, [&](const StepReport& report) {
+    const ShadedSurface now = all_surfaces(scene.simulation);
+    intersections += !self_intersections(now.surface, 1).pairs.empty();
+    const Vector& q = scene.simulation.state().q;
+    for (size_t k = 1; k < q.size(); k += 3) lowest = std::min(lowest, q[k]);
+    if (report.contacts > 0) gap = std::min(gap, report.min_gap);
+    contacts = std::max(contacts, report.contacts);
+    friction += report.friction_loss;
+    if (report.step % every == 0) panels.push_back(now);
+    table.append(CsvRow()
+                     .add(report.time)
+                     .add(report.contacts)
+                     .add(report.min_gap)
+                     .add(report.max_pressure)
+                     .add(report.friction_loss));
+  });
+  sheet.equals("steps that converged", scene.steps - result.unconverged, scene.steps, "", "all of them");
+  sheet.show("Newton iterations per step", static_cast<double>(result.iterations) / scene.steps, "");
+  sheet.at_least("contacts, most at a time", contacts, 1, "", "the bodies reach the chutes");
+  sheet.equals("steps whose surfaces intersect", intersections, 0, "",
+               "an exact test of all triangles, which shares no code with contact");
+  sheet.at_least("lowest vertex above the floor", lowest, 0, "m", "bodies do not pass through the floor");
+  sheet.show("smallest gap", gap, "m");
+  sheet.at_least("energy that friction takes", friction, 1e-9, "J", "the bodies slide");
+  sheet.at_most("largest energy imbalance of a step", result.largest_ledger_error, 1e-9, "",
+                "the balance is an identity, contact and friction included");
+  sheet.draw("chutes.png", "Bodies on two chutes, colored by speed",
+             MeshPicture{.panels = std::move(panels),
+                         .eye = {{0.5, 0.4, 1}},
+                         .up = {{0, 1, 0}},
+                         .wires = Wires::none,
+                         .value_label = "speed [m/s]"});
+}
+
+}  // namespace aspic::cli::lecture
