@@ -103,6 +103,29 @@ class Scenes(Folder):
         self.assertGreater(checked, 0)
 
 
+class Pairs(Folder):
+    """Two blocks on one slope, of which only one slides: x = a h^2 n (n + 1) / 2 with a = g (sin - mu cos)."""
+
+    def test_friction_of_a_pair(self):
+        block = "[[body]]\nname = \"{}\"\nshape = {{ box = {{ lower = [{}, 0.0002, 0], upper = [{}, 0.1002, 0.2], cells = [4, 2, 4] }} }}\n" \
+                "material = {{ young = 1e7, poisson = 0.3, density = 1000 }}\n"
+        sine, cosine, h, steps = .28, .96, .01, 60
+        text = f"gravity = [{9.81 * sine}, {-9.81 * cosine}, 0]\n[time]\nstep = {h}\nduration = {h * steps}\n[output]\nevery = 1\n" \
+               "[contact]\nfriction = 0.5\nreach = 0.0005\n[[contact.pair]]\nbetween = [\"smooth\", \"floor\"]\nfriction = 0.1\n" \
+               "[[obstacle]]\nname = \"floor\"\nplane = {}\n" + block.format("smooth", 0, .2) + block.format("rough", 1, 1.2)
+        (self.folder / "two.toml").write_text(text)
+        done = subprocess.run([ASPIC, "run", "two.toml", "--out", "run"], cwd=self.folder, capture_output=True, text=True, timeout=120)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        frames = [exact.body_surfaces(p) for p in sorted((self.folder / "run/frames").glob("body_*.vtu"))]
+        moved = []
+        for start, end in zip(frames[0], frames[-1]):
+            used = {c for t in start.triangles for c in t}
+            moved.append(sum(end.points[c][0] - start.points[c][0] for c in used) / len(used))
+        slid = .5 * 9.81 * (sine - .1 * cosine) * h * h * steps * (steps + 1)
+        self.assertAlmostEqual(moved[0] / slid, 1, delta=.01)
+        self.assertLess(abs(moved[1]), 1e-3 * slid)
+
+
 class Shapes(Folder):
     def test_degenerate_shapes(self):
         self.run_cases(contact_cases.degenerate_shapes(20))

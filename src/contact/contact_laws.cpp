@@ -37,6 +37,12 @@ ContactLaws::ContactLaws(const ContactMesh& mesh, const ContactOptions& options)
                               .friction = std::sqrt(a.friction * b.friction),
                               .guard = i == j ? 0 : std::min(a.mean_triangle, b.mean_triangle)};
     }
+  for (const auto& [parts, friction] : options.pairs)
+    law_[parts[0] * parts_ + parts[1]].friction = law_[parts[1] * parts_ + parts[0]].friction = friction;
+}
+
+bool ContactLaws::has_friction() const {
+  return std::any_of(law_.begin(), law_.end(), [](const ContactLaw& law) { return law.friction > 0; });
 }
 
 double ContactLaws::largest_reach() const {

@@ -1,5 +1,6 @@
 // The constants of contact between two parts.
 #pragma once
+#include <array>
 #include <vector>
 
 #include "contact/contact_mesh.h"
@@ -14,9 +15,16 @@ struct ContactLaw {
   double guard = 0;      // least area of a point near the guards' reach [m^2]
 };
 
+struct PairFriction {
+  std::array<int, 2> parts;
+  double friction;  // coefficient
+};
+
 struct ContactOptions {
   double reach = 0;      // [m]; 0: a fiftieth of the mean edge of the finer surface
   double stiffness = 0;  // [Pa]; 0: a tenth of the smaller Young's modulus
+  // Pairs whose coefficient is not the geometric mean of those of the parts.
+  std::vector<PairFriction> pairs = {};
 };
 
 // The laws of all pairs of parts, for points of the first part near the second one.
@@ -27,6 +35,7 @@ class ContactLaws {
   const ContactLaw& operator()(int first, int second) const { return law_[first * parts_ + second]; }
   ContactLaw& operator()(int first, int second) { return law_[first * parts_ + second]; }
   double largest_reach() const;
+  bool has_friction() const;
 
  private:
   size_t parts_ = 0;

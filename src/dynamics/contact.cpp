@@ -1,6 +1,5 @@
 #include "dynamics/contact.h"
 
-#include <algorithm>
 #include <cmath>
 
 #include "contact/friction.h"
@@ -14,12 +13,10 @@ double default_creep(double gravity, const Model& model) {
 }
 
 void add_contact(ContactMesh mesh, const ContactOptions& options, double creep, Model& model) {
-  const bool has_friction =
-      std::any_of(mesh.parts.begin(), mesh.parts.end(), [](const ContactPart& part) { return part.friction > 0; });
   auto barrier = std::make_unique<Barrier>(std::move(mesh), options);
   model.contact = barrier.get();
   model.loads.push_back(std::move(barrier));
-  if (!has_friction) return;
+  if (!model.contact->laws().has_friction()) return;
   const double speed = creep > 0 ? creep : default_creep(9.81, model);
   model.damping.push_back(std::make_unique<Friction>(*model.contact, speed));
 }

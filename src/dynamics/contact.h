@@ -8,7 +8,7 @@ namespace aspic {
 // Returns 1e-4 sqrt(g L) for an acceleration of gravity g and the size L of the model, in their units of speed.
 double default_creep(double gravity, const Model& model);
 
-// Adds the barrier to the loads and, if any part has friction, friction to the damping terms. `creep`: see Friction;
+// Adds the barrier to the loads and, if any pair has friction, friction to the damping terms. `creep`: see Friction;
 // 0: the default for 9.81 m/s^2.
 void add_contact(ContactMesh mesh, const ContactOptions& options, double creep, Model& model);
 

@@ -32,7 +32,7 @@ std::string kinds(const Key& key) {
   add(kIntegers, "list of integers");
   add(kMatrix, "3 rows of 3 numbers");
   add(kPairs, "list of pairs of integers");
-  add(kNames, "list of " + list_of(key.choices));
+  add(kNames, "list of " + (key.choices.empty() ? "names" : list_of(key.choices)));
   add(kTable, "[" + key.table + "](#" + key.table + ")");
   add(kTables, "list of [" + key.table + "](#" + key.table + ")");
   add(kAnyTable, "table of numbers");

@@ -76,14 +76,42 @@ void add_obstacle(Value& obstacle, double friction, MeshLoader& loader, ContactM
       surface.vertices, surface.triangles, {});
 }
 
-void complete_names(std::vector<Value>& obstacles) {
+// Bodies, then obstacles.
+void complete_names(std::vector<Value>& obstacles, const Model& model) {
   std::set<std::string> names;
+  for (const BodyRange& body : model.bodies) names.insert(body.name);
   for (size_t i = 0; i < obstacles.size(); ++i) {
     if (!obstacles[i].find("name")) obstacles[i].table().set("name", {"obstacle" + std::to_string(i + 1), {}});
     const Value& name = obstacles[i]["name"];
     if (!names.insert(name.text()).second)
-      throw error_at(name.place, "two obstacles are called '" + name.text() + "'; names must differ");
+      throw error_at(name.place, "two bodies or obstacles are called '" + name.text() + "'; names must differ");
   }
+}
+
+int part_number(const Value& name, const ContactMesh& contact) {
+  std::vector<std::string> names;
+  for (const ContactPart& part : contact.parts) {
+    if (part.name == name.text()) return static_cast<int>(names.size());
+    names.push_back(part.name);
+  }
+  throw error_at(name.place, "no body or obstacle is called '" + name.text() + "'" + suggestion(name.text(), names));
+}
+
+std::vector<PairFriction> pairs_of(const Value& options, const ContactMesh& contact) {
+  std::vector<PairFriction> pairs;
+  std::set<std::array<int, 2>> known;
+  const Value* tables = options.find("pair");
+  for (const Value& table : tables ? tables->array() : Array{}) {
+    const Value& between = table["between"];
+    if (between.array().size() != 2) throw error_at(between.place, "between needs two names of bodies or obstacles");
+    std::array<int, 2> parts = {part_number(between.array()[0], contact), part_number(between.array()[1], contact)};
+    std::sort(parts.begin(), parts.end());
+    if (contact.parts[parts[0]].is_obstacle)
+      throw error_at(between.place, "obstacles do not touch each other; name a body");
+    if (!known.insert(parts).second) throw error_at(between.place, "an earlier pair has the same names");
+    pairs.push_back({parts, table["friction"].number()});
+  }
+  return pairs;
 }
 
 }  // namespace
@@ -112,10 +140,11 @@ void add_scene_contact(Table& document, MeshLoader& loader, Model& model) {
                 model.mesh.rest, boundary_triangles(model.mesh, body.first_tet, body.tet_count), rows);
   }
   if (obstacles) {
-    complete_names(obstacles->array());
+    complete_names(obstacles->array(), model);
     for (Value& obstacle : obstacles->array()) add_obstacle(obstacle, friction_of(obstacle, friction), loader, contact);
   }
-  const ContactOptions given{.reach = number("reach"), .stiffness = number("stiffness")};
+  const ContactOptions given{
+      .reach = number("reach"), .stiffness = number("stiffness"), .pairs = pairs_of(options, contact)};
   for (const ContactPart& part : contact.parts)
     if (!part.is_obstacle && given.reach > part.mean_edge)
       throw error_at(options["reach"].place, "reach = " + number_text(given.reach) + "; body '" + part.name +

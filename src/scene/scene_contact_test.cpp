@@ -60,6 +60,26 @@ TEST(SceneContact, ObstacleMovesByFormula) {
   EXPECT_DOUBLE_EQ(contact.points(scene.simulation.state().q, 2).back()[1], -2.5);
 }
 
+TEST(SceneContact, PairsHaveTheirFriction) {
+  const std::string two = kCube + "[[body]]\nname = \"ball\"\nshape = { sphere = { radius = 0.5, size = 0.4 } }\n" +
+                          "translate = [0, 3, 0]\n" + kFloor;
+  const Scene scene = load(two +
+                           "[contact]\nfriction = 0.4\n[[contact.pair]]\nbetween = [\"obstacle1\", \"ball\"]\n"
+                           "friction = 0.1\n[[contact.pair]]\nbetween = [\"cube\", \"cube\"]\nfriction = 0\n");
+  const ContactLaws& laws = scene.simulation.model().contact->laws();
+  EXPECT_EQ(laws(0, 0).friction, 0);
+  EXPECT_EQ(laws(0, 2).friction, 0.4);
+  EXPECT_EQ(laws(1, 2).friction, 0.1);
+  EXPECT_EQ(laws(2, 1).friction, 0.1);
+  const auto pair = [](const std::string& names) {
+    return "[[contact.pair]]\nbetween = " + names + "\nfriction = 0.1\n";
+  };
+  EXPECT_THAT(refusal(two + pair("[\"cube\"]")), HasSubstr("between needs two names"));
+  EXPECT_THAT(refusal(two + pair("[\"cube\", \"bal\"]")), HasSubstr("'bal' (did you mean 'ball'?)"));
+  EXPECT_THAT(refusal(two + pair("[\"obstacle1\", \"obstacle1\"]")), HasSubstr("name a body"));
+  EXPECT_THAT(refusal(two + pair("[\"cube\", \"ball\"]") + pair("[\"ball\", \"cube\"]")), HasSubstr("earlier pair"));
+}
+
 TEST(SceneContact, RejectsBadInput) {
   EXPECT_THAT(refusal(kCube + kFloor + "motion = { rotate = { axis = [0, 1, 0], rate_deg = 9 } }\n"),
               HasSubstr("planes do not rotate"));
