@@ -110,7 +110,7 @@ class Pairs(Folder):
         block = "[[body]]\nname = \"{}\"\nshape = {{ box = {{ lower = [{}, 0.0002, 0], upper = [{}, 0.1002, 0.2], cells = [4, 2, 4] }} }}\n" \
                 "material = {{ young = 1e7, poisson = 0.3, density = 1000 }}\n"
         sine, cosine, h, steps = .28, .96, .01, 60
-        text = f"gravity = [{9.81 * sine}, {-9.81 * cosine}, 0]\n[time]\nstep = {h}\nduration = {h * steps}\n[output]\nevery = 1\n" \
+        text = f"gravity = [{9.81 * sine}, {-9.81 * cosine}, 0]\n[time]\nstep = {h}\nduration = {h * steps}\n[output]\nevery = {h}\n" \
                "[contact]\nfriction = 0.5\nreach = 0.0005\n[[contact.pair]]\nbetween = [\"smooth\", \"floor\"]\nfriction = 0.1\n" \
                "[[obstacle]]\nname = \"floor\"\nplane = {}\n" + block.format("smooth", 0, .2) + block.format("rough", 1, 1.2)
         (self.folder / "two.toml").write_text(text)
