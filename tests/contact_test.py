@@ -2,6 +2,7 @@
 """Hard cases of contact through the program, with exact checks of every frame. tools/contact_cases runs longer ones.
 
 usage: ASPIC=path/to/aspic contact_test.py [TestCase...]"""
+import math
 import pathlib
 import shutil
 import subprocess
@@ -124,6 +125,77 @@ class Pairs(Folder):
         slid = .5 * 9.81 * (sine - .1 * cosine) * h * h * steps * (steps + 1)
         self.assertAlmostEqual(moved[0] / slid, 1, delta=.01)
         self.assertLess(abs(moved[1]), 1e-3 * slid)
+
+
+def distance_to_triangle(p, corners):
+    """Of a point, in floating point: the foot on the plane if it is inside, else on the nearest edge."""
+    a, b, c = corners
+    sub = lambda x, y: [x[i] - y[i] for i in range(3)]
+    dot = lambda x, y: sum(i * j for i, j in zip(x, y))
+    u, v, w = sub(b, a), sub(c, a), sub(p, a)
+    det = dot(u, u) * dot(v, v) - dot(u, v) ** 2
+    s, t = ((dot(v, v) * dot(u, w) - dot(u, v) * dot(v, w)) / det, (dot(u, u) * dot(v, w) - dot(u, v) * dot(u, w)) / det)
+    feet = [[a[i] + s * u[i] + t * v[i] for i in range(3)]] if min(s, t, 1 - s - t) >= 0 else []
+    for x, y in ((a, b), (b, c), (c, a)):
+        e = sub(y, x)
+        k = max(0, min(1, dot(e, sub(p, x)) / dot(e, e)))
+        feet.append([x[i] + k * e[i] for i in range(3)])
+    return min(math.dist(p, foot) for foot in feet)
+
+
+class Round(Folder):
+    """Spheres and capsules: no triangle of any frame comes closer than the radius."""
+
+    SCENE = """[time]
+step = 0.01
+duration = 0.4
+[output]
+every = 0.02
+[contact]
+friction = 0.3
+[[body]]
+name = "sheet"
+shape = { box = { lower = [-0.5, 0.32, -0.5], upper = [0.5, 0.38, 0.5], cells = [8, 1, 8] } }
+material = { young = 5e4, poisson = 0.4, density = 1000 }
+[[body]]
+name = "block"
+shape = { box = { lower = [0.9, 0.32, -0.1], upper = [1.1, 0.52, 0.1], cells = [1, 1, 1] } }
+material = { young = 5e4, poisson = 0.4, density = 1000 }
+[[obstacle]]
+name = "ball"
+sphere = { center = [0, 0, 0], radius = 0.3 }
+motion = { displacement = ["0.1 * t", 0, 0] }
+[[obstacle]]
+name = "rod"
+capsule = { from = [1.05, 0.2, -1], to = [1.05, 0.2, 1], radius = 0.05 }
+"""
+
+    def run_scene(self, text):
+        (self.folder / "round.toml").write_text(text)
+        return subprocess.run([ASPIC, "run", "round.toml", "--out", "run", "--force"], cwd=self.folder, capture_output=True, text=True,
+                              timeout=120)
+
+    def test_triangles_stay_outside(self):
+        done = self.run_scene(self.SCENE)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        gaps = {"ball": math.inf, "rod": math.inf}
+        for number, file in enumerate(sorted((self.folder / "run/frames").glob("body_*.vtu"))):
+            for surface in exact.body_surfaces(file):
+                for triangle in surface.triangles:
+                    corners = [surface.points[c] for c in triangle]
+                    gaps["ball"] = min(gaps["ball"], distance_to_triangle((.002 * number, 0, 0), corners) - .3)
+                    for k in range(41):
+                        gaps["rod"] = min(gaps["rod"], distance_to_triangle((1.05, .2, -1 + .05 * k), corners) - .05)
+        for name, gap in gaps.items():
+            self.assertGreater(gap, 0, name)
+            self.assertLess(gap, .01, name + " was not touched")
+
+    def test_overlap_and_rotation_are_refused(self):
+        for old, new, words in (("radius = 0.3", "radius = 0.35", "overlap in the initial state: "), ("radius = 0.05 }", "radius = 0 }", "radius"),
+                                ('{ displacement = ["0.1 * t", 0, 0] }', "{ rotate = { axis = [0, 1, 0], rate_deg = 5 } }", "do not rotate")):
+            done = self.run_scene(self.SCENE.replace(old, new))
+            self.assertEqual(done.returncode, 2, done.stderr)
+            self.assertIn(words, done.stderr)
 
 
 class Shapes(Folder):

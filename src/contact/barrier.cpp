@@ -24,6 +24,21 @@ std::vector<double> sizes_of(const ContactMesh& mesh) {
   return sizes;
 }
 
+// The point of a body that is closest to a sphere or a capsule.
+ContactPoint foot_of(const ContactStencil& stencil, const ContactMesh& mesh, std::span<const Vec3d> x) {
+  ContactPoint foot{.gap = stencil.gap(), .pressure = 0};
+  foot.pressure = -stencil.weight / stencil.area * stencil.b().first;
+  double most = 0;
+  for (int k = 0; k < stencil.distance.count; ++k) {
+    const int p = stencil.point[stencil.distance.point[k]];
+    const double weight = std::abs(stencil.distance.c[k]);
+    if (mesh.row[p] < 0) continue;
+    foot.position = foot.position + weight * x[p];
+    if (weight > most) most = weight, foot.row = mesh.row[p];
+  }
+  return foot;
+}
+
 }  // namespace
 
 struct Barrier::Impl {
@@ -245,15 +260,19 @@ std::vector<ContactPoint> Barrier::contact_points(Positions x, double time) cons
   if (!std::all_of(x.begin(), x.end(), [](double xi) { return std::isfinite(xi); })) return {};
   const std::vector<Vec3d> p = impl_->points(x, time);
   const auto stencils = impl_->search.at(p);
-  std::vector<ContactPoint> at(p.size());
+  std::vector<ContactPoint> at(p.size()), round;
   for (const ContactStencil& stencil : *stencils) {
     if (stencil.area == 0) continue;
+    if (stencil.radius > 0) {
+      round.push_back(foot_of(stencil, impl_->mesh, p));
+      continue;
+    }
     ContactPoint& point = at[stencil.point[0]];
     const double kappa = stencil.weight / stencil.area;
-    point.gap = std::min(point.gap, stencil.distance.d);
+    point.gap = std::min(point.gap, stencil.gap());
     point.pressure -= std::copysign(kappa, stencil.area) * stencil.b().first;
   }
-  std::vector<ContactPoint> touching;
+  std::vector<ContactPoint> touching = std::move(round);
   for (size_t i = 0; i < at.size(); ++i)
     if (std::isfinite(at[i].gap)) touching.push_back({impl_->mesh.row[i], p[i], at[i].gap, at[i].pressure});
   return touching;
@@ -263,8 +282,8 @@ ContactSummary Barrier::summary(Positions x, double time) const {
   const auto stencils = this->stencils(x, time);
   ContactSummary summary{.contacts = static_cast<int>(stencils->size())};
   for (const ContactStencil& stencil : *stencils)
-    if (stencil.distance.d < summary.min_gap)
-      summary.min_gap = stencil.distance.d, summary.parts = stencil.parts, summary.reach = stencil.reach;
+    if (stencil.gap() < summary.min_gap)
+      summary.min_gap = stencil.gap(), summary.parts = stencil.parts, summary.reach = stencil.reach;
   for (const ContactPoint& point : contact_points(x, time))
     summary.max_pressure = std::max(summary.max_pressure, point.pressure);
   return summary;

@@ -88,6 +88,40 @@ TEST(Barrier, GradientMatchesDifferences) {
   }
 }
 
+// A triangle near a sphere and a capsule: closest at its middle, at an edge, at a corner, and at an end of the capsule.
+TEST(Barrier, RoundObstaclesHaveExactDerivatives) {
+  ContactMesh mesh;
+  const std::vector<Vec3d> X = {{{0, 0, 0}}, {{1, 0.05, 0}}, {{0.1, 1, 0.02}}};
+  mesh.add({.name = "body", .young = 1e5}, X, std::vector<Triangle>{{0, 1, 2}}, std::vector<int>{0, 1, 2});
+  mesh.add_capsule({.name = "ball", .radius = 0.5}, {Vec3d{{0.3, 0.3, 0.56}}, Vec3d{{0.3, 0.3, 0.56}}});
+  mesh.add_capsule({.name = "rod", .radius = 0.2}, {Vec3d{{0.2, -0.3, 0.22}}, Vec3d{{0.9, 0.8, 0.26}}});
+  mesh.add_capsule({.name = "end", .radius = 0.1}, {Vec3d{{0.25, 0.35, -0.15}}, Vec3d{{0.3, 0.3, -1}}});
+  const Barrier barrier(std::move(mesh), {.reach = 0.1});
+  std::vector<double> x, v = {0.3, -0.7, 0.2, 0.5, 0.1, -0.4, -0.6, 0.9, 0.8};
+  for (const Vec3d& at : X) x.insert(x.end(), at.a, at.a + 3);
+  ASSERT_GE(barrier.summary(x, 0).contacts, 4);
+  const auto gradient = [&](double s) {
+    std::vector<double> at = x, g(9);
+    add_scaled(s, v, at);
+    barrier.add_gradient(at, {}, 1, g);
+    return g;
+  };
+  const auto value = [&](double s) {
+    std::vector<double> at = x;
+    add_scaled(s, v, at);
+    return barrier.value(at, {});
+  };
+  const double e = 1e-6;
+  EXPECT_NEAR(dot(gradient(0), v), (value(e) - value(-e)) / (2 * e), 1e-6 * norm(gradient(0)));
+  const BlockPattern pattern = make_pattern(3, {});
+  BlockSparse H(pattern);
+  barrier.add_hessian(x, {}, 1, {}, H);
+  std::vector<double> Hv(9);
+  H.multiply(v, Hv);
+  const std::vector<double> high = gradient(e), low = gradient(-e);
+  for (int i = 0; i < 9; ++i) EXPECT_NEAR(Hv[i], (high[i] - low[i]) / (2 * e), 1e-5 * max_abs(Hv)) << i;
+}
+
 TEST(Barrier, ExactHessianMatchesDifferences) {
   Boxes boxes(4e-4, 0.013, 0.3);
   boxes.shake(1e-4);

@@ -53,7 +53,7 @@ Frame frame_of(std::span<const Vec3d> X, std::span<const Vec3d> x) {
 double edge_reach(const ContactMesh& mesh, const ContactLaws& laws, const EdgePair& pair) {
   const auto& [a, b] = mesh.edges[pair.first];
   const auto& [e, f] = mesh.edges[pair.second];
-  const double reach = kEdgeReach * laws(mesh.part[a], mesh.part[e]).reach;
+  const double reach = laws(mesh.part[a], mesh.part[e]).edge_reach;
   if (mesh.part[a] != mesh.part[e]) return reach;
   const auto& X = mesh.rest;
   return std::min(reach, pair_distance(PairKind::edge_edge, {X[a], X[b], X[e], X[f]}).d / 2);
@@ -69,6 +69,8 @@ class CandidateSearch::Near : public PairFilter {
         edges_b_(std::span(search.mesh_.edges).subspan(search.surfaces_[b].first_edge)),
         triangles_b_(std::span(search.mesh_.triangles).subspan(search.surfaces_[b].first_triangle)),
         reach_((1 + kRounding) * search.laws_(a, b).reach),
+        edge_reach_((1 + kRounding) * search.laws_(a, b).edge_reach),
+        between_((1 + kRounding) * search.laws_(a, b).radius),
         shrink_(search.least_shrink()) {}
 
   bool accepts_vertex_triangle(int v, int t) const override {
@@ -77,7 +79,7 @@ class CandidateSearch::Near : public PairFilter {
     const auto& x = search_.center_;
     const auto& r = search_.radius_;
     return shrink_ * point_triangle_distance({x[p], x[a], x[b], x[c]}).d <=
-           reach_ + r[p] + std::max({r[a], r[b], r[c]});
+           between_ + reach_ + r[p] + std::max({r[a], r[b], r[c]});
   }
   bool accepts_edge_edge(int first, int second) const override {
     const auto& [a, b] = edges_a_[first];
@@ -85,7 +87,7 @@ class CandidateSearch::Near : public PairFilter {
     const auto& x = search_.center_;
     const auto& r = search_.radius_;
     return shrink_ * edge_edge_distance({x[a], x[b], x[e], x[f]}).d <=
-           kEdgeReach * reach_ + std::max(r[a], r[b]) + std::max(r[e], r[f]);
+           between_ + edge_reach_ + std::max(r[a], r[b]) + std::max(r[e], r[f]);
   }
 
  private:
@@ -93,7 +95,7 @@ class CandidateSearch::Near : public PairFilter {
   int first_point_;
   std::span<const Edge> edges_a_, edges_b_;
   std::span<const Triangle> triangles_b_;
-  double reach_, shrink_;
+  double reach_, edge_reach_, between_, shrink_;
 };
 
 CandidateSearch::CandidateSearch(PairScope scope, const ContactMesh& mesh, const ContactLaws& laws)
@@ -186,9 +188,10 @@ bool CandidateSearch::find_pairs(ClosePairs& all) {
   // Half of what a gap in the boxes may exceed their distance by.
   const double widest = *std::max_element(radius_.begin(), radius_.end());
   const double radius = (laws_.largest_reach() / 2 + (1 - least_shrink()) * widest) / least_shrink();
-  const std::vector<double> radii(std::max({mesh_.rest.size(), mesh_.edges.size(), mesh_.triangles.size()}), radius);
+  std::vector<double> radii(std::max({mesh_.rest.size(), mesh_.edges.size(), mesh_.triangles.size()}));
   const auto query_of = [&](int part, const PairFilter* filter) {
     const SurfacePrimitives& own = surfaces_[part].finder.primitives();
+    std::fill(radii.begin(), radii.end(), radius + mesh_.parts[part].radius);
     return PairQuery{.path = boxes_,
                      .vertex_radius = std::span(radii).first(own.vertices.size()),
                      .edge_radius = std::span(radii).first(own.edges.size()),

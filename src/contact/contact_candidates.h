@@ -12,9 +12,6 @@
 
 namespace aspic {
 
-// Reach of the guards between two edges, and of points of the coarser surface, relative to that of their surfaces.
-inline constexpr double kEdgeReach = 0.25;
-
 // The gaps below were measured when the candidates were searched [m].
 struct NearTriangle {
   int triangle;

@@ -31,10 +31,14 @@ ContactLaws::ContactLaws(const ContactMesh& mesh, const ContactOptions& options)
     for (size_t j = 0; j < parts_; ++j) {
       const ContactPart &a = mesh.parts[i], &b = mesh.parts[j];
       if (a.is_obstacle && b.is_obstacle) continue;
-      law_[i * parts_ + j] = {.reach = options.reach > 0 ? options.reach : kReach * std::min(a.mean_edge, b.mean_edge),
+      const double reach = options.reach > 0 ? options.reach : kReach * std::min(a.mean_edge, b.mean_edge);
+      const double radius = a.radius + b.radius;
+      law_[i * parts_ + j] = {.reach = reach,
+                              .edge_reach = radius > 0 ? reach : kGuardReach * reach,
                               .stiffness = options.stiffness > 0 ? options.stiffness : kStiffness * smaller_young(a, b),
                               .share = i == j ? 0.5 : share_of_finer(a.mean_triangle, b.mean_triangle),
                               .friction = std::sqrt(a.friction * b.friction),
+                              .radius = radius,
                               .guard = i == j ? 0 : std::min(a.mean_triangle, b.mean_triangle)};
     }
   for (const auto& [parts, friction] : options.pairs)

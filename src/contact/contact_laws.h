@@ -7,12 +7,17 @@
 
 namespace aspic {
 
+// Reach of the guards between two edges, and of points of the coarser surface, relative to that of their surfaces.
+inline constexpr double kGuardReach = 0.25;
+
 struct ContactLaw {
-  double reach = 0;      // distance at which contact begins [m]
-  double stiffness = 0;  // kappa [Pa]
-  double share = 0;      // of the integral over the first surface; that over the second one has the rest
-  double friction = 0;   // coefficient
-  double guard = 0;      // least area of a point near the guards' reach [m^2]
+  double reach = 0;       // gap at which contact begins [m]
+  double edge_reach = 0;  // that of two edges [m]
+  double stiffness = 0;   // kappa [Pa]
+  double share = 0;       // of the integral over the first surface; that over the second one has the rest
+  double friction = 0;    // coefficient
+  double radius = 0;      // of a capsule: gaps are distances less this [m]
+  double guard = 0;       // least area of a point near the guards' reach [m^2]
 };
 
 struct PairFriction {

@@ -62,6 +62,31 @@ void ContactMesh::add(const ContactPart& given, std::span<const Vec3d> X, std::s
   parts.push_back(own);
 }
 
+// A triangle without area whose corners are the ends. Points of other parts are finer, so they integrate.
+void ContactMesh::add_capsule(const ContactPart& given, const std::array<Vec3d, 2>& ends) {
+  ContactPart own = given;
+  own.is_obstacle = true;
+  own.first_point = point_count();
+  own.point_count = norm(ends[1] - ends[0]) > 0 ? 2 : 1;
+  own.mean_edge = own.mean_triangle = std::numeric_limits<double>::infinity();
+  for (int k = 0; k < own.point_count; ++k) {
+    rest.push_back(ends[k]);
+    row.push_back(-1);
+    part.push_back(static_cast<int>(parts.size()));
+    area.push_back(0);
+    point_share.push_back(0);
+  }
+  const int a = own.first_point, b = point_count() - 1;
+  triangles.push_back({a, b, b});
+  edges_of.push_back({-1, -1, -1});
+  if (a < b) {
+    edges.push_back({a, b});
+    edge_share.push_back(0);
+    edge_area.push_back(0);
+  }
+  parts.push_back(own);
+}
+
 void ContactMesh::add_plane(const ContactPart& given, const Vec3d& origin, const Vec3d& normal) {
   ContactPart own = given;
   own.is_obstacle = true;

@@ -24,6 +24,7 @@ struct ContactPart {
   double mean_triangle = 0;  // [m^2]
   double young = 0;          // of a body, smallest of its tets [Pa]
   double friction = 0;       // coefficient
+  double radius = 0;         // of a capsule or a sphere about its points; 0: another surface [m]
   ObstacleMotion motion;     // of an obstacle; empty: at rest
 };
 
@@ -60,6 +61,8 @@ struct ContactMesh {
   // obstacle. Points without triangles are left out.
   void add(const ContactPart& part, std::span<const Vec3d> X, std::span<const Triangle> surface,
            std::span<const int> row);
+  // Adds the points within part.radius of the segment between the ends, which may be equal: an obstacle.
+  void add_capsule(const ContactPart& part, const std::array<Vec3d, 2>& ends);
   // Adds a plane, whose motion moves its origin.
   void add_plane(const ContactPart& part, const Vec3d& origin, const Vec3d& normal);
 };

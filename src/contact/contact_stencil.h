@@ -14,7 +14,8 @@ struct ContactStencil {
   std::array<int, 4> point = {-1, -1, -1, -1};  // numbers in the ContactMesh: of a point and a triangle, edge or point,
                                                 // or of two edges
   double weight = 0;                            // factor of b [N]
-  double reach = 0;                             // distance at which b begins [m]
+  double reach = 0;                             // gap at which b begins [m]
+  double radius = 0;                            // the gap is the distance less this [m]
   double area = 0;                              // that `weight` stands for, with its sign; 0: a guard [m^2]
   std::array<int, 2> parts = {};
   // Two edges: eps in the factor that vanishes where they are parallel, (2 - c/eps) c/eps for the squared norm c of
@@ -22,7 +23,8 @@ struct ContactStencil {
   double parallel = 0;
 
   bool is_of_edges() const { return parallel > 0; }
-  BarrierValue b() const { return barrier(distance.d, reach); }
+  double gap() const { return distance.d - radius; }
+  BarrierValue b() const { return barrier(gap(), reach); }
   double value(std::span<const Vec3d> x) const;  // [J] for the positions of all points of the mesh
   std::array<Vec3d, 4> gradient(std::span<const Vec3d> x) const;
   // The Hessian, with negative eigenvalues filtered unless it is exact.

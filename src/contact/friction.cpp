@@ -51,9 +51,9 @@ Dissipation dissipation(double y, double e) {
   return {y * s * (1 - s / 3), s * (2 - s), 2 * (1 - s) / e};
 }
 
-// Whether both stencils are of the same point and the same other part.
+// Whether both stencils are of the same point and the same other part. The center of a sphere has many contacts.
 bool is_of_same_point(const ContactStencil& a, const ContactStencil& b) {
-  return !a.is_of_edges() && !b.is_of_edges() && a.point[0] == b.point[0] && a.parts == b.parts;
+  return a.radius == 0 && !a.is_of_edges() && !b.is_of_edges() && a.point[0] == b.point[0] && a.parts == b.parts;
 }
 
 // The normal force between a point and a part, or between two edges. In a concave crease it is the sum over two faces

@@ -1,5 +1,8 @@
 #include "contact/obstacle_surface.h"
 
+#include <cmath>
+#include <numbers>
+
 #include "mesh/box.h"
 #include "mesh/distance.h"
 
@@ -18,6 +21,28 @@ TriMesh square(const ContactPlane& plane, const Box& bodies) {
   return {{foot - a - b, foot + a - b, foot + a + b, foot - a + b}, {{0, 1, 2}, {0, 2, 3}}};
 }
 
+// Rings from one end of a capsule to the other.
+TriMesh capsule(const Vec3d& a, const Vec3d& b, double radius) {
+  constexpr int kAround = 32, kRings = 16;  // rings: even
+  const Vec3d axis = norm(b - a) > 0 ? (1 / norm(b - a)) * (b - a) : Vec3d{{0, 1, 0}};
+  const auto [u, v] = tangents({.r = axis, .d = 1});
+  TriMesh mesh;
+  for (int i = 0; i <= kRings + 1; ++i) {
+    const int step = i <= kRings / 2 ? i : i - 1;  // the equator twice: at both ends
+    const double polar = std::numbers::pi * step / kRings;
+    for (int k = 0; k < kAround; ++k) {
+      const double angle = 2 * std::numbers::pi * k / kAround;
+      const Vec3d out = std::cos(angle) * u + std::sin(angle) * v;
+      mesh.vertices.push_back((i <= kRings / 2 ? a : b) + radius * (std::sin(polar) * out - std::cos(polar) * axis));
+      if (i == 0) continue;
+      const int here = i * kAround + k, next = i * kAround + (k + 1) % kAround;
+      mesh.triangles.push_back({here - kAround, next - kAround, next});
+      mesh.triangles.push_back({here - kAround, next, here});
+    }
+  }
+  return mesh;
+}
+
 }  // namespace
 
 std::vector<ObstacleSurface> obstacle_surfaces(const ContactMesh& mesh, std::span<const Vec3d> points) {
@@ -33,6 +58,10 @@ std::vector<ObstacleSurface> obstacle_surfaces(const ContactMesh& mesh, std::spa
       if (plane.part == static_cast<int>(k)) own.plane = plane, own.plane->origin = points[plane.point];
     if (own.plane) {
       own.surface = square(*own.plane, bodies);
+      continue;
+    }
+    if (part.radius > 0) {
+      own.surface = capsule(points[part.first_point], points[part.first_point + part.point_count - 1], part.radius);
       continue;
     }
     const auto first = points.begin() + part.first_point;

@@ -54,6 +54,16 @@ class NearFeatures {
   std::vector<int> edges_, points_;
 };
 
+// A sphere may press the middle of a triangle, and a capsule the middle of an edge, so their pressure is integrated
+// over these: over the triangles near a center, or half over the points and half over the edges near an axis.
+double share_of_round(const ContactPart& round) { return round.point_count == 1 ? 0 : 0.5; }
+double triangle_share_of_round(const ContactPart& round) { return round.point_count == 1 ? 1 : 0.5; }
+
+double area_at_rest(const ContactMesh& mesh, const Triangle& t) {
+  const auto& X = mesh.rest;
+  return norm(cross(X[t[1]] - X[t[0]], X[t[2]] - X[t[0]])) / 2;
+}
+
 Distance point_point_distance(const Vec3d& x, const Vec3d& y) {
   Distance distance;
   distance.r = x - y;
@@ -120,8 +130,8 @@ ContactStencils StencilSearch::stencils(const Candidates& candidates, std::span<
     const auto& pairs = of_scope.pairs->edge_pairs;
     append(collect(static_cast<int>(pairs.size()), [&](int k, ContactStencils& found) {
       const Edge &a = mesh_.edges[pairs[k].first], &b = mesh_.edges[pairs[k].second];
-      const double reach = kEdgeReach * laws_(mesh_.part[a[0]], mesh_.part[b[0]]).reach;
-      if (of_scope.least_gap(pairs[k], a, b) < reach) add_edges(pairs[k], points, found);
+      const ContactLaw& law = laws_(mesh_.part[a[0]], mesh_.part[b[0]]);
+      if (of_scope.least_gap(pairs[k], a, b) < law.radius + law.edge_reach) add_edges(pairs[k], points, found);
     }));
   }
   return all;
@@ -132,20 +142,26 @@ void StencilSearch::add_point(const PathCandidates& candidates, std::span<const 
   const int own = mesh_.part[p];
   NearFeatures near;
   int other = -1;
-  double reach = 0;
+  double reach = 0, radius = 0, share = 0;
   const auto finish = [&] {
     for (const NearFeatures::Entry& entry : near.entries()) {
-      if (entry.share == 0) continue;
+      if (entry.share == 0 || (radius > 0 && share == 0)) continue;
       const ContactLaw& law = laws_(own, other);
-      const double area = entry.share * law.share * mesh_.area[p];
-      found.push_back({entry.distance, entry.point, law.stiffness * area, reach, area, {own, other}});
+      const double area = entry.share * share * mesh_.area[p];
+      found.push_back({.distance = entry.distance,
+                       .point = entry.point,
+                       .weight = law.stiffness * area,
+                       .reach = reach,
+                       .radius = radius,
+                       .area = area,
+                       .parts = {own, other}});
       // Points of a much coarser surface have next to no share: a tip would pierce the other surface.
-      const double guard = std::min(law.guard, mesh_.area[p]) - law.share * mesh_.area[p];
-      if (guard > 0 && entry.distance.d < kEdgeReach * reach)
+      const double guard = std::min(law.guard, mesh_.area[p]) - share * mesh_.area[p];
+      if (guard > 0 && radius == 0 && entry.distance.d < kGuardReach * reach)
         found.push_back({.distance = entry.distance,
                          .point = entry.point,
                          .weight = law.stiffness * guard * entry.share,
-                         .reach = kEdgeReach * reach,
+                         .reach = kGuardReach * reach,
                          .parts = {own, other}});
     }
     near.clear();
@@ -156,23 +172,36 @@ void StencilSearch::add_point(const PathCandidates& candidates, std::span<const 
     if (mesh_.part[corner[0]] != other) {
       finish();
       other = mesh_.part[corner[0]];
-      reach = laws_(own, other).reach;
+      reach = laws_(own, other).reach, radius = laws_(own, other).radius;
+      share = radius > 0 ? share_of_round(mesh_.parts[other]) : laws_(own, other).share;
       if (own == other) reach = std::min(reach, cap_[p]);
     }
-    if (laws_(own, other).stiffness == 0 || candidates.least_gap(p, candidate, corner) >= reach) continue;
+    if (laws_(own, other).stiffness == 0 || candidates.least_gap(p, candidate, corner) >= radius + reach) continue;
     const Distance to_triangle = point_triangle_distance({x[p], x[corner[0]], x[corner[1]], x[corner[2]]});
-    if (!(to_triangle.d < reach)) continue;
+    if (!(to_triangle.d < radius + reach)) continue;
+    if (mesh_.parts[own].radius > 0) {
+      const double area = triangle_share_of_round(mesh_.parts[own]) * area_at_rest(mesh_, corner);
+      found.push_back({.distance = to_triangle,
+                       .point = {p, corner[0], corner[1], corner[2]},
+                       .weight = laws_(own, other).stiffness * area,
+                       .reach = reach,
+                       .radius = radius,
+                       .area = area,
+                       .parts = {own, other}});
+      continue;
+    }
     near.add(to_triangle, {p, corner[0], corner[1], corner[2]}, 1);
     for (const int e : mesh_.edges_of[t]) {
+      if (e < 0 || mesh_.edge_share[e] == 0) continue;
       const auto& [a, b] = mesh_.edges[e];
-      if (mesh_.edge_share[e] == 0 || a == p || b == p || !near.visits_edge(e)) continue;
+      if (a == p || b == p || !near.visits_edge(e)) continue;
       const Distance to_edge = point_edge_distance({x[p], x[a], x[b]});
-      if (to_edge.d < reach) near.add(to_edge, {p, a, b, -1}, mesh_.edge_share[e]);
+      if (to_edge.d < radius + reach) near.add(to_edge, {p, a, b, -1}, mesh_.edge_share[e]);
     }
     for (const int q : corner) {
       if (mesh_.point_share[q] == 0 || !near.visits_point(q)) continue;
       const Distance to_point = point_point_distance(x[p], x[q]);
-      if (to_point.d < reach) near.add(to_point, {p, q, -1, -1}, mesh_.point_share[q]);
+      if (to_point.d < radius + reach) near.add(to_point, {p, q, -1, -1}, mesh_.point_share[q]);
     }
   }
   finish();
@@ -207,13 +236,17 @@ void StencilSearch::add_edges(const EdgePair& pair, std::span<const Vec3d> x, Co
   const Edge &a = mesh_.edges[pair.first], &b = mesh_.edges[pair.second];
   const Distance distance = edge_edge_distance({x[a[0]], x[a[1]], x[b[0]], x[b[1]]});
   const double reach = edge_reach(mesh_, laws_, pair);
-  if (!(distance.d < reach)) return;
   const int i = mesh_.part[a[0]], j = mesh_.part[b[0]];
+  const double radius = laws_(i, j).radius;
+  if (!(distance.d < radius + reach)) return;
   const auto& X = mesh_.rest;
+  const double area = (mesh_.edge_area[pair.first] + mesh_.edge_area[pair.second]) / (radius > 0 ? 2 : 4);
   found.push_back({.distance = distance,
                    .point = {a[0], a[1], b[0], b[1]},
-                   .weight = laws_(i, j).stiffness * (mesh_.edge_area[pair.first] + mesh_.edge_area[pair.second]) / 4,
+                   .weight = laws_(i, j).stiffness * area,
                    .reach = reach,
+                   .radius = radius,
+                   .area = radius > 0 ? area : 0,
                    .parts = {i, j},
                    .parallel = kParallel * squared_norm(X[a[1]] - X[a[0]]) * squared_norm(X[b[1]] - X[b[0]])});
 }

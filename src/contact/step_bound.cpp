@@ -69,19 +69,19 @@ MovingPair StepBound::pair(const Line& line, PairKind kind, const std::array<int
 
 double StepBound::to_triangle(const Line& line, int i, const NearTriangle& near, double step) const {
   const Triangle& t = mesh_.triangles[near.triangle];
-  const double reach = laws_(mesh_.part[i], mesh_.part[t[0]]).reach;
-  if (line.candidates.least_gap(i, near, t) > reach) return step;
+  const ContactLaw& law = laws_(mesh_.part[i], mesh_.part[t[0]]);
+  if (line.candidates.least_gap(i, near, t) > law.radius + law.reach) return step;
   return largest_step(pair(line, PairKind::point_triangle, {i, t[0], t[1], t[2]}),
-                      {.landing = kLanding * reach, .horizon = step})
+                      {.landing = kLanding * law.reach, .offset = law.radius, .horizon = step})
       .alpha;
 }
 
 double StepBound::of_edges(const Line& line, const EdgePair& edges, double step) const {
   const Edge &a = mesh_.edges[edges.first], &b = mesh_.edges[edges.second];
-  if (line.candidates.least_gap(edges, a, b) > kEdgeReach * laws_(mesh_.part[a[0]], mesh_.part[b[0]]).reach)
-    return step;
+  const ContactLaw& law = laws_(mesh_.part[a[0]], mesh_.part[b[0]]);
+  if (line.candidates.least_gap(edges, a, b) > law.radius + law.edge_reach) return step;
   return largest_step(pair(line, PairKind::edge_edge, {a[0], a[1], b[0], b[1]}),
-                      {.landing = kLanding * edge_reach(mesh_, laws_, edges), .horizon = step})
+                      {.landing = kLanding * edge_reach(mesh_, laws_, edges), .offset = law.radius, .horizon = step})
       .alpha;
 }
 

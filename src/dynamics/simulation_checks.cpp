@@ -130,8 +130,10 @@ void require_apart(const Model& model, const State& start, const IntegratorFacts
                        std::to_string(model.numbering.vertex.to_user(contact.row[p])) +
                        "; merge the coincident vertices (aspic check MESH --repair) or leave a gap");
   const double least_gap = 1e3 * std::numeric_limits<double>::epsilon() * max_abs(x);  // as in largest_step()
-  if (!std::isfinite(model.contact->value(x, at_start)) || model.contact->summary(x, time).min_gap < least_gap)
-    throw InvalidInput("surfaces touch in the initial state; leave a gap between them");
+  const ContactSummary closest = model.contact->summary(x, time);
+  if (closest.contacts > 0 && (!std::isfinite(model.contact->value(x, at_start)) || closest.min_gap < least_gap))
+    throw InvalidInput("surfaces touch or overlap in the initial state: " + contact.parts[closest.parts[0]].name +
+                       " and " + contact.parts[closest.parts[1]].name + "; move them apart");
 }
 
 std::optional<SolverConflict> find_conflict(const SimulationOptions& options) {

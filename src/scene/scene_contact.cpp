@@ -52,14 +52,31 @@ ObstacleMotion motion_of(const Value& obstacle, const std::vector<Vec3d>& starts
   };
 }
 
+// Planes, spheres and capsules move without rotation.
+void refuse_rotation(const Value& obstacle) {
+  const Value& motion = obstacle["motion"];
+  if (!motion.is_text() && motion.find("rotate"))
+    throw error_at(motion.place, "planes, spheres and capsules do not rotate; use a mesh or a shape");
+}
+
+void add_round_obstacle(const Value& obstacle, const Value& table, ContactPart part, ContactMesh& contact) {
+  refuse_rotation(obstacle);
+  const Vec3d from = table[table.find("center") ? "center" : "from"].vector();
+  const Vec3d to = table.find("center") ? from : table["to"].vector();
+  part.radius = table["radius"].number();
+  part.motion = motion_of(obstacle, {from, to});
+  contact.add_capsule(part, {from, to});
+}
+
 void add_obstacle(Value& obstacle, double friction, MeshLoader& loader, ContactMesh& contact) {
   const std::string name = obstacle["name"].text();
+  for (const char* kind : {"sphere", "capsule"})
+    if (const Value* table = obstacle.find(kind))
+      return add_round_obstacle(obstacle, *table, {.name = name, .friction = friction}, contact);
   if (const Value* plane = obstacle.find("plane")) {
+    refuse_rotation(obstacle);
     const Value& normal = (*plane)["normal"];
     if (!(norm(normal.vector()) > 0)) throw error_at(normal.place, "normal has length 0; try [0, 1, 0]");
-    const Value& motion = obstacle["motion"];
-    if (!motion.is_text() && motion.find("rotate"))
-      throw error_at(motion.place, "planes do not rotate; use shape = { box = { ... } }");
     const Vec3d origin = (*plane)["origin"].vector();
     return contact.add_plane({.name = name, .friction = friction, .motion = motion_of(obstacle, {origin})}, origin,
                              normal.vector());

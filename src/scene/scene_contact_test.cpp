@@ -82,7 +82,7 @@ TEST(SceneContact, PairsHaveTheirFriction) {
 
 TEST(SceneContact, RejectsBadInput) {
   EXPECT_THAT(refusal(kCube + kFloor + "motion = { rotate = { axis = [0, 1, 0], rate_deg = 9 } }\n"),
-              HasSubstr("planes do not rotate"));
+              HasSubstr("capsules do not rotate"));
   EXPECT_THAT(refusal(kCube + kFloor + "motion = { displacement = [0, \"0/t\", 0] }\n"), HasSubstr("is nan"));
   EXPECT_THAT(refusal(kCube + "\n[[obstacle]]\nplane = { normal = [0, 0, 0] }\n"), HasSubstr("normal has length 0"));
   EXPECT_THAT(refusal(kCube + "\n[[obstacle]]\nmesh = \"none.obj\"\n"), HasSubstr("none.obj"));

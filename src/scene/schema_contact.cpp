@@ -45,13 +45,14 @@ void add_contact_sections(Schema& s) {
       {{.name = "between", .accepts = kNames, .required = true, .meaning = "two names; equal: self-contact"},
        {.name = "friction", .accepts = kNumber, .required = true, .range = kNotNegative, .meaning = "coefficient"}});
 
-  s.sections.push_back(
-      {"obstacle", "[[obstacle]]",
-       "A surface with prescribed motion, or at rest: a plane, a triangle mesh, or a shape. Meshes and shapes are "
-       "placed by scale, rotate, translate in this order."});
+  s.sections.push_back({"obstacle", "[[obstacle]]",
+                        "A surface with prescribed motion, or at rest. Meshes and shapes are "
+                        "placed by scale, rotate, translate in this order."});
   add_keys(s, "obstacle",
            {{.name = "name", .accepts = kText, .meaning = "default: obstacle1, obstacle2, ..."},
             {.name = "plane", .accepts = kTable, .table = "plane", .meaning = "an infinite plane"},
+            {.name = "sphere", .accepts = kTable, .table = "obstacle_sphere", .meaning = "an exact sphere"},
+            {.name = "capsule", .accepts = kTable, .table = "capsule", .meaning = "a segment with a radius"},
             {.name = "mesh", .accepts = kText, .required = true, .meaning = "triangle mesh, open or closed"},
             {.name = "hash", .accepts = kText, .meaning = "hash of the file, in resolved scenes"},
             {.name = "shape", .accepts = kTable, .table = "shape", .meaning = "the boundary of a generated shape"},
@@ -60,11 +61,26 @@ void add_contact_sections(Schema& s) {
              .fallback = "\"fixed\"",
              .choices = {"fixed"},
              .table = "motion",
-             .meaning = "prescribed motion; planes do not rotate",
+             .meaning = "prescribed motion; only meshes and shapes rotate",
              .reason = "most obstacles are at rest"},
             {.name = "friction", .accepts = kNumber, .range = kNotNegative, .meaning = "default: contact.friction"}});
   add_placement_keys(s, "obstacle");
-  s.alternatives.push_back({"obstacle", {{"plane"}, {"mesh", "hash"}, {"shape"}}, true});
+  s.alternatives.push_back({"obstacle", {{"plane"}, {"sphere"}, {"capsule"}, {"mesh", "hash"}, {"shape"}}, true});
+  const auto add_point = [&s](const char* table, const char* name, const char* meaning) {
+    add_key(s, table, {.name = name, .accepts = kNumbers, .unit = "m", .required = true, .meaning = meaning});
+  };
+  const auto add_radius = [&s](const char* table) {
+    add_key(
+        s, table,
+        {.name = "radius", .accepts = kNumber, .unit = "m", .required = true, .range = kPositive, .meaning = "radius"});
+  };
+  s.sections.push_back({"obstacle_sphere", "sphere = { ... } in an [[obstacle]]", "A sphere without facets."});
+  add_point("obstacle_sphere", "center", "center");
+  add_radius("obstacle_sphere");
+  s.sections.push_back({"capsule", "capsule = { ... } in an [[obstacle]]", "The points within a radius of a segment."});
+  add_point("capsule", "from", "one end of the segment");
+  add_point("capsule", "to", "the other end");
+  add_radius("capsule");
   s.sections.push_back({"plane", "plane = { ... } in an [[obstacle]]", "A half-space that bodies stay out of."});
   add_keys(s, "plane",
            {{.name = "origin",
