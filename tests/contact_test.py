@@ -5,6 +5,7 @@ usage: ASPIC=path/to/aspic contact_test.py [TestCase...]"""
 import math
 import pathlib
 import shutil
+import struct
 import subprocess
 import tempfile
 import tomllib
@@ -194,6 +195,66 @@ capsule = { from = [1.05, 0.2, -1], to = [1.05, 0.2, 1], radius = 0.05 }
         for old, new, words in (("radius = 0.3", "radius = 0.35", "overlap in the initial state: "), ("radius = 0.05 }", "radius = 0 }", "radius"),
                                 ('{ displacement = ["0.1 * t", 0, 0] }', "{ rotate = { axis = [0, 1, 0], rate_deg = 5 } }", "do not rotate")):
             done = self.run_scene(self.SCENE.replace(old, new))
+            self.assertEqual(done.returncode, 2, done.stderr)
+            self.assertIn(words, done.stderr)
+
+
+class Recorded(Folder):
+    """An obstacle that follows a point cache moves as it does with the same keyframes."""
+
+    SCENE = """[time]
+step = 0.015625
+duration = 0.5
+[output]
+every = 0.0625
+[contact]
+friction = 0.5
+[[body]]
+shape = {{ box = {{ lower = [-0.1, 0.01, -0.1], upper = [0.1, 0.21, 0.1], cells = [3, 3, 3] }} }}
+material = {{ young = 1e5, poisson = 0.4, density = 1000 }}
+[[obstacle]]
+name = "table"
+mesh = "table.obj"
+{}
+"""
+    CORNERS = ((-1, 0, -1), (1, 0, -1), (1, 0, 1), (-1, 0, 1))
+    HEIGHTS = (0, .125, .0625)  # at frames 2, 6, 10 of 32 per second
+
+    def run_scene(self, motion, points=4, samples=None, value=0.):
+        samples = len(self.HEIGHTS) if samples is None else samples
+        (self.folder / "table.obj").write_text("".join("v %g %g %g\n" % c for c in self.CORNERS) + "f 1 3 2\nf 1 4 3\n")
+        data = b"POINTCACHE2\0" + struct.pack("<iiffi", 1, points, 2, 4, samples)
+        data += b"".join(struct.pack("<3f", x + value, y + height, z) for height in self.HEIGHTS for x, y, z in self.CORNERS)
+        (self.folder / "table.pc2").write_bytes(data)
+        (self.folder / "lift.toml").write_text(self.SCENE.format(motion))
+        return subprocess.run([ASPIC, "run", "lift.toml", "--out", "run", "--force"], cwd=self.folder, capture_output=True, text=True,
+                              timeout=120)
+
+    def positions(self, motion):
+        done = self.run_scene(motion)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        last = sorted((self.folder / "run/frames").glob("body_*.vtu"))[-1]
+        return [x for surface in exact.body_surfaces(last) for point in surface.points for x in point]
+
+    RECORDING = 'recording = { file = "table.pc2", fps = 32 }'
+
+    def test_moves_as_keyframes(self):
+        recorded = self.positions(self.RECORDING)
+        keys = ", ".join(f"{{ time = {frame / 32}, displacement = [0, {height}, 0] }}" for frame, height in zip((2, 6, 10), self.HEIGHTS))
+        for x, y in zip(recorded, self.positions(f"motion = {{ keyframes = [{keys}] }}")):
+            self.assertAlmostEqual(x, y, delta=1e-9)
+        self.assertGreater(min(recorded[1::3]), .0625)
+
+    def test_bad_caches_are_refused(self):
+        for keys, words in (({"points": 3}, "3 points, but the mesh has 4 vertices"), ({"samples": 9}, "cut short"), ({"samples": 0}, "no samples"),
+                            ({"value": math.nan}, "point 0 of sample 0 is not finite")):
+            done = self.run_scene(self.RECORDING, **keys)
+            self.assertEqual(done.returncode, 2, done.stderr)
+            self.assertIn(words, done.stderr)
+            self.assertIn("lift.toml:14:", done.stderr)
+        for motion, words in ((self.RECORDING + '\nmotion = { linear = { velocity = [0, 0, 0] } }', "exclude each other"),
+                              ("recording = { file = 'table.obj' }", "point cache")):
+            done = self.run_scene(motion)
             self.assertEqual(done.returncode, 2, done.stderr)
             self.assertIn(words, done.stderr)
 

@@ -29,6 +29,9 @@ double smallest(int count, const StepOf& step_of) {
   return *std::min_element(steps.begin(), steps.end());
 }
 
+// Spheres and capsules have points and edges without area.
+double smaller_area(double a, double b) { return a > 0 && b > 0 ? std::min(a, b) : std::max(a, b); }
+
 void scale(double factor, std::span<Vec3d> u) {
   if (factor == 1) return;
   for (Vec3d& ui : u) ui = factor * ui;
@@ -166,7 +169,8 @@ void StepBound::add_point_impacts(const Line& line, std::vector<Impact>& found) 
     const ContactLaw& law = laws_(mesh_.part[i], mesh_.part[t[0]]);
     const std::array<int, 4> point = {i, t[0], t[1], t[2]};
     Impact& added = found.emplace_back(impact(pair(line, PairKind::point_triangle, point), point, alpha[i]));
-    const double area = std::min({mesh_.area[i], mesh_.area[t[0]], mesh_.area[t[1]], mesh_.area[t[2]]});
+    const double other = std::min({mesh_.area[t[0]], mesh_.area[t[1]], mesh_.area[t[2]]});
+    const double area = smaller_area(mesh_.area[i], other);
     added.stiffness = kSpring * law.stiffness * area / law.reach;
   }
 }
@@ -185,7 +189,7 @@ void StepBound::add_edge_impacts(const Line& line, std::vector<Impact>& found) c
     const ContactLaw& law = laws_(mesh_.part[a[0]], mesh_.part[b[0]]);
     const std::array<int, 4> point = {a[0], a[1], b[0], b[1]};
     Impact& added = found.emplace_back(impact(pair(line, PairKind::edge_edge, point), point, alpha[k]));
-    const double area = std::min(mesh_.edge_area[pairs[k].first], mesh_.edge_area[pairs[k].second]);
+    const double area = smaller_area(mesh_.edge_area[pairs[k].first], mesh_.edge_area[pairs[k].second]);
     added.stiffness = kSpring * law.stiffness * area / law.reach;
   }
 }

@@ -1,5 +1,6 @@
 #include "io/pc2.h"
 
+#include <cmath>
 #include <cstring>
 #include <fstream>
 #include <string>
@@ -13,7 +14,7 @@ namespace aspic {
 namespace {
 
 constexpr std::string_view kPc2Magic("POINTCACHE2\0", 12);
-constexpr uint64_t kPc2HeadSize = 32, kPointsOffset = 16, kCountOffset = 28;
+constexpr uint64_t kPc2HeadSize = 32, kPointsOffset = 16, kStartOffset = 20, kRateOffset = 24, kCountOffset = 28;
 
 std::string head(int points, int samples) {
   std::string bytes(kPc2Magic);
@@ -91,15 +92,14 @@ Pc2Reader::Pc2Reader(const std::filesystem::path& path) : path_(path), in_(open_
   std::string bytes(kPc2HeadSize, '\0');
   in_.read(bytes.data(), static_cast<std::streamsize>(bytes.size()));
   if (!in_) throw InvalidInput(path.string() + ": cannot be read, or is too short for a point cache");
-  const auto integer = [&](size_t at) {
-    int32_t value = 0;
-    std::memcpy(&value, bytes.data() + at, sizeof(value));
-    return value;
-  };
-  points_ = integer(kPointsOffset);
-  samples_ = integer(kCountOffset);
-  if (points_ < 0 || samples_ < 0 || bytes != head(points_, samples_))
-    throw InvalidInput(path.string() + ": is no point cache of version 1 with one sample per frame");
+  const auto read = [&](size_t at, auto& value) { std::memcpy(&value, bytes.data() + at, sizeof(value)); };
+  read(kPointsOffset, points_);
+  read(kStartOffset, start_);
+  read(kRateOffset, rate_);
+  read(kCountOffset, samples_);
+  if (points_ < 0 || samples_ < 0 || !bytes.starts_with(head(points_, 0).substr(0, kStartOffset)) ||
+      !std::isfinite(start_) || !(rate_ > 0 && std::isfinite(rate_)))
+    throw InvalidInput(path.string() + ": is no point cache of version 1");
   in_.seekg(0, std::ios::end);
   const uint64_t whole = in_ ? (static_cast<uint64_t>(in_.tellg()) - kPc2HeadSize) / 12 : 0;  // points of all samples
   if (static_cast<uint64_t>(points_) * static_cast<uint64_t>(samples_) > whole)

@@ -42,12 +42,14 @@ class Pc2Reader {
 
   int points() const { return points_; }
   int samples() const { return samples_; }
+  double frame(int sample) const { return start_ + sample * rate_; }  // at which the sample was taken
   std::vector<float> sample(int index);  // 3 per point [m]; throws InvalidInput if it cannot be read
 
  private:
   std::filesystem::path path_;
   std::ifstream in_;
   int points_ = 0, samples_ = 0;
+  float start_ = 0, rate_ = 1;
 };
 
 }  // namespace aspic

@@ -150,6 +150,17 @@ void check_box(const Value& shape) {
     throw error_at(cells->place, "cells = " + shortened(inline_toml(*cells)) + "; three numbers are needed");
 }
 
+void check_obstacle(const Value& obstacle) {
+  check_motion(obstacle);
+  if (const Value* rotate = obstacle.find("rotate")) check_axis(*rotate);
+  if (const Value* shape = obstacle.find("shape")) check_box(*shape);
+  const Value* recording = obstacle.find("recording");
+  if (recording && !obstacle.find("mesh"))
+    throw error_at(recording->place, "recording needs `mesh`, whose vertices it moves");
+  if (recording && !obstacle["motion"].is_text())
+    throw error_at(recording->place, "motion and recording exclude each other");
+}
+
 }  // namespace
 
 void complete_scene(Table& document) {
@@ -176,6 +187,8 @@ void complete_scene(Table& document) {
     const Value* deform = body.find("deform");
     if (const Value* twist = deform ? deform->find("twist") : nullptr) check_axis(*twist);
   }
+  if (const Value* obstacles = document.find("obstacle"))
+    for (const Value& obstacle : obstacles->array()) check_obstacle(obstacle);
 }
 
 }  // namespace aspic

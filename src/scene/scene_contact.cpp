@@ -10,6 +10,7 @@
 #include "mesh/surface.h"
 #include "scene/motion.h"
 #include "scene/placement.h"
+#include "scene/recorded_motion.h"
 #include "scene/schema.h"
 
 namespace aspic {
@@ -88,9 +89,10 @@ void add_obstacle(Value& obstacle, double friction, MeshLoader& loader, ContactM
     if (!std::isfinite(X[0] + X[1] + X[2])) throw error_at(obstacle.place, "obstacle '" + name + "' is not finite");
   }
   if (surface.triangles.empty()) throw error_at(obstacle.place, "obstacle '" + name + "' has no triangles");
-  contact.add(
-      {.name = name, .is_obstacle = true, .friction = friction, .motion = motion_of(obstacle, surface.vertices)},
-      surface.vertices, surface.triangles, {});
+  ContactPart part{.name = name, .is_obstacle = true, .friction = friction};
+  part.motion = obstacle.find("recording") ? recorded_motion(obstacle, place, loader.files, surface)
+                                           : motion_of(obstacle, surface.vertices);
+  contact.add(part, surface.vertices, surface.triangles, {});
 }
 
 // Bodies, then obstacles.

@@ -63,6 +63,10 @@ void add_contact_sections(Schema& s) {
              .table = "motion",
              .meaning = "prescribed motion; only meshes and shapes rotate",
              .reason = "most obstacles are at rest"},
+            {.name = "recording",
+             .accepts = kTable,
+             .table = "recording",
+             .meaning = "recorded positions of the vertices of `mesh`, instead of `motion`"},
             {.name = "friction", .accepts = kNumber, .range = kNotNegative, .meaning = "default: contact.friction"}});
   add_placement_keys(s, "obstacle");
   s.alternatives.push_back({"obstacle", {{"plane"}, {"sphere"}, {"capsule"}, {"mesh", "hash"}, {"shape"}}, true});
@@ -74,6 +78,18 @@ void add_contact_sections(Schema& s) {
         s, table,
         {.name = "radius", .accepts = kNumber, .unit = "m", .required = true, .range = kPositive, .meaning = "radius"});
   };
+  s.sections.push_back({"recording", "recording = { ... } in an [[obstacle]]",
+                        "A PC2 point cache, as Blender writes it; placed like the mesh."});
+  add_keys(s, "recording",
+           {{.name = "file", .accepts = kText, .required = true, .meaning = "point cache"},
+            {.name = "hash", .accepts = kText, .meaning = "hash of the file, in resolved scenes"},
+            {.name = "fps",
+             .accepts = kNumber,
+             .unit = "1/s",
+             .fallback = "24.0",
+             .range = kPositive,
+             .meaning = "frames per second",
+             .reason = "the default of Blender"}});
   s.sections.push_back({"obstacle_sphere", "sphere = { ... } in an [[obstacle]]", "A sphere without facets."});
   add_point("obstacle_sphere", "center", "center");
   add_radius("obstacle_sphere");
