@@ -19,4 +19,8 @@ endif()
 find_package(Python3 COMPONENTS Interpreter)
 if(Python3_FOUND)
   add_test(NAME bench.compare COMMAND ${Python3_EXECUTABLE} ${CMAKE_CURRENT_LIST_DIR}/compare_test.py)
+  add_test(NAME bench.contact COMMAND ${Python3_EXECUTABLE} ${CMAKE_SOURCE_DIR}/bench/contact/run.py
+                                      chute knives funnel rollers boxes --steps 1)
+  set_tests_properties(bench.contact PROPERTIES ENVIRONMENT "ASPIC=$<TARGET_FILE:aspic_cli>" PASS_REGULAR_EXPRESSION
+                                                "boxes +12500 +1 +1 ")
 endif()

@@ -1,0 +1,156 @@
+"""Scenes of contact with their meshes, as plain files: NAME/scene.toml, NAME/*.mesh (Medit: vertices, tets), NAME/*.obj (obstacles)
+and NAME/parameters.json, so that other programs can run the same problems."""
+import json
+import math
+
+
+def grid(cells, lower, upper, place=lambda x: x):
+    """Nodes and tets of a box of cells, six tets each."""
+    n = [c + 1 for c in cells]
+    number = lambda i, j, k: (i * n[1] + j) * n[2] + k
+    nodes = [place([lower[a] + (upper[a] - lower[a]) * at[a] / cells[a] for a in range(3)])
+             for at in ((i, j, k) for i in range(n[0]) for j in range(n[1]) for k in range(n[2]))]
+    tets = []
+    for i in range(cells[0]):
+        for j in range(cells[1]):
+            for k in range(cells[2]):
+                for order in ((0, 1, 2), (1, 2, 0), (2, 0, 1), (0, 2, 1), (2, 1, 0), (1, 0, 2)):
+                    corner, path = [i, j, k], [(i, j, k)]
+                    for axis in order:
+                        corner[axis] += 1
+                        path.append(tuple(corner))
+                    tet = [number(*p) for p in path]
+                    even = order in ((0, 1, 2), (1, 2, 0), (2, 0, 1))
+                    tets.append(tet if even else [tet[1], tet[0], tet[2], tet[3]])
+    return nodes, tets
+
+
+def ball(cells, radius, center=(0, 0, 0)):
+    def place(u):
+        x, y, z = (c * c for c in u)
+        scale = (math.sqrt(1 - y / 2 - z / 2 + y * z / 3), math.sqrt(1 - z / 2 - x / 2 + z * x / 3), math.sqrt(1 - x / 2 - y / 2 + x * y / 3))
+        return [center[a] + radius * u[a] * scale[a] for a in range(3)]
+    return grid((cells,) * 3, (-1, -1, -1), (1, 1, 1), place)
+
+
+def mesh_text(nodes, tets):
+    return ("MeshVersionFormatted 2\nDimension 3\nVertices\n%d\n" % len(nodes) + "".join("%.9g %.9g %.9g 0\n" % tuple(x) for x in nodes) +
+            "Tetrahedra\n%d\n" % len(tets) + "".join("%d %d %d %d 0\n" % tuple(v + 1 for v in t) for t in tets) + "End\n")
+
+
+def obj_text(nodes, triangles):
+    return "".join("v %.9g %.9g %.9g\n" % tuple(x) for x in nodes) + "".join("f %d %d %d\n" % tuple(v + 1 for v in t) for t in triangles)
+
+
+def revolved(profile, around=48):
+    """Triangles of a closed profile of (radius, height) about the y axis."""
+    nodes = [(r * math.cos(2 * math.pi * k / around), y, r * math.sin(2 * math.pi * k / around)) for r, y in profile for k in range(around)]
+    triangles, rows = [], len(profile)
+    for i in range(rows):
+        for k in range(around):
+            a, b = i * around + k, i * around + (k + 1) % around
+            c, d = (i + 1) % rows * around + k, (i + 1) % rows * around + (k + 1) % around
+            triangles += [(a, b, d), (a, d, c)]
+    return nodes, triangles
+
+
+def prism(profile, z):
+    """A closed prism of a convex profile in the xy plane between -z and z."""
+    n = len(profile)
+    nodes = [(x, y, -z) for x, y in profile] + [(x, y, z) for x, y in profile]
+    triangles = [(0, k + 1, k) for k in range(1, n - 1)] + [(n, n + k, n + k + 1) for k in range(1, n - 1)]
+    for k in range(n):
+        a, b = k, (k + 1) % n
+        triangles += [(a, b, b + n), (a, b + n, a + n)]
+    return nodes, triangles
+
+
+def roller(radius, half, around=32):
+    return prism([(radius * math.cos(2 * math.pi * k / around), radius * math.sin(2 * math.pi * k / around)) for k in range(around)], half)
+
+
+class Problem:
+    """h [s], E [Pa], rho [kg/m^3]; `bodies`: meshes with further keys; `obstacles`: surfaces with keys, or keys alone."""
+
+    def __init__(self, h, E, nu, rho, mu, steps, gravity=-9.81):
+        self.given = {"time_step_s": h, "young_Pa": E, "poisson": nu, "density_kg_m3": rho, "friction": mu, "steps": steps,
+                      "gravity_y_m_s2": gravity, "material": "Neo-Hookean"}
+        self.bodies, self.obstacles = [], []
+
+    def write(self, folder):
+        g = self.given
+        folder.mkdir(parents=True, exist_ok=True)
+        text = (f"gravity = [0, {g['gravity_y_m_s2']}, 0]\n[time]\nstep = {g['time_step_s']}\nduration = {g['time_step_s'] * g['steps']}\n"
+                f"[output]\nevery = {g['time_step_s'] * 10}\n[contact]\nfriction = {g['friction']}\n")
+        written = {}
+        for number, (mesh, keys) in enumerate(self.bodies):
+            name = written.setdefault(id(mesh), f"body{number}.mesh")
+            (folder / name).write_text(mesh_text(*mesh))
+            text += (f"[[body]]\nmesh = \"{name}\"\nmaterial = {{ model = \"neo_hookean\", young = {g['young_Pa']}, "
+                     f"poisson = {g['poisson']}, density = {g['density_kg_m3']} }}\n{keys}")
+        for number, (surface, keys) in enumerate(self.obstacles):
+            text += "[[obstacle]]\n"
+            if surface:
+                (folder / f"obstacle{number}.obj").write_text(obj_text(*surface))
+                text += f"mesh = \"obstacle{number}.obj\"\n"
+            text += keys
+        (folder / "scene.toml").write_text(text)
+        g["vertices"] = sum(len(mesh[0]) for mesh, _ in self.bodies)
+        (folder / "parameters.json").write_text(json.dumps(g, indent=1) + "\n")
+
+
+def chute(cells=13, steps=66):
+    p = Problem(1 / 60, 5e4, .4, 1000, .3, steps)
+    p.bodies = [(ball(cells, .1), "translate = [-0.2, 0.43, 0]\n")]
+    p.obstacles = [(None, "plane = {}\n"),
+                   (None, "shape = { box = { lower = [-0.3, -0.01, -0.2], upper = [0.3, 0.01, 0.2], cells = [2, 1, 2] } }\n"
+                          "rotate = { axis = [0, 0, 1], angle_deg = -30 }\ntranslate = [0, 0.16, 0]\n")]
+    return p
+
+
+def knives(steps=50):
+    p = Problem(.02, 2e4, .4, 1000, 0, steps)
+    p.bodies = [(grid((40, 3, 19), (-.5, 0, -.25), (.5, .06, .25)), "translate = [0, 0.05, 0]\n")]
+    p.obstacles = [(prism([(x - .01, -.3), (x + .01, -.3), (x, 0)], .4), "") for x in (-.25, 0, .25)]
+    return p
+
+
+def funnel(steps=50):
+    p = Problem(.02, 1e5, .4, 1000, .1, steps, gravity=0.)
+    p.bodies = [(ball(19, .2, (0, .35, 0)), '[[body.pin]]\nwhere = { lowest = 0.03 }\n'
+                 'motion = { linear = { velocity = [0, -0.6, 0] } }\n')]
+    p.obstacles = [(revolved([(.5, .4), (.13, 0), (.13, -.4), (.16, -.4), (.16, -.02), (.53, .38)]), "")]
+    return p
+
+
+def rollers(steps=50):
+    p = Problem(.02, 5e5, .4, 1000, .5, steps)
+    p.bodies = [(ball(18, .2), "translate = [0, 0.42, 0]\n")]
+    p.obstacles = [(roller(.2, .4), f"translate = [{x}, 0, 0]\nmotion = {{ rotate = {{ axis = [0, 0, 1], rate_deg = {rate} }} }}\n")
+                   for x, rate in ((-.3, -90), (.3, 90))]
+    return p
+
+
+def twist(cells=149, steps=50):
+    p = Problem(.04, 2e4, .4, 1000, 0, steps, gravity=0.)
+    ends = "".join(f"[[body.pin]]\nwhere = \"{where}\"\nmotion = {{ rotate = {{ axis = [1, 0, 0], center = [0, 0, 0], rate_deg = {rate} }} }}\n"
+                   for where, rate in (("X < -0.4999", -72), ("X > 0.4999", 72)))
+    p.bodies = [(grid((cells, 1, cells), (-.5, -.5 / cells, -.5), (.5, .5 / cells, .5)), ends)]
+    return p
+
+
+def boxes(steps=100):
+    p = Problem(.01, 1e5, .4, 1000, .3, steps)
+    mesh = grid((4, 4, 4), (-.05, -.05, -.05), (.05, .05, .05))
+    for k in range(100):
+        layer, place = divmod(k, 9)
+        shift = .01 * (-1) ** layer
+        x, z = (place % 3 - 1) * .13 + shift, (place // 3 - 1) * .13 - shift
+        p.bodies.append((mesh, f"rotate = {{ axis = [{1 + k % 3}, 1, {k % 2}], angle_deg = {7 * (k % 5)} }}\n"
+                               f"translate = [{x}, {.1 + .17 * layer:.3f}, {z}]\n"))
+    walls = (("0, 0, 0", "0, 1, 0"), ("-0.25, 0, 0", "1, 0, 0"), ("0.25, 0, 0", "-1, 0, 0"), ("0, 0, -0.25", "0, 0, 1"), ("0, 0, 0.25", "0, 0, -1"))
+    p.obstacles = [(None, f"plane = {{ origin = [{origin}], normal = [{normal}] }}\n") for origin, normal in walls]
+    return p
+
+
+PROBLEMS = {"chute": chute, "knives": knives, "funnel": funnel, "rollers": rollers, "twist": twist, "boxes": boxes}
