@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "mesh/self_intersection.h"
 #include "viewer/recording_test.h"
 #include "viewer/session_test.h"
 
@@ -66,6 +67,47 @@ TEST(ContactView, PicturesHaveContactPoints) {
   EXPECT_FLOAT_EQ(picture.max, *std::max_element(picture.values.begin(), picture.values.end()));
   const auto touching = std::count_if(picture.values.begin(), picture.values.end(), [](float p) { return p > 0; });
   EXPECT_EQ(touching, 9);
+}
+
+// The left cube is dragged into the right one and beyond: it pushes, and never enters.
+TEST(ContactView, DraggedBodiesPushEachOther) {
+  Page page(R"(
+gravity = [0, 0, 0]
+[time]
+step = 0.01
+duration = 1
+[contact]
+friction = 0.3
+[[body]]
+name = "left"
+shape = { box = { upper = [0.1, 0.1, 0.1], cells = [2, 2, 2] } }
+material = { model = "neo_hookean", young = 1e5, poisson = 0.3, density = 1000 }
+[[body]]
+name = "right"
+shape = { box = { upper = [0.1, 0.1, 0.1], cells = [2, 2, 2] } }
+translate = [0.15, 0, 0]
+material = { model = "neo_hookean", young = 1e5, poisson = 0.3, density = 1000 }
+)");
+  const std::vector<float> start = page.picture().positions;
+  const std::vector<uint32_t> triangles = page.geometry().triangles;
+  page.send(
+      {{"do", "grab"}, {"side", "a"}, {"triangle", 0}, {"weights", {0.4, 0.3, 0.3}}, {"target", {0, 0.05, 0.05}}});
+  for (int k = 1; k <= 20; ++k) {
+    page.send({{"do", "move"}, {"target", {0.02 * k, 0.05, 0.05}}});
+    page.steps(2);
+    EXPECT_TRUE(page.rows().back()["converged"].get<bool>()) << k;
+    TriMesh surface;
+    const std::vector<float> x = page.picture().positions;
+    for (size_t i = 0; i < x.size(); i += 3) surface.vertices.push_back({{x[i], x[i + 1], x[i + 2]}});
+    for (size_t t = 0; t < triangles.size(); t += 3)
+      surface.triangles.push_back({int(triangles[t]), int(triangles[t + 1]), int(triangles[t + 2])});
+    EXPECT_TRUE(self_intersections(surface, 1).pairs.empty()) << k;
+  }
+  float moved = 0;
+  const std::vector<float> x = page.picture().positions;
+  for (size_t i = 0; i < x.size(); i += 3)
+    if (start[i] > 0.12f) moved = std::max(moved, x[i] - start[i]);
+  EXPECT_GT(moved, 0.05f);
 }
 
 TEST(ContactView, ScenesWithoutContactHaveNoContactPoints) {

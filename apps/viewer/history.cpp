@@ -17,10 +17,12 @@ double History::end_of_next_step(const Simulation& simulation) const {
 
 Snapshot History::snapshot_of(const Simulation& simulation) const {
   Simulation::Snapshot now = simulation.snapshot();
+  const double obstacle_time = simulation.obstacle_time();
   return {.step = now.steps_taken,
           .state = std::move(now.state),
           .previous = std::move(now.previous),
           .level = now.level,
+          .obstacle_time = obstacle_time,
           .outside_work = now.outside_work,
           .start_time = start_time_,
           .h = simulation.options().h,
@@ -64,6 +66,7 @@ Simulation::Snapshot History::simulation_state(const Snapshot& snapshot, const S
           .steps_taken = snapshot.step,
           .level = snapshot.level,
           .previous = is_same_step && options.integrator == snapshot.integrator ? snapshot.previous : std::nullopt,
+          .obstacle_time = snapshot.obstacle_time,
           .outside_work = snapshot.outside_work};
 }
 

@@ -17,6 +17,7 @@ struct Snapshot {
   State state;
   std::optional<State> previous;  // see Simulation::Snapshot
   double level = 0;               // see Simulation::Snapshot
+  double obstacle_time = 0;       // see Simulation [s]
   double outside_work = 0;        // see Simulation::Snapshot
   double start_time = 0, h = 0;   // [s] see History
   std::string integrator;

@@ -26,10 +26,11 @@ def grid(cells, lower, upper, place=lambda x: x):
 
 
 def ball(cells, radius, center=(0, 0, 0)):
+    """A cube with its edges and corners rounded; those of a true ball would have flat tets."""
     def place(u):
-        x, y, z = (c * c for c in u)
-        scale = (math.sqrt(1 - y / 2 - z / 2 + y * z / 3), math.sqrt(1 - z / 2 - x / 2 + z * x / 3), math.sqrt(1 - x / 2 - y / 2 + x * y / 3))
-        return [center[a] + radius * u[a] * scale[a] for a in range(3)]
+        size = math.hypot(*u)
+        scale = (max(map(abs, u)) / size) ** .7 if size else 0
+        return [center[a] + radius * scale * u[a] for a in range(3)]
     return grid((cells,) * 3, (-1, -1, -1), (1, 1, 1), place)
 
 
@@ -86,7 +87,7 @@ class Problem:
         for number, (mesh, keys) in enumerate(self.bodies):
             name = written.setdefault(id(mesh), f"body{number}.mesh")
             (folder / name).write_text(mesh_text(*mesh))
-            text += (f"[[body]]\nmesh = \"{name}\"\nmaterial = {{ model = \"neo_hookean\", young = {g['young_Pa']}, "
+            text += (f"[[body]]\nname = \"body{number}\"\nmesh = \"{name}\"\nmaterial = {{ model = \"neo_hookean\", young = {g['young_Pa']}, "
                      f"poisson = {g['poisson']}, density = {g['density_kg_m3']} }}\n{keys}")
         for number, (surface, keys) in enumerate(self.obstacles):
             text += "[[obstacle]]\n"
