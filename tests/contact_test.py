@@ -259,6 +259,56 @@ mesh = "table.obj"
             self.assertIn(words, done.stderr)
 
 
+class Inflate(Folder):
+    """Bodies that overlap at the start come apart on request."""
+
+    SCENE = """[time]
+step = 0.01
+duration = 0.05
+[output]
+every = 0.01
+[contact]
+start = "inflate"
+[[body]]
+name = "cube"
+shape = { box = { lower = [-0.1, 0.001, -0.1], upper = [0.1, 0.2, 0.1], cells = [4, 4, 4] } }
+PIN
+[[body]]
+name = "ball"
+shape = { sphere = { radius = 0.12, size = 0.06 } }
+translate = [0.15, 0.15, 0.02]
+[[obstacle]]
+plane = {}
+"""
+
+    def run_scene(self, text):
+        (self.folder / "overlap.toml").write_text(text.replace("PIN\n", ""))
+        return subprocess.run([ASPIC, "run", "overlap.toml", "--out", "run", "--force"], cwd=self.folder, capture_output=True, text=True,
+                              timeout=120)
+
+    def test_bodies_come_apart(self):
+        done = self.run_scene(self.SCENE)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        frames = [exact.body_surfaces(p) for p in sorted((self.folder / "run/frames").glob("body_*.vtu"))]
+        self.assertEqual(contact_scenes.surface_faults(frames, [], [((0, 0, 0), (0, 1, 0))]), [])
+        volumes = []
+        for surface in frames[0]:
+            corners = [[surface.points[c] for c in t] for t in surface.triangles]
+            volumes.append(abs(sum(a[0] * (b[1] * c[2] - b[2] * c[1]) - a[1] * (b[0] * c[2] - b[2] * c[0]) + a[2] * (b[0] * c[1] - b[1] * c[0])
+                                   for a, b, c in corners)) / 6)
+        self.assertAlmostEqual(volumes[0] / (.2 * .199 * .2), 1, delta=.02)
+        self.assertAlmostEqual(volumes[1] / (4 / 3 * math.pi * .12 ** 3), 1, delta=.15)  # a polyhedron
+
+    def test_default_and_hopeless_overlap_are_refused(self):
+        for old, new, words in (('"inflate"', '"apart"', "cube and ball near"),
+                                ("translate = [0.15, 0.15, 0.02]", "translate = [0, 0.1, 0.02]", "body 'cube' encloses the center of body 'ball'"),
+                                ("translate = [0.15, 0.15, 0.02]", "translate = [0.15, -0.05, 0]", "starts behind the plane")):
+            text = self.SCENE.replace("PIN", '[[body.pin]]\nwhere = "all"') if "encloses" in words else self.SCENE
+            done = self.run_scene(text.replace(old, new))
+            self.assertEqual(done.returncode, 2, done.stderr)
+            self.assertIn(words, done.stderr)
+
+
 class Shapes(Folder):
     def test_degenerate_shapes(self):
         self.run_cases(contact_cases.degenerate_shapes(20))

@@ -1,4 +1,5 @@
 #include "scene/scene_builder.h"
+#include "dynamics/inflate.h"
 
 #include <algorithm>
 #include <cmath>
@@ -89,6 +90,8 @@ class SceneBuilder {
     add_model();
     if (options_.amend) options_.amend(model_);
     State state = start();
+    if (const Value* contact = source_.document.find("contact"); contact && (*contact)["start"].text() == "inflate")
+      inflate(model_, state.q);
     const SimulationOptions options = options_of(source_.document, source_.notes);
     put_in_order(source_.document);
     for (std::string& note : source_.notes) note = printable(note);

@@ -141,6 +141,7 @@ void add_scene_contact(Table& document, MeshLoader& loader, Model& model) {
   if (!document.find("contact")) {
     Table defaults;
     defaults.set("friction", {0.0, {}});
+    defaults.set("start", {std::string("apart"), {}});
     document.set("contact", {defaults, {}});
   }
   const Value& options = *document.find("contact");

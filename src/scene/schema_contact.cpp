@@ -14,31 +14,38 @@ void add_contact_sections(Schema& s) {
              .table = "obstacle",
              .meaning = "surfaces with prescribed motion; they switch contact on"}});
   s.sections.push_back({"contact", "[contact]", "Contact with friction. The defaults suit most scenes."});
-  add_keys(s, "contact",
-           {{.name = "friction",
-             .accepts = kNumber,
-             .fallback = "0.0",
-             .range = kNotNegative,
-             .meaning = "coefficient of friction of bodies and obstacles without their own; that of a pair is the "
-                        "geometric mean, unless `pair` gives another",
-             .reason = "none; rubber on a smooth floor has 0.3 to 0.8"},
-            {.name = "reach",
-             .accepts = kNumber,
-             .unit = "m",
-             .range = kPositive,
-             .meaning = "distance at which contact forces begin; default: a fiftieth of the mean edge of the finer "
-                        "surface"},
-            {.name = "stiffness",
-             .accepts = kNumber,
-             .unit = "Pa",
-             .range = kPositive,
-             .meaning = "pressure scale of contact forces; default: a tenth of the smaller Young's modulus"},
-            {.name = "creep",
-             .accepts = kNumber,
-             .unit = "m/s",
-             .range = kPositive,
-             .meaning = "largest speed of surfaces that stick; default: 1e-4 sqrt(9.81 m/s^2 L) for bodies of size L"},
-            {.name = "pair", .accepts = kTables, .table = "pair", .meaning = "friction of single pairs"}});
+  add_keys(
+      s, "contact",
+      {{.name = "friction",
+        .accepts = kNumber,
+        .fallback = "0.0",
+        .range = kNotNegative,
+        .meaning = "coefficient of friction of bodies and obstacles without their own; that of a pair is the "
+                   "geometric mean, unless `pair` gives another",
+        .reason = "none; rubber on a smooth floor has 0.3 to 0.8"},
+       {.name = "reach",
+        .accepts = kNumber,
+        .unit = "m",
+        .range = kPositive,
+        .meaning = "distance at which contact forces begin; default: a fiftieth of the mean edge of the finer "
+                   "surface"},
+       {.name = "stiffness",
+        .accepts = kNumber,
+        .unit = "Pa",
+        .range = kPositive,
+        .meaning = "pressure scale of contact forces; default: a tenth of the smaller Young's modulus"},
+       {.name = "creep",
+        .accepts = kNumber,
+        .unit = "m/s",
+        .range = kPositive,
+        .meaning = "largest speed of surfaces that stick; default: 1e-4 sqrt(9.81 m/s^2 L) for bodies of size L"},
+       {.name = "start",
+        .accepts = kText,
+        .fallback = "\"apart\"",
+        .choices = {"apart", "inflate"},
+        .meaning = "`apart`: overlap is an error; `inflate`: bodies without pins shrink, then grow back in contact",
+        .reason = "overlap is most often a mistake"},
+       {.name = "pair", .accepts = kTables, .table = "pair", .meaning = "friction of single pairs"}});
   s.sections.push_back({"pair", "[[contact.pair]]", "Friction between two bodies or obstacles, or within a body."});
   add_keys(
       s, "pair",

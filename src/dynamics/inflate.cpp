@@ -1,0 +1,139 @@
+#include "dynamics/inflate.h"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+#include <set>
+
+#include "base/error.h"
+#include "contact/barrier.h"
+#include "dynamics/incremental_potential.h"
+#include "dynamics/integrator.h"
+#include "dynamics/simulation_checks.h"
+#include "math/vectors.h"
+#include "mesh/box.h"
+#include "optimize/minimize.h"
+#include "optimize/solver.h"
+
+namespace aspic {
+namespace {
+
+constexpr double kSmallest = 1.0 / 64;  // scale of bodies
+constexpr double kVolume = 0.9;         // least share of its volume that a body must regain
+constexpr int kMostSteps = 200;
+constexpr double kAtRest = 1e-3;  // largest displacement in a step at rest, relative to the radius of the model
+
+// Why the surfaces are not apart; nothing if they are.
+std::optional<std::string> overlap(const Model& model, const std::vector<double>& q) {
+  try {
+    State state;
+    state.q = q;
+    require_apart(model, state, make_integrator("backward_euler")->facts());
+    return {};
+  } catch (const InvalidInput& e) {
+    return e.what();
+  }
+}
+
+std::set<int> pinned_vertices(const Model& model) {
+  std::set<int> pinned;
+  for (const Pin& pin : model.pins) pinned.insert(pin.vertices.begin(), pin.vertices.end());
+  return pinned;
+}
+
+std::vector<double> shrunk(const Model& model, const std::vector<double>& q, double scale) {
+  const std::set<int> pinned = pinned_vertices(model);
+  std::vector<double> x = q;
+  for (const BodyRange& body : model.bodies) {
+    const int end = body.first_vertex + body.vertex_count;
+    if (const auto first = pinned.lower_bound(body.first_vertex); first != pinned.end() && *first < end) continue;
+    Box box;
+    for (int v = body.first_vertex; v < end; ++v) box.add(point(q, v));
+    const Vec3d center = 0.5 * (box.lower + box.upper);
+    for (int v = body.first_vertex; v < end; ++v)
+      for (int r = 0; r < 3; ++r) x[3 * v + r] = center[r] + scale * (q[3 * v + r] - center[r]);
+  }
+  return x;
+}
+
+double signed_volume(const Vec3d& a, const Vec3d& b, const Vec3d& c, const Vec3d& d) {
+  return dot(cross(b - a, c - a), d - a) / 6;
+}
+
+double volume_of(const Model& model, const BodyRange& body, const std::vector<double>& q) {
+  double sum = 0;
+  for (int t = body.first_tet; t < body.first_tet + body.tet_count; ++t) {
+    const auto& [a, b, c, d] = model.mesh.tets[t];
+    sum += signed_volume(point(q, a), point(q, b), point(q, c), point(q, d));
+  }
+  return sum;
+}
+
+bool encloses(const Model& model, const BodyRange& body, const std::vector<double>& q, const Vec3d& x) {
+  for (int t = body.first_tet; t < body.first_tet + body.tet_count; ++t) {
+    const auto& [i, j, k, l] = model.mesh.tets[t];
+    const Vec3d a = point(q, i), b = point(q, j), c = point(q, k), d = point(q, l);
+    if (signed_volume(x, b, c, d) >= 0 && signed_volume(a, x, c, d) >= 0 && signed_volume(a, b, x, d) >= 0 &&
+        signed_volume(a, b, c, x) >= 0)
+      return true;
+  }
+  return false;
+}
+
+// Bodies that are apart may still be inside of others.
+void require_outside(const Model& model, const std::vector<double>& q) {
+  for (const BodyRange& inner : model.bodies)
+    for (const BodyRange& outer : model.bodies)
+      if (&inner != &outer && encloses(model, outer, q, point(q, inner.first_vertex)))
+        throw InvalidInput("start = \"inflate\": body '" + outer.name + "' encloses the center of body '" + inner.name +
+                           "'; move one of them");
+}
+
+// Minimizes 1/2 (x - q)' M (x - q) + h^2 V(x) again and again, where V is elasticity and contact, until x rests.
+void grow(const Model& model, const std::vector<double>& start, std::vector<double>& q) {
+  const Pins pins(model.pins, start);
+  IncrementalPotential E(model, pins);
+  const double radius = E.scales().x;
+  double mass = 0;
+  for (const double m : model.mass->vertex_mass()) mass += m;
+  const double h2 = mass * radius * radius / E.growth_stiffness();  // the square of a time of vibration
+  const std::unique_ptr<SearchDirection> direction = make_search_direction({});
+  for (int step = 0; step < kMostSteps; ++step) {
+    const std::vector<double> before = q;
+    E.set_potential_step({.start = before, .h = std::sqrt(h2), .time = 0, .obstacle_time = 0});
+    E.begin_step(before, 1, h2);
+    Minimizer().minimize(E, *direction, {q}, {.max_iterations = 100, .tolerance = 1e-3});
+    double moved = 0;
+    for (size_t i = 0; i < q.size(); ++i) moved = std::max(moved, std::abs(q[i] - before[i]));
+    if (moved < kAtRest * radius) return;
+  }
+}
+
+}  // namespace
+
+void inflate(Model& model, std::vector<double>& q) {
+  std::optional<std::string> why = overlap(model, q);
+  if (!model.contact || !why) return;
+  const std::vector<double> start = q;
+  for (double scale = 0.5; why && scale >= kSmallest; scale /= 2) why = overlap(model, q = shrunk(model, start, scale));
+  if (why) throw InvalidInput("start = \"inflate\" finds no smaller bodies that are apart: " + *why);
+  require_outside(model, q);
+  const auto other = std::stable_partition(model.loads.begin(), model.loads.end(),
+                                           [&](const auto& load) { return load.get() == model.contact; });
+  std::vector<std::unique_ptr<Energy>> loads(std::make_move_iterator(other),
+                                             std::make_move_iterator(model.loads.end()));
+  model.loads.erase(other, model.loads.end());
+  std::vector<std::unique_ptr<Energy>> damping = std::exchange(model.damping, {});
+  grow(model, start, q);
+  model.damping = std::move(damping);
+  model.loads.insert(model.loads.begin(), std::make_move_iterator(loads.begin()), std::make_move_iterator(loads.end()));
+  for (const BodyRange& body : model.bodies) {
+    const double share = volume_of(model, body, q) / volume_of(model, body, start);
+    if (!(share > kVolume))
+      throw InvalidInput("start = \"inflate\" leaves body '" + body.name + "' " + std::to_string(int(100 * share)) +
+                         " % of its volume; other surfaces enclose it, so move it");
+  }
+  if ((why = overlap(model, q))) throw InvalidInput("start = \"inflate\" failed: " + *why);
+}
+
+}  // namespace aspic
