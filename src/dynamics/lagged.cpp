@@ -63,13 +63,13 @@ MinimizeReport minimize_lagged(const StepTools& tools, const MinimizeOptions& op
     if (report.status != Status::iteration_limit) break;
     const double reduced = report.threshold > 0 ? kReduction * report.reached / report.threshold : 1;
     rough.tolerance = options.tolerance * std::max(1.0, reduced);
-    double part = 1;
+    double share_of_update = 1;
     if (passes >= kPure) {
       tools.E.gradient(initial.x, forces);
       ++report.gradients;
-      part = share.next(forces);
+      share_of_update = share.next(forces);
     }
-    tools.E.mix_lagged(part);
+    tools.E.mix_lagged(share_of_update);
     add(minimize({initial.x}, rough));
   }
   solve.passes = std::max(solve.passes, passes);

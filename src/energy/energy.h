@@ -69,9 +69,9 @@ class Energy {
   virtual double max_step(Positions /*x*/, const Context& /*context*/, std::span<const double> /*d*/) const {
     return std::numeric_limits<double>::infinity();
   }
-  // Adds springs to a quadratic model g'd + d'Hd / 2 of V around x, such that its minimizer avoids what bounds the
-  // steps along the given d: g += scale dS/dd at d = 0, H += scale d2S/dd2 for the energy S of the springs. Returns the
-  // number of springs.
+  // Adds springs to a quadratic model g'd + d'Hd / 2 of V around x, such that its minimizer avoids bounds of the steps
+  // and kinks of V along the given d: g += scale dS/dd at d = 0, H += scale d2S/dd2 for the energy S of the springs.
+  // Returns the number of springs.
   virtual int add_stops(Positions /*x*/, const Context& /*context*/, std::span<const double> /*d*/, double /*scale*/,
                         std::span<double> /*g*/, BlockSparse& /*H*/) const {
     return 0;

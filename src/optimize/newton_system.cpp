@@ -98,7 +98,7 @@ bool NewtonSystem::avoid_stops(NewtonTask& task) {
     const double forcing = task.forcing * gradient_norm_ / std::sqrt(task.E.dot(g_, g_));  // springs pull hard
     const bool is_solved = solver_->factorize(*H) && solve_factorized(task, g_, std::max(forcing, kFinest));
     const double next = is_solved && task.E.dot(task.g, task.d) < 0 ? task.E.max_step(task.x, task.d) : 0;
-    if (next < std::min(reach, kUsefulStep)) {
+    if (next == 0 || next < std::min(reach, kUsefulStep)) {
       std::copy(d_.begin(), d_.end(), task.d.begin());
       break;
     }
