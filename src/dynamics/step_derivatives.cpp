@@ -4,7 +4,10 @@
 #include <cmath>
 #include <random>
 
+#include "contact/barrier.h"
 #include "dynamics/incremental_potential.h"
+#include "math/vectors.h"
+#include "mesh/box.h"
 
 namespace aspic {
 namespace {
@@ -33,6 +36,8 @@ class Noise {
  private:
   std::mt19937_64 random_{11};
 };
+
+constexpr const char* kTouching = "touching";
 
 std::vector<double> near_rest(const TetMesh& mesh, double edge) {
   Noise noise;
@@ -82,6 +87,7 @@ class StepCheck {
 
   std::vector<TermDerivatives> run() {
     for (const NamedState& at : states()) {
+      if (at.name == kTouching) E_.update_lagged(at.q);
       const std::vector<std::string> names = simulation_.potential_names();
       for (size_t k = 0; k < names.size(); ++k) check(names[k], at, differentiable(E_.potential()[k], E_.pattern()));
       for (const ActiveTerm& D : E_.damping()) check(std::string(D.name()), at, differentiable(D, E_.pattern()));
@@ -102,7 +108,29 @@ class StepCheck {
       all.push_back(std::move(strained));
       break;
     }
+    if (std::vector<double> q = touching(); !q.empty()) all.push_back({kTouching, std::move(q)});
     return all;
+  }
+
+  // The state in which a body that moves along an axis, and a little aside, touches first; empty without contact.
+  std::vector<double> touching() {
+    constexpr double kFar = 3, kAside = 0.3;  // relative to the size of the scene, and to the path
+    std::vector<double> nearest;
+    if (!model_.contact) return nearest;
+    const double far = kFar * size_of(model_.mesh);
+    double least = 1;
+    for (const BodyRange& body : model_.bodies)
+      for (int way = 0; way < 6; ++way) {
+        std::vector<double> d(state_.q.size());
+        for (int v = body.first_vertex; v < body.first_vertex + body.vertex_count; ++v)
+          for (int r = 0; r < 3; ++r) d[3 * v + r] = r == way / 2 ? (way % 2 ? -far : far) : kAside * far;
+        const double step = E_.max_step(state_.q, d);
+        if (!(step < least)) continue;
+        least = step;
+        nearest = state_.q;
+        add_scaled(step, d, nearest);
+      }
+    return nearest;
   }
   bool is_finite(const std::vector<double>& q) { return std::isfinite(E_.value(q)); }
 

@@ -14,12 +14,13 @@ Differentiable differentiable(const ActiveTerm& V, const BlockPattern& pattern);
 
 struct TermDerivatives {
   std::string term;   // a name of Simulation::potential_names(), of a damping term, "inertia", or "E"
-  std::string state;  // where: "start", "rest" or "deformed"
+  std::string state;  // where: "start", "rest", "deformed" or "touching"
   DerivativeReport report;
 };
 
 // Checks at three states: the current one; near rest, with every vertex moved by a hundredth of an edge; and stretched,
-// sheared and perturbed by up to 15 % as far as the materials allow. Steps are relative to the mean edge length. E is
+// sheared and perturbed by up to 15 % as far as the materials allow. In scenes with contact, a fourth state has a body
+// moved until it touches. Steps are relative to the mean edge length. E is
 // that of a step of backward Euler, or of statics, from the current state; pinned vertices are not variables.
 std::vector<TermDerivatives> check_step_derivatives(const Simulation& simulation, double tolerance = 1e-6);
 

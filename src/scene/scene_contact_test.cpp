@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "contact/barrier.h"
+#include "dynamics/step_derivatives.h"
 #include "io/atomic_file.h"
 #include "io/folder_test.h"
 #include "io/mesh_file.h"
@@ -78,6 +79,20 @@ TEST(SceneContact, PairsHaveTheirFriction) {
   EXPECT_THAT(refusal(two + pair("[\"cube\", \"bal\"]")), HasSubstr("'bal' (did you mean 'ball'?)"));
   EXPECT_THAT(refusal(two + pair("[\"obstacle1\", \"obstacle1\"]")), HasSubstr("name a body"));
   EXPECT_THAT(refusal(two + pair("[\"cube\", \"ball\"]") + pair("[\"ball\", \"cube\"]")), HasSubstr("earlier pair"));
+}
+
+// The order of the differences is a number only where a term is not constant.
+TEST(SceneContact, DerivativesAreCheckedWhereBodiesTouch) {
+  const Scene scene = load(kCube + kFloor + "[contact]\nfriction = 0.4\n");
+  int checked = 0;
+  for (const TermDerivatives& t : check_step_derivatives(scene.simulation)) {
+    if (t.state != "touching" || (t.term != "contact" && t.term != "friction")) continue;
+    ++checked;
+    EXPECT_TRUE(t.report.gradient.passed && t.report.hessian.passed) << t.term;
+    EXPECT_GT(t.report.gradient.order, 1) << t.term;
+    EXPECT_GT(t.report.hessian.order, 1) << t.term;
+  }
+  EXPECT_EQ(checked, 2);
 }
 
 TEST(SceneContact, RejectsBadInput) {
