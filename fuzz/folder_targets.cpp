@@ -12,6 +12,7 @@
 #include "io/atomic_file.h"
 #include "io/checkpoint.h"
 #include "io/mesh_file.h"
+#include "io/pc2.h"
 #include "mesh/generators.h"
 #include "mesh/surface.h"
 #include "run_files.h"
@@ -36,7 +37,11 @@ fs::path folder_with_meshes() {
     TetMesh mesh = small_box();
     mesh.region = {1, 1, 1, 2, 2, 2};
     write_mesh(path / "box.msh", mesh);
-    write_mesh(path / "skin.obj", boundary_surface(mesh).surface);
+    const TriMesh skin = boundary_surface(mesh).surface;
+    write_mesh(path / "skin.obj", skin);
+    std::vector<double> x;
+    for (const Vec3d& X : skin.vertices) x.insert(x.end(), X.a, X.a + 3);
+    Pc2File::create(path / "skin.pc2", skin.vertex_count()).append(x);
     put_file(path / "young.csv", "1e5\n1e5\n1e5\n2e5\n2e5\n2e5\n");
     write_material(path / "material.vtu",
                    {.mesh = mesh,

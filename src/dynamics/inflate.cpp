@@ -19,6 +19,7 @@ namespace aspic {
 namespace {
 
 constexpr double kSmallest = 1.0 / 64;  // scale of bodies
+constexpr double kShrink = 0.85;        // ratio of two scales that are tried
 constexpr double kVolume = 0.9;         // least share of its volume that a body must regain
 constexpr int kMostSteps = 200;
 constexpr double kAtRest = 1e-3;  // largest displacement in a step at rest, relative to the radius of the model
@@ -115,7 +116,8 @@ void inflate(Model& model, std::vector<double>& q) {
   std::optional<std::string> why = overlap(model, q);
   if (!model.contact || !why) return;
   const std::vector<double> start = q;
-  for (double scale = 0.5; why && scale >= kSmallest; scale /= 2) why = overlap(model, q = shrunk(model, start, scale));
+  for (double scale = kShrink; why && scale >= kSmallest; scale *= kShrink)
+    why = overlap(model, q = shrunk(model, start, scale));
   if (why) throw InvalidInput("start = \"inflate\" finds no smaller bodies that are apart: " + *why);
   require_outside(model, q);
   const auto other = std::stable_partition(model.loads.begin(), model.loads.end(),
@@ -131,7 +133,7 @@ void inflate(Model& model, std::vector<double>& q) {
     const double share = volume_of(model, body, q) / volume_of(model, body, start);
     if (!(share > kVolume))
       throw InvalidInput("start = \"inflate\" leaves body '" + body.name + "' " + std::to_string(int(100 * share)) +
-                         " % of its volume; other surfaces enclose it, so move it");
+                         " % of its volume, enclosed by other surfaces or collapsed; move it further away");
   }
   if ((why = overlap(model, q))) throw InvalidInput("start = \"inflate\" failed: " + *why);
 }
