@@ -103,7 +103,8 @@ void grow(const Model& model, const std::vector<double>& start, std::vector<doub
     const std::vector<double> before = q;
     E.set_potential_step({.start = before, .h = std::sqrt(h2), .time = 0, .obstacle_time = 0});
     E.begin_step(before, 1, h2);
-    Minimizer().minimize(E, *direction, {q}, {.max_iterations = 100, .tolerance = 1e-3});
+    const MinimizeReport report = Minimizer().minimize(E, *direction, {q}, {.max_iterations = 100, .tolerance = 1e-3});
+    if (!is_success(report.status)) return;
     double moved = 0;
     for (size_t i = 0; i < q.size(); ++i) moved = std::max(moved, std::abs(q[i] - before[i]));
     if (moved < kAtRest * radius) return;
