@@ -25,6 +25,11 @@ class Folder(unittest.TestCase):
         self.folder = pathlib.Path(tempfile.mkdtemp(prefix="aspic_contact_"))
         self.addCleanup(shutil.rmtree, self.folder)
 
+    def run_scene(self, text):
+        (self.folder / "scene.toml").write_text(text)
+        return subprocess.run([ASPIC, "run", "scene.toml", "--out", "run", "--force"], cwd=self.folder, capture_output=True, text=True,
+                              timeout=120)
+
     def run_cases(self, cases):
         for number, one in enumerate(cases):
             with self.subTest(one.name):
@@ -115,8 +120,7 @@ class Pairs(Folder):
         text = f"gravity = [{9.81 * sine}, {-9.81 * cosine}, 0]\n[time]\nstep = {h}\nduration = {h * steps}\n[output]\nevery = {h}\n" \
                "[contact]\nfriction = 0.5\nreach = 0.0005\n[[contact.pair]]\nbetween = [\"smooth\", \"floor\"]\nfriction = 0.1\n" \
                "[[obstacle]]\nname = \"floor\"\nplane = {}\n" + block.format("smooth", 0, .2) + block.format("rough", 1, 1.2)
-        (self.folder / "two.toml").write_text(text)
-        done = subprocess.run([ASPIC, "run", "two.toml", "--out", "run"], cwd=self.folder, capture_output=True, text=True, timeout=120)
+        done = self.run_scene(text)
         self.assertEqual(done.returncode, 0, done.stderr)
         frames = [exact.body_surfaces(p) for p in sorted((self.folder / "run/frames").glob("body_*.vtu"))]
         moved = []
@@ -171,11 +175,6 @@ name = "rod"
 capsule = { from = [1.05, 0.2, -1], to = [1.05, 0.2, 1], radius = 0.05 }
 """
 
-    def run_scene(self, text):
-        (self.folder / "round.toml").write_text(text)
-        return subprocess.run([ASPIC, "run", "round.toml", "--out", "run", "--force"], cwd=self.folder, capture_output=True, text=True,
-                              timeout=120)
-
     def test_triangles_stay_outside(self):
         done = self.run_scene(self.SCENE)
         self.assertEqual(done.returncode, 0, done.stderr)
@@ -220,18 +219,16 @@ mesh = "table.obj"
     CORNERS = ((-1, 0, -1), (1, 0, -1), (1, 0, 1), (-1, 0, 1))
     HEIGHTS = (0, .125, .0625)  # at frames 2, 6, 10 of 32 per second
 
-    def run_scene(self, motion, points=4, samples=None, value=0.):
+    def run_motion(self, motion, points=4, samples=None, value=0.):
         samples = len(self.HEIGHTS) if samples is None else samples
         (self.folder / "table.obj").write_text("".join("v %g %g %g\n" % c for c in self.CORNERS) + "f 1 3 2\nf 1 4 3\n")
         data = b"POINTCACHE2\0" + struct.pack("<iiffi", 1, points, 2, 4, samples)
         data += b"".join(struct.pack("<3f", x + value, y + height, z) for height in self.HEIGHTS for x, y, z in self.CORNERS)
         (self.folder / "table.pc2").write_bytes(data)
-        (self.folder / "lift.toml").write_text(self.SCENE.format(motion))
-        return subprocess.run([ASPIC, "run", "lift.toml", "--out", "run", "--force"], cwd=self.folder, capture_output=True, text=True,
-                              timeout=120)
+        return self.run_scene(self.SCENE.format(motion))
 
     def positions(self, motion):
-        done = self.run_scene(motion)
+        done = self.run_motion(motion)
         self.assertEqual(done.returncode, 0, done.stderr)
         last = sorted((self.folder / "run/frames").glob("body_*.vtu"))[-1]
         return [x for surface in exact.body_surfaces(last) for point in surface.points for x in point]
@@ -248,13 +245,13 @@ mesh = "table.obj"
     def test_bad_caches_are_refused(self):
         for keys, words in (({"points": 3}, "3 points, but the mesh has 4 vertices"), ({"samples": 9}, "cut short"), ({"samples": 0}, "no samples"),
                             ({"value": math.nan}, "point 0 of sample 0 is not finite")):
-            done = self.run_scene(self.RECORDING, **keys)
+            done = self.run_motion(self.RECORDING, **keys)
             self.assertEqual(done.returncode, 2, done.stderr)
             self.assertIn(words, done.stderr)
-            self.assertIn("lift.toml:14:", done.stderr)
+            self.assertIn("scene.toml:14:", done.stderr)
         for motion, words in ((self.RECORDING + '\nmotion = { linear = { velocity = [0, 0, 0] } }', "exclude each other"),
                               ("recording = { file = 'table.obj' }", "point cache")):
-            done = self.run_scene(motion)
+            done = self.run_motion(motion)
             self.assertEqual(done.returncode, 2, done.stderr)
             self.assertIn(words, done.stderr)
 
@@ -281,13 +278,8 @@ translate = [0.15, 0.15, 0.02]
 plane = {}
 """
 
-    def run_scene(self, text):
-        (self.folder / "overlap.toml").write_text(text.replace("PIN\n", ""))
-        return subprocess.run([ASPIC, "run", "overlap.toml", "--out", "run", "--force"], cwd=self.folder, capture_output=True, text=True,
-                              timeout=120)
-
     def test_bodies_come_apart(self):
-        done = self.run_scene(self.SCENE)
+        done = self.run_scene(self.SCENE.replace("PIN\n", ""))
         self.assertEqual(done.returncode, 0, done.stderr)
         frames = [exact.body_surfaces(p) for p in sorted((self.folder / "run/frames").glob("body_*.vtu"))]
         self.assertEqual(contact_scenes.surface_faults(frames, [], [((0, 0, 0), (0, 1, 0))]), [])
@@ -304,7 +296,7 @@ plane = {}
                                 ("translate = [0.15, 0.15, 0.02]", "translate = [0, 0.1, 0.02]", "body 'cube' encloses the center of body 'ball'"),
                                 ("translate = [0.15, 0.15, 0.02]", "translate = [0.15, -0.05, 0]", "starts behind the plane")):
             text = self.SCENE.replace("PIN", '[[body.pin]]\nwhere = "all"') if "encloses" in words else self.SCENE
-            done = self.run_scene(text.replace(old, new))
+            done = self.run_scene(text.replace(old, new).replace("PIN\n", ""))
             self.assertEqual(done.returncode, 2, done.stderr)
             self.assertIn(words, done.stderr)
 

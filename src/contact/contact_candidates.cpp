@@ -191,7 +191,8 @@ bool CandidateSearch::find_pairs(ClosePairs& all) {
   std::vector<double> radii(std::max({mesh_.rest.size(), mesh_.edges.size(), mesh_.triangles.size()}));
   const auto query_of = [&](int part, const PairFilter* filter) {
     const SurfacePrimitives& own = surfaces_[part].finder.primitives();
-    std::fill(radii.begin(), radii.end(), radius + mesh_.parts[part].radius);
+    const size_t count = std::max({own.vertices.size(), own.edges.size(), own.triangles.size()});
+    std::fill_n(radii.begin(), count, radius + mesh_.parts[part].radius);
     return PairQuery{.path = boxes_,
                      .vertex_radius = std::span(radii).first(own.vertices.size()),
                      .edge_radius = std::span(radii).first(own.edges.size()),

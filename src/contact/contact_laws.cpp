@@ -17,6 +17,16 @@ double share_of_finer(double own, double other) {
   return a + b > 0 ? b / (a + b) : 0.5;
 }
 
+// A sphere may press the middle of a triangle, and a capsule the middle of an edge. So the pressure on a body is
+// integrated over the triangles near a center, or half over its points and half over its edges near an axis.
+double share_over_points(const ContactPart& round) { return round.point_count == 1 ? 0 : 0.5; }
+
+double share_of(const ContactPart& own, const ContactPart& other) {
+  if (other.radius > 0) return share_over_points(other);
+  if (own.radius > 0) return 1 - share_over_points(own);
+  return share_of_finer(own.mean_triangle, other.mean_triangle);
+}
+
 double smaller_young(const ContactPart& a, const ContactPart& b) {
   const double infinite = std::numeric_limits<double>::infinity();
   const double E = std::min(a.is_obstacle ? infinite : a.young, b.is_obstacle ? infinite : b.young);
@@ -36,7 +46,7 @@ ContactLaws::ContactLaws(const ContactMesh& mesh, const ContactOptions& options)
       law_[i * parts_ + j] = {.reach = reach,
                               .edge_reach = radius > 0 ? reach : kGuardReach * reach,
                               .stiffness = options.stiffness > 0 ? options.stiffness : kStiffness * smaller_young(a, b),
-                              .share = i == j ? 0.5 : share_of_finer(a.mean_triangle, b.mean_triangle),
+                              .share = i == j ? 0.5 : share_of(a, b),
                               .friction = std::sqrt(a.friction * b.friction),
                               .radius = radius,
                               .guard = i == j ? 0 : std::min(a.mean_triangle, b.mean_triangle)};

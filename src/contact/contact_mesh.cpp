@@ -6,14 +6,10 @@
 #include <map>
 
 namespace aspic {
-namespace {
 
-double triangle_area(const ContactMesh& mesh, const Triangle& t) {
-  const auto& X = mesh.rest;
-  return norm(cross(X[t[1]] - X[t[0]], X[t[2]] - X[t[0]])) / 2;
+double ContactMesh::area_at_rest(const Triangle& t) const {
+  return norm(cross(rest[t[1]] - rest[t[0]], rest[t[2]] - rest[t[0]])) / 2;
 }
-
-}  // namespace
 
 void ContactMesh::add(const ContactPart& given, std::span<const Vec3d> X, std::span<const Triangle> surface,
                       std::span<const int> rows) {
@@ -37,7 +33,7 @@ void ContactMesh::add(const ContactPart& given, std::span<const Vec3d> X, std::s
   std::map<Edge, int> number_of;
   for (const Triangle& t : surface) {
     const Triangle corners = {point[t[0]], point[t[1]], point[t[2]]};
-    const double size = triangle_area(*this, triangles.emplace_back(corners));
+    const double size = area_at_rest(triangles.emplace_back(corners));
     own.mean_triangle += size / static_cast<double>(surface.size());
     for (const int p : corners) area[p] += size / 3, --point_share[p];
     auto& own_edges = edges_of.emplace_back();
@@ -62,7 +58,7 @@ void ContactMesh::add(const ContactPart& given, std::span<const Vec3d> X, std::s
   parts.push_back(own);
 }
 
-// A triangle without area whose corners are the ends. Points of other parts are finer, so they integrate.
+// A triangle without area whose corners are the ends.
 void ContactMesh::add_capsule(const ContactPart& given, const std::array<Vec3d, 2>& ends) {
   ContactPart own = given;
   own.is_obstacle = true;

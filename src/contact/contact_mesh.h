@@ -65,6 +65,8 @@ struct ContactMesh {
   void add_capsule(const ContactPart& part, const std::array<Vec3d, 2>& ends);
   // Adds a plane, whose motion moves its origin.
   void add_plane(const ContactPart& part, const Vec3d& origin, const Vec3d& normal);
+
+  double area_at_rest(const Triangle& t) const;  // [m^2]
 };
 
 }  // namespace aspic

@@ -54,16 +54,6 @@ class NearFeatures {
   std::vector<int> edges_, points_;
 };
 
-// A sphere may press the middle of a triangle, and a capsule the middle of an edge, so their pressure is integrated
-// over these: over the triangles near a center, or half over the points and half over the edges near an axis.
-double share_of_round(const ContactPart& round) { return round.point_count == 1 ? 0 : 0.5; }
-double triangle_share_of_round(const ContactPart& round) { return round.point_count == 1 ? 1 : 0.5; }
-
-double area_at_rest(const ContactMesh& mesh, const Triangle& t) {
-  const auto& X = mesh.rest;
-  return norm(cross(X[t[1]] - X[t[0]], X[t[2]] - X[t[0]])) / 2;
-}
-
 Distance point_point_distance(const Vec3d& x, const Vec3d& y) {
   Distance distance;
   distance.r = x - y;
@@ -142,12 +132,12 @@ void StencilSearch::add_point(const PathCandidates& candidates, std::span<const 
   const int own = mesh_.part[p];
   NearFeatures near;
   int other = -1;
-  double reach = 0, radius = 0, share = 0;
+  double reach = 0, radius = 0;
   const auto finish = [&] {
     for (const NearFeatures::Entry& entry : near.entries()) {
-      if (entry.share == 0 || (radius > 0 && share == 0)) continue;
       const ContactLaw& law = laws_(own, other);
-      const double area = entry.share * share * mesh_.area[p];
+      if (entry.share == 0 || law.share == 0) continue;
+      const double area = entry.share * law.share * mesh_.area[p];
       found.push_back({.distance = entry.distance,
                        .point = entry.point,
                        .weight = law.stiffness * area,
@@ -156,7 +146,7 @@ void StencilSearch::add_point(const PathCandidates& candidates, std::span<const 
                        .area = area,
                        .parts = {own, other}});
       // Points of a much coarser surface have next to no share: a tip would pierce the other surface.
-      const double guard = std::min(law.guard, mesh_.area[p]) - share * mesh_.area[p];
+      const double guard = std::min(law.guard, mesh_.area[p]) - law.share * mesh_.area[p];
       if (guard > 0 && radius == 0 && entry.distance.d < kGuardReach * reach)
         found.push_back({.distance = entry.distance,
                          .point = entry.point,
@@ -173,14 +163,13 @@ void StencilSearch::add_point(const PathCandidates& candidates, std::span<const 
       finish();
       other = mesh_.part[corner[0]];
       reach = laws_(own, other).reach, radius = laws_(own, other).radius;
-      share = radius > 0 ? share_of_round(mesh_.parts[other]) : laws_(own, other).share;
       if (own == other) reach = std::min(reach, cap_[p]);
     }
     if (laws_(own, other).stiffness == 0 || candidates.least_gap(p, candidate, corner) >= radius + reach) continue;
     const Distance to_triangle = point_triangle_distance({x[p], x[corner[0]], x[corner[1]], x[corner[2]]});
     if (!(to_triangle.d < radius + reach)) continue;
     if (mesh_.parts[own].radius > 0) {
-      const double area = triangle_share_of_round(mesh_.parts[own]) * area_at_rest(mesh_, corner);
+      const double area = laws_(own, other).share * mesh_.area_at_rest(corner);
       found.push_back({.distance = to_triangle,
                        .point = {p, corner[0], corner[1], corner[2]},
                        .weight = laws_(own, other).stiffness * area,

@@ -91,7 +91,7 @@ class SceneBuilder {
     if (options_.amend) options_.amend(model_);
     State state = start();
     if (const Value* contact = source_.document.find("contact"); contact && (*contact)["start"].text() == "inflate")
-      inflate(model_, state.q);
+      inflate_from((*contact)["start"].place, state);
     const SimulationOptions options = options_of(source_.document, source_.notes);
     put_in_order(source_.document);
     for (std::string& note : source_.notes) note = printable(note);
@@ -129,6 +129,15 @@ class SceneBuilder {
   }
 
  private:
+  void inflate_from(const Place& place, State& state) {
+    mesh_loader().report_if_many(model_.mesh.tet_count(), "moving bodies apart that overlap at the start");
+    try {
+      inflate(model_, state.q);
+    } catch (const InvalidInput& e) {
+      throw error_at(place, e.what());
+    }
+  }
+
   void note_version() {
     const std::string current = ASPIC_VERSION;
     if (const Value* made_by = source_.document.find("version")) {

@@ -15,14 +15,20 @@
 namespace aspic::cli::lecture {
 namespace {
 
-// The overrides that place the center of each body where the scene places the origin of its shape.
+Vec3d center_of(const Model& model, const BodyRange& body) {
+  Box box;
+  for (int v = body.first_vertex; v < body.first_vertex + body.vertex_count; ++v) box.add(model.mesh.rest[v]);
+  return 0.5 * (box.lower + box.upper);
+}
+
+// The overrides that place the real mesh where the scene places its own shapes.
 std::vector<std::string> centered(const Stage& stage) {
-  const Scene one = stage.on_real_mesh("05_swing");
-  const Box box = bounding_box(one.simulation.model().mesh.rest);
-  const Vec3d center = 0.5 * (box.lower + box.upper);
+  const Scene own = stage.scene("06_chutes"), one = stage.on_real_mesh("05_swing");
+  const Model& placed = own.simulation.model();
+  const Vec3d center = center_of(one.simulation.model(), one.simulation.model().bodies[0]);
   std::vector<std::string> overrides;
-  for (const Vec3d& at : {Vec3d{{-0.7, 4.1, 0}}, Vec3d{{2.2, 1.95, 0}}}) {
-    const Vec3d t = at - center;
+  for (const BodyRange& body : placed.bodies) {
+    const Vec3d t = center_of(placed, body) - center;
     overrides.push_back(fmt::format("body.{}.translate=[{}, {}, {}]", overrides.size(), t[0], t[1], t[2]));
   }
   return overrides;
