@@ -99,7 +99,7 @@ class StepCheck {
 
  private:
   std::vector<NamedState> states() {
-    std::vector<NamedState> all = {{"start", state_.q}, {"rest", near_rest(model_.mesh, edge_)}};
+    std::vector<NamedState> all = {{"start", near_start()}, {"rest", near_rest(model_.mesh, edge_)}};
     if (!is_finite(all.back().q)) all.pop_back();
     double amount = 0.15;
     for (int attempt = 0; attempt < 10; ++attempt, amount /= 2) {
@@ -110,6 +110,17 @@ class StepCheck {
     }
     if (std::vector<double> q = touching(); !q.empty()) all.push_back({kTouching, std::move(q)});
     return all;
+  }
+
+  // The current state; with contact, away from the start of the step by up to a hundredth of an edge, because the
+  // second derivatives of friction have a kink where nothing slips.
+  std::vector<double> near_start() {
+    std::vector<double> q = state_.q;
+    if (!model_.contact) return q;
+    std::vector<double> d(q.size());
+    std::generate(d.begin(), d.end(), [this, noise = Noise{}]() mutable { return 0.01 * edge_ * noise(); });
+    add_scaled(0.5 * E_.max_step(q, d), d, q);
+    return q;
   }
 
   // The state in which a body that moves along an axis, and a little aside, touches first; empty without contact.
