@@ -2,41 +2,54 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 
 #include "math/vectors.h"
 
 namespace aspic {
 namespace {
 
+// Updates in a step after which known sliders keep their directions: around an edge, normals turn within a small gap,
+// and updates would alternate.
+constexpr int kTurning = 4;
 constexpr double kStaticReach = 1e-2;  // width of f in statics, relative to the reach of the barrier
 
-// What may slide along a surface.
+struct Weight {
+  int row;
+  double factor;
+};
+
+// What may slide along a surface. Its slip is that of a sum of rows of x.
 struct Slider {
-  std::array<int, 4> row = {-1, -1, -1, -1};  // -1: an obstacle
-  std::array<double, 4> weight = {};
+  std::vector<Weight> weights;  // of different rows
   std::array<Vec3d, 2> tangent = {};
   double force = 0;  // mu lambda [N]
   double width = 0;  // e [m]
   Vec3d moved = {};  // of the obstacle during the step [m]
 };
 
-// A normal force, and the stencil of the features between which it acts.
+// A normal force, and the stencils that share it.
 struct Traction {
-  const ContactStencil* at;
-  Vec3d force{};  // [N]
+  std::span<const ContactStencil> stencils;
+  std::vector<double> share;  // of the stencils, 1 in all
+  Vec3d force{};              // [N]
 };
 
-// The sliders of one update of the normal forces, as part of a mixture.
-struct Update {
-  double share;
-  std::vector<Slider> sliders;
-};
+// Names a contact within a step: a point and a part, or two edges.
+using ContactName = std::array<int, 5>;
+
+ContactName name_of(const ContactStencil& stencil) {
+  if (stencil.radius > 0 || stencil.is_of_edges())
+    return {stencil.point[0], stencil.point[1], stencil.point[2], stencil.point[3], stencil.parts[1]};
+  return {stencil.point[0], -1, -1, -1, stencil.parts[1]};
+}
 
 struct FrictionContext : Energy::Context {
   std::vector<double> start;
   double obstacle_time = 0;  // of obstacles at the start [s]
   std::vector<Slider> sliders;
-  std::vector<Update> mixture;  // whose shares add up to 1
+  int updates = 0;                      // in this step
+  std::map<ContactName, Slider> known;  // the sliders of earlier updates
 };
 
 const FrictionContext& friction(const Energy::Context& context) { return static_cast<const FrictionContext&>(context); }
@@ -57,30 +70,41 @@ bool is_of_same_point(const ContactStencil& a, const ContactStencil& b) {
 }
 
 // The normal force between a point and a part, or between two edges. In a concave crease it is the sum over two faces
-// less that over their edge.
+// less that over their edge. The shares make it act where the stencils do, so that nothing jumps where the closest of
+// the faces changes.
 Traction traction_of(std::span<const ContactStencil> stencils, std::span<const Vec3d> points) {
-  Traction traction{.at = stencils.data()};
-  double largest = 0;
+  Traction traction{.stencils = stencils};
+  std::vector<Vec3d> forces;
   for (const ContactStencil& stencil : stencils) {
     const auto g = stencil.gradient(points);
-    const Vec3d force = stencil.is_of_edges() ? -1.0 * (g[0] + g[1]) : -1.0 * g[0];
-    traction.force = traction.force + force;
-    if (const double size = stencil.weight > 0 ? norm(force) : 0; size > largest)
-      largest = size, traction.at = &stencil;
+    forces.push_back(stencil.is_of_edges() ? -1.0 * (g[0] + g[1]) : -1.0 * g[0]);
+    traction.force = traction.force + forces.back();
   }
+  const double square = dot(traction.force, traction.force);
+  for (const Vec3d& force : forces) traction.share.push_back(square > 0 ? dot(force, traction.force) / square : 0);
   return traction;
 }
 
+void add_weight(const Weight& added, std::vector<Weight>& weights) {
+  for (Weight& weight : weights)
+    if (weight.row == added.row) {
+      weight.factor += added.factor;
+      return;
+    }
+  weights.push_back(added);
+}
+
 Slider slider_of(const ContactMesh& mesh, const Traction& traction, double force, double width) {
-  const Distance& at = traction.at->distance;
+  constexpr double kRoundOff = 1e-12;  // of forces over a face and its edge that cancel
   Slider slider{.force = force, .width = width};
   slider.tangent = tangents({.r = traction.force, .d = norm(traction.force)});
-  for (int k = 0; k < at.count; ++k) {
-    const int p = traction.at->point[at.point[k]];
-    if (p < 0 || mesh.row[p] < 0) continue;
-    slider.row[k] = mesh.row[p];
-    slider.weight[k] = at.c[k];
+  for (size_t s = 0; s < traction.stencils.size(); ++s) {
+    const ContactStencil& stencil = traction.stencils[s];
+    for (int k = 0; k < stencil.distance.count; ++k)
+      if (const int p = stencil.point[stencil.distance.point[k]]; p >= 0 && mesh.row[p] >= 0)
+        add_weight({mesh.row[p], traction.share[s] * stencil.distance.c[k]}, slider.weights);
   }
+  std::erase_if(slider.weights, [](const Weight& weight) { return std::abs(weight.factor) < kRoundOff; });
   return slider;
 }
 
@@ -94,22 +118,40 @@ using Stiffness = std::array<std::array<double, 2>, 2>;
 
 Slip slip(const Slider& slider, Positions x, Positions start) {
   Vec3d d = -1.0 * slider.moved;
-  for (int i = 0; i < 4; ++i)
-    if (slider.row[i] >= 0) d = d + slider.weight[i] * (point(x, slider.row[i]) - point(start, slider.row[i]));
+  for (const auto& [row, factor] : slider.weights) d = d + factor * (point(x, row) - point(start, row));
   return {dot(slider.tangent[0], d), dot(slider.tangent[1], d)};
 }
 
 Slip change_of_slip(const Slider& slider, std::span<const double> d) {
   Vec3d sum{};
-  for (int i = 0; i < 4; ++i)
-    if (slider.row[i] >= 0) sum = sum + slider.weight[i] * point(d, slider.row[i]);
+  for (const auto& [row, factor] : slider.weights) sum = sum + factor * point(d, row);
   return {dot(slider.tangent[0], sum), dot(slider.tangent[1], sum)};
 }
 
 void add_force(const Slider& slider, const Slip& f, std::span<double> g) {
   const Vec3d force = f[0] * slider.tangent[0] + f[1] * slider.tangent[1];
-  for (int i = 0; i < 4; ++i)
-    if (slider.row[i] >= 0) add_vec(slider.weight[i] * force, slider.row[i], g);
+  for (const auto& [row, factor] : slider.weights) add_vec(factor * force, row, g);
+}
+
+// Adds the blocks w_i w_j K for i > j: a stencil for two pairs of rows each.
+void add_pairs(std::span<const Weight> weights, const Mat3d& K, BlockSparse& H) {
+  const int count = static_cast<int>(weights.size()), pairs = std::max(2, (count + 1) / 2);
+  if (count < 2) return;
+  for (int high = 1; high < pairs; ++high)
+    for (int low = 0; low < high; ++low) {
+      const std::array<int, 4> own = {2 * low, 2 * low + 1, 2 * high, 2 * high + 1};
+      const bool is_next =
+          high == low + 1;  // has the block inside the low pair; the last one also that of the high one
+      Stencil added;
+      for (int i = 0; i < 4; ++i) {
+        if (own[i] >= count) continue;
+        added.row[i] = weights[own[i]].row;
+        for (int j = 0; j < i; ++j)
+          if (i / 2 != j / 2 || (is_next && (i == 1 || high == pairs - 1)))
+            added.block[i * (i - 1) / 2 + j] = (weights[own[i]].factor * weights[own[j]].factor) * K;
+      }
+      H.stencils.push_back(added);
+    }
 }
 
 void add_stiffness(const Slider& slider, const Stiffness& k, double scale, BlockSparse& H) {
@@ -118,16 +160,11 @@ void add_stiffness(const Slider& slider, const Stiffness& k, double scale, Block
     for (int b = 0; b < 2; ++b)
       for (int c = 0; c < 3; ++c)
         for (int r = 0; r < 3; ++r) K(r, c) += scale * k[a][b] * slider.tangent[a][r] * slider.tangent[b][c];
-  Stencil added{.row = slider.row};
-  int variables = 0;
-  for (int i = 0; i < 4; ++i) {
-    if (slider.row[i] < 0) continue;
-    ++variables;
-    Mat3d& diagonal = H.block[H.pattern->diagonal(slider.row[i])];
-    diagonal = diagonal + (slider.weight[i] * slider.weight[i]) * K;
-    for (int j = 0; j < i; ++j) added.block[i * (i - 1) / 2 + j] = (slider.weight[i] * slider.weight[j]) * K;
+  for (const auto& [row, factor] : slider.weights) {
+    Mat3d& diagonal = H.block[H.pattern->diagonal(row)];
+    diagonal = diagonal + (factor * factor) * K;
   }
-  if (variables > 1) H.stencils.push_back(added);
+  add_pairs(slider.weights, K, H);
 }
 
 // The Hessian of a slider with respect to its slip.
@@ -152,10 +189,14 @@ void Friction::begin_step(const StepContext& step, Context& context) const {
   own.start.assign(step.start.begin(), step.start.end());
   own.obstacle_time = step.obstacle_time.value_or(step.time - step.h);
   lag(step.shape.empty() ? step.start : step.shape, own.obstacle_time, context);
-  own.mixture = {{1, own.sliders}};
+  own.updates = 0;
+  own.known.clear();
 }
 
-void Friction::update_lagged(Positions x, Context& context) const { lag(x, context.time, context); }
+void Friction::update_lagged(Positions x, Context& context) const {
+  ++static_cast<FrictionContext&>(context).updates;
+  lag(x, context.time, context);
+}
 
 void Friction::lag(Positions x, double time, Context& context) const {
   auto& own = static_cast<FrictionContext&>(context);
@@ -169,30 +210,21 @@ void Friction::lag(Positions x, double time, Context& context) const {
     const size_t first = k;
     for (++k; k < stencils->size() && is_of_same_point((*stencils)[first], (*stencils)[k]);) ++k;
     const Traction traction = traction_of(std::span(*stencils).subspan(first, k - first), points);
-    const ContactLaw& law = barrier_.laws()(traction.at->parts[0], traction.at->parts[1]);
+    const ContactLaw& law = barrier_.laws()((*stencils)[first].parts[0], (*stencils)[first].parts[1]);
     const double force = law.friction * norm(traction.force);
     if (!(force > 0)) continue;
     const double width = context.h > 0 ? speed_ * context.h : kStaticReach * law.reach;
     Slider& slider = own.sliders.emplace_back(slider_of(barrier_.mesh(), traction, force, width));
-    if (start.empty()) continue;
-    slider.moved = side(barrier_.mesh(), *traction.at) * barrier_.obstacle_displacement(*traction.at, start, end);
-  }
-}
-
-void Friction::mix_lagged(double weight, Context& context) const {
-  constexpr double kForgotten = 1e-3;
-  auto& own = static_cast<FrictionContext&>(context);
-  double rest = 1;
-  for (Update& update : own.mixture) update.share *= 1 - weight;
-  std::erase_if(own.mixture, [](const Update& update) { return update.share < kForgotten; });
-  for (const Update& update : own.mixture) rest -= update.share;
-  own.mixture.push_back({rest, own.sliders});
-  own.sliders.clear();
-  for (const Update& update : own.mixture)
-    for (Slider slider : update.sliders) {
-      slider.force *= update.share;
-      own.sliders.push_back(slider);
+    for (size_t s = first; s < k && !start.empty(); ++s) {
+      const ContactStencil& stencil = (*stencils)[s];
+      slider.moved = slider.moved + traction.share[s - first] * side(barrier_.mesh(), stencil) *
+                                        barrier_.obstacle_displacement(stencil, start, end);
     }
+    Slider& known = own.known.try_emplace(name_of((*stencils)[first]), slider).first->second;
+    if (own.updates > kTurning) slider = known;
+    slider.force = force;
+    known = slider;
+  }
 }
 
 double Friction::obstacle_work(Positions x, const Context& context) const {

@@ -17,7 +17,6 @@ class Friction : public Energy {
   void begin_step(const StepContext& step, Context& context) const override;
   bool is_lagged() const override { return true; }
   void update_lagged(Positions x, Context& context) const override;
-  void mix_lagged(double weight, Context& context) const override;
   double value(Positions x, const Context& context) const override;
   void add_gradient(Positions x, const Context& context, double scale, std::span<double> g) const override;
   // Work on friction of obstacles that move during the step [J].

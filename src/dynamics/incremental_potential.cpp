@@ -139,10 +139,6 @@ void IncrementalPotential::update_lagged(std::span<const double> q) {
   if (is_lagged()) iterate_.clear();  // the forces known there are those of the earlier coefficients
 }
 
-void IncrementalPotential::mix_lagged(double weight) {
-  for (ActiveTerm& D : damping_) D.mix_lagged(weight);
-}
-
 Evaluation IncrementalPotential::evaluate(std::span<const double> q) {
   double E = 0, magnitude = factor_ * growth_stiffness_;
   const auto add = [&](double term) { E += term, magnitude += std::abs(term); };

@@ -27,7 +27,6 @@ class IncrementalPotential : public Objective, public HasMetric, public HasParts
   // Coefficients that lag behind the minimization, see Energy.
   bool is_lagged() const;
   void update_lagged(std::span<const double> q);
-  void mix_lagged(double weight);
 
   Evaluation evaluate(std::span<const double> q) override;
   void gradient(std::span<const double> q, std::span<double> g) override;

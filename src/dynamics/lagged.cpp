@@ -3,31 +3,13 @@
 #include <algorithm>
 
 #include "dynamics/lead_pins.h"
-#include "math/vectors.h"
 
 namespace aspic {
 namespace {
 
 constexpr int kMostPasses = 50;
 constexpr double kRough = 1e4;      // first tolerance, relative to the one asked for
-constexpr int kPure = 7;            // passes without mixtures
 constexpr double kReduction = 0.3;  // of the forces by one pass
-
-// The share of an update in the mixture with earlier coefficients. Updates whose forces turn back get less.
-class Share {
- public:
-  double next(std::span<const double> forces) {
-    const double turn = last_.empty() ? 1 : dot(forces, std::span<const double>(last_));
-    share_ = turn < 0 ? kLess * share_ : std::min(1.0, kMore * share_);
-    last_.assign(forces.begin(), forces.end());
-    return share_;
-  }
-
- private:
-  static constexpr double kLess = 0.5, kMore = 1.5;
-  double share_ = 1;
-  std::vector<double> last_;
-};
 
 }  // namespace
 
@@ -46,8 +28,6 @@ MinimizeReport minimize_lagged(const StepTools& tools, const MinimizeOptions& op
   none.max_iterations = 0;
   MinimizeReport report = minimize(initial, rough);
   int passes = 1;
-  Share share;
-  std::vector<double> forces(initial.x.size());
   for (; is_success(report.status); ++passes) {
     if (passes == kMostPasses) {
       report.status = Status::inaccurate;
@@ -63,13 +43,6 @@ MinimizeReport minimize_lagged(const StepTools& tools, const MinimizeOptions& op
     if (report.status != Status::iteration_limit) break;
     const double reduced = report.threshold > 0 ? kReduction * report.reached / report.threshold : 1;
     rough.tolerance = options.tolerance * std::max(1.0, reduced);
-    double share_of_update = 1;
-    if (passes >= kPure) {
-      tools.E.gradient(initial.x, forces);
-      ++report.gradients;
-      share_of_update = share.next(forces);
-    }
-    tools.E.mix_lagged(share_of_update);
     add(minimize({initial.x}, rough));
   }
   solve.passes = std::max(solve.passes, passes);

@@ -63,8 +63,6 @@ class Energy {
   // Returns whether the term has coefficients that lag behind the minimization, such as the normal forces in friction.
   virtual bool is_lagged() const { return false; }
   virtual void update_lagged(Positions /*x*/, Context& /*context*/) const {}  // sets them to their values at x
-  // Replaces the term of the last update by a mixture: `weight` of it, the rest of what this function left before.
-  virtual void mix_lagged(double /*weight*/, Context& /*context*/) const {}
   // Returns an upper bound of the steps alpha for which the term allows the path from x to x + alpha d.
   virtual double max_step(Positions /*x*/, const Context& /*context*/, std::span<const double> /*d*/) const {
     return std::numeric_limits<double>::infinity();
@@ -97,7 +95,6 @@ class ActiveTerm {
 
   void begin_step(const StepContext& step) { energy_->begin_step(step, *context_); }
   void update_lagged(Positions x) { energy_->update_lagged(x, *context_); }
-  void mix_lagged(double weight) { energy_->mix_lagged(weight, *context_); }
   const Energy& energy() const { return *energy_; }
   const Energy::Context& context() const { return *context_; }
   std::string_view name() const { return energy_->name(); }
