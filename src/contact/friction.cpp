@@ -19,7 +19,7 @@ struct Weight {
   double factor;
 };
 
-// What may slide along a surface. Its slip is that of a sum of rows of x.
+// What may slide along a surface. Its slip is a weighted sum of displacements of vertices.
 struct Slider {
   std::vector<Weight> weights;  // of different rows
   std::array<Vec3d, 2> tangent = {};
@@ -141,7 +141,7 @@ void add_pairs(std::span<const Weight> weights, const Mat3d& K, BlockSparse& H) 
     for (int low = 0; low < high; ++low) {
       const std::array<int, 4> own = {2 * low, 2 * low + 1, 2 * high, 2 * high + 1};
       const bool is_next =
-          high == low + 1;  // has the block inside the low pair; the last one also that of the high one
+          high == low + 1;  // with the block inside the low pair; the last also that inside the high one
       Stencil added;
       for (int i = 0; i < 4; ++i) {
         if (own[i] >= count) continue;
@@ -188,9 +188,9 @@ void Friction::begin_step(const StepContext& step, Context& context) const {
   auto& own = static_cast<FrictionContext&>(context);
   own.start.assign(step.start.begin(), step.start.end());
   own.obstacle_time = step.obstacle_time.value_or(step.time - step.h);
-  lag(step.shape.empty() ? step.start : step.shape, own.obstacle_time, context);
   own.updates = 0;
   own.known.clear();
+  lag(step.shape.empty() ? step.start : step.shape, own.obstacle_time, context);
 }
 
 void Friction::update_lagged(Positions x, Context& context) const {
@@ -221,9 +221,10 @@ void Friction::lag(Positions x, double time, Context& context) const {
                                         barrier_.obstacle_displacement(stencil, start, end);
     }
     Slider& known = own.known.try_emplace(name_of((*stencils)[first]), slider).first->second;
-    if (own.updates > kTurning) slider = known;
-    slider.force = force;
-    known = slider;
+    if (own.updates > kTurning)
+      slider = known, slider.force = force;
+    else
+      known = slider;
   }
 }
 

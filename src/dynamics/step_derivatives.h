@@ -19,10 +19,10 @@ struct TermDerivatives {
 };
 
 // Checks at three states: the current one; near rest, with every vertex moved by a hundredth of an edge; and stretched,
-// sheared and perturbed by up to 15 % as far as the materials allow. In scenes with contact, the
-// current state is moved by up to a hundredth of an edge, and a fourth state has a body moved until it touches. Steps
-// are relative to the mean edge length. E is that of a step of backward Euler, or of statics, from the current state;
-// pinned vertices are not variables.
+// sheared and perturbed by up to 15 % as far as the materials allow. In scenes with contact, the current state is moved
+// by up to a hundredth of an edge, and a fourth state has a body moved until it touches. Steps are relative to the mean
+// edge length. E is that of a step of backward Euler, or of statics, from the current state; pinned vertices are not
+// variables.
 std::vector<TermDerivatives> check_step_derivatives(const Simulation& simulation, double tolerance = 1e-6);
 
 // Returns the name of an entry of q: "vertex 12, y".
