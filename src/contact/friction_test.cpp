@@ -11,30 +11,30 @@ namespace {
 
 constexpr double kCreep = 1e-2, kStep = 0.1, kWidth = kCreep * kStep;
 
-// A triangle half a reach above the plane z = 0, moved along it since the start of the step.
+// A body, and friction with something that stands below it.
 struct Sliding {
-  std::vector<double> x = {0, 0, 5e-3, 1, 0, 5e-3, 0, 1, 5e-3}, start = x;
+  std::vector<double> x, start = x;
   std::unique_ptr<Barrier> barrier;
   std::unique_ptr<Friction> friction;
   std::unique_ptr<Energy::Context> context;
-  BlockPattern pattern = make_pattern(3, {});
-  BlockSparse H{pattern};
+  std::unique_ptr<BlockPattern> pattern =
+      std::make_unique<BlockPattern>(make_pattern(static_cast<int>(x.size() / 3), {}));
+  BlockSparse H{*pattern};
 
-  Sliding(double along_x, double along_y) {
-    ContactMesh mesh;
-    mesh.add({.name = "body", .young = 1e5, .friction = 0.5}, std::vector<Vec3d>{point(x, 0), point(x, 1), point(x, 2)},
-             std::vector<Triangle>{{0, 1, 2}}, std::vector<int>{0, 1, 2});
-    mesh.add_plane({.name = "floor", .friction = 0.5}, {}, {{0, 0, 1}});
+  Sliding(const std::vector<double>& positions, ContactMesh mesh) : x(positions) {
     barrier = std::make_unique<Barrier>(std::move(mesh), ContactOptions{.reach = 1e-2});
     friction = std::make_unique<Friction>(*barrier, kCreep);
     context = friction->make_context();
-    friction->begin_step({.start = start, .h = kStep, .time = kStep}, *context);
-    for (size_t k = 0; k < x.size(); k += 3) x[k] += along_x, x[k + 1] += along_y;
+    begin_step(*context);
+  }
+  void begin_step(Energy::Context& own) const {
+    friction->begin_step({.start = start, .h = kStep, .time = kStep}, own);
   }
   double value(const std::vector<double>& at) const { return friction->value(at, *context); }
-  std::vector<double> gradient(const std::vector<double>& at) const {
+  std::vector<double> gradient(const std::vector<double>& at) const { return gradient(at, *context); }
+  std::vector<double> gradient(const std::vector<double>& at, const Energy::Context& own) const {
     std::vector<double> g(at.size());
-    friction->add_gradient(at, *context, 1, g);
+    friction->add_gradient(at, own, 1, g);
     return g;
   }
   std::vector<double> hessian_times(const std::vector<double>& v) const {
@@ -44,28 +44,102 @@ struct Sliding {
   }
 };
 
-const std::vector<double> kDirection = {0.3, -0.7, 0.2, 0.5, 0.1, -0.4, -0.6, 0.9, 0.8};
+ContactPart part(const char* name) { return {.name = name, .young = 1e5, .friction = 0.5}; }
+
+// A triangle half a reach above the plane z = 0, moved along it since the start of the step.
+Sliding over_plane(double along_x, double along_y) {
+  const std::vector<double> x = {0, 0, 5e-3, 1, 0, 5e-3, 0, 1, 5e-3};
+  ContactMesh mesh;
+  mesh.add(part("body"), std::vector<Vec3d>{point(x, 0), point(x, 1), point(x, 2)}, std::vector<Triangle>{{0, 1, 2}},
+           std::vector<int>{0, 1, 2});
+  mesh.add_plane(part("floor"), {}, {{0, 0, 1}});
+  Sliding at(x, std::move(mesh));
+  for (size_t k = 0; k < x.size(); k += 3) at.x[k] += along_x, at.x[k + 1] += along_y;
+  return at;
+}
+
+// The tip of a triangle within the reach of both faces of a concave crease, moved since the start of the step.
+Sliding over_crease(double along_x, double along_y) {
+  const std::vector<double> x = {1e-3, 0,  8e-3, -0.5, 0.3, 2, 0.5, 0.3, 2,  // the triangle
+                                 0,    -1, 0,    0,    1,   0, -1,  0,   0.5, 1, 0, 0.5};
+  std::vector<Vec3d> X;
+  for (int i = 0; i < 7; ++i) X.push_back(point(x, i));
+  ContactMesh mesh;
+  mesh.add(part("tip"), std::span(X).first(3), std::vector<Triangle>{{0, 1, 2}}, std::vector<int>{0, 1, 2});
+  mesh.add(part("crease"), std::span(X).last(4), std::vector<Triangle>{{0, 1, 2}, {0, 3, 1}},
+           std::vector<int>{3, 4, 5, 6});
+  Sliding at(x, std::move(mesh));
+  at.x[0] += along_x, at.x[1] += along_y;
+  return at;
+}
+
+void expect_derivatives(Sliding at) {
+  at.friction->add_hessian(at.x, *at.context, 1, {}, at.H);
+  std::vector<double> direction(at.x.size()), high = at.x, low = at.x;
+  for (size_t i = 0; i < direction.size(); ++i) direction[i] = std::sin(3.0 * static_cast<double>(i + 1));
+  const double e = 1e-4 * kWidth;
+  add_scaled(e, direction, high);
+  add_scaled(-e, direction, low);
+  const double slope = dot(at.gradient(at.x), direction), difference = (at.value(high) - at.value(low)) / (2 * e);
+  const double size = norm(at.gradient(high));
+  EXPECT_GT(size, 0);
+  EXPECT_NEAR(slope, difference, 1e-6 * size);
+  const std::vector<double> Hv = at.hessian_times(direction), g_high = at.gradient(high), g_low = at.gradient(low);
+  for (size_t i = 0; i < Hv.size(); ++i) EXPECT_NEAR(Hv[i], (g_high[i] - g_low[i]) / (2 * e), 1e-3 * max_abs(Hv)) << i;
+}
 
 TEST(Friction, DerivativesMatchDifferences) {
   for (const double moved : {0.0, 0.3 * kWidth, 0.9 * kWidth, 20 * kWidth}) {
-    Sliding at(moved, moved / 3);
-    at.friction->add_hessian(at.x, *at.context, 1, {}, at.H);
-    const double e = 1e-4 * kWidth;
-    std::vector<double> high = at.x, low = at.x;
-    add_scaled(e, kDirection, high);
-    add_scaled(-e, kDirection, low);
-    const double slope = dot(at.gradient(at.x), kDirection), difference = (at.value(high) - at.value(low)) / (2 * e);
-    const double size = norm(at.gradient({high}));
-    EXPECT_NEAR(slope, difference, 1e-6 * size) << moved;
-    const std::vector<double> Hv = at.hessian_times(kDirection), g_high = at.gradient(high), g_low = at.gradient(low);
-    for (size_t i = 0; i < Hv.size(); ++i)
-      EXPECT_NEAR(Hv[i], (g_high[i] - g_low[i]) / (2 * e), 1e-3 * max_abs(Hv)) << moved << ' ' << i;
+    SCOPED_TRACE(moved);
+    expect_derivatives(over_plane(moved, moved / 3));
+    expect_derivatives(over_crease(moved / 3, moved));
   }
+}
+
+// Both faces share the force on the tip, so four vertices of the crease balance it.
+TEST(Friction, FacesOfACreaseShareTheForce) {
+  const Sliding at = over_crease(0, 20 * kWidth);
+  const std::vector<double> g = at.gradient(at.x);
+  EXPECT_GT(g[1], 0);
+  for (size_t r = 0; r < 3; ++r) {
+    double sum = 0;
+    for (size_t k = r; k < g.size(); k += 3) sum += g[k];
+    EXPECT_NEAR(sum, 0, 1e-12 * g[1]);
+  }
+  for (const size_t vertex : {3, 4, 5, 6}) EXPECT_NE(g[3 * vertex + 1], 0) << vertex;
+}
+
+// A resumed run starts with a new context, and must continue alike.
+TEST(Friction, AStepDoesNotDependOnTheOneBefore) {
+  const Sliding at = over_crease(2e-4, 20 * kWidth);
+  std::vector<double> aside = at.start;
+  aside[0] += 1e-3;
+  for (int update = 0; update < 8; ++update) at.friction->update_lagged(aside, *at.context);
+  at.begin_step(*at.context);
+  const auto fresh = at.friction->make_context();
+  at.begin_step(*fresh);
+  EXPECT_EQ(at.gradient(at.x), at.gradient(at.x, *fresh));
+}
+
+// Around an edge, normals turn so fast that updates would alternate.
+TEST(Friction, KnownContactsKeepTheirDirectionsAfterSomeUpdates) {
+  const Sliding at = over_crease(2e-4, 20 * kWidth);
+  const auto direction_after = [&](int updates) {
+    at.begin_step(*at.context);
+    std::vector<double> aside = at.start;
+    for (int update = 0; update < updates; ++update) at.friction->update_lagged(aside, *at.context);
+    aside[0] += 1e-3;
+    at.friction->update_lagged(aside, *at.context);
+    const std::vector<double> g = at.gradient(at.x);
+    return g[2] / g[1];
+  };
+  EXPECT_NE(direction_after(0), direction_after(1000));
+  EXPECT_NEAR(direction_after(20), direction_after(1000), 1e-12);
 }
 
 // Coulomb's law: while everything slides, the force is mu times the normal force.
 TEST(Friction, SlidingForceIsThatOfCoulomb) {
-  const Sliding at(0.1, 0);
+  const Sliding at = over_plane(0.1, 0);
   std::vector<double> normal(9);
   at.barrier->add_gradient(at.start, {}, 1, normal);
   const std::vector<double> g = at.gradient(at.x);
@@ -78,7 +152,7 @@ TEST(Friction, SlidingForceIsThatOfCoulomb) {
 // The model with stops is that of stuck surfaces, whose force is zero where the step began.
 TEST(Friction, DirectionsBackwardStick) {
   const double moved = 20 * kWidth;
-  Sliding at(moved, 0);
+  Sliding at = over_plane(moved, 0);
   at.friction->add_hessian(at.x, *at.context, 1, {}, at.H);
   std::vector<double> g = at.gradient(at.x), forward(9), backward(9), home(9);
   for (size_t k = 0; k < 9; k += 3) forward[k] = moved, backward[k] = -3 * moved, home[k] = -moved;

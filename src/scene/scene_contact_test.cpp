@@ -95,6 +95,17 @@ TEST(SceneContact, DerivativesAreCheckedWhereBodiesTouch) {
   EXPECT_EQ(checked, 2);
 }
 
+// At the start of a step nothing slips, where the second derivatives of friction have a kink.
+TEST(SceneContact, DerivativesAreCheckedFromAStartInTouch) {
+  const Scene scene = load(kCube + "[[obstacle]]\nplane = { origin = [0, -5e-4, 0] }\n[contact]\nfriction = 0.3\n");
+  int checked = 0;
+  for (const TermDerivatives& t : check_step_derivatives(scene.simulation)) {
+    EXPECT_TRUE(t.report.gradient.passed && t.report.hessian.passed) << t.term << ' ' << t.state;
+    checked += t.state == "start" && t.term == "friction" && t.report.gradient.order > 1;
+  }
+  EXPECT_EQ(checked, 1);
+}
+
 TEST(SceneContact, RejectsBadInput) {
   EXPECT_THAT(refusal(kCube + kFloor + "motion = { rotate = { axis = [0, 1, 0], rate_deg = 9 } }\n"),
               HasSubstr("capsules do not rotate"));
