@@ -9,11 +9,12 @@
 namespace aspic {
 namespace {
 
-// A function is dropped when orthogonalization leaves less of it than this part.
+// A function is dropped if orthogonalization reduces its norm to this fraction.
 constexpr double kDependent = 1e-7;
 constexpr int kTasks = 16;
 
-// Modified Gram-Schmidt, twice, on the rows of one aggregate: value = weight R; rows of R go to `coarse_value`.
+// Applies modified Gram-Schmidt twice to the rows of one aggregate: value = weight R. `coarse_value` receives the rows
+// of R.
 void orthonormalize(std::span<const int> rows, std::span<const FourValues> value, std::vector<FourValues>& weight,
                     FourValues* coarse_value) {
   for (const int i : rows) weight[i] = value[i];
@@ -74,7 +75,7 @@ AffineCoarsening make_affine_coarsening(const Graph& graph, const Aggregates& ag
   return c;
 }
 
-// The coarse rows of one aggregate: the sums over its fine rows i of w_im (sum over j of H_ij w_jn).
+// Computes the coarse rows of one aggregate: the sums over its fine rows i of w_im (sum over j of H_ij w_jn).
 class MatrixRestriction::Task {
  public:
   Task(const AffineCoarsening& c, const BlockSparse& fine, BlockSparse& coarse, Scratch& scratch)
@@ -96,7 +97,7 @@ class MatrixRestriction::Task {
   }
 
  private:
-  // The coarse matrix is stored by its lower triangle: only aggregates b <= a are listed.
+  // Lists only aggregates b <= a, because the lower triangle of the coarse matrix is stored.
   void begin(int a) {
     neighbors_.clear();
     for (const int b : c_.graph.around(a))

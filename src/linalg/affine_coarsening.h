@@ -1,8 +1,8 @@
-// The coarse space of a multigrid method for elasticity: on each aggregate the affine displacements u(X) = A X + t of
-// the rest shape, among which are its rigid motions however far it has turned. An aggregate has four coarse rows, one
-// for each of four functions w_m that span (1, X, Y, Z) and are orthonormal over its rows:
+// Coarse space of a multigrid method for elasticity. On each aggregate it consists of the affine displacements u(X) = A
+// X + t of the rest shape, which include the rigid motions and their linearizations at any rotation. An aggregate has
+// four coarse rows, one for each of four functions w_m that span (1, X, Y, Z) and are orthonormal over its rows:
 //   u_row = sum over m of w_m(row) u_(4 a + m)
-// so the coarse matrix has 3x3 blocks too, and the weights stay the same for the whole simulation.
+// Hence the coarse matrix also has 3x3 blocks, and the weights stay constant during the simulation.
 #pragma once
 #include <array>
 #include <span>
@@ -29,27 +29,28 @@ struct AffineCoarsening {
   }
 };
 
-// `value`: (1, X, Y, Z) at each fine row. A vertex of `graph` has `rows_per_vertex` consecutive rows. Functions that
-// depend on the others, on aggregates that are flat or small, are zero.
+// Computes the coarse functions of each aggregate. `value`: (1, X, Y, Z) at each fine row. Each vertex of `graph` has
+// `rows_per_vertex` consecutive rows. On flat or small aggregates, functions that depend linearly on the others are set
+// to zero.
 AffineCoarsening make_affine_coarsening(const Graph& graph, const Aggregates& aggregates, int rows_per_vertex,
                                         std::span<const FourValues> value);
 
-// coarse = P' fine P. Rows of functions that are zero become those of the identity.
+// Computes coarse = P' fine P. Rows of zero functions become rows of the identity.
 class MatrixRestriction {
  public:
   void reserve(const AffineCoarsening& coarsening);
   void run(const AffineCoarsening& coarsening, const BlockSparse& fine, BlockSparse& coarse);
 
  private:
-  // The coarse blocks that an aggregate shares with another one: entry k of block (m, n) is lane n of block[m][k].
+  // The coarse blocks that couple an aggregate with another one: entry k of block (m, n) is lane n of block[m][k].
   struct Neighbor {
     Quad<double> block[4][9];
-    Quad<double> row[9];  // of one fine row i: sum over j of H_ij w_jn
+    Quad<double> row[9];  // sum over j of H_ij w_jn for one fine row i
     int aggregate = 0;
     bool is_reached = false;
   };
   struct Scratch {
-    std::vector<int> place;  // of an aggregate in `neighbors`; -1: not there
+    std::vector<int> place;  // place of each aggregate in `neighbors`; -1: absent
     std::vector<Neighbor> neighbors;
   };
   class Task;

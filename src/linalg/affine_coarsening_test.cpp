@@ -42,7 +42,7 @@ TwoLevels two_levels(const BlockPattern& pattern, std::span<const char> excluded
   return levels;
 }
 
-// 3 rows per row of the matrix.
+// The prolongation matrix, with 3 rows per row of the fine matrix.
 Dense prolongation(const AffineCoarsening& c) {
   const int rows = static_cast<int>(c.weight.size());
   Dense P = Dense::Zero(3 * rows, 12 * c.count());
@@ -58,7 +58,7 @@ Dense full(const BlockSparse& H) {
   return Eigen::Map<const Dense>(entries.data(), 3 * H.pattern->rows(), 3 * H.pattern->rows());
 }
 
-// P' H P; dropped rows are those of the identity.
+// P' H P, where dropped rows are those of the identity.
 Dense restricted(const AffineCoarsening& c, const BlockSparse& H) {
   const Dense P = prolongation(c);
   Dense A = P.transpose() * full(H) * P;
@@ -68,7 +68,7 @@ Dense restricted(const AffineCoarsening& c, const BlockSparse& H) {
   return A;
 }
 
-// Largest part of the values that the coarse functions leave out, next to the largest value.
+// Returns the largest part of the values outside of the span of the coarse functions, relative to the largest value.
 double misfit(const AffineCoarsening& c, const std::vector<FourValues>& value) {
   double worst = 0, largest = 0;
   for (size_t i = 0; i < value.size(); ++i)
@@ -121,9 +121,8 @@ TEST(AffineCoarsening, ReproducesEveryAffineDisplacementOnBothLevels) {
   const auto [fine, coarse] = two_levels(*H.pattern);
   EXPECT_LT(misfit(fine, values_of(H.pattern->rest_position)), 1e-12);
   EXPECT_LT(misfit(coarse, fine.coarse_value), 1e-12);
-  // The same through both: u(X) = A X + t at the vertices is P Q of what it is on the coarsest rows.
-  const std::vector<double> affine =
-      random_vector(12, 2);  // column m: what function m of (1, X, Y, Z) is multiplied by
+  // The same for both levels: u(X) = A X + t at the vertices is P Q times its values on the coarsest rows.
+  const std::vector<double> affine = random_vector(12, 2);  // column m: factor of function m of (1, X, Y, Z)
   const auto displacement = [&](const std::vector<FourValues>& value) {
     Eigen::VectorXd u = Eigen::VectorXd::Zero(3 * static_cast<int>(value.size()));
     for (size_t i = 0; i < value.size(); ++i)
@@ -136,7 +135,7 @@ TEST(AffineCoarsening, ReproducesEveryAffineDisplacementOnBothLevels) {
   EXPECT_LT((u - expected).cwiseAbs().maxCoeff(), 1e-12 * expected.cwiseAbs().maxCoeff());
 }
 
-TEST(AffineCoarsening, DropsWhatDependsOnOtherFunctions) {
+TEST(AffineCoarsening, DropsLinearlyDependentFunctions) {
   struct Case {
     std::vector<Vec3d> position;
     int functions;
@@ -160,7 +159,7 @@ TEST(AffineCoarsening, DropsWhatDependsOnOtherFunctions) {
     EXPECT_EQ(functions(c, 0), count) << rows << " vertices";
     expect_orthonormal(c);
     EXPECT_LT(misfit(c, values_of(position)), 1e-12);
-    for (int m = 0; m < 4; ++m)  // the value of a dropped function is zero on the next level too
+    for (int m = 0; m < 4; ++m)  // the value of a dropped function is also zero on the next level
       for (int n = 0; n < 4; ++n)
         if (c.coarse_value[m][m] == 0) {
           EXPECT_EQ(c.coarse_value[m][n], 0);
@@ -181,7 +180,7 @@ TEST(AffineCoarsening, HasRowsAndPatternOfItsAggregates) {
   EXPECT_EQ(c.row.size(), static_cast<size_t>(H.rows()) - 2);
   for (int a = 0; a < c.count(); ++a) {
     for (const int i : c.rows_of(a)) EXPECT_EQ(c.aggregate[i], a);
-    int expected = 4 * 5 / 2;  // a's own blocks and all 16 of each aggregate before it
+    int expected = 4 * 5 / 2;  // the aggregate's own blocks and all 16 for each aggregate before it
     for (const int b : c.graph.around(a)) expected += b < a ? 16 : 0;
     EXPECT_EQ(c.pattern.row_start[4 * a + 4] - c.pattern.row_start[4 * a], expected);
   }
@@ -202,12 +201,12 @@ void expect_product(const AffineCoarsening& c, const BlockSparse& fine, BlockSpa
   }
   set_thread_count(threads);
   const Dense expected = restricted(c, fine);
-  // Weights are at most one, so each entry sums no more than all entries of H between two aggregates.
+  // Weights are at most one, so each entry is at most the sum of all entries of H between two aggregates.
   const double bound = 1e-15 * 100 * full(fine).cwiseAbs().rowwise().sum().maxCoeff();
   EXPECT_LT((full(coarse) - expected).cwiseAbs().maxCoeff(), bound);
 }
 
-TEST(MatrixRestriction, IsTheDenseProductOnBothLevels) {
+TEST(MatrixRestriction, EqualsDenseProductOnBothLevels) {
   for (const bool has_pins : {false, true}) {
     Matrix H = uneven_lattice();
     std::vector<char> excluded(H.rows(), 0);
@@ -219,9 +218,9 @@ TEST(MatrixRestriction, IsTheDenseProductOnBothLevels) {
   }
 }
 
-TEST(MatrixRestriction, EqualsTheDenseProduct) {
+TEST(MatrixRestriction, EqualsDenseProductOnRandomMatrices) {
   for (const unsigned seed : {1U, 2U, 3U}) {
-    Matrix H = random_dominant(80, random_couplings(80, 90, seed), seed);  // some rows touch nothing: aggregates of one
+    Matrix H = random_dominant(80, random_couplings(80, 90, seed), seed);  // uncoupled rows form aggregates of one
     const std::vector<double> random = random_vector(240, seed + 10);
     for (int v = 0; v < 80; ++v)  // in a plane
       H.pattern->rest_position.push_back({{random[3 * v], random[3 * v + 1], 0.5}});

@@ -9,9 +9,9 @@
 namespace aspic {
 namespace {
 
-constexpr size_t kCrumb = 5;           // vertices; an affine displacement has as much freedom as four
-constexpr double kCellsPerSide = 0.9;  // how long an aggregate may be, in units of edge length * cbrt(size):
-                                       // in a thin limb, long ones would be bent, which no affine displacement is
+constexpr size_t kMinSize = 5;  // vertices; an affine displacement is determined by four
+constexpr double kCellsPerSide =
+    0.9;  // maximum length in units of edge length * cbrt(size): affine displacements cannot bend
 
 class Aggregation {
  public:
@@ -23,12 +23,12 @@ class Aggregation {
       if (in_.excluded.empty() || in_.excluded[v] == 0) vertices.push_back(v);
     bisect(vertices);
     split_into_components(vertices);
-    join_crumbs();
+    merge_small_groups();
     return collect();
   }
 
  private:
-  bool is_strong(int v, int w) const { return in_.modulus.empty() || !is_jump(in_.modulus[v], in_.modulus[w]); }
+  bool is_strong(int v, int w) const { return in_.modulus.empty() || !is_modulus_jump(in_.modulus[v], in_.modulus[w]); }
 
   struct Side {
     int axis = 0;
@@ -47,7 +47,7 @@ class Aggregation {
     return {longest, high[longest] - low[longest]};
   }
 
-  // Mean length of the edges that leave the vertices of the part.
+  // Returns the mean length of the edges at the vertices of the part.
   double edge_length(std::span<const int> part) const {
     double sum = 0;
     int64_t count = 0;
@@ -65,7 +65,7 @@ class Aggregation {
     const Side side = longest_side(part);
     const double reach = kCellsPerSide * std::cbrt(in_.size) * edge_length(part);
     int parts = std::max<int>(1, static_cast<int>((part.size() + in_.size / 2) / in_.size));
-    if (parts == 1 && part.size() >= 2 * kCrumb && side.length > reach) parts = 2;
+    if (parts == 1 && part.size() >= 2 * kMinSize && side.length > reach) parts = 2;
     if (parts == 1) {
       for (const int v : part) group_[v] = groups_;
       ++groups_;
@@ -79,7 +79,7 @@ class Aggregation {
     bisect(part.subspan(half));
   }
 
-  // Components of the strong connections within each group become the groups.
+  // Replaces the groups by the connected components of their strong couplings.
   void split_into_components(std::span<const int> vertices) {
     std::vector<int> component(group_.size(), -1), stack;
     groups_ = 0;
@@ -101,13 +101,13 @@ class Aggregation {
     group_ = std::move(component);
   }
 
-  void join_crumbs() {
+  void merge_small_groups() {
     std::vector<std::vector<int>> members(groups_);
     for (int v = 0; v < in_.graph.vertex_count(); ++v)
       if (group_[v] >= 0) members[group_[v]].push_back(v);
     std::vector<int> touches(groups_, 0), touched;
     for (int g = 0; g < groups_; ++g) {
-      if (members[g].size() >= kCrumb) continue;
+      if (members[g].size() >= kMinSize) continue;
       touched.clear();
       for (const int v : members[g])
         for (const int w : in_.graph.around(v))

@@ -1,4 +1,4 @@
-// Compact connected groups of vertices of about equal size: the aggregates of a multigrid method.
+// Partitions a graph into compact connected groups of vertices of about equal size: the aggregates of multigrid.
 #pragma once
 #include <span>
 #include <vector>
@@ -9,26 +9,26 @@
 namespace aspic {
 
 struct Aggregates {
-  std::vector<int> of_vertex;  // -1: in none
+  std::vector<int> of_vertex;  // aggregate of each vertex; -1: none
   std::vector<int> start;      // count() + 1 entries
-  std::vector<int> member;     // of aggregate a: member[start[a]] ... ascending
+  std::vector<int> member;     // vertices of aggregate a: member[start[a]], ..., member[start[a + 1] - 1], ascending
   int count() const { return static_cast<int>(start.size()) - 1; }
   std::span<const int> members(int a) const { return std::span(member).subspan(start[a], start[a + 1] - start[a]); }
 };
 
-// Whether neighbors of these stiffnesses hang together only weakly.
-inline bool is_jump(double modulus, double other) { return modulus >= 10 * other || other >= 10 * modulus; }
+// Returns whether the ratio of two elastic moduli makes the coupling between them weak.
+inline bool is_modulus_jump(double modulus, double other) { return modulus >= 10 * other || other >= 10 * modulus; }
 
 struct AggregationInput {
   const Graph& graph;
   std::span<const Vec3d> position;
-  std::span<const double> modulus = {};  // per vertex, any unit: aggregates do not cross large jumps of it
-  std::span<const char> excluded = {};   // 1: the vertex is left out
-  int size = 48;                         // wanted vertices per aggregate
+  std::span<const double> modulus = {};  // modulus of each vertex, any unit: aggregates do not cross large jumps
+  std::span<const char> excluded = {};   // 1: the vertex is in no aggregate
+  int size = 48;                         // target number of vertices per aggregate
 };
 
-// Halves the vertices along the longest side of their box until the parts are small and short enough, splits what does
-// not hang together, and gives crumbs to the neighbor they touch most.
+// Bisects the vertices along the longest side of their bounding box until the parts are small and short enough, splits
+// disconnected parts, and merges tiny aggregates into the neighbor with the most connections.
 Aggregates make_aggregates(const AggregationInput& input);
 
 }  // namespace aspic

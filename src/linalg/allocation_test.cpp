@@ -11,7 +11,7 @@ namespace {
 
 using namespace test;
 
-TEST(AllocationCounter, SeesAVector) {
+TEST(AllocationCounter, CountsVector) {
   const AllocationCounter counter;
   const std::vector<int> v(100, 1);
   EXPECT_EQ(v.back(), 1);
@@ -20,7 +20,7 @@ TEST(AllocationCounter, SeesAVector) {
 
 class Allocations : public testing::TestWithParam<std::string> {};
 
-TEST_P(Allocations, NoneInProductRefactorizationAndSolve) {
+TEST_P(Allocations, AreZeroInProductRefactorizationAndSolve) {
   const Matrix H = spring_lattice({.nx = 20, .ny = 12, .nz = 12, .stiffness = 10});  // 3 549 rows: two chunks
   const std::vector<double> b = random_vector(3 * H.rows(), 1);
   std::vector<double> x(b.size());

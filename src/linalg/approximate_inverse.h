@@ -1,4 +1,4 @@
-// M^-1, a cheap stand-in for the inverse of a symmetric positive definite H: the preconditioner of conjugate gradients.
+// A preconditioner of conjugate gradients: M^-1, an approximate inverse of a symmetric positive definite matrix H.
 #pragma once
 #include <span>
 #include <string>
@@ -14,10 +14,10 @@ class ApproximateInverse {
   virtual std::string_view name() const = 0;
   virtual std::string description() const { return std::string(name()); }
   virtual void analyze(const BlockPattern& pattern) = 0;
-  virtual bool factorize(const BlockSparse& H) = 0;  // false: H is found not to be positive definite
-  virtual void apply(std::span<const double> r, std::span<double> z) = 0;  // z = M^-1 r, 3 numbers per row
-  // Not quite linear, for which the iteration has to allow, and costly to make, so that it is kept for related
-  // matrices.
+  virtual bool factorize(const BlockSparse& H) = 0;  // returns false if H is detected not to be positive definite
+  virtual void apply(std::span<const double> r, std::span<double> z) = 0;  // z = M^-1 r; r, z: 3 entries per row
+  // Whether M^-1 is slightly nonlinear, which requires a flexible iteration, and costly to set up, so that it is reused
+  // for related matrices.
   virtual bool is_multigrid() const { return false; }
 };
 

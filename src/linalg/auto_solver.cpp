@@ -12,18 +12,18 @@
 namespace aspic {
 namespace {
 
-// Flops of a factorization that take as long as one iteration with block-Jacobi per row: 25 ns at 60 Gflop/s, both
-// measured on one AVX-512 core; their ratio differs little between machines.
+// Flops of a factorization in the time of one block-Jacobi iteration, per row: 25 ns at 60 Gflop/s, both measured on
+// one AVX-512 core. The ratio differs little between machines.
 constexpr double kFlopsPerIteration = 1500;
-// Cost of two digits with multigrid, in iterations with block-Jacobi: about eight cycles of three, and a
-// share of the set-up, which serves all matrices of a sequence. bench_preconditioners measures both.
+// Cost of two digits with multigrid, in block-Jacobi iterations: about eight cycles of three, and a share of the setup,
+// which serves all matrices of a sequence. Measured by bench_preconditioners.
 constexpr double kMultigridCost = 30;
-constexpr double kLoose = 1.5;        // loose solves are followed by more Newton iterations than exact ones
-constexpr double kRoundOff = 1e-12;   // of a sum of entries that cancel, relative to the diagonal
+constexpr double kLoose = 1.5;        // inexact solves are followed by more Newton iterations than exact ones
+constexpr double kRoundOff = 1e-12;   // round-off of a sum of canceling entries, relative to the diagonal
 constexpr double kIterations = 4;     // fit to beams of 425 to 12 825 vertices, E = 1e4 to 1e8
-constexpr int kBlockJacobiCap = 300;  // iterations before giving up
+constexpr int kBlockJacobiCap = 300;  // maximum iterations before the next choice
 constexpr int kMultigridCap = 500;
-constexpr int kPatience = 10'000;  // iterations where there is nothing to fall back to
+constexpr int kLastChoiceCap = 10'000;  // maximum iterations without a next choice
 
 template <class Visit>
 void for_each_neighbor(const BlockPattern& p, int row, Visit visit) {
@@ -31,7 +31,7 @@ void for_each_neighbor(const BlockPattern& p, int row, Visit visit) {
   for (int64_t u = p.upper_start[row]; u < p.upper_start[row + 1]; ++u) visit(p.upper_row[u]);
 }
 
-// Breadth-first search from queue[begin]; appends what it reaches to the queue and returns the number of levels.
+// Breadth-first search from queue[begin]. Appends the reached rows to the queue and returns the number of levels.
 int search(const BlockPattern& p, std::vector<int>& queue, size_t begin, std::vector<int>& mark, int color) {
   mark[queue[begin]] = color;
   int levels = 0;
@@ -43,10 +43,10 @@ int search(const BlockPattern& p, std::vector<int>& queue, size_t begin, std::ve
   return levels;
 }
 
-// The rows of vertices that are held along some direction n: all their couplings K have n'K = 0. Where all couplings of
-// all rows have that, such as those of a chain of springs, it means nothing.
+// Finds the rows of vertices that are fixed along some direction n: all their couplings K satisfy n'K = 0. If all
+// couplings of all rows satisfy it, as in a chain of springs, no row is marked.
 void find_held_rows(const BlockSparse& H, std::vector<char>& held) {
-  constexpr double kFlat = 1e-14;  // of a determinant, beside the cube of the trace; its round-off is below 1e-16
+  constexpr double kFlat = 1e-14;  // determinant relative to the cube of the trace; its round-off is below 1e-16
   const BlockPattern& p = *H.pattern;
   held.assign(p.rows(), 0);
   parallel_chunks(p.rows(), [&](int first, int last) {
@@ -71,9 +71,9 @@ std::string approximate(double value) {
 
 }  // namespace
 
-// A component of n rows and s rows per breadth-first level: 150 n^2 flops if compact, 390 n s^1.5 if slender, and
-// 100 n s^0.5 entries of L (fits to exact nested-dissection counts of boxes of 1 000 to 1 000 000 vertices and a beam,
-// within a factor of two).
+// Cost of a component of n rows with s rows per breadth-first level: 150 n^2 flops if compact, 390 n s^1.5 if slender,
+// and 100 n s^0.5 entries of L. The constants fit exact nested-dissection counts of boxes of 1 000 to 1 000 000
+// vertices and a beam within a factor of two.
 CostPrediction predict_cholesky(const BlockPattern& pattern) {
   CostPrediction cost;
   std::vector<int> mark(pattern.rows(), 0), queue;
@@ -83,7 +83,7 @@ CostPrediction predict_cholesky(const BlockPattern& pattern) {
     const size_t begin = queue.size();
     queue.push_back(start);
     search(pattern, queue, begin, mark, 1);
-    const int far = queue.back();  // a search from the far end sees the whole length of a slender body
+    const int far = queue.back();  // a search from the far end covers the whole length of a slender body
     queue.resize(begin);
     queue.push_back(far);
     const int levels = search(pattern, queue, begin, mark, 2);
@@ -102,7 +102,7 @@ double predict_iterations(const BlockSparse& H) {
 double predict_iterations(const BlockSparse& H, std::vector<char>& held) {
   const BlockPattern& p = *H.pattern;
   find_held_rows(H, held);
-  double uniform = 0, diagonal = 0;  // 1' H 1 and 1' D 1, over the rows away from pinned vertices
+  double uniform = 0, diagonal = 0;  // 1' H 1 and 1' D 1 over the rows away from pinned vertices
   for (int row = 0; row < p.rows(); ++row) {
     double sum = 0;
     bool beside_pin = held[row];
@@ -118,7 +118,7 @@ double predict_iterations(const BlockSparse& H, std::vector<char>& held) {
     diagonal += own;
   }
   const double round_off = kRoundOff * diagonal;
-  if (!(diagonal > 0) || uniform < -round_off) return 1;  // an indefinite matrix is found out soon
+  if (!(diagonal > 0) || uniform < -round_off) return 1;  // an indefinite matrix is detected after few iterations
   return uniform > round_off ? kIterations * std::sqrt(diagonal / uniform) : std::numeric_limits<double>::infinity();
 }
 
@@ -138,7 +138,7 @@ void AutoSolver::analyze(const BlockPattern& pattern) {
   prediction_ = predict_cholesky(pattern);
   fits_ = prediction_.bytes < static_cast<double>(std::min(memory_limit_, free_memory()));
   affordable_ = prediction_.flops / (kFlopsPerIteration * solves_ * std::max(1, pattern.rows()));
-  multigrid_.set_max_iterations(fits_ ? kMultigridCap : kPatience);
+  multigrid_.set_max_iterations(fits_ ? kMultigridCap : kLastChoiceCap);
 }
 
 void AutoSolver::begin() {
@@ -162,7 +162,7 @@ bool AutoSolver::factorize_with_choice() {
   if (solver.factorize(*H_)) return true;
   if (choice_ != kCholesky || !cholesky_.refused()) return false;
   fits_ = false;  // the prediction was too low
-  multigrid_.set_max_iterations(kPatience);
+  multigrid_.set_max_iterations(kLastChoiceCap);
   choice_ = kMultigrid;
   return factorize_with_choice();
 }
@@ -170,12 +170,13 @@ bool AutoSolver::factorize_with_choice() {
 bool AutoSolver::factorize(const BlockSparse& H) {
   H_ = &H;
   if (!is_chosen_) choice_ = cheapest(H);
-  if (choice_ == kBlockJacobi && !H.stencils.empty()) choice_ = kMultigrid;  // stiff rows, which the prediction ignores
+  if (choice_ == kBlockJacobi && !H.stencils.empty())
+    choice_ = kMultigrid;  // for stiff rows, which the prediction ignores
   is_chosen_ = has_chosen_ = true;
   return factorize_with_choice();
 }
 
-// To the next choice in the order. False: there is none.
+// Selects the next choice. Returns false if there is none.
 bool AutoSolver::fall_back() {
   if (choice_ == kCholesky || (choice_ == kMultigrid && !fits_)) return false;
   choice_ = choice_ == kBlockJacobi ? kMultigrid : kCholesky;
@@ -210,13 +211,14 @@ Cholesky* as_cholesky(LinearSolver& solver) {
 
 std::string AutoSolver::description() const {
   if (!has_chosen_) return "auto";
-  const std::string flops = "a factorization takes about " + approximate(prediction_.flops) + " flops";
+  const std::string flops = "a factorization needs about " + approximate(prediction_.flops) + " flops";
   std::string text = "auto: " + chosen().description() + ", since ";
-  text += fits_ ? flops : "a factor needs about " + approximate(prediction_.bytes / 1e6) + " MB, more than is free";
+  text +=
+      fits_ ? flops : "a factor needs about " + approximate(prediction_.bytes / 1e6) + " MB, more than the free memory";
   if (expected_ > 0)
     text += std::isfinite(expected_) ? " and block_jacobi about " + approximate(expected_) + " iterations"
-                                     : " and block_jacobi would hardly converge";
-  return fallbacks_ ? text + "; " + std::to_string(fallbacks_) + " times another choice gave up" : text;
+                                     : " and block_jacobi is unlikely to converge";
+  return fallbacks_ ? text + "; choices that did not converge: " + std::to_string(fallbacks_) : text;
 }
 
 }  // namespace aspic

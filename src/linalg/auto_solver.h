@@ -1,4 +1,4 @@
-// Chooses between a factorization and conjugate gradients, and their preconditioner, by predicted cost.
+// Chooses by predicted cost between a factorization and conjugate gradients with one of two preconditioners.
 #pragma once
 #include <array>
 
@@ -7,27 +7,27 @@
 
 namespace aspic {
 
-// What a Cholesky factorization will cost, from the graph alone and in linear time, without an elimination order.
+// Predicts the cost of a Cholesky factorization from the graph alone, in linear time and without an elimination order.
 struct CostPrediction {
   double flops = 0;
   double bytes = 0;
 };
 CostPrediction predict_cholesky(const BlockPattern& pattern);
 
-// Iterations that block-Jacobi conjugate gradients will take for two digits, from how much softer a uniform
-// displacement is than the diagonal: time steps of soft bodies are easy, since the mass dominates; stiff bodies and
-// statics are hard.
+// Predicts the number of iterations in which conjugate gradients with block-Jacobi reduce the residual by two digits,
+// from the ratio of the stiffness of a uniform displacement to the diagonal. Time steps of soft bodies are easy,
+// because the mass dominates; stiff bodies and statics are hard.
 double predict_iterations(const BlockSparse& H);
 double predict_iterations(const BlockSparse& H, std::vector<char>& scratch);
 
-// Predicts the cheapest solver for each sequence of matrices from its first one: a factorization, conjugate gradients
-// with multigrid, or with block-Jacobi. A choice that turns out wrong is replaced by the next in the order
-// block_jacobi, multigrid, cholesky, the last if its factor fits into memory. The matrices at hand decide, never clocks
-// or earlier sequences, so a resumed run takes the same path; only where the factor comes close to the memory that is
-// free may two runs differ.
+// Predicts the cheapest solver for each sequence of matrices from its first one: a factorization, or conjugate
+// gradients with multigrid or block-Jacobi. If the chosen solver does not converge, the next one in the order
+// block_jacobi, multigrid, cholesky replaces it; cholesky only if its factor fits into memory. The choice depends
+// neither on clocks nor on earlier sequences, so a resumed run makes the same choices. Only if the factor nearly fills
+// the free memory may two runs differ.
 class AutoSolver : public LinearSolver {
  public:
-  // `solves`: how many right-hand sides share a factorization, roughly.
+  // `solves`: approximate number of right-hand sides per factorization.
   explicit AutoSolver(int64_t memory_limit = std::numeric_limits<int64_t>::max(), int solves = 1);
 
   std::string_view name() const override { return "auto"; }
@@ -42,7 +42,7 @@ class AutoSolver : public LinearSolver {
 
   LinearSolver& chosen() { return *solver_[choice_]; }
   const LinearSolver& chosen() const { return *solver_[choice_]; }
-  int64_t fallbacks() const { return fallbacks_; }  // choices that turned out wrong
+  int64_t fallbacks() const { return fallbacks_; }  // number of replaced choices
 
  private:
   enum Choice { kBlockJacobi, kMultigrid, kCholesky };
@@ -59,17 +59,17 @@ class AutoSolver : public LinearSolver {
   const BlockPattern* pattern_ = nullptr;
   const BlockSparse* H_ = nullptr;
   CostPrediction prediction_;
-  bool fits_ = false;        // the factor, into memory
-  double affordable_ = 0;    // iterations with block-Jacobi that cost as much as a factorization, per solve
-  double expected_ = 0;      // iterations with block-Jacobi for two digits; 0: not looked at
-  bool has_chosen_ = false;  // for a sequence of this pattern
-  bool is_chosen_ = false;   // for this sequence
+  bool fits_ = false;        // whether the factor fits into memory
+  double affordable_ = 0;    // block-Jacobi iterations that cost as much as a factorization, per solve
+  double expected_ = 0;      // predicted block-Jacobi iterations for two digits; 0: not computed
+  bool has_chosen_ = false;  // a choice was made for this pattern
+  bool is_chosen_ = false;   // a choice was made for this sequence
   Choice choice_ = kBlockJacobi;
   int64_t fallbacks_ = 0;
   std::vector<char> held_;  // scratch
 };
 
-// The factorization that a solver is, or has chosen; null: none.
+// Returns the Cholesky solver that `solver` is or has chosen, or null.
 Cholesky* as_cholesky(LinearSolver& solver);
 
 }  // namespace aspic

@@ -18,7 +18,7 @@ TEST(LinearSolver, IsMadeByName) {
   for (const std::string& name : linear_solver_names()) EXPECT_EQ(make_linear_solver(name)->name(), name);
 }
 
-TEST(LinearSolver, MisspeltNameIsRejectedWithSuggestion) {
+TEST(LinearSolver, RejectsMisspeltNameWithSuggestion) {
   try {
     make_linear_solver("colesky");
     FAIL();
@@ -38,7 +38,7 @@ TEST(CostPrediction, IsWithinFactorThreeOfExactCounts) {
   }
 }
 
-TEST(AutoSolver, ChoosesByTheMatrix) {
+TEST(AutoSolver, ChoosesByMatrix) {
   struct Case {
     Lattice box;
     std::string chosen;
@@ -73,7 +73,8 @@ TEST(AutoSolver, FactorizesForManyRightHandSides) {
 }
 
 TEST(AutoSolver, PredictsIterationsWithinFactorTwo) {
-  for (const double stiffness : {1.0, 10.0, 100.0}) {  // stiffer ones need fewer than predicted: size limits them
+  for (const double stiffness :
+       {1.0, 10.0, 100.0}) {  // stiffer ones need fewer than predicted, because the size limits them
     const Matrix H = spring_lattice({.nx = 12, .ny = 6, .nz = 6, .stiffness = stiffness});
     const std::vector<double> b = random_vector(3 * H.rows(), 5);
     std::vector<double> x(b.size());
@@ -86,7 +87,7 @@ TEST(AutoSolver, PredictsIterationsWithinFactorTwo) {
   }
 }
 
-// Rollers on three faces of a box, each of which holds its vertices along its normal.
+// Puts rollers on three faces of a box, which fix their vertices along the normal.
 void hold_faces(const Lattice& box, Matrix& H) {
   const auto holds = [&](int row, int axis) { return H.pattern->rest_position[row][axis] == 0; };
   for (int row = 0; row < H.rows(); ++row)
@@ -97,7 +98,7 @@ void hold_faces(const Lattice& box, Matrix& H) {
             H.values.block[s](r, c) = H.pattern->column[s] == row && r == c ? box.stiffness : 0;
 }
 
-TEST(PredictIterations, LeavesOutRowsBesideRollers) {
+TEST(PredictIterations, IgnoresRowsBesideRollers) {
   for (const double stiffness : {1.0, 10.0, 100.0}) {
     const Lattice box{.nx = 12, .ny = 6, .nz = 6, .stiffness = stiffness};
     Matrix H = spring_lattice(box);
@@ -116,15 +117,15 @@ TEST(PredictIterations, IgnoresRoundOffOfBodyAtRest) {
   }
 }
 
-// 4 913 vertices in a compact box, held firmly at one of them. That makes a uniform displacement stiff, on which the
-// prediction rests, but leaves the rotations about it all but free, so that CG does not get there.
+// 4 913 vertices in a compact box, pinned at one of them. This makes a uniform displacement stiff, on which the
+// prediction is based, but the rotations about the pin remain almost free, so conjugate gradients converge slowly.
 Matrix hard_lattice() {
   Matrix H = spring_lattice({.nx = 16, .ny = 16, .nz = 16, .stiffness = 1, .mass = 1e-9});
   for (int r = 0; r < 3; ++r) H.values.block[H.pattern->diagonal(0)](r, r) += 1e6;
   return H;
 }
 
-TEST(AutoSolver, FallsBackWhereIterationsDoNotConverge) {
+TEST(AutoSolver, FallsBackWhenIterationsDoNotConverge) {
   const Matrix H = hard_lattice();
   const std::vector<double> b = random_vector(3 * H.rows(), 2);
   std::vector<double> x(b.size());
@@ -138,7 +139,7 @@ TEST(AutoSolver, FallsBackWhereIterationsDoNotConverge) {
   EXPECT_NE(solver.chosen().name(), "block_jacobi");
   EXPECT_GT(report.iterations, 0);
   const int64_t fallbacks = solver.fallbacks();
-  solver.solve(b, x, 1e-8);  // the same matrix: the choice is kept
+  solver.solve(b, x, 1e-8);  // the same matrix: keeps the choice
   EXPECT_EQ(solver.fallbacks(), fallbacks);
 }
 
@@ -150,7 +151,7 @@ SolveReport solved(Solver&& solver, const BlockSparse& H, const std::vector<doub
   return solver.solve(b, x, tolerance);
 }
 
-TEST(AutoSolver, CountsWhatWasTriedFirst) {
+TEST(AutoSolver, CountsFailedAttempts) {
   const Matrix H = hard_lattice();
   const std::vector<double> b = random_vector(3 * H.rows(), 2);
   for (const double tolerance : {1e-5, 1e-13}) {
@@ -201,7 +202,7 @@ TEST(AutoSolver, NewSequenceIsIndependentOfEarlierOnes) {
   }
 }
 
-TEST(AutoSolver, AtDeadlineKeepsItsChoiceAndDescends) {
+TEST(AutoSolver, KeepsChoiceAndDescendsAtDeadline) {
   double now = 0;
   const WallClock clock = [&] { return now++; };
   const Matrix hard = hard_lattice(), stiff = spring_lattice({28, 7, 7, 1e4, 1});
@@ -222,7 +223,7 @@ TEST(AutoSolver, AtDeadlineKeepsItsChoiceAndDescends) {
   }
 }
 
-TEST(AutoSolver, IteratesWhereAFactorDoesNotFit) {
+TEST(AutoSolver, IteratesWhenFactorDoesNotFit) {
   const Matrix H = spring_lattice({.nx = 10, .ny = 5, .nz = 5});
   const std::vector<double> b = random_vector(3 * H.rows(), 3);
   std::vector<double> x(b.size());
@@ -231,10 +232,10 @@ TEST(AutoSolver, IteratesWhereAFactorDoesNotFit) {
   ASSERT_TRUE(solver.factorize(H.values));
   EXPECT_NE(solver.chosen().name(), "cholesky");
   EXPECT_TRUE(solver.solve(b, x, 1e-8).ok);
-  EXPECT_NE(solver.description().find("more than is free"), std::string::npos);
+  EXPECT_NE(solver.description().find("more than the free memory"), std::string::npos);
 }
 
-TEST(AutoSolver, ReportsIndefiniteMatricesEitherWay) {
+TEST(AutoSolver, ReportsIndefiniteMatrices) {
   for (const Lattice& box : {Lattice{6, 6, 6, 10, -0.5}, Lattice{20, 20, 20, 10, -0.5}}) {
     const Matrix H = spring_lattice(box);
     const std::vector<double> b(3 * H.rows(), 1.0);
@@ -246,7 +247,7 @@ TEST(AutoSolver, ReportsIndefiniteMatricesEitherWay) {
   }
 }
 
-TEST(AutoSolver, TakesAnotherPattern) {
+TEST(AutoSolver, AcceptsAnotherPattern) {
   AutoSolver solver;
   for (const int cells : {20, 3, 16, 0}) {
     const Matrix H = spring_lattice({.nx = cells, .ny = cells, .nz = cells});

@@ -13,7 +13,7 @@ namespace aspic {
 bool BlockJacobi::factorize(const BlockSparse& H) {
   ASPIC_CHECK(H.pattern->rows() == static_cast<int>(inverse_.size()));
   std::atomic<bool> definite = true;
-  const auto invert = blocks_ == Blocks::made_definite ? invert_made_definite : invert_positive_definite;
+  const auto invert = blocks_ == Blocks::modified ? invert_modified : invert_positive_definite;
   parallel_chunks(H.pattern->rows(), [&](int first, int last) {
     for (int row = first; row < last; ++row)
       if (!invert(H.block[H.pattern->diagonal(row)], inverse_[row])) definite = false;
@@ -24,7 +24,7 @@ bool BlockJacobi::factorize(const BlockSparse& H) {
 void BlockJacobi::apply(std::span<const double> r, std::span<double> z) { multiply_blocks(inverse_, r, z); }
 
 bool invert_positive_definite(const Mat3d& A, Mat3d& inverse) {
-  // A = L D L' with unit lower L; positive definite when all of D is positive. NaN fails too.
+  // A = L D L' with unit lower triangular L. A is positive definite if all of D is positive. NaN fails too.
   const double d0 = A(0, 0);
   if (!(d0 > 0)) return false;
   const double l10 = A(1, 0) / d0, l20 = A(2, 0) / d0;
@@ -44,7 +44,7 @@ bool invert_positive_definite(const Mat3d& A, Mat3d& inverse) {
   return std::isfinite(trace(inverse));
 }
 
-bool invert_made_definite(const Mat3d& A, Mat3d& inverse) {
+bool invert_modified(const Mat3d& A, Mat3d& inverse) {
   if (invert_positive_definite(A, inverse)) return true;
   if (!std::isfinite(squared_norm(A)) || squared_norm(A) == 0) return false;
   constexpr double kFloor = 1e-6;

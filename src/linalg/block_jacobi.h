@@ -1,4 +1,4 @@
-// The inverses of the 3x3 diagonal blocks.
+// Block-Jacobi preconditioner: the inverses of the 3x3 diagonal blocks.
 #pragma once
 #include <span>
 #include <vector>
@@ -9,13 +9,13 @@ namespace aspic {
 
 class BlockJacobi : public ApproximateInverse {
  public:
-  // What becomes of diagonal blocks that are not positive definite.
-  enum class Blocks { as_they_are, made_definite };
+  // Treatment of diagonal blocks that are not positive definite.
+  enum class Blocks { exact, modified };
 
-  explicit BlockJacobi(Blocks blocks = Blocks::as_they_are) : blocks_(blocks) {}
+  explicit BlockJacobi(Blocks blocks = Blocks::exact) : blocks_(blocks) {}
   std::string_view name() const override { return "block_jacobi"; }
   void analyze(const BlockPattern& pattern) override { inverse_.resize(pattern.rows()); }
-  bool factorize(const BlockSparse& H) override;  // false: a diagonal block is not positive definite, nor made so
+  bool factorize(const BlockSparse& H) override;  // false: a block cannot be inverted
   void apply(std::span<const double> r, std::span<double> z) override;
 
  private:
@@ -23,14 +23,14 @@ class BlockJacobi : public ApproximateInverse {
   std::vector<Mat3d> inverse_;
 };
 
-// The inverse of a symmetric matrix by its lower triangle; false when it is not (numerically) positive definite.
+// Inverts a symmetric matrix, given its lower triangle. Returns false if it is not (numerically) positive definite.
 bool invert_positive_definite(const Mat3d& A, Mat3d& inverse);
 
-// The same for a symmetric matrix whose eigenvalues l are first replaced by max(|l|, floor), floor a small part of the
-// largest |l|, if A is not positive definite as it is. False for a matrix that is zero or not finite.
-bool invert_made_definite(const Mat3d& A, Mat3d& inverse);
+// Inverts a symmetric matrix. If it is not positive definite, first replaces its eigenvalues l by max(|l|, floor),
+// where floor is a small fraction of the largest |l|. Returns false if A is zero or not finite.
+bool invert_modified(const Mat3d& A, Mat3d& inverse);
 
-// z = D^-1 r block by block, D^-1 by its 3x3 blocks.
+// Computes z = D^-1 r, where `blocks` are the 3x3 blocks of D^-1.
 void multiply_blocks(std::span<const Mat3d> blocks, std::span<const double> r, std::span<double> z);
 
 }  // namespace aspic

@@ -14,14 +14,14 @@ namespace {
 
 constexpr int kPrefetchAhead = 4096;  // bytes
 
-// Rows per task of a product. Blocks between tasks are read twice, so tasks are large, but small enough for several
-// threads and their caches.
+// Rows per task of a product. Blocks between tasks are read twice, so tasks are large, but small enough to occupy
+// several threads and their caches.
 int rows_per_task(int rows) { return std::clamp(rows / 16, 512, 8192); }
 
-// Turns counts, stored one place to the right, into starts.
+// Converts counts, stored one place to the right, into offsets.
 void accumulate(std::vector<int64_t>& start) { std::partial_sum(start.begin(), start.end(), start.begin()); }
 
-// Lower-triangle columns bucketed by row, repeats included; the diagonal is among them.
+// Columns of the lower triangle, grouped by row; includes repeats and the diagonal.
 struct Buckets {
   std::vector<int64_t> start;
   std::vector<int> column;
@@ -43,7 +43,7 @@ Buckets sort_by_row(int rows, const Couplings& couplings) {
   return buckets;
 }
 
-// Sorts the columns of each row and counts the distinct ones.
+// Sorts the columns of each row and returns the number of distinct ones.
 std::vector<int64_t> sort_columns(Buckets& buckets) {
   const int rows = static_cast<int>(buckets.start.size()) - 1;
   std::vector<int64_t> distinct(rows + 1, 0);
@@ -84,7 +84,7 @@ uint64_t next_version() {
 
 using QuadD = Quad<double>;
 
-// A x without reading past the block.
+// Returns A x without reading past the block.
 QuadD careful_product(const Mat3d& A, const double* x) {
   const Vec3d y = A * Vec3d{{x[0], x[1], x[2]}};
   return load3(y.a);
@@ -103,7 +103,7 @@ int64_t BlockPattern::slot(int row, int col) const {
 BlockPattern make_pattern(int rows, Couplings couplings) {
   ASPIC_CHECK(rows >= 0);
   Buckets buckets = sort_by_row(rows, couplings);
-  Couplings().swap(couplings);  // large meshes need the memory now
+  Couplings().swap(couplings);  // frees memory for large meshes
   BlockPattern pattern;
   pattern.row_start = sort_columns(buckets);
   accumulate(pattern.row_start);
@@ -131,7 +131,7 @@ void BlockSparse::multiply(std::span<const double> x, std::span<double> y) const
   const int rows = p.rows();
   ASPIC_CHECK(x.size() == 3 * static_cast<size_t>(rows) && y.size() == x.size() && (rows == 0 || x.data() != y.data()));
   const int size = rows_per_task(rows);
-  // A block whose row and column belong to one task is read once and used twice; one between tasks is read by both.
+  // A block whose row and column belong to one task is read once and used twice. Both tasks read a block between them.
   auto rows_of_task = [&](int task) {
     const int first = task * size, last = std::min(rows, first + size);
     const auto at = [](auto& v, int row) { return &v[3 * static_cast<size_t>(row)]; };

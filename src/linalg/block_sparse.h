@@ -1,5 +1,5 @@
-// Symmetric sparse matrices of 3x3 blocks. The pattern is symbolic and shared; the values change.
-// Only the lower triangle is stored: block (r, c) with c <= r stands for block (c, r) as its transpose.
+// Symmetric sparse matrices of 3x3 blocks. The pattern is symbolic and shared; the values change. Only the lower
+// triangle is stored: block (r, c) with c <= r also represents block (c, r), its transpose.
 #pragma once
 #include <array>
 #include <cstdint>
@@ -16,32 +16,33 @@ using Couplings = std::vector<std::pair<int, int>>;  // vertex pairs that share 
 struct BlockPattern {
   std::vector<int64_t> row_start;  // rows + 1 entries
   std::vector<int> column;         // columns c <= r of each row, ascending; the last one is the diagonal
-  // The transposed pattern: for each row r, the rows below it that have a block in column r, and the slots of these.
+  // The transposed pattern: for each row r, the rows below it with a block in column r, and the slots of these blocks.
   std::vector<int64_t> upper_start;
   std::vector<int> upper_row;
   std::vector<int64_t> upper_slot;
-  uint64_t version = 0;  // differs between any two patterns made in this process
+  uint64_t version = 0;  // unique among all patterns of this process
 
   // Geometry and stiffness for the coarse spaces of multigrid; empty if unknown.
-  std::vector<Vec3d> rest_position;  // of each row's vertex [m]
-  std::vector<double> rest_modulus;  // of the material around each row's vertex, up to a common factor [Pa]
+  std::vector<Vec3d> rest_position;  // rest position of each row's vertex [m]
+  std::vector<double> rest_modulus;  // modulus of the material at each row's vertex [Pa], up to a common factor
 
   int rows() const { return static_cast<int>(row_start.size()) - 1; }
   int64_t block_count() const { return static_cast<int64_t>(column.size()); }
   int64_t diagonal(int row) const { return row_start[row + 1] - 1; }
-  int64_t slot(int row, int col) const;  // index of block (row, col), col <= row; it must exist
+  int64_t slot(int row, int col) const;  // returns the index of block (row, col), col <= row; it must exist
 };
 
-BlockPattern make_pattern(int rows, Couplings couplings);  // every diagonal block is included
+BlockPattern make_pattern(int rows,
+                          Couplings couplings);  // Returns the pattern of the given couplings and all diagonal blocks.
 
-// A symmetric matrix that couples up to four block rows, such as a pair of surfaces in contact. Its diagonal blocks are
-// added to those of a BlockSparse matrix; the stencil holds the others.
+// A symmetric matrix that couples up to four block rows, such as two surfaces in contact. It stores the off-diagonal
+// blocks; its diagonal blocks are added to those of the BlockSparse matrix.
 struct Stencil {
-  std::array<int, 4> row = {-1, -1, -1, -1};  // different; -1: none
-  std::array<Mat3d, 6> block = {};            // (row[i], row[j]) for j < i at i (i - 1) / 2 + j
+  std::array<int, 4> row = {-1, -1, -1, -1};  // distinct rows; -1: unused
+  std::array<Mat3d, 6> block = {};            // block (row[i], row[j]), j < i, is at index i (i - 1) / 2 + j
 };
 
-// Calls visit(i, j, K) for the blocks K = (i, j) of a stencil, i != j. Block (j, i) is K'.
+// Calls visit(i, j, K) for each block K = (i, j) of a stencil, i != j. Block (j, i) is K'.
 template <class Visit>
 void for_each_block(const Stencil& stencil, Visit visit) {
   for (int i = 1, k = 0; i < 4; ++i)
@@ -52,11 +53,11 @@ void for_each_block(const Stencil& stencil, Visit visit) {
 struct BlockSparse {
   const BlockPattern* pattern = nullptr;
   std::vector<Mat3d> block;       // one per entry of pattern->column
-  std::vector<Stencil> stencils;  // further summands, whose pattern may change
+  std::vector<Stencil> stencils;  // added to the matrix; their pattern may change
 
   explicit BlockSparse(const BlockPattern& p) : pattern(&p), block(p.block_count()) {}
   void set_zero();
-  void multiply(std::span<const double> x, std::span<double> y) const;  // y = H x; 3 numbers per row
+  void multiply(std::span<const double> x, std::span<double> y) const;  // y = H x; x, y: 3 entries per row
 };
 
 }  // namespace aspic

@@ -15,7 +15,7 @@ namespace {
 
 using namespace test;
 
-TEST(BlockPattern, HasEveryCouplingOnceAndEveryDiagonal) {
+TEST(BlockPattern, HasEachCouplingOnceAndAllDiagonals) {
   const Couplings couplings = random_couplings(50, 400, 1);
   const BlockPattern p = make_pattern(50, couplings);
   std::set<std::pair<int, int>> expected, found;
@@ -36,7 +36,7 @@ TEST(BlockPattern, SlotFindsEachBlock) {
     for (int64_t s = p.row_start[r]; s < p.row_start[r + 1]; ++s) EXPECT_EQ(p.slot(r, p.column[s]), s);
 }
 
-TEST(BlockPattern, UpperViewNamesTheSameBlocks) {
+TEST(BlockPattern, UpperViewHasSameBlocks) {
   const BlockPattern p = make_pattern(60, random_couplings(60, 300, 3));
   EXPECT_EQ(p.upper_start.back(), p.block_count() - p.rows());
   for (int c = 0; c < p.rows(); ++c)
@@ -46,7 +46,7 @@ TEST(BlockPattern, UpperViewNamesTheSameBlocks) {
     }
 }
 
-TEST(BlockPattern, OrderAndRepeatsOfCouplingsDoNotMatter) {
+TEST(BlockPattern, IgnoresOrderAndRepeatsOfCouplings) {
   Couplings couplings = random_couplings(30, 100, 4);
   const BlockPattern p = make_pattern(30, couplings);
   std::reverse(couplings.begin(), couplings.end());
@@ -69,7 +69,7 @@ TEST(BlockPattern, MayBeEmpty) {
   H.multiply({}, {});
 }
 
-TEST(BlockSparse, ProductIsThatOfTheDenseSymmetricMatrix) {
+TEST(BlockSparse, ProductEqualsThatOfDenseMatrix) {
   for (const int rows : {1, 2, 3, 17, 200}) {
     const Matrix H = random_dominant(rows, random_couplings(rows, 5 * rows, 5), 6);
     const std::vector<double> x = random_vector(3 * rows, 7);
@@ -80,13 +80,13 @@ TEST(BlockSparse, ProductIsThatOfTheDenseSymmetricMatrix) {
     const Eigen::Map<const Eigen::VectorXd> X(x.data(), 3 * rows), Y(y.data(), 3 * rows);
     EXPECT_EQ(A, A.transpose());
     const Eigen::VectorXd expected = A * X;
-    // Each entry sums at most 3 rows products: its error is below 3 rows eps |A| |x|.
+    // Each entry sums at most 3 rows products, so its error is below 3 rows eps |A| |x|.
     const double bound = 3 * rows * 2.3e-16 * (A.cwiseAbs() * X.cwiseAbs()).maxCoeff();
     EXPECT_LE((Y - expected).cwiseAbs().maxCoeff(), bound);
   }
 }
 
-// Each block by itself, and the sum of the absolute values of its terms.
+// Product computed block by block, and the sum of the absolute values of its terms.
 struct PlainProduct {
   std::vector<double> y, magnitude;
   PlainProduct(const BlockSparse& H, const std::vector<double>& x) : y(x.size()), magnitude(x.size()) {
@@ -104,8 +104,8 @@ struct PlainProduct {
   void add(size_t i, double term) { y[i] += term, magnitude[i] += std::abs(term); }
 };
 
-// A task works through 512 rows, or a sixteenth of them, or 8192: couplings within, between and far from tasks.
-TEST(BlockSparse, ProductMatchesBlocksForAnyThreads) {
+// A task processes 512 rows, or a sixteenth of them, or 8192: tests couplings within, between and far from tasks.
+TEST(BlockSparse, ProductMatchesBlocksForAnyThreadCount) {
   const int threads = thread_count();
   for (const int rows : {1, 511, 512, 513, 1023, 1024, 1025, 2 * 8192 + 1, 16 * 8192, 16 * 8192 + 1}) {
     Couplings couplings = random_couplings(rows, rows, 11);
@@ -127,7 +127,7 @@ TEST(BlockSparse, ProductMatchesBlocksForAnyThreads) {
   set_thread_count(threads);
 }
 
-TEST(BlockSparse, ProductDoesNotReadBehindTheLastBlock) {
+TEST(BlockSparse, ProductDoesNotReadPastLastBlock) {
   for (const int rows : {1, 2, 513}) {
     Matrix H = random_dominant(rows, random_couplings(rows, 4 * rows, 14), 15);
     const std::vector<double> x = random_vector(3 * rows, 16);
@@ -145,7 +145,7 @@ TEST(BlockSparse, SetZeroClearsEveryBlock) {
   for (const Mat3d& block : H.values.block) ASSERT_EQ(squared_norm(block), 0);
 }
 
-TEST(BlockSparse, ProductIsBitReproducibleForAnyThreads) {
+TEST(BlockSparse, ProductIsBitReproducibleForAnyThreadCount) {
   const Matrix H = spring_lattice({.nx = 30, .ny = 14, .nz = 14});
   const std::vector<double> x = random_vector(3 * H.rows(), 10);
   const int threads = thread_count();

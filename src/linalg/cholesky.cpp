@@ -19,11 +19,11 @@ namespace {
 
 constexpr double kEpsilon = std::numeric_limits<double>::epsilon();
 
-// A substitution is bound by reading L twice. Flops of a factorization that take as long, per entry of L: measured on
+// A substitution is bound by reading L twice. Flops of a factorization in the same time, per entry of L: measured on
 // beams of 425 to 8 281 vertices.
 constexpr double kFlopsPerEntry = 40;
 
-constexpr int kStripBlocks = 24;  // columns of blocks per task
+constexpr int kStripBlocks = 24;  // block columns per task
 
 double norm(std::span<const double> v) {
   return std::sqrt(parallel_sum(static_cast<int>(v.size()), [&](int first, int last) {
@@ -39,7 +39,7 @@ double norm(std::span<const double> v) {
   }));
 }
 
-// An upper bound of |H|_2: the largest sum of the Frobenius norms of a row of blocks.
+// Returns an upper bound of |H|_2: the largest sum of the Frobenius norms of a block row.
 double norm_bound(const BlockSparse& H, std::span<double> row_sum) {
   const BlockPattern& p = *H.pattern;
   std::fill(row_sum.begin(), row_sum.end(), 0.0);
@@ -54,7 +54,7 @@ double norm_bound(const BlockSparse& H, std::span<double> row_sum) {
   return largest;
 }
 
-// Calls visit(slot, i, transposed) for the blocks of H in column j of L; i >= j is the row in the order of elimination.
+// Calls visit(slot, i, transposed) for the blocks of H in column j of L; i >= j is the row in the elimination order.
 template <class Visit>
 void for_each_block(const BlockPattern& p, const Supernodes& s, int j, Visit visit) {
   const int r = s.order[j];
@@ -120,12 +120,12 @@ bool Cholesky::allocate() {
 }
 
 struct Cholesky::Front {
-  int width, below;  // columns of the panel, of the update matrix [blocks]
-  int64_t rows;      // of the panel
+  int width, below;  // block columns of the panel and of the update matrix
+  int64_t rows;      // rows of the panel
   double *panel, *update;
 
   LowerMatrix update_matrix() const { return {update, 3 * static_cast<int64_t>(below), true}; }
-  double* column(int j, int c) const {  // of block column j: entry (i, 3 j + c) of the front is at [i]
+  double* column(int j, int c) const {  // column c of block column j; entry (i, 3 j + c) of the front is at [i]
     return j < width ? panel + (3 * j + c) * rows : update_matrix().column(3 * (j - width) + c) - 3 * width;
   }
 };
@@ -200,7 +200,7 @@ bool Cholesky::factorize_supernode(const BlockSparse& H, int s, DenseCholesky& k
   return true;
 }
 
-// The lower triangle and whole diagonal blocks.
+// Clears the lower triangle and the whole diagonal blocks.
 void Cholesky::clear_panel(const Front& f, int first, int last) {
   for (int j = first; j < last; ++j)
     for (int c = 0; c < 3; ++c) std::fill_n(f.column(j, c) + 3 * j, f.rows - 3 * j, 0.0);
@@ -216,7 +216,7 @@ void Cholesky::assemble(const BlockSparse& H, int s, int first, int last) {
   }
 }
 
-// Adds the children's update matrices to the columns of blocks [first, last) of their parent's front (extend-add).
+// Adds the children's update matrices to the block columns [first, last) of their parent's front (extend-add).
 void Cholesky::add_children(int s, const Front& f, int first, int last) {
   for (int child = last_child_[s]; child >= 0; child = sibling_[child]) {
     const Front from = front(child);
@@ -227,7 +227,7 @@ void Cholesky::add_children(int s, const Front& f, int first, int last) {
       for (int c = 0; c < 3; ++c) {
         const double* in = from.column(from.width + b, c) + 3 * from.width;
         double* out = f.column(row[b], c);
-        for (int a = b, k = c; a < from.below; a = run_end[a], k = 0) {  // k: nothing above the diagonal
+        for (int a = b, k = c; a < from.below; a = run_end[a], k = 0) {  // k: skips entries above the diagonal
           double* run = out + 3 * row[a];
           for (const int count = 3 * (run_end[a] - a); k < count; ++k) run[k] += in[3 * a + k];
         }
@@ -235,7 +235,7 @@ void Cholesky::add_children(int s, const Front& f, int first, int last) {
   }
 }
 
-// A pivot that is round-off of the diagonal it came from says nothing about H being positive definite.
+// Rejects pivots at the round-off level of their diagonal entries, whose signs are not significant.
 bool Cholesky::pivots_are_sound(const BlockSparse& H, int s, const double* panel) const {
   const int64_t rows = 3 * (supernodes_.width(s) + supernodes_.below(s));
   for (int i = 0; i < supernodes_.width(s); ++i) {
@@ -264,7 +264,7 @@ SolveReport Cholesky::solve(std::span<const double> b, std::span<double> x, doub
   report.relative_residual = b_norm > 0 ? r_norm / b_norm : 0;
   report.ok = r_norm <= tolerance * b_norm;
   if (report.ok) return report;
-  // Where the tolerance is below round-off, a residual as small as the rounding of H x is all that can be had.
+  // If the tolerance is below round-off, accepts a residual at the round-off level of H x.
   const double H_norm = norm_bound(*H_, {permuted_.data(), static_cast<size_t>(pattern_->rows())});
   report.ok = r_norm <= 64 * kEpsilon * (H_norm * norm(x) + b_norm);
   return report;
@@ -304,7 +304,7 @@ void Cholesky::add_substituted(std::span<const double> b, std::span<double> x) {
     for (int d = 0; d < 3; ++d) x[3 * static_cast<size_t>(s.order[k]) + d] += permuted_[3 * static_cast<size_t>(k) + d];
 }
 
-// What the columns of s leave for the rows below waits where the update matrix was, as the children's did.
+// The contributions of s to the rows below use the memory of the update matrix, and so do those of its children.
 void Cholesky::substitute_forward(int s) {
   const Front f = front(s);
   double *own = permuted_.data() + 3 * static_cast<size_t>(supernodes_.first[s]), *rest = f.update;
@@ -332,7 +332,7 @@ std::string Cholesky::description() const {
   if (!pattern_) return "cholesky";
   const std::string need = "cholesky: the factor has " + std::to_string(supernodes_.cost.nnz) + " entries and needs " +
                            megabytes(supernodes_.cost.bytes);
-  return refused_ ? need + ", but " + megabytes(free_bytes_) + " are free: refused" : need;
+  return refused_ ? need + ", but only " + megabytes(free_bytes_) + " are free" : need;
 }
 
 }  // namespace aspic

@@ -16,8 +16,8 @@ using namespace test;
 
 constexpr double kEpsilon = std::numeric_limits<double>::epsilon();
 
-// Factorizes, solves and compares with Eigen's dense Cholesky. Both errors are bounded by n eps cond(H); the matrices
-// here have a condition below 1e5.
+// Factorizes, solves and compares with Eigen's dense Cholesky. Both errors are bounded by n eps cond(H); the condition
+// numbers here are below 1e5.
 void expect_dense_solution(const Matrix& H, unsigned seed) {
   const int n = 3 * H.rows();
   const std::vector<double> b = random_vector(n, seed);
@@ -54,7 +54,7 @@ TEST(Cholesky, AgreesWithDenseOnFullMatrices) {
 }
 
 TEST(Cholesky, AgreesWithDenseOnArrowMatrices) {
-  for (const int head : {0, 150, 299}) {  // every row touches `head`
+  for (const int head : {0, 150, 299}) {  // every row is coupled with `head`
     Couplings arrow;
     for (int i = 0; i < 300; ++i) arrow.emplace_back(i, head);
     expect_dense_solution(random_dominant(300, arrow, 6), 7);
@@ -67,11 +67,11 @@ TEST(Cholesky, AgreesWithDenseOnDisconnectedGraphs) {
   expect_dense_solution(random_dominant(400, couplings, 8), 9);
 }
 
-TEST(Cholesky, AgreesWithDenseOnALattice) {
+TEST(Cholesky, AgreesWithDenseOnLattice) {
   expect_dense_solution(spring_lattice({.nx = 9, .ny = 5, .nz = 4, .stiffness = 100}), 10);
 }
 
-TEST(Cholesky, SolvesTheEmptySystem) {
+TEST(Cholesky, SolvesEmptySystem) {
   const Matrix H = random_dominant(0, {}, 1);
   Cholesky solver;
   solver.analyze(*H.pattern);
@@ -87,11 +87,11 @@ TEST(Cholesky, ResidualIsRoundOffOnStiffLattice) {
   Cholesky solver;
   solver.analyze(*H.pattern);
   ASSERT_TRUE(solver.factorize(H.values));
-  EXPECT_TRUE(solver.solve(b, x, 0.0).ok);  // zero asks for the best there is
+  EXPECT_TRUE(solver.solve(b, x, 0.0).ok);  // a tolerance of 0 requests the round-off level
   EXPECT_LE(relative_residual(H.values, b, x), 1e-11);
 }
 
-TEST(Cholesky, IsReusableAfterNewValuesAndFailures) {
+TEST(Cholesky, IsReusableAfterFailures) {
   Matrix H = spring_lattice({.nx = 6, .ny = 5, .nz = 5, .stiffness = 10});
   const std::vector<double> b = random_vector(3 * H.rows(), 12);
   std::vector<double> x(b.size());
@@ -111,8 +111,8 @@ TEST(Cholesky, IsReusableAfterNewValuesAndFailures) {
   }
 }
 
-TEST(Cholesky, FindsTheSignOfTheSmallestEigenvalue) {
-  // Springs alone resist no rigid motion: the smallest eigenvalue is exactly the mass term.
+TEST(Cholesky, DetectsSignOfSmallestEigenvalue) {
+  // Springs do not resist rigid motions, so the smallest eigenvalue is exactly the mass term.
   for (const double mass : {1e-3, -1e-3}) {
     const Matrix H = spring_lattice({.nx = 6, .ny = 6, .nz = 6, .mass = mass});
     Cholesky solver;
@@ -121,14 +121,14 @@ TEST(Cholesky, FindsTheSignOfTheSmallestEigenvalue) {
   }
 }
 
-TEST(Cholesky, RefusesASingularMatrix) {
+TEST(Cholesky, RejectsSingularMatrix) {
   const Matrix H = spring_lattice({.nx = 6, .ny = 6, .nz = 6, .mass = 0});
   Cholesky solver;
   solver.analyze(*H.pattern);
   EXPECT_FALSE(solver.factorize(H.values));
 }
 
-TEST(Cholesky, RefusesAFactorThatDoesNotFit) {
+TEST(Cholesky, RejectsFactorThatDoesNotFit) {
   const Matrix H = spring_lattice({.nx = 8, .ny = 8, .nz = 8});
   Cholesky tight(100'000);
   tight.analyze(*H.pattern);
@@ -153,7 +153,7 @@ TEST(Cholesky, CostOfFullMatrixMatchesDenseCholesky) {
   EXPECT_DOUBLE_EQ(s.cost.flops, kSize * (kSize + 1.0) * (2.0 * kSize + 1) / 6);  // sum of squares
 }
 
-TEST(Cholesky, HasTheSameBitsForAnyThreadCount) {
+TEST(Cholesky, IsBitReproducibleForAnyThreadCount) {
   const Matrix H = spring_lattice({.nx = 20, .ny = 9, .nz = 9, .stiffness = 1e3});
   const std::vector<double> b = random_vector(3 * H.rows(), 13);
   const int threads = thread_count();
@@ -171,7 +171,7 @@ TEST(Cholesky, HasTheSameBitsForAnyThreadCount) {
   set_thread_count(threads);
 }
 
-TEST(Cholesky, FindsNegativePivotsForAnyThreads) {
+TEST(Cholesky, DetectsNegativePivotsForAnyThreadCount) {
   Matrix H = spring_lattice({.nx = 16, .ny = 8, .nz = 8, .stiffness = 10});
   const int threads = thread_count();
   for (const int count : {1, 2, 3, 8}) {
@@ -190,7 +190,7 @@ TEST(Cholesky, FindsNegativePivotsForAnyThreads) {
   set_thread_count(threads);
 }
 
-TEST(Cholesky, CountsTheProducts) {
+TEST(Cholesky, CountsProducts) {
   const Matrix H = spring_lattice({.nx = 4, .ny = 4, .nz = 4});
   const std::vector<double> b = random_vector(3 * H.rows(), 14);
   std::vector<double> x(b.size());
@@ -201,7 +201,7 @@ TEST(Cholesky, CountsTheProducts) {
   EXPECT_EQ(solver.solve(b, x, 0).products, 2);  // one refinement
 }
 
-TEST(Ordering, IsAPermutationWithLittleFill) {
+TEST(Ordering, IsPermutationWithLittleFill) {
   const Matrix H = spring_lattice({.nx = 12, .ny = 12, .nz = 12});
   std::vector<int> natural(H.rows());
   for (int i = 0; i < H.rows(); ++i) natural[i] = i;

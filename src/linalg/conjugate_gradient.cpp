@@ -10,7 +10,7 @@
 namespace aspic {
 namespace {
 
-// Down to here the recurrence for the residual is as good as measuring it.
+// Relative residual above which the recurrence for the residual is accurate.
 constexpr double kTrusted = 1e-6;
 constexpr double kTolerable = 1.3;
 
@@ -38,7 +38,7 @@ bool ConjugateGradient::factorize(const BlockSparse& H) {
     first_rate_ = rate_ = 0;
   }
   H_ = is_made_ ? &H : nullptr;
-  if (is_made_ && !correction_.factorize(H)) correction_.drop();  // negative curvature ends the iteration
+  if (is_made_ && !correction_.factorize(H)) correction_.drop();  // the iteration detects negative curvature
   return is_made_;
 }
 
@@ -75,7 +75,7 @@ SolveReport ConjugateGradient::solve(std::span<const double> b, std::span<double
     is_measured = false;
     if (residual <= tolerance * b_norm) {
       if (tolerance >= kTrusted) break;
-      // The recurrence drifts from the true residual by round-off: measure it, and continue if necessary.
+      // The recurrence drifts from the true residual by round-off: compute it, and continue if necessary.
       residual = measure(b, x, report);
       is_measured = true;
       const bool stagnates = !(residual < 0.5 * last_measured);
@@ -88,7 +88,7 @@ SolveReport ConjugateGradient::solve(std::span<const double> b, std::span<double
     }
     precondition(report);
     const double new_rz = dot(r_, z_);
-    // The same number but for rounding, to which the second is immune [Notay 2000].
+    // Both are equal in exact arithmetic; the first tolerates a nonlinear preconditioner [Notay 2000].
     const double beta = preconditioner_->is_multigrid() ? -alpha * dot(q_, z_) / rz : new_rz / rz;
     rz = new_rz;
     turn(beta);

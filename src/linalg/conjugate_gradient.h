@@ -1,4 +1,4 @@
-// Conjugate gradients with any preconditioner.
+// Preconditioned conjugate gradients.
 #pragma once
 #include "linalg/block_jacobi.h"
 #include "linalg/linear_solver.h"
@@ -17,26 +17,28 @@ class ConjugateGradient : public LinearSolver {
   void set_stop(const StopToken& stop) override { stop_ = stop; }
   void analyze(const BlockPattern& pattern) override;
   void begin() override { is_made_ = false; }
-  // False: the preconditioner finds that H is not positive definite. One that is costly to make is kept from one matrix
-  // of a sequence to the next until the iterations for a digit have grown by kTolerable.
+  // Sets up the preconditioner and returns whether it finds H positive definite. A costly preconditioner is reused for
+  // the matrices of a sequence until the iterations per digit have grown by kTolerable.
   bool factorize(const BlockSparse& H) override;
-  // Where negative curvature is met, x is the iterate so far (at the first iteration: the preconditioned b), which
-  // still is a descent direction for a gradient of -b.
+  // If the iteration detects negative curvature, x is the last iterate (at the first iteration: the preconditioned b).
+  // It is a descent direction for a function with the gradient -b.
   SolveReport solve(std::span<const double> b, std::span<double> x, double tolerance) override;
 
  private:
   void precondition(SolveReport& report);             // z = M^-1 r
-  double advance(std::span<double> x, double alpha);  // x += alpha p, r -= alpha q; |r|
+  double advance(std::span<double> x, double alpha);  // x += alpha p, r -= alpha q; returns |r|
   void turn(double beta);                             // p = z + beta p
-  double measure(std::span<const double> b, std::span<const double> x, SolveReport& report);  // r = b - H x; |r|
+  double measure(std::span<const double> b, std::span<const double> x,
+                 SolveReport& report);  // r = b - H x; returns |r|
 
   std::unique_ptr<ApproximateInverse> preconditioner_;
   RowCorrection correction_;  // for the stencils of H
   int max_iterations_ = 10'000;
   StopToken stop_;
   const BlockSparse* H_ = nullptr;
-  bool is_made_ = false;              // the preconditioner, for this matrix or one before
-  double first_rate_ = 0, rate_ = 0;  // iterations per digit, of the first solve with it and the last; 0: none
+  bool is_made_ = false;  // the preconditioner, for this matrix or an earlier one
+  double first_rate_ = 0,
+         rate_ = 0;  // iterations per digit of the first and the last solve with this preconditioner; 0: none
   std::vector<double> r_, z_, p_, q_;
 };
 

@@ -18,11 +18,11 @@ TEST(BlockInverse, TimesTheBlockIsTheIdentity) {
   for (const Mat3d& A : H.values.block) {
     Mat3d inverse;
     ASSERT_TRUE(invert_positive_definite(A, inverse));
-    EXPECT_LT(squared_norm(A * inverse - identity3<double>()), 1e-28);  // condition < 10: a few eps per entry
+    EXPECT_LT(squared_norm(A * inverse - identity3<double>()), 1e-28);  // condition number < 10: a few eps per entry
   }
 }
 
-TEST(BlockInverse, RefusesWhatIsNotPositiveDefinite) {
+TEST(BlockInverse, RejectsIndefiniteBlocks) {
   Mat3d inverse;
   EXPECT_FALSE(invert_positive_definite(Mat3d{}, inverse));
   EXPECT_FALSE(invert_positive_definite(Mat3d{{1, 2, 0, 2, 1, 0, 0, 0, 1}}, inverse));
@@ -30,7 +30,7 @@ TEST(BlockInverse, RefusesWhatIsNotPositiveDefinite) {
   EXPECT_FALSE(invert_positive_definite(std::numeric_limits<double>::quiet_NaN() * identity3<double>(), inverse));
 }
 
-TEST(ConjugateGradient, ReachesTheToleranceAndSaysSo) {
+TEST(ConjugateGradient, ReachesToleranceAndReportsResidual) {
   const Matrix H = spring_lattice({.nx = 12, .ny = 5, .nz = 5, .stiffness = 100});
   const std::vector<double> b = random_vector(3 * H.rows(), 2);
   ConjugateGradient solver;
@@ -38,11 +38,11 @@ TEST(ConjugateGradient, ReachesTheToleranceAndSaysSo) {
   ASSERT_TRUE(solver.factorize(H.values));
   int iterations = 0;
   for (const double tolerance : {1e-2, 1e-6, 1e-12}) {
-    std::vector<double> x(b.size(), 99.0);  // not a guess: overwritten
+    std::vector<double> x(b.size(), 99.0);  // overwritten: not an initial guess
     const SolveReport report = solver.solve(b, x, tolerance);
     EXPECT_TRUE(report.ok);
     EXPECT_FALSE(report.indefinite);
-    EXPECT_LE(relative_residual(H.values, b, x), tolerance * (1 + 1e-3));  // the measured residual rounds too
+    EXPECT_LE(relative_residual(H.values, b, x), tolerance * (1 + 1e-3));  // the measured residual has round-off, too
     EXPECT_NEAR(report.relative_residual, relative_residual(H.values, b, x), 1e-12);  // the recurrence drifts
     EXPECT_GT(report.iterations, iterations);
     iterations = report.iterations;
@@ -61,7 +61,7 @@ TEST(ConjugateGradient, SolvesBlockDiagonalMatrixInOneIteration) {
   EXPECT_EQ(report.iterations, 1);
 }
 
-TEST(ConjugateGradient, SaysThatItDidNotReachTheTolerance) {
+TEST(ConjugateGradient, ReportsMissedTolerance) {
   const Matrix H = spring_lattice({.nx = 12, .ny = 5, .nz = 5, .stiffness = 1e4});
   const std::vector<double> b = random_vector(3 * H.rows(), 5);
   std::vector<double> x(b.size());
@@ -73,17 +73,17 @@ TEST(ConjugateGradient, SaysThatItDidNotReachTheTolerance) {
   EXPECT_EQ(report.iterations, 3);
   EXPECT_NEAR(report.relative_residual, relative_residual(H.values, b, x), 1e-15);
 
-  ConjugateGradient patient;  // no double precision solve reaches 1e-18: it stops when it stagnates
+  ConjugateGradient patient;  // cannot reach 1e-18 in double precision, but stops when it stagnates
   patient.analyze(*H.pattern);
   ASSERT_TRUE(patient.factorize(H.values));
   EXPECT_FALSE(patient.solve(b, x, 1e-18).ok);
 }
 
-TEST(ConjugateGradient, MeetsNegativeCurvatureAndStillDescends) {
+TEST(ConjugateGradient, DescendsUnderNegativeCurvature) {
   for (const double shift : {-0.5, -3.0}) {
     Matrix H = spring_lattice({.nx = 8, .ny = 4, .nz = 4, .stiffness = 10});
     for (int r = 0; r < H.rows(); ++r) add_block(H.values, r, r, (shift - 1) * identity3<double>());
-    const std::vector<double> b(3 * H.rows(), 1.0);  // a translation: springs do not resist it
+    const std::vector<double> b(3 * H.rows(), 1.0);  // a translation, which springs do not resist
     std::vector<double> x(b.size());
     ConjugateGradient solver;
     solver.analyze(*H.pattern);
@@ -95,7 +95,7 @@ TEST(ConjugateGradient, MeetsNegativeCurvatureAndStillDescends) {
   }
 }
 
-TEST(ConjugateGradient, RefusesAnIndefiniteDiagonalBlockAndIsReusable) {
+TEST(ConjugateGradient, RejectsIndefiniteBlockAndStaysUsable) {
   Matrix H = spring_lattice({.nx = 3, .ny = 3, .nz = 3});
   const Mat3d saved = H.values.block[H.pattern->diagonal(7)];
   ConjugateGradient solver;
@@ -109,16 +109,16 @@ TEST(ConjugateGradient, RefusesAnIndefiniteDiagonalBlockAndIsReusable) {
   EXPECT_TRUE(solver.solve(b, x, 1e-10).ok);
 }
 
-TEST(BlockInverse, OfAnIndefiniteBlockHasTheAbsoluteEigenvalues) {
-  // Eigenvalues 3 and -1 in the plane of x and y, and 5 along z.
+TEST(BlockInverse, ModifiedHasAbsoluteEigenvalues) {
+  // Eigenvalues 3 and -1 in the x-y plane and 5 along z.
   const Mat3d A = {{1, 2, 0, 2, 1, 0, 0, 0, 5}};
   Mat3d inverse;
-  ASSERT_TRUE(invert_made_definite(A, inverse));
-  // |A| = [[2, 1], [1, 2]] and 5, whose inverse is [[2, -1], [-1, 2]] / 3 and 1 / 5.
+  ASSERT_TRUE(invert_modified(A, inverse));
+  // |A| has the blocks [[2, 1], [1, 2]] and 5, with the inverses [[2, -1], [-1, 2]] / 3 and 1 / 5.
   const Mat3d expected = {{2.0 / 3, -1.0 / 3, 0, -1.0 / 3, 2.0 / 3, 0, 0, 0, 0.2}};
   for (int i = 0; i < 9; ++i) EXPECT_NEAR(inverse.a[i], expected.a[i], 1e-15);
-  EXPECT_FALSE(invert_made_definite({}, inverse));
-  EXPECT_FALSE(invert_made_definite({{NAN, 0, 0, 0, 1, 0, 0, 0, 1}}, inverse));
+  EXPECT_FALSE(invert_modified({}, inverse));
+  EXPECT_FALSE(invert_modified({{NAN, 0, 0, 0, 1, 0, 0, 0, 1}}, inverse));
 }
 
 TEST(ConjugateGradient, ModifiedBlocksGiveDescentForIndefiniteDiagonal) {
@@ -127,7 +127,7 @@ TEST(ConjugateGradient, ModifiedBlocksGiveDescentForIndefiniteDiagonal) {
   block = -1.0 * block;
   const std::vector<double> b = random_vector(3 * H.rows(), 6);
   std::vector<double> x(b.size());
-  ConjugateGradient solver(std::make_unique<BlockJacobi>(BlockJacobi::Blocks::made_definite));
+  ConjugateGradient solver(std::make_unique<BlockJacobi>(BlockJacobi::Blocks::modified));
   solver.analyze(*H.pattern);
   ASSERT_TRUE(solver.factorize(H.values));
   const SolveReport report = solver.solve(b, x, 1e-6);
@@ -135,7 +135,7 @@ TEST(ConjugateGradient, ModifiedBlocksGiveDescentForIndefiniteDiagonal) {
   EXPECT_GT(dot(b, x), 0);
 }
 
-TEST(ConjugateGradient, SolvesNothingAndZero) {
+TEST(ConjugateGradient, SolvesEmptySystemAndZero) {
   for (const int rows : {0, 1, 2}) {
     const Matrix H = random_dominant(rows, {}, 7);
     std::vector<double> b(3 * rows, 0.0), x(3 * rows, 1.0);
@@ -147,7 +147,7 @@ TEST(ConjugateGradient, SolvesNothingAndZero) {
   }
 }
 
-TEST(ConjugateGradient, DoesNotCallNaNASolution) {
+TEST(ConjugateGradient, RejectsNaN) {
   const Matrix H = random_dominant(4, random_couplings(4, 6, 8), 9);
   std::vector<double> b(12, std::numeric_limits<double>::quiet_NaN()), x(12);
   ConjugateGradient solver;
@@ -158,7 +158,7 @@ TEST(ConjugateGradient, DoesNotCallNaNASolution) {
   EXPECT_FALSE(report.indefinite);
 }
 
-// Multigrid that counts how often it is made.
+// Multigrid that counts its constructions.
 class CountedMultigrid : public Multigrid {
  public:
   explicit CountedMultigrid(int& count) : count_(count) {}
@@ -187,7 +187,7 @@ struct Sequence {
 
 Lattice soft(double stiffness) { return {.nx = 16, .ny = 8, .nz = 8, .stiffness = stiffness}; }
 
-// The same but for springs along one plane that are a thousand times as stiff.
+// The same lattice with springs along one plane that are a thousand times as stiff.
 Matrix stiffened_lattice() {
   Matrix H = spring_lattice(soft(100));
   for (int row = 1; row < H.rows(); ++row)
@@ -214,7 +214,7 @@ TEST(ConjugateGradient, ReusesMultigridForTheNextMatrix) {
   EXPECT_NE(sequence.x, before);
 }
 
-TEST(ConjugateGradient, MakesMultigridAnewWhenIterationsHaveGrown) {
+TEST(ConjugateGradient, RebuildsMultigridWhenIterationsGrow) {
   const Matrix first = spring_lattice(soft(100));
   BlockSparse stiffened(*first.pattern);
   stiffened.block = stiffened_lattice().values.block;
@@ -239,7 +239,7 @@ TEST(ConjugateGradient, NewSequenceIsIndependentOfEarlierOnes) {
   stiffened.block = stiffened_lattice().values.block;
   Sequence old(*first.pattern), fresh(*first.pattern);
   old.solve(first.values);
-  old.solve(second);  // with what was made for the first
+  old.solve(second);  // with the preconditioner of the first matrix
   const std::vector<double> dependent = old.x;
   old.solver.begin();
   fresh.solver.begin();
@@ -255,7 +255,7 @@ TEST(ConjugateGradient, NewSequenceIsIndependentOfEarlierOnes) {
   }
 }
 
-TEST(ConjugateGradient, AtDeadlineReportsWorkAndDescends) {
+TEST(ConjugateGradient, ReportsWorkAndDescendsAtDeadline) {
   const Matrix H = spring_lattice(soft(1e4));
   const std::vector<double> b = random_vector(3 * H.rows(), 12);
   double now = 0;
@@ -271,7 +271,7 @@ TEST(ConjugateGradient, AtDeadlineReportsWorkAndDescends) {
       const SolveReport report = solver.solve(b, x, 1e-10);
       EXPECT_TRUE(report.stopped);
       EXPECT_FALSE(report.ok);
-      EXPECT_EQ(report.iterations, seconds < 1 ? 1 : 4);  // the clock is read once before each but the first
+      EXPECT_EQ(report.iterations, seconds < 1 ? 1 : 4);  // the clock is read before each iteration except the first
       EXPECT_EQ(report.products, report.iterations);
       EXPECT_EQ(report.cycles, with_multigrid ? report.iterations + 1 : 0);
       EXPECT_NEAR(report.relative_residual, relative_residual(H.values, b, x), 1e-12);  // the recurrence drifts
@@ -282,7 +282,7 @@ TEST(ConjugateGradient, AtDeadlineReportsWorkAndDescends) {
     }
 }
 
-TEST(ConjugateGradient, HasTheSameBitsForAnyThreadCount) {
+TEST(ConjugateGradient, IsBitReproducibleForAnyThreadCount) {
   const Matrix H = spring_lattice({.nx = 30, .ny = 14, .nz = 14, .stiffness = 50});  // 6 975 vertices: several chunks
   const std::vector<double> b = random_vector(3 * H.rows(), 10);
   const int threads = thread_count();

@@ -21,10 +21,10 @@ constexpr int kTileColumns = 6;
 constexpr int kDepthBlock = 192;
 constexpr int kRowBlock = 6 * 16;      // a multiple of kTileRows for every pack width
 constexpr int kColumnBlock = 6 * 128;  // a multiple of kTileColumns and of kTileRows
-constexpr int kPackedFromRows = 192;   // smaller products read A where it lies
-constexpr double kParallelFrom = 3e5;  // multiplications and additions: about 10 us on one core
-constexpr int kPackedColumns = 96;     // per task; a multiple of kTileColumns
-constexpr int kNarrowRows = 256;       // of a narrow panel per task; a multiple of every pack width
+constexpr int kPackedFromRows = 192;   // smaller products do not pack A
+constexpr double kParallelFrom = 3e5;  // multiply-adds; about 10 us on one core
+constexpr int kPackedColumns = 96;     // columns per task; a multiple of kTileColumns
+constexpr int kNarrowRows = 256;       // rows of a narrow panel per task; a multiple of every pack width
 constexpr int kBaseColumns = 12;       // narrower panels are factorized directly
 static_assert(LowerMatrix::kStrip % kTileColumns == 0 && LowerMatrix::kStrip % kTileRows == 0);
 static_assert(kRowBlock % kTileRows == 0 && kReadAhead >= kTileRows);
@@ -40,7 +40,7 @@ struct Tile {
   Pack sum[kTileColumns][2];
 };
 
-// sum_p A(:, p) B(:, p)' for kTileRows rows of A and kTileColumns rows of B.
+// Returns sum_p A(:, p) B(:, p)' for kTileRows rows of A and kTileColumns rows of B.
 inline Tile product(const double* A, ptrdiff_t A_stride, const double* B, ptrdiff_t B_stride, int depth) {
   Tile t;
   for (auto& column : t.sum) column[0] = column[1] = Pack(0.0);
@@ -63,7 +63,7 @@ void put_whole(const Tile& t, double* C, ptrdiff_t stride) {
   }
 }
 
-struct Part {  // of a tile: entries in the first `rows` rows and `columns` columns with row + shift >= column
+struct Part {  // part of a tile: entries in the first `rows` rows and `columns` columns with row + shift >= column
   int rows, columns, shift;
 };
 
@@ -87,7 +87,7 @@ struct Block {
   int row, column, rows, columns;
 };
 
-// C -= A B' or C = -A B' on the tiles of one cache block of C.
+// Computes C -= A B' or C = -A B' on the tiles of one cache block of C.
 template <Product kind>
 void put_block(Operand A, Operand B, LowerMatrix C, Block block) {
   const auto [row, column, rows, columns] = block;
@@ -117,7 +117,7 @@ void put_block(Product kind, Operand A, Operand B, LowerMatrix C, Block block) {
   put_block<Product::subtract>(A, B, C, block);
 }
 
-// Copies strips of `strip` rows so that each is contiguous; missing rows of the last strip become zero.
+// Copies strips of `strip` rows so that each is contiguous. Pads the last strip with zeros.
 template <int strip>
 void pack_strips(const double* A, ptrdiff_t stride, int rows, int depth, double* packed) {
   int i = 0;
@@ -147,7 +147,7 @@ bool factorize_square(double* A, int n, ptrdiff_t stride, double* reciprocal) {
   return true;
 }
 
-// Rows of X L' = B for T = Pack (kPackWidth rows at once) or double (one row); the row lives in registers.
+// Solves X L' = B for T = Pack (kPackWidth rows at once) or double (one row). The row is held in registers.
 template <class T, int n, class Load, class Store>
 inline void solve_row(const double* L, ptrdiff_t stride, const double* reciprocal, Load get, Store put) {
   T x[n];

@@ -1,5 +1,5 @@
-// Dense kernels of the sparse factorization, on column-major lower trapezoids whose sizes are multiples of 3.
-// Arrays must be readable for kReadAhead doubles past their last entry: edge tiles load whole SIMD lanes and drop them.
+// Dense kernels of the sparse factorization, for column-major lower trapezoids whose sizes are multiples of 3. Arrays
+// must be readable for kReadAhead doubles past their last entry, because edge tiles load whole SIMD packs.
 #pragma once
 #include <cstddef>
 #include <vector>
@@ -10,20 +10,21 @@ namespace aspic {
 
 inline constexpr int kReadAhead = 32;
 
-// Large products run on all threads; every entry is summed in the same order on any number of them. An object serves
-// one panel at a time.
+// Factorizes and multiplies dense panels. Large products run on all threads; the summation order is independent of
+// their number. An object processes one panel at a time.
 class DenseCholesky {
  public:
-  // Scratch for panels of up to this many rows and columns; called before the others.
+  // Allocates scratch for panels of up to the given size. Must be called first.
   void reserve(int rows, int columns);
-  static std::size_t scratch(int rows, int columns);  // [doubles] that reserve() allocates
+  static std::size_t scratch(int rows, int columns);  // size of the scratch [doubles]
 
-  // In place: the first `columns` rows become L11 with L11 L11' = A11, the rows below become L21 = A21 L11^-T.
-  // Entries above the diagonal are neither read for the result nor written. False: a pivot is not positive.
+  // Factorizes in place: the first `columns` rows become L11 with L11 L11' = A11, the rows below become L21 = A21
+  // L11^-T. Entries above the diagonal do not affect the result and are not written. Returns false if a pivot is not
+  // positive.
   bool factorize(double* A, int rows, int columns, std::ptrdiff_t stride);
 
   enum class Product { set, subtract };
-  // C(i, j) = -S or C(i, j) -= S, S = sum_p A(i, p) A(j, p), for i in [j, A.rows) and j in [0, columns).
+  // Computes C(i, j) = -S or C(i, j) -= S, where S = sum_p A(i, p) A(j, p), for i in [j, A.rows) and j in [0, columns).
   void put_outer_product(Product kind, ConstMatrix A, LowerMatrix C, int columns);
 
  private:

@@ -25,7 +25,7 @@ std::vector<int> inverse_of(const std::vector<int>& order) {
   return position;
 }
 
-// parent[j] is the first row below the diagonal of column j of L [Liu 1990]; ancestors are compressed on the way.
+// parent[j] is the first row below the diagonal of column j of L [Liu 1990]. Compresses the paths to the ancestors.
 std::vector<int> elimination_tree(const BlockPattern& p, const std::vector<int>& order,
                                   const std::vector<int>& position) {
   const int n = static_cast<int>(order.size());
@@ -42,7 +42,7 @@ std::vector<int> elimination_tree(const BlockPattern& p, const std::vector<int>&
   return parent;
 }
 
-// Children before parents, each subtree contiguous.
+// Orders children before parents and each subtree contiguously.
 std::vector<int> postorder(const std::vector<int>& parent) {
   const int n = static_cast<int>(parent.size());
   std::vector<int> child(n, -1), sibling(n, -1), result, stack;
@@ -66,8 +66,8 @@ std::vector<int> postorder(const std::vector<int>& parent) {
   return result;
 }
 
-// Entries of each column of L, diagonal included: row j of L is the part of the tree between its earlier neighbors
-// and j.
+// Counts the entries of each column of L, diagonal included. Row j of L is the part of the tree between its earlier
+// neighbors and j.
 std::vector<int> column_counts(const BlockPattern& p, const std::vector<int>& order, const std::vector<int>& position,
                                const std::vector<int>& parent) {
   const int n = static_cast<int>(order.size());
@@ -81,18 +81,18 @@ std::vector<int> column_counts(const BlockPattern& p, const std::vector<int>& or
   return count;
 }
 
-// Entries of a trapezoid of `width` columns with `below` rows under its triangle.
+// Number of entries of a trapezoid of `width` columns with `below` rows under its triangle.
 double trapezoid(double width, double below) { return width * (width + 1) / 2 + width * below; }
 
-// Merging neighbors in the tree stores zeros but makes larger dense blocks; the shares are those of CHOLMOD's
-// relaxed supernodes, in blocks of 3 [Chen et al. 2008].
+// Whether merging adjacent supernodes pays: it stores zeros but makes larger dense blocks. The thresholds are those of
+// CHOLMOD's relaxed supernodes, in blocks of 3 [Chen et al. 2008].
 bool worth_merging(int width, double zeros, double entries) {
   if (width <= 2) return true;
   const double share = zeros / entries;
   return share < (width <= 6 ? 0.8 : width <= 16 ? 0.1 : 0.05);
 }
 
-// First columns of the supernodes, the column count appended.
+// Returns the first columns of the supernodes, followed by the number of columns.
 std::vector<int> relaxed_supernodes(const std::vector<int>& parent, const std::vector<int>& count) {
   const int n = static_cast<int>(parent.size());
   std::vector<int> children(n, 0);
@@ -105,7 +105,7 @@ std::vector<int> relaxed_supernodes(const std::vector<int>& parent, const std::v
 
   struct Merged {
     int first;
-    double entries;  // true entries of L in it
+    double entries;  // structural nonzeros of L
   };
   const auto entries_of = [&](int first, int last) {
     return std::accumulate(count.begin() + first, count.begin() + last, 0.0);
@@ -114,7 +114,7 @@ std::vector<int> relaxed_supernodes(const std::vector<int>& parent, const std::v
   for (size_t f = 0; f + 1 < fundamental.size(); ++f) {
     Merged top{fundamental[f], entries_of(fundamental[f], fundamental[f + 1])};
     const int last = fundamental[f + 1];
-    // The last child's columns directly precede ours; taking it in may make its own last child worth taking too.
+    // The last child's columns directly precede this column. After merging it, merging its own last child may pay, too.
     while (!merged.empty() && parent[top.first - 1] >= top.first && parent[top.first - 1] < last) {
       const Merged& child = merged.back();
       const double stored = trapezoid(last - child.first, count[last - 1] - 1), entries = child.entries + top.entries;
@@ -131,7 +131,7 @@ std::vector<int> relaxed_supernodes(const std::vector<int>& parent, const std::v
   return first;
 }
 
-// Sizes and costs. The rows below a supernode are those below its last column.
+// Computes sizes and costs. The rows below a supernode are those below its last column.
 void set_sizes(Supernodes& s, const std::vector<int>& parent, const std::vector<int>& count) {
   const int supernodes = s.count(), columns = s.first.back();
   std::vector<int> supernode_of(columns);
@@ -150,7 +150,7 @@ void set_sizes(Supernodes& s, const std::vector<int>& parent, const std::vector<
   s.cost.nnz = s.value_start.back();
 }
 
-// Both lists ascend, and the parent's columns and rows contain the child's rows.
+// Finds the place of each row in the parent's front. Both lists ascend, and the parent's rows contain the child's.
 void relate_to_parent(Supernodes& s, int k) {
   const int parent = s.parent[k];
   if (parent < 0) return;

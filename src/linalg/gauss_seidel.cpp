@@ -12,10 +12,10 @@
 namespace aspic {
 namespace {
 
-// Multiplications, of about 0.1 ns each, from which on threads share a loop over the tasks of a color: below, waking
-// them takes longer.
+// Minimum multiplications (about 0.1 ns each) per task, and per color for which sharing the loop between threads
+// outweighs waking them.
 constexpr double kWorkPerTask = 12'000, kWorkWorthSharing = 40'000;
-constexpr int kPrefetchAhead = 4096;  // bytes; takes 6 % off the benchmark beam of 95 000 vertices
+constexpr int kPrefetchAhead = 4096;  // bytes; saves 6 % on the benchmark beam of 95 000 vertices
 
 struct Entry {
   int column, source;
@@ -30,12 +30,12 @@ std::vector<int> groups_by_color(std::span<const int> color) {
 
 }  // namespace
 
-// A block is column-major with its rows laid out like a vector; one of 3x3 leaves out the spare lane.
+// A block is column-major. Its rows are laid out like a vector; a 3x3 block omits the unused lane.
 template <int B>
 struct GaussSeidel::Kernel {
   using Vector = Lanes<float, kFloatsPerRow * B>;
   static constexpr int kSize = 3 * B, kFloats = kFloatsPerRow * B;
-  static constexpr int kColumn = B == 1 ? 3 : kFloats;  // from one column to the next
+  static constexpr int kColumn = B == 1 ? 3 : kFloats;  // offset between columns
   static constexpr int64_t kBlock = kSize * kColumn;    // floats of a block
   static constexpr int lane(int i) { return i / 3 * kFloatsPerRow + i % 3; }
 
@@ -61,7 +61,7 @@ struct GaussSeidel::Kernel {
     return even + odd;
   }
 
-  // The blocks of a row that is visited later: as far from this one's as `bytes`.
+  // Prefetches the blocks of a row that is visited later, `bytes` after those of this row.
   static void prefetch_row(const Triangle& t, int vertex, std::ptrdiff_t bytes) {
     const char* first = reinterpret_cast<const char*>(t.value.data() + kBlock * t.start[vertex]) + bytes;
     const char* last = reinterpret_cast<const char*>(t.value.data() + kBlock * t.start[vertex + 1]) + bytes;

@@ -1,5 +1,6 @@
-// Symmetric Gauss-Seidel sweeps in single precision, as the smoother of a multigrid cycle. Vertices are visited group
-// by group: groups of one color do not touch and run in parallel, so the result does not depend on the threads.
+// Symmetric Gauss-Seidel sweeps in single precision: the smoother of a multigrid cycle. Vertices are visited group by
+// group. Groups of one color are not coupled and run in parallel, so the result is independent of the number of
+// threads.
 #pragma once
 #include <span>
 #include <vector>
@@ -8,14 +9,14 @@
 
 namespace aspic {
 
-// Vectors hold kFloatsPerRow floats for each row, in the order of the visit; the last of each is a spare lane.
+// Vectors hold kFloatsPerRow floats per row, in the order of the visit; the last of each is unused.
 inline constexpr int kFloatsPerRow = 4;
 
 class GaussSeidel {
  public:
-  // A vertex has `rows_per_vertex` consecutive rows, 1 or 4, which are solved for together; with 4, those of two
-  // vertices are coupled by all 16 blocks or none. group[v] < 0: the vertex belongs to no group and touches none of
-  // one; it is visited last.
+  // A vertex has `rows_per_vertex` (1 or 4) consecutive rows, which are solved together. With 4 rows, two vertices are
+  // coupled by all 16 blocks or none. group[v] < 0: vertex v belongs to no group, is coupled with no vertex of a group,
+  // and is visited last.
   void analyze(const BlockPattern& pattern, int rows_per_vertex, std::span<const int> group,
                std::span<const int> color_of_group);
   bool load(const BlockSparse& H);  // false: the diagonal block of a vertex is not positive definite
@@ -26,7 +27,7 @@ class GaussSeidel {
   struct Range {
     int first = 0, last = 0;
   };
-  Range vertices_of_group(int group) const { return range_[group]; }  // places in the order
+  Range vertices_of_group(int group) const { return range_[group]; }  // range of the group in the order
 
   // H = L + D + U in the order of the visit.
   void sweep_forward(const float* b, float* x) const;           // (L + D) x = b
@@ -38,8 +39,7 @@ class GaussSeidel {
   struct Triangle {
     std::vector<int64_t> start;  // per vertex
     std::vector<int> column;
-    std::vector<int>
-        source;  // slot of the first block of the two vertices; its complement where the transpose is meant
+    std::vector<int> source;   // slot of the first block of the two vertices; bitwise complement: transposed
     std::vector<float> value;  // blocks, see Kernel
   };
   template <int B>
@@ -50,12 +50,12 @@ class GaussSeidel {
   void for_each_task(bool ascending, const Body& body) const;
 
   int rows_per_vertex_ = 1;
-  double work_per_vertex_ = 0;  // multiplications of a visit, on average
+  double work_per_vertex_ = 0;  // average multiplications per visit
   std::vector<int> order_;
   std::vector<Range> range_;
   std::vector<std::vector<Range>> tasks_;  // per color
   Triangle lower_, upper_;
-  std::vector<float> own_, inverse_;  // the diagonal blocks of the vertices and their inverses
+  std::vector<float> own_, inverse_;  // diagonal blocks of the vertices and their inverses
 };
 
 }  // namespace aspic

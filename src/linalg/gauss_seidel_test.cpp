@@ -17,7 +17,7 @@ using namespace test;
 using Dense = Eigen::MatrixXd;
 using Vector = Eigen::VectorXd;
 
-// Every vertex of a random graph with four rows, or one.
+// Returns a matrix on a random graph with four rows per vertex, or one.
 Matrix vertex_matrix(int vertices, int rows_per_vertex, unsigned seed) {
   const int B = rows_per_vertex;
   Couplings couplings;
@@ -32,7 +32,7 @@ struct Groups {
   std::vector<int> of_vertex, color;
 };
 
-// Consecutive vertices in one group, but for those in `left_out`.
+// Groups consecutive vertices, except those in `left_out`.
 Groups make_groups(const Graph& vertices, int size, const std::vector<int>& left_out = {}) {
   Groups groups;
   const int count = (vertices.vertex_count() + size - 1) / size;
@@ -48,7 +48,7 @@ Graph graph_of_vertices(const BlockPattern& p, int rows_per_vertex) {
   return quotient(graph_of(p), vertex, p.rows() / rows_per_vertex);
 }
 
-// Between vectors in the order of the rows and those of the smoother.
+// Converts vectors between the order of the rows and that of the smoother.
 struct Layout {
   const GaussSeidel& smoother;
   size_t place(int k, int m) const { return kFloatsPerRow * static_cast<size_t>(smoother.rows_per_vertex() * k + m); }
@@ -62,7 +62,7 @@ struct Layout {
   }
   std::vector<float> to_floats(const Vector& x) const {
     std::vector<float> floats(kFloatsPerRow * static_cast<size_t>(smoother.rows()),
-                              1e30F);  // spare lanes do not matter
+                              1e30F);  // unused lanes do not matter
     for_each([&](size_t to, int from) { floats[to] = static_cast<float>(x[from]); });
     return floats;
   }
@@ -73,7 +73,7 @@ struct Layout {
   }
 };
 
-// H = L + D + U by the order of the visit; D of whole vertices.
+// H = L + D + U in the order of the visit; D contains the blocks of whole vertices.
 struct Split {
   Dense L, D, U;
   Split(const BlockSparse& H, const GaussSeidel& smoother) {
@@ -93,8 +93,8 @@ struct Split {
 
 double largest(const Vector& v) { return v.cwiseAbs().maxCoeff(); }
 
-// The matrices are dominated by their diagonals: solving for a vertex does not enlarge errors, of which a row makes as
-// many as it has entries, fewer than 200 and of random sign.
+// The matrices are diagonally dominant, so solving for a vertex does not amplify errors. A row adds one random error
+// per entry, fewer than 200.
 constexpr double kBound = 20 * std::numeric_limits<float>::epsilon();
 
 void expect_sweeps(const BlockSparse& H, const GaussSeidel& smoother, unsigned seed) {
@@ -122,7 +122,7 @@ void expect_sweeps(const BlockSparse& H, const GaussSeidel& smoother, unsigned s
   EXPECT_LT(largest(layout.to_vector(yf) - product), kBound * largest(product));
 }
 
-TEST(GaussSeidel, SweepsAreThoseOfTheDenseMatrix) {
+TEST(GaussSeidel, SweepsMatchDenseMatrix) {
   for (const int rows_per_vertex : {1, 4})
     for (const int vertices : {1, 2, 7, 60})
       for (const int size : {1, 5}) {
@@ -136,7 +136,7 @@ TEST(GaussSeidel, SweepsAreThoseOfTheDenseMatrix) {
       }
 }
 
-TEST(GaussSeidel, VerticesWithoutAGroupAreVisitedLast) {
+TEST(GaussSeidel, VisitsUngroupedVerticesLast) {
   Matrix H = vertex_matrix(40, 1, 5);
   const std::vector<int> pinned = {0, 17, 18, 39};
   for (const int row : pinned) pin(H.values, row);
@@ -153,7 +153,7 @@ TEST(GaussSeidel, VerticesWithoutAGroupAreVisitedLast) {
   expect_sweeps(H.values, smoother, 7);
 }
 
-TEST(GaussSeidel, VisitsGroupByGroupAndEveryVertexOnce) {
+TEST(GaussSeidel, VisitsEachVertexOnceGroupByGroup) {
   const Matrix H = vertex_matrix(50, 1, 8);
   const Graph graph = graph_of(*H.pattern);
   const Groups groups = make_groups(graph, 4, {3, 20});
@@ -169,9 +169,9 @@ TEST(GaussSeidel, VisitsGroupByGroupAndEveryVertexOnce) {
   }
 }
 
-TEST(GaussSeidel, HasTheSameBitsForAnyThreadCount) {
+TEST(GaussSeidel, IsBitReproducibleForAnyThreadCount) {
   for (const int rows_per_vertex : {1, 4}) {
-    const Matrix H = rows_per_vertex == 1 ? spring_lattice({.nx = 40, .ny = 15, .nz = 15})  // thousands of a color
+    const Matrix H = rows_per_vertex == 1 ? spring_lattice({.nx = 40, .ny = 15, .nz = 15})  // thousands per color
                                           : vertex_matrix(3000, 4, 9);
     const Groups groups = make_groups(graph_of_vertices(*H.pattern, rows_per_vertex), 4);
     GaussSeidel smoother;
@@ -207,7 +207,7 @@ TEST(GaussSeidel, ReportsIndefiniteDiagonalBlocks) {
     block(1, 1) = -block(1, 1);
     EXPECT_FALSE(smoother.load(H.values));
     block = saved;
-    if (rows_per_vertex == 4) {  // every 3x3 block is definite, that of the vertex is not
+    if (rows_per_vertex == 4) {  // every 3x3 block is definite, but not the block of the vertex
       const Mat3d large = 100 * squared_norm(saved) * identity3<double>();
       add_block(H.values, 41, 40, large);
       EXPECT_FALSE(smoother.load(H.values));

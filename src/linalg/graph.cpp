@@ -44,7 +44,7 @@ Graph quotient(const Graph& graph, std::span<const int> group, int groups) {
 }
 
 std::vector<int> greedy_coloring(const Graph& graph) {
-  std::vector<int> color(graph.vertex_count(), -1), taken_by;  // per color, the last vertex that may not have it
+  std::vector<int> color(graph.vertex_count(), -1), taken_by;  // for each color, the last vertex with a neighbor of it
   for (int v = 0; v < graph.vertex_count(); ++v) {
     for (const int w : graph.around(v))
       if (color[w] >= 0) taken_by[color[w]] = v;

@@ -27,7 +27,7 @@ void expect_graph(const Graph& graph, const std::vector<std::set<int>>& expected
   }
 }
 
-TEST(Graph, HasCouplingsInBothDirectionsInOrder) {
+TEST(Graph, HasSortedCouplingsInBothDirections) {
   for (const int rows : {0, 1, 2, 40}) {
     const Couplings couplings = random_couplings(rows, 2 * rows, 1);
     expect_graph(graph_of(make_pattern(rows, couplings)), neighbors(rows, couplings));
@@ -40,7 +40,7 @@ TEST(Graph, VerticesWithoutCouplingsHaveNoNeighbors) {
   EXPECT_EQ(greedy_coloring(graph), (std::vector<int>{0, 0, 0, 1}));
 }
 
-TEST(Quotient, JoinsGroupsWhoseMembersTouch) {
+TEST(Quotient, CouplesGroupsWithNeighboringMembers) {
   for (const unsigned seed : {1U, 2U, 3U}) {
     const int rows = 60, groups = 12;
     const Couplings couplings = random_couplings(rows, 80, seed);
@@ -56,21 +56,22 @@ TEST(Quotient, JoinsGroupsWhoseMembersTouch) {
   }
 }
 
-TEST(Quotient, MayHaveEmptyGroupsOrNone) {
+TEST(Quotient, AcceptsEmptyGroups) {
   const Graph graph = graph_of(make_pattern(3, {{0, 1}, {1, 2}}));
   expect_graph(quotient(graph, std::vector{0, 2, 2}, 4), {{2}, {}, {0}, {}});
   expect_graph(quotient(graph, std::vector{-1, -1, -1}, 0), {});
-  expect_graph(quotient(graph, std::vector{0, -1, 1}, 2), {{}, {}});  // a path through the vertex in between is none
+  expect_graph(quotient(graph, std::vector{0, -1, 1}, 2),
+               {{}, {}});  // a path through an ungrouped vertex does not count
 }
 
-TEST(GreedyColoring, NeighborsDifferAndColorsAreLowestPossible) {
+TEST(GreedyColoring, UsesLowestPossibleColors) {
   for (const unsigned seed : {1U, 2U, 3U, 4U}) {
     const int rows = 100;
     const Graph graph = graph_of(make_pattern(rows, random_couplings(rows, 120 * static_cast<int>(seed), seed)));
     const std::vector<int> color = greedy_coloring(graph);
     ASSERT_EQ(static_cast<int>(color.size()), rows);
     for (int v = 0; v < rows; ++v) {
-      std::set<int> before;  // colors of the neighbors that chose first
+      std::set<int> before;  // colors of the neighbors before v
       for (const int w : graph.around(v)) {
         EXPECT_NE(color[v], color[w]);
         if (w < v) before.insert(color[w]);

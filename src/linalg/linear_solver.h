@@ -16,10 +16,10 @@ namespace aspic {
 struct SolveReport {
   bool ok = false;               // the residual is below the tolerance
   bool indefinite = false;       // negative curvature was found
-  bool stopped = false;          // the stop token ended it; x is the last iterate, a descent direction for -b
+  bool stopped = false;          // the stop token ended the solve; x is the last iterate, a descent direction for -b
   int iterations = 0;            // 0 for a direct solver
-  int products = 0;              // with H
-  int cycles = 0;                // of multigrid
+  int products = 0;              // products with H
+  int cycles = 0;                // multigrid cycles
   double relative_residual = 0;  // |b - H x| / |b|; 0 when not measured
 };
 
@@ -27,20 +27,21 @@ class LinearSolver {
  public:
   virtual ~LinearSolver() = default;
   virtual std::string_view name() const = 0;
-  virtual std::string description() const { return std::string(name()); }  // the method and why it was chosen, for logs
+  virtual std::string description() const { return std::string(name()); }  // method and reason for its choice, for logs
   virtual void analyze(const BlockPattern& pattern) = 0;
-  // Starts a new sequence of similar matrices. Drops everything that was kept from earlier matrices, so that results
-  // depend on this sequence alone.
+  // Starts a new sequence of similar matrices. Discards all data of earlier matrices, so that results depend on this
+  // sequence alone.
   virtual void begin() {}
-  virtual bool factorize(const BlockSparse& H) = 0;  // false: H is not positive definite. H must outlive the solves.
-  // Solves H x = b up to |b - H x| <= tolerance |b|; direct solvers ignore the tolerance. b, x: 3 numbers per row.
+  virtual bool factorize(
+      const BlockSparse& H) = 0;  // returns false if H is not positive definite. H must outlive the solves.
+  // Solves H x = b up to |b - H x| <= tolerance |b|; direct solvers ignore the tolerance. b, x: 3 entries per row.
   virtual SolveReport solve(std::span<const double> b, std::span<double> x, double tolerance) = 0;
   // Sets the token that subsequent solves poll. Direct solvers ignore it.
   virtual void set_stop(const StopToken&) {}
 };
 
-// "auto", "cholesky", "multigrid" and "block_jacobi" (conjugate gradients). Throws InvalidInput for another name.
-// `solves`: expected number of right-hand sides per factorization; used by "auto".
+// Returns a solver by name: "auto", "cholesky", "multigrid" or "block_jacobi" (conjugate gradients). Throws
+// InvalidInput for another name. `solves`: expected number of right-hand sides per factorization; used by "auto".
 std::unique_ptr<LinearSolver> make_linear_solver(std::string_view name, int solves = 1);
 std::vector<std::string> linear_solver_names();
 

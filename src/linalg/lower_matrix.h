@@ -6,7 +6,7 @@
 
 namespace aspic {
 
-// Column-major and read-only: entry (i, j) is data[i + j * stride].
+// Column-major, read-only. Entry (i, j) is data[i + j * stride].
 struct ConstMatrix {
   const double* data;
   std::ptrdiff_t stride;
@@ -15,8 +15,8 @@ struct ConstMatrix {
   ConstMatrix columns_from(int first, int count) const { return {data + first * stride, stride, rows, count}; }
 };
 
-// Column-major; either all columns have `rows` entries, or strips of kStrip columns begin at their own diagonal, which
-// takes little more than half the memory of a square.
+// Column-major. Either all columns have `rows` entries, or strips of kStrip columns begin at their own diagonal, which
+// needs little more than half the memory of a square.
 struct LowerMatrix {
   static constexpr int kStrip = 96;
 

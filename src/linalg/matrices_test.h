@@ -10,7 +10,7 @@
 
 namespace aspic::test {
 
-struct Matrix {  // keeps the pattern where the values point to it
+struct Matrix {  // keeps the pattern at a fixed address
   std::unique_ptr<BlockPattern> pattern;
   BlockSparse values;
   explicit Matrix(BlockPattern p) : pattern(std::make_unique<BlockPattern>(std::move(p))), values(*pattern) {}
@@ -32,8 +32,8 @@ inline std::vector<double> random_vector(size_t size, unsigned seed) {
   return v;
 }
 
-// Random off-diagonal blocks with entries in (-1, 1); diagonal blocks that dominate their rows, hence positive
-// definite.
+// Returns a matrix with random off-diagonal blocks (entries in (-1, 1)) and diagonal blocks that dominate their rows,
+// hence positive definite.
 inline Matrix random_dominant(int rows, const Couplings& couplings, unsigned seed) {
   Matrix H(make_pattern(rows, couplings));
   std::vector<double> row_sum(rows, 0.0);
@@ -61,7 +61,7 @@ inline Couplings random_couplings(int rows, int count, unsigned seed) {
   return couplings;
 }
 
-// Makes a row that of the identity, as pinned vertices have.
+// Replaces a row by that of the identity, like the row of a pinned vertex.
 inline void pin(BlockSparse& H, int row) {
   const BlockPattern& p = *H.pattern;
   for (int64_t s = p.row_start[row]; s < p.row_start[row + 1]; ++s) H.block[s] = {};
@@ -75,7 +75,7 @@ struct Lattice {
 };
 
 // Springs along the edges of the Kuhn subdivision of a box: block (i, j) of a spring with unit direction n is -k n n'.
-// The sparsity is that of linear tetrahedra on the same box, and the nullspace without mass holds the rigid motions.
+// The sparsity is that of linear tetrahedra on the same box. Without mass, the nullspace contains the rigid motions.
 inline Matrix spring_lattice(const Lattice& lattice) {
   const auto [nx, ny, nz, stiffness, mass] = lattice;
   const auto vertex = [&, sy = ny + 1, sz = nz + 1](int i, int j, int k) { return (i * sy + j) * sz + k; };
@@ -112,7 +112,7 @@ inline Matrix spring_lattice(const Lattice& lattice) {
   return H;
 }
 
-// The whole symmetric matrix, column-major.
+// Returns the full symmetric matrix, column-major.
 inline std::vector<double> dense(const BlockSparse& H) {
   const BlockPattern& p = *H.pattern;
   const size_t n = 3 * p.rows();

@@ -12,11 +12,12 @@ namespace aspic {
 namespace {
 
 constexpr int kMostLevels = 10;
-constexpr int kLeastReduction = 2;  // of rows, from one level to the next; with less, more levels do not help
-constexpr double kRegular = 1e-12;  // added to the coarsest diagonal: a free body without mass is singular
-constexpr double kAccurate = 0.25;  // a coarse residual reduced to this is small enough
+constexpr int kLeastReduction = 2;  // minimum ratio of the rows of two levels; below it, more levels do not help
+constexpr double kRegular =
+    1e-12;  // relative increase of the coarsest diagonal: the matrix of a free body without mass is singular
+constexpr double kAccurate = 0.25;  // reduction of a coarse residual that is sufficient
 constexpr int kAggregatesPerTask = 8;
-// Steps of conjugate gradients on the first coarse level, and on deeper levels or where the stiffness jumps, where more
+// Conjugate-gradient steps on the first coarse level, and on deeper levels or with jumps of the modulus, where more
 // steps do not help.
 constexpr int kFirstSteps = 3, kSteps = 2;
 
@@ -50,11 +51,11 @@ std::vector<double> averages(const Aggregates& aggregates, std::span<const doubl
   return average;
 }
 
-bool any_jump(const Graph& graph, std::span<const double> modulus) {
+bool has_modulus_jump(const Graph& graph, std::span<const double> modulus) {
   if (modulus.empty()) return false;
   for (int v = 0; v < graph.vertex_count(); ++v)
     for (const int w : graph.around(v))
-      if (is_jump(modulus[v], modulus[w])) return true;
+      if (is_modulus_jump(modulus[v], modulus[w])) return true;
   return false;
 }
 
@@ -87,7 +88,7 @@ void for_each_entry(std::span<const float> v, const Body& body) {
   });
 }
 
-// The spare lanes do not count.
+// Ignores the unused lanes.
 double dot(std::span<const float> a, std::span<const float> b) {
   static_assert(kChunkSize % kFloatsPerRow == 0);
   return parallel_sum(static_cast<int>(a.size()), [&](int first, int last) {
@@ -115,12 +116,12 @@ void Multigrid::build(const BlockSparse& H) {
   std::vector<FourValues> value;
   for (const Vec3d& X : position) value.push_back({1, X[0], X[1], X[2]});
   std::vector<double> modulus = pattern->rest_modulus;
-  const int first_steps = any_jump(graph, modulus) ? kSteps : kFirstSteps;
+  const int first_steps = has_modulus_jump(graph, modulus) ? kSteps : kFirstSteps;
   std::span<const char> excluded = isolated_;
   int rows_per_vertex = 1, size = options_.aggregate_size;
   while (pattern->rows() > options_.coarsest_rows && static_cast<int>(levels_.size()) < kMostLevels) {
     Aggregates aggregates = make_aggregates({graph, position, modulus, excluded, size});
-    // Where jumps of the modulus are everywhere, aggregates cross them; on the first level only where they must.
+    // If the modulus jumps almost everywhere, aggregates cross the jumps; on the first level only if necessary.
     const int too_many = rows_per_vertex == 4 ? graph.vertex_count() / 3 : pattern->rows() / (4 * kLeastReduction);
     if (aggregates.count() > too_many) aggregates = make_aggregates({graph, position, {}, excluded, size});
     if (aggregates.count() == 0 || 4 * kLeastReduction * aggregates.count() > pattern->rows()) break;

@@ -1,8 +1,8 @@
-// A multigrid cycle for elasticity as a preconditioner: coarse spaces of affine displacements of aggregates of the rest
-// shape, Gauss-Seidel as the smoother, a dense factorization on the coarsest level. Coarse levels are solved by two
-// or three steps of conjugate gradients preconditioned by the cycle below (K-cycle, [Notay and Vassilevski 2008]),
-// because functions that jump between aggregates are stiffer than the motions they stand for. The cycle runs in single
-// precision; coarse matrices are made in double.
+// Multigrid cycle for elasticity, used as a preconditioner. The coarse spaces are affine displacements of aggregates of
+// the rest shape, the smoother is Gauss-Seidel, and the coarsest level is factorized. Each coarse level is solved by
+// two or three conjugate-gradient steps preconditioned by the cycle below (K-cycle, [Notay and Vassilevski 2008]),
+// because functions that are discontinuous between aggregates are stiffer than the motions they approximate. The cycle
+// runs in single precision; coarse matrices are computed in double precision.
 #pragma once
 #include <memory>
 #include <span>
@@ -17,14 +17,13 @@
 namespace aspic {
 
 struct MultigridOptions {
-  int aggregate_size = 48;        // rows of the matrix
-  int coarse_aggregate_size = 8;  // aggregates, from then on
-  int coarsest_rows = 256;        // at most, on the level that is factorized; where rows that do not hang together are
-                                  // more, they are smoothed only
+  int aggregate_size = 48;        // rows per aggregate on the finest level
+  int coarse_aggregate_size = 8;  // aggregates per aggregate on the coarser levels
+  int coarsest_rows = 256;        // maximum rows of the factorized level; a larger disconnected level is smoothed only
 };
 
-// The better for knowing the rest positions of the pattern's rows. Rows without any coupling (pinned vertices) take no
-// part.
+// Converges faster if the rest positions of the pattern's rows are known. Rows without couplings (pinned vertices) are
+// excluded.
 class Multigrid : public ApproximateInverse {
  public:
   explicit Multigrid(const MultigridOptions& options = {}) : options_(options) {}
@@ -47,19 +46,19 @@ class Multigrid : public ApproximateInverse {
     GaussSeidel smoother;
     AffineCoarsening coarsening;
     MatrixRestriction restriction;
-    std::unique_ptr<BlockSparse> coarse;  // P' H P; none on a last level that is smoothed only
-    std::vector<float> weight;            // coarsening, 4 per row in the order of the smoother
+    std::unique_ptr<BlockSparse> coarse;  // P' H P; null on a last level that is smoothed only
+    std::vector<float> weight;            // weights of `coarsening`, 4 per row in the order of the smoother
     std::vector<int> coarse_place;        // place of each aggregate in the order of the next level
-    std::vector<float> b, x;              // H x = b
+    std::vector<float> b, x;              // right-hand side and solution of H x = b
     std::vector<float> r;                 // b - H x
     std::vector<Direction> directions;    // search directions of the K-cycle
-    std::vector<float> sum;               // solution of the K-cycle so far
+    std::vector<float> sum;               // partial solution of the K-cycle
   };
   bool ends_densely() const { return levels_.empty() || levels_.back().coarse; }
   void build(const BlockSparse& H);
   void reserve_vectors(Level& level, int rows, int first_steps);
   void connect_levels();
-  void cycle(int l);  // one step for H x = b from x = 0
+  void cycle(int l);  // one cycle for H x = b from x = 0
   void solve(int l);
   void restrict_residual(const Level& level, std::span<float> coarse_b) const;
   void add_prolonged(std::span<const float> coarse_x, Level& level) const;
@@ -69,7 +68,7 @@ class Multigrid : public ApproximateInverse {
   MultigridOptions options_;
   const BlockPattern* pattern_ = nullptr;
   bool is_built_ = false;
-  std::vector<char> isolated_, isolated_now_;  // rows without couplings: pinned
+  std::vector<char> isolated_, isolated_now_;  // rows without couplings (pinned)
   std::vector<Level> levels_;
   std::vector<float> coarsest_b_, coarsest_x_;
   std::vector<double> factor_, coarsest_;

@@ -29,7 +29,7 @@ Multigrid made(const BlockSparse& H, const MultigridOptions& options = {}) {
   return multigrid;
 }
 
-// Of conjugate gradients with multigrid; nothing where they fail.
+// Returns the iterations of conjugate gradients with multigrid, or nothing if they fail.
 std::optional<int> iterations(const BlockSparse& H, double tolerance, const MultigridOptions& options = {}) {
   ConjugateGradient solver(std::make_unique<Multigrid>(options), 300);
   solver.analyze(*H.pattern);
@@ -41,16 +41,16 @@ std::optional<int> iterations(const BlockSparse& H, double tolerance, const Mult
   return report.iterations;
 }
 
-TEST(Multigrid, CoarsestLevelAloneIsTheInverse) {
+TEST(Multigrid, CoarsestLevelAloneIsExact) {
   const Matrix H = spring_lattice({.nx = 4, .ny = 4, .nz = 4});
   Multigrid multigrid = made(H.values);
   EXPECT_EQ(multigrid.level_count(), 1);
   const std::vector<double> b = random_vector(3 * H.rows(), 2), x = applied(multigrid, b);
-  // In and out in single precision; the condition number is below 30.
+  // Input and output are in single precision; the condition number is below 30.
   EXPECT_LT(relative_residual(H.values, b, x), 30 * std::numeric_limits<float>::epsilon());
 }
 
-TEST(Multigrid, WithTwoLevelsIsSymmetricAndPositive) {
+TEST(Multigrid, IsSymmetricAndPositiveWithTwoLevels) {
   for (const double stiffness : {1.0, 1e3}) {
     const Matrix H = spring_lattice({.nx = 12, .ny = 6, .nz = 6, .stiffness = stiffness});
     Multigrid multigrid = made(H.values);
@@ -59,14 +59,14 @@ TEST(Multigrid, WithTwoLevelsIsSymmetricAndPositive) {
       const std::vector<double> u = random_vector(3 * H.rows(), seed), v = random_vector(3 * H.rows(), seed + 10);
       const std::vector<double> Mu = applied(multigrid, u), Mv = applied(multigrid, v);
       EXPECT_GT(dot(u, Mu), 0);
-      // The error of single precision, some times over in sums of some 200 entries.
+      // Single-precision errors accumulate in sums of about 200 entries.
       const double scale = std::sqrt(dot(u, u) * dot(Mv, Mv)) + std::sqrt(dot(v, v) * dot(Mu, Mu));
       EXPECT_LT(std::abs(dot(u, Mv) - dot(v, Mu)), 10 * std::numeric_limits<float>::epsilon() * scale);
     }
   }
 }
 
-TEST(Multigrid, WithManyLevelsIsPositiveAndHomogeneous) {
+TEST(Multigrid, IsPositiveAndHomogeneousWithManyLevels) {
   const Matrix H = spring_lattice({.nx = 20, .ny = 10, .nz = 10, .stiffness = 1e3});
   Multigrid multigrid = made(H.values, kManyLevels);
   ASSERT_GE(multigrid.level_count(), 4);
@@ -81,7 +81,7 @@ TEST(Multigrid, WithManyLevelsIsPositiveAndHomogeneous) {
   EXPECT_EQ(applied(multigrid, std::vector<double>(3 * H.rows())), std::vector<double>(3 * H.rows()));
 }
 
-TEST(Multigrid, HasTheSameBitsForAnyThreadCount) {
+TEST(Multigrid, IsBitReproducibleForAnyThreadCount) {
   const Matrix H = spring_lattice({.nx = 24, .ny = 12, .nz = 12, .stiffness = 1e3});
   const std::vector<double> b = random_vector(3 * H.rows(), 3);
   const int threads = thread_count();
@@ -96,7 +96,7 @@ TEST(Multigrid, HasTheSameBitsForAnyThreadCount) {
   set_thread_count(threads);
 }
 
-// Clamped at one end.
+// A lattice pinned at one end.
 Matrix clamped_lattice(const Lattice& box) {
   Matrix H = spring_lattice(box);
   for (int row = 0; row < H.rows(); ++row)
@@ -104,7 +104,7 @@ Matrix clamped_lattice(const Lattice& box) {
   return H;
 }
 
-TEST(Multigrid, TakesHardlyMoreIterationsForFinerMeshes) {
+TEST(Multigrid, IterationsHardlyGrowOnFinerMeshes) {
   for (const bool is_static : {false, true}) {
     std::vector<int> count;
     for (const int cells : {6, 12, 24}) {  // 343, 2 197 and 15 625 vertices
@@ -125,8 +125,8 @@ TEST(Multigrid, NeedsFewIterationsForStiffAndFreeBodies) {
   for (const double stiffness : {1.0, 1e4, 1e8})
     for (const double mass : {1.0, 1e-6}) {
       const Matrix H = spring_lattice({box.nx, box.ny, box.nz, stiffness, mass});
-      // Forces of a random displacement: others would move a body that weighs nothing further than double precision can
-      // tell its deformation from.
+      // Forces of a random displacement: others would move a body with almost no mass so far that its deformation is
+      // below round-off.
       const std::vector<double> u = random_vector(3 * H.rows(), 11);
       std::vector<double> b(u.size()), x(u.size());
       H.values.multiply(u, b);
@@ -140,8 +140,9 @@ TEST(Multigrid, NeedsFewIterationsForStiffAndFreeBodies) {
     }
 }
 
-TEST(Multigrid, DoesNotClaimWhatDoublePrecisionCannotGive) {
-  const Matrix H = spring_lattice({24, 8, 8, 1e8, 1e-6});  // random forces push it far away: the condition is 1e15
+TEST(Multigrid, ReportsMissedToleranceWhenIllConditioned) {
+  const Matrix H =
+      spring_lattice({24, 8, 8, 1e8, 1e-6});  // random forces push it far away: the condition number is 1e15
   ConjugateGradient solver(std::make_unique<Multigrid>(), 300);
   solver.analyze(*H.pattern);
   if (!solver.factorize(H.values)) return;
@@ -152,8 +153,8 @@ TEST(Multigrid, DoesNotClaimWhatDoublePrecisionCannotGive) {
   EXPECT_GT(relative_residual(H.values, b, x), 1e-8);
 }
 
-// Bending of a thin body is not affine on an aggregate: these are the hardest.
-TEST(Multigrid, GetsThereForARodAndASheet) {
+// Bending of a thin body is not affine on an aggregate: these are the hardest cases.
+TEST(Multigrid, ConvergesForRodAndSheet) {
   struct Case {
     Lattice box;
     int most;
@@ -165,7 +166,7 @@ TEST(Multigrid, GetsThereForARodAndASheet) {
   }
 }
 
-TEST(Multigrid, LeavesPinnedRowsAsTheyAre) {
+TEST(Multigrid, SolvesPinnedRowsExactly) {
   Matrix H = spring_lattice({.nx = 16, .ny = 6, .nz = 6, .stiffness = 100});
   for (int row = 0; row < H.rows(); row += 9) pin(H.values, row);
   Multigrid multigrid = made(H.values);
@@ -176,7 +177,7 @@ TEST(Multigrid, LeavesPinnedRowsAsTheyAre) {
     for (int k = 0; k < 3; ++k) EXPECT_EQ(z[3 * row + k], static_cast<float>(b[3 * row + k])) << row;
 }
 
-TEST(Multigrid, IsIndependentOfTheScaleOfPinnedRows) {
+TEST(Multigrid, IsIndependentOfPinnedRowScale) {
   std::vector<int> count;
   for (const double scale : {1.0, 1e-8, 1e8}) {
     Matrix H = spring_lattice({16, 8, 8, 100 * scale, scale});
@@ -193,7 +194,7 @@ TEST(Multigrid, IsIndependentOfTheScaleOfPinnedRows) {
   EXPECT_EQ(count, std::vector<int>(3, count[0]));
 }
 
-TEST(Multigrid, FollowsASetOfPinnedRowsThatChanges) {
+TEST(Multigrid, FollowsChangingPinnedRows) {
   const Matrix free = spring_lattice({.nx = 16, .ny = 6, .nz = 6, .stiffness = 100});
   const std::vector<double> b = random_vector(3 * free.rows(), 5);
   Multigrid reused;
@@ -208,7 +209,7 @@ TEST(Multigrid, FollowsASetOfPinnedRowsThatChanges) {
   }
 }
 
-TEST(Multigrid, TakesSmallAndEmptyMatrices) {
+TEST(Multigrid, AcceptsSmallAndEmptyMatrices) {
   const Matrix nothing = random_dominant(0, {}, 6);
   Multigrid multigrid = made(nothing.values);
   EXPECT_TRUE(applied(multigrid, {}).empty());
@@ -228,14 +229,14 @@ TEST(Multigrid, WorksWithoutRestPositions) {
   EXPECT_LE(*without, 60);
 }
 
-// A coarsest level that is as large as the matrix would need 6.5 GB.
-TEST(Multigrid, TakesManyRowsThatDoNotHangTogether) {
+// A coarsest level as large as the matrix would need 6.5 GB.
+TEST(Multigrid, AcceptsManyDisconnectedRows) {
   const int rows = 10'000;
-  EXPECT_EQ(iterations(random_dominant(rows, {}, 8).values, 1e-6), 1);  // all are isolated
+  EXPECT_EQ(iterations(random_dominant(rows, {}, 8).values, 1e-6), 1);  // all rows are isolated
   Couplings pairs, paths;
   for (int row = 0; row + 1 < rows; ++row) {
     if (row % 2 == 0) pairs.emplace_back(row, row + 1);
-    if (row % 40 != 39) paths.emplace_back(row, row + 1);  // can be coarsened, but not for long
+    if (row % 40 != 39) paths.emplace_back(row, row + 1);  // can be coarsened, but only a few times
   }
   for (const Couplings& couplings : {pairs, paths}) {
     const auto taken = iterations(random_dominant(rows, couplings, 9).values, 1e-6);
@@ -245,7 +246,7 @@ TEST(Multigrid, TakesManyRowsThatDoNotHangTogether) {
   EXPECT_EQ(made(random_dominant(rows, paths, 9).values).level_count(), 2);
 }
 
-TEST(Multigrid, TakesAModulusThatJumpsEverywhere) {
+TEST(Multigrid, AcceptsModulusJumpsEverywhere) {
   Matrix H = spring_lattice({.nx = 20, .ny = 20, .nz = 20, .stiffness = 10});
   for (int row = 0; row < H.rows(); ++row) H.pattern->rest_modulus.push_back(std::pow(100.0, row * 7 % 10));
   EXPECT_GE(made(H.values).level_count(), 3);
@@ -254,8 +255,8 @@ TEST(Multigrid, TakesAModulusThatJumpsEverywhere) {
   EXPECT_LE(*taken, 20);
 }
 
-// Coarse spaces hold the rigid motions, diagonal blocks the rest.
-TEST(Multigrid, RefusesNegativeMass) {
+// Coarse spaces contain the rigid motions, diagonal blocks the rest.
+TEST(Multigrid, RejectsNegativeMass) {
   for (const double mass : {-0.1, -3.0, -1e3})
     for (const int cells : {3, 8, 16}) {
       const Matrix H = spring_lattice({cells, 6, 6, 10, mass});
@@ -265,7 +266,8 @@ TEST(Multigrid, RefusesNegativeMass) {
     }
 }
 
-// Coupled so strongly that their difference has a negative energy: neither diagonal blocks nor coarse matrices show it.
+// Couples two rows so strongly that their difference has a negative energy, which neither diagonal blocks nor coarse
+// matrices reveal.
 void couple_too_strongly(BlockSparse& H, int row) {
   const int64_t s = H.pattern->row_start[row];
   ASSERT_LT(s, H.pattern->diagonal(row));
@@ -274,7 +276,7 @@ void couple_too_strongly(BlockSparse& H, int row) {
   H.block[s] = H.block[s] + 1.5 * largest * identity3<double>();
 }
 
-TEST(Multigrid, MeetsNegativeCurvatureThatNoLevelShows) {
+TEST(Multigrid, DetectsNegativeCurvatureHiddenFromLevels) {
   int met = 0;
   for (const int cells : {8, 16})
     for (const int place : {2, 3, 5}) {
@@ -294,7 +296,7 @@ TEST(Multigrid, MeetsNegativeCurvatureThatNoLevelShows) {
   EXPECT_GE(met, 3);
 }
 
-TEST(Multigrid, ReusedForIndefiniteMatrixReportsIt) {
+TEST(Multigrid, ReportsIndefiniteMatrixWhenReused) {
   const Matrix H = spring_lattice({16, 6, 6, 10, 1});
   BlockSparse next(*H.pattern);
   next.block = spring_lattice({16, 6, 6, 10, -0.1}).values.block;
@@ -304,7 +306,7 @@ TEST(Multigrid, ReusedForIndefiniteMatrixReportsIt) {
   std::vector<double> x(b.size());
   ASSERT_TRUE(solver.factorize(H.values));
   EXPECT_TRUE(solver.solve(b, x, 1e-8).ok);
-  ASSERT_TRUE(solver.factorize(next));  // not looked at
+  ASSERT_TRUE(solver.factorize(next));  // reuses the preconditioner without inspecting the matrix
   const SolveReport report = solver.solve(b, x, 1e-8);
   EXPECT_TRUE(report.indefinite);
   EXPECT_FALSE(report.ok);
@@ -313,7 +315,7 @@ TEST(Multigrid, ReusedForIndefiniteMatrixReportsIt) {
   EXPECT_FALSE(solver.factorize(next));
 }
 
-TEST(Multigrid, DoesNotCallNaNASolution) {
+TEST(Multigrid, RejectsNaN) {
   Matrix H = spring_lattice({.nx = 16, .ny = 6, .nz = 6});
   H.values.block[H.pattern->diagonal(100)](0, 0) = std::numeric_limits<double>::quiet_NaN();
   EXPECT_FALSE(iterations(H.values, 1e-6));
@@ -321,7 +323,7 @@ TEST(Multigrid, DoesNotCallNaNASolution) {
   EXPECT_TRUE(iterations(H.values, 1e-6));
 }
 
-TEST(Multigrid, DescribesItsLevels) {
+TEST(Multigrid, DescribesLevels) {
   const Matrix H = spring_lattice({.nx = 12, .ny = 6, .nz = 6});
   EXPECT_EQ(Multigrid().description(), "multigrid");
   EXPECT_EQ(made(H.values).description().find("multigrid on levels of 637, "), 0U);

@@ -12,7 +12,7 @@
 namespace aspic {
 namespace {
 
-constexpr int kTiny = 200;  // rows; below, minimum degree fills as little and is faster
+constexpr int kTiny = 200;  // rows; below, minimum degree has as little fill and is faster
 
 bool is_permutation(const std::vector<int>& order) {
   std::vector<char> seen(order.size(), 0);
@@ -38,7 +38,7 @@ std::vector<int> nested_dissection_order(const BlockPattern& pattern) {
   METIS_SetDefaultOptions(options);
   options[METIS_OPTION_NUMBERING] = 0;
   options[METIS_OPTION_SEED] = 1;  // the same order in every run
-  static std::mutex metis;         // its random numbers come from rand(), which all threads share
+  static std::mutex metis;         // METIS uses rand(), whose state all threads share
   const std::lock_guard lock(metis);
   const int status =
       METIS_NodeND(&rows, start.data(), neighbor.data(), nullptr, options, order.data(), position.data());
@@ -69,7 +69,7 @@ std::vector<int> fill_reducing_order(const BlockPattern& pattern) {
   const int rows = pattern.rows();
   std::vector<int> order;
   const int64_t edges = pattern.block_count() - rows;
-  if (edges == 0) {  // neither library is at its best on an empty graph
+  if (edges == 0) {  // edge case that neither library handles well
     order.resize(rows);
     std::iota(order.begin(), order.end(), 0);
     return order;

@@ -1,4 +1,4 @@
-// An elimination order with little fill.
+// Fill-reducing elimination orders.
 #pragma once
 #include <vector>
 
@@ -6,8 +6,8 @@
 
 namespace aspic {
 
-// order[k] is the row to eliminate k-th. Nested dissection (METIS) on the graph of the blocks; approximate minimum
-// degree where the graph is tiny or METIS fails.
+// Returns the order of elimination: order[k] is the k-th row. Uses nested dissection (METIS) on the graph of the
+// blocks, or approximate minimum degree if the graph is tiny or METIS fails.
 std::vector<int> fill_reducing_order(const BlockPattern& pattern);
 std::vector<int> minimum_degree_order(const BlockPattern& pattern);
 

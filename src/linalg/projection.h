@@ -4,8 +4,8 @@
 
 namespace aspic {
 
-// exact: unchanged; clamped: negative eigenvalues are raised to a small positive number; absolute: their absolute
-// values.
+// exact: unmodified; clamped: negative eigenvalues become a small positive number; absolute: negative eigenvalues
+// become their absolute values.
 enum class Definiteness { exact, clamped, absolute };
 
 struct Projection {

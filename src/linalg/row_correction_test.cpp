@@ -13,7 +13,7 @@ namespace {
 
 using namespace test;
 
-// k c c' (x) n n' for coefficients c that sum to zero: a spring along n between points of two bodies.
+// Adds k c c' (x) n n' for coefficients c that sum to zero: a spring along n between points of two bodies.
 void add_spring(const std::array<int, 4>& row, double k, const Vec3d& n, BlockSparse& H) {
   constexpr double c[] = {1, -0.5, -0.3, -0.2};
   Stencil stencil{.row = row};
@@ -54,7 +54,7 @@ TEST(Stencils, ProductMatchesDenseMatrix) {
   BlockSparse A = H.values;
   A.stencils.clear();
   A.multiply(u, Au);
-  double energy = 0;  // of the springs' off-diagonal blocks
+  double energy = 0;  // energy of the springs' off-diagonal blocks
   for (const Stencil& stencil : H.values.stencils)
     for (int i = 1, k = 0; i < 4; ++i)
       for (int j = 0; j < i; ++j, ++k)

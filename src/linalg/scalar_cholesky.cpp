@@ -24,14 +24,14 @@ struct Neighbors {
 
 }  // namespace
 
-// Greedy: each free row is joined with free neighbors, or neighbors of neighbors. Remaining rows fill up blocks at the
+// Greedy: joins each free row with free neighbors, or neighbors of neighbors. The remaining rows fill up blocks at the
 // end.
-void ScalarCholesky::put_together(std::span<const MatrixPlace> places) {
+void ScalarCholesky::group_rows(std::span<const MatrixPlace> places) {
   const int rows = static_cast<int>(slot_.size());
   const Neighbors graph(rows, places);
   std::fill(slot_.begin(), slot_.end(), -1);
   int blocks = 0;
-  std::vector<std::vector<int>> parts;  // of fewer than three
+  std::vector<std::vector<int>> parts;  // groups of fewer than three rows
   for (int i = 0; i < rows; ++i) {
     if (slot_[i] >= 0) continue;
     std::vector<int> group{i};
@@ -59,7 +59,7 @@ void ScalarCholesky::put_together(std::span<const MatrixPlace> places) {
 
 void ScalarCholesky::analyze(int rows, std::span<const MatrixPlace> places) {
   slot_.assign(static_cast<size_t>(rows), -1);
-  put_together(places);
+  group_rows(places);
   Couplings couplings;
   for (const auto& [i, j] : places)
     if (slot_[i] / 3 != slot_[j] / 3) couplings.emplace_back(slot_[i] / 3, slot_[j] / 3);

@@ -1,5 +1,5 @@
-// Sparse Cholesky for symmetric matrices of plain numbers, such as those of a field with one value per element: rows
-// that touch are put together in threes, for the factorization of blocks.
+// Sparse Cholesky factorization of symmetric matrices with scalar entries, such as those of a field with one value per
+// element. Groups neighboring rows in threes for the 3x3 blocks of Cholesky.
 #pragma once
 #include <memory>
 #include <span>
@@ -9,24 +9,25 @@
 
 namespace aspic {
 
-// A place in the lower triangle: column <= row.
+// Position of an entry in the lower triangle: column <= row.
 struct MatrixPlace {
   int row = 0, column = 0;
 };
 
 class ScalarCholesky {
  public:
-  // Places may be named repeatedly: their values are added. Diagonal entries that are not named are 0.
+  // Sets the sparsity. Values of repeated places are added. Missing diagonal entries are 0.
   void analyze(int rows, std::span<const MatrixPlace> places);
-  // One value per place, in the same order. False: A is not positive definite, or the factor does not fit into memory.
+  // Factorizes A with one value per place, in the order of analyze(). Returns false if A is not positive definite or
+  // the factor does not fit into memory.
   bool factorize(std::span<const double> values);
-  void solve(std::span<const double> b, std::span<double> x);  // A x = b; they may be the same
+  void solve(std::span<const double> b, std::span<double> x);  // A x = b; b and x may be the same
 
  private:
-  void put_together(std::span<const MatrixPlace> places);
+  void group_rows(std::span<const MatrixPlace> places);
 
   std::vector<int> slot_;                  // slot of each row: 3 block row + component
-  std::unique_ptr<BlockPattern> pattern_;  // at a fixed address
+  std::unique_ptr<BlockPattern> pattern_;  // heap: its address must not change
   std::unique_ptr<BlockSparse> A_;
   std::vector<size_t> target_;  // index of each place in the values of A_
   std::unique_ptr<Cholesky> cholesky_;

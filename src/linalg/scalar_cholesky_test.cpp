@@ -21,7 +21,7 @@ Eigen::VectorXd solved(ScalarCholesky& cholesky, const Eigen::VectorXd& b) {
   return x;
 }
 
-// A graph's Laplacian plus a diagonal; some places are named twice.
+// Returns a graph Laplacian plus a diagonal; some places occur twice.
 System random_system(int rows, int edges, double shift) {
   std::mt19937 random(5);
   System s;
@@ -56,7 +56,7 @@ TEST(ScalarCholesky, AgreesWithDense) {
     }
 }
 
-TEST(ScalarCholesky, TakesNewValuesForTheSamePlaces) {
+TEST(ScalarCholesky, RefactorizesNewValues) {
   System s = random_system(50, 100, 1);
   ScalarCholesky cholesky;
   cholesky.analyze(50, s.places);
@@ -64,10 +64,10 @@ TEST(ScalarCholesky, TakesNewValuesForTheSamePlaces) {
   for (double& v : s.values) v *= 4;
   ASSERT_TRUE(cholesky.factorize(s.values));
   const Eigen::VectorXd b = Eigen::VectorXd::Ones(50);
-  EXPECT_LE((4 * s.dense * solved(cholesky, b) - b).norm(), 1e-12) << "the dense matrix is the first one";
+  EXPECT_LE((4 * s.dense * solved(cholesky, b) - b).norm(), 1e-12) << "`dense` is the first matrix";
 }
 
-TEST(ScalarCholesky, TellsAnIndefiniteMatrix) {
+TEST(ScalarCholesky, RejectsIndefiniteMatrix) {
   const System s = random_system(20, 40, -0.5);
   ScalarCholesky cholesky;
   cholesky.analyze(20, s.places);

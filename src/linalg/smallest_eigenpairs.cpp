@@ -12,9 +12,10 @@ namespace {
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-constexpr double kTolerance = 1e-10;      // residual of an eigenpair of (K + shift M)^-1 M, relative to its eigenvalue
-constexpr double kProbeTolerance = 1e-6;  // where only the eigenvalue counts, whose error is the square of this
-constexpr double kBelow = 1e-7;           // relative difference of eigenvalues that counts as smaller
+constexpr double kTolerance = 1e-10;  // residual of an eigenpair of (K + shift M)^-1 M, relative to its eigenvalue
+constexpr double kProbeTolerance =
+    1e-6;                        // tolerance if only the eigenvalue is needed, whose error is the square of this
+constexpr double kBelow = 1e-7;  // relative difference at which an eigenvalue counts as smaller
 constexpr int kRestarts = 500;
 
 std::span<const double> entries(const VectorXd& x) { return {x.data(), static_cast<size_t>(x.size())}; }
@@ -34,7 +35,7 @@ VectorXd solved(const ShiftedPencil& pencil, const VectorXd& b) {
   return x;
 }
 
-// Multiplies by M / mass. Spectra compares with absolute thresholds, so it gets vectors and eigenvalues near 1.
+// Multiplies by M / mass. Spectra uses absolute thresholds, so vectors and eigenvalues are scaled to about 1.
 class ScaledMass {
  public:
   using Scalar = double;
@@ -50,7 +51,7 @@ class ScaledMass {
   double mass_;
 };
 
-// Multiplies by factor (K + shift M)^-1 and removes the eigenvectors `found`, the columns of U: y - U U' M y.
+// Multiplies by factor (K + shift M)^-1 and removes the known eigenvectors, the columns of U: y - U U' M y.
 class DeflatedInverse {
  public:
   using Scalar = double;
@@ -76,8 +77,8 @@ class DeflatedInverse {
 
 struct Found {
   bool converged = true;
-  VectorXd values;   // of (K + shift M)^-1 M, descending
-  MatrixXd vectors;  // the columns
+  VectorXd values;   // eigenvalues of (K + shift M)^-1 M, descending
+  MatrixXd vectors;  // eigenvectors as columns
 };
 
 int subspace_size(int count) { return std::max(2 * count, count + 10); }
@@ -89,7 +90,7 @@ VectorXd start_vector(const ShiftedPencil& pencil, int run) {
   return x;
 }
 
-// The size of the eigenvalues of (K + shift M)^-1 M, from above.
+// Returns an upper bound of the order of magnitude of the eigenvalues of (K + shift M)^-1 M.
 double typical_value(const ShiftedPencil& pencil, VectorXd x) {
   double size = 1;
   for (int k = 0; k < 2; ++k) {
@@ -104,10 +105,10 @@ double typical_value(const ShiftedPencil& pencil, VectorXd x) {
 struct LanczosOptions {
   int count = 1;
   double tolerance = kTolerance;
-  int run = 0;  // each run has a start vector of its own
+  int run = 0;  // selects the start vector
 };
 
-// The `count` largest eigenvalues that are left when the eigenvectors `known` are removed.
+// Returns the `count` largest eigenvalues after removing the eigenvectors `known`.
 Found lanczos(const ShiftedPencil& pencil, const MatrixXd& known, const LanczosOptions& options) {
   const auto [count, tolerance, run] = options;
   const VectorXd start = start_vector(pencil, run);
@@ -123,7 +124,7 @@ Found lanczos(const ShiftedPencil& pencil, const MatrixXd& known, const LanczosO
   return {.values = size * solver.eigenvalues().cwiseInverse(), .vectors = solver.eigenvectors() / std::sqrt(mass)};
 }
 
-// Orthonormal vectors that span the subspace. What is admissible of one vertex does not depend on the others.
+// Returns orthonormal vectors that span the subspace. The constraints of different vertices are independent.
 MatrixXd basis(const ShiftedPencil& pencil) {
   MatrixXd Z(pencil.size, pencil.dimension);
   int columns = 0;
@@ -162,8 +163,8 @@ Found merged(const Found& a, const Found& b) {
   return {.values = values(order), .vectors = vectors(Eigen::all, order)};
 }
 
-// A Krylov space holds one vector of each eigenspace: the part of its start vector there. Runs with other start vectors
-// find the other copies of a repeated eigenvalue.
+// A Krylov space contains one vector of each eigenspace: the projection of its start vector. Runs with other start
+// vectors find the remaining copies of a repeated eigenvalue.
 Found largest(const ShiftedPencil& pencil, int count) {
   Found found{.values = VectorXd(0), .vectors = MatrixXd(pencil.size, 0)};
   for (int run = 0;;) {

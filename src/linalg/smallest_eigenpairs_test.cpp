@@ -30,7 +30,7 @@ ShiftedPencil pencil_of(const MatrixXd& K, const MatrixXd& M, double shift, int 
                        std::span<double> x) { Eigen::Map<VectorXd>(x.data(), n) = factor.solve(vector(b)); }};
 }
 
-MatrixXd chain(int n) {  // of springs, free at its ends
+MatrixXd chain(int n) {  // stiffness of a chain of springs with free ends
   MatrixXd K = MatrixXd::Zero(n, n);
   for (int i = 0; i + 1 < n; ++i) K.block<2, 2>(i, i) += (Eigen::Matrix2d() << 1, -1, -1, 1).finished();
   return K;
@@ -62,7 +62,7 @@ TEST(SmallestEigenpairs, AgreeWithDenseSolver) {
 TEST(SmallestEigenpairs, UseDenseSolverInSmallSubspaces) {
   const MatrixXd K = chain(9), M = masses(9);
   const Eigenpairs held = smallest_eigenpairs(pencil_of(K, M, 1e-4, 4), 20);
-  ASSERT_EQ(held.values.size(), 5u);  // as many as exist
+  ASSERT_EQ(held.values.size(), 5u);  // all that exist
   const VectorXd expected =
       Eigen::GeneralizedSelfAdjointEigenSolver<MatrixXd>(K.bottomRightCorner(5, 5), M.bottomRightCorner(5, 5))
           .eigenvalues();
@@ -70,7 +70,7 @@ TEST(SmallestEigenpairs, UseDenseSolverInSmallSubspaces) {
   EXPECT_EQ(held.vectors[0][3], 0);
 }
 
-// A Krylov space holds one vector of each eigenspace.
+// A Krylov space contains one vector of each eigenspace.
 TEST(SmallestEigenpairs, FindEveryCopyOfRepeatedValues) {
   const int n = 400;
   VectorXd values(n);
@@ -88,7 +88,7 @@ TEST(SmallestEigenpairs, DoNotDependOnUnits) {
   for (int k = 1; k < 5; ++k) EXPECT_NEAR(other.values[k] / one.values[k], 1e21, 1e12) << k;
 }
 
-TEST(SmallestEigenpairs, RepeatToTheBit) {
+TEST(SmallestEigenpairs, AreBitReproducible) {
   const ShiftedPencil pencil = pencil_of(chain(200), masses(200), 1e-4);
   const Eigenpairs one = smallest_eigenpairs(pencil, 5), other = smallest_eigenpairs(pencil, 5);
   EXPECT_EQ(one.values, other.values);

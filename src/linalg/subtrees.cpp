@@ -9,8 +9,8 @@
 namespace aspic {
 namespace {
 
-constexpr double kShares = 16;          // no subtree has more than this part of the work
-constexpr double kSmallestShare = 1e6;  // flops; some 20 us of one core
+constexpr double kShares = 16;          // no subtree has more than 1 / kShares of the work
+constexpr double kSmallestShare = 1e6;  // flops; about 20 us on one core
 
 std::vector<double> subtree_flops(const Supernodes& s) {
   std::vector<double> flops(s.count(), 0.0);
@@ -21,9 +21,10 @@ std::vector<double> subtree_flops(const Supernodes& s) {
   return flops;
 }
 
-// Update matrices wait for their parents on two stacks, by the parity of their depth in the tree: a supernode's matrix
-// grows on one while those of its children are on top of the other. So none is ever moved. Each task has two stacks of
-// its own; what it leaves for the top is kept apart, and the top's stacks take the place of those of the tasks.
+// Update matrices are stored until their parents need them, on two stacks selected by the parity of their depth in the
+// tree: a supernode's matrix grows on one stack while those of its children are on top of the other, so no matrix is
+// moved. Each task has its own two stacks. Its results for the top are stored separately, and the stacks of the top
+// reuse the memory of the tasks.
 class Layout {
  public:
   Layout(const Supernodes& s, const std::vector<bool>& in_top)
@@ -38,9 +39,9 @@ class Layout {
   void add_task(const Subtrees::Task& task) {
     std::vector<int> members(task.last - task.first);
     std::iota(members.begin(), members.end(), task.first);
-    end_ += stack_up(members, end_);
+    end_ += assign_offsets(members, end_);
   }
-  void add_top(const std::vector<int>& top) { end_ = std::max(end_, kept_ + stack_up(top, kept_)); }
+  void add_top(const std::vector<int>& top) { end_ = std::max(end_, kept_ + assign_offsets(top, kept_)); }
 
   int64_t workspace() const { return end_; }
   std::vector<int64_t>& start() { return start_; }
@@ -49,8 +50,8 @@ class Layout {
   bool is_kept(int k) const { return !in_top_[k] && s_.parent[k] >= 0 && in_top_[s_.parent[k]]; }
   int64_t size(int k) const { return LowerMatrix::size_in_strips(3 * static_cast<int64_t>(s_.below(k))); }
 
-  // Places for the matrices of these supernodes, which ascend, from `begin` on; returns how much that takes.
-  int64_t stack_up(const std::vector<int>& supernodes, int64_t begin) {
+  // Assigns offsets from `begin` to the matrices of ascending supernodes. Returns the size of the memory they occupy.
+  int64_t assign_offsets(const std::vector<int>& supernodes, int64_t begin) {
     std::array<int64_t, 2> end{}, peak{};
     for (const int k : supernodes) {
       const int stack = depth_[k] % 2;
@@ -69,16 +70,16 @@ class Layout {
   const Supernodes& s_;
   const std::vector<bool>& in_top_;
   std::vector<int> depth_;
-  std::vector<int64_t> children_;  // doubles of the children's matrices on a stack
+  std::vector<int64_t> children_;  // size of the children's matrices on a stack [doubles]
   std::vector<int64_t> start_;
   int64_t kept_ = 0, end_ = 0;
 };
 
-// Neighboring subtrees share a task while they are small.
+// Returns the tasks. Adjacent small subtrees share one.
 std::vector<Subtrees::Task> cut_tasks(const Supernodes& s, const std::vector<double>& flops, double limit) {
   std::vector<Subtrees::Task> tasks;
   int begin = 0;
-  bool extend = false;  // the last task, which ends where this subtree begins
+  bool extend = false;  // whether the last task ends where this subtree begins
   for (int k = 0; k < s.count(); ++k) {
     if (flops[k] > limit) {
       extend = false;
@@ -98,7 +99,8 @@ std::vector<Subtrees::Task> cut_tasks(const Supernodes& s, const std::vector<dou
   return tasks;
 }
 
-// The kernels read a little past a panel; another task may be writing there if there is no gap.
+// Leaves gaps between the panels of different tasks, because the kernels read slightly past a panel while another task
+// may write there.
 void place_panels(const Supernodes& s, Subtrees& result) {
   result.panel_start.assign(s.value_start.begin(), s.value_start.end() - 1);
   int64_t gaps = 0;

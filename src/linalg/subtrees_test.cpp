@@ -27,7 +27,7 @@ Place place(const Supernodes& s, const Subtrees& t, int k) {
   return {t.update_start[k], t.update_start[k] + update_size(s, k)};
 }
 
-TEST(Subtrees, HoldEverySupernodeOnceAndWholeSubtrees) {
+TEST(Subtrees, HoldEachSupernodeOnceInWholeSubtrees) {
   const Matrix H = spring_lattice({.nx = 24, .ny = 10, .nz = 10});
   const Supernodes s = supernodes_of(H);
   const Subtrees t = make_subtrees(s);
@@ -44,13 +44,13 @@ TEST(Subtrees, HoldEverySupernodeOnceAndWholeSubtrees) {
   EXPECT_TRUE(std::is_sorted(t.top.begin(), t.top.end()));
 }
 
-TEST(Subtrees, OfASmallMatrixAreOneTask) {
+TEST(Subtrees, AreOneTaskForSmallMatrix) {
   const Subtrees t = make_subtrees(supernodes_of(spring_lattice({.nx = 3, .ny = 3, .nz = 3})));
   EXPECT_EQ(t.tasks.size(), 1U);
   EXPECT_TRUE(t.top.empty());
 }
 
-TEST(Subtrees, OfManyBodiesShareTasks) {
+TEST(Subtrees, ShareTasksForManyBodies) {
   Couplings couplings;
   for (int i = 0; i + 1 < 6000; i += 2) couplings.emplace_back(i, i + 1);
   const Subtrees t = make_subtrees(supernodes_of(random_dominant(6000, couplings, 1)));
@@ -58,8 +58,8 @@ TEST(Subtrees, OfManyBodiesShareTasks) {
   EXPECT_TRUE(t.top.empty());
 }
 
-// Replays a factorization; tasks may run at the same time, so what any of them holds at any moment must be disjoint
-// from all that another one ever uses.
+// Replays a factorization. Tasks may run concurrently, so the live memory of a task must be disjoint from all memory
+// that another task ever uses.
 TEST(Subtrees, LiveUpdateMatricesDoNotOverlap) {
   const Supernodes s = supernodes_of(spring_lattice({.nx = 16, .ny = 10, .nz = 10}));
   const Subtrees t = make_subtrees(s);
@@ -80,7 +80,7 @@ TEST(Subtrees, LiveUpdateMatricesDoNotOverlap) {
         for (int j = b.first; j < b.last; ++j) ASSERT_FALSE(overlap(place(s, t, i), place(s, t, j)));
 }
 
-TEST(LowerMatrix, StripsHoldEveryEntryOnce) {
+TEST(LowerMatrix, StripsHoldEachEntryOnce) {
   for (const int n : {1, 3, 95, 96, 97, 300}) {
     std::vector<double> storage(LowerMatrix::size_in_strips(n), 0.0);
     const LowerMatrix A{storage.data(), n, true};

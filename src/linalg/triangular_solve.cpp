@@ -13,10 +13,10 @@ namespace {
 
 using std::ptrdiff_t;
 
-constexpr int kTriangle = 48;             // columns that are solved for before the rest is updated
-constexpr int kRowChunk = 256;            // of y that stay in the first cache
+constexpr int kTriangle = 48;             // columns that are solved before the rest is updated
+constexpr int kRowChunk = 256;            // rows of y that fit into the L1 cache
 constexpr int kColumnChunk = 12;          // dot products per task
-constexpr ptrdiff_t kShareFrom = 32'000;  // entries of L: some 10 us of one core
+constexpr ptrdiff_t kShareFrom = 32'000;  // entries of L; about 10 us on one core
 
 Pack load(const double* p) {
   Pack x;
@@ -91,7 +91,7 @@ void subtract_transposed_product(ConstMatrix A, const double* y, double* x) {
   });
 }
 
-// Three columns at once: x is read and written once for them.
+// Processes three columns at once, so that x is read and written once for them.
 void solve_triangle(const double* L, ptrdiff_t stride, int n, double* x) {
   for (int j = 0; j < n; j += 3) {
     const double *a = L + j * stride, *b = a + stride, *c = b + stride;

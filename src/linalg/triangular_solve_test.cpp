@@ -15,7 +15,7 @@ struct Size {
 
 class TriangularSolve : public testing::TestWithParam<Size> {};
 
-// Around the sizes of the kernels' blocks, and large enough to be shared by threads.
+// Sizes around the block sizes of the kernels, and large enough to be shared by threads.
 INSTANTIATE_TEST_SUITE_P(Sizes, TriangularSolve,
                          testing::Values(Size{3, 3}, Size{6, 3}, Size{15, 9}, Size{48, 48}, Size{99, 51},
                                          Size{300, 297}, Size{1200, 150}),

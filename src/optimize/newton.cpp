@@ -6,7 +6,7 @@
 namespace aspic {
 
 std::unique_ptr<Newton> make_newton_cg(NewtonDefiniteness definiteness) {
-  auto solver = std::make_unique<ConjugateGradient>(std::make_unique<BlockJacobi>(BlockJacobi::Blocks::made_definite));
+  auto solver = std::make_unique<ConjugateGradient>(std::make_unique<BlockJacobi>(BlockJacobi::Blocks::modified));
   return std::unique_ptr<Newton>(new Newton(NewtonSystem(std::move(solver), true), definiteness));
 }
 

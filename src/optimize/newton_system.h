@@ -56,7 +56,7 @@ class NewtonSystem {
   std::unique_ptr<LinearSolver> solver_;
   bool truncates_;
   // Handles singular and indefinite matrices.
-  ConjugateGradient semidefinite_solver_{std::make_unique<BlockJacobi>(BlockJacobi::Blocks::made_definite)};
+  ConjugateGradient semidefinite_solver_{std::make_unique<BlockJacobi>(BlockJacobi::Blocks::modified)};
   uint64_t analyzed_version_ = 0, semidefinite_version_ = 0;
   KeptHessian kept_;
   const BlockSparse* exact_ = nullptr;  // the last Hessian of this direction, if it is exact

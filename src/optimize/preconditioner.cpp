@@ -87,7 +87,7 @@ bool Preconditioner::make_diagonal(const BlockSparse& H) {
   const BlockPattern& pattern = *H.pattern;
   inverse_diagonal_.resize(pattern.rows());
   for (int row = 0; row < pattern.rows(); ++row)
-    if (!invert_made_definite(H.block[pattern.diagonal(row)], inverse_diagonal_[row])) return false;
+    if (!invert_modified(H.block[pattern.diagonal(row)], inverse_diagonal_[row])) return false;
   return true;
 }
 
