@@ -6,14 +6,14 @@
 namespace aspic {
 namespace {
 
-// Enough for threads to share a color; few enough that the places in which the fronts work fit into a cache.
+// Enough for threads to share a color; few enough for the memory of all fronts to fit into a cache.
 constexpr int64_t kFronts = 8;
 
 }  // namespace
 
-// Divides the list into equal parts. A color gets the next group of each part, unless the group shares a vertex with
-// one that has this color already. So neighbors in the list have colors that follow each other, while their shared data
-// are in a cache. With the fewest possible colors, each color would pass over the whole mesh.
+// Divides the list into equal parts. A color gets the next group of each part, unless the group shares a vertex with a
+// group of this color. Thus neighbors in the list have successive colors, while their shared data are in a cache. With
+// the fewest possible colors, each color would pass over the whole mesh.
 ColorClasses color_groups(std::span<const std::vector<int>> vertices_of_group, int vertex_count) {
   const int64_t groups = static_cast<int64_t>(vertices_of_group.size());
   std::vector<int> next, end;

@@ -1,5 +1,6 @@
-// Groups of elements that may scatter at the same time: no two groups of one color share a vertex. Colors are worked
-// through in order, so every vertex receives its contributions in an order that does not depend on the threads.
+// Colors groups of elements such that no two groups of one color share a vertex, so that groups of one color may add to
+// shared vectors concurrently. Colors are processed in order, so the summation order at each vertex is independent of
+// the number of threads.
 #pragma once
 #include <span>
 #include <vector>
@@ -8,7 +9,7 @@ namespace aspic {
 
 using ColorClasses = std::vector<std::vector<int>>;  // the groups of each color, ascending
 
-// vertices_of_group[i] lists the vertices that group i touches; repeats allowed.
+// Returns the groups of each color. vertices_of_group[i] lists the vertices of group i; repeats allowed.
 ColorClasses color_groups(std::span<const std::vector<int>> vertices_of_group, int vertex_count);
 
 }  // namespace aspic

@@ -27,7 +27,7 @@ TEST(Coloring, ColorsShareNoVertexAndCoverAllGroups) {
   EXPECT_EQ(std::set<int>(seen.begin(), seen.end()).size(), groups.size());
 }
 
-TEST(Coloring, GroupsApartShareOneColor) {
+TEST(Coloring, DisjointGroupsShareOneColor) {
   const std::vector<std::vector<int>> groups = {{0, 1}, {2, 3}, {4}};
   EXPECT_EQ(color_groups(groups, 5).size(), 1u);
 }

@@ -10,7 +10,7 @@ struct CustomMaterial {
   using Params = MaterialParametersOver<T>;
 
   std::shared_ptr<const CustomDensity> density;
-  int extra;  // number of its entries in MaterialParameters::extra
+  int extra;  // number of used entries of MaterialParameters::extra
 
   template <class T>
   static Params<T> params(const Params<T>& p) {

@@ -1,4 +1,4 @@
-// Elastic energies of materials that the library was not compiled with.
+// Elastic energies of user-defined materials that are not compiled into the library.
 #pragma once
 #include <memory>
 #include <string>
@@ -10,7 +10,7 @@
 
 namespace aspic {
 
-// A material as an interface: it evaluates kPackWidth tets per call. custom_material() makes one from a type.
+// Interface of a material that evaluates kPackWidth tets per call. custom_material() implements it for a type.
 class CustomDensity {
  public:
   template <class T>
@@ -20,7 +20,7 @@ class CustomDensity {
   virtual Pack psi(const Mat3<Pack>& F, const Parameters<Pack>& p) const = 0;            // energy density [J/m^3]
   virtual Mat3<Pack> pk1(const Mat3<Pack>& F, const Parameters<Pack>& p) const = 0;      // P = dpsi/dF [Pa]
   virtual Mat9<Pack> hessian(const Mat3<Pack>& F, const Parameters<Pack>& p) const = 0;  // dvec(P)/dvec(F) [Pa]
-  // P and its first and second derivatives along directions of F and p, for fits.
+  // P with its first and second derivatives along directions of F and p, for fits.
   virtual Mat3<Dual<Pack>> pk1(const Mat3<Dual<Pack>>& F, const Parameters<Dual<Pack>>& p) const = 0;
   virtual Mat3<Dual<Dual<Pack>>> pk1(const Mat3<Dual<Dual<Pack>>>& F, const Parameters<Dual<Dual<Pack>>>& p) const = 0;
 };
@@ -41,11 +41,12 @@ class CustomDensityOf final : public CustomDensity {
   }
 };
 
-// `name` is that of the term of V; of MaterialParameters::extra, the material has `extra`.
+// Returns a factory of elastic energies. `name`: name of the term of V. `extra`: number of entries of
+// MaterialParameters::extra that the material uses.
 ElasticityMaker custom_material(std::string name, int extra, std::shared_ptr<const CustomDensity> density);
 
-// The material M has psi, pk1 and hessian, see MaterialOver, and params(), which computes its own parameters from the
-// MaterialParametersOver of a tet; all are static. FromEnergy makes M from psi and params() alone.
+// The material M has the static functions psi, pk1 and hessian, see MaterialOver, and params(), which computes its own
+// parameters from the MaterialParametersOver of a tet. FromEnergy makes M from psi and params() alone.
 template <class M>
 ElasticityMaker custom_material(std::string name, int extra = 0) {
   return custom_material(std::move(name), extra, std::make_shared<CustomDensityOf<M>>());

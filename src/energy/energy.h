@@ -1,4 +1,4 @@
-// One term V_k(x) of the potential energy, or one dissipation potential. Each call covers all elements of the term.
+// One term V_k(x) of the potential energy, or one dissipation potential. Each call processes all elements of the term.
 #pragma once
 #include <limits>
 #include <memory>
@@ -14,22 +14,22 @@ namespace aspic {
 using Positions = std::span<const double>;  // x, 3 per vertex [m]
 inline Vec3d point(Positions x, int vertex) { return {{x[3 * vertex], x[3 * vertex + 1], x[3 * vertex + 2]}}; }
 
-// A time step or a stage of one, in which the velocity is (x - start) / h.
+// A time step or a stage of it, with the velocity (x - start) / h.
 struct StepContext {
   Positions start;  // x at the start of the step; integrators may extrapolate it
   double h = 0;     // length of the step [s]; 0 in statics
   double time = 0;  // time at which forces act [s]: the end of the step, or its start in explicit schemes
-  // Positions at which coefficients that depend on x are evaluated. Empty: at `start`.
+  // Positions at which coefficients that depend on x are evaluated. Empty: `start`.
   Positions shape = {};
-  std::optional<double> obstacle_time = {};  // of moving obstacles at the start [s]; empty: time - h
+  std::optional<double> obstacle_time = {};  // time of moving obstacles at the start [s]; empty: time - h
 };
 
 // An energy is a function of the positions x and of a context. Evaluations change neither the energy nor the context,
-// so several threads may evaluate the same term. Positions, gradients and directions hold 3 numbers per vertex.
+// so several threads may evaluate the same term. Positions, gradients and directions have 3 entries per vertex.
 class Energy {
  public:
-  // Everything besides x that an evaluation depends on. A term that needs more than the time and the length of the
-  // step derives its own context. A context may be used only with the term that made it.
+  // Inputs of an evaluation besides x. A term that needs more than the time and the length of the step derives its own
+  // context. A context may be used only with the term that made it.
   struct Context {
     double time = 0;  // [s]
     double h = 0;     // length of the step [s]; 0 in statics
@@ -38,37 +38,37 @@ class Energy {
 
   virtual ~Energy() = default;
   virtual std::string_view name() const = 0;
-  // Returns whether dV/dx is the same for all x. Such a gradient has no round-off.
+  // Returns whether dV/dx is independent of x. Such a gradient has no round-off.
   virtual bool has_constant_gradient() const { return false; }
 
-  // Appends the pairs of vertices that share a 3x3 block of the Hessian.
+  // Appends the vertex pairs that share a 3x3 block of the Hessian.
   virtual void add_couplings(Couplings&) const {}
-  // Looks up the positions of these blocks in the pattern. Called before the first Hessian and the first context.
+  // Stores the slots of these blocks in the pattern. Called before the first Hessian and the first context.
   virtual void bind(const BlockPattern&) {}
 
   virtual std::unique_ptr<Context> make_context() const { return std::make_unique<Context>(); }
-  // Prepares the context for a step. Overrides move targets to step.time or store step.start for damping.
+  // Prepares the context for a step. Overrides update targets to step.time or store step.start for damping.
   virtual void begin_step(const StepContext& step, Context& context) const {
     context.time = step.time;
     context.h = step.h;
   }
 
-  virtual double value(Positions x, const Context& context) const = 0;  // V(x) [J]; +inf where V is not defined
+  virtual double value(Positions x, const Context& context) const = 0;  // V(x) [J]; +inf where V is undefined
   // g += scale dV/dx  [N]
   virtual void add_gradient(Positions x, const Context& context, double scale, std::span<double> g) const = 0;
-  // H += scale d2V/dx2  [N/m], with the element Hessians modified as `projection` asks. Returns the number of modified
+  // H += scale d2V/dx2 [N/m], with element Hessians modified according to `projection`. Returns the number of modified
   // elements.
   virtual int add_hessian(Positions x, const Context& context, double scale, const Projection& projection,
                           BlockSparse& H) const = 0;
-  // Returns whether the term has coefficients that lag behind the minimization, such as the normal forces in friction.
+  // Returns whether the term has lagged coefficients, such as the normal forces in friction.
   virtual bool is_lagged() const { return false; }
-  virtual void update_lagged(Positions /*x*/, Context& /*context*/) const {}  // sets them to their values at x
-  // Returns an upper bound of the steps alpha for which the term allows the path from x to x + alpha d.
+  virtual void update_lagged(Positions /*x*/, Context& /*context*/) const {}  // evaluates them at x
+  // Returns an upper bound of the step lengths alpha for which the term allows the path from x to x + alpha d.
   virtual double max_step(Positions /*x*/, const Context& /*context*/, std::span<const double> /*d*/) const {
     return std::numeric_limits<double>::infinity();
   }
-  // Adds springs to a quadratic model g'd + d'Hd / 2 of V around x, such that its minimizer avoids bounds of the steps
-  // and kinks of V along the given d: g += scale dS/dd at d = 0, H += scale d2S/dd2 for the energy S of the springs.
+  // Adds springs to a quadratic model g'd + d'Hd / 2 of V around x, such that its minimizer avoids step bounds and
+  // kinks of V along the given d: g += scale dS/dd at d = 0, H += scale d2S/dd2, where S is the energy of the springs.
   // Returns the number of springs.
   virtual int add_stops(Positions /*x*/, const Context& /*context*/, std::span<const double> /*d*/, double /*scale*/,
                         std::span<double> /*g*/, BlockSparse& /*H*/) const {
@@ -87,7 +87,7 @@ class SteadyEnergy : public Energy {
   }
 };
 
-// A term with its context: between two calls of begin_step(), V is a function of x alone. The term must outlive this.
+// A term with its context. Between two calls of begin_step(), V is a function of x alone. The term must outlive it.
 class ActiveTerm {
  public:
   explicit ActiveTerm(const Energy& energy) : energy_(&energy), context_(energy.make_context()) {}

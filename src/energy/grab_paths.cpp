@@ -6,10 +6,10 @@
 namespace aspic {
 namespace {
 
-constexpr double kSameTime = 1e-9;  // of a part of the path: times of steps are rounded
+constexpr double kSameTime = 1e-9;  // tolerance relative to a path segment; step times have round-off
 
-// On the part of the path that leads to `time`, so that a step which ends at a point of the path ends exactly there.
-// None where the spring does not act.
+// Returns the target on the path segment that ends at or after `time`, such that a step to a path point ends exactly
+// there. Returns nothing outside the path.
 std::optional<Vec3d> target_at(const GrabPath& path, double time) {
   const std::vector<PathPoint>& points = path.path;
   if (time <= points[0].time + kSameTime * (points[1].time - points[0].time)) return std::nullopt;

@@ -1,5 +1,5 @@
-// Springs whose ends move along given paths, such as recorded drags of the viewer. Each
-// spring acts from the first time of its path to the last one, and is absent before and after.
+// Springs whose targets move along given paths, such as recorded drags of the viewer. Each spring acts from the first
+// to the last time of its path.
 #pragma once
 #include <vector>
 
@@ -9,12 +9,12 @@ namespace aspic {
 
 struct PathPoint {
   double time = 0;   // [s]
-  Vec3d position{};  // of the spring's end [m]
+  Vec3d position{};  // position of the target [m]
 };
 
 struct GrabPath {
-  Grab grab;                    // its vertices, weights and stiffness
-  std::vector<PathPoint> path;  // at least two points; each later than the one before
+  Grab grab;                    // vertices, weights and stiffness
+  std::vector<PathPoint> path;  // at least two points, with ascending times
 };
 
 class GrabPaths : public Energy {
@@ -31,7 +31,7 @@ class GrabPaths : public Energy {
 
  private:
   std::vector<GrabPath> paths_;
-  std::vector<GrabBlocks> blocks_;  // of each path
+  std::vector<GrabBlocks> blocks_;  // blocks of each path
 };
 
 }  // namespace aspic

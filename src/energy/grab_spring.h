@@ -1,5 +1,5 @@
-// V(x) = k/2 |sum_i w_i x_i - target(t)|^2: a spring between a point of a tet and a moving target. Both may
-// change between steps.
+// V(x) = k/2 |sum_i w_i x_i - target(t)|^2: a spring between a point of a tet and a moving target. Both may change
+// between steps.
 #pragma once
 #include <array>
 
@@ -9,10 +9,10 @@
 namespace aspic {
 
 struct Grab {
-  Tet vertices{};                   // of one tet
+  Tet vertices{};                   // vertices of the tet
   std::array<double, 4> weights{};  // sum to 1
-  double stiffness = 0;             // k [N/m]; 0: nothing is grabbed
-  // The target moves along a line from one place and time to another, and rests before and after. [m, s]
+  double stiffness = 0;             // k [N/m]; 0: inactive
+  // The target moves linearly from `from` to `to` and is at rest before and after. [m, s]
   Vec3d from{}, to{};
   double from_time = 0, to_time = 0;
 
@@ -22,7 +22,7 @@ struct Grab {
   void add_gradient(Positions x, const Vec3d& target, double scale, std::span<double> g) const;
 };
 
-// Where the 3x3 blocks of a grab are stored.
+// Slots of the 3x3 blocks of a grab.
 class GrabBlocks {
  public:
   GrabBlocks() = default;
@@ -30,7 +30,7 @@ class GrabBlocks {
   void add_hessian(const Grab& grab, double scale, BlockSparse& H) const;
 
  private:
-  std::array<std::array<int64_t, 4>, 4> slot_{};  // blocks (i, j), of the larger vertex and the smaller
+  std::array<std::array<int64_t, 4>, 4> slot_{};  // blocks (i, j) of the larger and the smaller vertex
 };
 
 class GrabSpring : public Energy {

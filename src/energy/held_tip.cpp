@@ -16,14 +16,14 @@ HeldTip::HeldTip(const TetMesh& mesh)
     : mesh_{.rest = mesh.rest, .tets = {}}, surface_(boundary_triangles(mesh, 0, mesh.tet_count())) {}
 HeldTip::~HeldTip() = default;
 
-std::unique_ptr<Probe> HeldTip::made(const Touch& touch) const {
+std::unique_ptr<Probe> HeldTip::make(const Touch& touch) const {
   std::unique_ptr<Probe> probe = make_probe(mesh_, surface_, touch.tip, touch.rest);
   if (pattern_) probe->bind(*pattern_);
   return probe;
 }
 
 void HeldTip::set(const Poke& poke) {
-  if (poke.touch != poke_.touch) probe_ = poke.touch ? made(*poke.touch) : nullptr;
+  if (poke.touch != poke_.touch) probe_ = poke.touch ? make(*poke.touch) : nullptr;
   poke_ = poke;
   if (probe_) probe_->set_pose(poke_.to);
 }

@@ -50,7 +50,7 @@ TEST(HeldTip, PoseMovesLinearlyWithinTheStep) {
   EXPECT_NEAR(poke.pose(9).center[2], 0.7, 1e-15);
 }
 
-TEST(HeldTip, WithoutATouchIsNothing) {
+TEST(HeldTip, IsZeroWithoutTouch) {
   HeldTip V(mesh());
   const std::vector<double> x = rest();
   std::vector<double> g(x.size());
@@ -60,8 +60,8 @@ TEST(HeldTip, WithoutATouchIsNothing) {
   EXPECT_EQ(V.touched_points(x), 0);
 }
 
-// Bound before there was a tip.
-TEST(HeldTip, IsTheProbeThatItHolds) {
+// Bound before the tip is set.
+TEST(HeldTip, EqualsItsProbe) {
   const BlockPattern blocks = pattern();
   const std::vector<double> x = rest();
   for (const TipContact contact : {TipContact::bonded, TipContact::sliding}) {
@@ -95,7 +95,7 @@ TEST(HeldTip, IsTheProbeThatItHolds) {
   }
 }
 
-TEST(HeldTip, ABadTouchChangesNothing) {
+TEST(HeldTip, InvalidTouchChangesNothing) {
   HeldTip V(mesh());
   const Poke good = pressed(0.1);
   V.set(good);
@@ -103,7 +103,7 @@ TEST(HeldTip, ABadTouchChangesNothing) {
   const double before = V.value(x);
   Poke bad = good;
   Touch away = *good.touch;
-  away.rest.center[2] += 5;  // glued to nothing
+  away.rest.center[2] += 5;  // the glue reaches no surface point
   bad.touch = std::make_shared<const Touch>(away);
   EXPECT_THROW(V.set(bad), InvalidInput);
   EXPECT_EQ(V.value(x), before);

@@ -1,24 +1,24 @@
-// The Hessian of tets whose energy density is a law psi(I1, J), block by block, without the 9x9 matrix in between:
+// Hessian of tets with the energy density psi(I1, J), block by block, without the intermediate 9x9 matrix:
 //   K_uv = volume (2 psi_I (b_u . b_v) Id + f_u y_v' + g_u z_v' - psi_J [q_uv]x)
 //   f_u = F b_u,  y_v = 4 psi_II f_v + 2 psi_IJ g_v,  z_v = psi_JJ g_v + 2 psi_IJ f_v
-//   g_u = cof(F) b_u = dJ/dx_u,  q_uv = F (b_u x b_v),  [q]x the matrix of a -> q x a
-// As J = det(Ds) D with D = det(Dm^-1), g and q need only the edges d_v = x_v - x_0:
-//   g_1 = D d_2 x d_3,  q_23 = D d_1  and so on cyclically, and the sums over all four vertices vanish.
+//   g_u = cof(F) b_u = dJ/dx_u,  q_uv = F (b_u x b_v),  [q]x is the matrix of a -> q x a
+// Because J = det(Ds) D with D = det(Dm^-1), g and q depend only on the edges d_v = x_v - x_0:
+//   g_1 = D d_2 x d_3,  q_23 = D d_1  and cyclic permutations. The sums over all four vertices vanish.
 #pragma once
 #include "energy/tet_batch.h"
 #include "material/from_invariants.h"
 
 namespace aspic {
 
-using Corners = std::array<Vec3<Pack>, 4>;  // one vector for each vertex of a tet
+using Corners = std::array<Vec3<Pack>, 4>;  // one vector per vertex of a tet
 
-// What the blocks of a batch have in common.
+// Quantities that all blocks of a batch share.
 template <class Derivatives>
 struct LawBlocks {
   static constexpr bool kIsLinearInI1 = std::is_same_v<Derivatives, LawDerivativesLinearInI1<Pack>>;
-  Pack identity;  // 2 psi_I, times the weight as all that follows
+  Pack identity;  // 2 psi_I; like all members below multiplied by the weight
   Corners b, g, z;
-  Corners f, y;        // of laws that are not linear in I1
+  Corners f, y;        // only for densities that are nonlinear in I1
   Mat3<Pack> tension;  // psi_J D d_v in column v - 1
 
   LawBlocks(const TetBatch& tets, const Mat3<Pack>& Ds, const Derivatives& d, Pack weight)

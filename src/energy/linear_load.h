@@ -1,5 +1,5 @@
-// V(x) = -sum f_i . x_i: gravity, body forces, dead tractions and pressures; forces that do not follow the body.
-// When a force changes in time, its work includes the change of V at the current positions.
+// V(x) = -sum f_i . x_i: gravity, body forces, dead tractions and dead pressures (they do not follow the body). If a
+// force varies in time, its work includes the change of V at the current positions.
 #pragma once
 #include <functional>
 #include <memory>
@@ -18,7 +18,7 @@ std::unique_ptr<Energy> make_linear_load(std::string name, std::vector<double> c
 
 // Add nodal forces to `force`, 3 per vertex [N].
 void add_body_force(const TetMesh& mesh, int tet, const Vec3d& force_density, std::span<double> force);  // [N/m^3]
-// A traction [Pa] over a triangle with corners X (in the rest shape); a pressure p is the traction -p n.
+// Adds a traction [Pa] on a triangle with corners X in the rest shape. A pressure p is the traction -p n.
 void add_traction(const std::vector<Vec3d>& X, const Triangle& triangle, const Vec3d& traction,
                   std::span<double> force);
 

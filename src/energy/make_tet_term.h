@@ -1,5 +1,5 @@
-// One instantiation per material, each in its own generated file (see src/CMakeLists.txt), so that touching one
-// material compiles one file.
+// Instantiated for each material in its own generated file (see src/CMakeLists.txt), so that changing a material
+// recompiles one file.
 #pragma once
 #include <memory>
 #include <span>

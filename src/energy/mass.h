@@ -1,4 +1,4 @@
-// The mass matrix M of linear tetrahedra: one scalar per pair of vertices, the same for x, y and z.
+// Mass matrix M of linear tetrahedra: one scalar per vertex pair, the same for x, y and z.
 #pragma once
 #include <span>
 #include <vector>
@@ -18,10 +18,10 @@ class MassMatrix {
   std::span<const double> vertex_mass() const { return lumped_; }  // row sums [kg]
   double total() const;                                            // [kg]
 
-  void multiply(std::span<const double> x, std::span<double> y) const;                  // y = M x; 3 numbers per vertex
+  void multiply(std::span<const double> x, std::span<double> y) const;                  // y = M x; 3 entries per vertex
   double squared_distance(std::span<const double> x, std::span<const double> y) const;  // (x - y)' M (x - y)
   void add_couplings(Couplings& couplings) const;
-  void bind(const BlockPattern& target);               // finds the slots where add_to writes
+  void bind(const BlockPattern& target);               // stores the slots that add_to() writes
   void add_to(double scale, BlockSparse& H) const;     // H += scale M
   void assign_to(double scale, BlockSparse& H) const;  // H = scale M
 
@@ -33,14 +33,14 @@ class MassMatrix {
 
   MassKind kind_;
   std::vector<double> lumped_;
-  // Both triangles of the symmetric matrix, row by row, columns ascending: products then read memory in order.
+  // Both triangles of the symmetric matrix, row by row, columns ascending, so that products read memory in order.
   std::vector<int64_t> row_start_, lower_start_;  // lower_start_ counts only the columns up to the diagonal
   std::vector<int> column_;
   std::vector<double> entry_;         // [kg]
-  std::vector<int64_t> target_slot_;  // of the columns up to the diagonal
+  std::vector<int64_t> target_slot_;  // slots of the columns up to the diagonal
 };
 
-// gradient += d(w' M y)/d(density), one number per tet; w and y hold 3 numbers per vertex.
+// gradient += d(w' M y)/d(density), one entry per tet; w and y have 3 entries per vertex.
 void add_density_gradient(const TetMesh& mesh, MassKind kind, std::span<const double> w, std::span<const double> y,
                           std::span<double> gradient);
 

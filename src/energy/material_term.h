@@ -1,5 +1,5 @@
-// The tets of a material: the density as a term of V, what there is to see in each tet, and derivatives with
-// respect to the parameters. Included only where it is instantiated.
+// The tets of one material: the energy density as a term of V, output fields, and derivatives with respect to the
+// parameters. Included only where it is instantiated.
 #pragma once
 #include <algorithm>
 #include <cmath>
@@ -22,7 +22,7 @@ class MaterialTerm : public TetTerm<M, TetElasticity> {
   using Term::batch_count, Term::batches_, Term::F, Term::for_each_batch, Term::material_, Term::params_, Term::reduce;
 
  public:
-  // Tets [first, first + parameters.size()) of the mesh.
+  // Uses tets [first, first + parameters.size()) of the mesh.
   MaterialTerm(std::string name, const TetMesh& mesh, int first, std::span<const MaterialParameters> parameters,
                M material = {})
       : Term(std::move(name), mesh, first, own_params(parameters), std::move(material)),
@@ -85,7 +85,7 @@ class MaterialTerm : public TetTerm<M, TetElasticity> {
       const TetBatch& tets = batches_[i];
       const Pack weight = Pack(out.scale) * tets.volume;
       const Mat3<Pack> F_i = F(i, x);
-      // A sum of products along one direction each, since H has the same direction on both sides.
+      // Adds factor times the derivatives of U : A W, where A = dP/dF.
       const auto add = [&](const Pack& factor, const Mat3<Pack>& U, const Mat3<Pack>& W) {
         if (!out.x.empty()) tets.scatter_gradient(second_stress_rate(i, F_i, U, W), factor * weight, out.x);
         for (int k = 0; k < (out.parameters.empty() ? 0 : parameter_count_); ++k) {
@@ -96,20 +96,20 @@ class MaterialTerm : public TetTerm<M, TetElasticity> {
       const Mat3<Pack> U = F(i, u), W = F(i, w);
       const unsigned all = (1U << kPackWidth) - 1;
       const Mat9<Pack> A = definiteness == Definiteness::exact ? Mat9<Pack>{} : material_.hessian(F_i, params_[i]);
-      const unsigned raised = definiteness == Definiteness::exact ? 0 : indefinite_lanes(A) & all;
-      if (raised != all) add(lanes_from_bits<Pack>(all & ~raised), U, W);
-      if (raised == 0) return;
-      const SymmetricEigen<9, Pack> S = raised_product_derivative(A, U, W, definiteness);
+      const unsigned modified = definiteness == Definiteness::exact ? 0 : indefinite_lanes(A) & all;
+      if (modified != all) add(lanes_from_bits<Pack>(all & ~modified), U, W);
+      if (modified == 0) return;
+      const SymmetricEigen<9, Pack> S = modified_product_derivative(A, U, W, definiteness);
       for (int k = 0; k < 9; ++k) {
         Mat3<Pack> direction;
         std::copy(&S.vectors[9 * k], &S.vectors[9 * k] + 9, direction.a);
-        add(lanes_from_bits<Pack>(raised) * S.values[k], direction, direction);
+        add(lanes_from_bits<Pack>(modified) * S.values[k], direction, direction);
       }
     });
   }
 
  private:
-  // Number of entries of MaterialParameters::extra that the material uses.
+  // Returns the number of entries of MaterialParameters::extra that the material uses.
   static int extra_count(const M& material) {
     if constexpr (requires { M::info(); })
       return static_cast<int>(M::info().extra.size());
@@ -146,25 +146,26 @@ class MaterialTerm : public TetTerm<M, TetElasticity> {
     return a;
   }
 
-  // dP where parameter k changes at rate(k) and F stays.
+  // Returns dP for parameter rates rate(k) at constant F.
   template <class Rate>
   Mat3<Pack> stress_rate(int i, Positions x, const Rate& rate) const {
     return rates(material_.pk1(constant_matrix(F(i, x)), M::params(moving_parameters<Pack>(i, rate))));
   }
 
-  // The derivative of U : A W with respect to F, A = dP/dF: by symmetry the mixed second derivative of P along U and W.
+  // Returns the derivative of U : A W with respect to F, A = dP/dF: by symmetry the mixed second derivative of P along
+  // U and W.
   Mat3<Pack> second_stress_rate(int i, const Mat3<Pack>& F_i, const Mat3<Pack>& U, const Mat3<Pack>& W) const {
     const auto p = broadcast_params<M, Dual<Dual<Pack>>, Dual<Pack>>(broadcast_params<M, Dual<Pack>, Pack>(params_[i]));
     return rates(rates(material_.pk1(dual_matrix(dual_matrix(F_i, U), constant_matrix(W)), p)));
   }
 
-  // d(A W)/dtheta_k
+  // Returns d(A W)/dtheta_k.
   Mat3<Pack> second_parameter_rate(int i, const Mat3<Pack>& F_i, const Mat3<Pack>& W, int k) const {
     const auto p = moving_parameters<Dual<Pack>>(i, [k](int j) { return Dual<Pack>(j == k ? 1.0 : 0.0); });
     return rates(rates(material_.pk1(constant_matrix(dual_matrix(F_i, W)), M::params(p))));
   }
 
-  // Where parameter k changes at rate(k).
+  // Returns the parameters with rates rate(k).
   template <class T, class Rate>
   MaterialParametersOver<Dual<T>> moving_parameters(int i, const Rate& rate) const {
     MaterialParametersOver<Dual<T>> p;

@@ -36,7 +36,7 @@ double largest(const std::vector<double>& a) {
   return size;
 }
 
-// Two bodies in one mesh, of which the second is the term: 60 tets from number 30 on.
+// Two bodies in one mesh. The term contains the second: 60 tets from index 30 on.
 struct TwoBodies {
   TetMesh mesh = make_box({{0, 0, 0}}, {{1, 0.7, 1.3}}, {5, 3, 1});
   static constexpr int kFirst = 30;
@@ -75,7 +75,7 @@ struct TwoBodies {
   }
 };
 
-TEST(ParameterDerivatives, AreThoseOfTheForces) {
+TEST(ParameterDerivatives, MatchDifferencesOfForces) {
   for (const MaterialInfo& info : materials()) {
     const TwoBodies bodies(info);
     const auto V = make_tet_elasticity(bodies.material, bodies.mesh, TwoBodies::kFirst, bodies.parameters);
@@ -106,7 +106,7 @@ TEST(ParameterDerivatives, AreThoseOfTheForces) {
   }
 }
 
-TEST(ParameterDerivatives, HaveTheirTranspose) {
+TEST(ParameterDerivatives, MatchTransposedProducts) {
   for (const MaterialInfo& info : materials()) {
     const TwoBodies bodies(info);
     const auto V = make_tet_elasticity(bodies.material, bodies.mesh, TwoBodies::kFirst, bodies.parameters);
@@ -123,7 +123,7 @@ TEST(ParameterDerivatives, HaveTheirTranspose) {
   }
 }
 
-// But for round-off: the compiler may fuse products differently where parameters are set and where terms are made.
+// Compares up to round-off: the compiler may fuse products differently in set_parameters() and in constructors.
 void expect_same(const std::vector<double>& a, const std::vector<double>& b, const std::string& name) {
   ASSERT_EQ(a.size(), b.size());
   double size = 0;
@@ -131,7 +131,7 @@ void expect_same(const std::vector<double>& a, const std::vector<double>& b, con
   for (size_t i = 0; i < a.size(); ++i) EXPECT_NEAR(a[i], b[i], 1e-13 * size) << name;
 }
 
-TEST(ParameterDerivatives, BelongToTheParametersThatWereSet) {
+TEST(ParameterDerivatives, UseParametersThatWereSet) {
   for (const MaterialInfo& info : materials()) {
     const TwoBodies bodies(info);
     Numbers numbers;
@@ -151,7 +151,7 @@ TEST(ParameterDerivatives, BelongToTheParametersThatWereSet) {
 
 void expect_hessian_derivatives(const MaterialInfo& info, Definiteness definiteness) {
   TwoBodies bodies(info);
-  for (size_t v = 0; v < bodies.mesh.rest.size(); ++v) bodies.x[3 * v] *= 0.75;  // so that some tets lose convexity
+  for (size_t v = 0; v < bodies.mesh.rest.size(); ++v) bodies.x[3 * v] *= 0.75;  // makes some tets lose convexity
   const auto V = make_tet_elasticity(bodies.material, bodies.mesh, TwoBodies::kFirst, bodies.parameters);
   Couplings couplings;
   V->add_couplings(couplings);
@@ -165,7 +165,7 @@ void expect_hessian_derivatives(const MaterialInfo& info, Definiteness definiten
   V->add_hessian_derivatives(bodies.x, u, w, definiteness, {.x = dx});
   V->add_hessian_derivatives(bodies.x, u, w, definiteness, {.parameters = dtheta});
 
-  constexpr double kStep = 1e-7;  // so short that no eigenvalue passes the one at which it is raised
+  constexpr double kStep = 1e-7;  // so short that no eigenvalue crosses the threshold
   const auto difference = [&](const auto& at) {
     return (8 * (at(kStep) - at(-kStep)) - (at(2 * kStep) - at(-2 * kStep))) / (12 * kStep);
   };

@@ -8,7 +8,7 @@
 namespace aspic {
 namespace {
 
-// The matrix of a -> q x a, added to a 3x3 part of K.
+// Adds the matrix of a -> q x a to the 3x3 block (i, j) of K.
 void add_cross(Mat9d& K, int i, int j, const Vec3d& q) {
   for (int r = 0; r < 3; ++r) {
     const int s = (r + 1) % 3, t = (r + 2) % 3;
@@ -17,8 +17,8 @@ void add_cross(Mat9d& K, int i, int j, const Vec3d& q) {
   }
 }
 
-// The volume that one triangle sweeps: m is the mean displacement, d_k the displacement of corner k from that of corner
-// 0, E_k its edge.
+// Volume swept by one triangle. m is the mean displacement, d_k the displacement of corner k relative to corner 0, E_k
+// the edge from corner 0 to corner k.
 //   swept = m . A,   A = (E1 x E2 + (E1 x d2 + d1 x E2) / 2 + d1 x d2 / 3) / 2
 struct Sweep {
   Vec3d m, A, w1, w2;  // w_k = E_k / 2 + d_k / 3, so that dA = (w1 x delta2 + delta1 x w2) / 2
@@ -38,7 +38,7 @@ struct Sweep {
   }
 };
 
-// The volume swept by a patch, its derivatives, and where its blocks are stored.
+// Volume swept by a patch, its derivatives, and the slots of its blocks.
 class SweptVolume {
  public:
   SweptVolume(const TetMesh& mesh, std::vector<Triangle> patch) : patch_(std::move(patch)) {
@@ -75,7 +75,7 @@ class SweptVolume {
         }
   }
 
-  // H += scale pressure d2(volume)/dx2; returns how many elements were projected.
+  // H += scale pressure d2(volume)/dx2. Returns the number of modified elements.
   int add_hessian(Positions x, double pressure, double scale, const Projection& projection, BlockSparse& H) const {
     int projected = 0;
     for (size_t t = 0; t < patch_.size(); ++t) {
@@ -83,7 +83,7 @@ class SweptVolume {
       const auto covers = [&](int v) { return projection.covers(v); };
       if (projection.kind != Definiteness::exact && std::ranges::any_of(patch_[t], covers)) {
         const bool is_clamped = projection.kind == Definiteness::clamped;
-        projected += make_definite(K, is_clamped ? EigenvalueFilter::clamp : EigenvalueFilter::absolute, 1) != 0;
+        projected += modify_hessian(K, is_clamped ? EigenvalueFilter::clamp : EigenvalueFilter::absolute, 1) != 0;
       }
       add_blocks(t, scale, K, H);
     }
@@ -121,7 +121,7 @@ class SweptVolume {
 
   std::vector<Triangle> patch_;
   std::vector<std::array<Vec3d, 3>> rest_;    // X of the corners of each triangle
-  std::vector<std::array<int64_t, 9>> slot_;  // blocks (i, j), of the larger vertex and the smaller
+  std::vector<std::array<int64_t, 9>> slot_;  // blocks (i, j) of the larger and the smaller vertex
 };
 
 class SteadyPressure : public Pressure {

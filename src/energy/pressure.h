@@ -1,10 +1,10 @@
-// V(x) = p * (volume swept outwards by a patch of the surface from rest to x): a pressure that follows the body,
-// pushing against the outward normal where p > 0. Each point is taken to have come along a straight line, x(s) = X + s
-// u:
-//   swept = sum over triangles of mean(u) . int_0^1 a(s) ds,   a(s) the area vector of the triangle at s
-// It is a function of x, so energy is conserved. The forces are exactly those of the pressure on a closed surface, at
-// every vertex inside a patch, and for any patch that moves along its normals at rest. At the rim of an open patch they
-// also hold the side walls that the motion draws: of second order in the displacement where the rim moves sideways.
+// V(x) = p * (volume swept outward by a surface patch from rest to x): a follower pressure, which pushes against the
+// outward normal for p > 0. Each point is assumed to move along a straight line, x(s) = X + s u:
+//   swept = sum over triangles of mean(u) . int_0^1 a(s) ds, where a(s) is the area vector of the triangle at s
+// V is a function of x, so energy is conserved. The forces equal those of the pressure on a closed surface, at every
+// vertex inside a patch, and for any patch that moves along its rest normals. At the rim of an open patch they also
+// include the pressure on the side walls that the motion sweeps, which is of second order in the displacement if the
+// rim moves sideways.
 #pragma once
 #include <functional>
 #include <memory>
@@ -20,10 +20,10 @@ class Pressure : public SteadyEnergy {
  public:
   virtual void set_pressure(double pressure) = 0;  // [Pa]
   virtual double pressure() const = 0;
-  virtual double swept_volume(Positions x) const = 0;  // outwards [m^3]
+  virtual double swept_volume(Positions x) const = 0;  // [m^3], positive outward
 };
 
-// A pressure in time: t [s] to p [Pa].
+// Pressure as a function of time: t [s] to p [Pa].
 using PressureOfTime = std::function<double(double)>;
 
 // `patch`: boundary triangles of the mesh, outward oriented.

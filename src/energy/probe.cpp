@@ -18,7 +18,7 @@ namespace {
 constexpr double kSoftening = 0.02;  // e / radius
 constexpr double kEdge = 0.125;      // width of the glue of a disc / radius
 constexpr double kLongestEdge = 64;  // longest edge of a triangle near the tip / radius
-constexpr int kMostCutsAfar = 64;    // of an edge of a triangle that only a tip on the way might touch
+constexpr int kMaxFarCuts = 64;      // maximum cuts of an edge of a triangle that the tip does not touch at rest
 
 using Corners = std::array<Vec3d, 3>;
 
@@ -43,13 +43,13 @@ Mat3d rotation_matrix(const Vec3d& vector) {
   return cosine * identity3<double>() + sine * turn + (1 - cosine) * along;
 }
 
-// 1 below a, 0 above b.
+// Smooth transition from 1 below a to 0 above b.
 double fade(double t, double a, double b) {
   const double s = std::clamp((t - a) / (b - a), 0.0, 1.0);
   return 1 - s * s * (3 - 2 * s);
 }
 
-// How much glue a bonded tip has at point X of the surface with that normal, 0 to 1.
+// Weight of the glue of a bonded tip, 0 to 1, at point X of the surface with the given normal.
 double glue(const Tip& tip, const TipPose& touch, const Vec3d& X, const Vec3d& normal) {
   const double R = tip.radius;
   const Vec3d u = X - touch.center;
@@ -66,19 +66,19 @@ TipPose with_unit_axis(TipPose pose) {
   return pose;
 }
 
-// The energy of a point, its derivatives by the position of the point.
+// Energy of a point and its derivatives with respect to its position.
 struct Response {
   double value = 0;
   Vec3d gradient{};
   Mat3d hessian{};
 };
 
-// A triangle whose parts the tip may act on.
+// A triangle with points that the tip may act on.
 struct Patch {
   Triangle vertices;
   const std::vector<Barycentric>* points;
   double area = 0;   // area of each part at rest [m^2]
-  size_t first = 0;  // number of its first point
+  size_t first = 0;  // index of its first point
 };
 
 class ProbeTerm : public Probe {
@@ -128,7 +128,7 @@ class ProbeTerm : public Probe {
       Mat3d K = r.hessian;
       const auto covers = [&](int v) { return projection.covers(v); };
       if (is_sliding() && projection.kind != Definiteness::exact && std::ranges::any_of(patch.vertices, covers))
-        projected += make_definite(K, projection.kind);
+        projected += modify_hessian(K, projection.kind);
       const auto& slot = slot_[&patch - patches_.data()];
       for (int i = 0; i < 3; ++i)
         for (int j = 0; j < 3; ++j)
@@ -180,7 +180,7 @@ class ProbeTerm : public Probe {
     const bool is_near = depth(tip_, touch_, X[0]).value > -edge - tip_.radius;
     if (!is_near && !is_sliding()) return;
     if (is_near && edge > kLongestEdge * tip_.radius) throw_tip_too_small(edge);
-    const int cuts = static_cast<int>(is_near ? std::max(wanted, 1.0) : std::clamp(wanted, 1.0, 1.0 * kMostCutsAfar));
+    const int cuts = static_cast<int>(is_near ? std::max(wanted, 1.0) : std::clamp(wanted, 1.0, 1.0 * kMaxFarCuts));
     const Vec3d a = area_vector(X);
     Patch patch{triangle, &centroids_.of(cuts), norm(a) / (static_cast<double>(cuts) * cuts), weight_.size()};
     if (is_sliding() || add_glue(patch, X, a)) patches_.push_back(patch);
@@ -191,7 +191,7 @@ class ProbeTerm : public Probe {
                        " m long; refine the mesh there, or check the units of the tip");
   }
 
-  // The weights and offsets of the points of a bonded tip. False, and nothing is added, when it touches none.
+  // Adds the weights and offsets of the points of a bonded tip. Returns false and adds nothing if it touches none.
   bool add_glue(const Patch& patch, const Corners& X, const Vec3d& normal) {
     bool touches = false;
     for (const Barycentric& b : *patch.points) {
@@ -204,7 +204,7 @@ class ProbeTerm : public Probe {
     return touches;
   }
 
-  // Calls visit(patch, barycentric, p, response) for the points that the tip acts on.
+  // Calls visit(patch, barycentric, p, response) for each point that the tip acts on.
   template <class Visit>
   void for_each_touched(const PlacedTip& tip, Positions x, Visit visit) const {
     for (const Patch& patch : patches_) {
@@ -240,8 +240,8 @@ class ProbeTerm : public Probe {
     for (int m = 0; m < 9; ++m) block.a[m] += scale * K.a[m];
   }
 
-  // Returns whether an eigenvalue was changed.
-  static bool make_definite(Mat3d& K, Definiteness kind) {
+  // Returns whether an eigenvalue was modified.
+  static bool modify_hessian(Mat3d& K, Definiteness kind) {
     std::array<double, 9> entries;
     std::copy(K.a, K.a + 9, entries.begin());
     const SymmetricEigen<3> e = symmetric_eigen<3, double>(entries);

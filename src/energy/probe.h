@@ -1,10 +1,11 @@
-// A rigid tip that touches the surface of a body: V(x) = sum over points of the surface of area k phi, an elastic layer
-// much stiffer than the body: the pose of the tip is given, and its force results.
-//   sliding: phi grows with the depth d of the point below the surface of the tip, without friction:
-//            phi' = d^2 / (2 e) up to d = e, then d - e / 2, where e = radius / 50
+// A rigid tip in contact with the surface of a body: V(x) = sum over surface points of (area k phi), an elastic layer
+// that is much stiffer than the body. The pose of the tip is prescribed; its force results.
+//   sliding: frictionless. phi grows with the depth d of the point below the surface of the tip: phi' = d^2 / (2 e) up
+//   to
+//            d = e, then d - e / 2, where e = radius / 50
 //   bonded:  phi = |x - target|^2 / 2 for the points that the tip touches at rest, which follow it as if glued to it
-// The points are the centroids of equal parts of the boundary triangles, closer together than an eighth (bonded) or a
-// quarter (sliding) of the radius.
+// The points are the centroids of equal parts of the boundary triangles. Their distance is at most an eighth (bonded)
+// or a quarter (sliding) of the radius.
 #pragma once
 #include <memory>
 #include <span>
@@ -23,26 +24,26 @@ struct Tip {
   TipShape shape = TipShape::sphere;
   TipContact contact = TipContact::bonded;
   double radius = 0;     // [m]
-  double stiffness = 0;  // k of the layer [Pa/m]
+  double stiffness = 0;  // stiffness k of the layer [Pa/m]
 };
 
-// Where the tip is: the center of the sphere or of the flat end, the way it points, and how it has turned since it
-// touched the body at rest.
+// Pose of a tip: the center of the sphere or of the flat end, its axis, and its rotation since it touched the body at
+// rest.
 struct TipPose {
   Vec3d center{};          // [m]
-  Vec3d axis{{0, 0, -1}};  // out of the tip; of any length but 0
-  Vec3d rotation{};        // vector of the rotation about the center since the touch [rad]
+  Vec3d axis{{0, 0, -1}};  // points out of the tip; any length except 0
+  Vec3d rotation{};        // rotation vector about the center [rad]
 };
 
 struct PlacedTip {
   explicit PlacedTip(const TipPose& wanted);  // throws InvalidInput for an axis of length 0
-  TipPose pose;                               // with an axis of length 1
-  Mat3d turn;                                 // the rotation as a matrix
+  TipPose pose;                               // with a unit axis
+  Mat3d turn;                                 // rotation matrix
 };
 
 struct Wrench {
-  Vec3d force{};   // of the tip on the body [N]
-  Vec3d torque{};  // about the center of the tip [N m]
+  Vec3d force{};   // force of the tip on the body [N]
+  Vec3d torque{};  // torque about the center of the tip [N m]
 };
 
 class Probe : public SteadyEnergy {
@@ -52,12 +53,12 @@ class Probe : public SteadyEnergy {
   virtual const PlacedTip& placed() const = 0;
   const TipPose& pose() const { return placed().pose; }
   virtual Wrench wrench(Positions x) const = 0;
-  // d(wrench)/dx . dx, and its transpose: xbar += scale (d(wrench)/dx)' wbar. 3 numbers per vertex.
+  // Computes d(wrench)/dx . dx and its transpose: xbar += scale (d(wrench)/dx)' wbar. dx, xbar: 3 entries per vertex.
   virtual Wrench wrench_product(Positions x, std::span<const double> dx) const = 0;
   virtual void add_wrench_transposed(Positions x, const Wrench& wbar, double scale, std::span<double> xbar) const = 0;
-  virtual int touched_points(Positions x) const = 0;  // of the surface; 0: the tip is in the air
+  virtual int touched_points(Positions x) const = 0;  // number of surface points in contact; 0: none
 
-  // V and its derivatives where the tip is elsewhere than at pose().
+  // V and its derivatives for another placement of the tip.
   virtual double value_at(const PlacedTip& tip, Positions x) const = 0;
   virtual void add_gradient_at(const PlacedTip& tip, Positions x, double scale, std::span<double> g) const = 0;
   virtual int add_hessian_at(const PlacedTip& tip, Positions x, double scale, const Projection& projection,
@@ -73,18 +74,18 @@ class Probe : public SteadyEnergy {
   }
 };
 
-// How far from the surface of a bonded tip the glue reaches, relative to the radius. It thins out over the second half
-// of that distance. On a flat face the footprint of a sphere is thus about as wide as the sphere; that of a disc is the
-// disc, whose glue thins out over an eighth of the radius on either side of its edge.
+// Range of the glue from the surface of a bonded tip, relative to the radius. The glue fades out over the second half
+// of this distance. On a flat face, the footprint of a sphere is thus about as wide as the sphere. The footprint of a
+// disc is the disc; its glue fades out over an eighth of the radius around its edge.
 inline constexpr double kGlue = 0.5;
 
-// `surface`: boundary triangles of the mesh, outward oriented. `touch`: the initial pose, in which the tip touches the
-// body at rest. Throws InvalidInput if a bonded tip touches nothing there, or if a triangle that it touches is more
-// than 32 times as long as the tip is wide.
+// `surface`: boundary triangles of the mesh, outward oriented. `touch`: initial pose, in which the tip touches the body
+// at rest. Throws InvalidInput if a bonded tip touches nothing, or if a triangle that it touches is more than 32 times
+// as long as the tip is wide.
 std::unique_ptr<Probe> make_probe(const TetMesh& mesh, std::span<const Triangle> surface, const Tip& tip,
                                   const TipPose& touch);
 
-// The number of points of `surface` that a valid tip touches at rest; 0: none.
+// Returns the number of points of `surface` that a valid tip touches at rest; 0: none.
 int touched_points_at_rest(const TetMesh& mesh, std::span<const Triangle> surface, const Tip& tip,
                            const TipPose& touch);
 

@@ -6,8 +6,8 @@
 
 namespace aspic {
 
-SymmetricEigen<9, Pack> raised_product_derivative(const Mat9<Pack>& A, const Mat3<Pack>& u, const Mat3<Pack>& w,
-                                                  Definiteness kind) {
+SymmetricEigen<9, Pack> modified_product_derivative(const Mat9<Pack>& A, const Mat3<Pack>& u, const Mat3<Pack>& w,
+                                                    Definiteness kind) {
   std::array<Pack, 81> entries;
   std::copy(A.a, A.a + 81, entries.begin());
   const SymmetricEigen<9, Pack> e = symmetric_eigen<9>(entries);

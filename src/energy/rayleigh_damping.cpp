@@ -93,11 +93,11 @@ class RayleighDamping : public Damping {
   }
 
  private:
-  static constexpr Definiteness kDefiniteness = Definiteness::clamped;  // of K
+  static constexpr Definiteness kDefiniteness = Definiteness::clamped;  // modification of K
 
   struct Start : Context {  // data of the start of the step
     explicit Start(const BlockPattern& pattern) : C(pattern) {}
-    std::vector<double> x, shape;  // at the start of the step, and where K is taken
+    std::vector<double> x, shape;  // positions at the start of the step, and those at which K is evaluated
     BlockSparse C;                 // a M + b K(shape) [kg/s]
   };
 

@@ -1,5 +1,5 @@
-// Rayleigh damping as an incremental potential: D(x) = 1/(2h) (x - x_start)' C (x - x_start), C = a M + b K(x_start),
-// whose gradient is C v. K is the elastic Hessian at the start of the step with negative eigenvalues clamped.
+// Rayleigh damping as an incremental potential: D(x) = 1/(2h) (x - x_start)' C (x - x_start) with C = a M + b
+// K(x_start) and the gradient C v. K is the elastic Hessian at the start of the step with negative eigenvalues clamped.
 #pragma once
 #include <memory>
 
@@ -9,8 +9,8 @@
 
 namespace aspic {
 
-// Has the coefficients a and, if it is not 0, b. `elasticity` may be null if b = 0; mass and elasticity must outlive
-// the term.
+// The coefficients of the term are a and, if it is not 0, b. `elasticity` may be null if b = 0. Mass and elasticity
+// must outlive the term.
 std::unique_ptr<Damping> make_rayleigh_damping(const MassMatrix& mass, double mass_factor /* a [1/s] */,
                                                const TetElasticity* elasticity, double stiffness_factor /* b [s] */);
 

@@ -55,7 +55,7 @@ class PointSprings : public Energy {
 
  private:
   struct Targets : Context {
-    std::vector<Vec3d> target;  // of each spring at the time [m]
+    std::vector<Vec3d> target;  // target of each spring at the time [m]
   };
   static const Vec3d& target(const Context& context, size_t spring) {
     return static_cast<const Targets&>(context).target[spring];
@@ -124,7 +124,7 @@ class VertexSprings : public Energy {
   }
 
  private:
-  // dV/dx of vertex a, minus that of vertex b; zero for a collapsed spring, whose direction is undefined.
+  // Returns dV/dx of vertex a minus that of vertex b; zero for a collapsed spring, whose direction is undefined.
   static Vec3d pull(Positions x, const Spring& s) {
     const double l = length(x, s);
     return l == 0 ? Vec3d{} : (s.stiffness * (1 - s.rest_length / l)) * (point(x, s.a) - point(x, s.b));

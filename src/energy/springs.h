@@ -1,4 +1,4 @@
-// Springs to points in space, and springs between vertices.
+// Springs between vertices and points in space, and between pairs of vertices.
 #pragma once
 #include <functional>
 #include <memory>
@@ -24,7 +24,7 @@ struct Spring {
 };
 std::unique_ptr<Energy> make_springs(std::string name, std::vector<Spring> springs);
 
-// One spring along each edge of tets [first, first + count), k = stiffness for all.
+// Returns one spring of stiffness k along each edge of tets [first, first + count).
 std::vector<Spring> edge_springs(const TetMesh& mesh, int first, int count, double stiffness);
 
 }  // namespace aspic

@@ -4,7 +4,8 @@
 namespace aspic {
 namespace {
 
-// psi(F) = eta / (2 h) |E - E_start|^2, E = (F'F - I) / 2: a St. Venant-Kirchhoff solid at rest where the step starts.
+// psi(F) = eta / (2 h) |E - E_start|^2, E = (F'F - I) / 2: a St. Venant-Kirchhoff solid at rest at the start of the
+// step.
 struct GreenStrainRate {
   template <class T>
   struct Params {

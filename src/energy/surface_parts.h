@@ -1,4 +1,4 @@
-// Triangles cut into n^2 equal parts, for sums over points of a surface.
+// Triangles subdivided into n^2 equal parts, for sums over points of a surface.
 #pragma once
 #include <array>
 #include <map>
@@ -10,10 +10,10 @@ namespace aspic {
 
 using Barycentric = std::array<double, 3>;
 
-// The centroids of the n^2 parts of a triangle whose edges are cut into n.
+// Returns the centroids of the n^2 parts of a triangle whose edges are divided into n segments.
 std::vector<Barycentric> part_centroids(int n);
 
-// The lists for all n that were asked for, each made once.
+// Caches the centroids for all requested n.
 class PartCentroids {
  public:
   const std::vector<Barycentric>& of(int n) {
@@ -23,7 +23,7 @@ class PartCentroids {
   }
 
  private:
-  std::map<int, std::vector<Barycentric>> lists_;  // whose entries stay where they are
+  std::map<int, std::vector<Barycentric>> lists_;  // map: its entries never move
 };
 
 }  // namespace aspic

@@ -1,4 +1,4 @@
-// Terms that act on the surface of a body: the probe and the pressure.
+// Terms that act on the surface of a body: probe and pressure.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -28,7 +28,7 @@ const std::vector<Triangle>& surface() {
   return triangles;
 }
 
-const BlockPattern& box_pattern() {  // that of tets
+const BlockPattern& box_pattern() {  // pattern of the tets
   static const BlockPattern of_tets = [] {
     const MaterialInfo& info = material_info("neo_hookean");
     const std::vector<MaterialParameters> parameters(box_mesh().tet_count(), {lame_from_young_poisson(1, 0.3), {}});
@@ -53,7 +53,7 @@ std::vector<double> shaken(double amount, unsigned seed = 3) {
   return x;
 }
 
-// Points up at the top face z = 0.6, from inside the rest shape: 0.05 deep.
+// Points up at the top face z = 0.6 from inside the rest shape, 0.05 deep.
 const TipPose kTouch = {.center = {{0.45, 0.35, 0.6 + 0.2}}, .axis = {{0, 0, -1}}, .rotation = {}};
 const TipPose kFlatTouch = {.center = {{0.45, 0.35, 0.6}}, .axis = {{0, 0, -2}}, .rotation = {}};
 const TipPose kPose = {.center = {{0.47, 0.34, 0.74}}, .axis = {{0.1, -0.2, -1}}, .rotation = {{0.2, -0.1, 0.3}}};
@@ -77,7 +77,7 @@ std::unique_ptr<Probe> probe(const Case& c) {
   return V;
 }
 
-TEST(Probe, DerivativesAreThoseOfTheEnergy) {
+TEST(Probe, DerivativesMatchDifferences) {
   for (const Case& c : kCases) {
     const auto V = probe(c);
     const std::vector<double> x = shaken(0.02);
@@ -89,7 +89,7 @@ TEST(Probe, DerivativesAreThoseOfTheEnergy) {
   }
 }
 
-TEST(Probe, WrenchBalancesForcesOnTheBody) {
+TEST(Probe, WrenchBalancesForcesOnBody) {
   for (const Case& c : kCases) {
     const auto V = probe(c);
     const std::vector<double> x = shaken(0.02);
@@ -167,9 +167,9 @@ TEST(Probe, IsInvariantUnderRigidMotions) {
   }
 }
 
-// On a flat face the resultant of a small translation t is k t times the area of the footprint: of a disc pi R^2, of a
-// sphere pi a^2 with R^2 + a^2 = (R + g)^2, g halfway through the glue's thin part.
-TEST(Probe, AFootprintHasTheAreaOfTheTip) {
+// On a flat face, the resultant of a small translation t is k t times the area of the footprint: pi R^2 for a disc, and
+// pi a^2 with R^2 + a^2 = (R + g)^2 for a sphere, where g is halfway through the fading part of the glue.
+TEST(Probe, FootprintHasAreaOfTip) {
   constexpr double kR = 0.2, kGap = 0.75 * kGlue * kR, kPi = 3.14159265358979;
   const double areas[] = {kPi * (2 * kR * kGap + kGap * kGap), kPi * kR * kR};
   for (int i = 0; i < 2; ++i) {
@@ -181,8 +181,8 @@ TEST(Probe, AFootprintHasTheAreaOfTheTip) {
   }
 }
 
-// On a flat face: the integral over rings of k phi'(d) dd/dz, with phi' = d - e / 2 where d > e.
-TEST(Probe, ASlidingDiscPressesWithItsDepth) {
+// On a flat face, the force is the integral over rings of k phi'(d) dd/dz, with phi' = d - e / 2 for d > e.
+TEST(Probe, SlidingDiscForceGrowsWithDepth) {
   const Case& c = kCases[3];
   const auto V = probe(c);
   TipPose pressed = {kFlatTouch.center - Vec3d{{0, 0, 0.03}}, {{0, 0, -1}}, {}};
@@ -201,8 +201,8 @@ TEST(Probe, ASlidingDiscPressesWithItsDepth) {
   EXPECT_GT(expected, -50 * 0.03 * 3.14159265358979 * 0.04);  // a rounded rim presses less
 }
 
-// From the air to more than the depth at which the layer is no longer soft.
-TEST(Probe, EnergyIsTheWorkOfIndentation) {
+// From the air to beyond the depth e of the soft start of phi.
+TEST(Probe, EnergyIsWorkOfIndentation) {
   for (const Case& c : {kCases[2], kCases[3]}) {
     const auto V = probe(c);
     const std::vector<double> x = box_at_rest();
@@ -248,7 +248,7 @@ TEST(Probe, ModifiedHessiansArePositiveSemidefinite) {
   }
 }
 
-TEST(Probe, ATipInTheAirDoesNothing) {
+TEST(Probe, TipInAirHasNoForce) {
   for (const Case& c : {kCases[2], kCases[3]}) {
     const auto V = probe(c);
     TipPose away = c.pose;
@@ -259,7 +259,7 @@ TEST(Probe, ATipInTheAirDoesNothing) {
   }
 }
 
-TEST(Probe, RejectsTipsWithoutContactSizeOrLayer) {
+TEST(Probe, RejectsInvalidTips) {
   Case c = kCases[0];
   c.touch.center[2] += 1;
   EXPECT_THROW(probe(c), InvalidInput);
@@ -271,7 +271,7 @@ TEST(Probe, RejectsTipsWithoutContactSizeOrLayer) {
   EXPECT_THROW(make_probe(box_mesh(), surface(), kCases[0].tip, without_axis), InvalidInput);
 }
 
-TEST(TipDepth, OfDiscIsTwiceDifferentiableAcrossItsRim) {
+TEST(TipDepth, IsTwiceDifferentiableAcrossRimOfDisc) {
   const Tip tip = {TipShape::disc, TipContact::sliding, 0.2, 1};
   const TipPose pose = {.center = {}, .axis = {{0, 0, -1}}, .rotation = {}};
   Mat3d last{};
@@ -281,7 +281,7 @@ TEST(TipDepth, OfDiscIsTwiceDifferentiableAcrossItsRim) {
     const Depth d = depth(tip, pose, x);
     EXPECT_LE(norm(d.gradient), 1 + 1e-14);
     const double jump = i > 0 ? std::sqrt(squared_norm(d.hessian - last)) : 0;
-    EXPECT_LT(jump, 0.5);  // of up to 75
+    EXPECT_LT(jump, 0.5);  // values up to 75
     last = d.hessian;
   }
 }
@@ -293,7 +293,7 @@ std::vector<Triangle> top() {
   return triangles;
 }
 
-TEST(Pressure, DerivativesAreThoseOfTheEnergy) {
+TEST(Pressure, DerivativesMatchDifferences) {
   for (const double p : {3.0, -3.0}) {
     const auto V = make_pressure(box_mesh(), top(), p);
     V->bind(box_pattern());
@@ -305,10 +305,10 @@ TEST(Pressure, DerivativesAreThoseOfTheEnergy) {
   }
 }
 
-TEST(Pressure, OnClosedSurfaceHasNoResultant) {
+TEST(Pressure, HasNoResultantOnClosedSurface) {
   const auto V = make_pressure(box_mesh(), surface(), 3);
   const std::vector<double> x = shaken(0.05);
-  double volume = 0;  // of the deformed body
+  double volume = 0;  // volume of the deformed body
   for (const Tet& tet : box_mesh().tets) {
     const auto at = [&](int k) { return Vec3d{{x[3 * tet[k]], x[3 * tet[k] + 1], x[3 * tet[k] + 2]}}; };
     volume += determinant(from_columns(at(1) - at(0), at(2) - at(0), at(3) - at(0))) / 6;
@@ -326,7 +326,7 @@ TEST(Pressure, OnClosedSurfaceHasNoResultant) {
   EXPECT_LT(norm(torque), 1e-14);
 }
 
-TEST(Pressure, OnMovingPatchIsPressureTimesArea) {
+TEST(Pressure, IsPressureTimesAreaOnMovingPatch) {
   const auto V = make_pressure(box_mesh(), top(), 3);
   std::vector<double> x = box_at_rest();
   for (size_t i = 2; i < x.size(); i += 3) x[i] *= 0.9;
@@ -338,7 +338,7 @@ TEST(Pressure, OnMovingPatchIsPressureTimesArea) {
   EXPECT_NEAR(force[2], -3 * 0.8, 1e-14);
 }
 
-TEST(Pressure, InsideAPatchItFollowsTheSurface) {
+TEST(Pressure, FollowsSurfaceInsidePatch) {
   const auto V = make_pressure(box_mesh(), top(), 3);
   const std::vector<double> x = shaken(0.05);
   const auto at = [&](int v) { return Vec3d{{x[3 * v], x[3 * v + 1], x[3 * v + 2]}}; };
@@ -349,7 +349,7 @@ TEST(Pressure, InsideAPatchItFollowsTheSurface) {
     const Vec3d& X = box_mesh().rest[v];
     if (X[2] < 0.6 - 1e-9 || X[0] < 1e-9 || X[0] > 1 - 1e-9 || X[1] < 1e-9 || X[1] > 0.8 - 1e-9) continue;
     ++inner;
-    Vec3d force{};  // -p dA / 3 of each triangle around
+    Vec3d force{};  // sum of -p dA / 3 over the triangles at the vertex
     for (const Triangle& t : top())
       if (std::ranges::find(t, v) != t.end())
         force = force + (-3.0 / 6) * cross(at(t[1]) - at(t[0]), at(t[2]) - at(t[0]));
@@ -358,7 +358,7 @@ TEST(Pressure, InsideAPatchItFollowsTheSurface) {
   EXPECT_EQ(inner, 6);
 }
 
-TEST(Pressure, ItsProjectedHessianIsPositiveSemidefinite) {
+TEST(Pressure, ModifiedHessianIsPositiveSemidefinite) {
   const auto V = make_pressure(box_mesh(), top(), 3);
   V->bind(box_pattern());
   const std::vector<double> x = shaken(0.05);

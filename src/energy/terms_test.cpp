@@ -1,4 +1,4 @@
-// Every term of V: derivatives, invariants, definiteness.
+// All terms of V: derivatives, invariants, definiteness.
 #include <gtest/gtest.h>
 
 #include <Eigen/Dense>
@@ -53,12 +53,12 @@ BlockPattern pattern_of(Energy& V) {
   return pattern;
 }
 
-// Lengths are those of the tets, about a third of the box.
+// The length scale is that of the tets, about a third of the box.
 void expect_consistent(const ActiveTerm& V, const BlockPattern& pattern, const std::vector<double>& x,
                        const std::string& what) {
   std::vector<double> g(x.size());
   V.add_gradient(x, 1, g);
-  EXPECT_TRUE(std::any_of(g.begin(), g.end(), [](double gi) { return gi != 0; })) << what << " does nothing";
+  EXPECT_TRUE(std::any_of(g.begin(), g.end(), [](double gi) { return gi != 0; })) << what << " has a zero gradient";
   const DerivativeReport report = check_derivatives(differentiable(V, pattern), x, {.length = 0.3});
   for (const DerivativeCheck* check : {&report.gradient, &report.hessian}) {
     EXPECT_TRUE(check->passed) << what << ", " << entry_name(check->row) << ": " << check->smallest_error;
@@ -78,12 +78,12 @@ TEST(TetElasticity, DerivativesMatchDifferencesForEveryMaterial) {
   }
 }
 
-TEST(GrabSpring, DerivativesAreThoseOfTheEnergy) {
+TEST(GrabSpring, DerivativesMatchDifferences) {
   GrabSpring V;
   V.set({.vertices = small_mesh().tets[5], .weights = {0.1, -0.2, 0.6, 0.5}, .stiffness = 30, .to = {{1, 2, 3}}});
   const auto tets =
       make_tet_elasticity("neo_hookean", small_mesh(), 0, heterogeneous_parameters(material_info("neo_hookean")));
-  Couplings couplings;  // the spring lives on those of its tet
+  Couplings couplings;  // the spring uses the couplings of its tet
   tets->add_couplings(couplings);
   const BlockPattern pattern = make_pattern(small_mesh().vertex_count(), couplings);
   V.bind(pattern);
@@ -101,7 +101,7 @@ TEST(GrabSpring, TargetMovesLinearlyWithinTheStep) {
   EXPECT_EQ(grab.target(9)[2], 8);
 }
 
-TEST(GrabSpring, WithoutStiffnessIsNothing) {
+TEST(GrabSpring, IsZeroWithoutStiffness) {
   GrabSpring V;
   const std::vector<double> x = deformed(0.03);
   std::vector<double> g(x.size());
@@ -121,7 +121,7 @@ TEST(TetElasticity, InternalForcesSumToZeroForEveryMaterial) {
   }
 }
 
-TEST(TetElasticity, NeitherRenumberingNorMirroringChangesTheEnergy) {
+TEST(TetElasticity, EnergyIgnoresRenumberingAndMirroring) {
   const MaterialInfo& info = material_info("neo_hookean_log");
   const auto parameters = heterogeneous_parameters(info);
   const std::vector<double> x = deformed(0.02);
@@ -175,12 +175,12 @@ Eigen::VectorXd eigenvalues(TetElasticity& V, const std::vector<double>& x, Defi
 
 TEST(TetElasticity, ModifiedHessiansArePositiveSemidefinite) {
   std::vector<double> x = deformed(0.25);
-  for (double& xi : x) xi *= 0.5;  // squeezed
+  for (double& xi : x) xi *= 0.5;  // compressed
   for (const MaterialInfo& info : materials()) {
     if (info.barrier || info.name == "linear") continue;  // a barrier is infinite there; linear is always definite
     const auto V = make_tet_elasticity(info.name, small_mesh(), 0, heterogeneous_parameters(info));
     const Eigen::VectorXd exact = eigenvalues(*V, x, Definiteness::exact);
-    ASSERT_LT(exact.minCoeff(), -1e-3 * exact.maxCoeff()) << info.name << ": the state is too tame";
+    ASSERT_LT(exact.minCoeff(), -1e-3 * exact.maxCoeff()) << info.name << ": the state is not indefinite";
     for (const Definiteness definiteness : {Definiteness::clamped, Definiteness::absolute}) {
       const Eigen::VectorXd projected = eigenvalues(*V, x, definiteness);
       EXPECT_GT(projected.minCoeff(), -1e-10 * projected.maxCoeff()) << info.name;
@@ -213,7 +213,7 @@ TEST(StrainRateDamping, DerivativesMatchDissipationAndRotationIsFree) {
   EXPECT_GT(term.value(deformed(0.05, 9)), 1e-6);
 }
 
-TEST(RayleighDamping, DerivativesAreThoseOfTheDissipation) {
+TEST(RayleighDamping, DerivativesMatchDifferences) {
   MassMatrix mass(small_mesh(), std::vector<double>(small_mesh().tet_count(), 3.0), MassKind::consistent);
   const MaterialInfo& info = material_info("neo_hookean");
   const auto V = make_tet_elasticity(info.name, small_mesh(), 0, heterogeneous_parameters(info));
@@ -224,7 +224,7 @@ TEST(RayleighDamping, DerivativesAreThoseOfTheDissipation) {
   expect_consistent({*D, {start, 0.1, 0.1}}, pattern, deformed(0.05, 9), "Rayleigh");
 }
 
-TEST(Springs, DerivativesAreThoseOfTheEnergy) {
+TEST(Springs, DerivativesMatchDifferences) {
   auto edges = make_springs("edges", edge_springs(small_mesh(), 0, small_mesh().tet_count(), 4));
   expect_consistent(*edges, deformed(0.05), "edge springs");
   auto points = make_point_springs("points", {{4, 2.5, [](double t) { return Vec3d{{t, 1, 2}}; }}});
@@ -245,7 +245,7 @@ TEST(Springs, AreRelaxedAtRestAndOnePerEdge) {
   EXPECT_EQ(static_cast<int>(springs.size()), small_mesh().vertex_count() + (4 * tets + boundary) / 2 - tets - 1);
 }
 
-TEST(LinearLoad, GravityOfTheBodyIsItsWeight) {
+TEST(LinearLoad, GravityOfBodyIsItsWeight) {
   std::vector<double> force(3 * small_mesh().rest.size(), 0.0);
   for (int t = 0; t < small_mesh().tet_count(); ++t) add_body_force(small_mesh(), t, {{0, -2, 0}}, force);
   double sum = 0;
@@ -286,10 +286,10 @@ TEST(MassMatrix, ConsistentIntegratesSquaresOfLinearFieldsExactly) {
   mass.multiply(x, Mx);
   double integral = 0;
   for (size_t i = 0; i < x.size(); ++i) integral += x[i] * Mx[i];
-  EXPECT_NEAR(integral, 0.8 * 0.6 / 3, 1e-14);  // of X^2 over [0, 1] x [0, .8] x [0, .6]
+  EXPECT_NEAR(integral, 0.8 * 0.6 / 3, 1e-14);  // integral of X^2 over [0, 1] x [0, .8] x [0, .6]
 }
 
-TEST(MassMatrix, MeasuresDistancesAsItMultiplies) {
+TEST(MassMatrix, DistanceMatchesProduct) {
   for (const MassKind kind : {MassKind::consistent, MassKind::lumped}) {
     const MassMatrix mass(small_mesh(), std::vector<double>(small_mesh().tet_count(), 2.0), kind);
     const std::vector<double> x = deformed(0.1), y = deformed(0.1, 5);
@@ -302,7 +302,7 @@ TEST(MassMatrix, MeasuresDistancesAsItMultiplies) {
   }
 }
 
-TEST(MassMatrix, AddedToMatrixIsTheSameOperator) {
+TEST(MassMatrix, AddToMatrixIsSameOperator) {
   MassMatrix mass(small_mesh(), std::vector<double>(small_mesh().tet_count(), 1.0), MassKind::consistent);
   Couplings couplings;
   mass.add_couplings(couplings);

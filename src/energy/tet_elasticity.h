@@ -12,7 +12,7 @@
 
 namespace aspic {
 
-// Quantities of each tet, in the order of the mesh.
+// Fields per tet, in the order of the mesh.
 struct TetFields {
   std::vector<double> energy_density;  // psi [J/m^3]
   std::vector<double> det_F;           // J [1]
@@ -20,45 +20,46 @@ struct TetFields {
   std::vector<double> von_mises;       // [Pa]
 };
 
-// Sums of derivatives; an empty span is skipped.
+// Accumulators of derivatives. Empty spans are skipped.
 struct HessianDerivatives {
   double scale = 1;
-  std::span<double> x;           // 3 numbers per vertex
-  std::span<double> parameters;  // TetElasticity::parameter_count() numbers per tet
+  std::span<double> x;           // 3 entries per vertex
+  std::span<double> parameters;  // TetElasticity::parameter_count() entries per tet
 };
 
 class TetElasticity : public SteadyEnergy {
  public:
-  virtual double min_det_F(Positions x) const = 0;                  // smallest det F of all tets [1]
+  virtual double min_det_F(Positions x) const = 0;                  // minimum det F over all tets [1]
   virtual void evaluate(Positions x, TetFields& fields) const = 0;  // writes the entries of this term's tets
 
-  // Derivatives with respect to the parameters theta: mu, lambda and those of MaterialInfo::extra for each tet of this
-  // term, one tet after another.
-  virtual int parameter_count() const = 0;                                          // of one tet
+  // Derivatives with respect to the parameters theta: for each tet of this term, mu, lambda and the entries of
+  // MaterialInfo::extra, tet by tet.
+  virtual int parameter_count() const = 0;                                          // per tet
   virtual std::span<const MaterialParameters> parameters() const = 0;               // one per tet
   virtual void set_parameters(std::span<const MaterialParameters> parameters) = 0;  // one per tet
   // g += scale d(dV/dx)/dtheta change, and its transpose: gradient += scale d(w . dV/dx)/dtheta. `change` and
-  // `gradient` hold parameter_count() numbers per tet, g and w 3 per vertex.
+  // `gradient` have parameter_count() entries per tet, g and w 3 per vertex.
   virtual void add_parameter_force(Positions x, std::span<const double> change, double scale,
                                    std::span<double> g) const = 0;
   virtual void add_parameter_gradient(Positions x, std::span<const double> w, double scale,
                                       std::span<double> gradient) const = 0;
-  // Adds scale times the derivatives of u . H(x) w with respect to x and theta, where H is the Hessian of add_hessian.
+  // Adds scale times the derivatives of u . H(x) w with respect to x and theta, where H is the Hessian of
+  // add_hessian().
   virtual void add_hessian_derivatives(Positions x, std::span<const double> u, std::span<const double> w,
                                        Definiteness definiteness, const HessianDerivatives& out) const = 0;
 };
 
-// Makes the elastic energy of tets [first, first + parameters.size()) of the mesh, which need not outlive it. Throws
+// Returns the elastic energy of tets [first, first + parameters.size()) of the mesh, which need not outlive it. Throws
 // InvalidInput for an unknown material.
 std::unique_ptr<TetElasticity> make_tet_elasticity(std::string_view material, const TetMesh& mesh, int first,
                                                    std::span<const MaterialParameters> parameters);
 
-// The same for a material that is given in another way.
+// Factory for a material that is not identified by name.
 using ElasticityMaker = std::function<std::unique_ptr<TetElasticity>(const TetMesh& mesh, int first,
                                                                      std::span<const MaterialParameters> parameters)>;
 
-// Kelvin-Voigt damping, rotation invariant: D(x) = h sum volume eta/2 |Edot|^2 with Edot = (E - E_start) / h and
-// E = (F'F - I) / 2. `viscosity` is eta of each tet [Pa s], the coefficients of the term.
+// Kelvin-Voigt damping, rotation invariant: D(x) = h sum volume eta/2 |Edot|^2 with Edot = (E - E_start) / h and E =
+// (F'F - I) / 2. `viscosity`: eta of each tet [Pa s], the coefficients of the term.
 std::unique_ptr<Damping> make_strain_rate_damping(const TetMesh& mesh, int first, std::span<const double> viscosity);
 
 }  // namespace aspic

@@ -1,4 +1,4 @@
-// The kernels over packs against the formulas of the materials, tet by tet, in the plainest way.
+// Compares the vectorized kernels with a plain evaluation of the material formulas, tet by tet.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -38,9 +38,9 @@ PlainSums plain_sums(const TetMesh& mesh, const std::vector<MaterialParameters>&
     sums.value += volume(mesh, t) * M::psi(F, p);
     const Mat3d P = M::pk1(F, p);
     Mat9d A = M::hessian(F, p);
-    if (definiteness == Definiteness::clamped) make_definite(A, EigenvalueFilter::clamp);
-    if (definiteness == Definiteness::absolute) make_definite(A, EigenvalueFilter::absolute);
-    // Of F with respect to the corners: dF/dx_v = e_r b_v'.
+    if (definiteness == Definiteness::clamped) modify_hessian(A, EigenvalueFilter::clamp);
+    if (definiteness == Definiteness::absolute) modify_hessian(A, EigenvalueFilter::absolute);
+    // F depends on the corners as dF/dx_v = e_r b_v'.
     Vec3d b[4] = {};
     for (int v = 1; v < 4; ++v) {
       for (int c = 0; c < 3; ++c) b[v][c] = B(v - 1, c);
@@ -61,10 +61,10 @@ PlainSums plain_sums(const TetMesh& mesh, const std::vector<MaterialParameters>&
   return sums;
 }
 
-// Tets in number no multiple of the lanes, so that there is padding, stretched differently along the axes.
+// The number of tets is no multiple of the lanes, so that there is padding. The axes are stretched differently.
 TetMesh make_mesh(int cells) { return make_box({{0, 0, 0}}, {{1, 0.7, 1.3}}, {cells, 3, 1}); }
 
-// Near the rest shape, turned; `amount` is relative to the edges.
+// Returns rotated and perturbed positions; `amount` is relative to the edges.
 std::vector<double> moved(const TetMesh& mesh, double amount, unsigned seed) {
   std::mt19937 random(seed);
   std::uniform_real_distribution<double> uniform(-amount, amount);
@@ -145,7 +145,7 @@ TEST(TetKernels, MatchFormulasForInvertedTets) {
   });
 }
 
-TEST(TetKernels, AgreeWithTheFilteredFormulas) {
+TEST(TetKernels, AgreeWithFilteredFormulas) {
   const TetMesh mesh = make_mesh(4);
   for_each_material([&]<class M>() {
     const std::vector<double> x = moved(mesh, M::info().barrier ? 0.1 : 1.5, 1);
@@ -176,7 +176,7 @@ Sums sums_with_threads(int threads, const TetMesh& mesh, const std::vector<doubl
   return sums;
 }
 
-TEST(TetKernels, AreBitReproducibleForAnyThreads) {
+TEST(TetKernels, AreBitReproducibleForAnyThreadCount) {
   const TetMesh mesh = make_box({{0, 0, 0}}, {{1, 1, 1}}, {12, 9, 7});  // 36 groups
   const std::vector<double> x = moved(mesh, 0.1, 3);
   const Sums alone = sums_with_threads(1, mesh, x);

@@ -1,5 +1,5 @@
-// The sum over tets of volume * psi(F) for one density M, as a term of V (Base: Energy or an interface derived from
-// it). Included only where it is instantiated.
+// Sum over tets of volume * psi(F) for one energy density M, as a term of V. Base is Energy or an interface derived
+// from it. Included only where it is instantiated.
 #pragma once
 #include <algorithm>
 #include <bit>
@@ -30,7 +30,7 @@ class TetTerm : public Base {
   using Params = typename M::template Params<T>;
   using Context = Energy::Context;
 
-  // Tets [first, first + parameters.size()) of the mesh.
+  // Uses tets [first, first + parameters.size()) of the mesh.
   TetTerm(std::string name, const TetMesh& mesh, int first, std::span<const Params<double>> parameters, M material = {})
       : material_(std::move(material)),
         batches_((parameters.size() + kPackWidth - 1) / kPackWidth),
@@ -52,7 +52,7 @@ class TetTerm : public Base {
     const std::vector<Params<Pack>>& p = params(context);
     const double V = reduce([&](int i) { return sum(batches_[i].volume * material_.psi(F(i, x), p[i])); },
                             [](double a, double b) { return a + b; }, 0.0);
-    return std::isnan(V) ? INFINITY : V;  // zero-volume lanes of an infinite density
+    return std::isnan(V) ? INFINITY : V;  // zero-volume lanes with infinite density
   }
 
   void add_gradient(Positions x, const Context& context, double scale, std::span<double> g) const override {
@@ -76,7 +76,7 @@ class TetTerm : public Base {
   int add_hessian(Positions x, const Context& context, double scale, const Projection& projection,
                   BlockSparse& H) const override {
     const std::vector<Params<Pack>>& p = params(context);
-    thread_local std::vector<char> scratch;  // per batch: how many lanes were projected
+    thread_local std::vector<char> scratch;  // number of modified lanes per batch
     std::vector<char>& projected = scratch;  // shared by all terms of this thread
     projected.assign(batches_.size(), 0);
     for_each_batch([&](int i) {
@@ -90,14 +90,14 @@ class TetTerm : public Base {
   Mat3<Pack> F(int batch, Positions x) const { return batches_[batch].deformation_gradient(x); }
   int batch_count() const { return static_cast<int>(batches_.size()); }
 
-  // Batches that scatter: color after color, the groups of a color in parallel.
+  // Calls body(batch) for all batches: color after color, with the groups of a color in parallel.
   template <class Body>
   void for_each_batch(const Body& body) const {
     for (const std::vector<int>& groups : colors_)
       parallel_for(static_cast<int>(groups.size()), [&](int k) { for_group(groups[k], body); });
   }
 
-  // One number per batch, combined in the order of the batches.
+  // Combines one value per batch, in the order of the batches.
   template <class Body, class Combine>
   double reduce(const Body& body, const Combine& combine, double start) const {
     thread_local std::vector<double> scratch;
@@ -113,26 +113,26 @@ class TetTerm : public Base {
     return result;
   }
 
-  // Parameters of each batch in a step.
+  // Returns the parameters of each batch in a step.
   virtual const std::vector<Params<Pack>>& params(const Energy::Context&) const { return params_; }
 
-  [[no_unique_address]] M material_;  // empty but for a CustomDensity
+  [[no_unique_address]] M material_;  // empty except for a CustomDensity
   std::vector<TetBatch> batches_;
   std::vector<Params<Pack>> params_;
 
  private:
-  // Tets [first, first + count), neighbors near each other.
+  // Returns tets [first, first + count) in an order that keeps neighbors close.
   static std::vector<int> locality_order(const TetMesh& mesh, int first, size_t count) {
     std::vector<int> order = morton_order(centroids(mesh, first, count));
     for (int& tet : order) tet += first;
     return order;
   }
 
-  // Number of tets per group: large enough for threads and caches, small enough to color small meshes.
+  // Returns the number of tets per group: large enough for threads and caches, small enough to color small meshes.
   static size_t group_size(size_t tets) { return std::clamp<size_t>(std::bit_floor(tets / 128), 128, 1024); }
 
-  // A batch takes each k-th tet of the group: lanes that are neighbors would add to the same blocks, and each would
-  // have to wait for the sum of the one before.
+  // A batch contains every k-th tet of the group, because neighboring tets add to the same blocks, and each addition
+  // would have to wait for the one before.
   template <class ParametersOf>
   void fill_group(int group, const TetMesh& mesh, std::span<const int> tets, const ParametersOf& parameters_of) {
     const size_t stride = (tets.size() + kPackWidth - 1) / kPackWidth;
@@ -158,7 +158,7 @@ class TetTerm : public Base {
     Pack weight;
   };
 
-  // Returns how many lanes were projected.
+  // Returns the number of modified lanes.
   char add_batch_hessian(const WeightedBatch& batch, Positions x, const Projection& projection, BlockSparse& H) const {
     const auto& [i, p, weight] = batch;
     const TetBatch& tets = batches_[i];
@@ -177,7 +177,7 @@ class TetTerm : public Base {
     return static_cast<char>(std::popcount(projected));
   }
 
-  // Returns the lanes whose Hessian was changed.
+  // Returns the lanes whose Hessian was modified.
   static unsigned project(Mat9<Pack>& A, const Mat3<Pack>& F_i, const Params<Pack>& p, unsigned lanes,
                           Definiteness kind) {
     if (kind == Definiteness::exact || lanes == 0) return 0;
@@ -186,7 +186,7 @@ class TetTerm : public Base {
     if constexpr (requires { typename M::Law; }) {
       return filter_eigenvalues(A, filter, lanes, [&] { return law_eigen(F_i, M::law_derivatives(F_i, p)); });
     } else {
-      return make_definite(A, filter, lanes);
+      return modify_hessian(A, filter, lanes);
     }
   }
 
@@ -207,7 +207,7 @@ class TetTerm : public Base {
   }
 
   void color(int vertex_count) {
-    std::vector<std::vector<int>> vertices(group_count());  // each once
+    std::vector<std::vector<int>> vertices(group_count());  // vertices of each group, without repeats
     std::vector<int> last_group(vertex_count, -1);
     for (int group = 0; group < group_count(); ++group)
       for_group(group, [&](int i) {

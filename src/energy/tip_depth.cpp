@@ -5,7 +5,7 @@
 namespace aspic {
 namespace {
 
-// Length and direction; no direction at zero, where that of a point inside a tip does not matter.
+// Length and direction. The direction is zero at the origin, where that of a point inside a tip is irrelevant.
 struct Polar {
   double length;
   Vec3d direction;

@@ -1,7 +1,8 @@
-// How deep a point lies below the surface of a rigid tip.
+// Depth of a point below the surface of a rigid tip, where s and r are the components of x - c along and across the
+// axis:
 //   sphere: d = R - |x - c|
-//   disc:   d = -m(|r| - R, s), with s and r the parts of x - c along and across the axis and m a maximum that is
-//           rounded, twice continuously differentiable, over the width of the rim: m(u, v) = v + w h((u - v) / w)
+//   disc:   d = -m(|r| - R, s), where m(u, v) = v + w h((u - v) / w) is a maximum that is rounded, twice continuously
+//           differentiable, over the width w of the rim
 #pragma once
 #include "energy/probe.h"
 
@@ -10,7 +11,7 @@ namespace aspic {
 inline constexpr double kRim = 0.1;  // width of the rounded rim of a disc, relative to its radius
 
 struct Depth {
-  double value = 0;  // [m]; negative outside. Never changes faster than the point moves.
+  double value = 0;  // [m]; negative outside. 1-Lipschitz in x.
   Vec3d gradient{};  // [1]
   Mat3d hessian{};   // [1/m]
 };

@@ -67,8 +67,8 @@ unsigned filter_eigenvalues(Mat9<T>& H, EigenvalueFilter filter, unsigned lanes,
   return failed;
 }
 template <class T>
-unsigned make_definite(Mat9<T>& H, EigenvalueFilter filter, unsigned lanes = ~0U,
-                       double relative_floor = kEigenvalueFloor) {
+unsigned modify_hessian(Mat9<T>& H, EigenvalueFilter filter, unsigned lanes = ~0U,
+                        double relative_floor = kEigenvalueFloor) {
   const auto eigen = [&H] {
     std::array<T, 81> entries;
     std::copy(H.a, H.a + 81, entries.begin());

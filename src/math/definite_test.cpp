@@ -103,7 +103,7 @@ TEST(MakeDefinite, ClampsOrReflectsTheNegativeEigenvaluesOnly) {
     Spectrum expected = values;
     for (double& l : expected) l = std::fmax(filter == EigenvalueFilter::clamp ? l : std::abs(l), floor);
     Mat9d H = with_spectrum(values, Q);
-    make_definite(H, filter, ~0U, 1e-8);
+    modify_hessian(H, filter, ~0U, 1e-8);
     const Mat9d H_expected = with_spectrum(expected, Q);
     for (int i = 0; i < 81; ++i) EXPECT_NEAR(H.a[i], H_expected.a[i], 1e-13);
     EXPECT_EQ(indefinite_lanes(H), 0u);
@@ -120,10 +120,10 @@ TEST(MakeDefinite, FiltersFailingLanesAndKeepsOthersBitwise) {
     for (int i = 0; i < 81; ++i) before.a[i].set(lane, alone[lane].a[i]);
   }
   Mat9<Pack> after = before;
-  EXPECT_EQ(make_definite(after, EigenvalueFilter::clamp), 0xaau & ((1u << kPackWidth) - 1));
+  EXPECT_EQ(modify_hessian(after, EigenvalueFilter::clamp), 0xaau & ((1u << kPackWidth) - 1));
   EXPECT_EQ(indefinite_lanes(after), 0u);
   for (int lane = 0; lane < kPackWidth; ++lane) {
-    make_definite(alone[lane], EigenvalueFilter::clamp);
+    modify_hessian(alone[lane], EigenvalueFilter::clamp);
     for (int i = 0; i < 81; ++i) {
       EXPECT_NEAR(after.a[i][lane], alone[lane].a[i], 1e-13);
       if (lane % 2 == 0) {
@@ -137,7 +137,7 @@ TEST(MakeDefinite, LeavesPositiveDefiniteMatricesBitwiseAlone) {
   std::mt19937 random(7);
   const Mat9d before = with_spectrum({0.5, 1, 2, 3, 4, 5, 6, 7, 8}, random_basis(random));
   Mat9d after = before;
-  make_definite(after, EigenvalueFilter::clamp);
+  modify_hessian(after, EigenvalueFilter::clamp);
   for (int i = 0; i < 81; ++i) EXPECT_EQ(after.a[i], before.a[i]);
 }
 

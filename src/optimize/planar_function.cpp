@@ -10,7 +10,7 @@ namespace {
 constexpr double kEpsilon = std::numeric_limits<double>::epsilon();
 
 // Clamps negative eigenvalues or takes their absolute values. Returns false if there are none.
-bool make_definite(PlanarHessian& H, Definiteness kind) {
+bool modify_hessian(PlanarHessian& H, Definiteness kind) {
   const double mean = (H.xx + H.yy) / 2, radius = std::hypot((H.xx - H.yy) / 2, H.xy);
   double high = mean + radius, low = mean - radius;
   const double floor = 1e-8 * std::max(std::abs(high), std::abs(low));
@@ -35,7 +35,7 @@ PlanarFunction::PlanarFunction() : pattern_(make_pattern(1, {})), H_(pattern_) {
 
 QuadraticModel PlanarFunction::model(const Planar& p, Definiteness kind) const {
   QuadraticModel model{.center = p, .value = at(p), .gradient = gradient_at(p), .hessian = hessian_at(p)};
-  make_definite(model.hessian, kind);
+  modify_hessian(model.hessian, kind);
   return model;
 }
 
@@ -54,7 +54,7 @@ void PlanarFunction::gradient(std::span<const double> x, std::span<double> g) {
 const BlockSparse& PlanarFunction::evaluate_hessian(std::span<const double> x, const Projection& projection) {
   PlanarHessian H = hessian_at({x[0], x[1]});
   gradient_round_off_ = kEpsilon * std::hypot(x[0], x[1]) * std::hypot(H.xx, std::sqrt(2) * H.xy, H.yy);
-  projected_elements_ = projection.covers(0) && make_definite(H, projection.kind);
+  projected_elements_ = projection.covers(0) && modify_hessian(H, projection.kind);
   H_.block[0] = {{H.xx, H.xy, 0, H.xy, H.yy, 0, 0, 0, 1}};
   return H_;
 }
