@@ -8,7 +8,7 @@
 
 namespace aspic {
 
-// Empty until points are added.
+// Axis-aligned box; empty until points are added.
 struct Box {
   static constexpr double kInfinity = std::numeric_limits<double>::infinity();
   Vec3d lower = {{kInfinity, kInfinity, kInfinity}}, upper = {{-kInfinity, -kInfinity, -kInfinity}};
@@ -20,7 +20,7 @@ struct Box {
     }
   }
   bool overlaps(const Box& other) const {
-    double apart = 0;  // largest gap along an axis, found without branches that searches would mispredict
+    double apart = 0;  // largest gap along an axis; branch-free, because searches would mispredict branches
     for (int axis = 0; axis < 3; ++axis)
       apart = std::max(apart, std::max(lower[axis] - other.upper[axis], other.lower[axis] - upper[axis]));
     return !(apart > 0);

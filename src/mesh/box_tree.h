@@ -17,7 +17,8 @@ class BoxTree {
   // Replaces the boxes of the items and keeps their order. Requires as many boxes as before. Queries stay correct, but
   // visit more nodes after the items have moved past each other.
   void refit(std::span<const Box> boxes);
-  // Sum of the sides of all boxes of the tree, relative to that of the items; grows as the order becomes unfit.
+  // Returns the sum of the sides of all boxes of the tree, relative to that of the items. It grows as the order
+  // degrades.
   double looseness() const;
 
   Box bounds() const { return items_.empty() ? Box{} : bounds_[root().index]; }  // of all items
@@ -28,36 +29,37 @@ class BoxTree {
     if (!items_.empty()) overlap(root(), box, visit);
   }
 
-  // Calls visit(item, other_item) for the pairs of an item of part `part` of this tree and an item of `other` whose
-  // boxes overlap, until it returns false. The items are in parts of consecutive items, which threads may visit at the
-  // same time.
+  // Calls visit(item, other_item) for each pair of an item in part `part` of this tree and an item of `other` with
+  // overlapping boxes, until it returns false. Parts consist of consecutive items, and threads may process them
+  // concurrently.
   int part_count() const { return static_cast<int>(parts_.size()); }
   template <class Visit>
   void for_each_pair(int part, const BoxTree& other, Visit visit) const {
     if (!other.items_.empty()) pairs<false>(parts_[part], other, other.root(), visit);
   }
-  // The same for pairs of items of this tree, each visited once for all parts together.
+  // The same for pairs of items of this tree. Each pair is visited once over all parts.
   template <class Visit>
   void for_each_own_pair(int part, Visit visit) const {
     pairs<true>(parts_[part], *this, root(), visit);
   }
 
-  // Calls visit(item) for the items whose box has a squared distance of at most `reach` from x, roughly from near to
-  // far. `visit` may lower `reach`.
+  // Calls visit(item) for the items whose box has a squared distance of at most `reach` from x, roughly by ascending
+  // distance. `visit` may lower `reach`.
   template <class Visit>
   void for_each_near(const Vec3d& x, const double& reach, Visit visit) const {
     if (!items_.empty()) near(root(), x, reach, visit);
   }
 
-  // Calls visit(item) for the items whose box the ray enters at a parameter of at most `reach`, which visit may lower.
+  // Calls visit(item) for the items whose box the ray enters at a parameter of at most `reach`, which `visit` may
+  // lower.
   template <class Visit>
   void for_each_on_ray(const Vec3d& origin, const Vec3d& direction, const double& reach, Visit visit) const {
     if (!items_.empty()) along(root(), origin, direction, reach, visit);
   }
 
  private:
-  static constexpr int kPart = 64;  // items; enough work for a thread
-  static constexpr int kBlock = 4;  // items of two nodes whose pairs are tested one by one
+  static constexpr int kPart = 64;  // items per part; enough work for a thread
+  static constexpr int kBlock = 4;  // nodes with up to this many items are tested pair by pair
 
   // A node and its items [begin, end). Its left child follows it; a subtree of n items has 2 n - 1 nodes.
   struct Node {
@@ -71,10 +73,10 @@ class BoxTree {
 
   Node root() const { return {0, 0, static_cast<int>(items_.size())}; }
   void add_parts(Node node);
-  // Bounds the nodes below `node` that have more than `above` items, given those that have fewer.
+  // Computes the bounds of the nodes below `node` with more than `above` items, given those of the smaller nodes.
   void bound(Node node, std::span<const Box> boxes, int above);
 
-  // Descends the node with more items. A pair of items of one tree is visited where the first one comes earlier.
+  // Descends into the node with more items. A pair of items of one tree is visited where the first item comes earlier.
   template <bool kIsOwn, class Visit>
   bool pairs(Node node, const BoxTree& tree, Node other, Visit& visit) const {
     if (kIsOwn && other.end <= node.begin + 1) return true;
@@ -120,8 +122,8 @@ class BoxTree {
   }
 
   std::vector<int> items_;
-  std::vector<Box> bounds_;  // in preorder
-  std::vector<Box> leaves_;  // of items_
+  std::vector<Box> bounds_;  // bounds of the nodes in preorder
+  std::vector<Box> leaves_;  // boxes of items_
   std::vector<Node> parts_;  // the largest subtrees of at most kPart items
 };
 

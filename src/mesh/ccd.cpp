@@ -10,13 +10,13 @@ namespace {
 constexpr double kEpsilon = std::numeric_limits<double>::epsilon();
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr int kMostEvaluations = 1000;
-// Bound on the error of a distance, in units of round-off of the largest coordinate: of its computation here, and of
+// Bound of the error of a distance, in units of round-off of the largest coordinate, from computing it here and from
 // rounding the points of both primitives. The smallest accepted gap is much larger.
 constexpr double kRounding = 64 * kEpsilon, kSmallestGap = 1000 * kEpsilon;
 constexpr double kLanded = 1.01;  // a pair lands when its gap is below this multiple of the landing gap
 
 struct Sizes {
-  int first, count;  // points of the first primitive, and of both
+  int first, count;  // points of the first primitive and of both
 };
 
 Sizes sizes(PairKind kind) {
@@ -33,7 +33,7 @@ Sizes sizes(PairKind kind) {
   return {};
 }
 
-// Infinity if a coordinate is not finite.
+// Returns infinity if a coordinate is not finite.
 double largest_coordinate(const std::array<Vec3d, 4>& x, int count) {
   double largest = 0;
   for (int i = 0; i < count; ++i)
@@ -65,7 +65,7 @@ class Approach {
     ++evaluations_;
     margin_now_ = margin_ + alpha * margin_rate_;
     gap_ = distance.d - margin_now_;
-    // From the second primitive to the first one, whichever of them the stencil begins with.
+    // Points from the second primitive to the first one, whichever the stencil begins with.
     const bool is_reversed = kind_ == PairKind::edge_edge && distance.point[0] >= 2;
     normal_ = (is_reversed ? -1.0 : 1.0) * distance.normal();
   }
@@ -74,11 +74,11 @@ class Approach {
   int evaluations() const { return evaluations_; }
   bool is_resolved() const { return gap_ > smallest_gap_ && std::isfinite(gap_) && std::isfinite(speed_); }
 
-  // Increment of alpha during which no point of the pair can come closer than `least`, by the largest relative speed.
+  // Increment of alpha that keeps the gap above `least`, from the largest relative speed of the points.
   double additive_step(double least) const { return speed_ > 0 ? (gap_ - least) / speed_ : kInfinity; }
 
-  // Increment of alpha during which all points of the first primitive are at least `least` before those of the second
-  // one along the closest direction; 0 if they are not so now.
+  // Increment of alpha during which all points of the first primitive stay at least `least` ahead of those of the
+  // second along the closest direction; 0 if they are not now.
   double directional_step(double least) const {
     double step = kInfinity;
     for_each_couple([&](int i, int j) {

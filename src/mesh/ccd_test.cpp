@@ -24,7 +24,7 @@ Points at(const MovingPair& pair, double alpha) {
 
 Real value(const Polynomial& p, Real t) { return p[0] + t * (p[1] + t * (p[2] + t * p[3])); }
 
-// A root in [low, high], at whose ends the signs differ.
+// Returns a root in [low, high]; p has different signs at both ends.
 Real bisect(const Polynomial& p, Real low, Real high) {
   const bool rises = value(p, low) < 0;
   for (int i = 0; i < 80; ++i) {
@@ -34,7 +34,7 @@ Real bisect(const Polynomial& p, Real low, Real high) {
   return (low + high) / 2;
 }
 
-// All roots in [0, 1], and the extrema, where a double root may hide.
+// Returns all roots in [0, 1] and the extrema, which may be double roots.
 std::vector<Real> candidate_roots(const Polynomial& p) {
   std::vector<Real> ends = {0, 1};
   const Real a = 3 * p[3], b = 2 * p[2], c = p[1], square = b * b - 4 * a * c;
@@ -71,7 +71,7 @@ Polynomial triple_product(const LinearVector& a, const LinearVector& b, const Li
 
 Vec3r at(const LinearVector& v, Real t) { return v.start + t * v.rate; }
 
-// The distance vector from the interior of both primitives at time t is zero up to `tolerance`, relative to their size.
+// Returns whether the interiors of both primitives touch at time t, up to `tolerance` relative to their size.
 bool touches(const MovingPair& pair, Real t, Real tolerance) {
   const bool are_edges = pair.kind == PairKind::edge_edge;
   const Vec3r s = at(are_edges ? between(pair, 0, 1) : between(pair, 1, 2), t);
@@ -86,8 +86,8 @@ bool touches(const MovingPair& pair, Real t, Real tolerance) {
   return is_inside && std::sqrt(dot(left, left)) <= tolerance * std::sqrt(dot(s, s) + dot(e, e));
 }
 
-// First contact in [0, 1] from the roots of the volume of the four points, a cubic; infinity if none. Independent of
-// the code under test. Blind to motion in one plane.
+// Returns the first contact in [0, 1] from the roots of the volume of the four points, a cubic; infinity if none.
+// Independent of the code under test. Cannot detect contact during motion in one plane.
 double first_contact(const MovingPair& pair) {
   const Polynomial volume = triple_product(between(pair, 0, 1), between(pair, 0, 2), between(pair, 0, 3));
   Real first = std::numeric_limits<Real>::infinity();
@@ -129,7 +129,7 @@ class RandomPairs {
   std::normal_distribution<double> normal_;
 };
 
-// The path is free of contact, keeps half the landing gap, and ends for a reason.
+// Checks that the path has no contact, keeps half the landing gap, and ends for a valid reason.
 void expect_safe(const MovingPair& pair, const StepRule& rule, const SafeStep& step) {
   const double landing = landing_gap(pair, rule);
   ASSERT_GE(step.alpha, 0);
@@ -159,7 +159,7 @@ TEST(LargestStep, EndsBeforeRootsOfCubicForRandomPairs) {
   EXPECT_LT(evaluations, 5 * 100000);
 }
 
-// A triangle or an edge of size 1 at z = 0, and a partner at height `gap` that slides.
+// A triangle or an edge of size 1 at z = 0, and a sliding partner at height `gap`.
 MovingPair resting_pair(RandomPairs& random, PairKind kind, double gap) {
   MovingPair pair = {kind, {}, {}};
   const auto near = [&](double x, double y, double z) {
@@ -216,7 +216,7 @@ TEST(LargestStep, LandsAtGivenGapInHeadOnMotion) {
   EXPECT_EQ(largest_step(falling, {0.01}).evaluations, 2);
 }
 
-TEST(LargestStep, ServesPointsAndPointEdgePairs) {
+TEST(LargestStep, AcceptsPointsAndPointEdgePairs) {
   const MovingPair points = {PairKind::point_point, {{{{0, 0, 0}}, {{1, 0, 0}}}}, {{{{2, 0, 0}}}}};
   EXPECT_NEAR(largest_step(points, {0.1}).alpha, 0.45, 1e-12);
   const MovingPair edge = {PairKind::point_edge, {{{{0, 0, 0}}, {{1, -1, 0}}, {{1, 1, 0}}}}, {{{{2, 0, 0}}}}};
@@ -285,7 +285,7 @@ TEST(LargestStep, IsSafeFarFromOrigin) {
     }
 }
 
-TEST(LargestStep, RefusesGapsOfRoundOffAndNonFiniteInput) {
+TEST(LargestStep, RejectsRoundOffGapsAndNonFiniteInput) {
   MovingPair pair = {PairKind::point_triangle,
                      {{{{0.2, 0.2, 1e-14}}, {{0, 0, 0}}, {{1, 0, 0}}, {{0, 1, 0}}}},
                      {{{{0, 0, 1}}, {}, {}, {}}}};

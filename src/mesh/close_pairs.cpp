@@ -11,11 +11,11 @@
 namespace aspic {
 namespace {
 
-constexpr double kMostLoose = 1.5;  // relative to the looseness of a new tree
+constexpr double kMostLoose = 1.5;  // looseness relative to a new tree at which a tree is rebuilt
 
 using Pairs = std::vector<std::array<int, 2>>;
 
-// Rounds outward.
+// Inflates the box by the radius and rounds outward.
 void inflate(Box& box, double radius) {
   constexpr double kOutward = 4 * std::numeric_limits<double>::epsilon();
   for (int axis = 0; axis < 3; ++axis) {
@@ -61,7 +61,7 @@ bool share_point(const A& a, const B& b) {
   return false;
 }
 
-// Collects pairs from several threads. Stops them when there are more than `limit`.
+// Collects pairs from several threads. Stops them when more than `limit` pairs are found.
 class PairCollector {
  public:
   PairCollector(int parts, size_t limit) : found_(parts), limit_(limit) {}
@@ -79,7 +79,7 @@ class PairCollector {
     return sum > limit_;
   }
 
-  // Sorts the pairs by a count of the first members, of which there are `firsts`, and in order of the second members.
+  // Sorts the pairs by a counting sort of the first members, of which there are `firsts`, then by the second members.
   Pairs sorted(int firsts) const {
     std::vector<size_t> start(firsts + 1, 0);
     for (const Pairs& part : found_)
@@ -102,7 +102,7 @@ class PairCollector {
 
   std::vector<Pairs> found_;
   size_t limit_;
-  std::atomic<size_t> count_ = 0;  // in full batches
+  std::atomic<size_t> count_ = 0;  // pairs in full batches
 };
 
 }  // namespace

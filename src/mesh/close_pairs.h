@@ -16,30 +16,30 @@ struct SurfacePrimitives {
   std::vector<Triangle> triangles;
 };
 
-// Sorted pairs of places in the lists of a SurfacePrimitives, or of two.
+// Sorted pairs of indices into the lists of one or two SurfacePrimitives.
 struct ClosePairs {
   std::vector<std::array<int, 2>> vertex_triangle;  // (vertex, triangle)
   std::vector<std::array<int, 2>> edge_edge;        // (a, b); a < b in one list
   bool is_complete = true;                          // false: more pairs than the limit; both lists are empty
 };
 
-// Selects pairs. Threads call it at the same time.
+// Selects pairs. Called concurrently by threads.
 class PairFilter {
  public:
   virtual ~PairFilter() = default;
-  virtual bool accepts_vertex_triangle(int vertex, int triangle) const = 0;  // places in the lists
+  virtual bool accepts_vertex_triangle(int vertex, int triangle) const = 0;  // indices into the lists
   virtual bool accepts_edge_edge(int a, int b) const = 0;                    // a < b in one list
 };
 
 struct PairQuery {
-  std::span<const Box> path;  // of each position, a box around its path; see swept_boxes
+  std::span<const Box> path;  // box around the path of each position; see swept_boxes()
   // Radius of each primitive, by which its box is inflated [m]; empty: 0.
   std::span<const double> vertex_radius, edge_radius, triangle_radius;
   const PairFilter* filter = nullptr;  // null: accepts all
-  size_t limit = size_t{1} << 25;      // of the number of pairs of each kind
+  size_t limit = size_t{1} << 25;      // maximum number of pairs of each kind
 };
 
-// Returns the boxes around the lines from x to x + dx, as rounded; [m]. An empty dx is zero.
+// Returns boxes around the rounded segments from x to x + dx [m]. An empty dx counts as zero.
 std::vector<Box> swept_boxes(std::span<const Vec3d> x, std::span<const Vec3d> dx);
 
 class PairFinder {
@@ -48,24 +48,25 @@ class PairFinder {
 
   const SurfacePrimitives& primitives() const { return primitives_; }
 
-  // Finds the accepted pairs without a common vertex whose inflated boxes overlap. The result is a function of the
-  // query alone; trees of earlier queries only save time. O(n log n + pairs) while the surfaces are locally apart, with
-  // memory for the pairs. Positions that are not finite are in no pair.
+  // Finds the accepted pairs without a common vertex whose inflated boxes overlap. The result depends on the query
+  // alone; trees of earlier queries only save time. Costs O(n log n + pairs) while the surfaces are locally separated,
+  // with memory proportional to the pairs. Positions that are not finite are in no pair.
   ClosePairs find(const PairQuery& query);
 
-  // Replaces the boxes by those of the query, for find_between().
+  // Sets the boxes of the query, for find_between().
   void place(const PairQuery& query);
-  Box bounds() const;  // of all primitives, as placed
-  // Finds the pairs of a vertex of this and a triangle of `other`, and if `has_edges` of an edge of each, whose boxes
-  // overlap. Both are placed. `filter` and `limit` are as in PairQuery; the vertices of both count as different.
+  Box bounds() const;  // box around all placed primitives
+  // Finds pairs with overlapping boxes: a vertex of this and a triangle of `other`, and with `has_edges` an edge of
+  // each. Requires that both are placed. `filter` and `limit` are as in PairQuery; vertices of this and `other` count
+  // as different.
   ClosePairs find_between(const PairFinder& other, bool has_edges, const PairFilter* filter, size_t limit) const;
 
  private:
-  // Rebuilt when motion has made it loose.
+  // Rebuilt when motion has degraded it.
   struct Tree {
     std::vector<Box> boxes;
-    std::vector<BoxTree> tree;  // one; none before the first query
-    double looseness = 0;       // when it was built
+    std::vector<BoxTree> tree;  // one tree; empty before the first query
+    double looseness = 0;       // looseness when it was built
 
     void fit();
     const BoxTree& operator*() const { return tree.front(); }

@@ -53,7 +53,7 @@ Box inflated_box(const Scene& scene, const Points& points, double radius) {
   return {box.lower - by, box.upper + by};
 }
 
-// All pairs of boxes, one by one.
+// Tests all pairs of boxes.
 ClosePairs brute_force(const Scene& scene) {
   const auto& [vertices, edges, triangles] = scene.primitives;
   ClosePairs pairs;
@@ -76,7 +76,7 @@ ClosePairs brute_force(const Scene& scene) {
   return pairs;
 }
 
-// Two spheres that nearly touch; random displacements.
+// Two spheres that nearly touch, with random displacements.
 Scene two_spheres(unsigned seed, double speed) {
   Scene scene;
   const TriMesh sphere = boundary_surface(make_sphere(1, 0.25)).surface;
@@ -138,7 +138,7 @@ TEST(PairFinder, ReportsOverflowWithEmptyLists) {
   EXPECT_TRUE(overflow.vertex_triangle.empty() && overflow.edge_edge.empty());
 }
 
-// Pairs of different surfaces.
+// Accepts pairs of different surfaces.
 class BetweenSurfaces : public PairFilter {
  public:
   explicit BetweenSurfaces(const SurfacePrimitives& primitives)
@@ -186,7 +186,7 @@ TEST(PairFinder, OmitsPositionsThatAreNotFinite) {
   }
 }
 
-// The two spheres as two lists; positions are common to both.
+// Returns the two spheres as two lists; they share the positions.
 std::array<SurfacePrimitives, 2> halves(const SurfacePrimitives& all) {
   std::array<SurfacePrimitives, 2> half;
   const int middle = static_cast<int>(all.vertices.size()) / 2;

@@ -42,7 +42,7 @@ std::vector<Tet> swept_tets(const Disc& disc, int copies, bool closed) {
   for (int copy = 0; copy + (closed ? 0 : 1) < copies; ++copy) {
     const int below = copy * points, above = (copy + 1) % copies * points;
     for (Triangle triangle : disc.triangles) {
-      // Rotates the corners so that a is the smallest; the orientation is kept.
+      // Rotates the corners so that a is the smallest, which keeps the orientation.
       std::rotate(triangle.begin(), std::min_element(triangle.begin(), triangle.end()), triangle.end());
       const auto [a, b, c] = triangle;
       tets.push_back({below + a, above + b, above + c, above + a});

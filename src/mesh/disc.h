@@ -1,4 +1,4 @@
-// A disc of concentric rings and the solids swept by it, for the cylinder and the torus.
+// Discs of concentric rings and the solids that they sweep: cylinder and torus.
 #pragma once
 #include <vector>
 
@@ -6,7 +6,7 @@
 
 namespace aspic {
 
-// Ring k of `rings` has 6 k points at radius k / rings; triangles are counter-clockwise in the (x, y) plane. All angles
+// Ring k of `rings` has 6 k points at radius k / rings. Triangles are counter-clockwise in the (x, y) plane. All angles
 // are at least 30 degrees for any number of rings.
 struct Disc {
   std::vector<std::array<double, 2>> points;  // points of the unit disc
@@ -14,9 +14,9 @@ struct Disc {
 };
 Disc make_disc(int rings);
 
-// Returns the prisms between copies of the disc, three tets each. Vertex v of copy k has index k * points + v. With
-// `closed` the last copy is joined to the first. The diagonal of a prism's side joins its smaller disc vertex below to
-// the larger one above, so that neighbors match.
+// Returns the tets of the prisms between copies of the disc, three per prism. Vertex v of copy k has index k * points +
+// v. With `closed` the last copy is joined to the first. The diagonal of each side of a prism connects the smaller disc
+// vertex below to the larger one above, so that neighbors match.
 std::vector<Tet> swept_tets(const Disc& disc, int copies, bool closed);
 
 }  // namespace aspic

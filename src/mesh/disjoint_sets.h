@@ -10,7 +10,7 @@ class DisjointSets {
  public:
   explicit DisjointSets(int count) : parent_(count) { std::iota(parent_.begin(), parent_.end(), 0); }
 
-  int find(int i) {  // the smallest element of the set of i
+  int find(int i) {  // returns the smallest element of the set of i
     while (parent_[i] != i) i = parent_[i] = parent_[parent_[i]];
     return i;
   }

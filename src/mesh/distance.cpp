@@ -8,8 +8,8 @@ namespace aspic {
 namespace {
 
 constexpr double kRoundOff = std::numeric_limits<double>::epsilon();
-// Squared sines of the angle between two edges: below the first one they count as parallel. Above the second one,
-// a solution in the interior is accurate enough not to be compared with the boundary.
+// Squared sines of the angle between two edges. Below the first value they count as parallel. Above the second value,
+// an interior solution is accurate enough to skip the comparison with the boundary.
 constexpr double kParallel = 256 * kRoundOff * kRoundOff, kWellConditioned = 1e-12;
 
 // Minimizer of |r0 + u t0 + v t1|.
@@ -19,7 +19,7 @@ struct PlaneFoot {
   Vec3d r = {};
 };
 
-// One step of iterative refinement makes r orthogonal to nearly parallel t0 and t1 up to round-off.
+// Applies one step of iterative refinement, which makes r orthogonal to nearly parallel t0 and t1 up to round-off.
 PlaneFoot plane_foot(const Vec3d& r0, const Vec3d& t0, const Vec3d& t1) {
   const Vec3d n = cross(t0, t1);
   const double nn = squared_norm(n), scale = squared_norm(t0) * squared_norm(t1);
@@ -50,7 +50,7 @@ Distance vertex_vertex(const Points4& x, int v, int w) {
   return distance;
 }
 
-// Distance of point v from edge (e0, e1).
+// Returns the distance of point v from edge (e0, e1).
 Distance from_edge(const Points4& x, int v, int e0, int e1) {
   const Vec3d edge = x[e1] - x[e0], to_v = x[v] - x[e0];
   const double along = dot(to_v, edge), length = squared_norm(edge);
@@ -71,12 +71,12 @@ void keep_nearer(Distance& nearest, const Distance& other) {
   if (other.d < nearest.d || (other.d == nearest.d && other.count < nearest.count)) nearest = other;
 }
 
-// Replaces the distance from the boundary by one in the interior unless that is larger because of round-off.
+// Replaces the distance from the boundary by the interior one, unless the latter is larger because of round-off.
 void keep_interior(Distance& nearest, const Distance& interior) {
   if (interior.d <= (1 + 4 * kRoundOff) * nearest.d) nearest = interior;
 }
 
-// Distance from the face, whose corners are x[1], x[2], x[3]; requires that its plane exists.
+// Returns the distance from the face with the corners x[1], x[2], x[3]. Requires that its plane exists.
 Distance from_face(const Points4& x, const std::array<double, 3>& weights, const Vec3d& r) {
   Distance distance;
   distance.type = DistanceType::vertex_face;
@@ -88,7 +88,7 @@ Distance from_face(const Points4& x, const std::array<double, 3>& weights, const
   return distance;
 }
 
-// The corner opposite to the longest side. From there, the normal has the smallest error.
+// Returns the corner opposite to the longest side, from which the normal has the smallest error.
 int widest_corner(const Points4& x) {
   const std::array<double, 3> side = {squared_norm(x[3] - x[2]), squared_norm(x[1] - x[3]), squared_norm(x[2] - x[1])};
   return static_cast<int>(std::max_element(side.begin(), side.end()) - side.begin());
@@ -175,8 +175,8 @@ std::array<Weights, 2> weight_slopes(DistanceType type) {
   return {};
 }
 
-// Subtracts the components along the first `count` members of an orthonormal basis, twice for accuracy. Returns the
-// normalized rest.
+// Subtracts the components along the first `count` vectors of an orthonormal basis, twice for accuracy. Returns the
+// normalized remainder.
 Weights orthonormalized(Weights w, const std::array<Weights, 3>& basis, int count) {
   for (int pass = 0; pass < 2; ++pass)
     for (int i = 0; i < count; ++i) {
@@ -188,8 +188,8 @@ Weights orthonormalized(Weights w, const std::array<Weights, 3>& basis, int coun
   return w;
 }
 
-// The Hessian of b(d) in the orthonormal vectors q_0 (x) n, q_1 (x) n, q_2 (x) n, q_0 (x) tau_1, q_0 (x) tau_2.
-// With r = sum c_i x_i, t_j = dr/du_j = sum R_mj tau_m for orthonormal tau_m, and w_m = sum dc/du_j (R^-1)_jm:
+// Hessian of b(d) in the orthonormal vectors q_0 (x) n, q_1 (x) n, q_2 (x) n, q_0 (x) tau_1, q_0 (x) tau_2.
+// With r = sum c_i x_i and t_j = dr/du_j = sum R_mj tau_m for orthonormal tau_m, and w_m = sum dc/du_j (R^-1)_jm:
 //     Hess d = sum_{m > k} (c (x) tau_m)(c (x) tau_m)' / d
 //            - sum_{m <= k} [(c (x) tau_m)(w_m (x) n)' + (w_m (x) n)(c (x) tau_m)' + d (w_m (x) n)(w_m (x) n)']
 // for k = count - 2 parameters. It follows from u(x) = argmin |r| and contains no differences of large terms.
@@ -240,7 +240,7 @@ class DistanceSpace {
  private:
   double along(int m, int j) const { return aspic::dot(tau_[m], distance_.edge[j]); }  // R_mj
 
-  // Components of vertex i in the basis of the five vectors, as coefficients of n, tau_1 and tau_2.
+  // Returns the block of points (i, j) of a matrix in the basis of the five vectors.
   Mat3d block(const Matrix& M, int i, int j) const {
     Mat3d local = {};
     for (int a = 0; a < 5; ++a)
@@ -281,7 +281,7 @@ DistanceHessian filtered_distance_hessian(const Distance& distance, const Distan
 std::array<Vec3d, 2> tangents(const Distance& distance) {
   const Vec3d n = distance.normal();
   Vec3d along = distance.edge[0];
-  if (distance.count == 2) {  // the coordinate axis that is farthest from the normal
+  if (distance.count == 2) {  // starts from the coordinate axis that is farthest from the normal
     int axis = 0;
     for (int k = 1; k < 3; ++k)
       if (std::abs(n[k]) < std::abs(n[axis])) axis = k;

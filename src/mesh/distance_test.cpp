@@ -32,7 +32,7 @@ Vec3d weighted_sum(const Distance& distance, const Points& x) {
   return sum;
 }
 
-// Properties of every result: r is the weighted difference of points of both primitives.
+// Checks properties of every result: r is the weighted difference of points of both primitives.
 void expect_consistent(const Distance& distance, const Points& x, double tolerance) {
   const auto& c = distance.c;
   EXPECT_LE(norm(weighted_sum(distance, x) - distance.r), tolerance);
@@ -42,7 +42,7 @@ void expect_consistent(const Distance& distance, const Points& x, double toleran
   for (int i = 0; i < distance.count; ++i) EXPECT_GE(c[i] * (i < (are_edges ? 2 : 1) ? 1 : -1), 0);
 }
 
-// Minimizes the distance of a(s) from edge b over s by ternary search. It is convex.
+// Minimizes the distance of a(s) from edge b over s by ternary search; it is convex.
 double edge_distance_by_search(const Points& x) {
   const auto at = [&](double s) { return point_edge_distance({x[0] + s * (x[1] - x[0]), x[2], x[3]}).d; };
   double low = 0, high = 1;
@@ -88,7 +88,7 @@ TEST(EdgeEdgeDistance, AgreesWithSearch) {
   EXPECT_GT(seen[3], 50);
 }
 
-TEST(EdgeEdgeDistance, IsThatOfNearlyParallelEdges) {
+TEST(EdgeEdgeDistance, IsAccurateForNearlyParallelEdges) {
   std::mt19937 random(3);
   std::normal_distribution<double> normal;
   for (double angle = 1; angle > 1e-20; angle /= 3)
@@ -106,7 +106,7 @@ TEST(EdgeEdgeDistance, IsThatOfNearlyParallelEdges) {
     }
 }
 
-// The height of the triangle vanishes; the exact distance from its plane is known.
+// The height of the triangle vanishes; its exact distance from the plane is known.
 TEST(PointTriangleDistance, KeepsAccuracyInSlivers) {
   std::mt19937 random(4);
   std::uniform_real_distribution<double> uniform(0.1, 0.9);
@@ -139,7 +139,7 @@ TEST(Distances, AreFiniteForDegeneratePrimitives) {
   EXPECT_EQ(point_edge_distance({p, a, a}).d, 2.5);
 }
 
-TEST(Distances, OfTouchingFeaturesUseFewestPoints) {
+TEST(Distances, UseFewestPointsForTouchingFeatures) {
   const Vec3d a = {{0, 0, 0}}, b = {{1, 0, 0}}, c = {{0, 1, 0}}, above = {{0, 0, 1}};
   EXPECT_EQ(point_triangle_distance({above, a, b, c}).type, DistanceType::vertex_vertex);
   EXPECT_EQ(point_triangle_distance({Vec3d{{0.5, 0, 1}}, a, b, c}).type, DistanceType::vertex_edge);
@@ -150,7 +150,7 @@ TEST(Distances, OfTouchingFeaturesUseFewestPoints) {
   EXPECT_EQ(edge_edge_distance({a, b, {{0.5, -1, 1}}, {{0.5, 2, 1}}}).type, DistanceType::edge_edge);
 }
 
-TEST(Distances, ScaleExactlyAndSurviveTranslation) {
+TEST(Distances, ScaleExactlyAndTolerateTranslation) {
   std::mt19937 random(5);
   for (int trial = 0; trial < 1000; ++trial) {
     const Points x = random_points(random);
@@ -172,7 +172,7 @@ TEST(Distances, ScaleExactlyAndSurviveTranslation) {
 using Second = Dual<Dual<double>>;
 using SecondPoints = std::array<Vec3<Second>, 4>;
 
-// Distance between the lines and planes of a stencil, from textbook formulas.
+// Returns the distance between the lines and planes of a stencil, from textbook formulas.
 Second distance_formula(DistanceType type, const SecondPoints& x) {
   const auto length = [](const Vec3<Second>& v) { return sqrt(dot(v, v)); };
   switch (type) {
@@ -195,7 +195,7 @@ Second distance_formula(DistanceType type, const SecondPoints& x) {
 Second barrier_formula(DistanceType type, const SecondPoints& x) { return -log(distance_formula(type, x)); }
 DistanceSlopes barrier_slopes(double d) { return {-1 / d, 1 / (d * d)}; }
 
-// Derivative in the coordinates i and j of the points of the stencil.
+// Returns the second derivative with respect to coordinates i and j of the stencil points.
 double second_derivative(const Distance& distance, const Points& x, int i, int j) {
   SecondPoints y;
   for (int k = 0; k < distance.count; ++k)
@@ -221,7 +221,7 @@ Matrix12 hessian_by_autodiff(const Distance& distance, const Points& x) {
   return D;
 }
 
-// Calls check(distance, x) for random pairs of both kinds: far, near and nearly touching.
+// Calls check(distance, x) for random pairs of both kinds: far, near and almost touching.
 template <class Check>
 void for_each_pair(int trials, Check check) {
   std::mt19937 random(6);
@@ -241,7 +241,7 @@ TEST(DistanceHessian, AgreesWithAutomaticDifferentiation) {
   for_each_pair(400, [&](const Distance& distance, const Points& x) {
     const Matrix12 exact = hessian_by_autodiff(distance, x);
     const Matrix12 H = dense(distance_hessian(distance, barrier_slopes(distance.d)));
-    // The formulas of the reference lose digits when edges are nearly parallel.
+    // The reference formulas lose digits for nearly parallel edges.
     ASSERT_LT((H - exact).norm(), 1e-9 * exact.norm());
     ++seen[static_cast<int>(distance.type)];
   });
@@ -260,7 +260,7 @@ TEST(DistanceHessian, HasGradientFromWeightsAndNormal) {
   });
 }
 
-// Clamped and absolute eigenvalues of the dense matrix.
+// Returns the dense matrix with clamped or absolute eigenvalues.
 Matrix12 filtered(const Matrix12& H, EigenvalueFilter filter) {
   const Eigen::SelfAdjointEigenSolver<Matrix12> eigen(H);
   const Eigen::Matrix<double, 12, 1> values = eigen.eigenvalues();
@@ -277,7 +277,7 @@ TEST(DistanceHessian, IsFilteredExactlyInFiveDimensions) {
   });
 }
 
-TEST(DistanceHessian, TransmitsNoForceToTranslations) {
+TEST(DistanceHessian, AnnihilatesTranslations) {
   for_each_pair(100, [](const Distance& distance, const Points&) {
     const Matrix12 H = dense(distance_hessian(distance, barrier_slopes(distance.d)));
     Eigen::Matrix<double, 12, 3> translations;

@@ -128,10 +128,10 @@ void examine_faces(const TetMesh& mesh, Findings& findings) {
                 "remesh the shape with aspic mesh", folded, false});
 }
 
-// Finds tets whose centroid is inside another tet. Not every overlap is found, but duplicated parts are.
+// Finds tets whose centroid is inside another tet. This misses some overlaps, but finds duplicated parts.
 std::vector<int> overlapping_tets(const TetMesh& mesh) {
   constexpr double kInside = 1e-6;    // smallest barycentric weight that counts
-  constexpr size_t kMostNear = 4096;  // limit for a few tets, because a pile of them would need all pairs
+  constexpr size_t kMostNear = 4096;  // maximum tets near a few others, because a pile of tets would need all pairs
   std::vector<Box> boxes(mesh.tets.size());
   const std::vector<Vec3d> centers = centroids(mesh);
   for (size_t t = 0; t < boxes.size(); ++t)

@@ -9,14 +9,14 @@ namespace aspic {
 
 enum class Severity { error, warning, note };  // an error stops a simulation
 
-// Limit [m] beyond which volumes and angles overflow. Larger meshes cannot be examined.
+// Coordinate limit [m] beyond which volumes and angles overflow. Larger meshes cannot be examined.
 inline constexpr double kLargestCoordinate = 1e30;
 
 struct Finding {
   Severity severity = Severity::note;
   std::string name;          // "inverted_tets", "zero_volume_tets", "slivers", "duplicate_vertices", ...
   std::string message;       // one sentence with the count and the worst value
-  std::string remedy;        // what to do, "--repair" where that helps
+  std::string remedy;        // recommended action; "--repair" if that helps
   std::vector<int> indices;  // affected elements, vertices or triangles
   bool repairable = false;
 };
@@ -24,7 +24,7 @@ struct Finding {
 struct MeshQuality {
   double min_volume = 0, max_volume = 0, total_volume = 0;  // [m^3]
   double min_dihedral = 0, max_dihedral = 0;                // [degrees]
-  double min_mean_ratio = 0, average_mean_ratio = 0;        // 1: regular, 0: flat
+  double min_mean_ratio = 0, average_mean_ratio = 0;        // 1: regular; 0: flat
   std::vector<int> mean_ratio_histogram;                    // 10 bins of [0, 1]
   int components = 0;
   Vec3d lower{}, upper{};  // bounding box [m]
@@ -34,8 +34,8 @@ std::vector<Finding> diagnose(const TetMesh& mesh);
 std::vector<Finding> diagnose(const TriMesh& mesh);  // open, non-manifold, self-intersecting, orientation, degenerate
 MeshQuality quality(const TetMesh& mesh);
 
-// Makes the unambiguous repairs: flips inverted tets, removes zero-volume tets, merges duplicate vertices and removes
-// unreferenced ones. Returns one sentence per action; empty if nothing was done.
+// Performs the unambiguous repairs: flips inverted tets, removes zero-volume tets, merges duplicate vertices and
+// removes unreferenced ones. Returns one sentence per action, or nothing if the mesh is unchanged.
 std::vector<std::string> repair(TetMesh& mesh);
 std::vector<std::string> repair(TriMesh& mesh);
 

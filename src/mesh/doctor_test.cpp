@@ -19,13 +19,13 @@ using testing::IsEmpty;
 
 TetMesh box() { return make_box({{0, 0, 0}}, {{1, 1, 1}}, {2, 2, 2}); }
 
-TEST(DoctorOfTets, FindsNothingWrongWithTheGenerators) {
+TEST(DoctorOfTets, AcceptsGeneratedMeshes) {
   for (const TetMesh& mesh : {box(), make_box({{0, 0, 0}}, {{4, 1, 1}}, {8, 2, 2}, BoxCut::five), make_sphere(1, 0.2),
                               make_cylinder(0.5, 2, 0.2), make_torus(1, 0.3, 0.1)})
     EXPECT_THAT(names(diagnose(mesh)), IsEmpty());
 }
 
-TEST(DoctorOfTets, FindsAnInvertedTetAndTurnsIt) {
+TEST(DoctorOfTets, FindsAndFlipsInvertedTet) {
   TetMesh mesh = box();
   std::swap(mesh.tets[7][0], mesh.tets[7][1]);
   EXPECT_THAT(found(mesh, "inverted_tets").indices, ElementsAre(7));
@@ -34,7 +34,7 @@ TEST(DoctorOfTets, FindsAnInvertedTetAndTurnsIt) {
   EXPECT_THAT(diagnose(mesh), IsEmpty());
 }
 
-TEST(DoctorOfTets, FindsZeroVolumeTetAndRemovesIt) {
+TEST(DoctorOfTets, FindsAndRemovesZeroVolumeTet) {
   TetMesh mesh = box();
   mesh.region.assign(mesh.tets.size(), 1);
   const int first = mesh.vertex_count();
@@ -49,7 +49,7 @@ TEST(DoctorOfTets, FindsZeroVolumeTetAndRemovesIt) {
   EXPECT_THAT(diagnose(mesh), IsEmpty());
 }
 
-TEST(DoctorOfTets, FindsATetThatListsAVertexTwice) {
+TEST(DoctorOfTets, FindsTetWithRepeatedVertex) {
   TetMesh mesh = box();
   mesh.tets.push_back({0, 1, 1, 2});
   EXPECT_THAT(found(mesh, "repeated_vertex_in_tet").indices, ElementsAre(48));
@@ -57,7 +57,7 @@ TEST(DoctorOfTets, FindsATetThatListsAVertexTwice) {
   EXPECT_THAT(diagnose(mesh), IsEmpty());
 }
 
-TEST(DoctorOfTets, FindsSliversWithTheirHistogram) {
+TEST(DoctorOfTets, FindsSliversWithHistogram) {
   TetMesh mesh;
   mesh.rest = {{{0, 0, 0}}, {{1, 0, 0.02}}, {{1, 1, 0}}, {{0, 1, 0.02}}};
   mesh.tets = {{0, 1, 2, 3}};
@@ -68,7 +68,7 @@ TEST(DoctorOfTets, FindsSliversWithTheirHistogram) {
   EXPECT_EQ(finding.severity, Severity::warning);
 }
 
-TEST(DoctorOfTets, FindsDuplicateVerticesAndMergesThem) {
+TEST(DoctorOfTets, FindsAndMergesDuplicateVertices) {
   TetMesh mesh = box();
   mesh.rest.push_back(mesh.rest[mesh.tets[0][0]]);
   const int duplicate = mesh.vertex_count() - 1;
@@ -78,7 +78,7 @@ TEST(DoctorOfTets, FindsDuplicateVerticesAndMergesThem) {
   EXPECT_THAT(diagnose(mesh), IsEmpty());
 }
 
-TEST(DoctorOfTets, FindsUnreferencedVerticesAndDropsThem) {
+TEST(DoctorOfTets, FindsAndDropsUnreferencedVertices) {
   TetMesh mesh = box();
   mesh.rest.insert(mesh.rest.begin(), Vec3d{{5, 5, 5}});
   for (Tet& tet : mesh.tets)
@@ -108,7 +108,7 @@ TEST(DoctorOfTets, FindsDoubledTetBesideManyOthers) {
   EXPECT_THAT(found(mesh, "overlapping_tets").indices, testing::IsSupersetOf({4104, 4105}));
 }
 
-TEST(DoctorOfTets, FindsTetsFoldedOntoTheirNeighbor) {
+TEST(DoctorOfTets, FindsTetsFoldedOntoNeighbor) {
   TetMesh mesh;
   mesh.rest = {{{0, 0, 0}}, {{1, 0, 0}}, {{0, 1, 0}}, {{0, 0, 1}}, {{0.1, 0.1, 0.7}}};
   mesh.tets = {{0, 1, 2, 3}, {0, 1, 2, 4}};
@@ -154,7 +154,7 @@ TEST(DoctorOfTets, AdvisesMergingOnlyWhereItJoinsParts) {
   EXPECT_THAT(names(diagnose(touching)), testing::Not(testing::Contains("several_components")));
 }
 
-TEST(DoctorOfTets, AdviceToRepairHelps) {
+TEST(DoctorOfTets, RepairResolvesItsFindings) {
   TetMesh mesh = box();
   const std::vector<Tet> clean = mesh.tets;
   std::swap(mesh.tets[3][0], mesh.tets[3][1]);                                // inverted
@@ -170,7 +170,7 @@ TEST(DoctorOfTets, AdviceToRepairHelps) {
   for (const std::string& name : names(diagnose(mesh))) EXPECT_THAT(promised, testing::Not(testing::Contains(name)));
 }
 
-TEST(DoctorOfTets, RefusesCoordinatesWhosePowersOverflow) {
+TEST(DoctorOfTets, RejectsCoordinatesWithOverflowingPowers) {
   for (const double size : {1e31, 1e130, 1e300}) {
     const TetMesh mesh = make_box({{0, 0, 0}}, {{size, size, size}}, {1, 1, 1});
     EXPECT_THAT(names(diagnose(mesh)), ElementsAre("coordinates_too_large"));
@@ -187,7 +187,7 @@ TEST(DoctorOfTets, NotesSuspiciousUnits) {
   EXPECT_EQ(found(make_sphere(1e-4, 5e-5), "suspicious_units").severity, Severity::note);
 }
 
-TEST(DoctorOfTets, StopsAtWhatCannotBeExamined) {
+TEST(DoctorOfTets, StopsAtInvalidIndices) {
   TetMesh mesh = box();
   mesh.rest[5][1] = std::numeric_limits<double>::quiet_NaN();
   EXPECT_THAT(names(diagnose(mesh)), ElementsAre("non_finite_coordinates"));
@@ -198,7 +198,7 @@ TEST(DoctorOfTets, StopsAtWhatCannotBeExamined) {
   EXPECT_THAT(names(diagnose(TetMesh{})), ElementsAre("empty_mesh"));
 }
 
-TEST(Quality, OfARegularTetIsOne) {
+TEST(Quality, IsOneForRegularTet) {
   TetMesh mesh;
   mesh.rest = {{{1, 1, 1}}, {{1, -1, -1}}, {{-1, 1, -1}}, {{-1, -1, 1}}};
   mesh.tets = {{0, 1, 2, 3}};

@@ -65,7 +65,7 @@ TEST(Embedding, FindsNearestTetNotNearestCentroid) {
 
 double squared_distance(const TetCorners& X, const Vec3d& p) { return squared_distance(X, barycentric(X, p), p); }
 
-TEST(Embedding, AgreesWithASearchOfAllTets) {
+TEST(Embedding, AgreesWithSearchOfAllTets) {
   const TetMesh cage = make_torus(1, 0.3, 0.25);
   const TriMesh skin = random_skin(200, 1.6);
   const Embedding embedding = embed(cage, skin);
@@ -79,7 +79,7 @@ TEST(Embedding, AgreesWithASearchOfAllTets) {
   }
 }
 
-TEST(Embedding, CountsNoVertexOfTheCageAsOutside) {
+TEST(Embedding, CountsNoCageVertexAsOutside) {
   const TetMesh cage = make_sphere(2, 0.5);
   TriMesh skin;
   skin.vertices = cage.rest;
@@ -98,7 +98,7 @@ TEST(Embedding, SkipsFlatTets) {
   for (int v : embedding.vertices[0]) EXPECT_LT(v, first);
 }
 
-TEST(Embedding, RefusesACageWithoutVolume) {
+TEST(Embedding, RejectsCageWithoutVolume) {
   TriMesh skin;
   skin.vertices = {{{0, 0, 0}}};
   EXPECT_THROW(embed(TetMesh{}, skin), InvalidInput);

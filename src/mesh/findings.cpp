@@ -90,7 +90,7 @@ bool examine_vertices(const std::vector<Vec3d>& vertices, const std::vector<Elem
                 "choose a larger unit of length, or correct the file", large, false});
   if (!large.empty()) return false;
   const std::vector<int> repeated = duplicates(vertices), unused = unreferenced(elements, total);
-  // A vertex without tets has no mass, so no solver can move it; beside a surface it is harmless.
+  // A vertex without tets has no mass, so no solver can move it. Beside a surface it is harmless.
   constexpr Severity severity = std::tuple_size_v<Element> == 4 ? Severity::error : Severity::note;
   findings.add({Severity::warning, "duplicate_vertices",
                 count_of(repeated.size(), total, "vertices",
@@ -128,11 +128,11 @@ void examine_units(const std::vector<Vec3d>& vertices, Findings& findings) {
 
 namespace {
 
-// Whether merging the vertices at equal positions would connect parts of the mesh.
+// Returns whether merging vertices at equal positions would connect parts of the mesh.
 template <class Element>
 bool are_joined_by_merging(const std::vector<std::vector<int>>& parts, const std::vector<Element>& elements,
                            const std::vector<Vec3d>& vertices) {
-  std::vector<int> part_at(vertices.size(), -1);  // by the first vertex at a position
+  std::vector<int> part_at(vertices.size(), -1);  // part at each position, by the first vertex there
   const std::vector<int> first = first_at_same_place(vertices);
   for (size_t p = 0; p < parts.size(); ++p)
     for (const int e : parts[p])

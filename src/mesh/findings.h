@@ -1,4 +1,4 @@
-// Collects and formats findings, for tets and surfaces.
+// Collects and formats findings for tet meshes and surfaces.
 #pragma once
 #include <string>
 #include <vector>
@@ -9,16 +9,16 @@ namespace aspic {
 
 std::string number(double value);  // three significant digits
 
-// Returns "3 of 600 tets are inverted" from the count, the total, a noun and a predicate.
+// Returns a phrase like "3 of 600 tets are inverted" from the count, the total, a noun and a predicate.
 std::string count_of(size_t count, size_t total, const std::string& noun, const std::string& what);
 
 class Findings {
  public:
-  // Adds nothing when no index is listed.
+  // Adds the finding if it lists an index.
   void add(Finding finding) {
     if (!finding.indices.empty()) list_.push_back(std::move(finding));
   }
-  void add_general(Finding finding) { list_.push_back(std::move(finding)); }  // about the mesh as a whole
+  void add_general(Finding finding) { list_.push_back(std::move(finding)); }  // for findings about the whole mesh
   std::vector<Finding> take() { return std::move(list_); }
 
  private:

@@ -1,25 +1,26 @@
-// Meshes of simple shapes. Units: sizes in m. Requires positive sizes and counts of at least 1.
+// Meshes of simple shapes. Lengths in m. Sizes must be positive and counts at least 1.
 #pragma once
 #include "mesh/tet_mesh.h"
 
 namespace aspic {
 
 enum class BoxCut {
-  kuhn,  // six congruent-by-reflection tets per cell, conforming
-  five,  // five tets per cell, alternating
+  kuhn,  // six tets per cell (reflections of each other), conforming
+  five,  // five tets per cell, mirrored in every other cell
 };
 
-// [lower, upper] in cells[0] x cells[1] x cells[2] cells. Vertex (i, j, k) has index (i (ny + 1) + j) (nz + 1) + k.
+// Meshes [lower, upper] with cells[0] x cells[1] x cells[2] cells. Vertex (i, j, k) has index (i (ny + 1) + j) (nz + 1)
+// + k.
 TetMesh make_box(const Vec3d& lower, const Vec3d& upper, const std::array<int, 3>& cells, BoxCut cut = BoxCut::kuhn);
 
-// Round solids with edges of about `size` [m]. All volumes are positive. If size is at most the smallest dimension, the
-// smallest dihedral angle is 33 degrees in the cylinder, 36 in the sphere, and in the torus 28, 23 and 10 for minor /
+// Round solids with edges of about `size` [m]. All volumes are positive. If `size` is at most the smallest dimension,
+// the smallest dihedral angle is 33 degrees in the cylinder, 36 in the sphere, and 28, 23 and 10 in tori with minor /
 // major radius = 0.3, 0.5 and 0.8.
 TetMesh make_cylinder(double radius, double height, double size);           // axis z from 0 to height
 TetMesh make_sphere(double radius, double size);                            // about the origin
 TetMesh make_torus(double major_radius, double minor_radius, double size);  // about the z axis; minor < major
 
-// Return the number of tets without making them; infinite if no number of tets suffices.
+// Return the number of tets without meshing; infinite if no number of tets suffices.
 double tets_in_cylinder(double radius, double height, double size);
 double tets_in_torus(double major_radius, double minor_radius, double size);
 

@@ -28,7 +28,7 @@ double smallest_dihedral(const TetMesh& mesh) {
   return smallest;
 }
 
-// Volume enclosed by a closed surface, by the divergence theorem.
+// Returns the volume enclosed by a closed surface, by the divergence theorem.
 double enclosed_volume(const TriMesh& surface) {
   double sum = 0;
   for (const auto& [a, b, c] : surface.triangles)
@@ -40,7 +40,7 @@ int euler_characteristic(const TriMesh& surface) {
   return surface.vertex_count() - surface.triangle_count() / 2;  // V - E + F with 2 E = 3 F
 }
 
-// Each directed edge occurs once, with its opposite: the surface is closed, manifold along edges and oriented.
+// Returns whether each directed edge occurs once, with its opposite: the surface is closed, edge-manifold and oriented.
 bool is_closed_and_oriented(const TriMesh& surface) {
   std::map<std::pair<int, int>, int> uses;
   for (const Triangle& t : surface.triangles)
@@ -63,7 +63,7 @@ void expect_sound(const TetMesh& mesh, int euler) {
   EXPECT_EQ(static_cast<int>(used.size()), mesh.vertex_count());
 }
 
-TEST(Box, HasItsExactVolumeForBothCuts) {
+TEST(Box, HasExactVolumeForBothCuts) {
   for (BoxCut cut : {BoxCut::kuhn, BoxCut::five}) {
     const TetMesh mesh = make_box({{-1, 0, 2}}, {{1, 0.5, 5}}, {4, 3, 5}, cut);
     expect_sound(mesh, 2);
@@ -72,7 +72,7 @@ TEST(Box, HasItsExactVolumeForBothCuts) {
   }
 }
 
-TEST(Box, NumbersItsVerticesWithZFastest) {
+TEST(Box, NumbersVerticesWithZFastest) {
   const TetMesh mesh = make_box({{0, 0, 0}}, {{4, 1, 1}}, {8, 2, 2});
   const int i = 3, j = 1, k = 2;
   const Vec3d& x = mesh.rest[(i * 3 + j) * 3 + k];
@@ -81,19 +81,19 @@ TEST(Box, NumbersItsVerticesWithZFastest) {
   EXPECT_EQ(x[2], 1);
 }
 
-TEST(Box, CutsTheFirstKuhnCellAlongItsDiagonal) {
+TEST(Box, CutsFirstKuhnCellAlongDiagonal) {
   const TetMesh mesh = make_box({{0, 0, 0}}, {{1, 1, 1}}, {1, 1, 1});
   const std::vector<Tet> expected = {{0, 4, 6, 7}, {0, 4, 7, 5}, {0, 2, 7, 6},
                                      {0, 2, 3, 7}, {0, 1, 5, 7}, {0, 1, 7, 3}};
   EXPECT_EQ(mesh.tets, expected);
 }
 
-TEST(Box, ReachesItsUpperCornerExactly) {
+TEST(Box, ReachesUpperCornerExactly) {
   const TetMesh mesh = make_box({{0.1, 0.1, 0.1}}, {{0.7, 0.7, 0.7}}, {3, 3, 3});
   for (int axis = 0; axis < 3; ++axis) EXPECT_EQ(mesh.rest.back()[axis], 0.7);
 }
 
-TEST(Cylinder, IsSoundAtAnySize) {
+TEST(Cylinder, IsValidAtAnySize) {
   for (double size : {5.0, 1.0, 0.4, 0.1}) {
     SCOPED_TRACE(size);
     const TetMesh mesh = make_cylinder(1, 2, size);
@@ -107,7 +107,7 @@ TEST(Cylinder, IsSoundAtAnySize) {
   }
 }
 
-TEST(RoundShapes, HaveAsManyTetsAsWasCounted) {
+TEST(RoundShapes, HaveAsManyTetsAsPredicted) {
   for (const double size : {0.03, 0.1, 0.25, 7.0}) {
     EXPECT_EQ(tets_in_cylinder(0.2, 1, size), make_cylinder(0.2, 1, size).tet_count());
     EXPECT_EQ(tets_in_torus(1, 0.2, size), make_torus(1, 0.2, size).tet_count());
@@ -116,7 +116,7 @@ TEST(RoundShapes, HaveAsManyTetsAsWasCounted) {
   EXPECT_EQ(tets_in_cylinder(1, 1e300, 1e-300), std::numeric_limits<double>::infinity());
 }
 
-TEST(Sphere, IsSoundAtAnySize) {
+TEST(Sphere, IsValidAtAnySize) {
   for (double size : {3.0, 1.0, 0.5, 0.2, 0.1}) {
     SCOPED_TRACE(size);
     const TetMesh mesh = make_sphere(1, size);
@@ -125,14 +125,14 @@ TEST(Sphere, IsSoundAtAnySize) {
   }
 }
 
-TEST(Sphere, ConvergesQuadraticallyToTheBall) {
+TEST(Sphere, ConvergesQuadraticallyToBall) {
   const double ball = 4 * std::numbers::pi / 3;
   const double coarse = ball - total_volume(make_sphere(1, 0.2)), fine = ball - total_volume(make_sphere(1, 0.1));
   EXPECT_GT(fine, 0);
   EXPECT_NEAR(coarse / fine, 4, 0.2);
 }
 
-TEST(Torus, IsSoundAndHasOneHole) {
+TEST(Torus, IsValidAndHasOneHole) {
   for (double size : {1.0, 0.3, 0.1, 0.04}) {
     SCOPED_TRACE(size);
     const TetMesh mesh = make_torus(1, 0.3, size);
@@ -145,7 +145,7 @@ TEST(Torus, IsSoundAndHasOneHole) {
   expect_sound(make_torus(1, 0.01, 0.1), 0);
 }
 
-TEST(Torus, ConvergesQuadraticallyToItsVolume) {
+TEST(Torus, VolumeConvergesQuadratically) {
   const double solid = 2 * std::numbers::pi * std::numbers::pi * 0.4 * 0.4;
   const double coarse = solid - total_volume(make_torus(1, 0.4, 0.1));
   const double fine = solid - total_volume(make_torus(1, 0.4, 0.05));

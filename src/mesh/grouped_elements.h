@@ -1,4 +1,4 @@
-// Groups elements that have the same vertices, in linear time.
+// Groups elements with equal vertex sets, in linear time.
 #pragma once
 #include <algorithm>
 #include <array>
@@ -15,7 +15,7 @@ namespace aspic {
 template <size_t N>
 struct GroupedElement {
   std::array<int, N> vertices;  // ascending
-  int place;                    // element number of the caller
+  int place;                    // the caller's element index
 };
 
 namespace detail {
@@ -27,7 +27,7 @@ std::array<int, N> ascending(std::array<int, N> v) {
   return v;
 }
 
-// The vertices before `first` are equal.
+// Compares elements with equal first vertices.
 template <size_t N>
 bool is_less(const GroupedElement<N>& a, const GroupedElement<N>& b) {
   for (size_t i = 1; i < N; ++i)
@@ -44,8 +44,8 @@ bool are_same(const GroupedElement<N>& a, const GroupedElement<N>& b) {
 
 }  // namespace detail
 
-// `for_each(visit)` calls visit(vertices, place) for every element. It is called twice and must repeat the same calls.
-// Vertices are in [0, vertex_count). The result is sorted by vertices, then by place.
+// Returns the elements sorted by vertices, then by place. `for_each(visit)` must call visit(vertices, place) for every
+// element. It is called twice and must repeat the same calls. Vertices are in [0, vertex_count).
 template <size_t N, class ForEach>
 std::vector<GroupedElement<N>> grouped_elements(int vertex_count, const ForEach& for_each) {
   std::vector<int64_t> start(static_cast<size_t>(vertex_count) + 1, 0);

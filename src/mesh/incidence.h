@@ -7,8 +7,8 @@
 namespace aspic {
 
 struct Incidence {
-  std::vector<int> start;    // one entry per vertex, and the end; empty: not built yet
-  std::vector<int> element;  // elements vertex by vertex, in the given order
+  std::vector<int> start;    // offsets, vertex_count + 1 entries; empty: not built
+  std::vector<int> element;  // incident elements of each vertex, in the given order
 
   Incidence() = default;
   Incidence(int vertex_count, std::span<const std::pair<int, int>> vertex_and_element);

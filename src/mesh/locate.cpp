@@ -10,9 +10,10 @@
 namespace aspic {
 namespace {
 
-// Tolerance of equal distances: an outside point is often nearest to an edge or corner that several tets share.
+// Relative tolerance of equal distances: an outside point is often nearest to an edge or corner that several tets
+// share.
 constexpr double kTie = 1e-9;
-// Weights down to -kOnFace count as on the face.
+// Points with weights down to -kOnFace count as on the face.
 constexpr double kOnFace = 1e-9;
 
 std::vector<int> usable_tets(const TetMesh& mesh) {
@@ -37,7 +38,7 @@ double Located::least_weight() const { return *std::min_element(weights.begin(),
 bool Located::is_outside() const { return least_weight() < -kOnFace; }
 
 TetLocator::TetLocator(const TetMesh& mesh) : mesh_(mesh), usable_(usable_tets(mesh)), tree_(boxes(mesh, usable_)) {
-  if (usable_.empty()) throw InvalidInput("the mesh has no tets with a volume; repair or remesh it");
+  if (usable_.empty()) throw InvalidInput("the mesh has no tets of positive volume; repair or remesh it");
   for (int tet : usable_) inverse_.push_back(inverse(edge_matrix(mesh, tet)));
 }
 

@@ -1,4 +1,4 @@
-// Point location in a tet mesh: the containing tet, or the distance from the nearest one.
+// Point location in a tet mesh: the containing tet, or the nearest one.
 #pragma once
 #include <array>
 #include <vector>
@@ -10,19 +10,20 @@ namespace aspic {
 
 struct Located {
   int tet = -1;
-  std::array<double, 4> weights{};  // barycentric, summing to 1; some negative outside
+  std::array<double, 4> weights{};  // barycentric, sum to 1; some negative outside
   double squared_distance = 0;      // squared distance to the tet [m^2]; 0 inside
 
   double least_weight() const;
-  bool is_outside() const;  // except for round-off
+  bool is_outside() const;  // up to round-off
 };
 
 class TetLocator {
  public:
-  // Stores a reference to the mesh and skips flat tets. Throws InvalidInput if all tets are flat.
+  // Keeps a reference to the mesh. Flat tets are skipped. Throws InvalidInput if all tets are flat.
   explicit TetLocator(const TetMesh& mesh);
 
-  // Returns the tet that contains p deepest. Outside of all tets: the nearest, and among ties the least extrapolating.
+  // Returns the tet that contains p at the greatest depth, or outside of all tets the nearest one; ties are resolved by
+  // the least extrapolation.
   Located locate(const Vec3d& p) const;
 
  private:

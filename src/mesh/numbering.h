@@ -1,5 +1,5 @@
-// Two numberings of one mesh: the user's, in files and selections, and the storage order, in which neighbors in space
-// are near each other in memory.
+// Two numberings of one mesh: the user's, for files and selections, and the storage order, which keeps spatial
+// neighbors close in memory.
 #pragma once
 #include <span>
 #include <vector>
@@ -12,18 +12,18 @@ namespace aspic {
 class Renumbering {
  public:
   Renumbering() = default;
-  explicit Renumbering(std::vector<int> user_of_stored);  // the user's number of each stored element
+  explicit Renumbering(std::vector<int> user_of_stored);  // user's index of each stored element
 
   int to_user(int stored) const { return user_.empty() ? stored : user_[stored]; }
   int from_user(int user) const { return stored_.empty() ? user : stored_[user]; }
   std::vector<int> to_user(std::vector<int> stored) const;  // ascending
 
-  // Reorders values of all elements, `components` numbers per element.
+  // Reorders values of all elements, `components` values per element.
   std::vector<double> to_user(std::span<const double> stored, int components = 1) const;
   std::vector<double> from_user(std::span<const double> user, int components = 1) const;
 
   bool is_identity() const { return user_.empty(); }
-  // Appends the permutation of `more` elements to this one, which has `count`.
+  // Appends a permutation `part` of `more` elements to this one, which has `count` elements.
   void append(int count, const Renumbering& part, int more);
 
  private:
@@ -34,9 +34,9 @@ struct Numbering {
   Renumbering vertex, tet;
 };
 
-Numbering locality_numbering(const TetMesh& mesh);  // along a Hilbert curve; the mesh is in the user's order
+Numbering locality_numbering(const TetMesh& mesh);  // along a Hilbert curve; `mesh` is in the user's order
 
-// Corners of tets keep their order.
+// Reorder a mesh. The corners of each tet keep their order.
 TetMesh from_user(const Numbering& numbering, const TetMesh& user);
 TetMesh to_user(const Numbering& numbering, const TetMesh& stored);
 

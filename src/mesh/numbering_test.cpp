@@ -11,7 +11,7 @@
 namespace aspic {
 namespace {
 
-// Mean index difference of two vertices of a tet.
+// Returns the mean index difference of two vertices of a tet.
 double mean_reach(const TetMesh& mesh) {
   double sum = 0;
   for (const Tet& tet : mesh.tets)
@@ -19,15 +19,15 @@ double mean_reach(const TetMesh& mesh) {
   return sum / mesh.tet_count();
 }
 
-TEST(Renumbering, ANewOneChangesNothing) {
+TEST(Renumbering, IsIdentityByDefault) {
   const Renumbering none;
   EXPECT_EQ(none.to_user(3), 3);
   EXPECT_EQ(none.from_user(3), 3);
   EXPECT_EQ(none.to_user(std::vector<double>{4, 5, 6}), (std::vector<double>{4, 5, 6}));
 }
 
-TEST(Renumbering, GoesBothWays) {
-  const Renumbering r({2, 0, 1});  // the first stored element is number 2 of the user
+TEST(Renumbering, MapsBothWays) {
+  const Renumbering r({2, 0, 1});  // the first stored element has the user's index 2
   EXPECT_EQ(r.to_user(0), 2);
   EXPECT_EQ(r.from_user(2), 0);
   EXPECT_EQ(r.to_user(std::vector<int>{0, 1}), (std::vector<int>{0, 2}));
@@ -36,7 +36,7 @@ TEST(Renumbering, GoesBothWays) {
   EXPECT_EQ(r.to_user(r.from_user(user, 2), 2), user);
 }
 
-TEST(Renumbering, PartsFollowEachOther) {
+TEST(Renumbering, AppendsParts) {
   Renumbering all;
   all.append(0, Renumbering(), 2);
   all.append(2, Renumbering({1, 0}), 2);
@@ -47,7 +47,7 @@ TEST(Renumbering, PartsFollowEachOther) {
   }
 }
 
-TEST(Numbering, BringsNeighborsTogetherAndIsUndone) {
+TEST(Numbering, ImprovesLocalityAndIsInvertible) {
   TetMesh mesh = make_box({{0, 0, 0}}, {{1, 1, 1}}, {6, 6, 6});
   for (int t = 0; t < mesh.tet_count(); ++t) mesh.region.push_back(t);
   std::vector<int> shuffled(mesh.rest.size());
@@ -62,7 +62,7 @@ TEST(Numbering, BringsNeighborsTogetherAndIsUndone) {
   for (int t = 0; t < mesh.tet_count(); ++t) EXPECT_EQ(volume(stored, numbering.tet.from_user(t)), volume(mesh, t));
 }
 
-TEST(Numbering, IsIndependentOfTheFileOrder) {
+TEST(Numbering, IsIndependentOfFileOrder) {
   const TetMesh mesh = make_box({{0, 0, 0}}, {{1, 1.1, 1.2}}, {3, 3, 3});
   std::vector<int> vertices(mesh.rest.size()), tets(mesh.tets.size());
   for (size_t i = 0; i < vertices.size(); ++i) vertices[i] = static_cast<int>(i * 5 % vertices.size());

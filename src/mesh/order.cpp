@@ -44,7 +44,7 @@ Cube bounding_cube(std::span<const Vec3d> points) {
 
 using Cell = std::array<uint64_t, 3>;
 
-// Cell in the grid of the cube; the corner cell if undefined.
+// Returns the cell in the grid of the cube, or the corner cell if it is undefined.
 Cell cell_of(const Vec3d& x, const Cube& cube) {
   if (!is_finite(x) || !(cube.size > 0) || !std::isfinite(cube.size)) return {};
   constexpr double kCells = 1 << kBits;
@@ -56,7 +56,7 @@ Cell cell_of(const Vec3d& x, const Cube& cube) {
 
 uint64_t morton_code(const Cell& cell) { return spread(cell[0]) | spread(cell[1]) << 1 | spread(cell[2]) << 2; }
 
-// Index along the Hilbert curve, computed by undoing the rotations of its parts from the largest to the smallest
+// Returns the index along the Hilbert curve, by undoing the rotations of its parts from the largest to the smallest
 // [Skilling2004].
 uint64_t hilbert_code(Cell cell) {
   constexpr uint64_t kTop = uint64_t{1} << (kBits - 1);

@@ -1,4 +1,4 @@
-// Space-filling orders that keep neighbors in space near each other in memory.
+// Space-filling orders that keep spatial neighbors close in memory.
 #pragma once
 #include <span>
 #include <vector>

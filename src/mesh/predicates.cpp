@@ -61,7 +61,7 @@ class Expansion {
   int count_ = 0;
 };
 
-// u . (v x w) times +1 or -1
+// Adds +u . (v x w) or -u . (v x w).
 void add_triple(Expansion& sum, const Vec3d& u, const Vec3d& v, const Vec3d& w, double factor) {
   for (int i = 0; i < 3; ++i) {
     const int j = (i + 1) % 3, k = (i + 2) % 3;

@@ -1,5 +1,5 @@
-// Exact orientation predicates: a floating-point filter, and exact arithmetic where it cannot decide. Valid unless
-// products of three coordinates overflow or underflow. [Shewchuk 1997]
+// Exact orientation predicates: a floating-point filter, and exact arithmetic if it cannot decide. Exact unless
+// products of three coordinates overflow or underflow [Shewchuk 1997].
 #pragma once
 #include <array>
 
@@ -7,11 +7,11 @@
 
 namespace aspic {
 
-// Sign of det [a - d, b - d, c - d]: +1 if triangle abc is clockwise as seen from d; 0: coplanar.
+// Returns the sign of det [a - d, b - d, c - d]: +1 if triangle abc is clockwise as seen from d; 0: coplanar.
 int orientation(const Vec3d& a, const Vec3d& b, const Vec3d& c, const Vec3d& d);
 
 using Vec2d = std::array<double, 2>;
-// Sign of det [a - c, b - c]: +1 if a, b, c are counter-clockwise; 0: collinear.
+// Returns the sign of det [a - c, b - c]: +1 if a, b, c are counter-clockwise; 0: collinear.
 int orientation(const Vec2d& a, const Vec2d& b, const Vec2d& c);
 
 }  // namespace aspic

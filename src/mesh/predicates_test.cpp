@@ -16,15 +16,15 @@ TEST(Orientation, IsPositiveForCounterClockwiseAndPositiveDeterminants) {
   EXPECT_EQ(orientation(Vec3d{{0, 1, 0}}, Vec3d{{1, 0, 0}}, Vec3d{{0, 0, 1}}, Vec3d{{0, 0, 0}}), -1);
 }
 
-TEST(Orientation, SeesOneUnitInTheLastPlace) {
-  // Points on the line y = x, and off it by one ulp, where rounding ruins the determinant [Kettner et al. 2008].
+TEST(Orientation, DetectsOneUnitInLastPlace) {
+  // Points on the line y = x and one ulp away, where rounding corrupts the determinant [Kettner et al. 2008].
   const Vec2d b = {12, 12}, c = {24, 24};
   EXPECT_EQ(orientation(Vec2d{0.5, 0.5}, b, c), 0);
   EXPECT_EQ(orientation(Vec2d{0.5, std::nextafter(0.5, 1)}, b, c), 1);
   EXPECT_EQ(orientation(Vec2d{std::nextafter(0.5, 1), 0.5}, b, c), -1);
 }
 
-TEST(Orientation, OfCoplanarPointsIsZeroInAnyOrder) {
+TEST(Orientation, IsZeroForCoplanarPointsInAnyOrder) {
   // Integer points of the plane through p spanned by u and v, far from the origin: coordinates are exact, products of
   // the determinant are not.
   std::mt19937 random(5);

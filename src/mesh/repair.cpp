@@ -12,7 +12,7 @@ namespace {
 
 using Actions = std::vector<std::string>;
 
-void say(Actions& actions, const std::string& what, size_t count, const std::string& noun) {
+void record(Actions& actions, const std::string& what, size_t count, const std::string& noun) {
   if (count > 0) actions.push_back(what + " " + std::to_string(count) + " " + noun);
 }
 
@@ -98,7 +98,7 @@ size_t remove_triangles(TriMesh& mesh, const std::vector<bool>& remove) {
   return removed;
 }
 
-// Number of edges that an odd number of triangles share.
+// Returns the number of edges that an odd number of triangles share.
 size_t odd_edges(const TriMesh& mesh, const std::vector<bool>& remove) {
   std::vector<Triangle> kept;
   for (size_t t = 0; t < mesh.triangles.size(); ++t)
@@ -108,15 +108,15 @@ size_t odd_edges(const TriMesh& mesh, const std::vector<bool>& remove) {
   return odd;
 }
 
-// Whether the triangle is an even permutation of its sorted vertices.
+// Returns whether the triangle is an even permutation of its sorted vertices.
 bool runs_forward(const Triangle& triangle) {
   const auto& [a, b, c] = triangle;
   return (a < b) + (b < c) + (c < a) == 2;
 }
 
-// Marks pairs of triangles with the same vertices and opposite orientation, which enclose nothing.
+// Marks pairs of triangles with the same vertices and opposite orientation, which enclose no volume.
 std::vector<bool> back_to_back(const TriMesh& mesh) {
-  std::map<Triangle, std::vector<size_t>> unpaired;  // triangles of one orientation
+  std::map<Triangle, std::vector<size_t>> unpaired;  // unpaired triangles of one orientation
   std::vector<bool> paired(mesh.triangles.size());
   for (size_t t = 0; t < paired.size(); ++t) {
     Triangle key = mesh.triangles[t];
@@ -132,8 +132,8 @@ std::vector<bool> back_to_back(const TriMesh& mesh) {
   return paired;
 }
 
-// Removes back-to-back pairs if this leaves fewer open edges than keeping one triangle of each pair (a surface written
-// from both sides). Returns the number of removed triangles.
+// Removes back-to-back pairs, if this leaves fewer open edges than keeping one triangle of each pair (for surfaces that
+// list both sides). Returns the number of removed triangles.
 size_t cancel_pairs(TriMesh& mesh) {
   const std::vector<bool> pairs = back_to_back(mesh), repeated = is_repeated(mesh.triangles);
   return odd_edges(mesh, pairs) < odd_edges(mesh, repeated) ? remove_triangles(mesh, pairs) : 0;
@@ -144,30 +144,30 @@ size_t cancel_pairs(TriMesh& mesh) {
 std::vector<std::string> repair(TetMesh& mesh) {
   Actions actions;
   if (!indices_are_valid(mesh.tets, mesh.rest.size())) return actions;
-  say(actions, "dropped", drop_unreferenced(mesh.rest, mesh.tets), "unreferenced vertices");
-  say(actions, "merged", merge_duplicates(mesh.rest, mesh.tets), "duplicate vertices into those at the same place");
-  say(actions, "removed", remove_tets(mesh, [&](int t) { return has_volume(mesh, t); }), "tets of zero volume");
-  say(actions, "flipped", turn_inverted(mesh), "inverted tets");
+  record(actions, "dropped", drop_unreferenced(mesh.rest, mesh.tets), "unreferenced vertices");
+  record(actions, "merged", merge_duplicates(mesh.rest, mesh.tets), "duplicate vertices into those at the same place");
+  record(actions, "removed", remove_tets(mesh, [&](int t) { return has_volume(mesh, t); }), "tets of zero volume");
+  record(actions, "flipped", turn_inverted(mesh), "inverted tets");
   const std::vector<bool> repeated = is_repeated(mesh.tets);
-  say(actions, "removed", remove_tets(mesh, [&](int t) { return !repeated[t]; }), "repeated tets");
-  say(actions, "dropped", drop_unreferenced(mesh.rest, mesh.tets), "vertices that only removed tets used");
+  record(actions, "removed", remove_tets(mesh, [&](int t) { return !repeated[t]; }), "repeated tets");
+  record(actions, "dropped", drop_unreferenced(mesh.rest, mesh.tets), "vertices that only removed tets used");
   return actions;
 }
 
 std::vector<std::string> repair(TriMesh& mesh) {
   Actions actions;
   if (!indices_are_valid(mesh.triangles, mesh.vertices.size())) return actions;
-  say(actions, "dropped", drop_unreferenced(mesh.vertices, mesh.triangles), "unreferenced vertices");
-  say(actions, "merged", merge_duplicates(mesh.vertices, mesh.triangles),
-      "duplicate vertices into those at the same place");
+  record(actions, "dropped", drop_unreferenced(mesh.vertices, mesh.triangles), "unreferenced vertices");
+  record(actions, "merged", merge_duplicates(mesh.vertices, mesh.triangles),
+         "duplicate vertices into those at the same place");
   std::vector<bool> twice(mesh.triangles.size());
   for (size_t t = 0; t < mesh.triangles.size(); ++t) twice[t] = lists_vertex_twice(mesh.triangles[t]);
-  say(actions, "removed", remove_triangles(mesh, twice), "triangles that list a vertex twice");
-  say(actions, "removed", cancel_pairs(mesh), "triangles in back-to-back pairs");
-  say(actions, "removed", remove_triangles(mesh, is_repeated(mesh.triangles)), "repeated triangles");
-  say(actions, "flipped", orient(mesh), "triangles with the wrong orientation");
-  say(actions, "dropped", drop_unreferenced(mesh.vertices, mesh.triangles),
-      "vertices that only removed triangles used");
+  record(actions, "removed", remove_triangles(mesh, twice), "triangles that list a vertex twice");
+  record(actions, "removed", cancel_pairs(mesh), "triangles in back-to-back pairs");
+  record(actions, "removed", remove_triangles(mesh, is_repeated(mesh.triangles)), "repeated triangles");
+  record(actions, "flipped", orient(mesh), "triangles with the wrong orientation");
+  record(actions, "dropped", drop_unreferenced(mesh.vertices, mesh.triangles),
+         "vertices that only removed triangles used");
   return actions;
 }
 

@@ -10,7 +10,7 @@
 namespace aspic {
 namespace {
 
-constexpr double kMostPieces = 1e9;  // limit of countable pieces, far beyond any memory
+constexpr double kMostPieces = 1e9;  // maximum counted pieces, far beyond any memory
 
 double counted(double length, double size) { return std::max(1.0, std::round(length / size)); }
 
@@ -20,7 +20,7 @@ int pieces(double length, double size) {
   return static_cast<int>(std::min(count, kMostPieces));
 }
 
-// Six sectors of n^2 triangles, with three tets per prism.
+// The disc has six sectors of n^2 triangles; each prism has three tets.
 double tets_swept(double rings, double layers) { return 18 * rings * rings * layers; }
 
 double copies_round(double major_radius, double size) {
@@ -49,8 +49,8 @@ TetMesh make_cylinder(double radius, double height, double size) {
   return mesh;
 }
 
-// All tets are positive for any size: with the disc in the plane of angle s and its copy rotated by t < pi, the volume
-// of each tet is sin(t)/3 times the area of its triangle times the distance of one corner from the axis.
+// All tets have positive volumes for any size: with the disc in the plane of angle s and its copy rotated by t < pi,
+// the volume of each tet is sin(t)/3 times the area of its triangle times the distance of one corner from the axis.
 TetMesh make_torus(double major_radius, double minor_radius, double size) {
   ASPIC_CHECK(minor_radius > 0 && minor_radius < major_radius && size > 0);
   const Disc disc = make_disc(pieces(minor_radius, size));

@@ -12,7 +12,8 @@ namespace {
 
 constexpr long kMostCompared = 100'000'000;  // takes seconds
 
-// Rotates both so that their common vertices come first, in the same order. Returns the number of common vertices.
+// Rotates both triangles so that their common vertices come first, in the same order. Returns the number of common
+// vertices.
 int align(Triangle& s, Triangle& t) {
   int common = 0;
   for (int i = 0; i < 3; ++i) {
@@ -33,7 +34,7 @@ class Search {
       for (int& v : triangle) v = first[v];
     for (size_t t = 0; t < triangles_.size(); ++t)
       if (!is_degenerate(corners(triangles_[t]))) usable_.push_back(static_cast<int>(t));
-    leave_out_repeated();
+    omit_repeated();
   }
 
   SelfIntersections pairs(int most) const {
@@ -56,8 +57,8 @@ class Search {
   }
 
  private:
-  // Omits triangles that repeat the corners of an earlier one: a pile of them would need all pairs.
-  void leave_out_repeated() {
+  // Omits triangles that repeat the corners of an earlier one, because a pile of them would need all pairs.
+  void omit_repeated() {
     const auto sorted = [this](int t) {
       Triangle triangle = triangles_[t];
       std::sort(triangle.begin(), triangle.end());

@@ -9,12 +9,12 @@ namespace aspic {
 
 struct SelfIntersections {
   std::vector<std::array<int, 2>> pairs;  // ascending, sorted
-  bool is_complete = true;                // no pair was omitted
+  bool is_complete = true;                // false: pairs were omitted
 };
 
 // Finds pairs of triangles that share points other than common corners and edges. Vertices at the same position count
-// as shared. Ignores degenerate, repeated and non-finite triangles. O(n log n) unless the triangles cluster at one
-// place. The search ends at `most` pairs, or after 1e8 comparisons.
+// as shared. Ignores degenerate, repeated and non-finite triangles. Costs O(n log n) unless the triangles cluster at
+// one place. The search ends at `most` pairs, or after 1e8 comparisons.
 SelfIntersections self_intersections(const TriMesh& mesh, int most = 1 << 20);
 
 }  // namespace aspic

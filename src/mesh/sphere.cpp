@@ -1,5 +1,5 @@
 // Ball from the icosahedron: each of its 20 tets (center, face) is subdivided regularly, and the shells are projected
-// onto spheres. The map is scale-free along the radius, so quality does not depend on the number of shells.
+// onto spheres. The map is homogeneous along the radius, so quality does not depend on the number of shells.
 #include <algorithm>
 #include <cmath>
 #include <map>
@@ -21,7 +21,7 @@ constexpr int kIcosahedronFaces[20][3] = {{0, 11, 5}, {0, 5, 1},  {0, 1, 7},   {
                                           {3, 9, 4},  {3, 4, 2},  {3, 2, 6},   {3, 6, 8},  {3, 8, 9},
                                           {4, 9, 5},  {2, 4, 11}, {6, 2, 10},  {8, 6, 7},  {9, 8, 1}};
 
-using Weights = std::array<int, 3>;  // weights of the corners of a face; their sum is the shell, 0 at the center
+using Weights = std::array<int, 3>;  // weights of the corners of a face; their sum is the shell index, 0 at the center
 
 class Ball {
  public:
@@ -51,7 +51,7 @@ class Ball {
     add_tet(xy, yz, zx, vertex(face, {i + 1, j + 1, k + 1}));
   }
 
-  // Four tets around the shortest of the three diagonals.
+  // Adds four tets around the shortest of the three diagonals.
   void add_octahedron(std::array<int, 2> a, std::array<int, 2> b, std::array<int, 2> c) {
     if (squared_length(b) < squared_length(a)) std::swap(a, b);
     if (squared_length(c) < squared_length(a)) std::swap(a, c);

@@ -1,4 +1,4 @@
-// The boundary of a tetrahedral mesh.
+// Boundary surfaces of tetrahedral meshes.
 #pragma once
 #include <vector>
 
@@ -11,8 +11,8 @@ namespace aspic {
 std::vector<Triangle> boundary_triangles(const TetMesh& mesh, int first, int count);
 
 struct BoundarySurface {
-  TriMesh surface;              // only the vertices on the boundary
-  std::vector<int> tet_vertex;  // surface vertex -> vertex of the tet mesh
+  TriMesh surface;              // only the boundary vertices
+  std::vector<int> tet_vertex;  // vertex of the tet mesh for each surface vertex
 };
 BoundarySurface boundary_surface(const TetMesh& mesh);
 

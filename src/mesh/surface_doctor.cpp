@@ -33,7 +33,7 @@ void examine_triangles(const TriMesh& mesh, Findings& findings) {
                 "remove them with --repair", repeated, true});
 }
 
-// A one-sided sheet (Moebius strip) cannot be oriented.
+// Returns whether the sheets can be oriented; a Moebius strip cannot.
 bool can_be_oriented(TriMesh mesh) {
   orient(mesh);
   return topology(mesh.triangles, mesh.vertex_count()).disagreeing.empty();

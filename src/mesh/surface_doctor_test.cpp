@@ -28,7 +28,7 @@ TriMesh joined(TriMesh a, const TriMesh& b, const Vec3d& offset) {
   return a;
 }
 
-TEST(DoctorOfSurfaces, FindsNothingWrongWithCleanOnes) {
+TEST(DoctorOfSurfaces, AcceptsCleanSurfaces) {
   for (const TetMesh& mesh :
        {cube_of_tets(), make_sphere(1, 0.2), make_cylinder(0.5, 2, 0.2), make_torus(1, 0.3, 0.1)}) {
     TriMesh surface = boundary_surface(mesh).surface;
@@ -38,7 +38,7 @@ TEST(DoctorOfSurfaces, FindsNothingWrongWithCleanOnes) {
   }
 }
 
-TEST(DoctorOfSurfaces, FindsAHole) {
+TEST(DoctorOfSurfaces, FindsHole) {
   TriMesh surface = ball();
   surface.triangles.erase(surface.triangles.begin() + 4);
   const Finding finding = found(surface, "open_surface");
@@ -47,7 +47,7 @@ TEST(DoctorOfSurfaces, FindsAHole) {
   EXPECT_TRUE(has_errors(diagnose(surface)));
 }
 
-TEST(DoctorOfSurfaces, FindsTurnedTrianglesAndTurnsThemBack) {
+TEST(DoctorOfSurfaces, FindsAndFlipsMisorientedTriangles) {
   const TriMesh clean = ball();
   TriMesh surface = clean;
   std::swap(surface.triangles[9][1], surface.triangles[9][2]);
@@ -56,7 +56,7 @@ TEST(DoctorOfSurfaces, FindsTurnedTrianglesAndTurnsThemBack) {
   EXPECT_EQ(surface.triangles, clean.triangles);
 }
 
-TEST(DoctorOfSurfaces, DoesNotAdviseTurningAOneSidedSheet) {
+TEST(DoctorOfSurfaces, DoesNotAdviseFlippingOneSidedSheet) {
   TriMesh strip;  // Moebius strip: five quads, the last joined to the first with a half twist
   for (int i = 0; i < 5; ++i) {
     const double angle = 2 * std::numbers::pi * i / 5;
@@ -72,14 +72,14 @@ TEST(DoctorOfSurfaces, DoesNotAdviseTurningAOneSidedSheet) {
   EXPECT_THAT(finding.remedy, HasSubstr("one-sided"));
 }
 
-TEST(DoctorOfSurfaces, RefusesCoordinatesWhosePowersOverflow) {
+TEST(DoctorOfSurfaces, RejectsCoordinatesWithOverflowingPowers) {
   TriMesh surface = ball();
   for (Vec3d& x : surface.vertices) x = 1e150 * x;
   EXPECT_THAT(names(diagnose(surface)), ElementsAre("coordinates_too_large"));
 }
 
 TEST(DoctorOfSurfaces, CancelsBackToBackPairs) {
-  TriMesh surface = ball();  // a fin of two triangles is added on an edge
+  TriMesh surface = ball();  // adds a fin of two triangles on an edge
   const auto [a, b, c] = surface.triangles[5];
   const int tip = surface.vertex_count();
   surface.vertices.push_back(1.5 * surface.vertices[a]);
@@ -90,7 +90,7 @@ TEST(DoctorOfSurfaces, CancelsBackToBackPairs) {
   EXPECT_THAT(diagnose(surface), IsEmpty());
 }
 
-TEST(DoctorOfSurfaces, KeepsOneSideOfASurfaceWrittenTwice) {
+TEST(DoctorOfSurfaces, KeepsOneSideOfDoubledSurface) {
   const TriMesh clean = ball();
   TriMesh surface = clean;
   for (const auto& [a, b, c] : clean.triangles) surface.triangles.push_back({a, c, b});
@@ -98,7 +98,7 @@ TEST(DoctorOfSurfaces, KeepsOneSideOfASurfaceWrittenTwice) {
   EXPECT_EQ(surface.triangles, clean.triangles);
 }
 
-TEST(DoctorOfSurfaces, FindsAnInwardSurfaceAndTurnsIt) {
+TEST(DoctorOfSurfaces, FindsAndFlipsInwardSurface) {
   TriMesh surface = ball();
   for (Triangle& triangle : surface.triangles) std::swap(triangle[1], triangle[2]);
   EXPECT_THAT(names(diagnose(surface)), ElementsAre("inward_surface"));
@@ -106,7 +106,7 @@ TEST(DoctorOfSurfaces, FindsAnInwardSurfaceAndTurnsIt) {
   EXPECT_THAT(diagnose(surface), IsEmpty());
 }
 
-TEST(DoctorOfSurfaces, LeavesACavityFacingIntoIt) {
+TEST(DoctorOfSurfaces, KeepsOrientationOfCavity) {
   TriMesh cavity = ball();
   for (Triangle& triangle : cavity.triangles) std::swap(triangle[1], triangle[2]);
   TriMesh surface = joined(boundary_surface(make_sphere(3, 1)).surface, cavity, {{0, 0, 0}});
@@ -114,7 +114,7 @@ TEST(DoctorOfSurfaces, LeavesACavityFacingIntoIt) {
   EXPECT_THAT(repair(surface), IsEmpty());
 }
 
-TEST(DoctorOfSurfaces, MergesTheLooseTrianglesOfAnStlFile) {
+TEST(DoctorOfSurfaces, MergesVerticesOfStlFile) {
   const TriMesh clean = ball();
   TriMesh loose;
   for (const Triangle& triangle : clean.triangles) {
@@ -127,7 +127,7 @@ TEST(DoctorOfSurfaces, MergesTheLooseTrianglesOfAnStlFile) {
   EXPECT_THAT(diagnose(loose), IsEmpty());
 }
 
-TEST(DoctorOfSurfaces, NotesUnreferencedVerticesAndDropsThem) {
+TEST(DoctorOfSurfaces, NotesAndDropsUnreferencedVertices) {
   TriMesh surface = ball();
   surface.vertices.push_back({{0, 0, 0}});
   EXPECT_EQ(found(surface, "unreferenced_vertices").severity, Severity::note);
@@ -145,24 +145,24 @@ TEST(DoctorOfSurfaces, FindsInnerWalls) {
   EXPECT_EQ(found(surface, "repeated_triangles").indices.size(), 2u);
 }
 
-TEST(DoctorOfSurfaces, FindsADegenerateTriangle) {
+TEST(DoctorOfSurfaces, FindsDegenerateTriangle) {
   TriMesh surface;
   surface.vertices = {{{0, 0, 0}}, {{1, 1, 1}}, {{3, 3, 3}}};
   surface.triangles = {{0, 1, 2}};
   EXPECT_THAT(found(surface, "degenerate_triangles").indices, ElementsAre(0));
 }
 
-TEST(SelfIntersection, OfTwoBallsIsFoundAtTheirIntersection) {
+TEST(SelfIntersection, FindsIntersectionOfTwoBalls) {
   const TriMesh apart = joined(ball(), ball(), {{2.01, 0, 0}});
   EXPECT_THAT(self_intersections(apart).pairs, IsEmpty());
   const TriMesh meeting = joined(ball(), ball(), {{1.5, 0, 0}});
   const Finding finding = found(meeting, "self_intersections");
   EXPECT_GT(finding.indices.size(), 20u);
-  for (int t : finding.indices)  // the balls meet on the circle x = 0.75
+  for (int t : finding.indices)  // the balls intersect on the circle x = 0.75
     for (int v : meeting.triangles[t]) EXPECT_NEAR(meeting.vertices[v][0], 0.75, 0.45);
 }
 
-TEST(SelfIntersection, OfAlignedBoxesIsFoundDespiteEdgeContacts) {
+TEST(SelfIntersection, FindsAlignedBoxesDespiteEdgeContacts) {
   const TriMesh cube = boundary_surface(make_box({{0, 0, 0}}, {{1, 1, 1}}, {1, 1, 1})).surface;
   for (const Vec3d& offset : {Vec3d{{0.5, 0.5, 0.5}}, Vec3d{{0.5, 0, 0}}, Vec3d{{1, 0.5, 0.5}}})
     EXPECT_THAT(self_intersections(joined(cube, cube, offset)).pairs, testing::Not(IsEmpty()));
@@ -170,7 +170,7 @@ TEST(SelfIntersection, OfAlignedBoxesIsFoundDespiteEdgeContacts) {
 }
 
 TEST(SelfIntersection, AgreesWithBruteForceOverRandomSegments) {
-  // Oracle: two triangles meet when an edge of one crosses the other, by solving for the crossing.
+  // Reference: two triangles intersect if an edge of one crosses the other, by solving for the crossing.
   std::mt19937 random(3);
   std::uniform_real_distribution<double> coordinate(0, 1);
   TriMesh soup;
@@ -194,7 +194,7 @@ TEST(SelfIntersection, AgreesWithBruteForceOverRandomSegments) {
   EXPECT_EQ(self_intersections(soup).pairs, expected);
 }
 
-TEST(SelfIntersection, OfNeighborsIsFound) {
+TEST(SelfIntersection, FindsIntersectingNeighbors) {
   TriMesh fold;  // the second triangle lies on the first, beyond their common edge or corner
   fold.vertices = {{{0, 0, 0}}, {{1, 0, 0}}, {{0, 1, 0}}, {{0.2, 0.3, 0}}, {{1, 1, 0}}};
   fold.triangles = {{0, 1, 2}, {1, 0, 3}};
@@ -209,7 +209,7 @@ TEST(SelfIntersection, OfNeighborsIsFound) {
   EXPECT_EQ(self_intersections(fold).pairs.size(), 1u);
 }
 
-TEST(SelfIntersection, SurvivesManyTrianglesInOnePlace) {
+TEST(SelfIntersection, AcceptsManyTrianglesInOnePlace) {
   TriMesh pile;
   for (int i = 0; i < 2000; ++i) {
     const double z = 1e-3 * i;
@@ -219,7 +219,7 @@ TEST(SelfIntersection, SurvivesManyTrianglesInOnePlace) {
   EXPECT_EQ(self_intersections(pile, 1000).pairs.size(), 1000u);
 }
 
-TEST(SelfIntersection, OfMillionCopiesOfOneTriangleIsNone) {
+TEST(SelfIntersection, IgnoresMillionCopiesOfOneTriangle) {
   TriMesh pile;
   pile.vertices = {{{0, 0, 0}}, {{1, 0, 0}}, {{0, 1, 0}}};
   for (int i = 0; i < 333'333; ++i)
@@ -229,7 +229,7 @@ TEST(SelfIntersection, OfMillionCopiesOfOneTriangleIsNone) {
   EXPECT_TRUE(found.is_complete);
 }
 
-TEST(SelfIntersection, SaysWhenItHasNotComparedAll) {
+TEST(SelfIntersection, ReportsIncompleteSearch) {
   TriMesh pile;
   for (int i = 0; i < 3000; ++i) {
     const double z = 1e-3 * i;

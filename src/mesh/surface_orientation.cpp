@@ -31,8 +31,8 @@ std::vector<std::array<Neighbor, 3>> neighbors(const std::vector<Triangle>& tria
 
 void turn(Triangle& triangle) { std::swap(triangle[1], triangle[2]); }
 
-// Returns the triangles reached from `start` across shared edges; `flip` marks those that must flip to agree with it.
-// Empty if none agrees (Moebius strip).
+// Returns the triangles connected to `start` by shared edges. `flip` marks those that must flip to agree with it.
+// Returns nothing if the sheet is not orientable (Moebius strip).
 std::vector<int> sheet(const std::vector<std::array<Neighbor, 3>>& next, int start, std::vector<int>& flip) {
   std::vector<int> reached = {start};
   flip[start] = 0;

@@ -1,4 +1,4 @@
-// A tetrahedral mesh at rest, and a triangle mesh, as plain data without adjacency or physics.
+// Tetrahedral meshes at rest and triangle meshes, as plain data without adjacency or physics.
 #pragma once
 #include <array>
 #include <vector>

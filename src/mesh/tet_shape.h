@@ -1,4 +1,4 @@
-// Shape of a tetrahedron: lengths, angles, quality, and its distance from a point.
+// Shape measures of a tetrahedron, and its distance from a point.
 #pragma once
 #include <array>
 #include <cmath>
@@ -26,20 +26,20 @@ inline double signed_volume(const TetCorners& X) {
 
 double longest_edge(const TetCorners& corners);
 
-// Smallest and largest dihedral angle at the six edges [degrees]; 0 and 180 for a flat tet.
+// Returns the smallest and largest dihedral angle at the six edges [degrees]; 0 and 180 for a flat tet.
 std::array<double, 2> dihedral_range(const TetCorners& corners);
 
-// Mean ratio 12 (3 V)^(2/3) / sum of squared edges: 1 for a regular tet, 0 for a flat one, negative for an inverted one
-// [Liu and Joe 1994].
+// Returns the mean ratio 12 (3 V)^(2/3) / sum of squared edges: 1 for a regular tet, 0 for a flat one, negative for an
+// inverted one [Liu and Joe 1994].
 double mean_ratio(const TetCorners& corners);
 
-// Volumes below this threshold are round-off of the corners: the tet counts as flat.
+// Returns the threshold below which volumes are at the round-off level of the corners: the tet counts as flat.
 double flat_volume(const TetCorners& corners);
 
-// Barycentric coordinates of p, which sum to 1. Requires a tet that is not flat.
+// Returns the barycentric coordinates of p, which sum to 1. Requires a tet that is not flat.
 std::array<double, 4> barycentric(const TetCorners& corners, const Vec3d& p);
 
-// Squared distance [m^2] from p to the tet, 0 inside. w: barycentric coordinates of p.
+// Returns the squared distance [m^2] from p to the tet, 0 inside. w: barycentric coordinates of p.
 double squared_distance(const TetCorners& corners, const std::array<double, 4>& w, const Vec3d& p);
 
 }  // namespace aspic

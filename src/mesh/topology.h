@@ -1,4 +1,4 @@
-// Topology of a mesh: edges, boundaries and non-manifold places. All lists are ascending.
+// Topology of triangle meshes: edges, boundaries and non-manifold features. All lists are ascending.
 #pragma once
 #include <array>
 #include <cstddef>
@@ -39,7 +39,7 @@ struct SurfaceTopology {
 };
 SurfaceTopology topology(const std::vector<Triangle>& triangles, int vertex_count);
 
-// Returns the elements whose vertices all occur in an earlier element, in any order.
+// Returns the elements whose vertices all occur in one earlier element, in any order.
 template <class Element>
 std::vector<int> repeated_elements(const std::vector<Element>& elements);
 

@@ -11,7 +11,7 @@ namespace {
 
 using Triangle2 = std::array<Vec2d, 3>;
 
-// Projects along the coordinate in which the normal is largest.
+// Projects along the coordinate axis in which the normal is largest.
 Triangle2 flattened(const TriangleCorners& t, int without) {
   const int u = (without + 1) % 3, v = (without + 2) % 3;
   return {{{t[0][u], t[0][v]}, {t[1][u], t[1][v]}, {t[2][u], t[2][v]}}};
@@ -42,7 +42,7 @@ bool meet_in_plane(const TriangleCorners& s, const TriangleCorners& t) {
   return !is_separated_by_edges(a, b) && !is_separated_by_edges(b, a);
 }
 
-// Whether segment pq, not in the plane of t, meets t: the line passes all edges on the same side.
+// Returns whether segment pq, which is not in the plane of t, intersects t: its line passes all edges on the same side.
 bool segment_meets(const Vec3d& p, const Vec3d& q, const TriangleCorners& t) {
   bool left = true, right = true;
   for (int e = 0; e < 3; ++e) {
@@ -53,7 +53,7 @@ bool segment_meets(const Vec3d& p, const Vec3d& q, const TriangleCorners& t) {
   return left || right;
 }
 
-// Whether an edge of s passes through t; `sides` are the sides of the corners of s.
+// Returns whether an edge of s passes through t; `sides` are the sides of t on which the corners of s lie.
 bool edge_passes_through(const TriangleCorners& s, const std::array<int, 3>& sides, const TriangleCorners& t) {
   for (int e = 0; e < 3; ++e) {
     const int f = (e + 1) % 3;
@@ -74,7 +74,8 @@ bool all_on_one_side(const std::array<int, 3>& sides) {
 
 bool all_in_plane(const std::array<int, 3>& sides) { return sides[0] == 0 && sides[1] == 0 && sides[2] == 0; }
 
-// Whether the wedges at the common corner s[0] = t[0] of coplanar triangles overlap: one contains an edge of the other.
+// Returns whether the wedges at the common corner s[0] = t[0] of coplanar triangles overlap: one contains an edge of
+// the other.
 bool wedges_overlap(const TriangleCorners& s, const TriangleCorners& t) {
   const int without = largest_axis(cross(s[1] - s[0], s[2] - s[0]));
   const Triangle2 a = flattened(s, without), b = flattened(t, without);
