@@ -1,4 +1,4 @@
-// ASPIC_CHECK states an invariant; a violation is a bug in Aspic. Active in debug and sanitizer builds.
+// ASPIC_CHECK asserts an invariant; a violation is a bug in Aspic. Active in debug and sanitizer builds.
 #pragma once
 
 namespace aspic {

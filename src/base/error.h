@@ -1,4 +1,4 @@
-// The exception for bad input: values, files, scenes. Numerical failures are a Status in a report instead.
+// The exception for invalid input: values, files, scenes. Numerical failures are a Status in a report instead.
 #pragma once
 #include <stdexcept>
 #include <string>
@@ -7,9 +7,9 @@
 
 namespace aspic {
 
-// Messages are one line with the place (file:line:column if there is one), the value and the remedy:
+// A message is one line with the location (file:line:column if available), the value and the remedy:
 //   beam.toml:12:3: poisson = 0.5; neo_hookean needs -1 < poisson < 0.5 (try 0.49)
-// Control characters are shown as \xNN. Lines longer than kLongestMessage bytes are shortened in the middle.
+// Control characters are printed as \xNN. Lines longer than kLongestMessage bytes are shortened in the middle.
 class InvalidInput : public std::runtime_error {
  public:
   static constexpr size_t kLongestMessage = 4000;

@@ -7,7 +7,7 @@ namespace {
 
 const std::vector<std::string> kKnown = {"young", "poisson", "density", "box"};
 
-TEST(NearestName, IsTheOneWithTheFewestTypingErrors) {
+TEST(NearestName, HasFewestTypingErrors) {
   EXPECT_EQ(nearest_name("young", kKnown), "young");
   EXPECT_EQ(nearest_name("yuong", kKnown), "young");     // two letters exchanged
   EXPECT_EQ(nearest_name("poison", kKnown), "poisson");  // one letter missing
@@ -15,23 +15,23 @@ TEST(NearestName, IsTheOneWithTheFewestTypingErrors) {
   EXPECT_EQ(nearest_name("bax", kKnown), "box");
 }
 
-TEST(NearestName, IsEmptyWhereNothingIsMeant) {
+TEST(NearestName, IsEmptyIfNoneIsClose) {
   EXPECT_EQ(nearest_name("gravity", kKnown), "");
   EXPECT_EQ(nearest_name("young", {}), "");
   EXPECT_EQ(nearest_name(std::string(65, 'y'), {std::string(65, 'y')}), "");  // not a typing error
 }
 
-TEST(NearestName, OfSeveralEquallyNearIsTheFirst) {
+TEST(NearestName, IsFirstAmongEquallyClose) {
   EXPECT_EQ(nearest_name("bxx", {"bax", "bix"}), "bax");
   EXPECT_EQ(nearest_name("bxx", {"bix", "bax"}), "bix");
 }
 
-TEST(NearestName, AllowsMoreErrorsInALongerWord) {
+TEST(NearestName, AllowsMoreErrorsInLongerWords) {
   EXPECT_EQ(nearest_name("bekwrd_euller", {"backward_euler"}), "backward_euler");  // 3 of 13
   EXPECT_EQ(nearest_name("abc", {"xyz"}), "");
 }
 
-TEST(Suggestion, NamesTheNearestOrElseListsAll) {
+TEST(Suggestion, NamesNearestOrListsAll) {
   EXPECT_EQ(suggestion("yung", kKnown), " (did you mean 'young'?)");
   EXPECT_EQ(suggestion("gravity", kKnown), " (known: young, poisson, density, box)");
   EXPECT_EQ(suggestion("anything", {}), "");

@@ -44,7 +44,7 @@ int64_t group_available(const GroupFiles& files) {
   return std::clamp<int64_t>(limit - usage + (cache == kUnknown ? 0 : cache), 0, limit);
 }
 
-// Memory that this process may still map (ulimit -v).
+// Returns the memory that this process may still map (ulimit -v).
 int64_t process_available() {
   rlimit limit{};
   if (::getrlimit(RLIMIT_AS, &limit) != 0 || limit.rlim_cur == RLIM_INFINITY) return kUnknown;

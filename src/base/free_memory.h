@@ -4,8 +4,8 @@
 
 namespace aspic {
 
-// Returns the smallest of the memory available on the machine and the limits of control group and ulimit -v [bytes].
-// INT64_MAX if no limit is known.
+// Returns the smallest of the available memory of the machine, the limit of the control group and that of ulimit -v
+// [bytes]. INT64_MAX if no limit is known.
 int64_t free_memory();
 
 }  // namespace aspic

@@ -1,4 +1,4 @@
-// A non-owning view of a callable: two pointers, so unlike std::function it never allocates.
+// A non-owning view of a callable: two pointers; unlike std::function it never allocates.
 #pragma once
 #include <memory>
 #include <type_traits>

@@ -1,4 +1,4 @@
-// Hashes of contents, which detect mistakes, not forgery.
+// Content hashes, which detect accidental changes, not forgery.
 #pragma once
 #include <cstddef>
 #include <cstdint>

@@ -15,8 +15,8 @@
 namespace aspic {
 namespace {
 
-// Idle threads spin this long before they sleep: waking takes as long as a short loop, and a solver begins its next
-// loop within microseconds. After the first interval they yield the processor.
+// Idle threads spin this long before they sleep, because waking takes as long as a short loop, and a solver starts its
+// next loop within microseconds. After the first interval they yield the processor.
 constexpr std::chrono::microseconds kSpin{20}, kSpinAlone{2};
 
 void relax_processor() {
@@ -45,16 +45,16 @@ bool spin_until(Done done, bool may_spin) {
   }
 }
 
-// Runs one loop at a time; the calling thread works, too. A thread that decrements remaining_ owns an index of the
-// current loop, which cannot end before that index is reported in pending_. So late threads are harmless, and nothing
-// waits for them.
+// Runs one loop at a time, also on the calling thread. A thread that decrements remaining_ owns an index of the current
+// loop, which cannot end before that index is reported in pending_. Hence late threads are harmless, and nothing waits
+// for them.
 class Pool {
  public:
   ~Pool() { resize(0); }
 
   int workers() const { return static_cast<int>(threads_.size()); }
 
-  // Starts fewer threads if the system refuses the number because of limits on processes or memory.
+  // Starts fewer threads if the system limits processes or memory.
   void resize(int workers) {
     stop();
     may_spin_ = workers < processor_count();
@@ -65,7 +65,7 @@ class Pool {
     body_ = &body;
     count_ = count;
     pending_ = count;
-    remaining_ = count;  // from here on the loop is visible to the threads
+    remaining_ = count;  // makes the loop visible to the threads
     if (sleeping_ > 0) {
       { std::lock_guard lock(mutex_); }  // threads that saw no work are asleep by now
       wake_.notify_all();
@@ -130,13 +130,13 @@ class Pool {
 
   std::vector<std::thread> threads_;
   bool may_spin_ = false;
-  // Each loop: data that the owner writes before remaining_ is set...
+  // Data of each loop that the owner writes before it sets remaining_.
   const FunctionRef<void(int)>* body_ = nullptr;
   int count_ = 0;
-  // ...unclaimed indices, and unfinished indices.
+  // Unclaimed indices, and unfinished indices.
   std::atomic<int> remaining_ = 0;
   std::atomic<int> pending_ = 0;
-  // Written before and read after remaining_ or pending_, so that one of the sides sees the change of the other.
+  // Written before and read after remaining_ or pending_, so that one of the sides detects the change of the other.
   std::atomic<int> sleeping_ = 0;
   std::atomic<bool> caller_sleeps_ = false, quit_ = false;
   std::mutex mutex_;

@@ -16,7 +16,7 @@
 namespace aspic {
 namespace {
 
-class Parallel : public testing::TestWithParam<int> {  // the number of threads
+class Parallel : public testing::TestWithParam<int> {  // parameter: number of threads
  protected:
   void SetUp() override { set_thread_count(GetParam()); }
   void TearDown() override { set_thread_count(before_); }
@@ -27,7 +27,7 @@ class Parallel : public testing::TestWithParam<int> {  // the number of threads
 
 INSTANTIATE_TEST_SUITE_P(Threads, Parallel, testing::Values(1, 2, 3, 8), testing::PrintToStringParamName());
 
-TEST_P(Parallel, ForVisitsEveryIndexExactlyOnce) {
+TEST_P(Parallel, ForVisitsEachIndexOnce) {
   for (const int count : {0, 1, 2, 7, 1000}) {
     std::vector<std::atomic<int>> visits(count);
     parallel_for(count, [&](int i) { ++visits[i]; });
@@ -35,7 +35,7 @@ TEST_P(Parallel, ForVisitsEveryIndexExactlyOnce) {
   }
 }
 
-TEST_P(Parallel, ChunksCoverTheRangeWithoutOverlap) {
+TEST_P(Parallel, ChunksCoverRangeWithoutOverlap) {
   for (const int count : {0, 1, kChunkSize - 1, kChunkSize, kChunkSize + 1, 5 * kChunkSize + 3}) {
     std::vector<std::atomic<int>> visits(count);
     parallel_chunks(count, [&](int first, int last) {
@@ -57,7 +57,7 @@ double sum_of_terms(int count) {
   });
 }
 
-TEST_P(Parallel, SumHasTheBitsOfOneThread) {
+TEST_P(Parallel, SumIsBitReproducible) {
   const int count = 20 * kChunkSize + 17;
   const double sum = sum_of_terms(count);
   set_thread_count(1);
@@ -99,7 +99,7 @@ TEST_P(Parallel, LoopsOfTwoThreadsDoNotMix) {
   EXPECT_EQ(wrong, 0);
 }
 
-TEST_P(Parallel, LoopsAllocateNothing) {
+TEST_P(Parallel, LoopsDoNotAllocate) {
   double a = 1, b = 2, c = 3, d = 4;  // more than std::function stores without allocating
   std::vector<double> x(3 * kChunkSize, 0.0);
   const auto loops = [&] {
@@ -124,7 +124,7 @@ TEST_P(Parallel, ShortLoopsWorkWithAwakeAndSleepingThreads) {
   }
 }
 
-TEST(ParallelThreads, TheirNumberMayChangeBetweenLoops) {
+TEST(ParallelThreads, MayChangeNumberBetweenLoops) {
   const int before = thread_count();
   for (const int threads : {2, 8, 1, 3, 1, 8, 2}) {
     set_thread_count(threads);

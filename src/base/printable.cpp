@@ -37,7 +37,7 @@ void append_shown(std::string_view character, std::string& out) {
   out += {'\\', 'x', kDigits[byte >> 4], kDigits[byte & 15]};
 }
 
-// Returns the part of the beginning that fits into `most` bytes when shown; leaves the rest in `text`.
+// Returns the longest beginning whose printable form fits into `most` bytes; leaves the rest in `text`.
 std::string beginning(std::string_view& text, size_t most) {
   std::string out;
   while (!text.empty()) {

@@ -1,4 +1,4 @@
-// Printable text for messages, reports and pages from files and command lines: terminals interpret control characters,
+// Printable text for messages, reports and pages, from files and command lines: terminals interpret control characters,
 // and JSON must be UTF-8.
 #pragma once
 #include <cstddef>
@@ -7,19 +7,20 @@
 
 namespace aspic {
 
-// Whether `text` is UTF-8 without control characters: those of ASCII (including line breaks and tabs) and Latin-1, and
-// those of Unicode that break lines or change the text direction.
+// Returns whether `text` is UTF-8 without control characters: those of ASCII (including line breaks and tabs) and
+// Latin-1, and those of Unicode that break lines or change the text direction.
 bool is_printable(std::string_view text);
 
 // Returns the text with each unprintable byte as \xNN.
 std::string printable(std::string_view text);
 std::string printable_lines(std::string_view text);  // keeps line breaks
 
-// Returns printable text of at most `most` bytes [> 3]. "..." replaces the end, or the middle of `elided` text.
+// Returns printable text of at most `most` bytes [> 3]. "..." replaces the end of `shortened` or the middle of `elided`
+// text.
 std::string shortened(std::string_view text, size_t most = 60);
 std::string elided(std::string_view text, size_t most);
 
-// Returns a word for a message: shortened, in single quotes.
+// Returns a word for a message: shortened and in single quotes.
 std::string shown(std::string_view word);
 
 }  // namespace aspic

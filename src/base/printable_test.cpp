@@ -7,7 +7,7 @@
 namespace aspic {
 namespace {
 
-TEST(Printable, LeavesTextOfAnyLanguageAsItIs) {
+TEST(Printable, KeepsTextOfAnyLanguage) {
   for (const char* text : {"", "young = 1e5",
                            "b\xc3\xbc"
                            "chse",
@@ -17,7 +17,7 @@ TEST(Printable, LeavesTextOfAnyLanguageAsItIs) {
   }
 }
 
-TEST(Printable, ShowsTerminalControlCharactersByTheirBytes) {
+TEST(Printable, EscapesTerminalControlCharacters) {
   EXPECT_EQ(printable("\x1b[31mred"), "\\x1B[31mred");
   EXPECT_EQ(printable("two\r\nlines\t"), "two\\x0D\\x0Alines\\x09");
   EXPECT_EQ(printable("\x7f"), "\\x7F");
@@ -27,7 +27,7 @@ TEST(Printable, ShowsTerminalControlCharactersByTheirBytes) {
             "\\xC2\\x9B31m");  // U+009B begins an escape sequence, too
 }
 
-TEST(Printable, ShowsInvalidUtf8ByItsBytes) {
+TEST(Printable, EscapesInvalidUtf8) {
   EXPECT_EQ(printable("stra\xdf"
                       "e"),
             "stra\\xDFe");                                           // Latin-1
@@ -39,7 +39,7 @@ TEST(Printable, ShowsInvalidUtf8ByItsBytes) {
   EXPECT_EQ(printable("\xf4\x90\x80\x80"), "\\xF4\\x90\\x80\\x80");  // above U+10FFFF
 }
 
-TEST(Printable, ShowsDirectionAndLineSeparatorsByTheirBytes) {
+TEST(Printable, EscapesDirectionAndLineSeparators) {
   EXPECT_EQ(printable("a\xe2\x80\xae"
                       "b"),
             "a\\xE2\\x80\\xAE"
@@ -50,12 +50,12 @@ TEST(Printable, ShowsDirectionAndLineSeparatorsByTheirBytes) {
             "b");  // U+2028: line separator
 }
 
-TEST(Printable, KeepsTheBreaksOfLines) {
+TEST(Printable, KeepsLineBreaks) {
   EXPECT_EQ(printable_lines("a\x1b\n\nb\t"), "a\\x1B\n\nb\\x09");
   EXPECT_EQ(printable_lines("a\n"), "a\n");
 }
 
-TEST(Printable, HoldsForEveryPairOfBytes) {
+TEST(Printable, EscapesEveryPairOfBytes) {
   for (int a = 0; a < 256; ++a)
     for (int b = 0; b < 256; ++b) {
       const std::string text = {static_cast<char>(a), static_cast<char>(b)};
@@ -64,7 +64,7 @@ TEST(Printable, HoldsForEveryPairOfBytes) {
     }
 }
 
-TEST(Shortened, CutsBetweenCharactersAndAfterShowingThem) {
+TEST(Shortened, CutsBetweenEscapedCharacters) {
   EXPECT_EQ(shortened("0123456789", 10), "0123456789");
   EXPECT_EQ(shortened("0123456789a", 10), "0123456...");
   EXPECT_EQ(shortened("01234\xc3\xbc\xc3\xbc\xc3\xbc", 10), "01234\xc3\xbc...");
@@ -72,7 +72,7 @@ TEST(Shortened, CutsBetweenCharactersAndAfterShowingThem) {
   EXPECT_EQ(shown("\x1b]0;\a"), "'\\x1B]0;\\x07'");
 }
 
-TEST(Elided, KeepsTheBeginningAndTheEnd) {
+TEST(Elided, KeepsBeginningAndEnd) {
   const std::string text = elided("place: " + std::string(5000, 'a') + "\x1b; remedy", 100);
   EXPECT_LE(text.size(), 100u);
   EXPECT_TRUE(text.starts_with("place: aaa")) << text;
@@ -85,12 +85,12 @@ TEST(Elided, KeepsTheBeginningAndTheEnd) {
   }
 }
 
-TEST(InvalidInput, IsOneLineWhateverItQuotes) {
+TEST(InvalidInput, IsOneLineForAnyQuotedText) {
   EXPECT_STREQ(InvalidInput("mesh.obj:1: 'a\nb\x1b'").what(), "mesh.obj:1: 'a\\x0Ab\\x1B'");
   EXPECT_LE(std::string(InvalidInput(std::string(1 << 20, 'a')).what()).size(), InvalidInput::kLongestMessage);
 }
 
-TEST(InvalidInput, HasALinePerMessage) {
+TEST(InvalidInput, HasOneLinePerMessage) {
   EXPECT_STREQ(InvalidInput(std::vector<std::string>{"one", "t\nwo"}).what(), "one\nt\\x0Awo");
 }
 

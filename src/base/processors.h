@@ -1,4 +1,4 @@
-// Number of processors that this process may use.
+// Number of processors available to this process.
 #pragma once
 
 namespace aspic {

@@ -11,7 +11,7 @@
 namespace aspic {
 namespace {
 
-TEST(Processors, AreBetweenOneAndThoseOfTheMachine) {
+TEST(Processors, AreBetweenOneAndMachineCount) {
   EXPECT_GE(processor_count(), 1);
   if (const unsigned all = std::thread::hardware_concurrency(); all > 0) {
     EXPECT_LE(processor_count(), static_cast<int>(all));
@@ -19,7 +19,7 @@ TEST(Processors, AreBetweenOneAndThoseOfTheMachine) {
 }
 
 #if defined(__linux__)
-TEST(Processors, AreThoseOfTheAffinityMask) {
+TEST(Processors, RespectAffinityMask) {
   int count = 0;
   std::thread([&] {  // the mask belongs to the thread
     cpu_set_t one;

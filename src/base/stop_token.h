@@ -15,15 +15,15 @@ inline double steady_seconds() {
 }
 
 // Stops a computation in one of two ways. A request discards the current work: the computation ends at its next poll of
-// the token with status `interrupted`. A deadline keeps the best result: the status is `budget`. Results that a
-// deadline ends depend on the clock. Copies are cheap and share the request.
+// the token with status `interrupted`. A deadline keeps the best result: the status is `budget`. Results that end at a
+// deadline depend on the clock. Copies are cheap and share the request.
 class StopToken {
  public:
   StopToken() = default;  // never stops and reads no clock
   // `requested` is polled often, from one thread at a time. Once true, it must remain true.
   explicit StopToken(std::function<bool()> requested)
       : requested_(std::make_shared<const std::function<bool()>>(std::move(requested))) {}
-  // Deadline in seconds from now. The clock must outlive the token and its copies.
+  // Sets a deadline in seconds from now. The clock must outlive the token and its copies.
   StopToken(const WallClock& clock, double seconds) : clock_(&clock), begin_(clock()), end_(begin_ + seconds) {}
 
   bool requested() const { return requested_ && (*requested_)(); }
@@ -33,7 +33,7 @@ class StopToken {
   double now() const { return clock_ ? (*clock_)() : 0; }  // [s]; 0 without a deadline
   double seconds_left() const { return clock_ ? end_ - (*clock_)() : std::numeric_limits<double>::infinity(); }
 
-  // Returns the same request with another deadline.
+  // Returns a token with the same request and another deadline.
   StopToken with_deadline(const WallClock& clock, double seconds) const {
     StopToken token(clock, seconds);
     token.requested_ = requested_;
@@ -44,10 +44,10 @@ class StopToken {
     token.requested_ = requested_;
     return token;
   }
-  // Moves the deadline to a fraction of its initial time span, or forward by a number of seconds.
+  // Return a token whose deadline is at a fraction of the initial time span, or earlier by a number of seconds.
   StopToken at_fraction(double fraction) const { return ending_at(begin_ + fraction * (end_ - begin_)); }
   StopToken earlier_by(double seconds) const { return ending_at(end_ - seconds); }
-  // At this deadline the current work is discarded, as after a request.
+  // Returns a token whose deadline discards the current work, like a request.
   StopToken discarding() const {
     return has_deadline() ? StopToken([token = *this] { return token.stopped(); }) : *this;
   }

@@ -6,7 +6,7 @@ namespace aspic {
 
 class Stopwatch {
  public:
-  // Seconds since the last lap or the construction.
+  // Returns the seconds since the last lap or the construction.
   double lap() {
     const auto now = std::chrono::steady_clock::now();
     const double seconds = std::chrono::duration<double>(now - last_).count();

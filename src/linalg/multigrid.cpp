@@ -11,8 +11,8 @@
 namespace aspic {
 namespace {
 
-constexpr int kMostLevels = 10;
-constexpr int kLeastReduction = 2;  // minimum ratio of the rows of two levels; below it, more levels do not help
+constexpr int kMaxLevels = 10;
+constexpr int kMinReduction = 2;  // minimum ratio of the rows of two levels; below it, more levels do not help
 constexpr double kRegular =
     1e-12;  // relative increase of the coarsest diagonal: the matrix of a free body without mass is singular
 constexpr double kAccurate = 0.25;  // reduction of a coarse residual that is sufficient
@@ -108,7 +108,7 @@ void Multigrid::analyze(const BlockPattern& pattern) {
 
 void Multigrid::build(const BlockSparse& H) {
   levels_.clear();
-  levels_.reserve(kMostLevels + 1);  // levels point to the patterns of those above
+  levels_.reserve(kMaxLevels + 1);  // levels point to the patterns of those above
   const BlockPattern* pattern = H.pattern;
   Graph graph = graph_of(*pattern);
   std::vector<Vec3d> position = pattern->rest_position;
@@ -119,12 +119,12 @@ void Multigrid::build(const BlockSparse& H) {
   const int first_steps = has_modulus_jump(graph, modulus) ? kSteps : kFirstSteps;
   std::span<const char> excluded = isolated_;
   int rows_per_vertex = 1, size = options_.aggregate_size;
-  while (pattern->rows() > options_.coarsest_rows && static_cast<int>(levels_.size()) < kMostLevels) {
+  while (pattern->rows() > options_.coarsest_rows && static_cast<int>(levels_.size()) < kMaxLevels) {
     Aggregates aggregates = make_aggregates({graph, position, modulus, excluded, size});
     // If the modulus jumps almost everywhere, aggregates cross the jumps; on the first level only if necessary.
-    const int too_many = rows_per_vertex == 4 ? graph.vertex_count() / 3 : pattern->rows() / (4 * kLeastReduction);
+    const int too_many = rows_per_vertex == 4 ? graph.vertex_count() / 3 : pattern->rows() / (4 * kMinReduction);
     if (aggregates.count() > too_many) aggregates = make_aggregates({graph, position, {}, excluded, size});
-    if (aggregates.count() == 0 || 4 * kLeastReduction * aggregates.count() > pattern->rows()) break;
+    if (aggregates.count() == 0 || 4 * kMinReduction * aggregates.count() > pattern->rows()) break;
     Level& level = levels_.emplace_back();
     level.coarsening = make_affine_coarsening(graph, aggregates, rows_per_vertex, value);
     const AffineCoarsening& c = level.coarsening;

@@ -1,4 +1,4 @@
-// As rigid as possible: psi = mu |F - R|^2, R the rotation closest to F. It has no volume term.
+// As-rigid-as-possible model: psi = mu |F - R|^2, where R is the rotation closest to F. It has no volume term.
 #pragma once
 #include "material/material.h"
 #include "material/reference.h"
@@ -26,7 +26,7 @@ struct Arap {
     const T two_mu = T(2.0) * p.mu;
     Mat9<T> H;
     for (int i = 0; i < 81; ++i) H.a[i] = i % 10 == 0 ? two_mu : T(0.0);
-    add_rotation_gradient(svd3(F), -two_mu, kLeastStretchSum, H);
+    add_rotation_gradient(svd3(F), -two_mu, kMinStretchSum, H);
     return H;
   }
 

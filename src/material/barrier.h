@@ -1,4 +1,4 @@
-// Energies that are infinite in inverted elements; the other lanes of a Pack keep their values.
+// Energy densities that are infinite in inverted elements. Other lanes of a Pack are unaffected.
 #pragma once
 #include <limits>
 
@@ -6,7 +6,7 @@
 
 namespace aspic {
 
-// Returns `energy` where J > 0, else +inf, also where J is NaN.
+// Returns `energy` if J > 0, else +inf, also if J is NaN.
 template <class T>
 T infinite_unless_positive(const T& J, const T& energy) {
   return where_positive(J, energy, T(std::numeric_limits<double>::infinity()));

@@ -1,4 +1,4 @@
-// Convex splines with knots 0 = t_0 < t_1 < ... < t_(N+1), for data-driven laws:
+// Convex splines with knots 0 = t_0 < t_1 < ... < t_(N+1), for data-driven energy densities:
 //   g(x) = sum over i = 1..N of c_i B_i(x),   B_i'' = 2 hat_i / (t_(i+1) - t_(i-1)),   B_i(0) = B_i'(0) = 0
 // hat_i is the piecewise linear function that is 1 at t_i and 0 at all other knots, so the slope B_i' rises smoothly
 // from 0 before t_(i-1) to 1 beyond t_(i+1) (the I-splines of [Ramsay 1988]). For c >= 0, g is convex and nondecreasing

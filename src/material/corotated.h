@@ -29,7 +29,7 @@ struct Corotated {
   static Mat9<T> hessian(const Mat3<T>& F, const Params<T>& p) {
     const T tension = p.lambda * (determinant(F) - T(1.0));
     Mat9<T> H = law_hessian(F, LawDerivativesLinearInI1<T>{p.mu, tension, p.lambda});
-    add_rotation_gradient(svd3(F), T(-2.0) * p.mu, kLeastStretchSum, H);
+    add_rotation_gradient(svd3(F), T(-2.0) * p.mu, kMinStretchSum, H);
     return H;
   }
 

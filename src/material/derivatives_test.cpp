@@ -1,4 +1,4 @@
-// Properties of material derivatives other than correctness, which `verify` checks.
+// Properties of material derivatives other than accuracy, which `verify` checks.
 #include <gtest/gtest.h>
 
 #include "material/states.h"
@@ -20,7 +20,7 @@ TEST(MaterialDerivatives, HessianIsSymmetric) {
   });
 }
 
-TEST(RotationMaterials, StayFiniteWhereTheRotationJumps) {
+TEST(RotationMaterials, StayFiniteAtRotationJumps) {
   const auto check = []<class M>() {
     const auto p = ordinary_params<M>();
     std::mt19937 random(5);

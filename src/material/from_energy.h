@@ -1,10 +1,10 @@
-// A material from its energy density alone: stress and Hessian by automatic differentiation.
+// A material defined by its energy density alone: stress and Hessian by automatic differentiation.
 //   struct MyEnergy {
 //     template <class T> struct Params { T mu; };
 //     template <class T> static T psi(const Mat3<T>& F, const Params<T>& p) { return ...; }
 //   };
 //   using MyMaterial = FromEnergy<MyEnergy>;
-// Its Hessian is exact to round-off and several times slower than a hand-written one.
+// The Hessian is exact up to round-off, and several times slower than a hand-written one.
 #pragma once
 #include "material/material.h"
 #include "math/jet.h"

@@ -1,4 +1,4 @@
-// A material from its law psi(I1, J), I1 = tr(F'F) = |F|^2, J = det F.
+// A material defined by its energy density psi(I1, J), I1 = tr(F'F) = |F|^2, J = det F.
 //   P = 2 psi_I F + psi_J cof F
 //   H = 2 psi_I Id + psi_J d2J/dF2 + psi_JJ g g' + 4 psi_II f f' + 2 psi_IJ (f g' + g f'),  f = vec F, g = vec cof F
 #pragma once
@@ -6,7 +6,7 @@
 
 namespace aspic {
 
-// Derivatives of psi(I1, J); a law that is linear in I1 (psi_II = psi_IJ = 0) returns the shorter list.
+// Derivatives of psi(I1, J). Densities that are linear in I1 (psi_II = psi_IJ = 0) return LawDerivativesLinearInI1.
 template <class T>
 struct LawDerivatives {
   T dI, dJ, dII, dIJ, dJJ;

@@ -1,4 +1,4 @@
-// A material from its law psi = W1(I1bar) + W2(I2bar) + U1(I1) + U2(I2) + V(J); +inf for J <= 0.
+// A material defined by psi = W1(I1bar) + W2(I2bar) + U1(I1) + U2(I2) + V(J); +inf for J <= 0.
 //   I1 = |F|^2, I2 = |cof F|^2 = (I1^2 - |F'F|^2) / 2, I1bar = J^(-2/3) I1, I2bar = J^(-4/3) I2
 //   P = 2 psi_1 F + psi_2 G + psi_J g,   G = dI2/dF = 2 F (I1 Id - F'F),   g = cof F
 //   H = 2 psi_1 Id + psi_2 d2I2/dF2 + psi_J d2J/dF2 + 4 psi_11 f f' + psi_22 G G' + psi_JJ g g'
@@ -11,7 +11,7 @@
 
 namespace aspic {
 
-// L has Params<T> and the five functions as curves: W1(I1bar, p) and so on.
+// L defines Params<T> and the five functions with their derivatives: W1(I1bar, p) and so on.
 template <class L>
 struct FromTwoInvariants : L {
   using TwoInvariantLaw = L;
@@ -22,7 +22,8 @@ struct FromTwoInvariants : L {
   static T psi(const Mat3<T>& F, const Params<T>& p) {
     return infinite_unless_positive(determinant(F), of_minors(F, cofactor(F), determinant(F), p));
   }
-  // psi as a function of F, cof F and det F: convex if they are taken as independent, psi is polyconvex.
+  // Returns psi as a function of F, cof F and det F. If it is convex in these as independent variables, psi is
+  // polyconvex.
   template <class T>
   static T of_minors(const Mat3<T>& F, const Mat3<T>& cof, const T& J, const Params<T>& p) {
     const T s = isochoric_scale(J), I1 = squared_norm(F), I2 = squared_norm(cof);
@@ -41,7 +42,7 @@ struct FromTwoInvariants : L {
     const Mat3<T> y = (d.first.dIJ + d.first.dIJ) * F + (T(0.5) * d.first.dJJ) * d.g + d.second.dIJ * G;
     Mat9<T> H = identity_plus_outer(d.first.dI + d.first.dI, T(4.0) * (d.first.dII + d.second.dI), F, y, d.g);
     add_determinant_hessian(F, d.first.dJ, H);
-    // G = F S with dS = -2 dC + 2 dI1 Id; the second part is 4 f f', above.
+    // G = F S with dS = -2 dC + 2 dI1 Id. The identity plus outer products above include the second part, 4 f f'.
     add_product_hessian(F, d.second.dI * d.S, T(-2.0) * d.second.dI, H);
     const Mat3<T> wG = d.second.dII * G;
     for (int c = 0; c < 9; ++c)
@@ -53,7 +54,7 @@ struct FromTwoInvariants : L {
   template <class T>
   struct Derivatives {
     Mat3<T> g, S;             // cof F, 2 (I1 Id - C)
-    LawDerivatives<T> first;  // in I1 and J, with all of psi_J and psi_JJ
+    LawDerivatives<T> first;  // derivatives with respect to I1 and J, including all of psi_J and psi_JJ
     struct {
       T dI, dII, dIJ;
     } second;  // psi_2, psi_22, psi_2J

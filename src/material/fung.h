@@ -1,5 +1,5 @@
-// Fung-type exponential solid, isotropic: psi = mu/(2b) (exp(b (I1bar - 3)) - 1) + K/2 (J - 1)^2,
-// I1bar = J^(-2/3) I1; +inf for J <= 0. b -> 0 gives neo_hookean_isochoric.
+// Isotropic Fung-type exponential model: psi = mu/(2b) (exp(b (I1bar - 3)) - 1) + K/2 (J - 1)^2, I1bar = J^(-2/3) I1;
+// +inf for J <= 0. b -> 0 yields neo_hookean_isochoric.
 #pragma once
 #include "material/isochoric.h"
 #include "material/material.h"

@@ -1,4 +1,4 @@
-// Properties of all materials: rest state, rotation, barriers, lanes.
+// Properties of all materials: rest state, rotation invariance, barriers, independence of lanes.
 #include <gtest/gtest.h>
 
 #include <limits>
@@ -29,7 +29,7 @@ TEST(Materials, AreInvariantUnderRotation) {
       const Mat3d F = random_deformation(random), R = random_rotation(random);
       const double stiffness = largest(M::hessian(F, p).a);
       EXPECT_NEAR(M::psi(R * F, p), M::psi(F, p), 1e-13 * stiffness) << M::info().name;
-      EXPECT_NEAR(M::psi(F * R, p), M::psi(F, p), 1e-13 * stiffness) << M::info().name << " is isotropic";
+      EXPECT_NEAR(M::psi(F * R, p), M::psi(F, p), 1e-13 * stiffness) << M::info().name << " is not isotropic";
       EXPECT_LE(largest_difference(M::pk1(R * F, p).a, (R * M::pk1(F, p)).a), 1e-13 * stiffness) << M::info().name;
     }
   });
@@ -40,7 +40,7 @@ TEST(LinearMaterial, IsNotInvariantUnderRotation) {
   EXPECT_GT(Linear::psi(random_rotation(random), ordinary_params<Linear>()), 0.1);
 }
 
-TEST(BarrierMaterials, AreInfiniteUnlessTheVolumeIsPositive) {
+TEST(BarrierMaterials, AreInfiniteUnlessVolumeIsPositive) {
   for_each_material([]<class M>() {
     const auto p = ordinary_params<M>();
     const double inf = std::numeric_limits<double>::infinity(), nan = std::numeric_limits<double>::quiet_NaN();
@@ -63,7 +63,7 @@ TEST(Fung, OverflowsToInfinityAndNeverToNan) {
     EXPECT_FALSE(std::isnan(Fung::psi(diagonal(size, 2 * size, 3 * size), p))) << size;
 }
 
-TEST(BarrierMaterials, DoNotSpoilTheOtherLanes) {
+TEST(BarrierMaterials, DoNotAffectOtherLanes) {
   for_each_material([]<class M>() {
     if (!M::info().barrier) return;
     const auto p = ordinary_params<M>();
@@ -86,7 +86,7 @@ TEST(BarrierMaterials, DoNotSpoilTheOtherLanes) {
   });
 }
 
-TEST(Materials, GiveInEachLaneWhatTheyGiveAlone) {
+TEST(Materials, LanesMatchScalars) {
   for_each_material([]<class M>() {
     using Params = typename M::template Params<double>;
     const auto states = smooth_states<M>();
@@ -116,7 +116,7 @@ TEST(Materials, GiveInEachLaneWhatTheyGiveAlone) {
   });
 }
 
-TEST(PackParams, RepeatsTheLastForMissingLanes) {
+TEST(PackParams, RepeatsLastForMissingLanes) {
   const std::vector<NeoHookean::Params<double>> params = {{1, 2}, {3, 4}};
   const auto p = pack_params<NeoHookean>(params);
   EXPECT_EQ(p.mu[0], 1);

@@ -1,5 +1,5 @@
-// Laws of the isochoric invariant: psi = W(I1bar) + K/2 (J - 1)^2, I1bar = J^(-2/3) I1; +inf for J <= 0.
-// W is blind to volume, so the volume term alone carries the bulk modulus K.
+// Energy densities psi = W(I1bar) + K/2 (J - 1)^2 of the isochoric invariant I1bar = J^(-2/3) I1; +inf for J <= 0. W is
+// independent of volume, so the volume term alone determines the bulk modulus K.
 #pragma once
 #include "material/barrier.h"
 #include "material/from_invariants.h"
@@ -25,7 +25,7 @@ T isochoric_energy(const T& J, const T& W, const T& bulk) {
   return infinite_unless_positive(J, W + T(0.5) * bulk * dJ * dJ);
 }
 
-// The chain rule through I1bar: dI1bar/dI1 = J^(-2/3), dI1bar/dJ = -2/3 I1bar / J.
+// Applies the chain rule: dI1bar/dI1 = J^(-2/3), dI1bar/dJ = -2/3 I1bar / J.
 template <class T>
 LawDerivatives<T> isochoric_derivatives(const T& I1, const T& J, const T& dW, const T& ddW, const T& bulk) {
   const T s = isochoric_scale(J), r = T(1.0) / J;

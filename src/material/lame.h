@@ -1,4 +1,4 @@
-// Small-strain elastic constants. Every material has this linearization at rest.
+// Small-strain elastic constants. Every material linearizes to these at rest.
 #pragma once
 
 namespace aspic {

@@ -1,6 +1,6 @@
-// Eigenvalues and eigenvectors of the Hessian of a law psi(I1, J), from the singular values of F [Smith 2019].
-// In the frames of F = U diag(s) V' it falls apart: into the 3x3 matrix of the stretches, and for each pair i < j into
-// a twist (E_ij - E_ji) and a flip (E_ij + E_ji), with the eigenvalues 2 psi_I +- psi_J s_k.
+// Eigenvalues and eigenvectors of the Hessian of psi(I1, J), from the singular values of F [Smith 2019]. In the frames
+// of F = U diag(s) V', the Hessian decouples into the 3x3 matrix of the stretches and, for each pair i < j, a twist
+// (E_ij - E_ji) and a flip (E_ij + E_ji) with the eigenvalues 2 psi_I +- psi_J s_k.
 #pragma once
 #include <cmath>
 
@@ -10,8 +10,8 @@
 
 namespace aspic {
 
-// Of the stretches: 2 psi_I Id + psi_J (s_k at i, j) + psi_JJ c c' + 4 psi_II s s' + 2 psi_IJ (s c' + c s'),
-// c_i = dJ/ds_i = s_j s_k.
+// Hessian with respect to the stretches: 2 psi_I Id + psi_J (s_k at i, j) + psi_JJ c c' + 4 psi_II s s' + 2 psi_IJ (s
+// c' + c s'), c_i = dJ/ds_i = s_j s_k.
 template <class T>
 std::array<T, 9> stretch_hessian(const Vec3<T>& s, const LawDerivatives<T>& d) {
   std::array<T, 9> A;

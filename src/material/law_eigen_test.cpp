@@ -26,7 +26,7 @@ void expect_eigen_to_make_up_the_hessian(const NamedState& state) {
   EXPECT_LE(largest_difference(sum.a, H.a), 1e-13 * largest(H.a)) << what;
 }
 
-TEST(LawEigen, EigenpairsReproduceTheHessianOfEveryLaw) {
+TEST(LawEigen, EigenpairsReproduceHessians) {
   for_each_material([]<class M>() {
     if constexpr (requires { typename M::Law; })
       for (const NamedState& state : smooth_states<M>()) expect_eigen_to_make_up_the_hessian<M>(state);

@@ -51,7 +51,7 @@ struct Linear {
     return {.name = "linear",
             .formula = "mu |e|^2 + la/2 (tr e)^2, e = (F + F')/2 - I, with mu = mu_L, la = la_L",
             .remarks =
-                "Not invariant under rotation: a body that turns swells, so it is for small displacements only. "
+                "Not invariant under rotation: a rotating body swells, so it is for small displacements only. "
                 "The energy is convex: one Newton iteration reaches the minimum from anywhere.",
             .extra = {},
             .barrier = false};

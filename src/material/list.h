@@ -10,7 +10,7 @@
 namespace aspic {
 
 // Material for scenes: params() converts small-strain constants to its own, info() describes it, and reference_energy()
-// is its formula in principal stretches for the default extra parameters.
+// is its energy density in principal stretches for the default extra parameters.
 template <class M>
 concept RegisteredMaterial = Material<M> && requires(const MaterialParameters m, const MaterialParametersOver<Pack> p) {
   { M::params(m) } -> std::same_as<typename M::template Params<double>>;

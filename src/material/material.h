@@ -22,7 +22,7 @@ concept MaterialOver = requires(const Mat3<T> F, const typename M::template Para
 template <class M>
 concept Material = MaterialOver<M, double> && MaterialOver<M, Pack>;
 
-// Params<T> is an aggregate of T only, so it is also an array of T.
+// Params<T> is an aggregate of T only, so that it can be accessed as an array of T.
 template <class M>
 inline constexpr std::size_t kParameterCount = sizeof(typename M::template Params<double>) / sizeof(double);
 
@@ -38,7 +38,7 @@ typename M::template Params<To> broadcast_params(const typename M::template Para
   return std::bit_cast<typename M::template Params<To>>(to);
 }
 
-// Packs one parameter set per lane: 1 to kPackWidth sets; the last one fills the remaining lanes.
+// Packs one parameter set per lane: 1 to kPackWidth sets; the last one also fills the remaining lanes.
 template <class M>
 typename M::template Params<Pack> pack_params(std::span<const typename M::template Params<double>> lanes) {
   ParameterArray<M, Pack> to;

@@ -34,7 +34,7 @@ struct MooneyRivlin {
     const Mat3<T> y = (d.law.dIJ + d.law.dIJ) * F + (T(0.5) * d.law.dJJ) * g + d.dI2J * (F * S);
     Mat9<T> H = identity_plus_outer(d.law.dI + d.law.dI, T(4.0) * d.dI2, F, y, g);
     add_determinant_hessian(F, d.law.dJ, H);
-    // I2 has the gradient F S with dS = -2 dC + 2 dI1 I; the second part is the 4 f f' above.
+    // I2 has the gradient F S with dS = -2 dC + 2 dI1 I. The outer products above include the second part, 4 f f'.
     add_product_hessian(F, d.dI2 * S, T(-2.0) * d.dI2, H);
     return H;
   }
@@ -56,7 +56,7 @@ struct MooneyRivlin {
                 "c10 (J^(-2/3) I1 - 3) + c01 (J^(-4/3) I2 - 3) + K/2 (J - 1)^2 with "
                 "c10 = (1 - share) mu_L/2, c01 = share mu_L/2, K = la_L + 2/3 mu_L, I2 = |cof F|^2",
             .remarks =
-                "+inf for J <= 0, so every start must be free of inversion. The only state "
+                "+inf for J <= 0, so the initial state must be free of inversion. The only state "
                 "without stress is the rest shape, up to rotation, but the energy stays finite "
                 "(K/2) as a body shrinks uniformly to a point.",
             .extra = {{.name = "share",
@@ -69,7 +69,7 @@ struct MooneyRivlin {
   }
 
  private:
-  // dpsi/dI2 and d2psi/dI2 dJ beside the derivatives in I1 and J.
+  // dpsi/dI2 and d2psi/dI2 dJ in addition to the derivatives with respect to I1 and J.
   template <class T>
   struct Derivatives {
     LawDerivatives<T> law;

@@ -1,5 +1,5 @@
-// Inversion-tolerant neo-Hookean solid: psi = mu/2 (I1 - 3) - mu (J - 1) + lambda/2 (J - 1)^2.
-// Up to a constant it is mu/2 (I1 - 3) + lambda/2 (J - alpha)^2, alpha = 1 + mu/lambda [Smith 2018].
+// Inversion-tolerant neo-Hookean model: psi = mu/2 (I1 - 3) - mu (J - 1) + lambda/2 (J - 1)^2. Up to a constant, this
+// is mu/2 (I1 - 3) + lambda/2 (J - alpha)^2, alpha = 1 + mu/lambda [Smith 2018].
 #pragma once
 #include "material/from_invariants.h"
 #include "material/material.h"

@@ -1,5 +1,5 @@
-// Neo-Hookean solid of older course programs: psi = mu/2 (J^(-2/3) I1 - 3) + lambda/2 (J - 1)^2; +inf for J <= 0. With
-// lambda = lambda_L Poisson's ratio would be too small; with lambda = K it is neo_hookean_isochoric.
+// Neo-Hookean model of earlier course programs: psi = mu/2 (J^(-2/3) I1 - 3) + lambda/2 (J - 1)^2; +inf for J <= 0.
+// With lambda = lambda_L, Poisson's ratio would be too small; with lambda = K, it is neo_hookean_isochoric.
 #pragma once
 #include "material/neo_hookean_isochoric.h"
 

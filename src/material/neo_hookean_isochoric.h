@@ -1,4 +1,4 @@
-// Neo-Hookean solid split into shape and volume: psi = mu/2 (J^(-2/3) I1 - 3) + K/2 (J - 1)^2; +inf for J <= 0.
+// Neo-Hookean model with isochoric split: psi = mu/2 (J^(-2/3) I1 - 3) + K/2 (J - 1)^2; +inf for J <= 0.
 #pragma once
 #include "material/isochoric.h"
 #include "material/material.h"
@@ -35,7 +35,7 @@ struct NeoHookeanIsochoricLaw {
     return {.name = "neo_hookean_isochoric",
             .formula = "mu/2 (J^(-2/3) I1 - 3) + K/2 (J - 1)^2 with mu = mu_L, K = la_L + 2/3 mu_L",
             .remarks =
-                "+inf for J <= 0, so every start must be free of inversion. The only state "
+                "+inf for J <= 0, so the initial state must be free of inversion. The only state "
                 "without stress is the rest shape, up to rotation, but the energy stays finite "
                 "(K/2) as a body shrinks uniformly to a point: no barrier in that direction.",
             .extra = {},

@@ -1,4 +1,4 @@
-// Neo-Hookean solid with logarithmic volume term: psi = mu/2 (I1 - 3) - mu ln J + lambda/2 (ln J)^2; +inf for J <= 0.
+// Neo-Hookean model with logarithmic volume term: psi = mu/2 (I1 - 3) - mu ln J + lambda/2 (ln J)^2; +inf for J <= 0.
 #pragma once
 #include "material/barrier.h"
 #include "material/from_invariants.h"
@@ -36,16 +36,17 @@ struct NeoHookeanLogLaw {
   }
 
   static MaterialInfo info() {
-    return {
-        .name = "neo_hookean_log",
-        .formula = "mu/2 (I1 - 3) - mu ln J + la/2 (ln J)^2 with mu = mu_L, la = la_L",
-        .remarks =
-            "Barrier: +inf for J <= 0, so every start must be free of inversion. For nu >= 0 the only state without "
-            "stress is the rest shape, up to rotation; for nu < 0 the volume term pulls towards J = 0 and beats the "
-            "barrier. "
-            "The volume term softens beyond J = e.",
-        .extra = {},
-        .barrier = true};
+    return {.name = "neo_hookean_log",
+            .formula = "mu/2 (I1 - 3) - mu ln J + la/2 (ln J)^2 with mu = mu_L, la = la_L",
+            .remarks =
+                "Barrier: +inf for J <= 0, so the initial state must be free of inversion. For nu >= 0 the only state "
+                "without "
+                "stress is the rest shape, up to rotation; for nu < 0 the volume term decreases towards J = 0 faster "
+                "than the "
+                "barrier grows. "
+                "The volume term softens beyond J = e.",
+            .extra = {},
+            .barrier = true};
   }
 };
 

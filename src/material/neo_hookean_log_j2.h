@@ -1,5 +1,5 @@
-// Neo-Hookean solid with barrier and quadratic volume term: psi = mu/2 (I1 - 3) - mu ln J + lambda/2 (J - 1)^2;
-// +inf for J <= 0.
+// Neo-Hookean model with barrier and quadratic volume term: psi = mu/2 (I1 - 3) - mu ln J + lambda/2 (J - 1)^2; +inf
+// for J <= 0.
 #pragma once
 #include "material/barrier.h"
 #include "material/from_invariants.h"
@@ -39,7 +39,7 @@ struct NeoHookeanLogJ2Law {
     return {.name = "neo_hookean_log_j2",
             .formula = "mu/2 (I1 - 3) - mu ln J + la/2 (J - 1)^2 with mu = mu_L, la = la_L",
             .remarks =
-                "Barrier: +inf for J <= 0, so every start must be free of inversion. Convex in J, and the only "
+                "Barrier: +inf for J <= 0, so the initial state must be free of inversion. Convex in J, and the only "
                 "state without stress is the rest shape, up to rotation (la >= 0).",
             .extra = {},
             .barrier = true};

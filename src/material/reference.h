@@ -1,5 +1,5 @@
-// Arguments of the reference energies, which give each material in principal stretches and extended precision.
-// Verification compares the materials with them.
+// Arguments of the reference energy densities, which define each material in principal stretches and extended
+// precision. Verification compares the materials with them.
 #pragma once
 #include <array>
 #include <cmath>

@@ -11,7 +11,7 @@ namespace aspic {
 
 inline constexpr int kMaxExtraParameters = 13;
 
-// Parameters of one tet: small-strain constants [Pa], and further ones in the order of MaterialInfo::extra.
+// Parameters of one tet: small-strain constants [Pa], and further parameters in the order of MaterialInfo::extra.
 template <class T>
 struct MaterialParametersOver {
   LameOver<T> lame;

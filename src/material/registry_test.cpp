@@ -12,7 +12,7 @@
 namespace aspic {
 namespace {
 
-TEST(Registry, KnowsEveryMaterialOfTheListByName) {
+TEST(Registry, ContainsEveryListedMaterial) {
   EXPECT_EQ(materials().size(), std::tuple_size_v<MaterialList>);
   std::set<std::string> names;
   for (const MaterialInfo& info : materials()) {
@@ -29,7 +29,7 @@ TEST(Registry, KnowsEveryMaterialOfTheListByName) {
   EXPECT_EQ(names.size(), materials().size());
 }
 
-TEST(Registry, CallsTheNamedMaterialOnce) {
+TEST(Registry, CallsNamedMaterialOnce) {
   for_each_material([]<class M>() {
     int calls = 0;
     with_material(M::info().name, [&]<class Found>() { calls += std::is_same_v<Found, M>; });
@@ -37,7 +37,7 @@ TEST(Registry, CallsTheNamedMaterialOnce) {
   });
 }
 
-TEST(Registry, RefusesAnUnknownNameAndSuggestsTheNearest) {
+TEST(Registry, RejectsUnknownNameWithSuggestion) {
   try {
     with_material("neohookean", []<class M>() { ADD_FAILURE(); });
     FAIL();
@@ -61,7 +61,7 @@ struct NeoHookeanEnergy {
 };
 static_assert(Material<FromEnergy<NeoHookeanEnergy>>);
 
-TEST(FromEnergy, DerivesStressAndHessianFromPsiAlone) {
+TEST(FromEnergy, DerivesStressAndHessianFromPsi) {
   using M = FromEnergy<NeoHookeanEnergy>;
   const NeoHookean::Params<double> p = ordinary_params<NeoHookean>();
   const M::Params<double> q{p.mu, p.lambda};

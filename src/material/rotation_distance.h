@@ -1,12 +1,12 @@
-// mu |F - R|^2, R the rotation closest to F: the term shared by arap and corotated.
+// mu |F - R|^2, where R is the rotation closest to F: the term shared by arap and corotated.
 //   P = 2 mu (F - R),  H = 2 mu (Id - dR/dF)
 #pragma once
 #include "math/polar3.h"
 
 namespace aspic {
 
-// dR/dF grows like 1 / (s_i + s_j) [1]; this lower bound of the sum keeps H finite.
-inline constexpr double kLeastStretchSum = 1e-8;
+// Lower bound of s_i + s_j [1]; dR/dF grows like 1 / (s_i + s_j), and the bound keeps H finite.
+inline constexpr double kMinStretchSum = 1e-8;
 
 // |F - R|^2 = |F|^2 - 2 tr S + 3, or the better conditioned sum of (s_i - 1)^2 if the s_i are available.
 template <class T>

@@ -2,16 +2,16 @@
 //   psi = mu (1 - share) [(1 - softening) (I1bar - 3)/2 + softening S(|F|, J^(1/3))] + mu/2 g1(I1bar - 3)
 //       + mu share S(|cof F|, J^(2/3)) + mu/(3 sqrt 3) g2(y) + K/2 (J - 1)^2
 //   S(x, s) = sqrt 3 x - 3 s,   y = I2bar^(3/2) - 3 sqrt 3
-// g1 and g2 are convex splines (convex_spline.h) whose coefficients, the growths, say by how much the slope of a term
-// grows about each knot, relative to what it would be at rest if it carried the whole shear modulus.
+// g1 and g2 are convex splines (convex_spline.h). Each of their coefficients, the growths, is the increase of the slope
+// of a term near one knot, relative to its slope at rest if it contributed the whole shear modulus.
 //
-// Polyconvex [Ball 1977]: |F|^p / J^q is convex in (F, J), J > 0, if p >= q + 1 >= 1; so are I1bar = |F|^2 / J^(2/3)
+// Polyconvex [Ball 1977]: |F|^p / J^q is convex in (F, J), J > 0, if p >= q + 1 >= 1. So are I1bar = |F|^2 / J^(2/3)
 // and, in (cof F, J), I2bar^(3/2) = |cof F|^3 / J^2, but not I2bar itself [Hartmann 2003]. |F|, |cof F|, -J^(1/3) and
-// -J^(2/3) are convex. A convex nondecreasing function of a convex function is convex, and with growths >= 0 and
-// 0 <= share, softening <= 1 all of psi is a sum of such. S grows least: rubber softens before it stiffens.
+// -J^(2/3) are convex. A convex nondecreasing function of a convex function is convex. With growths >= 0 and 0 <=
+// share, softening <= 1, psi is a sum of such terms. S grows least: rubber softens before it stiffens.
 //
-// At rest, g1, g2 and their slopes are 0, and S is (I1bar - 3)/2 or (I2bar - 3)/2 to second order and 0 for every
-// change of size: the small-strain moduli are exact whatever the coefficients. psi has continuous second derivatives.
+// At rest, g1, g2 and their slopes are 0, and S equals (I1bar - 3)/2 or (I2bar - 3)/2 to second order and 0 for every
+// uniform scaling. Hence the small-strain moduli are exact for any coefficients. psi has continuous second derivatives.
 #pragma once
 #include <numbers>
 #include <string>
@@ -31,7 +31,7 @@ struct SplineLaw {
   template <class T>
   struct Params {
     T straight, soft, area, bulk;                   // weights of I1bar - 3 and of both S, and K [Pa]
-    T growth[kGrowths], area_growth[kAreaGrowths];  // of g1 and g2 [Pa]
+    T growth[kGrowths], area_growth[kAreaGrowths];  // coefficients of g1 and g2 [Pa]
   };
 
   template <class T>
@@ -58,7 +58,7 @@ struct SplineLaw {
   template <class T>
   static Curve<T> V(const T& J, const Params<T>& p) {
     const T dJ = J - T(1.0), root = cbrt(J), r = T(1.0) / J;
-    const T a = p.soft * root, b = p.area * root * root;  // of -3 a - 3 b
+    const T a = p.soft * root, b = p.area * root * root;  // factors in -3 a - 3 b
     return {T(0.5) * p.bulk * dJ * dJ - T(3.0) * (a + b), p.bulk * dJ - (a + T(2.0) * b) * r,
             p.bulk + T(2.0 / 3.0) * (a + b) * r * r};
   }
@@ -83,22 +83,23 @@ struct SplineLaw {
   }
 
   static MaterialInfo info() {
-    return {.name = "spline",
-            .formula =
-                "mu (1 - share) ((1 - softening) (I1bar - 3)/2 + softening (sqrt 3 |F| - 3 J^(1/3))) + mu share "
-                "(sqrt 3 |cof F| - 3 J^(2/3)) + mu/2 g1(I1bar - 3) + mu/(3 sqrt 3) g2(I2bar^(3/2) - 3 sqrt 3) + "
-                "K/2 (J - 1)^2 with convex splines g1 and g2, mu = mu_L, K = la_L + 2/3 mu_L",
-            .remarks =
-                "Polyconvex whatever the coefficients; without growth, share and softening it is "
-                "neo_hookean_isochoric. +inf for J <= 0, so every start must be free of inversion. The only state "
-                "without stress is the rest shape, up to rotation, but the energy stays finite (K/2) as a body "
-                "shrinks uniformly to a point. [Hartmann 2003]",
-            .extra = coefficients(),
-            .barrier = true};
+    return {
+        .name = "spline",
+        .formula =
+            "mu (1 - share) ((1 - softening) (I1bar - 3)/2 + softening (sqrt 3 |F| - 3 J^(1/3))) + mu share "
+            "(sqrt 3 |cof F| - 3 J^(2/3)) + mu/2 g1(I1bar - 3) + mu/(3 sqrt 3) g2(I2bar^(3/2) - 3 sqrt 3) + "
+            "K/2 (J - 1)^2 with convex splines g1 and g2, mu = mu_L, K = la_L + 2/3 mu_L",
+        .remarks =
+            "Polyconvex for any coefficients; without growth, share and softening it is "
+            "neo_hookean_isochoric. +inf for J <= 0, so the initial state must be free of inversion. The only state "
+            "without stress is the rest shape, up to rotation, but the energy stays finite (K/2) as a body "
+            "shrinks uniformly to a point. [Hartmann 2003]",
+        .extra = coefficients(),
+        .barrier = true};
   }
 
  private:
-  // c sqrt 3 sqrt(I); at I = 3, where V compensates it, 3 c.
+  // Curve c sqrt 3 sqrt(I); at I = 3, where V compensates it, 3 c.
   template <class T>
   static Curve<T> square_root(const T& I, const T& c) {
     const T value = T(std::numbers::sqrt3) * c * sqrt(I), slope = T(0.5) * value / I;

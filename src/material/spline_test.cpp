@@ -19,7 +19,7 @@ MaterialParameters random_spline(std::mt19937& random, double young = 1, double 
   return m;
 }
 
-// Stretches over a few powers of ten, J > 0.
+// Returns stretches over a few powers of ten, J > 0.
 Mat3d strong_deformation(std::mt19937& random) {
   std::normal_distribution<double> exponent(0, 0.7);
   return random_rotation(random) *
@@ -27,7 +27,7 @@ Mat3d strong_deformation(std::mt19937& random) {
          random_rotation(random);
 }
 
-TEST(ConvexSpline, HasTheSlopesThatItsCoefficientsSay) {
+TEST(ConvexSpline, HasSlopesOfItsCoefficients) {
   const auto& spline = SplineLaw::kStretchSpline;
   for (std::size_t i = 0; i < SplineLaw::kGrowths; ++i) {
     double c[SplineLaw::kGrowths] = {};
@@ -41,7 +41,7 @@ TEST(ConvexSpline, HasTheSlopesThatItsCoefficientsSay) {
   }
 }
 
-TEST(ConvexSpline, HasContinuousDerivativesOfOneAnother) {
+TEST(ConvexSpline, HasContinuousConsistentDerivatives) {
   const auto& spline = SplineLaw::kStretchSpline;
   const double c[SplineLaw::kGrowths] = {0.3, 1, 0, 2, 0.5, 4, 0.1, 0.7};
   for (const double knot : spline.knots)
@@ -62,7 +62,7 @@ TEST(Spline, IsIsochoricNeoHookeanWithoutCoefficients) {
   }
 }
 
-TEST(Spline, HasTheSmallStrainModuliWhateverTheCoefficients) {
+TEST(Spline, HasSmallStrainModuliForAnyCoefficients) {
   std::mt19937 random(2);
   for (int i = 0; i < 50; ++i)
     for (const double poisson : {-0.3, 0.0, 0.3, 0.499}) {
@@ -125,7 +125,7 @@ TEST(Spline, IsEllipticWhereMooneyRivlinIsNot) {
   EXPECT_LT(least_mooney, -1e-3);
 }
 
-TEST(Spline, IsConvexInTheMinors) {
+TEST(Spline, IsConvexInMinors) {
   std::mt19937 random(5);
   std::uniform_real_distribution<double> exponent(-1, 1), size(0, 3);
   // Lines through states whose isochoric invariants may also be below 3, to which W is extended.
@@ -140,7 +140,7 @@ TEST(Spline, IsConvexInTheMinors) {
   }
 }
 
-TEST(Spline, StaysFiniteFarBeyondItsLastKnot) {
+TEST(Spline, StaysFiniteFarBeyondLastKnot) {
   std::mt19937 random(6);
   for (int i = 0; i < 100; ++i) {
     const auto p = Spline::params(random_spline(random));

@@ -1,6 +1,6 @@
-// Stable neo-Hookean solid of [Smith 2018]. The logarithm removes the pull towards F = 0 that neo_hookean has there.
+// Stable neo-Hookean model of [Smith 2018]. The logarithm removes the attraction to F = 0 of neo_hookean.
 //   psi = mu/2 (I1 - 3) + lambda/2 (J - alpha)^2 - mu/2 ln(I1 + 1) + constant,   alpha = 1 + 3 mu / (4 lambda)
-// written around J = 1, so that nothing divides by lambda.
+// The implementation is expanded around J = 1 to avoid a division by lambda.
 #pragma once
 #include "material/from_invariants.h"
 #include "material/material.h"

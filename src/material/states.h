@@ -1,4 +1,4 @@
-// Deformation gradients and constants for tests of materials.
+// Deformation gradients and constants for material tests.
 #pragma once
 #include <cmath>
 #include <random>
@@ -34,13 +34,13 @@ inline Mat3d random_rotation(std::mt19937& random) {
            s * (b * d + a * c), s * (c * d - a * b), 1 - s * (b * b + c * c)}};
 }
 
-// Deformation with J > 0: a rotation times a stretch of at most 60 %.
+// Returns a deformation with J > 0: a rotation times a stretch of at most 60 %.
 inline Mat3d random_deformation(std::mt19937& random) {
   return random_rotation(random) * (identity3<double>() + 0.2 * random_matrix(random));
 }
 
-// States where psi is finite and twice differentiable: barriers have J > 0, and R is differentiable where it is used.
-// The part of a name before a comma is its kind.
+// States at which psi is finite and twice differentiable: J > 0 for barriers, and R differentiable if it is used. The
+// part of a name before a comma is its kind.
 template <class M>
 std::vector<NamedState> smooth_states() {
   std::mt19937 random(7);

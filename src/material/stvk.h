@@ -1,4 +1,4 @@
-// St. Venant-Kirchhoff solid: psi = mu |E|^2 + lambda/2 (tr E)^2, E = (F'F - I) / 2; P = F S, S = 2 mu E + lambda tr E
+// St. Venant-Kirchhoff model: psi = mu |E|^2 + lambda/2 (tr E)^2, E = (F'F - I) / 2; P = F S, S = 2 mu E + lambda tr E
 // I.
 #pragma once
 #include "material/from_invariants.h"

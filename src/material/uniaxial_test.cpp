@@ -12,7 +12,7 @@ struct Uniaxial {
   double stress;   // nominal stress P_11 [Pa]
 };
 
-// Newton's method on P_22(diag(l, t, t)) = 0.
+// Applies Newton's method to P_22(diag(l, t, t)) = 0.
 template <class M>
 Uniaxial uniaxial(double l, double t, const typename M::template Params<double>& p) {
   for (int i = 0; i < 50; ++i) {
@@ -38,7 +38,7 @@ TEST(Materials, ReproduceYoungAndPoissonAtSmallStrain) {
   });
 }
 
-TEST(Materials, HaveTheHessianOfLinearElasticityAtRest) {
+TEST(Materials, HaveHessianOfLinearElasticityAtRest) {
   for_each_material([]<class M>() {
     for (const double poisson : {-0.3, 0.0, 0.3, 0.45, 0.499}) {
       MaterialParameters m{lame_from_young_poisson(1, poisson), {}};
@@ -51,7 +51,7 @@ TEST(Materials, HaveTheHessianOfLinearElasticityAtRest) {
   });
 }
 
-TEST(Materials, MatchTheUniaxialReferenceTable) {
+TEST(Materials, MatchUniaxialReferenceTable) {
   const double half_a_digit = 0.51e-8;
   for (const verify::UniaxialReference& row : verify::uniaxial_table()) {
     with_material(row.material, [&]<class M>() {
@@ -63,20 +63,20 @@ TEST(Materials, MatchTheUniaxialReferenceTable) {
   }
 }
 
-// Uniform scaling by s: the sign of dpsi/ds shows whether a compressed body expands.
+// Energy under uniform scaling by s: the sign of dpsi/ds shows whether a compressed body expands.
 template <class M>
 double pressure(double s, double poisson) {
   return trace(M::pk1(diagonal(s, s, s), ordinary_params<M>(1, poisson)));
 }
 
-TEST(NeoHookean, CollapsesBelowTheDocumentedSize) {
+TEST(NeoHookean, CollapsesBelowDocumentedSize) {
   EXPECT_GT(pressure<NeoHookean>(0.290, 0.3), 0);
   EXPECT_LT(pressure<NeoHookean>(0.292, 0.3), 0);
   EXPECT_GT(pressure<NeoHookean>(0.0905, 0.45), 0);
   EXPECT_LT(pressure<NeoHookean>(0.0915, 0.45), 0);
 }
 
-TEST(OtherInvertibleMaterials, PushBackAtEverySize) {
+TEST(OtherInvertibleMaterials, ResistCompressionAtEverySize) {
   for (const double poisson : {-0.3, 0.0, 0.3, 0.45, 0.499})
     for (double s = 1e-6; s < 0.99; s = 1.1 * s + 1e-6) {
       EXPECT_LT(pressure<StableNeoHookean>(s, poisson), 0);
@@ -86,7 +86,7 @@ TEST(OtherInvertibleMaterials, PushBackAtEverySize) {
     }
 }
 
-TEST(Stvk, SoftensBelowTheDocumentedSize) {
+TEST(Stvk, SoftensBelowDocumentedSize) {
   const double s = 1 / std::sqrt(3.0), small = 1e-3;
   EXPECT_GT(pressure<Stvk>(s - small, 0.3), pressure<Stvk>(s, 0.3));
   EXPECT_GT(pressure<Stvk>(s + small, 0.3), pressure<Stvk>(s, 0.3));

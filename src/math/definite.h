@@ -1,4 +1,4 @@
-// Positive semidefinite 9x9 matrices: a fast exact test of many matrices, and a filter for those that fail.
+// Positive semidefinite 9x9 matrices: a fast test of many matrices, and an eigenvalue filter for those that fail it.
 #pragma once
 #include <algorithm>
 #include <array>
@@ -11,14 +11,14 @@
 namespace aspic {
 
 // Sets bit l if H of lane l has an eigenvalue below -tolerance * (largest diagonal entry), or NaN. Tests whether H +
-// shift Id = L D L' has positive D. Exact up to rounding (about 1e-15 relative).
+// shift Id = L D L' has positive D. Accurate to about 1e-15 relative.
 template <class T>
 unsigned indefinite_lanes(const Mat9<T>& H, double tolerance = 1e-12) {
   T scale = T(0.0);
   for (int i = 0; i < 9; ++i) scale = max(scale, abs(H(i, i)));
   const T shift = T(tolerance) * scale + T(std::numeric_limits<double>::min());  // H = 0 is semidefinite
 
-  T L[9][9];  // L below the diagonal; scaled by D before its column is finished
+  T L[9][9];  // below the diagonal, L; each column is scaled by D until it is finished
   unsigned failed = 0;
   for (int k = 0; k < 9; ++k) {
     T d = H(k, k) + shift;
@@ -41,9 +41,9 @@ inline constexpr double kEigenvalueFloor = 1e-9;
 // Replacement of an eigenvalue l: max(l, floor) or max(|l|, floor).
 enum class EigenvalueFilter { clamp, absolute };
 
-// Filters the eigenvalues in those of the `lanes` that fail indefinite_lanes, with floor = relative_floor * (largest
-// |eigenvalue|). Other lanes keep their bits. `eigen()` returns eigenvalues and eigenvectors of H. Returns the filtered
-// lanes.
+// Filters the eigenvalues of H in those of the given `lanes` that fail indefinite_lanes(), with floor = relative_floor
+// * (largest |eigenvalue|). Other lanes are unchanged. `eigen()` must return eigenvalues and eigenvectors of H. Returns
+// the filtered lanes.
 template <class T, class Eigen>
 unsigned filter_eigenvalues(Mat9<T>& H, EigenvalueFilter filter, unsigned lanes, const Eigen& eigen,
                             double relative_floor = kEigenvalueFloor) {
@@ -54,7 +54,7 @@ unsigned filter_eigenvalues(Mat9<T>& H, EigenvalueFilter filter, unsigned lanes,
   for (const T& l : e.values) largest = max(largest, abs(l));
   const T floor = max(T(relative_floor) * largest, T(std::numeric_limits<double>::min()));
   const T chosen = lanes_from_bits<T>(failed);
-  // Adds only the changes of the filter, so that other eigenvalues keep their last digits.
+  // Adds only the changes, so that other eigenvalues keep their last digits.
   for (int k = 0; k < 9; ++k) {
     const T l = e.values[k];
     const T raise = chosen * (max(filter == EigenvalueFilter::absolute ? abs(l) : l, floor) - l);

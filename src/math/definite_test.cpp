@@ -10,7 +10,7 @@ namespace {
 
 using Spectrum = std::array<double, 9>;
 
-// Random orthonormal basis: eigenvectors of a random symmetric matrix.
+// Returns a random orthonormal basis: eigenvectors of a random symmetric matrix.
 std::array<double, 81> random_basis(std::mt19937& random) {
   std::normal_distribution<double> normal;
   std::array<double, 81> A{};
@@ -35,7 +35,7 @@ Spectrum spectrum(const Mat9d& H) {
   return values;
 }
 
-TEST(SymmetricEigen, FindsAGivenSpectrum) {
+TEST(SymmetricEigen, FindsGivenSpectrum) {
   std::mt19937 random(1);
   for (const Spectrum& values : {Spectrum{-4, -1, -1, 0, 0, 0, 2, 2, 9}, Spectrum{1, 1, 1, 1, 1, 1, 1, 1, 1},
                                  Spectrum{-1e6, -1, -1e-6, 0, 1e-9, 1e-3, 1, 1e3, 1e6}}) {
@@ -55,7 +55,7 @@ TEST(SymmetricEigen, HasOrthonormalVectors) {
     }
 }
 
-TEST(IndefiniteLanes, AcceptsWhatIsPositiveSemidefiniteAtAnyScale) {
+TEST(IndefiniteLanes, AcceptsSemidefiniteMatricesAtAnyScale) {
   std::mt19937 random(3);
   for (const double scale : {1e-12, 1.0, 1e12}) {
     for (const Spectrum& values : {Spectrum{1, 1, 1, 1, 1, 1, 1, 1, 1}, Spectrum{0, 0, 0, 0, 0, 0, 0, 0, 0},
@@ -67,7 +67,7 @@ TEST(IndefiniteLanes, AcceptsWhatIsPositiveSemidefiniteAtAnyScale) {
   }
 }
 
-TEST(IndefiniteLanes, FindsANegativeEigenvalueOfOneBillionth) {
+TEST(IndefiniteLanes, DetectsNegativeEigenvalueOfOneBillionth) {
   std::mt19937 random(4);
   for (int i = 0; i < 100; ++i) {
     EXPECT_EQ(indefinite_lanes(with_spectrum({-1e-9, 0, 0, 0.1, 1, 1, 1, 1, 1}, random_basis(random))), 1u);
@@ -75,7 +75,7 @@ TEST(IndefiniteLanes, FindsANegativeEigenvalueOfOneBillionth) {
   }
 }
 
-TEST(IndefiniteLanes, NamesTheLanesThatFail) {
+TEST(IndefiniteLanes, ReportsFailingLanes) {
   std::mt19937 random(5);
   for (unsigned expected = 0; expected < (1u << kPackWidth); expected += 3) {
     Mat9<Pack> H;
@@ -88,13 +88,13 @@ TEST(IndefiniteLanes, NamesTheLanesThatFail) {
   }
 }
 
-TEST(IndefiniteLanes, CountsNanAsFailed) {
+TEST(IndefiniteLanes, RejectsNaN) {
   Mat9d H = with_spectrum({1, 1, 1, 1, 1, 1, 1, 1, 1}, {1});
   H(8, 3) = H(3, 8) = std::nan("");
   EXPECT_EQ(indefinite_lanes(H), 1u);
 }
 
-TEST(MakeDefinite, ClampsOrReflectsTheNegativeEigenvaluesOnly) {
+TEST(ModifyHessian, ChangesNegativeEigenvaluesOnly) {
   std::mt19937 random(6);
   const Spectrum values = {-5, -2, -1e-3, 0, 1e-3, 1, 2, 3, 10};
   const auto Q = random_basis(random);
@@ -110,7 +110,7 @@ TEST(MakeDefinite, ClampsOrReflectsTheNegativeEigenvaluesOnly) {
   }
 }
 
-TEST(MakeDefinite, FiltersFailingLanesAndKeepsOthersBitwise) {
+TEST(ModifyHessian, FiltersFailingLanesAndKeepsOthersBitwise) {
   std::mt19937 random(8);
   Mat9<Pack> before;
   Mat9d alone[kPackWidth];
@@ -133,7 +133,7 @@ TEST(MakeDefinite, FiltersFailingLanesAndKeepsOthersBitwise) {
   }
 }
 
-TEST(MakeDefinite, LeavesPositiveDefiniteMatricesBitwiseAlone) {
+TEST(ModifyHessian, KeepsPositiveDefiniteMatricesBitwise) {
   std::mt19937 random(7);
   const Mat9d before = with_spectrum({0.5, 1, 2, 3, 4, 5, 6, 7, 8}, random_basis(random));
   Mat9d after = before;

@@ -1,4 +1,4 @@
-// First-order forward automatic differentiation in one direction: a value and its derivative, over T = double, Pack, or
+// First-order forward automatic differentiation in one direction: a value and its derivative. T is double, Pack, or
 // Dual for mixed second derivatives.
 #pragma once
 #include <concepts>
@@ -58,7 +58,7 @@ Dual<T> pow(const Dual<T>& a, double n) {
   return {power * a.value, T(n) * power * a.rate};
 }
 
-// The value selects the branch; the derivative is that of the branch.
+// The value selects the branch; the derivative is that of the selected branch.
 template <class T>
 Dual<T> where_positive(const Dual<T>& condition, const Dual<T>& a, const Dual<T>& b) {
   return {where_positive(condition.value, a.value, b.value), where_positive(condition.value, a.rate, b.rate)};
@@ -76,7 +76,7 @@ Dual<T> abs(const Dual<T>& a) {
   return where_positive(a, a, -a);
 }
 
-// Matrix A with derivative dA.
+// Returns matrix A with derivative dA.
 template <class T>
 Mat3<Dual<T>> dual_matrix(const Mat3<T>& A, const Mat3<T>& dA) {
   Mat3<Dual<T>> B;

@@ -20,7 +20,7 @@ void expect_equal(const D& f, double value, double rate) {
   EXPECT_NEAR(f.rate, rate, 1e-14);
 }
 
-TEST(Dual, FollowsArithmeticAndChainRules) {
+TEST(Dual, ObeysArithmeticAndChainRules) {
   expect_equal(x * x * x - 2.0 * x, a * a * a - 2 * a, (3 * a * a - 2) * da);
   expect_equal(1.0 / x, 1 / a, -da / (a * a));
   expect_equal(-x / (x + 1.0), -a / (a + 1), -da / ((a + 1) * (a + 1)));

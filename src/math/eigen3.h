@@ -12,7 +12,7 @@ struct Eigen3 {
   Mat3d vectors;  // orthonormal columns in the order of the values
 };
 
-// Requires a symmetric and finite A.
+// Requires that A is symmetric and finite.
 inline Eigen3 symmetric_eigen(const Mat3d& A) {
   std::array<double, 9> entries;
   std::copy(A.a, A.a + 9, entries.begin());

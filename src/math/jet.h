@@ -1,4 +1,4 @@
-// Second-order forward automatic differentiation in the 9 entries of a 3x3 matrix, over T = double or Pack.
+// Second-order forward automatic differentiation in the 9 entries of a 3x3 matrix. T is double or Pack.
 #pragma once
 #include <concepts>
 
@@ -7,7 +7,7 @@
 
 namespace aspic {
 
-// f with its first two derivatives. Stores the lower triangle of the Hessian.
+// A function value with its first and second derivatives. Stores the lower triangle of the Hessian.
 template <class T>
 struct Jet {
   static constexpr int kVariables = 9;
@@ -27,7 +27,7 @@ struct Jet {
     return f;
   }
 
-  // g(a) for a function g of one variable, given g, g' and g'' at the value of a.
+  // Returns g(a) for a function g of one variable, given g, g' and g'' at the value of a.
   friend Jet compose(const Jet& a, const T& g, const T& dg, const T& ddg) {
     Jet f;
     f.value = g;
@@ -61,7 +61,7 @@ struct Jet {
   }
   friend Jet operator/(const Jet& a, const Jet& b) { return a * reciprocal(b); }
 
-  // Operations with constants, which have no derivatives.
+  // Operations with constants, whose derivatives are zero.
   friend Jet operator*(double s, const Jet& a) { return scaled(a, s); }
   friend Jet operator*(const Jet& a, double s) { return scaled(a, s); }
   friend Jet operator/(const Jet& a, double s) { return scaled(a, 1 / s); }
@@ -134,7 +134,7 @@ Jet<T> pow(const Jet<T>& a, double n) {
   return compose(a, slope * a.value, T(n) * slope, T(n * (n - 1)) * power);
 }
 
-// The value selects the branch; the derivatives are those of the branch.
+// The value selects the branch; the derivatives are those of the selected branch.
 template <class T>
 Jet<T> where_positive(const Jet<T>& condition, const Jet<T>& a, const Jet<T>& b) {
   Jet<T> f;
@@ -146,7 +146,7 @@ Jet<T> where_positive(const Jet<T>& condition, const Jet<T>& a, const Jet<T>& b)
   return f;
 }
 
-// The entries of F as the 9 variables.
+// Returns the entries of F as the 9 variables.
 template <class T>
 Mat3<Jet<T>> jet_variables(const Mat3<T>& F) {
   Mat3<Jet<T>> X;

@@ -7,7 +7,7 @@
 namespace aspic::jet_tests {
 namespace {
 
-// f(x, y) of the first two variables, with its derivatives by hand.
+// f(x, y) of the first two variables, with manually computed derivatives.
 struct Expansion {
   double value, x, y, xx, xy, yy;
 };
@@ -25,7 +25,7 @@ void expect_equal(const Jet<double>& f, const Expansion& e) {
 const double a = 1.25, b = 0.5;
 const Jet<double> x = Jet<double>::variable(a, 0), y = Jet<double>::variable(b, 1);
 
-TEST(Jet, FollowsTheRulesOfArithmetic) {
+TEST(Jet, ObeysArithmeticRules) {
   expect_equal(x + y, {a + b, 1, 1, 0, 0, 0});
   expect_equal(x - y, {a - b, 1, -1, 0, 0, 0});
   expect_equal(-x, {-a, -1, 0, 0, 0, 0});
@@ -47,7 +47,7 @@ TEST(Jet, MixesWithConstants) {
   expect_equal(f, {(a + b) * a - b, 2 * a + b, a - 1, 2, 1, 0});
 }
 
-TEST(Jet, FollowsTheChainRuleThroughFunctions) {
+TEST(Jet, ObeysChainRule) {
   const double p = a * b, root = std::sqrt(p), e = std::exp(p);
   expect_equal(log(x * y), {std::log(p), 1 / a, 1 / b, -1 / (a * a), 0, -1 / (b * b)});
   expect_equal(exp(x * y), {e, b * e, a * e, b * b * e, (1 + p) * e, a * a * e});
@@ -58,13 +58,13 @@ TEST(Jet, FollowsTheChainRuleThroughFunctions) {
   expect_equal(pow(x, -2.5), {std::pow(a, -2.5), -2.5 * std::pow(a, -3.5), 0, 8.75 * std::pow(a, -4.5), 0, 0});
 }
 
-TEST(Jet, TakesTheBranchOfTheValue) {
+TEST(Jet, DifferentiatesBranchOfValue) {
   expect_equal(where_positive(x - y, x, y), {a, 1, 0, 0, 0, 0});
   expect_equal(where_positive(y - x, x, y), {b, 0, 1, 0, 0, 0});
 }
 
 // d det F / dF = cof F, and the determinant is linear in each entry.
-TEST(Jet, DifferentiatesTheDeterminant) {
+TEST(Jet, DifferentiatesDeterminant) {
   std::mt19937 random(1);
   std::uniform_real_distribution<double> entry(-1, 1);
   Mat3d F;

@@ -1,6 +1,6 @@
-// N numbers in one vector: a column of a 3x3 block or three components of a vector with a spare lane (N = 4), or four
-// of those (N = 16). Loads of three numbers also read the number behind them, so arrays need kSpareLanes more entries
-// at the end. Unlike those of a Pack, the lanes are consecutive in memory.
+// N values in one SIMD vector: a column of a 3x3 block or three components of a vector with an unused lane (N = 4), or
+// four of these (N = 16). Loads of three values also read the value after them, so arrays need kSpareLanes more entries
+// at the end. Unlike the lanes of a Pack, the lanes are consecutive in memory.
 #pragma once
 #include <cstring>
 
@@ -33,7 +33,7 @@ struct Lanes {
 template <class T>
 using Quad = Lanes<T, 4>;
 
-// Three numbers; the spare lane is 0.
+// Loads three values; the unused lane is 0.
 template <class T>
 Quad<T> load3(const T* p) {
   return {typename Quad<T>::Values{p[0], p[1], p[2], 0}};
@@ -43,14 +43,14 @@ void store3(Quad<T> q, T* p) {
   for (int i = 0; i < 3; ++i) p[i] = q[i];
 }
 
-// A x for a column-major 3x3 block.
+// Returns A x for a column-major 3x3 block.
 template <class T>
 Quad<T> product(const T* A, const T* x) {
   return Quad<T>::load(A) * Quad<T>::all(x[0]) + Quad<T>::load(A + 3) * Quad<T>::all(x[1]) +
          Quad<T>::load(A + 6) * Quad<T>::all(x[2]);
 }
 
-// A' x for a column-major 3x3 block and x = {x0, x1, x2, 0}; the spare lane of the result is 0.
+// Returns A' x for a column-major 3x3 block and x = {x0, x1, x2, 0}; the unused lane of the result is 0.
 template <class T>
 Quad<T> transposed_product(const T* A, Quad<T> x) {
   using Q = Quad<T>;

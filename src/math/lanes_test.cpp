@@ -55,8 +55,8 @@ TYPED_TEST(LanesTest, LoadAndStoreOfThreeNumbersTouchNoFourth) {
   EXPECT_EQ(to, (std::array<TypeParam, 4>{1, 2, 3, 7}));
 }
 
-// Tolerance of a few eps: sums of three products of numbers below one may be rounded or fused.
-TYPED_TEST(LanesTest, ProductsAreThoseOfTheColumnMajorBlock) {
+// Tolerance of a few eps: sums of three products of values below one may be rounded or fused.
+TYPED_TEST(LanesTest, ProductsMatchColumnMajorBlock) {
   const TypeParam bound = 4 * std::numeric_limits<TypeParam>::epsilon();
   for (int repetition = 0; repetition < 20; ++repetition) {
     const auto A = this->template numbers<9 + kSpareLanes>();

@@ -44,7 +44,7 @@ struct Pack {
   Pack& operator*=(Pack b) { return v *= b.v, *this; }
 };
 
-// Applies fn lane by lane. This is the only place where a vector math library could replace it.
+// Applies fn lane by lane. A vector math library would replace this function.
 template <class Fn>
 Pack map(Pack a, Fn fn) {
   for (int i = 0; i < kPackWidth; ++i) a.v[i] = fn(a[i]);
@@ -57,10 +57,10 @@ inline Pack exp(Pack a) {
   return map(a, [](double x) { return std::exp(x); });
 }
 
-// Bits of the lanes as integers: sign, 11 bits of exponent, 52 of mantissa.
+// Bits of the lanes as integers: sign, 11 bits of exponent, 52 bits of mantissa.
 using PackBits __attribute__((vector_size(kPackWidth * sizeof(double)))) = long long;
 
-// Whether all lanes are positive, normal and small enough that sums of a few do not overflow.
+// Returns whether all lanes are positive, normal and small enough that sums of a few do not overflow.
 inline bool all_ordinary(Pack a) {
   bool all = true;
   for (int i = 0; i < kPackWidth; ++i)
@@ -68,8 +68,8 @@ inline bool all_ordinary(Pack a) {
   return all;
 }
 
-// Within 1 ulp. x = 2^k m with m in [sqrt(1/2), sqrt(2)); ln m = 2 artanh s = 2s (1 + s^2/3 + s^4/5 + ...),
-// s = f/(2 + f), f = m - 1, s^2 < 0.0295. As 2s = f - s f, ln m = f - s (f - R), R = 2 s^2/3 + 2 s^4/5 + ...
+// Accurate to 1 ulp. x = 2^k m with m in [sqrt(1/2), sqrt(2)); ln m = 2 artanh s = 2s (1 + s^2/3 + s^4/5 + ...), s =
+// f/(2 + f), f = m - 1, s^2 < 0.0295. Because 2s = f - s f, ln m = f - s (f - R), R = 2 s^2/3 + 2 s^4/5 + ...
 inline Pack log(Pack a) {
   if (!all_ordinary(a)) return map(a, [](double x) { return std::log(x); });
   constexpr long long kSqrtHalf = std::bit_cast<long long>(0.70710678118654752);
@@ -84,8 +84,8 @@ inline Pack log(Pack a) {
   return k * kLn2High - ((s * (f - R) - k * kLn2Low) - f);
 }
 
-// Cube root within 2 ulp. A third of the exponent is accurate to some percent; Halley's iteration triples the digits,
-// and a final Newton step rounds once.
+// Cube root, accurate to 2 ulp. A third of the exponent is accurate to some percent; Halley's iteration triples the
+// digits, and a final Newton step rounds once.
 inline Pack cbrt(Pack a) {
   if (!all_ordinary(a)) return map(a, [](double x) { return std::cbrt(x); });
   constexpr double kTwoThirdsOfOne = 2.0 / 3 * static_cast<double>(std::bit_cast<long long>(0.97));
@@ -139,7 +139,7 @@ inline double lanes_from_bits<double>(unsigned bits) {
   return bits & 1;
 }
 
-// Adds the lanes in order, so that rounding is the same everywhere.
+// Adds the lanes in order, so that rounding is the same on all platforms.
 inline double sum(Pack a) {
   double s = 0;
   for (int i = 0; i < kPackWidth; ++i) s += a[i];
@@ -156,9 +156,9 @@ inline void prefetch(const void* from, std::size_t bytes) {
   for (std::size_t i = 0; i < bytes; i += 64) __builtin_prefetch(static_cast<const char*>(from) + i);
 }
 
-// Transposition between rows of numbers in memory, one per lane, and packs, one per column, for gather and scatter.
-// Rows move in pieces of register width, and shuffles turn them into columns. Accesses no memory outside the rows.
-// `row(lane)` is the address of the first number.
+// Transposition between rows of values in memory, one row per lane, and packs, one per column, for gather and scatter.
+// Rows are moved in pieces of register width, and shuffles turn them into columns. Accesses no memory outside the rows.
+// `row(lane)` returns the address of the first value.
 
 // Vector of N doubles, loaded and stored at any alignment.
 template <int N>
@@ -185,8 +185,8 @@ Pack zip(Pack a, Pack b, std::integer_sequence<int, I...>) {
 }
 using LaneNumbers = std::make_integer_sequence<int, kPackWidth>;
 
-// Zipping the halves of the list moves the highest bit of the position to the lowest bit of the lane. Repeated once per
-// bit, this transposes positions and lanes.
+// Zipping the halves of the list moves the highest bit of the position to the lowest bit of the lane. Doing so once per
+// bit transposes positions and lanes.
 inline void transpose(Pack* a) {
   constexpr int kHalf = kPackWidth / 2;
   for (int stage = 1; stage < kPackWidth; stage *= 2) {
@@ -205,7 +205,7 @@ Pack alternate(Pack a, Pack b, std::integer_sequence<int, I...>) {
   return Pack::Lanes(__builtin_shufflevector(a.v, b.v, (kOdd + I / 2 * 2 + I % 2 * kPackWidth)...));
 }
 
-// Loads two numbers from the rows of every second lane, N of them.
+// Loads N values from the rows of every second lane.
 template <int N, class Row>
 typename Vector<N>::Type load_pairs(const Row& row, int lane, int column) {
   if constexpr (N == 2) {

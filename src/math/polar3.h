@@ -1,4 +1,4 @@
-// Polar decomposition F = R S: R is the closest rotation, tr S the sum of the (signed) singular values.
+// Polar decomposition F = R S: R is the closest rotation, tr S is the sum of the (signed) singular values.
 #pragma once
 #include <limits>
 
@@ -17,7 +17,7 @@ template <class T>
 Mat3<T> closest_rotation(const Mat3<T>& F) {
   return rotation(svd3(F));
 }
-// With its derivative: R' dR is the cross product with w, (tr S I - S) w = the axis of R' dF - dF' R.
+// Also computes the derivative: R' dR is the cross product with w, (tr S I - S) w = axis of R' dF - dF' R.
 template <class T>
 Mat3<Dual<T>> closest_rotation(const Mat3<Dual<T>>& F) {
   const Mat3<T> R = closest_rotation(values(F));
@@ -31,7 +31,7 @@ Mat3<Dual<T>> closest_rotation(const Mat3<Dual<T>>& F) {
 }
 
 // H += scale dR/dF, where dR/dF = sum over i < j of w w' / (s_i + s_j), w = vec(u_i v_j' - u_j v_i'). R is
-// discontinuous at s_i + s_j = 0, so the sum is at least `least` and the result stays finite.
+// discontinuous at s_i + s_j = 0, so the sum is bounded below by `least` to keep the result finite.
 template <class T>
 void add_rotation_gradient(const Svd3<T>& f, const T& scale, double least, Mat9<T>& H) {
   for (int j = 1; j < 3; ++j)
@@ -53,8 +53,8 @@ T stretch_trace(const Mat3<T>& F) {
   return f.s[0] + f.s[1] + f.s[2];
 }
 
-// tr S with its derivatives: t = tr S is a root of (t^2 - I1)^2 / 4 - I2 - 2 J t, I1 = |F|^2, I2 = |cof F|^2. Each
-// Newton step on the jet doubles the order of accuracy, so two steps give second derivatives.
+// tr S with derivatives: t = tr S is a root of (t^2 - I1)^2 / 4 - I2 - 2 J t, I1 = |F|^2, I2 = |cof F|^2. Each Newton
+// step on the jet doubles the order of accuracy, so two steps give second derivatives.
 template <class T>
 Jet<T> stretch_trace(const Mat3<Jet<T>>& F) {
   Mat3<T> value;

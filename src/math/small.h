@@ -1,4 +1,4 @@
-// Small dense algebra over any scalar T: double, Pack or Jet. Matrices are column-major, so `a` is vec(F).
+// Small dense matrices and vectors over any scalar T: double, Pack or Jet. Matrices are column-major, so `a` is vec(F).
 #pragma once
 #include <cmath>
 
@@ -104,7 +104,7 @@ template <class T>
 T trace(const Mat3<T>& A) {
   return A(0, 0) + A(1, 1) + A(2, 2);
 }
-// A : B, the sum of the products of their entries.
+// A : B, the sum of the products of corresponding entries.
 template <class T>
 T inner(const Mat3<T>& A, const Mat3<T>& B) {
   T s = A.a[0] * B.a[0];
@@ -137,7 +137,7 @@ template <class T>
 Mat3<T> inverse(const Mat3<T>& A) {
   return (T(1.0) / determinant(A)) * transpose(cofactor(A));
 }
-// The matrix with the given columns.
+// Returns the matrix with the given columns.
 template <class T>
 Mat3<T> from_columns(const Vec3<T>& x, const Vec3<T>& y, const Vec3<T>& z) {
   return {{x[0], x[1], x[2], y[0], y[1], y[2], z[0], z[1], z[2]}};

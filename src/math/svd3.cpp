@@ -23,7 +23,7 @@ void rotate_columns(const PlaneRotation<T>& r, Mat3<T>& A, int i, int j) {
   for (int k = 0; k < 3; ++k) rotate(r, A(k, i), A(k, j));
 }
 
-// Where the condition is positive, swaps two columns and negates one. This rotation keeps the determinant.
+// Where the condition is positive, swaps two columns and negates one: a rotation, which preserves the determinant.
 template <class T>
 void swap_columns(const T& condition, Mat3<T>& A, int i, int j) {
   for (int k = 0; k < 3; ++k) {
@@ -55,7 +55,7 @@ void orthogonalize_columns(Mat3<T>& B, Mat3<T>& V) {
   }
 }
 
-// Unit vector perpendicular to u, from the axis that is closest to perpendicular.
+// Returns a unit vector perpendicular to u, from the coordinate axis that is closest to perpendicular.
 template <class T>
 Vec3<T> unit_perpendicular(const Vec3<T>& u) {
   const T x = abs(u[0]), y = abs(u[1]), z = abs(u[2]), zero = T(0.0), one = T(1.0);

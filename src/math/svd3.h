@@ -1,4 +1,4 @@
-// Singular values of a 3x3 matrix with proper rotations on both sides, by one-sided Jacobi [Golub 2013, sec. 8.6].
+// Singular values of 3x3 matrices with proper rotations on both sides, by one-sided Jacobi [Golub 2013, sec. 8.6].
 #pragma once
 #include "math/pack.h"
 #include "math/small.h"

@@ -56,7 +56,7 @@ std::vector<Mat3d> difficult_matrices() {
   return all;
 }
 
-TEST(Svd3, RestoresTheMatrixFromProperRotations) {
+TEST(Svd3, ReconstructsMatrixFromProperRotations) {
   for (const Mat3d& F : difficult_matrices()) expect_decomposition(F);
 }
 
@@ -67,7 +67,7 @@ TEST(Svd3, LastSingularValueHasSignOfDeterminant) {
     }
 }
 
-TEST(Svd3, KeepsTheRelativeAccuracyOfScaledColumns) {
+TEST(Svd3, IsRelativelyAccurateForScaledColumns) {
   std::mt19937 random(4);
   const Mat3d A = random_matrix(random);
   const Mat3d F = A * diagonal({{1, 1e-8, 1e-16}});
@@ -92,12 +92,12 @@ TEST(Svd3, OverPackAgreesWithDoubleInEachLane) {
   }
 }
 
-TEST(Polar3, RotationIsTheIdentityForSymmetricPositiveMatrices) {
+TEST(Polar3, RotationIsIdentityForPositiveDefiniteMatrices) {
   const Mat3d S = {{2, 0.5, -0.25, 0.5, 1, 0.125, -0.25, 0.125, 1.5}};
   EXPECT_LE(largest(rotation(svd3(S)) - identity3<double>()), kRoundOff);
 }
 
-TEST(Polar3, RotationGradientIsTheDerivativeOfTheRotation) {
+TEST(Polar3, RotationGradientMatchesDifferences) {
   std::mt19937 random(8);
   for (int k = 0; k < 20; ++k) {
     const Mat3d F = identity3<double>() + 0.4 * random_matrix(random), D = random_matrix(random);
@@ -114,7 +114,7 @@ TEST(Polar3, RotationGradientIsTheDerivativeOfTheRotation) {
 }
 
 // dtr S / dF = R.
-TEST(Polar3, StretchTraceHasTheRotationAsGradient) {
+TEST(Polar3, StretchTraceHasRotationAsGradient) {
   std::mt19937 random(8);
   for (int k = 0; k < 20; ++k) {
     const Mat3d F = identity3<double>() + 0.4 * random_matrix(random);
@@ -127,7 +127,7 @@ TEST(Polar3, StretchTraceHasTheRotationAsGradient) {
   }
 }
 
-TEST(SymmetricEigen3, RestoresTheMatrix) {
+TEST(SymmetricEigen3, ReconstructsMatrix) {
   for (const Mat3d& F : difficult_matrices()) {
     const double scale = largest(F);
     if (scale > 1e100) continue;

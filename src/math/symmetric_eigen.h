@@ -19,7 +19,8 @@ struct PlaneRotation {
   T sin, cos;
 };
 
-// Rotation by at most pi/4 that diagonalizes [[app, apq], [apq, aqq]]; identity where `active` is not positive.
+// Returns the rotation by at most pi/4 that diagonalizes [[app, apq], [apq, aqq]], or the identity where `active` is
+// not positive.
 template <class T>
 PlaneRotation<T> jacobi_rotation(const T& app, const T& aqq, const T& apq, const T& active) {
   const T zeta = (aqq - app) / (T(2.0) * where_positive(active, apq, T(1.0)));
@@ -37,7 +38,7 @@ void rotate(const PlaneRotation<T>& r, T& x, T& y) {
   x = z;
 }
 
-// Requires a symmetric, column-major A. Lanes that are not finite give undefined values.
+// Requires that A is symmetric and column-major. Lanes that are not finite return undefined values.
 template <int N, class T>
 SymmetricEigen<N, T> symmetric_eigen(std::array<T, N * N> A) {
   constexpr int kMaxSweeps = 30;  // convergence is quadratic; 6 to 8 are typical

@@ -7,7 +7,7 @@
 
 namespace aspic {
 
-// The i-th of consecutive vectors of 3 numbers.
+// Returns the i-th of consecutive vectors of 3 entries.
 inline Vec3d vec_at(std::span<const double> x, int i) {
   const size_t k = 3 * static_cast<size_t>(i);
   return {{x[k], x[k + 1], x[k + 2]}};
@@ -22,8 +22,8 @@ inline void add_vec(const Vec3d& value, int i, std::span<double> x) {
 double dot(std::span<const double> x, std::span<const double> y);  // requires equal sizes
 double squared_norm(std::span<const double> x);
 double norm(std::span<const double> x);     // Euclidean
-double max_abs(std::span<const double> x);  // largest absolute value; NaN if an entry is NaN, 0 without entries
+double max_abs(std::span<const double> x);  // largest absolute value; NaN if an entry is NaN, 0 if empty
 void add_scaled(double s, std::span<const double> x, std::span<double> y);  // y += s x; requires equal sizes
-double median(std::vector<double> values);  // mean of the middle two if the count is even; 0 without values
+double median(std::vector<double> values);  // mean of the middle two if the count is even; 0 if empty
 
 }  // namespace aspic

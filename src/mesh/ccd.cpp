@@ -9,7 +9,7 @@ namespace {
 
 constexpr double kEpsilon = std::numeric_limits<double>::epsilon();
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
-constexpr int kMostEvaluations = 1000;
+constexpr int kMaxEvaluations = 1000;
 // Bound of the error of a distance, in units of round-off of the largest coordinate, from computing it here and from
 // rounding the points of both primitives. The smallest accepted gap is much larger.
 constexpr double kRounding = 64 * kEpsilon, kSmallestGap = 1000 * kEpsilon;
@@ -115,7 +115,7 @@ SafeStep largest_step(const MovingPair& pair, const StepRule& rule) {
   if (!approach.is_resolved()) return {0, StepLimit::resolution, approach.evaluations()};
   const double start = approach.gap(), landing = start > 2 * rule.landing ? rule.landing : start / 5;
   double alpha = 0;
-  while (approach.evaluations() < kMostEvaluations) {
+  while (approach.evaluations() < kMaxEvaluations) {
     const double least = approach.gap() > 2 * landing ? landing : landing / 2;  // every step has a minimum length
     const double step = std::max(approach.additive_step(least), approach.directional_step(landing));
     if (!(alpha + step < rule.horizon)) return {rule.horizon, StepLimit::none, approach.evaluations()};

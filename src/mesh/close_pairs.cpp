@@ -11,7 +11,7 @@
 namespace aspic {
 namespace {
 
-constexpr double kMostLoose = 1.5;  // looseness relative to a new tree at which a tree is rebuilt
+constexpr double kMaxLoose = 1.5;  // looseness relative to a new tree at which a tree is rebuilt
 
 using Pairs = std::vector<std::array<int, 2>>;
 
@@ -122,7 +122,7 @@ std::vector<Box> swept_boxes(std::span<const Vec3d> x, std::span<const Vec3d> dx
 void PairFinder::Tree::fit() {
   if (!tree.empty()) {
     tree.front().refit(boxes);
-    if (!(tree.front().looseness() > kMostLoose * looseness)) return;
+    if (!(tree.front().looseness() > kMaxLoose * looseness)) return;
     tree.clear();
   }
   tree.emplace_back(boxes);

@@ -130,8 +130,8 @@ void examine_faces(const TetMesh& mesh, Findings& findings) {
 
 // Finds tets whose centroid is inside another tet. This misses some overlaps, but finds duplicated parts.
 std::vector<int> overlapping_tets(const TetMesh& mesh) {
-  constexpr double kInside = 1e-6;    // smallest barycentric weight that counts
-  constexpr size_t kMostNear = 4096;  // maximum tets near a few others, because a pile of tets would need all pairs
+  constexpr double kInside = 1e-6;   // smallest barycentric weight that counts
+  constexpr size_t kMaxNear = 4096;  // maximum tets near a few others, because a pile of tets would need all pairs
   std::vector<Box> boxes(mesh.tets.size());
   const std::vector<Vec3d> centers = centroids(mesh);
   for (size_t t = 0; t < boxes.size(); ++t)
@@ -151,9 +151,9 @@ std::vector<int> overlapping_tets(const TetMesh& mesh) {
     near.clear();
     tree.for_each_overlap(here, [&](int other) {
       near.push_back(other);
-      return near.size() < kMostNear;
+      return near.size() < kMaxNear;
     });
-    if (near.size() == kMostNear && tets.size() > 1) return false;
+    if (near.size() == kMaxNear && tets.size() > 1) return false;
     for (const int t : tets)
       is_held[t] = std::any_of(near.begin(), near.end(), [&](int other) {
         return other != t && boxes[other].contains(centers[t]) && holds(other, centers[t]);

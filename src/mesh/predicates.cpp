@@ -41,7 +41,7 @@ class Expansion {
     }
     if (x != 0) terms_[kept++] = x;
     count_ = kept;
-    ASPIC_CHECK(count_ < kMost);
+    ASPIC_CHECK(count_ < kMaxTerms);
   }
   void add_product(double a, double b) {
     const auto [value, error] = exact_product(a, b);
@@ -56,8 +56,8 @@ class Expansion {
   int sign() const { return count_ == 0 ? 0 : aspic::sign(terms_[count_ - 1]); }
 
  private:
-  static constexpr int kMost = 128;  // more than the 96 terms of the largest sum here
-  double terms_[kMost] = {};
+  static constexpr int kMaxTerms = 128;  // more than the 96 terms of the largest sum here
+  double terms_[kMaxTerms] = {};
   int count_ = 0;
 };
 

@@ -10,14 +10,14 @@
 namespace aspic {
 namespace {
 
-constexpr double kMostPieces = 1e9;  // maximum counted pieces, far beyond any memory
+constexpr double kMaxPieces = 1e9;  // maximum counted pieces, far beyond any memory
 
 double counted(double length, double size) { return std::max(1.0, std::round(length / size)); }
 
 int pieces(double length, double size) {
   const double count = counted(length, size);
-  ASPIC_CHECK(count <= kMostPieces);
-  return static_cast<int>(std::min(count, kMostPieces));
+  ASPIC_CHECK(count <= kMaxPieces);
+  return static_cast<int>(std::min(count, kMaxPieces));
 }
 
 // The disc has six sectors of n^2 triangles; each prism has three tets.

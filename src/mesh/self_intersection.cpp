@@ -10,7 +10,7 @@
 namespace aspic {
 namespace {
 
-constexpr long kMostCompared = 100'000'000;  // takes seconds
+constexpr long kMaxCompared = 100'000'000;  // takes seconds
 
 // Rotates both triangles so that their common vertices come first, in the same order. Returns the number of common
 // vertices.
@@ -44,7 +44,7 @@ class Search {
     const BoxTree tree(boxes);
     std::vector<std::array<int, 2>> found;
     long compared = 0;
-    const auto within_limits = [&] { return static_cast<int>(found.size()) < most && compared < kMostCompared; };
+    const auto within_limits = [&] { return static_cast<int>(found.size()) < most && compared < kMaxCompared; };
     for (int i = 0; i < static_cast<int>(usable_.size()) && within_limits(); ++i)
       tree.for_each_overlap(boxes[i], [&](int j) {
         ++compared;

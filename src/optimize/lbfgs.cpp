@@ -9,7 +9,7 @@ namespace aspic {
 namespace {
 
 // Pairs with a smaller cosine between s and y carry no reliable curvature.
-constexpr double kLeastCosine = 1e-8;
+constexpr double kMinCosine = 1e-8;
 
 }  // namespace
 
@@ -38,7 +38,7 @@ void LBFGS::remember(Objective& E, std::span<const double> x, std::span<const do
     Pair& pair = pairs_[next_];
     for (size_t i = 0; i < x.size(); ++i) pair.s[i] = x[i] - last_x_[i], pair.y[i] = g[i] - last_g_[i];
     const double sy = E.dot(pair.s, pair.y);
-    if (sy > kLeastCosine * std::sqrt(E.dot(pair.s, pair.s) * E.dot(pair.y, pair.y))) {
+    if (sy > kMinCosine * std::sqrt(E.dot(pair.s, pair.s) * E.dot(pair.y, pair.y))) {
       pair.rho = 1 / sy;
       next_ = (next_ + 1) % kPairs;
       count_ = std::min(count_ + 1, kPairs);
