@@ -24,7 +24,7 @@ class HeavyBall : public SearchDirection {
     return true;
   }
   // The line search found no step along d: drop the momentum once, then fail.
-  bool retreat() override {
+  bool fall_back() override {
     const bool had_momentum = !before_.empty();
     before_.clear();
     return had_momentum;

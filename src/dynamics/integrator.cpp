@@ -62,7 +62,7 @@ void StepForces::add_round_off(const IncrementalPotential& E, double round_off) 
 void StepForces::add_bounds(const SolveTools& tools, Asked asked, double weight, Positions x) {
   resize_bounds(tools.E);
   tools.E.add_part_noise(x, weight, round_offs);
-  if (asked == Asked::nothing || judges_direction(tools.options.criterion)) return;
+  if (asked == Asked::nothing || tests_direction(tools.options.criterion)) return;
   const std::span<const double> bounds = tools.minimizer.thresholds();
   for (size_t k = 0; k < thresholds.size(); ++k) thresholds[k] += weight * (bounds[k] / tools.E.scales().gradient_unit);
 }

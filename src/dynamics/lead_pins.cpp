@@ -37,7 +37,7 @@ void add_work(const MinimizeReport& spent, MinimizeReport& work) {
   work.trials += spent.trials;
   work.projected_hessians += spent.projected_hessians;
   work.projected_elements += spent.projected_elements;
-  work.retreats += spent.retreats;
+  work.fallbacks += spent.fallbacks;
 }
 
 Evaluation lead_pins(const StepTools& tools, double time, std::span<const double> from, std::span<double> q,

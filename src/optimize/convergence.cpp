@@ -61,7 +61,7 @@ void Convergence::describe(MinimizeReport& report) {
     if (ratio <= farthest) continue;
     farthest = ratio;
     report.threshold = thresholds_[k];
-    if (!judges_direction()) report.reached = norm;
+    if (!tests_direction()) report.reached = norm;
   }
 }
 
@@ -77,7 +77,7 @@ double Convergence::size_of_direction(std::span<const double> g, std::span<const
 }
 
 // A short direction near a saddle or from a modified Hessian does not imply convergence: the gradient must then be
-// small relative to the forces it is the sum of.
+// small relative to the forces that it sums.
 bool Convergence::is_near_minimum(double size, const DirectionReport& made) {
   constexpr double kBalanced = 1e-6;
   if (!made.kept) is_modified_ = made.projected_elements > 0;
@@ -89,24 +89,24 @@ bool Convergence::is_near_minimum(double size, const DirectionReport& made) {
 bool Convergence::is_at_round_off(double margin) const {
   for (size_t k = 0; k < parts_.size(); ++k) {
     const auto& [norm, scale] = parts_[k];
-    const bool has_converged = !judges_direction() && norm <= thresholds_[k];
+    const bool has_converged = !tests_direction() && norm <= thresholds_[k];
     if (!has_converged && !is_round_off(norm, scale, round_offs_[k], margin)) return false;
   }
   return true;
 }
 
 InnerAccuracy Convergence::inner_accuracy(const MinimizeReport& report) const {
-  constexpr double kFinestSolve = 1e-12;  // smallest relative residual that is worth its iterations
+  constexpr double kFinestSolve = 1e-12;  // minimum relative residual that is worth its iterations
   const double norm = report.gradient_norm;
   InnerAccuracy accuracy = {.loosest = options_->max_forcing,
-                            .enough = judges_direction() ? 0 : 0.5 * report.threshold / norm};
+                            .enough = tests_direction() ? 0 : 0.5 * report.threshold / norm};
   if (parts_.size() == 1) return accuracy;
   double smallest = norm;
   for (size_t k = 0; k < parts_.size(); ++k) {
-    const bool has_converged = !judges_direction() && parts_[k].norm <= thresholds_[k];
+    const bool has_converged = !tests_direction() && parts_[k].norm <= thresholds_[k];
     if (has_converged || parts_[k].norm <= round_offs_[k]) continue;
     smallest = std::min(smallest, parts_[k].norm);
-    if (!judges_direction()) accuracy.enough = std::min(accuracy.enough, 0.5 * thresholds_[k] / norm);
+    if (!tests_direction()) accuracy.enough = std::min(accuracy.enough, 0.5 * thresholds_[k] / norm);
   }
   accuracy.loosest = std::max(kFinestSolve, options_->max_forcing * smallest / norm);
   return accuracy;

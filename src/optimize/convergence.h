@@ -1,4 +1,4 @@
-// Convergence tests of a minimization. Each part of the gradient is tested separately.
+// Convergence criteria of a minimization. Each part of the gradient is tested separately.
 #pragma once
 #include <optional>
 #include <span>
@@ -15,21 +15,21 @@ class Convergence {
   void measure(std::span<const double> g);  // at the next iterate
   void note_hessian();                      // updates the round-off of the gradient after a new Hessian
 
-  // Writes `reached` and `threshold` of the part that is farthest from its threshold; `reached` only if the criterion
-  // tests the gradient.
+  // Writes `reached` and `threshold` of the part that is farthest from its threshold; writes `reached` only if the
+  // criterion tests the gradient.
   void describe(MinimizeReport& report);
-  // Returns the norm of the direction d that the criterion tests.
+  // Returns the norm of direction d that the criterion tests.
   double size_of_direction(std::span<const double> g, std::span<const double> d);
-  // Returns whether a direction of this size, computed as reported, shows convergence.
+  // Returns whether a direction of this size, computed as reported, implies convergence.
   bool is_near_minimum(double size, const DirectionReport& made);
   // See HasParts::lost_accuracy().
   double lost_accuracy(std::span<const double> x) { return parts_of_E_->lost_accuracy(x, parts_); }
   // Returns whether every part has converged or is within `margin` times its round-off.
   bool is_at_round_off(double margin) const;
-  // Accounts for the share of unconverged parts in g, because linear solves measure the residual of all parts.
+  // Accounts for the share of unconverged parts in g, because linear solves measure the residual of all parts together.
   InnerAccuracy inner_accuracy(const MinimizeReport& report) const;
 
-  bool judges_direction() const { return aspic::judges_direction(options_->criterion); }
+  bool tests_direction() const { return aspic::tests_direction(options_->criterion); }
   std::span<const double> thresholds() const { return thresholds_; }
 
  private:
@@ -39,8 +39,8 @@ class Convergence {
   HasParts* parts_of_E_ = nullptr;
   std::optional<WholePart> whole_;
   const MinimizeOptions* options_ = nullptr;
-  std::vector<GradientPart> parts_;                            // of the last gradient
-  std::vector<double> first_norms_, thresholds_, round_offs_;  // of each part
+  std::vector<GradientPart> parts_;                            // at the last gradient
+  std::vector<double> first_norms_, thresholds_, round_offs_;  // per part
   bool is_modified_ = false;                                   // whether the last direction used a modified Hessian
 };
 

@@ -9,11 +9,11 @@ namespace aspic {
 namespace {
 
 constexpr int kDecades = 9;
-// Fraction of the variation over one length that is the characteristic size of a zero gradient.
+// Characteristic size of a zero gradient, as a fraction of the variation over one length.
 constexpr double kRestShare = 0.01;
 
-// Errors below are round-off.
-constexpr double kNoise = 1e-12;
+// Errors below this value are round-off.
+constexpr double kRoundOffFloor = 1e-12;
 
 using Vector = std::vector<double>;
 
@@ -130,11 +130,12 @@ class Checker {
     return check;
   }
 
-  // Least squares over the decades in which the error falls towards its smallest value and is well above it.
+  // Returns the least-squares slope over the decades in which the error decreases towards its minimum and is well above
+  // it.
   static double fitted_order(const DerivativeCheck& check) {
     Vector u, v;
     for (size_t i = 0; i < check.step.size() && check.error[i] != check.smallest_error; ++i) {
-      if (!(check.error[i] > std::max(30 * check.smallest_error, kNoise))) continue;
+      if (!(check.error[i] > std::max(30 * check.smallest_error, kRoundOffFloor))) continue;
       u.push_back(std::log10(check.step[i]));
       v.push_back(std::log10(check.error[i]));
     }
@@ -149,7 +150,7 @@ class Checker {
     return top / bottom;
   }
 
-  // Bisects the range of entries and keeps the half with the larger error. The last entry is wrong if any entry is.
+  // Bisects the range of entries, keeping the half with the larger error. The last entry is wrong if any entry is.
   template <class Error>
   size_t worst_entry(Error error) const {
     Range range = all();

@@ -17,7 +17,7 @@ TEST(DerivativeCheck, FindsSlopeTwoForSmoothFunctions) {
     const DerivativeReport report = check_derivatives(differentiable(*f), kPoint);
     EXPECT_TRUE(report.passed()) << info.name;
     EXPECT_EQ(report.gradient.step.size(), 9u);
-    if (info.name == "quadratic") {  // whose differences have no error but round-off
+    if (info.name == "quadratic") {  // its differences have only round-off errors
       EXPECT_TRUE(std::isnan(report.gradient.order));
       EXPECT_TRUE(std::isnan(report.hessian.order));
     } else {
@@ -27,11 +27,11 @@ TEST(DerivativeCheck, FindsSlopeTwoForSmoothFunctions) {
   }
 }
 
-// f = sum of x_i^4 over 40 entries, with one mistake.
+// f = sum of x_i^4 over 40 entries, with one wrong derivative.
 class Quartic : public Objective {
  public:
   int wrong_gradient = -1, wrong_row = -1, wrong_column = -1;
-  double factor = 1.001;  // by which it is wrong
+  double factor = 1.001;  // factor of the wrong derivative
   Quartic() : pattern_(make_pattern(14, couplings())), H_(pattern_) {}
   Evaluation evaluate(std::span<const double> x) override {
     double sum = 0;
@@ -94,7 +94,7 @@ TEST(DerivativeCheck, NamesWrongGradientEntry) {
     EXPECT_FALSE(check.passed);
     EXPECT_EQ(check.row, wrong);
     EXPECT_NEAR(check.found / check.expected, 1.001, 1e-7);
-    EXPECT_FALSE(check.order > 1.5);  // the error does not fall
+    EXPECT_FALSE(check.order > 1.5);  // the error does not decrease
   }
 }
 
@@ -105,7 +105,7 @@ TEST(DerivativeCheck, NamesWrongHessianEntry) {
     const DerivativeReport report = check_derivatives(differentiable(f), quartic_point());
     EXPECT_TRUE(report.gradient.passed);
     EXPECT_FALSE(report.hessian.passed);
-    // An entry off the diagonal stands in two rows.
+    // An off-diagonal entry occurs in two rows.
     EXPECT_EQ(std::max(report.hessian.row, report.hessian.column), row);
     EXPECT_EQ(std::min(report.hessian.row, report.hessian.column), column);
     EXPECT_GT(report.hessian.found / report.hessian.expected, 1.0005);

@@ -12,8 +12,7 @@ FallbackChain::FallbackChain(std::vector<std::unique_ptr<SearchDirection>> metho
 
 std::string FallbackChain::description() const {
   std::string text;
-  for (const auto& method : methods_)
-    text += (text.empty() ? "" : "; where it finds no step, ") + method->description();
+  for (const auto& method : methods_) text += (text.empty() ? "" : "; fallback: ") + method->description();
   return text;
 }
 
@@ -25,18 +24,18 @@ void FallbackChain::start(size_t method) {
 
 void FallbackChain::begin() {
   start(0);
-  retreated_ = false;
+  fell_back_ = false;
 }
 
 bool FallbackChain::compute(const Iterate& at, std::span<double> d, DirectionReport& report) {
-  if (!retreated_ && current_ != 0) start(0);
-  retreated_ = false;
+  if (!fell_back_ && current_ != 0) start(0);
+  fell_back_ = false;
   return methods_[current_]->compute(at, d, report);
 }
 
-bool FallbackChain::retreat() {
-  retreated_ = true;
-  if (methods_[current_]->retreat()) return true;
+bool FallbackChain::fall_back() {
+  fell_back_ = true;
+  if (methods_[current_]->fall_back()) return true;
   if (current_ + 1 == methods_.size()) return false;
   start(current_ + 1);
   return true;

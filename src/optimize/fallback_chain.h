@@ -1,4 +1,4 @@
-// A sequence of methods: if one of them finds no step, the next one is used.
+// A sequence of methods: if one finds no step, the next one is used.
 #pragma once
 #include <memory>
 #include <vector>
@@ -16,15 +16,15 @@ class FallbackChain : public SearchDirection {
   // Every iteration starts with the first method.
   bool compute(const Iterate& at, std::span<double> d, DirectionReport& report) override;
   // Falls back within the current method, then to the next method.
-  bool retreat() override;
-  bool estimates_minimizer() const override;  // if all of them do
+  bool fall_back() override;
+  bool estimates_minimizer() const override;  // if all methods do
 
  private:
   void start(size_t method);
 
   std::vector<std::unique_ptr<SearchDirection>> methods_;
   size_t current_ = 0;
-  bool retreated_ = false;  // the next compute() is at the same iterate
+  bool fell_back_ = false;  // the next compute() is at the same iterate
 };
 
 }  // namespace aspic

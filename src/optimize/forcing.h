@@ -1,4 +1,4 @@
-// The relative residual eta of the linear systems of Newton's method: |H d + g| <= eta |g|. It is large far from the
+// Relative residual eta of the linear systems of Newton's method: |H d + g| <= eta |g|. It is large far from the
 // minimum and small near it, so that convergence is superlinear.
 #pragma once
 #include "optimize/search_direction.h"

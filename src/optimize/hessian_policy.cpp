@@ -36,7 +36,7 @@ class ProgressiveHessian : public HessianPolicy {
     }
   }
 
-  bool retreat() override { return tighten_next_ = !projection_.is_complete(); }
+  bool fall_back() override { return tighten_next_ = !projection_.is_complete(); }
 
  private:
   ProgressiveProjection projection_;
@@ -61,7 +61,7 @@ class HessianOnDemand : public HessianPolicy {
     if (system.is_late(task.report)) return false;
     const double gained = task.value ? last_value_ - *task.value : 0;
     if (task.value) last_value_ = *task.value;
-    const bool creeps = task.value && !is_modified_ && modified_in_a_row_ >= kPatience;
+    const bool creeps = task.value && !is_modified_ && modified_in_a_row_ >= kModifiedBeforeTruncated;
     ++modified_in_a_row_;
     if (creeps && leaves_saddle(system, task, gained)) return true;
     if (system.is_late(task.report)) return false;
@@ -69,11 +69,12 @@ class HessianOnDemand : public HessianPolicy {
     return solve_modified(system, task);
   }
 
-  bool retreat() override { return skip_exact_ = !is_modified_; }
+  bool fall_back() override { return skip_exact_ = !is_modified_; }
 
  private:
   static constexpr int kAbsoluteSpan = 8;  // number of directions; doubles after each overshoot
-  static constexpr int kPatience = 2;      // successive directions of modified Hessians before truncated ones
+  static constexpr int kModifiedBeforeTruncated =
+      2;  // successive directions of modified Hessians before truncated ones
 
   // Modified Hessians are too stiff near a saddle, so iterates leave it slowly. Uses a truncated direction of the exact
   // Hessian if it decreases E as much as the last step did.
@@ -83,8 +84,8 @@ class HessianOnDemand : public HessianPolicy {
   }
 
   // In inverted or strongly compressed elements, negative eigenvalues are as large as positive ones. Clamping them
-  // gives directions that are too long, absolute values shorten them [Chen2024Filtering]. Elsewhere these are too
-  // stiff.
+  // yields directions that are too long; absolute values shorten them [Chen2024Filtering]. In other elements, absolute
+  // values are too stiff.
   bool solve_modified(NewtonSystem& system, NewtonTask& task) {
     const auto is_unjudged = [&] { return !task.value || system.is_late(task.report); };
     if (absolute_left_ == 0) {
@@ -99,8 +100,8 @@ class HessianOnDemand : public HessianPolicy {
     return true;
   }
 
-  // Doubles d while E decreases and the parabola through E at both ends of d has its minimum beyond 2 d. Returns E at
-  // x + d, or at the largest feasible step along d.
+  // Doubles d while E decreases and the parabola through E at both ends of d has its minimum beyond 2 d. Returns E at x
+  // + d, or at the largest feasible step along d.
   double lengthen(NewtonTask& task) {
     const double reach = task.E.max_step(task.x, task.d);
     double end = value_ahead(task, std::min(1.0, reach));
@@ -116,7 +117,7 @@ class HessianOnDemand : public HessianPolicy {
     return end;
   }
 
-  // E at x + alpha d
+  // Returns E at x + alpha d.
   double value_ahead(NewtonTask& task, double alpha) {
     ahead_.resize(task.x.size());
     for (size_t i = 0; i < ahead_.size(); ++i) ahead_[i] = task.x[i] + alpha * task.d[i];
@@ -125,9 +126,9 @@ class HessianOnDemand : public HessianPolicy {
   }
 
   bool skip_exact_ = false;    // for the next direction, after a fallback
-  bool is_modified_ = false;   // the Hessian of the last direction
+  bool is_modified_ = false;   // whether the last direction used a modified Hessian
   int absolute_left_ = 0;      // number of upcoming modified Hessians that use absolute eigenvalues
-  int absolute_span_ = 0;      // its value after the next direction that overshoots
+  int absolute_span_ = 0;      // next value of absolute_left_ after an overshoot
   int modified_in_a_row_ = 0;  // successive directions of modified Hessians
   double last_value_ = 0;      // E at the last iterate with such a direction
   std::vector<double> ahead_;

@@ -14,7 +14,7 @@ class KeptHessian {
   void drop() { H_ = nullptr; }
   // Keeps the Hessian that E computed at x. E owns it and overwrites it with the next one.
   void keep(const Objective& E, const BlockSparse& H, std::span<const double> x);
-  // Records a solve of H d = -g with this relative residual.
+  // Records the relative residual of a solve of H d = -g.
   void note_solve(double gradient_norm, double relative_residual);
 
   // Returns whether a step with the kept Hessian is expected to converge from this gradient norm. The step leaves about
@@ -26,7 +26,7 @@ class KeptHessian {
  private:
   const BlockSparse* H_ = nullptr;
   std::vector<double> x_;  // positions of the kept Hessian
-  uint64_t number_ = 0;    // its Objective::hessians_made()
+  uint64_t number_ = 0;    // Objective::hessians_made() of the kept Hessian
   double norm_before_ = 0, predicted_norm_ = 0;
 };
 

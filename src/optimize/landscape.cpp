@@ -21,7 +21,7 @@ Vector product(const BlockSparse& H, std::span<const double> u) {
   return Hu;
 }
 
-// The component of u orthogonal to d, scaled to the length of d; empty if u is parallel to d.
+// Returns the component of u orthogonal to d, scaled to the length of d; empty if u is parallel to d.
 Vector across(Objective& E, std::span<const double> u, std::span<const double> d) {
   const double dd = E.dot(d, d), along = E.dot(u, d) / dd;
   Vector v(u.size());
@@ -41,7 +41,7 @@ Vector across_direction(const LiveIteration& at, const BlockSparse& H) {
   return v;
 }
 
-// Half of the samples are around the accepted step if the longest trial is much longer.
+// Places half of the samples around the accepted step if the longest trial is much longer.
 Vector samples_along(const LiveIteration& at, int samples) {
   double last = at.tried.empty() ? 1 : 1.25 * at.alpha;
   for (const Trial& trial : at.tried) last = std::max(last, 1.25 * trial.alpha);

@@ -1,4 +1,4 @@
-// Samples E around an iterate, for plots: along the search direction, and on a plane through it.
+// Samples E around an iterate for plots: along the search direction, and in a plane that contains it.
 #pragma once
 #include <functional>
 #include <vector>
@@ -11,26 +11,26 @@ struct CurvePoint {
   double alpha = 0;
   double value = 0;           // E(x + alpha d); +inf where undefined or beyond the largest step
   double model = 0;           // E + alpha g.d + alpha^2/2 d'Hd with the exact Hessian H
-  double textbook_bound = 0;  // E + c alpha g.d: the sufficient decrease
+  double textbook_bound = 0;  // E + c alpha g.d: bound of the sufficient decrease
   double slide_bound = 0;     // E + c g.d
 };
 
-// Samples E along d from slightly behind x to slightly beyond the longest trial, with more samples around an accepted
-// step that is much shorter. alpha ascends. `c` is the sufficient decrease; samples >= 2. Polls `stop` before every
+// Samples E along d from slightly behind x to slightly beyond the longest trial, with additional samples around an
+// accepted step that is much shorter. alpha ascends. `c`: sufficient decrease; samples >= 2. Polls `stop` before every
 // sample and returns an empty vector if it stops.
 std::vector<CurvePoint> curve_along(const LiveIteration& iteration, double c, int samples = 101,
                                     const StopToken& stop = {});
 
-// A point x + s d + t v of the plane spanned by d and v. v is orthogonal to d and has its length; it is the component
-// of -g, or of H g if d is parallel to g.
+// A point x + s d + t v in the plane of d and v. v is orthogonal to d, of the same length, and the component of -g, or
+// of H g if d is parallel to g.
 struct SlicePoint {
   double s = 0, t = 0;
   double value = 0;         // E; +inf where undefined or blocked
-  double model = 0;         // its quadratic model at x
-  bool is_blocked = false;  // the straight path from x is not free
+  double model = 0;         // quadratic model of E at x
+  bool is_blocked = false;  // the straight path from x is infeasible
 };
 
-// The largest alpha up to `last` for which the path from x to x + alpha d is free; infinity: all of them.
+// Returns the largest alpha up to `last` for which the path from x to x + alpha d is feasible; infinity: all of them.
 double largest_step(const LiveIteration& iteration, double last);
 
 struct Slice {

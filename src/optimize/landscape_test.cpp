@@ -58,7 +58,7 @@ TEST(Landscape, ShortAcceptedStepHasSamplesAround) {
   });
 }
 
-// At (s, t) = (1, 0) stands the end of the full step, where the model of Newton's method has its minimum.
+// (s, t) = (1, 0) is the end of the full step, where the model of Newton's method has its minimum.
 TEST(Landscape, SliceContainsIterateAndModelMinimum) {
   look_at_first_iteration(direct_newton(), [](const LiveIteration& iteration) {
     const Slice slice = slice_through(iteration, 41);
@@ -94,7 +94,7 @@ TEST(Landscape, StopsOnRequest) {
   });
 }
 
-TEST(Landscape, SamplingChangesNoBit) {
+TEST(Landscape, SamplingDoesNotChangeResult) {
   const auto minimum = [](bool look) {
     Rosenbrock f;
     std::vector<double> x = {-0.8, 0.6, 0};
@@ -115,7 +115,7 @@ class WalledRosenbrock : public Rosenbrock {
   }
 };
 
-TEST(Landscape, MarksWhatLargestStepDoesNotReach) {
+TEST(Landscape, MarksBlockedPoints) {
   WalledRosenbrock f;
   std::vector<double> x = {-0.8, 0.6, 0};
   const auto look = [](const LiveIteration& iteration) {

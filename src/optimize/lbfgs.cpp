@@ -8,7 +8,7 @@
 namespace aspic {
 namespace {
 
-// Pairs with a smaller cosine between s and y carry no reliable curvature.
+// Minimum cosine between s and y of a pair with reliable curvature.
 constexpr double kMinCosine = 1e-8;
 
 }  // namespace
@@ -22,7 +22,7 @@ void LBFGS::begin() {
   has_last_ = corrected_ = false;
 }
 
-bool LBFGS::retreat() {
+bool LBFGS::fall_back() {
   count_ = 0;
   return corrected_;
 }
@@ -32,7 +32,7 @@ void LBFGS::resize(size_t n) {
   for (Pair& pair : pairs_) pair.s.resize(n), pair.y.resize(n);
 }
 
-// Stores the last step as a pair if E has positive curvature along it. A second call at the same x adds none.
+// Stores the last step as a pair if E has positive curvature along it. A second call at the same x adds no pair.
 void LBFGS::remember(Objective& E, std::span<const double> x, std::span<const double> g) {
   if (has_last_) {
     Pair& pair = pairs_[next_];
@@ -69,8 +69,8 @@ bool LBFGS::compute(const Iterate& at, std::span<double> d, DirectionReport& rep
   return true;
 }
 
-// Scales directions unless B is the Hessian or, in the first iteration, the preconditioner of the objective: the first
-// one by the quadratic model along it, later ones by the last pair [Nocedal and Wright 2006, eq. 7.20].
+// Scales directions unless B is the Hessian or, in the first iteration, the preconditioner of the objective. The first
+// direction is scaled by the quadratic model along it, later ones by the last pair [Nocedal and Wright 2006, eq. 7.20].
 bool LBFGS::scale(const Iterate& at, std::span<double> d, DirectionReport& report) {
   if (B_.kind() == PreconditionerKind::hessian) return true;
   if (B_.kind() == PreconditionerKind::own && count_ == 0) return true;

@@ -1,5 +1,5 @@
-// L-BFGS [Nocedal and Wright 2006, alg. 7.4] with the Hessian at the first iterate, or another preconditioner B, as its
-// initial matrix [Liu et al. 2017].
+// L-BFGS [Nocedal and Wright 2006, alg. 7.4]. The initial matrix is the Hessian at the first iterate, or another
+// preconditioner B [Liu et al. 2017].
 #pragma once
 #include <vector>
 
@@ -16,7 +16,7 @@ class LBFGS : public SearchDirection {
   std::string description() const override;
   void begin() override;
   bool compute(const Iterate& at, std::span<double> d, DirectionReport& report) override;
-  bool retreat() override;  // drops the pairs: d = -B^-1 g
+  bool fall_back() override;  // drops the pairs: d = -B^-1 g
 
  private:
   static constexpr int kPairs = 8;
@@ -25,7 +25,7 @@ class LBFGS : public SearchDirection {
     double rho = 0;            // 1 / s.y
     double weight = 0;         // scratch of the two loops
   };
-  Pair& recent(int age) { return pairs_[(next_ + kPairs - 1 - age) % kPairs]; }  // 0: the last one
+  Pair& recent(int age) { return pairs_[(next_ + kPairs - 1 - age) % kPairs]; }  // 0: the most recent
   void resize(size_t n);
   void remember(Objective& E, std::span<const double> x, std::span<const double> g);
   bool scale(const Iterate& at, std::span<double> d, DirectionReport& report);

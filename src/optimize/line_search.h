@@ -1,4 +1,4 @@
-// Backtracking line search: starts with alpha_max and multiplies it by p until E has decreased sufficiently.
+// Backtracking line search: starts with alpha_max and multiplies it by p until E decreases sufficiently.
 #pragma once
 #include <span>
 #include <vector>
@@ -11,7 +11,7 @@ namespace aspic {
 
 enum class DecreaseTest {
   textbook,  // E(x + alpha d) <= E(x) + c alpha g.d   (Armijo)
-  slide,     // E(x + alpha d) <= E(x) + c g.d         (as printed in the lecture: alpha is missing)
+  slide,     // E(x + alpha d) <= E(x) + c g.d (as printed in the lecture: alpha is missing)
   none,      // accept alpha_max: Newton's method without a line search
 };
 
@@ -26,7 +26,7 @@ struct LineSearchOptions {
 struct Trial {
   double alpha = 0;
   double value = 0;       // E(x + alpha d)
-  double bound = 0;       // the largest value that the test accepts
+  double bound = 0;       // largest accepted value
   bool by_slope = false;  // tested by the slope, because the difference to E(x) is below round-off
   bool accepted = false;
 };
@@ -37,24 +37,24 @@ struct SearchLine {
   std::span<const double> x, d;
   Evaluation value;
   double slope;
-  StopToken stop = {};  // no trials afterwards, except the first
+  StopToken stop = {};  // ends the search after the first trial
 };
 
-// The vectors that a search writes. The caller sizes `trial` and `gradient` like x.
+// Output vectors of a search. The caller sizes `trial` and `gradient` like x.
 struct LineSearchScratch {
   std::vector<double> trial;     // the last trial x + alpha d
-  std::vector<double> gradient;  // there, if computed
-  std::vector<Trial> trials;     // all of them
+  std::vector<double> gradient;  // gradient at `trial`, if computed
+  std::vector<Trial> trials;     // all trials
 };
 
 struct LineSearchResult {
   double alpha = 0;             // 0: stuck
   Evaluation value;             // at x + alpha d
-  int gradients = 0;            // evaluated
-  bool gradient_known = false;  // LineSearchScratch::gradient is that of the accepted trial
+  int gradients = 0;            // number of evaluated gradients
+  bool gradient_known = false;  // LineSearchScratch::gradient belongs to the accepted trial
 };
 
-// Searches along the line. Near convergence differences of E are below round-off: if both the difference and the
+// Searches along the line. Near convergence, differences of E are below round-off. If both the difference and the
 // required decrease are, the slope at the trial decides (approximate Wolfe condition, [Hager and Zhang 2005]).
 LineSearchResult backtrack(const SearchLine& line, const LineSearchOptions& options, LineSearchScratch& scratch);
 

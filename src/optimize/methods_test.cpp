@@ -1,4 +1,4 @@
-// Every method on Rosenbrock's function, and the parts that methods are made of.
+// All methods on Rosenbrock's function, and their components.
 #include <gtest/gtest.h>
 
 #include <Eigen/Dense>
@@ -27,13 +27,14 @@ MinimizeReport minimize_rosenbrock(const SolverOptions& options, std::vector<dou
   return Minimizer().minimize(f, *make_search_direction(options), x, minimize);
 }
 
-// The smallest eigenvalue of the Hessian at (1, 1) is 0.399, so that |g| <= 1e-6 leaves an error of 2.5e-6.
+// The smallest eigenvalue of the Hessian at (1, 1) is 0.399, so |g| <= 1e-6 bounds the error by 2.5e-6.
 TEST(Methods, MinimizeRosenbrockWithEveryPreconditioner) {
   for (const std::string& method : minimizer_names())
     for (const std::string& preconditioner : preconditioner_names()) {
       const SolverOptions options{.method = method, .preconditioner = preconditioner};
-      if (find_conflict(options)) continue;  // the method has no use for a preconditioner
-      // Stretched across the valley at the start, by a hundred to one, it is stretched along the valley at the end.
+      if (find_conflict(options)) continue;  // the method ignores preconditioners
+      // The preconditioner is stretched 100 : 1 across the valley at the initial guess, but along the valley at the
+      // minimum.
       if (method == "gradient_descent" && (preconditioner == "diagonal" || preconditioner == "hessian")) continue;
       std::vector<double> x = {-0.8, 0.6, 0.3};
       const MinimizeReport report = minimize_rosenbrock(options, x);
@@ -90,14 +91,14 @@ TEST(NonlinearCG, TakesOneIterationPerEigenvalue) {
   Parabola f;
   std::vector<double> x = {1, 1, 1};
   MinimizeOptions options;
-  options.tolerance = 1e-6;  // steps by differences of gradients are right to seven digits
+  options.tolerance = 1e-6;  // steps from differences of gradients are accurate to seven digits
   options.criterion = Criterion::first_gradient;
   const auto method = make_search_direction({.method = "nonlinear_cg", .preconditioner = "none"});
   EXPECT_EQ(Minimizer().minimize(f, *method, x, options).iterations, 3);
 }
 
-// H <- (I - rho s y') H (I - rho y s') + rho s s' for each of the last eight steps, from H = (s.y / y.y) I of the last
-// [Nocedal and Wright 2006, eq. 7.16 and 7.20].
+// H <- (I - rho s y') H (I - rho y s') + rho s s' for each of the last eight steps, initialized with H = (s.y / y.y) I
+// of the last one [Nocedal and Wright 2006, eq. 7.16 and 7.20].
 TEST(LBFGS, MatchesMatrixRecursion) {
   for (int steps = 1; steps <= 10; ++steps) {
     Parabola f;
@@ -172,7 +173,7 @@ TEST(ModelStep, ReachesMinimumOfParabola) {
   EXPECT_NEAR(step.along({f, x, g}, p, report), 0.5, 1e-7);  // a length of 1 along z
   EXPECT_EQ(report.gradients, 1);
   Rosenbrock f2;
-  const std::vector<double> saddle = {0, 1, 0};  // there the curvature along x is 2 - 400
+  const std::vector<double> saddle = {0, 1, 0};  // where the curvature along x is 2 - 400
   f2.gradient(saddle, g);
   const std::vector<double> along = {4, 0, 0};
   EXPECT_NEAR(step.along({f2, saddle, g}, along, report), 2.0 / 4, 1e-6);  // twice the length of the last step
@@ -185,7 +186,7 @@ TEST(Forcing, TightensQuadraticallyDownToBound) {
   EXPECT_DOUBLE_EQ(forcing.at(1, accuracy), 0.1);
   EXPECT_DOUBLE_EQ(forcing.at(0.1, accuracy), 0.9 * 0.01);
   EXPECT_DOUBLE_EQ(forcing.at(0.1, accuracy), 0.9 * 0.01);  // the same iterate again
-  EXPECT_DOUBLE_EQ(forcing.at(0.09, accuracy), 0.1);        // 0.9^3 is too loose
+  EXPECT_DOUBLE_EQ(forcing.at(0.09, accuracy), 0.1);        // 0.9^3 is too large
   EXPECT_DOUBLE_EQ(forcing.at(1e-9, accuracy), 1e-8);
   EXPECT_DOUBLE_EQ(forcing.at(1e-12, {.loosest = 0.1, .enough = 0.05}), 0.05);
   EXPECT_DOUBLE_EQ(forcing.at(1e-13, {.loosest = 1e-10, .enough = 0.05}), 1e-10);
@@ -196,7 +197,7 @@ TEST(Forcing, DoesNotTightenSuddenly) {
   forcing.begin();
   const InnerAccuracy loose{.loosest = 0.9, .enough = 0};
   EXPECT_DOUBLE_EQ(forcing.at(1, loose), 0.9);
-  EXPECT_DOUBLE_EQ(forcing.at(0.1, loose), 0.9 * 0.81);  // and not 0.9 * 0.01
+  EXPECT_DOUBLE_EQ(forcing.at(0.1, loose), 0.9 * 0.81);  // not 0.9 * 0.01
 }
 
 TEST(ProgressiveProjection, GrowsFromLargestResiduals) {
@@ -213,7 +214,7 @@ TEST(ProgressiveProjection, GrowsFromLargestResiduals) {
     for (int v = 0; v < 4; ++v) count += now.covers(v);
     if (covered.empty() || covered.back() != count) covered.push_back(count);
   }
-  EXPECT_EQ(covered, (std::vector<int>{2, 3, 4}));  // above 1/2, 1/4 and at last all
+  EXPECT_EQ(covered, (std::vector<int>{2, 3, 4}));  // above 1/2, above 1/4, finally all
   EXPECT_TRUE(projection.is_complete());
   projection.begin();
   projection.tighten(g);
@@ -221,23 +222,23 @@ TEST(ProgressiveProjection, GrowsFromLargestResiduals) {
   EXPECT_EQ(projection.at(g).kind, Definiteness::exact);
 }
 
-// A method that succeeds where `works`, and notes that it was asked.
+// A method that succeeds if `works`, and logs its calls.
 class Scripted : public SearchDirection {
  public:
-  Scripted(std::string name, bool works, bool can_retreat, std::string& log)
-      : name_(std::move(name)), works_(works), can_retreat_(can_retreat), log_(log) {}
+  Scripted(std::string name, bool works, bool can_fall_back, std::string& log)
+      : name_(std::move(name)), works_(works), can_fall_back_(can_fall_back), log_(log) {}
   std::string_view name() const override { return name_; }
-  void begin() override { retreats_left_ = can_retreat_; }
+  void begin() override { fallbacks_left_ = can_fall_back_; }
   bool compute(const Iterate& at, std::span<double> d, DirectionReport&) override {
     log_ += name_;
     for (size_t i = 0; i < d.size(); ++i) d[i] = -1e-3 * at.g[i];
     return works_;
   }
-  bool retreat() override { return std::exchange(retreats_left_, false); }
+  bool fall_back() override { return std::exchange(fallbacks_left_, false); }
 
  private:
   std::string name_;
-  bool works_, can_retreat_, retreats_left_ = false;
+  bool works_, can_fall_back_, fallbacks_left_ = false;
   std::string& log_;
 };
 
@@ -254,7 +255,7 @@ TEST(FallbackChain, UsesFallbacksOfEachMethodFirst) {
   options.max_iterations = 2;
   const MinimizeReport report = Minimizer().minimize(f, chain, x, options);
   EXPECT_EQ(log, "aabcaabc");
-  EXPECT_EQ(report.retreats, 6);
+  EXPECT_EQ(report.fallbacks, 6);
   EXPECT_EQ(report.iterations, 2);
 }
 
@@ -278,8 +279,8 @@ TEST(FallbackChain, RescuesExactNewtonAtNegativeEigenvalue) {
     x = start;
     const MinimizeReport report = minimize_rosenbrock({.fallback = {fallback}, .definiteness = "exact"}, x);
     EXPECT_EQ(report.status, Status::converged) << fallback;
-    EXPECT_GT(report.retreats, 0) << fallback;
-    EXPECT_LT(report.retreats, report.iterations) << fallback << ": Newton's method takes over again";
+    EXPECT_GT(report.fallbacks, 0) << fallback;
+    EXPECT_LT(report.fallbacks, report.iterations) << fallback << ": Newton's method takes over again";
   }
 }
 
@@ -288,12 +289,12 @@ std::string conflict(const SolverOptions& options) {
   return found ? found->option + ": " + found->reason : "";
 }
 
-TEST(SolverOptions, UnusedOptionsNameMethodsThatUseThem) {
+TEST(SolverOptions, RejectsUnusedOptionsWithRemedy) {
   EXPECT_EQ(conflict({.method = "lbfgs", .definiteness = "clamped"}),
-            "definiteness: definiteness = 'clamped' is of no use to lbfgs; these have a use for it: newton, newton_cg "
+            "definiteness: definiteness = 'clamped' has no effect on lbfgs; methods that use it: newton, newton_cg "
             "(or leave it at 'auto')");
   EXPECT_EQ(conflict({.preconditioner = "mass"}),
-            "preconditioner: preconditioner = 'mass' is of no use to newton; these have a use for it: lbfgs, "
+            "preconditioner: preconditioner = 'mass' has no effect on newton; methods that use it: lbfgs, "
             "nonlinear_cg, gradient_descent (or leave it at 'auto')");
   EXPECT_NE(conflict({.method = "newton_cg", .linear = "cholesky"}), "");
   EXPECT_NE(conflict({.method = "lbfgs", .preconditioner = "mass", .linear = "cholesky"}), "");
@@ -303,7 +304,7 @@ TEST(SolverOptions, UnusedOptionsNameMethodsThatUseThem) {
   EXPECT_THROW(make_search_direction({.method = "newton", .preconditioner = "mass"}), InvalidInput);
 }
 
-TEST(SolverOptions, DirectionCriteriaNeedEstimatesOfTheMinimizer) {
+TEST(SolverOptions, DirectionCriteriaNeedMinimizerEstimates) {
   const auto with = [](const std::string& method, const std::vector<std::string>& fallback) {
     SolverOptions options{.method = method, .fallback = fallback};
     options.minimize.criterion = Criterion::velocity;
@@ -316,14 +317,14 @@ TEST(SolverOptions, DirectionCriteriaNeedEstimatesOfTheMinimizer) {
   EXPECT_EQ(with("newton", {"lbfgs"})->option, "criterion");
 }
 
-TEST(SolverOptions, EveryMethodHasItsName) {
+TEST(SolverOptions, MakesEveryMethodByName) {
   for (const std::string& method : minimizer_names()) {
     const auto direction = make_search_direction({.method = method});
     EXPECT_EQ(direction->name(), method);
     EXPECT_EQ(direction->description().find(method), 0u);
   }
   EXPECT_EQ(make_search_direction({.method = "newton", .fallback = {"gradient_descent"}})->description(),
-            "newton, definiteness on_demand, auto; where it finds no step, gradient_descent, preconditioner none");
+            "newton, definiteness on_demand, auto; fallback: gradient_descent, preconditioner none");
 }
 
 }  // namespace

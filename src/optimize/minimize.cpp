@@ -71,7 +71,7 @@ void add(const Iteration& iteration, MinimizeReport& report) {
   report.gradients += iteration.gradients;
   report.projected_hessians += direction.projected;
   report.projected_elements += direction.projected_elements;
-  report.retreats += iteration.retreats;
+  report.fallbacks += iteration.fallbacks;
   report.decrement = iteration.decrement;
 }
 
@@ -84,16 +84,16 @@ struct Progress {
   Evaluation value;
   MinimizeReport report = {};
   double slope = 0;             // g.d
-  LineSearchResult step = {};   // the last one
-  bool last_direction = false;  // the criterion holds for it
+  LineSearchResult step = {};   // of the last line search
+  bool last_direction = false;  // the criterion holds for this direction
 };
 
-// Durations of the parts of the last iteration, by the clock of the deadline [s].
+// Durations of the phases of the last iteration, by the clock of the deadline [s].
 struct Cost {
   double direction = 0, line_search = 0, gradient = 0;
-  double stoppable = 0;  // the part of `direction` that polls the stop token
+  double stoppable = 0;  // share of `direction` that polls the stop token
 
-  double to_finish() const { return line_search + gradient; }  // time after the direction is known
+  double to_finish() const { return line_search + gradient; }  // time after the direction is computed
   double at_least() const { return direction - stoppable + to_finish(); }
 };
 
@@ -104,7 +104,7 @@ struct Minimizer::Impl {
 
   MinimizeReport minimize(Progress& at, const IterationObserver& observe);
   void begin(Progress& at);
-  End judge(Progress& at);
+  End test_convergence(Progress& at);
   InnerAccuracy inner_accuracy(const Progress& at) const;
   bool find_direction(Progress& at, const Iterate& iterate, Iteration& iteration);
   bool search_line(Progress& at, const StopToken& stop, Iteration& iteration);
@@ -114,7 +114,7 @@ struct Minimizer::Impl {
   std::vector<double> g, d;
   LineSearchScratch line;
   Convergence convergence;
-  Cost cost;  // kept from one minimization to the next
+  Cost cost;  // kept between minimizations
 };
 
 MinimizeReport Minimizer::Impl::minimize(Progress& at, const IterationObserver& observe) {
@@ -123,7 +123,7 @@ MinimizeReport Minimizer::Impl::minimize(Progress& at, const IterationObserver& 
   const auto ended = [&report](Status status) { return report.status = status, report; };
   for (int i = 0;; ++i) {
     report.iterations = i;
-    if (const End end = judge(at)) return ended(*end);
+    if (const End end = test_convergence(at)) return ended(*end);
     LiveIteration iteration{{.index = i, .value = report.value, .gradient_norm = report.gradient_norm}, at.E};
     const End end = find_step(at, iteration);
     if (!end) take_step(at, iteration);
@@ -151,7 +151,7 @@ void Minimizer::Impl::begin(Progress& at) {
 }
 
 // Returns the final status if the minimization ends at this iterate.
-Minimizer::Impl::End Minimizer::Impl::judge(Progress& at) {
+Minimizer::Impl::End Minimizer::Impl::test_convergence(Progress& at) {
   MinimizeReport& report = at.report;
   report.value = at.value.value;
   report.gradient_norm = std::sqrt(at.E.dot(g, g));
@@ -159,13 +159,13 @@ Minimizer::Impl::End Minimizer::Impl::judge(Progress& at) {
   convergence.describe(report);
   if (!std::isfinite(report.value) || !std::isfinite(report.gradient_norm)) return Status::undefined;
   if (at.last_direction || report.gradient_norm == 0) return Status::converged;
-  if (!convergence.judges_direction() && report.reached <= report.threshold) {
+  if (!convergence.tests_direction() && report.reached <= report.threshold) {
     if (at.options.criterion == Criterion::scale) report.lost_accuracy = convergence.lost_accuracy(at.x);
     return report.lost_accuracy > 0 ? Status::round_off : Status::converged;
   }
   if (convergence.is_at_round_off(1)) return Status::round_off;
   if (report.iterations == at.options.max_iterations) return Status::iteration_limit;
-  // The first iteration ignores the estimate, because a step without any would ignore the forces.
+  // The first iteration ignores the estimate, because a step without any direction would ignore the forces.
   if (at.options.stop.seconds_left() <= (report.iterations > 0 ? cost.at_least() : 0)) return Status::budget;
   return std::nullopt;
 }
@@ -176,12 +176,12 @@ InnerAccuracy Minimizer::Impl::inner_accuracy(const Progress& at) const {
   return accuracy;
 }
 
-// Computes a direction and a step along it, with fallbacks to more cautious directions.
+// Computes a direction and a step along it, falling back to more cautious directions.
 Minimizer::Impl::End Minimizer::Impl::find_step(Progress& at, Iteration& iteration) {
   const Iterate iterate{at.E, at.x, g, inner_accuracy(at), at.options.stop.earlier_by(cost.to_finish())};
   const StopToken stop = at.options.stop.earlier_by(cost.gradient);
   const double begin = at.options.stop.now();
-  for (;; ++iteration.retreats) {
+  for (;; ++iteration.fallbacks) {
     Status failure = Status::no_descent;
     const bool descends = find_direction(at, iterate, iteration);
     const double computed = at.options.stop.now();
@@ -199,7 +199,7 @@ Minimizer::Impl::End Minimizer::Impl::find_step(Progress& at, Iteration& iterati
       failure = Status::stuck;
     }
     if (iteration.direction.stopped || stop.stopped()) return Status::budget;
-    if (!at.direction.retreat()) return failure;
+    if (!at.direction.fall_back()) return failure;
   }
 }
 
@@ -210,7 +210,7 @@ bool Minimizer::Impl::find_direction(Progress& at, const Iterate& iterate, Itera
   iteration.decrement = -0.5 * at.slope;
   line.trials.clear();
   if (!(at.slope < 0)) return false;
-  if (convergence.judges_direction()) {
+  if (convergence.tests_direction()) {
     at.report.reached = convergence.size_of_direction(g, d);
     at.last_direction = convergence.is_near_minimum(at.report.reached, iteration.direction);
   }
@@ -226,7 +226,7 @@ bool Minimizer::Impl::search_line(Progress& at, const StopToken& stop, Iteration
   return at.step.alpha > 0;
 }
 
-// Afterwards `line.trial` and `line.gradient` hold where the step began.
+// Afterwards, `line.trial` and `line.gradient` contain the start of the step.
 void Minimizer::Impl::take_step(Progress& at, Iteration& iteration) {
   Stopwatch stopwatch;
   const double begin = at.options.stop.now();
@@ -255,10 +255,10 @@ std::span<const double> Minimizer::thresholds() const { return impl_->convergenc
 
 MinimizeReport Minimizer::minimize(Objective& E, SearchDirection& direction, InitialIterate initial,
                                    const MinimizeOptions& options, const IterationObserver& observe) {
-  if (judges_direction(options.criterion) && !direction.estimates_minimizer())
+  if (tests_direction(options.criterion) && !direction.estimates_minimizer())
     throw InvalidInput("criterion = '" + std::string(to_string(options.criterion)) +
                        "' needs the method newton or newton_cg: directions of " + std::string(direction.name()) +
-                       " do not tell how far the minimum is (try 'scale')");
+                       " do not estimate the distance to the minimum (try 'scale')");
   const Evaluation value = initial.value ? *initial.value : E.evaluate(initial.x);
   Progress at{E, direction, initial.x, options, value};
   MinimizeReport report = impl_->minimize(at, observe);

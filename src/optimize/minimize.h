@@ -1,5 +1,5 @@
-// Gradient-based minimization: compute a direction, search along it, repeat until converged. The search direction and
-// the line search are exchangeable.
+// Gradient-based minimization: computes a direction, searches along it, and repeats until converged. The search
+// direction and the line search are exchangeable.
 #pragma once
 #include <concepts>
 #include <functional>
@@ -24,34 +24,34 @@ enum class Status {
   no_descent,       // no descent direction was found
   interrupted,      // the stop token was requested to stop
   undefined,        // the value or the gradient is not finite at the initial guess
-  // Only of time steps:
-  unstable,    // an explicit scheme has produced most of the energy of the body
-  inaccurate,  // the smallest substep of an adaptive time step misses its tolerance
+  // Only for time steps:
+  unstable,    // an explicit scheme generated most of the energy of the body
+  inaccurate,  // the smallest substep of an adaptive time step exceeds its tolerance
 };
 inline constexpr int kStatusCount = 10;
 std::string_view to_string(Status status);
 inline bool is_success(Status status) { return status == Status::converged || status == Status::round_off; }
 
 // Convergence criteria. The first three test the gradient g of each part of the objective, such as each body. The last
-// three test the direction d; they need a method for which x + d estimates the minimizer and a positive definite
-// Hessian, and the step along d is still taken.
+// three test the direction d. They require a method for which x + d estimates the minimizer, and a positive definite
+// Hessian; the step along d is still performed.
 enum class Criterion {
-  scale,           // |g| <= tolerance * GradientPart::scale: for a time step, the forces in balance
+  scale,           // |g| <= tolerance * GradientPart::scale; in a time step relative to the forces in balance
   first_gradient,  // |g| <= tolerance * |g at the first iterate|
-  absolute,        // |g| <= tolerance * ObjectiveScales::gradient_unit: for a time step, newtons
+  absolute,        // |g| <= tolerance * ObjectiveScales::gradient_unit; in a time step in newtons
   decrement,       // Newton decrement: sqrt(-g.d / 2) <= tolerance * sqrt(ObjectiveScales::value)
-  velocity,        // largest |d of a vertex| <= tolerance * h
-  acceleration,    // largest |d of a vertex| <= tolerance * h^2
+  velocity,        // largest |d| of a vertex <= tolerance * h
+  acceleration,    // largest |d| of a vertex <= tolerance * h^2
 };
 std::string_view to_string(Criterion criterion);
 std::vector<Criterion> all_criteria();
-inline bool judges_direction(Criterion criterion) { return criterion >= Criterion::decrement; }
+inline bool tests_direction(Criterion criterion) { return criterion >= Criterion::decrement; }
 
 struct MinimizeOptions {
   int max_iterations = 200;
   double tolerance = 1e-6;
   Criterion criterion = Criterion::scale;
-  double h = 1;              // time step of the criteria velocity and acceleration [s]
+  double h = 1;              // time step for the criteria velocity and acceleration [s]
   double max_forcing = 0.1;  // largest relative residual of inner linear solves
   LineSearchOptions line_search;
   StopToken stop = {};  // polled in every iteration
@@ -62,48 +62,48 @@ struct Iteration {
   double value = 0;          // E before the step
   double gradient_norm = 0;  // |g| before the step
   double decrement = 0;      // Newton decrement: -g.d / 2
-  double alpha = 0;          // accepted step length; 0 if there was none, which ends the minimization
+  double alpha = 0;          // accepted step length; 0: none, which ends the minimization
   int trials = 0;            // evaluations of E by the line search
   int gradients = 0;         // evaluations of the gradient
-  int retreats = 0;          // number of fallbacks to a more cautious direction
+  int fallbacks = 0;         // number of fallbacks to a more cautious direction
   DirectionReport direction;
   double line_search_seconds = 0, gradient_seconds = 0;  // wall time
 };
 
-// An iteration with its vectors, as observers receive it. The references are valid only during the call. An observer
-// may evaluate E anywhere: this changes no bit of the result.
+// An iteration with its vectors, as passed to observers. The references are valid only during the call. An observer may
+// evaluate E anywhere without changing the result.
 struct LiveIteration : Iteration {
   Objective& E;
   std::span<const double> x, g, d;  // before the step
-  std::span<const double> x_next;   // after it
-  std::span<const Trial> tried;     // by the line search
+  std::span<const double> x_next;   // after the step
+  std::span<const Trial> tried;     // trials of the line search
 };
 
 struct MinimizeReport : Work {
   Status status = Status::iteration_limit;
   int iterations = 0;
   double value = 0, gradient_norm = 0, first_gradient_norm = 0;
-  double reached = 0;             // the quantity that the criterion tests: |g| of the worst part, or a norm of d
-  double threshold = 0;           // its bound
-  double gradient_round_off = 0;  // rounding error of the gradient, as a norm
+  double reached = 0;             // the tested quantity: |g| of the worst part, or a norm of d
+  double threshold = 0;           // its threshold
+  double gradient_round_off = 0;  // norm of the rounding error of the gradient
   double lost_accuracy = 0;       // see HasParts::lost_accuracy(); if positive, the status is round_off
   double decrement = 0;           // -g.d / 2 of the last iteration; 0 without one
-  int trials = 0, retreats = 0, projected_hessians = 0, projected_elements = 0;
+  int trials = 0, fallbacks = 0, projected_hessians = 0, projected_elements = 0;
 };
 
 using IterationObserver = std::function<void(const LiveIteration&)>;
 
-// The point at which a minimization starts; x receives the result.
+// The initial guess of a minimization; x receives the result.
 struct InitialIterate {
   template <std::convertible_to<std::span<double>> Vector>
   InitialIterate(Vector&& initial) : x(initial) {}
   InitialIterate(std::span<double> initial, const Evaluation& E_of_x) : x(initial), value(E_of_x) {}
 
-  std::span<double> x;              // 3 numbers per block row
-  std::optional<Evaluation> value;  // E(x), if it is known
+  std::span<double> x;              // 3 entries per block row
+  std::optional<Evaluation> value;  // E(x), if known
 };
 
-// Keeps its scratch vectors, so that repeated calls allocate nothing.
+// Reuses its scratch vectors, so that repeated calls do not allocate.
 class Minimizer {
  public:
   Minimizer();
@@ -111,12 +111,12 @@ class Minimizer {
   Minimizer(Minimizer&&) noexcept;
   Minimizer& operator=(Minimizer&&) noexcept;
 
-  // Minimizes E from initial.x and writes the best iterate there. Throws InvalidInput if the criterion tests
-  // directions and those of the method do not estimate the minimizer.
+  // Minimizes E from initial.x and writes the best iterate to it. Throws InvalidInput if the criterion tests
+  // directions, but those of the method do not estimate the minimizer.
   MinimizeReport minimize(Objective& E, SearchDirection& direction, InitialIterate initial,
                           const MinimizeOptions& options, const IterationObserver& observe = {});
 
-  // Returns the bound of |g| of each part in the last minimization, if its criterion tests the gradient.
+  // Returns the threshold of |g| of each part in the last minimization, if its criterion tests the gradient.
   std::span<const double> thresholds() const;
 
  private:

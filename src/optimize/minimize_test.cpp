@@ -75,7 +75,7 @@ TEST(Minimize, IndefiniteHessianIsModifiedOnDemand) {
   EXPECT_GT(report.projected_hessians, 0);
 }
 
-// Not a number beyond a distance of two.
+// NaN beyond a distance of two.
 class Island : public Rosenbrock {
  public:
   Evaluation evaluate(std::span<const double> x) override {
@@ -118,7 +118,7 @@ TEST(Minimize, NonFiniteInitialGuessIsUndefined) {
   EXPECT_EQ(Minimizer().minimize(f, *newton_with(), x, tight()).status, Status::undefined);
 }
 
-TEST(Minimize, StopsOnRequestAfterTheIteration) {
+TEST(Minimize, StopsOnRequestAfterIteration) {
   Rosenbrock f;
   std::vector<double> x = {-0.8, 0.6, 0};
   int last = 0;
@@ -130,7 +130,7 @@ TEST(Minimize, StopsOnRequestAfterTheIteration) {
   EXPECT_EQ(report.iterations, 4);
 }
 
-// Its gradient points the wrong way, so that no step along -g decreases it.
+// The sign of the gradient is wrong, so no step along -g decreases the function.
 class Deceptive : public Rosenbrock {
  public:
   Deceptive(double gradient_round_off, double gradient_scale)
@@ -158,8 +158,8 @@ TEST(Minimize, AcceptsFailedLineSearchOnlyNearRoundOff) {
   EXPECT_EQ(status(0), Status::stuck);
   EXPECT_EQ(status(0.01), Status::stuck);     // 200 times below |g|
   EXPECT_EQ(status(0.1), Status::round_off);  // 20 times
-  EXPECT_EQ(status(3), Status::round_off);    // above: not even tried
-  EXPECT_EQ(status(3, 10), Status::stuck);    // round-off is all there is of this gradient
+  EXPECT_EQ(status(3), Status::round_off);    // above: no line search
+  EXPECT_EQ(status(3, 10), Status::stuck);    // the gradient is entirely round-off
   EXPECT_FALSE(is_success(Status::stuck));
 }
 
@@ -173,7 +173,7 @@ TEST(Minimize, ToleranceIsRelativeToCriterionScale) {
     return Minimizer().minimize(f, *newton_with(), x, options).threshold;
   };
   EXPECT_EQ(threshold(Criterion::absolute), 0.5);
-  EXPECT_EQ(threshold(Criterion::scale), 0.5);  // of a plain function the scale is 1
+  EXPECT_EQ(threshold(Criterion::scale), 0.5);  // the scale of a plain function is 1
   EXPECT_NEAR(threshold(Criterion::first_gradient), 0.5 * std::hypot(2, 100), 1e-12);
 }
 
@@ -189,8 +189,8 @@ TEST(Minimize, StatusAndCriterionNamesAreUnique) {
 }
 
 TEST(LineSearch, TextbookAndSlideTestsDifferByAlpha) {
-  // Along d = (0.005, 0), from (0, 0): f falls by 2 alpha 0.005 to first order, so c = 0.6 rejects nothing for the
-  // textbook test at small alpha, while the slide's test asks for the full decrease whatever alpha is.
+  // Along d = (0.005, 0) from (0, 0), f decreases by 2 alpha 0.005 to first order. With c = 0.6, the textbook test
+  // accepts small alpha, while the slide's test requires the full decrease for any alpha.
   Rosenbrock f;
   const std::vector<double> x = {0, 0, 0}, d = {0.5, 0, 0};
   LineSearchScratch scratch{std::vector<double>(3), std::vector<double>(3), {}};
@@ -203,8 +203,8 @@ TEST(LineSearch, TextbookAndSlideTestsDifferByAlpha) {
   EXPECT_EQ(backtrack({f, x, d, {f.value(x)}, -1}, options, scratch).alpha, 0);  // stuck
 }
 
-// f(x) = 8 x^2 + 1e9, whose differences near the minimum are lost in the round-off of 1e9.
-class DrownedParabola : public Objective {
+// f(x) = 8 x^2 + 1e9, whose differences near the minimum are below the round-off of 1e9.
+class OffsetParabola : public Objective {
  public:
   Evaluation evaluate(std::span<const double> x) override { return {8 * x[0] * x[0] + 1e9, 1e-7}; }
   void gradient(std::span<const double> x, std::span<double> g) override { g[0] = 16 * x[0]; }
@@ -214,7 +214,7 @@ class DrownedParabola : public Objective {
 };
 
 TEST(LineSearch, DescendsBelowRoundOffOfValues) {
-  DrownedParabola f;
+  OffsetParabola f;
   GradientDescent direction;
   std::vector<double> x = {1.3};
   MinimizeOptions options = tight();
@@ -247,7 +247,7 @@ TEST(Minimize, ShortDirectionNearSaddleIsNotConvergence) {
   }
 }
 
-// Time that passes with every evaluation.
+// A function whose evaluations advance a clock.
 class Timed : public Rosenbrock {
  public:
   Evaluation evaluate(std::span<const double> x) override { return ++time, Rosenbrock::evaluate(x); }

@@ -8,8 +8,8 @@
 namespace aspic {
 namespace {
 
-// Width of the difference quotient relative to the size of x: about the square root of the machine epsilon, where
-// truncation and round-off errors balance.
+// Width of the difference quotient relative to the size of x: about the square root of the machine epsilon, which
+// balances truncation and round-off errors.
 constexpr double kWidth = 1.5e-8;
 
 }  // namespace

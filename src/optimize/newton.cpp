@@ -30,9 +30,9 @@ bool Newton::compute(const Iterate& at, std::span<double> d, DirectionReport& re
   return used_kept_ || policy_->compute(system_, task);
 }
 
-bool Newton::retreat() {
+bool Newton::fall_back() {
   system_.drop_kept();
-  return used_kept_ || policy_->retreat();
+  return used_kept_ || policy_->fall_back();
 }
 
 }  // namespace aspic

@@ -15,7 +15,7 @@ class Newton : public SearchDirection {
   std::string description() const override;
   void begin() override;
   bool compute(const Iterate& at, std::span<double> d, DirectionReport& report) override;
-  bool retreat() override;
+  bool fall_back() override;
   bool estimates_minimizer() const override { return true; }
   const LinearSolver& solver() const { return system_.solver(); }
 
@@ -28,13 +28,13 @@ class Newton : public SearchDirection {
   NewtonDefiniteness definiteness_;
   std::unique_ptr<HessianPolicy> policy_;
   Forcing forcing_;
-  bool is_new_ = true;      // no direction computed yet in this minimization
+  bool is_new_ = true;      // no direction was computed yet in this minimization
   bool used_kept_ = false;  // the last direction used the Hessian of an earlier iteration
 };
 
-// Truncated Newton method: conjugate gradients stop at negative curvature and return their iterate, so that an
-// indefinite Hessian needs no modification [Nocedal and Wright 2006, alg. 7.1]. The tolerance of the solves is that of
-// Eisenstat and Walker. If such a direction fails, the Hessian is modified as `definiteness` allows.
+// Returns a truncated Newton method: conjugate gradients stop at negative curvature and return their iterate, so that
+// an indefinite Hessian needs no modification [Nocedal and Wright 2006, alg. 7.1]. The tolerance of the solves is that
+// of Eisenstat and Walker. If such a direction fails, the Hessian is modified according to `definiteness`.
 std::unique_ptr<Newton> make_newton_cg(NewtonDefiniteness definiteness = NewtonDefiniteness::on_demand);
 
 }  // namespace aspic

@@ -41,7 +41,7 @@ bool NewtonSystem::solve(NewtonTask& task, const Projection& projection) {
   exact_ = is_exact ? &H : nullptr;
   if (is_definite && solve_factorized(task)) {
     if (avoid_stops(task)) {
-      exact_ = nullptr;  // it has springs now
+      exact_ = nullptr;  // it contains springs now
     } else if (is_exact && !report.truncated && !report.stopped) {
       kept_.keep(task.E, H, task.x);
     }
@@ -53,7 +53,7 @@ bool NewtonSystem::solve(NewtonTask& task, const Projection& projection) {
 
 bool NewtonSystem::solve_truncated(NewtonTask& task) { return exact_ && solve_semidefinite(*exact_, task); }
 
-// Solves with conjugate gradients, which handle singular H, such as rotations about a single pinned vertex.
+// Solves with conjugate gradients, which can handle singular H, for example rotations about a single pinned vertex.
 bool NewtonSystem::solve_semidefinite(const BlockSparse& H, NewtonTask& task) {
   DirectionReport& report = task.report;
   Stopwatch stopwatch;
@@ -95,7 +95,8 @@ bool NewtonSystem::avoid_stops(NewtonTask& task) {
     has_springs = true;
     d_.assign(task.d.begin(), task.d.end());
     ++task.report.factorizations;
-    const double forcing = task.forcing * gradient_norm_ / std::sqrt(task.E.dot(g_, g_));  // springs pull hard
+    const double forcing =
+        task.forcing * gradient_norm_ / std::sqrt(task.E.dot(g_, g_));  // springs increase the gradient
     const bool is_solved = solver_->factorize(*H) && solve_factorized(task, g_, std::max(forcing, kFinest));
     const double next = is_solved && task.E.dot(task.g, task.d) < 0 ? task.E.max_step(task.x, task.d) : 0;
     if (next == 0 || next < std::min(reach, kUsefulStep)) {

@@ -1,4 +1,4 @@
-// The linear systems of Newton's method: H d = -g for a Hessian that a policy chooses.
+// Linear systems of Newton's method: H d = -g for a Hessian selected by a HessianPolicy.
 #pragma once
 #include <memory>
 #include <optional>
@@ -21,15 +21,15 @@ struct NewtonTask {
 
 class NewtonSystem {
  public:
-  // truncates: whether an iterate of a solve that met negative curvature is a direction.
+  // truncates: whether the iterate of a solve that detected negative curvature is a direction.
   NewtonSystem(std::unique_ptr<LinearSolver> solver, bool truncates)
       : solver_(std::move(solver)), truncates_(truncates) {}
   const LinearSolver& solver() const { return *solver_; }
   bool truncates() const { return truncates_; }
 
   void begin();  // starts a minimization
-  // Starts a direction. The first one of a minimization ignores the deadline, because a step without any direction
-  // would ignore the forces.
+  // Starts a direction. The first direction of a minimization ignores the deadline, because a step without any
+  // direction would ignore the forces.
   void begin_direction(const StopToken& stop, bool is_first, double gradient_norm);
 
   bool solve(NewtonTask& task, const Projection& projection);
@@ -37,11 +37,11 @@ class NewtonSystem {
   // Returns false if there is no exact Hessian or the solve failed.
   bool solve_truncated(NewtonTask& task);
 
-  // Solves with the Hessian and factorization or preconditioner of an earlier iteration, if it is accurate enough.
+  // Solves with the Hessian and factorization (or preconditioner) of an earlier iteration, if it is accurate enough.
   bool solve_with_kept(NewtonTask& task, const InnerAccuracy& accuracy);
   void drop_kept() { kept_.drop(); }
 
-  // Returns whether to end between the phases of a solve.
+  // Returns whether to stop between the phases of a solve.
   bool is_late(DirectionReport& report) const {
     return report.stopped = report.stopped || (is_first_ ? stop_.requested() : stop_.stopped());
   }
@@ -49,7 +49,7 @@ class NewtonSystem {
  private:
   bool solve_factorized(NewtonTask& task) { return solve_factorized(task, task.g, task.forcing); }
   bool solve_factorized(NewtonTask& task, std::span<const double> g, double forcing);
-  // Solves again, with springs, as long as the direction meets stops. Returns whether any were added.
+  // Solves again with added springs while the direction violates stops. Returns whether any were added.
   bool avoid_stops(NewtonTask& task);
   bool solve_semidefinite(const BlockSparse& H, NewtonTask& task);
 
@@ -59,11 +59,11 @@ class NewtonSystem {
   ConjugateGradient semidefinite_solver_{std::make_unique<BlockJacobi>(BlockJacobi::Blocks::modified)};
   uint64_t analyzed_version_ = 0, semidefinite_version_ = 0;
   KeptHessian kept_;
-  const BlockSparse* exact_ = nullptr;  // the last Hessian of this direction, if it is exact
+  const BlockSparse* exact_ = nullptr;  // the last Hessian of this direction, if exact
   StopToken stop_;
   bool is_first_ = true;
   double gradient_norm_ = 0;
-  std::vector<double> g_, d_;  // with springs; the last direction
+  std::vector<double> g_, d_;  // g with springs; the last direction
 };
 
 }  // namespace aspic

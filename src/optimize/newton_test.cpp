@@ -62,24 +62,24 @@ TEST(Newton, DropsHessianBetweenMinimizations) {
   const std::vector<double> x = {1.01, 1.02, 0};
   std::vector<double> g(3), d(3);
   f.gradient(x, g);
-  const InnerAccuracy lavish = {.loosest = 0.1, .enough = 10};  // whatever its quadratic approximation was worth
+  const InnerAccuracy large = {.loosest = 0.1, .enough = 10};  // for any accuracy of the last quadratic approximation
   const auto hessians = [&] {
     DirectionReport report;
-    EXPECT_TRUE(direction->compute({f, x, g, lavish}, d, report));
+    EXPECT_TRUE(direction->compute({f, x, g, large}, d, report));
     EXPECT_EQ(report.kept, report.hessians == 0);
     return report.hessians;
   };
   direction->begin();
   EXPECT_EQ(hessians(), 1);
   EXPECT_EQ(hessians(), 0);
-  EXPECT_TRUE(direction->retreat());
+  EXPECT_TRUE(direction->fall_back());
   EXPECT_EQ(hessians(), 1);
   EXPECT_EQ(hessians(), 0);
   direction->begin();
   EXPECT_EQ(hessians(), 1);
 }
 
-// Clamped, the negative eigenvalue is almost zero and the step along it endless; its absolute value is a scale.
+// A clamped eigenvalue is almost zero, which makes the step along it huge; its absolute value is a usable scale.
 TEST(Newton, OnDemandUsesAbsoluteEigenvaluesAfterOvershoot) {
   std::vector<int> trials;
   const auto count = [&](const Iteration& iteration) { return trials.push_back(iteration.trials), true; };
@@ -104,7 +104,7 @@ class DoubleWell : public PlanarFunction {
   PlanarHessian hessian_at(const Planar& p) const override { return {.xx = 6 * p[0] * p[0] - 2, .xy = 0, .yy = 2}; }
 };
 
-// Steps of absolute eigenvalues double the distance from the saddle, which would take 20 of them.
+// Each step with absolute eigenvalues doubles the distance from the saddle, which would take 20 steps.
 TEST(Newton, OnDemandLeavesSaddleInFewIterations) {
   DoubleWell f;
   Newton direction(make_linear_solver("cholesky"));
@@ -122,8 +122,8 @@ class CountedTwoBump : public TwoBump {
   int values = 0;
 };
 
-// Where no line search judges steps by E, nothing is evaluated ahead.
-TEST(Newton, CountsItsEvaluationsAhead) {
+// Without a line search that compares values of E, no value is evaluated in advance.
+TEST(Newton, CountsAdvanceEvaluations) {
   const std::vector<double> x = {-0.2, 1, 0};
   const auto evaluations = [&](bool is_known) {
     CountedTwoBump f;

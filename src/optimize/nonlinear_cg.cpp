@@ -12,7 +12,7 @@ void NonlinearCG::begin() {
   remembers_ = conjugate_ = false;
 }
 
-bool NonlinearCG::retreat() {
+bool NonlinearCG::fall_back() {
   remembers_ = false;
   return conjugate_;
 }
@@ -36,7 +36,7 @@ bool NonlinearCG::compute(const Iterate& at, std::span<double> d, DirectionRepor
   return true;
 }
 
-// The coefficient of Polak and Ribiere, or 0, a restart, if it is negative [Nocedal and Wright 2006, eq. 5.45].
+// Returns the coefficient of Polak and Ribiere, or 0 (a restart) if it is negative [Nocedal and Wright 2006, eq. 5.45].
 double NonlinearCG::beta(Objective& E, std::span<const double> g) {
   const double last = E.dot(last_g_, last_z_), change = E.dot(g, z_) - E.dot(last_g_, z_);
   return last > 0 ? std::max(0.0, change / last) : 0;

@@ -15,7 +15,7 @@ class NonlinearCG : public SearchDirection {
   std::string description() const override;
   void begin() override;
   bool compute(const Iterate& at, std::span<double> d, DirectionReport& report) override;
-  bool retreat() override;  // restarts with d = -B^-1 g
+  bool fall_back() override;  // restarts with d = -B^-1 g
 
  private:
   double beta(Objective& E, std::span<const double> g);

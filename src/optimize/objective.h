@@ -1,4 +1,4 @@
-// The function that a minimizer minimizes, with its derivatives.
+// The function to minimize, with its derivatives.
 #pragma once
 #include <cstdint>
 #include <limits>
@@ -10,19 +10,19 @@
 namespace aspic {
 
 struct Evaluation {
-  double value = 0;      // +inf where the function is not defined
+  double value = 0;      // +inf where the function is undefined
   double round_off = 0;  // bound of the rounding error of `value`
 };
 
 // Characteristic sizes of x, of the last value and of the last gradient, in their own units. Tolerances are relative to
-// them. The default suits a plain function.
+// them. The defaults suit a plain function.
 struct ObjectiveScales {
   double x = 1, value = 1, gradient = 1;
-  double gradient_unit = 1;       // the norm of a gradient of one physical unit, such as one newton
-  double gradient_round_off = 0;  // rounding error of the last gradient, as a norm
+  double gradient_unit = 1;       // norm of a gradient of one physical unit, such as one newton
+  double gradient_round_off = 0;  // norm of the rounding error of the last gradient
 };
 
-// A function E of n variables, stored as n / 3 block rows of 3. Evaluations may keep scratch data, so an objective must
+// A function E of n variables, stored as n / 3 block rows of 3. Evaluations may use scratch data, so an objective must
 // not be used by several threads at once.
 class Objective {
  public:
@@ -30,7 +30,7 @@ class Objective {
   virtual Evaluation evaluate(std::span<const double> x) = 0;  // E(x)
   double value(std::span<const double> x) { return evaluate(x).value; }
   virtual void gradient(std::span<const double> x, std::span<double> g) = 0;  // g = dE/dx
-  // Returns the Hessian at x, modified as `projection` asks. The reference is valid until the next call.
+  // Returns the Hessian at x, modified according to `projection`. The reference is valid until the next call.
   const BlockSparse& hessian(std::span<const double> x, const Projection& projection) {
     ++hessians_made_;
     return evaluate_hessian(x, projection);
@@ -39,13 +39,13 @@ class Objective {
   int projected_elements() const { return projected_elements_; }  // modified elements of the last Hessian
 
   virtual ObjectiveScales scales() const { return {}; }
-  // Returns an upper bound of the feasible steps alpha along d.
+  // Returns an upper bound of the feasible step lengths alpha along d.
   virtual double max_step(std::span<const double> /*x*/, std::span<const double> /*d*/) {
     return std::numeric_limits<double>::infinity();
   }
-  // Called by the minimizer when it has moved to x, where it evaluated the last value and the last gradient.
+  // Called when the minimizer has moved to x, where it evaluated the last value and the last gradient.
   virtual void note_iterate(std::span<const double> /*x*/) {}
-  virtual double dot(std::span<const double> a, std::span<const double> b);  // a distributed objective adds over ranks
+  virtual double dot(std::span<const double> a, std::span<const double> b);  // a distributed objective sums over ranks
 
  protected:
   // Computes the Hessian and sets projected_elements_.
@@ -56,7 +56,7 @@ class Objective {
   uint64_t hessians_made_ = 0;
 };
 
-// Optional interfaces of an objective. Minimizers look for them with dynamic_cast.
+// Optional interfaces of an objective. Minimizers query them with dynamic_cast.
 
 class HasMetric {
  public:
@@ -69,25 +69,26 @@ class HasMetric {
 class HasPreconditioner {
  public:
   virtual ~HasPreconditioner() = default;
-  // z = B^-1 r for a positive definite B that is constant during a minimization. Returns false if there is none.
+  // Computes z = B^-1 r for a positive definite B that is constant during a minimization. Returns false if there is
+  // none.
   virtual bool precondition(std::span<const double> r, std::span<double> z) = 0;
 };
 
-// A step along a Newton direction that is worth taking as it is.
+// Minimum feasible step length at which a Newton direction needs no stops.
 inline constexpr double kUsefulStep = 0.5;
 
-// Objectives whose feasible steps may be short, or whose gradients have kinks, such as those with contact and friction.
+// Interface for objectives with step bounds or kinks in their gradients, such as contact and friction.
 class HasStops {
  public:
   virtual ~HasStops() = default;
   // Adds springs to the last Hessian and to g, such that the minimizer of g'd + d'Hd / 2 stops at kinks that the given
-  // d crosses and, if max_step < kUsefulStep, before what bounds the steps along d. max_step: the largest feasible step
-  // from x along d. Returns the Hessian, or null if nothing was added.
+  // d crosses and, if max_step < kUsefulStep, before the bounds of the steps along d. max_step: largest feasible step
+  // length from x along d. Returns the Hessian, or null if nothing was added.
   virtual const BlockSparse* add_stops(std::span<const double> x, std::span<const double> d, double max_step,
                                        std::span<double> g) = 0;
 };
 
-// Round-off counts as convergence only below this fraction of the forces that the gradient is the sum of.
+// Round-off counts as convergence only below this fraction of the forces that the gradient sums.
 inline constexpr double kResolved = 1e-3;
 
 // A subset of the variables with its own convergence test, such as one of several bodies.
@@ -96,17 +97,17 @@ struct GradientPart {
   double scale = 1;  // characteristic size of this norm
 };
 
-// Objectives whose parts converge separately. Without this interface all variables form one part.
+// Interface for objectives whose parts converge separately. Without it, all variables form one part.
 class HasParts {
  public:
   virtual ~HasParts() = default;
   virtual int part_count() const = 0;
-  // Writes norm and scale of each part. g is the gradient that was evaluated last.
+  // Writes norm and scale of each part. g: the gradient evaluated last.
   virtual void measure_parts(std::span<const double> g, std::span<GradientPart> parts) = 0;
-  // Returns the rounding error of |g| over the part, estimated from the last Hessian.
+  // Returns the rounding error of |g| of the part, estimated from the last Hessian.
   virtual double part_round_off(int part) const = 0;
-  // Returns |g| at x, where it was evaluated last, relative to the forces that are known exactly, such as weight: at
-  // most 1, and 0 if it is below kResolved.
+  // Returns |g| at x, where it was evaluated last, relative to the exactly known forces, such as weight: at most 1, and
+  // 0 if it is below kResolved.
   virtual double lost_accuracy(std::span<const double> x, std::span<const GradientPart> parts) = 0;
   // Returns the largest of sqrt(-g.d / 2) / sqrt(scales().value) over the parts.
   virtual double relative_decrement(std::span<const double> g, std::span<const double> d) = 0;

@@ -1,4 +1,4 @@
-// A smooth function f(x, y) as an objective. Vectors are padded to one 3x3 block; the minimum is at z = 0.
+// Smooth functions f(x, y) as objectives. Vectors are padded to one 3x3 block; the minimum is at z = 0.
 #pragma once
 #include <array>
 #include <string>
@@ -14,7 +14,7 @@ struct PlanarHessian {
   double xx = 0, xy = 0, yy = 0;
 };
 
-// The quadratic approximation of a function about a point: the function that Newton's method minimizes.
+// Quadratic approximation of a function about a point, which Newton's method minimizes.
 struct QuadraticModel {
   Planar center{};
   double value = 0;
@@ -27,7 +27,7 @@ class PlanarFunction : public Objective {
  public:
   PlanarFunction();
 
-  virtual double at(const Planar& p) const = 0;  // +-inf or NaN where it is not defined
+  virtual double at(const Planar& p) const = 0;  // +-inf or NaN where undefined
   virtual Planar gradient_at(const Planar& p) const = 0;
   virtual PlanarHessian hessian_at(const Planar& p) const = 0;
   QuadraticModel model(const Planar& p, Definiteness kind = Definiteness::exact) const;

@@ -8,9 +8,9 @@
 namespace aspic {
 namespace {
 
-// Relative residual of an iterative solve: B may be rough, but must be the same matrix each time.
+// Relative residual of an iterative solve: B may be approximate, but must be the same operator each time.
 constexpr double kTolerance = 1e-2;
-constexpr int kSolves = 20;  // per minimization, roughly
+constexpr int kSolves = 20;  // approximate number per minimization
 
 std::unique_ptr<LinearSolver> solver_for(PreconditionerKind kind, std::string_view linear) {
   if (kind == PreconditionerKind::hessian) return make_linear_solver(linear, kSolves);

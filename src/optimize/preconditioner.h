@@ -1,4 +1,4 @@
-// A symmetric positive definite approximation B of the Hessian: first-order methods use -B^-1 g instead of -g. It is
+// A symmetric positive definite approximation B of the Hessian: first-order methods use -B^-1 g instead of -g. B is
 // computed at the first iterate of a minimization and then constant.
 #pragma once
 #include <memory>
@@ -16,12 +16,12 @@ namespace aspic {
 enum class PreconditionerKind {
   none,      // the identity
   mass,      // HasMetric
-  diagonal,  // the 3x3 diagonal blocks of the Hessian, each made definite
-  hessian,   // the Hessian with clamped elements
+  diagonal,  // the modified 3x3 diagonal blocks of the Hessian
+  hessian,   // the Hessian with clamped element Hessians
   own,       // HasPreconditioner
 };
 std::string_view to_string(PreconditionerKind kind);
-std::vector<PreconditionerKind> all_preconditioners();  // those for any objective: all but `own`
+std::vector<PreconditionerKind> all_preconditioners();  // all kinds except `own`
 
 class Preconditioner {
  public:
@@ -35,7 +35,7 @@ class Preconditioner {
   void set_stop(const StopToken& stop) {
     if (solver_) solver_->set_stop(stop);
   }
-  // z = B^-1 r, 3 numbers per block row. The first call after begin() computes B at x. Returns false if B is not
+  // z = B^-1 r, 3 entries per block row. The first call after begin() computes B at x. Returns false if B is not
   // positive definite or the solve failed.
   bool apply(Objective& E, std::span<const double> x, std::span<const double> r, std::span<double> z,
              DirectionReport& report);
@@ -46,9 +46,9 @@ class Preconditioner {
   bool factorize(const BlockSparse& B, DirectionReport& report);
 
   PreconditionerKind kind_;
-  std::unique_ptr<LinearSolver> solver_;  // of mass and Hessian
+  std::unique_ptr<LinearSolver> solver_;  // for `mass` and `hessian`
   bool is_made_ = false, is_definite_ = false, is_identity_ = false;
-  std::optional<BlockSparse> B_;  // a copy: the objective overwrites its Hessian
+  std::optional<BlockSparse> B_;  // a copy, because the objective overwrites its Hessian
   std::vector<Mat3d> inverse_diagonal_;
   uint64_t analyzed_version_ = 0;
 };

@@ -30,7 +30,7 @@ struct Method {
 };
 const Method* method_named(const std::string& name);
 
-// The given preconditioner, or the default of the method.
+// Returns the given preconditioner, or the default of the method.
 Preconditioner preconditioner(const SolverOptions& options, const std::string& method) {
   PreconditionerKind chosen = *method_named(method)->preconditioner;
   for (const PreconditionerKind kind : all_preconditioners())
@@ -86,7 +86,7 @@ bool factorizes(const Method& method, const SolverOptions& options) {
   return method.preconditioner == PreconditionerKind::hessian;
 }
 
-// Requires that one of the chosen methods uses this value of the option.
+// Requires that one of the selected methods uses this value of the option.
 template <class Uses>
 std::optional<SolverConflict> unused(const std::string& option, const std::string& value,
                                      const std::vector<const Method*>& chosen, const Uses& uses) {
@@ -94,18 +94,18 @@ std::optional<SolverConflict> unused(const std::string& option, const std::strin
   std::string others;
   for (const Method& method : methods())
     if (uses(&method)) others += (others.empty() ? "" : ", ") + method.name;
-  return SolverConflict{option, quoted(option, value) + " is of no use to " + chosen.front()->name +
-                                    "; these have a use for it: " + others + " (or leave it at 'auto')"};
+  return SolverConflict{option, quoted(option, value) + " has no effect on " + chosen.front()->name +
+                                    "; methods that use it: " + others + " (or leave it at 'auto')"};
 }
 
 std::optional<SolverConflict> criterion_conflict(const SolverOptions& options,
                                                  const std::vector<const Method*>& chosen) {
-  if (!judges_direction(options.minimize.criterion)) return std::nullopt;
+  if (!tests_direction(options.minimize.criterion)) return std::nullopt;
   for (const Method* method : chosen)
     if (!method->estimates_minimizer)
       return SolverConflict{"criterion", quoted("criterion", std::string(to_string(options.minimize.criterion))) +
                                              " needs the method newton or newton_cg: directions of " + method->name +
-                                             " do not tell how far the minimum is (try 'scale')"};
+                                             " do not estimate the distance to the minimum (try 'scale')"};
   return std::nullopt;
 }
 

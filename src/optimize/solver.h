@@ -11,7 +11,7 @@ namespace aspic {
 
 struct SolverOptions {
   std::string method = "newton";        // see minimizer_names()
-  std::vector<std::string> fallback;    // methods to use, in this order, if the one before finds no step
+  std::vector<std::string> fallback;    // methods to try in this order if the one before finds no step
   std::string preconditioner = "auto";  // see preconditioner_names(); "auto" depends on the method
   std::string linear = "auto";          // see linear_solver_names()
   std::string definiteness = "auto";    // see definiteness_names(); "auto": on_demand
@@ -25,13 +25,13 @@ std::vector<std::string> definiteness_names();
 std::vector<std::string> criterion_names();
 std::vector<std::string> decrease_test_names();
 
-Criterion criterion_named(const std::string& name);         // throws InvalidInput: an unknown name
-DecreaseTest decrease_test_named(const std::string& name);  // throws InvalidInput: an unknown name
+Criterion criterion_named(const std::string& name);         // throws InvalidInput for an unknown name
+DecreaseTest decrease_test_named(const std::string& name);  // throws InvalidInput for an unknown name
 
-// An unknown name, or an option that none of the chosen methods uses.
+// An unknown name, or an option that none of the selected methods uses.
 struct SolverConflict {
   std::string option;  // the member of SolverOptions, or "criterion" for that of `minimize`
-  std::string reason;  // the option, its value, the conflict and a remedy
+  std::string reason;  // option, value, conflict and remedy
 };
 std::optional<SolverConflict> find_conflict(const SolverOptions& options);
 

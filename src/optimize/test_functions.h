@@ -1,4 +1,4 @@
-// Functions with known minima, to compare methods.
+// Functions with known minima for comparing methods.
 #pragma once
 #include <memory>
 #include <optional>
@@ -9,7 +9,7 @@
 
 namespace aspic {
 
-// f(x, y) = (1 - x)^2 + 100 (y - x^2)^2: minimum 0 at (1, 1) at the end of a curved valley [Rosenbrock 1960].
+// f(x, y) = (1 - x)^2 + 100 (y - x^2)^2: minimum 0 at (1, 1), at the end of a curved valley [Rosenbrock 1960].
 class Rosenbrock : public PlanarFunction {
  public:
   double at(const Planar& p) const override;
@@ -17,7 +17,7 @@ class Rosenbrock : public PlanarFunction {
   PlanarHessian hessian_at(const Planar& p) const override;
 };
 
-// f(x, y) = x exp(-x^2 - y^2): a dip with minimum -1/sqrt(2 e) at (-1/sqrt(2), 0) beside a bump; flat far away.
+// f(x, y) = x exp(-x^2 - y^2): a dip with minimum -1/sqrt(2 e) at (-1/sqrt(2), 0) next to a bump; flat far away.
 class TwoBump : public PlanarFunction {
  public:
   double at(const Planar& p) const override;
@@ -42,11 +42,11 @@ struct TestFunction {
   std::string name, formula, remarks;
   Planar minimizer{};
   double minimum = 0;
-  Planar start{};           // the usual initial guess
-  Planar lower{}, upper{};  // the region to plot
+  Planar start{};           // recommended initial guess
+  Planar lower{}, upper{};  // region to plot
 };
 std::vector<TestFunction> test_functions();
-TestFunction test_function_info(const std::string& name);                     // throws InvalidInput: an unknown name
-std::unique_ptr<PlanarFunction> make_test_function(const std::string& name);  // throws InvalidInput: an unknown name
+TestFunction test_function_info(const std::string& name);                     // throws InvalidInput for an unknown name
+std::unique_ptr<PlanarFunction> make_test_function(const std::string& name);  // throws InvalidInput for an unknown name
 
 }  // namespace aspic

@@ -58,13 +58,13 @@ TEST(TestFunctions, QuadraticHasConditionAndAxes) {
   EXPECT_NEAR(f.at({-std::sin(angle), std::cos(angle)}), 25, 1e-13);
 }
 
-// With steps to the minimum along the line, each direction is at right angles to the one before, and every second one
-// is the same: the zig-zag. From the worst start on a quadratic, f falls by ((k - 1) / (k + 1))^2 per iteration
-// [Nocedal and Wright 2006, theorem 3.3].
+// With exact line searches, each direction is orthogonal to the one before, and every second one is the same: the
+// zig-zag. From the worst initial guess on a quadratic, f decreases by ((k - 1) / (k + 1))^2 per iteration [Nocedal and
+// Wright 2006, theorem 3.3].
 TEST(TestFunctions, GradientDescentZigZagsOnQuadratic) {
   constexpr double kCondition = 20;
   Quadratic f(kCondition, 0.3);
-  // The start whose gradient has equal parts in both axes.
+  // The initial guess whose gradient has equal components along both axes.
   Planar p = {kCondition * std::cos(0.3) - std::sin(0.3), kCondition * std::sin(0.3) + std::cos(0.3)};
   GradientDescent descent;
   std::vector<Planar> directions;
@@ -76,7 +76,7 @@ TEST(TestFunctions, GradientDescentZigZagsOnQuadratic) {
     options.max_iterations = 1;
     options.line_search.test = DecreaseTest::none;
     const double curvature = m.hessian.xx * gx * gx + 2 * m.hessian.xy * gx * gy + m.hessian.yy * gy * gy;
-    options.line_search.alpha_max = (gx * gx + gy * gy) / curvature;  // the minimum along -g
+    options.line_search.alpha_max = (gx * gx + gy * gy) / curvature;  // exact minimum along -g
     std::vector<double> x = {p[0], p[1], 0};
     Minimizer().minimize(f, descent, x, options, [&](const LiveIteration& iteration) {
       directions.push_back({iteration.d[0], iteration.d[1]});
@@ -102,7 +102,7 @@ TEST(TestFunctions, ModifiesHessian) {
   const Mat3d exact = f.hessian(x, {}).block[0];
   EXPECT_LT(exact(0, 0), 0);
   const Mat3d absolute = f.hessian(x, {Definiteness::absolute}).block[0];
-  for (int i = 0; i < 8; ++i) EXPECT_NEAR(absolute.a[i], -exact.a[i], 1e-14);  // all but z's
+  for (int i = 0; i < 8; ++i) EXPECT_NEAR(absolute.a[i], -exact.a[i], 1e-14);  // all except z's
   EXPECT_EQ(f.projected_elements(), 1);
   const Mat3d clamped = f.hessian(x, {Definiteness::clamped}).block[0];
   EXPECT_GT(clamped(0, 0), 0);

@@ -1,13 +1,13 @@
-// Counts of the work done. Unlike times, they are the same in every run.
+// Counts of the work done. Unlike times, they are reproducible.
 #pragma once
 #include "linalg/linear_solver.h"
 
 namespace aspic {
 
 struct Work {
-  int values = 0, gradients = 0, hessians = 0;  // evaluations, each over all elements
+  int values = 0, gradients = 0, hessians = 0;  // each over all elements
   int factorizations = 0, linear_iterations = 0;
-  int products = 0, cycles = 0;  // of linear solves: with the matrix, of multigrid
+  int products = 0, cycles = 0;  // of linear solves: matrix products, multigrid cycles
 
   void add(const Work& other) {
     values += other.values;

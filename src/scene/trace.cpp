@@ -18,7 +18,7 @@ const std::vector<std::string> kTracedIterationColumns = {"step",
                                                           "decrement",
                                                           "alpha",
                                                           "trials",
-                                                          "retreats",
+                                                          "fallbacks",
                                                           "gradients",
                                                           "hessians",
                                                           "projected",
@@ -57,7 +57,7 @@ nlohmann::ordered_json json_of(int step, int solve, const LiveIteration& iterati
           {"gradient_norm", iteration.gradient_norm},
           {"decrement", iteration.decrement},
           {"alpha", iteration.alpha},
-          {"retreats", iteration.retreats},
+          {"fallbacks", iteration.fallbacks},
           {"gradients", iteration.gradients},
           {"hessians", direction.hessians},
           {"projected", direction.projected},
@@ -142,7 +142,7 @@ void Trace::add_rows(int step, const LiveIteration& iteration) {
   const DirectionReport& direction = iteration.direction;
   CsvRow row = row_of(step, solve_, iteration.index);
   row.add(iteration.value).add(iteration.gradient_norm).add(iteration.decrement).add(iteration.alpha);
-  row.add(iteration.trials).add(iteration.retreats).add(iteration.gradients).add(direction.hessians);
+  row.add(iteration.trials).add(iteration.fallbacks).add(iteration.gradients).add(direction.hessians);
   row.add(direction.projected ? 1 : 0).add(direction.projected_elements).add(direction.factorizations);
   row.add(direction.linear_iterations).add(direction.products).add(direction.cycles);
   iterations_.append(row);
