@@ -38,7 +38,7 @@ bool Acceleration::solve(const StepTools& tools, const MotionPoint& at, std::spa
   tools.pins.set_zero(force_);
   double squared = 0;
   for (const double f : force_) squared += f * f;
-  noise_ = kAccelerationTolerance * std::sqrt(squared);
+  round_off_ = kAccelerationTolerance * std::sqrt(squared);
   const SolveReport solved = solve_mass(tools, force_, scratch_);
   work.add(solved);
   tools.pins.set_zero(scratch_);

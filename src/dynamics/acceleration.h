@@ -1,4 +1,4 @@
-// Computes acc(q, v) from M acc = -dV/dx - C v by a solve with the mass matrix.
+// Computes acc(q, v) from M acc = -dV/dx - C v with a mass matrix solve.
 #pragma once
 #include <memory>
 #include <optional>
@@ -9,9 +9,9 @@
 
 namespace aspic {
 
-// The difference quotient that gives C v from a damping potential D, for a displacement h v in the time h.
+// Difference quotient that computes C v from a damping potential D, for a displacement h v in the time h.
 enum class DampingDifference {
-  forward,  // dD/dx at q + h v: first order in h where C depends on x
+  forward,  // dD/dx at q + h v: first order in h if C depends on x
   central,  // half the difference to q - h v: second order
 };
 
@@ -19,17 +19,17 @@ struct MotionPoint {
   double time;                   // [s]
   std::span<const double> q, v;  // [m], [m/s]
   DampingDifference difference;
-  double weight;  // of its forces in those of the step
+  double weight;  // weight of its forces in the step's forces
 };
 
 class Acceleration {
  public:
-  // On entry `acc` holds the accelerations of pinned vertices, on return all of them [m/s^2]. Adds the forces times
-  // at.weight to `forces`. Returns false if the mass solve failed.
+  // On entry `acc` contains the accelerations of pinned vertices, on return those of all vertices [m/s^2]. Adds the
+  // forces times at.weight to `forces`. Returns false if the mass solve failed.
   bool solve(const StepTools& tools, const MotionPoint& at, std::span<double> acc, StepForces& forces, Work& work);
 
-  // Returns a bound of the residual M acc + G + C that the mass solve leaves [N].
-  double noise() const { return noise_; }
+  // Returns a bound of the residual M acc + G + C of the mass solve [N].
+  double round_off() const { return round_off_; }
 
  private:
   void add_damping(const StepTools& tools, const MotionPoint& at, double h, double scale);
@@ -39,7 +39,7 @@ class Acceleration {
   std::optional<BlockSparse> M_;
   std::vector<double> gradient_, damping_, drift_, force_, scratch_;
   bool factorized_ = false;
-  double noise_ = 0;
+  double round_off_ = 0;
 };
 
 }  // namespace aspic

@@ -10,9 +10,9 @@
 namespace aspic {
 namespace {
 
-constexpr int kDeepest = 20;           // the smallest part is h / 2^20
-constexpr int kTicks = 1 << kDeepest;  // per step
-constexpr double kGrowthSafety = 0.5;  // largest predicted error, relative to the tolerance, of twice the length
+constexpr int kMaxLevel = 20;           // the smallest substep is h / 2^20
+constexpr int kTicks = 1 << kMaxLevel;  // per step
+constexpr double kGrowthSafety = 0.5;   // maximum predicted error of twice the length, relative to the tolerance
 
 double diagonal(const TetMesh& mesh, const BodyRange& body) {
   double squared = 0;
@@ -31,7 +31,7 @@ double time_at(const StepTools& whole, int tick) {
   return tick == kTicks ? whole.end_time : whole.start.time + whole.h * tick / kTicks;
 }
 
-StepTools tools_of_part(const StepTools& whole, const State& start, const State* previous, int first, int size) {
+StepTools tools_of_substep(const StepTools& whole, const State& start, const State* previous, int first, int size) {
   return {static_cast<const SolveTools&>(whole), start, previous, whole.h * size / kTicks,
           time_at(whole, first + size)};
 }
@@ -44,32 +44,32 @@ AdaptiveStep::AdaptiveStep(const Model& model, double tolerance, bool remembers)
 }
 
 void AdaptiveStep::set_level(double level) {
-  if (!(level >= 0 && level < kDeepest))
+  if (!(level >= 0 && level < kMaxLevel))
     throw InvalidInput("the checkpoint's adaptive step has level " + std::to_string(level) + "; it must be from 0 to " +
-                       std::to_string(kDeepest - 1));
+                       std::to_string(kMaxLevel - 1));
   level_ = static_cast<int>(level);
 }
 
-bool AdaptiveStep::take(Integrator& integrator, const StepTools& tools, Part& part) {
-  part.solve = integrator.advance(tools, part.end, part.forces);
-  add_work(part.solve.work, total_.work);
-  failure_ = part.solve.work.status;
+bool AdaptiveStep::solve_substep(Integrator& integrator, const StepTools& tools, Substep& substep) {
+  substep.solve = integrator.advance(tools, substep.end, substep.forces);
+  add_work(substep.solve.work, total_.work);
+  failure_ = substep.solve.work.status;
   return is_success(failure_);
 }
 
 AdaptiveStep::Verdict AdaptiveStep::attempt(Integrator& integrator, const StepTools& whole, Pair pair) {
-  // Substeps of explicit schemes do not poll the token themselves.
+  // Substeps of explicit schemes do not poll the token.
   if (whole.options.stop.requested()) return failure_ = Status::interrupted, Verdict::interrupted;
   const auto [first, size] = pair;
   const int half = size / 2;
   const State *before = has_previous_ ? &previous_ : nullptr, *now = remembers_ ? &now_ : nullptr;
   const auto unsuccessful = [&] { return failure_ == Status::interrupted ? Verdict::interrupted : Verdict::rejected; };
-  if (!knows_whole_ && !take(integrator, tools_of_part(whole, now_, before, first, size), whole_))
+  if (!has_whole_ && !solve_substep(integrator, tools_of_substep(whole, now_, before, first, size), whole_))
     return unsuccessful();
-  knows_whole_ = false;
-  if (!take(integrator, tools_of_part(whole, now_, before, first, half), first_)) return unsuccessful();
-  const bool taken = take(integrator, tools_of_part(whole, first_.end, now, first + half, half), second_);
-  knows_whole_ = true;  // if the attempt is rejected
+  has_whole_ = false;
+  if (!solve_substep(integrator, tools_of_substep(whole, now_, before, first, half), first_)) return unsuccessful();
+  const bool taken = solve_substep(integrator, tools_of_substep(whole, first_.end, now, first + half, half), second_);
+  has_whole_ = true;  // if the attempt is rejected
   if (!taken) return std::swap(whole_, first_), unsuccessful();
 
   const double h = whole.h * size / kTicks;
@@ -93,7 +93,7 @@ double AdaptiveStep::error(const Pins& pins, double h) const {
         dv += (a.qdot[i] - b.qdot[i]) * (a.qdot[i] - b.qdot[i]);
       }
       const double e = (std::sqrt(dq) + h * std::sqrt(dv)) / (tolerance_ * size_[body]);
-      if (!(e <= largest)) largest = e;  // NaN stays
+      if (!(e <= largest)) largest = e;  // keeps NaN
     }
   }
   return largest;
@@ -102,16 +102,17 @@ double AdaptiveStep::error(const Pins& pins, double h) const {
 void AdaptiveStep::keep(Integrator& integrator, const StepTools& whole, Pair pair, Ledger& ledger, StepReport& report) {
   const auto [first, size] = pair;
   const int half = size / 2;
-  const auto enter = [&](const StepTools& tools, const Part& part) {
-    const BoundedEnergies bounded = ledger.add(tools, integrator, part.end, part.forces, report);
-    if (integrator.facts().is_backward_euler) judge(bounded, part.solve.work.value / (tools.h * tools.h), report);
+  const auto enter = [&](const StepTools& tools, const Substep& substep) {
+    const BoundedEnergies bounded = ledger.add(tools, integrator, substep.end, substep.forces, report);
+    if (integrator.facts().is_backward_euler)
+      check_energy_bound(bounded, substep.solve.work.value / (tools.h * tools.h), report);
   };
-  enter(tools_of_part(whole, now_, nullptr, first, half), first_);
-  enter(tools_of_part(whole, first_.end, nullptr, first + half, half), second_);
+  enter(tools_of_substep(whole, now_, nullptr, first, half), first_);
+  enter(tools_of_substep(whole, first_.end, nullptr, first + half, half), second_);
   report.substeps += 2;
-  for (const Part* part : {&first_, &second_}) {
-    total_.decrement = std::max(total_.decrement, part->solve.decrement);
-    if (part->solve.work.status == Status::round_off) total_.work.status = Status::round_off;
+  for (const Substep* substep : {&first_, &second_}) {
+    total_.decrement = std::max(total_.decrement, substep->solve.decrement);
+    if (substep->solve.work.status == Status::round_off) total_.work.status = Status::round_off;
   }
   total_.guess = second_.solve.guess;
   total_.work.value = second_.solve.work.value;
@@ -119,7 +120,7 @@ void AdaptiveStep::keep(Integrator& integrator, const StepTools& whole, Pair pai
   std::swap(previous_, first_.end);
   std::swap(now_, second_.end);
   has_previous_ = remembers_;
-  knows_whole_ = false;
+  has_whole_ = false;
 }
 
 StepSolve AdaptiveStep::advance(Integrator& integrator, const StepTools& whole, Ledger& ledger, State& end,
@@ -127,14 +128,14 @@ StepSolve AdaptiveStep::advance(Integrator& integrator, const StepTools& whole, 
   now_ = whole.start;
   has_previous_ = whole.previous != nullptr;
   if (has_previous_) previous_ = *whole.previous;
-  knows_whole_ = false;
+  has_whole_ = false;
   total_ = {};
   report.substeps = 0;
   const int first_level = level_;
   for (int done = 0; done < kTicks;) {
     const int size = kTicks >> level_;
     const Verdict verdict = attempt(integrator, whole, {done, size});
-    if (verdict == Verdict::interrupted) level_ = first_level;  // the step will be repeated in the same way
+    if (verdict == Verdict::interrupted) level_ = first_level;  // the step will be repeated identically
     if (verdict == Verdict::accepted) {
       keep(integrator, whole, {done, size}, ledger, report);
       done += size;
@@ -145,7 +146,7 @@ StepSolve AdaptiveStep::advance(Integrator& integrator, const StepTools& whole, 
       continue;
     }
     ++report.rejected;
-    if (verdict == Verdict::interrupted || level_ + 1 == kDeepest) {
+    if (verdict == Verdict::interrupted || level_ + 1 == kMaxLevel) {
       total_.work.status = failure_;
       return total_;
     }

@@ -1,6 +1,6 @@
-// Adaptive time steps by step doubling: a step of length h consists of substeps of length h / 2^k. Each pair of
-// substeps is also computed as one substep of twice the length; the difference, divided by 2^order - 1, estimates the
-// error of the pair, which is kept. Substeps start at multiples of their length, so the grid does not depend on
+// Adaptive time steps by step doubling. A step of length h consists of substeps of length h / 2^k. Each pair of
+// substeps is also computed as one substep of twice the length. Their difference, divided by 2^order - 1, estimates the
+// error of the pair, whose result is kept. Substeps start at multiples of their length, so the grid does not depend on
 // rounding or restarts.
 #pragma once
 #include <vector>
@@ -12,46 +12,47 @@ namespace aspic {
 
 class AdaptiveStep {
  public:
-  // `tolerance`: largest error per step of length h, |dq| + (length of the substep) |dv| of a vertex relative to the
-  // diagonal of its body at rest. Substeps get their share. `remembers`: keep the start of the previous substep.
+  // `tolerance`: maximum error per step of length h, |dq| + (length of the substep) |dv| of a vertex relative to the
+  // diagonal of its body at rest. Substeps get a proportional share. `remembers`: keeps the start of the previous
+  // substep.
   AdaptiveStep(const Model& model, double tolerance, bool remembers);
 
-  // Takes the step, adds it to the ledger and counts its substeps in the report. The status is not a success if the
-  // smallest substep failed or was inaccurate; `end` is then not valid.
+  // Computes the step, adds it to the ledger and counts its substeps in the report. If the smallest substep failed or
+  // was inaccurate, the status is not a success and `end` is invalid.
   StepSolve advance(Integrator& integrator, const StepTools& whole, Ledger& ledger, State& end, StepReport& report);
 
-  // The next substep has the length h / 2^level. A restart needs this number.
+  // The next substep has the length h / 2^level. A restart needs this value.
   int level() const { return level_; }
   void set_level(double level);                        // throws InvalidInput for an invalid level
-  const State& previous() const { return previous_; }  // the start of the last substep
+  const State& previous() const { return previous_; }  // start of the last substep
 
  private:
-  struct Part {  // a substep
+  struct Substep {
     State end;
     StepForces forces;
     StepSolve solve;
   };
   enum class Verdict { accepted, rejected, interrupted };
 
-  struct Pair {  // of substeps, in ticks from the start of the step
+  struct Pair {  // two substeps, in ticks from the start of the step
     int first, size;
   };
 
   Verdict attempt(Integrator& integrator, const StepTools& whole, Pair pair);
-  bool take(Integrator& integrator, const StepTools& tools, Part& part);
+  bool solve_substep(Integrator& integrator, const StepTools& tools, Substep& substep);
   void keep(Integrator& integrator, const StepTools& whole, Pair pair, Ledger& ledger, StepReport& report);
   double error(const Pins& pins, double h) const;  // of the pair, as a multiple of the tolerance
 
   const Model& model_;
   double tolerance_;
   bool remembers_;
-  std::vector<double> size_;  // of each body [m]
+  std::vector<double> size_;  // size of each body [m]
   int level_ = 0;
 
   State now_, previous_;
   bool has_previous_ = false;
-  Part whole_, first_, second_;
-  bool knows_whole_ = false;  // the first half of a rejected pair is the whole of the next
+  Substep whole_, first_, second_;
+  bool has_whole_ = false;  // the first half of a rejected pair is `whole_` of the next attempt
   double error_ = 0;
   Status failure_ = Status::converged;  // of the last attempt
   StepSolve total_;

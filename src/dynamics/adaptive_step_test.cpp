@@ -13,11 +13,11 @@ namespace {
 
 using namespace testing_models;
 
-// x'' = -100 x, released at 1; the diagonal of the tet's box at rest is sqrt(3) m.
+// x'' = -100 x, released at 1. The diagonal of the tet's bounding box at rest is sqrt(3) m.
 const double kSize = std::sqrt(3.0);
 
 struct Outcome {
-  double error = 0;  // in position after the last step [m]
+  double error = 0;  // error of the position after the last step [m]
   int substeps = 0, rejected = 0, least = 1 << 20, most = 0;
 };
 
@@ -36,21 +36,21 @@ Outcome run(const std::string& integrator, double tolerance, double h = 0.1, int
   return result;
 }
 
-TEST(AdaptiveStep, MeetsItsToleranceWithEveryScheme) {
+TEST(AdaptiveStep, MeetsToleranceWithEveryScheme) {
   for (const std::string& integrator : adaptive_integrator_names()) {
     const bool first_order = make_integrator(integrator)->facts().order == 1;
     const double tolerance = first_order ? 1e-3 : 1e-5;
     const Outcome result = run(integrator, tolerance);
-    // Errors of ten steps, which an oscillator neither damps nor amplifies; the estimate is asymptotic.
+    // Sum of the errors of ten steps, which an oscillator neither damps nor amplifies; the estimate is asymptotic.
     EXPECT_LT(result.error, 10 * tolerance * kSize * 1.5) << integrator;
-    EXPECT_GT(result.error, 0.02 * tolerance * kSize) << integrator << ": work wasted";
+    EXPECT_GT(result.error, 0.02 * tolerance * kSize) << integrator << ": more accurate than necessary";
     EXPECT_GT(result.substeps, 20) << integrator;
-    EXPECT_GT(result.rejected, 0) << integrator << ": the first try, at h, is too long";
+    EXPECT_GT(result.rejected, 0) << integrator << ": the first attempt, at h, must be rejected";
   }
 }
 
 TEST(AdaptiveStep, SubstepCountFollowsOrder) {
-  // The error of a whole step goes with (length of its parts)^order.
+  // The error of a whole step is proportional to (length of its substeps)^order.
   for (const auto& [integrator, order] : {std::pair{"forward_euler", 1}, {"midpoint", 2}, {"rk4", 4}}) {
     const double factor = order == 4 ? 1e-6 : 1e-2;
     const Outcome coarse = run(integrator, order == 1 ? 1e-2 : 1e-3),
@@ -62,7 +62,7 @@ TEST(AdaptiveStep, SubstepCountFollowsOrder) {
 }
 
 TEST(AdaptiveStep, SubstepsGrowInCalmMotion) {
-  // The target jerks once, at t = 1 s, for about 0.05 s; the rest is a slow swing.
+  // The target moves abruptly at t = 1 s, for about 0.05 s, and slowly otherwise.
   const auto jerk = [](double t) { return 20 * std::exp(-std::pow((t - 1) / 0.03, 2)); };
   for (const auto& [integrator, tolerance] : {std::pair{"backward_euler", 1e-3}, {"tr_bdf2", 1e-4}, {"rk4", 1e-7}}) {
     Simulation simulation = oscillator({.h = 0.1, .integrator = integrator, .adaptive = {tolerance}, .solver = {}},
@@ -81,7 +81,7 @@ TEST(AdaptiveStep, SubstepsGrowInCalmMotion) {
   }
 }
 
-TEST(AdaptiveStep, ExplicitSchemeSurvivesLongSteps) {
+TEST(AdaptiveStep, ExplicitSchemeIsStableInLongSteps) {
   for (const char* integrator : {"symplectic_euler", "rk4"}) {
     const SimulationOptions options{.h = 0.05, .integrator = integrator, .adaptive = {1e-3}, .solver = {}};
     Simulation simulation = simulate(beam(2, {.material = "neo_hookean_log"}), options);
@@ -131,7 +131,7 @@ TEST(AdaptiveStep, InterruptsExplicitSchemeBetweenSubsteps) {
   EXPECT_EQ(disturbed.state().q, undisturbed.state().q);
   disturbed.step();
   EXPECT_GT(undisturbed.step().rejected, 0);
-  EXPECT_EQ(disturbed.state().q, undisturbed.state().q) << "the step taken again is another";
+  EXPECT_EQ(disturbed.state().q, undisturbed.state().q) << "the repeated step differs";
 }
 
 TEST(AdaptiveStep, RestartsInterruptedStepFromSameState) {

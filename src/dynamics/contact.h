@@ -5,11 +5,11 @@
 
 namespace aspic {
 
-// Returns 1e-4 sqrt(g L) for an acceleration of gravity g and the size L of the model, in their units of speed.
+// Returns 1e-4 sqrt(g L) [m/s] for an acceleration of gravity g [m/s^2] and the size L [m] of the model.
 double default_creep(double gravity, const Model& model);
 
-// Adds the barrier to the loads and, if any pair has friction, friction to the damping terms. `creep`: see Friction;
-// 0: the default for 9.81 m/s^2.
+// Adds the barrier to the loads and, if any pair has friction, friction to the damping terms. `creep`: see Friction; 0:
+// the default for 9.81 m/s^2.
 void add_contact(ContactMesh mesh, const ContactOptions& options, double creep, Model& model);
 
 }  // namespace aspic

@@ -1,4 +1,4 @@
-// Bodies in contact with a plane, against analytic solutions.
+// Compares bodies in contact with a plane with analytic solutions.
 #include "dynamics/contact.h"
 
 #include <gtest/gtest.h>
@@ -26,7 +26,7 @@ ModelBuilder block(const Vec3d& gravity, double gap = 0.001) {
 // A block above the plane y = 0.
 struct PlaneScene {
   double creep = 0, gap = 0.001;
-  Motion motion = {};  // of the plane
+  Motion motion = {};  // motion of the plane
 };
 
 Simulation above_plane(const Vec3d& gravity, double friction, double h, const PlaneScene& given = {}) {
@@ -76,13 +76,13 @@ TEST(Contact, FallingBlockComesToRestAbovePlane) {
   EXPECT_LT(report.kinetic, 1e-8);
   EXPECT_EQ(report.contacts, 25);
   EXPECT_GT(report.min_gap, 0);
-  // The pressure of the weight, up to the quadrature near the border.
+  // Pressure of the weight, up to quadrature errors near the border.
   EXPECT_NEAR(report.max_pressure, 1000 * 9.81 * 0.05, 300);
-  // The ledger closes with friction and contact.
+  // The ledger is balanced with friction and contact.
   EXPECT_NEAR(start, report.potential_total + report.kinetic + dissipated - work, 1e-9 * std::abs(start));
 }
 
-// Slides with a = g (sin - mu cos) [backward Euler: x_n = a h^2 n (n + 1) / 2], or sticks.
+// The block slides with a = g (sin - mu cos) [backward Euler: x_n = a h^2 n (n + 1) / 2], or sticks.
 TEST(Contact, BlockOnInclineSlidesOrSticks) {
   const double mu = 0.5, h = 0.01, g = 9.81;
   for (const double tangent : {0.45, 0.55}) {
@@ -106,8 +106,8 @@ TEST(Contact, BlockOnInclineSlidesOrSticks) {
   }
 }
 
-// The barrier of the first gap is 1e6 times stiffer than the block, and gone after the block has been thrown off.
-TEST(Contact, TinyGapAtRestKeepsThresholds) {
+// The barrier of the initial gap is 1e6 times stiffer than the block, and vanishes after it has thrown off the block.
+TEST(Contact, TinyInitialGapKeepsThresholds) {
   Simulation simulation = above_plane({{0, -9.81, 0}}, 0, 0.01, {.gap = 1e-9});
   const double weight = 1000 * 9.81 * 0.1 * 0.05 * 0.1;
   StepReport report;
@@ -121,8 +121,8 @@ TEST(Contact, TinyGapAtRestKeepsThresholds) {
   EXPECT_NEAR(report.max_pressure, 1000 * 9.81 * 0.05, 300);
 }
 
-// A belt pulls with mu g until the block has its speed; friction loses half of the work of the belt.
-TEST(Contact, MovingPlaneDragsBlockAndLedgerCloses) {
+// A belt accelerates the block with mu g to its speed; friction dissipates half of the work of the belt.
+TEST(Contact, MovingPlaneDragsBlockWithBalancedLedger) {
   constexpr double mu = 0.5, g = 9.81, speed = 0.4;
   Simulation simulation = above_plane({{0, -g, 0}}, mu, 0.01, {.motion = [](const Vec3d& start, double time) {
                                         return start + Vec3d{{speed * time, 0, 0}};
@@ -156,7 +156,7 @@ TEST(Contact, RisingPlaneLiftsBlock) {
   EXPECT_NEAR(center(simulation, simulation.state().qdot)[1], 0.5, 0.1);
 }
 
-// A pinned body blocks the plane, which stays where it was when later steps try again.
+// A pinned body blocks the plane, which stays at its position when later steps retry.
 TEST(Contact, BlockedObstacleEndsUndefined) {
   Model model = block({}).build();
   std::vector<int> rows(model.mesh.rest.size());
@@ -181,7 +181,7 @@ TEST(Contact, BlockedObstacleEndsUndefined) {
   }
 }
 
-// The test for intersections is exact and shares no code with contact.
+// The intersection test is exact and shares no code with contact.
 TEST(Contact, CollidingBlocksNeverIntersect) {
   TetMesh mesh = make_box({{-0.05, 0.01, -0.05}}, {{0.05, 0.06, 0.05}}, {3, 2, 3});
   TetMesh other = make_box({{-0.05, 0.2, -0.05}}, {{0.05, 0.25, 0.05}}, {4, 2, 4});
@@ -218,7 +218,7 @@ TEST(Contact, CollidingBlocksNeverIntersect) {
   EXPECT_GT(contacts, 100);
 }
 
-TEST(Contact, IntersectingStartIsRefused) {
+TEST(Contact, RejectsIntersectingInitialState) {
   Model model = block({}).build();
   ContactMesh contact;
   std::vector<int> rows(model.mesh.rest.size());
@@ -236,12 +236,12 @@ TEST(Contact, IntersectingStartIsRefused) {
   }
 }
 
-TEST(Contact, GapBelowRoundOffIsRefused) {
+TEST(Contact, RejectsGapBelowRoundOff) {
   EXPECT_THROW(above_plane({}, 0, 0.01, {.gap = 1e-15}), InvalidInput);
   EXPECT_NO_THROW(above_plane({}, 0, 0.01, {.gap = 1e-12}));
 }
 
-TEST(Contact, ScenesWithoutItHaveEmptyReports) {
+TEST(Contact, ReportsAreEmptyWithoutContact) {
   SimulationOptions options;
   Simulation simulation(block({}).build(), options);
   const StepReport report = simulation.step();

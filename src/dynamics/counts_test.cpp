@@ -1,4 +1,4 @@
-// What a step costs, in evaluations: nothing is evaluated that is known already.
+// Counts of the evaluations of a step: known values are not evaluated again.
 #include <gtest/gtest.h>
 
 #include "dynamics/models_test.h"
@@ -16,11 +16,11 @@ TEST(Counts, NewtonEvaluatesNothingTwice) {
     ASSERT_EQ(report.projected_hessians, 0);
     EXPECT_GE(report.iterations, 1);
     EXPECT_EQ(report.trials, report.iterations);
-    const int candidates = i == 0 ? 2 : 3;  // current, extrapolated, and once there is a step before accelerated
+    const int candidates = i == 0 ? 2 : 3;  // current, extrapolated, and after the first step accelerated
     EXPECT_EQ(report.values, candidates + report.trials);
     EXPECT_EQ(report.gradients, 1 + report.iterations);
     EXPECT_GE(report.hessians, 1);
-    EXPECT_LT(report.hessians, report.iterations);  // one serves for the last digits
+    EXPECT_LT(report.hessians, report.iterations);  // one is reused for the last iterations
     EXPECT_EQ(report.factorizations, report.hessians);
     EXPECT_EQ(report.elements, simulation.model().mesh.tet_count());
   }
@@ -40,7 +40,7 @@ TEST(Counts, ResumedRunEqualsWholeRun) {
   EXPECT_EQ(report.products, expected.products);
 }
 
-TEST(Counts, EvaluationsOfObserversDoNotCount) {
+TEST(Counts, IgnoreEvaluationsOfObservers) {
   Simulation alone = simulate(beam(2)), watched = simulate(beam(2));
   for (int i = 0; i < 3; ++i) {
     const StepReport expected = alone.step();
@@ -62,7 +62,7 @@ TEST(Counts, ExplicitStepEvaluatesForcesOncePerStage) {
     simulation.step();
     const StepReport report = simulation.step();
     EXPECT_EQ(report.gradients, stages) << integrator;
-    EXPECT_EQ(report.values, 1) << integrator;  // the ledger's
+    EXPECT_EQ(report.values, 1) << integrator;  // for the ledger
     EXPECT_EQ(report.hessians, 0) << integrator;
   }
 }

@@ -1,4 +1,4 @@
-// The stopping criteria of a step: what each of them promises is kept.
+// Convergence criteria of a step bound the quantities that they name.
 #include <gmock/gmock.h>
 
 #include <algorithm>
@@ -48,7 +48,7 @@ const std::vector<double>& minimizer() {
   return q;
 }
 
-// The step along the last direction is taken, so what is left is smaller still.
+// The step along the last direction is performed, so the remaining error is smaller.
 TEST(Criteria, VelocityBoundsVelocityError) {
   const double h = 0.01;
   for (const double tolerance : {1e-2, 1e-4}) {  // [m/s]
@@ -73,8 +73,8 @@ TEST(Criteria, TighterToleranceTakesMoreIterations) {
         << to_string(criterion);
 }
 
-// Lengths in another unit, with stresses and forces that fit: the same motion to scale.
-TEST(Criteria, RelativeCriteriaAreIndependentOfUnits) {
+// Another unit of length, with consistent stresses and forces: the same motion in this unit.
+TEST(Criteria, RelativeCriteriaIgnoreUnits) {
   for (const Criterion criterion : {Criterion::scale, Criterion::first_gradient, Criterion::decrement}) {
     const int iterations = third_step(criterion, 1e-7).report.iterations;
     for (const double unit : {1e-3, 1e2}) {
@@ -88,10 +88,10 @@ TEST(Criteria, AbsoluteCriterionIsInNewtons) {
   EXPECT_EQ(solved.report.status, Status::converged);
   EXPECT_DOUBLE_EQ(solved.report.residual_threshold, 1e-3);
   EXPECT_LE(solved.report.residual, 1.01e-3);
-  EXPECT_GT(solved.report.residual, 1e-11);  // no more than was asked for
+  EXPECT_GT(solved.report.residual, 1e-11);  // the residual is not much smaller than required
 }
 
-TEST(Criteria, DirectionCriteriaNeedEstimatesOfTheMinimizer) {
+TEST(Criteria, DirectionCriteriaNeedMinimizerEstimates) {
   for (const Criterion criterion : {Criterion::velocity, Criterion::acceleration, Criterion::decrement}) {
     SimulationOptions options;
     options.solver.method = "gradient_descent";
@@ -101,7 +101,7 @@ TEST(Criteria, DirectionCriteriaNeedEstimatesOfTheMinimizer) {
   }
 }
 
-// A hanging box of side `size`, whose stiffness makes it sag like one of 1 m and 100 kPa.
+// A hanging box of side `size`, whose stiffness gives it the relative sag of a box of 1 m and 100 kPa.
 struct Box {
   double size;
   Vec3d at;
@@ -124,7 +124,7 @@ Model hanging_boxes(const std::vector<Box>& boxes) {
   return model_of(mesh).material("neo_hookean_log", parameters).pin("wall", held).build();
 }
 
-// The state of the last box after five steps.
+// Returns the state of the last box after five steps.
 std::vector<double> last_box(const std::vector<Box>& boxes, const SimulationOptions& options) {
   Simulation simulation = simulate(hanging_boxes(boxes), options);
   for (int i = 0; i < 5; ++i) {
@@ -135,7 +135,7 @@ std::vector<double> last_box(const std::vector<Box>& boxes, const SimulationOpti
   return {q.end() - static_cast<std::ptrdiff_t>(q.size() / boxes.size()), q.end()};
 }
 
-TEST(Criteria, SmallBodyMovesAsAlone) {
+TEST(Criteria, SmallBodyIsUnaffectedByLargeBody) {
   std::mt19937 random(7);
   for (int scene = 0; scene < 12; ++scene) {
     const double size = std::pow(10, -1 - 3 * std::uniform_real_distribution(0.0, 1.0)(random));
@@ -187,10 +187,10 @@ TEST(Criteria, SoftRegionOfStiffBodyConverges) {
     EXPECT_TRUE(is_success(report.status)) << to_string(report.status);
     return simulation.state().q;
   };
-  EXPECT_LT(largest_distance(hung(1e12), hung(1e10)), 1e-5);  // both as good as rigid
+  EXPECT_LT(largest_distance(hung(1e12), hung(1e10)), 1e-5);  // both are almost rigid
 }
 
-// A block of 2 m and a finger of 2 mm that hangs from one of its corners, of one material.
+// A block of 2 m and a finger of 2 mm of the same material that hangs from one of its corners.
 TetMesh block_with_finger() {
   const Vec3d corner{{2, 2, 2}};
   TetMesh mesh = make_box({}, corner, {3, 3, 3});
@@ -208,25 +208,26 @@ TetMesh block_with_finger() {
 }
 
 TEST(Criteria, FingerOnLargeBlockMoves) {
-  const auto moved = [](double tolerance) {  // the finger's vertices, from the corner of the block
-    Model model = make_model(block_with_finger(), {.material = "neo_hookean_log", .young = 1e4});
-    const int count = model.mesh.vertex_count();
-    model.pins.push_back({"floor", vertices_where(model.mesh, [](const Vec3d& X) { return X[1] < 1e-9; }), {}});
-    SimulationOptions options{.h = 0.01, .solver = {}};
-    options.solver.minimize.tolerance = tolerance;
-    Simulation simulation = simulate(std::move(model), options);
-    EXPECT_TRUE(is_success(simulation.step().status));
-    const std::vector<double>& q = simulation.state().q;
-    const int corner = 63;
-    std::vector<double> finger;
-    for (int v = corner + 1; v < count; ++v)
-      for (int r = 0; r < 3; ++r) finger.push_back(q[3 * v + r] - q[3 * corner + r]);
-    return finger;
-  };
+  const auto moved =
+      [](double tolerance) {  // displacements of the finger's vertices relative to the corner of the block
+        Model model = make_model(block_with_finger(), {.material = "neo_hookean_log", .young = 1e4});
+        const int count = model.mesh.vertex_count();
+        model.pins.push_back({"floor", vertices_where(model.mesh, [](const Vec3d& X) { return X[1] < 1e-9; }), {}});
+        SimulationOptions options{.h = 0.01, .solver = {}};
+        options.solver.minimize.tolerance = tolerance;
+        Simulation simulation = simulate(std::move(model), options);
+        EXPECT_TRUE(is_success(simulation.step().status));
+        const std::vector<double>& q = simulation.state().q;
+        const int corner = 63;
+        std::vector<double> finger;
+        for (int v = corner + 1; v < count; ++v)
+          for (int r = 0; r < 3; ++r) finger.push_back(q[3 * v + r] - q[3 * corner + r]);
+        return finger;
+      };
   EXPECT_LT(largest_distance(moved(1e-6), moved(1e-11)), 1e-2 * 2e-3);
 }
 
-// A body whose weight is less than the round-off of its elastic forces.
+// The weight of the body is below the round-off of its elastic forces.
 TEST(Criteria, ReportsForcesHiddenByRoundOff) {
   const TetMesh mesh = make_box({}, {{0.1, 0.1, 0.1}}, {2, 2, 2});
   Model model = make_model(mesh, {.material = "neo_hookean", .young = 1e19, .poisson = 0.3});

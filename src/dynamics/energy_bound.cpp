@@ -8,7 +8,8 @@
 namespace aspic {
 namespace {
 
-// A sum of a million terms of equal size with random rounding errors is off by a thousand units in the last place.
+// Relative round-off of a sum of a million terms of equal size with random rounding errors: a thousand units in the
+// last place.
 constexpr double kSumRoundOff = 1e-12;
 
 }  // namespace
@@ -33,7 +34,7 @@ EnergyBound energy_bound(const BoundedEnergies& energies, double accepted) {
   return energies.reached <= energies.allowed + 2 * noise ? EnergyBound::holds : EnergyBound::broken;
 }
 
-void judge(const BoundedEnergies& bounded, double accepted, StepReport& report) {
+void check_energy_bound(const BoundedEnergies& bounded, double accepted, StepReport& report) {
   const EnergyBound verdict = energy_bound(bounded, accepted);
   const double slack = bounded.allowed - bounded.reached;
   const bool is_first = report.energy_bound == EnergyBound::none;

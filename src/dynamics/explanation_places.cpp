@@ -53,7 +53,7 @@ std::string tet_name(const Model& model, int tet) {
   return named(model, "tet", model.numbering.tet.to_user(tet), &BodyRange::first_tet, &BodyRange::tet_count);
 }
 
-WorstTet most_squashed(const TetMesh& mesh, std::span<const double> x) {
+WorstTet most_compressed(const TetMesh& mesh, std::span<const double> x) {
   const std::vector<double> rest = rest_positions(mesh);
   WorstTet worst;
   for (int t = 0; t < mesh.tet_count(); ++t) {
@@ -63,11 +63,11 @@ WorstTet most_squashed(const TetMesh& mesh, std::span<const double> x) {
   return worst;
 }
 
-std::string squashed_place(const Model& model, std::span<const double> x) {
-  const WorstTet worst = most_squashed(model.mesh, x);
+std::string compressed_place(const Model& model, std::span<const double> x) {
+  const WorstTet worst = most_compressed(model.mesh, x);
   if (worst.tet < 0) return "";
-  return tet_name(model, worst.tet) + (worst.det_F > 0 ? " is squeezed most: " : " is inverted: ") + text(worst.det_F) +
-         " of its volume";
+  return tet_name(model, worst.tet) + (worst.det_F > 0 ? " is compressed most: " : " is inverted: ") +
+         text(worst.det_F) + " of its volume";
 }
 
 }  // namespace aspic::places

@@ -1,4 +1,4 @@
-// Classical forward Euler, and symplectic Euler: the scheme that the lecture's slide prints as "Forward Euler".
+// Classical forward Euler, and symplectic Euler, which the lecture's slide prints as "Forward Euler".
 #include <algorithm>
 #include <cmath>
 
@@ -39,8 +39,8 @@ class ExplicitEuler : public Integrator {
   virtual void update(double h, std::span<const double> acceleration, State& state) const = 0;
 
  private:
-  // Velocities with which pinned vertices reach their prescribed positions: those of this step, or those of the next
-  // step if the scheme moves with old velocities.
+  // Sets the velocities with which pinned vertices reach their prescribed positions: those of this step, or those of
+  // the next step if the scheme moves with old velocities.
   void set_pin_acceleration(const StepTools& tools, State& state) {
     const double h = tools.h;
     const auto place_velocity = [&](double from, double to) {

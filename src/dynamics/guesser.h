@@ -1,4 +1,4 @@
-// Computes the initial guess of a step's minimization.
+// Computes the initial guess of a minimization.
 #pragma once
 #include <span>
 #include <vector>
@@ -10,25 +10,25 @@ namespace aspic {
 
 struct StepTools;
 
-// The data from which an initial guess is computed.
+// Input of an initial guess.
 struct GuessContext {
-  std::span<const double> q, qdot;         // the latest positions and velocities
-  double ahead = 0;                        // from them to the minimization's time [s]; 0 in statics
-  double time = 0;                         // of the minimization [s]
+  std::span<const double> q, qdot;         // latest positions and velocities
+  double ahead = 0;                        // time from these to the end of the stage [s]; 0 in statics
+  double time = 0;                         // time at the end of the stage [s]
   std::span<const double> predicted = {};  // q~ of the stage
-  double beta = 0;                         // of the stage, whose end is q~ + beta^2 acc [s]; 0 in statics
-  bool tries_last_increment = true;        // `best` does; not where it is the extrapolated guess
+  double beta = 0;                         // beta of the stage, which ends at q~ + beta^2 acc [s]; 0 in statics
+  bool tries_last_increment = true;        // `best` includes it; false if it equals the extrapolated guess
 };
 
 struct Guess {
   InitialGuess used = InitialGuess::current;
-  Evaluation value;  // of E there
+  Evaluation value;  // E at the guess
 };
 
-class Guesser {  // holds the scratch vectors
+class Guesser {  // owns the scratch vectors
  public:
   // Writes the initial guess to `q` and returns its kind. Pinned vertices are at their positions at `known.time`. If
-  // the wanted guess has infinite energy, the best one is used; if all have, the pins move in substeps (see lead_pins).
+  // the wanted guess has infinite energy, uses the best one. If all have, moves the pins in substeps (see lead_pins.h).
   // Adds the evaluations to `work`.
   Guess guess(const StepTools& tools, InitialGuess wanted, const GuessContext& known, std::span<double> q,
               MinimizeReport& work);

@@ -1,4 +1,4 @@
-// Backward Euler, its linearization, the second-order backward difference, and the static limit.
+// Backward Euler, its linearization, the second-order backward difference formula, and the static limit.
 #include <algorithm>
 
 #include "dynamics/implicit_stage.h"
@@ -25,7 +25,7 @@ class BackwardEuler : public Integrator {
     const StageOptions options{.beta = tools.h,
                                .time = tools.end_time,
                                .ahead = tools.h,
-                               .tries_last_increment = false,  // equal to the extrapolated guess
+                               .tries_last_increment = false,  // equals the extrapolated guess
                                .once = facts().takes_one_iteration};
     stage_.solve(tools, options, {end.q, end.qdot, acceleration_}, solve, forces);
     end.time = tools.end_time;
@@ -38,8 +38,8 @@ class BackwardEuler : public Integrator {
 };
 
 // q* = a + beta v*,  v* = b + beta acc(q*, v*) with a = (4 q_n - q_(n-1)) / 3, b = (4 v_n - v_(n-1)) / 3, beta = 2h/3
-// [Hairer 1996, section V.1]. The first step is one of TR-BDF2, which has the same order, is also L-stable and is exact
-// for constant acceleration, as BDF2 is.
+// [Hairer 1996, section V.1]. The first step is one of TR-BDF2, which has the same order, is also L-stable and, like
+// BDF2, exact for constant acceleration.
 class Bdf2 : public Integrator {
  public:
   Bdf2() : Integrator({.name = "bdf2", .order = 2, .is_multistep = true, .ends_beyond_minimum = true}) {}
@@ -94,7 +94,7 @@ class QuasiStatic : public Integrator {
     add_work(lead, solve.work);
     std::fill(end.qdot.begin(), end.qdot.end(), 0.0);
     forces.add(tools.E, 1, end.q, {}, solve.work);
-    forces.add_bounds(tools, Asked::residual, 1, end.q);
+    forces.add_bounds(tools, ResidualBound::threshold, 1, end.q);
     end.time = tools.end_time;
     return solve;
   }

@@ -19,8 +19,8 @@ MinimizeOptions one_iteration(const MinimizeOptions& options) {
 
 }  // namespace
 
-// With x'' of the pinned vertices known, q~ = x(t*) - beta^2 x'' adds their inertia M_fp x'' to the free vertices, and
-// a = x(t*) - beta x' their contribution to damping.
+// The accelerations x'' of pinned vertices are known: q~ = x(t*) - beta^2 x'' includes their inertia M_fp x'' in the
+// equations of the free vertices, and a = x(t*) - beta x' their contribution to damping.
 void ImplicitStage::predict(const StepTools& tools, const StageOptions& options) {
   const double beta = options.beta;
   const PinPath* path = options.path;
@@ -47,23 +47,23 @@ void ImplicitStage::predict(const StepTools& tools, const StageOptions& options)
 }
 
 MinimizeReport ImplicitStage::minimize(const StepTools& tools, const StageOptions& options,
-                                       const StageUnknowns& unknowns, StepSolve& solve) {
-  q_.assign(unknowns.q.begin(), unknowns.q.end());
+                                       const StageVariables& variables, StepSolve& solve) {
+  q_.assign(variables.q.begin(), variables.q.end());
   MinimizeOptions minimize = options.once ? one_iteration(tools.options) : tools.options;
   minimize.h = options.beta;
-  minimize.stop = tools.options.stop.at_fraction(options.part);
+  minimize.stop = tools.options.stop.at_fraction(options.budget_fraction);
   if (options.once) {
     tools.pins.place(options.time, q_);
     solve.guess = InitialGuess::current;
     MinimizeReport report = tools.minimizer.minimize(tools.E, tools.direction, q_, minimize, tools.observe);
-    // The scheme takes one iteration, whatever the gradient is; the residual is in the report.
+    // The scheme performs one iteration for any gradient; the residual is in the report.
     if (report.status == Status::iteration_limit) report.status = Status::converged;
     solve.decrement = std::max(solve.decrement, report.decrement / tools.E.scales().gradient_unit);
     return report;
   }
   MinimizeReport lead;
-  const GuessContext known{.q = unknowns.q,
-                           .qdot = unknowns.v,
+  const GuessContext known{.q = variables.q,
+                           .qdot = variables.v,
                            .ahead = options.ahead,
                            .time = options.time,
                            .predicted = predicted_,
@@ -76,16 +76,16 @@ MinimizeReport ImplicitStage::minimize(const StepTools& tools, const StageOption
   return report;
 }
 
-bool ImplicitStage::solve(const StepTools& tools, const StageOptions& options, const StageUnknowns& unknowns,
+bool ImplicitStage::solve(const StepTools& tools, const StageOptions& options, const StageVariables& variables,
                           StepSolve& solve, StepForces& forces) {
   const double beta = options.beta;
-  const auto& [q, v, acc] = unknowns;
+  const auto& [q, v, acc] = variables;
   predict(tools, options);
   const StepContext context{a, beta, options.time, tools.start.q, tools.obstacle_start};
   tools.E.set_potential_step(context);
   tools.E.set_damping_step(context);
   tools.E.begin_step(predicted_, 1, beta * beta);
-  if (!solve.add(minimize(tools, options, unknowns, solve))) return false;
+  if (!solve.add(minimize(tools, options, variables, solve))) return false;
 
   std::copy(q_.begin(), q_.end(), q.begin());
   for (size_t i = 0; i < q.size(); ++i) v[i] = (q[i] - a[i]) / beta;
@@ -95,7 +95,7 @@ bool ImplicitStage::solve(const StepTools& tools, const StageOptions& options, c
     path->place_acceleration(options.time, acc);
   }
   forces.add(tools.E, options.weight, q, acc, solve.work);
-  forces.add_bounds(tools, options.once ? Asked::nothing : Asked::residual, options.weight, q);
+  forces.add_bounds(tools, options.once ? ResidualBound::none : ResidualBound::threshold, options.weight, q);
   return true;
 }
 

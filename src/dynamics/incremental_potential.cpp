@@ -15,13 +15,13 @@ namespace {
 
 constexpr double kEpsilon = std::numeric_limits<double>::epsilon();
 
-// Strain whose forces are the smallest characteristic force, for bodies at rest. Far above round-off and far below the
+// Strain that defines the smallest characteristic force, for bodies at rest. Far above round-off and far below the
 // default tolerance.
-constexpr double kLeastStrain = 1e-9;
+constexpr double kMinStrain = 1e-9;
 
-// Regions of one body are tested separately if their moduli times the lengths of their edges differ by more than this
-// factor. At the default tolerance of 1e-6 a region that is softer by less is resolved to 1e-4 of its own forces, and
-// one whose tets are smaller by less to 1e-2, since forces grow with areas.
+// Regions of one body are tested separately if their moduli times edge lengths differ by more than this factor. At the
+// default tolerance of 1e-6, a region that is softer by less is resolved to 1e-4 of its own forces, and one whose tets
+// are smaller by less to 1e-2, because forces grow with areas.
 constexpr double kSoft = 100;
 
 BlockPattern pattern_of(const Model& model) {
@@ -35,8 +35,8 @@ BlockPattern pattern_of(const Model& model) {
   return pattern;
 }
 
-// Per vertex v: the sum over its tets of volume |grad N_v|^2, the diagonal of the stiffness matrix of a unit modulus
-// [m].
+// Returns for each vertex v the sum over its tets of volume |grad N_v|^2: the diagonal of the stiffness matrix for a
+// unit modulus [m].
 std::vector<double> unit_stiffness(const TetMesh& mesh) {
   std::vector<double> stiffness(mesh.vertex_count(), 0.0);
   for (const Tet& tet : mesh.tets)
@@ -49,7 +49,7 @@ std::vector<double> unit_stiffness(const TetMesh& mesh) {
   return stiffness;
 }
 
-// Per vertex: the longest edge of its tets [m]. Unlike the volume, it does not underestimate the size of slivers.
+// Returns the longest edge of the tets at each vertex [m]. Unlike the volume, it does not underestimate slivers.
 std::vector<double> longest_edge(const TetMesh& mesh) {
   std::vector<double> longest(mesh.vertex_count(), 0.0);
   for (const Tet& tet : mesh.tets) {
@@ -61,9 +61,9 @@ std::vector<double> longest_edge(const TetMesh& mesh) {
   return longest;
 }
 
-// Per vertex: its part, numbered in the order of their first vertices. Vertices of one part are connected by tets or
-// lie in one body, and their stiffnesses (modulus times edge) are those of its stiffest vertex, or kSoft times less, or
-// kSoft^2 times less, ...
+// Returns the part of each vertex, numbered in the order of their first vertices. Vertices of one part are connected by
+// tets or belong to one body, and their stiffnesses (modulus times edge) are within a factor kSoft of each other: those
+// of the stiffest vertex, or kSoft times less, or kSoft^2 times less, ...
 std::vector<int> parts_of(const TetMesh& mesh, std::span<const double> modulus) {
   std::vector<double> stiffness = longest_edge(mesh);
   for (int v = 0; v < mesh.vertex_count(); ++v) stiffness[v] *= modulus[v];
@@ -136,7 +136,7 @@ bool IncrementalPotential::is_lagged() const {
 
 void IncrementalPotential::update_lagged(std::span<const double> q) {
   for (ActiveTerm& D : damping_) D.update_lagged(q);
-  if (is_lagged()) iterate_.clear();  // the forces known there are those of the earlier coefficients
+  if (is_lagged()) iterate_.clear();  // the forces known there use the earlier coefficients
 }
 
 Evaluation IncrementalPotential::evaluate(std::span<const double> q) {
@@ -149,11 +149,11 @@ Evaluation IncrementalPotential::evaluate(std::span<const double> q) {
 }
 
 void IncrementalPotential::gradient(std::span<const double> q, std::span<double> g) {
-  gradient_scale_ = radius_ > 0 ? kLeastStrain * factor_ * growth_stiffness_ / radius_ : 0;
+  gradient_scale_ = radius_ > 0 ? kMinStrain * factor_ * growth_stiffness_ / radius_ : 0;
   exact_scale_ = 0;
   for (Part& part : parts_) {
     part.exact = 0;
-    part.scale = part.radius > 0 ? kLeastStrain * factor_ * part.growth_stiffness / part.radius : 0;
+    part.scale = part.radius > 0 ? kMinStrain * factor_ * part.growth_stiffness / part.radius : 0;
   }
   if (inertia_ != 0) {
     parallel_chunks(static_cast<int>(q.size()), [&](int first, int last) {
@@ -207,7 +207,7 @@ const BlockSparse& IncrementalPotential::evaluate_hessian(std::span<const double
   return H_;
 }
 
-// Positions have errors of eps |q|, so forces have errors of eps |q| times the stiffness at a vertex.
+// Positions have rounding errors of eps |q|, so forces have errors of eps |q| times the stiffness at a vertex.
 double IncrementalPotential::gradient_round_off_at(std::span<const double> q) {
   const double stiffness = parallel_sum(pattern_.rows(), [&](int first, int last) {
     double sum = 0, size = 0;
@@ -229,16 +229,17 @@ double IncrementalPotential::gradient_round_off_at(std::span<const double> q) {
   return kEpsilon * *std::max_element(largest_.begin(), largest_.end()) * std::sqrt(stiffness);
 }
 
-double IncrementalPotential::gradient_noise(std::span<const double> q) const {
+double IncrementalPotential::total_gradient_round_off(std::span<const double> q) const {
   double size = 0;
   for (const double qi : q) size = std::max(size, std::abs(qi));
   const double at_rest = kEpsilon * size * std::hypot(inertia_ * mass_norm_, factor_ * rest_stiffness_);
   return std::max(gradient_round_off_, at_rest) + kEpsilon * gradient_scale_;
 }
 
-void IncrementalPotential::add_part_noise(std::span<const double> q, double weight, std::span<double> noise) const {
+void IncrementalPotential::add_part_round_off(std::span<const double> q, double weight,
+                                              std::span<double> round_offs) const {
   if (parts_.empty()) {
-    noise[0] += weight * (gradient_noise(q) / factor_);
+    round_offs[0] += weight * (total_gradient_round_off(q) / factor_);
     return;
   }
   double size = 0;
@@ -246,11 +247,11 @@ void IncrementalPotential::add_part_noise(std::span<const double> q, double weig
   for (size_t k = 0; k < parts_.size(); ++k) {
     const Part& part = parts_[k];
     const double at_rest = kEpsilon * size * std::hypot(inertia_ * part.mass_norm, factor_ * part.rest_stiffness);
-    noise[k] += weight * ((std::max(part.round_off, at_rest) + kEpsilon * part.scale) / factor_);
+    round_offs[k] += weight * ((std::max(part.round_off, at_rest) + kEpsilon * part.scale) / factor_);
   }
 }
 
-// Sums in the order of the vertices, so that the result does not depend on the number of threads.
+// Sums in the order of the vertices, so that the result is independent of the number of threads.
 void IncrementalPotential::add_part_norms(std::span<const double> v, bool is_exact) {
   if (parts_.empty()) return;
   for (Part& part : parts_) part.sum = 0;
@@ -269,13 +270,13 @@ void IncrementalPotential::measure_parts(std::span<const double> g, std::span<Gr
 }
 
 double IncrementalPotential::lost_accuracy(std::span<const double> q, std::span<const GradientPart> parts) {
-  constexpr double kNoise = 16 * kEpsilon;  // rounding error of inertia, from positions
+  constexpr double kPositionRoundOff = 16 * kEpsilon;  // rounding error of inertia, from positions
   double size = 0, lost = 0;
   for (const double qi : q) size = std::max(size, std::abs(qi));
   for (size_t k = 0; k < parts.size(); ++k) {
     const double exact = parts_.empty() ? exact_scale_ : parts_[k].exact;
     const double mass = parts_.empty() ? mass_norm_ : parts_[k].mass_norm;
-    const bool is_hidden = exact > kNoise * size * inertia_ * mass && parts[k].norm > kResolved * exact;
+    const bool is_hidden = exact > kPositionRoundOff * size * inertia_ * mass && parts[k].norm > kResolved * exact;
     if (is_hidden) lost = std::max(lost, std::min(1.0, parts[k].norm / exact));
   }
   return lost;

@@ -18,13 +18,13 @@ class IncrementalPotential : public Objective, public HasMetric, public HasParts
  public:
   IncrementalPotential(const Model& model, const Pins& pins);
 
-  // Set the step for subsequent evaluations of the terms of V and of D. Called before begin_step().
+  // Set the step for subsequent evaluations of the terms of V and D. Called before begin_step().
   void set_potential_step(const StepContext& step);
   void set_damping_step(const StepContext& step);
   void move_obstacles(double time);  // after set_potential_step()
   void begin_step(std::span<const double> predicted, double inertia /* w */, double factor /* f */);
 
-  // Coefficients that lag behind the minimization, see Energy.
+  // Lagged coefficients, see Energy.
   bool is_lagged() const;
   void update_lagged(std::span<const double> q);
 
@@ -32,12 +32,12 @@ class IncrementalPotential : public Objective, public HasMetric, public HasParts
   void gradient(std::span<const double> q, std::span<double> g) override;
   const BlockSparse& evaluate_hessian(std::span<const double> q, const Projection& projection) override;
   void note_iterate(std::span<const double> q) override;
-  const BlockSparse& metric() override;  // M, with rows of the identity for pinned vertices
+  const BlockSparse& metric() override;  // M, with identity rows for pinned vertices
   double max_step(std::span<const double> q, std::span<const double> d) override;
   const BlockSparse* add_stops(std::span<const double> q, std::span<const double> d, double max_step,
                                std::span<double> g) override;
-  // x: the radius of the body [m]. value: the energy of doubling the size of the body, in units of E, without constant
-  // offsets of the potential. gradient_unit: f, because g is a force times f.
+  // x: radius of the body [m]. value: energy of doubling the size of the body, in units of E, without constant offsets
+  // of the potential. gradient_unit: f, because g is a force times f.
   ObjectiveScales scales() const override {
     return {.x = radius_,
             .value = inertia_ * growth_inertia_ + factor_ * growth_stiffness_,
@@ -55,40 +55,41 @@ class IncrementalPotential : public Objective, public HasMetric, public HasParts
   int part_of(int vertex) const { return part_of_.empty() ? 0 : part_of_[vertex]; }
   double growth_stiffness() const { return growth_stiffness_; }  // of V, see scales() [J]
 
-  // Returns the rounding error of |g| at q, where the gradient was evaluated last: of the positions, through the
-  // stiffness of the last Hessian or of the body at rest, and of the sum of forces.
-  double gradient_noise(std::span<const double> q) const;
-  // noise[k] += weight * rounding error of part k [N].
-  void add_part_noise(std::span<const double> q, double weight, std::span<double> noise) const;
+  // Returns the rounding error of |g| at q, where the gradient was evaluated last. It includes the rounding of
+  // positions, amplified by the stiffness of the last Hessian or of the body at rest, and of the sum of forces.
+  double total_gradient_round_off(std::span<const double> q) const;
+  // round_offs[k] += weight * rounding error of part k [N].
+  void add_part_round_off(std::span<const double> q, double weight, std::span<double> round_offs) const;
 
-  // The values of the terms of V [J] at q, if q is the iterate at which the last minimization ended; else empty.
+  // Returns the values of the terms of V [J] at q, or nothing if q is not the iterate at which the last minimization
+  // ended.
   std::span<const double> known_values(std::span<const double> q) const;
   // gradient += weight dV/dx, damping += weight dD/dx [N]. Returns false if they are not known at q.
   bool add_known_forces(std::span<const double> q, double weight, std::span<double> gradient,
                         std::span<double> damping) const;
 
-  const std::vector<ActiveTerm>& potential() const { return potential_; }  // the terms of V: elasticity, then loads
+  const std::vector<ActiveTerm>& potential() const { return potential_; }  // terms of V: elasticity, then loads
   std::span<const ActiveTerm> loads() const { return std::span(potential_).subspan(model_.elasticity.size()); }
   const std::vector<ActiveTerm>& damping() const { return damping_; }
   const BlockPattern& pattern() const { return pattern_; }
 
  private:
   struct Terms {                            // E by terms
-    std::vector<double> values;             // of V [J]
+    std::vector<double> values;             // values of the terms of V [J]
     std::vector<double> gradient, damping;  // f dV/dx and f dD/dx
   };
-  // Computes the characteristic sizes: the second derivative of V for a uniform growth of the body at rest, which is a
-  // modulus times the volume [J], the moment of inertia about the center [kg m^2], and the radius [m].
+  // Computes characteristic sizes: the second derivative of V for a uniform growth of the body at rest, which is a
+  // modulus times the volume [J]; the moment of inertia about the center [kg m^2]; and the radius [m].
   void measure(const TetMesh& mesh);
-  // Divides the vertices into parts: bodies that no tet connects, and regions of a body whose moduli times edge
-  // lengths differ by more than kSoft. Each has its own sizes. `growth` is scratch.
+  // Divides the vertices into parts with their own sizes: bodies that no tet connects, and regions of a body whose
+  // moduli times edge lengths differ by more than kSoft. `growth` is scratch.
   void measure_parts(const TetMesh& mesh, std::span<const double> modulus, std::span<double> growth);
   void add_part_norms(std::span<const double> v, bool is_exact);
   void add_term_gradient(const ActiveTerm& term, std::span<const double> q, std::span<double> g, std::span<double> sum);
   double free_norm(std::span<const double> v) const;
   double gradient_round_off_at(std::span<const double> q);
 
-  struct Part {  // the sizes of measure(), for this part
+  struct Part {  // characteristic sizes of a part, see measure()
     double growth_stiffness = 0, growth_inertia = 0, radius = 0, rest_stiffness = 0, mass_norm = 0;
     double scale = 0, round_off = 0;  // of the last gradient and Hessian
     double exact = 0;                 // share of `scale` without rounding error: inertia, weight, dead loads
@@ -103,17 +104,17 @@ class IncrementalPotential : public Objective, public HasMetric, public HasParts
   BlockSparse H_;
   std::optional<BlockSparse> metric_;  // computed on first use
 
-  std::vector<Part> parts_;   // empty: there is one
-  std::vector<int> part_of_;  // of each vertex, unless there is one
+  std::vector<Part> parts_;   // empty: a single part
+  std::vector<int> part_of_;  // part of each vertex; empty: a single part
   std::vector<double> predicted_;
-  std::vector<double> iterate_;  // empty: there is none yet
+  std::vector<double> iterate_;  // empty: none yet
   Terms last_, of_iterate_;      // at the last evaluation, and at the last iterate
   double inertia_ = 1, factor_ = 1;
   double growth_stiffness_ = 0, growth_inertia_ = 0, radius_ = 0;
-  double rest_stiffness_ = 0, mass_norm_ = 0;  // of the diagonal blocks [N/m] and [kg]
+  double rest_stiffness_ = 0, mass_norm_ = 0;  // norms of the diagonal blocks [N/m] and [kg]
   double exact_scale_ = 0;                     // see Part::exact
   double gradient_scale_ = 0, gradient_round_off_ = 0;
-  // Scratch. offset: w (q - q~). term: one term's gradient; zero between terms. largest: |q| by chunks.
+  // Scratch. offset_: w (q - q~). term_: gradient of one term; zero between terms. largest_: |q| by chunks.
   std::vector<double> offset_, term_, largest_;
 };
 

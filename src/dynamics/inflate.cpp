@@ -18,13 +18,13 @@
 namespace aspic {
 namespace {
 
-constexpr double kSmallest = 1.0 / 64;  // scale of bodies
-constexpr double kShrink = 0.85;        // ratio of two scales that are tried
-constexpr double kVolume = 0.9;         // least share of its volume that a body must regain
-constexpr int kMostSteps = 200;
-constexpr double kAtRest = 1e-3;  // largest displacement in a step at rest, relative to the radius of the model
+constexpr double kSmallest = 1.0 / 64;  // minimum scale of bodies
+constexpr double kShrink = 0.85;        // ratio of two successive scales
+constexpr double kVolume = 0.9;         // minimum fraction of its volume that a body must regain
+constexpr int kMaxSteps = 200;
+constexpr double kAtRest = 1e-3;  // maximum displacement in a step at rest, relative to the radius of the model
 
-// Why the surfaces are not apart; nothing if they are.
+// Returns why the surfaces overlap; nothing if they do not.
 std::optional<std::string> overlap(const Model& model, const std::vector<double>& q) {
   try {
     State state;
@@ -81,7 +81,7 @@ bool encloses(const Model& model, const BodyRange& body, const std::vector<doubl
   return false;
 }
 
-// Bodies that are apart may still be inside of others.
+// Rejects bodies inside of other bodies, whose surfaces do not intersect.
 void require_outside(const Model& model, const std::vector<double>& q) {
   for (const BodyRange& inner : model.bodies)
     for (const BodyRange& outer : model.bodies)
@@ -90,16 +90,16 @@ void require_outside(const Model& model, const std::vector<double>& q) {
                            "'; move one of them");
 }
 
-// Minimizes 1/2 (x - q)' M (x - q) + h^2 V(x) again and again, where V is elasticity and contact, until x rests.
+// Repeatedly minimizes 1/2 (x - q)' M (x - q) + h^2 V(x), where V is elasticity and contact, until x is at rest.
 void grow(const Model& model, const std::vector<double>& start, std::vector<double>& q) {
   const Pins pins(model.pins, start);
   IncrementalPotential E(model, pins);
   const double radius = E.scales().x;
   double mass = 0;
   for (const double m : model.mass->vertex_mass()) mass += m;
-  const double h2 = mass * radius * radius / E.growth_stiffness();  // the square of a time of vibration
+  const double h2 = mass * radius * radius / E.growth_stiffness();  // square of a vibration period
   const std::unique_ptr<SearchDirection> direction = make_search_direction({});
-  for (int step = 0; step < kMostSteps; ++step) {
+  for (int step = 0; step < kMaxSteps; ++step) {
     const std::vector<double> before = q;
     E.set_potential_step({.start = before, .h = std::sqrt(h2), .time = 0, .obstacle_time = 0});
     E.begin_step(before, 1, h2);
@@ -119,7 +119,7 @@ void inflate(Model& model, std::vector<double>& q) {
   const std::vector<double> start = q;
   for (double scale = kShrink; why && scale >= kSmallest; scale *= kShrink)
     why = overlap(model, q = shrunk(model, start, scale));
-  if (why) throw InvalidInput("start = \"inflate\" finds no smaller bodies that are apart: " + *why);
+  if (why) throw InvalidInput("start = \"inflate\" could not separate the bodies by shrinking: " + *why);
   require_outside(model, q);
   const auto other = std::stable_partition(model.loads.begin(), model.loads.end(),
                                            [&](const auto& load) { return load.get() == model.contact; });
@@ -133,8 +133,9 @@ void inflate(Model& model, std::vector<double>& q) {
   for (const BodyRange& body : model.bodies) {
     const double share = volume_of(model, body, q) / volume_of(model, body, start);
     if (!(share > kVolume))
-      throw InvalidInput("start = \"inflate\" leaves body '" + body.name + "' " + std::to_string(int(100 * share)) +
-                         " % of its volume, enclosed by other surfaces or collapsed; move it further away");
+      throw InvalidInput("start = \"inflate\" restores only " + std::to_string(int(100 * share)) +
+                         " % of the volume of body '" + body.name +
+                         "': it is enclosed by other surfaces or collapsed; move it further away");
   }
   if ((why = overlap(model, q))) throw InvalidInput("start = \"inflate\" failed: " + *why);
 }

@@ -36,7 +36,7 @@ namespace {
 constexpr InitialGuess kChoices[] = {InitialGuess::best,           InitialGuess::zero,
                                      InitialGuess::current,        InitialGuess::extrapolated,
                                      InitialGuess::last_increment, InitialGuess::accelerated};
-// The candidates of `best` after `current`, in order.
+// Candidates of `best` after `current`, in order.
 constexpr InitialGuess kAhead[] = {InitialGuess::extrapolated, InitialGuess::last_increment, InitialGuess::accelerated};
 
 }  // namespace
@@ -75,7 +75,7 @@ bool Guesser::propose(const StepTools& tools, InitialGuess candidate, const Gues
   return true;
 }
 
-// Shortens the path from `from` to the candidate where bodies would touch.
+// Shortens the path from `from` to the candidate before bodies touch.
 void Guesser::stop_at_contact(const StepTools& tools, std::span<const double> from) {
   if (!tools.model.contact) return;
   path_.resize(trial_.size());
@@ -112,7 +112,8 @@ Guess Guesser::guess(const StepTools& tools, InitialGuess wanted, const GuessCon
   std::copy(known.q.begin(), known.q.end(), q.begin());
   Guess best = {InitialGuess::current, lead_pins(tools, known.time, known.q, q, work)};
   if (wanted == InitialGuess::current) return best;
-  if (tools.model.contact && !std::isfinite(best.value.value)) return best;  // pins are where no free path leads
+  if (tools.model.contact && !std::isfinite(best.value.value))
+    return best;  // pins are at the end of the last feasible path
   for (const InitialGuess candidate : kAhead) {
     if (candidate == InitialGuess::last_increment && !known.tries_last_increment) continue;
     if (tools.model.contact && wanted != InitialGuess::best && wanted != candidate) continue;

@@ -15,7 +15,7 @@ SimulationOptions with_guess(const std::string& guess, const std::string& integr
   return {.integrator = integrator, .initial_guess = guess, .solver = {}};
 }
 
-TEST(InitialGuess, AllLeadToSameMotion) {
+TEST(InitialGuess, AllYieldSameMotion) {
   for (const char* integrator : {"backward_euler", "bdf2", "tr_bdf2", "midpoint"}) {
     std::vector<std::vector<double>> ends;
     for (const std::string& guess : initial_guess_names()) {
@@ -50,7 +50,7 @@ TEST(InitialGuess, ExtrapolatedIsExactWithoutForces) {
     for (int i = 0; i < 3; ++i) EXPECT_EQ(simulation.step().iterations, iterations) << guess;
   }
   Simulation simulation = flying_box("last_increment");
-  simulation.step();  // no step before it
+  simulation.step();  // no previous step
   EXPECT_EQ(simulation.step().iterations, 0);
 }
 
@@ -91,7 +91,7 @@ TEST(InitialGuess, AllPlacePinnedVertices) {
 }
 
 TEST(InitialGuess, ReplacesGuessOfInfiniteEnergy) {
-  // Vertices fly apart so fast that the extrapolated shape is inside out, where the material has no energy.
+  // Vertices move apart so fast that the extrapolated shape is inverted, where the energy is infinite.
   Model model = make_model(make_box({{0, 0, 0}}, {{1, 1, 1}}, {1, 1, 1}), {.young = 1e6, .gravity = {}});
   State start = at_rest(model.mesh);
   for (size_t i = 0; i < start.q.size(); i += 3) start.qdot[i] = -150 * start.q[i];

@@ -31,8 +31,8 @@ constexpr std::array kSchemes = {
 };
 // clang-format on
 
-// Ordered from best to worst.
-int badness(Status status) {
+// Returns the rank of a status, from best to worst.
+int rank_of(Status status) {
   constexpr std::array kOrder = {Status::converged, Status::round_off,  Status::budget,    Status::iteration_limit,
                                  Status::stuck,     Status::no_descent, Status::undefined, Status::interrupted};
   int rank = 0;
@@ -59,10 +59,10 @@ void StepForces::add_round_off(const IncrementalPotential& E, double round_off) 
   for (double& r : round_offs) r += round_off;
 }
 
-void StepForces::add_bounds(const SolveTools& tools, Asked asked, double weight, Positions x) {
+void StepForces::add_bounds(const SolveTools& tools, ResidualBound bound, double weight, Positions x) {
   resize_bounds(tools.E);
-  tools.E.add_part_noise(x, weight, round_offs);
-  if (asked == Asked::nothing || tests_direction(tools.options.criterion)) return;
+  tools.E.add_part_round_off(x, weight, round_offs);
+  if (bound == ResidualBound::none || tests_direction(tools.options.criterion)) return;
   const std::span<const double> bounds = tools.minimizer.thresholds();
   for (size_t k = 0; k < thresholds.size(); ++k) thresholds[k] += weight * (bounds[k] / tools.E.scales().gradient_unit);
 }
@@ -82,7 +82,7 @@ bool StepSolve::add(const MinimizeReport& stage) {
   work.value = stage.value;
   work.gradient_norm = stage.gradient_norm;
   work.lost_accuracy = std::max(work.lost_accuracy, stage.lost_accuracy);
-  if (badness(stage.status) > badness(work.status)) work.status = stage.status;
+  if (rank_of(stage.status) > rank_of(work.status)) work.status = stage.status;
   return stage.status != Status::undefined && stage.status != Status::interrupted;
 }
 

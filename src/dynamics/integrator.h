@@ -14,7 +14,7 @@
 
 namespace aspic {
 
-// The arguments of a minimization.
+// Arguments of a minimization.
 struct SolveTools {
   const Model& model;
   const Pins& pins;
@@ -26,42 +26,42 @@ struct SolveTools {
   InitialGuess guess;
 };
 
-// The arguments of a step.
+// Arguments of a step.
 struct StepTools : SolveTools {
   const State& start;     // start of the step
   const State* previous;  // start of the previous step; null if unknown
   double h, end_time;     // length and end of the step [s]
-  // Times of the obstacles at start and end; that at the end is the same in a step that was dropped [s].
+  // Times of the obstacles at the start and the end of the step; equal if the step is dropped [s].
   double obstacle_start = 0, obstacle_end = 0;
 };
 
-enum class Asked { nothing, residual };  // of a solve
+enum class ResidualBound { none, threshold };  // bound that a solve guarantees
 
-// The forces of a step, as weighted sums over its stages: r = M a + G + C is the residual of the solves on free
-// vertices and the reaction of the pins on pinned ones.
+// Forces of a step, as weighted sums over its stages. r = M a + G + C is the residual of the solves on free vertices
+// and the reaction of the pins on pinned vertices.
 struct StepForces {
   std::vector<double> gradient, damping;  // G = sum w dV/dx and C = sum w dD/dx [N]
   std::vector<double> acceleration;       // a = sum w acc [m/s^2]; zero in statics
-  // For each part of the objective (HasParts): the threshold of |r|, 0 without a solve, and the rounding error of |r|
+  // For each part of the objective (HasParts): the threshold of |r| (0 without a solve) and the rounding error of |r|
   // [N].
   std::vector<double> thresholds, round_offs;
 
   void reset(size_t size);
-  // Adds the forces of the terms at x.
+  // Adds the forces of all terms at x.
   void add(const IncrementalPotential& E, double weight, Positions x, std::span<const double> acc, Work& work);
   // Adds threshold and rounding error of a solve that ended at x.
-  void add_bounds(const SolveTools& tools, Asked asked, double weight, Positions x);
+  void add_bounds(const SolveTools& tools, ResidualBound bound, double weight, Positions x);
   void add_round_off(const IncrementalPotential& E, double round_off);  // adds to every part [N]
 
  private:
   void resize_bounds(const IncrementalPotential& E);
 };
 
-// The solves of a step: counts are sums over its stages, the status is the worst one.
+// Solves of a step: counts are sums over its stages; the status is the worst one.
 struct StepSolve {
   MinimizeReport work = {.status = Status::converged};
   double decrement = 0;  // maximum over the minimizations [J]
-  int passes = 0;        // minimizations until lagged coefficients settled, maximum over the stages
+  int passes = 0;        // minimizations until lagged coefficients converged, maximum over the stages
   InitialGuess guess = InitialGuess::none;
 
   // Returns false if the step cannot continue from this stage.

@@ -1,4 +1,4 @@
-// The properties of a time integrator.
+// Properties of a time integrator.
 #pragma once
 #include <string_view>
 
@@ -11,11 +11,11 @@ struct IntegratorFacts {
   int order = 1;                     // order of accuracy in time; 0: statics
   bool is_implicit = true;           // each step minimizes
   bool is_multistep = false;         // uses the start of the previous step of the same length
-  bool takes_one_iteration = false;  // one iteration of Newton's method instead of a minimization
-  bool is_backward_euler = false;    // its E is that of backward Euler
+  bool takes_one_iteration = false;  // performs one Newton iteration instead of a minimization
+  bool is_backward_euler = false;    // its objective is that of backward Euler
   bool ends_beyond_minimum = false;  // extrapolates the end of a step from the minimizer
-  bool gains_energy = false;         // adds energy in steps of any length
-  StabilityLimit stability = StabilityLimit::symplectic_euler;  // stability limit of an explicit scheme
+  bool gains_energy = false;         // adds energy for any step length
+  StabilityLimit stability = StabilityLimit::symplectic_euler;  // stability limit if explicit
 
   bool is_static() const { return order == 0; }
   bool chooses_guess() const { return is_implicit && !takes_one_iteration; }

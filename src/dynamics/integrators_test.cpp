@@ -1,4 +1,4 @@
-// What theory says of each integrator: its damping and frequency, its invariants, its path of free fall.
+// Compares each integrator with theory: damping and frequency, invariants, free fall.
 #include "dynamics/integrator.h"
 
 #include <gtest/gtest.h>
@@ -16,7 +16,7 @@ namespace {
 using namespace testing_models;
 
 TEST(Integrators, MatchOscillatorFormulas) {
-  EXPECT_EQ(expected_oscillations().size() + 1, integrator_names().size()) << "all but quasi_static";
+  EXPECT_EQ(expected_oscillations().size() + 1, integrator_names().size()) << "all except quasi_static";
   for (const auto& [integrator, expected] : expected_oscillations()) {
     const Oscillation measured = measured_oscillation(integrator);
     EXPECT_NEAR(measured.energy_left, expected.energy_left, 6e-7 * std::max(1.0, expected.energy_left)) << integrator;
@@ -35,7 +35,7 @@ TEST(Integrators, EulerMethodsChangeEnergyByFixedFactors) {
   }
   Simulation simulation = oscillator({.h = 0.01, .integrator = "symplectic_euler", .solver = {}});
   const double E = oscillator_energy(simulation);
-  // q moves with the new velocity, so the shadow energy has + h/2 w^2 x v.
+  // q moves with the new velocity, so the shadow energy includes + h/2 w^2 x v.
   const auto invariant = [&] {
     return oscillator_energy(simulation) -
            0.5 * 0.01 * 100 * oscillator_position(simulation) * oscillator_velocity(simulation);
@@ -48,7 +48,7 @@ TEST(Integrators, EulerMethodsChangeEnergyByFixedFactors) {
   }
 }
 
-TEST(Integrators, HaveTheirOrderWithDampingAndMovingTarget) {
+TEST(Integrators, HaveOrderWithDampingAndMovingTarget) {
   for (const std::string& integrator : integrators_in_time()) {
     const double h = 0.004;
     EXPECT_NEAR(std::log2(driven_oscillator_error(integrator, h) / driven_oscillator_error(integrator, h / 2)),
@@ -73,7 +73,7 @@ Model spinning_box(State& start) {
   return model;
 }
 
-// Sum of p, and of x cross p.
+// Returns the sums of p and of x cross p.
 std::pair<Vec3d, Vec3d> momenta(const Simulation& simulation) {
   std::vector<double> p(simulation.state().q.size());
   simulation.model().mass->multiply(simulation.state().qdot, p);
@@ -105,7 +105,7 @@ TEST(Integrators, MidpointConservesLinearAndAngularMomentum) {
 }
 
 TEST(Integrators, OrderByNumericalDampingOfStiffBody) {
-  std::map<std::string, double> left;  // kinetic + potential after 50 steps, relative to the start
+  std::map<std::string, double> left;  // kinetic + potential energy after 50 steps, relative to the start
   for (const char* integrator : {"backward_euler", "bdf2", "tr_bdf2", "midpoint"}) {
     State start;
     Model model = spinning_box(start);

@@ -11,7 +11,7 @@ namespace {
 
 using namespace testing_models;
 
-// One end of a barrier-material beam is carried further in one step than its elements are long.
+// One end of a barrier-material beam moves further in one step than its elements are long.
 Model carried(double distance) {
   Model model = beam(2, {.material = "neo_hookean_log", .young = 1e5, .gravity = {}});
   model.pins.push_back({"hand", vertices_where(model.mesh, [](const Vec3d& X) { return X[0] > 4 - 1e-9; }),

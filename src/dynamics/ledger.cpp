@@ -13,7 +13,7 @@ namespace {
 // A few units in the last place of a position, and of a strain energy relative to the modulus.
 constexpr double kLastDigits = 8 * std::numeric_limits<double>::epsilon();
 
-// Compensated summation [Neumaier 1974]: the work terms of single vertices of a body that moves far cancel.
+// Compensated summation [Neumaier 1974], because the work terms of single vertices cancel if the body moves far.
 class LongSum {
  public:
   void add(double term) {
@@ -27,7 +27,7 @@ class LongSum {
   double high_ = 0, low_ = 0;
 };
 
-// V += sign * (energy of each load except contact, which may be infinite). Returns their sum.
+// Adds sign * (energy of each load except contact, which may be infinite) to V. Returns their sum.
 double add_load_energies(const StepTools& tools, std::span<const double> x, double sign, std::vector<double>& V) {
   const std::span<const ActiveTerm> loads = tools.E.loads();
   double sum = 0;
@@ -44,7 +44,7 @@ struct ObstacleWork {
   double contact = 0, friction = 0;  // [J]
 };
 
-// Also adds the loss of friction to the report.
+// Returns the work of obstacles, and adds the friction loss to the report.
 ObstacleWork work_of_obstacles(const StepTools& tools, const State& end, StepReport& report) {
   ObstacleWork work;
   if (!tools.model.contact) return work;
@@ -70,8 +70,8 @@ double kinetic_energy(const MassMatrix& mass, std::span<const double> qdot, std:
   return T;
 }
 
-// The energy that the loads gain from the motion of their targets during the step: with the body at the start, and for
-// schemes of higher order the mean of the values with the body at the start and at the end.
+// Returns the energy that the loads gain from the motion of their targets during the step: with the body at its start,
+// or for schemes of higher order the mean of the values with the body at the start and at the end.
 double Ledger::target_work(const StepTools& tools, int order, const State& end, double& loads_before,
                            StepReport& report) {
   const State& start = tools.start;
@@ -136,7 +136,7 @@ void Ledger::note_residual(const StepTools& tools, const StepForces& forces, Ste
   for (int k = 0; k < tools.E.part_count(); ++k) {
     const double r = std::sqrt(squares_[k]), asked = bound(forces.thresholds, k);
     const bool is_first = worst < 0 && report.worst_vertex < 0 && report.residual == 0;
-    if (!is_first && ratio(r, asked) <= ratio(residual, threshold)) continue;  // NaN stays
+    if (!is_first && ratio(r, asked) <= ratio(residual, threshold)) continue;  // keeps NaN
     worst = k, residual = r, threshold = asked;
   }
   if (worst < 0) return;
@@ -164,7 +164,7 @@ void Ledger::allow_moved_pins(const StepTools& tools, const State& end, BoundedE
   bounded.magnitude += D + T;
 }
 
-// residual_ is r of this step, and the contexts of the loads are at its end.
+// Requires that residual_ is r of this step, and that the contexts of the loads are at its end.
 void Ledger::add_resultants(const StepTools& tools, const State& end, const StepForces& forces, Resultants& sums) {
   const Model& model = tools.model;
   sums.pins.resize(model.pins.size());
@@ -209,7 +209,7 @@ BoundedEnergies Ledger::add(const StepTools& tools, const Integrator& integrator
   const State& start = tools.start;
   const size_t n = end.q.size();
   for (auto* v : {&Ma_, &momentum_, &residual_}) v->assign(n, 0.0);
-  moved_.resize(n);  // before any pin moves, so that later steps allocate nothing
+  moved_.resize(n);  // before any pin moves, so that later steps do not allocate
   double potential_before = 0;
   const double target = target_work(tools, integrator.facts().order, end, potential_before, report);
   for (const double V : elastic_energies(tools.model, start.q, {}, report)) potential_before += V;

@@ -1,9 +1,9 @@
-// The energy balance of a step. With dx = q_new - q_old, the effective forces G and C of the step and its effective
+// Energy balance of a step. With dx = q_new - q_old, the effective forces G and C of the step and its effective
 // acceleration a (see StepForces),
-//   r = M a + G + C,
-// r is the reaction of the pins on pinned vertices and the residual of the solves on free ones, and
+//   r = M a + G + C
+// is the reaction of the pins on pinned vertices and the residual of the solves on free vertices, and
 //   dT + dV = reaction . dx + (work of moving targets and obstacles) - C . dx - numerical_loss + residual . dx
-// holds exactly, where the integrator itself loses
+// holds exactly, where the loss of the integrator itself is
 //   numerical_loss = (a' M dx - dT) + G . dx - (dV - work of moving targets):
 // zero for midpoint with linear forces, 1/2 dv' M dv + dV/dx . dx - dV for backward Euler.
 #pragma once
@@ -20,19 +20,19 @@ class Ledger {
   // Evaluates the elastic energies at the start of the first step. Later steps reuse those at the end of the previous
   // step.
   void begin(const Model& model, std::span<const double> q);
-  // Adds the work terms of the step from tools.start to `end` to the report and writes the energies at `end`. Moving
-  // targets are then at the end of the step. The returned energies are meaningful for backward Euler.
+  // Adds the work terms of the step from tools.start to `end` to the report, and writes the energies at `end`. Requires
+  // that moving targets are at the end of the step. The returned energies are meaningful only for backward Euler.
   BoundedEnergies add(const StepTools& tools, const Integrator& integrator, const State& end, const StepForces& forces,
                       StepReport& report);
 
  private:
   double target_work(const StepTools& tools, int order, const State& end, double& loads_before, StepReport& report);
-  // `known`: the energies of all terms at q, elastic ones first, or empty.
+  // `known`: energies of all terms at q, elastic terms first; may be empty.
   std::span<const double> elastic_energies(const Model& model, std::span<const double> q, std::span<const double> known,
                                            Work& work);
   // Replaces V_t + T_t + W by E at the start of the minimization divided by h^2.
   void allow_moved_pins(const StepTools& tools, const State& end, BoundedEnergies& bounded, Work& work);
-  // The residual of the part of the model that is farthest from its threshold, and its worst vertex.
+  // Writes the residual of the part of the model that is farthest from its threshold, and its worst vertex.
   void note_residual(const StepTools& tools, const StepForces& forces, StepReport& report);
   void note_worst_vertex(const StepTools& tools, int part, StepReport& report) const;
   void add_resultants(const StepTools& tools, const State& end, const StepForces& forces, Resultants& sums);
@@ -45,7 +45,7 @@ class Ledger {
   std::vector<double> last_q_, elastic_;  // positions and values of the last elastic energies, one per body
 };
 
-// 1/2 qdot' M qdot [J]; `momentum` receives M qdot.
+// Returns 1/2 qdot' M qdot [J]; `momentum` receives M qdot.
 double kinetic_energy(const MassMatrix& mass, std::span<const double> qdot, std::span<double> momentum);
 
 }  // namespace aspic

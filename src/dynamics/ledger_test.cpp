@@ -1,4 +1,4 @@
-// Where energy goes, for every integrator.
+// Energy balances of every integrator.
 #include "dynamics/ledger.h"
 
 #include <gtest/gtest.h>
@@ -32,10 +32,10 @@ void expect_closed(const SimulationOptions& options) {
     damping_loss += report.damping_loss;
     EXPECT_LT(std::abs(report.ledger_error), 1e-11 * largest) << options.integrator;
     ASSERT_EQ(report.target_work.size(), simulation.model().loads.size());
-    EXPECT_EQ(report.target_work.front(), 0) << "gravity has no target that moves";
-    EXPECT_NE(report.target_work.back(), 0) << "the pulled spring has one";
+    EXPECT_EQ(report.target_work.front(), 0) << "gravity has no moving target";
+    EXPECT_NE(report.target_work.back(), 0) << "the pulled spring has a moving target";
     flows += report.pin_work - report.damping_loss - report.numerical_loss + report.residual_work;
-    // From step to step, too: energies at the end of one are those at the start of the next.
+    // Energies at the end of a step equal those at the start of the next one.
     EXPECT_NEAR(report.kinetic + report.potential_total, energy + flows, 1e-10 * largest) << options.integrator;
   }
   EXPECT_GT(pin_work, 0) << options.integrator;
@@ -44,12 +44,12 @@ void expect_closed(const SimulationOptions& options) {
   }
 }
 
-TEST(Ledger, ClosesForEveryIntegrator) {
+TEST(Ledger, BalancesForEveryIntegrator) {
   for (const std::string& integrator : integrator_names())
     expect_closed({.h = is_explicit(integrator) ? 1e-4 : 0.01, .integrator = integrator, .solver = {}});
 }
 
-TEST(Ledger, ClosesOverSubsteps) {
+TEST(Ledger, BalancesOverSubsteps) {
   for (const std::string& integrator : adaptive_integrator_names())
     expect_closed({.h = is_explicit(integrator) ? 4e-4 : 0.01,
                    .integrator = integrator,
@@ -71,7 +71,7 @@ TEST(Ledger, ResidualIsBelowThreshold) {
   }
 }
 
-TEST(Ledger, ExplicitResidualIsThatOfMassSolves) {
+TEST(Ledger, ExplicitResidualEqualsThatOfMassSolves) {
   for (const std::string& integrator : integrator_names()) {
     if (!is_explicit(integrator)) continue;
     Simulation simulation =
@@ -93,14 +93,14 @@ TEST(Ledger, MidpointConservesEnergyOfLinearForces) {
   EXPECT_GT(work, 1);
 }
 
-TEST(Ledger, BackwardEulerLosesHalfTheVelocityJump) {
+TEST(Ledger, BackwardEulerLosesHalfOfVelocityJump) {
   Model model = make_model(make_box({{0, 0, 0}}, {{1, 1, 1}}, {1, 1, 1}), {});
   Simulation simulation = simulate(std::move(model));
   const double mass = simulation.model().mass->total(), jump = 9.81 * 0.01;
   for (int i = 0; i < 5; ++i) EXPECT_NEAR(simulation.step().numerical_loss, mass * jump * jump / 2, 1e-7);
 }
 
-// The status of the last of `steps` steps of a beam that falls into its own weight.
+// Returns the report of the last of `steps` steps of a beam that falls under its weight.
 StepReport last_step_of_beam(const char* integrator, double h, int steps) {
   Simulation simulation = simulate(beam(1, {.material = "arap"}), {.h = h, .integrator = integrator});
   StepReport report;
@@ -124,7 +124,8 @@ TEST(Ledger, StableExplicitRunIsSuccess) {
   }
 }
 
-// A beam without weight whose far end is shaken by a pin, or by springs with moving targets; the last of 60 steps.
+// A beam without weight whose far end is shaken by a pin, or by springs with moving targets. Returns the last of 60
+// steps.
 StepReport last_step_of_shaken_beam(bool by_pin, double part_of_stable_step) {
   const auto shaken = [by_pin] {
     Model model = beam(1, {.material = "arap"});

@@ -1,4 +1,4 @@
-// What all linear solvers share: the answer, the same bits for any number of threads, and exact restarts.
+// Properties of all linear solvers: the same solution, bit-reproducible for any number of threads and after restarts.
 #include "linalg/linear_solver.h"
 
 #include <gtest/gtest.h>
@@ -11,7 +11,7 @@ namespace {
 
 using namespace testing_models;
 
-// 1 029 vertices, more than multigrid factorizes on its coarsest level; stiff, so that the choice of `auto` counts.
+// 1 029 vertices, more than multigrid factorizes on its coarsest level; stiff, so that the choice of `auto` matters.
 Simulation stiff_beam(const std::string& linear) {
   return simulate(beam(6, {.young = 1e8}), {.h = 0.02, .solver = {.linear = linear, .minimize = {.tolerance = 1e-9}}});
 }
@@ -23,7 +23,7 @@ std::vector<double> positions_after(Simulation& simulation, int steps) {
 
 class EveryLinearSolver : public testing::TestWithParam<std::string> {};
 
-TEST_P(EveryLinearSolver, GivesSameMotion) {
+TEST_P(EveryLinearSolver, YieldsSameMotion) {
   Simulation exact = stiff_beam("cholesky"), simulation = stiff_beam(GetParam());
   const std::vector<double> wanted = positions_after(exact, 3), q = positions_after(simulation, 3);
   for (size_t i = 0; i < q.size(); ++i) ASSERT_NEAR(q[i], wanted[i], 1e-8) << i;

@@ -1,4 +1,4 @@
-// Every method of minimization on elastic bodies.
+// All minimization methods on elastic bodies.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -16,7 +16,7 @@ namespace {
 
 using namespace testing_models;
 
-// Every combination that has a use: methods, their preconditioners and ways to make a Hessian definite.
+// Returns every valid combination of methods, preconditioners and modified Hessians.
 std::vector<SolverOptions> all_methods() {
   std::vector<SolverOptions> all;
   for (const std::string& method : minimizer_names())
@@ -38,9 +38,9 @@ SimulationOptions tight(const SolverOptions& solver) {
 }
 
 TEST(Methods, ReachSameMinimumOfTimeStep) {
-  // So near to rest the Hessian is at least the mass M. That of one tet has the eigenvalues m/20 and m/4, so that M is
-  // at least a fifth of the lumped mass, and a gradient of norm e leaves an error of at most 5 e / (the least vertex
-  // mass); twice that lies between two methods.
+  // Near rest, the Hessian is at least the mass M. M of one tet has the eigenvalues m/20 and m/4, so M is at least a
+  // fifth of the lumped mass, and a gradient of norm e implies an error of at most 5 e / (smallest vertex mass). Two
+  // methods differ by at most twice that.
   const Model model = damped_beam_with_moving_pins_and_targets();
   const auto masses = model.mass->vertex_mass();
   const double least = *std::min_element(masses.begin(), masses.end()) / 5;
@@ -124,7 +124,7 @@ struct Work {
   double residual = 0;
 };
 
-// A beam is pushed together to half its length within half a second.
+// Compresses a beam to half its length within half a second.
 Work work_of_compression(const std::string& method, const std::string& definiteness) {
   Model model = beam(3, {.material = "neo_hookean", .gravity = {{0, 0, 0}}});
   model.pins.push_back({"press", vertices_where(model.mesh, [](const Vec3d& X) { return X[0] > 4 - 1e-9; }),
@@ -157,7 +157,7 @@ TEST(Newton, TruncatedNewtonNeedsNoModifiedHessian) {
   EXPECT_EQ(work_of_compression("newton_cg", "auto").projected_elements, 0);
 }
 
-// A slender column under more than its critical load, which is pushed aside by a millionth of that.
+// A slender column under more than its critical load, with a lateral force of a millionth of it.
 TEST(Newton, BucklingColumnLeavesSaddleInFewIterations) {
   Model model = make_model(make_box({{0, 0, 0}}, {{0.1, 1, 0.1}}, {2, 16, 2}),
                            {.young = 1e5, .poisson = 0.3, .gravity = {{1e-6, -1.5, 0}}});
@@ -165,10 +165,10 @@ TEST(Newton, BucklingColumnLeavesSaddleInFewIterations) {
   Simulation simulation = simulate(std::move(model), {.h = 1, .integrator = "quasi_static"});
   const StepReport report = simulation.step();
   EXPECT_EQ(report.status, Status::converged);
-  EXPECT_LT(report.iterations, 60);  // 81 with clamped Hessians alone
+  EXPECT_LT(report.iterations, 60);  // 81 with clamped Hessians only
 }
 
-// A bar in tension that is held at one vertex: it may turn about that, so that no Hessian is positive definite.
+// A bar in tension that is pinned at one vertex: it may rotate about it, so no Hessian is positive definite.
 TEST(Newton, SinglePinHasEquilibriumWithEverySolver) {
   for (const std::string& linear : linear_solver_names()) {
     Model model = make_model(make_box({{0, 0, 0}}, {{1, 1, 1}}, {2, 2, 2}),

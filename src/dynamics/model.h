@@ -1,4 +1,4 @@
-// A model is everything that does not change while it is simulated: meshes, mass, the terms of V, pins.
+// A model contains everything that is constant during a simulation: meshes, mass, the terms of V, pins.
 #pragma once
 #include <functional>
 #include <memory>
@@ -16,40 +16,40 @@ namespace aspic {
 
 class Barrier;
 
-// A part of the mesh: vertices and tets of a body are consecutive.
+// Range of a body in the mesh. Its vertices and tets are consecutive.
 struct BodyRange {
   std::string name;
   int first_vertex = 0, vertex_count = 0;
   int first_tet = 0, tet_count = 0;
 };
 
-// Where a point moves: its position at the time [s], from that at the start [m].
+// Returns the position of a point at the time [s], given its position at the start [m].
 using Motion = std::function<Vec3d(const Vec3d& start, double time)>;
 
 // A Dirichlet condition: prescribes the displacements of vertices along some directions, as those of x(t) = motion(x at
-// the start, t). Requires that all directions that hold one vertex, by this or other pins, are linearly independent.
+// the start, t). Requires that all directions that pins prescribe at one vertex are linearly independent.
 struct Pin {
   std::string name;
   std::vector<int> vertices;
-  Motion motion;                       // empty: fixed where it starts
+  Motion motion;                       // empty: fixed at the start
   std::vector<Vec3d> directions = {};  // orthonormal; empty: all
 };
 
 struct Model {
-  TetMesh mesh;  // all bodies one after another
-  // The user's numbers of vertices and tets, which messages and files use. Everything in the model and the state is in
-  // the order of the mesh.
+  TetMesh mesh;  // all bodies, one after another
+  // The user's numbering of vertices and tets, for messages and files. Everything in the model and the state is in the
+  // order of the mesh.
   Numbering numbering;
   std::vector<BodyRange> bodies;
   std::vector<double> density;  // one per tet [kg/m^3]
-  // Fields to export with the results by name, one number per tet: "young" [Pa], "poisson" [1].
+  // Fields to export with the results, by name, one value per tet: "young" [Pa], "poisson" [1].
   std::vector<std::pair<std::string, std::vector<double>>> tet_fields;
   std::unique_ptr<MassMatrix> mass;
   std::vector<std::unique_ptr<TetElasticity>> elasticity;  // one per body
-  std::vector<std::unique_ptr<Energy>> loads;              // the other terms of V: gravity, springs, tractions
+  std::vector<std::unique_ptr<Energy>> loads;              // other terms of V: gravity, springs, tractions
   std::vector<std::unique_ptr<Energy>> damping;            // incremental potentials that dissipate
   std::vector<Pin> pins;
-  const Barrier* contact = nullptr;  // among the loads; null: bodies pass through each other
+  const Barrier* contact = nullptr;  // one of the loads; null: no contact
 };
 
 }  // namespace aspic

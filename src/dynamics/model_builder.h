@@ -1,12 +1,12 @@
-// Makes the model of one body step by step:
+// Builds the model of one body step by step:
 //   Model model = ModelBuilder(make_box({0, 0, 0}, {0.1, 0.1, 0.1}, {4, 4, 4}))
 //                     .material("neo_hookean", {.young = 5e3, .poisson = 0.4})
 //                     .density(1000)
 //                     .gravity({0, -9.81, 0})
 //                     .pin("top", [](const Vec3d& X) { return X[1] == 0.1; })
 //                     .build();
-// Every function throws InvalidInput for values that no body can have, such as a negative density, an unknown material
-// or a predicate that selects no vertex. Pins and loads keep the order of the calls; gravity is the first load.
+// All functions throw InvalidInput for invalid values, such as a negative density, an unknown material or a predicate
+// that selects no vertex. Pins and loads keep the order of the calls; gravity is the first load.
 #pragma once
 #include <functional>
 #include <memory>
@@ -21,26 +21,26 @@
 
 namespace aspic {
 
-// A homogeneous material: small-strain constants and, for materials that have more parameters, those of
-// MaterialInfo::extra in their order. An empty list means their defaults.
+// A homogeneous material: small-strain constants, and any further parameters in the order of MaterialInfo::extra. An
+// empty list selects the defaults.
 struct ElasticConstants {
   double young = 0;                // Young's modulus [Pa], > 0
   double poisson = 0;              // Poisson's ratio, between -1 and 0.5
   std::vector<double> extra = {};  // units: see MaterialInfo
 };
 
-// Returns the parameters of one tet. Throws InvalidInput when the constants do not suit the material.
+// Returns the parameters of one tet. Throws InvalidInput if the constants are invalid for the material.
 MaterialParameters material_parameters(const std::string& material, const ElasticConstants& constants);
 
 class ModelBuilder {
  public:
   explicit ModelBuilder(TetMesh mesh, std::string body = "body");
 
-  // The same material in every tet, by its name; see materials(). Required, in one of these three forms.
+  // Sets the same material in every tet, by name; see materials(). One of the three overloads is required.
   ModelBuilder& material(const std::string& name, const ElasticConstants& constants);
-  // One set of parameters per tet.
+  // Sets one parameter set per tet.
   ModelBuilder& material(const std::string& name, std::span<const MaterialParameters> parameters);
-  // A material that is not in the registry; see custom_material().
+  // Sets a material that is not in the registry; see custom_material().
   ModelBuilder& material(ElasticityMaker maker, const MaterialParameters& parameters);
 
   ModelBuilder& density(double density);                 // [kg/m^3], >= 0; required
@@ -49,32 +49,32 @@ class ModelBuilder {
 
   ModelBuilder& gravity(const Vec3d& acceleration);  // [m/s^2]; default: no such load
 
-  // Dirichlet conditions: the vertices stay where they start or, with a motion, follow x(t) = motion(x at the start,
-  // t). With directions, which are orthonormal, only the displacements along these are prescribed.
+  // Dirichlet conditions: the vertices are fixed at the start or, with a motion, follow x(t) = motion(x at the start,
+  // t). With `directions` (orthonormal), only the displacements along these are prescribed.
   ModelBuilder& pin(std::string name, const Predicate& where, Motion motion = {}, std::vector<Vec3d> directions = {});
   ModelBuilder& pin(std::string name, std::vector<int> vertices, Motion motion = {},
                     std::vector<Vec3d> directions = {});
 
-  // A spring from each of the vertices to its target, which is its place at rest or, with a motion, motion(X, t).
-  // `stiffness` of each [N/m].
+  // Adds a spring from each selected vertex to its target: its rest position or, with a motion, motion(X, t).
+  // `stiffness`: of each spring [N/m].
   ModelBuilder& springs(std::string name, const Predicate& where, double stiffness, const Motion& motion = {});
 
-  // Any other term of V.
+  // Adds any other term of V.
   ModelBuilder& load(std::unique_ptr<Energy> term);
 
-  // Damping forces -(a M + b K) v. Units: a [1/s], b [s].
+  // Adds damping forces -(a M + b K) v. Units: a [1/s], b [s].
   ModelBuilder& rayleigh_damping(double mass_factor, double stiffness_factor);
-  // Viscous stress eta dE/dt in every tet. Units: eta [Pa s].
+  // Adds a viscous stress eta dE/dt in every tet. Units: eta [Pa s].
   ModelBuilder& strain_rate_damping(double viscosity);
 
-  // Returns the model; the builder is empty afterwards. Throws InvalidInput when material or density are missing.
+  // Returns the model; the builder is empty afterwards. Throws InvalidInput if material or density are missing.
   Model build();
 
  private:
   int tet_count() const { return model_.mesh.tet_count(); }
   std::vector<int> vertices_for(const std::string& user, const Predicate& where) const;
 
-  Model model_;  // has mesh, density, pins and loads so far
+  Model model_;  // contains mesh, density, pins and loads
   ElasticityMaker make_elasticity_;
   std::vector<MaterialParameters> parameters_;
   MassKind mass_kind_ = MassKind::consistent;
@@ -83,7 +83,7 @@ class ModelBuilder {
   std::optional<double> viscosity_;
 };
 
-// Returns the forces mass * acceleration at the vertices, 3 per vertex [N].
+// Returns the vertex forces mass * acceleration, 3 per vertex [N].
 std::vector<double> weights(const MassMatrix& mass, const Vec3d& acceleration);
 
 }  // namespace aspic

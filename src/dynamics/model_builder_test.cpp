@@ -31,7 +31,7 @@ std::string refusal(const Action& action) {
   return "accepted";
 }
 
-TEST(ModelBuilder, KeepsTheOrderOfPinsAndLoads) {
+TEST(ModelBuilder, KeepsOrderOfPinsAndLoads) {
   const Model model = solid_cube()
                           .pin("floor", [](const Vec3d& X) { return X[1] == 0; })
                           .springs(
@@ -59,7 +59,7 @@ TEST(ModelBuilder, BuildsFallingBody) {
   EXPECT_NEAR(simulation.state().qdot[1], -0.1, 1e-9);
 }
 
-TEST(ModelBuilder, SpringsFollowTheirMotion) {
+TEST(ModelBuilder, SpringsFollowMotion) {
   const auto lifted = [](const Vec3d& X, double t) { return X + Vec3d{{0, t, 0}}; };
   Simulation simulation(solid_cube()
                             .springs(

@@ -1,4 +1,4 @@
-// Small models that several tests share.
+// Small models for several tests.
 #pragma once
 #include <cmath>
 #include <functional>

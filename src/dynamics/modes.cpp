@@ -13,23 +13,23 @@
 namespace aspic {
 namespace {
 
-// Shift relative to the squared rate of uniform growth, which is about E / (density size^2). The shift makes K + shift
-// M definite for free bodies as well; the rounding error of lambda is the machine precision times (shift + lambda)^2 /
-// shift.
+// Shift relative to the squared rate of uniform growth, which is about E / (density size^2). It makes K + shift M
+// positive definite also for free bodies. The rounding error of lambda is the machine precision times (shift +
+// lambda)^2 / shift.
 constexpr double kShift = 1e-4;
 constexpr double kRigid = 1e-10;  // squared rates below this fraction count as zero
 
 struct Stopped {};
 
-// K + shift M with the rows of held vertices cleared.
+// Returns K + shift M without the rows of pinned vertices.
 BlockSparse shifted_stiffness(IncrementalPotential& E, std::span<const double> x, double shift) {
   E.set_potential_step({.start = x});
   E.begin_step(x, shift, 1);
   return E.evaluate_hessian(x, {Definiteness::exact});
 }
 
-// The squared rate u' K u / u' M u [1/s^2] of uniform growth u of the rest shape. K contains only elasticity: stiff
-// springs, such as those that replace pins, do not change the scale of the lowest modes.
+// Returns the squared rate u' K u / u' M u [1/s^2] of uniform growth u of the rest shape. K contains only elasticity,
+// because stiff springs, such as those that replace pins, do not change the scale of the lowest modes.
 double growth_rate(const Model& model, const IncrementalPotential& E) {
   Vec3d center{};
   for (const Vec3d& X : model.mesh.rest) center = center + (1.0 / model.mesh.vertex_count()) * X;
@@ -60,7 +60,7 @@ int free_dimension(const Pins& pins) {
   return static_cast<int>(std::lround(trace));
 }
 
-// Rounding error of squared rates: the machine precision times a bound of the largest one.
+// Returns the rounding error of squared rates: the machine precision times a bound of the largest one.
 double round_off(const Model& model, const Pins& pins, const BlockSparse& K) {
   double largest = 0;
   for (int v = 0; v < pins.vertex_count(); ++v)
@@ -116,7 +116,7 @@ std::string message(ModesStatus status) {
     case ModesStatus::converged:
       return "converged";
     case ModesStatus::all_held:
-      return "pins hold every vertex, so nothing can vibrate; hold fewer vertices";
+      return "pins fix every vertex, so no vibration is possible; pin fewer vertices";
     case ModesStatus::indefinite:
       return "the stiffness matrix is zero or has a negative eigenvalue, or a vertex has no mass, so there are no "
              "vibrations "
@@ -125,7 +125,7 @@ std::string message(ModesStatus status) {
     case ModesStatus::out_of_memory:
       return "the factorized stiffness matrix does not fit into the free memory; use a coarser mesh";
     case ModesStatus::unconverged:
-      return "the eigenvalue iteration did not converge; ask for another number of modes";
+      return "the eigenvalue iteration did not converge; request another number of modes";
     case ModesStatus::interrupted:
       return "the time limit passed before the modes were found";
   }

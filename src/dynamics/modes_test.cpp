@@ -49,7 +49,7 @@ TEST(VibrationModes, BodiesOfVeryDifferentStiffnessAreAllRigid) {
   EXPECT_EQ(found.rigid, 12);
 }
 
-// Quarter turns map this mesh to itself, so both bending directions have one frequency.
+// Quarter turns map this mesh to itself, so both bending directions have the same frequency.
 TEST(VibrationModes, SquareColumnHasPairs) {
   Model model = make_model(make_box({{-0.5, -0.5, 0}}, {{0.5, 0.5, 6}}, {2, 2, 12}, BoxCut::five), {});
   model.pins.push_back({"foot", vertices_where(model.mesh, [](const Vec3d& X) { return X[2] == 0; }), {}});
@@ -58,7 +58,7 @@ TEST(VibrationModes, SquareColumnHasPairs) {
   EXPECT_NEAR(found.modes[1].frequency / found.modes[0].frequency, 1, 1e-9);
 }
 
-TEST(VibrationModes, PinsAreHeld) {
+TEST(VibrationModes, PinsAreFixed) {
   Model model = free_box();
   const std::vector<int> wall = vertices_where(model.mesh, [](const Vec3d& X) { return X[0] == 0; });
   model.pins.push_back({"rail", wall, {}, {Vec3d{{1, 0, 0}}}});
@@ -82,14 +82,14 @@ TEST(VibrationModes, RejectUnstablePositions) {
   EXPECT_EQ(vibration_modes(model, x, 5).status, ModesStatus::indefinite);
 }
 
-TEST(VibrationModes, StopAtTheDeadline) {
+TEST(VibrationModes, StopAtDeadline) {
   const Model model = free_box();
   double now = 0;
   const WallClock clock = [&] { return now += 1; };
   EXPECT_EQ(vibration_modes(model, at_rest(model.mesh).q, 5, StopToken(clock, 3)).status, ModesStatus::interrupted);
 }
 
-TEST(VibrationModes, DoNotDependOnThreads) {
+TEST(VibrationModes, AreBitReproducibleForAnyThreadCount) {
   const Model model = free_box();
   set_thread_count(1);
   const Modes one = modes_at_rest(model, 8);

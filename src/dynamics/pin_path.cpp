@@ -8,9 +8,10 @@
 namespace aspic {
 namespace {
 
-constexpr int kMostPoints = 8;
+constexpr int kMaxPoints = 8;
 
-// First (1) or second (2) derivative at z of the polynomial that is 1 at j / (points - 1) and 0 at the other points.
+// Returns the first (1) or second (2) derivative at z of the polynomial that is 1 at j / (points - 1) and 0 at the
+// other points.
 double basis_derivative(int j, int points, double z, int derivative) {
   double p = 1, dp = 0, ddp = 0;
   for (int k = 0; k < points; ++k) {
@@ -26,7 +27,7 @@ double basis_derivative(int j, int points, double z, int derivative) {
 }  // namespace
 
 void PinPath::sample(const Pins& pins, double time, double end_time, int points) {
-  ASPIC_CHECK(points >= 3 && points <= kMostPoints);
+  ASPIC_CHECK(points >= 3 && points <= kMaxPoints);
   pins_ = &pins;
   time_ = time;
   h_ = end_time - time;
@@ -39,12 +40,12 @@ void PinPath::sample(const Pins& pins, double time, double end_time, int points)
 }
 
 void PinPath::differentiate(double time, int derivative, std::span<double> out) const {
-  std::array<double, kMostPoints> weight{};
+  std::array<double, kMaxPoints> weight{};
   for (int j = 0; j < points_; ++j)
     weight[j] = basis_derivative(j, points_, (time - time_) / h_, derivative) / (derivative == 1 ? h_ : h_ * h_);
   for (int v = 0; v < pins_->vertex_count(); ++v) {
     if (pins_->is_free(v)) continue;
-    Vec3d sum{};  // the weights add up to zero, so the velocity of a resting pin is exactly zero
+    Vec3d sum{};  // the weights sum to zero, so the velocity of a pin at rest is exactly zero
     Vec3d given;
     for (int r = 0; r < 3; ++r) {
       const size_t i = 3 * static_cast<size_t>(v) + r;

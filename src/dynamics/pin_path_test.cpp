@@ -24,11 +24,11 @@ TEST(PinPath, DifferentiatesPolynomialsExactly) {
     EXPECT_NEAR(v[3], 3 * t * t - 4 * t, 1e-13);
     EXPECT_NEAR(a[3], 6 * t - 4, 1e-12);
     EXPECT_EQ(v[0], 7);
-    EXPECT_EQ(a[4], 0) << "exactly none across the motion";
+    EXPECT_EQ(a[4], 0) << "must be exactly zero across the motion";
   }
 }
 
-TEST(PinPath, ConvergesByItsNumberOfPoints) {
+TEST(PinPath, ConvergesWithOrderOfPoints) {
   const auto x = [](double t) { return std::sin(t); };
   const std::vector<Pin> motion = pin_moving(x);
   const Pins pins(motion, std::vector<double>(6, 0.0));

@@ -11,9 +11,9 @@
 namespace aspic {
 namespace {
 
-constexpr double kLeastSine = 1e-6;  // smallest sine of the angle between a direction and the span of the others
+constexpr double kMinSine = 1e-6;  // minimum sine of the angle between a direction and the span of the others
 
-Mat3d projector(std::span<const Vec3d> directions) {  // for orthonormal ones
+Mat3d projector(std::span<const Vec3d> directions) {  // requires orthonormal directions
   Mat3d sum{};
   for (const Vec3d& n : directions)
     for (int r = 0; r < 3; ++r)
@@ -21,7 +21,8 @@ Mat3d projector(std::span<const Vec3d> directions) {  // for orthonormal ones
   return sum;
 }
 
-// M^+ of the sum M over independent unit vectors: with a unit vector k of the kernel, (M + k k')^-1 - k k'.
+// Returns M^+ for the sum M over independent unit vectors: (M + k k')^-1 - k k', where k is a unit vector of the
+// kernel.
 Mat3d pseudo_inverse(const Mat3d& M, std::span<const Vec3d> directions) {
   if (squared_norm(M * M - M) < 1e-28) return M;  // orthonormal directions; exact along axes
   if (directions.size() == 3) return inverse(M);
@@ -34,8 +35,8 @@ Mat3d pseudo_inverse(const Mat3d& M, std::span<const Vec3d> directions) {
 }  // namespace
 
 bool are_independent(std::span<const Vec3d> n) {
-  if (n.size() == 2) return dot(cross(n[0], n[1]), cross(n[0], n[1])) > kLeastSine * kLeastSine;
-  return n.size() == 1 || (n.size() == 3 && std::abs(dot(cross(n[0], n[1]), n[2])) > kLeastSine);
+  if (n.size() == 2) return dot(cross(n[0], n[1]), cross(n[0], n[1])) > kMinSine * kMinSine;
+  return n.size() == 1 || (n.size() == 3 && std::abs(dot(cross(n[0], n[1]), n[2])) > kMinSine);
 }
 
 Pins::Pins(const std::vector<Pin>& pins, std::span<const double> start)
@@ -94,7 +95,7 @@ Vec3d Pins::reaction_of(int pin, int index, const Vec3d& force) const {
 }
 
 void Pins::place(double time, std::span<double> x) const {
-  for (size_t p = 0; p < shares_.size(); ++p)  // to the initial positions
+  for (size_t p = 0; p < shares_.size(); ++p)  // relative to the initial positions
     for (const Share& share : shares_[p]) {
       const int v = share.vertex;
       set_vec(free_part(v, vec_at(x, v)) + held_part(v, vec_at(start_, v)), v, x);
@@ -125,7 +126,7 @@ void Pins::copy_held(std::span<const double> from, std::span<double> to) const {
   }
 }
 
-// Any s > 0 decouples the pinned directions; the size of Q H Q keeps the condition of the block.
+// Any s > 0 decouples the pinned directions. The norm of Q H Q preserves the condition number of the block.
 Mat3d Pins::with_identity(int vertex, const Mat3d& H) const {
   if (kind_[vertex] == kFree) return H;
   if (kind_[vertex] == kHeld) return identity3<double>();
@@ -153,7 +154,7 @@ void Pins::set_identity(BlockSparse& H) const {
   for (Stencil& stencil : H.stencils) set_zero(stencil);
 }
 
-// K = Q K Q for the blocks of a stencil, whose pinned rows leave it.
+// K = Q K Q for the blocks of a stencil; removes its pinned rows.
 void Pins::set_zero(Stencil& stencil) const {
   for (int i = 1, k = 0; i < 4; ++i)
     for (int j = 0; j < i; ++j, ++k) {

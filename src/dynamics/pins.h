@@ -1,6 +1,7 @@
-// The Dirichlet conditions of a model: which vertices are held, along which directions, and where they are at a time.
-// A vertex with the prescribed directions n_k has M = sum of n_k n_k'. P = M^+ M projects onto what is held, Q = 1 - P
-// onto what is free, and M^+ (sum over the directions of one pin) is the share of that pin: 1 where it is the only one.
+// The Dirichlet conditions of a model: prescribed vertices, directions and positions as functions of time. For a vertex
+// with the prescribed directions n_k, M = sum of n_k n_k'. P = M^+ M projects onto the pinned space, Q = 1 - P onto the
+// free space, and M^+ (sum over the directions of one pin) is the share of that pin: the identity on its directions if
+// it is the only one.
 #pragma once
 #include <span>
 #include <vector>
@@ -24,12 +25,12 @@ class Pins {
 
   Vec3d held_part(int vertex, const Vec3d& v) const;                         // P v
   Vec3d free_part(int vertex, const Vec3d& v) const;                         // Q v
-  Vec3d reaction_of(int pin, int index, const Vec3d& force) const;           // of its index-th vertex
+  Vec3d reaction_of(int pin, int index, const Vec3d& force) const;           // reaction at its index-th vertex
   void place(double time, std::span<double> x) const;                        // P x = P x(t)
   void set_zero(std::span<double> v) const;                                  // P v = 0
   void copy_held(std::span<const double> from, std::span<double> to) const;  // P to = P from
   void set_identity(BlockSparse& H) const;                                   // H = Q H Q + s P
-  Mat3d with_identity(int vertex, const Mat3d& H) const;                     // a diagonal block of that
+  Mat3d with_identity(int vertex, const Mat3d& H) const;                     // a diagonal block of that matrix
 
  private:
   static constexpr int kFree = -1, kHeld = -2;
@@ -44,8 +45,8 @@ class Pins {
   const std::vector<Pin>* pins_;
   std::vector<double> start_;
   std::vector<int> kind_;                   // kFree, kHeld, or an index of projector_
-  std::vector<Mat3d> projector_;            // P where some directions are held
-  std::vector<std::vector<Share>> shares_;  // per pin with directions, of its vertices
+  std::vector<Mat3d> projector_;            // P for partly pinned vertices
+  std::vector<std::vector<Share>> shares_;  // shares of the vertices of each pin with directions
 };
 
 }  // namespace aspic

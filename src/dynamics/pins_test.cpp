@@ -1,4 +1,4 @@
-// Pins that hold some directions of their vertices: rollers and symmetry planes.
+// Pins with directions: rollers and symmetry planes.
 #include "dynamics/pins.h"
 
 #include <gtest/gtest.h>
@@ -19,7 +19,7 @@ using namespace testing_models;
 
 const Vec3d kX{{1, 0, 0}}, kY{{0, 1, 0}}, kZ{{0, 0, 1}};
 
-// Turns (1, 0, 0) into (2, 2, 1) / 3 and so on.
+// Rotates (1, 0, 0) to (2, 2, 1) / 3.
 const Mat3d kTurn =
     from_columns<double>({{2. / 3, 2. / 3, 1. / 3}}, {{-2. / 3, 1. / 3, 2. / 3}}, {{1. / 3, -2. / 3, 2. / 3}});
 
@@ -37,7 +37,7 @@ struct Turned {
   Vec3d operator()(const Vec3d& v) const { return is_turned ? kTurn * v : v; }
 };
 
-// A bar with weight between three symmetry planes, whose right face is pulled.
+// A bar with weight between three symmetry planes, with its right face pulled.
 Model rolling_bar(const Turned& turn, const ModelOptions& options) {
   ModelOptions turned = options;
   turned.gravity = turn(options.gravity);
@@ -57,7 +57,7 @@ Model rolling_bar(const Turned& turn, const ModelOptions& options) {
   return model;
 }
 
-TEST(PinsOfDirections, HoldOnlyTheirDirections) {
+TEST(PinsOfDirections, FixOnlyTheirDirections) {
   const Vec3d n = kTurn * kX;
   const std::vector<Pin> pins = {{"plane", {1}, [](const Vec3d& X, double t) { return X + Vec3d{{t, 0, 0}}; }, {n}}};
   const std::vector<double> start = {0, 0, 0, 1, 2, 3};
@@ -95,8 +95,8 @@ TEST(PinsOfDirections, CombineOnObliquePlanes) {
   EXPECT_NEAR(dot(m, u), -0.25, 1e-14);
   EXPECT_EQ(x[2], 5);
   const Vec3d f{{1, 2, 3}}, a = held.reaction_of(0, 0, f), b = held.reaction_of(1, 0, f);
-  EXPECT_LT(norm(cross(a, kX)) + norm(cross(b, m)), 1e-14) << "each along its own direction";
-  EXPECT_LT(norm(a + b - held.held_part(0, f)), 1e-14) << "together they hold";
+  EXPECT_LT(norm(cross(a, kX)) + norm(cross(b, m)), 1e-14) << "each must be along its own direction";
+  EXPECT_LT(norm(a + b - held.held_part(0, f)), 1e-14) << "they must sum to the reaction";
 }
 
 TEST(PinsOfDirections, RejectDependentDirections) {
@@ -107,7 +107,7 @@ TEST(PinsOfDirections, RejectDependentDirections) {
   EXPECT_FALSE(are_independent(std::vector{kX, m, kY}));
 }
 
-// The answer of a body that is turned with its planes and its weight is the turned answer.
+// The solution of a rotated body with rotated planes and weight is the rotated solution.
 TEST(PinsOfDirections, FollowMotionInEveryIntegrator) {
   for (const std::string& integrator : integrator_names()) {
     SimulationOptions options{.h = is_explicit(integrator) ? 2e-4 : 0.02, .integrator = integrator, .solver = {}};
@@ -136,7 +136,7 @@ TEST(PinsOfDirections, FollowMotionInEveryIntegrator) {
   }
 }
 
-TEST(PinsOfDirections, GiveSameEquilibriumWithEverySolver) {
+TEST(PinsOfDirections, YieldSameEquilibriumWithEverySolver) {
   const ModelOptions body{.young = 1e4, .poisson = 0.45, .gravity = {{0, -3, 1}}};
   SimulationOptions options{.h = 0.2, .integrator = "quasi_static", .solver = {}};
   options.solver.minimize.tolerance = 1e-11;
@@ -177,7 +177,7 @@ TEST(PinsOfDirections, AreBitReproducibleAfterRestore) {
   }
 }
 
-// The mesh of one eighth and its mirror images, vertices on the planes shared.
+// Returns the mesh of one eighth and its mirror images, with shared vertices on the planes.
 TetMesh mirrored(const TetMesh& eighth) {
   TetMesh whole;
   std::map<std::tuple<double, double, double>, int> known;
@@ -197,7 +197,7 @@ TetMesh mirrored(const TetMesh& eighth) {
   return whole;
 }
 
-TEST(PinsOfDirections, MakeOneEighthEqualWhole) {
+TEST(PinsOfDirections, MakeEighthEqualWhole) {
   const TetMesh eighth = make_box({{0, 0, 0}}, {{2, 1, 1}}, {3, 2, 2});
   const ModelOptions body{.young = 1e4, .poisson = 0.4, .gravity = {}};
   const SimulationOptions options{.h = 1, .integrator = "quasi_static", .solver = {.minimize = {.tolerance = 1e-11}}};
@@ -254,7 +254,7 @@ Vec3d momentum_of(const Simulation& simulation) {
   return sum;
 }
 
-TEST(Resultants, ReactionsBalanceTheLoadsInStatics) {
+TEST(Resultants, ReactionsBalanceLoadsInStatics) {
   Model model = rolling_bar({true}, {.young = 1e4, .poisson = 0.3});
   model.loads.push_back(make_point_springs("pull", {{20, 50, [](double) { return Vec3d{{2, 3, 1}}; }}}));
   Simulation simulation = simulate(std::move(model), {.h = 0.1, .integrator = "quasi_static", .solver = {}});
@@ -266,15 +266,16 @@ TEST(Resultants, ReactionsBalanceTheLoadsInStatics) {
   EXPECT_LT(norm(total(sums.pins) + total(sums.loads)), bound);
   EXPECT_LT(norm(sums.bodies.at(0).force), bound);
   EXPECT_LT(norm(sums.bodies.at(0).moment), 10 * bound);
-  EXPECT_GT(norm(sums.pins[3].force), 100) << "the pull is felt";
-  EXPECT_LT(norm(cross(sums.pins[3].force, kTurn * kX)), 1e-9) << "a roller exerts nothing along its plane";
+  EXPECT_GT(norm(sums.pins[3].force), 100) << "the pull must have a reaction";
+  EXPECT_LT(norm(cross(sums.pins[3].force, kTurn * kX)), 1e-9) << "a roller must exert no force along its plane";
   const double weight = 2 * 1000 * 9.81;
   EXPECT_NEAR(norm(sums.loads[0].force), weight, 1e-9 * weight);
-  Vec3d center = kTurn * Vec3d{{1, 0.5, 0.5}};  // of the body at rest; dead weight acts where the body is now
-  EXPECT_LT(norm(sums.loads[0].moment - cross(center, sums.loads[0].force)), weight) << "about the origin";
+  Vec3d center = kTurn * Vec3d{{1, 0.5, 0.5}};  // center of the body at rest; dead weight acts at its current position
+  EXPECT_LT(norm(sums.loads[0].moment - cross(center, sums.loads[0].force)), weight)
+      << "the moment must be about the origin";
 }
 
-TEST(Resultants, GiveTheRateOfMomentum) {
+TEST(Resultants, EqualRateOfMomentum) {
   for (const std::string& integrator : integrator_names()) {
     if (integrator == "quasi_static" || integrator == "bdf2") continue;  // no velocities; a rate over two steps
     const SimulationOptions options{.h = is_explicit(integrator) ? 1e-4 : 0.01, .integrator = integrator, .solver = {}};
@@ -307,7 +308,7 @@ TEST(StartReport, HasInitialEnergies) {
   EXPECT_EQ(start.time, 0);
   EXPECT_EQ(start.potential, simulation.potential_energies());
   EXPECT_NEAR(start.min_det_F, 1, 1e-12);
-  EXPECT_TRUE(std::isnan(start.resultants.pins.at(0).force[0])) << "not known before a step";
+  EXPECT_TRUE(std::isnan(start.resultants.pins.at(0).force[0])) << "must be unknown before a step";
   const StepReport first = simulation.step();
   EXPECT_NEAR(first.kinetic + first.potential_total,
               start.kinetic + start.potential_total + first.pin_work - first.damping_loss - first.numerical_loss +
@@ -315,7 +316,7 @@ TEST(StartReport, HasInitialEnergies) {
               1e-10 * std::abs(start.potential_total));
 }
 
-TEST(VaryingLoad, RampsInStaticsWithItsWork) {
+TEST(VaryingLoad, RampsInStaticsWithWork) {
   Model model = beam(2, {.young = 1e5, .poisson = 0.3, .gravity = {}});
   const size_t n = 3 * model.mesh.rest.size();
   model.loads.push_back(make_linear_load("ramp", std::vector<double>(n, 0.0), [](double t, std::span<double> force) {

@@ -12,7 +12,7 @@ namespace {
 
 // Fraction of the largest eigenvalue below which pins do not resist a motion.
 constexpr double kFree = 1e-10;
-// Fraction of the largest load: smaller changes of forces resist no motion.
+// Fraction of the largest load below which changes of forces do not resist a motion.
 constexpr double kUnchanged = 1e-6;
 constexpr Vec3d kAxes[] = {{{1, 0, 0}}, {{0, 1, 0}}, {{0, 0, 1}}};
 
@@ -53,7 +53,7 @@ class Body {
   }
   Vec3d arm(int v) const { return (1 / size_) * (at(v) - center_); }
 
-  // Normalizes to length 1 with the largest component positive.
+  // Normalizes to length 1 with a positive largest component.
   static Vec3d upright(Vec3d d) {
     double most = 0;
     for (int r = 0; r < 3; ++r)
@@ -62,13 +62,13 @@ class Body {
   }
 
   // Replaces components within round-off of zero by +0.
-  static Vec3d rounded(Vec3d v, double noise) {
+  static Vec3d rounded(Vec3d v, double round_off) {
     for (int r = 0; r < 3; ++r)
-      if (std::abs(v[r]) <= noise) v[r] = 0;
+      if (std::abs(v[r]) <= round_off) v[r] = 0;
     return v;
   }
 
-  // The motions that do not move the pins: of the first 3 parameters (translations), or of all 6.
+  // Returns the motions that do not move the pins, among the first 3 parameters (translations) or all 6.
   std::vector<Twist> free_of_pins(int count) const {
     std::vector<double> A(static_cast<size_t>(count) * count);
     double trace = 0;
@@ -95,7 +95,7 @@ class Body {
     return motions;
   }
 
-  // Loads such as springs to points change when the body moves by a small fraction of its size.
+  // Returns whether loads, such as springs to points, change if the body moves by a small fraction of its size.
   bool is_resisted_by_loads(const Twist& m) const {
     constexpr double kPart = 1e-2;
     std::vector<double> moved(x_.begin(), x_.end()), here(x_.size()), there(x_.size());

@@ -55,14 +55,14 @@ class RungeKutta : public Integrator {
   }
 
   // Fraction of the time budget at which stage i ends: implicit stages have equal shares.
-  double part_of_budget(int i) const {
+  double budget_fraction(int i) const {
     int done = 0, all = 0;
     for (int j = 0; j < t_.stages; ++j)
       if (t_.A[j][j] > 0) ++all, done += j <= i;
     return static_cast<double>(done) / all;
   }
 
-  // The contributions of the earlier stages.
+  // Adds the contributions of the earlier stages.
   void combine(const StepTools& tools, int i, std::span<double> q, std::span<double> v) const {
     std::copy(tools.start.q.begin(), tools.start.q.end(), q.begin());
     std::copy(tools.start.qdot.begin(), tools.start.qdot.end(), v.begin());
@@ -84,7 +84,7 @@ class RungeKutta : public Integrator {
                                .time = time_of(tools, i),
                                .weight = t_.b[i],
                                .ahead = tools.h * (c_[i] - (i > 0 ? c_[i - 1] : 0)),
-                               .part = part_of_budget(i),
+                               .budget_fraction = budget_fraction(i),
                                .path = &path_};
     return stage_.solve(tools, options, {q_[i], v_[i], acc_[i]}, solve, forces);
   }
@@ -100,7 +100,7 @@ class RungeKutta : public Integrator {
     report.iterations = facts().is_implicit ? 0 : 1;
     const MotionPoint at{time, q_[i], v_[i], DampingDifference::central, t_.b[i]};
     const bool solved = force_.solve(tools, at, acc_[i], forces, report);
-    forces.add_round_off(tools.E, t_.b[i] * force_.noise());
+    forces.add_round_off(tools.E, t_.b[i] * force_.round_off());
     const bool finite = std::all_of(acc_[i].begin(), acc_[i].end(), [](double x) { return std::isfinite(x); });
     report.status = finite && solved ? Status::converged : Status::undefined;
     return solve.add(report);
@@ -127,9 +127,9 @@ class RungeKutta : public Integrator {
 
   Tableau t_;
   bool ends_with_last_stage_ = false;
-  std::array<double, kMostStages> c_{};  // the stages' times, in steps
+  std::array<double, kMaxStages> c_{};  // times of the stages relative to the step
 
-  std::array<std::vector<double>, kMostStages> q_, v_, acc_;
+  std::array<std::vector<double>, kMaxStages> q_, v_, acc_;
   ImplicitStage stage_;
   Acceleration force_;
   PinPath path_;

@@ -1,4 +1,4 @@
-// The Runge-Kutta schemes. A new scheme is one table here and one line in integrator.cpp.
+// Runge-Kutta schemes. A new scheme is one table here and one line in integrator.cpp.
 #pragma once
 #include <numbers>
 
@@ -6,7 +6,7 @@
 
 namespace aspic {
 
-// Implicit midpoint: conserves momenta and, where forces are linear, energy.
+// Implicit midpoint: conserves momenta and, for linear forces, energy.
 inline constexpr Tableau kMidpoint = {
     .facts = {.name = "midpoint", .order = 2, .ends_beyond_minimum = true}, .stages = 1, .A = {{0.5}}, .b = {1}};
 
@@ -16,15 +16,15 @@ inline constexpr Tableau kTrapezoid = {.facts = {.name = "trapezoid", .order = 2
                                        .A = {{0}, {0.5, 0.5}},
                                        .b = {0.5, 0.5}};
 
-// The trapezoidal rule to t + gamma h, then BDF2 to t + h, with gamma such that both stages have one beta
-// [Bank 1985; Hosea 1996].
+// Trapezoidal rule to t + gamma h, then BDF2 to t + h, with gamma chosen such that both stages have the same beta [Bank
+// 1985; Hosea 1996].
 inline constexpr double kGamma = 2 - std::numbers::sqrt2, kD = kGamma / 2, kW = std::numbers::sqrt2 / 4;
 inline constexpr Tableau kTrBdf2 = {.facts = {.name = "tr_bdf2", .order = 2, .ends_beyond_minimum = true},
                                     .stages = 3,
                                     .A = {{0}, {kD, kD}, {kW, kW, kD}},
                                     .b = {kW, kW, kD}};
 
-// The classical method.
+// Classical fourth-order scheme.
 inline constexpr Tableau kRk4 = {
     .facts = {.name = "rk4", .order = 4, .is_implicit = false, .stability = StabilityLimit::rk4},
     .stages = 4,

@@ -44,24 +44,24 @@ struct Simulation::Impl {
     require_finite_energy(model, state.q);
     require_apart(model, state, integrator->facts());
     if (model.contact && options.adaptive.tolerance > 0)
-      throw InvalidInput("contact needs steps of one length; remove adaptive.tolerance and choose a smaller step");
+      throw InvalidInput("contact needs a constant step length; remove adaptive.tolerance and choose a smaller step");
     if (!integrator->facts().is_static()) integrator->set_pin_velocity(*pins, options.h, state);
-    if (options.adaptive.tolerance > 0) adaptive.emplace(model, options.adaptive.tolerance, remembers());
+    if (options.adaptive.tolerance > 0) adaptive.emplace(model, options.adaptive.tolerance, needs_previous());
     ledger.begin(model, state.q);
     measure_start();
   }
 
   // Returns whether the start of the previous step is needed.
-  bool remembers() const {
+  bool needs_previous() const {
     const bool by_guess =
         guess == InitialGuess::best || guess == InitialGuess::last_increment || guess == InitialGuess::accelerated;
     return integrator->facts().is_multistep || (by_guess && integrator->facts().chooses_guess());
   }
 
-  // A product, not a sum of steps, so that the end of a run is exact.
+  // A product instead of a sum of steps, so that the end of a run is exact.
   double end_of_next_step() const { return start.time + (steps_taken + 1) * options.h; }
 
-  // The arguments of a step that starts at `before`.
+  // Returns the arguments of a step that starts at `before`.
   StepTools tools(const IterationObserver& observe, double end_time) {
     const SolveTools solve{model, *pins, *E, minimizer, *direction, minimize, observe, guess};
     return {solve, before, has_previous ? &previous : nullptr, options.h, end_time, obstacle_time, end_time};
@@ -81,23 +81,24 @@ struct Simulation::Impl {
     const double advanced = minimize.stop.now();
     describe(solved, report);
     const bool is_interrupted = solved.work.status == Status::interrupted;
-    if (!can_go_on(report.status)) {
-      take_back(with, is_interrupted ? before.time : with.end_time, report);
+    if (!can_continue(report.status)) {
+      restore_start(with, is_interrupted ? before.time : with.end_time, report);
     } else {
       if (!adaptive) {
         const BoundedEnergies bounded = ledger.add(with, *integrator, state, forces, report);
-        if (integrator->facts().is_backward_euler) judge(bounded, solved.work.value / (options.h * options.h), report);
+        if (integrator->facts().is_backward_euler)
+          check_energy_bound(bounded, solved.work.value / (options.h * options.h), report);
       }
       if (!integrator->facts().is_implicit) outside_work += outside_work_of(report);
       note_lost_velocity(with, report);
       if (!is_finite(report)) {
         if (is_success(report.status)) report.status = Status::undefined;
-        take_back(with, with.end_time, report);
+        restore_start(with, with.end_time, report);
       } else {
         obstacle_time = with.end_time;
         if (is_success(report.status) && has_blown_up(report)) {
           report.status = Status::unstable;
-        } else if (remembers()) {
+        } else if (needs_previous()) {
           previous = adaptive ? adaptive->previous() : before;
           has_previous = true;
         }
@@ -113,15 +114,15 @@ struct Simulation::Impl {
   // Computes the initial energies for has_blown_up().
   void measure_start() {
     if (integrator->facts().is_implicit) return;
-    constexpr double kRoundOff = 1e-12;  // of elastic energies, relative to the stiffness of the body
-    stand_at(start.time);
+    constexpr double kRoundOff = 1e-12;  // round-off of elastic energies, relative to the stiffness of the body
+    set_time(start.time);
     start_force.assign(start.q.size(), 0.0);
     start_energy = aspic::kinetic_energy(*model.mass, start.qdot, start_force) + kRoundOff * E->growth_stiffness();
     start_force.assign(start.q.size(), 0.0);
     for (const auto& V : model.elasticity) start_energy += std::abs(V->value(start.q));
     for (const ActiveTerm& V : E->loads())
       if (!V.energy().has_constant_gradient()) start_energy += std::abs(V.value(start.q));  // such as springs
-    // A convex V falls by at most -dV/dx (x - x at the start).
+    // A convex V decreases by at most -dV/dx (x - x at the start).
     for (const ActiveTerm& V : E->loads()) V.add_gradient(start.q, 1, start_force);
     // First-order schemes give a body at rest this energy in the first step.
     const std::span<const double> mass = model.mass->vertex_mass();
@@ -135,9 +136,9 @@ struct Simulation::Impl {
     return size + std::abs(report.pin_work - targets);
   }
 
-  // An explicit scheme whose step is too long produces energy until numbers overflow. Returns whether the body has ten
+  // An explicit scheme with too long a step generates energy until numbers overflow. Returns whether the body has ten
   // times the sum of its initial energy and a bound of the work of loads, moving pins and moving targets. During a
-  // blow-up this bound grows linearly with the displacements, and the energy quadratically.
+  // blow-up, this bound grows linearly with the displacements, but the energy quadratically.
   bool has_blown_up(const StepReport& report) {
     constexpr double kBlownUp = 10;
     if (integrator->facts().is_implicit) return false;
@@ -160,27 +161,27 @@ struct Simulation::Impl {
       speed = std::max(speed, std::abs(with.start.qdot[i]));
       change = std::max(change, std::abs(forces.acceleration.empty() ? 0 : forces.acceleration[i]) * with.h);
     }
-    const double noise = std::numeric_limits<double>::epsilon() * position / with.h, most = std::max(speed, change);
-    if (most == 0 || noise <= kResolved * most) return;
-    report.lost_accuracy = std::max(report.lost_accuracy, std::min(1.0, noise / most));
+    const double round_off = std::numeric_limits<double>::epsilon() * position / with.h, most = std::max(speed, change);
+    if (most == 0 || round_off <= kResolved * most) return;
+    report.lost_accuracy = std::max(report.lost_accuracy, std::min(1.0, round_off / most));
     report.status = Status::round_off;
   }
 
-  // A run may continue from an incomplete minimization, but not from an incomplete adaptive step.
-  bool can_go_on(Status status) const {
+  // A run may continue after an incomplete minimization, but not after an incomplete adaptive step.
+  bool can_continue(Status status) const {
     if (status == Status::interrupted || status == Status::undefined) return false;
     return !adaptive || is_success(status);
   }
 
-  // Sets the time of the terms of V, as between steps.
-  void stand_at(double time) const {
+  // Sets the time of the terms of V between steps.
+  void set_time(double time) const {
     E->set_potential_step({state.q, integrator->facts().is_static() ? 0 : options.h, time});
     E->move_obstacles(obstacle_time);
   }
 
   // Restores the state at the start of the step, with the given time; moving targets are at that time. A multistep
   // scheme restarts.
-  void take_back(const StepTools& with, double time, StepReport& report) {
+  void restore_start(const StepTools& with, double time, StepReport& report) {
     report.residual = report.residual_threshold = report.residual_round_off = 0;
     report.worst_vertex = -1;
     report.pin_work = report.obstacle_work = report.damping_loss = report.friction_loss = 0;
@@ -193,7 +194,7 @@ struct Simulation::Impl {
     has_previous = has_previous && time == before.time;
     StepTools stand_still = tools(with.observe, time);
     stand_still.obstacle_end = obstacle_time;
-    stand_at(time);
+    set_time(time);
     forces.reset(state.q.size());
     for (const ActiveTerm& V : E->potential()) V.add_gradient(state.q, 1, forces.gradient);
     ledger.add(stand_still, *integrator, state, forces, report);
@@ -244,13 +245,13 @@ struct Simulation::Impl {
   StepForces forces;                // of the last step
   std::vector<double> start_force;  // dV/dx of the loads at the start of an explicit run [N]
   std::vector<double> load_force;   // current dV/dx of the loads that do not depend on x [N]
-  double start_energy = 0;          // kinetic and elastic, at the start of an explicit run [J]
+  double start_energy = 0;          // kinetic and elastic energy at the start of an explicit run [J]
   double outside_work = 0;          // see Snapshot
   Ledger ledger;
   int steps_taken = 0;
   double obstacle_time = state.time;  // see Simulation::obstacle_time()
-  MinimizeOptions minimize;           // of the current step
-  double report_seconds = 0;          // time that the last report took, with a time budget [s]
+  MinimizeOptions minimize;           // options of the current step
+  double report_seconds = 0;          // duration of the last report, with a time budget [s]
 };
 
 Simulation::Simulation(Model model, State initial, SimulationOptions options) {
@@ -344,7 +345,7 @@ void Simulation::set_pins(std::vector<Pin> pins) {
   // Factorizations depend on the pinned rows.
   impl_->direction = make_search_direction(impl_->options.solver);
   impl_->integrator = make_integrator(impl_->options.integrator);
-  impl_->stand_at(impl_->state.time);
+  impl_->set_time(impl_->state.time);
 }
 
 const IntegratorFacts& Simulation::integrator() const { return impl_->integrator->facts(); }
@@ -352,7 +353,7 @@ const IntegratorFacts& Simulation::integrator() const { return impl_->integrator
 StableStep Simulation::stable_step() const {
   const StableStep stable =
       aspic::stable_step(*impl_->E, impl_->model, *impl_->pins, impl_->start.q, integrator().stability);
-  impl_->stand_at(impl_->state.time);
+  impl_->set_time(impl_->state.time);
   return stable;
 }
 
@@ -382,11 +383,11 @@ void Simulation::restore(const Snapshot& snapshot) {
   impl_->outside_work = snapshot.outside_work;
   impl_->obstacle_time = snapshot.obstacle_time.value_or(snapshot.state.time);
   *impl_->pins = Pins(impl_->model.pins, impl_->start.q);
-  impl_->has_previous = impl_->remembers() && snapshot.previous;
+  impl_->has_previous = impl_->needs_previous() && snapshot.previous;
   if (impl_->has_previous) impl_->previous = *snapshot.previous;
   impl_->ledger.begin(impl_->model, impl_->state.q);
   impl_->measure_start();
-  impl_->stand_at(impl_->state.time);  // restores moving targets
+  impl_->set_time(impl_->state.time);  // restores moving targets
 }
 
 }  // namespace aspic

@@ -1,4 +1,4 @@
-// Advances a model in time, one minimization per step.
+// Advances a model in time, with one minimization per step.
 #pragma once
 #include <memory>
 #include <optional>
@@ -29,26 +29,27 @@ struct SimulationOptions {
 };
 
 std::vector<std::string> integrator_names();
-std::vector<std::string> adaptive_integrator_names();  // those with an error estimate
+std::vector<std::string> adaptive_integrator_names();  // integrators with an error estimate
 
 // Returns an option that the integrator does not support: "adaptive", "initial_guess", or a member of SolverOptions.
 std::optional<SolverConflict> find_conflict(const SimulationOptions& options);
 
 class Simulation {
  public:
-  // `initial` has 3 numbers per vertex of the model. Throws InvalidInput for an unknown name in the options, for
-  // options that the integrator does not support, and for a model that cannot be simulated: a vertex without mass in
-  // dynamics, a start with infinite energy.
+  // `initial` has 3 entries per vertex of the model. Throws InvalidInput for an unknown name in the options, for
+  // options that the integrator does not support, and for an invalid model: a vertex without mass in dynamics, or
+  // infinite initial energy.
   Simulation(Model model, State initial, SimulationOptions options);
   explicit Simulation(Model model, SimulationOptions options = {});  // starts at rest, see at_rest()
   ~Simulation();
   Simulation(Simulation&&) noexcept;
   Simulation& operator=(Simulation&&) noexcept;
 
-  // Takes one time step. If `stop` stops it, by a request or its deadline, the step is dropped: the state stays and the
-  // status is `interrupted`. A token that does not stop the step changes no bit of it. Factorizations do not poll it.
+  // Advances by one time step. If `stop` ends it, by a request or its deadline, the step is dropped: the state is
+  // unchanged and the status is `interrupted`. A token that does not end the step does not affect the result.
+  // Factorizations do not poll the token.
   StepReport step(const IterationObserver& observe = {}, const StopToken& stop = {});
-  // Change the subsequent steps. Both throw InvalidInput as the constructor does, and then change nothing.
+  // Change the subsequent steps. Both throw InvalidInput like the constructor, and then change nothing.
   void set_solver(const SolverOptions& solver);
   void set_pins(std::vector<Pin> pins);
 
@@ -63,21 +64,21 @@ class Simulation {
   std::vector<double> potential_energies() const;    // [J]
   TetFields tet_fields() const;
   const IntegratorFacts& integrator() const;
-  StableStep stable_step() const;          // of an explicit integrator, at the initial state
-  std::string solver_description() const;  // the methods and their choices with reasons, for logs
+  StableStep stable_step() const;          // for an explicit integrator, at the initial state
+  std::string solver_description() const;  // methods and choices with their reasons, for logs
 
-  // Everything that subsequent steps depend on besides model and options. Steps after restore() have the same bits.
+  // Everything besides model and options that subsequent steps depend on. Steps after restore() are bit-reproducible.
   struct Snapshot {
     State state;
-    State start;  // the state at time 0, to which pins and ledger refer
+    State start;  // state at time 0, which pins and ledger refer to
     int steps_taken = 0;
     double level = 0;                          // the next substep has the length h / 2^level
-    std::optional<State> previous;             // at the start of the last step or substep, if the integrator keeps it
-    std::optional<double> obstacle_time = {};  // empty: that of the state
-    double outside_work = 0;  // sum over steps of |work of moving pins and targets|, explicit schemes [J]
+    std::optional<State> previous;             // start of the last step or substep, if the integrator keeps it
+    std::optional<double> obstacle_time = {};  // empty: the time of the state
+    double outside_work = 0;  // sum over steps of |work of moving pins and targets|, for explicit schemes [J]
   };
   Snapshot snapshot() const;
-  double obstacle_time() const;            // at which obstacles are: that of the state unless they were blocked [s]
+  double obstacle_time() const;            // time of the obstacles [s]: that of the state unless they were blocked
   void restore(const Snapshot& snapshot);  // throws InvalidInput if the sizes do not match the model
 
  private:

@@ -1,4 +1,4 @@
-// A solution known exactly: uniform stretch.
+// Uniform stretch, whose solution is known exactly.
 #include "dynamics/simulation.h"
 
 #include <gtest/gtest.h>
@@ -18,7 +18,7 @@ struct UniaxialRow {
   double poisson, stretch, lateral, nominal_stress;
 };
 
-// Prescribes an affine stretch on the boundary of an unstructured-looking box and lets the inside find it.
+// Prescribes an affine stretch on the boundary of a box and solves for the interior.
 TEST(Simulation, UniaxialStretchPassesPatchTest) {
   const std::vector<UniaxialRow> rows = {{"neo_hookean_log", .3, .5, 1.21076739, -0.93535206},
                                          {"neo_hookean_log", .3, 1.5, 0.88017459, 0.37828018},
@@ -47,8 +47,8 @@ TEST(Simulation, UniaxialStretchPassesPatchTest) {
     }
     const TetFields fields = simulation.tet_fields();
     for (int t = 0; t < mesh.tet_count(); ++t) {
-      // Cauchy sigma = P lambda / J = P / t^2 along the bar, and nothing across. The table gives t to 5e-9, which
-      // the stiffness (up to about 10 E across the bar at nu = .45) turns into stress.
+      // Cauchy sigma = P lambda / J = P / t^2 along the bar, and zero across. The table states t to 5e-9, which the
+      // stiffness (up to about 10 E across the bar at nu = .45) converts to stress.
       EXPECT_NEAR(fields.cauchy[6 * t] * row.lateral * row.lateral, row.nominal_stress, 5e-8) << row.material;
       EXPECT_NEAR(fields.cauchy[6 * t + 1], 0, 5e-8) << row.material;
     }

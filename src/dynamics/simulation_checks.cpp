@@ -40,34 +40,34 @@ std::optional<SolverConflict> budget_conflict(const SimulationOptions& options, 
   if (!(budget > 0) || !std::isfinite(budget))
     reason = "must be positive, or 0 for none";
   else if (!integrator.facts().is_implicit || integrator.facts().takes_one_iteration)
-    reason = "says nothing to integrator = '" + options.integrator + "', which takes as long as it takes";
+    reason = "has no effect on integrator = '" + options.integrator + "', whose steps cannot end early";
   else if (options.adaptive.tolerance > 0)
-    reason = "and adaptive steps exclude each other: a step is divided until it is accurate, however long that takes";
+    reason = "cannot be combined with adaptive steps, which are divided until they are accurate";
   else if (options.solver.minimize.line_search.test == DecreaseTest::none)
-    reason = "needs a line search, which test = 'none' turns off: else E may rise before time is up";
+    reason = "needs a line search, which test = 'none' disables: otherwise E may increase before the deadline";
   if (reason.empty()) return std::nullopt;
   return SolverConflict{"time_budget", "time_budget = " + std::to_string(budget) + " " + reason};
 }
 
-// Lists the first pairs of parts that intersect, each with a place.
+// Rejects surfaces that intersect. The message lists the first pairs of parts with a location for each.
 void require_no_intersection(const ContactMesh& contact, const TriMesh& surface) {
-  constexpr size_t kMostListed = 10;
+  constexpr size_t kMaxListed = 10;
   SelfIntersections found = self_intersections(surface, 100'000);
   std::erase_if(found.pairs, [&](const auto& pair) {  // obstacles may intersect each other and themselves
     return contact.row[contact.triangles[pair[0]][0]] < 0 && contact.row[contact.triangles[pair[1]][0]] < 0;
   });
   if (found.pairs.empty()) return;
   const auto part_of = [&](int triangle) { return contact.part[contact.triangles[triangle][0]]; };
-  std::map<std::pair<int, int>, int> places;  // a triangle of each pair of parts
+  std::map<std::pair<int, int>, int> places;  // one triangle for each pair of parts
   for (const auto& [s, t] : found.pairs) places.try_emplace(std::minmax(part_of(s), part_of(t)), s);
   std::string text;
   size_t listed = 0;
   for (const auto& [parts, triangle] : places) {
-    if (listed++ == kMostListed) break;
+    if (listed++ == kMaxListed) break;
     text += (text.empty() ? "" : "; ") + contact.parts[parts.first].name + " and " + contact.parts[parts.second].name +
             " near (" + coordinates(surface.vertices[contact.triangles[triangle][0]]) + ") m";
   }
-  throw InvalidInput("surfaces intersect in the initial state: " + text + (places.size() > kMostListed ? "; ..." : "") +
+  throw InvalidInput("surfaces intersect in the initial state: " + text + (places.size() > kMaxListed ? "; ..." : "") +
                      " (" + std::to_string(found.pairs.size()) + (found.is_complete ? "" : " or more") +
                      " pairs of triangles); move them apart");
 }
@@ -100,10 +100,10 @@ void require_finite_energy(const Model& model, std::span<const double> x) {
       if (!(fields.det_F[t] > 0)) inverted.push_back(t);
     if (inverted.empty())
       throw InvalidInput(
-          "the initial shape has infinite energy: its strain is more than the material can take; choose a "
+          "the initial shape has infinite energy: its strain exceeds the range of the material; choose a "
           "smaller initial deformation or another material");
-    throw InvertedStart("the initial shape has infinite energy: " + std::to_string(inverted.size()) +
-                        " tets are inverted or flat (" + listed(model.numbering.tet.to_user(inverted)) + ")");
+    throw InvertedInitialState("the initial shape has infinite energy: " + std::to_string(inverted.size()) +
+                               " tets are inverted or flat (" + listed(model.numbering.tet.to_user(inverted)) + ")");
   }
 }
 
@@ -141,23 +141,23 @@ std::optional<SolverConflict> find_conflict(const SimulationOptions& options) {
   const std::string name = "integrator = '" + options.integrator + "'";
   if (options.adaptive.tolerance > 0 && (integrator->facts().is_static() || integrator->facts().is_multistep))
     return SolverConflict{
-        "adaptive", name + " cannot divide its steps: " +
-                        (integrator->facts().is_static() ? "it knows no time" : "it needs steps of one length") + "; " +
+        "adaptive", name + " does not support substeps: " +
+                        (integrator->facts().is_static() ? "it is static" : "it needs a constant step length") + "; " +
                         joined(adaptive_integrator_names()) + " can"};
   const InitialGuess guess = initial_guess_named(options.initial_guess);
   const std::string chosen_guess = "initial_guess = '" + options.initial_guess + "'";
   if (guess != InitialGuess::best && !integrator->facts().chooses_guess())
-    return SolverConflict{"initial_guess", chosen_guess + " says nothing to " + name + ": " +
+    return SolverConflict{"initial_guess", chosen_guess + " has no effect on " + name + ": " +
                                                (integrator->facts().is_implicit ? "it starts from the current positions"
-                                                                                : "it minimizes nothing")};
+                                                                                : "it does not minimize")};
   if ((guess == InitialGuess::extrapolated || guess == InitialGuess::accelerated) && integrator->facts().is_static())
     return SolverConflict{"initial_guess",
-                          chosen_guess + " needs velocities, of which " + name + " knows none; try 'last_increment'"};
+                          chosen_guess + " needs velocities, but " + name + " has none; try 'last_increment'"};
   if (auto conflict = budget_conflict(options, *integrator)) return conflict;
   if (!integrator->facts().takes_one_iteration) return std::nullopt;
   const auto unfit = [&](const char* option, const std::string& method) {
-    return SolverConflict{option, std::string(option) + " = '" + method + "' does not do for " + name +
-                                      ", which is one iteration of Newton's method: newton and newton_cg can"};
+    return SolverConflict{option, std::string(option) + " = '" + method + "' is not possible with " + name +
+                                      ", which is one Newton iteration; choose newton or newton_cg"};
   };
   if (!estimates_minimizer(options.solver.method)) return unfit("method", options.solver.method);
   for (const std::string& method : options.solver.fallback)

@@ -1,4 +1,4 @@
-// Energy, units, rest: what mechanics says about a simulation; `verify` judges the rest of it.
+// Energy, units and rest of simulations; `verify` checks further properties.
 #include "dynamics/simulation.h"
 
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-// Determinism, restart, interruption, failure and refusal.
+// Determinism, restart, interruption, failures and rejected input.
 #include "dynamics/simulation.h"
 
 #include <gmock/gmock.h>
@@ -22,7 +22,8 @@ std::vector<double> state_after(const SimulationOptions& options, int threads) {
   return result;
 }
 
-// Every integrator, with the usual guess and with one that remembers, and every one that can also with adaptive steps.
+// Returns every integrator with the default guess and one that uses the previous step, and with adaptive steps if
+// supported.
 std::vector<SimulationOptions> all_ways() {
   std::vector<SimulationOptions> ways;
   for (const std::string& integrator : integrator_names()) {
@@ -113,7 +114,7 @@ TEST(Simulation, RepeatedStepIsBitReproducible) {
     const StepReport expected = smooth.step();
     EXPECT_EQ(disturbed.step({}, StopToken([] { return true; })).status, Status::interrupted);
     const StepReport report = disturbed.step();
-    EXPECT_EQ(report.pin_work, expected.pin_work);  // also of targets, which must not have stayed ahead
+    EXPECT_EQ(report.pin_work, expected.pin_work);  // also the work of targets, which must return to the start
     EXPECT_EQ(report.ledger_error, expected.ledger_error);
     EXPECT_EQ(disturbed.state().q, smooth.state().q);
   }
@@ -130,9 +131,9 @@ TEST(Simulation, ReportsUnconvergedStep) {
 
 TEST(Simulation, OverflowIsNotSuccess) {
   State start = at_rest(beam(1).mesh);
-  for (size_t i = 0; i < start.qdot.size(); i += 3) start.qdot[i] = 1e200;  // its square is beyond double precision
+  for (size_t i = 0; i < start.qdot.size(); i += 3) start.qdot[i] = 1e200;  // its square overflows
   for (const std::string& integrator : integrator_names()) {
-    if (integrator == "quasi_static") continue;  // knows no velocity
+    if (integrator == "quasi_static") continue;  // has no velocities
     Simulation simulation(beam(1, {.material = "neo_hookean"}), start, {.integrator = integrator, .solver = {}});
     for (int i = 0; i < 3; ++i) EXPECT_FALSE(is_success(simulation.step().status)) << integrator;
   }
@@ -148,7 +149,7 @@ TEST(Simulation, TooShortStepIsNotSuccess) {
 TEST(Simulation, BodyAtRestIsSuccess) {
   Model model = make_model(make_box({{0, 0, 0}}, {{1, 1, 1}}, {2, 2, 2}), {.gravity = {}});
   State start = at_rest(model.mesh);
-  for (size_t i = 0; i < start.q.size(); i += 3) {  // turned and moved, so that no force is exactly zero
+  for (size_t i = 0; i < start.q.size(); i += 3) {  // rotated and translated, so that no force is exactly zero
     const double x = start.q[i], y = start.q[i + 1];
     start.q[i] = 0.6 * x - 0.8 * y + 0.3;
     start.q[i + 1] = 0.8 * x + 0.6 * y - 7.1;
@@ -187,7 +188,7 @@ TEST(Simulation, BlowUpKeepsPositionsAndAdvancesTime) {
     EXPECT_TRUE(std::isfinite(report.kinetic + report.potential_total + report.residual));
     return;
   }
-  ADD_FAILURE() << "steps far above the stable one did not blow up";
+  ADD_FAILURE() << "steps far above the stability limit did not blow up";
 }
 
 TEST(Simulation, RejectsOptionsThatIntegratorIgnores) {
@@ -254,10 +255,10 @@ TEST(Simulation, RejectsBadModels) {
   EXPECT_THAT(message([] {
                 Model model = beam(1, {.material = "fung"});
                 State start = at_rest(model.mesh);
-                for (size_t i = 0; i < start.q.size(); i += 3) start.q[i] *= 1000;  // beyond its exponential
+                for (size_t i = 0; i < start.q.size(); i += 3) start.q[i] *= 1000;  // overflows its exponential
                 Simulation(std::move(model), start, {});
               }),
-              testing::HasSubstr("more than the material can take"));
+              testing::HasSubstr("exceeds the range of the material"));
 }
 
 }  // namespace

@@ -15,7 +15,7 @@ namespace {
 
 constexpr int kIterations = 100;
 constexpr double kSettled = 1e-3;             // relative change of h^2 between two iterations
-constexpr double kPowerStepTolerance = 1e-6;  // of M
+constexpr double kPowerStepTolerance = 1e-6;  // tolerance of solves with M
 
 int largest_vertex(std::span<const double> v) {
   int largest = -1;
@@ -27,7 +27,7 @@ int largest_vertex(std::span<const double> v) {
   return largest;
 }
 
-// M^-1 (h^2 K + weight h C). The critical motion has the largest eigenvalue.
+// Power iteration for M^-1 (h^2 K + weight h C). The critical motion has the largest eigenvalue.
 class PowerIteration {
  public:
   PowerIteration(const BlockSparse& M, const BlockSparse& C, const BlockSparse& K, const Pins& pins,
@@ -84,10 +84,10 @@ class PowerIteration {
 
 }  // namespace
 
-// h^2 k + 2 h c = 4.
+// Solves h^2 k + 2 h c = 4.
 double symplectic_euler_limit(double c, double k) { return 4 / (c + std::sqrt(c * c + 4 * k)); }
 
-// The larger root limits the step.
+// The root of larger magnitude limits the step.
 double rk4_limit(double c, double k) {
   const std::complex<double> root = -(c + std::sqrt(std::complex<double>(c * c - 4 * k))) / 2.0;
   const double rate = std::abs(root);
@@ -96,7 +96,7 @@ double rk4_limit(double c, double k) {
     const std::complex<double> z = s * root / rate;
     return std::abs(1.0 + z * (1.0 + z / 2.0 * (1.0 + z / 3.0 * (1.0 + z / 4.0)))) > 1 + 1e-14;
   };
-  double low = 2.5, high = low;  // stable in all of the left half of the disc of this radius
+  double low = 2.5, high = low;  // stable in the left half of the disc of this radius
   while (!grows(high)) low = high, high += 0.01;
   for (int i = 0; i < 40; ++i) (grows((low + high) / 2) ? high : low) = (low + high) / 2;
   return low / rate;

@@ -1,4 +1,4 @@
-// The largest stable time step of an explicit scheme.
+// Largest stable time step of an explicit scheme.
 #pragma once
 #include <span>
 
@@ -16,15 +16,15 @@ double rk4_limit(double c, double k);  // |R(h lambda)| <= 1, R = 1 + z + z^2/2 
 
 struct StableStep {
   double h = 0;             // the largest stable step [s]; infinite without stiffness
-  int vertex = -1;          // with the largest displacement in the critical motion
-  double frequency = 0;     // of the critical motion without damping [Hz]
-  bool is_damping = false;  // damping, more than stiffness, limits the step
+  int vertex = -1;          // vertex with the largest displacement in the critical motion
+  double frequency = 0;     // undamped frequency of the critical motion [Hz]
+  bool is_damping = false;  // damping rather than stiffness limits the step
 };
 
-// Estimates the limit for small motions about the positions x by power iteration. For symplectic Euler it is the h at
-// which the largest eigenvalue of M^-1 (h^2 K + 2 h C) is 4; the estimate is at most a few percent too long. For rk4 it
-// is the smaller limit of that motion and of the fastest vibration; with damping the true limit may be lower. Without
-// damping the limits are 2 and sqrt(8) divided by the highest angular frequency.
+// Estimates the limit for small motions about the positions x by power iteration. For symplectic Euler, it is the h at
+// which the largest eigenvalue of M^-1 (h^2 K + 2 h C) is 4; the estimate is at most a few percent too large. For rk4,
+// it is the smaller limit of that motion and of the fastest vibration; with damping the true limit may be lower.
+// Without damping, the limits are 2 and sqrt(8) divided by the highest angular frequency.
 StableStep stable_step(const IncrementalPotential& E, const Model& model, const Pins& pins, std::span<const double> x,
                        StabilityLimit limit);
 

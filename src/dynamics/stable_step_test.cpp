@@ -38,7 +38,7 @@ TEST(StableStep, MatchesSpring) {
   EXPECT_EQ(stable.vertex, vertex);
 }
 
-// A box as a whole 1 cm from where its springs pull it.
+// A single box at 1 cm from the targets of its springs.
 Model damped_springs(double c, double k) {
   Model model = make_model(make_box({{0, 0, 0}}, {{1, 1, 1}}, {1, 1, 1}), {.young = 1e-6, .mass = MassKind::lumped});
   for (int v = 0; v < model.mesh.vertex_count(); ++v) {
@@ -78,7 +78,7 @@ TEST(StableStep, SeparatesStepsOfDampedBody) {
   EXPECT_FALSE(survives(1.15 * stable.h)) << stable.h;
 }
 
-double rk4_growth(double c, double k, double h) {  // of x'' + c x' + k x = 0 in a step
+double rk4_growth(double c, double k, double h) {  // growth of x'' + c x' + k x = 0 per step
   const std::complex<double> root = std::sqrt(std::complex<double>(c * c - 4 * k));
   double most = 0;
   for (const double sign : {-1.0, 1.0}) {
@@ -100,7 +100,7 @@ TEST(StableStep, Rk4LimitIsWhereGrowthStarts) {
   }
 }
 
-// Near critical damping rk4 bears steps more than twice as long as sqrt(2) times those of symplectic Euler.
+// Near critical damping, rk4 is stable for steps more than twice as long as sqrt(2) times those of symplectic Euler.
 TEST(StableStep, Rk4LimitSeparatesStepsOfDampedSprings) {
   for (const double c : {0.0, 20.0, 200.0, 1000.0}) {
     const auto simulation = [&](double h) {
@@ -120,7 +120,7 @@ TEST(StableStep, Rk4LimitSeparatesStepsOfDampedSprings) {
   }
 }
 
-// c / 2h |x - start|^2 of each vertex.
+// V = c / 2h |x - start|^2 for each vertex.
 class Dashpots : public Energy {
  public:
   explicit Dashpots(std::vector<double> c /* [kg/s] */) : c_(std::move(c)) {}
@@ -155,7 +155,8 @@ class Dashpots : public Energy {
   std::vector<double> c_;
 };
 
-// One vertex vibrates undamped, the others are damped critically: what limits symplectic Euler does not limit rk4.
+// One vertex vibrates undamped, the others are critically damped: rk4 and symplectic Euler have different critical
+// motions.
 TEST(StableStep, Rk4LimitIncludesFastestVibration) {
   Model model = make_model(make_box({{0, 0, 0}}, {{1, 1, 1}}, {1, 1, 1}), {.young = 1e-6, .mass = MassKind::lumped});
   const double k = 1e4, damped_k = 0.25 * k;

@@ -28,7 +28,7 @@ double mean_edge(const TetMesh& mesh) {
   return mesh.tets.empty() ? 1 : sum / (6 * static_cast<double>(mesh.tets.size()));
 }
 
-// Uniform in [-1, 1], equal on all systems.
+// Random values, uniform in [-1, 1], equal on all systems.
 class Noise {
  public:
   double operator()() { return 2 * (static_cast<double>(random_() >> 11) * 0x1p-53) - 1; }
@@ -47,8 +47,8 @@ std::vector<double> near_rest(const TetMesh& mesh, double edge) {
   return q;
 }
 
-// About the origin: a stretch by `amount` along x, a contraction by half of it along y, a shear, and random
-// displacements.
+// Returns positions deformed about the origin: a stretch by `amount` along x, a contraction by half of it along y, a
+// shear, and random displacements.
 std::vector<double> deformed(const std::vector<double>& q, double amount, double edge) {
   Noise noise;
   std::vector<double> x(q.size());
@@ -112,8 +112,8 @@ class StepCheck {
     return all;
   }
 
-  // The current state; with contact, away from the start of the step by up to a hundredth of an edge, because the
-  // second derivatives of friction have a kink where nothing slips.
+  // Returns the current state, with contact perturbed by up to a hundredth of an edge, because the second derivatives
+  // of friction have a kink at zero slip.
   std::vector<double> near_start() {
     std::vector<double> q = state_.q;
     if (!model_.contact) return q;
@@ -123,7 +123,8 @@ class StepCheck {
     return q;
   }
 
-  // The state in which a body that moves along an axis, and a little aside, touches first; empty without contact.
+  // Returns the first state in which a body that moves along an axis and slightly sideways touches; empty without
+  // contact.
   std::vector<double> touching() {
     constexpr double kFar = 3, kAside = 0.3;  // relative to the size of the scene, and to the path
     std::vector<double> nearest;

@@ -1,4 +1,4 @@
-// Checks the derivatives of everything that the next step minimizes: each term of V and of the damping, the inertia,
+// Checks the derivatives of all functions that the next step minimizes: each term of V and of the damping, the inertia,
 // and their sum E.
 #pragma once
 #include <string>
@@ -9,20 +9,20 @@
 
 namespace aspic {
 
-// The result refers to V and pattern; V must be bound to the pattern.
+// The result refers to V and pattern. Requires that V is bound to the pattern.
 Differentiable differentiable(const ActiveTerm& V, const BlockPattern& pattern);
 
 struct TermDerivatives {
-  std::string term;   // a name of Simulation::potential_names(), of a damping term, "inertia", or "E"
-  std::string state;  // where: "start", "rest", "deformed" or "touching"
+  std::string term;   // name in Simulation::potential_names() or of a damping term, "inertia", or "E"
+  std::string state;  // "start", "rest", "deformed" or "touching"
   DerivativeReport report;
 };
 
-// Checks at three states: the current one; near rest, with every vertex moved by a hundredth of an edge; and stretched,
-// sheared and perturbed by up to 15 % as far as the materials allow. In scenes with contact, the current state is moved
-// by up to a hundredth of an edge, and a fourth state has a body moved until it touches. Steps are relative to the mean
-// edge length. E is that of a step of backward Euler, or of statics, from the current state; pinned vertices are not
-// variables.
+// Checks three states: the current one; near rest, with every vertex moved by a hundredth of an edge; and stretched,
+// sheared and perturbed by up to 15 % as far as the materials allow. In scenes with contact, the current state is
+// perturbed by up to a hundredth of an edge, and in a fourth state a body is moved until it touches. Steps are relative
+// to the mean edge length. E is that of a step of backward Euler, or of statics, from the current state. Pinned
+// vertices are not variables.
 std::vector<TermDerivatives> check_step_derivatives(const Simulation& simulation, double tolerance = 1e-6);
 
 // Returns the name of an entry of q: "vertex 12, y".

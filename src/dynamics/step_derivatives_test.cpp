@@ -37,7 +37,7 @@ TEST(StepDerivatives, EveryTermOfDampedDrivenBeamPasses) {
   EXPECT_EQ(terms.size(), 7u);  // and two of damping
 }
 
-// k/2 (x of one vertex - 0.5)^2, whose gradient or Hessian is wrong by one part in a thousand.
+// k/2 (x of one vertex - 0.5)^2, whose gradient or Hessian has a relative error of 1e-3.
 class Wrong : public Energy {
  public:
   Wrong(int entry, double gradient_factor, double hessian_factor)
@@ -66,7 +66,7 @@ TEST(StepDerivatives, NamesVertexOfWrongTerm) {
     model.loads.push_back(std::make_unique<Wrong>(kEntry, in_gradient ? 1.001 : 1, in_gradient ? 1.001 : 0.999));
     const Simulation simulation = simulation_of(std::move(model));
     for (const TermDerivatives& t : check_step_derivatives(simulation)) {
-      if (t.term == "E") continue;  // in which a mistake in so soft a spring drowns
+      if (t.term == "E") continue;  // E hides an error in so soft a spring
       EXPECT_EQ(t.report.passed(), t.term != "wrong") << t.term;
       if (t.term != "wrong") continue;
       const DerivativeCheck& check = in_gradient ? t.report.gradient : t.report.hessian;

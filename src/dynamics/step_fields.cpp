@@ -39,7 +39,7 @@ StepField real(const Text& text, unsigned outputs) {
           [](const StepReport& r) { return std::vector<double>{r.*Member}; }};
 }
 
-// A value of an enumeration whose last value is Last.
+// A value of an enumeration whose last enumerator is Last.
 template <auto Member, auto Last>
 StepField name(const Text& text, unsigned outputs) {
   using Enum = decltype(Last);
@@ -58,7 +58,7 @@ StepField name(const Text& text, unsigned outputs) {
           [](const StepReport& r) { return std::vector<double>{static_cast<double>(r.*Member)}; }};
 }
 
-// Evaluations times tets.
+// Number of evaluations times tets.
 template <auto Member>
 StepField per_element(const Text& text) {
   return {text.name, text.unit,
@@ -182,7 +182,7 @@ std::vector<StepField>& fields() {
   return all;
 }
 
-// Tables and frames name enumerators in Markdown; comments in TypeScript are plain text.
+// Tables and frames format enumerators in Markdown; comments in TypeScript are plain text.
 std::string plain(std::string_view markdown) {
   std::string text;
   for (size_t i = 0; i < markdown.size(); ++i) {
@@ -212,7 +212,7 @@ std::string_view typescript_type(StepFieldType type) {
   }
 }
 
-// The value of a field before its step has ended.
+// Value of a field before its step has ended.
 std::string_view typescript_unknown(StepFieldType type) {
   switch (type) {
     case StepFieldType::flag:
@@ -228,7 +228,7 @@ std::string_view typescript_unknown(StepFieldType type) {
   }
 }
 
-// The resultants of pins, loads and bodies are six columns for each name.
+// The resultants of pins, loads and bodies have six columns per name.
 constexpr std::string_view kResultantItems =
     R"(* `reaction_PIN_x`, `_y`, `_z` [N]: mean force of the pin `BODY.PIN` on its vertices
 * `reaction_moment_PIN_x`, ... [N m]: its moment about the origin at the end of the step

@@ -1,6 +1,6 @@
-// The numbers and names of a StepReport, described once. The description defines the columns of steps.csv, the field
-// data of frames, the lines of `aspic run --json`, the messages of the viewer with their TypeScript interface, and the
-// reader of run directories.
+// Values and names of a StepReport, described once. The description defines the columns of steps.csv, the field data of
+// frames, the lines of `aspic run --json`, the messages of the viewer with their TypeScript interface, and the reader
+// of run directories.
 #pragma once
 #include <span>
 #include <string>
@@ -19,7 +19,7 @@ enum class StepOutput : unsigned {
   viewer = 8,  // messages of the viewer and recordings; these fields are read from steps.csv
 };
 
-// The groups are not single values: potential energies by name, and resultant forces.
+// potentials and resultants are groups of values: potential energies by name, and resultant forces
 enum class StepFieldType { flag, count, real, name, hash, potentials, resultants };
 
 using StepValue = std::variant<bool, int, double, std::string>;
@@ -29,19 +29,19 @@ struct StepField {
   StepFieldType type;
   unsigned outputs;  // sum of StepOutput
   StepValue (*get)(const StepReport& report) = nullptr;
-  // Returns false for a name that does not exist. Null: derived from other fields, not read.
+  // Returns false for an unknown name. Null: derived from other fields, not read.
   bool (*set)(StepReport& report, const StepValue& value) = nullptr;
-  // The numbers in field data: the index of a name, the halves of a hash.
+  // Values in field data: the index of a name, the halves of a hash.
   std::vector<double> (*numbers)(const StepReport& report) = nullptr;
-  bool is_optional = false;  // missing in the tables of earlier versions
+  bool is_optional = false;  // may be missing in tables of earlier versions
 
   bool is_in(StepOutput output) const { return (outputs & static_cast<unsigned>(output)) != 0; }
 };
 
-// In the order of the columns of steps.csv.
+// Returns all fields, in the order of the columns of steps.csv.
 std::span<const StepField> step_fields();
 
-// Adds a field to the description during its lifetime. Not thread-safe.
+// Adds a field to the description during the lifetime of the object. Not thread-safe.
 class AdditionalStepField {
  public:
   explicit AdditionalStepField(const StepField& field);

@@ -18,22 +18,22 @@ struct Resultant {
 
 // External forces, each summed over its vertices.
 struct Resultants {
-  std::vector<Resultant> pins;    // of each of Model::pins on its vertices, mean over the step
+  std::vector<Resultant> pins;    // of each of Model::pins, mean over the step
   std::vector<Resultant> loads;   // of each of Model::loads, at the end of the step
   std::vector<Resultant> bodies;  // of all pins and loads on each body, mean over the step; 0 in equilibrium
-  double time = 0;                // duration of the means so far [s]
+  double time = 0;                // averaging time so far [s]
 };
 
 // Result of the check against the energy bound of backward Euler.
 enum class EnergyBound {
-  none,            // another scheme, or a step that was dropped
-  not_guaranteed,  // the minimizer ended above E at q_s, or q_s has no energy
+  none,            // another scheme, or a dropped step
+  not_guaranteed,  // the minimizer ended above E at q_s, or E at q_s is infinite
   holds,
   broken,
 };
 std::string_view to_string(EnergyBound bound);
 
-struct StepReport : Work {  // of all solves of the step and of this report
+struct StepReport : Work {  // work of all solves of the step and of this report
   int step = 0;             // 1 for the first
   double time = 0;          // at the end of the step [s]
 
@@ -42,41 +42,42 @@ struct StepReport : Work {  // of all solves of the step and of this report
   int iterations = 0, trials = 0, projected_hessians = 0;  // sums over all solves
   int elements = 0;                                        // number of tets per evaluation
   double objective = 0, objective_gradient = 0;            // E and |g| at the end of the last minimization
-  InitialGuess initial_guess = InitialGuess::none;         // of that minimization
+  InitialGuess initial_guess = InitialGuess::none;         // of the last minimization
   int substeps = 1, rejected = 0;                          // accepted and rejected
   double residual = 0;  // |M a + dV/dx + dD/dx| over the free vertices; maximum over substeps [N]
-  // Of the body or region that is farthest from its threshold:
-  double residual_threshold = 0;  // the residual required [N]; 0 for explicit schemes
+  // For the body or region that is farthest from its threshold:
+  double residual_threshold = 0;  // required residual [N]; 0 for explicit schemes
   double residual_round_off = 0;  // the round-off floor of the residual [N]
-  int worst_vertex = -1;          // with the largest residual
+  int worst_vertex = -1;          // vertex with the largest residual
   double worst_residual = 0;      // its residual [N]
-  double lost_accuracy = 0;       // share of weight, inertia or velocities lost to round-off, if above 1e-3; else 0
+  double lost_accuracy = 0;       // fraction of weight, inertia or velocities lost to round-off, if above 1e-3; else 0
   double decrement = 0;           // -g.d / 2 of the last iteration, maximum over solves [J]; 0 without iterations
   double min_det_F = 0;
 
   // Contact at the end of the step.
   int contacts = 0;          // pairs of features closer than their reach
-  double min_gap = 0;        // smallest distance of these [m]; 0 without any
+  double min_gap = 0;        // smallest distance of these [m]; 0 without contacts
   double max_pressure = 0;   // [Pa]
-  double friction_loss = 0;  // part of damping_loss [J]
-  int friction_passes = 0;  // minimizations until the normal forces settled; 1 without friction, 0 without minimization
+  double friction_loss = 0;  // share of friction in damping_loss [J]
+  int friction_passes =
+      0;  // minimizations until the normal forces converged; 1 without friction, 0 without minimization
 
-  // The ledger: kinetic + potential changes by pin_work + obstacle_work - damping_loss - numerical_loss +
-  // residual_work. [J]
+  // Ledger: kinetic + potential changes by pin_work + obstacle_work - damping_loss - numerical_loss + residual_work.
+  // [J]
   double kinetic = 0;
   std::vector<double> potential;  // one per term of V, named by Simulation::potential_names()
   double potential_total = 0;
-  double pin_work = 0;              // of moving pins and moving targets in this step
-  double obstacle_work = 0;         // of moving obstacles on bodies, including friction, in this step
-  std::vector<double> target_work;  // the share of the moving targets of each of Model::loads
-  double damping_loss = 0;          // of damping terms in this step
-  double numerical_loss = 0;        // of the integrator in this step
-  double residual_work = 0;         // of the residual forces
-  double ledger_error = 0;          // the difference of both sides
+  double pin_work = 0;              // work of moving pins and moving targets in this step
+  double obstacle_work = 0;         // work of moving obstacles on bodies, including friction, in this step
+  std::vector<double> target_work;  // share of the moving targets of each of Model::loads
+  double damping_loss = 0;          // energy dissipated by damping terms in this step
+  double numerical_loss = 0;        // energy dissipated by the integrator in this step
+  double residual_work = 0;         // work of the residual forces
+  double ledger_error = 0;          // difference of both sides
   Resultants resultants;
   EnergyBound energy_bound = EnergyBound::none;
   double energy_slack = 0;       // bound minus energy; 0 without a bound [J]
-  std::uint64_t state_hash = 0;  // of the state at the end, see state_hash()
+  std::uint64_t state_hash = 0;  // hash of the state at the end, see state_hash()
   double seconds = 0;            // wall time of the step
 };
 

@@ -1,4 +1,4 @@
-// The order in time by a motion that linear tets represent exactly: verify/integrators.h.
+// Order in time, measured by a motion that linear tets represent exactly: verification/integrators.h.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -21,7 +21,7 @@ TEST(TemporalOrder, HoldsWithMovingPins) {
       const double fine = affine_motion_error(integrator, h / 2, held);
       EXPECT_NEAR(std::log2(coarse / fine), scheme->facts().order, 0.2)
           << integrator << " " << static_cast<int>(held) << ": " << coarse << " " << fine;
-      EXPECT_GT(fine, 1e-10) << integrator << ": no error to measure an order by";
+      EXPECT_GT(fine, 1e-10) << integrator << ": the error is too small to measure an order";
     }
   }
 }
@@ -32,7 +32,7 @@ TEST(TemporalOrder, HoldsDownTo1em10) {
   EXPECT_NEAR(error * 400, affine_motion_error("tr_bdf2", 0.01, Held::on_one_face), 0.1 * error * 400);
 }
 
-// A beam that is thrown, pinned vertices and all: a pin that stays gives them no velocity.
+// A thrown beam, including its pinned vertices, whose fixed pin gives them no velocity.
 std::vector<double> thrown_beam(const std::string& integrator, double h) {
   Model model = testing_models::beam(1, {.young = 1e4, .poisson = 0.3, .gravity = {{0, 0, 0}}});
   State start = at_rest(model.mesh);

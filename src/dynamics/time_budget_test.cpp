@@ -1,4 +1,4 @@
-// Steps that must end in time. The clocks here count: no test depends on real time.
+// Steps with a time budget. The clocks are simulated: no test depends on real time.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -14,12 +14,12 @@ using namespace testing_models;
 
 struct BudgetedStep {
   StepReport report;
-  double first_value = 0;  // E at the start of the last minimization
-  double time = 0;         // that the step took
+  double first_value = 0;  // E at the initial guess of the last minimization
+  double time = 0;         // duration of the step
   bool stopped_within_solve = false;
 };
 
-// The second step of a soft beam, with a clock that moves on by one whenever it is read.
+// Returns the second step of a soft beam, with a clock that advances by one per reading.
 BudgetedStep step_within(double budget, SimulationOptions options) {
   double now = 0;
   options.h = 1.0 / 30;
@@ -56,7 +56,7 @@ const std::vector<std::string>& budgeted_integrators() {
   return names;
 }
 
-// Whatever the budget: E falls, the ledger closes, the state is finite, and the status says why the step ended.
+// Checks that for any budget E decreases, the ledger is balanced, the state is finite, and the status names the cause.
 void expect_sound(const BudgetedStep& step, const std::string& what) {
   const StepReport& report = step.report;
   EXPECT_TRUE(report.status == Status::budget || is_success(report.status)) << what << to_string(report.status);
@@ -76,7 +76,7 @@ TEST(TimeBudget, IsKeptByEveryIntegrator) {
       ends.insert(step.report.status);
       within_solve = within_solve || step.stopped_within_solve;
       if (step.report.status == Status::budget && budget > 10) {
-        EXPECT_LT(step.time, budget + 12) << integrator;  // readings on the way out
+        EXPECT_LT(step.time, budget + 12) << integrator;  // readings after the deadline
       }
     }
     EXPECT_TRUE(ends.contains(Status::budget) && ends.contains(Status::converged)) << integrator;
@@ -91,7 +91,7 @@ TEST(TimeBudget, IsKeptByEveryMethod) {
                    method + ", " + std::to_string(budget) + ": ");
 }
 
-TEST(TimeBudget, AmpleBudgetChangesNoBit) {
+TEST(TimeBudget, AmpleBudgetDoesNotChangeResult) {
   const auto state = [](double budget) {
     Simulation simulation = simulate(beam(2), {.solver = {.minimize = {}, .time_budget = budget}});
     for (int i = 0; i < 3; ++i) EXPECT_EQ(simulation.step().status, Status::converged);

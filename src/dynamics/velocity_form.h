@@ -1,6 +1,6 @@
 // The objective of a step as a function of velocities: E(v) = 1/2 (v - v~)' M (v - v~) + V(q_t + h v), v~ = (q~ - q_t)
-// / h. With q = q_t + h v it is E(q) / h^2, where E(q) is that of backward Euler (w = 1, f = h^2): the gradient is that
-// of E(q) over h, the Hessian the same, so Newton's iterates are the same points.
+// / h. With q = q_t + h v it equals E(q) / h^2, where E(q) is the objective of backward Euler (w = 1, f = h^2). Its
+// gradient is that of E(q) divided by h, and its Hessian is the same, so the Newton iterates are the same points.
 #pragma once
 #include <span>
 #include <vector>
@@ -11,7 +11,7 @@ namespace aspic {
 
 class VelocityForm : public Objective, public HasMetric {
  public:
-  // E.begin_step() has been called; q_t is the start of the step. Both must outlive this.
+  // Requires that E.begin_step() was called; q_t is the start of the step. Both must outlive this object.
   VelocityForm(IncrementalPotential& E, std::span<const double> start /* q_t */, double h)
       : E_(E), start_(start), h_(h), q_(start.size()), dq_(start.size()) {}
 
@@ -33,7 +33,7 @@ class VelocityForm : public Objective, public HasMetric {
     return {s.x / h_, s.value / (h_ * h_), s.gradient / h_, s.gradient_unit / h_, s.gradient_round_off / h_};
   }
 
-  // q = q_t + h v and back. The span that position() returns is valid until the next call.
+  // Convert between q = q_t + h v and v. The span that position() returns is valid until the next call.
   std::span<const double> position(std::span<const double> v);
   void velocity(std::span<const double> q, std::span<double> v) const;
 

@@ -12,7 +12,7 @@ namespace {
 
 constexpr double kStep = 0.01;
 
-// The first step of a beam that begins to fall, with a velocity.
+// The first step of a beam that starts to fall with an initial velocity.
 class Velocities : public ::testing::Test {
  protected:
   Velocities() : model(testing_models::beam(2)), state(at_rest(model.mesh)) {
@@ -76,7 +76,7 @@ TEST_F(Velocities, NewtonVisitsSamePointsAsInPositions) {
   ASSERT_GT(positions.size(), 1u);
   for (size_t k = 0; k < positions.size(); ++k) {
     const auto q = form.position(velocities[k]);
-    for (size_t i = 0; i < q.size(); ++i) EXPECT_NEAR(q[i], positions[k][i], 1e-11);  // of a beam 4 m long
+    for (size_t i = 0; i < q.size(); ++i) EXPECT_NEAR(q[i], positions[k][i], 1e-11);  // for a beam 4 m long
   }
 }
 

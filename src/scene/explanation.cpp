@@ -148,7 +148,7 @@ class Explainer {
   // Empty unless a tet with four pinned corners has lost its volume and its energy is infinite.
   Explanation pressed_by_pins() const {
     const std::vector<double> x = placed();
-    const WorstTet worst = most_squashed(model_.mesh, x);
+    const WorstTet worst = most_compressed(model_.mesh, x);
     if (worst.tet < 0 || worst.det_F > kPressedFlat || !is_pinned(worst.tet)) return {};
     if (std::all_of(model_.elasticity.begin(), model_.elasticity.end(),
                     [&](const auto& V) { return std::isfinite(V->value(x)); }))
@@ -166,7 +166,7 @@ class Explainer {
               smaller_steps() + ", or move the obstacles more slowly"};
     const Explanation pins = pressed_by_pins();
     if (!pins.cause.empty()) return pins;
-    const WorstTet worst = most_squashed(model_.mesh, placed());
+    const WorstTet worst = most_compressed(model_.mesh, placed());
     if (!(worst.det_F > 0) && worst.tet >= 0)
       return {"the pins invert a tet in one step, where the material has no finite energy",
               tet_name(model_, worst.tet) + ": " + text(worst.det_F) + " of its volume",
@@ -262,7 +262,7 @@ class Explainer {
     if (search.tolerance > 1e-5)
       return {cause + " before it became shorter than tol", "solver.line_search.tol = " + text(search.tolerance),
               "solver.line_search.tol = 1e-10"};
-    return {cause, squashed_place(model_, x_), smaller_steps() + "; `aspic check` finds bad tets"};
+    return {cause, compressed_place(model_, x_), smaller_steps() + "; `aspic check` finds bad tets"};
   }
 
   Explanation iteration_limit() const {
@@ -301,7 +301,7 @@ class Explainer {
     if (is_newton() && solver_.definiteness == "exact")
       return {"the exact Hessian has directions of negative curvature, along which Newton's method would climb",
               "solver.definiteness = \"exact\"", "solver.definiteness = \"on_demand\""};
-    return {"no descent direction could be computed", squashed_place(model_, x_),
+    return {"no descent direction could be computed", compressed_place(model_, x_),
             smaller_steps() + "; `aspic check` finds bad tets"};
   }
 

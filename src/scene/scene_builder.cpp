@@ -118,7 +118,7 @@ class SceneBuilder {
               output,
               std::move(scene.input_files),
               std::move(files_.kept_meshes)};
-    } catch (const InvertedStart& e) {
+    } catch (const InvertedInitialState& e) {
       throw InvalidInput(
           source_.file + ": " + e.cause() +
           "; set material.model = \"stable_neo_hookean\", which tolerates inversion, or choose a smaller "
