@@ -24,7 +24,7 @@ std::vector<double> sizes_of(const ContactMesh& mesh) {
   return sizes;
 }
 
-// The point of a body that is closest to a sphere or a capsule.
+// Returns the point of a body that is closest to a sphere or a capsule.
 ContactPoint foot_of(const ContactStencil& stencil, const ContactMesh& mesh, std::span<const Vec3d> x) {
   ContactPoint foot{.gap = stencil.gap(), .pressure = 0};
   foot.pressure = -stencil.weight / stencil.area * stencil.b().first;
@@ -45,7 +45,7 @@ struct Barrier::Impl {
   Impl(ContactMesh m, const ContactOptions& options)
       : mesh(std::move(m)), sizes(sizes_of(mesh)), laws(mesh, options), search(mesh, laws) {}
 
-  // Positions of all points, of which only those of obstacles are set.
+  // Returns positions of all points; only those of obstacles are set.
   std::vector<Vec3d> obstacles(double time) const {
     std::vector<Vec3d> p = mesh.rest;
     for (const ContactPart& part : mesh.parts) {
@@ -61,7 +61,7 @@ struct Barrier::Impl {
     return p;
   }
 
-  // Positions of all points: variables from x, obstacles at the time.
+  // Returns positions of all points: variables from x, obstacles at the given time.
   std::vector<Vec3d> points(Positions x, double time) const {
     std::vector<Vec3d> p;
     {
@@ -81,13 +81,13 @@ struct Barrier::Impl {
   }
 
   ContactMesh mesh;
-  std::vector<double> sizes;  // of the parts at rest [m]
+  std::vector<double> sizes;  // sizes of the parts at rest [m]
   ContactLaws laws;
   StencilSearch search;
   bool has_motion =
       std::any_of(mesh.parts.begin(), mesh.parts.end(), [](const ContactPart& part) { return part.motion != nullptr; });
   mutable std::mutex mutex;
-  mutable std::vector<Vec3d> placed;  // the last result of obstacles()
+  mutable std::vector<Vec3d> placed;  // last result of obstacles()
   mutable double placed_at = 0;
 };
 

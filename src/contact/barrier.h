@@ -1,6 +1,6 @@
-// The barrier energy of contact [Li 2020; Li 2023]: V = sum of kappa w b(d) over points and the nearest features of the
-// surfaces around them, where w is the area of a point. The constants stay fixed during a run, so that the energy is a
-// function of the positions alone. A guard of shorter reach keeps edges from crossing.
+// Barrier energy of contact [Li 2020; Li 2023]: V = sum of kappa w b(d) over points and the nearest features of the
+// surfaces around them, where w is the area of a point. The constants are fixed during a run, so the energy is a
+// function of the positions alone. A guard of shorter reach prevents edges from crossing.
 #pragma once
 #include <memory>
 
@@ -11,16 +11,16 @@
 
 namespace aspic {
 
-// What touches at given positions.
+// Summary of the contacts at given positions.
 struct ContactSummary {
-  int contacts = 0;                                          // pairs below their reach
+  int contacts = 0;                                          // pairs closer than their reach
   double min_gap = std::numeric_limits<double>::infinity();  // smallest distance of any two surfaces below reach [m]
-  std::array<int, 2> parts = {-1, -1};                       // that have this gap
-  double reach = 0;                                          // of their features [m]
+  std::array<int, 2> parts = {-1, -1};                       // the parts with this gap
+  double reach = 0;                                          // reach of their features [m]
   double max_pressure = 0;                                   // [Pa]
 };
 
-// A point of a surface that is closer to another surface than the reach.
+// A surface point that is closer to another surface than the reach.
 struct ContactPoint {
   int row = -1;  // vertex of the model; -1: of an obstacle
   Vec3d position{};
@@ -40,32 +40,34 @@ class Barrier : public Energy {
                   BlockSparse& H) const override;
   // Returns a step of at most 1 along which no surfaces touch.
   double max_step(Positions x, const Context& context, std::span<const double> d) const override;
-  // The same while obstacles move from their positions at the first time to those at the second one [s].
+  // The same while obstacles move from their positions at time `from` to those at time `to` [s].
   double max_step(Positions x, std::span<const double> d, double from, double to) const;
   int add_stops(Positions x, const Context& context, std::span<const double> d, double scale, std::span<double> g,
                 BlockSparse& H) const override;
 
   const ContactMesh& mesh() const;
   const ContactLaws& laws() const;
-  // Returns a point that has no distance to its own body at rest; -1: there is none.
+  // Returns a point whose distance to its own body at rest is zero; -1: none.
   int self_touching_point() const;
-  // In the order of the points of the mesh. Empty if a position is not finite.
+  // Returns one entry per point of the mesh. Empty if a position is not finite.
   std::vector<ContactPoint> contact_points(Positions x, double time) const;
   ContactSummary summary(Positions x, double time) const;
   bool has_moving_obstacle() const;
-  // The moving obstacles and bodies, as "plate and ball", that would meet if obstacles moved and bodies stayed at x.
+  // Returns pairs of moving obstacles and bodies, as "plate and ball", that would collide if obstacles moved and bodies
+  // stayed at x.
   std::vector<std::string> blocked_parts(Positions x, double from, double to) const;
 
-  // Positions of the points of the mesh, with bodies at rest.
+  // Returns the positions of the points of the mesh, with bodies at rest.
   std::vector<Vec3d> obstacle_points(double time) const;
-  // Positions of the points of the mesh. Throws InvalidInput if obstacles are not finite.
+  // Returns the positions of the points of the mesh. Throws InvalidInput if obstacles are not finite.
   std::vector<Vec3d> points(Positions x, double time) const;
-  // The displacement of the obstacle at its side of a stencil, while obstacles move from `start` to `end` (points).
+  // Returns the displacement of the obstacle in a stencil, while obstacles move from the points `start` to `end`.
   Vec3d obstacle_displacement(const ContactStencil& stencil, std::span<const Vec3d> start,
                               std::span<const Vec3d> end) const;
-  // The stencils at x with a gap below their reach, in an order that depends on x alone.
+  // Returns the stencils at x with a gap below their reach, in an order that depends on x alone.
   std::shared_ptr<const std::vector<ContactStencil>> stencils(Positions x, double time) const;
-  // Work on the barrier of obstacles that move between two times, with their forces at x and the second time [J].
+  // Returns the work [J] on the barrier of obstacles that move between two times, with their forces at x and the second
+  // time.
   double obstacle_work(Positions x, double from, double to) const;
 
  private:

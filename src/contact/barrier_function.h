@@ -1,5 +1,5 @@
-// The barrier b(g) = -r (g/r - 1)^2 ln(g/r) of a gap g < r, a length; 0 beyond. Twice continuously differentiable at
-// the reach r, infinite at g = 0 [Li 2020].
+// Barrier b(g) = -r (g/r - 1)^2 ln(g/r) of a gap g < r [m]; 0 for larger gaps. Twice continuously differentiable at the
+// reach r, infinite at g = 0 [Li 2020].
 #pragma once
 #include <cmath>
 #include <limits>

@@ -13,7 +13,7 @@
 namespace aspic {
 namespace {
 
-// Two boxes of 0.1 m one above the other, with a gap.
+// Two boxes of 0.1 m, one above the other, with a gap.
 struct Boxes {
   TetMesh mesh;
   std::vector<double> x;
@@ -88,7 +88,8 @@ TEST(Barrier, GradientMatchesDifferences) {
   }
 }
 
-// A triangle near a sphere and a capsule: closest at its middle, at an edge, at a corner, and at an end of the capsule.
+// A triangle near a sphere and a capsule, which is closest at its interior, an edge, a corner, or an end of the
+// capsule.
 TEST(Barrier, RoundObstaclesHaveExactDerivatives) {
   ContactMesh mesh;
   const std::vector<Vec3d> X = {{{0, 0, 0}}, {{1, 0.05, 0}}, {{0.1, 1, 0.02}}};
@@ -235,7 +236,7 @@ TEST(Barrier, GuardsTipsOfCoarseSurfaces) {
   EXPECT_NEAR(force, expected, 1e-3 * expected);
 }
 
-// Every point of the two facing sides touches, with the pressure kappa |b'| of its gap.
+// All points of the two facing sides are in contact, with the pressure kappa |b'| of their gap.
 TEST(Barrier, ContactPointsHavePressureOfTheirGap) {
   const double gap = 5e-4;
   const Boxes boxes(gap, 0, 0);
@@ -250,7 +251,7 @@ TEST(Barrier, ContactPointsHavePressureOfTheirGap) {
   EXPECT_DOUBLE_EQ(boxes.barrier->summary(boxes.x, 0).max_pressure, points.front().pressure);
 }
 
-TEST(ObstacleSurface, PlaneIsASquareBelowTheBodies) {
+TEST(ObstacleSurface, PlaneIsSquareBelowBodies) {
   ContactMesh mesh;
   const std::vector<Vec3d> X = {{{0, 1, 0}}, {{1, 1, 0}}, {{0, 1, 1}}};
   mesh.add({.name = "body"}, X, std::vector<Triangle>{{0, 1, 2}}, std::vector<int>{0, 1, 2});
@@ -264,7 +265,7 @@ TEST(ObstacleSurface, PlaneIsASquareBelowTheBodies) {
   for (const Vec3d& x : square.vertices) EXPECT_NEAR(x[0] + 2 * x[1], 0, 1e-12);
   const auto& [a, b, c] = square.triangles[0];
   const Vec3d normal = cross(square.vertices[b] - square.vertices[a], square.vertices[c] - square.vertices[a]);
-  EXPECT_GT(normal[1], 0) << "the square faces the bodies";
+  EXPECT_GT(normal[1], 0) << "the square must face the bodies";
   EXPECT_FALSE(surfaces[1].plane);
   EXPECT_EQ(surfaces[1].surface.triangles, (std::vector<Triangle>{{0, 2, 1}}));
   EXPECT_DOUBLE_EQ(surfaces[1].surface.vertices[1][0], 1);

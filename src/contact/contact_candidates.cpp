@@ -10,13 +10,13 @@
 namespace aspic {
 namespace {
 
-// More margin means fewer searches but more pairs.
-constexpr double kMargin = 0.03;  // of the mean edge at a point
-constexpr double kLonger = 0.1;   // of its displacement
+// A larger margin reduces the searches but adds pairs.
+constexpr double kMargin = 0.03;  // relative to the mean edge at a point
+constexpr double kLonger = 0.1;   // relative to the displacement of a point
 constexpr double kRounding = 1e-6;
-constexpr double kLeastShrink = 0.98;  // for which candidates are complete
+constexpr double kLeastShrink = 0.98;  // minimum shrink for which candidates are complete
 
-// Half the reach at least, for the distances at rest.
+// Returns margins of at least half the reach, which the distances at rest need.
 std::vector<double> margins(const ContactMesh& mesh, double least) {
   std::vector<double> length(mesh.rest.size(), 0.0);
   std::vector<int> count(mesh.rest.size(), 0);
@@ -49,7 +49,7 @@ Frame frame_of(std::span<const Vec3d> X, std::span<const Vec3d> x) {
 
 }  // namespace
 
-// At most half the distance at rest within a body, whose own edges must not repel each other at rest.
+// At most half the distance at rest within a body, because its own edges must not repel each other at rest.
 double edge_reach(const ContactMesh& mesh, const ContactLaws& laws, const EdgePair& pair) {
   const auto& [a, b] = mesh.edges[pair.first];
   const auto& [e, f] = mesh.edges[pair.second];
@@ -174,7 +174,7 @@ std::optional<PathCandidates> CandidateSearch::along(std::span<const Vec3d> x, s
   return found;
 }
 
-// Appends the pairs, in numbers of the mesh. Returns false if there are too many.
+// Appends the pairs, in indices of the mesh. Returns false if there are too many.
 bool CandidateSearch::find_pairs(ClosePairs& all) {
   const size_t limit = PairQuery{}.limit;
   const auto append = [&](const ClosePairs& found, int a, int b) {
@@ -185,7 +185,7 @@ bool CandidateSearch::find_pairs(ClosePairs& all) {
     return found.is_complete && all.vertex_triangle.size() <= limit && all.edge_edge.size() <= limit;
   };
   const int parts = static_cast<int>(surfaces_.size());
-  // Half of what a gap in the boxes may exceed their distance by.
+  // Half of the maximum excess of a gap in the boxes over their distance.
   const double widest = *std::max_element(radius_.begin(), radius_.end());
   const double radius = (laws_.largest_reach() / 2 + (1 - least_shrink()) * widest) / least_shrink();
   std::vector<double> radii(std::max({mesh_.rest.size(), mesh_.edges.size(), mesh_.triangles.size()}));

@@ -12,7 +12,7 @@
 
 namespace aspic {
 
-// The gaps below were measured when the candidates were searched [m].
+// Gaps are measured at the time of the search [m].
 struct NearTriangle {
   int triangle;
   double gap;
@@ -24,7 +24,7 @@ struct EdgePair {
 };
 
 struct ContactCandidates {
-  std::vector<int> start;               // of each point in `triangles`, and the end
+  std::vector<int> start;               // offset of each point in `triangles`, and the end
   std::vector<NearTriangle> triangles;  // near each point, ascending
   std::vector<EdgePair> edge_pairs;     // ascending
 
@@ -33,14 +33,14 @@ struct ContactCandidates {
   }
 };
 
-// Candidates for a path of all points. Between frames that differ by a rotation of angle a, lines of points that are
-// fixed to them come closer by the factor cos(a / 2): the singular values of (1 - t) I + t R are at least that.
+// Candidates for a path of all points. Between frames that differ by a rotation of angle a, the distance of points that
+// are fixed to them shrinks at most by the factor cos(a / 2), which bounds the singular values of (1 - t) I + t R.
 struct PathCandidates {
   std::shared_ptr<const ContactCandidates> pairs;
-  std::vector<double> moved;   // of each point, its largest distance from where the gaps were measured [m]
-  std::vector<double> shrink;  // of each point, cos(a / 2) of its part
+  std::vector<double> moved;   // largest distance of each point from its position at the search [m]
+  std::vector<double> shrink;  // cos(a / 2) of the part of each point
 
-  // Lower bounds of the gap along the path.
+  // Return lower bounds of the gap along the path.
   double least_gap(int point, const NearTriangle& near, const Triangle& t) const {
     return shrink[point] * near.gap - moved[point] - std::max({moved[t[0]], moved[t[1]], moved[t[2]]});
   }
@@ -49,7 +49,7 @@ struct PathCandidates {
   }
 };
 
-// The reach between two edges [m].
+// Returns the reach between two edges [m].
 double edge_reach(const ContactMesh& mesh, const ContactLaws& laws, const EdgePair& pair);
 
 enum class PairScope {
@@ -62,15 +62,15 @@ class CandidateSearch {
   CandidateSearch(PairScope scope, const ContactMesh& mesh, const ContactLaws& laws);  // both must outlive this
 
   // Returns all pairs whose gap can be below their reach on the lines from x to x + d, and some others; an empty d is
-  // zero. Nothing: they are more than the limit of PairQuery. Results are kept for later, similar positions.
+  // zero. Returns nothing if they exceed the limit of PairQuery. Results are cached for similar positions.
   std::optional<PathCandidates> along(std::span<const Vec3d> x, std::span<const Vec3d> d);
 
  private:
   struct Path {
     std::vector<Vec3d> from, to;
-    std::vector<double> shrink;  // of each point
+    std::vector<double> shrink;  // per point
   };
-  // The primitives of a part: their first numbers in the mesh, and trees over them.
+  // The primitives of a part: their first indices in the mesh, and trees over them.
   struct Surface {
     int first_edge = 0, first_triangle = 0;
     PairFinder finder;
@@ -87,11 +87,11 @@ class CandidateSearch {
   PairScope scope_;
   const ContactMesh& mesh_;
   const ContactLaws& laws_;
-  std::vector<double> margin_;  // of each point, by which its box is larger than its path [m]
+  std::vector<double> margin_;  // inflation of the box of each point beyond its path [m]
   std::vector<Surface> surfaces_;
-  std::vector<Box> boxes_;      // of each point; the candidates are complete while it stays inside
-  std::vector<Vec3d> center_;   // of each point
-  std::vector<double> radius_;  // of each point, largest distance of its box from its center
+  std::vector<Box> boxes_;      // per point; the candidates are complete while it stays inside
+  std::vector<Vec3d> center_;   // per point
+  std::vector<double> radius_;  // largest distance of the box of each point from its center
   std::shared_ptr<const ContactCandidates> candidates_;
 };
 

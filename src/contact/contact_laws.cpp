@@ -7,18 +7,20 @@
 namespace aspic {
 namespace {
 
-constexpr double kReach = 1.0 / 50;      // of the mean edge
-constexpr double kStiffness = 1.0 / 10;  // of Young's modulus
+constexpr double kReach = 1.0 / 50;      // relative to the mean edge
+constexpr double kStiffness = 1.0 / 10;  // relative to Young's modulus
 
-// The finer surface integrates: its points sample the pressure between the points of the coarser one.
+// The finer surface has the larger share of the integral: its points sample the pressure between the points of the
+// coarser one.
 double share_of_finer(double own, double other) {
   if (std::isinf(other)) return 1;
   const double a = own * own * own, b = other * other * other;
   return a + b > 0 ? b / (a + b) : 0.5;
 }
 
-// A sphere may press the middle of a triangle, and a capsule the middle of an edge. So the pressure on a body is
-// integrated over the triangles near a center, or half over its points and half over its edges near an axis.
+// A sphere may press on the middle of a triangle, and a capsule on the middle of an edge. Hence the pressure of a
+// sphere is integrated over the triangles near its center, and the pressure of a capsule half over the body's points
+// and half over its edges.
 double share_over_points(const ContactPart& round) { return round.point_count == 1 ? 0 : 0.5; }
 
 double share_of(const ContactPart& own, const ContactPart& other) {

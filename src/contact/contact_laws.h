@@ -1,4 +1,4 @@
-// The constants of contact between two parts.
+// Contact parameters for pairs of parts.
 #pragma once
 #include <array>
 #include <vector>
@@ -7,17 +7,17 @@
 
 namespace aspic {
 
-// Reach of the guards between two edges, and of points of the coarser surface, relative to that of their surfaces.
+// Reach of the guards between two edges, and of points of the coarser surface, relative to the reach of their surfaces.
 inline constexpr double kGuardReach = 0.25;
 
 struct ContactLaw {
   double reach = 0;       // gap at which contact begins [m]
-  double edge_reach = 0;  // that of two edges [m]
+  double edge_reach = 0;  // reach of two edges [m]
   double stiffness = 0;   // kappa [Pa]
-  double share = 0;       // of the integral over the first surface; that over the second one has the rest
+  double share = 0;       // weight of the integral over the first surface; the second one has the rest
   double friction = 0;    // coefficient
-  double radius = 0;      // of a capsule: gaps are distances less this [m]
-  double guard = 0;       // least area of a point near the guards' reach [m^2]
+  double radius = 0;      // radius of a capsule [m]; gaps are distances minus this
+  double guard = 0;       // minimum area of a point within the guards' reach [m^2]
 };
 
 struct PairFriction {
@@ -28,11 +28,11 @@ struct PairFriction {
 struct ContactOptions {
   double reach = 0;      // [m]; 0: a fiftieth of the mean edge of the finer surface
   double stiffness = 0;  // [Pa]; 0: a tenth of the smaller Young's modulus
-  // Pairs whose coefficient is not the geometric mean of those of the parts.
+  // Pairs with a coefficient other than the geometric mean of those of the parts.
   std::vector<PairFriction> pairs = {};
 };
 
-// The laws of all pairs of parts, for points of the first part near the second one.
+// Parameters of all pairs of parts, for points of the first part near the second one.
 class ContactLaws {
  public:
   ContactLaws() = default;

@@ -58,7 +58,7 @@ void ContactMesh::add(const ContactPart& given, std::span<const Vec3d> X, std::s
   parts.push_back(own);
 }
 
-// A triangle without area whose corners are the ends.
+// Represents the capsule by a triangle without area whose corners are the ends.
 void ContactMesh::add_capsule(const ContactPart& given, const std::array<Vec3d, 2>& ends) {
   ContactPart own = given;
   own.is_obstacle = true;

@@ -11,7 +11,7 @@ EigenvalueFilter filter_of(Definiteness kind) {
   return kind == Definiteness::absolute ? EigenvalueFilter::absolute : EigenvalueFilter::clamp;
 }
 
-// c = |u x v|^2 for the directions u = x1 - x0 and v = x3 - x2 of two edges, with its derivatives.
+// c = |u x v|^2 for the directions u = x1 - x0 and v = x3 - x2 of two edges, with derivatives.
 struct CrossSquared {
   double value;
   std::array<Vec3d, 4> gradient;
@@ -66,7 +66,7 @@ CrossSquared cross_of(const ContactStencil& s, std::span<const Vec3d> x) {
   return {x[s.point[1]] - x[s.point[0]], x[s.point[3]] - x[s.point[2]]};
 }
 
-// From the points on which the distance depends to those of the query.
+// Maps a Hessian from the points on which the distance depends to those of the query.
 DistanceHessian spread(const DistanceHessian& H, const Distance& distance) {
   DistanceHessian all;
   for (int i = 0; i < distance.count; ++i)

@@ -1,4 +1,4 @@
-// One summand of the barrier energy, at given positions.
+// One term of the barrier energy at given positions.
 #pragma once
 #include <array>
 #include <span>
@@ -10,24 +10,24 @@
 namespace aspic {
 
 struct ContactStencil {
-  Distance distance;                            // of the points below
-  std::array<int, 4> point = {-1, -1, -1, -1};  // numbers in the ContactMesh: of a point and a triangle, edge or point,
-                                                // or of two edges
-  double weight = 0;                            // factor of b [N]
-  double reach = 0;                             // gap at which b begins [m]
-  double radius = 0;                            // the gap is the distance less this [m]
-  double area = 0;                              // that `weight` stands for, with its sign; 0: a guard [m^2]
+  Distance distance;  // distance of the points below
+  std::array<int, 4> point = {
+      -1, -1, -1, -1};  // indices in the ContactMesh: of a point and a triangle, edge or point, or of two edges
+  double weight = 0;    // factor of b [N]
+  double reach = 0;     // gap at which b becomes positive [m]
+  double radius = 0;    // the gap is the distance minus this [m]
+  double area = 0;      // signed area that `weight` represents [m^2]; 0: a guard
   std::array<int, 2> parts = {};
-  // Two edges: eps in the factor that vanishes where they are parallel, (2 - c/eps) c/eps for the squared norm c of
-  // their cross product below eps [Li 2020, section 6.2] [m^4]. 0: no factor.
+  // For two edges: eps in the factor (2 - c/eps) c/eps, which vanishes for parallel edges, where c < eps is the squared
+  // norm of their cross product [Li 2020, section 6.2] [m^4]. 0: no factor.
   double parallel = 0;
 
   bool is_of_edges() const { return parallel > 0; }
   double gap() const { return distance.d - radius; }
   BarrierValue b() const { return barrier(gap(), reach); }
-  double value(std::span<const Vec3d> x) const;  // [J] for the positions of all points of the mesh
+  double value(std::span<const Vec3d> x) const;  // [J], for the positions of all points of the mesh
   std::array<Vec3d, 4> gradient(std::span<const Vec3d> x) const;
-  // The Hessian, with negative eigenvalues filtered unless it is exact.
+  // Returns the Hessian. Negative eigenvalues are modified unless `kind` is exact.
   DistanceHessian hessian(std::span<const Vec3d> x, Definiteness kind) const;
 };
 

@@ -9,8 +9,8 @@
 namespace aspic {
 namespace {
 
-// Updates in a step after which known sliders keep their directions: around an edge, normals turn within a small gap,
-// and updates would alternate.
+// Updates in a step after which known sliders keep their directions, because normals rotate within a small gap around
+// an edge and updates would alternate.
 constexpr int kTurning = 4;
 constexpr double kStaticReach = 1e-2;  // width of f in statics, relative to the reach of the barrier
 
@@ -19,23 +19,23 @@ struct Weight {
   double factor;
 };
 
-// What may slide along a surface. Its slip is a weighted sum of displacements of vertices.
+// A contact that may slide along a surface. Its slip is a weighted sum of displacements of vertices.
 struct Slider {
   std::vector<Weight> weights;  // of different rows
   std::array<Vec3d, 2> tangent = {};
   double force = 0;  // mu lambda [N]
   double width = 0;  // e [m]
-  Vec3d moved = {};  // of the obstacle during the step [m]
+  Vec3d moved = {};  // displacement of the obstacle during the step [m]
 };
 
 // A normal force, and the stencils that share it.
 struct Traction {
   std::span<const ContactStencil> stencils;
-  std::vector<double> share;  // of the stencils, 1 in all
+  std::vector<double> share;  // shares of the stencils, which sum to 1
   Vec3d force{};              // [N]
 };
 
-// Names a contact within a step: a point and a part, or two edges.
+// Identifies a contact within a step: a point and a part, or two edges.
 using ContactName = std::array<int, 5>;
 
 ContactName name_of(const ContactStencil& stencil) {
@@ -46,10 +46,10 @@ ContactName name_of(const ContactStencil& stencil) {
 
 struct FrictionContext : Energy::Context {
   std::vector<double> start;
-  double obstacle_time = 0;  // of obstacles at the start [s]
+  double obstacle_time = 0;  // time of the obstacles at the start [s]
   std::vector<Slider> sliders;
   int updates = 0;                      // in this step
-  std::map<ContactName, Slider> known;  // the sliders of earlier updates
+  std::map<ContactName, Slider> known;  // sliders of earlier updates
 };
 
 const FrictionContext& friction(const Energy::Context& context) { return static_cast<const FrictionContext&>(context); }
@@ -64,14 +64,15 @@ Dissipation dissipation(double y, double e) {
   return {y * s * (1 - s / 3), s * (2 - s), 2 * (1 - s) / e};
 }
 
-// Whether both stencils are of the same point and the same other part. The center of a sphere has many contacts.
+// Returns whether both stencils belong to the same point and the same other part. The center of a sphere has many
+// contacts.
 bool is_of_same_point(const ContactStencil& a, const ContactStencil& b) {
   return a.radius == 0 && !a.is_of_edges() && !b.is_of_edges() && a.point[0] == b.point[0] && a.parts == b.parts;
 }
 
-// The normal force between a point and a part, or between two edges. In a concave crease it is the sum over two faces
-// less that over their edge. The shares make it act where the stencils do, so that nothing jumps where the closest of
-// the faces changes.
+// Returns the normal force between a point and a part, or between two edges. In a concave crease it is the sum over two
+// faces minus the force of their edge. The shares distribute it over the stencils, so that it is continuous where the
+// closest face changes.
 Traction traction_of(std::span<const ContactStencil> stencils, std::span<const Vec3d> points) {
   Traction traction{.stencils = stencils};
   std::vector<Vec3d> forces;
@@ -95,7 +96,7 @@ void add_weight(const Weight& added, std::vector<Weight>& weights) {
 }
 
 Slider slider_of(const ContactMesh& mesh, const Traction& traction, double force, double width) {
-  constexpr double kRoundOff = 1e-12;  // of forces over a face and its edge that cancel
+  constexpr double kRoundOff = 1e-12;  // round-off of canceling forces of a face and its edge
   Slider slider{.force = force, .width = width};
   slider.tangent = tangents({.r = traction.force, .d = norm(traction.force)});
   for (size_t s = 0; s < traction.stencils.size(); ++s) {
@@ -108,7 +109,7 @@ Slider slider_of(const ContactMesh& mesh, const Traction& traction, double force
   return slider;
 }
 
-// 1 if the obstacle of a stencil is its second feature, else -1.
+// Returns 1 if the obstacle of a stencil is its second feature, else -1.
 double side(const ContactMesh& mesh, const ContactStencil& stencil) {
   return mesh.parts[stencil.parts[0]].is_obstacle ? -1 : 1;
 }
@@ -133,7 +134,7 @@ void add_force(const Slider& slider, const Slip& f, std::span<double> g) {
   for (const auto& [row, factor] : slider.weights) add_vec(factor * force, row, g);
 }
 
-// Adds the blocks w_i w_j K for i > j: a stencil for two pairs of rows each.
+// Adds the blocks w_i w_j K for i > j, as one stencil per two pairs of rows.
 void add_pairs(std::span<const Weight> weights, const Mat3d& K, BlockSparse& H) {
   const int count = static_cast<int>(weights.size()), pairs = std::max(2, (count + 1) / 2);
   if (count < 2) return;
@@ -141,7 +142,7 @@ void add_pairs(std::span<const Weight> weights, const Mat3d& K, BlockSparse& H) 
     for (int low = 0; low < high; ++low) {
       const std::array<int, 4> own = {2 * low, 2 * low + 1, 2 * high, 2 * high + 1};
       const bool is_next =
-          high == low + 1;  // with the block inside the low pair; the last also that inside the high one
+          high == low + 1;  // with the block inside the low pair; the last one also inside the high pair
       Stencil added;
       for (int i = 0; i < 4; ++i) {
         if (own[i] >= count) continue;
@@ -167,7 +168,7 @@ void add_stiffness(const Slider& slider, const Stiffness& k, double scale, Block
   add_pairs(slider.weights, K, H);
 }
 
-// The Hessian of a slider with respect to its slip.
+// Returns the Hessian of a slider with respect to its slip.
 Stiffness stiffness(const Slider& slider, const Slip& u) {
   const double y = std::hypot(u[0], u[1]);
   const Dissipation f = dissipation(y, slider.width);
@@ -270,8 +271,8 @@ int Friction::add_hessian(Positions x, const Context& context, double scale, con
   return 0;
 }
 
-// A slider that d carries backward past its start is likely to stick: Newton's method on f would overshoot, for f'' = 0
-// while it slides. Its model becomes that of a stuck slider, whose force is 2 f u / e.
+// A slider that d moves backward past its start is likely to stick. Newton's method on f would overshoot, because f'' =
+// 0 while it slides. Models it as a sticking slider with the force 2 f u / e.
 int Friction::add_stops(Positions x, const Context& context, std::span<const double> d, double scale,
                         std::span<double> g, BlockSparse& H) const {
   const FrictionContext& own = friction(context);

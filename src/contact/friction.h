@@ -1,7 +1,7 @@
 // Coulomb friction as a dissipation potential of a step [Li 2020, section 5]: D = sum of mu lambda f(|u|) over the
-// stencils of a barrier, where u is the tangential relative displacement since the start of the step and lambda the
-// normal force. f(y) = y^2 / e - y^3 / (3 e^2) below e = speed * h, and y - e / 3 beyond: bodies at rest creep at less
-// than this speed. Normal forces and tangents lag behind the minimization, see Energy::update_lagged().
+// stencils of a barrier, where u is the tangential relative displacement since the start of the step and lambda is the
+// normal force. f(y) = y^2 / e - y^3 / (3 e^2) for y < e = speed * h, and y - e / 3 beyond. Bodies at rest creep at
+// less than this speed. Normal forces and tangents are lagged, see Energy::update_lagged().
 #pragma once
 #include "contact/barrier.h"
 
@@ -9,7 +9,7 @@ namespace aspic {
 
 class Friction : public Energy {
  public:
-  // `speed`: largest speed at which stuck surfaces creep [m/s]. `barrier` must outlive this.
+  // `speed`: maximum creep speed of sticking surfaces [m/s]. `barrier` must outlive this.
   Friction(const Barrier& barrier, double speed) : barrier_(barrier), speed_(speed) {}
 
   std::string_view name() const override { return "friction"; }
@@ -19,7 +19,7 @@ class Friction : public Energy {
   void update_lagged(Positions x, Context& context) const override;
   double value(Positions x, const Context& context) const override;
   void add_gradient(Positions x, const Context& context, double scale, std::span<double> g) const override;
-  // Work on friction of obstacles that move during the step [J].
+  // Returns the work [J] on friction of obstacles that move during the step.
   double obstacle_work(Positions x, const Context& context) const;
   int add_hessian(Positions x, const Context& context, double scale, const Projection& projection,
                   BlockSparse& H) const override;

@@ -11,7 +11,7 @@ namespace {
 
 constexpr double kCreep = 1e-2, kStep = 0.1, kWidth = kCreep * kStep;
 
-// A body, and friction with something that stands below it.
+// A body, and friction with a part below it.
 struct Sliding {
   std::vector<double> x, start = x;
   std::unique_ptr<Barrier> barrier;
@@ -97,7 +97,7 @@ TEST(Friction, DerivativesMatchDifferences) {
 }
 
 // Both faces share the force on the tip, so four vertices of the crease balance it.
-TEST(Friction, FacesOfACreaseShareTheForce) {
+TEST(Friction, CreaseFacesShareForce) {
   const Sliding at = over_crease(0, 20 * kWidth);
   const std::vector<double> g = at.gradient(at.x);
   EXPECT_GT(g[1], 0);
@@ -109,8 +109,8 @@ TEST(Friction, FacesOfACreaseShareTheForce) {
   for (const size_t vertex : {3, 4, 5, 6}) EXPECT_NE(g[3 * vertex + 1], 0) << vertex;
 }
 
-// A resumed run starts with a new context, and must continue alike.
-TEST(Friction, AStepDoesNotDependOnTheOneBefore) {
+// A resumed run starts with a new context and must yield the same result.
+TEST(Friction, StepIsIndependentOfPreviousStep) {
   const Sliding at = over_crease(2e-4, 20 * kWidth);
   std::vector<double> aside = at.start;
   aside[0] += 1e-3;
@@ -121,8 +121,8 @@ TEST(Friction, AStepDoesNotDependOnTheOneBefore) {
   EXPECT_EQ(at.gradient(at.x), at.gradient(at.x, *fresh));
 }
 
-// Around an edge, normals turn so fast that updates would alternate.
-TEST(Friction, KnownContactsKeepTheirDirectionsAfterSomeUpdates) {
+// Around an edge, normals rotate so fast that updates would alternate.
+TEST(Friction, KeepsDirectionsOfKnownContacts) {
   const Sliding at = over_crease(2e-4, 20 * kWidth);
   const auto direction_after = [&](int updates) {
     at.begin_step(*at.context);
@@ -137,8 +137,8 @@ TEST(Friction, KnownContactsKeepTheirDirectionsAfterSomeUpdates) {
   EXPECT_NEAR(direction_after(20), direction_after(1000), 1e-12);
 }
 
-// Coulomb's law: while everything slides, the force is mu times the normal force.
-TEST(Friction, SlidingForceIsThatOfCoulomb) {
+// Coulomb friction: while all contacts slide, the force is mu times the normal force.
+TEST(Friction, SlidingForceMatchesCoulomb) {
   const Sliding at = over_plane(0.1, 0);
   std::vector<double> normal(9);
   at.barrier->add_gradient(at.start, {}, 1, normal);
@@ -149,8 +149,8 @@ TEST(Friction, SlidingForceIsThatOfCoulomb) {
   }
 }
 
-// The model with stops is that of stuck surfaces, whose force is zero where the step began.
-TEST(Friction, DirectionsBackwardStick) {
+// The model with stops is that of sticking surfaces, whose force is zero at the start of the step.
+TEST(Friction, BackwardDirectionsStick) {
   const double moved = 20 * kWidth;
   Sliding at = over_plane(moved, 0);
   at.friction->add_hessian(at.x, *at.context, 1, {}, at.H);

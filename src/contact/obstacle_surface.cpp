@@ -9,9 +9,9 @@
 namespace aspic {
 namespace {
 
-constexpr double kExtent = 2;  // half the side of the square of a plane / size of the bodies
+constexpr double kExtent = 2;  // half the side of the square of a plane, relative to the size of the bodies
 
-// The square around the point below the bodies.
+// Returns a square around the point below the bodies.
 TriMesh square(const ContactPlane& plane, const Box& bodies) {
   const Vec3d center = 0.5 * (bodies.lower + bodies.upper);
   const Vec3d foot = center - dot(plane.normal, center - plane.origin) * plane.normal;
@@ -21,14 +21,14 @@ TriMesh square(const ContactPlane& plane, const Box& bodies) {
   return {{foot - a - b, foot + a - b, foot + a + b, foot - a + b}, {{0, 1, 2}, {0, 2, 3}}};
 }
 
-// Rings from one end of a capsule to the other.
+// Triangulates rings from one end of a capsule to the other.
 TriMesh capsule(const Vec3d& a, const Vec3d& b, double radius) {
   constexpr int kAround = 32, kRings = 16;  // rings: even
   const Vec3d axis = norm(b - a) > 0 ? (1 / norm(b - a)) * (b - a) : Vec3d{{0, 1, 0}};
   const auto [u, v] = tangents({.r = axis, .d = 1});
   TriMesh mesh;
   for (int i = 0; i <= kRings + 1; ++i) {
-    const int step = i <= kRings / 2 ? i : i - 1;  // the equator twice: at both ends
+    const int step = i <= kRings / 2 ? i : i - 1;  // the equator occurs twice, at both ends
     const double polar = std::numbers::pi * step / kRings;
     for (int k = 0; k < kAround; ++k) {
       const double angle = 2 * std::numbers::pi * k / kAround;

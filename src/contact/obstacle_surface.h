@@ -1,4 +1,4 @@
-// Surfaces of obstacles, for pictures and files.
+// Surfaces of obstacles for rendering and files.
 #pragma once
 #include <optional>
 #include <span>
@@ -12,11 +12,12 @@ namespace aspic {
 struct ObstacleSurface {
   std::string name;
   bool is_moving = false;
-  TriMesh surface;                    // now [m]; of a plane: a square below the bodies
-  std::optional<ContactPlane> plane;  // nothing: a surface
+  TriMesh surface;                    // current positions [m]; a plane: a square below the bodies
+  std::optional<ContactPlane> plane;  // empty: not a plane
 };
 
-// In the order of the scene. `points`: positions of the points of the mesh, see Barrier::obstacle_points().
+// Returns the surfaces in the order of the scene. `points`: positions of the points of the mesh, see
+// Barrier::obstacle_points().
 std::vector<ObstacleSurface> obstacle_surfaces(const ContactMesh& mesh, std::span<const Vec3d> points);
 
 }  // namespace aspic

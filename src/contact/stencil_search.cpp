@@ -19,14 +19,14 @@ bool equal(std::span<const Vec3d> a, std::span<const Vec3d> b) {
                     [](const Vec3d& x, const Vec3d& y) { return x[0] == y[0] && x[1] == y[1] && x[2] == y[2]; });
 }
 
-// The features of one part near a point, each with the number of times that it counts.
+// Features of one part near a point, with multiplicities.
 class NearFeatures {
  public:
   struct Entry {
-    std::array<int, 3> feature;  // points, ascending; -1 before the first
+    std::array<int, 3> feature;  // point indices, ascending; padded with -1 at the front
     int share;
-    Distance distance;         // from the point (0) to the feature, whose points follow
-    std::array<int, 4> point;  // of the query
+    Distance distance;         // from the point (index 0) to the feature, whose points follow
+    std::array<int, 4> point;  // indices in the query
   };
 
   // `among`: the points of the query that `distance` refers to.
@@ -145,7 +145,7 @@ void StencilSearch::add_point(const PathCandidates& candidates, std::span<const 
                        .radius = radius,
                        .area = area,
                        .parts = {own, other}});
-      // Points of a much coarser surface have next to no share: a tip would pierce the other surface.
+      // Points of a much coarser surface have almost no share, so a tip would pierce the other surface without a guard.
       const double guard = std::min(law.guard, mesh_.area[p]) - law.share * mesh_.area[p];
       if (guard > 0 && radius == 0 && entry.distance.d < kGuardReach * reach)
         found.push_back({.distance = entry.distance,
@@ -156,7 +156,7 @@ void StencilSearch::add_point(const PathCandidates& candidates, std::span<const 
     }
     near.clear();
   };
-  for (const NearTriangle& candidate : candidates.pairs->near(p)) {  // ascending, so the parts are
+  for (const NearTriangle& candidate : candidates.pairs->near(p)) {  // ascending, so the parts are, too
     const int t = candidate.triangle;
     const Triangle& corner = mesh_.triangles[t];
     if (mesh_.part[corner[0]] != other) {
@@ -196,7 +196,7 @@ void StencilSearch::add_point(const PathCandidates& candidates, std::span<const 
   finish();
 }
 
-// A plane is a face with its foot in the middle.
+// A plane is a face with its foot in the interior.
 void StencilSearch::add_planes(std::span<const Vec3d> x, int p, ContactStencils& found) const {
   if (mesh_.row[p] < 0) return;
   for (const ContactPlane& plane : mesh_.planes) {

@@ -1,5 +1,5 @@
-// Finds the stencils of the barrier at given positions. They depend on the positions alone; candidates of earlier
-// positions only save time.
+// Finds the stencils of the barrier at given positions. The result depends on the positions alone; candidates of
+// earlier positions only save time.
 #pragma once
 #include <array>
 #include <memory>
@@ -19,13 +19,14 @@ class StencilSearch {
  public:
   StencilSearch(const ContactMesh& mesh, const ContactLaws& laws);  // both must outlive this
 
-  // Returns the stencils with a gap below their reach, in an order that depends on the positions alone. May be called
-  // by several threads. Throws std::length_error if more pairs are close than memory holds.
+  // Returns the stencils with a gap below their reach, in an order that depends on the positions alone. Thread-safe.
+  // Throws std::length_error if there are too many close pairs for the memory.
   std::shared_ptr<const ContactStencils> at(std::span<const Vec3d> points) const;
-  // Returns candidates for all positions on the lines from `points` to `points` + `d`; nothing if they are too many.
+  // Returns candidates for all positions on the lines from `points` to `points` + `d`, or nothing if there are too
+  // many.
   std::optional<PathCandidates> along(PairScope scope, std::span<const Vec3d> points, std::span<const Vec3d> d) const;
 
-  int self_touching_point() const;  // without any distance to its own body at rest; -1: none
+  int self_touching_point() const;  // a point whose distance to its own body at rest is zero; -1: none
 
  private:
   using Candidates = std::array<PathCandidates, 2>;  // between parts and within them
@@ -36,10 +37,10 @@ class StencilSearch {
 
   const ContactMesh& mesh_;
   const ContactLaws& laws_;
-  std::vector<double> cap_;  // of the reach of each point to its own body: half its distance at rest [m]
+  std::vector<double> cap_;  // upper bound of the reach of each point to its own body: half its distance at rest [m]
   mutable std::mutex mutex_;
   mutable CandidateSearch within_, between_;
-  mutable std::vector<Vec3d> points_;  // of stencils_
+  mutable std::vector<Vec3d> points_;  // positions of stencils_
   mutable std::shared_ptr<const ContactStencils> stencils_;
 };
 

@@ -10,14 +10,14 @@ namespace aspic {
 namespace {
 
 constexpr double kLanding = 0.5;          // gap at which a step ends, relative to the reach
-constexpr double kFar = 0.1;              // of the size of a part
-constexpr double kSpring = 6.4;           // of springs at the landing, as that of the barrier at half its reach
-constexpr double kShortest = 1.0 / 1024;  // step that is worth a search for pairs
+constexpr double kFar = 0.1;              // maximum displacement relative to the size of a part
+constexpr double kSpring = 6.4;           // stiffness of springs at the landing; like the barrier at half its reach
+constexpr double kShortest = 1.0 / 1024;  // minimum step that is worth a search for pairs
 
-// As in StepRule.
+// See StepRule.
 double landing_gap(double gap, double reach) { return gap > reach ? kLanding * reach : 0.2 * gap; }
 
-// The smallest of step_of(i, upper bound) for all i.
+// Returns the smallest step_of(i, upper bound) over all i.
 template <class StepOf>
 double smallest(int count, const StepOf& step_of) {
   std::vector<double> steps(count / kChunkSize + 1, 1.0);
@@ -39,8 +39,8 @@ void scale(double factor, std::span<Vec3d> u) {
 
 }  // namespace
 
-// Returns a step of at most 1 on which no point moves further than kFar relative to its part. Longer ones have too many
-// candidates.
+// Returns a step of at most 1 on which no point moves further than kFar relative to its part, because longer steps have
+// too many candidates.
 double StepBound::longest(std::span<const Vec3d> u) const {
   double step = 1;
   for (size_t k = 0; k < mesh_.parts.size(); ++k) {
@@ -88,7 +88,7 @@ double StepBound::of_edges(const Line& line, const EdgePair& edges, double step)
       .alpha;
 }
 
-// Scales u to a line that has few enough candidates, and `factor` with it. Nothing: there is none worth it.
+// Scales u, and `factor` with it, to a line with few enough candidates. Returns nothing if the line would be too short.
 std::optional<StepBound::Line> StepBound::line(PairScope scope, std::span<const Vec3d> p, std::vector<Vec3d>& u,
                                                double& factor) const {
   std::optional<PathCandidates> candidates;
@@ -117,7 +117,7 @@ double StepBound::among(PairScope scope, std::span<const Vec3d> p, std::vector<V
   return factor * step;
 }
 
-// Shorter lines have fewer candidates, so what costs little comes first.
+// Shorter lines have fewer candidates, so cheap bounds are computed first.
 double StepBound::largest(std::span<const Vec3d> p, std::vector<Vec3d> u) const {
   double step = longest(u);
   scale(step, u);
@@ -156,7 +156,7 @@ Impact StepBound::impact(const MovingPair& pair, const std::array<int, 4>& point
 void StepBound::add_point_impacts(const Line& line, std::vector<Impact>& found) const {
   const ContactCandidates& pairs = *line.candidates.pairs;
   std::vector<double> alpha(mesh_.point_count(), 1.0);
-  std::vector<int> first(mesh_.point_count(), -1);  // triangle that each point meets first
+  std::vector<int> first(mesh_.point_count(), -1);  // first triangle in the path of each point
   parallel_chunks(mesh_.point_count(), [&](int begin, int end) {
     for (int i = begin; i < end; ++i)
       for (const NearTriangle& near : pairs.near(i))

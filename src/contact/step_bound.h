@@ -1,4 +1,4 @@
-// The largest step along a line on which no surfaces touch, and what bounds it.
+// The largest step along a line on which no surfaces touch, and the pairs that bound it.
 #pragma once
 #include <optional>
 #include <span>
@@ -9,26 +9,26 @@
 
 namespace aspic {
 
-// A pair that meets along a line, where it has its landing gap: the gap after a displacement of its points by u_i is
-// about n . sum c_i (x_i + u_i) - offset.
+// A pair that reaches its landing gap along a line. After a displacement of its points by u_i, its gap is about n . sum
+// c_i (x_i + u_i) - offset.
 struct Impact {
-  std::array<int, 4> point = {-1, -1, -1, -1};  // of the ContactMesh
+  std::array<int, 4> point = {-1, -1, -1, -1};  // indices in the ContactMesh
   Distance distance;                            // at the landing
   double offset = 0;                            // n . origin of a plane [m]
-  double landing = 0;                           // gap [m]
-  double stiffness = 0;                         // of a spring that keeps the gap [N/m]
+  double landing = 0;                           // landing gap [m]
+  double stiffness = 0;                         // stiffness of a spring that keeps the gap [N/m]
 };
 
 class StepBound {
  public:
-  // `sizes`: of the parts at rest [m]. All arguments must outlive this.
+  // `sizes`: sizes of the parts at rest [m]. All arguments must outlive this.
   StepBound(const ContactMesh& mesh, const ContactLaws& laws, const StencilSearch& search,
             std::span<const double> sizes)
       : mesh_(mesh), laws_(laws), search_(search), sizes_(sizes) {}
 
   // Returns a step of at most 1 from the positions p of all points along u.
   double largest(std::span<const Vec3d> p, std::vector<Vec3d> u) const;
-  // Returns the first impact of each point and the pairs of edges each of which is the first of both: with obstacles
+  // Returns the first impact of each point, and the edge pairs that are the first impact of both edges: with obstacles
   // and between parts, or if there are none, within parts.
   std::vector<Impact> impacts(std::span<const Vec3d> p, std::vector<Vec3d> u) const;
 
