@@ -11,7 +11,7 @@ std::string encoded(std::string_view bytes) {
   return text;
 }
 
-TEST(Base64, MatchesTheVectorsOfRfc4648) {
+TEST(Base64, MatchesVectorsOfRfc4648) {
   EXPECT_EQ(encoded(""), "");
   EXPECT_EQ(encoded("f"), "Zg==");
   EXPECT_EQ(encoded("fo"), "Zm8=");
@@ -21,7 +21,7 @@ TEST(Base64, MatchesTheVectorsOfRfc4648) {
   EXPECT_EQ(encoded("foobar"), "Zm9vYmFy");
 }
 
-TEST(Base64, DecodesWhatItEncoded) {
+TEST(Base64, DecodesItsOwnEncoding) {
   std::string bytes;
   for (int i = 0; i < 300; ++i) bytes += static_cast<char>(i * 37);
   const std::string text = encoded(bytes);
@@ -32,7 +32,7 @@ TEST(Base64, DecodesWhatItEncoded) {
   EXPECT_TRUE(rest.empty());
 }
 
-TEST(Base64, ContinuesAfterThePaddingOfAnEarlierEncoding) {
+TEST(Base64, ContinuesAfterPadding) {
   const std::string text = encoded("head") + " \n" + encoded("data");
   std::string_view rest = text;
   std::string decoded;
@@ -42,7 +42,7 @@ TEST(Base64, ContinuesAfterThePaddingOfAnEarlierEncoding) {
   EXPECT_EQ(decoded, "headdata");
 }
 
-TEST(Base64, RefusesForeignCharactersAndTornGroups) {
+TEST(Base64, RejectsInvalidCharactersAndIncompleteGroups) {
   for (std::string_view text : {"Zm9*", "Zg=v", "====", "Zm9", "Z\x80\xff\x01"}) {
     std::string decoded;
     EXPECT_FALSE(decode_base64(text, 3, decoded)) << text;

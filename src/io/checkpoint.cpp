@@ -77,7 +77,7 @@ class Decoder {
   [[noreturn]] void fail(const std::string& what) const { throw InvalidInput(path_.string() + ": " + what); }
 
   void check_head() {
-    if (!whole_.starts_with(kCheckpointMagic)) fail("is no checkpoint");
+    if (!whole_.starts_with(kCheckpointMagic)) fail("is not a checkpoint");
     rest_.remove_prefix(kCheckpointMagic.size());
     if (number<uint32_t>() != kWordOrderMark) fail("was written on a machine of another byte order, or is damaged");
     if (const auto version = number<uint32_t>(); version != kVersion) {

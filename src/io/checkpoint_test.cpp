@@ -72,7 +72,7 @@ TEST_F(CheckpointFile, NamesAnotherVersionOrByteOrder) {
   put(path("c.bin"), whole);
   EXPECT_THAT(message(path("c.bin")), HasSubstr("another byte order"));
   put(path("c.bin"), "step,time\n");
-  EXPECT_THAT(message(path("c.bin")), HasSubstr("c.bin: is no checkpoint"));
+  EXPECT_THAT(message(path("c.bin")), HasSubstr("c.bin: is not a checkpoint"));
 }
 
 TEST_F(CheckpointFile, DamagedNewestFallsBackToPreviousWithNote) {

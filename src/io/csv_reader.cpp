@@ -54,7 +54,7 @@ bool parse(const std::string& text, Number& value) {
 
 CsvReader::CsvReader(const std::filesystem::path& path, CsvOrigin origin)
     : path_(path), in_(open_input(path)), origin_(origin) {
-  if (!read_line()) throw InvalidInput(path.string() + ": is empty; a table begins with the names of its columns");
+  if (!read_line()) throw InvalidInput(path.string() + ": is empty; a table begins with its column names");
   columns_ = cells_;
 }
 
@@ -120,7 +120,7 @@ bool CsvReader::next() {
   if (!read_line()) return false;
   if (cells_.size() != columns_.size())
     throw InvalidInput(path_.string() + ":" + std::to_string(line_) + ": has " + std::to_string(cells_.size()) +
-                       " cells; the head names " + std::to_string(columns_.size()) +
+                       " cells; the header has " + std::to_string(columns_.size()) +
                        " (is the row torn, or a separator inside a text without quotes?)");
   return true;
 }

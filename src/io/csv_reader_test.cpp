@@ -56,7 +56,7 @@ TEST_F(CsvReading, ReadsBackWrittenNumbersExactly) {
   EXPECT_FALSE(table.next());
 }
 
-TEST_F(CsvReading, ShowsTerminalControlCharactersByTheirBytes) {
+TEST_F(CsvReading, EscapesTerminalControlCharacters) {
   CsvReader table = reader(
       "step,e\x1b[31m\n1,b\xfc"
       "chse\n");
@@ -65,16 +65,16 @@ TEST_F(CsvReading, ShowsTerminalControlCharactersByTheirBytes) {
   EXPECT_EQ(table.text(1), "b\\xFCchse");
 }
 
-TEST_F(CsvReading, ATornLastLineIsNoRow) {
+TEST_F(CsvReading, IgnoresIncompleteLastLine) {
   CsvReader table = reader("step,energy\n1,2\n2,3");
   EXPECT_TRUE(table.next());
   EXPECT_FALSE(table.next());
 }
 
-TEST_F(CsvReading, DamageIsRefusedWithFileAndLine) {
+TEST_F(CsvReading, RejectsDamageWithFileAndLine) {
   EXPECT_THAT(refusal(""), HasSubstr("table.csv: is empty"));
   EXPECT_THAT(refusal("step,value\n"), HasSubstr("table.csv:1: has no column 'energy'"));
-  EXPECT_THAT(refusal("step,energy\n1,2\n2\n"), HasSubstr("table.csv:3: has 1 cells; the head names 2"));
+  EXPECT_THAT(refusal("step,energy\n1,2\n2\n"), HasSubstr("table.csv:3: has 1 cells; the header has 2"));
   EXPECT_THAT(refusal("step,energy\n1,two\n"), HasSubstr("table.csv:2: energy = 'two' is not a number"));
   EXPECT_THAT(refusal("step,energy\n1.5,2\n"), HasSubstr("table.csv:2: step = '1.5' is not a whole number"));
   EXPECT_THAT(refusal("step,energy\n" + std::string(3'000'000, 'x') + "\n"), HasSubstr("table.csv:2: is too long"));
@@ -98,7 +98,7 @@ TEST_F(CsvReading, AcceptsSemicolonsAndDecimalCommasOfSpreadsheets) {
   EXPECT_FALSE(table.next());
 }
 
-TEST_F(CsvReading, TabsSeparateAndAFolderIsNoTable) {
+TEST_F(CsvReading, AcceptsTabsAndRejectsFolders) {
   write_file(path("tabs.csv"), "a\tb\n1\t2\n");
   CsvReader table(path("tabs.csv"), CsvOrigin::foreign);
   ASSERT_TRUE(table.next());

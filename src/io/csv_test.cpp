@@ -16,7 +16,7 @@ using CsvTable = FolderTest;
 
 const std::vector<std::string> kColumns = {"step", "energy"};
 
-TEST_F(CsvTable, WritesTheShortestNumbersThatReadBack) {
+TEST_F(CsvTable, WritesShortestExactNumbers) {
   EXPECT_EQ(CsvRow().add(1).add(0.1).add(1e-9).add(-0.0).add(2.0).text(), "1,0.1,1e-09,-0,2");
   EXPECT_EQ(CsvRow().add(std::numeric_limits<double>::infinity()).add(-std::numeric_limits<double>::quiet_NaN()).text(),
             "inf,nan");
@@ -28,14 +28,14 @@ TEST_F(CsvTable, QuotesWordsThatNeedIt) {
   EXPECT_EQ(CsvRow().add("").add(1).text(), "\"\",1");
 }
 
-TEST_F(CsvTable, EveryRowIsInTheFileAtOnce) {
+TEST_F(CsvTable, WritesEachRowImmediately) {
   CsvFile table = CsvFile::create(path("t.csv"), kColumns);
   EXPECT_EQ(read_file(path("t.csv")), "step,energy\n");
   table.append(CsvRow().add(1).add(0.5));
   EXPECT_EQ(read_file(path("t.csv")), "step,energy\n1,0.5\n");
 }
 
-TEST_F(CsvTable, ResumingDropsLaterRowsAndATornLine) {
+TEST_F(CsvTable, ResumingDropsLaterAndIncompleteRows) {
   for (const char* rest : {"", "3,0.75\n4,1\n", "3,0.7", "3"}) {
     put(path("t.csv"), std::string("step,energy\n1,0.5\n2,0.6\n") + rest);
     CsvFile::resume(path("t.csv"), kColumns, 2, CsvFile::Rows::every_step).append(CsvRow().add(3).add(9.0));
@@ -43,13 +43,13 @@ TEST_F(CsvTable, ResumingDropsLaterRowsAndATornLine) {
   }
 }
 
-TEST_F(CsvTable, ResumingAtStepZeroKeepsTheHeadAlone) {
+TEST_F(CsvTable, ResumingAtStepZeroKeepsOnlyHeader) {
   put(path("t.csv"), "step,energy\n1,0.5\n");
   CsvFile::resume(path("t.csv"), kColumns, 0, CsvFile::Rows::every_step);
   EXPECT_EQ(read_file(path("t.csv")), "step,energy\n");
 }
 
-TEST_F(CsvTable, ResumingRefusesWhatDoesNotFit) {
+TEST_F(CsvTable, ResumingRejectsMismatchingTables) {
   const auto message = [&](const std::string& text, CsvFile::Rows rows) {
     put(path("t.csv"), text);
     return message_of<InvalidInput>([&] { CsvFile::resume(path("t.csv"), kColumns, 2, rows); });

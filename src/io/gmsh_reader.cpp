@@ -126,7 +126,7 @@ class GmshReader {
       }
     }
     if (count != static_cast<int64_t>(content_.vertices.size()))
-      in.fail("$Nodes says " + std::to_string(count) + " nodes, but its blocks hold " +
+      in.fail("$Nodes states " + std::to_string(count) + " nodes, but its blocks hold " +
               std::to_string(content_.vertices.size()) + "; get a complete copy");
     text_.seek(in.position());
   }
@@ -236,7 +236,7 @@ class GmshReader {
       total += elements;
     }
     if (count != total)
-      in.fail("$Elements says " + std::to_string(count) + " elements, but its blocks hold " + std::to_string(total) +
+      in.fail("$Elements states " + std::to_string(count) + " elements, but its blocks hold " + std::to_string(total) +
               "; get a complete copy");
     text_.seek(in.position());
   }

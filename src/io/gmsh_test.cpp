@@ -41,7 +41,7 @@ TEST(Gmsh, TextAndBinaryOfBothVersionsAgree) {
   }
 }
 
-TEST(Gmsh, TheEntityLabelsTetsWithoutAGroup) {
+TEST(Gmsh, LabelsTetsWithoutGroupByEntity) {
   std::string text = replaced(gmsh_41_text(), "1 0 0 0 1 1 1 1 7 1 1", "1 0 0 0 1 1 1 0 1 1");
   EXPECT_THAT(parse_gmsh("a.msh", text).region, ElementsAre(1, 9));
   text = replaced(text, "2 0 0 0 1 1 1 2 9 8 1 1", "2 0 0 0 1 1 1 0 1 1");
@@ -50,7 +50,7 @@ TEST(Gmsh, TheEntityLabelsTetsWithoutAGroup) {
   EXPECT_THAT(parse_gmsh("a.msh", text).region, ElementsAre()) << "one entity labels nothing";
 }
 
-TEST(Gmsh, QuadranglesAreSplitWhereThereAreNoTets) {
+TEST(Gmsh, SplitsQuadranglesWithoutTets) {
   const MeshContent mesh =
       parse_gmsh("a.msh",
                  "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$Nodes\n4\n1 0 0 0\n2 1 0 0\n3 1 1 0\n4 0 1 "
@@ -58,7 +58,7 @@ TEST(Gmsh, QuadranglesAreSplitWhereThereAreNoTets) {
   EXPECT_THAT(mesh.triangles, ElementsAre(Triangle{0, 1, 2}, Triangle{0, 2, 3}));
 }
 
-TEST(Gmsh, RefusesUnsupportedSolidElementsByName) {
+TEST(Gmsh, RejectsUnsupportedSolidElements) {
   const std::string tets10 = replaced(gmsh_22_text(), "5 4 4 9 2 1 -1 2 4 8 9", "5 11 2 9 2 1 2 4 8 9 1 2 4 8 9");
   EXPECT_THAT(gmsh_error(tets10),
               HasSubstr("a.msh:24: the mesh has 10-node tets (second order), which are not read; export it"));
@@ -67,7 +67,7 @@ TEST(Gmsh, RefusesUnsupportedSolidElementsByName) {
   EXPECT_THAT(gmsh_error(replaced(gmsh_22_text(), "5 4 4 9", "5 77 4 9")), HasSubstr("element type 77 is unknown"));
 }
 
-TEST(Gmsh, SecondOrderTrianglesAreSkippedBesideTetsOnly) {
+TEST(Gmsh, SkipsSecondOrderTrianglesOnlyBesideTets) {
   const std::string text = replaced(gmsh_22_text(), "3 2 2 1 1 1 2 4", "3 9 2 1 1 1 2 4 1 2 4");
   EXPECT_EQ(parse_gmsh("a.msh", text).tets.size(), 2u);
   EXPECT_THAT(gmsh_error("$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$Nodes\n3\n1 0 0 0\n2 1 0 0\n3 1 1 0\n$EndNodes\n"
@@ -75,7 +75,7 @@ TEST(Gmsh, SecondOrderTrianglesAreSkippedBesideTetsOnly) {
               HasSubstr("6-node triangles (second order)"));
 }
 
-TEST(Gmsh, ErrorsNameTheLineOrTheByte) {
+TEST(Gmsh, ErrorsNameLineOrByte) {
   EXPECT_THAT(gmsh_error(replaced(gmsh_22_text(), "4 0 1 0", "4 0 nan 0")),
               HasSubstr("a.msh:13: a node's coordinate is 'nan'"));
   EXPECT_THAT(gmsh_error(replaced(gmsh_22_text(), "\n6\n1 0", "\n7\n1 0")), HasSubstr("a.msh:17: the tag of a node"));

@@ -28,15 +28,15 @@ TEST(Gzip, UnpacksWhatItPacked) {
   }
 }
 
-TEST(Gzip, MakesRepetitionSmall) { EXPECT_LT(gzipped(std::string(100000, 'a')).size(), 200u); }
+TEST(Gzip, CompressesRepetition) { EXPECT_LT(gzipped(std::string(100000, 'a')).size(), 200u); }
 
-TEST(Gzip, ReadsWhatOtherProgramsPacked) {
+TEST(Gzip, ReadsArchivesOfOtherPrograms) {
   const std::string hello(
       "\x1f\x8b\x08\x00\x00\x00\x00\x00\x02\x03\xcb\x48\xcd\xc9\xc9\x07\x00\x86\xa6\x10\x36\x05\x00\x00\x00", 25);
   EXPECT_EQ(gunzipped(hello, kLimit), "hello");
 }
 
-TEST(Gzip, TellsDamageFromTruncation) {
+TEST(Gzip, DistinguishesDamageFromTruncation) {
   const std::string packed = gzipped(noise(1000));
   for (size_t size = 0; size < packed.size(); ++size)
     EXPECT_THAT([&] { gunzipped(packed.substr(0, size), kLimit); }, ThrowsMessage<InvalidInput>(HasSubstr("cut short")))
@@ -48,7 +48,7 @@ TEST(Gzip, TellsDamageFromTruncation) {
   EXPECT_THAT([&] { gunzipped("no gzip at all", kLimit); }, ThrowsMessage<InvalidInput>(HasSubstr("damaged")));
 }
 
-TEST(Gzip, RefusesToUnpackMoreThanExpected) {
+TEST(Gzip, RejectsMoreThanExpected) {
   const std::string bomb = gzipped(std::string(10 * kLimit, '\0'));
   EXPECT_THAT([&] { gunzipped(bomb, kLimit); }, ThrowsMessage<InvalidInput>(HasSubstr("more than the 1048576 bytes")));
   EXPECT_EQ(gunzipped(gzipped(std::string(kLimit, 'a')), kLimit).size(), kLimit);

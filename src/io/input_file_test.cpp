@@ -15,7 +15,7 @@ using testing::HasSubstr;
 
 using InputFile = FolderTest;
 
-TEST_F(InputFile, IsRegularOrNotOpened) {
+TEST_F(InputFile, OpensOnlyRegularFiles) {
   ASSERT_EQ(::mkfifo(path("pipe").c_str(), 0600), 0);  // opening it would wait for a writer
   fs::create_directory(path("folder"));
   for (const fs::path& file : {path("pipe"), path("folder"), path("missing"), fs::path("/dev/zero")}) {
@@ -26,14 +26,14 @@ TEST_F(InputFile, IsRegularOrNotOpened) {
   }
 }
 
-TEST_F(InputFile, IsReadFromItsBeginning) {
+TEST_F(InputFile, IsReadFromBeginning) {
   put(path("file"), "text");
   std::string word;
   open_input(path("file")) >> word;
   EXPECT_EQ(word, "text");
 }
 
-TEST_F(InputFile, RelevantLinksInFolderAreRefused) {
+TEST_F(InputFile, RejectsRelevantLinksInFolder) {
   put(path("victim"), "");
   fs::create_directories(path("run") / "frames");
   const auto is_result = [](const fs::path& file) { return file.filename() != "mine"; };

@@ -49,7 +49,7 @@ void expect_valid(const MeshContent& mesh, const std::string& context) {
   ASSERT_TRUE(mesh.region.empty() || mesh.region.size() == mesh.tets.size()) << context;
 }
 
-// Returns whether the text was refused.
+// Returns whether the text was rejected.
 bool is_refused(const Case& c, std::string_view contents, const std::string& context) {
   try {
     expect_valid(c.parse("file", contents), context);
@@ -60,7 +60,7 @@ bool is_refused(const Case& c, std::string_view contents, const std::string& con
   }
 }
 
-TEST(MalformedMesh, TheExamplesThemselvesAreRead) {
+TEST(MalformedMesh, ExamplesThemselvesAreRead) {
   for (const Case& c : cases()) EXPECT_FALSE(is_refused(c, c.contents, c.name)) << c.name;
 }
 

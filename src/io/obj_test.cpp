@@ -23,7 +23,7 @@ std::string obj_error(const char* text) {
 
 const std::string kSquare = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\n";
 
-TEST(Obj, PolygonsAreFannedFromTheirFirstCorner) {
+TEST(Obj, FansPolygonsFromFirstCorner) {
   const MeshContent mesh = parse((kSquare + "f 1 2 3 4\n").c_str());
   EXPECT_THAT(mesh.triangles, ElementsAre(Triangle{0, 1, 2}, Triangle{0, 2, 3}));
 }
@@ -49,7 +49,7 @@ TEST(Obj, CommentsGroupsMaterialsAndContinuedLinesAreAccepted) {
   EXPECT_THAT(mesh.triangles, ElementsAre(Triangle{0, 1, 2}));
 }
 
-TEST(Obj, FacesMayPrecedeTheirVertices) {
+TEST(Obj, FacesMayPrecedeVertices) {
   EXPECT_THAT(parse(("f 1 2 3\n" + kSquare).c_str()).triangles, ElementsAre(Triangle{0, 1, 2}));
 }
 
@@ -66,7 +66,7 @@ TEST(Obj, ErrorsNameFileLineValueAndRemedy) {
   EXPECT_THAT(obj_error("vertex 1 2 3\n"), HasSubstr("a.obj:1: unknown statement 'vertex'"));
 }
 
-TEST(Obj, NumbersBelowTheSmallestDoubleAreZero) { EXPECT_EQ(parse("v 1e-999 +2 -1E-400").vertices[0][0], 0); }
+TEST(Obj, NumbersBelowSmallestDoubleAreZero) { EXPECT_EQ(parse("v 1e-999 +2 -1E-400").vertices[0][0], 0); }
 
 }  // namespace
 }  // namespace aspic

@@ -26,14 +26,14 @@ TEST_F(GrowingFile, AppendsOverwritesAndShortens) {
   EXPECT_EQ(read_file(path("a")), "Jello!");
 }
 
-TEST_F(GrowingFile, ContinuesAnExistingFile) {
+TEST_F(GrowingFile, ContinuesExistingFile) {
   put(path("a"), "one\n");
   OutputFile file = OutputFile::open_existing(path("a"));
   file.append("two\n");
   EXPECT_EQ(read_file(path("a")), "one\ntwo\n");
 }
 
-TEST_F(GrowingFile, SaysWhichFileFailedAndWhy) {
+TEST_F(GrowingFile, ReportsFailedFileAndReason) {
   const auto message = [](auto call) { return message_of<InvalidInput>(call); };
   EXPECT_THAT(message([&] { OutputFile::open_existing(path("missing")); }), HasSubstr("missing: cannot be opened"));
   EXPECT_THAT(message([&] { OutputFile::create(path("no/folder")); }), HasSubstr("No such file or directory"));

@@ -51,7 +51,7 @@ Pc2File Pc2File::resume(const std::filesystem::path& path, int points, int sampl
   cache.points_ = points;
   cache.samples_ = samples;
   if (cache.file_.size() < kPc2HeadSize || bytes_at(path, 0, kCountOffset) != head(points, 0).substr(0, kCountOffset)) {
-    throw InvalidInput(path.string() + ": is no point cache of " + std::to_string(points) + " points");
+    throw InvalidInput(path.string() + ": is not a point cache of " + std::to_string(points) + " points");
   }
   const uint64_t size = kPc2HeadSize + static_cast<uint64_t>(samples) * cache.sample_size();
   if (cache.file_.size() < size) {
@@ -99,11 +99,11 @@ Pc2Reader::Pc2Reader(const std::filesystem::path& path) : path_(path), in_(open_
   read(kCountOffset, samples_);
   if (points_ < 0 || samples_ < 0 || !bytes.starts_with(head(points_, 0).substr(0, kStartOffset)) ||
       !std::isfinite(start_) || !(rate_ > 0 && std::isfinite(rate_)))
-    throw InvalidInput(path.string() + ": is no point cache of version 1");
+    throw InvalidInput(path.string() + ": is not a point cache of version 1");
   in_.seekg(0, std::ios::end);
   const uint64_t whole = in_ ? (static_cast<uint64_t>(in_.tellg()) - kPc2HeadSize) / 12 : 0;  // points of all samples
   if (static_cast<uint64_t>(points_) * static_cast<uint64_t>(samples_) > whole)
-    throw InvalidInput(path.string() + ": the point cache is cut short: its head counts " + std::to_string(samples_) +
+    throw InvalidInput(path.string() + ": the point cache is cut short: its header states " + std::to_string(samples_) +
                        " samples of " + std::to_string(points_) + " points");
 }
 

@@ -42,7 +42,7 @@ class Pc2Reader {
 
   int points() const { return points_; }
   int samples() const { return samples_; }
-  double frame(int sample) const { return start_ + sample * rate_; }  // at which the sample was taken
+  double frame(int sample) const { return start_ + sample * rate_; }  // frame of the sample
   std::vector<float> sample(int index);  // 3 per point [m]; throws InvalidInput if it cannot be read
 
  private:

@@ -42,7 +42,7 @@ TEST_F(PointCache, CountsOnlyCompleteSamples) {
   EXPECT_EQ(cache.sample(0), (std::vector<float>{0, 1, 2, 3, 4, 5}));
 }
 
-TEST_F(PointCache, ResumingGivesTheSameBytesAsNotStopping) {
+TEST_F(PointCache, ResumedFileEqualsUninterruptedFile) {
   write_two(path("whole.pc2"));
   write_two(path("torn.pc2"));
   std::filesystem::resize_file(path("torn.pc2"), 32 + 24 + 7);  // the header counts the incomplete sample
@@ -52,18 +52,18 @@ TEST_F(PointCache, ResumingGivesTheSameBytesAsNotStopping) {
   EXPECT_EQ(read_file(path("torn.pc2")), read_file(path("whole.pc2")));
 }
 
-TEST_F(PointCache, ResumingRefusesWhatDoesNotFit) {
+TEST_F(PointCache, ResumingRejectsMismatchingCaches) {
   write_two(path("a.pc2"));
   const auto message = [&](int points, int samples) {
     return message_of<InvalidInput>([&] { Pc2File::resume(path("a.pc2"), points, samples); });
   };
-  EXPECT_THAT(message(3, 2), HasSubstr("a.pc2: is no point cache of 3 points"));
+  EXPECT_THAT(message(3, 2), HasSubstr("a.pc2: is not a point cache of 3 points"));
   EXPECT_THAT(message(2, 3), HasSubstr("holds fewer than the 3 samples"));
   put(path("a.pc2"), "POINTCACHE2");
-  EXPECT_THAT(message(2, 0), HasSubstr("is no point cache"));
+  EXPECT_THAT(message(2, 0), HasSubstr("is not a point cache"));
 }
 
-TEST_F(PointCache, IsReadWithoutBeingTouched) {
+TEST_F(PointCache, ReadingDoesNotModifyFile) {
   write_two(path("a.pc2"));
   const std::string bytes = read_file(path("a.pc2"));
   Pc2Reader cache(path("a.pc2"));
@@ -74,7 +74,7 @@ TEST_F(PointCache, IsReadWithoutBeingTouched) {
   EXPECT_EQ(read_file(path("a.pc2")), bytes);
 }
 
-TEST_F(PointCache, ReadingRefusesDamage) {
+TEST_F(PointCache, ReadingRejectsDamage) {
   write_two(path("a.pc2"));
   const std::string bytes = read_file(path("a.pc2"));
   const auto message = [&](const std::string& damaged) {
@@ -83,7 +83,7 @@ TEST_F(PointCache, ReadingRefusesDamage) {
   };
   EXPECT_THAT(message(bytes.substr(0, 20)), HasSubstr("b.pc2: cannot be read, or is too short"));
   EXPECT_THAT(message(bytes.substr(0, 70)), HasSubstr("b.pc2: the point cache is cut short"));
-  EXPECT_THAT(message("x" + bytes.substr(1)), HasSubstr("b.pc2: is no point cache"));
+  EXPECT_THAT(message("x" + bytes.substr(1)), HasSubstr("b.pc2: is not a point cache"));
   std::string hostile = bytes;
   hostile.replace(16, 4, "\xff\xff\xff\x7f").replace(28, 4, "\xff\xff\xff\x7f");  // 2^31 - 1 points and samples
   EXPECT_THAT(message(hostile), HasSubstr("b.pc2: the point cache is cut short"));

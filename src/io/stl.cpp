@@ -170,9 +170,10 @@ MeshContent parse_stl(const std::string& file, std::string_view contents) {
     if (contents.size() - kHeaderSize - kCountSize == kTriangleSize * uint64_t{count})
       return parse_binary(bytes, bytes.checked_count(count, "the number of triangles", kTriangleSize));
     if (!says_solid)
-      bytes.fail("the file says " + std::to_string(count) + " triangles, which takes " +
-                 std::to_string(kHeaderSize + kCountSize + kTriangleSize * uint64_t{count}) + " bytes, but it has " +
-                 std::to_string(contents.size()) + "; it is damaged or no STL file, get a complete copy");
+      bytes.fail("the header states " + std::to_string(count) + " triangles, that is " +
+                 std::to_string(kHeaderSize + kCountSize + kTriangleSize * uint64_t{count}) +
+                 " bytes, but the file has " + std::to_string(contents.size()) +
+                 "; it is damaged or no STL file, get a complete copy");
   }
   if (!says_solid)
     throw InvalidInput(file +

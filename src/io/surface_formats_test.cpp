@@ -31,7 +31,7 @@ TEST(Off, PolygonsAreFannedAndColorsSkipped) {
   EXPECT_THAT(mesh.triangles, ElementsAre(Triangle{0, 1, 2}, Triangle{0, 2, 3}, Triangle{0, 3, 4}, Triangle{0, 1, 2}));
 }
 
-TEST(Off, ErrorsNameTheLine) {
+TEST(Off, ErrorsNameLine) {
   EXPECT_THAT(surface_error<parse_off>("OFF\n3 1 0\n0 0 0\n1 0 0\n1 1\n3 0 1 2\n"),
               HasSubstr("a:5: the line ends where"));
   EXPECT_THAT(surface_error<parse_off>("OFF\n3 1 0\n0 0 0\n1 0 0\n1 1 0\n3 0 1 3\n"),
@@ -59,7 +59,7 @@ std::string small_ply(const std::string& header, const std::string& body) {
   return "ply\nformat ascii 1.0\n" + header + "end_header\n" + body;
 }
 
-TEST(Ply, ErrorsNameTheLine) {
+TEST(Ply, ErrorsNameLine) {
   const std::string vertices = "element vertex 1\nproperty float x\nproperty float y\nproperty float z\n";
   const std::string faces = "element face 1\nproperty list uchar int vertex_indices\n";
   EXPECT_THAT(surface_error<parse_ply>(small_ply(vertices, "0 inf 0\n")),
@@ -88,21 +88,21 @@ TEST(Ply, ElementWithoutPropertiesNeedsNoTime) {
   EXPECT_EQ(parse_ply("a", small_ply("element nothing 9223372036854775807\n", "")).vertices.size(), 0u);
 }
 
-TEST(Stl, CornersAtOnePlaceBecomeOneVertex) {
+TEST(Stl, MergesCornersAtSamePosition) {
   for (const std::string head : {"exported", "solid exported"}) {
     const MeshContent mesh = parse_stl("a", binary_stl(head));
     EXPECT_THAT(mesh.triangles, ElementsAre(Triangle{0, 1, 2}, Triangle{0, 1, 3}));
   }
 }
 
-TEST(Stl, ErrorsNameTheLineOrTheSize) {
+TEST(Stl, ErrorsNameLineOrSize) {
   EXPECT_THAT(surface_error<parse_stl>("solid a\nfacet normal 0 0 1\nouter loop\nvertex 0 0\nvertex 1 0 0\n"),
               HasSubstr("a:5: a vertex coordinate is 'vertex'"));
   EXPECT_THAT(
       surface_error<parse_stl>("solid a\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nendloop\n"),
       HasSubstr("a:6: found 'endloop' where 'vertex' should be"));
   EXPECT_THAT(surface_error<parse_stl>(binary_stl("exported") + "x"),
-              HasSubstr("says 2 triangles, which takes 184 bytes, but it has 185"));
+              HasSubstr("states 2 triangles, that is 184 bytes, but the file has 185"));
   EXPECT_THAT(surface_error<parse_stl>("v 0 0 0"), HasSubstr("is this an STL file?"));
   std::string infinite = binary_stl("exported");
   infinite.replace(84 + 12, 4, raw(std::numeric_limits<float>::infinity()));

@@ -28,7 +28,7 @@ std::string medit_error(const std::string& contents) {
 const std::string kHead = "MeshVersionFormatted 2 Dimension 3\n";
 const std::string kVertices = "Vertices 4\n0 0 0 0\n1 0 0 0\n0 1 0 0\n0 0 1 0\n";
 
-TEST(Medit, SectionsComeInAnyOrder) {
+TEST(Medit, AcceptsSectionsInAnyOrder) {
   const MeshContent mesh = parse_medit("a.mesh", medit_tets_first());
   EXPECT_THAT(mesh.tets, ElementsAre(Tet{0, 1, 2, 3}, Tet{1, 2, 3, 4}));
   EXPECT_THAT(mesh.region, ElementsAre(7, 9));
@@ -43,7 +43,7 @@ TEST(Medit, QuadrilateralsAreSplit) {
               ElementsAre(Triangle{0, 1, 2}, Triangle{0, 2, 3}));
 }
 
-TEST(Medit, ErrorsNameTheLine) {
+TEST(Medit, ErrorsNameLine) {
   EXPECT_THAT(medit_error("MeshVersionFormatted 1\nDimension 2\n"),
               HasSubstr("a.mesh:2: the mesh is not three-dimensional"));
   EXPECT_THAT(medit_error(kHead + kVertices + "Tetrahedra 1\n1 2 3 5 0\n"),
@@ -75,12 +75,12 @@ TEST(Tetgen, NumbersFrom0OrFrom1) {
   EXPECT_THAT(tetgen(kNode1, "1 4 0\n1 1 2 3 4\n").tets, ElementsAre(Tet{0, 1, 2, 3}));
 }
 
-TEST(Tetgen, TheFirstAttributeIsTheRegion) {
+TEST(Tetgen, FirstAttributeIsRegion) {
   EXPECT_THAT(tetgen(kNode0, "2 4 2\n0 0 1 2 3 -5 0.5\n1 0 1 2 3 6.0 1\n").region, ElementsAre(-5, 6));
   EXPECT_THAT(tetgen(kNode0, "1\n0 0 1 2 3\n").region, ElementsAre());
 }
 
-TEST(Tetgen, ErrorsNameTheFileAndTheLine) {
+TEST(Tetgen, ErrorsNameFileAndLine) {
   EXPECT_THAT(tetgen_error(kNode1, "1 4 0\n1 0 1 2 3\n"),
               HasSubstr("a.ele:2: a corner of a tet is 0; it must be from 1 to 4"));
   EXPECT_THAT(tetgen_error(kNode1, "1 4 0\n1 1 2 3\n"), HasSubstr("a.ele:2: the line ends where a corner"));

@@ -46,7 +46,7 @@ class Tetrahedralize : public FolderTest {
   fs::path surface;
 };
 
-TEST_F(Tetrahedralize, ReturnsTheTetsThatTheProgramWrote) {
+TEST_F(Tetrahedralize, ReturnsTetsOfProgram) {
   EXPECT_EQ(run(good(), 0.25).tet_count(), 6);
   EXPECT_EQ(read_file(folder / "said"), (folder / "mesher").string() + " " + surface.string() + " -o --size 0.25\n");
   expect_no_leftovers();
@@ -57,14 +57,14 @@ TEST_F(Tetrahedralize, LeavesDefaultsToTheProgram) {
   EXPECT_EQ(read_file(folder / "said"), (folder / "mesher").string() + " " + surface.string() + " -o  \n");
 }
 
-TEST_F(Tetrahedralize, ReturnsTheNotesOfTheProgram) {
+TEST_F(Tetrahedralize, ReturnsNotesOfProgram) {
   write_file(folder / "mesher",
              "#!/bin/sh\necho \"$1: it is thin\"; echo 'tets 6'; cp '" + (folder / "tets.mesh").string() + "' \"$3\"");
   fs::permissions(folder / "mesher", fs::perms::owner_all);
   EXPECT_THAT(tetrahedralize(surface, {.program = folder / "mesher"}).notes, testing::ElementsAre("it is thin"));
 }
 
-TEST_F(Tetrahedralize, PassesTheTimeLimitAndItsFailure) {
+TEST_F(Tetrahedralize, PassesTimeLimitAndItsFailure) {
   write_file(folder / "mesher", "#!/bin/sh\necho \"error: $4 $5: too slow\" >&2; exit 4");
   fs::permissions(folder / "mesher", fs::perms::owner_all);
   EXPECT_THROW(tetrahedralize(surface, {.seconds = 2.5, .program = folder / "mesher"}), TimeLimitPassed);
@@ -73,7 +73,7 @@ TEST_F(Tetrahedralize, PassesTheTimeLimitAndItsFailure) {
 }
 
 // A process starts the program and is killed. Then the program's end of the pipe closes.
-TEST_F(Tetrahedralize, TheProgramDiesWithItsParent) {
+TEST_F(Tetrahedralize, ProgramEndsWithItsParent) {
   int ends[2];
   ASSERT_EQ(::pipe(ends), 0);
   const pid_t parent = ::fork();
@@ -96,7 +96,7 @@ TEST_F(Tetrahedralize, TheProgramDiesWithItsParent) {
   fs::remove_all(folder / "temporary");
 }
 
-TEST_F(Tetrahedralize, TheReasonOfAFailureIsPassedOn) {
+TEST_F(Tetrahedralize, ForwardsReasonOfFailure) {
   EXPECT_THAT(message_of([&] { run("echo the surface is open >&2; exit 2"); }),
               testing::AllOf(HasSubstr(surface.string()), HasSubstr("aspic-mesh failed: the surface is open")));
   EXPECT_THAT(message_of([&] { run("exit 3"); }), HasSubstr("it gave no reason"));
@@ -106,7 +106,7 @@ TEST_F(Tetrahedralize, TheReasonOfAFailureIsPassedOn) {
   expect_no_leftovers();
 }
 
-TEST_F(Tetrahedralize, BadSizesAndProgramsAreRefused) {
+TEST_F(Tetrahedralize, RejectsInvalidSizesAndPrograms) {
   EXPECT_THAT(message_of([&] { run(good(), -1); }), HasSubstr("must be positive"));
   EXPECT_THAT(message_of([&] { tetrahedralize(surface, {.program = folder / "none"}); }),
               HasSubstr("is not a program"));

@@ -60,13 +60,13 @@ TEST_F(UsdScene, NamesBecomeDistinctIdentifiers) {
   for (const char* name : {"\"left_leg\"", "\"left_leg_2\"", "\"_2nd\"", "\"_\""}) EXPECT_THAT(text, HasSubstr(name));
 }
 
-TEST_F(UsdScene, WritesNonFiniteNumbersAsUsdSpellsThem) {
+TEST_F(UsdScene, WritesNonFiniteNumbersInUsdSyntax) {
   constexpr float kNan = std::numeric_limits<float>::quiet_NaN(), kInfinity = std::numeric_limits<float>::infinity();
   write_usd(path("a.usda"), {{"x", {}, [&](int) { return std::vector<float>{-kNan, kInfinity, -kInfinity}; }}}, {0}, 1);
   EXPECT_THAT(read_file(path("a.usda")), HasSubstr("0: [(nan, inf, -inf)],"));
 }
 
-TEST_F(UsdScene, AFailureLeavesTheOldFileAlone) {
+TEST_F(UsdScene, FailureKeepsOldFile) {
   put(path("a.usda"), "old");
   const auto fail = [](int) -> std::vector<float> { throw InvalidInput("no points"); };
   EXPECT_THROW(write_usd(path("a.usda"), {{"x", {}, fail}}, {0}, 1), InvalidInput);

@@ -30,7 +30,7 @@ TEST(Xml, ReadsElementsAttributesAndText) {
   EXPECT_EQ(root.child("b")->line, 3);
 }
 
-TEST(Xml, EndsAtTheVerbatimElement) {
+TEST(Xml, EndsAtVerbatimElement) {
   const XmlElement root = parse_xml("<a><b/><raw n='1'>_<<&\"</raw></a>", "f", "raw");
   EXPECT_EQ(root.child("raw")->text, "_<<&\"</raw></a>");
 }
@@ -58,7 +58,7 @@ TEST(Xml, BoundsDepthAndNumberOfElements) {
 }
 
 // Each entity would expand to ten copies of the previous one.
-TEST(Xml, RefusesEntityBombs) {
+TEST(Xml, RejectsEntityExpansion) {
   std::string bomb = "<!DOCTYPE a [<!ENTITY e0 \"ha\">";
   for (int i = 1; i < 20; ++i) {
     bomb += "<!ENTITY e" + std::to_string(i) + " \"";
@@ -68,13 +68,13 @@ TEST(Xml, RefusesEntityBombs) {
   EXPECT_EQ(xml_message(bomb + "]><a>&e19;</a>"), "a.vtu:1: DOCTYPE is not supported");
 }
 
-TEST(Xml, KeepsTheFirstTextOfAnElement) {
+TEST(Xml, KeepsFirstTextOfElement) {
   const XmlElement root = parse_xml("<a>\n <b/> 1 2\n3 <c/> 4 <raw/></a>", "f", "raw");
   EXPECT_EQ(root.text, "1 2\n3 ");
   EXPECT_EQ(root.children.size(), 3u);
 }
 
-TEST(Xml, AnyPrefixIsRefused) {
+TEST(Xml, RejectsAnyPrefix) {
   const std::string whole = "<?xml version='1.0'?><a x='1'><b y=\"2\">text</b><!-- c --></a>";
   for (size_t n = 0; n < whole.size(); ++n) EXPECT_NE(xml_message(whole.substr(0, n)), "") << n;
   EXPECT_EQ(xml_message(whole), "");

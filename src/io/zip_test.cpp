@@ -27,7 +27,7 @@ TEST_F(ZipArchive, IsReadByPython) {
   EXPECT_EQ(std::system(command.c_str()), 0);
 }
 
-TEST_F(ZipArchive, IsTheSameEachTime) { EXPECT_EQ(zipped({{"a", "text"}}), zipped({{"a", "text"}})); }
+TEST_F(ZipArchive, IsDeterministic) { EXPECT_EQ(zipped({{"a", "text"}}), zipped({{"a", "text"}})); }
 
 }  // namespace
 }  // namespace aspic

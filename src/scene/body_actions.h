@@ -9,13 +9,13 @@
 
 namespace aspic {
 
-// A body in the user's numbering, and its place in the model.
+// A body in the user's numbering, and its location in the model.
 struct PlacedBody {
-  Value& scene;  // its table
+  Value& scene;  // the table of the body
   TetMesh mesh;  // the placed rest shape with its own indices
   std::vector<Vec3d> start;
-  int first_vertex = 0, first_tet = 0;  // in the model
-  Numbering numbering = {};             // of the body alone
+  int first_vertex = 0, first_tet = 0;  // offsets in the model
+  Numbering numbering = {};             // numbering of the body alone
 
   std::string name() const { return scene["name"].text(); }
   int model_vertex(int own) const { return first_vertex + numbering.vertex.from_user(own); }

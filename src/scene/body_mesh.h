@@ -25,7 +25,7 @@ struct MeshLoader {
   std::vector<std::string>& notes;
   Announce announce;
   TetLimit limit = {};
-  double tets = 0;            // so far
+  double tets = 0;            // number of tets so far
   double mesher_seconds = 0;  // as in SceneOptions
 
   void report(const std::string& what) const;

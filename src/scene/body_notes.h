@@ -7,15 +7,15 @@
 
 namespace aspic {
 
-// Tets that start inverted or flat; digits lost far from the origin.
+// Adds notes about tets that are inverted or flat at the start, and about digits lost far from the origin.
 void note_start(const PlacedBody& body, std::vector<std::string>& notes);
 
-// A body crushed by its own weight or stiffer than any material, probably with a modulus in another unit; an energy
-// without a minimum. `gravity` in [m/s^2].
+// Adds notes about a body crushed by its own weight or stiffer than any material, probably because of a modulus in
+// another unit, and about an energy without a minimum. `gravity` in [m/s^2].
 void note_stiffness(const PlacedBody& body, const BodyMaterial& material, const Vec3d& gravity,
                     std::vector<std::string>& notes);
 
-// Parts of a body that share no vertex, and those that no pin holds. Requires the pins of the model.
+// Adds a note about parts of a body that share no vertex, and parts that no pin fixes. Requires the pins of the model.
 void note_parts(const PlacedBody& body, const Model& model, std::vector<std::string>& notes);
 
 }  // namespace aspic

@@ -15,7 +15,7 @@ namespace {
 
 struct Function {
   const char* name;
-  const char* meaning;  // empty: the usual meaning
+  const char* meaning;  // empty: self-explanatory name
   double (*call)(double);
 };
 struct Function2 {
@@ -74,7 +74,7 @@ std::string in_column(const std::string& text, size_t column, const std::string&
   return "column " + std::to_string(column) + " of \"" + shortened(text) + "\": " + reason;
 }
 
-// Refuses what the parser accepts but formulas must not contain: assignments, strings, lists.
+// Rejects text that the parser accepts but formulas must not contain: assignments, strings, lists.
 void check_text(const std::string& text) {
   if (text.find_first_not_of(" \t") == std::string::npos) throw InvalidInput("the expression is empty");
   if (text.size() > kMaxExpressionLength)

@@ -25,7 +25,7 @@ class Expression {
 
   // Returns a finite value, or throws InvalidInput with formula and point. Thread-safe.
   double at(const Vec3d& X, double t = 0) const;
-  double evaluate(const Vec3d& X, double t = 0) const;  // infinite or NaN where it is not defined
+  double evaluate(const Vec3d& X, double t = 0) const;  // infinite or NaN where undefined
   bool holds_at(const Vec3d& X) const { return at(X) != 0; }
   bool depends_on_time() const;
   bool depends_on_position() const;
@@ -37,7 +37,7 @@ class Expression {
 };
 
 struct NamedMeaning {
-  std::string name, meaning;  // empty meaning: the usual one of that name
+  std::string name, meaning;  // empty meaning: self-explanatory name
 };
 std::vector<NamedMeaning> expression_functions();  // for the reference
 std::vector<NamedMeaning> expression_constants();

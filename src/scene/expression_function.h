@@ -5,9 +5,9 @@
 
 namespace aspic {
 
-// The derivatives are central differences of order 4, with steps where truncation and round-off are about equal. For a
-// smooth function of values and lengths of order 1 the error of the gradient is about 1e-12, of the Hessian about 1e-9;
-// tolerances below 1e-10 cannot be reached. Where the formula is not defined, value and derivatives are infinite or
+// The derivatives are central differences of order 4, with steps that balance truncation and round-off. For a smooth
+// function of values and lengths of order 1, the error of the gradient is about 1e-12 and that of the Hessian about
+// 1e-9; tolerances below 1e-10 cannot be reached. Where the formula is undefined, value and derivatives are infinite or
 // NaN.
 class ExpressionFunction : public PlanarFunction {
  public:

@@ -97,10 +97,10 @@ std::string contact_obstacle(const TetMesh& mesh) {
   return barrier.self_touching_point() < 0 ? "" : "its surface touches itself";
 }
 
-// How the body of the defaults is held: by a floor, or by pins.
+// How the default scene supports the body: by a floor, or by pins.
 struct Support {
   bool is_floor = true;
-  std::string reason;  // of pins; empty: an override asks for them
+  std::string reason;  // reason for pins; empty: an override requests them
 };
 
 Support support_for(const TetMesh& mesh, const std::vector<std::string>& overrides) {
@@ -115,7 +115,7 @@ struct Defaults {
   std::vector<Choice> choices;
 };
 
-// The part of the scene that holds the body, and its notes.
+// Returns the part of the scene that supports the body, and its notes.
 Defaults floor_below(const Box& box) {
   const double fall = one_digit(kFall * longest_side(box)), height = box.lower[1] - fall;
   return {"[contact]\nfriction = 0.3\n[[obstacle]]\nname = \"floor\"\nplane = { origin = [0.0, " + number_text(height) +

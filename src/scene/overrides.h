@@ -6,9 +6,9 @@
 
 namespace aspic {
 
-// The path starts at the top level ("time.step") or at the keys of a body, then of all bodies ("material.young").
-// In a list of tables the next word selects by name or by index from 0 ("body.bunny.pin.0.where"); without one, all are
-// meant. A value that is not TOML is a string ("solver.method=newton"). Throws InvalidInput.
+// The path starts at the top level ("time.step") or at the keys of a body, which then apply to all bodies
+// ("material.young"). In a list of tables, the next word selects by name or by index from 0 ("body.bunny.pin.0.where");
+// without one, all are selected. A value that is not TOML is a string ("solver.method=newton"). Throws InvalidInput.
 void apply_override(Table& document, const std::string& text);
 
 // Returns the name of a body: given, or the stem of its mesh file, or body1, body2, ...

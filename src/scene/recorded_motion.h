@@ -7,8 +7,9 @@
 
 namespace aspic {
 
-// Reads the `recording` of an obstacle, whose vertices it moves to their places at time 0. `place`: applied to all
-// samples. Positions are interpolated linearly between samples and constant before and after. Throws InvalidInput.
+// Reads the `recording` of an obstacle and moves the vertices of `surface` to their positions at time 0. `place`:
+// applied to all samples. Positions are interpolated linearly between samples and constant before and after. Throws
+// InvalidInput.
 ObstacleMotion recorded_motion(Value& obstacle, const AffineMap& place, SceneFiles& files, TriMesh& surface);
 
 }  // namespace aspic

@@ -94,7 +94,7 @@ std::vector<fs::path> files_in(const fs::path& folder, Condition is_wanted) {
   return files;
 }
 
-// The files that the scene of the run calls "inputs/...".
+// Returns the files that the run's scene calls "inputs/...".
 std::vector<fs::path> named_inputs(const fs::path& root, const fs::path& scene) {
   std::error_code error;
   if (!fs::is_regular_file(scene, error) || fs::is_symlink(root / "inputs", error)) return {};

@@ -14,9 +14,9 @@ namespace aspic {
 
 struct SceneSource {
   Table document;                            // has passed read_scene_document()
-  std::string name;                          // of the scene
-  std::string file;                          // for messages
-  std::map<std::string, LoadedMesh> meshes;  // of bodies, if already read
+  std::string name;                          // name of the scene
+  std::string file;                          // file name for messages
+  std::map<std::string, LoadedMesh> meshes;  // meshes of bodies that were already read
   std::vector<std::string> notes;
 };
 

@@ -20,10 +20,10 @@ std::string fingerprint_of_file(const std::filesystem::path& path);
 
 class SceneFiles {
  public:
-  // Names are relative to `folder`. Files outside of it and of its parent are refused unless `allow_outside`.
+  // Names are relative to `folder`. Files outside of it and of its parent are rejected unless `allow_outside`.
   SceneFiles(std::filesystem::path folder, bool allow_outside);
 
-  // Returns the file that a value names. Throws InvalidInput with the nearest name if it is refused or missing.
+  // Returns the file that a value names. Throws InvalidInput with the nearest name if it is rejected or missing.
   std::filesystem::path find(const Value& name) const;
 
   // Adds a file to the results; returns its name there: "inputs/" + stem + the extension of the source.

@@ -34,7 +34,7 @@ struct Range {
 
   bool contains(double value) const;
   std::string text() const;  // "> 0 and < 0.5"; empty for all numbers
-  // Suggests a value: "try 0.49". Below the range it is `usual`, unless that is empty.
+  // Suggests a value: "try 0.49". Below the range it suggests `usual`, unless that is empty.
   std::string remedy(double value, const std::string& usual) const;
 };
 
