@@ -53,8 +53,8 @@ struct PathCandidates {
 double edge_reach(const ContactMesh& mesh, const ContactLaws& laws, const EdgePair& pair);
 
 enum class PairScope {
-  within_parts,   // of one body; in a frame that moves and rotates with it
-  between_parts,  // of different parts, at least one of which is a body
+  within_parts,   // pairs of one body, in a frame that moves and rotates with it
+  between_parts,  // pairs of different parts, at least one of which is a body
 };
 
 class CandidateSearch {

@@ -41,7 +41,7 @@ class AdaptiveStep {
   Verdict attempt(Integrator& integrator, const StepTools& whole, Pair pair);
   bool solve_substep(Integrator& integrator, const StepTools& tools, Substep& substep);
   void keep(Integrator& integrator, const StepTools& whole, Pair pair, Ledger& ledger, StepReport& report);
-  double error(const Pins& pins, double h) const;  // of the pair, as a multiple of the tolerance
+  double error(const Pins& pins, double h) const;  // error of the pair relative to the tolerance
 
   const Model& model_;
   double tolerance_;
@@ -54,7 +54,7 @@ class AdaptiveStep {
   Substep whole_, first_, second_;
   bool has_whole_ = false;  // the first half of a rejected pair is `whole_` of the next attempt
   double error_ = 0;
-  Status failure_ = Status::converged;  // of the last attempt
+  Status failure_ = Status::converged;  // status of the last attempt
   StepSolve total_;
 };
 

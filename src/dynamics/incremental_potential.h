@@ -53,7 +53,7 @@ class IncrementalPotential : public Objective, public HasMetric, public HasParts
   double lost_accuracy(std::span<const double> q, std::span<const GradientPart> parts) override;
   double relative_decrement(std::span<const double> g, std::span<const double> d) override;
   int part_of(int vertex) const { return part_of_.empty() ? 0 : part_of_[vertex]; }
-  double growth_stiffness() const { return growth_stiffness_; }  // of V, see scales() [J]
+  double growth_stiffness() const { return growth_stiffness_; }  // growth stiffness of V, see scales() [J]
 
   // Returns the rounding error of |g| at q, where the gradient was evaluated last. It includes the rounding of
   // positions, amplified by the stiffness of the last Hessian or of the body at rest, and of the sum of forces.
@@ -91,7 +91,7 @@ class IncrementalPotential : public Objective, public HasMetric, public HasParts
 
   struct Part {  // characteristic sizes of a part, see measure()
     double growth_stiffness = 0, growth_inertia = 0, radius = 0, rest_stiffness = 0, mass_norm = 0;
-    double scale = 0, round_off = 0;  // of the last gradient and Hessian
+    double scale = 0, round_off = 0;  // values for the last gradient and Hessian
     double exact = 0;                 // share of `scale` without rounding error: inertia, weight, dead loads
     double sum = 0, largest = 0;      // scratch
   };

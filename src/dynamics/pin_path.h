@@ -21,7 +21,7 @@ class PinPath {
   void differentiate(double time, int derivative, std::span<double> out) const;
 
   const Pins* pins_ = nullptr;
-  double time_ = 0, h_ = 0;             // of the step [s]
+  double time_ = 0, h_ = 0;             // start and length of the step [s]
   int points_ = 0;                      // 0: no pin moves
   std::vector<std::vector<double>> x_;  // positions of the pinned vertices at each point [m]
 };

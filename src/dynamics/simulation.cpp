@@ -242,7 +242,7 @@ struct Simulation::Impl {
   std::unique_ptr<IncrementalPotential> E;
   Minimizer minimizer;
   std::optional<AdaptiveStep> adaptive;
-  StepForces forces;                // of the last step
+  StepForces forces;                // forces of the last step
   std::vector<double> start_force;  // dV/dx of the loads at the start of an explicit run [N]
   std::vector<double> load_force;   // current dV/dx of the loads that do not depend on x [N]
   double start_energy = 0;          // kinetic and elastic energy at the start of an explicit run [J]

@@ -254,7 +254,7 @@ std::string step_fields_typescript() {
     text += "  " + std::string(field.name) + ": " + std::string(typescript_type(field.type)) + "; // " +
             plain(field.help) + unit + "\n";
   }
-  text += "}\n\n// Of a step that has not ended.\nexport const kUnknownStep: StepFields = {\n";
+  text += "}\n\n// Values for a step that has not ended.\nexport const kUnknownStep: StepFields = {\n";
   for (const StepField& field : step_fields())
     if (field.is_in(StepOutput::viewer))
       text += "  " + std::string(field.name) + ": " + std::string(typescript_unknown(field.type)) + ",\n";

@@ -18,9 +18,9 @@ struct Resultant {
 
 // External forces, each summed over its vertices.
 struct Resultants {
-  std::vector<Resultant> pins;    // of each of Model::pins, mean over the step
-  std::vector<Resultant> loads;   // of each of Model::loads, at the end of the step
-  std::vector<Resultant> bodies;  // of all pins and loads on each body, mean over the step; 0 in equilibrium
+  std::vector<Resultant> pins;    // resultant of each of Model::pins, mean over the step
+  std::vector<Resultant> loads;   // resultant of each of Model::loads, at the end of the step
+  std::vector<Resultant> bodies;  // sum of all pins and loads on each body, mean over the step; 0 in equilibrium
   double time = 0;                // averaging time so far [s]
 };
 
@@ -35,14 +35,14 @@ std::string_view to_string(EnergyBound bound);
 
 struct StepReport : Work {  // work of all solves of the step and of this report
   int step = 0;             // 1 for the first
-  double time = 0;          // at the end of the step [s]
+  double time = 0;          // time at the end of the step [s]
 
   Status status = Status::converged;
   Criterion criterion = Criterion::scale;
   int iterations = 0, trials = 0, projected_hessians = 0;  // sums over all solves
   int elements = 0;                                        // number of tets per evaluation
   double objective = 0, objective_gradient = 0;            // E and |g| at the end of the last minimization
-  InitialGuess initial_guess = InitialGuess::none;         // of the last minimization
+  InitialGuess initial_guess = InitialGuess::none;         // initial guess of the last minimization
   int substeps = 1, rejected = 0;                          // accepted and rejected
   double residual = 0;  // |M a + dV/dx + dD/dx| over the free vertices; maximum over substeps [N]
   // For the body or region that is farthest from its threshold:

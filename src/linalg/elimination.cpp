@@ -84,8 +84,8 @@ std::vector<int> column_counts(const BlockPattern& p, const std::vector<int>& or
 // Number of entries of a trapezoid of `width` columns with `below` rows under its triangle.
 double trapezoid(double width, double below) { return width * (width + 1) / 2 + width * below; }
 
-// Whether merging adjacent supernodes pays: it stores zeros but makes larger dense blocks. The thresholds are those of
-// CHOLMOD's relaxed supernodes, in blocks of 3 [Chen et al. 2008].
+// Returns whether merging adjacent supernodes pays: it stores zeros but makes larger dense blocks. The thresholds are
+// those of CHOLMOD's relaxed supernodes, in blocks of 3 [Chen et al. 2008].
 bool worth_merging(int width, double zeros, double entries) {
   if (width <= 2) return true;
   const double share = zeros / entries;

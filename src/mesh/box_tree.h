@@ -21,7 +21,7 @@ class BoxTree {
   // degrades.
   double looseness() const;
 
-  Box bounds() const { return items_.empty() ? Box{} : bounds_[root().index]; }  // of all items
+  Box bounds() const { return items_.empty() ? Box{} : bounds_[root().index]; }  // box around all items
 
   // Calls visit(item) for the items whose box overlaps `box` until it returns false.
   template <class Visit>

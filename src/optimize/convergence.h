@@ -12,7 +12,7 @@ class Convergence {
  public:
   // Starts at the first iterate with its gradient g. E and options must outlive this minimization.
   void begin(Objective& E, const MinimizeOptions& options, std::span<const double> g);
-  void measure(std::span<const double> g);  // at the next iterate
+  void measure(std::span<const double> g);  // measures the next iterate
   void note_hessian();                      // updates the round-off of the gradient after a new Hessian
 
   // Writes `reached` and `threshold` of the part that is farthest from its threshold; writes `reached` only if the
@@ -39,7 +39,7 @@ class Convergence {
   HasParts* parts_of_E_ = nullptr;
   std::optional<WholePart> whole_;
   const MinimizeOptions* options_ = nullptr;
-  std::vector<GradientPart> parts_;                            // at the last gradient
+  std::vector<GradientPart> parts_;                            // measures of the last gradient
   std::vector<double> first_norms_, thresholds_, round_offs_;  // per part
   bool is_modified_ = false;                                   // whether the last direction used a modified Hessian
 };

@@ -203,7 +203,7 @@ class Checker {
   const Differentiable& f_;
   const DerivativeCheckOptions& options_;
   Vector x_, g_, ahead_, behind_;
-  double largest_gradient_ = 0, best_step_ = 0;  // of the last check
+  double largest_gradient_ = 0, best_step_ = 0;  // results of the last check
   std::vector<Vector> directions_, products_;    // d, H d
 };
 

@@ -84,7 +84,7 @@ struct Progress {
   Evaluation value;
   MinimizeReport report = {};
   double slope = 0;             // g.d
-  LineSearchResult step = {};   // of the last line search
+  LineSearchResult step = {};   // result of the last line search
   bool last_direction = false;  // the criterion holds for this direction
 };
 
@@ -230,7 +230,7 @@ bool Minimizer::Impl::search_line(Progress& at, const StopToken& stop, Iteration
 void Minimizer::Impl::take_step(Progress& at, Iteration& iteration) {
   Stopwatch stopwatch;
   const double begin = at.options.stop.now();
-  at.report.gradient_round_off = at.E.scales().gradient_round_off;  // of the last Hessian
+  at.report.gradient_round_off = at.E.scales().gradient_round_off;  // uses the last Hessian
   convergence.note_hessian();
   std::swap_ranges(line.trial.begin(), line.trial.end(), at.x.begin());
   at.value = at.step.value;

@@ -7,7 +7,7 @@ namespace aspic {
 struct Work {
   int values = 0, gradients = 0, hessians = 0;  // each over all elements
   int factorizations = 0, linear_iterations = 0;
-  int products = 0, cycles = 0;  // of linear solves: matrix products, multigrid cycles
+  int products = 0, cycles = 0;  // matrix products and multigrid cycles of linear solves
 
   void add(const Work& other) {
     values += other.values;

@@ -28,7 +28,7 @@ export interface StepFields {
   seconds: MaybeNumber; // wall time [s]
 }
 
-// Of a step that has not ended.
+// Values for a step that has not ended.
 export const kUnknownStep: StepFields = {
   step: 0,
   time: null,
