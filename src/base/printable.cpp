@@ -37,13 +37,13 @@ void append_shown(std::string_view character, std::string& out) {
   out += {'\\', 'x', kDigits[byte >> 4], kDigits[byte & 15]};
 }
 
-// Returns the longest beginning whose printable form fits into `most` bytes; leaves the rest in `text`.
-std::string beginning(std::string_view& text, size_t most) {
+// Returns the longest beginning whose printable form fits into `max_bytes` bytes; leaves the rest in `text`.
+std::string beginning(std::string_view& text, size_t max_bytes) {
   std::string out;
   while (!text.empty()) {
     const size_t length = shown_length(text), before = out.size();
     append_shown(text.substr(0, length), out);
-    if (out.size() > most) {
+    if (out.size() > max_bytes) {
       out.resize(before);
       break;
     }
@@ -74,23 +74,23 @@ std::string printable_lines(std::string_view text) {
   return lines + printable(text);
 }
 
-std::string shortened(std::string_view text, size_t most) {
+std::string shortened(std::string_view text, size_t max_bytes) {
   std::string_view rest = text;
-  std::string whole = beginning(rest, most);
+  std::string whole = beginning(rest, max_bytes);
   if (rest.empty()) return whole;
-  return beginning(text, most - 3) + "...";
+  return beginning(text, max_bytes - 3) + "...";
 }
 
-std::string elided(std::string_view text, size_t most) {
+std::string elided(std::string_view text, size_t max_bytes) {
   std::string_view rest = text;
-  std::string whole = beginning(rest, most);
+  std::string whole = beginning(rest, max_bytes);
   if (rest.empty()) return whole;
   constexpr std::string_view kMark = " ... ";
-  const size_t end = (most - kMark.size()) / 4;
+  const size_t end = (max_bytes - kMark.size()) / 4;
   std::string last = printable(text.substr(text.size() - std::min(text.size(), end)));
   last.erase(0, last.size() - std::min(last.size(), end));
   while (!last.empty() && (static_cast<unsigned char>(last[0]) & 0xc0u) == 0x80) last.erase(0, 1);
-  return beginning(text, most - kMark.size() - end).append(kMark) + last;
+  return beginning(text, max_bytes - kMark.size() - end).append(kMark) + last;
 }
 
 std::string shown(std::string_view word) { return "'" + shortened(word, 40) + "'"; }

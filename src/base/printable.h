@@ -15,10 +15,10 @@ bool is_printable(std::string_view text);
 std::string printable(std::string_view text);
 std::string printable_lines(std::string_view text);  // keeps line breaks
 
-// Returns printable text of at most `most` bytes [> 3]. "..." replaces the end of `shortened` or the middle of `elided`
-// text.
-std::string shortened(std::string_view text, size_t most = 60);
-std::string elided(std::string_view text, size_t most);
+// Returns printable text of at most `max_bytes` bytes [> 3]. "..." replaces the end of `shortened` or the middle of
+// `elided` text.
+std::string shortened(std::string_view text, size_t max_bytes = 60);
+std::string elided(std::string_view text, size_t max_bytes);
 
 // Returns a word for a message: shortened and in single quotes.
 std::string shown(std::string_view word);

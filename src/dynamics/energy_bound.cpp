@@ -29,9 +29,10 @@ std::string_view to_string(EnergyBound bound) {
 }
 
 EnergyBound energy_bound(const BoundedEnergies& energies, double accepted) {
-  const double noise = kSumRoundOff * energies.magnitude + energies.round_off;
-  if (!std::isfinite(energies.allowed) || !(accepted <= energies.allowed + noise)) return EnergyBound::not_guaranteed;
-  return energies.reached <= energies.allowed + 2 * noise ? EnergyBound::holds : EnergyBound::broken;
+  const double round_off = kSumRoundOff * energies.magnitude + energies.round_off;
+  if (!std::isfinite(energies.allowed) || !(accepted <= energies.allowed + round_off))
+    return EnergyBound::not_guaranteed;
+  return energies.reached <= energies.allowed + 2 * round_off ? EnergyBound::holds : EnergyBound::broken;
 }
 
 void check_energy_bound(const BoundedEnergies& bounded, double accepted, StepReport& report) {

@@ -85,22 +85,22 @@ void Guesser::stop_at_contact(const StepTools& tools, std::span<const double> fr
   for (size_t i = 0; i < path_.size(); ++i) trial_[i] = from[i] + step * path_[i];
 }
 
-Guess Guesser::guess(const StepTools& tools, InitialGuess wanted, const GuessContext& known, std::span<double> q,
+Guess Guesser::guess(const StepTools& tools, InitialGuess requested, const GuessContext& known, std::span<double> q,
                      MinimizeReport& work) {
-  const bool is_other = wanted != InitialGuess::best && wanted != InitialGuess::current && !tools.model.contact;
-  if (is_other && propose(tools, wanted, known)) {
+  const bool is_other = requested != InitialGuess::best && requested != InitialGuess::current && !tools.model.contact;
+  if (is_other && propose(tools, requested, known)) {
     const Evaluation value = tools.E.evaluate(trial_);
     ++work.values;
     if (std::isfinite(value.value)) {
       std::copy(trial_.begin(), trial_.end(), q.begin());
-      return {wanted, value};
+      return {requested, value};
     }
   }
 
   // Bodies that move with the obstacles need no continuation.
   for (const InitialGuess candidate : kAhead) {
     if (!tools.model.contact || !tools.model.contact->has_moving_obstacle()) break;
-    if ((wanted != InitialGuess::best && wanted != candidate) || !propose(tools, candidate, known)) continue;
+    if ((requested != InitialGuess::best && requested != candidate) || !propose(tools, candidate, known)) continue;
     if (!is_free(tools, {known.q, trial_, tools.obstacle_start, known.time})) continue;
     const Evaluation value = tools.E.evaluate(trial_);
     ++work.values;
@@ -111,12 +111,12 @@ Guess Guesser::guess(const StepTools& tools, InitialGuess wanted, const GuessCon
 
   std::copy(known.q.begin(), known.q.end(), q.begin());
   Guess best = {InitialGuess::current, lead_pins(tools, known.time, known.q, q, work)};
-  if (wanted == InitialGuess::current) return best;
+  if (requested == InitialGuess::current) return best;
   if (tools.model.contact && !std::isfinite(best.value.value))
     return best;  // pins are at the end of the last feasible path
   for (const InitialGuess candidate : kAhead) {
     if (candidate == InitialGuess::last_increment && !known.tries_last_increment) continue;
-    if (tools.model.contact && wanted != InitialGuess::best && wanted != candidate) continue;
+    if (tools.model.contact && requested != InitialGuess::best && requested != candidate) continue;
     if (!propose(tools, candidate, known)) continue;
     stop_at_contact(tools, q);
     const Evaluation value = tools.E.evaluate(trial_);

@@ -134,10 +134,10 @@ void Ledger::note_residual(const StepTools& tools, const StepForces& forces, Ste
   int worst = -1;
   double residual = report.residual, threshold = report.residual_threshold;
   for (int k = 0; k < tools.E.part_count(); ++k) {
-    const double r = std::sqrt(squares_[k]), asked = bound(forces.thresholds, k);
+    const double r = std::sqrt(squares_[k]), limit = bound(forces.thresholds, k);
     const bool is_first = worst < 0 && report.worst_vertex < 0 && report.residual == 0;
-    if (!is_first && ratio(r, asked) <= ratio(residual, threshold)) continue;  // keeps NaN
-    worst = k, residual = r, threshold = asked;
+    if (!is_first && ratio(r, limit) <= ratio(residual, threshold)) continue;  // keeps NaN
+    worst = k, residual = r, threshold = limit;
   }
   if (worst < 0) return;
   report.residual = residual;

@@ -25,8 +25,8 @@ class EveryLinearSolver : public testing::TestWithParam<std::string> {};
 
 TEST_P(EveryLinearSolver, YieldsSameMotion) {
   Simulation exact = stiff_beam("cholesky"), simulation = stiff_beam(GetParam());
-  const std::vector<double> wanted = positions_after(exact, 3), q = positions_after(simulation, 3);
-  for (size_t i = 0; i < q.size(); ++i) ASSERT_NEAR(q[i], wanted[i], 1e-8) << i;
+  const std::vector<double> expected = positions_after(exact, 3), q = positions_after(simulation, 3);
+  for (size_t i = 0; i < q.size(); ++i) ASSERT_NEAR(q[i], expected[i], 1e-8) << i;
 }
 
 TEST_P(EveryLinearSolver, IsBitReproducibleOverThreads) {

@@ -337,8 +337,8 @@ void Simulation::set_solver(const SolverOptions& solver) {
 }
 
 void Simulation::set_pins(std::vector<Pin> pins) {
-  const Pins wanted(pins, impl_->start.q);
-  if (!impl_->integrator->facts().is_static()) require_mass(impl_->model, wanted);
+  const Pins new_pins(pins, impl_->start.q);
+  if (!impl_->integrator->facts().is_static()) require_mass(impl_->model, new_pins);
   impl_->model.pins = std::move(pins);
   *impl_->pins = Pins(impl_->model.pins, impl_->start.q);
   impl_->E = std::make_unique<IncrementalPotential>(impl_->model, *impl_->pins);

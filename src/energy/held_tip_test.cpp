@@ -77,10 +77,10 @@ TEST(HeldTip, EqualsItsProbe) {
     EXPECT_GT(V.value(x), 0);
     EXPECT_EQ(V.value(x), probe->value(x));
     EXPECT_EQ(term.value(x), probe->value(x));
-    std::vector<double> g(x.size()), wanted(x.size());
+    std::vector<double> g(x.size()), expected(x.size());
     term.add_gradient(x, 2, g);
-    probe->add_gradient(x, 2, wanted);
-    EXPECT_EQ(g, wanted);
+    probe->add_gradient(x, 2, expected);
+    EXPECT_EQ(g, expected);
     BlockSparse H(blocks), K(blocks);
     term.add_hessian(x, 1, {Definiteness::exact}, H);
     probe->add_hessian(x, 1, {Definiteness::exact}, K);

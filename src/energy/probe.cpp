@@ -176,11 +176,11 @@ class ProbeTerm : public Probe {
 
   void add_patch(const TetMesh& mesh, const Triangle& triangle) {
     const Corners X = {mesh.rest[triangle[0]], mesh.rest[triangle[1]], mesh.rest[triangle[2]]};
-    const double edge = longest_edge(X), wanted = std::ceil((is_sliding() ? 4 : 8) * edge / tip_.radius);
+    const double edge = longest_edge(X), ideal = std::ceil((is_sliding() ? 4 : 8) * edge / tip_.radius);
     const bool is_near = depth(tip_, touch_, X[0]).value > -edge - tip_.radius;
     if (!is_near && !is_sliding()) return;
     if (is_near && edge > kLongestEdge * tip_.radius) throw_tip_too_small(edge);
-    const int cuts = static_cast<int>(is_near ? std::max(wanted, 1.0) : std::clamp(wanted, 1.0, 1.0 * kMaxFarCuts));
+    const int cuts = static_cast<int>(is_near ? std::max(ideal, 1.0) : std::clamp(ideal, 1.0, 1.0 * kMaxFarCuts));
     const Vec3d a = area_vector(X);
     Patch patch{triangle, &centroids_.of(cuts), norm(a) / (static_cast<double>(cuts) * cuts), weight_.size()};
     if (is_sliding() || add_glue(patch, X, a)) patches_.push_back(patch);
@@ -268,7 +268,7 @@ class ProbeTerm : public Probe {
 
 }  // namespace
 
-PlacedTip::PlacedTip(const TipPose& wanted) : pose(with_unit_axis(wanted)), turn(rotation_matrix(wanted.rotation)) {}
+PlacedTip::PlacedTip(const TipPose& given) : pose(with_unit_axis(given)), turn(rotation_matrix(given.rotation)) {}
 
 std::unique_ptr<Probe> make_probe(const TetMesh& mesh, std::span<const Triangle> surface, const Tip& tip,
                                   const TipPose& touch) {

@@ -36,9 +36,9 @@ struct TipPose {
 };
 
 struct PlacedTip {
-  explicit PlacedTip(const TipPose& wanted);  // throws InvalidInput for an axis of length 0
-  TipPose pose;                               // with a unit axis
-  Mat3d turn;                                 // rotation matrix
+  explicit PlacedTip(const TipPose& given);  // throws InvalidInput for an axis of length 0
+  TipPose pose;                              // with a unit axis
+  Mat3d turn;                                // rotation matrix
 };
 
 struct Wrench {

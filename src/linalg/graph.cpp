@@ -44,13 +44,13 @@ Graph quotient(const Graph& graph, std::span<const int> group, int groups) {
 }
 
 std::vector<int> greedy_coloring(const Graph& graph) {
-  std::vector<int> color(graph.vertex_count(), -1), taken_by;  // for each color, the last vertex with a neighbor of it
+  std::vector<int> color(graph.vertex_count(), -1), used_by;  // for each color, the last vertex with a neighbor of it
   for (int v = 0; v < graph.vertex_count(); ++v) {
     for (const int w : graph.around(v))
-      if (color[w] >= 0) taken_by[color[w]] = v;
+      if (color[w] >= 0) used_by[color[w]] = v;
     size_t first = 0;
-    while (first < taken_by.size() && taken_by[first] == v) ++first;
-    if (first == taken_by.size()) taken_by.push_back(-1);
+    while (first < used_by.size() && used_by[first] == v) ++first;
+    if (first == used_by.size()) used_by.push_back(-1);
     color[v] = static_cast<int>(first);
   }
   return color;

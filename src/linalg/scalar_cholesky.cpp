@@ -78,13 +78,13 @@ bool ScalarCholesky::factorize(std::span<const double> values) {
   ASPIC_CHECK(values.size() == target_.size());
   A_->set_zero();
   for (size_t k = 0; k < values.size(); ++k) A_->block[target_[k] / 9].a[target_[k] % 9] += values[k];
-  std::vector<char> is_taken(b_.size(), 0);
-  for (int slot : slot_) is_taken[slot] = 1;
+  std::vector<char> is_used(b_.size(), 0);
+  for (int slot : slot_) is_used[slot] = 1;
   for (int r = 0; r < pattern_->rows(); ++r) {
     Mat3d& D = A_->block[pattern_->diagonal(r)];
     for (int i = 0; i < 3; ++i) {
       for (int j = 0; j < i; ++j) D(j, i) = D(i, j);
-      if (!is_taken[3 * r + i]) D(i, i) = 1;
+      if (!is_used[3 * r + i]) D(i, i) = 1;
     }
   }
   return cholesky_->factorize(*A_);

@@ -168,13 +168,13 @@ Found merged(const Found& a, const Found& b) {
 Found largest(const ShiftedPencil& pencil, int count) {
   Found found{.values = VectorXd(0), .vectors = MatrixXd(pencil.size, 0)};
   for (int run = 0;;) {
-    const int wanted = std::max(1, count - static_cast<int>(found.values.size()));
+    const int missing = std::max(1, count - static_cast<int>(found.values.size()));
     if (found.values.size() >= count) {
       const Found probe = lanczos(pencil, found.vectors, {.tolerance = kProbeTolerance, .run = run++});
       if (!probe.converged) return probe;
       if (probe.values[0] <= found.values[count - 1] * (1 + kBelow)) return found;
     }
-    const Found more = lanczos(pencil, found.vectors, {.count = wanted, .run = run++});
+    const Found more = lanczos(pencil, found.vectors, {.count = missing, .run = run++});
     if (!more.converged) return more;
     found = merged(found, more);
   }

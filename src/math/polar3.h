@@ -23,21 +23,21 @@ Mat3<Dual<T>> closest_rotation(const Mat3<Dual<T>>& F) {
   const Mat3<T> R = closest_rotation(values(F));
   const Mat3<T> S = transpose(R) * values(F), A = transpose(R) * rates(F);
   const Mat3<T> G = trace(S) * identity3<T>() - S;
-  const T det = determinant(G), least = T(std::numeric_limits<double>::min());  // 0 where R is discontinuous
+  const T det = determinant(G), threshold = T(std::numeric_limits<double>::min());  // 0 where R is discontinuous
   const Vec3<T> axis = {{A(2, 1) - A(1, 2), A(0, 2) - A(2, 0), A(1, 0) - A(0, 1)}};
-  const Vec3<T> w = (T(1.0) / where_positive(det - least, det, least)) * (transpose(cofactor(G)) * axis);
+  const Vec3<T> w = (T(1.0) / where_positive(det - threshold, det, threshold)) * (transpose(cofactor(G)) * axis);
   const T o = T(0.0);
   return dual_matrix(R, R * Mat3<T>{{o, w[2], -w[1], -w[2], o, w[0], w[1], -w[0], o}});
 }
 
 // H += scale dR/dF, where dR/dF = sum over i < j of w w' / (s_i + s_j), w = vec(u_i v_j' - u_j v_i'). R is
-// discontinuous at s_i + s_j = 0, so the sum is bounded below by `least` to keep the result finite.
+// discontinuous at s_i + s_j = 0, so the sum is bounded below by `threshold` to keep the result finite.
 template <class T>
-void add_rotation_gradient(const Svd3<T>& f, const T& scale, double least, Mat9<T>& H) {
+void add_rotation_gradient(const Svd3<T>& f, const T& scale, double threshold, Mat9<T>& H) {
   for (int j = 1; j < 3; ++j)
     for (int i = 0; i < j; ++i) {
       const T sum = f.s[i] + f.s[j];
-      const T factor = scale / where_positive(sum - T(least), sum, T(least));
+      const T factor = scale / where_positive(sum - T(threshold), sum, T(threshold));
       Mat3<T> w;
       for (int c = 0; c < 3; ++c)
         for (int r = 0; r < 3; ++r) w(r, c) = f.U(r, i) * f.V(c, j) - f.U(r, j) * f.V(c, i);

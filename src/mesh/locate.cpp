@@ -34,8 +34,8 @@ std::vector<Box> boxes(const TetMesh& mesh, const std::vector<int>& tets) {
 
 }  // namespace
 
-double Located::least_weight() const { return *std::min_element(weights.begin(), weights.end()); }
-bool Located::is_outside() const { return least_weight() < -kOnFace; }
+double Located::min_weight() const { return *std::min_element(weights.begin(), weights.end()); }
+bool Located::is_outside() const { return min_weight() < -kOnFace; }
 
 TetLocator::TetLocator(const TetMesh& mesh) : mesh_(mesh), usable_(usable_tets(mesh)), tree_(boxes(mesh, usable_)) {
   if (usable_.empty()) throw InvalidInput("the mesh has no tets of positive volume; repair or remesh it");
@@ -53,8 +53,8 @@ Located TetLocator::container(const Vec3d& p) const {
   constexpr double kHere = 0;
   tree_.for_each_near(p, kHere, [&](int item) {
     const Located here{usable_[item], weights(item, p), 0};
-    if (here.least_weight() < deepest) return;
-    deepest = here.least_weight();
+    if (here.min_weight() < deepest) return;
+    deepest = here.min_weight();
     best = here;
   });
   return best;
@@ -69,7 +69,7 @@ Located TetLocator::nearest(const Vec3d& p) const {
     here.squared_distance = squared_distance(corners(mesh_, usable_[item]), here.weights, p);
     if (here.squared_distance > reach) return;
     const bool is_nearer = here.squared_distance < best.squared_distance * (1 - kTie);
-    if (best.tet >= 0 && !is_nearer && here.least_weight() <= best.least_weight()) return;
+    if (best.tet >= 0 && !is_nearer && here.min_weight() <= best.min_weight()) return;
     best = here;
     reach = std::min(reach, here.squared_distance * (1 + kTie));
   });

@@ -13,7 +13,7 @@ struct Located {
   std::array<double, 4> weights{};  // barycentric, sum to 1; some negative outside
   double squared_distance = 0;      // squared distance to the tet [m^2]; 0 inside
 
-  double least_weight() const;
+  double min_weight() const;
   bool is_outside() const;  // up to round-off
 };
 

@@ -37,14 +37,14 @@ class Search {
     omit_repeated();
   }
 
-  SelfIntersections pairs(int most) const {
+  SelfIntersections pairs(int max_pairs) const {
     std::vector<Box> boxes(usable_.size());
     for (size_t i = 0; i < usable_.size(); ++i)
       for (int v : triangles_[usable_[i]]) boxes[i].add(vertices_[v]);
     const BoxTree tree(boxes);
     std::vector<std::array<int, 2>> found;
     long compared = 0;
-    const auto within_limits = [&] { return static_cast<int>(found.size()) < most && compared < kMaxCompared; };
+    const auto within_limits = [&] { return static_cast<int>(found.size()) < max_pairs && compared < kMaxCompared; };
     for (int i = 0; i < static_cast<int>(usable_.size()) && within_limits(); ++i)
       tree.for_each_overlap(boxes[i], [&](int j) {
         ++compared;
@@ -93,6 +93,6 @@ class Search {
 
 }  // namespace
 
-SelfIntersections self_intersections(const TriMesh& mesh, int most) { return Search(mesh).pairs(most); }
+SelfIntersections self_intersections(const TriMesh& mesh, int max_pairs) { return Search(mesh).pairs(max_pairs); }
 
 }  // namespace aspic

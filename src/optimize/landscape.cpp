@@ -69,17 +69,17 @@ std::vector<CurvePoint> curve_along(const LiveIteration& at, double c, int sampl
   ASPIC_CHECK(samples >= 2);
   const double slope = at.E.dot(at.g, at.d), curvature = at.E.dot(at.d, product(exact_hessian(at), at.d));
   const Vector alphas = samples_along(at, samples);
-  const double most = largest_step(at, alphas.back());
+  const double upper = largest_step(at, alphas.back());
   std::vector<CurvePoint> curve(samples);
   Vector x(at.x.size()), back(at.d.begin(), at.d.end());
   for (double& di : back) di *= alphas.front();
-  const double least = is_free(at.E, at.x, back) ? alphas.front() : 0;
+  const double lower = is_free(at.E, at.x, back) ? alphas.front() : 0;
   for (int i = 0; i < samples; ++i) {
     if (stop.stopped()) return {};
     CurvePoint& point = curve[i];
     const double alpha = point.alpha = alphas[i];
     for (size_t k = 0; k < x.size(); ++k) x[k] = at.x[k] + alpha * at.d[k];
-    point.value = alpha < least || alpha > most ? std::numeric_limits<double>::infinity() : at.E.value(x);
+    point.value = alpha < lower || alpha > upper ? std::numeric_limits<double>::infinity() : at.E.value(x);
     point.model = at.value + alpha * slope + alpha * alpha / 2 * curvature;
     point.textbook_bound = at.value + c * alpha * slope;
     point.slide_bound = at.value + c * slope;
