@@ -143,7 +143,7 @@ std::optional<SolverConflict> find_conflict(const SimulationOptions& options) {
     return SolverConflict{
         "adaptive", name + " does not support substeps: " +
                         (integrator->facts().is_static() ? "it is static" : "it needs a constant step length") + "; " +
-                        joined(adaptive_integrator_names()) + " can"};
+                        joined(adaptive_integrator_names()) + " do"};
   const InitialGuess guess = initial_guess_named(options.initial_guess);
   const std::string chosen_guess = "initial_guess = '" + options.initial_guess + "'";
   if (guess != InitialGuess::best && !integrator->facts().chooses_guess())
