@@ -1,7 +1,6 @@
 // bench_adjoint: cost of a gradient relative to its forward solve, in statics (a beam that sags from rest) and in
 // motion (the released beam). CPU time, minimum of several runs.
 #include <algorithm>
-#include <cmath>
 #include <cstdio>
 #include <string>
 #include <vector>

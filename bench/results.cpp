@@ -1,6 +1,5 @@
 #include "bench/results.h"
 
-#include <algorithm>
 #include <cstdio>
 
 #include "bench/machine.h"

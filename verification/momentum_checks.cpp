@@ -1,6 +1,5 @@
 // Linear and angular momentum over many steps.
 #include <algorithm>
-#include <cmath>
 
 #include "mesh/generators.h"
 #include "verification/families.h"

@@ -4,7 +4,6 @@
 
 #include <limits>
 
-#include "base/error.h"
 #include "capture/fit_run.h"
 #include "scene/schema_table.h"
 #include "scene/toml_reader.h"

@@ -14,13 +14,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <string>
 #include <unordered_map>
 #include <utility>
 #include <vector>
 
-#include "base/error.h"
-#include "mesher.h"
 
 namespace aspic {
 

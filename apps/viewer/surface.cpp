@@ -1,7 +1,6 @@
 #include "viewer/surface.h"
 
 #include <algorithm>
-#include <cmath>
 #include <limits>
 
 #include "mesh/box.h"

@@ -4,7 +4,6 @@
 #include <utility>
 #include <vector>
 
-#include "capture/data_set.h"
 #include "fit/equilibrium.h"
 #include "fit/fit.h"
 #include "fit/parameter_map.h"

@@ -3,7 +3,6 @@
 #include <string>
 #include <vector>
 
-#include "capture/fit_run.h"
 #include "capture/poked_block_test.h"
 
 namespace aspic {

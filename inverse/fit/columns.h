@@ -3,7 +3,6 @@
 #include <span>
 #include <vector>
 
-#include "math/vectors.h"
 
 namespace aspic {
 

@@ -5,7 +5,6 @@
 
 #include "base/check.h"
 #include "dynamics/incremental_potential.h"
-#include "dynamics/integrator.h"
 #include "fit/elastic_parameters.h"
 #include "linalg/auto_solver.h"
 #include "mesh/findings.h"

@@ -1,11 +1,9 @@
 // Shared by the fitting methods: f(p) = |r|^2 / 2 + weight R with derivatives, counters and observer calls.
 #pragma once
-#include <algorithm>
 #include <span>
 #include <vector>
 
 #include "fit/fit.h"
-#include "math/vectors.h"
 
 namespace aspic {
 

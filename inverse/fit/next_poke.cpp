@@ -11,7 +11,6 @@
 #include "fit/field_text.h"
 #include "math/vectors.h"
 #include "mesh/surface.h"
-#include "mesh/tet_shape.h"
 
 namespace aspic {
 namespace {

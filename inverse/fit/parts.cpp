@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "mesh/tet_shape.h"
 
 namespace aspic {
 namespace {

@@ -1,6 +1,5 @@
 // Divides a field into parts: a few values and their locations.
 #pragma once
-#include <span>
 #include <vector>
 
 #include "fit/least_squares.h"

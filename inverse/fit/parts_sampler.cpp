@@ -7,7 +7,6 @@
 
 #include "linalg/dense_eigen.h"
 #include "mesh/grouped_elements.h"
-#include "mesh/tet_shape.h"
 
 namespace aspic {
 namespace {

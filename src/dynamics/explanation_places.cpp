@@ -1,7 +1,6 @@
 #include "dynamics/explanation_places.h"
 #include "mesh/vertices.h"
 
-#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdio>

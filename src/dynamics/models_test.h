@@ -1,15 +1,11 @@
 // Small models that several tests share.
 #pragma once
 #include <cmath>
-#include <functional>
 #include <string>
 
 #include "dynamics/integrator.h"
 #include "dynamics/simulation.h"
-#include "energy/linear_load.h"
-#include "energy/rayleigh_damping.h"
 #include "energy/springs.h"
-#include "material/lame.h"
 #include "mesh/generators.h"
 #include "verification/models.h"
 

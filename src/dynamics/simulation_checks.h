@@ -3,7 +3,6 @@
 #include <span>
 
 #include "base/error.h"
-#include "dynamics/integrator.h"
 #include "dynamics/simulation.h"
 
 namespace aspic {

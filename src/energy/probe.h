@@ -8,8 +8,6 @@
 #pragma once
 #include <memory>
 #include <span>
-#include <string>
-#include <vector>
 
 #include "energy/energy.h"
 #include "mesh/tet_mesh.h"

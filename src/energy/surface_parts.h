@@ -4,7 +4,6 @@
 #include <map>
 #include <vector>
 
-#include "mesh/tet_mesh.h"
 
 namespace aspic {
 

@@ -5,7 +5,6 @@
 #include <cstdint>
 
 #include "math/definite.h"
-#include "mesh/tet_mesh.h"
 
 namespace aspic {
 

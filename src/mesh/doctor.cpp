@@ -1,7 +1,6 @@
 #include "mesh/doctor.h"
 
 #include <algorithm>
-#include <limits>
 
 #include "base/parallel.h"
 #include "mesh/box_tree.h"

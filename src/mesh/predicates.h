@@ -3,7 +3,6 @@
 #pragma once
 #include <array>
 
-#include "mesh/tet_mesh.h"
 
 namespace aspic {
 

@@ -1,7 +1,6 @@
 // Shape of a tetrahedron: lengths, angles, quality, and its distance from a point.
 #pragma once
 #include <array>
-#include <cmath>
 
 #include "mesh/tet_mesh.h"
 

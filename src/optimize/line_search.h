@@ -5,7 +5,6 @@
 
 #include "base/stop_token.h"
 #include "optimize/objective.h"
-#include "optimize/work.h"
 
 namespace aspic {
 

@@ -1,8 +1,6 @@
 // A smooth function f(x, y) as an objective. Vectors are padded to one 3x3 block; the minimum is at z = 0.
 #pragma once
 #include <array>
-#include <string>
-#include <string_view>
 
 #include "optimize/objective.h"
 

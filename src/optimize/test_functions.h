@@ -1,7 +1,6 @@
 // Functions with known minima, to compare methods.
 #pragma once
 #include <memory>
-#include <optional>
 #include <string>
 #include <vector>
 

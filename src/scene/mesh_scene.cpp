@@ -10,7 +10,6 @@
 #include "mesh/self_intersection.h"
 #include "mesh/surface.h"
 #include "mesh/vertices.h"
-#include "scene/overrides.h"
 #include "scene/placement.h"
 #include "scene/sag.h"
 #include "scene/scene_document.h"

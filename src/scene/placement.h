@@ -4,7 +4,6 @@
 #include <vector>
 
 #include "math/small.h"
-#include "mesh/box.h"
 #include "scene/expression.h"
 #include "scene/scene_files.h"
 #include "scene/value.h"

@@ -1,7 +1,6 @@
 // Motion of an obstacle that a point cache records.
 #pragma once
 #include "contact/contact_mesh.h"
-#include "scene/body_mesh.h"
 #include "scene/placement.h"
 #include "scene/value.h"
 

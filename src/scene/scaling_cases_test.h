@@ -6,7 +6,6 @@
 #include <map>
 #include <ostream>
 
-#include "scene/scene_cases_test.h"
 
 namespace aspic::scaling {
 

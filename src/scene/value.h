@@ -8,7 +8,6 @@
 #include <vector>
 
 #include "base/error.h"
-#include "base/printable.h"
 #include "math/small.h"
 
 namespace aspic {

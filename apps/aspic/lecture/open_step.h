@@ -1,10 +1,8 @@
 // Access to an implicit step of a scene: the objective E of the next step and its initial guess.
 #pragma once
-#include <functional>
 #include <vector>
 
 #include "dynamics/incremental_potential.h"
-#include "math/vectors.h"
 #include "scene/scene.h"
 
 namespace aspic::cli::lecture {
