@@ -3,7 +3,7 @@
 
 #include "mesh/generators.h"
 #include "verification/families.h"
-#include "verification/momenta.h"
+#include "verification/models.h"
 
 namespace aspic::verify {
 

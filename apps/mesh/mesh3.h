@@ -18,6 +18,8 @@
 #include <utility>
 #include <vector>
 
+#include "base/error.h"
+#include "mesher.h"
 
 namespace aspic {
 

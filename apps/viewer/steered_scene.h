@@ -8,6 +8,7 @@
 #include "energy/grab_spring.h"
 #include "energy/held_tip.h"
 #include "scene/scene.h"
+#include "scene/solver_options.h"
 #include "scene/value.h"
 
 namespace aspic::viewer {

@@ -5,6 +5,7 @@
 #include "capture/data_set.h"
 #include "capture/surface_projection.h"
 #include "io/folder_test.h"
+#include "io/mesh_file.h"
 #include "mesh/generators.h"
 
 namespace aspic {

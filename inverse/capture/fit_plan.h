@@ -4,6 +4,7 @@
 #include <utility>
 #include <vector>
 
+#include "capture/data_set.h"
 #include "fit/equilibrium.h"
 #include "fit/fit.h"
 #include "fit/parameter_map.h"

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "capture/measured_table.h"
+#include "capture/surface_projection.h"
 #include "scene/value.h"
 
 namespace aspic {

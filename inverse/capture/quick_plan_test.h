@@ -3,6 +3,7 @@
 #include <string>
 #include <vector>
 
+#include "capture/fit_run.h"
 #include "capture/poked_block_test.h"
 
 namespace aspic {

@@ -3,6 +3,7 @@
 #include <span>
 #include <vector>
 
+#include "math/vectors.h"
 
 namespace aspic {
 

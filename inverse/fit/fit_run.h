@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "fit/fit.h"
+#include "math/vectors.h"
 
 namespace aspic {
 

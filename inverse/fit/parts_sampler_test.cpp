@@ -1,5 +1,5 @@
 // Sampling of parts from noisy readings of every tet, with known values, locations and intervals.
-#include "fit/parts_sampler.h"
+#include "fit/parts.h"
 
 #include <gtest/gtest.h>
 

@@ -8,6 +8,7 @@
 #include "dynamics/incremental_potential.h"
 #include "dynamics/integrator_facts.h"
 #include "dynamics/state.h"
+#include "dynamics/step_report.h"
 #include "linalg/linear_solver.h"
 #include "optimize/minimize.h"
 

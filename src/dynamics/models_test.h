@@ -5,7 +5,10 @@
 
 #include "dynamics/integrator.h"
 #include "dynamics/simulation.h"
+#include "energy/linear_load.h"
+#include "energy/rayleigh_damping.h"
 #include "energy/springs.h"
+#include "material/lame.h"
 #include "mesh/generators.h"
 #include "verification/models.h"
 

@@ -3,6 +3,7 @@
 #include <span>
 
 #include "base/error.h"
+#include "dynamics/integrator.h"
 #include "dynamics/simulation.h"
 
 namespace aspic {

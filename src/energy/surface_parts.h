@@ -4,6 +4,7 @@
 #include <map>
 #include <vector>
 
+#include "mesh/tet_mesh.h"
 
 namespace aspic {
 

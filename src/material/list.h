@@ -2,6 +2,7 @@
 #pragma once
 #include <string_view>
 
+#include "base/error.h"
 #include "material/all_materials.h"  // generated from materials.cmake: MaterialList
 
 namespace aspic {

@@ -5,6 +5,7 @@
 #include <cstdint>
 
 #include "math/definite.h"
+#include "mesh/tet_mesh.h"
 
 namespace aspic {
 

@@ -3,6 +3,7 @@
 #pragma once
 #include <array>
 
+#include "mesh/tet_mesh.h"
 
 namespace aspic {
 

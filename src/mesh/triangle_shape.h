@@ -1,5 +1,6 @@
 // Triangles in space: nearest points and intersection tests.
 #pragma once
+#include "mesh/tet_mesh.h"
 
 namespace aspic {
 

@@ -5,6 +5,7 @@
 
 #include "base/stop_token.h"
 #include "optimize/objective.h"
+#include "optimize/work.h"
 
 namespace aspic {
 

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "math/small.h"
+#include "mesh/box.h"
 #include "scene/expression.h"
 #include "scene/scene_files.h"
 #include "scene/value.h"

@@ -6,6 +6,8 @@
 #include <map>
 #include <ostream>
 
+#include "scene/scene_cases_test.h"
+
 
 namespace aspic::scaling {
 
