@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "base/error.h"
+#include "base/formatted.h"
 #include "bodies.h"
 #include "body_domain.h"
 #include "fidelity.h"
@@ -49,12 +50,6 @@ std::optional<Vec3d> plate_normal(const TriMesh& body) {
   if (!(*largest > kFacing * whole)) return {};
   const long k = 3 * (largest - eigen.values.begin());
   return Vec3d{{eigen.vectors[k], eigen.vectors[k + 1], eigen.vectors[k + 2]}};
-}
-
-std::string digits(double value) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.3g", value);
-  return text;
 }
 
 // A body to refine, with its rule of edge lengths.
@@ -104,7 +99,7 @@ class SurfaceFiller {
   }
 
  private:
-  std::string length(double in_frame) const { return digits(in_frame * frame_.unit); }
+  std::string length(double in_frame) const { return three_digits(in_frame * frame_.unit); }
 
   std::string body_name(int body) const {
     return bodies_.size() == 1 ? name_
@@ -120,7 +115,7 @@ class SurfaceFiller {
     if (!problem.empty()) problem = attempt(body, planned(body, {}, Sides::any), 1, mesh);
     if (problem.empty()) return mesh;
     throw InvalidInput(body_name(body) + ": " + problem_ + "; give a --size smaller than " + length(size_) +
-                       ", or allow more than " + digits(options_.most_tets) + " tets with --max-tets");
+                       ", or allow more than " + three_digits(options_.most_tets) + " tets with --max-tets");
   }
 
   // Returns why the tets do not represent the body; empty if they do.
@@ -168,12 +163,12 @@ class SurfaceFiller {
     const double across = plan.thin.thickness / rule.smallest;
     const bool has_few = rule.smallest < size_ && across<1.9, is_flat = plan.stretch.factor> 1;
     if (!has_few && !is_flat) return;
-    result_.notes.push_back((bodies_.size() == 1 ? "" : "body " + std::to_string(body + 1) + ": ") + "it is " +
-                            length(plan.thickness()) + " thick; " +
-                            (has_few ? digits(across) + " tets across instead of two" : "") +
-                            (has_few && is_flat ? ", and " : "") +
-                            (is_flat ? "tets are " + digits(plan.stretch.factor) + " times as wide as thick" : "") +
-                            ", because more than " + digits(options_.most_tets) + " are not allowed (--max-tets)");
+    result_.notes.push_back(
+        (bodies_.size() == 1 ? "" : "body " + std::to_string(body + 1) + ": ") + "it is " + length(plan.thickness()) +
+        " thick; " + (has_few ? three_digits(across) + " tets across instead of two" : "") +
+        (has_few && is_flat ? ", and " : "") +
+        (is_flat ? "tets are " + three_digits(plan.stretch.factor) + " times as wide as thick" : "") +
+        ", because more than " + three_digits(options_.most_tets) + " are not allowed (--max-tets)");
   }
 
   TetMesh refined(const Plan& plan, const SizeRule& rule, double predicted) {

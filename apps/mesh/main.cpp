@@ -15,6 +15,7 @@
 #include <string>
 
 #include "base/error.h"
+#include "base/formatted.h"
 #include "base/free_memory.h"
 #include "base/printable.h"
 #include "input.h"
@@ -80,9 +81,7 @@ void limit_memory(std::int64_t bytes) {
 
 template <class... Values>
 std::string line(const char* format, Values... values) {
-  char text[256];
-  std::snprintf(text, sizeof text, format, values...);
-  return std::string(text) + '\n';
+  return formatted(format, values...) + '\n';
 }
 
 // Mean over the tets of their smallest dihedral angle [degrees].
@@ -219,9 +218,8 @@ TetMesh mesh(const Arguments& arguments) {
 
 void set_budget(const Arguments& arguments) {
   const std::string subject = arguments.input.empty() ? "--implicit" : arguments.input;
-  char seconds[32];
-  std::snprintf(seconds, sizeof seconds, "%g", arguments.time_limit);
-  limit_time(arguments.time_limit, "error: " + printable(subject) + ": meshing did not end within " + seconds +
+  limit_time(arguments.time_limit, "error: " + printable(subject) + ": meshing did not end within " +
+                                       formatted("%g", arguments.time_limit) +
                                        " s; give a larger --size, or more with --time-limit\n");
   end_faults(kFailed, "error: " + printable(subject) +
                           ": meshing failed in CGAL; give another --size, or rebuild the surface with --rebuild\n");

@@ -4,9 +4,9 @@
 #include <cmath>
 
 #include "base/check.h"
+#include "base/formatted.h"
 #include "fit/evidence.h"
 #include "fit/field_text.h"
-#include "fit/formatted.h"
 #include "fit/principal_directions.h"
 
 namespace aspic {
