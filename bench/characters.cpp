@@ -3,11 +3,11 @@
 
 #include <algorithm>
 #include <cstdio>
-#include <exception>
 #include <string>
 #include <vector>
 
 #include "base/error.h"
+#include "base/formatted.h"
 #include "base/parallel.h"
 #include "bench/machine.h"
 #include "bench/program.h"
@@ -134,8 +134,7 @@ void print(const Case& c, const TetMesh& mesh, const Measured& m) {
 }
 
 void record(Results& results, const Case& c, const TetMesh& mesh, const Measured& m) {
-  char what[96];
-  std::snprintf(what, sizeof what, "%s %s E=%.0e %.0f Hz", c.shape.c_str(), c.detail.c_str(), c.young, c.rate);
+  const std::string what = formatted("%s %s E=%.0e %.0f Hz", c.shape.c_str(), c.detail.c_str(), c.young, c.rate);
   const double steps = static_cast<double>(m.wall.size());
   results.begin(what, c.threads);
   results.add("vertices", mesh.vertex_count(), "1");

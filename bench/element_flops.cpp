@@ -1,8 +1,5 @@
 #include "bench/element_flops.h"
 
-#include <algorithm>
-#include <cmath>
-
 #include "bench/counted.h"
 #include "material/list.h"
 #include "math/definite.h"

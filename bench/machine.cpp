@@ -1,12 +1,11 @@
 #include "bench/machine.h"
 
-#include <algorithm>
 #include <cstdio>
-#include <filesystem>
 #include <fstream>
 #include <sstream>
 #include <thread>
 
+#include "base/formatted.h"
 #include "build_facts.h"
 #include "math/pack.h"
 
@@ -64,9 +63,7 @@ std::string caches() {  // caches of the first core
 std::string memory() {
   const std::string kib = value_in("/proc/meminfo", "MemTotal");
   if (kib.empty()) return "unknown";
-  char text[32];
-  std::snprintf(text, sizeof text, "%.1f GiB", std::stod(kib) / (1 << 20));
-  return text;
+  return formatted("%.1f GiB", std::stod(kib) / (1 << 20));
 }
 
 std::string frequency() {
@@ -83,9 +80,7 @@ double load() {  // runnable processes over the last minute; negative: unknown
 
 std::string load_text() {
   const double one_minute = load();
-  char text[64];
-  std::snprintf(text, sizeof text, "%.2f in the last minute", one_minute);
-  return one_minute < 0 ? "unknown" : text;
+  return one_minute < 0 ? "unknown" : formatted("%.2f in the last minute", one_minute);
 }
 
 }  // namespace

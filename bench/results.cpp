@@ -1,19 +1,13 @@
 #include "bench/results.h"
 
-#include <algorithm>
-#include <cstdio>
-
+#include "base/formatted.h"
 #include "bench/machine.h"
 #include "io/csv.h"
 
 namespace aspic::bench {
 namespace {
 
-std::string four_digits(double value) {  // more digits are noise
-  char text[32];
-  std::snprintf(text, sizeof text, "%.4g", value);
-  return text;
-}
+std::string four_digits(double value) { return formatted("%.4g", value); }  // more digits are noise
 
 }  // namespace
 

@@ -3,13 +3,11 @@
 #include <filesystem>
 #include <string>
 
-#include "base/error.h"
 #include "base/stop_token.h"
 #include "capture/data_set.h"
 #include "capture/journal.h"
 #include "capture/motion_table.h"
 #include "capture/test_curves.h"
-#include "io/atomic_file.h"
 #include "io/checkpoint.h"
 #include "io/mesh_file.h"
 #include "io/pc2.h"

@@ -1,5 +1,4 @@
 #include <cmath>
-#include <string>
 
 #include "io/gmsh.h"
 #include "io/medit.h"

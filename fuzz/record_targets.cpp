@@ -1,6 +1,4 @@
-#include <string>
 
-#include "base/error.h"
 #include "io/checkpoint.h"
 #include "io/csv_reader.h"
 #include "io/pc2.h"

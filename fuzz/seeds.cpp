@@ -2,7 +2,6 @@
 // Meshes come from the library's writers and from examples of its tests.
 #include <cstdio>
 #include <filesystem>
-#include <string>
 
 #include "io/atomic_file.h"
 #include "seeds.h"

@@ -1,11 +1,8 @@
 #include <cmath>
 #include <string>
 
-#include "base/error.h"
 #include "scene/expression.h"
-#include "scene/overrides.h"
 #include "scene/scene_document.h"
-#include "scene/toml_reader.h"
 #include "scene/value.h"
 #include "targets.h"
 

@@ -1,5 +1,4 @@
 // Messages of the viewer's page, and runs for the page.
-#include "io/atomic_file.h"
 #include "run_files.h"
 #include "seeds.h"
 #include "several_files.h"

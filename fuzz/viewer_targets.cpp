@@ -1,8 +1,6 @@
 // Messages of the viewer's page, and runs packed into a page.
 #include <string>
-#include <vector>
 
-#include "base/error.h"
 #include "io/checkpoint.h"
 #include "run_files.h"
 #include "scene/run_directory.h"

@@ -7,7 +7,7 @@
 #include "base/hash.h"
 #include "base/parallel.h"
 #include "dynamics/models_test.h"
-#include "dynamics/state_hash.h"
+#include "dynamics/state.h"
 #include "linalg/linear_solver.h"
 
 namespace aspic {

@@ -8,7 +8,6 @@
 #include <filesystem>
 #include <map>
 #include <numbers>
-#include <set>
 
 #include "scene/scene_cases_test.h"
 

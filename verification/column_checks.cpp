@@ -8,7 +8,7 @@
 #include "mesh/generators.h"
 #include "verification/families.h"
 #include "verification/layers.h"
-#include "verification/momenta.h"
+#include "verification/models.h"
 #include "verification/statics.h"
 
 namespace aspic::verify {

@@ -1,7 +1,6 @@
 // Impacts: forces and times, momenta, energies, units.
 #include <algorithm>
 #include <cmath>
-#include <memory>
 
 #include "math/vectors.h"
 #include "mesh/generators.h"

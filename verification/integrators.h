@@ -1,6 +1,5 @@
 // Theoretical and measured properties of each integrator.
 #pragma once
-#include <complex>
 #include <map>
 #include <string>
 #include <vector>

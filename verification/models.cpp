@@ -1,6 +1,5 @@
 #include "verification/models.h"
 
-#include <cmath>
 #include <stdexcept>
 
 #include "base/check.h"

@@ -1,10 +1,9 @@
 // Linear and angular momentum over many steps.
 #include <algorithm>
-#include <cmath>
 
 #include "mesh/generators.h"
 #include "verification/families.h"
-#include "verification/momenta.h"
+#include "verification/models.h"
 
 namespace aspic::verify {
 

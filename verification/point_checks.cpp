@@ -2,16 +2,63 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <map>
+#include <string>
 #include <utility>
+#include <vector>
 
+#include "material/list.h"
+#include "material/reference.h"
+#include "material/registry.h"
+#include "material/states.h"
+#include "math/jet.h"
 #include "math/vectors.h"
 #include "optimize/derivative_check.h"
 #include "verification/families.h"
-#include "verification/law.h"
 #include "verification/models.h"
+#include "verification/uniaxial.h"
 
 namespace aspic::verify {
 namespace {
+
+// A material with constants that differ from each other and from their defaults.
+struct Law {
+  MaterialInfo info;
+  double (*psi)(const Mat3d& F);                  // energy density [J/m^3]
+  Mat3d (*pk1)(const Mat3d& F);                   // as implemented by the library [Pa]
+  Mat9d (*hessian)(const Mat3d& F);               //
+  Jet<double> (*differentiated)(const Mat3d& F);  // psi and its derivatives by automatic differentiation of psi
+  // Energy density from principal stretches by the documented formula of the material [J/m^3].
+  long double (*reference)(const PrincipalStretches& s, const ReferenceModuli& m);
+  std::vector<NamedState> states;  // states where psi is twice differentiable
+};
+
+template <class M>
+Law make_law() {
+  return {
+      M::info(),
+      [](const Mat3d& F) { return M::psi(F, ordinary_params<M>()); },
+      [](const Mat3d& F) { return M::pk1(F, ordinary_params<M>()); },
+      [](const Mat3d& F) { return M::hessian(F, ordinary_params<M>()); },
+      [](const Mat3d& F) { return M::psi(jet_variables(F), broadcast_params<M, Jet<double>>(ordinary_params<M>())); },
+      M::reference_energy,
+      smooth_states<M>()};
+}
+
+// throws InvalidInput for an unknown one
+const Law& law(const std::string& material) {
+  static const std::map<std::string, Law> laws = [] {
+    std::map<std::string, Law> all;
+    for_each_material([&all]<class M>() { all.emplace(M::info().name, make_law<M>()); });
+    return all;
+  }();
+  return laws.at(material_info(material).name);
+}
+
+long double principal_energy(const std::string& material, const std::array<long double, 3>& stretch, double young,
+                             double poisson) {
+  return law(material).reference(PrincipalStretches(stretch), {young, poisson});
+}
 
 std::string kind_of(const NamedState& state) { return state.name.substr(0, state.name.find(',')); }
 

@@ -6,7 +6,6 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
-#include "aspic/fit_summary.h"
 #include "fit/bickel.h"
 #include "io/atomic_file.h"
 

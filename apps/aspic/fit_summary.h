@@ -1,7 +1,6 @@
 // Prints the results of a fit as text.
 #pragma once
 #include <cstdio>
-#include <filesystem>
 #include <string>
 
 #include "capture/fit_run.h"

@@ -1,7 +1,6 @@
 // One run of gnuplot: data files and script in a temporary folder; the picture is moved to its destination.
 #pragma once
 #include <filesystem>
-#include <span>
 #include <string>
 #include <string_view>
 

@@ -1,7 +1,6 @@
 // Pictures of shaded meshes as PNG, drawn by the viewer's page in a headless browser.
 #pragma once
 #include <filesystem>
-#include <functional>
 #include <optional>
 #include <string>
 #include <vector>

@@ -1,7 +1,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
 
 #include "aspic/interrupt.h"
 #include "aspic/minimize.h"

@@ -8,14 +8,11 @@
 #include <cmath>
 #include <filesystem>
 #include <nlohmann/json.hpp>
-#include <numbers>
 
 #include "aspic/commands.h"
-#include "base/error.h"
 #include "base/parallel.h"
 #include "base/printable.h"
 #include "base/stop_token.h"
-#include "io/atomic_file.h"
 #include "io/csv.h"
 #include "mesh/box.h"
 #include "scene/run_directory.h"

@@ -17,7 +17,7 @@
 #include "base/parallel.h"
 #include "base/printable.h"
 #include "base/stop_token.h"
-#include "dynamics/state_hash.h"
+#include "dynamics/state.h"
 #include "io/input_file.h"
 #include "scene/explanation.h"
 #include "scene/run_directory.h"

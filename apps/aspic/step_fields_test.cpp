@@ -7,7 +7,6 @@
 #include <nlohmann/json.hpp>
 
 #include "aspic/step_json.h"
-#include "base/error.h"
 #include "io/atomic_file.h"
 #include "io/csv_reader.h"
 #include "io/folder_test.h"

@@ -9,7 +9,7 @@
 #include "aspic/formulas.h"
 #include "aspic/plot.h"
 #include "aspic/report_page.h"
-#include "aspic/verify_text.h"
+#include "aspic/verify.h"
 #include "base/error.h"
 #include "io/atomic_file.h"
 #include "io/external_program.h"

@@ -3,17 +3,20 @@
 
 #include <CLI/CLI.hpp>
 #include <atomic>
+#include <cstdlib>
 #include <filesystem>
 #include <nlohmann/json.hpp>
+#include <string>
 #include <thread>
 
-#include "aspic/browser.h"
 #include "aspic/commands.h"
 #include "aspic/gallery.h"
 #include "aspic/interrupt.h"
 #include "aspic/lecture/lessons.h"
 #include "base/error.h"
 #include "base/parallel.h"
+#include "io/child_process.h"
+#include "io/external_program.h"
 #include "scene/run_directory.h"
 #include "viewer/page.h"
 #include "viewer/recording.h"
@@ -27,6 +30,28 @@ namespace fs = std::filesystem;
 using viewer::Role;
 using viewer::Server;
 using viewer::Session;
+
+namespace fs = std::filesystem;
+
+bool has_display() {
+  const auto is_set = [](const char* name) {
+    const char* value = std::getenv(name);
+    return value && *value;
+  };
+  return is_set("DISPLAY") || is_set("WAYLAND_DISPLAY");
+}
+
+// Returns false if there is no display, or no program to open the address.
+bool open_browser(const std::string& address) {
+  if (!has_display()) return false;
+  try {
+    const fs::path opener = find_program("xdg-open", {}, "");
+    const ChildProcess process({.command = {opener.string(), address}, .lifetime = Lifetime::detached});
+    return true;
+  } catch (const InvalidInput&) {
+    return false;
+  }
+}
 
 struct ViewArguments {
   fs::path input;

@@ -1,7 +1,6 @@
 #include "bodies.h"
 
 #include <algorithm>
-#include <cmath>
 
 #include "mesh/components.h"
 #include "mesh/disjoint_sets.h"

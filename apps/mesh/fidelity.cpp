@@ -2,8 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 
+#include "base/formatted.h"
 #include "bodies.h"
 #include "mesh/components.h"
 #include "mesh/surface.h"
@@ -70,18 +70,15 @@ Fidelity fidelity(const TriMesh& body, const TetMesh& tets, double allowed) {
 }
 
 std::string mismatch(const Fidelity& f, double allowed, double unit) {
-  char text[300] = "";
   if (!(std::abs(f.filled - f.volume) <= kVolume * f.volume))
-    std::snprintf(text, sizeof text, "the tets fill %.3g %% of the volume inside the surface",
-                  100 * f.filled / f.volume);
-  else if (f.filled_parts > f.parts)
-    std::snprintf(text, sizeof text, "the tets form %d parts but the surface has %d", f.filled_parts, f.parts);
-  else if (f.missed > kMissed)
-    std::snprintf(text, sizeof text, "%.2g %% of the surface is farther than %.3g from the tets", 100 * f.missed,
-                  allowed * unit);
-  else if (f.distance >= kSearched * allowed)
-    std::snprintf(text, sizeof text, "a point of the surface is %.3g or farther from the tets", f.distance * unit);
-  return text;
+    return formatted("the tets fill %.3g %% of the volume inside the surface", 100 * f.filled / f.volume);
+  if (f.filled_parts > f.parts)
+    return formatted("the tets form %d parts but the surface has %d", f.filled_parts, f.parts);
+  if (f.missed > kMissed)
+    return formatted("%.2g %% of the surface is farther than %.3g from the tets", 100 * f.missed, allowed * unit);
+  if (f.distance >= kSearched * allowed)
+    return formatted("a point of the surface is %.3g or farther from the tets", f.distance * unit);
+  return "";
 }
 
 }  // namespace aspic

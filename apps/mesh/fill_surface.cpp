@@ -3,25 +3,53 @@
 #include <cmath>
 #include <cstdio>
 #include <optional>
+#include <vector>
 
 #include "base/error.h"
+#include "base/formatted.h"
 #include "bodies.h"
 #include "body_domain.h"
 #include "fidelity.h"
-#include "flat_body.h"
 #include "local_size.h"
+#include "math/symmetric_eigen.h"
 #include "mesh/surface_orientation.h"
+#include "mesh/tet_mesh.h"
 #include "mesher.h"
 #include "sharp_edges.h"
+#include "triangle_tree.h"
 #include "unit_frame.h"
 
 namespace aspic {
 namespace {
 
-std::string digits(double value) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.3g", value);
-  return text;
+// Flat bodies are stretched along their normal, so that refinement with equal edges gives correspondingly flat tets.
+struct Stretch {
+  Vec3d axis{};  // unit vector
+  double factor = 1;
+};
+
+void stretch(const Stretch& stretch, std::vector<Vec3d>& points) {
+  for (Vec3d& x : points) x = x + ((stretch.factor - 1) * dot(stretch.axis, x)) * stretch.axis;
+}
+
+// Returns the normal of a plate: a body whose surface mostly faces one direction or the opposite one.
+// The eigenvalues of sum area n n' are the areas that face each of three directions.
+std::optional<Vec3d> plate_normal(const TriMesh& body) {
+  constexpr double kFacing = 0.95;  // fraction of the area
+  std::array<double, 9> moment{};
+  double whole = 0;
+  for (int t = 0; t < body.triangle_count(); ++t) {
+    const Vec3d n = unit_normal(body, t);
+    const double part = area(body, t);
+    whole += part;
+    for (int i = 0; i < 3; ++i)
+      for (int j = 0; j < 3; ++j) moment[i + 3 * j] += part * n[i] * n[j];
+  }
+  const SymmetricEigen<3> eigen = symmetric_eigen<3>(moment);
+  const auto largest = std::max_element(eigen.values.begin(), eigen.values.end());
+  if (!(*largest > kFacing * whole)) return {};
+  const long k = 3 * (largest - eigen.values.begin());
+  return Vec3d{{eigen.vectors[k], eigen.vectors[k + 1], eigen.vectors[k + 2]}};
 }
 
 // A body to refine, with its rule of edge lengths.
@@ -71,7 +99,7 @@ class SurfaceFiller {
   }
 
  private:
-  std::string length(double in_frame) const { return digits(in_frame * frame_.unit); }
+  std::string length(double in_frame) const { return three_digits(in_frame * frame_.unit); }
 
   std::string body_name(int body) const {
     return bodies_.size() == 1 ? name_
@@ -87,7 +115,7 @@ class SurfaceFiller {
     if (!problem.empty()) problem = attempt(body, planned(body, {}, Sides::any), 1, mesh);
     if (problem.empty()) return mesh;
     throw InvalidInput(body_name(body) + ": " + problem_ + "; give a --size smaller than " + length(size_) +
-                       ", or allow more than " + digits(options_.most_tets) + " tets with --max-tets");
+                       ", or allow more than " + three_digits(options_.most_tets) + " tets with --max-tets");
   }
 
   // Returns why the tets do not represent the body; empty if they do.
@@ -135,12 +163,12 @@ class SurfaceFiller {
     const double across = plan.thin.thickness / rule.smallest;
     const bool has_few = rule.smallest < size_ && across<1.9, is_flat = plan.stretch.factor> 1;
     if (!has_few && !is_flat) return;
-    result_.notes.push_back((bodies_.size() == 1 ? "" : "body " + std::to_string(body + 1) + ": ") + "it is " +
-                            length(plan.thickness()) + " thick; " +
-                            (has_few ? digits(across) + " tets across instead of two" : "") +
-                            (has_few && is_flat ? ", and " : "") +
-                            (is_flat ? "tets are " + digits(plan.stretch.factor) + " times as wide as thick" : "") +
-                            ", because more than " + digits(options_.most_tets) + " are not allowed (--max-tets)");
+    result_.notes.push_back(
+        (bodies_.size() == 1 ? "" : "body " + std::to_string(body + 1) + ": ") + "it is " + length(plan.thickness()) +
+        " thick; " + (has_few ? three_digits(across) + " tets across instead of two" : "") +
+        (has_few && is_flat ? ", and " : "") +
+        (is_flat ? "tets are " + three_digits(plan.stretch.factor) + " times as wide as thick" : "") +
+        ", because more than " + three_digits(options_.most_tets) + " are not allowed (--max-tets)");
   }
 
   TetMesh refined(const Plan& plan, const SizeRule& rule, double predicted) {

@@ -2,8 +2,6 @@
 #pragma once
 #include <CGAL/Labeled_mesh_domain_3.h>
 
-#include <cmath>
-#include <optional>
 #include <string>
 
 #include "mesh/disjoint_sets.h"

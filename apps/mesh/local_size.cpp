@@ -2,8 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 
+#include "base/formatted.h"
 #include "triangle_tree.h"
 
 namespace aspic {
@@ -135,10 +135,8 @@ ThinParts choose_rule(const std::vector<SurfaceSample>& samples, double volume, 
     choice.tets = predicted_tets(samples, volume, choice.rule);
     return choice;
   }
-  char text[200];
-  std::snprintf(text, sizeof text, "one tet across its thin parts needs about %.2g tets, more than the limit of %.2g",
-                choice.tets, most_tets);
-  choice.problem = text;
+  choice.problem = formatted("one tet across its thin parts needs about %.2g tets, more than the limit of %.2g",
+                             choice.tets, most_tets);
   return choice;
 }
 

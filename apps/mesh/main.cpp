@@ -1,23 +1,119 @@
 // aspic-mesh: fills a closed surface, an implicit shape or a labeled image with tetrahedra.
+#include <sys/resource.h>
+#include <sys/time.h>
+#include <unistd.h>
 #include <CLI/CLI.hpp>
-
+#include <algorithm>
+#include <array>
 #include <chrono>
 #include <cmath>
+#include <csignal>
+#include <cstdint>
 #include <cstdio>
-#include <iostream>
+#include <map>
 #include <new>
+#include <string>
 
 #include "base/error.h"
+#include "base/formatted.h"
 #include "base/free_memory.h"
 #include "base/printable.h"
-#include "budget.h"
 #include "input.h"
 #include "io/mesh_file.h"
+#include "mesh/doctor.h"
+#include "mesh/tet_mesh.h"
+#include "mesh/tet_shape.h"
 #include "mesher.h"
-#include "report.h"
 
 namespace aspic {
 namespace {
+
+constexpr int kOutOfTime = 4;  // exit code
+
+struct Farewell {
+  std::string message;
+  int exit_code = 0;
+
+  [[noreturn]] void say() const {
+    [[maybe_unused]] const ssize_t written = ::write(STDERR_FILENO, message.data(), message.size());
+    ::_exit(exit_code);
+  }
+};
+
+Farewell out_of_time, fault;  // set before the signals can arrive
+
+// After this many seconds of wall time the process prints `message` to stderr and exits with kOutOfTime. A second call
+// replaces the first.
+void limit_time(double seconds, const std::string& message) {
+  out_of_time = {message, kOutOfTime};
+  std::signal(SIGALRM, [](int) { out_of_time.say(); });
+  constexpr double kLongest = 1e9;  // [s]
+  const double bounded = std::clamp(seconds, 1e-3, kLongest);
+  itimerval timer{};
+  timer.it_value.tv_sec = static_cast<time_t>(bounded);
+  timer.it_value.tv_usec = static_cast<suseconds_t>(1e6 * (bounded - std::floor(bounded)));
+  ::setitimer(ITIMER_REAL, &timer, nullptr);
+}
+
+// If a fault signal such as SIGSEGV occurs, the process prints `message` to stderr and exits with this code.
+// The handler has its own stack, because a fault may be the overflow of the other one.
+void end_faults(int exit_code, const std::string& message) {
+  static std::array<char, 1 << 16> handler_stack;
+  fault = {message, exit_code};
+  stack_t stack{};
+  stack.ss_sp = handler_stack.data();
+  stack.ss_size = handler_stack.size();
+  ::sigaltstack(&stack, nullptr);
+  struct sigaction action {};
+  action.sa_handler = [](int) { fault.say(); };
+  action.sa_flags = SA_ONSTACK;
+  for (const int signal : {SIGSEGV, SIGBUS, SIGFPE, SIGILL, SIGABRT}) ::sigaction(signal, &action, nullptr);
+}
+
+// Allocations beyond this many bytes throw std::bad_alloc.
+void limit_memory(std::int64_t bytes) {
+  rlimit limit{};
+  if (::getrlimit(RLIMIT_DATA, &limit) != 0) return;
+  const auto wanted = static_cast<rlim_t>(std::max<std::int64_t>(bytes, 0));
+  limit.rlim_cur = limit.rlim_max == RLIM_INFINITY ? wanted : std::min(wanted, limit.rlim_max);
+  ::setrlimit(RLIMIT_DATA, &limit);
+}
+
+template <class... Values>
+std::string line(const char* format, Values... values) {
+  return formatted(format, values...) + '\n';
+}
+
+// Mean over the tets of their smallest dihedral angle [degrees].
+double average_smallest_dihedral(const TetMesh& mesh) {
+  double sum = 0;
+  for (int t = 0; t < mesh.tet_count(); ++t) sum += dihedral_range(corners(mesh, t))[0];
+  return sum / mesh.tet_count();
+}
+
+double average_edge(const TetMesh& mesh) {
+  double sum = 0;
+  for (int t = 0; t < mesh.tet_count(); ++t) {
+    const TetCorners X = corners(mesh, t);
+    for (int a = 0; a < 4; ++a)
+      for (int b = 0; b < a; ++b) sum += norm(X[a] - X[b]) / 6;
+  }
+  return sum / mesh.tet_count();
+}
+
+std::string quality_report(const TetMesh& mesh, double seconds) {
+  const MeshQuality q = quality(mesh);
+  std::string text = line("vertices        %d", mesh.vertex_count()) + line("tets            %d", mesh.tet_count());
+  std::map<int, int> regions;
+  for (int label : mesh.region) ++regions[label];
+  for (const auto& [label, count] : regions) text += line("  region %-6d %d tets", label, count);
+  text += line("volume          %.6g in %d component%s", q.total_volume, q.components, q.components == 1 ? "" : "s");
+  text += line("edge length     %.4g on average", average_edge(mesh));
+  text += line("dihedral angle  smallest %.1f, largest %.1f, average of the smallest per tet %.1f degrees",
+               q.min_dihedral, q.max_dihedral, average_smallest_dihedral(mesh));
+  text += line("mean ratio      smallest %.3f, average %.3f (1: regular tet)", q.min_mean_ratio, q.average_mean_ratio);
+  return text + line("time            %.2f s", seconds);
+}
 
 enum ExitCode { kDone = 0, kFailed = 1, kBadInput = 2 };
 
@@ -122,9 +218,8 @@ TetMesh mesh(const Arguments& arguments) {
 
 void set_budget(const Arguments& arguments) {
   const std::string subject = arguments.input.empty() ? "--implicit" : arguments.input;
-  char seconds[32];
-  std::snprintf(seconds, sizeof seconds, "%g", arguments.time_limit);
-  limit_time(arguments.time_limit, "error: " + printable(subject) + ": meshing did not end within " + seconds +
+  limit_time(arguments.time_limit, "error: " + printable(subject) + ": meshing did not end within " +
+                                       formatted("%g", arguments.time_limit) +
                                        " s; give a larger --size, or more with --time-limit\n");
   end_faults(kFailed, "error: " + printable(subject) +
                           ": meshing failed in CGAL; give another --size, or rebuild the surface with --rebuild\n");

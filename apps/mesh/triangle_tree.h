@@ -1,6 +1,5 @@
 // Queries on the triangles of a surface: first intersection with a ray, distance, and inside test.
 #pragma once
-#include <vector>
 
 #include "mesh/box_tree.h"
 #include "mesh/tet_mesh.h"

@@ -2,10 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <limits>
 
 #include "base/error.h"
+#include "base/formatted.h"
 #include "mesh/box_tree.h"
 
 namespace aspic {
@@ -14,12 +14,6 @@ namespace {
 constexpr double kLargest = 1e75;     // keeps fourth powers of lengths finite, as in dihedral angles
 constexpr double kSmallest = 1e-75;   // keeps them positive
 constexpr double kResolution = 1e-6;  // largest spacing of coordinates, relative to the extent
-
-std::string text(double value) {
-  char digits[32];
-  std::snprintf(digits, sizeof digits, "%.3g", value);
-  return digits;
-}
 
 }  // namespace
 
@@ -45,12 +39,12 @@ UnitFrame unit_frame(const std::string& name, const std::vector<Vec3d>& points) 
   extent *= 2;
   if (!(extent > 0)) throw InvalidInput(name + ": all vertices coincide; use a closed surface");
   if (!(extent < kLargest) || !(extent > kSmallest))
-    throw InvalidInput(name + ": the shape is " + text(extent) +
+    throw InvalidInput(name + ": the shape is " + three_digits(extent) +
                        " long, which is not between 1e-75 and 1e75; scale it");
   const double spacing = std::nextafter(largest, std::numeric_limits<double>::infinity()) - largest;
   if (spacing > kResolution * extent)
-    throw InvalidInput(name + ": coordinates of " + text(largest) + " are multiples of " + text(spacing) +
-                       " in double precision, too coarse for a shape " + text(extent) +
+    throw InvalidInput(name + ": coordinates of " + three_digits(largest) + " are multiples of " +
+                       three_digits(spacing) + " in double precision, too coarse for a shape " + three_digits(extent) +
                        " long; move it closer to the origin in the source model");
   UnitFrame frame{{}, std::ldexp(1.0, std::ilogb(extent))};
   if (largest > 4 * extent)  // a multiple of the unit, so that differences stay exact
@@ -74,8 +68,8 @@ void check_size(const Vec3d& extent, double size) {
   double cells = 1;
   for (int axis = 0; axis < 3; ++axis) cells *= extent[axis] / size + 1;
   if (cells > kMostCells)
-    throw InvalidInput("--size " + text(size) + ": too fine for a shape " +
-                       text(std::max({extent[0], extent[1], extent[2]})) +
+    throw InvalidInput("--size " + three_digits(size) + ": too fine for a shape " +
+                       three_digits(std::max({extent[0], extent[1], extent[2]})) +
                        " long; --size is in units of the input, give a larger one");
 }
 

@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include "base/error.h"
-#include "mesh/tet_shape.h"
 #include "viewer/scene_json.h"
 #include "viewer/settings.h"
 #include "viewer/touch_place.h"

@@ -1,6 +1,5 @@
 // The commands of a session with their steps. A replay of them is bit-reproducible.
 #pragma once
-#include <deque>
 #include <optional>
 #include <string>
 #include <vector>

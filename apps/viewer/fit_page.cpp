@@ -9,7 +9,6 @@
 #include "capture/fitted_values.h"
 #include "io/base64.h"
 #include "io/gzip.h"
-#include "mesh/tet_shape.h"
 #include "optimize/minimize.h"
 #include "viewer/page.h"
 #include "viewer/recording_code.h"

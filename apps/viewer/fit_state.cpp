@@ -4,7 +4,6 @@
 #include <cmath>
 
 #include "base/error.h"
-#include "mesh/tet_shape.h"
 #include "viewer/scene_json.h"
 #include "viewer/settings.h"
 

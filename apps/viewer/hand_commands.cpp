@@ -1,9 +1,6 @@
 // The commands of the hand: the mouse pulls, the brush pins.
 #include <fmt/format.h>
 
-#include <algorithm>
-#include <cmath>
-
 #include "base/error.h"
 #include "mesh/box_tree.h"
 #include "viewer/commands.h"

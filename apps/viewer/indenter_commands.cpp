@@ -5,7 +5,6 @@
 #include <cmath>
 
 #include "base/error.h"
-#include "mesh/tet_shape.h"
 #include "viewer/commands.h"
 #include "viewer/scene_json.h"
 #include "viewer/stage.h"

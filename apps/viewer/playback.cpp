@@ -2,7 +2,6 @@
 
 #include <algorithm>
 
-#include "base/error.h"
 
 namespace aspic::viewer {
 namespace {

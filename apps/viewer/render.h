@@ -1,7 +1,6 @@
 // Pictures of a recorded run that the viewer's page draws in a headless browser.
 #pragma once
 #include <filesystem>
-#include <functional>
 #include <memory>
 #include <string>
 #include <string_view>

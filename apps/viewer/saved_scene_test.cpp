@@ -4,7 +4,7 @@
 #include <filesystem>
 
 #include "base/hash.h"
-#include "dynamics/state_hash.h"
+#include "dynamics/state.h"
 #include "io/base64.h"
 #include "io/gzip.h"
 #include "io/mesh_file.h"

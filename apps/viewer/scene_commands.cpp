@@ -1,19 +1,93 @@
 // The commands for settings, scenes, comparisons, replays, colors and surfaces.
 #include <fmt/format.h>
-
 #include <algorithm>
+#include <filesystem>
+#include <memory>
+#include <string>
 
 #include "base/error.h"
+#include "base/printable.h"
+#include "io/atomic_file.h"
+#include "io/base64.h"
+#include "io/external_program.h"
+#include "io/gzip.h"
+#include "viewer/arguments.h"
 #include "viewer/commands.h"
 #include "viewer/playback.h"
 #include "viewer/settings.h"
-#include "viewer/upload.h"
 
 namespace aspic::viewer {
 namespace {
 
 using Overrides = std::vector<std::string>;
 using Uploaded = std::shared_ptr<const TemporaryFolder>;
+
+constexpr size_t kMostUploadedFiles = 64, kMostUploadedBytes = size_t{200} << 20;
+
+namespace fs = std::filesystem;
+
+constexpr size_t kLongestName = 200;  // [bytes]
+// A scene may read from its parent folder. The upload therefore has a parent folder, too.
+const char* const kScenes = "files";
+
+// Throws InvalidInput for a name outside the upload.
+fs::path confined(const std::string& name) {
+  const fs::path path = name;
+  bool is_plain = !name.empty() && name.size() <= kLongestName && path.is_relative() && !path.has_root_path();
+  for (const fs::path& part : path) is_plain = is_plain && !part.empty() && part != "." && part != "..";
+  for (const char c : name) is_plain = is_plain && static_cast<unsigned char>(c) >= ' ' && c != '\\' && c != ':';
+  if (!is_plain)
+    throw InvalidInput(
+        fmt::format("load.files: invalid name '{}'; a relative path of at most {} bytes without "
+                    "'..' is expected",
+                    printable(shortened(name)), kLongestName));
+  return path;
+}
+
+std::string unpacked(const std::string& name, const std::string& text, size_t most) {
+  std::string_view rest = text;
+  std::string packed;
+  if (!decode_base64(rest, text.size(), packed) || !rest.empty())
+    throw InvalidInput("load.files: " + printable(name) + ": is not base64");
+  try {
+    return gunzipped(packed, most);
+  } catch (const InvalidInput& error) {
+    throw InvalidInput("load.files: " + printable(name) + ": " + error.what());
+  }
+}
+
+// Writes [{"name", "gzip"}, ...], each file gzipped and in base64, into a new temporary folder. Names are relative
+// paths below it. Throws InvalidInput for malformed data, and above kMostUploadedFiles or kMostUploadedBytes.
+std::unique_ptr<TemporaryFolder> written_upload(const Json& files) {
+  if (!files.is_array() || files.empty() || files.size() > kMostUploadedFiles)
+    refuse("load.files", files.is_array() ? Json(files.size()) : files,
+           fmt::format("a list of 1 to {} files is expected", kMostUploadedFiles));
+  auto folder = std::make_unique<TemporaryFolder>();
+  size_t left = kMostUploadedBytes;
+  for (const Json& file : files) {
+    Arguments arguments(file, "load.files");
+    const fs::path path = folder->path() / kScenes / confined(arguments.text("name"));
+    const Json& packed = arguments.value("gzip");
+    arguments.finish();
+    if (!packed.is_string()) refuse("load.files.gzip", packed, "base64 is expected");
+    const std::string bytes = unpacked(path.filename().string(), packed.get_ref<const std::string&>(), left);
+    left -= bytes.size();
+    std::error_code error;
+    fs::create_directories(path.parent_path(), error);
+    if (error) throw InvalidInput(path.parent_path().string() + ": cannot be created: " + error.message());
+    write_file(path, bytes);
+  }
+  return folder;
+}
+
+// Returns the uploaded file of that name. Throws InvalidInput if it is missing.
+fs::path uploaded_file(const TemporaryFolder& folder, const std::string& name) {
+  const fs::path path = folder.path() / kScenes / confined(name);
+  std::error_code error;
+  if (!fs::is_regular_file(path, error))
+    throw InvalidInput("load.scene: '" + printable(shortened(name)) + "' is not one of the files that came with it");
+  return path;
+}
 
 constexpr size_t kMostRecordingBytes = size_t{32} << 20;
 

@@ -1,7 +1,6 @@
 // The thread that owns the session. It carries out the requests of the pages in order of arrival and takes each step
 // when it is due. Other threads add requests to its inbox.
 #pragma once
-#include <atomic>
 #include <condition_variable>
 #include <deque>
 #include <exception>

@@ -1,8 +1,6 @@
 // Steps, iterations and rewinding of a session.
 #include "viewer/session_test.h"
 
-#include <cmath>
-
 namespace aspic::viewer {
 namespace {
 

@@ -1,11 +1,13 @@
 #include "viewer/surface.h"
 
 #include <algorithm>
-#include <cmath>
 #include <limits>
+#include <numeric>
+#include <span>
+#include <utility>
+#include <vector>
 
 #include "mesh/box.h"
-#include "mesh/incidence.h"
 #include "mesh/surface.h"
 #include "mesh/tet_shape.h"
 #include "mesh/topology.h"
@@ -13,6 +15,27 @@
 
 namespace aspic::viewer {
 namespace {
+
+// Incident elements of each vertex.
+struct Incidence {
+  std::vector<int> start;    // one entry per vertex, and the end; empty: not built yet
+  std::vector<int> element;  // elements vertex by vertex, in the given order
+
+  Incidence() = default;
+  Incidence(int vertex_count, std::span<const std::pair<int, int>> vertex_and_element);
+  bool is_made() const { return !start.empty(); }
+  std::span<const int> around(int vertex) const {
+    return std::span(element).subspan(start[vertex], start[vertex + 1] - start[vertex]);
+  }
+};
+
+Incidence::Incidence(int vertex_count, std::span<const std::pair<int, int>> vertex_and_element)
+    : start(vertex_count + 1, 0), element(vertex_and_element.size()) {
+  for (const auto& [vertex, e] : vertex_and_element) ++start[vertex + 1];
+  std::partial_sum(start.begin(), start.end(), start.begin());
+  std::vector<int> next(start.begin(), start.end() - 1);
+  for (const auto& [vertex, e] : vertex_and_element) element[next[vertex]++] = e;
+}
 
 Incidence tets_of_vertices(const TetMesh& mesh) {
   std::vector<std::pair<int, int>> pairs;

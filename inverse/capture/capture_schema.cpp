@@ -8,8 +8,6 @@
 namespace aspic {
 namespace {
 
-const Range kPositive{.min = 0, .min_open = true};
-
 // Sections shared with scenes: selections and values per tet.
 void add_sections_of_scenes(Schema& s) {
   const Schema& scenes = scene_schema();
@@ -26,103 +24,64 @@ void add_sections_of_scenes(Schema& s) {
 
 void add_document(Schema& s) {
   add_keys(s, "capture",
-           {{.name = "version",
-             .accepts = kInteger,
-             .required = true,
-             .range = {.min = 1, .max = 1},
-             .meaning = "of this format"},
-            {.name = "name", .accepts = kText, .meaning = "of the data set; default: the folder's name"},
-            {.name = "mesh", .accepts = kText, .required = true, .meaning = "tet mesh of the body at rest"},
-            {.name = "fixed",
-             .accepts = kExpression | kTable | kIntegers,
-             .table = "where",
-             .meaning = "held vertices; default: none"},
-            {.name = "density",
-             .accepts = kNumber | kExpression | kTable,
-             .unit = "kg/m^3",
-             .fallback = "1000.0",
-             .range = {.min = 0},
-             .table = "field",
-             .meaning = "for gravity"},
-            {.name = "up", .accepts = kNumbers, .fallback = "[0.0, 1.0, 0.0]", .meaning = "for selections by height"},
-            {.name = "markers", .accepts = kText, .fallback = "\"markers.csv\"", .meaning = "table of markers"},
-            {.name = "cases", .accepts = kText, .fallback = "\"cases.csv\"", .meaning = "table of load cases"},
-            {.name = "positions", .accepts = kText, .fallback = "\"positions.csv\"", .meaning = "table of positions"},
-            {.name = "units", .accepts = kTable, .fallback = "{}", .table = "units", .meaning = "of the tables"},
-            {.name = "columns", .accepts = kTable, .fallback = "{}", .table = "columns", .meaning = "names of columns"},
-            {.name = "deviation", .accepts = kTable, .fallback = "{}", .table = "deviation", .meaning = "of readings"},
-            {.name = "force_of",
-             .accepts = kText,
-             .fallback = "\"tip\"",
-             .choices = {"tip", "body"},
-             .meaning = "whose force on the other was measured"},
-            {.name = "tip", .accepts = kTables, .table = "tip", .meaning = "tips of probes"},
-            {.name = "patch", .accepts = kTables, .table = "patch", .meaning = "patches under pressure"}});
+           {key("version", kInteger, "of this format", Range{.min = 1, .max = 1}, kRequired),
+            key("name", kText, "of the data set; default: the folder's name"),
+            key("mesh", kText, "tet mesh of the body at rest", kRequired),
+            key("fixed", kExpression | kTable | kIntegers, "held vertices; default: none", Members{"where"}),
+            key("density", kNumber | kExpression | kTable, "for gravity", Units{"kg/m^3"}, Range{.min = 0},
+                Members{"field"}, Usual{"1000.0"}),
+            key("up", kNumbers, "for selections by height", Usual{"[0.0, 1.0, 0.0]"}),
+            key("markers", kText, "table of markers", Usual{"\"markers.csv\""}),
+            key("cases", kText, "table of load cases", Usual{"\"cases.csv\""}),
+            key("positions", kText, "table of positions", Usual{"\"positions.csv\""}),
+            key("units", kTable, "of the tables", Members{"units"}, Usual{"{}"}),
+            key("columns", kTable, "names of columns", Members{"columns"}, Usual{"{}"}),
+            key("deviation", kTable, "of readings", Members{"deviation"}, Usual{"{}"}),
+            key("force_of", kText, "whose force on the other was measured", Choices{{"tip", "body"}}, Usual{"\"tip\""}),
+            key("tip", kTables, "tips of probes", Members{"tip"}),
+            key("patch", kTables, "patches under pressure", Members{"patch"})});
 }
 
 void add_tips_and_patches(Schema& s) {
-  add_keys(s, "tip",
-           {{.name = "name", .accepts = kText, .fallback = "\"tip\"", .meaning = "as the table of cases calls it"},
-            {.name = "shape",
-             .accepts = kText,
-             .fallback = "\"sphere\"",
-             .choices = {"sphere", "disc"},
-             .meaning = "disc: flat, with a rounded rim"},
-            {.name = "contact",
-             .accepts = kText,
-             .fallback = "\"sliding\"",
-             .choices = {"sliding", "bonded"},
-             .meaning = "bonded: glued on at the touch"},
-            {.name = "radius",
-             .accepts = kNumber,
-             .unit = "length",
-             .required = true,
-             .range = kPositive,
-             .meaning = "of the tip"},
-            {.name = "stiffness",
-             .accepts = kNumber,
-             .unit = "Pa/m",
-             .range = kPositive,
-             .meaning = "of its elastic layer; default: far stiffer than the body seems to be"}});
+  add_keys(
+      s, "tip",
+      {key("name", kText, "as the table of cases calls it", Usual{"\"tip\""}),
+       key("shape", kText, "disc: flat, with a rounded rim", Choices{{"sphere", "disc"}}, Usual{"\"sphere\""}),
+       key("contact", kText, "bonded: glued on at the touch", Choices{{"sliding", "bonded"}}, Usual{"\"sliding\""}),
+       key("radius", kNumber, "of the tip", Units{"length"}, kPositive, kRequired),
+       key("stiffness", kNumber, "of its elastic layer; default: far stiffer than the body seems to be", Units{"Pa/m"},
+           kPositive)});
   add_keys(s, "patch",
-           {{.name = "name", .accepts = kText, .fallback = "\"patch\"", .meaning = "as the table of cases calls it"},
-            {.name = "where",
-             .accepts = kExpression | kTable,
-             .table = "where",
-             .meaning = "boundary triangles, by centroid"},
-            {.name = "triangles", .accepts = kText, .meaning = "a table with the corners a, b, c of each"}});
+           {key("name", kText, "as the table of cases calls it", Usual{"\"patch\""}),
+            key("where", kExpression | kTable, "boundary triangles, by centroid", Members{"where"}),
+            key("triangles", kText, "a table with the corners a, b, c of each")});
   s.alternatives.push_back({"patch", {{"where"}, {"triangles"}}, true});
 }
 
 void add_units(Schema& s) {
   for (const char* quantity : {"length", "mesh", "force", "torque", "angle", "pressure", "gravity"})
-    add_key(s, "units",
-            {.name = quantity, .accepts = kText, .choices = unit_names(quantity), .meaning = "of this quantity"});
+    add_keys(s, "units", {key(quantity, kText, "of this quantity", Choices{unit_names(quantity)})});
   add_keys(s, "deviation",
-           {{.name = "position", .accepts = kNumber, .unit = "length", .range = kPositive, .meaning = "of positions"},
-            {.name = "force", .accepts = kNumber, .unit = "force", .range = kPositive, .meaning = "of forces"},
-            {.name = "torque", .accepts = kNumber, .unit = "torque", .range = kPositive, .meaning = "of torques"}});
+           {key("position", kNumber, "of positions", Units{"length"}, kPositive),
+            key("force", kNumber, "of forces", Units{"force"}, kPositive),
+            key("torque", kNumber, "of torques", Units{"torque"}, kPositive)});
 }
 
 void add_columns(Schema& s) {
   std::vector<std::string> all;
   const auto add_table = [&](const char* section, const std::vector<std::string>& names) {
     for (const std::string& name : names) {
-      add_key(s, section, {.name = name, .accepts = kText, .meaning = "its name in the table"});
+      add_keys(s, section, {key(name, kText, "its name in the table")});
       if (std::find(all.begin(), all.end(), name) == all.end()) all.push_back(name);
     }
   };
   add_table("columns_of_markers", marker_columns());
   add_table("columns_of_cases", case_columns());
   add_table("columns_of_positions", position_columns());
-  for (const std::string& name : all)
-    add_key(s, "columns", {.name = name, .accepts = kText, .meaning = "its name in all tables"});
+  for (const std::string& name : all) add_keys(s, "columns", {key(name, kText, "its name in all tables")});
   for (const char* table : {"markers", "cases", "positions"})
-    add_key(s, "columns",
-            {.name = table,
-             .accepts = kTable,
-             .table = std::string("columns_of_") + table,
-             .meaning = "names in this table alone"});
+    add_keys(s, "columns",
+             {key(table, kTable, "names in this table alone", Members{std::string("columns_of_") + table})});
 }
 
 }  // namespace

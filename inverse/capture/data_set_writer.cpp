@@ -1,6 +1,4 @@
 #include <algorithm>
-#include <cmath>
-#include <map>
 
 #include "base/error.h"
 #include "capture/case_table.h"

@@ -1,10 +1,7 @@
 #include <algorithm>
-#include <cmath>
-#include <sstream>
 
 #include "capture/data_findings.h"
 #include "capture/surface_projection.h"
-#include "mesh/box.h"
 
 namespace aspic {
 

@@ -2,7 +2,6 @@
 #include <cmath>
 #include <set>
 
-#include "capture/case_table.h"
 #include "capture/data_findings.h"
 #include "capture/surface_projection.h"
 

@@ -1,8 +1,6 @@
 #include <algorithm>
 #include <array>
-#include <cmath>
 
-#include "capture/apparent_stiffness.h"
 #include "capture/case_table.h"
 #include "capture/data_findings.h"
 #include "capture/surface_projection.h"

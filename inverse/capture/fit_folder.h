@@ -3,7 +3,6 @@
 #include <filesystem>
 #include <memory>
 #include <string>
-#include <vector>
 
 #include "capture/fit_run.h"
 #include "scene/run_lock.h"

@@ -6,7 +6,6 @@
 
 #include "base/error.h"
 #include "capture/apparent_stiffness.h"
-#include "io/number_text.h"
 #include "material/registry.h"
 #include "scene/material_file.h"
 #include "scene/scene_files.h"

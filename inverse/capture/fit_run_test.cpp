@@ -5,7 +5,6 @@
 
 #include <cmath>
 
-#include "base/error.h"
 #include "capture/fit_folder.h"
 #include "capture/fit_verdict.h"
 #include "capture/quick_plan_test.h"

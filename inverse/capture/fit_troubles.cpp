@@ -3,8 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "capture/data_findings.h"
-#include "capture/fitted_values.h"
 #include "fit/fit_run.h"
 #include "scene/value.h"
 

@@ -2,7 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
+
+#include "base/formatted.h"
 
 namespace aspic {
 namespace {
@@ -13,12 +14,6 @@ constexpr double kCoarse = 1;                             // relative error of a
 constexpr double kTooManySquares = 2.25;                  // |r|^2 per reading
 constexpr double kPoorPosition = 0.05, kPoorForce = 0.1;  // held-out errors beyond noise, relative to the peak
 constexpr double kWorse = 1.1;                            // ratio of held-out errors, field to one value
-
-std::string three_significant(double value) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.3g", value);
-  return text;
-}
 
 // Compares the readings of a group with the predictions.
 class GroupMisfit {
@@ -110,7 +105,7 @@ HeldOutErrors beyond_noise(const DataSet& data, const CrossValidation& held_out)
 }
 
 std::string percents(const HeldOutErrors& errors) {
-  const auto percent = [](double part) { return part < 0 ? "-" : three_significant(100 * part) + " %"; };
+  const auto percent = [](double part) { return part < 0 ? "-" : three_digits(100 * part) + " %"; };
   return percent(errors.position) + " (positions) and " + percent(errors.force) + " (forces)";
 }
 
@@ -131,14 +126,14 @@ class Reasons {
     for (size_t c = 0; c < outcome_.cases.size(); ++c)
       if (outcome_.cases[c].relative_mesh_error > kCoarse) {
         add("mesh_too_coarse", "'" + data_.experiment.cases[c].name + "': the mesh changes the force by a factor of " +
-                                   three_significant(1 + outcome_.cases[c].relative_mesh_error) +
+                                   three_digits(1 + outcome_.cases[c].relative_mesh_error) +
                                    "; refine it around the indenter (option refine) or use a wider one");
         break;
       }
     add_disagreement();
     const double squares = outcome_.residuals > 0 ? 2 * outcome_.report.misfit / outcome_.residuals : 0;
     if (squares > kTooManySquares)
-      add("unexplained", "|r|^2 is " + three_significant(squares) +
+      add("unexplained", "|r|^2 is " + three_digits(squares) +
                              " per reading: the model is too simple, or the standard deviations are too small");
     if (outcome_.held_out) add_poor_predictions(beyond_noise(data_, *outcome_.held_out));
   }
@@ -157,7 +152,7 @@ class Reasons {
     for (const GroupMisfit& g : fitted_groups(data_, outcome_)) {
       const auto [what, deviations] = g.missed_most();
       if (deviations > kMissed)
-        add("group_missed", "the " + what + " of '" + g.name() + "' are missed by " + three_significant(deviations) +
+        add("group_missed", "the " + what + " of '" + g.name() + "' are missed by " + three_digits(deviations) +
                                 " standard deviations");
     }
   }
@@ -187,7 +182,7 @@ class Reasons {
     const double deviation = std::hypot(stiffest->stiffness_deviation() / stiffest->stiffness(),
                                         softest->stiffness_deviation() / softest->stiffness());
     if (ratio > kDisagree && std::log(ratio) > kMissed * deviation)
-      add("groups_disagree", "the forces of '" + stiffest->name() + "' imply a body " + three_significant(ratio) +
+      add("groups_disagree", "the forces of '" + stiffest->name() + "' imply a body " + three_digits(ratio) +
                                  " times as stiff as those of '" + softest->name() +
                                  "': one of them is wrong, or the model does not fit the body");
   }

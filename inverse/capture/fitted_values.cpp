@@ -2,10 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <numeric>
 #include <set>
 
+#include "base/formatted.h"
 #include "fit/regularizer.h"
 
 namespace aspic {
@@ -126,9 +126,8 @@ std::string describe_mesh(const FitOutcome& outcome) {
                      std::to_string(outcome.simulated_tets) +
                      (outcome.plan.refine > 0 ? " (refine = " + std::to_string(outcome.plan.refine) + ")" : " tets");
   if (outcome.mesh_error < 0) return text;
-  char percent[16];
-  std::snprintf(percent, sizeof percent, "%.2g", 100 * outcome.mesh_error);
-  return text + "; positions err by " + percent + " % of the peak motion, which was corrected";
+  return text +
+         formatted("; positions err by %.2g %% of the peak motion, which was corrected", 100 * outcome.mesh_error);
 }
 
 }  // namespace aspic

@@ -6,7 +6,6 @@
 #include <cmath>
 #include <stdexcept>
 
-#include "base/error.h"
 #include "io/atomic_file.h"
 #include "io/folder_test.h"
 

@@ -1,5 +1,4 @@
 #include <algorithm>
-#include <cmath>
 
 #include "capture/material_fit.h"
 #include "mesh/tet_mesh.h"

@@ -1,5 +1,4 @@
 #include <algorithm>
-#include <limits>
 
 #include "capture/fit_troubles.h"
 #include "capture/fitted_values.h"

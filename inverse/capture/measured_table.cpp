@@ -1,6 +1,5 @@
 #include "capture/measured_table.h"
 
-#include <algorithm>
 #include <cmath>
 
 #include "base/error.h"

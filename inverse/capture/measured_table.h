@@ -1,7 +1,6 @@
 // Table of measurements with renamed columns, units and blank cells. Collects errors, so that one pass reports all of
 // them.
 #pragma once
-#include <array>
 #include <filesystem>
 #include <map>
 #include <optional>

@@ -6,11 +6,11 @@
 #include <optional>
 
 #include "base/error.h"
+#include "base/formatted.h"
 #include "base/printable.h"
 #include "capture/measured_table.h"
 #include "capture/surface_projection.h"
 #include "capture/units.h"
-#include "fit/formatted.h"
 #include "io/csv_reader.h"
 #include "mesh/box.h"
 #include "scene/value.h"

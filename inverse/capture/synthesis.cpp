@@ -7,14 +7,11 @@
 
 #include "base/error.h"
 #include "capture/bench_sites.h"
-#include "capture/case_table.h"
 #include "capture/data_findings.h"
 #include "capture/judge.h"
 #include "capture/unstated_values.h"
 #include "fit/load_case.h"
 #include "fit/next_poke.h"
-#include "mesh/surface.h"
-#include "scene/tables.h"
 
 namespace aspic {
 namespace {

@@ -1,6 +1,5 @@
 #include "base/error.h"
 #include "capture/synthesis.h"
-#include "scene/tables.h"
 #include "scene/toml_reader.h"
 
 namespace aspic {

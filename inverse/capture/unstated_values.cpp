@@ -6,7 +6,6 @@
 #include "capture/apparent_stiffness.h"
 #include "capture/data_findings.h"
 #include "capture/surface_projection.h"
-#include "scene/tables.h"
 
 namespace aspic {
 namespace {

@@ -3,7 +3,6 @@
 // (docs/bickel.md). Also simpler baselines.
 #pragma once
 #include <string>
-#include <vector>
 
 #include "fit/cross_validation.h"
 #include "fit/fit.h"

@@ -4,7 +4,6 @@
 
 #include <limits>
 #include <map>
-#include <vector>
 
 namespace aspic {
 namespace {

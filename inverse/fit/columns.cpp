@@ -1,7 +1,5 @@
 #include "fit/columns.h"
 
-#include <algorithm>
-
 #include "base/check.h"
 #include "base/parallel.h"
 

@@ -6,7 +6,7 @@
 #include <random>
 
 #include "base/error.h"
-#include "fit/formatted.h"
+#include "base/formatted.h"
 #include "math/vectors.h"
 
 namespace aspic {

@@ -4,11 +4,10 @@
 #include <cmath>
 
 #include "base/check.h"
+#include "base/formatted.h"
 #include "dynamics/incremental_potential.h"
-#include "dynamics/integrator.h"
 #include "fit/elastic_parameters.h"
 #include "linalg/auto_solver.h"
-#include "mesh/findings.h"
 #include "optimize/newton.h"
 
 namespace aspic {
@@ -18,8 +17,8 @@ std::string message_of(const MinimizeReport& report) {
   const std::string status(to_string(report.status));
   if (report.status == Status::undefined) return "the energy is not finite at the initial guess (" + status + ")";
   return "no equilibrium was found: " + status + " after " + std::to_string(report.iterations) +
-         " iterations; residual force " + number(report.reached) + " N, tolerance " + number(report.threshold) +
-         " N was asked for";
+         " iterations; residual force " + three_digits(report.reached) + " N, tolerance " +
+         three_digits(report.threshold) + " N was asked for";
 }
 
 // Fills b with parts along all modes of a body, identically on every system.

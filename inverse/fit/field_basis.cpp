@@ -1,7 +1,6 @@
 #include "fit/field_basis.h"
 
 #include <algorithm>
-#include <cmath>
 #include <limits>
 
 #include "base/check.h"

@@ -2,9 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <map>
 
+#include "base/formatted.h"
 #include "mesh/tet_shape.h"
 
 namespace aspic {
@@ -12,11 +12,8 @@ namespace {
 
 constexpr double kLittle = 0.2;  // negligible part of a sum of squares
 
-std::string formatted(double x, const char* format = "%.3g") {
-  char buffer[32];
-  std::snprintf(buffer, sizeof buffer, format, x == 0 ? 0.0 : x);
-  return buffer;
-}
+// Zero has no sign.
+std::string digits(double x, const char* format = "%.3g") { return formatted(format, x == 0 ? 0.0 : x); }
 
 double size(const TetMesh& mesh) {
   double largest = 0;
@@ -79,7 +76,7 @@ std::string describe_field(const TetMesh& mesh, const Unknown& unknown, std::spa
 }  // namespace
 
 std::string describe_point(const Vec3d& x) {
-  return "(" + formatted(x[0]) + ", " + formatted(x[1]) + ", " + formatted(x[2]) + ") m";
+  return "(" + digits(x[0]) + ", " + digits(x[1]) + ", " + digits(x[2]) + ") m";
 }
 
 std::string describe_place(const TetMesh& mesh, std::span<const double> field) {
@@ -95,7 +92,7 @@ std::string describe_place(const TetMesh& mesh, std::span<const double> field) {
   for (int i = 0; i < 3; ++i)
     if (std::abs(x[i]) < negligible) x[i] = 0;
   const double part = fourth > 0 ? second * second / (fourth * total) : 1;
-  return "around " + describe_point(x) + " (" + formatted(100 * part, part < 0.1 ? "%.1g" : "%.2g") + " % of the body)";
+  return "around " + describe_point(x) + " (" + digits(100 * part, part < 0.1 ? "%.1g" : "%.2g") + " % of the body)";
 }
 
 std::string describe_direction(const TetMesh& mesh, const ParameterMap& map, std::span<const double> dp) {

@@ -1,6 +1,5 @@
 // Shared by the fitting methods: f(p) = |r|^2 / 2 + weight R with derivatives, counters and observer calls.
 #pragma once
-#include <algorithm>
 #include <span>
 #include <vector>
 

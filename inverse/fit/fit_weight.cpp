@@ -5,9 +5,9 @@
 #include <limits>
 #include <optional>
 
+#include "base/formatted.h"
 #include "fit/evidence.h"
 #include "fit/fit_run.h"
-#include "mesh/findings.h"
 
 namespace aspic {
 namespace {
@@ -125,7 +125,7 @@ double curvature(const WeightTrial& a, const WeightTrial& b, const WeightTrial& 
 }
 
 std::string describe(Discrepancy::Verdict verdict, double squares, int residuals) {
-  const std::string found = "|r|^2 = " + number(squares) + " of " + std::to_string(residuals) + " residuals";
+  const std::string found = "|r|^2 = " + three_digits(squares) + " of " + std::to_string(residuals) + " residuals";
   switch (verdict) {
     case Discrepancy::Verdict::fits:
       return "the weight leaves " + found;

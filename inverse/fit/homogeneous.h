@@ -3,7 +3,6 @@
 //   planar        F = diag(l, 1, t), also called pure shear
 //   simple_shear  F = I + g e1 e2'
 #pragma once
-#include <span>
 #include <string>
 #include <string_view>
 #include <vector>

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "fit/scaled_inverse.h"
 #include "optimize/lbfgs.h"

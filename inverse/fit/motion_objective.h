@@ -1,6 +1,5 @@
 // The squared distances of markers between a measured and a simulated motion, as a function of motion parameters.
 #pragma once
-#include <functional>
 #include <span>
 #include <string>
 #include <vector>

@@ -8,7 +8,6 @@
 #include "energy/linear_load.h"
 #include "energy/rayleigh_damping.h"
 #include "fit/quantity_scale.h"
-#include "mesh/tet_shape.h"
 
 namespace aspic {
 namespace {

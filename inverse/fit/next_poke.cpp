@@ -2,16 +2,15 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 
 #include "base/check.h"
 #include "base/error.h"
+#include "base/formatted.h"
 #include "fit/common_errors.h"
 #include "fit/cross_validation.h"
 #include "fit/field_text.h"
 #include "math/vectors.h"
 #include "mesh/surface.h"
-#include "mesh/tet_shape.h"
 
 namespace aspic {
 namespace {
@@ -75,13 +74,10 @@ void set_deviation(const ParameterMap& map, const Posterior& posterior, const Sp
 
 // "..., known within a factor of 1.9, would be within 1.2", with 95 %.
 std::string describe_change(const Unknown& unknown, double before, double after) {
-  char text[160];
   const double a = kDeviations95 * before, b = kDeviations95 * after;
   if (unknown.quantity == "young")
-    std::snprintf(text, sizeof text, ", known within a factor of %.3g, would be within %.3g", std::exp(a), std::exp(b));
-  else
-    std::snprintf(text, sizeof text, ", known to +-%.2g on its scale, would be to +-%.2g", a, b);
-  return text;
+    return formatted(", known within a factor of %.3g, would be within %.3g", std::exp(a), std::exp(b));
+  return formatted(", known to +-%.2g on its scale, would be to +-%.2g", a, b);
 }
 
 void set_description(const ParameterMap& map, const TetMesh& mesh, const Posterior& posterior,

@@ -4,8 +4,8 @@
 
 #include "base/check.h"
 #include "base/error.h"
+#include "base/formatted.h"
 #include "base/parallel.h"
-#include "fit/formatted.h"
 #include "fit/quantity_scale.h"
 
 namespace aspic {

@@ -2,11 +2,179 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
+#include <random>
 
-#include "mesh/tet_shape.h"
+#include "linalg/dense_eigen.h"
+#include "mesh/grouped_elements.h"
 
 namespace aspic {
 namespace {
+
+constexpr double kWidest = 2;       // standard deviation of a level (log E) about its initial value
+constexpr double kLargestMove = 1;  // limit of the change of a level between linearizations
+
+struct Neighbor {
+  int tet;
+  double area;  // area of the common face, relative to the mean
+};
+
+std::vector<std::vector<Neighbor>> neighbors_of(const TetMesh& mesh) {
+  std::vector<std::vector<Neighbor>> all(mesh.tets.size());
+  const auto faces = grouped_elements<3>(mesh.vertex_count(), [&](const auto& visit) {
+    for (int t = 0; t < mesh.tet_count(); ++t) {
+      const auto& [a, b, c, d] = mesh.tets[t];
+      visit(Triangle{b, c, d}, t), visit(Triangle{a, c, d}, t), visit(Triangle{a, b, d}, t),
+          visit(Triangle{a, b, c}, t);
+    }
+  });
+  double sum = 0;
+  int count = 0;
+  for_each_group(faces, [&](const GroupedElement<3>* begin, const GroupedElement<3>* end) {
+    if (end != begin + 2) return;
+    const auto& v = begin[0].vertices;
+    const double area = norm(cross(mesh.rest[v[1]] - mesh.rest[v[0]], mesh.rest[v[2]] - mesh.rest[v[0]])) / 2;
+    sum += area, ++count;
+    all[begin[0].place].push_back({begin[1].place, area});
+    all[begin[1].place].push_back({begin[0].place, area});
+  });
+  for (auto& list : all)
+    for (Neighbor& n : list) n.area *= count / sum;
+  return all;
+}
+
+int nearest(const std::vector<double>& levels, double z) {
+  int best = 0;
+  for (int k = 1; k < static_cast<int>(levels.size()); ++k)
+    if (std::abs(levels[k] - z) < std::abs(levels[best] - z)) best = k;
+  return best;
+}
+
+class Sampler {
+ public:
+  Sampler(const LinearizedField& field, std::vector<double> levels, const PartsOptions& options)
+      : options_(options),
+        neighbors_(neighbors_of(field.mesh)),
+        rank_(field.spectrum.dual.count()),
+        tets_(static_cast<int>(field.z.size())),
+        start_(levels),
+        levels_(std::move(levels)),
+        random_(options.seed) {
+    const auto& [mesh, s, gradient, first, z, noise_factor] = field;
+    const double relief = 1 / (noise_factor * noise_factor);
+    std::vector<double> g(gradient.begin(), gradient.end());
+    slope_ = product_transposed(s.W, g);
+    for (int j = 0; j < rank_; ++j) d_.push_back(s.d[j] * relief), slope_[j] *= relief;
+    rows_.resize(static_cast<size_t>(tets_) * rank_);
+    for (int j = 0; j < rank_; ++j)
+      for (int t = 0; t < tets_; ++t) rows_[static_cast<size_t>(t) * rank_ + j] = s.dual[j][first + t];
+    for (int t = 0; t < tets_; ++t) {
+      label_.push_back(nearest(levels_, z[t]));
+      double h = 0;
+      for (int j = 0; j < rank_; ++j) h += d_[j] * row(t)[j] * row(t)[j];
+      own_.push_back(h);
+    }
+    origin_.assign(rank_, 0.0);
+    for (int t = 0; t < tets_; ++t) add_row(t, z[t], origin_);
+  }
+
+  PartsEstimate run() {
+    const int K = static_cast<int>(levels_.size());
+    PartsEstimate e{.levels = std::vector<double>(K, 0.0),
+                    .share = std::vector<std::vector<double>>(K, std::vector<double>(tets_, 0.0)),
+                    .mean = std::vector<double>(tets_, 0.0),
+                    .deviation = std::vector<double>(tets_, 0.0)};
+    const int burn = options_.sweeps / 4;
+    for (int i = 0; i < burn + options_.sweeps; ++i) {
+      move_levels();
+      sweep();
+      if (i < burn) continue;
+      for (int k = 0; k < K; ++k) e.levels[k] += levels_[k] / options_.sweeps;
+      for (int t = 0; t < tets_; ++t) {
+        const double z = levels_[label_[t]];
+        e.share[label_[t]][t] += 1.0 / options_.sweeps;
+        e.mean[t] += z / options_.sweeps, e.deviation[t] += z * z / options_.sweeps;
+      }
+    }
+    for (int t = 0; t < tets_; ++t) e.deviation[t] = std::sqrt(std::max(0.0, e.deviation[t] - e.mean[t] * e.mean[t]));
+    return e;
+  }
+
+ private:
+  const double* row(int t) const { return rows_.data() + static_cast<size_t>(t) * rank_; }
+  void add_row(int t, double scale, std::vector<double>& to) const {
+    const double* r = row(t);
+    for (int j = 0; j < rank_; ++j) to[j] += scale * r[j];
+  }
+
+  // Samples the levels for given memberships from a normal distribution.
+  void move_levels() {
+    const int K = static_cast<int>(levels_.size());
+    std::vector<std::vector<double>> S(K, std::vector<double>(rank_, 0.0));
+    for (int t = 0; t < tets_; ++t) add_row(t, 1, S[label_[t]]);
+    std::vector<double> A(static_cast<size_t>(K) * K), b(K);
+    for (int k = 0; k < K; ++k) {
+      for (int j = 0; j < rank_; ++j) b[k] += S[k][j] * (d_[j] * origin_[j] - slope_[j]);
+      b[k] += start_[k] / (kWidest * kWidest);
+      for (int l = 0; l < K; ++l) {
+        double sum = k == l ? 1 / (kWidest * kWidest) : 0;
+        for (int j = 0; j < rank_; ++j) sum += S[k][j] * d_[j] * S[l][j];
+        A[static_cast<size_t>(l) * K + k] = sum;
+      }
+    }
+    const DenseEigen e = dense_eigen(K, A);
+    std::vector<double> a(K, 0.0);
+    for (int i = 0; i < K; ++i) {
+      double y = 0;
+      for (int k = 0; k < K; ++k) y += e.vectors[static_cast<size_t>(i) * K + k] * b[k];
+      y = y / e.values[i] + normal_(random_) / std::sqrt(e.values[i]);
+      for (int k = 0; k < K; ++k) a[k] += e.vectors[static_cast<size_t>(i) * K + k] * y;
+    }
+    for (int k = 0; k < K; ++k) a[k] = std::clamp(a[k], start_[k] - kLargestMove, start_[k] + kLargestMove);
+    if (std::is_sorted(a.begin(), a.end())) levels_ = a;
+    force_.assign(rank_, 0.0);  // slope + d c
+    for (int k = 0; k < K; ++k)
+      for (int j = 0; j < rank_; ++j) force_[j] += levels_[k] * S[k][j];
+    for (int j = 0; j < rank_; ++j) force_[j] = slope_[j] + d_[j] * (force_[j] - origin_[j]);
+  }
+
+  void sweep() {
+    const int K = static_cast<int>(levels_.size());
+    std::vector<double> energy(K);
+    for (int t = 0; t < tets_; ++t) {
+      const double* r = row(t);
+      double pull = 0;
+      for (int j = 0; j < rank_; ++j) pull += force_[j] * r[j];
+      std::fill(energy.begin(), energy.end(), 0.0);
+      for (const Neighbor& n : neighbors_[t]) energy[label_[n.tet]] -= options_.surface * n.area;
+      for (int k = 0; k < K; ++k) {
+        const double step = levels_[k] - levels_[label_[t]];
+        energy[k] += step * pull + step * step * own_[t] / 2;
+      }
+      const double least = *std::min_element(energy.begin(), energy.end());
+      double sum = 0;
+      for (double& x : energy) sum += x = std::exp(least - x);
+      double u = sum * uniform_(random_);
+      int chosen = 0;
+      while (chosen + 1 < K && u > energy[chosen]) u -= energy[chosen++];
+      if (chosen == label_[t]) continue;
+      const double step = levels_[chosen] - levels_[label_[t]];
+      for (int j = 0; j < rank_; ++j) force_[j] += step * d_[j] * r[j];
+      label_[t] = chosen;
+    }
+  }
+
+  const PartsOptions& options_;
+  std::vector<std::vector<Neighbor>> neighbors_;
+  int rank_, tets_;
+  std::vector<double> start_, levels_;
+  std::vector<double> d_, slope_, origin_, force_;  // along each direction
+  std::vector<double> rows_, own_;                  // per tet: directions; own curvature
+  std::vector<int> label_;
+  std::mt19937_64 random_;
+  std::normal_distribution<double> normal_;
+  std::uniform_real_distribution<double> uniform_;
+};
 
 // Independent tets with standard deviation 1 at mean volume: the metric for changes of single tets.
 class Independent : public Gaussian {
@@ -38,6 +206,32 @@ void widen(PartsEstimate& estimate, std::span<const double> before) {
 }
 
 }  // namespace
+
+std::vector<double> gathered_levels(std::span<const double> z, std::span<const double> volume, int count) {
+  std::vector<size_t> order(z.size());
+  std::iota(order.begin(), order.end(), 0u);
+  std::sort(order.begin(), order.end(), [&](size_t a, size_t b) { return z[a] < z[b]; });
+  const double low = z[order[order.size() / 100]], high = z[order[order.size() - 1 - order.size() / 100]];
+  std::vector<double> levels;
+  for (int k = 0; k < count; ++k) levels.push_back(low + (high - low) * (count > 1 ? k / (count - 1.0) : 0.5));
+  for (int i = 0; i < 100; ++i) {
+    std::vector<double> sum(levels.size(), 0.0), weight(levels.size(), 0.0);
+    for (size_t t = 0; t < z.size(); ++t) {
+      const int k = nearest(levels, z[t]);
+      sum[k] += volume[t] * z[t], weight[k] += volume[t];
+    }
+    std::vector<double> moved;
+    for (size_t k = 0; k < levels.size(); ++k)
+      if (weight[k] > 0) moved.push_back(sum[k] / weight[k]);
+    if (moved == levels) break;
+    levels = moved;
+  }
+  return levels;
+}
+
+PartsEstimate sample_parts(const LinearizedField& field, std::vector<double> levels, const PartsOptions& options) {
+  return Sampler(field, std::move(levels), options).run();
+}
 
 Parts find_parts(LeastSquares& model, const FittedField& field, int unknown, int count, const PartsOptions& options) {
   const auto& [map, mesh, p] = field;

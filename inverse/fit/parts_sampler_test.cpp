@@ -1,9 +1,8 @@
 // Sampling of parts from noisy readings of every tet, with known values, locations and intervals.
-#include "fit/parts_sampler.h"
+#include "fit/parts.h"
 
 #include <gtest/gtest.h>
 
-#include <cmath>
 #include <random>
 
 #include "mesh/generators.h"

@@ -1,10 +1,8 @@
 #include <algorithm>
-#include <cmath>
 #include <limits>
 
 #include "fit/next_poke.h"
 #include "mesh/surface.h"
-#include "mesh/tet_shape.h"
 
 namespace aspic {
 namespace {

@@ -8,8 +8,6 @@
 #include <memory>
 #include <random>
 #include <span>
-#include <string>
-#include <vector>
 
 #include "fit/parameter_map.h"
 

@@ -3,11 +3,44 @@
 // where C is the prior covariance. Along w the data have d times the information of the prior; the posterior has
 //   (J'J + C^-1)^-1 = C - W diag(d / (1 + d)) W'.
 #pragma once
+#include <random>
+#include <span>
+#include <vector>
+
 #include "fit/columns.h"
-#include "fit/gaussian.h"
 #include "fit/least_squares.h"
+#include "fit/regularizer.h"
 
 namespace aspic {
+
+// Normal distribution of the parameters, given by products with its precision (inverse covariance) and covariance.
+class Gaussian {
+ public:
+  virtual ~Gaussian() = default;
+  virtual int size() const = 0;
+  virtual void precision(std::span<const double> v, std::span<double> y) = 0;   // y = C^-1 v
+  virtual void covariance(std::span<const double> v, std::span<double> z) = 0;  // z = C v
+};
+
+// Prior exp(-weight R) with the curvature of R at p. Directions without curvature get a standard deviation of kWidest,
+// so that the distribution is proper.
+class PriorGaussian : public Gaussian {
+ public:
+  static constexpr double kWidest = 100;  // standard deviation without information from R: log E +- 100
+
+  // Stores a reference to the regularizer. Requires weight >= 0.
+  PriorGaussian(Regularizer& regularizer, double weight, std::span<const double> p);
+
+  int size() const override { return static_cast<int>(p_.size()); }
+  void precision(std::span<const double> v, std::span<double> y) override;
+  void covariance(std::span<const double> v, std::span<double> z) override;
+  void sample(std::mt19937_64& random, std::span<double> x);  // zero mean
+
+ private:
+  Regularizer& regularizer_;
+  double weight_, floor_;
+  std::vector<double> p_;
+};
 
 struct Spectrum {
   bool ok = true;         // false: a product with J was not finite, and there are no eigenpairs

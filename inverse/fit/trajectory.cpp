@@ -2,11 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <optional>
 
 #include "base/check.h"
 #include "base/error.h"
+#include "base/formatted.h"
 #include "base/stopwatch.h"
 #include "dynamics/integrator.h"
 #include "dynamics/simulation_checks.h"
@@ -76,9 +76,8 @@ struct Trajectory::Impl {
   }
 
   bool fail(int step, const std::string& reason) {
-    char time[32];
-    std::snprintf(time, sizeof time, "%.4g", time_of(step));
-    report.message = "the step from " + std::string(time) + " s (step " + std::to_string(step) + "): " + reason;
+    report.message =
+        "the step from " + formatted("%.4g", time_of(step)) + " s (step " + std::to_string(step) + "): " + reason;
     return false;
   }
 

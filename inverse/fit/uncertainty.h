@@ -7,12 +7,25 @@
 #include <vector>
 
 #include "fit/least_squares.h"
-#include "fit/marginals.h"
 #include "fit/parameter_map.h"
 #include "fit/regularizer.h"
 #include "fit/spectrum.h"
 
 namespace aspic {
+
+struct MarginalOptions {
+  int exact = 3000;   // maximum number of values with one solve each
+  int samples = 256;  // otherwise: samples of the undetermined part
+  unsigned seed = 2;
+};
+
+// Prior and posterior variances of the fitted quantities in every tet.
+struct Marginals {
+  std::vector<std::vector<double>> before, after;  // sigma of each parameter in each tet, on the fitted scale (log E)
+  double relative_error = 0;                       // largest standard error of a standard deviation; 0: exact
+};
+
+Marginals marginals(PosteriorGaussian& gaussian, const ParameterMap& map, const MarginalOptions& options = {});
 
 struct Direction {
   double information = 0;   // prior variance / posterior variance - 1 along it; < 1: not determined by the data

@@ -1,7 +1,5 @@
 #include "contact/contact_mesh.h"
 
-#include <algorithm>
-#include <cmath>
 #include <limits>
 #include <map>
 

@@ -3,7 +3,6 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <numbers>
 
 #include "dynamics/models_test.h"
 #include "verification/oscillator.h"

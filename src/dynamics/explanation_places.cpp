@@ -1,10 +1,8 @@
 #include "dynamics/explanation_places.h"
+#include "base/formatted.h"
 #include "mesh/vertices.h"
 
-#include <algorithm>
-#include <array>
 #include <cmath>
-#include <cstdio>
 #include <vector>
 
 namespace aspic::places {
@@ -32,11 +30,7 @@ double signed_volume(const TetMesh& mesh, int tet, std::span<const double> x) {
 
 }  // namespace
 
-std::string text(double number) {
-  std::array<char, 32> buffer{};
-  std::snprintf(buffer.data(), buffer.size(), "%.3g", number);
-  return buffer.data();
-}
+std::string text(double number) { return three_digits(number); }
 
 double power_of_ten_above(double number) { return std::pow(10, std::ceil(std::log10(number))); }
 

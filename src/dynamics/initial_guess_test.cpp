@@ -2,8 +2,6 @@
 
 #include <gtest/gtest.h>
 
-#include <cmath>
-
 #include "dynamics/models_test.h"
 
 namespace aspic {

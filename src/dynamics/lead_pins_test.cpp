@@ -1,8 +1,5 @@
-#include "dynamics/lead_pins.h"
 
 #include <gtest/gtest.h>
-
-#include <cmath>
 
 #include "dynamics/models_test.h"
 

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "base/error.h"
+#include "base/formatted.h"
 #include "energy/linear_load.h"
 #include "energy/rayleigh_damping.h"
 #include "energy/springs.h"
@@ -11,11 +12,7 @@
 namespace aspic {
 namespace {
 
-std::string text_of(double x) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%g", x);
-  return text;
-}
+std::string text_of(double x) { return formatted("%g", x); }
 
 void require(bool holds, const std::string& otherwise) {
   if (!holds) throw InvalidInput(otherwise);

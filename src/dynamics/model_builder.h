@@ -8,7 +8,6 @@
 // All functions throw InvalidInput for invalid values, such as a negative density, an unknown material or a predicate
 // that selects no vertex. Pins and loads keep the order of the calls; gravity is the first load.
 #pragma once
-#include <functional>
 #include <memory>
 #include <optional>
 #include <span>

@@ -1,7 +1,6 @@
 // Small models for several tests.
 #pragma once
 #include <cmath>
-#include <functional>
 #include <string>
 
 #include "dynamics/integrator.h"

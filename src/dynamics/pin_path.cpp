@@ -1,6 +1,5 @@
 #include "dynamics/pin_path.h"
 
-#include <algorithm>
 #include <array>
 
 #include "base/check.h"

@@ -6,7 +6,6 @@
 // = h A_ii (see implicit_stage.h) [Hairer 1996, section IV.6].
 #pragma once
 #include <memory>
-#include <string_view>
 
 #include "dynamics/integrator.h"
 

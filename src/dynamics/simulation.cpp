@@ -12,7 +12,7 @@
 #include "dynamics/integrator.h"
 #include "dynamics/ledger.h"
 #include "dynamics/simulation_checks.h"
-#include "dynamics/state_hash.h"
+#include "dynamics/state.h"
 
 namespace aspic {
 namespace {

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "base/error.h"
+#include "base/formatted.h"
 #include "contact/barrier.h"
 #include "math/vectors.h"
 #include "mesh/self_intersection.h"
@@ -21,11 +22,7 @@ std::string listed(const std::vector<int>& indices) {
   return text + (indices.size() > 5 ? ", ..." : "");
 }
 
-std::string coordinates(const Vec3d& x) {
-  char text[100];
-  std::snprintf(text, sizeof text, "%.4g, %.4g, %.4g", x[0], x[1], x[2]);
-  return text;
-}
+std::string coordinates(const Vec3d& x) { return formatted("%.4g, %.4g, %.4g", x[0], x[1], x[2]); }
 
 std::string joined(const std::vector<std::string>& names) {
   std::string text;

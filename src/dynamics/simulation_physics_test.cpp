@@ -4,7 +4,6 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <cmath>
 
 #include "dynamics/models_test.h"
 #include "energy/rayleigh_damping.h"

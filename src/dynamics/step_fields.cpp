@@ -1,6 +1,5 @@
 #include "dynamics/step_fields.h"
 
-#include <array>
 #include <charconv>
 
 #include "base/hash.h"

@@ -1,8 +1,6 @@
 // The record of a time step. Its status is a success only if the step converged.
 #pragma once
 #include <cstdint>
-#include <functional>
-#include <string>
 #include <vector>
 
 #include "dynamics/initial_guess.h"

@@ -1,7 +1,6 @@
 #include "energy/linear_load.h"
 
 #include <algorithm>
-#include <cmath>
 
 #include "base/parallel.h"
 

@@ -4,7 +4,6 @@
 #include <array>
 #include <cmath>
 #include <sstream>
-#include <utility>
 
 #include "base/error.h"
 #include "energy/surface_parts.h"

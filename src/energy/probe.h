@@ -9,8 +9,6 @@
 #pragma once
 #include <memory>
 #include <span>
-#include <string>
-#include <vector>
 
 #include "energy/energy.h"
 #include "mesh/tet_mesh.h"

@@ -1,7 +1,6 @@
 #include "energy/springs.h"
 
 #include <algorithm>
-#include <cmath>
 
 namespace aspic {
 namespace {

@@ -1,7 +1,5 @@
 #include "energy/tip_depth.h"
 
-#include <cmath>
-
 namespace aspic {
 namespace {
 

@@ -3,7 +3,6 @@
 #include <gmock/gmock.h>
 #include <stdlib.h>
 
-#include "base/error.h"
 #include "io/folder_test.h"
 
 namespace aspic {

@@ -1,7 +1,6 @@
 #include "io/gltf.h"
 
 #include <algorithm>
-#include <cstring>
 
 #include "base/check.h"
 #include "io/number_text.h"

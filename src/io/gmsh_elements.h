@@ -1,7 +1,6 @@
 // Element types and tags of .msh files. Tags are neither ordered nor dense.
 #pragma once
 #include <cstdint>
-#include <map>
 #include <optional>
 #include <string_view>
 #include <utility>

@@ -1,6 +1,5 @@
 #include <algorithm>
 
-#include "base/error.h"
 #include "io/gmsh.h"
 #include "io/gmsh_elements.h"
 #include "io/gmsh_source.h"

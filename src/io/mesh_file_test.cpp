@@ -5,10 +5,8 @@
 
 #include <bit>
 #include <cmath>
-#include <fstream>
 #include <limits>
 
-#include "base/error.h"
 #include "io/atomic_file.h"
 #include "io/folder_test.h"
 #include "io/mesh_examples_test.h"

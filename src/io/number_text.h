@@ -2,7 +2,6 @@
 #pragma once
 #include <bit>
 #include <charconv>
-#include <concepts>
 #include <cstring>
 #include <string>
 

@@ -4,7 +4,6 @@
 #include <cmath>
 #include <utility>
 
-#include "base/error.h"
 #include "io/byte_cursor.h"
 #include "io/number_text.h"
 #include "io/ply_header.h"

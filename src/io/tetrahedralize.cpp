@@ -1,6 +1,5 @@
 #include "io/tetrahedralize.h"
 
-#include <algorithm>
 #include <cmath>
 #include <sstream>
 #include <system_error>

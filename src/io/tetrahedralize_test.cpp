@@ -6,7 +6,6 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-#include "base/error.h"
 #include "io/atomic_file.h"
 #include "io/external_program.h"
 #include "io/folder_test.h"

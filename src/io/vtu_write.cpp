@@ -1,6 +1,5 @@
 #include <zlib.h>
 
-#include <algorithm>
 #include <array>
 #include <bit>
 #include <cstdint>

@@ -2,9 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 
 #include "base/check.h"
+#include "base/formatted.h"
 #include "base/free_memory.h"
 #include "base/parallel.h"
 #include "linalg/multigrid.h"
@@ -63,11 +63,7 @@ void find_held_rows(const BlockSparse& H, std::vector<char>& held) {
   if (std::all_of(held.begin(), held.end(), [](char h) { return h; })) std::fill(held.begin(), held.end(), 0);
 }
 
-std::string approximate(double value) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.2g", value);
-  return text;
-}
+std::string approximate(double value) { return formatted("%.2g", value); }
 
 }  // namespace
 

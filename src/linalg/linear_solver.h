@@ -1,7 +1,6 @@
 // Solves H x = b for a symmetric positive definite H: analyze() once per pattern, factorize() once per matrix,
 // solve() once per right-hand side.
 #pragma once
-#include <cstdint>
 #include <memory>
 #include <span>
 #include <string>

@@ -1,8 +1,6 @@
 // Visits all materials at compile time. The list is src/material/materials.cmake.
 #pragma once
-#include <string>
 #include <string_view>
-#include <vector>
 
 #include "base/error.h"
 #include "material/all_materials.h"  // generated from materials.cmake: MaterialList

@@ -1,8 +1,8 @@
 #include "mesh/doctor.h"
 
 #include <algorithm>
-#include <limits>
 
+#include "base/formatted.h"
 #include "base/parallel.h"
 #include "mesh/box_tree.h"
 #include "mesh/findings.h"
@@ -77,13 +77,14 @@ void examine_shapes(const TetMesh& mesh, Findings& findings) {
                 "remove them with --repair, or remesh the shape", shapes.flat, true});
   findings.add({Severity::error, "inverted_tets",
                 count_of(shapes.inverted.size(), total, "tets", "are inverted; the worst is tet ") +
-                    std::to_string(shapes.worst_inverted) + " with volume " + number(shapes.most_negative) + " m^3",
+                    std::to_string(shapes.worst_inverted) + " with volume " + three_digits(shapes.most_negative) +
+                    " m^3",
                 "flip them with --repair", shapes.inverted, true});
   if (shapes.slivers.empty()) return;
   findings.add({Severity::warning, "slivers",
                 count_of(shapes.slivers.size(), total, "tets",
                          "are slivers (a dihedral angle within 5 degrees of 0 or 180); the worst is tet ") +
-                    std::to_string(shapes.worst_sliver) + " with " + number(shapes.smallest_angle) +
+                    std::to_string(shapes.worst_sliver) + " with " + three_digits(shapes.smallest_angle) +
                     " degrees; mean ratios by tenths: " + histogram_text(mesh),
                 "remesh the shape with aspic mesh; slivers make the solver slow and the material stiff", shapes.slivers,
                 false});

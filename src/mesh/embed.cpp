@@ -1,7 +1,6 @@
 #include "mesh/embed.h"
 
 #include <algorithm>
-#include <cmath>
 #include <string>
 
 #include "base/check.h"
@@ -9,7 +8,6 @@
 #include "base/parallel.h"
 #include "mesh/doctor.h"
 #include "mesh/locate.h"
-#include "mesh/tet_shape.h"
 
 namespace aspic {
 namespace {

@@ -5,6 +5,7 @@
 #include <cstdio>
 #include <tuple>
 
+#include "base/formatted.h"
 #include "mesh/box_tree.h"
 #include "mesh/components.h"
 #include "mesh/topology.h"
@@ -58,12 +59,6 @@ std::vector<int> unreferenced(const std::vector<Element>& elements, size_t verte
 
 }  // namespace
 
-std::string number(double value) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.3g", value);
-  return text;
-}
-
 std::string count_of(size_t count, size_t total, const std::string& noun, const std::string& what) {
   return std::to_string(count) + " of " + std::to_string(total) + " " + noun + " " + what;
 }
@@ -86,7 +81,7 @@ bool examine_vertices(const std::vector<Vec3d>& vertices, const std::vector<Elem
   const std::vector<int> large = too_large(vertices);
   findings.add({Severity::error, "coordinates_too_large",
                 count_of(large.size(), total, "vertices",
-                         "have a coordinate beyond " + number(kLargestCoordinate) + " m, where volumes overflow"),
+                         "have a coordinate beyond " + three_digits(kLargestCoordinate) + " m, where volumes overflow"),
                 "choose a larger unit of length, or correct the file", large, false});
   if (!large.empty()) return false;
   const std::vector<int> repeated = duplicates(vertices), unused = unreferenced(elements, total);
@@ -113,14 +108,14 @@ void examine_units(const std::vector<Vec3d>& vertices, Findings& findings) {
   if (extent > kLargest)
     findings.add_general({Severity::note,
                           "suspicious_units",
-                          "extent " + number(extent) + " m; if the file is in millimeters use scale = 0.001",
+                          "extent " + three_digits(extent) + " m; if the file is in millimeters use scale = 0.001",
                           "set scale in the scene if the file is not in meters",
                           {},
                           false});
   if (extent < kSmallest)
     findings.add_general({Severity::note,
                           "suspicious_units",
-                          "extent " + number(extent) + " m; if the file is in kilometers use scale = 1000",
+                          "extent " + three_digits(extent) + " m; if the file is in kilometers use scale = 1000",
                           "set scale in the scene if the file is not in meters",
                           {},
                           false});

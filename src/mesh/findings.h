@@ -7,8 +7,6 @@
 
 namespace aspic {
 
-std::string number(double value);  // three significant digits
-
 // Returns a phrase like "3 of 600 tets are inverted" from the count, the total, a noun and a predicate.
 std::string count_of(size_t count, size_t total, const std::string& noun, const std::string& what);
 

@@ -8,7 +8,6 @@
 #include <map>
 #include <numbers>
 #include <set>
-#include <string>
 
 #include "mesh/surface.h"
 #include "mesh/tet_shape.h"

@@ -3,10 +3,8 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <cmath>
 
 #include "mesh/generators.h"
-#include "mesh/tet_shape.h"
 
 namespace aspic {
 namespace {

@@ -1,7 +1,6 @@
 #include "mesh/self_intersection.h"
 
 #include <algorithm>
-#include <cmath>
 
 #include "mesh/box_tree.h"
 #include "mesh/topology.h"

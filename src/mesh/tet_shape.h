@@ -1,7 +1,6 @@
 // Shape measures of a tetrahedron, and its distance from a point.
 #pragma once
 #include <array>
-#include <cmath>
 
 #include "mesh/tet_mesh.h"
 

@@ -1,12 +1,34 @@
 // Strategies for Hessians that may be indefinite in Newton's method.
 #pragma once
 #include <memory>
+#include <span>
 #include <string_view>
 #include <vector>
 
+#include "linalg/projection.h"
 #include "optimize/newton_system.h"
 
 namespace aspic {
+
+// Selects the elements with modified Hessians in progressively projected Newton [Fernandez-Fernandez et al. 2026]:
+// those with a vertex whose residual exceeds a threshold. The threshold falls after a failed direction and rises after
+// a successful one, so that few elements are modified.
+class ProgressiveProjection {
+ public:
+  void begin() { threshold_ = kNone; }
+
+  // Returns the selection for the residual g, 3 numbers per vertex. Valid until the next call.
+  Projection at(std::span<const double> g);
+  bool is_complete() const { return covers_all_; }  // whether the last selection holds every element
+  void tighten(std::span<const double> g);          // select more elements
+  void relax();                                     // select fewer elements
+
+ private:
+  static constexpr double kNone = -1;  // no element is modified
+  double threshold_ = kNone;
+  bool covers_all_ = false;
+  std::vector<char> marked_;
+};
 
 class HessianPolicy {
  public:

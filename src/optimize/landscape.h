@@ -1,6 +1,5 @@
 // Samples E around an iterate for plots: along the search direction, and in a plane that contains it.
 #pragma once
-#include <functional>
 #include <vector>
 
 #include "optimize/minimize.h"

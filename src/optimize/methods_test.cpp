@@ -8,10 +8,10 @@
 
 #include "base/error.h"
 #include "optimize/fallback_chain.h"
-#include "optimize/forcing.h"
+#include "optimize/hessian_policy.h"
 #include "optimize/model_step.h"
+#include "optimize/newton.h"
 #include "optimize/preconditioner.h"
-#include "optimize/progressive_projection.h"
 #include "optimize/solver.h"
 #include "optimize/test_functions.h"
 

@@ -1,8 +1,6 @@
 // Smooth functions f(x, y) as objectives. Vectors are padded to one 3x3 block; the minimum is at z = 0.
 #pragma once
 #include <array>
-#include <string>
-#include <string_view>
 
 #include "optimize/objective.h"
 

@@ -1,7 +1,6 @@
 // Functions with known minima for comparing methods.
 #pragma once
 #include <memory>
-#include <optional>
 #include <string>
 #include <vector>
 

@@ -2,10 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <iomanip>
-#include <sstream>
 
 #include "base/error.h"
+#include "base/formatted.h"
 #include "mesh/tet_shape.h"
 #include "scene/material_file.h"
 #include "scene/placement.h"
@@ -23,11 +22,7 @@ constexpr double kElsewhere = 0.5;        // maximum distance in diagonals of th
 // A body without elasticity has a term of zero stiffness, so that det F is reported.
 const char* const kModelOfNothing = "neo_hookean";
 
-std::string four_digits(double length) {
-  std::ostringstream text;
-  text << std::setprecision(4) << length;
-  return text.str();
-}
+std::string four_digits(double length) { return formatted("%.4g", length); }
 
 bool is_given(const Table& table, const std::string& key) {
   for (const Member& m : table.members)

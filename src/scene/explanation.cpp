@@ -9,7 +9,6 @@
 #include "dynamics/explanation_places.h"
 #include "dynamics/pins.h"
 #include "dynamics/rigid_motions.h"
-#include "material/registry.h"
 
 namespace aspic {
 namespace {

@@ -1,6 +1,5 @@
 // Formulas of a position and a time, such as "1e5 * (1 + 3 * exp(-Y^2 / 0.02))" and "y > 0.9 && x < 0".
 #pragma once
-#include <array>
 #include <memory>
 #include <string>
 #include <vector>

@@ -12,7 +12,6 @@
 #include "mesh/tet_shape.h"
 #include "mesh/vertices.h"
 #include "scene/schema.h"
-#include "scene/tables.h"
 #include "scene/value.h"
 
 namespace aspic {

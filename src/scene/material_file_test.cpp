@@ -13,7 +13,6 @@
 #include "io/vtu.h"
 #include "mesh/generators.h"
 #include "scene/scene_cases_test.h"
-#include "scene/tables.h"
 
 namespace aspic {
 namespace {

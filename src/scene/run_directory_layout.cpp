@@ -8,6 +8,7 @@
 #include <system_error>
 
 #include "base/error.h"
+#include "base/formatted.h"
 #include "io/atomic_file.h"
 #include "io/checkpoint.h"
 #include "io/input_file.h"
@@ -17,11 +18,6 @@ namespace aspic {
 namespace {
 
 namespace fs = std::filesystem;
-
-std::string six_digits(int frame) {
-  const std::string digits = std::to_string(frame);
-  return std::string(digits.size() < 6 ? 6 - digits.size() : 0, '0') + digits;
-}
 
 // Returns the number in a file name of frame_file or skin_frame.
 std::optional<int> frame_number(const fs::path& file) {
@@ -112,10 +108,10 @@ std::vector<fs::path> named_inputs(const fs::path& root, const fs::path& scene) 
 
 }  // namespace
 
-std::string RunLayout::frame_file(int frame) { return "frames/body_" + six_digits(frame) + ".vtu"; }
+std::string RunLayout::frame_file(int frame) { return formatted("frames/body_%06d.vtu", frame); }
 
 fs::path RunLayout::skin_frame(const std::string& skin, int frame, const std::string& extension) const {
-  return frames() / ("skin_" + skin + "_" + six_digits(frame) + extension);
+  return frames() / ("skin_" + skin + formatted("_%06d", frame) + extension);
 }
 
 fs::path RunLayout::trace(int first_step) const {

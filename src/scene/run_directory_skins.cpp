@@ -1,7 +1,6 @@
 #include "scene/run_directory_skins.h"
 
 #include <algorithm>
-#include <filesystem>
 
 #include "io/mesh_file.h"
 #include "io/usd.h"

@@ -1,7 +1,5 @@
 // The tables of a run. steps.csv and iterations.csv are bit-reproducible, timings.csv is not.
 #pragma once
-#include <string>
-#include <vector>
 
 #include "dynamics/simulation.h"
 #include "io/checkpoint.h"

@@ -8,6 +8,7 @@
 
 #include "scene/scene_cases_test.h"
 
+
 namespace aspic::scaling {
 
 struct Scales {

@@ -1,6 +1,5 @@
 // Builds a scene from a complete document.
 #pragma once
-#include <filesystem>
 #include <map>
 #include <string>
 #include <vector>

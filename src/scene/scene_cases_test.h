@@ -1,6 +1,5 @@
 // Shared by tests of scenes: a cube, and functions that load a scene or return the message of its rejection.
 #pragma once
-#include <cmath>
 #include <string>
 #include <vector>
 

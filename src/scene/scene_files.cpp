@@ -1,8 +1,6 @@
 #include "scene/scene_files.h"
 
 #include <algorithm>
-#include <array>
-#include <cstring>
 
 #include "base/error.h"
 #include "io/atomic_file.h"

@@ -5,70 +5,47 @@ namespace aspic {
 namespace {
 
 void add_body(Schema& s) {
-  s.sections.push_back({"body", "[[body]]",
-                        "A soft body: its rest mesh, placed by scale, rotate, translate in this order; material; "
-                        "initial state; pins and loads."});
-  add_keys(s, "body",
-           {{.name = "name",
-             .accepts = kText,
-             .meaning = "letters, digits, _ and -; default: the file's name, or body1, body2, ..."},
-            {.name = "mesh",
-             .accepts = kText,
-             .required = true,
-             .meaning = "file of tets, or of a closed surface to be filled"},
-            {.name = "mesh_size",
-             .accepts = kNumber,
-             .unit = "the file's",
-             .range = {.min = 0},
-             .meaning = "edge length for filling; default: diagonal of the bounding box / 25"},
-            {.name = "shape", .accepts = kTable, .table = "shape", .meaning = "generated mesh"},
-            {.name = "mesh_hash", .accepts = kText, .meaning = "hash of the mesh, in resolved scenes"},
-            {.name = "skin",
-             .accepts = kText,
-             .meaning = "surface file embedded in the tets, placed like `mesh`; default: the filled surface, or the "
-                        "boundary of the tets"}});
+  add_section(
+      s,
+      {"body", "[[body]]",
+       "A soft body: its rest mesh, placed by scale, rotate, translate in this order; material; "
+       "initial state; pins and loads."},
+      {key("name", kText, "letters, digits, _ and -; default: the file's name, or body1, body2, ..."),
+       key("mesh", kText, "file of tets, or of a closed surface to be filled", kRequired),
+       key("mesh_size", kNumber, "edge length for filling; default: diagonal of the bounding box / 25",
+           Units{"the file's"}, Range{.min = 0}),
+       key("shape", kTable, "generated mesh", Members{"shape"}),
+       key("mesh_hash", kText, "hash of the mesh, in resolved scenes"),
+       key("skin", kText,
+           "surface file embedded in the tets, placed like `mesh`; default: the filled surface, or the boundary "
+           "of the tets")});
   add_placement_keys(s, "body");
   add_keys(s, "body",
-           {{.name = "friction",
-             .accepts = kNumber,
-             .range = kNotNegative,
-             .meaning = "coefficient of friction in contact; default: contact.friction"},
-            {.name = "elastic",
-             .accepts = kBoolean,
-             .fallback = "true",
-             .meaning = "false: no elastic energy, as for a mass-spring body",
-             .reason = "a body is a continuum"},
-            {.name = "material", .accepts = kTable, .fallback = "{}", .table = "material", .meaning = "material"},
-            {.name = "deform", .accepts = kTable, .table = "deform", .meaning = "initial shape; default: at rest"},
-            {.name = "velocity",
-             .accepts = kExpressions,
-             .unit = "m/s",
-             .fallback = "[0.0, 0.0, 0.0]",
-             .meaning = "initial velocity of free vertices, a function of the rest position",
-             .reason = "at rest"},
-            {.name = "angular_velocity",
-             .accepts = kNumbers,
-             .unit = "rad/s",
-             .fallback = "[0.0, 0.0, 0.0]",
-             .meaning = "adds omega x (x - center of mass) to the velocity",
-             .reason = "at rest"},
-            {.name = "damping", .accepts = kTable, .fallback = "{}", .table = "damping", .meaning = "damping"},
-            {.name = "pin", .accepts = kTables, .table = "pin", .meaning = "prescribed positions"},
-            {.name = "spring", .accepts = kTables, .table = "spring", .meaning = "springs"},
-            {.name = "grab", .accepts = kTables, .table = "grab", .meaning = "points dragged along a path"},
-            {.name = "traction", .accepts = kTables, .table = "traction", .meaning = "dead loads on the surface"},
-            {.name = "pressure", .accepts = kTables, .table = "pressure", .meaning = "follower pressures"},
-            {.name = "force", .accepts = kTables, .table = "force", .meaning = "dead loads per volume"}});
+           {key("friction", kNumber, "coefficient of friction in contact; default: contact.friction", kNotNegative),
+            key("elastic", kBoolean, "false: no elastic energy, as for a mass-spring body",
+                Usual{"true", "a body is a continuum"}),
+            key("material", kTable, "material", Members{"material"}, Usual{"{}"}),
+            key("deform", kTable, "initial shape; default: at rest", Members{"deform"}),
+            key("velocity", kExpressions, "initial velocity of free vertices, a function of the rest position",
+                Units{"m/s"}, Usual{"[0.0, 0.0, 0.0]", "at rest"}),
+            key("angular_velocity", kNumbers, "adds omega x (x - center of mass) to the velocity", Units{"rad/s"},
+                Usual{"[0.0, 0.0, 0.0]", "at rest"}),
+            key("damping", kTable, "damping", Members{"damping"}, Usual{"{}"}),
+            key("pin", kTables, "prescribed positions", Members{"pin"}),
+            key("spring", kTables, "springs", Members{"spring"}),
+            key("grab", kTables, "points dragged along a path", Members{"grab"}),
+            key("traction", kTables, "dead loads on the surface", Members{"traction"}),
+            key("pressure", kTables, "follower pressures", Members{"pressure"}),
+            key("force", kTables, "dead loads per volume", Members{"force"})});
   s.alternatives.push_back({"body", {{"mesh", "mesh_size"}, {"shape"}}, true});
 }
 
 void add_shapes(Schema& s) {
   const auto length = [&](const char* section, const char* name, const char* meaning) {
-    add_key(s, section,
-            {.name = name, .accepts = kNumber, .unit = "m", .required = true, .range = kPositive, .meaning = meaning});
+    add_keys(s, section, {key(name, kNumber, meaning, Units{"m"}, kPositive, kRequired)});
   };
   const auto shape = [&](const char* name, const char* meaning) {
-    add_key(s, "shape", {.name = name, .accepts = kTable, .table = name, .meaning = meaning});
+    add_keys(s, "shape", {key(name, kTable, meaning, Members{name})});
   };
   s.sections.push_back({"shape", "shape = { ... } in a [[body]]", "A generated mesh."});
   shape("box", "a box along the axes");
@@ -77,32 +54,13 @@ void add_shapes(Schema& s) {
   shape("torus", "about the z axis");
   s.alternatives.push_back({"shape", {{"box"}, {"cylinder"}, {"sphere"}, {"torus"}}, true});
 
-  s.sections.push_back({"box", "box = { ... }", "A box cut into cells, each into tets."});
-  add_keys(s, "box",
-           {{.name = "lower",
-             .accepts = kNumbers,
-             .unit = "m",
-             .fallback = "[0.0, 0.0, 0.0]",
-             .meaning = "lowest corner",
-             .reason = "the origin"},
-            {.name = "upper", .accepts = kNumbers, .unit = "m", .required = true, .meaning = "highest corner"},
-            {.name = "cells",
-             .accepts = kIntegers,
-             .required = true,
-             .range = {.min = 1, .max = 10000},
-             .meaning = "cells along x, y and z"},
-            {.name = "size",
-             .accepts = kNumber,
-             .unit = "m",
-             .required = true,
-             .range = kPositive,
-             .meaning = "approximate edge length"},
-            {.name = "cut",
-             .accepts = kText,
-             .fallback = "\"kuhn\"",
-             .choices = {"kuhn", "five"},
-             .meaning = "six tets per cell, or five, alternating",
-             .reason = "refines uniformly"}});
+  add_section(s, {"box", "box = { ... }", "A box cut into cells, each into tets."},
+              {key("lower", kNumbers, "lowest corner", Units{"m"}, Usual{"[0.0, 0.0, 0.0]", "the origin"}),
+               key("upper", kNumbers, "highest corner", Units{"m"}, kRequired),
+               key("cells", kIntegers, "cells along x, y and z", Range{.min = 1, .max = 10000}, kRequired),
+               key("size", kNumber, "approximate edge length", Units{"m"}, kPositive, kRequired),
+               key("cut", kText, "six tets per cell, or five, alternating", Choices{{"kuhn", "five"}},
+                   Usual{"\"kuhn\"", "refines uniformly"})});
   s.alternatives.push_back({"box", {{"cells"}, {"size"}}, true});
 
   s.sections.push_back({"cylinder", "cylinder = { ... }", "A cylinder about the z axis."});
@@ -119,63 +77,39 @@ void add_shapes(Schema& s) {
 }
 
 void add_placement(Schema& s) {
-  s.sections.push_back({"rotate", "rotate = { ... } in a [[body]]", "A rotation about the origin."});
-  add_keys(s, "rotate",
-           {{.name = "axis", .accepts = kNumbers, .required = true, .meaning = "any nonzero vector"},
-            {.name = "angle_deg", .accepts = kNumber, .unit = "degrees", .required = true, .meaning = "right-handed"},
-            {.name = "euler_deg",
-             .accepts = kNumbers,
-             .unit = "degrees",
-             .meaning = "about x, then y, then z, fixed axes"}});
+  add_section(s, {"rotate", "rotate = { ... } in a [[body]]", "A rotation about the origin."},
+              {key("axis", kNumbers, "any nonzero vector", kRequired),
+               key("angle_deg", kNumber, "right-handed", Units{"degrees"}, kRequired),
+               key("euler_deg", kNumbers, "about x, then y, then z, fixed axes", Units{"degrees"})});
   s.alternatives.push_back({"rotate", {{"axis", "angle_deg"}, {"euler_deg"}}, true});
 
   s.sections.push_back(
       {"deform", "deform = { ... } in a [[body]]",
        "The shape at time 0 relative to the placed rest shape, about the center of its bounding box."});
   add_keys(s, "deform",
-           {{.name = "scale", .accepts = kNumber | kNumbers, .range = {.min = 0}, .meaning = "stretch"},
-            {.name = "matrix", .accepts = kMatrix, .meaning = "deformation gradient by rows"},
-            {.name = "twist", .accepts = kTable, .table = "twist", .meaning = "twist about an axis"},
-            {.name = "displacement",
-             .accepts = kExpressions,
-             .unit = "m",
-             .meaning = "function of the rest position (X, Y, Z)"},
-            {.name = "file",
-             .accepts = kText,
-             .unit = "m",
-             .required = true,
-             .meaning = "CSV with a displacement x,y,z per vertex"},
-            {.name = "hash", .accepts = kText, .meaning = "hash of the file, in resolved scenes"}});
+           {key("scale", kNumber | kNumbers, "stretch", Range{.min = 0}),
+            key("matrix", kMatrix, "deformation gradient by rows"),
+            key("twist", kTable, "twist about an axis", Members{"twist"}),
+            key("displacement", kExpressions, "function of the rest position (X, Y, Z)", Units{"m"}),
+            key("file", kText, "CSV with a displacement x,y,z per vertex", Units{"m"}, kRequired),
+            key("hash", kText, "hash of the file, in resolved scenes")});
   s.alternatives.push_back({"deform", {{"scale"}, {"matrix"}, {"twist"}, {"displacement"}, {"file", "hash"}}, true});
 
   s.sections.push_back(
       {"twist", "twist = { ... } in deform", "A rotation proportional to the distance along the axis."});
   add_keys(s, "twist",
-           {{.name = "axis", .accepts = kNumbers, .required = true, .meaning = "through the center"},
-            {.name = "angle_deg",
-             .accepts = kNumber,
-             .unit = "degrees",
-             .required = true,
-             .meaning = "between the ends of the body"}});
+           {key("axis", kNumbers, "through the center", kRequired),
+            key("angle_deg", kNumber, "between the ends of the body", Units{"degrees"}, kRequired)});
 }
 
 }  // namespace
 
 void add_placement_keys(Schema& s, const char* section) {
   add_keys(s, section,
-           {{.name = "scale",
-             .accepts = kNumber | kNumbers,
-             .fallback = "1.0",
-             .range = kPositive,
-             .meaning = "scale factor about the origin",
-             .reason = "the file is in meters"},
-            {.name = "rotate", .accepts = kTable, .table = "rotate", .meaning = "rotation about the origin"},
-            {.name = "translate",
-             .accepts = kNumbers,
-             .unit = "m",
-             .fallback = "[0.0, 0.0, 0.0]",
-             .meaning = "translation",
-             .reason = "stays where it is"}});
+           {key("scale", kNumber | kNumbers, "scale factor about the origin", kPositive,
+                Usual{"1.0", "the file is in meters"}),
+            key("rotate", kTable, "rotation about the origin", Members{"rotate"}),
+            key("translate", kNumbers, "translation", Units{"m"}, Usual{"[0.0, 0.0, 0.0]", "stays where it is"})});
 }
 
 void add_body_sections(Schema& s) {

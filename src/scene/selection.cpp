@@ -8,7 +8,6 @@
 #include "mesh/vertices.h"
 #include "scene/expression.h"
 #include "scene/placement.h"
-#include "scene/tables.h"
 
 namespace aspic {
 namespace {

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "base/error.h"
+#include "base/formatted.h"
 #include "base/printable.h"
 #include "math/small.h"
 
@@ -66,7 +67,6 @@ struct Member {
 
 // Returns the shortest text that reads back to the same bits, in any locale.
 std::string number_text(double value);
-std::string three_digits(double value);
 std::string point_text(const Vec3d& X);          // "(0.5, 1, 0)"
 std::string toml_string(std::string_view text);  // a TOML string
 std::string inline_toml(const Value& value);

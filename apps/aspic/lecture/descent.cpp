@@ -1,7 +1,6 @@
 // Pages 38 to 42: the generic loop with d = -gradient, which zigzags.
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <cmath>
 
 #include "aspic/lecture/course.h"

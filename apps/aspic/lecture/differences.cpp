@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
 
 #include "aspic/lecture/course.h"
 #include "aspic/lecture/run_scene.h"

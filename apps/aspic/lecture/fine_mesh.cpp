@@ -1,8 +1,6 @@
 // Page 2: a very fine mesh.
 #include <fmt/format.h>
 
-#include <algorithm>
-
 #include "aspic/lecture/course.h"
 #include "aspic/lecture/run_scene.h"
 

@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "aspic/lecture/course.h"
 #include "aspic/lecture/run_scene.h"

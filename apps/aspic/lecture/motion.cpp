@@ -7,7 +7,6 @@
 #include "aspic/lecture/course.h"
 #include "aspic/lecture/run_scene.h"
 #include "energy/springs.h"
-#include "mesh/surface.h"
 
 namespace aspic::cli::lecture {
 namespace {

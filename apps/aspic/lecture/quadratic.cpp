@@ -1,7 +1,6 @@
 // Pages 43 to 51: Newton's method minimizes the quadratic approximation.
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <cmath>
 
 #include "aspic/lecture/course.h"

@@ -1,7 +1,6 @@
 #include "aspic/lecture/sheet.h"
 
 #include <algorithm>
-#include <cmath>
 #include <system_error>
 
 #include "base/error.h"

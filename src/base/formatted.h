@@ -12,6 +12,7 @@ std::string formatted(const char* format, Numbers... numbers) {
   return buffer;
 }
 
+inline std::string three_digits(double x) { return formatted("%.3g", x); }
 inline std::string six_digits(double x) { return formatted("%.6g", x); }
 
 }  // namespace aspic
