@@ -243,13 +243,30 @@ void check_frames(const Subject& subject, Findings& found) {
 }  // namespace
 
 void add_contact_motion_checks(std::vector<Check>& checks) {
-  checks.push_back({"contact", "bar", "An elastic bar flies against a wall",
+  checks.push_back({"contact",
+                    "bar",
+                    "An elastic bar flies against a wall",
                     "Length 1, E = rho = 1, nu = 0, v = c / 1000.",
-                    "The wave equation: contact lasts 2 L / c under the force rho c v A", check_bar});
-  checks.push_back({"contact", "third_law", "Contact and friction conserve momentum", "Two soft boxes collide askew.",
-                    "Newton's third law; contact forces act along the line between their points", check_third_law});
-  checks.push_back({"contact", "bounce", "A bounce gains no energy", "A soft box falls askew onto the floor.",
-                    "Backward Euler loses energy in every step; the ledger closes", check_bounce});
+                    "The wave equation: duration and force of the contact",
+                    check_bar,
+                    {},
+                    {R"tex(T = \frac{2 L}{c}, \quad F = \rho c v A, \quad c = \sqrt{\frac{E}{\rho}})tex"}});
+  checks.push_back({"contact",
+                    "third_law",
+                    "Contact and friction conserve momentum",
+                    "Two soft boxes collide askew.",
+                    "Newton's third law; contact forces act along the line between their points",
+                    check_third_law,
+                    {},
+                    {R"tex(\sum_i f_i = 0, \quad \sum_i x_i \times f_i = 0)tex"}});
+  checks.push_back({"contact",
+                    "bounce",
+                    "A bounce gains no energy",
+                    "A soft box falls askew onto the floor.",
+                    "Backward Euler loses energy in every step; the ledger closes",
+                    check_bounce,
+                    {},
+                    {R"tex(E_{n+1} \le E_n)tex"}});
   checks.push_back({"contact", "frames", "Neither frame nor numbering changes contact",
                     "The boxes turned and shifted, and with vertices in reverse order.",
                     "The equations depend on neither", check_frames});
