@@ -80,7 +80,7 @@ int measure(Choices& choices) {
   const Captured data = capture(choices.setup);
   const TetMesh& mesh = data.experiment.mesh;
   const ParameterMap map(mesh, "neo_hookean", known(choices.setup, mesh),
-                         {{"young", Spread::tets, 0, choices.guess * choices.setup.young}});
+                         {{"young", Parameterization::tets, 0, choices.guess * choices.setup.young}});
   choices.prior.smoothness = choices.smoothness == "tv"   ? Smoothness::total_variation
                              : choices.smoothness == "h1" ? Smoothness::h1
                                                           : Smoothness::none;
@@ -117,7 +117,7 @@ int main(int argc, char** argv) {
   CLI::App app("Fits a stiffness field to synthetic pokes of a cube with a stiff ball inside.");
   app.add_option("--cells", c.setup.cells, "of the mesh that is fitted, along each edge")->capture_default_str();
   app.add_option("--data-cells", c.setup.data_cells, "of the mesh that the data come from")->capture_default_str();
-  app.add_option("--pokes", c.setup.pokes, "1 to 9")->capture_default_str()->check(CLI::Range(1, 9));
+  app.add_option("--pokes", c.setup.indentations, "1 to 9")->capture_default_str()->check(CLI::Range(1, 9));
   app.add_option("--markers", c.setup.markers)->capture_default_str();
   app.add_option("--noise", c.setup.noise, "in parts of the largest motion and force")->capture_default_str();
   app.add_option("--contrast", c.setup.contrast, "of the ball")->capture_default_str();
@@ -128,7 +128,7 @@ int main(int argc, char** argv) {
   app.add_option("--enough", c.fit.enough)->capture_default_str();
   app.add_option("--iterations", c.fit.max_iterations)->capture_default_str();
   app.add_option("--smoothness", c.smoothness, "h1, tv or none")->capture_default_str();
-  app.add_option("--deviation", c.prior.prior_deviation, "of the prior")->capture_default_str();
+  app.add_option("--deviation", c.prior.prior_sigma, "of the prior")->capture_default_str();
   app.add_option("--sharpness", c.prior.sharpness, "of total variation")->capture_default_str();
   app.add_option("--linear", c.equilibrium.linear, "solver of Newton's steps")->capture_default_str();
   app.add_option("--adjoint", c.equilibrium.adjoint, "solver of tangents and adjoints")->capture_default_str();

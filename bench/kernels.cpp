@@ -82,7 +82,7 @@ class Registry {
     const Place place = place_;
     const std::string unique = name + "@" + std::to_string(place.n) + "x" + std::to_string(place.threads);
     benchmark::RegisterBenchmark(unique.c_str(),
-                                 [=](benchmark::State& state) { tell(state, fn(state, place.beam(material))); })
+                                 [=](benchmark::State& state) { report(state, fn(state, place.beam(material))); })
         ->MeasureProcessCPUTime()
         ->MinTime(arguments_.seconds)
         ->Repetitions(arguments_.repetitions);

@@ -77,7 +77,7 @@ SurfacePoint locate(const TetMesh& mesh, const std::vector<Triangle>& triangles,
   return best;
 }
 
-LoadCase poke(const VirtualCapture& setup, int site) {
+LoadCase indentation(const VirtualCapture& setup, int site) {
   const auto& [point, inwards] = kSites.at(site);
   LoadCase load;
   load.name = load.group = "poke " + std::to_string(site + 1);
@@ -87,7 +87,7 @@ LoadCase poke(const VirtualCapture& setup, int site) {
   load.pose = {setup.side * point + setup.depth * inwards, inwards, {}};
   for (int m = 0; m < setup.markers; ++m) load.positions.push_back({m, {}, {1, 1, 1}});
   load.force = Vec3d{};
-  load.force_deviation = {1, 1, 1};
+  load.force_sigma = {1, 1, 1};
   return load;
 }
 
@@ -98,7 +98,7 @@ Experiment experiment_on(const VirtualCapture& setup, int cells) {
   e.fixed = vertices_where(e.mesh, [](const Vec3d& X) { return X[2] == 0; });
   const std::vector<Triangle> surface = boundary_triangles(e.mesh, 0, e.mesh.tet_count());
   for (const Vec3d& p : marker_points(setup)) e.markers.push_back(locate(e.mesh, surface, p));
-  for (int site = 0; site < setup.pokes; ++site) e.cases.push_back(poke(setup, site));
+  for (int site = 0; site < setup.indentations; ++site) e.cases.push_back(indentation(setup, site));
   return e;
 }
 
@@ -117,14 +117,14 @@ std::vector<MaterialParameters> known(const VirtualCapture& setup, const TetMesh
 Captured capture(const VirtualCapture& setup) {
   const Experiment source = experiment_on(setup, setup.data_cells);
   const ParameterMap map(source.mesh, "neo_hookean", known(setup, source.mesh),
-                         {{"young", Spread::tets, 0, setup.young}});
+                         {{"young", Parameterization::tets, 0, setup.young}});
   Misfit model(source, map);
   std::vector<double> r(model.residual_count());
   if (!model.evaluate(true_field(setup, source.mesh), r))
     throw InvalidInput("the data cannot be made: " + model.failure());
 
   double motion = 0, force = 0;
-  for (int c = 0; c < setup.pokes; ++c) {
+  for (int c = 0; c < setup.indentations; ++c) {
     const CasePrediction& found = model.prediction(c);
     for (int m = 0; m < setup.markers; ++m) {
       const Vec3d u = found.markers[m] - rest_position(source, m);
@@ -136,19 +136,19 @@ Captured capture(const VirtualCapture& setup) {
   Captured data{experiment_on(setup, setup.cells), {}, {}};
   std::mt19937 random(setup.seed);
   std::normal_distribution<double> normal;
-  const auto measured = [&](const Vec3d& x, double deviation) {
-    return x + setup.noise * deviation * Vec3d{normal(random), normal(random), normal(random)};
+  const auto measured = [&](const Vec3d& x, double sigma) {
+    return x + setup.noise * sigma * Vec3d{normal(random), normal(random), normal(random)};
   };
   const auto stated = [&](double size) {  // exact data need a positive standard deviation, too
     const double d = std::max(setup.noise, 1e-4) * size;
     return Vec3d{d, d, d};
   };
-  for (int c = 0; c < setup.pokes; ++c) {
+  for (int c = 0; c < setup.indentations; ++c) {
     LoadCase& load = data.experiment.cases[c];
     const CasePrediction& found = model.prediction(c);
     for (int m = 0; m < setup.markers; ++m) load.positions[m] = {m, measured(found.markers[m], motion), stated(motion)};
     load.force = measured(found.wrench.force, force);
-    load.force_deviation = stated(force);
+    load.force_sigma = stated(force);
   }
   const TetMesh& mesh = data.experiment.mesh;
   data.truth = true_field(setup, mesh);

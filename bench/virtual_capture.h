@@ -9,7 +9,7 @@ namespace aspic::bench {
 struct VirtualCapture {
   int cells = 20;        // cells per edge of the fitted mesh
   int data_cells = 27;   // cells per edge of the mesh of the data
-  int pokes = 4;         // up to 9; on the top first, then on the sides
+  int indentations = 4;  // up to 9; on the top first, then on the sides
   int markers = 100;     // on the top and the sides
   double noise = 0.01;   // noise of positions and forces relative to the largest motion and force
   double contrast = 5;   // modulus of the ball relative to the tissue

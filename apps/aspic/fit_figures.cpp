@@ -37,7 +37,7 @@ BickelOptions baseline_options(const FitPlan& plan) {
   BickelOptions options;
   for (const auto& [quantity, value] : plan.known)
     if (quantity == "poisson") options.poisson = value, options.fits_poisson = false;
-  for (const Unknown& u : plan.unknowns)
+  for (const FitParameter& u : plan.parameters)
     if (u.quantity == "young" && u.guess > 0) options.young = u.guess;
   return options;
 }
@@ -155,7 +155,7 @@ void write_figures(const std::filesystem::path& file, const FitOutcome& outcome,
   Json json = {{"converged", is_success(report.status)},
                {"words", report.message},
                {"verdict", json_of(judged)},
-               {"unknowns", outcome.unknowns},
+               {"unknowns", outcome.parameter_count},
                {"residuals", outcome.residuals},
                {"iterations", report.iterations},
                {"equilibria", outcome.counts.equilibria},

@@ -3,8 +3,8 @@
 namespace aspic {
 
 FitModel::FitModel(const Experiment& data, const Experiment& simulated, const FitPlan& plan,
-                   std::vector<Unknown> unknowns, const StoredModel& stored)
-    : map(data.mesh, plan.model, known_parameters(plan, data), std::move(unknowns)),
+                   std::vector<FitParameter> parameters, const StoredModel& stored)
+    : map(data.mesh, plan.model, known_parameters(plan, data), std::move(parameters)),
       prior(make_regularizer(data.mesh, map, plan.regularizer)),
       misfit(simulated, map, plan.equilibrium) {
   const FitMemory& memory = stored.memory;

@@ -19,8 +19,8 @@ struct StoredModel {
 
 struct FitModel {
   // `simulated`: the fitted cases on the simulated mesh; stored by reference.
-  FitModel(const Experiment& data, const Experiment& simulated, const FitPlan& plan, std::vector<Unknown> unknowns,
-           const StoredModel& stored);
+  FitModel(const Experiment& data, const Experiment& simulated, const FitPlan& plan,
+           std::vector<FitParameter> parameters, const StoredModel& stored);
 
   LeastSquares& recorded() { return journal ? static_cast<LeastSquares&>(*journal) : misfit; }
   LeastSquares& data() { return *with_layers; }  // the residuals to minimize

@@ -13,10 +13,10 @@ using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 
 TEST(FitPlan, UnknownsAreRead) {
-  EXPECT_EQ(text_of(parse_unknown("young=tets")), "young=tets");
-  EXPECT_EQ(text_of(parse_unknown("b=handles:40")), "b=handles:40");
+  EXPECT_EQ(text_of(parse_parameter("young=tets")), "young=tets");
+  EXPECT_EQ(text_of(parse_parameter("b=handles:40")), "b=handles:40");
   EXPECT_EQ(parse_known("poisson=0.45").second, 0.45);
-  const auto refused = [](const std::string& text) { return message_of([&] { parse_unknown(text); }); };
+  const auto refused = [](const std::string& text) { return message_of([&] { parse_parameter(text); }); };
   EXPECT_THAT(refused("young"), HasSubstr("give QUANTITY=VALUE"));
   EXPECT_THAT(refused("young=tet"), HasSubstr("did you mean 'tets'?"));
   EXPECT_THAT(refused("young=handles:0"), HasSubstr("whole number above 0"));

@@ -39,7 +39,7 @@ class MaterialFit {
   void cross_validate_groups(FitModel& model);
   CrossValidation cross_validated(FitModel& model, const FitReport& report, FitOptions options);
   void cross_validate_one_value();
-  void find_next_poke(FitModel& model);
+  void find_next_indentation(FitModel& model);
   using UsePrediction = std::function<void(CaseOutcome&, const CasePrediction&)>;
   void predict_group(const std::string& group, const ParameterMap& map, std::span<const double> p,
                      const UsePrediction& use);

@@ -10,7 +10,7 @@ using Fields = std::vector<std::vector<double>>;  // a value per parameter and t
 
 Fields zero_fields(const ParameterMap& map) {
   Fields fields;
-  for (size_t u = 0; u < map.unknowns().size(); ++u)
+  for (size_t u = 0; u < map.fitted_parameters().size(); ++u)
     fields.emplace_back(map.basis(static_cast<int>(u)).tet_count(), 0.0);
   return fields;
 }

@@ -195,7 +195,7 @@ Misfit::Misfit(const Experiment& experiment, const ParameterMap& map, const Equi
     : impl_(std::make_unique<Impl>(experiment, map, options)) {}
 Misfit::~Misfit() = default;
 
-int Misfit::unknowns() const { return impl_->map.size(); }
+int Misfit::parameter_count() const { return impl_->map.size(); }
 int Misfit::residual_count() const { return impl_->residual_count; }
 bool Misfit::evaluate(std::span<const double> p, std::span<double> r) { return impl_->evaluate(p, r); }
 bool Misfit::linearize() { return impl_->linearize(); }

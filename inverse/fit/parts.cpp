@@ -34,7 +34,7 @@ Independent one_by_one(const ParameterMap& map, int unknown, const std::vector<d
 // The change by one more linearization is a lower bound of the uncertainty.
 void widen(PartsEstimate& estimate, std::span<const double> before) {
   for (size_t t = 0; t < before.size(); ++t)
-    estimate.deviation[t] = std::hypot(estimate.deviation[t], estimate.mean[t] - before[t]);
+    estimate.sigma[t] = std::hypot(estimate.sigma[t], estimate.mean[t] - before[t]);
 }
 
 }  // namespace

@@ -22,7 +22,7 @@ inline constexpr double kFarthestOfField = 4.6;
 
 struct RegularizerOptions {
   Smoothness smoothness = Smoothness::h1;  // for quantities that vary from tet to tet, on the fitted scale (log E)
-  double prior_deviation = 2;  // standard deviation about the guess on the fitted scale: log E +- 2; infinity: no prior
+  double prior_sigma = 2;  // standard deviation about the guess on the fitted scale: log E +- 2; infinity: no prior
   // For total variation: changes below 1/sharpness across the body count as smooth, larger ones as edges.
   double sharpness = 10;
 };

@@ -74,8 +74,8 @@ Judgment run_apart(uint64_t seed, const std::filesystem::path& folder) {
       for (const char c : *part) text += c == '\n' ? ' ' : c;
       text += '\n';
     }
-    const bool is_told = write(ends[1], text.data(), text.size()) == static_cast<ssize_t>(text.size());
-    _exit(is_told ? 0 : 1);
+    const bool is_written = write(ends[1], text.data(), text.size()) == static_cast<ssize_t>(text.size());
+    _exit(is_written ? 0 : 1);
   }
   close(ends[1]);
   std::string text;
