@@ -131,16 +131,18 @@ bool bench_motion(int n, const std::string& linear, const Arguments& arguments) 
 
 int main(int argc, char** argv) {
   using namespace aspic::bench;
-  CLI::App app("What a gradient costs beside its forward solve.");
+  CLI::App app("Measures the cost of a gradient relative to its forward solve.");
   Arguments arguments;
-  app.add_option("n", arguments.sizes, "cells through the thickness; 4n along the beam")->capture_default_str();
-  app.add_option("--linear", arguments.linear, "one or several linear solvers")->delimiter(',')->capture_default_str();
+  app.add_option("n", arguments.sizes, "Cells through the thickness; 4n along the beam")->capture_default_str();
+  app.add_option("--linear", arguments.linear, "Linear solvers, separated by commas")
+      ->delimiter(',')
+      ->capture_default_str();
   app.add_option("--material", arguments.material)->capture_default_str();
-  app.add_option("--young", arguments.young, "[Pa]")->capture_default_str();
-  app.add_option("--step", arguments.h, "[s]")->capture_default_str();
+  app.add_option("--young", arguments.young, "Young's modulus [Pa]")->capture_default_str();
+  app.add_option("--step", arguments.h, "Time step [s]")->capture_default_str();
   app.add_option("--steps", arguments.steps)->capture_default_str();
-  app.add_option("--tolerance", arguments.tolerance, "of the forward solves")->capture_default_str();
-  app.add_option("--stiffness-damping", arguments.stiffness_damping, "[s]")->capture_default_str();
+  app.add_option("--tolerance", arguments.tolerance, "Tolerance of the forward solves")->capture_default_str();
+  app.add_option("--stiffness-damping", arguments.stiffness_damping, "Stiffness damping [s]")->capture_default_str();
   app.add_option("--threads", arguments.threads)->capture_default_str();
   app.add_option("--runs", arguments.runs, "Number of runs; the fastest is reported")->check(CLI::PositiveNumber);
   return run_program(app, argc, argv, [&] {

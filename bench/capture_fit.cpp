@@ -1,4 +1,4 @@
-// Fits a material field to synthetic pokes: time, work, and accuracy for a stiff ball.
+// Fits a material field to synthetic indentations: time, work, and accuracy for a stiff ball.
 #include <cmath>
 #include <cstdio>
 
@@ -100,7 +100,7 @@ int measure(Choices& choices) {
       });
   const Recovery found = recovery(data, report.p);
   std::printf(
-      "%s: %s\n%.1f s of wall time, %.1f s of processors, %d iterations, %d evaluations, %d products with J or J'\n"
+      "%s: %s\n%.1f s of wall time, %.1f s of CPU time, %d iterations, %d evaluations, %d products with J or J'\n"
       "relative error of log E %.3f, contrast %.2f of %.2f, outside %.3f of the truth\n",
       report.method.c_str(), report.message.c_str(), stopwatch.seconds(), stopwatch.cpu_seconds(), report.iterations,
       report.evaluations, report.products, found.error, found.contrast, choices.setup.contrast, found.outside);
@@ -115,27 +115,30 @@ int main(int argc, char** argv) {
   using namespace aspic::bench;
   Choices c;
   CLI::App app("Fits a stiffness field to synthetic pokes of a cube with a stiff ball inside.");
-  app.add_option("--cells", c.setup.cells, "of the mesh that is fitted, along each edge")->capture_default_str();
-  app.add_option("--data-cells", c.setup.data_cells, "of the mesh that the data come from")->capture_default_str();
-  app.add_option("--pokes", c.setup.indentations, "1 to 9")->capture_default_str()->check(CLI::Range(1, 9));
+  app.add_option("--cells", c.setup.cells, "Cells along each edge of the fitted mesh")->capture_default_str();
+  app.add_option("--data-cells", c.setup.data_cells, "Cells along each edge of the mesh of the data")
+      ->capture_default_str();
+  app.add_option("--pokes", c.setup.indentations, "Number of indentations, 1 to 9")
+      ->capture_default_str()
+      ->check(CLI::Range(1, 9));
   app.add_option("--markers", c.setup.markers)->capture_default_str();
-  app.add_option("--noise", c.setup.noise, "in parts of the largest motion and force")->capture_default_str();
-  app.add_option("--contrast", c.setup.contrast, "of the ball")->capture_default_str();
+  app.add_option("--noise", c.setup.noise, "Noise relative to the largest motion and force")->capture_default_str();
+  app.add_option("--contrast", c.setup.contrast, "Stiffness of the ball relative to the tissue")->capture_default_str();
   app.add_option("--method", c.fit.method)->capture_default_str();
-  app.add_option("--weight", c.fit.weight, "< 0: by the rule")->capture_default_str();
+  app.add_option("--weight", c.fit.weight, "Weight of the regularizer; < 0: chosen by the rule")->capture_default_str();
   app.add_option("--weight-rule", c.fit.weight_rule)->capture_default_str();
   app.add_option("--tolerance", c.fit.tolerance)->capture_default_str();
   app.add_option("--enough", c.fit.enough)->capture_default_str();
   app.add_option("--iterations", c.fit.max_iterations)->capture_default_str();
-  app.add_option("--smoothness", c.smoothness, "h1, tv or none")->capture_default_str();
-  app.add_option("--deviation", c.prior.prior_sigma, "of the prior")->capture_default_str();
-  app.add_option("--sharpness", c.prior.sharpness, "of total variation")->capture_default_str();
-  app.add_option("--linear", c.equilibrium.linear, "solver of Newton's steps")->capture_default_str();
-  app.add_option("--adjoint", c.equilibrium.adjoint, "solver of tangents and adjoints")->capture_default_str();
+  app.add_option("--smoothness", c.smoothness, "Smoothness of the field: h1, tv or none")->capture_default_str();
+  app.add_option("--deviation", c.prior.prior_sigma, "Standard deviation of the prior of log E")->capture_default_str();
+  app.add_option("--sharpness", c.prior.sharpness, "Sharpness of total variation")->capture_default_str();
+  app.add_option("--linear", c.equilibrium.linear, "Linear solver of Newton steps")->capture_default_str();
+  app.add_option("--adjoint", c.equilibrium.adjoint, "Linear solver of tangents and adjoints")->capture_default_str();
   app.add_option("--adjoint-tolerance", c.equilibrium.adjoint_tolerance)->capture_default_str();
   app.add_option("--equilibrium-tolerance", c.equilibrium.tolerance)->capture_default_str();
-  app.add_option("--guess", c.guess, "times the stiffness of the tissue")->capture_default_str();
-  app.add_option("--csv", c.csv, "a file for the results");
-  app.add_flag("--quiet", c.quiet, "without the facts about the machine");
+  app.add_option("--guess", c.guess, "Initial guess relative to the stiffness of the tissue")->capture_default_str();
+  app.add_option("--csv", c.csv, "CSV file to write the results to");
+  app.add_flag("--quiet", c.quiet, "Omit the description of the machine");
   return run_program(app, argc, argv, [&] { return measure(c); });
 }

@@ -1,4 +1,4 @@
-// A cube of tissue with a stiff ball inside, held at the bottom, poked and measured in simulation: data for fits.
+// A cube of tissue with a stiff ball inside, held at the bottom, indented and measured in simulation: data for fits.
 #pragma once
 #include <vector>
 
@@ -16,7 +16,7 @@ struct VirtualCapture {
   double side = 0.1;     // side of the cube [m]
   double young = 20e3;   // modulus of the tissue [Pa]
   double poisson = 0.4;  // Poisson's ratio everywhere
-  double depth = 0.01;   // depth of a poke [m]
+  double depth = 0.01;   // depth of an indentation [m]
   unsigned seed = 1;     // seed of the noise
 };
 

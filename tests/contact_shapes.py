@@ -29,7 +29,7 @@ def lattice(nodes, place=lambda x: x, keep=lambda cell: True):
 
 
 def oriented(points, tets):
-    """Positive volumes; flat tets, of corners that `place` merged, are left out."""
+    """Positive volumes; flat tets, of corners that `place` merged, are omitted."""
     found = []
     for t in tets:
         a, b, c, d = (points[v] for v in t)

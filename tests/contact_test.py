@@ -74,7 +74,7 @@ def toml_text(value):
 
 
 class Scenes(Folder):
-    """Every scene with contact, all frames. Obstacles that move are left out."""
+    """Every scene with contact, all frames. Moving obstacles are excluded."""
 
     def obstacle(self, given):
         """The surface of an obstacle, from a body of the same shape at the same place."""

@@ -25,6 +25,6 @@ for line in (ROOT / "docs" / "lecture_to_code.md").read_text().splitlines():
         if int(page) not in pages:
             errors.append(f"page {row[1]}: its command shows page {page}")
 if pages != set(range(1, 63)):
-    errors.append(f"pages left out or made up: {sorted(pages ^ set(range(1, 63)))}")
+    errors.append(f"missing or unknown pages: {sorted(pages ^ set(range(1, 63)))}")
 print("\n".join(errors) or "the lecture's map is right")
 sys.exit(bool(errors))

@@ -275,8 +275,8 @@ void add_contact_static_checks(std::vector<Check>& checks) {
                     check_refinement,
                     {},
                     {R"tex(p_h = E \varepsilon + O(h))tex"}});
-  checks.push_back({"contact", "constants", "Reach and stiffness of contact do not matter",
-                    "Two soft blocks on each other at rest on the floor.",
+  checks.push_back({"contact", "constants", "Contact is independent of reach and stiffness",
+                    "Two soft blocks, stacked on the floor, at rest.",
                     "A state of rest moves by less than twice the reach", check_constants});
 }
 

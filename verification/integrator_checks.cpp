@@ -94,7 +94,7 @@ void add_integrator_checks(std::vector<Check>& checks) {
       {"integrators",
        "oscillator",
        "Damping and frequency of a harmonic oscillator",
-       "Masses on springs, w h = 0.1, every integrator: the factor per step, read off four positions.",
+       "Masses on springs, w h = 0.1, every integrator: the factor per step from four positions.",
        "The eigenvalue of each scheme's amplification matrix",
        check_oscillator,
        {"Hairer1996"},
@@ -103,7 +103,7 @@ void add_integrator_checks(std::vector<Check>& checks) {
   checks.push_back(
       {"integrators",
        "euler_energies",
-       "What Euler's three methods do to energy",
+       "Energy of Euler's three methods",
        "m = 1 kg, k = 100 N/m, h = 0.01 s. Forward Euler gains energy, backward Euler loses it, symplectic Euler "
        "conserves a shadow energy.",
        "Closed forms of the three maps",

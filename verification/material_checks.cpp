@@ -74,10 +74,10 @@ void check_formulas(const Subject& subject, Findings& found) {
 }  // namespace
 
 void add_material_checks(std::vector<Check>& checks) {
-  checks.push_back({"materials", "uniaxial_table", "Uniaxial stretch with free sides: the printed table",
-                    "A box of distorted linear tets is stretched to l; its width t is found where no force is left on "
-                    "the sides.",
-                    "A table that was computed independently of this program, to 8 decimals", check_table});
+  checks.push_back(
+      {"materials", "uniaxial_table", "Uniaxial stretch with free sides: the printed table",
+       "A box of distorted linear tets is stretched to l; its width t is found where the sides are free of force.",
+       "A table that was computed independently of this program, to 8 decimals", check_table});
   checks.push_back(
       {"materials",
        "uniaxial",

@@ -112,7 +112,7 @@ void add_momentum_checks(std::vector<Check>& checks) {
                     {R"tex(L(t) = L_0)tex"}});
   checks.push_back({"invariants",
                     "angular_momentum_of_backward_euler",
-                    "Backward Euler loses angular momentum by its formula",
+                    "Loss of angular momentum by backward Euler",
                     "The same box.",
                     "The update of the scheme",
                     check_angular_euler,

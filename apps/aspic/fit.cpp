@@ -220,7 +220,7 @@ Examples:
   aspic fit pillow                             writes material.vtu and material.fit/report.html
   aspic fit pillow -o soft.vtu --known poisson=0.45 --options careful.toml
   aspic fit pillow --model fung --unknown young=handles:40 --unknown b=uniform
-  aspic fit pillow --resume                    continues an interrupted fit to the same bits
+  aspic fit pillow --resume                    continues an interrupted fit, bit-reproducibly
 then in a scene: material = {{ file = "material.vtu" }}
 
 Keys of the file of --options, with their defaults:

@@ -1,4 +1,4 @@
-// A small data set for tests: a box that rests on z = 0, poked from above.
+// A small data set for tests: a box that rests on z = 0, indented from above.
 #pragma once
 #include <cmath>
 

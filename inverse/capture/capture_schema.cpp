@@ -83,7 +83,7 @@ void add_tips_and_patches(Schema& s) {
              .accepts = kNumber,
              .unit = "Pa/m",
              .range = kPositive,
-             .meaning = "of its elastic layer; default: far stiffer than the body seems to be"}});
+             .meaning = "of its elastic layer; default: far above the estimated stiffness of the body"}});
   add_keys(s, "patch",
            {{.name = "name", .accepts = kText, .fallback = "\"patch\"", .meaning = "as the table of cases calls it"},
             {.name = "where",

@@ -11,13 +11,13 @@
 namespace aspic {
 namespace {
 
-constexpr double kLeastTypicalYoung = 50, kLargestTypicalYoung = 1.5e7;  // usual Young's moduli of poked bodies [Pa]
+constexpr double kLeastTypicalYoung = 50, kLargestTypicalYoung = 1.5e7;  // typical Young's moduli of soft bodies [Pa]
 constexpr double kUnlike = 30;                         // implausible ratio of apparent moduli in one body
 constexpr double kStriking = 2.5;                      // suspicious ratio: a wrong force, or an inclusion
-constexpr double kSamePlace = 0.1, kSameDepth = 0.05;  // tolerances of equal pokes, relative to radius and depth
-constexpr double kOtherForce = 0.2, kOtherSigmas = 4;  // limits of force differences between equal pokes
+constexpr double kSamePlace = 0.1, kSameDepth = 0.05;  // tolerances of equal indentations, relative to radius and depth
+constexpr double kOtherForce = 0.2, kOtherSigmas = 4;  // limits of force differences between equal indentations
 constexpr double kFalling = 0.8;  // ratio of a force to the previous one below which it falls with depth
-constexpr double kLargest = 1e9, kFinestForce = 1e-12;  // largest plausible force, and finest deviation [N]
+constexpr double kLargest = 1e9, kFinestForce = 1e-12;  // largest plausible force, and finest sigma [N]
 constexpr int kEnough = 6;                              // forces needed to detect rounding by a gauge
 
 class ForceDiagnosis {
@@ -164,7 +164,7 @@ class ForceDiagnosis {
     return groups;
   }
 
-  // Finds pokes with implausibly high or low stiffness.
+  // Finds indentations with implausibly high or low stiffness.
   void examine_groups() {
     std::vector<double> stiffness;
     const auto by_group = groups();

@@ -62,7 +62,7 @@ TEST(Diagnosis, FindsOneIndentationInAnotherUnit) {
   EXPECT_THAT(diagnose(data), Contains(finding(Severity::warning, "cases.csv:4", "times as stiff here", "as mN are")));
 }
 
-// Repeats the cases of the first poke as another group with other forces.
+// Repeats the cases of the first indentation as another group with other forces.
 void repeat_first_indentation(DataSet& data, double factor) {
   for (const size_t c : {0, 1}) {
     LoadCase again = data.experiment.cases[c];

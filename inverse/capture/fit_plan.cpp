@@ -44,7 +44,7 @@ bool is_known(const FitPlan& plan, const std::string& quantity) {
   return std::any_of(plan.known.begin(), plan.known.end(), [&](const auto& k) { return k.first == quantity; });
 }
 
-// An interior initial guess, even if the usual value is the end of the range (no growth, no share).
+// An interior initial guess, even if the typical value is the end of the range (no growth, no share).
 double inside(const ExtraParameter& extra) {
   const double margin = 0.1 * std::min(1.0, extra.max - extra.min);
   return std::clamp(extra.fallback, extra.min + margin, extra.max - margin);
@@ -91,7 +91,7 @@ FitParameter parse_parameter(const std::string& text) {
     if (error != std::errc() || end != last || parameter.handles < 1)
       throw InvalidInput("'" + text + "': handles:N needs a whole number above 0, such as handles:40");
   } else {
-    throw InvalidInput("'" + text + "': unknown spread '" + parameterization + "'" +
+    throw InvalidInput("'" + text + "': unknown parameterization '" + parameterization + "'" +
                        suggestion(parameterization, {"tets", "regions", "uniform", "handles:40"}));
   }
   return parameter;
@@ -126,10 +126,11 @@ FitPlan completed(FitPlan plan, const Experiment& experiment) {
   for (size_t i = 0; i < plan.parameters.size(); ++i) {
     const std::string& quantity = plan.parameters[i].quantity;
     check_quantity(quantity, plan);
-    if (is_known(plan, quantity)) throw InvalidInput(quantity + " is both known and unknown; remove one of the two");
+    if (is_known(plan, quantity))
+      throw InvalidInput(quantity + " is in both --known and --unknown; remove one of the two");
     for (size_t j = 0; j < i; ++j)
       if (plan.parameters[j].quantity == quantity)
-        throw InvalidInput(quantity + " is unknown twice; keep one --unknown for it");
+        throw InvalidInput(quantity + " is fitted twice; keep one --unknown for it");
     if (plan.parameters[i].parameterization == Parameterization::regions && experiment.mesh.region.empty())
       throw InvalidInput("'" + text_of(plan.parameters[i]) +
                          "': the mesh of the data has no region labels (try handles:40 or tets)");

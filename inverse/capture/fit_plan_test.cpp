@@ -37,8 +37,8 @@ TEST(FitPlan, WhatDoesNotFitTogetherIsRefused) {
   const auto refused = [](const FitPlan& plan) { return message_of([&] { completed(plan, block().experiment); }); };
   EXPECT_THAT(refused(quick_plan({"yuong=tets"})), HasSubstr("did you mean 'young'?"));
   EXPECT_THAT(refused(quick_plan({"b=uniform"})), HasSubstr("'b' is not a quantity of the model neo_hookean"));
-  EXPECT_THAT(refused(quick_plan({"poisson=uniform"})), HasSubstr("both known and unknown"));
-  EXPECT_THAT(refused(quick_plan({"young=tets", "young=uniform"})), HasSubstr("unknown twice"));
+  EXPECT_THAT(refused(quick_plan({"poisson=uniform"})), HasSubstr("in both --known and --unknown"));
+  EXPECT_THAT(refused(quick_plan({"young=tets", "young=uniform"})), HasSubstr("fitted twice"));
   FitPlan plan = quick_plan();
   plan.known = {{"poisson", 0.5}};
   EXPECT_THAT(refused(plan), HasSubstr("poisson = 0.5; must be"));

@@ -98,7 +98,7 @@ TEST(FitRun, ShowsThePredictionThatTheMisfitCounts) {
   EXPECT_NEAR(squares, 2 * outcome.report.misfit, 1e-6 * squares);
 }
 
-// Forces of one poke belong to another body, so that no field explains all three.
+// Forces of one indentation belong to another body, so that no field explains all three.
 DataSet contradictory_block() {
   DataSet data = measured_block(2);
   for (LoadCase& load : data.experiment.cases)
@@ -241,7 +241,8 @@ TEST(FitRun, SimulatesOnAFinerMeshThanItFits) {
   measure_on_finer_mesh(data);
   FitPlan plan = quick_plan();
   const double without = young(fit_material(data, plan, {}, {})).rows.at(0).value;
-  EXPECT_GT(std::abs(without / kSoftLayer - 1), 0.03) << "the mesh alone is too coarse for this test to tell anything";
+  EXPECT_GT(std::abs(without / kSoftLayer - 1), 0.03)
+      << "the discretization error must be visible without the correction";
   plan.refine = 1;
   plan.uncertainty = plan.cross_validation = true;
   plan.left_out = {"poke 3"};

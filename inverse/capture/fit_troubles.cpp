@@ -54,7 +54,7 @@ std::string describe_worst_row(const DataSet& data, const std::vector<std::strin
   }
   return data.source.load_case(worst_case) + " ('" + data.experiment.cases[worst_case].name +
          "') has the worst fit: its readings are missed by " + std::to_string(std::lround(std::sqrt(worst))) +
-         " standard deviations; check this row, or give deviations that cover the errors of mesh and model";
+         " standard deviations; check this row, or give standard deviations that cover the errors of mesh and model";
 }
 
 bool is_left_out(const std::vector<std::string>& left_out, const LoadCase& c) {

@@ -50,7 +50,7 @@ CrossValidation held_out(double position_error, double force_error) {
   return result;
 }
 
-// Held-out errors of the third poke, with peaks of 0.01 m and 1 N.
+// Held-out errors of the third indentation, with peaks of 0.01 m and 1 N.
 CrossValidation held_out_indentation(double position_error, double force_error) {
   const std::vector<LoadCase>& cases = three_indentations().experiment.cases;
   CrossValidation result = held_out(position_error, force_error);
@@ -109,7 +109,7 @@ TEST(FitVerdict, ValuesAtTheirBoundsAreNotGood) {
 TEST(FitVerdict, NamesGroupsMissedByFourSigma) {
   FitOutcome outcome = perfect();
   for (const size_t c : {2, 3}) outcome.cases[c].wrench.force[0] += 3.5 * 0.01;
-  EXPECT_THAT(reasons(outcome), ElementsAre()) << "3.5 deviations";
+  EXPECT_THAT(reasons(outcome), ElementsAre()) << "3.5 standard deviations";
   for (const size_t c : {2, 3}) outcome.cases[c].wrench.force[0] += 0.01;
   EXPECT_THAT(reasons(outcome), ElementsAre("group_missed"));
   EXPECT_THAT(verdict(three_indentations(), outcome).text,
@@ -150,7 +150,7 @@ TEST(FitVerdict, FieldsPredictingWorseThanOneValueFail) {
   EXPECT_THAT(reasons(outcome), ElementsAre("held_out_worse"));
 }
 
-// One of three pokes has fourfold forces, so the fit is a compromise.
+// One of three indentations has fourfold forces, so the fit is a compromise.
 TEST(FitVerdict, GroupsWhoseForcesContradictEachOtherAreNamed) {
   FitOutcome outcome = perfect();
   for (size_t c = 0; c < 6; ++c) {

@@ -1,4 +1,4 @@
-// A block of two layers, held below and poked from above: a data set whose material is known, without noise.
+// A block of two layers, held below and indented from above: a data set whose material is known, without noise.
 #pragma once
 #include <cmath>
 #include <string>
@@ -18,7 +18,7 @@ inline Vec3d at_rest(const Experiment& e, int marker) {
   return X;
 }
 
-// 0.1 m wide; markers at the vertices of its surface that are free; three pokes to two depths each.
+// 0.1 m wide; markers at the vertices of its surface that are free; three indentations to two depths each.
 inline Experiment indented_block(int cells) {
   Experiment e;
   e.mesh = make_box({{0, 0, 0}}, {{0.1, 0.1, 0.1}}, {cells, cells, cells});

@@ -38,7 +38,7 @@ void MaterialFit::learn_uncertainty(FitModel& model) {
     std::erase_if(outcome_.posterior->warnings,
                   [](const std::string& warning) { return warning.starts_with("the weight of the regularizer"); });
     add_warnings(
-        {"the data hardly determine how the stiffness varies: the deviations are those of the "
+        {"the data hardly determine how the stiffness varies: the standard deviations are those of the "
          "prior (--unknown young=uniform fits one value)"});
   }
   add_warnings(outcome_.posterior->warnings);

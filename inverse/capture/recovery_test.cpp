@@ -62,8 +62,8 @@ TEST_F(Recovery, OnCoarseMeshNeedsErrorCorrection) {
   EXPECT_NEAR(factor(made, fit), 1, 0.03);  // the truth itself has a ninth of the error
 }
 
-// Poked by a bonded sphere on a mesh of four cells: the discretization error at the indenter must not act like another
-// layer stiffness, which would change E.
+// Indented by a bonded sphere on a mesh of four cells: the discretization error at the indenter must not act like
+// another layer stiffness, which would change E.
 TEST_F(Recovery, MeshErrorsMakeNoIndentationWorse) {
   SynthesisOptions options = bench(3, 0);
   options.contact = TipContact::bonded;

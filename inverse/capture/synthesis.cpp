@@ -22,7 +22,7 @@ namespace {
 constexpr double kTipRadius = 0.08;        // relative to the size of the body
 constexpr double kStandardGravity = 9.81;  // [m/s^2]
 constexpr double kLeastArm = 0.01;         // lever arm of a force about the indenter's center, relative to its radius
-constexpr double kLeastSigma = 1e-4;       // minimum deviation of exact data, relative to the largest motion or force
+constexpr double kLeastSigma = 1e-4;       // minimum sigma of exact data, relative to the largest motion or force
 
 double volume_of(const TetMesh& mesh) {
   double sum = 0;
@@ -184,7 +184,7 @@ class Bench {
     asked_.push_back(std::move(load));
   }
 
-  // Solves each poke from the previous depth; a case without equilibrium ends its poke.
+  // Solves each indentation from the previous depth; a case without equilibrium ends its indentation.
   void measure(const SynthesisObserver& observe) {
     const std::vector<MaterialParameters> parameters(model_.elasticity.front()->parameters().begin(),
                                                      model_.elasticity.front()->parameters().end());

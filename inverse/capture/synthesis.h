@@ -1,5 +1,5 @@
-// A virtual bench: synthetic measurements of a body with known material. Simulates pokes on a finer mesh than the fit
-// gets.
+// A virtual bench: synthetic measurements of a body with known material. Simulates indentations on a finer mesh than
+// that of the fit.
 #pragma once
 #include <cstdint>
 #include <filesystem>

@@ -53,7 +53,7 @@ Experiment only(const Experiment& experiment, const LoadCase& load) {
   return one;
 }
 
-// Distance of two pokes: difference of touch and of displacement.
+// Distance of two indentations: difference of touch and of displacement.
 double apart(const LoadCase& a, const LoadCase& b) {
   const Vec3d touch = a.touch.center - b.touch.center;
   const Vec3d way = (a.pose.center - a.touch.center) - (b.pose.center - b.touch.center);

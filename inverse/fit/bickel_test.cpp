@@ -232,7 +232,7 @@ TEST(Energies, TakeNoWorkAroundAClosedLoop) {
   }
 }
 
-// A block of gel on a table, poked from above at several places and depths.
+// A block of gel on a table, indented from above at several places and depths.
 Experiment indented_gel(const std::string& material, const MaterialParameters& truth) {
   Experiment e;
   e.mesh = make_box({{0, 0, 0}}, {{0.08, 0.08, 0.04}}, {4, 4, 2});

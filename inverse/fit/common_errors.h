@@ -31,7 +31,7 @@ class CommonErrors {
 
 // The stiffness k of an indenter's layer is a convention, so log k is unknown. A mesh that is too stiff around the
 // indenter also acts like another layer, independently in each case. So log k, common to all cases, gets a normal
-// deviation per case of kLayerDeviation. All fitted and compared models are treated this way.
+// error per case with the standard deviation kLayerSigma. All fitted and compared models are treated this way.
 inline constexpr double kLayerSigma = 3;  // a factor of 20
 
 class WithUncertainLayers : public LeastSquares {

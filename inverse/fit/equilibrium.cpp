@@ -18,8 +18,7 @@ std::string message_of(const MinimizeReport& report) {
   const std::string status(to_string(report.status));
   if (report.status == Status::undefined) return "the energy is not finite at the initial guess (" + status + ")";
   return "no equilibrium was found: " + status + " after " + std::to_string(report.iterations) +
-         " iterations; residual force " + number(report.reached) + " N, tolerance " + number(report.threshold) +
-         " N was asked for";
+         " iterations; residual force " + number(report.reached) + " N, tolerance " + number(report.threshold) + " N";
 }
 
 // Fills b with parts along all modes of a body, identically on every system.

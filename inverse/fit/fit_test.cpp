@@ -23,7 +23,7 @@ std::vector<double> normal(size_t n, unsigned seed) {
   return v;
 }
 
-// r = (A phi(p) - b) / deviation with phi(p) = p + bend p^2 / 2 component by component.
+// r = (A phi(p) - b) / sigma with phi(p) = p + bend p^2 / 2 component by component.
 class CurvedModel : public LeastSquares {
  public:
   CurvedModel(int parameter_count, int residuals, double bend, double sigma)

@@ -1,4 +1,4 @@
-// A block of gel on a table, poked by a glued disc: small enough that hundreds of equilibria take a second.
+// A block of gel on a table, indented by a glued disc: small enough that hundreds of equilibria take a second.
 #pragma once
 #include <gtest/gtest.h>
 
@@ -53,7 +53,7 @@ struct IndentedBlock {
     experiment.cases.push_back(load);
   }
 
-  // What a body with the parameters p of the map would have shown, and normal noise.
+  // Readings of a body with the parameters p of the map, with normal noise.
   void measure(const ParameterMap& map, std::span<const double> p, std::mt19937_64& random, double noise = 1) {
     Misfit truth(experiment, map);
     std::vector<double> r(truth.residual_count());

@@ -43,7 +43,7 @@ struct Misfit::Impl {
 
   int case_count() const { return static_cast<int>(cases.size()); }
 
-  // Cases side by side where there are enough of them; otherwise one after another, each on all threads.
+  // Solves the cases in parallel if there are enough of them, otherwise one after another, each on all threads.
   template <class Body>
   void for_each_case(const Body& body) {
     for_each(case_count(), [&](int c) { body(cases[c]); });
@@ -61,7 +61,7 @@ struct Misfit::Impl {
     return for_parts(map.parameters(p), experiment.mesh.tet_count());
   }
 
-  // The change of what each tet that is simulated is made of.
+  // Changes of the material parameters of each simulated tet.
   const std::vector<double>& theta_tangent(std::span<const double> direction) {
     map.multiply(linear_p, direction, dtheta);
     parallel_chunks(map.tet_count(), [&](int first, int last) {
@@ -110,7 +110,7 @@ struct Misfit::Impl {
     return true;
   }
 
-  // Each group from its smallest load on.
+  // Orders each group by load, from the smallest.
   void solve_groups(const std::vector<MaterialParameters>& parameters) {
     std::vector<int> begin;
     for (int c = 0; c < case_count(); ++c)
@@ -174,7 +174,7 @@ struct Misfit::Impl {
     mark_unless_ok(dr);
   }
 
-  // What could not be solved must not look like a result.
+  // Products that cannot be computed are NaN.
   void mark_unless_ok(std::span<double> result) {
     if (!all_ok()) std::fill(result.begin(), result.end(), std::numeric_limits<double>::quiet_NaN());
   }

@@ -18,7 +18,7 @@ using taylor::Numbers;
 
 const EquilibriumOptions kMisfitExact{.tolerance = 1e-14, .adjoint_tolerance = 1e-13};
 
-// A block of gel of 8 cm on a table, poked from above at two sites and two depths, pressed from the side, and hung.
+// A block of gel of 8 cm on a table, indented from above at two sites and two depths, pressed from the side, and hung.
 struct Gel {
   Experiment experiment;
   std::vector<Triangle> surface;
@@ -73,7 +73,7 @@ struct Gel {
       load.positions.push_back({static_cast<int>(m), {}, {{1e-4, 2e-4, 1e-4}}});
   }
 
-  // Readings as if a body of this material had been measured, and noise of `noise` standard deviations.
+  // Readings of a body of this material, with noise of `noise` standard deviations.
   void measure(const ParameterMap& map, const std::vector<double>& p, double noise) {
     Misfit truth(experiment, map, kMisfitExact);
     std::vector<double> r(truth.residual_count());
@@ -231,7 +231,7 @@ TEST(Misfit, FailureNamesTheCaseAndChangesNothing) {
   for (size_t i = 0; i < r.size(); ++i) EXPECT_NEAR(r[i], again[i], 1e-6 * norm(r));
 }
 
-// Eight tets of the simulation are made of what one tet of the map is made of.
+// Eight tets of the simulation have the material of one tet of the map.
 TEST(Misfit, OnRefinedMeshHasDerivativesPerMapTet) {
   Gel gel;
   gel.experiment.cases.resize(1);

@@ -56,7 +56,7 @@ MotionData some_data(const MotionModel& model) {
   return data;
 }
 
-// What a motion with the parameters p shows.
+// Marker positions of the motion with the parameters p.
 MotionData observed(MotionObjective& objective, std::span<const double> p) {
   MotionData data = objective.data();
   const MotionPoint point = objective.simulate(p);

@@ -16,10 +16,10 @@
 namespace aspic {
 namespace {
 
-// What is read at every poke, and how well: as on the average of the experiment.
+// Readings of an indentation and their standard deviations, averaged over the experiment.
 struct Instruments {
   Tip tip;
-  double depth = 0, position = 0, force = 0, torque = 0;  // standard deviations; 0: is not read
+  double depth = 0, position = 0, force = 0, torque = 0;  // standard deviations; 0: not measured
 };
 
 Instruments instruments(const Experiment& experiment, const NextIndentationOptions& options) {
@@ -58,7 +58,7 @@ LoadCase load_at(const Experiment& experiment, const Instruments& with, const Ve
   return load;
 }
 
-// Variances once the candidate counts: C - W diag(d / (1 + d)) W'.
+// Variances with the candidate's readings: C - W diag(d / (1 + d)) W'.
 void set_sigma(const ParameterMap& map, const Posterior& posterior, const Spectrum& s,
                IndentationCandidate& candidate) {
   candidate.sigma = posterior.sigma;

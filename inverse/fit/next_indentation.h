@@ -1,4 +1,4 @@
-// Selects the next poke: for each candidate on the free surface, the additional information of its measurements,
+// Selects the next indentation: for each candidate on the free surface, the additional information of its measurements,
 //   gain = 1/2 log det(I + J C J')    [nats]
 // with J the derivatives of the candidate's residuals at the fit, over their standard deviations, and C the posterior
 // covariance: their mutual information, exact for linear residuals [Lindley 1956; Chaloner 1995].

@@ -13,7 +13,7 @@ namespace {
 using test::IndentedBlock;
 using testing::HasSubstr;
 
-// Poked on the left only.
+// Indented on the left only.
 struct IndentationStudy {
   IndentedBlock block{{4, 3, 2}};
   ParameterMap map = block.map();
@@ -51,7 +51,7 @@ TEST(NextIndentation, PredictedGainAndSigmaMatchActualIndentation) {
     double gain = 0;  // 1/2 log det(C / C after)
     for (const double d : after.gaussian->spectrum().d) gain += std::log1p(d) / 2;
     for (const double d : before.gaussian->spectrum().d) gain -= std::log1p(d) / 2;
-    // Alone, the poke has no information of the others about the layer of the tip.
+    // By itself, the indentation lacks the information of the others about the layer of the tip.
     EXPECT_LT(candidate.gain, gain * (1 + 1e-6));
     EXPECT_GT(candidate.gain, 0.85 * gain);
     for (int t = 0; t < study.map.size(); ++t) {

@@ -25,7 +25,7 @@ enum class Parameterization {
 struct FitParameter {
   std::string quantity = "young";
   Parameterization parameterization = Parameterization::tets;
-  int handles = 0;     // number of radial basis functions, for Spread::handles
+  int handles = 0;     // number of radial basis functions, for Parameterization::handles
   double guess = 1e5;  // initial guess [SI]
 };
 
@@ -51,7 +51,7 @@ class ParameterMap {
   void multiply(std::span<const double> p, std::span<const double> dp, std::span<double> dtheta) const;
   void add_transposed(std::span<const double> p, std::span<const double> thetabar, std::span<double> pbar) const;
 
-  // The values in each tet of one unknown, as it is fitted (log E) and in SI units (E).
+  // The values in each tet of one parameter, as it is fitted (log E) and in SI units (E).
   std::vector<double> fitted_values(int parameter, std::span<const double> p) const;
   std::vector<double> values(int parameter, std::span<const double> p) const;
   double value(int parameter, double fitted) const;           // in SI units; increases with `fitted`

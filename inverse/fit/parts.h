@@ -16,7 +16,7 @@ struct Parts {
   double squares = 0;     // |r|^2 there
 };
 
-// Finds `count` parts of `unknown`, a quantity per tet, starting from the clusters of the field p. Each pass linearizes
+// Finds `count` parts of `parameter`, a value per tet, starting from the clusters of the field p. Each pass linearizes
 // the model at the mean of the previous samples; the change of the last pass increases the standard deviations.
 Parts find_parts(LeastSquares& model, const FittedField& field, int unknown, int count,
                  const PartsOptions& options = {});

@@ -1,8 +1,8 @@
 // Prior of p as a penalty R(p); its weight is the strength.
-//   R = sum over the fitted quantities of   roughness(z) + mean over the body of (z - guess)^2 / (2 deviation^2)
+//   R = sum over the fitted quantities of   roughness(z) + mean over the body of (z - guess)^2 / (2 sigma^2)
 // for quantities per tet and at handles, with their field z; roughness is H1 or total variation, see field_roughness.h.
-// Uniform values and values per region have independent priors: (p_i - guess)^2 / (2 deviation^2). With weight 1, R is
-// the negative logarithm of a normal distribution (H1) whose mean over the body has the standard deviation `deviation`.
+// Uniform values and values per region have independent priors: (p_i - guess)^2 / (2 sigma^2). With weight 1, R is
+// the negative logarithm of a normal distribution (H1) whose mean over the body has the standard deviation sigma.
 // A steep penalty limits fields to a factor of 100 from the guess.
 #pragma once
 #include <memory>

@@ -74,7 +74,7 @@ void judge_weight(Regularizer& prior, double weight, std::span<const double> p, 
   if (gain < kClear) return;
   result.warnings.push_back(formatted(
       best < 1 ? "the weight of the regularizer, %.3g, is %.2g times larger than what the data support (%.3g): details "
-                 "are lost and the deviations too small"
+                 "are lost and the standard deviations too small"
                : "the weight of the regularizer, %.3g, is %.2g times smaller than what the data support (%.3g): noise "
                  "may have been fitted",
       weight, std::max(best, 1 / best), result.suggested_weight));

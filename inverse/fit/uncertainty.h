@@ -31,7 +31,7 @@ struct Posterior {
   bool ok = false;                             // false: only `warnings` are valid
   std::vector<std::vector<double>> sigma;      // sigma of each parameter in each tet, on the fitted scale (log E)
   std::vector<std::vector<double>> reduction;  // 1 - posterior / prior variance: 0 no information, 1 complete
-  double sigma_error = 0;                      // largest relative standard error of `deviation`; 0: exact
+  double sigma_error = 0;                      // largest relative standard error of `sigma`; 0: exact
   double informed = 0;                         // number of directions determined by the data: sum of d / (1 + d)
   std::vector<Direction> seen, unseen;         // best determined ones; those with the largest remaining uncertainty
   bool scale_is_unknown = false;               // no force, weight or pressure: only ratios of stiffness are determined
@@ -57,7 +57,7 @@ struct TetQuantity {
 struct Interval {
   double lower = 0, upper = 0;  // SI units
 };
-// Interval of a quantity in a tet with the probability of +-`deviations` standard deviations.
+// Interval of a quantity in a tet with the probability of +-`sigmas` standard deviations.
 Interval interval(const Posterior& posterior, const ParameterMap& map, std::span<const double> p, const TetQuantity& of,
                   double sigmas = kSigmas95);
 
