@@ -40,7 +40,7 @@ def oriented(points, tets):
 
 
 def pyramid(base, apex):
-    """A base around y = 0, with a diagonal, and its apex."""
+    """A base around y = 0 with a diagonal, and an apex."""
     return base + [apex], oriented(base + [apex], [(0, 1, 2, 4), (0, 2, 3, 4)])
 
 
