@@ -33,20 +33,23 @@ struct Arguments {
 
 void declare(CLI::App& app, Arguments& arguments) {
   const CLI::Range sizes(1, 64);
-  app.add_option("n", arguments.sizes, "cells through the thickness; 4n along the beam")
+  app.add_option("n", arguments.sizes, "Cells through the thickness; 4n along the beam")
       ->check(sizes)
       ->capture_default_str();
-  app.add_flag("--bent", arguments.bent, "the beam of 1e5 Pa with 30 steps of 1/30 s, whose tip falls 5 m");
-  app.add_option("--threads", arguments.threads, "one or several numbers of threads")
+  app.add_flag("--bent", arguments.bent, "Use the beam of 1e5 Pa with 30 steps of 1/30 s, whose tip falls 5 m");
+  app.add_option("--threads", arguments.threads, "Numbers of threads, separated by commas")
       ->delimiter(',')
       ->check(CLI::PositiveNumber)
       ->capture_default_str();
-  app.add_option("--linear", arguments.linear, "one or several linear solvers")->delimiter(',')->capture_default_str();
-  app.add_option("--tolerance", arguments.tolerance, "of the first gradient of each step")->check(CLI::PositiveNumber);
+  app.add_option("--linear", arguments.linear, "Linear solvers, separated by commas")
+      ->delimiter(',')
+      ->capture_default_str();
+  app.add_option("--tolerance", arguments.tolerance, "Tolerance, relative to the first gradient of each step")
+      ->check(CLI::PositiveNumber);
   app.add_option("--runs", arguments.runs, "Number of runs; the fastest is reported")->check(CLI::PositiveNumber);
-  app.add_option("--naive", arguments.largest_naive, "the largest n for the obvious program; 0: without it");
-  app.add_option("--csv", arguments.csv, "a file for the results");
-  app.add_flag("--quiet", arguments.quiet, "without the facts about the machine");
+  app.add_option("--naive", arguments.largest_naive, "Largest n for the naive program; 0: none");
+  app.add_option("--csv", arguments.csv, "CSV file to write the results to");
+  app.add_flag("--quiet", arguments.quiet, "Omit the description of the machine");
 }
 
 // Reference: every step solved to 1e-10 of its first gradient (--tolerance 1e-10 --linear cholesky).
@@ -160,7 +163,7 @@ bool compare(const Arguments& arguments, int n, Results& results) {
   right &= print(arguments, line, naive, 0);
   record(results, arguments, line, naive);
   if (one_thread > 0) {
-    std::printf("  aspic is %.1f times faster by processor time\n", naive.total().processor / one_thread);
+    std::printf("  aspic is %.1f times faster in CPU time\n", naive.total().processor / one_thread);
   }
   return right;
 }
@@ -168,9 +171,8 @@ bool compare(const Arguments& arguments, int n, Results& results) {
 int run(const Arguments& arguments) {
   if (!arguments.quiet) print_facts(machine_facts());
   const BeamProblem problem = make_problem(arguments, 7);
-  std::printf(
-      "\nbeam: %g Pa, %d steps of %.4g s, each to %g of its first gradient; set-up and steps in s of processor\n",
-      problem.young, problem.steps, problem.time_step, problem.tolerance);
+  std::printf("\nbeam: %g Pa, %d steps of %.4g s, each to %g of its first gradient; setup and steps in s of CPU time\n",
+              problem.young, problem.steps, problem.time_step, problem.tolerance);
   print_head();
   Results results("beam");
   bool right = true;
@@ -183,7 +185,7 @@ int run(const Arguments& arguments) {
 }  // namespace aspic::bench
 
 int main(int argc, char** argv) {
-  CLI::App app("The benchmark beam, from nothing to the last step.", "bench_beam");
+  CLI::App app("Simulates the benchmark beam, including setup.", "bench_beam");
   aspic::bench::Arguments arguments;
   aspic::bench::declare(app, arguments);
   return aspic::bench::run_program(app, argc, argv, [&] { return aspic::bench::run(arguments); });

@@ -35,29 +35,33 @@ struct Arguments {
 };
 
 void declare(CLI::App& app, Arguments& arguments) {
-  app.add_option("shape", arguments.shapes, "names of --list; none: all that there are");
+  app.add_option("shape", arguments.shapes, "Names from --list; all by default");
   app.add_option("--detail", arguments.details, "Approximate number of vertices: 3k, 10k, 30k, 100k")
       ->delimiter(',')
       ->capture_default_str();
-  app.add_option("--young", arguments.young, "[Pa]")->delimiter(',')->check(CLI::PositiveNumber)->capture_default_str();
+  app.add_option("--young", arguments.young, "Young's moduli [Pa]")
+      ->delimiter(',')
+      ->check(CLI::PositiveNumber)
+      ->capture_default_str();
   app.add_option("--poisson", arguments.poisson)->capture_default_str();
-  app.add_option("--rate", arguments.rates, "steps per second of simulated time")
+  app.add_option("--rate", arguments.rates, "Steps per second of simulated time")
       ->delimiter(',')
       ->check(CLI::PositiveNumber)
       ->capture_default_str();
-  app.add_option("--threads", arguments.threads, "one or several numbers of threads")
+  app.add_option("--threads", arguments.threads, "Numbers of threads, separated by commas")
       ->delimiter(',')
       ->check(CLI::PositiveNumber)
       ->capture_default_str();
-  app.add_option("--linear", arguments.linear, "the linear solver")->capture_default_str();
-  app.add_option("--tolerance", arguments.tolerance, "of the first gradient of each step")
+  app.add_option("--linear", arguments.linear, "Linear solver")->capture_default_str();
+  app.add_option("--tolerance", arguments.tolerance, "Tolerance, relative to the first gradient of each step")
       ->check(CLI::PositiveNumber)
       ->capture_default_str();
   app.add_option("--steps", arguments.steps)->check(CLI::PositiveNumber)->capture_default_str();
-  app.add_option("--shapes", arguments.folder, "where surfaces are and meshes are kept")->capture_default_str();
-  app.add_option("--csv", arguments.csv, "a file for the results");
-  app.add_flag("--list", arguments.list, "the shapes and where they come from");
-  app.add_flag("--quiet", arguments.quiet, "without the facts about the machine");
+  app.add_option("--shapes", arguments.folder, "Folder of the surfaces and the generated meshes")
+      ->capture_default_str();
+  app.add_option("--csv", arguments.csv, "CSV file to write the results to");
+  app.add_flag("--list", arguments.list, "List the shapes and their sources");
+  app.add_flag("--quiet", arguments.quiet, "Omit the description of the machine");
 }
 
 struct Case {
@@ -168,7 +172,7 @@ bool measure(const Arguments& arguments, Case c, const TetMesh& mesh, Results& r
 
 bool measure_shape(const Arguments& arguments, const Shape& shape, Results& results) {
   if (!is_available(shape, arguments.folder)) {
-    std::printf("%-10s left out: no %s in %s; ./run bench characters fetches it (%s)\n", shape.name.c_str(),
+    std::printf("%-10s omitted: no %s in %s; ./run bench characters fetches it (%s)\n", shape.name.c_str(),
                 shape.file.c_str(), arguments.folder.c_str(), shape.source.c_str());
     return true;
   }
@@ -179,7 +183,7 @@ bool measure_shape(const Arguments& arguments, const Shape& shape, Results& resu
       const TetMesh mesh = standing_mesh(shape, detail, arguments.folder);
       converged &= measure(arguments, {.shape = shape.name, .detail = detail.name}, mesh, results);
     } catch (const InvalidInput& error) {
-      std::printf("%-10s left out: %s\n", shape.name.c_str(), error.what());
+      std::printf("%-10s omitted: %s\n", shape.name.c_str(), error.what());
     }
   }
   return converged;
@@ -210,7 +214,7 @@ int run(const Arguments& arguments) {
 }  // namespace aspic::bench
 
 int main(int argc, char** argv) {
-  CLI::App app("Converged steps of bodies with real shapes.", "bench_characters");
+  CLI::App app("Measures converged steps of bodies with real shapes.", "bench_characters");
   aspic::bench::Arguments arguments;
   aspic::bench::declare(app, arguments);
   return aspic::bench::run_program(app, argc, argv, [&] { return aspic::bench::run(arguments); });

@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
 """Compares two builds: compare.py OLD_BUILD NEW_BUILD [--runs N] [--wall] BENCH ARGS...
 
-Runs bin/bench_BENCH of both build folders in turn, so that whatever else the machine does meets both alike, and judges
-the ratios new / old of the pairs: their median with a 95 % interval, and "faster", "slower" or "no difference".
+Runs bin/bench_BENCH of both build folders alternately, so that other load affects both equally. Prints the median of
+the ratios new / old of the pairs with a 95 % interval, and "faster", "slower" or "no difference".
 Exit code: 0, or 1 for slower. For example
   bench/compare.py build/old build/new --runs 15 beam 14 --naive 0
 """
@@ -19,10 +19,10 @@ CONFIDENCE = 0.95
 
 
 def median_interval(values):
-    """A distribution-free interval of the median: (low, high, confidence) by order statistics.
+    """Returns a distribution-free interval of the median by order statistics: (low, high, confidence).
 
     The k-th smallest and the k-th largest of n values enclose the median with probability 1 - 2 P(B < k), B binomial
-    with n and 1/2. The largest k that reaches CONFIDENCE is taken; fewer than 6 values never do, and get their range.
+    with n and 1/2. Uses the largest k that reaches CONFIDENCE; fewer than 6 values never reach it and give their range.
     """
     ordered, n = sorted(values), len(values)
 
@@ -36,7 +36,7 @@ def median_interval(values):
 
 
 def verdict(low, high, least):
-    """Differences below `least` (relative) do not count, and neither do intervals that reach into them."""
+    """Returns "no difference" unless the whole interval exceeds the relative difference `least`."""
     if high < 1 - least:
         return "faster"
     if low > 1 + least:
@@ -45,7 +45,7 @@ def verdict(low, high, least):
 
 
 def measure_in_turn(measure, runs):
-    """Times (old, new) of each pair; who goes first alternates. One pair before is thrown away: it warms the caches."""
+    """Returns the times (old, new) of each pair in alternating order. Discards a first pair, which warms the caches."""
     pairs = []
     for i in range(runs + 1):
         order = ("old", "new") if i % 2 == 0 else ("new", "old")
@@ -55,7 +55,7 @@ def measure_in_turn(measure, runs):
 
 
 def summary(pairs, least):
-    """The lines to print, and the verdict."""
+    """Returns the lines to print, and the verdict."""
     ratios = [new / old for old, new in pairs]
     low, high, confidence = median_interval(ratios)
     judged = verdict(low, high, least)
@@ -63,13 +63,13 @@ def summary(pairs, least):
     lines = [f"old {old:.4g} s, new {new:.4g} s (medians of {len(pairs)} runs each)",
              f"new / old: {statistics.median(ratios):.4f}, {100 * confidence:.1f} % interval [{low:.4f}, {high:.4f}]"]
     if confidence < CONFIDENCE:
-        lines.append(f"these are too few runs for {100 * CONFIDENCE:.0f} %: take 6 at least")
+        lines.append(f"too few runs for {100 * CONFIDENCE:.0f} %: use at least 6")
         judged = "no difference"
     return lines + [judged], judged
 
 
 def seconds_of(command, wall):
-    """Processor time of the command and its threads, or wall time."""
+    """Returns the CPU time of the command with all threads, or its wall time."""
     start = time.perf_counter()
     before = resource.getrusage(resource.RUSAGE_CHILDREN)
     done = subprocess.run(command, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
@@ -84,7 +84,7 @@ def seconds_of(command, wall):
 def program(build, bench):
     path = pathlib.Path(build) / "bin" / f"bench_{bench}"
     if not path.is_file():
-        sys.exit(f"error: {path}: there is no such program; build it: ninja -C {build} bench_{bench}")
+        sys.exit(f"error: {path}: the program does not exist; build it: ninja -C {build} bench_{bench}")
     return str(path)
 
 
@@ -93,7 +93,7 @@ def main():
     parser.add_argument("old")
     parser.add_argument("new")
     parser.add_argument("--runs", type=int, default=11, help="pairs (default: 11)")
-    parser.add_argument("--wall", action="store_true", help="wall time, for several threads; otherwise processor time")
+    parser.add_argument("--wall", action="store_true", help="compare wall time, for several threads; by default CPU time")
     parser.add_argument("--least", type=float, default=0.01, help="relative difference that counts (default: 0.01)")
     parser.add_argument("bench")
     parser.add_argument("args", nargs=argparse.REMAINDER)
@@ -104,7 +104,7 @@ def main():
                 for which, build in (("old", options.old), ("new", options.new))}
     pairs = measure_in_turn(lambda which: seconds_of(commands[which], options.wall), options.runs)
     if any(min(pair) <= 0 for pair in pairs):
-        sys.exit("error: a run was too short to be timed; give the benchmark more to do")
+        sys.exit("error: a run was too short to be timed; choose a larger problem")
     lines, judged = summary(pairs, options.least)
     print("\n".join(lines))
     return judged == "slower"

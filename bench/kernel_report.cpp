@@ -7,7 +7,7 @@
 
 namespace aspic::bench {
 
-void tell(benchmark::State& state, const KernelFacts& facts) {
+void report(benchmark::State& state, const KernelFacts& facts) {
   state.counters["n"] = facts.n;
   state.counters["threads_used"] = facts.threads;
   state.counters["bytes"] = facts.work.bytes;

@@ -19,7 +19,7 @@ struct KernelFacts {
   double items = 1;    // tets, blocks, ...; the report has the time per item
   double repeats = 1;  // executions of this work per benchmark iteration
 };
-void tell(benchmark::State& state, const KernelFacts& facts);
+void report(benchmark::State& state, const KernelFacts& facts);
 
 class KernelReport : public benchmark::BenchmarkReporter {
  public:

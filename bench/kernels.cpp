@@ -32,23 +32,24 @@ struct Arguments {
 };
 
 void declare(CLI::App& app, Arguments& arguments) {
-  app.add_option("n", arguments.sizes, "of the beam: 14 has 12 825 vertices, 28 has 95 033")
+  app.add_option("n", arguments.sizes, "Cells through the beam: 14 has 12 825 vertices, 28 has 95 033")
       ->check(CLI::Range(1, 64))
       ->capture_default_str();
-  app.add_option("--threads", arguments.threads, "one or several numbers of threads")
+  app.add_option("--threads", arguments.threads, "Numbers of threads, separated by commas")
       ->delimiter(',')
       ->check(CLI::PositiveNumber)
       ->capture_default_str();
   app.add_option("--material", arguments.materials)->delimiter(',')->capture_default_str();
-  app.add_flag("--all-materials", arguments.all_materials, "every one, for the first size and number of threads");
-  app.add_option("--seconds", arguments.seconds, "of each of the repetitions, at least")
+  app.add_flag("--all-materials", arguments.all_materials,
+               "Run all materials, for the first size and number of threads");
+  app.add_option("--seconds", arguments.seconds, "Minimum duration of each repetition [s]")
       ->check(CLI::PositiveNumber)
       ->capture_default_str();
   app.add_option("--repetitions", arguments.repetitions, "Number of repetitions; the median is reported")
       ->check(CLI::PositiveNumber)
       ->capture_default_str();
-  app.add_option("--csv", arguments.csv, "a file for the results");
-  app.add_flag("--quiet", arguments.quiet, "without the facts about the machine");
+  app.add_option("--csv", arguments.csv, "CSV file to write the results to");
+  app.add_flag("--quiet", arguments.quiet, "Omit the description of the machine");
 }
 
 // Data that all benchmarks of one size and number of threads share.
@@ -81,7 +82,7 @@ class Registry {
     const Place place = place_;
     const std::string unique = name + "@" + std::to_string(place.n) + "x" + std::to_string(place.threads);
     benchmark::RegisterBenchmark(unique.c_str(),
-                                 [=](benchmark::State& state) { tell(state, fn(state, place.beam(material))); })
+                                 [=](benchmark::State& state) { report(state, fn(state, place.beam(material))); })
         ->MeasureProcessCPUTime()
         ->MinTime(arguments_.seconds)
         ->Repetitions(arguments_.repetitions);
@@ -169,7 +170,7 @@ void Registry::add_cholesky() const {
   constexpr double kMostFlops = 2e11;  // more than ten seconds, too long for a benchmark
   const auto prepared = [=](benchmark::State& state, KernelBeam& beam, Cholesky& solver) {
     solver.analyze(beam.pattern);
-    if (solver.analysis().flops > kMostFlops) state.SkipWithError("left out: the factorization takes too long");
+    if (solver.analysis().flops > kMostFlops) state.SkipWithError("omitted: the factorization takes too long");
     return solver.analysis().flops <= kMostFlops;
   };
   add("cholesky/analysis", kMaterialOfMatrices, [=](benchmark::State& state, KernelBeam& beam) {
@@ -245,7 +246,7 @@ void register_all(const Arguments& arguments) {
 
 int run(const Arguments& arguments) {
   if (!arguments.quiet) print_facts(machine_facts());
-  std::printf("\nEach number is a median; by processor time for one thread, by wall time for more.\n");
+  std::printf("\nEach number is a median; in CPU time for one thread, in wall time for more.\n");
   std::map<int, Roofline> rooflines;
   Results results("kernels");
   for (const int threads : arguments.threads) {
@@ -270,9 +271,8 @@ int run(const Arguments& arguments) {
 }  // namespace aspic::bench
 
 int main(int argc, char** argv) {
-  CLI::App app("The kernels that a step is made of, against what the machine can do.", "bench_kernels");
-  app.footer(
-      "Options of Google Benchmark are understood too: --benchmark_filter=hessian takes kernels by their names.");
+  CLI::App app("Compares the kernels of a step with the limits of the machine.", "bench_kernels");
+  app.footer("Options of Google Benchmark are accepted, too: --benchmark_filter=hessian selects kernels by name.");
   aspic::bench::Arguments arguments;
   aspic::bench::declare(app, arguments);
   app.allow_extras();

@@ -103,7 +103,7 @@ void print_facts(const std::vector<Fact>& facts) {
   for (const Fact& fact : facts) std::printf("%-10s %s\n", fact.name.c_str(), fact.value.c_str());
   if (load() > 0.3 * std::thread::hardware_concurrency()) {
     std::printf(
-        "note: other programs are at work here; wall times, and with them several threads, will look worse than "
+        "note: other programs are running; wall times, in particular with several threads, will be longer than "
         "they are\n");
   }
 }

@@ -199,12 +199,13 @@ int main(int argc, char** argv) {
                            linear = {"multigrid"};
   std::string folder = "build/shapes";
   bool quiet = false;
-  CLI::App app("Iterations of preconditioned conjugate gradients on systems that are hard for a preconditioner.");
+  CLI::App app(
+      "Counts iterations of preconditioned conjugate gradients on systems that are hard for a preconditioner.");
   app.add_option("mesh", meshes, "cube:N, slivers:N, beam:N, SHAPE:DETAIL (see bench_characters --list) or a file")
       ->capture_default_str();
-  app.add_option("--linear", linear, "one or several linear solvers")->capture_default_str();
-  app.add_option("--shapes", folder, "where surfaces are and meshes are kept")->capture_default_str();
-  app.add_flag("--quiet", quiet, "without the facts about the machine");
+  app.add_option("--linear", linear, "Linear solvers")->capture_default_str();
+  app.add_option("--shapes", folder, "Folder of the surfaces and the generated meshes")->capture_default_str();
+  app.add_flag("--quiet", quiet, "Omit the description of the machine");
   return run_program(app, argc, argv, [&] {
     for (const std::string& solver : linear) make_linear_solver(solver);  // reports misspelled names early
     if (!quiet) print_facts(machine_facts());

@@ -53,7 +53,7 @@ fs::path folder_with_meshes() {
 // Makes the calls of a fit with the identity as its model.
 class Identity : public LeastSquares {
  public:
-  int unknowns() const override { return 2; }
+  int parameters() const override { return 2; }
   int residual_count() const override { return 2; }
   bool evaluate(std::span<const double> p, std::span<double> r) override { return copy(p, r), true; }
   bool linearize() override { return true; }
@@ -72,8 +72,8 @@ void scene(std::string_view bytes) {
   const fs::path path = folder_with_meshes() / "scene.toml";
   put_file(path, bytes);
   const Scene built = load_scene(path, small_scenes());
-  require(built.simulation.model().mesh.tet_count() <= kMostTets, "the limit of tets holds");
-  require(built.steps >= 0, "the number of steps is none or more");
+  require(built.simulation.model().mesh.tet_count() <= kMostTets, "the scene has at most the maximum number of tets");
+  require(built.steps >= 0, "the number of steps is not negative");
   for (const double q : built.simulation.state().q) require(std::isfinite(q), "positions are finite");
   require_printable(built.notes);
   for (const BodyRange& body : built.simulation.model().bodies) require_printable({body.name});
@@ -105,7 +105,7 @@ void material(std::string_view bytes) {
   if (fitted.mesh.tets.empty() || fitted.values.empty()) return;
   const Vec3d places[] = {{{0, 0, 0}}, {{0.3, 0.3, 0.3}}, {{1e9, 0, -1e9}}};
   for (const int tet : sampling(fitted, places).tet)
-    require(tet >= 0 && tet < fitted.mesh.tet_count(), "a place has a tet");
+    require(tet >= 0 && tet < fitted.mesh.tet_count(), "an index of a tet is in range");
 }
 
 void data_set(std::string_view bytes) {
@@ -117,13 +117,14 @@ void data_set(std::string_view bytes) {
   require_printable(data.notes);
   for (const LoadCase& measured : data.experiment.cases) require_printable({measured.name});
   for (const SurfacePoint& marker : data.experiment.markers)
-    for (const int v : marker.vertices) require(v >= 0 && v < data.experiment.mesh.vertex_count(), "markers lie on it");
+    for (const int v : marker.vertices)
+      require(v >= 0 && v < data.experiment.mesh.vertex_count(), "markers refer to vertices of the mesh");
 }
 
 void curves(std::string_view bytes) {
   const fs::path path = folder_of_process() / "curves.csv";
   put_file(path, bytes);
-  require(!read_test_curves(path).empty(), "a table that is read has a curve");
+  require(!read_test_curves(path).empty(), "an accepted table has a curve");
 }
 
 void motion_table(std::string_view bytes) {
@@ -169,7 +170,7 @@ void values(std::string_view bytes) {
   const fs::path path = folder_of_process() / "values.csv";
   put_file(path, bytes);
   const size_t columns = bytes.empty() ? 1 : 1 + static_cast<unsigned char>(bytes[0]) % 3;
-  require(read_number_table(path, columns, 2, "a tet", {}).size() == 2 * columns, "a table has the size that it needs");
+  require(read_number_table(path, columns, 2, "a tet", {}).size() == 2 * columns, "a table has the expected size");
 }
 
 }  // namespace aspic::fuzz

@@ -19,15 +19,16 @@ int depth_of(const XmlElement& element) {
 }  // namespace
 
 void gzip(std::string_view bytes) {
-  require(gunzipped(gzipped(bytes), bytes.size()) == bytes, "what is packed unpacks");
-  require(gunzipped(bytes, kLimit).size() <= kLimit, "no more than the limit is unpacked");
+  require(gunzipped(gzipped(bytes), bytes.size()) == bytes, "compressed data decompress to the original");
+  require(gunzipped(bytes, kLimit).size() <= kLimit, "decompressed data are within the limit");
 }
 
 void base64(std::string_view bytes) {
   std::string text, back;
   append_base64(bytes, text);
   std::string_view rest = text;
-  require(decode_base64(rest, bytes.size(), back) && back == bytes && rest.empty(), "what is encoded decodes");
+  require(decode_base64(rest, bytes.size(), back) && back == bytes && rest.empty(),
+          "encoded data decode to the original");
   for (std::string_view left = bytes; !left.empty();) {
     const size_t before = left.size();
     std::string decoded;

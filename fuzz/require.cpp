@@ -15,21 +15,21 @@ constexpr int kMostLines = 12;
 
 void require(bool holds, const char* what) {
   if (holds) return;
-  std::fprintf(stderr, "broken promise: %s\n", what);
+  std::fprintf(stderr, "violated property: %s\n", what);
   std::abort();
 }
 
 void require_message(std::string_view message) {
-  require(!message.empty(), "a refusal says why");
+  require(!message.empty(), "an error has a message");
   int lines = 0;
   for (bool is_last = false; !is_last; ++lines) {
     const size_t end = std::min(message.find('\n'), message.size());
     is_last = end == message.size();
-    require(is_printable(message.substr(0, end)), "a refusal holds nothing that a terminal would obey");
-    require(end <= InvalidInput::kLongestMessage, "a refusal is no longer than its limit");
+    require(is_printable(message.substr(0, end)), "an error message contains no control characters");
+    require(end <= InvalidInput::kLongestMessage, "an error message is within its length limit");
     message.remove_prefix(is_last ? end : end + 1);
   }
-  require(lines <= kMostLines, "a refusal has a few lines");
+  require(lines <= kMostLines, "an error message has few lines");
 }
 
 void require_printable(const std::vector<std::string>& texts) {

@@ -34,7 +34,7 @@ void expression(std::string_view bytes) {
   const Expression formula(std::string(bytes.substr(1)), variables);
   for (const Vec3d& X : {Vec3d{{0, 0, 0}}, Vec3d{{1, -2, 0.5}}, Vec3d{{1e300, -1e-300, 7}}})
     for (const double t : {0.0, 1.5}) formula.evaluate(X, t);
-  require(std::isfinite(formula.at({{0.25, 0.5, 0.75}}, 1)), "a value that is given is finite");
+  require(std::isfinite(formula.at({{0.25, 0.5, 0.75}}, 1)), "an accepted value is finite");
 }
 
 }  // namespace aspic::fuzz

@@ -27,7 +27,7 @@ void require_messages(const viewer::Messages& messages) {
   for (const viewer::Message& message : messages) {
     if (message.is_binary) continue;
     const Json json = Json::parse(message.bytes, nullptr, false);
-    require(json.is_object() && json.contains("kind"), "a message to a page is JSON of a kind");
+    require(json.is_object() && json.contains("kind"), "a message to a page is a JSON object with a kind");
     if (json["kind"] == "refused") require_message(json["why"].get<std::string>());
   }
 }
@@ -44,7 +44,7 @@ void page_text(std::string_view bytes) {
   const viewer::Target address = viewer::parse_target(bytes);
   require(bytes.starts_with(address.path), "an address begins with its path");
   const viewer::MessageHead head = viewer::parse_head(bytes);
-  require(Json::parse(head.id, nullptr, false).is_primitive(), "a message has a number or nothing to tell it by");
+  require(Json::parse(head.id, nullptr, false).is_primitive(), "the id of a message is a number or null");
   const viewer::Recording recording = viewer::read_recording(viewer::parse_json(bytes, bytes.size()));
   const Json json = viewer::to_json(recording);
   require(viewer::to_json(viewer::read_recording(json)) == json, "a recorded session reads back the same");

@@ -12,7 +12,7 @@ from command_line import ASPIC, BENCH, CUBE, CommandLine, HOLDS_MATERIAL, box_me
 
 
 class Captured(CommandLine):
-    """A cube of 5^3 cells, poked at three sites."""
+    """A cube of 5^3 cells with indentations at three sites."""
 
     def capture(self, out="data", *options, code=0):
         self.write("cube.toml", CUBE)
@@ -24,7 +24,7 @@ class Captured(CommandLine):
         self.write(name, text.replace(old, new, count))
 
     def change_cells(self, table, columns, of):
-        """of(value) in these columns of each row of data/table.csv."""
+        """Replaces the values in these columns of data/table.csv by of(value)."""
         path = self.folder / "data" / (table + ".csv")
         with open(path, newline="") as file:
             rows = list(csv.DictReader(file))
@@ -123,7 +123,7 @@ class Fit(Captured):
 
 
 class BadData(Captured):
-    """Each fault is named with its file, its row and what to do, by the check and by the fit."""
+    """Check and fit report each fault with its file, its row and a remedy."""
 
     def setUp(self):
         super().setUp()

@@ -167,7 +167,6 @@ class Terrace : public Energy {
 
 // The bound does not limit kinetic + potential energy where E is not convex: a vertex that crosses an edge within a
 // step keeps its velocity and gains the height. The ledger reports a negative loss.
-// keeps its velocity and gains the height. The ledger reports a negative loss.
 TEST(EnergyBound, HoldsOnATerraceWhereEnergyGrows) {
   Model model = make_model(make_box({{-2, 0, 0}}, {{-1, 1, 1}}, {1, 1, 1}), {.gravity = {}});
   const double height = 1;

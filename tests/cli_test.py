@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""The command line as its users meet it: help, checks, meshes.
+"""The command line: help, checks, meshes.
 
 usage: ASPIC=path/to/aspic cli_test.py [TestCase...]
 """

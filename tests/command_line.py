@@ -1,4 +1,4 @@
-"""What the tests of the command line share: the program, small inputs, a folder of its own for each test."""
+"""Shared parts of the command-line tests: the program, small inputs, a temporary folder per test."""
 import csv
 import filecmp
 import os
@@ -70,7 +70,7 @@ def box_mesh(cells=2, flip=None):
 
 
 def reversed_mesh(text):
-    """The same mesh, its vertices and its tets from the last to the first."""
+    """The same mesh with vertices and tets in reverse order."""
     lines = text.split("\n")
     vertices, tets = lines.index("Vertices") + 2, lines.index("Tetrahedra") + 2
     count = int(lines[vertices - 1])
@@ -102,12 +102,12 @@ class CommandLine(unittest.TestCase):
                                 text=True)
 
     def steps(self, run):
-        """Without the row of the start, step 0."""
+        """Rows of the steps, without the initial row of step 0."""
         with open(self.folder / run / "steps.csv", newline="") as file:
             return [row for row in csv.DictReader(file) if row["step"] != "0"]
 
     def assert_same_results(self, one, other):
-        """To the bit, but for what the clock says."""
+        """Compares bit by bit, except for wall times."""
         left, right = self.folder / one, self.folder / other
         names = {p.relative_to(left) for p in left.rglob("*") if p.is_file()}
         self.assertEqual(names, {p.relative_to(right) for p in right.rglob("*") if p.is_file()})

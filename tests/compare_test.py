@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""The statistics of bench/compare.py on invented times, and the command on invented programs."""
+"""The statistics of bench/compare.py on synthetic times, and the command with synthetic programs."""
 import importlib.util
 import math
 import pathlib
@@ -29,7 +29,7 @@ class Interval(unittest.TestCase):
 
     def test_covers_the_median_at_its_level(self):
         draw, covered, trials = random.Random(1), 0, 4000
-        for _ in range(trials):  # a skewed distribution with median 1, as times are
+        for _ in range(trials):  # a skewed distribution with median 1, like that of times
             low, high, confidence = compare.median_interval([math.exp(draw.gauss(0, 1)) for _ in range(11)])
             covered += low <= 1 <= high
         deviation = math.sqrt(confidence * (1 - confidence) / trials)

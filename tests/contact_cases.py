@@ -1,4 +1,4 @@
-"""Cases that are hard for contact: degenerate shapes, extreme numbers, bad surfaces. `long` cases have more steps."""
+"""Hard cases of contact: degenerate shapes, extreme numbers, bad surfaces. `long` cases have more steps."""
 import itertools
 import math
 import random
@@ -25,7 +25,7 @@ def all_of(*checks):
 
 
 def degenerate_shapes(steps):
-    """An inverted shape falls onto another one, which is an obstacle."""
+    """An inverted shape falls onto an obstacle."""
     pairs = [("spike", "spike", {}), ("spike", "wedge", {}), ("spike", "crack", {}), ("spike", "hole", {}),
              ("wedge", "wedge", {}), ("wedge", "wedge", {"turn_deg": 90}), ("wedge", "crack", {}), ("cliff", "cliff", {}),
              ("cliff", "internal edges", {}), ("spike", "internal edges", {})]
@@ -52,7 +52,7 @@ def gap_above(least):
 
 
 def straight(outcome):
-    """Sliding over inner edges of a flat side must not turn a body."""
+    """A body that slides over inner edges of a flat side must not turn."""
     rows = [[surface.points[c] for c in range(len(surface.points))] for surface, in outcome.frames]
     across = max(abs(sum(p[2] for p in points) / len(points)) for points in rows)
     return [] if across < 1e-3 else [f"moved sideways by {across:.2g}"]
@@ -73,7 +73,7 @@ def bullets(steps):
 
 
 def impact(seed):
-    """Two random bodies that fly at each other, at up to three times the speed of sound."""
+    """Two random bodies collide at up to three times the speed of sound."""
     chance = random.Random(seed)
     young, density = [10 ** chance.uniform(3, 7) for _ in range(2)], [10 ** chance.uniform(2, 4) for _ in range(2)]
     speed = 10 ** chance.uniform(-2, .5) * min(math.sqrt(E / rho) for E, rho in zip(young, density))
@@ -97,7 +97,7 @@ def impact(seed):
 
 
 def blow(seed):
-    """A random body that flies at a thin sheet, or at the wall of the hollow body around it."""
+    """A random body hits a thin sheet, or the wall of the hollow body around it."""
     chance = random.Random(seed)
     young, density = 10 ** chance.uniform(3, 7), 10 ** chance.uniform(2, 4)
     speed = 10 ** chance.uniform(-2, 1) * math.sqrt(young / density)

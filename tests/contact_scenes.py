@@ -16,7 +16,7 @@ SUCCESS = {"start", "converged", "round_off"}
 
 @dataclasses.dataclass
 class Case:
-    """One run. `codes`: exit codes that are right. `check`: returns faults of a run, whatever its exit code."""
+    """One run. `codes`: expected exit codes. `check`: returns the faults of a run with any exit code."""
     name: str
     scene: str
     files: dict = dataclasses.field(default_factory=dict)
@@ -86,7 +86,7 @@ def ledger_faults(rows):
 
 
 def surface_faults(frames, obstacles, planes):
-    """Intersections, and pairs of surfaces of which one has come into the other."""
+    """Returns intersections, and pairs of surfaces of which one is inside the other."""
     faults, first, is_closed = [], None, {}
 
     def closed(number, b, part):
@@ -114,7 +114,7 @@ def surface_faults(frames, obstacles, planes):
 
 
 def run(case, folder, aspic=None):
-    """Runs a case in an empty folder and checks everything that must hold for every run."""
+    """Runs a case in an empty folder and checks the properties of every run."""
     folder = pathlib.Path(folder)
     folder.mkdir(parents=True, exist_ok=True)
     for name, text in {"scene.toml": case.scene, **case.files}.items():
@@ -161,7 +161,7 @@ def heights(surface):
 
 
 def stays_above(height, index=0):
-    """A check that no point of a body comes below a height, in any frame."""
+    """Returns a check that all points of a body stay above a height in all frames."""
     def check(outcome):
         low = [min(heights(frame[index])) for frame in outcome.frames]
         return [] if min(low) > height else [f"a point at height {min(low):.6g}, below {height}"]

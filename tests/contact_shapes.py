@@ -29,7 +29,7 @@ def lattice(nodes, place=lambda x: x, keep=lambda cell: True):
 
 
 def oriented(points, tets):
-    """Positive volumes; flat tets, of corners that `place` merged, are left out."""
+    """Positive volumes; flat tets, of corners that `place` merged, are omitted."""
     found = []
     for t in tets:
         a, b, c, d = (points[v] for v in t)
@@ -40,7 +40,7 @@ def oriented(points, tets):
 
 
 def pyramid(base, apex):
-    """A base around y = 0, with a diagonal, and its apex."""
+    """A base around y = 0 with a diagonal, and an apex."""
     return base + [apex], oriented(base + [apex], [(0, 1, 2, 4), (0, 2, 3, 4)])
 
 

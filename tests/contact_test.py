@@ -74,13 +74,13 @@ def toml_text(value):
 
 
 class Scenes(Folder):
-    """Every scene with contact, all frames. Obstacles that move are left out."""
+    """Every scene with contact, all frames. Moving obstacles are excluded."""
 
     def obstacle(self, given):
         """The surface of an obstacle, from a body of the same shape at the same place."""
         place = {key: given[key] for key in ("scale", "rotate", "translate") if key in given}
         if "mesh" in given:
-            self.assertEqual(set(place) - {"translate"}, set(), "only translations are known here")
+            self.assertEqual(set(place) - {"translate"}, set(), "only translations are supported here")
             points, triangles = exact.read_obj(SCENES / given["mesh"])
             shift = place.get("translate", [0, 0, 0])
             return exact.Surface(given["name"], [tuple(a + b for a, b in zip(p, shift)) for p in points], triangles, True)
@@ -111,7 +111,7 @@ class Scenes(Folder):
 
 
 class Pairs(Folder):
-    """Two blocks on one slope, of which only one slides: x = a h^2 n (n + 1) / 2 with a = g (sin - mu cos)."""
+    """Two blocks on one slope. Only one slides: x = a h^2 n (n + 1) / 2 with a = g (sin - mu cos)."""
 
     def test_friction_of_a_pair(self):
         block = "[[body]]\nname = \"{}\"\nshape = {{ box = {{ lower = [{}, 0.0002, 0], upper = [{}, 0.1002, 0.2], cells = [4, 2, 4] }} }}\n" \
@@ -133,7 +133,7 @@ class Pairs(Folder):
 
 
 def distance_to_triangle(p, corners):
-    """Of a point, in floating point: the foot on the plane if it is inside, else on the nearest edge."""
+    """Distance of a point from a triangle in floating point: to its plane if the foot is inside, else to the nearest edge."""
     a, b, c = corners
     sub = lambda x, y: [x[i] - y[i] for i in range(3)]
     dot = lambda x, y: sum(i * j for i, j in zip(x, y))
@@ -149,7 +149,7 @@ def distance_to_triangle(p, corners):
 
 
 class Round(Folder):
-    """Spheres and capsules: no triangle of any frame comes closer than the radius."""
+    """Spheres and capsules: every triangle of every frame stays outside the radius."""
 
     SCENE = """[time]
 step = 0.01
@@ -199,7 +199,7 @@ capsule = { from = [1.05, 0.2, -1], to = [1.05, 0.2, 1], radius = 0.05 }
 
 
 class Recorded(Folder):
-    """An obstacle that follows a point cache moves as it does with the same keyframes."""
+    """An obstacle from a point cache equals one with the same keyframes."""
 
     SCENE = """[time]
 step = 0.015625
@@ -257,7 +257,7 @@ mesh = "table.obj"
 
 
 class Inflate(Folder):
-    """Bodies that overlap at the start come apart on request."""
+    """Bodies that overlap in the initial state are separated on request."""
 
     SCENE = """[time]
 step = 0.01

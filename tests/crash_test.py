@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
-"""Runs that are killed, interrupted, out of time, out of disk: what is on the disk can be opened, and resumed to the
-same bits.
+"""Runs that are killed, interrupted, out of time or out of disk space: their files can be read, and resumption is
+bit-reproducible.
 
 usage: ASPIC=path/to/aspic crash_test.py [TestCase...]
 """
@@ -29,7 +29,7 @@ EVERY_STEP = "[output]\nevery = 0\ncheckpoint_every = 0\n"
 
 
 def checkpoint(path):
-    """{name: numbers} of a checkpoint; raises where a byte is wrong."""
+    """Returns {name: numbers} of a checkpoint. Raises if a byte is wrong."""
     data = path.read_bytes()
     assert data[:8] == b"ASPICCHK" and struct.unpack("<Q", data[16:24])[0] == len(data), f"{path}: cut short"
     assert zlib.crc32(data[:-4]) == struct.unpack("<I", data[-4:])[0], f"{path}: wrong checksum"
@@ -52,7 +52,7 @@ def checkpoint(path):
 
 
 def state_hash(state):
-    """As docs/determinism.md describes it."""
+    """The hash of docs/determinism.md."""
     value = 0xCBF29CE484222325
     for name in ("q", "qdot"):
         for (word,) in struct.iter_unpack("<Q", state[name]):
@@ -72,7 +72,7 @@ class Crash(CommandLine):
         self.assertEqual({len(row) for row in rows}, {len(rows[0])}, f"{path}: rows of different lengths")
 
     def assert_readable(self, run):
-        """Whatever instant the run was killed at; returns the step of the checkpoint, -1 without one."""
+        """Checks the files of a run killed at any time. Returns the step of the checkpoint, -1 without one."""
         run = self.folder / run
         for table in ("steps.csv", "iterations.csv", "timings.csv"):
             if (run / table).exists():
@@ -97,7 +97,7 @@ class Crash(CommandLine):
         return checkpoint(newest)["steps_taken"] if newest.exists() else -1
 
     def kill_at(self, seconds, *arguments, stdout=subprocess.DEVNULL):
-        """True: killed; False: it had come to its end before."""
+        """Returns whether the run was killed before its end."""
         process = subprocess.Popen([ASPIC, *arguments], cwd=self.folder, stdout=stdout, stderr=subprocess.PIPE)
         try:
             _, complaint = process.communicate(timeout=seconds)
@@ -138,7 +138,7 @@ class Killed(Crash):
                     continue
                 completed += 1
                 self.assert_same_folder("whole", "run")
-                step = -1  # begin anew over it
+                step = -1  # replaces it by a new run
         if step >= 0:
             self.aspic("run", scene, "--out", "run", "--resume")
             self.assert_same_folder("whole", "run")
@@ -148,7 +148,7 @@ class Killed(Crash):
             json.loads(line)
 
     def drop_torn_line(self, lines):
-        """Of one write, the system completes whole pages of the file when the process is killed."""
+        """If a process is killed during a write, the system completes whole pages of the file."""
         text = (self.folder / "lines.json").read_bytes()
         if text and not text.endswith(b"\n"):
             self.assertEqual(len(text) % mmap.PAGESIZE, 0, "a line is torn within a page")
@@ -170,7 +170,7 @@ class Killed(Crash):
         self.aspic(*command, "-o", "other", "--seed", "2")
         shutil.copytree(self.folder / "other", self.folder / "data")
         for kill in range(OTHER_KILLS):
-            # Most of the time goes into the cases; the files are written at the end.
+            # The cases take most of the time; the files are written at the end.
             self.kill_at(chance.uniform(0.5, 1.1) * seconds, *command, "-o", "data", "--force")
             if (self.folder / "data/capture.toml").exists():
                 files = {p.name for p in (self.folder / "data").iterdir() if p.is_file()}
@@ -203,7 +203,7 @@ class KilledFit(FitCommand, Crash):
         kills, completed = 0, 0
         part = self.folder / "part.fit"
         while kills < OTHER_KILLS or not completed:
-            # Every second completed fit is begun anew over the one before.
+            # Every second completed fit is replaced by a new one.
             is_unfinished = (part / "options.toml").exists() and any(part.glob("*.journal"))
             how = "--resume" if is_unfinished else "--force"
             limit = chance.uniform(0, seconds) if kills < OTHER_KILLS else 300
@@ -220,7 +220,7 @@ class KilledFit(FitCommand, Crash):
 
 
 class NoRoom(Crash):
-    """A disk that is full: here, files that may not grow beyond a limit."""
+    """Simulates a full disk by a limit of the file size."""
 
     def limited(self, size, *arguments):
         def limit():
@@ -265,7 +265,7 @@ class NoRoom(Crash):
 
 class ReadOnly(Crash):
     def without_rights(self, *arguments):
-        """As a user who may not write here: root may everywhere."""
+        """Runs as a user without write permission, because root can write everywhere."""
         def drop():
             if os.getuid() == 0:
                 os.setgid(NOBODY)
@@ -278,7 +278,7 @@ class ReadOnly(Crash):
         scene = self.scene(duration=0.05)
         self.aspic("run", scene, "--out", "run")
         self.write("cube.toml", CUBE)
-        shutil.copy(ASPIC, self.folder / "aspic")  # where everybody may start it, which is not so below root's home
+        shutil.copy(ASPIC, self.folder / "aspic")  # a folder that every user can execute from, unlike root's home
         before = {p: p.read_bytes() for p in self.folder.rglob("*") if p.is_file()}
         for folder in (self.folder, self.folder / "run"):
             os.chmod(folder, 0o555)
@@ -311,7 +311,7 @@ class TimeLimit(Crash):
         self.assert_same_folder("whole", "run")
 
     def test_step_beyond_the_time_limit_is_dropped(self):
-        """Ten thousand iterations of gradient descent on a stiff beam: one step is minutes of work."""
+        """Ten thousand iterations of gradient descent on a stiff beam: one step takes minutes."""
         scene = self.scene(duration=0.02, cells="24, 6, 6", extra="""[solver]
 method = "gradient_descent"
 preconditioner = "none"

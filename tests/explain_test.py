@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Failures that are made on purpose: the message names the cause and one change, and that change works.
+"""Provoked failures: the message names the cause and one change, and that change works.
 
 usage: ASPIC=path/to/aspic explain_test.py [TestCase...]
 """
@@ -43,7 +43,7 @@ class Explanations(CommandLine):
         return done.stdout + done.stderr
 
     def assert_cured(self, text, *said, change=None):
-        """The words are in the text, and the change that it proposes makes every step converge."""
+        """Checks that the text contains the words, and that the proposed change makes every step converge."""
         for words in said:
             self.assertIn(words, text)
         remedy = text[text.index("remedy:"):] if "remedy:" in text else text
@@ -162,7 +162,7 @@ class Explain(Explanations):
 
     def test_a_tolerance_below_round_off(self):
         self.scene(solver="[solver]\ntolerance = 1e-17")
-        self.assertIn("round_off", self.run_scene())  # as good as converged, and called what it is
+        self.assertIn("round_off", self.run_scene())  # converged to round-off, which the status reports
         self.scene(solver='[solver]\ntolerance = 1e-17\nmethod = "lbfgs"\npreconditioner = "mass"')
         self.assert_cured(self.run_scene(code=3), "round-off alone is", change="solver.tolerance=")
         self.scene(solver='[solver]\ntolerance = 1e-17\nmethod = "gradient_descent"')

@@ -36,7 +36,7 @@ int main() {
 
 
 def blocks(page):
-    """Yields (path, language, code) of each code block; a block without a name belongs to the file named before."""
+    """Yields (path, language, code) of each code block. A block without a name belongs to the previous file."""
     path = None
     for line in re.finditer(r"^`([\w./]+)`[^\n]*?:?$|^```(\w+)\n(.*?)^```$", page, re.M | re.S):
         if line[1]:
@@ -50,12 +50,12 @@ def edited(text, diff, path):
     lines = diff.splitlines()
     old = "".join(line[1:] + "\n" for line in lines if not line.startswith("+"))
     new = "".join(line[1:] + "\n" for line in lines if not line.startswith("-"))
-    assert text.count(old) == 1, f"{path}: the place of this edit occurs {text.count(old)} times:\n{diff}"
+    assert text.count(old) == 1, f"{path}: the context of this edit occurs {text.count(old)} times:\n{diff}"
     return text.replace(old, new)
 
 
 def compiler_flags():
-    """The compiler with the flags of a test of the build, without its input and output."""
+    """Returns the compiler with the flags of a test of the build, without input and output."""
     for entry in json.loads((build / "compile_commands.json").read_text()):
         if "test_lessons.dir" in entry.get("output", entry["command"]):
             words = shlex.split(entry["command"])
@@ -67,7 +67,7 @@ def compiler_flags():
 
 
 def libraries():
-    """What test_energy links, as the build does."""
+    """Returns the libraries that test_energy links."""
     rules = (build / "build.ninja").read_text()
     at = re.search(r"^build bin/test_energy\b.*:", rules, re.M).end()
     return shlex.split(re.search(r"LINK_LIBRARIES = (.*)", rules[at:])[1])

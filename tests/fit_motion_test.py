@@ -129,7 +129,7 @@ class FitMotion(CommandLine):
         expected = 1e-3 / sum(3 * (STEP * k) ** 2 for k in range(1, 5)) ** 0.5
         self.assertAlmostEqual(found["velocity_x"]["deviation"], expected, delta=1e-5 * expected)
         self.assertLess(report["chi_squared"], 1e-12)
-        rows = rows_of_flight(damping=3, steps=9)  # a damping that the fit does not know
+        rows = rows_of_flight(damping=3, steps=9)  # a damping that the fit does not model
         self.write("damped.csv", table([(*row, 1e-5) for row in rows], "time,marker,x,y,z,sigma"))
         text = self.aspic("fit-motion", "cube.toml", "damped.csv", "--fit", "velocity", "-o", "damped").stdout
         self.assertRegex(text, r"residuals are [1-9].* times the stated sigma")
@@ -205,7 +205,7 @@ class FitMotionErrors(CommandLine):
         process.stderr.readline()  # the note about the guess, after which signals are caught
         process.send_signal(signal.SIGINT)
         process.communicate(timeout=60)
-        self.assertIn(process.returncode, (130, -signal.SIGINT))  # the latter before the handler is installed
+        self.assertIn(process.returncode, (130, -signal.SIGINT))  # the latter if the handler is not installed yet
 
     def test_failed_simulation_is_reported(self):
         self.write("flight.csv", table(self.rows))

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""`aspic fit` as its users meet it: data to a material to a simulation; refusals, interruption and resumption.
+"""`aspic fit`: from data to a material and a simulation; errors, interruption and resumption.
 
 usage: ASPIC=path/to/aspic fit_test.py [TestCase...]
 """
@@ -30,7 +30,7 @@ TRUTH = BODY % ("6, 6, 4", 'material = { young = "Z < 0.03 ? 4e4 : 1e4", poisson
 
 @functools.cache
 def measured():
-    """A small data set, made once: two pokes of two depths on two layers."""
+    """A small data set, created once: two indentations of two depths on two layers."""
     folder = pathlib.Path(tempfile.mkdtemp(prefix="aspic_fit_"))
     atexit.register(shutil.rmtree, folder)
     (folder / "truth.toml").write_text(TRUTH)
@@ -41,7 +41,7 @@ def measured():
 
 @functools.cache
 def fitted(options, lines):
-    """The same data fitted without a break, made once: a folder with whole.vtu and whole.fit."""
+    """A fit of the same data without interruption, created once: a folder with whole.vtu and whole.fit."""
     folder = pathlib.Path(tempfile.mkdtemp(prefix="aspic_fit_"))
     (folder / options[1]).write_text("\n".join(lines) + "\n")
     atexit.register(shutil.rmtree, folder)
@@ -72,7 +72,7 @@ class FitCommand(CommandLine):
 
 
 QUICK_OPTIONS = "mesh_errors = false\nuncertainty = false\ncross_validation = false\n"
-QUICK = ("--options", "quick.toml", "--unknown", "young=uniform", "--known", "poisson=0.4", "--allow-unconverged")  # one value cannot explain the layers, which the verdict says
+QUICK = ("--options", "quick.toml", "--unknown", "young=uniform", "--known", "poisson=0.4", "--allow-unconverged")  # one value cannot explain the layers, so the verdict is bad
 
 
 class Fit(FitCommand):
@@ -86,7 +86,7 @@ class Fit(FitCommand):
         self.assertEqual(stages, sorted(stages, reverse=True))  # uniform before field
         self.assertIn('model = "neo_hookean"', (self.folder / "material.fit/options.toml").read_text())
         left = [p.name for p in (self.folder / "material.fit").iterdir() if p.suffix in (".journal", ".state")]
-        self.assertEqual(left, [], "a complete fit needs no memory")
+        self.assertEqual(left, [], "a complete fit has no state for resumption")
         self.write("scene.toml", BODY % ("5, 5, 3", 'material = { file = "material.vtu" }'))
         run = self.aspic("run", "scene.toml", "--steps", "2").stdout
         self.assertIn("its 450 tets are not the", run)
@@ -95,7 +95,7 @@ class Fit(FitCommand):
 
     def test_uniform_value_lies_between_the_layers(self):
         value = re.search(r"young +everywhere +([\d.]+) kPa", self.fit(*QUICK).stdout)
-        self.assertTrue(10 < float(value[1]) < 60)  # 10 and 40, on a truth whose mesh is itself some 30 % too stiff
+        self.assertTrue(10 < float(value[1]) < 60)  # 10 and 40, on a truth whose mesh is about 30 % too stiff
 
     def test_the_report_is_one_file(self):
         said = self.fit(*QUICK).stdout
@@ -126,7 +126,7 @@ class Fit(FitCommand):
         self.fit(*options, "--force", "--allow-unconverged")
 
     def test_contradicted_field_becomes_uniform(self):
-        """Forces of one poke are 20 times those of the body: material, figures, exit code and report agree on it."""
+        """Forces of one indentation are 20 times too large: material, figures, exit code and report agree."""
         table = self.folder / "layers/cases.csv"
         with open(table, newline="") as file:
             rows = list(csv.DictReader(file))
@@ -197,7 +197,7 @@ class Fit(FitCommand):
 
 
 class FitInterruption(FitCommand):
-    """A fit with much to do is stopped after a few iterations, in three ways, and continued."""
+    """A long fit is stopped after a few iterations, in three ways, and resumed."""
 
     LINES = ("mesh_errors = false", "iterations = 12")
     OPTIONS = ("--options", "twelve.toml", "--unknown", "young=tets", "--known", "poisson=0.4", "--allow-unconverged")
@@ -225,7 +225,7 @@ class FitInterruption(FitCommand):
         said = self.fit(*self.OPTIONS, "-o", "part.vtu", "--resume").stdout
         self.assertIn(f"resuming after {len(before)} iterations", said)
         shutil.copytree(fitted(self.OPTIONS, self.LINES), self.folder, dirs_exist_ok=True)
-        self.assertEqual(self.rows("part.fit")[:len(before)], before, "nothing that was written is lost")
+        self.assertEqual(self.rows("part.fit")[:len(before)], before, "earlier rows are kept")
         self.assertEqual(self.rows("part.fit"), self.rows("whole.fit"))
         self.assertEqual(self.bytes_of("part.vtu"), self.bytes_of("whole.vtu"))
 

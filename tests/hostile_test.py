@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Command lines that nobody should write: each ends soon, with a documented exit code and a message for people.
+"""Invalid command lines: each ends soon, with a documented exit code and a readable message.
 
 usage: ASPIC=path/to/aspic hostile_test.py [TestCase...]; with COUNT=1000 SEED=7, another thousand random lines
 """
@@ -55,14 +55,14 @@ class Hostile(unittest.TestCase):
         shutil.rmtree(self.parent)
 
     def open_to_all(self):
-        """The program where everybody may start it, which is not so below root's home."""
+        """Copies the program to a folder that every user can execute from, unlike root's home."""
         program = self.parent / "aspic"
         if not program.exists():
             shutil.copy(ASPIC, program)
         return program
 
     def aspic(self, *arguments, code=None, user=0, memory=0):
-        """As a user without rights, and with a limit of address space [bytes], where these are given."""
+        """Runs as a user without rights and with a limit of address space [bytes], if given."""
         def limit():
             if memory:
                 resource.setrlimit(resource.RLIMIT_AS, (memory, memory))

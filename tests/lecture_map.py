@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Fails when docs/lecture_to_code.md names a file, a name or a page that does not exist, or leaves a page out."""
+"""Fails if docs/lecture_to_code.md names a file, an identifier or a page that does not exist, or omits a page."""
 import pathlib
 import re
 import sys
@@ -25,6 +25,6 @@ for line in (ROOT / "docs" / "lecture_to_code.md").read_text().splitlines():
         if int(page) not in pages:
             errors.append(f"page {row[1]}: its command shows page {page}")
 if pages != set(range(1, 63)):
-    errors.append(f"pages left out or made up: {sorted(pages ^ set(range(1, 63)))}")
-print("\n".join(errors) or "the lecture's map is right")
+    errors.append(f"missing or unknown pages: {sorted(pages ^ set(range(1, 63)))}")
+print("\n".join(errors) or "docs/lecture_to_code.md is valid")
 sys.exit(bool(errors))

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""aspic-mesh as its user meets it: files in, files, messages and exit codes out."""
+"""aspic-mesh: its files, messages and exit codes."""
 import collections
 import gzip
 import itertools

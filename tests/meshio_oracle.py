@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""Compares Aspic's mesh files with meshio, an independent implementation: what one writes, the other reads alike.
+"""Compares Aspic's mesh files with meshio, an independent implementation: each reads the files of the other.
 
 Usage: meshio_oracle.py MESH_COPY
 """
@@ -20,7 +20,7 @@ REGION = rng.integers(1, 5, 60)
 
 
 class Variant:
-    """A file format: its extension, how meshio writes it, what of the mesh it holds, and the name of its labels."""
+    """A file format: its extension, options of meshio, stored parts of the mesh, and the name of its labels."""
 
     def __init__(self, extension, options=None, kinds="tet", label=None, copy_options=(), exact=True, only=None):
         self.extension, self.options, self.kinds, self.label = extension, options or {}, kinds, label
@@ -106,7 +106,7 @@ def main():
                         variant.only = "read"
                     compare(variant, kind, pathlib.Path(folder))
                     print(f"ok    {kind} {variant}")
-                except Exception as error:  # all variants are tried; each failure is shown
+                except Exception as error:  # tries all variants and prints each failure
                     failures += 1
                     print(f"FAIL  {kind} {variant}: {type(error).__name__}: {error}")
     return 1 if failures else 0

@@ -35,7 +35,7 @@ class Minimize(CommandLine):
     def test_gradient_descent_crosses_the_valley_each_iteration(self):
         rows, end = self.rows("rosenbrock", "--method", "gradient_descent", "--max-iterations", "300", code=3)
         self.assertEqual(end["status"], "iteration_limit")
-        # The part of each direction at right angles to the floor of the valley, y = x^2.
+        # Component of each direction orthogonal to the floor of the valley, y = x^2.
         across = [row["direction"][1] - 2 * row["x"][0] * row["direction"][0] for row in rows]
         self.assertEqual(len(across), 300)
         self.assertTrue(all(a * b < 0 for a, b in zip(across, across[1:])))
@@ -196,7 +196,7 @@ class Verify(CommandLine):
         self.verify("--only", "uniaxial_table", "--instead", "stvk=corotated", code=3)
 
     def test_uncomputable_check_fails(self):
-        # The explicit scheme explodes where the implicit one is to be measured.
+        # The explicit scheme blows up, so the period cannot be measured.
         text = self.verify("--only", "pendulum", "--instead", "midpoint=forward_euler", code=3)
         self.assertIn("FAIL  could not be computed", text)
         self.assertIsNone(self.results()[0]["rows"][-1]["measured"])

@@ -99,7 +99,7 @@ TEST(Recovery, HeldBoxRecoversFromDegenerateStates) {
       const Recovery found = recover(folder.write("s.toml", held(box, model, start)));
       EXPECT_TRUE(found.is_at_rest()) << found.report.potential_total << " J";
       EXPECT_EQ(found.winding, 1);
-      EXPECT_LT(found.report.iterations, 60);                         // clamping alone takes up to some hundreds,
+      EXPECT_LT(found.report.iterations, 60);                         // clamping alone needs up to a few hundred,
       EXPECT_LT(found.report.trials, 1.5 * found.report.iterations);  // mostly with short steps
     }
 }

@@ -1,5 +1,5 @@
-"""Reads what results_samples wrote with programs that are not Aspic: meshio, VTK and tinyusdz where they are installed,
-Python's XML parser, and readers of PC2 and USD text written from the formats' descriptions. Arguments: the program
+"""Reads the files of results_samples with other programs: meshio, VTK and tinyusdz if installed, Python's XML parser,
+and readers of PC2 and USD text written from the descriptions of the formats. Arguments: the program
 results_samples, the folder of the npm package tinyusdz. Exit code 77: meshio is missing."""
 import math
 import pathlib
@@ -75,7 +75,7 @@ TOKEN = re.compile(r'\s*("[^"\n]*"|[A-Za-z_][\w:.]*(?:\[\])?|-?\d[\d.eE+-]*|[(){
 
 
 class Usda:
-    """The part of the USD text grammar that the writer uses; whatever else appears is an error."""
+    """Parses the part of the USD text grammar that the writer uses; anything else is an error."""
 
     def __init__(self, text):
         assert text.startswith("#usda 1.0\n")
@@ -152,7 +152,7 @@ class Usda:
 
 
 def usd_through_tinyusdz(folder, package):
-    """The text that an independent USD library writes after reading ours; None where it is not installed."""
+    """Returns the text that an independent USD library writes after reading ours; None if it is not installed."""
     node = shutil.which("node")
     if node is None or not (package / "tinyusdz.wasm").is_file():
         return None

@@ -89,7 +89,6 @@ TEST(Robustness, BarrierMaterialsRejectInvertedStates) {
 
 // Initial states that a material does not recover from are documented in its remarks (`aspic materials`), except that
 // stvk and corotated settle in folds from random positions.
-// (`aspic materials`), except for stvk and corotated at random places, which settle in folds.
 TEST(Robustness, OtherMaterialsRecoverExceptWhereDocumented) {
   const std::vector<std::string> kept = {"neo_hookean point", "stable_neo_hookean point",
                                          "corotated point",   "corotated random",

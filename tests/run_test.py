@@ -130,7 +130,7 @@ class Run(CommandLine):
         hard = ["--set", "solver.max_iterations=1", "--set", "solver.tolerance=1e-12", "--set", "material.young=1e3"]
         self.assertIn("did not converge", self.aspic("run", scene, *hard, code=3).stderr)
         self.aspic("run", scene, *hard, "--force", "--allow-unconverged")
-        self.aspic("run", scene, "--resume", code=3)  # also when the steps were taken before
+        self.aspic("run", scene, "--resume", code=3)  # also if the steps were taken before the resumption
 
     def test_set_accepts_several_assignments(self):
         self.aspic("run", "--set", "time.step=0.01", "time.duration=0.03", self.beam(), "--set", "output.report=false")
@@ -281,7 +281,7 @@ class Render(CommandLine):
 
 
 class Interruption(CommandLine):
-    """A run of a hundred steps is stopped in its middle, in three ways, and continued."""
+    """A run of a hundred steps is stopped midway, in three ways, and resumed."""
 
     def setUp(self):
         super().setUp()
@@ -291,7 +291,7 @@ class Interruption(CommandLine):
     @staticmethod
     @functools.cache
     def unbroken():
-        """The same run to its end, made once."""
+        """The same run without interruption, created once."""
         folder = pathlib.Path(tempfile.mkdtemp(prefix="aspic_cli_"))
         atexit.register(shutil.rmtree, folder)
         (folder / "beam.toml").write_text(BEAM.format(duration=1.0, cells="8, 3, 3"))
@@ -301,7 +301,7 @@ class Interruption(CommandLine):
 
     def interrupt(self, with_signal, out):
         process = self.start("run", self.scene, "--out", out, "--json")
-        # A pipe that holds a few lines makes the run wait for its reader: it cannot end before it is interrupted.
+        # A pipe with a small buffer blocks the run, so that it cannot end before it is interrupted.
         fcntl.fcntl(process.stdout, fcntl.F_SETPIPE_SZ, 4096)
         for _ in range(10):
             self.assertTrue(process.stdout.readline())

@@ -75,7 +75,7 @@ class Signals(Crash):
             self.assertEqual(self.assert_readable("run"), len(self.steps("run")))
 
     def test_loading_ends_at_once(self):
-        """Nothing is there to be kept, so the signal ends the program as it does by default."""
+        """There are no results to keep, so the signal has its default effect."""
         self.beam("large.toml", 0.05, "60, 30, 30")
         for arguments in (("check", "large.toml"), ("run", "large.toml"), ("compare", "large.toml", "--methods", "newton")):
             process = self.start(*arguments)
@@ -131,7 +131,7 @@ class Certificate(Crash):
 
 
 class SameBits(Crash):
-    """Threads and restarts through the program; the library is tested for every combination elsewhere."""
+    """Threads and restarts of the program; determinism_test.cpp covers all combinations."""
 
     def test_threads_change_no_bit(self):
         scene = self.scene(duration=0.1, cells="12, 4, 4")

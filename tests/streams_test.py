@@ -58,7 +58,7 @@ class Streams(unittest.TestCase):
         for name, text in (("cube.toml", CUBE), ("tet.mesh", TET), ("curve.csv", CURVE)):
             (cls.folder / name).write_text(text)
         help_text = cls.aspic("--help").stdout.decode()
-        cls.expected = {}  # what each use does with ordinary streams
+        cls.expected = {}  # results with ordinary streams
         for command in re.findall(r"(?m)^  ([a-z-]+) {2,}", help_text.split("Subcommands:")[1].split("Examples:")[0]):
             if command == "mesh" and not pathlib.Path(ASPIC).with_name("aspic-mesh").exists():
                 continue
@@ -67,7 +67,7 @@ class Streams(unittest.TestCase):
 
     @classmethod
     def aspic(cls, *arguments, prefix="", **streams):
-        """`prefix` is what a shell does to the streams before it becomes the program."""
+        """`prefix`: redirections of a shell that then executes the program."""
         command = ["sh", "-c", f'exec "$0" "$@" {prefix}', ASPIC, *arguments]
         streams = {"stdout": subprocess.PIPE, "stderr": subprocess.PIPE, **streams}
         return subprocess.run(command, cwd=cls.folder, timeout=60, **streams)

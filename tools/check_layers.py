@@ -35,7 +35,7 @@ root = pathlib.Path(__file__).resolve().parent.parent
 
 
 def layers():
-    """Each module of the picture with the modules that its arrows reach."""
+    """Returns each module of the diagram with the modules that its arrows reach."""
     picture = re.search(r"```mermaid\n(.*?)```", (root / "docs/architecture.md").read_text(), re.S)[1]
     arrows = re.findall(r"^ *(\w+)(?:\[.*?\])? --> (\w+)", picture, re.M)
     direct = {name: {to for start, to in arrows if start == name} for arrow in arrows for name in arrow}
@@ -49,7 +49,7 @@ def layers():
 
 
 def module_of(name):
-    """The module of a file; tests belong to none, and so do examples and benches, which use everything."""
+    """Returns the module of a file; none for tests, examples and benchmarks, which may include everything."""
     parts = name.split("/")
     if name.endswith(("_test.cpp", "_test.h")) or parts[0] not in ("src", "inverse", "apps", "verification"):
         return None
@@ -89,9 +89,9 @@ def main():
     may_include = layers()
     folders = [p for name in ("src", "inverse", "apps") for p in (root / name).iterdir() if p.is_dir()]
     unknown = {f.name for f in folders} - {"mesh"} - may_include.keys()
-    violations = [f"docs/architecture.md: the picture does not show {name}" for name in sorted(unknown)]
+    violations = [f"docs/architecture.md: the diagram does not show {name}" for name in sorted(unknown)]
     violations += [*check_sources(may_include), *check_page()]
-    print("\n".join(violations) or "layers are as drawn")
+    print("\n".join(violations) or "all includes follow the diagram")
     sys.exit(bool(violations))
 
 

@@ -95,7 +95,9 @@ void add_bending_checks(std::vector<Check>& checks) {
                     "the trend.",
                     "The elastica, by elliptic integrals",
                     check_elastica,
-                    {"Bisshopp1945"}});
+                    {"Bisshopp1945"},
+                    {R"tex(E I\, \theta'' + P \cos \theta = 0, \quad \theta(0) = 0, \quad \theta'(L) = 0)tex",
+                     R"tex(w(L) = \int_0^L \sin \theta \, ds)tex"}});
 }
 
 }  // namespace aspic::verify

@@ -63,7 +63,8 @@ struct Check {
   std::string problem;    // computed quantity, in a sentence or two
   std::string reference;  // source of the reference values
   std::function<void(const Subject&, Findings&)> run;
-  std::vector<std::string> source = {};  // keys of docs/references.bib; empty: derived in `reference`
+  std::vector<std::string> source = {};    // keys of docs/references.bib; empty: derived in `reference`
+  std::vector<std::string> formulas = {};  // closed-form reference in TeX; empty if there is none
 
   std::string key() const { return family + "/" + name; }
 };

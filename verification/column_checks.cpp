@@ -206,14 +206,16 @@ void check_large_twist(const Subject& subject, Findings& found) {
 }  // namespace
 
 void add_column_checks(std::vector<Check>& checks) {
-  checks.push_back({"vibration",
-                    "torsion",
-                    "Torsional vibration of a square column",
-                    "1 x 1 x 6 m, nu = 0.3; the foot does not turn and may warp, the top is free. Of the lowest modes, "
-                    "the one that turns.",
-                    "sqrt(G J / (rho I)) / (4 L) with Saint-Venant's J = 0.140577 a^4 and I = a^4 / 6",
-                    check_frequency,
-                    {"Timoshenko1970"}});
+  checks.push_back(
+      {"vibration",
+       "torsion",
+       "Torsional vibration of a square column",
+       "1 x 1 x 6 m, nu = 0.3; the foot does not turn and may warp, the top is free. Of the lowest modes, the one that "
+       "turns.",
+       "Torsional waves, with Saint-Venant's torsional constant J and the polar moment of area I",
+       check_frequency,
+       {"Timoshenko1970"},
+       {R"tex(f = \frac{1}{4 L} \sqrt{\frac{G J}{\rho I}}, \quad J = 0.140577\, a^4, \quad I = \tfrac16 a^4)tex"}});
   checks.push_back({"vibration",
                     "twisting_column",
                     "The twisting column",
@@ -222,7 +224,8 @@ void add_column_checks(std::vector<Check>& checks) {
                     "the midpoint rule.",
                     "Published in pictures only; the exact properties are checked",
                     check_large_twist,
-                    {"Gil2014", "Bonet2015"}});
+                    {"Gil2014", "Bonet2015"},
+                    {R"tex(L_{n+1} - L_n = h M_{n + 1/2})tex", R"tex(E_n = E_0 + O(h^2))tex"}});
 }
 
 }  // namespace aspic::verify

@@ -46,10 +46,11 @@ void check_bar(const Subject& subject, Findings& found) {
   }
   found.expect("time of contact / (2 L / c)", {(last - first) / 2, 1, 0.02},
                "2 %: fronts have a width of several cells");
-  found.expect("force / (rho c v A)", {middle / samples / plateau, 1, 0.02}, "2 %: waves of the cells' length remain");
+  found.expect("force / (rho c v A)", {middle / samples / plateau, 1, 0.02},
+               "2 %: oscillations with the wavelength of a cell");
   const double velocity = mass_mean(simulation.model(), simulation.state().qdot)[1];
   found.expect("change of momentum / impulse", {(velocity + v) * side * side / impulse, 1, 1e-6},
-               "the solves leave 1e-9 of the forces");
+               "the solves have a relative residual of 1e-9");
 }
 
 // Two boxes that fly at each other askew, without gravity.
@@ -130,7 +131,7 @@ void check_third_law(const Subject& subject, Findings& found) {
   found.expect_small("sum of friction forces / sum of their sizes", worst_friction.force, 1e-12,
                      "round-off of the sum of each stencil");
   found.expect_small("change of the mean velocity / impact speed", drift / 2, 1e-9,
-                     "each solve leaves 1e-11 of the forces that balance");
+                     "each solve has a residual of 1e-11 of the balancing forces");
   found.expect("contacts in all steps exist", {contacts > 10 ? 1.0 : 0.0, 1, 0}, "yes or no");
 }
 
@@ -166,7 +167,7 @@ void check_bounce(const Subject& subject, Findings& found) {
     found.expect_small(name + "largest gain of energy in a step / energy", std::max(gained, 0.0), 1e-12,
                        "round-off: backward Euler only loses");
     found.expect_small(name + "largest ledger error / largest term", ledger, 1e-9, "round-off of the energies");
-    found.expect(name + "friction dissipates as it should, and contacts exist",
+    found.expect(name + "friction dissipates energy, and contacts exist",
                  {(lost > 0) == (friction > 0) && lost >= 0 && contacts > 10 ? 1.0 : 0.0, 1, 0}, "yes or no");
   }
 }
@@ -234,7 +235,7 @@ void check_frames(const Subject& subject, Findings& found) {
       by_order = std::max(by_order, norm(point(r, first + end - 1 - v) - point(q, v)));
     }
   }
-  const std::string reason = "each solve leaves 1e-11 of the forces; the motion of a step is 1e-3 m";
+  const std::string reason = "each solve has a relative residual of 1e-11; the motion of a step is 1e-3 m";
   found.expect_small("largest change by another frame", by_turn, 1e-9, reason, "m");
   found.expect_small("largest change by another numbering", by_order, 1e-9, reason, "m");
 }
@@ -242,17 +243,34 @@ void check_frames(const Subject& subject, Findings& found) {
 }  // namespace
 
 void add_contact_motion_checks(std::vector<Check>& checks) {
-  checks.push_back({"contact", "bar", "An elastic bar flies against a wall",
+  checks.push_back({"contact",
+                    "bar",
+                    "An elastic bar flies against a wall",
                     "Length 1, E = rho = 1, nu = 0, v = c / 1000.",
-                    "The wave equation: contact lasts 2 L / c under the force rho c v A", check_bar});
-  checks.push_back({"contact", "third_law", "Contact and friction conserve momentum", "Two soft boxes collide askew.",
-                    "Newton's third law; contact forces act along the line between their points", check_third_law});
-  checks.push_back({"contact", "bounce", "A bounce gains no energy", "A soft box falls askew onto the floor.",
-                    "Backward Euler loses energy in every step; the ledger closes", check_bounce});
-  checks.push_back({"contact", "frames", "Neither frame nor numbering changes contact",
+                    "The wave equation: duration and force of the contact",
+                    check_bar,
+                    {},
+                    {R"tex(T = \frac{2 L}{c}, \quad F = \rho c v A, \quad c = \sqrt{\frac{E}{\rho}})tex"}});
+  checks.push_back({"contact",
+                    "third_law",
+                    "Contact and friction conserve momentum",
+                    "Two soft boxes collide askew.",
+                    "Newton's third law; contact forces act along the line between their points",
+                    check_third_law,
+                    {},
+                    {R"tex(\sum_i f_i = 0, \quad \sum_i x_i \times f_i = 0)tex"}});
+  checks.push_back({"contact",
+                    "bounce",
+                    "A bounce gains no energy",
+                    "A soft box falls askew onto the floor.",
+                    "Backward Euler loses energy in every step; the ledger closes",
+                    check_bounce,
+                    {},
+                    {R"tex(E_{n+1} \le E_n)tex"}});
+  checks.push_back({"contact", "frames", "Contact is invariant under frame and numbering",
                     "The boxes turned and shifted, and with vertices in reverse order.",
-                    "The equations depend on neither", check_frames});
-  checks.push_back({"contact", "units", "Units do not change contact",
+                    "The equations are independent of frame and numbering", check_frames});
+  checks.push_back({"contact", "units", "Contact is independent of units",
                     "The boxes in other units of length and time, of modulus and density.",
                     "The equations are homogeneous", check_contact_units});
 }

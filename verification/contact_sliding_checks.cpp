@@ -144,14 +144,31 @@ void check_stack(const Subject& subject, Findings& found) {
 
 void add_contact_sliding_checks(std::vector<Check>& checks) {
   checks.push_back(
-      {"contact", "incline", "A block on an incline sticks below the angle of friction and slides above it",
+      {"contact",
+       "incline",
+       "A block on an incline sticks below the angle of friction and slides above it",
        "mu = 0.5; slopes of 0.9, 0.995, 1.005 and 1.2 mu.",
-       "Coulomb's law; backward Euler slides x_n = a h^2 n (n + 1) / 2 with a = g (sin - mu cos)", check_incline});
-  checks.push_back({"contact", "slide_to_rest", "A sliding block comes to rest", "1 m/s on a level floor, mu = 0.3.",
-                    "v^2 / (2 mu g) - v h / 2, the sum of the positions of backward Euler", check_slide_to_rest});
-  checks.push_back({"contact", "stack", "A stack of boxes stays at rest",
+       "Coulomb's law with backward Euler; below the angle of friction, the smoothed law creeps, s is its speed",
+       check_incline,
+       {},
+       {R"tex(x_n = \tfrac12 a h^2\, n (n + 1), \quad a = g (\sin \alpha - \mu \cos \alpha) \quad (\tan \alpha > \mu))tex",
+        R"tex(\dot x = s \left(1 - \sqrt{1 - \tan \alpha / \mu}\right) \quad (\tan \alpha < \mu))tex"}});
+  checks.push_back({"contact",
+                    "slide_to_rest",
+                    "A sliding block comes to rest",
+                    "1 m/s on a level floor, mu = 0.3.",
+                    "Coulomb's law with backward Euler",
+                    check_slide_to_rest,
+                    {},
+                    {R"tex(x = \frac{v^2}{2 \mu g} - \frac{v h}{2})tex"}});
+  checks.push_back({"contact",
+                    "stack",
+                    "A stack of boxes stays at rest",
                     "Three stiff boxes on a slope of 0.1, mu = 0.5.",
-                    "The creep of the smoothed law of friction, s (1 - sqrt(1 - tan / mu)) per surface", check_stack});
+                    "The creep of the smoothed law of friction for each surface below; s is its speed",
+                    check_stack,
+                    {},
+                    {R"tex(\dot x_i = i\, s \left(1 - \sqrt{1 - \tan \alpha / \mu}\right))tex"}});
 }
 
 }  // namespace aspic::verify

@@ -253,18 +253,30 @@ void add_contact_static_checks(std::vector<Check>& checks) {
       {"contact",
        "hertz",
        "A soft sphere on a plane",
-       "Around the lowest point, E = 1, nu = 0.3; far boundaries move as a half-space under a point force. "
-       "Radius and pressure by a fit of p^2 in r^2.",
-       "Hertz: a^3 = 3 F R (1 - nu^2) / (4 E), p0 = 3 F / (2 pi a^2), approach a^2 / R",
+       "Around the lowest point, E = 1, nu = 0.3; far boundaries move as a half-space under a point force. Radius and "
+       "pressure by a fit of p^2 in r^2.",
+       "Hertz's solution: radius, largest pressure and approach",
        check_hertz,
-       {"Johnson1985"}});
-  checks.push_back({"contact", "patch", "Uniform pressure between unmatched meshes",
-                    "Two blocks are pressed together by 1 %, nu = 0.",
-                    "p = E (strain + gap), with the gap at which the barrier exerts p", check_patch});
-  checks.push_back({"contact", "refinement", "Contact converges with the mesh",
-                    "The same blocks; the reach is a fiftieth of the edges.", "p = E strain", check_refinement});
-  checks.push_back({"contact", "constants", "Reach and stiffness of contact do not matter",
-                    "Two soft blocks on each other at rest on the floor.",
+       {"Johnson1985"},
+       {R"tex(a^3 = \frac{3 F R (1 - \nu^2)}{4 E}, \quad p_0 = \frac{3 F}{2 \pi a^2}, \quad \delta = \frac{a^2}{R})tex"}});
+  checks.push_back({"contact",
+                    "patch",
+                    "Uniform pressure between unmatched meshes",
+                    "Two blocks are pressed together by 5 %, nu = 0.",
+                    "Uniform stress with the gap d at which the barrier exerts the pressure p",
+                    check_patch,
+                    {},
+                    {R"tex(p = E (\varepsilon + d), \quad \kappa\, |b'(d)| = p)tex"}});
+  checks.push_back({"contact",
+                    "refinement",
+                    "Contact converges with the mesh",
+                    "The same blocks; the reach is a fiftieth of the edges.",
+                    "Uniform stress",
+                    check_refinement,
+                    {},
+                    {R"tex(p_h = E \varepsilon + O(h))tex"}});
+  checks.push_back({"contact", "constants", "Contact is independent of reach and stiffness",
+                    "Two soft blocks, stacked on the floor, at rest.",
                     "A state of rest moves by less than twice the reach", check_constants});
 }
 

@@ -78,7 +78,9 @@ void add_cylinder_checks(std::vector<Check>& checks) {
        "The ordinary differential equation of the radius, by shooting, from the printed formula of the "
        "material in principal stretches",
        check_cylinder,
-       {"Rivlin1949", "Ogden1997"}});
+       {"Rivlin1949", "Ogden1997"},
+       {R"tex(x = (r \cos(\Theta + \tau Z),\; r \sin(\Theta + \tau Z),\; Z), \quad r = r(R))tex",
+        R"tex(\frac{d}{dR} \left(R\, \frac{\partial \psi}{\partial r'}\right) = R\, \frac{\partial \psi}{\partial r}, \quad \frac{\partial \psi}{\partial r'}(1) = 0)tex"}});
 }
 
 }  // namespace aspic::verify

@@ -51,10 +51,15 @@ void check_differences(const Subject& subject, Findings& found) {
 }  // namespace
 
 void add_derivative_checks(std::vector<Check>& checks) {
-  checks.push_back({"derivatives", "differences", "Gradients and Hessians against central differences",
+  checks.push_back({"derivatives",
+                    "differences",
+                    "Gradients and Hessians against central differences",
                     "A crumpled box of 72 tets, every material. The error of a central difference falls by 100 when "
                     "its step falls by 10, until round-off; that of a wrong derivative does not fall.",
-                    "Taylor's theorem", check_differences});
+                    "Taylor's theorem",
+                    check_differences,
+                    {},
+                    {R"tex(\frac{f(x + h) - f(x - h)}{2 h} = f'(x) + O(h^2))tex"}});
 }
 
 }  // namespace aspic::verify

@@ -90,25 +90,39 @@ void check_free_fall(const Subject& subject, Findings& found) {
 }  // namespace
 
 void add_integrator_checks(std::vector<Check>& checks) {
-  checks.push_back({"integrators",
-                    "oscillator",
-                    "Damping and frequency of a harmonic oscillator",
-                    "Masses on springs, w h = 0.1, every integrator: the factor per step, read off four positions.",
-                    "The eigenvalue of each scheme's amplification matrix",
-                    check_oscillator,
-                    {"Hairer1996"}});
-  checks.push_back({"integrators",
-                    "euler_energies",
-                    "What Euler's three methods do to energy",
-                    "m = 1 kg, k = 100 N/m, h = 0.01 s. Forward Euler multiplies the energy by 1 + w^2 h^2, backward "
-                    "Euler divides by it, symplectic Euler conserves a shadow energy.",
-                    "Closed forms of the three maps",
-                    check_euler_energies,
-                    {"Hairer1996"}});
-  checks.push_back({"integrators", "free_fall", "Free fall of an elastic box",
-                    "After n steps a box has fallen g h^2 n(n+1)/2 with backward, linearly implicit and symplectic "
-                    "Euler, g h^2 n(n-1)/2 with forward Euler, and g h^2 n^2/2 with the others.",
-                    "The recurrence of each scheme under a constant force", check_free_fall});
+  checks.push_back(
+      {"integrators",
+       "oscillator",
+       "Damping and frequency of a harmonic oscillator",
+       "Masses on springs, w h = 0.1, every integrator: the factor per step from four positions.",
+       "The eigenvalue of each scheme's amplification matrix",
+       check_oscillator,
+       {"Hairer1996"},
+       {R"tex(x_n = \operatorname{Re}(c\, r^n))tex",
+        R"tex(\frac{E(t + T)}{E(t)} = |r|^{4 \pi / (\omega h)}, \quad \frac{\omega_h}{\omega} = \frac{\arg r}{\omega h})tex"}});
+  checks.push_back(
+      {"integrators",
+       "euler_energies",
+       "Energy of Euler's three methods",
+       "m = 1 kg, k = 100 N/m, h = 0.01 s. Forward Euler gains energy, backward Euler loses it, symplectic Euler "
+       "conserves a shadow energy.",
+       "Closed forms of the three maps",
+       check_euler_energies,
+       {"Hairer1996"},
+       {R"tex(E_{n+1} = (1 + \omega^2 h^2)\, E_n \quad \text{(forward Euler)})tex",
+        R"tex(E_{n+1} = \frac{E_n}{1 + \omega^2 h^2} \quad \text{(backward Euler)})tex",
+        R"tex(\tfrac12 v^2 + \tfrac12 \omega^2 x^2 - \tfrac{h}{2} \omega^2 x v = E_0, \quad \frac{E_0}{1 + \omega h / 2} \le E_n \le \frac{E_0}{1 - \omega h / 2} \quad \text{(symplectic Euler)})tex"}});
+  checks.push_back(
+      {"integrators",
+       "free_fall",
+       "Free fall of an elastic box",
+       "The fall of a box after n = 10 steps, every integrator.",
+       "The recurrence of each scheme under a constant force",
+       check_free_fall,
+       {},
+       {R"tex(y_0 - y_n = \tfrac12 g h^2\, n (n + 1) \quad \text{(backward, linearly implicit, symplectic Euler)})tex",
+        R"tex(y_0 - y_n = \tfrac12 g h^2\, n (n - 1) \quad \text{(forward Euler)})tex",
+        R"tex(y_0 - y_n = \tfrac12 g h^2\, n^2 \quad \text{(others)})tex"}});
 }
 
 }  // namespace aspic::verify

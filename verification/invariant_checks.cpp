@@ -154,12 +154,22 @@ void check_units(const Subject& subject, Findings& found) {
 }  // namespace
 
 void add_invariant_checks(std::vector<Check>& checks) {
-  checks.push_back({"invariants", "forces", "Internal forces have no resultant and no moment",
-                    "A deformed box whose moduli differ from tet to tet, every material.", "Newton's third law",
-                    check_forces});
-  checks.push_back({"invariants", "rigid_motions", "The energy is invariant under rigid motions",
-                    "The same box, rotated and moved: every material but linear.", "Frame indifference",
-                    check_rigid_motions});
+  checks.push_back({"invariants",
+                    "forces",
+                    "Internal forces have no resultant and no moment",
+                    "A deformed box whose moduli differ from tet to tet, every material.",
+                    "Newton's third law",
+                    check_forces,
+                    {},
+                    {R"tex(\sum_i f_i = 0, \quad \sum_i x_i \times f_i = 0)tex"}});
+  checks.push_back({"invariants",
+                    "rigid_motions",
+                    "The energy is invariant under rigid motions",
+                    "The same box, rotated and moved: every material but linear.",
+                    "Frame indifference",
+                    check_rigid_motions,
+                    {},
+                    {R"tex(V(R x + t) = V(x))tex"}});
   checks.push_back({"invariants", "numbering", "Motions are invariant under renumbering and reflection",
                     "A cantilever falls for ten steps; vertices and tets are renumbered, or z is reflected.",
                     "The symmetry of the equations", check_numbering});

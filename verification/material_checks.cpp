@@ -74,14 +74,19 @@ void check_formulas(const Subject& subject, Findings& found) {
 }  // namespace
 
 void add_material_checks(std::vector<Check>& checks) {
-  checks.push_back({"materials", "uniaxial_table", "Uniaxial stretch with free sides: the printed table",
-                    "A box of distorted linear tets is stretched to l; its width t is found where no force is left on "
-                    "the sides.",
-                    "A table that was computed independently of this program, to 8 decimals", check_table});
-  checks.push_back({"materials", "uniaxial", "Uniaxial stretch with free sides: every material",
-                    "The same for every material at nu = 0, 0.3, 0.45 and l = 0.7, 0.85, 1.2, 1.5.",
-                    "The printed formula in principal stretches, differentiated numerically in long double",
-                    check_formulas});
+  checks.push_back(
+      {"materials", "uniaxial_table", "Uniaxial stretch with free sides: the printed table",
+       "A box of distorted linear tets is stretched to l; its width t is found where the sides are free of force.",
+       "A table that was computed independently of this program, to 8 decimals", check_table});
+  checks.push_back(
+      {"materials",
+       "uniaxial",
+       "Uniaxial stretch with free sides: every material",
+       "The same for every material at nu = 0, 0.3, 0.45 and l = 0.7, 0.85, 1.2, 1.5.",
+       "The printed formula in principal stretches, differentiated numerically in long double",
+       check_formulas,
+       {},
+       {R"tex(P = \frac{\partial}{\partial l} \psi(l, t, t), \quad \frac{\partial}{\partial t} \psi(l, t, t) = 0)tex"}});
 }
 
 }  // namespace aspic::verify

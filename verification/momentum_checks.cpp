@@ -93,19 +93,30 @@ void check_angular_euler(const Subject& subject, Findings& found) {
 }  // namespace
 
 void add_momentum_checks(std::vector<Check>& checks) {
-  checks.push_back({"invariants", "linear_momentum", "Linear momentum changes by the impulse of gravity",
-                    "A box spins, vibrates and falls; implicit integrators of one step or more.", "p = p0 + m g t",
-                    check_linear});
+  checks.push_back({"invariants",
+                    "linear_momentum",
+                    "Linear momentum changes by the impulse of gravity",
+                    "A box spins, vibrates and falls; implicit integrators of one step or more.",
+                    "Newton's second law",
+                    check_linear,
+                    {},
+                    {R"tex(p(t) = p_0 + m g t)tex"}});
   checks.push_back({"invariants",
                     "angular_momentum",
                     "The midpoint rule conserves angular momentum",
                     "A soft box spins and vibrates freely.",
-                    "L = L0",
+                    "Conservation of angular momentum",
                     check_angular,
-                    {"Hairer1996"}});
-  checks.push_back({"invariants", "angular_momentum_of_backward_euler",
-                    "Backward Euler loses angular momentum by its formula", "The same box.",
-                    "L_(t+1) - L_t = h sum v_(t+1) x M v_t, from the update of the scheme", check_angular_euler});
+                    {"Hairer1996"},
+                    {R"tex(L(t) = L_0)tex"}});
+  checks.push_back({"invariants",
+                    "angular_momentum_of_backward_euler",
+                    "Loss of angular momentum by backward Euler",
+                    "The same box.",
+                    "The update of the scheme",
+                    check_angular_euler,
+                    {},
+                    {R"tex(L_{n+1} - L_n = h \sum_i v_{n+1, i} \times (M v_n)_i)tex"}});
 }
 
 }  // namespace aspic::verify

@@ -244,7 +244,8 @@ void add_order_checks(std::vector<Check>& checks) {
                     "strain, held around: errors of position and of deformation gradient, every material.",
                     "Linear elements: 2 in L2, 1 in H1",
                     check_space_order,
-                    {"Roache1998"}});
+                    {"Roache1998"},
+                    {R"tex(\|x_h - x\|_{L^2} = O(h^2), \quad \|F_h - F\|_{L^2} = O(h))tex"}});
   checks.push_back(
       {"orders",
        "time",
@@ -253,7 +254,8 @@ void add_order_checks(std::vector<Check>& checks) {
        "face or all around: linear tets represent the motion exactly, so only time integration has an error.",
        "The order of the scheme",
        check_time_order,
-       {"Hairer1996"}});
+       {"Hairer1996"},
+       {R"tex(x(t) = X + s(t)\, B X)tex", R"tex(\max_i |x_i - x(t)| = O(h^p))tex"}});
   checks.push_back({"orders",
                     "time_floor",
                     "Orders are measured down to the accuracy of the solves",
@@ -261,14 +263,16 @@ void add_order_checks(std::vector<Check>& checks) {
                     "order; a term of a lower order would remain.",
                     "The order of the scheme",
                     check_time_floor,
-                    {"Hairer1996"}});
+                    {"Hairer1996"},
+                    {R"tex(e(h) = C_1 h^p + C_2 h^{p+1} + \dots)tex"}});
   checks.push_back({"orders",
                     "time_damped",
                     "Order in time with damping and a moving target",
                     "x'' + 2 x' + 100 (x - s(t)) = 0 with s such that x = cos 3t; position and velocity after 1 s.",
                     "The order of the scheme",
                     check_driven_order,
-                    {"Hairer1996"}});
+                    {"Hairer1996"},
+                    {R"tex(\ddot x + 2 \dot x + 100\, (x - s(t)) = 0, \quad x = \cos 3 t)tex"}});
 }
 
 }  // namespace aspic::verify

@@ -123,7 +123,8 @@ void add_patch_checks(std::vector<Check>& checks) {
                     "the same stress, whatever the mesh.",
                     "Linear elements represent linear fields",
                     check_patch,
-                    {"Irons1972"}});
+                    {"Irons1972"},
+                    {R"tex(x = F X)tex"}});
   checks.push_back({"patch", "symmetry_planes", "One eighth of a bar between symmetry planes",
                     "Three faces of a cube slide on planes, which hold them along their normals, and the opposite one "
                     "is moved: the state is uniaxial, the reaction its stress, however planes and cube are turned.",

@@ -189,8 +189,14 @@ void add_point_checks(std::vector<Check>& checks) {
   checks.push_back({"derivatives", "automatic", "Stress and Hessian against automatic differentiation", states,
                     "The energy density, differentiated by forward automatic differentiation of its source",
                     check_automatic});
-  checks.push_back({"derivatives", "taylor", "Stress and Hessian against central differences at a point",
-                    states + " Steps are relative to F.", "Taylor's theorem", check_slopes});
+  checks.push_back({"derivatives",
+                    "taylor",
+                    "Stress and Hessian against central differences at a point",
+                    states + " Steps are relative to F.",
+                    "Taylor's theorem",
+                    check_slopes,
+                    {},
+                    {R"tex(\frac{f(x + h) - f(x - h)}{2 h} = f'(x) + O(h^2))tex"}});
   checks.push_back({"derivatives", "edges", "Where a material has no derivative",
                     "Barriers refuse inverted and collapsed tets; elsewhere everything stays finite.",
                     "The documentation of each material", check_edges});

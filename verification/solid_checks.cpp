@@ -192,29 +192,36 @@ void check_torsion(const Subject& subject, Findings& found) {
 }  // namespace
 
 void add_solid_checks(std::vector<Check>& checks) {
-  checks.push_back({"statics",
-                    "hollow_sphere",
-                    "Inflation of a thick hollow sphere",
-                    "Radii 1 and 2 m, nu = 0.3; the inner radius is blown up to 1.5 m, the outside is free.",
-                    "The ordinary differential equation of the radius, by shooting, from the printed formula of the "
-                    "material in principal stretches",
-                    check_sphere,
-                    {"Ogden1997"}});
-  checks.push_back({"statics",
-                    "half_space",
-                    "A point load on a half-space",
-                    "A block under a force at one vertex, its far faces moved as in the exact solution; nu = 0.3.",
-                    "Boussinesq's solution",
-                    check_half_space,
-                    {"Johnson1985"}});
+  checks.push_back(
+      {"statics",
+       "hollow_sphere",
+       "Inflation of a thick hollow sphere",
+       "Radii 1 and 2 m, nu = 0.3; the inner radius is blown up to 1.5 m, the outside is free.",
+       "The ordinary differential equation of the radius, by shooting, from the printed formula of the "
+       "material in principal stretches",
+       check_sphere,
+       {"Ogden1997"},
+       {R"tex(\frac{d}{dR} \left(R^2 \frac{\partial \psi}{\partial r'}\right) = R^2 \frac{\partial \psi}{\partial r}, \quad \psi = \psi(r', r / R, r / R))tex",
+        R"tex(r(1) = 1.5, \quad \frac{\partial \psi}{\partial r'}(2) = 0)tex"}});
+  checks.push_back(
+      {"statics",
+       "half_space",
+       "A point load on a half-space",
+       "A block under a force at one vertex, its far faces moved as in the exact solution; nu = 0.3.",
+       "Boussinesq's solution",
+       check_half_space,
+       {"Johnson1985"},
+       {R"tex(u_r = \frac{P (1 + \nu)}{2 \pi E} \left(\frac{r z}{\rho^3} - \frac{(1 - 2 \nu)\, r}{\rho\, (\rho + z)}\right))tex",
+        R"tex(u_z = \frac{P (1 + \nu)}{2 \pi E} \left(\frac{z^2}{\rho^3} + \frac{2 (1 - \nu)}{\rho}\right), \quad \rho^2 = r^2 + z^2)tex"}});
   checks.push_back({"statics",
                     "torsion",
                     "Torsion of a square column",
                     "1 x 1 x 6, the ends held plane and turned by 1e-4; twist measured in the middle third, where "
                     "sections warp freely.",
-                    "Saint-Venant's torsional constant of a square, 0.140577 a^4",
+                    "Saint-Venant's torsional constant of a square",
                     check_torsion,
-                    {"Timoshenko1970"}});
+                    {"Timoshenko1970"},
+                    {R"tex(M = G J\, \vartheta, \quad J = 0.140577\, a^4)tex"}});
 }
 
 }  // namespace aspic::verify

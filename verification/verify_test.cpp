@@ -39,7 +39,7 @@ std::string test_name(const testing::TestParamInfo<Check>& info) {
 }
 INSTANTIATE_TEST_SUITE_P(Every, QuickCheck, testing::ValuesIn(checks()), test_name);
 
-TEST(Checks, HaveNamesOfTheirOwn) {
+TEST(Checks, HaveDistinctNames) {
   for (const Check& check : checks())
     EXPECT_EQ(std::count_if(checks().begin(), checks().end(), [&](const Check& c) { return c.key() == check.key(); }),
               1)
@@ -146,20 +146,20 @@ Check made_of(std::function<void(const Subject&, Findings&)> run) {
   return {"family", "name", "title", "problem", "reference", std::move(run)};
 }
 
-TEST(RunCheck, WhatThrowsOrFindsNothingFails) {
+TEST(RunCheck, FailsOnExceptionOrWithoutRows) {
   const Findings thrown = run_check(made_of([](const Subject&, Findings& found) {
                                       found.expect("before", {1, 1, 0}, "exact");
-                                      throw std::runtime_error("the solver gave up");
+                                      throw std::runtime_error("the solver failed");
                                     }),
                                     {});
   EXPECT_FALSE(thrown.passes());
-  ASSERT_EQ(thrown.rows.size(), 2u) << "what was found before is kept";
+  ASSERT_EQ(thrown.rows.size(), 2u) << "earlier rows are kept";
   EXPECT_TRUE(thrown.rows[0].passes());
-  EXPECT_EQ(thrown.rows[1].reason, "the solver gave up");
+  EXPECT_EQ(thrown.rows[1].reason, "the solver failed");
   EXPECT_FALSE(run_check(made_of([](const Subject&, Findings&) {}), {}).passes());
 }
 
-TEST(Row, IsJudgedOnlyByFiniteNumbers) {
+TEST(Row, PassesOnlyWithFiniteNumbers) {
   const double nan = std::numeric_limits<double>::quiet_NaN(), inf = std::numeric_limits<double>::infinity();
   const auto passes = [](double measured, double reference, double tolerance) {
     return Row{"", measured, reference, tolerance, "", ""}.passes();

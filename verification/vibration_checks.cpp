@@ -177,17 +177,22 @@ void add_vibration_checks(std::vector<Check>& checks) {
                     "bar",
                     "Waves along a bar, clamped at one end",
                     "E = 1e7 Pa, 1000 kg/m^3, 1 m, nu = 0, held sideways; 8, 16 and 32 cells.",
-                    "f = (2k - 1) sqrt(E / rho) / (4 L)",
+                    "The wave equation",
                     check_bar,
-                    {"Weaver1990"}});
-  checks.push_back({"vibration",
-                    "beam",
-                    "Bending of a clamped beam",
-                    "1 x 0.05 m of the same material. Linear tets are too stiff in bending by an error of order h^2; "
-                    "the limit is judged, and the trend.",
-                    "Timoshenko's beam with the shear factor 5/6, and Euler and Bernoulli's for a slender one",
-                    check_beam,
-                    {"Timoshenko1921"}});
+                    {"Weaver1990"},
+                    {R"tex(f_k = \frac{2 k - 1}{4 L} \sqrt{\frac{E}{\rho}})tex"}});
+  checks.push_back(
+      {"vibration",
+       "beam",
+       "Bending of a clamped beam",
+       "1 x 0.05 m of the same material. Linear tets are too stiff in bending by an error of order h^2; "
+       "the limit is judged, and the trend.",
+       "Timoshenko's beam with the shear factor 5/6, and Euler and Bernoulli's for a slender one",
+       check_beam,
+       {"Timoshenko1921"},
+       {R"tex(\tfrac56 G A\, (w' - \varphi)' + \rho A\, \omega^2 w = 0)tex",
+        R"tex(E I\, \varphi'' + \tfrac56 G A\, (w' - \varphi) + \rho I\, \omega^2 \varphi = 0)tex",
+        R"tex(f_k = \frac{\beta_k^2}{2 \pi L^2} \sqrt{\frac{E I}{\rho A}}, \quad \cos \beta_k \cosh \beta_k = -1 \quad \text{(slender)})tex"}});
   checks.push_back({"vibration",
                     "tapered_membrane",
                     "NAFEMS FV32: in-plane vibration of a tapered membrane",
@@ -200,9 +205,10 @@ void add_vibration_checks(std::vector<Check>& checks) {
                     "pendulum",
                     "A stiff bar swings from one edge",
                     "1 x 0.1 x 0.1 m, released when level: large swings, seven turns.",
-                    "4 K(sin(a/2)) sqrt(I / (m g d)), K the complete elliptic integral",
+                    "The physical pendulum; K is the complete elliptic integral of the first kind",
                     check_pendulum,
-                    {"Landau1976"}});
+                    {"Landau1976"},
+                    {R"tex(T = 4\, K\left(\sin \tfrac{\alpha}{2}\right) \sqrt{\frac{I}{m g d}})tex"}});
 }
 
 }  // namespace aspic::verify

@@ -5,7 +5,7 @@ import { mkdirSync, readFileSync, writeFileSync } from "node:fs";
 import { dirname, join } from "node:path";
 import { fileURLToPath } from "node:url";
 import { gzipSync } from "node:zlib";
-import { formulasIn, mathml } from "./mathml.mjs";
+import { mathml, programFormulas } from "./mathml.mjs";
 
 const root = dirname(fileURLToPath(import.meta.url));
 const out = process.argv[2] ?? join(root, "page.html");
@@ -31,9 +31,8 @@ const page = readFileSync(join(root, "src/index.html"), "utf8")
   .replace("<!-- script -->", () => `<script>${script}</script>`);
 mkdirSync(dirname(out), { recursive: true });
 // For the pages that the program writes itself: the entries of a table in C++.
-const entries = formulasIn(join(root, "src/formulas.json")).map(
-  ([name, list]) => `{"${name}", {${list.map((formula) => `R"math(${formula})math"`).join(", ")}}},\n`,
-);
+const literal = (text) => `R"math(${text})math"`;
+const entries = programFormulas().map(([key, list]) => `{${literal(key)}, {${list.map(literal).join(", ")}}},\n`);
 writeFileSync(join(dirname(out), "formulas.inc"), entries.join(""));
 writeFileSync(out, page);
 writeFileSync(`${out}.gz`, gzipSync(page, { level: 9 }));

@@ -1,20 +1,39 @@
-// A plugin for esbuild: formulas.json, formulas in TeX by name, is bundled as MathML, so that the page needs neither
-// fonts nor a renderer.
-import { readFileSync } from "node:fs";
+// Formulas as MathML, so that pages need neither fonts nor a renderer. Their TeX comes from src/formulas.json by name, and
+// from the literals R"tex(...)tex" of the materials and checks in C++.
+import { readdirSync, readFileSync } from "node:fs";
+import { basename, dirname, join } from "node:path";
+import { fileURLToPath } from "node:url";
 import temml from "temml";
+
+const root = dirname(dirname(fileURLToPath(import.meta.url)));
+const named = JSON.parse(readFileSync(join(root, "web/src/formulas.json"), "utf8"));
 
 const rendered = (tex) => temml.renderToString(tex, { displayMode: true, throwOnError: true });
 
-// The formulas of a file as [name, list of MathML].
-export function formulasIn(path) {
-  return Object.entries(JSON.parse(readFileSync(path, "utf8"))).map(([name, list]) => [name, list.map(rendered)]);
+// [file name without its extension, its TeX literals] of the sources in a folder that have some.
+function literals(folder, extension) {
+  return readdirSync(join(root, folder))
+    .filter((file) => file.endsWith(extension))
+    .map((file) => [basename(file, extension), readFileSync(join(root, folder, file), "utf8")])
+    .map(([name, text]) => [name, [...text.matchAll(/R"tex\((.*?)\)tex"/gs)].map((match) => match[1])])
+    .filter(([, list]) => list.length > 0);
 }
 
+// Each material is a header of its name.
+const materials = () => literals("src/material", ".h");
+
+// Formulas of the program as [key, list of MathML]: named ones by name, the others by their TeX.
+export function programFormulas() {
+  const tex = new Set([...materials(), ...literals("verification", "_checks.cpp")].flatMap(([, list]) => list));
+  return [...Object.entries(named).map(([name, list]) => [name, list.map(rendered)]), ...[...tex].map((one) => [one, [rendered(one)]])];
+}
+
+// A plugin for esbuild: formulas.json and the materials are bundled as MathML by name.
 export const mathml = {
   name: "mathml",
   setup: (build) =>
-    build.onLoad({ filter: /formulas\.json$/ }, ({ path }) => ({
-      contents: JSON.stringify(Object.fromEntries(formulasIn(path))),
+    build.onLoad({ filter: /formulas\.json$/ }, () => ({
+      contents: JSON.stringify(Object.fromEntries([...Object.entries(named), ...materials()].map(([name, list]) => [name, list.map(rendered)]))),
       loader: "json",
     })),
 };

@@ -31,7 +31,7 @@ namespace fs = std::filesystem;
 struct FitArguments {
   fs::path data, out = "material.vtu", options;
   std::string model = FitPlan().model;
-  std::vector<std::string> unknowns, known;
+  std::vector<std::string> parameters, known;
   int threads = 0;  // 0: not given
   bool check = false, force = false, resume = false, quiet = false, verbose = false, allow_unconverged = false;
 };
@@ -39,7 +39,7 @@ struct FitArguments {
 FitPlan plan_of(const FitArguments& arguments) {
   FitPlan plan;
   plan.model = material_info(arguments.model).name;
-  for (const std::string& text : arguments.unknowns) plan.unknowns.push_back(parse_unknown(text));
+  for (const std::string& text : arguments.parameters) plan.parameters.push_back(parse_parameter(text));
   for (const std::string& text : arguments.known) plan.known.push_back(parse_known(text));
   return plan;
 }
@@ -131,9 +131,9 @@ void print_start(const FitArguments& arguments, const DataSet& data, const FitPl
   fmt::print("{}: {} vertices, {} tets, {} markers, {} cases in {} groups; {} threads; into {}\n", data.name,
              e.mesh.vertex_count(), e.mesh.tet_count(), e.markers.size(), e.cases.size(), groups_of(e).size(),
              thread_count(), arguments.out.string());
-  std::string unknowns;
-  for (const Unknown& u : plan.unknowns) unknowns += (unknowns.empty() ? "" : ", ") + text_of(u);
-  fmt::print("{}: {}\n", plan.model, unknowns.empty() ? "no parameters to fit" : unknowns);
+  std::string parameters;
+  for (const FitParameter& u : plan.parameters) parameters += (parameters.empty() ? "" : ", ") + text_of(u);
+  fmt::print("{}: {}\n", plan.model, parameters.empty() ? "no parameters to fit" : parameters);
   if (plan.refine > 0)
     fmt::print("simulated on {:.0f} tets, each of the mesh in {:.0f} (refine = {})\n",
                e.mesh.tet_count() * std::pow(8, plan.refine), std::pow(8, plan.refine), plan.refine);
@@ -220,7 +220,7 @@ Examples:
   aspic fit pillow                             writes material.vtu and material.fit/report.html
   aspic fit pillow -o soft.vtu --known poisson=0.45 --options careful.toml
   aspic fit pillow --model fung --unknown young=handles:40 --unknown b=uniform
-  aspic fit pillow --resume                    continues an interrupted fit to the same bits
+  aspic fit pillow --resume                    continues an interrupted fit, bit-reproducibly
 then in a scene: material = {{ file = "material.vtu" }}
 
 Keys of the file of --options, with their defaults:
@@ -242,7 +242,7 @@ void add_fit(CLI::App& app, Action& action) {
       ->add_option("--model", arguments->model, "Strain energy density (see aspic materials); neo_hookean by default")
       ->check(CLI::IsMember(model_names()));
   command
-      ->add_option("--unknown", arguments->unknowns,
+      ->add_option("--unknown", arguments->parameters,
                    "QUANTITY=tets|regions|handles:N|uniform to fit; by default young=tets and all others uniform; "
                    "can be repeated")
       ->allow_extra_args(false);

@@ -42,18 +42,18 @@ std::vector<TestCurve> chosen(const std::filesystem::path& file, const std::vect
   return curves;
 }
 
-std::string deviation_text(const FittedParameter& f) {
+std::string sigma_text(const FittedParameter& f) {
   if (f.is_held) return "held";
   if (f.at_bound) return "at the end of its range";
-  if (std::isinf(f.deviation)) return "not determined by these curves";
-  return fmt::format("+- {:.2g}", f.deviation);
+  if (std::isinf(f.sigma)) return "not determined by these curves";
+  return fmt::format("+- {:.2g}", f.sigma);
 }
 
 void print(const Fitted& fitted) {
   const CurveFit& fit = fitted.fit;
   fmt::print("{}, {}\n", fitted.data, fit.material);
   for (const FittedParameter& f : fit.fitted)
-    fmt::print("  {:<14} {:>12.6g} {:<4} {}\n", f.name, f.value, f.unit, deviation_text(f));
+    fmt::print("  {:<14} {:>12.6g} {:<4} {}\n", f.name, f.value, f.unit, sigma_text(f));
   fmt::print("  {:<14} {:>10} {:>10} {:>10} {:>14}\n", "test", "relative", "largest", "R^2", "rms [Pa]");
   for (const CurveErrors& c : fit.curves)
     fmt::print("  {:<14} {:>9.2f}% {:>9.2f}% {:>10.5f} {:>14.5g}\n", c.name, 100 * c.relative, 100 * c.largest,
@@ -88,7 +88,7 @@ nlohmann::ordered_json to_json(const Fitted& fitted) {
   nlohmann::ordered_json parameters = nlohmann::json::array(), curves = nlohmann::json::array();
   for (const FittedParameter& f : fitted.fit.fitted) {
     nlohmann::ordered_json p = {{"name", f.name}, {"unit", f.unit}, {"value", f.value}};
-    p["deviation"] = std::isfinite(f.deviation) ? nlohmann::ordered_json(f.deviation) : nullptr;
+    p["deviation"] = std::isfinite(f.sigma) ? nlohmann::ordered_json(f.sigma) : nullptr;
     p["at_bound"] = f.at_bound;
     p["held"] = f.is_held;
     parameters.push_back(std::move(p));

@@ -36,7 +36,7 @@ BickelOptions baseline_options(const FitPlan& plan) {
   BickelOptions options;
   for (const auto& [quantity, value] : plan.known)
     if (quantity == "poisson") options.poisson = value, options.fits_poisson = false;
-  for (const Unknown& u : plan.unknowns)
+  for (const FitParameter& u : plan.parameters)
     if (u.quantity == "young" && u.guess > 0) options.young = u.guess;
   return options;
 }
@@ -77,11 +77,11 @@ void print_judgment(std::FILE* stream, const Judgment& j) {
 void print_prediction(std::FILE* stream, const Prediction& prediction) {
   const HeldOut& h = prediction.held_out;
   if (!h.ok) {
-    fmt::print(stream, "left out   {}: no prediction: {}\n", prediction.method, h.failure);
+    fmt::print(stream, "held out   {}: no prediction: {}\n", prediction.method, h.failure);
     return;
   }
   const double motion = std::max(h.peak_motion, 1e-300), force = std::max(h.peak_force, 1e-300);
-  fmt::print(stream, "left out   {}: positions within {} of the peak motion (noise: {})", prediction.method,
+  fmt::print(stream, "held out   {}: positions within {} of the peak motion (noise: {})", prediction.method,
              percent(h.relative_position_error()), percent(h.position_noise / motion));
   if (h.forces > 0)
     fmt::print(stream, ", forces within {} of the peak force (noise: {})", percent(h.relative_force_error()),
@@ -154,7 +154,7 @@ void write_figures(const std::filesystem::path& file, const FitOutcome& outcome,
   Json json = {{"converged", is_success(report.status)},
                {"words", report.message},
                {"verdict", json_of(judged)},
-               {"unknowns", outcome.unknowns},
+               {"unknowns", outcome.parameter_count},
                {"residuals", outcome.residuals},
                {"iterations", report.iterations},
                {"equilibria", outcome.counts.equilibria},

@@ -52,15 +52,15 @@ fs::path created_folder(const FitMotionArguments& arguments, const std::string& 
 
 bool is_converged(const MotionFitReport& report) { return is_success(report.status) && !report.stopped; }
 
-std::string deviation_text(const FittedMotionValue& value) {
-  return std::isfinite(value.deviation) ? fmt::format("{:.2g}", value.deviation) : "-";
+std::string sigma_text(const FittedMotionValue& value) {
+  return std::isfinite(value.sigma) ? fmt::format("{:.2g}", value.sigma) : "-";
 }
 
 void print_table(const MotionFitReport& report, bool has_sigma) {
   fmt::print("{:<20} {:>12} {:>12} {:>10}  unit\n", "parameter", "guess", "fitted", "sd");
   for (const FittedMotionValue& v : report.values)
-    fmt::print("{:<20} {:>12.6g} {:>12.6g} {:>10}  {}{}\n", v.parameter.name, v.parameter.guess, v.value,
-               deviation_text(v), v.parameter.unit, v.message.empty() ? "" : "  not determined: " + v.message);
+    fmt::print("{:<20} {:>12.6g} {:>12.6g} {:>10}  {}{}\n", v.parameter.name, v.parameter.guess, v.value, sigma_text(v),
+               v.parameter.unit, v.message.empty() ? "" : "  not determined: " + v.message);
   fmt::print("root mean square distance {:.4g} m before, {:.4g} m after\n", report.before.rms, report.after.rms);
   if (has_sigma && report.chi_squared > kLargeChiSquared)
     fmt::print(
@@ -77,8 +77,8 @@ nlohmann::ordered_json to_json(const MotionFitReport& report, const MotionObject
   for (const FittedMotionValue& v : report.values) {
     nlohmann::ordered_json value = {
         {"name", v.parameter.name}, {"unit", v.parameter.unit}, {"guess", v.parameter.guess}, {"value", v.value}};
-    value["deviation"] = std::isfinite(v.deviation) ? nlohmann::ordered_json(v.deviation) : nullptr;
-    value["determined"] = std::isfinite(v.deviation);
+    value["deviation"] = std::isfinite(v.sigma) ? nlohmann::ordered_json(v.sigma) : nullptr;
+    value["determined"] = std::isfinite(v.sigma);
     if (!v.message.empty()) value["message"] = v.message;
     values.push_back(std::move(value));
   }

@@ -60,7 +60,7 @@ bool read_fit_options(const std::filesystem::path& file, FitPlan& plan) {
   const auto option = [&](const char* key) -> const Value& { return *document.find(key); };
   plan.regularizer.smoothness = smoothness_named(option("smooth").text());
   const Value &prior = option("prior"), &weight = option("weight");
-  plan.regularizer.prior_deviation = prior.is_text() ? std::numeric_limits<double>::infinity() : prior.number();
+  plan.regularizer.prior_sigma = prior.is_text() ? std::numeric_limits<double>::infinity() : prior.number();
   plan.fit.weight = weight.is_text() ? -1 : weight.number();
   plan.fit.weight_rule = option("rule").text();
   plan.fit.method = option("method").text();

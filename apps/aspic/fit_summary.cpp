@@ -93,9 +93,9 @@ void print_fit(std::FILE* stream, const DataSet& data, const FitOutcome& outcome
   print_parts(stream, outcome);
   if (outcome.posterior && outcome.posterior->ok)
     fmt::print(stream, "learned    the data determine {:.1f} of {} directions of the material\n",
-               outcome.posterior->informed, outcome.unknowns);
+               outcome.posterior->informed, outcome.parameter_count);
   print_held_out(stream, outcome);
-  if (outcome.next_poke) fmt::print(stream, "next poke  {}\n", outcome.next_poke->description);
+  if (outcome.next_indentation) fmt::print(stream, "next poke  {}\n", outcome.next_indentation->description);
   for (const std::string& warning : outcome.warnings) fmt::print(stream, "warning: {}\n", warning);
 }
 

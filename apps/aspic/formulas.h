@@ -4,8 +4,9 @@
 
 namespace aspic::cli {
 
-// Returns the formulas of a demonstration of the lecture or of a material as MathML. Empty if it has none, or if the
-// program was built without the viewer, whose page generates them (web/src/formulas.json).
+// Returns formulas as MathML: those of a demonstration of the lecture by its name (web/src/formulas.json), or one of a
+// material or check by its TeX. Empty if there are none, or if the program was built without the viewer, whose page
+// generates them.
 std::vector<std::string> formulas_of(const std::string& key);
 
 }  // namespace aspic::cli

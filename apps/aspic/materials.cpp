@@ -31,11 +31,8 @@ nlohmann::ordered_json to_json(const MaterialInfo& material) {
                           {"min", extra.min},
                           {"max", extra.max}});
   }
-  return {{"name", material.name},
-          {"formula", material.formula},
-          {"barrier", material.barrier},
-          {"parameters", parameters},
-          {"remarks", material.remarks}};
+  return {{"name", material.name},       {"formula", material.formula}, {"tex", material.tex},
+          {"barrier", material.barrier}, {"parameters", parameters},    {"remarks", material.remarks}};
 }
 
 int list_materials(const std::string& name, bool json) {

@@ -195,7 +195,7 @@ void print_json_summary(const Problem& problem, const Minimization& done) {
 
 int list() {
   for (const TestFunction& f : test_functions())
-    fmt::print("{}\n  f = {}\n  {}\n  minimum {:.10g} at ({:.10g}, {:.10g}); usual start ({:g}, {:g})\n\n", f.name,
+    fmt::print("{}\n  f = {}\n  {}\n  minimum {:.10g} at ({:.10g}, {:.10g}); default start ({:g}, {:g})\n\n", f.name,
                f.formula, f.remarks, f.minimum, f.minimizer[0], f.minimizer[1], f.start[0], f.start[1]);
   fmt::print("methods: {}\n", fmt::join(minimizer_names(), ", "));
   return exit_done;

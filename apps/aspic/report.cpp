@@ -69,7 +69,7 @@ void add_report(CLI::App& app, Action& action) {
   CLI::App* command = app.add_subcommand("report", "Writes an HTML page of a run: playback, plots, certificate, scene");
   command->footer(R"(
 Examples:
-  aspic report out/bunny                      write out/bunny/report.text, as the run does at its end
+  aspic report out/bunny                      write out/bunny/report.html, as the run does at its end
   aspic report out/bunny -o bunny.html        another file; it needs no server and no network
   aspic report out/long --max-size 40         more frames of a long run
 

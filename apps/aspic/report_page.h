@@ -27,7 +27,7 @@ class ReportPage {
   void heading(std::string_view text);  // also an entry of the table of contents
   void paragraph(std::string_view text);
   void formula(std::string_view mathml);  // inserted unchanged
-  void code(std::string_view text);       // a command or a formula, inserted unchanged
+  void code(std::string_view text);       // a command or a formula
   void verdict(Verdict verdict, std::string_view label, std::string_view text);
   void table(const std::vector<std::string>& header, const std::vector<std::vector<Cell>>& rows);
   void figures(const std::vector<Figure>& row);  // side by side if the width allows; throws InvalidInput

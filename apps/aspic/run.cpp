@@ -70,7 +70,7 @@ void announce(const RunArguments& arguments, const std::string& what) {
 constexpr int kManyTets = 300'000;  // a frame of this size takes a second to write
 
 Scene load(const RunArguments& arguments) {
-  const Announce tell = [&](const std::string& what) { announce(arguments, what); };
+  const Announce announced = [&](const std::string& what) { announce(arguments, what); };
   if (arguments.resume) {
     if (!arguments.overrides.empty()) {
       throw InvalidInput("--set and --resume cannot be combined: a run continues with its own scene");
@@ -79,14 +79,14 @@ Scene load(const RunArguments& arguments) {
     if (!fs::is_directory(directory)) {
       throw InvalidInput(fmt::format("{}: no run to resume; start it without --resume", directory.string()));
     }
-    return load_scene(scene_of_run(directory), {.announce = tell, .mesher_seconds = arguments.time_limit});
+    return load_scene(scene_of_run(directory), {.announce = announced, .mesher_seconds = arguments.time_limit});
   }
   if (fs::is_directory(arguments.input)) {
     throw InvalidInput(
         fmt::format("{0}: is a directory; to continue a run: aspic run {0} --resume", arguments.input.string()));
   }
   return load_scene(arguments.input,
-                    {.overrides = arguments.overrides, .announce = tell, .mesher_seconds = arguments.time_limit});
+                    {.overrides = arguments.overrides, .announce = announced, .mesher_seconds = arguments.time_limit});
 }
 
 RunDirectory open_directory(const RunArguments& arguments, Scene& scene) {

@@ -37,9 +37,15 @@ Json number_json(double value) { return std::isfinite(value) ? Json(value) : Jso
 
 Json to_json(const Verification& result) {
   const verify::Check& check = *result.check;
-  Json json = {{"check", check.key()},         {"title", check.title},   {"problem", check.problem},
-               {"reference", check.reference}, {"source", check.source}, {"passes", result.findings.passes()},
-               {"seconds", result.seconds},    {"rows", Json::array()}};
+  Json json = {{"check", check.key()},
+               {"title", check.title},
+               {"problem", check.problem},
+               {"reference", check.reference},
+               {"formulas", check.formulas},
+               {"source", check.source},
+               {"passes", result.findings.passes()},
+               {"seconds", result.seconds},
+               {"rows", Json::array()}};
   for (const verify::Row& row : result.findings.rows)
     json["rows"].push_back({{"quantity", row.quantity},
                             {"measured", number_json(row.measured)},
@@ -71,14 +77,20 @@ void add_overview(ReportPage& page, const std::vector<Verification>& results) {
   page.table({"", "check", "rows", "name"}, rows);
 }
 
-// Strain energy densities of the materials, where the program has their formulas.
+// Formulas as MathML, or as TeX if the program was built without the viewer.
+void add_formulas(ReportPage& page, const std::vector<std::string>& tex) {
+  for (const std::string& formula : tex) {
+    const std::vector<std::string> rendered = formulas_of(formula);
+    rendered.empty() ? page.code(formula) : page.formula(rendered.front());
+  }
+}
+
 void add_densities(ReportPage& page) {
-  if (formulas_of(materials().front().name).empty()) return;
   page.heading("Strain energy densities");
   page.paragraph("I1 = tr F'F, J = det F; mu and lambda are the Lame constants of E and nu.");
   for (const MaterialInfo& info : materials()) {
     page.paragraph(info.name);
-    for (const std::string& formula : formulas_of(info.name)) page.formula(formula);
+    add_formulas(page, info.tex);
   }
 }
 
@@ -88,6 +100,7 @@ void add_judged(ReportPage& page, const Verification& result, const std::vector<
                fmt::format("{:.1f} s", result.seconds));
   page.paragraph(result.check->problem);
   page.paragraph(sources_text(*result.check));
+  add_formulas(page, result.check->formulas);
   page.code("aspic verify --only " + result.check->key());
   std::vector<std::vector<Cell>> rows;
   std::string reason;  // printed once for consecutive rows with the same reason

@@ -16,8 +16,8 @@
 namespace aspic::viewer {
 namespace {
 
-constexpr double kLeastDeviation = 1e-4;  // relative sigma of exact readings
-constexpr uint64_t kApart = 1'000'003;    // distance between the seeds of two cases
+constexpr double kLeastSigma = 1e-4;    // relative sigma of exact readings
+constexpr uint64_t kApart = 1'000'003;  // distance between the seeds of two cases
 
 Vec3d gravity_of(const Scene& scene) {
   const Table document = read_toml(scene.resolved, scene.name);
@@ -120,7 +120,7 @@ void Bench::record(const Touch& touch, const TipPose& pose, int depths, const St
   for (size_t m = 0; m < truth_rest_.size(); ++m)
     if (norm(truth_rest_[m] - site) > touch.tip.radius)
       load.positions.push_back({static_cast<int>(m), {}, {{1, 1, 1}}});
-  load.force = Vec3d{}, load.force_deviation = {{1, 1, 1}};
+  load.force = Vec3d{}, load.force_sigma = {{1, 1, 1}};
   const double deepest = dot(pose.center - touch.begun.center, touch.begun.axis);
   std::vector<double> last;
   for (int d = 1; d <= depths; ++d) {
@@ -153,21 +153,21 @@ void Bench::add(const LoadCase& load, const CasePrediction& found, double depth)
   double motion = 0;
   for (size_t k = 0; k < read.positions.size(); ++k)
     motion = std::max(motion, norm(found.markers[k] - truth_rest_[read.positions[k].marker]));
-  const auto disturbed = [&](Vec3d value, double deviation) {
-    for (int i = 0; i < 3; ++i) value[i] += deviation * normal(random);
+  const auto disturbed = [&](Vec3d value, double sigma) {
+    for (int i = 0; i < 3; ++i) value[i] += sigma * normal(random);
     return value;
   };
-  const auto with = [](double deviation) { return Vec3d{{deviation, deviation, deviation}}; };
-  const double counted = std::max(options_.noise, kLeastDeviation);
+  const auto with = [](double sigma) { return Vec3d{{sigma, sigma, sigma}}; };
+  const double counted = std::max(options_.noise, kLeastSigma);
   const double largest = motion > 0 ? motion : load.tip->radius, force = std::max(norm(found.wrench.force), 1e-300);
   for (size_t k = 0; k < read.positions.size(); ++k) {
     MarkerReading& reading = read.positions[k];
     const Vec3d moved = found.markers[k] - truth_rest_[reading.marker];
     reading.position = disturbed(marker_rest_[reading.marker] + moved, options_.noise * largest);
-    reading.deviation = with(counted * largest);
+    reading.sigma = with(counted * largest);
   }
   read.force = disturbed(found.wrench.force, options_.noise * force);
-  read.force_deviation = with(counted * force);
+  read.force_sigma = with(counted * force);
   data_.experiment.cases.push_back(std::move(read));
   depths_.push_back(depth);
 }
@@ -183,8 +183,8 @@ void Bench::forget_all() {
   groups_ = 0;
 }
 
-std::vector<PokeSite> Bench::sites(double radius, int count) const {
-  return poke_sites(body_.mesh, body_.fixed, radius, count);
+std::vector<IndentationSite> Bench::sites(double radius, int count) const {
+  return indentation_sites(body_.mesh, body_.fixed, radius, count);
 }
 
 std::vector<double> Bench::on_scene(std::span<const double> of_data) const {

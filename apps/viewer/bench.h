@@ -9,7 +9,7 @@
 #include "capture/data_set.h"
 #include "capture/surface_projection.h"
 #include "energy/held_tip.h"
-#include "fit/next_poke.h"
+#include "fit/next_indentation.h"
 #include "scene/material_file.h"
 #include "scene/scene.h"
 
@@ -45,7 +45,7 @@ class Bench {
   bool is_same_mesh() const { return is_same_mesh_; }  // data set and scene share a mesh: an inverse crime
   const std::vector<std::string>& notes() const { return notes_; }
 
-  std::vector<PokeSite> sites(double radius, int count) const;  // points on the mesh of the scene
+  std::vector<IndentationSite> sites(double radius, int count) const;  // points on the mesh of the scene
   // Maps values per tet of the data set's mesh to the tets of the scene, in the order of its model.
   std::vector<double> on_scene(std::span<const double> of_data) const;
   std::vector<double> true_young() const;  // E per tet in the order of the data set's mesh [Pa]

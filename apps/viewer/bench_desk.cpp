@@ -30,7 +30,7 @@ Json case_json(const LoadCase& load, double depth) {
           {"depth", depth},
           {"force", json_of(*load.force)},
           {"push", dot(*load.force, load.pose.axis)},
-          {"deviation", load.force_deviation[0]}};
+          {"deviation", load.force_sigma[0]}};
 }
 
 // Identifies the body at rest: scene, settings and pins.
@@ -145,7 +145,7 @@ void BenchDesk::poke_all(Arguments& arguments) {
   arguments.finish();
   if (!(depth > 0 && depth <= 10 * tip.radius))
     refuse("poke_all.depth", depth, "a positive depth, at most ten radii of the indenter, is expected [m]");
-  const std::vector<PokeSite> places = bench().sites(tip.radius, sites);
+  const std::vector<IndentationSite> places = bench().sites(tip.radius, sites);
   if (places.empty()) throw InvalidInput("there is no free and flat place for this indenter; choose a smaller radius");
   require_room(places.size() * depths);
   Busy busy(options_);

@@ -182,7 +182,7 @@ TEST(Bench, EstimatesTheErrorOfACoarserMesh) {
     EXPECT_EQ(task->plan.mesh_errors, !same_mesh);
     for (const LoadCase& load : task->data.experiment.cases) {  // only the sigma of the instruments
       const Vec3d& f = *load.force;
-      EXPECT_NEAR(load.force_deviation[0], 0.02 * std::hypot(f[0], f[1], f[2]), 0.2 * load.force_deviation[0]);
+      EXPECT_NEAR(load.force_sigma[0], 0.02 * std::hypot(f[0], f[1], f[2]), 0.2 * load.force_sigma[0]);
     }
     std::vector<std::string> stages;
     run_fit(*task, [&](const FitNews& news) {
@@ -206,12 +206,12 @@ TEST(Bench, AStoppedFitKeepsItsResult) {
   page.send({{"do", "fit"}});
   const std::optional<FitTask> task = page.session().take_fit();
   int iterations = 0;
-  const auto tell = [&](FitNews news) {
+  const auto publish = [&](FitNews news) {
     news.task = task->number;
     page.note_fit(news);
     if (++iterations == 3) page.send({{"do", "stop_fit"}});
   };
-  run_fit(*task, tell, StopToken([&] { return !page.session().wants_fit(); }));
+  run_fit(*task, publish, StopToken([&] { return !page.session().wants_fit(); }));
   EXPECT_FALSE(page.capture()["fit"]["running"]);
   EXPECT_LE(iterations, 5);
   page.send({{"do", "fit"}});  // may start again

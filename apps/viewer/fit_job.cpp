@@ -19,18 +19,18 @@ const char* name_of(FitStage stage) {
       return "segmentation into parts";
     case FitStage::cross_validation:
       return "leave-one-out cross-validation";
-    case FitStage::next_poke:
+    case FitStage::next_indentation:
       return "most informative next poke";
   }
   return "";
 }
 
 // The parameterization of a stage. The first stage has one value per quantity.
-std::vector<Unknown> unknowns_of(const FitPlan& plan, FitStage stage) {
-  std::vector<Unknown> unknowns = plan.unknowns;
+std::vector<FitParameter> parameters_of(const FitPlan& plan, FitStage stage) {
+  std::vector<FitParameter> parameters = plan.parameters;
   if (stage == FitStage::uniform)
-    for (Unknown& u : unknowns) u.spread = Spread::uniform, u.handles = 0;
-  return unknowns;
+    for (FitParameter& u : parameters) u.parameterization = Parameterization::uniform, u.handles = 0;
+  return parameters;
 }
 
 class Listener {
@@ -53,7 +53,7 @@ class Listener {
     if (stage == FitStage::uniform || stage == FitStage::field) {
       news.is_new_stage = true;
       map_.emplace(task_.data.experiment.mesh, plan_.model, known_parameters(plan_, task_.data.experiment),
-                   unknowns_of(plan_, stage));
+                   parameters_of(plan_, stage));
     }
     return news;
   }
@@ -63,8 +63,8 @@ class Listener {
     FitNews news = stage == stage_ ? FitNews{} : beginning(stage);
     if (stage == FitStage::uniform || stage == FitStage::field) {
       news.iterations.push_back(iteration);
-      for (size_t u = 0; u < plan_.unknowns.size(); ++u)
-        if (plan_.unknowns[u].quantity == "young") news.young = map_->values(static_cast<int>(u), p);
+      for (size_t u = 0; u < plan_.parameters.size(); ++u)
+        if (plan_.parameters[u].quantity == "young") news.young = map_->values(static_cast<int>(u), p);
     }
     report_(std::move(news));
   }

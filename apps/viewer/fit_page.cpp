@@ -53,7 +53,7 @@ class FitPack {
                  {"warnings", outcome_.warnings},
                  {"verdict", verdict_json()},
                  {"markerNames", data_.marker_names},
-                 {"nextPoke", next_poke()}};
+                 {"nextPoke", next_indentation()}};
     std::string text;
     append_base64(gzipped(pack_.bytes(std::move(head))), text);
     return text;
@@ -83,21 +83,21 @@ class FitPack {
 
   void add_readings() {
     std::vector<uint32_t> marker;
-    std::vector<float> measured, deviation, predicted, held_out;
+    std::vector<float> measured, sigma, predicted, held_out;
     for (size_t c = 0; c < data_.experiment.cases.size(); ++c) {
       const LoadCase& load = data_.experiment.cases[c];
       const CaseOutcome& outcome = outcome_.cases[c];
       for (size_t i = 0; i < load.positions.size(); ++i) {
         marker.push_back(static_cast<uint32_t>(load.positions[i].marker));
         append(load.positions[i].position, measured);
-        append(outcome.marker_deviation.empty() ? load.positions[i].deviation : outcome.marker_deviation[i], deviation);
+        append(outcome.marker_sigma.empty() ? load.positions[i].sigma : outcome.marker_sigma[i], sigma);
         outcome.ok ? append(outcome.markers[i], predicted) : append_nothing(predicted);
         outcome.has_held_out ? append(outcome.held_out_markers[i], held_out) : append_nothing(held_out);
       }
     }
     pack_.add("reading.marker", marker);
     pack_.add("reading.measured", measured);
-    pack_.add("reading.deviation", deviation);
+    pack_.add("reading.deviation", sigma);
     pack_.add("reading.predicted", predicted);
     pack_.add("reading.heldOut", held_out);
   }
@@ -115,7 +115,7 @@ class FitPack {
             {"tets", e.mesh.tet_count()},
             {"markers", e.markers.size()},
             {"cases", e.cases.size()},
-            {"unknowns", outcome_.unknowns},
+            {"unknowns", outcome_.parameter_count},
             {"residuals", outcome_.residuals},
             {"equilibria", outcome_.counts.equilibria}};
   }
@@ -151,8 +151,8 @@ class FitPack {
       list.push_back({{"name", q.name},
                       {"unit", q.unit},
                       {"isLog", q.name == "young"},
-                      {"varies", q.spread != Spread::uniform},
-                      {"hasDeviation", !q.deviation.empty()},
+                      {"varies", q.parameterization != Parameterization::uniform},
+                      {"hasDeviation", !q.sigma.empty()},
                       {"rows", rows}});
     }
     for (const auto& [name, value] : outcome_.plan.known)
@@ -193,19 +193,19 @@ class FitPack {
       const bool is_fitted = outcome.ok && !outcome.left_out;
       if (load.force)
         item["force"] =
-            reading(*load.force, is_fitted ? outcome.force_deviation : load.force_deviation, outcome, &Wrench::force);
+            reading(*load.force, is_fitted ? outcome.force_sigma : load.force_sigma, outcome, &Wrench::force);
       if (load.torque)
-        item["torque"] = reading(*load.torque, is_fitted ? outcome.torque_deviation : load.torque_deviation, outcome,
-                                 &Wrench::torque);
+        item["torque"] =
+            reading(*load.torque, is_fitted ? outcome.torque_sigma : load.torque_sigma, outcome, &Wrench::torque);
       list.push_back(std::move(item));
       first += load.positions.size();
     }
     return list;
   }
 
-  static Json reading(const Vec3d& measured, const Vec3d& deviation, const CaseOutcome& outcome, Vec3d Wrench::*part) {
+  static Json reading(const Vec3d& measured, const Vec3d& sigma, const CaseOutcome& outcome, Vec3d Wrench::*part) {
     return {{"measured", vector(measured)},
-            {"deviation", vector(deviation)},
+            {"deviation", vector(sigma)},
             {"predicted", outcome.ok ? vector(outcome.wrench.*part) : Json()},
             {"heldOut", outcome.has_held_out ? vector(outcome.held_out_wrench.*part) : Json()}};
   }
@@ -250,9 +250,9 @@ class FitPack {
     return list;
   }
 
-  Json next_poke() const {
-    if (!outcome_.next_poke) return {};
-    const PokeCandidate& poke = *outcome_.next_poke;
+  Json next_indentation() const {
+    if (!outcome_.next_indentation) return {};
+    const IndentationCandidate& poke = *outcome_.next_indentation;
     return {{"site", vector(poke.site)},
             {"inward", vector(poke.inward)},
             {"radius", poke.load.tip ? poke.load.tip->radius : 0.0},

@@ -5,7 +5,7 @@
 
 #include <cstring>
 
-#include "capture/poked_block_test.h"
+#include "capture/indented_block_test.h"
 #include "io/base64.h"
 #include "io/gzip.h"
 #include "viewer/arguments.h"
@@ -48,7 +48,7 @@ struct Unpacked {
 
 FitOutcome fitted(const DataSet& data) {
   FitPlan plan;
-  plan.unknowns = {parse_unknown("young=regions")};
+  plan.parameters = {parse_parameter("young=regions")};
   plan.known = {{"poisson", 0.4}};
   plan.left_out = {"poke 2"};
   plan.cross_validation = false;
@@ -96,7 +96,7 @@ TEST(FitPage, NamesMarkersAndGivesTorquesWithTheirAngle) {
   LoadCase& twist = data.experiment.cases[0];
   twist.pose.rotation = {{0, 0.05, 0}};
   twist.torque = Vec3d{{0, 1e-3, 0}};
-  twist.torque_deviation = {{1, 1, 1}};
+  twist.torque_sigma = {{1, 1, 1}};
   const FitOutcome outcome = fitted(data);
   ASSERT_TRUE(outcome.has_material()) << outcome.failure;
   const Json head = Unpacked(fit_page(data, outcome, {})).head;

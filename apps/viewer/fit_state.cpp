@@ -25,7 +25,7 @@ double mean_of(const FittedMaterial& truth, const std::string& quantity) {
 // discretization error.
 FitPlan plan_for(const Bench& bench) {
   FitPlan plan{.model = bench.truth().model};
-  plan.unknowns = {{.quantity = "young", .spread = Spread::tets, .handles = 0, .guess = 0}};
+  plan.parameters = {{.quantity = "young", .parameterization = Parameterization::tets, .handles = 0, .guess = 0}};
   for (const std::string& quantity : quantities_of(plan.model))
     if (quantity != "young") plan.known.emplace_back(quantity, mean_of(bench.truth(), quantity));
   plan.cross_validation = false;
@@ -112,7 +112,7 @@ bool FitState::add(const FitNews& news) {
     known_.failure = news.outcome->failure;
     known_.summary = news.outcome->report.message;
     for (const FittedQuantity& quantity : news.outcome->quantities)
-      if (quantity.name == "young") known_.sigma = quantity.deviation;
+      if (quantity.name == "young") known_.sigma = quantity.sigma;
   }
   if (news.has_ended) is_running_ = false, known_.phase.clear();
   show();
@@ -211,8 +211,8 @@ Json FitState::json() const {
     fit["softest"] = *least, fit["stiffest"] = *most;
     fit["error"] = error_of(*bench_, known_.young);
   }
-  if (known_.outcome && known_.outcome->next_poke) {
-    const PokeCandidate& next = *known_.outcome->next_poke;
+  if (known_.outcome && known_.outcome->next_indentation) {
+    const IndentationCandidate& next = *known_.outcome->next_indentation;
     fit["next"] = {{"site", json_of(next.site)}, {"words", next.description}};
   }
   return fit;

@@ -145,9 +145,9 @@ class Recorder {
 
   // Chooses the fields of a live session that positions determine.
   void choose_fields() {
-    const bool knows_interior = positions_->are_of_model();
+    const bool has_interior = positions_->are_of_model();
     for (const Field& field : fields_of(scene_.simulation.model())) {
-      if (field.name == "speed" || (!knows_interior && field.name != kDisplacement)) continue;
+      if (field.name == "speed" || (!has_interior && field.name != kDisplacement)) continue;
       fields_.push_back(field);
       if (kMoving.contains(field.name)) moving_.push_back(field.name);
       if (field.name != kDisplacement && !kMoving.contains(field.name)) fixed_.push_back(field.name);

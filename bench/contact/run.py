@@ -60,10 +60,10 @@ def main():
     parser.add_argument("scene", nargs="*", help=", ".join(scenes.PROBLEMS))
     parser.add_argument("--steps", type=int, help="steps of each scene; default: all")
     parser.add_argument("--threads", type=int, default=2)
-    parser.add_argument("--csv", type=pathlib.Path, help="also write the table here")
+    parser.add_argument("--csv", type=pathlib.Path, help="CSV file to write the table to")
     parser.add_argument("--out", default="out/bench_contact", help="folder of scenes and runs")
-    parser.add_argument("--write-only", action="store_true", help="write the files of the scenes and run nothing")
-    parser.add_argument("--refine", action="store_true", help="the chute with finer and finer meshes")
+    parser.add_argument("--write-only", action="store_true", help="write the files of the scenes without running them")
+    parser.add_argument("--refine", action="store_true", help="run the chute with a sequence of finer meshes")
     arguments = parser.parse_args()
     unknown = set(arguments.scene) - set(scenes.PROBLEMS)
     if unknown:

@@ -1,4 +1,4 @@
-// Estimates of the stiffness from pokes, without simulation.
+// Estimates of the stiffness from indentations, without simulation.
 #pragma once
 #include <optional>
 

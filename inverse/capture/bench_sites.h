@@ -1,4 +1,4 @@
-// Sites of pokes and markers of a virtual bench.
+// Sites of indentations and markers of a virtual bench.
 #pragma once
 #include <cstdint>
 #include <span>

@@ -1,4 +1,4 @@
-// A small data set for tests: a box that rests on z = 0, poked from above.
+// A small data set for tests: a box that rests on z = 0, indented from above.
 #pragma once
 #include <cmath>
 
@@ -13,7 +13,7 @@ namespace aspic {
 inline TetMesh test_box() { return make_box({{0, 0, 0}}, {{0.1, 0.08, 0.06}}, {5, 4, 3}); }
 
 // Data set of a smooth motion that grows with the depth, without noise; similar to an equilibrium.
-inline DataSet test_data(int pokes = 3, int depths = 2) {
+inline DataSet test_data(int indentations = 3, int depths = 2) {
   DataSet data;
   data.name = "box";
   const TetMesh user = test_box();
@@ -31,7 +31,7 @@ inline DataSet test_data(int pokes = 3, int depths = 2) {
       data.marker_names.push_back("m" + std::to_string(i) + std::to_string(j));
     }
   data.marker_gap.assign(e.markers.size(), 0.0);
-  for (int p = 0; p < pokes; ++p)
+  for (int p = 0; p < indentations; ++p)
     for (int d = 1; d <= depths; ++d) {
       LoadCase load;
       load.name = "poke " + std::to_string(p + 1) + ", depth " + std::to_string(d);
@@ -47,7 +47,7 @@ inline DataSet test_data(int pokes = 3, int depths = 2) {
         load.positions.push_back({m, X - Vec3d{{0, 0, depth * std::exp(-far * far)}}, {{1e-5, 1e-5, 2e-5}}});
       }
       load.force = Vec3d{{0.01, 0, -0.5 * d}};  // E seems to be about 7.4e3 Pa
-      load.force_deviation = {{0.01, 0.01, 0.02}};
+      load.force_sigma = {{0.01, 0.01, 0.02}};
       e.cases.push_back(std::move(load));
     }
   return data;

@@ -49,8 +49,8 @@ void add_tips_and_patches(Schema& s) {
        key("shape", kText, "disc: flat, with a rounded rim", Choices{{"sphere", "disc"}}, Usual{"\"sphere\""}),
        key("contact", kText, "bonded: glued on at the touch", Choices{{"sliding", "bonded"}}, Usual{"\"sliding\""}),
        key("radius", kNumber, "of the tip", Units{"length"}, kPositive, kRequired),
-       key("stiffness", kNumber, "of its elastic layer; default: far stiffer than the body seems to be", Units{"Pa/m"},
-           kPositive)});
+       key("stiffness", kNumber, "of its elastic layer; default: far above the estimated stiffness of the body",
+           Units{"Pa/m"}, kPositive)});
   add_keys(s, "patch",
            {key("name", kText, "as the table of cases calls it", Usual{"\"patch\""}),
             key("where", kExpression | kTable, "boundary triangles, by centroid", Members{"where"}),

@@ -121,13 +121,13 @@ class CaseReader {
     const double newton = settings_.unit("force"), newton_meter = settings_.unit("torque");
     load.force = table_.vector("force_", newton * sign);
     const std::optional<double> along = table_.number("force", newton * sign);
-    const std::optional<Vec3d> force_sd = table_.deviation("force_sd", newton);
+    const std::optional<Vec3d> force_sd = table_.sigma("force_sd", newton);
     if (load.force && along) table_.error("force and force_x, force_y, force_z are both given; keep one of them");
-    load.force_deviation = force_sd ? *force_sd : default_deviation("force", newton);
+    load.force_sigma = force_sd ? *force_sd : default_sigma("force", newton);
     if (along && !load.force) take_force_along_axis(load, *along);
     load.torque = table_.vector("torque_", newton_meter * sign);
-    const std::optional<Vec3d> torque_sd = table_.deviation("torque_sd", newton_meter);
-    load.torque_deviation = torque_sd ? *torque_sd : default_deviation("torque", newton_meter);
+    const std::optional<Vec3d> torque_sd = table_.sigma("torque_sd", newton_meter);
+    load.torque_sigma = torque_sd ? *torque_sd : default_sigma("torque", newton_meter);
     if ((load.force || load.torque) && !load.tip)
       table_.error("has a force or torque but no indenter; give its pose, or leave the force blank");
   }
@@ -138,11 +138,11 @@ class CaseReader {
     const Vec3d a = unit(load.pose.axis);
     load.force = force * a;
     for (int i = 0; i < 3; ++i)
-      load.force_deviation[i] = std::hypot(load.force_deviation[i],
-                                           kForceAcross * std::abs(force) * std::sqrt(std::max(0.0, 1 - a[i] * a[i])));
+      load.force_sigma[i] =
+          std::hypot(load.force_sigma[i], kForceAcross * std::abs(force) * std::sqrt(std::max(0.0, 1 - a[i] * a[i])));
   }
 
-  Vec3d default_deviation(const char* what, double in_si) const {
+  Vec3d default_sigma(const char* what, double in_si) const {
     const Value* sd = settings_["deviation"].find(what);
     const double value = sd ? sd->number() * in_si : 0;  // 0: chosen after all rows are read
     return {{value, value, value}};
@@ -185,15 +185,15 @@ void read_cases(const CaptureSettings& settings, const CaseScope& scope, ErrorLi
   sort_cases(data);
 }
 
-double deviation_along(const LoadCase& load) {
+double sigma_along(const LoadCase& load) {
   const double size = load.force ? norm(*load.force) : 0;
-  if (!(size > 0)) return norm(load.force_deviation);
+  if (!(size > 0)) return norm(load.force_sigma);
   const Vec3d d = (1 / size) * *load.force;
   const bool is_along_axis = load.tip && norm(cross(d, load.pose.axis)) < 1e-9 * norm(load.pose.axis);
   double stated = 0, of_gauge = 0;
   bool is_of_gauge = is_along_axis;
   for (int i = 0; i < 3; ++i) {
-    const double variance = load.force_deviation[i] * load.force_deviation[i];
+    const double variance = load.force_sigma[i] * load.force_sigma[i];
     const double left = variance - std::pow(kForceAcross * size, 2) * std::max(0.0, 1 - d[i] * d[i]);
     is_of_gauge &= left > -1e-12 * variance;
     stated += d[i] * d[i] * variance;

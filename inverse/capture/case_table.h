@@ -24,7 +24,7 @@ double load_size(const LoadCase& load);
 
 // Standard deviation of the force along its direction [N]. Excludes the unbounded lateral uncertainty of a single-axis
 // gauge.
-double deviation_along(const LoadCase& load);
+double sigma_along(const LoadCase& load);
 
 // Axis of an indenter that has rotated since the touch.
 Vec3d turned_axis(const TipPose& touch, const Vec3d& rotation);

@@ -53,7 +53,7 @@ class DataSetReader {
     read_cases(settings_, {tips_, patches_, surface}, errors_, data_);
     read_positions();
     errors_.finish();
-    choose_deviations(data_);
+    choose_sigmas(data_);
     choose_layers(data_);
     data_.name = printable(data_.name);
     for (std::string& note : data_.notes) note = printable(note);
@@ -268,12 +268,12 @@ class DataSetReader {
     const int c = table.index_of("case", case_of), m = table.index_of("marker", marker_of_);
     const double length = settings_.unit("length");
     const std::optional<Vec3d> p = table.vector("", length);
-    const std::optional<Vec3d> sd = table.deviation("sd", length);
+    const std::optional<Vec3d> sd = table.sigma("sd", length);
     if (c < 0 || m < 0 || !p) return;  // blank: hidden from the cameras
     if (const auto [first, is_new] = line_of.try_emplace({c, m}, table.line()); !is_new)
       table.error("this marker was given for this case in line " + std::to_string(first->second) + " already");
-    const Value* usual = settings_["deviation"].find("position");
-    const double all = usual ? usual->number() * length : 0;
+    const Value* typical = settings_["deviation"].find("position");
+    const double all = typical ? typical->number() * length : 0;
     // Uses the displacement from rest, because the measured surface never matches the mesh exactly.
     data_.experiment.cases[c].positions.push_back({m, *p - gap_[m], sd ? *sd : Vec3d{{all, all, all}}});
     data_.source.position_line[c].push_back(table.line());

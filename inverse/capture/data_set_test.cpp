@@ -41,13 +41,13 @@ void expect_equal(const LoadCase& a, const LoadCase& b) {
   EXPECT_EQ(a.pressed, b.pressed);
   expect_equal(a.force, b.force);
   expect_equal(a.torque, b.torque);
-  if (a.force) expect_equal(a.force_deviation, b.force_deviation);
-  if (a.torque) expect_equal(a.torque_deviation, b.torque_deviation);
+  if (a.force) expect_equal(a.force_sigma, b.force_sigma);
+  if (a.torque) expect_equal(a.torque_sigma, b.torque_sigma);
   ASSERT_EQ(a.positions.size(), b.positions.size());
   for (size_t i = 0; i < a.positions.size(); ++i) {
     EXPECT_EQ(a.positions[i].marker, b.positions[i].marker);
     expect_equal(a.positions[i].position, b.positions[i].position);
-    expect_equal(a.positions[i].deviation, b.positions[i].deviation);
+    expect_equal(a.positions[i].sigma, b.positions[i].sigma);
   }
 }
 
@@ -76,7 +76,7 @@ TEST_F(DataSetFile, ReadsBackToTheSameBits) {
   turned.pose.rotation = {{0.1, -0.2, 0.3}};
   turned.pose.axis = turned_axis(turned.touch, turned.pose.rotation);
   turned.torque = Vec3d{{1e-3, 2e-3, -1e-3}};
-  turned.torque_deviation = {{1e-4, 2e-4, 3e-4}};
+  turned.torque_sigma = {{1e-4, 2e-4, 3e-4}};
   data.experiment.cases[2].force.reset();
   data.experiment.cases[2].positions.pop_back();
   LoadCase hung;
@@ -112,7 +112,7 @@ TEST_F(DataSetFile, ReadsBackToTheSameBits) {
   for (size_t c = 0; c < a.cases.size(); ++c) expect_equal(a.cases[c], b.cases[c]);
 }
 
-TEST_F(DataSetFile, WhatIsLeftOutIsChosenAndTold) {
+TEST_F(DataSetFile, ChoosesAndReportsUnstatedValues) {
   const DataSet data = read_data_set(measured());
   const Experiment& e = data.experiment;
   ASSERT_EQ(e.cases.size(), 2u);
@@ -125,8 +125,8 @@ TEST_F(DataSetFile, WhatIsLeftOutIsChosenAndTold) {
   expect_equal(deep.touch.axis, {{0, 0, -1}});  // into the surface
   EXPECT_EQ(deep.tip->contact, TipContact::sliding);
   EXPECT_GT(deep.tip->stiffness, 0);
-  EXPECT_EQ(deep.positions[0].deviation[1], 1e-4);
-  EXPECT_GT(e.cases[0].positions[0].deviation[1], 0);
+  EXPECT_EQ(deep.positions[0].sigma[1], 1e-4);
+  EXPECT_GT(e.cases[0].positions[0].sigma[1], 0);
   EXPECT_NEAR(data.marker_gap[0], 1e-4, 1e-15);
   EXPECT_NEAR(deep.positions[0].position[2], 0.0559, 1e-15);  // displacement from the surface point
   EXPECT_EQ(e.fixed.size(), 30u);
@@ -164,8 +164,8 @@ TEST_F(DataSetFile, AxialForceLeavesLateralForceUndetermined) {
   folder.write("positions.csv", "case,marker,x,y,z\n1,A,0.05,0.04,0.056\n");
   const LoadCase load = read_data_set(folder).experiment.cases[0];
   expect_equal(*load.force, {{0, 0, -2}});
-  EXPECT_NEAR(load.force_deviation[2], 0.01, 1e-12);
-  EXPECT_GT(load.force_deviation[0], 0.5);
+  EXPECT_NEAR(load.force_sigma[2], 0.01, 1e-12);
+  EXPECT_GT(load.force_sigma[0], 0.5);
 }
 
 TEST_F(DataSetFile, PatchesAndMarkersAtVerticesAreFound) {

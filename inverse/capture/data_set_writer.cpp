@@ -113,9 +113,9 @@ class DataSetWriter {
     const auto patch = std::find(patches_.begin(), patches_.end(), load.pressed);
     row.add(patch == patches_.end() ? "" : patch_name(patch - patches_.begin()));
     add(row, load.force);
-    add(row, load.force ? Maybe(load.force_deviation) : std::nullopt);
+    add(row, load.force ? Maybe(load.force_sigma) : std::nullopt);
     add(row, load.torque);
-    add(row, load.torque ? Maybe(load.torque_deviation) : std::nullopt);
+    add(row, load.torque ? Maybe(load.torque_sigma) : std::nullopt);
     return row;
   }
 
@@ -126,7 +126,7 @@ class DataSetWriter {
         CsvRow row;
         row.add(load.name).add(data_.marker_names[r.marker]);
         add(row, r.position);
-        add(row, r.deviation);
+        add(row, r.sigma);
         csv.add(row);
       }
     csv.write(folder_ / "positions.csv");

@@ -107,14 +107,14 @@ class ContentDiagnosis {
     };
     for (size_t c = 0; c < experiment_.cases.size(); ++c) {
       std::vector<Vec3d> X, u;
-      double deviation = 0;
+      double sigma = 0;
       for (const MarkerReading& r : experiment_.cases[c].positions) {
         if (!is_still(experiment_.markers[r.marker])) continue;
         X.push_back(position(experiment_.markers[r.marker], experiment_.mesh.rest));
         u.push_back(displacement(experiment_, r));
-        deviation = std::max(deviation, norm(r.deviation));
+        sigma = std::max(sigma, norm(r.sigma));
       }
-      if (!X.empty()) examine_motion_of_fixed(where(c), X, u, deviation);
+      if (!X.empty()) examine_motion_of_fixed(where(c), X, u, sigma);
     }
   }
 
@@ -155,7 +155,7 @@ class ContentDiagnosis {
       for (const MarkerReading& r : cases[c].positions) {
         const Vec3d d = displacement(experiment_, r);
         for (int i = 0; i < 3; ++i) u[3 * r.marker + i] = d[i];
-        noise += dot(r.deviation, r.deviation);
+        noise += dot(r.sigma, r.sigma);
       }
       double whole = 0, left = 0;
       for (const double x : u) whole += x * x;

@@ -11,13 +11,13 @@
 namespace aspic {
 namespace {
 
-constexpr double kSoftestPoked = 50, kStiffestPoked = 1.5e7;  // usual Young's moduli of poked bodies [Pa]
-constexpr double kUnlike = 30;                                // implausible ratio of apparent moduli in one body
-constexpr double kStriking = 2.5;                             // suspicious ratio: a wrong force, or an inclusion
-constexpr double kSamePlace = 0.1, kSameDepth = 0.05;         // tolerances of equal pokes, relative to radius and depth
-constexpr double kOtherForce = 0.2, kOtherDeviations = 4;     // limits of force differences between equal pokes
+constexpr double kLeastTypicalYoung = 50, kLargestTypicalYoung = 1.5e7;  // typical Young's moduli of soft bodies [Pa]
+constexpr double kUnlike = 30;                         // implausible ratio of apparent moduli in one body
+constexpr double kStriking = 2.5;                      // suspicious ratio: a wrong force, or an inclusion
+constexpr double kSamePlace = 0.1, kSameDepth = 0.05;  // tolerances of equal indentations, relative to radius and depth
+constexpr double kOtherForce = 0.2, kOtherSigmas = 4;  // limits of force differences between equal indentations
 constexpr double kFalling = 0.8;  // ratio of a force to the previous one below which it falls with depth
-constexpr double kLargest = 1e9, kFinestForce = 1e-12;  // largest plausible force, and finest deviation [N]
+constexpr double kLargest = 1e9, kFinestForce = 1e-12;  // largest plausible force, and finest sigma [N]
 constexpr int kEnough = 6;                              // forces needed to detect rounding by a gauge
 
 class ForceDiagnosis {
@@ -67,7 +67,7 @@ class ForceDiagnosis {
     for (size_t c = 0; c < cases_.size(); ++c) {
       const LoadCase& load = cases_[c];
       if (!load.force) continue;
-      const Vec3d& sd = load.force_deviation;
+      const Vec3d& sd = load.force_sigma;
       if (!(norm(*load.force) < kLargest))
         return refuse(where(c), "the force is larger than " + three_digits(kLargest) + " N",
                       "correct it, or leave it blank");
@@ -100,7 +100,7 @@ class ForceDiagnosis {
       const Vec3d way = cases_[c].pose.center - cases_[c].touch.center;
       const double along = dot(way, *cases_[c].force);
       ++measured;
-      const double noise = 3 * deviation_along(cases_[c]);
+      const double noise = 3 * sigma_along(cases_[c]);
       if (along < -norm(way) * std::max(0.1 * norm(*cases_[c].force), noise)) against.push_back(c);
     }
     if (against.empty()) return;
@@ -117,21 +117,21 @@ class ForceDiagnosis {
   void examine_size() {
     const std::optional<double> E = apparent_young(data_.experiment);
     if (!E) return;
-    const std::string says =
+    const std::string finding =
         "force, depth and radius of the indenter imply a Young's modulus of about " + three_digits(*E) + " Pa";
-    if (*E >= kSoftestPoked && *E <= kStiffestPoked)
-      return findings_.note(data_.source.cases, says,
+    if (*E >= kLeastTypicalYoung && *E <= kLargestTypicalYoung)
+      return findings_.note(data_.source.cases, finding,
                             "if this is implausible for the body, check units: force and length");
     std::string remedy = "check units: force and length";
     for (const std::string& unit : unit_names("force")) {
       const double other = *E * unit_in_si("force", unit);
-      if (unit != "N" && other > kSoftestPoked && other < kStiffestPoked) {
+      if (unit != "N" && other > kLeastTypicalYoung && other < kLargestTypicalYoung) {
         remedy = "if forces are in " + unit + ", set units = { force = \"" + unit + "\" }: it would be " +
                  three_digits(other) + " Pa";
         if (unit == "mN" || unit == "g" || unit == "kN") break;
       }
     }
-    findings_.warning(data_.source.cases, says + ", too large for soft bodies", remedy);
+    findings_.warning(data_.source.cases, finding + ", too large for soft bodies", remedy);
   }
 
   // Kitchen scales show integral grams.
@@ -159,12 +159,12 @@ class ForceDiagnosis {
   std::map<std::string, std::vector<size_t>> groups() const {
     std::map<std::string, std::vector<size_t>> groups;
     for (size_t c = 0; c < cases_.size(); ++c)
-      if (apparent_young(cases_[c]) && norm(*cases_[c].force) > 3 * deviation_along(cases_[c]))
+      if (apparent_young(cases_[c]) && norm(*cases_[c].force) > 3 * sigma_along(cases_[c]))
         groups[cases_[c].group].push_back(c);
     return groups;
   }
 
-  // Finds pokes with implausibly high or low stiffness.
+  // Finds indentations with implausibly high or low stiffness.
   void examine_groups() {
     std::vector<double> stiffness;
     const auto by_group = groups();
@@ -175,9 +175,9 @@ class ForceDiagnosis {
       return median(E);
     };
     for (const auto& [name, members] : by_group) stiffness.push_back(of(members));
-    const double usual = median(stiffness);
+    const double typical = median(stiffness);
     for (const auto& [name, members] : by_group) {
-      const double ratio = of(members) / usual;
+      const double ratio = of(members) / typical;
       if (ratio < kStriking && ratio > 1 / kStriking) continue;
       if (ratio < kUnlike && ratio > 1 / kUnlike) {
         findings_.warning(
@@ -196,10 +196,10 @@ class ForceDiagnosis {
   void examine_repetitions() {
     for (size_t c = 0; c < cases_.size(); ++c)
       for (size_t first = 0; first < c; ++first) {
-        if (!is_same_poke(cases_[first], cases_[c])) continue;
+        if (!is_same_indentation(cases_[first], cases_[c])) continue;
         const double before = norm(*cases_[first].force), now = norm(*cases_[c].force);
         const double difference = norm(*cases_[c].force - *cases_[first].force);
-        const double noise = kOtherDeviations * (deviation_along(cases_[first]) + deviation_along(cases_[c]));
+        const double noise = kOtherSigmas * (sigma_along(cases_[first]) + sigma_along(cases_[c]));
         if (difference > std::max(noise, kOtherForce * std::max(before, now)))
           findings_.warning(where(c),
                             "the force is " + three_digits(now) + " N, but " + three_digits(before) +
@@ -209,7 +209,7 @@ class ForceDiagnosis {
       }
   }
 
-  static bool is_same_poke(const LoadCase& a, const LoadCase& b) {
+  static bool is_same_indentation(const LoadCase& a, const LoadCase& b) {
     if (!a.tip || !b.tip || !a.force || !b.force) return false;
     if (a.tip->shape != b.tip->shape || a.tip->contact != b.tip->contact) return false;
     const double radius = a.tip->radius, depth = load_size(a);
@@ -230,7 +230,7 @@ class ForceDiagnosis {
     for (size_t c = 1; c < cases_.size(); ++c) {
       const LoadCase &last = cases_[c - 1], &load = cases_[c];
       if (load.group != last.group || !load.force || !last.force || !load.tip || !last.tip) continue;
-      const double noise = 3 * (deviation_along(load) + deviation_along(last));
+      const double noise = 3 * (sigma_along(load) + sigma_along(last));
       const bool is_deeper = load_size(load) > 1.001 * load_size(last);
       if (is_deeper && norm(*load.force) < kFalling * norm(*last.force) - noise)
         findings_.warning(where(c),

@@ -12,7 +12,7 @@
 namespace aspic {
 namespace {
 
-constexpr double kDeep = 0.5;        // fraction of the body's size; deeper pokes are implausible
+constexpr double kDeep = 0.5;        // fraction of the body's size; deeper indentations are implausible
 constexpr double kLoose = 0.05;      // fraction of the body's size; larger gaps at the touch are not round-off
 constexpr double kHuge = 100;        // fraction of the body's size; larger radii are in another unit
 constexpr double kTurned = 1;        // [rad] implausible rotation of a bonded indenter
@@ -147,7 +147,7 @@ class LoadDiagnosis {
       findings_.error(where_, "a pressure without a patch", "describe it as [[patch]] and name it in the column patch");
     if (std::abs(load.pressure) > 1e7 || std::abs(load.pressure) < 1)
       findings_.warning(where_, "the pressure is " + three_digits(load.pressure) + " Pa",
-                        "usual pressures on soft bodies are 10 to 1e6 Pa; check units: pressure");
+                        "typical pressures on soft bodies are 10 to 1e6 Pa; check units: pressure");
   }
 
   // Three vertices that are not collinear hold a body.

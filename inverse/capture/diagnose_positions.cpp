@@ -93,8 +93,8 @@ Expected expected(const std::vector<Vec3d>& X, const std::vector<Vec3d>& u, int 
       const Row4 t = terms(near[n]);
       difference[n] = norm(u[near[n]] - (t[0] * c[0] + t[1] * c[1] + t[2] * c[2] + t[3] * c[3]));
     }
-    const double usual = median(difference);
-    for (size_t n = 0; n < near.size(); ++n) weight[n] = usual > 0 ? usual / std::max(difference[n], usual) : 1;
+    const double typical = median(difference);
+    for (size_t n = 0; n < near.size(); ++n) weight[n] = typical > 0 ? typical / std::max(difference[n], typical) : 1;
   }
   std::vector<double> range;
   for (const int j : near) range.push_back(norm(u[j] - c[0]));
@@ -171,7 +171,7 @@ class PositionDiagnosis {
         if (!(norm(displacement(experiment_, r)) < kFarthest * size_))
           return refuse(where, who + " is far outside the body of size " + three_digits(size_) + " m",
                         "correct its position, or remove the row");
-        const double finest = std::min({r.deviation[0], r.deviation[1], r.deviation[2]});
+        const double finest = std::min({r.sigma[0], r.sigma[1], r.sigma[2]});
         if (finest < kFinestPosition * size_)
           return refuse(
               where, who + " has a standard deviation of " + three_digits(finest) + " m, which no instrument attains",
@@ -205,7 +205,7 @@ class PositionDiagnosis {
       for (const MarkerReading& r : load.positions)
         if (is_by_tip_alone(load)) {
           way.push_back(load_size(load) + norm(load.pose.rotation) * size_);
-          noise.push_back(norm(r.deviation));
+          noise.push_back(norm(r.sigma));
         }
     if (way.empty()) return true;
     const double motion = default_motion([](const Vec3d& x, const Vec3d&) { return x; });
@@ -250,14 +250,14 @@ class PositionDiagnosis {
     const std::vector<std::vector<int>> near = neighbors(X);
     std::vector<double> excess(u.size()), spread(u.size()), range(u.size());
     for (size_t i = 0; i < u.size(); ++i) {
-      const Expected usual = expected(X, u, static_cast<int>(i), near[i]);
-      spread[i] = usual.spread;
-      range[i] = usual.range;
-      excess[i] = norm(u[i] - usual.u);
-      largest = std::max(largest, norm(usual.u));
+      const Expected typical = expected(X, u, static_cast<int>(i), near[i]);
+      spread[i] = typical.spread;
+      range[i] = typical.range;
+      excess[i] = norm(u[i] - typical.u);
+      largest = std::max(largest, norm(typical.u));
     }
     for (size_t i = 0; i < u.size(); ++i) {
-      const double tolerated = kSuspicious * (spread[i] + norm(readings[i].deviation));
+      const double tolerated = kSuspicious * (spread[i] + norm(readings[i].sigma));
       // The top of a sharp dent differs from its neighbors, but not by more than they differ from each other, nor by
       // more than the estimated motion by the indenter.
       if (excess[i] > std::max({tolerated, kNoticeable * largest, range[i], by_tip(experiment_.cases[c], X[i])}) &&

@@ -24,8 +24,8 @@ auto finding(Severity severity, const std::string& where, const std::string& wha
 }
 
 // Adds line numbers as if the data had been read.
-DataSet data_in_lines(int pokes = 3, int depths = 2) {
-  DataSet data = test_data(pokes, depths);
+DataSet data_in_lines(int indentations = 3, int depths = 2) {
+  DataSet data = test_data(indentations, depths);
   for (size_t m = 0; m < data.experiment.markers.size(); ++m)
     data.source.marker_line.push_back(2 + static_cast<int>(m));
   int line = 2;
@@ -55,15 +55,15 @@ TEST(Diagnosis, ForcesInGramsOrMillinewtonsAreNoticed) {
   EXPECT_THAT(diagnose(data), Contains(finding(Severity::warning, "cases.csv", "too large for soft bodies", "mN")));
 }
 
-TEST(Diagnosis, OnePokeInAnotherUnitIsNoticed) {
+TEST(Diagnosis, FindsOneIndentationInAnotherUnit) {
   DataSet data = data_in_lines(4);
   data.experiment.cases[2].force = 1000.0 * *data.experiment.cases[2].force;
   data.experiment.cases[3].force = 1000.0 * *data.experiment.cases[3].force;
   EXPECT_THAT(diagnose(data), Contains(finding(Severity::warning, "cases.csv:4", "times as stiff here", "as mN are")));
 }
 
-// Repeats the cases of the first poke as another group with other forces.
-void repeat_first_poke(DataSet& data, double factor) {
+// Repeats the cases of the first indentation as another group with other forces.
+void repeat_first_indentation(DataSet& data, double factor) {
   for (const size_t c : {0, 1}) {
     LoadCase again = data.experiment.cases[c];
     again.group = "again", again.name = "again, depth " + std::to_string(c + 1);
@@ -73,10 +73,10 @@ void repeat_first_poke(DataSet& data, double factor) {
   }
 }
 
-TEST(Diagnosis, TheSamePokeWithAnotherForceIsNoticed) {
+TEST(Diagnosis, FindsDifferentForcesOfEqualIndentations) {
   for (const double factor : {0.25, 0.5, 2.0, 4.0}) {
     DataSet data = data_in_lines();
-    repeat_first_poke(data, factor);
+    repeat_first_indentation(data, factor);
     EXPECT_THAT(diagnose(data), Contains(finding(Severity::warning, "again, depth 2",
                                                  "1 N under the same load in 'poke 1, depth 2'", "correct the wrong")))
         << factor;
@@ -85,12 +85,12 @@ TEST(Diagnosis, TheSamePokeWithAnotherForceIsNoticed) {
 
 TEST(Diagnosis, RepetitionsThatAgreeAreNoWarnings) {
   DataSet data = data_in_lines();
-  repeat_first_poke(data, 1.05);
+  repeat_first_indentation(data, 1.05);
   EXPECT_THAT(diagnose(data), Not(Contains(finding(Severity::warning, "", "under the same load"))));
   EXPECT_THAT(diagnose(data), Not(Contains(finding(Severity::warning, "", "stiffer here"))));
 }
 
-TEST(Diagnosis, OnePokeFourTimesAsStiffIsNoticed) {
+TEST(Diagnosis, FindsOneIndentationFourTimesAsStiff) {
   DataSet data = data_in_lines();
   for (const size_t c : {2, 3}) data.experiment.cases[c].force = 4.0 * *data.experiment.cases[c].force;
   EXPECT_THAT(diagnose(data), Contains(finding(Severity::warning, "poke 2", "much stiffer here", "check this force")));
@@ -100,7 +100,7 @@ TEST(Diagnosis, ForceBelowNoiseGivesNoStiffness) {
   DataSet data = data_in_lines(4);
   for (const size_t c : {2, 3}) data.experiment.cases[c].force = 0.01 * *data.experiment.cases[c].force;
   EXPECT_THAT(diagnose(data), Not(Contains(finding(Severity::warning, "cases.csv:4", "as stiff here"))));
-  for (const size_t c : {2, 3}) data.experiment.cases[c].force_deviation = {{1e-4, 1e-4, 1e-4}};
+  for (const size_t c : {2, 3}) data.experiment.cases[c].force_sigma = {{1e-4, 1e-4, 1e-4}};
   EXPECT_THAT(diagnose(data), Contains(finding(Severity::warning, "cases.csv:4", "1/100 times as stiff here")));
 }
 
@@ -119,7 +119,7 @@ void measure_along_axis(LoadCase& load, double force) {
   const Vec3d& a = load.pose.axis;
   load.force = force * a;
   for (int i = 0; i < 3; ++i)
-    load.force_deviation[i] = std::hypot(0.01, 0.3 * force * std::sqrt(std::max(0.0, 1 - a[i] * a[i])));
+    load.force_sigma[i] = std::hypot(0.01, 0.3 * force * std::sqrt(std::max(0.0, 1 - a[i] * a[i])));
 }
 
 DataSet data_of_one_axis(const Vec3d& axis) {
@@ -304,13 +304,13 @@ TEST(Diagnosis, ReadingsThatNoInstrumentGivesAreErrors) {
   data.experiment.cases[1].positions[3].position[0] = 1e300;
   EXPECT_THAT(diagnose(data), Contains(finding(Severity::error, data.source.position(1, 3), "far outside", "correct")));
   data = data_in_lines();
-  data.experiment.cases[1].positions[3].deviation[1] = 1e-300;
+  data.experiment.cases[1].positions[3].sigma[1] = 1e-300;
   EXPECT_THAT(diagnose(data), Contains(finding(Severity::error, data.source.position(1, 3), "attains", "blank")));
   data = data_in_lines();
   data.experiment.cases[2].force = Vec3d{{0, 0, -1e300}};
   EXPECT_THAT(diagnose(data), Contains(finding(Severity::error, "cases.csv:4", "the force is larger", "blank")));
   data = data_in_lines();
-  data.experiment.cases[2].force_deviation[0] = 1e-200;
+  data.experiment.cases[2].force_sigma[0] = 1e-200;
   EXPECT_THAT(diagnose(data), Contains(finding(Severity::error, "cases.csv:4", "no gauge", "force_sd")));
   data = data_in_lines();
   for (LoadCase& load : data.experiment.cases) load.force = Vec3d{};

@@ -15,7 +15,7 @@ namespace aspic {
 namespace {
 
 constexpr int kMostTets = 5'000'000;  // limit of a refined mesh
-constexpr double kUsualYoung = 1e5, kUsualPoisson = 0.4;
+constexpr double kTypicalYoung = 1e5, kTypicalPoisson = 0.4;
 
 // Splits "young=tets".
 std::pair<std::string, std::string> halves(const std::string& text, const std::string& example) {
@@ -35,23 +35,23 @@ void check_quantity(const std::string& quantity, const FitPlan& plan) {
     throw InvalidInput("'" + quantity + "' is not a quantity of the model " + plan.model + suggestion(quantity, all));
 }
 
-bool is_unknown(const FitPlan& plan, const std::string& quantity) {
-  return std::any_of(plan.unknowns.begin(), plan.unknowns.end(),
-                     [&](const Unknown& u) { return u.quantity == quantity; });
+bool is_fitted(const FitPlan& plan, const std::string& quantity) {
+  return std::any_of(plan.parameters.begin(), plan.parameters.end(),
+                     [&](const FitParameter& u) { return u.quantity == quantity; });
 }
 bool is_known(const FitPlan& plan, const std::string& quantity) {
   return std::any_of(plan.known.begin(), plan.known.end(), [&](const auto& k) { return k.first == quantity; });
 }
 
-// An interior initial guess, even if the usual value is the end of the range (no growth, no share).
+// An interior initial guess, even if the typical value is the end of the range (no growth, no share).
 double inside(const ExtraParameter& extra) {
   const double margin = 0.1 * std::min(1.0, extra.max - extra.min);
   return std::clamp(extra.fallback, extra.min + margin, extra.max - margin);
 }
 
 double default_value(const std::string& quantity, const std::string& model, const Experiment& experiment) {
-  if (quantity == "young") return apparent_young(experiment).value_or(kUsualYoung);
-  if (quantity == "poisson") return kUsualPoisson;
+  if (quantity == "young") return apparent_young(experiment).value_or(kTypicalYoung);
+  if (quantity == "poisson") return kTypicalPoisson;
   for (const ExtraParameter& extra : material_info(model).extra)
     if (extra.name == quantity)
       return extra.fallback > extra.min && extra.fallback < extra.max ? extra.fallback : inside(extra);
@@ -73,33 +73,33 @@ void check_refinement(const FitPlan& plan, const TetMesh& mesh) {
 
 }  // namespace
 
-Unknown parse_unknown(const std::string& text) {
+FitParameter parse_parameter(const std::string& text) {
   const std::string example = "young=tets, young=regions, young=handles:40 or poisson=uniform";
-  const auto [quantity, spread] = halves(text, example);
-  Unknown unknown{.quantity = quantity, .guess = 0};
-  if (spread == "tets") {
-    unknown.spread = Spread::tets;
-  } else if (spread == "regions") {
-    unknown.spread = Spread::regions;
-  } else if (spread == "uniform") {
-    unknown.spread = Spread::uniform;
-  } else if (spread.starts_with("handles:")) {
-    unknown.spread = Spread::handles;
-    const char *first = spread.data() + 8, *last = spread.data() + spread.size();
-    const auto [end, error] = std::from_chars(first, last, unknown.handles);
-    if (error != std::errc() || end != last || unknown.handles < 1)
+  const auto [quantity, parameterization] = halves(text, example);
+  FitParameter parameter{.quantity = quantity, .guess = 0};
+  if (parameterization == "tets") {
+    parameter.parameterization = Parameterization::tets;
+  } else if (parameterization == "regions") {
+    parameter.parameterization = Parameterization::regions;
+  } else if (parameterization == "uniform") {
+    parameter.parameterization = Parameterization::uniform;
+  } else if (parameterization.starts_with("handles:")) {
+    parameter.parameterization = Parameterization::handles;
+    const char *first = parameterization.data() + 8, *last = parameterization.data() + parameterization.size();
+    const auto [end, error] = std::from_chars(first, last, parameter.handles);
+    if (error != std::errc() || end != last || parameter.handles < 1)
       throw InvalidInput("'" + text + "': handles:N needs a whole number above 0, such as handles:40");
   } else {
-    throw InvalidInput("'" + text + "': unknown spread '" + spread + "'" +
-                       suggestion(spread, {"tets", "regions", "uniform", "handles:40"}));
+    throw InvalidInput("'" + text + "': unknown parameterization '" + parameterization + "'" +
+                       suggestion(parameterization, {"tets", "regions", "uniform", "handles:40"}));
   }
-  return unknown;
+  return parameter;
 }
 
-std::string text_of(const Unknown& unknown) {
-  constexpr const char* kSpreads[] = {"uniform", "regions", "handles:", "tets"};
-  return unknown.quantity + "=" + kSpreads[static_cast<size_t>(unknown.spread)] +
-         (unknown.spread == Spread::handles ? std::to_string(unknown.handles) : "");
+std::string text_of(const FitParameter& parameter) {
+  constexpr const char* kNames[] = {"uniform", "regions", "handles:", "tets"};
+  return parameter.quantity + "=" + kNames[static_cast<size_t>(parameter.parameterization)] +
+         (parameter.parameterization == Parameterization::handles ? std::to_string(parameter.handles) : "");
 }
 
 std::pair<std::string, double> parse_known(const std::string& text) {
@@ -111,9 +111,9 @@ std::pair<std::string, double> parse_known(const std::string& text) {
   return {quantity, value};
 }
 
-std::vector<Unknown> single_values(std::vector<Unknown> unknowns) {
-  for (Unknown& u : unknowns) u.spread = Spread::uniform, u.handles = 0;
-  return unknowns;
+std::vector<FitParameter> single_values(std::vector<FitParameter> parameters) {
+  for (FitParameter& u : parameters) u.parameterization = Parameterization::uniform, u.handles = 0;
+  return parameters;
 }
 
 FitPlan completed(FitPlan plan, const Experiment& experiment) {
@@ -122,30 +122,32 @@ FitPlan completed(FitPlan plan, const Experiment& experiment) {
     check_quantity(quantity, plan);
     check_range(quantity, value);
   }
-  for (size_t i = 0; i < plan.unknowns.size(); ++i) {
-    const std::string& quantity = plan.unknowns[i].quantity;
+  for (size_t i = 0; i < plan.parameters.size(); ++i) {
+    const std::string& quantity = plan.parameters[i].quantity;
     check_quantity(quantity, plan);
-    if (is_known(plan, quantity)) throw InvalidInput(quantity + " is both known and unknown; remove one of the two");
+    if (is_known(plan, quantity))
+      throw InvalidInput(quantity + " is in both --known and --unknown; remove one of the two");
     for (size_t j = 0; j < i; ++j)
-      if (plan.unknowns[j].quantity == quantity)
-        throw InvalidInput(quantity + " is unknown twice; keep one --unknown for it");
-    if (plan.unknowns[i].spread == Spread::regions && experiment.mesh.region.empty())
-      throw InvalidInput("'" + text_of(plan.unknowns[i]) +
+      if (plan.parameters[j].quantity == quantity)
+        throw InvalidInput(quantity + " is fitted twice; keep one --unknown for it");
+    if (plan.parameters[i].parameterization == Parameterization::regions && experiment.mesh.region.empty())
+      throw InvalidInput("'" + text_of(plan.parameters[i]) +
                          "': the mesh of the data has no region labels (try handles:40 or tets)");
   }
   // Default: stiffness per tet, all others uniform.
   for (const std::string& quantity : quantities)
-    if (!is_unknown(plan, quantity) && !is_known(plan, quantity))
-      plan.unknowns.push_back({.quantity = quantity,
-                               .spread = quantity == "young" ? Spread::tets : Spread::uniform,
-                               .handles = 0,
-                               .guess = 0});
-  for (Unknown& u : plan.unknowns)
+    if (!is_fitted(plan, quantity) && !is_known(plan, quantity))
+      plan.parameters.push_back(
+          {.quantity = quantity,
+           .parameterization = quantity == "young" ? Parameterization::tets : Parameterization::uniform,
+           .handles = 0,
+           .guess = 0});
+  for (FitParameter& u : plan.parameters)
     if (u.guess == 0) u.guess = default_value(u.quantity, plan.model, experiment);
   // Standard deviations that include the mesh correction exceed the random errors. The discrepancy principle would
   // treat the difference as noise and oversmooth the field.
-  const bool is_field = std::any_of(plan.unknowns.begin(), plan.unknowns.end(),
-                                    [](const Unknown& u) { return u.spread == Spread::tets; });
+  const bool is_field = std::any_of(plan.parameters.begin(), plan.parameters.end(),
+                                    [](const FitParameter& u) { return u.parameterization == Parameterization::tets; });
   if (is_field && plan.mesh_errors && plan.fit.weight_rule == "auto") plan.fit.weight_rule = "evidence";
   check_refinement(plan, experiment.mesh);
   const std::vector<std::string> groups = groups_of(experiment);
@@ -162,14 +164,14 @@ std::string text_of(const FitPlan& plan) {
   const auto add = [&](const std::string& key, const std::string& value) { text += key + " = " + value + "\n"; };
   const auto quoted = [](const std::string& word) { return "\"" + word + "\""; };
   add("model", quoted(plan.model));
-  for (const Unknown& u : plan.unknowns) {
+  for (const FitParameter& u : plan.parameters) {
     add("unknown." + u.quantity, quoted(text_of(u)));
     add("guess." + u.quantity, number_text(u.guess));
   }
   for (const auto& [quantity, value] : plan.known) add("known." + quantity, number_text(value));
   const char* smooth[] = {"none", "h1", "tv"};
   add("smooth", quoted(smooth[static_cast<int>(plan.regularizer.smoothness)]));
-  add("prior_deviation", number_text(plan.regularizer.prior_deviation));
+  add("prior_deviation", number_text(plan.regularizer.prior_sigma));
   add("method", quoted(plan.fit.method));
   add("rule", quoted(plan.fit.weight_rule));
   add("weight", plan.fit.weight < 0 ? quoted("auto") : number_text(plan.fit.weight));
@@ -206,10 +208,10 @@ std::string fingerprint_of(const Experiment& e) {
     add_vector(c.gravity);
     hash.add(&c.pressure, sizeof c.pressure);
     for (const MarkerReading& r : c.positions)
-      hash.add(&r.marker, sizeof r.marker), add_vector(r.position), add_vector(r.deviation);
+      hash.add(&r.marker, sizeof r.marker), add_vector(r.position), add_vector(r.sigma);
     for (const std::optional<Vec3d>* reading : {&c.force, &c.torque})
       add_vector(reading->value_or(Vec3d{{1e300, 0, 0}}));
-    add_vector(c.force_deviation), add_vector(c.torque_deviation);
+    add_vector(c.force_sigma), add_vector(c.torque_sigma);
   }
   return hash.text();
 }
@@ -218,7 +220,7 @@ std::vector<MaterialParameters> known_parameters(const FitPlan& plan, const Expe
   const auto value = [&](const std::string& quantity) {
     for (const auto& [known, number] : plan.known)
       if (known == quantity) return number;
-    for (const Unknown& u : plan.unknowns)
+    for (const FitParameter& u : plan.parameters)
       if (u.quantity == quantity) return u.guess;
     return default_value(quantity, plan.model, experiment);
   };

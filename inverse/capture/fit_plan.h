@@ -14,7 +14,7 @@ namespace aspic {
 
 struct FitPlan {
   std::string model = "neo_hookean";
-  std::vector<Unknown> unknowns;                      // empty: young per tet, all others uniform; guess 0: automatic
+  std::vector<FitParameter> parameters;               // empty: young per tet, all others uniform; guess 0: automatic
   std::vector<std::pair<std::string, double>> known;  // uniform, not fitted: {"poisson", 0.45}
   RegularizerOptions regularizer;
   FitOptions fit;
@@ -29,14 +29,14 @@ struct FitPlan {
 };
 
 // Parses "young=tets", "poisson=uniform", "b=handles:40". Throws InvalidInput.
-Unknown parse_unknown(const std::string& text);
-std::string text_of(const Unknown& unknown);
+FitParameter parse_parameter(const std::string& text);
+std::string text_of(const FitParameter& parameter);
 std::pair<std::string, double> parse_known(const std::string& text);  // "poisson=0.45"
 
 inline constexpr int kMostParts = 4;
 
 // The same parameters, each uniform over the body.
-std::vector<Unknown> single_values(std::vector<Unknown> unknowns);
+std::vector<FitParameter> single_values(std::vector<FitParameter> parameters);
 
 // Returns the plan with all choices that depend on data and model. Throws InvalidInput for names that the model or the
 // data do not have.

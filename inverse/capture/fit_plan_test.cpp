@@ -13,10 +13,10 @@ using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 
 TEST(FitPlan, UnknownsAreRead) {
-  EXPECT_EQ(text_of(parse_unknown("young=tets")), "young=tets");
-  EXPECT_EQ(text_of(parse_unknown("b=handles:40")), "b=handles:40");
+  EXPECT_EQ(text_of(parse_parameter("young=tets")), "young=tets");
+  EXPECT_EQ(text_of(parse_parameter("b=handles:40")), "b=handles:40");
   EXPECT_EQ(parse_known("poisson=0.45").second, 0.45);
-  const auto refused = [](const std::string& text) { return message_of([&] { parse_unknown(text); }); };
+  const auto refused = [](const std::string& text) { return message_of([&] { parse_parameter(text); }); };
   EXPECT_THAT(refused("young"), HasSubstr("give QUANTITY=VALUE"));
   EXPECT_THAT(refused("young=tet"), HasSubstr("did you mean 'tets'?"));
   EXPECT_THAT(refused("young=handles:0"), HasSubstr("whole number above 0"));
@@ -37,8 +37,8 @@ TEST(FitPlan, WhatDoesNotFitTogetherIsRefused) {
   const auto refused = [](const FitPlan& plan) { return message_of([&] { completed(plan, block().experiment); }); };
   EXPECT_THAT(refused(quick_plan({"yuong=tets"})), HasSubstr("did you mean 'young'?"));
   EXPECT_THAT(refused(quick_plan({"b=uniform"})), HasSubstr("'b' is not a quantity of the model neo_hookean"));
-  EXPECT_THAT(refused(quick_plan({"poisson=uniform"})), HasSubstr("both known and unknown"));
-  EXPECT_THAT(refused(quick_plan({"young=tets", "young=uniform"})), HasSubstr("unknown twice"));
+  EXPECT_THAT(refused(quick_plan({"poisson=uniform"})), HasSubstr("in both --known and --unknown"));
+  EXPECT_THAT(refused(quick_plan({"young=tets", "young=uniform"})), HasSubstr("fitted twice"));
   FitPlan plan = quick_plan();
   plan.known = {{"poisson", 0.5}};
   EXPECT_THAT(refused(plan), HasSubstr("poisson = 0.5; must be"));

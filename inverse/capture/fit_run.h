@@ -10,7 +10,7 @@
 #include "capture/fit_plan.h"
 #include "capture/journal.h"
 #include "fit/cross_validation.h"
-#include "fit/next_poke.h"
+#include "fit/next_indentation.h"
 #include "fit/uncertainty.h"
 #include "scene/material_file.h"
 
@@ -26,10 +26,10 @@ struct ValueRow {
 // Fitted quantity over the body.
 struct FittedQuantity {
   std::string name, unit;
-  Spread spread = Spread::uniform;
+  Parameterization parameterization = Parameterization::uniform;
   std::vector<double> values;  // one per tet, in the order of the data set [SI]
   // Standard deviation and reduction of each value on the fitted scale (log E); empty: unknown.
-  std::vector<double> deviation, reduction;
+  std::vector<double> sigma, reduction;
   std::vector<ValueRow> rows;
 };
 
@@ -43,8 +43,8 @@ struct CaseOutcome {
   std::vector<Vec3d> held_out_markers;
   Wrench held_out_wrench;
   // Standard deviations used by the fit, including those of the mesh correction [m], [N].
-  std::vector<Vec3d> marker_deviation;
-  Vec3d force_deviation{}, torque_deviation{};
+  std::vector<Vec3d> marker_sigma;
+  Vec3d force_sigma{}, torque_sigma{};
   double relative_mesh_error = 0;  // relative error of the force: |limit - mesh| over the smaller of both
 };
 
@@ -77,18 +77,18 @@ struct FitOutcome {
   std::optional<FoundParts> parts;
   std::optional<CrossValidation> held_out;
   std::optional<CrossValidation> held_out_of_one_value;  // for a fitted field
-  std::optional<PokeCandidate> next_poke;
+  std::optional<IndentationCandidate> next_indentation;
   std::vector<std::string> warnings;
   std::string failure;       // why there is no material; empty if there is one
   bool interrupted = false;  // the material is the current estimate
-  int unknowns = 0, residuals = 0;
+  int parameter_count = 0, residuals = 0;
   int simulated_tets = 0;  // equal to those of the data, or more (FitPlan::refine)
   Misfit::Counts counts;
 
   bool has_material() const { return failure.empty(); }
 };
 
-enum class FitStage { uniform, mesh_errors, field, uncertainty, parts, cross_validation, next_poke };
+enum class FitStage { uniform, mesh_errors, field, uncertainty, parts, cross_validation, next_indentation };
 
 struct FitCallbacks {
   std::function<void(FitStage, const std::string& what)> begin = {};  // called at the start of each stage and substage

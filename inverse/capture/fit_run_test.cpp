@@ -56,21 +56,21 @@ TEST(FitRun, DefaultFitsStiffnessOfEveryTet) {
   EXPECT_EQ(outcome.quantities[0].name, "young");
   EXPECT_EQ(outcome.quantities[0].rows.size(), 3u);
   EXPECT_EQ(outcome.quantities[1].name, "poisson");
-  EXPECT_EQ(outcome.unknowns, block().experiment.mesh.tet_count() + 1);
+  EXPECT_EQ(outcome.parameter_count, block().experiment.mesh.tet_count() + 1);
 }
 
 TEST(FitRun, UninformativeDataKeepThePrior) {
   DataSet data = block();
   for (LoadCase& load : data.experiment.cases) {
     load.positions.clear();
-    load.force_deviation = {{1e3, 1e3, 1e3}};
+    load.force_sigma = {{1e3, 1e3, 1e3}};
   }
   FitPlan plan = quick_plan({"young=tets"});
   plan.uncertainty = true;
   const FitOutcome outcome = fit_material(data, plan, {}, {});
   ASSERT_TRUE(outcome.posterior && outcome.posterior->ok) << outcome.failure;
   EXPECT_LT(outcome.posterior->informed, 0.1);
-  for (const double deviation : outcome.posterior->deviation.front()) EXPECT_GT(deviation, 0.5);
+  for (const double sigma : outcome.posterior->sigma.front()) EXPECT_GT(sigma, 0.5);
   EXPECT_THAT(outcome.warnings, ::testing::Contains(HasSubstr("hardly determine")));
 }
 
@@ -83,21 +83,21 @@ TEST(FitRun, ShowsThePredictionThatTheMisfitCounts) {
   const FitOutcome outcome = fit_material(data, plan, {}, {});
   ASSERT_TRUE(outcome.has_material()) << outcome.failure;
   double squares = 0;
-  const auto add = [&](const Vec3d& shown, const Vec3d& measured, const Vec3d& deviation) {
-    for (int i = 0; i < 3; ++i) squares += std::pow((shown[i] - measured[i]) / deviation[i], 2);
+  const auto add = [&](const Vec3d& shown, const Vec3d& measured, const Vec3d& sigma) {
+    for (int i = 0; i < 3; ++i) squares += std::pow((shown[i] - measured[i]) / sigma[i], 2);
   };
   for (size_t c = 0; c < outcome.cases.size(); ++c) {
     const LoadCase& load = data.experiment.cases[c];
     if (outcome.cases[c].left_out) continue;
     for (size_t k = 0; k < load.positions.size(); ++k)
-      add(outcome.cases[c].markers[k], load.positions[k].position, load.positions[k].deviation);
-    add(outcome.cases[c].wrench.force, *load.force, load.force_deviation);
+      add(outcome.cases[c].markers[k], load.positions[k].position, load.positions[k].sigma);
+    add(outcome.cases[c].wrench.force, *load.force, load.force_sigma);
   }
   EXPECT_GT(outcome.report.misfit, 100);
   EXPECT_NEAR(squares, 2 * outcome.report.misfit, 1e-6 * squares);
 }
 
-// Forces of one poke belong to another body, so that no field explains all three.
+// Forces of one indentation belong to another body, so that no field explains all three.
 DataSet contradictory_block() {
   DataSet data = measured_block(2);
   for (LoadCase& load : data.experiment.cases)
@@ -114,7 +114,7 @@ TEST(FitRun, OneValueReplacesAFieldAtItsBounds) {
   ASSERT_TRUE(outcome.has_material()) << outcome.failure;
   ASSERT_THAT(outcome.against_field, ::testing::Not(::testing::IsEmpty()));
   EXPECT_EQ(outcome.against_field.front().name, "at_bound") << outcome.against_field.front().text;
-  EXPECT_EQ(outcome.unknowns, 1);
+  EXPECT_EQ(outcome.parameter_count, 1);
   ASSERT_EQ(young(outcome).rows.size(), 1u);
   EXPECT_EQ(young(outcome).rows[0].where, "everywhere");
   EXPECT_TRUE(young(outcome).rows[0].interval);
@@ -142,17 +142,17 @@ TEST(FitRun, ShowsForcesWithTheCorrectionForTheMesh) {
   const FitOutcome outcome = fit_material(data, plan, {}, {});
   ASSERT_TRUE(outcome.has_material()) << outcome.failure;
   double squares = 0;
-  const auto add = [&](const Vec3d& error, const Vec3d& deviation) {
-    for (int i = 0; i < 3; ++i) squares += std::pow(error[i] / deviation[i], 2);
+  const auto add = [&](const Vec3d& error, const Vec3d& sigma) {
+    for (int i = 0; i < 3; ++i) squares += std::pow(error[i] / sigma[i], 2);
   };
   for (size_t c = 0; c < outcome.cases.size(); ++c) {
     const LoadCase& load = data.experiment.cases[c];
     const CaseOutcome& shown = outcome.cases[c];
     EXPECT_GT(shown.relative_mesh_error, 0.05);
-    EXPECT_GT(shown.force_deviation[1], load.force_deviation[1]) << "with that of the correction";
+    EXPECT_GT(shown.force_sigma[1], load.force_sigma[1]) << "with that of the correction";
     for (size_t k = 0; k < load.positions.size(); ++k)
-      add(shown.markers[k] - load.positions[k].position, shown.marker_deviation[k]);
-    add(shown.wrench.force - *load.force, shown.force_deviation);
+      add(shown.markers[k] - load.positions[k].position, shown.marker_sigma[k]);
+    add(shown.wrench.force - *load.force, shown.force_sigma);
   }
   EXPECT_NEAR(squares, 2 * outcome.report.misfit, 0.1 * squares) << "the page's residuals are those of the fit";
 }
@@ -179,8 +179,8 @@ TEST(FitRun, TellsWhatIsNotKnown) {
     EXPECT_GT(row.interval->upper, row.value);
   }
   EXPECT_THAT(outcome.material.further, testing::SizeIs(2));
-  ASSERT_TRUE(outcome.next_poke);
-  EXPECT_GT(outcome.next_poke->gain, 0);
+  ASSERT_TRUE(outcome.next_indentation);
+  EXPECT_GT(outcome.next_indentation->gain, 0);
 }
 
 TEST(FitRun, PredictsWhatWasLeftOut) {
@@ -206,10 +206,10 @@ TEST(FitRun, RefusesAStiffnessThatNoBodyHas) {
   for (LoadCase& c : data.experiment.cases) {
     c.positions.clear();
     c.force = 1e-15 * *c.force;
-    c.force_deviation = 1e-17 * Vec3d{{1, 1, 1}};
+    c.force_sigma = 1e-17 * Vec3d{{1, 1, 1}};
   }
   FitPlan plan = quick_plan();
-  plan.unknowns = {parse_unknown("young=uniform")};
+  plan.parameters = {parse_parameter("young=uniform")};
   const FitOutcome outcome = fit_material(data, plan, {}, {});
   EXPECT_FALSE(outcome.has_material());
   EXPECT_THAT(outcome.failure, HasSubstr("do not determine the stiffness"));
@@ -222,7 +222,7 @@ void measure_on_finer_mesh(DataSet& data) {
   const ParameterMap map(
       data.experiment.mesh, "neo_hookean",
       std::vector<MaterialParameters>(data.experiment.mesh.tets.size(), {lame_from_young_poisson(1e4, 0.4), {}}),
-      {{.quantity = "young", .spread = Spread::regions}});
+      {{.quantity = "young", .parameterization = Parameterization::regions}});
   Misfit model(fine, map);
   std::vector<double> r(static_cast<size_t>(model.residual_count()));
   ASSERT_TRUE(model.evaluate(std::vector<double>{std::log(kSoftLayer), std::log(kStiffLayer)}, r)) << model.failure();
@@ -240,7 +240,8 @@ TEST(FitRun, SimulatesOnAFinerMeshThanItFits) {
   measure_on_finer_mesh(data);
   FitPlan plan = quick_plan();
   const double without = young(fit_material(data, plan, {}, {})).rows.at(0).value;
-  EXPECT_GT(std::abs(without / kSoftLayer - 1), 0.03) << "the mesh alone is too coarse for this test to tell anything";
+  EXPECT_GT(std::abs(without / kSoftLayer - 1), 0.03)
+      << "the discretization error must be visible without the correction";
   plan.refine = 1;
   plan.uncertainty = plan.cross_validation = true;
   plan.left_out = {"poke 3"};
@@ -250,9 +251,9 @@ TEST(FitRun, SimulatesOnAFinerMeshThanItFits) {
   EXPECT_NEAR(young(outcome).rows.at(0).value, kSoftLayer, 1e-3 * kSoftLayer);
   EXPECT_NEAR(young(outcome).rows.at(1).value, kStiffLayer, 1e-3 * kStiffLayer);
   EXPECT_EQ(outcome.material.mesh.tet_count(), data.experiment.mesh.tet_count());
-  EXPECT_THAT(young(outcome).deviation, testing::SizeIs(data.experiment.mesh.tets.size()));
+  EXPECT_THAT(young(outcome).sigma, testing::SizeIs(data.experiment.mesh.tets.size()));
   EXPECT_LT(outcome.held_out->force_error, 0.01);
-  EXPECT_TRUE(outcome.next_poke);
+  EXPECT_TRUE(outcome.next_indentation);
 }
 
 // Ratio of the stiff to the soft layer, of geometric means by volume.

@@ -39,8 +39,8 @@ std::string describe_failure(const DataSet& data, const FitReport& report, const
 
 std::string describe_worst_row(const DataSet& data, const std::vector<std::string>& left_out, const Misfit& misfit,
                                std::span<const double> r) {
-  const double count = static_cast<double>(r.size()), usual = dot(r, r) / count;
-  if (!(usual > std::max(kUnexplained, 1 + 5 * std::sqrt(2 / count)))) return "";
+  const double count = static_cast<double>(r.size()), typical = dot(r, r) / count;
+  if (!(typical > std::max(kUnexplained, 1 + 5 * std::sqrt(2 / count)))) return "";
   double worst = 0;
   int worst_case = 0, fitted = 0;
   for (size_t c = 0; c < data.experiment.cases.size(); ++c) {
@@ -52,7 +52,7 @@ std::string describe_worst_row(const DataSet& data, const std::vector<std::strin
   }
   return data.source.load_case(worst_case) + " ('" + data.experiment.cases[worst_case].name +
          "') has the worst fit: its readings are missed by " + std::to_string(std::lround(std::sqrt(worst))) +
-         " standard deviations; check this row, or give deviations that cover the errors of mesh and model";
+         " standard deviations; check this row, or give standard deviations that cover the errors of mesh and model";
 }
 
 bool is_left_out(const std::vector<std::string>& left_out, const LoadCase& c) {

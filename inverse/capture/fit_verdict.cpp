@@ -22,9 +22,9 @@ class GroupMisfit {
 
   void add(const LoadCase& load, const CaseOutcome& outcome) {
     for (size_t k = 0; k < load.positions.size(); ++k)
-      add(outcome.markers[k] - load.positions[k].position, outcome.marker_deviation[k], 3, positions_);
-    if (load.force) add_answer(*load.force, outcome.wrench.force, outcome.force_deviation, forces_);
-    if (load.torque) add_answer(*load.torque, outcome.wrench.torque, outcome.torque_deviation, torques_);
+      add(outcome.markers[k] - load.positions[k].position, outcome.marker_sigma[k], 3, positions_);
+    if (load.force) add_answer(*load.force, outcome.wrench.force, outcome.force_sigma, forces_);
+    if (load.torque) add_answer(*load.torque, outcome.wrench.torque, outcome.torque_sigma, torques_);
   }
 
   const std::string& name() const { return name_; }
@@ -37,7 +37,7 @@ class GroupMisfit {
   }
   // Stiffness implied by forces and torques, relative to the fitted one, and its standard deviation; 0: unknown.
   double stiffness() const { return squares_ > 0 ? product_ / squares_ : 0; }
-  double stiffness_deviation() const { return squares_ > 0 ? 1 / std::sqrt(squares_) : 0; }
+  double stiffness_sigma() const { return squares_ > 0 ? 1 / std::sqrt(squares_) : 0; }
 
  private:
   struct Sum {
@@ -46,14 +46,14 @@ class GroupMisfit {
     double rms() const { return count > 0 ? std::sqrt(squares / count) : 0; }
   };
   // A vector counts as `numbers` readings: its length in standard deviations, or each coordinate.
-  static void add(const Vec3d& error, const Vec3d& deviation, int numbers, Sum& sum) {
-    for (int i = 0; i < 3; ++i) sum.squares += error[i] * error[i] / (deviation[i] * deviation[i]);
+  static void add(const Vec3d& error, const Vec3d& sigma, int numbers, Sum& sum) {
+    for (int i = 0; i < 3; ++i) sum.squares += error[i] * error[i] / (sigma[i] * sigma[i]);
     sum.count += numbers;
   }
-  void add_answer(const Vec3d& measured, const Vec3d& shown, const Vec3d& deviation, Sum& sum) {
-    add(shown - measured, deviation, 1, sum);
+  void add_answer(const Vec3d& measured, const Vec3d& shown, const Vec3d& sigma, Sum& sum) {
+    add(shown - measured, sigma, 1, sum);
     for (int i = 0; i < 3; ++i) {
-      const double precision = 1 / (deviation[i] * deviation[i]);
+      const double precision = 1 / (sigma[i] * sigma[i]);
       product_ += precision * shown[i] * measured[i];
       squares_ += precision * shown[i] * shown[i];
     }
@@ -94,8 +94,8 @@ HeldOutErrors beyond_noise(const DataSet& data, const CrossValidation& held_out)
     double positions = 0, forces = 0;  // sums of variances
     for (const LoadCase& load : data.experiment.cases) {
       if (load.group != group.group) continue;
-      for (const MarkerReading& reading : load.positions) positions += squared_norm(reading.deviation);
-      if (load.force) forces += squared_norm(load.force_deviation);
+      for (const MarkerReading& reading : load.positions) positions += squared_norm(reading.sigma);
+      if (load.force) forces += squared_norm(load.force_sigma);
     }
     add(0, group.position_error, positions / std::max(group.readings, 1), group.peak_motion);
     add(1, group.force_error, forces / std::max(group.forces, 1), group.peak_force);
@@ -150,10 +150,10 @@ class Reasons {
 
   void add_missed_groups() {
     for (const GroupMisfit& g : fitted_groups(data_, outcome_)) {
-      const auto [what, deviations] = g.missed_most();
-      if (deviations > kMissed)
-        add("group_missed", "the " + what + " of '" + g.name() + "' are missed by " + three_digits(deviations) +
-                                " standard deviations");
+      const auto [what, sigmas] = g.missed_most();
+      if (sigmas > kMissed)
+        add("group_missed",
+            "the " + what + " of '" + g.name() + "' are missed by " + three_digits(sigmas) + " standard deviations");
     }
   }
 
@@ -179,9 +179,9 @@ class Reasons {
     }
     if (!softest) return;
     const double ratio = stiffest->stiffness() / softest->stiffness();
-    const double deviation = std::hypot(stiffest->stiffness_deviation() / stiffest->stiffness(),
-                                        softest->stiffness_deviation() / softest->stiffness());
-    if (ratio > kDisagree && std::log(ratio) > kMissed * deviation)
+    const double sigma = std::hypot(stiffest->stiffness_sigma() / stiffest->stiffness(),
+                                    softest->stiffness_sigma() / softest->stiffness());
+    if (ratio > kDisagree && std::log(ratio) > kMissed * sigma)
       add("groups_disagree", "the forces of '" + stiffest->name() + "' imply a body " + three_digits(ratio) +
                                  " times as stiff as those of '" + softest->name() +
                                  "': one of them is wrong, or the model does not fit the body");

@@ -11,13 +11,13 @@ namespace {
 using testing::ElementsAre;
 using testing::HasSubstr;
 
-const DataSet& three_pokes() {
+const DataSet& three_indentations() {
   static const DataSet data = test_data(3, 2);
   return data;
 }
 
 // A fit that explains every reading exactly.
-FitOutcome perfect(const DataSet& data = three_pokes()) {
+FitOutcome perfect(const DataSet& data = three_indentations()) {
   FitOutcome outcome;
   outcome.report.status = Status::converged;
   outcome.report.message = "converged";
@@ -26,16 +26,16 @@ FitOutcome perfect(const DataSet& data = three_pokes()) {
     own.ok = true;
     for (const MarkerReading& reading : load.positions) {
       own.markers.push_back(reading.position);
-      own.marker_deviation.push_back(reading.deviation);
+      own.marker_sigma.push_back(reading.sigma);
     }
     own.wrench.force = *load.force;
-    own.force_deviation = load.force_deviation;
+    own.force_sigma = load.force_sigma;
     outcome.residuals += static_cast<int>(3 * (load.positions.size() + 1));
   }
   return outcome;
 }
 
-std::vector<std::string> reasons(const FitOutcome& outcome, const DataSet& data = three_pokes()) {
+std::vector<std::string> reasons(const FitOutcome& outcome, const DataSet& data = three_indentations()) {
   std::vector<std::string> names;
   const FitVerdict judged = verdict(data, outcome);
   EXPECT_EQ(judged.is_good(), judged.reasons.empty());
@@ -50,9 +50,9 @@ CrossValidation held_out(double position_error, double force_error) {
   return result;
 }
 
-// Held-out errors of the third poke, with peaks of 0.01 m and 1 N.
-CrossValidation held_out_poke(double position_error, double force_error) {
-  const std::vector<LoadCase>& cases = three_pokes().experiment.cases;
+// Held-out errors of the third indentation, with peaks of 0.01 m and 1 N.
+CrossValidation held_out_indentation(double position_error, double force_error) {
+  const std::vector<LoadCase>& cases = three_indentations().experiment.cases;
   CrossValidation result = held_out(position_error, force_error);
   result.groups = {{.group = "poke 3",
                     .ok = true,
@@ -66,7 +66,7 @@ CrossValidation held_out_poke(double position_error, double force_error) {
 }
 
 TEST(FitVerdict, IsGoodWhereEverythingIsExplained) {
-  const FitVerdict judged = verdict(three_pokes(), perfect());
+  const FitVerdict judged = verdict(three_indentations(), perfect());
   EXPECT_TRUE(judged.is_good());
   EXPECT_THAT(judged.text, HasSubstr("explains the readings"));
 }
@@ -95,23 +95,25 @@ TEST(FitVerdict, ForcesThatTheMeshDoublesAreTooMany) {
   EXPECT_THAT(reasons(outcome), ElementsAre());
   outcome.cases[4].relative_mesh_error = 1.1;
   EXPECT_THAT(reasons(outcome), ElementsAre("mesh_too_coarse"));
-  EXPECT_THAT(verdict(three_pokes(), outcome).text, HasSubstr("'poke 3, depth 1': the mesh changes the force by"));
+  EXPECT_THAT(verdict(three_indentations(), outcome).text,
+              HasSubstr("'poke 3, depth 1': the mesh changes the force by"));
 }
 
 TEST(FitVerdict, ValuesAtTheirBoundsAreNotGood) {
   FitOutcome outcome = perfect();
   outcome.at_bound = {"young in 3 tets"};
   EXPECT_THAT(reasons(outcome), ElementsAre("at_bound"));
-  EXPECT_THAT(verdict(three_pokes(), outcome).text, HasSubstr("young in 3 tets is at its bound"));
+  EXPECT_THAT(verdict(three_indentations(), outcome).text, HasSubstr("young in 3 tets is at its bound"));
 }
 
-TEST(FitVerdict, GroupsMissedByFourDeviationsAreNamed) {
+TEST(FitVerdict, NamesGroupsMissedByFourSigma) {
   FitOutcome outcome = perfect();
   for (const size_t c : {2, 3}) outcome.cases[c].wrench.force[0] += 3.5 * 0.01;
-  EXPECT_THAT(reasons(outcome), ElementsAre()) << "3.5 deviations";
+  EXPECT_THAT(reasons(outcome), ElementsAre()) << "3.5 standard deviations";
   for (const size_t c : {2, 3}) outcome.cases[c].wrench.force[0] += 0.01;
   EXPECT_THAT(reasons(outcome), ElementsAre("group_missed"));
-  EXPECT_THAT(verdict(three_pokes(), outcome).text, HasSubstr("the forces of 'poke 2' are missed by 4.5 standard"));
+  EXPECT_THAT(verdict(three_indentations(), outcome).text,
+              HasSubstr("the forces of 'poke 2' are missed by 4.5 standard"));
 }
 
 // The mean over all readings of a group would hide few forces among many markers.
@@ -120,15 +122,15 @@ TEST(FitVerdict, PositionsOfAGroupAreJudgedByThemselves) {
   for (const size_t c : {0, 1})
     for (Vec3d& marker : outcome.cases[c].markers) marker[2] += 10 * 2e-5;
   EXPECT_THAT(reasons(outcome), ElementsAre("group_missed"));
-  EXPECT_THAT(verdict(three_pokes(), outcome).text, HasSubstr("the positions of 'poke 1' are missed by 5.77"));
+  EXPECT_THAT(verdict(three_indentations(), outcome).text, HasSubstr("the positions of 'poke 1' are missed by 5.77"));
 }
 
 TEST(FitVerdict, TorquesOfAGroupAreJudgedToo) {
-  DataSet data = three_pokes();
+  DataSet data = three_indentations();
   data.experiment.cases[5].torque = Vec3d{{0, 0, 0.02}};
   FitOutcome outcome = perfect(data);
   outcome.cases[5].wrench.torque = {{0, 0, 0.0225}};
-  outcome.cases[5].torque_deviation = {{5e-4, 5e-4, 5e-4}};
+  outcome.cases[5].torque_sigma = {{5e-4, 5e-4, 5e-4}};
   EXPECT_THAT(reasons(outcome, data), ElementsAre("group_missed"));
   EXPECT_THAT(verdict(data, outcome).text, HasSubstr("the torques of 'poke 3' are missed by 5 standard"));
 }
@@ -148,18 +150,18 @@ TEST(FitVerdict, FieldsPredictingWorseThanOneValueFail) {
   EXPECT_THAT(reasons(outcome), ElementsAre("held_out_worse"));
 }
 
-// One of three pokes has fourfold forces, so the fit is a compromise.
+// One of three indentations has fourfold forces, so the fit is a compromise.
 TEST(FitVerdict, GroupsWhoseForcesContradictEachOtherAreNamed) {
   FitOutcome outcome = perfect();
   for (size_t c = 0; c < 6; ++c) {
-    outcome.cases[c].wrench.force = (c < 2 ? 0.8 : 1.1) * *three_pokes().experiment.cases[c].force;
-    outcome.cases[c].force_deviation = {{0.1, 0.1, 0.1}};
+    outcome.cases[c].wrench.force = (c < 2 ? 0.8 : 1.1) * *three_indentations().experiment.cases[c].force;
+    outcome.cases[c].force_sigma = {{0.1, 0.1, 0.1}};
   }
   EXPECT_THAT(reasons(outcome), ElementsAre()) << "a ratio of 1.4";
-  for (const size_t c : {0, 1}) outcome.cases[c].wrench.force = 0.4 * *three_pokes().experiment.cases[c].force;
-  for (const size_t c : {0, 1}) outcome.cases[c].force_deviation = {{0.15, 0.15, 0.15}};
+  for (const size_t c : {0, 1}) outcome.cases[c].wrench.force = 0.4 * *three_indentations().experiment.cases[c].force;
+  for (const size_t c : {0, 1}) outcome.cases[c].force_sigma = {{0.15, 0.15, 0.15}};
   EXPECT_THAT(reasons(outcome), ElementsAre("groups_disagree"));
-  EXPECT_THAT(verdict(three_pokes(), outcome).text,
+  EXPECT_THAT(verdict(three_indentations(), outcome).text,
               testing::AllOf(HasSubstr("'poke 1' imply a body 2.75 times as stiff"), HasSubstr("'poke 2'")));
 }
 
@@ -173,24 +175,25 @@ TEST(FitVerdict, TooManySquaresPerReadingAreNotGood) {
 
 TEST(FitVerdict, PoorHeldOutPredictionsAreNotGood) {
   FitOutcome outcome = perfect();
-  outcome.held_out = held_out_poke(0.01, 1.97);
+  outcome.held_out = held_out_indentation(0.01, 1.97);
   EXPECT_THAT(reasons(outcome), ElementsAre("predicts_badly"));
-  EXPECT_THAT(verdict(three_pokes(), outcome).text, HasSubstr("(positions) and 197 % (forces) beyond the noise"));
-  outcome.held_out = held_out_poke(0.06, 0.05);
+  EXPECT_THAT(verdict(three_indentations(), outcome).text,
+              HasSubstr("(positions) and 197 % (forces) beyond the noise"));
+  outcome.held_out = held_out_indentation(0.06, 0.05);
   EXPECT_THAT(reasons(outcome), ElementsAre("predicts_badly"));
-  outcome.held_out = held_out_poke(0.04, 0.09);
+  outcome.held_out = held_out_indentation(0.04, 0.09);
   EXPECT_THAT(reasons(outcome), ElementsAre());
 }
 
 // A small motion has a relatively large noise.
 TEST(FitVerdict, NoiseOfHeldOutReadingsIsTolerated) {
-  DataSet data = three_pokes();
+  DataSet data = three_indentations();
   for (LoadCase& load : data.experiment.cases)
-    for (MarkerReading& reading : load.positions) reading.deviation = {{5e-4, 5e-4, 5e-4}};
+    for (MarkerReading& reading : load.positions) reading.sigma = {{5e-4, 5e-4, 5e-4}};
   FitOutcome outcome = perfect(data);
-  outcome.held_out = held_out_poke(0.09, 0.01);  // 8.7 % are noise
+  outcome.held_out = held_out_indentation(0.09, 0.01);  // 8.7 % are noise
   EXPECT_THAT(reasons(outcome, data), ElementsAre());
-  outcome.held_out = held_out_poke(0.11, 0.01);
+  outcome.held_out = held_out_indentation(0.11, 0.01);
   EXPECT_THAT(reasons(outcome, data), ElementsAre("predicts_badly"));
 }
 
@@ -198,18 +201,18 @@ TEST(FitVerdict, OneValueInsteadOfFieldIsNotGood) {
   FitOutcome outcome = perfect();
   outcome.against_field = {{"at_bound", "young in 3 tets is at its bound"}};
   EXPECT_THAT(reasons(outcome), ElementsAre("field_rejected"));
-  EXPECT_THAT(verdict(three_pokes(), outcome).text, HasSubstr("one value replaces the field: young in 3 tets"));
+  EXPECT_THAT(verdict(three_indentations(), outcome).text, HasSubstr("one value replaces the field: young in 3 tets"));
 }
 
 TEST(FitVerdict, OnlySomeReasonsSpeakAgainstAField) {
   FitOutcome outcome = perfect();
   outcome.report.misfit = 5.0 * outcome.residuals;
-  outcome.held_out = held_out_poke(0.2, 0.2);
-  EXPECT_THAT(reasons_against_field(three_pokes(), outcome), testing::IsEmpty());
+  outcome.held_out = held_out_indentation(0.2, 0.2);
+  EXPECT_THAT(reasons_against_field(three_indentations(), outcome), testing::IsEmpty());
   outcome.held_out_of_one_value = held_out(0.1, 0.1);
   outcome.mesh_errors_settle = false;
   std::vector<std::string> names;
-  for (const FitReason& reason : reasons_against_field(three_pokes(), outcome)) names.push_back(reason.name);
+  for (const FitReason& reason : reasons_against_field(three_indentations(), outcome)) names.push_back(reason.name);
   EXPECT_THAT(names, ElementsAre("mesh_not_settled", "held_out_worse"));
 }
 

@@ -23,9 +23,9 @@ std::string unit_of(const std::string& quantity, const std::string& model) {
 std::vector<std::pair<std::string, int>> telling_tets(const FittedQuantity& quantity, const TetMesh& mesh) {
   const std::vector<double>& v = quantity.values;
   if (v.empty()) return {};
-  if (quantity.spread == Spread::uniform) return {{"everywhere", 0}};
+  if (quantity.parameterization == Parameterization::uniform) return {{"everywhere", 0}};
   std::vector<std::pair<std::string, int>> tets;
-  if (quantity.spread == Spread::regions) {
+  if (quantity.parameterization == Parameterization::regions) {
     for (const int label : std::set<int>(mesh.region.begin(), mesh.region.end())) {
       const auto first = std::find(mesh.region.begin(), mesh.region.end(), label);
       tets.emplace_back("region " + std::to_string(label), static_cast<int>(first - mesh.region.begin()));
@@ -44,14 +44,15 @@ std::vector<std::pair<std::string, int>> telling_tets(const FittedQuantity& quan
 constexpr double kAtEnd = 0.9995;  // end of a range from -1 to 1
 constexpr double kNearWall = 0.9;  // fraction of the largest distance of a field from its guess
 
-bool is_field_of_powers(const Unknown& u) {
-  return u.quantity == "young" && (u.spread == Spread::tets || u.spread == Spread::handles);
+bool is_field_of_powers(const FitParameter& u) {
+  return u.quantity == "young" &&
+         (u.parameterization == Parameterization::tets || u.parameterization == Parameterization::handles);
 }
 
-bool is_at_bound(const ParameterMap& map, int unknown, double fitted) {
-  const Unknown& u = map.unknowns()[static_cast<size_t>(unknown)];
+bool is_at_bound(const ParameterMap& map, int parameter, double fitted) {
+  const FitParameter& u = map.fitted_parameters()[static_cast<size_t>(parameter)];
   if (is_field_of_powers(u)) return std::abs(fitted - std::log(u.guess)) > kNearWall * kFarthestOfField;
-  return std::abs(map.place_in_range(unknown, fitted)) > kAtEnd;
+  return std::abs(map.place_in_range(parameter, fitted)) > kAtEnd;
 }
 
 // Quantity of a tet, fitted or known.
@@ -68,15 +69,15 @@ double quantity_of(const MaterialParameters& m, const std::string& name, const M
 std::vector<FittedQuantity> fitted_quantities(const ParameterMap& map, const TetMesh& mesh, std::span<const double> p,
                                               const Posterior* posterior) {
   std::vector<FittedQuantity> result;
-  for (size_t u = 0; u < map.unknowns().size(); ++u) {
-    const Unknown& unknown = map.unknowns()[u];
+  for (size_t u = 0; u < map.fitted_parameters().size(); ++u) {
+    const FitParameter& parameter = map.fitted_parameters()[u];
     const int index = static_cast<int>(u);
     FittedQuantity& q = result.emplace_back();
-    q.name = unknown.quantity;
+    q.name = parameter.quantity;
     q.unit = unit_of(q.name, map.material());
-    q.spread = unknown.spread;
+    q.parameterization = parameter.parameterization;
     q.values = map.values(index, p);
-    if (posterior) q.deviation = posterior->deviation[u], q.reduction = posterior->reduction[u];
+    if (posterior) q.sigma = posterior->sigma[u], q.reduction = posterior->reduction[u];
     for (const auto& [where, tet] : telling_tets(q, mesh)) {
       ValueRow& row = q.rows.emplace_back(ValueRow{where, q.values[tet], {}});
       if (posterior) row.interval = interval(*posterior, map, p, {index, tet});
@@ -87,14 +88,14 @@ std::vector<FittedQuantity> fitted_quantities(const ParameterMap& map, const Tet
 
 std::vector<std::string> values_at_bound(const ParameterMap& map, std::span<const double> p) {
   std::vector<std::string> found;
-  for (size_t u = 0; u < map.unknowns().size(); ++u) {
-    const int unknown = static_cast<int>(u);
-    const std::vector<double> fitted = map.fitted_values(unknown, p);
+  for (size_t u = 0; u < map.fitted_parameters().size(); ++u) {
+    const int parameter = static_cast<int>(u);
+    const std::vector<double> fitted = map.fitted_values(parameter, p);
     const auto count =
-        std::count_if(fitted.begin(), fitted.end(), [&](double z) { return is_at_bound(map, unknown, z); });
+        std::count_if(fitted.begin(), fitted.end(), [&](double z) { return is_at_bound(map, parameter, z); });
     if (count == 0) continue;
-    const bool is_single = map.unknowns()[u].spread == Spread::uniform;
-    found.push_back(map.unknowns()[u].quantity + (is_single ? "" : " in " + std::to_string(count) + " tets"));
+    const bool is_single = map.fitted_parameters()[u].parameterization == Parameterization::uniform;
+    found.push_back(map.fitted_parameters()[u].quantity + (is_single ? "" : " in " + std::to_string(count) + " tets"));
   }
   return found;
 }
@@ -114,8 +115,8 @@ FittedMaterial fitted_material(const DataSet& data, const ParameterMap& map, std
   if (std::all_of(density.begin(), density.end(), [](double rho) { return rho > 0; }) && !density.empty())
     material.values.emplace_back("density", tet.to_user(density));
   for (const FittedQuantity& q : quantities) {
-    if (q.deviation.empty()) continue;
-    material.further.emplace_back(q.name + "_deviation", tet.to_user(q.deviation));
+    if (q.sigma.empty()) continue;
+    material.further.emplace_back(q.name + "_deviation", tet.to_user(q.sigma));
     material.further.emplace_back(q.name + "_reduction", tet.to_user(q.reduction));
   }
   return material;

@@ -28,7 +28,7 @@ class Journal : public LeastSquares {
   Journal(LeastSquares& model, ModelState state, std::filesystem::path stem, const std::string& fingerprint,
           JournalStart start);
 
-  int unknowns() const override { return model_.unknowns(); }
+  int parameter_count() const override { return model_.parameter_count(); }
   int residual_count() const override { return model_.residual_count(); }
   bool evaluate(std::span<const double> p, std::span<double> r) override;
   bool linearize() override;

@@ -18,7 +18,7 @@ using ::testing::HasSubstr;
 // the last digits of r depend on the initial guess, like those of an equilibrium.
 class Looser : public LeastSquares {
  public:
-  int unknowns() const override { return 2; }
+  int parameter_count() const override { return 2; }
   int residual_count() const override { return 2; }
   bool evaluate(std::span<const double> p, std::span<double> r) override {
     if (++calls > limit) throw std::runtime_error("killed");

@@ -96,11 +96,10 @@ class Judge {
   }
 
   void set_coverage(const std::vector<double>& z, const std::vector<double>& truth, Judgment& result) const {
-    for (const auto& [name, deviation] : fitted_.further) {
+    for (const auto& [name, sigma] : fitted_.further) {
       if (name != result.quantity + "_deviation") continue;
       int covered = 0;
-      for (size_t t = 0; t < z.size(); ++t)
-        covered += std::abs(z[t] - truth[t]) <= kDeviations95 * deviation[t] ? 1 : 0;
+      for (size_t t = 0; t < z.size(); ++t) covered += std::abs(z[t] - truth[t]) <= kSigmas95 * sigma[t] ? 1 : 0;
       result.coverage = static_cast<double>(covered) / static_cast<double>(z.size());
     }
   }

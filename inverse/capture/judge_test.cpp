@@ -59,11 +59,11 @@ TEST(Judge, AWrongContrastIsOnlyThat) {
 
 TEST(Judge, CountsTetsWhoseIntervalHoldsTheTruth) {
   FittedMaterial fitted = layers(4, 3);
-  std::vector<double> deviation(fitted.mesh.tets.size(), 0.01);
-  fitted.further = {{"young_deviation", deviation}};
+  std::vector<double> sigma(fitted.mesh.tets.size(), 0.01);
+  fitted.further = {{"young_deviation", sigma}};
   EXPECT_DOUBLE_EQ(judge(fitted, layers(4, 4))[0].coverage, 0.5);
-  std::fill(deviation.begin(), deviation.end(), 0.15);  // log(4/3) = 0.288 < 1.96 * 0.15
-  fitted.further = {{"young_deviation", deviation}};
+  std::fill(sigma.begin(), sigma.end(), 0.15);  // log(4/3) = 0.288 < 1.96 * 0.15
+  fitted.further = {{"young_deviation", sigma}};
   EXPECT_DOUBLE_EQ(judge(fitted, layers(4, 4))[0].coverage, 1);
 }
 

@@ -16,10 +16,10 @@ constexpr size_t kFewValues = 50;
 // Initial guesses to try if the first is so soft that the loads crush the body.
 constexpr double kStiffer[] = {1, 10, 100, 0.1};
 
-std::vector<Unknown> stiffer(std::vector<Unknown> unknowns, double factor) {
-  for (Unknown& u : unknowns)
+std::vector<FitParameter> stiffer(std::vector<FitParameter> parameters, double factor) {
+  for (FitParameter& u : parameters)
     if (u.quantity == "young") u.guess *= factor;
-  return unknowns;
+  return parameters;
 }
 
 std::string suffix(double factor) {
@@ -45,8 +45,8 @@ bool is_over(const FitReport& report) { return is_success(report.status) || repo
 }  // namespace
 
 FitModel::FitModel(const Experiment& data, const Experiment& simulated, const FitPlan& plan,
-                   std::vector<Unknown> unknowns, const StoredModel& stored)
-    : map(data.mesh, plan.model, known_parameters(plan, data), std::move(unknowns)),
+                   std::vector<FitParameter> parameters, const StoredModel& stored)
+    : map(data.mesh, plan.model, known_parameters(plan, data), std::move(parameters)),
       prior(make_regularizer(data.mesh, map, plan.regularizer)),
       misfit(simulated, map, plan.equilibrium) {
   const FitMemory& memory = stored.memory;
@@ -82,13 +82,14 @@ FitOutcome MaterialFit::run() {
 }
 
 bool MaterialFit::is_field() const {
-  return std::any_of(plan_.unknowns.begin(), plan_.unknowns.end(),
-                     [](const Unknown& u) { return u.spread != Spread::uniform; });
+  return std::any_of(plan_.parameters.begin(), plan_.parameters.end(),
+                     [](const FitParameter& u) { return u.parameterization != Parameterization::uniform; });
 }
 
 bool MaterialFit::has_many_values() const {
-  return std::any_of(plan_.unknowns.begin(), plan_.unknowns.end(),
-                     [](const Unknown& u) { return u.spread == Spread::tets || u.spread == Spread::handles; });
+  return std::any_of(plan_.parameters.begin(), plan_.parameters.end(), [](const FitParameter& u) {
+    return u.parameterization == Parameterization::tets || u.parameterization == Parameterization::handles;
+  });
 }
 
 // One value per quantity explains most of the data and is the initial guess of fields.
@@ -98,7 +99,7 @@ bool MaterialFit::fit_single_values(const std::string& name) {
   options.method = options.weight_rule = "auto";
   options.weight = -1;
   for (const double factor : kStiffer) {
-    FitModel model(data_.experiment, simulated_.fitted(), plan_, stiffer(single_values(plan_.unknowns), factor),
+    FitModel model(data_.experiment, simulated_.fitted(), plan_, stiffer(single_values(plan_.parameters), factor),
                    {memory_, name + suffix(factor), fingerprint_});
     const FitReport report = fit_stage(FitStage::uniform, model, options);
     outcome_.uniform = outcome_.report = report;
@@ -109,8 +110,8 @@ bool MaterialFit::fit_single_values(const std::string& name) {
 }
 
 bool MaterialFit::has_single_values(FitModel& model, const FitReport& report) {
-  for (size_t u = 0; u < plan_.unknowns.size(); ++u)
-    plan_.unknowns[u].guess = model.map.values(static_cast<int>(u), report.p).front();
+  for (size_t u = 0; u < plan_.parameters.size(); ++u)
+    plan_.parameters[u].guess = model.map.values(static_cast<int>(u), report.p).front();
   material_ = model.map.parameters(report.p);
   outcome_.failure = describe_runaway(data_, material_.front());
   if (!outcome_.failure.empty()) return false;
@@ -147,7 +148,7 @@ void MaterialFit::fit_until_mesh_errors_settle(std::optional<FitModel>& model) {
   FitOptions options = plan_.fit;
   for (int pass = 0;; ++pass) {
     const std::string name = pass == 0 ? stage : stage + "_corrected" + std::to_string(pass);
-    model.emplace(data_.experiment, simulated_.fitted(), plan_, plan_.unknowns,
+    model.emplace(data_.experiment, simulated_.fitted(), plan_, plan_.parameters,
                   StoredModel{memory_, name, fingerprint_});
     outcome_.report = fit_stage(is_one_value ? FitStage::uniform : FitStage::field, *model, options, start);
     const std::vector<double>& p = outcome_.report.p;
@@ -186,9 +187,9 @@ void MaterialFit::fall_back(std::vector<FitReason> reasons) {
   outcome_.parts.reset();
   outcome_.held_out.reset();
   outcome_.held_out_of_one_value.reset();
-  outcome_.next_poke.reset();
+  outcome_.next_indentation.reset();
   outcome_.cases.clear();
-  plan_.unknowns = outcome_.plan.unknowns = single_values(plan_.unknowns);
+  plan_.parameters = outcome_.plan.parameters = single_values(plan_.parameters);
   plan_.fit.method = plan_.fit.weight_rule = "auto";
   plan_.fit.weight = -1;
   begin(FitStage::uniform, "one value for the whole body, because the data do not support a field");
@@ -212,12 +213,12 @@ void MaterialFit::fit_and_describe() {
   describe(model, p);
   predict_left_out(model.map, p);
   if (!outcome_.interrupted) cross_validate_groups(model);
-  if (!outcome_.interrupted) find_next_poke(model);
+  if (!outcome_.interrupted) find_next_indentation(model);
 }
 
 FitReport MaterialFit::fit_stage(FitStage which, FitModel& model, const FitOptions& options,
                                  const std::vector<double>& start) {
-  outcome_.unknowns = model.map.size();
+  outcome_.parameter_count = model.map.size();
   outcome_.residuals = model.misfit.residual_count();
   const auto observe = [&](const FitIteration& iteration, std::span<const double> p) {
     if (callbacks_.iterate) callbacks_.iterate(which, iteration, p);

@@ -23,8 +23,8 @@ struct StoredModel {
 // Model of one stage of a fit, with its parameters, prior and stored state.
 struct FitModel {
   // `simulated`: the fitted cases on the simulated mesh; stored by reference.
-  FitModel(const Experiment& data, const Experiment& simulated, const FitPlan& plan, std::vector<Unknown> unknowns,
-           const StoredModel& stored);
+  FitModel(const Experiment& data, const Experiment& simulated, const FitPlan& plan,
+           std::vector<FitParameter> parameters, const StoredModel& stored);
 
   LeastSquares& recorded() { return journal ? static_cast<LeastSquares&>(*journal) : misfit; }
   LeastSquares& data() { return *with_layers; }  // the residuals to minimize
@@ -63,7 +63,7 @@ class MaterialFit {
   void cross_validate_groups(FitModel& model);
   CrossValidation cross_validated(FitModel& model, const FitReport& report, FitOptions options);
   void cross_validate_one_value();
-  void find_next_poke(FitModel& model);
+  void find_next_indentation(FitModel& model);
   using UsePrediction = std::function<void(CaseOutcome&, const CasePrediction&)>;
   void predict_group(const std::string& group, const ParameterMap& map, std::span<const double> p,
                      const UsePrediction& use);

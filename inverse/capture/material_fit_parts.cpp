@@ -7,12 +7,12 @@ namespace aspic {
 namespace {
 
 // Keeps the prior of single tets.
-void set_deviations(const std::vector<double>& deviation, int unknown, Posterior& posterior) {
-  for (size_t t = 0; t < deviation.size(); ++t) {
-    double& own = posterior.deviation[unknown][t];
-    double& reduction = posterior.reduction[unknown][t];
+void set_sigmas(const std::vector<double>& sigma, int parameter, Posterior& posterior) {
+  for (size_t t = 0; t < sigma.size(); ++t) {
+    double& own = posterior.sigma[parameter][t];
+    double& reduction = posterior.reduction[parameter][t];
     const double before = own * own / std::max(1 - reduction, 1e-12);
-    own = deviation[t];
+    own = sigma[t];
     reduction = std::clamp(1 - own * own / before, 0.0, 1.0);
   }
 }
@@ -29,32 +29,33 @@ double share_of_body(const TetMesh& mesh, const std::vector<double>& share) {
 
 std::vector<double> MaterialFit::divided(FitModel& model) {
   const FitReport& report = outcome_.report;
-  const auto young = std::find_if(plan_.unknowns.begin(), plan_.unknowns.end(),
-                                  [](const Unknown& u) { return u.quantity == "young" && u.spread == Spread::tets; });
-  if (plan_.parts == 0 || young == plan_.unknowns.end() || is_stopped()) return report.p;
-  const int unknown = static_cast<int>(young - plan_.unknowns.begin());
+  const auto young = std::find_if(plan_.parameters.begin(), plan_.parameters.end(), [](const FitParameter& u) {
+    return u.quantity == "young" && u.parameterization == Parameterization::tets;
+  });
+  if (plan_.parts == 0 || young == plan_.parameters.end() || is_stopped()) return report.p;
+  const int parameter = static_cast<int>(young - plan_.parameters.begin());
   FoundParts& found = outcome_.parts.emplace();
   const int fewest = plan_.parts > 0 ? plan_.parts : 2, most = plan_.parts > 0 ? plan_.parts : kMostParts;
   for (int count = fewest; count <= most && !found.are_kept && !is_stopped(); ++count, ++found.tried) {
     begin(FitStage::parts, std::to_string(count) + " parts");
-    const Parts parts = find_parts(model.data(), {model.map, mesh(), report.p}, unknown, count);
+    const Parts parts = find_parts(model.data(), {model.map, mesh(), report.p}, parameter, count);
     found.squares = parts.squares;
     found.are_kept = are_as_good(parts, 2 * report.misfit, outcome_.residuals);
     if (!found.are_kept) continue;
     outcome_.report.misfit = parts.squares / 2;
     std::erase_if(outcome_.warnings, is_about_misfit);  // warnings about the misfit of the field
-    return keep(parts, model.map, unknown, found);
+    return keep(parts, model.map, parameter, found);
   }
   return report.p;
 }
 
-std::vector<double> MaterialFit::keep(const Parts& parts, const ParameterMap& map, int unknown, FoundParts& found) {
+std::vector<double> MaterialFit::keep(const Parts& parts, const ParameterMap& map, int parameter, FoundParts& found) {
   const PartsEstimate& e = parts.estimate;
   for (size_t k = 0; k < e.levels.size(); ++k) {
-    found.values.push_back(map.value(unknown, e.levels[k]));
+    found.values.push_back(map.value(parameter, e.levels[k]));
     found.volume.push_back(share_of_body(mesh(), e.share[k]));
   }
-  if (outcome_.posterior && outcome_.posterior->ok) set_deviations(e.deviation, unknown, *outcome_.posterior);
+  if (outcome_.posterior && outcome_.posterior->ok) set_sigmas(e.sigma, parameter, *outcome_.posterior);
   return parts.p;
 }
 

@@ -13,13 +13,13 @@ constexpr double kLearnt = 1;  // number of determined directions below which th
 // Prediction that r is computed from, with the layer stiffness implied by the readings.
 void put_layers_in(std::span<const double> r, const LoadCase& fitted, CasePrediction& shown) {
   auto residual = r.begin();
-  const auto put = [&](const Vec3d& reading, const Vec3d& deviation, Vec3d& to) {
-    for (int i = 0; i < 3; ++i) to[i] = reading[i] + *residual++ * deviation[i];
+  const auto put = [&](const Vec3d& reading, const Vec3d& sigma, Vec3d& to) {
+    for (int i = 0; i < 3; ++i) to[i] = reading[i] + *residual++ * sigma[i];
   };
   for (size_t k = 0; k < fitted.positions.size(); ++k)
-    put(fitted.positions[k].position, fitted.positions[k].deviation, shown.markers[k]);
-  if (fitted.force) put(*fitted.force, fitted.force_deviation, shown.wrench.force);
-  if (fitted.torque) put(*fitted.torque, fitted.torque_deviation, shown.wrench.torque);
+    put(fitted.positions[k].position, fitted.positions[k].sigma, shown.markers[k]);
+  if (fitted.force) put(*fitted.force, fitted.force_sigma, shown.wrench.force);
+  if (fitted.torque) put(*fitted.torque, fitted.torque_sigma, shown.wrench.torque);
 }
 
 }  // namespace
@@ -37,7 +37,7 @@ void MaterialFit::learn_uncertainty(FitModel& model) {
     std::erase_if(outcome_.posterior->warnings,
                   [](const std::string& warning) { return warning.starts_with("the weight of the regularizer"); });
     add_warnings(
-        {"the data hardly determine how the stiffness varies: the deviations are those of the "
+        {"the data hardly determine how the stiffness varies: the standard deviations are those of the "
          "prior (--unknown young=uniform fits one value)"});
   }
   add_warnings(outcome_.posterior->warnings);
@@ -74,9 +74,9 @@ void MaterialFit::describe(FitModel& model, std::span<const double> p) {
     outcome.ok = true;
     outcome.markers = std::move(prediction.markers);
     outcome.wrench = prediction.wrench;
-    for (const MarkerReading& reading : load.positions) outcome.marker_deviation.push_back(reading.deviation);
-    outcome.force_deviation = simulated_.force_factor(c) * load.force_deviation;
-    outcome.torque_deviation = simulated_.force_factor(c) * load.torque_deviation;
+    for (const MarkerReading& reading : load.positions) outcome.marker_sigma.push_back(reading.sigma);
+    outcome.force_sigma = simulated_.force_factor(c) * load.force_sigma;
+    outcome.torque_sigma = simulated_.force_factor(c) * load.torque_sigma;
     if (load.force) outcome.relative_mesh_error = simulated_.relative_force_error(c);
   }
 }
@@ -133,22 +133,22 @@ void MaterialFit::cross_validate_one_value() {
   FitOptions options = plan_.fit;
   options.method = options.weight_rule = "auto";
   options.weight = -1;
-  FitModel one(data_.experiment, simulated_.fitted(), plan_, single_values(plan_.unknowns), {{}, "", ""});
+  FitModel one(data_.experiment, simulated_.fitted(), plan_, single_values(plan_.parameters), {{}, "", ""});
   const FitReport report = fit(one.data(), *one.prior, one.map.guess(), options);
   if (!is_success(report.status)) return;
   CrossValidation held_out = cross_validated(one, report, options);
   if (!outcome_.interrupted) outcome_.held_out_of_one_value = std::move(held_out);
 }
 
-void MaterialFit::find_next_poke(FitModel& model) {
+void MaterialFit::find_next_indentation(FitModel& model) {
   const std::vector<LoadCase>& cases = simulated_.fitted().cases;
   const bool has_tip = std::any_of(cases.begin(), cases.end(), [](const LoadCase& c) { return c.tip.has_value(); });
   if (!outcome_.posterior || !outcome_.posterior->ok || !has_tip || is_stopped()) return;
-  begin(FitStage::next_poke, "most informative next poke");
-  NextPoke next = next_poke(simulated_.fitted(), {model.map, mesh(), outcome_.report.p}, *outcome_.posterior,
-                            {.equilibrium = plan_.equilibrium});
+  begin(FitStage::next_indentation, "most informative next poke");
+  NextIndentation next = next_indentation(simulated_.fitted(), {model.map, mesh(), outcome_.report.p},
+                                          *outcome_.posterior, {.equilibrium = plan_.equilibrium});
   add_warnings(next.warnings);
-  if (!next.candidates.empty() && next.candidates.front().ok) outcome_.next_poke = next.candidates.front();
+  if (!next.candidates.empty() && next.candidates.front().ok) outcome_.next_indentation = next.candidates.front();
 }
 
 }  // namespace aspic

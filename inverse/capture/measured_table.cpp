@@ -99,7 +99,7 @@ std::optional<Vec3d> MeasuredTable::vector(const std::string& prefix, double uni
   return std::nullopt;
 }
 
-std::optional<Vec3d> MeasuredTable::deviation(const std::string& name, double unit) {
+std::optional<Vec3d> MeasuredTable::sigma(const std::string& name, double unit) {
   const std::optional<double> all = positive(name, unit);
   Vec3d v{};
   int given = 0;

@@ -50,7 +50,7 @@ class MeasuredTable {
   // Reads columns "force_x", "force_y", "force_z" for "force_"; empty if all are blank; an error if only some are.
   std::optional<Vec3d> vector(const std::string& prefix, double unit = 1);
   // Reads one column for all directions, or three: "force_sd", or "force_sd_x" and so on.
-  std::optional<Vec3d> deviation(const std::string& name, double unit);
+  std::optional<Vec3d> sigma(const std::string& name, double unit);
   // Index of a name in a column; blank selects the only one. -1 after adding an error: unknown.
   int index_of(const std::string& column, const std::map<std::string, int>& known);
 

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "capture/fit_run.h"
-#include "capture/poked_block_test.h"
+#include "capture/indented_block_test.h"
 
 namespace aspic {
 
@@ -13,9 +13,9 @@ inline const DataSet& block() {
   return data;
 }
 
-inline FitPlan quick_plan(const std::vector<std::string>& unknowns = {"young=regions"}) {
+inline FitPlan quick_plan(const std::vector<std::string>& parameters = {"young=regions"}) {
   FitPlan plan;
-  for (const std::string& text : unknowns) plan.unknowns.push_back(parse_unknown(text));
+  for (const std::string& text : parameters) plan.parameters.push_back(parse_parameter(text));
   plan.known = {{"poisson", 0.4}};
   plan.uncertainty = plan.cross_validation = false;
   return plan;

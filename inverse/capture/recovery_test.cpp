@@ -21,16 +21,16 @@ class Recovery : public FolderTest {
                          n + ", " + n + ", " + n + "] } }\nmaterial = { model = \"neo_hookean\", young = \"" + young +
                          "\", poisson = 0.4 }\n[[body.pin]]\nwhere = \"Z < 1e-6\"\n"));
   }
-  static SynthesisOptions bench(int pokes, double noise) {
+  static SynthesisOptions bench(int indentations, double noise) {
     SynthesisOptions options;
-    options.pokes = pokes, options.depths = 1, options.markers = 60;
+    options.indentations = indentations, options.depths = 1, options.markers = 60;
     options.noise = options.force_noise = noise;
     options.tip_radius = 0.02;
     return options;
   }
-  static FitPlan plan(const std::string& unknown) {
+  static FitPlan plan(const std::string& parameter) {
     FitPlan plan;
-    plan.unknowns = {parse_unknown(unknown)};
+    plan.parameters = {parse_parameter(parameter)};
     plan.known = {{"poisson", 0.4}};
     plan.uncertainty = plan.cross_validation = false;
     return plan;
@@ -62,9 +62,9 @@ TEST_F(Recovery, OnCoarseMeshNeedsErrorCorrection) {
   EXPECT_NEAR(factor(made, fit), 1, 0.03);  // the truth itself has a ninth of the error
 }
 
-// Poked by a bonded sphere on a mesh of four cells: the discretization error at the indenter must not act like another
-// layer stiffness, which would change E.
-TEST_F(Recovery, MeshErrorsMakeNoPokeWorse) {
+// Indented by a bonded sphere on a mesh of four cells: the discretization error at the indenter must not act like
+// another layer stiffness, which would change E.
+TEST_F(Recovery, MeshErrorsMakeNoIndentationWorse) {
   SynthesisOptions options = bench(3, 0);
   options.contact = TipContact::bonded;
   options.mesh = make_box({{0, 0, 0}}, {{0.1, 0.1, 0.1}}, {5, 5, 5});
@@ -88,10 +88,10 @@ TEST_F(Recovery, OfTwoLayersAtOnePercentNoise) {
   ASSERT_TRUE(outcome.has_material()) << outcome.failure;
   const FittedQuantity& young = outcome.quantities.at(0);
   const Judgment found = judge(outcome.material, made.truth).at(0);
-  ASSERT_EQ(young.deviation.size(), outcome.material.mesh.tets.size());
-  const double deviation = *std::max_element(young.deviation.begin(), young.deviation.end());
-  EXPECT_LT(deviation, 0.05);
-  EXPECT_LT(found.largest, 4 * deviation) << "four standard deviations: once in 16 000 times by chance";
+  ASSERT_EQ(young.sigma.size(), outcome.material.mesh.tets.size());
+  const double sigma = *std::max_element(young.sigma.begin(), young.sigma.end());
+  EXPECT_LT(sigma, 0.05);
+  EXPECT_LT(found.largest, 4 * sigma) << "four standard deviations: once in 16 000 times by chance";
 }
 
 // A stiffness per tet, with unknown number and locations of parts.

@@ -11,15 +11,15 @@
 #include "capture/judge.h"
 #include "capture/unstated_values.h"
 #include "fit/load_case.h"
-#include "fit/next_poke.h"
+#include "fit/next_indentation.h"
 
 namespace aspic {
 namespace {
 
-constexpr double kTipRadius = 0.08;       // relative to the size of the body
-constexpr double kUsualGravity = 9.81;    // [m/s^2]
-constexpr double kLeastArm = 0.01;        // lever arm of a force about the indenter's center, relative to its radius
-constexpr double kLeastDeviation = 1e-4;  // minimum deviation of exact data, relative to the largest motion or force
+constexpr double kTipRadius = 0.08;        // relative to the size of the body
+constexpr double kStandardGravity = 9.81;  // [m/s^2]
+constexpr double kLeastArm = 0.01;         // lever arm of a force about the indenter's center, relative to its radius
+constexpr double kLeastSigma = 1e-4;       // minimum sigma of exact data, relative to the largest motion or force
 
 double volume_of(const TetMesh& mesh) {
   double sum = 0;
@@ -39,7 +39,7 @@ class Bench {
     set_up_truth();
     set_up_data(scene);
     place_markers();
-    add_pokes();
+    add_indentations();
     add_gravity();
     if (truth_.cases.empty()) throw InvalidInput(scene.name + ": nothing is measured; give pokes or gravity");
   }
@@ -121,9 +121,9 @@ class Bench {
   }
 
   // Largest Young's modulus around the sites.
-  double young_around(const std::vector<PokeSite>& sites) const {
+  double young_around(const std::vector<IndentationSite>& sites) const {
     std::vector<char> is_site(truth_.mesh.rest.size(), 0);
-    for (const PokeSite& s : sites) is_site[s.vertex] = 1;
+    for (const IndentationSite& s : sites) is_site[s.vertex] = 1;
     double young = 0;
     for (int t = 0; t < truth_.mesh.tet_count(); ++t)
       if (std::ranges::any_of(truth_.mesh.tets[t], [&](int v) { return is_site[v] != 0; }))
@@ -131,24 +131,24 @@ class Bench {
     return young;
   }
 
-  void add_pokes() {
-    if (options_.pokes == 0) return;
+  void add_indentations() {
+    if (options_.indentations == 0) return;
     Tip with = tip();
-    const auto sites = poke_sites(truth_.mesh, truth_.fixed, 2 * with.radius, options_.pokes);
+    const auto sites = indentation_sites(truth_.mesh, truth_.fixed, 2 * with.radius, options_.indentations);
     if (sites.empty())
       throw InvalidInput("there is no site for a tip of radius " + three_digits(with.radius) +
                          " m; use a smaller one (--tip), or hold less of the body");
-    if (static_cast<int>(sites.size()) < options_.pokes)
+    if (static_cast<int>(sites.size()) < options_.indentations)
       result_.notes.push_back("only " + std::to_string(sites.size()) + " sites were found for a tip of radius " +
                               number_text(with.radius) + " m can poke");
     with.stiffness = layer_stiffness(with, young_around(sites));
     for (size_t s = 0; s < sites.size(); ++s)
       for (int d = 1; d <= options_.depths; ++d)
-        add_poke(with, truth_.mesh.rest[sites[s].vertex], sites[s].inward, static_cast<int>(s) + 1, d);
+        add_indentation(with, truth_.mesh.rest[sites[s].vertex], sites[s].inward, static_cast<int>(s) + 1, d);
   }
 
   // Touch and pose are relative to the surface, which may differ slightly in the mesh of the data.
-  void add_poke(const Tip& with, const Vec3d& site, const Vec3d& inward, int number, int d) {
+  void add_indentation(const Tip& with, const Vec3d& site, const Vec3d& inward, int number, int d) {
     LoadCase load;
     load.group = "poke " + std::to_string(number);
     load.name = load.group + ", depth " + std::to_string(d);
@@ -164,7 +164,7 @@ class Bench {
     for (size_t g = 0; g < options_.gravity.size(); ++g) {
       LoadCase load;
       load.name = load.group = "gravity " + std::to_string(g + 1);
-      load.gravity = (kUsualGravity / norm(options_.gravity[g])) * options_.gravity[g];
+      load.gravity = (kStandardGravity / norm(options_.gravity[g])) * options_.gravity[g];
       add_case(std::move(load), {}, {});
     }
   }
@@ -174,14 +174,14 @@ class Bench {
     for (size_t m = 0; m < truth_.markers.size(); ++m)
       if (!load.tip || squared_norm(truth_rest_[m] - site) > load.tip->radius * load.tip->radius)
         load.positions.push_back({static_cast<int>(m), {}, {{1, 1, 1}}});
-    if (load.positions.empty() && load.tip) load.force = Vec3d{}, load.force_deviation = {{1, 1, 1}};
+    if (load.positions.empty() && load.tip) load.force = Vec3d{}, load.force_sigma = {{1, 1, 1}};
     truth_.cases.push_back(load);
     load.touch.center = load.touch.center + shift;
     load.pose.center = load.pose.center + shift;
     asked_.push_back(std::move(load));
   }
 
-  // Solves each poke from the previous depth; a case without equilibrium ends its poke.
+  // Solves each indentation from the previous depth; a case without equilibrium ends its indentation.
   void measure(const SynthesisObserver& observe) {
     const std::vector<MaterialParameters> parameters(model_.elasticity.front()->parameters().begin(),
                                                      model_.elasticity.front()->parameters().end());
@@ -239,15 +239,15 @@ class Bench {
   void add_noise() {
     std::mt19937_64 random(options_.seed + 1);
     std::normal_distribution<double> normal;
-    const auto disturb = [&](Vec3d& value, Vec3d& deviation, double noise, double largest) {
-      const double sd = std::max(noise, kLeastDeviation) * (largest > 0 ? largest : 1);
+    const auto disturb = [&](Vec3d& value, Vec3d& sigma, double noise, double largest) {
+      const double sd = std::max(noise, kLeastSigma) * (largest > 0 ? largest : 1);
       for (int i = 0; i < 3; ++i) value[i] += noise * largest * normal(random);
-      deviation = {{sd, sd, sd}};
+      sigma = {{sd, sd, sd}};
     };
     for (LoadCase& load : data().cases) {
-      for (MarkerReading& r : load.positions) disturb(r.position, r.deviation, options_.noise, largest_motion_);
-      if (load.force) disturb(*load.force, load.force_deviation, options_.force_noise, largest_force_);
-      if (load.torque) disturb(*load.torque, load.torque_deviation, options_.force_noise, largest_torque_);
+      for (MarkerReading& r : load.positions) disturb(r.position, r.sigma, options_.noise, largest_motion_);
+      if (load.force) disturb(*load.force, load.force_sigma, options_.force_noise, largest_force_);
+      if (load.torque) disturb(*load.torque, load.torque_sigma, options_.force_noise, largest_torque_);
     }
   }
 
@@ -266,7 +266,7 @@ void check(const SynthesisOptions& o) {
   const auto require = [](bool holds, const char* what) {
     if (!holds) throw InvalidInput(what);
   };
-  require(o.pokes >= 0 && o.pokes <= 1000, "pokes must be 0 to 1000");
+  require(o.indentations >= 0 && o.indentations <= 1000, "pokes must be 0 to 1000");
   require(o.depths >= 1 && o.depths <= 100, "depths must be 1 to 100");
   require(o.markers >= 0 && o.markers <= 100'000, "markers must be 0 to 100000");
   require(o.markers > 0 || o.forces || o.torques, "without markers, forces and torques there is nothing to measure");

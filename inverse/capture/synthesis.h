@@ -1,5 +1,5 @@
-// A virtual bench: synthetic measurements of a body with known material. Simulates pokes on a finer mesh than the fit
-// gets.
+// A virtual bench: synthetic measurements of a body with known material. Simulates indentations on a finer mesh than
+// that of the fit.
 #pragma once
 #include <cstdint>
 #include <filesystem>
@@ -18,7 +18,7 @@ namespace aspic {
 void require_full(const Pin& pin);
 
 struct SynthesisOptions {
-  int pokes = 8, depths = 3;
+  int indentations = 8, depths = 3;
   double deepest = 0.1;   // relative to the size of the body, the cube root of its volume
   double tip_radius = 0;  // [m]; 0: 8 % of the size
   TipShape shape = TipShape::sphere;

@@ -26,7 +26,7 @@ class VirtualBench : public FolderTest {
   }
   static SynthesisOptions exact() {
     SynthesisOptions options;
-    options.pokes = 2, options.depths = 2, options.markers = 30;
+    options.indentations = 2, options.depths = 2, options.markers = 30;
     options.noise = options.force_noise = 0;
     return options;
   }
@@ -57,7 +57,7 @@ TEST_F(VirtualBench, TruthExplainsExactDataOnSameMesh) {
     std::vector<MaterialParameters> known;
     std::vector<double> p;
     for (const double E : young) known.push_back({lame_from_young_poisson(E, 0.4), {}}), p.push_back(std::log(E));
-    const ParameterMap map(data.experiment.mesh, "neo_hookean", known, {{"young", Spread::tets, 0, 1e4}});
+    const ParameterMap map(data.experiment.mesh, "neo_hookean", known, {{"young", Parameterization::tets, 0, 1e4}});
     Misfit misfit(data.experiment, map);
     std::vector<double> r(misfit.residual_count());
     ASSERT_TRUE(misfit.evaluate(p, r)) << misfit.failure();
@@ -84,7 +84,7 @@ TEST_F(VirtualBench, DataHaveCoarserMeshWithSameSupports) {
   for (const LoadCase& load : e.cases) EXPECT_GT(dot(*load.force, load.pose.center - load.touch.center), 0);
 }
 
-TEST_F(VirtualBench, NoiseHasStatedDeviationsAndDependsOnSeed) {
+TEST_F(VirtualBench, NoiseHasStatedSigmaAndDependsOnSeed) {
   const Scene block = scene();
   SynthesisOptions noisy = exact();
   noisy.noise = 0.01, noisy.force_noise = 0.02;
@@ -98,7 +98,7 @@ TEST_F(VirtualBench, NoiseHasStatedDeviationsAndDependsOnSeed) {
     ASSERT_EQ(x.positions.size(), y.positions.size());
     for (size_t i = 0; i < x.positions.size(); ++i)
       for (int k = 0; k < 3; ++k, ++count) {
-        const double error = (x.positions[i].position[k] - y.positions[i].position[k]) / x.positions[i].deviation[k];
+        const double error = (x.positions[i].position[k] - y.positions[i].position[k]) / x.positions[i].sigma[k];
         squares += error * error;
         EXPECT_EQ(x.positions[i].position[k], again.data.experiment.cases[c].positions[i].position[k]);
       }
@@ -109,7 +109,7 @@ TEST_F(VirtualBench, NoiseHasStatedDeviationsAndDependsOnSeed) {
 
 TEST_F(VirtualBench, ItsDiagnosisFindsNothingWrong) {
   SynthesisOptions options;
-  options.pokes = 4, options.depths = 2, options.markers = 60;
+  options.indentations = 4, options.depths = 2, options.markers = 60;
   options.tip_radius = 0.015;  // the triangles of the data are 4 cm long
   for (const DataFinding& f : diagnose(synthesize(scene(), options).data))
     EXPECT_EQ(f.severity, Severity::note) << f.where << ": " << f.what;
@@ -137,7 +137,7 @@ TEST_F(VirtualBench, WhatCannotBeMeasuredIsRefused) {
       }),
       HasSubstr("has 2 bodies"));
   SynthesisOptions options = exact();
-  options.pokes = 0;
+  options.indentations = 0;
   EXPECT_THAT(message_of([&] { synthesize(scene(), options); }), HasSubstr("nothing is measured"));
   options = exact();
   options.mesh = make_box({{1, 1, 1}}, {{2, 2, 2}}, {2, 2, 2});

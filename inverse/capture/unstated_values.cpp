@@ -10,9 +10,9 @@
 namespace aspic {
 namespace {
 
-constexpr double kDeviation = 0.01;  // fraction of the largest motion or force, used without a given standard deviation
-constexpr double kLayer = 1e5;       // layer stiffness of a bonded indenter times the radius, over Young's modulus
-constexpr double kSoftLayer = 200;   // the same for a sliding indenter
+constexpr double kSigma = 0.01;     // fraction of the largest motion or force, used without a given standard deviation
+constexpr double kLayer = 1e5;      // layer stiffness of a bonded indenter times the radius, over Young's modulus
+constexpr double kSoftLayer = 200;  // the same for a sliding indenter
 
 }  // namespace
 
@@ -20,7 +20,7 @@ double layer_stiffness(const Tip& tip, double young) {
   return (tip.contact == TipContact::bonded ? kLayer : kSoftLayer) * young / tip.radius;
 }
 
-void choose_deviations(DataSet& data) {
+void choose_sigmas(DataSet& data) {
   Experiment& e = data.experiment;
   double motion = 0, force = 0, torque = 0;
   for (const LoadCase& load : e.cases) {
@@ -32,17 +32,17 @@ void choose_deviations(DataSet& data) {
   bool chosen[3] = {};
   const auto complete = [&](Vec3d& sd, double largest, int what) {
     for (int i = 0; i < 3; ++i)
-      if (sd[i] == 0) sd[i] = largest > 0 ? kDeviation * largest : 1, chosen[what] = true;
+      if (sd[i] == 0) sd[i] = largest > 0 ? kSigma * largest : 1, chosen[what] = true;
   };
   for (LoadCase& load : e.cases) {
-    for (MarkerReading& r : load.positions) complete(r.deviation, motion, 0);
-    if (load.force) complete(load.force_deviation, force, 1);
-    if (load.torque) complete(load.torque_deviation, torque, 2);
+    for (MarkerReading& r : load.positions) complete(r.sigma, motion, 0);
+    if (load.force) complete(load.force_sigma, force, 1);
+    if (load.torque) complete(load.torque_sigma, torque, 2);
   }
   const auto note = [&](int what, const char* name, double largest, const char* unit) {
     if (chosen[what])
       data.notes.push_back(std::string("no standard deviation of ") + name + ": using 1 % of the largest, " +
-                           number_text(kDeviation * largest) + " " + unit + " (deviation in capture.toml sets it)");
+                           number_text(kSigma * largest) + " " + unit + " (deviation in capture.toml sets it)");
   };
   note(0, "positions", motion, "m");
   note(1, "forces", force, "N");

@@ -5,7 +5,7 @@
 namespace aspic {
 
 // Replaces standard deviations of 0 by a fraction of the largest motion, force and torque.
-void choose_deviations(DataSet& data);
+void choose_sigmas(DataSet& data);
 
 // Stiffness of the contact layer, far above that of a body with the given Young's modulus [Pa/m].
 double layer_stiffness(const Tip& tip, double young);

@@ -14,11 +14,11 @@ namespace {
 
 constexpr char kLinear[] = "corotated";
 
-ParameterMap linear_map(const TetMesh& mesh, Spread spread, const BickelOptions& options) {
-  std::vector<Unknown> unknowns = {{"young", spread, options.handles, options.young}};
-  if (options.fits_poisson) unknowns.push_back({"poisson", Spread::uniform, 0, options.poisson});
+ParameterMap linear_map(const TetMesh& mesh, Parameterization parameterization, const BickelOptions& options) {
+  std::vector<FitParameter> parameters = {{"young", parameterization, options.handles, options.young}};
+  if (options.fits_poisson) parameters.push_back({"poisson", Parameterization::uniform, 0, options.poisson});
   const MaterialParameters known{lame_from_young_poisson(options.young, options.poisson), {}};
-  return ParameterMap(mesh, kLinear, std::vector<MaterialParameters>(mesh.tets.size(), known), std::move(unknowns));
+  return ParameterMap(mesh, kLinear, std::vector<MaterialParameters>(mesh.tets.size(), known), std::move(parameters));
 }
 
 struct LinearFit {
@@ -29,8 +29,8 @@ struct LinearFit {
   std::vector<double> x;  // positions of the first case
 };
 
-LinearFit fit_linear(const Experiment& experiment, Spread spread, const BickelOptions& options) {
-  const ParameterMap map = linear_map(experiment.mesh, spread, options);
+LinearFit fit_linear(const Experiment& experiment, Parameterization parameterization, const BickelOptions& options) {
+  const ParameterMap map = linear_map(experiment.mesh, parameterization, options);
   Misfit misfit(experiment, map, options.equilibrium);
   const auto prior = make_regularizer(experiment.mesh, map, options.prior);
   LinearFit done;
@@ -53,7 +53,7 @@ Experiment only(const Experiment& experiment, const LoadCase& load) {
   return one;
 }
 
-// Distance of two pokes: difference of touch and of displacement.
+// Distance of two indentations: difference of touch and of displacement.
 double apart(const LoadCase& a, const LoadCase& b) {
   const Vec3d touch = a.touch.center - b.touch.center;
   const Vec3d way = (a.pose.center - a.touch.center) - (b.pose.center - b.touch.center);
@@ -107,7 +107,7 @@ std::string_view name(Baseline baseline) {
 
 ExplainedCase explain(const Experiment& experiment, int load_case, const BickelOptions& options) {
   const LoadCase& load = experiment.cases[load_case];
-  LinearFit linear = fit_linear(only(experiment, load), options.spread, options);
+  LinearFit linear = fit_linear(only(experiment, load), options.parameterization, options);
   ExplainedCase explained{.ok = linear.ok, .failure = linear.failure, .example = {}, .report = linear.report};
   explained.example.name = load.name;
   for (const MaterialParameters& p : linear.parameters) {
@@ -147,7 +147,7 @@ HeldOut predict(Baseline baseline, const Experiment& training, const Experiment&
     return prediction.has_value();
   };
   if (baseline == Baseline::homogeneous) {
-    const LinearFit linear = fit_linear(training, Spread::uniform, options);
+    const LinearFit linear = fit_linear(training, Parameterization::uniform, options);
     if (!linear.ok) return fails(linear.failure);
     for (size_t c = 0; c < predictions.size(); ++c)
       if (!predict_case(c, linear.parameters)) return failed;

@@ -13,7 +13,7 @@ namespace aspic {
 
 struct BickelOptions {
   // Parameterization of each example: log E uniform, per region, at handles or per tet; nu uniform.
-  Spread spread = Spread::handles;
+  Parameterization parameterization = Parameterization::handles;
   int handles = 12;
   double young = 1e5, poisson = 0.4;  // initial guesses [Pa], [1]
   bool fits_poisson = true;

@@ -232,8 +232,8 @@ TEST(Energies, TakeNoWorkAroundAClosedLoop) {
   }
 }
 
-// A block of gel on a table, poked from above at several places and depths.
-Experiment poked_gel(const std::string& material, const MaterialParameters& truth) {
+// A block of gel on a table, indented from above at several places and depths.
+Experiment indented_gel(const std::string& material, const MaterialParameters& truth) {
   Experiment e;
   e.mesh = make_box({{0, 0, 0}}, {{0.08, 0.08, 0.04}}, {4, 4, 2});
   const auto surface = boundary_triangles(e.mesh, 0, e.mesh.tet_count());
@@ -250,7 +250,7 @@ Experiment poked_gel(const std::string& material, const MaterialParameters& trut
       load.pose = load.touch;
       load.pose.center[2] -= depth;
       load.force = Vec3d{};
-      load.force_deviation = {{0.01, 0.01, 0.01}};
+      load.force_sigma = {{0.01, 0.01, 0.01}};
       for (size_t m = 0; m < e.markers.size(); ++m)
         load.positions.push_back({static_cast<int>(m), {}, {{1e-4, 1e-4, 1e-4}}});
       const std::vector<MaterialParameters> parameters(e.mesh.tets.size(), truth);
@@ -270,11 +270,11 @@ Experiment with_group(const Experiment& e, const std::string& group, bool is_it)
 constexpr Baseline kBaselines[] = {Baseline::homogeneous, Baseline::per_example_linear, Baseline::bickel,
                                    Baseline::bickel_total};
 
-const BickelOptions kGel{.spread = Spread::uniform, .young = 1.5e4, .poisson = 0.38};
+const BickelOptions kGel{.parameterization = Parameterization::uniform, .young = 1.5e4, .poisson = 0.38};
 
 TEST(Simulate, IsTheLinearBodyWhereAllExamplesAgree) {
   const MaterialParameters linear{lame_from_young_poisson(2e4, 0.3), {}};
-  const Experiment e = poked_gel("corotated", linear);
+  const Experiment e = indented_gel("corotated", linear);
   std::vector<double> rest;
   for (const Vec3d& X : e.mesh.rest) rest.insert(rest.end(), {X[0], X[1], X[2]});
   const StrainExample same{"any", std::vector<double>(e.mesh.tets.size(), 2e4),
@@ -294,7 +294,7 @@ TEST(Simulate, IsTheLinearBodyWhereAllExamplesAgree) {
 
 TEST(Explain, FindsTheLinearMaterialOfOneCase) {
   const MaterialParameters linear{lame_from_young_poisson(2e4, 0.3), {}};
-  const Experiment e = poked_gel("corotated", linear);
+  const Experiment e = indented_gel("corotated", linear);
   const ExplainedCase found = explain(e, 1, kGel);
   ASSERT_TRUE(found.ok) << found.failure;
   EXPECT_NEAR(found.example.young[0], 2e4, 200);
@@ -303,7 +303,7 @@ TEST(Explain, FindsTheLinearMaterialOfOneCase) {
 
 TEST(Predict, EveryBaselineFindsAHomogeneousLinearBody) {
   const MaterialParameters linear{lame_from_young_poisson(2e4, 0.3), {}};
-  const Experiment e = poked_gel("corotated", linear);
+  const Experiment e = indented_gel("corotated", linear);
   const std::string left = e.cases[2].group;
   for (const Baseline b : kBaselines) {
     const HeldOut h = predict(b, with_group(e, left, false), with_group(e, left, true), kGel);
@@ -317,7 +317,7 @@ TEST(Predict, EveryBaselineFindsAHomogeneousLinearBody) {
 // are used as fitted, as secant moduli from rest. Increments with these moduli are too soft.
 TEST(Predict, OneModulusMissesAStiffeningBody) {
   const MaterialParameters tissue{lame_from_young_poisson(1e4, 0.35), {8}};
-  const Experiment e = poked_gel("fung", tissue);
+  const Experiment e = indented_gel("fung", tissue);
   const std::string left = e.cases[2].group;
   std::vector<double> force;
   for (const Baseline b : kBaselines) {

@@ -101,7 +101,11 @@ class BoundedQuadratic {
 class Run {
  public:
   Run(LeastSquares& problem, std::span<const Bounds> bounds, const BoundedFitOptions& options)
-      : problem_(problem), bounds_(bounds), options_(options), n_(problem.unknowns()), m_(problem.residual_count()) {
+      : problem_(problem),
+        bounds_(bounds),
+        options_(options),
+        n_(problem.parameter_count()),
+        m_(problem.residual_count()) {
     ASPIC_CHECK(static_cast<int>(bounds.size()) == n_);
   }
 
@@ -199,12 +203,12 @@ class Run {
     fit.p = p;
     fit.objective = squared_norm(r) / 2;
     fit.at_bound.assign(static_cast<size_t>(n_), false);
-    fit.deviation.assign(static_cast<size_t>(n_), std::numeric_limits<double>::infinity());
+    fit.sigma.assign(static_cast<size_t>(n_), std::numeric_limits<double>::infinity());
     if (!evaluate(p, r, fit) || !linearize(r)) return;
     std::vector<int> inner;
     for (int i = 0; i < n_; ++i) {
       fit.at_bound[i] = p[i] <= bounds_[i].lower || p[i] >= bounds_[i].upper;
-      if (fit.at_bound[i]) fit.deviation[i] = 0;
+      if (fit.at_bound[i]) fit.sigma[i] = 0;
       if (!fit.at_bound[i] && squared_norm(column(i)) > 0) inner.push_back(i);
     }
     const int freedom = m_ - static_cast<int>(inner.size());
@@ -212,7 +216,7 @@ class Run {
     if (freedom <= 0 || !factor) return;
     const MatrixXd covariance = factor->solve(MatrixXd::Identity(std::ssize(inner), std::ssize(inner)));
     for (size_t a = 0; a < inner.size(); ++a)
-      fit.deviation[inner[a]] = std::sqrt(2 * fit.objective / freedom * covariance(a, a));
+      fit.sigma[inner[a]] = std::sqrt(2 * fit.objective / freedom * covariance(a, a));
   }
 
   LeastSquares& problem_;

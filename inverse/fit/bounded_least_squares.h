@@ -22,8 +22,8 @@ struct BoundedFit {
   bool is_converged = false;
   std::vector<double> p;
   std::vector<bool> at_bound;
-  double objective = 0;           // |r|^2 / 2
-  std::vector<double> deviation;  // sigma of p, from the scatter of r; 0 at a bound, infinite if undetermined
+  double objective = 0;       // |r|^2 / 2
+  std::vector<double> sigma;  // sigma of p, from the scatter of r; 0 at a bound, infinite if undetermined
   int iterations = 0, evaluations = 0;
 };
 

@@ -14,7 +14,7 @@ struct LinearProblem : LeastSquares {
   int n, m;
   std::vector<double> A, b;  // row by row
 
-  int unknowns() const override { return n; }
+  int parameter_count() const override { return n; }
   int residual_count() const override { return m; }
   bool evaluate(std::span<const double> p, std::span<double> r) override {
     multiply(p, r);
@@ -76,7 +76,7 @@ TEST(MinimizeWithin, FulfilsTheConditionsOfTheConstrainedMinimum) {
   }
 }
 
-TEST(MinimizeWithin, HasTheDeviationsOfLinearRegression) {
+TEST(MinimizeWithin, HasTheSigmaOfLinearRegression) {
   // A line through n points with noise: var(slope) = s^2 / sum (x - mean)^2.
   std::mt19937 random(2);
   std::normal_distribution<double> noise(0, 0.1);
@@ -95,8 +95,8 @@ TEST(MinimizeWithin, HasTheDeviationsOfLinearRegression) {
   const BoundedFit fit = minimize_within(line, std::vector<double>{0, 0}, bounds);
   const double s2 = 2 * fit.objective / (line.m - 2);
   EXPECT_NEAR(s2, 0.01, 0.002);
-  EXPECT_NEAR(fit.deviation[1], std::sqrt(s2 / spread), 1e-6);
-  EXPECT_NEAR(fit.p[1], 2, 4 * fit.deviation[1]);
+  EXPECT_NEAR(fit.sigma[1], std::sqrt(s2 / spread), 1e-6);
+  EXPECT_NEAR(fit.p[1], 2, 4 * fit.sigma[1]);
 }
 
 TEST(MinimizeWithin, CallsWhatTheResidualsDoNotSeeUndetermined) {
@@ -108,13 +108,13 @@ TEST(MinimizeWithin, CallsWhatTheResidualsDoNotSeeUndetermined) {
   const BoundedFit fit = minimize_within(problem, std::vector<double>{0, 0, 3}, bounds);
   EXPECT_NEAR(fit.p[0] + fit.p[1], 1, 1e-6);
   EXPECT_EQ(fit.p[2], 3);
-  for (const double deviation : fit.deviation) EXPECT_TRUE(std::isinf(deviation));
+  for (const double sigma : fit.sigma) EXPECT_TRUE(std::isinf(sigma));
 }
 
 // y = a exp(-b x) where large b makes the residuals undefined.
 struct Decay : LeastSquares {
   double a = 0, b = 0;
-  int unknowns() const override { return 2; }
+  int parameter_count() const override { return 2; }
   int residual_count() const override { return 5; }
   bool evaluate(std::span<const double> p, std::span<double> r) override {
     if (p[1] > 4) return false;

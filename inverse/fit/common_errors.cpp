@@ -68,7 +68,7 @@ void WithUncertainLayers::learn() {
     data_.nuisance(k, dr);
     for (const auto& [first, count] : data_.residuals_by_case()) {
       std::vector<double> n(dr.begin() + first, dr.begin() + first + count);
-      for (double& x : n) x *= kLayerDeviation;
+      for (double& x : n) x *= kLayerSigma;
       errors_.add(first, std::move(n));
     }
   }

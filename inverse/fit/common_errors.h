@@ -31,8 +31,8 @@ class CommonErrors {
 
 // The stiffness k of an indenter's layer is a convention, so log k is unknown. A mesh that is too stiff around the
 // indenter also acts like another layer, independently in each case. So log k, common to all cases, gets a normal
-// deviation per case of kLayerDeviation. All fitted and compared models are treated this way.
-inline constexpr double kLayerDeviation = 3;  // a factor of 20
+// error per case with the standard deviation kLayerSigma. All fitted and compared models are treated this way.
+inline constexpr double kLayerSigma = 3;  // a factor of 20
 
 class WithUncertainLayers : public LeastSquares {
  public:
@@ -40,7 +40,7 @@ class WithUncertainLayers : public LeastSquares {
   // exists, so that the problem remains one of least squares.
   explicit WithUncertainLayers(LeastSquares& data) : data_(data) {}
 
-  int unknowns() const override { return data_.unknowns(); }
+  int parameter_count() const override { return data_.parameter_count(); }
   int residual_count() const override { return data_.residual_count(); }
   bool evaluate(std::span<const double> p, std::span<double> r) override;
   bool linearize() override;

@@ -4,13 +4,13 @@
 
 #include <Eigen/Dense>
 
-#include "fit/poked_block_test.h"
+#include "fit/indented_block_test.h"
 #include "math/vectors.h"
 
 namespace aspic {
 namespace {
 
-using test::PokedBlock;
+using test::IndentedBlock;
 
 TEST(CommonErrors, MakeTheCovarianceThatOfIndependentErrors) {
   const Eigen::VectorXd n = Eigen::VectorXd::LinSpaced(6, 1, -3), m = Eigen::VectorXd::LinSpaced(6, 40, 50);
@@ -45,9 +45,9 @@ TEST(CommonErrors, AlongAnUnboundedOneNothingIsLeft) {
 
 // |dr|^2 for a uniformly stiffer body.
 double information_of_scale(bool with_force, bool with_layers) {
-  PokedBlock block;
-  for (const auto& site : PokedBlock::sites()) block.add_poke(site, 0.006, 1e-4, with_force);
-  const ParameterMap map = block.map({{.spread = Spread::uniform, .guess = PokedBlock::kYoung}});
+  IndentedBlock block;
+  for (const auto& site : IndentedBlock::sites()) block.add_indentation(site, 0.006, 1e-4, with_force);
+  const ParameterMap map = block.map({{.parameterization = Parameterization::uniform, .guess = IndentedBlock::kYoung}});
   Misfit misfit(block.experiment, map);
   WithUncertainLayers layers(misfit);
   LeastSquares& data = with_layers ? static_cast<LeastSquares&>(layers) : misfit;

@@ -24,13 +24,13 @@ void add_case(const Experiment& experiment, const LoadCase& measured, const Case
         std::max(h.peak_motion, norm(reading.position - at_rest(experiment, experiment.markers[reading.marker])));
     h.largest_error = std::max(h.largest_error, std::sqrt(error));
     h.position_error += error;
-    h.position_noise += squared_norm(reading.deviation);
+    h.position_noise += squared_norm(reading.sigma);
     ++h.readings;
   }
   if (!measured.force) return;
   h.peak_force = std::max(h.peak_force, norm(*measured.force));
   h.force_error += squared_norm(predicted.wrench.force - *measured.force);
-  h.force_noise += squared_norm(measured.force_deviation);
+  h.force_noise += squared_norm(measured.force_sigma);
   ++h.forces;
 }
 

@@ -1,5 +1,5 @@
-// Leave-one-group-out cross-validation: for each group of cases (a poke), fits the material to the others and predicts
-// the group.
+// Leave-one-group-out cross-validation: for each group of cases (an indentation), fits the material to the others and
+// predicts the group.
 #pragma once
 #include <functional>
 #include <span>

@@ -2,20 +2,20 @@
 
 #include <gmock/gmock.h>
 
-#include "fit/poked_block_test.h"
+#include "fit/indented_block_test.h"
 
 namespace aspic {
 namespace {
 
-using test::PokedBlock;
+using test::IndentedBlock;
 using testing::ElementsAre;
 using testing::HasSubstr;
 
 struct HeldOutStudy {
-  PokedBlock block;
+  IndentedBlock block;
   explicit HeldOutStudy(double noise = 0.01) {
-    for (const PokedBlock::Site& site : PokedBlock::sites())
-      for (const double depth : {0.003, 0.006}) block.add_poke(site, depth, noise);
+    for (const IndentedBlock::Site& site : IndentedBlock::sites())
+      for (const double depth : {0.003, 0.006}) block.add_indentation(site, depth, noise);
   }
   CrossValidation validate(const ParameterMap& map, double weight = 1) const {
     const auto prior = make_regularizer(block.experiment.mesh, map, {});
@@ -34,7 +34,7 @@ struct HeldOutStudy {
     for (const Tet& tet : block.experiment.mesh.tets) {
       double x = 0;
       for (const int v : tet) x += block.experiment.mesh.rest[v][0] / 4;
-      z.push_back(std::log(PokedBlock::kYoung * (x > PokedBlock::kSide / 2 ? contrast : 1)));
+      z.push_back(std::log(IndentedBlock::kYoung * (x > IndentedBlock::kSide / 2 ? contrast : 1)));
     }
     return z;
   }
@@ -43,7 +43,8 @@ struct HeldOutStudy {
 TEST(CrossValidation, OfTheRightModelLeavesTheNoise) {
   HeldOutStudy study;
   study.measure(study.halves(1));
-  const CrossValidation result = study.validate(study.block.map({{.spread = Spread::uniform, .guess = 1e4}}));
+  const CrossValidation result =
+      study.validate(study.block.map({{.parameterization = Parameterization::uniform, .guess = 1e4}}));
   ASSERT_EQ(result.groups.size(), 4u);
   EXPECT_TRUE(result.warnings.empty());
   for (const HeldOut& h : result.groups) {
@@ -63,9 +64,10 @@ TEST(CrossValidation, OfTheRightModelLeavesTheNoise) {
 TEST(CrossValidation, TellsAModelThatIsTooSimple) {
   HeldOutStudy study(0.005);
   study.measure(study.halves(4));
-  const CrossValidation uniform = study.validate(study.block.map({{.spread = Spread::uniform, .guess = 1e4}}));
-  const CrossValidation handles =
-      study.validate(study.block.map({{.spread = Spread::handles, .handles = 8, .guess = 1e4}}), 0.01);
+  const CrossValidation uniform =
+      study.validate(study.block.map({{.parameterization = Parameterization::uniform, .guess = 1e4}}));
+  const CrossValidation handles = study.validate(
+      study.block.map({{.parameterization = Parameterization::handles, .handles = 8, .guess = 1e4}}), 0.01);
   EXPECT_GT(uniform.position_error, 1.5 * handles.position_error);
   EXPECT_GT(uniform.force_error, 3 * handles.force_error);
 }
@@ -75,7 +77,7 @@ TEST(CrossValidation, ReportsAGroupThatCannotBePredicted) {
   study.measure(study.halves(1));
   for (LoadCase& load : study.block.experiment.cases)  // through the table
     if (load.group == "left") load.pose.center[2] = -5;
-  const ParameterMap map = study.block.map({{.spread = Spread::uniform, .guess = 2e4}});
+  const ParameterMap map = study.block.map({{.parameterization = Parameterization::uniform, .guess = 2e4}});
   const auto prior = make_regularizer(study.block.experiment.mesh, map, {});
   bool is_done = false;
   const auto observe = [&](int group, int groups, const std::string& name) {
@@ -93,10 +95,10 @@ TEST(CrossValidation, ReportsAGroupThatCannotBePredicted) {
 }
 
 TEST(CrossValidation, NeedsTwoGroups) {
-  PokedBlock block;
-  block.add_poke(PokedBlock::sites()[0], 0.003, 0.01);
-  block.add_poke(PokedBlock::sites()[0], 0.006, 0.01);
-  const ParameterMap map = block.map({{.spread = Spread::uniform, .guess = 1e4}});
+  IndentedBlock block;
+  block.add_indentation(IndentedBlock::sites()[0], 0.003, 0.01);
+  block.add_indentation(IndentedBlock::sites()[0], 0.006, 0.01);
+  const ParameterMap map = block.map({{.parameterization = Parameterization::uniform, .guess = 1e4}});
   const auto prior = make_regularizer(block.experiment.mesh, map, {});
   const CrossValidation result = cross_validate(block.experiment, map, *prior, {});
   EXPECT_TRUE(result.groups.empty());

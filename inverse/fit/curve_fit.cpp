@@ -184,8 +184,7 @@ std::vector<double> CurveMisfit::guess(int start) const {
 
 std::vector<FittedParameter> CurveMisfit::described(const BoundedFit& fit) const {
   const double young = 2 * (1 + options_.poisson) * std::exp(fit.p[0]);
-  std::vector<FittedParameter> list{
-      {.name = "young", .unit = "Pa", .value = young, .deviation = young * fit.deviation[0]}};
+  std::vector<FittedParameter> list{{.name = "young", .unit = "Pa", .value = young, .sigma = young * fit.sigma[0]}};
   const MaterialParameters m = parameters(fit.p);
   for (size_t k = 0; k < info_.extra.size(); ++k) {
     const ExtraParameter& extra = info_.extra[k];
@@ -194,7 +193,7 @@ std::vector<FittedParameter> CurveMisfit::described(const BoundedFit& fit) const
       if (own_[o].index == static_cast<int>(k)) {
         f.is_held = false;
         f.at_bound = fit.at_bound[o + 1];
-        f.deviation = fit.deviation[o + 1] * (own_[o].is_log ? f.value : 1);
+        f.sigma = fit.sigma[o + 1] * (own_[o].is_log ? f.value : 1);
       }
     list.push_back(std::move(f));
   }
@@ -206,7 +205,7 @@ CurveFit fit_curves(const std::vector<TestCurve>& curves, const CurveFitOptions&
   CurveFit result{.material = options.material, .parameters = {}, .poisson = options.poisson};
   BoundedFit best;
   best.objective = kInf;
-  const int starts = misfit.unknowns() > 1 ? std::max(1, options.starts) : 1;
+  const int starts = misfit.parameter_count() > 1 ? std::max(1, options.starts) : 1;
   for (int start = 0; start < starts; ++start) {
     BoundedFit fit = minimize_within(misfit, misfit.guess(start), misfit.bounds());
     result.starts.push_back(fit.p.empty() ? kInf : fit.objective);

@@ -31,7 +31,7 @@ struct CurveFitOptions {
 struct FittedParameter {
   std::string name, unit;  // "young", and parameters of the material
   double value = 0;
-  double deviation = 0;  // standard deviation from the scatter of the residuals; infinite: undetermined
+  double sigma = 0;  // standard deviation from the scatter of the residuals; infinite: undetermined
   bool at_bound = false, is_held = false;
 };
 
@@ -62,7 +62,7 @@ class CurveMisfit : public LeastSquares {
  public:
   CurveMisfit(const std::vector<TestCurve>& curves, const CurveFitOptions& options);  // throws InvalidInput
 
-  int unknowns() const override { return static_cast<int>(bounds_.size()); }
+  int parameter_count() const override { return static_cast<int>(bounds_.size()); }
   int residual_count() const override { return static_cast<int>(scale_.size()); }
   bool evaluate(std::span<const double> p, std::span<double> r) override;
   bool linearize() override { return true; }

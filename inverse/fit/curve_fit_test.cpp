@@ -61,7 +61,7 @@ TEST(FitCurves, RecoverTheStressesOfASpline) {
   for (const FittedParameter& f : fit.fitted) EXPECT_GE(f.value, 0) << f.name;
 }
 
-TEST(FitCurves, StateDeviationsThatCoverTheTruth) {
+TEST(FitCurves, SigmaCoversTheTruth) {
   MaterialParameters m{{1e5, 1e6}, {0.2}};
   int covered = 0;
   for (unsigned seed = 0; seed < 100; ++seed) {
@@ -72,7 +72,7 @@ TEST(FitCurves, StateDeviationsThatCoverTheTruth) {
       for (double& s : curve.stress) s += noise(random);
     const CurveFit fit =
         fit_curves(curves, {.material = "mooney_rivlin", .weighting = Weighting::absolute, .starts = 1});
-    covered += std::abs(fit.fitted[1].value - 0.2) < 2 * fit.fitted[1].deviation;
+    covered += std::abs(fit.fitted[1].value - 0.2) < 2 * fit.fitted[1].sigma;
   }
   EXPECT_GE(covered, 88);  // 95 expected, deviation 2.2
   EXPECT_LE(covered, 100);

@@ -18,7 +18,7 @@ std::string message_of(const MinimizeReport& report) {
   if (report.status == Status::undefined) return "the energy is not finite at the initial guess (" + status + ")";
   return "no equilibrium was found: " + status + " after " + std::to_string(report.iterations) +
          " iterations; residual force " + three_digits(report.reached) + " N, tolerance " +
-         three_digits(report.threshold) + " N was asked for";
+         three_digits(report.threshold) + " N";
 }
 
 // Fills b with parts along all modes of a body, identically on every system.

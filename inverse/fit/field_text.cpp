@@ -56,20 +56,20 @@ std::string describe_regions(const TetMesh& mesh, std::span<const double> f, dou
   return (count > 1 ? "regions " : "region ") + text;
 }
 
-std::string describe_sign(const TetMesh& mesh, const Unknown& unknown, std::span<const double> f, double sign,
+std::string describe_sign(const TetMesh& mesh, const FitParameter& parameter, std::span<const double> f, double sign,
                           double little) {
-  if (unknown.spread == Spread::regions) return describe_regions(mesh, f, sign, little);
+  if (parameter.parameterization == Parameterization::regions) return describe_regions(mesh, f, sign, little);
   return describe_place(mesh, part_with_sign(f, sign));
 }
 
-std::string describe_field(const TetMesh& mesh, const Unknown& unknown, std::span<const double> f) {
+std::string describe_field(const TetMesh& mesh, const FitParameter& parameter, std::span<const double> f) {
   const Moments m = moments(mesh, f);
   if (m.first * m.first > (1 - kLittle) * m.volume * m.second) return "of the whole body";
   const double sign = m.positive >= m.second / 2 ? 1 : -1;
   const double lesser = std::min(m.positive, m.second - m.positive), little = kLittle / 2 * m.second;
-  const std::string join = unknown.spread == Spread::regions ? "of " : "";
-  std::string text = join + describe_sign(mesh, unknown, f, sign, little);
-  if (lesser > kLittle * m.second) text += " against " + describe_sign(mesh, unknown, f, -sign, little);
+  const std::string join = parameter.parameterization == Parameterization::regions ? "of " : "";
+  std::string text = join + describe_sign(mesh, parameter, f, sign, little);
+  if (lesser > kLittle * m.second) text += " against " + describe_sign(mesh, parameter, f, -sign, little);
   return text;
 }
 
@@ -99,7 +99,7 @@ std::string describe_direction(const TetMesh& mesh, const ParameterMap& map, std
   std::vector<std::vector<double>> fields;
   double sum = 0;
   std::vector<double> squares;
-  for (int u = 0; u < static_cast<int>(map.unknowns().size()); ++u) {
+  for (int u = 0; u < static_cast<int>(map.fitted_parameters().size()); ++u) {
     fields.push_back(map.fitted_values(u, dp));
     squares.push_back(moments(mesh, fields.back()).second);
     sum += squares.back();
@@ -107,8 +107,8 @@ std::string describe_direction(const TetMesh& mesh, const ParameterMap& map, std
   std::string text;
   for (size_t u = 0; u < fields.size(); ++u) {
     if (!(squares[u] > kLittle * sum)) continue;
-    const Unknown& unknown = map.unknowns()[u];
-    text += (text.empty() ? "" : " with ") + unknown.quantity + " " + describe_field(mesh, unknown, fields[u]);
+    const FitParameter& parameter = map.fitted_parameters()[u];
+    text += (text.empty() ? "" : " with ") + parameter.quantity + " " + describe_field(mesh, parameter, fields[u]);
   }
   return text;
 }

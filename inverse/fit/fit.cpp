@@ -119,9 +119,9 @@ std::vector<std::string> weight_rule_names() {
 
 FitReport fit(LeastSquares& misfit, Regularizer& regularizer, std::span<const double> guess, const FitOptions& options,
               const FitObserver& observe) {
-  ASPIC_CHECK(static_cast<int>(guess.size()) == misfit.unknowns());
+  ASPIC_CHECK(static_cast<int>(guess.size()) == misfit.parameter_count());
   check(options);
-  const bool few = misfit.unknowns() <= kFew;
+  const bool few = misfit.parameter_count() <= kFew;
   const NamedMethod method =
       options.method == "auto" ? kMethods[few ? 0 : 1] : named<NamedMethod>(kMethods, "method", options.method);
   const NamedRule rule = options.weight_rule == "auto" ? kRules[few ? 0 : 1]

@@ -27,7 +27,7 @@ class FitRun {
 
   LeastSquares& data() { return data_; }
   Regularizer& prior() { return regularizer_; }
-  int unknowns() const { return data_.unknowns(); }
+  int parameter_count() const { return data_.parameter_count(); }
   int residuals() const { return data_.residual_count(); }
   // Returns false if r is undefined or not finite at p.
   bool evaluate(std::span<const double> p, FitPoint& point);

@@ -23,15 +23,15 @@ std::vector<double> normal(size_t n, unsigned seed) {
   return v;
 }
 
-// r = (A phi(p) - b) / deviation with phi(p) = p + bend p^2 / 2 component by component.
+// r = (A phi(p) - b) / sigma with phi(p) = p + bend p^2 / 2 component by component.
 class CurvedModel : public LeastSquares {
  public:
-  CurvedModel(int unknowns, int residuals, double bend, double deviation)
-      : n_(unknowns),
+  CurvedModel(int parameter_count, int residuals, double bend, double sigma)
+      : n_(parameter_count),
         m_(residuals),
         bend_(bend),
-        deviation_(deviation),
-        A_(normal(static_cast<size_t>(unknowns) * residuals, 3)),
+        sigma_(sigma),
+        A_(normal(static_cast<size_t>(parameter_count) * residuals, 3)),
         b_(residuals) {}
 
   // Generates b from these parameters, with noise.
@@ -40,7 +40,7 @@ class CurvedModel : public LeastSquares {
     std::fill(b_.begin(), b_.end(), 0.0);
     evaluate(p, r);
     const std::vector<double> e = normal(r.size(), 4);
-    for (int i = 0; i < m_; ++i) b_[i] = r[i] * deviation_ + noise * deviation_ * e[i];
+    for (int i = 0; i < m_; ++i) b_[i] = r[i] * sigma_ + noise * sigma_ * e[i];
   }
   // Low-pass model: each row averages neighbors.
   void blur(double width) {
@@ -51,7 +51,7 @@ class CurvedModel : public LeastSquares {
       }
   }
 
-  int unknowns() const override { return n_; }
+  int parameter_count() const override { return n_; }
   int residual_count() const override { return m_; }
   bool evaluate(std::span<const double> p, std::span<double> r) override {
     ++evaluations;
@@ -61,7 +61,7 @@ class CurvedModel : public LeastSquares {
     for (int i = 0; i < m_; ++i) {
       double sum = 0;
       for (int j = 0; j < n_; ++j) sum += A(i, j) * (p[j] + bend_ * p[j] * p[j] / 2);
-      r[i] = (sum - b_[i]) / deviation_;
+      r[i] = (sum - b_[i]) / sigma_;
     }
     return true;
   }
@@ -69,13 +69,13 @@ class CurvedModel : public LeastSquares {
   void multiply(std::span<const double> dp, std::span<double> dr) override {
     for (int i = 0; i < m_; ++i) {
       dr[i] = 0;
-      for (int j = 0; j < n_; ++j) dr[i] += A(i, j) * (1 + bend_ * p_[j]) * dp[j] / deviation_;
+      for (int j = 0; j < n_; ++j) dr[i] += A(i, j) * (1 + bend_ * p_[j]) * dp[j] / sigma_;
     }
   }
   void multiply_transposed(std::span<const double> w, std::span<double> pbar) override {
     for (int j = 0; j < n_; ++j) {
       pbar[j] = 0;
-      for (int i = 0; i < m_; ++i) pbar[j] += A(i, j) * (1 + bend_ * p_[j]) * w[i] / deviation_;
+      for (int i = 0; i < m_; ++i) pbar[j] += A(i, j) * (1 + bend_ * p_[j]) * w[i] / sigma_;
     }
   }
   const std::vector<double>& last() const { return p_; }
@@ -88,7 +88,7 @@ class CurvedModel : public LeastSquares {
   double& A(int i, int j) { return A_[static_cast<size_t>(i) * n_ + j]; }
 
   int n_, m_;
-  double bend_, deviation_;
+  double bend_, sigma_;
   std::vector<double> A_, b_, p_;
 };
 
@@ -98,7 +98,7 @@ struct Bar {
   ParameterMap map{mesh,
                    "neo_hookean",
                    std::vector<MaterialParameters>(mesh.tets.size(), {lame_from_young_poisson(1, 0.3), {}}),
-                   {{"young", Spread::tets, 0, 1.0}}};  // the guess is log E = 0
+                   {{"young", Parameterization::tets, 0, 1.0}}};  // the guess is log E = 0
 
   std::vector<double> truth() const {  // a stiff inclusion
     std::vector<double> z;
@@ -119,7 +119,7 @@ struct Few {
   ParameterMap map{mesh,
                    "neo_hookean",
                    std::vector<MaterialParameters>(mesh.tets.size(), {lame_from_young_poisson(1, 0.3), {}}),
-                   {{"young", Spread::regions, 0, 1.0}}};
+                   {{"young", Parameterization::regions, 0, 1.0}}};
   std::unique_ptr<Regularizer> prior = make_regularizer(mesh, map, {});
 };
 
@@ -250,7 +250,7 @@ TEST(Fit, DiscrepancyLeavesTheNoise) {
   }
 }
 
-TEST(Fit, SaysWhenTheModelCannotExplainTheData) {
+TEST(Fit, ReportsDataThatTheModelCannotExplain) {
   Bar bar;
   CurvedModel model(bar.map.size(), 200, 0, 0.02);
   model.blur(0.2);

@@ -3,13 +3,13 @@
 
 #include "fit/common_errors.h"
 #include "fit/fit.h"
-#include "fit/poked_block_test.h"
+#include "fit/indented_block_test.h"
 #include "fit/uncertainty.h"
 
 namespace aspic {
 namespace {
 
-using test::PokedBlock;
+using test::IndentedBlock;
 
 std::vector<double> draw(Regularizer& prior, const ParameterMap& map, double weight, std::mt19937_64& random) {
   std::vector<double> x(map.size());
@@ -46,10 +46,10 @@ TEST(Honesty, IntervalsOfAFieldHoldTheTruth) {
   Coverage coverage;
   double error = 0, expected = 0;
   for (unsigned seed = 0; seed < kSeeds; ++seed) {
-    PokedBlock block;
-    for (const PokedBlock::Site& site : PokedBlock::sites()) block.add_poke(site, 0.006, 0.02);
+    IndentedBlock block;
+    for (const IndentedBlock::Site& site : IndentedBlock::sites()) block.add_indentation(site, 0.006, 0.02);
     const ParameterMap map = block.map();
-    const auto prior = make_regularizer(block.experiment.mesh, map, {.prior_deviation = 0.5});
+    const auto prior = make_regularizer(block.experiment.mesh, map, {.prior_sigma = 0.5});
     std::mt19937_64 random(seed);
     const std::vector<double> truth = draw(*prior, map, kWeight, random);
     block.measure(map, truth, random);
@@ -66,7 +66,7 @@ TEST(Honesty, IntervalsOfAFieldHoldTheTruth) {
     add(posterior, map, report.p, truth, coverage);
     for (int t = 0; t < map.size(); ++t) {
       error += std::pow(report.p[t] - truth[t], 2);
-      expected += std::pow(posterior.deviation[0][t], 2);
+      expected += std::pow(posterior.sigma[0][t], 2);
     }
   }
   RecordProperty("coverage", std::to_string(coverage.part()));
@@ -76,16 +76,16 @@ TEST(Honesty, IntervalsOfAFieldHoldTheTruth) {
 }
 
 TEST(Honesty, IntervalsOfTwoLayersHoldTheTruth) {
-  PokedBlock block;
+  IndentedBlock block;
   TetMesh& mesh = block.experiment.mesh;
   for (const Tet& tet : mesh.tets) {
     double height = 0;
     for (const int v : tet) height += mesh.rest[v][2] / 4;
-    mesh.region.push_back(height < PokedBlock::kHeight / 2 ? 0 : 1);
+    mesh.region.push_back(height < IndentedBlock::kHeight / 2 ? 0 : 1);
   }
-  for (const PokedBlock::Site& site : PokedBlock::sites()) block.add_poke(site, 0.006, 0.1);
-  const ParameterMap map = block.map({{.spread = Spread::regions, .guess = 2e4}});
-  const auto prior = make_regularizer(mesh, map, {.prior_deviation = 2});
+  for (const IndentedBlock::Site& site : IndentedBlock::sites()) block.add_indentation(site, 0.006, 0.1);
+  const ParameterMap map = block.map({{.parameterization = Parameterization::regions, .guess = 2e4}});
+  const auto prior = make_regularizer(mesh, map, {.prior_sigma = 2});
   const std::vector<double> truth = {std::log(5e4), std::log(1e4)};
   Coverage coverage;
   constexpr int kSeeds = 100;
@@ -110,17 +110,17 @@ TEST(Honesty, IntervalsOfTwoLayersHoldTheTruth) {
 
 // ---------------------------------------------------------------------------------------------------- scale
 
-PokedBlock poked(bool with_force) {
-  PokedBlock block;
-  for (const PokedBlock::Site& site : PokedBlock::sites()) block.add_poke(site, 0.006, 0.01, with_force);
+IndentedBlock indented(bool with_force) {
+  IndentedBlock block;
+  for (const IndentedBlock::Site& site : IndentedBlock::sites()) block.add_indentation(site, 0.006, 0.01, with_force);
   return block;
 }
 
 TEST(Honesty, WithoutForceOnlyStiffnessRatiosAreDetermined) {
   for (const bool with_force : {false, true}) {
-    PokedBlock block = poked(with_force);
+    IndentedBlock block = indented(with_force);
     const ParameterMap map = block.map();
-    const auto prior = make_regularizer(block.experiment.mesh, map, {.prior_deviation = 2});
+    const auto prior = make_regularizer(block.experiment.mesh, map, {.prior_sigma = 2});
     std::mt19937_64 random(4);
     block.measure(map, draw(*prior, map, 4, random), random);
     Misfit misfit(block.experiment, map);
@@ -133,10 +133,10 @@ TEST(Honesty, WithoutForceOnlyStiffnessRatiosAreDetermined) {
     if (!with_force) {  // the prior alone determines the scale: 2 / sqrt(weight)
       EXPECT_EQ(posterior.unseen[0].description, "young of the whole body");
       EXPECT_LT(posterior.unseen[0].information, 0.1);
-      EXPECT_NEAR(posterior.unseen[0].deviation, 1, 0.1);
+      EXPECT_NEAR(posterior.unseen[0].sigma, 1, 0.1);
       EXPECT_GT(posterior.seen.size(), 0u);  // ratios are
     } else {
-      EXPECT_LT(posterior.unseen[0].deviation, 0.5);
+      EXPECT_LT(posterior.unseen[0].sigma, 0.5);
     }
     // A known layer stiffness would act like a force measurement.
     EXPECT_FALSE(aspic::posterior(misfit, *prior, 4, {map, block.experiment.mesh, report.p}).scale_is_unknown);
@@ -144,10 +144,10 @@ TEST(Honesty, WithoutForceOnlyStiffnessRatiosAreDetermined) {
 }
 
 TEST(Honesty, NuisanceIsDerivativeByLayerStiffness) {
-  PokedBlock block = poked(true);
+  IndentedBlock block = indented(true);
   const ParameterMap map = block.map();
   const auto residuals_at = [&](double log_factor) {
-    PokedBlock changed = block;
+    IndentedBlock changed = block;
     for (LoadCase& load : changed.experiment.cases) load.tip->stiffness *= std::exp(log_factor);
     Misfit misfit(changed.experiment, map, {.tolerance = 1e-13});
     std::vector<double> r(misfit.residual_count());
@@ -172,9 +172,9 @@ TEST(Honesty, NuisanceIsDerivativeByLayerStiffness) {
 
 // Eigenpairs by sampling, rows and columns agree at a real fit.
 TEST(Honesty, AllEigenpairMethodsAgreeAtFit) {
-  PokedBlock block = poked(true);
+  IndentedBlock block = indented(true);
   const ParameterMap map = block.map();
-  const auto prior = make_regularizer(block.experiment.mesh, map, {.prior_deviation = 1});
+  const auto prior = make_regularizer(block.experiment.mesh, map, {.prior_sigma = 1});
   Misfit misfit(block.experiment, map);
   const std::vector<double> p(map.guess().begin(), map.guess().end());
   std::mt19937_64 random(4);
@@ -183,8 +183,8 @@ TEST(Honesty, AllEigenpairMethodsAgreeAtFit) {
   const Posterior sampled = posterior(misfit, *prior, 1, {map, block.experiment.mesh, p}, {.spectrum = {.dense = 10}});
   ASSERT_LT(sampled.gaussian->spectrum().W.count(), map.size());
   for (int t = 0; t < map.size(); ++t) {
-    EXPECT_GT(sampled.deviation[0][t], dense.deviation[0][t] * (1 - 1e-6));
-    EXPECT_LT(sampled.deviation[0][t], dense.deviation[0][t] * 1.05);
+    EXPECT_GT(sampled.sigma[0][t], dense.sigma[0][t] * (1 - 1e-6));
+    EXPECT_LT(sampled.sigma[0][t], dense.sigma[0][t] * 1.05);
   }
 }
 

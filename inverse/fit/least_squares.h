@@ -9,7 +9,7 @@ namespace aspic {
 class LeastSquares {
  public:
   virtual ~LeastSquares() = default;
-  virtual int unknowns() const = 0;
+  virtual int parameter_count() const = 0;
   virtual int residual_count() const = 0;
   // Computes r(p). Returns false if it is undefined (no equilibrium found), so that another p must be tried.
   virtual bool evaluate(std::span<const double> p, std::span<double> r) = 0;

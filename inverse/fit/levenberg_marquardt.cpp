@@ -33,7 +33,7 @@ bool find_step(const MatrixXd& A, std::span<const double> g, double damping, std
 
 // J'J + weight R''
 MatrixXd curvature(FitRun& run, const FitPoint& at) {
-  const int n = run.unknowns(), m = run.residuals();
+  const int n = run.parameter_count(), m = run.residuals();
   const bool by_columns = n <= m;
   MatrixXd J(m, n), A(n, n);
   std::vector<double> unit(by_columns ? n : m, 0.0), line(by_columns ? m : n);

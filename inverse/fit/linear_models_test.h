@@ -35,7 +35,7 @@ class LinearModel : public LeastSquares {
   std::vector<Eigen::VectorXd> nuisances;
   int products = 0, transposed_products = 0;
 
-  int unknowns() const override { return static_cast<int>(J.cols()); }
+  int parameter_count() const override { return static_cast<int>(J.cols()); }
   int residual_count() const override { return static_cast<int>(J.rows()); }
   bool evaluate(std::span<const double> p, std::span<double> r) override {
     as_vector(r) = J * as_vector(p) - b;
@@ -93,10 +93,10 @@ class QuadraticPrior : public Regularizer {
 };
 
 // Differences along a chain of n values, and each about its guess.
-inline QuadraticPrior chain_prior(int n, double smooth, double deviation, double guess = 0) {
+inline QuadraticPrior chain_prior(int n, double smooth, double sigma, double guess = 0) {
   Eigen::MatrixXd G = Eigen::MatrixXd::Zero(2 * n - 1, n);
   for (int i = 0; i + 1 < n; ++i) G(i, i) = smooth, G(i, i + 1) = -smooth;
-  for (int i = 0; i < n; ++i) G(n - 1 + i, i) = 1 / deviation;
+  for (int i = 0; i < n; ++i) G(n - 1 + i, i) = 1 / sigma;
   return {G, Eigen::VectorXd::Constant(n, guess)};
 }
 

@@ -31,10 +31,10 @@ TipPose between(const TipPose& a, const TipPose& b, double part) {
   return {mix(a.center, b.center), mix(unit(a.axis), unit(b.axis)), mix(a.rotation, b.rotation)};
 }
 
-void require_positive(const Vec3d& deviation, const std::string& what) {
+void require_positive(const Vec3d& sigma, const std::string& what) {
   for (int r = 0; r < 3; ++r)
-    if (!(deviation[r] > 0) || !std::isfinite(deviation[r]))
-      throw InvalidInput(what + ": the standard deviation along " + kAxis[r] + " is " + std::to_string(deviation[r]) +
+    if (!(sigma[r] > 0) || !std::isfinite(sigma[r]))
+      throw InvalidInput(what + ": the standard deviation along " + kAxis[r] + " is " + std::to_string(sigma[r]) +
                          "; it must be positive");
 }
 
@@ -78,10 +78,10 @@ const LoadCase& LoadedBody::readable(const Experiment& experiment, const LoadCas
     if (reading.marker < 0 || reading.marker >= static_cast<int>(experiment.markers.size()))
       throw InvalidInput(load.name + ": marker " + std::to_string(reading.marker) + " is unknown; there are " +
                          std::to_string(experiment.markers.size()));
-    require_positive(reading.deviation, load.name + ": marker " + std::to_string(reading.marker));
+    require_positive(reading.sigma, load.name + ": marker " + std::to_string(reading.marker));
   }
-  if (load.force) require_positive(load.force_deviation, load.name + ": force");
-  if (load.torque) require_positive(load.torque_deviation, load.name + ": torque");
+  if (load.force) require_positive(load.force_sigma, load.name + ": force");
+  if (load.torque) require_positive(load.torque_sigma, load.name + ": torque");
   return load;
 }
 
@@ -177,13 +177,13 @@ void LoadedBody::predict_readings() {
 
 void LoadedBody::residuals(std::span<double> r) const {
   size_t i = 0;
-  const auto put = [&](const Vec3d& predicted, const Vec3d& measured, const Vec3d& deviation) {
-    for (int k = 0; k < 3; ++k) r[i++] = (predicted[k] - measured[k]) / deviation[k];
+  const auto put = [&](const Vec3d& predicted, const Vec3d& measured, const Vec3d& sigma) {
+    for (int k = 0; k < 3; ++k) r[i++] = (predicted[k] - measured[k]) / sigma[k];
   };
   for (size_t k = 0; k < load_.positions.size(); ++k)
-    put(prediction_.markers[k], load_.positions[k].position, load_.positions[k].deviation);
-  if (has_force()) put(prediction_.wrench.force, *load_.force, load_.force_deviation);
-  if (has_torque()) put(prediction_.wrench.torque, *load_.torque, load_.torque_deviation);
+    put(prediction_.markers[k], load_.positions[k].position, load_.positions[k].sigma);
+  if (has_force()) put(prediction_.wrench.force, *load_.force, load_.force_sigma);
+  if (has_torque()) put(prediction_.wrench.torque, *load_.torque, load_.torque_sigma);
 }
 
 void LoadedBody::restore(std::span<const double> x) {
@@ -221,13 +221,12 @@ bool LoadedBody::solved(const SolveReport& report) {
 
 void LoadedBody::put_change(const Wrench& change, std::span<double> dr) const {
   size_t i = 0;
-  const auto put = [&](const Vec3d& d, const Vec3d& deviation) {
-    for (int k = 0; k < 3; ++k) dr[i++] = d[k] / deviation[k];
+  const auto put = [&](const Vec3d& d, const Vec3d& sigma) {
+    for (int k = 0; k < 3; ++k) dr[i++] = d[k] / sigma[k];
   };
-  for (const MarkerReading& reading : load_.positions)
-    put(at(experiment_.markers[reading.marker], dx_), reading.deviation);
-  if (has_force()) put(change.force, load_.force_deviation);
-  if (has_torque()) put(change.torque, load_.torque_deviation);
+  for (const MarkerReading& reading : load_.positions) put(at(experiment_.markers[reading.marker], dx_), reading.sigma);
+  if (has_force()) put(change.force, load_.force_sigma);
+  if (has_torque()) put(change.torque, load_.torque_sigma);
 }
 
 bool LoadedBody::multiply(std::span<const double> dtheta, std::span<double> dr) {
@@ -256,21 +255,21 @@ bool LoadedBody::add_transposed(std::span<const double> w, std::span<double> the
   if (std::all_of(w.begin(), w.end(), [](double x) { return x == 0; })) return true;
   std::fill(xbar_.begin(), xbar_.end(), 0.0);
   size_t i = 0;
-  const auto take = [&](const Vec3d& deviation) {
-    const Vec3d bar{{w[i] / deviation[0], w[i + 1] / deviation[1], w[i + 2] / deviation[2]}};
+  const auto take = [&](const Vec3d& sigma) {
+    const Vec3d bar{{w[i] / sigma[0], w[i + 1] / sigma[1], w[i + 2] / sigma[2]}};
     i += 3;
     return bar;
   };
   for (const MarkerReading& reading : load_.positions) {
     const SurfacePoint& point = experiment_.markers[reading.marker];
-    const Vec3d bar = take(reading.deviation);
+    const Vec3d bar = take(reading.sigma);
     for (int k = 0; k < 3; ++k)
       for (int r = 0; r < 3; ++r) xbar_[3 * point.vertices[k] + r] += point.weights[k] * bar[r];
   }
   if (has_force() || has_torque()) {
     Wrench bar;
-    if (has_force()) bar.force = take(load_.force_deviation);
-    if (has_torque()) bar.torque = take(load_.torque_deviation);
+    if (has_force()) bar.force = take(load_.force_sigma);
+    if (has_torque()) bar.torque = take(load_.torque_sigma);
     probe_->add_wrench_transposed(equilibrium_.linearized_x(), bar, 1, xbar_);
   }
   ++counts_.solves;

@@ -9,7 +9,7 @@ namespace {
 
 // A block on z = 0, touched at its side by a bonded indenter with a layer much stiffer than the block. Part of the
 // footprint is on triangles with held corners.
-Experiment poked_beside_support(double height) {
+Experiment indented_beside_support(double height) {
   Experiment e;
   e.mesh = make_box({{0, 0, 0}}, {{0.1, 0.1, 0.1}}, {6, 6, 6});
   e.density.assign(e.mesh.tets.size(), 1000);
@@ -21,7 +21,7 @@ Experiment poked_beside_support(double height) {
   load.pose = load.touch;
   load.pose.center[0] += 0.002;
   load.force = Vec3d{};
-  load.force_deviation = {{0.1, 0.1, 0.1}};
+  load.force_sigma = {{0.1, 0.1, 0.1}};
   e.cases.push_back(std::move(load));
   return e;
 }
@@ -35,7 +35,7 @@ double force_along_x(const Experiment& e, double young) {
 
 TEST(LoadedBody, BondedTipDoesNotPressHeldCorners) {
   for (const double height : {0.03, 0.05}) {
-    const Experiment e = poked_beside_support(height);
+    const Experiment e = indented_beside_support(height);
     const double soft = force_along_x(e, 1e4), stiff = force_along_x(e, 2e4);
     EXPECT_GT(soft, 0);
     EXPECT_NEAR(stiff / soft, 2, 0.03) << "the force belongs to the body, not to the layer, at height " << height;

@@ -43,7 +43,7 @@ struct Misfit::Impl {
 
   int case_count() const { return static_cast<int>(cases.size()); }
 
-  // Cases side by side where there are enough of them; otherwise one after another, each on all threads.
+  // Solves the cases in parallel if there are enough of them, otherwise one after another, each on all threads.
   template <class Body>
   void for_each_case(const Body& body) {
     for_each(case_count(), [&](int c) { body(cases[c]); });
@@ -61,7 +61,7 @@ struct Misfit::Impl {
     return for_parts(map.parameters(p), experiment.mesh.tet_count());
   }
 
-  // The change of what each tet that is simulated is made of.
+  // Changes of the material parameters of each simulated tet.
   const std::vector<double>& theta_tangent(std::span<const double> direction) {
     map.multiply(linear_p, direction, dtheta);
     parallel_chunks(map.tet_count(), [&](int first, int last) {
@@ -110,7 +110,7 @@ struct Misfit::Impl {
     return true;
   }
 
-  // Each group from its smallest load on.
+  // Orders each group by load, from the smallest.
   void solve_groups(const std::vector<MaterialParameters>& parameters) {
     std::vector<int> begin;
     for (int c = 0; c < case_count(); ++c)
@@ -174,7 +174,7 @@ struct Misfit::Impl {
     mark_unless_ok(dr);
   }
 
-  // What could not be solved must not look like a result.
+  // Products that cannot be computed are NaN.
   void mark_unless_ok(std::span<double> result) {
     if (!all_ok()) std::fill(result.begin(), result.end(), std::numeric_limits<double>::quiet_NaN());
   }
@@ -195,7 +195,7 @@ Misfit::Misfit(const Experiment& experiment, const ParameterMap& map, const Equi
     : impl_(std::make_unique<Impl>(experiment, map, options)) {}
 Misfit::~Misfit() = default;
 
-int Misfit::unknowns() const { return impl_->map.size(); }
+int Misfit::parameter_count() const { return impl_->map.size(); }
 int Misfit::residual_count() const { return impl_->residual_count; }
 bool Misfit::evaluate(std::span<const double> p, std::span<double> r) { return impl_->evaluate(p, r); }
 bool Misfit::linearize() { return impl_->linearize(); }

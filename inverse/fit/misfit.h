@@ -23,9 +23,9 @@ struct SurfacePoint {
 };
 
 struct MarkerReading {
-  int marker = 0;     // index into Experiment::markers
-  Vec3d position{};   // measured [m]
-  Vec3d deviation{};  // standard deviations [m], > 0
+  int marker = 0;    // index into Experiment::markers
+  Vec3d position{};  // measured [m]
+  Vec3d sigma{};     // standard deviations [m], > 0
 };
 
 // A static state: body, supports and loads are at rest; measured are marker positions and, with an indenter, force and
@@ -40,7 +40,7 @@ struct LoadCase {
   std::vector<Triangle> pressed;
   std::vector<MarkerReading> positions;
   std::optional<Vec3d> force, torque;  // measured, of the indenter on the body [N, N m]
-  Vec3d force_deviation{}, torque_deviation{};
+  Vec3d force_sigma{}, torque_sigma{};
 };
 
 struct Experiment {
@@ -68,7 +68,7 @@ class Misfit : public LeastSquares {
   Misfit(const Experiment& experiment, const ParameterMap& map, const EquilibriumOptions& options = {});
   ~Misfit() override;
 
-  int unknowns() const override;
+  int parameter_count() const override;
   int residual_count() const override;
   // Each case starts from the equilibrium of the last linearization, corrected by the tangent, or from its last one; on
   // failure by load stepping. The first time, each starts from the previous case of its group.

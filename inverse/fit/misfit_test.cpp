@@ -18,7 +18,7 @@ using taylor::Numbers;
 
 const EquilibriumOptions kMisfitExact{.tolerance = 1e-14, .adjoint_tolerance = 1e-13};
 
-// A block of gel of 8 cm on a table, poked from above at two sites and two depths, pressed from the side, and hung.
+// A block of gel of 8 cm on a table, indented from above at two sites and two depths, pressed from the side, and hung.
 struct Gel {
   Experiment experiment;
   std::vector<Triangle> surface;
@@ -32,14 +32,14 @@ struct Gel {
     for (const Triangle& t : surface)
       if (mesh.rest[t[0]][2] > 0.01) experiment.markers.push_back({t, {0.2, 0.3, 0.5}});
     for (const double x : {0.03, 0.05})
-      for (const double depth : {0.004, 0.008}) experiment.cases.push_back(poke(x, depth));
+      for (const double depth : {0.004, 0.008}) experiment.cases.push_back(indentation(x, depth));
     experiment.cases.push_back(hung());
     experiment.cases.push_back(pressed());
   }
 
   static std::string text(double x) { return std::to_string(std::lround(1000 * x)) + " mm"; }
 
-  LoadCase poke(double x, double depth) const {
+  LoadCase indentation(double x, double depth) const {
     LoadCase load{.name = "poke at " + text(x) + ", depth " + text(depth), .group = "poke at " + text(x)};
     load.tip = Tip{TipShape::sphere, TipContact::bonded, 0.012, 5e8};
     load.touch.center = {{x, 0.04, 0.062}};
@@ -47,8 +47,8 @@ struct Gel {
     load.pose.center = {{x + 0.3 * depth, 0.04, 0.062 - depth}};
     load.pose.rotation = {{0, 0.1, 0}};
     load.force = load.torque = Vec3d{};
-    load.force_deviation = {{0.01, 0.01, 0.02}};
-    load.torque_deviation = {{1e-4, 1e-4, 1e-4}};
+    load.force_sigma = {{0.01, 0.01, 0.02}};
+    load.torque_sigma = {{1e-4, 1e-4, 1e-4}};
     add_markers(load);
     return load;
   }
@@ -73,23 +73,23 @@ struct Gel {
       load.positions.push_back({static_cast<int>(m), {}, {{1e-4, 2e-4, 1e-4}}});
   }
 
-  // Readings as if a body of this material had been measured, and noise of `noise` standard deviations.
+  // Readings of a body of this material, with noise of `noise` standard deviations.
   void measure(const ParameterMap& map, const std::vector<double>& p, double noise) {
     Misfit truth(experiment, map, kMisfitExact);
     std::vector<double> r(truth.residual_count());
     ASSERT_TRUE(truth.evaluate(p, r)) << truth.failure();
     Numbers numbers;
-    const auto read = [&](const Vec3d& exact, const Vec3d& deviation) {
+    const auto read = [&](const Vec3d& exact, const Vec3d& sigma) {
       const std::vector<double> e = numbers(3);
-      return exact + Vec3d{{noise * e[0] * deviation[0], noise * e[1] * deviation[1], noise * e[2] * deviation[2]}};
+      return exact + Vec3d{{noise * e[0] * sigma[0], noise * e[1] * sigma[1], noise * e[2] * sigma[2]}};
     };
     for (size_t c = 0; c < experiment.cases.size(); ++c) {
       LoadCase& load = experiment.cases[c];
       const CasePrediction& exact = truth.prediction(static_cast<int>(c));
       for (size_t k = 0; k < load.positions.size(); ++k)
-        load.positions[k].position = read(exact.markers[k], load.positions[k].deviation);
-      if (load.force) load.force = read(exact.wrench.force, load.force_deviation);
-      if (load.torque) load.torque = read(exact.wrench.torque, load.torque_deviation);
+        load.positions[k].position = read(exact.markers[k], load.positions[k].sigma);
+      if (load.force) load.force = read(exact.wrench.force, load.force_sigma);
+      if (load.torque) load.torque = read(exact.wrench.torque, load.torque_sigma);
     }
   }
 
@@ -97,9 +97,11 @@ struct Gel {
     const MaterialInfo& info = material_info(material);
     MaterialParameters known{lame_from_young_poisson(2e4, 0.4), {}};
     for (size_t k = 0; k < info.extra.size(); ++k) known.extra[k] = info.extra[k].fallback;
-    std::vector<Unknown> unknowns = {{"young", Spread::handles, handles, 2e4}, {"poisson", Spread::uniform, 0, 0.42}};
-    for (const ExtraParameter& extra : info.extra) unknowns.push_back({extra.name, Spread::uniform, 0, extra.fallback});
-    return {experiment.mesh, material, std::vector<MaterialParameters>(experiment.mesh.tet_count(), known), unknowns};
+    std::vector<FitParameter> parameters = {{"young", Parameterization::handles, handles, 2e4},
+                                            {"poisson", Parameterization::uniform, 0, 0.42}};
+    for (const ExtraParameter& extra : info.extra)
+      parameters.push_back({extra.name, Parameterization::uniform, 0, extra.fallback});
+    return {experiment.mesh, material, std::vector<MaterialParameters>(experiment.mesh.tet_count(), known), parameters};
   }
 };
 
@@ -200,7 +202,7 @@ TEST(Misfit, TangentStartNeedsFewIterationsForSmallSteps) {
 
 TEST(Misfit, LoadTooLargeForOneSolveIsStepped) {
   Gel gel;
-  gel.experiment.cases = {gel.poke(0.03, 0.02)};  // 40 % of the height
+  gel.experiment.cases = {gel.indentation(0.03, 0.02)};  // 40 % of the height
   const ParameterMap map = gel.map();
   std::vector<double> r, in_parts;
   const auto iterations_of = [&](const EquilibriumOptions& options, std::vector<double>& into, long equilibria) {
@@ -229,7 +231,7 @@ TEST(Misfit, FailureNamesTheCaseAndChangesNothing) {
   for (size_t i = 0; i < r.size(); ++i) EXPECT_NEAR(r[i], again[i], 1e-6 * norm(r));
 }
 
-// Eight tets of the simulation are made of what one tet of the map is made of.
+// Eight tets of the simulation have the material of one tet of the map.
 TEST(Misfit, OnRefinedMeshHasDerivativesPerMapTet) {
   Gel gel;
   gel.experiment.cases.resize(1);
@@ -249,7 +251,7 @@ TEST(Misfit, OnRefinedMeshHasDerivativesPerMapTet) {
   for (size_t i = 0; i < r.size(); ++i) EXPECT_NEAR((above[i] - below[i]) / (2 * h), dr[i], 1e-5 * norm(dr));
 }
 
-TEST(Misfit, SaysWhatAResidualIs) {
+TEST(Misfit, NamesEachResidual) {
   Gel gel;
   const ParameterMap map = gel.map();
   const Misfit misfit(gel.experiment, map);
@@ -276,8 +278,8 @@ TEST(Misfit, RefusesCasesThatCannotBeRead) {
   refused([](Gel& gel) { gel.experiment.cases[4].positions.clear(); }, "hung: no measurements");
   refused([](Gel& gel) { gel.experiment.cases[4].force = Vec3d{}; }, "hung: a force or torque needs an indenter");
   refused([](Gel& gel) { gel.experiment.cases[0].positions[2].marker = 1000; }, "marker 1000 is unknown");
-  refused([](Gel& gel) { gel.experiment.cases[0].positions[2].deviation[1] = 0; }, "deviation along y is 0");
-  refused([](Gel& gel) { gel.experiment.cases[1].force_deviation[0] = std::nan(""); }, "force");
+  refused([](Gel& gel) { gel.experiment.cases[0].positions[2].sigma[1] = 0; }, "deviation along y is 0");
+  refused([](Gel& gel) { gel.experiment.cases[1].force_sigma[0] = std::nan(""); }, "force");
 }
 
 }  // namespace

@@ -15,9 +15,9 @@ constexpr int kIterations = 4;  // minimum number per preconditioner
 constexpr double kDecrease = 1e-18, kDecreaseInNoise = 1e-3;
 constexpr double kRoundOff = 1e-12, kRoundOffInNoise = 1e-2;  // the same if the line search found no step
 constexpr double kHessianDifference = 1e-3;                   // difference of p
-constexpr double kWeakest = 1e-5;        // eigenvalue of the scaled Hessian below which a direction is not determined
-constexpr double kLargestDeviation = 1;  // sigma of p: a factor of e
-constexpr double kVanished = -5;         // p of a damping coefficient that has fallen to less than 1 % of its guess
+constexpr double kWeakest = 1e-5;    // eigenvalue of the scaled Hessian below which a direction is not determined
+constexpr double kLargestSigma = 1;  // sigma of p: a factor of e
+constexpr double kVanished = -5;     // p of a damping coefficient that has fallen to less than 1 % of its guess
 
 double redundancy(const MotionObjective& f) {  // degrees of freedom
   return 3.0 * static_cast<double>(f.data().samples.size()) - f.parameters().size();
@@ -112,7 +112,7 @@ double noise(const MotionObjective& f, const MotionPoint& at) {
   return std::isfinite(estimate) ? std::max(1.0, estimate) : 1;
 }
 
-void find_deviations(MotionObjective& f, MotionFitReport& report) {
+void find_sigmas(MotionObjective& f, MotionFitReport& report) {
   const int n = f.parameters().size();
   std::vector<double> H = hessian(f, report.after);
   const double least = std::pow(MotionObjective::kInsensitive, 2) * 2 * f.resting_value();
@@ -123,15 +123,15 @@ void find_deviations(MotionObjective& f, MotionFitReport& report) {
   const double s = noise(f, report.after);
   for (int i = 0; i < n; ++i) {
     FittedMotionValue& value = report.values[i];
-    const double deviation = s * std::sqrt(covariance.inverse[static_cast<size_t>(n) * i + i]);
+    const double sigma = s * std::sqrt(covariance.inverse[static_cast<size_t>(n) * i + i]);
     if (!(H[static_cast<size_t>(n) * i + i] > 0))
       value.message = "the motion does not depend on it";
     else if (covariance.weakest[i] < kWeakest)
       value.message = "only determined together with another parameter";
-    else if (!(deviation < kLargestDeviation))
+    else if (!(sigma < kLargestSigma))
       value.message = "the noise is too large";
     else
-      value.deviation = std::abs(f.parameters().slope(i, report.p[i])) * deviation;
+      value.sigma = std::abs(f.parameters().slope(i, report.p[i])) * sigma;
   }
 }
 
@@ -155,14 +155,13 @@ MotionFitReport fit_motion(MotionObjective& objective, const MotionFitOptions& o
   for (int i = 0; i < parameters.size(); ++i)
     report.values.push_back({parameters.parameters()[i], parameters.value(i, report.p[i]), INFINITY, {}});
   if (is_success(report.status)) {
-    find_deviations(objective, report);
+    find_sigmas(objective, report);
     report.stopped = objective.stop().stopped();
   }
   if (!is_success(report.status) || report.stopped)
-    for (FittedMotionValue& value : report.values)
-      value.deviation = INFINITY, value.message = "the fit has not converged";
+    for (FittedMotionValue& value : report.values) value.sigma = INFINITY, value.message = "the fit has not converged";
   for (int i = 0; i < parameters.size(); ++i)
-    if (report.values[i].parameter.can_vanish && report.p[i] < kVanished && std::isinf(report.values[i].deviation))
+    if (report.values[i].parameter.can_vanish && report.p[i] < kVanished && std::isinf(report.values[i].sigma))
       report.values[i].message = "it tends to 0; fit without it";
   report.chi_squared = redundancy(objective) > 0 ? 2 * report.after.value / redundancy(objective) : 0;
   report.simulations = objective.simulations();

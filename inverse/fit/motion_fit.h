@@ -25,7 +25,7 @@ struct MotionFitOptions {
 struct FittedMotionValue {
   MotionParameter parameter;
   double value = 0;
-  double deviation = 0;      // standard deviation, increased if residuals exceed sigma; infinite if not determined
+  double sigma = 0;          // standard deviation, increased if residuals exceed sigma; infinite if not determined
   std::string message = {};  // the reason
 };
 

@@ -56,7 +56,7 @@ MotionData some_data(const MotionModel& model) {
   return data;
 }
 
-// What a motion with the parameters p shows.
+// Marker positions of the motion with the parameters p.
 MotionData observed(MotionObjective& objective, std::span<const double> p) {
   MotionData data = objective.data();
   const MotionPoint point = objective.simulate(p);
@@ -113,7 +113,7 @@ TEST(MotionFit, RecoversParametersFromSyntheticMotion) {
   for (int i = 0; i < f.parameters().size(); ++i) {
     const double expected = truth.parameters().value(i, p[i]);
     EXPECT_NEAR(report.values[i].value, expected, 1e-5 * std::abs(expected)) << report.values[i].parameter.name;
-    EXPECT_LT(report.values[i].deviation, 1e-4 * std::abs(expected));
+    EXPECT_LT(report.values[i].sigma, 1e-4 * std::abs(expected));
   }
 }
 
@@ -134,15 +134,15 @@ TEST(MotionFit, StandardDeviationsScaleWithTheNoise) {
     MotionObjective f = objective_of(names, data, beam());
     const MotionFitReport report = fit_motion(f, {});
     EXPECT_NEAR(report.chi_squared, std::pow(scatter / sigma, 2), 0.4 * std::pow(scatter / sigma, 2));
-    EXPECT_LT(std::abs(report.values[0].value - truth.parameters().value(0, 0.3)), 4 * report.values[0].deviation);
-    return report.values[0].deviation;
+    EXPECT_LT(std::abs(report.values[0].value - truth.parameters().value(0, 0.3)), 4 * report.values[0].sigma);
+    return report.values[0].sigma;
   };
-  const double deviation = fitted(1e-4, 1e-4);
-  EXPECT_NEAR(fitted(2e-4, 2e-4), 2 * deviation, 0.05 * deviation);
-  EXPECT_NEAR(fitted(1e-4, 1e-5), deviation, 0.3 * deviation);  // residuals exceed the stated sigma
+  const double sigma = fitted(1e-4, 1e-4);
+  EXPECT_NEAR(fitted(2e-4, 2e-4), 2 * sigma, 0.05 * sigma);
+  EXPECT_NEAR(fitted(1e-4, 1e-5), sigma, 0.3 * sigma);  // residuals exceed the stated sigma
 }
 
-TEST(MotionFit, UndeterminedParametersHaveNoDeviation) {
+TEST(MotionFit, UndeterminedParametersHaveNoSigma) {
   const auto fitted = [](const std::vector<std::string>& names, bool is_held) {
     const auto undamped = [=] {
       MotionModel model = beam(is_held);
@@ -156,14 +156,14 @@ TEST(MotionFit, UndeterminedParametersHaveNoDeviation) {
   };
   const MotionFitReport flight = fitted({"young", "density", "velocity"}, false);
   for (const int i : {0, 1}) {
-    EXPECT_EQ(flight.values[i].deviation, INFINITY);
+    EXPECT_EQ(flight.values[i].sigma, INFINITY);
     EXPECT_THAT(flight.values[i].message, HasSubstr("does not depend"));
     EXPECT_NEAR(flight.values[i].value, flight.values[i].parameter.guess, 1e-3 * flight.values[i].parameter.guess);
   }
-  EXPECT_LT(flight.values[2].deviation, 1e-4);
+  EXPECT_LT(flight.values[2].sigma, 1e-4);
   const MotionFitReport beside = fitted({"young", "density"}, true);  // only their ratio matters
   for (const int i : {0, 1}) {
-    EXPECT_EQ(beside.values[i].deviation, INFINITY);
+    EXPECT_EQ(beside.values[i].sigma, INFINITY);
     EXPECT_THAT(beside.values[i].message, HasSubstr("together"));
   }
 }
@@ -192,7 +192,7 @@ TEST(MotionFit, StopsOnRequestWithBestParameters) {
   EXPECT_TRUE(report.stopped);
   EXPECT_TRUE(report.before.ok);
   EXPECT_LE(report.after.value, report.before.value);
-  EXPECT_EQ(report.values[0].deviation, INFINITY);
+  EXPECT_EQ(report.values[0].sigma, INFINITY);
 }
 
 TEST(MotionFit, FailedSimulationOfGuessIsReported) {

@@ -47,7 +47,7 @@ struct Range {
   double lower, upper;
 };
 
-void check_guess(const Unknown& u, const Range& range) {
+void check_guess(const FitParameter& u, const Range& range) {
   if (u.guess > range.lower && u.guess < range.upper) return;
   throw InvalidInput("the guess of '" + u.quantity + "' is " + six_digits(u.guess) + "; it must lie between " +
                      six_digits(range.lower) + " and " + six_digits(range.upper) + ", and not at an end");
@@ -61,7 +61,7 @@ QuantityScale scale_of(const ExtraParameter& extra) {
   return powers ? QuantityScale::bounded_powers(extra.min, extra.max) : QuantityScale::bounded(extra.min, extra.max);
 }
 
-void set_quantity(const Unknown& u, const MaterialInfo& info, Fitted& f) {
+void set_quantity(const FitParameter& u, const MaterialInfo& info, Fitted& f) {
   if (u.quantity == "young") {
     if (!(u.guess > 0 && u.guess < 1e300))
       throw InvalidInput("the guess of 'young' is " + six_digits(u.guess) + " Pa; it must be positive");
@@ -87,20 +87,20 @@ void set_quantity(const Unknown& u, const MaterialInfo& info, Fitted& f) {
   throw InvalidInput("'" + u.quantity + "' is not a quantity of " + info.name + suggestion(u.quantity, known));
 }
 
-FieldBasis make_basis(const TetMesh& mesh, const Unknown& u) {
-  switch (u.spread) {
-    case Spread::uniform:
+FieldBasis make_basis(const TetMesh& mesh, const FitParameter& u) {
+  switch (u.parameterization) {
+    case Parameterization::uniform:
       return FieldBasis::uniform(mesh.tet_count());
-    case Spread::regions:
+    case Parameterization::regions:
       if (mesh.region.empty())
         throw InvalidInput("'" + u.quantity + "' is fitted per region, but the mesh has none (try uniform or handles)");
       return FieldBasis::regions(mesh.region);
-    case Spread::handles:
+    case Parameterization::handles:
       if (u.handles < 1 || u.handles > mesh.tet_count())
         throw InvalidInput("'" + u.quantity + "' is fitted at " + std::to_string(u.handles) + " handles; use 1 to " +
                            std::to_string(mesh.tet_count()) + ", one per tet");
       return FieldBasis::radial(mesh, u.handles);
-    case Spread::tets:
+    case Parameterization::tets:
       break;
   }
   return FieldBasis::tets(mesh.tet_count());
@@ -113,7 +113,7 @@ struct ParameterMap::Impl {
   int per_tet = 2;
   std::vector<MaterialParameters> known;
   std::vector<Elastic> elastic;  // elastic constants of `known`
-  std::vector<Unknown> unknowns;
+  std::vector<FitParameter> parameters;
   std::vector<Fitted> fitted;
   std::vector<double> guess;
 
@@ -167,7 +167,7 @@ ParameterMap::Impl::Slopes ParameterMap::Impl::slopes(const Fitted& f, std::span
 }
 
 ParameterMap::ParameterMap(const TetMesh& mesh, std::string material, std::vector<MaterialParameters> known,
-                           std::vector<Unknown> unknowns)
+                           std::vector<FitParameter> parameters)
     : impl_(std::make_unique<Impl>()) {
   ASPIC_CHECK(static_cast<int>(known.size()) == mesh.tet_count());
   const MaterialInfo& info = material_info(material);
@@ -176,9 +176,9 @@ ParameterMap::ParameterMap(const TetMesh& mesh, std::string material, std::vecto
   impl_->known = std::move(known);
   for (const MaterialParameters& m : impl_->known)
     impl_->elastic.push_back({young_modulus(m.lame), poisson_ratio(m.lame)});
-  if (unknowns.empty()) throw InvalidInput("there is no parameter to fit (try young)");
-  for (const Unknown& u : unknowns) {
-    for (const Unknown& other : impl_->unknowns)
+  if (parameters.empty()) throw InvalidInput("there is no parameter to fit (try young)");
+  for (const FitParameter& u : parameters) {
+    for (const FitParameter& other : impl_->parameters)
       if (other.quantity == u.quantity) throw InvalidInput("'" + u.quantity + "' is fitted twice");
     Fitted f;
     set_quantity(u, info, f);
@@ -187,7 +187,7 @@ ParameterMap::ParameterMap(const TetMesh& mesh, std::string material, std::vecto
     f.guess = f.scale.fitted(u.guess);
     impl_->guess.insert(impl_->guess.end(), static_cast<size_t>(f.basis.size()), f.guess);
     impl_->fitted.push_back(std::move(f));
-    impl_->unknowns.push_back(u);
+    impl_->parameters.push_back(u);
   }
 }
 
@@ -197,14 +197,14 @@ ParameterMap::ParameterMap(ParameterMap&&) noexcept = default;
 int ParameterMap::size() const { return static_cast<int>(impl_->guess.size()); }
 int ParameterMap::tet_count() const { return static_cast<int>(impl_->known.size()); }
 int ParameterMap::parameters_per_tet() const { return impl_->per_tet; }
-const std::vector<Unknown>& ParameterMap::unknowns() const { return impl_->unknowns; }
+const std::vector<FitParameter>& ParameterMap::fitted_parameters() const { return impl_->parameters; }
 const std::string& ParameterMap::material() const { return impl_->material; }
 std::span<const double> ParameterMap::guess() const { return impl_->guess; }
-std::pair<int, int> ParameterMap::range(int unknown) const {
-  const Fitted& f = impl_->fitted[unknown];
+std::pair<int, int> ParameterMap::range(int parameter) const {
+  const Fitted& f = impl_->fitted[parameter];
   return {f.first, f.basis.size()};
 }
-const FieldBasis& ParameterMap::basis(int unknown) const { return impl_->fitted[unknown].basis; }
+const FieldBasis& ParameterMap::basis(int parameter) const { return impl_->fitted[parameter].basis; }
 
 std::vector<MaterialParameters> ParameterMap::parameters(std::span<const double> p) const {
   ASPIC_CHECK(static_cast<int>(p.size()) == size());
@@ -261,30 +261,30 @@ void ParameterMap::add_transposed(std::span<const double> p, std::span<const dou
   }
 }
 
-std::vector<double> ParameterMap::fitted_values(int unknown, std::span<const double> p) const {
-  return impl_->fitted[unknown].field(p);
+std::vector<double> ParameterMap::fitted_values(int parameter, std::span<const double> p) const {
+  return impl_->fitted[parameter].field(p);
 }
 
-std::vector<double> ParameterMap::values(int unknown, std::span<const double> p) const {
-  const Fitted& f = impl_->fitted[unknown];
+std::vector<double> ParameterMap::values(int parameter, std::span<const double> p) const {
+  const Fitted& f = impl_->fitted[parameter];
   std::vector<double> q = f.field(p);
   for (double& x : q) x = f.scale.value(x);
   return q;
 }
 
-double ParameterMap::value(int unknown, double fitted) const { return impl_->fitted[unknown].scale.value(fitted); }
+double ParameterMap::value(int parameter, double fitted) const { return impl_->fitted[parameter].scale.value(fitted); }
 
-double ParameterMap::place_in_range(int unknown, double fitted) const {
-  return impl_->fitted[unknown].scale.place_in_range(fitted);
+double ParameterMap::place_in_range(int parameter, double fitted) const {
+  return impl_->fitted[parameter].scale.place_in_range(fitted);
 }
 
-void ParameterMap::multiply_fitted(int unknown, std::span<const double> dp, std::span<double> values) const {
-  const Fitted& f = impl_->fitted[unknown];
+void ParameterMap::multiply_fitted(int parameter, std::span<const double> dp, std::span<double> values) const {
+  const Fitted& f = impl_->fitted[parameter];
   f.basis.multiply(f.part(dp), values);
 }
 
-void ParameterMap::add_fitted_transposed(int unknown, std::span<const double> values, std::span<double> pbar) const {
-  const Fitted& f = impl_->fitted[unknown];
+void ParameterMap::add_fitted_transposed(int parameter, std::span<const double> values, std::span<double> pbar) const {
+  const Fitted& f = impl_->fitted[parameter];
   f.basis.add_transposed(values, f.part(pbar));
 }
 

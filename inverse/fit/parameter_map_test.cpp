@@ -43,9 +43,9 @@ double inner(std::span<const double> a, std::span<const double> b) {
   return std::inner_product(a.begin(), a.end(), b.begin(), 0.0);
 }
 
-std::string refusal(const TetMesh& mesh, const std::string& material, std::vector<Unknown> unknowns) {
+std::string refusal(const TetMesh& mesh, const std::string& material, std::vector<FitParameter> parameters) {
   try {
-    ParameterMap map(mesh, material, known(mesh), std::move(unknowns));
+    ParameterMap map(mesh, material, known(mesh), std::move(parameters));
     return "accepted";
   } catch (const InvalidInput& error) {
     return error.what();
@@ -97,8 +97,9 @@ TEST(QuantityScale, OfPowersResolvesSmallAndLargeValues) {
 
 TEST(ParameterMap, FitsGrowthsOnThatScale) {
   const TetMesh mesh = two_layers();
-  const ParameterMap map(mesh, "spline", std::vector<MaterialParameters>(mesh.tet_count()),
-                         {{"growth_2", Spread::uniform, 0, 0.5}, {"share", Spread::uniform, 0, 0.5}});
+  const ParameterMap map(
+      mesh, "spline", std::vector<MaterialParameters>(mesh.tet_count()),
+      {{"growth_2", Parameterization::uniform, 0, 0.5}, {"share", Parameterization::uniform, 0, 0.5}});
   EXPECT_DOUBLE_EQ(map.guess()[0], QuantityScale::powers_from_zero(1000).fitted(0.5));
   EXPECT_DOUBLE_EQ(map.guess()[1], QuantityScale::bounded(0, 1).fitted(0.5));
 }
@@ -126,7 +127,7 @@ TEST(FieldBasis, GivesEveryHandleItsTets) {
 
 TEST(ParameterMap, StartsAtGuessAndKeepsKnownValues) {
   const TetMesh mesh = two_layers();
-  const ParameterMap map(mesh, "mooney_rivlin", known(mesh, 0.75), {{"young", Spread::handles, 5, 4e4}});
+  const ParameterMap map(mesh, "mooney_rivlin", known(mesh, 0.75), {{"young", Parameterization::handles, 5, 4e4}});
   for (const MaterialParameters& m : map.parameters(map.guess())) {
     EXPECT_NEAR(young_modulus(m.lame), 4e4, 1e-9 * 4e4);
     EXPECT_NEAR(poisson_ratio(m.lame), 0.3, 1e-12);
@@ -137,7 +138,7 @@ TEST(ParameterMap, StartsAtGuessAndKeepsKnownValues) {
 
 TEST(ParameterMap, GivesEachRegionItsOwnValue) {
   const TetMesh mesh = two_layers();
-  const ParameterMap map(mesh, "neo_hookean", known(mesh), {{"young", Spread::regions, 0, 1e5}});
+  const ParameterMap map(mesh, "neo_hookean", known(mesh), {{"young", Parameterization::regions, 0, 1e5}});
   ASSERT_EQ(map.size(), 2);
   const std::vector<double> E = map.values(0, std::vector{std::log(1e4), std::log(5e4)});
   for (size_t t = 0; t < E.size(); ++t) EXPECT_NEAR(E[t], mesh.region[t] == 3 ? 1e4 : 5e4, 1e-7);
@@ -145,7 +146,7 @@ TEST(ParameterMap, GivesEachRegionItsOwnValue) {
 
 struct MapCase {
   std::string name, material;
-  std::vector<Unknown> unknowns;
+  std::vector<FitParameter> parameters;
 };
 
 class ParameterMapDerivatives : public testing::TestWithParam<MapCase> {};
@@ -153,7 +154,7 @@ class ParameterMapDerivatives : public testing::TestWithParam<MapCase> {};
 // theta(p + h dp) - theta(p) - h dtheta falls with h^2.
 TEST_P(ParameterMapDerivatives, AgreeWithDifferencesToSecondOrder) {
   const TetMesh mesh = two_layers();
-  const ParameterMap map(mesh, GetParam().material, known(mesh), GetParam().unknowns);
+  const ParameterMap map(mesh, GetParam().material, known(mesh), GetParam().parameters);
   const int n = map.parameters_per_tet();
   std::vector<double> p(map.guess().begin(), map.guess().end());
   const std::vector<double> shift = numbers(p.size(), 1), dp = numbers(p.size(), 2);
@@ -189,7 +190,7 @@ TEST_P(ParameterMapDerivatives, AgreeWithDifferencesToSecondOrder) {
 
 TEST_P(ParameterMapDerivatives, TransposeIsTheTranspose) {
   const TetMesh mesh = two_layers();
-  const ParameterMap map(mesh, GetParam().material, known(mesh), GetParam().unknowns);
+  const ParameterMap map(mesh, GetParam().material, known(mesh), GetParam().parameters);
   std::vector<double> p(map.guess().begin(), map.guess().end());
   const std::vector<double> shift = numbers(p.size(), 1), dp = numbers(p.size(), 2);
   for (size_t i = 0; i < p.size(); ++i) p[i] += 0.3 * shift[i];
@@ -203,31 +204,38 @@ TEST_P(ParameterMapDerivatives, TransposeIsTheTranspose) {
 
 INSTANTIATE_TEST_SUITE_P(
     Of, ParameterMapDerivatives,
-    testing::Values(
-        MapCase{"Uniform", "neo_hookean", {{"young", Spread::uniform, 0, 3e4}}},
-        MapCase{"Both", "neo_hookean", {{"young", Spread::tets, 0, 3e4}, {"poisson", Spread::regions, 0, 0.4}}},
-        MapCase{"PoissonAlone", "stvk", {{"poisson", Spread::handles, 6, 0.45}}},
-        MapCase{"Share", "mooney_rivlin", {{"share", Spread::tets, 0, 0.4}, {"young", Spread::handles, 4, 1e5}}},
-        MapCase{
-            "Fung",
-            "fung",
-            {{"young", Spread::tets, 0, 1e5}, {"poisson", Spread::uniform, 0, 0.3}, {"b", Spread::handles, 7, 12}}}),
+    testing::Values(MapCase{"Uniform", "neo_hookean", {{"young", Parameterization::uniform, 0, 3e4}}},
+                    MapCase{
+                        "Both",
+                        "neo_hookean",
+                        {{"young", Parameterization::tets, 0, 3e4}, {"poisson", Parameterization::regions, 0, 0.4}}},
+                    MapCase{"PoissonAlone", "stvk", {{"poisson", Parameterization::handles, 6, 0.45}}},
+                    MapCase{"Share",
+                            "mooney_rivlin",
+                            {{"share", Parameterization::tets, 0, 0.4}, {"young", Parameterization::handles, 4, 1e5}}},
+                    MapCase{"Fung",
+                            "fung",
+                            {{"young", Parameterization::tets, 0, 1e5},
+                             {"poisson", Parameterization::uniform, 0, 0.3},
+                             {"b", Parameterization::handles, 7, 12}}}),
     [](const auto& each) { return each.param.name; });
 
 TEST(ParameterMap, RefusesWhatCannotBeFitted) {
   TetMesh mesh = two_layers();
   EXPECT_THAT(refusal(mesh, "fung", {}), HasSubstr("there is no parameter to fit"));
   EXPECT_THAT(refusal(mesh, "fung", {{.quantity = "yuong"}}), HasSubstr("did you mean 'young'?"));
-  EXPECT_THAT(refusal(mesh, "neo_hookean", {{"b", Spread::uniform, 0, 1}}), HasSubstr("not a quantity of neo_hookean"));
-  EXPECT_THAT(refusal(mesh, "fung", {{"young", Spread::uniform, 0, -2}}), HasSubstr("must be positive"));
-  EXPECT_THAT(refusal(mesh, "fung", {{"young", Spread::uniform, 0, NAN}}), HasSubstr("must be positive"));
-  EXPECT_THAT(refusal(mesh, "fung", {{"poisson", Spread::uniform, 0, 0.5}}), HasSubstr("between -1 and 0.5"));
-  EXPECT_THAT(refusal(mesh, "mooney_rivlin", {{"share", Spread::uniform, 0, 0}}), HasSubstr("between 0 and 1"));
+  EXPECT_THAT(refusal(mesh, "neo_hookean", {{"b", Parameterization::uniform, 0, 1}}),
+              HasSubstr("not a quantity of neo_hookean"));
+  EXPECT_THAT(refusal(mesh, "fung", {{"young", Parameterization::uniform, 0, -2}}), HasSubstr("must be positive"));
+  EXPECT_THAT(refusal(mesh, "fung", {{"young", Parameterization::uniform, 0, NAN}}), HasSubstr("must be positive"));
+  EXPECT_THAT(refusal(mesh, "fung", {{"poisson", Parameterization::uniform, 0, 0.5}}), HasSubstr("between -1 and 0.5"));
+  EXPECT_THAT(refusal(mesh, "mooney_rivlin", {{"share", Parameterization::uniform, 0, 0}}),
+              HasSubstr("between 0 and 1"));
   EXPECT_THAT(refusal(mesh, "fung", {{}, {}}), HasSubstr("twice"));
-  EXPECT_THAT(refusal(mesh, "fung", {{"young", Spread::handles, 0, 1e5}}), HasSubstr("at 0 handles"));
-  EXPECT_THAT(refusal(mesh, "fung", {{"young", Spread::handles, 1000, 1e5}}), HasSubstr("1 to 162"));
+  EXPECT_THAT(refusal(mesh, "fung", {{"young", Parameterization::handles, 0, 1e5}}), HasSubstr("at 0 handles"));
+  EXPECT_THAT(refusal(mesh, "fung", {{"young", Parameterization::handles, 1000, 1e5}}), HasSubstr("1 to 162"));
   mesh.region.clear();
-  EXPECT_THAT(refusal(mesh, "fung", {{"young", Spread::regions, 0, 1e5}}), HasSubstr("has none"));
+  EXPECT_THAT(refusal(mesh, "fung", {{"young", Parameterization::regions, 0, 1e5}}), HasSubstr("has none"));
 }
 
 }  // namespace

@@ -83,7 +83,7 @@ class Sampler {
     PartsEstimate e{.levels = std::vector<double>(K, 0.0),
                     .share = std::vector<std::vector<double>>(K, std::vector<double>(tets_, 0.0)),
                     .mean = std::vector<double>(tets_, 0.0),
-                    .deviation = std::vector<double>(tets_, 0.0)};
+                    .sigma = std::vector<double>(tets_, 0.0)};
     const int burn = options_.sweeps / 4;
     for (int i = 0; i < burn + options_.sweeps; ++i) {
       move_levels();
@@ -93,10 +93,10 @@ class Sampler {
       for (int t = 0; t < tets_; ++t) {
         const double z = levels_[label_[t]];
         e.share[label_[t]][t] += 1.0 / options_.sweeps;
-        e.mean[t] += z / options_.sweeps, e.deviation[t] += z * z / options_.sweeps;
+        e.mean[t] += z / options_.sweeps, e.sigma[t] += z * z / options_.sweeps;
       }
     }
-    for (int t = 0; t < tets_; ++t) e.deviation[t] = std::sqrt(std::max(0.0, e.deviation[t] - e.mean[t] * e.mean[t]));
+    for (int t = 0; t < tets_; ++t) e.sigma[t] = std::sqrt(std::max(0.0, e.sigma[t] - e.mean[t] * e.mean[t]));
     return e;
   }
 
@@ -202,7 +202,7 @@ Independent one_by_one(const ParameterMap& map, int unknown, const std::vector<d
 // The change by one more linearization is a lower bound of the uncertainty.
 void widen(PartsEstimate& estimate, std::span<const double> before) {
   for (size_t t = 0; t < before.size(); ++t)
-    estimate.deviation[t] = std::hypot(estimate.deviation[t], estimate.mean[t] - before[t]);
+    estimate.sigma[t] = std::hypot(estimate.sigma[t], estimate.mean[t] - before[t]);
 }
 
 }  // namespace

@@ -26,7 +26,7 @@ struct PartsOptions {
 struct PartsEstimate {
   std::vector<double> levels;              // values of z, ascending: mean over the samples
   std::vector<std::vector<double>> share;  // share of each part in each tet: relative frequency
-  std::vector<double> mean, deviation;     // mean and sigma of z in each tet
+  std::vector<double> mean, sigma;     // mean and sigma of z in each tet
 };
 
 // Clusters of z by volume, ascending: k-means in one dimension. Fewer if some coincide.
@@ -52,7 +52,7 @@ struct Parts {
   double squares = 0;     // |r|^2 there
 };
 
-// Finds `count` parts of `unknown`, a quantity per tet, starting from the clusters of the field p. Each pass linearizes
+// Finds `count` parts of `parameter`, a value per tet, starting from the clusters of the field p. Each pass linearizes
 // the model at the mean of the previous samples; the change of the last pass increases the standard deviations.
 Parts find_parts(LeastSquares& model, const FittedField& field, int unknown, int count,
                  const PartsOptions& options = {});

@@ -59,7 +59,7 @@ TEST(PartsSampler, TellsHowFarItMayBeOff) {
     const PartsEstimate e = body.estimate({0, 1});
     for (int t = 0; t < body.size(); ++t) {
       squares += (e.mean[t] - body.truth[t]) * (e.mean[t] - body.truth[t]);
-      expected += e.deviation[t] * e.deviation[t];
+      expected += e.sigma[t] * e.sigma[t];
     }
   }
   EXPECT_LT(squares, 2 * expected);

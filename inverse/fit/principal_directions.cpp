@@ -23,9 +23,9 @@ class WeightedFields {
   WeightedFields(const ParameterMap& map, const TetMesh& mesh) : map_(map), root_(volume_parts(mesh)) {
     for (double& v : root_) v = std::sqrt(v);
   }
-  int size() const { return static_cast<int>(root_.size() * map_.unknowns().size()); }
+  int size() const { return static_cast<int>(root_.size() * map_.fitted_parameters().size()); }
   void multiply(std::span<const double> p, std::span<double> g) const {
-    for (size_t u = 0; u < map_.unknowns().size(); ++u) {
+    for (size_t u = 0; u < map_.fitted_parameters().size(); ++u) {
       const std::span<double> part = g.subspan(u * root_.size(), root_.size());
       map_.multiply_fitted(static_cast<int>(u), p, part);
       for (size_t t = 0; t < root_.size(); ++t) part[t] *= root_[t];
@@ -34,7 +34,7 @@ class WeightedFields {
   void multiply_transposed(std::span<const double> g, std::span<double> p) const {
     std::ranges::fill(p, 0.0);
     std::vector<double> part(root_.size());
-    for (size_t u = 0; u < map_.unknowns().size(); ++u) {
+    for (size_t u = 0; u < map_.fitted_parameters().size(); ++u) {
       for (size_t t = 0; t < root_.size(); ++t) part[t] = root_[t] * g[u * root_.size() + t];
       map_.add_fitted_transposed(static_cast<int>(u), part, p);
     }

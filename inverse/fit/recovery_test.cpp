@@ -15,7 +15,7 @@ namespace {
 constexpr double kCubeSide = 0.1, kCubeYoung = 2e4;  // [m], [Pa]
 
 // Cube on the ground, pushed down by an indenter at two places to two depths each.
-Experiment poked_cube() {
+Experiment indented_cube() {
   Experiment e;
   TetMesh& mesh = e.mesh = make_box({{0, 0, 0}}, {{kCubeSide, kCubeSide, kCubeSide}}, {3, 3, 4});
   e.density.assign(mesh.tets.size(), 1000);
@@ -33,7 +33,7 @@ Experiment poked_cube() {
       load.pose = load.touch;
       load.pose.center = {{x + depth / 4, 0.05, kCubeSide - depth}};
       load.force = Vec3d{};
-      load.force_deviation = {{0.01, 0.01, 0.01}};
+      load.force_sigma = {{0.01, 0.01, 0.01}};
       for (size_t m = 0; m < e.markers.size(); ++m)
         load.positions.push_back({static_cast<int>(m), {}, {{1e-5, 1e-5, 1e-5}}});
       e.cases.push_back(std::move(load));
@@ -41,11 +41,12 @@ Experiment poked_cube() {
   return e;
 }
 
-ParameterMap map_of(const Experiment& e, std::vector<Unknown> unknowns, const std::string& material = "neo_hookean") {
+ParameterMap map_of(const Experiment& e, std::vector<FitParameter> parameters,
+                    const std::string& material = "neo_hookean") {
   return ParameterMap(
       e.mesh, material,
       std::vector<MaterialParameters>(e.mesh.tets.size(), {lame_from_young_poisson(kCubeYoung, 0.4), {4}}),
-      std::move(unknowns));
+      std::move(parameters));
 }
 
 const EquilibriumOptions kSynthetic{.tolerance = 1e-13};
@@ -57,15 +58,15 @@ void measure(Experiment& e, const ParameterMap& map, const std::vector<double>& 
   ASSERT_TRUE(body.evaluate(p, r)) << body.failure();
   std::mt19937 random(1);
   std::normal_distribution<double> normal;
-  const auto reading = [&](Vec3d exact, const Vec3d& deviation) {
-    for (int k = 0; k < 3; ++k) exact[k] += noise * deviation[k] * normal(random);
+  const auto reading = [&](Vec3d exact, const Vec3d& sigma) {
+    for (int k = 0; k < 3; ++k) exact[k] += noise * sigma[k] * normal(random);
     return exact;
   };
   for (size_t c = 0; c < e.cases.size(); ++c) {
     const CasePrediction& exact = body.prediction(static_cast<int>(c));
     for (size_t m = 0; m < exact.markers.size(); ++m)
-      e.cases[c].positions[m].position = reading(exact.markers[m], e.cases[c].positions[m].deviation);
-    e.cases[c].force = reading(exact.wrench.force, e.cases[c].force_deviation);
+      e.cases[c].positions[m].position = reading(exact.markers[m], e.cases[c].positions[m].sigma);
+    e.cases[c].force = reading(exact.wrench.force, e.cases[c].force_sigma);
   }
 }
 
@@ -76,8 +77,8 @@ FitReport fitted(const Experiment& e, const ParameterMap& map, FitOptions option
 }
 
 TEST(Recovery, FindsOneModulusAgainFromExactData) {
-  Experiment e = poked_cube();
-  const ParameterMap map = map_of(e, {{"young", Spread::uniform, 0, 3 * kCubeYoung}});
+  Experiment e = indented_cube();
+  const ParameterMap map = map_of(e, {{"young", Parameterization::uniform, 0, 3 * kCubeYoung}});
   measure(e, map, {std::log(kCubeYoung)});
   const FitReport report = fitted(e, map, {.tolerance = 1e-10, .weight = 0});
   EXPECT_TRUE(is_success(report.status)) << report.message;
@@ -85,11 +86,11 @@ TEST(Recovery, FindsOneModulusAgainFromExactData) {
 }
 
 TEST(Recovery, RecoversModulusRatioAndStiffeningFromExactData) {
-  Experiment e = poked_cube();
+  Experiment e = indented_cube();
   const ParameterMap map = map_of(e,
-                                  {{"young", Spread::uniform, 0, 0.5 * kCubeYoung},
-                                   {"poisson", Spread::uniform, 0, 0.3},
-                                   {"b", Spread::uniform, 0, 1}},
+                                  {{"young", Parameterization::uniform, 0, 0.5 * kCubeYoung},
+                                   {"poisson", Parameterization::uniform, 0, 0.3},
+                                   {"b", Parameterization::uniform, 0, 1}},
                                   "fung");
   std::vector<double> truth(map.guess().begin(), map.guess().end());
   truth[0] += 0.8, truth[1] += 0.5, truth[2] += 1;
@@ -100,8 +101,8 @@ TEST(Recovery, RecoversModulusRatioAndStiffeningFromExactData) {
 }
 
 TEST(Recovery, FindsTwoLayersAgainFromExactData) {
-  Experiment e = poked_cube();
-  const ParameterMap map = map_of(e, {{"young", Spread::regions, 0, kCubeYoung}});
+  Experiment e = indented_cube();
+  const ParameterMap map = map_of(e, {{"young", Parameterization::regions, 0, kCubeYoung}});
   const std::vector<double> truth{std::log(0.4 * kCubeYoung), std::log(4 * kCubeYoung)};
   measure(e, map, truth);
   const FitReport report = fitted(e, map, {.tolerance = 1e-10, .weight = 0});
@@ -110,8 +111,8 @@ TEST(Recovery, FindsTwoLayersAgainFromExactData) {
 }
 
 TEST(Recovery, OfFieldLeavesNoiseAndFindsStiffLayer) {
-  Experiment e = poked_cube();
-  const ParameterMap map = map_of(e, {{"young", Spread::tets, 0, kCubeYoung}});
+  Experiment e = indented_cube();
+  const ParameterMap map = map_of(e, {{"young", Parameterization::tets, 0, kCubeYoung}});
   std::vector<double> truth;
   for (int region : e.mesh.region) truth.push_back(std::log(region == 1 ? 4 * kCubeYoung : 0.7 * kCubeYoung));
   measure(e, map, truth, 1);

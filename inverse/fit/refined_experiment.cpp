@@ -150,9 +150,9 @@ double multiple_of(const Vec3d& known, const Vec3d& other) {
   return squares > 0 ? std::clamp(dot(known, other) / squares, 0.0, kMostMultiple) : 1;
 }
 
-void shift(Vec3d& value, Vec3d& deviation, const Vec3d& error) {
+void shift(Vec3d& value, Vec3d& sigma, const Vec3d& error) {
   value = value - error;
-  for (int i = 0; i < 3; ++i) deviation[i] = std::hypot(deviation[i], kUncertain * norm(error));
+  for (int i = 0; i < 3; ++i) sigma[i] = std::hypot(sigma[i], kUncertain * norm(error));
 }
 
 }  // namespace
@@ -219,10 +219,10 @@ Experiment without_mesh_errors(Experiment experiment, const MeshErrors& errors) 
     LoadCase& load = experiment.cases[c];
     const MeshError& error = errors.cases[c];
     for (size_t k = 0; k < load.positions.size(); ++k)
-      shift(load.positions[k].position, load.positions[k].deviation, error.markers[k]);
+      shift(load.positions[k].position, load.positions[k].sigma, error.markers[k]);
     const Wrench own = load.force ? error.for_force_in_limit(*load.force) : error.wrench;
-    if (load.force) shift(*load.force, load.force_deviation, own.force);
-    if (load.torque) shift(*load.torque, load.torque_deviation, own.torque);
+    if (load.force) shift(*load.force, load.force_sigma, own.force);
+    if (load.torque) shift(*load.torque, load.torque_sigma, own.torque);
   }
   return experiment;
 }

@@ -89,14 +89,14 @@ TEST(RefinedExperiment, TellsWhatAFarFinerMeshWouldSay) {
   EXPECT_NEAR(mean, 16.0 / 15 * difference, 0.15 * std::abs(difference));
 }
 
-TEST(RefinedExperiment, ErrorsCorrectMeasurementsAndIncreaseTheirDeviations) {
+TEST(RefinedExperiment, ErrorsCorrectMeasurementsAndIncreaseTheirSigma) {
   Experiment e = column(2);
   MeshErrors errors{{MeshError{}}, ""};
   errors.cases[0].markers.assign(e.markers.size(), Vec3d{{3e-5, 0, 0}});
   const Experiment better = without_mesh_errors(e, errors);
   EXPECT_DOUBLE_EQ(better.cases[0].positions[0].position[0], -3e-5);
   EXPECT_DOUBLE_EQ(better.cases[0].positions[0].position[1], 0);
-  EXPECT_NEAR(better.cases[0].positions[0].deviation[1], std::sqrt(2.0) * 1e-5, 1e-12);
+  EXPECT_NEAR(better.cases[0].positions[0].sigma[1], std::sqrt(2.0) * 1e-5, 1e-12);
 }
 
 // Parallel forces, for which the mesh gives 0.8 (or 2.5) times the limit of fine meshes.
@@ -104,7 +104,7 @@ Experiment pushed(double measured) {
   Experiment e = column(2);
   e.cases[0].positions.clear();
   e.cases[0].force = Vec3d{{0, 0, measured}};
-  e.cases[0].force_deviation = {{0.1, 0.1, 0.1}};
+  e.cases[0].force_sigma = {{0.1, 0.1, 0.1}};
   return e;
 }
 
@@ -129,7 +129,7 @@ TEST(RefinedExperiment, CorrectionsScaleWithTheForce) {
   for (const double measured : {-0.05, -1.0, -5.0}) {
     const LoadCase load = without_mesh_errors(pushed(measured), errors).cases[0];
     EXPECT_NEAR((*load.force)[2], 0.8 * measured, 1e-12);
-    EXPECT_NEAR(load.force_deviation[2], std::hypot(0.1, 0.2 * measured / 3), 1e-12);
+    EXPECT_NEAR(load.force_sigma[2], std::hypot(0.1, 0.2 * measured / 3), 1e-12);
     EXPECT_NEAR(errors.cases[0].for_force_on_mesh({{0, 0, 0.8 * measured}}).force[2], 0.2 * measured, 1e-12)
         << "the mesh error is added to predictions again";
   }

@@ -12,7 +12,7 @@
 namespace aspic {
 namespace {
 
-constexpr double kDeviationOfNoPrior = 100;
+constexpr double kSigmaWithoutPrior = 100;
 
 // A penalty limits values of fields to a factor of 100 from the guess (4.6 in log E) for any weight. With small
 // weights, poorly determined tets would otherwise diverge to 0 or infinity.
@@ -25,7 +25,7 @@ double inverse_square(double x) { return 1 / (x * x); }
 // Entries of p of one quantity, and their prior.
 class Prior {
  public:
-  Prior(double guess, double deviation) : guess_(guess), precision_(inverse_square(deviation)) {}
+  Prior(double guess, double sigma) : guess_(guess), precision_(inverse_square(sigma)) {}
   virtual ~Prior() = default;
   virtual double value(std::span<const double> p) const = 0;
   virtual void add_gradient(std::span<const double> p, double scale, std::span<double> g) const = 0;
@@ -36,7 +36,7 @@ class Prior {
 
  protected:
   double invertible_precision(double shift) const {
-    return precision_ > 0 || shift > 0 ? precision_ : inverse_square(kDeviationOfNoPrior);
+    return precision_ > 0 || shift > 0 ? precision_ : inverse_square(kSigmaWithoutPrior);
   }
 
   double guess_, precision_;
@@ -70,7 +70,7 @@ class ValuePrior : public Prior {
 class FieldPrior : public Prior {
  public:
   FieldPrior(const TetMesh& mesh, const FieldBasis& basis, const RegularizerOptions& options, double guess)
-      : Prior(guess, options.prior_deviation),
+      : Prior(guess, options.prior_sigma),
         basis_(basis),
         roughness_(mesh, options.smoothness == Smoothness::total_variation ? options.sharpness
                                                                            : std::numeric_limits<double>::infinity()),
@@ -195,13 +195,13 @@ class FieldPrior : public Prior {
 class SumOfPriors : public Regularizer {
  public:
   SumOfPriors(const TetMesh& mesh, const ParameterMap& map, const RegularizerOptions& options) {
-    for (size_t u = 0; u < map.unknowns().size(); ++u) {
+    for (size_t u = 0; u < map.fitted_parameters().size(); ++u) {
       const auto [first, count] = map.range(static_cast<int>(u));
       const double guess = map.guess()[first];
-      const Spread spread = map.unknowns()[u].spread;
+      const Parameterization parameterization = map.fitted_parameters()[u].parameterization;
       std::unique_ptr<Prior> prior;
-      if (spread == Spread::uniform || spread == Spread::regions)
-        prior = std::make_unique<ValuePrior>(guess, options.prior_deviation);
+      if (parameterization == Parameterization::uniform || parameterization == Parameterization::regions)
+        prior = std::make_unique<ValuePrior>(guess, options.prior_sigma);
       else
         prior = std::make_unique<FieldPrior>(mesh, map.basis(static_cast<int>(u)), options, guess);
       parts_.push_back({static_cast<size_t>(first), static_cast<size_t>(count), std::move(prior)});
@@ -244,8 +244,7 @@ class SumOfPriors : public Regularizer {
 
 std::unique_ptr<Regularizer> make_regularizer(const TetMesh& mesh, const ParameterMap& map,
                                               const RegularizerOptions& options) {
-  if (!(options.prior_deviation > 0))
-    throw InvalidInput("the standard deviation of the prior must be positive (try 2)");
+  if (!(options.prior_sigma > 0)) throw InvalidInput("the standard deviation of the prior must be positive (try 2)");
   if (!(options.sharpness > 0 && std::isfinite(options.sharpness)))
     throw InvalidInput("the sharpness of total variation must be positive and finite (try 10)");
   return std::make_unique<SumOfPriors>(mesh, map, options);

@@ -1,8 +1,8 @@
 // Prior of p as a penalty R(p); its weight is the strength.
-//   R = sum over the fitted quantities of   roughness(z) + mean over the body of (z - guess)^2 / (2 deviation^2)
+//   R = sum over the fitted quantities of   roughness(z) + mean over the body of (z - guess)^2 / (2 sigma^2)
 // for quantities per tet and at handles, with their field z; roughness is H1 or total variation, see field_roughness.h.
-// Uniform values and values per region have independent priors: (p_i - guess)^2 / (2 deviation^2). With weight 1, R is
-// the negative logarithm of a normal distribution (H1) whose mean over the body has the standard deviation `deviation`.
+// Uniform values and values per region have independent priors: (p_i - guess)^2 / (2 sigma^2). With weight 1, R is
+// the negative logarithm of a normal distribution (H1) whose mean over the body has the standard deviation sigma.
 // A steep penalty limits fields to a factor of 100 from the guess.
 #pragma once
 #include <memory>
@@ -20,7 +20,7 @@ inline constexpr double kFarthestOfField = 4.6;
 
 struct RegularizerOptions {
   Smoothness smoothness = Smoothness::h1;  // for quantities that vary from tet to tet, on the fitted scale (log E)
-  double prior_deviation = 2;  // standard deviation about the guess on the fitted scale: log E +- 2; infinity: no prior
+  double prior_sigma = 2;  // standard deviation about the guess on the fitted scale: log E +- 2; infinity: no prior
   // For total variation: changes below 1/sharpness across the body count as smooth, larger ones as edges.
   double sharpness = 10;
 };

@@ -35,10 +35,10 @@ std::vector<double> field(const TetMesh& mesh, const Function& f) {
   return z;
 }
 
-ParameterMap map_of(const TetMesh& mesh, std::vector<Unknown> unknowns) {
+ParameterMap map_of(const TetMesh& mesh, std::vector<FitParameter> parameters) {
   return ParameterMap(mesh, "fung",
                       std::vector<MaterialParameters>(mesh.tets.size(), {lame_from_young_poisson(1e5, 0.3), {1}}),
-                      std::move(unknowns));
+                      std::move(parameters));
 }
 
 // z = g.X has L^2 / (2 V) int |g|^2 = |g|^2 / 2 in the unit cube. Surface faces have no neighbors, so the error is of
@@ -78,7 +78,7 @@ TEST(FieldRoughness, OfJumpIsBoundedOnlyForTotalVariation) {
 
 struct Regularization {
   std::string name;
-  std::vector<Unknown> unknowns;
+  std::vector<FitParameter> parameters;
   RegularizerOptions options;
 };
 
@@ -89,7 +89,7 @@ class Regularizers : public testing::TestWithParam<Regularization> {
     for (int t = 0; t < mesh.tet_count(); ++t) mesh.region.push_back(t % 4);
     return mesh;
   }();
-  ParameterMap map_ = map_of(mesh_, GetParam().unknowns);
+  ParameterMap map_ = map_of(mesh_, GetParam().parameters);
   std::unique_ptr<Regularizer> R_ = make_regularizer(mesh_, map_, GetParam().options);
 
   std::vector<double> somewhere() const {
@@ -200,18 +200,19 @@ TEST_P(Regularizers, IsLeastAtTheGuess) {
   for (double gi : g) EXPECT_NEAR(gi, 0, 1e-12);
 }
 
-const std::vector<Unknown> kEverySpread = {
-    {"young", Spread::tets, 0, 1e5}, {"poisson", Spread::regions, 0, 0.4}, {"b", Spread::handles, 6, 2}};
-INSTANTIATE_TEST_SUITE_P(Of, Regularizers,
-                         testing::Values(Regularization{"H1", kEverySpread, {}},
-                                         Regularization{
-                                             "TotalVariation", kEverySpread, {Smoothness::total_variation, 3}},
-                                         Regularization{"PriorAlone", kEverySpread, {Smoothness::none, 1}}),
-                         [](const auto& each) { return each.param.name; });
+const std::vector<FitParameter> kEveryParameterization = {{"young", Parameterization::tets, 0, 1e5},
+                                                          {"poisson", Parameterization::regions, 0, 0.4},
+                                                          {"b", Parameterization::handles, 6, 2}};
+INSTANTIATE_TEST_SUITE_P(
+    Of, Regularizers,
+    testing::Values(Regularization{"H1", kEveryParameterization, {}},
+                    Regularization{"TotalVariation", kEveryParameterization, {Smoothness::total_variation, 3}},
+                    Regularization{"PriorAlone", kEveryParameterization, {Smoothness::none, 1}}),
+    [](const auto& each) { return each.param.name; });
 
 TEST(Regularizer, MeanOfFieldHasTheStandardDeviation) {
   const TetMesh mesh = box(3);
-  const ParameterMap map = map_of(mesh, {{"young", Spread::tets, 0, 1e5}});
+  const ParameterMap map = map_of(mesh, {{"young", Parameterization::tets, 0, 1e5}});
   const auto R = make_regularizer(mesh, map, {Smoothness::h1, 1.5});
   const std::vector<double> mean(mesh.tets.size(), 1.0 / static_cast<double>(mesh.tets.size()));  // equal volumes
   std::vector<double> z(mean.size());
@@ -221,7 +222,7 @@ TEST(Regularizer, MeanOfFieldHasTheStandardDeviation) {
 
 TEST(Regularizer, IsInvertedEvenWithoutAPrior) {
   const TetMesh mesh = box(3);
-  const ParameterMap map = map_of(mesh, {{"young", Spread::tets, 0, 1e5}});
+  const ParameterMap map = map_of(mesh, {{"young", Parameterization::tets, 0, 1e5}});
   const auto R = make_regularizer(mesh, map, {Smoothness::h1, kInfinity});
   std::vector<double> moved(map.guess().begin(), map.guess().end()), z(moved.size());
   for (double& p : moved) p += 3;
@@ -232,7 +233,7 @@ TEST(Regularizer, IsInvertedEvenWithoutAPrior) {
 
 TEST(Regularizer, RefusesBadNumbers) {
   const TetMesh mesh = box(1);
-  const ParameterMap map = map_of(mesh, {{"young", Spread::tets, 0, 1e5}});
+  const ParameterMap map = map_of(mesh, {{"young", Parameterization::tets, 0, 1e5}});
   EXPECT_THROW(make_regularizer(mesh, map, {Smoothness::h1, 0}), InvalidInput);
   EXPECT_THROW(make_regularizer(mesh, map, {Smoothness::h1, std::nan("")}), InvalidInput);
   EXPECT_THROW(make_regularizer(mesh, map, {Smoothness::total_variation, 1, 0}), InvalidInput);

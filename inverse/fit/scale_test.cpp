@@ -62,12 +62,12 @@ TEST(Scale, IsSeenWhereThereIsAWeight) {
   EXPECT_GT(largest_difference(solved_with_factor(body, 10), x), 0.5 * largest_difference(x, rest));
 }
 
-struct Poked {
+struct Indented {
   Probe* probe = nullptr;  // of the body
   std::vector<double> rest;
   std::unique_ptr<Equilibrium> body;
 
-  explicit Poked(double layer) {
+  explicit Indented(double layer) {
     Model model = gel_cube();
     const Tip tip{.shape = TipShape::disc, .radius = 0.025, .stiffness = layer * 1e4 / 0.025};
     const TipPose touch{.center = {{kSize / 2, kSize / 2, kSize}}};
@@ -81,7 +81,7 @@ struct Poked {
 };
 
 TEST(Scale, OfModuliAndProbeLayerMovesNothing) {
-  Poked soft(100), stiff(1000);  // the layer ten times stiffer
+  Indented soft(100), stiff(1000);  // the layer ten times stiffer
   const std::vector<double> x = solved_with_factor(*soft.body, 1), y = solved_with_factor(*stiff.body, 10);
   const double motion = largest_difference(x, soft.rest);
   EXPECT_LT(largest_difference(y, x), 1e-10 * motion);
@@ -94,9 +94,10 @@ TEST(Scale, OfModuliAndProbeLayerMovesNothing) {
 // Treating the layer stiffness as a nuisance removes this from the residuals.
 TEST(Scale, LeaksThroughTheLayer) {
   for (const double layer : {1e2, 1e3, 1e4}) {
-    Poked poked(layer);
-    const std::vector<double> x = solved_with_factor(*poked.body, 1);
-    const double leak = largest_difference(solved_with_factor(*poked.body, 2), x) / largest_difference(x, poked.rest);
+    Indented indented(layer);
+    const std::vector<double> x = solved_with_factor(*indented.body, 1);
+    const double leak =
+        largest_difference(solved_with_factor(*indented.body, 2), x) / largest_difference(x, indented.rest);
     EXPECT_GT(leak, 1e-3) << layer;
     EXPECT_LT(leak, 0.1) << layer;
   }
@@ -104,15 +105,15 @@ TEST(Scale, LeaksThroughTheLayer) {
 
 // dx/dlog E + dx/dlog k = 0, exactly.
 TEST(Scale, AndTheLayersStiffnessHaveOppositeTangents) {
-  Poked poked(100);
-  const std::vector<double> x = solved_with_factor(*poked.body, 1);
-  ASSERT_TRUE(poked.body->factorize());
+  Indented indented(100);
+  const std::vector<double> x = solved_with_factor(*indented.body, 1);
+  ASSERT_TRUE(indented.body->factorize());
   std::vector<double> dtheta, by_young(x.size()), force(x.size(), 0.0), by_layer(x.size());
-  for (const MaterialParameters& m : uneven(poked.body->model().mesh.tet_count(), 1))
+  for (const MaterialParameters& m : uneven(indented.body->model().mesh.tet_count(), 1))
     dtheta.insert(dtheta.end(), {m.lame.mu, m.lame.lambda});
-  ASSERT_TRUE(poked.body->tangent(dtheta, by_young).ok);
-  poked.probe->add_gradient(x, -1, force);
-  ASSERT_TRUE(poked.body->solve_stiffness(force, by_layer).ok);
+  ASSERT_TRUE(indented.body->tangent(dtheta, by_young).ok);
+  indented.probe->add_gradient(x, -1, force);
+  ASSERT_TRUE(indented.body->solve_stiffness(force, by_layer).ok);
   double size = 0, sum = 0;
   for (size_t i = 0; i < x.size(); ++i) {
     size = std::max(size, std::abs(by_young[i]));

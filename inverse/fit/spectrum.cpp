@@ -23,7 +23,9 @@ bool all_finite(const Columns& A) {
   return true;
 }
 
-Spectrum nothing(int unknowns, bool ok) { return {.ok = ok, .W = Columns(unknowns), .dual = Columns(unknowns)}; }
+Spectrum nothing(int parameter_count, bool ok) {
+  return {.ok = ok, .W = Columns(parameter_count), .dual = Columns(parameter_count)};
+}
 
 // Columns times diag(factor).
 void scale_columns(Columns& A, std::span<const double> factor) {
@@ -52,7 +54,7 @@ DenseEigen truncated(DenseEigen e, int rows, double relative) {
 }
 
 Columns columns_of_transposed(LeastSquares& data) {  // J'
-  const int n = data.unknowns(), m = data.residual_count();
+  const int n = data.parameter_count(), m = data.residual_count();
   Columns rows(n, m);
   std::vector<double> unit(m, 0.0);
   for (int i = 0; i < m; ++i) {
@@ -81,7 +83,7 @@ Columns dense_products(LeastSquares& data, const Columns& V) {
 
 // All eigenpairs: with C^-1 = U diag(l) U', the columns of Q = U diag(l)^-1/2 are orthonormal in the norm of C^-1.
 Spectrum all_eigenpairs(LeastSquares& data, Gaussian& before) {
-  const int n = data.unknowns();
+  const int n = data.parameter_count();
   std::vector<double> precision(static_cast<size_t>(n) * n), unit(n, 0.0);
   for (int j = 0; j < n; ++j) {
     unit[j] = 1;
@@ -122,13 +124,13 @@ class RandomRange {
       : data_(data),
         before_(before),
         random_(seed),
-        Q_(data.unknowns()),
-        dual_(data.unknowns()),
+        Q_(data.parameter_count()),
+        dual_(data.parameter_count()),
         JQ_(data.residual_count()) {}
 
   // Returns false if there is no further direction.
   bool grow() {
-    const int n = data_.unknowns();
+    const int n = data_.parameter_count();
     std::normal_distribution<double> normal;
     std::vector<double> q(n), y(n), r(data_.residual_count());
     for (double& value : r) value = normal(random_);
@@ -158,7 +160,7 @@ class RandomRange {
   Columns nystroem_factor() {
     const DenseEigen e = truncated(ritz(), count(), 1e-13);
     const int rank = static_cast<int>(e.values.size());
-    Columns residuals = product(JQ_, e.vectors, rank), B(data_.unknowns(), rank);
+    Columns residuals = product(JQ_, e.vectors, rank), B(data_.parameter_count(), rank);
     scale_columns(residuals, powers(e.values, -0.5));
     for (int j = 0; j < rank; ++j) data_.multiply_transposed(residuals[j], B[j]);
     return B;
@@ -175,11 +177,11 @@ class RandomRange {
 Spectrum leading_eigenpairs(LeastSquares& data, Gaussian& before, const SpectrumOptions& options) {
   constexpr int kBatch = 24, kSpare = 8;  // kSpare negligible values imply that the rest is negligible
   RandomRange range(data, before, options.seed);
-  const int limit = std::min({options.max_rank + kSpare, data.unknowns(), data.residual_count()});
+  const int limit = std::min({options.max_rank + kSpare, data.parameter_count(), data.residual_count()});
   double missed = 0;
   for (bool more = true; more;) {
     for (int k = 0; k < kBatch && more; ++k) more = range.count() < limit && range.grow();
-    if (!range.is_finite() || range.count() == 0) return nothing(data.unknowns(), range.is_finite());
+    if (!range.is_finite() || range.count() == 0) return nothing(data.parameter_count(), range.is_finite());
     const DenseEigen ritz = range.ritz();
     missed = more || range.count() == options.max_rank + kSpare
                  ? std::max(ritz.values[std::max(range.count() - kSpare, 0)], 0.0)
@@ -220,8 +222,8 @@ void PriorGaussian::sample(std::mt19937_64& random, std::span<double> x) {
 }
 
 Spectrum spectrum(LeastSquares& data, Gaussian& before, const SpectrumOptions& options) {
-  ASPIC_CHECK(data.unknowns() == before.size());
-  if (data.unknowns() <= options.dense) return all_eigenpairs(data, before);
+  ASPIC_CHECK(data.parameter_count() == before.size());
+  if (data.parameter_count() <= options.dense) return all_eigenpairs(data, before);
   if (data.residual_count() <= options.dense) return of_factor(columns_of_transposed(data), before);
   return leading_eigenpairs(data, before, options);
 }

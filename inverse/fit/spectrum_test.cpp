@@ -29,7 +29,7 @@ Eigen::MatrixXd covariance(Gaussian& g) {
 
 struct SpectrumCase {
   const char* name;
-  int unknowns, residuals;
+  int parameter_count, residuals;
   SpectrumOptions options;
 };
 void PrintTo(const SpectrumCase& c, std::ostream* out) { *out << c.name; }
@@ -37,11 +37,11 @@ void PrintTo(const SpectrumCase& c, std::ostream* out) { *out << c.name; }
 class Spectra : public testing::TestWithParam<SpectrumCase> {
  protected:
   static constexpr double kWeight = 2;
-  test::LinearModel data = test::averages(GetParam().unknowns, GetParam().residuals, 30, 5);
-  test::QuadraticPrior prior = test::chain_prior(GetParam().unknowns, 1, 2);
-  std::vector<double> p = std::vector<double>(static_cast<size_t>(GetParam().unknowns), 0.0);
+  test::LinearModel data = test::averages(GetParam().parameter_count, GetParam().residuals, 30, 5);
+  test::QuadraticPrior prior = test::chain_prior(GetParam().parameter_count, 1, 2);
+  std::vector<double> p = std::vector<double>(static_cast<size_t>(GetParam().parameter_count), 0.0);
   PriorGaussian before{prior, kWeight, p};
-  const double floor = 1 / (100.0 * 100.0 * GetParam().unknowns);
+  const double floor = 1 / (100.0 * 100.0 * GetParam().parameter_count);
   Eigen::MatrixXd precision =
       kWeight * prior.curvature + floor * Eigen::MatrixXd::Identity(prior.G.cols(), prior.G.cols());
   Eigen::MatrixXd hessian = data.J.transpose() * data.J;

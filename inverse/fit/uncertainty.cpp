@@ -16,7 +16,7 @@ using Fields = std::vector<std::vector<double>>;  // a value per parameter and t
 
 Fields zero_fields(const ParameterMap& map) {
   Fields fields;
-  for (size_t u = 0; u < map.unknowns().size(); ++u)
+  for (size_t u = 0; u < map.fitted_parameters().size(); ++u)
     fields.emplace_back(map.basis(static_cast<int>(u)).tet_count(), 0.0);
   return fields;
 }
@@ -72,8 +72,8 @@ double information_of_scale(LeastSquares& data, const ParameterMap& map, int you
 }
 
 int index_of(const ParameterMap& map, const char* quantity) {
-  for (size_t u = 0; u < map.unknowns().size(); ++u)
-    if (map.unknowns()[u].quantity == quantity) return static_cast<int>(u);
+  for (size_t u = 0; u < map.fitted_parameters().size(); ++u)
+    if (map.fitted_parameters()[u].quantity == quantity) return static_cast<int>(u);
   return -1;
 }
 
@@ -124,7 +124,7 @@ void judge_weight(Regularizer& prior, double weight, std::span<const double> p, 
   if (gain < kClear) return;
   result.warnings.push_back(formatted(
       best < 1 ? "the weight of the regularizer, %.3g, is %.2g times larger than what the data support (%.3g): details "
-                 "are lost and the deviations too small"
+                 "are lost and the standard deviations too small"
                : "the weight of the regularizer, %.3g, is %.2g times smaller than what the data support (%.3g): noise "
                  "may have been fitted",
       weight, std::max(best, 1 / best), result.suggested_weight));
@@ -144,7 +144,7 @@ void describe_seen(const ParameterMap& map, const TetMesh& mesh, int count, Post
   const Spectrum& s = result.gaussian->spectrum();
   for (int k = 0; k < std::min(count, s.W.count()) && s.d[k] >= 1; ++k) {
     Direction direction{.information = s.d[k], .p = {s.W[k].begin(), s.W[k].end()}};
-    direction.deviation = root_mean_square(map, mesh, s.W[k]) / std::sqrt(1 + s.d[k]);
+    direction.sigma = root_mean_square(map, mesh, s.W[k]) / std::sqrt(1 + s.d[k]);
     direction.description = describe_direction(mesh, map, direction.p);
     result.seen.push_back(std::move(direction));
   }
@@ -154,7 +154,7 @@ void describe_unseen(const ParameterMap& map, const TetMesh& mesh, int count, Po
   PosteriorGaussian& gaussian = *result.gaussian;
   for (PrincipalDirection& principal : principal_directions(gaussian, map, mesh, count)) {
     Direction direction{.information = principal.before / principal.after - 1,
-                        .deviation = std::sqrt(principal.after),
+                        .sigma = std::sqrt(principal.after),
                         .p = std::move(principal.p)};
     std::vector<double> y(direction.p.size());
     gaussian.before().precision(direction.p, y);
@@ -166,12 +166,12 @@ void describe_unseen(const ParameterMap& map, const TetMesh& mesh, int count, Po
 }
 
 void set_fields(const Marginals& m, Posterior& result) {
-  result.deviation_error = m.relative_error;
+  result.sigma_error = m.relative_error;
   for (size_t u = 0; u < m.after.size(); ++u) {
-    std::vector<double>& deviation = result.deviation.emplace_back();
+    std::vector<double>& sigma = result.sigma.emplace_back();
     std::vector<double>& reduction = result.reduction.emplace_back();
     for (size_t t = 0; t < m.after[u].size(); ++t) {
-      deviation.push_back(std::sqrt(m.after[u][t]));
+      sigma.push_back(std::sqrt(m.after[u][t]));
       reduction.push_back(m.before[u][t] > 0 ? 1 - m.after[u][t] / m.before[u][t] : 0);
     }
   }
@@ -211,7 +211,7 @@ Marginals marginals(PosteriorGaussian& gaussian, const ParameterMap& map, const 
 Posterior posterior(LeastSquares& data, Regularizer& prior, double weight, const FittedField& fitted,
                     const PosteriorOptions& options) {
   const auto& [map, mesh, p] = fitted;
-  ASPIC_CHECK(map.size() == static_cast<int>(p.size()) && data.unknowns() == map.size());
+  ASPIC_CHECK(map.size() == static_cast<int>(p.size()) && data.parameter_count() == map.size());
   Posterior result;
   std::vector<double> r(data.residual_count());
   if (!data.evaluate(p, r) || !data.linearize()) {
@@ -240,20 +240,20 @@ Posterior posterior(LeastSquares& data, Regularizer& prior, double weight, const
 }
 
 Interval interval(const Posterior& posterior, const ParameterMap& map, std::span<const double> p, const TetQuantity& of,
-                  double deviations) {
-  const auto [unknown, tet] = of;
-  const double z = map.fitted_values(unknown, p)[tet], s = deviations * posterior.deviation[unknown][tet];
-  return {map.value(unknown, z - s), map.value(unknown, z + s)};
+                  double sigmas) {
+  const auto [parameter, tet] = of;
+  const double z = map.fitted_values(parameter, p)[tet], s = sigmas * posterior.sigma[parameter][tet];
+  return {map.value(parameter, z - s), map.value(parameter, z + s)};
 }
 
-std::string describe_interval(const Unknown& unknown, const Interval& interval) {
-  const bool is_pressure = unknown.quantity == "young";
+std::string describe_interval(const FitParameter& parameter, const Interval& interval) {
+  const bool is_pressure = parameter.quantity == "young";
   double unit = 1;
   const char* name = is_pressure ? " Pa" : "";
   for (const auto& [size, prefixed] : {std::pair{1e3, " kPa"}, {1e6, " MPa"}, {1e9, " GPa"}})
     if (is_pressure && interval.upper >= size) unit = size, name = prefixed;
-  return formatted("%s between %.3g and %.3g%s", unknown.quantity.c_str(), interval.lower / unit, interval.upper / unit,
-                   name);
+  return formatted("%s between %.3g and %.3g%s", parameter.quantity.c_str(), interval.lower / unit,
+                   interval.upper / unit, name);
 }
 
 }  // namespace aspic

@@ -29,7 +29,7 @@ Marginals marginals(PosteriorGaussian& gaussian, const ParameterMap& map, const 
 
 struct Direction {
   double information = 0;   // prior variance / posterior variance - 1 along it; < 1: not determined by the data
-  double deviation = 0;     // posterior standard deviation along it: root mean square over the body on the fitted scale
+  double sigma = 0;         // posterior standard deviation along it: root mean square over the body on the fitted scale
   std::vector<double> p;    // unit length in the norm of the prior
   std::string description;  // "young of the whole body"
 };
@@ -42,9 +42,9 @@ struct PosteriorOptions {
 
 struct Posterior {
   bool ok = false;                             // false: only `warnings` are valid
-  std::vector<std::vector<double>> deviation;  // sigma of each parameter in each tet, on the fitted scale (log E)
+  std::vector<std::vector<double>> sigma;      // sigma of each parameter in each tet, on the fitted scale (log E)
   std::vector<std::vector<double>> reduction;  // 1 - posterior / prior variance: 0 no information, 1 complete
-  double deviation_error = 0;                  // largest relative standard error of `deviation`; 0: exact
+  double sigma_error = 0;                      // largest relative standard error of `sigma`; 0: exact
   double informed = 0;                         // number of directions determined by the data: sum of d / (1 + d)
   std::vector<Direction> seen, unseen;         // best determined ones; those with the largest remaining uncertainty
   bool scale_is_unknown = false;               // no force, weight or pressure: only ratios of stiffness are determined
@@ -61,7 +61,7 @@ struct Posterior {
 Posterior posterior(LeastSquares& data, Regularizer& prior, double weight, const FittedField& fitted,
                     const PosteriorOptions& options = {});
 
-inline constexpr double kDeviations95 = 1.959964;  // quantile of the normal distribution: 95 %, two-sided
+inline constexpr double kSigmas95 = 1.959964;  // quantile of the normal distribution: 95 %, two-sided
 
 struct TetQuantity {
   int unknown, tet;
@@ -70,11 +70,11 @@ struct TetQuantity {
 struct Interval {
   double lower = 0, upper = 0;  // SI units
 };
-// Interval of a quantity in a tet with the probability of +-`deviations` standard deviations.
+// Interval of a quantity in a tet with the probability of +-`sigmas` standard deviations.
 Interval interval(const Posterior& posterior, const ParameterMap& map, std::span<const double> p, const TetQuantity& of,
-                  double deviations = kDeviations95);
+                  double sigmas = kSigmas95);
 
 // "young between 80 and 130 kPa", "poisson between 0.41 and 0.46".
-std::string describe_interval(const Unknown& unknown, const Interval& interval);
+std::string describe_interval(const FitParameter& unknown, const Interval& interval);
 
 }  // namespace aspic

@@ -15,9 +15,9 @@ using test::as_vector;
 using testing::ElementsAre;
 using testing::HasSubstr;
 
-ParameterMap make_map(const TetMesh& mesh, std::vector<Unknown> unknowns) {
+ParameterMap make_map(const TetMesh& mesh, std::vector<FitParameter> parameters) {
   return {mesh, "neo_hookean", std::vector<MaterialParameters>(mesh.tets.size(), {lame_from_young_poisson(1e5, 0.4)}),
-          std::move(unknowns)};
+          std::move(parameters)};
 }
 
 TetMesh bar(int cells) { return make_box({{0, 0, 0}}, {{0.01 * cells, 0.01, 0.01}}, {cells, 1, 1}, BoxCut::five); }
@@ -45,7 +45,7 @@ struct Field {
     const Eigen::MatrixXd H = data.J.transpose() * data.J + weight * prior.curvature;
     return test::as_std(H.llt().solve(data.J.transpose() * data.b + weight * prior.curvature * prior.guess));
   }
-  Eigen::VectorXd exact_deviation() const {
+  Eigen::VectorXd exact_sigma() const {
     return (data.J.transpose() * data.J + prior.curvature).inverse().diagonal().cwiseSqrt();
   }
   Posterior posterior(double weight = 1, const PosteriorOptions& options = {}) {
@@ -57,16 +57,16 @@ bool has_warning(const Posterior& posterior, const std::string& part) {
   return testing::Matches(testing::Contains(HasSubstr(part)))(posterior.warnings);
 }
 
-TEST(Posterior, HasTheDeviationsOfTheNormalEquations) {
+TEST(Posterior, HasTheSigmaOfTheNormalEquations) {
   Field f(12, 40);
   f.measure(1);
-  const Eigen::VectorXd exact = f.exact_deviation(), before = f.prior.curvature.inverse().diagonal().cwiseSqrt();
+  const Eigen::VectorXd exact = f.exact_sigma(), before = f.prior.curvature.inverse().diagonal().cwiseSqrt();
   for (const int dense : {600, 50, 0}) {  // all pairs, rows, sampled
     const Posterior posterior = f.posterior(1, {.spectrum = {.dense = dense, .negligible = 0}});
     ASSERT_TRUE(posterior.ok);
-    EXPECT_EQ(posterior.deviation_error, 0);
+    EXPECT_EQ(posterior.sigma_error, 0);
     for (int t = 0; t < f.map.size(); ++t) {
-      EXPECT_NEAR(posterior.deviation[0][t], exact(t), 2e-4 * exact(t)) << dense;
+      EXPECT_NEAR(posterior.sigma[0][t], exact(t), 2e-4 * exact(t)) << dense;
       EXPECT_NEAR(posterior.reduction[0][t], 1 - std::pow(exact(t) / before(t), 2), 1e-3);
     }
   }
@@ -75,27 +75,27 @@ TEST(Posterior, HasTheDeviationsOfTheNormalEquations) {
 TEST(Posterior, IsSampledWithinTheErrorThatItReports) {
   Field f(30, 20);
   f.measure(1);
-  const Eigen::VectorXd exact = f.exact_deviation();
+  const Eigen::VectorXd exact = f.exact_sigma();
   for (const int samples : {50, 800}) {
     const Posterior posterior =
         f.posterior(1, {.spectrum = {.dense = 20}, .marginals = {.exact = 0, .samples = samples}});
-    EXPECT_GT(posterior.deviation_error, 0);
-    EXPECT_LE(posterior.deviation_error, std::sqrt(0.5 / samples));
+    EXPECT_GT(posterior.sigma_error, 0);
+    EXPECT_LE(posterior.sigma_error, std::sqrt(0.5 / samples));
     double squares = 0;
     for (int t = 0; t < f.map.size(); ++t) {
-      const double error = posterior.deviation[0][t] / exact(t) - 1;
-      EXPECT_LT(std::abs(error), 4.5 * posterior.deviation_error);
+      const double error = posterior.sigma[0][t] / exact(t) - 1;
+      EXPECT_LT(std::abs(error), 4.5 * posterior.sigma_error);
       squares += error * error / f.map.size();
     }
-    EXPECT_GT(std::sqrt(squares), 0.1 * posterior.deviation_error);  // the error estimate is not excessive
+    EXPECT_GT(std::sqrt(squares), 0.1 * posterior.sigma_error);  // the error estimate is not excessive
   }
 }
 
 TEST(Posterior, OfTwoQuantitiesKeepsThemApart) {
   const TetMesh mesh = bar(3);
   const int n = mesh.tet_count();
-  const ParameterMap map =
-      make_map(mesh, {{.guess = 1}, {.quantity = "poisson", .spread = Spread::uniform, .guess = 0.3}});
+  const ParameterMap map = make_map(
+      mesh, {{.guess = 1}, {.quantity = "poisson", .parameterization = Parameterization::uniform, .guess = 0.3}});
   test::LinearModel data = test::averages(n + 1, 6, 5, 2);
   test::QuadraticPrior prior = test::chain_prior(n + 1, 0.5, 1);
   data.b.setZero();
@@ -103,8 +103,8 @@ TEST(Posterior, OfTwoQuantitiesKeepsThemApart) {
   const Posterior posterior = aspic::posterior(data, prior, 1, {map, mesh, p});
   const Eigen::VectorXd exact = (data.J.transpose() * data.J + prior.curvature).inverse().diagonal().cwiseSqrt();
   for (int t = 0; t < n; ++t) {
-    EXPECT_NEAR(posterior.deviation[0][t] / posterior.applied_factor, exact(t), 0.3 * exact(t));
-    EXPECT_EQ(posterior.deviation[1][t], posterior.deviation[1][0]);
+    EXPECT_NEAR(posterior.sigma[0][t] / posterior.applied_factor, exact(t), 0.3 * exact(t));
+    EXPECT_EQ(posterior.sigma[1][t], posterior.sigma[1][0]);
   }
 }
 
@@ -155,7 +155,7 @@ TEST(Posterior, TellsThatOnlyRatiosOfStiffnessAreKnown) {
   f.measure(3);
   const Posterior sees = f.posterior();
   EXPECT_FALSE(sees.scale_is_unknown);
-  EXPECT_LT(sees.deviation[0][0], blind.deviation[0][0]);
+  EXPECT_LT(sees.sigma[0][0], blind.sigma[0][0]);
 }
 
 TEST(Posterior, ContactStiffnessIsNoForceInformation) {
@@ -199,7 +199,7 @@ TEST(Posterior, WidensIfMeasurementsScatterMoreThanStated) {
           .inverse()
           .diagonal()
           .cwiseSqrt();
-  for (int t = 0; t < f.map.size(); ++t) EXPECT_NEAR(posterior.deviation[0][t], exact(t), 1e-3 * exact(t));
+  for (int t = 0; t < f.map.size(); ++t) EXPECT_NEAR(posterior.sigma[0][t], exact(t), 1e-3 * exact(t));
 }
 
 TEST(Posterior, DoesNotNarrowWhenTheyScatterLess) {
@@ -253,7 +253,7 @@ TEST(Posterior, TellsWhereTheDataSeeAndWhereNot) {
   ASSERT_EQ(posterior.unseen.size(), 3u);
   EXPECT_GT(posterior.seen[0].information, 100);
   EXPECT_LT(posterior.unseen[0].information, 1);
-  EXPECT_GT(posterior.unseen[0].deviation, posterior.seen[0].deviation);
+  EXPECT_GT(posterior.unseen[0].sigma, posterior.seen[0].sigma);
   EXPECT_THAT(posterior.seen[0].description, HasSubstr("young around (0.0"));
   EXPECT_THAT(posterior.unseen[0].description, HasSubstr("young around (0.1"));
   EXPECT_GT(posterior.reduction[0][3], 0.9);
@@ -262,14 +262,14 @@ TEST(Posterior, TellsWhereTheDataSeeAndWhereNot) {
 
 TEST(Interval, IsInUnitsOfTheQuantity) {
   const TetMesh mesh = bar(1);
-  const ParameterMap map = make_map(mesh, {{.spread = Spread::uniform, .guess = 1e5}});
+  const ParameterMap map = make_map(mesh, {{.parameterization = Parameterization::uniform, .guess = 1e5}});
   Posterior posterior;
-  posterior.deviation = {std::vector<double>(mesh.tets.size(), std::log(1.3))};
+  posterior.sigma = {std::vector<double>(mesh.tets.size(), std::log(1.3))};
   const Interval i = interval(posterior, map, map.guess(), {0, 2}, 1);
   EXPECT_NEAR(i.lower, 1e5 / 1.3, 1e-6);
   EXPECT_NEAR(i.upper, 1.3e5, 1e-6);
-  EXPECT_EQ(describe_interval(map.unknowns()[0], {80e3, 130e3}), "young between 80 and 130 kPa");
-  EXPECT_EQ(describe_interval(map.unknowns()[0], {1.5, 700}), "young between 1.5 and 700 Pa");
+  EXPECT_EQ(describe_interval(map.fitted_parameters()[0], {80e3, 130e3}), "young between 80 and 130 kPa");
+  EXPECT_EQ(describe_interval(map.fitted_parameters()[0], {1.5, 700}), "young between 1.5 and 700 Pa");
   EXPECT_EQ(describe_interval({.quantity = "poisson"}, {0.41, 0.46}), "poisson between 0.41 and 0.46");
 }
 
@@ -279,7 +279,7 @@ TEST(DirectionWords, NamePlacesRegionsAndContrasts) {
   TetMesh mesh = bar(10);  // five tets per cell
   for (int t = 0; t < mesh.tet_count(); ++t) mesh.region.push_back(t < 25 ? 1 : 7);
   const ParameterMap tets = make_map(mesh, {{.guess = 1}}),
-                     regions = make_map(mesh, {{.spread = Spread::regions, .guess = 1}});
+                     regions = make_map(mesh, {{.parameterization = Parameterization::regions, .guess = 1}});
   std::vector<double> p(tets.size(), -0.3);
   EXPECT_EQ(describe_direction(mesh, tets, p), "young of the whole body");
   p.assign(p.size(), 0);
@@ -296,8 +296,9 @@ TEST(DirectionWords, NamePlacesRegionsAndContrasts) {
 
 TEST(DirectionWords, NameEveryQuantityThatTakesPart) {
   const TetMesh mesh = bar(2);
-  const ParameterMap map = make_map(mesh, {{.spread = Spread::uniform, .guess = 1},
-                                           {.quantity = "poisson", .spread = Spread::uniform, .guess = 0.3}});
+  const ParameterMap map =
+      make_map(mesh, {{.parameterization = Parameterization::uniform, .guess = 1},
+                      {.quantity = "poisson", .parameterization = Parameterization::uniform, .guess = 0.3}});
   EXPECT_EQ(describe_direction(mesh, map, std::vector<double>{1, 0.1}), "young of the whole body");
   EXPECT_EQ(describe_direction(mesh, map, std::vector<double>{1, 0.9}),
             "young of the whole body with poisson of the whole body");

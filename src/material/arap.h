@@ -42,6 +42,7 @@ struct Arap {
   static MaterialInfo info() {
     return {.name = "arap",
             .formula = "mu |F - R|^2, R the rotation closest to F, with mu = mu_L",
+            .tex = {R"tex(\psi = \mu\, \|F - R\|^2)tex", R"tex(R = \operatorname{argmin}_{Q \in SO(3)} \|F - Q\|)tex"},
             .remarks =
                 "Reproduces the shear modulus only: la_L is ignored, so at small strain nu = 0 "
                 "and E = 2 mu_L. The only states without stress are the rest shape, up to "

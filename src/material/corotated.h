@@ -45,6 +45,8 @@ struct Corotated {
   static MaterialInfo info() {
     return {.name = "corotated",
             .formula = "mu |F - R|^2 + la/2 (J - 1)^2, R the rotation closest to F, with mu = mu_L, la = la_L",
+            .tex = {R"tex(\psi = \mu\, \|F - R\|^2 + \tfrac{\lambda}{2} (J - 1)^2)tex",
+                    R"tex(R = \operatorname{argmin}_{Q \in SO(3)} \|F - Q\|)tex"},
             .remarks =
                 "Defined for inverted elements. The only states without stress are the rest "
                 "shape, up to rotation. R, and so the stress, jumps where two signed singular "

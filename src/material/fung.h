@@ -37,6 +37,9 @@ struct FungLaw {
   static MaterialInfo info() {
     return {.name = "fung",
             .formula = "mu/(2b) (exp(b (J^(-2/3) I1 - 3)) - 1) + K/2 (J - 1)^2 with mu = mu_L, K = la_L + 2/3 mu_L",
+            .tex = {R"tex(\psi = \tfrac{\mu}{2b} \left(e^{b (\bar I_1 - 3)} - 1\right) + \tfrac{K}{2} (J - 1)^2)tex",
+                    R"tex(\bar I_1 = J^{-2/3}\, I_1, \quad K = \lambda + \tfrac23 \mu)tex",
+                    R"tex(\psi = \infty \quad (J \le 0))tex"},
             .remarks =
                 "+inf for J <= 0 and where the exponential overflows. The only state without "
                 "stress is the rest shape, up to rotation; the stiffness grows like exp(b I1bar),"

@@ -50,6 +50,8 @@ struct Linear {
   static MaterialInfo info() {
     return {.name = "linear",
             .formula = "mu |e|^2 + la/2 (tr e)^2, e = (F + F')/2 - I, with mu = mu_L, la = la_L",
+            .tex = {R"tex(\psi = \mu\, \|\varepsilon\|^2 + \tfrac{\lambda}{2} (\operatorname{tr} \varepsilon)^2)tex",
+                    R"tex(\varepsilon = \tfrac12 (F + F^{\mathsf T}) - I)tex"},
             .remarks =
                 "Not invariant under rotation: a rotating body swells, so it is for small displacements only. "
                 "The energy is convex: one Newton iteration reaches the minimum from anywhere.",

@@ -51,21 +51,27 @@ struct MooneyRivlin {
   }
 
   static MaterialInfo info() {
-    return {.name = "mooney_rivlin",
-            .formula =
-                "c10 (J^(-2/3) I1 - 3) + c01 (J^(-4/3) I2 - 3) + K/2 (J - 1)^2 with "
-                "c10 = (1 - share) mu_L/2, c01 = share mu_L/2, K = la_L + 2/3 mu_L, I2 = |cof F|^2",
-            .remarks =
-                "+inf for J <= 0, so the initial state must be free of inversion. The only state "
-                "without stress is the rest shape, up to rotation, but the energy stays finite "
-                "(K/2) as a body shrinks uniformly to a point.",
-            .extra = {{.name = "share",
-                       .unit = "1",
-                       .meaning = "share of c01 in c10 + c01",
-                       .fallback = 0.5,
-                       .min = 0,
-                       .max = 1}},
-            .barrier = true};
+    return {
+        .name = "mooney_rivlin",
+        .formula =
+            "c10 (J^(-2/3) I1 - 3) + c01 (J^(-4/3) I2 - 3) + K/2 (J - 1)^2 with "
+            "c10 = (1 - share) mu_L/2, c01 = share mu_L/2, K = la_L + 2/3 mu_L, I2 = |cof F|^2",
+        .tex =
+            {R"tex(\psi = c_{10} (\bar I_1 - 3) + c_{01} (\bar I_2 - 3) + \tfrac{K}{2} (J - 1)^2)tex",
+             R"tex(c_{10} = (1 - \mathrm{share})\, \tfrac{\mu}{2}, \quad c_{01} = \mathrm{share}\; \tfrac{\mu}{2})tex",
+             R"tex(\bar I_1 = J^{-2/3}\, I_1, \quad K = \lambda + \tfrac23 \mu)tex",
+             R"tex(\bar I_2 = J^{-4/3}\, \|\operatorname{cof} F\|^2)tex", R"tex(\psi = \infty \quad (J \le 0))tex"},
+        .remarks =
+            "+inf for J <= 0, so the initial state must be free of inversion. The only state "
+            "without stress is the rest shape, up to rotation, but the energy stays finite "
+            "(K/2) as a body shrinks uniformly to a point.",
+        .extra = {{.name = "share",
+                   .unit = "1",
+                   .meaning = "share of c01 in c10 + c01",
+                   .fallback = 0.5,
+                   .min = 0,
+                   .max = 1}},
+        .barrier = true};
   }
 
  private:

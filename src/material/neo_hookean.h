@@ -36,6 +36,7 @@ struct NeoHookeanLaw {
   static MaterialInfo info() {
     return {.name = "neo_hookean",
             .formula = "mu/2 (I1 - 3) - mu (J - 1) + la/2 (J - 1)^2 with mu = mu_L, la = la_L + mu_L",
+            .tex = {R"tex(\psi = \tfrac{\mu}{2} (I_1 - 3) - \mu (J - 1) + \tfrac{\lambda + \mu}{2} (J - 1)^2)tex"},
             .remarks =
                 "Defined for inverted elements. Has a second stable state, collapsed: a body shrunk uniformly "
                 "below 0.291 of its size (nu = 0.3; 0.091 at nu = 0.45) does not recover. [Smith 2018]",

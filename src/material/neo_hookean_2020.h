@@ -10,6 +10,9 @@ struct NeoHookean2020Law : NeoHookeanIsochoricLaw {
     MaterialInfo info = NeoHookeanIsochoricLaw::info();
     info.name = "neo_hookean_2020";
     info.formula = "mu/2 (J^(-2/3) I1 - 3) + la/2 (J - 1)^2 with mu = mu_L, la = la_L + 2/3 mu_L";
+    info.tex = {R"tex(\psi = \tfrac{\mu}{2} (\bar I_1 - 3) + \tfrac{\lambda'}{2} (J - 1)^2)tex",
+                R"tex(\bar I_1 = J^{-2/3}\, I_1, \quad \lambda' = \lambda + \tfrac23 \mu)tex",
+                R"tex(\psi = \infty \quad (J \le 0))tex"};
     info.remarks =
         "The same as neo_hookean_isochoric once it reproduces E and nu. Programs that put la = la_L are "
         "reproduced by giving this material their mu and la - 2/3 mu. " +

@@ -34,6 +34,9 @@ struct NeoHookeanIsochoricLaw {
   static MaterialInfo info() {
     return {.name = "neo_hookean_isochoric",
             .formula = "mu/2 (J^(-2/3) I1 - 3) + K/2 (J - 1)^2 with mu = mu_L, K = la_L + 2/3 mu_L",
+            .tex = {R"tex(\psi = \tfrac{\mu}{2} (\bar I_1 - 3) + \tfrac{K}{2} (J - 1)^2)tex",
+                    R"tex(\bar I_1 = J^{-2/3}\, I_1, \quad K = \lambda + \tfrac23 \mu)tex",
+                    R"tex(\psi = \infty \quad (J \le 0))tex"},
             .remarks =
                 "+inf for J <= 0, so the initial state must be free of inversion. The only state "
                 "without stress is the rest shape, up to rotation, but the energy stays finite "

@@ -38,6 +38,8 @@ struct NeoHookeanLogLaw {
   static MaterialInfo info() {
     return {.name = "neo_hookean_log",
             .formula = "mu/2 (I1 - 3) - mu ln J + la/2 (ln J)^2 with mu = mu_L, la = la_L",
+            .tex = {R"tex(\psi = \tfrac{\mu}{2} (I_1 - 3) - \mu \ln J + \tfrac{\lambda}{2} (\ln J)^2)tex",
+                    R"tex(\psi = \infty \quad (J \le 0))tex"},
             .remarks =
                 "Barrier: +inf for J <= 0, so the initial state must be free of inversion. For nu >= 0 the only state "
                 "without "

@@ -38,6 +38,8 @@ struct NeoHookeanLogJ2Law {
   static MaterialInfo info() {
     return {.name = "neo_hookean_log_j2",
             .formula = "mu/2 (I1 - 3) - mu ln J + la/2 (J - 1)^2 with mu = mu_L, la = la_L",
+            .tex = {R"tex(\psi = \tfrac{\mu}{2} (I_1 - 3) - \mu \ln J + \tfrac{\lambda}{2} (J - 1)^2)tex",
+                    R"tex(\psi = \infty \quad (J \le 0))tex"},
             .remarks =
                 "Barrier: +inf for J <= 0, so the initial state must be free of inversion. Convex in J, and the only "
                 "state without stress is the rest shape, up to rotation (la >= 0).",

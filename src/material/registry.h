@@ -25,9 +25,10 @@ struct ExtraParameter {
 };
 
 struct MaterialInfo {
-  std::string name;     // "neo_hookean"
-  std::string formula;  // energy density as one line of plain text
-  std::string remarks;  // limits and source; one or two sentences
+  std::string name;              // "neo_hookean"
+  std::string formula;           // energy density as one line of plain text
+  std::vector<std::string> tex;  // energy density, definitions of its symbols and its domain in TeX, for pages
+  std::string remarks;           // limits and source; one or two sentences
   std::vector<ExtraParameter> extra;
   bool barrier = false;  // +inf for det F <= 0
 };

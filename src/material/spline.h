@@ -89,6 +89,13 @@ struct SplineLaw {
             "mu (1 - share) ((1 - softening) (I1bar - 3)/2 + softening (sqrt 3 |F| - 3 J^(1/3))) + mu share "
             "(sqrt 3 |cof F| - 3 J^(2/3)) + mu/2 g1(I1bar - 3) + mu/(3 sqrt 3) g2(I2bar^(3/2) - 3 sqrt 3) + "
             "K/2 (J - 1)^2 with convex splines g1 and g2, mu = mu_L, K = la_L + 2/3 mu_L",
+        .tex =
+            {R"tex(\psi = W_1 + W_2 + \tfrac{K}{2} (J - 1)^2)tex",
+             R"tex(\begin{gathered} W_1 = \tfrac{\mu}{2} (1 - a)(1 - s) (\bar I_1 - 3) + \tfrac{\mu}{2}\, g_1(\bar I_1 - 3) \\ \quad + \mu (1 - a)\, s\, (\sqrt3\, \|F\| - 3 J^{1/3}) \end{gathered})tex",
+             R"tex(\begin{gathered} W_2 = \mu a\, (\sqrt3\, \|\operatorname{cof} F\| - 3 J^{2/3}) \\ \quad + \tfrac{\mu}{3 \sqrt3}\, g_2(\bar I_2^{3/2} - 3 \sqrt3) \end{gathered})tex",
+             R"tex(a = \mathrm{share}, \quad s = \mathrm{softening})tex",
+             R"tex(\bar I_1 = J^{-2/3}\, I_1, \quad K = \lambda + \tfrac23 \mu)tex",
+             R"tex(\bar I_2 = J^{-4/3}\, \|\operatorname{cof} F\|^2)tex", R"tex(\psi = \infty \quad (J \le 0))tex"},
         .remarks =
             "Polyconvex for any coefficients; without growth, share and softening it is "
             "neo_hookean_isochoric. +inf for J <= 0, so the initial state must be free of inversion. The only state "

@@ -43,16 +43,19 @@ struct StableNeoHookeanLaw {
   }
 
   static MaterialInfo info() {
-    return {.name = "stable_neo_hookean",
-            .formula =
-                "mu/2 (I1 - 3) + la/2 (J - alpha)^2 - mu/2 ln((I1 + 1)/4) with mu = 4/3 mu_L, "
-                "la = la_L + 5/6 mu_L, alpha = 1 + 3 mu/(4 la), up to a constant",
-            .remarks =
-                "Defined for inverted elements. The only states without stress are the rest "
-                "shape, up to rotation, and F = 0: a saddle whose Hessian is zero, which a body "
-                "in one point leaves only after a perturbation. [Smith 2018]",
-            .extra = {},
-            .barrier = false};
+    return {
+        .name = "stable_neo_hookean",
+        .formula =
+            "mu/2 (I1 - 3) + la/2 (J - alpha)^2 - mu/2 ln((I1 + 1)/4) with mu = 4/3 mu_L, "
+            "la = la_L + 5/6 mu_L, alpha = 1 + 3 mu/(4 la), up to a constant",
+        .tex =
+            {R"tex(\begin{gathered} \psi = \tfrac{2 \mu}{3} \left(I_1 - 3 - \ln \tfrac{I_1 + 1}{4}\right) \\ \quad - \mu (J - 1) + \tfrac12 \left(\lambda + \tfrac56 \mu\right) (J - 1)^2 \end{gathered})tex"},
+        .remarks =
+            "Defined for inverted elements. The only states without stress are the rest "
+            "shape, up to rotation, and F = 0: a saddle whose Hessian is zero, which a body "
+            "in one point leaves only after a perturbation. [Smith 2018]",
+        .extra = {},
+        .barrier = false};
   }
 };
 

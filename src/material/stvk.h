@@ -44,6 +44,8 @@ struct Stvk {
   static MaterialInfo info() {
     return {.name = "stvk",
             .formula = "mu |E|^2 + la/2 (tr E)^2, E = (F'F - I)/2, with mu = mu_L, la = la_L",
+            .tex = {R"tex(\psi = \mu\, \|E\|^2 + \tfrac{\lambda}{2} (\operatorname{tr} E)^2)tex",
+                    R"tex(E = \tfrac12 (F^{\mathsf T} F - I))tex"},
             .remarks =
                 "Softens in compression: a body shrunk uniformly below 1/sqrt(3) = 0.577 of its "
                 "size collapses towards F = 0, and mirror images of the rest shape are free of "

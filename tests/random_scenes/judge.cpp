@@ -91,7 +91,6 @@ class Judge {
 
   // Orientation from volumes of tets, which is reliable for needles: det F of a needle of aspect ratio 10^4 has the
   // sign of its round-off.
-  // so that its sign is round-off in a needle of ten thousand times its length.
   bool is_inside_out(size_t body) const {
     const Model& model = simulation_.model();
     TetMesh now = model.mesh;

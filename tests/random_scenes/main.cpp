@@ -74,8 +74,8 @@ Judgment run_apart(uint64_t seed, const std::filesystem::path& folder) {
       for (const char c : *part) text += c == '\n' ? ' ' : c;
       text += '\n';
     }
-    const bool is_told = write(ends[1], text.data(), text.size()) == static_cast<ssize_t>(text.size());
-    _exit(is_told ? 0 : 1);
+    const bool is_written = write(ends[1], text.data(), text.size()) == static_cast<ssize_t>(text.size());
+    _exit(is_written ? 0 : 1);
   }
   close(ends[1]);
   std::string text;
@@ -89,7 +89,7 @@ Judgment run_apart(uint64_t seed, const std::filesystem::path& folder) {
     return {is_slow ? "hang" : "crash", "", is_slow ? "did not end" : strsignal(WTERMSIG(status))};
   }
   const size_t first = text.find('\n'), second = text.find('\n', first + 1);
-  if (second == std::string::npos) return {"crash", "", "ended without a word"};
+  if (second == std::string::npos) return {"crash", "", "ended without output"};
   return {text.substr(0, first), text.substr(first + 1, second - first - 1),
           text.substr(second + 1, text.size() - second - 2)};
 }
@@ -114,7 +114,7 @@ int hunt(const Arguments& arguments, const std::filesystem::path& folder) {
   for (const auto& [ending, count] : endings) std::printf(" %d %s", count, ending.c_str());
   std::printf("\n");
   const bool are_too_many_refused = 4 * static_cast<uint64_t>(endings["refused"]) > arguments.count;
-  if (are_too_many_refused) std::printf("more than a quarter was refused: that is no test\n");
+  if (are_too_many_refused) std::printf("more than a quarter of the scenes was refused, so the test is void\n");
   return faults > 0 || (are_too_many_refused && arguments.count >= 100) ? 1 : 0;
 }
 

@@ -16,3 +16,8 @@ test("parts of a demonstration share its formulas", () => {
 test("pages without formulas have none", () => {
   assert.deepEqual(formulasOf("02_fine_mesh"), []);
 });
+
+test("materials have their energy density first", () => {
+  assert.match(formulasOf("stvk")[0]!, /<mi>ψ<\/mi>/);
+  assert.equal(formulasOf("stvk").length, 2);
+});

@@ -65,7 +65,7 @@ void show_pure_newton(const Stage& stage, Sheet& sheet) {
   sheet.remark(fmt::format("the same step, start, Hessian and tolerance; without a line search: {}, with one: {}",
                            to_string(pure.report.status), to_string(careful.report.status)));
   sheet.equals("without line search: converged", is_success(pure.report.status), 0, "",
-               fmt::format("it is meant to fail within {} iterations", kMostIterations));
+               fmt::format("it is expected to fail within {} iterations", kMostIterations));
   sheet.at_least("without line search: iterations that raise E", rises(pure), 1, "", "it overshoots");
   const double last = pure.report.gradient_norm / pure.report.threshold;
   sheet.at_least("without line search: |gradient| at the end / tolerance", std::isfinite(last) ? last : INFINITY, 1e3,

@@ -55,7 +55,7 @@ function valueTable(quantities: readonly Quantity[]): HTMLElement {
 }
 
 function heldOutTable(groups: readonly HeldOutGroup[]): HTMLElement {
-  const titles = ["left out", "position error", "of peak motion", "force error", "of peak force"];
+  const titles = ["held out", "position error", "of peak motion", "force error", "of peak force"];
   const row = (g: HeldOutGroup): HTMLElement => {
     if (!g.ok) return element("tr", {}, element("th", { scope: "row" }, g.group), element("td", { colspan: "4" }, g.failure || "could not be predicted"));
     const cells = [

@@ -1,7 +1,7 @@
 #include <algorithm>
 #include <limits>
 
-#include "fit/next_poke.h"
+#include "fit/next_indentation.h"
 #include "mesh/surface.h"
 
 namespace aspic {
@@ -39,10 +39,10 @@ Normal normal_around(const std::vector<Patch>& all, const std::vector<Triangle>&
   return {size > 0 ? (1 / size) * sum : Vec3d{}, area > 0 ? size / area : 0};
 }
 
-std::vector<PokeSite> flat_sites(const TetMesh& mesh, const std::vector<Triangle>& surface,
-                                 const std::vector<int>& vertices, double radius, double flatness) {
+std::vector<IndentationSite> flat_sites(const TetMesh& mesh, const std::vector<Triangle>& surface,
+                                        const std::vector<int>& vertices, double radius, double flatness) {
   const std::vector<Patch> all = patches(mesh, surface);
-  std::vector<PokeSite> sites;
+  std::vector<IndentationSite> sites;
   for (const int v : vertices)
     if (const Normal n = normal_around(all, surface, mesh, v, radius); n.flatness >= flatness)
       sites.push_back({v, -1.0 * n.mean});
@@ -68,17 +68,18 @@ std::vector<int> free_vertices(const TetMesh& mesh, const std::vector<Triangle>&
 
 }  // namespace
 
-std::vector<PokeSite> poke_sites(const TetMesh& mesh, std::span<const int> fixed, double radius, int count) {
+std::vector<IndentationSite> indentation_sites(const TetMesh& mesh, std::span<const int> fixed, double radius,
+                                               int count) {
   const std::vector<Triangle> surface = boundary_triangles(mesh, 0, mesh.tet_count());
   const std::vector<int> vertices = free_vertices(mesh, surface, fixed, radius);
-  std::vector<PokeSite> all;
+  std::vector<IndentationSite> all;
   for (const double flatness : {0.9, 0.7, 1e-3})
     if (all = flat_sites(mesh, surface, vertices, radius, flatness); !all.empty()) break;
 
-  std::vector<PokeSite> chosen;
+  std::vector<IndentationSite> chosen;
   std::vector<double> distance(all.size(), std::numeric_limits<double>::infinity());
   Vec3d mean{};
-  for (const PokeSite& s : all) mean = mean + (1.0 / static_cast<double>(all.size())) * mesh.rest[s.vertex];
+  for (const IndentationSite& s : all) mean = mean + (1.0 / static_cast<double>(all.size())) * mesh.rest[s.vertex];
   for (size_t i = 0; i < all.size(); ++i) distance[i] = norm(mesh.rest[all[i].vertex] - mean);  // initially far outside
   while (static_cast<int>(chosen.size()) < count && !all.empty()) {
     const size_t next = std::ranges::max_element(distance) - distance.begin();

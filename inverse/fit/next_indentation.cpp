@@ -1,4 +1,4 @@
-#include "fit/next_poke.h"
+#include "fit/next_indentation.h"
 
 #include <algorithm>
 #include <cmath>
@@ -15,20 +15,20 @@
 namespace aspic {
 namespace {
 
-// What is read at every poke, and how well: as on the average of the experiment.
+// Readings of an indentation and their standard deviations, averaged over the experiment.
 struct Instruments {
   Tip tip;
-  double depth = 0, position = 0, force = 0, torque = 0;  // standard deviations; 0: is not read
+  double depth = 0, position = 0, force = 0, torque = 0;  // standard deviations; 0: not measured
 };
 
-Instruments instruments(const Experiment& experiment, const NextPokeOptions& options) {
+Instruments instruments(const Experiment& experiment, const NextIndentationOptions& options) {
   std::vector<double> position, force, torque;
   Instruments result;
   std::optional<Tip> tip = options.tip;
   for (const LoadCase& c : experiment.cases) {
-    for (const MarkerReading& r : c.positions) position.push_back(norm(r.deviation) / std::sqrt(3.0));
-    if (c.force) force.push_back(norm(c.force_deviation) / std::sqrt(3.0));
-    if (c.torque) torque.push_back(norm(c.torque_deviation) / std::sqrt(3.0));
+    for (const MarkerReading& r : c.positions) position.push_back(norm(r.sigma) / std::sqrt(3.0));
+    if (c.force) force.push_back(norm(c.force_sigma) / std::sqrt(3.0));
+    if (c.torque) torque.push_back(norm(c.torque_sigma) / std::sqrt(3.0));
     if (!c.tip) continue;
     if (!tip) tip = c.tip;
     result.depth = std::max(result.depth, norm(c.pose.center - c.touch.center));
@@ -52,57 +52,59 @@ LoadCase load_at(const Experiment& experiment, const Instruments& with, const Ve
   for (size_t m = 0; m < experiment.markers.size() && with.position > 0; ++m)
     if (norm(at_rest(experiment, experiment.markers[m]) - site) > with.tip.radius)  // the tip hides the others
       load.positions.push_back({static_cast<int>(m), {}, {{with.position, with.position, with.position}}});
-  if (with.force > 0) load.force = Vec3d{}, load.force_deviation = {{with.force, with.force, with.force}};
-  if (with.torque > 0) load.torque = Vec3d{}, load.torque_deviation = {{with.torque, with.torque, with.torque}};
+  if (with.force > 0) load.force = Vec3d{}, load.force_sigma = {{with.force, with.force, with.force}};
+  if (with.torque > 0) load.torque = Vec3d{}, load.torque_sigma = {{with.torque, with.torque, with.torque}};
   return load;
 }
 
-// Variances once the candidate counts: C - W diag(d / (1 + d)) W'.
-void set_deviation(const ParameterMap& map, const Posterior& posterior, const Spectrum& s, PokeCandidate& candidate) {
-  candidate.deviation = posterior.deviation;
-  for (size_t u = 0; u < candidate.deviation.size(); ++u) {
-    std::vector<double>& deviation = candidate.deviation[u];
-    for (double& x : deviation) x *= x;
-    std::vector<double> z(deviation.size());
+// Variances with the candidate's readings: C - W diag(d / (1 + d)) W'.
+void set_sigma(const ParameterMap& map, const Posterior& posterior, const Spectrum& s,
+               IndentationCandidate& candidate) {
+  candidate.sigma = posterior.sigma;
+  for (size_t u = 0; u < candidate.sigma.size(); ++u) {
+    std::vector<double>& sigma = candidate.sigma[u];
+    for (double& x : sigma) x *= x;
+    std::vector<double> z(sigma.size());
     for (int k = 0; k < s.W.count(); ++k) {
       map.multiply_fitted(static_cast<int>(u), s.W[k], z);
-      for (size_t t = 0; t < z.size(); ++t) deviation[t] -= s.d[k] / (1 + s.d[k]) * z[t] * z[t];
+      for (size_t t = 0; t < z.size(); ++t) sigma[t] -= s.d[k] / (1 + s.d[k]) * z[t] * z[t];
     }
-    for (double& x : deviation) x = std::sqrt(std::max(x, 0.0));
+    for (double& x : sigma) x = std::sqrt(std::max(x, 0.0));
   }
 }
 
 // "..., known within a factor of 1.9, would be within 1.2", with 95 %.
-std::string describe_change(const Unknown& unknown, double before, double after) {
-  const double a = kDeviations95 * before, b = kDeviations95 * after;
-  if (unknown.quantity == "young")
+std::string describe_change(const FitParameter& parameter, double before, double after) {
+  const double a = kSigmas95 * before, b = kSigmas95 * after;
+  if (parameter.quantity == "young")
     return formatted(", known within a factor of %.3g, would be within %.3g", std::exp(a), std::exp(b));
   return formatted(", known to +-%.2g on its scale, would be to +-%.2g", a, b);
 }
 
 void set_description(const ParameterMap& map, const TetMesh& mesh, const Posterior& posterior,
-                     PokeCandidate& candidate) {
-  size_t unknown = 0;
+                     IndentationCandidate& candidate) {
+  size_t parameter = 0;
   double largest = -1;
   std::vector<double> best;
-  for (size_t u = 0; u < posterior.deviation.size(); ++u) {
+  for (size_t u = 0; u < posterior.sigma.size(); ++u) {
     std::vector<double> drop;
     double sum = 0;
-    for (size_t t = 0; t < posterior.deviation[u].size(); ++t) {
-      drop.push_back(std::pow(posterior.deviation[u][t], 2) - std::pow(candidate.deviation[u][t], 2));
+    for (size_t t = 0; t < posterior.sigma[u].size(); ++t) {
+      drop.push_back(std::pow(posterior.sigma[u][t], 2) - std::pow(candidate.sigma[u][t], 2));
       sum += volume(mesh, static_cast<int>(t)) * drop.back();
     }
-    if (sum > largest) largest = sum, unknown = u, best = std::move(drop);
+    if (sum > largest) largest = sum, parameter = u, best = std::move(drop);
   }
   const size_t t = std::ranges::max_element(best) - best.begin();
-  const Unknown& what = map.unknowns()[unknown];
-  const std::string where = what.spread == Spread::uniform ? "of the whole body" : describe_place(mesh, best);
+  const FitParameter& what = map.fitted_parameters()[parameter];
+  const std::string where =
+      what.parameterization == Parameterization::uniform ? "of the whole body" : describe_place(mesh, best);
   candidate.description = "at " + describe_point(candidate.site) + ": " + what.quantity + " " + where +
-                          describe_change(what, posterior.deviation[unknown][t], candidate.deviation[unknown][t]);
+                          describe_change(what, posterior.sigma[parameter][t], candidate.sigma[parameter][t]);
 }
 
 void judge(const Experiment& experiment, const FittedField& fitted, Posterior& posterior,
-           const NextPokeOptions& options, PokeCandidate& candidate) {
+           const NextIndentationOptions& options, IndentationCandidate& candidate) {
   const auto& [map, mesh, p] = fitted;
   Experiment one = subset(experiment, [](const LoadCase&) { return false; });
   one.cases = {candidate.load};
@@ -120,7 +122,7 @@ void judge(const Experiment& experiment, const FittedField& fitted, Posterior& p
       return;
     }
     for (const double d : s.d) candidate.gain += std::log1p(d) / 2;
-    set_deviation(map, posterior, s, candidate);
+    set_sigma(map, posterior, s, candidate);
   } catch (const InvalidInput& error) {  // the tip does not fit there
     candidate.failure = error.what();
     return;
@@ -130,11 +132,11 @@ void judge(const Experiment& experiment, const FittedField& fitted, Posterior& p
 }
 
 // Means of the candidates' gains, with weights 1 / distance^2, on the surface.
-std::vector<double> spread_gain(const TetMesh& mesh, const std::vector<PokeCandidate>& candidates) {
+std::vector<double> spread_gain(const TetMesh& mesh, const std::vector<IndentationCandidate>& candidates) {
   std::vector<double> gain(mesh.rest.size(), 0.0);
   for (const int v : boundary_surface(mesh).tet_vertex) {
     double sum = 0, weights = 0;
-    for (const PokeCandidate& c : candidates) {
+    for (const IndentationCandidate& c : candidates) {
       if (!c.ok) continue;
       const Vec3d d = c.site - mesh.rest[v];
       const double weight = 1 / std::max(dot(d, d), 1e-300);
@@ -147,16 +149,16 @@ std::vector<double> spread_gain(const TetMesh& mesh, const std::vector<PokeCandi
 
 }  // namespace
 
-NextPoke next_poke(const Experiment& experiment, const FittedField& fitted, Posterior& posterior,
-                   const NextPokeOptions& options) {
+NextIndentation next_indentation(const Experiment& experiment, const FittedField& fitted, Posterior& posterior,
+                                 const NextIndentationOptions& options) {
   const TetMesh& mesh = fitted.mesh;
   ASPIC_CHECK(posterior.ok);
   const Instruments with = instruments(experiment, options);
-  NextPoke result;
+  NextIndentation result;
   std::vector<int> fixed = experiment.fixed;
   std::erase_if(fixed, [&](int v) { return v >= mesh.vertex_count(); });  // a refined mesh begins with its vertices
-  for (const PokeSite& site : poke_sites(mesh, fixed, with.tip.radius, options.sites)) {
-    PokeCandidate candidate{.vertex = site.vertex, .site = mesh.rest[site.vertex], .inward = site.inward};
+  for (const IndentationSite& site : indentation_sites(mesh, fixed, with.tip.radius, options.sites)) {
+    IndentationCandidate candidate{.vertex = site.vertex, .site = mesh.rest[site.vertex], .inward = site.inward};
     candidate.load = load_at(experiment, with, candidate.site, candidate.inward);
     judge(experiment, fitted, posterior, options, candidate);
     if (!candidate.ok) result.warnings.push_back(candidate.load.name + " could not be judged: " + candidate.failure);
@@ -165,7 +167,7 @@ NextPoke next_poke(const Experiment& experiment, const FittedField& fitted, Post
   if (result.candidates.empty())
     result.warnings.push_back(
         "there is no site for an indenter: all surface vertices are nearer to a held one than its radius");
-  std::ranges::stable_sort(result.candidates, [](const PokeCandidate& a, const PokeCandidate& b) {
+  std::ranges::stable_sort(result.candidates, [](const IndentationCandidate& a, const IndentationCandidate& b) {
     return a.ok != b.ok ? a.ok : a.gain > b.gain;
   });
   result.gain = spread_gain(mesh, result.candidates);

@@ -1,4 +1,4 @@
-// A block of gel on a table, poked by a glued disc: small enough that hundreds of equilibria take a second.
+// A block of gel on a table, indented by a glued disc: small enough that hundreds of equilibria take a second.
 #pragma once
 #include <gtest/gtest.h>
 
@@ -11,7 +11,7 @@
 
 namespace aspic::test {
 
-struct PokedBlock {
+struct IndentedBlock {
   static constexpr double kSide = 0.06, kHeight = 0.04, kYoung = 2e4;  // [m], [m], [Pa]
   struct Site {
     std::string name;
@@ -19,7 +19,7 @@ struct PokedBlock {
   };
   Experiment experiment;
 
-  explicit PokedBlock(std::array<int, 3> cells = {3, 3, 2}) {
+  explicit IndentedBlock(std::array<int, 3> cells = {3, 3, 2}) {
     TetMesh& mesh = experiment.mesh = make_box({{0, 0, 0}}, {{kSide, kSide, kHeight}}, cells, BoxCut::five);
     experiment.density.assign(mesh.tets.size(), 1000.0);
     for (int v = 0; v < mesh.vertex_count(); ++v)
@@ -38,7 +38,7 @@ struct PokedBlock {
   }
 
   // Pushed in and sideways; standard deviations relative to the depth and to a typical force.
-  void add_poke(const Site& site, double depth, double noise, bool with_force = true) {
+  void add_indentation(const Site& site, double depth, double noise, bool with_force = true) {
     LoadCase load{.name = site.name, .group = site.name};
     load.tip = Tip{TipShape::disc, TipContact::bonded, 0.012, 1000 * kYoung / 0.012};
     load.touch = {.center = site.point, .axis = site.inward};
@@ -48,33 +48,33 @@ struct PokedBlock {
     const double d = noise * depth, f = noise * kYoung * 0.012 * depth;
     for (size_t m = 0; m < experiment.markers.size(); ++m)
       load.positions.push_back({static_cast<int>(m), {}, {{d, d, d}}});
-    if (with_force) load.force = Vec3d{}, load.force_deviation = {{f, f, f}};
+    if (with_force) load.force = Vec3d{}, load.force_sigma = {{f, f, f}};
     experiment.cases.push_back(load);
   }
 
-  // What a body with the parameters p of the map would have shown, and normal noise.
+  // Readings of a body with the parameters p of the map, with normal noise.
   void measure(const ParameterMap& map, std::span<const double> p, std::mt19937_64& random, double noise = 1) {
     Misfit truth(experiment, map);
     std::vector<double> r(truth.residual_count());
     ASSERT_TRUE(truth.evaluate(p, r)) << truth.failure();
     std::normal_distribution<double> normal;
-    const auto read = [&](Vec3d x, const Vec3d& deviation) {
-      for (int i = 0; i < 3; ++i) x[i] += noise * deviation[i] * normal(random);
+    const auto read = [&](Vec3d x, const Vec3d& sigma) {
+      for (int i = 0; i < 3; ++i) x[i] += noise * sigma[i] * normal(random);
       return x;
     };
     for (size_t c = 0; c < experiment.cases.size(); ++c) {
       LoadCase& load = experiment.cases[c];
       const CasePrediction& exact = truth.prediction(static_cast<int>(c));
       for (size_t k = 0; k < load.positions.size(); ++k)
-        load.positions[k].position = read(exact.markers[k], load.positions[k].deviation);
-      if (load.force) load.force = read(exact.wrench.force, load.force_deviation);
+        load.positions[k].position = read(exact.markers[k], load.positions[k].sigma);
+      if (load.force) load.force = read(exact.wrench.force, load.force_sigma);
     }
   }
 
-  ParameterMap map(std::vector<Unknown> unknowns = {{.guess = kYoung}}) const {
+  ParameterMap map(std::vector<FitParameter> parameters = {{.guess = kYoung}}) const {
     return {experiment.mesh, "stable_neo_hookean",
             std::vector<MaterialParameters>(experiment.mesh.tets.size(), {lame_from_young_poisson(kYoung, 0.45)}),
-            std::move(unknowns)};
+            std::move(parameters)};
   }
 };
 

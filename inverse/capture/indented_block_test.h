@@ -1,4 +1,4 @@
-// A block of two layers, held below and poked from above: a data set whose material is known, without noise.
+// A block of two layers, held below and indented from above: a data set whose material is known, without noise.
 #pragma once
 #include <cmath>
 #include <string>
@@ -18,8 +18,8 @@ inline Vec3d at_rest(const Experiment& e, int marker) {
   return X;
 }
 
-// 0.1 m wide; markers at the vertices of its surface that are free; three pokes to two depths each.
-inline Experiment poked_block(int cells) {
+// 0.1 m wide; markers at the vertices of its surface that are free; three indentations to two depths each.
+inline Experiment indented_block(int cells) {
   Experiment e;
   e.mesh = make_box({{0, 0, 0}}, {{0.1, 0.1, 0.1}}, {cells, cells, cells});
   for (int t = 0; t < e.mesh.tet_count(); ++t) {
@@ -40,20 +40,20 @@ inline Experiment poked_block(int cells) {
       e.markers.push_back(marker);
     }
   const double places[][2] = {{0.03, 0.03}, {0.07, 0.04}, {0.05, 0.07}};
-  for (int poke = 0; poke < 3; ++poke)
+  for (int indentation = 0; indentation < 3; ++indentation)
     for (const double depth : {0.004, 0.008}) {
       LoadCase load;
-      load.group = "poke " + std::to_string(poke + 1);
+      load.group = "poke " + std::to_string(indentation + 1);
       load.name = load.group + ", " + std::to_string(std::lround(1000 * depth)) + " mm";
       load.tip = Tip{TipShape::sphere, TipContact::bonded, 0.025, 1e8};
-      load.touch.center = {{places[poke][0], 0.12, places[poke][1]}};
+      load.touch.center = {{places[indentation][0], 0.12, places[indentation][1]}};
       load.touch.axis = {{0, -1, 0}};
       load.pose = load.touch;
       load.pose.center[1] -= depth;
       for (int m = 0; m < static_cast<int>(e.markers.size()); ++m)
         load.positions.push_back({m, at_rest(e, m), {{1e-4, 1e-4, 1e-4}}});
       load.force = Vec3d{};
-      load.force_deviation = {{0.02, 0.02, 0.02}};
+      load.force_sigma = {{0.02, 0.02, 0.02}};
       e.cases.push_back(load);
     }
   return e;
@@ -61,11 +61,11 @@ inline Experiment poked_block(int cells) {
 
 // Returns the experiment with the readings for these moduli of the layers.
 inline DataSet measured_block(int cells) {
-  DataSet data{.name = "block", .experiment = poked_block(cells)};
+  DataSet data{.name = "block", .experiment = indented_block(cells)};
   Experiment& e = data.experiment;
   const ParameterMap map(e.mesh, "neo_hookean",
                          std::vector<MaterialParameters>(e.mesh.tets.size(), {lame_from_young_poisson(1e4, 0.4), {}}),
-                         {{.quantity = "young", .spread = Spread::regions}});
+                         {{.quantity = "young", .parameterization = Parameterization::regions}});
   Misfit model(e, map);
   std::vector<double> r(static_cast<size_t>(model.residual_count()));
   if (!model.evaluate(std::vector<double>{std::log(kSoftLayer), std::log(kStiffLayer)}, r)) return data;
