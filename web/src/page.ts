@@ -57,9 +57,9 @@ export class Page extends Emitter<Events> {
   }
 
   // Calls back when colors or sizes have changed.
-  onLook(run: () => void): void {
-    this.on("theme", run);
-    this.on("layout", run);
+  onLook(run: () => void, signal?: AbortSignal): void {
+    this.on("theme", run, signal);
+    this.on("layout", run, signal);
   }
 
   notice(text: string, kind: "info" | "error" = "info"): void {

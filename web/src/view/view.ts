@@ -16,12 +16,12 @@ import { Overlay, png, readStyle, type Dot, type Marks, type Style } from "./ove
 import { Pace } from "./pace";
 import { interpolated, nearestVertex, type Hit, type Surface } from "./picking";
 import { Stage } from "./stage";
-import { Touch, type Touched } from "./touch";
+import { Touch } from "./touch";
 import { valueText } from "./values";
 
 const kLargest = 8192; // largest side of a screenshot [px]
 
-export class View implements Touched {
+export class View {
   private readonly glCanvas = document.createElement("canvas");
   private readonly overlay = new Overlay();
   private readonly message = document.createElement("div");
@@ -36,8 +36,6 @@ export class View implements Touched {
   private frame = 0; // id of the requested frame
   private fixedSize: [number, number] | null = null;
   private sharpness = 1; // scale of a screenshot
-  private rigStop = (): void => {};
-  private readonly stop: (() => void)[] = [];
   private readonly listeners = new AbortController();
 
   constructor(
@@ -98,6 +96,7 @@ export class View implements Touched {
     if (this.figure.body?.box) this.rig.center(this.figure.body.box.lower, this.figure.body.box.upper);
   }
 
+  // Shows the values at a clicked point.
   read(hit: Hit | null): void {
     if (hit && this.figure.body) this.card.open(hit, nearestVertex(hit, this.figure.body.geometry.triangles));
     else this.card.close();
@@ -128,7 +127,6 @@ export class View implements Touched {
 
   dispose(): void {
     this.listeners.abort();
-    for (const stop of [...this.stop, this.rigStop]) stop();
     this.touch.dispose();
     this.card.close();
     cancelAnimationFrame(this.frame);
@@ -170,23 +168,24 @@ export class View implements Touched {
 
   private listen(): void {
     const mine = (listener: () => void) => (side: SideName) => side === this.side && listener();
-    const { store, display, page, stop } = this;
-    stop.push(store.on("scene", mine(() => this.takeScene())));
-    stop.push(store.on("geometry", mine(() => this.takeGeometry())));
-    stop.push(store.on("obstacles", mine(() => this.takeObstacles())));
-    stop.push(store.on("picture", mine(() => this.takePicture())));
-    stop.push(store.on("pins", mine(() => this.showPins(this.figure.side?.pins ?? []))));
-    stop.push(store.on("state", () => this.takeState()));
-    stop.push(store.on("capture", () => this.redraw()));
-    stop.push(display.on("changed", () => this.applyDisplay()));
-    stop.push(display.on("range", () => this.recolor()));
-    stop.push(page.on("theme", () => this.applyDisplay()));
-    stop.push(page.on("layout", () => this.applyDisplay()));
-    if (this.side === "a") stop.push(page.on("highlight", (highlights) => this.highlight(highlights)));
+    const { store, display, page } = this;
+    const { signal } = this.listeners;
+    store.on("scene", mine(() => this.takeScene()), signal);
+    store.on("geometry", mine(() => this.takeGeometry()), signal);
+    store.on("obstacles", mine(() => this.takeObstacles()), signal);
+    store.on("picture", mine(() => this.takePicture()), signal);
+    store.on("pins", mine(() => this.showPins(this.figure.side?.pins ?? [])), signal);
+    store.on("state", () => this.takeState(), signal);
+    store.on("capture", () => this.redraw(), signal);
+    display.on("changed", () => this.applyDisplay(), signal);
+    display.on("camera", () => this.redraw(), signal);
+    display.on("range", () => this.recolor(), signal);
+    page.onLook(() => this.applyDisplay(), signal);
+    if (this.side === "a") page.on("highlight", (highlights) => this.highlight(highlights), signal);
     const sizes = new ResizeObserver(() => this.redraw());
     sizes.observe(this.host);
-    stop.push(() => sizes.disconnect());
-    document.addEventListener("visibilitychange", () => this.pace.go(), { signal: this.listeners.signal });
+    signal.addEventListener("abort", () => sizes.disconnect());
+    document.addEventListener("visibilitychange", () => this.pace.go(), { signal });
   }
 
   private takeState(): void {
@@ -226,8 +225,6 @@ export class View implements Touched {
   }
 
   private applyDisplay(): void {
-    this.rigStop();
-    this.rigStop = this.rig.on("changed", () => this.redraw());
     this.restyle();
     this.figure.apply(this.style);
     this.tellUnnumbered();
