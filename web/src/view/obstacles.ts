@@ -3,7 +3,7 @@ import * as THREE from "three";
 import type { Obstacle, Vec3 } from "../protocol";
 import { sceneAxes } from "./cameras";
 import { dot, minus } from "./lens";
-import { kGroundRadius, makeGroundMaterial, type GroundUniforms } from "./shading";
+import { kGroundRadius, makeGroundMaterial } from "./shading";
 
 const kColor = "#a7a39b";
 
@@ -20,7 +20,7 @@ export function planeAxes(normal: Vec3, up: Vec3): [Vec3, Vec3] {
 class Ground {
   readonly mesh: THREE.Mesh<THREE.CircleGeometry, THREE.ShadowMaterial>;
   private readonly axes: [Vec3, Vec3];
-  private readonly uniforms: GroundUniforms = {
+  private readonly uniforms = {
     gridStep: { value: 1 },
     gridOrigin: { value: new THREE.Vector2() },
     gridColor: { value: new THREE.Color() },
