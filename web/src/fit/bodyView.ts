@@ -8,12 +8,12 @@ import { Body, boxOf } from "../view/body";
 import type { CameraRig } from "../view/cameras";
 import type { MapName } from "../view/colorMaps";
 import { kDefaults } from "../view/display";
+import { disposeOf } from "../view/dispose";
 import { kSkinPoint } from "../view/labels";
 import { length, minus } from "../view/lens";
 import { Overlay, readStyle } from "../view/overlay";
 import { logRange, type ColorRange } from "../view/ranges";
 import { Stage } from "../view/stage";
-import { disposeOf } from "./arrows";
 import { bodyBelow, boundaryOf, type Boundary, type Plane, type Soup, type TetMesh } from "./cut";
 
 export interface Shown {

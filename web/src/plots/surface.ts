@@ -1,6 +1,7 @@
 // 3-D picture of a surface that the reader can turn: values over a plane, the quadratic model, a path and marks.
 import * as THREE from "three";
 import { OrbitControls } from "three/addons/controls/OrbitControls.js";
+import { disposeOf } from "../view/dispose";
 import { element, oncePerFrame } from "./dom";
 import { sample, type Point } from "./grid";
 import { legendColumns, lineHeight, paintLegend, titled, type Sign } from "./legend";
@@ -184,14 +185,14 @@ export class SurfaceView {
     if (!this.body) return;
     this.scene.remove(this.body.group);
     if (this.visible && this.renderer) this.left.push(this.body);
-    else this.body.dispose();
+    else disposeOf(this.body.group);
     this.body = null;
   }
 
   private draw(): void {
     if (!this.visible || !this.renderer) return;
     this.renderer.render(this.scene, this.camera);
-    for (const body of this.left.splice(0)) body.dispose();
+    for (const body of this.left.splice(0)) disposeOf(body.group);
     const made = this.placedLabels().map(({ label, x, y }) => {
       const span = element("span", { class: "surface-label" }, label.text);
       span.style.transform = `translate(${x.toFixed(1)}px, calc(${y.toFixed(1)}px - 50%))`;

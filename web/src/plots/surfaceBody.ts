@@ -58,14 +58,6 @@ export class SurfaceBody {
     for (const mark of content.marks) this.addMark(mark);
   }
 
-  dispose(): void {
-    this.group.traverse((part) => {
-      if (!(part instanceof THREE.Mesh || part instanceof THREE.Line || part instanceof THREE.Points)) return;
-      part.geometry.dispose();
-      for (const material of [part.material].flat()) material.dispose();
-    });
-  }
-
   private addSurface(): THREE.Mesh {
     const material = new THREE.MeshLambertMaterial({
       vertexColors: true,

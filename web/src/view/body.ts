@@ -5,6 +5,7 @@ import type { Geometry, Picture, Vec3 } from "../protocol";
 import { bodiesOf, bodyColors, bodyTexels } from "./bodies";
 import { mapTexels, type MapName } from "./colorMaps";
 import type { DisplaySettings } from "./display";
+import { disposeOf } from "./dispose";
 import { kSkinPoint } from "./labels";
 import { vectorAt } from "./lens";
 import { makeFieldUniforms, makePinMaterial, makeSurfaceMaterial } from "./shading";
@@ -62,7 +63,6 @@ export class Body {
   private readonly positions: THREE.BufferAttribute;
   private readonly normals: THREE.BufferAttribute;
   private readonly values: THREE.BufferAttribute;
-  private readonly shapes: THREE.BufferGeometry[] = [];
   private readonly uniforms = makeFieldUniforms();
   private readonly surface = makeSurfaceMaterial(this.uniforms);
   private readonly lines = new THREE.LineBasicMaterial({ transparent: true, depthWrite: false });
@@ -204,8 +204,7 @@ export class Body {
   }
 
   dispose(): void {
-    for (const shape of this.shapes) shape.dispose();
-    for (const material of [this.surface, this.lines, this.pinMaterial]) material.dispose();
+    disposeOf(this.root);
     this.uniforms.fieldMap.value?.dispose();
   }
 
@@ -215,7 +214,6 @@ export class Body {
     if (shaded) shape.setAttribute("normal", this.normals).setAttribute("fieldValue", this.values);
     shape.setIndex(new THREE.BufferAttribute(index, 1));
     shape.boundingSphere = new THREE.Sphere(new THREE.Vector3(), 1); // placeholder, so that three.js computes none
-    this.shapes.push(shape);
     return shape;
   }
 }

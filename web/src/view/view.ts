@@ -281,7 +281,7 @@ export class View {
     const brushes = settings.tool === "pin" && cursor;
     return {
       axes: settings.axes,
-      gridStep: this.figure.body && this.stage?.hasGround ? this.stage.gridStep : 0,
+      gridStep: this.figure.body && this.stage?.obstacles.hasGround ? this.stage.gridStep : 0,
       bar: shown && { ...shown, map: this.display.map(shown.field) },
       contact: this.figure.contact(),
       bodies: shown ? [] : this.figure.bodies(),
