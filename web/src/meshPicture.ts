@@ -3,7 +3,7 @@
 import { Vector3, type Quaternion } from "three";
 import { Pack } from "./pack";
 import type { Tell } from "./program";
-import type { Field, Geometry, Vec3 } from "./protocol";
+import type { Geometry, Vec3 } from "./protocol";
 import { edgesOf, normalsOf } from "./recording";
 import { Body, type Box, boxOf } from "./view/body";
 import { lookingFrom, sceneAxes } from "./view/cameras";
@@ -153,8 +153,8 @@ class Painter {
 
   // Half as high as the panels, centered vertically.
   private addBar(ink: Ink, head: MeshPicture, range: [number, number], top: number, height: number): void {
-    const field: Field = { name: "", label: head.value_label, unit: "", diverging: false, center: 0, log: false };
-    const lens = { width: head.width - kBarWidth * ink.em, height } as Lens;
+    const field = { label: head.value_label, unit: "" };
+    const lens = { width: head.width - kBarWidth * ink.em, height };
     ink.context.translate(0, top + Math.max(0, (height - 23 * ink.em) / 2));
     colorBar(ink, lens, field, colors(range), "viridis");
     ink.context.resetTransform();

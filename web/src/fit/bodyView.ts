@@ -204,19 +204,11 @@ export class BodyView {
     const style = this.style();
     const lens = this.rig.lens(width, height);
     this.stage.render(lens, this.rig.orientation, style.accent);
-    const bar = this.shown && { field: { name: "", label: this.shown.label, unit: this.shown.unit, diverging: false, center: 0, log: false }, range: this.range(this.shown), map: this.shown.map };
+    const { shown } = this;
     this.overlay.draw(lens, style, {
       axes: true,
-      gridStep: 0,
-      bar,
-      contact: null,
-      bodies: [],
-      labels: [],
+      bar: shown && { field: shown, range: this.range(shown), map: shown.map },
       highlights: this.notes.map(({ at, words }) => ({ positions: [at], text: words })),
-      dots: [],
-      spring: null,
-      brush: null,
-      tip: null,
     });
     ++this.drawn;
     this.element.dataset.drawn = String(this.drawn);
