@@ -154,9 +154,7 @@ export class BodyView {
     };
     this.body = new Body(geometry);
     this.stage?.show(this.body);
-    const packed = new Int8Array(4 * corners);
-    for (let i = 0; i < corners; ++i) for (let k = 0; k < 3; ++k) packed[4 * i + k] = Math.round(127 * normals[3 * i + k]);
-    this.body.show({ positions, normals: packed, values: null });
+    this.body.show({ positions, normals, values: null });
     this.stage?.moved();
     this.applyDisplay();
     this.recolor();

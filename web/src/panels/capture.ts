@@ -53,7 +53,7 @@ export class CapturePanel implements Panel {
     if (!visible && tool === "probe") this.display.change({ tool: "drag" });
     this.display.showsBench = visible;
     this.display.change({});
-    if (visible) this.gauge.refresh();
+    if (visible) this.gauge.redraw();
     this.setUp();
   }
 
