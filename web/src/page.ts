@@ -76,5 +76,5 @@ export interface Panel {
   readonly title: string;
   readonly element: HTMLElement;
   readonly isTall?: boolean; // needs more than the usual height
-  show(visible: boolean): void; // draws only while it is visible
+  show(visible: boolean): void; // the dock has added or removed the element; draws only while it is in the page
 }

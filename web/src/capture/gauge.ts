@@ -13,13 +13,12 @@ import { Dial } from "./dial";
 export class Gauge {
   readonly element = element("section", { class: "capture-gauge", "aria-label": "Force gauge" });
   readonly chart = new Chart();
-  visible = false;
   private readonly dial = new Dial("N");
   private readonly force = element("output", { class: "capture-force", "aria-label": "Force of the tip" });
   private readonly parts = element("dl", { class: "capture-parts" });
   private readonly curve = new ForceCurve();
   private recorded: [depth: number, force: number][] = [];
-  readonly redraw = oncePerFrame(() => this.visible && this.draw());
+  readonly redraw = oncePerFrame(() => this.element.isConnected && this.draw());
 
   constructor() {
     this.element.append(element("h3", {}, "Force gauge"), this.dial.element, this.force, this.parts);

@@ -52,10 +52,9 @@ export class EnergyPanel implements Panel {
     () => this.configure(),
   );
   private range: [number, number] | null = null; // range selected with the mouse [s]
-  private visible = false;
   private byStep = false; // x is the step: a static scene has no time
   private rows = new Set<string>(); // keys of the legend's rows
-  private readonly redraw = oncePerFrame(() => this.visible && this.draw());
+  private readonly redraw = oncePerFrame(() => this.element.isConnected && this.draw());
 
   constructor(
     private readonly store: Store,
@@ -82,9 +81,8 @@ export class EnergyPanel implements Panel {
     for (const side of kSides) this.newScene(side);
   }
 
-  show(visible: boolean): void {
-    this.visible = visible;
-    if (visible) this.redraw();
+  show(): void {
+    this.redraw();
   }
 
   private newScene(name: SideName): void {

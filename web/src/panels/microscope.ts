@@ -38,8 +38,7 @@ export class MicroscopePanel implements Panel {
   private readonly grid = element("div", { class: "microscope-charts" });
   private charts: StepChart[] = [];
   private names: ChartName[] = [...kOrder];
-  private visible = false;
-  private readonly redraw = oncePerFrame(() => this.visible && this.draw());
+  private readonly redraw = oncePerFrame(() => this.element.isConnected && this.draw());
 
   constructor(
     private readonly store: Store,
@@ -61,9 +60,8 @@ export class MicroscopePanel implements Panel {
     new ResizeObserver(() => this.arrange()).observe(this.grid);
   }
 
-  show(visible: boolean): void {
-    this.visible = visible;
-    if (visible) this.redraw();
+  show(): void {
+    this.redraw();
   }
 
   private rows(): readonly StepRow[] {
