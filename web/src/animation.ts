@@ -17,8 +17,8 @@ const kFormats: Record<Format | "video" | "gif", string> = {
 };
 
 export function openAnimation(store: Store, page: Page, video: Video): void {
-  const format = selectOf(kFormats);
-  const side = selectOf({ a: "A", b: "B" });
+  const format = selectOf(Object.entries(kFormats));
+  const side = selectOf([["a", "A"], ["b", "B"]]);
   const run = (): Promise<void> => {
     if (format.value === "video") return videoOfSession(store, video);
     if (format.value === "gif") return gifOfSession(store, page, video);

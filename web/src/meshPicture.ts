@@ -1,6 +1,7 @@
 // Pictures of meshes for a program that sends them one by one: panels side by side with a common direction, scale and
 // color bar. apps/aspic/mesh_picture.h defines the requests.
 import { Vector3, type Quaternion } from "three";
+import { png } from "./dom";
 import { Pack } from "./pack";
 import type { Tell } from "./program";
 import type { Geometry, Vec3 } from "./protocol";
@@ -10,7 +11,6 @@ import { lookingFrom, sceneAxes } from "./view/cameras";
 import { type DisplaySettings, kDefaults } from "./view/display";
 import { along, dot, type Lens, minus } from "./view/lens";
 import { colorBar, type Ink, kBarWidth, text } from "./view/marks";
-import { png } from "./view/overlay";
 import type { ColorRange } from "./view/ranges";
 import { Stage } from "./view/stage";
 

@@ -1,5 +1,5 @@
 // Screenshots and videos of the views.
-import { button, element, fileName, messageOf, saveFile } from "./dom";
+import { button, downloadCanvas, element, fileName, messageOf, saveFile } from "./dom";
 import type { Page } from "./page";
 import { shortcutButton } from "./shortcuts";
 import type { Store } from "./store";
@@ -63,10 +63,7 @@ export function makeScreenshotButton(store: Store, page: Page, draw: DrawViews):
       return page.notice(`No picture: ${messageOf(reason)}`, "error");
     }
     const name = `${store.side("a")?.scene.name ?? "aspic"}_${store.state?.a.step ?? 0}`;
-    canvas.toBlob((blob) => {
-      if (blob) saveFile(fileName(name, "png"), blob);
-      else page.notice("This browser created no picture.", "error");
-    }, "image/png");
+    downloadCanvas(name, canvas).catch(page.report);
   };
   return shortcutButton(page, { key: "p", does: "Picture of the view (PNG)", group: "File", run }, { text: "Picture (PNG)" });
 }

@@ -1,7 +1,7 @@
 // The recorded load cases and the controls that record more.
 import { button, element } from "../dom";
 import type { Page } from "../page";
-import { numberField } from "../plots/dom";
+import { numberField } from "../controls";
 import { plural, withUnit } from "../plots/numbers";
 import type { Capture, Command, ProbeState } from "../protocol";
 import type { Store } from "../store";

@@ -1,7 +1,7 @@
 // Force gauge of the probe: dial, numbers, and force over depth.
 import { element } from "../dom";
 import { Chart } from "../plots/chart";
-import { oncePerFrame } from "../plots/dom";
+import { oncePerFrame } from "../controls";
 import { withUnit } from "../plots/numbers";
 import { merged } from "../plots/table";
 import type { ProbeState } from "../protocol";

@@ -1,7 +1,7 @@
 // Shape and depth of the tip, set by slider, number or keys.
 import { button, element } from "../dom";
 import type { Page } from "../page";
-import { choice, numberField } from "../plots/dom";
+import { choice, numberField } from "../controls";
 import { short } from "../plots/numbers";
 import type { ProbeState, TipChoice } from "../protocol";
 import type { Store } from "../store";

@@ -3,17 +3,8 @@ import { fieldsOf, type Page, type Panel } from "../page";
 import type { MaybeNumber, SideName } from "../protocol";
 import type { Store } from "../store";
 import { Chart, type Curve } from "../plots/chart";
-import {
-  button,
-  checkbox,
-  choice,
-  downloadCanvas,
-  element,
-  fileName,
-  numberField,
-  oncePerFrame,
-  saveFile,
-} from "../plots/dom";
+import { checkbox, choice, numberField, oncePerFrame } from "../controls";
+import { button, downloadCanvas, element, fileName, saveFile } from "../dom";
 import { balanceText, calmRange, explosionText, Ledger, ledgerColumns } from "../plots/ledger";
 import type { LedgerColumn } from "../plots/ledger";
 import { csv, short, withUnit } from "../plots/numbers";
@@ -62,9 +53,9 @@ export class EnergyPanel implements Panel {
   ) {
     this.typed.element.hidden = true;
     const bar = element("div", { class: "plot-bar" }, this.windows.element, this.typed.element, this.logSwitch.element);
-    bar.append(button("CSV", "Save all columns as CSV with all digits", () => this.saveCsv()));
+    bar.append(button({ text: "CSV", title: "Save all columns as CSV with all digits" }, () => this.saveCsv()));
     bar.append(
-      button("PNG", "Save the plot as a picture", () => this.savePng()),
+      button({ text: "PNG", title: "Save the plot as a picture" }, () => this.savePng()),
       this.note,
     );
     const fill = element("div", { class: "plot-fill" }, this.chart.element);
@@ -279,7 +270,7 @@ export class EnergyPanel implements Panel {
     const picture = this.chart.picture(
       `${this.sceneName()}: energy${sides.length > 1 ? ` (${sides[0]}; dashed: ${sides[1]})` : ""}`,
     );
-    if (picture) downloadCanvas(fileName(`${this.sceneName()}_energy`, "png"), picture);
+    if (picture) void downloadCanvas(`${this.sceneName()}_energy`, picture);
   }
 
   private save(): unknown {

@@ -1,6 +1,7 @@
 // Input of the functions panel: function, start and method.
 import { formulaElements } from "../formulas";
-import { choice, element, numberField } from "../plots/dom";
+import { choice, numberField } from "../controls";
+import { element } from "../dom";
 import type { FunctionQuestion, SettingValue } from "../protocol";
 
 export const kFunctions = [

@@ -1,11 +1,11 @@
 // Functions of two variables, minimized by the methods of the simulation: the lecture's surfaces, from any initial
 // point.
-import { messageOf } from "../dom";
+import { button, downloadCanvas, element, messageOf } from "../dom";
 import { Newest } from "../newest";
 import { fieldsOf, type Page, type Panel } from "../page";
 import type { FunctionQuestion, FunctionReply } from "../protocol";
 import type { Store } from "../store";
-import { button, checkbox, downloadCanvas, element, fileName } from "../plots/dom";
+import { checkbox } from "../controls";
 import { short } from "../plots/numbers";
 import { sentence } from "../plots/words";
 import { SearchChart } from "../plots/search";
@@ -37,7 +37,7 @@ export class FunctionsPanel implements Panel {
     "aria-label": "Iteration",
   });
   private readonly where = element("strong");
-  private readonly playButton = button("▶ play", "Play the iterations", () => this.togglePlay());
+  private readonly playButton = button({ text: "▶ play", title: "Play the iterations" }, () => this.togglePlay());
   private readonly model = checkbox("quadratic model", "Show the quadratic model that this iteration minimized", true, () =>
     this.draw(),
   );
@@ -64,7 +64,7 @@ export class FunctionsPanel implements Panel {
     page: Page,
   ) {
     const presets = element("div", { class: "pair", role: "group", "aria-label": "Examples" });
-    for (const preset of kPresets) presets.append(button(preset.title, preset.shows, () => this.openPreset(preset)));
+    for (const preset of kPresets) presets.append(button({ text: preset.title, title: preset.shows }, () => this.openPreset(preset)));
     this.form.element.prepend(presets);
     const walk = element(
       "div",
@@ -76,7 +76,7 @@ export class FunctionsPanel implements Panel {
       this.log.element,
     );
     walk.append(
-      button("PNG", "Save the picture", () => this.savePng()),
+      button({ text: "PNG", title: "Save the picture" }, () => this.savePng()),
       this.words,
     );
     const chart = element("div", { class: "functions-chart" }, this.search.element);
@@ -236,7 +236,7 @@ export class FunctionsPanel implements Panel {
     const name = this.form.question(0, 2).name;
     const picture =
       this.reply && this.view.picture(`f = ${this.reply.formula}: iteration ${this.iteration} of ${this.reply.iterations.length}`);
-    if (picture) downloadCanvas(fileName(`${name}_${this.iteration}`, "png"), picture);
+    if (picture) void downloadCanvas(`${name}_${this.iteration}`, picture);
   }
 
   private restore(saved: unknown): void {

@@ -3,7 +3,8 @@ import { fieldsOf, type Page, type Panel } from "../page";
 import type { IterationReply } from "../protocol";
 import type { Store } from "../store";
 import type { Chosen } from "../plots/chosen";
-import { button, checkbox, downloadCanvas, element, fileName, oncePerFrame } from "../plots/dom";
+import { checkbox, oncePerFrame } from "../controls";
+import { button, downloadCanvas, element } from "../dom";
 import { gridOf, quadraticFrom } from "../plots/grid";
 import { short } from "../plots/numbers";
 import { SurfaceView } from "../plots/surface";
@@ -38,15 +39,15 @@ export class LandscapePanel implements Panel {
   ) {
     const bar = element("div", { class: "plot-bar" });
     bar.append(
-      button("◀", "The iteration before", () => this.chosen.walk(-1)),
+      button({ text: "◀", title: "The iteration before" }, () => this.chosen.walk(-1)),
       this.where,
-      button("▶", "The iteration after", () => this.chosen.walk(1)),
+      button({ text: "▶", title: "The iteration after" }, () => this.chosen.walk(1)),
     );
     bar.append(
       this.follow.element,
       this.model.element,
       this.log.element,
-      button("PNG", "Save the picture", () => this.savePng()),
+      button({ text: "PNG", title: "Save the picture" }, () => this.savePng()),
       this.note,
     );
     const side = element(
@@ -166,7 +167,7 @@ export class LandscapePanel implements Panel {
     const name = this.store.side(this.chosen.side)?.scene.name ?? "scene";
     const picture =
       this.reply && this.view.picture(`${name}: energy landscape of step ${step}, iteration ${iteration}`);
-    if (picture) downloadCanvas(fileName(`${name}_landscape_${step}_${iteration}`, "png"), picture);
+    if (picture) void downloadCanvas(`${name}_landscape_${step}_${iteration}`, picture);
   }
 
   private restore(saved: unknown): void {

@@ -2,7 +2,8 @@
 import * as THREE from "three";
 import { OrbitControls } from "three/addons/controls/OrbitControls.js";
 import { disposeOf } from "../view/dispose";
-import { element, oncePerFrame } from "./dom";
+import { oncePerFrame } from "../controls";
+import { element } from "../dom";
 import { sample, type Point } from "./grid";
 import { legendColumns, legendOf, lineHeight, paintLegend, titled } from "./legend";
 import { cssOf, inkOf, palette, sameLook, type Palette } from "./palette";

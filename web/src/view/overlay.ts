@@ -58,12 +58,6 @@ function isLight(color: string): boolean {
   return 0.299 * r + 0.587 * g + 0.114 * b > 128;
 }
 
-export function png(canvas: HTMLCanvasElement): Promise<Blob> {
-  return new Promise((resolve, reject) =>
-    canvas.toBlob((blob) => (blob ? resolve(blob) : reject(new Error("the view has no size"))), "image/png"),
-  );
-}
-
 export class Overlay {
   readonly canvas = document.createElement("canvas");
   private readonly context = this.canvas.getContext("2d")!;

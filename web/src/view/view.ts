@@ -1,5 +1,6 @@
 // 3-D view of one side: draws its newest picture, and only after a change.
 import "./view.css";
+import { png } from "../dom";
 import type { Highlight, Page } from "../page";
 import { hasBlownUp } from "../plots/gain";
 import type { SideName } from "../protocol";
@@ -12,7 +13,7 @@ import { chooseLabels, type Label } from "./labels";
 import type { Lens } from "./lens";
 import { markersOn, nearestOn } from "./markers";
 import { kBarWidth } from "./marks";
-import { Overlay, png, readStyle, type Dot, type Marks, type Style } from "./overlay";
+import { Overlay, readStyle, type Dot, type Marks, type Style } from "./overlay";
 import { Pace } from "./pace";
 import { interpolated, nearestVertex, type Hit, type Surface } from "./picking";
 import { Stage } from "./stage";
