@@ -6,7 +6,6 @@ import { Chart, type Curve } from "../plots/chart";
 import { checkbox, choice, numberField, oncePerFrame } from "../controls";
 import { button, downloadCanvas, element, fileName, saveFile } from "../dom";
 import { balanceText, calmRange, explosionText, Ledger, ledgerColumns } from "../plots/ledger";
-import type { LedgerColumn } from "../plots/ledger";
 import { csv, short, withUnit } from "../plots/numbers";
 import type { Palette } from "../plots/palette";
 import { paintVerticalLine } from "../plots/verticalLine";
@@ -14,12 +13,9 @@ import { lowerBound, magnitude, merged, nearest, thinned, type Table } from "../
 import type uPlot from "uplot";
 
 const kSides: SideName[] = ["a", "b"];
-const kWindows = [
-  ["all", "all"],
-  ["10", "last 10 s"],
-  ["2", "last 2 s"],
-  ["typed", "last ... s"],
-] as const;
+const kWindows = [["all", "all"], ["10", "last 10 s"], ["2", "last 2 s"], ["typed", "last ... s"]] as const;
+
+const kWindowHelp = "Visible range of time; drag in the plot to zoom, double-click for all";
 
 export class EnergyPanel implements Panel {
   readonly name = "energy";
@@ -29,19 +25,8 @@ export class EnergyPanel implements Panel {
   private readonly note = element("span", { class: "plot-note", role: "status" });
   private readonly ledgers: Record<SideName, Ledger | null> = { a: null, b: null };
   private readonly typed = numberField("", "Length of the window [s]", 1, { min: 1e-6 }, () => this.setWindow());
-  private readonly windows = choice(
-    "Window",
-    "Visible range of time; drag in the plot to zoom, double-click for all",
-    kWindows,
-    "all",
-    () => this.setWindow(),
-  );
-  private readonly logSwitch = checkbox(
-    "log",
-    "Logarithmic axis of absolute values; zeros are omitted",
-    false,
-    () => this.configure(),
-  );
+  private readonly windows = choice("Window", kWindowHelp, kWindows, "all", () => this.setWindow());
+  private readonly log = checkbox("log", "Logarithmic axis of absolute values; zeros are omitted", false, () => this.configure());
   private range: [number, number] | null = null; // range selected with the mouse [s]
   private byStep = false; // x is the step: a static scene has no time
   private rows = new Set<string>(); // keys of the legend's rows
@@ -52,14 +37,12 @@ export class EnergyPanel implements Panel {
     page: Page,
   ) {
     this.typed.element.hidden = true;
-    const bar = element("div", { class: "plot-bar" }, this.windows.element, this.typed.element, this.logSwitch.element);
-    bar.append(button({ text: "CSV", title: "Save all columns as CSV with all digits" }, () => this.saveCsv()));
-    bar.append(
-      button({ text: "PNG", title: "Save the plot as a picture" }, () => this.savePng()),
-      this.note,
+    const csv = button({ text: "CSV", title: "Save all columns as CSV with all digits" }, () => this.saveCsv());
+    const png = button({ text: "PNG", title: "Save the plot as a picture" }, () => this.savePng());
+    this.element.append(
+      element("div", { class: "plot-bar" }, this.windows.element, this.typed.element, this.log.element, csv, png, this.note),
+      element("div", { class: "plot-fill" }, this.chart.element),
     );
-    const fill = element("div", { class: "plot-fill" }, this.chart.element);
-    this.element.append(bar, fill);
     store.on("scene", (side) => this.newScene(side));
     store.on("gone", () => this.newScene("b"));
     store.on("steps", ({ side, from }) => {
@@ -99,14 +82,11 @@ export class EnergyPanel implements Panel {
 
   private curves(): Curve[] {
     return this.shown().flatMap(({ side, ledger }) =>
-      this.columnsOf(ledger).map(({ column }) => ({
-        ...column,
-        dash: side === "b" ? (column.dotted ? [8, 3, 2, 3] : [8, 5]) : column.dotted ? [2, 3] : undefined,
-      })),
+      this.columnsOf(ledger).map(({ column }) => (side === "a" ? column : { ...column, dash: column.dash ? [8, 3, 2, 3] : [8, 5] })),
     );
   }
 
-  private columnsOf(ledger: Ledger): { column: LedgerColumn; values: MaybeNumber[] }[] {
+  private columnsOf(ledger: Ledger): { column: Curve; values: MaybeNumber[] }[] {
     return ledgerColumns(ledger.potentials)
       .map((column, i) => ({ column, values: ledger.columns[i]! }))
       .filter(({ column }) => this.rows.has(column.key));
@@ -114,7 +94,7 @@ export class EnergyPanel implements Panel {
 
   private configure(): void {
     this.rows = this.used();
-    const log = this.logSwitch.input.checked;
+    const log = this.log.input.checked;
     this.byStep = this.shown().every(({ ledger }) => (ledger.time[ledger.time.length - 1] ?? 0) === 0);
     this.chart.configure({
       label: "Energy over time",
@@ -210,7 +190,7 @@ export class EnergyPanel implements Panel {
     const tables = sides.map(({ ledger }) => this.table(ledger));
     const [first, second] = tables;
     const table = first && second ? merged(first, second) : (first ?? { x: [], columns: [] });
-    const log = this.logSwitch.input.checked;
+    const log = this.log.input.checked;
     this.chart.show(table.x, log ? table.columns.map((column) => column.map(magnitude)) : table.columns);
     this.tell();
   }
@@ -225,8 +205,8 @@ export class EnergyPanel implements Panel {
       return `${name}${balanceText(drift, scale)}`;
     });
     const dashes = this.ledgers.b ? [`${this.store.side("b")?.scene.label || "b"} is dashed`] : [];
-    const logText = this.logSwitch.input.checked ? ["absolute values; zeros are omitted"] : [];
-    const wild = !this.logSwitch.input.checked && this.calmRange() ? ["one side exceeds the plot; use log to see it"] : [];
+    const logText = this.log.input.checked ? ["absolute values; zeros are omitted"] : [];
+    const wild = !this.log.input.checked && this.calmRange() ? ["one side exceeds the plot; use log to see it"] : [];
     const text = [...texts.filter((t) => t !== ""), ...dashes, ...wild, ...logText].join(" · ");
     if (this.note.textContent !== text) this.note.textContent = text;
   }
@@ -277,7 +257,7 @@ export class EnergyPanel implements Panel {
     return {
       window: this.windows.select.value,
       typed: this.typed.input.value,
-      log: this.logSwitch.input.checked,
+      log: this.log.input.checked,
       hidden: [...this.chart.hidden],
     };
   }
@@ -286,7 +266,7 @@ export class EnergyPanel implements Panel {
     const kept = fieldsOf(saved);
     if (kWindows.some(([name]) => name === kept.window)) this.windows.select.value = kept.window as string;
     if (Number(kept.typed) > 0) this.typed.input.value = String(kept.typed);
-    this.logSwitch.input.checked = kept.log === true;
+    this.log.input.checked = kept.log === true;
     this.chart.hidden.clear();
     if (Array.isArray(kept.hidden))
       for (const key of kept.hidden) if (typeof key === "string") this.chart.hidden.add(key);
