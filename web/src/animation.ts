@@ -100,7 +100,7 @@ async function gifOfSession(store: Store, page: Page, video: Video): Promise<voi
   const end = (): void => {
     stop();
     take(Infinity);
-    saveFile(fileName(store.side("a")?.scene.name ?? "", "gif"), gif.blob());
+    saveFile(fileName(store.name, "gif"), gif.blob());
     page.notice(`${frames} pictures${frames === kMostGifFrames ? ", the limit of a GIF here; aspic render makes longer ones" : ""}`);
   };
   await repeatSession(store, end).catch((reason: unknown) => {

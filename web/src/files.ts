@@ -94,7 +94,7 @@ export class Files {
 
   private async saveRecording(): Promise<void> {
     const recording = await this.store.source.ask<Recording>({ ask: "recording" });
-    const name = fileName(`${this.store.side("a")?.scene.name ?? ""}.recording`, "json");
+    const name = fileName(`${this.store.name}.recording`, "json");
     saveFile(name, new Blob([JSON.stringify(recording)], { type: "application/json" }));
   }
 

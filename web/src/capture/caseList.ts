@@ -85,7 +85,7 @@ export class CaseList {
   }
 
   private saveAs(): void {
-    const folder = prompt("Folder of the data set, on the program's machine", `${this.store.side("a")?.scene.name ?? "body"}_capture`);
+    const folder = prompt("Folder of the data set, on the program's machine", `${this.store.name}_capture`);
     if (folder) void this.send({ do: "save_capture", folder }).then((ok) => ok && this.page.notice(`Saved. Fit it with: aspic fit ${folder}`));
   }
 

@@ -95,7 +95,7 @@ export class EnergyPanel implements Panel {
   private configure(): void {
     this.rows = this.used();
     const log = this.log.input.checked;
-    this.byStep = this.shown().every(({ ledger }) => (ledger.time[ledger.time.length - 1] ?? 0) === 0);
+    this.byStep = this.isStatic();
     this.chart.configure({
       label: "Energy over time",
       x: this.byStep ? { label: "step", integer: true } : { label: "time [s]" },
@@ -113,6 +113,10 @@ export class EnergyPanel implements Panel {
       },
     });
     this.redraw();
+  }
+
+  private isStatic(): boolean {
+    return this.shown().every(({ ledger }) => (ledger.time.at(-1) ?? 0) === 0);
   }
 
   private calmRange(): [number, number] | null {
@@ -141,7 +145,7 @@ export class EnergyPanel implements Panel {
     const sides = this.shown().filter(({ ledger }) => ledger.step.length > 0);
     const texts = sides.map(({ side, ledger }) => {
       const i = x === null ? this.nowIndex(ledger) : nearest(this.xOf(ledger), x);
-      const label = sides.length > 1 ? `${this.store.side(side)?.scene.label || side.toUpperCase()}: ` : "";
+      const label = sides.length > 1 ? `${this.store.label(side)}: ` : "";
       return `${label}step ${ledger.step[i]}${this.byStep ? "" : `, ${short(ledger.time[i])} s`}`;
     });
     return texts.join(" · ");
@@ -158,12 +162,9 @@ export class EnergyPanel implements Panel {
   }
 
   private windowLength(): number | null {
-    const value = this.windows.select.value;
-    return value === "all"
-      ? null
-      : value === "typed"
-        ? Math.max(1e-6, this.typed.input.valueAsNumber || 1)
-        : Number(value);
+    const { value } = this.windows.select;
+    if (value === "all") return null;
+    return value === "typed" ? Math.max(1e-6, this.typed.input.valueAsNumber || 1) : Number(value);
   }
 
   private setWindow(): void {
@@ -182,29 +183,24 @@ export class EnergyPanel implements Panel {
   }
 
   private draw(): void {
-    const sides = this.shown();
-    const statics = sides.every(({ ledger }) => (ledger.time[ledger.time.length - 1] ?? 0) === 0);
     const used = this.used();
-    if (statics !== this.byStep || used.size !== this.rows.size || [...used].some((key) => !this.rows.has(key)))
+    if (this.isStatic() !== this.byStep || used.size !== this.rows.size || [...used].some((key) => !this.rows.has(key)))
       return this.configure();
-    const tables = sides.map(({ ledger }) => this.table(ledger));
-    const [first, second] = tables;
-    const table = first && second ? merged(first, second) : (first ?? { x: [], columns: [] });
-    const log = this.log.input.checked;
-    this.chart.show(table.x, log ? table.columns.map((column) => column.map(magnitude)) : table.columns);
+    const { x, columns } = merged(...this.shown().map(({ ledger }) => this.table(ledger)));
+    this.chart.show(x, this.log.input.checked ? columns.map((column) => column.map(magnitude)) : columns);
     this.tell();
   }
 
   private tell(): void {
     const texts = this.shown().map(({ side, ledger }) => {
       const { drift, scale } = ledger.drift();
-      const name = this.ledgers.b ? `${this.store.side(side)?.scene.label || side.toUpperCase()}: ` : "";
+      const name = this.ledgers.b ? `${this.store.label(side)}: ` : "";
       const peak = ledger.exploded();
       if (peak !== null) return `${name}${explosionText(peak)}`;
       if (ledger.step.length < 2 || !Number.isFinite(drift)) return "";
       return `${name}${balanceText(drift, scale)}`;
     });
-    const dashes = this.ledgers.b ? [`${this.store.side("b")?.scene.label || "b"} is dashed`] : [];
+    const dashes = this.ledgers.b ? [`${this.store.label("b")} is dashed`] : [];
     const logText = this.log.input.checked ? ["absolute values; zeros are omitted"] : [];
     const wild = !this.log.input.checked && this.calmRange() ? ["one side exceeds the plot; use log to see it"] : [];
     const text = [...texts.filter((t) => t !== ""), ...dashes, ...wild, ...logText].join(" · ");
@@ -219,38 +215,26 @@ export class EnergyPanel implements Panel {
     paintVerticalLine(u, this.byStep ? state.step : state.time, colors.accent);
   }
 
-  private sceneName(): string {
-    return this.store.side("a")?.scene.name ?? "scene";
-  }
-
   private saveCsv(): void {
     const sides = this.shown();
     const tables = sides.map(({ ledger }) => ({
       x: ledger.step,
       columns: [ledger.time, ...ledger.columns, ledger.residualWork, ledger.ledgerError],
     }));
-    const suffixed = (name: string, side: SideName): string => (sides.length > 1 ? `${name}_${side}` : name);
-    const names = sides.flatMap(({ side, ledger }) =>
-      [
-        "time",
-        ...ledgerColumns(ledger.potentials).map((c) => c.key),
-        "residual_work_of_step",
-        "ledger_error_of_step",
-      ].map((n) => suffixed(n, side)),
-    );
-    const [first, second] = tables;
-    if (!first) return;
-    const table = second ? merged(first, second) : first;
-    const text = csv(["step", ...names], [table.x, ...table.columns], table.x.length);
-    saveFile(fileName(`${this.sceneName()}_energy`, "csv"), new Blob([text], { type: "text/csv" }));
+    const names = sides.flatMap(({ side, ledger }) => {
+      const keys = ledgerColumns(ledger.potentials).map((column) => column.key);
+      const all = ["time", ...keys, "residual_work_of_step", "ledger_error_of_step"];
+      return sides.length > 1 ? all.map((name) => `${name}_${side}`) : all;
+    });
+    const { x, columns } = merged(...tables);
+    const text = csv(["step", ...names], [x, ...columns], x.length);
+    saveFile(fileName(`${this.store.name}_energy`, "csv"), new Blob([text], { type: "text/csv" }));
   }
 
   private savePng(): void {
-    const sides = this.shown().map(({ side }) => this.store.side(side)?.scene.label || side.toUpperCase());
-    const picture = this.chart.picture(
-      `${this.sceneName()}: energy${sides.length > 1 ? ` (${sides[0]}; dashed: ${sides[1]})` : ""}`,
-    );
-    if (picture) void downloadCanvas(`${this.sceneName()}_energy`, picture);
+    const [first, second] = this.shown().map(({ side }) => this.store.label(side));
+    const picture = this.chart.picture(`${this.store.name}: energy${second ? ` (${first}; dashed: ${second})` : ""}`);
+    if (picture) void downloadCanvas(`${this.store.name}_energy`, picture);
   }
 
   private save(): unknown {
@@ -268,8 +252,7 @@ export class EnergyPanel implements Panel {
     if (Number(kept.typed) > 0) this.typed.input.value = String(kept.typed);
     this.log.input.checked = kept.log === true;
     this.chart.hidden.clear();
-    if (Array.isArray(kept.hidden))
-      for (const key of kept.hidden) if (typeof key === "string") this.chart.hidden.add(key);
+    for (const key of Array.isArray(kept.hidden) ? kept.hidden : []) this.chart.hidden.add(String(key));
     this.setWindow();
     this.configure();
   }

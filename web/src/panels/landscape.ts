@@ -164,7 +164,7 @@ export class LandscapePanel implements Panel {
 
   private savePng(): void {
     const { step, iteration } = this.chosen;
-    const name = this.store.side(this.chosen.side)?.scene.name ?? "scene";
+    const { name } = this.store;
     const picture =
       this.reply && this.view.picture(`${name}: energy landscape of step ${step}, iteration ${iteration}`);
     if (picture) void downloadCanvas(`${name}_landscape_${step}_${iteration}`, picture);
