@@ -17,8 +17,8 @@ const kFormats: Record<Format | "video" | "gif", string> = {
 };
 
 export function openAnimation(store: Store, page: Page, video: Video): void {
-  const format = selectOf(kFormats);
-  const side = selectOf({ a: "A", b: "B" });
+  const format = selectOf(Object.entries(kFormats));
+  const side = selectOf([["a", "A"], ["b", "B"]]);
   const run = (): Promise<void> => {
     if (format.value === "video") return videoOfSession(store, video);
     if (format.value === "gif") return gifOfSession(store, page, video);
@@ -100,7 +100,7 @@ async function gifOfSession(store: Store, page: Page, video: Video): Promise<voi
   const end = (): void => {
     stop();
     take(Infinity);
-    saveFile(fileName(store.side("a")?.scene.name ?? "", "gif"), gif.blob());
+    saveFile(fileName(store.name, "gif"), gif.blob());
     page.notice(`${frames} pictures${frames === kMostGifFrames ? ", the limit of a GIF here; aspic render makes longer ones" : ""}`);
   };
   await repeatSession(store, end).catch((reason: unknown) => {

@@ -100,9 +100,8 @@ export function openForm(title: string, fields: Child[], submit: string, run: ()
   });
 }
 
-// A list of values with their texts.
-export function selectOf(texts: Record<string, string>): HTMLSelectElement {
-  return element("select", {}, ...Object.entries(texts).map(([value, text]) => element("option", { value }, text)));
+export function selectOf(options: readonly (readonly [value: string, text: string])[]): HTMLSelectElement {
+  return element("select", {}, ...options.map(([value, text]) => element("option", { value }, text)));
 }
 
 // File name from letters, digits and characters that every file system accepts.
@@ -115,6 +114,16 @@ export function saveFile(name: string, content: Blob): void {
   const url = URL.createObjectURL(content);
   element("a", { href: url, download: name }).click();
   setTimeout(() => URL.revokeObjectURL(url), 60_000);
+}
+
+export function png(canvas: HTMLCanvasElement): Promise<Blob> {
+  return new Promise((resolve, reject) =>
+    canvas.toBlob((blob) => (blob ? resolve(blob) : reject(new Error("there is no picture"))), "image/png"),
+  );
+}
+
+export async function downloadCanvas(name: string, canvas: HTMLCanvasElement): Promise<void> {
+  saveFile(fileName(name, "png"), await png(canvas));
 }
 
 export function chooseFile(accept: string): Promise<File | null> {

@@ -49,8 +49,8 @@ export class Files {
   }
 
   private openMesh(): void {
-    const format = selectOf(Object.fromEntries(kFormats.map((name) => [name, name])));
-    const side = selectOf({ a: "A", b: "B" });
+    const format = selectOf(kFormats.map((name) => [name, name]));
+    const side = selectOf([["a", "A"], ["b", "B"]]);
     const fields = [
       labeled("obj and ply contain the surface; vtu, msh and mesh the tets", format),
       this.store.side("b") ? labeled("Side", side) : null,
@@ -94,7 +94,7 @@ export class Files {
 
   private async saveRecording(): Promise<void> {
     const recording = await this.store.source.ask<Recording>({ ask: "recording" });
-    const name = fileName(`${this.store.side("a")?.scene.name ?? ""}.recording`, "json");
+    const name = fileName(`${this.store.name}.recording`, "json");
     saveFile(name, new Blob([JSON.stringify(recording)], { type: "application/json" }));
   }
 

@@ -1,16 +1,16 @@
 // Pictures of meshes for a program that sends them one by one: panels side by side with a common direction, scale and
 // color bar. apps/aspic/mesh_picture.h defines the requests.
 import { Vector3, type Quaternion } from "three";
+import { png } from "./dom";
 import { Pack } from "./pack";
 import type { Tell } from "./program";
-import type { Field, Geometry, Vec3 } from "./protocol";
+import type { Geometry, Vec3 } from "./protocol";
 import { edgesOf, normalsOf } from "./recording";
 import { Body, type Box, boxOf } from "./view/body";
 import { lookingFrom, sceneAxes } from "./view/cameras";
 import { type DisplaySettings, kDefaults } from "./view/display";
 import { along, dot, type Lens, minus } from "./view/lens";
 import { colorBar, type Ink, kBarWidth, text } from "./view/marks";
-import { png } from "./view/overlay";
 import type { ColorRange } from "./view/ranges";
 import { Stage } from "./view/stage";
 
@@ -153,8 +153,8 @@ class Painter {
 
   // Half as high as the panels, centered vertically.
   private addBar(ink: Ink, head: MeshPicture, range: [number, number], top: number, height: number): void {
-    const field: Field = { name: "", label: head.value_label, unit: "", diverging: false, center: 0, log: false };
-    const lens = { width: head.width - kBarWidth * ink.em, height } as Lens;
+    const field = { label: head.value_label, unit: "" };
+    const lens = { width: head.width - kBarWidth * ink.em, height };
     ink.context.translate(0, top + Math.max(0, (height - 23 * ink.em) / 2));
     colorBar(ink, lens, field, colors(range), "viridis");
     ink.context.resetTransform();

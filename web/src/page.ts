@@ -57,9 +57,9 @@ export class Page extends Emitter<Events> {
   }
 
   // Calls back when colors or sizes have changed.
-  onLook(run: () => void): void {
-    this.on("theme", run);
-    this.on("layout", run);
+  onLook(run: () => void, signal?: AbortSignal): void {
+    this.on("theme", run, signal);
+    this.on("layout", run, signal);
   }
 
   notice(text: string, kind: "info" | "error" = "info"): void {
@@ -76,5 +76,5 @@ export interface Panel {
   readonly title: string;
   readonly element: HTMLElement;
   readonly isTall?: boolean; // needs more than the usual height
-  show(visible: boolean): void; // draws only while it is visible
+  show(visible: boolean): void; // the dock has added or removed the element; draws only while it is in the page
 }

@@ -53,10 +53,19 @@ export class Store extends Emitter<Events> {
     return this.sides[name];
   }
 
+  // Name of the scene.
+  get name(): string {
+    return this.sides.a?.scene.name ?? "";
+  }
+
+  label(name: SideName): string {
+    return this.sides[name]?.scene.label || name.toUpperCase();
+  }
+
   // "A: its label", or "A" without one.
   title(name: SideName): string {
-    const label = this.sides[name]?.scene.label ?? "";
-    return label === "" ? name.toUpperCase() : `${name.toUpperCase()}: ${label}`;
+    const letter = name.toUpperCase();
+    return this.label(name) === letter ? letter : `${letter}: ${this.label(name)}`;
   }
 
   private receive(incoming: Incoming): void {

@@ -26,9 +26,6 @@ export function makeTimeline(store: Store, page: Page): HTMLElement {
     (step) => store.source.request({ do: "rewind", step }),
     page.report,
   );
-  let held = false;
-  slider.addEventListener("pointerdown", () => (held = true));
-  for (const end of ["pointerup", "pointercancel", "blur"]) slider.addEventListener(end, () => (held = false));
   slider.addEventListener("input", () => rewind.push(Number(slider.value)));
 
   store.on("state", (state) => {
@@ -37,7 +34,7 @@ export function makeTimeline(store: Store, page: Page): HTMLElement {
     ends.textContent = `steps ${first} to ${last}`;
     slider.min = String(first);
     slider.max = String(last);
-    if (!held && !rewind.busy) slider.value = String(state.a.step);
+    if (!slider.matches(":active") && !rewind.busy) slider.value = String(state.a.step);
     slider.setAttribute("aria-valuetext", placeText(state));
   });
   return element("div", { class: "timeline" }, slider, place, ends);

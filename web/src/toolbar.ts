@@ -18,8 +18,7 @@ export function makeToolbar(root: HTMLElement, store: Store, page: Page, theme: 
     element("div", { class: "group" }, ...tools, ...makeReader(page, theme)),
   );
   store.on("state", (state) => {
-    const name = store.side("a")?.scene.name ?? "";
-    const title = `${name} · ${state.playing ? "playing" : `paused, ${placeText(state)}`} · Aspic`;
+    const title = `${store.name} · ${state.playing ? "playing" : `paused, ${placeText(state)}`} · Aspic`;
     if (document.title !== title) document.title = title;
   });
 }

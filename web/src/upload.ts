@@ -51,7 +51,7 @@ export async function prepareUpload(files: readonly File[]): Promise<Upload> {
   const read: NamedBytes[] = [];
   for (const file of files) {
     const bytes = await file.arrayBuffer();
-    if (extensionOf(file.name) === "zip") read.push(...(await unzip(bytes, kMostBytes)));
+    if (extensionOf(file.name) === "zip") read.push(...unzip(bytes, kMostBytes));
     else read.push({ name: file.name, bytes: new Uint8Array(bytes) });
   }
   const main = mainFile(read.map(({ name }) => name));

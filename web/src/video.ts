@@ -1,5 +1,5 @@
 // Screenshots and videos of the views.
-import { button, element, fileName, messageOf, saveFile } from "./dom";
+import { button, downloadCanvas, element, fileName, messageOf, saveFile } from "./dom";
 import type { Page } from "./page";
 import { shortcutButton } from "./shortcuts";
 import type { Store } from "./store";
@@ -62,11 +62,8 @@ export function makeScreenshotButton(store: Store, page: Page, draw: DrawViews):
     } catch (reason) {
       return page.notice(`No picture: ${messageOf(reason)}`, "error");
     }
-    const name = `${store.side("a")?.scene.name ?? "aspic"}_${store.state?.a.step ?? 0}`;
-    canvas.toBlob((blob) => {
-      if (blob) saveFile(fileName(name, "png"), blob);
-      else page.notice("This browser created no picture.", "error");
-    }, "image/png");
+    const name = `${store.name}_${store.state?.a.step ?? 0}`;
+    downloadCanvas(name, canvas).catch(page.report);
   };
   return shortcutButton(page, { key: "p", does: "Picture of the view (PNG)", group: "File", run }, { text: "Picture (PNG)" });
 }
@@ -125,7 +122,7 @@ export class Video {
       stream.getTracks().forEach((track) => track.stop());
       if (!hasPicture(chunks)) return this.page.notice("The browser created no picture of the video.", "error");
       const extension = type.startsWith("video/mp4") ? "mp4" : "webm";
-      saveFile(fileName(this.store.side("a")?.scene.name ?? "", extension), new Blob(chunks, { type }));
+      saveFile(fileName(this.store.name, extension), new Blob(chunks, { type }));
     };
     recorder.onerror = () => {
       this.page.notice("The browser ended the video.", "error");

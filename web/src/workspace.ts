@@ -95,7 +95,7 @@ export async function saveWorkspace(store: Store, page: Page): Promise<void> {
     page: Object.fromEntries([...page.keepers].map(([name, keeper]) => [name, keeper.save()])),
   };
   const text = JSON.stringify(workspace, null, 1);
-  saveFile(fileName(`${shown?.name ?? ""}.aspic`, "json"), new Blob([text], { type: "application/json" }));
+  saveFile(fileName(`${store.name}.aspic`, "json"), new Blob([text], { type: "application/json" }));
 }
 
 async function wholeScene(store: Store): Promise<Pick<Workspace, "scene" | "files" | "overrides"> | null> {

@@ -1,6 +1,6 @@
 import assert from "node:assert/strict";
 import { test } from "node:test";
-import { ForceCurve, pushOf } from "../src/capture/curve";
+import { ForceCurve } from "../src/capture/curve";
 import { angleOf, fullScale } from "../src/capture/dial";
 import { errorText, fitText } from "../src/capture/fitForm";
 import type { CaptureFit, ProbeState, Vec3 } from "../src/protocol";
@@ -44,9 +44,8 @@ test("the curve keeps the latest force per depth", () => {
   assert.equal(curve.add(probe({ depth: 0.001, force: [0, 0, -1] })), false);
   assert.ok(curve.add(probe({ depth: 0.002, force: [0.5, 0, -3] })));
   assert.deepEqual(curve.sorted(), [[0.001, 1], [0.002, 3]]);
-  curve.add(probe({ begun: [1, 0, 1], depth: 0 }));
-  assert.deepEqual(curve.sorted(), [[0, 0]]);
-  assert.equal(pushOf({ force: [0, 0, 4], axis: [0, 0, -1] }), -4); // it pulls
+  curve.add(probe({ begun: [1, 0, 1], depth: 0, force: [0, 0, 4] }));
+  assert.deepEqual(curve.sorted(), [[0, -4]]); // it pulls
 });
 
 test("the dial's scale grows at once, shrinks rarely", () => {

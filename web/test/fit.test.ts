@@ -157,13 +157,13 @@ test("groups keep order, curves sort by depth", async () => {
   const groups = groupsOf(fit.head.cases);
   assert.deepEqual(groups, [{ name: "a", cases: [0, 1] }, { name: "b", cases: [2] }]);
   const curve = groupCurve(fit, groups[0]);
-  assert.deepEqual([curve.xUnit, curve.yUnit], ["m", "N"]);
-  assert.deepEqual(curve.x.map((x) => Math.round(10 * x)), [1, 2]);
-  assert.ok(curve.measured.every((f, i) => Math.abs(f! - [1, 2][i]) < 1e-12), "a push is positive along the way of the tip");
-  assert.ok(Math.abs(curve.deviation[0] - 0.2) < 1e-12);
-  assert.ok(curve.heldOut.every((f) => f === null));
+  assert.deepEqual([curve.x.unit, curve.y.unit], ["m", "N"]);
+  assert.deepEqual(curve.samples.map(({ x }) => Math.round(10 * x)), [1, 2]);
+  assert.ok(curve.samples.every(({ measured: f }, i) => Math.abs(f! - [1, 2][i]) < 1e-12), "a push is positive along the way of the tip");
+  assert.ok(Math.abs(curve.samples[0].deviation - 0.2) < 1e-12);
+  assert.ok(curve.samples.every(({ heldOut }) => heldOut === null));
   const leftOut = groupCurve(fit, groups[1]);
-  assert.ok(leftOut.leftOut && leftOut.fitted[0] === null && leftOut.heldOut[0] === 4);
+  assert.ok(leftOut.leftOut && leftOut.samples[0].fitted === null && leftOut.samples[0].heldOut === 4);
 });
 
 test("a curve without forces shows marker motion", async () => {
@@ -171,10 +171,10 @@ test("a curve without forces shows marker motion", async () => {
   for (const c of what.cases) c.force = null;
   const fit = await fitOf(what);
   const curve = groupCurve(fit, { cases: [0] });
-  assert.deepEqual([curve.yUnit, curve.measured, curve.fitted, curve.heldOut], ["m", [0.5], [0.75], [null]]);
+  assert.deepEqual([curve.y.unit, ...curve.samples.map(({ measured, fitted, heldOut }) => [measured, fitted, heldOut])], ["m", [0.5, 0.75, null]]);
   for (const c of what.cases) c.tip = null;
   what.cases[0].pressure = 300;
-  assert.deepEqual(groupCurve(await fitOf(what), { cases: [0] }).x, [300]);
+  assert.deepEqual(groupCurve(await fitOf(what), { cases: [0] }).samples.map(({ x }) => x), [300]);
 });
 
 test("residuals exclude held-out readings", async () => {
@@ -186,7 +186,7 @@ test("residuals exclude held-out readings", async () => {
 
 test("the worst markers come first", async () => {
   const fit = await fitOf(head());
-  assert.deepEqual(worstMarkers(fit, 9).map((w) => w.reading), [2, 0, 1]);
+  assert.deepEqual(worstMarkers(fit, 9).map((w) => w.case), [2, 0, 1]);
   const [one] = worstMarkers(fit, 9, 1);
   assert.equal(one.marker, 1);
   assert.ok(Math.abs(one.sigmas - 1 / Math.sqrt(3)) < 1e-6);
@@ -234,23 +234,23 @@ function twist(name: string, angle: number, more: Partial<Case> = {}): Case {
 test("a twist is drawn as torque over angle", async () => {
   const fit = await fitOf({ ...head(), cases: [twist("twist 2", 0.4), twist("twist 1", 0.2)] });
   const curve = groupCurve(fit, { cases: [0, 1] });
-  assert.deepEqual([curve.xLabel, curve.xUnit, curve.yLabel, curve.yUnit], ["angle", "rad", "torque", "N m"]);
-  assert.deepEqual(curve.x, [0.2, 0.4]);
-  assert.deepEqual(curve.measured, [0.1, 0.2]);
-  assert.ok(curve.fitted.every((t, i) => Math.abs(t! - [0.12, 0.24][i]) < 1e-12));
-  assert.equal(curve.deviation[0], 0.02);
+  assert.deepEqual([curve.x.label, curve.x.unit, curve.y.label, curve.y.unit], ["angle", "rad", "torque", "N m"]);
+  assert.deepEqual(curve.samples.map(({ x }) => x), [0.2, 0.4]);
+  assert.deepEqual(curve.samples.map(({ measured }) => measured), [0.1, 0.2]);
+  assert.ok(curve.samples.every(({ fitted: t }, i) => Math.abs(t! - [0.12, 0.24][i]) < 1e-12));
+  assert.equal(curve.samples[0].deviation, 0.02);
 });
 
 test("a twist without torques shows marker motion", async () => {
   const fit = await fitOf({ ...head(), cases: [twist("twist", 0.4, { torque: null })] });
   const curve = groupCurve(fit, { cases: [0] });
-  assert.deepEqual([curve.xLabel, curve.yLabel, curve.yUnit], ["angle", "mean motion", "m"]);
+  assert.deepEqual([curve.x.label, curve.y.label, curve.y.unit], ["angle", "mean motion", "m"]);
 });
 
 test("a slightly turned poke is no twist", async () => {
   const cases = [poke("a", "a", 0.2, 0, { tip: { ...kTip, center: [0, 0.8, 0], turn: [0, 0.01, 0] } })];
   const curve = groupCurve(await fitOf({ ...head(), cases }), { cases: [0] });
-  assert.deepEqual([curve.xLabel, curve.yLabel], ["depth", "force"]);
+  assert.deepEqual([curve.x.label, curve.y.label], ["depth", "force"]);
 });
 
 test("residuals count torques", async () => {

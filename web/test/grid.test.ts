@@ -9,7 +9,6 @@ import {
   minimizerOf,
   quadraticAt,
   quadraticFrom,
-  roundTicks,
   sample,
   uniform,
   valueAtHeight,
@@ -99,10 +98,4 @@ test("slices accept coordinates per line or sample", () => {
   const spread = { ...slice, s: [0, 1, 0, 1, 0, 1], t: [5, 5, 6, 6, 7, 7] };
   assert.deepEqual(gridOf(slice), { x: [0, 1], y: [5, 6, 7], value: [] });
   assert.deepEqual(gridOf(spread), gridOf(slice));
-});
-
-test("ticks are round and inside", () => {
-  assert.deepEqual(roundTicks(-1, 1, 4), [-1, -0.5, 0, 0.5, 1]);
-  assert.deepEqual(roundTicks(1, 1, 4), []);
-  assert.ok(roundTicks(391.2, 393.3, 4).every((t) => t >= 391.2 && t <= 393.3));
 });

@@ -1,6 +1,6 @@
 import assert from "node:assert/strict";
 import { test } from "node:test";
-import { csv, plural, prefixOf, short, ticks, withUnit } from "../src/plots/numbers";
+import { csv, plural, prefixOf, short, tickTexts, withUnit } from "../src/plots/numbers";
 
 test("SI prefixes leave one to three digits", () => {
   assert.equal(withUnit(0.01234, "J"), "12.34 mJ");
@@ -30,13 +30,13 @@ test("short numbers have no trailing zeros", () => {
 });
 
 test("ticks tell their neighbors apart", () => {
-  assert.deepEqual(ticks([-0.5, 0, 0.5, 1]), ["−0.5", "0", "0.5", "1.0"]);
-  assert.deepEqual(ticks([1000, 1500, 2000], 1000), ["1.0", "1.5", "2.0"]);
-  assert.deepEqual(ticks([0, 2500, 5000, 7500], 1000), ["0", "2.5", "5.0", "7.5"]);
-  assert.deepEqual(ticks([0, 0.025, 0.05]), ["0", "0.025", "0.050"]);
-  const fine = ticks([391.1960001, 391.1960002, 391.1960003]);
+  assert.deepEqual(tickTexts([-0.5, 0, 0.5, 1]), ["−0.5", "0", "0.5", "1.0"]);
+  assert.deepEqual(tickTexts([1000, 1500, 2000], 1000), ["1.0", "1.5", "2.0"]);
+  assert.deepEqual(tickTexts([0, 2500, 5000, 7500], 1000), ["0", "2.5", "5.0", "7.5"]);
+  assert.deepEqual(tickTexts([0, 0.025, 0.05]), ["0", "0.025", "0.050"]);
+  const fine = tickTexts([391.1960001, 391.1960002, 391.1960003]);
   assert.equal(new Set(fine).size, 3);
-  assert.deepEqual(ticks([]), []);
+  assert.deepEqual(tickTexts([]), []);
 });
 
 test("CSV keeps digits and quotes names", () => {
@@ -56,5 +56,5 @@ test("CSV keeps digits and quotes names", () => {
 
 test("numbers beyond all prefixes use powers", () => {
   assert.deepEqual(prefixOf(2.5e83), { factor: 1, letter: "" });
-  assert.deepEqual(ticks([0, 1e83, 2e83]), ["0", "1e83", "2e83"]);
+  assert.deepEqual(tickTexts([0, 1e83, 2e83]), ["0", "1e83", "2e83"]);
 });

@@ -1,7 +1,7 @@
 // The recorded load cases and the controls that record more.
 import { button, element } from "../dom";
 import type { Page } from "../page";
-import { numberField } from "../plots/dom";
+import { numberField } from "../controls";
 import { plural, withUnit } from "../plots/numbers";
 import type { Capture, Command, ProbeState } from "../protocol";
 import type { Store } from "../store";
@@ -85,7 +85,7 @@ export class CaseList {
   }
 
   private saveAs(): void {
-    const folder = prompt("Folder of the data set, on the program's machine", `${this.store.side("a")?.scene.name ?? "body"}_capture`);
+    const folder = prompt("Folder of the data set, on the program's machine", `${this.store.name}_capture`);
     if (folder) void this.send({ do: "save_capture", folder }).then((ok) => ok && this.page.notice(`Saved. Fit it with: aspic fit ${folder}`));
   }
 

@@ -1,5 +1,6 @@
 // Force over depth during one touch: the latest force at every depth, in order of increasing depth.
 import type { ProbeState } from "../protocol";
+import { dot } from "../view/lens";
 
 const kMost = 400; // distinct depths per tip radius
 
@@ -13,7 +14,7 @@ export class ForceCurve {
     const touch = [...probe.begun, ...probe.axis, probe.radius, probe.shape, probe.contact].join();
     if (touch !== this.touch) this.points.clear();
     this.touch = touch;
-    const force = pushOf(probe);
+    const force = dot(probe.force, probe.axis); // negative where a bonded tip pulls
     const place = Math.round((kMost * probe.depth) / probe.radius);
     const known = this.points.get(place);
     if (known && known[0] === probe.depth && known[1] === force) return false;
@@ -24,9 +25,4 @@ export class ForceCurve {
   sorted(): [depth: number, force: number][] {
     return [...this.points.values()].sort((a, b) => a[0] - b[0]);
   }
-}
-
-// Force that pushes the tip in; negative where a bonded tip pulls.
-export function pushOf({ force, axis }: { force: readonly number[]; axis: readonly number[] }): number {
-  return force[0]! * axis[0]! + force[1]! * axis[1]! + force[2]! * axis[2]!;
 }

@@ -1,7 +1,7 @@
 // The fit: starts it, shows its convergence, compares it with the truth, and simulates it.
 import { button, element } from "../dom";
 import type { Page } from "../page";
-import { checkbox } from "../plots/dom";
+import { checkbox } from "../controls";
 import { short, withUnit } from "../plots/numbers";
 import type { Capture, CaptureFit, Command } from "../protocol";
 import type { Store } from "../store";
@@ -90,7 +90,6 @@ export class FitForm {
     for (const choose of this.colors.querySelectorAll("button")) {
       choose.hidden = !scene?.fields.some(({ name }) => name === choose.dataset.field);
       choose.setAttribute("aria-pressed", String(scene?.field === choose.dataset.field));
-      choose.classList.add("plot-button");
     }
   }
 

@@ -1,26 +1,24 @@
 // Force gauge of the probe: dial, numbers, and force over depth.
 import { element } from "../dom";
 import { Chart } from "../plots/chart";
-import { oncePerFrame } from "../plots/dom";
+import { oncePerFrame } from "../controls";
 import { withUnit } from "../plots/numbers";
 import { merged } from "../plots/table";
-import type { ProbeState, Vec3 } from "../protocol";
+import type { ProbeState } from "../protocol";
+import { length } from "../view/lens";
 import { entryTexts } from "../view/values";
 import { ForceCurve } from "./curve";
 import { Dial } from "./dial";
 
-const size = (v: Vec3): number => Math.hypot(...v);
-
 export class Gauge {
   readonly element = element("section", { class: "capture-gauge", "aria-label": "Force gauge" });
   readonly chart = new Chart();
-  visible = false;
   private readonly dial = new Dial("N");
   private readonly force = element("output", { class: "capture-force", "aria-label": "Force of the tip" });
   private readonly parts = element("dl", { class: "capture-parts" });
   private readonly curve = new ForceCurve();
   private recorded: [depth: number, force: number][] = [];
-  private readonly redraw = oncePerFrame(() => this.visible && this.draw());
+  readonly redraw = oncePerFrame(() => this.element.isConnected && this.draw());
 
   constructor() {
     this.element.append(element("h3", {}, "Force gauge"), this.dial.element, this.force, this.parts);
@@ -38,13 +36,13 @@ export class Gauge {
   }
 
   show(probe: ProbeState | null): void {
-    const newtons = probe ? size(probe.force) : 0;
+    const newtons = probe ? length(probe.force) : 0;
     this.dial.show(newtons);
     this.force.textContent = probe ? withUnit(newtons, "N", 3) : "–";
     this.parts.replaceChildren(
       ...row("depth", probe ? withUnit(probe.depth, "m", 3) : "–"),
       ...row("force x, y, z", probe ? `${entryTexts(probe.force).join("  ")} N` : "–"),
-      ...row("torque", probe ? withUnit(size(probe.torque), "Nm", 3) : "–"),
+      ...row("torque", probe ? withUnit(length(probe.torque), "Nm", 3) : "–"),
       ...row("touches", probe ? (probe.points > 0 ? `${probe.points} points` : "no contact") : "–"),
     );
     if (this.curve.add(probe)) this.redraw();
@@ -52,10 +50,6 @@ export class Gauge {
 
   showRecorded(points: [depth: number, force: number][]): void {
     this.recorded = [...points].sort((a, b) => a[0] - b[0]);
-    this.redraw();
-  }
-
-  refresh(): void {
     this.redraw();
   }
 

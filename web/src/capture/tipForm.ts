@@ -1,7 +1,7 @@
 // Shape and depth of the tip, set by slider, number or keys.
 import { button, element } from "../dom";
 import type { Page } from "../page";
-import { choice, numberField } from "../plots/dom";
+import { choice, numberField } from "../controls";
 import { short } from "../plots/numbers";
 import type { ProbeState, TipChoice } from "../protocol";
 import type { Store } from "../store";
@@ -19,7 +19,6 @@ export class TipForm {
   private readonly lift = button({ text: "Lift", title: "Remove the tip", steers: true }, () => this.store.source.send({ do: "lift" }));
   private probe: ProbeState | null = null;
   private readonly asked = new AskedDepths();
-  private held = false;
 
   constructor(
     private readonly store: Store,
@@ -45,8 +44,6 @@ export class TipForm {
       contact.select.value = settings.tipContact;
       if (document.activeElement !== this.radius.input) this.radius.input.value = short(settings.tipRadius);
     });
-    this.slider.addEventListener("pointerdown", () => (this.held = true));
-    this.slider.addEventListener("change", () => (this.held = false));
     this.slider.addEventListener("input", () => this.probe && this.press(this.slider.valueAsNumber * kDeepest * this.probe.radius));
     this.element.append(
       element("h3", {}, "1  Touch and press"),
@@ -64,7 +61,7 @@ export class TipForm {
     this.slider.disabled = this.depth.input.disabled = probe === null || !this.store.steers;
     this.lift.disabled = probe === null || !this.store.steers;
     if (!probe) return;
-    if (!this.held) this.slider.value = String(probe.wanted / (kDeepest * probe.radius));
+    if (!this.slider.matches(":active")) this.slider.value = String(probe.wanted / (kDeepest * probe.radius));
     if (document.activeElement !== this.depth.input) this.depth.input.value = String(Number(probe.wanted.toPrecision(3)));
     if (this.display.settings.tipRadius === 0) this.radius.input.placeholder = short(probe.radius);
   }

@@ -47,12 +47,3 @@ export function makeBalls(centers: readonly Vec3[], radius: number, color: strin
   group.add(instanced(new THREE.SphereGeometry(1, 20, 14), material, matrices));
   return group;
 }
-
-export function disposeOf(group: THREE.Object3D): void {
-  group.traverse((object) => {
-    if (!(object instanceof THREE.Mesh)) return;
-    object.geometry.dispose();
-    (object.material as THREE.Material).dispose();
-    if (object instanceof THREE.InstancedMesh) object.dispose();
-  });
-}

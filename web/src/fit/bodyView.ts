@@ -8,12 +8,12 @@ import { Body, boxOf } from "../view/body";
 import type { CameraRig } from "../view/cameras";
 import type { MapName } from "../view/colorMaps";
 import { kDefaults } from "../view/display";
+import { disposeOf } from "../view/dispose";
 import { kSkinPoint } from "../view/labels";
 import { length, minus } from "../view/lens";
 import { Overlay, readStyle } from "../view/overlay";
 import { logRange, type ColorRange } from "../view/ranges";
 import { Stage } from "../view/stage";
-import { disposeOf } from "./arrows";
 import { bodyBelow, boundaryOf, type Boundary, type Plane, type Soup, type TetMesh } from "./cut";
 
 export interface Shown {
@@ -154,9 +154,7 @@ export class BodyView {
     };
     this.body = new Body(geometry);
     this.stage?.show(this.body);
-    const packed = new Int8Array(4 * corners);
-    for (let i = 0; i < corners; ++i) for (let k = 0; k < 3; ++k) packed[4 * i + k] = Math.round(127 * normals[3 * i + k]);
-    this.body.show({ positions, normals: packed, values: null });
+    this.body.show({ positions, normals, values: null });
     this.stage?.moved();
     this.applyDisplay();
     this.recolor();
@@ -204,19 +202,11 @@ export class BodyView {
     const style = this.style();
     const lens = this.rig.lens(width, height);
     this.stage.render(lens, this.rig.orientation, style.accent);
-    const bar = this.shown && { field: { name: "", label: this.shown.label, unit: this.shown.unit, diverging: false, center: 0, log: false }, range: this.range(this.shown), map: this.shown.map };
+    const { shown } = this;
     this.overlay.draw(lens, style, {
       axes: true,
-      gridStep: 0,
-      bar,
-      contact: null,
-      bodies: [],
-      labels: [],
+      bar: shown && { field: shown, range: this.range(shown), map: shown.map },
       highlights: this.notes.map(({ at, words }) => ({ positions: [at], text: words })),
-      dots: [],
-      spring: null,
-      brush: null,
-      tip: null,
     });
     ++this.drawn;
     this.element.dataset.drawn = String(this.drawn);

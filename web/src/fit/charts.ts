@@ -20,18 +20,17 @@ function paintErrorBars(u: uPlot, colors: Palette, curve: GroupCurve): void {
   ctx.lineWidth = devicePixelRatio;
   const cap = 4 * devicePixelRatio;
   ctx.beginPath();
-  curve.x.forEach((x, i) => {
-    const middle = curve.measured[i];
-    if (middle === null) return;
+  for (const { x, measured, deviation } of curve.samples) {
+    if (measured === null) continue;
     const column = u.valToPos(x, "x", true);
-    const [top, bottom] = [middle + curve.deviation[i], middle - curve.deviation[i]].map((y) => u.valToPos(y, "y", true));
+    const [top, bottom] = [measured + deviation, measured - deviation].map((y) => u.valToPos(y, "y", true));
     ctx.moveTo(column, top);
     ctx.lineTo(column, bottom);
     for (const y of [top, bottom]) {
       ctx.moveTo(column - cap, y);
       ctx.lineTo(column + cap, y);
     }
-  });
+  }
   ctx.stroke();
   ctx.restore();
 }
@@ -45,26 +44,29 @@ function around(values: readonly MaybeNumber[], includeZero: boolean): [number, 
 }
 
 export function loadChart(name: string, curve: GroupCurve): Chart {
-  const hasHeldOut = curve.heldOut.some((v) => v !== null);
-  const hasFitted = curve.fitted.some((v) => v !== null);
-  const shape = curve.x.length > 2 ? "line" : "both";
-  const curves: Curve[] = [
-    ...(hasFitted ? [{ key: "fitted", label: "fitted", meaning: "predicted by the fitted material", color: "series1", width: 2, shape } as Curve] : []),
-    ...(hasHeldOut
-      ? [{ key: "heldOut", label: curve.leftOut ? "predicted" : "held out", meaning: "predicted by a fit without this group", color: "series2", width: 2, dash: [6, 4], shape } as Curve]
-      : []),
+  const { samples } = curve;
+  const x = samples.map((s) => s.x);
+  const columns: Record<string, MaybeNumber[]> = {
+    fitted: samples.map((s) => s.fitted),
+    heldOut: samples.map((s) => s.heldOut),
+    measured: samples.map((s) => s.measured),
+  };
+  const shape = x.length > 2 ? "line" : "both";
+  const all: Curve[] = [
+    { key: "fitted", label: "fitted", meaning: "predicted by the fitted material", color: "series1", width: 2, shape },
+    { key: "heldOut", label: curve.leftOut ? "predicted" : "held out", meaning: "predicted by a fit without this group", color: "series2", width: 2, dash: [6, 4], shape },
     { key: "measured", label: "measured", meaning: "measured, ± one standard deviation", color: "text", shape: "points" },
   ];
-  const columns: Record<string, MaybeNumber[]> = { measured: curve.measured, fitted: curve.fitted, heldOut: curve.heldOut };
-  const spread = curve.measured.flatMap((m, i) => (m === null ? [] : [m - curve.deviation[i], m + curve.deviation[i]]));
-  return Chart.of(curve.x, curves.map((c) => columns[c.key]), {
-    label: `${name}: ${curve.yLabel} against ${curve.xLabel}, measured and fitted`,
-    x: { label: curve.xLabel, unit: curve.xUnit },
-    y: { label: curve.yLabel, unit: curve.yUnit },
+  const curves = all.filter(({ key }) => key === "measured" || columns[key].some((v) => v !== null));
+  const spread = samples.flatMap(({ measured: m, deviation }) => (m === null ? [] : [m - deviation, m + deviation]));
+  return Chart.of(x, curves.map((c) => columns[c.key]), {
+    label: `${name}: ${curve.y.label} against ${curve.x.label}, measured and fitted`,
+    x: { label: curve.x.label, unit: curve.x.unit },
+    y: curve.y,
     curves,
-    read: (key, x) => [withUnit(valueAt(curve.x, columns[key], x), curve.yUnit, 3)],
-    xRange: () => around(curve.x, true),
-    yRange: () => around([...spread, ...curve.fitted, ...curve.heldOut], true),
+    read: (key, at) => [withUnit(valueAt(x, columns[key], at), curve.y.unit, 3)],
+    xRange: () => around(x, true),
+    yRange: () => around([...spread, ...columns.fitted, ...columns.heldOut], true),
     paint: (u, colors) => paintErrorBars(u, colors, curve),
   });
 }

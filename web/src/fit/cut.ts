@@ -22,7 +22,7 @@ export interface Boundary {
 
 export interface Soup {
   positions: Float32Array; // 9 coordinates per triangle
-  normals: Float32Array; // 9 coordinates per triangle
+  normals: Int8Array; // 12 numbers per triangle, as in Picture
   tet: Uint32Array; // tet of each triangle
   corner: Int32Array; // mesh vertex of each corner; -1 where an edge was cut
   edges: Uint32Array; // 2 corners per line
@@ -82,7 +82,7 @@ class SoupMaker {
       const here = this.corner.length;
       for (const c of [polygon[0], polygon[i], polygon[i + 1]]) {
         this.x.push(...c.x);
-        this.n.push(...c.n);
+        this.n.push(...c.n.map((x) => Math.round(127 * x)), 0);
         this.corner.push(c.vertex);
       }
       this.tet.push(tet);
@@ -95,7 +95,7 @@ class SoupMaker {
   soup(): Soup {
     return {
       positions: Float32Array.from(this.x),
-      normals: Float32Array.from(this.n),
+      normals: Int8Array.from(this.n),
       tet: Uint32Array.from(this.tet),
       corner: Int32Array.from(this.corner),
       edges: Uint32Array.from(this.edges),

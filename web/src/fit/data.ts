@@ -1,4 +1,4 @@
-// A fit inside the page, as apps/viewer/fit_page.cpp packs it, and quantities derived from it.
+// A fit inside the page, as far as the page reads what apps/viewer/fit_page.cpp packs, and quantities derived from it.
 import { Pack, unpacked } from "../pack";
 import type { MaybeNumber, Vec3 } from "../protocol";
 import { dot, length, minus, unit, vectorAt } from "../view/lens";
@@ -14,13 +14,10 @@ export interface Quantity {
   name: string;
   unit: string;
   isLog: boolean; // shown on a logarithmic scale
-  varies: boolean; // differs from tet to tet
-  hasDeviation: boolean;
   rows: ValueRow[];
 }
 
 export interface Tip {
-  shape: "sphere" | "disc";
   radius: number; // [m]
   touch: Vec3;
   center: Vec3;
@@ -50,73 +47,40 @@ export interface Case {
   torque?: Reading | null; // [N m]
 }
 
-export interface HeldOutGroup {
+export interface HeldOutGroup extends Record<"peakMotion" | "positionError" | "peakForce" | "forceError", MaybeNumber> {
   group: string;
   ok: boolean;
   failure: string;
-  peakMotion: MaybeNumber;
-  positionError: MaybeNumber;
-  positionNoise: MaybeNumber;
-  peakForce: MaybeNumber;
-  forceError: MaybeNumber;
-  forceNoise: MaybeNumber;
 }
 
-export interface Iteration {
-  iteration: number;
-  start: number;
-  weight: MaybeNumber;
-  misfit: MaybeNumber;
-  roughness: MaybeNumber;
-  objective: MaybeNumber;
-  decrement: MaybeNumber;
-}
-
-export interface WeightTrial {
-  weight: MaybeNumber;
-  misfit: MaybeNumber;
-  roughness: MaybeNumber;
-}
+type WeightTrial = Record<"weight" | "misfit" | "roughness", MaybeNumber>; // misfit: |r|^2 / 2
 
 export interface FitHead {
   format: number;
   name: string;
   version: string;
   model: string;
-  verdict?: { good: boolean; text: string; reasons: { name: string; text: string }[] }; // verdict of the program
-  counts: {
-    vertices: number;
-    tets: number;
-    markers: number;
-    cases: number;
-    unknowns: number;
-    residuals: number;
-    equilibria: number;
-  };
-  fit: {
+  verdict?: { good: boolean; text: string; reasons: { text: string }[] }; // verdict of the program
+  counts: Record<"tets" | "markers" | "cases" | "unknowns" | "residuals" | "equilibria", number>;
+  fit: WeightTrial & {
     words: string;
     success: boolean;
     interrupted: boolean;
     mesh: string;
     method: string;
-    rule: string;
     iterations: number;
-    weight: MaybeNumber;
-    misfit: MaybeNumber; // |r|^2 / 2
-    roughness: MaybeNumber;
     uniformMisfit: MaybeNumber;
     informed: MaybeNumber;
-    noiseFactor: MaybeNumber;
   };
   quantities: Quantity[];
   cases: Case[];
   heldOut: { groups: HeldOutGroup[]; position: MaybeNumber; force: MaybeNumber } | null;
-  history: Iteration[];
+  history: (WeightTrial & { decrement: MaybeNumber })[];
   weights: WeightTrial[];
   notes: string[];
   warnings: string[];
   markerNames?: string[]; // names in the data set, in the order of the markers
-  nextPoke: { site: Vec3; inward: Vec3; radius: number; depth: number; gain: MaybeNumber; words: string } | null;
+  nextPoke: { site: Vec3; inward: Vec3; words: string } | null;
 }
 
 export type Fit = Pack<FitHead>;
@@ -156,26 +120,20 @@ function turnAxis(tip: Tip): Vec3 {
 
 export const depthOf = (tip: Tip): number => length(minus(tip.center, tip.touch));
 
-// Curve of one group for a chart: load against response, with one standard deviation of the measurements.
-export interface GroupCurve {
-  xLabel: string;
-  xUnit: string;
-  yLabel: string;
-  yUnit: string;
-  x: number[];
-  measured: MaybeNumber[];
-  deviation: number[];
-  fitted: MaybeNumber[];
-  heldOut: MaybeNumber[];
-  leftOut: boolean;
-}
-
 interface Sample {
   x: number;
   measured: MaybeNumber;
   deviation: number;
   fitted: MaybeNumber;
   heldOut: MaybeNumber;
+}
+
+// Curve of one group for a chart: load against response, with one standard deviation of the measurements.
+export interface GroupCurve {
+  x: { label: string; unit: string };
+  y: { label: string; unit: string };
+  samples: Sample[];
+  leftOut: boolean;
 }
 
 type Answer = "force" | "torque" | "motion";
@@ -202,18 +160,7 @@ export function groupCurve(fit: Fit, group: { cases: number[] }): GroupCurve {
   const sample = (c: Case): Omit<Sample, "x"> => (answer === "motion" ? motionSample(fit, c) : tipSample(c, answer));
   const samples = cases.map((c, i) => ({ ...sample(c), x: load.of(c, i) }));
   samples.sort((a, b) => a.x - b.x);
-  return {
-    xLabel: load.label,
-    xUnit: load.unit,
-    yLabel: kAnswers[answer].label,
-    yUnit: kAnswers[answer].unit,
-    x: samples.map((s) => s.x),
-    measured: samples.map((s) => s.measured),
-    deviation: samples.map((s) => s.deviation),
-    fitted: samples.map((s) => s.fitted),
-    heldOut: samples.map((s) => s.heldOut),
-    leftOut: cases.some((c) => c.leftOut),
-  };
+  return { x: load, y: kAnswers[answer], samples, leftOut: cases.some((c) => c.leftOut) };
 }
 
 interface LoadAxis {
@@ -265,13 +212,9 @@ function motionSample(fit: Fit, c: Case): Omit<Sample, "x"> {
   };
 }
 
-// Residuals of all fitted readings, in standard deviations.
-export interface Residuals {
-  all: number[];
-  ofCase: MaybeNumber[]; // root mean square of each case; null where nothing was fitted
-}
-
-export function residuals(fit: Fit): Residuals {
+// Residuals of all fitted readings in standard deviations, and the root mean square of each case; null where nothing was
+// fitted.
+export function residuals(fit: Fit): { all: number[]; ofCase: MaybeNumber[] } {
   const [measured, predicted] = [fit.floats("reading.measured"), fit.floats("reading.predicted")];
   const deviation = fit.floats("reading.deviation");
   const all: number[] = [];
@@ -292,7 +235,6 @@ export function residuals(fit: Fit): Residuals {
 export const markerName = (head: FitHead, marker: number): string => head.markerNames?.[marker] || String(marker + 1);
 
 export interface WorstMarker {
-  reading: number;
   case: number;
   marker: number;
   error: Vec3; // predicted - measured [m]
@@ -309,7 +251,7 @@ export function worstMarkers(fit: Fit, count: number, onlyCase: number | null = 
     for (let i = c.first; i < c.first + c.count; ++i) {
       const error = minus(vectorAt(predicted, i), vectorAt(measured, i));
       const sigmas = Math.hypot(...error.map((e, k) => e / deviation[3 * i + k])) / Math.sqrt(3);
-      found.push({ reading: i, case: index, marker: marker[i], error, sigmas });
+      found.push({ case: index, marker: marker[i], error, sigmas });
     }
   });
   return found.sort((a, b) => b.sigmas - a.sigmas).slice(0, count);
@@ -324,17 +266,13 @@ export function histogram(values: readonly number[], limit: number, bins: number
   return { middle: count.map((_, i) => -limit + (i + 0.5) * width), count };
 }
 
-export interface Said {
-  text: string;
-  kind: "good" | "bad" | "plain";
-  reasons: string[]; // reasons other than the one in the text
-}
-
-// The program's verdict. Reports of older programs have only the status of the fit.
-export function verdict(head: FitHead): Said {
-  const { fit } = head;
-  const said = head.verdict?.text ?? "";
-  if (head.verdict) return { text: head.verdict.text, kind: head.verdict.good ? "good" : "bad", reasons: head.verdict.reasons.map(({ text }) => text).filter((text) => !said.includes(text)) };
+// The program's verdict, and reasons other than the one in its text. Reports of older programs have only the status of the
+// fit.
+export function verdict({ verdict, fit }: FitHead): { text: string; kind: "good" | "bad" | "plain"; reasons: string[] } {
+  if (verdict) {
+    const { text, good, reasons } = verdict;
+    return { text, kind: good ? "good" : "bad", reasons: reasons.map((reason) => reason.text).filter((reason) => !text.includes(reason)) };
+  }
   if (fit.interrupted) return { text: "Interrupted before convergence. Run the same command with --resume to continue.", kind: "bad", reasons: [] };
   if (!fit.success) return { text: `Not converged: ${fit.words}. Do not rely on it.`, kind: "bad", reasons: [] };
   return { text: fit.words, kind: "plain", reasons: [] };

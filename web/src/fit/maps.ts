@@ -1,6 +1,6 @@
 // Two views of the fitted body side by side: a quantity and its uncertainty. Both have the same cut and camera.
 import { element } from "../dom";
-import { checkbox, choice } from "../plots/dom";
+import { checkbox, choice } from "../controls";
 import type { Vec3 } from "../protocol";
 import { sceneAxes, type CameraRig } from "../view/cameras";
 import { vectorAt } from "../view/lens";

@@ -1,6 +1,6 @@
 // Shows the largest marker residuals as magnified arrows from the measured to the fitted position.
 import { element } from "../dom";
-import { choice } from "../plots/dom";
+import { choice } from "../controls";
 import { roundStep } from "../view/ranges";
 import { short, withUnit } from "../plots/numbers";
 import type { Vec3 } from "../protocol";

@@ -47,19 +47,19 @@ export class CapturePanel implements Panel {
 
   // The mouse moves the probe while the panel is open.
   show(visible: boolean): void {
-    this.gauge.visible = visible;
     const { tool } = this.display.settings;
     if (visible && tool === "drag") this.display.change({ tool: "probe" });
     if (!visible && tool === "probe") this.display.change({ tool: "drag" });
     this.display.showsBench = visible;
     this.display.change({});
-    if (visible) this.gauge.refresh();
+    if (!visible) return;
+    this.gauge.redraw();
     this.setUp();
   }
 
   // Places the markers when the panel first becomes visible.
   private setUp(): void {
-    if (this.isSetUp || !this.gauge.visible || !this.store.steers || !this.store.capture) return;
+    if (this.isSetUp || !this.element.isConnected || !this.store.steers || !this.store.capture) return;
     this.isSetUp = true;
     if (this.store.capture.tets === 0) this.store.source.request({ do: "bench" }).catch(() => {}); // a body that cannot be measured is reported later
   }

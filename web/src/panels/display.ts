@@ -1,15 +1,14 @@
 // Folders "Mouse", "Display" and "Camera" of the settings, and their shortcuts.
-import type { Controller, GUI } from "lil-gui";
+import type { GUI } from "lil-gui";
 import type { Page } from "../page";
 import type { SettingValue } from "../protocol";
 import { kCameraModes, kViewNames, type CameraMode, type ViewName } from "../view/cameras";
-import { kDefaults, kTools, type Display, type DisplaySettings } from "../view/display";
+import { kDefaults, kTools, type Amount, type Display, type DisplaySettings } from "../view/display";
 import type { View } from "../view/view";
 import { NumberRow } from "./rows";
 
 type Key = keyof DisplaySettings;
 type Switch = { [K in Key]: DisplaySettings[K] extends boolean ? K : never }[Key];
-type Amount = { [K in Key]: DisplaySettings[K] extends number ? K : never }[Key];
 type Choices = Record<string, string>;
 
 // A folder whose controls change the display and follow changes from elsewhere.
@@ -23,66 +22,42 @@ class Folder {
     return new Folder(this.gui.addFolder(title).close(), this.display);
   }
 
-  add(key: Key, label: string, choices?: Choices): void {
-    const held = { ...this.display.settings };
-    this.follow(choices ? this.gui.add(held, key, choices) : this.gui.add(held, key), key, label);
+  // `also`: further settings that a change by the reader implies.
+  add(key: Key, label: string, choices?: Choices, also: Partial<DisplaySettings> = {}): void {
+    const { settings } = this.display;
+    const controller = key.endsWith("Color") || key === "background" ? this.gui.addColor(settings, key) : this.gui.add(settings, key, choices as object);
+    controller.name(label).onChange((value: unknown) => this.display.change({ ...also, [key]: value }));
+    this.display.on("changed", () => controller.updateDisplay());
   }
 
   slider(key: Amount, label: string, least: number, most: number, step: number): void {
-    const model = { value: this.display.settings[key] as number };
     const kind = Number.isInteger(step) ? "integer" : "number";
-    const row = new NumberRow(this.gui, label, model, { min: least, max: most, log: false, kind });
+    const row = new NumberRow(this.gui, label, { value: this.display.settings[key] }, { min: least, max: most, log: false, kind });
+    const show = (): void => row.display(this.display.settings[key]);
     row.name(label).onChange((value: SettingValue) => {
       if (typeof value === "number") this.display.change({ [key]: value });
-      row.display(this.display.settings[key] as number);
+      show();
     });
-    this.display.on("changed", () => row.display(this.display.settings[key] as number));
-  }
-
-  // Adds a number field. Typing a number also applies `also`.
-  number(key: Key, label: string, also: Partial<DisplaySettings>): void {
-    const controller = this.gui.add({ ...this.display.settings }, key);
-    this.follow(controller, key, label);
-    controller.onChange((value: number) => this.display.change({ ...also, [key]: value }));
-  }
-
-  color(key: Key, label: string): void {
-    this.follow(this.gui.addColor({ ...this.display.settings }, key), key, label);
+    this.display.on("changed", show);
   }
 
   button(label: string, press: () => void): void {
     this.gui.add({ press }, "press").name(label);
   }
 
-  // Adds a choice whose value lives elsewhere: `read` returns it after each change.
+  // Adds a choice whose value lives elsewhere.
   choice(label: string, choices: () => Choices, read: () => string, write: (value: string) => void): void {
-    const held = { value: read() };
-    let listed = JSON.stringify(choices());
-    let controller = this.gui.add(held, "value", choices());
-    const set = (): Controller => controller.name(label).onChange(write);
-    set();
+    const held = { get value() { return read(); }, set value(value) { write(value); } };
+    const controller = this.gui.add(held, "value", choices()).name(label);
+    let listed = "";
     const update = (): void => {
-      held.value = read();
       const now = JSON.stringify(choices());
-      if (now !== listed) {
-        listed = now;
-        controller = controller.options(choices());
-        set();
-      }
-      controller.updateDisplay();
+      if (now === listed) controller.updateDisplay();
+      else controller.options(choices());
+      listed = now;
     };
     this.display.on("changed", update);
     this.display.on("camera", update);
-  }
-
-  private follow(controller: Controller, key: Key, label: string): void {
-    controller.name(label).onChange((value: unknown) => this.display.change({ [key]: value }));
-    const held = controller.object as Record<string, unknown>;
-    this.display.on("changed", () => {
-      if (held[key] === this.display.settings[key]) return;
-      held[key] = this.display.settings[key];
-      controller.updateDisplay();
-    });
   }
 }
 
@@ -126,15 +101,15 @@ function addNumbers(folder: Folder): void {
 
 function addLook(folder: Folder): void {
   folder.add("smooth", "Smooth shading");
-  folder.color("bodyColor", "Body");
-  folder.color("lineColor", "Wires");
+  folder.add("bodyColor", "Body");
+  folder.add("lineColor", "Wires");
   folder.add("wiresOnTop", "Wires shine through");
   folder.add("inside", "Inside", { "its own color": "own", "as outside": "same", hidden: "hidden" });
-  folder.color("insideColor", "Inside's color");
+  folder.add("insideColor", "Inside's color");
   folder.add("invert", "Invert normals");
   folder.slider("shininess", "Shininess", 0, 200, 1);
   folder.add("ownBackground", "Own background");
-  folder.color("background", "Background");
+  folder.add("background", "Background");
 }
 
 // Adds the field that colors the body and the range of its colors.
@@ -149,8 +124,8 @@ function addField(folder: Folder, display: Display, views: () => View[]): void {
   const maps = { "by field": "auto", viridis: "viridis", cividis: "cividis", "blue to orange": "blue_orange" };
   range.add("map", "Colors", maps);
   range.add("fixedRange", "Fixed range");
-  range.number("low", "From", { fixedRange: true });
-  range.number("high", "To", { fixedRange: true });
+  range.add("low", "From", undefined, { fixedRange: true });
+  range.add("high", "To", undefined, { fixedRange: true });
   range.button("Fix at what is shown", () => display.fixRange());
   range.add("scale", "Scale", { "by field": "auto", linear: "linear", logarithmic: "log" });
 }

@@ -3,19 +3,9 @@ import { fieldsOf, type Page, type Panel } from "../page";
 import type { MaybeNumber, SideName } from "../protocol";
 import type { Store } from "../store";
 import { Chart, type Curve } from "../plots/chart";
-import {
-  button,
-  checkbox,
-  choice,
-  downloadCanvas,
-  element,
-  fileName,
-  numberField,
-  oncePerFrame,
-  saveFile,
-} from "../plots/dom";
+import { checkbox, choice, numberField, oncePerFrame } from "../controls";
+import { button, downloadCanvas, element, fileName, saveFile } from "../dom";
 import { balanceText, calmRange, explosionText, Ledger, ledgerColumns } from "../plots/ledger";
-import type { LedgerColumn } from "../plots/ledger";
 import { csv, short, withUnit } from "../plots/numbers";
 import type { Palette } from "../plots/palette";
 import { paintVerticalLine } from "../plots/verticalLine";
@@ -23,12 +13,9 @@ import { lowerBound, magnitude, merged, nearest, thinned, type Table } from "../
 import type uPlot from "uplot";
 
 const kSides: SideName[] = ["a", "b"];
-const kWindows = [
-  ["all", "all"],
-  ["10", "last 10 s"],
-  ["2", "last 2 s"],
-  ["typed", "last ... s"],
-] as const;
+const kWindows = [["all", "all"], ["10", "last 10 s"], ["2", "last 2 s"], ["typed", "last ... s"]] as const;
+
+const kWindowHelp = "Visible range of time; drag in the plot to zoom, double-click for all";
 
 export class EnergyPanel implements Panel {
   readonly name = "energy";
@@ -38,38 +25,24 @@ export class EnergyPanel implements Panel {
   private readonly note = element("span", { class: "plot-note", role: "status" });
   private readonly ledgers: Record<SideName, Ledger | null> = { a: null, b: null };
   private readonly typed = numberField("", "Length of the window [s]", 1, { min: 1e-6 }, () => this.setWindow());
-  private readonly windows = choice(
-    "Window",
-    "Visible range of time; drag in the plot to zoom, double-click for all",
-    kWindows,
-    "all",
-    () => this.setWindow(),
-  );
-  private readonly logSwitch = checkbox(
-    "log",
-    "Logarithmic axis of absolute values; zeros are omitted",
-    false,
-    () => this.configure(),
-  );
+  private readonly windows = choice("Window", kWindowHelp, kWindows, "all", () => this.setWindow());
+  private readonly log = checkbox("log", "Logarithmic axis of absolute values; zeros are omitted", false, () => this.configure());
   private range: [number, number] | null = null; // range selected with the mouse [s]
-  private visible = false;
   private byStep = false; // x is the step: a static scene has no time
   private rows = new Set<string>(); // keys of the legend's rows
-  private readonly redraw = oncePerFrame(() => this.visible && this.draw());
+  private readonly redraw = oncePerFrame(() => this.element.isConnected && this.draw());
 
   constructor(
     private readonly store: Store,
     page: Page,
   ) {
     this.typed.element.hidden = true;
-    const bar = element("div", { class: "plot-bar" }, this.windows.element, this.typed.element, this.logSwitch.element);
-    bar.append(button("CSV", "Save all columns as CSV with all digits", () => this.saveCsv()));
-    bar.append(
-      button("PNG", "Save the plot as a picture", () => this.savePng()),
-      this.note,
+    const csv = button({ text: "CSV", title: "Save all columns as CSV with all digits" }, () => this.saveCsv());
+    const png = button({ text: "PNG", title: "Save the plot as a picture" }, () => this.savePng());
+    this.element.append(
+      element("div", { class: "plot-bar" }, this.windows.element, this.typed.element, this.log.element, csv, png, this.note),
+      element("div", { class: "plot-fill" }, this.chart.element),
     );
-    const fill = element("div", { class: "plot-fill" }, this.chart.element);
-    this.element.append(bar, fill);
     store.on("scene", (side) => this.newScene(side));
     store.on("gone", () => this.newScene("b"));
     store.on("steps", ({ side, from }) => {
@@ -82,9 +55,8 @@ export class EnergyPanel implements Panel {
     for (const side of kSides) this.newScene(side);
   }
 
-  show(visible: boolean): void {
-    this.visible = visible;
-    if (visible) this.redraw();
+  show(): void {
+    this.redraw();
   }
 
   private newScene(name: SideName): void {
@@ -110,14 +82,11 @@ export class EnergyPanel implements Panel {
 
   private curves(): Curve[] {
     return this.shown().flatMap(({ side, ledger }) =>
-      this.columnsOf(ledger).map(({ column }) => ({
-        ...column,
-        dash: side === "b" ? (column.dotted ? [8, 3, 2, 3] : [8, 5]) : column.dotted ? [2, 3] : undefined,
-      })),
+      this.columnsOf(ledger).map(({ column }) => (side === "a" ? column : { ...column, dash: column.dash ? [8, 3, 2, 3] : [8, 5] })),
     );
   }
 
-  private columnsOf(ledger: Ledger): { column: LedgerColumn; values: MaybeNumber[] }[] {
+  private columnsOf(ledger: Ledger): { column: Curve; values: MaybeNumber[] }[] {
     return ledgerColumns(ledger.potentials)
       .map((column, i) => ({ column, values: ledger.columns[i]! }))
       .filter(({ column }) => this.rows.has(column.key));
@@ -125,8 +94,8 @@ export class EnergyPanel implements Panel {
 
   private configure(): void {
     this.rows = this.used();
-    const log = this.logSwitch.input.checked;
-    this.byStep = this.shown().every(({ ledger }) => (ledger.time[ledger.time.length - 1] ?? 0) === 0);
+    const log = this.log.input.checked;
+    this.byStep = this.isStatic();
     this.chart.configure({
       label: "Energy over time",
       x: this.byStep ? { label: "step", integer: true } : { label: "time [s]" },
@@ -144,6 +113,10 @@ export class EnergyPanel implements Panel {
       },
     });
     this.redraw();
+  }
+
+  private isStatic(): boolean {
+    return this.shown().every(({ ledger }) => (ledger.time.at(-1) ?? 0) === 0);
   }
 
   private calmRange(): [number, number] | null {
@@ -172,7 +145,7 @@ export class EnergyPanel implements Panel {
     const sides = this.shown().filter(({ ledger }) => ledger.step.length > 0);
     const texts = sides.map(({ side, ledger }) => {
       const i = x === null ? this.nowIndex(ledger) : nearest(this.xOf(ledger), x);
-      const label = sides.length > 1 ? `${this.store.side(side)?.scene.label || side.toUpperCase()}: ` : "";
+      const label = sides.length > 1 ? `${this.store.label(side)}: ` : "";
       return `${label}step ${ledger.step[i]}${this.byStep ? "" : `, ${short(ledger.time[i])} s`}`;
     });
     return texts.join(" · ");
@@ -189,12 +162,9 @@ export class EnergyPanel implements Panel {
   }
 
   private windowLength(): number | null {
-    const value = this.windows.select.value;
-    return value === "all"
-      ? null
-      : value === "typed"
-        ? Math.max(1e-6, this.typed.input.valueAsNumber || 1)
-        : Number(value);
+    const { value } = this.windows.select;
+    if (value === "all") return null;
+    return value === "typed" ? Math.max(1e-6, this.typed.input.valueAsNumber || 1) : Number(value);
   }
 
   private setWindow(): void {
@@ -213,31 +183,26 @@ export class EnergyPanel implements Panel {
   }
 
   private draw(): void {
-    const sides = this.shown();
-    const statics = sides.every(({ ledger }) => (ledger.time[ledger.time.length - 1] ?? 0) === 0);
     const used = this.used();
-    if (statics !== this.byStep || used.size !== this.rows.size || [...used].some((key) => !this.rows.has(key)))
+    if (this.isStatic() !== this.byStep || used.size !== this.rows.size || [...used].some((key) => !this.rows.has(key)))
       return this.configure();
-    const tables = sides.map(({ ledger }) => this.table(ledger));
-    const [first, second] = tables;
-    const table = first && second ? merged(first, second) : (first ?? { x: [], columns: [] });
-    const log = this.logSwitch.input.checked;
-    this.chart.show(table.x, log ? table.columns.map((column) => column.map(magnitude)) : table.columns);
+    const { x, columns } = merged(...this.shown().map(({ ledger }) => this.table(ledger)));
+    this.chart.show(x, this.log.input.checked ? columns.map((column) => column.map(magnitude)) : columns);
     this.tell();
   }
 
   private tell(): void {
     const texts = this.shown().map(({ side, ledger }) => {
       const { drift, scale } = ledger.drift();
-      const name = this.ledgers.b ? `${this.store.side(side)?.scene.label || side.toUpperCase()}: ` : "";
+      const name = this.ledgers.b ? `${this.store.label(side)}: ` : "";
       const peak = ledger.exploded();
       if (peak !== null) return `${name}${explosionText(peak)}`;
       if (ledger.step.length < 2 || !Number.isFinite(drift)) return "";
       return `${name}${balanceText(drift, scale)}`;
     });
-    const dashes = this.ledgers.b ? [`${this.store.side("b")?.scene.label || "b"} is dashed`] : [];
-    const logText = this.logSwitch.input.checked ? ["absolute values; zeros are omitted"] : [];
-    const wild = !this.logSwitch.input.checked && this.calmRange() ? ["one side exceeds the plot; use log to see it"] : [];
+    const dashes = this.ledgers.b ? [`${this.store.label("b")} is dashed`] : [];
+    const logText = this.log.input.checked ? ["absolute values; zeros are omitted"] : [];
+    const wild = !this.log.input.checked && this.calmRange() ? ["one side exceeds the plot; use log to see it"] : [];
     const text = [...texts.filter((t) => t !== ""), ...dashes, ...wild, ...logText].join(" · ");
     if (this.note.textContent !== text) this.note.textContent = text;
   }
@@ -250,45 +215,33 @@ export class EnergyPanel implements Panel {
     paintVerticalLine(u, this.byStep ? state.step : state.time, colors.accent);
   }
 
-  private sceneName(): string {
-    return this.store.side("a")?.scene.name ?? "scene";
-  }
-
   private saveCsv(): void {
     const sides = this.shown();
     const tables = sides.map(({ ledger }) => ({
       x: ledger.step,
       columns: [ledger.time, ...ledger.columns, ledger.residualWork, ledger.ledgerError],
     }));
-    const suffixed = (name: string, side: SideName): string => (sides.length > 1 ? `${name}_${side}` : name);
-    const names = sides.flatMap(({ side, ledger }) =>
-      [
-        "time",
-        ...ledgerColumns(ledger.potentials).map((c) => c.key),
-        "residual_work_of_step",
-        "ledger_error_of_step",
-      ].map((n) => suffixed(n, side)),
-    );
-    const [first, second] = tables;
-    if (!first) return;
-    const table = second ? merged(first, second) : first;
-    const text = csv(["step", ...names], [table.x, ...table.columns], table.x.length);
-    saveFile(fileName(`${this.sceneName()}_energy`, "csv"), new Blob([text], { type: "text/csv" }));
+    const names = sides.flatMap(({ side, ledger }) => {
+      const keys = ledgerColumns(ledger.potentials).map((column) => column.key);
+      const all = ["time", ...keys, "residual_work_of_step", "ledger_error_of_step"];
+      return sides.length > 1 ? all.map((name) => `${name}_${side}`) : all;
+    });
+    const { x, columns } = merged(...tables);
+    const text = csv(["step", ...names], [x, ...columns], x.length);
+    saveFile(fileName(`${this.store.name}_energy`, "csv"), new Blob([text], { type: "text/csv" }));
   }
 
   private savePng(): void {
-    const sides = this.shown().map(({ side }) => this.store.side(side)?.scene.label || side.toUpperCase());
-    const picture = this.chart.picture(
-      `${this.sceneName()}: energy${sides.length > 1 ? ` (${sides[0]}; dashed: ${sides[1]})` : ""}`,
-    );
-    if (picture) downloadCanvas(fileName(`${this.sceneName()}_energy`, "png"), picture);
+    const [first, second] = this.shown().map(({ side }) => this.store.label(side));
+    const picture = this.chart.picture(`${this.store.name}: energy${second ? ` (${first}; dashed: ${second})` : ""}`);
+    if (picture) void downloadCanvas(`${this.store.name}_energy`, picture);
   }
 
   private save(): unknown {
     return {
       window: this.windows.select.value,
       typed: this.typed.input.value,
-      log: this.logSwitch.input.checked,
+      log: this.log.input.checked,
       hidden: [...this.chart.hidden],
     };
   }
@@ -297,10 +250,9 @@ export class EnergyPanel implements Panel {
     const kept = fieldsOf(saved);
     if (kWindows.some(([name]) => name === kept.window)) this.windows.select.value = kept.window as string;
     if (Number(kept.typed) > 0) this.typed.input.value = String(kept.typed);
-    this.logSwitch.input.checked = kept.log === true;
+    this.log.input.checked = kept.log === true;
     this.chart.hidden.clear();
-    if (Array.isArray(kept.hidden))
-      for (const key of kept.hidden) if (typeof key === "string") this.chart.hidden.add(key);
+    for (const key of Array.isArray(kept.hidden) ? kept.hidden : []) this.chart.hidden.add(String(key));
     this.setWindow();
     this.configure();
   }

@@ -1,9 +1,10 @@
 // Input of the functions panel: function, start and method.
 import { formulaElements } from "../formulas";
-import { choice, element, numberField } from "../plots/dom";
+import { choice, numberField } from "../controls";
+import { element } from "../dom";
 import type { FunctionQuestion, SettingValue } from "../protocol";
 
-export const kFunctions = [
+const kFunctions = [
   ["rosenbrock", "Rosenbrock's valley"],
   ["two_bump", "a dip beside a bump"],
   ["quadratic", "a quadratic, condition 100"],
@@ -16,6 +17,8 @@ const kStarts: Record<string, [number, number]> = {
   quadratic: [1.2, 0.9],
   formula: [1, 1],
 };
+
+const kStartHelp = "x of the start; drag the ring in the picture, or Shift and the arrow keys there";
 
 const kMethods = [
   ["newton", "Newton"],
@@ -33,14 +36,10 @@ const kTests = [
   ["none", "none: first trial"],
 ] as const;
 
-export interface Preset {
+export interface Preset extends Omit<FunctionQuestion, "samples"> {
   title: string;
   shows: string;
-  name: string;
-  start: [number, number];
-  settings: Record<string, SettingValue>;
   model: boolean; // whether the quadratic model is visible
-  iteration: number;
 }
 
 export const kPresets: Preset[] = [
@@ -98,6 +97,11 @@ const kDefaults: Record<string, SettingValue> = {
   max_iterations: 200,
 };
 
+interface SettingField {
+  read: () => SettingValue;
+  write: (value: SettingValue) => void;
+}
+
 export class FunctionForm {
   readonly element = element("form", { class: "functions-form", "aria-label": "Function and method" });
   private readonly shown = element("div");
@@ -107,53 +111,43 @@ export class FunctionForm {
     "aria-label": "Formula of x and y",
     "aria-describedby": "function-error",
     spellcheck: "false",
+    value: "cosh(x) + (y - x)^2",
   });
   private readonly name = choice("f", "The function", kFunctions, "rosenbrock", () => this.nameChanged());
-  private readonly x = numberField(
-    "start x",
-    "x of the start; drag the ring in the picture, or Shift and the arrow keys there",
-    -0.8,
-    {},
-    () => this.changed(),
-  );
-  private readonly y = numberField("y", "y of the start", 0.6, {}, () => this.changed());
-  private readonly choices = new Map<string, HTMLSelectElement>();
-  private readonly numbers = new Map<string, HTMLInputElement>();
+  private readonly x = numberField("start x", kStartHelp, 0, {}, () => this.changed());
+  private readonly y = numberField("y", "y of the start", 0, {}, () => this.changed());
+  private readonly fields = new Map<string, SettingField>(); // by key
   private others: Record<string, SettingValue> = {}; // settings of a question that the form does not show
 
   constructor(private readonly changed: () => void) {
-    this.formula.value = "cosh(x) + (y - x)^2";
     this.formula.addEventListener("change", changed);
     this.element.addEventListener("submit", (event) => {
       event.preventDefault();
       changed();
     });
-    const method = [
-      this.pick("method", "method", "Method that computes the direction", kMethods),
-      this.pick("definiteness", "definiteness", "Modification of an indefinite Hessian", kDefiniteness),
-    ];
-    const search = [
-      this.pick("line_search.test", "line search", "Acceptance test of a trial", kTests),
-      this.number("line_search.alpha_max", "α max", "Step length of the first trial", { min: 1e-12, max: 1e6 }),
-      this.number("line_search.c", "c", "Sufficient decrease", { min: 0, max: 1 }),
-      this.number("line_search.p", "p", "Factor between trials", { min: 0.001, max: 0.99 }),
-    ];
-    const ends = [
-      this.number("tolerance", "tolerance", "Tolerance of the gradient's norm", { min: 0 }),
-      this.number("max_iterations", "at most", "Iterations", { min: 1, max: 500, step: 1 }),
-    ];
     const row = (...children: HTMLElement[]): HTMLElement => element("div", { class: "pair" }, ...children);
-    this.showFormula();
     this.element.append(
       row(this.name.element),
       this.formula,
       this.shown,
       this.error,
       row(this.x.element, this.y.element),
-      row(...method),
-      row(...search),
-      row(...ends),
+      row(
+        this.pick("method", "method", "Method that computes the direction", kMethods),
+        this.pick("definiteness", "definiteness", "Modification of an indefinite Hessian", kDefiniteness),
+      ),
+      row(
+        this.pick("line_search.test", "line search", "Acceptance test of a trial", kTests),
+        this.number("line_search.alpha_max", "α max", "Step length of the first trial", { min: 1e-12, max: 1e6 }),
+        this.number("line_search.c", "c", "Sufficient decrease", { min: 0, max: 1 }),
+        this.number("line_search.p", "p", "Factor between trials", { min: 0.001, max: 0.99 }),
+      ),
+      row(
+        this.number("tolerance", "tolerance", "Tolerance of the gradient's norm", { min: 0 }),
+        this.number("max_iterations", "at most", "Iterations", { min: 1, max: 500, step: 1 }),
+      ),
     );
+    this.fill({ name: "rosenbrock", start: kStarts.rosenbrock, settings: {} });
   }
 
   get start(): [number, number] {
@@ -167,26 +161,20 @@ export class FunctionForm {
   }
 
   question(iteration: number, samples: number): FunctionQuestion {
-    const settings: Record<string, SettingValue> = { ...this.others };
-    for (const [key, select] of this.choices) settings[key] = select.value;
-    for (const [key, input] of this.numbers)
-      settings[key] = Number.isFinite(input.valueAsNumber) ? input.valueAsNumber : kDefaults[key]!;
+    const settings = { ...this.others };
+    for (const [key, field] of this.fields) settings[key] = field.read();
     const name = this.name.select.value === "formula" ? this.formula.value : this.name.select.value;
     return { name, start: this.start, settings, iteration, samples };
   }
 
-  fill(question: Pick<FunctionQuestion, "name" | "start" | "settings">): void {
-    const named = kFunctions.some(([name]) => name === question.name && name !== "formula");
-    this.name.select.value = named ? question.name : "formula";
-    if (!named) this.formula.value = question.name;
+  fill({ name, start, settings }: Pick<FunctionQuestion, "name" | "start" | "settings">): void {
+    const named = name !== "formula" && kFunctions.some(([known]) => known === name);
+    this.name.select.value = named ? name : "formula";
+    if (!named) this.formula.value = name;
     this.showFormula();
-    [this.x.input.valueAsNumber, this.y.input.valueAsNumber] = question.start;
-    const settings = { ...kDefaults, ...question.settings };
-    this.others = Object.fromEntries(
-      Object.entries(question.settings).filter(([key]) => !this.choices.has(key) && !this.numbers.has(key)),
-    );
-    for (const [key, select] of this.choices) select.value = String(settings[key]);
-    for (const [key, input] of this.numbers) input.value = brief(Number(settings[key]));
+    [this.x.input.valueAsNumber, this.y.input.valueAsNumber] = start;
+    this.others = Object.fromEntries(Object.entries(settings).filter(([key]) => !this.fields.has(key)));
+    for (const [key, field] of this.fields) field.write(settings[key] ?? kDefaults[key]);
   }
 
   // Shows a named function as a formula and any other as a text field.
@@ -197,28 +185,24 @@ export class FunctionForm {
   }
 
   private nameChanged(): void {
-    const name = this.name.select.value;
     this.showFormula();
-    [this.x.input.valueAsNumber, this.y.input.valueAsNumber] = kStarts[name]!;
+    [this.x.input.valueAsNumber, this.y.input.valueAsNumber] = kStarts[this.name.select.value];
     this.changed();
   }
 
   private pick(key: string, text: string, title: string, options: readonly (readonly [string, string])[]): HTMLElement {
-    const made = choice(text, title, options, String(kDefaults[key]), this.changed);
-    this.choices.set(key, made.select);
+    const made = choice(text, title, options, "", this.changed);
+    this.fields.set(key, { read: () => made.select.value, write: (value) => (made.select.value = String(value)) });
     return made.element;
   }
 
-  private number(
-    key: string,
-    text: string,
-    title: string,
-    limits: { min?: number; max?: number; step?: number },
-  ): HTMLElement {
-    const made = numberField(text, title, Number(kDefaults[key]), limits, this.changed);
-    made.input.value = brief(Number(kDefaults[key]));
-    this.numbers.set(key, made.input);
-    return made.element;
+  private number(key: string, text: string, title: string, limits: Parameters<typeof numberField>[3]): HTMLElement {
+    const { element, input } = numberField(text, title, 0, limits, this.changed);
+    this.fields.set(key, {
+      read: () => (Number.isFinite(input.valueAsNumber) ? input.valueAsNumber : kDefaults[key]),
+      write: (value) => (input.value = brief(Number(value))),
+    });
+    return element;
   }
 }
 

@@ -1,18 +1,18 @@
 // Functions of two variables, minimized by the methods of the simulation: the lecture's surfaces, from any initial
 // point.
-import { messageOf } from "../dom";
+import { button, downloadCanvas, element, messageOf } from "../dom";
 import { Newest } from "../newest";
 import { fieldsOf, type Page, type Panel } from "../page";
 import type { FunctionQuestion, FunctionReply } from "../protocol";
 import type { Store } from "../store";
-import { button, checkbox, downloadCanvas, element, fileName } from "../plots/dom";
-import { legendOf } from "../plots/legend";
+import { checkbox } from "../controls";
 import { short } from "../plots/numbers";
 import { sentence } from "../plots/words";
 import { SearchChart } from "../plots/search";
 import { SurfaceView } from "../plots/surface";
+import type { SurfaceContent } from "../plots/surfaceContent";
 import { FunctionForm, kPresets, type Preset } from "./functionForm";
-import { pictureOf, type FunctionPicture } from "./functionPicture";
+import { pictureOf } from "./functionPicture";
 
 const kSamples = 81;
 const kPlayEvery = 700; // [ms]
@@ -37,7 +37,7 @@ export class FunctionsPanel implements Panel {
     "aria-label": "Iteration",
   });
   private readonly where = element("strong");
-  private readonly playButton = button("▶ play", "Play the iterations", () => this.togglePlay());
+  private readonly playButton = button({ text: "▶ play", title: "Play the iterations" }, () => this.togglePlay());
   private readonly model = checkbox("quadratic model", "Show the quadratic model that this iteration minimized", true, () =>
     this.draw(),
   );
@@ -49,9 +49,7 @@ export class FunctionsPanel implements Panel {
   );
   private readonly words = element("div", { class: "plot-note", role: "status" });
   private readonly about = element("div", { class: "plot-note" });
-  private readonly legend = element("div");
   private reply: FunctionReply | null = null;
-  private shown: FunctionPicture | null = null;
   private iteration = 0;
   private shows = ""; // name of the preset shown
   private readonly questions = new Newest<FunctionQuestion>(
@@ -59,7 +57,6 @@ export class FunctionsPanel implements Panel {
     (reason) => this.fail(messageOf(reason)),
   );
   private asked = false; // whether a question was sent
-  private visible = false;
   private timer: ReturnType<typeof setInterval> | null = null;
 
   constructor(
@@ -67,7 +64,7 @@ export class FunctionsPanel implements Panel {
     page: Page,
   ) {
     const presets = element("div", { class: "pair", role: "group", "aria-label": "Examples" });
-    for (const preset of kPresets) presets.append(button(preset.title, preset.shows, () => this.openPreset(preset)));
+    for (const preset of kPresets) presets.append(button({ text: preset.title, title: preset.shows }, () => this.openPreset(preset)));
     this.form.element.prepend(presets);
     const walk = element(
       "div",
@@ -79,11 +76,11 @@ export class FunctionsPanel implements Panel {
       this.log.element,
     );
     walk.append(
-      button("PNG", "Save the picture", () => this.savePng()),
+      button({ text: "PNG", title: "Save the picture" }, () => this.savePng()),
       this.words,
     );
     const chart = element("div", { class: "functions-chart" }, this.search.element);
-    const right = element("div", { class: "functions-side" }, this.about, chart, this.legend);
+    const right = element("div", { class: "functions-side" }, this.about, chart, this.view.legend);
     this.element.append(
       walk,
       element(
@@ -108,8 +105,6 @@ export class FunctionsPanel implements Panel {
   }
 
   show(visible: boolean): void {
-    this.visible = visible;
-    this.view.setVisible(visible);
     if (!visible) this.stop();
     else if (!this.asked) this.formChanged();
   }
@@ -211,9 +206,7 @@ export class FunctionsPanel implements Panel {
   private draw(): void {
     const reply = this.reply;
     if (!reply) return;
-    this.shown = this.picture(reply);
-    this.view.show(this.shown.content);
-    this.legend.replaceChildren(legendOf(this.shown.signs));
+    this.view.show(this.picture(reply));
     const row = reply.iterations[this.iteration];
     this.where.textContent = row ? `iteration ${this.iteration} of ${reply.iterations.length}` : "no iteration";
     const test = this.form.question(0, 2).settings["line_search.test"];
@@ -228,7 +221,7 @@ export class FunctionsPanel implements Panel {
     return cut === null ? "" : `Walls above f = ${short(cut, 3)} are cut off.`;
   }
 
-  private picture(reply: FunctionReply): FunctionPicture {
+  private picture(reply: FunctionReply): SurfaceContent {
     const { iteration } = this;
     return pictureOf(reply, {
       iteration,
@@ -242,12 +235,8 @@ export class FunctionsPanel implements Panel {
   private savePng(): void {
     const name = this.form.question(0, 2).name;
     const picture =
-      this.reply &&
-      this.view.picture(
-        `f = ${this.reply.formula}: iteration ${this.iteration} of ${this.reply.iterations.length}`,
-        this.shown?.signs ?? [],
-      );
-    if (picture) downloadCanvas(fileName(`${name}_${this.iteration}`, "png"), picture);
+      this.reply && this.view.picture(`f = ${this.reply.formula}: iteration ${this.iteration} of ${this.reply.iterations.length}`);
+    if (picture) void downloadCanvas(`${name}_${this.iteration}`, picture);
   }
 
   private restore(saved: unknown): void {
@@ -260,7 +249,7 @@ export class FunctionsPanel implements Panel {
       start,
       settings: fieldsOf(kept.settings) as FunctionQuestion["settings"],
     });
-    if (this.visible) this.formChanged();
+    if (this.element.isConnected) this.formChanged();
     else this.asked = false;
   }
 }

@@ -1,14 +1,14 @@
 // Energy landscape of one iteration: E over the plane through its direction d, and the quadratic model beside it.
 import { fieldsOf, type Page, type Panel } from "../page";
-import type { IterationReply, MaybeNumber } from "../protocol";
+import type { IterationReply } from "../protocol";
 import type { Store } from "../store";
 import type { Chosen } from "../plots/chosen";
-import { button, checkbox, downloadCanvas, element, fileName, oncePerFrame } from "../plots/dom";
-import { gridOf, isInside, minimizerOf, quadraticFrom, quadraticAt } from "../plots/grid";
-import { legendOf, type Sign } from "../plots/legend";
-import { plural, short } from "../plots/numbers";
+import { checkbox, oncePerFrame } from "../controls";
+import { button, downloadCanvas, element } from "../dom";
+import { gridOf, quadraticFrom } from "../plots/grid";
+import { short } from "../plots/numbers";
 import { SurfaceView } from "../plots/surface";
-import type { Mark, SurfaceContent } from "../plots/surfaceBody";
+import { addModelMinimum, addRejected, type SurfaceContent } from "../plots/surfaceContent";
 
 export class LandscapePanel implements Panel {
   readonly name = "landscape";
@@ -28,12 +28,9 @@ export class LandscapePanel implements Panel {
   );
   private readonly where = element("strong");
   private readonly text = element("p", { class: "plot-note" });
-  private readonly legend = element("div");
   private readonly note = element("div", { class: "plot-note", role: "status" });
   private reply: IterationReply | null = null;
-  private signs: Sign[] = [];
-  private visible = false;
-  private readonly refresh = oncePerFrame(() => this.visible && this.ask());
+  private readonly refresh = oncePerFrame(() => this.element.isConnected && this.ask());
 
   constructor(
     private readonly store: Store,
@@ -42,21 +39,21 @@ export class LandscapePanel implements Panel {
   ) {
     const bar = element("div", { class: "plot-bar" });
     bar.append(
-      button("◀", "The iteration before", () => this.chosen.walk(-1)),
+      button({ text: "◀", title: "The iteration before" }, () => this.chosen.walk(-1)),
       this.where,
-      button("▶", "The iteration after", () => this.chosen.walk(1)),
+      button({ text: "▶", title: "The iteration after" }, () => this.chosen.walk(1)),
     );
     bar.append(
       this.follow.element,
       this.model.element,
       this.log.element,
-      button("PNG", "Save the picture", () => this.savePng()),
+      button({ text: "PNG", title: "Save the picture" }, () => this.savePng()),
       this.note,
     );
     const side = element(
       "div",
       { class: "surface-side", style: "flex: 0 1 min(19em, 34%)" },
-      element("div", { class: "surface-texts" }, this.legend, this.text),
+      element("div", { class: "surface-texts" }, this.view.legend, this.text),
     );
     const fill = element("div", { class: "plot-fill" }, this.view.element);
     this.element.append(bar, element("div", { class: "plot-columns plot-fill" }, fill, side));
@@ -68,10 +65,8 @@ export class LandscapePanel implements Panel {
     });
   }
 
-  show(visible: boolean): void {
-    this.visible = visible;
-    this.view.setVisible(visible);
-    if (visible) this.refresh();
+  show(): void {
+    this.refresh();
   }
 
   private ask(): void {
@@ -112,52 +107,14 @@ export class LandscapePanel implements Panel {
   private draw(): void {
     const content = this.reply ? this.content(this.reply) : null;
     this.view.show(content);
-    this.legend.replaceChildren(...(content ? [legendOf(this.signs)] : []));
     this.text.textContent = content ? this.explanation(this.reply!) : "";
   }
 
   private content(reply: IterationReply): SurfaceContent {
     const grid = gridOf(reply.slice);
-    const quadratic = quadraticFrom({ ...grid, value: reply.slice.model });
-    const lowest = quadratic && minimizerOf(quadratic);
     const showModel = this.model.input.checked;
-    const marks: Mark[] = [];
-    const signs: Sign[] = [
-      { sign: "▇", color: "series3", text: "E, by color and height" },
-      { sign: "╌", color: "accent", text: "direction d" },
-    ];
-    if (showModel) signs.push({ sign: "▇", color: "series2", text: "quadratic model" });
-    for (const trial of reply.trials.filter((t) => !t.accepted))
-      marks.push({ x: trial.alpha, y: 0, value: trial.value, shape: "cross", color: "bad", size: 10 });
-    if (marks.length > 0) signs.push({ sign: "✕", color: "bad", text: plural(marks.length, "rejected trial") });
-    if (showModel && lowest && quadratic) {
-      marks.push({
-        ...lowest,
-        value: quadraticAt(quadratic, lowest.x, lowest.y),
-        shape: "diamond",
-        color: "series4",
-        size: 12,
-        label: "model's minimum",
-      });
-      const place = isInside(grid, lowest) ? "" : `, outside at s = ${short(lowest.x, 3)}, t = ${short(lowest.y, 3)}`;
-      signs.push({ sign: "◆", color: "series4", text: `the model's minimum${place}` });
-    } else if (showModel) signs.push({ sign: "◆", color: "series4", text: "the model has no minimum in this plane" });
-    marks.push({ x: 0, y: 0, value: reply.value, shape: "ring", color: "series5", size: 13, label: "start" });
-    signs.push({ sign: "○", color: "series5", text: `start: E = ${short(reply.value, 6)}` });
     const accepted = reply.trials.find((t) => t.accepted)?.value ?? null;
-    if (reply.alpha > 0) {
-      marks.push({ x: reply.alpha, y: 0, value: accepted, shape: "dot", color: "good", size: 13, label: "accepted" });
-      signs.push({
-        sign: "●",
-        color: "good",
-        text: `accepted: α = ${short(reply.alpha, 3)}${accepted === null ? "" : `, E lower by ${short(reply.value - accepted, 3)}`}`,
-      });
-    } else signs.push({ sign: "✕", color: "series11", text: "no step was found along d" });
-    signs.push({ sign: "•─", color: "text", text: "iterates, projected" });
-    if (reply.slice.blocked.length > 0) signs.push({ sign: "▇", color: "bad", text: "beyond the largest step that contact allows" });
-    this.signs = signs;
-    const end = grid.x[grid.x.length - 1]!;
-    return {
+    const content: SurfaceContent = {
       label: `Energy landscape of step ${reply.step}, iteration ${reply.iteration}`,
       grid,
       axes: { x: "s: along d (1 = full step)", y: "t: across", value: "E" },
@@ -165,11 +122,30 @@ export class LandscapePanel implements Panel {
       path: reply.path.map((p) => ({ x: p.s, y: p.t, value: p.value })),
       blocked: reply.slice.blocked,
       draped: false,
-      direction: { from: { x: 0, y: 0 }, to: { x: Math.min(1, end), y: 0 } },
-      marks,
+      direction: { from: { x: 0, y: 0 }, to: { x: Math.min(1, grid.x[grid.x.length - 1]), y: 0 } },
+      marks: [],
+      signs: [
+        { sign: "▇", color: "series3", text: "E, by color and height" },
+        { sign: "╌", color: "accent", text: "direction d" },
+      ],
       keep: [reply.value, accepted],
       log: this.log.input.checked,
     };
+    const { marks, signs } = content;
+    if (showModel) signs.push({ sign: "▇", color: "series2", text: "quadratic model" });
+    addRejected(content, reply.trials.filter((t) => !t.accepted).map(({ alpha, value }) => ({ x: alpha, y: 0, value })));
+    const quadratic = quadraticFrom({ ...grid, value: reply.slice.model });
+    if (showModel) addModelMinimum(content, quadratic, ({ x, y }) => `s = ${short(x, 3)}, t = ${short(y, 3)}`);
+    marks.push({ x: 0, y: 0, value: reply.value, shape: "ring", color: "series5", size: 13, label: "start" });
+    signs.push({ sign: "○", color: "series5", text: `start: E = ${short(reply.value, 6)}` });
+    if (reply.alpha > 0) {
+      const lower = accepted === null ? "" : `, E lower by ${short(reply.value - accepted, 3)}`;
+      marks.push({ x: reply.alpha, y: 0, value: accepted, shape: "dot", color: "good", size: 13, label: "accepted" });
+      signs.push({ sign: "●", color: "good", text: `accepted: α = ${short(reply.alpha, 3)}${lower}` });
+    } else signs.push({ sign: "✕", color: "series11", text: "no step was found along d" });
+    signs.push({ sign: "•─", color: "text", text: "iterates, projected" });
+    if (reply.slice.blocked.length > 0) signs.push({ sign: "▇", color: "bad", text: "beyond the largest step that contact allows" });
+    return content;
   }
 
   private explanation(reply: IterationReply): string {
@@ -180,7 +156,7 @@ export class LandscapePanel implements Panel {
     ];
     if (cut !== null) sentences.push(`Walls above E = ${short(cut, 4)} are cut off.`);
     const blocked = new Set(reply.slice.blocked);
-    if (reply.slice.value.some((v: MaybeNumber, i) => v === null && !blocked.has(i))) sentences.push("Holes: E is infinite there.");
+    if (reply.slice.value.some((v, i) => v === null && !blocked.has(i))) sentences.push("Holes: E is infinite there.");
     if (blocked.size > 0) sentences.push("The red region is beyond contact: no straight path from x leads there.");
     if (this.log.input.checked) sentences.push("Heights are logarithmic.");
     return sentences.join(" ");
@@ -188,10 +164,10 @@ export class LandscapePanel implements Panel {
 
   private savePng(): void {
     const { step, iteration } = this.chosen;
-    const name = this.store.side(this.chosen.side)?.scene.name ?? "scene";
+    const { name } = this.store;
     const picture =
-      this.reply && this.view.picture(`${name}: energy landscape of step ${step}, iteration ${iteration}`, this.signs);
-    if (picture) downloadCanvas(fileName(`${name}_landscape_${step}_${iteration}`, "png"), picture);
+      this.reply && this.view.picture(`${name}: energy landscape of step ${step}, iteration ${iteration}`);
+    if (picture) void downloadCanvas(`${name}_landscape_${step}_${iteration}`, picture);
   }
 
   private restore(saved: unknown): void {

@@ -4,7 +4,8 @@ import { fieldsOf, type Page, type Panel } from "../page";
 import type { IterationRow, SideName, StepRow, WorstReply } from "../protocol";
 import type { Store } from "../store";
 import type { Chosen } from "../plots/chosen";
-import { button, checkbox, choice, element, oncePerFrame } from "../plots/dom";
+import { checkbox, choice, oncePerFrame } from "../controls";
+import { button, element } from "../dom";
 import { plural, short, withUnit } from "../plots/numbers";
 import { Rows, type RowColumn } from "../plots/rows";
 import type { Search } from "../plots/search";
@@ -38,19 +39,15 @@ export class MicroscopePanel implements Panel {
   private readonly grid = element("div", { class: "microscope-charts" });
   private charts: StepChart[] = [];
   private names: ChartName[] = [...kOrder];
-  private visible = false;
-  private readonly redraw = oncePerFrame(() => this.visible && this.draw());
+  private readonly redraw = oncePerFrame(() => this.element.isConnected && this.draw());
 
   constructor(
     private readonly store: Store,
     private readonly page: Page,
     private readonly chosen: Chosen,
   ) {
-    const worst = button(
-      "Worst elements",
-      "List the tets with the worst values and mark them on the body",
-      () => void this.findWorst(),
-    );
+    const title = "List the tets with the worst values and mark them on the body";
+    const worst = button({ text: "Worst elements", title }, () => void this.findWorst());
     const bar = element("div", { class: "plot-bar" }, this.sides.element, this.follow.element, worst, this.words);
     const tables = element("div", { class: "microscope-tables" }, this.steps.element, this.iterations.element);
     this.element.append(bar, this.worst, element("div", { class: "microscope plot-fill" }, tables, this.grid));
@@ -61,9 +58,8 @@ export class MicroscopePanel implements Panel {
     new ResizeObserver(() => this.arrange()).observe(this.grid);
   }
 
-  show(visible: boolean): void {
-    this.visible = visible;
-    if (visible) this.redraw();
+  show(): void {
+    this.redraw();
   }
 
   private rows(): readonly StepRow[] {
@@ -223,11 +219,7 @@ export class MicroscopePanel implements Panel {
       const text = (item: WorstReply["items"][number]): string =>
         `${item.what}: ${item.unit ? withUnit(item.value, item.unit) : short(item.value)}`;
       const items = reply.items.map((item) =>
-        element(
-          "li",
-          {},
-          button(text(item), "Mark it on the body", () => this.highlight(item, text(item))),
-        ),
+        element("li", {}, button({ text: text(item), title: "Mark it on the body" }, () => this.highlight(item, text(item)))),
       );
       this.worst.replaceChildren(...items);
       this.worst.hidden = items.length === 0;

@@ -132,7 +132,6 @@ export function makeReportPanel(store: Store, page: Page): Panel {
   const material = element("details", { open: true }, materialTitle);
   const table = new StepTable(store);
   const panel = element("div", { class: "report" }, list, material, aboutScene, makeScene(store, page), table.element);
-  let visible = false;
   let due = false;
   let drawn = -kPause; // time of the last drawing
   const draw = (): void => {
@@ -151,18 +150,10 @@ export function makeReportPanel(store: Store, page: Page): Panel {
     table.draw();
   };
   const drawSoon = (): void => {
-    if (!visible || due) return;
+    if (!panel.isConnected || due) return;
     due = true;
     setTimeout(draw, Math.max(0, drawn + kPause - performance.now()));
   };
   for (const event of ["steps", "scene"] as const) store.on(event, drawSoon);
-  return {
-    name: "certificate",
-    title: "Certificate",
-    element: panel,
-    show: (wanted) => {
-      visible = wanted;
-      drawSoon();
-    },
-  };
+  return { name: "certificate", title: "Certificate", element: panel, show: drawSoon };
 }

@@ -179,25 +179,13 @@ export class VectorRow extends ValueRow {
   }
 }
 
-// Rows of lil-gui for a list and a switch.
-class PlainRow implements Row {
-  constructor(
-    private readonly controller: Controller,
-    private readonly model: Model,
-  ) {}
-
-  display(value: SettingValue): void {
-    this.model.value = value;
-    this.controller.updateDisplay();
-  }
-
-  enable(enabled: boolean): void {
-    this.controller.enable(enabled);
-  }
-
-  mark(text: string): void {
-    markRow(this.controller, text);
-  }
+// Row of lil-gui for a list or a switch.
+function plainRow(controller: Controller, model: Model): Row {
+  const display = (value: SettingValue): void => {
+    model.value = value;
+    controller.updateDisplay();
+  };
+  return { display, enable: (enabled) => controller.enable(enabled), mark: (text) => markRow(controller, text) };
 }
 
 // Choices by their display names.
@@ -225,9 +213,9 @@ export function addRow(gui: GUI, setting: Setting, changed: (value: SettingValue
     case "choice": {
       const controller = dress(gui.add(model, "value", named(setting)));
       controller.domElement.querySelectorAll("option").forEach((option, i) => (option.value = setting.choices[i]));
-      return new PlainRow(controller, model);
+      return plainRow(controller, model);
     }
     case "switch":
-      return new PlainRow(dress(gui.add(model, "value")), model);
+      return plainRow(dress(gui.add(model, "value")), model);
   }
 }

@@ -259,7 +259,7 @@ export class Settings {
   }
 
   private makeSurface(): HTMLSelectElement {
-    const select = selectOf({ skin: "fine skin", cage: "cage of tets" });
+    const select = selectOf([["skin", "fine skin"], ["cage", "cage of tets"]]);
     select.dataset.steers = "";
     select.title = "Visible surface: the fine skin embedded in the tets, or the boundary of the tets";
     select.addEventListener("change", () => {

@@ -1,7 +1,8 @@
 // Charts of the microscope: over the iterations of one step, and over the steps.
 import type { Chosen } from "../plots/chosen";
 import { Chart, type ChartOptions, type Curve } from "../plots/chart";
-import { choice, element } from "../plots/dom";
+import { choice } from "../controls";
+import { element } from "../dom";
 import { short, withUnit } from "../plots/numbers";
 import type { Palette } from "../plots/palette";
 import { SearchChart, type Search } from "../plots/search";

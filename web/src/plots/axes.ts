@@ -1,6 +1,6 @@
 // Axes of a chart: units with SI prefixes, powers of ten, and shortened numbers.
 import type uPlot from "uplot";
-import { prefixOf, ticks } from "./numbers";
+import { prefixOf, tickTexts } from "./numbers";
 import type { Palette } from "./palette";
 
 export interface Axis {
@@ -39,7 +39,7 @@ export function axis(options: Axis & { log?: boolean }, colors: Palette, vertica
       vertical
         ? Math.max(...(values ?? []).map((v) => measure.measureText(v ?? "").width), colors.fontSize) + 10
         : colors.fontSize * 1.7,
-    values: (u, splits) => (options.log === true ? splits.map(superscript) : ticks(splits, factorOf(u).factor)),
+    values: (u, splits) => (options.log === true ? splits.map(superscript) : tickTexts(splits, factorOf(u).factor)),
   };
 }
 

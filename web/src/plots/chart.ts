@@ -5,7 +5,8 @@ import "uplot/dist/uPlot.min.css";
 import "./plots.css";
 import type { MaybeNumber } from "../protocol";
 import { axis, padded, ranged, type Axis } from "./axes";
-import { element, oncePerFrame } from "./dom";
+import { oncePerFrame } from "../controls";
+import { element } from "../dom";
 import { lineHeight, titled } from "./legend";
 import { cssOf, inkOf, palette, sameLook, type Color, type Palette } from "./palette";
 

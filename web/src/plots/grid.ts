@@ -159,14 +159,3 @@ export function isInside(grid: Grid, p: Point): boolean {
     p.x >= grid.x[0]! && p.x <= grid.x[grid.x.length - 1]! && p.y >= grid.y[0]! && p.y <= grid.y[grid.y.length - 1]!
   );
 }
-
-// Round numbers in [low, high], about `count` of them.
-export function roundTicks(low: number, high: number, count: number): number[] {
-  const rough = (high - low) / Math.max(1, count);
-  if (!(rough > 0) || !Number.isFinite(rough)) return [];
-  const power = 10 ** Math.floor(Math.log10(rough));
-  const gap = power * ([1, 2, 5, 10].find((m) => m * power >= rough * 0.999) ?? 10);
-  const out: number[] = [];
-  for (let k = Math.ceil(low / gap - 1e-9); k * gap <= high + 1e-9 * gap; ++k) out.push(k * gap);
-  return out;
-}

@@ -1,57 +1,37 @@
 // Energy of one side step by step: states as they are, works and losses summed up.
 import type { MaybeNumber, StepRow } from "../protocol";
+import type { Curve } from "./chart";
 import { lowerBound } from "./table";
 import { short, withUnit } from "./numbers";
 import { furtherColor, type Color } from "./palette";
 
-export interface LedgerColumn {
-  key: string;
-  label: string;
-  meaning: string;
-  color: Color;
-  width: number; // width of the line [CSS px]
-  dotted: boolean; // used for sums over the steps
-}
-
 // All curves of a legend have different colors.
 const kTermColors: Color[] = ["series6", "series4", "series5", "series12", "series13", "series14", "series11"];
 
-export function ledgerColumns(potentials: readonly string[]): LedgerColumn[] {
-  const line = (
-    key: string,
-    label: string,
-    meaning: string,
-    color: Color,
-    width = 1.5,
-    dotted = false,
-  ): LedgerColumn => ({
-    key,
-    label,
-    meaning,
-    color,
-    width,
-    dotted,
+const kWide = { width: 2 };
+const kWider = { width: 2.5 };
+const kSum = { dash: [2, 3] }; // of sums over the steps
+
+export function ledgerColumns(potentials: readonly string[]): Curve[] {
+  const line = (key: string, label: string, meaning: string, color: Color, more: Partial<Curve> = {}): Curve => ({
+    ...{ key, label, meaning, color, width: 1.5 },
+    ...more,
   });
-  const terms = potentials.map((name, i) =>
-    line(
-      `potential_${name}`,
-      `V: ${name.replaceAll("_", " ")}`,
-      "a term of the potential energy",
-      kTermColors[i] ?? furtherColor(i),
-      1.25,
-    ),
-  );
+  const terms = potentials.map((name, i) => {
+    const color = kTermColors[i] ?? furtherColor(i);
+    return line(`potential_${name}`, `V: ${name.replaceAll("_", " ")}`, "a term of the potential energy", color, { width: 1.25 });
+  });
   return [
-    line("kinetic", "T", "kinetic energy", "series2", 2),
+    line("kinetic", "T", "kinetic energy", "series2", kWide),
     ...terms,
-    line("potential_total", "V", "potential energy, the sum of its terms", "series1", 2),
-    line("total", "T + V", "kinetic plus potential energy", "text", 2.5),
-    line("mouse_work", "work of the mouse", "work of the mouse's spring, summed over the steps", "series8", 1.5, true),
-    line("probe_work", "work of the probe", "work of the tip, summed over the steps", "series10", 1.5, true),
-    line("pin_work", "work of pins", "work of moving pins and spring targets, summed over the steps", "series9", 1.5, true),
-    line("damping_loss", "damping loss", "dissipated by damping, summed over the steps", "series7", 1.5, true),
-    line("numerical_loss", "numerical loss", "dissipated by the integrator, summed over the steps", "bad", 1.5, true),
-    line("balance", "balance", "T + V − works + losses: constant if every step is solved accurately", "good", 2.5),
+    line("potential_total", "V", "potential energy, the sum of its terms", "series1", kWide),
+    line("total", "T + V", "kinetic plus potential energy", "text", kWider),
+    line("mouse_work", "work of the mouse", "work of the mouse's spring, summed over the steps", "series8", kSum),
+    line("probe_work", "work of the probe", "work of the tip, summed over the steps", "series10", kSum),
+    line("pin_work", "work of pins", "work of moving pins and spring targets, summed over the steps", "series9", kSum),
+    line("damping_loss", "damping loss", "dissipated by damping, summed over the steps", "series7", kSum),
+    line("numerical_loss", "numerical loss", "dissipated by the integrator, summed over the steps", "bad", kSum),
+    line("balance", "balance", "T + V − works + losses: constant if every step is solved accurately", "good", kWider),
   ];
 }
 

@@ -1,5 +1,5 @@
 // Legend of the signs in a picture of a surface.
-import { element } from "./dom";
+import { element } from "../dom";
 import { cssOf, inkOf, type Color, type Palette } from "./palette";
 
 export interface Sign {

@@ -64,7 +64,7 @@ function decimalsOf(gap: number): number {
 }
 
 // Texts of an axis' ticks, with enough decimals to distinguish neighbors.
-export function ticks(values: readonly (number | null)[], factor = 1): string[] {
+export function tickTexts(values: readonly (number | null)[], factor = 1): string[] {
   const known = values.filter((v): v is number => v !== null).map((v) => v / factor);
   const gap = known.length > 1 ? Math.abs(known[1]! - known[0]!) : 1;
   const largest = Math.max(...known.map(Math.abs), 0);

@@ -1,5 +1,6 @@
 // A table of any length: only visible rows are elements.
-import { element, oncePerFrame } from "./dom";
+import { oncePerFrame } from "../controls";
+import { element } from "../dom";
 
 export interface RowColumn {
   title: string;

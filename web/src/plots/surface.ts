@@ -1,11 +1,14 @@
 // 3-D picture of a surface that the reader can turn: values over a plane, the quadratic model, a path and marks.
 import * as THREE from "three";
 import { OrbitControls } from "three/addons/controls/OrbitControls.js";
-import { element, oncePerFrame } from "./dom";
+import { disposeOf } from "../view/dispose";
+import { oncePerFrame } from "../controls";
+import { element } from "../dom";
 import { sample, type Point } from "./grid";
-import { legendColumns, lineHeight, paintLegend, titled, type Sign } from "./legend";
+import { legendColumns, legendOf, lineHeight, paintLegend, titled } from "./legend";
 import { cssOf, inkOf, palette, sameLook, type Palette } from "./palette";
-import { SurfaceBody, type SurfaceContent } from "./surfaceBody";
+import { SurfaceBody } from "./surfaceBody";
+import type { SurfaceContent } from "./surfaceContent";
 import { axisLabels, placed, type Placed } from "./surfaceLabels";
 import "./plots.css";
 
@@ -18,6 +21,7 @@ function usualPolar(aspect: number): number {
 
 export class SurfaceView {
   readonly element = element("div", { class: "surface" });
+  readonly legend = element("div");
   dragged: ((at: Point, done: boolean) => void) | null = null; // called while the mark "ring" is dragged
   nudged: ((dx: number, dy: number) => void) | null = null; // called for Shift and an arrow key, in hundredths of the axes
   private readonly scene = new THREE.Scene();
@@ -30,7 +34,6 @@ export class SurfaceView {
   private body: SurfaceBody | null = null;
   private readonly left: SurfaceBody[] = []; // kept until the next surface is drawn, so that its shaders are already compiled
   private colors: Palette | null = null;
-  private visible = false;
   private stretch = 1; // factor of the width: flat panels show flat boxes
   private fitted = 0; // distance at which the camera shows all
   readonly redraw = oncePerFrame(() => this.draw());
@@ -47,15 +50,9 @@ export class SurfaceView {
     return this.body?.frame.range.cut ? this.body.frame.range.high : null;
   }
 
-  setVisible(visible: boolean): void {
-    this.visible = visible;
-    if (!visible) return;
-    this.start();
-    this.fit();
-  }
-
   show(content: SurfaceContent | null): void {
     this.shown = content;
+    this.legend.replaceChildren(...(content ? [legendOf(content.signs)] : []));
     this.build();
   }
 
@@ -81,24 +78,23 @@ export class SurfaceView {
   }
 
   // The view with its labels, a title above and the legend below.
-  picture(title: string, legend: readonly Sign[]): HTMLCanvasElement | null {
-    if (!this.renderer || !this.colors) return null;
+  picture(title: string): HTMLCanvasElement | null {
+    if (!this.renderer || !this.colors || !this.shown) return null;
     this.draw();
     const source = this.renderer.domElement;
     const scale = source.width / Math.max(1, this.element.clientWidth);
     const line = lineHeight(this.colors, scale);
-    const rows = Math.ceil(legend.length / legendColumns(source.width, line));
+    const rows = Math.ceil(this.shown.signs.length / legendColumns(source.width, line));
     const { canvas, pen } = titled(source, title, this.colors, scale, rows);
     for (const { label, x, y } of this.placedLabels()) {
       pen.fillStyle = inkOf(this.colors, label.color);
       pen.fillText(label.text, x * scale, y * scale + line * 1.5);
     }
-    paintLegend(pen, legend, this.colors, source.height + line * 1.6, line);
+    paintLegend(pen, this.shown.signs, this.colors, source.height + line * 1.6, line);
     return canvas;
   }
 
   private start(): void {
-    if (this.renderer) return;
     try {
       this.renderer = new THREE.WebGLRenderer({ antialias: true, alpha: true });
     } catch {
@@ -142,7 +138,9 @@ export class SurfaceView {
 
   private fit(): void {
     const [width, height] = [this.element.clientWidth, this.element.clientHeight];
-    if (!this.renderer || !this.visible || width < 20 || height < 20) return;
+    if (width < 20 || height < 20) return;
+    if (!this.renderer) this.start();
+    if (!this.renderer) return;
     this.renderer.setSize(width, height, false);
     if (Math.abs(this.wantedStretch() - this.stretch) > 0.1) this.build();
     this.camera.aspect = width / height;
@@ -158,40 +156,31 @@ export class SurfaceView {
 
   // Distance for the default direction, with room for the numbers at the axes.
   private distanceThatShowsAll(): number {
-    const probe = this.camera.clone();
     const [w, d, h] = [1.15 * (this.body?.frame.width ?? 2) * 0.5, 1.15 * (this.body?.frame.depth ?? 2) * 0.5, 0.95];
     const corners = [-w, w].flatMap((x) => [-d, d].flatMap((z) => [-0.02, h].map((y) => new THREE.Vector3(x, y, z))));
     const margin = 1 - (1.2 * (this.colors?.fontSize ?? 14)) / Math.max(1, this.element.clientHeight);
-    let [near, far] = [1.5, 40];
-    for (let i = 0; i < 24; ++i) {
-      const distance = 0.5 * (near + far);
-      probe.position
-        .setFromSphericalCoords(distance, usualPolar(this.camera.aspect), kAzimuth)
-        .add(this.controls!.target);
-      probe.lookAt(this.controls!.target);
-      probe.updateMatrixWorld();
-      const fits = corners.every((corner) => {
-        const at = corner.clone().project(probe);
-        return Math.abs(at.y) <= margin && Math.abs(at.x) <= margin;
-      });
-      if (fits) far = distance;
-      else near = distance;
-    }
-    return far;
+    const view = new THREE.Spherical(1, usualPolar(this.camera.aspect), kAzimuth);
+    const turn = new THREE.Matrix4().lookAt(new THREE.Vector3().setFromSpherical(view), new THREE.Vector3(), this.camera.up).invert();
+    const rise = margin * Math.tan(THREE.MathUtils.degToRad(this.camera.fov / 2));
+    const needed = corners.map((corner) => {
+      const { x, y, z } = corner.sub(this.controls!.target).applyMatrix4(turn);
+      return z + Math.max(Math.abs(y), Math.abs(x) / this.camera.aspect) / rise;
+    });
+    return Math.max(1.5, ...needed);
   }
 
   private clear(): void {
     if (!this.body) return;
     this.scene.remove(this.body.group);
-    if (this.visible && this.renderer) this.left.push(this.body);
-    else this.body.dispose();
+    if (this.element.isConnected && this.renderer) this.left.push(this.body);
+    else disposeOf(this.body.group);
     this.body = null;
   }
 
   private draw(): void {
-    if (!this.visible || !this.renderer) return;
+    if (!this.element.isConnected || !this.renderer) return;
     this.renderer.render(this.scene, this.camera);
-    for (const body of this.left.splice(0)) body.dispose();
+    for (const body of this.left.splice(0)) disposeOf(body.group);
     const made = this.placedLabels().map(({ label, x, y }) => {
       const span = element("span", { class: "surface-label" }, label.text);
       span.style.transform = `translate(${x.toFixed(1)}px, calc(${y.toFixed(1)}px - 50%))`;
@@ -227,14 +216,9 @@ export class SurfaceView {
   }
 
   private turn(azimuth: number, polar: number, zoom: number): void {
-    const target = this.controls!.target;
-    const at = new THREE.Spherical().setFromVector3(this.camera.position.clone().sub(target));
-    at.theta += azimuth;
-    at.phi = Math.min(Math.PI - 0.05, Math.max(0.05, at.phi + polar));
-    at.radius *= zoom;
-    this.camera.position.setFromSpherical(at).add(target);
-    this.controls!.update();
-    this.redraw();
+    this.controls!.rotateLeft(-azimuth);
+    this.controls!.rotateUp(-polar);
+    this.controls!.dollyIn(zoom);
   }
 
   // Drags the ring over the surface if the pointer is on it.

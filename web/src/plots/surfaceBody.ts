@@ -4,34 +4,13 @@ import { Line2 } from "three/addons/lines/Line2.js";
 import { LineGeometry } from "three/addons/lines/LineGeometry.js";
 import { LineMaterial } from "three/addons/lines/LineMaterial.js";
 import type { MaybeNumber } from "../protocol";
-import { clipped, heightRange, isInside, sample, valueAtHeight, type Grid, type Point } from "./grid";
-import { inkOf, type Color, type Palette } from "./palette";
+import { clipped, heightRange, isInside, sample, valueAtHeight, type Point } from "./grid";
+import { inkOf, type Palette } from "./palette";
+import type { Mark, SurfaceContent } from "./surfaceContent";
 import type { Label } from "./surfaceLabels";
-import { blockedGeometry, Frame, gridLines, levelLines, markTexture, surfaceGeometry, type MarkShape } from "./surfaceParts";
+import { blockedGeometry, Frame, gridLines, levelLines, markTexture, surfaceGeometry } from "./surfaceParts";
 
 const kNumbered = 40; // iterates with numbers, besides the last one
-
-export interface Mark extends Point {
-  value: MaybeNumber; // null: on the surface
-  shape: MarkShape;
-  color: Color;
-  size: number; // size [CSS px]
-  label?: string;
-}
-
-export interface SurfaceContent {
-  label: string; // name for screen readers
-  grid: Grid;
-  axes: { x: string; y: string; value: string };
-  model: MaybeNumber[] | null; // on the same grid
-  path: (Point & { value: MaybeNumber })[];
-  blocked?: readonly number[]; // samples of the grid that cannot be reached
-  draped: boolean; // the path follows the surface; otherwise it is straight from point to point
-  direction: { from: Point; to: Point } | null;
-  marks: Mark[];
-  keep: MaybeNumber[]; // values that must not be cut off
-  log: boolean;
-}
 
 export class SurfaceBody {
   readonly group = new THREE.Group();
@@ -56,14 +35,6 @@ export class SurfaceBody {
     this.addBox();
     this.addPath();
     for (const mark of content.marks) this.addMark(mark);
-  }
-
-  dispose(): void {
-    this.group.traverse((part) => {
-      if (!(part instanceof THREE.Mesh || part instanceof THREE.Line || part instanceof THREE.Points)) return;
-      part.geometry.dispose();
-      for (const material of [part.material].flat()) material.dispose();
-    });
   }
 
   private addSurface(): THREE.Mesh {
@@ -236,7 +207,7 @@ export class SurfaceBody {
       this.labels.push({ text: (above ? "↑ " : "") + mark.label, place, color: mark.color, important: true });
   }
 
-  private addPoints(places: THREE.Vector3[], shape: MarkShape, color: string, halo: string, size: number): void {
+  private addPoints(places: THREE.Vector3[], shape: Mark["shape"], color: string, halo: string, size: number): void {
     if (places.length === 0) return;
     const material = new THREE.PointsMaterial({
       map: markTexture(shape, color, halo),

@@ -1,7 +1,8 @@
 // Texts in the picture of a surface: numbers at its axes and names of marks, as elements over the canvas.
 import * as THREE from "three";
-import { roundTicks, valueAtHeight } from "./grid";
-import { short, ticks } from "./numbers";
+import { ticks } from "../view/ranges";
+import { valueAtHeight } from "./grid";
+import { short, tickTexts } from "./numbers";
 import type { Color } from "./palette";
 import type { Frame } from "./surfaceParts";
 
@@ -58,23 +59,23 @@ export function axisLabels(
   const out: Label[] = [];
   const add = (text: string, place: THREE.Vector3, color: Color = "faint"): void =>
     void out.push({ text, place, color, important: false });
-  const alongX = roundTicks(x[0]!, x[x.length - 1]!, 4);
-  const alongY = roundTicks(y[0]!, y[y.length - 1]!, 4);
+  const alongX = ticks(x[0]!, x[x.length - 1]!, 4);
+  const alongY = ticks(y[0]!, y[y.length - 1]!, 4);
   add(names.x, new THREE.Vector3(0, -0.02, front * 1.34), "text");
   add(names.y, new THREE.Vector3(side * 1.42, -0.02, 0), "text");
-  ticks(alongX).forEach((text, i) => add(text, new THREE.Vector3(frame.across(alongX[i]!), -0.02, front * 1.12)));
-  ticks(alongY).forEach((text, i) => add(text, new THREE.Vector3(side * 1.12, -0.02, frame.away(alongY[i]!))));
+  tickTexts(alongX).forEach((text, i) => add(text, new THREE.Vector3(frame.across(alongX[i]!), -0.02, front * 1.12)));
+  tickTexts(alongY).forEach((text, i) => add(text, new THREE.Vector3(side * 1.12, -0.02, frame.away(alongY[i]!))));
   const post = leftPost(w, d, camera);
   const toValue = valueAtHeight(frame.range, frame.scale);
   const { low, high } = frame.range;
   const even = frame.scale === "linear";
   const linear = even && high - low > 1e-3 * Math.max(Math.abs(low), Math.abs(high)); // avoids numbers of many digits
   const heights = linear
-    ? roundTicks(low, high, 4)
+    ? ticks(low, high, 4)
     : even
-      ? roundTicks(0, high - low, 4).map((v) => low + v)
+      ? ticks(0, high - low, 4).map((v) => low + v)
       : [0, 0.25, 0.5, 0.75, 1].map(toValue);
-  const texts = linear ? ticks(heights) : heights.map((v) => short(v - low, 2));
+  const texts = linear ? tickTexts(heights) : heights.map((v) => short(v - low, 2));
   add(linear ? names.value : `${names.value} − lowest`, new THREE.Vector3(post.x, frame.tall * 1.12, post.z), "text");
   texts.forEach((text, i) =>
     add(text, new THREE.Vector3(post.x * 1.1, frame.height(heights[i]!) * frame.tall, post.z * 1.1)),

@@ -3,6 +3,7 @@ import * as THREE from "three";
 import type { MaybeNumber } from "../protocol";
 import { colorAt } from "../view/colorMaps";
 import { heightOf, type Grid, type Range, type Scale } from "./grid";
+import type { Mark } from "./surfaceContent";
 
 // x to the right, y away from the reader, values up. The longer side of the plane has length 2 before stretching.
 export class Frame {
@@ -169,12 +170,10 @@ export function lineGeometry(points: number[]): THREE.BufferGeometry {
   return geometry;
 }
 
-export type MarkShape = "dot" | "ring" | "diamond" | "cross";
-
 const marks = new Map<string, THREE.Texture>();
 
 // Small picture of a mark with a light rim, visible on any surface.
-export function markTexture(shape: MarkShape, color: string, halo: string): THREE.Texture {
+export function markTexture(shape: Mark["shape"], color: string, halo: string): THREE.Texture {
   const key = `${shape} ${color} ${halo}`;
   const known = marks.get(key);
   if (known) return known;

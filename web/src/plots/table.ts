@@ -60,19 +60,22 @@ function addExtremes({ x, columns }: Table, begin: number, end: number, out: Tab
   });
 }
 
-// Both tables over the union of their x, with null where a table has no row.
-export function merged(a: Table, b: Table): Table {
-  const out: Table = { x: [], columns: [...a.columns, ...b.columns].map(() => []) };
-  for (let i = 0, j = 0; i < a.x.length || j < b.x.length;) {
-    const x = Math.min(a.x[i] ?? Infinity, b.x[j] ?? Infinity);
-    const [inA, inB] = [a.x[i] === x, b.x[j] === x];
+// The tables over the union of their x, with null where a table has no row.
+export function merged(...tables: Table[]): Table {
+  if (tables.length === 1) return tables[0];
+  const out: Table = { x: [], columns: tables.flatMap(({ columns }) => columns).map(() => []) };
+  const next = tables.map(() => 0); // row of each table
+  for (;;) {
+    const x = Math.min(...tables.map((table, k) => table.x[next[k]] ?? Infinity));
+    if (x === Infinity) return out;
     out.x.push(x);
-    a.columns.forEach((column, c) => out.columns[c]!.push(inA ? column[i]! : null));
-    b.columns.forEach((column, c) => out.columns[a.columns.length + c]!.push(inB ? column[j]! : null));
-    if (inA) ++i;
-    if (inB) ++j;
+    let c = 0;
+    tables.forEach((table, k) => {
+      const here = table.x[next[k]] === x;
+      for (const column of table.columns) out.columns[c++].push(here ? column[next[k]] : null);
+      if (here) ++next[k];
+    });
   }
-  return out;
 }
 
 // Magnitude for a logarithmic axis; null for zero, which such an axis cannot show.

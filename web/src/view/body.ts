@@ -5,6 +5,7 @@ import type { Geometry, Picture, Vec3 } from "../protocol";
 import { bodiesOf, bodyColors, bodyTexels } from "./bodies";
 import { mapTexels, type MapName } from "./colorMaps";
 import type { DisplaySettings } from "./display";
+import { disposeOf } from "./dispose";
 import { kSkinPoint } from "./labels";
 import { vectorAt } from "./lens";
 import { makeFieldUniforms, makePinMaterial, makeSurfaceMaterial } from "./shading";
@@ -14,33 +15,24 @@ export interface Box {
   upper: Vec3;
 }
 
-// Bounding box of points with three coordinates each, as `seen` shows them.
-export function boxOf(points: Float32Array, seen: (x: Vec3) => Vec3 = (x) => x): Box {
+const kBoxSamples = 2000;
+
+// Bounding box of the finite ones of every `stride`th point, as `seen` shows them. Points have three coordinates each.
+export function boxOf(points: Float32Array, seen: (x: Vec3) => Vec3 = (x) => x, stride = 1): Box {
   const box: Box = { lower: [Infinity, Infinity, Infinity], upper: [-Infinity, -Infinity, -Infinity] };
-  for (let i = 0; i < points.length / 3; ++i)
+  for (let i = 0; i < points.length / 3; i += stride)
     seen(vectorAt(points, i)).forEach((x, c) => {
+      if (!Number.isFinite(x)) return;
       box.lower[c] = Math.min(box.lower[c], x);
       box.upper[c] = Math.max(box.upper[c], x);
     });
   return box;
 }
 
-const kBoxSamples = 2000;
-
-// Bounding box of a regular subset of the vertices, without those that are not finite; null if none remains.
+// Bounding box of a regular subset of the vertices; null if none is finite.
 export function coarseBox(positions: Float32Array): Box | null {
-  const count = positions.length / 3;
-  const stride = 3 * Math.max(1, Math.floor(count / kBoxSamples));
-  const lower: Vec3 = [Infinity, Infinity, Infinity];
-  const upper: Vec3 = [-Infinity, -Infinity, -Infinity];
-  for (let i = 0; i + 2 < positions.length; i += stride)
-    for (let c = 0; c < 3; ++c) {
-      const x = positions[i + c];
-      if (!Number.isFinite(x)) continue;
-      if (x < lower[c]) lower[c] = x;
-      if (x > upper[c]) upper[c] = x;
-    }
-  return lower.every((x, c) => x <= upper[c]) ? { lower, upper } : null;
+  const box = boxOf(positions, undefined, Math.max(1, Math.floor(positions.length / 3 / kBoxSamples)));
+  return box.lower.every((x, c) => x <= box.upper[c]) ? box : null;
 }
 
 function meanEdge(geometry: Geometry): number {
@@ -62,7 +54,6 @@ export class Body {
   private readonly positions: THREE.BufferAttribute;
   private readonly normals: THREE.BufferAttribute;
   private readonly values: THREE.BufferAttribute;
-  private readonly shapes: THREE.BufferGeometry[] = [];
   private readonly uniforms = makeFieldUniforms();
   private readonly surface = makeSurfaceMaterial(this.uniforms);
   private readonly lines = new THREE.LineBasicMaterial({ transparent: true, depthWrite: false });
@@ -204,8 +195,7 @@ export class Body {
   }
 
   dispose(): void {
-    for (const shape of this.shapes) shape.dispose();
-    for (const material of [this.surface, this.lines, this.pinMaterial]) material.dispose();
+    disposeOf(this.root);
     this.uniforms.fieldMap.value?.dispose();
   }
 
@@ -215,7 +205,6 @@ export class Body {
     if (shaded) shape.setAttribute("normal", this.normals).setAttribute("fieldValue", this.values);
     shape.setIndex(new THREE.BufferAttribute(index, 1));
     shape.boundingSphere = new THREE.Sphere(new THREE.Vector3(), 1); // placeholder, so that three.js computes none
-    this.shapes.push(shape);
     return shape;
   }
 }

@@ -33,38 +33,25 @@ export function contactText(row: Pick<StepRow, "contacts" | "min_gap" | "max_pre
   return `${count}, smallest gap ${valueText(row.min_gap, "m", 3)}, largest pressure ${valueText(row.max_pressure, "Pa", 3)}`;
 }
 
-export class ContactDots {
-  readonly root: THREE.Points;
-  private readonly lift = { value: 0 };
-  private readonly shape = new THREE.BufferGeometry();
-  private readonly material = makePinMaterial(this.lift);
-
+export class ContactDots extends THREE.Points<THREE.BufferGeometry, THREE.PointsMaterial> {
   constructor() {
+    super(new THREE.BufferGeometry(), makePinMaterial({ value: 0 }));
     this.material.vertexColors = true;
     this.material.depthTest = false;
-    this.root = new THREE.Points(this.shape, this.material);
-    this.root.frustumCulled = false;
-    this.root.renderOrder = 3;
+    this.frustumCulled = false;
+    this.renderOrder = 3;
     this.show(new Float32Array(0), 0);
   }
 
+  // `contacts`: as in Picture. `largest`: pressure of the last color [Pa].
   show(contacts: Float32Array, largest: number): void {
     const places = new THREE.InterleavedBuffer(contacts, 4);
-    this.shape.setAttribute("position", new THREE.InterleavedBufferAttribute(places, 3, 0));
-    this.shape.setAttribute("color", new THREE.BufferAttribute(contactColors(contacts, largest), 3));
-    this.shape.setDrawRange(0, contacts.length / 4);
+    this.geometry.setAttribute("position", new THREE.InterleavedBufferAttribute(places, 3, 0));
+    this.geometry.setAttribute("color", new THREE.BufferAttribute(contactColors(contacts, largest), 3));
+    this.geometry.setDrawRange(0, contacts.length / 4);
   }
 
   adapt(ratio: number): void {
     this.material.size = kSize * ratio;
-  }
-
-  clip(planes: THREE.Plane[]): void {
-    this.material.clippingPlanes = planes;
-  }
-
-  dispose(): void {
-    this.shape.dispose();
-    this.material.dispose();
   }
 }

@@ -47,6 +47,7 @@ export const kDefaults = {
   linked: true, // one camera for both sides
 };
 export type DisplaySettings = typeof kDefaults;
+export type Amount = { [K in keyof DisplaySettings]: DisplaySettings[K] extends number ? K : never }[keyof DisplaySettings];
 
 const kChoices: { [K in keyof DisplaySettings]?: readonly string[] } = {
   inside: ["own", "same", "hidden"],
@@ -57,12 +58,7 @@ const kChoices: { [K in keyof DisplaySettings]?: readonly string[] } = {
   tipShape: ["sphere", "disc"],
   tipContact: ["bonded", "sliding"],
 };
-const kLimits: { [K in keyof DisplaySettings]?: readonly [number, number] } = {
-  shininess: [0, 200],
-  clipAt: [0, 1],
-  brush: [4, 200],
-  tipRadius: [0, 1e9],
-};
+const kLimits: { [K in Amount]?: [number, number] } = { shininess: [0, 200], clipAt: [0, 1], brush: [4, 200], tipRadius: [0, 1e9] };
 
 export class Display extends Emitter<{ changed: void; camera: void; range: void }> implements Keeper {
   readonly settings: DisplaySettings = { ...kDefaults };
@@ -71,6 +67,7 @@ export class Display extends Emitter<{ changed: void; camera: void; range: void 
   field = ""; // field shown; "": none
   bodies = 1; // number of bodies of side a
   showsBench = false; // whether the markers of the bench are visible
+  private wereLinked = true;
   private readonly running = new RunningRange();
   private measured = ""; // field of the running range
 
@@ -85,9 +82,11 @@ export class Display extends Emitter<{ changed: void; camera: void; range: void 
   }
 
   change(changes: Partial<DisplaySettings>): void {
-    if (changes.linked === false && this.settings.linked) this.cameras.b.join(this.cameras.a);
     Object.assign(this.settings, changes);
-    for (const [key, limits] of Object.entries(kLimits)) this.limit(key as keyof DisplaySettings, limits);
+    if (this.wereLinked && !this.settings.linked) this.cameras.b.join(this.cameras.a);
+    this.wereLinked = this.settings.linked;
+    for (const [key, [least, most]] of Object.entries(kLimits) as [Amount, [number, number]][])
+      this.settings[key] = Math.min(most, Math.max(least, this.settings[key]));
     this.emit("changed", undefined);
   }
 
@@ -175,10 +174,5 @@ export class Display extends Emitter<{ changed: void; camera: void; range: void 
       changes[key] = value;
     }
     this.change(changes);
-  }
-
-  private limit(key: keyof DisplaySettings, [least, most]: readonly [number, number]): void {
-    const settings = this.settings as Record<string, unknown>;
-    settings[key] = Math.min(most, Math.max(least, settings[key] as number));
   }
 }

@@ -65,7 +65,7 @@ export class Figure {
     this.color();
     const { contacts } = side.picture;
     this.pressures.feed(this.name, 0, largestPressure(contacts));
-    this.stage?.showContacts(contacts, this.largestPressure());
+    this.stage?.contacts.show(contacts, this.largestPressure());
     this.stage?.moved();
   }
 

@@ -1,5 +1,5 @@
 // Text and thin shapes over a view, drawn with a 2-D canvas and readable over any background.
-import { short, ticks as tickTexts } from "../plots/numbers";
+import { short, tickTexts } from "../plots/numbers";
 import type { Highlight } from "../page";
 import type { Field, StepRow, Vec3 } from "../protocol";
 import { colorAt, type MapName } from "./colorMaps";
@@ -18,13 +18,6 @@ export interface Ink {
 }
 
 type Point = [number, number];
-
-interface Place {
-  left: number;
-  top: number;
-  width: number;
-  height: number;
-}
 
 export function text(ink: Ink, words: string, x: number, y: number, align: CanvasTextAlign = "left"): void {
   const { context } = ink;
@@ -183,7 +176,7 @@ export function paragraph(ink: Ink, lens: Lens, words: string, x: number, y: num
 }
 
 // Draws the colors of a field with ticks in a strip right of the view, which the body does not reach.
-export function colorBar(ink: Ink, lens: Lens, field: Field, range: ColorRange, map: MapName): void {
+export function colorBar(ink: Ink, lens: Pick<Lens, "width" | "height">, field: Pick<Field, "label" | "unit">, range: ColorRange, map: MapName): void {
   const { em } = ink;
   ink.context.fillStyle = ink.halo;
   ink.context.fillRect(lens.width, 0, kBarWidth * em + 1, lens.height);
@@ -196,7 +189,12 @@ export function colorBar(ink: Ink, lens: Lens, field: Field, range: ColorRange, 
   if (height < 3 * em) return;
   const values = range.log ? logTicks(range.low, range.high) : ticks(range.low, range.high, height / (2.6 * em));
   const words = range.log || values.length < 2 ? values.map((value) => short(value)) : tickTexts(values);
-  colors(ink, { left, top, width, height }, map, range.high > range.low);
+  const { context } = ink;
+  context.fillStyle = range.high > range.low ? gradient(context, map, [0, top + height], [0, top]) : `rgb(${colorAt(map, 0.5).join()})`;
+  context.fillRect(left, top, width, height);
+  context.lineWidth = 1;
+  context.strokeStyle = ink.text;
+  context.strokeRect(left - 0.5, top - 0.5, width + 1, height + 1);
   values.forEach((value, i) => {
     const y = top + height * (1 - fraction(range, value));
     ink.context.fillStyle = ink.text;
@@ -205,16 +203,11 @@ export function colorBar(ink: Ink, lens: Lens, field: Field, range: ColorRange, 
   });
 }
 
-function colors(ink: Ink, { left, top, width, height }: Place, map: MapName, varies: boolean): void {
-  const { context } = ink;
-  for (let y = 0; y < height; ++y) {
-    const [r, g, b] = colorAt(map, varies ? 1 - y / height : 0.5);
-    context.fillStyle = `rgb(${r}, ${g}, ${b})`;
-    context.fillRect(left, top + y, width, 1.5);
-  }
-  context.lineWidth = 1;
-  context.strokeStyle = ink.text;
-  context.strokeRect(left - 0.5, top - 0.5, width + 1, height + 1.5);
+// Colors of a map along a line.
+function gradient(context: CanvasRenderingContext2D, map: MapName, from: Point, to: Point): CanvasGradient {
+  const made = context.createLinearGradient(...from, ...to);
+  for (let t = 0; t <= 1; t += 1 / 32) made.addColorStop(t, `rgb(${colorAt(map, t).join()})`);
+  return made;
 }
 
 // Draws the colors of the contact points with a summary in the upper right corner.
@@ -226,11 +219,8 @@ export function contactLegend(ink: Ink, lens: Lens, largest: number, row: StepRo
   const most = valueText(largest, "Pa", 3);
   const left = right - context.measureText(most).width - 0.5 * em - width;
   const top = 1.1 * em;
-  for (let x = 0; x < width; ++x) {
-    const [r, g, b] = colorAt(kContactMap, x / width);
-    context.fillStyle = `rgb(${r}, ${g}, ${b})`;
-    context.fillRect(left + x, top, 1.5, em);
-  }
+  context.fillStyle = gradient(context, kContactMap, [left, 0], [left + width, 0]);
+  context.fillRect(left, top, width, em);
   text(ink, most, right, top + em / 2, "right");
   text(ink, "contact pressure 0", left - 0.5 * em, top + em / 2, "right");
 }

@@ -2,8 +2,9 @@
 import * as THREE from "three";
 import type { Obstacle, Vec3 } from "../protocol";
 import { sceneAxes } from "./cameras";
+import { disposeOf } from "./dispose";
 import { dot, minus } from "./lens";
-import { kGroundRadius, makeGroundMaterial, type GroundUniforms } from "./shading";
+import { kGroundRadius, makeGroundMaterial } from "./shading";
 
 const kColor = "#a7a39b";
 
@@ -17,10 +18,9 @@ export function planeAxes(normal: Vec3, up: Vec3): [Vec3, Vec3] {
 }
 
 // The disk of a plane below the bodies.
-class Ground {
-  readonly mesh: THREE.Mesh<THREE.CircleGeometry, THREE.ShadowMaterial>;
+class Ground extends THREE.Mesh {
   private readonly axes: [Vec3, Vec3];
-  private readonly uniforms: GroundUniforms = {
+  private readonly uniforms = {
     gridStep: { value: 1 },
     gridOrigin: { value: new THREE.Vector2() },
     gridColor: { value: new THREE.Color() },
@@ -30,12 +30,13 @@ class Ground {
     private readonly plane: { origin: Vec3; normal: Vec3 },
     up: Vec3,
   ) {
+    super(new THREE.CircleGeometry(kGroundRadius, 96));
+    this.material = makeGroundMaterial(this.uniforms);
     this.axes = planeAxes(plane.normal, up);
-    this.mesh = new THREE.Mesh(new THREE.CircleGeometry(kGroundRadius, 96), makeGroundMaterial(this.uniforms));
-    this.mesh.receiveShadow = true;
-    this.mesh.renderOrder = -1;
+    this.receiveShadow = true;
+    this.renderOrder = -1;
     const [u, v] = this.axes.map((axis) => new THREE.Vector3(...axis));
-    this.mesh.quaternion.setFromRotationMatrix(new THREE.Matrix4().makeBasis(u, v, new THREE.Vector3(...plane.normal)));
+    this.quaternion.setFromRotationMatrix(new THREE.Matrix4().makeBasis(u, v, new THREE.Vector3(...plane.normal)));
   }
 
   // Moves the disk below a point. Its grid lines stay where they are.
@@ -43,18 +44,13 @@ class Ground {
     const { origin, normal } = this.plane;
     const depth = dot(normal, minus(point, origin));
     const foot = point.map((x, c) => x - depth * normal[c]) as Vec3;
-    this.mesh.position.copy(unit.toUnits(foot));
+    this.position.copy(unit.toUnits(foot));
     this.uniforms.gridStep.value = unit.gridStep / unit.radius;
     this.uniforms.gridOrigin.value.set(-dot(this.axes[0], foot) / unit.radius, -dot(this.axes[1], foot) / unit.radius);
   }
 
   color(grid: string): void {
     this.uniforms.gridColor.value.set(grid);
-  }
-
-  dispose(): void {
-    this.mesh.geometry.dispose();
-    this.mesh.material.dispose();
   }
 }
 
@@ -64,32 +60,29 @@ export interface Units {
   toUnits(point: Vec3): THREE.Vector3;
 }
 
-export class ObstacleBodies {
-  readonly root = new THREE.Group();
+export class ObstacleBodies extends THREE.Group {
   private readonly surfaces = new THREE.Group(); // [m]
-  private readonly material = new THREE.MeshPhongMaterial({ color: kColor, side: THREE.DoubleSide, clipShadows: true });
+  readonly material = new THREE.MeshPhongMaterial({ color: kColor, side: THREE.DoubleSide, clipShadows: true });
   private grounds: Ground[] = [];
 
   constructor() {
+    super();
     this.surfaces.matrixAutoUpdate = false;
-    this.root.add(this.surfaces);
   }
 
   get hasGround(): boolean {
-    return this.root.visible && this.grounds.length > 0;
+    return this.visible && this.grounds.length > 0;
   }
 
   // `toStage`: from meters to units of the stage.
   show(obstacles: readonly Obstacle[], up: Vec3, toStage: THREE.Matrix4): void {
-    this.clear();
+    disposeOf(this);
+    this.surfaces.clear();
     this.surfaces.matrix.copy(toStage);
+    this.grounds = obstacles.flatMap(({ plane }) => (plane ? [new Ground(plane, up)] : []));
+    this.clear().add(this.surfaces, ...this.grounds);
     for (const { plane, points, triangles } of obstacles) {
-      if (plane) {
-        const ground = new Ground(plane, up);
-        this.grounds.push(ground);
-        this.root.add(ground.mesh);
-        continue;
-      }
+      if (plane) continue;
       const corners = Float32Array.from(triangles.flatMap((p) => points.slice(3 * p, 3 * p + 3)));
       const shape = new THREE.BufferGeometry();
       shape.setAttribute("position", new THREE.BufferAttribute(corners, 3));
@@ -107,24 +100,5 @@ export class ObstacleBodies {
 
   color(grid: string): void {
     for (const ground of this.grounds) ground.color(grid);
-  }
-
-  clip(planes: THREE.Plane[]): void {
-    this.material.clippingPlanes = planes;
-  }
-
-  dispose(): void {
-    this.clear();
-    this.material.dispose();
-  }
-
-  private clear(): void {
-    for (const mesh of this.surfaces.children) (mesh as THREE.Mesh).geometry.dispose();
-    this.surfaces.clear();
-    for (const ground of this.grounds) {
-      this.root.remove(ground.mesh);
-      ground.dispose();
-    }
-    this.grounds = [];
   }
 }

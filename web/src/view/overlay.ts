@@ -9,17 +9,17 @@ import * as marks from "./marks";
 import type { ColorRange } from "./ranges";
 
 export interface Marks {
-  axes: boolean;
-  gridStep: number; // [m]; 0: no grid
-  bar: { field: Field; range: ColorRange; map: MapName } | null;
-  contact: { largest: number; row: StepRow | null } | null; // pressure of the last color [Pa], and the step shown
-  bodies: { name: string; color: string }[]; // entries of the legend; empty: no legend
-  labels: Label[];
-  highlights: Highlight[];
-  spring: { point: Vec3; target: Vec3; force: Vec3 | null } | null;
-  dots: Dot[];
-  brush: { at: [number, number]; radius: number; words: string } | null;
-  tip: { at: [number, number]; words: string } | null;
+  axes?: boolean;
+  gridStep?: number; // [m]; 0: no grid
+  bar?: { field: Pick<Field, "label" | "unit">; range: ColorRange; map: MapName } | null;
+  contact?: { largest: number; row: StepRow | null } | null; // pressure of the last color [Pa], and the step shown
+  bodies?: { name: string; color: string }[]; // entries of the legend; empty: no legend
+  labels?: Label[];
+  highlights?: Highlight[];
+  spring?: { point: Vec3; target: Vec3; force: Vec3 | null } | null;
+  dots?: Dot[];
+  brush?: { at: [number, number]; radius: number; words: string } | null;
+  tip?: { at: [number, number]; words: string } | null;
 }
 
 // A marker on the surface, or a proposed site.
@@ -58,12 +58,6 @@ function isLight(color: string): boolean {
   return 0.299 * r + 0.587 * g + 0.114 * b > 128;
 }
 
-export function png(canvas: HTMLCanvasElement): Promise<Blob> {
-  return new Promise((resolve, reject) =>
-    canvas.toBlob((blob) => (blob ? resolve(blob) : reject(new Error("the view has no size"))), "image/png"),
-  );
-}
-
 export class Overlay {
   readonly canvas = document.createElement("canvas");
   private readonly context = this.canvas.getContext("2d")!;
@@ -75,13 +69,13 @@ export class Overlay {
     context.clearRect(0, 0, this.canvas.width / ratio, lens.height);
     context.font = `${style.em}px ${style.font}`;
     const ink: marks.Ink = { context, em: style.em, text: style.text, halo: style.background, accent: style.accent };
-    for (const { x, y, text } of what.labels) marks.label(ink, text, x, y);
-    marks.highlights(ink, lens, what.highlights, lens.width);
+    for (const { x, y, text } of what.labels ?? []) marks.label(ink, text, x, y);
+    marks.highlights(ink, lens, what.highlights ?? [], lens.width);
     if (what.axes) marks.axes(ink, lens);
-    if (what.gridStep > 0) marks.gridNote(ink, lens, what.gridStep);
-    marks.bodyLegend(ink, lens, what.bodies);
+    if (what.gridStep) marks.gridNote(ink, lens, what.gridStep);
+    marks.bodyLegend(ink, lens, what.bodies ?? []);
     if (what.contact) marks.contactLegend(ink, lens, what.contact.largest, what.contact.row);
-    for (const dot of what.dots) marks.surfaceDot(ink, lens, dot.at, dot.normal, dot.ring);
+    for (const dot of what.dots ?? []) marks.surfaceDot(ink, lens, dot.at, dot.normal, dot.ring);
     if (what.spring) marks.spring(ink, lens, what.spring.point, what.spring.target, what.spring.force);
     if (what.brush) marks.ring(ink, what.brush.at, what.brush.radius, what.brush.words);
     if (what.bar) marks.colorBar(ink, lens, what.bar.field, what.bar.range, what.bar.map);

@@ -1,28 +1,30 @@
 // Materials of a body: those of three.js with a few additional lines in their shaders.
 import * as THREE from "three";
 
-export interface FieldUniforms {
-  fieldMap: { value: THREE.Texture | null };
-  fieldLow: { value: number }; // logarithm of the value if fieldLog is set
-  fieldScale: { value: number };
-  fieldLog: { value: boolean };
-  fieldShown: { value: boolean };
-  insideColor: { value: THREE.Color };
-  insideOwn: { value: boolean };
-  inverted: { value: boolean };
-}
+export type FieldUniforms = ReturnType<typeof makeFieldUniforms>;
+export const makeFieldUniforms = () => ({
+  fieldMap: { value: null as THREE.Texture | null },
+  fieldLow: { value: 0 }, // logarithm of the value if fieldLog is set
+  fieldScale: { value: 1 },
+  fieldLog: { value: false },
+  fieldShown: { value: false },
+  insideColor: { value: new THREE.Color() },
+  insideOwn: { value: true },
+  inverted: { value: false },
+});
 
-export function makeFieldUniforms(): FieldUniforms {
-  return {
-    fieldMap: { value: null },
-    fieldLow: { value: 0 },
-    fieldScale: { value: 1 },
-    fieldLog: { value: false },
-    fieldShown: { value: false },
-    insideColor: { value: new THREE.Color() },
-    insideOwn: { value: true },
-    inverted: { value: false },
+type Uniforms = Record<string, THREE.IUniform>;
+type Replacements = Record<string, string>; // text of a shader -> its replacement
+
+function extend<M extends THREE.Material>(material: M, uniforms: Uniforms, vertex: Replacements, fragment: Replacements): M {
+  const replaced = (shader: string, texts: Replacements): string =>
+    Object.entries(texts).reduce((text, [old, replacement]) => text.replace(old, replacement), shader);
+  material.onBeforeCompile = (shader) => {
+    Object.assign(shader.uniforms, uniforms);
+    shader.vertexShader = replaced(shader.vertexShader, vertex);
+    shader.fragmentShader = replaced(shader.fragmentShader, fragment);
   };
+  return material;
 }
 
 export const kGroundRadius = 7; // relative to the radius of the scene
@@ -51,31 +53,24 @@ export function makeSurfaceMaterial(uniforms: FieldUniforms): THREE.MeshPhongMat
   material.polygonOffset = true; // keeps it behind the wires
   material.polygonOffsetFactor = 1;
   material.polygonOffsetUnits = 2;
-  material.onBeforeCompile = (shader) => {
-    Object.assign(shader.uniforms, uniforms);
-    shader.vertexShader = shader.vertexShader
-      .replace("#include <common>", "#include <common>\nattribute float fieldValue;\nvarying float vFieldValue;")
-      .replace("#include <begin_vertex>", "#include <begin_vertex>\nvFieldValue = fieldValue;");
-    shader.fragmentShader = shader.fragmentShader
-      .replace("#include <common>", `#include <common>\n${kFieldPars}`)
-      .replace("#include <color_fragment>", kFieldColor);
+  const vertex = {
+    "#include <common>": "#include <common>\nattribute float fieldValue;\nvarying float vFieldValue;",
+    "#include <begin_vertex>": "#include <begin_vertex>\nvFieldValue = fieldValue;",
   };
-  return material;
+  const fragment = { "#include <common>": `#include <common>\n${kFieldPars}`, "#include <color_fragment>": kFieldColor };
+  return extend(material, uniforms, vertex, fragment);
 }
 
-// Round markers of constant size on the screen, lifted in front of the surface by their width.
+// Round markers of constant size on the screen, lifted in front of the surface by their width. `lift`: per distance, or in
+// units of the stage when orthographic.
 export function makePinMaterial(lift: { value: number }): THREE.PointsMaterial {
   const material = new THREE.PointsMaterial({ sizeAttenuation: false, transparent: true });
-  material.onBeforeCompile = (shader) => {
-    shader.uniforms.lift = lift; // per distance, or in units of the stage when orthographic
-    shader.vertexShader = shader.vertexShader
-      .replace("#include <common>", "#include <common>\nuniform float lift;")
-      .replace("#include <project_vertex>", kPinPosition);
-    shader.fragmentShader = shader.fragmentShader
-      .replace("#include <color_fragment>", "")
-      .replace("#include <map_particle_fragment>", `#include <color_fragment>\n${kPinColor}`);
+  const vertex = { "#include <common>": "#include <common>\nuniform float lift;", "#include <project_vertex>": kPinPosition };
+  const fragment = {
+    "#include <color_fragment>": "",
+    "#include <map_particle_fragment>": `#include <color_fragment>\n${kPinColor}`,
   };
-  return material;
+  return extend(material, { lift }, vertex, fragment);
 }
 
 const kPinPosition = /* glsl */ `
@@ -92,25 +87,18 @@ const kPinColor = /* glsl */ `
   diffuseColor.a = 1.0 - smoothstep(1.0 - 2.0 * blur, 1.0, radius);
 `;
 
-export interface GroundUniforms {
-  gridStep: { value: number };
-  gridOrigin: { value: THREE.Vector2 };
-  gridColor: { value: THREE.Color };
-}
-
 // Ground that receives shadows, carries a grid, and fades toward its rim.
-export function makeGroundMaterial(uniforms: GroundUniforms): THREE.ShadowMaterial {
+export function makeGroundMaterial(uniforms: Uniforms): THREE.ShadowMaterial {
   const material = new THREE.ShadowMaterial({ opacity: 0.3, side: THREE.DoubleSide, depthWrite: false });
-  material.onBeforeCompile = (shader) => {
-    Object.assign(shader.uniforms, uniforms);
-    shader.vertexShader = shader.vertexShader
-      .replace("#include <common>", "#include <common>\nvarying vec2 vPlane;")
-      .replace("#include <begin_vertex>", "#include <begin_vertex>\nvPlane = position.xy;");
-    shader.fragmentShader = shader.fragmentShader
-      .replace("#include <common>", `#include <common>\n${kGroundPars}`)
-      .replace("gl_FragColor = vec4( color, opacity * ( 1.0 - getShadowMask() ) );", kGroundColor);
+  const vertex = {
+    "#include <common>": "#include <common>\nvarying vec2 vPlane;",
+    "#include <begin_vertex>": "#include <begin_vertex>\nvPlane = position.xy;",
   };
-  return material;
+  const fragment = {
+    "#include <common>": `#include <common>\n${kGroundPars}`,
+    "gl_FragColor = vec4( color, opacity * ( 1.0 - getShadowMask() ) );": kGroundColor,
+  };
+  return extend(material, uniforms, vertex, fragment);
 }
 
 const kGroundPars = /* glsl */ `

@@ -6,6 +6,7 @@ import type { Body, Box } from "./body";
 import { sceneAxes } from "./cameras";
 import { ContactDots } from "./contacts";
 import type { DisplaySettings } from "./display";
+import { disposeOf } from "./dispose";
 import { dot, isInside, length, minus, type Lens } from "./lens";
 import { ObstacleBodies } from "./obstacles";
 import type { Clip } from "./picking";
@@ -32,8 +33,8 @@ export class Stage {
   private readonly sky = new THREE.HemisphereLight("#ffffff", "#c4bfb8", 1.9);
   private readonly sun = new THREE.DirectionalLight("#fffaf0", 1.9);
   private readonly lamp = new THREE.DirectionalLight("#ffffff", 0.55); // light at the camera
-  private readonly obstacles = new ObstacleBodies();
-  private readonly contacts = new ContactDots();
+  readonly obstacles = new ObstacleBodies();
+  readonly contacts = new ContactDots();
   private readonly tip = new TipBody();
   private readonly lit = new THREE.Sphere(new THREE.Vector3(), 0); // region that the shadow map covers
 
@@ -47,8 +48,8 @@ export class Stage {
     this.sun.shadow.radius = 6;
     this.sun.shadow.bias = -0.0008;
     this.extras.matrixAutoUpdate = false;
-    this.extras.add(this.contacts.root);
-    this.scene.add(this.extras, this.sky, this.sun, this.sun.target, this.lamp, this.lamp.target, this.obstacles.root, this.tip.root);
+    this.extras.add(this.contacts);
+    this.scene.add(this.extras, this.sky, this.sun, this.sun.target, this.lamp, this.lamp.target, this.obstacles, this.tip);
   }
 
   // Places lights around the bounding box of a scene.
@@ -77,15 +78,6 @@ export class Stage {
     this.renderer.shadowMap.needsUpdate = true;
   }
 
-  get hasGround(): boolean {
-    return this.obstacles.hasGround;
-  }
-
-  // `contacts`: as in Picture. `largest`: pressure of the last color [Pa].
-  showContacts(contacts: Float32Array, largest: number): void {
-    this.contacts.show(contacts, largest);
-  }
-
   showTip(tip: ProbeState | null, color: string): void {
     if (this.tip.show(tip, color, (point) => this.toUnits(point), this.radius)) this.renderer.shadowMap.needsUpdate = true;
   }
@@ -108,9 +100,9 @@ export class Stage {
 
   apply(settings: DisplaySettings, colors: { background: string; grid: string }): void {
     this.scene.background = new THREE.Color(colors.background);
-    this.obstacles.root.visible = settings.obstacles;
+    this.obstacles.visible = settings.obstacles;
     this.obstacles.color(colors.grid);
-    this.contacts.root.visible = settings.contacts;
+    this.contacts.visible = settings.contacts;
     this.sun.castShadow = settings.shadows;
     this.renderer.shadowMap.needsUpdate = true;
   }
@@ -121,7 +113,8 @@ export class Stage {
       const inside = (dot(clip.normal, this.center) - clip.offset) / this.radius; // depth of the scene's middle [radii]
       planes.push(new THREE.Plane(new THREE.Vector3(...clip.normal), inside));
     }
-    for (const shown of [this.body, this.obstacles, this.contacts]) shown?.clip(planes);
+    for (const { material } of [this.obstacles, this.contacts]) material.clippingPlanes = planes;
+    this.body?.clip(planes);
     this.renderer.shadowMap.needsUpdate = true;
   }
 
@@ -138,9 +131,7 @@ export class Stage {
 
   dispose(): void {
     this.remove();
-    this.tip.dispose();
-    this.obstacles.dispose();
-    this.contacts.dispose();
+    disposeOf(this.scene);
     this.sun.dispose();
     this.renderer.dispose();
     this.renderer.forceContextLoss(); // browsers allow about sixteen contexts

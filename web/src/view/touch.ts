@@ -1,26 +1,9 @@
 // Pointer actions in a view: turn the camera, drag the body by a spring, pin it with a brush, read values.
-import type { Page } from "../page";
-import type { SideName, Vec3 } from "../protocol";
-import type { Store } from "../store";
-import type { CameraRig } from "./cameras";
-import type { Display } from "./display";
-import { isBehind, isFinite3, onFacingPlane, pixelsPerMeter, project, rayThrough, type Lens } from "./lens";
-import { pick, verticesInStroke, type Hit, type Surface } from "./picking";
+import type { Vec3 } from "../protocol";
+import { isBehind, isFinite3, onFacingPlane, pixelsPerMeter, project, rayThrough } from "./lens";
+import { pick, verticesInStroke, type Hit } from "./picking";
 import { depthOf, inwardNormal, wayIn, type Way } from "./pressing";
-
-export interface Touched {
-  readonly host: HTMLElement;
-  readonly store: Store;
-  readonly page: Page;
-  readonly side: SideName;
-  readonly display: Display;
-  readonly rig: CameraRig;
-  lens(): Lens;
-  surface(): Surface | null;
-  redraw(): void;
-  read(hit: Hit | null): void; // a click that requests values
-  showPins(vertices: number[]): void;
-}
+import type { View } from "./view";
 
 type Gesture =
   | { kind: "turn" | "pan"; moved: number; hit: Hit | null; reads: boolean }
@@ -39,24 +22,22 @@ export class Touch {
   private readonly pointers = new Map<number, [number, number]>();
   private waiting = false; // waiting for the next frame to send the movement
   private readonly listeners = new AbortController();
-  private readonly stop: (() => void)[] = [];
 
-  constructor(private readonly view: Touched) {
+  constructor(private readonly view: View) {
     const host = view.host;
     const signal = this.listeners.signal;
     host.addEventListener("pointerdown", (event) => this.down(event), { signal });
     host.addEventListener("pointermove", (event) => this.move(event), { signal });
-    host.addEventListener("pointerup", (event) => this.up(event), { signal });
-    host.addEventListener("pointercancel", (event) => this.up(event), { signal });
-    host.addEventListener("lostpointercapture", (event) => this.up(event), { signal });
+    for (const end of ["pointerup", "pointercancel", "lostpointercapture"] as const)
+      host.addEventListener(end, (event) => this.up(event), { signal });
     host.addEventListener("pointerleave", () => this.leave(), { signal });
     host.addEventListener("wheel", (event) => this.wheel(event), { signal, passive: false });
     host.addEventListener("contextmenu", (event) => event.preventDefault(), { signal });
     window.addEventListener("blur", () => this.end(), { signal });
     window.addEventListener("keydown", (event) => event.key === "Escape" && this.end(), { signal });
-    this.stop.push(view.store.on("role", (steers) => !steers && this.end()));
-    this.stop.push(view.store.on("connected", (connected) => !connected && this.end()));
-    this.stop.push(view.store.on("geometry", (side) => side === view.side && this.end()));
+    view.store.on("role", (steers) => !steers && this.end(), signal);
+    view.store.on("connected", (connected) => !connected && this.end(), signal);
+    view.store.on("geometry", (side) => side === view.side && this.end(), signal);
   }
 
   // Whether the brush pins; Alt inverts it.
@@ -72,7 +53,6 @@ export class Touch {
   dispose(): void {
     this.end();
     this.listeners.abort();
-    for (const stop of this.stop) stop();
   }
 
   private down(event: PointerEvent): void {

@@ -1,5 +1,6 @@
 // 3-D view of one side: draws its newest picture, and only after a change.
 import "./view.css";
+import { png } from "../dom";
 import type { Highlight, Page } from "../page";
 import { hasBlownUp } from "../plots/gain";
 import type { SideName } from "../protocol";
@@ -12,16 +13,16 @@ import { chooseLabels, type Label } from "./labels";
 import type { Lens } from "./lens";
 import { markersOn, nearestOn } from "./markers";
 import { kBarWidth } from "./marks";
-import { Overlay, png, readStyle, type Dot, type Marks, type Style } from "./overlay";
+import { Overlay, readStyle, type Dot, type Marks, type Style } from "./overlay";
 import { Pace } from "./pace";
 import { interpolated, nearestVertex, type Hit, type Surface } from "./picking";
 import { Stage } from "./stage";
-import { Touch, type Touched } from "./touch";
+import { Touch } from "./touch";
 import { valueText } from "./values";
 
 const kLargest = 8192; // largest side of a screenshot [px]
 
-export class View implements Touched {
+export class View {
   private readonly glCanvas = document.createElement("canvas");
   private readonly overlay = new Overlay();
   private readonly message = document.createElement("div");
@@ -36,8 +37,6 @@ export class View implements Touched {
   private frame = 0; // id of the requested frame
   private fixedSize: [number, number] | null = null;
   private sharpness = 1; // scale of a screenshot
-  private rigStop = (): void => {};
-  private readonly stop: (() => void)[] = [];
   private readonly listeners = new AbortController();
 
   constructor(
@@ -98,6 +97,7 @@ export class View implements Touched {
     if (this.figure.body?.box) this.rig.center(this.figure.body.box.lower, this.figure.body.box.upper);
   }
 
+  // Shows the values at a clicked point.
   read(hit: Hit | null): void {
     if (hit && this.figure.body) this.card.open(hit, nearestVertex(hit, this.figure.body.geometry.triangles));
     else this.card.close();
@@ -128,7 +128,6 @@ export class View implements Touched {
 
   dispose(): void {
     this.listeners.abort();
-    for (const stop of [...this.stop, this.rigStop]) stop();
     this.touch.dispose();
     this.card.close();
     cancelAnimationFrame(this.frame);
@@ -170,23 +169,24 @@ export class View implements Touched {
 
   private listen(): void {
     const mine = (listener: () => void) => (side: SideName) => side === this.side && listener();
-    const { store, display, page, stop } = this;
-    stop.push(store.on("scene", mine(() => this.takeScene())));
-    stop.push(store.on("geometry", mine(() => this.takeGeometry())));
-    stop.push(store.on("obstacles", mine(() => this.takeObstacles())));
-    stop.push(store.on("picture", mine(() => this.takePicture())));
-    stop.push(store.on("pins", mine(() => this.showPins(this.figure.side?.pins ?? []))));
-    stop.push(store.on("state", () => this.takeState()));
-    stop.push(store.on("capture", () => this.redraw()));
-    stop.push(display.on("changed", () => this.applyDisplay()));
-    stop.push(display.on("range", () => this.recolor()));
-    stop.push(page.on("theme", () => this.applyDisplay()));
-    stop.push(page.on("layout", () => this.applyDisplay()));
-    if (this.side === "a") stop.push(page.on("highlight", (highlights) => this.highlight(highlights)));
+    const { store, display, page } = this;
+    const { signal } = this.listeners;
+    store.on("scene", mine(() => this.takeScene()), signal);
+    store.on("geometry", mine(() => this.takeGeometry()), signal);
+    store.on("obstacles", mine(() => this.takeObstacles()), signal);
+    store.on("picture", mine(() => this.takePicture()), signal);
+    store.on("pins", mine(() => this.showPins(this.figure.side?.pins ?? [])), signal);
+    store.on("state", () => this.takeState(), signal);
+    store.on("capture", () => this.redraw(), signal);
+    display.on("changed", () => this.applyDisplay(), signal);
+    display.on("camera", () => this.redraw(), signal);
+    display.on("range", () => this.recolor(), signal);
+    page.onLook(() => this.applyDisplay(), signal);
+    if (this.side === "a") page.on("highlight", (highlights) => this.highlight(highlights), signal);
     const sizes = new ResizeObserver(() => this.redraw());
     sizes.observe(this.host);
-    stop.push(() => sizes.disconnect());
-    document.addEventListener("visibilitychange", () => this.pace.go(), { signal: this.listeners.signal });
+    signal.addEventListener("abort", () => sizes.disconnect());
+    document.addEventListener("visibilitychange", () => this.pace.go(), { signal });
   }
 
   private takeState(): void {
@@ -226,8 +226,6 @@ export class View implements Touched {
   }
 
   private applyDisplay(): void {
-    this.rigStop();
-    this.rigStop = this.rig.on("changed", () => this.redraw());
     this.restyle();
     this.figure.apply(this.style);
     this.tellUnnumbered();
@@ -284,7 +282,7 @@ export class View implements Touched {
     const brushes = settings.tool === "pin" && cursor;
     return {
       axes: settings.axes,
-      gridStep: this.figure.body && this.stage?.hasGround ? this.stage.gridStep : 0,
+      gridStep: this.figure.body && this.stage?.obstacles.hasGround ? this.stage.gridStep : 0,
       bar: shown && { ...shown, map: this.display.map(shown.field) },
       contact: this.figure.contact(),
       bodies: shown ? [] : this.figure.bodies(),
