@@ -5,25 +5,12 @@
 namespace aspic::viewer {
 namespace {
 
-const char* name_of(FitStage stage) {
-  switch (stage) {
-    case FitStage::uniform:
-      return "one value for the whole body";
-    case FitStage::mesh_errors:
-      return "discretization error, by a finer mesh";
-    case FitStage::field:
-      return "a value for every tet";
-    case FitStage::uncertainty:
-      return "uncertainty";
-    case FitStage::parts:
-      return "segmentation into parts";
-    case FitStage::cross_validation:
-      return "leave-one-out cross-validation";
-    case FitStage::next_indentation:
-      return "most informative next poke";
-  }
-  return "";
-}
+// In the order of FitStage.
+constexpr const char* kFitStageTexts[] = {
+    "one value for the whole body", "discretization error, by a finer mesh", "a value for every tet",     "uncertainty",
+    "segmentation into parts",      "leave-one-out cross-validation",        "most informative next poke"};
+
+const char* name_of(FitStage stage) { return kFitStageTexts[static_cast<size_t>(stage)]; }
 
 // The parameterization of a stage. The first stage has one value per quantity.
 std::vector<FitParameter> parameters_of(const FitPlan& plan, FitStage stage) {

@@ -14,19 +14,10 @@ constexpr double kSumRoundOff = 1e-12;
 
 }  // namespace
 
-std::string_view to_string(EnergyBound bound) {
-  switch (bound) {
-    case EnergyBound::none:
-      return "none";
-    case EnergyBound::not_guaranteed:
-      return "not_guaranteed";
-    case EnergyBound::holds:
-      return "holds";
-    case EnergyBound::broken:
-      return "broken";
-  }
-  return "unknown";
-}
+// In the order of EnergyBound.
+constexpr std::string_view kEnergyBoundNames[] = {"none", "not_guaranteed", "holds", "broken"};
+
+std::string_view to_string(EnergyBound bound) { return kEnergyBoundNames[static_cast<size_t>(bound)]; }
 
 EnergyBound energy_bound(const BoundedEnergies& energies, double accepted) {
   const double round_off = kSumRoundOff * energies.magnitude + energies.round_off;

@@ -11,25 +11,11 @@
 
 namespace aspic {
 
-std::string_view to_string(InitialGuess guess) {
-  switch (guess) {
-    case InitialGuess::none:
-      return "none";
-    case InitialGuess::best:
-      return "best";
-    case InitialGuess::zero:
-      return "zero";
-    case InitialGuess::current:
-      return "current";
-    case InitialGuess::extrapolated:
-      return "extrapolated";
-    case InitialGuess::last_increment:
-      return "last_increment";
-    case InitialGuess::accelerated:
-      return "accelerated";
-  }
-  return "unknown";
-}
+// In the order of InitialGuess.
+constexpr std::string_view kInitialGuessNames[] = {"none",         "best",           "zero",       "current",
+                                                   "extrapolated", "last_increment", "accelerated"};
+
+std::string_view to_string(InitialGuess guess) { return kInitialGuessNames[static_cast<size_t>(guess)]; }
 
 namespace {
 

@@ -165,20 +165,11 @@ void ProgressiveProjection::relax() {
   if (threshold_ != kNone) threshold_ *= kRelax;
 }
 
+// In the order of NewtonDefiniteness.
+constexpr std::string_view kNewtonDefinitenessNames[] = {"exact", "clamped", "absolute", "on_demand", "progressive"};
+
 std::string_view to_string(NewtonDefiniteness definiteness) {
-  switch (definiteness) {
-    case NewtonDefiniteness::exact:
-      return "exact";
-    case NewtonDefiniteness::clamped:
-      return "clamped";
-    case NewtonDefiniteness::absolute:
-      return "absolute";
-    case NewtonDefiniteness::on_demand:
-      return "on_demand";
-    case NewtonDefiniteness::progressive:
-      return "progressive";
-  }
-  return "unknown";
+  return kNewtonDefinitenessNames[static_cast<size_t>(definiteness)];
 }
 
 std::vector<NewtonDefiniteness> all_definiteness() {

@@ -9,49 +9,17 @@
 
 namespace aspic {
 
-std::string_view to_string(Status status) {
-  switch (status) {
-    case Status::converged:
-      return "converged";
-    case Status::round_off:
-      return "round_off";
-    case Status::budget:
-      return "budget";
-    case Status::iteration_limit:
-      return "iteration_limit";
-    case Status::stuck:
-      return "stuck";
-    case Status::no_descent:
-      return "no_descent";
-    case Status::interrupted:
-      return "interrupted";
-    case Status::undefined:
-      return "undefined";
-    case Status::unstable:
-      return "unstable";
-    case Status::inaccurate:
-      return "inaccurate";
-  }
-  return "unknown";
-}
+// In the order of Status.
+constexpr std::string_view kStatusNames[] = {"converged",  "round_off",   "budget",    "iteration_limit", "stuck",
+                                             "no_descent", "interrupted", "undefined", "unstable",        "inaccurate"};
 
-std::string_view to_string(Criterion criterion) {
-  switch (criterion) {
-    case Criterion::scale:
-      return "scale";
-    case Criterion::first_gradient:
-      return "first_gradient";
-    case Criterion::absolute:
-      return "absolute";
-    case Criterion::decrement:
-      return "decrement";
-    case Criterion::velocity:
-      return "velocity";
-    case Criterion::acceleration:
-      return "acceleration";
-  }
-  return "unknown";
-}
+std::string_view to_string(Status status) { return kStatusNames[static_cast<size_t>(status)]; }
+
+// In the order of Criterion.
+constexpr std::string_view kCriterionNames[] = {"scale",     "first_gradient", "absolute",
+                                                "decrement", "velocity",       "acceleration"};
+
+std::string_view to_string(Criterion criterion) { return kCriterionNames[static_cast<size_t>(criterion)]; }
 
 std::vector<Criterion> all_criteria() {
   return {Criterion::scale,     Criterion::first_gradient, Criterion::absolute,

@@ -20,21 +20,10 @@ std::unique_ptr<LinearSolver> solver_for(PreconditionerKind kind, std::string_vi
 
 }  // namespace
 
-std::string_view to_string(PreconditionerKind kind) {
-  switch (kind) {
-    case PreconditionerKind::none:
-      return "none";
-    case PreconditionerKind::mass:
-      return "mass";
-    case PreconditionerKind::diagonal:
-      return "diagonal";
-    case PreconditionerKind::hessian:
-      return "hessian";
-    case PreconditionerKind::own:
-      return "own";
-  }
-  return "unknown";
-}
+// In the order of PreconditionerKind.
+constexpr std::string_view kPreconditionerKindNames[] = {"none", "mass", "diagonal", "hessian", "own"};
+
+std::string_view to_string(PreconditionerKind kind) { return kPreconditionerKindNames[static_cast<size_t>(kind)]; }
 
 std::vector<PreconditionerKind> all_preconditioners() {
   return {PreconditionerKind::none, PreconditionerKind::mass, PreconditionerKind::diagonal,
