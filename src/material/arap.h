@@ -47,9 +47,7 @@ struct Arap {
                 "Reproduces the shear modulus only: la_L is ignored, so at small strain nu = 0 "
                 "and E = 2 mu_L. The only states without stress are the rest shape, up to "
                 "rotation; the stress jumps where two signed singular values sum to zero, F = 0 "
-                "among them.",
-            .extra = {},
-            .barrier = false};
+                "among them."};
   }
 };
 

@@ -9,12 +9,7 @@
 
 namespace aspic {
 
-struct Corotated {
-  template <class T>
-  struct Params {
-    T mu, lambda;  // [Pa]
-  };
-
+struct Corotated : LameParameters {
   template <class T>
   static T psi(const Mat3<T>& F, const Params<T>& p) {
     const T dJ = determinant(F) - T(1.0);
@@ -33,11 +28,6 @@ struct Corotated {
     return H;
   }
 
-  template <class T>
-  static Params<T> params(const MaterialParametersOver<T>& m) {
-    return {m.lame.mu, m.lame.lambda};
-  }
-
   static long double reference_energy(const PrincipalStretches& s, const ReferenceModuli& m) {
     return m.mu * s.strain2 + m.la / 2 * (s.J - 1) * (s.J - 1);
   }
@@ -50,9 +40,7 @@ struct Corotated {
             .remarks =
                 "Defined for inverted elements. The only states without stress are the rest "
                 "shape, up to rotation. R, and so the stress, jumps where two signed singular "
-                "values sum to zero, F = 0 among them. [Stomakhin 2012]",
-            .extra = {},
-            .barrier = false};
+                "values sum to zero, F = 0 among them. [Stomakhin 2012]"};
   }
 };
 

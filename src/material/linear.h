@@ -6,12 +6,7 @@
 
 namespace aspic {
 
-struct Linear {
-  template <class T>
-  struct Params {
-    T mu, lambda;  // [Pa]
-  };
-
+struct Linear : LameParameters {
   template <class T>
   static T psi(const Mat3<T>& F, const Params<T>& p) {
     const Mat3<T> e = strain(F);
@@ -38,11 +33,6 @@ struct Linear {
     return H;
   }
 
-  template <class T>
-  static Params<T> params(const MaterialParametersOver<T>& m) {
-    return {m.lame.mu, m.lame.lambda};
-  }
-
   static long double reference_energy(const PrincipalStretches& s, const ReferenceModuli& m) {
     return m.mu * s.strain2 + m.la / 2 * s.strain * s.strain;
   }
@@ -54,9 +44,7 @@ struct Linear {
                     R"tex(\varepsilon = \tfrac12 (F + F^{\mathsf T}) - I)tex"},
             .remarks =
                 "Not invariant under rotation: a rotating body swells, so it is for small displacements only. "
-                "The energy is convex: one Newton iteration reaches the minimum from anywhere.",
-            .extra = {},
-            .barrier = false};
+                "The energy is convex: one Newton iteration reaches the minimum from anywhere."};
   }
 
  private:

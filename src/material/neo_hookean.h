@@ -8,12 +8,7 @@
 
 namespace aspic {
 
-struct NeoHookeanLaw {
-  template <class T>
-  struct Params {
-    T mu, lambda;  // [Pa]
-  };
-
+struct NeoHookeanLaw : LameParameters {
   template <class T>
   static T energy(const T& I1, const T& J, const Params<T>& p) {
     const T dJ = J - T(1.0);
@@ -39,9 +34,7 @@ struct NeoHookeanLaw {
             .tex = {R"tex(\psi = \tfrac{\mu}{2} (I_1 - 3) - \mu (J - 1) + \tfrac{\lambda + \mu}{2} (J - 1)^2)tex"},
             .remarks =
                 "Defined for inverted elements. Has a second stable state, collapsed: a body shrunk uniformly "
-                "below 0.291 of its size (nu = 0.3; 0.091 at nu = 0.45) does not recover. [Smith 2018]",
-            .extra = {},
-            .barrier = false};
+                "below 0.291 of its size (nu = 0.3; 0.091 at nu = 0.45) does not recover. [Smith 2018]"};
   }
 };
 

@@ -41,7 +41,6 @@ struct NeoHookeanIsochoricLaw {
                 "+inf for J <= 0, so the initial state must be free of inversion. The only state "
                 "without stress is the rest shape, up to rotation, but the energy stays finite "
                 "(K/2) as a body shrinks uniformly to a point: no barrier in that direction.",
-            .extra = {},
             .barrier = true};
   }
 };

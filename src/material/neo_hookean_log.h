@@ -8,12 +8,7 @@
 
 namespace aspic {
 
-struct NeoHookeanLogLaw {
-  template <class T>
-  struct Params {
-    T mu, lambda;  // [Pa]
-  };
-
+struct NeoHookeanLogLaw : LameParameters {
   template <class T>
   static T energy(const T& I1, const T& J, const Params<T>& p) {
     const T L = log(J);
@@ -24,11 +19,6 @@ struct NeoHookeanLogLaw {
     const T inverse_J = T(1.0) / J;
     const T tension = p.lambda * log(J) - p.mu;  // J dpsi/dJ
     return {T(0.5) * p.mu, tension * inverse_J, (p.lambda - tension) * inverse_J * inverse_J};
-  }
-
-  template <class T>
-  static Params<T> params(const MaterialParametersOver<T>& m) {
-    return {m.lame.mu, m.lame.lambda};
   }
 
   static long double reference_energy(const PrincipalStretches& s, const ReferenceModuli& m) {
@@ -47,7 +37,6 @@ struct NeoHookeanLogLaw {
                 "than the "
                 "barrier grows. "
                 "The volume term softens beyond J = e.",
-            .extra = {},
             .barrier = true};
   }
 };

@@ -9,12 +9,7 @@
 
 namespace aspic {
 
-struct NeoHookeanLogJ2Law {
-  template <class T>
-  struct Params {
-    T mu, lambda;  // [Pa]
-  };
-
+struct NeoHookeanLogJ2Law : LameParameters {
   template <class T>
   static T energy(const T& I1, const T& J, const Params<T>& p) {
     const T dJ = J - T(1.0);
@@ -24,11 +19,6 @@ struct NeoHookeanLogJ2Law {
   static LawDerivativesLinearInI1<T> derivatives(const T&, const T& J, const Params<T>& p) {
     const T r = T(1.0) / J;
     return {T(0.5) * p.mu, p.lambda * (J - T(1.0)) - p.mu * r, p.lambda + p.mu * r * r};
-  }
-
-  template <class T>
-  static Params<T> params(const MaterialParametersOver<T>& m) {
-    return {m.lame.mu, m.lame.lambda};
   }
 
   static long double reference_energy(const PrincipalStretches& s, const ReferenceModuli& m) {
@@ -43,7 +33,6 @@ struct NeoHookeanLogJ2Law {
             .remarks =
                 "Barrier: +inf for J <= 0, so the initial state must be free of inversion. Convex in J, and the only "
                 "state without stress is the rest shape, up to rotation (la >= 0).",
-            .extra = {},
             .barrier = true};
   }
 };

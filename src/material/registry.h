@@ -24,12 +24,25 @@ struct ExtraParameter {
   double fallback = 0, min = 0, max = 0;  // default value and accepted range
 };
 
+// Base of the materials whose parameters are mu and lambda, by default those of Lame.
+struct LameParameters {
+  template <class T>
+  struct Params {
+    T mu, lambda;  // [Pa]
+  };
+
+  template <class T>
+  static Params<T> params(const MaterialParametersOver<T>& m) {
+    return {m.lame.mu, m.lame.lambda};
+  }
+};
+
 struct MaterialInfo {
   std::string name;              // "neo_hookean"
   std::string formula;           // energy density as one line of plain text
   std::vector<std::string> tex;  // energy density, definitions of its symbols and its domain in TeX, for pages
   std::string remarks;           // limits and source; one or two sentences
-  std::vector<ExtraParameter> extra;
+  std::vector<ExtraParameter> extra = {};
   bool barrier = false;  // +inf for det F <= 0
 };
 

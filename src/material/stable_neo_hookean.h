@@ -9,12 +9,7 @@
 
 namespace aspic {
 
-struct StableNeoHookeanLaw {
-  template <class T>
-  struct Params {
-    T mu, lambda;  // [Pa]
-  };
-
+struct StableNeoHookeanLaw : LameParameters {
   template <class T>
   static T energy(const T& I1, const T& J, const Params<T>& p) {
     const T dJ = J - T(1.0);
@@ -53,9 +48,7 @@ struct StableNeoHookeanLaw {
         .remarks =
             "Defined for inverted elements. The only states without stress are the rest "
             "shape, up to rotation, and F = 0: a saddle whose Hessian is zero, which a body "
-            "in one point leaves only after a perturbation. [Smith 2018]",
-        .extra = {},
-        .barrier = false};
+            "in one point leaves only after a perturbation. [Smith 2018]"};
   }
 };
 

@@ -9,12 +9,7 @@
 
 namespace aspic {
 
-struct Stvk {
-  template <class T>
-  struct Params {
-    T mu, lambda;  // [Pa]
-  };
-
+struct Stvk : LameParameters {
   template <class T>
   static T psi(const Mat3<T>& F, const Params<T>& p) {
     const Mat3<T> E = green_strain(F);
@@ -32,11 +27,6 @@ struct Stvk {
     return H;
   }
 
-  template <class T>
-  static Params<T> params(const MaterialParametersOver<T>& m) {
-    return {m.lame.mu, m.lame.lambda};
-  }
-
   static long double reference_energy(const PrincipalStretches& s, const ReferenceModuli& m) {
     return m.mu * s.green2 + m.la / 2 * s.green * s.green;
   }
@@ -49,9 +39,7 @@ struct Stvk {
             .remarks =
                 "Softens in compression: a body shrunk uniformly below 1/sqrt(3) = 0.577 of its "
                 "size collapses towards F = 0, and mirror images of the rest shape are free of "
-                "stress too. For small strain with large rotation.",
-            .extra = {},
-            .barrier = false};
+                "stress too. For small strain with large rotation."};
   }
 
  private:
