@@ -4,7 +4,7 @@
 #include <string>
 
 #include "verification/families.h"
-#include "verification/layers.h"
+#include "verification/models.h"
 #include "verification/statics.h"
 
 namespace aspic::verify {

@@ -7,7 +7,6 @@
 
 #include "mesh/generators.h"
 #include "verification/families.h"
-#include "verification/layers.h"
 #include "verification/models.h"
 #include "verification/statics.h"
 

@@ -4,8 +4,8 @@
 
 #include "material/lame.h"
 #include "verification/families.h"
-#include "verification/layers.h"
 #include "verification/membrane_reference.h"
+#include "verification/models.h"
 #include "verification/statics.h"
 
 namespace aspic::verify {

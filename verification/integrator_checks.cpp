@@ -4,7 +4,6 @@
 
 #include "verification/families.h"
 #include "verification/integrators.h"
-#include "verification/oscillator.h"
 
 namespace aspic::verify {
 namespace {

@@ -1,5 +1,6 @@
 // Small models shared by checks and tests, and steps that must converge.
 #pragma once
+#include <functional>
 #include <span>
 #include <string>
 #include <utility>
@@ -10,6 +11,22 @@
 #include "dynamics/simulation.h"
 
 namespace aspic::verify {
+
+// V = k/2 sum (z - Z)^2 over all or the given vertices holds them in their planes z = const, or those of another axis.
+// A stiffness k far above that of the cells gives plane strain.
+std::unique_ptr<Energy> make_plane_hold(const TetMesh& mesh, double stiffness, int axis = 2,
+                                        std::vector<int> vertices = {});
+
+// A body of one layer of cells, for plane problems: length x height cells of equal size, one cell thick, mapped from
+// [0, 1]^2 by `place`; thickness `thickness`.
+TetMesh make_layer(int length, int height, double thickness,
+                   const std::function<std::array<double, 2>(double, double)>& place);
+
+// Moduli for which plane strain equals plane stress with E and nu.
+struct PlaneModuli {
+  double young, poisson;
+};
+PlaneModuli plane_stress(double young, double poisson);
 
 // Momenta of a simulation.
 struct Momenta {

@@ -45,7 +45,7 @@ Law make_law() {
       smooth_states<M>()};
 }
 
-// throws InvalidInput for an unknown one
+// Throws InvalidInput for an unknown material.
 const Law& law(const std::string& material) {
   static const std::map<std::string, Law> laws = [] {
     std::map<std::string, Law> all;
@@ -53,11 +53,6 @@ const Law& law(const std::string& material) {
     return all;
   }();
   return laws.at(material_info(material).name);
-}
-
-long double principal_energy(const std::string& material, const std::array<long double, 3>& stretch, double young,
-                             double poisson) {
-  return law(material).reference(PrincipalStretches(stretch), {young, poisson});
 }
 
 std::string kind_of(const NamedState& state) { return state.name.substr(0, state.name.find(',')); }
@@ -181,6 +176,11 @@ void check_slopes(const Subject& subject, Findings& found) {
 }
 
 }  // namespace
+
+long double principal_energy(const std::string& material, const std::array<long double, 3>& stretch, double young,
+                             double poisson) {
+  return law(material).reference(PrincipalStretches(stretch), {young, poisson});
+}
 
 void add_point_checks(std::vector<Check>& checks) {
   const std::string states =

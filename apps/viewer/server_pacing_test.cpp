@@ -1,4 +1,4 @@
-#include "viewer/server_pacing.h"
+#include "viewer/server_simulation.h"
 
 #include <gtest/gtest.h>
 

@@ -5,8 +5,8 @@
 
 #include "base/check.h"
 #include "base/error.h"
-#include "fit/columns.h"
 #include "fit/scaled_inverse.h"
+#include "fit/spectrum.h"
 #include "math/vectors.h"
 #include "mesh/box.h"
 

@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "dynamics/models_test.h"
-#include "verification/oscillator.h"
+#include "verification/integrators.h"
 
 namespace aspic {
 namespace {

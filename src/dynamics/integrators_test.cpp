@@ -8,7 +8,6 @@
 
 #include "dynamics/models_test.h"
 #include "verification/integrators.h"
-#include "verification/oscillator.h"
 
 namespace aspic {
 namespace {

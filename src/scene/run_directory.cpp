@@ -16,7 +16,6 @@
 #include "io/vtu.h"
 #include "scene/run_directory_frame.h"
 #include "scene/run_directory_layout.h"
-#include "scene/run_directory_obstacles.h"
 #include "scene/run_directory_skins.h"
 #include "scene/run_directory_tables.h"
 #include "scene/run_lock.h"

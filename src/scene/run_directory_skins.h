@@ -10,6 +10,11 @@
 
 namespace aspic {
 
+std::vector<ObstacleSurface> obstacles_of(const Scene& scene);  // empty without contact
+
+// Writes obstacles/obstacles.vtu with all obstacles, and an OBJ file of each if surfaces of bodies are wanted.
+void write_obstacles(const RunLayout& layout, const Scene& scene);
+
 class RunSkins {
  public:
   static RunSkins create(const RunLayout& layout, const Scene& scene);
