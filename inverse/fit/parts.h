@@ -26,7 +26,7 @@ struct PartsOptions {
 struct PartsEstimate {
   std::vector<double> levels;              // values of z, ascending: mean over the samples
   std::vector<std::vector<double>> share;  // share of each part in each tet: relative frequency
-  std::vector<double> mean, sigma;     // mean and sigma of z in each tet
+  std::vector<double> mean, sigma;         // mean and sigma of z in each tet
 };
 
 // Clusters of z by volume, ascending: k-means in one dimension. Fewer if some coincide.

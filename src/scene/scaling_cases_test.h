@@ -8,7 +8,6 @@
 
 #include "scene/scene_cases_test.h"
 
-
 namespace aspic::scaling {
 
 struct Scales {
