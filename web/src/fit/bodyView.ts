@@ -4,6 +4,7 @@ import "../view/view.css";
 import * as THREE from "three";
 import { element } from "../dom";
 import type { Geometry, Vec3 } from "../protocol";
+import { onLook } from "../theme";
 import { Body, boxOf } from "../view/body";
 import type { CameraRig } from "../view/cameras";
 import type { MapName } from "../view/colorMaps";
@@ -92,6 +93,7 @@ export class BodyView {
     this.stage?.place({ lower: fitted.lower, upper: fitted.upper, up: fitted.up });
     rig.on("changed", () => this.redraw());
     new ResizeObserver(() => this.applyDisplay()).observe(this.element); // the element's colors come from the page
+    onLook(() => this.applyDisplay());
     this.listen();
     this.rebuild();
   }
@@ -119,10 +121,6 @@ export class BodyView {
     this.stage?.extras.clear();
     for (const object of objects) this.stage?.extras.add(object);
     this.redraw();
-  }
-
-  retheme(): void {
-    this.applyDisplay();
   }
 
   redraw(): void {

@@ -50,7 +50,6 @@ export class EnergyPanel implements Panel {
       this.redraw();
     });
     store.on("state", () => this.redraw());
-    page.onLook(() => this.chart.retheme());
     page.keep("energy", { save: () => this.save(), restore: (saved) => this.restore(saved) });
     for (const side of kSides) this.newScene(side);
   }

@@ -97,7 +97,6 @@ export class FunctionsPanel implements Panel {
     });
     this.view.dragged = (at, done) => this.drag(at.x, at.y, done);
     this.view.nudged = (dx, dy) => this.nudge(dx, dy);
-    page.onLook(() => this.retheme());
     page.keep("functions", {
       save: () => this.form.question(this.iteration, kSamples),
       restore: (saved) => this.restore(saved),
@@ -196,11 +195,6 @@ export class FunctionsPanel implements Panel {
       y + (dy * (reply.upper[1] - reply.lower[1])) / 100,
       true,
     );
-  }
-
-  private retheme(): void {
-    this.view.retheme();
-    this.search.chart.retheme();
   }
 
   private draw(): void {

@@ -58,7 +58,6 @@ export class LandscapePanel implements Panel {
     const fill = element("div", { class: "plot-fill" }, this.view.element);
     this.element.append(bar, element("div", { class: "plot-columns plot-fill" }, fill, side));
     for (const event of ["changed", "rows", "looked"] as const) this.chosen.on(event, this.refresh);
-    page.onLook(() => this.view.retheme());
     page.keep("landscape", {
       save: () => ({ model: this.model.input.checked, log: this.log.input.checked }),
       restore: (saved) => this.restore(saved),

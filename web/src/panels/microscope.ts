@@ -53,7 +53,6 @@ export class MicroscopePanel implements Panel {
     this.element.append(bar, this.worst, element("div", { class: "microscope plot-fill" }, tables, this.grid));
     for (const event of ["changed", "rows", "looked"] as const) this.chosen.on(event, this.redraw);
     for (const event of ["scene", "gone"] as const) store.on(event, this.redraw);
-    page.onLook(() => this.charts.forEach((chart) => chart.retheme()));
     page.keep("microscope", { save: () => ({ charts: this.names }), restore: (saved) => this.restore(saved) });
     new ResizeObserver(() => this.arrange()).observe(this.grid);
   }

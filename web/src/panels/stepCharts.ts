@@ -181,11 +181,6 @@ export class StepChart {
     this.select.select.value = name;
   }
 
-  retheme(): void {
-    this.chart.retheme();
-    this.search.chart.retheme();
-  }
-
   // `search`: the line search of the chosen iteration, or the reason why it is missing.
   show(search: Search | string): void {
     const shown = this.name === "search" ? this.search.element : this.chart.element;

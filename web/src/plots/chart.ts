@@ -4,6 +4,7 @@ import uPlot from "uplot";
 import "uplot/dist/uPlot.min.css";
 import "./plots.css";
 import type { MaybeNumber } from "../protocol";
+import { onLook } from "../theme";
 import { axis, padded, ranged, type Axis } from "./axes";
 import { oncePerFrame } from "../controls";
 import { element } from "../dom";
@@ -58,6 +59,7 @@ export class Chart {
   constructor() {
     this.element.append(this.plot, this.legend);
     new ResizeObserver(this.resize).observe(this.plot);
+    onLook(this.resize);
     this.plot.addEventListener("keydown", (event) => this.walk(event));
   }
 
@@ -85,11 +87,6 @@ export class Chart {
     this.readLegend();
   }
 
-  // Applies changed colors and fonts.
-  retheme(): void {
-    if (!sameLook(this.look, palette(this.element))) this.rebuild();
-  }
-
   private rebuild(): void {
     this.chart?.destroy();
     this.chart = null;
@@ -103,10 +100,6 @@ export class Chart {
       this.plot,
     );
     this.readLegend();
-  }
-
-  redraw(): void {
-    this.chart?.redraw(false);
   }
 
   get width(): number {
@@ -238,8 +231,9 @@ export class Chart {
 
   private fit(): void {
     const [width, height] = [this.plot.clientWidth, this.plot.clientHeight];
-    if (!this.chart) this.rebuild();
-    else if (width >= 60 && height >= 40) this.chart.setSize({ width, height });
+    if (width < 60 || height < 40) return;
+    if (this.chart && sameLook(this.look, palette(this.element))) this.chart.setSize({ width, height });
+    else this.rebuild();
   }
 
   private buildLegend(): void {

@@ -1,6 +1,7 @@
 // 3-D picture of a surface that the reader can turn: values over a plane, the quadratic model, a path and marks.
 import * as THREE from "three";
 import { OrbitControls } from "three/addons/controls/OrbitControls.js";
+import { onLook } from "../theme";
 import { disposeOf } from "../view/dispose";
 import { oncePerFrame } from "../controls";
 import { element } from "../dom";
@@ -43,6 +44,7 @@ export class SurfaceView {
     this.camera.add(this.lamp);
     this.lamp.position.set(-1.5, 2, 1);
     new ResizeObserver(() => this.fit()).observe(this.element);
+    onLook(() => this.fit());
   }
 
   // Value above which the surface is cut off; null: not cut.
@@ -54,11 +56,6 @@ export class SurfaceView {
     this.shown = content;
     this.legend.replaceChildren(...(content ? [legendOf(content.signs)] : []));
     this.build();
-  }
-
-  // Applies changed colors and fonts.
-  retheme(): void {
-    if (!sameLook(this.colors, palette(this.element))) this.build();
   }
 
   private build(): void {
@@ -142,7 +139,8 @@ export class SurfaceView {
     if (!this.renderer) this.start();
     if (!this.renderer) return;
     this.renderer.setSize(width, height, false);
-    if (Math.abs(this.wantedStretch() - this.stretch) > 0.1) this.build();
+    const isStretched = Math.abs(this.wantedStretch() - this.stretch) > 0.1;
+    if (isStretched || !sameLook(this.colors, palette(this.element))) this.build();
     this.camera.aspect = width / height;
     this.camera.updateProjectionMatrix();
     const distance = this.distanceThatShowsAll();

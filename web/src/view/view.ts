@@ -5,6 +5,7 @@ import type { Highlight, Page } from "../page";
 import { hasBlownUp } from "../plots/gain";
 import type { SideName } from "../protocol";
 import type { Store } from "../store";
+import { onLook } from "../theme";
 import type { CameraRig } from "./cameras";
 import { Card } from "./card";
 import type { Display } from "./display";
@@ -181,7 +182,7 @@ export class View {
     display.on("changed", () => this.applyDisplay(), signal);
     display.on("camera", () => this.redraw(), signal);
     display.on("range", () => this.recolor(), signal);
-    page.onLook(() => this.applyDisplay(), signal);
+    onLook(() => this.applyDisplay(), signal);
     if (this.side === "a") page.on("highlight", (highlights) => this.highlight(highlights), signal);
     const sizes = new ResizeObserver(() => this.redraw());
     sizes.observe(this.host);
