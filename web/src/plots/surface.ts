@@ -6,7 +6,7 @@ import { disposeOf } from "../view/dispose";
 import { oncePerFrame } from "../controls";
 import { element } from "../dom";
 import { sample, type Point } from "./grid";
-import { legendColumns, legendOf, lineHeight, paintLegend, titled } from "./legend";
+import { legendOf, titled } from "./legend";
 import { cssOf, inkOf, palette, sameLook, type Palette } from "./palette";
 import { SurfaceBody } from "./surfaceBody";
 import type { SurfaceContent } from "./surfaceContent";
@@ -80,14 +80,12 @@ export class SurfaceView {
     this.draw();
     const source = this.renderer.domElement;
     const scale = source.width / Math.max(1, this.element.clientWidth);
-    const line = lineHeight(this.colors, scale);
-    const rows = Math.ceil(this.shown.signs.length / legendColumns(source.width, line));
-    const { canvas, pen } = titled(source, title, this.colors, scale, rows);
+    const canvas = titled(source, title, this.colors, scale, this.shown.signs);
+    const pen = canvas.getContext("2d")!;
     for (const { label, x, y } of this.placedLabels()) {
       pen.fillStyle = inkOf(this.colors, label.color);
-      pen.fillText(label.text, x * scale, y * scale + line * 1.5);
+      pen.fillText(label.text, x * scale, (y + this.colors.fontSize * 2.25) * scale);
     }
-    paintLegend(pen, this.shown.signs, this.colors, source.height + line * 1.6, line);
     return canvas;
   }
 
