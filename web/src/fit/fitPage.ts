@@ -97,7 +97,6 @@ function report(fit: Fit): HTMLElement {
   const body = new FittedBody({ points: fit.floats("points"), tets: fit.indices("tets") }, upward(fit));
   const rig = new CameraRig();
   rig.show(fit.head.name, body.lower, body.upper, body.up);
-  rig.pan(-0.12, 0, 1); // moves the body left of the color bar, in parts of the view's height
   const maps = new Maps(fit, body, rig);
   const misfits = new Misfits(fit, body, rig);
   return element("main", { class: "fit" }, found(fit), section("Stiffness and its uncertainty", "", maps.element), loads(fit), residualSection(fit, misfits), made(fit));
