@@ -8,7 +8,7 @@ import { button, downloadCanvas, element, fileName, saveFile } from "../dom";
 import { balanceText, calmRange, explosionText, Ledger, ledgerColumns } from "../plots/ledger";
 import { csv, short, withUnit } from "../plots/numbers";
 import type { Palette } from "../plots/palette";
-import { paintVerticalLine } from "../plots/verticalLine";
+import { paintVerticalLine } from "../plots/painting";
 import { lowerBound, magnitude, merged, nearest, thinned, type Table } from "../plots/table";
 import type uPlot from "uplot";
 

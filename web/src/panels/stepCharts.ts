@@ -7,7 +7,7 @@ import { short, withUnit } from "../plots/numbers";
 import type { Palette } from "../plots/palette";
 import { SearchChart, type Search } from "../plots/search";
 import { nearest, thinned } from "../plots/table";
-import { paintVerticalLine } from "../plots/verticalLine";
+import { paintVerticalLine } from "../plots/painting";
 import { aboveLowest } from "../plots/words";
 import type { IterationRow, MaybeNumber, StepRow } from "../protocol";
 import type uPlot from "uplot";

@@ -261,8 +261,8 @@ export class View {
     const { vertexLabels, faceLabels } = this.display.settings;
     const surface = this.surface();
     if (!surface || !this.figure.body || !(vertexLabels || faceLabels)) return [];
-    const kinds = { vertices: vertexLabels, tets: faceLabels };
-    return chooseLabels(lens, surface, this.figure.body.geometry, kinds, this.style.em, this.touch.cursor);
+    const options = { vertices: vertexLabels, tets: faceLabels, em: this.style.em, cursor: this.touch.cursor };
+    return chooseLabels(lens, surface, this.figure.body.geometry, options);
   }
 
   // Value under the cursor in reading mode.
