@@ -4,7 +4,7 @@ import { Gif } from "./gif";
 import type { Page } from "./page";
 import type { FileReply, Query, Recording, SideName, State } from "./protocol";
 import type { Store } from "./store";
-import { bytesOf } from "./upload";
+import { saveReply } from "./upload";
 import type { Video } from "./video";
 
 type Format = Extract<Query, { ask: "animation" }>["format"];
@@ -42,7 +42,7 @@ export function openAnimation(store: Store, page: Page, video: Video): void {
 
 async function saveAnimation(store: Store, page: Page, side: SideName, format: Format): Promise<void> {
   const reply = await store.source.ask<FileReply>({ ask: "animation", side, format });
-  saveFile(reply.name, new Blob([bytesOf(reply.base64)]));
+  saveReply(reply);
   page.notice(`${reply.name}: ${reply.note ?? ""}`);
 }
 

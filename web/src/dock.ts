@@ -78,7 +78,6 @@ export class Dock {
     this.root.classList.toggle("closed", this.open === null);
     this.root.classList.toggle("tall", this.open?.isTall ?? false);
     this.root.style.height = this.open === null ? "auto" : chosen;
-    this.page.emit("layout", undefined);
   }
 
   private makeTab(panel: Panel): HTMLElement {

@@ -126,11 +126,10 @@ export async function downloadCanvas(name: string, canvas: HTMLCanvasElement): P
   saveFile(fileName(name, "png"), await png(canvas));
 }
 
-export function chooseFile(accept: string): Promise<File | null> {
-  const input = element("input", { type: "file", accept });
+export function chooseFiles(attributes: { accept?: string; multiple?: boolean }): Promise<File[]> {
+  const input = element("input", { type: "file", ...attributes });
   return new Promise((resolve) => {
-    input.addEventListener("change", () => resolve(input.files?.[0] ?? null));
-    input.addEventListener("cancel", () => resolve(null));
+    for (const end of ["change", "cancel"]) input.addEventListener(end, () => resolve([...(input.files ?? [])]));
     input.click();
   });
 }

@@ -1,13 +1,13 @@
 // The file menu: scenes, workspaces, mouse recordings, deformed meshes.
 import { openAnimation } from "./animation";
-import { chooseFile, fileName, labeled, messageOf, openForm, saveFile, selectOf } from "./dom";
+import { chooseFiles, fileName, labeled, messageOf, openForm, saveFile, selectOf } from "./dom";
 import { openGallery } from "./gallery";
 import { makeMenu } from "./menu";
 import type { Page } from "./page";
-import type { Query, Recording, SceneReply, SideName, TextReply } from "./protocol";
+import type { Recording, SceneReply, SideName, TextReply } from "./protocol";
 import { shortcutButton } from "./shortcuts";
 import type { Store } from "./store";
-import { bytesOf, isSceneOrMesh, prepareUpload } from "./upload";
+import { isSceneOrMesh, prepareUpload, saveReply } from "./upload";
 import type { Video } from "./video";
 import { isWorkspace, openWorkspace, parseRecording, parseWorkspace, saveWorkspace } from "./workspace";
 
@@ -55,16 +55,17 @@ export class Files {
       labeled("obj and ply contain the surface; vtu, msh and mesh the tets", format),
       this.store.side("b") ? labeled("Side", side) : null,
     ];
-    openForm("Save the deformed mesh", fields, "Save", () =>
-      this.saveText({ ask: "mesh", side: side.value as SideName, format: format.value as (typeof kFormats)[number] }),
-    );
+    const save = async (): Promise<void> => {
+      const query = { ask: "mesh", side: side.value as SideName, format: format.value as (typeof kFormats)[number] } as const;
+      saveReply(await this.store.source.ask<TextReply>(query));
+    };
+    openForm("Save the deformed mesh", fields, "Save", save);
   }
 
   private async saveScene(): Promise<void> {
     const reply = await this.store.source.ask<SceneReply>({ ask: "scene", side: "a" });
-    if ("text" in reply) saveFile(reply.name, new Blob([reply.text], { type: "text/plain" }));
-    else {
-      saveFile(reply.name, new Blob([bytesOf(reply.base64)], { type: "application/zip" }));
+    saveReply(reply);
+    if (!("text" in reply)) {
       const folder = reply.name.replace(/\.zip$/, "");
       this.page.notice(`The archive contains the scene with its meshes. Unpack it, then run: aspic run ${folder}/${folder}.toml`);
     }
@@ -87,11 +88,6 @@ export class Files {
     }
   }
 
-  private async saveText(query: Query): Promise<void> {
-    const { name, text } = await this.store.source.ask<TextReply>(query);
-    saveFile(name, new Blob([text], { type: "text/plain" }));
-  }
-
   private async saveRecording(): Promise<void> {
     const recording = await this.store.source.ask<Recording>({ ask: "recording" });
     const name = fileName(`${this.store.name}.recording`, "json");
@@ -104,7 +100,7 @@ export class Files {
   }
 
   private async choose(): Promise<void> {
-    const file = await chooseFile(".json,application/json");
+    const [file] = await chooseFiles({ accept: ".json,application/json" });
     if (file) await this.open(file);
   }
 

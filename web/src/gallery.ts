@@ -1,7 +1,7 @@
 // Dialog that opens another scene: a scene of the program, a recent one, files of the reader's machine, or a path on
 // the program's machine.
 import "./gallery.css";
-import { button, element, labeled, messageOf, openDialog } from "./dom";
+import { button, chooseFiles, element, labeled, messageOf, openDialog } from "./dom";
 import type { GalleryReply } from "./protocol";
 import type { Store } from "./store";
 
@@ -47,17 +47,14 @@ function makePathForm(store: Store, load: (scene: string) => Promise<void>): HTM
   return form;
 }
 
-// The browser's own dialog for several files: a scene and its meshes.
+// Opens the browser's dialog for several files: a scene and its meshes.
 function makeFileChooser(open: (files: File[]) => Promise<void>): HTMLElement {
-  const input = element("input", { type: "file", multiple: true, hidden: true, "aria-label": "Files of this computer" });
-  input.addEventListener("change", () => {
-    const files = [...(input.files ?? [])];
-    input.value = "";
-    if (files.length > 0) void open(files);
-  });
-  const choose = button({ text: "Files of this computer ..." }, () => input.click());
-  const words = "or drop them onto the page: a mesh, a scene with its meshes, or a saved ZIP archive";
-  return element("p", {}, choose, input, ` ${words}`);
+  const run = async (): Promise<void> => {
+    const files = await chooseFiles({ multiple: true });
+    if (files.length > 0) await open(files);
+  };
+  const choose = button({ text: "Files of this computer ..." }, () => void run());
+  return element("p", {}, choose, " or drop them onto the page: a mesh, a scene with its meshes, or a saved ZIP archive");
 }
 
 function makeShelves({ scenes, recent }: GalleryReply, load: (scene: string) => Promise<void>): HTMLElement[] {

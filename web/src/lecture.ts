@@ -72,7 +72,6 @@ export class Lecture {
     if (this.lessons.length === 0) return;
     this.root.hidden = !this.root.hidden;
     this.opener.setAttribute("aria-expanded", String(!this.root.hidden));
-    this.page.emit("layout", undefined);
     if (!this.root.hidden) this.search.focus();
   }
 

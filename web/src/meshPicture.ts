@@ -1,6 +1,6 @@
 // Pictures of meshes for a program that sends them one by one: panels side by side with a common direction, scale and
 // color bar. apps/aspic/mesh_picture.h defines the requests.
-import { Vector3, type Quaternion } from "three";
+import { Vector3 } from "three";
 import { png } from "./dom";
 import { Pack } from "./pack";
 import type { Tell } from "./program";
@@ -32,15 +32,14 @@ const kColors = { background: "#ffffff", grid: "#8a93a1", text: "#2b303a" };
 
 // Direction of the camera, common to all panels.
 class Outlook {
-  readonly orientation: Quaternion;
   private readonly right: Vec3;
   private readonly up: Vec3;
   private readonly forward: Vec3;
 
   constructor(eye: Vec3, up: Vec3) {
     const axes = sceneAxes(up);
-    this.orientation = lookingFrom(new Vector3(...eye).normalize(), axes.up, axes.right);
-    const axis = (x: number, y: number, z: number): Vec3 => new Vector3(x, y, z).applyQuaternion(this.orientation).toArray();
+    const orientation = lookingFrom(new Vector3(...eye).normalize(), axes.up, axes.right);
+    const axis = (x: number, y: number, z: number): Vec3 => new Vector3(x, y, z).applyQuaternion(orientation).toArray();
     [this.right, this.up, this.forward] = [axis(1, 0, 0), axis(0, 1, 0), axis(0, 0, -1)];
   }
 
@@ -124,7 +123,7 @@ class Painter {
     context.fillRect(0, 0, canvas.width, canvas.height);
     panels.forEach((panel, index) => {
       const lens = outlook.lens(panel.middle, height / 2 / scale, width, height);
-      this.draw(panel, lens, outlook, head);
+      this.draw(panel, lens, head);
       context.drawImage(this.glCanvas, index * width, top);
     });
     const ink: Ink = { context, em, text: kColors.text, halo: kColors.background, accent: kColors.text };
@@ -134,7 +133,7 @@ class Painter {
     return png(canvas);
   }
 
-  private draw(panel: Panel, lens: Lens, outlook: Outlook, head: MeshPicture): void {
+  private draw(panel: Panel, lens: Lens, head: MeshPicture): void {
     // Glare and the color of inner sides would hide colors that represent values.
     const meaning: Partial<DisplaySettings> = panel.values ? { shininess: 0, inside: "same" } : {};
     const settings: DisplaySettings = { ...kDefaults, wires: head.wires, ...meaning };
@@ -148,7 +147,7 @@ class Painter {
     body.color(panel.values && head.range ? colors(head.range) : null, "viridis");
     stage.apply(settings, kColors);
     stage.moved();
-    stage.render(lens, outlook.orientation, kColors.text);
+    stage.render(lens, kColors.text);
   }
 
   // Half as high as the panels, centered vertically.

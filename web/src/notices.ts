@@ -1,6 +1,5 @@
 // Messages of the page: state of the connection, activity of the program, refusals, notices and errors.
 import { button, element, messageOf } from "./dom";
-import type { LiveSource } from "./live";
 import type { Page } from "./page";
 import type { Store } from "./store";
 
@@ -36,8 +35,8 @@ export function showNotices(root: HTMLElement, store: Store, page: Page): void {
   store.on("refused", (why) => say(why, "error"));
 
   const showLasting = (): void => {
-    const lost = store.source.live && !store.connected && (store.source as LiveSource).failures > 0;
-    const text = lost ? connectionText((store.source as LiveSource).failures) : store.busy;
+    const lost = store.failures ?? 0;
+    const text = lost ? connectionText(lost) : store.busy;
     lasting.textContent = text;
     lasting.className = `lasting ${lost ? "error" : "busy"}`;
     lasting.hidden = text === "";

@@ -18,9 +18,7 @@ export interface ChosenIteration {
 interface Events {
   chosen: ChosenIteration; // iteration in the microscope
   highlight: Highlight[]; // highlights on the body of side a
-  theme: "light" | "dark"; // the theme has changed; plots read their colors again
   panel: Panel["name"]; // the panel to open in the dock
-  layout: void; // sizes have changed
   notice: { text: string; kind: "info" | "error" };
   cleared: void; // clears notices about the previous scene
 }
@@ -54,12 +52,6 @@ export class Page extends Emitter<Events> {
   shortcut(shortcut: Shortcut): void {
     if (this.shortcuts.has(shortcut.key)) throw new Error(`two shortcuts on ${shortcut.key}`);
     this.shortcuts.set(shortcut.key, shortcut);
-  }
-
-  // Calls back when colors or sizes have changed.
-  onLook(run: () => void, signal?: AbortSignal): void {
-    this.on("theme", run, signal);
-    this.on("layout", run, signal);
   }
 
   notice(text: string, kind: "info" | "error" = "info"): void {

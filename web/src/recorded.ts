@@ -143,7 +143,7 @@ export class RecordedSource implements Source {
 
   private greet(recording: Recording): void {
     this.recording = recording;
-    this.receive({ connected: true });
+    this.receive({ failures: 0 });
     this.receive({ message: recording.head.hello });
     this.sendSurface();
     this.receive({ message: { kind: "steps", side: "a", from: 0, steps: recording.head.steps } });

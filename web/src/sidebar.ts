@@ -14,7 +14,7 @@ export class Sidebar {
 
   constructor(
     private readonly root: HTMLElement,
-    private readonly page: Page,
+    page: Page,
   ) {
     const divider = makeDivider({
       label: "Width of the settings",
@@ -39,12 +39,10 @@ export class Sidebar {
   private hide(hidden: boolean): void {
     this.root.hidden = hidden;
     this.opener.setAttribute("aria-expanded", String(!hidden));
-    this.page.emit("layout", undefined);
   }
 
   private resize(width: number): void {
     document.body.style.setProperty("--right-width", `${width}px`);
-    this.page.emit("layout", undefined);
   }
 
   private restore(saved: unknown): void {

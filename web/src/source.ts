@@ -1,8 +1,9 @@
-// Source of messages: a running program (live.ts) or a recorded run inside the page (recorded.ts). Panels do not depend
-// on which.
+// Source of messages: a running program (live.ts, over socket.ts) or a recorded run inside the page (recorded.ts). Panels do
+// not depend on which.
 import type { Command, Geometry, Picture, Query, ServerMessage } from "./protocol";
 
-export type Incoming = { message: ServerMessage } | { geometry: Geometry } | { picture: Picture } | { connected: boolean };
+// failures: failed connections in a row; 0: connected
+export type Incoming = { message: ServerMessage } | { geometry: Geometry } | { picture: Picture } | { failures: number };
 
 export interface Source {
   readonly live: boolean;

@@ -35,7 +35,7 @@ interface Events {
 export class Store extends Emitter<Events> {
   hello: Hello | null = null;
   steers = false;
-  connected = false;
+  failures: number | null = null; // failed connections in a row; null before the first connection
   state: State | null = null;
   busy = "";
   capture: Capture | null = null;
@@ -47,6 +47,10 @@ export class Store extends Emitter<Events> {
 
   start(): void {
     this.source.start((incoming) => this.receive(incoming));
+  }
+
+  get connected(): boolean {
+    return this.failures === 0;
   }
 
   side(name: SideName): Side | null {
@@ -71,9 +75,9 @@ export class Store extends Emitter<Events> {
   private receive(incoming: Incoming): void {
     if ("geometry" in incoming) return this.receiveGeometry(incoming.geometry);
     if ("picture" in incoming) return this.receivePicture(incoming.picture);
-    if ("connected" in incoming) {
-      this.connected = incoming.connected;
-      return this.emit("connected", incoming.connected);
+    if ("failures" in incoming) {
+      this.failures = incoming.failures;
+      return this.emit("connected", this.connected);
     }
     const message = incoming.message;
     switch (message.kind) {

@@ -7,10 +7,17 @@ const kSmallest = 10; // smallest font size [px]
 const kNormal = 14;
 const kLargest = 28;
 
+// Calls back when the theme or the font size has changed.
+export function onLook(run: () => void, signal?: AbortSignal): void {
+  const observer = new MutationObserver(run);
+  observer.observe(document.documentElement, { attributeFilter: ["data-theme", "style"] });
+  signal?.addEventListener("abort", () => observer.disconnect());
+}
+
 export class Theme {
   private fontSize = kNormal;
 
-  constructor(private readonly page: Page) {
+  constructor(page: Page) {
     const system = matchMedia("(prefers-color-scheme: dark)");
     const chosen = recall("theme");
     this.show(chosen === "light" || chosen === "dark" ? chosen : system.matches ? "dark" : "light");
@@ -42,13 +49,11 @@ export class Theme {
 
   private show(name: ThemeName): void {
     document.documentElement.dataset.theme = name;
-    this.page.emit("theme", name);
   }
 
   private setFontSize(pixels: number): void {
     this.fontSize = Number.isFinite(pixels) ? Math.min(kLargest, Math.max(kSmallest, pixels)) : kNormal;
     document.documentElement.style.setProperty("--font", `${this.fontSize}px`);
-    this.page.emit("layout", undefined);
   }
 
   private restore(saved: unknown): void {

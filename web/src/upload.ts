@@ -1,5 +1,7 @@
 // Packs files of the reader's machine for the command "load": a scene with its meshes, or a single mesh.
-import type { UploadedFile } from "./protocol";
+import { saveFile } from "./dom";
+import { bytesOf } from "./pack";
+import type { FileReply, TextReply, UploadedFile } from "./protocol";
 import { type NamedBytes, unzip } from "./unzip";
 
 const kMostBytes = 200e6; // limit for all files together
@@ -87,6 +89,7 @@ function base64Of(bytes: Uint8Array): string {
   return text;
 }
 
-export function bytesOf(base64: string): Uint8Array<ArrayBuffer> {
-  return Uint8Array.from(atob(base64), (character) => character.charCodeAt(0));
+// Saves a file of the program.
+export function saveReply(reply: TextReply | FileReply): void {
+  saveFile(reply.name, new Blob(["text" in reply ? reply.text : bytesOf(reply.base64)]));
 }

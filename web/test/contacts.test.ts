@@ -53,9 +53,9 @@ test("a plane is drawn at its own height, and follows the bodies along it", () =
   assert.ok(bodies.hasGround);
   const units = { radius: 2, gridStep: 0.5, toUnits: (p: Vec3) => new Vector3(...p).divideScalar(2) };
   bodies.follow([3, 9, 4], units);
-  const ground = bodies.root.children[1] as Mesh;
+  const ground = bodies.children[1] as Mesh;
   assert.deepEqual(ground.position.toArray(), [1.5, 0.25, 2]);
-  const drawn = bodies.root.children[0]!.children[0] as Mesh;
+  const drawn = bodies.children[0]!.children[0] as Mesh;
   assert.deepEqual([...drawn.geometry.getAttribute("position").array], [0, 0, 0, 0, 0, 1, 1, 0, 0]);
   assert.deepEqual([...drawn.geometry.getAttribute("normal").array.slice(0, 3)], [0, 1, 0]);
   bodies.show([], [0, 1, 0], new Matrix4());

@@ -2,7 +2,7 @@ import assert from "node:assert/strict";
 import { test } from "node:test";
 import type { TestContext } from "node:test";
 import { LiveSource } from "../src/live";
-import type { Socket } from "../src/live";
+import { overSocket, type Socket } from "../src/socket";
 import type { Incoming } from "../src/source";
 
 // Node.js 18 accepts the list itself, newer versions an object that contains it.
@@ -42,11 +42,12 @@ class FakeSocket {
 function connect(): { source: LiveSource; sockets: FakeSocket[]; received: Incoming[] } {
   const sockets: FakeSocket[] = [];
   const received: Incoming[] = [];
-  const source = new LiveSource("ws://here/session", () => {
+  const open = (): Socket => {
     const socket = new FakeSocket();
     sockets.push(socket);
     return socket as unknown as Socket;
-  });
+  };
+  const source = new LiveSource(overSocket("ws://here/session", open));
   source.start((incoming) => received.push(incoming));
   sockets[0].opened();
   return { source, sockets, received };
@@ -60,7 +61,7 @@ test("each answer reaches only its question", async () => {
   sockets[0].says({ kind: "reply", id: ids[1], reply: "two" });
   sockets[0].says({ kind: "reply", id: ids[0], reply: "one" });
   assert.deepEqual(await Promise.all([first, second]), ["one", "two"]);
-  assert.deepEqual(received, [{ connected: true }]);
+  assert.deepEqual(received, [{ failures: 0 }]);
 });
 
 test("a refusal rejects with the program's message", async () => {
@@ -78,7 +79,7 @@ test("a lost connection rejects open requests and reconnects", async (context) =
   const asked = source.ask({ ask: "recording" });
   sockets[0].closed();
   await assert.rejects(asked, /connection/);
-  assert.deepEqual(received.at(-1), { connected: false });
+  assert.deepEqual(received.at(-1), { failures: 1 });
   await assert.rejects(source.request({ do: "play" }), /no connection/);
   context.mock.timers.tick(250);
   assert.equal(sockets.length, 2);
@@ -88,8 +89,7 @@ test("a lost connection rejects open requests and reconnects", async (context) =
   context.mock.timers.tick(250);
   assert.equal(sockets.length, 3);
   sockets[2].opened();
-  assert.equal(source.failures, 0);
-  assert.deepEqual(received.at(-1), { connected: true });
+  assert.deepEqual(received.at(-1), { failures: 0 });
 });
 
 test("the reason of a closed connection is reported", (context) => {
@@ -102,10 +102,11 @@ test("the reason of a closed connection is reported", (context) => {
 test("a command without a connection is refused", () => {
   const sockets: FakeSocket[] = [];
   const received: Incoming[] = [];
-  const source = new LiveSource("ws://here/session", () => {
+  const open = (): Socket => {
     sockets.push(new FakeSocket());
     return sockets[0] as unknown as Socket;
-  });
+  };
+  const source = new LiveSource(overSocket("ws://here/session", open));
   source.start((incoming) => received.push(incoming));
   source.send({ do: "play" });
   assert.deepEqual(sockets[0].sent, []);

@@ -133,7 +133,7 @@ test("labels are at visible vertices and apart", () => {
     tet: new Uint32Array(kBall.triangles.length / 3), vertex: Uint32Array.from({ length: n }, (_, i) => (i === 5 ? 0xffffffff : i)),
   };
   const lens = frontCamera().lens(600, 600);
-  const labels = chooseLabels(lens, { ...kBall, clip: null }, geometry, { vertices: true, tets: false }, 12, null);
+  const labels = chooseLabels(lens, { ...kBall, clip: null }, geometry, { vertices: true, tets: false, em: 12, cursor: null });
   assert(labels.length > 30 && labels.length <= 300);
   for (const { text } of labels) assert(kBall.positions[3 * Number(text) + 2] > -0.2, text);
   for (const a of labels)

@@ -4,6 +4,7 @@ import "../view/view.css";
 import * as THREE from "three";
 import { element } from "../dom";
 import type { Geometry, Vec3 } from "../protocol";
+import { onLook } from "../theme";
 import { Body, boxOf } from "../view/body";
 import type { CameraRig } from "../view/cameras";
 import type { MapName } from "../view/colorMaps";
@@ -11,9 +12,10 @@ import { kDefaults } from "../view/display";
 import { disposeOf } from "../view/dispose";
 import { kSkinPoint } from "../view/labels";
 import { length, minus } from "../view/lens";
-import { Overlay, readStyle } from "../view/overlay";
+import { kBarWidth } from "../view/marks";
+import { readStyle } from "../view/overlay";
 import { logRange, type ColorRange } from "../view/ranges";
-import { Stage } from "../view/stage";
+import { Screen } from "../view/screen";
 import { bodyBelow, boundaryOf, type Boundary, type Plane, type Soup, type TetMesh } from "./cut";
 
 export interface Shown {
@@ -67,9 +69,7 @@ export class FittedBody {
 
 export class BodyView {
   readonly element = element("div", { class: "view fit-view" });
-  private readonly canvas = document.createElement("canvas");
-  private readonly overlay = new Overlay();
-  private readonly stage: Stage | null;
+  private readonly screen = new Screen();
   private body: Body | null = null;
   private soup: Soup | null = null;
   private shown: Shown | null = null;
@@ -85,13 +85,13 @@ export class BodyView {
     private readonly rig: CameraRig,
     label: string,
   ) {
-    this.element.append(this.canvas, this.overlay.canvas);
+    this.element.append(this.screen.canvas, this.screen.overlay.canvas, this.screen.message);
     this.element.setAttribute("role", "img");
     this.element.setAttribute("aria-label", label);
-    this.stage = this.makeStage();
-    this.stage?.place({ lower: fitted.lower, upper: fitted.upper, up: fitted.up });
+    this.screen.stage?.place({ lower: fitted.lower, upper: fitted.upper, up: fitted.up });
     rig.on("changed", () => this.redraw());
     new ResizeObserver(() => this.applyDisplay()).observe(this.element); // the element's colors come from the page
+    onLook(() => this.applyDisplay());
     this.listen();
     this.rebuild();
   }
@@ -116,26 +116,13 @@ export class BodyView {
     for (const object of this.objects) disposeOf(object);
     this.objects = objects;
     this.notes = notes;
-    this.stage?.extras.clear();
-    for (const object of objects) this.stage?.extras.add(object);
+    this.screen.stage?.extras.clear();
+    for (const object of objects) this.screen.stage?.extras.add(object);
     this.redraw();
-  }
-
-  retheme(): void {
-    this.applyDisplay();
   }
 
   redraw(): void {
     if (this.frame === 0) this.frame = requestAnimationFrame(() => this.draw());
-  }
-
-  private makeStage(): Stage | null {
-    try {
-      return new Stage(this.canvas);
-    } catch {
-      this.element.append(element("div", { class: "view-message" }, "This browser cannot draw in 3-D: WebGL 2 is missing or disabled. Plots and numbers work without it."));
-      return null;
-    }
   }
 
   // Builds the body for a new cut. No two triangles share corners.
@@ -153,9 +140,9 @@ export class BodyView {
       vertex: new Uint32Array(corners).fill(kSkinPoint),
     };
     this.body = new Body(geometry);
-    this.stage?.show(this.body);
+    this.screen.stage?.show(this.body);
     this.body.show({ positions, normals, values: null });
-    this.stage?.moved();
+    this.screen.stage?.moved();
     this.applyDisplay();
     this.recolor();
   }
@@ -186,7 +173,7 @@ export class BodyView {
   private applyDisplay(): void {
     const style = this.style();
     this.body?.apply({ ...kDefaults, wires: this.wires, bodyColor: "#b9c3d0", inside: "same" });
-    this.stage?.apply(kDefaults, style);
+    this.screen.stage?.apply(kDefaults, style);
     this.redraw();
   }
 
@@ -196,30 +183,18 @@ export class BodyView {
 
   private draw(): void {
     this.frame = 0;
-    const [width, height] = [this.element.clientWidth, this.element.clientHeight];
-    if (!this.stage || width === 0 || height === 0) return;
-    this.resize(width, height);
-    const style = this.style();
-    const lens = this.rig.lens(width, height);
-    this.stage.render(lens, this.rig.orientation, style.accent);
+    const { clientWidth: width, clientHeight: height } = this.element;
+    if (!this.screen.stage || width === 0 || height === 0) return;
     const { shown } = this;
-    this.overlay.draw(lens, style, {
+    const style = this.style();
+    const lens = this.rig.lens(Math.max(1, width - (shown ? kBarWidth * style.em : 0)), height);
+    this.screen.draw(lens, width, Math.min(2, devicePixelRatio), style, {
       axes: true,
       bar: shown && { field: shown, range: this.range(shown), map: shown.map },
       highlights: this.notes.map(({ at, words }) => ({ positions: [at], text: words })),
     });
     ++this.drawn;
     this.element.dataset.drawn = String(this.drawn);
-  }
-
-  private resize(width: number, height: number): void {
-    const ratio = Math.min(2, window.devicePixelRatio || 1);
-    const [columns, rows] = [Math.floor(width * ratio), Math.floor(height * ratio)];
-    const { canvas } = this.overlay;
-    if (canvas.width === columns && canvas.height === rows) return;
-    this.stage?.renderer.setPixelRatio(ratio);
-    this.stage?.renderer.setSize(width, height, false);
-    [canvas.width, canvas.height] = [columns, rows];
   }
 
   private listen(): void {

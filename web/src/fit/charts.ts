@@ -3,8 +3,10 @@ import type uPlot from "uplot";
 import { Chart, type Curve } from "../plots/chart";
 import { short, withUnit } from "../plots/numbers";
 import type { Palette } from "../plots/palette";
+import { inkOn } from "../plots/painting";
 import { nearest } from "../plots/table";
 import type { MaybeNumber } from "../protocol";
+import { text } from "../view/marks";
 import { closeness, histogram, type FitHead, type GroupCurve } from "./data";
 
 // Value at x, or the last value if `at` is null.
@@ -141,20 +143,16 @@ export function weightChart(head: FitHead): Chart | null {
 
 function paintChosen(u: uPlot, colors: Palette, x: MaybeNumber, y: MaybeNumber, words: string): void {
   if (x === null || y === null || !(y > 0)) return;
-  const { ctx } = u;
-  const scale = devicePixelRatio;
+  const ink = inkOn(u, colors, colors.series2);
   const [column, row] = [u.valToPos(x, "x", true), u.valToPos(y, "y", true)];
-  ctx.save();
-  ctx.strokeStyle = ctx.fillStyle = colors.series2;
-  ctx.lineWidth = 2.5 * scale;
-  ctx.beginPath();
-  ctx.arc(column, row, 7 * scale, 0, 2 * Math.PI);
-  ctx.stroke();
-  ctx.font = `600 ${colors.fontSize * 0.86 * scale}px sans-serif`;
+  ink.context.strokeStyle = colors.series2;
+  ink.context.lineWidth = 0.2 * ink.em;
+  ink.context.beginPath();
+  ink.context.arc(column, row, 0.6 * ink.em, 0, 2 * Math.PI);
+  ink.context.stroke();
   const leftwards = column > u.bbox.left + 0.6 * u.bbox.width;
-  ctx.textAlign = leftwards ? "right" : "left";
-  ctx.fillText(words, column + (leftwards ? -4 : 4) * scale, row - 16 * scale);
-  ctx.restore();
+  text(ink, words, column + (leftwards ? -0.4 : 0.4) * ink.em, row - 1.4 * ink.em, leftwards ? "right" : "left");
+  ink.context.restore();
 }
 
 // History of all iterations in order, over all starts and weights.

@@ -93,97 +93,69 @@ function upward(fit: Fit): Vec3 {
   return up;
 }
 
-class FitReport {
-  private readonly charts: Chart[] = [];
+function report(fit: Fit): HTMLElement {
+  const body = new FittedBody({ points: fit.floats("points"), tets: fit.indices("tets") }, upward(fit));
+  const rig = new CameraRig();
+  rig.show(fit.head.name, body.lower, body.upper, body.up);
+  const maps = new Maps(fit, body, rig);
+  const misfits = new Misfits(fit, body, rig);
+  return element("main", { class: "fit" }, found(fit), section("Stiffness and its uncertainty", "", maps.element), loads(fit), residualSection(fit, misfits), made(fit));
+}
 
-  constructor(
-    private readonly fit: Fit,
-    private readonly page: Page,
-  ) {}
+function found(fit: Fit): HTMLElement {
+  const { head } = fit;
+  const said = verdict(head);
+  const next = head.nextPoke ? element("div", { class: "words next" }, element("h3", {}, "Next best poke"), element("p", {}, head.nextPoke.words)) : null;
+  return section(
+    "Result",
+    "",
+    element("div", { class: `verdict ${said.kind}` }, element("p", {}, said.text), said.reasons.length > 0 ? listOf(said.reasons) : null),
+    cards(fit),
+    element("div", { class: "columns" }, element("div", {}, valueTable(head.quantities)), element("div", {}, words("Warnings", head.warnings, "warnings"), next, words("Assumptions", head.notes, ""))),
+  );
+}
 
-  build(): HTMLElement {
-    const { fit } = this;
-    const body = new FittedBody({ points: fit.floats("points"), tets: fit.indices("tets") }, upward(fit));
-    const rig = new CameraRig();
-    rig.show(fit.head.name, body.lower, body.upper, body.up);
-    rig.pan(-0.12, 0, 1); // moves the body left of the color bar, in parts of the view's height
-    const maps = new Maps(fit, body, rig);
-    const misfits = new Misfits(fit, body, rig);
-    const root = element("main", { class: "fit" }, this.found(), this.maps(maps), this.loads(), this.residuals(misfits), this.made());
-    this.page.on("theme", () => {
-      for (const chart of this.charts) chart.retheme();
-      maps.retheme();
-      misfits.retheme();
-    });
-    return root;
+function loads(fit: Fit): HTMLElement {
+  const grid = element("div", { class: "charts" });
+  for (const group of groupsOf(fit.head.cases)) {
+    const curve = groupCurve(fit, group);
+    const chart = loadChart(group.name, curve);
+    grid.append(figure(curve.leftOut ? `${group.name} (held out)` : group.name, chart));
   }
+  const groups = fit.head.heldOut?.groups ?? [];
+  return section(
+    "Measured and fitted",
+    "Readings and predictions of the fitted material, corrected for the mesh. Bars are one standard deviation of the reading and of the correction. The dashed curve is predicted by a fit without that group.",
+    grid,
+    groups.length > 0 ? heldOutTable(groups) : null,
+  );
+}
 
-  private found(): HTMLElement {
-    const { head } = this.fit;
-    const said = verdict(head);
-    const next = head.nextPoke ? element("div", { class: "words next" }, element("h3", {}, "Next best poke"), element("p", {}, head.nextPoke.words)) : null;
-    return section(
-      "Result",
-      "",
-      element("div", { class: `verdict ${said.kind}` }, element("p", {}, said.text), said.reasons.length > 0 ? listOf(said.reasons) : null),
-      cards(this.fit),
-      element("div", { class: "columns" }, element("div", {}, valueTable(head.quantities)), element("div", {}, words("Warnings", head.warnings, "warnings"), next, words("Assumptions", head.notes, ""))),
-    );
-  }
+function residualSection(fit: Fit, misfits: Misfits): HTMLElement {
+  const found = residuals(fit);
+  const names = fit.head.cases.map((c) => c.name);
+  return section(
+    "Residuals",
+    "Fitted minus measured, in standard deviations. A histogram wider than the normal curve, or a case with large residuals, indicates a model too simple or a bad reading.",
+    element("div", { class: "charts" }, figure("All readings", histogramChart(found.all)), figure("By case", caseChart(names, found.ofCase))),
+    misfits.element,
+  );
+}
 
-  private maps(maps: Maps): HTMLElement {
-    return section("Stiffness and its uncertainty", "", maps.element);
-  }
-
-  private loads(): HTMLElement {
-    const { fit } = this;
-    const grid = element("div", { class: "charts" });
-    for (const group of groupsOf(fit.head.cases)) {
-      const curve = groupCurve(fit, group);
-      const chart = this.keep(loadChart(group.name, curve));
-      grid.append(figure(curve.leftOut ? `${group.name} (held out)` : group.name, chart));
-    }
-    const groups = fit.head.heldOut?.groups ?? [];
-    return section(
-      "Measured and fitted",
-      "Readings and predictions of the fitted material, corrected for the mesh. Bars are one standard deviation of the reading and of the correction. The dashed curve is predicted by a fit without that group.",
-      grid,
-      groups.length > 0 ? heldOutTable(groups) : null,
-    );
-  }
-
-  private residuals(misfits: Misfits): HTMLElement {
-    const found = residuals(this.fit);
-    const names = this.fit.head.cases.map((c) => c.name);
-    return section(
-      "Residuals",
-      "Fitted minus measured, in standard deviations. A histogram wider than the normal curve, or a case with large residuals, indicates a model too simple or a bad reading.",
-      element("div", { class: "charts" }, figure("All readings", this.keep(histogramChart(found.all))), figure("By case", this.keep(caseChart(names, found.ofCase)))),
-      misfits.element,
-    );
-  }
-
-  private made(): HTMLElement {
-    const { head } = this.fit;
-    const [weights, history] = [weightChart(head), historyChart(head)];
-    const { fit, counts } = head;
-    const facts = `${head.model}, ${fit.method}: ${fit.words} after ${plural(fit.iterations, "iteration")} and ${counts.equilibria} equilibria; ${counts.unknowns} parameters, ${counts.residuals} readings, weight ${short(fit.weight, 3)}; ${fit.mesh}.`;
-    return section(
-      "How it was fitted",
-      facts,
-      element(
-        "div",
-        { class: "charts" },
-        weights ? figure("Weight of the smoothness", this.keep(weights)) : null,
-        history ? figure("Convergence", this.keep(history)) : null,
-      ),
-    );
-  }
-
-  private keep(chart: Chart): Chart {
-    this.charts.push(chart);
-    return chart;
-  }
+function made({ head }: Fit): HTMLElement {
+  const [weights, history] = [weightChart(head), historyChart(head)];
+  const { fit, counts } = head;
+  const facts = `${head.model}, ${fit.method}: ${fit.words} after ${plural(fit.iterations, "iteration")} and ${counts.equilibria} equilibria; ${counts.unknowns} parameters, ${counts.residuals} readings, weight ${short(fit.weight, 3)}; ${fit.mesh}.`;
+  return section(
+    "How it was fitted",
+    facts,
+    element(
+      "div",
+      { class: "charts" },
+      weights ? figure("Weight of the smoothness", weights) : null,
+      history ? figure("Convergence", history) : null,
+    ),
+  );
 }
 
 function header({ head }: Fit, theme: Theme): HTMLElement {
@@ -205,9 +177,7 @@ export async function openFit(text: string): Promise<void> {
   try {
     const fit = await unpackFit(text);
     document.title = `Fit of ${fit.head.name}`;
-    const page = new Page();
-    const theme = new Theme(page);
-    document.body.replaceChildren(header(fit, theme), new FitReport(fit, page).build());
+    document.body.replaceChildren(header(fit, new Theme(new Page())), report(fit));
   } catch (error) {
     document.body.replaceChildren(element("p", { class: "damaged" }, `Cannot show this fit: ${messageOf(error)}. Create it again with aspic fit.`));
   }

@@ -67,10 +67,6 @@ export class Maps {
     this.mark();
   }
 
-  retheme(): void {
-    for (const view of this.views) view.retheme();
-  }
-
   private column(label: string, fields: Field[], rig: CameraRig): HTMLElement {
     const view = new BodyView(this.body, rig, `${label} on the body`);
     this.views.push(view);

@@ -39,10 +39,6 @@ export class Misfits {
     this.show(null);
   }
 
-  retheme(): void {
-    this.view.retheme();
-  }
-
   private show(onlyCase: number | null): void {
     const worst = worstMarkers(this.fit, kArrows, onlyCase);
     const rest = this.fit.floats("markers");

@@ -42,7 +42,6 @@ export class CapturePanel implements Panel {
     store.on("state", follow);
     store.on("role", follow);
     store.on("capture", () => this.showBench());
-    page.onLook(() => this.gauge.chart.retheme());
   }
 
   // The mouse moves the probe while the panel is open.

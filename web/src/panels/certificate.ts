@@ -82,18 +82,8 @@ export const kColumns: Column[] = [
     value: (row) => row.ledger_error,
     worse: (row) => (row.ledger_error === null ? Infinity : Math.abs(row.ledger_error)),
   },
-  {
-    title: "reactions [N]",
-    meaning: "force of each pin on its vertices (x, y, z)",
-    value: (row) => reactionText(row, 0),
-    whole: (row) => reactionText(row, 0) ?? "",
-  },
-  {
-    title: "moments [N m]",
-    meaning: "moment of each pin's forces on its vertices about the origin (x, y, z)",
-    value: (row) => reactionText(row, 3),
-    whole: (row) => reactionText(row, 3) ?? "",
-  },
+  { title: "reactions [N]", meaning: "force of each pin on its vertices (x, y, z)", value: (row) => reactionText(row, 0) },
+  { title: "moments [N m]", meaning: "moment of each pin's forces on its vertices about the origin (x, y, z)", value: (row) => reactionText(row, 3) },
   {
     title: "energy bound [J]",
     meaning: "guarantee of backward Euler: V + 1/2 |change of velocity|² in the mass norm does not exceed the previous energy plus works",

@@ -8,7 +8,7 @@ import { button, downloadCanvas, element, fileName, saveFile } from "../dom";
 import { balanceText, calmRange, explosionText, Ledger, ledgerColumns } from "../plots/ledger";
 import { csv, short, withUnit } from "../plots/numbers";
 import type { Palette } from "../plots/palette";
-import { paintVerticalLine } from "../plots/verticalLine";
+import { paintVerticalLine } from "../plots/painting";
 import { lowerBound, magnitude, merged, nearest, thinned, type Table } from "../plots/table";
 import type uPlot from "uplot";
 
@@ -50,7 +50,6 @@ export class EnergyPanel implements Panel {
       this.redraw();
     });
     store.on("state", () => this.redraw());
-    page.onLook(() => this.chart.retheme());
     page.keep("energy", { save: () => this.save(), restore: (saved) => this.restore(saved) });
     for (const side of kSides) this.newScene(side);
   }

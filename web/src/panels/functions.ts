@@ -17,36 +17,21 @@ import { pictureOf } from "./functionPicture";
 const kSamples = 81;
 const kPlayEvery = 700; // [ms]
 
+const kLabel = "Minimizing a function of two variables";
+
 export class FunctionsPanel implements Panel {
   readonly name = "functions";
   readonly title = "Functions";
   readonly isTall = true; // a surface needs room
-  readonly element = element("div", {
-    class: "plot-panel",
-    role: "group",
-    "aria-label": "Minimizing a function of two variables",
-  });
+  readonly element = element("div", { class: "plot-panel", role: "group", "aria-label": kLabel });
   private readonly form = new FunctionForm(() => this.formChanged());
   private readonly view = new SurfaceView();
   private readonly search = new SearchChart("f");
-  private readonly slider = element("input", {
-    type: "range",
-    min: "0",
-    max: "0",
-    value: "0",
-    "aria-label": "Iteration",
-  });
+  private readonly slider = element("input", { type: "range", min: "0", max: "0", value: "0", "aria-label": "Iteration" });
   private readonly where = element("strong");
   private readonly playButton = button({ text: "▶ play", title: "Play the iterations" }, () => this.togglePlay());
-  private readonly model = checkbox("quadratic model", "Show the quadratic model that this iteration minimized", true, () =>
-    this.draw(),
-  );
-  private readonly log = checkbox(
-    "log height",
-    "Logarithmic heights above the lowest value of f here",
-    false,
-    () => this.draw(),
-  );
+  private readonly model = checkbox("quadratic model", "Show the quadratic model of this iteration", true, () => this.draw());
+  private readonly log = checkbox("log height", "Logarithmic heights above the lowest value of f here", false, () => this.draw());
   private readonly words = element("div", { class: "plot-note", role: "status" });
   private readonly about = element("div", { class: "plot-note" });
   private reply: FunctionReply | null = null;
@@ -66,38 +51,19 @@ export class FunctionsPanel implements Panel {
     const presets = element("div", { class: "pair", role: "group", "aria-label": "Examples" });
     for (const preset of kPresets) presets.append(button({ text: preset.title, title: preset.shows }, () => this.openPreset(preset)));
     this.form.element.prepend(presets);
-    const walk = element(
-      "div",
-      { class: "plot-bar" },
-      this.playButton,
-      this.slider,
-      this.where,
-      this.model.element,
-      this.log.element,
-    );
-    walk.append(
-      button({ text: "PNG", title: "Save the picture" }, () => this.savePng()),
-      this.words,
-    );
+    const png = button({ text: "PNG", title: "Save the picture" }, () => this.savePng());
+    const shown = [this.model.element, this.log.element];
+    const walk = element("div", { class: "plot-bar" }, this.playButton, this.slider, this.where, ...shown, png, this.words);
     const chart = element("div", { class: "functions-chart" }, this.search.element);
     const right = element("div", { class: "functions-side" }, this.about, chart, this.view.legend);
-    this.element.append(
-      walk,
-      element(
-        "div",
-        { class: "plot-columns plot-fill" },
-        this.form.element,
-        element("div", { class: "plot-fill" }, this.view.element),
-        right,
-      ),
-    );
+    const fill = element("div", { class: "plot-fill" }, this.view.element);
+    this.element.append(walk, element("div", { class: "plot-columns plot-fill" }, this.form.element, fill, right));
     this.slider.addEventListener("input", () => {
       this.stop();
       this.goTo(this.slider.valueAsNumber);
     });
     this.view.dragged = (at, done) => this.drag(at.x, at.y, done);
     this.view.nudged = (dx, dy) => this.nudge(dx, dy);
-    page.onLook(() => this.retheme());
     page.keep("functions", {
       save: () => this.form.question(this.iteration, kSamples),
       restore: (saved) => this.restore(saved),
@@ -190,17 +156,8 @@ export class FunctionsPanel implements Panel {
   private nudge(dx: number, dy: number): void {
     const reply = this.reply;
     if (!reply) return;
-    const [x, y] = this.form.start;
-    this.drag(
-      x + (dx * (reply.upper[0] - reply.lower[0])) / 100,
-      y + (dy * (reply.upper[1] - reply.lower[1])) / 100,
-      true,
-    );
-  }
-
-  private retheme(): void {
-    this.view.retheme();
-    this.search.chart.retheme();
+    const [x, y] = [dx, dy].map((d, k) => this.form.start[k] + (d * (reply.upper[k] - reply.lower[k])) / 100);
+    this.drag(x, y, true);
   }
 
   private draw(): void {
@@ -212,24 +169,16 @@ export class FunctionsPanel implements Panel {
     const test = this.form.question(0, 2).settings["line_search.test"];
     this.search.show(row ? { curve: reply.curve, trials: reply.trials, test: String(test) } : null);
     this.about.textContent = this.shows;
-    this.words.textContent = [sentence(reply.text), this.cutText()].filter((text) => text !== "").join(" ");
-    this.words.dataset.kind = reply.status === "converged" || reply.status === "round_off" ? "" : "bad";
-  }
-
-  private cutText(): string {
     const cut = this.view.cutAbove;
-    return cut === null ? "" : `Walls above f = ${short(cut, 3)} are cut off.`;
+    this.words.textContent = `${sentence(reply.text)}${cut === null ? "" : ` Walls above f = ${short(cut, 3)} are cut off.`}`;
+    this.words.dataset.kind = reply.status === "converged" || reply.status === "round_off" ? "" : "bad";
   }
 
   private picture(reply: FunctionReply): SurfaceContent {
     const { iteration } = this;
-    return pictureOf(reply, {
-      iteration,
-      wholePath: this.timer === null && iteration === 0,
-      start: this.form.start,
-      model: this.model.input.checked,
-      log: this.log.input.checked,
-    });
+    const wholePath = this.timer === null && iteration === 0;
+    const [model, log] = [this.model.input.checked, this.log.input.checked];
+    return pictureOf(reply, { iteration, wholePath, start: this.form.start, model, log });
   }
 
   private savePng(): void {
@@ -244,11 +193,7 @@ export class FunctionsPanel implements Panel {
     const start = kept?.start;
     if (typeof kept?.name !== "string" || !Array.isArray(start) || !start.every(Number.isFinite) || start.length !== 2)
       return;
-    this.form.fill({
-      name: kept.name,
-      start,
-      settings: fieldsOf(kept.settings) as FunctionQuestion["settings"],
-    });
+    this.form.fill({ name: kept.name, start, settings: fieldsOf(kept.settings) as FunctionQuestion["settings"] });
     if (this.element.isConnected) this.formChanged();
     else this.asked = false;
   }

@@ -17,15 +17,8 @@ export class LandscapePanel implements Panel {
   readonly element = element("div", { class: "plot-panel", role: "group", "aria-label": "Energy landscape" });
   private readonly view = new SurfaceView();
   private readonly follow = checkbox("follow", "Follow the newest step", true, (on) => this.chosen.follow(on));
-  private readonly model = checkbox("quadratic model", "Show the quadratic model of E", true, () =>
-    this.draw(),
-  );
-  private readonly log = checkbox(
-    "log height",
-    "Logarithmic heights above the lowest value of E here",
-    false,
-    () => this.draw(),
-  );
+  private readonly model = checkbox("quadratic model", "Show the quadratic model of E", true, () => this.draw());
+  private readonly log = checkbox("log height", "Logarithmic heights above the lowest value of E here", false, () => this.draw());
   private readonly where = element("strong");
   private readonly text = element("p", { class: "plot-note" });
   private readonly note = element("div", { class: "plot-note", role: "status" });
@@ -37,28 +30,23 @@ export class LandscapePanel implements Panel {
     page: Page,
     private readonly chosen: Chosen,
   ) {
-    const bar = element("div", { class: "plot-bar" });
-    bar.append(
+    const bar = element(
+      "div",
+      { class: "plot-bar" },
       button({ text: "◀", title: "The iteration before" }, () => this.chosen.walk(-1)),
       this.where,
       button({ text: "▶", title: "The iteration after" }, () => this.chosen.walk(1)),
-    );
-    bar.append(
       this.follow.element,
       this.model.element,
       this.log.element,
       button({ text: "PNG", title: "Save the picture" }, () => this.savePng()),
       this.note,
     );
-    const side = element(
-      "div",
-      { class: "surface-side", style: "flex: 0 1 min(19em, 34%)" },
-      element("div", { class: "surface-texts" }, this.view.legend, this.text),
-    );
+    const texts = element("div", { class: "surface-texts" }, this.view.legend, this.text);
+    const side = element("div", { class: "surface-side" }, texts);
     const fill = element("div", { class: "plot-fill" }, this.view.element);
     this.element.append(bar, element("div", { class: "plot-columns plot-fill" }, fill, side));
     for (const event of ["changed", "rows", "looked"] as const) this.chosen.on(event, this.refresh);
-    page.onLook(() => this.view.retheme());
     page.keep("landscape", {
       save: () => ({ model: this.model.input.checked, log: this.log.input.checked }),
       restore: (saved) => this.restore(saved),
@@ -70,31 +58,19 @@ export class LandscapePanel implements Panel {
   }
 
   private ask(): void {
-    const { side, step, iteration } = this.chosen;
+    const { step, iteration } = this.chosen;
     this.follow.input.checked = this.chosen.following;
-    const row = this.chosen.row();
-    const count = row?.iterations.length ?? 0;
+    const count = this.chosen.row()?.iterations.length ?? 0;
     this.where.textContent =
       count > 0 ? `step ${step}, iteration ${iteration} of 0 to ${count - 1}` : step > 0 ? `step ${step}` : "no step yet";
-    if (count === 0) {
-      const implicit = this.store.side(side)?.scene.implicit ?? true;
-      return this.settle(
-        null,
-        implicit
-          ? "No iteration has been computed yet."
-          : "This integrator does not minimize, so there is no landscape.",
-      );
-    }
+    const none = "This integrator does not minimize, so there is no landscape.";
+    if (count === 0) return this.settle(null, this.chosen.isImplicit() ? "No iteration has been computed yet." : none);
     this.chosen.look();
     const seen = this.chosen.seen;
     if (!seen) return this.settle(null, "Computing E around the iteration ...");
     if (!seen.reply) return this.settle(null, `Not available: ${seen.why}`);
-    this.settle(
-      seen.reply,
-      this.chosen.isSeen()
-        ? ""
-        : `Shown: step ${seen.at.step}, iteration ${seen.at.iteration}; the chosen one is being computed.`,
-    );
+    const shown = `Shown: step ${seen.at.step}, iteration ${seen.at.iteration}; the chosen one is being computed.`;
+    this.settle(seen.reply, this.chosen.isSeen() ? "" : shown);
   }
 
   private settle(reply: IterationReply | null, note: string): void {

@@ -9,7 +9,8 @@ import { button, element } from "../dom";
 import { plural, short, withUnit } from "../plots/numbers";
 import { Rows, type RowColumn } from "../plots/rows";
 import type { Search } from "../plots/search";
-import { stepText, totalSeconds } from "../plots/words";
+import { sentence, stepText, totalSeconds } from "../plots/words";
+import { excess } from "./certificate";
 import { kCharts, StepChart, type ChartName } from "./stepCharts";
 
 const kOrder: ChartName[] = ["convergence", "search", "time", "steps", "alpha", "inner"];
@@ -53,7 +54,6 @@ export class MicroscopePanel implements Panel {
     this.element.append(bar, this.worst, element("div", { class: "microscope plot-fill" }, tables, this.grid));
     for (const event of ["changed", "rows", "looked"] as const) this.chosen.on(event, this.redraw);
     for (const event of ["scene", "gone"] as const) store.on(event, this.redraw);
-    page.onLook(() => this.charts.forEach((chart) => chart.retheme()));
     page.keep("microscope", { save: () => ({ charts: this.names }), restore: (saved) => this.restore(saved) });
     new ResizeObserver(() => this.arrange()).observe(this.grid);
   }
@@ -82,13 +82,10 @@ export class MicroscopePanel implements Panel {
   }
 
   private stepColumns(): RowColumn[] {
-    const of = (text: (step: StepRow) => string) => (row: number) => {
-      const step = this.stepAt(row);
-      return step ? text(step) : "";
-    };
+    const of = (text: (step: StepRow) => string) => (row: number) => textOf(this.stepAt(row), text);
     return [
       column("step", "number of the time step; the newest is first", of((s) => String(s.step))),
-      { ...column("status", "status of the minimization", of(statusText), "status"), left: true },
+      column("status", "status of the minimization", of(statusText), "status left"),
       column("it.", "iterations of the minimizer", of((s) => String(s.iterations.length))),
       column("resid.", "residual relative to its threshold", of(residualText)),
       column("took", "wall time", of((s) => withUnit(s.seconds, "s", 3)), "spare"),
@@ -96,10 +93,7 @@ export class MicroscopePanel implements Panel {
   }
 
   private iterationColumns(): RowColumn[] {
-    const of = (text: (it: IterationRow) => string) => (row: number) => {
-      const iteration = this.iterationAt(row);
-      return iteration ? text(iteration) : "";
-    };
+    const of = (text: (it: IterationRow) => string) => (row: number) => textOf(this.iterationAt(row), text);
     return [
       column("#", "iteration of the step", (row) => this.mark(row)),
       column("E", "the objective before the iteration", of((it) => short(it.value, 5))),
@@ -120,12 +114,8 @@ export class MicroscopePanel implements Panel {
 
   private chooseStep(row: number): void {
     const step = this.stepAt(row);
-    if (step)
-      this.chosen.choose(
-        this.chosen.side,
-        step.step,
-        Math.min(this.chosen.iteration, Math.max(0, step.iterations.length - 1)),
-      );
+    const last = Math.max(0, (step?.iterations.length ?? 0) - 1);
+    if (step) this.chosen.choose(this.chosen.side, step.step, Math.min(this.chosen.iteration, last));
   }
 
   private draw(): void {
@@ -133,8 +123,8 @@ export class MicroscopePanel implements Panel {
     const index = rows.findIndex((row) => row.step === this.chosen.step);
     this.follow.input.checked = this.chosen.following;
     this.showSides();
-    this.steps.show(rows.length, index < 0 ? -1 : rows.length - 1 - index, true);
-    this.iterations.show(this.chosen.row()?.iterations.length ?? 0, this.chosen.iteration, true);
+    this.steps.show(rows.length, index < 0 ? -1 : rows.length - 1 - index);
+    this.iterations.show(this.chosen.row()?.iterations.length ?? 0, this.chosen.iteration);
     this.tell();
     const search = this.searchNow();
     for (const chart of this.charts) chart.show(search);
@@ -153,13 +143,10 @@ export class MicroscopePanel implements Panel {
 
   private tell(): void {
     const row = this.chosen.row();
-    const implicit = this.store.side(this.chosen.side)?.scene.implicit ?? true;
-    const underWay = this.chosen.isUnderWay();
-    if (!row)
-      this.words.textContent = implicit
-        ? "No step has been computed yet."
-        : "This integrator does not minimize; no step has been computed yet.";
-    else if (underWay)
+    const implicit = this.chosen.isImplicit();
+    const none = `${implicit ? "" : "This integrator does not minimize; "}no step has been computed yet.`;
+    if (!row) this.words.textContent = sentence(none);
+    else if (this.chosen.isUnderWay())
       this.words.textContent = `Step ${row.step} is under way: ${plural(row.iterations.length, "iteration")}.`;
     else this.words.textContent = `Step ${row.step}. ${stepText(row, implicit)}`;
     this.words.dataset.kind = row && !row.converged ? "bad" : "";
@@ -169,8 +156,7 @@ export class MicroscopePanel implements Panel {
   private searchNow(): Search | string {
     if (!this.charts.some((chart) => chart.name === "search")) return "";
     if (!this.chosen.iterationRow()) {
-      const implicit = this.store.side(this.chosen.side)?.scene.implicit ?? true;
-      return implicit ? "No iteration is chosen." : "This integrator does not minimize, so there is no line search.";
+      return this.chosen.isImplicit() ? "No iteration is chosen." : "This integrator does not minimize, so there is no line search.";
     }
     this.chosen.look();
     const seen = this.chosen.seen;
@@ -247,13 +233,15 @@ export class MicroscopePanel implements Panel {
   }
 }
 
+const textOf = <T>(item: T | undefined, text: (item: T) => string): string => (item ? text(item) : "");
+
 function column(title: string, meaning: string, text: (row: number) => string, className?: string): RowColumn {
   return { title, meaning, text, class: className };
 }
 
 function residualText(step: StepRow): string {
-  if (step.residual === null || step.residual_threshold === null || step.residual_threshold <= 0) return withUnit(step.residual, "N", 3);
-  return `${short(step.residual / step.residual_threshold, 2)} ×`;
+  const relative = excess(step);
+  return relative === null ? withUnit(step.residual, "N", 3) : `${short(relative, 2)} ×`;
 }
 
 function statusText(step: StepRow): string {

@@ -1,12 +1,13 @@
 // The certificate of a run: totals, a table of its steps with the worst first, and the scene as text.
 import "./report.css";
-import { button, element, saveFile } from "../dom";
+import { button, element } from "../dom";
 import { materialFormulas, materialModel } from "../formulas";
 import { choiceName } from "../names";
 import type { Page, Panel } from "../page";
 import { plural, short } from "../plots/numbers";
 import type { MaybeNumber, StepRow, TextReply } from "../protocol";
 import type { Store } from "../store";
+import { saveReply } from "../upload";
 import { excess, kColumns, listed, totals } from "./certificate";
 
 const kRowsPerPage = 100;
@@ -71,7 +72,7 @@ class StepTable {
   private row(row: StepRow): HTMLElement {
     const cells = kColumns.map((column, i) => {
       const value = text(column.value(row));
-      if (i > 0) return element("td", { class: column.isBad?.(row) ? "bad" : undefined, title: column.whole?.(row) }, value);
+      if (i > 0) return element("td", { class: column.isBad?.(row) ? "bad" : undefined, title: column.whole?.(row) ?? value }, value);
       const show = button({ text: value, title: `Show step ${value}` }, () => this.store.source.send({ do: "rewind", step: row.step }));
       return element("td", {}, show);
     });
@@ -106,7 +107,7 @@ function makeScene(store: Store, page: Page): HTMLElement {
   const code = element("pre", { tabindex: "0", "aria-label": "Scene as TOML" });
   let file: TextReply | null = null;
   const save = button({ text: "Save", label: "Save the scene" }, () => {
-    if (file) saveFile(file.name, new Blob([file.text], { type: "text/plain" }));
+    if (file) saveReply(file);
   });
   const details = element("details", {}, element("summary", {}, "Complete scene with all defaults"), save, code);
   const load = async (): Promise<void> => {

@@ -112,9 +112,7 @@ export class Settings {
   }
 
   private build(settings: Setting[]): void {
-    const closed = this.folders.length === 0
-      ? new Set(kClosed)
-      : new Set(this.folders.filter((folder) => folder._closed).map((folder) => folder._title));
+    const closed = this.folders.length === 0 ? kClosed : this.folders.filter((folder) => folder._closed).map((folder) => folder._title);
     for (const folder of this.folders) folder.destroy();
     this.folders = [];
     this.rows.clear();
@@ -122,7 +120,7 @@ export class Settings {
     for (const group of new Set(settings.map((setting) => setting.group))) {
       const folder = this.gui.addFolder(group);
       this.folders.push(folder);
-      if (closed.has(group)) folder.close();
+      if (closed.includes(group)) folder.close();
       if (group === "Material") this.addMaterials(folder, settings);
       for (const setting of settings) {
         if (setting.group !== group) continue;
@@ -168,15 +166,22 @@ export class Settings {
     await this.carryOut(changes);
   }
 
+  // Sides that a change affects; undefined: the only side.
+  private sides(target = this.target): (SideName | undefined)[] {
+    if (!this.store.side("b")) return [undefined];
+    return target === "both" ? ["a", "b"] : [target];
+  }
+
+  private sceneOf(side: SideName | undefined): Scene | null {
+    return this.store.side(side ?? "a")?.scene ?? null;
+  }
+
   // Changes that restore the present value of a setting, on each side that a change affects.
   private back(key: string): SettingChange[] {
-    const { a, b } = { a: this.store.side("a")?.scene, b: this.store.side("b")?.scene };
-    if (!a) return [];
-    if (!b) return [backTo(a, key)];
-    return [
-      ...(this.target === "b" ? [] : [backTo(a, key, "a")]),
-      ...(this.target === "a" ? [] : [backTo(b, key, "b")]),
-    ];
+    return this.sides().flatMap((side) => {
+      const scene = this.sceneOf(side);
+      return scene ? [backTo(scene, key, side)] : [];
+    });
   }
 
   private note(setting: Setting): void {
@@ -196,23 +201,20 @@ export class Settings {
   }
 
   private async reset(): Promise<void> {
-    const sides = this.store.side("b") ? (["a", "b"] as const) : ([undefined] as const);
-    const changes = sides.flatMap((side) => {
-      const scene = this.store.side(side ?? "a")?.scene;
+    const changes = this.sides("both").flatMap((side) => {
+      const scene = this.sceneOf(side);
       return scene ? toLoaded(scene, side) : [];
     });
     if (changes.length === 0) return this.page.notice("All settings have their loaded values.");
     this.newest = { key: "", at: 0 };
-    this.history.add("reset", changes.flatMap(({ key, side }) => backTo(this.store.side(side ?? "a")!.scene, key, side)).reverse());
+    this.history.add("reset", changes.flatMap(({ key, side }) => backTo(this.sceneOf(side)!, key, side)).reverse());
     await this.carryOut(changes);
   }
 
   // Whether a change would have an effect.
   private changes({ key, value, side }: SettingChange): boolean {
-    const scene = this.store.side(side ?? "a")?.scene;
-    if (!scene) return false;
-    const now = backTo(scene, key);
-    return JSON.stringify(now.value) !== JSON.stringify(value);
+    const scene = this.sceneOf(side);
+    return scene !== null && JSON.stringify(backTo(scene, key).value) !== JSON.stringify(value);
   }
 
   private async carryOut(changes: SettingChange[]): Promise<void> {
@@ -231,13 +233,11 @@ export class Settings {
       () => this.update(),
     );
     this.senders.set(setting.key, sender);
-    this.rows.set(
-      setting.key,
-      addRow(folder, setting, (value) => {
-        this.note(setting);
-        sender.push(value);
-      }),
-    );
+    const changed = (value: SettingValue): void => {
+      this.note(setting);
+      sender.push(value);
+    };
+    this.rows.set(setting.key, addRow(folder, setting, changed));
   }
 
   private side(): { side?: SideName } {
@@ -273,15 +273,14 @@ export class Settings {
     if (two === this.top.hasChildNodes()) return; // keeps the focus in the list
     this.top.replaceChildren();
     if (!two) return;
-    const names: Record<Target, string> = { a: "A", b: "B", both: "both" };
-    for (const target of ["a", "b", "both"] as const) {
+    for (const [target, name] of [["a", "A"], ["b", "B"], ["both", "both"]] as const) {
       const choice = element("input", { type: "radio", name: "side", value: target });
       choice.checked = target === this.target;
       choice.addEventListener("change", () => {
         this.target = target;
         this.update();
       });
-      this.top.append(element("label", {}, choice, names[target]));
+      this.top.append(element("label", {}, choice, name));
     }
   }
 

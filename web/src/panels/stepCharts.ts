@@ -7,7 +7,7 @@ import { short, withUnit } from "../plots/numbers";
 import type { Palette } from "../plots/palette";
 import { SearchChart, type Search } from "../plots/search";
 import { nearest, thinned } from "../plots/table";
-import { paintVerticalLine } from "../plots/verticalLine";
+import { paintVerticalLine } from "../plots/painting";
 import { aboveLowest } from "../plots/words";
 import type { IterationRow, MaybeNumber, StepRow } from "../protocol";
 import type uPlot from "uplot";
@@ -179,11 +179,6 @@ export class StepChart {
 
   set name(name: ChartName) {
     this.select.select.value = name;
-  }
-
-  retheme(): void {
-    this.chart.retheme();
-    this.search.chart.retheme();
   }
 
   // `search`: the line search of the chosen iteration, or the reason why it is missing.

@@ -4,10 +4,11 @@ import uPlot from "uplot";
 import "uplot/dist/uPlot.min.css";
 import "./plots.css";
 import type { MaybeNumber } from "../protocol";
+import { onLook } from "../theme";
 import { axis, padded, ranged, type Axis } from "./axes";
 import { oncePerFrame } from "../controls";
 import { element } from "../dom";
-import { lineHeight, titled } from "./legend";
+import { titled } from "./legend";
 import { cssOf, inkOf, palette, sameLook, type Color, type Palette } from "./palette";
 
 export interface Curve {
@@ -58,6 +59,7 @@ export class Chart {
   constructor() {
     this.element.append(this.plot, this.legend);
     new ResizeObserver(this.resize).observe(this.plot);
+    onLook(this.resize);
     this.plot.addEventListener("keydown", (event) => this.walk(event));
   }
 
@@ -85,11 +87,6 @@ export class Chart {
     this.readLegend();
   }
 
-  // Applies changed colors and fonts.
-  retheme(): void {
-    if (!sameLook(this.look, palette(this.element))) this.rebuild();
-  }
-
   private rebuild(): void {
     this.chart?.destroy();
     this.chart = null;
@@ -105,10 +102,6 @@ export class Chart {
     this.readLegend();
   }
 
-  redraw(): void {
-    this.chart?.redraw(false);
-  }
-
   get width(): number {
     return this.plot.clientWidth;
   }
@@ -119,41 +112,10 @@ export class Chart {
     const source = this.chart.ctx.canvas;
     const scale = uPlot.pxRatio;
     const colors = palette(this.element);
-    const line = lineHeight(colors, scale);
     const shown = this.entries.filter((entry) => !this.hidden.has(entry.key));
-    const columns = Math.max(1, Math.floor(source.width / (line * 12)));
-    const { canvas, pen } = titled(source, title, colors, scale, Math.ceil(shown.length / columns));
-    shown.forEach((entry, i) => {
-      const left = line * 0.5 + (i % columns) * ((canvas.width - line) / columns);
-      const y = source.height + line * (2.1 + Math.floor(i / columns));
-      this.strokeSample(pen, entry.key, colors, left, y, line);
-      pen.fillStyle = colors.text;
-      pen.fillText(this.labelOf(entry.key), left + line * 1.5, y);
-    });
-    return canvas;
-  }
-
-  private strokeSample(
-    pen: CanvasRenderingContext2D,
-    key: string,
-    colors: Palette,
-    x: number,
-    y: number,
-    line: number,
-  ): void {
-    const curve = this.options!.curves.find((c) => c.key === key)!;
-    pen.strokeStyle = inkOf(colors, curve.color);
-    pen.lineWidth = (curve.width ?? 1.5) * uPlot.pxRatio;
-    pen.setLineDash((curve.dash ?? []).map((d) => d * uPlot.pxRatio));
-    pen.beginPath();
-    pen.moveTo(x, y);
-    pen.lineTo(x + line * 1.2, y);
-    pen.stroke();
-    pen.setLineDash([]);
-  }
-
-  private labelOf(key: string): string {
-    return this.options!.curves.find((c) => c.key === key)!.label;
+    const curves = shown.map(({ key }) => this.options!.curves.find((curve) => curve.key === key)!);
+    const signs = curves.map(({ dash, color, label }) => ({ sign: dash ? "╌╌" : "━━", color, text: label }));
+    return titled(source, title, colors, scale, signs);
   }
 
   private settings(options: ChartOptions, colors: Palette, width: number, height: number): uPlot.Options {
@@ -238,8 +200,9 @@ export class Chart {
 
   private fit(): void {
     const [width, height] = [this.plot.clientWidth, this.plot.clientHeight];
-    if (!this.chart) this.rebuild();
-    else if (width >= 60 && height >= 40) this.chart.setSize({ width, height });
+    if (width < 60 || height < 40) return;
+    if (this.chart && sameLook(this.look, palette(this.element))) this.chart.setSize({ width, height });
+    else this.rebuild();
   }
 
   private buildLegend(): void {

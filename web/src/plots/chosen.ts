@@ -88,6 +88,11 @@ export class Chosen extends Emitter<Events> {
     return this.withUnderWay;
   }
 
+  // Whether the integrator of the side minimizes.
+  isImplicit(): boolean {
+    return this.store.side(this.side)?.scene.implicit ?? true;
+  }
+
   isUnderWay(): boolean {
     return this.row() !== null && this.row() === this.underWay;
   }

@@ -18,16 +18,13 @@ export function legendOf(signs: readonly Sign[]): HTMLDListElement {
   return list;
 }
 
-// A picture with its title above and room for `rows` lines of a legend below, where the pen writes next. `scale`:
-// pixels per CSS pixel. Lines are `line` pixels high.
-export function titled(source: HTMLCanvasElement, title: string, colors: Palette, scale: number, rows: number): {
-  canvas: HTMLCanvasElement;
-  pen: CanvasRenderingContext2D;
-} {
-  const line = lineHeight(colors, scale);
-  const canvas = document.createElement("canvas");
+// A picture with its title above and its legend below, in columns. `scale`: pixels per CSS pixel.
+export function titled(source: HTMLCanvasElement, title: string, colors: Palette, scale: number, signs: readonly Sign[]): HTMLCanvasElement {
+  const line = colors.fontSize * 1.5 * scale; // height of a line [px]
+  const columns = Math.max(1, Math.floor(source.width / (line * 14)));
+  const canvas = element("canvas");
   canvas.width = source.width;
-  canvas.height = source.height + line * (2 + rows);
+  canvas.height = source.height + line * (2 + Math.ceil(signs.length / columns));
   const pen = canvas.getContext("2d")!;
   pen.fillStyle = colors.panel;
   pen.fillRect(0, 0, canvas.width, canvas.height);
@@ -37,32 +34,13 @@ export function titled(source: HTMLCanvasElement, title: string, colors: Palette
   pen.font = `600 ${colors.fontSize * scale}px sans-serif`;
   pen.fillText(title, line * 0.5, line * 0.75);
   pen.font = `${colors.fontSize * 0.84 * scale}px sans-serif`;
-  return { canvas, pen };
-}
-
-export const lineHeight = (colors: Palette, scale: number): number => colors.fontSize * 1.5 * scale;
-
-// The same legend on a canvas, in columns.
-export function paintLegend(
-  pen: CanvasRenderingContext2D,
-  signs: readonly Sign[],
-  colors: Palette,
-  top: number,
-  line: number,
-): void {
-  const columns = legendColumns(pen.canvas.width, line);
   signs.forEach(({ sign, color, text }, i) => {
-    const [x, y] = [
-      line * 0.5 + (i % columns) * ((pen.canvas.width - line) / columns),
-      top + line * (Math.floor(i / columns) + 0.5),
-    ];
+    const x = line * 0.5 + (i % columns) * ((canvas.width - line) / columns);
+    const y = source.height + line * (2.1 + Math.floor(i / columns));
     pen.fillStyle = inkOf(colors, color);
     pen.fillText(sign, x, y);
     pen.fillStyle = colors.text;
     pen.fillText(text, x + line * 1.5, y);
   });
-}
-
-export function legendColumns(width: number, line: number): number {
-  return Math.max(1, Math.floor(width / (line * 16)));
+  return canvas;
 }

@@ -5,7 +5,6 @@ import { element } from "../dom";
 export interface RowColumn {
   title: string;
   meaning: string;
-  left?: boolean;
   class?: string;
   text: (row: number) => string;
 }
@@ -13,7 +12,7 @@ export interface RowColumn {
 export interface RowsOptions {
   label: string;
   columns: RowColumn[];
-  rowClass?: (row: number) => string;
+  rowClass: (row: number) => string;
   choose: (row: number) => void;
 }
 
@@ -27,24 +26,20 @@ export class Rows {
 
   constructor(private readonly options: RowsOptions) {
     this.element.setAttribute("aria-label", `${options.label}; the arrow keys choose a row`);
-    const head = element(
-      "tr",
-      {},
-      ...options.columns.map((c) => element("th", { title: c.meaning, class: `${c.left ? "left" : ""} ${c.class ?? ""}` }, c.title)),
-    );
-    this.element.append(element("table", {}, element("thead", {}, head), this.body));
+    const titles = options.columns.map((c) => element("th", { title: c.meaning, class: c.class }, c.title));
+    this.element.append(element("table", {}, element("thead", {}, element("tr", {}, ...titles)), this.body));
     this.element.addEventListener("scroll", this.redraw);
     this.element.addEventListener("keydown", (event) => this.key(event));
     new ResizeObserver(this.redraw).observe(this.element);
   }
 
-  // `follow`: scrolls the chosen row into view.
-  show(count: number, chosen: number, follow: boolean): void {
+  // Scrolls the chosen row into view.
+  show(count: number, chosen: number): void {
     const moved = chosen !== this.chosen || count !== this.count;
     this.count = count;
     this.chosen = chosen;
     this.drawn = "";
-    if (follow && moved && chosen >= 0) this.reveal();
+    if (moved && chosen >= 0) this.reveal();
     this.redraw();
   }
 
@@ -57,18 +52,9 @@ export class Rows {
     const top = this.chosen * height;
     const room = this.element.clientHeight - 2 * height;
     if (top < this.element.scrollTop || top > this.element.scrollTop + room) {
-      this.padTo(); // makes room to scroll
+      this.body.replaceChildren(this.gap(this.count * height)); // makes room to scroll
       this.element.scrollTop = Math.max(0, top - room / 2);
     }
-  }
-
-  private padTo(): void {
-    const filler = element(
-      "tr",
-      { "aria-hidden": "true" },
-      element("td", { style: `height:${this.count * this.rowHeight()}px` }),
-    );
-    this.body.replaceChildren(filler);
   }
 
   private draw(): void {
@@ -93,17 +79,10 @@ export class Rows {
 
   private row(index: number): HTMLTableRowElement {
     const cells = this.options.columns.map((column) =>
-      element(
-        "td",
-        { class: `${column.left ? "left" : ""} ${column.class ?? ""}`, role: "gridcell" },
-        column.text(index),
-      ),
+      element("td", { class: column.class, role: "gridcell" }, column.text(index)),
     );
-    const made = element(
-      "tr",
-      { "aria-selected": String(index === this.chosen), class: this.options.rowClass?.(index) ?? "" },
-      ...cells,
-    );
+    const attributes = { "aria-selected": String(index === this.chosen), class: this.options.rowClass(index) };
+    const made = element("tr", attributes, ...cells);
     made.addEventListener("click", () => this.options.choose(index));
     return made;
   }

@@ -1,11 +1,12 @@
 // E along the direction d: the curve, its quadratic model, the acceptance test of the line search, and its trials.
 import type uPlot from "uplot";
 import type { IterationReply, MaybeNumber, TrialRow } from "../protocol";
+import { text } from "../view/marks";
 import { Chart, type Curve } from "./chart";
 import { short } from "./numbers";
 import type { Palette } from "./palette";
 import { nearest } from "./table";
-import { paintVerticalLine } from "./verticalLine";
+import { inkOn, paintVerticalLine } from "./painting";
 
 export interface Search {
   curve: IterationReply["curve"];
@@ -55,11 +56,8 @@ export class SearchChart {
 
   show(search: Search | null): void {
     this.search = search;
-    if (!search) {
-      this.chart.element.hidden = true;
-      return;
-    }
-    this.chart.element.hidden = false;
+    this.chart.element.hidden = search === null;
+    if (!search) return;
     this.chart.configure({
       label: "E along the direction d",
       x: { label: "α" },
@@ -73,8 +71,7 @@ export class SearchChart {
         this.paintTrials(u, colors);
       },
     });
-    const { alpha } = search.curve;
-    this.chart.show(alpha, this.columns());
+    this.chart.show(search.curve.alpha, this.columns());
   }
 
   private origin(): number {
@@ -83,7 +80,7 @@ export class SearchChart {
   }
 
   private columns(): MaybeNumber[][] {
-    const { curve, test } = this.search!;
+    const { curve } = this.search!;
     const origin = this.origin();
     const [low, high] = this.range();
     const far = 20 * (high - low); // canvases take very long to dash extremely long lines
@@ -91,10 +88,8 @@ export class SearchChart {
     const shifted = (values: MaybeNumber[]): MaybeNumber[] => values.map((v) => (v === null ? null : near(v - origin)));
     const ahead = (values: MaybeNumber[]): MaybeNumber[] =>
       shifted(values).map((v, i) => (curve.alpha[i]! < 0 ? null : v));
-    const columns = [shifted(curve.value), shifted(curve.model)];
-    if (test !== "none") columns.push(ahead(curve.textbook));
-    if (test === "slide") columns.push(ahead(curve.slide));
-    return columns;
+    const columns = [shifted(curve.value), shifted(curve.model), ahead(curve.textbook), ahead(curve.slide)];
+    return columns.slice(0, curvesOf(this.search!, this.symbol).length);
   }
 
   private range(): [number, number] {
@@ -119,53 +114,38 @@ export class SearchChart {
     const { maxStep } = this.search!;
     if (maxStep === null || maxStep === undefined) return;
     paintVerticalLine(u, maxStep, colors.bad, 0.6);
-    const scale = u.bbox.width / u.over.clientWidth || 1;
+    const ink = inkOn(u, colors, colors.bad);
+    const { left, top, width, height } = u.bbox;
     const x = u.valToPos(maxStep, "x", true);
-    const pen = u.ctx;
-    pen.save();
-    pen.font = `${colors.fontSize * 0.82 * scale}px sans-serif`;
-    pen.fillStyle = colors.bad;
-    pen.textBaseline = "bottom";
-    const text = limitText(maxStep);
-    const isRight = x + 6 * scale + pen.measureText(text).width < u.bbox.left + u.bbox.width;
-    pen.textAlign = isRight ? "left" : "right";
-    pen.fillText(text, x + (isRight ? 6 : -6) * scale, u.bbox.top + u.bbox.height - 6 * scale);
-    pen.restore();
+    const words = limitText(maxStep);
+    const isRight = x + ink.em + ink.context.measureText(words).width < left + width;
+    text(ink, words, x + (isRight ? 0.5 : -0.5) * ink.em, top + height - ink.em, isRight ? "left" : "right");
+    ink.context.restore();
   }
 
   // Draws rejected trials as crosses and the accepted one as a dot. Values outside of the axis are drawn at its edge.
   private paintTrials(u: uPlot, colors: Palette): void {
-    const { trials } = this.search!;
-    const pen = u.ctx;
-    const scale = u.bbox.width / u.over.clientWidth || 1;
     const origin = this.origin();
-    pen.save();
-    pen.font = `${colors.fontSize * 0.82 * scale}px sans-serif`;
-    let right = -Infinity; // right end of the last text, to avoid overlaps
-    for (const trial of [...trials].sort((p, q) => p.alpha - q.alpha)) {
-      const x = u.valToPos(trial.alpha, "x", true);
-      if (x > u.bbox.left + u.bbox.width + 1) continue;
-      const value = trial.value === null ? Infinity : trial.value - origin;
+    const ink = inkOn(u, colors, colors.bad);
+    const { em } = ink;
+    const bounds = u.bbox;
+    let end = -Infinity; // right end of the last text, to avoid overlaps
+    for (const { alpha, value: tried, accepted } of [...this.search!.trials].sort((p, q) => p.alpha - q.alpha)) {
+      const x = u.valToPos(alpha, "x", true);
+      if (x > bounds.left + bounds.width + 1) continue;
+      const value = tried === null ? Infinity : tried - origin;
       const at = Number.isFinite(value) ? u.valToPos(value, "y", true) : -Infinity;
-      const y = Math.max(u.bbox.top + 6 * scale, at);
-      mark(pen, trial.accepted, x, y, 5 * scale, trial.accepted ? colors.good : colors.bad);
-      const off = at < u.bbox.top ? "↑ " : "";
-      const text = `${off}α = ${short(trial.alpha, 3)}: ${short(value, 3)}`;
-      const width = pen.measureText(text).width;
-      const left = Math.min(Math.max(u.bbox.left, x + 8 * scale), u.bbox.left + u.bbox.width - width);
-      if (left < right && !trial.accepted) continue;
-      right = left + width;
-      pen.fillStyle = trial.accepted ? colors.good : colors.bad;
-      pen.strokeStyle = colors.panel;
-      pen.lineWidth = 4 * scale;
-      pen.lineJoin = "round";
-      pen.textBaseline = "middle";
-      pen.textAlign = "left";
-      const line = y + (y < u.bbox.top + 18 * scale ? 14 : -13) * scale;
-      pen.strokeText(text, left, line);
-      pen.fillText(text, left, line);
+      const y = Math.max(bounds.top + 0.5 * em, at);
+      ink.text = accepted ? colors.good : colors.bad;
+      mark(ink.context, accepted, x, y, 0.45 * em, ink.text);
+      const words = `${at < bounds.top ? "↑ " : ""}α = ${short(alpha, 3)}: ${short(value, 3)}`;
+      const width = ink.context.measureText(words).width;
+      const left = Math.min(Math.max(bounds.left, x + 0.7 * em), bounds.left + bounds.width - width);
+      if (left < end && !accepted) continue;
+      end = left + width;
+      text(ink, words, left, y + (y < bounds.top + 1.6 * em ? 1.2 : -1.1) * em);
     }
-    pen.restore();
+    ink.context.restore();
   }
 }
 
@@ -189,33 +169,14 @@ function mark(pen: CanvasRenderingContext2D, accepted: boolean, x: number, y: nu
   pen.stroke();
 }
 
-function curvesOf(search: Search, symbol: string): Curve[] {
+function curvesOf({ test }: Search, symbol: string): Curve[] {
+  const line = { dash: [2, 3] };
+  const textbook = test === "slide" ? "Armijo line (textbook)" : "Armijo line: accepted below it";
   const curves: Curve[] = [
     { key: "value", label: symbol, meaning: "the objective along d", color: "series1", width: 2.25 },
-    {
-      key: "model",
-      label: "quadratic model",
-      meaning: "E + α g·d + α²/2 d·H d",
-      color: "series2",
-      width: 1.75,
-      dash: [6, 4],
-    },
+    { key: "model", label: "quadratic model", meaning: "E + α g·d + α²/2 d·H d", color: "series2", width: 1.75, dash: [6, 4] },
+    { key: "textbook", label: textbook, meaning: "E + c α g·d, the bound of the textbook's test", color: "series3", ...line },
+    { key: "slide", label: "slide's line: accepted below it", meaning: "E + c g·d, the bound as printed in the lecture", color: "series4", ...line },
   ];
-  if (search.test !== "none")
-    curves.push({
-      key: "textbook",
-      label: search.test === "slide" ? "Armijo line (textbook)" : "Armijo line: accepted below it",
-      meaning: "E + c α g·d, the bound of the textbook's test",
-      color: "series3",
-      dash: [2, 3],
-    });
-  if (search.test === "slide")
-    curves.push({
-      key: "slide",
-      label: "slide's line: accepted below it",
-      meaning: "E + c g·d, the bound as printed in the lecture",
-      color: "series4",
-      dash: [2, 3],
-    });
-  return curves;
+  return curves.slice(0, test === "none" ? 2 : test === "slide" ? 4 : 3);
 }

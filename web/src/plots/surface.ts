@@ -1,11 +1,12 @@
 // 3-D picture of a surface that the reader can turn: values over a plane, the quadratic model, a path and marks.
 import * as THREE from "three";
 import { OrbitControls } from "three/addons/controls/OrbitControls.js";
+import { onLook } from "../theme";
 import { disposeOf } from "../view/dispose";
 import { oncePerFrame } from "../controls";
 import { element } from "../dom";
 import { sample, type Point } from "./grid";
-import { legendColumns, legendOf, lineHeight, paintLegend, titled } from "./legend";
+import { legendOf, titled } from "./legend";
 import { cssOf, inkOf, palette, sameLook, type Palette } from "./palette";
 import { SurfaceBody } from "./surfaceBody";
 import type { SurfaceContent } from "./surfaceContent";
@@ -43,6 +44,7 @@ export class SurfaceView {
     this.camera.add(this.lamp);
     this.lamp.position.set(-1.5, 2, 1);
     new ResizeObserver(() => this.fit()).observe(this.element);
+    onLook(() => this.fit());
   }
 
   // Value above which the surface is cut off; null: not cut.
@@ -54,11 +56,6 @@ export class SurfaceView {
     this.shown = content;
     this.legend.replaceChildren(...(content ? [legendOf(content.signs)] : []));
     this.build();
-  }
-
-  // Applies changed colors and fonts.
-  retheme(): void {
-    if (!sameLook(this.colors, palette(this.element))) this.build();
   }
 
   private build(): void {
@@ -83,14 +80,12 @@ export class SurfaceView {
     this.draw();
     const source = this.renderer.domElement;
     const scale = source.width / Math.max(1, this.element.clientWidth);
-    const line = lineHeight(this.colors, scale);
-    const rows = Math.ceil(this.shown.signs.length / legendColumns(source.width, line));
-    const { canvas, pen } = titled(source, title, this.colors, scale, rows);
+    const canvas = titled(source, title, this.colors, scale, this.shown.signs);
+    const pen = canvas.getContext("2d")!;
     for (const { label, x, y } of this.placedLabels()) {
       pen.fillStyle = inkOf(this.colors, label.color);
-      pen.fillText(label.text, x * scale, y * scale + line * 1.5);
+      pen.fillText(label.text, x * scale, (y + this.colors.fontSize * 2.25) * scale);
     }
-    paintLegend(pen, this.shown.signs, this.colors, source.height + line * 1.6, line);
     return canvas;
   }
 
@@ -142,7 +137,8 @@ export class SurfaceView {
     if (!this.renderer) this.start();
     if (!this.renderer) return;
     this.renderer.setSize(width, height, false);
-    if (Math.abs(this.wantedStretch() - this.stretch) > 0.1) this.build();
+    const isStretched = Math.abs(this.wantedStretch() - this.stretch) > 0.1;
+    if (isStretched || !sameLook(this.colors, palette(this.element))) this.build();
     this.camera.aspect = width / height;
     this.camera.updateProjectionMatrix();
     const distance = this.distanceThatShowsAll();

@@ -23,12 +23,8 @@ export class SurfaceBody {
     private readonly colors: Palette,
     stretch: number, // factor of the width
   ) {
-    this.frame = new Frame(
-      content.grid,
-      heightRange(content.grid.value, content.keep),
-      content.log ? "log" : "linear",
-      stretch,
-    );
+    const range = heightRange(content.grid.value, content.keep);
+    this.frame = new Frame(content.grid, range, content.log ? "log" : "linear", stretch);
     this.surface = this.addSurface();
     if (content.model) this.addModel(content.model);
     if (content.blocked?.length) this.addBlocked(content.blocked);
@@ -83,36 +79,24 @@ export class SurfaceBody {
   }
 
   private addBox(): void {
-    const [w, d] = [this.frame.width / 2, this.frame.depth / 2];
-    const corners = [
-      [-w, -d],
-      [w, -d],
-      [w, d],
-      [-w, d],
-      [-w, -d],
-    ] as const;
-    const base = corners.map(([x, z]) => new THREE.Vector3(x, -0.02, z));
-    const material = new THREE.LineBasicMaterial({ color: this.colors.faint });
-    this.group.add(new THREE.Line(new THREE.BufferGeometry().setFromPoints(base), material));
-    const posts = corners
-      .slice(0, 4)
-      .flatMap(([x, z]) => [new THREE.Vector3(x, -0.02, z), new THREE.Vector3(x, this.frame.tall, z)]);
+    const base = this.frame.corners.map((corner) => corner.setY(-0.02));
+    const lines = (points: THREE.Vector3[], color: string) =>
+      [new THREE.BufferGeometry().setFromPoints(points), new THREE.LineBasicMaterial({ color })] as const;
+    const posts = base.flatMap((corner) => [corner, corner.clone().setY(this.frame.tall)]);
     this.group.add(
-      new THREE.LineSegments(
-        new THREE.BufferGeometry().setFromPoints(posts),
-        new THREE.LineBasicMaterial({ color: this.colors.line }),
-      ),
+      new THREE.LineLoop(...lines(base, this.colors.faint)),
+      new THREE.LineSegments(...lines(posts, this.colors.line)),
     );
   }
 
-  private lineThrough(points: THREE.Vector3[], color: string, width: number, dashed = false): void {
+  private lineThrough(points: THREE.Vector3[], color: string, dashed = false): void {
     if (points.length < 2) return;
     const geometry = new LineGeometry();
     geometry.setPositions(points.flatMap((p) => p.toArray()));
     for (const hidden of [true, false]) {
       const material = new LineMaterial({
         color: new THREE.Color(color).getHex(),
-        linewidth: width,
+        linewidth: 2.5, // [CSS px]
         transparent: true,
         opacity: hidden ? 0.35 : 1,
         depthTest: !hidden,
@@ -131,16 +115,12 @@ export class SurfaceBody {
   private drape(p: Point, q: Point): THREE.Vector3[] {
     const ends = clipped(this.content.grid, p, q);
     if (!ends) return [];
+    const [from, to] = ends;
+    const [across, away] = [this.frame.across(to.x) - this.frame.across(from.x), this.frame.away(to.y) - this.frame.away(from.y)];
+    const pieces = Math.min(48, Math.ceil(Math.hypot(across, away) / 0.03) + 1);
     const points: THREE.Vector3[] = [];
-    const [dx, dy] = [ends[1].x - ends[0].x, ends[1].y - ends[0].y];
-    const pieces = Math.min(
-      48,
-      Math.ceil(
-        Math.hypot(this.frame.across(dx) - this.frame.across(0), this.frame.away(dy) - this.frame.away(0)) / 0.03,
-      ) + 1,
-    );
     for (let i = 0; i <= pieces; ++i) {
-      const [x, y] = [ends[0].x + (i / pieces) * dx, ends[0].y + (i / pieces) * dy];
+      const [x, y] = [from.x + (i / pieces) * (to.x - from.x), from.y + (i / pieces) * (to.y - from.y)];
       const value = sample(this.content.grid, x, y);
       if (value !== null) points.push(this.frame.place(x, y, value, 0.008));
     }
@@ -148,13 +128,8 @@ export class SurfaceBody {
   }
 
   private addPath(): void {
-    if (this.content.direction)
-      this.lineThrough(
-        this.drape(this.content.direction.from, this.content.direction.to),
-        this.colors.accent,
-        2.5,
-        true,
-      );
+    const { direction } = this.content;
+    if (direction) this.lineThrough(this.drape(direction.from, direction.to), this.colors.accent, true);
     const pieces: THREE.Vector3[][] = [];
     for (let i = 0; i + 1 < this.content.path.length; ++i) {
       const [p, q] = [this.content.path[i]!, this.content.path[i + 1]!];
@@ -165,12 +140,12 @@ export class SurfaceBody {
     for (const piece of pieces) {
       const joins = line.length > 0 && piece.length > 0 && line[line.length - 1]!.distanceTo(piece[0]!) < 1e-6;
       if (!joins) {
-        this.lineThrough(line, this.colors.text, 2.5);
+        this.lineThrough(line, this.colors.text);
         line = [];
       }
       line.push(...piece);
     }
-    this.lineThrough(line, this.colors.text, 2.5);
+    this.lineThrough(line, this.colors.text);
     this.addDots();
   }
 
@@ -195,16 +170,11 @@ export class SurfaceBody {
   private addMark(mark: Mark): void {
     const value = mark.value ?? sample(this.content.grid, mark.x, mark.y) ?? this.frame.range.high;
     if (!isInside(this.content.grid, mark)) return;
-    const above = value > this.frame.range.high;
-    const place = this.frame.place(
-      mark.x,
-      mark.y,
-      Math.max(Math.min(value, this.frame.range.high), this.frame.range.low),
-      0.008,
-    );
+    const { low, high } = this.frame.range;
+    const place = this.frame.place(mark.x, mark.y, Math.max(low, Math.min(high, value)), 0.008);
     this.addPoints([place], mark.shape, inkOf(this.colors, mark.color), this.colors.panel, mark.size);
     if (mark.label)
-      this.labels.push({ text: (above ? "↑ " : "") + mark.label, place, color: mark.color, important: true });
+      this.labels.push({ text: (value > high ? "↑ " : "") + mark.label, place, color: mark.color, important: true });
   }
 
   private addPoints(places: THREE.Vector3[], shape: Mark["shape"], color: string, halo: string, size: number): void {

@@ -4,6 +4,7 @@ import { ticks } from "../view/ranges";
 import { valueAtHeight } from "./grid";
 import { short, tickTexts } from "./numbers";
 import type { Color } from "./palette";
+import type { SurfaceContent } from "./surfaceContent";
 import type { Frame } from "./surfaceParts";
 
 export interface Label {
@@ -47,11 +48,7 @@ export function placed(
 }
 
 // Labels along the base's edges nearest to the reader, and along the leftmost post.
-export function axisLabels(
-  frame: Frame,
-  names: { x: string; y: string; value: string },
-  camera: THREE.Camera,
-): Label[] {
+export function axisLabels(frame: Frame, names: SurfaceContent["axes"], camera: THREE.Camera): Label[] {
   const { x, y } = frame.grid;
   const [w, d] = [frame.width / 2, frame.depth / 2];
   const front = camera.position.z >= 0 ? d : -d;
@@ -65,7 +62,7 @@ export function axisLabels(
   add(names.y, new THREE.Vector3(side * 1.42, -0.02, 0), "text");
   tickTexts(alongX).forEach((text, i) => add(text, new THREE.Vector3(frame.across(alongX[i]!), -0.02, front * 1.12)));
   tickTexts(alongY).forEach((text, i) => add(text, new THREE.Vector3(side * 1.12, -0.02, frame.away(alongY[i]!))));
-  const post = leftPost(w, d, camera);
+  const post = leftPost(frame, camera);
   const toValue = valueAtHeight(frame.range, frame.scale);
   const { low, high } = frame.range;
   const even = frame.scale === "linear";
@@ -83,13 +80,7 @@ export function axisLabels(
   return out;
 }
 
-function leftPost(w: number, d: number, camera: THREE.Camera): THREE.Vector3 {
-  const posts = [
-    [-w, -d],
-    [w, -d],
-    [w, d],
-    [-w, d],
-  ].map(([x, z]) => new THREE.Vector3(x, 0, z));
+function leftPost(frame: Frame, camera: THREE.Camera): THREE.Vector3 {
   const onScreen = (p: THREE.Vector3): number => p.clone().project(camera).x;
-  return posts.reduce((left, p) => (onScreen(p) < onScreen(left) ? p : left));
+  return frame.corners.reduce((left, p) => (onScreen(p) < onScreen(left) ? p : left));
 }

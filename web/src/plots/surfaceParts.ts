@@ -1,6 +1,6 @@
 // Geometry of the picture of a surface: triangles, grid lines and contour lines in the box of `Frame`.
 import * as THREE from "three";
-import type { MaybeNumber } from "../protocol";
+import type { MaybeNumber, Vec3 } from "../protocol";
 import { colorAt } from "../view/colorMaps";
 import { heightOf, type Grid, type Range, type Scale } from "./grid";
 import type { Mark } from "./surfaceContent";
@@ -23,6 +23,12 @@ export class Frame {
     this.width = (ratio >= 1 ? 2 : 2 * ratio) * stretch;
     this.depth = ratio >= 1 ? 2 / ratio : 2;
     this.height = heightOf(range, scale);
+  }
+
+  // Corners of the plane.
+  get corners(): THREE.Vector3[] {
+    const [w, d] = [this.width / 2, this.depth / 2];
+    return [[-w, -d], [w, -d], [w, d], [-w, d]].map(([x, z]) => new THREE.Vector3(x, 0, z));
   }
 
   place(x: number, y: number, value: number, lift = 0): THREE.Vector3 {
@@ -105,16 +111,10 @@ export function gridLines(frame: Frame, values: readonly MaybeNumber[], lines: n
   const add = (k: number, l: number): void => {
     const [v, w] = [values[k], values[l]];
     if (v === null || v === undefined || w === null || w === undefined) return;
-    for (const [n, value] of [
-      [k, v],
-      [l, w],
-    ] as const)
+    for (const [n, value] of [[k, v], [l, w]] as const)
       points.push(...frame.place(x[n % x.length]!, y[Math.floor(n / x.length)]!, value, 0.002).toArray());
   };
-  const [everyX, everyY] = [
-    Math.max(1, Math.round((x.length - 1) / lines)),
-    Math.max(1, Math.round((y.length - 1) / lines)),
-  ];
+  const [everyX, everyY] = [x, y].map(({ length }) => Math.max(1, Math.round((length - 1) / lines)));
   for (let j = 0; j < y.length; ++j)
     for (let i = 0; i < x.length; ++i) {
       const k = j * x.length + i;
@@ -125,26 +125,14 @@ export function gridLines(frame: Frame, values: readonly MaybeNumber[], lines: n
 }
 
 // Contour lines on the surface and in the plane below it: each triangle of a cell is cut at every level.
-export function levelLines(
-  frame: Frame,
-  values: readonly MaybeNumber[],
-  levels: readonly number[],
-  flat: boolean,
-): THREE.BufferGeometry {
+export function levelLines(frame: Frame, values: readonly MaybeNumber[], levels: readonly number[], flat: boolean): THREE.BufferGeometry {
   const { x, y } = frame.grid;
   const points: number[] = [];
-  const corner = (k: number): [number, number, number] => [
-    x[k % x.length]!,
-    y[Math.floor(k / x.length)]!,
-    values[k] as number,
-  ];
+  const corner = (k: number): Vec3 => [x[k % x.length]!, y[Math.floor(k / x.length)]!, values[k] as number];
   for (let j = 0; j + 1 < y.length; ++j)
     for (let i = 0; i + 1 < x.length; ++i) {
       const a = j * x.length + i;
-      for (const triangle of [
-        [a, a + 1, a + x.length + 1],
-        [a, a + x.length + 1, a + x.length],
-      ]) {
+      for (const triangle of [[a, a + 1, a + x.length + 1], [a, a + x.length + 1, a + x.length]]) {
         if (triangle.some((k) => values[k] === null || values[k] === undefined)) continue;
         for (const level of levels) cut(triangle.map(corner), level, frame, flat, points);
       }
@@ -152,7 +140,7 @@ export function levelLines(
   return lineGeometry(points);
 }
 
-function cut(corners: [number, number, number][], level: number, frame: Frame, flat: boolean, points: number[]): void {
+function cut(corners: Vec3[], level: number, frame: Frame, flat: boolean, points: number[]): void {
   const ends: THREE.Vector3[] = [];
   for (let k = 0; k < 3; ++k) {
     const [p, q] = [corners[k]!, corners[(k + 1) % 3]!];
@@ -164,53 +152,35 @@ function cut(corners: [number, number, number][], level: number, frame: Frame, f
   if (ends.length === 2) for (const end of ends) points.push(end.x, end.y, end.z);
 }
 
-export function lineGeometry(points: number[]): THREE.BufferGeometry {
-  const geometry = new THREE.BufferGeometry();
-  geometry.setAttribute("position", new THREE.Float32BufferAttribute(points, 3));
-  return geometry;
+function lineGeometry(points: number[]): THREE.BufferGeometry {
+  return new THREE.BufferGeometry().setAttribute("position", new THREE.Float32BufferAttribute(points, 3));
 }
 
-const marks = new Map<string, THREE.Texture>();
+const kOutlines: Record<Mark["shape"], string> = {
+  dot: "M48 32a16 16 0 1 1-32 0a16 16 0 1 1 32 0Z",
+  ring: "M50 32a18 18 0 1 1-36 0a18 18 0 1 1 36 0Z",
+  diamond: "M32 12L52 32L32 52L12 32Z",
+  cross: "M16 16L48 48M16 48L48 16",
+};
+const textures = new Map<string, THREE.Texture>();
 
 // Small picture of a mark with a light rim, visible on any surface.
 export function markTexture(shape: Mark["shape"], color: string, halo: string): THREE.Texture {
   const key = `${shape} ${color} ${halo}`;
-  const known = marks.get(key);
+  const known = textures.get(key);
   if (known) return known;
   const canvas = document.createElement("canvas");
   canvas.width = canvas.height = 64;
   const pen = canvas.getContext("2d")!;
-  for (const [style, width] of [
-    [halo, 22],
-    [color, 10],
-  ] as const) {
+  const outline = new Path2D(kOutlines[shape]);
+  for (const [style, width] of [[halo, 22], [color, 10]] as const) {
     pen.strokeStyle = pen.fillStyle = style;
     pen.lineWidth = width;
-    pen.beginPath();
-    if (shape === "cross") {
-      for (const [x0, y0, x1, y1] of [
-        [16, 16, 48, 48],
-        [16, 48, 48, 16],
-      ] as const) {
-        pen.moveTo(x0, y0);
-        pen.lineTo(x1, y1);
-      }
-    } else if (shape === "diamond") {
-      for (const [x, y] of [
-        [32, 12],
-        [52, 32],
-        [32, 52],
-        [12, 32],
-        [32, 12],
-        [52, 32],
-      ] as const)
-        pen.lineTo(x, y);
-    } else pen.arc(32, 32, shape === "ring" ? 18 : 16, 0, 2 * Math.PI);
-    pen.stroke();
-    if ((shape === "dot" || shape === "diamond") && style === color) pen.fill();
+    pen.stroke(outline);
   }
+  if (shape === "dot" || shape === "diamond") pen.fill(outline);
   const texture = new THREE.CanvasTexture(canvas);
   texture.colorSpace = THREE.SRGBColorSpace;
-  marks.set(key, texture);
+  textures.set(key, texture);
   return texture;
 }

@@ -42,22 +42,25 @@ function residualText(row: StepRow): string {
 }
 
 function shortened(rows: readonly IterationRow[]): string {
-  const less = rows.filter((row) => row.trials.filter((trial) => !trial.accepted).length > 0).length;
+  const less = rows.filter((row) => row.trials.some((trial) => !trial.accepted)).length;
   return less > 0 ? ` In ${plural(less, "iteration")} the line search rejected the first trial and accepted a shorter step.` : "";
 }
 
 export function stepText(row: StepRow, implicit: boolean): string {
-  if (row.explanation)
-    return `${sentence(row.explanation.cause)}${row.explanation.place ? ` ${sentence(row.explanation.place)}` : ""}${row.explanation.remedy ? ` ${sentence(row.explanation.remedy)}` : ""}`;
+  if (row.explanation) {
+    const { cause, place, remedy } = row.explanation;
+    return [cause, place, remedy].map(sentence).filter((text) => text !== "").join(" ");
+  }
   if (!implicit) return "This integrator does not minimize: it computes the next positions from the present forces.";
   const count = plural(row.iterations.length, "iteration");
-  if (!row.converged)
-    return `Not converged (${statusName(row.status)}) after ${count}${residualText(row) ? `: ${residualText(row)}` : ""}.`;
+  const residual = residualText(row);
+  const met = residual || "the criterion is met";
+  if (!row.converged) return `Not converged (${statusName(row.status)}) after ${count}${residual && `: ${residual}`}.`;
   if (row.iterations.length === 0)
-    return `Converged: ${residualText(row) || "the criterion is met"}. It needed no iteration, or its iterations are no longer stored.`;
+    return `Converged: ${met}. It needed no iteration, or its iterations are no longer stored.`;
   if (row.status === "round_off")
     return `Converged to round-off after ${count}: the energy no longer changes by more than round-off.`;
-  return `Converged in ${count}: ${residualText(row) || "the criterion is met"}.${paceText(row.iterations)}${shortened(row.iterations)}`;
+  return `Converged in ${count}: ${met}.${paceText(row.iterations)}${shortened(row.iterations)}`;
 }
 
 // Starts with a capital, unless the text starts with a key of a scene, and ends with a period.

@@ -13,35 +13,29 @@ const kMost = 300;
 export const kSkinPoint = 0xffffffff; // vertex number of a point of a fine skin
 const kCell = 6; // cell size of the grid for hidden vertices [px]
 
-export interface LabelKinds {
+interface LabelOptions {
   vertices: boolean;
   tets: boolean;
+  em: number; // height of text [px]
+  cursor: [number, number] | null; // if there are too many labels, those near it come first
 }
 
-// `em`: height of text [px]. If there are too many labels, those near the cursor come first.
-export function chooseLabels(
-  lens: Lens,
-  surface: Surface,
-  geometry: Geometry,
-  kinds: LabelKinds,
-  em: number,
-  cursor: [number, number] | null,
-): Label[] {
+export function chooseLabels(lens: Lens, surface: Surface, geometry: Geometry, options: LabelOptions): Label[] {
   const screen = screenPositions(lens, surface.positions, surface.clip);
   const grid = new DepthGrid(0, 0, kCell, Math.ceil(lens.width / kCell), Math.ceil(lens.height / kCell));
   grid.add(screen, surface.triangles);
-  const chosen = new Spread(lens, grid, em);
-  if (kinds.vertices)
+  const chosen = new Spread(lens, grid, options.em);
+  if (options.vertices)
     for (let i = 0; i < geometry.vertex.length; ++i)
       if (geometry.vertex[i] !== kSkinPoint)
         chosen.offer(screen[3 * i], screen[3 * i + 1], screen[3 * i + 2], () => String(geometry.vertex[i]));
-  if (kinds.tets)
+  if (options.tets)
     for (let t = 0; t < geometry.tet.length; ++t) {
       const middle = (c: number): number =>
         [0, 1, 2].reduce((sum, k) => sum + screen[3 * surface.triangles[3 * t + k] + c], 0) / 3;
       chosen.offer(middle(0), middle(1), middle(2), () => `[${geometry.tet[t]}]`);
     }
-  return chosen.labels(cursor ?? [lens.width / 2, lens.height / 2]);
+  return chosen.labels(options.cursor ?? [lens.width / 2, lens.height / 2]);
 }
 
 // A text; x is its left end, y the middle of its height.

@@ -81,13 +81,4 @@ export class Overlay {
     if (what.bar) marks.colorBar(ink, lens, what.bar.field, what.bar.range, what.bar.map);
     if (what.tip) marks.paragraph(ink, lens, what.tip.words, what.tip.at[0] + style.em, what.tip.at[1] - style.em);
   }
-
-  // Draws both canvases, which have the same size, into one.
-  paint(canvas: HTMLCanvasElement, below: HTMLCanvasElement): void {
-    const { width, height } = this.canvas;
-    if (canvas.width !== width || canvas.height !== height) [canvas.width, canvas.height] = [width, height];
-    const context = canvas.getContext("2d");
-    context?.drawImage(below, 0, 0);
-    context?.drawImage(this.canvas, 0, 0);
-  }
 }

@@ -118,12 +118,13 @@ export class Stage {
     this.renderer.shadowMap.needsUpdate = true;
   }
 
-  render(lens: Lens, orientation: THREE.Quaternion, pinColor: string): void {
+  render(lens: Lens, pinColor: string): void {
     const camera = this.camera(lens);
     camera.position.copy(this.toUnits(lens.eye));
-    camera.quaternion.copy(orientation);
+    const [right, up, forward] = [lens.right, lens.up, lens.forward].map((axis) => new THREE.Vector3(...axis));
+    camera.setRotationFromMatrix(new THREE.Matrix4().makeBasis(right, up, forward.clone().negate()));
     this.lamp.position.copy(camera.position);
-    this.lamp.target.position.copy(camera.position).add(new THREE.Vector3(...lens.forward));
+    this.lamp.target.position.copy(camera.position).add(forward);
     this.contacts.adapt(this.renderer.getPixelRatio());
     if (this.body) this.adapt(this.body, lens, pinColor);
     this.renderer.render(this.scene, camera);

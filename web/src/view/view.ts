@@ -1,10 +1,10 @@
 // 3-D view of one side: draws its newest picture, and only after a change.
 import "./view.css";
-import { png } from "../dom";
 import type { Highlight, Page } from "../page";
 import { hasBlownUp } from "../plots/gain";
 import type { SideName } from "../protocol";
 import type { Store } from "../store";
+import { onLook } from "../theme";
 import type { CameraRig } from "./cameras";
 import { Card } from "./card";
 import type { Display } from "./display";
@@ -13,20 +13,15 @@ import { chooseLabels, type Label } from "./labels";
 import type { Lens } from "./lens";
 import { markersOn, nearestOn } from "./markers";
 import { kBarWidth } from "./marks";
-import { Overlay, readStyle, type Dot, type Marks, type Style } from "./overlay";
+import { readStyle, type Dot, type Marks, type Style } from "./overlay";
 import { Pace } from "./pace";
 import { interpolated, nearestVertex, type Hit, type Surface } from "./picking";
-import { Stage } from "./stage";
+import { Screen } from "./screen";
 import { Touch } from "./touch";
 import { valueText } from "./values";
 
-const kLargest = 8192; // largest side of a screenshot [px]
-
 export class View {
-  private readonly glCanvas = document.createElement("canvas");
-  private readonly overlay = new Overlay();
-  private readonly message = document.createElement("div");
-  private readonly stage: Stage | null;
+  private readonly screen = new Screen();
   private readonly touch: Touch;
   private readonly card: Card;
   private style!: Style;
@@ -36,7 +31,6 @@ export class View {
   private readonly pace: Pace;
   private frame = 0; // id of the requested frame
   private fixedSize: [number, number] | null = null;
-  private sharpness = 1; // scale of a screenshot
   private readonly listeners = new AbortController();
 
   constructor(
@@ -48,12 +42,9 @@ export class View {
   ) {
     this.card = new Card(store, side, () => this.redraw());
     this.pace = new Pace(store.source, () => this.redraw());
-    this.message.className = "view-message";
-    this.message.hidden = true;
     this.host.classList.add("view");
-    this.host.replaceChildren(this.glCanvas, this.overlay.canvas, this.message, this.card.element);
-    this.stage = this.makeStage();
-    this.figure = new Figure(store, side, display, this.stage);
+    this.host.replaceChildren(this.screen.canvas, this.screen.overlay.canvas, this.screen.message, this.card.element);
+    this.figure = new Figure(store, side, display, this.screen.stage);
     this.touch = new Touch(this);
     this.listen();
     this.applyDisplay();
@@ -73,16 +64,10 @@ export class View {
     return this.figure.surface();
   }
 
-  // PNG of the view with `scale` times as many pixels as on the screen.
-  async screenshot(scale = 1): Promise<Blob> {
-    const [width, height] = this.size();
-    this.sharpness = Math.min(scale, kLargest / (Math.max(width, height, 1) * this.pixelRatio()));
-    const canvas = document.createElement("canvas");
+  // PNG of the view.
+  screenshot(): Promise<Blob> {
     this.drawNow();
-    this.overlay.paint(canvas, this.glCanvas);
-    if (this.sharpness !== 1) this.redraw();
-    this.sharpness = 1;
-    return png(canvas);
+    return this.screen.picture();
   }
 
   // Fixes the size in pixels, independent of the page's layout, for pictures without a screen.
@@ -117,12 +102,8 @@ export class View {
     cancelAnimationFrame(this.frame);
     this.frame = 0;
     const [width, height] = this.size();
-    if (this.stage && width > 0 && height > 0) {
-      this.resize(width, height);
-      const lens = this.lens();
-      this.stage.render(lens, this.rig.orientation, this.style.accent);
-      this.overlay.draw(lens, this.style, this.marks(lens));
-    }
+    const lens = this.lens();
+    if (width > 0 && height > 0) this.screen.draw(lens, width, this.pixelRatio(), this.style, this.marks(lens));
     this.pace.drawn();
   }
 
@@ -131,43 +112,25 @@ export class View {
     this.touch.dispose();
     this.card.close();
     cancelAnimationFrame(this.frame);
-    this.stage?.dispose();
+    this.screen.stage?.dispose();
     this.display.forget(this.side);
     this.host.replaceChildren();
     this.pace.drawn();
-  }
-
-  private makeStage(): Stage | null {
-    const { signal } = this.listeners;
-    const lost = (): void => this.say("The graphics card is busy; the picture will return.");
-    this.glCanvas.addEventListener("webglcontextlost", lost, { signal });
-    this.glCanvas.addEventListener("webglcontextrestored", () => this.restored(), { signal });
-    try {
-      return new Stage(this.glCanvas);
-    } catch {
-      this.say(
-        "This browser cannot draw in 3-D: WebGL 2 is missing or disabled. Enable hardware acceleration in its " +
-          "settings, or use a current Firefox, Chromium or Safari. Plots and numbers work without it.",
-      );
-      return null;
-    }
-  }
-
-  private say(words: string): void {
-    this.message.textContent = words;
-    this.message.hidden = words === "";
   }
 
   // Runs after three.js, which listens, too, has restored its state.
   private restored(): void {
     setTimeout(() => {
       if (this.listeners.signal.aborted) return;
-      this.say("");
+      this.screen.say("");
       this.applyDisplay();
     });
   }
 
   private listen(): void {
+    const lost = (): void => this.screen.say("The graphics card is busy; the picture will return.");
+    this.screen.canvas.addEventListener("webglcontextlost", lost, { signal: this.listeners.signal });
+    this.screen.canvas.addEventListener("webglcontextrestored", () => this.restored(), { signal: this.listeners.signal });
     const mine = (listener: () => void) => (side: SideName) => side === this.side && listener();
     const { store, display, page } = this;
     const { signal } = this.listeners;
@@ -181,7 +144,7 @@ export class View {
     display.on("changed", () => this.applyDisplay(), signal);
     display.on("camera", () => this.redraw(), signal);
     display.on("range", () => this.recolor(), signal);
-    page.onLook(() => this.applyDisplay(), signal);
+    onLook(() => this.applyDisplay(), signal);
     if (this.side === "a") page.on("highlight", (highlights) => this.highlight(highlights), signal);
     const sizes = new ResizeObserver(() => this.redraw());
     sizes.observe(this.host);
@@ -191,7 +154,7 @@ export class View {
 
   private takeState(): void {
     this.figure.takeState();
-    this.stage?.showTip(this.store.state?.[this.side]?.probe ?? null, this.style.accent);
+    this.screen.stage?.showTip(this.store.state?.[this.side]?.probe ?? null, this.style.accent);
     this.redraw();
   }
 
@@ -262,18 +225,6 @@ export class View {
     return this.fixedSize ? 1 : Math.min(3, window.devicePixelRatio || 1);
   }
 
-  private resize(width: number, height: number): void {
-    const ratio = this.pixelRatio() * this.sharpness;
-    const { canvas } = this.overlay;
-    const [columns, rows] = [Math.floor(width * ratio), Math.floor(height * ratio)];
-    const seen = Math.max(1, width - this.strip());
-    if (canvas.width === columns && canvas.height === rows && this.glCanvas.width === Math.floor(seen * ratio)) return;
-    this.stage?.renderer.setPixelRatio(ratio);
-    this.stage?.renderer.setSize(seen, height, false);
-    this.glCanvas.style.width = `${seen}px`;
-    [canvas.width, canvas.height] = [columns, rows];
-  }
-
   private marks(lens: Lens): Marks {
     const settings = this.display.settings;
     const shown = this.figure.colored();
@@ -282,7 +233,7 @@ export class View {
     const brushes = settings.tool === "pin" && cursor;
     return {
       axes: settings.axes,
-      gridStep: this.figure.body && this.stage?.obstacles.hasGround ? this.stage.gridStep : 0,
+      gridStep: this.figure.body && this.screen.stage?.obstacles.hasGround ? this.screen.stage.gridStep : 0,
       bar: shown && { ...shown, map: this.display.map(shown.field) },
       contact: this.figure.contact(),
       bodies: shown ? [] : this.figure.bodies(),
@@ -310,13 +261,13 @@ export class View {
     const { vertexLabels, faceLabels } = this.display.settings;
     const surface = this.surface();
     if (!surface || !this.figure.body || !(vertexLabels || faceLabels)) return [];
-    const kinds = { vertices: vertexLabels, tets: faceLabels };
-    return chooseLabels(lens, surface, this.figure.body.geometry, kinds, this.style.em, this.touch.cursor);
+    const options = { vertices: vertexLabels, tets: faceLabels, em: this.style.em, cursor: this.touch.cursor };
+    return chooseLabels(lens, surface, this.figure.body.geometry, options);
   }
 
   // Value under the cursor in reading mode.
   private tip(): Marks["tip"] {
-    if (this.stage?.isFar || this.stage?.hasLeft) return { at: [0, this.size()[1] / 2], words: this.whereItIs() };
+    if (this.screen.stage?.isFar || this.screen.stage?.hasLeft) return { at: [0, this.size()[1] / 2], words: this.whereItIs() };
     const { hover, cursor } = this.touch;
     if (cursor && this.touch.target && this.store.state && !this.store.state.playing)
       return { at: cursor, words: "Paused: press Space to play" };
