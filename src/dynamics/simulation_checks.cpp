@@ -77,10 +77,10 @@ void require_mass(const Model& model, const Pins& pins) {
     if (!pins.holds(v) && !(model.mass->vertex_mass()[v] > 0)) massless.push_back(v);
   if (!massless.empty())
     throw BadInitialState(BadInitialState::Kind::no_mass,
-                   std::to_string(massless.size()) + " vertices have no mass (" +
-                       listed(model.numbering.vertex.to_user(massless)) +
-                       "): they belong to no tet, or the density there is zero",
-                   "remove them or pin them");
+                          std::to_string(massless.size()) + " vertices have no mass (" +
+                              listed(model.numbering.vertex.to_user(massless)) +
+                              "): they belong to no tet, or the density there is zero",
+                          "remove them or pin them");
 }
 
 void require_finite_energy(const Model& model, std::span<const double> x) {
@@ -102,9 +102,9 @@ void require_finite_energy(const Model& model, std::span<const double> x) {
           "the initial shape has infinite energy: its strain exceeds the range of the material; choose a "
           "smaller initial deformation or another material");
     throw BadInitialState(BadInitialState::Kind::inverted_tets,
-                   "the initial shape has infinite energy: " + std::to_string(inverted.size()) +
-                       " tets are inverted or flat (" + listed(model.numbering.tet.to_user(inverted)) + ")",
-                   "choose a material that tolerates inversion, or a smaller initial deformation");
+                          "the initial shape has infinite energy: " + std::to_string(inverted.size()) +
+                              " tets are inverted or flat (" + listed(model.numbering.tet.to_user(inverted)) + ")",
+                          "choose a material that tolerates inversion, or a smaller initial deformation");
   }
 }
 
@@ -128,9 +128,9 @@ void require_apart(const Model& model, const State& start, const IntegratorFacts
                            std::to_string(model.numbering.vertex.to_user(contact.row[p])) + "; move it");
   if (const int p = model.contact->self_touching_point(); p >= 0)
     throw BadInitialState(BadInitialState::Kind::touches_itself,
-                   "body '" + contact.parts[contact.part[p]].name + "' touches itself at rest, at vertex " +
-                       std::to_string(model.numbering.vertex.to_user(contact.row[p])),
-                   "merge the coincident vertices or leave a gap");
+                          "body '" + contact.parts[contact.part[p]].name + "' touches itself at rest, at vertex " +
+                              std::to_string(model.numbering.vertex.to_user(contact.row[p])),
+                          "merge the coincident vertices or leave a gap");
   const double least_gap = 1e3 * std::numeric_limits<double>::epsilon() * max_abs(x);  // as in largest_step()
   const ContactSummary closest = model.contact->summary(x, time);
   if (closest.contacts > 0 && (!std::isfinite(model.contact->value(x, at_start)) || closest.min_gap < least_gap))
