@@ -21,7 +21,7 @@ namespace {
 constexpr char kIntegrator[] = "backward_euler";
 constexpr double kUsable = 1e-9;  // relative residual at which a solve may stagnate in round-off
 
-void require_gradient(const Model& model, const TrajectoryOptions& options) {
+void require_gradient(const TrajectoryOptions& options) {
   if (options.integrator != kIntegrator)
     throw InvalidInput("a trajectory has a gradient for integrator = 'backward_euler', not for '" + options.integrator +
                        "'");
@@ -29,18 +29,26 @@ void require_gradient(const Model& model, const TrajectoryOptions& options) {
     throw InvalidInput("the time step is " + std::to_string(options.h) + " s; it must be positive");
   if (options.steps < 0) throw InvalidInput("the number of steps is negative");
   if (options.stored_states < 1) throw InvalidInput("stored_states must be at least 1");
-  for (const auto& D : model.damping)
-    if (!dynamic_cast<const Damping*>(D.get()))
+}
+
+std::vector<const Damping*> damping_of(const Model& model) {
+  std::vector<const Damping*> terms;
+  for (const auto& D : model.damping) {
+    terms.push_back(dynamic_cast<const Damping*>(D.get()));
+    if (!terms.back())
       throw InvalidInput("the damping '" + std::string(D->name()) + "' has no derivatives, so a trajectory with it " +
                          "has no gradient");
+  }
+  return terms;
 }
 
 }  // namespace
 
 struct Trajectory::Impl {
   Impl(Model m, State s, const TrajectoryOptions& o)
-      : options((require_gradient(m, o), o)),
+      : options((require_gradient(o), o)),
         model(std::move(m)),
+        damping(damping_of(model)),
         start(std::move(s)),
         pins(model.pins, start.q),
         E(model, pins),
@@ -159,11 +167,9 @@ struct Trajectory::Impl {
     gradient.elastic.assign(theta.size(), 0.0);
     gradient.density.assign(gravity ? model.mesh.tet_count() : 0, 0.0);
     gradient.density_message = gravity ? "" : "the load 'gravity' is not the weight of the body";
-    gradient.damping.resize(model.damping.size());
-    for (size_t k = 0; k < model.damping.size(); ++k) gradient.damping[k].assign(damping(k).coefficient_count(), 0.0);
+    gradient.damping.resize(damping.size());
+    for (size_t k = 0; k < damping.size(); ++k) gradient.damping[k].assign(damping[k]->coefficient_count(), 0.0);
   }
-
-  const Damping& damping(size_t k) const { return static_cast<const Damping&>(*model.damping[k]); }
 
   // Replaces the derivatives with respect to `after` by those with respect to `now`.
   bool reverse_step(TrajectoryGradient& gradient) {
@@ -180,7 +186,7 @@ struct Trajectory::Impl {
     for (size_t i = 0; i < mu.size(); ++i) qbar[i] = Mmu[i] - vbar[i] / h;
     for (size_t i = 0; i < mu.size(); ++i) vbar[i] = h * Mmu[i];
     theta.add_gradient(after.q, mu, -f, gradient.elastic);
-    for (size_t k = 0; k < model.damping.size(); ++k) add_damping(k, f, gradient.damping[k], gradient);
+    for (size_t k = 0; k < damping.size(); ++k) add_damping(k, f, gradient.damping[k], gradient);
     if (gravity) add_density(f, gradient.density);
     pins.set_zero(qbar);
     report.adjoint_seconds += stopwatch.lap();
@@ -209,7 +215,7 @@ struct Trajectory::Impl {
   }
 
   void add_damping(size_t k, double f, std::span<double> coefficients, TrajectoryGradient& gradient) {
-    const Damping& D = damping(k);
+    const Damping& D = *damping[k];
     std::span<double> elastic;
     for (size_t b = 0; b < model.elasticity.size(); ++b)
       if (model.elasticity[b].get() == D.elasticity())
@@ -222,9 +228,9 @@ struct Trajectory::Impl {
   void add_density(double f, std::span<double> density) {
     const TetMesh& mesh = model.mesh;
     for (size_t i = 0; i < moved.size(); ++i) moved[i] -= after.q[i];  // q0 + h v0 - q1
-    for (size_t k = 0; k < model.damping.size(); ++k)
+    for (size_t k = 0; k < damping.size(); ++k)
       for (size_t i = 0; i < moved.size(); ++i)
-        if (const double a = damping(k).mass_factor(static_cast<int>(i / 3)); a != 0)
+        if (const double a = damping[k]->mass_factor(static_cast<int>(i / 3)); a != 0)
           moved[i] -= options.h * a * (after.q[i] - now.q[i]);
     add_density_gradient(mesh, model.mass->kind(), mu, moved, density);
     for (int t = 0; t < mesh.tet_count(); ++t) {
@@ -242,6 +248,7 @@ struct Trajectory::Impl {
 
   TrajectoryOptions options;
   Model model;
+  std::vector<const Damping*> damping;  // of the model
   State start;
   Pins pins;
   IncrementalPotential E;

@@ -193,8 +193,8 @@ int Barrier::add_hessian(Positions x, const Context& context, double scale, cons
   return modified;
 }
 
-int Barrier::add_stops(Positions x, const Context& context, std::span<const double> d, double scale,
-                       std::span<double> g, BlockSparse& H) const {
+int Barrier::add_stops(Positions x, const Context& context, std::span<const double> d, const ScaledModel& model) const {
+  const auto& [scale, g, H] = model;
   const std::vector<Vec3d> p = impl_->points(x, context.time);
   const std::vector<Impact> impacts =
       StepBound(impl_->mesh, impl_->laws, impl_->search, impl_->sizes).impacts(p, impl_->displacements(d));

@@ -28,7 +28,7 @@ struct ContactPoint {
   double pressure = 0;                                   // [Pa]
 };
 
-class Barrier : public Energy {
+class Barrier : public Energy, public StepLimitingEnergy, public StoppingEnergy {
  public:
   Barrier(ContactMesh mesh, const ContactOptions& options);
   ~Barrier() override;
@@ -42,8 +42,8 @@ class Barrier : public Energy {
   double max_step(Positions x, const Context& context, std::span<const double> d) const override;
   // The same while obstacles move from their positions at time `from` to those at time `to` [s].
   double max_step(Positions x, std::span<const double> d, double from, double to) const;
-  int add_stops(Positions x, const Context& context, std::span<const double> d, double scale, std::span<double> g,
-                BlockSparse& H) const override;
+  int add_stops(Positions x, const Context& context, std::span<const double> d,
+                const ScaledModel& model) const override;
 
   const ContactMesh& mesh() const;
   const ContactLaws& laws() const;

@@ -273,8 +273,9 @@ int Friction::add_hessian(Positions x, const Context& context, double scale, con
 
 // A slider that d moves backward past its start is likely to stick. Newton's method on f would overshoot, because f'' =
 // 0 while it slides. Models it as a sticking slider with the force 2 f u / e.
-int Friction::add_stops(Positions x, const Context& context, std::span<const double> d, double scale,
-                        std::span<double> g, BlockSparse& H) const {
+int Friction::add_stops(Positions x, const Context& context, std::span<const double> d,
+                        const ScaledModel& model) const {
+  const auto& [scale, g, H] = model;
   const FrictionContext& own = friction(context);
   int count = 0;
   for (const Slider& slider : own.sliders) {

@@ -1,13 +1,13 @@
 // Coulomb friction as a dissipation potential of a step [Li 2020, section 5]: D = sum of mu lambda f(|u|) over the
 // stencils of a barrier, where u is the tangential relative displacement since the start of the step and lambda is the
 // normal force. f(y) = y^2 / e - y^3 / (3 e^2) for y < e = speed * h, and y - e / 3 beyond. Bodies at rest creep at
-// less than this speed. Normal forces and tangents are lagged, see Energy::update_lagged().
+// less than this speed. Normal forces and tangents are lagged, see LaggedEnergy.
 #pragma once
 #include "contact/barrier.h"
 
 namespace aspic {
 
-class Friction : public Energy {
+class Friction : public Energy, public LaggedEnergy, public StoppingEnergy {
  public:
   // `speed`: maximum creep speed of sticking surfaces [m/s]. `barrier` must outlive this.
   Friction(const Barrier& barrier, double speed) : barrier_(barrier), speed_(speed) {}
@@ -15,7 +15,6 @@ class Friction : public Energy {
   std::string_view name() const override { return "friction"; }
   std::unique_ptr<Context> make_context() const override;
   void begin_step(const StepContext& step, Context& context) const override;
-  bool is_lagged() const override { return true; }
   void update_lagged(Positions x, Context& context) const override;
   double value(Positions x, const Context& context) const override;
   void add_gradient(Positions x, const Context& context, double scale, std::span<double> g) const override;
@@ -23,8 +22,8 @@ class Friction : public Energy {
   double obstacle_work(Positions x, const Context& context) const;
   int add_hessian(Positions x, const Context& context, double scale, const Projection& projection,
                   BlockSparse& H) const override;
-  int add_stops(Positions x, const Context& context, std::span<const double> d, double scale, std::span<double> g,
-                BlockSparse& H) const override;
+  int add_stops(Positions x, const Context& context, std::span<const double> d,
+                const ScaledModel& model) const override;
 
  private:
   void lag(Positions x, double time, Context& context) const;

@@ -156,10 +156,10 @@ TEST(Friction, BackwardDirectionsStick) {
   at.friction->add_hessian(at.x, *at.context, 1, {}, at.H);
   std::vector<double> g = at.gradient(at.x), forward(9), backward(9), home(9);
   for (size_t k = 0; k < 9; k += 3) forward[k] = moved, backward[k] = -3 * moved, home[k] = -moved;
-  EXPECT_EQ(at.friction->add_stops(at.x, *at.context, forward, 1, g, at.H), 0);
-  EXPECT_EQ(at.friction->add_stops(at.x, *at.context, home, 1, g, at.H), 0);
+  EXPECT_EQ(at.friction->add_stops(at.x, *at.context, forward, {1, g, at.H}), 0);
+  EXPECT_EQ(at.friction->add_stops(at.x, *at.context, home, {1, g, at.H}), 0);
   const double size = max_abs(g);
-  EXPECT_EQ(at.friction->add_stops(at.x, *at.context, backward, 1, g, at.H), 3);
+  EXPECT_EQ(at.friction->add_stops(at.x, *at.context, backward, {1, g, at.H}), 3);
   std::vector<double> model = at.hessian_times(home);
   add_scaled(1, g, model);
   EXPECT_LT(max_abs(model), 1e-12 * size);

@@ -18,7 +18,9 @@ void add_contact(ContactMesh mesh, const ContactOptions& options, double creep, 
   model.loads.push_back(std::move(barrier));
   if (!model.contact->laws().has_friction()) return;
   const double speed = creep > 0 ? creep : default_creep(9.81, model);
-  model.damping.push_back(std::make_unique<Friction>(*model.contact, speed));
+  auto friction = std::make_unique<Friction>(*model.contact, speed);
+  model.friction = friction.get();
+  model.damping.push_back(std::move(friction));
 }
 
 }  // namespace aspic

@@ -131,7 +131,7 @@ void IncrementalPotential::begin_step(std::span<const double> predicted, double 
 }
 
 bool IncrementalPotential::is_lagged() const {
-  return std::any_of(damping_.begin(), damping_.end(), [](const ActiveTerm& D) { return D.energy().is_lagged(); });
+  return std::any_of(damping_.begin(), damping_.end(), [](const ActiveTerm& D) { return D.is_lagged(); });
 }
 
 void IncrementalPotential::update_lagged(std::span<const double> q) {
@@ -313,8 +313,8 @@ const BlockSparse* IncrementalPotential::add_stops(std::span<const double> q, st
                                                    double max_step, std::span<double> g) {
   int added = 0;
   if (max_step < kUsefulStep)
-    for (const ActiveTerm& V : potential_) added += V.add_stops(q, d, factor_, g, H_);
-  for (const ActiveTerm& D : damping_) added += D.add_stops(q, d, factor_, g, H_);
+    for (const ActiveTerm& V : potential_) added += V.add_stops(q, d, {factor_, g, H_});
+  for (const ActiveTerm& D : damping_) added += D.add_stops(q, d, {factor_, g, H_});
   if (added == 0) return nullptr;
   pins_.set_zero(g);
   pins_.set_identity(H_);

@@ -24,7 +24,7 @@ class IncrementalPotential : public Objective, public HasMetric, public HasParts
   void move_obstacles(double time);  // after set_potential_step()
   void begin_step(std::span<const double> predicted, double inertia /* w */, double factor /* f */);
 
-  // Lagged coefficients, see Energy.
+  // Lagged coefficients, see LaggedEnergy.
   bool is_lagged() const;
   void update_lagged(std::span<const double> q);
 

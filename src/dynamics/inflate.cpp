@@ -86,7 +86,7 @@ void require_outside(const Model& model, const std::vector<double>& q) {
   for (const BodyRange& inner : model.bodies)
     for (const BodyRange& outer : model.bodies)
       if (&inner != &outer && encloses(model, outer, q, point(q, inner.first_vertex)))
-        throw InvalidInput("start = \"inflate\": body '" + outer.name + "' encloses the center of body '" + inner.name +
+        throw InvalidInput("body '" + outer.name + "' encloses the center of body '" + inner.name +
                            "'; move one of them");
 }
 
@@ -119,7 +119,7 @@ void inflate(Model& model, std::vector<double>& q) {
   const std::vector<double> start = q;
   for (double scale = kShrink; why && scale >= kSmallest; scale *= kShrink)
     why = overlap(model, q = shrunk(model, start, scale));
-  if (why) throw InvalidInput("start = \"inflate\" could not separate the bodies by shrinking: " + *why);
+  if (why) throw InvalidInput("shrinking does not separate the bodies: " + *why);
   require_outside(model, q);
   const auto other = std::stable_partition(model.loads.begin(), model.loads.end(),
                                            [&](const auto& load) { return load.get() == model.contact; });
@@ -133,11 +133,10 @@ void inflate(Model& model, std::vector<double>& q) {
   for (const BodyRange& body : model.bodies) {
     const double share = volume_of(model, body, q) / volume_of(model, body, start);
     if (!(share > kVolume))
-      throw InvalidInput("start = \"inflate\" restores only " + std::to_string(int(100 * share)) +
-                         " % of the volume of body '" + body.name +
-                         "': it is enclosed by other surfaces or collapsed; move it further away");
+      throw InvalidInput("body '" + body.name + "' regains only " + std::to_string(int(100 * share)) +
+                         " % of its volume: it is enclosed by other surfaces or collapsed; move it further away");
   }
-  if ((why = overlap(model, q))) throw InvalidInput("start = \"inflate\" failed: " + *why);
+  if ((why = overlap(model, q))) throw InvalidInput("bodies still overlap: " + *why);
 }
 
 }  // namespace aspic

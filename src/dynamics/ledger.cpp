@@ -51,9 +51,8 @@ ObstacleWork work_of_obstacles(const StepTools& tools, const State& end, StepRep
   work.contact = tools.model.contact->obstacle_work(end.q, tools.obstacle_start, tools.obstacle_end);
   std::vector<double> force(end.q.size());
   for (const ActiveTerm& D : tools.E.damping()) {
-    const auto* friction = dynamic_cast<const Friction*>(&D.energy());
-    if (!friction || tools.obstacle_start == tools.obstacle_end) continue;
-    work.friction += friction->obstacle_work(end.q, D.context());
+    if (&D.energy() != tools.model.friction || tools.obstacle_start == tools.obstacle_end) continue;
+    work.friction += tools.model.friction->obstacle_work(end.q, D.context());
     D.add_gradient(end.q, 1, force);
   }
   report.friction_loss = work.friction;

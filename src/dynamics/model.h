@@ -15,6 +15,7 @@
 namespace aspic {
 
 class Barrier;
+class Friction;
 
 // Range of a body in the mesh. Its vertices and tets are consecutive.
 struct BodyRange {
@@ -49,7 +50,8 @@ struct Model {
   std::vector<std::unique_ptr<Energy>> loads;              // other terms of V: gravity, springs, tractions
   std::vector<std::unique_ptr<Energy>> damping;            // incremental potentials that dissipate
   std::vector<Pin> pins;
-  const Barrier* contact = nullptr;  // one of the loads; null: no contact
+  const Barrier* contact = nullptr;    // one of the loads; null: no contact
+  const Friction* friction = nullptr;  // one of the damping terms; null: no friction
 };
 
 }  // namespace aspic

@@ -44,7 +44,7 @@ struct Simulation::Impl {
     require_finite_energy(model, state.q);
     require_apart(model, state, integrator->facts());
     if (model.contact && options.adaptive.tolerance > 0)
-      throw InvalidInput("contact needs a constant step length; remove adaptive.tolerance and choose a smaller step");
+      throw InvalidInput("contact needs a constant step length; turn adaptive steps off and choose a smaller step");
     if (!integrator->facts().is_static()) integrator->set_pin_velocity(*pins, options.h, state);
     if (options.adaptive.tolerance > 0) adaptive.emplace(model, options.adaptive.tolerance, needs_previous());
     ledger.begin(model, state.q);

@@ -76,9 +76,11 @@ void require_mass(const Model& model, const Pins& pins) {
   for (int v = 0; v < model.mesh.vertex_count(); ++v)
     if (!pins.holds(v) && !(model.mass->vertex_mass()[v] > 0)) massless.push_back(v);
   if (!massless.empty())
-    throw InvalidInput(std::to_string(massless.size()) + " vertices have no mass (" +
-                       listed(model.numbering.vertex.to_user(massless)) +
-                       "): they belong to no tet, or the density there is zero; remove them (--repair) or pin them");
+    throw BadInitialState(BadInitialState::Kind::no_mass,
+                          std::to_string(massless.size()) + " vertices have no mass (" +
+                              listed(model.numbering.vertex.to_user(massless)) +
+                              "): they belong to no tet, or the density there is zero",
+                          "remove them or pin them");
 }
 
 void require_finite_energy(const Model& model, std::span<const double> x) {
@@ -99,8 +101,10 @@ void require_finite_energy(const Model& model, std::span<const double> x) {
       throw InvalidInput(
           "the initial shape has infinite energy: its strain exceeds the range of the material; choose a "
           "smaller initial deformation or another material");
-    throw InvertedInitialState("the initial shape has infinite energy: " + std::to_string(inverted.size()) +
-                               " tets are inverted or flat (" + listed(model.numbering.tet.to_user(inverted)) + ")");
+    throw BadInitialState(BadInitialState::Kind::inverted_tets,
+                          "the initial shape has infinite energy: " + std::to_string(inverted.size()) +
+                              " tets are inverted or flat (" + listed(model.numbering.tet.to_user(inverted)) + ")",
+                          "choose a material that tolerates inversion, or a smaller initial deformation");
   }
 }
 
@@ -123,9 +127,10 @@ void require_apart(const Model& model, const State& start, const IntegratorFacts
                            contact.parts[plane.part].name + "', at vertex " +
                            std::to_string(model.numbering.vertex.to_user(contact.row[p])) + "; move it");
   if (const int p = model.contact->self_touching_point(); p >= 0)
-    throw InvalidInput("body '" + contact.parts[contact.part[p]].name + "' touches itself at rest, at vertex " +
-                       std::to_string(model.numbering.vertex.to_user(contact.row[p])) +
-                       "; merge the coincident vertices (aspic check MESH --repair) or leave a gap");
+    throw BadInitialState(BadInitialState::Kind::touches_itself,
+                          "body '" + contact.parts[contact.part[p]].name + "' touches itself at rest, at vertex " +
+                              std::to_string(model.numbering.vertex.to_user(contact.row[p])),
+                          "merge the coincident vertices or leave a gap");
   const double least_gap = 1e3 * std::numeric_limits<double>::epsilon() * max_abs(x);  // as in largest_step()
   const ContactSummary closest = model.contact->summary(x, time);
   if (closest.contacts > 0 && (!std::isfinite(model.contact->value(x, at_start)) || closest.min_gap < least_gap))
@@ -165,7 +170,8 @@ std::optional<SolverConflict> find_conflict(const SimulationOptions& options) {
 void require_possible(const SimulationOptions& options) {
   const double tolerance = options.adaptive.tolerance;
   if (!(tolerance >= 0) || !std::isfinite(tolerance))
-    throw InvalidInput("adaptive.tolerance = " + std::to_string(tolerance) + "; it must be positive, or 0 for none");
+    throw InvalidInput("the tolerance of adaptive steps is " + std::to_string(tolerance) +
+                       "; it must be positive, or 0 for steps of one length");
   if (const auto conflict = find_conflict(options)) throw InvalidInput(conflict->reason);
 }
 

@@ -8,18 +8,14 @@
 
 namespace aspic {
 
-// Thrown if tets are inverted in the initial state and their material does not tolerate it.
-class InvertedInitialState : public InvalidInput {
- public:
-  explicit InvertedInitialState(const std::string& cause)
-      : InvalidInput(cause +
-                     "; choose the material stable_neo_hookean, which tolerates inversion, or choose a smaller "
-                     "initial deformation"),
-        cause_(cause) {}
-  const std::string& cause() const { return cause_; }  // without the remedy
+// An initial state whose remedy user interfaces can describe by the names of their own options.
+struct BadInitialState : InvalidInput {
+  enum class Kind { inverted_tets, no_mass, touches_itself };
 
- private:
-  std::string cause_;
+  BadInitialState(Kind k, const std::string& why, const std::string& remedy)
+      : InvalidInput(why + "; " + remedy), kind(k), cause(why) {}
+  Kind kind;
+  std::string cause;  // without the remedy
 };
 
 void require_mass(const Model& model, const Pins& pins);                    // requires mass at every free vertex

@@ -119,7 +119,7 @@ std::vector<StepField>& fields() {
       real<&R::time>({"time", "s", "time at the end of the step"}, kTable | kJson | kViewer),
       status(),
       converged(),
-      name<&R::criterion, Criterion::acceleration>({"criterion", "", "the convergence criterion, `solver.criterion`"},
+      name<&R::criterion, Criterion::acceleration>({"criterion", "", "the convergence criterion"},
                                                    kTable | kFrame | kJson),
       count<&R::iterations>({"iterations", "", "iterations of the minimizer"}, kTable | kFrame | kJson),
       count<&R::trials>({"trials", "", "evaluations by the line search"}, kCount),

@@ -60,20 +60,39 @@ class Energy {
   // elements.
   virtual int add_hessian(Positions x, const Context& context, double scale, const Projection& projection,
                           BlockSparse& H) const = 0;
-  // Returns whether the term has lagged coefficients, such as the normal forces in friction.
-  virtual bool is_lagged() const { return false; }
-  virtual void update_lagged(Positions /*x*/, Context& /*context*/) const {}  // evaluates them at x
+};
+
+// Optional interfaces of a term. ActiveTerm looks for them once.
+
+// A term with lagged coefficients, such as the normal forces in friction.
+class LaggedEnergy {
+ public:
+  virtual ~LaggedEnergy() = default;
+  virtual void update_lagged(Positions x, Energy::Context& context) const = 0;  // evaluates them at x
+};
+
+// A term that is not defined beyond some steps, such as a barrier.
+class StepLimitingEnergy {
+ public:
+  virtual ~StepLimitingEnergy() = default;
   // Returns an upper bound of the step lengths alpha for which the term allows the path from x to x + alpha d.
-  virtual double max_step(Positions /*x*/, const Context& /*context*/, std::span<const double> /*d*/) const {
-    return std::numeric_limits<double>::infinity();
-  }
-  // Adds springs to a quadratic model g'd + d'Hd / 2 of V around x, such that its minimizer avoids step bounds and
-  // kinks of V along the given d: g += scale dS/dd at d = 0, H += scale d2S/dd2, where S is the energy of the springs.
-  // Returns the number of springs.
-  virtual int add_stops(Positions /*x*/, const Context& /*context*/, std::span<const double> /*d*/, double /*scale*/,
-                        std::span<double> /*g*/, BlockSparse& /*H*/) const {
-    return 0;
-  }
+  virtual double max_step(Positions x, const Energy::Context& context, std::span<const double> d) const = 0;
+};
+
+// The quadratic model scale (g'd + d'Hd / 2) of V around x; g and H include the scale.
+struct ScaledModel {
+  double scale;
+  std::span<double> g;
+  BlockSparse& H;
+};
+
+// A term that keeps the minimizer of a quadratic model from bounds of the steps and from kinks of V.
+class StoppingEnergy {
+ public:
+  virtual ~StoppingEnergy() = default;
+  // Adds springs of energy S along the given d: g += scale dS/dd at d = 0, H += scale d2S/dd2. Returns their number.
+  virtual int add_stops(Positions x, const Energy::Context& context, std::span<const double> d,
+                        const ScaledModel& model) const = 0;
 };
 
 // A term that depends only on x.
@@ -90,11 +109,19 @@ class SteadyEnergy : public Energy {
 // A term with its context. Between two calls of begin_step(), V is a function of x alone. The term must outlive it.
 class ActiveTerm {
  public:
-  explicit ActiveTerm(const Energy& energy) : energy_(&energy), context_(energy.make_context()) {}
+  explicit ActiveTerm(const Energy& energy)
+      : energy_(&energy),
+        lagged_(dynamic_cast<const LaggedEnergy*>(&energy)),
+        limit_(dynamic_cast<const StepLimitingEnergy*>(&energy)),
+        stops_(dynamic_cast<const StoppingEnergy*>(&energy)),
+        context_(energy.make_context()) {}
   ActiveTerm(const Energy& energy, const StepContext& step) : ActiveTerm(energy) { begin_step(step); }
 
   void begin_step(const StepContext& step) { energy_->begin_step(step, *context_); }
-  void update_lagged(Positions x) { energy_->update_lagged(x, *context_); }
+  bool is_lagged() const { return lagged_; }
+  void update_lagged(Positions x) {
+    if (lagged_) lagged_->update_lagged(x, *context_);
+  }
   const Energy& energy() const { return *energy_; }
   const Energy::Context& context() const { return *context_; }
   std::string_view name() const { return energy_->name(); }
@@ -103,16 +130,21 @@ class ActiveTerm {
   void add_gradient(Positions x, double scale, std::span<double> g) const {
     energy_->add_gradient(x, *context_, scale, g);
   }
-  double max_step(Positions x, std::span<const double> d) const { return energy_->max_step(x, *context_, d); }
+  double max_step(Positions x, std::span<const double> d) const {
+    return limit_ ? limit_->max_step(x, *context_, d) : std::numeric_limits<double>::infinity();
+  }
   int add_hessian(Positions x, double scale, const Projection& projection, BlockSparse& H) const {
     return energy_->add_hessian(x, *context_, scale, projection, H);
   }
-  int add_stops(Positions x, std::span<const double> d, double scale, std::span<double> g, BlockSparse& H) const {
-    return energy_->add_stops(x, *context_, d, scale, g, H);
+  int add_stops(Positions x, std::span<const double> d, const ScaledModel& model) const {
+    return stops_ ? stops_->add_stops(x, *context_, d, model) : 0;
   }
 
  private:
   const Energy* energy_;
+  const LaggedEnergy* lagged_;  // null: the term lacks the interface
+  const StepLimitingEnergy* limit_;
+  const StoppingEnergy* stops_;
   std::unique_ptr<Energy::Context> context_;
 };
 

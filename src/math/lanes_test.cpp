@@ -46,7 +46,7 @@ TYPED_TEST(LanesTest, AddSubtractAndMultiplyLaneByLane) {
   }
 }
 
-TYPED_TEST(LanesTest, LoadAndStoreOfThreeNumbersTouchNoFourth) {
+TYPED_TEST(LanesTest, LoadsAndStoresOfThreeTouchNoFourth) {
   const std::array<TypeParam, 4> from = {1, 2, 3, std::numeric_limits<TypeParam>::quiet_NaN()};
   const Quad<TypeParam> q = load3(from.data());
   EXPECT_EQ(q[3], 0);

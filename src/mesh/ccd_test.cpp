@@ -285,7 +285,7 @@ TEST(LargestStep, IsSafeFarFromOrigin) {
     }
 }
 
-TEST(LargestStep, RejectsRoundOffGapsAndNonFiniteInput) {
+TEST(LargestStep, RejectsTinyGapsAndNonFiniteInput) {
   MovingPair pair = {PairKind::point_triangle,
                      {{{{0.2, 0.2, 1e-14}}, {{0, 0, 0}}, {{1, 0, 0}}, {{0, 1, 0}}}},
                      {{{{0, 0, 1}}, {}, {}, {}}}};

@@ -45,7 +45,7 @@ void Newton::begin() {
 bool Newton::compute(const Iterate& at, std::span<double> d, DirectionReport& report) {
   const double gradient_norm = std::sqrt(at.E.dot(at.g, at.g));
   NewtonTask task{at.E, at.x, at.g, at.accuracy.value, forcing_.at(gradient_norm, at.accuracy), d, report};
-  system_.begin_direction(at.stop, std::exchange(is_new_, false), gradient_norm);
+  system_.begin_direction(at.E, at.stop, std::exchange(is_new_, false), gradient_norm);
   used_kept_ = system_.solve_with_kept(task, at.accuracy);
   return used_kept_ || policy_->compute(system_, task);
 }

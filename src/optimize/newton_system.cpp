@@ -36,7 +36,8 @@ void NewtonSystem::begin() {
   solver_->begin();
 }
 
-void NewtonSystem::begin_direction(const StopToken& stop, bool is_first, double gradient_norm) {
+void NewtonSystem::begin_direction(Objective& E, const StopToken& stop, bool is_first, double gradient_norm) {
+  if (is_first) stops_ = dynamic_cast<HasStops*>(&E);
   stop_ = stop;
   is_first_ = is_first;
   gradient_norm_ = gradient_norm;
@@ -108,13 +109,12 @@ bool NewtonSystem::solve_with_kept(NewtonTask& task, const InnerAccuracy& accura
 bool NewtonSystem::avoid_stops(NewtonTask& task) {
   constexpr int kRounds = 2;
   constexpr double kFinest = 1e-9;  // relative residual
-  auto* bounded = dynamic_cast<HasStops*>(&task.E);
-  if (!bounded || task.report.truncated) return false;
+  if (!stops_ || task.report.truncated) return false;
   bool has_springs = false;
   g_.assign(task.g.begin(), task.g.end());
   double reach = task.E.max_step(task.x, task.d);
   for (int round = 0; round < kRounds && !is_late(task.report); ++round) {
-    const BlockSparse* H = bounded->add_stops(task.x, task.d, reach, g_);
+    const BlockSparse* H = stops_->add_stops(task.x, task.d, reach, g_);
     if (!H) break;
     has_springs = true;
     d_.assign(task.d.begin(), task.d.end());

@@ -55,7 +55,7 @@ class NewtonSystem {
   void begin();  // starts a minimization
   // Starts a direction. The first direction of a minimization ignores the deadline, because a step without any
   // direction would ignore the forces.
-  void begin_direction(const StopToken& stop, bool is_first, double gradient_norm);
+  void begin_direction(Objective& E, const StopToken& stop, bool is_first, double gradient_norm);
 
   bool solve(NewtonTask& task, const Projection& projection);
   // Solves with the exact Hessian that solve() computed for this direction, and truncates at negative curvature.
@@ -84,6 +84,7 @@ class NewtonSystem {
   ConjugateGradient semidefinite_solver_{std::make_unique<BlockJacobi>(BlockJacobi::Blocks::modified)};
   uint64_t analyzed_version_ = 0, semidefinite_version_ = 0;
   KeptHessian kept_;
+  HasStops* stops_ = nullptr;           // of the objective, if it has any
   const BlockSparse* exact_ = nullptr;  // the last Hessian of this direction, if exact
   StopToken stop_;
   bool is_first_ = true;

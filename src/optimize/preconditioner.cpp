@@ -40,9 +40,9 @@ std::string Preconditioner::description() const {
 
 bool Preconditioner::apply(Objective& E, std::span<const double> x, std::span<const double> r, std::span<double> z,
                            DirectionReport& report) {
-  if (kind_ == PreconditionerKind::own) return dynamic_cast<HasPreconditioner&>(E).precondition(r, z);
   if (!is_made_) is_definite_ = make(E, x, report);
   is_made_ = true;
+  if (own_) return own_->precondition(r, z);
   if (!is_definite_) return false;
   if (is_identity_) {
     std::copy(r.begin(), r.end(), z.begin());
@@ -59,6 +59,8 @@ bool Preconditioner::apply(Objective& E, std::span<const double> x, std::span<co
 }
 
 bool Preconditioner::make(Objective& E, std::span<const double> x, DirectionReport& report) {
+  own_ = kind_ == PreconditionerKind::own ? &dynamic_cast<HasPreconditioner&>(E) : nullptr;
+  if (own_) return true;
   auto* metric = kind_ == PreconditionerKind::mass ? dynamic_cast<HasMetric*>(&E) : nullptr;
   is_identity_ = kind_ == PreconditionerKind::none || (kind_ == PreconditionerKind::mass && !metric);
   if (is_identity_) return true;

@@ -47,6 +47,7 @@ class Preconditioner {
 
   PreconditionerKind kind_;
   std::unique_ptr<LinearSolver> solver_;  // for `mass` and `hessian`
+  HasPreconditioner* own_ = nullptr;      // of the objective
   bool is_made_ = false, is_definite_ = false, is_identity_ = false;
   std::optional<BlockSparse> B_;  // a copy, because the objective overwrites its Hessian
   std::vector<Mat3d> inverse_diagonal_;

@@ -67,6 +67,19 @@ OutputOptions output_of(const Value& table) {
           .checkpoint_every = table["checkpoint_every"].number()};
 }
 
+std::string remedy_in_scene(BadInitialState::Kind kind) {
+  switch (kind) {
+    case BadInitialState::Kind::inverted_tets:
+      return "set material.model = \"stable_neo_hookean\", which tolerates inversion, or choose a smaller initial "
+             "deformation";
+    case BadInitialState::Kind::no_mass:
+      return "remove them (aspic check MESH --repair) or pin them";
+    case BadInitialState::Kind::touches_itself:
+      return "merge the coincident vertices (aspic check MESH --repair) or leave a gap";
+  }
+  return "";
+}
+
 int steps_of(const Value& time) {
   // Rounded quotient: 2 / 0.01 must not become 201 steps.
   const double steps = std::ceil(time["duration"].number() / time["step"].number() - 1e-6);
@@ -118,11 +131,8 @@ class SceneBuilder {
               output,
               std::move(scene.input_files),
               std::move(files_.kept_meshes)};
-    } catch (const InvertedInitialState& e) {
-      throw InvalidInput(
-          source_.file + ": " + e.cause() +
-          "; set material.model = \"stable_neo_hookean\", which tolerates inversion, or choose a smaller "
-          "initial deformation");
+    } catch (const BadInitialState& e) {
+      throw InvalidInput(source_.file + ": " + e.cause + "; " + remedy_in_scene(e.kind));
     } catch (const InvalidInput& e) {
       throw InvalidInput(source_.file + ": " + e.what());
     }
@@ -134,7 +144,7 @@ class SceneBuilder {
     try {
       inflate(model_, state.q);
     } catch (const InvalidInput& e) {
-      throw error_at(place, e.what());
+      throw error_at(place, std::string("start = \"inflate\": ") + e.what());
     }
   }
 

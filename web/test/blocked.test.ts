@@ -5,7 +5,7 @@ import { uniform } from "../src/plots/grid";
 import { limitText } from "../src/plots/search";
 import { blockedGeometry, Frame } from "../src/plots/surfaceParts";
 
-test("cells at a blocked sample are covered below the surface", () => {
+test("blocked samples cover their cells from below", () => {
   const grid = { x: uniform(0, 1, 4), y: uniform(0, 1, 3), value: Array.from({ length: 12 }, () => 1) };
   const frame = new Frame(grid, { low: 0, high: 1, cut: false }, "linear", 1);
   const cells = (samples: number[]): number => (blockedGeometry(frame, samples).getAttribute("position")?.count ?? 0) / 6;

@@ -16,7 +16,7 @@ test("pressures have the colors from first to last", () => {
   assert.deepEqual(contactColors(contacts, 0).subarray(6), colors.subarray(0, 3), "no pressure: the first color");
 });
 
-test("the summary names count, gap and pressure with units", () => {
+test("the summary has count, gap and pressure", () => {
   const row = { contacts: 12, min_gap: 8.55e-5, max_pressure: 15700 };
   assert.equal(contactText(row), "12 contacts, smallest gap 85.5 µm, largest pressure 15.7 kPa");
   assert.equal(contactText({ ...row, contacts: 1 }).slice(0, 10), "1 contact,");
@@ -45,7 +45,7 @@ test("axes of a plane are orthonormal and right-handed", () => {
   }
 });
 
-test("a plane is drawn at its own height, and follows the bodies along it", () => {
+test("planes keep their height and follow bodies", () => {
   const bodies = new ObstacleBodies();
   const plane = { origin: [0, 0.5, 0] as Vec3, normal: [0, 1, 0] as Vec3 };
   const sheet = { name: "sheet", plane: null, points: [0, 0, 0, 1, 0, 0, 0, 0, 1], triangles: [0, 2, 1] };

@@ -246,7 +246,7 @@ test("video pictures use the latest earlier frame", () => {
   assert.deepEqual(stepsToShow(frames, { step: 17, every: 0 }), [17]);
 });
 
-test("a recording with contact has obstacles, and points where it presses", async () => {
+test("recordings with contact have obstacles and points", async () => {
   const reader = await opened(true);
   const sent = reader.messages.find((message) => message.kind === "obstacles");
   assert.ok(sent?.kind === "obstacles");

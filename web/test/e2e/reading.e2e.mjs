@@ -187,7 +187,7 @@ for (const [name, scheme, size, larger] of [
   ["dark", "dark", [1280, 720], 0],
   ["large", "light", [1024, 768], 4], // 22 px: 1.5 times and more
 ]) {
-  test(`nothing is covered or cut off: ${name}, ${size.join(" by ")}`, async () => {
+  test(`nothing is covered: ${name}, ${size.join("x")}`, async () => {
     const opened = await withSteps({ size, colorScheme: scheme });
     const { page, close } = opened;
     assert.equal(await page.evaluate(() => document.documentElement.dataset.theme), scheme);
