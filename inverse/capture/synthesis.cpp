@@ -16,10 +16,10 @@
 namespace aspic {
 namespace {
 
-constexpr double kTipRadius = 0.08;        // relative to the size of the body
-constexpr double kStandardGravity = 9.81;  // [m/s^2]
-constexpr double kLeastArm = 0.01;         // lever arm of a force about the indenter's center, relative to its radius
-constexpr double kLeastSigma = 1e-4;       // minimum sigma of exact data, relative to the largest motion or force
+constexpr double kTipRadius = 0.08;   // relative to the size of the body
+constexpr double kGravity = 9.81;     // [m/s^2]
+constexpr double kLeastArm = 0.01;    // lever arm of a force about the indenter's center, relative to its radius
+constexpr double kLeastSigma = 1e-4;  // minimum sigma of exact data, relative to the largest motion or force
 
 double volume_of(const TetMesh& mesh) {
   double sum = 0;
@@ -164,7 +164,7 @@ class Bench {
     for (size_t g = 0; g < options_.gravity.size(); ++g) {
       LoadCase load;
       load.name = load.group = "gravity " + std::to_string(g + 1);
-      load.gravity = (kStandardGravity / norm(options_.gravity[g])) * options_.gravity[g];
+      load.gravity = (kGravity / norm(options_.gravity[g])) * options_.gravity[g];
       add_case(std::move(load), {}, {});
     }
   }
