@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <map>
 
 #include "io/gmsh.h"
 #include "io/gmsh_elements.h"
