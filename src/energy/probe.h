@@ -1,8 +1,7 @@
 // A rigid tip in contact with the surface of a body: V(x) = sum over surface points of (area k phi), an elastic layer
 // that is much stiffer than the body. The pose of the tip is prescribed; its force results.
-//   sliding: frictionless. phi grows with the depth d of the point below the surface of the tip: phi' = d^2 / (2 e) up
-//   to
-//            d = e, then d - e / 2, where e = radius / 50
+//   sliding: frictionless. phi grows with the depth d of the point below the surface of the tip:
+//            phi' = d^2 / (2 e) up to d = e, then d - e / 2, where e = radius / 50
 //   bonded:  phi = |x - target|^2 / 2 for the points that the tip touches at rest, which follow it as if glued to it
 // The points are the centroids of equal parts of the boundary triangles. Their distance is at most an eighth (bonded)
 // or a quarter (sliding) of the radius.

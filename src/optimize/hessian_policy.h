@@ -11,13 +11,13 @@
 namespace aspic {
 
 // Selects the elements with modified Hessians in progressively projected Newton [Fernandez-Fernandez et al. 2026]:
-// those with a vertex whose residual exceeds a threshold. The threshold falls after a failed direction and rises after
-// a successful one, so that few elements are modified.
+// those with a vertex whose residual exceeds a threshold. The threshold decreases after a failed direction and
+// increases after a successful one, so that few elements are modified.
 class ProgressiveProjection {
  public:
   void begin() { threshold_ = kNone; }
 
-  // Returns the selection for the residual g, 3 numbers per vertex. Valid until the next call.
+  // Returns the selection for the residual g, 3 entries per vertex. Valid until the next call.
   Projection at(std::span<const double> g);
   bool is_complete() const { return covers_all_; }  // whether the last selection holds every element
   void tighten(std::span<const double> g);          // select more elements
