@@ -227,9 +227,8 @@ class Explainer {
     if (!model_.contact) return {};
     const ContactSummary contact = model_.contact->summary(x_, simulation_.obstacle_time());
     if (!(contact.min_gap < kSmall * contact.reach)) return {};
-    const auto& parts = model_.contact->mesh().parts;
-    return Explanation{"contact allows only short steps: the gap between " + parts[contact.parts[0]].name + " and " +
-                           parts[contact.parts[1]].name + " is " + text(contact.min_gap) + " m, " +
+    return Explanation{"contact allows only short steps: the gap between " +
+                           model_.contact->mesh().pair_name(contact.parts) + " is " + text(contact.min_gap) + " m, " +
                            text(contact.min_gap / contact.reach) + " of the distance at which contact begins",
                        "contact", smaller_steps() + ", or a slower impact, or a larger contact.reach"};
   }
@@ -237,8 +236,9 @@ class Explainer {
   Explanation inaccurate() const {
     if (report_.friction_passes > 1)
       return {"normal forces and friction did not settle after " + std::to_string(report_.friction_passes) +
-                  " minimizations",
-              "contact.friction", smaller_steps() + ", or less friction"};
+                  " minimizations: the last one would change friction by " + text(report_.friction_residual) + " N",
+              "contact.friction" + (report_.friction_pair.empty() ? "" : " between " + report_.friction_pair),
+              smaller_steps() + ", or less friction"};
     if (simulation_.options().adaptive.tolerance < kFinest) return too_fine();
     return {"the error estimate of the smallest substep, time.step / 2^20, exceeds its share",
             "time.adaptive.tolerance = " + text(simulation_.options().adaptive.tolerance),
