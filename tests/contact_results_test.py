@@ -65,10 +65,6 @@ def moved_scene(duration=.3, rise=.5, pin=""):
     return MOVED.format(duration=duration, rise=rise, pin=pin)
 
 
-def surface_points(path):
-    return list(zip(*[iter(exact.data_array(path.read_text(), "Points"))] * 3))
-
-
 class Certificate(CommandLine):
     def run_slope(self, sine):
         self.write("slope.toml", SLOPE.format(9.81 * sine))
@@ -117,13 +113,13 @@ class Frames(CommandLine):
         self.run_moved(moved_scene())
         frames = self.folder / "run/frames"
         names = sorted(frames.glob("body_*.vtu"))
-        start = surface_points(frames / "obstacles_000000.vtu")
+        start = exact.read_surface(frames / "obstacles_000000.vtu").points
         table, ball = exact.read_obj(frames / "obstacle_table_000000.obj")[0], exact.read_obj(frames / "obstacle_ball_000000.obj")[0]
         self.assertEqual(len(start), len(table) + len(ball) + 3)
         index = (self.folder / "run/run.pvd").read_text()
         for number, name in enumerate(names):
             t = .02 * number
-            now = surface_points(frames / f"obstacles_{number:06}.vtu")
+            now = exact.read_surface(frames / f"obstacles_{number:06}.vtu").points
             for k, (before, after) in enumerate(zip(start, now)):
                 up, right = (.5 * t, 0) if k < len(table) else (0, .4 * t) if k < len(table) + len(ball) else (0, 0)
                 for x, y in zip((before[0] + right, before[1] + up, before[2]), after):
@@ -141,7 +137,7 @@ class Frames(CommandLine):
     def test_obstacle_that_waits_is_shown_where_it_waits(self):
         self.run_moved(moved_scene(pin='[[body.pin]]\nwhere = "all"', rise=5), code=3)
         for number in range(3, 10):
-            low = min(p[1] for p in surface_points(self.folder / f"run/frames/obstacles_{number:06}.vtu"))
+            low = min(p[1] for p in exact.read_surface(self.folder / f"run/frames/obstacles_{number:06}.vtu").points)
             self.assertLess(low, -.09, "the table is in the cube")
         numbers = [tuple(map(float, p)) for block in re.findall(r"points\.timeSamples = {(.*?)}", (self.folder / "run/run.usda").read_text(), re.S)
                    for p in re.findall(r"\(([^,()]+), ([^,()]+), ([^,()]+)\)", block)]

@@ -313,6 +313,9 @@ class Shapes(Folder):
         self.run_cases(contact_cases.pinned(15))
         self.run_cases(contact_cases.driven(4))
 
+    def test_moving_obstacles(self):
+        self.run_cases(contact_cases.moving(8))
+
 
 class Extremes(Folder):
     def test_steps_moduli_and_friction(self):
