@@ -8,6 +8,7 @@ import re
 import subprocess
 import unittest
 
+import contact_cases
 import contact_scenes
 import exact_surfaces as exact
 from command_line import ASPIC, CommandLine
@@ -232,6 +233,30 @@ class Units(CommandLine):
                 self.assertEqual([[row[c] for c in columns] for row in rows], [[row[c] for c in columns] for row in meters])
                 for row, known in zip(rows, meters):  # round-off may decide the last iteration
                     self.assertLess(abs(int(row["iterations"]) - int(known["iterations"])), 2, row["step"])
+
+
+class Failures(CommandLine):
+    """Steps that contact makes fail are explained by it, with numbers."""
+
+    def explained(self, case, *words):
+        outcome = contact_scenes.run(case, self.folder / "case")
+        self.assertEqual(outcome.faults, [])
+        self.assertEqual(outcome.code, 3, outcome.line())
+        for word in words:
+            self.assertRegex(outcome.message, word)
+
+    def test_squeezed_gap_is_named_with_the_step_that_it_allows(self):
+        case = next(c for c in contact_cases.bullets(2) if c.name == "bullet 1000 m/s on free plate")
+        case.limit = 600
+        self.explained(case, r"contact limits the last step to [\d.e-]+: the gap between (bullet and plate|plate and bullet) is [\d.e-]+ m, "
+                             r"[\d.e-]+ of the distance at which contact begins")
+
+    def test_friction_that_does_not_settle_is_named(self):
+        self.explained(contact_cases.unsettled(), r"did not settle after \d+ minimizations", r"change friction by [\d.e+-]+ N", r"between \w+ and \w+")
+
+    def test_blocked_obstacles_are_named(self):
+        case = next(c for c in contact_cases.moving(12) if c.name == "press without end")
+        self.explained(case, "obstacles cannot move to their next positions", "press and cube")
 
 
 if __name__ == "__main__":

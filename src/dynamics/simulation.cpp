@@ -228,6 +228,7 @@ struct Simulation::Impl {
     report.objective_gradient = solved.work.gradient_norm;
     report.decrement = solved.decrement;
     report.friction_passes = solved.passes;
+    report.step_limit = E->step_limit();
     report.lost_accuracy = solved.work.lost_accuracy;
     report.initial_guess = solved.guess;
   }
