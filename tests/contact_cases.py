@@ -158,6 +158,35 @@ def pinned(steps):
                check=all_of(touches, stays_above(0)))
 
 
+def moving(steps):
+    """Obstacles that squeeze bodies to nothing, jump into them, or pull pinned ones apart."""
+    cube, down = body("cube", placed(box(cells=(2, 2, 2)), (0, .01, 0))), '{ displacement = [0, "-20 * t", 0] }'
+    floor, lid = ("floor", sheet(5)), sheet(3, 1.03)
+    yield case("press without end", [cube], obstacles=[floor, ("press", lid, down)], h=.01, steps=steps, codes=(3,), check=touches,
+               words=("cube", "press"), limit=300)
+    jaws = [("left", plate((-.8, .51, 0)), '{ displacement = ["10 * t", 0, 0] }'),
+            ("right", plate((.8, .51, 0)), '{ displacement = ["-10 * t", 0, 0] }')]
+    yield case("jaws that close", [cube], obstacles=jaws, h=.01, steps=steps, gravity=(0, 0, 0), codes=(3,), words=("cube",), limit=300)
+    for name, motion in (("into the body", '{ displacement = [0, "t < 0.025 ? 0 : -1.5", 0] }'),
+                         ("to the other side", '{ displacement = [0, "t < 0.025 ? 0 : -9", 0] }'),
+                         ("back and forth", '{ displacement = [0, "t > 0.025 && t < 0.045 ? -1.5 : 0", 0] }')):
+        yield case(f"obstacle jumps {name}", [cube], obstacles=[floor, ("lid", lid, motion)], h=.01, steps=steps, codes=(0, 3),
+                   check=stays_above(0), words=("lid and cube",), limit=300)
+    strip = placed(lattice([[x / 4 for x in range(-4, 5)], (0, .1), (0, .2)]), (0, .05, 0))
+    text, files = body("strip", strip)
+    ridge = lambda tip, foot: obj_text([(0, tip, -1), (0, tip, 1), (.3, foot, 0), (-.3, foot, 0)], [(0, 1, 2), (1, 0, 3)])
+    up, back = '{ displacement = [0, "6 * t", 0] }', '{ displacement = [0, "-6 * t", 0] }'
+    for name, obstacles in (("pushed from below", [("lower", ridge(0, -2), up)]),
+                            ("squeezed from both sides", [("lower", ridge(0, -2), up), ("upper", ridge(.2, 2.2), back)])):
+        yield case(f"pinned strip {name}", [(text + pin('"X < -0.99"') + pin('"X > 0.99"'), files)], obstacles=obstacles, h=.01, steps=steps,
+                   codes=(0, 3), check=touches, words=("strip",), limit=300)
+
+
+def plate(x):
+    """An open square across the x axis."""
+    return obj_text([(x[0], x[1] + y, x[2] + z) for y in (-2, 2) for z in (-2, 2)], [(0, 1, 2), (1, 3, 2)])
+
+
 def driven(steps):
     """Pins and springs that move through an obstacle within a step: the body must stay on its side."""
     text, files = body("cube", placed(box(cells=(3, 3, 3)), (0, .02, 0)))
@@ -201,6 +230,6 @@ def sliding_edges(steps):
                check=all_of(touches, stays_above(0)), limit=300)
 
 
-GROUPS = {"shapes": degenerate_shapes, "bullets": bullets, "surfaces": bad_surfaces, "slivers": slivers, "pins": pinned, "driven": driven,
+GROUPS = {"shapes": degenerate_shapes, "bullets": bullets, "surfaces": bad_surfaces, "slivers": slivers, "pins": pinned, "driven": driven, "moving": moving,
           "numbers": numbers, "edges": sliding_edges, "impacts": lambda count: (make(seed) for seed in range(count) for make in (impact, blow))}
-LONG = {"shapes": 100, "bullets": 20, "surfaces": 30, "slivers": 10, "pins": 30, "driven": 6, "numbers": 30, "edges": 1000, "impacts": 500}
+LONG = {"shapes": 100, "bullets": 20, "surfaces": 30, "slivers": 10, "pins": 30, "driven": 6, "moving": 15, "numbers": 30, "edges": 1000, "impacts": 500}

@@ -25,6 +25,7 @@ class Case:
     check: object = None
     planes: tuple = ()  # pairs of origin and normal
     obstacles: tuple = ()  # names of OBJ files
+    words: tuple = ()  # must be in the message of a run with exit code 3
 
 
 @dataclasses.dataclass
@@ -57,19 +58,19 @@ def pin(where='"all"', motion=""):
 
 
 def case(name, bodies, obstacles=(), planes=(), h=.005, steps=20, contact="", gravity=(0, -9.81, 0), **rest):
-    """`bodies`: results of body(), or pairs of such a result and text to append. `obstacles`: pairs of name and OBJ text."""
+    """`bodies`: results of body(), or pairs of such a result and text to append. `obstacles`: name, OBJ text and perhaps motion."""
     text = (f"gravity = [{gravity[0]}, {gravity[1]}, {gravity[2]}]\n[time]\nstep = {h!r}\nduration = {h * steps!r}\n"
             f"[contact]\n{contact}\n")
     files = {}
     for part, own in bodies:
         text += part
         files.update(own)
-    for obstacle, surface in obstacles:
-        text += f'[[obstacle]]\nname = "{obstacle}"\nmesh = "{obstacle}.obj"\n'
+    for obstacle, surface, *motion in obstacles:
+        text += f'[[obstacle]]\nname = "{obstacle}"\nmesh = "{obstacle}.obj"\n' + "".join(f"motion = {m}\n" for m in motion)
         files[obstacle + ".obj"] = surface
     for origin, normal in planes:
         text += f"[[obstacle]]\nplane = {{ origin = {list(origin)}, normal = {list(normal)} }}\n"
-    return Case(name, text, files, planes=tuple(planes), obstacles=tuple(o for o, _ in obstacles), **rest)
+    return Case(name, text, files, planes=tuple(planes), obstacles=tuple(o[0] for o in obstacles), **rest)
 
 
 def ledger_faults(rows):
@@ -86,7 +87,8 @@ def ledger_faults(rows):
 
 
 def surface_faults(frames, obstacles, planes):
-    """Returns intersections, and pairs of surfaces of which one is inside the other."""
+    """Returns intersections, and pairs of surfaces of which one is inside the other. `obstacles`: their surfaces, or a list of
+    them for each frame."""
     faults, first, is_closed = [], None, {}
 
     def closed(number, b, part):
@@ -95,7 +97,7 @@ def surface_faults(frames, obstacles, planes):
         return is_closed[b]
 
     for number, bodies in enumerate(frames):
-        surfaces = bodies + obstacles
+        surfaces = bodies + (obstacles[number] if obstacles and isinstance(obstacles[0], list) else obstacles)
         found = exact.intersections(surfaces)
         if found:
             faults.append(f"frame {number}: {len(found)} intersections, for example {found[0]}")
@@ -134,6 +136,8 @@ def run(case, folder, aspic=None):
         read_run(case, folder, outcome)
     elif done.returncode == 2 and not done.stderr.strip():
         outcome.faults.append("no message")
+    if done.returncode == 3:
+        outcome.faults += [f"no '{word}' in: {done.stderr.strip()[:300]}" for word in case.words if word not in done.stderr]
     return outcome
 
 
@@ -150,6 +154,8 @@ def read_run(case, folder, outcome):
         outcome.faults += ledger_faults(outcome.rows)
     outcome.frames = [exact.body_surfaces(p) for p in sorted((folder / "run/frames").glob("body_*.vtu"))]
     obstacles = [exact.Surface(o, *exact.read_obj(folder / (o + ".obj")), True) for o in case.obstacles]
+    moving = [[exact.read_surface(p)] for p in sorted((folder / "run/frames").glob("obstacles_*.vtu"))]
+    obstacles = moving[:len(outcome.frames)] or obstacles
     outcome.faults += surface_faults(outcome.frames, obstacles, case.planes)
     if case.check and outcome.frames:
         outcome.faults += case.check(outcome)

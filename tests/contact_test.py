@@ -283,13 +283,28 @@ plane = {}
         self.assertEqual(done.returncode, 0, done.stderr)
         frames = [exact.body_surfaces(p) for p in sorted((self.folder / "run/frames").glob("body_*.vtu"))]
         self.assertEqual(contact_scenes.surface_faults(frames, [], [((0, 0, 0), (0, 1, 0))]), [])
-        volumes = []
-        for surface in frames[0]:
-            corners = [[surface.points[c] for c in t] for t in surface.triangles]
-            volumes.append(abs(sum(a[0] * (b[1] * c[2] - b[2] * c[1]) - a[1] * (b[0] * c[2] - b[2] * c[0]) + a[2] * (b[0] * c[1] - b[1] * c[0])
-                                   for a, b, c in corners)) / 6)
+        volumes = self.volumes(frames[0])
         self.assertAlmostEqual(volumes[0] / (.2 * .199 * .2), 1, delta=.02)
         self.assertAlmostEqual(volumes[1] / (4 / 3 * math.pi * .12 ** 3), 1, delta=.15)  # a polyhedron
+
+    def volumes(self, frame):
+        result = []
+        for surface in frame:
+            corners = [[surface.points[c] for c in t] for t in surface.triangles]
+            result.append(abs(sum(a[0] * (b[1] * c[2] - b[2] * c[1]) - a[1] * (b[0] * c[2] - b[2] * c[0]) + a[2] * (b[0] * c[1] - b[1] * c[0])
+                                  for a, b, c in corners)) / 6)
+        return result
+
+    def test_eight_spheres_in_one_place_come_apart(self):
+        ball = "[[body]]\nname = \"ball{}\"\nshape = {{ sphere = {{ radius = 0.1, size = 0.08 }} }}\ntranslate = [{}, {}, {}]\n"
+        places = [(x, y, z) for x in (-.03, .03) for y in (-.025, .025) for z in (-.02, .02)]
+        done = self.run_scene("gravity = [0, 0, 0]\n[time]\nstep = 0.01\nduration = 0.02\n[output]\nevery = 0.01\n[contact]\n"
+                              "start = \"inflate\"\n" + "".join(ball.format(i, *place) for i, place in enumerate(places)))
+        self.assertEqual(done.returncode, 0, done.stderr)
+        frames = [exact.body_surfaces(p) for p in sorted((self.folder / "run/frames").glob("body_*.vtu"))]
+        self.assertEqual(contact_scenes.surface_faults(frames, [], []), [])
+        for volume in self.volumes(frames[0]):
+            self.assertAlmostEqual(volume / (4 / 3 * math.pi * .1 ** 3), 1, delta=.2)  # a polyhedron
 
     def test_default_and_hopeless_overlap_are_refused(self):
         for old, new, words in (('"inflate"', '"apart"', "cube and ball near"),
@@ -312,6 +327,9 @@ class Shapes(Folder):
     def test_pins_against_obstacles(self):
         self.run_cases(contact_cases.pinned(15))
         self.run_cases(contact_cases.driven(4))
+
+    def test_moving_obstacles(self):
+        self.run_cases(contact_cases.moving(12))
 
 
 class Extremes(Folder):

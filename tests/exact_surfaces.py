@@ -51,6 +51,13 @@ def body_surfaces(path):
             for b in sorted(set(body))]
 
 
+def read_surface(path):
+    """The obstacles of a frame."""
+    text = pathlib.Path(path).read_text()
+    triples = lambda a: list(zip(*[iter(a)] * 3))
+    return Surface("obstacles", triples(data_array(text, "Points")), triples(data_array(text, "connectivity")), True)
+
+
 def read_obj(path):
     points, triangles = [], []
     for line in pathlib.Path(path).read_text().splitlines():

@@ -23,6 +23,7 @@ const std::vector<Check>& checks() {
     add_contact_sliding_checks(list);
     add_contact_static_checks(list);
     add_contact_motion_checks(list);
+    add_contact_limit_checks(list);
     return list;
   }();
   return all;

@@ -10,6 +10,8 @@
 
 namespace aspic::verify {
 
+inline constexpr double kGravity = 9.81;  // [m/s^2]
+
 struct TouchingBody {
   TetMesh mesh;
   double young = 1e6, density = 1000;  // [Pa], [kg/m^3]

@@ -14,8 +14,23 @@ namespace {
 
 using std::numbers::pi;
 
-// Hertz: a quarter of a soft sphere around its lowest point on a rigid plane. E = 1, R = 1.
-constexpr double kRadius = 1, kPoisson = 0.3, kModulus = 1 / (1 - kPoisson * kPoisson), kPatch = 0.02;
+// Hertz: quarters of soft spheres around the points where they touch.
+constexpr double kPoisson = 0.3, kPatch = 0.02;  // the radius of contact
+
+struct Sphere {
+  double radius, young;
+  double low(const Vec3d& X) const { return radius - std::sqrt(radius * radius - X[0] * X[0] - X[2] * X[2]); }
+};
+
+// One sphere lies on a rigid plane, two on each other.
+struct Pair {
+  double curvature = 0, compliance = 0;  // 1 / R and 1 / E* of Hertz
+  explicit Pair(const std::vector<Sphere>& spheres) {
+    for (const auto& [radius, young] : spheres)
+      curvature += 1 / radius, compliance += (1 - kPoisson * kPoisson) / young;
+  }
+  double force() const { return 4 * kPatch * kPatch * kPatch * curvature / (3 * compliance); }
+};
 
 // Coordinates from 0 to about 8 patch radii, n cells in the patch, growing outside.
 std::vector<double> graded(int n, double growth) {
@@ -29,87 +44,113 @@ std::vector<double> graded(int n, double growth) {
 }
 
 struct Hertz {
-  double force, radius, pressure, approach;  // of the whole sphere
+  double force, radius, pressure;  // of whole spheres
+  double off_profile;              // deviation from the fitted profile of pressure, root mean square
 };
 
-// Displacement of a half-space y >= 0 by a force P at the origin into it, E = 1.
-Vec3d far_displacement(const Vec3d& X, double P) {
+// Displacement of a half-space y >= 0 by a force P at the origin into it.
+Vec3d far_displacement(const Vec3d& X, double P, double young) {
   const double r = std::hypot(X[0], X[2]), y = X[1], rho = std::hypot(r, y);
-  const double factor = P * (1 + kPoisson) / (2 * pi);
+  const double factor = P * (1 + kPoisson) / (2 * pi * young);
   const double out = factor * (y / (rho * rho * rho) - (1 - 2 * kPoisson) / (rho * (rho + y)));
   const double down = factor * (y * y / (rho * rho * rho) + 2 * (1 - kPoisson) / rho);
   return {{out * X[0], down, out * X[2]}};
 }
 
-Hertz pressed_sphere(int n, const std::string& material, double stiffness, Findings& found) {
-  const double reach = 1e-5;  // a fiftieth of about a quarter of an element in the patch
-  const std::vector<double> at = graded(n, 1.4);
-  const int cells = static_cast<int>(at.size()) - 1;
-  TetMesh mesh = make_box({{0, 0, 0}}, {{1, 1, 1}}, {cells, cells, cells});
-  std::vector<Vec3d> flat;
-  for (Vec3d& X : mesh.rest) {
-    for (int k = 0; k < 3; ++k) X[k] = at[std::lround(X[k] * cells)];
-    flat.push_back(X);
-    X[1] += kRadius - std::sqrt(kRadius * kRadius - X[0] * X[0] - X[2] * X[2]);
-  }
-  const double far = at.back();
-  const auto is_side = [far](const Vec3d& X) { return X[0] == far || X[2] == far; };
-  // The height of the sphere identifies the lower side.
-  const auto touches = [reach](const Vec3d& X) {
-    return X[1] < 1e-12 + reach + kRadius - std::sqrt(kRadius * kRadius - X[0] * X[0] - X[2] * X[2]);
-  };
-  TouchingModel given{
-      .bodies = {{mesh, stiffness, 1, touches}}, .has_floor = true, .material = material, .poisson = kPoisson};
-  for (Vec3d& X : given.bodies[0].mesh.rest) X[1] += reach;
-  given.contact = {.reach = reach, .stiffness = 0.1};
-  Model model = make_touching(given);
-  const double approach = kPatch * kPatch / kRadius, force = 4 * kModulus * kPatch * kPatch * kPatch / (3 * kRadius);
-  std::vector<int> held, x_plane, z_plane;
-  for (int v = 0; v < mesh.vertex_count(); ++v) {
-    if (is_side(flat[v]) || flat[v][1] == far) {
-      held.push_back(v);
-      continue;
-    }
-    if (flat[v][0] == 0) x_plane.push_back(v);
-    if (flat[v][2] == 0) z_plane.push_back(v);
-  }
-  model.pins.push_back({"far", held, [=](const Vec3d& X, double t) {
-                          const double low = kRadius - std::sqrt(kRadius * kRadius - X[0] * X[0] - X[2] * X[2]);
-                          const Vec3d at_flat{{X[0], X[1] - reach - low, X[2]}};
-                          return X + t * far_displacement(at_flat, force) - Vec3d{{0, t * approach, 0}};
-                        }});
-  model.pins.push_back({"x", x_plane, {}, {{{1, 0, 0}}}});
-  model.pins.push_back({"z", z_plane, {}, {{{0, 0, 1}}}});
-  const Simulation simulation = equilibrium(std::move(model), 4, "sphere on a plane", 1e-8);
-  expect_contact("", simulation, found);
-
-  // Fits p^2 = p0^2 (1 - r^2 / a^2), a line in r^2, to the inner pressures.
+// Fits p^2 = p0^2 (1 - r^2 / a^2), a line in r^2, to the inner pressures.
+Hertz fitted(const Simulation& simulation, int points) {
   const Barrier& contact = *simulation.model().contact;
-  std::vector<double> pressure(contact.mesh().point_count());
-  for (const ContactStencil& stencil : *contact.stencils(simulation.state().q, simulation.obstacle_time()))
-    pressure[stencil.point[0]] -= stencil.weight / stencil.area * stencil.b().first;
+  std::vector<double> pressure(simulation.model().mesh.vertex_count()), force(simulation.state().q.size());
+  for (const ContactPoint& touching : contact.contact_points(simulation.state().q, simulation.obstacle_time()))
+    pressure[touching.row] = touching.pressure;
   double count = 0, x = 0, y = 0, xx = 0, xy = 0;
-  for (size_t i = 0; i < pressure.size(); ++i) {
-    const Vec3d X = contact.mesh().rest[i];
-    const double r2 = X[0] * X[0] + X[2] * X[2], p2 = pressure[i] * pressure[i];
-    if (contact.mesh().row[i] < 0 || r2 > 0.8 * 0.8 * kPatch * kPatch) continue;
-    count += 1, x += r2, y += p2, xx += r2 * r2, xy += r2 * p2;
-  }
+  const auto inner = [&](const auto& use) {
+    for (int i = 0; i < points; ++i) {
+      const Vec3d X = contact.mesh().rest[i];
+      const double r2 = X[0] * X[0] + X[2] * X[2];
+      if (contact.mesh().row[i] >= 0 && r2 < 0.8 * 0.8 * kPatch * kPatch)
+        use(r2, std::pow(pressure[contact.mesh().row[i]], 2));
+    }
+  };
+  inner([&](double r2, double p2) { count += 1, x += r2, y += p2, xx += r2 * r2, xy += r2 * p2; });
   const double slope = (count * xy - x * y) / (count * xx - x * x), top = (y - slope * x) / count;
-  return {4 * contact_force(simulation)[1], std::sqrt(-top / slope), std::sqrt(top), approach};
+  double off = 0;
+  inner([&](double r2, double p2) { off += std::pow(std::sqrt(p2) - std::sqrt(std::max(0.0, top + slope * r2)), 2); });
+  contact.add_gradient(simulation.state().q, {}, -1, force);
+  double sum = 0;
+  for (int i = 0; i < points; ++i) sum += force[3 * contact.mesh().row[i] + 1];
+  return {4 * sum, std::sqrt(-top / slope), std::sqrt(top), std::sqrt(off / count)};
 }
 
-void check_hertz(const Subject& subject, Findings& found) {
+Hertz pressed_spheres(const std::vector<Sphere>& spheres, int n, const Subject& subject, Findings& found) {
+  const double reach = 1e-5;  // a fiftieth of about a quarter of an element in the patch
+  const double gap = reach / static_cast<double>(spheres.size());
+  const std::vector<double> at = graded(n, 1.4);
+  const int cells = static_cast<int>(at.size()) - 1;
+  const Pair hertz(spheres);
+  TouchingModel given{
+      .has_floor = spheres.size() == 1, .material = subject.replacement("neo_hookean_log"), .poisson = kPoisson};
+  given.contact = {.reach = reach, .stiffness = 0.1};
+  std::vector<Pin> pins;
+  int first = 0;
+  for (const Sphere& sphere : spheres) {
+    const double side = first == 0 ? 1 : -1;  // above or below
+    TetMesh mesh = make_box({{0, 0, 0}}, {{1, 1, 1}}, {cells, cells, cells});
+    std::vector<int> held, x_plane, z_plane;
+    for (int v = 0; v < mesh.vertex_count(); ++v) {
+      Vec3d& X = mesh.rest[v];
+      for (int k = 0; k < 3; ++k) X[k] = at[std::lround(X[k] * cells)];
+      if (*std::max_element(X.a, X.a + 3) == at.back())
+        held.push_back(first + v);
+      else if (X[0] == 0 || X[2] == 0) {
+        if (X[0] == 0) x_plane.push_back(first + v);
+        if (X[2] == 0) z_plane.push_back(first + v);
+      }
+      X[1] = side * (X[1] + gap + sphere.low(X));
+    }
+    if (side < 0)
+      for (Tet& tet : mesh.tets) std::swap(tet[0], tet[1]);
+    // The height identifies the side that touches.
+    const auto touches = [=](const Vec3d& X) { return std::abs(X[1]) < 1e-12 + gap + sphere.low(X); };
+    given.bodies.push_back({mesh, subject.stiffness * sphere.young, 1, touches});
+    const double force = hertz.force(), approach = side > 0 ? kPatch * kPatch * hertz.curvature : 0;
+    pins.push_back(
+        {"far", held, [=](const Vec3d& X, double t) {
+           Vec3d u = far_displacement({{X[0], std::abs(X[1]) - gap - sphere.low(X), X[2]}}, force, sphere.young);
+           u[1] = side * u[1] - approach;
+           return X + t * u;
+         }});
+    pins.push_back({"x", x_plane, {}, {{{1, 0, 0}}}});
+    pins.push_back({"z", z_plane, {}, {{{0, 0, 1}}}});
+    first += mesh.vertex_count();
+  }
+  Model model = make_touching(given);
+  model.pins = pins;
+  const Simulation simulation = equilibrium(std::move(model), 4, "pressed sphere", 1e-8);
+  expect_contact("", simulation, found);
+  const std::vector<int>& row = simulation.model().contact->mesh().row;
+  const int end = given.bodies[0].mesh.vertex_count();
+  return fitted(simulation,
+                static_cast<int>(std::count_if(row.begin(), row.end(), [end](int v) { return v >= 0 && v < end; })));
+}
+
+void expect_hertz(const std::vector<Sphere>& spheres, const Subject& subject, Findings& found) {
   const int n = subject.quick ? 8 : 12;
-  const Hertz measured = pressed_sphere(n, subject.replacement("neo_hookean_log"), subject.stiffness, found);
-  const double F = measured.force, a = std::cbrt(3 * F * kRadius / (4 * kModulus)), p0 = 3 * F / (2 * pi * a * a);
+  const Pair hertz(spheres);
+  const Hertz measured = pressed_spheres(spheres, n, subject, found);
+  const double F = measured.force, a = std::cbrt(3 * F * hertz.compliance / (4 * hertz.curvature)),
+               p0 = 3 * F / (2 * pi * a * a);
   found.expect("radius of contact", {measured.radius, a, (subject.quick ? 0.5 / n : 0.03) * a},
                "the border of contact lies within an element, of which there are 12 (quick: 8) in the radius", "m");
   found.expect("largest pressure / E", {measured.pressure, p0, 0.05 * p0}, "5 %: the same elements");
-  const double expected = 4 * kModulus * kPatch * kPatch * kPatch / (3 * kRadius);
-  found.expect("force / E of the approach a^2 / R", {F, expected, 0.05 * expected},
+  found.expect_small("deviation from the profile of pressure, root mean square / largest pressure",
+                     measured.off_profile / p0, 0.05, "5 %: the same elements, up to 0.8 of the radius");
+  found.expect("force / E of the approach a^2 / R", {F, hertz.force(), 0.05 * hertz.force()},
                "elements and the far field, which has relative errors of (1/8)^2", "m^2");
 }
+
+void check_hertz(const Subject& subject, Findings& found) { expect_hertz({{1, 1}}, subject, found); }
+void check_two_spheres(const Subject& subject, Findings& found) { expect_hertz({{1, 1}, {2, 3}}, subject, found); }
 
 // Two blocks of height 1/2 with unmatched meshes; the upper one is moved down. nu = 0, so that lateral sides stay.
 // Lateral motion is held: the border of a block on the edge of another one would buckle sideways.
@@ -259,6 +300,15 @@ void add_contact_static_checks(std::vector<Check>& checks) {
        check_hertz,
        {"Johnson1985"},
        {R"tex(a^3 = \frac{3 F R (1 - \nu^2)}{4 E}, \quad p_0 = \frac{3 F}{2 \pi a^2}, \quad \delta = \frac{a^2}{R})tex"}});
+  checks.push_back(
+      {"contact",
+       "two_spheres",
+       "A soft sphere on a larger, stiffer one",
+       "As above, with the radii 1 and 2 and the moduli 1 and 3.",
+       "Hertz's solution for the sums of curvatures and of compliances",
+       check_two_spheres,
+       {"Johnson1985"},
+       {R"tex(\frac1R = \frac1{R_1} + \frac1{R_2}, \quad \frac1{E^*} = (1 - \nu^2) \left(\frac1{E_1} + \frac1{E_2}\right))tex"}});
   checks.push_back({"contact",
                     "patch",
                     "Uniform pressure between unmatched meshes",

@@ -9,6 +9,7 @@ namespace aspic::verify {
 void add_contact_sliding_checks(std::vector<Check>& checks);
 void add_contact_static_checks(std::vector<Check>& checks);
 void add_contact_motion_checks(std::vector<Check>& checks);
+void add_contact_limit_checks(std::vector<Check>& checks);
 void add_material_checks(std::vector<Check>& checks);
 void add_derivative_checks(std::vector<Check>& checks);
 void add_point_checks(std::vector<Check>& checks);

@@ -39,6 +39,7 @@ constexpr double kAim = 0.95;
 struct Known {
   std::vector<double> frame_times;  // [s]
   int steps = 0;
+  std::vector<double> obstacle_times;  // of the obstacles in the frames [s]
 };
 
 Known known(const RunLayout& layout, const std::string& scene_text) {
@@ -51,7 +52,11 @@ Known known(const RunLayout& layout, const std::string& scene_text) {
   if (steps < 0 || steps > std::numeric_limits<int>::max())
     throw InvalidInput(layout.root().string() + ": the checkpoint counts " + std::to_string(steps) +
                        " steps; it is damaged");
-  Known result{checkpoint.array("frame_times"), static_cast<int>(steps)};
+  const std::vector<double>* obstacles = checkpoint.find("obstacle_times");
+  Known result{checkpoint.array("frame_times"), static_cast<int>(steps),
+               obstacles ? *obstacles : checkpoint.array("frame_times")};
+  if (result.obstacle_times.size() != result.frame_times.size())
+    throw InvalidInput(layout.root().string() + ": the checkpoint is damaged");
   if (result.frame_times.empty()) throw InvalidInput(layout.root().string() + ": the checkpoint has no frames");
   return result;
 }
@@ -204,7 +209,7 @@ class Recorder {
       head["frames"]["step"].push_back(step_of_frame_[index]);
       head["frames"]["time"].push_back(known_.frame_times[index]);
       if (model.contact && model.contact->has_moving_obstacle())
-        head["frames"]["obstacles"].push_back(obstacles_json(model, known_.frame_times[index]));
+        head["frames"]["obstacles"].push_back(obstacles_json(model, known_.obstacle_times[index]));
     }
     head["lower"] = range.lower.a;
     head["size"] = range.size().a;

@@ -5,6 +5,10 @@
 
 namespace aspic {
 
+std::string ContactMesh::pair_name(const std::array<int, 2>& pair) const {
+  return parts[pair[0]].name + " and " + (pair[0] == pair[1] ? "itself" : parts[pair[1]].name);
+}
+
 double ContactMesh::area_at_rest(const Triangle& t) const {
   return norm(cross(rest[t[1]] - rest[t[0]], rest[t[2]] - rest[t[0]])) / 2;
 }

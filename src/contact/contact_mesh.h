@@ -67,7 +67,8 @@ struct ContactMesh {
   // Adds a plane. Its motion moves its origin.
   void add_plane(const ContactPart& part, const Vec3d& origin, const Vec3d& normal);
 
-  double area_at_rest(const Triangle& t) const;  // [m^2]
+  std::string pair_name(const std::array<int, 2>& pair) const;  // such as "ear and foot"
+  double area_at_rest(const Triangle& t) const;                 // [m^2]
 };
 
 }  // namespace aspic

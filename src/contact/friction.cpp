@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <optional>
 
 #include "math/vectors.h"
 
@@ -26,6 +27,7 @@ struct Slider {
   double force = 0;  // mu lambda [N]
   double width = 0;  // e [m]
   Vec3d moved = {};  // displacement of the obstacle during the step [m]
+  std::array<int, 2> parts = {};
 };
 
 // A normal force, and the stencils that share it.
@@ -48,8 +50,9 @@ struct FrictionContext : Energy::Context {
   std::vector<double> start;
   double obstacle_time = 0;  // time of the obstacles at the start [s]
   std::vector<Slider> sliders;
-  int updates = 0;                      // in this step
-  std::map<ContactName, Slider> known;  // sliders of earlier updates
+  std::optional<std::vector<Slider>> before;  // the sliders before the last update of this step
+  int updates = 0;                            // in this step
+  std::map<ContactName, Slider> known;        // sliders of earlier updates
 };
 
 const FrictionContext& friction(const Energy::Context& context) { return static_cast<const FrictionContext&>(context); }
@@ -134,6 +137,21 @@ void add_force(const Slider& slider, const Slip& f, std::span<double> g) {
   for (const auto& [row, factor] : slider.weights) add_vec(factor * force, row, g);
 }
 
+struct Path {
+  Positions x, start;
+};
+
+// g += scale * forces at x.
+void add_forces(std::span<const Slider> sliders, const Path& path, double scale, std::span<double> g) {
+  for (const Slider& slider : sliders) {
+    const auto u = slip(slider, path.x, path.start);
+    const double y = std::hypot(u[0], u[1]);
+    if (y == 0) continue;
+    const double size = scale * slider.force * dissipation(y, slider.width).first / y;
+    add_force(slider, {size * u[0], size * u[1]}, g);
+  }
+}
+
 // Adds the blocks w_i w_j K for i > j, as one stencil per two pairs of rows.
 void add_pairs(std::span<const Weight> weights, const Mat3d& K, BlockSparse& H) {
   const int count = static_cast<int>(weights.size()), pairs = std::max(2, (count + 1) / 2);
@@ -190,12 +208,15 @@ void Friction::begin_step(const StepContext& step, Context& context) const {
   own.start.assign(step.start.begin(), step.start.end());
   own.obstacle_time = step.obstacle_time.value_or(step.time - step.h);
   own.updates = 0;
+  own.before.reset();
   own.known.clear();
   lag(step.shape.empty() ? step.start : step.shape, own.obstacle_time, context);
 }
 
 void Friction::update_lagged(Positions x, Context& context) const {
-  ++static_cast<FrictionContext&>(context).updates;
+  auto& own = static_cast<FrictionContext&>(context);
+  ++own.updates;
+  own.before = std::move(own.sliders);
   lag(x, context.time, context);
 }
 
@@ -216,6 +237,7 @@ void Friction::lag(Positions x, double time, Context& context) const {
     if (!(force > 0)) continue;
     const double width = context.h > 0 ? speed_ * context.h : kStaticReach * law.reach;
     Slider& slider = own.sliders.emplace_back(slider_of(barrier_.mesh(), traction, force, width));
+    slider.parts = (*stencils)[first].parts;
     for (size_t s = first; s < k && !start.empty(); ++s) {
       const ContactStencil& stencil = (*stencils)[s];
       slider.moved = slider.moved + traction.share[s - first] * side(barrier_.mesh(), stencil) *
@@ -254,13 +276,39 @@ double Friction::value(Positions x, const Context& context) const {
 
 void Friction::add_gradient(Positions x, const Context& context, double scale, std::span<double> g) const {
   const FrictionContext& own = friction(context);
+  add_forces(own.sliders, {x, own.start}, scale, g);
+}
+
+void Friction::add_change(Positions x, const Context& context, std::span<double> g) const {
+  const FrictionContext& own = friction(context);
+  if (!own.before) return;
+  add_forces(own.sliders, {x, own.start}, 1, g);
+  add_forces(*own.before, {x, own.start}, -1, g);
+}
+
+std::array<int, 2> Friction::parts_at(int row, const Context& context) const {
+  const FrictionContext& own = friction(context);
+  std::array<int, 2> parts = {-1, -1};
+  double most = 0;
+  const auto compare = [&](const std::vector<Slider>& sliders) {
+    for (const Slider& slider : sliders)
+      for (const Weight& weight : slider.weights)
+        if (const double size = slider.force * std::abs(weight.factor); weight.row == row && size > most)
+          most = size, parts = slider.parts;
+  };
+  compare(own.sliders);
+  if (own.before) compare(*own.before);
+  return parts;
+}
+
+double Friction::creep(Positions x, const Context& context) const {
+  const FrictionContext& own = friction(context);
+  double most = 0;
   for (const Slider& slider : own.sliders) {
     const auto u = slip(slider, x, own.start);
-    const double y = std::hypot(u[0], u[1]);
-    if (y == 0) continue;
-    const double size = scale * slider.force * dissipation(y, slider.width).first / y;
-    add_force(slider, {size * u[0], size * u[1]}, g);
+    if (const double y = std::hypot(u[0], u[1]); y < slider.width) most = std::max(most, y);
   }
+  return most;
 }
 
 // f is convex, so the Hessian needs no modification.

@@ -20,6 +20,13 @@ class Friction : public Energy, public LaggedEnergy, public StoppingEnergy {
   void add_gradient(Positions x, const Context& context, double scale, std::span<double> g) const override;
   // Returns the work [J] on friction of obstacles that move during the step.
   double obstacle_work(Positions x, const Context& context) const;
+  // Adds the difference that the last update of normal forces and tangents made to the gradient at x. After
+  // begin_step() it is zero.
+  void add_change(Positions x, const Context& context, std::span<double> g) const;
+  // The parts with the largest friction at a vertex of the model, before or after the last update; -1: there are none.
+  std::array<int, 2> parts_at(int row, const Context& context) const;
+  // Largest slip since the start of the step of contacts that stick: below e [m].
+  double creep(Positions x, const Context& context) const;
   int add_hessian(Positions x, const Context& context, double scale, const Projection& projection,
                   BlockSparse& H) const override;
   int add_stops(Positions x, const Context& context, std::span<const double> d,

@@ -127,6 +127,7 @@ void IncrementalPotential::begin_step(std::span<const double> predicted, double 
   inertia_ = inertia;
   factor_ = factor;
   iterate_.clear();
+  step_limit_ = std::numeric_limits<double>::infinity();
   gradient_round_off_ = 0;  // known after the first Hessian
 }
 
@@ -306,7 +307,7 @@ const BlockSparse& IncrementalPotential::metric() {
 double IncrementalPotential::max_step(std::span<const double> q, std::span<const double> d) {
   double alpha = std::numeric_limits<double>::infinity();
   for (const ActiveTerm& V : potential_) alpha = std::min(alpha, V.max_step(q, d));
-  return alpha;
+  return step_limit_ = alpha;
 }
 
 const BlockSparse* IncrementalPotential::add_stops(std::span<const double> q, std::span<const double> d,

@@ -4,6 +4,7 @@
 // Pinned degrees of freedom are not variables: their gradient is zero, and their Hessian rows are those of the identity
 // (see pins.h).
 #pragma once
+#include <limits>
 #include <optional>
 #include <span>
 #include <vector>
@@ -34,6 +35,7 @@ class IncrementalPotential : public Objective, public HasMetric, public HasParts
   void note_iterate(std::span<const double> q) override;
   const BlockSparse& metric() override;  // M, with identity rows for pinned vertices
   double max_step(std::span<const double> q, std::span<const double> d) override;
+  double step_limit() const { return step_limit_; }  // last result of max_step(); infinity before one in this step
   const BlockSparse* add_stops(std::span<const double> q, std::span<const double> d, double max_step,
                                std::span<double> g) override;
   // x: radius of the body [m]. value: energy of doubling the size of the body, in units of E, without constant offsets
@@ -114,6 +116,7 @@ class IncrementalPotential : public Objective, public HasMetric, public HasParts
   double rest_stiffness_ = 0, mass_norm_ = 0;  // norms of the diagonal blocks [N/m] and [kg]
   double exact_scale_ = 0;                     // see Part::exact
   double gradient_scale_ = 0, gradient_round_off_ = 0;
+  double step_limit_ = std::numeric_limits<double>::infinity();
   // Scratch. offset_: w (q - q~). term_: gradient of one term; zero between terms. largest_: |q| by chunks.
   std::vector<double> offset_, term_, largest_;
 };

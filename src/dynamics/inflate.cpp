@@ -10,6 +10,7 @@
 #include "dynamics/incremental_potential.h"
 #include "dynamics/integrator.h"
 #include "dynamics/simulation_checks.h"
+#include "energy/tet_elasticity.h"
 #include "math/vectors.h"
 #include "mesh/box.h"
 #include "optimize/minimize.h"
@@ -20,6 +21,7 @@ namespace {
 
 constexpr double kSmallest = 1.0 / 64;  // minimum scale of bodies
 constexpr double kShrink = 0.85;        // ratio of two successive scales
+constexpr double kGrow = 1.1;           // the same while bodies grow
 constexpr double kVolume = 0.9;         // minimum fraction of its volume that a body must regain
 constexpr int kMaxSteps = 200;
 constexpr double kAtRest = 1e-3;  // maximum displacement in a step at rest, relative to the radius of the model
@@ -91,7 +93,7 @@ void require_outside(const Model& model, const std::vector<double>& q) {
 }
 
 // Repeatedly minimizes 1/2 (x - q)' M (x - q) + h^2 V(x), where V is elasticity and contact, until x is at rest.
-void grow(const Model& model, const std::vector<double>& start, std::vector<double>& q) {
+void settle(const Model& model, const std::vector<double>& start, std::vector<double>& q) {
   const Pins pins(model.pins, start);
   IncrementalPotential E(model, pins);
   const double radius = E.scales().x;
@@ -111,14 +113,52 @@ void grow(const Model& model, const std::vector<double>& start, std::vector<doub
   }
 }
 
+// Returns the model with bodies without pins at `scale` times their size, of a material that resists inversion. Mass and
+// loads are left out.
+Model at_scale(const Model& model, double scale) {
+  Model scaled;
+  scaled.mesh = model.mesh;
+  const std::vector<double> rest = shrunk(model, at_rest(model.mesh).q, scale);
+  for (int v = 0; v < model.mesh.vertex_count(); ++v) scaled.mesh.rest[v] = point(rest, v);
+  scaled.bodies = model.bodies;
+  scaled.pins = model.pins;
+  scaled.contact = model.contact;
+  for (size_t body = 0; body < model.elasticity.size(); ++body) {
+    std::vector<MaterialParameters> parameters;
+    for (const MaterialParameters& own : model.elasticity[body]->parameters()) parameters.push_back({own.lame});
+    scaled.elasticity.push_back(
+        make_tet_elasticity("neo_hookean_log", scaled.mesh, model.bodies[body].first_tet, parameters));
+  }
+  return scaled;
+}
+
+// Growth in small steps compresses bodies little: large compression would invert tets.
+void grow(Model& model, double scale, const std::vector<double>& start, std::vector<double>& q) {
+  while (scale < 1) {
+    scale = std::min(1.0, kGrow * scale);
+    Model scaled = at_scale(model, scale);
+    const auto exchange = [&] {
+      std::swap(scaled.mass, model.mass);
+      std::swap(scaled.loads, model.loads);
+    };
+    exchange();
+    settle(scaled, start, q);
+    exchange();
+  }
+  settle(model, start, q);
+}
+
 }  // namespace
 
 void inflate(Model& model, std::vector<double>& q) {
   std::optional<std::string> why = overlap(model, q);
   if (!model.contact || !why) return;
   const std::vector<double> start = q;
-  for (double scale = kShrink; why && scale >= kSmallest; scale *= kShrink)
+  double scale = 1;
+  while (why && scale > kSmallest) {
+    scale *= kShrink;
     why = overlap(model, q = shrunk(model, start, scale));
+  }
   if (why) throw InvalidInput("shrinking does not separate the bodies: " + *why);
   require_outside(model, q);
   const auto other = std::stable_partition(model.loads.begin(), model.loads.end(),
@@ -127,7 +167,7 @@ void inflate(Model& model, std::vector<double>& q) {
                                              std::make_move_iterator(model.loads.end()));
   model.loads.erase(other, model.loads.end());
   std::vector<std::unique_ptr<Energy>> damping = std::exchange(model.damping, {});
-  grow(model, start, q);
+  grow(model, scale, start, q);
   model.damping = std::move(damping);
   model.loads.insert(model.loads.begin(), std::make_move_iterator(loads.begin()), std::make_move_iterator(loads.end()));
   for (const BodyRange& body : model.bodies) {

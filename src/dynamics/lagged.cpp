@@ -29,10 +29,6 @@ MinimizeReport minimize_lagged(const StepTools& tools, const MinimizeOptions& op
   MinimizeReport report = minimize(initial, rough);
   int passes = 1;
   for (; is_success(report.status); ++passes) {
-    if (passes == kMostPasses) {
-      report.status = Status::inaccurate;
-      break;
-    }
     tools.E.update_lagged(initial.x);
     const auto add = [&](const MinimizeReport& next) {
       const MinimizeReport before = report;
@@ -41,6 +37,10 @@ MinimizeReport minimize_lagged(const StepTools& tools, const MinimizeOptions& op
     };
     add(minimize({initial.x}, none));
     if (report.status != Status::iteration_limit) break;
+    if (passes == kMostPasses) {
+      report.status = Status::inaccurate;
+      break;
+    }
     const double reduced = report.threshold > 0 ? kReduction * report.reached / report.threshold : 1;
     rough.tolerance = options.tolerance * std::max(1.0, reduced);
     add(minimize({initial.x}, rough));

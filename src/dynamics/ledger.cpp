@@ -40,11 +40,30 @@ double add_load_energies(const StepTools& tools, std::span<const double> x, doub
   return sum;
 }
 
+// Adds the creep of sticking contacts, and the change of friction by the last update of the normal forces, to the report.
+void note_friction(const StepTools& tools, const ActiveTerm& term, std::span<const double> q, StepReport& report) {
+  const Friction& friction = *tools.model.friction;
+  std::vector<double> change(q.size());
+  friction.add_change(q, term.context(), change);
+  double squares = 0, most = 0;
+  int worst = -1;
+  for (int v = 0; v < tools.pins.vertex_count(); ++v) {
+    const Vec3d free = tools.pins.free_part(v, point(change, v));
+    const double square = dot(free, free);
+    squares += square;
+    if (square > most) most = square, worst = v;
+  }
+  report.friction_residual = std::sqrt(squares);
+  report.friction_creep = friction.creep(q, term.context());
+  const auto parts = friction.parts_at(worst, term.context());
+  if (parts[0] >= 0) report.friction_pair = tools.model.contact->mesh().pair_name(parts);
+}
+
 struct ObstacleWork {
   double contact = 0, friction = 0;  // [J]
 };
 
-// Returns the work of obstacles, and adds the friction loss to the report.
+// Returns the work of obstacles, and adds friction to the report.
 ObstacleWork work_of_obstacles(const StepTools& tools, const State& end, StepReport& report) {
   ObstacleWork work;
   if (!tools.model.contact) return work;
@@ -53,6 +72,7 @@ ObstacleWork work_of_obstacles(const StepTools& tools, const State& end, StepRep
   for (const ActiveTerm& D : tools.E.damping()) {
     if (&D.energy() != tools.model.friction || tools.obstacle_start == tools.obstacle_end) continue;
     work.friction += tools.model.friction->obstacle_work(end.q, D.context());
+    note_friction(tools, D, end.q, report);
     D.add_gradient(end.q, 1, force);
   }
   report.friction_loss = work.friction;

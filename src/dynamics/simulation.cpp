@@ -185,6 +185,8 @@ struct Simulation::Impl {
     report.residual = report.residual_threshold = report.residual_round_off = 0;
     report.worst_vertex = -1;
     report.pin_work = report.obstacle_work = report.damping_loss = report.friction_loss = 0;
+    report.friction_creep = report.friction_residual = 0;
+    report.friction_pair.clear();
     report.numerical_loss = report.residual_work = report.ledger_error = report.energy_slack = 0;
     report.energy_bound = EnergyBound::none;
     report.target_work.clear();
@@ -206,6 +208,7 @@ struct Simulation::Impl {
       const ContactSummary contact = model.contact->summary(state.q, obstacle_time);
       report.contacts = contact.contacts;
       report.min_gap = contact.contacts > 0 ? contact.min_gap : 0;
+      if (contact.contacts > 0) report.min_gap_pair = model.contact->mesh().pair_name(contact.parts);
       report.max_pressure = contact.max_pressure;
     }
     report.min_det_F = INFINITY;
@@ -225,6 +228,7 @@ struct Simulation::Impl {
     report.objective_gradient = solved.work.gradient_norm;
     report.decrement = solved.decrement;
     report.friction_passes = solved.passes;
+    report.step_limit = E->step_limit();
     report.lost_accuracy = solved.work.lost_accuracy;
     report.initial_guess = solved.guess;
   }

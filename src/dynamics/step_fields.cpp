@@ -8,7 +8,7 @@ namespace aspic {
 namespace {
 
 constexpr unsigned kTable = 1, kFrame = 2, kJson = 4, kViewer = 8;
-constexpr unsigned kCount = kTable | kJson, kMeasured = kTable | kFrame | kJson | kViewer;
+constexpr unsigned kCount = kTable | kJson, kWord = kTable | kJson | kViewer, kMeasured = kWord | kFrame;
 
 struct Text {
   std::string_view name, unit, help;
@@ -55,6 +55,17 @@ StepField name(const Text& text, unsigned outputs) {
             return false;
           },
           [](const StepReport& r) { return std::vector<double>{static_cast<double>(r.*Member)}; }};
+}
+
+template <auto Member>
+StepField word(const Text& text, unsigned outputs) {
+  return {text.name,
+          text.unit,
+          text.help,
+          StepFieldType::name,
+          outputs,
+          [](const StepReport& r) { return StepValue(r.*Member); },
+          [](StepReport& r, const StepValue& v) { return r.*Member = std::get<std::string>(v), true; }};
 }
 
 // Number of evaluations times tets.
@@ -152,8 +163,13 @@ std::vector<StepField>& fields() {
       optional(count<&R::contacts>({"contacts", "", "pairs of surface features in contact"}, kMeasured)),
       optional(real<&R::min_gap>({"min_gap", "m", "smallest distance between surfaces in contact; 0 without contacts"},
                                  kMeasured)),
+      optional(word<&R::min_gap_pair>({"min_gap_pair", "", "bodies or obstacles with this gap"}, kWord)),
       optional(real<&R::max_pressure>({"max_pressure", "Pa", "largest contact pressure"}, kMeasured)),
       optional(real<&R::friction_loss>({"friction_loss", "J", "share of friction in `damping_loss`"}, kMeasured)),
+      optional(real<&R::friction_creep>({"friction_creep", "m", "largest slip of a sticking contact in this step"},
+                                        kMeasured)),
+      optional(real<&R::friction_residual>(
+          {"friction_residual", "N", "change of friction by the last update of normal forces"}, kMeasured)),
       optional(count<&R::friction_passes>(
           {"friction_passes", "", "minimizations until the normal forces of friction settled"}, kCount)),
       {"potential", "J", "energy of each term of V; a dead load has -f . x, not zero at rest",

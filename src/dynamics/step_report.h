@@ -1,6 +1,8 @@
 // The record of a time step. Its status is a success only if the step converged.
 #pragma once
 #include <cstdint>
+#include <limits>
+#include <string>
 #include <vector>
 
 #include "dynamics/initial_guess.h"
@@ -53,12 +55,16 @@ struct StepReport : Work {  // work of all solves of the step and of this report
   double min_det_F = 0;
 
   // Contact at the end of the step.
-  int contacts = 0;          // pairs of features closer than their reach
-  double min_gap = 0;        // smallest distance of these [m]; 0 without contacts
-  double max_pressure = 0;   // [Pa]
-  double friction_loss = 0;  // share of friction in damping_loss [J]
-  int friction_passes =
-      0;  // minimizations until the normal forces converged; 1 without friction, 0 without minimization
+  int contacts = 0;              // pairs of features closer than their reach
+  double min_gap = 0;            // smallest distance of these [m]; 0 without contacts
+  std::string min_gap_pair;      // names of the parts that have it
+  double max_pressure = 0;       // [Pa]
+  double friction_loss = 0;      // share of friction in damping_loss [J]
+  double friction_creep = 0;     // largest slip of sticking contacts in the step [m]
+  double friction_residual = 0;  // change of the friction forces by the last update of the normal forces [N]
+  std::string friction_pair;     // parts where it is largest
+  double step_limit = std::numeric_limits<double>::infinity();  // bound of the last step length by contact
+  int friction_passes = 0;  // minimizations until the normal forces converged; 1 without friction, 0 without minimization
 
   // Ledger: kinetic + potential changes by pin_work + obstacle_work - damping_loss - numerical_loss + residual_work.
   // [J]

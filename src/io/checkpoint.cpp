@@ -138,10 +138,14 @@ void keep_as(const fs::path& path, const fs::path& kept) {
 
 }  // namespace
 
+const std::vector<double>* Checkpoint::find(std::string_view name) const {
+  for (const auto& [key, values] : arrays)
+    if (key == name) return &values;
+  return nullptr;
+}
+
 const std::vector<double>& Checkpoint::array(std::string_view name) const {
-  for (const auto& [key, values] : arrays) {
-    if (key == name) return values;
-  }
+  if (const std::vector<double>* values = find(name)) return *values;
   throw InvalidInput("the checkpoint has no array '" + std::string(name) + "'");
 }
 

@@ -14,6 +14,7 @@ struct Checkpoint {
   std::vector<std::pair<std::string, std::vector<double>>> arrays;
   std::vector<std::pair<std::string, int64_t>> integers;
 
+  const std::vector<double>* find(std::string_view name) const;  // null: it is missing
   // Throw InvalidInput if the name is missing.
   const std::vector<double>& array(std::string_view name) const;
   int64_t integer(std::string_view name) const;

@@ -6,7 +6,7 @@
 namespace aspic {
 
 void write_pvd(const std::filesystem::path& path, const std::vector<std::pair<double, std::string>>& frames,
-               const std::string& fixed) {
+               const std::vector<std::string>& others) {
   std::string text =
       "<?xml version=\"1.0\"?>\n<VTKFile type=\"Collection\" version=\"0.1\" byte_order=\"LittleEndian\">\n"
       "<Collection>\n";
@@ -15,9 +15,9 @@ void write_pvd(const std::filesystem::path& path, const std::vector<std::pair<do
     append_number(text, time);
     text += std::string("\" group=\"\" part=\"") + part + "\" file=\"" + xml_escaped(file) + "\"/>\n";
   };
-  for (const auto& [time, file] : frames) {
-    add(time, "0", file);
-    if (!fixed.empty()) add(time, "1", fixed);
+  for (size_t i = 0; i < frames.size(); ++i) {
+    add(frames[i].first, "0", frames[i].second);
+    if (!others.empty()) add(frames[i].first, "1", others[i]);
   }
   text += "</Collection>\n</VTKFile>\n";
   write_file(path, text);

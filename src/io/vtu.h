@@ -44,9 +44,9 @@ void write_vtu(const std::filesystem::path& path, std::span<const double> points
 
 void write_surface_vtu(const std::filesystem::path& path, const TriMesh& surface, const VtuFields& fields = {});
 
-// Writes the index of a time series: (time [s], file name relative to the index). `fixed`: a second file of every time;
-// empty: none.
+// Writes the index of a time series: (time [s], file name relative to the index). `others`: a second file of each time,
+// or nothing.
 void write_pvd(const std::filesystem::path& path, const std::vector<std::pair<double, std::string>>& frames,
-               const std::string& fixed = "");
+               const std::vector<std::string>& others = {});
 
 }  // namespace aspic

@@ -221,24 +221,26 @@ class Explainer {
             "time.adaptive.tolerance = 1e-06"};
   }
 
-  // Two parts that are pressed together so hard that only short steps keep them apart.
+  // Explains steps that contact makes short: two parts are pressed together so hard that only short ones keep them apart.
   std::optional<Explanation> squeezed_gap() const {
-    constexpr double kSmall = 0.02;  // relative to the reach
+    constexpr double kSmallGap = 0.02, kShortStep = 1e-3;  // relative to the reach, and to the direction
     if (!model_.contact) return {};
     const ContactSummary contact = model_.contact->summary(x_, simulation_.obstacle_time());
-    if (!(contact.min_gap < kSmall * contact.reach)) return {};
-    const auto& parts = model_.contact->mesh().parts;
-    return Explanation{"contact allows only short steps: the gap between " + parts[contact.parts[0]].name + " and " +
-                           parts[contact.parts[1]].name + " is " + text(contact.min_gap) + " m, " +
-                           text(contact.min_gap / contact.reach) + " of the distance at which contact begins",
+    const bool is_short = report_.step_limit < kShortStep;
+    if (contact.contacts == 0 || !(is_short || contact.min_gap < kSmallGap * contact.reach)) return {};
+    const std::string limit = is_short ? "limits the last step to " + text(report_.step_limit) : "allows only short steps";
+    return Explanation{"contact " + limit + ": the gap between " + model_.contact->mesh().pair_name(contact.parts) +
+                           " is " + text(contact.min_gap) + " m, " + text(contact.min_gap / contact.reach) +
+                           " of the distance at which contact begins",
                        "contact", smaller_steps() + ", or a slower impact, or a larger contact.reach"};
   }
 
   Explanation inaccurate() const {
     if (report_.friction_passes > 1)
       return {"normal forces and friction did not settle after " + std::to_string(report_.friction_passes) +
-                  " minimizations",
-              "contact.friction", smaller_steps() + ", or less friction"};
+                  " minimizations: the last one would change friction by " + text(report_.friction_residual) + " N",
+              "contact.friction" + (report_.friction_pair.empty() ? "" : " between " + report_.friction_pair),
+              smaller_steps() + ", or less friction"};
     if (simulation_.options().adaptive.tolerance < kFinest) return too_fine();
     return {"the error estimate of the smallest substep, time.step / 2^20, exceeds its share",
             "time.adaptive.tolerance = " + text(simulation_.options().adaptive.tolerance),

@@ -132,8 +132,7 @@ Simulation::Snapshot to_snapshot(const Checkpoint& checkpoint, const Model& mode
   snapshot.state = state_of(checkpoint, "", model);
   snapshot.start = state_of(checkpoint, "start_", model);
   snapshot.outside_work = only_number(checkpoint, "outside_work");
-  for (const auto& [name, values] : checkpoint.arrays)
-    if (name == "obstacle_time") snapshot.obstacle_time = only_number(checkpoint, "obstacle_time");
+  if (checkpoint.find("obstacle_time")) snapshot.obstacle_time = only_number(checkpoint, "obstacle_time");
   read_history(checkpoint.array("history"), model.numbering.vertex, snapshot);
   return snapshot;
 }
@@ -169,7 +168,7 @@ struct RunDirectory::Impl {
       : layout(std::move(where)),
         output(scene.output),
         scene_fingerprint(fingerprint(scene.resolved)),
-        has_obstacles(!obstacles_of(scene).empty()) {}
+        obstacles(layout, scene) {}
 
   // Frame index of `time`; times are sums of rounded steps, hence the tolerance.
   double frame_slot(double time) const { return std::floor(time / output.every + 1e-6); }
@@ -180,9 +179,13 @@ struct RunDirectory::Impl {
 
   void write_index() const {
     std::vector<std::pair<double, std::string>> frames;
-    for (const double time : frame_times)
-      frames.emplace_back(time, RunLayout::frame_file(static_cast<int>(frames.size())));
-    if (output.vtu) write_pvd(layout.index(), frames, has_obstacles ? RunLayout::obstacle_file() : "");
+    std::vector<std::string> others;
+    for (const double time : frame_times) {
+      const int frame = static_cast<int>(frames.size());
+      frames.emplace_back(time, RunLayout::frame_file(frame));
+      if (!obstacles.at_start().empty()) others.push_back(obstacles.file_of(frame));
+    }
+    if (output.vtu) write_pvd(layout.index(), frames, others);
   }
 
   // Frames that the checkpoint counts are not computed again.
@@ -202,7 +205,8 @@ struct RunDirectory::Impl {
       write_frame(layout.root() / RunLayout::frame_file(frame), simulation, report, output.double_precision);
     skins->add_frame(frame, simulation.state().q);
     frame_times.push_back(simulation.state().time);
-    skins->write_usd_when_doubled(frame_times);
+    obstacles.add_frame(frame, simulation.obstacle_time());
+    skins->write_usd_when_doubled(frame_times, obstacles);
   }
 
   // Everything that a checkpoint counts is on the disk before it. The index is written with it: rewriting it for every
@@ -212,6 +216,7 @@ struct RunDirectory::Impl {
     tables.sync();
     skins->sync();
     Checkpoint checkpoint = to_checkpoint(simulation, scene_fingerprint, frame_times);
+    if (obstacles.times != frame_times) checkpoint.arrays.emplace_back("obstacle_times", obstacles.times);
     tables.add_size(checkpoint);
     write_checkpoint(layout.checkpoint(), checkpoint);
     last_checkpoint = Clock::now();
@@ -226,7 +231,7 @@ struct RunDirectory::Impl {
   std::optional<RunLock> lock;
   OutputOptions output;
   std::string scene_fingerprint;
-  bool has_obstacles;
+  RunObstacles obstacles;
   std::vector<double> frame_times;  // [s]
   RunTables tables;
   std::optional<RunSkins> skins;
@@ -251,7 +256,7 @@ RunDirectory RunDirectory::create(const fs::path& path, const Scene& scene, Exis
   write_file(layout.scene(), scene.resolved);
   if (output.vtu || output.obj || output.ply) create_folder(layout.frames());
   if ((output.pc2 || output.usd) && !scene.skins.empty()) create_folder(layout.skins());
-  write_obstacles(layout, scene);
+  impl->obstacles.write_start();
   impl->skins = RunSkins::create(layout, scene);
   impl->add_frame(scene.simulation, nullptr);
   impl->save_checkpoint(scene.simulation);
@@ -277,6 +282,10 @@ RunDirectory RunDirectory::resume(const fs::path& path, Scene& scene) {
     fs::remove(layout.checkpoint(), ignored);
   }
   impl->frame_times = newest.checkpoint.array("frame_times");
+  const std::vector<double>* obstacle_times = newest.checkpoint.find("obstacle_times");
+  impl->obstacles.times = obstacle_times ? *obstacle_times : impl->frame_times;
+  if (impl->obstacles.times.size() != impl->frame_times.size())
+    throw InvalidInput("the checkpoint has obstacles of another number of frames; it is damaged");
   const int frames = static_cast<int>(impl->frame_times.size());
   impl->require_frames(frames);
   impl->tables = RunTables::resume(layout, scene.simulation);
@@ -299,7 +308,7 @@ void RunDirectory::on_step(const StepReport& report, const Simulation& simulatio
 
 void RunDirectory::finish(const Simulation& simulation) {
   impl_->save_checkpoint(simulation);
-  impl_->skins->write_usd(impl_->frame_times);
+  impl_->skins->write_usd(impl_->frame_times, impl_->obstacles);
   std::error_code ignored;  // the previous checkpoint depends on interruptions; results must not
   fs::remove(previous_checkpoint(impl_->layout.checkpoint()), ignored);
   impl_->skins->close();

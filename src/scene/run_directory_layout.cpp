@@ -19,13 +19,14 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// Returns the number in a file name of frame_file or skin_frame.
+// Returns the number in a file name of frame_file, skin_frame, obstacle_frame_file or obstacle_frame.
 std::optional<int> frame_number(const fs::path& file) {
   const std::string stem = file.stem().string(), extension = file.extension().string();
-  const bool is_body = extension == ".vtu" && stem.starts_with("body_");
-  const bool is_skin = (extension == ".obj" || extension == ".ply") && stem.starts_with("skin_");
   const std::string digits = stem.substr(stem.rfind('_') + 1);
-  if (!(is_body ? stem == "body_" + digits : is_skin) || digits.size() < 6) return {};
+  const bool is_vtu = extension == ".vtu" && (stem == "body_" + digits || stem == "obstacles_" + digits);
+  const bool is_surface =
+      (extension == ".obj" || extension == ".ply") && (stem.starts_with("skin_") || stem.starts_with("obstacle_"));
+  if (!(is_vtu || is_surface) || digits.size() < 6) return {};
   int number = 0;
   const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), number);
   if (error != std::errc() || end != digits.data() + digits.size() || number < 0) return {};
@@ -109,6 +110,12 @@ std::vector<fs::path> named_inputs(const fs::path& root, const fs::path& scene) 
 }  // namespace
 
 std::string RunLayout::frame_file(int frame) { return formatted("frames/body_%06d.vtu", frame); }
+
+std::string RunLayout::obstacle_frame_file(int frame) { return formatted("frames/obstacles_%06d.vtu", frame); }
+
+fs::path RunLayout::obstacle_frame(const std::string& name, int frame) const {
+  return frames() / ("obstacle_" + name + formatted("_%06d.obj", frame));
+}
 
 fs::path RunLayout::skin_frame(const std::string& skin, int frame, const std::string& extension) const {
   return frames() / ("skin_" + skin + formatted("_%06d", frame) + extension);

@@ -26,6 +26,8 @@ class RunLayout {
 
   static std::string frame_file(int frame);  // "frames/body_000123.vtu", relative to the root
   static std::string obstacle_file() { return "obstacles/obstacles.vtu"; }
+  static std::string obstacle_frame_file(int frame);  // "frames/obstacles_000123.vtu"
+  std::filesystem::path obstacle_frame(const std::string& name, int frame) const;
   std::filesystem::path obstacle(const std::string& name) const { return obstacles() / ("obstacle_" + name + ".obj"); }
   std::filesystem::path skin_frame(const std::string& skin, int frame, const std::string& extension) const;
   std::filesystem::path skin_rest(const std::string& skin) const { return skins() / ("skin_" + skin + ".obj"); }
@@ -37,7 +39,7 @@ class RunLayout {
   void refuse_links() const;
   // Removes every file of the run, also inputs, except those in `needed`.
   void remove_run(const std::vector<std::filesystem::path>& needed) const;
-  void remove_frames_from(int first) const;  // of bodies and skins
+  void remove_frames_from(int first) const;  // of bodies, skins and obstacles
   void remove_unfinished() const;            // unfinished files of a killed run
 
  private:

@@ -3,10 +3,8 @@
 #include <algorithm>
 #include <filesystem>
 
-#include "contact/barrier.h"
 #include "io/mesh_file.h"
 #include "io/usd.h"
-#include "io/vtu.h"
 
 namespace aspic {
 namespace {
@@ -31,38 +29,11 @@ std::vector<float> flat(const std::vector<Vec3d>& points) {
 
 }  // namespace
 
-std::vector<ObstacleSurface> obstacles_of(const Scene& scene) {
-  const Barrier* contact = scene.simulation.model().contact;
-  return contact ? obstacle_surfaces(contact->mesh(), contact->obstacle_points(0)) : std::vector<ObstacleSurface>();
-}
-
-void write_obstacles(const RunLayout& layout, const Scene& scene) {
-  const std::vector<ObstacleSurface> obstacles = obstacles_of(scene);
-  if (obstacles.empty()) return;
-  std::filesystem::create_directories(layout.obstacles());
-  std::vector<std::string> names;
-  for (const ObstacleSurface& obstacle : obstacles) names.push_back(obstacle.name);
-  names = file_names(names);
-  TriMesh all;
-  Field number{.name = "obstacle", .type = FieldType::int32};
-  for (size_t i = 0; i < obstacles.size(); ++i) {
-    const TriMesh& surface = obstacles[i].surface;
-    if (scene.output.obj || scene.output.ply || scene.output.pc2) write_mesh(layout.obstacle(names[i]), surface);
-    const int first = all.vertex_count();
-    all.vertices.insert(all.vertices.end(), surface.vertices.begin(), surface.vertices.end());
-    for (const auto& [a, b, c] : surface.triangles) all.triangles.push_back({a + first, b + first, c + first});
-    number.values.resize(all.triangles.size(), static_cast<double>(i));
-  }
-  if (scene.output.vtu) write_surface_vtu(layout.root() / RunLayout::obstacle_file(), all, {.cell_fields = {number}});
-}
-
 RunSkins::RunSkins(const RunLayout& layout, const Scene& scene)
     : layout_(layout),
       output_(scene.output),
       skins_(scene.skins),
       names_(names_of(scene.skins)),
-      contact_(scene.simulation.model().contact),
-      obstacles_(obstacles_of(scene)),
       frame_rate_(1 / std::max(scene.output.every, scene.simulation.options().h)) {}
 
 RunSkins RunSkins::create(const RunLayout& layout, const Scene& scene) {
@@ -102,7 +73,7 @@ void RunSkins::sync() {
   for (Pc2File& cache : caches_) cache.sync();
 }
 
-void RunSkins::write_usd(const std::vector<double>& frame_times) {
+void RunSkins::write_usd(const std::vector<double>& frame_times, const RunObstacles& obstacles) {
   if (!output_.usd || skins_.empty()) return;
   std::vector<UsdMesh> meshes;
   for (size_t i = 0; i < skins_.size(); ++i) {
@@ -110,22 +81,19 @@ void RunSkins::write_usd(const std::vector<double>& frame_times) {
                         return caches_[i].sample(frame);
                       }});
   }
-  for (size_t i = 0; i < obstacles_.size(); ++i)
-    meshes.push_back({.name = obstacles_[i].name,
-                      .triangles = obstacles_[i].surface.triangles,
-                      .points =
-                          [&, i](int frame) {
-                            if (!obstacles_[i].is_moving) return flat(obstacles_[i].surface.vertices);
-                            const auto points = contact_->obstacle_points(frame_times[frame]);
-                            return flat(obstacle_surfaces(contact_->mesh(), points)[i].surface.vertices);
-                          },
-                      .is_fixed = !obstacles_[i].is_moving});
+  for (size_t i = 0; i < obstacles.at_start().size(); ++i) {
+    const ObstacleSurface& start = obstacles.at_start()[i];
+    meshes.push_back({.name = start.name,
+                      .triangles = start.surface.triangles,
+                      .points = [&obstacles, i](int frame) { return flat(obstacles.at_frame(i, frame).vertices); },
+                      .is_fixed = !start.is_moving});
+  }
   aspic::write_usd(layout_.usd(), meshes, frame_times, frame_rate_);
   frames_in_usd_ = frame_times.size();
 }
 
-void RunSkins::write_usd_when_doubled(const std::vector<double>& frame_times) {
-  if (frame_times.size() >= 2 * frames_in_usd_) write_usd(frame_times);
+void RunSkins::write_usd_when_doubled(const std::vector<double>& frame_times, const RunObstacles& obstacles) {
+  if (frame_times.size() >= 2 * frames_in_usd_) write_usd(frame_times, obstacles);
 }
 
 void RunSkins::close() {

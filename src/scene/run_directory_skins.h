@@ -3,17 +3,12 @@
 #include <span>
 #include <vector>
 
-#include "contact/obstacle_surface.h"
 #include "io/pc2.h"
 #include "scene/run_directory_layout.h"
+#include "scene/run_directory_obstacles.h"
 #include "scene/scene.h"
 
 namespace aspic {
-
-std::vector<ObstacleSurface> obstacles_of(const Scene& scene);  // empty without contact
-
-// Writes obstacles/obstacles.vtu with all obstacles, and an OBJ file of each if surfaces of bodies are wanted.
-void write_obstacles(const RunLayout& layout, const Scene& scene);
 
 class RunSkins {
  public:
@@ -23,9 +18,9 @@ class RunSkins {
   void add_frame(int frame, std::span<const double> q);  // q of the model, 3 per vertex [m]
   void sync();
   // Rewrites run.usda with all frames.
-  void write_usd(const std::vector<double>& frame_times);
+  void write_usd(const std::vector<double>& frame_times, const RunObstacles& obstacles);
   // Rewrites run.usda if the number of frames has doubled since, so that the total cost stays linear.
-  void write_usd_when_doubled(const std::vector<double>& frame_times);
+  void write_usd_when_doubled(const std::vector<double>& frame_times, const RunObstacles& obstacles);
   void close();
 
  private:
@@ -35,10 +30,8 @@ class RunSkins {
   OutputOptions output_;
   std::vector<Skin> skins_;
   std::vector<std::string> names_;
-  const Barrier* contact_;                  // null: there is none
-  std::vector<ObstacleSurface> obstacles_;  // at time 0
-  double frame_rate_;                       // [1/s]
-  std::vector<Pc2File> caches_;             // one per skin, when PC2 or USD is wanted: USD is assembled from them
+  double frame_rate_;            // [1/s]
+  std::vector<Pc2File> caches_;  // one per skin, when PC2 or USD is wanted: USD is assembled from them
   size_t frames_in_usd_ = 0;
   std::vector<double> x_;  // scratch
 };

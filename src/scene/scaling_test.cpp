@@ -45,17 +45,22 @@ TEST_P(InOtherUnits, PowersOfTwoChangeNoBit) {
   }
 }
 
-TEST_P(InOtherUnits, IterationsAndDimensionlessResultsAgree) {
-  const Outcome meters = run(GetParam(), {});
+void expect_agreement(const Case& scene) {
+  const Outcome meters = run(scene, {});
   ASSERT_FALSE(meters.status.empty());
-  for (const Scales& scales : corners(GetParam(), {1e-3, 1e-3, 1e-3}, {1e3, 1e6, 1e6})) {
+  for (const Scales& scales : corners(scene, {1e-3, 1e-3, 1e-3}, {1e3, 1e6, 1e6})) {
     SCOPED_TRACE(testing::Message() << scales);
-    const Outcome scaled = run(GetParam(), scales);
+    const Outcome scaled = run(scene, scales);
     ASSERT_EQ(scaled.status, meters.status);
     ASSERT_EQ(scaled.counts, meters.counts);
-    EXPECT_LT(difference(scaled, meters), GetParam().is_sensitive ? 1e-5 : 1e-9);
+    EXPECT_LT(difference(scaled, meters), scene.is_sensitive ? 1e-5 : 1e-9);
   }
 }
+TEST_P(InOtherUnits, IterationsAndDimensionlessResultsAgree) { expect_agreement(GetParam()); }
+
+// Here powers of two change bits: the filter of the Hessians of contact mixes lengths with numbers.
+class TouchingInOtherUnits : public testing::TestWithParam<Case> {};
+TEST_P(TouchingInOtherUnits, IterationsAndDimensionlessResultsAgree) { expect_agreement(GetParam()); }
 
 // If decimal scales change results by more than 1e-9, so does a change of the units by one bit, which is the error of
 // the scaled input.
@@ -173,6 +178,30 @@ std::vector<Case> materials_and_loads() {
   return cases;
 }
 
+// Two boxes that fall onto a floor and each other; a ball pushes them.
+std::vector<Case> touching() {
+  const auto box = [](const std::string& name, const std::string& place, const std::string& speed) {
+    return "[[body]]\nname = \"" + name + "\"\nshape = { box = { " + place + " } }\nvelocity = [0, <" + speed +
+           " m/s>, 0]\n" + kRubber;
+  };
+  const std::string floor = "[[obstacle]]\nname = \"floor\"\nplane = {}\n",
+                    ball =
+                        "[[obstacle]]\nname = \"ball\"\nsphere = { center = [<0.18 m>, <0.1 m>, <0.05 m>], "
+                        "radius = <0.05 m> }\nmotion = { displacement = [\"<-1 m/s> * t\", 0, 0] }\n",
+                    boxes = box("lower",
+                                "lower = [0, <0.001 m>, 0], upper = [<0.1 m>, <0.1 m>, <0.1 m>], "
+                                "cells = [2, 2, 2]",
+                                "-0.3") +
+                            box("upper",
+                                "lower = [<0.03 m>, <0.102 m>, <0.04 m>], upper = [<0.12 m>, <0.2 m>, "
+                                "<0.12 m>], cells = [2, 1, 3]",
+                                "-1"),
+                    friction = "[contact]\nfriction = 0.4\n";
+  return {{.name = "smooth", .bodies = floor + boxes, .is_sensitive = true},
+          {.name = "rough", .bodies = friction + floor + boxes, .is_sensitive = true},
+          {.name = "pushed", .bodies = friction + floor + ball + boxes, .is_sensitive = true}};
+}
+
 std::vector<Case> hands() {
   const auto grab = [](Model& model, const Scales& s) {
     auto spring = std::make_unique<GrabSpring>();
@@ -230,6 +259,7 @@ INSTANTIATE_TEST_SUITE_P(Bodies, InOtherUnits, testing::ValuesIn(materials_and_l
 INSTANTIATE_TEST_SUITE_P(RealMeshes, InOtherUnits, testing::ValuesIn(real_meshes()), case_name);
 INSTANTIATE_TEST_SUITE_P(Minimizers, SensitiveInOtherUnits, testing::ValuesIn(sensitive(minimizers())), case_name);
 INSTANTIATE_TEST_SUITE_P(RealMeshes, SensitiveInOtherUnits, testing::ValuesIn(sensitive(real_meshes())), case_name);
+INSTANTIATE_TEST_SUITE_P(Contact, TouchingInOtherUnits, testing::ValuesIn(touching()), case_name);
 INSTANTIATE_TEST_SUITE_P(Hands, InOtherUnits, testing::ValuesIn(hands()), case_name);
 
 }  // namespace

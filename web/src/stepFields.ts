@@ -12,8 +12,11 @@ export interface StepFields {
   kinetic: MaybeNumber; // kinetic energy [J]
   contacts: number; // pairs of surface features in contact
   min_gap: MaybeNumber; // smallest distance between surfaces in contact; 0 without contacts [m]
+  min_gap_pair: string; // bodies or obstacles with this gap
   max_pressure: MaybeNumber; // largest contact pressure [Pa]
   friction_loss: MaybeNumber; // share of friction in damping_loss [J]
+  friction_creep: MaybeNumber; // largest slip of a sticking contact in this step [m]
+  friction_residual: MaybeNumber; // change of friction by the last update of normal forces [N]
   potential: MaybeNumber[]; // energy of each term of V; a dead load has -f . x, not zero at rest [J]
   pin_work: MaybeNumber; // work of moving pins, moving spring targets and time-dependent loads in this step [J]
   obstacle_work: MaybeNumber; // work of moving obstacles [J]
@@ -40,8 +43,11 @@ export const kUnknownStep: StepFields = {
   kinetic: null,
   contacts: 0,
   min_gap: null,
+  min_gap_pair: "",
   max_pressure: null,
   friction_loss: null,
+  friction_creep: null,
+  friction_residual: null,
   potential: [],
   pin_work: null,
   obstacle_work: null,

@@ -17,8 +17,8 @@ test("pressures have the colors from first to last", () => {
 });
 
 test("the summary has count, gap and pressure", () => {
-  const row = { contacts: 12, min_gap: 8.55e-5, max_pressure: 15700 };
-  assert.equal(contactText(row), "12 contacts, smallest gap 85.5 µm, largest pressure 15.7 kPa");
+  const row = { contacts: 12, min_gap: 8.55e-5, min_gap_pair: "ear and foot", max_pressure: 15700 };
+  assert.equal(contactText(row), "12 contacts, smallest gap 85.5 µm (ear and foot), largest pressure 15.7 kPa");
   assert.equal(contactText({ ...row, contacts: 1 }).slice(0, 10), "1 contact,");
   assert.equal(contactText({ ...row, contacts: 0 }), "no contacts");
 });

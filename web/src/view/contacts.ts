@@ -27,10 +27,11 @@ export function largestPressure(contacts: Float32Array): number {
 }
 
 // Summary of the contact at the end of a step.
-export function contactText(row: Pick<StepRow, "contacts" | "min_gap" | "max_pressure">): string {
+export function contactText(row: Pick<StepRow, "contacts" | "min_gap" | "min_gap_pair" | "max_pressure">): string {
   if (row.contacts === 0) return "no contacts";
   const count = row.contacts === 1 ? "1 contact" : `${short(row.contacts)} contacts`;
-  return `${count}, smallest gap ${valueText(row.min_gap, "m", 3)}, largest pressure ${valueText(row.max_pressure, "Pa", 3)}`;
+  const pair = row.min_gap_pair ? ` (${row.min_gap_pair})` : "";
+  return `${count}, smallest gap ${valueText(row.min_gap, "m", 3)}${pair}, largest pressure ${valueText(row.max_pressure, "Pa", 3)}`;
 }
 
 export class ContactDots extends THREE.Points<THREE.BufferGeometry, THREE.PointsMaterial> {
