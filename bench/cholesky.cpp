@@ -11,8 +11,7 @@
 #include "bench/beam_problem.h"
 #include "bench/cholmod_times.h"
 #include "bench/stopwatch.h"
-#include "energy/mass.h"
-#include "energy/tet_elasticity.h"
+#include "dynamics/model_builder.h"
 #include "io/mesh_file.h"
 #include "linalg/cholesky.h"
 #include "mesh/vertices.h"
@@ -31,22 +30,23 @@ struct Problem {
 };
 
 Problem make_problem(const TetMesh& mesh) {
-  const MaterialParameters parameters{.lame = lame_from_young_poisson(bench::kYoung, bench::kPoisson)};
-  const auto elasticity =
-      make_tet_elasticity("neo_hookean_log", mesh, 0, std::vector<MaterialParameters>(mesh.tet_count(), parameters));
-  MassMatrix mass(mesh, std::vector<double>(mesh.tet_count(), bench::kDensity), MassKind::lumped);
+  const Model model = ModelBuilder(mesh)
+                          .material("neo_hookean_log", {.young = bench::kYoung, .poisson = bench::kPoisson})
+                          .density(bench::kDensity)
+                          .mass(MassKind::lumped)
+                          .build();
   const std::vector<double> x = rest_positions(mesh);
   Couplings couplings;
-  elasticity->add_couplings(couplings);
-  mass.add_couplings(couplings);
+  model.elasticity[0]->add_couplings(couplings);
+  model.mass->add_couplings(couplings);
   Problem problem;
   problem.pattern = make_pattern(mesh.vertex_count(), std::move(couplings));
-  mass.bind(problem.pattern);
-  elasticity->bind(problem.pattern);
+  model.mass->bind(problem.pattern);
+  model.elasticity[0]->bind(problem.pattern);
   problem.H = std::make_unique<BlockSparse>(problem.pattern);
   problem.H->set_zero();
-  mass.add_to(1, *problem.H);
-  elasticity->add_hessian(x, bench::kTimeStep * bench::kTimeStep, {Definiteness::exact}, *problem.H);
+  model.mass->add_to(1, *problem.H);
+  model.elasticity[0]->add_hessian(x, bench::kTimeStep * bench::kTimeStep, {Definiteness::exact}, *problem.H);
   for (size_t i = 0; i < x.size(); ++i) problem.b.push_back(std::sin(static_cast<double>(i)));
   return problem;
 }

@@ -5,7 +5,7 @@
 
 #include "bench/beam_problem.h"
 #include "bench/element_flops.h"
-#include "energy/mass.h"
+#include "dynamics/model_builder.h"
 #include "material/list.h"
 
 namespace aspic::bench {
@@ -22,25 +22,25 @@ double element_bytes(const KernelBeam& beam) {
 }  // namespace
 
 KernelBeam::KernelBeam(int n, const std::string& material) : mesh(make_beam(n)) {
-  MaterialParameters constants{.lame = lame_from_young_poisson(kYoung, kPoisson)};
-  const MaterialInfo& info = material_info(material);
-  for (size_t k = 0; k < info.extra.size(); ++k) constants.extra[k] = info.extra[k].fallback;
   with_material(material, [&]<class M>() { parameters = kParameterCount<M>; });
-  elasticity = make_tet_elasticity(material, mesh, 0, std::vector<MaterialParameters>(mesh.tet_count(), constants));
+  Model model = ModelBuilder(mesh)
+                    .material(material, {.young = kYoung, .poisson = kPoisson})
+                    .density(kDensity)
+                    .build();
+  elasticity = std::move(model.elasticity[0]);
   for (const Vec3d& X : mesh.rest) {
     x.insert(x.end(), {X[0] + 0.02 * std::sin(X[1]), X[1] - 0.01 * X[0] * X[0], X[2] + 0.03 * X[0] * X[1]});
   }
   Couplings couplings;
   elasticity->add_couplings(couplings);
-  MassMatrix mass(mesh, std::vector<double>(mesh.tet_count(), kDensity), MassKind::consistent);
-  mass.add_couplings(couplings);
+  model.mass->add_couplings(couplings);
   pattern = make_pattern(mesh.vertex_count(), std::move(couplings));
   pattern.rest_position = mesh.rest;
-  mass.bind(pattern);
+  model.mass->bind(pattern);
   elasticity->bind(pattern);
   H = std::make_unique<BlockSparse>(pattern);
   H->set_zero();
-  mass.add_to(1, *H);
+  model.mass->add_to(1, *H);
   elasticity->add_hessian(x, kTimeStep * kTimeStep, {Definiteness::exact}, *H);
 }
 

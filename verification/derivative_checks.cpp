@@ -27,14 +27,13 @@ void check_differences(const Subject& subject, Findings& found) {
   Findings orders;  // appended after the errors
   for (const MaterialInfo& info : materials()) {
     const std::string taken = subject.replacement(info.name);
-    auto V = make_tet_elasticity(
-        taken, mesh, 0,
-        std::vector<MaterialParameters>(mesh.tet_count(), material_parameters(taken, {.young = 1, .poisson = 0.4})));
+    const Model model = make_model(mesh, {.material = taken, .young = 1, .poisson = 0.4});
+    TetElasticity& V = *model.elasticity[0];
     Couplings couplings;
-    V->add_couplings(couplings);
+    V.add_couplings(couplings);
     const BlockPattern pattern = make_pattern(mesh.vertex_count(), couplings);
-    V->bind(pattern);
-    const DerivativeReport report = check_derivatives(differentiable(ActiveTerm(*V), pattern), x, {.length = 0.3});
+    V.bind(pattern);
+    const DerivativeReport report = check_derivatives(differentiable(ActiveTerm(V), pattern), x, {.length = 0.3});
     for (const auto& [name, check] : {std::pair("gradient", &report.gradient), {"Hessian", &report.hessian}}) {
       found.expect_small(info.name + ": smallest error of the " + name, check->smallest_error, 1e-6,
                          "where the error h^2 of the difference meets its round-off 1e-16 / h");

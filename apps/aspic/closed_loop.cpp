@@ -10,7 +10,7 @@
 #include "aspic/commands.h"
 #include "aspic/plot.h"
 #include "base/error.h"
-#include "energy/tet_elasticity.h"
+#include "dynamics/model_builder.h"
 #include "fit/incremental_elasticity.h"
 #include "mesh/generators.h"
 
@@ -79,15 +79,15 @@ Course interpolated(const TetMesh& mesh, const Request& request) {
 }
 
 Course of_energy(const TetMesh& mesh, const Request& request) {
-  const std::vector<MaterialParameters> parameters(mesh.tets.size(),
-                                                   {lame_from_young_poisson(kYoung[2], kPoisson), {}});
-  const auto energy = make_tet_elasticity("corotated", mesh, 0, parameters);
+  const Model model =
+      ModelBuilder(mesh).material("corotated", {.young = kYoung[2], .poisson = kPoisson}).density(1000).build();
+  const TetElasticity& energy = *model.elasticity[0];
   std::vector<double> x = stretched(mesh, 0, 0), g(x.size()), next(x.size());
-  energy->add_gradient(x, 1, g);
+  energy.add_gradient(x, 1, g);
   Course course{.loops = {0}, .work = {0}};
   walk(mesh, request, [&](const std::vector<double>& to, double loops) {
     std::fill(next.begin(), next.end(), 0.0);
-    energy->add_gradient(to, 1, next);
+    energy.add_gradient(to, 1, next);
     double work = course.work.back();
     for (size_t i = 0; i < x.size(); ++i) work += 0.5 * (g[i] + next[i]) * (to[i] - x[i]);
     x = to;

@@ -9,8 +9,6 @@ namespace aspic {
 namespace {
 
 using namespace testing_models;
-using taylor::dot;
-using taylor::norm;
 using taylor::Numbers;
 
 const EquilibriumOptions kExact{.tolerance = 1e-14, .adjoint_tolerance = 1e-13};

@@ -12,8 +12,6 @@
 namespace aspic {
 namespace {
 
-using taylor::dot;
-using taylor::norm;
 using taylor::Numbers;
 
 const EquilibriumOptions kMisfitExact{.tolerance = 1e-14, .adjoint_tolerance = 1e-13};

@@ -8,6 +8,8 @@
 #include <string>
 #include <vector>
 
+#include "math/vectors.h"
+
 namespace aspic::taylor {
 
 class Numbers {
@@ -23,13 +25,6 @@ class Numbers {
  private:
   std::mt19937 random_;
 };
-
-inline double dot(const std::vector<double>& a, const std::vector<double>& b) {
-  double sum = 0;
-  for (size_t i = 0; i < a.size(); ++i) sum += a[i] * b[i];
-  return sum;
-}
-inline double norm(const std::vector<double>& a) { return std::sqrt(dot(a, a)); }
 
 // Over some decades of eps below `largest`, where the noise of f must stay far below the curvature term.
 inline void expect_slope_2(const std::function<std::vector<double>(double eps)>& f,

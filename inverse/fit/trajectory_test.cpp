@@ -11,8 +11,6 @@ namespace aspic {
 namespace {
 
 using namespace testing_models;
-using taylor::dot;
-using taylor::norm;
 using taylor::Numbers;
 
 TrajectoryOptions exact() {

@@ -6,6 +6,7 @@
 
 #include "energy/tet_elasticity.h"
 #include "material/list.h"
+#include "math/vectors.h"
 #include "mesh/generators.h"
 
 namespace aspic {
@@ -23,12 +24,6 @@ class Numbers {
  private:
   std::mt19937 random_{5};
 };
-
-double dot(const std::vector<double>& a, const std::vector<double>& b) {
-  double sum = 0;
-  for (size_t i = 0; i < a.size(); ++i) sum += a[i] * b[i];
-  return sum;
-}
 
 double largest(const std::vector<double>& a) {
   double size = 0;

@@ -13,6 +13,7 @@
 #include "linalg/ordering.h"
 #include "linalg/triangular_solve.h"
 #include "math/pack.h"
+#include "math/vectors.h"
 
 namespace aspic {
 namespace {
@@ -24,20 +25,6 @@ constexpr double kEpsilon = std::numeric_limits<double>::epsilon();
 constexpr double kFlopsPerEntry = 40;
 
 constexpr int kStripBlocks = 24;  // block columns per task
-
-double norm(std::span<const double> v) {
-  return std::sqrt(parallel_sum(static_cast<int>(v.size()), [&](int first, int last) {
-    Pack sums = 0.0;
-    int i = first;
-    for (Pack x; i + kPackWidth <= last; i += kPackWidth) {
-      std::memcpy(&x, &v[i], sizeof x);
-      sums += x * x;
-    }
-    double total = sum(sums);
-    for (; i < last; ++i) total += v[i] * v[i];
-    return total;
-  }));
-}
 
 // Returns an upper bound of |H|_2: the largest sum of the Frobenius norms of a block row.
 double norm_bound(const BlockSparse& H, std::span<double> row_sum) {

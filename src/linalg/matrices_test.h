@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "linalg/block_sparse.h"
+#include "math/vectors.h"
 
 namespace aspic::test {
 
@@ -125,12 +126,6 @@ inline std::vector<double> dense(const BlockSparse& H) {
         A[col + n * row] = H.block[s].a[k];
       }
   return A;
-}
-
-inline double dot(const std::vector<double>& a, const std::vector<double>& b) {
-  double sum = 0;
-  for (size_t i = 0; i < a.size(); ++i) sum += a[i] * b[i];
-  return sum;
 }
 
 // |b - H x| / |b|

@@ -10,69 +10,68 @@
 namespace aspic {
 namespace {
 
-const std::vector<std::string> kTracedIterationColumns = {"step",
-                                                          "solve",
-                                                          "iteration",
-                                                          "value",
-                                                          "gradient_norm",
-                                                          "decrement",
-                                                          "alpha",
-                                                          "trials",
-                                                          "fallbacks",
-                                                          "gradients",
-                                                          "hessians",
-                                                          "projected",
-                                                          "projected_elements",
-                                                          "factorizations",
-                                                          "linear_iterations",
-                                                          "products",
-                                                          "cycles"};
-const std::vector<std::string> kTrialColumns = {"step",  "solve", "iteration", "trial",   "alpha",
-                                                "value", "bound", "by_slope",  "accepted"};
-const std::vector<std::string> kTracedTimingColumns = {"step",      "solve",        "iteration",   "hessian",
-                                                       "factorize", "solve_linear", "line_search", "gradient"};
+using Json = nlohmann::ordered_json;
+
+// The columns of a table, which are also the members of a JSON object.
+template <class T>
+using Columns = std::vector<std::pair<std::string, Json (*)(const T&)>>;
+
+const Columns<LiveIteration> kIterationColumns = {
+    {"value", [](const LiveIteration& i) -> Json { return i.value; }},
+    {"gradient_norm", [](const LiveIteration& i) -> Json { return i.gradient_norm; }},
+    {"decrement", [](const LiveIteration& i) -> Json { return i.decrement; }},
+    {"alpha", [](const LiveIteration& i) -> Json { return i.alpha; }},
+    {"trials", [](const LiveIteration& i) -> Json { return i.trials; }},
+    {"fallbacks", [](const LiveIteration& i) -> Json { return i.fallbacks; }},
+    {"gradients", [](const LiveIteration& i) -> Json { return i.gradients; }},
+    {"hessians", [](const LiveIteration& i) -> Json { return i.direction.hessians; }},
+    {"projected", [](const LiveIteration& i) -> Json { return i.direction.projected; }},
+    {"projected_elements", [](const LiveIteration& i) -> Json { return i.direction.projected_elements; }},
+    {"factorizations", [](const LiveIteration& i) -> Json { return i.direction.factorizations; }},
+    {"linear_iterations", [](const LiveIteration& i) -> Json { return i.direction.linear_iterations; }},
+    {"products", [](const LiveIteration& i) -> Json { return i.direction.products; }},
+    {"cycles", [](const LiveIteration& i) -> Json { return i.direction.cycles; }}};
+const Columns<Trial> kTrialColumns = {{"alpha", [](const Trial& t) -> Json { return t.alpha; }},
+                                      {"value", [](const Trial& t) -> Json { return t.value; }},
+                                      {"bound", [](const Trial& t) -> Json { return t.bound; }},
+                                      {"by_slope", [](const Trial& t) -> Json { return t.by_slope; }},
+                                      {"accepted", [](const Trial& t) -> Json { return t.accepted; }}};
+const Columns<LiveIteration> kTimingColumns = {
+    {"hessian", [](const LiveIteration& i) -> Json { return i.direction.hessian_seconds; }},
+    {"factorize", [](const LiveIteration& i) -> Json { return i.direction.factorize_seconds; }},
+    {"solve_linear", [](const LiveIteration& i) -> Json { return i.direction.solve_seconds; }},
+    {"line_search", [](const LiveIteration& i) -> Json { return i.line_search_seconds; }},
+    {"gradient", [](const LiveIteration& i) -> Json { return i.gradient_seconds; }}};
+
+template <class T>
+CsvFile table(const std::filesystem::path& path, std::vector<std::string> names, const Columns<T>& columns) {
+  for (const auto& column : columns) names.push_back(column.first);
+  return CsvFile::create(path, names);
+}
+
+template <class T>
+void append(const T& source, const Columns<T>& columns, CsvRow row, CsvFile& file) {
+  for (const auto& column : columns) {
+    const Json value = column.second(source);
+    if (value.is_number_float())
+      row.add(value.template get<double>());
+    else
+      row.add(value.template get<int>());  // false: 0, true: 1
+  }
+  file.append(row);
+}
+
+template <class T>
+Json json_of(const T& source, const Columns<T>& columns) {
+  Json object;
+  for (const auto& [name, value] : columns) object[name] = value(source);
+  return object;
+}
 
 CsvRow row_of(int step, int solve, int iteration) {
   CsvRow row;
   row.add(step).add(solve).add(iteration);
   return row;
-}
-
-nlohmann::ordered_json json_of(const Trial& trial) {
-  return {{"alpha", trial.alpha},
-          {"value", trial.value},
-          {"bound", trial.bound},
-          {"by_slope", trial.by_slope},
-          {"accepted", trial.accepted}};
-}
-
-nlohmann::ordered_json json_of(int step, int solve, const LiveIteration& iteration) {
-  const DirectionReport& direction = iteration.direction;
-  nlohmann::ordered_json trials = nlohmann::json::array();
-  for (const Trial& trial : iteration.tried) trials.push_back(json_of(trial));
-  return {{"step", step},
-          {"solve", solve},
-          {"iteration", iteration.index},
-          {"value", iteration.value},
-          {"gradient_norm", iteration.gradient_norm},
-          {"decrement", iteration.decrement},
-          {"alpha", iteration.alpha},
-          {"fallbacks", iteration.fallbacks},
-          {"gradients", iteration.gradients},
-          {"hessians", direction.hessians},
-          {"projected", direction.projected},
-          {"projected_elements", direction.projected_elements},
-          {"factorizations", direction.factorizations},
-          {"linear_iterations", direction.linear_iterations},
-          {"products", direction.products},
-          {"cycles", direction.cycles},
-          {"trials", trials},
-          {"seconds",
-           {{"hessian", direction.hessian_seconds},
-            {"factorize", direction.factorize_seconds},
-            {"solve_linear", direction.solve_seconds},
-            {"line_search", iteration.line_search_seconds},
-            {"gradient", iteration.gradient_seconds}}}};
 }
 
 void write_curve(const std::filesystem::path& path, const std::vector<CurvePoint>& curve) {
@@ -120,9 +119,9 @@ Trace::Trace(std::filesystem::path folder, TraceOptions options)
   std::error_code error;
   std::filesystem::create_directories(folder_, error);
   if (error) throw InvalidInput(folder_.string() + ": cannot be created: " + error.message());
-  iterations_ = CsvFile::create(folder_ / "iterations.csv", kTracedIterationColumns);
-  trials_ = CsvFile::create(folder_ / "trials.csv", kTrialColumns);
-  timings_ = CsvFile::create(folder_ / "timings.csv", kTracedTimingColumns);
+  iterations_ = table(folder_ / "iterations.csv", {"step", "solve", "iteration"}, kIterationColumns);
+  trials_ = table(folder_ / "trials.csv", {"step", "solve", "iteration", "trial"}, kTrialColumns);
+  timings_ = table(folder_ / "timings.csv", {"step", "solve", "iteration"}, kTimingColumns);
   json_ = OutputFile::create(folder_ / "trace.jsonl");
 }
 
@@ -139,26 +138,21 @@ void Trace::on_iteration(int step, const LiveIteration& iteration) {
 }
 
 void Trace::add_rows(int step, const LiveIteration& iteration) {
-  const DirectionReport& direction = iteration.direction;
-  CsvRow row = row_of(step, solve_, iteration.index);
-  row.add(iteration.value).add(iteration.gradient_norm).add(iteration.decrement).add(iteration.alpha);
-  row.add(iteration.trials).add(iteration.fallbacks).add(iteration.gradients).add(direction.hessians);
-  row.add(direction.projected ? 1 : 0).add(direction.projected_elements).add(direction.factorizations);
-  row.add(direction.linear_iterations).add(direction.products).add(direction.cycles);
-  iterations_.append(row);
-
-  for (size_t i = 0; i < iteration.tried.size(); ++i) {
-    const Trial& trial = iteration.tried[i];
-    CsvRow tried = row_of(step, solve_, iteration.index);
-    tried.add(static_cast<int>(i)).add(trial.alpha).add(trial.value).add(trial.bound);
-    trials_.append(tried.add(trial.by_slope ? 1 : 0).add(trial.accepted ? 1 : 0));
+  const CsvRow row = row_of(step, solve_, iteration.index);
+  append(iteration, kIterationColumns, row, iterations_);
+  append(iteration, kTimingColumns, row, timings_);
+  Json trials = Json::array();
+  for (const Trial& trial : iteration.tried) {
+    CsvRow tried = row;
+    append(trial, kTrialColumns, tried.add(static_cast<int>(trials.size())), trials_);
+    trials.push_back(json_of(trial, kTrialColumns));
   }
 
-  CsvRow times = row_of(step, solve_, iteration.index);
-  times.add(direction.hessian_seconds).add(direction.factorize_seconds).add(direction.solve_seconds);
-  timings_.append(times.add(iteration.line_search_seconds).add(iteration.gradient_seconds));
-
-  json_.append(json_of(step, solve_, iteration).dump() + "\n");
+  Json line = {{"step", step}, {"solve", solve_}, {"iteration", iteration.index}};
+  line.update(json_of(iteration, kIterationColumns));
+  line["trials"] = std::move(trials);
+  line["seconds"] = json_of(iteration, kTimingColumns);
+  json_.append(line.dump() + "\n");
 }
 
 void Trace::add_landscape(const LandscapeAt& at, const LiveIteration& iteration) {
