@@ -53,7 +53,7 @@ fs::path folder_with_meshes() {
 // Makes the calls of a fit with the identity as its model.
 class Identity : public LeastSquares {
  public:
-  int parameters() const override { return 2; }
+  int parameter_count() const override { return 2; }
   int residual_count() const override { return 2; }
   bool evaluate(std::span<const double> p, std::span<double> r) override { return copy(p, r), true; }
   bool linearize() override { return true; }

@@ -130,7 +130,7 @@ Exit codes: 0 done, 2 bad input, 3 some case has no equilibrium and was omitted,
   command->add_option("scene", a->input, "Scene or mesh to measure")->required();
   command->add_option("-o,--out", a->out, "Folder of the data set; default: out/NAME_data");
   command->add_option("--set", a->overrides, "KEY=VALUE: override a value of the scene")->allow_extra_args(false);
-  command->add_option("--pokes", b.pokes, "Number of poke sites")->capture_default_str();
+  command->add_option("--pokes", b.indentations, "Number of poke sites")->capture_default_str();
   command->add_option("--depths", b.depths, "Number of depths per site")->capture_default_str();
   command->add_option("--depth", b.deepest, "Largest depth, relative to the size of the body")->capture_default_str();
   command->add_option("--tip", a->tip,

@@ -1,4 +1,5 @@
 #include "input.h"
+#include "base/formatted.h"
 
 #include <algorithm>
 #include <cctype>
@@ -63,7 +64,7 @@ CheckedSurface checked_surface(const std::filesystem::path& path, Defects defect
     surface.mesh = std::move(closed.surface);
     surface.actions.push_back("rebuilt with " + std::to_string(surface.mesh.triangle_count()) +
                               " triangles; holes and grooves narrower than about " +
-                              number(closed.detail * frame.unit) + " are closed");
+                              three_digits(closed.detail * frame.unit) + " are closed");
   } else if (defects == Defects::fill_small_holes) {
     const int before = surface.mesh.triangle_count();
     surface.mesh = with_holes_filled(surface.mesh, diagonal(surface.mesh.vertices));
