@@ -6,6 +6,7 @@
 #include <optional>
 
 #include "base/error.h"
+#include "base/formatted.h"
 #include "base/stopwatch.h"
 #include "contact/barrier.h"
 #include "dynamics/adaptive_step.h"
@@ -37,7 +38,7 @@ struct Simulation::Impl {
         E(std::make_unique<IncrementalPotential>(model, *pins)) {
     options.solver.minimize.h = options.h;
     if (!(options.h > 0) || !std::isfinite(options.h))
-      throw InvalidInput("h = " + std::to_string(options.h) + "; it must be positive");
+      throw InvalidInput("h = " + three_digits(options.h) + "; it must be positive");
     require_possible(options);
     if (!integrator->facts().is_static()) require_mass(model, *pins);
     pins->place(state.time, state.q);

@@ -170,7 +170,7 @@ std::optional<SolverConflict> find_conflict(const SimulationOptions& options) {
 void require_possible(const SimulationOptions& options) {
   const double tolerance = options.adaptive.tolerance;
   if (!(tolerance >= 0) || !std::isfinite(tolerance))
-    throw InvalidInput("the tolerance of adaptive steps is " + std::to_string(tolerance) +
+    throw InvalidInput("the tolerance of adaptive steps is " + three_digits(tolerance) +
                        "; it must be positive, or 0 for steps of one length");
   if (const auto conflict = find_conflict(options)) throw InvalidInput(conflict->reason);
 }

@@ -204,7 +204,7 @@ TEST(Simulation, RejectsOptionsThatIntegratorIgnores) {
   for (const char* integrator : {"bdf2", "quasi_static"})
     EXPECT_THAT(refusal({.integrator = integrator, .adaptive = {.tolerance = 1e-3}, .solver = {}}),
                 AllOf(HasSubstr(integrator), HasSubstr("tr_bdf2"), HasSubstr("rk4")));
-  EXPECT_THAT(refusal({.adaptive = {.tolerance = -1}, .solver = {}}), HasSubstr("adaptive.tolerance"));
+  EXPECT_THAT(refusal({.adaptive = {.tolerance = -1}, .solver = {}}), HasSubstr("tolerance of adaptive steps is -1;"));
   EXPECT_THAT(refusal({.initial_guess = "curent", .solver = {}}), HasSubstr("did you mean 'current'"));
   for (const char* integrator : {"rk4", "forward_euler", "linearly_implicit_euler"})
     EXPECT_THAT(refusal({.integrator = integrator, .initial_guess = "zero", .solver = {}}),
