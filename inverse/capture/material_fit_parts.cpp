@@ -1,6 +1,7 @@
 #include <algorithm>
 
 #include "capture/material_fit.h"
+#include "fit/quantity.h"
 #include "mesh/tet_mesh.h"
 
 namespace aspic {
@@ -30,7 +31,7 @@ double share_of_body(const TetMesh& mesh, const std::vector<double>& share) {
 std::vector<double> MaterialFit::divided(FitModel& model) {
   const FitReport& report = outcome_.report;
   const auto young = std::find_if(plan_.parameters.begin(), plan_.parameters.end(), [](const FitParameter& u) {
-    return u.quantity == "young" && u.parameterization == Parameterization::tets;
+    return is_stiffness(u.quantity) && u.parameterization == Parameterization::tets;
   });
   if (plan_.parts == 0 || young == plan_.parameters.end() || is_stopped()) return report.p;
   const int parameter = static_cast<int>(young - plan_.parameters.begin());

@@ -8,6 +8,7 @@
 #include "fit/evidence.h"
 #include "fit/field_text.h"
 #include "fit/principal_directions.h"
+#include "fit/quantity.h"
 
 namespace aspic {
 namespace {
@@ -71,15 +72,15 @@ double information_of_scale(LeastSquares& data, const ParameterMap& map, int you
   return dot(dr, dr);
 }
 
-int index_of(const ParameterMap& map, const char* quantity) {
+int stiffness_of(const ParameterMap& map) {
   for (size_t u = 0; u < map.fitted_parameters().size(); ++u)
-    if (map.fitted_parameters()[u].quantity == quantity) return static_cast<int>(u);
+    if (is_stiffness(map.fitted_parameters()[u].quantity)) return static_cast<int>(u);
   return -1;
 }
 
 void warn_of_scale(LeastSquares& data, const ParameterMap& map, Posterior& result) {
   constexpr double kNothing = 1e-2;  // limit at which data alone determine E up to a factor of e^10
-  const int young = index_of(map, "young");
+  const int young = stiffness_of(map);
   if (young < 0) return;
   result.scale_is_unknown = information_of_scale(data, map, young) < kNothing;
   if (result.scale_is_unknown)
@@ -247,7 +248,7 @@ Interval interval(const Posterior& posterior, const ParameterMap& map, std::span
 }
 
 std::string describe_interval(const FitParameter& parameter, const Interval& interval) {
-  const bool is_pressure = parameter.quantity == "young";
+  const bool is_pressure = is_stiffness(parameter.quantity);
   double unit = 1;
   const char* name = is_pressure ? " Pa" : "";
   for (const auto& [size, prefixed] : {std::pair{1e3, " kPa"}, {1e6, " MPa"}, {1e9, " GPa"}})
