@@ -80,7 +80,7 @@ class Explainer {
 
  private:
   bool is_static() const { return simulation_.integrator().is_static(); }
-  bool is_newton() const { return solver_.method.starts_with("newton"); }
+  bool is_newton() const { return estimates_minimizer(solver_.method); }
   Explanation not_held(const RigidMotion& motion) const {
     const std::string body = model_.bodies.size() > 1 ? "body '" + model_.bodies[motion.body].name + "'" : "the body";
     const bool has_pins = !model_.pins.empty();
