@@ -8,7 +8,6 @@
 #include "capture/apparent_stiffness.h"
 #include "fit/quantity.h"
 #include "material/registry.h"
-#include "scene/material_file.h"
 #include "scene/scene_files.h"
 #include "scene/schema.h"
 
