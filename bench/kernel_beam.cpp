@@ -23,10 +23,7 @@ double element_bytes(const KernelBeam& beam) {
 
 KernelBeam::KernelBeam(int n, const std::string& material) : mesh(make_beam(n)) {
   with_material(material, [&]<class M>() { parameters = kParameterCount<M>; });
-  Model model = ModelBuilder(mesh)
-                    .material(material, {.young = kYoung, .poisson = kPoisson})
-                    .density(kDensity)
-                    .build();
+  Model model = ModelBuilder(mesh).material(material, {.young = kYoung, .poisson = kPoisson}).density(kDensity).build();
   elasticity = std::move(model.elasticity[0]);
   for (const Vec3d& X : mesh.rest) {
     x.insert(x.end(), {X[0] + 0.02 * std::sin(X[1]), X[1] - 0.01 * X[0] * X[0], X[2] + 0.03 * X[0] * X[1]});

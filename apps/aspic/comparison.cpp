@@ -60,9 +60,10 @@ class Comparer {
                            "backward_euler");
     };
     require(simulation_.integrator().is_implicit, "minimizes nothing");
-    require(integrator != "linearly_implicit_euler", "always takes one iteration");
+    require(!simulation_.integrator().takes_one_iteration, "always takes one iteration");
     require(integrator != "tr_bdf2", "minimizes twice per step, the second time from the first result");
-    require(integrator != "bdf2" || options_.step > 1, "minimizes twice in its first step (try --step 2)");
+    require(!simulation_.integrator().is_multistep || options_.step > 1,
+            "minimizes twice in its first step (try --step 2)");
     if (simulation_.options().adaptive.tolerance > 0)
       throw InvalidInput(
           "time.adaptive divides a step into substeps; compare methods with "

@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "fit/bickel.h"
+#include "fit/quantity.h"
 #include "io/atomic_file.h"
 
 namespace aspic::cli {
@@ -35,9 +36,10 @@ HeldOut held_out_by_fit(const DataSet& data, const FitOutcome& outcome, const Ex
 BickelOptions baseline_options(const FitPlan& plan) {
   BickelOptions options;
   for (const auto& [quantity, value] : plan.known)
-    if (quantity == "poisson") options.poisson = value, options.fits_poisson = false;
+    if (material_quantity(plan.model, quantity).role == QuantityRole::compressibility)
+      options.poisson = value, options.fits_poisson = false;
   for (const FitParameter& u : plan.parameters)
-    if (u.quantity == "young" && u.guess > 0) options.young = u.guess;
+    if (is_stiffness(u.quantity) && u.guess > 0) options.young = u.guess;
   return options;
 }
 
@@ -56,7 +58,7 @@ std::vector<Prediction> predictions_of(const DataSet& data, const FitOutcome& ou
 std::string percent(double part) { return fmt::format("{:.3g} %", 100 * part); }
 
 void print_judgment(std::FILE* stream, const Judgment& j) {
-  if (j.quantity == "poisson")
+  if (!j.is_log)
     fmt::print(stream, "truth      {}: error {:.3g} (root mean square)\n", j.quantity, j.error);
   else
     fmt::print(stream, "truth      {}: error {} (root mean square of its logarithm{}), largest a factor of {:.3g}\n",

@@ -22,29 +22,55 @@ void evaluate_elasticity(const View& view, TetFields& fields) {
   for (const auto& V : view.simulation.model().elasticity) V->evaluate(view.x, fields);
 }
 
-// Returns the value of a vertex field: the length of its 3 components.
-double vertex_value(const std::string& field, const View& view, const Surface& surface, int vertex) {
-  if (field == "speed") return norm(surface.position(vertex, view.simulation.state().qdot));
-  return norm(surface.position(vertex, view.x) - surface.rest[vertex]);
+// A field of every model. One of the three members computes it.
+struct KnownField {
+  Field field;
+  double (*at_vertex)(const View& view, const Surface& surface, int vertex) = nullptr;
+  double (*at_tet)(const View& view, int tet) = nullptr;
+  std::vector<double> TetFields::*elastic = nullptr;
+};
+
+const std::vector<KnownField>& known_fields() {
+  static const std::vector<KnownField> list = {
+      {.field = {"displacement", "displacement", "m"},
+       .at_vertex = [](const View& view, const Surface& surface,
+                       int v) { return norm(surface.position(v, view.x) - surface.rest[v]); }},
+      {.field = {"speed", "speed", "m/s"},
+       .at_vertex = [](const View& view, const Surface& surface,
+                       int v) { return norm(surface.position(v, view.simulation.state().qdot)); }},
+      {.field = {"von_mises", "von Mises stress", "Pa"}, .elastic = &TetFields::von_mises},
+      {.field = {"energy_density", "energy density", "J/m^3"}, .elastic = &TetFields::energy_density},
+      {.field = {"det_F", "volume ratio det F", "", true, 1}, .elastic = &TetFields::det_F},
+      {.field = {"stretch", "largest stretch", "", true, 1},
+       .at_tet = [](const View& view,
+                    int t) { return largest_stretch(deformation_gradient(view.simulation.model().mesh, t, view.x)); }},
+      {.field = {"density", "density at rest", "kg/m^3"},
+       .at_tet = [](const View& view, int t) { return view.simulation.model().density[t]; }},
+      {.field = {"quality", "shape of tets at rest (1: regular)", ""},
+       .at_tet = [](const View& view, int t) { return mean_ratio(corners(view.simulation.model().mesh, t)); }}};
+  return list;
 }
+
+const KnownField* find_field(const std::string& name) {
+  for (const KnownField& known : known_fields())
+    if (known.field.name == name) return &known;
+  return nullptr;
+}
+
+// The fields that a material exports and that have a label.
+const Field kMaterialFields[] = {{.name = "young", .label = "Young's modulus", .unit = "Pa", .is_log = true},
+                                 {.name = "poisson", .label = "Poisson's ratio", .unit = ""}};
 
 }  // namespace
 
 std::vector<Field> fields_of(const Model& model) {
-  std::vector<Field> fields = {
-      {"displacement", "displacement", "m"},        {"speed", "speed", "m/s"},
-      {"von_mises", "von Mises stress", "Pa"},      {"energy_density", "energy density", "J/m^3"},
-      {"det_F", "volume ratio det F", "", true, 1}, {"stretch", "largest stretch", "", true, 1},
-      {"density", "density at rest", "kg/m^3"},     {"quality", "shape of tets at rest (1: regular)", ""}};
+  std::vector<Field> fields;
+  for (const KnownField& known : known_fields()) fields.push_back(known.field);
   if (model.contact) fields.push_back({kContactPressure, "contact pressure", "Pa"});
   for (const auto& [name, unused] : model.tet_fields) {
-    if (name == "young") {
-      fields.push_back({.name = name, .label = "Young's modulus", .unit = "Pa", .is_log = true});
-    } else if (name == "poisson") {
-      fields.push_back({name, "Poisson's ratio", ""});
-    } else {
-      fields.push_back({name, name, ""});
-    }
+    Field& field = fields.emplace_back(Field{name, name, ""});
+    for (const Field& labeled : kMaterialFields)
+      if (labeled.name == name) field = labeled;
   }
   return fields;
 }
@@ -96,28 +122,22 @@ std::span<const double> FieldValues::tet_values(const std::string& field, const 
   const Model& model = view.simulation.model();
   for (const TetField& own : view.further)
     if (own.field.name == field) return own.values;
-  if (field == "density") return model.density;
   if (const auto* values = tet_field(model, field)) return *values;
-  const int tets = model.mesh.tet_count();
-  if (field == "quality" || field == "stretch") {
-    tet_.resize(tets);
-    parallel_for(tets, [&](int t) {
-      tet_[t] = field == "quality" ? mean_ratio(corners(model.mesh, t))
-                                   : largest_stretch(deformation_gradient(model.mesh, t, view.x));
-    });
-    return tet_;
+  const KnownField* known = find_field(field);
+  if (!known || known->elastic) {  // a field that no longer exists shows det F
+    evaluate_elasticity(view, fields_);
+    return fields_.*(known ? known->elastic : &TetFields::det_F);
   }
-  evaluate_elasticity(view, fields_);
-  if (field == "von_mises") return fields_.von_mises;
-  if (field == "energy_density") return fields_.energy_density;
-  return fields_.det_F;
+  const int tets = model.mesh.tet_count();
+  tet_.resize(tets);
+  parallel_for(tets, [&](int t) { tet_[t] = known->at_tet(view, t); });
+  return tet_;
 }
 
 void FieldValues::evaluate(const std::string& field, const View& view, const Surface& surface,
                            std::span<float> values) {
-  if (field == "displacement" || field == "speed") {
-    for (int v = 0; v < surface.vertex_count(); ++v)
-      values[v] = static_cast<float>(vertex_value(field, view, surface, v));
+  if (const KnownField* known = find_field(field); known && known->at_vertex) {
+    for (int v = 0; v < surface.vertex_count(); ++v) values[v] = static_cast<float>(known->at_vertex(view, surface, v));
     return;
   }
   if (field == kContactPressure) {

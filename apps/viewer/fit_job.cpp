@@ -1,5 +1,7 @@
 #include "viewer/fit_job.h"
 
+#include "fit/quantity.h"
+
 #include <utility>
 
 namespace aspic::viewer {
@@ -51,7 +53,7 @@ class Listener {
     if (stage == FitStage::uniform || stage == FitStage::field) {
       news.iterations.push_back(iteration);
       for (size_t u = 0; u < plan_.parameters.size(); ++u)
-        if (plan_.parameters[u].quantity == "young") news.young = map_->values(static_cast<int>(u), p);
+        if (is_stiffness(plan_.parameters[u].quantity)) news.young = map_->values(static_cast<int>(u), p);
     }
     report_(std::move(news));
   }
@@ -81,7 +83,7 @@ void run_fit(const FitTask& task, const std::function<void(FitNews)>& report, co
   try {
     last.outcome = Listener(task, report, stop).run();
     for (const FittedQuantity& quantity : last.outcome->quantities)
-      if (quantity.name == "young") last.young = quantity.values;
+      if (is_stiffness(quantity.name)) last.young = quantity.values;
   } catch (const std::exception& e) {
     last.failure = e.what();
   }

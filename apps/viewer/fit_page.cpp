@@ -7,6 +7,7 @@
 
 #include "capture/fit_verdict.h"
 #include "capture/fitted_values.h"
+#include "fit/quantity.h"
 #include "io/base64.h"
 #include "io/gzip.h"
 #include "optimize/minimize.h"
@@ -150,7 +151,7 @@ class FitPack {
                         {"upper", row.interval ? number_json(row.interval->upper) : Json()}});
       list.push_back({{"name", q.name},
                       {"unit", q.unit},
-                      {"isLog", q.name == "young"},
+                      {"isLog", is_stiffness(q.name)},
                       {"varies", q.parameterization != Parameterization::uniform},
                       {"hasDeviation", !q.sigma.empty()},
                       {"rows", rows}});

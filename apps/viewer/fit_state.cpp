@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "base/error.h"
+#include "fit/quantity.h"
 #include "viewer/scene_json.h"
 #include "viewer/settings.h"
 
@@ -27,7 +28,7 @@ FitPlan plan_for(const Bench& bench) {
   FitPlan plan{.model = bench.truth().model};
   plan.parameters = {{.quantity = "young", .parameterization = Parameterization::tets, .handles = 0, .guess = 0}};
   for (const std::string& quantity : quantities_of(plan.model))
-    if (quantity != "young") plan.known.emplace_back(quantity, mean_of(bench.truth(), quantity));
+    if (!is_stiffness(quantity)) plan.known.emplace_back(quantity, mean_of(bench.truth(), quantity));
   plan.cross_validation = false;
   plan.mesh_errors = !bench.is_same_mesh();
   return plan;
@@ -112,7 +113,7 @@ bool FitState::add(const FitNews& news) {
     known_.failure = news.outcome->failure;
     known_.summary = news.outcome->report.message;
     for (const FittedQuantity& quantity : news.outcome->quantities)
-      if (quantity.name == "young") known_.sigma = quantity.sigma;
+      if (is_stiffness(quantity.name)) known_.sigma = quantity.sigma;
   }
   if (news.has_ended) is_running_ = false, known_.phase.clear();
   show();

@@ -6,8 +6,8 @@
 
 #include "base/error.h"
 #include "capture/apparent_stiffness.h"
+#include "fit/quantity.h"
 #include "material/registry.h"
-#include "scene/material_file.h"
 #include "scene/scene_files.h"
 #include "scene/schema.h"
 
@@ -15,7 +15,6 @@ namespace aspic {
 namespace {
 
 constexpr int kMostTets = 5'000'000;  // limit of a refined mesh
-constexpr double kTypicalYoung = 1e5, kTypicalPoisson = 0.4;
 
 // Splits "young=tets".
 std::pair<std::string, std::string> halves(const std::string& text, const std::string& example) {
@@ -29,12 +28,6 @@ bool has(const std::vector<std::string>& names, const std::string& name) {
   return std::find(names.begin(), names.end(), name) != names.end();
 }
 
-void check_quantity(const std::string& quantity, const FitPlan& plan) {
-  const std::vector<std::string> all = quantities_of(plan.model);
-  if (!has(all, quantity))
-    throw InvalidInput("'" + quantity + "' is not a quantity of the model " + plan.model + suggestion(quantity, all));
-}
-
 bool is_fitted(const FitPlan& plan, const std::string& quantity) {
   return std::any_of(plan.parameters.begin(), plan.parameters.end(),
                      [&](const FitParameter& u) { return u.quantity == quantity; });
@@ -43,19 +36,9 @@ bool is_known(const FitPlan& plan, const std::string& quantity) {
   return std::any_of(plan.known.begin(), plan.known.end(), [&](const auto& k) { return k.first == quantity; });
 }
 
-// An interior initial guess, even if the typical value is the end of the range (no growth, no share).
-double inside(const ExtraParameter& extra) {
-  const double margin = 0.1 * std::min(1.0, extra.max - extra.min);
-  return std::clamp(extra.fallback, extra.min + margin, extra.max - margin);
-}
-
-double default_value(const std::string& quantity, const std::string& model, const Experiment& experiment) {
-  if (quantity == "young") return apparent_young(experiment).value_or(kTypicalYoung);
-  if (quantity == "poisson") return kTypicalPoisson;
-  for (const ExtraParameter& extra : material_info(model).extra)
-    if (extra.name == quantity)
-      return extra.fallback > extra.min && extra.fallback < extra.max ? extra.fallback : inside(extra);
-  return 0;
+double default_value(const Quantity& quantity, const Experiment& experiment) {
+  return quantity.role == QuantityRole::stiffness ? apparent_young(experiment).value_or(quantity.typical)
+                                                  : quantity.typical;
 }
 
 void check_range(const std::string& quantity, double value) {
@@ -117,14 +100,13 @@ std::vector<FitParameter> single_values(std::vector<FitParameter> parameters) {
 }
 
 FitPlan completed(FitPlan plan, const Experiment& experiment) {
-  const std::vector<std::string> quantities = quantities_of(plan.model);
   for (const auto& [quantity, value] : plan.known) {
-    check_quantity(quantity, plan);
+    material_quantity(plan.model, quantity);
     check_range(quantity, value);
   }
   for (size_t i = 0; i < plan.parameters.size(); ++i) {
     const std::string& quantity = plan.parameters[i].quantity;
-    check_quantity(quantity, plan);
+    material_quantity(plan.model, quantity);
     if (is_known(plan, quantity))
       throw InvalidInput(quantity + " is in both --known and --unknown; remove one of the two");
     for (size_t j = 0; j < i; ++j)
@@ -135,15 +117,15 @@ FitPlan completed(FitPlan plan, const Experiment& experiment) {
                          "': the mesh of the data has no region labels (try handles:40 or tets)");
   }
   // Default: stiffness per tet, all others uniform.
-  for (const std::string& quantity : quantities)
-    if (!is_fitted(plan, quantity) && !is_known(plan, quantity))
+  for (const Quantity& quantity : material_quantities(plan.model))
+    if (!is_fitted(plan, quantity.name) && !is_known(plan, quantity.name))
       plan.parameters.push_back(
-          {.quantity = quantity,
-           .parameterization = quantity == "young" ? Parameterization::tets : Parameterization::uniform,
+          {.quantity = quantity.name,
+           .parameterization = is_stiffness(quantity.name) ? Parameterization::tets : Parameterization::uniform,
            .handles = 0,
            .guess = 0});
   for (FitParameter& u : plan.parameters)
-    if (u.guess == 0) u.guess = default_value(u.quantity, plan.model, experiment);
+    if (u.guess == 0) u.guess = default_value(material_quantity(plan.model, u.quantity), experiment);
   // Standard deviations that include the mesh correction exceed the random errors. The discrepancy principle would
   // treat the difference as noise and oversmooth the field.
   const bool is_field = std::any_of(plan.parameters.begin(), plan.parameters.end(),
@@ -217,17 +199,17 @@ std::string fingerprint_of(const Experiment& e) {
 }
 
 std::vector<MaterialParameters> known_parameters(const FitPlan& plan, const Experiment& experiment) {
-  const auto value = [&](const std::string& quantity) {
+  const auto value = [&](const Quantity& quantity) {
     for (const auto& [known, number] : plan.known)
-      if (known == quantity) return number;
+      if (known == quantity.name) return number;
     for (const FitParameter& u : plan.parameters)
-      if (u.quantity == quantity) return u.guess;
-    return default_value(quantity, plan.model, experiment);
+      if (u.quantity == quantity.name) return u.guess;
+    return default_value(quantity, experiment);
   };
+  const std::vector<Quantity> quantities = material_quantities(plan.model);
   MaterialParameters parameters;
-  parameters.lame = lame_from_young_poisson(value("young"), value("poisson"));
-  const MaterialInfo& info = material_info(plan.model);
-  for (size_t e = 0; e < info.extra.size(); ++e) parameters.extra[e] = value(info.extra[e].name);
+  parameters.lame = lame_from_young_poisson(value(quantities[0]), value(quantities[1]));
+  for (size_t k = 2; k < quantities.size(); ++k) parameters.extra[k - 2] = value(quantities[k]);
   return std::vector<MaterialParameters>(experiment.mesh.tets.size(), parameters);
 }
 

@@ -6,18 +6,11 @@
 #include <set>
 
 #include "base/formatted.h"
+#include "fit/quantity.h"
 #include "fit/regularizer.h"
 
 namespace aspic {
 namespace {
-
-std::string unit_of(const std::string& quantity, const std::string& model) {
-  if (quantity == "young") return "Pa";
-  if (quantity == "poisson") return "";
-  for (const ExtraParameter& extra : material_info(model).extra)
-    if (extra.name == quantity) return extra.unit == "1" ? "" : extra.unit;
-  return "";
-}
 
 // Representative tets: the only one, one per region, or minimum, median and maximum of a field.
 std::vector<std::pair<std::string, int>> telling_tets(const FittedQuantity& quantity, const TetMesh& mesh) {
@@ -35,7 +28,7 @@ std::vector<std::pair<std::string, int>> telling_tets(const FittedQuantity& quan
   std::vector<int> order(v.size());
   std::iota(order.begin(), order.end(), 0);
   std::stable_sort(order.begin(), order.end(), [&](int a, int b) { return v[a] < v[b]; });
-  const bool is_young = quantity.name == "young";
+  const bool is_young = is_stiffness(quantity.name);
   return {{is_young ? "softest tet" : "lowest", order.front()},
           {"median tet", order[order.size() / 2]},
           {is_young ? "stiffest tet" : "highest", order.back()}};
@@ -45,7 +38,7 @@ constexpr double kAtEnd = 0.9995;  // end of a range from -1 to 1
 constexpr double kNearWall = 0.9;  // fraction of the largest distance of a field from its guess
 
 bool is_field_of_powers(const FitParameter& u) {
-  return u.quantity == "young" &&
+  return is_stiffness(u.quantity) &&
          (u.parameterization == Parameterization::tets || u.parameterization == Parameterization::handles);
 }
 
@@ -53,15 +46,6 @@ bool is_at_bound(const ParameterMap& map, int parameter, double fitted) {
   const FitParameter& u = map.fitted_parameters()[static_cast<size_t>(parameter)];
   if (is_field_of_powers(u)) return std::abs(fitted - std::log(u.guess)) > kNearWall * kFarthestOfField;
   return std::abs(map.place_in_range(parameter, fitted)) > kAtEnd;
-}
-
-// Quantity of a tet, fitted or known.
-double quantity_of(const MaterialParameters& m, const std::string& name, const MaterialInfo& info) {
-  if (name == "young") return young_modulus(m.lame);
-  if (name == "poisson") return poisson_ratio(m.lame);
-  for (size_t e = 0; e < info.extra.size(); ++e)
-    if (info.extra[e].name == name) return m.extra[e];
-  return 0;
 }
 
 }  // namespace
@@ -74,7 +58,7 @@ std::vector<FittedQuantity> fitted_quantities(const ParameterMap& map, const Tet
     const int index = static_cast<int>(u);
     FittedQuantity& q = result.emplace_back();
     q.name = parameter.quantity;
-    q.unit = unit_of(q.name, map.material());
+    q.unit = material_quantity(map.material(), q.name).unit;
     q.parameterization = parameter.parameterization;
     q.values = map.values(index, p);
     if (posterior) q.sigma = posterior->sigma[u], q.reduction = posterior->reduction[u];
@@ -105,11 +89,10 @@ FittedMaterial fitted_material(const DataSet& data, const ParameterMap& map, std
   const Renumbering& tet = data.numbering.tet;
   FittedMaterial material{.mesh = to_user(data.numbering, data.experiment.mesh), .model = map.material()};
   const std::vector<MaterialParameters> parameters = map.parameters(p);
-  const MaterialInfo& info = material_info(map.material());
-  for (const std::string& name : quantities_of(map.material())) {
+  for (const Quantity& quantity : material_quantities(map.material())) {
     std::vector<double> values;
-    for (const MaterialParameters& m : parameters) values.push_back(quantity_of(m, name, info));
-    material.values.emplace_back(name, tet.to_user(values));
+    for (const MaterialParameters& m : parameters) values.push_back(quantity.of(m));
+    material.values.emplace_back(quantity.name, tet.to_user(values));
   }
   const std::vector<double>& density = data.experiment.density;
   if (std::all_of(density.begin(), density.end(), [](double rho) { return rho > 0; }) && !density.empty())

@@ -5,6 +5,7 @@
 #include <numeric>
 
 #include "base/check.h"
+#include "fit/quantity.h"
 #include "fit/uncertainty.h"
 
 namespace aspic {
@@ -58,10 +59,10 @@ class Judge {
     for (int t = 0; t < fitted.mesh.tet_count(); ++t) volume_.push_back(volume(fitted.mesh, t));
   }
 
-  Judgment of(const std::string& quantity, const std::vector<double>& values) {
-    is_log_ = quantity != "poisson";
-    true_values_ = truth_.find(quantity);
-    Judgment result{.quantity = quantity};
+  Judgment of(const Quantity& quantity, const std::vector<double>& values) {
+    is_log_ = quantity.role != QuantityRole::compressibility;
+    true_values_ = truth_.find(quantity.name);
+    Judgment result{.quantity = quantity.name, .is_log = is_log_};
     std::vector<double> z, truth;
     for (size_t t = 0; t < values.size(); ++t) {
       z.push_back(fitted_scale(values[t]));
@@ -167,8 +168,9 @@ std::vector<double> levels_of(std::vector<double> values) {
 std::vector<Judgment> judge(const FittedMaterial& fitted, const FittedMaterial& truth) {
   Judge judge(fitted, truth);
   std::vector<Judgment> result;
-  for (const auto& [quantity, values] : fitted.values)
-    if (quantity != "density" && truth.find(quantity)) result.push_back(judge.of(quantity, values));
+  for (const Quantity& quantity : material_quantities(fitted.model))
+    if (const auto* values = fitted.find(quantity.name); values && truth.find(quantity.name))
+      result.push_back(judge.of(quantity, *values));
   return result;
 }
 

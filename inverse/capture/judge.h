@@ -18,6 +18,7 @@ struct Phase {
 // tet with varying truth, z is averaged.
 struct Judgment {
   std::string quantity;
+  bool is_log = true;          // errors are those of log q
   double error = 0;            // root mean square of z - truth: 0.15 is 15 % of E
   double relative_error = -1;  // error over the root mean square of the truth about its mean; < 0: the truth is uniform
   double largest = 0;          // |z - truth|

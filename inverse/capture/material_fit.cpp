@@ -5,6 +5,7 @@
 
 #include "capture/fit_troubles.h"
 #include "capture/fit_verdict.h"
+#include "fit/quantity.h"
 
 namespace aspic {
 namespace {
@@ -18,7 +19,7 @@ constexpr double kStiffer[] = {1, 10, 100, 0.1};
 
 std::vector<FitParameter> stiffer(std::vector<FitParameter> parameters, double factor) {
   for (FitParameter& u : parameters)
-    if (u.quantity == "young") u.guess *= factor;
+    if (is_stiffness(u.quantity)) u.guess *= factor;
   return parameters;
 }
 

@@ -1,6 +1,7 @@
 #include <algorithm>
 
 #include "capture/material_fit.h"
+#include "fit/quantity.h"
 #include "mesh/tet_mesh.h"
 
 namespace aspic {
@@ -17,8 +18,6 @@ void set_sigmas(const std::vector<double>& sigma, int parameter, Posterior& post
   }
 }
 
-bool is_about_misfit(const std::string& warning) { return warning.starts_with("|r|^2 is"); }
-
 double share_of_body(const TetMesh& mesh, const std::vector<double>& share) {
   double part = 0, all = 0;
   for (int t = 0; t < mesh.tet_count(); ++t) all += volume(mesh, t), part += volume(mesh, t) * share[t];
@@ -30,7 +29,7 @@ double share_of_body(const TetMesh& mesh, const std::vector<double>& share) {
 std::vector<double> MaterialFit::divided(FitModel& model) {
   const FitReport& report = outcome_.report;
   const auto young = std::find_if(plan_.parameters.begin(), plan_.parameters.end(), [](const FitParameter& u) {
-    return u.quantity == "young" && u.parameterization == Parameterization::tets;
+    return is_stiffness(u.quantity) && u.parameterization == Parameterization::tets;
   });
   if (plan_.parts == 0 || young == plan_.parameters.end() || is_stopped()) return report.p;
   const int parameter = static_cast<int>(young - plan_.parameters.begin());
@@ -43,7 +42,7 @@ std::vector<double> MaterialFit::divided(FitModel& model) {
     found.are_kept = are_as_good(parts, 2 * report.misfit, outcome_.residuals);
     if (!found.are_kept) continue;
     outcome_.report.misfit = parts.squares / 2;
-    std::erase_if(outcome_.warnings, is_about_misfit);  // warnings about the misfit of the field
+    if (outcome_.posterior) std::erase(outcome_.warnings, outcome_.posterior->misfit_warning);  // that of the field
     return keep(parts, model.map, parameter, found);
   }
   return report.p;

@@ -34,8 +34,7 @@ void MaterialFit::learn_uncertainty(FitModel& model) {
   const bool is_learnt = !outcome_.posterior->ok || outcome_.posterior->informed >= kLearnt;
   if (!is_learnt && plan_.fit.weight <= 0 && report.weight > 1) {
     outcome_.posterior = posterior(about_fit, *model.prior, 1, {model.map, mesh(), report.p});
-    std::erase_if(outcome_.posterior->warnings,
-                  [](const std::string& warning) { return warning.starts_with("the weight of the regularizer"); });
+    std::erase(outcome_.posterior->warnings, outcome_.posterior->weight_warning);
     add_warnings(
         {"the data hardly determine how the stiffness varies: the standard deviations are those of the "
          "prior (--unknown young=uniform fits one value)"});

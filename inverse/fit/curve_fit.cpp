@@ -7,6 +7,7 @@
 
 #include "base/error.h"
 #include "base/formatted.h"
+#include "fit/quantity.h"
 #include "math/vectors.h"
 
 namespace aspic {
@@ -238,7 +239,7 @@ std::string scene_line(const CurveFit& fit) {
   std::string line = "material = { model = \"" + fit.material + "\"";
   for (const FittedParameter& f : fit.fitted) {
     line += ", " + f.name + " = " + six_digits(f.value);
-    if (f.name == "young") line += ", poisson = " + six_digits(fit.poisson);
+    if (is_stiffness(f.name)) line += ", poisson = " + six_digits(fit.poisson);
   }
   return line + " }";
 }

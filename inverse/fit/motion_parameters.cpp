@@ -29,9 +29,22 @@ double mean(const std::vector<double>& values, const std::vector<double>& volume
 
 }  // namespace
 
+std::span<const MotionParameters::Named> MotionParameters::named() {
+  static constexpr Named kList[] = {{Kind::young, "young", "Pa"},
+                                    {Kind::poisson, "poisson", ""},
+                                    {Kind::density, "density", "kg/m^3"},
+                                    {Kind::mass_damping, "mass_damping", "1/s"},
+                                    {Kind::stiffness_damping, "stiffness_damping", "s"},
+                                    {Kind::viscosity, "viscosity", "Pa s"},
+                                    {Kind::velocity, "velocity", "m/s"},
+                                    {Kind::angular_velocity, "angular_velocity", "rad/s"}};
+  return kList;
+}
+
 std::vector<std::string> MotionParameters::names() {
-  return {"young",     "poisson",  "density",         "mass_damping", "stiffness_damping",
-          "viscosity", "velocity", "angular_velocity"};
+  std::vector<std::string> names;
+  for (const Named& parameter : named()) names.emplace_back(parameter.name);
+  return names;
 }
 
 MotionParameters::MotionParameters(MotionModel model, const std::vector<std::string>& names, const MotionScales& scales)
@@ -55,44 +68,55 @@ MotionParameters::MotionParameters(MotionModel model, const std::vector<std::str
 }
 
 void MotionParameters::add(const std::string& name, const MotionScales& scales) {
+  const auto list = named();
+  const auto found = std::find_if(list.begin(), list.end(), [&](const Named& n) { return n.name == name; });
+  if (found == list.end()) throw InvalidInput("unknown parameter '" + name + "'" + suggestion(name, names()));
+  const Kind kind = found->kind;
+  const MotionParameter parameter{name, found->unit};
   const MotionValues guess = values({});
-  if ((name == "young" || name == "poisson") && !(guess.young > 0))
+  const auto add_guess = [&](double own, double other, const char* note) {
+    add_positive(kind, own > 0 ? MotionParameter{name, parameter.unit, own}
+                               : MotionParameter{name, parameter.unit, other, note});
+  };
+  if ((kind == Kind::young || kind == Kind::poisson) && !(guess.young > 0))
     throw InvalidInput("'" + name + "' cannot be fitted: the body has no elasticity");
-  if (name == "young") {
-    add_positive(Kind::young, {name, "Pa", guess.young});
-  } else if (name == "poisson") {
-    std::vector<double> poisson;
-    for (const MaterialParameters& p : material_) poisson.push_back(poisson_ratio(p.lame));
-    if (!are_equal(poisson))
-      throw InvalidInput("'poisson' cannot be fitted: it differs from tet to tet (try --set material.poisson=0.4)");
-    entries_.push_back({Kind::poisson});
-    parameters_.push_back({name, "", guess.poisson});
-  } else if (name == "density") {
-    if (!gravity_) throw InvalidInput("'density' cannot be fitted: the load 'gravity' is not the weight of the body");
-    add_positive(Kind::density, {name, "kg/m^3", guess.density});
-  } else if (name == "mass_damping") {
-    add_positive(Kind::mass_damping, guess.mass_damping > 0 ? MotionParameter{name, "1/s", guess.mass_damping}
-                                                            : MotionParameter{name, "1/s", 1 / scales.duration,
-                                                                              "1 / duration of the data"});
-  } else if (name == "stiffness_damping") {
-    add_positive(Kind::stiffness_damping, guess.stiffness_damping > 0
-                                              ? MotionParameter{name, "s", guess.stiffness_damping}
-                                              : MotionParameter{name, "s", scales.time_step, "the time step"});
-  } else if (name == "viscosity") {
-    if (guess.viscosity > 0) return add_positive(Kind::viscosity, {name, "Pa s", guess.viscosity});
-    const double viscosity = scales.time_step * std::max(guess.young, guess.density * scales.speed * scales.speed);
-    if (!(viscosity > 0)) throw InvalidInput("'viscosity' needs a guess > 0 (try --set damping.viscosity=1)");
-    add_positive(Kind::viscosity, {name, "Pa s", viscosity, "young * time step"});
-    model_.viscosity.assign(volume_.size(), viscosity);
-  } else if (name == "velocity") {
-    const double speed = std::max(scales.speed, norm(guess.velocity));
-    add_vector(Kind::velocity, {name, "m/s"}, guess.velocity, speed > 0 ? speed : 1);
-  } else if (name == "angular_velocity") {
-    const double speed = std::max(scales.speed / scales.size, norm(guess.angular_velocity));
-    add_vector(Kind::angular_velocity, {name, "rad/s"}, guess.angular_velocity, speed > 0 ? speed : 1);
-  } else {
-    throw InvalidInput("unknown parameter '" + name + "'" + suggestion(name, names()));
+  switch (kind) {
+    case Kind::young:
+      return add_guess(guess.young, 0, "");
+    case Kind::poisson:
+      return add_poisson({name, parameter.unit, guess.poisson});
+    case Kind::density:
+      if (!gravity_) throw InvalidInput("'density' cannot be fitted: the load 'gravity' is not the weight of the body");
+      return add_guess(guess.density, 0, "");
+    case Kind::mass_damping:
+      return add_guess(guess.mass_damping, 1 / scales.duration, "1 / duration of the data");
+    case Kind::stiffness_damping:
+      return add_guess(guess.stiffness_damping, scales.time_step, "the time step");
+    case Kind::viscosity: {
+      const double viscosity = scales.time_step * std::max(guess.young, guess.density * scales.speed * scales.speed);
+      if (!(std::max(guess.viscosity, viscosity) > 0))
+        throw InvalidInput("'viscosity' needs a guess > 0 (try --set damping.viscosity=1)");
+      if (!(guess.viscosity > 0)) model_.viscosity.assign(volume_.size(), viscosity);
+      return add_guess(guess.viscosity, viscosity, "young * time step");
+    }
+    case Kind::velocity: {
+      const double speed = std::max(scales.speed, norm(guess.velocity));
+      return add_vector(kind, parameter, guess.velocity, speed > 0 ? speed : 1);
+    }
+    case Kind::angular_velocity: {
+      const double speed = std::max(scales.speed / scales.size, norm(guess.angular_velocity));
+      return add_vector(kind, parameter, guess.angular_velocity, speed > 0 ? speed : 1);
+    }
   }
+}
+
+void MotionParameters::add_poisson(const MotionParameter& parameter) {
+  std::vector<double> poisson;
+  for (const MaterialParameters& p : material_) poisson.push_back(poisson_ratio(p.lame));
+  if (!are_equal(poisson))
+    throw InvalidInput("'poisson' cannot be fitted: it differs from tet to tet (try --set material.poisson=0.4)");
+  entries_.push_back({Kind::poisson});
+  parameters_.push_back(parameter);
 }
 
 void MotionParameters::add_positive(Kind kind, const MotionParameter& parameter) {

@@ -69,12 +69,18 @@ class MotionParameters {
 
  private:
   enum class Kind { young, poisson, density, mass_damping, stiffness_damping, viscosity, velocity, angular_velocity };
+  struct Named {
+    Kind kind;
+    const char *name, *unit;
+  };
   struct Entry {
     Kind kind;
     int axis = 0;     // axis of a velocity
     double unit = 1;  // unit of p, for a velocity
   };
+  static std::span<const Named> named();
   void add(const std::string& name, const MotionScales& scales);
+  void add_poisson(const MotionParameter& parameter);
   void add_positive(Kind kind, const MotionParameter& parameter);
   void add_vector(Kind kind, const MotionParameter& parameter, const Vec3d& guess, double unit);
   std::optional<double> fitted(Kind kind, std::span<const double> p) const;

@@ -9,6 +9,7 @@
 #include "fit/common_errors.h"
 #include "fit/cross_validation.h"
 #include "fit/field_text.h"
+#include "fit/quantity.h"
 #include "math/vectors.h"
 #include "mesh/surface.h"
 
@@ -76,7 +77,7 @@ void set_sigma(const ParameterMap& map, const Posterior& posterior, const Spectr
 // "..., known within a factor of 1.9, would be within 1.2", with 95 %.
 std::string describe_change(const FitParameter& parameter, double before, double after) {
   const double a = kSigmas95 * before, b = kSigmas95 * after;
-  if (parameter.quantity == "young")
+  if (is_stiffness(parameter.quantity))
     return formatted(", known within a factor of %.3g, would be within %.3g", std::exp(a), std::exp(b));
   return formatted(", known to +-%.2g on its scale, would be to +-%.2g", a, b);
 }

@@ -6,16 +6,15 @@
 #include "base/error.h"
 #include "base/formatted.h"
 #include "base/parallel.h"
+#include "fit/quantity.h"
 #include "fit/quantity_scale.h"
 
 namespace aspic {
 namespace {
 
-enum class Role { young, poisson, extra };
-
 // Internal representation of a fitted quantity.
 struct Fitted {
-  Role role = Role::young;
+  QuantityRole role = QuantityRole::stiffness;
   int extra = 0;  // index into MaterialParameters::extra
   QuantityScale scale;
   FieldBasis basis;
@@ -43,14 +42,10 @@ struct Elastic {
   }
 };
 
-struct Range {
-  double lower, upper;
-};
-
-void check_guess(const FitParameter& u, const Range& range) {
-  if (u.guess > range.lower && u.guess < range.upper) return;
+void check_guess(const FitParameter& u, const Quantity& q) {
+  if (u.guess > q.min && u.guess < q.max) return;
   throw InvalidInput("the guess of '" + u.quantity + "' is " + six_digits(u.guess) + "; it must lie between " +
-                     six_digits(range.lower) + " and " + six_digits(range.upper) + ", and not at an end");
+                     six_digits(q.min) + " and " + six_digits(q.max) + ", and not at an end");
 }
 
 // Ranges over several powers of ten use logarithms.
@@ -62,29 +57,12 @@ QuantityScale scale_of(const ExtraParameter& extra) {
 }
 
 void set_quantity(const FitParameter& u, const MaterialInfo& info, Fitted& f) {
-  if (u.quantity == "young") {
-    if (!(u.guess > 0 && u.guess < 1e300))
-      throw InvalidInput("the guess of 'young' is " + six_digits(u.guess) + " Pa; it must be positive");
-    return;
-  }
-  if (u.quantity == "poisson") {
-    check_guess(u, {-1, 0.5});
-    f.role = Role::poisson;
-    f.scale = QuantityScale::bounded(-1, 0.5);
-    return;
-  }
-  std::vector<std::string> known{"young", "poisson"};
-  for (size_t k = 0; k < info.extra.size(); ++k) {
-    const ExtraParameter& extra = info.extra[k];
-    known.push_back(extra.name);
-    if (extra.name != u.quantity) continue;
-    check_guess(u, {extra.min, extra.max});
-    f.role = Role::extra;
-    f.extra = static_cast<int>(k);
-    f.scale = scale_of(extra);
-    return;
-  }
-  throw InvalidInput("'" + u.quantity + "' is not a quantity of " + info.name + suggestion(u.quantity, known));
+  const Quantity q = material_quantity(info.name, u.quantity);
+  check_guess(u, q);
+  f.role = q.role;
+  f.extra = q.extra;
+  if (q.role == QuantityRole::compressibility) f.scale = QuantityScale::bounded(q.min, q.max);
+  if (q.role == QuantityRole::own) f.scale = scale_of(info.extra[static_cast<size_t>(q.extra)]);
 }
 
 FieldBasis make_basis(const TetMesh& mesh, const FitParameter& u) {
@@ -117,7 +95,7 @@ struct ParameterMap::Impl {
   std::vector<Fitted> fitted;
   std::vector<double> guess;
 
-  const Fitted* find(Role role) const {
+  const Fitted* find(QuantityRole role) const {
     const auto found = std::find_if(fitted.begin(), fitted.end(), [&](const Fitted& f) { return f.role == role; });
     return found == fitted.end() ? nullptr : &*found;
   }
@@ -134,10 +112,11 @@ struct ParameterMap::Impl {
 std::vector<Elastic> ParameterMap::Impl::elastic_at(std::span<const double> p) const {
   std::vector<Elastic> e = elastic;
   for (const Fitted& f : fitted) {
-    if (f.role == Role::extra) continue;
+    if (f.role == QuantityRole::own) continue;
     const std::vector<double> z = f.field(p);
     parallel_chunks(static_cast<int>(z.size()), [&](int first, int last) {
-      for (int t = first; t < last; ++t) (f.role == Role::young ? e[t].young : e[t].poisson) = f.scale.value(z[t]);
+      for (int t = first; t < last; ++t)
+        (f.role == QuantityRole::stiffness ? e[t].young : e[t].poisson) = f.scale.value(z[t]);
     });
   }
   return e;
@@ -147,7 +126,7 @@ ParameterMap::Impl::Slopes ParameterMap::Impl::slopes(const Fitted& f, std::span
   const std::vector<double> z = f.field(p);
   const int tets = static_cast<int>(z.size());
   Slopes slopes;
-  if (f.role == Role::extra) {
+  if (f.role == QuantityRole::own) {
     slopes.extra.resize(z.size());
     parallel_chunks(tets, [&](int first, int last) {
       for (int t = first; t < last; ++t) slopes.extra[t] = f.scale.slope(z[t]);
@@ -159,7 +138,7 @@ ParameterMap::Impl::Slopes ParameterMap::Impl::slopes(const Fitted& f, std::span
   parallel_chunks(tets, [&](int first, int last) {
     for (int t = first; t < last; ++t) {
       const double dq = f.scale.slope(z[t]);
-      const Lame d = f.role == Role::young ? e[t].slope_young() : e[t].slope_poisson();
+      const Lame d = f.role == QuantityRole::stiffness ? e[t].slope_young() : e[t].slope_poisson();
       slopes.lame[t] = {d.mu * dq, d.lambda * dq};
     }
   });
@@ -210,14 +189,14 @@ std::vector<MaterialParameters> ParameterMap::parameters(std::span<const double>
   ASPIC_CHECK(static_cast<int>(p.size()) == size());
   std::vector<MaterialParameters> theta = impl_->known;
   const int tets = static_cast<int>(theta.size());
-  if (impl_->find(Role::young) || impl_->find(Role::poisson)) {
+  if (impl_->find(QuantityRole::stiffness) || impl_->find(QuantityRole::compressibility)) {
     const std::vector<Elastic> e = impl_->elastic_at(p);
     parallel_chunks(tets, [&](int first, int last) {
       for (int t = first; t < last; ++t) theta[t].lame = e[t].lame();
     });
   }
   for (const Fitted& f : impl_->fitted) {
-    if (f.role != Role::extra) continue;
+    if (f.role != QuantityRole::own) continue;
     const std::vector<double> z = f.field(p);
     for (int t = 0; t < tets; ++t) theta[t].extra[f.extra] = f.scale.value(z[t]);
   }
@@ -234,7 +213,7 @@ void ParameterMap::multiply(std::span<const double> p, std::span<const double> d
     parallel_chunks(tets, [&](int first, int last) {
       for (int t = first; t < last; ++t) {
         double* d = dtheta.data() + static_cast<size_t>(n) * t;
-        if (f.role == Role::extra)
+        if (f.role == QuantityRole::own)
           d[2 + f.extra] += slopes.extra[t] * dz[t];
         else
           d[0] += slopes.lame[t].mu * dz[t], d[1] += slopes.lame[t].lambda * dz[t];
@@ -253,8 +232,8 @@ void ParameterMap::add_transposed(std::span<const double> p, std::span<const dou
     parallel_chunks(tets, [&](int first, int last) {
       for (int t = first; t < last; ++t) {
         const double* d = thetabar.data() + static_cast<size_t>(n) * t;
-        zbar[t] = f.role == Role::extra ? slopes.extra[t] * d[2 + f.extra]
-                                        : slopes.lame[t].mu * d[0] + slopes.lame[t].lambda * d[1];
+        zbar[t] = f.role == QuantityRole::own ? slopes.extra[t] * d[2 + f.extra]
+                                              : slopes.lame[t].mu * d[0] + slopes.lame[t].lambda * d[1];
       }
     });
     f.basis.add_transposed(zbar, f.part(pbar));

@@ -8,6 +8,7 @@
 #include "fit/evidence.h"
 #include "fit/field_text.h"
 #include "fit/principal_directions.h"
+#include "fit/quantity.h"
 
 namespace aspic {
 namespace {
@@ -71,15 +72,15 @@ double information_of_scale(LeastSquares& data, const ParameterMap& map, int you
   return dot(dr, dr);
 }
 
-int index_of(const ParameterMap& map, const char* quantity) {
+int stiffness_of(const ParameterMap& map) {
   for (size_t u = 0; u < map.fitted_parameters().size(); ++u)
-    if (map.fitted_parameters()[u].quantity == quantity) return static_cast<int>(u);
+    if (is_stiffness(map.fitted_parameters()[u].quantity)) return static_cast<int>(u);
   return -1;
 }
 
 void warn_of_scale(LeastSquares& data, const ParameterMap& map, Posterior& result) {
   constexpr double kNothing = 1e-2;  // limit at which data alone determine E up to a factor of e^10
-  const int young = index_of(map, "young");
+  const int young = stiffness_of(map);
   if (young < 0) return;
   result.scale_is_unknown = information_of_scale(data, map, young) < kNothing;
   if (result.scale_is_unknown)
@@ -103,17 +104,18 @@ void judge_noise(double misfit, int residuals, Posterior& result, Spectrum& s) {
   if (misfit > upper) {
     result.applied_factor = result.noise_factor;
     for (double& d : s.d) d /= result.noise_factor * result.noise_factor;
-    result.warnings.push_back(formatted(
+    result.misfit_warning = formatted(
         "|r|^2 is %.3g per reading, clearly more than 1: the standard deviations of the readings are too small, the "
         "weight of the regularizer is too large, or the model cannot represent the body; all intervals are %.3g times "
         "wider",
-        misfit / residuals, result.noise_factor));
+        misfit / residuals, result.noise_factor);
   } else if (misfit < lower) {
-    result.warnings.push_back(formatted(
+    result.misfit_warning = formatted(
         "|r|^2 is %.3g per reading, clearly less than 1: the standard deviations, with those of a correction for the "
         "mesh, are too large, or noise was fitted (a larger weight helps); the intervals are not narrowed",
-        misfit / residuals));
+        misfit / residuals);
   }
+  if (!result.misfit_warning.empty()) result.warnings.push_back(result.misfit_warning);
 }
 
 void judge_weight(Regularizer& prior, double weight, std::span<const double> p, const Spectrum& s, Posterior& result) {
@@ -122,12 +124,13 @@ void judge_weight(Regularizer& prior, double weight, std::span<const double> p, 
   result.suggested_weight = weight * best;
   constexpr double kClear = 8;  // exceeded by chance once in 200 cases (chi^2, one degree of freedom)
   if (gain < kClear) return;
-  result.warnings.push_back(formatted(
+  result.weight_warning = formatted(
       best < 1 ? "the weight of the regularizer, %.3g, is %.2g times larger than what the data support (%.3g): details "
                  "are lost and the standard deviations too small"
                : "the weight of the regularizer, %.3g, is %.2g times smaller than what the data support (%.3g): noise "
                  "may have been fitted",
-      weight, std::max(best, 1 / best), result.suggested_weight));
+      weight, std::max(best, 1 / best), result.suggested_weight);
+  result.warnings.push_back(result.weight_warning);
 }
 
 void warn_of_rank(Posterior& result) {
@@ -247,7 +250,7 @@ Interval interval(const Posterior& posterior, const ParameterMap& map, std::span
 }
 
 std::string describe_interval(const FitParameter& parameter, const Interval& interval) {
-  const bool is_pressure = parameter.quantity == "young";
+  const bool is_pressure = is_stiffness(parameter.quantity);
   double unit = 1;
   const char* name = is_pressure ? " Pa" : "";
   for (const auto& [size, prefixed] : {std::pair{1e3, " kPa"}, {1e6, " MPa"}, {1e9, " GPa"}})

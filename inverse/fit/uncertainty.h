@@ -53,6 +53,8 @@ struct Posterior {
   double suggested_weight = 0;                 // weight of the regularizer supported by the data; 0: none
   double log_evidence = 0;                     // log evidence of the weight, up to a constant
   std::vector<std::string> warnings;           // messages for users
+  // Those of `warnings` about the misfit and about the weight of the regularizer; empty: none.
+  std::string misfit_warning, weight_warning;
   std::shared_ptr<PosteriorGaussian> gaussian;
 };
 

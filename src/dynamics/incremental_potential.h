@@ -17,12 +17,13 @@ namespace aspic {
 
 class IncrementalPotential : public Objective, public HasMetric, public HasParts, public HasStops {
  public:
-  IncrementalPotential(const Model& model, const Pins& pins);
+  IncrementalPotential(const Model& model, const Pins& pins);  // both must outlive this
 
   // Set the step for subsequent evaluations of the terms of V and D. Called before begin_step().
   void set_potential_step(const StepContext& step);
   void set_damping_step(const StepContext& step);
   void move_obstacles(double time);  // after set_potential_step()
+  // Sets q~, w and f.
   void begin_step(std::span<const double> predicted, double inertia /* w */, double factor /* f */);
 
   // Lagged coefficients, see LaggedEnergy.
@@ -54,6 +55,7 @@ class IncrementalPotential : public Objective, public HasMetric, public HasParts
   }
   double lost_accuracy(std::span<const double> q, std::span<const GradientPart> parts) override;
   double relative_decrement(std::span<const double> g, std::span<const double> d) override;
+  // Index of the part of a vertex, see HasParts.
   int part_of(int vertex) const { return part_of_.empty() ? 0 : part_of_[vertex]; }
   double growth_stiffness() const { return growth_stiffness_; }  // growth stiffness of V, see scales() [J]
 
@@ -71,6 +73,7 @@ class IncrementalPotential : public Objective, public HasMetric, public HasParts
                         std::span<double> damping) const;
 
   const std::vector<ActiveTerm>& potential() const { return potential_; }  // terms of V: elasticity, then loads
+  // The terms of V after elasticity, and those of D, in the order of the model.
   std::span<const ActiveTerm> loads() const { return std::span(potential_).subspan(model_.elasticity.size()); }
   const std::vector<ActiveTerm>& damping() const { return damping_; }
   const BlockPattern& pattern() const { return pattern_; }

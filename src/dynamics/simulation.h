@@ -28,6 +28,7 @@ struct SimulationOptions {
   WallClock clock = steady_seconds;  // for solver.time_budget
 };
 
+// Names for SimulationOptions::integrator.
 std::vector<std::string> integrator_names();
 std::vector<std::string> adaptive_integrator_names();  // integrators with an error estimate
 
@@ -53,19 +54,20 @@ class Simulation {
   void set_solver(const SolverOptions& solver);
   void set_pins(std::vector<Pin> pins);
 
+  // Valid until this is destroyed. The state is that after the last step.
   const Model& model() const;
   const State& state() const;
   const SimulationOptions& options() const;
-  int steps_taken() const;
+  int steps_taken() const;  // since time 0
 
   std::vector<std::string> potential_names() const;  // one per entry of StepReport::potential
   StepReport start_report() const;                   // step 0: energies and det F of the initial state
   double kinetic_energy() const;                     // [J]
   std::vector<double> potential_energies() const;    // [J]
-  TetFields tet_fields() const;
-  const IntegratorFacts& integrator() const;
-  StableStep stable_step() const;          // for an explicit integrator, at the initial state
-  std::string solver_description() const;  // methods and choices with their reasons, for logs
+  TetFields tet_fields() const;                      // one value per tet at the current state
+  const IntegratorFacts& integrator() const;         // properties of the selected integrator
+  StableStep stable_step() const;                    // for an explicit integrator, at the initial state
+  std::string solver_description() const;            // methods and choices with their reasons, for logs
 
   // Everything besides model and options that subsequent steps depend on. Steps after restore() are bit-reproducible.
   struct Snapshot {
@@ -77,7 +79,7 @@ class Simulation {
     std::optional<double> obstacle_time = {};  // empty: the time of the state
     double outside_work = 0;  // sum over steps of |work of moving pins and targets|, for explicit schemes [J]
   };
-  Snapshot snapshot() const;
+  Snapshot snapshot() const;               // of the current state
   double obstacle_time() const;            // time of the obstacles [s]: that of the state unless they were blocked
   void restore(const Snapshot& snapshot);  // throws InvalidInput if the sizes do not match the model
 

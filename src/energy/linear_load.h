@@ -14,6 +14,7 @@ namespace aspic {
 std::unique_ptr<Energy> make_linear_load(std::string name, std::vector<double> force);  // 3 per vertex [N]
 // Adds the forces at the given time [s] to `force`, 3 per vertex [N].
 using AddForces = std::function<void(double time, std::span<double> force)>;
+// The sum of constant forces, 3 per vertex [N], and varying ones.
 std::unique_ptr<Energy> make_linear_load(std::string name, std::vector<double> constant, AddForces varying);
 
 // Add nodal forces to `force`, 3 per vertex [N].

@@ -10,13 +10,16 @@
 
 namespace aspic {
 
+// Spring between a vertex and a moving point.
 struct PointSpring {
   int vertex = 0;
   double stiffness = 0;                      // k [N/m]: V = k/2 |x - target(t)|^2
   std::function<Vec3d(double time)> target;  // [m]
 };
+// `name` appears in reports.
 std::unique_ptr<Energy> make_point_springs(std::string name, std::vector<PointSpring> springs);
 
+// Spring between two vertices.
 struct Spring {
   int a = 0, b = 0;
   double rest_length = 0;  // l0 [m]

@@ -9,12 +9,13 @@
 
 namespace aspic {
 
+// A supported file format.
 struct MeshFormat {
   std::string extension;  // ".msh"
   std::string name;       // "Gmsh 2.2 and 4.1, ASCII and binary"
   bool reads_tets = false, writes_tets = false, reads_triangles = false, writes_triangles = false;
 };
-const std::vector<MeshFormat>& mesh_formats();
+const std::vector<MeshFormat>& mesh_formats();  // all, in the order of help texts
 
 // Returns the tets of the file, or its triangles if it has no tets; quads are split. Either file names a .node/.ele
 // pair. Throws InvalidInput with file, line (or byte offset) and remedy.

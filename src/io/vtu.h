@@ -14,13 +14,15 @@ namespace aspic {
 // Type of the stored numbers.
 enum class FieldType { float64, float32, int32 };
 
+// Values at points or cells, all components of one after those of the other.
 struct Field {
   std::string name;
-  int components = 1;  // 1, 3, 6 or 9 values per point or cell
-  std::vector<double> values;
+  int components = 1;          // 1, 3, 6 or 9 values per point or cell
+  std::vector<double> values;  // `components` times the number of points or cells
   FieldType type = FieldType::float64;
 };
 
+// Fields of a file: one value set per point, per cell, or for the whole file.
 struct VtuFields {
   std::vector<Field> point_fields = {}, cell_fields = {};
   std::vector<Field> file_fields = {};  // <FieldData> of any length; text is skipped
@@ -38,7 +40,8 @@ Vtu parse_vtu(std::string_view contents, const std::string& file);  // `file` is
 // Reads only the points, 3 coordinates each.
 std::vector<double> read_vtu_points(const std::filesystem::path& path);
 
-// Writes inline base64, zlib-compressed, with points in double precision. The output is reproducible.
+// Writes inline base64, zlib-compressed, with points in double precision (3 coordinates each). The output is
+// reproducible. Throws InvalidInput if the file cannot be written.
 void write_vtu(const std::filesystem::path& path, std::span<const double> points, const std::vector<Tet>& tets,
                const VtuFields& fields = {});
 

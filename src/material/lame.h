@@ -3,12 +3,14 @@
 
 namespace aspic {
 
+// Lame's constants over a scalar: double, SIMD lanes, or a type with derivatives.
 template <class T>
 struct LameOver {
   T mu{}, lambda{};  // [Pa]
 };
 using Lame = LameOver<double>;
 
+// Young's, shear and bulk moduli are in Pa. Requires poisson between -1 and 0.5.
 inline Lame lame_from_young_poisson(double young, double poisson) {
   return {young / (2 * (1 + poisson)), young * poisson / ((1 + poisson) * (1 - 2 * poisson))};
 }

@@ -44,7 +44,8 @@ struct Linear : LameParameters {
                     R"tex(\varepsilon = \tfrac12 (F + F^{\mathsf T}) - I)tex"},
             .remarks =
                 "Not invariant under rotation: a rotating body swells, so it is for small displacements only. "
-                "The energy is convex: one Newton iteration reaches the minimum from anywhere."};
+                "The energy is convex: one Newton iteration reaches the minimum from anywhere.",
+            .objective = false};
   }
 
  private:

@@ -43,7 +43,8 @@ struct MaterialInfo {
   std::vector<std::string> tex;  // energy density, definitions of its symbols and its domain in TeX, for pages
   std::string remarks;           // limits and source; one or two sentences
   std::vector<ExtraParameter> extra = {};
-  bool barrier = false;  // +inf for det F <= 0
+  bool barrier = false;   // +inf for det F <= 0
+  bool objective = true;  // invariant under rotations of the body
 };
 
 const std::vector<MaterialInfo>& materials();

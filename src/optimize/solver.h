@@ -19,6 +19,7 @@ struct SolverOptions {
   double time_budget = 0;  // wall time per time step [s]; 0: unlimited. Results depend on the clock
 };
 
+// Names for the members of SolverOptions and of MinimizeOptions.
 std::vector<std::string> minimizer_names();
 std::vector<std::string> preconditioner_names();
 std::vector<std::string> definiteness_names();

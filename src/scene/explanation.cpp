@@ -80,7 +80,7 @@ class Explainer {
 
  private:
   bool is_static() const { return simulation_.integrator().is_static(); }
-  bool is_newton() const { return solver_.method.starts_with("newton"); }
+  bool is_newton() const { return estimates_minimizer(solver_.method); }
   Explanation not_held(const RigidMotion& motion) const {
     const std::string body = model_.bodies.size() > 1 ? "body '" + model_.bodies[motion.body].name + "'" : "the body";
     const bool has_pins = !model_.pins.empty();
@@ -221,14 +221,16 @@ class Explainer {
             "time.adaptive.tolerance = 1e-06"};
   }
 
-  // Explains steps that contact makes short: two parts are pressed together so hard that only short ones keep them apart.
+  // Explains steps that contact makes short: two parts are pressed together so hard that only short ones keep them
+  // apart.
   std::optional<Explanation> squeezed_gap() const {
     constexpr double kSmallGap = 0.02, kShortStep = 1e-3;  // relative to the reach, and to the direction
     if (!model_.contact) return {};
     const ContactSummary contact = model_.contact->summary(x_, simulation_.obstacle_time());
     const bool is_short = report_.step_limit < kShortStep;
     if (contact.contacts == 0 || !(is_short || contact.min_gap < kSmallGap * contact.reach)) return {};
-    const std::string limit = is_short ? "limits the last step to " + text(report_.step_limit) : "allows only short steps";
+    const std::string limit =
+        is_short ? "limits the last step to " + text(report_.step_limit) : "allows only short steps";
     return Explanation{"contact " + limit + ": the gap between " + model_.contact->mesh().pair_name(contact.parts) +
                            " is " + text(contact.min_gap) + " m, " + text(contact.min_gap / contact.reach) +
                            " of the distance at which contact begins",
