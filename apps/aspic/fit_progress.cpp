@@ -1,12 +1,8 @@
 #include "aspic/fit_progress.h"
 
 #include <fmt/format.h>
-#include <unistd.h>
 
 #include <algorithm>
-
-#include "aspic/progress.h"
-#include "aspic/streams.h"
 
 namespace aspic::cli {
 namespace {
@@ -19,13 +15,11 @@ const char* stage_text(FitStage stage) { return kStageTexts[static_cast<size_t>(
 }  // namespace
 
 FitProgress::FitProgress(std::FILE* stream, bool every_iteration)
-    : stream_(stream), terminal_(isatty(descriptor(stream)) != 0), every_iteration_(every_iteration) {}
-
-double FitProgress::seconds() const { return std::chrono::duration<double>(Clock::now() - start_).count(); }
+    : StatusLine(stream), every_iteration_(every_iteration) {}
 
 void FitProgress::begin(FitStage stage, const std::string& what) {
   if (what.empty()) return;
-  print(fmt::format("{:<10} {}", stage_text(stage), what));
+  draw(fmt::format("{:<10} {}", stage_text(stage), what));
   shown_at_ = seconds();
 }
 
@@ -41,23 +35,7 @@ void FitProgress::show(const std::string& line) {
   if (every_iteration_) return message(line);
   if (!terminal_ && seconds() - shown_at_ < kLineInterval) return;
   shown_at_ = seconds();
-  print(line);
-}
-
-void FitProgress::print(std::string line) {
-  if (terminal_) {
-    line.resize(std::min(line.size(), terminal_width(stream_) - 1));
-    fmt::print(stream_, "\r{}\x1b[K", line);
-    drawn_ = true;
-  } else {
-    fmt::print(stream_, "{}\n", line);
-  }
-  std::fflush(stream_);
-}
-
-void FitProgress::erase() {
-  if (drawn_) fmt::print(stream_, "\r\x1b[K");
-  drawn_ = false;
+  draw(line);
 }
 
 void FitProgress::message(const std::string& line) {

@@ -1,14 +1,14 @@
 // Progress of a fit: one line that is redrawn on a terminal, occasional lines in a pipe.
 #pragma once
-#include <chrono>
 #include <cstdio>
 #include <string>
 
+#include "aspic/progress.h"
 #include "capture/fit_run.h"
 
 namespace aspic::cli {
 
-class FitProgress {
+class FitProgress : public StatusLine {
  public:
   FitProgress(std::FILE* stream, bool every_iteration);
   void begin(FitStage stage, const std::string& what);
@@ -18,16 +18,7 @@ class FitProgress {
   void finish();
 
  private:
-  double seconds() const;
-  void print(std::string line);
-  void erase();
-
-  using Clock = std::chrono::steady_clock;
-  std::FILE* stream_;
-  bool terminal_, every_iteration_;
-  Clock::time_point start_ = Clock::now();
-  double shown_at_ = -1e9;  // time since the start [s]
-  bool drawn_ = false;
+  bool every_iteration_;
 };
 
 }  // namespace aspic::cli

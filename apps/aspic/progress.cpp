@@ -17,18 +17,18 @@ constexpr double kLongStep = 1;          // time of a step after which its itera
 constexpr double kLineFraction = 0.05;   // fraction of the run between lines in a pipe
 constexpr int kBarWidth = 20;
 
+size_t terminal_width(std::FILE* stream) {  // [characters]
+  winsize size{};
+  const bool known = ioctl(descriptor(stream), TIOCGWINSZ, &size) == 0 && size.ws_col > 0;
+  return known ? size.ws_col : 80;
+}
+
 std::string step_text(const StepReport& report, int last) {
   return fmt::format("step {}/{}  t {:.4g} s  {} it  E {:.4g} J  {}", report.step, last, report.time, report.iterations,
                      report.kinetic + report.potential_total, to_string(report.status));
 }
 
 }  // namespace
-
-size_t terminal_width(std::FILE* stream) {
-  winsize size{};
-  const bool known = ioctl(descriptor(stream), TIOCGWINSZ, &size) == 0 && size.ws_col > 0;
-  return known ? size.ws_col : 80;
-}
 
 std::string duration_text(double seconds) {
   if (seconds < 9.95) return fmt::format("{:.1f} s", seconds);
@@ -38,14 +38,28 @@ std::string duration_text(double seconds) {
   return fmt::format("{} h {:02} min", total / 3600, total / 60 % 60);
 }
 
-Progress::Progress(std::FILE* stream, int first_step, int last_step)
-    : stream_(stream),
-      terminal_(isatty(descriptor(stream)) != 0),
-      first_(first_step),
-      last_(last_step),
-      shown_step_(first_step) {}
+StatusLine::StatusLine(std::FILE* stream) : stream_(stream), terminal_(isatty(descriptor(stream)) != 0) {}
 
-double Progress::seconds() const { return std::chrono::duration<double>(Clock::now() - start_).count(); }
+double StatusLine::seconds() const { return std::chrono::duration<double>(Clock::now() - start_).count(); }
+
+void StatusLine::draw(std::string line) {
+  if (terminal_) {
+    line.resize(std::min(line.size(), terminal_width(stream_) - 1));
+    fmt::print(stream_, "\r{}\x1b[K", line);  // erases the rest of a longer line
+    drawn_ = true;
+  } else {
+    fmt::print(stream_, "{}\n", line);
+  }
+  std::fflush(stream_);
+}
+
+void StatusLine::erase() {
+  if (drawn_) fmt::print(stream_, "\r\x1b[K");
+  drawn_ = false;
+}
+
+Progress::Progress(std::FILE* stream, int first_step, int last_step)
+    : StatusLine(stream), first_(first_step), last_(last_step), shown_step_(first_step) {}
 
 bool Progress::is_due(const StepReport& report) const {
   if (report.step == last_) return true;
@@ -77,18 +91,8 @@ void Progress::print(std::string line, double done) {
   if (terminal_) {
     const int filled = static_cast<int>(done * kBarWidth);
     line = fmt::format("[{:#<{}}{:.<{}}] {}", "", filled, "", kBarWidth - filled, line);
-    line.resize(std::min(line.size(), terminal_width(stream_) - 1));
-    fmt::print(stream_, "\r{}\x1b[K", line);  // erases the rest of a longer line
-    drawn_ = true;
-  } else {
-    fmt::print(stream_, "{}\n", line);
   }
-  std::fflush(stream_);
-}
-
-void Progress::erase() {
-  if (drawn_) fmt::print(stream_, "\r\x1b[K");
-  drawn_ = false;
+  draw(std::move(line));
 }
 
 void Progress::message(const std::string& line) {

@@ -10,9 +10,26 @@ namespace aspic::cli {
 
 inline constexpr double kLineInterval = 10;  // time between two lines in a pipe [s]
 
-size_t terminal_width(std::FILE* stream);  // [characters]; 80 if unknown
+class StatusLine {
+ public:
+  explicit StatusLine(std::FILE* stream);
 
-class Progress {
+ protected:
+  double seconds() const;       // since the start
+  void draw(std::string line);  // on a terminal over the previous one
+  void erase();
+
+  std::FILE* stream_;
+  bool terminal_;
+  double shown_at_ = -1e9;  // time since the start [s]
+  bool drawn_ = false;
+
+ private:
+  using Clock = std::chrono::steady_clock;
+  Clock::time_point start_ = Clock::now();
+};
+
+class Progress : public StatusLine {
  public:
   Progress(std::FILE* stream, int first_step, int last_step);
   void show(const StepReport& report);
@@ -21,19 +38,10 @@ class Progress {
   void finish();                                    // leaves the bar as it is
 
  private:
-  double seconds() const;
   bool is_due(const StepReport& report) const;
   void print(std::string line, double done);  // `done`: fraction of the run
-  void erase();
 
-  using Clock = std::chrono::steady_clock;
-  std::FILE* stream_;
-  bool terminal_;
-  int first_, last_;
-  Clock::time_point start_ = Clock::now();
-  double shown_at_ = -1e9;  // time since the start [s]
-  int shown_step_ = 0;
-  bool drawn_ = false;
+  int first_, last_, shown_step_;
 };
 
 std::string duration_text(double seconds);  // "12 s", "3 min 20 s", "2 h 05 min"

@@ -7,7 +7,6 @@
 #include "base/check.h"
 #include "base/error.h"
 #include "base/formatted.h"
-#include "base/stopwatch.h"
 #include "dynamics/integrator.h"
 #include "dynamics/simulation_checks.h"
 #include "fit/checkpointing.h"
@@ -98,14 +97,12 @@ struct Trajectory::Impl {
 
   // Takes a step from `now` to `end`, which may be the same object.
   bool step(State& end) {
-    Stopwatch stopwatch;
     const SolveTools solve{model, pins, E, minimizer, newton, minimize, observe, InitialGuess::best};
     before = now;
     const StepSolve solved = integrator->advance({solve, before, nullptr, options.h, time_of(point + 1)}, next, forces);
     ++report.steps;
     report.newton_iterations += solved.work.iterations;
     report.factorizations += solved.work.factorizations;
-    report.forward_seconds += stopwatch.lap();
     if (!is_success(solved.work.status))
       return fail(point, "Newton's method did not converge: " + std::string(to_string(solved.work.status)) + " after " +
                              std::to_string(solved.work.iterations) + " iterations");
@@ -173,7 +170,6 @@ struct Trajectory::Impl {
 
   // Replaces the derivatives with respect to `after` by those with respect to `now`.
   bool reverse_step(TrajectoryGradient& gradient) {
-    Stopwatch stopwatch;
     const double h = options.h, f = h * h;
     if (options.stop.stopped()) return fail(point, "stopped");
     begin_step();
@@ -189,7 +185,6 @@ struct Trajectory::Impl {
     for (size_t k = 0; k < damping.size(); ++k) add_damping(k, f, gradient.damping[k], gradient);
     if (gravity) add_density(f, gradient.density);
     pins.set_zero(qbar);
-    report.adjoint_seconds += stopwatch.lap();
     return true;
   }
 
@@ -208,7 +203,6 @@ struct Trajectory::Impl {
     ++report.adjoint_solves;
     report.adjoint_factorizations += factorized;
     report.adjoint_iterations += solved.iterations;
-    report.adjoint_products += solved.products;
     if (solved.ok || (!solved.indefinite && solved.relative_residual <= kUsable)) return true;
     return fail(point, solved.indefinite ? "the matrix of the step is not positive definite"
                                          : "the adjoint system was not solved");
@@ -280,13 +274,6 @@ Trajectory::Trajectory(Trajectory&&) noexcept = default;
 const Model& Trajectory::model() const { return impl_->model; }
 Model Trajectory::release_model() && { return std::move(impl_->model); }
 void Trajectory::set_parameters(std::span<const MaterialParameters> parameters) { impl_->theta.set(parameters); }
-
-void Trajectory::set_start(const State& start) {
-  ASPIC_CHECK(start.q.size() == impl_->start.q.size() && start.qdot.size() == start.q.size());
-  impl_->start = start;
-  impl_->pins = Pins(impl_->model.pins, start.q);
-  impl_->place_pins();
-}
 
 TrajectoryReport Trajectory::simulate(const TrajectoryObjective& objective) { return impl_->simulate(objective); }
 TrajectoryReport Trajectory::differentiate(const TrajectoryObjective& objective, TrajectoryGradient& gradient) {

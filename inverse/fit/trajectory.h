@@ -51,8 +51,7 @@ struct TrajectoryReport {
   long steps = 0;                                       // forward, including repeated ones
   long newton_iterations = 0, factorizations = 0;       // forward
   long adjoint_solves = 0, adjoint_factorizations = 0;  // backward; computed factors or preconditioners
-  long adjoint_iterations = 0, adjoint_products = 0;    // iterations of conjugate gradients; products with H
-  double forward_seconds = 0, adjoint_seconds = 0;      // wall time
+  long adjoint_iterations = 0;                          // of conjugate gradients
 };
 
 class Trajectory {
@@ -65,7 +64,6 @@ class Trajectory {
   const Model& model() const;
   Model release_model() &&;                                             // the trajectory must not be used afterwards
   void set_parameters(std::span<const MaterialParameters> parameters);  // one per tet
-  void set_start(const State& start);
 
   TrajectoryReport simulate(const TrajectoryObjective& objective);
   TrajectoryReport differentiate(const TrajectoryObjective& objective, TrajectoryGradient& gradient);

@@ -249,14 +249,4 @@ Interval interval(const Posterior& posterior, const ParameterMap& map, std::span
   return {map.value(parameter, z - s), map.value(parameter, z + s)};
 }
 
-std::string describe_interval(const FitParameter& parameter, const Interval& interval) {
-  const bool is_pressure = is_stiffness(parameter.quantity);
-  double unit = 1;
-  const char* name = is_pressure ? " Pa" : "";
-  for (const auto& [size, prefixed] : {std::pair{1e3, " kPa"}, {1e6, " MPa"}, {1e9, " GPa"}})
-    if (is_pressure && interval.upper >= size) unit = size, name = prefixed;
-  return formatted("%s between %.3g and %.3g%s", parameter.quantity.c_str(), interval.lower / unit,
-                   interval.upper / unit, name);
-}
-
 }  // namespace aspic

@@ -76,7 +76,4 @@ struct Interval {
 Interval interval(const Posterior& posterior, const ParameterMap& map, std::span<const double> p, const TetQuantity& of,
                   double sigmas = kSigmas95);
 
-// "young between 80 and 130 kPa", "poisson between 0.41 and 0.46".
-std::string describe_interval(const FitParameter& unknown, const Interval& interval);
-
 }  // namespace aspic

@@ -71,23 +71,23 @@ void examine_shapes(const TetMesh& mesh, Findings& findings) {
   const size_t total = mesh.tets.size();
   findings.add({Severity::error, "repeated_vertex_in_tet",
                 count_of(shapes.repeated_vertex.size(), total, "tets", "list a vertex twice and have no volume"),
-                "remove them with --repair", shapes.repeated_vertex, true});
+                "remove them with --repair", shapes.repeated_vertex});
   findings.add({Severity::error, "zero_volume_tets",
                 count_of(shapes.flat.size(), total, "tets", "have no volume: their corners lie in a plane"),
-                "remove them with --repair, or remesh the shape", shapes.flat, true});
+                "remove them with --repair, or remesh the shape", shapes.flat});
   findings.add({Severity::error, "inverted_tets",
                 count_of(shapes.inverted.size(), total, "tets", "are inverted; the worst is tet ") +
                     std::to_string(shapes.worst_inverted) + " with volume " + three_digits(shapes.most_negative) +
                     " m^3",
-                "flip them with --repair", shapes.inverted, true});
+                "flip them with --repair", shapes.inverted});
   if (shapes.slivers.empty()) return;
   findings.add({Severity::warning, "slivers",
                 count_of(shapes.slivers.size(), total, "tets",
                          "are slivers (a dihedral angle within 5 degrees of 0 or 180); the worst is tet ") +
                     std::to_string(shapes.worst_sliver) + " with " + three_digits(shapes.smallest_angle) +
                     " degrees; mean ratios by tenths: " + histogram_text(mesh),
-                "remesh the shape with aspic mesh; slivers make the solver slow and the material stiff", shapes.slivers,
-                false});
+                "remesh the shape with aspic mesh; slivers make the solver slow and the material stiff",
+                shapes.slivers});
 }
 
 // Finds faces shared by more than two tets, or by two tets on the same side.
@@ -122,11 +122,11 @@ void examine_faces(const TetMesh& mesh, Findings& findings) {
   }
   findings.add({Severity::error, "non_manifold_faces",
                 count_of(crowded.size(), mesh.tets.size(), "tets", "share a face with more than one other tet"),
-                "remove the extra tets in the program that made the mesh", crowded, false});
+                "remove the extra tets in the program that made the mesh", crowded});
   findings.add({Severity::warning, "folded_tets",
                 count_of(folded.size(), mesh.tets.size(), "tets",
                          "lie on the same side of a face as their neighbor, so they overlap"),
-                "remesh the shape with aspic mesh", folded, false});
+                "remesh the shape with aspic mesh", folded});
 }
 
 // Finds tets whose centroid is inside another tet. This misses some overlaps, but finds duplicated parts.
@@ -188,11 +188,11 @@ void examine_boundary(const TetMesh& mesh, Findings& findings) {
        std::to_string(surface.non_manifold_edges) +
            " edges of the boundary have more than two boundary triangles: parts are connected only by an edge, "
            "like a hinge (the vertices of these triangles are listed)",
-       "join or separate the parts in the source model", on_edges, false});
+       "join or separate the parts in the source model", on_edges});
   findings.add({Severity::warning, "non_manifold_vertices",
                 count_of(surface.non_manifold_vertices.size(), mesh.rest.size(), "vertices",
                          "connect parts only at a point, like a ball joint"),
-                "join or separate the parts in the source model", surface.non_manifold_vertices, false});
+                "join or separate the parts in the source model", surface.non_manifold_vertices});
 }
 
 }  // namespace
@@ -204,12 +204,12 @@ std::vector<Finding> diagnose(const TetMesh& mesh) {
   const std::vector<int> repeated = repeated_elements(mesh.tets);
   findings.add({Severity::error, "repeated_tets",
                 count_of(repeated.size(), mesh.tets.size(), "tets", "have the same vertices as an earlier one"),
-                "remove them with --repair", repeated, true});
+                "remove them with --repair", repeated});
   examine_faces(mesh, findings);
   const std::vector<int> overlapping = overlapping_tets(mesh);
   findings.add({Severity::warning, "overlapping_tets",
                 count_of(overlapping.size(), mesh.tets.size(), "tets", "have their centroid inside another tet"),
-                "remesh the shape with aspic mesh", overlapping, false});
+                "remesh the shape with aspic mesh", overlapping});
   examine_boundary(mesh, findings);
   examine_components(mesh, findings);
   examine_units(mesh.rest, findings);

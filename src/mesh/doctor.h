@@ -18,7 +18,6 @@ struct Finding {
   std::string message;       // one sentence with the count and the worst value
   std::string remedy;        // recommended action; "--repair" if that helps
   std::vector<int> indices;  // affected elements, vertices or triangles
-  bool repairable = false;
 };
 
 struct MeshQuality {

@@ -69,20 +69,19 @@ bool examine_vertices(const std::vector<Vec3d>& vertices, const std::vector<Elem
   const size_t total = vertices.size();
   const std::vector<int> invalid = with_invalid_index(elements, total), infinite = not_finite(vertices);
   if (elements.empty())
-    findings.add_general(
-        {Severity::error, "empty_mesh", "the mesh has no " + noun, "check the file and its format", {}, false});
+    findings.add_general({Severity::error, "empty_mesh", "the mesh has no " + noun, "check the file and its format"});
   findings.add({Severity::error, "invalid_indices",
                 count_of(invalid.size(), elements.size(), noun, "refer to a vertex that does not exist"),
-                "write the file again; indices start at 1 in some formats and at 0 in others", invalid, false});
+                "write the file again; indices start at 1 in some formats and at 0 in others", invalid});
   findings.add({Severity::error, "non_finite_coordinates",
                 count_of(infinite.size(), total, "vertices", "have an infinite or NaN coordinate"), "correct the file",
-                infinite, false});
+                infinite});
   if (elements.empty() || !invalid.empty() || !infinite.empty()) return false;
   const std::vector<int> large = too_large(vertices);
   findings.add({Severity::error, "coordinates_too_large",
                 count_of(large.size(), total, "vertices",
                          "have a coordinate beyond " + three_digits(kLargestCoordinate) + " m, where volumes overflow"),
-                "choose a larger unit of length, or correct the file", large, false});
+                "choose a larger unit of length, or correct the file", large});
   if (!large.empty()) return false;
   const std::vector<int> repeated = duplicates(vertices), unused = unreferenced(elements, total);
   // A vertex without tets has no mass, so no solver can move it. Beside a surface it is harmless.
@@ -90,10 +89,10 @@ bool examine_vertices(const std::vector<Vec3d>& vertices, const std::vector<Elem
   findings.add({Severity::warning, "duplicate_vertices",
                 count_of(repeated.size(), total, "vertices",
                          "coincide with an earlier vertex, so the mesh is not connected there"),
-                "merge them with --repair", repeated, true});
+                "merge them with --repair", repeated});
   findings.add({severity, "unreferenced_vertices",
                 count_of(unused.size(), total, "vertices", "belong to none of the " + noun),
-                "remove them with --repair", unused, true});
+                "remove them with --repair", unused});
   return true;
 }
 template bool examine_vertices(const std::vector<Vec3d>&, const std::vector<Tet>&, const std::string&, Findings&);
@@ -106,19 +105,13 @@ void examine_units(const std::vector<Vec3d>& vertices, Findings& findings) {
   double extent = 0;
   for (int axis = 0; axis < 3; ++axis) extent = std::max(extent, box.upper[axis] - box.lower[axis]);
   if (extent > kLargest)
-    findings.add_general({Severity::note,
-                          "suspicious_units",
+    findings.add_general({Severity::note, "suspicious_units",
                           "extent " + three_digits(extent) + " m; if the file is in millimeters use scale = 0.001",
-                          "set scale in the scene if the file is not in meters",
-                          {},
-                          false});
+                          "set scale in the scene if the file is not in meters"});
   if (extent < kSmallest)
-    findings.add_general({Severity::note,
-                          "suspicious_units",
+    findings.add_general({Severity::note, "suspicious_units",
                           "extent " + three_digits(extent) + " m; if the file is in kilometers use scale = 1000",
-                          "set scale in the scene if the file is not in meters",
-                          {},
-                          false});
+                          "set scale in the scene if the file is not in meters"});
 }
 
 namespace {

