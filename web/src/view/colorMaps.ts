@@ -7,6 +7,7 @@ const kStops = {
 };
 
 export type MapName = keyof typeof kStops;
+export const kMapNames = Object.keys(kStops) as MapName[];
 export type Rgb = [number, number, number]; // 0 to 255, sRGB
 
 export function colorAt(map: MapName, t: number): Rgb {
