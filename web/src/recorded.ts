@@ -4,6 +4,7 @@ import type { Command, Obstacle, Picture, Query, State, TextReply, Vec3, VertexR
 import { carried, normalsOf, type RecordedSurface, Recording } from "./recording";
 import type { Incoming, Source } from "./source";
 import { vectorAt } from "./view/lens";
+import { extremes } from "./view/ranges";
 
 // Clock that calls back once per frame of the screen. Tests use their own.
 export interface Pulse {
@@ -117,15 +118,11 @@ export class RecordedSource implements Source {
   // Smallest and largest value of a field on the surface during the run.
   range(field: string): [number, number] {
     const recording = this.opened();
-    const range: [number, number] = [Infinity, -Infinity];
-    for (let frame = 0; frame < recording.frameCount; ++frame) {
+    const ofFrames = recording.head.frames.step.flatMap((_, frame) => {
       const positions = carried(this.surface, recording.positions(frame));
-      for (const value of recording.values(field, frame, this.surface, positions)) {
-        if (value < range[0]) range[0] = value;
-        if (value > range[1]) range[1] = value;
-      }
-    }
-    return range[0] <= range[1] ? range : [0, 0];
+      return extremes(recording.values(field, frame, this.surface, positions)) ?? [];
+    });
+    return extremes(ofFrames) ?? [0, 0];
   }
 
   private opened(): Recording {
@@ -233,7 +230,7 @@ export class RecordedSource implements Source {
     const { step, time } = recording.head.frames;
     const positions = carried(this.surface, recording.positions(this.frame));
     const values = this.field === "" ? null : recording.values(this.field, this.frame, this.surface, positions);
-    const finite = (values ?? new Float32Array(0)).filter((value) => Number.isFinite(value));
+    const [min, max] = extremes(values ?? []) ?? [0, 0];
     return {
       side: "a",
       generation: scene.generation,
@@ -243,8 +240,8 @@ export class RecordedSource implements Source {
       positions,
       normals: normalsOf(positions, geometry.triangles),
       values,
-      min: finite.reduce((a, b) => Math.min(a, b), finite[0] ?? 0),
-      max: finite.reduce((a, b) => Math.max(a, b), finite[0] ?? 0),
+      min,
+      max,
       contacts: this.contacts(positions),
     };
   }

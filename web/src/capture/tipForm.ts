@@ -5,11 +5,13 @@ import { choice, numberField } from "../controls";
 import { short } from "../plots/numbers";
 import type { ProbeState, TipChoice } from "../protocol";
 import type { Store } from "../store";
-import type { Display } from "../view/display";
+import { kChoices, type Display } from "../view/display";
 import { AskedDepths } from "./askedDepths";
 
 const kNotches = 40; // steps of the slider and the keys per tip radius
 const kDeepest = 1.5; // end of the slider, in tip radii
+
+const valuesFirst = (choices: Record<string, string>) => Object.entries(choices).map(([label, value]) => [value, label] as const);
 
 export class TipForm {
   readonly element = element("section", { class: "capture-tip", "aria-label": "Tip" });
@@ -26,13 +28,13 @@ export class TipForm {
     private readonly display: Display,
   ) {
     const { settings } = display;
-    const shape = choice("Tip", "Shape of the tip", [["sphere", "sphere"], ["disc", "flat disc"]], settings.tipShape, (value) =>
+    const shape = choice("Tip", "Shape of the tip", valuesFirst(kChoices.tipShape), settings.tipShape, (value) =>
       display.change({ tipShape: value as TipChoice["shape"] }),
     );
     const contact = choice(
       "held",
       "Bonded: the tip sticks to the surface and can also pull. Sliding: it pushes without friction.",
-      [["bonded", "glued on"], ["sliding", "sliding"]],
+      valuesFirst(kChoices.tipContact),
       settings.tipContact,
       (value) => display.change({ tipContact: value as TipChoice["contact"] }),
     );

@@ -14,7 +14,7 @@ import { kSkinPoint } from "../view/labels";
 import { length, minus } from "../view/lens";
 import { kBarWidth } from "../view/marks";
 import { readStyle } from "../view/overlay";
-import { logRange, type ColorRange } from "../view/ranges";
+import { extremes, logRange, type ColorRange } from "../view/ranges";
 import { Screen } from "../view/screen";
 import { bodyBelow, boundaryOf, type Boundary, type Plane, type Soup, type TetMesh } from "./cut";
 
@@ -160,12 +160,7 @@ export class BodyView {
   }
 
   private range(shown: Shown): ColorRange {
-    let [low, high] = shown.range ?? [Infinity, -Infinity];
-    if (!shown.range)
-      for (const value of shown.values) {
-        if (value < low) low = value;
-        if (value > high) high = value;
-      }
+    const [low, high] = shown.range ?? extremes(shown.values) ?? [0, 0];
     const positive = shown.log ? logRange(low, high) : null;
     return positive ? { ...positive, log: true } : { low, high, log: false };
   }

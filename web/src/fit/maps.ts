@@ -4,10 +4,9 @@ import { checkbox, choice } from "../controls";
 import type { Vec3 } from "../protocol";
 import { sceneAxes, type CameraRig } from "../view/cameras";
 import { vectorAt } from "../view/lens";
-import type { MapName } from "../view/colorMaps";
 import { makeArrows, makeBalls } from "./arrows";
 import { BodyView, type Cut, type FittedBody, type Note, type Shown } from "./bodyView";
-import type { Fit, Quantity } from "./data";
+import type { Fit } from "./data";
 
 interface Field {
   key: string;
@@ -21,26 +20,23 @@ const kNames: Record<string, string> = { young: "Young's modulus", poisson: "Poi
 const kDeviations95 = 1.96;
 
 function fieldsOf(fit: Fit): { values: Field[]; doubts: Field[] } {
-  const values: Field[] = [];
-  const doubts: Field[] = [];
-  const add = (list: Field[], key: string, title: string, label: string, unit: string, numbers: Float32Array, map: MapName, log: boolean, range?: [number, number]): void => {
-    list.push({ key, title, shown: { label, unit, values: numbers, map, log, range } });
-  };
-  const fitted = [...fit.head.quantities].filter((q) => fit.arrays.has(`tet.${q.name}`));
-  for (const q of fitted) {
-    const name = kNames[q.name] ?? q.name;
-    add(values, q.name, name, q.name === "young" ? "E" : q.name, q.unit, fit.floats(`tet.${q.name}`), "viridis", q.isLog);
-    addDoubts(q, name);
-  }
-  function addDoubts(q: Quantity, name: string): void {
-    const [deviation, reduction] = [`tet.${q.name}_deviation`, `tet.${q.name}_reduction`];
-    if (fit.arrays.has(deviation)) {
-      const sigma = fit.floats(deviation);
-      const numbers = q.isLog ? sigma.map((s) => Math.exp(kDeviations95 * s)) : sigma;
-      const label = q.isLog ? "factor" : "deviation";
-      add(doubts, `${q.name}.deviation`, `${name}: ${q.isLog ? "known within a factor" : "standard deviation"}`, label, "", numbers, "cividis", false);
+  const [values, doubts]: Field[][] = [[], []];
+  const array = (name: string): Float32Array | null => (fit.arrays.has(`tet.${name}`) ? fit.floats(`tet.${name}`) : null);
+  for (const { name: key, unit, isLog: log } of fit.head.quantities) {
+    const name = kNames[key] ?? key;
+    const [value, sigma, learned] = [array(key), array(`${key}_deviation`), array(`${key}_reduction`)];
+    if (!value) continue;
+    values.push({ key, title: name, shown: { label: key === "young" ? "E" : key, unit, values: value, map: "viridis", log } });
+    if (sigma) {
+      const numbers = log ? sigma.map((s) => Math.exp(kDeviations95 * s)) : sigma;
+      const title = `${name}: ${log ? "known within a factor" : "standard deviation"}`;
+      const shown: Shown = { label: log ? "factor" : "deviation", unit: "", values: numbers, map: "cividis", log: false };
+      doubts.push({ key: `${key}.deviation`, title, shown });
     }
-    if (fit.arrays.has(reduction)) add(doubts, `${q.name}.reduction`, `${name}: learned from the data, 0 to 1`, "learned", "", fit.floats(reduction), "blue_orange", false, [0, 1]);
+    if (learned) {
+      const shown: Shown = { label: "learned", unit: "", values: learned, map: "blue_orange", log: false, range: [0, 1] };
+      doubts.push({ key: `${key}.reduction`, title: `${name}: learned from the data, 0 to 1`, shown });
+    }
   }
   return { values, doubts };
 }

@@ -3,7 +3,7 @@ import type { GUI } from "lil-gui";
 import type { Page } from "../page";
 import type { SettingValue } from "../protocol";
 import { kCameraModes, kViewNames, type CameraMode, type ViewName } from "../view/cameras";
-import { kDefaults, kTools, type Amount, type Display, type DisplaySettings } from "../view/display";
+import { kChoices, kDefaults, type Amount, type Display, type DisplaySettings } from "../view/display";
 import type { View } from "../view/view";
 import { NumberRow } from "./rows";
 
@@ -23,9 +23,11 @@ class Folder {
   }
 
   // `also`: further settings that a change by the reader implies.
-  add(key: Key, label: string, choices?: Choices, also: Partial<DisplaySettings> = {}): void {
+  add(key: Key, label: string, also: Partial<DisplaySettings> = {}): void {
     const { settings } = this.display;
-    const controller = key.endsWith("Color") || key === "background" ? this.gui.addColor(settings, key) : this.gui.add(settings, key, choices as object);
+    const choices = kChoices[key as keyof typeof kChoices];
+    const isColor = key.endsWith("Color") || key === "background";
+    const controller = isColor ? this.gui.addColor(settings, key) : this.gui.add(settings, key, choices);
     controller.name(label).onChange((value: unknown) => this.display.change({ ...also, [key]: value }));
     this.display.on("changed", () => controller.updateDisplay());
   }
@@ -72,7 +74,7 @@ export function addDisplayControls(gui: GUI, display: Display, page: Page, views
 }
 
 function addMouse(folder: Folder): void {
-  folder.add("tool", "Left button", Object.fromEntries(Object.entries(kTools).map(([tool, words]) => [words, tool])));
+  folder.add("tool", "Left button");
   folder.slider("brush", "Brush radius [px]", 4, 200, 1);
   folder.add("unpin", "Brush unpins");
 }
@@ -84,7 +86,7 @@ function addDisplay(folder: Folder, display: Display, views: () => View[]): void
   folder.add("obstacles", "Obstacles");
   folder.add("contacts", "Contact points");
   folder.add("shadows", "Shadows");
-  folder.add("clip", "Cut", { no: "off", "across x": "x", "across y": "y", "across z": "z" });
+  folder.add("clip", "Cut");
   folder.slider("clipAt", "Cut at", 0, 1, 0.001);
   folder.add("clipOther", "Keep the other half");
   addNumbers(folder.within("Numbers and marks"));
@@ -104,7 +106,7 @@ function addLook(folder: Folder): void {
   folder.add("bodyColor", "Body");
   folder.add("lineColor", "Wires");
   folder.add("wiresOnTop", "Wires shine through");
-  folder.add("inside", "Inside", { "its own color": "own", "as outside": "same", hidden: "hidden" });
+  folder.add("inside", "Inside");
   folder.add("insideColor", "Inside's color");
   folder.add("invert", "Invert normals");
   folder.slider("shininess", "Shininess", 0, 200, 1);
@@ -121,13 +123,12 @@ function addField(folder: Folder, display: Display, views: () => View[]): void {
   const choose = (field: string): void => views()[0]?.store.source.send({ do: "color", field });
   folder.choice("Color by", fields, () => display.field, choose);
   const range = folder.within("Color range");
-  const maps = { "by field": "auto", viridis: "viridis", cividis: "cividis", "blue to orange": "blue_orange" };
-  range.add("map", "Colors", maps);
+  range.add("map", "Colors");
   range.add("fixedRange", "Fixed range");
-  range.add("low", "From", undefined, { fixedRange: true });
-  range.add("high", "To", undefined, { fixedRange: true });
+  range.add("low", "From", { fixedRange: true });
+  range.add("high", "To", { fixedRange: true });
   range.button("Fix at what is shown", () => display.fixRange());
-  range.add("scale", "Scale", { "by field": "auto", linear: "linear", logarithmic: "log" });
+  range.add("scale", "Scale");
 }
 
 function addCamera(folder: Folder, display: Display, views: () => View[]): void {

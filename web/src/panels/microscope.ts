@@ -62,13 +62,9 @@ export class MicroscopePanel implements Panel {
     this.redraw();
   }
 
-  private rows(): readonly StepRow[] {
-    return this.chosen.rows();
-  }
-
   // Step in a row of the table, the newest first.
   private stepAt(row: number): StepRow | undefined {
-    const rows = this.rows();
+    const rows = this.chosen.rows();
     return rows[rows.length - 1 - row];
   }
 
@@ -119,7 +115,7 @@ export class MicroscopePanel implements Panel {
   }
 
   private draw(): void {
-    const rows = this.rows();
+    const rows = this.chosen.rows();
     const index = rows.findIndex((row) => row.step === this.chosen.step);
     this.follow.input.checked = this.chosen.following;
     this.showSides();
@@ -190,7 +186,7 @@ export class MicroscopePanel implements Panel {
     const chart: StepChart = new StepChart(
       this.names[place] ?? "steps",
       this.chosen,
-      () => this.rows(),
+      () => this.chosen.rows(),
       () => {
         this.names[place] = chart.name;
         this.redraw();
@@ -204,22 +200,16 @@ export class MicroscopePanel implements Panel {
       const reply = await this.store.source.ask<WorstReply>({ ask: "worst", side: this.chosen.side });
       const text = (item: WorstReply["items"][number]): string =>
         `${item.what}: ${item.unit ? withUnit(item.value, item.unit) : short(item.value)}`;
-      const items = reply.items.map((item) =>
-        element("li", {}, button({ text: text(item), title: "Mark it on the body" }, () => this.highlight(item, text(item)))),
+      const marks = reply.items.map((item) => ({ positions: item.positions, text: text(item) }));
+      const items = marks.map((mark) =>
+        element("li", {}, button({ text: mark.text, title: "Mark it on the body" }, () => this.page.emit("highlight", [mark]))),
       );
       this.worst.replaceChildren(...items);
       this.worst.hidden = items.length === 0;
-      this.page.emit(
-        "highlight",
-        reply.items.map((item) => ({ positions: item.positions, text: text(item) })),
-      );
+      this.page.emit("highlight", marks);
     } catch (reason) {
       this.page.report(reason);
     }
-  }
-
-  private highlight(item: WorstReply["items"][number], text: string): void {
-    this.page.emit("highlight", [{ positions: item.positions, text }]);
   }
 
   private restore(saved: unknown): void {

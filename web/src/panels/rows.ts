@@ -130,52 +130,36 @@ export class NumberRow extends ValueRow {
   }
 }
 
-export class TextRow extends ValueRow {
-  private readonly field: HTMLInputElement;
+// Text fields: one for each entry of a vector, or for a text.
+class TextRow extends ValueRow {
+  private readonly fields: HTMLInputElement[];
 
   constructor(gui: GUI, label: string, model: Model) {
     super(gui, model, "text-row");
-    this.field = makeField(label, () => String(this.model.value), (text) => this.setValue(parseNumber(text) ?? text));
-    this.$widget.append(this.field);
+    const name = (i: number): string => (Array.isArray(model.value) ? `${label} ${"xyz"[i] ?? i}` : label);
+    this.fields = this.entries().map((_, i) => makeField(name(i), () => this.text(i), (text) => this.commit(i, text)));
+    this.$widget.append(...this.fields);
     this.updateDisplay();
   }
 
   override updateDisplay(): this {
-    this.field.value = String(this.model.value);
-    this.field.title = this.field.value;
-    return this;
-  }
-}
-
-export class VectorRow extends ValueRow {
-  private readonly fields: HTMLInputElement[] = [];
-
-  constructor(gui: GUI, label: string, model: Model) {
-    super(gui, model, "vector-row");
-    this.entries().forEach((_, i) => {
-      const field = makeField(`${label} ${"xyz"[i] ?? i}`, () => this.text(i), (text) => this.commit(i, text));
-      this.fields.push(field);
-      this.$widget.append(field);
-    });
-    this.updateDisplay();
-  }
-
-  override updateDisplay(): this {
-    this.fields.forEach((field, i) => (field.value = this.text(i)));
+    this.fields.forEach((field, i) => (field.value = field.title = this.text(i)));
     return this;
   }
 
-  private entries(): (number | string)[] {
-    return Array.isArray(this.model.value) ? this.model.value : [];
+  private entries(): (number | string | boolean)[] {
+    return [this.model.value].flat();
   }
 
   private text(i: number): string {
-    const entry = this.entries()[i];
-    return typeof entry === "number" ? numberText(entry) : String(entry ?? "");
+    const entry = this.entries()[i] ?? "";
+    return typeof entry === "number" ? numberText(entry) : String(entry);
   }
 
   private commit(i: number, text: string): void {
-    this.setValue(this.entries().map((entry, j) => (j === i ? (parseNumber(text) ?? text) : entry)));
+    const { value } = this.model;
+    const entry = parseNumber(text) ?? text;
+    this.setValue(Array.isArray(value) ? value.map((known, j) => (j === i ? entry : known)) : entry);
   }
 }
 
@@ -207,7 +191,6 @@ export function addRow(gui: GUI, setting: Setting, changed: (value: SettingValue
     case "integer":
       return dress(new NumberRow(gui, name, model, setting));
     case "vector":
-      return dress(new VectorRow(gui, name, model));
     case "text":
       return dress(new TextRow(gui, name, model));
     case "choice": {

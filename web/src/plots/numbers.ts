@@ -1,32 +1,14 @@
 // Formats numbers: few digits, SI prefixes, a dash for missing values.
 import type { MaybeNumber } from "../protocol";
 
-const kPrefixes: [factor: number, letter: string][] = [
-  [1e12, "T"],
-  [1e9, "G"],
-  [1e6, "M"],
-  [1e3, "k"],
-  [1, ""],
-  [1e-3, "m"],
-  [1e-6, "µ"],
-  [1e-9, "n"],
-  [1e-12, "p"],
-  [1e-15, "f"],
-];
-
-export interface Prefix {
-  factor: number;
-  letter: string;
-}
-
+const kPrefixes = [..."TGMk mµnpf"].map((letter, i) => ({ factor: Number(`1e${12 - 3 * i}`), letter: letter.trim() }));
 const kTooLarge = 1e15; // largest value with a prefix; beyond it powers of ten are clearer
 
 // SI prefix that leaves one to three digits before the point.
-export function prefixOf(size: number): Prefix {
+export function prefixOf(size: number): { factor: number; letter: string } {
   const magnitude = Math.abs(size);
   if (!(magnitude > 0) || !(magnitude < kTooLarge)) return { factor: 1, letter: "" };
-  const fits = kPrefixes.find(([factor]) => magnitude >= factor * (1 - 1e-12)) ?? kPrefixes[kPrefixes.length - 1]!;
-  return { factor: fits[0], letter: fits[1] };
+  return kPrefixes.find(({ factor }) => magnitude >= factor * (1 - 1e-12)) ?? kPrefixes[kPrefixes.length - 1];
 }
 
 // "0.0012", "1.2e-7", "34 500": at most `digits` significant digits, without trailing zeros.

@@ -1,14 +1,13 @@
 // Color maps from a few stops, interpolated in sRGB. Viridis and cividis (Nuñez, Anderton, Renslow 2018) have uniform
 // lightness; they and blue-orange are distinguishable with any kind of color vision.
-export const kMapNames = ["viridis", "cividis", "blue_orange"] as const;
-export type MapName = (typeof kMapNames)[number];
-
-const kStops: Record<MapName, string[]> = {
+const kStops = {
   viridis: ["440154", "482475", "414487", "355f8d", "2a788e", "21918c", "22a884", "44bf70", "7ad151", "bddf26", "fde725"],
   cividis: ["00224e", "123570", "3b496c", "575d6d", "707173", "8a8678", "a59c74", "c3b369", "e1cc55", "fee838"],
   blue_orange: ["0b3c78", "1f6db5", "67a3d9", "b7d3ea", "f5f5f2", "fbcf9d", "f29e4c", "d3670f", "873800"],
 };
 
+export type MapName = keyof typeof kStops;
+export const kMapNames = Object.keys(kStops) as MapName[];
 export type Rgb = [number, number, number]; // 0 to 255, sRGB
 
 export function colorAt(map: MapName, t: number): Rgb {

@@ -3,12 +3,9 @@ import { Emitter } from "../emitter";
 import { fieldsOf, type Keeper } from "../page";
 import type { Field, Scene, SideName, TipChoice, Vec3 } from "../protocol";
 import { CameraRig } from "./cameras";
-import { kMapNames, type MapName } from "./colorMaps";
+import type { MapName } from "./colorMaps";
 import type { Clip } from "./picking";
 import { about, logRange, RunningRange, type ColorRange } from "./ranges";
-
-export const kTools = { drag: "drag the body", pin: "pin by brush", read: "read values", probe: "press a probe in" } as const;
-export type Tool = keyof typeof kTools;
 
 export const kDefaults = {
   fill: true,
@@ -38,7 +35,7 @@ export const kDefaults = {
   fixedRange: false,
   low: 0,
   high: 1,
-  tool: "drag" as Tool,
+  tool: "drag" as "drag" | "pin" | "read" | "probe",
   brush: 24, // radius [px]
   tipShape: "sphere" as TipChoice["shape"],
   tipContact: "bonded" as TipChoice["contact"],
@@ -49,15 +46,16 @@ export const kDefaults = {
 export type DisplaySettings = typeof kDefaults;
 export type Amount = { [K in keyof DisplaySettings]: DisplaySettings[K] extends number ? K : never }[keyof DisplaySettings];
 
-const kChoices: { [K in keyof DisplaySettings]?: readonly string[] } = {
-  inside: ["own", "same", "hidden"],
-  clip: ["off", "x", "y", "z"],
-  map: ["auto", ...kMapNames],
-  scale: ["auto", "linear", "log"],
-  tool: Object.keys(kTools),
-  tipShape: ["sphere", "disc"],
-  tipContact: ["bonded", "sliding"],
-};
+// Values of the settings that are choices, by their labels.
+export const kChoices = {
+  inside: { "its own color": "own", "as outside": "same", hidden: "hidden" },
+  clip: { no: "off", "across x": "x", "across y": "y", "across z": "z" },
+  map: { "by field": "auto", viridis: "viridis", cividis: "cividis", "blue to orange": "blue_orange" },
+  scale: { "by field": "auto", linear: "linear", logarithmic: "log" },
+  tool: { "drag the body": "drag", "pin by brush": "pin", "read values": "read", "press a probe in": "probe" },
+  tipShape: { sphere: "sphere", "flat disc": "disc" },
+  tipContact: { "glued on": "bonded", sliding: "sliding" },
+} as const;
 const kLimits: { [K in Amount]?: [number, number] } = { shininess: [0, 200], clipAt: [0, 1], brush: [4, 200], tipRadius: [0, 1e9] };
 
 export class Display extends Emitter<{ changed: void; camera: void; range: void }> implements Keeper {
@@ -167,7 +165,8 @@ export class Display extends Emitter<{ changed: void; camera: void; range: void 
     for (const [key, value] of Object.entries(fieldsOf(saved))) {
       const known = key as keyof DisplaySettings;
       if (!Object.hasOwn(kDefaults, key) || typeof value !== typeof kDefaults[known]) continue;
-      if (kChoices[known] && !kChoices[known].includes(value as string)) continue;
+      const choices = kChoices[key as keyof typeof kChoices];
+      if (choices && !Object.values(choices).some((choice) => choice === value)) continue;
       if (typeof value === "number" && !Number.isFinite(value)) continue;
       const isColor = key.endsWith("Color") || key === "background";
       if (isColor && !/^#[0-9a-f]{6}$/i.test(String(value))) continue;

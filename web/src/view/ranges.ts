@@ -41,6 +41,17 @@ export class RunningRange {
   }
 }
 
+// Smallest and largest finite value; null if there is none.
+export function extremes(values: Iterable<number>): [number, number] | null {
+  let [low, high] = [Infinity, -Infinity];
+  for (const value of values) {
+    if (!Number.isFinite(value)) continue;
+    if (value < low) low = value;
+    if (value > high) high = value;
+  }
+  return low <= high ? [low, high] : null;
+}
+
 // Symmetric range around the center.
 export function about(center: number, low: number, high: number): { low: number; high: number } {
   const half = Math.max(Math.abs(high - center), Math.abs(center - low));

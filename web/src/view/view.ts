@@ -143,9 +143,17 @@ export class View {
     store.on("capture", () => this.redraw(), signal);
     display.on("changed", () => this.applyDisplay(), signal);
     display.on("camera", () => this.redraw(), signal);
-    display.on("range", () => this.recolor(), signal);
+    const recolor = (): void => {
+      this.figure.color();
+      this.redraw();
+    };
+    display.on("range", recolor, signal);
     onLook(() => this.applyDisplay(), signal);
-    if (this.side === "a") page.on("highlight", (highlights) => this.highlight(highlights), signal);
+    const highlight = (highlights: Highlight[]): void => {
+      this.highlights = highlights;
+      this.redraw();
+    };
+    if (this.side === "a") page.on("highlight", highlight, signal);
     const sizes = new ResizeObserver(() => this.redraw());
     sizes.observe(this.host);
     signal.addEventListener("abort", () => sizes.disconnect());
@@ -155,11 +163,6 @@ export class View {
   private takeState(): void {
     this.figure.takeState();
     this.screen.stage?.showTip(this.store.state?.[this.side]?.probe ?? null, this.style.accent);
-    this.redraw();
-  }
-
-  private highlight(highlights: Highlight[]): void {
-    this.highlights = highlights;
     this.redraw();
   }
 
@@ -205,11 +208,6 @@ export class View {
 
   private restyle(): void {
     this.style = readStyle(this.host, this.display.settings, this.fixedSize);
-  }
-
-  private recolor(): void {
-    this.figure.color();
-    this.redraw();
   }
 
   private size(): [number, number] {
