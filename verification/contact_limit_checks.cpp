@@ -156,12 +156,22 @@ void add_contact_limit_checks(std::vector<Check>& checks) {
        check_arch,
        {},
        {R"tex(\mu = \frac{x - f}{y})tex"}});
-  checks.push_back({"contact", "corner", "Edges slide along parallel edges",
-                    "A box slides in a corner along its edges, 1 000 steps.", "The speed is constant without friction",
-                    check_corner});
-  checks.push_back({"contact", "bullet", "A bullet does not pass through a thin plate",
+  checks.push_back({"contact",
+                    "corner",
+                    "Edges slide along parallel edges",
+                    "A box slides in a corner along its edges, 1 000 steps.",
+                    "The speed is constant without friction",
+                    check_corner,
+                    {},
+                    {R"tex(v(t) = v_0)tex"}});
+  checks.push_back({"contact",
+                    "bullet",
+                    "A bullet does not pass through a thin plate",
                     "1 000 m/s, 0.1 m per step; the plate has one layer of tets, 0.01 m thick.",
-                    "Momentum is conserved, and energy does not grow", check_bullet});
+                    "Momentum is conserved, and energy does not grow",
+                    check_bullet,
+                    {},
+                    {R"tex(p_{n+1} = p_n, \quad E_{n+1} \le E_n)tex"}});
 }
 
 }  // namespace aspic::verify

@@ -3,7 +3,7 @@
 import { Vector3 } from "three";
 import { png } from "./dom";
 import { Pack } from "./pack";
-import type { Tell } from "./program";
+import type { Send } from "./program";
 import type { Geometry, Vec3 } from "./protocol";
 import { edgesOf, normalsOf } from "./recording";
 import { Body, type Box, boxOf } from "./view/body";
@@ -164,12 +164,12 @@ function colors([low, high]: [number, number]): ColorRange {
   return { low, high, log: false };
 }
 
-export async function drawMeshPictures(query: URLSearchParams, tell: Tell): Promise<void> {
+export async function drawMeshPictures(query: URLSearchParams, send: Send): Promise<void> {
   const count = Number(query.get("meshes"));
   const painter = new Painter();
-  await tell("/count", String(count));
+  await send("/count", String(count));
   for (let index = 0; index < count; ++index) {
-    const bytes = await (await tell("/part", String(index))).arrayBuffer();
-    await tell("/frame", await painter.paint(new Pack<MeshPicture>(bytes)));
+    const bytes = await (await send("/part", String(index))).arrayBuffer();
+    await send("/frame", await painter.paint(new Pack<MeshPicture>(bytes)));
   }
 }

@@ -20,7 +20,7 @@ export function showNotices(root: HTMLElement, store: Store, page: Page): void {
   const list = element("div", { class: "notices" });
   root.append(lasting, list);
 
-  const say = (text: string, kind: "info" | "error"): void => {
+  const show = (text: string, kind: "info" | "error"): void => {
     const same = [...list.children].find((child) => child.firstChild?.textContent === text);
     same?.remove();
     const item = element("div", { class: `notice ${kind}` }, element("span", {}, text));
@@ -30,9 +30,9 @@ export function showNotices(root: HTMLElement, store: Store, page: Page): void {
     // Starts the time when the notice is drawn, so that a slow or hidden page shows it equally long.
     requestAnimationFrame(() => setTimeout(() => item.remove(), kind === "info" ? kInfoLasts : kErrorLasts));
   };
-  page.on("notice", ({ text, kind }) => say(text, kind));
+  page.on("notice", ({ text, kind }) => show(text, kind));
   page.on("cleared", () => list.replaceChildren());
-  store.on("refused", (why) => say(why, "error"));
+  store.on("refused", (why) => show(why, "error"));
 
   const showLasting = (): void => {
     const lost = store.failures ?? 0;
@@ -48,9 +48,9 @@ export function showNotices(root: HTMLElement, store: Store, page: Page): void {
 
 // Shows errors in the page's own scripts.
 export function showOwnErrors(page: Page): void {
-  const tell = (text: string): void => page.notice(`Error in this page: ${text}`, "error");
+  const report = (text: string): void => page.notice(`Error in this page: ${text}`, "error");
   addEventListener("error", (event) => {
-    if (!event.message.startsWith("ResizeObserver loop")) tell(event.message);
+    if (!event.message.startsWith("ResizeObserver loop")) report(event.message);
   });
-  addEventListener("unhandledrejection", (event) => tell(messageOf(event.reason)));
+  addEventListener("unhandledrejection", (event) => report(messageOf(event.reason)));
 }

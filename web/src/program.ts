@@ -1,7 +1,7 @@
 // Connection to the program of a page without a reader, which draws pictures: apps/viewer/browser_pictures.h.
 import { messageOf } from "./dom";
 
-export type Tell = (path: "/count" | "/frame" | "/part", body: Blob | string) => Promise<Response>;
+export type Send = (path: "/count" | "/frame" | "/part", body: Blob | string) => Promise<Response>;
 
 async function send(path: string, token: string, body: Blob | string): Promise<Response> {
   const answer = await fetch(`${path}?token=${encodeURIComponent(token)}`, { method: "POST", body });
@@ -10,7 +10,7 @@ async function send(path: string, token: string, body: Blob | string): Promise<R
 }
 
 // Draws, and reports the result to the program.
-export async function drawForProgram(draw: (query: URLSearchParams, tell: Tell) => Promise<void>): Promise<void> {
+export async function drawForProgram(draw: (query: URLSearchParams, send: Send) => Promise<void>): Promise<void> {
   const query = new URL(location.href).searchParams;
   const token = query.get("token") ?? "";
   try {

@@ -68,7 +68,7 @@ export class RecordedSource implements Source {
       case "speed":
         if (!(command.value > 0 && command.value < Infinity)) throw new Error("speed: expected a number above 0");
         this.speed = command.value;
-        return this.tellState();
+        return this.sendState();
       case "color":
         return this.color(command.field);
       case "surface":
@@ -169,7 +169,7 @@ export class RecordedSource implements Source {
   private play(playing: boolean): void {
     this.playing = playing;
     this.lastPulse = this.pulse.now();
-    this.tellState();
+    this.sendState();
     if (playing) this.pulse.next(() => this.onPulse());
   }
 
@@ -188,7 +188,7 @@ export class RecordedSource implements Source {
       this.frame = frame;
       this.sendPicture();
     }
-    this.tellState();
+    this.sendState();
     if (this.playing) this.pulse.next(() => this.onPulse());
   }
 
@@ -196,7 +196,7 @@ export class RecordedSource implements Source {
     this.frame = frame;
     this.time = this.opened().head.frames.time[frame];
     this.sendPicture();
-    this.tellState();
+    this.sendState();
   }
 
   private color(field: string): void {
@@ -255,7 +255,7 @@ export class RecordedSource implements Source {
     return Float32Array.from(touching.flatMap((vertex) => [...vectorAt(positions, vertex), pressure[vertex]]));
   }
 
-  private tellState(): void {
+  private sendState(): void {
     const { frames, steps } = this.opened().head;
     const step = frames.step[this.frame];
     const row = step > 0 ? steps[step - 1] : undefined;

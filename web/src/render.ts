@@ -3,7 +3,7 @@
 import { Vector3 } from "three";
 import { element } from "./dom";
 import { Page } from "./page";
-import type { Tell } from "./program";
+import type { Send } from "./program";
 import type { Field } from "./protocol";
 import type { RecordedSource } from "./recorded";
 import { Store } from "./store";
@@ -91,7 +91,7 @@ async function color(request: RenderRequest, source: RecordedSource, display: Di
   display.change({ fixedRange: true, low, high });
 }
 
-async function draw(request: RenderRequest, source: RecordedSource, tell: Tell): Promise<void> {
+async function draw(request: RenderRequest, source: RecordedSource, send: Send): Promise<void> {
   document.documentElement.dataset.theme = request.dark ? "dark" : "light";
   const store = new Store(source);
   const display = new Display();
@@ -108,14 +108,14 @@ async function draw(request: RenderRequest, source: RecordedSource, tell: Tell):
   if (request.color !== "") await color(request, source, display, scene.fields);
   aim(display.camera("a"), request, source, scene.up);
   const steps = stepsToShow(source.frames, request);
-  await tell("/count", String(steps.length));
+  await send("/count", String(steps.length));
   for (const step of steps) {
     view.drawNow(); // the source waits until the previous picture is drawn
     await source.request({ do: "rewind", step });
-    await tell("/frame", await view.screenshot());
+    await send("/frame", await view.screenshot());
   }
 }
 
-export function renderPictures(source: RecordedSource): (query: URLSearchParams, tell: Tell) => Promise<void> {
-  return (query, tell) => draw(renderRequest(query), source, tell);
+export function renderPictures(source: RecordedSource): (query: URLSearchParams, send: Send) => Promise<void> {
+  return (query, send) => draw(renderRequest(query), source, send);
 }

@@ -42,7 +42,7 @@ function makeTransport(store: Store, page: Page): HTMLElement {
   );
   let played = false;
   store.on("state", (state) => {
-    if ((wanted ?? played) && !state.playing) tellWhyItStopped(state, page);
+    if ((wanted ?? played) && !state.playing) explainStop(state, page);
     played = state.playing;
   });
   store.on("state", ({ playing }) => {
@@ -66,7 +66,7 @@ function makeTransport(store: Store, page: Page): HTMLElement {
 }
 
 // Explains a stop that nobody requested, such as an explicit scheme that blew up.
-function tellWhyItStopped(state: State, page: Page): void {
+function explainStop(state: State, page: Page): void {
   const words = state.a.words ?? state.b?.words;
   if (!words) return;
   const who = state.b ? (state.a.words ? "A stopped" : "B stopped") : "Stopped";

@@ -33,7 +33,7 @@ class Stub implements Source {
     });
   }
   ready(): void {}
-  say(message: ServerMessage): void {
+  emit(message: ServerMessage): void {
     this.receive({ message });
   }
 }
@@ -49,8 +49,8 @@ function opened(): { source: Stub; chosen: Chosen } {
   const store = new Store(source);
   const chosen = new Chosen(store, new Page());
   store.start();
-  source.say({ kind: "scene", side: "a", generation: 1, potentials: [] } as unknown as Scene);
-  source.say({ kind: "steps", side: "a", from: 0, steps: rows(0, 5) });
+  source.emit({ kind: "scene", side: "a", generation: 1, potentials: [] } as unknown as Scene);
+  source.emit({ kind: "steps", side: "a", from: 0, steps: rows(0, 5) });
   return { source, chosen };
 }
 
@@ -58,7 +58,7 @@ test("the newest step is chosen by default", () => {
   const { source, chosen } = opened();
   assert.equal(chosen.step, 5);
   chosen.choose("a", 2, 1);
-  source.say({ kind: "steps", side: "a", from: 5, steps: rows(5, 3) });
+  source.emit({ kind: "steps", side: "a", from: 5, steps: rows(5, 3) });
   assert.deepEqual([chosen.step, chosen.iteration, chosen.following], [2, 1, false]);
   chosen.follow(true);
   assert.equal(chosen.step, 8);
@@ -103,12 +103,12 @@ const playing = { kind: "state", playing: true, a: { step: 5, time: 0.05, iterat
 
 test("automatic questions pause, a reader's choice does not", async () => {
   const { source, chosen } = opened();
-  source.say(playing as unknown as ServerMessage);
+  source.emit(playing as unknown as ServerMessage);
   chosen.look();
   await new Promise((resolve) => setTimeout(resolve, 30));
   source.asked[0]!.answer();
   await settled();
-  source.say({ kind: "steps", side: "a", from: 5, steps: rows(5, 1) });
+  source.emit({ kind: "steps", side: "a", from: 5, steps: rows(5, 1) });
   chosen.follow(true);
   chosen.look();
   assert.equal(source.asked.length, 1);
@@ -141,7 +141,7 @@ test("answers are cached until a rewind", async () => {
   assert.equal(chosen.seen!.why, "too long ago");
   await look(4);
   assert.equal(source.asked.length, 2);
-  source.say({ kind: "steps", side: "a", from: 3, steps: rows(3, 2) });
+  source.emit({ kind: "steps", side: "a", from: 3, steps: rows(3, 2) });
   chosen.look();
   assert.equal(source.asked.length, 3);
 });
@@ -149,11 +149,11 @@ test("answers are cached until a rewind", async () => {
 test("the step under way is last, with iterations", () => {
   const { source, chosen } = opened();
   const a = { step: 5, time: 0.05, iteration: 1, iterations: [iterationRow(), iterationRow()] };
-  source.say({ kind: "state", a, b: null } as unknown as ServerMessage);
+  source.emit({ kind: "state", a, b: null } as unknown as ServerMessage);
   assert.deepEqual([chosen.step, chosen.iteration, chosen.rows().length], [6, 1, 6]);
   assert.ok(chosen.isUnderWay());
-  source.say({ kind: "steps", side: "a", from: 5, steps: rows(5, 1) });
-  source.say({
+  source.emit({ kind: "steps", side: "a", from: 5, steps: rows(5, 1) });
+  source.emit({
     kind: "state",
     a: { ...a, step: 6, iteration: -1, iterations: undefined },
     b: null,
@@ -165,6 +165,6 @@ test("the step under way is last, with iterations", () => {
 test("a rewind chooses the newest remaining step", () => {
   const { source, chosen } = opened();
   chosen.choose("a", 5, 1);
-  source.say({ kind: "steps", side: "a", from: 2, steps: [] });
+  source.emit({ kind: "steps", side: "a", from: 2, steps: [] });
   assert.equal(chosen.step, 2);
 });

@@ -27,7 +27,7 @@ class FakeSocket {
     this.readyState = 1;
     this.call(this.onopen, {});
   }
-  says(message: unknown): void {
+  sends(message: unknown): void {
     this.call(this.onmessage, { data: JSON.stringify(message) });
   }
   closed(reason = ""): void {
@@ -58,8 +58,8 @@ test("each answer reaches only its question", async () => {
   const first = source.ask<string>({ ask: "worst", side: "a" });
   const second = source.request({ do: "reset" });
   const ids = sockets[0].sent.map((text) => (JSON.parse(text) as { id: number }).id);
-  sockets[0].says({ kind: "reply", id: ids[1], reply: "two" });
-  sockets[0].says({ kind: "reply", id: ids[0], reply: "one" });
+  sockets[0].sends({ kind: "reply", id: ids[1], reply: "two" });
+  sockets[0].sends({ kind: "reply", id: ids[0], reply: "one" });
   assert.deepEqual(await Promise.all([first, second]), ["one", "two"]);
   assert.deepEqual(received, [{ failures: 0 }]);
 });
@@ -67,9 +67,9 @@ test("each answer reaches only its question", async () => {
 test("a refusal rejects with the program's message", async () => {
   const { source, sockets, received } = connect();
   const asked = source.request({ do: "load", scene: "nowhere.toml" });
-  sockets[0].says({ kind: "refused", id: 1, why: "no such file" });
+  sockets[0].sends({ kind: "refused", id: 1, why: "no such file" });
   await assert.rejects(asked, /no such file/);
-  sockets[0].says({ kind: "refused", id: null, why: "not now" });
+  sockets[0].sends({ kind: "refused", id: null, why: "not now" });
   assert.deepEqual(received.at(-1), { message: { kind: "refused", id: null, why: "not now" } });
 });
 

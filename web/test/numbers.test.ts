@@ -29,7 +29,7 @@ test("short numbers have no trailing zeros", () => {
   assert.equal(plural(0, "iteration"), "0 iterations");
 });
 
-test("ticks tell their neighbors apart", () => {
+test("ticks differ from their neighbors", () => {
   assert.deepEqual(tickTexts([-0.5, 0, 0.5, 1]), ["−0.5", "0", "0.5", "1.0"]);
   assert.deepEqual(tickTexts([1000, 1500, 2000], 1000), ["1.0", "1.5", "2.0"]);
   assert.deepEqual(tickTexts([0, 2500, 5000, 7500], 1000), ["0", "2.5", "5.0", "7.5"]);

@@ -18,13 +18,13 @@ async function startProgram(scene, more = []) {
   const child = spawn(aspic, ["view", join(root, scene), "--no-browser", ...more]);
   program = child;
   return new Promise((found, failed) => {
-    let said = "";
+    let output = "";
     child.stdout.on("data", (chunk) => {
-      said += chunk;
-      const line = said.match(/http:\S+(?=\s)/);
+      output += chunk;
+      const line = output.match(/http:\S+(?=\s)/);
       if (line) found(line[0]);
     });
-    child.on("exit", (code) => failed(new Error(`aspic view ended with ${code}: ${said}`)));
+    child.on("exit", (code) => failed(new Error(`aspic view ended with ${code}: ${output}`)));
   });
 }
 

@@ -104,12 +104,12 @@ function report(fit: Fit): HTMLElement {
 
 function found(fit: Fit): HTMLElement {
   const { head } = fit;
-  const said = verdict(head);
+  const judged = verdict(head);
   const next = head.nextPoke ? element("div", { class: "words next" }, element("h3", {}, "Next best poke"), element("p", {}, head.nextPoke.words)) : null;
   return section(
     "Result",
     "",
-    element("div", { class: `verdict ${said.kind}` }, element("p", {}, said.text), said.reasons.length > 0 ? listOf(said.reasons) : null),
+    element("div", { class: `verdict ${judged.kind}` }, element("p", {}, judged.text), judged.reasons.length > 0 ? listOf(judged.reasons) : null),
     cards(fit),
     element("div", { class: "columns" }, element("div", {}, valueTable(head.quantities)), element("div", {}, words("Warnings", head.warnings, "warnings"), next, words("Assumptions", head.notes, ""))),
   );

@@ -187,10 +187,10 @@ export class EnergyPanel implements Panel {
       return this.configure();
     const { x, columns } = merged(...this.shown().map(({ ledger }) => this.table(ledger)));
     this.chart.show(x, this.log.input.checked ? columns.map((column) => column.map(magnitude)) : columns);
-    this.tell();
+    this.describe();
   }
 
-  private tell(): void {
+  private describe(): void {
     const texts = this.shown().map(({ side, ledger }) => {
       const { drift, scale } = ledger.drift();
       const name = this.ledgers.b ? `${this.store.label(side)}: ` : "";

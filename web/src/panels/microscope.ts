@@ -9,7 +9,7 @@ import { button, element } from "../dom";
 import { plural, short, withUnit } from "../plots/numbers";
 import { Rows, type RowColumn } from "../plots/rows";
 import type { Search } from "../plots/search";
-import { sentence, stepText, totalSeconds } from "../plots/words";
+import { sentence, stepText, totalSeconds } from "../plots/summaries";
 import { excess } from "./certificate";
 import { kCharts, StepChart, type ChartName } from "./stepCharts";
 
@@ -121,7 +121,7 @@ export class MicroscopePanel implements Panel {
     this.showSides();
     this.steps.show(rows.length, index < 0 ? -1 : rows.length - 1 - index);
     this.iterations.show(this.chosen.row()?.iterations.length ?? 0, this.chosen.iteration);
-    this.tell();
+    this.describe();
     const search = this.searchNow();
     for (const chart of this.charts) chart.show(search);
   }
@@ -137,7 +137,7 @@ export class MicroscopePanel implements Panel {
     this.sides.select.value = this.chosen.side;
   }
 
-  private tell(): void {
+  private describe(): void {
     const row = this.chosen.row();
     const implicit = this.chosen.isImplicit();
     const none = `${implicit ? "" : "This integrator does not minimize; "}no step has been computed yet.`;

@@ -8,7 +8,7 @@ import type { Palette } from "../plots/palette";
 import { SearchChart, type Search } from "../plots/search";
 import { nearest, thinned } from "../plots/table";
 import { paintVerticalLine } from "../plots/painting";
-import { aboveLowest } from "../plots/words";
+import { aboveLowest } from "../plots/summaries";
 import type { IterationRow, MaybeNumber, StepRow } from "../protocol";
 import type uPlot from "uplot";
 

@@ -14,14 +14,14 @@ export class Screen {
     try {
       this.stage = new Stage(this.canvas);
     } catch {
-      this.say(
+      this.showMessage(
         "This browser cannot draw in 3-D: WebGL 2 is missing or disabled. Enable hardware acceleration in its " +
           "settings, or use a current Firefox, Chromium or Safari. Plots and numbers work without it.",
       );
     }
   }
 
-  say(words: string): void {
+  showMessage(words: string): void {
     this.message.textContent = words;
     this.message.hidden = words === "";
   }

@@ -126,7 +126,7 @@ export class Touch {
     if (gesture.kind === "turn" || gesture.kind === "pan") {
       const clicked = gesture.moved < kClick;
       gesture.moved += Math.abs(dx) + Math.abs(dy);
-      if (clicked && gesture.moved >= kClick && gesture.hit && !gesture.reads) this.tellWhyNot();
+      if (clicked && gesture.moved >= kClick && gesture.hit && !gesture.reads) this.explainRefusal();
       if (gesture.kind === "pan" || rig.mode === "flat") rig.pan(dx, dy, host.clientHeight);
       else rig.turn(dx, dy);
     } else if (gesture.kind === "pinch") {
@@ -225,7 +225,7 @@ export class Touch {
     return store.source.live && store.steers && store.side(this.view.side) !== null;
   }
 
-  private tellWhyNot(): void {
+  private explainRefusal(): void {
     const { store, page } = this.view;
     if (this.mayTouch() || this.view.display.settings.tool === "read") return;
     if (!store.source.live) page.notice("This run is recorded; the body cannot be dragged.");

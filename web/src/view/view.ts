@@ -26,7 +26,7 @@ export class View {
   private readonly card: Card;
   private style!: Style;
   private readonly figure: Figure;
-  private toldUnnumbered = false;
+  private reportedUnnumbered = false;
   private highlights: Highlight[] = [];
   private readonly pace: Pace;
   private frame = 0; // id of the requested frame
@@ -122,13 +122,13 @@ export class View {
   private restored(): void {
     setTimeout(() => {
       if (this.listeners.signal.aborted) return;
-      this.screen.say("");
+      this.screen.showMessage("");
       this.applyDisplay();
     });
   }
 
   private listen(): void {
-    const lost = (): void => this.screen.say("The graphics card is busy; the picture will return.");
+    const lost = (): void => this.screen.showMessage("The graphics card is busy; the picture will return.");
     this.screen.canvas.addEventListener("webglcontextlost", lost, { signal: this.listeners.signal });
     this.screen.canvas.addEventListener("webglcontextrestored", () => this.restored(), { signal: this.listeners.signal });
     const mine = (listener: () => void) => (side: SideName) => side === this.side && listener();
@@ -194,16 +194,16 @@ export class View {
   private applyDisplay(): void {
     this.restyle();
     this.figure.apply(this.style);
-    this.tellUnnumbered();
+    this.reportUnnumbered();
     this.redraw();
   }
 
   // Reports once that the fine skin has no numbers for the requested labels.
-  private tellUnnumbered(): void {
+  private reportUnnumbered(): void {
     const missing = this.display.settings.vertexLabels && this.figure.body?.numbered === false;
-    if (missing && !this.toldUnnumbered)
+    if (missing && !this.reportedUnnumbered)
       this.page.notice("Points of the fine skin have no numbers; choose the cage of tets to see numbers.");
-    this.toldUnnumbered = missing;
+    this.reportedUnnumbered = missing;
   }
 
   private restyle(): void {

@@ -16,7 +16,7 @@ const make = (...words) => {
 };
 const scene = join(root, "scenes/capture/two_layers.toml");
 make("capture", scene, "-o", data, "--pokes", "2", "--depths", "3", "--markers", "40", "--set", "shape.box.cells=[6, 6, 4]", "-q");
-const said = make("fit", data, "-o", material, "--unknown", "young=handles:8", "--known", "poisson=0.4", "--allow-unconverged");
+const output = make("fit", data, "-o", material, "--unknown", "young=handles:8", "--known", "poisson=0.4", "--allow-unconverged");
 
 async function open() {
   const opened = await openPage(pathToFileURL(join(folder, "layers.fit", "report.html")).href, { offline: true, keepsPixels: true });
@@ -28,8 +28,8 @@ test("the report repeats the terminal's summary", async () => {
   const { page, close } = await open();
   const found = page.getByRole("region", { name: "Result" });
   await found.locator(".verdict").waitFor();
-  const interval = said.match(/softest tet +[\d.]+ kPa +95 %: ([\d.]+) kPa to/);
-  assert.ok(interval, said);
+  const interval = output.match(/softest tet +[\d.]+ kPa +95 %: ([\d.]+) kPa to/);
+  assert.ok(interval, output);
   await found.getByRole("row").filter({ hasText: "softest tet" }).waitFor();
   assert.equal(await found.locator(".card").count(), 5);
   await page.getByRole("heading", { name: "Next best poke" }).waitFor();

@@ -170,7 +170,7 @@ export async function openPage(address, { size = kSize, watchRequests = true, ke
   const origin = new URL(address).origin;
   page.on("request", (request) => {
     const own = request.url() === address || request.url().startsWith(`${origin}/`) || /^(data|blob):/.test(request.url());
-    if (watchRequests && !own) errors.push(`asked for ${request.url()}`);
+    if (watchRequests && !own) errors.push(`requested ${request.url()}`);
   });
   page.on("websocket", (socket) => {
     socket.on("framereceived", ({ payload }) => heard.take(payload));

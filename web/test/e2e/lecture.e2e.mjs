@@ -20,20 +20,20 @@ test("each lecture page opens scene and panel", async () => {
   assert.ok(lessons.length > 10, `${lessons.length} pages`);
   assert.equal(await page.locator("#left ol.lessons li").count(), lessons.length);
   for (const [i, lesson] of lessons.entries()) {
-    const tell = `page ${lesson.pages}, ${lesson.title}`;
+    const context = `page ${lesson.pages}, ${lesson.title}`;
     const entry = page.locator("#left ol.lessons li button").nth(i);
     if (lesson.missing) {
-      assert.ok(lesson.missing.length > 10, tell);
+      assert.ok(lesson.missing.length > 10, context);
       continue;
     }
     const reported = heard.messages.length;
-    const answer = await answered(opened, tell, isLesson, () => entry.click());
-    assert.equal(answer.kind, "reply", `${tell}: ${answer.why}`);
+    const answer = await answered(opened, context, isLesson, () => entry.click());
+    assert.equal(answer.kind, "reply", `${context}: ${answer.why}`);
     await page.locator("#left .lesson h2").filter({ hasText: lesson.title }).waitFor();
-    assert.ok(lesson.look.length > 20 && lesson.claim.length > 5, tell);
+    assert.ok(lesson.look.length > 20 && lesson.claim.length > 5, context);
     await page.locator(`[role=tab][aria-selected="true"]`, { hasText: { energy: "Energy", microscope: "Microscope", landscape: "Landscape", functions: "Functions" }[lesson.panel] }).waitFor();
-    if (lesson.function) await until(`the function of ${tell}`, () => heard.messages.slice(reported).some(({ reply }) => reply?.formula !== undefined));
-    await until(`a picture of ${tell}`, ({ pictures, geometries }) => pictures.a && pictures.a.generation === geometries.a.generation);
+    if (lesson.function) await until(`the function of ${context}`, () => heard.messages.slice(reported).some(({ reply }) => reply?.formula !== undefined));
+    await until(`a picture of ${context}`, ({ pictures, geometries }) => pictures.a && pictures.a.generation === geometries.a.generation);
     if (i % 6 === 1) await keepPicture(page, `lecture_${lesson.id}`);
   }
   await close();

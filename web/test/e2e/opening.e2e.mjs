@@ -16,8 +16,8 @@ const lastHash = ({ heard }) => heard.messages.findLast(({ kind, steps }) => kin
 // State after `steps` of a run on the command line.
 function hashOfRun(scene, steps) {
   const out = join(temporaryFolder(), "out");
-  const said = execFileSync(aspic, ["run", scene, "--steps", String(steps), "--out", out], { encoding: "utf8", stdio: ["ignore", "pipe", "pipe"] });
-  return said.match(/state +(\w+) after/)[1];
+  const output = execFileSync(aspic, ["run", scene, "--steps", String(steps), "--out", out], { encoding: "utf8", stdio: ["ignore", "pipe", "pipe"] });
+  return output.match(/state +(\w+) after/)[1];
 }
 
 // Files that a reader drags from a folder.

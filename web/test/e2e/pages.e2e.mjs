@@ -122,17 +122,17 @@ test("malformed messages are refused, pages continue", async () => {
 
 test("malformed HTTP requests do not stop the server", async () => {
   const { hostname, port, search } = new URL(program.address);
-  const say = (text) => new Promise((resolve) => {
+  const request = (text) => new Promise((resolve) => {
     let heard = "";
     const socket = connect(Number(port), hostname, () => socket.write(text));
     socket.on("data", (chunk) => (heard += chunk));
     socket.on("close", () => resolve(heard));
     socket.on("error", () => resolve(heard));
   });
-  assert.match(await say("nonsense\r\n\r\n"), /^HTTP\/1.1 400|^$/);
-  assert.match(await say(`GET /${search} HTTP/1.1\r\nHost: evil.test:${port}\r\n\r\n`), /^HTTP\/1.1 403/);
-  assert.match(await say(`GET /${search} HTTP/1.1\r\nHost: 127.0.0.1:${port}\r\nX: ${"x".repeat(100000)}\r\n\r\n`), /^HTTP\/1.1 431|^$/);
-  assert.match(await say(`GET /../../etc/passwd${search} HTTP/1.1\r\nHost: 127.0.0.1:${port}\r\n\r\n`), /^HTTP\/1.1 40[034]/);
+  assert.match(await request("nonsense\r\n\r\n"), /^HTTP\/1.1 400|^$/);
+  assert.match(await request(`GET /${search} HTTP/1.1\r\nHost: evil.test:${port}\r\n\r\n`), /^HTTP\/1.1 403/);
+  assert.match(await request(`GET /${search} HTTP/1.1\r\nHost: 127.0.0.1:${port}\r\nX: ${"x".repeat(100000)}\r\n\r\n`), /^HTTP\/1.1 431|^$/);
+  assert.match(await request(`GET /../../etc/passwd${search} HTTP/1.1\r\nHost: 127.0.0.1:${port}\r\n\r\n`), /^HTTP\/1.1 40[034]/);
   const one = await openSession(program);
   await one.close();
 });

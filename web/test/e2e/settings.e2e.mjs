@@ -52,8 +52,8 @@ test("every setting accepts another value", async () => {
     const setting = settingOf(heard, key);
     if (!setting) continue; // belongs to a choice made before
     const row = rowOf(page, key);
-    const tell = `${key} (${setting.kind})`;
-    assert.equal(await row.count(), 1, tell);
+    const context = `${key} (${setting.kind})`;
+    assert.equal(await row.count(), 1, context);
     await row.evaluate((element) => element.closest(".lil-gui.lil-closed")?.querySelector(".lil-title").click());
     let [wanted, answer] = [null, null];
     if (setting.kind === "number" || setting.kind === "integer") {
@@ -64,7 +64,7 @@ test("every setting accepts another value", async () => {
       answer = await set(opened, key, () => typeInto(row.locator("input[type=text]").first(), String(wanted[0])));
     } else if (setting.kind === "choice") {
       wanted = setting.choices.find((choice) => choice !== setting.value);
-      assert.ok(wanted !== undefined, tell);
+      assert.ok(wanted !== undefined, context);
       answer = await set(opened, key, () => row.locator("select").selectOption(wanted));
     } else if (setting.kind === "switch") {
       wanted = !setting.value;
@@ -74,11 +74,11 @@ test("every setting accepts another value", async () => {
       answer = await set(opened, key, () => typeInto(row.locator("input[type=text]").first(), "2 * (1 + X)"));
     }
     if (answer.kind === "refused") {
-      assert.ok(answer.why.length > 15, `${tell}: refused in words, not by '${answer.why}'`);
+      assert.ok(answer.why.length > 15, `${context}: refused with a message, not by '${answer.why}'`);
       await page.locator(".notice.error").first().waitFor();
-      assert.ok(same(settingOf(heard, key).value, setting.value), `${tell}: refused and changed`);
+      assert.ok(same(settingOf(heard, key).value, setting.value), `${context}: refused and changed`);
     } else if (setting.kind !== "text") {
-      assert.ok(same(settingOf(heard, key)?.value, wanted), `${tell}: ${JSON.stringify(wanted)} became ${JSON.stringify(settingOf(heard, key)?.value)}`);
+      assert.ok(same(settingOf(heard, key)?.value, wanted), `${context}: ${JSON.stringify(wanted)} became ${JSON.stringify(settingOf(heard, key)?.value)}`);
     }
   }
   await backToTheScene(opened);

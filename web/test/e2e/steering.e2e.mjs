@@ -64,8 +64,8 @@ test("a dragged body follows the mouse with force", async () => {
   await page.mouse.down();
   await page.mouse.move(x + 30, y - 80, { steps: 6 });
   await frames(page);
-  const isTold = (target) => target && heard.sent.findLast((text) => JSON.parse(text).do === "move") === JSON.stringify({ do: "move", target });
-  await until("the spring's end", ({ state }) => isTold(state.a.grab?.target));
+  const isSent = (target) => target && heard.sent.findLast((text) => JSON.parse(text).do === "move") === JSON.stringify({ do: "move", target });
+  await until("the spring's end", ({ state }) => isSent(state.a.grab?.target));
   assert.ok(length(minus(heard.state.a.grab.target, heard.state.a.grab.point)) > 0.01);
   const held = heard.state.a.grab;
   const pull = minus(held.target, held.point);

@@ -1,6 +1,6 @@
 import assert from "node:assert/strict";
 import { test } from "node:test";
-import { aboveLowest, pace, stepText, totalSeconds } from "../src/plots/words";
+import { aboveLowest, pace, stepText, totalSeconds } from "../src/plots/summaries";
 import { iterationRow, stepRow } from "./rowsOfSteps";
 
 const withNorms = (norms: number[]): ReturnType<typeof stepRow> =>

@@ -1,4 +1,4 @@
-// Sentences about a minimization that say no more than its numbers.
+// Sentences about a minimization that follow from its numbers.
 import type { IterationRow, MaybeNumber, StepRow } from "../protocol";
 import { statusName } from "../names";
 import { plural, short, withUnit } from "./numbers";
