@@ -56,6 +56,7 @@ export class SurfaceView {
     this.shown = content;
     this.legend.replaceChildren(...(content ? [legendOf(content.signs)] : []));
     this.build();
+    this.fit(); // the box may have other proportions
   }
 
   private build(): void {
