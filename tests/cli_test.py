@@ -78,7 +78,7 @@ class Materials(CommandLine):
 
     def test_json(self):
         listed = json.loads(self.aspic("materials", "--json").stdout)
-        self.assertTrue(all(m["name"] and m["formula"] for m in listed))
+        self.assertTrue(all(m["name"] and m["formula"] and r"\psi =" in m["tex"][0] for m in listed))
 
     def test_misspelled_name_is_corrected(self):
         self.assertIn("did you mean 'neo_hookean'", self.aspic("materials", "neo_hokean", code=2).stderr)

@@ -180,6 +180,13 @@ class Verify(CommandLine):
         self.assertIn("<svg", page)
         self.assertNotRegex(page, r'(src|href)="http')
 
+    def test_page_has_the_formulas_of_a_reference(self):
+        self.verify("--only", "free_fall")
+        self.assertIn("n (n + 1)", self.results()[0]["formulas"][0])
+        page = (self.folder / "out/verify/index.html").read_text()
+        shown = "<math" if "render" in self.aspic("--help").stdout else "tfrac12 g h^2"
+        self.assertEqual(page.count(shown), 3)
+
     def test_page_has_formulas_above_material_checks(self):
         self.verify("--only", "uniaxial_table")
         page = (self.folder / "out/verify/index.html").read_text()
