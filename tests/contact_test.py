@@ -296,15 +296,19 @@ plane = {}
         return result
 
     def test_eight_spheres_in_one_place_come_apart(self):
-        ball = "[[body]]\nname = \"ball{}\"\nshape = {{ sphere = {{ radius = 0.1, size = 0.08 }} }}\ntranslate = [{}, {}, {}]\n"
+        ball = '[[body]]\nname = "ball{}"\nshape = {{ sphere = {{ radius = 0.1, size = 0.08 }} }}\ntranslate = [{}, {}, {}]\n'
         places = [(x, y, z) for x in (-.03, .03) for y in (-.025, .025) for z in (-.02, .02)]
-        done = self.run_scene("gravity = [0, 0, 0]\n[time]\nstep = 0.01\nduration = 0.02\n[output]\nevery = 0.01\n[contact]\n"
-                              "start = \"inflate\"\n" + "".join(ball.format(i, *place) for i, place in enumerate(places)))
-        self.assertEqual(done.returncode, 0, done.stderr)
-        frames = [exact.body_surfaces(p) for p in sorted((self.folder / "run/frames").glob("body_*.vtu"))]
-        self.assertEqual(contact_scenes.surface_faults(frames, [], []), [])
-        for volume in self.volumes(frames[0]):
-            self.assertAlmostEqual(volume / (4 / 3 * math.pi * .1 ** 3), 1, delta=.2)  # a polyhedron
+        start = []
+        for count in (1, 8):
+            done = self.run_scene('gravity = [0, 0, 0]\n[time]\nstep = 0.01\nduration = 0.02\n[output]\nevery = 0.01\n[contact]\n'
+                                  'start = "inflate"\n' + "".join(ball.format(i, *place) for i, place in enumerate(places[:count])))
+            self.assertEqual(done.returncode, 0, done.stderr)
+            frames = [exact.body_surfaces(p) for p in sorted((self.folder / "run/frames").glob("body_*.vtu"))]
+            self.assertEqual(contact_scenes.surface_faults(frames, [], []), [])
+            start.append(self.volumes(frames[0]))
+        self.assertEqual(len(start[1]), 8)
+        for volume in start[1]:
+            self.assertAlmostEqual(volume / start[0][0], 1, delta=.02)
 
     def test_default_and_hopeless_overlap_are_refused(self):
         for old, new, words in (('"inflate"', '"apart"', "cube and ball near"),
