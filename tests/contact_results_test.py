@@ -235,6 +235,22 @@ class Units(CommandLine):
                     self.assertLess(abs(int(row["iterations"]) - int(known["iterations"])), 2, row["step"])
 
 
+class Commands(CommandLine):
+    def setUp(self):
+        super().setUp()
+        self.write("scene.toml", in_units(1, 1))
+
+    def test_methods_agree_with_friction(self):
+        text = self.aspic("compare", "scene.toml", "--methods", "newton,newton:clamped:cholesky", "--step", "14").stdout
+        self.assertEqual(text.count("same minimizer"), 2, text)
+
+    def test_derivatives_are_correct_in_contact(self):
+        text = self.aspic("check", "scene.toml", "--derivatives").stdout
+        for term in ("contact", "friction", "E"):
+            for state in ("start", "deformed", "touching"):
+                self.assertRegex(text, rf"(?m)^{term} +{state} .* passed$")
+
+
 class Failures(CommandLine):
     """Steps that contact makes fail are explained by it, with numbers."""
 

@@ -2,6 +2,7 @@
 """Hard cases of contact through the program, with exact checks of every frame. tools/contact_cases runs longer ones.
 
 usage: ASPIC=path/to/aspic contact_test.py [TestCase...]"""
+import dataclasses
 import math
 import pathlib
 import shutil
@@ -345,6 +346,9 @@ class Extremes(Folder):
 
     def test_parallel_edges(self):
         self.run_cases(contact_cases.sliding_edges(60))
+
+    def test_friction_at_round_off_ends(self):
+        self.run_cases([dataclasses.replace(contact_cases.blow(9), codes=(0,))])
 
     def test_random_impacts(self):
         self.run_cases(contact_cases.GROUPS["impacts"](8))

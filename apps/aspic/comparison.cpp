@@ -167,7 +167,8 @@ class Comparer {
     const bool is_static = simulation_.integrator().is_static();
     result.allowed_distance = is_static ? INFINITY : gradients / std::sqrt(smallest_mass_eigenvalue(mass));
     const double noise = 1e-12 * std::abs(reference.objective);
-    const bool energies_agree = std::abs(excess) <= gradients * std::sqrt(norm) + noise;
+    // Normal forces of friction lag behind, so that each method minimizes its own E.
+    const bool energies_agree = simulation_.model().friction || std::abs(excess) <= gradients * std::sqrt(norm) + noise;
     result.same_minimizer = is_success(result.report.status) && energies_agree &&
                             (result.mass_distance <= result.allowed_distance || result.distance <= 1e-12 * size());
   }

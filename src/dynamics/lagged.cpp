@@ -1,6 +1,7 @@
 #include "dynamics/lagged.h"
 
 #include <algorithm>
+#include <limits>
 
 #include "dynamics/lead_pins.h"
 
@@ -10,6 +11,9 @@ namespace {
 constexpr int kMostPasses = 50;
 constexpr double kRough = 1e4;      // first tolerance, relative to the one asked for
 constexpr double kReduction = 0.3;  // of the forces by one pass
+constexpr double kProgress = 0.9;   // passes that reduce the forces by less are stalled
+constexpr double kNoise = 100;      // forces below this multiple of their rounding error are noise
+constexpr int kStalled = 3;         // passes that end in noise before the step ends there
 
 }  // namespace
 
@@ -27,7 +31,8 @@ MinimizeReport minimize_lagged(const StepTools& tools, const MinimizeOptions& op
   rough.tolerance = kRough * options.tolerance;
   none.max_iterations = 0;
   MinimizeReport report = minimize(initial, rough);
-  int passes = 1;
+  int passes = 1, stalled = 0;
+  double least = std::numeric_limits<double>::infinity();
   for (; is_success(report.status); ++passes) {
     tools.E.update_lagged(initial.x);
     const auto add = [&](const MinimizeReport& next) {
@@ -35,8 +40,16 @@ MinimizeReport minimize_lagged(const StepTools& tools, const MinimizeOptions& op
       report = next;
       add_work(before, report);
     };
+    const MinimizeReport solved = report;
     add(minimize({initial.x}, none));
     if (report.status != Status::iteration_limit) break;
+    stalled = report.reached < kProgress * least ? 0 : stalled + 1;
+    least = std::min(least, report.reached);
+    const bool is_noise = report.reached <= kNoise * tools.E.scales().gradient_round_off;
+    if (solved.status == Status::round_off && is_noise && stalled == kStalled) {
+      report.status = Status::round_off;
+      break;
+    }
     if (passes == kMostPasses) {
       report.status = Status::inaccurate;
       break;
