@@ -88,16 +88,17 @@ void check_elastica(const Subject& subject, Findings& found) {
 }  // namespace
 
 void add_bending_checks(std::vector<Check>& checks) {
-  checks.push_back({"statics",
-                    "elastica",
-                    "Large deflection of a cantilever",
-                    "L / h = 40, nu = 0, a dead load at the tip. Linear tets lock in shear: the limit is judged, and "
-                    "the trend.",
-                    "The elastica, by elliptic integrals",
-                    check_elastica,
-                    {"Bisshopp1945"},
-                    {R"tex(E I\, \theta'' + P \cos \theta = 0, \quad \theta(0) = 0, \quad \theta'(L) = 0)tex",
-                     R"tex(w(L) = \int_0^L \sin \theta \, ds)tex"}});
+  checks.push_back(
+      {"statics",
+       "elastica",
+       "Large deflection of a cantilever",
+       "L / h = 40, nu = 0, a dead load at the tip. Linear tets lock in shear: the limit is judged, and "
+       "the trend.",
+       "The elastica, by elliptic integrals",
+       check_elastica,
+       {"Bisshopp1945"},
+       {R"tex(E I \frac{d^2 \theta}{ds^2} + P \cos \theta = 0, \quad \theta(0) = 0, \quad \frac{d \theta}{ds}(L) = 0)tex",
+        R"tex(w(L) = \int_0^L \sin \theta \, ds)tex"}});
 }
 
 }  // namespace aspic::verify

@@ -79,8 +79,8 @@ void add_cylinder_checks(std::vector<Check>& checks) {
        "material in principal stretches",
        check_cylinder,
        {"Rivlin1949", "Ogden1997"},
-       {R"tex(x = (r \cos(\Theta + \tau Z),\; r \sin(\Theta + \tau Z),\; Z), \quad r = r(R))tex",
-        R"tex(\frac{d}{dR} \left(R\, \frac{\partial \psi}{\partial r'}\right) = R\, \frac{\partial \psi}{\partial r}, \quad \frac{\partial \psi}{\partial r'}(1) = 0)tex"}});
+       {R"tex(x = (r \cos(\Theta + \tau Z),\; r \sin(\Theta + \tau Z),\; Z), \quad r = r(R), \quad s = \frac{dr}{dR})tex",
+        R"tex(\frac{d}{dR} \left(R\, \frac{\partial \psi}{\partial s}\right) = R\, \frac{\partial \psi}{\partial r}, \quad \frac{\partial \psi}{\partial s}(1) = 0)tex"}});
 }
 
 }  // namespace aspic::verify

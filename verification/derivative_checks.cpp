@@ -58,7 +58,7 @@ void add_derivative_checks(std::vector<Check>& checks) {
                     "Taylor's theorem",
                     check_differences,
                     {},
-                    {R"tex(\frac{f(x + h) - f(x - h)}{2 h} = f'(x) + O(h^2))tex"}});
+                    {R"tex(\frac{f(x + h) - f(x - h)}{2 h} = \frac{df}{dx} + O(h^2))tex"}});
 }
 
 }  // namespace aspic::verify

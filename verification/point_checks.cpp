@@ -196,7 +196,7 @@ void add_point_checks(std::vector<Check>& checks) {
                     "Taylor's theorem",
                     check_slopes,
                     {},
-                    {R"tex(\frac{f(x + h) - f(x - h)}{2 h} = f'(x) + O(h^2))tex"}});
+                    {R"tex(\frac{f(x + h) - f(x - h)}{2 h} = \frac{df}{dx} + O(h^2))tex"}});
   checks.push_back({"derivatives", "edges", "Where a material has no derivative",
                     "Barriers refuse inverted and collapsed tets; elsewhere everything stays finite.",
                     "The documentation of each material", check_edges});

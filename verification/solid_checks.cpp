@@ -201,8 +201,8 @@ void add_solid_checks(std::vector<Check>& checks) {
        "material in principal stretches",
        check_sphere,
        {"Ogden1997"},
-       {R"tex(\frac{d}{dR} \left(R^2 \frac{\partial \psi}{\partial r'}\right) = R^2 \frac{\partial \psi}{\partial r}, \quad \psi = \psi(r', r / R, r / R))tex",
-        R"tex(r(1) = 1.5, \quad \frac{\partial \psi}{\partial r'}(2) = 0)tex"}});
+       {R"tex(\frac{d}{dR} \left(R^2 \frac{\partial \psi}{\partial s}\right) = R^2 \frac{\partial \psi}{\partial r}, \quad \psi = \psi(s, r / R, r / R), \quad s = \frac{dr}{dR})tex",
+        R"tex(r(1) = 1.5, \quad \frac{\partial \psi}{\partial s}(2) = 0)tex"}});
   checks.push_back(
       {"statics",
        "half_space",

@@ -190,8 +190,8 @@ void add_vibration_checks(std::vector<Check>& checks) {
        "Timoshenko's beam with the shear factor 5/6, and Euler and Bernoulli's for a slender one",
        check_beam,
        {"Timoshenko1921"},
-       {R"tex(\tfrac56 G A\, (w' - \varphi)' + \rho A\, \omega^2 w = 0)tex",
-        R"tex(E I\, \varphi'' + \tfrac56 G A\, (w' - \varphi) + \rho I\, \omega^2 \varphi = 0)tex",
+       {R"tex(\tfrac56 G A\, \frac{d}{dx} \left(\frac{dw}{dx} - \varphi\right) + \rho A\, \omega^2 w = 0)tex",
+        R"tex(E I \frac{d^2 \varphi}{dx^2} + \tfrac56 G A \left(\frac{dw}{dx} - \varphi\right) + \rho I\, \omega^2 \varphi = 0)tex",
         R"tex(f_k = \frac{\beta_k^2}{2 \pi L^2} \sqrt{\frac{E I}{\rho A}}, \quad \cos \beta_k \cosh \beta_k = -1 \quad \text{(slender)})tex"}});
   checks.push_back({"vibration",
                     "tapered_membrane",

@@ -18,7 +18,7 @@ const column = (title: string): (typeof kColumns)[number] => kColumns.find((c) =
 
 test("worst rows come first, ties by time", () => {
   const order = (title: string): number[] => listed(kSteps, column(title), false).map(({ step }) => step);
-  assert.deepEqual(order("residual / wanted"), [2, 1, 3]);
+  assert.deepEqual(order("residual / threshold"), [2, 1, 3]);
   assert.deepEqual(order("status"), [2, 1, 3]);
   assert.deepEqual(order("min det F"), [3, 1, 2]);
   assert.deepEqual(order("ledger error [J]"), [2, 1, 3]);
@@ -63,7 +63,7 @@ test("a hash is shortened, its tooltip complete", () => {
 test("bad values are marked", () => {
   const bad = (row: StepRow): string[] => kColumns.filter((column) => column.isBad?.(row)).map(({ title }) => title);
   assert.deepEqual(bad(kSteps[0]), []);
-  assert.deepEqual(bad(kSteps[1]), ["status", "residual / wanted", "energy bound [J]"]);
+  assert.deepEqual(bad(kSteps[1]), ["status", "residual / threshold", "energy bound [J]"]);
   assert.deepEqual(bad(row(4, { min_det_F: -0.5 })), ["min det F"]);
 });
 

@@ -58,9 +58,9 @@ export const kColumns: Column[] = [
     isBad: (row) => !row.converged,
   },
   largestFirst("residual [N]", "norm of M a + dV/dx + dD/dx over free vertices", (row) => row.residual),
-  { title: "wanted [N]", meaning: "largest residual of a converged step", value: (row) => row.residual_threshold || null },
+  { title: "threshold [N]", meaning: "largest residual of a converged step", value: (row) => row.residual_threshold || null },
   {
-    ...largestFirst("residual / wanted", "above 1: the step missed the threshold", excess),
+    ...largestFirst("residual / threshold", "above 1: the step missed the threshold", excess),
     isBad: (row) => (excess(row) ?? 0) > 1,
   },
   largestFirst(
