@@ -136,14 +136,11 @@ void add_components(const std::vector<std::vector<int>>& components, const std::
                     Findings& findings) {
   const auto smaller = [](const auto& a, const auto& b) { return a.size() < b.size(); };
   const auto& smallest = *std::min_element(components.begin(), components.end(), smaller);
-  Finding finding{Severity::note,
-                  "several_components",
+  Finding finding{Severity::note, "several_components",
                   "the mesh consists of " + std::to_string(components.size()) +
                       " parts that share no vertex; the smallest has " + std::to_string(smallest.size()) + " " + noun,
                   are_joined ? "if it should be one body, merge the duplicate vertices with --repair"
-                             : "if it should be one body, join the parts in the source model",
-                  {},
-                  false};
+                             : "if it should be one body, join the parts in the source model"};
   for (const auto& component : components) finding.indices.push_back(component.front());
   findings.add(std::move(finding));
 }

@@ -63,7 +63,7 @@ void examine_edges(const TriMesh& mesh, const SurfaceTopology& surface, Findings
                 count_of(surface.disagreeing.size(), total, "triangles", "are oriented opposite to a neighbor"),
                 is_repairable ? "flip them with --repair"
                               : "the sheet is one-sided, so --repair cannot orient it; cut it in the source model",
-                surface.disagreeing, is_repairable});
+                surface.disagreeing});
 }
 
 void examine_intersections(const TriMesh& mesh, Findings& findings) {
