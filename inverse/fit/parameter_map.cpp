@@ -44,8 +44,10 @@ struct Elastic {
 
 void check_guess(const FitParameter& u, const Quantity& q) {
   if (u.guess > q.min && u.guess < q.max) return;
-  throw InvalidInput("the guess of '" + u.quantity + "' is " + six_digits(u.guess) + "; it must lie between " +
-                     six_digits(q.min) + " and " + six_digits(q.max) + ", and not at an end");
+  const std::string guess = "the guess of '" + u.quantity + "' is " + six_digits(u.guess);
+  if (q.role == QuantityRole::stiffness) throw InvalidInput(guess + " Pa; it must be positive");
+  throw InvalidInput(guess + "; it must lie between " + six_digits(q.min) + " and " + six_digits(q.max) +
+                     ", and not at an end");
 }
 
 // Ranges over several powers of ten use logarithms.
