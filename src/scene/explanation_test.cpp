@@ -219,6 +219,18 @@ TEST(Explanation, InaccurateAdaptiveStepNamesTolerance) {
   EXPECT_THAT(explain(simulation, report).place, HasSubstr("time.adaptive.tolerance = 1e-16"));
 }
 
+TEST(Explanation, UnsettledFrictionNamesPair) {
+  Simulation simulation = simulate(beam(2), {});
+  StepReport report = simulation.step();
+  report.status = Status::inaccurate;
+  report.friction_passes = 50;
+  report.friction_residual = 2.5;
+  report.friction_pair = "ear and foot";
+  const Explanation why = explain(simulation, report);
+  EXPECT_THAT(why.cause, HasSubstr("2.5 N"));
+  EXPECT_THAT(why.place, HasSubstr("ear and foot"));
+}
+
 TEST(Explanation, AdaptiveStepDoesNotSuggestShorterSteps) {
   const Explanation why = first_failure({.adaptive = {1e-14}, .solver = {}}, Status::iteration_limit);
   EXPECT_THAT(why.remedy, testing::AllOf(HasSubstr("time.adaptive.tolerance"), testing::Not(HasSubstr("shorten"))));
