@@ -36,6 +36,7 @@ from ._aspic import (  # noqa: E402
 from . import plot  # noqa: E402
 from .energies import Energy, TetEnergy, check_derivatives  # noqa: E402
 from .fits import Equilibrium, Trajectory, capture, fit, lame, verify  # noqa: E402
+from .live import View, view  # noqa: E402
 from .meshes import Mesh, Surface, box, cylinder, read_mesh, sphere, torus  # noqa: E402
 from .optimize import backtrack, minimize, test_function  # noqa: E402
 from .results import Run  # noqa: E402
@@ -45,4 +46,4 @@ from .simulations import NotConverged, Reports, Simulation, Trace, compare  # no
 __all__ = [name for name in dir() if name[0].isupper() or name in (
     "backtrack", "box", "capture", "check_derivatives", "compare", "cylinder", "fit", "integrator_names", "lame", "linear_solver_names",
     "materials", "minimize", "minimizer_names", "plot", "read_mesh", "set_thread_count", "sphere", "test_function",
-    "test_functions", "thread_count", "torus", "verify", "__version__")]
+    "test_functions", "thread_count", "torus", "verify", "view", "__version__")]

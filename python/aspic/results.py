@@ -67,15 +67,18 @@ class Run:
 def _columns(path):
     with open(path, newline="") as file:
         header, *rows = csv.reader(file)
-    return {name: _array([row[i] for row in rows]) for i, name in enumerate(header)}
+    return {name: _array(name, [row[i] for row in rows]) for i, name in enumerate(header)}
 
 
-def _array(texts):
+def _array(name, texts):
+    """Integers, floats or strings; an empty cell of numbers is NaN."""
+    if name == "state_hash":  # may look like a number
+        return np.array(texts)
     try:
-        numbers = np.array([float(text) if text else np.nan for text in texts])
+        return np.array([int(text) for text in texts])
+    except ValueError:
+        pass
+    try:
+        return np.array([float(text) if text else np.nan for text in texts])
     except ValueError:
         return np.array(texts)
-    whole = numbers.astype(np.int64, copy=False) if numbers.size and np.isfinite(numbers).all() and (
-        np.abs(numbers) < 2**53).all() else None
-    return whole if whole is not None and (whole == numbers).all() and all("." not in t and "e" not in t for t in texts) \
-        else numbers

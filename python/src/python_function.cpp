@@ -74,22 +74,20 @@ const BlockSparse& PythonObjective::evaluate_hessian(std::span<const double> x, 
 
 void PythonObjective::assemble(const py::object& matrix, const Projection& projection) {
   const py::ssize_t n = layout_.size();
-  const bool is_sparse = py::hasattr(matrix, "tocoo");
+  const bool is_sparse = py::hasattr(matrix, "tocoo"), is_exact = projection.kind == Definiteness::exact;
+  if (!is_exact && n > kMostModified)
+    throw InvalidInput("hessian: of " + std::to_string(n) + " rows; eigenvalues are modified up to " +
+                       std::to_string(kMostModified) + " rows (use definiteness=\"exact\")");
   py::object coo;
-  if (!is_sparse) {
-    Array dense = reals(matrix, "hessian", {n, n});
-    if (projection.kind != Definiteness::exact) {
-      if (n > kMostModified)
-        throw InvalidInput("hessian: of " + std::to_string(n) + " rows; eigenvalues are modified up to " +
-                           std::to_string(kMostModified) + " rows (use definiteness=\"exact\")");
+  if (is_sparse && is_exact) {
+    coo = matrix.attr("tocoo")();
+  } else {
+    Array dense = reals(is_sparse ? matrix.attr("toarray")() : matrix, "hessian", {n, n});
+    if (!is_exact) {
       dense = to_array(modified(dense, projection.kind), {n, n});
       projected_elements_ = 1;
     }
     coo = py::module_::import("scipy.sparse").attr("coo_matrix")(dense);
-  } else {
-    if (projection.kind != Definiteness::exact)
-      throw InvalidInput("hessian: eigenvalues of sparse matrices are not modified; use definiteness=\"exact\"");
-    coo = matrix.attr("tocoo")();
   }
   const std::vector<int> rows = indices(coo.attr("row"), "hessian.row", {-1}, n);
   const std::vector<int> columns = indices(coo.attr("col"), "hessian.col", {-1}, n);

@@ -137,10 +137,15 @@ void LiveSimulation::record(const std::filesystem::path& folder, bool is_compact
       RunDirectory::create(folder, scene_, overwrite ? ExistingRun::overwrite : ExistingRun::refuse));
 }
 
+// Files are closed at the end of a run, so the recording continues as a resumed run, which has the same bits.
 void LiveSimulation::flush() {
   check_idle();
+  if (!recording_) return;
   const py::gil_scoped_release free;
-  if (recording_) recording_->finish(scene_.simulation);
+  recording_->finish(scene_.simulation);
+  const std::filesystem::path folder = recording_->path();
+  recording_.reset();
+  recording_.emplace(RunDirectory::resume(folder, scene_));
 }
 
 void LiveSimulation::restore(const Simulation::Snapshot& snapshot) {

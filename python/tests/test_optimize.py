@@ -98,7 +98,7 @@ class SparseChain(Chain):
     matrix = staticmethod(scipy.sparse.csr_matrix)
 
 
-@pytest.mark.parametrize("f, options", [(Chain(), {}), (SparseChain(), {"definiteness": "exact"})])
+@pytest.mark.parametrize("f, options", [(Chain(), {}), (SparseChain(), {}), (SparseChain(), {"definiteness": "exact"})])
 def test_function_written_in_python_is_minimized(f, options):
     assert aspic.check_derivatives(f, np.linspace(.5, 1.4, 7))
     result = aspic.minimize(f, np.full(7, 1.2), tolerance=1e-10, **options)

@@ -1,6 +1,7 @@
 """Recorded runs, frames and the page that plays them."""
 import html
 import re
+import urllib.request
 
 import numpy as np
 import pytest
@@ -80,3 +81,11 @@ def test_mesh_is_checked_and_repaired():
     mesh.tets[0] = mesh.tets[0][[1, 0, 2, 3]]
     assert "inverted_tets" in {f["name"] for f in mesh.check()}
     assert len(mesh.repair()) == 1 and mesh.volumes.min() > 0
+
+
+def test_live_viewer_serves_the_scene(jelly, program):
+    del program  # skips where the command line is not built
+    with aspic.view(jelly, browser=False) as view:
+        with urllib.request.urlopen(view.address, timeout=20) as page:
+            assert b"<!doctype html" in page.read().lower()
+        assert view.address in view._repr_html_()

@@ -151,7 +151,8 @@ def mangled(rng, array):
     if kind == 4:
         return np.broadcast_to(array, (2,) + array.shape)
     if kind == 5:
-        return rng.choice([None, 3, "text", b"bytes", (), [], {}, 1e400, -0.0], 1)[0]
+        things = [None, 3, "text", b"bytes", (), [], {}, 1e400, -0.0]
+        return things[rng.integers(len(things))]
     if kind == 6:
         return np.lib.stride_tricks.as_strided(array, array.shape, (0,) * array.ndim)
     if kind == 7:
