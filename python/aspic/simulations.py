@@ -107,7 +107,7 @@ class Simulation:
         """
         if self._record and self._folder is None and not self._core.is_recording and self.steps_taken == 0:
             self._temporary = tempfile.TemporaryDirectory(prefix="aspic-run-", ignore_cleanup_errors=True)
-            self._core.record(os.path.join(self._temporary.name, self.name), True, True)
+            self._core.record(os.path.join(self._temporary.name, "run"), True, True)
         return self._core.step(observe)
 
     def steps(self, count=None, observe=None, check=False):
@@ -147,7 +147,7 @@ class Simulation:
         if not self._core.is_recording:
             raise RuntimeError("nothing is recorded: take a step first, and neither assign the state nor use record=False")
         self._core.flush()
-        return Run(self._folder if self._folder is not None else os.path.join(self._temporary.name, self.name))
+        return Run(self._folder if self._folder is not None else os.path.join(self._temporary.name, "run"))
 
     def show(self, height=600):
         """The recorded motion as a page for notebooks, see Run.show()."""

@@ -84,6 +84,7 @@ class PyEquilibrium {
       : PyEquilibrium(source, tolerance, std::make_shared<Callbacks>()) {}
 
   Array solve(const py::object& parameters, const py::object& start) {
+    const Use use(occupancy_, "equilibrium");
     if (!start.is_none()) equilibrium_.set_x(layout_.in(start, "start"));
     if (!parameters.is_none()) equilibrium_.set_parameters(parameters_.in(parameters));
     MinimizeReport report;
@@ -98,6 +99,7 @@ class PyEquilibrium {
   }
 
   Array vjp(const py::object& qbar) {
+    const Use use(occupancy_, "equilibrium");
     const std::vector<double> weights = layout_.in(qbar, "qbar");
     linearize();
     std::vector<double> gradient(parameters_.size());
@@ -111,6 +113,7 @@ class PyEquilibrium {
   }
 
   Array jvp(const py::object& change) {
+    const Use use(occupancy_, "equilibrium");
     const std::vector<double> dtheta = parameters_.change_in(change);
     linearize();
     std::vector<double> dx(3 * static_cast<size_t>(layout_.rows()));
@@ -132,7 +135,12 @@ class PyEquilibrium {
       : callbacks_(callbacks),
         parameters_(scene.model),
         layout_(layout_of(scene.model)),
-        equilibrium_(std::move(scene.model), std::move(scene.start.q), {.tolerance = tolerance}) {}
+        equilibrium_(made_from(scene, tolerance)) {}
+
+  static Equilibrium made_from(SceneModel& scene, double tolerance) {
+    const py::gil_scoped_release free;
+    return Equilibrium(std::move(scene.model), std::move(scene.start.q), {.tolerance = tolerance});
+  }
 
   void linearize() {
     if (is_linearized_) return;
@@ -151,6 +159,7 @@ class PyEquilibrium {
   Layout layout_;
   Equilibrium equilibrium_;
   bool is_linearized_ = false;
+  Occupancy occupancy_;
 };
 
 // The motion as a function of the material and the initial state.
@@ -159,8 +168,12 @@ class PyTrajectory {
   PyTrajectory(const SceneSource& source, const TrajectoryOptions& options)
       : PyTrajectory(source, options, std::make_shared<Callbacks>()) {}
 
-  void set_parameters(const py::object& parameters) { trajectory_->set_parameters(parameters_.in(parameters)); }
+  void set_parameters(const py::object& parameters) {
+    const Use use(occupancy_, "trajectory");
+    trajectory_->set_parameters(parameters_.in(parameters));
+  }
   void set_start(const py::object& q, const py::object& v) {
+    const Use use(occupancy_, "trajectory");
     start_.q = layout_.in(q, "q"), start_.qdot = layout_.in(v, "v");
     trajectory_->set_start(start_);
   }
@@ -193,11 +206,10 @@ class PyTrajectory {
 
   // objective(point, q, v) returns a value, or (value, dvalue/dq, dvalue/dv) with None for zeros.
   py::tuple value_and_gradient(const py::function& objective) {
-    Callbacks callbacks;
     TrajectoryGradient gradient;
     const TrajectoryReport report = run([&](int point, const State& state, std::span<double> q, std::span<double> v) {
       double value = 0;
-      callbacks.call([&] {
+      callbacks_->call([&] {
         const py::object result = objective(point, layout_.out(state.q), layout_.out(state.qdot));
         if (!py::isinstance<py::tuple>(result)) {
           value = result.cast<double>();
@@ -209,7 +221,7 @@ class PyTrajectory {
         if (!v.empty() && parts.size() > 2) add(parts[2], "dvalue/dv", v);
       });
       return value;
-    }, &gradient, &callbacks);
+    }, &gradient);
     return py::make_tuple(report.value, dict_of(gradient));
   }
 
@@ -227,18 +239,18 @@ class PyTrajectory {
     if (options_.h == 0) options_.h = scene.options.h;
     options_.integrator = scene.options.integrator;
     options_.stop = callbacks_->token();
+    const py::gil_scoped_release free;
     trajectory_.emplace(std::move(scene.model), std::move(scene.start), options_);
   }
 
-  TrajectoryReport run(const TrajectoryObjective& objective, TrajectoryGradient* gradient,
-                       Callbacks* callbacks = nullptr) {
+  TrajectoryReport run(const TrajectoryObjective& objective, TrajectoryGradient* gradient) {
+    const Use use(occupancy_, "trajectory");
     TrajectoryReport report;
     {
       const py::gil_scoped_release free;
       report = gradient ? trajectory_->differentiate(objective, *gradient) : trajectory_->simulate(objective);
     }
     callbacks_->rethrow();
-    if (callbacks) callbacks->rethrow();
     if (!report.ok) throw std::runtime_error("the motion failed: " + report.message);
     return report;
   }
@@ -266,6 +278,7 @@ class PyTrajectory {
   TrajectoryOptions options_;
   State start_;
   std::optional<Trajectory> trajectory_;
+  Occupancy occupancy_;
 };
 
 py::dict dict_of(const FittedQuantity& quantity, const Renumbering& tet) {

@@ -5,6 +5,7 @@
 
 #include "arrays.h"
 #include "callbacks.h"
+#include "occupancy.h"
 #include "optimize/objective.h"
 
 namespace aspic::python {
@@ -33,6 +34,7 @@ class Function {
   void expire() { E_ = nullptr; }
   const Layout& layout() const { return layout_; }
   Callbacks& callbacks() { return *callbacks_; }
+  Occupancy& occupancy() { return occupancy_; }
 
   double value(const py::handle& x);
   Array gradient(const py::handle& x);
@@ -41,6 +43,7 @@ class Function {
 
  protected:
   std::shared_ptr<Callbacks> callbacks_;
+  Occupancy occupancy_;
 
  private:
   Objective* E_;

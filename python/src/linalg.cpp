@@ -74,6 +74,7 @@ class Solver {
   explicit Solver(const std::string& method, int solves) : solver_(make_linear_solver(method, solves)) {}
 
   void factorize(std::shared_ptr<const Hessian> matrix) {
+    const Use use(occupancy_, "solver");
     bool ok = false;
     {
       const py::gil_scoped_release free;
@@ -91,6 +92,7 @@ class Solver {
   }
 
   Array solve(const py::handle& right, double tolerance) {
+    const Use use(occupancy_, "solver");
     if (!matrix_) throw std::runtime_error("solve() needs factorize(H) first");
     const std::vector<double> b = matrix_->layout.in(right, "b");
     std::vector<double> x(b.size());
@@ -112,6 +114,7 @@ class Solver {
   std::shared_ptr<const BlockPattern> analyzed_;
   std::shared_ptr<const Hessian> matrix_;
   SolveReport last_;
+  Occupancy occupancy_;
 };
 
 }  // namespace

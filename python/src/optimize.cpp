@@ -8,7 +8,6 @@
 #include "base/error.h"
 #include "bindings.h"
 #include "iteration.h"
-#include "linalg/dense_eigen.h"
 #include "optimize/derivative_check.h"
 #include "optimize/landscape.h"
 #include "optimize/solver.h"
@@ -26,6 +25,7 @@ Objective& Function::E() {
 }
 
 double Function::value(const py::handle& x) {
+  const Use use(occupancy_, "objective");
   const std::vector<double> in = layout_.in(x, "x");
   double value = 0;
   {
@@ -37,6 +37,7 @@ double Function::value(const py::handle& x) {
 }
 
 Array Function::gradient(const py::handle& x) {
+  const Use use(occupancy_, "objective");
   const std::vector<double> in = layout_.in(x, "x");
   std::vector<double> g(in.size());
   {
@@ -48,6 +49,7 @@ Array Function::gradient(const py::handle& x) {
 }
 
 std::shared_ptr<Hessian> Function::hessian(const py::handle& x, const std::string& definiteness) {
+  const Use use(occupancy_, "objective");
   const std::vector<double> in = layout_.in(x, "x");
   const Projection projection{definiteness_named(definiteness)};
   std::shared_ptr<Hessian> result;
@@ -63,6 +65,7 @@ std::shared_ptr<Hessian> Function::hessian(const py::handle& x, const std::strin
 }
 
 double Function::max_step(const py::handle& x, const py::handle& d) {
+  const Use use(occupancy_, "objective");
   const std::vector<double> from = layout_.in(x, "x"), along = layout_.in(d, "d");
   const py::gil_scoped_release free;
   return E().max_step(from, along);
@@ -149,7 +152,9 @@ py::dict dict_of(const MinimizeReport& report, const Array& x) {
 
 py::dict minimize_function(Function& f, const py::object& start, const py::object& direction, const py::dict& options,
                            const py::object& observe) {
+  const Use use(f.occupancy(), "objective");
   std::vector<double> x = f.layout().in(start, "x");
+  const std::shared_ptr<Callbacks> callbacks(&f.callbacks(), [](auto*) {});  // f outlives the minimization
   const bool is_named = py::isinstance<py::str>(direction);
   Value table = to_value(options, "solver");
   if (is_named) table.table().set("method", {direction.cast<std::string>(), table.place});
@@ -159,11 +164,10 @@ py::dict minimize_function(Function& f, const py::object& start, const py::objec
   if (is_named) {
     search = make_search_direction(chosen);
   } else if (PyCallable_Check(direction.ptr())) {
-    search = std::make_unique<PythonDirection>(direction, f.layout(), std::shared_ptr<Callbacks>(&f.callbacks(), [](auto*) {}));
+    search = std::make_unique<PythonDirection>(direction, f.layout(), callbacks);
   } else {
     throw InvalidInput("direction: must be the name of a method or callable, as direction(E, x, g)");
   }
-  const std::shared_ptr<Callbacks> callbacks(&f.callbacks(), [](auto*) {});  // f outlives the minimization
   MinimizeOptions how = chosen.minimize;
   how.stop = callbacks->token();
   const IterationObserver observer = observer_of(observe, f.layout(), callbacks);

@@ -2,15 +2,14 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "arrays.h"
 #include "base/error.h"
-#include "linalg/dense_eigen.h"
+#include "eigenvalues.h"
 
 namespace aspic::python {
 namespace {
-
-constexpr double kSmallest = 1e-10;  // smallest eigenvalue of a modified element, relative to the largest
 
 class PythonEnergy : public SteadyEnergy {
  public:
@@ -67,7 +66,7 @@ class PythonEnergy : public SteadyEnergy {
     const bool ok = compute("value", x, {count()}, Finite::not_required, [&](std::span<const double> values) {
       for (const double value : values) sum += value;
     });
-    return ok && !std::isnan(sum) ? sum : std::numeric_limits<double>::infinity();
+    return ok && std::isfinite(sum) ? sum : std::numeric_limits<double>::infinity();
   }
 
   void add_gradient(Positions x, const Context&, double scale, std::span<double> g) const override {
@@ -85,7 +84,7 @@ class PythonEnergy : public SteadyEnergy {
       for (int e = 0; e < count(); ++e) {
         const std::span<const double> given = values.subspan(static_cast<size_t>(e) * n * n, n * n);
         std::vector<double> A(given.begin(), given.end());
-        if (projection.kind != Definiteness::exact && is_covered(e, projection)) modified += modify(A, projection.kind);
+        if (is_covered(e, projection) && modify_eigenvalues(static_cast<int>(n), A, projection.kind)) ++modified;
         add_element(e, A, scale, H);
       }
     });
@@ -112,22 +111,6 @@ class PythonEnergy : public SteadyEnergy {
     for (int i = 0; i < corners_; ++i)
       if (projection.covers(vertex(element, i))) return true;
     return false;
-  }
-
-  // Returns 1 if an eigenvalue was negative.
-  int modify(std::vector<double>& A, Definiteness kind) const {
-    const int n = 3 * corners_;
-    const DenseEigen eigen = dense_eigen(n, A);
-    if (eigen.values.back() >= 0) return 0;
-    const double smallest = kSmallest * std::max(std::abs(eigen.values.front()), std::abs(eigen.values.back()));
-    std::fill(A.begin(), A.end(), 0.0);
-    for (int k = 0; k < n; ++k) {
-      const double given = eigen.values[k];
-      const double value = std::max(kind == Definiteness::absolute ? std::abs(given) : given, smallest);
-      for (int j = 0; j < n; ++j)
-        for (int i = 0; i < n; ++i) A[i + j * n] += value * eigen.vectors[i + k * n] * eigen.vectors[j + k * n];
-    }
-    return 1;
   }
 
   void add_element(int element, const std::vector<double>& A, double scale, BlockSparse& H) const {

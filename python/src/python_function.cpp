@@ -5,35 +5,18 @@
 #include <limits>
 
 #include "base/error.h"
-#include "linalg/dense_eigen.h"
+#include "eigenvalues.h"
 #include "math/vectors.h"
 
 namespace aspic::python {
 namespace {
 
 constexpr py::ssize_t kMostModified = 600;  // rows of a matrix whose eigenvalues are modified
-constexpr double kSmallest = 1e-10;         // smallest eigenvalue of a modified matrix, relative to the largest
 
 Layout layout_of(const py::object& x) {
   const py::array array = py::array::ensure(x);
   if (!array) throw py::error_already_set();
   return Layout{shape_of(reals(array, "x", shape_of(array)))};
-}
-
-// A' = V f(values) V'
-std::vector<double> modified(const Array& A, Definiteness kind) {
-  const auto n = static_cast<int>(A.shape(0));
-  DenseEigen eigen = dense_eigen(n, view(A));
-  double largest = 0;
-  for (const double value : eigen.values) largest = std::max(largest, std::abs(value));
-  for (double& value : eigen.values)
-    value = std::max(kind == Definiteness::absolute ? std::abs(value) : value, kSmallest * largest);
-  std::vector<double> result(static_cast<size_t>(n) * n);
-  for (int k = 0; k < n; ++k)
-    for (int j = 0; j < n; ++j)
-      for (int i = 0; i < n; ++i)
-        result[i + j * n] += eigen.values[k] * eigen.vectors[i + k * n] * eigen.vectors[j + k * n];
-  return result;
 }
 
 }  // namespace
@@ -84,8 +67,9 @@ void PythonObjective::assemble(const py::object& matrix, const Projection& proje
   } else {
     Array dense = reals(is_sparse ? matrix.attr("toarray")() : matrix, "hessian", {n, n});
     if (!is_exact) {
-      dense = to_array(modified(dense, projection.kind), {n, n});
-      projected_elements_ = 1;
+      std::vector<double> A(view(dense).begin(), view(dense).end());
+      projected_elements_ = modify_eigenvalues(static_cast<int>(n), A, projection.kind) ? 1 : 0;
+      dense = to_array(A, {n, n});
     }
     coo = py::module_::import("scipy.sparse").attr("coo_matrix")(dense);
   }

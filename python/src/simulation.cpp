@@ -80,8 +80,8 @@ Layout LiveSimulation::layout() const {
 }
 
 void LiveSimulation::check_idle() const {
-  if (is_stepping_ && stepping_thread_ != std::this_thread::get_id())
-    throw std::runtime_error("another thread takes a step of this simulation; give each thread its own Simulation");
+  if (occupancy_.is_elsewhere())
+    throw std::runtime_error("another thread uses this simulation; give each thread its own");
 }
 
 StepReport LiveSimulation::take_step(const IterationObserver& observe) {
@@ -99,12 +99,11 @@ StepReport LiveSimulation::take_step(const IterationObserver& observe) {
 }
 
 Report LiveSimulation::step(const py::object& observe) {
-  check_idle();
+  const Use use(occupancy_, "simulation");
   if (is_stepping_) throw std::runtime_error("step() was called inside a step of the same simulation");
   Simulation& simulation = scene_.simulation;
   const IterationObserver observer = observer_of(observe, layout(), callbacks_);
   is_stepping_ = true;
-  stepping_thread_ = std::this_thread::get_id();
   struct Idle {
     bool& is_stepping;
     ~Idle() { is_stepping = false; }
@@ -126,7 +125,7 @@ Report LiveSimulation::step(const py::object& observe) {
 }
 
 void LiveSimulation::record(const std::filesystem::path& folder, bool is_compact, bool overwrite) {
-  check_idle();
+  const Use use(occupancy_, "simulation");
   if (is_compact) {
     scene_.output.vtu = scene_.output.obj = scene_.output.ply = scene_.output.usd = false;
     scene_.output.pc2 = true;
@@ -139,7 +138,8 @@ void LiveSimulation::record(const std::filesystem::path& folder, bool is_compact
 
 // Files are closed at the end of a run, so the recording continues as a resumed run, which has the same bits.
 void LiveSimulation::flush() {
-  check_idle();
+  const Use use(occupancy_, "simulation");
+  if (is_stepping_) throw std::runtime_error("results are not available inside a step");
   if (!recording_) return;
   const py::gil_scoped_release free;
   recording_->finish(scene_.simulation);
@@ -227,11 +227,7 @@ void set_state(LiveSimulation& self, const py::object& value, std::vector<double
 py::dict fields_of(LiveSimulation& self) {
   const Simulation& simulation = self.simulation();
   const Renumbering& tet = simulation.model().numbering.tet;
-  TetFields fields;
-  {
-    const py::gil_scoped_release free;
-    fields = simulation.tet_fields();
-  }
+  const TetFields fields = simulation.tet_fields();
   const py::ssize_t tets = simulation.model().mesh.tet_count();
   py::dict result;
   result["energy_density"] = to_array(tet.to_user(fields.energy_density), {tets});

@@ -3,12 +3,12 @@
 #include <memory>
 #include <optional>
 #include <string>
-#include <thread>
 #include <vector>
 
 #include "arrays.h"
 #include "callbacks.h"
 #include "function.h"
+#include "occupancy.h"
 #include "scene/run_directory.h"
 #include "scene/scene.h"
 #include "scene/scene_model.h"
@@ -62,7 +62,7 @@ class LiveSimulation {
   Layout layout() const;
 
  private:
-  // Throws std::runtime_error if another thread takes a step.
+  // Throws std::runtime_error if another thread takes a step or writes results.
   void check_idle() const;
   StepReport take_step(const IterationObserver& observe);
 
@@ -71,7 +71,7 @@ class LiveSimulation {
   Scene scene_;
   std::optional<RunDirectory> recording_;
   bool is_stepping_ = false;  // guarded by the GIL
-  std::thread::id stepping_thread_;
+  Occupancy occupancy_;
 };
 
 }  // namespace aspic::python

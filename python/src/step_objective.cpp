@@ -8,7 +8,12 @@ namespace aspic::python {
 
 std::shared_ptr<StepObjective> StepObjective::make(const SceneSource& source, double time) {
   auto callbacks = std::make_shared<Callbacks>();
-  auto parts = std::make_unique<Parts>(source.model(callbacks));
+  SceneModel model = source.model(callbacks);
+  std::unique_ptr<Parts> parts;
+  {
+    const py::gil_scoped_release free;
+    parts = std::make_unique<Parts>(std::move(model));
+  }
   callbacks->rethrow();
   return std::shared_ptr<StepObjective>(new StepObjective(std::move(parts), std::move(callbacks), time));
 }
@@ -28,6 +33,7 @@ double StepObjective::end_time(const py::object& time, double usual) {
 }
 
 Array StepObjective::begin_step(const py::object& q, const py::object& v, double h, const py::object& time) {
+  const Use use(occupancy_, "objective");
   if (!(h > 0) || !std::isfinite(h)) throw InvalidInput("h: must be positive and finite [s]");
   const std::vector<double> velocity = layout().in(v, "v");
   start_ = layout().in(q, "q");
@@ -36,6 +42,7 @@ Array StepObjective::begin_step(const py::object& q, const py::object& v, double
 }
 
 Array StepObjective::begin_statics(const py::object& q, const py::object& time) {
+  const Use use(occupancy_, "objective");
   start_ = layout().in(q, "q");
   time_ = end_time(time, time_);
   return begin({}, 0);
@@ -56,6 +63,7 @@ Array StepObjective::begin(const std::vector<double>& v, double h) {
 }
 
 void StepObjective::update_lagged(const py::object& q) {
+  const Use use(occupancy_, "objective");
   const std::vector<double> at = layout().in(q, "q");
   parts_->E.update_lagged(at);
 }

@@ -44,6 +44,30 @@ def test_two_threads_in_one_simulation_raise():
     assert sim.step().ok
 
 
+def test_two_threads_in_one_objective_raise():
+    class Waiting:
+        def value(self, x):
+            inside.set()
+            done.wait(20)
+            return float(x @ x)
+
+        def gradient(self, x):
+            return 2 * x
+
+    inside, done = threading.Event(), threading.Event()
+    E = aspic._aspic.PythonObjective(Waiting(), np.zeros(2))
+    thread = threading.Thread(target=E, args=([1., 2.],))
+    thread.start()
+    assert inside.wait(20)
+    try:
+        with pytest.raises(RuntimeError, match="another thread uses this objective"):
+            E.gradient([0., 0.])
+    finally:
+        done.set()
+        thread.join()
+    assert E([1., 2.]) == 5
+
+
 def test_step_inside_a_step_raises():
     sim = aspic.Simulation(make_jelly())
     with pytest.raises(RuntimeError, match="inside a step"):
