@@ -22,8 +22,12 @@ def test_run_is_read_as_arrays(jelly, tmp_path):
     frame = run.frame(2)
     assert frame["cell_fields"]["young"] == pytest.approx(5e3)
     np.testing.assert_array_equal(frame["tets"], sim.tets)
+    with pytest.raises(ValueError, match="is writing results into it"):
+        aspic.Simulation(jelly, out=tmp_path / "run")
+    del sim
     with pytest.raises(ValueError, match="already contains a run"):
         aspic.Simulation(jelly, out=tmp_path / "run")
+    aspic.Simulation(jelly, out=tmp_path / "run", overwrite=True)
 
 
 def test_motion_of_the_surface_is_kept_without_a_folder(jelly):
