@@ -26,6 +26,7 @@ LIBRARIES = {  # first part of a third-party header: the files that may include 
     "fmt": r"apps/.*",
     "spdlog": r"apps/.*",
     "cholmod.h": r".*_test\.cpp|bench/.*",
+    "pybind11": r"python/src/.*",
     "gtest": r".*_test\.cpp|tests/.*|.*_test\.h",
     "gmock": r".*_test\.cpp|tests/.*",
     "benchmark": r"bench/.*",
@@ -51,14 +52,14 @@ def layers():
 def module_of(name):
     """Returns the module of a file; none for tests, examples and benchmarks, which may include everything."""
     parts = name.split("/")
-    if name.endswith(("_test.cpp", "_test.h")) or parts[0] not in ("src", "inverse", "apps", "verification"):
+    if name.endswith(("_test.cpp", "_test.h")) or parts[0] not in ("src", "inverse", "apps", "verification", "python"):
         return None
-    module = parts[0] if parts[0] == "verification" else parts[1]
+    module = parts[0] if parts[0] in ("verification", "python") else parts[1]
     return {"mesh": "mesher"}.get(module, module) if parts[0] == "apps" else module
 
 
 def check_sources(may_include):
-    for folder in ("src", "inverse", "verification", "apps", "bench", "tests", "examples", "fuzz"):
+    for folder in ("src", "inverse", "verification", "apps", "python", "bench", "tests", "examples", "fuzz"):
         for path in sorted(p for p in (root / folder).rglob("*") if p.suffix in (".h", ".cpp")):
             name = path.relative_to(root).as_posix()
             module = module_of(name)

@@ -15,6 +15,8 @@ viewer_packages="libboost-dev"
 case "${ASPIC_VIEWER-}" in 0 | OFF) viewer_programs= viewer_packages= ;; esac
 test_programs="python3 chromium ffmpeg codespell $plot_programs"
 test_packages="libgtest-dev libgmock-dev libbenchmark-dev libsuitesparse-dev python3-meshio python3-jsonschema"
+python_packages="pybind11-dev python3-dev python3-numpy python3-scipy python3-matplotlib"
+python_test_packages="python3-pytest python3-nbclient python3-nbformat python3-ipykernel python3-torch mypy"
 bench_packages="libbenchmark-dev"
 fuzz_programs="clang:clang++" # with libFuzzer and its sanitizers, which clang recommends and we name
 fuzz_packages="libclang-rt-14-dev llvm-14"

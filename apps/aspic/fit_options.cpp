@@ -2,93 +2,19 @@
 
 #include <fmt/format.h>
 
-#include <limits>
-
-#include "capture/fit_run.h"
-#include "scene/schema_table.h"
+#include "capture/fit_options.h"
 #include "scene/toml_reader.h"
 
 namespace aspic::cli {
-namespace {
-
-const Schema& options_schema() {
-  static const Schema schema = [] {
-    Schema s;
-    add_section(
-        s, {"fit", "*.toml", "Options of a fit."},
-        {key("smooth", kText, "smoothness of fields: h1 smooth, tv few edges, none", Choices{{"h1", "tv", "none"}},
-             Usual{"\"h1\""}),
-         key("prior", kNumber | kText, "standard deviation of the prior of log E, or \"none\"", kPositive,
-             Choices{{"none"}}, Usual{"2.0"}),
-         key("weight", kNumber | kText, "weight of smoothness and prior", kNotNegative, Choices{{"auto"}},
-             Usual{"\"auto\""}),
-         key("rule", kText, "rule that chooses the weight", Choices{weight_rule_names()}, Usual{"\"auto\""}),
-         key("parts", kInteger | kText, "number of parts of constant stiffness", Range{.min = 2, .max = kMostParts},
-             Choices{{"off", "auto"}}, Usual{"\"off\""}),
-         key("refine", kInteger, "simulates with every tet in 8^refine", Range{.min = 0, .max = 4}, Usual{"0"}),
-         key("leave_out", kText | kNames, "groups of cases to predict instead of fitting", Usual{"[]"}),
-         key("baselines", kBoolean, "predicts leave_out by simpler models as well", Usual{"false"}),
-         key("mesh_errors", kBoolean, "corrects the discretization error with a finer mesh", Usual{"true"}),
-         key("uncertainty", kBoolean, "computes standard deviations and the next poke", Usual{"true"}),
-         key("cross_validation", kBoolean, "predicts each group from the others", Usual{"true"}),
-         key("method", kText, "minimization method", Choices{fit_method_names()}, Usual{"\"auto\""}),
-         key("starts", kInteger, "number of initial guesses; the best result is kept", Range{.min = 1, .max = 1000},
-             Usual{"1"}),
-         key("tolerance", kNumber, "decrement relative to the first one", Range{.min = 1e-12, .max = 0.5},
-             Usual{"1e-3"}),
-         key("iterations", kInteger, "maximum number of iterations", Range{.min = 1, .max = 100000}, Usual{"100"})});
-    return s;
-  }();
-  return schema;
-}
-
-Smoothness smoothness_named(const std::string& name) {
-  if (name == "none") return Smoothness::none;
-  return name == "tv" ? Smoothness::total_variation : Smoothness::h1;
-}
-
-int parts_of(const Value& parts) {
-  if (!parts.is_text()) return parts.integer();
-  return parts.text() == "auto" ? -1 : 0;
-}
-
-}  // namespace
 
 bool read_fit_options(const std::filesystem::path& file, FitPlan& plan) {
-  Table document = file.empty() ? Table() : read_toml(read_toml_text(file), file.string());
-  check_and_complete(document, file.string(), options_schema(), "fit");
-  const auto option = [&](const char* key) -> const Value& { return *document.find(key); };
-  plan.regularizer.smoothness = smoothness_named(option("smooth").text());
-  const Value &prior = option("prior"), &weight = option("weight");
-  plan.regularizer.prior_sigma = prior.is_text() ? std::numeric_limits<double>::infinity() : prior.number();
-  plan.fit.weight = weight.is_text() ? -1 : weight.number();
-  plan.fit.weight_rule = option("rule").text();
-  plan.fit.method = option("method").text();
-  plan.fit.starts = option("starts").integer();
-  plan.fit.tolerance = option("tolerance").number();
-  plan.fit.max_iterations = option("iterations").integer();
-  plan.parts = parts_of(option("parts"));
-  plan.refine = option("refine").integer();
-  plan.mesh_errors = option("mesh_errors").boolean();
-  plan.uncertainty = option("uncertainty").boolean();
-  plan.cross_validation = option("cross_validation").boolean();
-  const Value& left_out = option("leave_out");
-  plan.left_out.clear();
-  if (left_out.is_text())
-    plan.left_out.push_back(left_out.text());
-  else
-    for (const Value& group : left_out.array()) plan.left_out.push_back(group.text());
-  const Value& baselines = option("baselines");
-  if (baselines.boolean() && plan.left_out.empty())
-    throw error_at(baselines.place,
-                   "baselines = true predicts the groups of leave_out; name some, such as "
-                   "leave_out = [\"poke 1\"]");
-  return baselines.boolean();
+  return aspic::read_fit_options(file.empty() ? Table() : read_toml(read_toml_text(file), file.string()), file.string(),
+                                 plan);
 }
 
 std::string fit_options_text() {
   std::string text;
-  for (const Key& key : options_schema().keys)
+  for (const Key& key : fit_options_schema().keys)
     text += fmt::format("  {:<32}# {}\n", key.name + " = " + key.fallback, key.meaning);
   return text;
 }

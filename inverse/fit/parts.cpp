@@ -130,7 +130,7 @@ class Sampler {
       y = y / e.values[i] + normal_(random_) / std::sqrt(e.values[i]);
       for (int k = 0; k < K; ++k) a[k] += e.vectors[static_cast<size_t>(i) * K + k] * y;
     }
-    for (int k = 0; k < K; ++k) a[k] = std::clamp(a[k], start_[k] - kLargestLevelMove, start_[k] + kLargestMove);
+    for (int k = 0; k < K; ++k) a[k] = std::clamp(a[k], start_[k] - kLargestLevelMove, start_[k] + kLargestLevelMove);
     if (std::is_sorted(a.begin(), a.end())) levels_ = a;
     force_.assign(rank_, 0.0);  // slope + d c
     for (int k = 0; k < K; ++k)

@@ -1,10 +1,13 @@
 #include "base/parallel.h"
 
+#include <pthread.h>
+
 #include <algorithm>
 #include <atomic>
 #include <chrono>
 #include <condition_variable>
 #include <exception>
+#include <memory>
 #include <mutex>
 #include <thread>
 #include <vector>
@@ -143,10 +146,11 @@ class Pool {
   std::condition_variable wake_, done_;
 };
 
-Pool& pool() {
-  static Pool instance;
+std::unique_ptr<Pool>& pool_pointer() {
+  static auto instance = std::make_unique<Pool>();
   return instance;
 }
+Pool& pool() { return *pool_pointer(); }
 
 std::atomic<int>& requested_threads() {
   static std::atomic<int> count = processor_count();
@@ -161,6 +165,26 @@ std::mutex& pool_in_use() {
 thread_local bool inside_loop = false;
 
 int chunk_count(int count) { return (count + kChunkSize - 1) / kChunkSize; }
+
+// A forked process has none of the threads, so it starts with a new pool; that of its parent is abandoned, because
+// joining its threads would never end. No loop runs during a fork, except one that forks itself.
+void before_fork() {
+  if (!inside_loop) pool_in_use().lock();
+}
+void after_fork() {
+  if (!inside_loop) pool_in_use().unlock();
+}
+void in_forked_process() {
+  static_cast<void>(pool_pointer().release());
+  pool_pointer() = std::make_unique<Pool>();
+  after_fork();
+}
+
+Pool& pool_that_survives_forks() {
+  static const int registered = pthread_atfork(before_fork, after_fork, in_forked_process);
+  static_cast<void>(registered);
+  return pool();
+}
 
 }  // namespace
 
@@ -178,7 +202,7 @@ void parallel_for(int count, FunctionRef<void(int)> body) {
     for (int i = 0; i < count; ++i) body(i);
     return;
   }
-  if (pool().workers() != threads - 1) {
+  if (pool_that_survives_forks().workers() != threads - 1) {
     pool().resize(threads - 1);
     int requested = threads;  // may have changed in the meantime
     requested_threads().compare_exchange_strong(requested, pool().workers() + 1);

@@ -1,12 +1,15 @@
 #include "base/parallel.h"
 
 #include <gtest/gtest.h>
+#include <sys/wait.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <array>
 #include <atomic>
 #include <chrono>
 #include <cmath>
+#include <cstdlib>
 #include <set>
 #include <thread>
 #include <vector>
@@ -33,6 +36,23 @@ TEST_P(Parallel, ForVisitsEachIndexOnce) {
     parallel_for(count, [&](int i) { ++visits[i]; });
     for (const auto& n : visits) EXPECT_EQ(n, 1);
   }
+}
+
+TEST_P(Parallel, LoopsRunInForkedProcess) {
+  std::atomic<int> visits = 0;
+  const auto visit_all = [&] { parallel_for(1000, [&](int) { ++visits; }); };
+  visit_all();
+  const pid_t child = fork();
+  if (child == 0) {
+    alarm(20);  // ends a process that hangs
+    visit_all();
+    std::exit(visits == 2000 ? 0 : 1);  // joins the threads
+  }
+  int status = -1;
+  waitpid(child, &status, 0);
+  EXPECT_EQ(status, 0);
+  visit_all();
+  EXPECT_EQ(visits, 2000);
 }
 
 TEST_P(Parallel, ChunksCoverRangeWithoutOverlap) {

@@ -1,0 +1,112 @@
+"""Gradients of equilibria and motions with respect to the material, and fits to measurements."""
+import os
+import types
+
+import numpy as np
+
+from . import _aspic
+from .scenes import Scene
+
+
+def lame(young, poisson):
+    """The Lame constants (mu, lambda) [Pa] of Young's modulus [Pa] and Poisson's ratio; numbers, arrays or tensors."""
+    return young / (2 * (1 + poisson)), young * poisson / ((1 + poisson) * (1 - 2 * poisson))
+
+
+def _source(scene):
+    return (scene if isinstance(scene, Scene) else Scene.load(scene))._source()
+
+
+class Equilibrium:
+    """The body at rest as a function of its material: x(theta) = argmin V(x; theta).
+
+    theta: (m, p) parameters per tet: mu, lambda [Pa] and those of the material; `parameters` are those of the scene.
+    """
+
+    def __init__(self, scene, tolerance=1e-9):
+        self._core = _aspic.Equilibrium(_source(scene), tolerance)
+
+    parameters = property(lambda self: self._core.parameters)
+
+    def solve(self, parameters=None, start=None):
+        """Positions at rest, (n, 3) [m], from `start` or the last solution. Raises RuntimeError without convergence."""
+        return self._core.solve(parameters, start)
+
+    def vjp(self, qbar):
+        """The gradient (m, p) of sum(qbar * x) at the last solution: one linear solve."""
+        return self._core.vjp(qbar)
+
+    def jvp(self, change):
+        """The change (n, 3) of x for a change (m, p) of theta: one linear solve."""
+        return self._core.jvp(change)
+
+    def value_and_gradient(self, objective, parameters):
+        """objective(x) -> (value, dvalue/dx). Returns (value, dvalue/dtheta)."""
+        value, qbar = objective(self.solve(parameters))
+        return value, self.vjp(qbar)
+
+
+class Trajectory:
+    """The motion by backward Euler as a function of the material and the initial state."""
+
+    def __init__(self, scene, steps, h=0.0, tolerance=1e-9):
+        self._core = _aspic.Trajectory(_source(scene), steps, h or 0.0, tolerance)
+
+    parameters = property(lambda self: self._core.parameters)
+
+    def _set(self, parameters, q, v):
+        if parameters is not None:
+            self._core.set_parameters(parameters)
+        if (q is None) != (v is None):
+            raise _aspic.InvalidInput("q and v are set together")
+        if q is not None:
+            self._core.set_start(q, v)
+
+    def simulate(self, parameters=None, q=None, v=None):
+        """The motion, (steps + 1, n, 3) [m], for parameters (m, p) and the initial state q, v (n, 3)."""
+        self._set(parameters, q, v)
+        return self._core.simulate()
+
+    def vjp(self, qbar):
+        """The gradient of sum(qbar * motion): a dict with parameters (m, p), density (m,), q and v (n, 3)."""
+        return self._core.vjp(qbar)
+
+    def value_and_gradient(self, objective, parameters=None, q=None, v=None):
+        """objective(point, q, v) -> (value, dvalue/dq, dvalue/dv), summed over the points 0 ... steps.
+
+        Derivatives may be None or missing. It is called once per point forward, and once more backward. Returns the
+        value and its gradient, as vjp() does.
+        """
+        self._set(parameters, q, v)
+        return self._core.value_and_gradient(objective)
+
+
+def fit(data, model="neo_hookean", unknowns=None, known=None, observe=None, out=None, **options):
+    """Fits a material to a data set, as `aspic fit` does.
+
+    data: a folder, see docs/capture_format.md. unknowns: {"young": "tets"}; known: {"poisson": 0.45}.
+    observe(iteration, misfit, p) is called in every iteration; out: write the material to this .vtu file.
+    options: those of the command line, such as uncertainty=False. Returns an object with quantities, by name: values
+    per tet, standard deviations and reductions; misfit, status, verdict, reasons and warnings.
+    """
+    result = _aspic.fit(os.fspath(data), model, [f"{k}={v}" for k, v in (unknowns or {}).items()],
+                        [f"{k}={v}" for k, v in (known or {}).items()], options, observe,
+                        None if out is None else os.fspath(out))
+    result["history"] = np.array(result["history"])
+    return types.SimpleNamespace(**result)
+
+
+def capture(scene, folder, **options):
+    """Writes a synthetic data set of a scene of one pinned body, as `aspic capture` does; returns notes.
+
+    options: pokes, depths, markers, deepest, tip_radius [m], noise, force_noise, regions, seed.
+    """
+    known = {"pokes", "depths", "markers", "deepest", "tip_radius", "noise", "force_noise", "regions", "seed"}
+    if unknown := set(options) - known:
+        raise _aspic.InvalidInput(f"unknown options {sorted(unknown)} (known: {', '.join(sorted(known))})")
+    return _aspic.capture(_source(scene), os.fspath(folder), options)
+
+
+def verify(name="", quick=True):
+    """Runs problems with known answers: a family, one check, or all. Returns {check: [rows]}."""
+    return _aspic.verify(name, quick)

@@ -1,0 +1,123 @@
+"""Meshes of tets and of triangles, as arrays."""
+import os
+
+import numpy as np
+
+from . import _aspic
+
+
+class Mesh:
+    """A mesh of tets.
+
+    vertices: (n, 3) rest positions [m]; tets: (m, 4) vertices, positively oriented; region: (m,) labels or None.
+    """
+
+    def __init__(self, vertices, tets, region=None):
+        self.vertices, self.tets, self.region = _aspic.check_arrays(vertices, tets, region)
+
+    @classmethod
+    def from_meshio(cls, mesh):
+        """The tets of a meshio.Mesh."""
+        tets = [block.data for block in mesh.cells if block.type == "tetra"]
+        if not tets:
+            raise _aspic.InvalidInput("the mesh has no cells of type 'tetra'")
+        return cls(mesh.points, np.concatenate(tets))
+
+    def __repr__(self):
+        return f"<Mesh: {len(self.vertices)} vertices, {len(self.tets)} tets>"
+
+    def _arrays(self):
+        return self.vertices, self.tets, self.region
+
+    @property
+    def volumes(self):
+        """Signed volume of each tet, (m,) [m^3]."""
+        return _aspic.volumes(self.vertices, self.tets)
+
+    @property
+    def centroids(self):
+        """Centroid of each tet, (m, 3) [m]."""
+        return self.vertices[self.tets].mean(axis=1)
+
+    @property
+    def triangles(self):
+        """The boundary, (k, 3) vertices, counter-clockwise seen from outside."""
+        return _aspic.boundary(self.vertices, self.tets)
+
+    @property
+    def quality(self):
+        """Volumes [m^3], dihedral angles [degrees] and mean ratios as a dict."""
+        return _aspic.quality(self.vertices, self.tets)
+
+    def check(self):
+        """Returns the defects: a list of dicts with severity, name, message, remedy and indices."""
+        return _aspic.diagnose(*self._arrays())
+
+    def repair(self):
+        """Makes the unambiguous repairs and returns one sentence for each."""
+        (self.vertices, self.tets, self.region), actions = _aspic.repair(*self._arrays())
+        return actions
+
+    def write(self, path, binary=False):
+        """Writes a file in the format of its extension; reading it back gives the same bits."""
+        _aspic.write_mesh(os.fspath(path), *self._arrays(), binary)
+
+
+class Surface:
+    """A mesh of triangles: vertices (n, 3) [m], triangles (m, 3)."""
+
+    def __init__(self, vertices, triangles, path=None):
+        self.vertices, self.triangles, self._path = np.asarray(vertices), np.asarray(triangles), path
+
+    def __repr__(self):
+        return f"<Surface: {len(self.vertices)} vertices, {len(self.triangles)} triangles>"
+
+    def check(self):
+        """Returns the defects, as Mesh.check() does."""
+        return _aspic.diagnose_surface(self.vertices, self.triangles)
+
+    def write(self, path):
+        """Writes a file in the format of its extension."""
+        _aspic.write_surface(os.fspath(path), self.vertices, self.triangles)
+
+    def fill(self, size=0.0):
+        """Fills a closed surface that was read from a file with tets of edge length `size`, by aspic-mesh."""
+        if self._path is None:
+            raise _aspic.InvalidInput("fill() needs a surface from a file: write it, then read_mesh(path).fill()")
+        arrays, self.notes = _aspic.fill(self._path, float(size), _mesher())
+        return Mesh(*arrays)
+
+
+def _mesher():
+    """aspic-mesh of the build or of the installation; empty: searched on the PATH."""
+    here = os.path.dirname(os.path.abspath(_aspic.__file__))
+    candidates = [os.path.join(here, up, "bin", "aspic-mesh") for up in ("../..", "../../../..")]
+    return next((path for path in candidates if os.path.exists(path)), "")
+
+
+def read_mesh(path):
+    """Reads a mesh file: a Mesh if it has tets, else a Surface."""
+    path = os.fspath(path)
+    arrays = _aspic.read_mesh(path)
+    return Mesh(*arrays) if len(arrays) == 3 else Surface(*arrays, path)
+
+
+def box(size, cells, origin=(0, 0, 0), cut="kuhn"):
+    """A box of `size` [m] from `origin`, of cells[0] x cells[1] x cells[2] cells of six tets ("five": of five)."""
+    low = np.asarray(origin, float)
+    return Mesh(*_aspic.box(low, low + np.asarray(size, float), [int(n) for n in cells], cut))
+
+
+def cylinder(radius, height, size):
+    """A cylinder about the z axis from 0 to `height`, with edges of about `size` [m]."""
+    return Mesh(*_aspic.cylinder(radius, height, size))
+
+
+def sphere(radius, size):
+    """A ball about the origin with edges of about `size` [m]."""
+    return Mesh(*_aspic.sphere(radius, size))
+
+
+def torus(major_radius, minor_radius, size):
+    """A torus about the z axis with edges of about `size` [m]."""
+    return Mesh(*_aspic.torus(major_radius, minor_radius, size))

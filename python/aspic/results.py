@@ -1,0 +1,84 @@
+"""The results of a run, as arrays."""
+import csv
+import functools
+import os
+import pathlib
+
+import numpy as np
+
+from . import _aspic
+
+
+class Run:
+    """A folder that `aspic run` or a Simulation wrote."""
+
+    def __init__(self, path):
+        self.path = pathlib.Path(path)
+        if not (self.path / "steps.csv").is_file():
+            raise _aspic.InvalidInput(f"{self.path}: contains no run (there is no steps.csv)")
+
+    def __repr__(self):
+        return f"<Run {self.path}>"
+
+    @property
+    def steps(self):
+        """The columns of steps.csv: {"time": array, "status": array of str, "residual": array, ...}."""
+        return _columns(self.path / "steps.csv")
+
+    @property
+    def iterations(self):
+        """The columns of iterations.csv."""
+        return _columns(self.path / "iterations.csv")
+
+    @functools.cached_property
+    def frame_files(self):
+        return sorted((self.path / "frames").glob("body_*.vtu"))
+
+    def frame(self, index):
+        """A frame: points (n, 3) [m], tets (m, 4), point_fields and cell_fields by name."""
+        return _aspic.read_frame(os.fspath(self.frame_files[index]))
+
+    def positions(self):
+        """Positions of all vertices in all frames, (frames, n, 3) [m]. Needs output.vtu."""
+        if not self.frame_files:
+            raise _aspic.InvalidInput(f"{self.path}: has no frames of whole bodies; use surface(), or record with "
+                                      "out=FOLDER")
+        return np.stack([self.frame(i)["points"] for i in range(len(self.frame_files))])
+
+    def surface(self, body=None):
+        """Motion of the surface of a body: (frames, k, 3) [m] in single precision, and triangles (l, 3)."""
+        caches = sorted((self.path / "skins").glob("skin_*.pc2"))
+        names = [cache.stem.removeprefix("skin_") for cache in caches]
+        if body is not None and body not in names:
+            raise _aspic.InvalidInput(f"{self.path}: no surface of '{body}'; there are: {', '.join(names)}")
+        cache = caches[0 if body is None else names.index(body)]
+        return _aspic.read_motion(os.fspath(cache)), _aspic.read_mesh(os.fspath(cache.with_suffix(".obj")))[1]
+
+    def page(self, max_megabytes=10):
+        """The page that plays the run, as HTML without a network or a server."""
+        return _aspic.page_of_run(os.fspath(self.path), int(max_megabytes * 1e6))[0]
+
+    def show(self, height=600):
+        """An object that notebooks show as the player of the run; it survives conversion to HTML."""
+        from .notebook import Player
+        return Player(self.page(), height)
+
+
+def _columns(path):
+    with open(path, newline="") as file:
+        header, *rows = csv.reader(file)
+    return {name: _array(name, [row[i] for row in rows]) for i, name in enumerate(header)}
+
+
+def _array(name, texts):
+    """Integers, floats or strings; an empty cell of numbers is NaN."""
+    if name == "state_hash":  # may look like a number
+        return np.array(texts)
+    try:
+        return np.array([int(text) for text in texts])
+    except ValueError:
+        pass
+    try:
+        return np.array([float(text) if text else np.nan for text in texts])
+    except ValueError:
+        return np.array(texts)

@@ -1,0 +1,236 @@
+"""Simulations, their reports and the trace of their minimizations."""
+import os
+import tempfile
+
+import numpy as np
+
+from . import _aspic
+from .results import Run
+from .scenes import Scene
+
+
+class NotConverged(RuntimeError):
+    """A step did not converge; `report` is that of the step."""
+
+    def __init__(self, report):
+        super().__init__(f"step {report.step}: {report.status}; {report.explanation}")
+        self.report = report
+
+
+class Reports(list):
+    """The reports of several steps. reports["iterations"] is a column as an array."""
+
+    def __getitem__(self, key):
+        if isinstance(key, str):
+            return np.array([report.to_dict()[key] if not hasattr(report, key) else getattr(report, key)
+                             for report in self])
+        return super().__getitem__(key)
+
+
+class Simulation:
+    """Advances a scene in time.
+
+    scene: a Scene, or the path of a scene or a mesh. h: time step [s]. solver: keys of [solver], such as
+    {"method": "lbfgs"}. out: folder of the results, as of `aspic run`; without one the motion is kept in a temporary
+    folder for show() and results() (record=False: not at all).
+    """
+
+    def __init__(self, scene, h=None, solver=None, integrator=None, out=None, overwrite=False, record=True):
+        self.scene = scene if isinstance(scene, Scene) else Scene.load(scene)
+        settings = {"time.step": h, "time.integrator": integrator,
+                    **{f"solver.{key}": value for key, value in (solver or {}).items()}}
+        source = self.scene._source({key: value for key, value in settings.items() if value is not None})
+        self._core = _aspic.Simulation(source)
+        self._inputs = self.scene._inputs  # files that the recording copies
+        self._folder = out
+        self._record = record
+        if out is not None:
+            self._core.record(os.fspath(out), False, overwrite)
+
+    def __repr__(self):
+        return f"<Simulation {self.name}: {len(self._core.rest)} vertices, step {self.steps_taken}>"
+
+    # --- state ---------------------------------------------------------------------------------------------------------
+    @property
+    def q(self):
+        """Positions, (n, 3) [m]; a copy. Assigning changes the state and ends the recording."""
+        return self._core.q
+
+    @q.setter
+    def q(self, q):
+        self._core.set_q(q)
+
+    @property
+    def v(self):
+        """Velocities, (n, 3) [m/s]; a copy. Assigning changes the state and ends the recording."""
+        return self._core.v
+
+    @v.setter
+    def v(self, v):
+        self._core.set_v(v)
+
+    time = property(lambda self: self._core.time, doc="[s]")
+    h = property(lambda self: self._core.h, doc="Time step [s].")
+    steps_taken = property(lambda self: self._core.steps_taken)
+    name = property(lambda self: self._core.name)
+    notes = property(lambda self: self._core.notes, doc="Chosen defaults and warnings, as sentences.")
+    solver = property(lambda self: self._core.solver, doc="The methods and the reasons for their choice.")
+    state_hash = property(lambda self: self._core.state_hash, doc="As in steps.csv: 16 digits, equal on all machines.")
+    rest = property(lambda self: self._core.rest, doc="Rest positions, (n, 3) [m].")
+    tets = property(lambda self: self._core.tets, doc="Vertices of each tet, (m, 4).")
+    mass = property(lambda self: self._core.mass, doc="Mass of each vertex, (n,) [kg].")
+    pinned = property(lambda self: self._core.pinned, doc="Whether a pin holds each vertex, (n,).")
+
+    @property
+    def bodies(self):
+        """{name: {"vertices": slice, "tets": slice}}: sim.q[sim.bodies["jelly"]["vertices"]]."""
+        return {b["name"]: {"vertices": b["vertices"], "tets": b["tets"]} for b in self._core.bodies}
+
+    def fields(self):
+        """Quantities of each tet: energy_density [J/m^3], det_F, cauchy (m, 6) and von_mises [Pa], young, poisson."""
+        return self._core.fields()
+
+    def snapshot(self):
+        """The state with everything that later steps depend on."""
+        return self._core.snapshot()
+
+    def restore(self, snapshot):
+        """Returns to a snapshot; later steps have the same bits. Ends the recording."""
+        self._core.restore(snapshot)
+
+    # --- steps ---------------------------------------------------------------------------------------------------------
+    def step(self, observe=None):
+        """Takes one step and returns its StepReport.
+
+        observe(iteration) is called in every iteration; if it returns False, the step is dropped. The state stays
+        after an exception or Ctrl-C.
+        """
+        if self._record and self._folder is None and not self._core.is_recording and self.steps_taken == 0:
+            self._temporary = tempfile.TemporaryDirectory(prefix="aspic-run-", ignore_cleanup_errors=True)
+            self._core.record(os.path.join(self._temporary.name, "run"), True, True)
+        return self._core.step(observe)
+
+    def steps(self, count=None, observe=None, check=False):
+        """Takes steps one by one and yields their reports. count: by default to the end of the scene's duration.
+
+        check: raise NotConverged at the first step that does not converge.
+        """
+        last = self._core.steps_of_run if count is None else self.steps_taken + count
+        while self.steps_taken < last:
+            report = self.step(observe)
+            if report.status == "interrupted":
+                return
+            if check and not report.ok:
+                raise NotConverged(report)
+            yield report
+
+    def run(self, count=None, observe=None, check=False, progress=False):
+        """Takes steps and returns their Reports; progress: show a line about them."""
+        reports = Reports()
+        last = self._core.steps_of_run if count is None else self.steps_taken + count
+        show = _progress(last) if progress else None
+        for report in self.steps(count, observe, check):
+            reports.append(report)
+            if show:
+                show(report)
+        if self._folder is not None:
+            self._core.flush()
+        return reports
+
+    def objective(self):
+        """E(q) of the next steps as a function of its own: E(q), E.gradient(q), E.hessian(q), E.begin_step(q, v, h)."""
+        return self._core.objective()
+
+    # --- results -------------------------------------------------------------------------------------------------------
+    def results(self):
+        """The recorded Run so far."""
+        if not self._core.is_recording:
+            raise RuntimeError("nothing is recorded: take a step first, and neither assign the state nor use record=False")
+        self._core.flush()
+        return Run(self._folder if self._folder is not None else os.path.join(self._temporary.name, "run"))
+
+    def show(self, height=600):
+        """The recorded motion as a page for notebooks, see Run.show()."""
+        return self.results().show(height)
+
+
+def _progress(last):
+    """A function that shows the last report, in a notebook or on the terminal, at most five times per second."""
+    import time
+
+    shown = [0.0]
+    handle = []
+
+    def show(report):
+        now = time.monotonic()
+        if now - shown[0] < 0.2 and report.step < last:
+            return
+        shown[0] = now
+        line = f"step {report.step}/{last}: {report.status}, {report.iterations} iterations, t = {report.time:.4g} s"
+        if _in_notebook():
+            from IPython.display import display
+            if handle:
+                handle[0].update({"text/plain": line}, raw=True)
+            else:
+                handle.append(display({"text/plain": line}, raw=True, display_id=True))
+        else:
+            print("\r" + line, end="\n" if report.step >= last else "", flush=True)
+
+    return show
+
+
+def _in_notebook():
+    try:
+        from IPython import get_ipython
+    except ImportError:
+        return False
+    shell = get_ipython()
+    return shell is not None and hasattr(shell, "kernel")
+
+
+class Trace:
+    """An observer that keeps what every iteration did: sim.step(observe=trace), then trace["gradient_norm"].
+
+    landscape: also sample E along each direction (curves) and on a plane (slices).
+    """
+
+    def __init__(self, landscape=False, samples=41):
+        self.iterations, self.trials, self.curves, self.slices = [], [], [], []
+        self._landscape, self._samples = landscape, samples
+
+    def __call__(self, it):
+        self.iterations.append({"index": it.index, "value": it.value, "gradient_norm": it.gradient_norm,
+                                "decrement": it.decrement, "alpha": it.alpha, "trials": len(it.trials)})
+        self.trials.append(it.trials)
+        if self._landscape:
+            self.curves.append(it.curve())
+            self.slices.append(it.slice(self._samples))
+
+    def __getitem__(self, column):
+        return np.array([row[column] for row in self.iterations])
+
+    def __len__(self):
+        return len(self.iterations)
+
+
+def compare(scene, methods, step=1):
+    """Solves one step by several methods, each from the same state.
+
+    methods: dicts of [solver] keys or names of methods. Returns a dict per method: its report, its trace, and the
+    largest distance of a vertex from the minimizer of Newton's method at round-off [m].
+    """
+    def solve(solver):
+        sim = Simulation(scene, solver=solver, record=False)
+        for _ in range(step - 1):
+            sim.step()
+        trace = Trace()
+        return sim.step(observe=trace), trace, sim.q
+
+    reference = solve({"tolerance": 1e-12, "max_iterations": 1000})[2]
+    results = {}
+    for method in methods:
+        solver = {"method": method} if isinstance(method, str) else dict(method)
+        report, trace, q = solve(solver)
+        name = method if isinstance(method, str) else ", ".join(str(v) for v in solver.values())
+        results[name] = {"report": report, "trace": trace, "distance": float(abs(q - reference).max())}
+    return results

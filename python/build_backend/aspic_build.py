@@ -1,0 +1,69 @@
+"""PEP 517 backend without requirements: CMake builds and installs the package, this makes a wheel of it.
+
+pip install . compiles for this processor; pip wheel . --config-settings portable=1 for any x86-64-v3 one. The build folder
+build/wheel is kept, so that a second installation takes seconds. It needs the compiler and the libraries of CONTRIBUTING.md.
+"""
+import base64
+import hashlib
+import pathlib
+import shutil
+import subprocess
+import sys
+import sysconfig
+import tempfile
+import tomllib
+import zipfile
+
+ROOT = pathlib.Path(__file__).resolve().parents[2]
+PROJECT = tomllib.loads((ROOT / "pyproject.toml").read_text())["project"]
+NAME = f"{PROJECT['name']}-{PROJECT['version']}"
+TAG = f"cp{sys.version_info.major}{sys.version_info.minor}"
+TAG = f"{TAG}-{TAG}-{sysconfig.get_platform().replace('-', '_').replace('.', '_')}"
+
+
+def _run(*command):
+    if subprocess.run([str(part) for part in command], cwd=ROOT).returncode != 0:
+        raise SystemExit(f"error: {command[0]} {command[1]} failed; CONTRIBUTING.md lists the packages that it needs")
+
+
+def _build(portable, prefix):
+    build = ROOT / "build/wheel"
+    viewer = "ON" if shutil.which("npm") else "OFF"
+    options = {"CMAKE_BUILD_TYPE": "Release", "ASPIC_PYTHON": "ON", "ASPIC_TESTS": "OFF", "ASPIC_BENCH": "OFF",
+               "ASPIC_MESHER": "OFF", "ASPIC_VIEWER": viewer, "ASPIC_PORTABLE": "ON" if portable else "OFF",
+               "Python_EXECUTABLE": sys.executable, "ASPIC_PYTHON_DIR": "aspic"}
+    _run("cmake", "-S", ".", "-B", build, "-G", "Ninja", *(f"-D{key}={value}" for key, value in options.items()))
+    _run("cmake", "--build", build, "--target", "_aspic")
+    _run("cmake", "--install", build, "--prefix", prefix, "--component", "python")
+
+
+def _write_wheel(directory, files):
+    info = f"{NAME}.dist-info"
+    requires = "".join(f"Requires-Dist: {name}\n" for name in PROJECT["dependencies"])
+    files[f"{info}/METADATA"] = (f"Metadata-Version: 2.1\nName: {PROJECT['name']}\nVersion: {PROJECT['version']}\n"
+                                 f"Summary: {PROJECT['description']}\nRequires-Python: {PROJECT['requires-python']}\n"
+                                 f"{requires}").encode()
+    files[f"{info}/WHEEL"] = f"Wheel-Version: 1.0\nGenerator: aspic\nRoot-Is-Purelib: false\nTag: {TAG}\n".encode()
+
+    def line(name, data):
+        digest = base64.urlsafe_b64encode(hashlib.sha256(data).digest()).rstrip(b"=").decode()
+        return f"{name},sha256={digest},{len(data)}\n"
+
+    files[f"{info}/RECORD"] = ("".join(line(*file) for file in files.items()) + f"{info}/RECORD,,\n").encode()
+    with zipfile.ZipFile(pathlib.Path(directory) / f"{NAME}-{TAG}.whl", "w", zipfile.ZIP_DEFLATED) as wheel:
+        for name, data in files.items():
+            wheel.writestr(name, data)
+    return f"{NAME}-{TAG}.whl"
+
+
+def build_wheel(wheel_directory, config_settings=None, metadata_directory=None):
+    with tempfile.TemporaryDirectory() as prefix:
+        _build((config_settings or {}).get("portable"), prefix)
+        package = pathlib.Path(prefix)
+        return _write_wheel(wheel_directory, {path.relative_to(package).as_posix(): path.read_bytes()
+                                              for path in sorted(package.rglob("*")) if path.is_file()})
+
+
+def build_editable(wheel_directory, config_settings=None, metadata_directory=None):
+    _build(False, ROOT / "build/editable")
+    return _write_wheel(wheel_directory, {"aspic.pth": f"{ROOT / 'build/wheel/python'}\n".encode()})

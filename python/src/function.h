@@ -1,0 +1,56 @@
+// Objectives of the library as Python objects, and their Hessians.
+#pragma once
+#include <memory>
+#include <string>
+
+#include "arrays.h"
+#include "callbacks.h"
+#include "occupancy.h"
+#include "optimize/objective.h"
+
+namespace aspic::python {
+
+// A symmetric matrix with its pattern. It owns both.
+struct Hessian {
+  Hessian(const BlockSparse& source, std::shared_ptr<const BlockPattern> its_pattern, Layout its_layout)
+      : pattern(std::move(its_pattern)), layout(std::move(its_layout)), H(source) {
+    H.pattern = pattern.get();
+  }
+  std::shared_ptr<const BlockPattern> pattern;
+  Layout layout;
+  BlockSparse H;
+};
+
+// E(x) with its derivatives. An objective lent to an observer expires when the observer returns.
+class Function {
+ public:
+  Function(Objective* E, Layout layout, std::shared_ptr<Callbacks> callbacks)
+      : callbacks_(std::move(callbacks)), E_(E), layout_(std::move(layout)) {}
+  virtual ~Function() = default;
+  Function(const Function&) = delete;
+  Function& operator=(const Function&) = delete;
+
+  Objective& E();  // throws std::runtime_error if it has expired
+  void expire() { E_ = nullptr; }
+  const Layout& layout() const { return layout_; }
+  Callbacks& callbacks() { return *callbacks_; }
+  Occupancy& occupancy() { return occupancy_; }
+
+  double value(const py::handle& x);
+  Array gradient(const py::handle& x);
+  std::shared_ptr<Hessian> hessian(const py::handle& x, const std::string& definiteness);
+  double max_step(const py::handle& x, const py::handle& d);
+
+ protected:
+  std::shared_ptr<Callbacks> callbacks_;
+  Occupancy occupancy_;
+
+ private:
+  Objective* E_;
+  Layout layout_;
+  std::shared_ptr<const BlockPattern> pattern_;  // a copy of the last one
+};
+
+Definiteness definiteness_named(const std::string& name);  // throws InvalidInput
+
+}  // namespace aspic::python

@@ -1,0 +1,19 @@
+// The module _aspic. The package `aspic` is its interface; nothing else should import it.
+#include <pybind11/pybind11.h>
+
+#include "base/error.h"
+#include "bindings.h"
+
+PYBIND11_MODULE(_aspic, m) {
+  using namespace aspic::python;
+  m.attr("__version__") = ASPIC_VERSION;
+  py::register_exception<aspic::InvalidInput>(m, "InvalidInput", PyExc_ValueError);
+  bind_mesh(m);
+  bind_linalg(m);
+  bind_optimize(m);
+  bind_simulation(m);
+  bind_scene(m);
+  bind_results(m);
+  bind_fit(m);
+  bind_verification(m);
+}

@@ -1,0 +1,340 @@
+// Objectives, iterations, and minimization with functions and directions written in Python.
+#include <pybind11/stl.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+#include "base/error.h"
+#include "bindings.h"
+#include "iteration.h"
+#include "optimize/derivative_check.h"
+#include "optimize/landscape.h"
+#include "optimize/solver.h"
+#include "optimize/test_functions.h"
+#include "python_function.h"
+#include "scene/schema.h"
+#include "scene/solver_options.h"
+#include "to_table.h"
+
+namespace aspic::python {
+
+Objective& Function::E() {
+  if (!E_) throw std::runtime_error("this objective belonged to an observer that has returned; use it inside the observer");
+  return *E_;
+}
+
+double Function::value(const py::handle& x) {
+  const Use use(occupancy_, "objective");
+  const std::vector<double> in = layout_.in(x, "x");
+  double value = 0;
+  {
+    const py::gil_scoped_release free;
+    value = E().value(in);
+  }
+  callbacks_->rethrow();
+  return value;
+}
+
+Array Function::gradient(const py::handle& x) {
+  const Use use(occupancy_, "objective");
+  const std::vector<double> in = layout_.in(x, "x");
+  std::vector<double> g(in.size());
+  {
+    const py::gil_scoped_release free;
+    E().gradient(in, g);
+  }
+  callbacks_->rethrow();
+  return layout_.out(g);
+}
+
+std::shared_ptr<Hessian> Function::hessian(const py::handle& x, const std::string& definiteness) {
+  const Use use(occupancy_, "objective");
+  const std::vector<double> in = layout_.in(x, "x");
+  const Projection projection{definiteness_named(definiteness)};
+  std::shared_ptr<Hessian> result;
+  {
+    const py::gil_scoped_release free;
+    const BlockSparse& H = E().hessian(in, projection);
+    if (!pattern_ || pattern_->version != H.pattern->version)
+      pattern_ = std::make_shared<const BlockPattern>(*H.pattern);
+    result = std::make_shared<Hessian>(H, pattern_, layout_);
+  }
+  callbacks_->rethrow();
+  return result;
+}
+
+double Function::max_step(const py::handle& x, const py::handle& d) {
+  const Use use(occupancy_, "objective");
+  const std::vector<double> from = layout_.in(x, "x"), along = layout_.in(d, "d");
+  const py::gil_scoped_release free;
+  return E().max_step(from, along);
+}
+
+ObservedIteration::ObservedIteration(const LiveIteration& live, const Layout& layout,
+                                     std::shared_ptr<Callbacks> callbacks)
+    : Iteration(live),
+      objective(std::make_shared<Function>(&live.E, layout, std::move(callbacks))),
+      trials(Shape{static_cast<py::ssize_t>(live.tried.size()), 4}),
+      live_(&live) {
+  double* row = trials.mutable_data();
+  for (const Trial& trial : live.tried)
+    for (const double x : {trial.alpha, trial.value, trial.bound, trial.accepted ? 1.0 : 0.0}) *row++ = x;
+}
+
+void ObservedIteration::expire() {
+  live_ = nullptr;
+  objective->expire();
+}
+
+const LiveIteration& ObservedIteration::live() const {
+  if (!live_) throw std::runtime_error("this iteration is over; copy its vectors inside the observer");
+  return *live_;
+}
+
+IterationObserver observer_of(const py::object& observe, const Layout& layout, std::shared_ptr<Callbacks> callbacks) {
+  if (observe.is_none()) return {};
+  if (!PyCallable_Check(observe.ptr())) throw InvalidInput("observe: must be callable, as observe(iteration)");
+  return [observe = observe.ptr(), layout, callbacks](const LiveIteration& live) {
+    callbacks->call([&] {
+      const auto iteration = std::make_shared<ObservedIteration>(live, layout, callbacks);
+      struct Expire {
+        ObservedIteration& it;
+        ~Expire() { it.expire(); }
+      } const at_end{*iteration};
+      const py::object result = py::reinterpret_borrow<py::object>(observe)(iteration);
+      if (result.ptr() == Py_False) callbacks->stop();
+    });
+  };
+}
+
+namespace {
+
+class PythonDirection : public SearchDirection {
+ public:
+  PythonDirection(py::object compute, Layout layout, std::shared_ptr<Callbacks> callbacks)
+      : compute_(std::move(compute)), layout_(std::move(layout)), callbacks_(std::move(callbacks)) {}
+
+  std::string_view name() const override { return "python"; }
+  bool compute(const Iterate& at, std::span<double> d, DirectionReport&) override {
+    return callbacks_->call([&] {
+      const auto E = std::make_shared<Function>(&at.E, layout_, callbacks_);
+      struct Expire {
+        Function& E;
+        ~Expire() { E.expire(); }
+      } const at_end{*E};
+      const std::vector<double> found =
+          layout_.in(compute_(E, layout_.out(at.x), layout_.out(at.g)), "the search direction");
+      std::copy(found.begin(), found.end(), d.begin());
+    });
+  }
+
+ private:
+  py::object compute_;
+  Layout layout_;
+  std::shared_ptr<Callbacks> callbacks_;
+};
+
+py::dict dict_of(const MinimizeReport& report, const Array& x) {
+  py::dict result;
+  result["x"] = x;
+  result["status"] = std::string(to_string(report.status));
+  result["success"] = is_success(report.status);
+  result["value"] = report.value;
+  result["gradient_norm"] = report.gradient_norm;
+  result["iterations"] = report.iterations;
+  result["trials"] = report.trials;
+  result["values"] = report.values;
+  result["gradients"] = report.gradients;
+  result["hessians"] = report.hessians;
+  return result;
+}
+
+py::dict minimize_function(Function& f, const py::object& start, const py::object& direction, const py::dict& options,
+                           const py::object& observe) {
+  const Use use(f.occupancy(), "objective");
+  std::vector<double> x = f.layout().in(start, "x");
+  const std::shared_ptr<Callbacks> callbacks(&f.callbacks(), [](auto*) {});  // f outlives the minimization
+  const bool is_named = py::isinstance<py::str>(direction);
+  Value table = to_value(options, "solver");
+  if (is_named) table.table().set("method", {direction.cast<std::string>(), table.place});
+  check_and_complete(table.table(), "solver", scene_schema(), "solver");
+  const SolverOptions chosen = solver_options(table);
+  std::unique_ptr<SearchDirection> search;
+  if (is_named) {
+    search = make_search_direction(chosen);
+  } else if (PyCallable_Check(direction.ptr())) {
+    search = std::make_unique<PythonDirection>(direction, f.layout(), callbacks);
+  } else {
+    throw InvalidInput("direction: must be the name of a method or callable, as direction(E, x, g)");
+  }
+  MinimizeOptions how = chosen.minimize;
+  how.stop = callbacks->token();
+  const IterationObserver observer = observer_of(observe, f.layout(), callbacks);
+  MinimizeReport report;
+  {
+    const py::gil_scoped_release free;
+    report = Minimizer().minimize(f.E(), *search, x, how, observer);
+  }
+  callbacks->rethrow();
+  return dict_of(report, f.layout().out(x));
+}
+
+py::dict dict_of(const DerivativeCheck& check) {
+  py::dict result;
+  const py::ssize_t n = static_cast<py::ssize_t>(check.step.size());
+  result["step"] = to_array(check.step, {n});
+  result["error"] = to_array(check.error, {n});
+  result["smallest_error"] = check.smallest_error;
+  result["order"] = check.order;
+  result["passed"] = check.passed;
+  result["row"] = check.row;
+  result["column"] = check.column;
+  result["found"] = check.found;
+  result["expected"] = check.expected;
+  return result;
+}
+
+// Functions of flat arrays of n numbers.
+py::tuple check_python_derivatives(const py::function& value, const py::function& gradient, const py::function& product,
+                                   const py::object& at, double length, double tolerance, const py::object& fixed) {
+  const Array x = reals(at, "x", {-1});
+  const Shape shape = {x.size()};
+  const auto array = [&](std::span<const double> v) { return to_array(v, shape); };
+  const auto copy = [&](const py::object& from, std::span<double> to, const char* name) {
+    const Array numbers = reals(from, name, shape, Finite::not_required);
+    std::copy_n(numbers.data(), to.size(), to.begin());
+  };
+  const Differentiable f{
+      [&](std::span<const double> v) { return py::cast<double>(py::float_(value(array(v)))); },
+      [&](std::span<const double> v, std::span<double> g) { copy(gradient(array(v)), g, "gradient"); },
+      [&](std::span<const double> v, std::span<const double> d, std::span<double> Hd) {
+        copy(product(array(v), array(d)), Hd, "hessian");
+      }};
+  DerivativeCheckOptions options{.length = length, .tolerance = tolerance};
+  if (!fixed.is_none())
+    for (const auto mark : fixed) options.fixed.push_back(py::cast<bool>(mark) ? 1 : 0);
+  const DerivativeReport report = check_derivatives(f, view(x), options);
+  return py::make_tuple(dict_of(report.gradient), dict_of(report.hessian));
+}
+
+py::dict curve_of(const ObservedIteration& self, double c, int samples) {
+  if (samples < 2) throw InvalidInput("samples: at least 2 are needed");
+  std::vector<CurvePoint> points;
+  {
+    const LiveIteration& live = self.live();
+    const py::gil_scoped_release free;
+    points = curve_along(live, c, samples);
+  }
+  const auto column = [&](double CurvePoint::*member) {
+    std::vector<double> values;
+    for (const CurvePoint& p : points) values.push_back(p.*member);
+    return to_array(values, {static_cast<py::ssize_t>(values.size())});
+  };
+  py::dict result;
+  result["alpha"] = column(&CurvePoint::alpha);
+  result["value"] = column(&CurvePoint::value);
+  result["model"] = column(&CurvePoint::model);
+  result["textbook_bound"] = column(&CurvePoint::textbook_bound);
+  result["slide_bound"] = column(&CurvePoint::slide_bound);
+  return result;
+}
+
+py::dict slice_of(const ObservedIteration& self, int samples) {
+  if (samples < 2 || samples > 1000) throw InvalidInput("samples: must be from 2 to 1000");
+  Slice slice;
+  {
+    const LiveIteration& live = self.live();
+    const py::gil_scoped_release free;
+    slice = slice_through(live, samples);
+  }
+  const auto table = [&](double SlicePoint::*member) {
+    std::vector<double> values;
+    for (const SlicePoint& p : slice.point) values.push_back(p.*member);
+    return to_array(values, {slice.rows, slice.columns});
+  };
+  py::dict result;
+  result["s"] = table(&SlicePoint::s);
+  result["t"] = table(&SlicePoint::t);
+  result["value"] = table(&SlicePoint::value);
+  result["model"] = table(&SlicePoint::model);
+  return result;
+}
+
+class TestFunctionOf : public Function {
+ public:
+  explicit TestFunctionOf(std::unique_ptr<PlanarFunction> f)
+      : Function(f.get(), Layout{{2}}, std::make_shared<Callbacks>()), f_(std::move(f)) {}
+
+ private:
+  std::unique_ptr<PlanarFunction> f_;
+};
+
+py::list described_test_functions() {
+  py::list list;
+  for (const TestFunction& f : test_functions()) {
+    py::dict entry;
+    entry["name"] = f.name;
+    entry["formula"] = f.formula;
+    entry["remarks"] = f.remarks;
+    entry["minimizer"] = to_array(f.minimizer, {2});
+    entry["minimum"] = f.minimum;
+    entry["start"] = to_array(f.start, {2});
+    entry["lower"] = to_array(f.lower, {2});
+    entry["upper"] = to_array(f.upper, {2});
+    list.append(entry);
+  }
+  return list;
+}
+
+void bind_iteration(py::module_& m) {
+  using It = ObservedIteration;
+  py::class_<It, std::shared_ptr<It>>(m, "Iteration",
+                                      "An iteration of a minimization. Vectors are available inside the observer only.")
+      .def_readonly("index", &It::index, "From 0.")
+      .def_readonly("value", &It::value, "E before the step.")
+      .def_readonly("gradient_norm", &It::gradient_norm, "|g| before the step.")
+      .def_readonly("decrement", &It::decrement, "Newton decrement -g.d / 2.")
+      .def_readonly("alpha", &It::alpha, "Accepted step length; 0: none.")
+      .def_readonly("trials", &It::trials, "A row per trial of the line search: alpha, value, bound, accepted.")
+      .def_property_readonly("projected_elements", [](const It& it) { return it.direction.projected_elements; })
+      .def_readonly("E", &It::objective, "The objective.")
+      .def_property_readonly("x", [](const It& it) { return it.out(it.live().x); })
+      .def_property_readonly("g", [](const It& it) { return it.out(it.live().g); })
+      .def_property_readonly("d", [](const It& it) { return it.out(it.live().d); })
+      .def_property_readonly("x_next", [](const It& it) { return it.out(it.live().x_next); })
+      .def("curve", &curve_of, py::arg("c") = 1e-4, py::arg("samples") = 101,
+           "Samples E along d: alpha, value, the quadratic model, and the bounds of both decrease tests.")
+      .def("slice", &slice_of, py::arg("samples") = 41,
+           "Samples E on the plane x + s d + t v: arrays s, t, value and model.");
+}
+
+}  // namespace
+
+void bind_optimize(py::module_& m) {
+  py::class_<Function, std::shared_ptr<Function>>(m, "Objective", "A function E(x) with its derivatives.")
+      .def("__call__", [](Function& f, const py::object& x) { return f.value(x); }, py::arg("x"),
+           "E(x); inf where E is not defined.")
+      .def("value", [](Function& f, const py::object& x) { return f.value(x); }, py::arg("x"))
+      .def("gradient", [](Function& f, const py::object& x) { return f.gradient(x); }, py::arg("x"),
+           "dE/dx, in the shape of x.")
+      .def("hessian",
+           [](Function& f, const py::object& x, const std::string& kind) { return f.hessian(x, kind); }, py::arg("x"),
+           py::arg("definiteness") = "exact",
+           "d2E/dx2. 'clamped' and 'absolute' modify negative eigenvalues of element Hessians.")
+      .def("max_step", [](Function& f, const py::object& x, const py::object& d) { return f.max_step(x, d); },
+           py::arg("x"), py::arg("d"), "Largest alpha for which contact allows the path from x to x + alpha d.")
+      .def_property_readonly("shape", [](const Function& f) { return py::tuple(py::cast(f.layout().shape)); });
+  py::class_<PythonFunction, Function, std::shared_ptr<PythonFunction>>(m, "PythonObjective")
+      .def(py::init(&PythonFunction::make), py::arg("f"), py::arg("x"));
+  bind_iteration(m);
+  m.def("test_function", [](const std::string& name) -> std::shared_ptr<Function> {
+    return std::make_shared<TestFunctionOf>(make_test_function(name));
+  });
+  m.def("test_functions", &described_test_functions);
+  m.def("minimize", &minimize_function);
+  m.def("check_derivatives", &check_python_derivatives);
+  m.def("minimizer_names", &minimizer_names);
+}
+
+}  // namespace aspic::python

@@ -1,0 +1,77 @@
+// A simulation, and what it was made from.
+#pragma once
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "arrays.h"
+#include "callbacks.h"
+#include "function.h"
+#include "occupancy.h"
+#include "scene/run_directory.h"
+#include "scene/scene.h"
+#include "scene/scene_model.h"
+#include "scene/value.h"
+
+namespace aspic::python {
+
+// A file with overrides or a document, and terms of V in Python. It can be built several times.
+class SceneSource {
+ public:
+  SceneSource(std::filesystem::path path, std::vector<std::string> overrides, std::vector<py::object> energies);
+  SceneSource(const py::dict& document, std::string name, std::vector<py::object> energies);
+
+  // Require the GIL, and release it. Throw InvalidInput and what the energies raise.
+  Scene scene(const std::shared_ptr<Callbacks>& callbacks) const;
+  SceneModel model(const std::shared_ptr<Callbacks>& callbacks) const;
+
+ private:
+  template <class Build>
+  auto build(const Build& build, const std::shared_ptr<Callbacks>& callbacks) const;
+
+  std::filesystem::path path_;
+  std::vector<std::string> overrides_;
+  std::optional<Table> document_;  // checked and complete
+  std::string name_;
+  std::vector<py::object> energies_;
+};
+
+// A step with what its explanation needs.
+struct Report : StepReport {
+  std::vector<std::string> potential_names;
+  std::string cause, place, remedy;  // of a failure
+};
+
+class LiveSimulation {
+ public:
+  explicit LiveSimulation(std::shared_ptr<const SceneSource> source);
+
+  // Takes one step. The state stays after an exception, Ctrl-C, and if `observe` returns False.
+  Report step(const py::object& observe);
+  // Records the steps from now on. `is_compact`: only the motion of the surfaces, and the tables.
+  void record(const std::filesystem::path& folder, bool is_compact, bool overwrite);
+  void flush();  // writes indices and the last checkpoint of the recording
+  bool is_recording() const { return recording_.has_value(); }
+  void end_recording() { recording_.reset(); }
+  void restore(const Simulation::Snapshot& snapshot);
+
+  const Scene& scene() const { return check_idle(), scene_; }
+  Simulation& simulation() { return check_idle(), scene_.simulation; }
+  const SceneSource& source() const { return *source_; }
+  Layout layout() const;
+
+ private:
+  // Throws std::runtime_error if another thread takes a step or writes results.
+  void check_idle() const;
+  StepReport take_step(const IterationObserver& observe);
+
+  std::shared_ptr<const SceneSource> source_;
+  std::shared_ptr<Callbacks> callbacks_ = std::make_shared<Callbacks>();
+  Scene scene_;
+  std::optional<RunDirectory> recording_;
+  bool is_stepping_ = false;  // guarded by the GIL
+  Occupancy occupancy_;
+};
+
+}  // namespace aspic::python

@@ -1,0 +1,71 @@
+#include "step_objective.h"
+
+#include <cmath>
+
+#include "base/error.h"
+
+namespace aspic::python {
+
+std::shared_ptr<StepObjective> StepObjective::make(const SceneSource& source, double time) {
+  auto callbacks = std::make_shared<Callbacks>();
+  SceneModel model = source.model(callbacks);
+  std::unique_ptr<Parts> parts;
+  {
+    const py::gil_scoped_release free;
+    parts = std::make_unique<Parts>(std::move(model));
+  }
+  callbacks->rethrow();
+  return std::shared_ptr<StepObjective>(new StepObjective(std::move(parts), std::move(callbacks), time));
+}
+
+StepObjective::StepObjective(std::unique_ptr<Parts> parts, std::shared_ptr<Callbacks> callbacks, double time)
+    : Function(&parts->E,
+               Layout::of_vertices(parts->scene.model.numbering.vertex, parts->scene.model.mesh.vertex_count()),
+               std::move(callbacks)),
+      parts_(std::move(parts)),
+      time_(time) {}
+
+double StepObjective::end_time(const py::object& time, double usual) {
+  if (time.is_none()) return usual;
+  const auto given = time.cast<double>();
+  if (!std::isfinite(given)) throw InvalidInput("time: must be finite");
+  return given;
+}
+
+Array StepObjective::begin_step(const py::object& q, const py::object& v, double h, const py::object& time) {
+  const Use use(occupancy_, "objective");
+  if (!(h > 0) || !std::isfinite(h)) throw InvalidInput("h: must be positive and finite [s]");
+  const std::vector<double> velocity = layout().in(v, "v");
+  start_ = layout().in(q, "q");
+  time_ = end_time(time, time_ + h);
+  return begin(velocity, h);
+}
+
+Array StepObjective::begin_statics(const py::object& q, const py::object& time) {
+  const Use use(occupancy_, "objective");
+  start_ = layout().in(q, "q");
+  time_ = end_time(time, time_);
+  return begin({}, 0);
+}
+
+Array StepObjective::begin(const std::vector<double>& v, double h) {
+  const bool is_static = h == 0;
+  const StepContext context{start_, h, time_, start_, time_ - h};
+  parts_->E.set_potential_step(context);
+  parts_->E.set_damping_step(context);
+  std::vector<double> predicted = start_;
+  for (size_t i = 0; i < v.size(); ++i) predicted[i] += h * v[i];
+  parts_->E.begin_step(predicted, is_static ? 0 : 1, is_static ? 1 : h * h);
+  std::vector<double> first = start_;
+  parts_->pins.place(time_, first);
+  callbacks_->rethrow();
+  return layout().out(first);
+}
+
+void StepObjective::update_lagged(const py::object& q) {
+  const Use use(occupancy_, "objective");
+  const std::vector<double> at = layout().in(q, "q");
+  parts_->E.update_lagged(at);
+}
+
+}  // namespace aspic::python

@@ -1,0 +1,56 @@
+"""Stubs, names and documentation of the package."""
+import inspect
+import pathlib
+import re
+import subprocess
+import sys
+
+import pytest
+from conftest import ROOT
+
+import aspic
+from aspic import _aspic, _cpu
+
+
+def test_stubs_list_the_names_of_the_module():
+    stub = pathlib.Path(aspic.__file__).with_name("_aspic.pyi").read_text()
+    top = set(re.findall(r"^(?:class|def) (\w+)", stub, re.M))
+    assert top == {name for name in dir(_aspic) if not name.startswith("__")}
+    for name, body in re.findall(r"^class (\w+).*?:\n((?:    .*\n)+)", stub, re.M):
+        listed = set(re.findall(r"def (\w+)", body)) - {"__init__", "__call__", "__matmul__"}
+        members = {member for member in vars(getattr(_aspic, name)) if not member.startswith("_")}
+        assert listed == members, name
+
+
+def test_type_checker_accepts_the_stubs():
+    pytest.importorskip("mypy")
+    result = subprocess.run([sys.executable, "-m", "mypy", "--ignore-missing-imports", "--cache-dir=/dev/null",
+                             pathlib.Path(aspic.__file__).with_name("_aspic.pyi")], capture_output=True, text=True)
+    assert result.returncode == 0, result.stdout
+
+
+def test_public_names_have_docstrings():
+    for name in aspic.__all__:
+        thing = getattr(aspic, name)
+        if name == "__version__":
+            continue
+        assert inspect.getdoc(thing), name
+        if inspect.isclass(thing) and thing.__module__.startswith("aspic.") and not issubclass(thing, aspic.Energy):
+            for member, value in vars(thing).items():
+                if not member.startswith("_") and callable(value):
+                    assert inspect.getdoc(value), f"{name}.{member}"
+
+
+def test_old_processor_is_refused_in_words(tmp_path):
+    (tmp_path / "cpuinfo").write_text("processor : 0\nflags : fpu sse4_2 avx\n")
+    with pytest.raises(ImportError, match="x86-64-v3 processor.*avx2"):
+        _cpu.require_processor(tmp_path / "cpuinfo")
+    _cpu.require_processor()
+
+
+def test_documentation_names_what_exists():
+    text = (ROOT / "docs/python.md").read_text()
+    for name in set(re.findall(r"aspic\.(\w+)", text)):
+        assert hasattr(aspic, name) or (pathlib.Path(aspic.__file__).parent / f"{name}.py").exists(), name
+    for link in re.findall(r"\]\((?!https?:)([^)#]+)", text):
+        assert (ROOT / "docs" / link).exists(), link

@@ -1,0 +1,95 @@
+"""Recorded runs, frames and the page that plays them."""
+import html
+import re
+import urllib.request
+
+import numpy as np
+import pytest
+from conftest import make_jelly
+
+import aspic
+
+
+def test_run_is_read_as_arrays(jelly, tmp_path):
+    sim = aspic.Simulation(jelly, out=tmp_path / "run")
+    states = [sim.q, *(sim.q for _ in sim.steps(3))]
+    run = sim.results()
+    np.testing.assert_array_equal(run.positions(), states)
+    assert list(run.steps["step"]) == [0, 1, 2, 3]
+    assert set(run.steps["status"][1:]) == {"converged"}
+    assert run.steps["residual"].dtype == float and run.steps["residual"][-1] > 0
+    assert len(run.iterations["step"]) >= 3
+    frame = run.frame(2)
+    assert frame["cell_fields"]["young"] == pytest.approx(5e3)
+    np.testing.assert_array_equal(frame["tets"], sim.tets)
+    with pytest.raises(ValueError, match="is writing results into it"):
+        aspic.Simulation(jelly, out=tmp_path / "run")
+    del sim
+    with pytest.raises(ValueError, match="already contains a run"):
+        aspic.Simulation(jelly, out=tmp_path / "run")
+    aspic.Simulation(jelly, out=tmp_path / "run", overwrite=True)
+
+
+def test_motion_of_the_surface_is_kept_without_a_folder(jelly):
+    sim = aspic.Simulation(jelly)
+    sim.run(3)
+    motion, triangles = sim.results().surface("jelly")
+    assert motion.shape == (4, 56, 3) and triangles.max() == 55
+    surface = np.unique(jelly.bodies[0].mesh.triangles)
+    np.testing.assert_allclose(motion[-1], sim.q[surface], atol=1e-7)
+
+
+def test_page_plays_in_a_frame_without_a_server(jelly):
+    sim = aspic.Simulation(jelly)
+    sim.run(3)
+    try:
+        player = sim.show(height=300)
+    except RuntimeError as error:
+        pytest.skip(str(error))
+    frame = player._repr_html_()
+    page = html.unescape(re.search('srcdoc="([^"]*)"', frame)[1])
+    assert page == player.page and page.lstrip().lower().startswith("<!doctype html")
+    assert 'sandbox="allow-scripts"' in frame
+    assert not re.search(r"""(src|href)=["']?https?://""", page)
+
+
+def test_page_goes_on_after_more_steps(jelly):
+    sim = aspic.Simulation(jelly)
+    sim.run(2)
+    assert len(sim.results().steps["step"]) == 3
+    sim.run(2)
+    assert len(sim.results().steps["step"]) == 5
+
+
+def test_nothing_recorded_is_said(jelly):
+    sim = aspic.Simulation(jelly, record=False)
+    sim.run(1)
+    with pytest.raises(RuntimeError, match="nothing is recorded"):
+        sim.show()
+
+
+def test_meshes_survive_files(tmp_path):
+    mesh = aspic.torus(.3, .1, .1)
+    labels = np.arange(len(mesh.tets)) % 3
+    aspic.Mesh(mesh.vertices, mesh.tets, labels).write(tmp_path / "a.msh")
+    read = aspic.read_mesh(tmp_path / "a.msh")
+    np.testing.assert_array_equal(read.vertices, mesh.vertices)
+    np.testing.assert_array_equal(read.tets, mesh.tets)
+    np.testing.assert_array_equal(read.region, labels)
+    assert not [f for f in read.check() if f["severity"] == "error"]
+    assert read.volumes.sum() == pytest.approx(read.quality["total_volume"])
+
+
+def test_mesh_is_checked_and_repaired():
+    mesh = aspic.box((1, 1, 1), (2, 2, 2))
+    mesh.tets[0] = mesh.tets[0][[1, 0, 2, 3]]
+    assert "inverted_tets" in {f["name"] for f in mesh.check()}
+    assert len(mesh.repair()) == 1 and mesh.volumes.min() > 0
+
+
+def test_live_viewer_serves_the_scene(jelly, program):
+    del program  # skips where the command line is not built
+    with aspic.view(jelly, browser=False) as view:
+        with urllib.request.urlopen(view.address, timeout=20) as page:
+            assert b"<!doctype html" in page.read().lower()
+        assert view.address in view._repr_html_()
