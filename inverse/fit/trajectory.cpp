@@ -274,6 +274,12 @@ Trajectory::Trajectory(Trajectory&&) noexcept = default;
 const Model& Trajectory::model() const { return impl_->model; }
 Model Trajectory::release_model() && { return std::move(impl_->model); }
 void Trajectory::set_parameters(std::span<const MaterialParameters> parameters) { impl_->theta.set(parameters); }
+void Trajectory::set_start(const State& start) {
+  ASPIC_CHECK(start.q.size() == impl_->start.q.size() && start.qdot.size() == start.q.size());
+  impl_->start = start;
+  impl_->pins = Pins(impl_->model.pins, start.q);
+  impl_->place_pins();
+}
 
 TrajectoryReport Trajectory::simulate(const TrajectoryObjective& objective) { return impl_->simulate(objective); }
 TrajectoryReport Trajectory::differentiate(const TrajectoryObjective& objective, TrajectoryGradient& gradient) {

@@ -64,6 +64,7 @@ class Trajectory {
   const Model& model() const;
   Model release_model() &&;                                             // the trajectory must not be used afterwards
   void set_parameters(std::span<const MaterialParameters> parameters);  // one per tet
+  void set_start(const State& start);
 
   TrajectoryReport simulate(const TrajectoryObjective& objective);
   TrajectoryReport differentiate(const TrajectoryObjective& objective, TrajectoryGradient& gradient);

@@ -81,15 +81,15 @@ class Trajectory:
         return self._core.value_and_gradient(objective)
 
 
-def fit(data, model="neo_hookean", unknowns=None, known=None, observe=None, out=None, **options):
+def fit(data, model="neo_hookean", parameters=None, known=None, observe=None, out=None, **options):
     """Fits a material to a data set, as `aspic fit` does.
 
-    data: a folder, see docs/capture_format.md. unknowns: {"young": "tets"}; known: {"poisson": 0.45}.
+    data: a folder, see docs/capture_format.md. parameters: {"young": "tets"}; known: {"poisson": 0.45}.
     observe(iteration, misfit, p) is called in every iteration; out: write the material to this .vtu file.
     options: those of the command line, such as uncertainty=False. Returns an object with quantities, by name: values
-    per tet, standard deviations and reductions; misfit, status, verdict, reasons and warnings.
+    per tet, their standard deviations `sigma` and reductions; misfit, status, verdict, reasons and warnings.
     """
-    result = _aspic.fit(os.fspath(data), model, [f"{k}={v}" for k, v in (unknowns or {}).items()],
+    result = _aspic.fit(os.fspath(data), model, [f"{k}={v}" for k, v in (parameters or {}).items()],
                         [f"{k}={v}" for k, v in (known or {}).items()], options, observe,
                         None if out is None else os.fspath(out))
     result["history"] = np.array(result["history"])
@@ -99,9 +99,9 @@ def fit(data, model="neo_hookean", unknowns=None, known=None, observe=None, out=
 def capture(scene, folder, **options):
     """Writes a synthetic data set of a scene of one pinned body, as `aspic capture` does; returns notes.
 
-    options: pokes, depths, markers, deepest, tip_radius [m], noise, force_noise, regions, seed.
+    options: indentations, depths, markers, deepest, tip_radius [m], noise, force_noise, regions, seed.
     """
-    known = {"pokes", "depths", "markers", "deepest", "tip_radius", "noise", "force_noise", "regions", "seed"}
+    known = {"indentations", "depths", "markers", "deepest", "tip_radius", "noise", "force_noise", "regions", "seed"}
     if unknown := set(options) - known:
         raise _aspic.InvalidInput(f"unknown options {sorted(unknown)} (known: {', '.join(sorted(known))})")
     return _aspic.capture(_source(scene), os.fspath(folder), options)

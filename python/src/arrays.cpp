@@ -54,7 +54,8 @@ py::ssize_t size_of(const Shape& shape) {
 
 std::string text_of(const Shape& shape) {
   std::string text;
-  for (const py::ssize_t extent : shape) text += (text.empty() ? "" : ", ") + (extent < 0 ? "n" : std::to_string(extent));
+  for (const py::ssize_t extent : shape)
+    text += (text.empty() ? "" : ", ") + (extent < 0 ? "n" : std::to_string(extent));
   return "(" + text + (shape.size() == 1 ? ",)" : ")");
 }
 

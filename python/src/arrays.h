@@ -32,9 +32,9 @@ std::string text_of(const Shape& shape);  // "(125, 3)"
 Array to_array(std::span<const double> values, const Shape& shape);
 py::array_t<int> to_array(std::span<const int> values, const Shape& shape);
 
-std::vector<Vec3d> to_points(const Array& array);        // of shape (n, 3)
-Array to_array(const std::vector<Vec3d>& points);        // of shape (n, 3)
-Array to_array(const Vec3d& vector);                     // of shape (3,)
+std::vector<Vec3d> to_points(const Array& array);  // of shape (n, 3)
+Array to_array(const std::vector<Vec3d>& points);  // of shape (n, 3)
+Array to_array(const Vec3d& vector);               // of shape (3,)
 
 // How the vector of an objective looks in Python: an array of this shape. Vectors of the library are in the order of
 // the model and padded with zeros to 3 numbers per block row.

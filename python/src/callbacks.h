@@ -12,7 +12,7 @@ namespace aspic::python {
 namespace py = pybind11;
 
 // The library is not prepared for exceptions inside its loops. Callbacks therefore keep the first one, compute nothing
-// from then on, and stop the computation; whoever started it calls rethrow().
+// more, and stop the computation. The caller then calls rethrow().
 class Callbacks {
  public:
   bool has_failed() const { return error_ != nullptr; }

@@ -73,9 +73,7 @@ class ParameterArrays {
   std::vector<MaterialParameters> values_;  // as in the scene
 };
 
-Layout layout_of(const Model& model) {
-  return Layout::of_vertices(model.numbering.vertex, model.mesh.vertex_count());
-}
+Layout layout_of(const Model& model) { return Layout::of_vertices(model.numbering.vertex, model.mesh.vertex_count()); }
 
 // x(theta) = argmin V(x; theta)
 class PyEquilibrium {
@@ -182,11 +180,13 @@ class PyTrajectory {
     const auto size = static_cast<size_t>(layout_.size());
     Array motion(Shape{options_.steps + 1, layout_.rows(), 3});
     double* const data = motion.mutable_data();
-    run([&](int point, const State& state, std::span<double>, std::span<double>) {
-      const std::vector<double> q = layout_.vertex.to_user(state.q, 3);
-      std::copy(q.begin(), q.end(), data + static_cast<size_t>(point) * size);
-      return 0.0;
-    }, nullptr);
+    run(
+        [&](int point, const State& state, std::span<double>, std::span<double>) {
+          const std::vector<double> q = layout_.vertex.to_user(state.q, 3);
+          std::copy(q.begin(), q.end(), data + static_cast<size_t>(point) * size);
+          return 0.0;
+        },
+        nullptr);
     return motion;
   }
 
@@ -194,34 +194,38 @@ class PyTrajectory {
     const Array weights = reals(qbar, "qbar", {options_.steps + 1, layout_.rows(), 3});
     const auto size = static_cast<size_t>(layout_.size());
     TrajectoryGradient gradient;
-    run([&](int point, const State&, std::span<double> q, std::span<double>) {
-      if (q.empty()) return 0.0;
-      const std::span<const double> row = view(weights).subspan(static_cast<size_t>(point) * size, size);
-      const std::vector<double> own = layout_.vertex.from_user(row, 3);
-      for (size_t i = 0; i < size; ++i) q[i] += own[i];
-      return 0.0;
-    }, &gradient);
+    run(
+        [&](int point, const State&, std::span<double> q, std::span<double>) {
+          if (q.empty()) return 0.0;
+          const std::span<const double> row = view(weights).subspan(static_cast<size_t>(point) * size, size);
+          const std::vector<double> own = layout_.vertex.from_user(row, 3);
+          for (size_t i = 0; i < size; ++i) q[i] += own[i];
+          return 0.0;
+        },
+        &gradient);
     return dict_of(gradient);
   }
 
   // objective(point, q, v) returns a value, or (value, dvalue/dq, dvalue/dv) with None for zeros.
   py::tuple value_and_gradient(const py::function& objective) {
     TrajectoryGradient gradient;
-    const TrajectoryReport report = run([&](int point, const State& state, std::span<double> q, std::span<double> v) {
-      double value = 0;
-      callbacks_->call([&] {
-        const py::object result = objective(point, layout_.out(state.q), layout_.out(state.qdot));
-        if (!py::isinstance<py::tuple>(result)) {
-          value = result.cast<double>();
-          return;
-        }
-        const py::tuple parts = result;
-        value = parts[0].cast<double>();
-        if (!q.empty() && parts.size() > 1) add(parts[1], "dvalue/dq", q);
-        if (!v.empty() && parts.size() > 2) add(parts[2], "dvalue/dv", v);
-      });
-      return value;
-    }, &gradient);
+    const TrajectoryReport report = run(
+        [&](int point, const State& state, std::span<double> q, std::span<double> v) {
+          double value = 0;
+          callbacks_->call([&] {
+            const py::object result = objective(point, layout_.out(state.q), layout_.out(state.qdot));
+            if (!py::isinstance<py::tuple>(result)) {
+              value = result.cast<double>();
+              return;
+            }
+            const py::tuple parts = result;
+            value = parts[0].cast<double>();
+            if (!q.empty() && parts.size() > 1) add(parts[1], "dvalue/dq", q);
+            if (!v.empty() && parts.size() > 2) add(parts[2], "dvalue/dv", v);
+          });
+          return value;
+        },
+        &gradient);
     return py::make_tuple(report.value, dict_of(gradient));
   }
 
@@ -289,13 +293,13 @@ py::dict dict_of(const FittedQuantity& quantity, const Renumbering& tet) {
   py::dict result;
   result["unit"] = quantity.unit;
   result["values"] = array(quantity.values);
-  result["deviation"] = array(quantity.deviation);
+  result["sigma"] = array(quantity.sigma);
   result["reduction"] = array(quantity.reduction);
   py::list rows;
   for (const ValueRow& row : quantity.rows)
-    rows.append(py::make_tuple(row.where, row.value,
-                               row.interval ? py::object(py::make_tuple(row.interval->lower, row.interval->upper))
-                                            : py::object(py::none())));
+    rows.append(py::make_tuple(
+        row.where, row.value,
+        row.interval ? py::object(py::make_tuple(row.interval->lower, row.interval->upper)) : py::object(py::none())));
   result["rows"] = rows;
   return result;
 }
@@ -305,7 +309,8 @@ py::dict dict_of(const DataSet& data, const FitOutcome& outcome) {
   for (const FittedQuantity& quantity : outcome.quantities)
     quantities[py::str(quantity.name)] = dict_of(quantity, data.numbering.tet);
   py::list history;
-  for (const FitIteration& it : outcome.report.history) history.append(py::make_tuple(it.misfit, it.roughness, it.decrement));
+  for (const FitIteration& it : outcome.report.history)
+    history.append(py::make_tuple(it.misfit, it.roughness, it.decrement));
   const FitVerdict judged = verdict(data, outcome);
   py::list reasons;
   for (const FitReason& reason : judged.reasons) reasons.append(reason.text);
@@ -321,12 +326,12 @@ py::dict dict_of(const DataSet& data, const FitOutcome& outcome) {
   return result;
 }
 
-py::dict fit_data(const std::filesystem::path& path, const std::string& model, const std::vector<std::string>& unknowns,
-                  const std::vector<std::string>& known, const py::dict& options, const py::object& observe,
-                  const py::object& out) {
+py::dict fit_data(const std::filesystem::path& path, const std::string& model,
+                  const std::vector<std::string>& parameters, const std::vector<std::string>& known,
+                  const py::dict& options, const py::object& observe, const py::object& out) {
   FitPlan plan;
   plan.model = material_info(model).name;
-  for (const std::string& text : unknowns) plan.unknowns.push_back(parse_unknown(text));
+  for (const std::string& text : parameters) plan.parameters.push_back(parse_parameter(text));
   for (const std::string& text : known) plan.known.push_back(parse_known(text));
   read_fit_options(to_value(options, "fit").table(), "fit", plan);
   Callbacks callbacks;
@@ -355,7 +360,7 @@ std::vector<std::string> capture(const SceneSource& source, const std::filesyste
   const auto read = [&](const char* key, auto& value) {
     if (numbers.contains(key)) value = numbers[key].cast<std::remove_reference_t<decltype(value)>>();
   };
-  read("pokes", options.pokes), read("depths", options.depths), read("markers", options.markers);
+  read("indentations", options.indentations), read("depths", options.depths), read("markers", options.markers);
   read("deepest", options.deepest), read("tip_radius", options.tip_radius), read("seed", options.seed);
   read("noise", options.noise), read("force_noise", options.force_noise), read("regions", options.regions);
   const Scene scene = source.scene(std::make_shared<Callbacks>());
@@ -364,9 +369,8 @@ std::vector<std::string> capture(const SceneSource& source, const std::filesyste
     const py::gil_scoped_release free;
     made = synthesize(scene, options);
     if (!made.interrupted)
-      write_data_set(folder, made.data, [&](const std::filesystem::path& beside) {
-        write_material(beside / "truth.vtu", made.truth);
-      });
+      write_data_set(folder, made.data,
+                     [&](const std::filesystem::path& beside) { write_material(beside / "truth.vtu", made.truth); });
   }
   callbacks.rethrow();
   return made.notes;

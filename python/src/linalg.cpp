@@ -46,11 +46,12 @@ py::object to_scipy(const Hessian& self) {
     });
   }
   const py::ssize_t n = static_cast<py::ssize_t>(values.size());
-  const py::object coo = py::module_::import("scipy.sparse")
-                             .attr("coo_matrix")(py::make_tuple(to_array(values, {n}),
-                                                                py::make_tuple(to_array(rows, {n}), to_array(columns, {n}))),
-                                                 py::make_tuple(size, size));
-  return coo.attr("tocsr")();
+  const py::object entries =
+      py::module_::import("scipy.sparse")
+          .attr("coo_matrix")(
+              py::make_tuple(to_array(values, {n}), py::make_tuple(to_array(rows, {n}), to_array(columns, {n}))),
+              py::make_tuple(size, size));
+  return entries.attr("tocsr")();
 }
 
 Array multiply(const Hessian& self, const py::handle& x) {
@@ -129,23 +130,25 @@ Definiteness definiteness_named(const std::string& name) {
 void bind_linalg(py::module_& m) {
   py::class_<Hessian, std::shared_ptr<Hessian>>(m, "Hessian", "A symmetric sparse matrix.")
       .def("to_scipy", &to_scipy, "Returns a scipy CSR matrix for vectors q.ravel().")
-      .def("__matmul__", [](const Hessian& self, const py::object& x) { return multiply(self, x); },
-           "H @ x for an array of the shape of x.")
-      .def_property_readonly("shape", [](const Hessian& self) {
-        return py::make_tuple(self.layout.size(), self.layout.size());
-      });
+      .def(
+          "__matmul__", [](const Hessian& self, const py::object& x) { return multiply(self, x); },
+          "H @ x for an array of the shape of x.")
+      .def_property_readonly(
+          "shape", [](const Hessian& self) { return py::make_tuple(self.layout.size(), self.layout.size()); });
   py::class_<Solver>(m, "LinearSolver",
                      "Solves H x = b for a positive definite H: 'auto', 'cholesky', 'multigrid' or 'block_jacobi'.")
       .def(py::init<const std::string&, int>(), py::arg("method") = "auto", py::arg("solves") = 1)
-      .def("factorize",
-           [](const py::object& self, std::shared_ptr<Hessian> H) {
-             self.cast<Solver&>().factorize(std::move(H));
-             return self;
-           },
-           py::arg("H"), "Factorizes H and returns the solver. Raises LinAlgError unless H is positive definite.")
-      .def("solve", [](Solver& self, const py::object& b, double tolerance) { return self.solve(b, tolerance); },
-           py::arg("b"), py::arg("tolerance") = 1e-10,
-           "Returns x with H x = b, in the shape of b. Direct solvers ignore the tolerance.")
+      .def(
+          "factorize",
+          [](const py::object& self, std::shared_ptr<Hessian> H) {
+            self.cast<Solver&>().factorize(std::move(H));
+            return self;
+          },
+          py::arg("H"), "Factorizes H and returns the solver. Raises LinAlgError unless H is positive definite.")
+      .def(
+          "solve", [](Solver& self, const py::object& b, double tolerance) { return self.solve(b, tolerance); },
+          py::arg("b"), py::arg("tolerance") = 1e-10,
+          "Returns x with H x = b, in the shape of b. Direct solvers ignore the tolerance.")
       .def_property_readonly("description", &Solver::description)
       .def_property_readonly("iterations", [](const Solver& self) { return self.last().iterations; });
   m.def("linear_solver_names", &linear_solver_names);

@@ -40,8 +40,7 @@ TetMesh tet_mesh(const py::handle& vertices, const py::handle& tets, const py::h
   if (corners.empty()) throw InvalidInput("tets: there are none; a body needs at least one");
   mesh.tets.resize(corners.size() / 4);
   std::copy(corners.begin(), corners.end(), mesh.tets.data()->data());
-  if (!region.is_none())
-    mesh.region = indices(region, "region", {static_cast<py::ssize_t>(mesh.tets.size())}, INT_MAX);
+  if (!region.is_none()) mesh.region = indices(region, "region", {static_cast<py::ssize_t>(mesh.tets.size())}, INT_MAX);
   return mesh;
 }
 
@@ -50,7 +49,8 @@ TriMesh tri_mesh(const py::handle& vertices, const py::handle& triangles) {
   const Array points = reals(vertices, "vertices", {-1, 3});
   mesh.vertices = to_points(points);
   const std::vector<int> corners = indices(triangles, "triangles", {-1, 3}, points.shape(0));
-  for (size_t i = 0; i + 2 < corners.size(); i += 3) mesh.triangles.push_back({corners[i], corners[i + 1], corners[i + 2]});
+  for (size_t i = 0; i + 2 < corners.size(); i += 3)
+    mesh.triangles.push_back({corners[i], corners[i + 1], corners[i + 2]});
   return mesh;
 }
 
@@ -93,7 +93,8 @@ double positive(double value, const char* name) {
 constexpr double kMostTets = 2e7;
 void check_count(double tets) {
   if (!(tets <= kMostTets))
-    throw InvalidInput("size: about " + std::to_string(tets) + " tets; at most 2e+07 are generated (choose a larger size)");
+    throw InvalidInput("size: about " + std::to_string(tets) +
+                       " tets; at most 2e+07 are generated (choose a larger size)");
 }
 
 py::tuple box(const py::handle& lower, const py::handle& upper, const std::vector<int>& cells, const std::string& cut) {
@@ -153,15 +154,15 @@ void bind_mesh(py::module_& m) {
   m.def("write_surface", [](const fs::path& path, Handle vertices, Handle triangles) {
     write_mesh(path, tri_mesh(vertices, triangles));
   });
-  m.def("check_arrays", [](Handle vertices, Handle tets, Handle region) {
-    return arrays_of(tet_mesh(vertices, tets, region));
-  }, "Returns the arrays of a mesh in their types; raises InvalidInput for others.");
+  m.def(
+      "check_arrays",
+      [](Handle vertices, Handle tets, Handle region) { return arrays_of(tet_mesh(vertices, tets, region)); },
+      "Returns the arrays of a mesh in their types; raises InvalidInput for others.");
   m.def("diagnose", [](Handle vertices, Handle tets, Handle region) {
     return list_of(diagnose(tet_mesh(vertices, tets, region)));
   });
-  m.def("diagnose_surface", [](Handle vertices, Handle triangles) {
-    return list_of(diagnose(tri_mesh(vertices, triangles)));
-  });
+  m.def("diagnose_surface",
+        [](Handle vertices, Handle triangles) { return list_of(diagnose(tri_mesh(vertices, triangles))); });
   m.def("quality", [](Handle vertices, Handle tets) { return quality_of(tet_mesh(vertices, tets, py::none())); });
   m.def("repair", [](Handle vertices, Handle tets, Handle region) {
     TetMesh mesh = tet_mesh(vertices, tets, region);

@@ -20,7 +20,8 @@
 namespace aspic::python {
 
 Objective& Function::E() {
-  if (!E_) throw std::runtime_error("this objective belonged to an observer that has returned; use it inside the observer");
+  if (!E_)
+    throw std::runtime_error("this objective belonged to an observer that has returned; use it inside the observer");
   return *E_;
 }
 
@@ -313,17 +314,21 @@ void bind_iteration(py::module_& m) {
 
 void bind_optimize(py::module_& m) {
   py::class_<Function, std::shared_ptr<Function>>(m, "Objective", "A function E(x) with its derivatives.")
-      .def("__call__", [](Function& f, const py::object& x) { return f.value(x); }, py::arg("x"),
-           "E(x); inf where E is not defined.")
-      .def("value", [](Function& f, const py::object& x) { return f.value(x); }, py::arg("x"))
-      .def("gradient", [](Function& f, const py::object& x) { return f.gradient(x); }, py::arg("x"),
-           "dE/dx, in the shape of x.")
-      .def("hessian",
-           [](Function& f, const py::object& x, const std::string& kind) { return f.hessian(x, kind); }, py::arg("x"),
-           py::arg("definiteness") = "exact",
-           "d2E/dx2. 'clamped' and 'absolute' modify negative eigenvalues of element Hessians.")
-      .def("max_step", [](Function& f, const py::object& x, const py::object& d) { return f.max_step(x, d); },
-           py::arg("x"), py::arg("d"), "Largest alpha for which contact allows the path from x to x + alpha d.")
+      .def(
+          "__call__", [](Function& f, const py::object& x) { return f.value(x); }, py::arg("x"),
+          "E(x); inf where E is not defined.")
+      .def(
+          "value", [](Function& f, const py::object& x) { return f.value(x); }, py::arg("x"))
+      .def(
+          "gradient", [](Function& f, const py::object& x) { return f.gradient(x); }, py::arg("x"),
+          "dE/dx, in the shape of x.")
+      .def(
+          "hessian", [](Function& f, const py::object& x, const std::string& kind) { return f.hessian(x, kind); },
+          py::arg("x"), py::arg("definiteness") = "exact",
+          "d2E/dx2. 'clamped' and 'absolute' modify negative eigenvalues of element Hessians.")
+      .def(
+          "max_step", [](Function& f, const py::object& x, const py::object& d) { return f.max_step(x, d); },
+          py::arg("x"), py::arg("d"), "Largest alpha for which contact allows the path from x to x + alpha d.")
       .def_property_readonly("shape", [](const Function& f) { return py::tuple(py::cast(f.layout().shape)); });
   py::class_<PythonFunction, Function, std::shared_ptr<PythonFunction>>(m, "PythonObjective")
       .def(py::init(&PythonFunction::make), py::arg("f"), py::arg("x"));

@@ -18,8 +18,8 @@ class PythonEnergy : public SteadyEnergy {
       : energy_(energy), callbacks_(std::move(callbacks)) {
     for (const char* method : {"value", "gradient", "hessian"})
       if (!py::hasattr(energy, method) || !PyCallable_Check(energy.attr(method).ptr()))
-        throw InvalidInput("energy '" + py::type::of(energy).attr("__name__").cast<std::string>() +
-                           "' has no method " + method + "(x)");
+        throw InvalidInput("energy '" + py::type::of(energy).attr("__name__").cast<std::string>() + "' has no method " +
+                           method + "(x)");
     name_ = py::hasattr(energy, "name") ? std::string(py::str(energy.attr("name")))
                                         : py::type::of(energy).attr("__name__").cast<std::string>();
     if (!py::hasattr(energy, "elements"))

@@ -61,9 +61,9 @@ void PythonObjective::assemble(const py::object& matrix, const Projection& proje
   if (!is_exact && n > kMostModified)
     throw InvalidInput("hessian: of " + std::to_string(n) + " rows; eigenvalues are modified up to " +
                        std::to_string(kMostModified) + " rows (use definiteness=\"exact\")");
-  py::object coo;
+  py::object entries;
   if (is_sparse && is_exact) {
-    coo = matrix.attr("tocoo")();
+    entries = matrix.attr("tocoo")();
   } else {
     Array dense = reals(is_sparse ? matrix.attr("toarray")() : matrix, "hessian", {n, n});
     if (!is_exact) {
@@ -71,11 +71,11 @@ void PythonObjective::assemble(const py::object& matrix, const Projection& proje
       projected_elements_ = modify_eigenvalues(static_cast<int>(n), A, projection.kind) ? 1 : 0;
       dense = to_array(A, {n, n});
     }
-    coo = py::module_::import("scipy.sparse").attr("coo_matrix")(dense);
+    entries = py::module_::import("scipy.sparse").attr("coo_matrix")(dense);
   }
-  const std::vector<int> rows = indices(coo.attr("row"), "hessian.row", {-1}, n);
-  const std::vector<int> columns = indices(coo.attr("col"), "hessian.col", {-1}, n);
-  const Array data = reals(coo.attr("data"), "hessian", {static_cast<py::ssize_t>(rows.size())});
+  const std::vector<int> rows = indices(entries.attr("row"), "hessian.row", {-1}, n);
+  const std::vector<int> columns = indices(entries.attr("col"), "hessian.col", {-1}, n);
+  const Array data = reals(entries.attr("data"), "hessian", {static_cast<py::ssize_t>(rows.size())});
   Couplings couplings;
   for (size_t i = 0; i < rows.size(); ++i)
     if (rows[i] / 3 != columns[i] / 3) couplings.emplace_back(rows[i] / 3, columns[i] / 3);

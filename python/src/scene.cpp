@@ -4,8 +4,8 @@
 #include <pybind11/stl.h>
 #include <pybind11/stl/filesystem.h>
 
-#include "base/parallel.h"
 #include "base/error.h"
+#include "base/parallel.h"
 #include "bindings.h"
 #include "material/registry.h"
 #include "simulation.h"
@@ -17,7 +17,8 @@ py::list described_materials() {
   py::list list;
   for (const MaterialInfo& info : materials()) {
     py::dict entry, extra;
-    for (const ExtraParameter& e : info.extra) extra[py::str(e.name)] = e.meaning + (e.unit.empty() ? "" : " [" + e.unit + "]");
+    for (const ExtraParameter& e : info.extra)
+      extra[py::str(e.name)] = e.meaning + (e.unit.empty() ? "" : " [" + e.unit + "]");
     entry["name"] = info.name;
     entry["formula"] = info.formula;
     entry["remarks"] = info.remarks;

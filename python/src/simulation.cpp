@@ -6,14 +6,12 @@
 #include "base/error.h"
 #include "base/hash.h"
 #include "bindings.h"
-#include "dynamics/state_hash.h"
 #include "dynamics/step_fields.h"
 #include "iteration.h"
 #include "python_energy.h"
-#include "scene/completion.h"
 #include "scene/explanation.h"
 #include "scene/scene_builder.h"
-#include "scene/schema.h"
+#include "scene/scene_document.h"
 #include "step_objective.h"
 #include "to_table.h"
 
@@ -26,8 +24,7 @@ SceneSource::SceneSource(std::filesystem::path path, std::vector<std::string> ov
 SceneSource::SceneSource(const py::dict& document, std::string name, std::vector<py::object> energies)
     : name_(std::move(name)), energies_(std::move(energies)) {
   document_ = std::move(to_value(document, name_).table());
-  check_and_complete(*document_, name_);
-  complete_scene(*document_);
+  complete_scene_document(*document_, name_);
 }
 
 template <class Build>
@@ -39,8 +36,7 @@ auto SceneSource::build(const Build& build, const std::shared_ptr<Callbacks>& ca
     options.amend = [&](Model& model) {
       const py::gil_scoped_acquire lock;
       for (const py::object& energy : energies_)
-        model.loads.push_back(
-            make_python_energy(energy, model.numbering.vertex, model.mesh.vertex_count(), callbacks));
+        model.loads.push_back(make_python_energy(energy, model.numbering.vertex, model.mesh.vertex_count(), callbacks));
     };
   const py::gil_scoped_release free;
   return build(options);
@@ -132,8 +128,7 @@ void LiveSimulation::record(const std::filesystem::path& folder, bool is_compact
     scene_.output.checkpoint_every = 1e9;
   }
   const py::gil_scoped_release free;
-  recording_.emplace(
-      RunDirectory::create(folder, scene_, overwrite ? ExistingRun::overwrite : ExistingRun::refuse));
+  recording_.emplace(RunDirectory::create(folder, scene_, overwrite ? ExistingRun::overwrite : ExistingRun::refuse));
 }
 
 // Files are closed at the end of a run, so the recording continues as a resumed run, which has the same bits.
@@ -161,7 +156,7 @@ py::object python_of(const StepValue& value) {
   return std::visit([](const auto& v) { return py::cast(v); }, value);
 }
 
-py::dict dict_of(const Report& report) {
+py::dict columns_of(const Report& report) {
   py::dict result;
   for (const StepField& field : step_fields())
     if (field.get) result[py::str(std::string(field.name))] = python_of(field.get(report));
@@ -185,7 +180,8 @@ void bind_report(py::module_& m) {
   report.def_readonly("step", &Report::step, "1 for the first.")
       .def_readonly("time", &Report::time, "At the end of the step [s].")
       .def_property_readonly("status", [](const Report& r) { return std::string(to_string(r.status)); })
-      .def_property_readonly("ok", [](const Report& r) { return is_success(r.status); }, "The step converged.")
+      .def_property_readonly(
+          "ok", [](const Report& r) { return is_success(r.status); }, "The step converged.")
       .def_readonly("iterations", &Report::iterations)
       .def_readonly("trials", &Report::trials, "Evaluations by line searches.")
       .def_readonly("projected_hessians", &Report::projected_hessians)
@@ -206,7 +202,7 @@ void bind_report(py::module_& m) {
       .def_readonly("seconds", &Report::seconds, "Wall time.")
       .def_property_readonly("state_hash", [](const Report& r) { return hex_digits(r.state_hash); })
       .def_property_readonly("explanation", &explanation_of, "Cause, place and remedy of a failure; else empty.")
-      .def("to_dict", &dict_of, "All columns of steps.csv.")
+      .def("to_dict", &columns_of, "All columns of steps.csv.")
       .def("__repr__", [](const Report& r) {
         return "<StepReport " + std::to_string(r.step) + ": " + std::string(to_string(r.status)) + ", " +
                std::to_string(r.iterations) + " iterations>";
@@ -273,7 +269,8 @@ void bind_step_objective(py::module_& m) {
       m, "StepObjective", "The incremental potential E(q) of a step of backward Euler, with a model of its own.")
       .def("begin_step", &StepObjective::begin_step, py::arg("q"), py::arg("v"), py::arg("h"),
            py::arg("time") = py::none(),
-           "Starts a step from q [m] and v [m/s], (n, 3), of length h [s]. Returns q with moved pins, the first iterate. "
+           "Starts a step from q [m] and v [m/s], (n, 3), of length h [s]. Returns q with moved pins, the first "
+           "iterate. "
            "`time`: at the end of the step; by default the clock advances by h.")
       .def("begin_statics", &StepObjective::begin_statics, py::arg("q"), py::arg("time") = py::none(),
            "From now on E = V, at a time. Returns q with moved pins.")
@@ -298,16 +295,19 @@ void bind_simulation(py::module_& m) {
       .def_property_readonly("v", [](LiveSimulation& s) { return state_array(s, &State::qdot); })
       .def("set_q", [](LiveSimulation& s, const py::object& q) { set_state(s, q, &State::q); })
       .def("set_v", [](LiveSimulation& s, const py::object& v) { set_state(s, v, &State::qdot); })
-      .def_property_readonly("rest", [](LiveSimulation& s) {
-        const Model& model = s.simulation().model();
-        return to_array(to_user(model.numbering, model.mesh).rest);
-      })
+      .def_property_readonly("rest",
+                             [](LiveSimulation& s) {
+                               const Model& model = s.simulation().model();
+                               return to_array(to_user(model.numbering, model.mesh).rest);
+                             })
       .def_property_readonly("tets", &tets_of)
       .def_property_readonly("pinned", &pinned_of)
-      .def_property_readonly("mass", [](LiveSimulation& s) {
-        const Model& model = s.simulation().model();
-        return to_array(model.numbering.vertex.to_user(model.mass->vertex_mass()), {model.mesh.vertex_count()});
-      })
+      .def_property_readonly("mass",
+                             [](LiveSimulation& s) {
+                               const Model& model = s.simulation().model();
+                               return to_array(model.numbering.vertex.to_user(model.mass->vertex_mass()),
+                                               {model.mesh.vertex_count()});
+                             })
       .def_property_readonly("bodies", &bodies_of)
       .def_property_readonly("time", [](LiveSimulation& s) { return s.simulation().state().time; })
       .def_property_readonly("h", [](LiveSimulation& s) { return s.simulation().options().h; })
@@ -317,10 +317,11 @@ void bind_simulation(py::module_& m) {
       .def_property_readonly("notes", [](LiveSimulation& s) { return s.scene().notes; })
       .def_property_readonly("resolved", [](LiveSimulation& s) { return s.scene().resolved; })
       .def_property_readonly("solver", [](LiveSimulation& s) { return s.simulation().solver_description(); })
-      .def_property_readonly("state_hash", [](LiveSimulation& s) {
-        const Simulation& simulation = s.simulation();
-        return hex_digits(state_hash(simulation.state(), simulation.model().numbering.vertex));
-      })
+      .def_property_readonly("state_hash",
+                             [](LiveSimulation& s) {
+                               const Simulation& simulation = s.simulation();
+                               return hex_digits(state_hash(simulation.state(), simulation.model().numbering.vertex));
+                             })
       .def("fields", &fields_of)
       .def("snapshot", [](LiveSimulation& s) { return s.simulation().snapshot(); })
       .def("restore", &LiveSimulation::restore)
@@ -328,10 +329,9 @@ void bind_simulation(py::module_& m) {
       .def("flush", &LiveSimulation::flush)
       .def("end_recording", &LiveSimulation::end_recording)
       .def_property_readonly("is_recording", &LiveSimulation::is_recording)
-      .def("write_inputs", [](LiveSimulation& s, const std::filesystem::path& folder) { write_inputs(s.scene(), folder); })
-      .def("objective", [](LiveSimulation& s) {
-        return StepObjective::make(s.source(), s.simulation().state().time);
-      });
+      .def("write_inputs",
+           [](LiveSimulation& s, const std::filesystem::path& folder) { write_inputs(s.scene(), folder); })
+      .def("objective", [](LiveSimulation& s) { return StepObjective::make(s.source(), s.simulation().state().time); });
 }
 
 }  // namespace aspic::python

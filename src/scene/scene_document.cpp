@@ -199,9 +199,13 @@ Table read_scene_document(const std::string& text, const std::string& source,
                           const std::vector<std::string>& overrides) {
   Table document = read_toml(text, source);
   for (const std::string& override_text : overrides) apply_override(document, override_text);
+  complete_scene_document(document, source);
+  return document;
+}
+
+void complete_scene_document(Table& document, const std::string& source) {
   check_and_complete(document, source);
   complete_scene(document);
-  return document;
 }
 
 }  // namespace aspic

@@ -11,5 +11,7 @@ namespace aspic {
 // messages. Throws InvalidInput.
 Table read_scene_document(const std::string& text, const std::string& source,
                           const std::vector<std::string>& overrides = {});
+// Checks a document that was not read from text, and fills in the defaults. Throws InvalidInput.
+void complete_scene_document(Table& document, const std::string& source);
 
 }  // namespace aspic
