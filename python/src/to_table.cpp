@@ -72,13 +72,13 @@ class Converter {
     return true;
   }
 
-  Array array_of(const py::handle& value, const std::string& where) {
+  aspic::Array array_of(const py::handle& value, const std::string& where) {
     py::object list = py::reinterpret_borrow<py::object>(value);
     if (py::isinstance<py::array>(value)) list = value.attr("tolist")();
     if (!py::isinstance<py::list>(list) && !py::isinstance<py::tuple>(list))
       throw InvalidInput(where + ": this is " + std::string(py::str(py::type::of(value).attr("__name__"))) +
                          "; expected a number, a string, a list or a dict");
-    Array array;
+    aspic::Array array;
     for (const auto element : list) array.push_back(convert(element, where + "." + name_of(element, array.size())));
     return array;
   }
