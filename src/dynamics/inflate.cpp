@@ -113,8 +113,8 @@ void settle(const Model& model, const std::vector<double>& start, std::vector<do
   }
 }
 
-// Returns the model with bodies without pins at `scale` times their size, of a material that resists inversion. Mass and
-// loads are left out.
+// Returns the model with bodies without pins at `scale` times their size, of a material that resists inversion. Mass
+// and loads are left out.
 Model at_scale(const Model& model, double scale) {
   Model scaled;
   scaled.mesh = model.mesh;

@@ -40,7 +40,8 @@ double add_load_energies(const StepTools& tools, std::span<const double> x, doub
   return sum;
 }
 
-// Adds the creep of sticking contacts, and the change of friction by the last update of the normal forces, to the report.
+// Adds the creep of sticking contacts, and the change of friction by the last update of the normal forces, to the
+// report.
 void note_friction(const StepTools& tools, const ActiveTerm& term, std::span<const double> q, StepReport& report) {
   const Friction& friction = *tools.model.friction;
   std::vector<double> change(q.size());
