@@ -1,6 +1,6 @@
 // Model of [Bickel 2009] for comparison: a linear corotated material per example, moduli interpolated in strain space,
 // and incremental loading. It is not conservative: predictions minimize no energy and depend on the path
-// (docs/bickel.md). Also simpler baselines.
+// (bench/results/strain_space.md). Also simpler baselines.
 #pragma once
 #include <string>
 

@@ -3,7 +3,7 @@
 //   stress = stress_0 + C(E(e_0), nu(e_0)) (e - e_0),   forces = -volume R stress b,   e = R'F - I
 // or, with StressRule::total, stress = C(E(e_0), nu(e_0)) e: secant moduli from rest. NOT the gradient of an energy:
 // the stress depends on the path, a closed loop leaves work and stress, and there is no objective to minimize
-// (docs/bickel.md).
+// (bench/results/strain_space.md).
 #pragma once
 #include <span>
 #include <string>
