@@ -225,7 +225,7 @@ TEST(ParameterMap, RefusesWhatCannotBeFitted) {
   EXPECT_THAT(refusal(mesh, "fung", {}), HasSubstr("there is no parameter to fit"));
   EXPECT_THAT(refusal(mesh, "fung", {{.quantity = "yuong"}}), HasSubstr("did you mean 'young'?"));
   EXPECT_THAT(refusal(mesh, "neo_hookean", {{"b", Parameterization::uniform, 0, 1}}),
-              HasSubstr("not a quantity of neo_hookean"));
+              HasSubstr("not a quantity of the model neo_hookean"));
   EXPECT_THAT(refusal(mesh, "fung", {{"young", Parameterization::uniform, 0, -2}}), HasSubstr("must be positive"));
   EXPECT_THAT(refusal(mesh, "fung", {{"young", Parameterization::uniform, 0, NAN}}), HasSubstr("must be positive"));
   EXPECT_THAT(refusal(mesh, "fung", {{"poisson", Parameterization::uniform, 0, 0.5}}), HasSubstr("between -1 and 0.5"));
