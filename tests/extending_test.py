@@ -25,7 +25,7 @@ int main() {
   const std::array<long double, 3> l = {1.1L, 0.9L, 1.05L};
   const Lame lame{40, 60};
   const double nu = 60. / (2 * (60 + 40)), E = 2 * 40 * (1 + nu);
-  Mat3d F;
+  Mat3d F{};
   for (int i = 0; i < 3; ++i) F(i, i) = double(l[i]);
   const double psi = NeoHookeanSimo::psi(F, NeoHookeanSimo::params(MaterialParameters{lame, {}}));
   const double expected = double(NeoHookeanSimo::reference_energy(PrincipalStretches(l), {E, nu}));

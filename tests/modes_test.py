@@ -105,7 +105,7 @@ class Modes(CommandLine):
 
     def test_bad_input_is_named(self):
         self.beam(extra="[[body.pin]]\nwhere = \"x > 1e-9\"\n")
-        self.assertIn("hold fewer vertices", self.aspic("modes", "beam.toml", code=2).stderr)
+        self.assertIn("pin fewer vertices", self.aspic("modes", "beam.toml", code=2).stderr)
         self.assertIn("--count", self.aspic("modes", "beam.toml", "--count", "0", code=2).stderr)
         self.assertFalse((self.folder / "out").exists())
         self.assertIn("time limit", self.aspic("modes", self.beam(cells="40, 8, 8"), "--time-limit", "0.001",
