@@ -1,5 +1,5 @@
 // bench_beam: the beam by Aspic and, for small sizes, by the naive program. Prints one line per run, with setup, and
-// checks the displacement of the tip. bench_beam --help lists the options.
+// checks the displacement of the indenter. bench_beam --help lists the options.
 
 #include <array>
 #include <cmath>
@@ -56,7 +56,7 @@ void declare(CLI::App& app, Arguments& arguments) {
 struct Known {
   bool bent;
   int n;
-  double displacement;  // displacement of the tip [m]
+  double displacement;  // displacement of the indenter [m]
 };
 constexpr std::array<Known, 5> kKnown = {{{false, 7, -0.0539775432},
                                           {false, 14, -0.0539697485},
@@ -70,7 +70,7 @@ std::optional<double> known_displacement(const Arguments& arguments, int n) {
   return {};
 }
 
-// The residual may change the tip's displacement by the same relative amount.
+// The residual may change the indenter's displacement by the same relative amount.
 double allowed_error(const Arguments& arguments, double displacement) {
   return std::max(arguments.tolerance * std::abs(displacement), 1e-10);
 }

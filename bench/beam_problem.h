@@ -19,10 +19,10 @@ struct BeamProblem {
   int steps = 10;                //
   double tolerance = 1e-6;       // relative to the first gradient of each step
 };
-inline BeamProblem falling_beam(int n) { return {.n = n}; }  // tip moves 5 cm
+inline BeamProblem falling_beam(int n) { return {.n = n}; }  // indenter moves 5 cm
 inline BeamProblem bent_beam(int n) {
   return {.n = n, .young = 1e5, .time_step = 1.0 / 30, .steps = 30};
-}  // tip moves 5 m
+}  // indenter moves 5 m
 
 inline TetMesh make_beam(int n) { return make_box({0, 0, 0}, {4, 1, 1}, {4 * n, n, n}); }
 inline int tip_vertex(int n) { return 4 * n * (n + 1) * (n + 1); }  // vertex at (4, 0, 0)

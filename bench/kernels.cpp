@@ -167,11 +167,11 @@ void Registry::add_matrix() const {
 
 void Registry::add_cholesky() const {
   const Place place = place_;
-  constexpr double kMostFlops = 2e11;  // more than ten seconds, too long for a benchmark
+  constexpr double kMaxFlops = 2e11;  // more than ten seconds, too long for a benchmark
   const auto prepared = [=](benchmark::State& state, KernelBeam& beam, Cholesky& solver) {
     solver.analyze(beam.pattern);
-    if (solver.analysis().flops > kMostFlops) state.SkipWithError("omitted: the factorization takes too long");
-    return solver.analysis().flops <= kMostFlops;
+    if (solver.analysis().flops > kMaxFlops) state.SkipWithError("omitted: the factorization takes too long");
+    return solver.analysis().flops <= kMaxFlops;
   };
   add("cholesky/analysis", kMaterialOfMatrices, [=](benchmark::State& state, KernelBeam& beam) {
     for (auto _ : state) Cholesky().analyze(beam.pattern);

@@ -72,7 +72,7 @@ void scene(std::string_view bytes) {
   const fs::path path = folder_with_meshes() / "scene.toml";
   put_file(path, bytes);
   const Scene built = load_scene(path, small_scenes());
-  require(built.simulation.model().mesh.tet_count() <= kMostTets, "the scene has at most the maximum number of tets");
+  require(built.simulation.model().mesh.tet_count() <= kMaxTets, "the scene has at most the maximum number of tets");
   require(built.steps >= 0, "the number of steps is not negative");
   for (const double q : built.simulation.state().q) require(std::isfinite(q), "positions are finite");
   require_printable(built.notes);
@@ -81,7 +81,7 @@ void scene(std::string_view bytes) {
 
 // A box falls onto the surface in the file.
 void obstacle(std::string_view bytes) {
-  constexpr int kMostPolls = 40;
+  constexpr int kMaxPolls = 40;
   const fs::path folder = folder_of_process();
   put_file(folder / "obstacle.obj", bytes);
   put_file(
@@ -91,7 +91,7 @@ void obstacle(std::string_view bytes) {
   Scene built = load_scene(folder / "falling.toml", small_scenes());
   require_printable(built.notes);
   int polls = 0;
-  const StopToken stop([&polls] { return ++polls > kMostPolls; });
+  const StopToken stop([&polls] { return ++polls > kMaxPolls; });
   for (int i = 0; i < built.steps; ++i) built.simulation.step({}, stop);
   for (const double q : built.simulation.state().q) require(std::isfinite(q), "positions are finite");
 }

@@ -70,11 +70,11 @@ void vtu(std::string_view bytes) {
 }
 
 void doctor(std::string_view bytes) {
-  constexpr size_t kMost = 2000;  // limit of elements
+  constexpr size_t kMax = 2000;  // limit of elements
   if (bytes.starts_with("OFF")) {
     MeshContent content = parse_off("file", bytes);
     TriMesh surface{std::move(content.vertices), std::move(content.triangles)};
-    if (surface.triangles.size() > kMost) return;
+    if (surface.triangles.size() > kMax) return;
     require_printable(diagnose(surface));
     fuzz::require_printable(repair(surface));
     require_indices(surface.triangles, surface.vertices.size());
@@ -83,7 +83,7 @@ void doctor(std::string_view bytes) {
   }
   MeshContent content = parse_medit("file", bytes);
   TetMesh mesh{std::move(content.vertices), std::move(content.tets), std::move(content.region)};
-  if (mesh.tets.size() > kMost) return;
+  if (mesh.tets.size() > kMax) return;
   require_printable(diagnose(mesh));
   quality(mesh);
   fuzz::require_printable(repair(mesh));

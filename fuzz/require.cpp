@@ -9,7 +9,7 @@
 namespace aspic::fuzz {
 namespace {
 
-constexpr int kMostLines = 12;
+constexpr int kMaxLines = 12;
 
 }  // namespace
 
@@ -29,7 +29,7 @@ void require_message(std::string_view message) {
     require(end <= InvalidInput::kLongestMessage, "an error message is within its length limit");
     message.remove_prefix(is_last ? end : end + 1);
   }
-  require(lines <= kMostLines, "an error message has few lines");
+  require(lines <= kMaxLines, "an error message has few lines");
 }
 
 void require_printable(const std::vector<std::string>& texts) {

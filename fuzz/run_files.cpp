@@ -18,7 +18,7 @@ constexpr char kScene[] =
 }  // namespace
 
 SceneOptions small_scenes() {
-  return {.mesher = "/nonexistent", .limit = {.tets = kMostTets, .why = "are fuzzed", .counts_files = true}};
+  return {.mesher = "/nonexistent", .limit = {.tets = kMaxTets, .why = "are fuzzed", .counts_files = true}};
 }
 
 Folder::Folder(const fs::path& path) {

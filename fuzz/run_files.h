@@ -10,7 +10,7 @@
 
 namespace aspic::fuzz {
 
-inline constexpr double kMostTets = 300;
+inline constexpr double kMaxTets = 300;
 SceneOptions small_scenes();
 
 // Files of a folder in memory.

@@ -19,7 +19,7 @@ namespace {
 namespace fs = std::filesystem;
 using viewer::Json;
 
-constexpr size_t kMostMessages = 8;
+constexpr size_t kMaxMessages = 8;
 constexpr double kFewTets = 100;
 
 // Checks that messages to a page are valid and that refusals are printable.
@@ -59,7 +59,7 @@ void session(std::string_view bytes) {
     return path;
   }();
   viewer::Session session(scene, {}, {.timeline_bytes = 1 << 20, .most_tets = kFewTets});
-  for (size_t count = 0; !bytes.empty() && count < kMostMessages; ++count) {
+  for (size_t count = 0; !bytes.empty() && count < kMaxMessages; ++count) {
     const std::string_view line = bytes.substr(0, bytes.find('\n'));
     bytes.remove_prefix(std::min(bytes.size(), line.size() + 1));
     if (saves(line)) continue;

@@ -23,24 +23,24 @@ namespace fs = std::filesystem;
 struct CaptureArguments {
   fs::path input, out, mesh;
   std::vector<std::string> overrides, gravity;
-  std::string tip = "sphere", contact = "bonded";
+  std::string indenter = "sphere", contact = "bonded";
   SynthesisOptions bench;
   int threads = 0;
   bool force = false, no_force = false, quiet = false;
 };
 
 // Parses "sphere" or "disc:0.01".
-void read_tip(const std::string& text, SynthesisOptions& bench) {
+void read_indenter(const std::string& text, SynthesisOptions& bench) {
   const size_t colon = text.find(':');
   const std::string shape = text.substr(0, colon);
   if (shape != "sphere" && shape != "disc")
     throw InvalidInput(fmt::format("--tip {}: the shape must be sphere or disc, such as sphere:0.01", text));
-  bench.shape = shape == "disc" ? TipShape::disc : TipShape::sphere;
+  bench.shape = shape == "disc" ? IndenterShape::disc : IndenterShape::sphere;
   if (colon == std::string::npos) return;
   const Value radius = read_toml_value(text.substr(colon + 1), "--tip " + text);
   if (!radius.is_number() || !(radius.number() > 0) || !std::isfinite(radius.number()))
     throw InvalidInput(fmt::format("--tip {}: the radius in meters must be > 0, such as sphere:0.01", text));
-  bench.tip_radius = radius.number();
+  bench.indenter_radius = radius.number();
 }
 
 // Parses "0,0,-1".
@@ -54,10 +54,10 @@ Vec3d direction(const std::string& text) {
 
 SynthesisOptions bench_options(const CaptureArguments& arguments) {
   SynthesisOptions bench = arguments.bench;
-  read_tip(arguments.tip, bench);
+  read_indenter(arguments.indenter, bench);
   if (arguments.contact != "bonded" && arguments.contact != "sliding")
     throw InvalidInput(fmt::format("--contact {}: must be bonded or sliding", arguments.contact));
-  bench.contact = arguments.contact == "sliding" ? TipContact::sliding : TipContact::bonded;
+  bench.contact = arguments.contact == "sliding" ? IndenterContact::sliding : IndenterContact::bonded;
   for (const std::string& text : arguments.gravity) bench.gravity.push_back(direction(text));
   bench.forces = !arguments.no_force;
   bench.torques &= bench.forces;
@@ -133,7 +133,7 @@ Exit codes: 0 done, 2 bad input, 3 some case has no equilibrium and was omitted,
   command->add_option("--pokes", b.indentations, "Number of poke sites")->capture_default_str();
   command->add_option("--depths", b.depths, "Number of depths per site")->capture_default_str();
   command->add_option("--depth", b.deepest, "Largest depth, relative to the size of the body")->capture_default_str();
-  command->add_option("--tip", a->tip,
+  command->add_option("--tip", a->indenter,
                       "Indenter: sphere[:RADIUS] or disc[:RADIUS] in m; default: 8 % of the body size");
   command->add_option("--contact", a->contact, "Contact: bonded or sliding")->capture_default_str();
   command->add_option("--markers", b.markers, "Number of markers on the surface")->capture_default_str();

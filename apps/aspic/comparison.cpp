@@ -12,7 +12,7 @@
 namespace aspic::cli {
 namespace {
 
-constexpr int kMostIterations = 1'000'000;  // practically unlimited; the time limit applies
+constexpr int kMaxIterations = 1'000'000;  // practically unlimited; the time limit applies
 constexpr int kRepetitions = 3;
 constexpr double kWorthRepeating = 0.5;  // [s]; longer runs are hardly disturbed by other load
 
@@ -102,7 +102,7 @@ class Comparer {
   }
 
   MethodResult run(const std::string& method, SolverOptions solver, const StepReport& reference) {
-    solver.minimize.max_iterations = kMostIterations;
+    solver.minimize.max_iterations = kMaxIterations;
     solver.time_budget = 0;
     MethodResult best;
     for (int i = 0; i < kRepetitions; ++i) {

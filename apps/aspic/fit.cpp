@@ -55,7 +55,7 @@ std::string describe(const DataFinding& finding) {
 
 // Rejects data sets with errors and prints the first warnings of others.
 void check_findings(const DataSet& data, const fs::path& path) {
-  constexpr int kMostPrinted = 3;
+  constexpr int kMaxPrinted = 3;
   std::vector<std::string> errors, warnings;
   for (const DataFinding& finding : diagnose(data)) {
     if (finding.severity == Severity::error) errors.push_back(describe(finding));
@@ -66,9 +66,9 @@ void check_findings(const DataSet& data, const fs::path& path) {
     throw InvalidInput(errors);
   }
   const int count = static_cast<int>(warnings.size());
-  for (int i = 0; i < std::min(count, kMostPrinted); ++i) fmt::print(stderr, "warning: {}\n", warnings[i]);
-  if (count > kMostPrinted)
-    fmt::print(stderr, "warning: and {} more: aspic fit --check {}\n", count - kMostPrinted, printable(path.string()));
+  for (int i = 0; i < std::min(count, kMaxPrinted); ++i) fmt::print(stderr, "warning: {}\n", warnings[i]);
+  if (count > kMaxPrinted)
+    fmt::print(stderr, "warning: and {} more: aspic fit --check {}\n", count - kMaxPrinted, printable(path.string()));
 }
 
 // Runs one fit and notifies its observers.

@@ -16,7 +16,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr size_t kMostSeries = 12;  // limit per chart
+constexpr size_t kMaxSeries = 12;  // limit per chart
 
 std::string_view word(Severity severity) {
   return severity == Severity::error ? "error" : severity == Severity::warning ? "warning" : "note";
@@ -37,11 +37,11 @@ Chart force_against_depth(const Experiment& experiment) {
   for (const auto& group : cases_by_group(experiment)) {
     Series series{group.front()->group, {0}, {0}, SeriesStyle::line_and_points};
     for (const LoadCase* load : group) {
-      if (!load->tip || !load->force) continue;
+      if (!load->indenter || !load->force) continue;
       series.x.push_back(1e3 * norm(load->pose.center - load->touch.center));
       series.y.push_back(norm(*load->force));
     }
-    if (series.x.size() > 1 && chart.series.size() < kMostSeries) chart.series.push_back(std::move(series));
+    if (series.x.size() > 1 && chart.series.size() < kMaxSeries) chart.series.push_back(std::move(series));
   }
   return chart;
 }
@@ -51,7 +51,7 @@ Chart motion_against_distance(const Experiment& experiment) {
   Chart chart{"Motion of the markers", {"distance from the touch at rest [mm]"}, {"motion [mm]"}, {}};
   for (const auto& group : cases_by_group(experiment)) {
     const LoadCase& load = *group.back();
-    if (load.positions.empty() || chart.series.size() == kMostSeries) continue;
+    if (load.positions.empty() || chart.series.size() == kMaxSeries) continue;
     Series series{load.name, {}, {}, SeriesStyle::points};
     for (const MarkerReading& reading : load.positions) {
       const Vec3d X = position(experiment.markers[reading.marker], experiment.mesh.rest);

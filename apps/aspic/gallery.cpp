@@ -62,7 +62,7 @@ void RecentScenes::note(const fs::path& scene) const {
   std::string text = path + "\n";
   size_t count = 1;
   for (const fs::path& other : read())
-    if (other != path && count++ < kMost) text += other.string() + "\n";
+    if (other != path && count++ < kMax) text += other.string() + "\n";
   fs::create_directories(file_.parent_path(), error);
   try {
     if (!error) write_file(file_, text);
@@ -75,7 +75,7 @@ std::vector<fs::path> RecentScenes::read() const {
   std::ifstream in(file_);
   std::string line;
   std::error_code error;
-  while (!file_.empty() && paths.size() < kMost && std::getline(in, line))
+  while (!file_.empty() && paths.size() < kMax && std::getline(in, line))
     if (line.size() < kLongestPath && fs::path(line).is_absolute() && fs::is_regular_file(line, error))
       paths.emplace_back(line);
   return paths;

@@ -17,7 +17,7 @@ std::filesystem::path shipped_scenes();
 // empty.
 class RecentScenes {
  public:
-  static constexpr size_t kMost = 12;
+  static constexpr size_t kMax = 12;
 
   explicit RecentScenes(std::filesystem::path file);
   static std::filesystem::path default_file();  // empty if the user has no such folder

@@ -30,7 +30,7 @@ struct RenderArguments {
   bool wires = true, dark = false, every_frame = false;
 };
 
-constexpr size_t kMostBytes = 100'000'000;  // limit of the page, for browsers
+constexpr size_t kMaxBytes = 100'000'000;  // limit of the page, for browsers
 
 viewer::RenderOptions render_options(const RenderArguments& arguments) {
   if (!std::isfinite(arguments.fps) || !std::isfinite(arguments.speed))
@@ -123,7 +123,7 @@ int render(const RenderArguments& arguments) {
     throw InvalidInput(fmt::format("{}: is not the directory of a run", arguments.run.string()));
 
   const Scene scene = load_scene(scene_of_run(arguments.run));
-  const viewer::RecordedRun report = viewer::make_report(arguments.run, scene, {.max_bytes = kMostBytes});
+  const viewer::RecordedRun report = viewer::make_report(arguments.run, scene, {.max_bytes = kMaxBytes});
   if (!report.note.empty()) fmt::print("note: {} of {} frames are drawn\n", report.frames, report.frames_of_run);
   const std::unique_ptr<Output> output = open_output(arguments, options);
   catch_interrupts();

@@ -107,16 +107,16 @@ void print_inverted(std::FILE* stream, const RunTotals& totals, const InvertedTe
              totals.with_inverted_tets, totals.steps, totals.first_inverted, totals.least_det_F);
 }
 
-constexpr size_t kMostReactions = 6;
+constexpr size_t kMaxReactions = 6;
 
 void print_reactions(std::FILE* stream, const RunTotals& totals, const RunEnd& end) {
   const auto vector = [](const Vec3d& v) { return fmt::format("({:.4g}, {:.4g}, {:.4g})", v[0], v[1], v[2]); };
   const size_t count = std::min(totals.reactions.size(), end.pins.size());
-  for (size_t i = 0; i < std::min(count, kMostReactions); ++i)
+  for (size_t i = 0; i < std::min(count, kMaxReactions); ++i)
     fmt::print(stream, "{}  {} exerts {} N, {} N m about the origin in the last step\n",
                i == 0 ? "reactions" : "         ", end.pins[i], vector(totals.reactions[i].force),
                vector(totals.reactions[i].moment));
-  if (count > kMostReactions) fmt::print(stream, "           {} more pins: steps.csv\n", count - kMostReactions);
+  if (count > kMaxReactions) fmt::print(stream, "           {} more pins: steps.csv\n", count - kMaxReactions);
 }
 
 }  // namespace

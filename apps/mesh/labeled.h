@@ -19,9 +19,9 @@ inline constexpr double kSurfaceTolerance = 1e-5;
 class LabelGrid {
  public:
   LabelGrid(const LabeledDomain& domain, const CGAL::Bbox_3& box, double spacing) : domain_(domain), box_(box) {
-    constexpr double kLeast = 16, kMost = 96;  // cells per axis
+    constexpr double kMin = 16, kMax = 96;  // cells per axis
     for (int axis = 0; axis < 3; ++axis)
-      cells_[axis] = static_cast<int>(std::clamp((box.max(axis) - box.min(axis)) / spacing, kLeast, kMost));
+      cells_[axis] = static_cast<int>(std::clamp((box.max(axis) - box.min(axis)) / spacing, kMin, kMax));
     labels_.resize(static_cast<size_t>(cells_[0]) * cells_[1] * cells_[2]);
     for (int i = 0; i < static_cast<int>(labels_.size()); ++i) labels_[i] = label(center(i));
   }

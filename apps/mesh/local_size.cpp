@@ -30,14 +30,14 @@ double reach(const TriMesh& body, const TriangleTree& tree, const Vec3d& x, cons
 }
 
 int parts_per_edge(const TriMesh& body, int triangle, double spacing) {
-  constexpr double kMost = 64;
+  constexpr double kMax = 64;
   const auto& [a, b, c] = body.triangles[triangle];
   double longest = 0;
   for (const auto& [from, to] : {std::pair(a, b), std::pair(b, c), std::pair(c, a)}) {
     const Vec3d edge = body.vertices[to] - body.vertices[from];
     longest = std::max(longest, dot(edge, edge));
   }
-  return static_cast<int>(std::clamp(std::ceil(std::sqrt(longest) / spacing), 1.0, kMost));
+  return static_cast<int>(std::clamp(std::ceil(std::sqrt(longest) / spacing), 1.0, kMax));
 }
 
 // Visits the centroids of n^2 equal parts of a triangle.
@@ -88,11 +88,11 @@ SizeRule with_least_bound(const std::vector<SurfaceSample>& samples, double volu
 }  // namespace
 
 std::vector<SurfaceSample> surface_samples(const TriMesh& body, double spacing, Sides sides) {
-  constexpr double kMost = 5e4;
+  constexpr double kMax = 5e4;
   double count = 0;
   for (int t = 0; t < body.triangle_count(); ++t) count += std::pow(parts_per_edge(body, t, spacing), 2);
-  if (count > kMost) spacing *= std::sqrt(count / kMost);
-  const int stride = 1 + body.triangle_count() / static_cast<int>(kMost);
+  if (count > kMax) spacing *= std::sqrt(count / kMax);
+  const int stride = 1 + body.triangle_count() / static_cast<int>(kMax);
   const TriangleTree tree(body);
   std::vector<SurfaceSample> samples;
   for (int t = 0; t < body.triangle_count(); t += stride) {

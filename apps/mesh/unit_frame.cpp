@@ -64,10 +64,10 @@ void from_frame(const UnitFrame& frame, std::vector<Vec3d>& points) {
 }
 
 void check_size(const Vec3d& extent, double size) {
-  constexpr double kMostCells = 1e9;  // limit of cubes of that size in the bounding box
+  constexpr double kMaxCells = 1e9;  // limit of cubes of that size in the bounding box
   double cells = 1;
   for (int axis = 0; axis < 3; ++axis) cells *= extent[axis] / size + 1;
-  if (cells > kMostCells)
+  if (cells > kMaxCells)
     throw InvalidInput("--size " + three_digits(size) + ": too fine for a shape " +
                        three_digits(std::max({extent[0], extent[1], extent[2]})) +
                        " long; --size is in units of the input, give a larger one");

@@ -18,16 +18,16 @@
 namespace aspic::viewer {
 namespace {
 
-constexpr double kMostPerSecond = 120;  // maximum number of frames per second
-constexpr double kMostBytes = 36e6;     // maximum estimated size of a file
-constexpr int kMostMorphTargets = 240;  // more targets are slow in all programs that read them
+constexpr double kMaxPerSecond = 120;  // maximum number of frames per second
+constexpr double kMaxBytes = 36e6;     // maximum estimated size of a file
+constexpr int kMaxMorphTargets = 240;  // more targets are slow in all programs that read them
 
 struct Format {
   const char* name;
   double bytes_per_vertex;  // per frame
   int most_frames;
 };
-constexpr Format kFormats[] = {{"usd", 34, 3000}, {"pc2", 12, 20'000}, {"glb", 12, kMostMorphTargets}};
+constexpr Format kFormats[] = {{"usd", 34, 3000}, {"pc2", 12, 20'000}, {"glb", 12, kMaxMorphTargets}};
 
 struct Motion {
   std::vector<double> times;  // equidistant times [s]
@@ -55,14 +55,14 @@ Motion motion_of(const ShownSide& shown, const Format& format) {
   const double begin = snapshots.front().state.time, duration = snapshots.back().state.time - begin;
   if (snapshots.size() < 2 || !(duration > 0)) throw InvalidInput("nothing has moved yet; play first, then export");
   const double per_frame = format.bytes_per_vertex * shown.surface.vertex_count();
-  const double most = std::min<double>(format.most_frames, std::floor(kMostBytes / std::max(per_frame, 1.0)));
+  const double most = std::min<double>(format.most_frames, std::floor(kMaxBytes / std::max(per_frame, 1.0)));
   if (most < 2)
     throw InvalidInput(
         fmt::format("a surface of {} vertices is too large for this; save the scene and run it with "
                     "aspic run, which writes animations of any size",
                     shown.surface.vertex_count()));
   const double longest = duration / (most - 1);
-  const double every = std::max({shown.side.simulation().options().h, 1 / kMostPerSecond, longest});
+  const double every = std::max({shown.side.simulation().options().h, 1 / kMaxPerSecond, longest});
   Motion motion{.per_second = 1 / every};
   const int count = 1 + static_cast<int>(std::floor(duration / every + 1e-6));
   auto next = snapshots.begin() + 1;

@@ -12,7 +12,7 @@ namespace aspic::viewer {
 namespace {
 
 constexpr int kDeepestNesting = 12;  // maximum depth of a message
-constexpr size_t kMostTexts = 200;   // maximum length of a list
+constexpr size_t kMaxTexts = 200;    // maximum length of a list
 constexpr size_t kLongest = 4096;    // maximum length of a text [bytes]
 
 std::string shown(const Json& value) { return shortened(value.dump(-1, ' ', true, Json::error_handler_t::replace)); }
@@ -120,14 +120,14 @@ Vec3d Arguments::weights(const char* key) {
 
 std::vector<std::string> Arguments::texts(const char* key) {
   const Json& v = value(key);
-  bool fits = v.is_array() && v.size() <= kMostTexts;
+  bool fits = v.is_array() && v.size() <= kMaxTexts;
   std::vector<std::string> list;
   for (size_t i = 0; fits && i < v.size(); ++i) {
     fits = v[i].is_string() && v[i].get_ref<const std::string&>().size() <= kLongest &&
            v[i].get_ref<const std::string&>().find('\0') == std::string::npos;
     if (fits) list.push_back(v[i].get<std::string>());
   }
-  if (!fits) fail(key, fmt::format("at most {} texts of at most {} bytes are expected", kMostTexts, kLongest));
+  if (!fits) fail(key, fmt::format("at most {} texts of at most {} bytes are expected", kMaxTexts, kLongest));
   return list;
 }
 

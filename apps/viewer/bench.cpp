@@ -16,7 +16,7 @@
 namespace aspic::viewer {
 namespace {
 
-constexpr double kLeastSigma = 1e-4;    // relative sigma of exact readings
+constexpr double kMinSigma = 1e-4;      // relative sigma of exact readings
 constexpr uint64_t kApart = 1'000'003;  // distance between the seeds of two cases
 
 Vec3d gravity_of(const Scene& scene) {
@@ -39,7 +39,7 @@ std::vector<int> held_by(const Model& model) {
   return held;
 }
 
-TipPose between(const TipPose& from, const TipPose& to, double s) {
+IndenterPose between(const IndenterPose& from, const IndenterPose& to, double s) {
   return {(1 - s) * from.center + s * to.center, to.axis, to.rotation};
 }
 
@@ -109,16 +109,16 @@ void Bench::set_options(const BenchOptions& options) {
 }
 
 // Markers below the indenter are hidden from the cameras.
-void Bench::record(const Touch& touch, const TipPose& pose, int depths, const StopToken& stop) {
+void Bench::record(const FirstContact& touch, const IndenterPose& pose, int depths, const StopToken& stop) {
   LoadCase load;
   load.group = fmt::format("poke {}", groups_ + 1);
-  load.tip = touch.tip;
+  load.indenter = touch.indenter;
   load.touch = touch.rest;
   load.gravity = gravity_;
-  const double back = touch.tip.shape == TipShape::sphere ? touch.tip.radius : 0;
+  const double back = touch.indenter.shape == IndenterShape::sphere ? touch.indenter.radius : 0;
   const Vec3d site = touch.rest.center + back * touch.rest.axis;
   for (size_t m = 0; m < truth_rest_.size(); ++m)
-    if (norm(truth_rest_[m] - site) > touch.tip.radius)
+    if (norm(truth_rest_[m] - site) > touch.indenter.radius)
       load.positions.push_back({static_cast<int>(m), {}, {{1, 1, 1}}});
   load.force = Vec3d{}, load.force_sigma = {{1, 1, 1}};
   const double deepest = dot(pose.center - touch.begun.center, touch.begun.axis);
@@ -139,7 +139,8 @@ void Bench::record(const Touch& touch, const TipPose& pose, int depths, const St
 // Touch and pose are relative to the surface, and the surface of the data set's mesh may differ slightly.
 LoadCase Bench::as_data(const LoadCase& load) const {
   LoadCase data = load;
-  const Vec3d site = load.touch.center + (load.tip->shape == TipShape::sphere ? load.tip->radius : 0) * load.touch.axis;
+  const Vec3d site =
+      load.touch.center + (load.indenter->shape == IndenterShape::sphere ? load.indenter->radius : 0) * load.touch.axis;
   const Vec3d shift = on_data_->nearest(site).position - site;
   data.touch.center = data.touch.center + shift;
   data.pose.center = data.pose.center + shift;
@@ -158,8 +159,9 @@ void Bench::add(const LoadCase& load, const CasePrediction& found, double depth)
     return value;
   };
   const auto with = [](double sigma) { return Vec3d{{sigma, sigma, sigma}}; };
-  const double counted = std::max(options_.noise, kLeastSigma);
-  const double largest = motion > 0 ? motion : load.tip->radius, force = std::max(norm(found.wrench.force), 1e-300);
+  const double counted = std::max(options_.noise, kMinSigma);
+  const double largest = motion > 0 ? motion : load.indenter->radius,
+               force = std::max(norm(found.wrench.force), 1e-300);
   for (size_t k = 0; k < read.positions.size(); ++k) {
     MarkerReading& reading = read.positions[k];
     const Vec3d moved = found.markers[k] - truth_rest_[reading.marker];

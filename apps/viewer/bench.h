@@ -8,7 +8,7 @@
 
 #include "capture/data_set.h"
 #include "capture/surface_projection.h"
-#include "energy/held_tip.h"
+#include "energy/held_indenter.h"
 #include "fit/next_indentation.h"
 #include "scene/material_file.h"
 #include "scene/scene.h"
@@ -34,7 +34,7 @@ class Bench {
 
   // Moves an indenter to that pose in `depths` equal increments and measures after each one. Throws InvalidInput if the
   // body finds no equilibrium or `stop` stops. The earlier measurements remain.
-  void record(const Touch& touch, const TipPose& pose, int depths, const StopToken& stop);
+  void record(const FirstContact& touch, const IndenterPose& pose, int depths, const StopToken& stop);
   void forget(int c);  // drops case c
   void forget_all();
 

@@ -10,8 +10,8 @@
 namespace aspic::viewer {
 namespace {
 
-constexpr int kMostMarkers = 5'000, kMostSites = 200, kMostDepths = 20;
-constexpr size_t kMostCases = 1'000;
+constexpr int kMaxMarkers = 5'000, kMaxSites = 200, kMaxDepths = 20;
+constexpr size_t kMaxCases = 1'000;
 
 // Returns whether a setting changes the body at rest.
 bool is_of_the_body(const std::string& override_text) {
@@ -23,8 +23,8 @@ bool is_of_the_body(const std::string& override_text) {
 Json case_json(const LoadCase& load, double depth) {
   return {{"name", load.name},
           {"group", load.group},
-          {"shape", load.tip->shape == TipShape::disc ? "disc" : "sphere"},
-          {"radius", load.tip->radius},
+          {"shape", load.indenter->shape == IndenterShape::disc ? "disc" : "sphere"},
+          {"radius", load.indenter->radius},
           {"center", json_of(load.pose.center)},
           {"axis", json_of(load.pose.axis)},
           {"depth", depth},
@@ -45,9 +45,9 @@ std::string body_text(const Side& side) {
   return text + fmt::format("\n{} {}", pinned, which);
 }
 
-Touch touch_of(const Tip& tip, const Vec3d& site, const Vec3d& inward) {
-  const TipPose rest{tip.shape == TipShape::sphere ? site - tip.radius * inward : site, inward, {}};
-  return {tip, rest, rest};
+FirstContact touch_of(const Indenter& indenter, const Vec3d& site, const Vec3d& inward) {
+  const IndenterPose rest{indenter.shape == IndenterShape::sphere ? site - indenter.radius * inward : site, inward, {}};
+  return {indenter, rest, rest};
 }
 
 }  // namespace
@@ -89,15 +89,15 @@ void BenchDesk::add(const FitNews& news) {
 }
 
 void BenchDesk::require_room(size_t cases) {
-  if (bench().data().experiment.cases.size() + cases > kMostCases)
-    throw InvalidInput(fmt::format("a data set has at most {} cases; forget some", kMostCases));
+  if (bench().data().experiment.cases.size() + cases > kMaxCases)
+    throw InvalidInput(fmt::format("a data set has at most {} cases; forget some", kMaxCases));
 }
 
 // ---------------------------------------------------------------- commands
 
 void BenchDesk::set_bench(Arguments& arguments) {
   BenchOptions wanted = wanted_;
-  if (arguments.has("markers")) wanted.markers = arguments.integer("markers", 1, kMostMarkers);
+  if (arguments.has("markers")) wanted.markers = arguments.integer("markers", 1, kMaxMarkers);
   if (arguments.has("seed")) wanted.seed = static_cast<uint64_t>(arguments.integer("seed", 0, 1 << 30));
   if (arguments.has("noise")) {
     wanted.noise = arguments.number("noise");
@@ -118,10 +118,10 @@ void BenchDesk::set_bench(Arguments& arguments) {
 }
 
 void BenchDesk::record(Arguments& arguments) {
-  const int depths = arguments.has("depths") ? arguments.integer("depths", 1, kMostDepths) : 1;
+  const int depths = arguments.has("depths") ? arguments.integer("depths", 1, kMaxDepths) : 1;
   arguments.finish();
-  const Indenter& indenter = stage_.a().side.tools().indenter;
-  const Touch* touch = indenter.touch();
+  const IndenterTool& indenter = stage_.a().side.tools().indenter;
+  const FirstContact* touch = indenter.touch();
   if (!touch) throw InvalidInput("record: there is no indenter; place it on the body first");
   if (norm(indenter.wanted().center - touch->begun.center) == 0)
     throw InvalidInput("record: the indentation depth is 0; press the indenter in first");
@@ -139,13 +139,13 @@ void BenchDesk::record(Arguments& arguments) {
 
 void BenchDesk::poke_all(Arguments& arguments) {
   const Model& model = stage_.a().side.model();
-  const int sites = arguments.integer("sites", 1, kMostSites), depths = arguments.integer("depths", 1, kMostDepths);
+  const int sites = arguments.integer("sites", 1, kMaxSites), depths = arguments.integer("depths", 1, kMaxDepths);
   const double depth = arguments.number("depth");
-  const Tip tip = tip_of(arguments, model, boundary_of(model));
+  const Indenter indenter = indenter_of(arguments, model, boundary_of(model));
   arguments.finish();
-  if (!(depth > 0 && depth <= 10 * tip.radius))
+  if (!(depth > 0 && depth <= 10 * indenter.radius))
     refuse("poke_all.depth", depth, "a positive depth, at most ten radii of the indenter, is expected [m]");
-  const std::vector<IndentationSite> places = bench().sites(tip.radius, sites);
+  const std::vector<IndentationSite> places = bench().sites(indenter.radius, sites);
   if (places.empty()) throw InvalidInput("there is no free and flat place for this indenter; choose a smaller radius");
   require_room(places.size() * depths);
   Busy busy(options_);
@@ -154,7 +154,7 @@ void BenchDesk::poke_all(Arguments& arguments) {
   std::string why;
   for (size_t s = 0; s < places.size(); ++s) {
     busy(fmt::format("poking site {} of {}", s + 1, places.size()));
-    const Touch touch = touch_of(tip, model.mesh.rest[places[s].vertex], places[s].inward);
+    const FirstContact touch = touch_of(indenter, model.mesh.rest[places[s].vertex], places[s].inward);
     try {
       bench().record(touch, pressed(touch, depth), depths, stop);
     } catch (const InvalidInput& e) {

@@ -61,7 +61,7 @@ FitNews finished(const FitTask& task, Page& page) {
   return last;
 }
 
-TEST(Bench, RecordsPoseAndEquilibriumForceOfTheTip) {
+TEST(Bench, RecordsPoseAndEquilibriumForceOfIndenter) {
   Page page(kBlock, {"time.integrator=\"quasi_static\""});
   page.send({{"do", "bench"}, {"noise", 0}, {"markers", 30}, {"same_mesh", false}});
   EXPECT_EQ(page.capture()["markers"]["triangles"].size(), 30u);

@@ -63,8 +63,8 @@ Recording read_recording(const Json& json) {
   }
   recording.steps = arguments.integer("steps", 0, std::numeric_limits<int>::max());
   const Json& events = arguments.value("events");
-  if (!events.is_array() || events.size() > CommandLog::kMostEvents)
-    refuse("recording.events", events, fmt::format("at most {} events are expected", CommandLog::kMostEvents));
+  if (!events.is_array() || events.size() > CommandLog::kMaxEvents)
+    refuse("recording.events", events, fmt::format("at most {} events are expected", CommandLog::kMaxEvents));
   for (const Json& event : events) recording.events.push_back(read_event(event));
   arguments.finish();
   if (!std::is_sorted(recording.events.begin(), recording.events.end(),
@@ -79,7 +79,7 @@ void CommandLog::add(Event event) {
     if (does(event, what) && !events_.empty() && does(events_.back(), what) && events_.back().step == event.step &&
         events_.back().b == event.b)
       events_.pop_back();
-  if (events_.size() >= kMostEvents) {
+  if (events_.size() >= kMaxEvents) {
     is_complete_ = false;
     return;
   }

@@ -30,7 +30,7 @@ Recording read_recording(const Json& json);  // throws InvalidInput; the replay 
 
 class CommandLog {
  public:
-  static constexpr size_t kMostEvents = 100'000;
+  static constexpr size_t kMaxEvents = 100'000;
 
   void clear() { events_.clear(), is_complete_ = true; }
   void add(Event event);
@@ -39,7 +39,7 @@ class CommandLog {
   void rewind(int step, int b);
   void forget_side_b();
   const std::vector<Event>& events() const { return events_; }
-  bool is_complete() const { return is_complete_; }  // false: more than kMostEvents
+  bool is_complete() const { return is_complete_; }  // false: more than kMaxEvents
 
  private:
   std::vector<Event> events_;

@@ -8,7 +8,7 @@
 
 namespace aspic {
 struct Model;
-struct Tip;
+struct Indenter;
 class StopToken;
 }  // namespace aspic
 
@@ -40,6 +40,6 @@ void add_questions(const SessionOptions& options, Stage& stage, const Playback& 
                    Questions& questions);
 
 // Returns the indenter that a command describes, with defaults for missing members. Throws InvalidInput.
-Tip tip_of(Arguments& arguments, const Model& model, const Surface& cage);
+Indenter indenter_of(Arguments& arguments, const Model& model, const Surface& cage);
 
 }  // namespace aspic::viewer

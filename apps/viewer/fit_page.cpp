@@ -184,9 +184,9 @@ class FitPack {
                    {"tip", nullptr},
                    {"force", nullptr},
                    {"torque", nullptr}};
-      if (load.tip)
-        item["tip"] = {{"shape", load.tip->shape == TipShape::sphere ? "sphere" : "disc"},
-                       {"radius", load.tip->radius},
+      if (load.indenter)
+        item["tip"] = {{"shape", load.indenter->shape == IndenterShape::sphere ? "sphere" : "disc"},
+                       {"radius", load.indenter->radius},
                        {"touch", vector(load.touch.center)},
                        {"center", vector(load.pose.center)},
                        {"axis", vector(load.touch.axis)},
@@ -256,7 +256,7 @@ class FitPack {
     const IndentationCandidate& poke = *outcome_.next_indentation;
     return {{"site", vector(poke.site)},
             {"inward", vector(poke.inward)},
-            {"radius", poke.load.tip ? poke.load.tip->radius : 0.0},
+            {"radius", poke.load.indenter ? poke.load.indenter->radius : 0.0},
             {"depth", norm(poke.load.pose.center - poke.load.touch.center)},
             {"gain", number_json(poke.gain)},
             {"words", poke.description}};

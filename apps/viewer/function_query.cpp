@@ -16,7 +16,7 @@
 namespace aspic::viewer {
 namespace {
 
-constexpr int kMostIterations = 500, kMostSamples = 101;
+constexpr int kMaxIterations = 500, kMaxSamples = 101;
 constexpr double kFarthestStart = 1e6;  // maximum coordinate of a start
 
 struct Problem {
@@ -55,7 +55,7 @@ SolverOptions options_of(const Json& settings) {
   }
   const Table document = read_scene_document(to_toml(defaults), "the function's settings", overrides);
   SolverOptions options = solver_options(*document.find("solver"));
-  options.minimize.max_iterations = std::min(options.minimize.max_iterations, kMostIterations);
+  options.minimize.max_iterations = std::min(options.minimize.max_iterations, kMaxIterations);
   options.time_budget = 0;
   return options;
 }
@@ -125,8 +125,8 @@ Json function_reply(Arguments& question) {
   const std::string name = question.text("name", kMaxExpressionLength);
   const Planar start = start_of(question);
   const SolverOptions options = options_of(question.value("settings"));
-  const int iteration = question.integer("iteration", 0, kMostIterations);
-  const int samples = std::clamp(question.integer("samples", 2, 1'000'000), 2, kMostSamples);
+  const int iteration = question.integer("iteration", 0, kMaxIterations);
+  const int samples = std::clamp(question.integer("samples", 2, 1'000'000), 2, kMaxSamples);
   question.finish();
   const Problem problem = problem_of(name, start);
   PlanarFunction& f = *problem.function;

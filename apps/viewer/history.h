@@ -7,7 +7,7 @@
 
 #include "dynamics/simulation.h"
 #include "energy/grab_spring.h"
-#include "energy/held_tip.h"
+#include "energy/held_indenter.h"
 #include "viewer/step_rows.h"
 
 namespace aspic::viewer {
@@ -23,10 +23,10 @@ struct Snapshot {
   double start_time = 0, h = 0;   // [s] see History
   std::string integrator;
   Grab grab;                                     // at rest, after the edits before the next step
-  Poke poke;                                     // at rest, after these edits
+  IndenterMotion poke;                           // at rest, after these edits
   std::shared_ptr<const std::vector<Pin>> pins;  // after these edits
   Grab acted;                                    // motion in the last step
-  Poke poked;                                    // motion in the last step
+  IndenterMotion poked;                          // motion in the last step
   long settings = 0;                             // counter of settings at the last step
 
   size_t bytes() const;

@@ -13,7 +13,7 @@
 namespace aspic::viewer {
 namespace {
 
-constexpr double kDeepestTip = 10;  // relative to the size of the body
+constexpr double kDeepestIndenter = 10;  // relative to the size of the body
 
 double positive(Arguments& arguments, const char* key, double most) {
   const double value = arguments.number(key);
@@ -22,8 +22,8 @@ double positive(Arguments& arguments, const char* key, double most) {
   return value;
 }
 
-Json command_of(const SurfacePoint& point, const Tip& tip) {
-  Json command = tip_json(tip);
+Json command_of(const SurfacePoint& point, const Indenter& indenter) {
+  Json command = indenter_json(indenter);
   command.update({{"do", "touch"}, {"side", "a"}, {"triangle", point.triangle}, {"weights", json_of(point.weights)}});
   return command;
 }
@@ -34,20 +34,20 @@ void touch(Stage& stage, Arguments& arguments) {
   const int triangle = arguments.integer("triangle", 0, touched.surface.triangle_count() - 1);
   const SurfacePoint shown_point{triangle, arguments.weights("weights")};
   const Model& model = stage.a().side.model();
-  const Tip tip = tip_of(arguments, model, boundary_of(model));
+  const Indenter indenter = indenter_of(arguments, model, boundary_of(model));
   arguments.finish();
   const Surface& surface = stage.a().surface;
   const SurfacePoint point = &touched == stage.b() ? same_point(touched.surface, shown_point, surface) : shown_point;
-  std::vector<std::shared_ptr<const Touch>> touches;
+  std::vector<std::shared_ptr<const FirstContact>> touches;
   for (const ShownSide& shown : stage.sides()) {
     const Surface cage = boundary_of(shown.side.model());
     const SurfacePoint here = same_point(surface, point, cage);
-    touches.push_back(std::make_shared<const Touch>(
-        touch_at(shown.side.model(), cage, here, tip, shown.side.simulation().state().q)));
+    touches.push_back(std::make_shared<const FirstContact>(
+        touch_at(shown.side.model(), cage, here, indenter, shown.side.simulation().state().q)));
   }
   for (size_t s = 0; s < touches.size(); ++s)
     stage.sides()[s].side.edit([&](Tools& tools, Positions) { tools.indenter.touch(touches[s]); });
-  stage.record(command_of(point, tip));
+  stage.record(command_of(point, indenter));
 }
 
 void press(Stage& stage, Arguments& arguments) {
@@ -56,14 +56,14 @@ void press(Stage& stage, Arguments& arguments) {
   arguments.finish();
   if (!stage.a().side.tools().indenter.touch())
     throw InvalidInput("press: there is no indenter; place it on the body first");
-  const double most = kDeepestTip * size_of(stage.a().surface);
+  const double most = kDeepestIndenter * size_of(stage.a().surface);
   if (!(std::abs(depth) <= most && norm(shift) <= most))
     throw InvalidInput(fmt::format("press: depth and shift are limited to {:g} m", most));
   Json done = {{"do", "press"}, {"depth", depth}};
   if (dot(shift, shift) > 0) done["shift"] = json_of(shift);
   stage.record(std::move(done));
   for (ShownSide& shown : stage.sides())
-    if (const Touch* touch = shown.side.tools().indenter.touch())
+    if (const FirstContact* touch = shown.side.tools().indenter.touch())
       shown.side.aim([&](Tools& tools) { tools.indenter.move(pressed(*touch, depth, shift)); });
 }
 
@@ -76,14 +76,15 @@ void lift(Stage& stage) {
 
 }  // namespace
 
-Tip tip_of(Arguments& touch, const Model& model, const Surface& cage) {
-  Tip tip{.radius = default_radius(cage)};
-  if (touch.has("shape") && touch.choice("shape", {"sphere", "disc"}) == "disc") tip.shape = TipShape::disc;
+Indenter indenter_of(Arguments& touch, const Model& model, const Surface& cage) {
+  Indenter indenter{.radius = default_radius(cage)};
+  if (touch.has("shape") && touch.choice("shape", {"sphere", "disc"}) == "disc") indenter.shape = IndenterShape::disc;
   if (touch.has("contact") && touch.choice("contact", {"bonded", "sliding"}) == "sliding")
-    tip.contact = TipContact::sliding;
-  if (touch.has("radius")) tip.radius = positive(touch, "radius", kDeepestTip * size_of(cage));
-  tip.stiffness = touch.has("stiffness") ? positive(touch, "stiffness", 1e20) : default_layer(model, tip.radius);
-  return tip;
+    indenter.contact = IndenterContact::sliding;
+  if (touch.has("radius")) indenter.radius = positive(touch, "radius", kDeepestIndenter * size_of(cage));
+  indenter.stiffness =
+      touch.has("stiffness") ? positive(touch, "stiffness", 1e20) : default_layer(model, indenter.radius);
+  return indenter;
 }
 
 void add_indenter_commands(Stage& stage, Commands& commands) {

@@ -11,8 +11,8 @@
 namespace aspic::viewer {
 namespace {
 
-constexpr size_t kMostOfPath = 1000;                      // maximum number of iterates of a path
-constexpr size_t kMostPathBytes = size_t{128} << 20;      // maximum memory of iterates before the plane is known
+constexpr size_t kMaxOfPath = 1000;                       // maximum number of iterates of a path
+constexpr size_t kMaxPathBytes = size_t{128} << 20;       // maximum memory of iterates before the plane is known
 constexpr double kTetsOfSlice = 2e7, kTetsOfCurve = 1e7;  // evaluations of tets: 0.5 s of CPU time together
 
 int slice_samples(int tets) {
@@ -77,9 +77,9 @@ void Look::follow(const LiveIteration& live) {
     before_.clear();
   }
   if (!is_met()) {
-    if (before_.size() < std::min(kMostOfPath, kMostPathBytes / live.x.size_bytes()))
+    if (before_.size() < std::min(kMaxOfPath, kMaxPathBytes / live.x.size_bytes()))
       before_.push_back({{live.x.begin(), live.x.end()}, live.value});
-  } else if (is_of_path_ && path_.size() < kMostOfPath) {
+  } else if (is_of_path_ && path_.size() < kMaxOfPath) {
     path_.push_back(on_plane(live.x, live.value));
     end_ = on_plane(live.x_next, std::numeric_limits<double>::quiet_NaN());
   }

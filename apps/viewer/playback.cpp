@@ -5,7 +5,7 @@
 namespace aspic::viewer {
 namespace {
 
-constexpr int kMostCatchingUp = 100'000;  // maximum number of steps of side b per step of side a
+constexpr int kMaxCatchingUp = 100'000;  // maximum number of steps of side b per step of side a
 
 }  // namespace
 
@@ -97,7 +97,7 @@ void Playback::step() {
   const ShownSide& first = stage_.next();
   const int before = first.side.steps_taken();
   take_turn();
-  for (int k = 0; stage_.b() && &stage_.next() == stage_.b() && !is_interrupted_ && k < kMostCatchingUp; ++k) {
+  for (int k = 0; stage_.b() && &stage_.next() == stage_.b() && !is_interrupted_ && k < kMaxCatchingUp; ++k) {
     if (first.side.steps_taken() == before) break;  // interrupted
     take_turn();
   }

@@ -18,16 +18,16 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr int kMostTets = 500'000;  // maximum size of a mesh for a page: about 60 MB of text
-constexpr int kMostInt = std::numeric_limits<int>::max();
+constexpr int kMaxTets = 500'000;  // maximum size of a mesh for a page: about 60 MB of text
+constexpr int kMaxInt = std::numeric_limits<int>::max();
 
 // The deformed mesh with the vertex and tet numbers of the user.
 std::string mesh_text(const ShownSide& shown, const std::string& format) {
   const Model& model = shown.side.model();
-  if (model.mesh.tet_count() > kMostTets)
+  if (model.mesh.tet_count() > kMaxTets)
     throw InvalidInput(
         fmt::format("a mesh of {} tets; the page exports at most {}. Use aspic run, which writes frames of any size",
-                    model.mesh.tet_count(), kMostTets));
+                    model.mesh.tet_count(), kMaxTets));
   const TemporaryFolder folder;
   const fs::path path = folder.path() / ("mesh." + format);
   const Positions x = shown.side.positions();
@@ -75,7 +75,7 @@ void add_questions(const SessionOptions& options, Stage& stage, const Playback& 
     return tet_reply(shown, triangle);
   });
   add("iteration", [&playback](ShownSide& shown, Arguments& arguments) {
-    const int step = arguments.integer("step", 1, kMostInt), iteration = arguments.integer("iteration", 0, kMostInt);
+    const int step = arguments.integer("step", 1, kMaxInt), iteration = arguments.integer("iteration", 0, kMaxInt);
     arguments.finish();
     return iteration_reply(shown.side, step, iteration, playback.stop_token());
   });

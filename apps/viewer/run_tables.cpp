@@ -26,7 +26,7 @@ std::vector<std::string> pins_of(const CsvReader& table) {
   constexpr std::string_view kForce = "reaction_", kMoment = "reaction_moment_", kEnd = "_x";
   std::vector<std::string> pins;
   for (const std::string& name : table.columns()) {
-    if (pins.size() == StepRow::kMostReactions) break;
+    if (pins.size() == StepRow::kMaxReactions) break;
     if (!name.starts_with(kMoment) || !name.ends_with(kEnd)) continue;
     const std::string pin = name.substr(kMoment.size(), name.size() - kMoment.size() - kEnd.size());
     const auto has_all = [&](std::string_view kind) {

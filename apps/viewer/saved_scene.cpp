@@ -19,7 +19,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr size_t kMostReplyBytes = size_t{40} << 20;
+constexpr size_t kMaxReplyBytes = size_t{40} << 20;
 constexpr double kSameTime = 1e-6;  // fraction of a step
 const char* const kByHand = "by_hand";
 
@@ -201,10 +201,10 @@ SavedScene saved_scene(const Side& side, SavedHand hand) {
 }
 
 Json file_reply(const std::string& name, const std::string& bytes) {
-  if (bytes.size() > kMostReplyBytes)
+  if (bytes.size() > kMaxReplyBytes)
     throw InvalidInput(
         fmt::format("{}: {} MB; the page exports at most {} MB. Use aspic run, which writes files of any size", name,
-                    bytes.size() / 1'000'000, kMostReplyBytes / 1'000'000));
+                    bytes.size() / 1'000'000, kMaxReplyBytes / 1'000'000));
   return {{"name", name}, {"base64", base64(bytes)}};
 }
 
@@ -227,7 +227,7 @@ Json scene_files_reply(const SavedScene& saved) {
   for (const ZipEntry& file : saved.files) {
     const std::string packed = gzipped(file.bytes);
     total += packed.size();
-    if (total > kMostReplyBytes) file_reply(saved.name, packed + std::string(total, ' '));
+    if (total > kMaxReplyBytes) file_reply(saved.name, packed + std::string(total, ' '));
     reply["files"].push_back({{"name", file.name}, {"gzip", base64(packed)}});
   }
   return reply;

@@ -22,7 +22,7 @@ namespace {
 using Overrides = std::vector<std::string>;
 using Uploaded = std::shared_ptr<const TemporaryFolder>;
 
-constexpr size_t kMostUploadedFiles = 64, kMostUploadedBytes = size_t{200} << 20;
+constexpr size_t kMaxUploadedFiles = 64, kMaxUploadedBytes = size_t{200} << 20;
 
 namespace fs = std::filesystem;
 
@@ -57,13 +57,13 @@ std::string unpacked(const std::string& name, const std::string& text, size_t mo
 }
 
 // Writes [{"name", "gzip"}, ...], each file gzipped and in base64, into a new temporary folder. Names are relative
-// paths below it. Throws InvalidInput for malformed data, and above kMostUploadedFiles or kMostUploadedBytes.
+// paths below it. Throws InvalidInput for malformed data, and above kMaxUploadedFiles or kMaxUploadedBytes.
 std::unique_ptr<TemporaryFolder> written_upload(const Json& files) {
-  if (!files.is_array() || files.empty() || files.size() > kMostUploadedFiles)
+  if (!files.is_array() || files.empty() || files.size() > kMaxUploadedFiles)
     refuse("load.files", files.is_array() ? Json(files.size()) : files,
-           fmt::format("a list of 1 to {} files is expected", kMostUploadedFiles));
+           fmt::format("a list of 1 to {} files is expected", kMaxUploadedFiles));
   auto folder = std::make_unique<TemporaryFolder>();
-  size_t left = kMostUploadedBytes;
+  size_t left = kMaxUploadedBytes;
   for (const Json& file : files) {
     Arguments arguments(file, "load.files");
     const fs::path path = folder->path() / kScenes / confined(arguments.text("name"));
@@ -89,7 +89,7 @@ fs::path uploaded_file(const TemporaryFolder& folder, const std::string& name) {
   return path;
 }
 
-constexpr size_t kMostRecordingBytes = size_t{32} << 20;
+constexpr size_t kMaxRecordingBytes = size_t{32} << 20;
 
 void set(const SessionOptions& options, Stage& stage, Arguments& arguments) {
   const std::string key = arguments.text("key", 200);
@@ -157,7 +157,7 @@ void lesson(const SessionOptions& options, Stage& stage, Playback& playback, Arg
   const Lesson& lesson = lesson_of(options.lessons, id);
   if (lesson.scene.empty()) return;  // opens only its panel
   std::optional<Recording> recording;
-  if (lesson.recording) recording = read_recording(parse_json(lesson.recording(), kMostRecordingBytes));
+  if (lesson.recording) recording = read_recording(parse_json(lesson.recording(), kMaxRecordingBytes));
   std::optional<Recording::Comparison> compared;
   std::optional<Overrides> of_b;
   if (!lesson.comparison.empty()) {

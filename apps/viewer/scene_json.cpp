@@ -8,11 +8,11 @@ namespace aspic::viewer {
 
 Json json_of(const Vec3d& x) { return {x[0], x[1], x[2]}; }
 
-Json tip_json(const Tip& tip) {
-  return {{"shape", tip.shape == TipShape::disc ? "disc" : "sphere"},
-          {"contact", tip.contact == TipContact::sliding ? "sliding" : "bonded"},
-          {"radius", tip.radius},
-          {"stiffness", tip.stiffness}};
+Json indenter_json(const Indenter& indenter) {
+  return {{"shape", indenter.shape == IndenterShape::disc ? "disc" : "sphere"},
+          {"contact", indenter.contact == IndenterContact::sliding ? "sliding" : "bonded"},
+          {"radius", indenter.radius},
+          {"stiffness", indenter.stiffness}};
 }
 
 namespace {

@@ -9,7 +9,7 @@
 namespace aspic::viewer {
 
 Json json_of(const Vec3d& x);
-Json tip_json(const Tip& tip);  // {"shape", "contact", "radius", "stiffness"}
+Json indenter_json(const Indenter& indenter);  // {"shape", "contact", "radius", "stiffness"}
 
 // Returns the bounding box of points with 3 numbers each. Ignores NaN.
 template <class Real>

@@ -60,7 +60,7 @@ class Audience {
 // The slow work that a request interrupts.
 enum class Urgency { none, before_questions, before_steps };
 
-enum class Aim { none, mouse, tip };  // the tool that a request moves
+enum class Aim { none, mouse, indenter };  // the tool that a request moves
 
 struct Request {
   PageId page = kNoPage;

@@ -13,7 +13,7 @@
 namespace aspic::viewer {
 namespace {
 
-constexpr size_t kMostBytes = 32 << 20;  // maximum size of a text, for recordings
+constexpr size_t kMaxBytes = 32 << 20;  // maximum size of a text, for recordings
 
 // Throws InvalidInput for a name that is not in the table.
 template <class Table>
@@ -91,7 +91,7 @@ Answer Session::handle(std::string_view text, Role role) {
   Json id;
   impl_->playback.allow();
   try {
-    const Json message = parse_json(text, kMostBytes);
+    const Json message = parse_json(text, kMaxBytes);
     if (message.is_object() && message.contains("id")) {
       if (!message["id"].is_number_integer()) refuse("id", message["id"], "a whole number is expected");
       id = message["id"];

@@ -10,13 +10,13 @@ namespace aspic::viewer {
 namespace {
 
 Json probe_json(const Side& side) {
-  const Indenter& indenter = side.tools().indenter;
-  const Touch* touch = indenter.touch();
+  const IndenterTool& indenter = side.tools().indenter;
+  const FirstContact* touch = indenter.touch();
   if (!touch) return nullptr;
-  const HeldTip& tip = *side.steered().tip;
-  const TipPose &begun = touch->begun, &pose = indenter.place(), &wanted = indenter.wanted();
-  const Wrench wrench = tip.wrench(side.positions());
-  Json json = tip_json(touch->tip);
+  const HeldIndenter& indenter = *side.steered().indenter;
+  const IndenterPose &begun = touch->begun, &pose = indenter.place(), &wanted = indenter.wanted();
+  const Wrench wrench = indenter.wrench(side.positions());
+  Json json = indenter_json(touch->indenter);
   json.update({{"begun", json_of(begun.center)},
                {"center", json_of(pose.center)},
                {"axis", json_of(pose.axis)},
@@ -24,7 +24,7 @@ Json probe_json(const Side& side) {
                {"wanted", dot(wanted.center - begun.center, begun.axis)},
                {"force", json_of(wrench.force)},
                {"torque", json_of(wrench.torque)},
-               {"points", tip.touched_points(side.positions())}});
+               {"points", indenter.touched_points(side.positions())}});
   return json;
 }
 

@@ -25,13 +25,13 @@ Snapshot Side::snapshot() const {
 
 void Side::rest() {
   steered_.mouse->set(tools_.hand.resting(time()));
-  steered_.tip->set(tools_.indenter.resting(time()));
+  steered_.indenter->set(tools_.indenter.resting(time()));
 }
 
 void Side::act() {
   const Interval step{time(), history_.end_of_next_step(simulation())};
   steered_.mouse->set(tools_.hand.acting(step));
-  steered_.tip->set(tools_.indenter.acting(step));
+  steered_.indenter->set(tools_.indenter.acting(step));
 }
 
 void Side::record_edit() {
@@ -44,7 +44,7 @@ void Side::record_edit() {
 Progress Side::complete(const StepReport& report) {
   iteration_ = -1;
   const Grab acted = steered_.mouse->grab();
-  const Poke poked = steered_.tip->poke();
+  const IndenterMotion poked = steered_.indenter->poke();
   tools_.hand.finish_step();
   tools_.indenter.finish_step();
   rest();
@@ -121,7 +121,7 @@ StepReport Side::repeat(int step, const IterationObserver& observe, const StopTo
   const Snapshot* after = history_.restore_start_of(step, simulated());
   if (after) {
     steered_.mouse->set(after->acted);
-    steered_.tip->set(after->poked);
+    steered_.indenter->set(after->poked);
   } else {
     act();
   }
@@ -154,14 +154,14 @@ void Side::apply(SceneChange change) {
 
 void Side::edit(const std::function<void(Tools&, Positions)>& change) {
   const Positions x = simulation().state().q;
-  const double hand_energy = tools_.hand.energy(x), tip_energy = steered_.tip->value(x);
+  const double hand_energy = tools_.hand.energy(x), indenter_energy = steered_.indenter->value(x);
   Tools changed = tools_;
   change(changed, x);
-  steered_.tip->set(changed.indenter.resting(time()));
+  steered_.indenter->set(changed.indenter.resting(time()));
   tools_ = std::move(changed);
   rest();
   hand_work_ += tools_.hand.energy(x) - hand_energy;
-  indenter_work_ += steered_.tip->value(x) - tip_energy;
+  indenter_work_ += steered_.indenter->value(x) - indenter_energy;
   record_edit();
 }
 

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "energy/grab_spring.h"
-#include "energy/held_tip.h"
+#include "energy/held_indenter.h"
 #include "viewer/history.h"
 #include "viewer/pin_set.h"
 #include "viewer/steered_scene.h"
@@ -72,16 +72,16 @@ class Hand : public Tool<Grab, Vec3d> {
   double stiffness_;
 };
 
-class Indenter : public Tool<Poke, TipPose> {
+class IndenterTool : public Tool<IndenterMotion, IndenterPose> {
  public:
-  const Touch* touch() const { return held_.touch.get(); }  // null: no indenter
-  void touch(const std::shared_ptr<const Touch>& touch) { return_to({touch, touch->begun, touch->begun}); }
+  const FirstContact* touch() const { return held_.touch.get(); }  // null: no indenter
+  void touch(const std::shared_ptr<const FirstContact>& touch) { return_to({touch, touch->begun, touch->begun}); }
   void lift() { return_to({}); }
 };
 
 struct Tools {
   Hand hand;
-  Indenter indenter = {};
+  IndenterTool indenter = {};
 };
 
 enum class Progress {

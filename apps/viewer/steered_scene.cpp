@@ -45,11 +45,11 @@ SteeredScene load_steered(const fs::path& path, const std::vector<std::string>& 
                           double most_tets) {
   require_file(path);
   GrabSpring* mouse = nullptr;
-  HeldTip* tip = nullptr;
+  HeldIndenter* indenter = nullptr;
   size_t mouse_load = 0, tip_load = 0;
   const auto amend = [&](Model& model) {
-    auto probe = std::make_unique<HeldTip>(model.mesh);
-    tip = probe.get();
+    auto probe = std::make_unique<HeldIndenter>(model.mesh);
+    indenter = probe.get();
     tip_load = model.loads.size();
     model.loads.push_back(std::move(probe));
     auto spring = std::make_unique<GrabSpring>();
@@ -60,7 +60,7 @@ SteeredScene load_steered(const fs::path& path, const std::vector<std::string>& 
   Scene scene = load_scene(
       path, {.overrides = overrides, .announce = announce, .limit = tets_that_fit(most_tets), .amend = amend});
   Table document = read_scene_document(scene.resolved, path.string());
-  return {std::move(scene), mouse, mouse_load, tip, tip_load, std::move(document), path, overrides, most_tets};
+  return {std::move(scene), mouse, mouse_load, indenter, tip_load, std::move(document), path, overrides, most_tets};
 }
 
 SceneChange changed_scene(const SteeredScene& steered, const std::string& override_text, const Announce& announce) {
@@ -78,7 +78,7 @@ SceneChange changed_scene(const SteeredScene& steered, const std::string& overri
   change.reloaded = load_steered(steered.path, change.overrides, announce, steered.most_tets);
   if (change.reloaded->scene.simulation.model().mesh.vertex_count() != simulation.model().mesh.vertex_count())
     throw InvalidInput(fmt::format("{} changes the mesh; load the scene anew with it", override_text));
-  change.reloaded->tip->set(steered.tip->poke());
+  change.reloaded->indenter->set(steered.indenter->poke());
   return change;
 }
 

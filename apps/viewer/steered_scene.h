@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "energy/grab_spring.h"
-#include "energy/held_tip.h"
+#include "energy/held_indenter.h"
 #include "scene/scene.h"
 #include "scene/solver_options.h"
 #include "scene/value.h"
@@ -15,11 +15,11 @@ namespace aspic::viewer {
 
 struct SteeredScene {
   Scene scene;
-  GrabSpring* mouse = nullptr;  // a load of the model
-  size_t mouse_load = 0;        // its index
-  HeldTip* tip = nullptr;       // a load of the model
-  size_t tip_load = 0;          // its index
-  Table document;               // with all values
+  GrabSpring* mouse = nullptr;       // a load of the model
+  size_t mouse_load = 0;             // its index
+  HeldIndenter* indenter = nullptr;  // a load of the model
+  size_t tip_load = 0;               // its index
+  Table document;                    // with all values
   std::filesystem::path path;
   std::vector<std::string> overrides;
   double most_tets;

@@ -17,7 +17,7 @@ size_t details_of(const StepRow& row) {
 Json reactions(const StepRow& row) {
   Json all = Json::object();
   const std::vector<Resultant>& sums = row.report.resultants.pins;
-  for (size_t i = 0; i < std::min({sums.size(), row.pins.size(), StepRow::kMostReactions}); ++i) {
+  for (size_t i = 0; i < std::min({sums.size(), row.pins.size(), StepRow::kMaxReactions}); ++i) {
     const auto& [f, m] = sums[i];
     all[row.pins[i]] = {f[0], f[1], f[2], m[0], m[1], m[2]};
   }
@@ -87,14 +87,14 @@ Json to_json(const StepRow& row) {
 
 void IterationRows::add(const LiveIteration& live) {
   size_ += 1 + live.tried.size();
-  if (size_ <= kMost) rows_.push_back({static_cast<const Iteration&>(live), {live.tried.begin(), live.tried.end()}});
+  if (size_ <= kMax) rows_.push_back({static_cast<const Iteration&>(live), {live.tried.begin(), live.tried.end()}});
 }
 
 void StepRows::add(StepRow row) {
   details_ += details_of(row);
   rows_.push_back(std::move(row));
-  for (size_t i = 0; details_ > kMostDetails && i + 1 < rows_.size(); ++i) forget_details_of(rows_[i]);
-  if (rows_.size() <= kMostSteps) return;
+  for (size_t i = 0; details_ > kMaxDetails && i + 1 < rows_.size(); ++i) forget_details_of(rows_[i]);
+  if (rows_.size() <= kMaxSteps) return;
   forget_details_of(rows_.front());
   rows_.pop_front();
 }

@@ -19,7 +19,7 @@ Json to_json(const IterationRow& row);
 // The iterations of a step, up to a maximum that protects memory and page.
 class IterationRows {
  public:
-  static constexpr size_t kMost = 5'000;  // maximum number of iterations and trials
+  static constexpr size_t kMax = 5'000;  // maximum number of iterations and trials
 
   void begin() { rows_.clear(), size_ = 0; }
   void add(const LiveIteration& live);
@@ -34,7 +34,7 @@ Json to_json(const std::vector<Trial>& tried);
 Json to_json(const Explanation& why);  // null: no explanation
 
 struct StepRow {
-  static constexpr size_t kMostReactions = 8;  // maximum shown: each vertex pinned by hand is a pin
+  static constexpr size_t kMaxReactions = 8;  // maximum shown: each vertex pinned by hand is a pin
   StepReport report;
   std::vector<IterationRow> iterations;
   double mouse_work = 0;               // work of the mouse in the step and in the edits before it [J]
@@ -48,8 +48,8 @@ std::vector<std::string> pin_names(const Model& model);
 
 class StepRows {
  public:
-  static constexpr size_t kMostSteps = 20'000;     // rows of earlier steps are dropped
-  static constexpr size_t kMostDetails = 300'000;  // iterations and trials; those of earlier steps are dropped
+  static constexpr size_t kMaxSteps = 20'000;     // rows of earlier steps are dropped
+  static constexpr size_t kMaxDetails = 300'000;  // iterations and trials; those of earlier steps are dropped
 
   void add(StepRow row);
   void drop_after(int step);

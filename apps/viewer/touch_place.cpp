@@ -74,14 +74,14 @@ Vec3d rotation_vector(const Mat3d& R) {
   return (dot(a, twice_sine) < 0 ? -angle : angle) * a;
 }
 
-TipPose pressed(const Touch& touch, double depth, const Vec3d& shift) {
-  TipPose pose = touch.begun;
+IndenterPose pressed(const FirstContact& touch, double depth, const Vec3d& shift) {
+  IndenterPose pose = touch.begun;
   pose.center = pose.center + depth * pose.axis + shift;
   return pose;
 }
 
-Touch touch_at(const Model& model, const Surface& cage, const SurfacePoint& point, const Tip& tip,
-               std::span<const double> x) {
+FirstContact touch_at(const Model& model, const Surface& cage, const SurfacePoint& point, const Indenter& indenter,
+                      std::span<const double> x) {
   const Triangle& corners = cage.triangles[point.triangle];
   const Vec3d &A = cage.rest[corners[0]], &B = cage.rest[corners[1]], &C = cage.rest[corners[2]];
   const Vec3d inward = -1.0 * unit(cross(B - A, C - A));
@@ -91,9 +91,9 @@ Touch touch_at(const Model& model, const Surface& cage, const SurfacePoint& poin
     rest = rest + point.weights[c] * cage.rest[corners[c]];
     here = here + point.weights[c] * cage.position(corners[c], x);
   }
-  const double back = tip.shape == TipShape::sphere ? tip.radius : 0;
+  const double back = indenter.shape == IndenterShape::sphere ? indenter.radius : 0;
   const Vec3d axis = R * inward;
-  return {tip, {.center = rest - back * inward, .axis = inward}, {here - back * axis, axis, rotation_vector(R)}};
+  return {indenter, {.center = rest - back * inward, .axis = inward}, {here - back * axis, axis, rotation_vector(R)}};
 }
 
 }  // namespace aspic::viewer

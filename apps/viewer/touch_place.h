@@ -1,7 +1,7 @@
 // The place where an indenter touches a body, a point of its surface and the inward normal, and the default sizes of
 // the tools.
 #pragma once
-#include "energy/held_tip.h"
+#include "energy/held_indenter.h"
 #include "viewer/surface.h"
 
 namespace aspic::viewer {
@@ -16,10 +16,11 @@ double default_radius(const Surface& cage);
 double default_layer(const Model& model, double radius);
 
 // `cage`: the boundary of the tets, at the positions x. The indenter turns with the tet behind the triangle.
-Touch touch_at(const Model& model, const Surface& cage, const SurfacePoint& point, const Tip& tip,
-               std::span<const double> x);
+FirstContact touch_at(const Model& model, const Surface& cage, const SurfacePoint& point, const Indenter& indenter,
+                      std::span<const double> x);
 
-TipPose pressed(const Touch& touch, double depth, const Vec3d& shift = {});  // depth below the first contact [m]
+IndenterPose pressed(const FirstContact& touch, double depth,
+                     const Vec3d& shift = {});  // depth below the first contact [m]
 
 Vec3d rotation_vector(const Mat3d& R);  // axis times angle, in [0, pi]
 

@@ -12,19 +12,19 @@ namespace {
 constexpr double kPoisson = 0.4;
 constexpr double kBondedFootprint = 0.94;  // contact radius of a sphere, relative to its radius: see kGlue
 
-double footprint(const Tip& tip, double depth) {
-  if (tip.shape == TipShape::disc) return tip.radius;
-  if (tip.contact == TipContact::bonded) return kBondedFootprint * tip.radius;
-  return std::sqrt(tip.radius * std::min(depth, tip.radius));
+double footprint(const Indenter& indenter, double depth) {
+  if (indenter.shape == IndenterShape::disc) return indenter.radius;
+  if (indenter.contact == IndenterContact::bonded) return kBondedFootprint * indenter.radius;
+  return std::sqrt(indenter.radius * std::min(depth, indenter.radius));
 }
 
 }  // namespace
 
 std::optional<double> apparent_young(const LoadCase& load) {
-  if (!load.tip || !load.force) return std::nullopt;
+  if (!load.indenter || !load.force) return std::nullopt;
   const double depth = load_size(load), force = norm(*load.force);
   if (!(depth > 0) || !(force > 0)) return std::nullopt;
-  return force * (1 - kPoisson * kPoisson) / (2 * footprint(*load.tip, depth) * depth);
+  return force * (1 - kPoisson * kPoisson) / (2 * footprint(*load.indenter, depth) * depth);
 }
 
 std::optional<double> apparent_young(const Experiment& experiment) {

@@ -36,7 +36,7 @@ inline DataSet test_data(int indentations = 3, int depths = 2) {
       LoadCase load;
       load.name = "poke " + std::to_string(p + 1) + ", depth " + std::to_string(d);
       load.group = "poke " + std::to_string(p + 1);
-      load.tip = Tip{TipShape::sphere, TipContact::bonded, 0.01, 1e8};
+      load.indenter = Indenter{IndenterShape::sphere, IndenterContact::bonded, 0.01, 1e8};
       load.touch = {{{0.03 + 0.02 * p, 0.03 + 0.01 * (p % 2), 0.07}}, {{0, 0, -1}}, {}};
       const double depth = 0.003 * d;
       load.pose = load.touch;

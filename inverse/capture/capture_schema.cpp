@@ -42,7 +42,7 @@ void add_document(Schema& s) {
             key("patch", kTables, "patches under pressure", Members{"patch"})});
 }
 
-void add_tips_and_patches(Schema& s) {
+void add_indenters_and_patches(Schema& s) {
   add_keys(
       s, "tip",
       {key("name", kText, "as the table of cases calls it", Usual{"\"tip\""}),
@@ -94,11 +94,11 @@ const std::vector<std::string>& marker_columns() {
 
 const std::vector<std::string>& case_columns() {
   static const std::vector<std::string> names = {
-      "case",      "group",       "tip",         "touch_x",    "touch_y",    "touch_z",    "axis_x",     "axis_y",
-      "axis_z",    "center_x",    "center_y",    "center_z",   "depth",      "rotation_x", "rotation_y", "rotation_z",
-      "gravity_x", "gravity_y",   "gravity_z",   "pressure",   "patch",      "force",      "force_x",    "force_y",
-      "force_z",   "force_sd",    "force_sd_x",  "force_sd_y", "force_sd_z", "torque_x",   "torque_y",   "torque_z",
-      "torque_sd", "torque_sd_x", "torque_sd_y", "torque_sd_z"};
+      "case",      "group",     "tip",         "touch_x",     "touch_y",       "touch_z",    "axis_x",     "axis_y",
+      "axis_z",    "center_x",  "center_y",    "center_z",    "depth",         "rotation_x", "rotation_y", "rotation_z",
+      "gravity_x", "gravity_y", "gravity_z",   "pressure",    "dead_pressure", "patch",      "force",      "force_x",
+      "force_y",   "force_z",   "force_sd",    "force_sd_x",  "force_sd_y",    "force_sd_z", "torque_x",   "torque_y",
+      "torque_z",  "torque_sd", "torque_sd_x", "torque_sd_y", "torque_sd_z"};
   return names;
 }
 
@@ -111,7 +111,7 @@ const Schema& capture_schema() {
   static const Schema schema = [] {
     Schema s;
     add_document(s);
-    add_tips_and_patches(s);
+    add_indenters_and_patches(s);
     add_units(s);
     add_columns(s);
     add_sections_of_scenes(s);

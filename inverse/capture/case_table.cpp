@@ -11,7 +11,7 @@
 namespace aspic {
 namespace {
 
-constexpr int kMostCases = 20'000;
+constexpr int kMaxCases = 20'000;
 // If only the axial force was measured, standard deviation of the lateral force, relative to the force.
 constexpr double kForceAcross = 0.3;
 
@@ -26,8 +26,8 @@ class CaseReader {
   void read() {
     std::vector<LoadCase>& cases = data_.experiment.cases;
     while (table_.next()) {
-      if (cases.size() == kMostCases)
-        throw InvalidInput(data_.source.cases + ": more than " + std::to_string(kMostCases) + " cases; split them");
+      if (cases.size() == kMaxCases)
+        throw InvalidInput(data_.source.cases + ": more than " + std::to_string(kMaxCases) + " cases; split them");
       LoadCase load = row();
       const auto [first, is_new] = line_of_.try_emplace(load.name, table_.line());
       if (!is_new)
@@ -47,13 +47,17 @@ class CaseReader {
     load.group = table_.text("group").empty() ? load.name : table_.text("group");
     load.gravity = table_.vector("gravity_", settings_.unit("gravity")).value_or(Vec3d{});
     read_pressure(load);
-    read_tip(load);
+    read_indenter(load);
     read_wrench(load);
     return load;
   }
 
   void read_pressure(LoadCase& load) {
-    load.pressure = table_.number("pressure", settings_.unit("pressure")).value_or(0);
+    const auto follower = table_.number("pressure", settings_.unit("pressure")),
+               dead = table_.number("dead_pressure", settings_.unit("pressure"));
+    if (follower && dead) table_.error("the columns pressure and dead_pressure exclude each other: leave one blank");
+    load.is_dead_pressure = dead && !follower;
+    load.pressure = load.is_dead_pressure ? *dead : follower.value_or(0);
     const std::string patch = table_.text("patch");
     if (load.pressure == 0 && patch.empty()) return;
     const auto* found = named(scope_.patches, patch, "patch", "patch");
@@ -86,16 +90,16 @@ class CaseReader {
   }
 
   // A row without a touch uses the last touch of its group.
-  void read_tip(LoadCase& load) {
+  void read_indenter(LoadCase& load) {
     const double length = settings_.unit("length");
     std::optional<Vec3d> touch = table_.vector("touch_", length), axis = table_.vector("axis_");
     const std::optional<Vec3d> center = table_.vector("center_", length);
     const std::optional<double> depth = table_.number("depth", length);
     const Vec3d rotation = table_.vector("rotation_", settings_.unit("angle")).value_or(Vec3d{});
     if (!touch && !center && !depth && table_.text("tip").empty()) return;
-    const Tip* tip = named(scope_.tips, table_.text("tip"), "tip", "tip");
-    if (!tip) return;
-    load.tip = *tip;
+    const Indenter* indenter = named(scope_.indenters, table_.text("tip"), "tip", "tip");
+    if (!indenter) return;
+    load.indenter = *indenter;
     if (const auto last = touch_of_.find(load.group); last != touch_of_.end() && !touch && !(center && depth)) {
       touch = last->second.center;
       if (!axis) axis = last->second.axis;
@@ -128,13 +132,13 @@ class CaseReader {
     load.torque = table_.vector("torque_", newton_meter * sign);
     const std::optional<Vec3d> torque_sd = table_.sigma("torque_sd", newton_meter);
     load.torque_sigma = torque_sd ? *torque_sd : default_sigma("torque", newton_meter);
-    if ((load.force || load.torque) && !load.tip)
+    if ((load.force || load.torque) && !load.indenter)
       table_.error("has a force or torque but no indenter; give its pose, or leave the force blank");
   }
 
   // A gauge that measures only the axial force does not determine the lateral force.
   void take_force_along_axis(LoadCase& load, double force) {
-    if (!load.tip) return;
+    if (!load.indenter) return;
     const Vec3d a = unit(load.pose.axis);
     load.force = force * a;
     for (int i = 0; i < 3; ++i)
@@ -153,7 +157,7 @@ class CaseReader {
   DataSet& data_;
   MeasuredTable table_;
   std::map<std::string, int> line_of_;
-  std::map<std::string, TipPose> touch_of_;  // touch of each group
+  std::map<std::string, IndenterPose> touch_of_;  // touch of each group
 };
 
 template <class T>
@@ -189,7 +193,7 @@ double sigma_along(const LoadCase& load) {
   const double size = load.force ? norm(*load.force) : 0;
   if (!(size > 0)) return norm(load.force_sigma);
   const Vec3d d = (1 / size) * *load.force;
-  const bool is_along_axis = load.tip && norm(cross(d, load.pose.axis)) < 1e-9 * norm(load.pose.axis);
+  const bool is_along_axis = load.indenter && norm(cross(d, load.pose.axis)) < 1e-9 * norm(load.pose.axis);
   double stated = 0, of_gauge = 0;
   bool is_of_gauge = is_along_axis;
   for (int i = 0; i < 3; ++i) {
@@ -203,12 +207,12 @@ double sigma_along(const LoadCase& load) {
 }
 
 double load_size(const LoadCase& load) {
-  if (load.tip) return norm(load.pose.center - load.touch.center);
+  if (load.indenter) return norm(load.pose.center - load.touch.center);
   if (load.pressure != 0) return std::abs(load.pressure);
   return norm(load.gravity);
 }
 
-Vec3d turned_axis(const TipPose& touch, const Vec3d& turn) {
+Vec3d turned_axis(const IndenterPose& touch, const Vec3d& turn) {
   const double angle = norm(turn);
   return angle == 0 ? touch.axis : rotation(turn, angle) * touch.axis;
 }

@@ -11,7 +11,7 @@
 namespace aspic {
 
 struct CaseScope {
-  const std::map<std::string, Tip>& tips;
+  const std::map<std::string, Indenter>& indenters;
   const std::map<std::string, std::vector<Triangle>>& patches;
   const SurfaceProjection& surface;
 };
@@ -27,6 +27,6 @@ double load_size(const LoadCase& load);
 double sigma_along(const LoadCase& load);
 
 // Axis of an indenter that has rotated since the touch.
-Vec3d turned_axis(const TipPose& touch, const Vec3d& rotation);
+Vec3d turned_axis(const IndenterPose& touch, const Vec3d& rotation);
 
 }  // namespace aspic

@@ -23,7 +23,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr size_t kMostMarkers = 1'000'000, kMostReadings = 5'000'000;
+constexpr size_t kMaxMarkers = 1'000'000, kMaxReadings = 5'000'000;
 constexpr double kFarOff = 0.1;  // fraction of the body's size; farther markers are errors
 
 void add_notes(const std::string& what, const std::vector<Finding>& findings, std::vector<std::string>& notes) {
@@ -48,9 +48,9 @@ class DataSetReader {
     read_rest();
     const SurfaceProjection surface(data_.experiment.mesh);
     read_markers(surface);
-    read_tips();
+    read_indenters();
     read_patches(surface);
-    read_cases(settings_, {tips_, patches_, surface}, errors_, data_);
+    read_cases(settings_, {indenters_, patches_, surface}, errors_, data_);
     read_positions();
     errors_.finish();
     choose_sigmas(data_);
@@ -116,8 +116,8 @@ class DataSetReader {
     for (const Triangle& t : surface.triangles())
       for (int i = 0; i < 3; ++i) corner_of_.try_emplace(t[i], t, i);
     while (table.next()) {
-      if (data_.marker_names.size() == kMostMarkers)
-        throw InvalidInput(data_.source.markers + ": more than " + std::to_string(kMostMarkers) + " markers");
+      if (data_.marker_names.size() == kMaxMarkers)
+        throw InvalidInput(data_.source.markers + ": more than " + std::to_string(kMaxMarkers) + " markers");
       const std::string given = table.text("marker");
       const std::string name = given.empty() ? std::to_string(data_.marker_names.size()) : given;
       const int index = static_cast<int>(data_.marker_names.size());
@@ -203,15 +203,15 @@ class DataSetReader {
     return point;
   }
 
-  void read_tips() {
-    const Value* tips = settings_.find("tip");
-    if (!tips) return;
-    for (const Value& t : tips->array()) {
-      Tip tip{t["shape"].text() == "disc" ? TipShape::disc : TipShape::sphere,
-              t["contact"].text() == "bonded" ? TipContact::bonded : TipContact::sliding,
-              settings_.unit("length") * t["radius"].number(), 0};
-      if (const Value* k = t.find("stiffness")) tip.stiffness = k->number();
-      if (!tips_.try_emplace(t["name"].text(), tip).second)
+  void read_indenters() {
+    const Value* indenters = settings_.find("tip");
+    if (!indenters) return;
+    for (const Value& t : indenters->array()) {
+      Indenter indenter{t["shape"].text() == "disc" ? IndenterShape::disc : IndenterShape::sphere,
+                        t["contact"].text() == "bonded" ? IndenterContact::bonded : IndenterContact::sliding,
+                        settings_.unit("length") * t["radius"].number(), 0};
+      if (const Value* k = t.find("stiffness")) indenter.stiffness = k->number();
+      if (!indenters_.try_emplace(t["name"].text(), indenter).second)
         throw error_at(t["name"].place, "name = " + toml_string(t["name"].text()) + " is used by another tip");
     }
   }
@@ -256,8 +256,8 @@ class DataSetReader {
       case_of[data_.experiment.cases[c].name] = static_cast<int>(c);
     std::map<std::pair<int, int>, int> line_of;
     for (size_t count = 0; table.next(); ++count) {
-      if (count == kMostReadings)
-        throw InvalidInput(data_.source.positions + ": more than " + std::to_string(kMostReadings) +
+      if (count == kMaxReadings)
+        throw InvalidInput(data_.source.positions + ": more than " + std::to_string(kMaxReadings) +
                            " positions; remove markers or cases");
       read_position(table, case_of, line_of);
     }
@@ -287,7 +287,7 @@ class DataSetReader {
   std::map<std::string, int> marker_of_;
   std::vector<Vec3d> gap_;                             // offset of each marker at rest from its surface point [m]
   std::map<int, std::pair<Triangle, int>> corner_of_;  // a triangle of each vertex of the surface, and which corner
-  std::map<std::string, Tip> tips_;
+  std::map<std::string, Indenter> indenters_;
   std::map<std::string, std::vector<Triangle>> patches_;
 };
 

@@ -24,12 +24,12 @@ void expect_equal(const std::optional<Vec3d>& a, const std::optional<Vec3d>& b) 
 void expect_equal(const LoadCase& a, const LoadCase& b) {
   EXPECT_EQ(a.name, b.name);
   EXPECT_EQ(a.group, b.group);
-  ASSERT_EQ(a.tip.has_value(), b.tip.has_value());
-  if (a.tip) {
-    EXPECT_EQ(a.tip->shape, b.tip->shape);
-    EXPECT_EQ(a.tip->contact, b.tip->contact);
-    EXPECT_EQ(a.tip->radius, b.tip->radius);
-    EXPECT_EQ(a.tip->stiffness, b.tip->stiffness);
+  ASSERT_EQ(a.indenter.has_value(), b.indenter.has_value());
+  if (a.indenter) {
+    EXPECT_EQ(a.indenter->shape, b.indenter->shape);
+    EXPECT_EQ(a.indenter->contact, b.indenter->contact);
+    EXPECT_EQ(a.indenter->radius, b.indenter->radius);
+    EXPECT_EQ(a.indenter->stiffness, b.indenter->stiffness);
     expect_equal(a.touch.center, b.touch.center);
     expect_equal(a.touch.axis, b.touch.axis);
     expect_equal(a.pose.center, b.pose.center);
@@ -38,6 +38,7 @@ void expect_equal(const LoadCase& a, const LoadCase& b) {
   }
   expect_equal(a.gravity, b.gravity);
   EXPECT_EQ(a.pressure, b.pressure);
+  EXPECT_EQ(a.is_dead_pressure, b.is_dead_pressure);
   EXPECT_EQ(a.pressed, b.pressed);
   expect_equal(a.force, b.force);
   expect_equal(a.torque, b.torque);
@@ -91,6 +92,9 @@ TEST_F(DataSetFile, ReadsBackToTheSameBits) {
   pressed.pressed.assign(surface.begin(), surface.begin() + 7);
   data.experiment.cases.push_back(hung);
   data.experiment.cases.push_back(pressed);
+  pressed.name = pressed.group = "press at rest";
+  pressed.is_dead_pressure = true;
+  data.experiment.cases.push_back(pressed);
   for (size_t t = 0; t < data.experiment.density.size(); ++t) data.experiment.density[t] = 1000 + 1.0 / (1 + t);
 
   write_data_set(folder / "data", data);
@@ -123,8 +127,8 @@ TEST_F(DataSetFile, ChoosesAndReportsUnstatedValues) {
   const LoadCase& deep = e.cases[1];
   EXPECT_NEAR(deep.pose.center[2], 0.066, 1e-15);
   expect_equal(deep.touch.axis, {{0, 0, -1}});  // into the surface
-  EXPECT_EQ(deep.tip->contact, TipContact::sliding);
-  EXPECT_GT(deep.tip->stiffness, 0);
+  EXPECT_EQ(deep.indenter->contact, IndenterContact::sliding);
+  EXPECT_GT(deep.indenter->stiffness, 0);
   EXPECT_EQ(deep.positions[0].sigma[1], 1e-4);
   EXPECT_GT(e.cases[0].positions[0].sigma[1], 0);
   EXPECT_NEAR(data.marker_gap[0], 1e-4, 1e-15);
@@ -179,9 +183,21 @@ TEST_F(DataSetFile, PatchesAndMarkersAtVerticesAreFound) {
   folder.write("positions.csv", "marker,x,y,z\n0,0,0,0.061\n");
   const DataSet data = read_data_set(folder);
   EXPECT_EQ(data.experiment.cases[0].pressure, -500);
+  EXPECT_FALSE(data.experiment.cases[0].is_dead_pressure);
   EXPECT_EQ(data.experiment.cases[0].pressed.size(), 2u * 5 * 4);
   expect_equal(position(data.experiment.markers[0], data.experiment.mesh.rest), {{0, 0, 0.06}});
   EXPECT_EQ(data.experiment.fixed.size(), 30u);
+}
+
+TEST_F(DataSetFile, DeadPressureHasItsOwnColumn) {
+  measured("[[patch]]\nname = \"top\"\nwhere = { highest = 0.001 }");
+  folder.write("cases.csv", "case,dead_pressure\nblown,-500\n");
+  folder.write("positions.csv", "marker,x,y,z\nA,0,0,0.061\n");
+  const DataSet data = read_data_set(folder);
+  EXPECT_EQ(data.experiment.cases[0].pressure, -500);
+  EXPECT_TRUE(data.experiment.cases[0].is_dead_pressure);
+  folder.write("cases.csv", "case,pressure,dead_pressure\nblown,100,-500\n");
+  EXPECT_THAT(refusal(), HasSubstr("cases.csv:2: the columns pressure and dead_pressure exclude each other"));
 }
 
 TEST_F(DataSetFile, BadCellsAreReportedTogetherWithRemedies) {

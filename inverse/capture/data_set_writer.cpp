@@ -15,7 +15,7 @@ namespace {
 namespace fs = std::filesystem;
 
 bool same(const Vec3d& a, const Vec3d& b) { return a[0] == b[0] && a[1] == b[1] && a[2] == b[2]; }
-bool same(const Tip& a, const Tip& b) {
+bool same(const Indenter& a, const Indenter& b) {
   return a.shape == b.shape && a.contact == b.contact && a.radius == b.radius && a.stiffness == b.stiffness;
 }
 
@@ -58,11 +58,12 @@ class DataSetWriter {
 
   void collect() {
     for (const LoadCase& load : data_.experiment.cases) {
-      const auto is_equal = [&](const Tip& tip) { return same(tip, *load.tip); };
-      if (load.tip && std::none_of(tips_.begin(), tips_.end(), is_equal)) tips_.push_back(*load.tip);
+      const auto is_equal = [&](const Indenter& indenter) { return same(indenter, *load.indenter); };
+      if (load.indenter && std::none_of(indenters_.begin(), indenters_.end(), is_equal))
+        indenters_.push_back(*load.indenter);
       if (!load.pressed.empty() && std::find(patches_.begin(), patches_.end(), load.pressed) == patches_.end())
         patches_.push_back(load.pressed);
-      if (load.tip && !same(load.pose.axis, turned_axis(load.touch, load.pose.rotation)))
+      if (load.indenter && !same(load.pose.axis, turned_axis(load.touch, load.pose.rotation)))
         throw InvalidInput("case '" + load.name + "': the axis of the pose is not the rotated axis of the touch");
     }
   }
@@ -70,9 +71,10 @@ class DataSetWriter {
   static std::string numbered(const char* name, size_t index, size_t count) {
     return count == 1 ? name : name + ("_" + std::to_string(index + 1));
   }
-  std::string tip_name(const Tip& tip) const {
-    const auto found = std::find_if(tips_.begin(), tips_.end(), [&](const Tip& t) { return same(t, tip); });
-    return numbered("tip", found - tips_.begin(), tips_.size());
+  std::string indenter_name(const Indenter& indenter) const {
+    const auto found =
+        std::find_if(indenters_.begin(), indenters_.end(), [&](const Indenter& t) { return same(t, indenter); });
+    return numbered("tip", found - indenters_.begin(), indenters_.size());
   }
   std::string patch_name(size_t p) const { return numbered("patch", p, patches_.size()); }
 
@@ -91,11 +93,11 @@ class DataSetWriter {
   }
 
   void write_cases() const {
-    Csv csv({"case",       "group",       "tip",         "touch_x",    "touch_y",    "touch_z",    "axis_x",
-             "axis_y",     "axis_z",      "center_x",    "center_y",   "center_z",   "rotation_x", "rotation_y",
-             "rotation_z", "gravity_x",   "gravity_y",   "gravity_z",  "pressure",   "patch",      "force_x",
-             "force_y",    "force_z",     "force_sd_x",  "force_sd_y", "force_sd_z", "torque_x",   "torque_y",
-             "torque_z",   "torque_sd_x", "torque_sd_y", "torque_sd_z"});
+    Csv csv({"case",       "group",     "tip",         "touch_x",     "touch_y",    "touch_z",       "axis_x",
+             "axis_y",     "axis_z",    "center_x",    "center_y",    "center_z",   "rotation_x",    "rotation_y",
+             "rotation_z", "gravity_x", "gravity_y",   "gravity_z",   "pressure",   "dead_pressure", "patch",
+             "force_x",    "force_y",   "force_z",     "force_sd_x",  "force_sd_y", "force_sd_z",    "torque_x",
+             "torque_y",   "torque_z",  "torque_sd_x", "torque_sd_y", "torque_sd_z"});
     for (const LoadCase& load : data_.experiment.cases) csv.add(row_of(load));
     csv.write(folder_ / "cases.csv");
   }
@@ -103,13 +105,16 @@ class DataSetWriter {
   CsvRow row_of(const LoadCase& load) const {
     using Maybe = std::optional<Vec3d>;
     CsvRow row;
-    row.add(load.name).add(load.group).add(load.tip ? tip_name(*load.tip) : "");
-    add(row, load.tip ? Maybe(load.touch.center) : std::nullopt);
-    add(row, load.tip ? Maybe(load.touch.axis) : std::nullopt);
-    add(row, load.tip ? Maybe(load.pose.center) : std::nullopt);
-    add(row, load.tip ? Maybe(load.pose.rotation) : std::nullopt);
+    row.add(load.name).add(load.group).add(load.indenter ? indenter_name(*load.indenter) : "");
+    add(row, load.indenter ? Maybe(load.touch.center) : std::nullopt);
+    add(row, load.indenter ? Maybe(load.touch.axis) : std::nullopt);
+    add(row, load.indenter ? Maybe(load.pose.center) : std::nullopt);
+    add(row, load.indenter ? Maybe(load.pose.rotation) : std::nullopt);
     add(row, load.gravity);
-    row.add(load.pressure);
+    if (load.is_dead_pressure)
+      row.add("").add(load.pressure);
+    else
+      row.add(load.pressure).add("");
     const auto patch = std::find(patches_.begin(), patches_.end(), load.pressed);
     row.add(patch == patches_.end() ? "" : patch_name(patch - patches_.begin()));
     add(row, load.force);
@@ -157,12 +162,12 @@ class DataSetWriter {
     std::string text =
         "# Measurements, in SI units: docs/capture_format.md\nversion = 1\nname = " + toml_string(data_.name) +
         "\nmesh = \"rest.msh\"\ndensity = " + density_text() + "\nfixed = [" + list + "]\n";
-    for (const Tip& tip : tips_)
-      text += "\n[[tip]]\nname = " + toml_string(tip_name(tip)) +
-              "\nshape = " + (tip.shape == TipShape::disc ? "\"disc\"" : "\"sphere\"") +
-              "\ncontact = " + (tip.contact == TipContact::bonded ? "\"bonded\"" : "\"sliding\"") +
-              "\nradius = " + inline_toml({tip.radius, {}}) + "\nstiffness = " + inline_toml({tip.stiffness, {}}) +
-              "\n";
+    for (const Indenter& indenter : indenters_)
+      text += "\n[[tip]]\nname = " + toml_string(indenter_name(indenter)) +
+              "\nshape = " + (indenter.shape == IndenterShape::disc ? "\"disc\"" : "\"sphere\"") +
+              "\ncontact = " + (indenter.contact == IndenterContact::bonded ? "\"bonded\"" : "\"sliding\"") +
+              "\nradius = " + inline_toml({indenter.radius, {}}) +
+              "\nstiffness = " + inline_toml({indenter.stiffness, {}}) + "\n";
     for (size_t p = 0; p < patches_.size(); ++p)
       text += "\n[[patch]]\nname = " + toml_string(patch_name(p)) +
               "\ntriangles = " + toml_string(patch_name(p) + ".csv") + "\n";
@@ -171,7 +176,7 @@ class DataSetWriter {
 
   const fs::path& folder_;
   const DataSet& data_;
-  std::vector<Tip> tips_;
+  std::vector<Indenter> indenters_;
   std::vector<std::vector<Triangle>> patches_;
 };
 

@@ -8,20 +8,21 @@
 namespace aspic {
 namespace {
 
-constexpr double kStill = 4;           // standard deviations of the mean motion of fixed parts
-constexpr size_t kMostCompared = 300;  // limit of compared motions
-constexpr double kSameMotion = 0.02;   // smallest relative difference between two distinct motions
+constexpr double kStill = 4;          // standard deviations of the mean motion of fixed parts
+constexpr size_t kMaxCompared = 300;  // limit of compared motions
+constexpr double kSameMotion = 0.02;  // smallest relative difference between two distinct motions
 constexpr int kFewNumbers = 30;
 
 bool nearly_same(const Vec3d& a, const Vec3d& b) { return norm(a - b) <= 1e-9 * (norm(a) + norm(b)); }
 
 bool same_load(const LoadCase& a, const LoadCase& b) {
-  if (a.tip.has_value() != b.tip.has_value() || a.pressure != b.pressure || !nearly_same(a.gravity, b.gravity))
+  if (a.indenter.has_value() != b.indenter.has_value() || a.pressure != b.pressure ||
+      !nearly_same(a.gravity, b.gravity) || (a.pressure != 0 && a.is_dead_pressure != b.is_dead_pressure))
     return false;
   if (!a.pressed.empty() && a.pressed != b.pressed) return false;
-  return !a.tip || (a.tip->radius == b.tip->radius && a.tip->shape == b.tip->shape &&
-                    nearly_same(a.touch.center, b.touch.center) && nearly_same(a.touch.axis, b.touch.axis) &&
-                    nearly_same(a.pose.center, b.pose.center) && nearly_same(a.pose.rotation, b.pose.rotation));
+  return !a.indenter || (a.indenter->radius == b.indenter->radius && a.indenter->shape == b.indenter->shape &&
+                         nearly_same(a.touch.center, b.touch.center) && nearly_same(a.touch.axis, b.touch.axis) &&
+                         nearly_same(a.pose.center, b.pose.center) && nearly_same(a.pose.rotation, b.pose.rotation));
 }
 
 bool same_readings(const LoadCase& a, const LoadCase& b) {
@@ -82,7 +83,7 @@ class ContentDiagnosis {
 
   void compare_cases() {
     const std::vector<LoadCase>& cases = experiment_.cases;
-    for (size_t b = 1; b < std::min(cases.size(), 5 * kMostCompared); ++b)
+    for (size_t b = 1; b < std::min(cases.size(), 5 * kMaxCompared); ++b)
       for (size_t a = 0; a < b; ++a) {
         if (!same_load(cases[a], cases[b])) continue;
         const std::string what = "has the same load as '" + cases[a].name + "'";
@@ -149,7 +150,7 @@ class ContentDiagnosis {
     std::set<std::string> groups;
     std::vector<std::vector<double>> basis;
     int motions = 0;
-    for (size_t c = 0; c < std::min(cases.size(), kMostCompared); ++c) {
+    for (size_t c = 0; c < std::min(cases.size(), kMaxCompared); ++c) {
       std::vector<double> u(3 * experiment_.markers.size(), 0.0);
       double noise = 0;
       for (const MarkerReading& r : cases[c].positions) {

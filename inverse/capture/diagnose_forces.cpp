@@ -11,7 +11,7 @@
 namespace aspic {
 namespace {
 
-constexpr double kLeastTypicalYoung = 50, kLargestTypicalYoung = 1.5e7;  // typical Young's moduli of soft bodies [Pa]
+constexpr double kMinTypicalYoung = 50, kLargestTypicalYoung = 1.5e7;  // typical Young's moduli of soft bodies [Pa]
 constexpr double kUnlike = 30;                         // implausible ratio of apparent moduli in one body
 constexpr double kStriking = 2.5;                      // suspicious ratio: a wrong force, or an inclusion
 constexpr double kSamePlace = 0.1, kSameDepth = 0.05;  // tolerances of equal indentations, relative to radius and depth
@@ -48,7 +48,7 @@ class ForceDiagnosis {
       const LoadCase& load = cases_[c];
       has_force |= load.force.has_value() || load.torque.has_value();
       has_other |= load.pressure != 0 || norm(load.gravity) > 0;
-      if (load.tip && !load.force && !load.torque) without.push_back(c);
+      if (load.indenter && !load.force && !load.torque) without.push_back(c);
     }
     if (!has_force && !has_other)
       return findings_.warning(data_.source.cases,
@@ -76,7 +76,7 @@ class ForceDiagnosis {
                       "the force has a standard deviation of " + three_digits(std::min({sd[0], sd[1], sd[2]})) +
                           " N, which no gauge attains",
                       "check the unit of force_sd; leave it blank for 1 % of the largest force");
-      if (!load.tip || load_size(load) == 0) continue;
+      if (!load.indenter || load_size(load) == 0) continue;
       ++measured;
       zero += norm(*load.force) == 0;
     }
@@ -96,7 +96,7 @@ class ForceDiagnosis {
     std::vector<size_t> against;
     int measured = 0;
     for (size_t c = 0; c < cases_.size(); ++c) {
-      if (!cases_[c].tip || !cases_[c].force) continue;
+      if (!cases_[c].indenter || !cases_[c].force) continue;
       const Vec3d way = cases_[c].pose.center - cases_[c].touch.center;
       const double along = dot(way, *cases_[c].force);
       ++measured;
@@ -119,13 +119,13 @@ class ForceDiagnosis {
     if (!E) return;
     const std::string finding =
         "force, depth and radius of the indenter imply a Young's modulus of about " + three_digits(*E) + " Pa";
-    if (*E >= kLeastTypicalYoung && *E <= kLargestTypicalYoung)
+    if (*E >= kMinTypicalYoung && *E <= kLargestTypicalYoung)
       return findings_.note(data_.source.cases, finding,
                             "if this is implausible for the body, check units: force and length");
     std::string remedy = "check units: force and length";
     for (const std::string& unit : unit_names("force")) {
       const double other = *E * unit_in_si("force", unit);
-      if (unit != "N" && other > kLeastTypicalYoung && other < kLargestTypicalYoung) {
+      if (unit != "N" && other > kMinTypicalYoung && other < kLargestTypicalYoung) {
         remedy = "if forces are in " + unit + ", set units = { force = \"" + unit + "\" }: it would be " +
                  three_digits(other) + " Pa";
         if (unit == "mN" || unit == "g" || unit == "kN") break;
@@ -210,10 +210,10 @@ class ForceDiagnosis {
   }
 
   static bool is_same_indentation(const LoadCase& a, const LoadCase& b) {
-    if (!a.tip || !b.tip || !a.force || !b.force) return false;
-    if (a.tip->shape != b.tip->shape || a.tip->contact != b.tip->contact) return false;
-    const double radius = a.tip->radius, depth = load_size(a);
-    return std::abs(b.tip->radius - radius) < kSamePlace * radius &&
+    if (!a.indenter || !b.indenter || !a.force || !b.force) return false;
+    if (a.indenter->shape != b.indenter->shape || a.indenter->contact != b.indenter->contact) return false;
+    const double radius = a.indenter->radius, depth = load_size(a);
+    return std::abs(b.indenter->radius - radius) < kSamePlace * radius &&
            norm(b.touch.center - a.touch.center) < kSamePlace * radius &&
            norm((b.pose.center - b.touch.center) - (a.pose.center - a.touch.center)) < kSameDepth * depth;
   }
@@ -229,7 +229,7 @@ class ForceDiagnosis {
   void examine_falling() {
     for (size_t c = 1; c < cases_.size(); ++c) {
       const LoadCase &last = cases_[c - 1], &load = cases_[c];
-      if (load.group != last.group || !load.force || !last.force || !load.tip || !last.tip) continue;
+      if (load.group != last.group || !load.force || !last.force || !load.indenter || !last.indenter) continue;
       const double noise = 3 * (sigma_along(load) + sigma_along(last));
       const bool is_deeper = load_size(load) > 1.001 * load_size(last);
       if (is_deeper && norm(*load.force) < kFalling * norm(*last.force) - noise)

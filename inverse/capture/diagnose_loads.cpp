@@ -33,10 +33,10 @@ class LoadDiagnosis {
     for (size_t c = 0; c < experiment_.cases.size(); ++c) {
       const LoadCase& load = experiment_.cases[c];
       where_ = data_.source.load_case(static_cast<int>(c)) + " (" + load.name + ")";
-      if (load.tip) examine_tip(load);
+      if (load.indenter) examine_indenter(load);
       examine_gravity(load);
       examine_pressure(load);
-      const bool is_loaded = load.tip || load.pressure != 0 || norm(load.gravity) > 0;
+      const bool is_loaded = load.indenter || load.pressure != 0 || norm(load.gravity) > 0;
       if (!is_loaded)
         findings_.warning(where_, "has no load: no indenter, no pressure, no gravity",
                           "it has no information about the material; give its load, or remove the row");
@@ -45,9 +45,9 @@ class LoadDiagnosis {
   }
 
  private:
-  void examine_tip(const LoadCase& load) {
+  void examine_indenter(const LoadCase& load) {
     const double way = load_size(load), off = surface_.nearest(load.touch.center).distance;
-    if (off > size_ + 2 * load.tip->radius) return far_off(load, off);
+    if (off > size_ + 2 * load.indenter->radius) return far_off(load, off);
     if (way > kDeep * size_)
       return findings_.error(
           where_,
@@ -55,14 +55,14 @@ class LoadDiagnosis {
           "check units: length = \"mm\" or \"cm\"; touch and center are the same point of the indenter");
     if (way == 0 && norm(load.pose.rotation) == 0)
       findings_.note(where_, "the indenter is at its touch: the body stays at rest", "poke deeper, or remove the row");
-    if (load.tip->radius > kHuge * size_)
+    if (load.indenter->radius > kHuge * size_)
       return findings_.error(where_,
-                             "the radius of the indenter, " + three_digits(load.tip->radius) +
+                             "the radius of the indenter, " + three_digits(load.indenter->radius) +
                                  " m, is far larger than the body, " + three_digits(size_) + " m",
                              "correct radius of [[tip]], or units: length");
-    if (load.tip->radius > kDeep * size_)
+    if (load.indenter->radius > kDeep * size_)
       findings_.warning(where_,
-                        "the radius of the indenter, " + three_digits(load.tip->radius) +
+                        "the radius of the indenter, " + three_digits(load.indenter->radius) +
                             " m, is large relative to the body, " + three_digits(size_) + " m",
                         "check radius of [[tip]] and units: length");
     examine_turn(load);
@@ -87,10 +87,10 @@ class LoadDiagnosis {
     const auto& X = experiment_.mesh.rest;
     double edge = 0;
     for (int i = 0; i < 3; ++i) edge = std::max(edge, norm(X[near.vertices[i]] - X[near.vertices[(i + 1) % 3]]));
-    if (edge <= kCoarse * load.tip->radius) return;
+    if (edge <= kCoarse * load.indenter->radius) return;
     reported_coarse_ = true;
     findings_.warning(where_,
-                      "the indenter of radius " + three_digits(load.tip->radius) +
+                      "the indenter of radius " + three_digits(load.indenter->radius) +
                           " m is small relative to the edges of the surface triangles, " + three_digits(edge) +
                           " m long",
                       "its forces depend on the mesh: use one with edges no longer than the width of the indenter");
@@ -99,7 +99,7 @@ class LoadDiagnosis {
   void far_off(const LoadCase& load, double off) {
     std::string remedy = "check units: length, and that indenter and mesh share one coordinate system";
     for (const auto& [factor, unit] : {std::pair{1e-3, "mm"}, {1e-2, "cm"}})
-      if (surface_.nearest(factor * load.touch.center).distance < 0.2 * size_ + load.tip->radius)
+      if (surface_.nearest(factor * load.touch.center).distance < 0.2 * size_ + load.indenter->radius)
         remedy = std::string("it would fit in ") + unit + ": units = { length = \"" + unit + "\" }";
     findings_.error(
         where_,
@@ -113,21 +113,21 @@ class LoadDiagnosis {
       return findings_.error(where_, "the axis of the indenter points out of the body",
                              "axis_x, axis_y, axis_z point into the body: change their signs, or leave "
                              "them blank");
-    Tip tip = *load.tip;
-    if (!(tip.stiffness > 0)) tip.stiffness = 1;
+    Indenter indenter = *load.indenter;
+    if (!(indenter.stiffness > 0)) indenter.stiffness = 1;
     try {
-      make_probe(experiment_.mesh, surface_.triangles(), tip, load.touch);
+      make_probe(experiment_.mesh, surface_.triangles(), indenter, load.touch);
     } catch (const InvalidInput& e) {
       findings_.error(where_, e.what(), "give touch and axis at the moment when the indenter touched the body at rest");
       return;
     }
-    const double gap = tip.shape == TipShape::sphere ? off - tip.radius : off;
-    if (tip.contact == TipContact::sliding && gap > std::max(kLoose * size_, load_size(load)))
+    const double gap = indenter.shape == IndenterShape::sphere ? off - indenter.radius : off;
+    if (indenter.contact == IndenterContact::sliding && gap > std::max(kLoose * size_, load_size(load)))
       return findings_.error(where_,
                              "the indenter does not touch the body: it was " + three_digits(gap) +
                                  " m from the surface at the touch, and moves " + three_digits(load_size(load)) + " m",
                              "touch is the center of the indenter (of a disc: of its flat end) at first contact");
-    if (tip.contact == TipContact::sliding && gap > kLoose * size_)
+    if (indenter.contact == IndenterContact::sliding && gap > kLoose * size_)
       findings_.warning(where_,
                         "the indenter was " + three_digits(gap) + " m from the surface at the touch, and then moves " +
                             three_digits(load_size(load)) + " m",
@@ -162,7 +162,7 @@ class LoadDiagnosis {
       area = std::max(area, norm(cross(X[fixed[1]] - X[fixed[0]], X[fixed[i]] - X[fixed[0]])));
     if (area > 1e-6 * size_ * size_) return;
     const bool is_glued = std::all_of(experiment_.cases.begin(), experiment_.cases.end(), [](const LoadCase& load) {
-      return load.tip && load.tip->contact == TipContact::bonded;
+      return load.indenter && load.indenter->contact == IndenterContact::bonded;
     });
     const bool is_pulled = std::any_of(experiment_.cases.begin(), experiment_.cases.end(), [](const LoadCase& load) {
       return load.pressure != 0 || norm(load.gravity) > 0;

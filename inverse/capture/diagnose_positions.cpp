@@ -11,7 +11,7 @@ namespace aspic {
 namespace {
 
 constexpr int kNeighbors = 12;
-constexpr size_t kMostListed = 5;     // listed findings per kind; others are counted
+constexpr size_t kMaxListed = 5;      // listed findings per kind; others are counted
 constexpr double kOffSurface = 0.02;  // fraction of the body's size
 constexpr double kSuspicious = 6;     // multiple of the differences between neighbors
 constexpr double kNoticeable = 0.05;  // fraction of the largest motion of the case
@@ -112,8 +112,8 @@ class PositionDiagnosis {
     if (!examine_readings()) return;  // otherwise comparisons are meaningless
     if (!examine_way()) return;
     for (size_t c = 0; c < experiment_.cases.size(); ++c) examine_outliers(static_cast<int>(c));
-    if (outliers_ > kMostListed)
-      findings_.warning(data_.source.positions, std::to_string(outliers_ - kMostListed) + " more markers are outliers",
+    if (outliers_ > kMaxListed)
+      findings_.warning(data_.source.positions, std::to_string(outliers_ - kMaxListed) + " more markers are outliers",
                         "correct the tracking, or increase sd");
   }
 
@@ -125,14 +125,14 @@ class PositionDiagnosis {
     for (size_t m = 0; m < data_.marker_gap.size(); ++m)
       if (data_.marker_gap[m] > kOffSurface * size_) off.push_back(static_cast<int>(m));
     std::stable_sort(off.begin(), off.end(), [&](int a, int b) { return data_.marker_gap[a] > data_.marker_gap[b]; });
-    for (size_t i = 0; i < std::min(off.size(), kMostListed); ++i)
+    for (size_t i = 0; i < std::min(off.size(), kMaxListed); ++i)
       findings_.warning(data_.source.marker(off[i]),
                         name(off[i]) + " lies " + three_digits(data_.marker_gap[off[i]]) +
                             " m off the surface; it was projected onto it",
                         "correct its position, or align the mesh with the markers at rest");
-    if (off.size() > kMostListed)
+    if (off.size() > kMaxListed)
       findings_.warning(data_.source.markers,
-                        std::to_string(off.size() - kMostListed) + " more markers lie off the surface",
+                        std::to_string(off.size() - kMaxListed) + " more markers lie off the surface",
                         "align the mesh with the markers at rest");
   }
 
@@ -187,15 +187,15 @@ class PositionDiagnosis {
     std::vector<double> motion;
     for (const LoadCase& load : experiment_.cases)
       for (const MarkerReading& r : load.positions) {
-        if (!is_by_tip_alone(load)) continue;
+        if (!is_by_indenter_alone(load)) continue;
         const Vec3d X = position(experiment_.markers[r.marker], experiment_.mesh.rest);
         motion.push_back(norm(use(r.position, X) - X));
       }
     return median(motion);
   }
 
-  static bool is_by_tip_alone(const LoadCase& load) {
-    return load.tip && load.pressure == 0 && norm(load.gravity) == 0;
+  static bool is_by_indenter_alone(const LoadCase& load) {
+    return load.indenter && load.pressure == 0 && norm(load.gravity) == 0;
   }
 
   // Most parts of a body move less than the indenter; otherwise positions have another meaning.
@@ -203,7 +203,7 @@ class PositionDiagnosis {
     std::vector<double> way, noise;
     for (const LoadCase& load : experiment_.cases)
       for (const MarkerReading& r : load.positions)
-        if (is_by_tip_alone(load)) {
+        if (is_by_indenter_alone(load)) {
           way.push_back(load_size(load) + norm(load.pose.rotation) * size_);
           noise.push_back(norm(r.sigma));
         }
@@ -233,9 +233,9 @@ class PositionDiagnosis {
 
   // Estimated motion of a surface point by the indenter: its displacement, decaying like its radius over the distance.
   static double by_tip(const LoadCase& load, const Vec3d& X) {
-    if (!load.tip) return 0;
+    if (!load.indenter) return 0;
     const double distance = norm(X - load.touch.center);
-    return load_size(load) * std::min(1.0, kReach * load.tip->radius / distance);
+    return load_size(load) * std::min(1.0, kReach * load.indenter->radius / distance);
   }
 
   void examine_outliers(int c) {
@@ -261,7 +261,7 @@ class PositionDiagnosis {
       // The top of a sharp dent differs from its neighbors, but not by more than they differ from each other, nor by
       // more than the estimated motion by the indenter.
       if (excess[i] > std::max({tolerated, kNoticeable * largest, range[i], by_tip(experiment_.cases[c], X[i])}) &&
-          ++outliers_ <= kMostListed)
+          ++outliers_ <= kMaxListed)
         findings_.warning(data_.source.position(c, static_cast<int>(i)),
                           name(readings[i].marker) + " in '" + experiment_.cases[c].name + "' is " +
                               three_digits(excess[i]) + " m away from the motion of its neighbors, which differ by " +

@@ -150,7 +150,7 @@ TEST(Diagnosis, SingleAxisForcesAreExaminedLikeOthers) {
   }
 }
 
-TEST(Diagnosis, PositionsThatNoTipExplainsAreErrors) {
+TEST(Diagnosis, PositionsThatNoIndenterExplainsAreErrors) {
   const DataSet good = data_in_lines();
   const auto with = [&](auto change) {
     DataSet data = good;
@@ -272,7 +272,7 @@ TEST(Diagnosis, CopiesRepetitionsAndCasesWithoutLoadAreNoticed) {
   EXPECT_THAT(diagnose(data), Contains(finding(Severity::warning, "again", "same readings to the last digit")));
   data.experiment.cases.back().force = Vec3d{{0, 0, -1.01}};
   EXPECT_THAT(diagnose(data), Contains(finding(Severity::note, "again", "has the same load as 'poke 3, depth 2'")));
-  data.experiment.cases.back().tip.reset();
+  data.experiment.cases.back().indenter.reset();
   data.experiment.cases.back().force.reset();
   EXPECT_THAT(diagnose(data), Contains(finding(Severity::warning, "again", "has no load")));
 }
@@ -283,7 +283,7 @@ TEST(Diagnosis, MissingContactAndMissingSupportAreErrors) {
   EXPECT_THAT(diagnose(data), Contains(finding(Severity::error, "cases.csv:2", "touches nothing")));
   data = data_in_lines();
   for (LoadCase& load : data.experiment.cases)
-    load.tip->contact = TipContact::sliding, load.touch.center[2] += 0.02, load.pose.center[2] += 0.02;
+    load.indenter->contact = IndenterContact::sliding, load.touch.center[2] += 0.02, load.pose.center[2] += 0.02;
   EXPECT_THAT(diagnose(data),
               Contains(finding(Severity::error, "cases.csv:2", "does not touch the body", "first contact")));
   data = data_in_lines();
@@ -291,7 +291,7 @@ TEST(Diagnosis, MissingContactAndMissingSupportAreErrors) {
   EXPECT_THAT(diagnose(data), Contains(finding(Severity::error, "capture.toml", "follow the indenter")));
   data.experiment.cases[1].gravity = {{0, 0, -9.81}};
   EXPECT_THAT(diagnose(data), Contains(finding(Severity::warning, "capture.toml", "only the indenter holds")));
-  for (LoadCase& load : data.experiment.cases) load.tip->contact = TipContact::sliding;
+  for (LoadCase& load : data.experiment.cases) load.indenter->contact = IndenterContact::sliding;
   EXPECT_THAT(diagnose(data), Contains(finding(Severity::error, "capture.toml", "pushed away", "fixed")));
   data = data_in_lines();
   data.experiment.fixed.resize(data.experiment.mesh.rest.size());
@@ -330,10 +330,10 @@ TEST(Diagnosis, InvertedOrOverRotatedPosesAreReported) {
 
 TEST(Diagnosis, IndenterSizeUnlikeBodyOrTrianglesIsReported) {
   DataSet data = data_in_lines();
-  for (LoadCase& load : data.experiment.cases) load.tip->radius = 100;
+  for (LoadCase& load : data.experiment.cases) load.indenter->radius = 100;
   EXPECT_THAT(diagnose(data), Contains(finding(Severity::error, "cases.csv:2", "far larger than the body", "units")));
   data = data_in_lines();
-  for (LoadCase& load : data.experiment.cases) load.tip->radius = 0.003, load.touch.center[2] = 0.063;
+  for (LoadCase& load : data.experiment.cases) load.indenter->radius = 0.003, load.touch.center[2] = 0.063;
   EXPECT_THAT(diagnose(data),
               Contains(finding(Severity::warning, "cases.csv:2", "small relative to the edges", "edges")));
 }

@@ -33,7 +33,7 @@ const Schema& fit_options_schema() {
          key("weight", kNumber | kText, "weight of smoothness and prior", kNotNegative, Choices{{"auto"}},
              Usual{"\"auto\""}),
          key("rule", kText, "rule that chooses the weight", Choices{weight_rule_names()}, Usual{"\"auto\""}),
-         key("parts", kInteger | kText, "number of parts of constant stiffness", Range{.min = 2, .max = kMostParts},
+         key("parts", kInteger | kText, "number of parts of constant stiffness", Range{.min = 2, .max = kMaxParts},
              Choices{{"off", "auto"}}, Usual{"\"off\""}),
          key("refine", kInteger, "simulates with every tet in 8^refine", Range{.min = 0, .max = 4}, Usual{"0"}),
          key("leave_out", kText | kNames, "groups of cases to predict instead of fitting", Usual{"[]"}),

@@ -14,7 +14,7 @@
 namespace aspic {
 namespace {
 
-constexpr int kMostTets = 5'000'000;  // limit of a refined mesh
+constexpr int kMaxTets = 5'000'000;  // limit of a refined mesh
 
 // Splits "young=tets".
 std::pair<std::string, std::string> halves(const std::string& text, const std::string& example) {
@@ -49,9 +49,9 @@ void check_range(const std::string& quantity, double value) {
 
 void check_refinement(const FitPlan& plan, const TetMesh& mesh) {
   const int tets = mesh.tet_count();
-  if (tets * std::pow(8.0, plan.refine) > kMostTets)
+  if (tets * std::pow(8.0, plan.refine) > kMaxTets)
     throw InvalidInput("refine = " + std::to_string(plan.refine) + " would simulate " + std::to_string(tets) + " x 8^" +
-                       std::to_string(plan.refine) + " tets; " + std::to_string(kMostTets) + " are the most");
+                       std::to_string(plan.refine) + " tets; " + std::to_string(kMaxTets) + " are the most");
 }
 
 }  // namespace
@@ -180,15 +180,16 @@ std::string fingerprint_of(const Experiment& e) {
   for (const SurfacePoint& m : e.markers) add(m.vertices), add(m.weights);
   for (const LoadCase& c : e.cases) {
     add(c.name), add(c.group), add(c.pressed);
-    if (c.tip) {
-      const double tip[] = {static_cast<double>(c.tip->shape), static_cast<double>(c.tip->contact), c.tip->radius,
-                            c.tip->stiffness};
-      hash.add(tip, sizeof tip);
+    if (c.indenter) {
+      const double indenter[] = {static_cast<double>(c.indenter->shape), static_cast<double>(c.indenter->contact),
+                                 c.indenter->radius, c.indenter->stiffness};
+      hash.add(indenter, sizeof indenter);
     }
-    for (const TipPose* pose : {&c.touch, &c.pose})
+    for (const IndenterPose* pose : {&c.touch, &c.pose})
       add_vector(pose->center), add_vector(pose->axis), add_vector(pose->rotation);
     add_vector(c.gravity);
     hash.add(&c.pressure, sizeof c.pressure);
+    if (c.is_dead_pressure) hash.add("dead", 4);
     for (const MarkerReading& r : c.positions)
       hash.add(&r.marker, sizeof r.marker), add_vector(r.position), add_vector(r.sigma);
     for (const std::optional<Vec3d>* reading : {&c.force, &c.torque})

@@ -23,7 +23,7 @@ struct FitPlan {
   bool uncertainty = true, cross_validation = true;
   int refine = 0;  // the simulated mesh splits every tet in 8, this many times
   // Number of parts of constant stiffness that replace a field per tet if they fit the data as well; < 0: the smallest
-  // sufficient number, up to kMostParts; 0: none.
+  // sufficient number, up to kMaxParts; 0: none.
   int parts = 0;
   bool mesh_errors = false;  // correct measurements by the discretization error relative to a finer mesh
 };
@@ -33,7 +33,7 @@ FitParameter parse_parameter(const std::string& text);
 std::string text_of(const FitParameter& parameter);
 std::pair<std::string, double> parse_known(const std::string& text);  // "poisson=0.45"
 
-inline constexpr int kMostParts = 4;
+inline constexpr int kMaxParts = 4;
 
 // The same parameters, each uniform over the body.
 std::vector<FitParameter> single_values(std::vector<FitParameter> parameters);

@@ -45,7 +45,7 @@ inline Experiment indented_block(int cells) {
       LoadCase load;
       load.group = "poke " + std::to_string(indentation + 1);
       load.name = load.group + ", " + std::to_string(std::lround(1000 * depth)) + " mm";
-      load.tip = Tip{TipShape::sphere, TipContact::bonded, 0.025, 1e8};
+      load.indenter = Indenter{IndenterShape::sphere, IndenterContact::bonded, 0.025, 1e8};
       load.touch.center = {{places[indentation][0], 0.12, places[indentation][1]}};
       load.touch.axis = {{0, -1, 0}};
       load.pose = load.touch;

@@ -34,7 +34,7 @@ std::vector<double> MaterialFit::divided(FitModel& model) {
   if (plan_.parts == 0 || young == plan_.parameters.end() || is_stopped()) return report.p;
   const int parameter = static_cast<int>(young - plan_.parameters.begin());
   FoundParts& found = outcome_.parts.emplace();
-  const int fewest = plan_.parts > 0 ? plan_.parts : 2, most = plan_.parts > 0 ? plan_.parts : kMostParts;
+  const int fewest = plan_.parts > 0 ? plan_.parts : 2, most = plan_.parts > 0 ? plan_.parts : kMaxParts;
   for (int count = fewest; count <= most && !found.are_kept && !is_stopped(); ++count, ++found.tried) {
     begin(FitStage::parts, std::to_string(count) + " parts");
     const Parts parts = find_parts(model.data(), {model.map, mesh(), report.p}, parameter, count);

@@ -141,8 +141,9 @@ void MaterialFit::cross_validate_one_value() {
 
 void MaterialFit::find_next_indentation(FitModel& model) {
   const std::vector<LoadCase>& cases = simulated_.fitted().cases;
-  const bool has_tip = std::any_of(cases.begin(), cases.end(), [](const LoadCase& c) { return c.tip.has_value(); });
-  if (!outcome_.posterior || !outcome_.posterior->ok || !has_tip || is_stopped()) return;
+  const bool has_indenter =
+      std::any_of(cases.begin(), cases.end(), [](const LoadCase& c) { return c.indenter.has_value(); });
+  if (!outcome_.posterior || !outcome_.posterior->ok || !has_indenter || is_stopped()) return;
   begin(FitStage::next_indentation, "most informative next poke");
   NextIndentation next = next_indentation(simulated_.fitted(), {model.map, mesh(), outcome_.report.p},
                                           *outcome_.posterior, {.equilibrium = plan_.equilibrium});

@@ -8,12 +8,12 @@
 namespace aspic {
 namespace {
 
-constexpr size_t kMostErrors = 10;  // the first ones explain the rest
+constexpr size_t kMaxErrors = 10;  // the first ones explain the rest
 
 }  // namespace
 
 void ErrorList::add(const std::string& error) {
-  if (lines_.size() < kMostErrors) {
+  if (lines_.size() < kMaxErrors) {
     lines_.push_back(error);
   } else {
     ++further_;

@@ -25,7 +25,7 @@ class Recovery : public FolderTest {
     SynthesisOptions options;
     options.indentations = indentations, options.depths = 1, options.markers = 60;
     options.noise = options.force_noise = noise;
-    options.tip_radius = 0.02;
+    options.indenter_radius = 0.02;
     return options;
   }
   static FitPlan plan(const std::string& parameter) {
@@ -66,7 +66,7 @@ TEST_F(Recovery, OnCoarseMeshNeedsErrorCorrection) {
 // another layer stiffness, which would change E.
 TEST_F(Recovery, MeshErrorsMakeNoIndentationWorse) {
   SynthesisOptions options = bench(3, 0);
-  options.contact = TipContact::bonded;
+  options.contact = IndenterContact::bonded;
   options.mesh = make_box({{0, 0, 0}}, {{0.1, 0.1, 0.1}}, {5, 5, 5});
   const Synthesis made = synthesize(block("2e4", 10), options);
   FitPlan fit = plan("young=uniform");

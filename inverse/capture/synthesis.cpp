@@ -16,10 +16,10 @@
 namespace aspic {
 namespace {
 
-constexpr double kTipRadius = 0.08;   // relative to the size of the body
-constexpr double kGravity = 9.81;     // [m/s^2]
-constexpr double kLeastArm = 0.01;    // lever arm of a force about the indenter's center, relative to its radius
-constexpr double kLeastSigma = 1e-4;  // minimum sigma of exact data, relative to the largest motion or force
+constexpr double kIndenterRadius = 0.08;  // relative to the size of the body
+constexpr double kGravity = 9.81;         // [m/s^2]
+constexpr double kMinArm = 0.01;          // lever arm of a force about the indenter's center, relative to its radius
+constexpr double kMinSigma = 1e-4;        // minimum sigma of exact data, relative to the largest motion or force
 
 double volume_of(const TetMesh& mesh) {
   double sum = 0;
@@ -116,8 +116,9 @@ class Bench {
     }
   }
 
-  Tip tip() const {
-    return {options_.shape, options_.contact, options_.tip_radius > 0 ? options_.tip_radius : kTipRadius * size_, 0};
+  Indenter indenter() const {
+    return {options_.shape, options_.contact,
+            options_.indenter_radius > 0 ? options_.indenter_radius : kIndenterRadius * size_, 0};
   }
 
   // Largest Young's modulus around the sites.
@@ -133,7 +134,7 @@ class Bench {
 
   void add_indentations() {
     if (options_.indentations == 0) return;
-    Tip with = tip();
+    Indenter with = indenter();
     const auto sites = indentation_sites(truth_.mesh, truth_.fixed, 2 * with.radius, options_.indentations);
     if (sites.empty())
       throw InvalidInput("there is no site for a tip of radius " + three_digits(with.radius) +
@@ -148,13 +149,13 @@ class Bench {
   }
 
   // Touch and pose are relative to the surface, which may differ slightly in the mesh of the data.
-  void add_indentation(const Tip& with, const Vec3d& site, const Vec3d& inward, int number, int d) {
+  void add_indentation(const Indenter& with, const Vec3d& site, const Vec3d& inward, int number, int d) {
     LoadCase load;
     load.group = "poke " + std::to_string(number);
     load.name = load.group + ", depth " + std::to_string(d);
-    load.tip = with;
+    load.indenter = with;
     const double depth = options_.deepest * size_ * d / options_.depths;
-    const Vec3d back = with.shape == TipShape::sphere ? with.radius * inward : Vec3d{};
+    const Vec3d back = with.shape == IndenterShape::sphere ? with.radius * inward : Vec3d{};
     load.touch = {site - back, inward, {}};
     load.pose = {site - back + depth * inward, inward, {}};
     add_case(std::move(load), on_data_->nearest(site).position - site, site);
@@ -172,9 +173,9 @@ class Bench {
   // Adds a case without the markers hidden by the indenter.
   void add_case(LoadCase load, const Vec3d& shift, const Vec3d& site) {
     for (size_t m = 0; m < truth_.markers.size(); ++m)
-      if (!load.tip || squared_norm(truth_rest_[m] - site) > load.tip->radius * load.tip->radius)
+      if (!load.indenter || squared_norm(truth_rest_[m] - site) > load.indenter->radius * load.indenter->radius)
         load.positions.push_back({static_cast<int>(m), {}, {{1, 1, 1}}});
-    if (load.positions.empty() && load.tip) load.force = Vec3d{}, load.force_sigma = {{1, 1, 1}};
+    if (load.positions.empty() && load.indenter) load.force = Vec3d{}, load.force_sigma = {{1, 1, 1}};
     truth_.cases.push_back(load);
     load.touch.center = load.touch.center + shift;
     load.pose.center = load.pose.center + shift;
@@ -227,11 +228,11 @@ class Bench {
       load.positions[k].position = marker_rest_[m] + moved;
     }
     load.force.reset();
-    if (load.tip && options_.forces) load.force = found.wrench.force;
-    if (load.tip && options_.torques) load.torque = found.wrench.torque;
+    if (load.indenter && options_.forces) load.force = found.wrench.force;
+    if (load.indenter && options_.torques) load.torque = found.wrench.torque;
     largest_force_ = std::max(largest_force_, norm(found.wrench.force));
     // The moment about the center of a frictionless sphere is zero and cannot be measured.
-    const double arm = load.tip ? kLeastArm * load.tip->radius : 0;
+    const double arm = load.indenter ? kMinArm * load.indenter->radius : 0;
     largest_torque_ = std::max({largest_torque_, norm(found.wrench.torque), arm * norm(found.wrench.force)});
     data().cases.push_back(std::move(load));
   }
@@ -240,7 +241,7 @@ class Bench {
     std::mt19937_64 random(options_.seed + 1);
     std::normal_distribution<double> normal;
     const auto disturb = [&](Vec3d& value, Vec3d& sigma, double noise, double largest) {
-      const double sd = std::max(noise, kLeastSigma) * (largest > 0 ? largest : 1);
+      const double sd = std::max(noise, kMinSigma) * (largest > 0 ? largest : 1);
       for (int i = 0; i < 3; ++i) value[i] += noise * largest * normal(random);
       sigma = {{sd, sd, sd}};
     };
@@ -271,7 +272,7 @@ void check(const SynthesisOptions& o) {
   require(o.markers >= 0 && o.markers <= 100'000, "markers must be 0 to 100000");
   require(o.markers > 0 || o.forces || o.torques, "without markers, forces and torques there is nothing to measure");
   require(o.noise >= 0 && o.force_noise >= 0 && std::isfinite(o.noise + o.force_noise), "noise must be >= 0");
-  require(o.tip_radius >= 0 && std::isfinite(o.tip_radius), "the radius of the tip must be > 0");
+  require(o.indenter_radius >= 0 && std::isfinite(o.indenter_radius), "the radius of the tip must be > 0");
   require(o.deepest > 0 && o.deepest < 1, "the depth must be > 0 and < 1, relative to the size of the body");
   for (const Vec3d& g : o.gravity)
     require(norm(g) > 0 && std::isfinite(norm(g)), "gravity needs a direction, not 0,0,0");

@@ -19,10 +19,10 @@ void require_full(const Pin& pin);
 
 struct SynthesisOptions {
   int indentations = 8, depths = 3;
-  double deepest = 0.1;   // relative to the size of the body, the cube root of its volume
-  double tip_radius = 0;  // [m]; 0: 8 % of the size
-  TipShape shape = TipShape::sphere;
-  TipContact contact = TipContact::bonded;
+  double deepest = 0.1;        // relative to the size of the body, the cube root of its volume
+  double indenter_radius = 0;  // [m]; 0: 8 % of the size
+  IndenterShape shape = IndenterShape::sphere;
+  IndenterContact contact = IndenterContact::bonded;
   int markers = 100;
   double noise = 0.01;        // standard deviation of positions, relative to the largest motion
   double force_noise = 0.01;  // noise of forces and torques, relative to the largest

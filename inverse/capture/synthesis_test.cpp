@@ -42,7 +42,7 @@ TEST_F(VirtualBench, RefusesPinsAlongSomeDirections) {
 // The truth explains exact data in a misfit on the same mesh.
 TEST_F(VirtualBench, TruthExplainsExactDataOnSameMesh) {
   const Scene block = scene();
-  for (const TipContact contact : {TipContact::bonded, TipContact::sliding}) {
+  for (const IndenterContact contact : {IndenterContact::bonded, IndenterContact::sliding}) {
     SynthesisOptions options = exact();
     options.contact = contact;
     options.torques = true;
@@ -110,7 +110,7 @@ TEST_F(VirtualBench, NoiseHasStatedSigmaAndDependsOnSeed) {
 TEST_F(VirtualBench, ItsDiagnosisFindsNothingWrong) {
   SynthesisOptions options;
   options.indentations = 4, options.depths = 2, options.markers = 60;
-  options.tip_radius = 0.015;  // the triangles of the data are 4 cm long
+  options.indenter_radius = 0.015;  // the triangles of the data are 4 cm long
   for (const DataFinding& f : diagnose(synthesize(scene(), options).data))
     EXPECT_EQ(f.severity, Severity::note) << f.where << ": " << f.what;
 }

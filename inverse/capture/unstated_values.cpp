@@ -16,8 +16,8 @@ constexpr double kSoftLayer = 200;  // the same for a sliding indenter
 
 }  // namespace
 
-double layer_stiffness(const Tip& tip, double young) {
-  return (tip.contact == TipContact::bonded ? kLayer : kSoftLayer) * young / tip.radius;
+double layer_stiffness(const Indenter& indenter, double young) {
+  return (indenter.contact == IndenterContact::bonded ? kLayer : kSoftLayer) * young / indenter.radius;
 }
 
 void choose_sigmas(DataSet& data) {
@@ -53,9 +53,9 @@ void choose_layers(DataSet& data) {
   const double E = apparent_young(data.experiment).value_or(1e5);
   std::set<double> chosen;
   for (LoadCase& load : data.experiment.cases) {
-    if (!load.tip || load.tip->stiffness > 0) continue;
-    load.tip->stiffness = layer_stiffness(*load.tip, E);
-    chosen.insert(load.tip->stiffness);
+    if (!load.indenter || load.indenter->stiffness > 0) continue;
+    load.indenter->stiffness = layer_stiffness(*load.indenter, E);
+    chosen.insert(load.indenter->stiffness);
   }
   for (const double k : chosen)
     data.notes.push_back("the layer of the tip has the stiffness " + three_digits(k) +

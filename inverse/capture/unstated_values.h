@@ -8,7 +8,7 @@ namespace aspic {
 void choose_sigmas(DataSet& data);
 
 // Stiffness of the contact layer, far above that of a body with the given Young's modulus [Pa/m].
-double layer_stiffness(const Tip& tip, double young);
+double layer_stiffness(const Indenter& indenter, double young);
 
 // Replaces layer stiffnesses of 0 by values far above that of the body [Pa/m].
 void choose_layers(DataSet& data);

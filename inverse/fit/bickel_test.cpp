@@ -245,7 +245,7 @@ Experiment indented_gel(const std::string& material, const MaterialParameters& t
   for (const double x : {0.025, 0.04, 0.055})
     for (const double depth : {0.004, 0.008}) {
       LoadCase load{.name = "x " + std::to_string(x), .group = "x " + std::to_string(x)};
-      load.tip = Tip{TipShape::sphere, TipContact::bonded, 0.012, 5e8};
+      load.indenter = Indenter{IndenterShape::sphere, IndenterContact::bonded, 0.012, 5e8};
       load.touch.center = {{x, 0.04, 0.052}};
       load.pose = load.touch;
       load.pose.center[2] -= depth;

@@ -13,7 +13,7 @@
 namespace aspic {
 namespace {
 
-constexpr double kFirstBoxDamping = 1e-3, kLeastBoxDamping = 1e-12, kLargestBoxDamping = 1e16;
+constexpr double kFirstBoxDamping = 1e-3, kMinBoxDamping = 1e-12, kLargestBoxDamping = 1e16;
 constexpr double kNegligible = 1e-24;    // relative to |r|^2 of the guess: exact data are fitted to round-off
 constexpr double kUndetermined = 1e-13;  // a pivot below this part of its diagonal entry
 
@@ -193,7 +193,7 @@ class Run {
       if (!evaluate(q, trial, fit) || !(squared_norm(trial) < before)) continue;
       const bool good = before - squared_norm(trial) > 0.5 * decrease;
       p = q, r = trial;
-      damping = good ? std::fmax(kLeastBoxDamping, damping / 9) : damping;
+      damping = good ? std::fmax(kMinBoxDamping, damping / 9) : damping;
       return true;
     }
     return false;

@@ -13,8 +13,8 @@
 namespace aspic {
 namespace {
 
-constexpr double kLeastRelative = 0.05;  // relative to the largest stress; floor of relative errors
-constexpr double kPowers = 100;          // larger ranges use logarithms
+constexpr double kMinRelative = 0.05;  // relative to the largest stress; floor of relative errors
+constexpr double kPowers = 100;        // larger ranges use logarithms
 
 constexpr double kInf = std::numeric_limits<double>::infinity();
 
@@ -39,7 +39,7 @@ double lambda_of(double mu, double poisson) { return 2 * mu * poisson / (1 - 2 *
 double scale_of(const TestCurve& curve, size_t point, Weighting weighting, double scatter) {
   if (weighting == Weighting::absolute) return scatter;
   if (weighting == Weighting::balanced) return std::sqrt(squared_norm(curve.stress));
-  return std::fmax(std::abs(curve.stress[point]), kLeastRelative * max_abs(curve.stress));
+  return std::fmax(std::abs(curve.stress[point]), kMinRelative * max_abs(curve.stress));
 }
 
 struct Squares {

@@ -13,9 +13,9 @@ namespace {
 constexpr std::array<std::string_view, 4> kNames = {"uniaxial", "equibiaxial", "planar", "simple_shear"};
 
 constexpr int kMaxStretchIterations = 100;
-constexpr double kLargestStep = 0.3;   // per iteration, of ln t
-constexpr double kTolerance = 1e-13;   // tolerance of ln t
-constexpr double kMostStretch = 1e12;  // limit of the search
+constexpr double kLargestStep = 0.3;  // per iteration, of ln t
+constexpr double kTolerance = 1e-13;  // tolerance of ln t
+constexpr double kMaxStretch = 1e12;  // limit of the search
 
 Mat3d stretched(double x, double y, double z) { return {{x, 0, 0, 0, y, 0, 0, 0, z}}; }
 
@@ -65,7 +65,7 @@ bool find_free_stretch(const Kinematics& body, const MaterialParameters& m, doub
     if (!std::isfinite(step)) return false;
     step = std::fmax(-kLargestStep, std::fmin(kLargestStep, step));
     t *= std::exp(step);
-    if (std::abs(std::log(t)) > std::log(kMostStretch)) return false;
+    if (std::abs(std::log(t)) > std::log(kMaxStretch)) return false;
     if (std::abs(step) <= kTolerance) return true;
   }
   return false;

@@ -148,7 +148,7 @@ TEST(Honesty, NuisanceIsDerivativeByLayerStiffness) {
   const ParameterMap map = block.map();
   const auto residuals_at = [&](double log_factor) {
     IndentedBlock changed = block;
-    for (LoadCase& load : changed.experiment.cases) load.tip->stiffness *= std::exp(log_factor);
+    for (LoadCase& load : changed.experiment.cases) load.indenter->stiffness *= std::exp(log_factor);
     Misfit misfit(changed.experiment, map, {.tolerance = 1e-13});
     std::vector<double> r(misfit.residual_count());
     EXPECT_TRUE(misfit.evaluate(map.guess(), r));

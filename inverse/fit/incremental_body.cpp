@@ -3,7 +3,7 @@
 #include <cmath>
 
 #include "energy/linear_load.h"
-#include "energy/pressure.h"
+#include "fit/load_case.h"
 #include "math/vectors.h"
 #include "mesh/surface.h"
 #include "mesh/vertices.h"
@@ -13,7 +13,7 @@ namespace {
 
 constexpr int kMaxHalvings = 12;
 
-TipPose mixed(const TipPose& a, const TipPose& b, double part) {
+IndenterPose mixed(const IndenterPose& a, const IndenterPose& b, double part) {
   const auto mix = [part](const Vec3d& x, const Vec3d& y) { return (1 - part) * x + part * y; };
   return {mix(a.center, b.center), mix(a.axis, b.axis), mix(a.rotation, b.rotation)};
 }
@@ -74,9 +74,9 @@ void IncrementalBody::add_loads() {
     for (int t = 0; t < mesh.tet_count(); ++t) add_body_force(mesh, t, experiment_.density[t] * load_.gravity, weight);
     add_scaled(make_linear_load("gravity", std::move(weight)));
   }
-  if (load_.pressure != 0) add_scaled(make_pressure(mesh, load_.pressed, load_.pressure));
-  if (load_.tip) {
-    auto probe = make_probe(mesh, boundary_triangles(mesh, 0, mesh.tet_count()), *load_.tip, load_.touch);
+  if (load_.pressure != 0) add_scaled(make_pressure_of(load_, mesh));
+  if (load_.indenter) {
+    auto probe = make_probe(mesh, boundary_triangles(mesh, 0, mesh.tet_count()), *load_.indenter, load_.touch);
     probe_ = probe.get();
     energies_.push_back(std::move(probe));
   }

@@ -14,7 +14,7 @@ namespace {
 constexpr double kRidge = 1e-3;       // ridge relative to the mean distance between examples, which smooths them
 constexpr double kSameStrain = 1e-9;  // closer examples count as equal
 constexpr double kWidened = 0.5;      // extension of the range of log E beyond the examples
-constexpr double kLeastPoisson = -0.9, kLargestPoisson = 0.495;
+constexpr double kMinPoisson = -0.9, kLargestPoisson = 0.495;
 
 double distance(const Mat3d& a, const Mat3d& b) { return std::sqrt(squared_norm(a - b)); }
 
@@ -94,7 +94,7 @@ StrainSpaceModuli::StrainSpaceModuli(const TetMesh& mesh, std::span<const Strain
             0,
             log_young.minCoeff() - kWidened,
             log_young.maxCoeff() + kWidened,
-            std::fmax(kLeastPoisson, poisson.minCoeff() - 0.05),
+            std::fmax(kMinPoisson, poisson.minCoeff() - 0.05),
             std::fmin(kLargestPoisson, poisson.maxCoeff() + 0.05)};
     const MatrixXd weights = interpolation_matrix(strains).partialPivLu().solve(b);
     for (Eigen::Index i = 0; i < n; ++i) tet.samples.push_back({strains[i], weights(i, 0), weights(i, 1)});

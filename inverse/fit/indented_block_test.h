@@ -40,7 +40,7 @@ struct IndentedBlock {
   // Pushed in and sideways; standard deviations relative to the depth and to a typical force.
   void add_indentation(const Site& site, double depth, double noise, bool with_force = true) {
     LoadCase load{.name = site.name, .group = site.name};
-    load.tip = Tip{TipShape::disc, TipContact::bonded, 0.012, 1000 * kYoung / 0.012};
+    load.indenter = Indenter{IndenterShape::disc, IndenterContact::bonded, 0.012, 1000 * kYoung / 0.012};
     load.touch = {.center = site.point, .axis = site.inward};
     load.pose = load.touch;
     load.pose.center = load.touch.center + depth * site.inward +

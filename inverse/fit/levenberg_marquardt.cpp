@@ -13,7 +13,7 @@ namespace {
 
 constexpr double kNear = 0.01;  // distance from the minimum in standard deviations; cheap for few parameters
 
-constexpr double kFirstDamping = 1e-3, kLeastDamping = 1e-14, kLargestDamping = 1e12;
+constexpr double kFirstDamping = 1e-3, kMinDamping = 1e-14, kLargestDamping = 1e12;
 constexpr double kUnseen = 1e-14;  // relative to the largest diagonal entry; smaller ones count as 0
 
 using Eigen::MatrixXd;
@@ -63,7 +63,7 @@ struct MarquardtDamping {
 
   void reward(double ratio) {
     const double s = 2 * ratio - 1;
-    value = std::max(kLeastDamping, value * std::max(1.0 / 3, 1 - s * s * s));
+    value = std::max(kMinDamping, value * std::max(1.0 / 3, 1 - s * s * s));
     growth = 2;
   }
   void punish() {
@@ -74,7 +74,7 @@ struct MarquardtDamping {
 
 // g' A^-1 g for the undamped system if it is positive definite.
 double squared_decrement(const MatrixXd& A, std::span<const double> g, std::vector<double>& d) {
-  for (double damping = 0; damping < 1; damping = std::max(kLeastDamping, 100 * damping))
+  for (double damping = 0; damping < 1; damping = std::max(kMinDamping, 100 * damping))
     if (find_step(A, g, damping, d)) return std::max(0.0, -dot(g, d));
   return std::nan("");
 }

@@ -26,7 +26,7 @@ Vec3d at(const SurfacePoint& point, std::span<const double> x) {
 
 Vec3d unit(const Vec3d& v) { return (1 / norm(v)) * v; }
 
-TipPose between(const TipPose& a, const TipPose& b, double part) {
+IndenterPose between(const IndenterPose& a, const IndenterPose& b, double part) {
   const auto mix = [part](const Vec3d& x, const Vec3d& y) { return (1 - part) * x + part * y; };
   return {mix(a.center, b.center), mix(unit(a.axis), unit(b.axis)), mix(a.rotation, b.rotation)};
 }
@@ -41,20 +41,21 @@ void require_positive(const Vec3d& sigma, const std::string& what) {
 // A bonded indenter on a triangle with a held corner would press its layer against the support, with a force that
 // depends on the conventional layer stiffness and not on the material. Such triangles get no layer, unless the indenter
 // touches few others.
-std::unique_ptr<Probe> make_probe_beside_support(const Experiment& experiment, const Tip& tip, const TipPose& touch) {
+std::unique_ptr<Probe> make_probe_beside_support(const Experiment& experiment, const Indenter& indenter,
+                                                 const IndenterPose& touch) {
   const TetMesh& mesh = experiment.mesh;
   const std::vector<Triangle> surface = boundary_triangles(mesh, 0, mesh.tet_count());
-  if (tip.contact != TipContact::bonded) return make_probe(mesh, surface, tip, touch);
+  if (indenter.contact != IndenterContact::bonded) return make_probe(mesh, surface, indenter, touch);
   std::vector<char> is_held(mesh.rest.size(), 0);
   for (const int v : experiment.fixed) is_held[v] = 1;
   std::vector<Triangle> free;
   for (const Triangle& t : surface)
     if (std::none_of(t.begin(), t.end(), [&](int v) { return is_held[v] != 0; })) free.push_back(t);
   const auto touched = [&](const std::vector<Triangle>& part) {
-    return touched_points_at_rest(mesh, part, tip, touch);
+    return touched_points_at_rest(mesh, part, indenter, touch);
   };
-  auto probe = make_probe(mesh, surface, tip, touch);  // throws for invalid indenters
-  return 2 * touched(free) < touched(surface) ? std::move(probe) : make_probe(mesh, free, tip, touch);
+  auto probe = make_probe(mesh, surface, indenter, touch);  // throws for invalid indenters
+  return 2 * touched(free) < touched(surface) ? std::move(probe) : make_probe(mesh, free, indenter, touch);
 }
 
 }  // namespace
@@ -73,7 +74,8 @@ LoadedBody::LoadedBody(const Experiment& experiment, const LoadCase& load, const
 const LoadCase& LoadedBody::readable(const Experiment& experiment, const LoadCase& load) {
   if (load.positions.empty() && !load.force && !load.torque)
     throw InvalidInput(load.name + ": no measurements; give positions of markers, a force or a torque");
-  if (!load.tip && (load.force || load.torque)) throw InvalidInput(load.name + ": a force or torque needs an indenter");
+  if (!load.indenter && (load.force || load.torque))
+    throw InvalidInput(load.name + ": a force or torque needs an indenter");
   for (const MarkerReading& reading : load.positions) {
     if (reading.marker < 0 || reading.marker >= static_cast<int>(experiment.markers.size()))
       throw InvalidInput(load.name + ": marker " + std::to_string(reading.marker) + " is unknown; there are " +
@@ -83,6 +85,11 @@ const LoadCase& LoadedBody::readable(const Experiment& experiment, const LoadCas
   if (load.force) require_positive(load.force_sigma, load.name + ": force");
   if (load.torque) require_positive(load.torque_sigma, load.name + ": torque");
   return load;
+}
+
+std::unique_ptr<Energy> make_pressure_of(const LoadCase& load, const TetMesh& mesh) {
+  if (load.is_dead_pressure) return make_dead_pressure(mesh, load.pressed, load.pressure);
+  return make_pressure(mesh, load.pressed, load.pressure);
 }
 
 Model LoadedBody::make_model(const std::string& material, std::span<const MaterialParameters> parameters) {
@@ -103,9 +110,9 @@ Model LoadedBody::make_model(const std::string& material, std::span<const Materi
     for (int t = 0; t < mesh.tet_count(); ++t) add_body_force(mesh, t, model.density[t] * load_.gravity, weight);
     add_scaled(make_linear_load("gravity", std::move(weight)));
   }
-  if (load_.pressure != 0) add_scaled(make_pressure(mesh, load_.pressed, load_.pressure));
-  if (load_.tip) {
-    auto probe = make_probe_beside_support(experiment_, *load_.tip, load_.touch);
+  if (load_.pressure != 0) add_scaled(make_pressure_of(load_, mesh));
+  if (load_.indenter) {
+    auto probe = make_probe_beside_support(experiment_, *load_.indenter, load_.touch);
     probe->set_pose(load_.pose);
     probe_ = probe.get();
     model.loads.push_back(std::move(probe));

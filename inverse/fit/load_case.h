@@ -1,5 +1,6 @@
 // One load case: a body at rest under its load, and its readings.
 #pragma once
+#include <memory>
 #include <span>
 #include <string>
 #include <vector>
@@ -8,6 +9,9 @@
 #include "fit/scaled_load.h"
 
 namespace aspic {
+
+// Pressure of a case with load.pressure != 0.
+std::unique_ptr<Energy> make_pressure_of(const LoadCase& load, const TetMesh& mesh);
 
 class LoadedBody {
  public:
@@ -38,7 +42,7 @@ class LoadedBody {
   bool multiply(std::span<const double> dtheta, std::span<double> dr);
   bool add_transposed(std::span<const double> w, std::span<double> thetabar);
   bool has_layer() const { return probe_ != nullptr; }
-  bool multiply_by_layer(std::span<double> dr);  // dr/dlog k, k the stiffness of the tip's layer
+  bool multiply_by_layer(std::span<double> dr);  // dr/dlog k, k the stiffness of the indenter's layer
 
   const Misfit::Counts& counts() const { return counts_; }
 

@@ -16,7 +16,7 @@ Experiment indented_beside_support(double height) {
   for (int v = 0; v < e.mesh.vertex_count(); ++v)
     if (e.mesh.rest[v][2] < 1e-9) e.fixed.push_back(v);
   LoadCase load{.name = "poke", .group = "poke"};
-  load.tip = Tip{TipShape::disc, TipContact::bonded, 0.02, 1e12};
+  load.indenter = Indenter{IndenterShape::disc, IndenterContact::bonded, 0.02, 1e12};
   load.touch = {.center = {{0, 0.05, height}}, .axis = {{1, 0, 0}}};
   load.pose = load.touch;
   load.pose.center[0] += 0.002;
@@ -33,7 +33,7 @@ double force_along_x(const Experiment& e, double young) {
   return body.prediction().wrench.force[0];
 }
 
-TEST(LoadedBody, BondedTipDoesNotPressHeldCorners) {
+TEST(LoadedBody, BondedIndenterDoesNotPressHeldCorners) {
   for (const double height : {0.03, 0.05}) {
     const Experiment e = indented_beside_support(height);
     const double soft = force_along_x(e, 1e4), stiff = force_along_x(e, 2e4);

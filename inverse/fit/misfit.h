@@ -33,10 +33,11 @@ struct MarkerReading {
 struct LoadCase {
   std::string name;   // "poke 3, depth 2"
   std::string group;  // cases that are held out together: "poke 3"
-  std::optional<Tip> tip;
-  TipPose touch, pose;  // pose of the indenter: at rest, and in this case
-  Vec3d gravity{};      // [m/s^2]
-  double pressure = 0;  // [Pa] over `pressed`
+  std::optional<Indenter> indenter;
+  IndenterPose touch, pose;  // pose of the indenter: at rest, and in this case
+  Vec3d gravity{};           // [m/s^2]
+  double pressure = 0;       // [Pa] over `pressed`: a follower pressure, or a dead load
+  bool is_dead_pressure = false;
   std::vector<Triangle> pressed;
   std::vector<MarkerReading> positions;
   std::optional<Vec3d> force, torque;  // measured, of the indenter on the body [N, N m]

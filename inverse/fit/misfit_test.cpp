@@ -33,13 +33,15 @@ struct Gel {
       for (const double depth : {0.004, 0.008}) experiment.cases.push_back(indentation(x, depth));
     experiment.cases.push_back(hung());
     experiment.cases.push_back(pressed());
+    experiment.cases.push_back(pressed());
+    experiment.cases.back().is_dead_pressure = true;
   }
 
   static std::string text(double x) { return std::to_string(std::lround(1000 * x)) + " mm"; }
 
   LoadCase indentation(double x, double depth) const {
     LoadCase load{.name = "poke at " + text(x) + ", depth " + text(depth), .group = "poke at " + text(x)};
-    load.tip = Tip{TipShape::sphere, TipContact::bonded, 0.012, 5e8};
+    load.indenter = Indenter{IndenterShape::sphere, IndenterContact::bonded, 0.012, 5e8};
     load.touch.center = {{x, 0.04, 0.062}};
     load.pose = load.touch;
     load.pose.center = {{x + 0.3 * depth, 0.04, 0.062 - depth}};

@@ -18,24 +18,24 @@ namespace {
 
 // Readings of an indentation and their standard deviations, averaged over the experiment.
 struct Instruments {
-  Tip tip;
+  Indenter indenter;
   double depth = 0, position = 0, force = 0, torque = 0;  // standard deviations; 0: not measured
 };
 
 Instruments instruments(const Experiment& experiment, const NextIndentationOptions& options) {
   std::vector<double> position, force, torque;
   Instruments result;
-  std::optional<Tip> tip = options.tip;
+  std::optional<Indenter> indenter = options.indenter;
   for (const LoadCase& c : experiment.cases) {
     for (const MarkerReading& r : c.positions) position.push_back(norm(r.sigma) / std::sqrt(3.0));
     if (c.force) force.push_back(norm(c.force_sigma) / std::sqrt(3.0));
     if (c.torque) torque.push_back(norm(c.torque_sigma) / std::sqrt(3.0));
-    if (!c.tip) continue;
-    if (!tip) tip = c.tip;
+    if (!c.indenter) continue;
+    if (!indenter) indenter = c.indenter;
     result.depth = std::max(result.depth, norm(c.pose.center - c.touch.center));
   }
-  if (!tip) throw InvalidInput("no case has an indenter, so there is no next poke (give an indenter)");
-  result.tip = *tip;
+  if (!indenter) throw InvalidInput("no case has an indenter, so there is no next poke (give an indenter)");
+  result.indenter = *indenter;
   if (options.depth > 0) result.depth = options.depth;
   if (!(result.depth > 0)) throw InvalidInput("the depth of the next poke is unknown (give its depth)");
   result.position = median(position), result.force = median(force), result.torque = median(torque);
@@ -45,13 +45,14 @@ Instruments instruments(const Experiment& experiment, const NextIndentationOptio
 LoadCase load_at(const Experiment& experiment, const Instruments& with, const Vec3d& site, const Vec3d& inward) {
   LoadCase load;
   load.name = load.group = "poke at " + describe_point(site);
-  load.tip = with.tip;
+  load.indenter = with.indenter;
   load.touch.axis = inward;
-  load.touch.center = with.tip.shape == TipShape::sphere ? site - with.tip.radius * inward : site;
+  load.touch.center = with.indenter.shape == IndenterShape::sphere ? site - with.indenter.radius * inward : site;
   load.pose = load.touch;
   load.pose.center = load.touch.center + with.depth * inward;
   for (size_t m = 0; m < experiment.markers.size() && with.position > 0; ++m)
-    if (norm(at_rest(experiment, experiment.markers[m]) - site) > with.tip.radius)  // the tip hides the others
+    if (norm(at_rest(experiment, experiment.markers[m]) - site) >
+        with.indenter.radius)  // the indenter hides the others
       load.positions.push_back({static_cast<int>(m), {}, {{with.position, with.position, with.position}}});
   if (with.force > 0) load.force = Vec3d{}, load.force_sigma = {{with.force, with.force, with.force}};
   if (with.torque > 0) load.torque = Vec3d{}, load.torque_sigma = {{with.torque, with.torque, with.torque}};
@@ -124,7 +125,7 @@ void judge(const Experiment& experiment, const FittedField& fitted, Posterior& p
     }
     for (const double d : s.d) candidate.gain += std::log1p(d) / 2;
     set_sigma(map, posterior, s, candidate);
-  } catch (const InvalidInput& error) {  // the tip does not fit there
+  } catch (const InvalidInput& error) {  // the indenter does not fit there
     candidate.failure = error.what();
     return;
   }
@@ -158,7 +159,7 @@ NextIndentation next_indentation(const Experiment& experiment, const FittedField
   NextIndentation result;
   std::vector<int> fixed = experiment.fixed;
   std::erase_if(fixed, [&](int v) { return v >= mesh.vertex_count(); });  // a refined mesh begins with its vertices
-  for (const IndentationSite& site : indentation_sites(mesh, fixed, with.tip.radius, options.sites)) {
+  for (const IndentationSite& site : indentation_sites(mesh, fixed, with.indenter.radius, options.sites)) {
     IndentationCandidate candidate{.vertex = site.vertex, .site = mesh.rest[site.vertex], .inward = site.inward};
     candidate.load = load_at(experiment, with, candidate.site, candidate.inward);
     judge(experiment, fitted, posterior, options, candidate);

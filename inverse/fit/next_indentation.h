@@ -14,9 +14,9 @@
 namespace aspic {
 
 struct NextIndentationOptions {
-  int sites = 24;          // candidates, as far apart as possible
-  std::optional<Tip> tip;  // default: that of the experiment
-  double depth = 0;        // depth of the indentation [m]; 0: maximum so far
+  int sites = 24;                    // candidates, as far apart as possible
+  std::optional<Indenter> indenter;  // default: that of the experiment
+  double depth = 0;                  // depth of the indentation [m]; 0: maximum so far
   SpectrumOptions spectrum{.dense = 64, .max_rank = 48};
   EquilibriumOptions equilibrium = {};
 };

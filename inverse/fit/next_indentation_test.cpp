@@ -51,7 +51,7 @@ TEST(NextIndentation, PredictedGainAndSigmaMatchActualIndentation) {
     double gain = 0;  // 1/2 log det(C / C after)
     for (const double d : after.gaussian->spectrum().d) gain += std::log1p(d) / 2;
     for (const double d : before.gaussian->spectrum().d) gain -= std::log1p(d) / 2;
-    // By itself, the indentation lacks the information of the others about the layer of the tip.
+    // By itself, the indentation lacks the information of the others about the layer of the indenter.
     EXPECT_LT(candidate.gain, gain * (1 + 1e-6));
     EXPECT_GT(candidate.gain, 0.85 * gain);
     for (int t = 0; t < study.map.size(); ++t) {
@@ -93,10 +93,10 @@ TEST(NextIndentation, FewDirectionsTellNearlyAsMuchAsAll) {
   }
 }
 
-TEST(NextIndentation, NeedsATip) {
+TEST(NextIndentation, NeedsAnIndenter) {
   IndentationStudy study;
   Posterior before = study.posterior_of(study.block.experiment);
-  for (LoadCase& load : study.block.experiment.cases) load.tip.reset();
+  for (LoadCase& load : study.block.experiment.cases) load.indenter.reset();
   EXPECT_THROW(next_indentation(study.block.experiment, study.field(), before), InvalidInput);
 }
 

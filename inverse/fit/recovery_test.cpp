@@ -28,7 +28,7 @@ Experiment indented_cube() {
   for (const double x : {0.03, 0.06})
     for (const double depth : {0.004, 0.008}) {
       LoadCase load{.name = "poke", .group = "at " + std::to_string(x)};
-      load.tip = Tip{TipShape::disc, TipContact::bonded, 0.02, 1e8};
+      load.indenter = Indenter{IndenterShape::disc, IndenterContact::bonded, 0.02, 1e8};
       load.touch.center = {{x, 0.05, kCubeSide}};
       load.pose = load.touch;
       load.pose.center = {{x + depth / 4, 0.05, kCubeSide - depth}};

@@ -15,7 +15,7 @@ namespace aspic {
 namespace {
 
 constexpr double kRichardson = 4.0 / 3;  // 1 / (1 - 1/2^2)
-constexpr double kMostMultiple = 10;     // multiple of the force with known error
+constexpr double kMaxMultiple = 10;      // multiple of the force with known error
 
 class Refinement {
  public:
@@ -147,7 +147,7 @@ Wrench scaled(const Wrench& w, double factor) { return {factor * w.force, factor
 // Ratio of the other force to `known` along it. An opposite force is noise and has no error.
 double multiple_of(const Vec3d& known, const Vec3d& other) {
   const double squares = dot(known, known);
-  return squares > 0 ? std::clamp(dot(known, other) / squares, 0.0, kMostMultiple) : 1;
+  return squares > 0 ? std::clamp(dot(known, other) / squares, 0.0, kMaxMultiple) : 1;
 }
 
 void shift(Vec3d& value, Vec3d& sigma, const Vec3d& error) {

@@ -69,9 +69,9 @@ struct Indented {
 
   explicit Indented(double layer) {
     Model model = gel_cube();
-    const Tip tip{.shape = TipShape::disc, .radius = 0.025, .stiffness = layer * 1e4 / 0.025};
-    const TipPose touch{.center = {{kSize / 2, kSize / 2, kSize}}};
-    auto term = make_probe(model.mesh, boundary_triangles(model.mesh, 0, model.mesh.tet_count()), tip, touch);
+    const Indenter indenter{.shape = IndenterShape::disc, .radius = 0.025, .stiffness = layer * 1e4 / 0.025};
+    const IndenterPose touch{.center = {{kSize / 2, kSize / 2, kSize}}};
+    auto term = make_probe(model.mesh, boundary_triangles(model.mesh, 0, model.mesh.tet_count()), indenter, touch);
     probe = term.get();
     probe->set_pose({.center = touch.center + Vec3d{{0.002, 0, -0.008}}, .rotation = {{0, 0.1, 0}}});
     model.loads.push_back(std::move(term));

@@ -361,7 +361,7 @@ std::vector<std::string> capture(const SceneSource& source, const std::filesyste
     if (numbers.contains(key)) value = numbers[key].cast<std::remove_reference_t<decltype(value)>>();
   };
   read("indentations", options.indentations), read("depths", options.depths), read("markers", options.markers);
-  read("deepest", options.deepest), read("tip_radius", options.tip_radius), read("seed", options.seed);
+  read("deepest", options.deepest), read("tip_radius", options.indenter_radius), read("seed", options.seed);
   read("noise", options.noise), read("force_noise", options.force_noise), read("regions", options.regions);
   const Scene scene = source.scene(std::make_shared<Callbacks>());
   Synthesis made;

@@ -90,9 +90,9 @@ double positive(double value, const char* name) {
   return value;
 }
 
-constexpr double kMostTets = 2e7;
+constexpr double kMaxTets = 2e7;
 void check_count(double tets) {
-  if (!(tets <= kMostTets))
+  if (!(tets <= kMaxTets))
     throw InvalidInput("size: about " + std::to_string(tets) +
                        " tets; at most 2e+07 are generated (choose a larger size)");
 }

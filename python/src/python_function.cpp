@@ -11,7 +11,7 @@
 namespace aspic::python {
 namespace {
 
-constexpr py::ssize_t kMostModified = 600;  // rows of a matrix whose eigenvalues are modified
+constexpr py::ssize_t kMaxModified = 600;  // rows of a matrix whose eigenvalues are modified
 
 Layout layout_of(const py::object& x) {
   const py::array array = py::array::ensure(x);
@@ -58,9 +58,9 @@ const BlockSparse& PythonObjective::evaluate_hessian(std::span<const double> x, 
 void PythonObjective::assemble(const py::object& matrix, const Projection& projection) {
   const py::ssize_t n = layout_.size();
   const bool is_sparse = py::hasattr(matrix, "tocoo"), is_exact = projection.kind == Definiteness::exact;
-  if (!is_exact && n > kMostModified)
+  if (!is_exact && n > kMaxModified)
     throw InvalidInput("hessian: of " + std::to_string(n) + " rows; eigenvalues are modified up to " +
-                       std::to_string(kMostModified) + " rows (use definiteness=\"exact\")");
+                       std::to_string(kMaxModified) + " rows (use definiteness=\"exact\")");
   py::object entries;
   if (is_sparse && is_exact) {
     entries = matrix.attr("tocoo")();

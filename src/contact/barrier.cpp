@@ -168,6 +168,7 @@ int Barrier::add_hessian(Positions x, const Context& context, double scale, cons
   const std::vector<Vec3d> p = impl_->points(x, context.time);
   const auto stencils = impl_->search.at(p);
   const auto kind_of = [&](const ContactStencil& stencil) {
+    if (stencil.is_over_plane()) return Definiteness::exact;
     for (const int own : stencil.point)
       if (own >= 0 && impl_->mesh.row[own] >= 0 && projection.covers(impl_->mesh.row[own])) return projection.kind;
     return Definiteness::exact;

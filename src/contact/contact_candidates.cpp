@@ -14,7 +14,7 @@ namespace {
 constexpr double kMargin = 0.03;  // relative to the mean edge at a point
 constexpr double kLonger = 0.1;   // relative to the displacement of a point
 constexpr double kRounding = 1e-6;
-constexpr double kLeastShrink = 0.98;  // minimum shrink for which candidates are complete
+constexpr double kMinShrink = 0.98;  // minimum shrink for which candidates are complete
 
 // Returns margins of at least half the reach, which the distances at rest need.
 std::vector<double> margins(const ContactMesh& mesh, double least) {
@@ -124,7 +124,7 @@ CandidateSearch::Path CandidateSearch::path(std::span<const Vec3d> x, std::span<
     Frame to = d.empty() ? from : frame_of(of_part(mesh_.rest), of_part(path.to));
     const double cosine = (trace(transpose(from.rotation) * to.rotation) - 1) / 2;
     double shrink = std::sqrt(std::max(0.0, (1 + cosine) / 2)) - kRounding;
-    if (!(shrink >= kLeastShrink)) to.rotation = from.rotation, shrink = 1;
+    if (!(shrink >= kMinShrink)) to.rotation = from.rotation, shrink = 1;
     for (Vec3d& p : of_part(path.from)) p = transpose(from.rotation) * (p - from.center);
     for (Vec3d& p : of_part(path.to)) p = transpose(to.rotation) * (p - to.center);
     std::fill_n(path.shrink.begin() + part.first_point, part.point_count, shrink);
@@ -132,7 +132,7 @@ CandidateSearch::Path CandidateSearch::path(std::span<const Vec3d> x, std::span<
   return path;
 }
 
-double CandidateSearch::least_shrink() const { return scope_ == PairScope::within_parts ? kLeastShrink : 1; }
+double CandidateSearch::least_shrink() const { return scope_ == PairScope::within_parts ? kMinShrink : 1; }
 
 bool CandidateSearch::covers(std::span<const Vec3d> x) const {
   for (size_t p = 0; p < x.size(); ++p)

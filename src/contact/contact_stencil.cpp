@@ -103,6 +103,11 @@ std::array<Vec3d, 4> ContactStencil::gradient(std::span<const Vec3d> x) const {
 DistanceHessian ContactStencil::hessian(std::span<const Vec3d> x, Definiteness kind) const {
   const BarrierValue barrier = b();
   const DistanceSlopes slopes{weight * barrier.first, weight * barrier.second};
+  if (is_over_plane()) {  // a plane has no curvature, and b is convex
+    DistanceHessian H;
+    H(0, 0) = slopes.second * outer(distance.normal(), distance.normal());
+    return H;
+  }
   const auto plain = [&](bool is_exact) {
     return spread(
         is_exact ? distance_hessian(distance, slopes) : filtered_distance_hessian(distance, slopes, filter_of(kind)),

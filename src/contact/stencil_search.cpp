@@ -203,14 +203,7 @@ void StencilSearch::add_planes(std::span<const Vec3d> x, int p, ContactStencils&
     const ContactLaw& law = laws_(mesh_.part[p], plane.part);
     const double gap = dot(plane.normal, x[p] - x[plane.point]);
     if (!(gap < law.reach)) continue;
-    const Distance to_foot{.r = gap * plane.normal, .d = gap};
-    const Distance distance{.type = DistanceType::vertex_face,
-                            .count = 4,
-                            .point = {0, 1, 2, 3},
-                            .c = {1, -1, 0, 0},
-                            .r = to_foot.r,
-                            .d = gap,
-                            .edge = tangents(to_foot)};
+    const Distance distance{.r = gap * plane.normal, .d = gap};
     const double area = law.share * mesh_.area[p];
     found.push_back({.distance = distance,
                      .point = {p, -1, -1, -1},

@@ -8,7 +8,7 @@
 namespace aspic {
 namespace {
 
-constexpr int kMostPasses = 50;
+constexpr int kMaxPasses = 50;
 constexpr double kRough = 1e4;      // first tolerance, relative to the one asked for
 constexpr double kReduction = 0.3;  // of the forces by one pass
 constexpr double kProgress = 0.9;   // passes that reduce the forces by less are stalled
@@ -50,7 +50,7 @@ MinimizeReport minimize_lagged(const StepTools& tools, const MinimizeOptions& op
       report.status = Status::round_off;
       break;
     }
-    if (passes == kMostPasses) {
+    if (passes == kMaxPasses) {
       report.status = Status::inaccurate;
       break;
     }

@@ -11,7 +11,7 @@ namespace aspic {
 namespace {
 
 constexpr double kSmallestPart = 1.0 / 1024;
-constexpr int kMostParts = 200;
+constexpr int kMaxParts = 200;
 
 MinimizeOptions rough(const MinimizeOptions& options) {
   MinimizeOptions few = options;
@@ -53,7 +53,7 @@ Evaluation lead_pins(const StepTools& tools, double time, std::span<const double
 
   std::vector<double> reached(from.begin(), from.end()), trial = reached, between = reached;
   double done = 0, part = 0.5;
-  for (int i = 0; i < kMostParts && part >= kSmallestPart; ++i) {
+  for (int i = 0; i < kMaxParts && part >= kSmallestPart; ++i) {
     const double next = std::min(1.0, done + part);
     for (size_t k = 0; k < trial.size(); ++k) between[k] = next < 1 ? from[k] + next * (to[k] - from[k]) : to[k];
     trial = reached;

@@ -18,8 +18,8 @@ TEST(Simulation, BenchmarkBeamReachesReferenceDisplacement) {
   options.solver.minimize.criterion = Criterion::first_gradient;
   Simulation simulation = simulate(beam(7), options);
   for (int i = 0; i < 10; ++i) EXPECT_EQ(simulation.step().status, Status::converged);
-  const int tip = 28 * 8 * 8;  // (4, 0, 0)
-  EXPECT_NEAR(simulation.state().q[3 * tip + 1], -0.0539775432, 1e-8);
+  const int indenter = 28 * 8 * 8;  // (4, 0, 0)
+  EXPECT_NEAR(simulation.state().q[3 * indenter + 1], -0.0539775432, 1e-8);
 }
 
 TEST(Simulation, BackwardEulerLosesForwardEulerGainsEnergy) {

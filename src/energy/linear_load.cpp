@@ -86,4 +86,13 @@ void add_traction(const std::vector<Vec3d>& X, const Triangle& triangle, const V
     for (int r = 0; r < 3; ++r) force[3 * v + r] += area / 3 * traction[r];
 }
 
+std::unique_ptr<Energy> make_dead_pressure(const TetMesh& mesh, std::span<const Triangle> patch, double pressure) {
+  std::vector<double> force(3 * mesh.rest.size());
+  for (const auto& [a, b, c] : patch) {
+    const Vec3d n = cross(mesh.rest[b] - mesh.rest[a], mesh.rest[c] - mesh.rest[a]);
+    add_traction(mesh.rest, {a, b, c}, (-pressure / norm(n)) * n, force);
+  }
+  return make_linear_load("dead_pressure", std::move(force));
+}
+
 }  // namespace aspic

@@ -23,4 +23,7 @@ void add_body_force(const TetMesh& mesh, int tet, const Vec3d& force_density, st
 void add_traction(const std::vector<Vec3d>& X, const Triangle& triangle, const Vec3d& traction,
                   std::span<double> force);
 
+// A pressure [Pa] on boundary triangles, against their outward normals and per area of the rest shape.
+std::unique_ptr<Energy> make_dead_pressure(const TetMesh& mesh, std::span<const Triangle> patch, double pressure);
+
 }  // namespace aspic

@@ -6,8 +6,8 @@
 #include <sstream>
 
 #include "base/error.h"
+#include "energy/indenter_depth.h"
 #include "energy/surface_parts.h"
-#include "energy/tip_depth.h"
 #include "math/symmetric_eigen.h"
 #include "mesh/vertices.h"
 
@@ -16,8 +16,8 @@ namespace {
 
 constexpr double kSoftening = 0.02;  // e / radius
 constexpr double kEdge = 0.125;      // width of the glue of a disc / radius
-constexpr double kLongestEdge = 64;  // longest edge of a triangle near the tip / radius
-constexpr int kMaxFarCuts = 64;      // maximum cuts of an edge of a triangle that the tip does not touch at rest
+constexpr double kLongestEdge = 64;  // longest edge of a triangle near the indenter / radius
+constexpr int kMaxFarCuts = 64;      // maximum cuts of an edge of a triangle that the indenter does not touch at rest
 
 using Corners = std::array<Vec3d, 3>;
 
@@ -48,17 +48,18 @@ double fade(double t, double a, double b) {
   return 1 - s * s * (3 - 2 * s);
 }
 
-// Weight of the glue of a bonded tip, 0 to 1, at point X of the surface with the given normal.
-double glue(const Tip& tip, const TipPose& touch, const Vec3d& X, const Vec3d& normal) {
-  const double R = tip.radius;
+// Weight of the glue of a bonded indenter, 0 to 1, at point X of the surface with the given normal.
+double glue(const Indenter& indenter, const IndenterPose& touch, const Vec3d& X, const Vec3d& normal) {
+  const double R = indenter.radius;
   const Vec3d u = X - touch.center;
-  if (tip.shape == TipShape::sphere) return dot(normal, u) < 0 ? fade(norm(u) - R, kGlue / 2 * R, kGlue * R) : 0;
+  if (indenter.shape == IndenterShape::sphere)
+    return dot(normal, u) < 0 ? fade(norm(u) - R, kGlue / 2 * R, kGlue * R) : 0;
   const double s = dot(u, touch.axis);
   if (dot(normal, touch.axis) >= 0 || s < -R) return 0;
   return fade(s, kGlue / 2 * R, kGlue * R) * fade(norm(u - s * touch.axis), (1 - kEdge) * R, (1 + kEdge) * R);
 }
 
-TipPose with_unit_axis(TipPose pose) {
+IndenterPose with_unit_axis(IndenterPose pose) {
   const double length = norm(pose.axis);
   if (!(length > 0)) throw InvalidInput("the axis of a tip is 0 0 0; it needs a direction, out of the tip");
   pose.axis = (1 / length) * pose.axis;
@@ -72,7 +73,7 @@ struct Response {
   Mat3d hessian{};
 };
 
-// A triangle with points that the tip may act on.
+// A triangle with points that the indenter may act on.
 struct Patch {
   Triangle vertices;
   const std::vector<Barycentric>* points;
@@ -82,25 +83,26 @@ struct Patch {
 
 class ProbeTerm : public Probe {
  public:
-  ProbeTerm(const TetMesh& mesh, std::span<const Triangle> surface, const Tip& tip, const TipPose& touch)
-      : tip_(tip), touch_(with_unit_axis(touch)), placed_(touch) {
+  ProbeTerm(const TetMesh& mesh, std::span<const Triangle> surface, const Indenter& indenter, const IndenterPose& touch)
+      : indenter_(indenter), touch_(with_unit_axis(touch)), placed_(touch) {
     for (const Triangle& triangle : surface) add_patch(mesh, triangle);
   }
 
   std::string_view name() const override { return "probe"; }
   bool touches_something() const { return !patches_.empty(); }
 
-  void set_pose(const TipPose& pose) override { placed_ = PlacedTip(pose); }
-  const PlacedTip& placed() const override { return placed_; }
+  void set_pose(const IndenterPose& pose) override { placed_ = PlacedIndenter(pose); }
+  const PlacedIndenter& placed() const override { return placed_; }
 
-  double value_at(const PlacedTip& tip, Positions x) const override {
+  double value_at(const PlacedIndenter& indenter, Positions x) const override {
     double V = 0;
-    for_each_touched(tip, x, [&](const Patch&, const Barycentric&, const Vec3d&, const Response& r) { V += r.value; });
+    for_each_touched(indenter, x,
+                     [&](const Patch&, const Barycentric&, const Vec3d&, const Response& r) { V += r.value; });
     return V;
   }
 
-  void add_gradient_at(const PlacedTip& tip, Positions x, double scale, std::span<double> g) const override {
-    for_each_touched(tip, x, [&](const Patch& patch, const Barycentric& b, const Vec3d&, const Response& r) {
+  void add_gradient_at(const PlacedIndenter& indenter, Positions x, double scale, std::span<double> g) const override {
+    for_each_touched(indenter, x, [&](const Patch& patch, const Barycentric& b, const Vec3d&, const Response& r) {
       for (int i = 0; i < 3; ++i) add_at(g, patch.vertices[i], scale * b[i], r.gradient);
     });
   }
@@ -120,10 +122,10 @@ class ProbeTerm : public Probe {
         }
   }
 
-  int add_hessian_at(const PlacedTip& tip, Positions x, double scale, const Projection& projection,
+  int add_hessian_at(const PlacedIndenter& indenter, Positions x, double scale, const Projection& projection,
                      BlockSparse& H) const override {
     int projected = 0;
-    for_each_touched(tip, x, [&](const Patch& patch, const Barycentric& b, const Vec3d&, const Response& r) {
+    for_each_touched(indenter, x, [&](const Patch& patch, const Barycentric& b, const Vec3d&, const Response& r) {
       Mat3d K = r.hessian;
       const auto covers = [&](int v) { return projection.covers(v); };
       if (is_sliding() && projection.kind != Definiteness::exact && std::ranges::any_of(patch.vertices, covers))
@@ -171,31 +173,31 @@ class ProbeTerm : public Probe {
   }
 
  private:
-  bool is_sliding() const { return tip_.contact == TipContact::sliding; }
+  bool is_sliding() const { return indenter_.contact == IndenterContact::sliding; }
 
   void add_patch(const TetMesh& mesh, const Triangle& triangle) {
     const Corners X = {mesh.rest[triangle[0]], mesh.rest[triangle[1]], mesh.rest[triangle[2]]};
-    const double edge = longest_edge(X), ideal = std::ceil((is_sliding() ? 4 : 8) * edge / tip_.radius);
-    const bool is_near = depth(tip_, touch_, X[0]).value > -edge - tip_.radius;
+    const double edge = longest_edge(X), ideal = std::ceil((is_sliding() ? 4 : 8) * edge / indenter_.radius);
+    const bool is_near = depth(indenter_, touch_, X[0]).value > -edge - indenter_.radius;
     if (!is_near && !is_sliding()) return;
-    if (is_near && edge > kLongestEdge * tip_.radius) throw_tip_too_small(edge);
+    if (is_near && edge > kLongestEdge * indenter_.radius) throw_indenter_too_small(edge);
     const int cuts = static_cast<int>(is_near ? std::max(ideal, 1.0) : std::clamp(ideal, 1.0, 1.0 * kMaxFarCuts));
     const Vec3d a = area_vector(X);
     Patch patch{triangle, &centroids_.of(cuts), norm(a) / (static_cast<double>(cuts) * cuts), weight_.size()};
     if (is_sliding() || add_glue(patch, X, a)) patches_.push_back(patch);
   }
 
-  void throw_tip_too_small(double edge) const {
-    throw InvalidInput("a tip of radius " + text(tip_.radius) + " m beside a triangle whose edge is " + text(edge) +
-                       " m long; refine the mesh there, or check the units of the tip");
+  void throw_indenter_too_small(double edge) const {
+    throw InvalidInput("a tip of radius " + text(indenter_.radius) + " m beside a triangle whose edge is " +
+                       text(edge) + " m long; refine the mesh there, or check the units of the tip");
   }
 
-  // Adds the weights and offsets of the points of a bonded tip. Returns false and adds nothing if it touches none.
+  // Adds the weights and offsets of the points of a bonded indenter. Returns false and adds nothing if it touches none.
   bool add_glue(const Patch& patch, const Corners& X, const Vec3d& normal) {
     bool touches = false;
     for (const Barycentric& b : *patch.points) {
       const Vec3d p = combine(X, b);
-      weight_.push_back(glue(tip_, touch_, p, normal));
+      weight_.push_back(glue(indenter_, touch_, p, normal));
       offset_.push_back(p - touch_.center);
       touches |= weight_.back() > 0;
     }
@@ -203,28 +205,28 @@ class ProbeTerm : public Probe {
     return touches;
   }
 
-  // Calls visit(patch, barycentric, p, response) for each point that the tip acts on.
+  // Calls visit(patch, barycentric, p, response) for each point that the indenter acts on.
   template <class Visit>
-  void for_each_touched(const PlacedTip& tip, Positions x, Visit visit) const {
+  void for_each_touched(const PlacedIndenter& indenter, Positions x, Visit visit) const {
     for (const Patch& patch : patches_) {
       const Corners c = corners_of(x, patch.vertices);
-      if (is_sliding() && depth(tip_, tip.pose, c[0]).value < -longest_edge(c)) continue;
+      if (is_sliding() && depth(indenter_, indenter.pose, c[0]).value < -longest_edge(c)) continue;
       for (size_t i = 0; i < patch.points->size(); ++i) {
         const Barycentric& b = (*patch.points)[i];
         const Vec3d p = combine(c, b);
         if (is_sliding()) {
-          const Depth d = depth(tip_, tip.pose, p);
-          if (d.value > 0) visit(patch, b, p, pushed(d, tip_.stiffness * patch.area));
+          const Depth d = depth(indenter_, indenter.pose, p);
+          if (d.value > 0) visit(patch, b, p, pushed(d, indenter_.stiffness * patch.area));
         } else if (const double w = weight_[patch.first + i]; w > 0) {
-          const Vec3d target = tip.pose.center + tip.turn * offset_[patch.first + i];
-          visit(patch, b, p, pulled(p - target, w * tip_.stiffness * patch.area));
+          const Vec3d target = indenter.pose.center + indenter.turn * offset_[patch.first + i];
+          visit(patch, b, p, pulled(p - target, w * indenter_.stiffness * patch.area));
         }
       }
     }
   }
 
   Response pushed(const Depth& d, double k) const {
-    const double e = kSoftening * tip_.radius, t = d.value;
+    const double e = kSoftening * indenter_.radius, t = d.value;
     const bool is_soft = t < e;
     const double phi = is_soft ? t * t * t / (6 * e) : t * (t - e) / 2 + e * e / 6;
     const double slope = is_soft ? t * t / (2 * e) : t - e / 2, curvature = is_soft ? t / e : 1;
@@ -255,39 +257,40 @@ class ProbeTerm : public Probe {
     return changed;
   }
 
-  Tip tip_;
-  TipPose touch_;
-  PlacedTip placed_;
+  Indenter indenter_;
+  IndenterPose touch_;
+  PlacedIndenter placed_;
   PartCentroids centroids_;
   std::vector<Patch> patches_;
-  std::vector<double> weight_;  // weight of each point of a bonded tip
-  std::vector<Vec3d> offset_;   // X - c_touch of each point of a bonded tip
+  std::vector<double> weight_;  // weight of each point of a bonded indenter
+  std::vector<Vec3d> offset_;   // X - c_touch of each point of a bonded indenter
   std::vector<std::array<int64_t, 9>> slot_;
 };
 
 }  // namespace
 
-PlacedTip::PlacedTip(const TipPose& given) : pose(with_unit_axis(given)), turn(rotation_matrix(given.rotation)) {}
+PlacedIndenter::PlacedIndenter(const IndenterPose& given)
+    : pose(with_unit_axis(given)), turn(rotation_matrix(given.rotation)) {}
 
-std::unique_ptr<Probe> make_probe(const TetMesh& mesh, std::span<const Triangle> surface, const Tip& tip,
-                                  const TipPose& touch) {
-  if (!(tip.radius > 0) || !std::isfinite(tip.radius))
-    throw InvalidInput("the radius of a tip is " + text(tip.radius) + " m; it must be positive");
-  if (!(tip.stiffness > 0) || !std::isfinite(tip.stiffness))
-    throw InvalidInput("the layer of a tip has the stiffness " + text(tip.stiffness) +
+std::unique_ptr<Probe> make_probe(const TetMesh& mesh, std::span<const Triangle> surface, const Indenter& indenter,
+                                  const IndenterPose& touch) {
+  if (!(indenter.radius > 0) || !std::isfinite(indenter.radius))
+    throw InvalidInput("the radius of a tip is " + text(indenter.radius) + " m; it must be positive");
+  if (!(indenter.stiffness > 0) || !std::isfinite(indenter.stiffness))
+    throw InvalidInput("the layer of a tip has the stiffness " + text(indenter.stiffness) +
                        " Pa/m; it must be positive (try 1000 times Young's modulus over the radius)");
-  auto probe = std::make_unique<ProbeTerm>(mesh, surface, tip, touch);
+  auto probe = std::make_unique<ProbeTerm>(mesh, surface, indenter, touch);
   if (probe->touches_something()) return probe;
   double gap = INFINITY;
   for (const Triangle& triangle : surface)
-    for (const int v : triangle) gap = std::min(gap, -depth(tip, with_unit_axis(touch), mesh.rest[v]).value);
+    for (const int v : triangle) gap = std::min(gap, -depth(indenter, with_unit_axis(touch), mesh.rest[v]).value);
   throw InvalidInput("a bonded tip touches nothing at rest: the nearest vertex is " + text(gap) +
                      " m away from it; check its pose at the touch, its axis and the units");
 }
 
-int touched_points_at_rest(const TetMesh& mesh, std::span<const Triangle> surface, const Tip& tip,
-                           const TipPose& touch) {
-  return ProbeTerm(mesh, surface, tip, touch).touched_points(rest_positions(mesh));
+int touched_points_at_rest(const TetMesh& mesh, std::span<const Triangle> surface, const Indenter& indenter,
+                           const IndenterPose& touch) {
+  return ProbeTerm(mesh, surface, indenter, touch).touched_points(rest_positions(mesh));
 }
 
 }  // namespace aspic

@@ -8,10 +8,10 @@
 
 #include "base/error.h"
 #include "dynamics/step_derivatives.h"
+#include "energy/indenter_depth.h"
 #include "energy/pressure.h"
 #include "energy/probe.h"
 #include "energy/tet_elasticity.h"
-#include "energy/tip_depth.h"
 #include "mesh/generators.h"
 #include "mesh/surface.h"
 
@@ -54,24 +54,25 @@ std::vector<double> shaken(double amount, unsigned seed = 3) {
 }
 
 // Points up at the top face z = 0.6 from inside the rest shape, 0.05 deep.
-const TipPose kTouch = {.center = {{0.45, 0.35, 0.6 + 0.2}}, .axis = {{0, 0, -1}}, .rotation = {}};
-const TipPose kFlatTouch = {.center = {{0.45, 0.35, 0.6}}, .axis = {{0, 0, -2}}, .rotation = {}};
-const TipPose kPose = {.center = {{0.47, 0.34, 0.74}}, .axis = {{0.1, -0.2, -1}}, .rotation = {{0.2, -0.1, 0.3}}};
-const TipPose kFlatPose = {.center = {{0.47, 0.34, 0.57}}, .axis = {{0.1, -0.05, -1}}, .rotation = {{0.2, -0.1, 0.3}}};
+const IndenterPose kTouch = {.center = {{0.45, 0.35, 0.6 + 0.2}}, .axis = {{0, 0, -1}}, .rotation = {}};
+const IndenterPose kFlatTouch = {.center = {{0.45, 0.35, 0.6}}, .axis = {{0, 0, -2}}, .rotation = {}};
+const IndenterPose kPose = {.center = {{0.47, 0.34, 0.74}}, .axis = {{0.1, -0.2, -1}}, .rotation = {{0.2, -0.1, 0.3}}};
+const IndenterPose kFlatPose = {
+    .center = {{0.47, 0.34, 0.57}}, .axis = {{0.1, -0.05, -1}}, .rotation = {{0.2, -0.1, 0.3}}};
 
 struct Case {
   const char* name;
-  Tip tip;
-  TipPose touch, pose;
+  Indenter indenter;
+  IndenterPose touch, pose;
 };
 const Case kCases[] = {
-    {"bonded sphere", {TipShape::sphere, TipContact::bonded, 0.2, 50}, kTouch, kPose},
-    {"bonded disc", {TipShape::disc, TipContact::bonded, 0.2, 50}, kFlatTouch, kFlatPose},
-    {"sliding sphere", {TipShape::sphere, TipContact::sliding, 0.2, 50}, kTouch, kPose},
-    {"sliding disc", {TipShape::disc, TipContact::sliding, 0.2, 50}, kFlatTouch, kFlatPose},
+    {"bonded sphere", {IndenterShape::sphere, IndenterContact::bonded, 0.2, 50}, kTouch, kPose},
+    {"bonded disc", {IndenterShape::disc, IndenterContact::bonded, 0.2, 50}, kFlatTouch, kFlatPose},
+    {"sliding sphere", {IndenterShape::sphere, IndenterContact::sliding, 0.2, 50}, kTouch, kPose},
+    {"sliding disc", {IndenterShape::disc, IndenterContact::sliding, 0.2, 50}, kFlatTouch, kFlatPose},
 };
 std::unique_ptr<Probe> probe(const Case& c) {
-  auto V = make_probe(box_mesh(), surface(), c.tip, c.touch);
+  auto V = make_probe(box_mesh(), surface(), c.indenter, c.touch);
   V->set_pose(c.pose);
   V->bind(box_pattern());
   return V;
@@ -130,11 +131,11 @@ TEST(Probe, WrenchProductsAreDerivativesAndTransposes) {
   }
 }
 
-TEST(Probe, BondedTipMovingWithBodyHasNoForce) {
+TEST(Probe, BondedIndenterMovingWithBodyHasNoForce) {
   const Mat3d quarter_turn = {0, 1, 0, -1, 0, 0, 0, 0, 1};  // about z
   for (const Case& c : {kCases[0], kCases[1]}) {
     const auto V = probe(c);
-    TipPose moved = c.touch;
+    IndenterPose moved = c.touch;
     moved.center = quarter_turn * c.touch.center + Vec3d{{3, -2, 1}};
     moved.rotation = {{0, 0, std::acos(0.0)}};
     V->set_pose(moved);
@@ -158,7 +159,7 @@ TEST(Probe, IsInvariantUnderRigidMotions) {
       turned[i] = 4 - x[i + 1], turned[i + 1] = x[i], turned[i + 2] = x[i + 2] - 1;
     const double energy = V->value(x);
     const Wrench before = V->wrench(x);
-    TipPose moved = c.pose;
+    IndenterPose moved = c.pose;
     moved.center = quarter_turn * c.pose.center + Vec3d{{4, 0, -1}};
     moved.axis = quarter_turn * c.pose.axis;
     V->set_pose(moved);
@@ -169,12 +170,12 @@ TEST(Probe, IsInvariantUnderRigidMotions) {
 
 // On a flat face, the resultant of a small translation t is k t times the area of the footprint: pi R^2 for a disc, and
 // pi a^2 with R^2 + a^2 = (R + g)^2 for a sphere, where g is halfway through the fading part of the glue.
-TEST(Probe, FootprintHasAreaOfTip) {
+TEST(Probe, FootprintHasAreaOfIndenter) {
   constexpr double kR = 0.2, kGap = 0.75 * kGlue * kR, kPi = 3.14159265358979;
   const double areas[] = {kPi * (2 * kR * kGap + kGap * kGap), kPi * kR * kR};
   for (int i = 0; i < 2; ++i) {
     const auto V = probe(kCases[i]);
-    TipPose moved = kCases[i].touch;
+    IndenterPose moved = kCases[i].touch;
     moved.center[0] += 0.01;
     V->set_pose(moved);
     EXPECT_NEAR(V->wrench(box_at_rest()).force[0], 50 * 0.01 * areas[i], 0.02 * 50 * 0.01 * areas[i]) << kCases[i].name;
@@ -185,14 +186,14 @@ TEST(Probe, FootprintHasAreaOfTip) {
 TEST(Probe, SlidingDiscForceGrowsWithDepth) {
   const Case& c = kCases[3];
   const auto V = probe(c);
-  TipPose pressed = {kFlatTouch.center - Vec3d{{0, 0, 0.03}}, {{0, 0, -1}}, {}};
+  IndenterPose pressed = {kFlatTouch.center - Vec3d{{0, 0, 0.03}}, {{0, 0, -1}}, {}};
   V->set_pose(pressed);
   double expected = 0;
   constexpr int kRings = 2000;
   for (int i = 0; i < kRings; ++i) {
-    const double r = 0.25 * (i + 0.5) / kRings, e = 0.02 * c.tip.radius;
-    const auto [d, slope, unused] = depth(c.tip, pressed, kFlatTouch.center + Vec3d{{r, 0, 0}});
-    const double stress = c.tip.stiffness * (d < 0 ? 0 : d < e ? d * d / (2 * e) : d - e / 2);
+    const double r = 0.25 * (i + 0.5) / kRings, e = 0.02 * c.indenter.radius;
+    const auto [d, slope, unused] = depth(c.indenter, pressed, kFlatTouch.center + Vec3d{{r, 0, 0}});
+    const double stress = c.indenter.stiffness * (d < 0 ? 0 : d < e ? d * d / (2 * e) : d - e / 2);
     expected -= 2 * 3.14159265358979 * r * 0.25 / kRings * stress * slope[2];
   }
   const Wrench w = V->wrench(box_at_rest());
@@ -208,7 +209,8 @@ TEST(Probe, EnergyIsWorkOfIndentation) {
     const std::vector<double> x = box_at_rest();
     constexpr int kSteps = 400;
     const Vec3d down = {{0, 0, -0.02 / kSteps}};
-    TipPose pose = {c.touch.center + Vec3d{{0, 0, c.tip.shape == TipShape::sphere ? 0.001 : 0.0}}, {{0, 0, -1}}, {}};
+    IndenterPose pose = {
+        c.touch.center + Vec3d{{0, 0, c.indenter.shape == IndenterShape::sphere ? 0.001 : 0.0}}, {{0, 0, -1}}, {}};
     double work = 0;
     for (int i = 0; i < kSteps; ++i) {
       pose.center = pose.center + 0.5 * down;
@@ -248,10 +250,10 @@ TEST(Probe, ModifiedHessiansArePositiveSemidefinite) {
   }
 }
 
-TEST(Probe, TipInAirHasNoForce) {
+TEST(Probe, IndenterInAirHasNoForce) {
   for (const Case& c : {kCases[2], kCases[3]}) {
     const auto V = probe(c);
-    TipPose away = c.pose;
+    IndenterPose away = c.pose;
     away.center[2] += 0.5;
     V->set_pose(away);
     EXPECT_EQ(V->touched_points(box_at_rest()), 0);
@@ -259,26 +261,26 @@ TEST(Probe, TipInAirHasNoForce) {
   }
 }
 
-TEST(Probe, RejectsInvalidTips) {
+TEST(Probe, RejectsInvalidIndenters) {
   Case c = kCases[0];
   c.touch.center[2] += 1;
   EXPECT_THROW(probe(c), InvalidInput);
-  for (Tip bad : {Tip{.radius = 0, .stiffness = 1}, Tip{.radius = 0.1, .stiffness = 0},
-                  Tip{.radius = NAN, .stiffness = 1}, Tip{.radius = 1e-3, .stiffness = 1}})
+  for (Indenter bad : {Indenter{.radius = 0, .stiffness = 1}, Indenter{.radius = 0.1, .stiffness = 0},
+                       Indenter{.radius = NAN, .stiffness = 1}, Indenter{.radius = 1e-3, .stiffness = 1}})
     EXPECT_THROW(make_probe(box_mesh(), surface(), bad, kTouch), InvalidInput);
-  TipPose without_axis = kTouch;
+  IndenterPose without_axis = kTouch;
   without_axis.axis = {};
-  EXPECT_THROW(make_probe(box_mesh(), surface(), kCases[0].tip, without_axis), InvalidInput);
+  EXPECT_THROW(make_probe(box_mesh(), surface(), kCases[0].indenter, without_axis), InvalidInput);
 }
 
-TEST(TipDepth, IsTwiceDifferentiableAcrossRimOfDisc) {
-  const Tip tip = {TipShape::disc, TipContact::sliding, 0.2, 1};
-  const TipPose pose = {.center = {}, .axis = {{0, 0, -1}}, .rotation = {}};
+TEST(IndenterDepth, IsTwiceDifferentiableAcrossRimOfDisc) {
+  const Indenter indenter = {IndenterShape::disc, IndenterContact::sliding, 0.2, 1};
+  const IndenterPose pose = {.center = {}, .axis = {{0, 0, -1}}, .rotation = {}};
   Mat3d last{};
   for (int i = 0; i <= 2000; ++i) {  // along an arc through the flat, the rim and the side
     const double angle = -0.3 + 2.0 * i / 2000;
     const Vec3d x = {{0.18 + 0.03 * std::sin(angle), 0, 0.02 - 0.03 * std::cos(angle)}};
-    const Depth d = depth(tip, pose, x);
+    const Depth d = depth(indenter, pose, x);
     EXPECT_LE(norm(d.gradient), 1 + 1e-14);
     const double jump = i > 0 ? std::sqrt(squared_norm(d.hessian - last)) : 0;
     EXPECT_LT(jump, 0.5);  // values up to 75

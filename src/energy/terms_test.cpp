@@ -256,12 +256,9 @@ TEST(LinearLoad, GravityOfBodyIsItsWeight) {
 }
 
 TEST(LinearLoad, PressureOnClosedSurfaceHasNoResultant) {
+  const auto load = make_dead_pressure(small_mesh(), boundary_triangles(small_mesh(), 0, small_mesh().tet_count()), 1);
   std::vector<double> force(3 * small_mesh().rest.size(), 0.0);
-  for (const Triangle& triangle : boundary_triangles(small_mesh(), 0, small_mesh().tet_count())) {
-    const auto& X = small_mesh().rest;
-    const Vec3d n = cross(X[triangle[1]] - X[triangle[0]], X[triangle[2]] - X[triangle[0]]);
-    add_traction(X, triangle, (-1 / norm(n)) * n, force);
-  }
+  load->add_gradient(force, {}, 1, force);
   double sum[3] = {0, 0, 0};
   for (size_t i = 0; i < force.size(); ++i) sum[i % 3] += force[i];
   for (const double s : sum) EXPECT_NEAR(s, 0, 1e-14);

@@ -80,10 +80,10 @@ TEST(DoctorOfSurfaces, RejectsCoordinatesWithOverflowingPowers) {
 TEST(DoctorOfSurfaces, CancelsBackToBackPairs) {
   TriMesh surface = ball();  // adds a fin of two triangles on an edge
   const auto [a, b, c] = surface.triangles[5];
-  const int tip = surface.vertex_count();
+  const int indenter = surface.vertex_count();
   surface.vertices.push_back(1.5 * surface.vertices[a]);
-  surface.triangles.push_back({a, b, tip});
-  surface.triangles.push_back({b, a, tip});
+  surface.triangles.push_back({a, b, indenter});
+  surface.triangles.push_back({b, a, indenter});
   EXPECT_THAT(repair(surface), ElementsAre("removed 2 triangles in back-to-back pairs",
                                            "dropped 1 vertices that only removed triangles used"));
   EXPECT_THAT(diagnose(surface), IsEmpty());

@@ -123,7 +123,6 @@ Minimizer::Impl::End Minimizer::Impl::test_convergence(Progress& at) {
   MinimizeReport& report = at.report;
   report.value = at.value.value;
   report.gradient_norm = std::sqrt(at.E.dot(g, g));
-  if (report.iterations == 0) report.first_gradient_norm = report.gradient_norm;
   convergence.describe(report);
   if (!std::isfinite(report.value) || !std::isfinite(report.gradient_norm)) return Status::undefined;
   if (at.last_direction || report.gradient_norm == 0) return Status::converged;

@@ -82,7 +82,7 @@ struct LiveIteration : Iteration {
 struct MinimizeReport : Work {
   Status status = Status::iteration_limit;
   int iterations = 0;
-  double value = 0, gradient_norm = 0, first_gradient_norm = 0;
+  double value = 0, gradient_norm = 0;
   double reached = 0;             // the tested quantity: |g| of the worst part, or a norm of d
   double threshold = 0;           // its threshold
   double gradient_round_off = 0;  // norm of the rounding error of the gradient

@@ -18,7 +18,7 @@
 namespace aspic {
 namespace {
 
-constexpr double kMostBytes = 1 << 30;  // of a recording in memory
+constexpr double kMaxBytes = 1 << 30;  // of a recording in memory
 
 struct Recording {
   std::vector<double> time;               // of each sample, ascending [s]
@@ -28,7 +28,7 @@ struct Recording {
 Recording read(const std::filesystem::path& path, double fps, const AffineMap& place) {
   Pc2Reader cache(path);
   if (cache.samples() == 0) throw InvalidInput("the cache has no samples");
-  if (24.0 * cache.points() * cache.samples() > kMostBytes)
+  if (24.0 * cache.points() * cache.samples() > kMaxBytes)
     throw InvalidInput(std::to_string(cache.samples()) + " samples of " + std::to_string(cache.points()) +
                        " points exceed 1 GiB; record fewer");
   Recording recording;

@@ -14,7 +14,7 @@
 namespace aspic {
 namespace {
 
-constexpr size_t kMostBodies = 10000;
+constexpr size_t kMaxBodies = 10000;
 constexpr double kWeightRoundOff = 1e-9;  // tolerance of weights that sum to 1
 
 void put_first(Table& table, const std::string& key, Value value) {
@@ -169,8 +169,8 @@ void complete_scene(Table& document) {
   Value& list = *document.find("body");
   Array& bodies = list.array();
   if (bodies.empty()) throw error_at(list.place, "body = []; at least one is needed");
-  if (bodies.size() > kMostBodies)
-    throw error_at(list.place, std::to_string(bodies.size()) + " bodies; at most " + std::to_string(kMostBodies) +
+  if (bodies.size() > kMaxBodies)
+    throw error_at(list.place, std::to_string(bodies.size()) + " bodies; at most " + std::to_string(kMaxBodies) +
                                    " are supported (combine similar bodies in one mesh)");
   name_tables(bodies, body_name);
   for (Value& body : bodies) {

@@ -17,7 +17,7 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr size_t kLongestLine = size_t{1} << 20;
-constexpr size_t kMostBeyond = 100000;  // limit of the count of excess lines for the message
+constexpr size_t kMaxBeyond = 100000;  // limit of the count of excess lines for the message
 
 // Splits a line at its separators.
 std::vector<std::string_view> split_words(std::string_view line) {
@@ -135,10 +135,10 @@ std::vector<double> read_number_table(const fs::path& path, size_t columns, size
       if (!parse_finite(word, number)) throw InvalidInput(where + shown(word) + " is not a finite number");
       values.push_back(number);
     }
-    if (++count > kMostBeyond + rows) break;
+    if (++count > kMaxBeyond + rows) break;
   }
   if (count != rows)
-    throw error_at(place, path.string() + " has " + (count > kMostBeyond + rows ? "at least " : "") +
+    throw error_at(place, path.string() + " has " + (count > kMaxBeyond + rows ? "at least " : "") +
                               std::to_string(count) + " lines of numbers; one for " + row + " is needed, " +
                               std::to_string(rows) + " in all");
   return values;

@@ -107,10 +107,10 @@ void forget_lines(Value& value) {
 }  // namespace
 
 std::string read_toml_text(const std::filesystem::path& path) {
-  constexpr std::uintmax_t kMost = 16 << 20;
+  constexpr std::uintmax_t kMax = 16 << 20;
   std::error_code error;
   const std::uintmax_t size = std::filesystem::file_size(path, error);
-  if (!error && size > kMost)
+  if (!error && size > kMax)
     throw InvalidInput(path.string() + ": " + std::to_string(size) +
                        " bytes; at most 16 MiB are supported (put values per element into CSV files)");
   return read_file(path);

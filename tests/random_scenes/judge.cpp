@@ -18,7 +18,7 @@ constexpr double kLastDigits = 1e-11;  // relative to energies that cancel in a 
 // Round-off of the residual in units of one evaluation: the report's residual is recomputed from differences of
 // velocities.
 constexpr double kNoise = 10;
-constexpr int kMostPolls = 20'000;  // of the stop token, in all steps of a scene
+constexpr int kMaxPolls = 20'000;  // of the stop token, in all steps of a scene
 
 bool is_finite(std::span<const double> v) {
   return std::all_of(v.begin(), v.end(), [](double x) { return std::isfinite(x); });
@@ -53,7 +53,7 @@ class Judge {
   Judgment run() {
     judgment_.ending = "converged";
     int polls = 0;
-    const StopToken stop([&] { return ++polls > kMostPolls; });
+    const StopToken stop([&] { return ++polls > kMaxPolls; });
     for (int i = 0; i < scene_.steps && judgment_.fault.empty(); ++i) {
       const State before = simulation_.state();
       const StepReport report = simulation_.step({}, stop);

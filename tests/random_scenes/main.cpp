@@ -23,7 +23,7 @@
 namespace aspic {
 namespace {
 
-constexpr rlim_t kMostSeconds = 200;  // CPU time limit; scenes take at most one second, thirty with sanitizers
+constexpr rlim_t kMaxSeconds = 200;  // CPU time limit; scenes take at most one second, thirty with sanitizers
 
 struct Arguments {
   uint64_t seed = 1, count = 1000;
@@ -63,7 +63,7 @@ Judgment run_apart(uint64_t seed, const std::filesystem::path& folder) {
   const pid_t child = fork();
   if (child == 0) {
     close(ends[0]);
-    const rlimit seconds{kMostSeconds, kMostSeconds};
+    const rlimit seconds{kMaxSeconds, kMaxSeconds};
     setrlimit(RLIMIT_CPU, &seconds);
     const rlimit no_core{0, 0};
     setrlimit(RLIMIT_CORE, &no_core);

@@ -15,7 +15,7 @@
 namespace aspic::cli::lecture {
 namespace {
 
-constexpr int kMostIterations = 60;
+constexpr int kMaxIterations = 60;
 
 struct Attempt {
   std::string name;
@@ -27,7 +27,7 @@ struct Attempt {
 Attempt attempt(OpenStep& step, DecreaseTest test) {
   Attempt result{test == DecreaseTest::none ? "without line search" : "with line search", {}, {}, {}, {}, step.start};
   Newton newton(make_linear_solver("cholesky"));
-  MinimizeOptions options{.max_iterations = kMostIterations};
+  MinimizeOptions options{.max_iterations = kMaxIterations};
   options.line_search.test = test;
   result.report = Minimizer().minimize(step.E, newton, result.q, options, [&](const LiveIteration& iteration) {
     result.value.push_back(iteration.value);
@@ -65,7 +65,7 @@ void show_pure_newton(const Stage& stage, Sheet& sheet) {
   sheet.remark(fmt::format("the same step, start, Hessian and tolerance; without a line search: {}, with one: {}",
                            to_string(pure.report.status), to_string(careful.report.status)));
   sheet.equals("without line search: converged", is_success(pure.report.status), 0, "",
-               fmt::format("it is expected to fail within {} iterations", kMostIterations));
+               fmt::format("it is expected to fail within {} iterations", kMaxIterations));
   sheet.at_least("without line search: iterations that raise E", rises(pure), 1, "", "it overshoots");
   const double last = pure.report.gradient_norm / pure.report.threshold;
   sheet.at_least("without line search: |gradient| at the end / tolerance", std::isfinite(last) ? last : INFINITY, 1e3,
@@ -147,7 +147,7 @@ Curve curve_of(OpenStep& step, const LineSearchOptions& search) {
   Newton newton(make_linear_solver("cholesky"));
   bool is_found = false;
   const StopToken stop([&] { return is_found; });
-  Minimizer().minimize(step.E, newton, q, {.max_iterations = kMostIterations, .line_search = search, .stop = stop},
+  Minimizer().minimize(step.E, newton, q, {.max_iterations = kMaxIterations, .line_search = search, .stop = stop},
                        [&](const LiveIteration& it) {
                          const bool is_clear = it.tried.size() == 2 || it.tried.size() == 3;
                          if (is_clear || (it.tried.size() > 3 && curve.iteration < 0))

@@ -11,7 +11,7 @@
 namespace aspic::cli::lecture {
 namespace {
 
-struct Poke {
+struct Indentation {
   Vector depth, force, energy;  // [m], [N], [J]; first entry: slab at rest
   Run run;
 };
@@ -22,11 +22,11 @@ const Pin& indenter_of(const Model& model) {
   throw InvalidInput("03_tissue.toml: the pin 'indenter' is missing");
 }
 
-Poke poke(Simulation& simulation, int steps) {
+Indentation poke(Simulation& simulation, int steps) {
   const Pin& indenter = indenter_of(simulation.model());
   const int y = 3 * indenter.vertices[0] + 1;
   const double height = simulation.state().q[y];
-  Poke result{{0}, {0}, {0}, {}};
+  Indentation result{{0}, {0}, {0}, {}};
   result.run = run(simulation, steps, [&](const StepReport& report) {
     const Vector& q = simulation.state().q;
     const Vector g = gradient_of_potential(simulation.model(), q);
@@ -44,7 +44,7 @@ Poke poke(Simulation& simulation, int steps) {
 struct VirtualWork {
   double error = 0, allowed = 0;  // [N]
 };
-VirtualWork virtual_work(const Poke& poke) {
+VirtualWork virtual_work(const Indentation& poke) {
   VirtualWork worst;
   for (size_t i = 1; i + 1 < poke.depth.size(); ++i) {
     const double slope = (poke.energy[i + 1] - poke.energy[i - 1]) / (poke.depth[i + 1] - poke.depth[i - 1]);
@@ -106,9 +106,9 @@ void show_tissue(const Stage& stage, Sheet& sheet) {
   Scene scene = stage.scene("03_tissue");
   sheet.keep(scene);
   const Model& model = scene.simulation.model();
-  const Poke layered = poke(scene.simulation, scene.steps);
+  const Indentation layered = poke(scene.simulation, scene.steps);
   Scene uniform = stage.scene("03_tissue", {"material.young=5e3"});
-  const Poke soft = poke(uniform.simulation, uniform.steps);
+  const Indentation soft = poke(uniform.simulation, uniform.steps);
 
   CsvFile table = sheet.table("force.csv", {"depth_m", "force_N", "energy_J", "force_uniform_N"});
   for (size_t i = 0; i < layered.depth.size(); ++i)

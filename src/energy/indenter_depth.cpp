@@ -1,9 +1,9 @@
-#include "energy/tip_depth.h"
+#include "energy/indenter_depth.h"
 
 namespace aspic {
 namespace {
 
-// Length and direction. The direction is zero at the origin, where that of a point inside a tip is irrelevant.
+// Length and direction. The direction is zero at the origin, where that of a point inside an indenter is irrelevant.
 struct Polar {
   double length;
   Vec3d direction;
@@ -42,9 +42,9 @@ Depth depth_in_disc(double radius, const Vec3d& axis, const Vec3d& x) {
 
 }  // namespace
 
-Depth depth(const Tip& tip, const TipPose& pose, const Vec3d& x) {
-  return tip.shape == TipShape::sphere ? depth_in_sphere(tip.radius, x - pose.center)
-                                       : depth_in_disc(tip.radius, pose.axis, x - pose.center);
+Depth depth(const Indenter& indenter, const IndenterPose& pose, const Vec3d& x) {
+  return indenter.shape == IndenterShape::sphere ? depth_in_sphere(indenter.radius, x - pose.center)
+                                                 : depth_in_disc(indenter.radius, pose.axis, x - pose.center);
 }
 
 }  // namespace aspic

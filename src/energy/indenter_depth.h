@@ -1,5 +1,5 @@
-// Depth of a point below the surface of a rigid tip, where s and r are the components of x - c along and across the
-// axis:
+// Depth of a point below the surface of a rigid indenter, where s and r are the components of x - c along and across
+// the axis:
 //   sphere: d = R - |x - c|
 //   disc:   d = -m(|r| - R, s), where m(u, v) = v + w h((u - v) / w) is a maximum that is rounded, twice continuously
 //           differentiable, over the width w of the rim
@@ -16,6 +16,6 @@ struct Depth {
   Mat3d hessian{};   // [1/m]
 };
 
-Depth depth(const Tip& tip, const TipPose& pose, const Vec3d& x);
+Depth depth(const Indenter& indenter, const IndenterPose& pose, const Vec3d& x);
 
 }  // namespace aspic

@@ -52,7 +52,7 @@ Json touch_message(Page& page, const Json& further = Json::object()) {
   return message;
 }
 
-void expect_balance_of_tip(Page& page) {
+void expect_balance_of_indenter(Page& page) {
   for (size_t i = 1; i < page.rows().size(); ++i) {
     const Json &row = page.rows()[i], &before = page.rows()[i - 1];
     const double gain =
@@ -66,7 +66,7 @@ void expect_balance_of_tip(Page& page) {
   }
 }
 
-TEST(Tip, IndentsTheBodyAndMeasuresTheForce) {
+TEST(Indenter, IndentsTheBodyAndMeasuresTheForce) {
   Page page(kSlab, {"time.integrator=\"quasi_static\""});
   page.send(touch_message(page, {{"radius", 0.03}}));
   page.steps(1);
@@ -90,7 +90,7 @@ TEST(Tip, IndentsTheBodyAndMeasuresTheForce) {
   for (size_t i = 0; i < after.positions.size(); ++i) EXPECT_NEAR(after.positions[i], page.geometry().rest[i], 1e-7);
 }
 
-TEST(Tip, EnergiesBalanceWithItsWork) {
+TEST(Indenter, EnergiesBalanceWithItsWork) {
   for (const char* contact : {"bonded", "sliding"})
     for (const char* integrator : {"backward_euler", "tr_bdf2", "midpoint"}) {
       SCOPED_TRACE(std::string(contact) + " " + integrator);
@@ -111,11 +111,11 @@ TEST(Tip, EnergiesBalanceWithItsWork) {
         EXPECT_NEAR(number(row["pin_work"]), 0, 1e-12);
       }
       EXPECT_GT(most, 0);
-      expect_balance_of_tip(page);
+      expect_balance_of_indenter(page);
     }
 }
 
-TEST(Tip, IsBitReproducibleAfterRewinding) {
+TEST(Indenter, IsBitReproducibleAfterRewinding) {
   Page page(kSlab);
   page.steps(2);
   page.send(touch_message(page));
@@ -135,7 +135,7 @@ TEST(Tip, IsBitReproducibleAfterRewinding) {
   EXPECT_TRUE(page.side()["probe"].is_null());
 }
 
-TEST(Tip, IsRepeatedByARecording) {
+TEST(Indenter, IsRepeatedByARecording) {
   Page page(kSlab);
   page.steps(1);
   page.send(touch_message(page, {{"contact", "sliding"}}));
@@ -151,7 +151,7 @@ TEST(Tip, IsRepeatedByARecording) {
   EXPECT_NEAR(number(page.side()["probe"]["depth"]), 0.008, 1e-15);
 }
 
-TEST(Tip, SurvivesANewSetting) {
+TEST(Indenter, SurvivesANewSetting) {
   Page page(kSlab, {"time.integrator=\"quasi_static\""});
   page.send(touch_message(page));
   page.send({{"do", "press"}, {"depth", 0.008}});
@@ -163,7 +163,7 @@ TEST(Tip, SurvivesANewSetting) {
   EXPECT_GT(size(page.side()["probe"]["force"]), 1.8 * before);
 }
 
-TEST(Tip, TouchesBothSidesOfAComparison) {
+TEST(Indenter, TouchesBothSidesOfAComparison) {
   Page page(kSlab, {"time.integrator=\"quasi_static\""});
   page.send({{"do", "compare"}, {"overrides", {"material.young=1e4"}}, {"label", "softer"}});
   page.send(touch_message(page));
@@ -174,7 +174,7 @@ TEST(Tip, TouchesBothSidesOfAComparison) {
   EXPECT_GT(size(a["force"]), 1.5 * size(b["force"]));
 }
 
-TEST(Tip, RefusesInvalidTips) {
+TEST(Indenter, RefusesInvalidIndenters) {
   Page page(kSlab);
   EXPECT_NE(page.refused({{"do", "press"}, {"depth", 0.01}}).find("no indenter"), std::string::npos);
   page.refused(touch_message(page, {{"radius", 0}}));

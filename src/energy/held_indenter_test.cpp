@@ -1,4 +1,4 @@
-#include "energy/held_tip.h"
+#include "energy/held_indenter.h"
 
 #include <gtest/gtest.h>
 
@@ -30,28 +30,28 @@ std::vector<double> rest() {
   return x;
 }
 
-std::shared_ptr<const Touch> touch(TipContact contact = TipContact::bonded) {
-  const TipPose pose{.center = {{0.5, 0.4, 0.8}}, .axis = {{0, 0, -1}}, .rotation = {}};
-  return std::make_shared<const Touch>(Touch{{TipShape::sphere, contact, 0.2, 50}, pose, pose});
+std::shared_ptr<const FirstContact> touch(IndenterContact contact = IndenterContact::bonded) {
+  const IndenterPose pose{.center = {{0.5, 0.4, 0.8}}, .axis = {{0, 0, -1}}, .rotation = {}};
+  return std::make_shared<const FirstContact>(FirstContact{{IndenterShape::sphere, contact, 0.2, 50}, pose, pose});
 }
 
-Poke pressed(double depth, TipContact contact = TipContact::bonded) {
-  Poke poke{.touch = touch(contact), .from = {}, .to = {}};
+IndenterMotion pressed(double depth, IndenterContact contact = IndenterContact::bonded) {
+  IndenterMotion poke{.touch = touch(contact), .from = {}, .to = {}};
   poke.from = poke.to = poke.touch->begun;
   poke.to.center[2] -= depth;
   poke.from_time = 1, poke.to_time = 3;
   return poke;
 }
 
-TEST(HeldTip, PoseMovesLinearlyWithinTheStep) {
-  const Poke poke = pressed(0.1);
+TEST(HeldIndenter, PoseMovesLinearlyWithinTheStep) {
+  const IndenterMotion poke = pressed(0.1);
   EXPECT_EQ(poke.pose(0).center[2], 0.8);
   EXPECT_NEAR(poke.pose(1.5).center[2], 0.775, 1e-15);
   EXPECT_NEAR(poke.pose(9).center[2], 0.7, 1e-15);
 }
 
-TEST(HeldTip, IsZeroWithoutTouch) {
-  HeldTip V(mesh());
+TEST(HeldIndenter, IsZeroWithoutTouch) {
+  HeldIndenter V(mesh());
   const std::vector<double> x = rest();
   std::vector<double> g(x.size());
   ActiveTerm(V).add_gradient(x, 1, g);
@@ -60,18 +60,18 @@ TEST(HeldTip, IsZeroWithoutTouch) {
   EXPECT_EQ(V.touched_points(x), 0);
 }
 
-// Bound before the tip is set.
-TEST(HeldTip, EqualsItsProbe) {
+// Bound before the indenter is set.
+TEST(HeldIndenter, EqualsItsProbe) {
   const BlockPattern blocks = pattern();
   const std::vector<double> x = rest();
-  for (const TipContact contact : {TipContact::bonded, TipContact::sliding}) {
-    const Poke poke = pressed(0.1, contact);
-    HeldTip V(mesh());
+  for (const IndenterContact contact : {IndenterContact::bonded, IndenterContact::sliding}) {
+    const IndenterMotion poke = pressed(0.1, contact);
+    HeldIndenter V(mesh());
     V.bind(blocks);
     V.set(poke);
     ActiveTerm term(V, {.start = x, .h = 1, .time = 9});
     const auto probe =
-        make_probe(mesh(), boundary_triangles(mesh(), 0, mesh().tet_count()), poke.touch->tip, poke.touch->rest);
+        make_probe(mesh(), boundary_triangles(mesh(), 0, mesh().tet_count()), poke.touch->indenter, poke.touch->rest);
     probe->bind(blocks);
     probe->set_pose(poke.to);
     EXPECT_GT(V.value(x), 0);
@@ -95,16 +95,16 @@ TEST(HeldTip, EqualsItsProbe) {
   }
 }
 
-TEST(HeldTip, InvalidTouchChangesNothing) {
-  HeldTip V(mesh());
-  const Poke good = pressed(0.1);
+TEST(HeldIndenter, InvalidTouchChangesNothing) {
+  HeldIndenter V(mesh());
+  const IndenterMotion good = pressed(0.1);
   V.set(good);
   const std::vector<double> x = rest();
   const double before = V.value(x);
-  Poke bad = good;
-  Touch away = *good.touch;
+  IndenterMotion bad = good;
+  FirstContact away = *good.touch;
   away.rest.center[2] += 5;  // the glue reaches no surface point
-  bad.touch = std::make_shared<const Touch>(away);
+  bad.touch = std::make_shared<const FirstContact>(away);
   EXPECT_THROW(V.set(bad), InvalidInput);
   EXPECT_EQ(V.value(x), before);
   EXPECT_EQ(V.poke().touch, good.touch);
