@@ -24,7 +24,7 @@ const result = await build({
   logLevel: "warning",
 });
 const text = (extension) => result.outputFiles.find((file) => file.path.endsWith(extension)).text;
-// A script element ends at the first "</script", wherever it stands.
+// A script element ends at the first "</script", wherever it is.
 const script = text(".js").replaceAll("</script", "<\\/script");
 const page = readFileSync(join(root, "src/index.html"), "utf8")
   .replace("<!-- style -->", () => `<style>${text(".css")}</style>`)

@@ -5,6 +5,9 @@
 
 #include <set>
 
+#include "aspic/lecture/course.h"
+#include "dynamics/integrator.h"
+#include "dynamics/simulation.h"
 #include "material/registry.h"
 #include "verification/check.h"
 
@@ -21,6 +24,19 @@ TEST(Formulas, EveryMaterialHasItsEnergyDensity) {
     ASSERT_FALSE(info.tex.empty()) << info.name;
     EXPECT_THAT(info.tex.front(), testing::HasSubstr(R"(\psi =)")) << info.name;
     expect_rendered(info.name, info.tex);
+  }
+}
+
+TEST(Formulas, EveryIntegratorHasItsUpdateRule) {
+  for (const std::string& name : integrator_names())
+    expect_rendered(name, {std::string(make_integrator(name)->facts().tex)});
+}
+
+TEST(Formulas, EveryDemonstrationHasItsFormulas) {
+  const std::set<std::string> without = {"02_fine_mesh", "03_tissue"};
+  for (const lecture::Demonstration& d : lecture::demonstrations()) {
+    EXPECT_EQ(formulas_of(d.key).empty(), without.contains(d.key)) << d.key;
+    for (const std::string& formula : formulas_of(d.key)) EXPECT_THAT(formula, testing::StartsWith("<math")) << d.key;
   }
 }
 

@@ -11,6 +11,8 @@
 #include "aspic/report_page.h"
 #include "aspic/verify.h"
 #include "base/error.h"
+#include "dynamics/integrator.h"
+#include "dynamics/simulation.h"
 #include "io/atomic_file.h"
 #include "io/external_program.h"
 #include "material/registry.h"
@@ -94,6 +96,15 @@ void add_densities(ReportPage& page) {
   }
 }
 
+void add_update_rules(ReportPage& page) {
+  page.heading("Update rules of the integrators");
+  page.paragraph("h: time step, v: velocity, a: acceleration, M a = -dV/dq - C v with the damping C.");
+  for (const std::string& name : integrator_names()) {
+    page.paragraph(name);
+    add_formulas(page, {std::string(make_integrator(name)->facts().tex)});
+  }
+}
+
 void add_judged(ReportPage& page, const Verification& result, const std::vector<Figure>& figures) {
   page.heading(result.check->title);
   page.verdict(result.findings.passes() ? Verdict::pass : Verdict::fail, result.findings.passes() ? "pass" : "fail",
@@ -137,8 +148,10 @@ void write_verification(const fs::path& folder, const std::vector<Verification>&
   bool draws = true;
   std::string family;
   for (const Verification& result : results) {
-    if (result.check->family != std::exchange(family, result.check->family) && family == "materials")
-      add_densities(page);
+    if (result.check->family != std::exchange(family, result.check->family)) {
+      if (family == "materials") add_densities(page);
+      if (family == "integrators") add_update_rules(page);
+    }
     std::vector<Figure> figures;
     try {
       if (draws) figures = drawn(result, pictures.path());

@@ -153,9 +153,9 @@ TEST(Posterior, TellsThatOnlyRatiosOfStiffnessAreKnown) {
 
   f.data.J.row(0).setConstant(10.0 / f.map.size());  // a force known to 10 %
   f.measure(3);
-  const Posterior sees = f.posterior();
-  EXPECT_FALSE(sees.scale_is_unknown);
-  EXPECT_LT(sees.sigma[0][0], blind.sigma[0][0]);
+  const Posterior with_force = f.posterior();
+  EXPECT_FALSE(with_force.scale_is_unknown);
+  EXPECT_LT(with_force.sigma[0][0], blind.sigma[0][0]);
 }
 
 TEST(Posterior, ContactStiffnessIsNoForceInformation) {

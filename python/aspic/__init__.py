@@ -10,7 +10,7 @@
         print(report.time, report.status, sim.q[0, 1])
 
 Units are SI. Arrays of vertices have the shape (n, 3) and the order of the mesh; results are copies. Bad input raises
-InvalidInput, a ValueError of one line; a step that does not converge says so in its report.
+InvalidInput, a ValueError of one line; the report of a step states whether it converged.
 """
 from ._cpu import require_processor
 

@@ -10,7 +10,7 @@ class Energy:
     elements: (E, k) vertices of the scene. x: (E, k, 3) positions [m].
     value(x): (E,) [J]; gradient(x): (E, k, 3) [N]; hessian(x): (E, k, 3, k, 3) [N/m].
     inf or nan: the energy is not defined there. Negative eigenvalues of element Hessians are modified where a method
-    asks for it. Add it with scene.energy(...).
+    requires it. Add it with scene.energy(...).
     """
 
     elements = None

@@ -8,8 +8,9 @@
 
 namespace aspic {
 
-using WallClock = std::function<double()>;  // [s]
+using WallClock = std::function<double()>;  // returns seconds since any fixed time
 
+// Returns the time of a clock that never goes backward [s].
 inline double steady_seconds() {
   return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
 }
@@ -28,9 +29,10 @@ class StopToken {
 
   bool requested() const { return requested_ && (*requested_)(); }
   bool has_deadline() const { return clock_ != nullptr; }
-  bool expired() const { return seconds_left() <= 0; }
+  bool expired() const { return seconds_left() <= 0; }  // the deadline has passed
   bool stopped() const { return requested() || expired(); }
-  double now() const { return clock_ ? (*clock_)() : 0; }  // [s]; 0 without a deadline
+  double now() const { return clock_ ? (*clock_)() : 0; }  // time of the clock [s]; 0 without a deadline
+  // Returns the time until the deadline, negative after it [s]; infinite without a deadline.
   double seconds_left() const { return clock_ ? end_ - (*clock_)() : std::numeric_limits<double>::infinity(); }
 
   // Returns a token with the same request and another deadline.
@@ -39,7 +41,7 @@ class StopToken {
     token.requested_ = requested_;
     return token;
   }
-  StopToken without_deadline() const {
+  StopToken without_deadline() const {  // keeps the request
     StopToken token;
     token.requested_ = requested_;
     return token;

@@ -66,7 +66,11 @@ class ExplicitEuler : public Integrator {
 // qdot_new = qdot + h a(q),  q_new = q + h qdot_new
 class SymplecticEuler : public ExplicitEuler {
  public:
-  SymplecticEuler() : ExplicitEuler({.name = "symplectic_euler", .is_implicit = false}) {}
+  SymplecticEuler()
+      : ExplicitEuler(
+            {.name = "symplectic_euler",
+             .tex = R"tex(\begin{gathered} v_{i+1} = v_i + h\, a_i \\ q_{i+1} = q_i + h\, v_{i+1} \end{gathered})tex",
+             .is_implicit = false}) {}
 
  protected:
   bool moves_with_old_velocity() const override { return false; }
@@ -81,7 +85,12 @@ class SymplecticEuler : public ExplicitEuler {
 // q_new = q + h qdot,  qdot_new = qdot + h a(q)
 class ForwardEuler : public ExplicitEuler {
  public:
-  ForwardEuler() : ExplicitEuler({.name = "forward_euler", .is_implicit = false, .gains_energy = true}) {}
+  ForwardEuler()
+      : ExplicitEuler(
+            {.name = "forward_euler",
+             .tex = R"tex(\begin{gathered} q_{i+1} = q_i + h\, v_i \\ v_{i+1} = v_i + h\, a_i \end{gathered})tex",
+             .is_implicit = false,
+             .gains_energy = true}) {}
 
  protected:
   bool moves_with_old_velocity() const override { return true; }

@@ -42,7 +42,14 @@ class BackwardEuler : public Integrator {
 // BDF2, exact for constant acceleration.
 class Bdf2 : public Integrator {
  public:
-  Bdf2() : Integrator({.name = "bdf2", .order = 2, .is_multistep = true, .ends_beyond_minimum = true}) {}
+  Bdf2()
+      : Integrator(
+            {.name = "bdf2",
+             .tex =
+                 R"tex(\begin{gathered} v_{i+1} = \tfrac13 (4 v_i - v_{i-1}) + \tfrac23 h\, a_{i+1} \\ q_{i+1} = \tfrac13 (4 q_i - q_{i-1}) + \tfrac23 h\, v_{i+1} \end{gathered})tex",
+             .order = 2,
+             .is_multistep = true,
+             .ends_beyond_minimum = true}) {}
   void set_pin_velocity(const Pins& pins, double h, State& state) const override {
     start_->set_pin_velocity(pins, h, state);
   }
@@ -76,7 +83,10 @@ class Bdf2 : public Integrator {
 // q_new = argmin V(q)
 class QuasiStatic : public Integrator {
  public:
-  QuasiStatic() : Integrator({.name = "quasi_static", .order = 0}) {}
+  QuasiStatic()
+      : Integrator({.name = "quasi_static",
+                    .tex = R"tex(q_{i+1} = \operatorname{argmin}_q V(q), \quad v_{i+1} = 0)tex",
+                    .order = 0}) {}
 
   StepSolve advance(const StepTools& tools, State& end, StepForces& forces) override {
     const State& start = tools.start;
@@ -106,12 +116,19 @@ class QuasiStatic : public Integrator {
 }  // namespace
 
 std::unique_ptr<Integrator> make_backward_euler() {
-  return std::make_unique<BackwardEuler>(IntegratorFacts{.name = "backward_euler", .is_backward_euler = true});
+  return std::make_unique<BackwardEuler>(IntegratorFacts{
+      .name = "backward_euler",
+      .tex = R"tex(\begin{gathered} v_{i+1} = v_i + h\, a_{i+1} \\ q_{i+1} = q_i + h\, v_{i+1} \end{gathered})tex",
+      .is_backward_euler = true});
 }
 // One Newton iteration from the current state, without line search [Baraff 1998].
 std::unique_ptr<Integrator> make_linearly_implicit_euler() {
-  return std::make_unique<BackwardEuler>(
-      IntegratorFacts{.name = "linearly_implicit_euler", .takes_one_iteration = true, .is_backward_euler = true});
+  return std::make_unique<BackwardEuler>(IntegratorFacts{
+      .name = "linearly_implicit_euler",
+      .tex =
+          R"tex(\begin{gathered} \left(M + h^2 \frac{\partial^2 V}{\partial q^2}(q_i)\right) v_{i+1} = M v_i - h \frac{\partial V}{\partial q}(q_i) \\ q_{i+1} = q_i + h\, v_{i+1} \end{gathered})tex",
+      .takes_one_iteration = true,
+      .is_backward_euler = true});
 }
 std::unique_ptr<Integrator> make_bdf2() { return std::make_unique<Bdf2>(); }
 std::unique_ptr<Integrator> make_quasi_static() { return std::make_unique<QuasiStatic>(); }

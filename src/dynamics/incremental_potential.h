@@ -2,7 +2,8 @@
 // time step.
 //   backward Euler: w = 1, f = h^2, q~ = q_t + h qdot_t          statics: w = 0, f = 1
 // Pinned degrees of freedom are not variables: their gradient is zero, and their Hessian rows are those of the identity
-// (see pins.h).
+// (see pins.h). Positions q, directions d and gradients g have 3 entries per vertex. Units: q, d [m]; V, D [J]; E and g
+// are an energy and a force times f.
 #pragma once
 #include <limits>
 #include <optional>
@@ -22,21 +23,29 @@ class IncrementalPotential : public Objective, public HasMetric, public HasParts
   // Set the step for subsequent evaluations of the terms of V and D. Called before begin_step().
   void set_potential_step(const StepContext& step);
   void set_damping_step(const StepContext& step);
-  void move_obstacles(double time);  // after set_potential_step()
-  // Sets q~, w and f.
+  // Sets the time of the obstacles [s]. Called after set_potential_step().
+  void move_obstacles(double time);
+  // Sets q~ [m], w and f, and discards what is known about the last step. Called before the first evaluation.
   void begin_step(std::span<const double> predicted, double inertia /* w */, double factor /* f */);
 
-  // Lagged coefficients, see LaggedEnergy.
+  // Returns whether a term of D has lagged coefficients, see LaggedEnergy.
   bool is_lagged() const;
+  // Evaluates the lagged coefficients at q.
   void update_lagged(std::span<const double> q);
 
+  // Returns E(q). Sums the magnitudes of its terms for the rounding error.
   Evaluation evaluate(std::span<const double> q) override;
+  // Writes dE/dq, and keeps the gradient of each term for add_known_forces().
   void gradient(std::span<const double> q, std::span<double> g) override;
+  // Computes w M + f (d2V/dq2 + d2D/dq2) and the rounding error of the gradient.
   const BlockSparse& evaluate_hessian(std::span<const double> q, const Projection& projection) override;
+  // Keeps the values and forces of the last evaluation as those at q.
   void note_iterate(std::span<const double> q) override;
   const BlockSparse& metric() override;  // M, with identity rows for pinned vertices
+  // Returns the smallest bound of the terms of V.
   double max_step(std::span<const double> q, std::span<const double> d) override;
   double step_limit() const { return step_limit_; }  // last result of max_step(); infinity before one in this step
+  // Adds the stops of contact and friction, see HasStops.
   const BlockSparse* add_stops(std::span<const double> q, std::span<const double> d, double max_step,
                                std::span<double> g) override;
   // x: radius of the body [m]. value: energy of doubling the size of the body, in units of E, without constant offsets
@@ -48,6 +57,7 @@ class IncrementalPotential : public Objective, public HasMetric, public HasParts
             .gradient_unit = factor_,
             .gradient_round_off = gradient_round_off_};
   }
+  // Parts are bodies that no tet connects, and regions of one body with very different stiffnesses.
   int part_count() const override { return parts_.empty() ? 1 : static_cast<int>(parts_.size()); }
   void measure_parts(std::span<const double> g, std::span<GradientPart> parts) override;
   double part_round_off(int part) const override {
@@ -59,8 +69,9 @@ class IncrementalPotential : public Objective, public HasMetric, public HasParts
   int part_of(int vertex) const { return part_of_.empty() ? 0 : part_of_[vertex]; }
   double growth_stiffness() const { return growth_stiffness_; }  // growth stiffness of V, see scales() [J]
 
-  // Returns the rounding error of |g| at q, where the gradient was evaluated last. It includes the rounding of
-  // positions, amplified by the stiffness of the last Hessian or of the body at rest, and of the sum of forces.
+  // Returns the rounding error of |g| at q [units of g], where the gradient was evaluated last. It includes the
+  // rounding of positions, amplified by the stiffness of the last Hessian or of the body at rest, and of the sum of
+  // forces.
   double total_gradient_round_off(std::span<const double> q) const;
   // round_offs[k] += weight * rounding error of part k [N].
   void add_part_round_off(std::span<const double> q, double weight, std::span<double> round_offs) const;
@@ -75,8 +86,8 @@ class IncrementalPotential : public Objective, public HasMetric, public HasParts
   const std::vector<ActiveTerm>& potential() const { return potential_; }  // terms of V: elasticity, then loads
   // The terms of V after elasticity, and those of D, in the order of the model.
   std::span<const ActiveTerm> loads() const { return std::span(potential_).subspan(model_.elasticity.size()); }
-  const std::vector<ActiveTerm>& damping() const { return damping_; }
-  const BlockPattern& pattern() const { return pattern_; }
+  const std::vector<ActiveTerm>& damping() const { return damping_; }  // terms of D
+  const BlockPattern& pattern() const { return pattern_; }             // of the Hessian: one block row per vertex
 
  private:
   struct Terms {                            // E by terms

@@ -8,6 +8,7 @@ enum class StabilityLimit { symplectic_euler, rk4 };
 
 struct IntegratorFacts {
   std::string_view name;
+  std::string_view tex = {};         // update rule in TeX, with the acceleration a of M a = -dV/dx - C v
   int order = 1;                     // order of accuracy in time; 0: statics
   bool is_implicit = true;           // each step minimizes
   bool is_multistep = false;         // uses the start of the previous step of the same length

@@ -9,7 +9,7 @@ namespace aspic {
 namespace {
 
 constexpr int kMaxPasses = 50;
-constexpr double kRough = 1e4;      // first tolerance, relative to the one asked for
+constexpr double kRough = 1e4;      // first tolerance, relative to the requested one
 constexpr double kReduction = 0.3;  // of the forces by one pass
 constexpr double kProgress = 0.9;   // passes that reduce the forces by less are stalled
 constexpr double kNoise = 100;      // forces below this multiple of their rounding error are noise

@@ -19,7 +19,7 @@ class Friction;
 
 // Range of a body in the mesh. Its vertices and tets are consecutive.
 struct BodyRange {
-  std::string name;
+  std::string name;  // in reports and files
   int first_vertex = 0, vertex_count = 0;
   int first_tet = 0, tet_count = 0;
 };
@@ -30,8 +30,8 @@ using Motion = std::function<Vec3d(const Vec3d& start, double time)>;
 // A Dirichlet condition: prescribes the displacements of vertices along some directions, as those of x(t) = motion(x at
 // the start, t). Requires that all directions that pins prescribe at one vertex are linearly independent.
 struct Pin {
-  std::string name;
-  std::vector<int> vertices;
+  std::string name;                    // in reports
+  std::vector<int> vertices;           // in the order of the mesh
   Motion motion;                       // empty: fixed at the start
   std::vector<Vec3d> directions = {};  // orthonormal; empty: all
 };
@@ -41,17 +41,17 @@ struct Model {
   // The user's numbering of vertices and tets, for messages and files. Everything in the model and the state is in the
   // order of the mesh.
   Numbering numbering;
-  std::vector<BodyRange> bodies;
-  std::vector<double> density;  // one per tet [kg/m^3]
+  std::vector<BodyRange> bodies;  // cover the mesh, ascending
+  std::vector<double> density;    // one per tet [kg/m^3]
   // Fields to export with the results, by name, one value per tet: "young" [Pa], "poisson" [1].
   std::vector<std::pair<std::string, std::vector<double>>> tet_fields;
-  std::unique_ptr<MassMatrix> mass;
+  std::unique_ptr<MassMatrix> mass;                        // of all bodies
   std::vector<std::unique_ptr<TetElasticity>> elasticity;  // one per body
   std::vector<std::unique_ptr<Energy>> loads;              // other terms of V: gravity, springs, tractions
   std::vector<std::unique_ptr<Energy>> damping;            // incremental potentials that dissipate
-  std::vector<Pin> pins;
-  const Barrier* contact = nullptr;    // one of the loads; null: no contact
-  const Friction* friction = nullptr;  // one of the damping terms; null: no friction
+  std::vector<Pin> pins;                                   // Dirichlet conditions
+  const Barrier* contact = nullptr;                        // one of the loads; null: no contact
+  const Friction* friction = nullptr;                      // one of the damping terms; null: no friction
 };
 
 }  // namespace aspic

@@ -33,6 +33,7 @@ MaterialParameters material_parameters(const std::string& material, const Elasti
 
 class ModelBuilder {
  public:
+  // `body`: name of the body in reports. Throws InvalidInput if a tet has no positive volume.
   explicit ModelBuilder(TetMesh mesh, std::string body = "body");
 
   // Sets the same material in every tet, by name; see materials(). One of the three overloads is required.

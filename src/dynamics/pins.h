@@ -15,13 +15,14 @@ bool are_independent(std::span<const Vec3d> directions);
 
 class Pins {
  public:
-  Pins(const std::vector<Pin>& pins, std::span<const double> start /* x at time 0 */);
+  // `start`: x at time 0, 3 per vertex [m]. `pins` must outlive this.
+  Pins(const std::vector<Pin>& pins, std::span<const double> start);
 
   int vertex_count() const { return static_cast<int>(kind_.size()); }
-  bool holds(int vertex) const { return kind_[vertex] == kHeld; }  // in all directions
-  bool is_free(int vertex) const { return kind_[vertex] == kFree; }
+  bool holds(int vertex) const { return kind_[vertex] == kHeld; }    // in all directions
+  bool is_free(int vertex) const { return kind_[vertex] == kFree; }  // no pin holds it in any direction
   bool holds(int vertex, int axis) const;  // along a direction with a component along the axis
-  bool any_moves() const;
+  bool any_moves() const;                  // a pin has a motion
 
   Vec3d held_part(int vertex, const Vec3d& v) const;                         // P v
   Vec3d free_part(int vertex, const Vec3d& v) const;                         // Q v

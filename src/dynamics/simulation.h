@@ -22,15 +22,16 @@ struct AdaptiveOptions {
 struct SimulationOptions {
   double h = 0.01;                            // time step [s]
   std::string integrator = "backward_euler";  // see integrator_names()
-  AdaptiveOptions adaptive = {};
-  std::string initial_guess = "best";  // see initial_guess_names()
-  SolverOptions solver;
-  WallClock clock = steady_seconds;  // for solver.time_budget
+  AdaptiveOptions adaptive = {};              // substeps; default: none
+  std::string initial_guess = "best";         // see initial_guess_names()
+  SolverOptions solver;                       // minimization of each step
+  WallClock clock = steady_seconds;           // for solver.time_budget
 };
 
-// Names for SimulationOptions::integrator.
+// Returns the names for SimulationOptions::integrator, in the order of help texts.
 std::vector<std::string> integrator_names();
-std::vector<std::string> adaptive_integrator_names();  // integrators with an error estimate
+// Returns the integrators that support AdaptiveOptions: all but multistep and static ones.
+std::vector<std::string> adaptive_integrator_names();
 
 // Returns an option that the integrator does not support: "adaptive", "initial_guess", or a member of SolverOptions.
 std::optional<SolverConflict> find_conflict(const SimulationOptions& options);
@@ -50,30 +51,32 @@ class Simulation {
   // unchanged and the status is `interrupted`. A token that does not end the step does not affect the result.
   // Factorizations do not poll the token.
   StepReport step(const IterationObserver& observe = {}, const StopToken& stop = {});
-  // Change the subsequent steps. Both throw InvalidInput like the constructor, and then change nothing.
+  // Both change the subsequent steps. They throw InvalidInput like the constructor, and then change nothing.
+  // `solver` replaces all options of the minimization.
   void set_solver(const SolverOptions& solver);
+  // `pins` replaces all pins of the model. Their motions refer to the state at time 0.
   void set_pins(std::vector<Pin> pins);
 
-  // Valid until this is destroyed. The state is that after the last step.
-  const Model& model() const;
-  const State& state() const;
-  const SimulationOptions& options() const;
-  int steps_taken() const;  // since time 0
+  // The references are valid until this is destroyed or assigned to.
+  const Model& model() const;                // with the pins of set_pins()
+  const State& state() const;                // after the last step
+  const SimulationOptions& options() const;  // with the solver of set_solver()
+  int steps_taken() const;                   // since time 0
 
   std::vector<std::string> potential_names() const;  // one per entry of StepReport::potential
   StepReport start_report() const;                   // step 0: energies and det F of the initial state
-  double kinetic_energy() const;                     // [J]
-  std::vector<double> potential_energies() const;    // [J]
-  TetFields tet_fields() const;                      // one value per tet at the current state
+  double kinetic_energy() const;                     // of the current state [J]
+  std::vector<double> potential_energies() const;    // of the current state, one per potential_names() [J]
+  TetFields tet_fields() const;                      // one value per tet at the current state, in the model's order
   const IntegratorFacts& integrator() const;         // properties of the selected integrator
   StableStep stable_step() const;                    // for an explicit integrator, at the initial state
   std::string solver_description() const;            // methods and choices with their reasons, for logs
 
   // Everything besides model and options that subsequent steps depend on. Steps after restore() are bit-reproducible.
   struct Snapshot {
-    State state;
-    State start;  // state at time 0, which pins and ledger refer to
-    int steps_taken = 0;
+    State state;                               // after steps_taken steps
+    State start;                               // state at time 0, which pins and ledger refer to
+    int steps_taken = 0;                       // since time 0
     double level = 0;                          // the next substep has the length h / 2^level
     std::optional<State> previous;             // start of the last step or substep, if the integrator keeps it
     std::optional<double> obstacle_time = {};  // empty: the time of the state

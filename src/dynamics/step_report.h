@@ -37,8 +37,8 @@ struct StepReport : Work {  // work of all solves of the step and of this report
   int step = 0;             // 1 for the first
   double time = 0;          // time at the end of the step [s]
 
-  Status status = Status::converged;
-  Criterion criterion = Criterion::scale;
+  Status status = Status::converged;                       // the worst over all solves
+  Criterion criterion = Criterion::scale;                  // convergence test of the minimizations
   int iterations = 0, trials = 0, projected_hessians = 0;  // sums over all solves
   int elements = 0;                                        // number of tets per evaluation
   double objective = 0, objective_gradient = 0;            // E and |g| at the end of the last minimization
@@ -52,7 +52,7 @@ struct StepReport : Work {  // work of all solves of the step and of this report
   double worst_residual = 0;      // its residual [N]
   double lost_accuracy = 0;       // fraction of weight, inertia or velocities lost to round-off, if above 1e-3; else 0
   double decrement = 0;           // -g.d / 2 of the last iteration, maximum over solves [J]; 0 without iterations
-  double min_det_F = 0;
+  double min_det_F = 0;           // minimum over all tets at the end [1]; negative: inverted
 
   // Contact at the end of the step.
   int contacts = 0;              // pairs of features closer than their reach
@@ -69,9 +69,9 @@ struct StepReport : Work {  // work of all solves of the step and of this report
 
   // Ledger: kinetic + potential changes by pin_work + obstacle_work - damping_loss - numerical_loss + residual_work.
   // [J]
-  double kinetic = 0;
-  std::vector<double> potential;  // one per term of V, named by Simulation::potential_names()
-  double potential_total = 0;
+  double kinetic = 0;               // at the end of the step
+  std::vector<double> potential;    // one per term of V, named by Simulation::potential_names()
+  double potential_total = 0;       // sum of `potential`
   double pin_work = 0;              // work of moving pins and moving targets in this step
   double obstacle_work = 0;         // work of moving obstacles on bodies, including friction, in this step
   std::vector<double> target_work;  // share of the moving targets of each of Model::loads
@@ -79,7 +79,7 @@ struct StepReport : Work {  // work of all solves of the step and of this report
   double numerical_loss = 0;        // energy dissipated by the integrator in this step
   double residual_work = 0;         // work of the residual forces
   double ledger_error = 0;          // difference of both sides
-  Resultants resultants;
+  Resultants resultants;            // external forces on pins, loads and bodies
   EnergyBound energy_bound = EnergyBound::none;
   double energy_slack = 0;       // bound minus energy; 0 without a bound [J]
   std::uint64_t state_hash = 0;  // hash of the state at the end, see state_hash()

@@ -16,12 +16,15 @@ struct DampingGradients {
   std::span<double> elastic;       // with respect to theta of elasticity(), as in TetElasticity::add_parameter_gradient
 };
 
+// A dissipation potential D [J] of one time step. -dD/dx is the damping force at the velocity (x - start) / h [N]; both
+// are 0 in statics.
 class Damping : public Energy {
  public:
-  virtual int coefficient_count() const = 0;
+  virtual int coefficient_count() const = 0;  // number of coefficients for derivatives; one per tet if they vary
   virtual const TetElasticity* elasticity() const { return nullptr; }  // the elasticity whose parameters D depends on
   virtual double mass_factor(int /*vertex*/) const { return 0; }  // a in the contribution a/(2h) |x - start|_M^2 to D
-  // Requires a step whose coefficients are evaluated at its start.
+  // Adds `scale` times the derivatives of w . dD/dx at x to `gradients`; w has 3 entries per vertex. Requires a step
+  // whose coefficients are evaluated at its start.
   virtual void add_derivatives(Positions x, const Context& context, std::span<const double> w, double scale,
                                const DampingGradients& gradients) const = 0;
 };

@@ -37,7 +37,7 @@ class Energy {
   };
 
   virtual ~Energy() = default;
-  virtual std::string_view name() const = 0;
+  virtual std::string_view name() const = 0;  // in reports, such as "gravity"
   // Returns whether dV/dx is independent of x. Such a gradient has no round-off.
   virtual bool has_constant_gradient() const { return false; }
 
@@ -46,6 +46,7 @@ class Energy {
   // Stores the slots of these blocks in the pattern. Called before the first Hessian and the first context.
   virtual void bind(const BlockPattern&) {}
 
+  // Returns a context of this term at time 0. Called after bind().
   virtual std::unique_ptr<Context> make_context() const { return std::make_unique<Context>(); }
   // Prepares the context for a step. Overrides update targets to step.time or store step.start for damping.
   virtual void begin_step(const StepContext& step, Context& context) const {
@@ -106,7 +107,8 @@ class SteadyEnergy : public Energy {
   }
 };
 
-// A term with its context. Between two calls of begin_step(), V is a function of x alone. The term must outlive it.
+// A term with its context, which its functions pass to those of the same name. Between two calls of begin_step(), V is
+// a function of x alone. The term must outlive it.
 class ActiveTerm {
  public:
   explicit ActiveTerm(const Energy& energy)
@@ -117,6 +119,7 @@ class ActiveTerm {
         context_(energy.make_context()) {}
   ActiveTerm(const Energy& energy, const StepContext& step) : ActiveTerm(energy) { begin_step(step); }
 
+  // Prepares the context for a step.
   void begin_step(const StepContext& step) { energy_->begin_step(step, *context_); }
   bool is_lagged() const { return lagged_; }
   void update_lagged(Positions x) {

@@ -11,15 +11,17 @@
 
 namespace aspic {
 
-std::unique_ptr<Energy> make_linear_load(std::string name, std::vector<double> force);  // 3 per vertex [N]
+// Returns the term of constant forces, 3 per vertex [N]. `name` appears in reports.
+std::unique_ptr<Energy> make_linear_load(std::string name, std::vector<double> force);
 // Adds the forces at the given time [s] to `force`, 3 per vertex [N].
 using AddForces = std::function<void(double time, std::span<double> force)>;
-// The sum of constant forces, 3 per vertex [N], and varying ones.
+// Returns the term of the sum of constant forces, 3 per vertex [N], and varying ones.
 std::unique_ptr<Energy> make_linear_load(std::string name, std::vector<double> constant, AddForces varying);
 
-// Add nodal forces to `force`, 3 per vertex [N].
-void add_body_force(const TetMesh& mesh, int tet, const Vec3d& force_density, std::span<double> force);  // [N/m^3]
-// Adds a traction [Pa] on a triangle with corners X in the rest shape. A pressure p is the traction -p n.
+// Both add nodal forces to `force`, 3 per vertex [N], which equal the load for linear shape functions.
+// `force_density`: uniform in the tet [N/m^3].
+void add_body_force(const TetMesh& mesh, int tet, const Vec3d& force_density, std::span<double> force);
+// `traction`: uniform on a triangle of the vertices X at rest [Pa]. A pressure p is the traction -p n.
 void add_traction(const std::vector<Vec3d>& X, const Triangle& triangle, const Vec3d& traction,
                   std::span<double> force);
 

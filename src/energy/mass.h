@@ -8,19 +8,23 @@
 
 namespace aspic {
 
-enum class MassKind { consistent, lumped };
+enum class MassKind {
+  consistent,  // integrals of products of the linear shape functions
+  lumped,      // diagonal: row sums of the consistent matrix
+};
 
 class MassMatrix {
  public:
-  MassMatrix(const TetMesh& mesh, std::span<const double> density /* per tet [kg/m^3] */, MassKind kind);
+  // `density`: one per tet [kg/m^3]. The mesh need not outlive this.
+  MassMatrix(const TetMesh& mesh, std::span<const double> density, MassKind kind);
 
   MassKind kind() const { return kind_; }
   std::span<const double> vertex_mass() const { return lumped_; }  // row sums [kg]
-  double total() const;                                            // [kg]
+  double total() const;                                            // mass of all vertices [kg]
 
   void multiply(std::span<const double> x, std::span<double> y) const;                  // y = M x; 3 entries per vertex
   double squared_distance(std::span<const double> x, std::span<const double> y) const;  // (x - y)' M (x - y)
-  void add_couplings(Couplings& couplings) const;
+  void add_couplings(Couplings& couplings) const;      // appends the vertex pairs of its off-diagonal blocks
   void bind(const BlockPattern& target);               // stores the slots that add_to() writes
   void add_to(double scale, BlockSparse& H) const;     // H += scale M
   void assign_to(double scale, BlockSparse& H) const;  // H = scale M

@@ -16,17 +16,19 @@
 
 namespace aspic {
 
+// A pressure that the caller sets, constant in time.
 class Pressure : public SteadyEnergy {
  public:
   virtual void set_pressure(double pressure) = 0;      // [Pa], for subsequent evaluations
-  virtual double pressure() const = 0;                 // [Pa]
+  virtual double pressure() const = 0;                 // the value of subsequent evaluations [Pa]
   virtual double swept_volume(Positions x) const = 0;  // [m^3], positive outward
 };
 
 // Pressure as a function of time: t [s] to p [Pa].
 using PressureOfTime = std::function<double(double)>;
 
-// `patch`: boundary triangles of the mesh, outward oriented. `pressure`: [Pa], constant or a function of time.
+// Return the term for a patch of boundary triangles of the mesh, outward oriented; the mesh need not outlive it.
+// `pressure`: [Pa], the initial value or a function of time. `name` appears in reports; the default is "pressure".
 std::unique_ptr<Pressure> make_pressure(const TetMesh& mesh, std::vector<Triangle> patch, double pressure);
 std::unique_ptr<Energy> make_pressure(std::string name, const TetMesh& mesh, std::vector<Triangle> patch,
                                       PressureOfTime pressure);

@@ -9,8 +9,8 @@
 
 namespace aspic {
 
-// The coefficients of the term are a and, if it is not 0, b. `elasticity` may be null if b = 0. Mass and elasticity
-// must outlive the term.
+// Returns the damping term. The coefficients of the term are a and, if it is not 0, b. `elasticity` may be null if b =
+// 0. Mass and elasticity must outlive the term.
 std::unique_ptr<Damping> make_rayleigh_damping(const MassMatrix& mass, double mass_factor /* a [1/s] */,
                                                const TetElasticity* elasticity, double stiffness_factor /* b [s] */);
 

@@ -68,7 +68,7 @@ class GmshReader {
       if (const auto twice = tags_.prepare())
         text_.fail("two nodes have the tag " + std::to_string(*twice) + "; renumber them");
     } else if (name == "$Elements") {
-      if (!has_nodes_) text_.fail("$Elements stands before $Nodes; put the nodes first");
+      if (!has_nodes_) text_.fail("$Elements comes before $Nodes; put the nodes first");
       text_.skip_line();
       is_4_ ? read_elements_4() : read_elements_2();
     } else if (name == "$Entities" && is_4_) {

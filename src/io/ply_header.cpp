@@ -79,7 +79,7 @@ PlyHeader parse_ply_header(const std::string& file, std::string_view contents) {
     } else if (keyword == "element") {
       header.elements.push_back(element(text));
     } else if (keyword == "property") {
-      if (header.elements.empty()) text.fail("a property stands before any element; export the file again");
+      if (header.elements.empty()) text.fail("a property comes before any element; export the file again");
       header.elements.back().properties.push_back(property(text));
     } else if (keyword != "comment" && keyword != "obj_info") {
       text.fail("unknown header line " + shown(keyword) +

@@ -37,18 +37,20 @@ struct Vtu : VtuFields {
 // InvalidInput with file and line for other cells, and for inconsistent counts, indices or sizes.
 Vtu read_vtu(const std::filesystem::path& path);
 Vtu parse_vtu(std::string_view contents, const std::string& file);  // `file` is the name in messages
-// Reads only the points, 3 coordinates each.
+// Reads only the points, 3 coordinates each [m]. Throws InvalidInput like read_vtu().
 std::vector<double> read_vtu_points(const std::filesystem::path& path);
 
-// Writes inline base64, zlib-compressed, with points in double precision (3 coordinates each). The output is
-// reproducible. Throws InvalidInput if the file cannot be written.
+// Writes inline base64, zlib-compressed. `points`: 3 coordinates per point [m], in double precision; tets index points.
+// Point fields have one entry of `components` values per point, cell fields one per tet. The output is reproducible.
+// Throws InvalidInput if the file cannot be written.
 void write_vtu(const std::filesystem::path& path, std::span<const double> points, const std::vector<Tet>& tets,
                const VtuFields& fields = {});
 
+// Writes a surface in the same way; cell fields have one entry per triangle.
 void write_surface_vtu(const std::filesystem::path& path, const TriMesh& surface, const VtuFields& fields = {});
 
-// Writes the index of a time series: (time [s], file name relative to the index). `others`: a second file of each time,
-// or nothing.
+// Writes the index of a time series: (time [s], file name relative to the index). `others`: empty, or a second file
+// name for each frame. Throws InvalidInput if the file cannot be written.
 void write_pvd(const std::filesystem::path& path, const std::vector<std::pair<double, std::string>>& frames,
                const std::vector<std::string>& others = {});
 

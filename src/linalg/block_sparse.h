@@ -28,12 +28,12 @@ struct BlockPattern {
 
   int rows() const { return static_cast<int>(row_start.size()) - 1; }
   int64_t block_count() const { return static_cast<int64_t>(column.size()); }
-  int64_t diagonal(int row) const { return row_start[row + 1] - 1; }
+  int64_t diagonal(int row) const { return row_start[row + 1] - 1; }  // index of block (row, row)
   int64_t slot(int row, int col) const;  // returns the index of block (row, col), col <= row; it must exist
 };
 
-BlockPattern make_pattern(int rows,
-                          Couplings couplings);  // Returns the pattern of the given couplings and all diagonal blocks.
+// Returns the pattern of the given couplings and all diagonal blocks. Requires couplings of rows below `rows`.
+BlockPattern make_pattern(int rows, Couplings couplings);
 
 // A symmetric matrix that couples up to four block rows, such as two surfaces in contact. It stores the off-diagonal
 // blocks; its diagonal blocks are added to those of the BlockSparse matrix.
@@ -50,13 +50,14 @@ void for_each_block(const Stencil& stencil, Visit visit) {
       if (stencil.row[i] >= 0 && stencil.row[j] >= 0) visit(stencil.row[i], stencil.row[j], stencil.block[k]);
 }
 
+// A matrix of the blocks of a pattern, which must outlive it, and of stencils.
 struct BlockSparse {
   const BlockPattern* pattern = nullptr;
   std::vector<Mat3d> block;       // one per entry of pattern->column
   std::vector<Stencil> stencils;  // added to the matrix; their pattern may change
 
   explicit BlockSparse(const BlockPattern& p) : pattern(&p), block(p.block_count()) {}
-  void set_zero();
+  void set_zero();                                                      // removes the stencils
   void multiply(std::span<const double> x, std::span<double> y) const;  // y = H x; x, y: 3 entries per row
 };
 

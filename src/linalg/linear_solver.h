@@ -25,14 +25,15 @@ struct SolveReport {
 class LinearSolver {
  public:
   virtual ~LinearSolver() = default;
-  virtual std::string_view name() const = 0;
+  virtual std::string_view name() const = 0;                               // as in linear_solver_names()
   virtual std::string description() const { return std::string(name()); }  // method and reason for its choice, for logs
+  // Prepares for matrices of the pattern, which must outlive this.
   virtual void analyze(const BlockPattern& pattern) = 0;
   // Starts a new sequence of similar matrices. Discards all data of earlier matrices, so that results depend on this
   // sequence alone.
   virtual void begin() {}
-  virtual bool factorize(
-      const BlockSparse& H) = 0;  // returns false if H is not positive definite. H must outlive the solves.
+  // Returns false if H is not positive definite. H must outlive the solves.
+  virtual bool factorize(const BlockSparse& H) = 0;
   // Solves H x = b up to |b - H x| <= tolerance |b|; direct solvers ignore the tolerance. b, x: 3 entries per row.
   virtual SolveReport solve(std::span<const double> b, std::span<double> x, double tolerance) = 0;
   // Sets the token that subsequent solves poll. Direct solvers ignore it.
@@ -42,6 +43,6 @@ class LinearSolver {
 // Returns a solver by name: "auto", "cholesky", "multigrid" or "block_jacobi" (conjugate gradients). Throws
 // InvalidInput for another name. `solves`: expected number of right-hand sides per factorization; used by "auto".
 std::unique_ptr<LinearSolver> make_linear_solver(std::string_view name, int solves = 1);
-std::vector<std::string> linear_solver_names();
+std::vector<std::string> linear_solver_names();  // names that make_linear_solver() accepts
 
 }  // namespace aspic

@@ -19,8 +19,9 @@ struct MaterialParametersOver {
 };
 using MaterialParameters = MaterialParametersOver<double>;
 
+// A parameter of a material besides its small-strain constants.
 struct ExtraParameter {
-  std::string name, unit, meaning;
+  std::string name, unit, meaning;        // unit: empty if dimensionless
   double fallback = 0, min = 0, max = 0;  // default value and accepted range
 };
 
@@ -37,17 +38,18 @@ struct LameParameters {
   }
 };
 
+// Description of a material.
 struct MaterialInfo {
   std::string name;              // "neo_hookean"
   std::string formula;           // energy density as one line of plain text
   std::vector<std::string> tex;  // energy density, definitions of its symbols and its domain in TeX, for pages
   std::string remarks;           // limits and source; one or two sentences
-  std::vector<ExtraParameter> extra = {};
-  bool barrier = false;   // +inf for det F <= 0
-  bool objective = true;  // invariant under rotations of the body
+  std::vector<ExtraParameter> extra = {};  // in the order of MaterialParameters::extra
+  bool barrier = false;                    // +inf for det F <= 0
+  bool objective = true;                   // invariant under rotations of the body
 };
 
-const std::vector<MaterialInfo>& materials();
+const std::vector<MaterialInfo>& materials();              // all, in the order of help texts
 const MaterialInfo& material_info(std::string_view name);  // throws InvalidInput for an unknown name
 
 }  // namespace aspic

@@ -26,6 +26,7 @@ inline constexpr int kPackWidth = 4;
 inline constexpr int kPackWidth = 2;
 #endif
 
+// Arithmetic is lane by lane.
 struct Pack {
   using Lanes __attribute__((vector_size(kPackWidth * sizeof(double)))) = double;
   Lanes v;

@@ -16,13 +16,13 @@ class Renumbering {
 
   int to_user(int stored) const { return user_.empty() ? stored : user_[stored]; }
   int from_user(int user) const { return stored_.empty() ? user : stored_[user]; }
-  std::vector<int> to_user(std::vector<int> stored) const;  // ascending
+  std::vector<int> to_user(std::vector<int> stored) const;  // user's indices of a set, ascending
 
   // Reorders values of all elements, `components` values per element.
   std::vector<double> to_user(std::span<const double> stored, int components = 1) const;
   std::vector<double> from_user(std::span<const double> user, int components = 1) const;
 
-  bool is_identity() const { return user_.empty(); }
+  bool is_identity() const { return user_.empty(); }  // both orders are equal
   // Appends a permutation `part` of `more` elements to this one, which has `count` elements.
   void append(int count, const Renumbering& part, int more);
 
@@ -30,11 +30,13 @@ class Renumbering {
   std::vector<int> user_, stored_;  // both empty: identity
 };
 
+// Numberings of the vertices and the tets of one mesh.
 struct Numbering {
   Renumbering vertex, tet;
 };
 
-Numbering locality_numbering(const TetMesh& mesh);  // along a Hilbert curve; `mesh` is in the user's order
+// Returns an order along a Hilbert curve. `mesh` is in the user's order.
+Numbering locality_numbering(const TetMesh& mesh);
 
 // Reorder a mesh. The corners of each tet keep their order.
 TetMesh from_user(const Numbering& numbering, const TetMesh& user);

@@ -13,7 +13,7 @@ using Predicate = std::function<bool(const Vec3d& X)>;
 // Returns the vertices that satisfy the predicate, ascending.
 std::vector<int> vertices_where(const TetMesh& mesh, const Predicate& predicate);
 
-// Returns f(X) at every vertex, 3 values per vertex.
+// Returns f(X) at the rest position X [m] of every vertex, 3 values per vertex.
 std::vector<double> at_vertices(const TetMesh& mesh, const std::function<Vec3d(const Vec3d& X)>& f);
 
 // Returns X of every vertex, 3 values per vertex [m].

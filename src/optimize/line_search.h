@@ -16,13 +16,14 @@ enum class DecreaseTest {
 };
 
 struct LineSearchOptions {
-  double alpha_max = 1;
+  double alpha_max = 1;               // first step length, > 0
   double sufficient_decrease = 1e-4;  // c, in (0, 1)
   double shrink = 0.5;                // p, in (0, 1)
   double tolerance = 1e-10;           // smallest alpha; the search then ends as stuck
   DecreaseTest test = DecreaseTest::textbook;
 };
 
+// A step length that the search tested.
 struct Trial {
   double alpha = 0;
   double value = 0;       // E(x + alpha d)

@@ -44,12 +44,12 @@ enum class Criterion {
   acceleration,    // largest |d| of a vertex <= tolerance * h^2
 };
 std::string_view to_string(Criterion criterion);
-std::vector<Criterion> all_criteria();
+std::vector<Criterion> all_criteria();  // in the order above
 inline bool tests_direction(Criterion criterion) { return criterion >= Criterion::decrement; }
 
 struct MinimizeOptions {
-  int max_iterations = 200;
-  double tolerance = 1e-6;
+  int max_iterations = 200;  // then the status is `iteration_limit`
+  double tolerance = 1e-6;   // its unit depends on the criterion
   Criterion criterion = Criterion::scale;
   double h = 1;              // time step for the criteria velocity and acceleration [s]
   double max_forcing = 0.1;  // largest relative residual of inner linear solves
@@ -57,8 +57,9 @@ struct MinimizeOptions {
   StopToken stop = {};  // polled in every iteration
 };
 
+// Record of one iteration. Units are those of the objective.
 struct Iteration {
-  int index = 0;
+  int index = 0;             // 0 for the first
   double value = 0;          // E before the step
   double gradient_norm = 0;  // |g| before the step
   double decrement = 0;      // Newton decrement: -g.d / 2
@@ -79,18 +80,20 @@ struct LiveIteration : Iteration {
   std::span<const Trial> tried;     // trials of the line search
 };
 
+// Result of a minimization. Units are those of the objective.
 struct MinimizeReport : Work {
   Status status = Status::iteration_limit;
   int iterations = 0;
-  double value = 0, gradient_norm = 0;
-  double reached = 0;             // the tested quantity: |g| of the worst part, or a norm of d
-  double threshold = 0;           // its threshold
-  double gradient_round_off = 0;  // norm of the rounding error of the gradient
-  double lost_accuracy = 0;       // see HasParts::lost_accuracy(); if positive, the status is round_off
-  double decrement = 0;           // -g.d / 2 of the last iteration; 0 without one
+  double value = 0, gradient_norm = 0;  // E and |g| at the returned x
+  double reached = 0;                   // the tested quantity: |g| of the worst part, or a norm of d
+  double threshold = 0;                 // its threshold
+  double gradient_round_off = 0;        // norm of the rounding error of the gradient
+  double lost_accuracy = 0;             // see HasParts::lost_accuracy(); if positive, the status is round_off
+  double decrement = 0;                 // -g.d / 2 of the last iteration; 0 without one
   int trials = 0, fallbacks = 0, projected_hessians = 0, projected_elements = 0;
 };
 
+// Called after every iteration.
 using IterationObserver = std::function<void(const LiveIteration&)>;
 
 // The initial guess of a minimization; x receives the result.

@@ -9,6 +9,7 @@
 
 namespace aspic {
 
+// A value of the function.
 struct Evaluation {
   double value = 0;      // +inf where the function is undefined
   double round_off = 0;  // bound of the rounding error of `value`
@@ -29,7 +30,7 @@ class Objective {
   virtual ~Objective() = default;
   virtual Evaluation evaluate(std::span<const double> x) = 0;  // E(x)
   double value(std::span<const double> x) { return evaluate(x).value; }
-  virtual void gradient(std::span<const double> x, std::span<double> g) = 0;  // g = dE/dx
+  virtual void gradient(std::span<const double> x, std::span<double> g) = 0;  // g = dE/dx, n entries
   // Returns the Hessian at x, modified according to `projection`. The reference is valid until the next call.
   const BlockSparse& hessian(std::span<const double> x, const Projection& projection) {
     ++hessians_made_;
@@ -38,7 +39,7 @@ class Objective {
   uint64_t hessians_made() const { return hessians_made_; }       // number of calls of hessian()
   int projected_elements() const { return projected_elements_; }  // modified elements of the last Hessian
 
-  virtual ObjectiveScales scales() const { return {}; }
+  virtual ObjectiveScales scales() const { return {}; }  // at the last evaluations
   // Returns an upper bound of the feasible step lengths alpha along d.
   virtual double max_step(std::span<const double> /*x*/, std::span<const double> /*d*/) {
     return std::numeric_limits<double>::infinity();
@@ -58,6 +59,7 @@ class Objective {
 
 // Optional interfaces of an objective. Minimizers query them with dynamic_cast.
 
+// Interface for objectives that define the norm of steps.
 class HasMetric {
  public:
   virtual ~HasMetric() = default;
@@ -66,6 +68,7 @@ class HasMetric {
   virtual const BlockSparse& metric() = 0;
 };
 
+// Interface for objectives that approximate the inverse of their Hessian.
 class HasPreconditioner {
  public:
   virtual ~HasPreconditioner() = default;
@@ -101,7 +104,7 @@ struct GradientPart {
 class HasParts {
  public:
   virtual ~HasParts() = default;
-  virtual int part_count() const = 0;
+  virtual int part_count() const = 0;  // at least 1
   // Writes norm and scale of each part. g: the gradient evaluated last.
   virtual void measure_parts(std::span<const double> g, std::span<GradientPart> parts) = 0;
   // Returns the rounding error of |g| of the part, estimated from the last Hessian.

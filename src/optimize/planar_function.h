@@ -8,6 +8,7 @@ namespace aspic {
 
 using Planar = std::array<double, 2>;  // a point of the plane, or a gradient
 
+// Symmetric 2 x 2 matrix of second derivatives.
 struct PlanarHessian {
   double xx = 0, xy = 0, yy = 0;
 };
@@ -18,7 +19,7 @@ struct QuadraticModel {
   double value = 0;
   Planar gradient{};
   PlanarHessian hessian;
-  double at(const Planar& p) const;
+  double at(const Planar& p) const;  // value of the model at a point p of the plane
 };
 
 class PlanarFunction : public Objective {
@@ -26,8 +27,10 @@ class PlanarFunction : public Objective {
   PlanarFunction();
 
   virtual double at(const Planar& p) const = 0;  // +-inf or NaN where undefined
+  // Derivatives at p; NaN where undefined.
   virtual Planar gradient_at(const Planar& p) const = 0;
   virtual PlanarHessian hessian_at(const Planar& p) const = 0;
+  // Returns the model about p, with the Hessian modified as by Projection.
   QuadraticModel model(const Planar& p, Definiteness kind = Definiteness::exact) const;
 
   Evaluation evaluate(std::span<const double> x) override;

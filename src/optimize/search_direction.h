@@ -11,6 +11,7 @@
 
 namespace aspic {
 
+// Work and properties of one direction.
 struct DirectionReport : Work {
   int projected_elements = 0;    // number of elements with modified Hessians
   bool projected = false;        // a modified Hessian replaced the exact one
@@ -23,7 +24,7 @@ struct DirectionReport : Work {
 
 // Bounds of the relative residual of inner linear solves [Kelley 1995, eq. 6.20].
 struct InnerAccuracy {
-  double loosest = 0.1;
+  double loosest = 0.1;              // upper bound
   double enough = 0;                 // sufficient for the last iteration
   std::optional<double> value = {};  // E(x), if known
 };
@@ -39,7 +40,7 @@ struct Iterate {
 class SearchDirection {
  public:
   virtual ~SearchDirection() = default;
-  virtual std::string_view name() const = 0;
+  virtual std::string_view name() const = 0;  // as in minimizer_names()
   // Returns the method and its choices with reasons, for logs.
   virtual std::string description() const { return std::string(name()); }
 

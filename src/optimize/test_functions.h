@@ -39,13 +39,14 @@ class Quadratic : public PlanarFunction {
 // Description of a test function.
 struct TestFunction {
   std::string name, formula, remarks;
-  Planar minimizer{};
-  double minimum = 0;
+  Planar minimizer{};       // position of the minimum
+  double minimum = 0;       // value there
   Planar start{};           // recommended initial guess
   Planar lower{}, upper{};  // region to plot
 };
-std::vector<TestFunction> test_functions();
-TestFunction test_function_info(const std::string& name);                     // throws InvalidInput for an unknown name
-std::unique_ptr<PlanarFunction> make_test_function(const std::string& name);  // throws InvalidInput for an unknown name
+std::vector<TestFunction> test_functions();  // all, in the order of help texts
+// Both throw InvalidInput for an unknown name.
+TestFunction test_function_info(const std::string& name);
+std::unique_ptr<PlanarFunction> make_test_function(const std::string& name);
 
 }  // namespace aspic

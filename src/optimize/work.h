@@ -5,9 +5,10 @@
 namespace aspic {
 
 struct Work {
-  int values = 0, gradients = 0, hessians = 0;  // each over all elements
-  int factorizations = 0, linear_iterations = 0;
-  int products = 0, cycles = 0;  // matrix products and multigrid cycles of linear solves
+  int values = 0, gradients = 0, hessians = 0;  // evaluations, each over all elements
+  int factorizations = 0;                       // of the linear solver
+  int linear_iterations = 0;                    // of conjugate gradients
+  int products = 0, cycles = 0;                 // matrix products and multigrid cycles of linear solves
 
   void add(const Work& other) {
     values += other.values;

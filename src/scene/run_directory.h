@@ -7,7 +7,7 @@
 
 namespace aspic {
 
-enum class ExistingRun { refuse, overwrite };
+enum class ExistingRun { refuse, overwrite };  // how create() treats an earlier run
 
 class RunDirectory {
  public:
@@ -20,11 +20,12 @@ class RunDirectory {
   ~RunDirectory();
   RunDirectory(RunDirectory&&) noexcept;
 
+  // Append to the files of the run. Throw InvalidInput if one cannot be written.
   void on_iteration(int step, const Iteration& iteration);               // iterations.csv
   void on_step(const StepReport& report, const Simulation& simulation);  // steps.csv, frames, checkpoint
   void finish(const Simulation& simulation);                             // last checkpoint, indices, closes files
 
-  const std::filesystem::path& path() const;
+  const std::filesystem::path& path() const;                 // of the directory
   std::filesystem::path trace_folder(int first_step) const;  // folder of a trace that begins after the step
 
  private:

@@ -13,17 +13,20 @@
 
 namespace aspic {
 
+// Output of a run: the table `output` of a scene.
 struct OutputOptions {
   double every = 0;  // seconds of simulated time between frames; 0: every step
+  // Formats of the frames, and report.html.
   bool vtu = true, obj = false, ply = false, pc2 = true, usd = true, report = true;
   bool double_precision = false;  // all numbers of the VTU frames; positions have it always
   double checkpoint_every = 1;    // seconds of wall time between checkpoints; 0: with every frame
 };
 
+// A surface to draw.
 struct Skin {
   TriMesh rest;         // the fine surface, or the boundary of the body
   Embedding embedding;  // into the vertices of the model
-  std::string body;
+  std::string body;     // name of its BodyRange
 };
 
 struct Scene {

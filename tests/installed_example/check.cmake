@@ -27,7 +27,7 @@ foreach(header ${installed})
   endforeach()
 endforeach()
 
-# The length of what the compiler reads stands for the time that it takes.
+# Counts the preprocessed lines, a measure of compile time.
 function(count_lines header result)
   file(WRITE ${WORK}/lines.cpp "#include <${header}>\n")
   execute_process(COMMAND ${COMPILER} -std=c++20 -E -P -I${WORK}/prefix/include ${WORK}/lines.cpp OUTPUT_VARIABLE text

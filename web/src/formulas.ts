@@ -1,10 +1,21 @@
-// Formulas of the lecture, of named functions and of materials. The build converts their TeX to MathML.
+// Formulas of the lecture, of named functions, of materials and of integrators. The build converts their TeX to MathML.
 import { element } from "./dom";
 import source from "./formulas.json";
 import type { Setting } from "./protocol";
 
 const formulas: Record<string, string[]> = source;
-const kSymbols = "I₁ = tr FᵀF, J = det F, K: bulk modulus; μ and λ: Lamé constants of E and ν";
+
+// Settings whose choices have formulas: what they are, and their symbols.
+export const kWithFormulas: Record<string, { title: string; symbols: string }> = {
+  "material.model": {
+    title: "Strain energy density",
+    symbols: "I₁ = tr FᵀF, J = det F, K: bulk modulus; μ and λ: Lamé constants of E and ν",
+  },
+  "time.integrator": {
+    title: "Update rule",
+    symbols: "h: time step, v: velocity, a: acceleration, M a = −∂V/∂q − C v with the damping C",
+  },
+};
 
 // Formulas of a lesson. Its id begins with the name of the demonstration that has them.
 export function formulasOf(id: string): string[] {
@@ -24,11 +35,11 @@ export function formulaElements(id: string): HTMLElement[] {
   return elements(formulasOf(id));
 }
 
-export function materialModel(settings: Setting[]): string {
-  return String(settings.find(({ key }) => key === "material.model")?.value ?? "");
+export function chosen(settings: Setting[], key: string): string {
+  return String(settings.find((setting) => setting.key === key)?.value ?? "");
 }
 
-// Strain energy density of a material model.
-export function materialFormulas(model: string): HTMLElement[] {
-  return elements(formulas[model] ?? [], kSymbols);
+// Formulas of the chosen value of a setting in kWithFormulas.
+export function choiceFormulas(settings: Setting[], key: string): HTMLElement[] {
+  return elements(formulas[chosen(settings, key)] ?? [], kWithFormulas[key]?.symbols);
 }

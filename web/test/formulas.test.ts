@@ -9,12 +9,17 @@ test("formulas are bundled as MathML", () => {
 });
 
 test("parts of a demonstration share its formulas", () => {
-  assert.equal(formulasOf("43-51_quadratic_model_surface").length, 2);
+  assert.equal(formulasOf("43-51_quadratic_model_surface").length, 3);
   assert.deepEqual(formulasOf("43-51_quadratic_model"), formulasOf("43-51_quadratic_model_surface"));
 });
 
 test("pages without formulas have none", () => {
   assert.deepEqual(formulasOf("02_fine_mesh"), []);
+});
+
+test("integrators have their update rule", () => {
+  assert.match(formulasOf("backward_euler")[0]!, /^<math.*<mi>h<\/mi>.*<\/math>$/s);
+  assert.notDeepEqual(formulasOf("symplectic_euler"), formulasOf("forward_euler"));
 });
 
 test("materials have their energy density first", () => {

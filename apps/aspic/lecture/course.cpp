@@ -37,13 +37,15 @@ const std::vector<Demonstration>& demonstrations() {
       {"06_chutes",
        {6},
        "bodies tumble down chutes",
-       "Soft bodies fall on chutes and slide down. Contact is one more summand of V: a barrier energy that is infinite "
-       "where surfaces touch, so that the minimizer never intersects.",
+       "Soft bodies fall on chutes and slide down. Contact is one more summand of V: a barrier energy kappa w b(d) for "
+       "each point of area w at a distance d < r, infinite where surfaces touch, so that the minimizer never "
+       "intersects.",
        show_chutes},
       {"08-10_springs_beside_elements",
        {8, 10},
        "masses and springs beside finite elements",
-       "The same equation moves a mesh of masses and springs; four of its vertices are shown with their entries of q.",
+       "The same equation moves a mesh of masses and springs of rest length l_ab along its edges, and one of tets T; "
+       "four vertices are shown with their entries of q.",
        show_springs_beside_elements},
       {"10-18_differences", range(10, 18), "finite differences of q",
        "qdot = (q_i - q_(i-1)) / h, q'' = (q_(i+1) - 2 q_i + q_(i-1)) / h^2, "
@@ -65,7 +67,7 @@ const std::vector<Demonstration>& demonstrations() {
       {"25_drag",
        {25},
        "dragged by the ear",
-       "A spring between an ear and the cursor bends it; the spring's force is shown.",
+       "A spring between a point x of an ear and the cursor c bends the ear; the spring's force f is shown.",
        show_drag},
       {"26-31_optimization", range(26, 31), "from finding a root to minimizing",
        "M (q - q~) + h^2 dV/dq = 0 is the gradient of E(q) = 1/2 (q - q~)' M (q - q~) + h^2 V(q).", show_optimization},

@@ -86,7 +86,7 @@ const std::vector<Staging>& stagings() {
        .shape = Shape::of_the_scene},
       {.demonstration = "05-09_equation_of_motion",
        .look = "Play: V falls while T rises, and vice versa, as M q'' = -dV/dq exchanges them. Shift and click "
-               "on a vertex to read where its three entries stand in q.",
+               "on a vertex to read where its three entries are in q.",
        .scene = "05_swing"},
       {.demonstration = "06_chutes",
        .look =

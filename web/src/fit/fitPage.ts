@@ -1,6 +1,7 @@
 // The report of a fit: fitted values, their uncertainty, and how well they explain the measurements.
 import "./fit.css";
 import { button, element, listOf, messageOf, type Child } from "../dom";
+import { formulaElements } from "../formulas";
 import { Page } from "../page";
 import type { Chart } from "../plots/chart";
 import { plural, short, withUnit } from "../plots/numbers";
@@ -142,6 +143,11 @@ function residualSection(fit: Fit, misfits: Misfits): HTMLElement {
   );
 }
 
+const kSymbols =
+  "r: residuals in standard deviations σ of the readings; R: prior, w: its weight; z: fitted value per tet t, linear in the " +
+  "parameters p; a, b: range of Poisson's ratio ν; C: posterior covariance. The ends of an interval are converted from z to the quantity. " +
+  "If the residuals clearly exceed the noise, JᵀJ is divided by their mean square, which widens the intervals.";
+
 function made({ head }: Fit): HTMLElement {
   const [weights, history] = [weightChart(head), historyChart(head)];
   const { fit, counts } = head;
@@ -149,6 +155,9 @@ function made({ head }: Fit): HTMLElement {
   return section(
     "How it was fitted",
     facts,
+    ...formulaElements("fit_objective"),
+    element("p", { class: "about" }, kSymbols),
+    ...(fit.informed === null ? [] : formulaElements("fit_interval")),
     element(
       "div",
       { class: "charts" },

@@ -1,11 +1,11 @@
 // The certificate of a run: totals, a table of its steps with the worst first, and the scene as text.
 import "./report.css";
 import { button, element } from "../dom";
-import { materialFormulas, materialModel } from "../formulas";
+import { choiceFormulas, chosen } from "../formulas";
 import { choiceName } from "../names";
 import type { Page, Panel } from "../page";
 import { plural, short } from "../plots/numbers";
-import type { MaybeNumber, StepRow, TextReply } from "../protocol";
+import type { MaybeNumber, Setting, StepRow, TextReply } from "../protocol";
 import type { Store } from "../store";
 import { saveReply } from "../upload";
 import { excess, kColumns, listed, totals } from "./certificate";
@@ -102,6 +102,24 @@ function drawTotals(list: HTMLElement, steps: readonly StepRow[]): void {
   );
 }
 
+// Formulas of the chosen value of a setting.
+class Formulas {
+  private readonly title = element("summary");
+  readonly element = element("details", { open: true }, this.title);
+
+  constructor(
+    private readonly key: string,
+    private readonly name: string,
+  ) {}
+
+  draw(settings: Setting[]): void {
+    const value = chosen(settings, this.key);
+    this.element.hidden = value === "";
+    this.title.textContent = `${this.name}: ${choiceName(this.key, value)}`;
+    this.element.replaceChildren(this.title, ...choiceFormulas(settings, this.key));
+  }
+}
+
 // The complete scene, requested when it is opened.
 function makeScene(store: Store, page: Page): HTMLElement {
   const code = element("pre", { tabindex: "0", "aria-label": "Scene as TOML" });
@@ -129,10 +147,10 @@ export function makeReportPanel(store: Store, page: Page): Panel {
   const notes = element("ul", { class: "notes" });
   const notesTitle = element("summary");
   const aboutScene = element("details", {}, notesTitle, notes);
-  const materialTitle = element("summary");
-  const material = element("details", { open: true }, materialTitle);
+  const material = new Formulas("material.model", "Material model");
+  const integrator = new Formulas("time.integrator", "Integrator");
   const table = new StepTable(store);
-  const panel = element("div", { class: "report" }, list, material, aboutScene, makeScene(store, page), table.element);
+  const panel = element("div", { class: "report" }, list, material.element, integrator.element, aboutScene, makeScene(store, page), table.element);
   let due = false;
   let drawn = -kPause; // time of the last drawing
   const draw = (): void => {
@@ -140,10 +158,7 @@ export function makeReportPanel(store: Store, page: Page): Panel {
     drawn = performance.now();
     const side = store.side("a");
     drawTotals(list, side?.steps ?? []);
-    const model = materialModel(side?.scene.settings ?? []);
-    material.hidden = model === "";
-    materialTitle.textContent = `Material model: ${choiceName("material.model", model)}`;
-    material.replaceChildren(materialTitle, ...materialFormulas(model));
+    for (const shown of [material, integrator]) shown.draw(side?.scene.settings ?? []);
     const reported = side?.scene.notes ?? [];
     aboutScene.hidden = reported.length === 0;
     notesTitle.textContent = `Choices of the program for this scene: ${plural(reported.length, "note")}`;

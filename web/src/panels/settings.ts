@@ -2,7 +2,7 @@
 // refuses them.
 import { GUI, type Controller } from "lil-gui";
 import { button, element, selectOf } from "../dom";
-import { materialFormulas, materialModel } from "../formulas";
+import { choiceFormulas, kWithFormulas } from "../formulas";
 import { backTo, History, toLoaded, type SettingChange } from "../history";
 import { kMaterials } from "../materials";
 import { Newest } from "../newest";
@@ -46,7 +46,9 @@ export class Settings {
   private newest = { key: "", at: 0 }; // the latest change
   private loaded = ""; // scene that the history belongs to
   private material: Controller | null = null;
-  private readonly density = element("div", { class: "density", "aria-label": "Strain energy density" });
+  private readonly formulas = new Map(
+    Object.entries(kWithFormulas).map(([key, { title }]) => [key, element("div", { class: "choice-formulas", "aria-label": title })]),
+  );
 
   constructor(
     root: HTMLElement,
@@ -105,7 +107,7 @@ export class Settings {
       row?.mark(differs ? `A: ${valueText(setting.value)}, B: ${valueText(twin.value)}` : "");
     }
     this.showMaterial(scene);
-    this.density.replaceChildren(...materialFormulas(materialModel(scene.settings)));
+    for (const [key, shown] of this.formulas) shown.replaceChildren(...choiceFormulas(scene.settings, key));
     this.mouse.display(scene.stiffness);
     this.surface.value = scene.surface;
     this.surface.closest("label")?.toggleAttribute("hidden", !scene.has_skin);
@@ -125,7 +127,8 @@ export class Settings {
       for (const setting of settings) {
         if (setting.group !== group) continue;
         this.addSetting(folder, setting);
-        if (setting.key === "material.model") folder.$children.append(this.density);
+        const formulas = this.formulas.get(setting.key);
+        if (formulas) folder.$children.append(formulas);
       }
     }
     this.spring.domElement.parentElement?.append(this.spring.domElement); // keeps it last

@@ -131,7 +131,7 @@ export class Chosen extends Emitter<Events> {
     this.emit("changed", undefined);
   }
 
-  // Asks the program about the chosen iteration once and emits `looked` with the answer. While steps arrive fast the
+  // Requests the chosen iteration from the program once and emits `looked` with the answer. While steps arrive fast the
   // answer may be about an earlier choice: the program interrupts its steps for each question.
   look(): void {
     const at = { side: this.side, step: this.step, iteration: this.iteration };
@@ -193,7 +193,7 @@ export class Chosen extends Emitter<Events> {
     return steps[steps.length - 1] ?? null;
   }
 
-  // Forgets the steps after a rewind.
+  // Discards the steps after a rewind.
   private forget(side: SideName, from: number): void {
     const isVoid = (key: string): boolean => key.split(" ")[0] === side && Number(key.split(" ")[1]) > from;
     for (const key of this.replies.keys()) if (isVoid(key)) this.replies.delete(key);

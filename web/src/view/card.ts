@@ -48,7 +48,7 @@ export class Card {
     this.changed();
   }
 
-  // Asks again after a pause, because the body has moved.
+  // Repeats the request after a pause, because the body has moved.
   refresh(): void {
     if (!this.chosen) return;
     this.stale = true;

@@ -100,7 +100,7 @@ class Spread {
     const held = this.cells.get(cell);
     if (held && held.depth <= depth) return;
     const slack = (kSteepest * kCell) / pixelsPerMeter(this.lens, depth);
-    if (this.grid.sees(x, y, depth, slack)) this.cells.set(cell, { x, y, depth, text });
+    if (this.grid.isVisible(x, y, depth, slack)) this.cells.set(cell, { x, y, depth, text });
   }
 
   labels([cx, cy]: [number, number]): Label[] {

@@ -90,7 +90,7 @@ export class DepthGrid {
   }
 
   // Whether a point at a pixel and depth is visible: at most `slack` behind the nearest surface.
-  sees(x: number, y: number, depth: number, slack: number): boolean {
+  isVisible(x: number, y: number, depth: number, slack: number): boolean {
     const i = Math.floor((x - this.left) / this.cell);
     const j = Math.floor((y - this.top) / this.cell);
     if (!(i >= 0 && i < this.columns && j >= 0 && j < this.rows)) return false;
@@ -172,7 +172,7 @@ export function verticesInStroke(lens: Lens, surface: Surface, way: readonly [nu
   for (let i = 0; i < screen.length; i += 3) {
     if (!(distanceToWay(way, screen[i], screen[i + 1]) <= radius)) continue;
     const slack = (kSteepest * cell) / pixelsPerMeter(lens, screen[i + 2]);
-    if (grid.sees(screen[i], screen[i + 1], screen[i + 2], slack)) found.push(i / 3);
+    if (grid.isVisible(screen[i], screen[i + 1], screen[i + 2], slack)) found.push(i / 3);
   }
   return found;
 }

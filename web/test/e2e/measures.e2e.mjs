@@ -63,7 +63,7 @@ test("pictures of 26 000 vertices are small", async (t) => {
     const [count, after] = [heard.counted - first, await metrics()];
     const each = (name) => milliseconds((after[name] - before[name]) / count);
     assert.ok(heard.bytes < kLargestPicture, `${heard.bytes} bytes`);
-    t.diagnostic(`${heard.scenes.a.field || "no field"}: ${vertices} vertices, ${heard.bytes} bytes per picture; main thread per picture ${each("TaskDuration")}, of it scripts ${each("ScriptDuration")}, layout ${each("LayoutDuration")}; its processor time ${each("ThreadTime")}`);
+    t.diagnostic(`${heard.scenes.a.field || "no field"}: ${vertices} vertices, ${heard.bytes} bytes per picture; main thread per picture ${each("TaskDuration")}, of it scripts ${each("ScriptDuration")}, layout ${each("LayoutDuration")}; its CPU time ${each("ThreadTime")}`);
   }
   await close();
 });

@@ -92,7 +92,7 @@ test("the material's energy density follows its choice", async () => {
   const shown = await density.textContent();
   assert.match(shown, /ψ/);
   await rowOf(page, "material.model").locator("select").selectOption("stvk");
-  await page.waitForFunction((before) => document.querySelector(".density").textContent !== before, shown);
+  await page.waitForFunction((before) => document.querySelector('[aria-label="Strain energy density"]').textContent !== before, shown);
   assert.match(await density.textContent(), /ψ[^]*E/);
   await keepPicture(page, "density");
   await close();
