@@ -10,11 +10,11 @@ namespace aspic::viewer {
 namespace {
 
 Json probe_json(const Side& side) {
-  const IndenterTool& indenter = side.tools().indenter;
-  const FirstContact* touch = indenter.touch();
+  const IndenterTool& tool = side.tools().indenter;
+  const FirstContact* touch = tool.touch();
   if (!touch) return nullptr;
   const HeldIndenter& indenter = *side.steered().indenter;
-  const IndenterPose &begun = touch->begun, &pose = indenter.place(), &wanted = indenter.wanted();
+  const IndenterPose &begun = touch->begun, &pose = tool.place(), &wanted = tool.wanted();
   const Wrench wrench = indenter.wrench(side.positions());
   Json json = indenter_json(touch->indenter);
   json.update({{"begun", json_of(begun.center)},
