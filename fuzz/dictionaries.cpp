@@ -53,7 +53,9 @@ const std::vector<std::string> kToml = {"[time]\n",
                                         "\"box.msh\"",
                                         "\"young.csv\"",
                                         "\"material.vtu\"",
-                                        "\"skin.obj\""};
+                                        "\"skin.obj\"",
+                                        "\"skin.pc2\"",
+                                        "\"painted.ply\""};
 
 std::string text_of(const std::set<std::string>& words) {
   std::string text;

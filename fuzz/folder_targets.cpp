@@ -11,6 +11,7 @@
 #include "io/checkpoint.h"
 #include "io/mesh_file.h"
 #include "io/pc2.h"
+#include "io/ply.h"
 #include "mesh/generators.h"
 #include "mesh/surface.h"
 #include "run_files.h"
@@ -40,6 +41,11 @@ fs::path folder_with_meshes() {
     std::vector<double> x;
     for (const Vec3d& X : skin.vertices) x.insert(x.end(), X.a, X.a + 3);
     Pc2File::create(path / "skin.pc2", skin.vertex_count()).append(x);
+    std::string painted = ply_bytes(skin, FileEncoding::ascii);
+    painted.insert(painted.find("element face"), "property double paint\n");
+    for (size_t line = painted.find("end_header"), v = 0; v < skin.vertices.size(); ++v)
+      line = painted.find('\n', line + 1), painted.insert(painted.find('\n', line + 1), v % 2 ? " 1" : " 0.2");
+    put_file(path / "painted.ply", painted);
     put_file(path / "young.csv", "1e5\n1e5\n1e5\n2e5\n2e5\n2e5\n");
     write_material(path / "material.vtu",
                    {.mesh = mesh,

@@ -50,7 +50,12 @@ void gmsh(std::string_view bytes) { require_valid(parse_gmsh("file", bytes)); }
 void medit(std::string_view bytes) { require_valid(parse_medit("file", bytes)); }
 void obj(std::string_view bytes) { require_valid(parse_obj("file", bytes)); }
 void off(std::string_view bytes) { require_valid(parse_off("file", bytes)); }
-void ply(std::string_view bytes) { require_valid(parse_ply("file", bytes)); }
+void ply(std::string_view bytes) {
+  require_valid(parse_ply("file", bytes));
+  const PaintedSurface painted = parse_painted_ply("file", bytes, "paint");
+  require(painted.value.size() == painted.surface.vertices.size(), "each vertex has its value");
+  for (const double value : painted.value) require(std::isfinite(value), "values are finite");
+}
 void stl(std::string_view bytes) { require_valid(parse_stl("file", bytes)); }
 
 void tetgen(std::string_view bytes) {

@@ -79,6 +79,7 @@ Json kinds(const Key& key) {
       {kBoolean, {{"type", "boolean"}}},
       {kText, text},
       {kExpression | kMovingExpression, formula},
+      {kTwoNumbers, list_of(number, 2)},
       {kNumbers, numbers},
       {kExpressions | kMovingExpressions, formulas},
       {kIntegers, list_of(integer)},

@@ -78,8 +78,9 @@ class DataSetReader {
     data_.numbering = locality_numbering(user_mesh_);
     data_.experiment.mesh = from_user(data_.numbering, user_mesh_);
     size_ = size_of(user_mesh_);
+    PaintedFields painted({}, settings_.files(), data_.name);
     const std::vector<double> density = tet_values(settings_.document(), capture_schema().key("capture", "density"),
-                                                   user_mesh_, settings_.files(), "density");
+                                                   {user_mesh_, settings_.files(), "density", painted});
     data_.experiment.density = data_.numbering.tet.from_user(density);
     read_fixed();
   }

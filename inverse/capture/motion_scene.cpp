@@ -49,8 +49,10 @@ std::vector<double> viscosity_of(const SceneModel& scene, const Value& body) {
       if (name == viscosity["file"].text()) viscosity.table().set("file", {fs::absolute(path).string(), {}});
   const Numbering& numbering = scene.model.numbering;
   SceneFiles files("", true);
-  return numbering.tet.from_user(tet_values(damping, scene_schema().key("damping", "viscosity"),
-                                            to_user(numbering, scene.model.mesh), files, "viscosity"));
+  PaintedFields painted(placement_of(body), files, body["name"].text());
+  const TetMesh mesh = to_user(numbering, scene.model.mesh);
+  return numbering.tet.from_user(
+      tet_values(damping, scene_schema().key("damping", "viscosity"), {mesh, files, "viscosity", painted}));
 }
 
 bool are_equal(const std::vector<double>& values) {

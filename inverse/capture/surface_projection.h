@@ -3,7 +3,7 @@
 #include <vector>
 
 #include "fit/misfit.h"
-#include "mesh/box_tree.h"
+#include "mesh/surface_locator.h"
 #include "mesh/tet_mesh.h"
 
 namespace aspic {
@@ -25,7 +25,7 @@ class SurfaceProjection {
  private:
   const TetMesh& mesh_;
   std::vector<Triangle> triangles_;
-  BoxTree tree_;
+  SurfaceLocator locator_;
 };
 
 Vec3d position(const SurfacePoint& point, const std::vector<Vec3d>& X);

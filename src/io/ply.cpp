@@ -4,6 +4,7 @@
 #include <cmath>
 #include <utility>
 
+#include "base/error.h"
 #include "io/byte_cursor.h"
 #include "io/number_text.h"
 #include "io/ply_header.h"
@@ -83,7 +84,11 @@ class PlyByteSource {
 template <class Source>
 class PlyReader {
  public:
-  PlyReader(const PlyHeader& header, Source source) : header_(header), source_(std::move(source)) {}
+  // `attribute`: the property of vertices to keep; empty: none.
+  PlyReader(const PlyHeader& header, Source source, std::string attribute)
+      : header_(header), source_(std::move(source)), attribute_(std::move(attribute)) {}
+
+  std::vector<double> take_attribute() { return std::move(attribute_values_); }
 
   MeshContent read() {
     for (const PlyElement& element : header_.elements) {
@@ -129,15 +134,31 @@ class PlyReader {
       if (std::none_of(element.properties.begin(), element.properties.end(),
                        [&](const PlyProperty& p) { return p.name == axis && !p.is_list; }))
         source_.fail("vertices have no property '" + std::string(axis) + "'; export the file with x, y and z");
+    if (!attribute_.empty()) require_attribute(element);
     content_.vertices.resize(static_cast<size_t>(checked_count(element)));
     for (Vec3d& vertex : content_.vertices)
       for (const PlyProperty& property : element.properties) {
         const auto axis = std::find(std::begin(kAxes), std::end(kAxes), property.name) - std::begin(kAxes);
         if (axis < 3 && !property.is_list)
           vertex[static_cast<int>(axis)] = source_.number(property.type, "a vertex coordinate");
+        else if (!property.is_list && property.name == attribute_)
+          attribute_values_.push_back(source_.number(property.type, "a value of '" + attribute_ + "'"));
         else
           skip(property);
       }
+  }
+
+  void require_attribute(const PlyElement& element) const {
+    std::vector<std::string> known;
+    for (const PlyProperty& p : element.properties)
+      if (!p.is_list && p.name != "x" && p.name != "y" && p.name != "z") known.push_back(p.name);
+    if (std::count(known.begin(), known.end(), attribute_) == 1) return;
+    const std::string name = shown(attribute_);
+    source_.fail(std::count(known.begin(), known.end(), attribute_) > 1
+                     ? "vertices have several properties " + name + "; rename all but one"
+                     : "vertices have no number " + name +
+                           (known.empty() ? ", only positions; export the file with its vertex attributes"
+                                          : suggestion(attribute_, known)));
   }
 
   void read_faces(const PlyElement& element) {
@@ -171,18 +192,37 @@ class PlyReader {
 
   const PlyHeader& header_;
   Source source_;
+  std::string attribute_;
   MeshContent content_;
+  std::vector<double> attribute_values_;
   std::vector<int> corners_;
   bool has_vertices_ = false;
 };
 
+PaintedSurface read_ply(const std::string& file, std::string_view contents, const std::string& attribute) {
+  const PlyHeader header = parse_ply_header(file, contents);
+  const auto read = [&](auto source) {
+    PlyReader reader(header, std::move(source), attribute);
+    MeshContent content = reader.read();
+    return PaintedSurface{{std::move(content.vertices), std::move(content.triangles)}, reader.take_attribute()};
+  };
+  if (header.format == PlyFormat::ascii) return read(TextSource(file, contents, header.end));
+  const std::endian order = header.format == PlyFormat::binary_big_endian ? std::endian::big : std::endian::little;
+  return read(PlyByteSource(file, contents, header.end, order));
+}
+
 }  // namespace
 
 MeshContent parse_ply(const std::string& file, std::string_view contents) {
-  const PlyHeader header = parse_ply_header(file, contents);
-  if (header.format == PlyFormat::ascii) return PlyReader(header, TextSource(file, contents, header.end)).read();
-  const std::endian order = header.format == PlyFormat::binary_big_endian ? std::endian::big : std::endian::little;
-  return PlyReader(header, PlyByteSource(file, contents, header.end, order)).read();
+  TriMesh surface = read_ply(file, contents, "").surface;
+  return {std::move(surface.vertices), {}, {}, std::move(surface.triangles)};
+}
+
+PaintedSurface parse_painted_ply(const std::string& file, std::string_view contents, const std::string& attribute) {
+  PaintedSurface painted = read_ply(file, contents, attribute);
+  if (painted.surface.triangles.empty())
+    throw InvalidInput(file + ": has no faces; export the surface that carries '" + attribute + "'");
+  return painted;
 }
 
 std::string ply_bytes(const TriMesh& mesh, FileEncoding encoding) {

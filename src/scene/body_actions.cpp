@@ -19,6 +19,7 @@
 #include "scene/motion.h"
 #include "scene/placement.h"
 #include "scene/selection.h"
+#include "scene/surface_motion.h"
 #include "scene/tables.h"
 
 namespace aspic {
@@ -28,24 +29,45 @@ struct Builder {
   std::vector<PlacedBody>& bodies;
   Vec3d up;
   Model& model;
+  SceneFiles& files;
   std::vector<std::string>& notes;
   std::vector<PointSpring> point_springs;
   std::vector<Spring> springs;
   int pressures = 0;  // number of added pressures
 
-  SelectionScope scope(const PlacedBody& body) const { return {body.mesh, up, body.name()}; }
+  // For the selection `where` of an action.
+  SelectionScope scope(const PlacedBody& body, Value& action) const {
+    Value& where = *action.table().find("where");
+    const bool is_painted = where.is_table() && where.find("file");
+    return {body.mesh, up, body.name(), is_painted ? &body.painted->at_vertices(where.table(), body.mesh) : nullptr};
+  }
 };
 
-const Array& list_of(const PlacedBody& body, const char* key) {
-  static const Array none;
-  const Value* list = body.scene.find(key);
+Array& list_of(const PlacedBody& body, const char* key) {
+  static Array none;
+  Value* list = body.scene.table().find(key);
   return list ? list->array() : none;
 }
 
-std::vector<Vec3d> starts_of(const PlacedBody& body, const std::vector<int>& vertices) {
-  std::vector<Vec3d> starts;
-  for (const int v : vertices) starts.push_back(body.start[v]);
-  return starts;
+std::vector<Vec3d> chosen(const std::vector<Vec3d>& points, const std::vector<int>& vertices) {
+  std::vector<Vec3d> result;
+  for (const int v : vertices) result.push_back(points[v]);
+  return result;
+}
+
+// Points that an action moves, by their positions at rest and at time 0; `name`: the action.
+struct MovedPoints {
+  const std::vector<Vec3d>&rest, &starts;
+  std::string name;
+};
+
+Motion motion_of(const PlacedBody& body, Value& action, const MovedPoints& points, SceneFiles& files) {
+  Value& motion = *action.table().find("motion");
+  Value* recording = motion.is_table() ? motion.table().find("recording") : nullptr;
+  if (!recording) return make_motion(motion, points.starts);
+  return make_surface_motion(
+      recording->table(),
+      {points.rest, points.starts, placement_of(body.scene), body.name(), body.name() + "." + points.name}, files);
 }
 
 std::vector<Vec3d> directions_of(const Value& pin) {  // empty: all
@@ -61,17 +83,20 @@ std::vector<Vec3d> directions_of(const Value& pin) {  // empty: all
   return axes.size() == 3 ? std::vector<Vec3d>{} : axes;
 }
 
+constexpr double kRecordedRoundOff = 1e-6;  // of positions in point caches, relative to the coordinates
+
 // A motion that does not start at the vertices moves them abruptly in the first step.
 void note_jump(const Pin& pin, const std::vector<Vec3d>& starts, std::vector<std::string>& notes) {
   if (!pin.motion) return;
-  double jump = 0;
+  double jump = 0, size = 0;
   for (const Vec3d& x : starts) {
+    size = std::max(size, norm(x));
     const Vec3d d = pin.motion(x, 0) - x;
     double squared = pin.directions.empty() ? dot(d, d) : 0;
     for (const Vec3d& n : pin.directions) squared += dot(n, d) * dot(n, d);
     jump = std::max(jump, std::sqrt(squared));
   }
-  if (jump > 0)
+  if (jump > kRecordedRoundOff * size)
     notes.push_back("pin " + pin.name + " jumps by " + number_text(jump) +
                     " m at time 0: its motion does not start at 0");
 }
@@ -102,10 +127,14 @@ struct Holder {
 
 void add_pins(Builder& builder, const PlacedBody& body) {
   std::vector<Holder> holders(body.mesh.rest.size());
-  for (const Value& scene : list_of(body, "pin")) {
-    const std::vector<int> vertices = select_vertices(scene["where"], builder.scope(body));
-    const std::vector<Vec3d> starts = starts_of(body, vertices);
-    Pin pin{body.name() + "." + scene["name"].text(), {}, make_motion(scene["motion"], starts), directions_of(scene)};
+  for (Value& scene : list_of(body, "pin")) {
+    const std::string name = scene["name"].text();
+    const std::vector<int> vertices = select_vertices(scene["where"], builder.scope(body, scene));
+    const std::vector<Vec3d> rest = chosen(body.mesh.rest, vertices), starts = chosen(body.start, vertices);
+    Pin pin{body.name() + "." + name,
+            {},
+            motion_of(body, scene, {rest, starts, name}, builder.files),
+            directions_of(scene)};
     note_jump(pin, starts, builder.notes);
     const bool leaves_any = std::any_of(vertices.begin(), vertices.end(), [&](int v) { return !holders[v].pin; });
     for (const int v : vertices) {
@@ -122,11 +151,14 @@ void add_pins(Builder& builder, const PlacedBody& body) {
   }
 }
 
-void add_point_springs(Builder& builder, const PlacedBody& body, const Value& scene) {
-  const std::vector<int> vertices = select_vertices(scene["where"], builder.scope(body));
-  std::vector<Vec3d> targets = starts_of(body, vertices);
-  if (const Value* target = scene.find("target")) targets.assign(vertices.size(), target->vector());
-  const Motion motion = make_motion(scene["motion"], targets);
+void add_point_springs(Builder& builder, const PlacedBody& body, Value& scene, const std::string& name) {
+  const std::vector<int> vertices = select_vertices(scene["where"], builder.scope(body, scene));
+  std::vector<Vec3d> rest = chosen(body.mesh.rest, vertices), targets = chosen(body.start, vertices);
+  if (const Value* target = scene.find("target")) {
+    targets.assign(vertices.size(), target->vector());
+    rest = targets;
+  }
+  const Motion motion = motion_of(body, scene, {rest, targets, name}, builder.files);
   for (size_t i = 0; i < vertices.size(); ++i) {
     const Vec3d start = targets[i];
     if (motion) motion(start, 0);  // evaluates the formula early
@@ -160,9 +192,11 @@ void add_springs_between(Builder& builder, const PlacedBody& body, const Value& 
 }
 
 void add_springs(Builder& builder, const PlacedBody& body) {
-  for (const Value& scene : list_of(body, "spring")) {
+  int number = 0;
+  for (Value& scene : list_of(body, "spring")) {
+    ++number;
     if (scene.find("where")) {
-      add_point_springs(builder, body, scene);
+      add_point_springs(builder, body, scene, "spring" + std::to_string(number));
     } else if (scene.find("between")) {
       add_springs_between(builder, body, scene);
     } else {
@@ -229,13 +263,13 @@ std::vector<int> in_model(const PlacedBody& body, const std::array<int, N>& corn
 }
 
 void add_tractions(const Builder& builder, const PlacedBody& body, std::vector<LoadGroup>& groups) {
-  const Array& tractions = list_of(body, "traction");
+  Array& tractions = list_of(body, "traction");
   if (tractions.empty()) return;
   const std::vector<Vec3d>& X = body.mesh.rest;
   const std::vector<Triangle> boundary = boundary_triangles(body.mesh, 0, body.mesh.tet_count());
-  for (const Value& scene : tractions) {
+  for (Value& scene : tractions) {
     LoadGroup group{LoadDensity(scene), {}};
-    for (const Triangle& t : select_triangles(scene["where"], builder.scope(body), boundary)) {
+    for (const Triangle& t : select_triangles(scene["where"], builder.scope(body, scene), boundary)) {
       const Vec3d n = cross(X[t[1]] - X[t[0]], X[t[2]] - X[t[0]]);
       group.patches.push_back({(1.0 / 3) * (X[t[0]] + X[t[1]] + X[t[2]]), n, in_model(body, t), norm(n) / 2 / 3});
     }
@@ -245,10 +279,10 @@ void add_tractions(const Builder& builder, const PlacedBody& body, std::vector<L
 
 // Each is a separate term: pressure, pressure_2, ...
 void add_pressures(Builder& builder, const PlacedBody& body) {
-  const Array& pressures = list_of(body, "pressure");
+  Array& pressures = list_of(body, "pressure");
   if (pressures.empty()) return;
   const std::vector<Triangle> boundary = boundary_triangles(body.mesh, 0, body.mesh.tet_count());
-  for (const Value& scene : pressures) {
+  for (Value& scene : pressures) {
     const Value& value = scene["value"];
     const Expression p(value.is_text() ? value.text() : number_text(value.number()),
                        ExpressionVariables::position_and_time);
@@ -257,7 +291,7 @@ void add_pressures(Builder& builder, const PlacedBody& body) {
                      "value: a follower pressure is uniform, so its formula "
                      "may use only t (for a load of X, Y, Z with fixed direction: dead_pressure of a "
                      "[[body.traction]])");
-    std::vector<Triangle> patch = select_triangles(scene["where"], builder.scope(body), boundary);
+    std::vector<Triangle> patch = select_triangles(scene["where"], builder.scope(body, scene), boundary);
     for (Triangle& t : patch)
       for (int& v : t) v = body.model_vertex(v);
     const int number = ++builder.pressures;
@@ -275,9 +309,9 @@ void add_pressures(Builder& builder, const PlacedBody& body) {
 }
 
 void add_body_forces(const Builder& builder, const PlacedBody& body, std::vector<LoadGroup>& groups) {
-  for (const Value& scene : list_of(body, "force")) {
+  for (Value& scene : list_of(body, "force")) {
     LoadGroup group{LoadDensity(scene), {}};
-    for (const int t : select_tets(scene["where"], builder.scope(body)))
+    for (const int t : select_tets(scene["where"], builder.scope(body, scene)))
       group.patches.push_back(
           {centroid(body.mesh, t), {}, in_model(body, body.mesh.tets[t]), volume(body.mesh, t) / 4});
     groups.push_back(std::move(group));
@@ -332,8 +366,8 @@ void add_damping(PlacedBody& body, size_t index, MassKind kind, SceneFiles& file
     model.damping.push_back(
         make_rayleigh_damping(MassMatrix(model.mesh, density, kind), a, model.elasticity[index].get(), b));
   }
-  const std::vector<double> viscosity =
-      tet_values(damping.table(), scene_schema().key("damping", "viscosity"), body.mesh, files, body.name());
+  const std::vector<double> viscosity = tet_values(damping.table(), scene_schema().key("damping", "viscosity"),
+                                                   {body.mesh, files, body.name(), *body.painted});
   if (std::any_of(viscosity.begin(), viscosity.end(), [](double eta) { return eta > 0; }))
     model.damping.push_back(
         make_strain_rate_damping(model.mesh, body.first_tet, body.numbering.tet.from_user(viscosity)));
@@ -344,7 +378,7 @@ void add_damping(PlacedBody& body, size_t index, MassKind kind, SceneFiles& file
 void add_actions(const SceneActions& actions, Model& model) {
   const auto& [bodies, gravity, mass, files, notes] = actions;
   const double g = norm(gravity);
-  Builder builder{bodies, g > 0 ? (-1 / g) * gravity : Vec3d{{0, 1, 0}}, model, notes, {}, {}, 0};
+  Builder builder{bodies, g > 0 ? (-1 / g) * gravity : Vec3d{{0, 1, 0}}, model, files, notes, {}, {}, 0};
   for (const PlacedBody& body : bodies) add_pins(builder, body);
   add_loads(builder, gravity);
   add_grabs(bodies, model);

@@ -1,9 +1,11 @@
 // Pins, springs, loads and damping of a scene.
 #pragma once
+#include <memory>
 #include <string>
 #include <vector>
 
 #include "dynamics/model.h"
+#include "scene/painted_fields.h"
 #include "scene/scene_files.h"
 #include "scene/value.h"
 
@@ -16,6 +18,7 @@ struct PlacedBody {
   std::vector<Vec3d> start;
   int first_vertex = 0, first_tet = 0;  // offsets in the model
   Numbering numbering = {};             // numbering of the body alone
+  std::shared_ptr<PaintedFields> painted = {};
 
   std::string name() const { return scene["name"].text(); }
   int model_vertex(int own) const { return first_vertex + numbering.vertex.from_user(own); }

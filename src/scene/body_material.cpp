@@ -63,7 +63,8 @@ class FromScene {
 
  private:
   std::vector<double> values(const std::string& name) {
-    return tet_values(material_, scene_schema().key("material", name), body_.mesh, files_, body_.name());
+    return tet_values(material_, scene_schema().key("material", name),
+                      {body_.mesh, files_, body_.name(), *body_.painted});
   }
 
   Lame checked(const Lame& lame, size_t tet) const {

@@ -26,6 +26,7 @@ std::string kinds(const Key& key) {
   add(kText, key.choices.empty() ? "string" : list_of(key.choices));
   add(kExpression, "formula");
   add(kMovingExpression, "formula with `t`");
+  add(kTwoNumbers, "2 numbers");
   add(kNumbers, "3 numbers");
   add(kExpressions, "3 formulas");
   add(kMovingExpressions, "3 formulas with `t`");

@@ -105,6 +105,8 @@ void check_motion(const Value& holder) {
   if (!motion || !motion->is_table()) return;
   if (const Value* spin = motion->find("rotate")) check_axis(*spin);
   if (const Value* keyframes = motion->find("keyframes")) check_keyframes(*keyframes);
+  if (const Value* recording = motion->find("recording"); recording && !recording->find("mesh"))
+    throw error_at(recording->place, "recording needs `mesh`, the recorded surface at rest");
 }
 
 void check_springs(const Value& springs, const Array& bodies) {
@@ -161,6 +163,10 @@ void check_obstacle(const Value& obstacle) {
     throw error_at(recording->place, "recording needs `mesh`, whose vertices it moves");
   if (recording && !obstacle["motion"].is_text())
     throw error_at(recording->place, "motion and recording exclude each other");
+  if (const Value* mesh = recording ? recording->find("mesh") : nullptr)
+    throw error_at(mesh->place, "the recording of an obstacle moves its own `mesh`; remove this one");
+  if (const Value& motion = obstacle["motion"]; motion.is_table() && motion.find("recording"))
+    throw error_at(motion.place, "an obstacle follows its own `recording` beside `mesh`; move it out of `motion`");
 }
 
 // Names bodies and pins, fills in the extra parameters of materials, and checks conditions between keys. Requires a

@@ -25,7 +25,8 @@ enum Accepts : unsigned {
   kAnyTable = 4096,           // keys are chosen by the user; all values are numbers
   kMovingExpressions = 8192,  // three numbers or formulas of X, Y, Z and t
   kNames = 16384,             // a list of any length of `choices`
-  kMovingExpression = 32768   // a string: a formula of X, Y, Z and t
+  kMovingExpression = 32768,  // a string: a formula of X, Y, Z and t
+  kTwoNumbers = 65536
 };
 
 struct Range {

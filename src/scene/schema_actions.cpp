@@ -24,8 +24,14 @@ void add_where(Schema& s) {
        key("vertices", kIntegers, "indices in the body, from 0; triangles and tets with all corners in the list",
            kNotNegative),
        key("lowest", kNumber, "lowest fraction of the body's height, along gravity (or -y)", Range{.min = 0, .max = 1}),
-       key("highest", kNumber, "highest fraction of the body's height", Range{.min = 0, .max = 1})});
-  s.alternatives.push_back({"where", {{"box"}, {"sphere"}, {"vertices"}, {"lowest"}, {"highest"}}, true});
+       key("highest", kNumber, "highest fraction of the body's height", Range{.min = 0, .max = 1}),
+       key("file", kText, "[painted surface](formats.md#painted-surfaces); triangles and tets as with `vertices`",
+           kRequired),
+       key("name", kText, "its attribute", kRequired),
+       key("above", kNumber, "selects larger values", Usual{"0.5", "half of full paint"}),
+       key("hash", kText, "hash of the file, in resolved scenes")});
+  s.alternatives.push_back(
+      {"where", {{"box"}, {"sphere"}, {"vertices"}, {"lowest"}, {"highest"}, {"file", "name", "above", "hash"}}, true});
 
   add_section(s, {"region_box", "box = { ... } in where", "A closed box."},
               {key("lower", kNumbers, "lowest corner", Units{"m"}, kRequired),
@@ -44,8 +50,9 @@ void add_motion(Schema& s) {
        key("rotate", kTable, "constant rotation", Members{"spin"}),
        key("keyframes", kTables, "piecewise linear displacements, constant before and after", Members{"keyframe"}),
        key("displacement", kMovingExpressions, "function of the position (X, Y, Z) at time 0 and of the time t",
-           Units{"m"})});
-  s.alternatives.push_back({"motion", {{"linear"}, {"rotate"}, {"keyframes"}, {"displacement"}}, true});
+           Units{"m"}),
+       key("recording", kTable, "motion of a recorded surface (pins and springs)", Members{"recording"})});
+  s.alternatives.push_back({"motion", {{"linear"}, {"rotate"}, {"keyframes"}, {"displacement"}, {"recording"}}, true});
 
   const Key until = key("until", kNumber, "end of the motion; default: never", Units{"s"}, kNotNegative);
   add_section(s, {"linear", "linear = { ... } in motion", "A translation."},

@@ -40,6 +40,7 @@ unsigned kind_of(const Value& v, unsigned accepts) {
   if (is(kText, v.is_text())) return kText;
   if (is(kExpression, v.is_text())) return kExpression;
   if (is(kMovingExpression, v.is_text())) return kMovingExpression;
+  if (is(kTwoNumbers, is_array_of(v, 2, is_number))) return kTwoNumbers;
   if (is(kNumbers, is_array_of(v, 3, is_number))) return kNumbers;
   if (is(kExpressions, is_array_of(v, 3, is_number_or_text))) return kExpressions;
   if (is(kMovingExpressions, is_array_of(v, 3, is_number_or_text))) return kMovingExpressions;
@@ -64,6 +65,7 @@ std::string expected(const Key& key) {
   add(kText, "a string");
   add(kExpression, "a formula in a string");
   add(kMovingExpression, "a formula of X, Y, Z, t in a string");
+  add(kTwoNumbers, "two numbers");
   add(kNumbers, "three numbers");
   add(kExpressions, "three numbers or formulas");
   add(kMovingExpressions, "three numbers or formulas of X, Y, Z, t");
@@ -158,6 +160,7 @@ class Checker {
       case kIntegers:
       case kPairs:
         return check_integers(value, value, key);
+      case kTwoNumbers:
       case kNumbers:
       case kExpressions:
       case kMovingExpressions:

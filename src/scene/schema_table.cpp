@@ -179,11 +179,17 @@ void add_material(Schema& s) {
 
   s.sections.push_back(
       {"field", "a value per tet", "A number, a formula of the centroid (X, Y, Z) at rest, or a table:"});
-  add_keys(s, "field",
-           {key("regions", kAnyTable, "a number per region label: { 1 = 1e5, 2 = 3e5 }"),
-            key("file", kText, "CSV with one number per tet, or VTU", kRequired),
-            key("name", kText, "cell field of the VTU"), key("hash", kText, "hash of the file, in resolved scenes")});
-  s.alternatives.push_back({"field", {{"regions"}, {"file", "name", "hash"}}, true});
+  add_keys(
+      s, "field",
+      {key("regions", kAnyTable, "a number per region label: { 1 = 1e5, 2 = 3e5 }"),
+       key("file", kText,
+           "CSV with one number per tet; VTU; or a surface painted with vertex attributes: PLY, placed like `mesh` "
+           "([details](formats.md#painted-surfaces))",
+           kRequired),
+       key("name", kText, "cell field of the VTU, or attribute of the PLY"),
+       key("range", kTwoNumbers, "values for 0 and 1 in the file; linear between"),
+       key("hash", kText, "hash of the file, in resolved scenes")});
+  s.alternatives.push_back({"field", {{"regions"}, {"file", "name", "range", "hash"}}, true});
 }
 
 }  // namespace

@@ -47,8 +47,22 @@ Predicate geometric(const Value& where, const SelectionScope& scope) {
   return by_height(scope, -1, where["highest"].number());
 }
 
-// One flag per vertex of the body for a list of indices; empty for other selections.
+std::vector<char> painted_vertices(const Value& where, const SelectionScope& scope) {
+  if (!scope.painted)
+    throw error_at(where.place, "painted selections need a scene; use a formula, box, sphere or vertices");
+  const double above = where["above"].number(),
+               largest = *std::max_element(scope.painted->begin(), scope.painted->end());
+  if (!(largest > above))
+    throw error_at(where.place, "where = " + shortened(inline_toml(where)) + " selects nothing of body '" + scope.body +
+                                    "': no vertex has more than " + number_text(largest) + " (lower `above`)");
+  std::vector<char> listed;
+  for (const double value : *scope.painted) listed.push_back(value > above);
+  return listed;
+}
+
+// One flag per vertex of the body for a list of indices or painted values; empty for other selections.
 std::vector<char> listed_vertices(const Value& where, const SelectionScope& scope) {
+  if (where.is_table() && where.find("file")) return painted_vertices(where, scope);
   const Value* list = where.is_table() ? where.find("vertices") : nullptr;
   if (!list) return {};
   std::vector<char> listed(scope.mesh.rest.size(), 0);

@@ -9,9 +9,10 @@
 namespace aspic {
 
 struct SelectionScope {
-  const TetMesh& mesh;  // the placed rest shape of one body, with its own indices
-  Vec3d up;             // against gravity, of length 1
-  std::string body;     // for messages
+  const TetMesh& mesh;                           // the placed rest shape of one body, with its own indices
+  Vec3d up;                                      // against gravity, of length 1
+  std::string body;                              // for messages
+  const std::vector<double>* painted = nullptr;  // the values that `where` names at each vertex, if any
 };
 
 // An empty selection throws InvalidInput with the extent of the body.

@@ -57,20 +57,39 @@ std::vector<double> from_vtu(const fs::path& path, const Value& table, const Tet
                                   " of one component" + suggestion(name->text(), known));
 }
 
-std::vector<double> from_file(Table& table, const TetMesh& mesh, SceneFiles& files, const std::string& stem) {
+// The value of a painted tet is the mean of its corners, that of the linear field at the centroid.
+std::vector<double> from_painting(Table& table, const FieldScope& scope) {
+  const std::vector<double>& at = scope.painted.at_vertices(table, scope.mesh);
+  std::vector<double> values;
+  for (const auto& [a, b, c, d] : scope.mesh.tets) values.push_back(0.25 * ((at[a] + at[b]) + (at[c] + at[d])));
+  return values;
+}
+
+std::vector<double> from_table(Table& table, const fs::path& path, const FieldScope& scope, const std::string& stem) {
   Value view{table, {}};
   const Value& name = view["file"];
-  const fs::path path = files.find(name);
   std::vector<double> values;
   if (path.extension() == ".vtu" || path.extension() == ".VTU") {
-    values = from_vtu(path, view, mesh);
+    values = from_vtu(path, view, scope.mesh);
   } else {
     if (const Value* field = table.find("name"))
-      throw error_at(field->place, "name = " + toml_string(field->text()) + "; only VTU files have named fields");
-    values = read_number_table(path, 1, mesh.tets.size(), "a tet", name.place);
+      throw error_at(field->place,
+                     "name = " + toml_string(field->text()) + "; only VTU and PLY files have named fields");
+    values = read_number_table(path, 1, scope.mesh.tets.size(), "a tet", name.place);
   }
   check_fingerprint(table, "hash", fingerprint_of_file(path), path.string());
-  table.set("file", {files.keep(path, stem), {}});
+  table.set("file", {scope.files.keep(path, stem), {}});
+  return values;
+}
+
+std::vector<double> from_file(Table& table, const FieldScope& scope, const std::string& stem) {
+  const fs::path path = scope.files.find(*table.find("file"));
+  const bool is_painted = path.extension() == ".ply" || path.extension() == ".PLY";
+  std::vector<double> values = is_painted ? from_painting(table, scope) : from_table(table, path, scope, stem);
+  if (const Value* range = table.find("range")) {
+    const double low = range->array()[0].number(), high = range->array()[1].number();
+    for (double& value : values) value = (1 - value) * low + value * high;
+  }
   return values;
 }
 
@@ -144,8 +163,8 @@ std::vector<double> read_number_table(const fs::path& path, size_t columns, size
   return values;
 }
 
-std::vector<double> tet_values(Table& table, const Key& key, const TetMesh& mesh, SceneFiles& files,
-                               const std::string& stem) {
+std::vector<double> tet_values(Table& table, const Key& key, const FieldScope& scope) {
+  const TetMesh& mesh = scope.mesh;
   Value& value = *table.find(key.name);
   if (value.is_number()) return std::vector<double>(mesh.tets.size(), value.number());
   std::vector<double> values;
@@ -154,7 +173,7 @@ std::vector<double> tet_values(Table& table, const Key& key, const TetMesh& mesh
   } else if (const Value* regions = value.find("regions")) {
     values = from_regions(*regions, mesh);
   } else {
-    values = from_file(value.table(), mesh, files, stem + "." + key.name);
+    values = from_file(value.table(), scope, scope.stem + "." + key.name);
   }
   for (int t = 0; t < mesh.tet_count(); ++t)
     if (!key.range.contains(values[t]))

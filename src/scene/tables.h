@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "mesh/tet_mesh.h"
+#include "scene/painted_fields.h"
 #include "scene/scene_files.h"
 #include "scene/schema.h"
 #include "scene/value.h"
@@ -16,9 +17,15 @@ namespace aspic {
 std::vector<double> read_number_table(const std::filesystem::path& path, size_t columns, size_t rows,
                                       const std::string& row, const Place& place);
 
-// Returns `table[key.name]` for each tet of a placed body: a number, a formula of the centroid, a number per region, or
-// a file, checked against the range of the key. Files are added to the results as `stem`.
-std::vector<double> tet_values(Table& table, const Key& key, const TetMesh& mesh, SceneFiles& files,
-                               const std::string& stem);
+struct FieldScope {
+  const TetMesh& mesh;  // of a placed body
+  SceneFiles& files;
+  std::string stem;  // name of files in the results
+  PaintedFields& painted;
+};
+
+// Returns `table[key.name]` for each tet: a number, a formula of the centroid, a number per region, or a file, checked
+// against the range of the key. Files are added to the results.
+std::vector<double> tet_values(Table& table, const Key& key, const FieldScope& scope);
 
 }  // namespace aspic
