@@ -59,9 +59,7 @@ void add_contact_sections(Schema& s) {
       {"recording", "recording = { ... } in an [[obstacle]] or a motion",
        "A PC2 point cache, as Blender writes it; placed like the mesh."},
       {key("file", kText, "point cache", kRequired), key("hash", kText, "hash of the file, in resolved scenes"),
-       key("mesh", kText,
-           "only in a motion: the recorded surface at rest; each vertex follows its closest point, placed like the "
-           "body's mesh"),
+       key("mesh", kText, "only in a motion: the recorded surface at rest, placed like the body's mesh"),
        key("mesh_hash", kText, "hash of that file, in resolved scenes"),
        key("fps", kNumber, "frames per second", Units{"1/s"}, kPositive, Usual{"24.0", "the default of Blender"})});
   s.sections.push_back({"obstacle_sphere", "sphere = { ... } in an [[obstacle]]", "A sphere without facets."});

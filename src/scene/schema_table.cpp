@@ -183,10 +183,9 @@ void add_material(Schema& s) {
       s, "field",
       {key("regions", kAnyTable, "a number per region label: { 1 = 1e5, 2 = 3e5 }"),
        key("file", kText,
-           "CSV with one number per tet; VTU; or a surface painted with vertex attributes: PLY, placed like `mesh` "
-           "([details](formats.md#painted-surfaces))",
+           "CSV with one number per tet; VTU; or a [painted surface](formats.md#painted-surfaces), placed like `mesh`",
            kRequired),
-       key("name", kText, "cell field of the VTU, or attribute of the PLY"),
+       key("name", kText, "cell field, or attribute"),
        key("range", kTwoNumbers, "values for 0 and 1 in the file; linear between"),
        key("hash", kText, "hash of the file, in resolved scenes")});
   s.alternatives.push_back({"field", {{"regions"}, {"file", "name", "range", "hash"}}, true});

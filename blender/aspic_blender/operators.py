@@ -1,0 +1,170 @@
+"""Bake, continue, cancel, remove, and open the report."""
+import os
+import pathlib
+
+import bpy
+from bpy.app.handlers import persistent
+
+from . import export, process, results, sample
+
+active = None  # the simulation that runs
+
+
+def program(context):
+    addon = context.preferences.addons.get(__package__)
+    return os.environ.get("ASPIC_PROGRAM") or (addon.preferences.program if addon else "aspic")
+
+
+def stop():
+    global active
+    if active:
+        active.cancel()
+        active.wait()
+        active = None
+
+
+@persistent
+def stop_before_load(*_):
+    stop()
+
+
+def redraw():
+    for window in bpy.context.window_manager.windows:
+        for area in window.screen.areas:
+            area.tag_redraw()
+
+
+def outcome(run):
+    """Applies the results of a run that has ended. Returns kind of report and text."""
+    code = run.wait()
+    if code not in (process.DONE, process.NOT_CONVERGED, process.INTERRUPTED):
+        return "ERROR", run.message() or f"aspic ended with code {code}"
+    try:
+        frames = results.apply(run.folder)
+    except (sample.Refused, OSError) as error:
+        return "ERROR", str(error)
+    text = f"{frames} frames"
+    if code == process.INTERRUPTED:
+        return "WARNING", f"Stopped after {text}; Continue goes on"
+    if code == process.NOT_CONVERGED:
+        return "WARNING", f"{text}; some steps did not converge, see the report"
+    return "INFO", f"Baked {text}"
+
+
+def poll():
+    """Called by a timer five times a second."""
+    global active
+    scene = bpy.context.scene
+    if active is None:
+        return None
+    if active.is_running():
+        job = export.read_job(active.folder)
+        scene.aspic.status = f"Step {active.step} of {export.steps_of(job)}"
+        redraw()
+        return 0.2
+    _, scene.aspic.status = outcome(active)
+    active = None
+    redraw()
+    return None
+
+
+def launch(operator, context, folder, arguments):
+    """Starts a run; without windows, where timers never fire, waits for its end."""
+    global active
+    context.scene.aspic.status = ""
+    try:
+        active = process.Run(program(context), folder, arguments)
+    except OSError as error:
+        operator.report({"ERROR"}, str(error))
+        return {"CANCELLED"}
+    if not bpy.app.background:
+        bpy.app.timers.register(poll, first_interval=0.2)
+        return {"FINISHED"}
+    kind, text = outcome(active)
+    active = None
+    context.scene.aspic.status = text
+    operator.report({kind}, text)
+    return {"CANCELLED"} if kind == "ERROR" else {"FINISHED"}
+
+
+class Idle:
+    """Operators that need that no simulation runs."""
+
+    @classmethod
+    def poll(cls, _context):
+        return active is None
+
+
+class ASPIC_OT_bake(Idle, bpy.types.Operator):
+    """Simulate all soft bodies of the scene"""
+    bl_idname = "aspic.bake"
+    bl_label = "Bake"
+
+    def execute(self, context):
+        try:
+            folder = export.write(context)
+        except (sample.Refused, OSError) as error:
+            self.report({"ERROR"}, str(error))
+            return {"CANCELLED"}
+        run = results.run_folder(folder)
+        return launch(self, context, folder, [os.path.join(folder, "scene.toml"), "--out", run, "--force"])
+
+
+class ASPIC_OT_continue(Idle, bpy.types.Operator):
+    """Continue the bake that was stopped"""
+    bl_idname = "aspic.continue_bake"
+    bl_label = "Continue"
+
+    @classmethod
+    def poll(cls, context):
+        return active is None and results.can_continue(export.folder_of(context))
+
+    def execute(self, context):
+        folder = export.folder_of(context)
+        return launch(self, context, folder, [results.run_folder(folder), "--resume"])
+
+
+class ASPIC_OT_cancel(bpy.types.Operator):
+    """Stop the simulation; its frames are kept"""
+    bl_idname = "aspic.cancel"
+    bl_label = "Cancel"
+
+    @classmethod
+    def poll(cls, _context):
+        return active is not None
+
+    def execute(self, _context):
+        active.cancel()
+        return {"FINISHED"}
+
+
+class ASPIC_OT_remove(Idle, bpy.types.Operator):
+    """Remove the results from the objects of the scene; the files are kept"""
+    bl_idname = "aspic.remove"
+    bl_label = "Remove results"
+    bl_options = {"UNDO"}
+
+    def execute(self, context):
+        results.remove(context.scene.objects)
+        return {"FINISHED"}
+
+
+class ASPIC_OT_report(bpy.types.Operator):
+    """Open the report of the last bake in the browser"""
+    bl_idname = "aspic.report"
+    bl_label = "Open report"
+
+    @staticmethod
+    def path(context):
+        return os.path.join(results.run_folder(export.folder_of(context)), "report.html")
+
+    @classmethod
+    def poll(cls, context):
+        return os.path.exists(cls.path(context))
+
+    def execute(self, context):
+        bpy.ops.wm.url_open(url=pathlib.Path(self.path(context)).as_uri())
+        return {"FINISHED"}
+
+
+CLASSES = (ASPIC_OT_bake, ASPIC_OT_continue, ASPIC_OT_cancel, ASPIC_OT_remove, ASPIC_OT_report)

@@ -1,0 +1,452 @@
+"""Scenarios of the add-on, without windows: blender -b --factory-startup --python-exit-code 1 -P scenarios.py -- [NAME ...]"""
+import math
+import os
+import pathlib
+import shutil
+import subprocess
+import sys
+import tempfile
+import time
+import traceback
+
+import bpy
+import numpy as np
+
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent.parent))
+import aspic_blender  # noqa: E402
+from aspic_blender import export, files, operators, process, results, sample  # noqa: E402
+
+SCENARIOS = []
+SINGLE = 1e-6  # of the size of the scene: round-off of caches
+
+
+def scenario(function):
+    SCENARIOS.append(function)
+    return function
+
+
+def check(condition, *values):
+    if not condition:
+        raise AssertionError(" ".join(map(str, values)) or "the condition does not hold")
+
+
+def refused(call):
+    """Message of an operator that reports an error."""
+    try:
+        call()
+    except RuntimeError as error:
+        return str(error)
+    raise AssertionError("was not refused")
+
+
+def ball(name="Ball", radius=0.1, at=(0, 0, 0.5), subdivisions=2, **settings):
+    bpy.ops.mesh.primitive_ico_sphere_add(subdivisions=subdivisions, radius=radius, location=at)
+    ob = bpy.context.object
+    ob.name = name
+    ob.aspic.role = "BODY"
+    ob.aspic.resolution = 2
+    for key, value in settings.items():
+        setattr(ob.aspic, key, value)
+    return ob
+
+
+def paint(ob, name, weight):
+    group = ob.vertex_groups.new(name=name)
+    for vertex in ob.data.vertices:
+        group.add([vertex.index], weight(vertex.co), "REPLACE")
+    return name
+
+
+def bake(frames=6, start=1):
+    scene = bpy.context.scene
+    scene.frame_start, scene.frame_end = start, start + frames - 1
+    check(bpy.ops.aspic.bake() == {"FINISHED"}, scene.aspic.status)
+    return export.folder_of(bpy.context)
+
+
+def shown(ob, frame):
+    """What Blender shows: evaluated vertices in the world."""
+    bpy.context.scene.frame_set(frame)
+    evaluated = ob.evaluated_get(bpy.context.evaluated_depsgraph_get())
+    return sample.moved(np.array(evaluated.matrix_world), sample.coordinates(evaluated.data))
+
+
+def simulated(folder, name):
+    return files.read_pc2(os.path.join(folder, "run", "skins", f"skin_{name}.pc2"))
+
+
+def check_shows(ob, folder, name, start=1, unit=1):
+    frames = simulated(folder, name)
+    check(len(frames) > 1)
+    for k, x in enumerate(frames):
+        error = np.abs(shown(ob, start + k) * unit - x).max()
+        check(error < SINGLE, "frame", k, "differs by", error)
+
+
+@scenario
+def round_trip():
+    ob = ball()
+    x = shown(ob, 1)
+    folder = bake()
+    check_shows(ob, folder, "Ball")
+    check(np.abs(simulated(folder, "Ball")[0] - x).max() < SINGLE)
+    fallen = x[:, 2].mean() - shown(ob, 6)[:, 2].mean()
+    h, n = 1 / 96, 20  # backward Euler in free fall: h^2 g n (n + 1) / 2
+    check(abs(fallen - 9.81 * h * h * n * (n + 1) / 2) < 1e-5, "fell by", fallen)
+    check(os.path.getsize(os.path.join(folder, "run", "report.html")) > 10000)
+    check(ob.aspic.preset == "jelly" and bpy.ops.aspic.report.poll())
+
+
+def run_variant(folder, young):
+    """The last frame of the baked scene with another stiffness."""
+    path = pathlib.Path(folder, "scene.toml")
+    text, painted = path.read_text(encoding="utf-8"), 'young = { file = "Ball.ply", name = "young" }'
+    check(painted in text, text)
+    variant, out = path.with_name("variant.toml"), path.with_name("variant")
+    variant.write_text(text.replace(painted, f"young = {young}"), encoding="utf-8")
+    subprocess.run([operators.program(bpy.context), "run", variant, "--out", out, "--force", "--quiet"], check=True)
+    return files.read_pc2(out / "skins" / "skin_Ball.pc2")[-1]
+
+
+@scenario
+def painted_gradient_matches_formula():
+    """A linear function is harmonic, so weights linear in z are a formula of Z inside, too."""
+    ob = ball(subdivisions=3, young_min=2e3, young_max=2e5)
+    ob.aspic.pin_group = paint(ob, "pin", lambda x: float(x.z > 0.09))
+    ob.aspic.stiffness_group = paint(ob, "stiff", lambda x: (0.1 + x.z) / 0.2)
+    folder = bake(8)
+    painted = simulated(folder, "Ball")[-1]
+    formula = run_variant(folder, '"2e3 + 198e3 * (Z - 0.4) / 0.2"')
+    uniform = run_variant(folder, "101e3")
+    difference, effect = np.linalg.norm(painted - formula), np.linalg.norm(uniform - formula)
+    check(difference < 0.05 * effect, "differs by", difference, "of", effect)
+    print(f"difference of painted stiffness from its formula: {difference / effect:.3f} of that from a uniform one")
+
+
+@scenario
+def logarithmic_stiffness():
+    ob = ball(young_min=1e3, young_max=1e5, scale="LOG")
+    weight = np.array([0, 0.5, 1])
+    check(np.allclose(sample.young(ob.aspic, weight), [1e3, 1e4, 1e5]))
+    ob.aspic.scale = "LINEAR"
+    check(np.allclose(sample.young(ob.aspic, weight), [1e3, 50500, 1e5]))
+
+
+@scenario
+def pins_follow_armature():
+    bpy.ops.object.armature_add(location=(0, 0, 0.4))
+    rig = bpy.context.object
+    ob = ball()
+    ob.aspic.pin_group = paint(ob, "Bone", lambda x: float(x.z > -0.03))
+    modifier = ob.modifiers.new("Rig", "ARMATURE")
+    modifier.object = rig
+    bone = rig.pose.bones["Bone"]
+    bone.rotation_mode = "XYZ"
+    for frame, angle in ((1, 0), (10, 0.6)):
+        bone.rotation_euler[0] = angle
+        bone.keyframe_insert("rotation_euler", frame=frame)
+    free = [shown(ob, f) for f in (1, 5, 10)]
+    folder = bake(10)
+    pinned = np.array([v.co.z > 0.06 for v in ob.data.vertices])  # the tets around are pinned at all corners
+    check(pinned.any() and np.abs(free[0] - free[2])[pinned].max() > 0.03)
+    for frame, x in zip((1, 5, 10), free):
+        error = np.abs(shown(ob, frame) - x)[pinned].max()
+        check(error < SINGLE, "pins differ by", error)
+    check(list(ob.modifiers.keys()) == ["Rig", "Aspic"])
+    check_shows(ob, folder, "Ball")
+
+
+@scenario
+def pose_at_start_is_reached_in_preroll():
+    ob = ball()
+    ob.aspic.pin_group = paint(ob, "pin", lambda x: float(x.z > 0.03))
+    hook = bpy.data.objects.new("Hook", None)
+    bpy.context.collection.objects.link(hook)
+    modifier = ob.modifiers.new("Hook", "HOOK")
+    modifier.object, modifier.vertex_group = hook, "pin"
+    hook.location.x = 0.02
+    posed = shown(ob, 1)
+    bpy.context.scene.aspic.preroll = 8
+    folder = bake(4)
+    frames = simulated(folder, "Ball")
+    check(len(frames) == 12)
+    rest = sample.moved(np.array(ob.matrix_world), sample.coordinates(ob.data))
+    check(np.abs(frames[0] - rest).max() < SINGLE)
+    top = np.argmax(rest[:, 2])
+    check(np.abs(shown(ob, 1)[top] - posed[top]).max() < 1e-3)
+    check(np.abs(shown(ob, 1) - frames[8]).max() < SINGLE)
+
+
+@scenario
+def cancelled_bake_continues():
+    ob = ball()
+    whole = simulated(bake(8), "Ball")
+    folder = export.folder_of(bpy.context)
+    run = process.Run(operators.program(bpy.context), folder,
+                      [os.path.join(folder, "scene.toml"), "--out", results.run_folder(folder), "--force", "--steps",
+                       "10"])
+    check(run.wait() == process.DONE)
+    check(results.can_continue(folder) and results.steps_done(folder) == 10)
+    check(results.apply(folder) == 3)
+    check_shows(ob, folder, "Ball")
+    check(bpy.ops.aspic.continue_bake() == {"FINISHED"})
+    check(np.array_equal(simulated(folder, "Ball"), whole))
+    check(not bpy.ops.aspic.continue_bake.poll())
+    check_shows(ob, folder, "Ball")
+
+
+@scenario
+def interrupt_keeps_frames():
+    ob = ball(subdivisions=3, resolution=1)
+    bake(2)
+    bpy.context.scene.frame_end = 400
+    folder = export.write(bpy.context)
+    operators.active = process.Run(operators.program(bpy.context), folder,
+                                   [os.path.join(folder, "scene.toml"), "--out", results.run_folder(folder), "--force"])
+    check(not bpy.ops.aspic.bake.poll() and bpy.ops.aspic.cancel.poll())
+    deadline = time.time() + 60
+    while operators.active.step < 3 and time.time() < deadline:
+        time.sleep(0.02)
+    bpy.ops.aspic.cancel()
+    kind, text = operators.outcome(operators.active)
+    operators.active = None
+    check(kind == "WARNING" and "Stopped" in text, text)
+    check(results.can_continue(folder))
+    check_shows(ob, folder, "Ball")
+
+
+@scenario
+def killed_program_continues():
+    ball(subdivisions=3, resolution=1)
+    bpy.context.scene.frame_end = 40
+    folder = export.write(bpy.context)
+    run = process.Run(operators.program(bpy.context), folder,
+                      [os.path.join(folder, "scene.toml"), "--out", results.run_folder(folder), "--force", "--set",
+                       "output.checkpoint_every=0"])
+    deadline = time.time() + 60
+    while run.step < 4 and time.time() < deadline:
+        time.sleep(0.01)
+    run.process.kill()
+    run.wait()
+    check(results.can_continue(folder), results.steps_done(folder))
+    check(bpy.ops.aspic.continue_bake() == {"FINISHED"}, bpy.context.scene.aspic.status)
+    check(len(simulated(folder, "Ball")) == 40)
+
+
+@scenario
+def edited_mesh_is_refused():
+    ob = ball()
+    folder = bake(3)
+    ob.data.vertices.add(1)
+    try:
+        results.apply(folder)
+    except sample.Refused as error:
+        check("edited" in str(error))
+    else:
+        raise AssertionError("was not refused")
+    check("vertex group 'gone'" in refused(lambda: [setattr(ob.aspic, "pin_group", "gone"), bpy.ops.aspic.bake()]))
+
+
+@scenario
+def parents_mirror_rotate_and_scale():
+    parent = bpy.data.objects.new("Parent", None)
+    bpy.context.collection.objects.link(parent)
+    ob = ball(at=(0.2, 0, 0))
+    ob.parent = parent
+    parent.rotation_euler, parent.scale, parent.location = (0.3, 0.5, 1), (-2, 1, 0.7), (1, 2, 3)
+    for frame, x in ((1, 0), (6, 0.5)):
+        parent.location.x = x
+        parent.keyframe_insert("location", frame=frame)
+    ob.aspic.pin_group = paint(ob, "pin", lambda x: float(x.z > 0.05))
+    pinned = np.array([v.co.z > 0.09 for v in ob.data.vertices])
+    free = [shown(ob, f) for f in (1, 4, 6)]
+    folder = bake(6)
+    check_shows(ob, folder, "Ball")
+    for frame, x in zip((1, 4, 6), free):
+        error = np.abs(shown(ob, frame) - x)[pinned].max()
+        check(error < 0.01, "pins differ by", error)
+
+
+@scenario
+def frame_rates():
+    ob = ball()
+    for fps, base in ((24, 1), (30, 1), (30, 1.001)):
+        bpy.context.scene.render.fps, bpy.context.scene.render.fps_base = fps, base
+        folder = bake(7, start=5)
+        check(len(simulated(folder, "Ball")) == 7, fps, base)
+        check_shows(ob, folder, "Ball", start=5)
+
+
+@scenario
+def unit_scale():
+    bpy.context.scene.unit_settings.scale_length = 0.01
+    ob = ball(radius=10, at=(0, 0, 0))
+    x = shown(ob, 1)
+    folder = bake(6)
+    check_shows(ob, folder, "Ball", unit=0.01)
+    h, n = 1 / 96, 20
+    check(abs((x - shown(ob, 6))[:, 2].mean() - 100 * 9.81 * h * h * n * (n + 1) / 2) < 1e-2)
+
+
+@scenario
+def moving_obstacle_pushes():
+    bpy.context.scene.use_gravity = False
+    ob = ball(at=(0, 0, 0))
+    bpy.ops.mesh.primitive_cube_add(size=0.4, location=(-0.35, 0, 0))
+    cube = bpy.context.object
+    cube.name, cube.aspic.role = "Wall", "OBSTACLE"
+    for frame, x in ((1, -0.35), (9, -0.2)):
+        cube.location.x = x
+        cube.keyframe_insert("location", frame=frame)
+    folder = bake(10)
+    check_shows(ob, folder, "Ball")
+    check(shown(ob, 10)[:, 0].min() > -1e-4, "passed through:", shown(ob, 10)[:, 0].min())
+
+
+@scenario
+def generating_modifiers_follow():
+    ob = ball()
+    ob.modifiers.new("Smooth", "SMOOTH").iterations = 0
+    ob.modifiers.new("Subdivision", "SUBSURF")
+    folder = bake(4)
+    check(list(ob.modifiers.keys()) == ["Smooth", "Aspic", "Subdivision"])
+    check(all(m.show_viewport for m in ob.modifiers))
+    count = len(shown(ob, 4))
+    check(count > 3 * len(ob.data.vertices), count)
+    fallen = simulated(folder, "Ball")[0][:, 2].mean() - simulated(folder, "Ball")[3][:, 2].mean()
+    before = shown(ob, 1)[:, 2].mean()
+    check(abs(before - shown(ob, 4)[:, 2].mean() - fallen) < 1e-3)
+    bake(3)  # again, with the modifier in place
+    check(list(ob.modifiers.keys()).count("Aspic") == 1)
+    bpy.ops.aspic.remove()
+    check("Aspic" not in ob.modifiers)
+
+
+@scenario
+def render_shows_the_cache():
+    ob = ball(at=(0, 0, 0))
+    bake(8)
+    scene = bpy.context.scene
+    camera = bpy.data.objects.new("Camera", bpy.data.cameras.new("Camera"))
+    bpy.context.collection.objects.link(camera)
+    camera.location, camera.rotation_euler, camera.data.type = (0, -3, 0), (math.pi / 2, 0, 0), "ORTHO"
+    camera.data.ortho_scale, scene.camera = 1.0, camera
+    scene.render.engine = "CYCLES"
+    scene.cycles.samples, scene.cycles.use_denoising = 1, False
+    scene.render.resolution_x = scene.render.resolution_y = 64
+    scene.render.film_transparent = True
+    heights = []
+    for frame in (1, 8):
+        scene.frame_set(frame)
+        scene.render.filepath = os.path.join(export.folder_of(bpy.context), f"{frame}.png")
+        bpy.ops.render.render(write_still=True)
+        image = bpy.data.images.load(scene.render.filepath)
+        alpha = np.array(image.pixels[:]).reshape(64, 64, 4)[:, :, 3]
+        heights.append((np.nonzero(alpha > 0.5)[0].mean() + 0.5) / 64 - 0.5)
+    moved = shown(ob, 8)[:, 2].mean() - shown(ob, 1)[:, 2].mean()
+    check(moved < -0.1 and abs(heights[1] - heights[0] - moved) < 0.02, heights, moved)
+
+
+@scenario
+def names_are_sanitized_and_distinct():
+    first, second = ball("Bäll 1", at=(0, 0, 0)), ball("Bäll_1", at=(1, 0, 0))
+    folder = bake(3)
+    check_shows(first, folder, "B_ll_1")
+    check_shows(second, folder, "B_ll_1_2")
+
+
+@scenario
+def mistakes_are_explained():
+    check("no object is a soft body" in refused(bpy.ops.aspic.bake))
+    ob = ball()
+    ob.aspic.pin_group = paint(ob, "pin", lambda x: 0.2)
+    check("above 0.5" in refused(bpy.ops.aspic.bake))
+    ob.aspic.pin_group = ""
+    os.environ["ASPIC_PROGRAM"], program = "/no/such/aspic", os.environ.get("ASPIC_PROGRAM")
+    try:
+        check("/no/such/aspic" in refused(bpy.ops.aspic.bake))
+    finally:
+        os.environ.pop("ASPIC_PROGRAM") if program is None else os.environ.update(ASPIC_PROGRAM=program)
+    bpy.ops.mesh.primitive_plane_add(size=0.2)
+    bpy.context.object.aspic.role = "BODY"
+    text = refused(bpy.ops.aspic.bake)
+    check("Plane" in text and "scene.toml" in text, text)
+
+
+@scenario
+def addon_can_be_disabled_and_enabled():
+    ob = ball()
+    folder = bake(3)
+    aspic_blender.unregister()
+    check(not hasattr(ob, "aspic"))
+    check_shows(ob, folder, "Ball")  # the modifier is Blender's own
+    aspic_blender.register()
+    check(ob.aspic.role == "BODY")
+    bake(3)
+
+
+@scenario
+def saved_file_plays_and_continues():
+    ball()
+    folder = tempfile.mkdtemp()
+    try:
+        blend = os.path.join(folder, "shot.blend")
+        bpy.ops.wm.save_as_mainfile(filepath=blend)
+        check(bake(4) == os.path.join(folder, "shot_aspic"))
+        bpy.ops.wm.save_mainfile()
+        bpy.ops.wm.open_mainfile(filepath=blend)
+        ob = bpy.data.objects["Ball"]
+        check(ob.modifiers["Aspic"].filepath.startswith("//"))
+        check_shows(ob, os.path.join(folder, "shot_aspic"), "Ball")
+        check(not bpy.ops.aspic.continue_bake.poll() and bpy.ops.aspic.report.poll())
+    finally:
+        shutil.rmtree(folder)
+
+
+@scenario
+def large_export_is_fast():
+    """30 000 vertices in 250 frames, with an armature's work left out."""
+    bpy.ops.mesh.primitive_grid_add(x_subdivisions=173, y_subdivisions=173, size=1)
+    ob = bpy.context.object
+    ob.aspic.role = "BODY"
+    ob.aspic.pin_group = paint(ob, "pin", lambda x: float(x.x > 0.4))
+    wave = ob.modifiers.new("Wave", "WAVE")
+    wave.height = 0.1
+    bpy.context.scene.frame_end = 250
+    start = time.process_time()
+    folder = export.write(bpy.context)
+    seconds = time.process_time() - start
+    frames = files.read_pc2(os.path.join(folder, "Grid.pc2"))
+    check(frames.shape[0] >= 250 and frames.shape[1] > 30000, frames.shape)
+    print(f"export of {frames.shape[1]} vertices x 250 frames: {seconds:.1f} s CPU")
+    check(seconds < 20, "took", seconds)
+
+
+def main(names):
+    aspic_blender.register()
+    known = [s.__name__ for s in SCENARIOS]
+    if names == ["--list"]:
+        print("\n".join(known))
+        return
+    check(set(names) <= set(known), "unknown scenario in", names)
+    failed = []
+    for each in SCENARIOS:
+        if names and each.__name__ not in names:
+            continue
+        if aspic_blender.settings.ObjectSettings.is_registered:
+            aspic_blender.unregister()
+        bpy.ops.wm.read_factory_settings(use_empty=True)
+        aspic_blender.register()
+        start = time.time()
+        with tempfile.TemporaryDirectory() as folder:
+            bpy.context.scene.aspic.folder = "" if each is saved_file_plays_and_continues else folder
+            try:
+                each()
+                print(f"passed {each.__name__} ({time.time() - start:.1f} s)", flush=True)
+            except Exception:  # the others run, too
+                traceback.print_exc()
+                failed.append(each.__name__)
+    check(not failed, "failed:", ", ".join(failed))
+
+
+main(sys.argv[sys.argv.index("--") + 1:] if "--" in sys.argv else [])

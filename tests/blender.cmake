@@ -1,0 +1,11 @@
+# The Blender add-on, where Blender and the mesher are available: blender.SCENARIO.
+find_program(ASPIC_BLENDER blender)
+mark_as_advanced(ASPIC_BLENDER)
+if(ASPIC_BLENDER AND TARGET aspic-mesh AND TARGET aspic_cli)
+  file(STRINGS ${CMAKE_SOURCE_DIR}/blender/tests/scenarios.py scenarios REGEX "^def [a-z_]+\\(\\):$")
+  foreach(line ${scenarios})
+    string(REGEX REPLACE "^def ([a-z_]+).*" "\\1" scenario ${line})
+    add_test(NAME blender.${scenario} COMMAND ${CMAKE_SOURCE_DIR}/tools/blender_test ${scenario})
+    set_tests_properties(blender.${scenario} PROPERTIES ENVIRONMENT "ASPIC_PROGRAM=$<TARGET_FILE:aspic_cli>" TIMEOUT 600)
+  endforeach()
+endif()
