@@ -216,6 +216,23 @@ def interrupt_keeps_frames():
 
 
 @scenario
+def timer_shows_progress_and_applies():
+    """The timer's function, called as the window manager would."""
+    ob = ball(subdivisions=3, resolution=1)
+    bpy.context.scene.frame_end = 12
+    folder = export.write(bpy.context)
+    operators.active = process.Run(operators.program(bpy.context), folder,
+                                   [os.path.join(folder, "scene.toml"), "--out", results.run_folder(folder), "--force"])
+    seen, deadline = set(), time.time() + 120
+    while operators.poll() is not None and time.time() < deadline:
+        seen.add(bpy.context.scene.aspic.status)
+        time.sleep(0.02)
+    check(operators.active is None and bpy.context.scene.aspic.status == "Baked 12 frames")
+    check(any(text.endswith("of 44") for text in seen), seen)
+    check_shows(ob, folder, "Ball")
+
+
+@scenario
 def killed_program_continues():
     ball(subdivisions=3, resolution=1)
     bpy.context.scene.frame_end = 40
