@@ -30,7 +30,6 @@ export class Gauge {
         { key: "live", label: "now", meaning: "Readings during this touch", color: "series2", width: 2, shape: "both" },
         { key: "recorded", label: "recorded", meaning: "Recorded cases with noise", color: "series1", shape: "points" },
       ],
-      read: () => [],
     });
     this.show(null);
   }

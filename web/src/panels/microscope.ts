@@ -183,15 +183,10 @@ export class MicroscopePanel implements Panel {
   }
 
   private makeChart(place: number): StepChart {
-    const chart: StepChart = new StepChart(
-      this.names[place] ?? "steps",
-      this.chosen,
-      () => this.chosen.rows(),
-      () => {
-        this.names[place] = chart.name;
-        this.redraw();
-      },
-    );
+    const chart: StepChart = new StepChart(this.names[place] ?? "steps", this.chosen, () => {
+      this.names[place] = chart.name;
+      this.redraw();
+    });
     return chart;
   }
 
