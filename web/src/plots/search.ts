@@ -8,10 +8,7 @@ import type { Palette } from "./palette";
 import { nearest } from "./table";
 import { inkOn, paintVerticalLine } from "./painting";
 
-export interface Search {
-  curve: IterationReply["curve"];
-  trials: TrialRow[];
-  maxStep?: MaybeNumber; // largest alpha that contact allows
+export interface Search extends Pick<IterationReply, "curve" | "trials">, Partial<Pick<IterationReply, "max_step">> {
   test: string; // acceptance test: "textbook", "slide" or "none"
   about?: string; // the iteration, where it is not clear from the context
 }
@@ -57,7 +54,7 @@ export class SearchChart {
       xRange: () => alphaRange(search.curve.alpha, search.trials),
       yRange: () => this.range(),
       paint: (u, colors) => {
-        paintLimit(u, colors, search.maxStep ?? null);
+        paintLimit(u, colors, search.max_step ?? null);
         this.paintTrials(u, colors);
       },
     });
