@@ -86,11 +86,6 @@ const kDefaults: Record<string, SettingValue> = {
   max_iterations: 200,
 };
 
-interface SettingField {
-  read: () => SettingValue;
-  write: (value: SettingValue) => void;
-}
-
 export class FunctionForm {
   readonly element = element("form", { class: "functions-form", "aria-label": "Function and method" });
   private readonly shown = element("div");
@@ -105,7 +100,7 @@ export class FunctionForm {
   private readonly name = choice("f", "The function", kFunctions, "rosenbrock", () => this.nameChanged());
   private readonly x = numberField("start x", kStartHelp, 0, {}, () => this.changed());
   private readonly y = numberField("y", "y of the start", 0, {}, () => this.changed());
-  private readonly fields = new Map<string, SettingField>(); // by key
+  private readonly fields = new Map<string, { read: () => SettingValue; write: (value: SettingValue) => void }>(); // by key
   private others: Record<string, SettingValue> = {}; // settings of a question that the form does not show
 
   constructor(private readonly changed: () => void) {
