@@ -24,20 +24,15 @@ export function openAnimation(store: Store, page: Page, video: Video): void {
     if (format.value === "gif") return gifOfSession(store, page, video);
     return saveAnimation(store, page, side.value as SideName, format.value as Format);
   };
-  openForm(
-    "Export the motion",
-    [
-      element("p", {}, "The surface at the steps in the timeline, from the start to now, including drags."),
-      labeled("Format", format),
-      store.side("b") ? labeled("Side", side) : null,
-    ],
-    "Export",
-    run,
-    [
-      element("p", { class: "faint" }, "Videos and GIFs of any size: save the scene (Shift+T), then on a command line"),
-      element("pre", {}, "aspic run SCENE.toml --out out\naspic render out -o motion.gif   (or .mp4, .webm)"),
-    ],
-  );
+  const fields = [
+    element("p", {}, "The surface at the steps in the timeline, from the start to now, including drags."),
+    labeled("Format", format),
+    store.side("b") && labeled("Side", side),
+  ];
+  openForm("Export the motion", fields, "Export", run, [
+    element("p", { class: "faint" }, "Videos and GIFs of any size: save the scene (Shift+T), then on a command line"),
+    element("pre", {}, "aspic run SCENE.toml --out out\naspic render out -o motion.gif   (or .mp4, .webm)"),
+  ]);
 }
 
 async function saveAnimation(store: Store, page: Page, side: SideName, format: Format): Promise<void> {

@@ -12,18 +12,14 @@ export function makeCompareButton(store: Store, page: Page): HTMLElement {
     if (store.side("b")) store.source.send({ do: "end_compare" });
     else if (scene) openCompare(store, scene);
   };
-  const made = shortcutButton(
-    page,
-    { key: "c", does: "Compare two simulations (A/B), or end it", group: "Panels", run },
-    { text: "A/B", label: "Compare two simulations", steers: true },
-  );
+  const shortcut = { key: "c", does: "Compare two simulations (A/B), or end it", group: "Panels", run } as const;
+  const made = shortcutButton(page, shortcut, { text: "A/B", label: "Compare two simulations", steers: true });
   const show = (): void => {
     const comparing = store.side("b") !== null;
     made.textContent = comparing ? "End A/B" : "A/B";
     made.setAttribute("aria-label", comparing ? "End the comparison" : "Compare two simulations");
   };
-  store.on("scene", show);
-  store.on("gone", show);
+  for (const event of ["scene", "gone"] as const) store.on(event, show);
   return made;
 }
 

@@ -36,7 +36,11 @@ export function numberField(
   input.addEventListener("change", () => {
     if (Number.isFinite(input.valueAsNumber) && input.checkValidity()) change(input.valueAsNumber);
   });
-  return { element: element("label", { class: "plot-field", title }, text + " ", input), input };
+  // Shows a value from the program unless the reader is changing it.
+  const show = (shown: string): void => {
+    if (document.activeElement !== input) input.value = shown;
+  };
+  return { element: element("label", { class: "plot-field", title }, text + " ", input), input, show };
 }
 
 // Returns a function that calls `draw` at most once per frame.

@@ -39,13 +39,13 @@ export class Dock {
     list.addEventListener("keydown", (event) => this.moveBetweenTabs(event));
     addEventListener("resize", () => this.resize());
     page.on("panel", (name) => this.show(this.named(name)));
-    page.shortcut({ key: "d", does: "Open or close the plots", group: "Panels", run: () => this.toggle() });
+    page.shortcut({ key: "d", does: "Open or close the plots", group: "Panels", run: () => this.show(this.open ? null : this.last) });
     page.keep("dock", {
       save: () => ({ panel: this.open?.name ?? null, height: this.height }),
       restore: (saved) => this.restore(saved),
     });
     this.show(panels[0] ?? null);
-    whenNarrow((narrow) => this.show(narrow ? null : (this.last ?? panels[0] ?? null)));
+    whenNarrow((narrow) => this.show(narrow ? null : this.last));
   }
 
   show(panel: Panel | null): void {
@@ -68,10 +68,6 @@ export class Dock {
     return this.panels.find((panel) => panel.name === name) ?? this.open;
   }
 
-  private toggle(): void {
-    this.show(this.open ? null : (this.last ?? this.panels[0]));
-  }
-
   private resize(): void {
     const largest = Math.round(innerHeight * kShare);
     const chosen = this.height === null ? "" : `${Math.max(kSmallest, Math.min(this.height, largest))}px`;
@@ -84,9 +80,8 @@ export class Dock {
     const key = kKeys[panel.name];
     panel.element.setAttribute("role", "tabpanel");
     panel.element.setAttribute("aria-label", panel.title);
-    const tab = button({ text: panel.title, title: key ? `${panel.title} (${keyName(key)})` : panel.title }, () =>
-      this.show(panel),
-    );
+    const title = key ? `${panel.title} (${keyName(key)})` : panel.title;
+    const tab = button({ text: panel.title, title }, () => this.show(panel));
     tab.setAttribute("role", "tab");
     this.tabs.set(panel, tab);
     if (key) {

@@ -5,9 +5,7 @@ import { button, chooseFiles, element, labeled, messageOf, openDialog } from "./
 import type { GalleryReply } from "./protocol";
 import type { Store } from "./store";
 
-export type OpenFiles = (files: File[]) => Promise<void>;
-
-export function openGallery(store: Store, openFiles: OpenFiles): void {
+export function openGallery(store: Store, openFiles: (files: File[]) => Promise<void>): void {
   const problem = element("p", { class: "problem", role: "alert" });
   const shelves = element("div", { class: "shelves" }, element("p", { class: "faint" }, "Looking for scenes ..."));
   const work = async (load: () => Promise<unknown>): Promise<void> => {
@@ -59,9 +57,9 @@ function makeFileChooser(open: (files: File[]) => Promise<void>): HTMLElement {
 
 function makeShelves({ scenes, recent }: GalleryReply, load: (scene: string) => Promise<void>): HTMLElement[] {
   const entry = (title: string, about: string, path: string): HTMLElement => {
-    const made = element("button", { type: "button", class: "scene", title: path }, element("b", {}, title));
-    if (about) made.append(element("span", { class: "faint" }, about));
-    made.addEventListener("click", () => void load(path));
+    const made = button({ title: path }, () => void load(path));
+    made.className = "scene";
+    made.append(element("b", {}, title), ...(about ? [element("span", { class: "faint" }, about)] : []));
     return made;
   };
   const shelf = (title: string, entries: HTMLElement[]): HTMLElement[] =>
@@ -79,10 +77,9 @@ export function shelvesOf(scenes: GalleryReply["scenes"]): { title: string; entr
   const folders = new Map<string, GalleryReply["scenes"]>();
   for (const scene of scenes) {
     const end = scene.name.lastIndexOf("/");
-    const folder = end < 0 ? "" : scene.name.slice(0, end);
-    const entries = folders.get(folder) ?? [];
-    entries.push({ ...scene, name: scene.name.slice(end + 1).replace(/\.toml$/, "") });
-    folders.set(folder, entries);
+    const folder = scene.name.slice(0, Math.max(0, end));
+    const entry = { ...scene, name: scene.name.slice(end + 1).replace(/\.toml$/, "") };
+    folders.set(folder, [...(folders.get(folder) ?? []), entry]);
   }
   return [...folders].map(([folder, entries]) => ({ title: kTitles[folder] ?? folder, entries }));
 }

@@ -15,8 +15,7 @@ function keyOf(override: string): string {
 export function backTo(scene: Scene, key: string, side?: SideName): SettingChange {
   const overridden = scene.overrides.some((override) => keyOf(override) === key);
   const setting = scene.settings.find((candidate) => candidate.key === key);
-  const value = overridden && setting ? setting.value : null;
-  return side ? { key, value, side } : { key, value };
+  return { key, value: overridden && setting ? setting.value : null, ...(side && { side }) };
 }
 
 // Value of an override's TOML text; null unless it is a number, text, boolean or list of these.
@@ -38,8 +37,7 @@ export function toLoaded(scene: Scene, side?: SideName): SettingChange[] {
     .reverse()
     .map((override) => {
       const loaded = before.get(keyOf(override));
-      const value = loaded === undefined ? null : valueOf(loaded);
-      return side ? { key: keyOf(override), value, side } : { key: keyOf(override), value };
+      return { key: keyOf(override), value: loaded === undefined ? null : valueOf(loaded), ...(side && { side }) };
     });
 }
 
@@ -47,20 +45,16 @@ const kMostUndone = 100;
 
 // Changes in the order in which they were made. A group of changes is undone together.
 export class History {
-  private readonly done: { what: string; back: SettingChange[] }[] = [];
+  private readonly done: SettingChange[][] = [];
 
-  get last(): string | null {
-    return this.done[this.done.length - 1]?.what ?? null;
-  }
-
-  add(what: string, back: SettingChange[]): void {
+  add(back: SettingChange[]): void {
     if (back.length === 0) return;
-    this.done.push({ what, back });
+    this.done.push(back);
     if (this.done.length > kMostUndone) this.done.shift();
   }
 
-  pop(): SettingChange[] {
-    return this.done.pop()?.back ?? [];
+  pop(): SettingChange[] | undefined {
+    return this.done.pop();
   }
 
   clear(): void {

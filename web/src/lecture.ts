@@ -11,10 +11,8 @@ export type ShowFunction = (question: FunctionQuestion) => void;
 
 export function matches(lesson: Lesson, words: string): boolean {
   const text = `${lesson.pages} ${lesson.title} ${lesson.claim} ${lesson.look}`.toLowerCase();
-  return words
-    .toLowerCase()
-    .split(/\s+/)
-    .every((word) => text.includes(word));
+  const all = words.toLowerCase().split(/\s+/);
+  return all.every((word) => text.includes(word));
 }
 
 // Next available lesson, forward (1) or backward (-1).
@@ -46,11 +44,8 @@ export class Lecture {
     private readonly page: Page,
     private readonly showFunction: ShowFunction,
   ) {
-    this.opener = shortcutButton(
-      page,
-      { key: "l", does: "The lecture's pages", group: "Panels", run: () => this.toggle() },
-      { text: "Lecture" },
-    );
+    const shortcut = { key: "l", does: "The lecture's pages", group: "Panels", run: () => this.toggle() } as const;
+    this.opener = shortcutButton(page, shortcut, { text: "Lecture" });
     this.opener.hidden = true;
     const turn = element("div", { class: "turn" }, this.previous, this.next);
     root.append(turn, this.card, this.replay, this.search, this.list);
@@ -127,11 +122,9 @@ export class Lecture {
   }
 
   private showReplay(replaying: boolean, playing: boolean): void {
-    const text = !replaying
-      ? "The recorded mouse has ended: the body is yours."
-      : playing
-        ? "A recorded mouse plays. Drag the body to take over."
-        : "The recorded mouse is paused: press Space to continue, or drag the body to take over.";
+    const paused = "The recorded mouse is paused: press Space to continue, or drag the body to take over.";
+    const shown = playing ? "A recorded mouse plays. Drag the body to take over." : paused;
+    const text = replaying ? shown : "The recorded mouse has ended: the body is yours.";
     if (replaying === this.replaying && (!replaying || text === this.replay.textContent)) return;
     this.replaying = replaying;
     this.replay.hidden = false;

@@ -22,6 +22,7 @@ import { MicroscopePanel } from "./panels/microscope";
 import { makeReportPanel } from "./panels/report";
 import { Settings } from "./panels/settings";
 import { Chosen } from "./plots/chosen";
+import { registerColors } from "./plots/palette";
 import { drawForProgram } from "./program";
 import { RecordedSource } from "./recorded";
 import { renderPictures } from "./render";
@@ -74,6 +75,7 @@ function openPage(source: Source): void {
   store.start();
 }
 
+registerColors();
 const fit = embedded("fit");
 const query = new URL(location.href).searchParams;
 const recording = embedded("recording");

@@ -1,7 +1,6 @@
 // A button that opens a list of commands.
 import { button, element } from "./dom";
 
-
 let menus = 0;
 
 export function makeMenu(text: string, title: string, items: HTMLButtonElement[]): HTMLElement {
@@ -10,6 +9,7 @@ export function makeMenu(text: string, title: string, items: HTMLButtonElement[]
   const opener = button({ text: `${text} ▾`, title }, () => {});
   opener.setAttribute("popovertarget", id);
   opener.setAttribute("aria-haspopup", "menu");
+  const enabled = (): HTMLButtonElement[] => items.filter((item) => !item.disabled && !item.hidden);
   for (const item of items) {
     item.setAttribute("role", "menuitem");
     item.addEventListener("click", () => list.hidePopover());
@@ -20,19 +20,15 @@ export function makeMenu(text: string, title: string, items: HTMLButtonElement[]
     const box = opener.getBoundingClientRect();
     list.style.top = `${box.bottom + 4}px`;
     list.style.left = `${Math.max(4, Math.min(box.left, innerWidth - list.offsetWidth - 4))}px`;
-    enabled(items)[0]?.focus();
+    enabled()[0]?.focus();
   });
   list.addEventListener("keydown", (event) => {
     const by = { ArrowDown: 1, ArrowUp: -1 }[event.key];
     if (by === undefined) return;
     event.preventDefault();
-    const all = enabled(items);
+    const all = enabled();
     const at = all.findIndex((item) => item === document.activeElement);
     all[(at + by + all.length) % all.length]?.focus();
   });
   return element("span", { class: "menu-holder" }, opener, list);
-}
-
-function enabled(items: HTMLButtonElement[]): HTMLButtonElement[] {
-  return items.filter((item) => !item.disabled && !item.hidden);
 }

@@ -5,7 +5,7 @@ export class Newest<Value> {
 
   constructor(
     private readonly send: (value: Value) => Promise<unknown>,
-    private readonly failed: (reason: unknown) => void,
+    private readonly failed: (reason: unknown) => void = () => {},
     private readonly done: () => void = () => {}, // called when no request is under way any more
   ) {}
 

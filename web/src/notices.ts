@@ -41,8 +41,7 @@ export function showNotices(root: HTMLElement, store: Store, page: Page): void {
     lasting.className = `lasting ${lost ? "error" : "busy"}`;
     lasting.hidden = text === "";
   };
-  store.on("connected", showLasting);
-  store.on("busy", showLasting);
+  for (const event of ["connected", "busy"] as const) store.on(event, showLasting);
   showLasting();
 }
 

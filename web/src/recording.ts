@@ -168,15 +168,9 @@ export function carried(surface: RecordedSurface, points: Float32Array): Float32
 export function normalsOf(x: Float32Array, triangles: Uint32Array): Int8Array {
   const sums = new Float64Array(x.length);
   for (let t = 0; t < triangles.length; t += 3) {
-    const a = 3 * triangles[t];
-    const b = 3 * triangles[t + 1];
-    const c = 3 * triangles[t + 2];
-    const ux = x[b] - x[a];
-    const uy = x[b + 1] - x[a + 1];
-    const uz = x[b + 2] - x[a + 2];
-    const vx = x[c] - x[a];
-    const vy = x[c + 1] - x[a + 1];
-    const vz = x[c + 2] - x[a + 2];
+    const a = 3 * triangles[t], b = 3 * triangles[t + 1], c = 3 * triangles[t + 2];
+    const ux = x[b] - x[a], uy = x[b + 1] - x[a + 1], uz = x[b + 2] - x[a + 2];
+    const vx = x[c] - x[a], vy = x[c + 1] - x[a + 1], vz = x[c + 2] - x[a + 2];
     for (let k = 0; k < 3; ++k) {
       const corner = k === 0 ? a : k === 1 ? b : c;
       sums[corner] += uy * vz - uz * vy;

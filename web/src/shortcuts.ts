@@ -1,6 +1,5 @@
 // Keyboard shortcuts of the page, and their list on the screen.
-import { button, element, openDialog } from "./dom";
-import type { ButtonOptions } from "./dom";
+import { button, element, openDialog, type ButtonOptions } from "./dom";
 import type { Page, Shortcut } from "./page";
 
 export function keyName(key: string): string {
@@ -62,14 +61,7 @@ export function openShortcutList(page: Page): void {
   const groups = kGroups.map((group) => {
     const rows = [...page.shortcuts.values()]
       .filter((shortcut) => shortcut.group === group)
-      .map((shortcut) =>
-        element(
-          "tr",
-          {},
-          element("td", {}, element("kbd", {}, keyName(shortcut.key))),
-          element("td", {}, shortcut.does),
-        ),
-      );
+      .map(({ key, does }) => element("tr", {}, element("td", {}, element("kbd", {}, keyName(key))), element("td", {}, does)));
     return rows.length === 0 ? null : element("section", {}, element("h3", {}, group), element("table", {}, ...rows));
   });
   openDialog("Keyboard shortcuts", [element("div", { class: "columns" }, ...groups)], "shortcuts");

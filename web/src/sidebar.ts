@@ -24,11 +24,8 @@ export class Sidebar {
       resize: (width) => this.resize(width),
     });
     root.append(divider, this.body);
-    this.opener = shortcutButton(
-      page,
-      { key: "g", does: "Settings", group: "Panels", run: () => this.hide(!root.hidden) },
-      { text: "Settings" },
-    );
+    const shortcut = { key: "g", does: "Settings", group: "Panels", run: () => this.hide(!root.hidden) } as const;
+    this.opener = shortcutButton(page, shortcut, { text: "Settings" });
     whenNarrow((narrow) => this.hide(narrow));
     page.keep("settings", {
       save: () => ({ hidden: root.hidden, width: root.offsetWidth }),

@@ -103,15 +103,12 @@ export class Store extends Emitter<Events> {
           side.steps.splice(0, side.steps.length - kMostRows);
         return this.emit("steps", { side: message.side, from: message.from });
       }
-      case "pins": {
-        const side = this.sides[message.side];
-        if (!side) return;
-        side.pins = message.vertices;
+      case "pins":
+        if (this.sides[message.side]) this.sides[message.side]!.pins = message.vertices;
         return this.emit("pins", message.side);
-      }
       case "obstacles": {
-        const side = this.sides[message.side];
-        if (!side || side.scene.generation !== message.generation) return;
+        const side = this.current(message);
+        if (!side) return;
         side.obstacles = message.obstacles;
         return this.emit("obstacles", message.side);
       }
@@ -144,16 +141,21 @@ export class Store extends Emitter<Events> {
     this.emit("scene", scene.side);
   }
 
+  // The side with this generation of the geometry; null if the message is about an earlier one.
+  private current({ side, generation }: { side: SideName; generation: number }): Side | null {
+    return this.sides[side]?.scene.generation === generation ? this.sides[side] : null;
+  }
+
   private receiveGeometry(geometry: Geometry): void {
-    const side = this.sides[geometry.side];
-    if (!side || side.scene.generation !== geometry.generation) return;
+    const side = this.current(geometry);
+    if (!side) return;
     side.geometry = geometry;
     this.emit("geometry", geometry.side);
   }
 
   private receivePicture(picture: Picture): void {
-    const side = this.sides[picture.side];
-    if (!side || side.scene.generation !== picture.generation) return this.source.ready();
+    const side = this.current(picture);
+    if (!side) return this.source.ready();
     side.picture = picture;
     this.emit("picture", picture.side);
   }

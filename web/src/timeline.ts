@@ -22,10 +22,7 @@ export function makeTimeline(store: Store, page: Page): HTMLElement {
   });
   const place = element("span", { class: "place" });
   const ends = element("span", { class: "faint ends" });
-  const rewind = new Newest<number>(
-    (step) => store.source.request({ do: "rewind", step }),
-    page.report,
-  );
+  const rewind = new Newest((step: number) => store.source.request({ do: "rewind", step }), page.report);
   slider.addEventListener("input", () => rewind.push(Number(slider.value)));
 
   store.on("state", (state) => {

@@ -1,5 +1,5 @@
 // Toolbar: time controls, and buttons that open everything else.
-import { button, element, icon } from "./dom";
+import { button, element, icon, type ButtonOptions } from "./dom";
 import { statusName } from "./names";
 import type { Page } from "./page";
 import type { SideName, SideState, State } from "./protocol";
@@ -25,8 +25,8 @@ export function makeToolbar(root: HTMLElement, store: Store, page: Page, theme: 
 
 function makeTransport(store: Store, page: Page): HTMLElement {
   const { source } = store;
-  const group = "Simulation";
-  const steers = source.live;
+  const add = (key: string, does: string, look: ButtonOptions, run: () => void): HTMLButtonElement =>
+    shortcutButton(page, { key, does, group: "Simulation", run }, { ...look, steers: source.live });
   let wanted: boolean | null = null; // requested value until the program answers
   const toggle = (): void => {
     wanted = !(wanted ?? store.state?.playing ?? false);
@@ -35,33 +35,21 @@ function makeTransport(store: Store, page: Page): HTMLElement {
       .catch(page.report)
       .finally(() => (wanted = null));
   };
-  const play = shortcutButton(
-    page,
-    { key: " ", does: "Play or pause", group, run: toggle },
-    { icon: "play", label: "Play", steers },
-  );
+  const play = add(" ", "Play or pause", { icon: "play", label: "Play" }, toggle);
   let played = false;
   store.on("state", (state) => {
-    if ((wanted ?? played) && !state.playing) explainStop(state, page);
-    played = state.playing;
-  });
-  store.on("state", ({ playing }) => {
+    const { playing } = state;
+    if ((wanted ?? played) && !playing) explainStop(state, page);
+    played = playing;
     if (play.getAttribute("aria-pressed") === String(playing)) return;
     play.replaceChildren(icon(playing ? "pause" : "play"));
     play.setAttribute("aria-label", playing ? "Pause" : "Play");
     play.setAttribute("aria-pressed", String(playing));
   });
-  const step = shortcutButton(
-    page,
-    { key: "s", does: "One time step", group, run: () => source.send({ do: "step" }) },
-    { icon: "step", label: "Step", steers },
-  );
-  const reset = shortcutButton(
-    page,
-    { key: "r", does: "Back to the start", group, run: () => source.send({ do: "reset" }) },
-    { icon: "reset", label: "Reset", steers },
-  );
-  const iterate = source.live ? makeIterate(store, page) : null;
+  const step = add("s", "One time step", { icon: "step", label: "Step" }, () => source.send({ do: "step" }));
+  const reset = add("r", "Back to the start", { icon: "reset", label: "Reset" }, () => source.send({ do: "reset" }));
+  const iteration = { icon: "iterate", text: "1 iteration" } as const;
+  const iterate = source.live ? add("i", "One iteration of the minimizer", iteration, () => source.send({ do: "iterate" })) : null;
   return element("div", { class: "group" }, reset, play, step, iterate, makeSpeed(store));
 }
 
@@ -71,15 +59,6 @@ function explainStop(state: State, page: Page): void {
   if (!words) return;
   const who = state.b ? (state.a.words ? "A stopped" : "B stopped") : "Stopped";
   page.notice(`${who}: ${words.cause}; ${words.place}. Remedy: ${words.remedy}`, "error");
-}
-
-function makeIterate(store: Store, page: Page): HTMLElement {
-  const run = (): void => store.source.send({ do: "iterate" });
-  return shortcutButton(
-    page,
-    { key: "i", does: "One iteration of the minimizer", group: "Simulation", run },
-    { icon: "iterate", text: "1 iteration", steers: true },
-  );
 }
 
 function makeSpeed(store: Store): HTMLElement {
@@ -104,6 +83,7 @@ function makeSpeed(store: Store): HTMLElement {
 // Status of the last step in a word, with its explanation as a tooltip.
 function makeStatus(store: Store): HTMLElement {
   const rate = element("span", { class: "rate faint", title: "Measured speed: simulated seconds per second of wall time" });
+  const makeChip = (): HTMLButtonElement => element("button", { type: "button", class: "chip", hidden: true });
   const chips = { a: makeChip(), b: makeChip() };
   store.on("state", (state) => {
     rate.textContent = state.rate > 0 ? `${Number(state.rate.toPrecision(2))}x real time` : "";
@@ -111,10 +91,6 @@ function makeStatus(store: Store): HTMLElement {
     showChip(chips.b, state.b, failed(store, "b"), "B: ");
   });
   return element("div", { class: "group status" }, chips.a, chips.b, rate);
-}
-
-function makeChip(): HTMLButtonElement {
-  return element("button", { type: "button", class: "chip", hidden: true });
 }
 
 // Whether the displayed step did not converge.

@@ -27,8 +27,7 @@ function compose(target: HTMLCanvasElement, views: Layers[]): void {
   const height = Math.max(0, ...heights) & ~1;
   const context = target.getContext("2d");
   if (!context || width === 0 || height === 0) throw new Error("there is nothing to show");
-  if (target.width !== width) target.width = width;
-  if (target.height !== height) target.height = height;
+  if (target.width !== width || target.height !== height) Object.assign(target, { width, height });
   const style = getComputedStyle(document.body);
   context.fillStyle = style.backgroundColor;
   context.fillRect(0, 0, width, height);
@@ -82,11 +81,8 @@ export class Video {
     private readonly draw: DrawViews,
   ) {
     const run = (): void => (this.recorder ? this.stop() : this.start());
-    this.opener = shortcutButton(
-      page,
-      { key: "Shift+V", does: "Record a video of the view, or end it", group: "File", run },
-      { text: "Record a video" },
-    );
+    const shortcut = { key: "Shift+V", does: "Record a video of the view, or end it", group: "File", run } as const;
+    this.opener = shortcutButton(page, shortcut, { text: "Record a video" });
     this.indicator = button({ title: "End the video (Shift+V)", label: "End the video" }, () => this.stop());
     this.indicator.className = "recording";
     this.indicator.hidden = true;

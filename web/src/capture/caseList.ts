@@ -19,9 +19,7 @@ export class CaseList {
   private readonly noise = numberField("noise [%]", "Standard deviation of positions and forces, relative to the largest motion and the force", 1, { min: 0, max: 100 }, (value) =>
     this.send({ do: "bench", noise: value / 100 }),
   );
-  private readonly seed = numberField("seed", "Equal numbers give equal noise", 1, { min: 0, step: 1 }, (value) =>
-    this.send({ do: "bench", seed: value }),
-  );
+  private readonly seed = numberField("seed", "Equal numbers give equal noise", 1, { min: 0, step: 1 }, (seed) => this.send({ do: "bench", seed }));
   private readonly list = element("ol", { class: "capture-list", "aria-label": "Cases" });
   private readonly count = element("span", { class: "faint", role: "status" });
   private readonly clear = this.make("Forget all", "Delete all recorded cases", () => ({ do: "forget" }));
@@ -56,25 +54,17 @@ export class CaseList {
     const cases = capture?.cases ?? [];
     this.count.textContent = cases.length === 0 ? "Nothing recorded yet." : `${plural(cases.length, "case")} recorded`;
     this.clear.disabled = this.save.disabled = cases.length === 0 || !this.store.steers;
-    if (capture) {
-      if (document.activeElement !== this.noise.input) this.noise.input.value = String(Number((100 * capture.noise).toPrecision(3)));
-      if (document.activeElement !== this.seed.input) this.seed.input.value = String(capture.seed);
-    }
+    if (capture) this.noise.show(String(Number((100 * capture.noise).toPrecision(3))));
+    if (capture) this.seed.show(String(capture.seed));
     const reported = JSON.stringify(cases);
     if (reported === this.reported) return;
     this.reported = reported;
-    this.list.replaceChildren(
-      ...cases.map((recorded, i) =>
-        element(
-          "li",
-          {},
-          element("span", {}, recorded.name),
-          element("span", { class: "faint" }, withUnit(recorded.depth, "m", 2)),
-          element("span", {}, withUnit(recorded.push, "N", 3)),
-          button({ icon: "close", label: `Forget ${recorded.name}`, steers: true }, () => this.send({ do: "forget", case: i })),
-        ),
-      ),
-    );
+    const items = cases.map(({ name, depth, push }, i) => {
+      const forget = button({ icon: "close", label: `Forget ${name}`, steers: true }, () => this.send({ do: "forget", case: i }));
+      const words = [element("span", {}, name), element("span", { class: "faint" }, withUnit(depth, "m", 2)), element("span", {}, withUnit(push, "N", 3))];
+      return element("li", {}, ...words, forget);
+    });
+    this.list.replaceChildren(...items);
     this.list.scrollTop = this.list.scrollHeight;
   }
 
@@ -86,20 +76,15 @@ export class CaseList {
 
   private saveAs(): void {
     const folder = prompt("Folder of the data set, on the program's machine", `${this.store.name}_capture`);
-    if (folder) void this.send({ do: "save_capture", folder }).then((ok) => ok && this.page.notice(`Saved. Fit it with: aspic fit ${folder}`));
+    const saved = (): void => this.page.notice(`Saved. Fit it with: aspic fit ${folder}`);
+    if (folder) this.store.source.request({ do: "save_capture", folder }).then(saved, this.page.report);
   }
 
   private make(text: string, title: string, command: () => Command): HTMLButtonElement {
     return button({ text, title, steers: true }, () => void this.send(command()));
   }
 
-  private async send(command: Command): Promise<boolean> {
-    try {
-      await this.store.source.request(command);
-      return true;
-    } catch (reason) {
-      this.page.report(reason);
-      return false;
-    }
+  private send(command: Command): Promise<unknown> {
+    return this.store.source.request(command).catch(this.page.report);
   }
 }

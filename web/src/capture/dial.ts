@@ -31,11 +31,9 @@ export class Dial {
       const angle = kFrom + (kSweep * i) / kParts;
       const [[x1, y1], [x2, y2], [x3, y3]] = [onCircle(40, angle), onCircle(36, angle), onCircle(29, angle)];
       this.svg.append(svgElement("line", { x1: `${x1}`, y1: `${y1}`, x2: `${x2}`, y2: `${y2}`, class: "dial-tick" }));
-      const number = svgElement("text", { x: `${x3}`, y: `${y3 + 2.4}`, class: "dial-number" });
-      this.numbers.push(number);
-      this.svg.append(number);
+      this.numbers.push(svgElement("text", { x: `${x3}`, y: `${y3 + 2.4}`, class: "dial-number" }));
     }
-    this.svg.append(this.needle, svgElement("circle", { r: "3", class: "dial-hub" }));
+    this.svg.append(...this.numbers, this.needle, svgElement("circle", { r: "3", class: "dial-hub" }));
     this.element.append(this.svg);
     this.show(0);
   }

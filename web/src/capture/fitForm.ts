@@ -17,7 +17,7 @@ const kFields = [
 export function fitText(fit: CaptureFit | null): string {
   if (!fit) return "";
   if (fit.failure !== "") return `The fit failed: ${fit.failure}`;
-  const last = fit.iterations[fit.iterations.length - 1];
+  const last = fit.iterations.at(-1);
   const where = last ? `iteration ${last.index}, residuals of ${short(last.chi, 2)} standard deviations` : "";
   if (fit.running) return [fit.stage, where].filter((text) => text !== "").join(": ");
   return last ? `Done: ${where}` : "";
@@ -80,7 +80,7 @@ export class FitForm {
 
   // Progress from the first chi to 1, on a logarithmic scale.
   private progress({ iterations }: CaptureFit): void {
-    const [first, last] = [iterations[0]?.chi, iterations[iterations.length - 1]?.chi];
+    const [first, last] = [iterations[0]?.chi, iterations.at(-1)?.chi];
     if (!first || !last || first <= 1) return this.bar.removeAttribute("value");
     this.bar.value = Math.min(1, Math.max(0, 1 - Math.log(last) / Math.log(first)));
   }

@@ -6,7 +6,7 @@ import { withUnit } from "../plots/numbers";
 import { merged } from "../plots/table";
 import type { ProbeState } from "../protocol";
 import { length } from "../view/lens";
-import { entryTexts } from "../view/values";
+import { vectorText } from "../view/values";
 import { ForceCurve } from "./curve";
 import { Dial } from "./dial";
 
@@ -30,7 +30,6 @@ export class Gauge {
         { key: "live", label: "now", meaning: "Readings during this touch", color: "series2", width: 2, shape: "both" },
         { key: "recorded", label: "recorded", meaning: "Recorded cases with noise", color: "series1", shape: "points" },
       ],
-      read: () => [],
     });
     this.show(null);
   }
@@ -39,12 +38,13 @@ export class Gauge {
     const newtons = probe ? length(probe.force) : 0;
     this.dial.show(newtons);
     this.force.textContent = probe ? withUnit(newtons, "N", 3) : "–";
-    this.parts.replaceChildren(
-      ...row("depth", probe ? withUnit(probe.depth, "m", 3) : "–"),
-      ...row("force x, y, z", probe ? `${entryTexts(probe.force).join("  ")} N` : "–"),
-      ...row("torque", probe ? withUnit(length(probe.torque), "Nm", 3) : "–"),
-      ...row("touches", probe ? (probe.points > 0 ? `${probe.points} points` : "no contact") : "–"),
-    );
+    const parts = {
+      depth: probe && withUnit(probe.depth, "m", 3),
+      "force x, y, z": probe && vectorText(probe.force, "N"),
+      torque: probe && withUnit(length(probe.torque), "Nm", 3),
+      touches: probe && (probe.points > 0 ? `${probe.points} points` : "no contact"),
+    };
+    this.parts.replaceChildren(...Object.entries(parts).flatMap(([name, value]) => [element("dt", {}, name), element("dd", {}, value ?? "–")]));
     if (this.curve.add(probe)) this.redraw();
   }
 
@@ -58,8 +58,4 @@ export class Gauge {
     const { x, columns } = merged(column(this.curve.sorted()), column(this.recorded));
     this.chart.show(x, columns);
   }
-}
-
-function row(name: string, value: string): HTMLElement[] {
-  return [element("dt", {}, name), element("dd", {}, value)];
 }

@@ -28,9 +28,8 @@ export class TipForm {
     private readonly display: Display,
   ) {
     const { settings } = display;
-    const shape = choice("Tip", "Shape of the tip", valuesFirst(kChoices.tipShape), settings.tipShape, (value) =>
-      display.change({ tipShape: value as TipChoice["shape"] }),
-    );
+    const changeShape = (value: string): void => display.change({ tipShape: value as TipChoice["shape"] });
+    const shape = choice("Tip", "Shape of the tip", valuesFirst(kChoices.tipShape), settings.tipShape, changeShape);
     const contact = choice(
       "held",
       "Bonded: the tip sticks to the surface and can also pull. Sliding: it pushes without friction.",
@@ -38,13 +37,12 @@ export class TipForm {
       settings.tipContact,
       (value) => display.change({ tipContact: value as TipChoice["contact"] }),
     );
-    this.radius = numberField("Radius [m]", "Radius of the next tip; 0: chosen by the program", settings.tipRadius, { min: 0 }, (value) =>
-      display.change({ tipRadius: value }),
-    );
+    const changeRadius = (tipRadius: number): void => display.change({ tipRadius });
+    this.radius = numberField("Radius [m]", "Radius of the next tip; 0: chosen by the program", settings.tipRadius, { min: 0 }, changeRadius);
     display.on("changed", () => {
       shape.select.value = settings.tipShape;
       contact.select.value = settings.tipContact;
-      if (document.activeElement !== this.radius.input) this.radius.input.value = short(settings.tipRadius);
+      this.radius.show(short(settings.tipRadius));
     });
     this.slider.addEventListener("input", () => this.probe && this.press(this.slider.valueAsNumber * kDeepest * this.probe.radius));
     this.element.append(
@@ -64,7 +62,7 @@ export class TipForm {
     this.lift.disabled = probe === null || !this.store.steers;
     if (!probe) return;
     if (!this.slider.matches(":active")) this.slider.value = String(probe.wanted / (kDeepest * probe.radius));
-    if (document.activeElement !== this.depth.input) this.depth.input.value = String(Number(probe.wanted.toPrecision(3)));
+    this.depth.show(String(Number(probe.wanted.toPrecision(3))));
     if (this.display.settings.tipRadius === 0) this.radius.input.placeholder = short(probe.radius);
   }
 

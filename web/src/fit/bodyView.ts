@@ -3,7 +3,7 @@
 import "../view/view.css";
 import * as THREE from "three";
 import { element } from "../dom";
-import type { Geometry, Vec3 } from "../protocol";
+import type { Vec3 } from "../protocol";
 import { onLook } from "../theme";
 import { Body, boxOf } from "../view/body";
 import type { CameraRig } from "../view/cameras";
@@ -38,7 +38,6 @@ export interface Cut {
   other: boolean; // keep the other half
 }
 
-const kTurn = 1; // rotation of the camera per pixel
 const kWheel = 0.0015;
 
 // Data that all views of a page share, computed once.
@@ -60,8 +59,7 @@ export class FittedBody {
   plane(cut: Cut | null): Plane | null {
     if (!cut) return null;
     const sign = cut.other ? -1 : 1;
-    const normal: Vec3 = [0, 0, 0];
-    normal[cut.axis] = sign;
+    const normal = [0, 1, 2].map((c) => (c === cut.axis ? sign : 0)) as Vec3;
     const level = this.lower[cut.axis] + cut.at * (this.upper[cut.axis] - this.lower[cut.axis]);
     return { normal, offset: sign * level };
   }
@@ -114,8 +112,7 @@ export class BodyView {
   // Replaces the previous marks.
   mark(objects: THREE.Object3D[], notes: Note[]): void {
     for (const object of this.objects) disposeOf(object);
-    this.objects = objects;
-    this.notes = notes;
+    [this.objects, this.notes] = [objects, notes];
     this.screen.stage?.extras.clear();
     for (const object of objects) this.screen.stage?.extras.add(object);
     this.redraw();
@@ -130,16 +127,9 @@ export class BodyView {
     this.soup = bodyBelow(this.fitted.mesh, this.fitted.boundary, this.fitted.plane(this.cut));
     const { positions, normals, tet, edges } = this.soup;
     const corners = positions.length / 3;
-    const geometry: Geometry = {
-      side: "a",
-      generation: 1,
-      rest: positions,
-      triangles: Uint32Array.from({ length: corners }, (_, i) => i),
-      edges,
-      tet,
-      vertex: new Uint32Array(corners).fill(kSkinPoint),
-    };
-    this.body = new Body(geometry);
+    const triangles = Uint32Array.from({ length: corners }, (_, i) => i);
+    const vertex = new Uint32Array(corners).fill(kSkinPoint);
+    this.body = new Body({ side: "a", generation: 1, rest: positions, triangles, edges, tet, vertex });
     this.screen.stage?.show(this.body);
     this.body.show({ positions, normals, values: null });
     this.screen.stage?.moved();
@@ -166,14 +156,10 @@ export class BodyView {
   }
 
   private applyDisplay(): void {
-    const style = this.style();
+    const style = readStyle(this.element, kDefaults, null);
     this.body?.apply({ ...kDefaults, wires: this.wires, bodyColor: "#b9c3d0", inside: "same" });
     this.screen.stage?.apply(kDefaults, style);
     this.redraw();
-  }
-
-  private style(): ReturnType<typeof readStyle> {
-    return readStyle(this.element, kDefaults, null);
   }
 
   private draw(): void {
@@ -181,7 +167,7 @@ export class BodyView {
     const { clientWidth: width, clientHeight: height } = this.element;
     if (!this.screen.stage || width === 0 || height === 0) return;
     const { shown } = this;
-    const style = this.style();
+    const style = readStyle(this.element, kDefaults, null);
     const lens = this.rig.lens(Math.max(1, width - (shown ? kBarWidth * style.em : 0)), height);
     this.screen.draw(lens, width, Math.min(2, devicePixelRatio), style, {
       axes: true,
@@ -198,21 +184,18 @@ export class BodyView {
     host.addEventListener("pointermove", (event) => {
       if (!host.hasPointerCapture(event.pointerId)) return;
       if (event.shiftKey || (event.buttons & 2) !== 0) this.rig.pan(event.movementX, event.movementY, host.clientHeight);
-      else this.rig.turn(kTurn * event.movementX, kTurn * event.movementY);
+      else this.rig.turn(event.movementX, event.movementY);
     });
     host.addEventListener("contextmenu", (event) => event.preventDefault());
     host.addEventListener("dblclick", () => this.rig.center(this.fitted.lower, this.fitted.upper));
     // Zooms with Ctrl only: the wheel alone scrolls the page.
-    host.addEventListener(
-      "wheel",
-      (event) => {
-        if (!event.ctrlKey) return;
-        event.preventDefault();
-        const box = host.getBoundingClientRect();
-        const [x, y] = [event.clientX - box.left - box.width / 2, box.height / 2 - (event.clientY - box.top)];
-        this.rig.zoom(Math.exp(kWheel * event.deltaY), x, y, box.height);
-      },
-      { passive: false },
-    );
+    const wheel = (event: WheelEvent): void => {
+      if (!event.ctrlKey) return;
+      event.preventDefault();
+      const box = host.getBoundingClientRect();
+      const [x, y] = [event.clientX - box.left - box.width / 2, box.height / 2 - (event.clientY - box.top)];
+      this.rig.zoom(Math.exp(kWheel * event.deltaY), x, y, box.height);
+    };
+    host.addEventListener("wheel", wheel, { passive: false });
   }
 }

@@ -1,18 +1,13 @@
 // Charts of a fit: force against depth, residuals, trial weights, convergence.
 import type uPlot from "uplot";
-import { Chart, type Curve } from "../plots/chart";
-import { short, withUnit } from "../plots/numbers";
+import { Chart, type FilledCurve } from "../plots/chart";
+import { finite, short } from "../plots/numbers";
 import type { Palette } from "../plots/palette";
 import { inkOn } from "../plots/painting";
 import { nearest } from "../plots/table";
 import type { MaybeNumber } from "../protocol";
 import { text } from "../view/marks";
 import { closeness, histogram, type FitHead, type GroupCurve } from "./data";
-
-// Value at x, or the last value if `at` is null.
-function valueAt(x: readonly number[], column: readonly MaybeNumber[], at: number | null): MaybeNumber {
-  return column[at === null ? column.length - 1 : nearest(x, at)] ?? null;
-}
 
 // Error bars of one standard deviation, in device pixels.
 function paintErrorBars(u: uPlot, colors: Palette, curve: GroupCurve): void {
@@ -38,8 +33,7 @@ function paintErrorBars(u: uPlot, colors: Palette, curve: GroupCurve): void {
 }
 
 function around(values: readonly MaybeNumber[], includeZero: boolean): [number, number] {
-  const known = values.filter((v): v is number => v !== null && Number.isFinite(v));
-  if (includeZero) known.push(0);
+  const known = [...finite(values), ...(includeZero ? [0] : [])];
   const [low, high] = [Math.min(...known), Math.max(...known)];
   const margin = 0.07 * (high - low) || 1e-9;
   return [low === 0 ? 0 : low - margin, high + margin];
@@ -48,27 +42,22 @@ function around(values: readonly MaybeNumber[], includeZero: boolean): [number, 
 export function loadChart(name: string, curve: GroupCurve): Chart {
   const { samples } = curve;
   const x = samples.map((s) => s.x);
-  const columns: Record<string, MaybeNumber[]> = {
-    fitted: samples.map((s) => s.fitted),
-    heldOut: samples.map((s) => s.heldOut),
-    measured: samples.map((s) => s.measured),
-  };
+  const [fitted, heldOut, measured] = (["fitted", "heldOut", "measured"] as const).map((key) => samples.map((s) => s[key]));
   const shape = x.length > 2 ? "line" : "both";
-  const all: Curve[] = [
-    { key: "fitted", label: "fitted", meaning: "predicted by the fitted material", color: "series1", width: 2, shape },
-    { key: "heldOut", label: curve.leftOut ? "predicted" : "held out", meaning: "predicted by a fit without this group", color: "series2", width: 2, dash: [6, 4], shape },
-    { key: "measured", label: "measured", meaning: "measured, ± one standard deviation", color: "text", shape: "points" },
+  const all: FilledCurve[] = [
+    { key: "fitted", label: "fitted", meaning: "predicted by the fitted material", color: "series1", width: 2, shape, values: fitted },
+    { key: "heldOut", label: curve.leftOut ? "predicted" : "held out", meaning: "predicted by a fit without this group", color: "series2", width: 2, dash: [6, 4], shape, values: heldOut },
+    { key: "measured", label: "measured", meaning: "measured, ± one standard deviation", color: "text", shape: "points", values: measured },
   ];
-  const curves = all.filter(({ key }) => key === "measured" || columns[key].some((v) => v !== null));
+  const curves = all.filter(({ key, values }) => key === "measured" || values.some((v) => v !== null));
   const spread = samples.flatMap(({ measured: m, deviation }) => (m === null ? [] : [m - deviation, m + deviation]));
-  return Chart.of(x, curves.map((c) => columns[c.key]), {
+  return Chart.of(x, curves, {
     label: `${name}: ${curve.y.label} against ${curve.x.label}, measured and fitted`,
     x: { label: curve.x.label, unit: curve.x.unit },
     y: curve.y,
-    curves,
-    read: (key, at) => [withUnit(valueAt(x, columns[key], at), curve.y.unit, 3)],
+    showsLast: true,
     xRange: () => around(x, true),
-    yRange: () => around([...spread, ...columns.fitted, ...columns.heldOut], true),
+    yRange: () => around([...spread, ...fitted, ...heldOut], true),
     paint: (u, colors) => paintErrorBars(u, colors, curve),
   });
 }
@@ -81,16 +70,14 @@ export function histogramChart(values: readonly number[]): Chart {
   const { middle, count } = histogram(values, kLimit, kBins);
   const width = (2 * kLimit) / kBins;
   const normal = middle.map((r) => (values.length * width * Math.exp((-r * r) / 2)) / Math.sqrt(2 * Math.PI));
-  const columns: Record<string, number[]> = { count, normal };
-  return Chart.of(middle, [count, normal], {
+  const curves: FilledCurve[] = [
+    { key: "count", label: "residuals", meaning: "(fitted − measured) / standard deviation; values beyond ±4 are in the outermost bins", color: "series1", shape: "bars", values: count },
+    { key: "normal", label: "normal", meaning: "expected from noise with the given standard deviations", color: "series2", width: 2, values: normal },
+  ];
+  return Chart.of(middle, curves, {
     label: "Histogram of the residuals",
     x: { label: "residual [standard deviations]" },
     y: { label: "readings" },
-    curves: [
-      { key: "count", label: "residuals", meaning: "(fitted − measured) / standard deviation; values beyond ±4 are in the outermost bins", color: "series1", shape: "bars" },
-      { key: "normal", label: "normal", meaning: "expected from noise with the given standard deviations", color: "series2", width: 2 },
-    ],
-    read: (key, x) => (x === null ? [] : [short(valueAt(middle, columns[key], x), 3)]),
     xRange: () => [-kLimit, kLimit],
     yRange: () => [0, 1.08 * Math.max(...count, ...normal, 1)],
   });
@@ -98,16 +85,14 @@ export function histogramChart(values: readonly number[]): Chart {
 
 export function caseChart(names: readonly string[], ofCase: readonly MaybeNumber[]): Chart {
   const x = ofCase.map((_, i) => i + 1);
-  const one = ofCase.map(() => 1);
-  return Chart.of(x, [[...ofCase], one], {
+  const curves: FilledCurve[] = [
+    { key: "rms", label: "of a case", color: "series1", shape: "bars", values: [...ofCase] },
+    { key: "one", label: "as expected", meaning: "1: consistent with the standard deviations", color: "series2", dash: [6, 4], values: x.map(() => 1) },
+  ];
+  return Chart.of(x, curves, {
     label: "Root mean square of the residuals of each case",
     x: { label: "case", integer: true },
     y: { label: "rms [standard deviations]" },
-    curves: [
-      { key: "rms", label: "of a case", color: "series1", shape: "bars" },
-      { key: "one", label: "as expected", meaning: "1: consistent with the standard deviations", color: "series2", dash: [6, 4] },
-    ],
-    read: (key, at) => (key === "rms" && at !== null ? [short(valueAt(x, ofCase, at), 3)] : []),
     caption: (at) => (at === null ? "" : (names[Math.min(names.length - 1, Math.max(0, Math.round(at) - 1))] ?? "")),
     yRange: () => [0, 1.1 * Math.max(1, ...ofCase.map((v) => v ?? 0))],
   });
@@ -125,16 +110,15 @@ export function weightChart(head: FitHead): Chart | null {
   const x = trials.map((t) => t.x);
   const misfit = trials.map((t) => closeness(t.misfit, head.counts.residuals) ?? 0);
   const log = Math.max(...misfit) > 30 * Math.min(...misfit);
-  const target = trials.map(() => 1);
-  return Chart.of(x, [misfit, target], {
+  const curves: FilledCurve[] = [
+    { key: "trials", label: "trial weights", color: "series1", width: 2, shape: "both", values: misfit },
+    { key: "target", label: "noise", meaning: "1: consistent with the standard deviations", color: "series7", dash: [6, 4], values: x.map(() => 1) },
+  ];
+  return Chart.of(x, curves, {
     label: "Misfit against roughness for every trial weight",
     x: { label: "roughness R, as a power of ten" },
     y: { label: "|r|² per reading", log },
-    curves: [
-      { key: "trials", label: "trial weights", color: "series1", width: 2, shape: "both" },
-      { key: "target", label: "noise", meaning: "1: consistent with the standard deviations", color: "series7", dash: [6, 4] },
-    ],
-    read: (key, at) => (key === "trials" && at !== null ? [`weight ${short(valueAt(x, trials.map((t) => t.weight), at), 3)}`] : []),
+    read: (key, at) => (key === "trials" && at !== null ? [`weight ${short(trials[nearest(x, at)].weight, 3)}`] : []),
     xRange: () => around([...x, log10(head.fit.roughness)], false),
     yRange: () => (log ? null : around([...misfit, 1], true)),
     paint: (u, colors) => paintChosen(u, colors, log10(head.fit.roughness), closeness(head.fit.misfit, head.counts.residuals), `chosen: ${short(head.fit.weight, 3)}`),
@@ -160,21 +144,18 @@ export function historyChart(head: FitHead): Chart | null {
   if (head.history.length < 2) return null;
   const x = head.history.map((_, i) => i + 1);
   const positive = (value: MaybeNumber): MaybeNumber => (value !== null && value > 0 ? value : null);
-  const columns: Record<string, MaybeNumber[]> = {
-    misfit: head.history.map((i) => positive(i.misfit)),
-    prior: head.history.map((i) => (i.roughness === null || i.weight === null ? null : positive(i.roughness * i.weight))),
-    decrement: head.history.map((i) => positive(i.decrement)),
-  };
-  const curves: Curve[] = [
-    { key: "misfit", label: "misfit", meaning: "|r|²/2", color: "series1", width: 2, shape: "both" },
-    { key: "prior", label: "weight · R", meaning: "penalty of smoothness and prior", color: "series3", width: 2, shape: "both" },
-    { key: "decrement", label: "decrement", meaning: "distance from the minimum in posterior standard deviations", color: "series2", width: 1.5, dash: [6, 4], shape: "both" },
+  const misfit = head.history.map((i) => positive(i.misfit));
+  const prior = head.history.map((i) => (i.roughness === null || i.weight === null ? null : positive(i.roughness * i.weight)));
+  const decrement = head.history.map((i) => positive(i.decrement));
+  const curves: FilledCurve[] = [
+    { key: "misfit", label: "misfit", meaning: "|r|²/2", color: "series1", width: 2, shape: "both", values: misfit },
+    { key: "prior", label: "weight · R", meaning: "penalty of smoothness and prior", color: "series3", width: 2, shape: "both", values: prior },
+    { key: "decrement", label: "decrement", meaning: "distance from the minimum in posterior standard deviations", color: "series2", width: 1.5, dash: [6, 4], shape: "both", values: decrement },
   ];
-  return Chart.of(x, curves.map((c) => columns[c.key]), {
+  return Chart.of(x, curves, {
     label: "Misfit, prior and decrement over the iterations",
     x: { label: "iteration", integer: true },
     y: { label: "", log: true },
-    curves,
-    read: (key, at) => [short(valueAt(x, columns[key], at), 3)],
+    showsLast: true,
   });
 }

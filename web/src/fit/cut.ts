@@ -28,25 +28,19 @@ export interface Soup {
   edges: Uint32Array; // 2 corners per line
 }
 
-const kFaces = [
-  [1, 2, 3],
-  [0, 3, 2],
-  [0, 1, 3],
-  [0, 2, 1],
-];
+const kFaces = [[1, 2, 3], [0, 3, 2], [0, 1, 3], [0, 2, 1]];
 
 // Faces that belong to exactly one tet.
 export function boundaryOf({ points, tets }: TetMesh): Boundary {
   const count = points.length / 3;
   const open = new Map<number, number>(); // corner triple -> face
-  const faces: number[] = [];
   for (let t = 0; t < tets.length / 4; ++t)
     kFaces.forEach((face, f) => {
       const [a, b, c] = face.map((k) => tets[4 * t + k]).sort((p, q) => p - q);
       const key = (a * count + b) * count + c; // exact below 2^53: up to 200 000 vertices
       if (!open.delete(key)) open.set(key, 4 * t + f);
     });
-  for (const face of open.values()) faces.push(face);
+  const faces = [...open.values()];
   const triangles = new Uint32Array(3 * faces.length);
   const tet = new Uint32Array(faces.length);
   const normals = new Float32Array(points.length);
@@ -133,11 +127,9 @@ function clipped(polygon: Corner[], height: (x: Vec3) => number): Corner[] {
 // Intersection of a plane with a tet, from the heights of the tet's corners above the plane. The polygon is
 // counter-clockwise as seen from above the plane, and empty where the tet only touches it.
 export function section(corners: readonly Vec3[], heights: readonly number[], normal: Vec3): Vec3[] {
-  const below = [0, 1, 2, 3].filter((k) => heights[k] <= 0);
-  const above = [0, 1, 2, 3].filter((k) => heights[k] > 0);
-  if (below.length === 0 || above.length === 0) return [];
-  const at = (a: number, b: number): Vec3 => mixed(corners[a], corners[b], heights[a] / (heights[a] - heights[b]));
-  const [b, a] = [below, above];
+  const [b, a] = [[0, 1, 2, 3].filter((k) => heights[k] <= 0), [0, 1, 2, 3].filter((k) => heights[k] > 0)]; // below, above
+  if (b.length === 0 || a.length === 0) return [];
+  const at = (p: number, q: number): Vec3 => mixed(corners[p], corners[q], heights[p] / (heights[p] - heights[q]));
   let polygon: Vec3[];
   if (b.length === 1) polygon = a.map((k) => at(b[0], k));
   else if (a.length === 1) polygon = b.map((k) => at(k, a[0]));
@@ -164,8 +156,7 @@ export function bodyBelow(mesh: TetMesh, boundary: Boundary, plane: Plane | null
   for (let t = 0; t < tets.length / 4; ++t) {
     const corners = [0, 1, 2, 3].map((k) => vectorAt(points, tets[4 * t + k]));
     const polygon = section(corners, corners.map(height), plane.normal);
-    const flat = polygon.map((x) => ({ x, n: plane.normal, vertex: -1 }));
-    maker.add(flat, t);
+    maker.add(polygon.map((x) => ({ x, n: plane.normal, vertex: -1 })), t);
   }
   return maker.soup();
 }

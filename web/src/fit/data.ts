@@ -98,13 +98,8 @@ export function closeness(misfit: MaybeNumber, residuals: number): MaybeNumber {
 
 // Groups in the order of their first case.
 export function groupsOf(cases: readonly Case[]): { name: string; cases: number[] }[] {
-  const groups: { name: string; cases: number[] }[] = [];
-  cases.forEach((c, i) => {
-    const known = groups.find((group) => group.name === c.group);
-    if (known) known.cases.push(i);
-    else groups.push({ name: c.group, cases: [i] });
-  });
-  return groups;
+  const names = [...new Set(cases.map((c) => c.group))];
+  return names.map((name) => ({ name, cases: cases.flatMap((c, i) => (c.group === name ? [i] : [])) }));
 }
 
 // Unit direction of the tip's travel since first contact; its axis if it has not moved.

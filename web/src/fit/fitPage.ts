@@ -22,9 +22,7 @@ function section(title: string, about: string, ...children: Child[]): HTMLElemen
 const percent = (part: MaybeNumber): string => (part === null || part < 0 ? "–" : `${short(100 * part, 2)} %`);
 const ratio = (part: MaybeNumber, whole: MaybeNumber): MaybeNumber => (part === null || whole === null || !(whole > 0) ? null : part / whole);
 
-function valueText(value: MaybeNumber, unit: string): string {
-  return unit === "" ? short(value, 3) : withUnit(value, unit, 3);
-}
+const valueText = (value: MaybeNumber, unit: string): string => (unit === "" ? short(value, 3) : withUnit(value, unit, 3));
 
 function card(name: string, value: string, meaning: string): HTMLElement {
   return element("div", { class: "card", title: meaning }, element("span", { class: "card-name" }, name), element("strong", {}, value), element("span", { class: "card-meaning" }, meaning));
@@ -89,9 +87,7 @@ function upward(fit: Fit): Vec3 {
   };
   const away = [0, 1, 2].map((k) => (fixed.length > 0 ? mean(k, Array(points.length / 3).keys()) - mean(k, fixed) : 0));
   const axis = [0, 1, 2].reduce((best, k) => (Math.abs(away[k]) > Math.abs(away[best]) ? k : best), 1);
-  const up: Vec3 = [0, 0, 0];
-  up[axis] = away[axis] < 0 ? -1 : 1;
-  return up;
+  return [0, 1, 2].map((k) => (k !== axis ? 0 : away[k] < 0 ? -1 : 1)) as Vec3;
 }
 
 function report(fit: Fit): HTMLElement {
@@ -120,8 +116,7 @@ function loads(fit: Fit): HTMLElement {
   const grid = element("div", { class: "charts" });
   for (const group of groupsOf(fit.head.cases)) {
     const curve = groupCurve(fit, group);
-    const chart = loadChart(group.name, curve);
-    grid.append(figure(curve.leftOut ? `${group.name} (held out)` : group.name, chart));
+    grid.append(figure(curve.leftOut ? `${group.name} (held out)` : group.name, loadChart(group.name, curve)));
   }
   const groups = fit.head.heldOut?.groups ?? [];
   return section(
@@ -158,12 +153,7 @@ function made({ head }: Fit): HTMLElement {
     ...formulaElements("fit_objective"),
     element("p", { class: "about" }, kSymbols),
     ...(fit.informed === null ? [] : formulaElements("fit_interval")),
-    element(
-      "div",
-      { class: "charts" },
-      weights ? figure("Weight of the smoothness", weights) : null,
-      history ? figure("Convergence", history) : null,
-    ),
+    element("div", { class: "charts" }, weights && figure("Weight of the smoothness", weights), history && figure("Convergence", history)),
   );
 }
 

@@ -3,7 +3,7 @@ import { element } from "../dom";
 import { checkbox, choice } from "../controls";
 import type { Vec3 } from "../protocol";
 import { sceneAxes, type CameraRig } from "../view/cameras";
-import { vectorAt } from "../view/lens";
+import { along, vectorAt } from "../view/lens";
 import { makeArrows, makeBalls } from "./arrows";
 import { BodyView, type Cut, type FittedBody, type Note, type Shown } from "./bodyView";
 import type { Fit } from "./data";
@@ -46,8 +46,8 @@ export class Maps {
   private readonly views: BodyView[] = [];
   private cut: Cut;
   private isCut = true;
-  private showsMarkers = false;
-  private showsNext = true;
+  private readonly showsMarkers = checkbox("markers", "Show the markers at rest", false, () => this.mark());
+  private readonly showsNext = checkbox("next poke", "Show the most informative site", true, () => this.mark());
 
   constructor(
     private readonly fit: Fit,
@@ -95,33 +95,24 @@ export class Maps {
       this.cut = { ...this.cut, other: on };
       slice();
     });
-    const markers = checkbox("markers", "Show the markers at rest", false, (on) => {
-      this.showsMarkers = on;
-      this.mark();
-    });
-    const next = this.fit.head.nextPoke ? checkbox("next poke", "Show the most informative site", true, (on) => {
-      this.showsNext = on;
-      this.mark();
-    }) : null;
-    const wires = checkbox("edges", "Show the edges of the tets", true, (on) => {
-      for (const view of this.views) view.showWires(on);
-    });
-    return element("div", { class: "map-controls plot-panel" }, axis.element, position, other.element, markers.element, next?.element ?? null, wires.element);
+    const next = this.fit.head.nextPoke ? this.showsNext.element : null;
+    const wires = checkbox("edges", "Show the edges of the tets", true, (on) => this.views.forEach((view) => view.showWires(on)));
+    return element("div", { class: "map-controls plot-panel" }, axis.element, position, other.element, this.showsMarkers.element, next, wires.element);
   }
 
   private mark(): void {
-    const poke = this.showsNext ? this.fit.head.nextPoke : null;
+    const poke = this.showsNext.input.checked ? this.fit.head.nextPoke : null;
     const size = this.body.size;
     for (const view of this.views) {
       const objects = [];
       const notes: Note[] = [];
       const markers = this.fit.floats("markers");
       const centers = Array.from({ length: markers.length / 3 }, (_, i) => vectorAt(markers, i));
-      if (this.showsMarkers) objects.push(makeBalls(centers, 0.006 * size, "#1b1f27"));
+      if (this.showsMarkers.input.checked) objects.push(makeBalls(centers, 0.006 * size, "#1b1f27"));
       if (poke) {
-        const back = (by: number): Vec3 => [0, 1, 2].map((k) => poke.site[k] - by * poke.inward[k]) as Vec3;
-        objects.push(makeArrows([{ from: back(0.2 * size), to: poke.site }], 0.008 * size, "#d55e00"));
-        notes.push({ at: back(0.2 * size), words: "next best poke" });
+        const from = along(poke.site, -0.2 * size, poke.inward);
+        objects.push(makeArrows([{ from, to: poke.site }], 0.008 * size, "#d55e00"));
+        notes.push({ at: from, words: "next best poke" });
       }
       view.mark(objects, notes);
     }

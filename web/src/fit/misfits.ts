@@ -3,12 +3,11 @@ import { element } from "../dom";
 import { choice } from "../controls";
 import { roundStep } from "../view/ranges";
 import { short, withUnit } from "../plots/numbers";
-import type { Vec3 } from "../protocol";
 import type { CameraRig } from "../view/cameras";
 import { makeArrows, makeBalls, type Arrow } from "./arrows";
 import { numberTable } from "./numberTable";
 import { BodyView, type FittedBody, type Note } from "./bodyView";
-import { length, vectorAt } from "../view/lens";
+import { along, length, vectorAt } from "../view/lens";
 import { markerName, worstMarkers, type Fit, type WorstMarker } from "./data";
 
 const kArrows = 60;
@@ -46,7 +45,7 @@ export class Misfits {
     const scale = largest > 1e-300 ? magnification((kLongest * this.body.size) / largest) : 1;
     const arrows: Arrow[] = worst.map((w) => {
       const from = vectorAt(rest, w.marker);
-      return { from, to: [0, 1, 2].map((k) => from[k] + scale * w.error[k]) as Vec3 };
+      return { from, to: along(from, scale, w.error) };
     });
     const size = this.body.size;
     const notes: Note[] = worst.slice(0, 1).map((w) => ({ at: vectorAt(rest, w.marker), words: `marker ${markerName(this.fit.head, w.marker)}: ${withUnit(length(w.error), "m", 3)}` }));

@@ -31,6 +31,7 @@ export class EnergyPanel implements Panel {
   private byStep = false; // x is the step: a static scene has no time
   private rows = new Set<string>(); // keys of the legend's rows
   private readonly redraw = oncePerFrame(() => this.element.isConnected && this.draw());
+  readonly show = this.redraw;
 
   constructor(
     private readonly store: Store,
@@ -54,20 +55,13 @@ export class EnergyPanel implements Panel {
     for (const side of kSides) this.newScene(side);
   }
 
-  show(): void {
-    this.redraw();
-  }
-
   private newScene(name: SideName): void {
     const side = this.store.side(name);
     const known = this.ledgers[name];
-    if (side && known && known.potentials.join() === side.scene.potentials.join()) {
-      known.update(side.steps, side.steps[side.steps.length - 1]?.step ?? 0);
-      return this.configure(); // its label may have changed
-    }
-    this.ledgers[name] = side ? new Ledger(side.scene.potentials) : null;
-    if (side) this.ledgers[name]!.update(side.steps, 0);
-    this.configure();
+    const isKnown = side && known?.potentials.join() === side.scene.potentials.join();
+    if (!isKnown) this.ledgers[name] = side && new Ledger(side.scene.potentials);
+    this.ledgers[name]?.update(side!.steps, isKnown ? (side.steps.at(-1)?.step ?? 0) : 0);
+    this.configure(); // its label may have changed
   }
 
   private shown(): { side: SideName; ledger: Ledger }[] {
@@ -80,9 +74,8 @@ export class EnergyPanel implements Panel {
   }
 
   private curves(): Curve[] {
-    return this.shown().flatMap(({ side, ledger }) =>
-      this.columnsOf(ledger).map(({ column }) => (side === "a" ? column : { ...column, dash: column.dash ? [8, 3, 2, 3] : [8, 5] })),
-    );
+    const dashed = (curve: Curve): Curve => ({ ...curve, dash: curve.dash ? [8, 3, 2, 3] : [8, 5] });
+    return this.shown().flatMap(({ side, ledger }) => this.columnsOf(ledger).map(({ column }) => (side === "a" ? column : dashed(column))));
   }
 
   private columnsOf(ledger: Ledger): { column: Curve; values: MaybeNumber[] }[] {
@@ -120,7 +113,7 @@ export class EnergyPanel implements Panel {
 
   private calmRange(): [number, number] | null {
     const { a, b } = this.ledgers;
-    return a && b ? calmRange(a, b) : null;
+    return a && b && calmRange(a, b);
   }
 
   private xOf(ledger: Ledger): number[] {
@@ -129,12 +122,12 @@ export class EnergyPanel implements Panel {
 
   private valueAt(ledger: Ledger, key: string, x: number | null): MaybeNumber {
     const column = ledger.columns[ledgerColumns(ledger.potentials).findIndex((c) => c.key === key)];
-    if (!column || column.length === 0) return null;
-    return column[x === null ? this.nowIndex(ledger) : nearest(this.xOf(ledger), x)] ?? null;
+    return column?.[this.indexAt(ledger, x)] ?? null;
   }
 
-  // Index of the last step up to the time of the picture.
-  private nowIndex(ledger: Ledger): number {
+  // Index of the step at x, or of the last step up to the time of the picture.
+  private indexAt(ledger: Ledger, x: number | null): number {
+    if (x !== null) return nearest(this.xOf(ledger), x);
     const last = ledger.step.length - 1;
     const state = this.store.state?.[ledger === this.ledgers.b ? "b" : "a"];
     return state ? Math.max(0, Math.min(last, lowerBound(ledger.step, state.step + 0.5) - 1)) : last;
@@ -143,7 +136,7 @@ export class EnergyPanel implements Panel {
   private captionAt(x: number | null): string {
     const sides = this.shown().filter(({ ledger }) => ledger.step.length > 0);
     const texts = sides.map(({ side, ledger }) => {
-      const i = x === null ? this.nowIndex(ledger) : nearest(this.xOf(ledger), x);
+      const i = this.indexAt(ledger, x);
       const label = sides.length > 1 ? `${this.store.label(side)}: ` : "";
       return `${label}step ${ledger.step[i]}${this.byStep ? "" : `, ${short(ledger.time[i])} s`}`;
     });
@@ -154,16 +147,11 @@ export class EnergyPanel implements Panel {
     if (this.range) return this.range;
     const ends = this.shown().flatMap(({ ledger }) => (ledger.step.length > 0 ? [this.xOf(ledger)] : []));
     if (ends.length === 0) return null;
-    const last = Math.max(...ends.map((x) => x[x.length - 1]!));
-    const length = this.windowLength();
-    const first = length === null ? Math.min(0, ...ends.map((x) => x[0]!)) : last - length;
-    return last > first ? [first, last] : [first, first + 1];
-  }
-
-  private windowLength(): number | null {
+    const last = Math.max(...ends.map((x) => x[x.length - 1]));
     const { value } = this.windows.select;
-    if (value === "all") return null;
-    return value === "typed" ? Math.max(1e-6, this.typed.input.valueAsNumber || 1) : Number(value);
+    const length = value === "typed" ? Math.max(1e-6, this.typed.input.valueAsNumber || 1) : Number(value);
+    const first = value === "all" ? Math.min(0, ...ends.map((x) => x[0])) : last - length;
+    return last > first ? [first, last] : [first, first + 1];
   }
 
   private setWindow(): void {
@@ -196,13 +184,12 @@ export class EnergyPanel implements Panel {
       const name = this.ledgers.b ? `${this.store.label(side)}: ` : "";
       const peak = ledger.exploded();
       if (peak !== null) return `${name}${explosionText(peak)}`;
-      if (ledger.step.length < 2 || !Number.isFinite(drift)) return "";
-      return `${name}${balanceText(drift, scale)}`;
+      return ledger.step.length >= 2 && Number.isFinite(drift) && `${name}${balanceText(drift, scale)}`;
     });
-    const dashes = this.ledgers.b ? [`${this.store.label("b")} is dashed`] : [];
-    const logText = this.log.input.checked ? ["absolute values; zeros are omitted"] : [];
-    const wild = !this.log.input.checked && this.calmRange() ? ["one side exceeds the plot; use log to see it"] : [];
-    const text = [...texts.filter((t) => t !== ""), ...dashes, ...wild, ...logText].join(" · ");
+    const log = this.log.input.checked;
+    const dashes = this.ledgers.b && `${this.store.label("b")} is dashed`;
+    const wild = !log && this.calmRange() && "one side exceeds the plot; use log to see it";
+    const text = [...texts, dashes, wild, log && "absolute values; zeros are omitted"].filter(Boolean).join(" · ");
     if (this.note.textContent !== text) this.note.textContent = text;
   }
 
@@ -216,16 +203,13 @@ export class EnergyPanel implements Panel {
 
   private saveCsv(): void {
     const sides = this.shown();
-    const tables = sides.map(({ ledger }) => ({
-      x: ledger.step,
-      columns: [ledger.time, ...ledger.columns, ledger.residualWork, ledger.ledgerError],
-    }));
     const names = sides.flatMap(({ side, ledger }) => {
       const keys = ledgerColumns(ledger.potentials).map((column) => column.key);
       const all = ["time", ...keys, "residual_work_of_step", "ledger_error_of_step"];
       return sides.length > 1 ? all.map((name) => `${name}_${side}`) : all;
     });
-    const { x, columns } = merged(...tables);
+    const columnsOf = ({ time, columns, residualWork, ledgerError }: Ledger): MaybeNumber[][] => [time, ...columns, residualWork, ledgerError];
+    const { x, columns } = merged(...sides.map(({ ledger }) => ({ x: ledger.step, columns: columnsOf(ledger) })));
     const text = csv(["step", ...names], [x, ...columns], x.length);
     saveFile(fileName(`${this.store.name}_energy`, "csv"), new Blob([text], { type: "text/csv" }));
   }
@@ -237,12 +221,8 @@ export class EnergyPanel implements Panel {
   }
 
   private save(): unknown {
-    return {
-      window: this.windows.select.value,
-      typed: this.typed.input.value,
-      log: this.log.input.checked,
-      hidden: [...this.chart.hidden],
-    };
+    const { windows, typed, log, chart } = this;
+    return { window: windows.select.value, typed: typed.input.value, log: log.input.checked, hidden: [...chart.hidden] };
   }
 
   private restore(saved: unknown): void {

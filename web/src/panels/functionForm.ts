@@ -2,6 +2,7 @@
 import { formulaElements } from "../formulas";
 import { choice, numberField } from "../controls";
 import { element } from "../dom";
+import { choiceName } from "../names";
 import type { FunctionQuestion, SettingValue } from "../protocol";
 
 const kFunctions = [
@@ -20,21 +21,9 @@ const kStarts: Record<string, [number, number]> = {
 
 const kStartHelp = "x of the start; drag the ring in the picture, or Shift and the arrow keys there";
 
-const kMethods = [
-  ["newton", "Newton"],
-  ["newton_cg", "Newton, CG inside"],
-  ["gradient_descent", "gradient descent"],
-  ["lbfgs", "L-BFGS"],
-  ["nonlinear_cg", "nonlinear CG"],
-] as const;
-const kDefiniteness = ["auto", "on_demand", "progressive", "clamped", "absolute", "exact"].map(
-  (name) => [name, name.replace("_", " ")] as const,
-);
-const kTests = [
-  ["textbook", "textbook (Armijo)"],
-  ["slide", "as on the slide"],
-  ["none", "none: first trial"],
-] as const;
+const kMethods = ["newton", "newton_cg", "gradient_descent", "lbfgs", "nonlinear_cg"];
+const kDefiniteness = ["auto", "on_demand", "progressive", "clamped", "absolute", "exact"];
+const kTests = ["textbook", "slide", "none"];
 
 export interface Preset extends Omit<FunctionQuestion, "samples"> {
   title: string;
@@ -97,11 +86,6 @@ const kDefaults: Record<string, SettingValue> = {
   max_iterations: 200,
 };
 
-interface SettingField {
-  read: () => SettingValue;
-  write: (value: SettingValue) => void;
-}
-
 export class FunctionForm {
   readonly element = element("form", { class: "functions-form", "aria-label": "Function and method" });
   private readonly shown = element("div");
@@ -116,7 +100,7 @@ export class FunctionForm {
   private readonly name = choice("f", "The function", kFunctions, "rosenbrock", () => this.nameChanged());
   private readonly x = numberField("start x", kStartHelp, 0, {}, () => this.changed());
   private readonly y = numberField("y", "y of the start", 0, {}, () => this.changed());
-  private readonly fields = new Map<string, SettingField>(); // by key
+  private readonly fields = new Map<string, { read: () => SettingValue; write: (value: SettingValue) => void }>(); // by key
   private others: Record<string, SettingValue> = {}; // settings of a question that the form does not show
 
   constructor(private readonly changed: () => void) {
@@ -190,7 +174,8 @@ export class FunctionForm {
     this.changed();
   }
 
-  private pick(key: string, text: string, title: string, options: readonly (readonly [string, string])[]): HTMLElement {
+  private pick(key: string, text: string, title: string, values: string[]): HTMLElement {
+    const options = values.map((value) => [value, choiceName(`solver.${key}`, value)] as const);
     const made = choice(text, title, options, "", this.changed);
     this.fields.set(key, { read: () => made.select.value, write: (value) => (made.select.value = String(value)) });
     return made.element;

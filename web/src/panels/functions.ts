@@ -10,13 +10,11 @@ import { short } from "../plots/numbers";
 import { sentence } from "../plots/summaries";
 import { SearchChart } from "../plots/search";
 import { SurfaceView } from "../plots/surface";
-import type { SurfaceContent } from "../plots/surfaceContent";
 import { FunctionForm, kPresets, type Preset } from "./functionForm";
 import { pictureOf } from "./functionPicture";
 
 const kSamples = 81;
 const kPlayEvery = 700; // [ms]
-
 const kLabel = "Minimizing a function of two variables";
 
 export class FunctionsPanel implements Panel {
@@ -37,10 +35,7 @@ export class FunctionsPanel implements Panel {
   private reply: FunctionReply | null = null;
   private iteration = 0;
   private shows = ""; // name of the preset shown
-  private readonly questions = new Newest<FunctionQuestion>(
-    (question) => this.send(question),
-    (reason) => this.fail(messageOf(reason)),
-  );
+  private readonly questions = new Newest((question: FunctionQuestion) => this.send(question), (reason) => this.fail(messageOf(reason)));
   private asked = false; // whether a question was sent
   private timer: ReturnType<typeof setInterval> | null = null;
 
@@ -103,10 +98,7 @@ export class FunctionsPanel implements Panel {
   }
 
   private async send(question: FunctionQuestion): Promise<void> {
-    this.take(await this.store.source.ask<FunctionReply>({ ask: "function", ...question }), question);
-  }
-
-  private take(reply: FunctionReply, question: FunctionQuestion): void {
+    const reply = await this.store.source.ask<FunctionReply>({ ask: "function", ...question });
     this.reply = reply;
     this.form.error.textContent = "";
     const last = Math.max(0, reply.iterations.length - 1);
@@ -163,36 +155,31 @@ export class FunctionsPanel implements Panel {
   private draw(): void {
     const reply = this.reply;
     if (!reply) return;
-    this.view.show(this.picture(reply));
-    const row = reply.iterations[this.iteration];
-    this.where.textContent = row ? `iteration ${this.iteration} of ${reply.iterations.length}` : "no iteration";
+    const { iteration } = this;
+    const [model, log] = [this.model.input.checked, this.log.input.checked];
+    const wholePath = this.timer === null && iteration === 0;
+    this.view.show(pictureOf(reply, { iteration, wholePath, start: this.form.start, model, log }));
+    const row = reply.iterations[iteration];
+    this.where.textContent = row ? `iteration ${iteration} of ${reply.iterations.length}` : "no iteration";
     const test = this.form.question(0, 2).settings["line_search.test"];
-    this.search.show(row ? { curve: reply.curve, trials: reply.trials, test: String(test) } : null);
+    this.search.show(row ? { ...reply, test: String(test) } : null);
     this.about.textContent = this.shows;
     const cut = this.view.cutAbove;
     this.words.textContent = `${sentence(reply.text)}${cut === null ? "" : ` Walls above f = ${short(cut, 3)} are cut off.`}`;
     this.words.dataset.kind = reply.status === "converged" || reply.status === "round_off" ? "" : "bad";
   }
 
-  private picture(reply: FunctionReply): SurfaceContent {
-    const { iteration } = this;
-    const wholePath = this.timer === null && iteration === 0;
-    const [model, log] = [this.model.input.checked, this.log.input.checked];
-    return pictureOf(reply, { iteration, wholePath, start: this.form.start, model, log });
-  }
-
   private savePng(): void {
     const name = this.form.question(0, 2).name;
-    const picture =
-      this.reply && this.view.picture(`f = ${this.reply.formula}: iteration ${this.iteration} of ${this.reply.iterations.length}`);
+    const { reply, iteration } = this;
+    const picture = reply && this.view.picture(`f = ${reply.formula}: iteration ${iteration} of ${reply.iterations.length}`);
     if (picture) void downloadCanvas(`${name}_${this.iteration}`, picture);
   }
 
   private restore(saved: unknown): void {
     const kept = saved as Partial<FunctionQuestion> | null;
     const start = kept?.start;
-    if (typeof kept?.name !== "string" || !Array.isArray(start) || !start.every(Number.isFinite) || start.length !== 2)
-      return;
+    if (typeof kept?.name !== "string" || !Array.isArray(start) || !start.every(Number.isFinite) || start.length !== 2) return;
     this.form.fill({ name: kept.name, start, settings: fieldsOf(kept.settings) as FunctionQuestion["settings"] });
     if (this.element.isConnected) this.formChanged();
     else this.asked = false;

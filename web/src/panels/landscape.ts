@@ -24,6 +24,7 @@ export class LandscapePanel implements Panel {
   private readonly note = element("div", { class: "plot-note", role: "status" });
   private reply: IterationReply | null = null;
   private readonly refresh = oncePerFrame(() => this.element.isConnected && this.ask());
+  readonly show = this.refresh;
 
   constructor(
     private readonly store: Store,
@@ -42,8 +43,7 @@ export class LandscapePanel implements Panel {
       button({ text: "PNG", title: "Save the picture" }, () => this.savePng()),
       this.note,
     );
-    const texts = element("div", { class: "surface-texts" }, this.view.legend, this.text);
-    const side = element("div", { class: "surface-side" }, texts);
+    const side = element("div", { class: "surface-side" }, element("div", { class: "surface-texts" }, this.view.legend, this.text));
     const fill = element("div", { class: "plot-fill" }, this.view.element);
     this.element.append(bar, element("div", { class: "plot-columns plot-fill" }, fill, side));
     for (const event of ["changed", "rows", "looked"] as const) this.chosen.on(event, this.refresh);
@@ -51,10 +51,6 @@ export class LandscapePanel implements Panel {
       save: () => ({ model: this.model.input.checked, log: this.log.input.checked }),
       restore: (saved) => this.restore(saved),
     });
-  }
-
-  show(): void {
-    this.refresh();
   }
 
   private ask(): void {
@@ -141,8 +137,7 @@ export class LandscapePanel implements Panel {
   private savePng(): void {
     const { step, iteration } = this.chosen;
     const { name } = this.store;
-    const picture =
-      this.reply && this.view.picture(`${name}: energy landscape of step ${step}, iteration ${iteration}`);
+    const picture = this.view.picture(`${name}: energy landscape of step ${step}, iteration ${iteration}`);
     if (picture) void downloadCanvas(`${name}_landscape_${step}_${iteration}`, picture);
   }
 

@@ -9,7 +9,7 @@ import { button, element } from "../dom";
 import { plural, short, withUnit } from "../plots/numbers";
 import { Rows, type RowColumn } from "../plots/rows";
 import type { Search } from "../plots/search";
-import { sentence, stepText, totalSeconds } from "../plots/summaries";
+import { stepText, totalSeconds } from "../plots/summaries";
 import { excess } from "./certificate";
 import { kCharts, StepChart, type ChartName } from "./stepCharts";
 
@@ -19,9 +19,7 @@ export class MicroscopePanel implements Panel {
   readonly name = "microscope";
   readonly title = "Microscope";
   readonly element = element("div", { class: "plot-panel", role: "group", "aria-label": "Solver microscope" });
-  private readonly sides = choice("", "Which side of the comparison", [], "a", (side) =>
-    this.chosen.chooseSide(side as SideName),
-  );
+  private readonly sides = choice("", "Which side of the comparison", [], "a", (side) => this.chosen.chooseSide(side as SideName));
   private readonly follow = checkbox("follow", "Follow the newest step", true, (on) => this.chosen.follow(on));
   private readonly words = element("div", { class: "plot-note", role: "status" });
   private readonly worst = element("ol", { class: "worst", hidden: "" });
@@ -41,6 +39,7 @@ export class MicroscopePanel implements Panel {
   private charts: StepChart[] = [];
   private names: ChartName[] = [...kOrder];
   private readonly redraw = oncePerFrame(() => this.element.isConnected && this.draw());
+  readonly show = this.redraw;
 
   constructor(
     private readonly store: Store,
@@ -56,10 +55,6 @@ export class MicroscopePanel implements Panel {
     for (const event of ["scene", "gone"] as const) store.on(event, this.redraw);
     page.keep("microscope", { save: () => ({ charts: this.names }), restore: (saved) => this.restore(saved) });
     new ResizeObserver(() => this.arrange()).observe(this.grid);
-  }
-
-  show(): void {
-    this.redraw();
   }
 
   // Step in a row of the table, the newest first.
@@ -140,10 +135,9 @@ export class MicroscopePanel implements Panel {
   private describe(): void {
     const row = this.chosen.row();
     const implicit = this.chosen.isImplicit();
-    const none = `${implicit ? "" : "This integrator does not minimize; "}no step has been computed yet.`;
-    if (!row) this.words.textContent = sentence(none);
-    else if (this.chosen.isUnderWay())
-      this.words.textContent = `Step ${row.step} is under way: ${plural(row.iterations.length, "iteration")}.`;
+    const none = implicit ? "No step has been computed yet." : "This integrator does not minimize; no step has been computed yet.";
+    if (!row) this.words.textContent = none;
+    else if (this.chosen.isUnderWay()) this.words.textContent = `Step ${row.step} is under way: ${plural(row.iterations.length, "iteration")}.`;
     else this.words.textContent = `Step ${row.step}. ${stepText(row, implicit)}`;
     this.words.dataset.kind = row && !row.converged ? "bad" : "";
   }
@@ -151,9 +145,8 @@ export class MicroscopePanel implements Panel {
   // E along d at the chosen iteration, requested when a chart shows it; or the reason why it is missing.
   private searchNow(): Search | string {
     if (!this.charts.some((chart) => chart.name === "search")) return "";
-    if (!this.chosen.iterationRow()) {
+    if (!this.chosen.iterationRow())
       return this.chosen.isImplicit() ? "No iteration is chosen." : "This integrator does not minimize, so there is no line search.";
-    }
     this.chosen.look();
     const seen = this.chosen.seen;
     if (!seen) return "Computing E along d ...";
@@ -161,13 +154,7 @@ export class MicroscopePanel implements Panel {
     const settings = this.store.side(seen.at.side)?.scene.settings ?? [];
     const test = settings.find((setting) => setting.key.endsWith("line_search.test"))?.value;
     const about = this.chosen.isSeen() ? "" : `of step ${seen.at.step}, iteration ${seen.at.iteration}`;
-    return {
-      curve: seen.reply.curve,
-      trials: seen.reply.trials,
-      maxStep: seen.reply.max_step,
-      test: typeof test === "string" ? test : "textbook",
-      about,
-    };
+    return { ...seen.reply, test: typeof test === "string" ? test : "textbook", about };
   }
 
   // Shows as many charts as fit.
@@ -183,28 +170,19 @@ export class MicroscopePanel implements Panel {
   }
 
   private makeChart(place: number): StepChart {
-    const chart: StepChart = new StepChart(
-      this.names[place] ?? "steps",
-      this.chosen,
-      () => this.chosen.rows(),
-      () => {
-        this.names[place] = chart.name;
-        this.redraw();
-      },
-    );
+    const chart: StepChart = new StepChart(this.names[place] ?? "steps", this.chosen, () => {
+      this.names[place] = chart.name;
+      this.redraw();
+    });
     return chart;
   }
 
   private async findWorst(): Promise<void> {
     try {
       const reply = await this.store.source.ask<WorstReply>({ ask: "worst", side: this.chosen.side });
-      const text = (item: WorstReply["items"][number]): string =>
-        `${item.what}: ${item.unit ? withUnit(item.value, item.unit) : short(item.value)}`;
-      const marks = reply.items.map((item) => ({ positions: item.positions, text: text(item) }));
-      const items = marks.map((mark) =>
-        element("li", {}, button({ text: mark.text, title: "Mark it on the body" }, () => this.page.emit("highlight", [mark]))),
-      );
-      this.worst.replaceChildren(...items);
+      const marks = reply.items.map(({ what, value, unit, positions }) => ({ positions, text: `${what}: ${unit ? withUnit(value, unit) : short(value)}` }));
+      const items = marks.map((mark) => button({ text: mark.text, title: "Mark it on the body" }, () => this.page.emit("highlight", [mark])));
+      this.worst.replaceChildren(...items.map((item) => element("li", {}, item)));
       this.worst.hidden = items.length === 0;
       this.page.emit("highlight", marks);
     } catch (reason) {
@@ -215,9 +193,7 @@ export class MicroscopePanel implements Panel {
   private restore(saved: unknown): void {
     const { charts } = fieldsOf(saved);
     if (!Array.isArray(charts)) return;
-    this.names = kOrder.map((name, i) =>
-      kCharts.some(([known]) => known === charts[i]) ? (charts[i] as ChartName) : name,
-    );
+    this.names = kOrder.map((name, i) => kCharts.find(([known]) => known === charts[i])?.[0] ?? name);
     this.charts.forEach((chart, i) => (chart.name = this.names[i]!));
     this.redraw();
   }

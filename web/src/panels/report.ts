@@ -13,9 +13,7 @@ import { excess, kColumns, listed, totals } from "./certificate";
 const kRowsPerPage = 100;
 const kPause = 500; // time between two drawings [ms]; steps may arrive faster
 
-function text(value: MaybeNumber | string): string {
-  return typeof value === "string" ? value : short(value);
-}
+const text = (value: MaybeNumber | string): string => (typeof value === "string" ? value : short(value));
 
 class StepTable {
   readonly element: HTMLElement;
@@ -39,7 +37,7 @@ class StepTable {
   }
 
   draw(): void {
-    const rows = listed(this.steps(), this.column, this.onlyFailed.checked);
+    const rows = listed(this.store.side("a")?.steps ?? [], this.column, this.onlyFailed.checked);
     this.first = Math.max(0, Math.min(this.first, rows.length - 1));
     this.first -= this.first % kRowsPerPage;
     const shown = rows.slice(this.first, this.first + kRowsPerPage);
@@ -49,10 +47,6 @@ class StepTable {
       element("thead", {}, element("tr", {}, ...kColumns.map((column) => this.head(column)))),
       element("tbody", {}, ...shown.map((row) => this.row(row))),
     );
-  }
-
-  private steps(): readonly StepRow[] {
-    return this.store.side("a")?.steps ?? [];
   }
 
   private turn(rows: number): void {
@@ -86,8 +80,7 @@ function entry(name: string, value: string, className = ""): HTMLElement {
 
 function drawTotals(list: HTMLElement, steps: readonly StepRow[]): void {
   const all = totals(steps);
-  const at = (row: StepRow | null, value: (row: StepRow) => MaybeNumber): string =>
-    row ? `${text(value(row))} (step ${row.step})` : "–";
+  const at = (row: StepRow | null, value: (row: StepRow) => MaybeNumber): string => (row ? `${short(value(row))} (step ${row.step})` : "–");
   list.replaceChildren(
     entry("steps", String(all.steps)),
     entry("converged", `${all.steps - all.failed} of ${all.steps}`, all.failed ? "bad" : "good"),
@@ -102,31 +95,18 @@ function drawTotals(list: HTMLElement, steps: readonly StepRow[]): void {
   );
 }
 
-// Formulas of the chosen value of a setting.
-class Formulas {
-  private readonly title = element("summary");
-  readonly element = element("details", { open: true }, this.title);
-
-  constructor(
-    private readonly key: string,
-    private readonly name: string,
-  ) {}
-
-  draw(settings: Setting[]): void {
-    const value = chosen(settings, this.key);
-    this.element.hidden = value === "";
-    this.title.textContent = `${this.name}: ${choiceName(this.key, value)}`;
-    this.element.replaceChildren(this.title, ...choiceFormulas(settings, this.key));
-  }
+// Shows the formulas of the chosen value of a setting.
+function drawFormulas(details: HTMLElement, settings: Setting[], key: string, name: string): void {
+  const value = chosen(settings, key);
+  details.hidden = value === "";
+  details.replaceChildren(element("summary", {}, `${name}: ${choiceName(key, value)}`), ...choiceFormulas(settings, key));
 }
 
 // The complete scene, requested when it is opened.
 function makeScene(store: Store, page: Page): HTMLElement {
   const code = element("pre", { tabindex: "0", "aria-label": "Scene as TOML" });
   let file: TextReply | null = null;
-  const save = button({ text: "Save", label: "Save the scene" }, () => {
-    if (file) saveReply(file);
-  });
+  const save = button({ text: "Save", label: "Save the scene" }, () => file && saveReply(file));
   const details = element("details", {}, element("summary", {}, "Complete scene with all defaults"), save, code);
   const load = async (): Promise<void> => {
     if (!details.open) return;
@@ -147,10 +127,9 @@ export function makeReportPanel(store: Store, page: Page): Panel {
   const notes = element("ul", { class: "notes" });
   const notesTitle = element("summary");
   const aboutScene = element("details", {}, notesTitle, notes);
-  const material = new Formulas("material.model", "Material model");
-  const integrator = new Formulas("time.integrator", "Integrator");
+  const [material, integrator] = [element("details", { open: true }), element("details", { open: true })];
   const table = new StepTable(store);
-  const panel = element("div", { class: "report" }, list, material.element, integrator.element, aboutScene, makeScene(store, page), table.element);
+  const panel = element("div", { class: "report" }, list, material, integrator, aboutScene, makeScene(store, page), table.element);
   let due = false;
   let drawn = -kPause; // time of the last drawing
   const draw = (): void => {
@@ -158,7 +137,9 @@ export function makeReportPanel(store: Store, page: Page): Panel {
     drawn = performance.now();
     const side = store.side("a");
     drawTotals(list, side?.steps ?? []);
-    for (const shown of [material, integrator]) shown.draw(side?.scene.settings ?? []);
+    const settings = side?.scene.settings ?? [];
+    drawFormulas(material, settings, "material.model", "Material model");
+    drawFormulas(integrator, settings, "time.integrator", "Integrator");
     const reported = side?.scene.notes ?? [];
     aboutScene.hidden = reported.length === 0;
     notesTitle.textContent = `Choices of the program for this scene: ${plural(reported.length, "note")}`;

@@ -1,12 +1,10 @@
 // Rows that a lil-gui folder lacks: numbers with a slider of any scale whose typed values may lie outside of its range,
 // vectors, and formulas. A typed value is submitted on Enter or when the field loses the focus.
-import { Controller } from "lil-gui";
-import type { GUI } from "lil-gui";
+import { Controller, type GUI } from "lil-gui";
 import { element } from "../dom";
 import { choiceName, plainText } from "../names";
 import type { Setting, SettingValue } from "../protocol";
-import { numberText, parseNumber, toPosition, toValue } from "./scale";
-import type { Range } from "./scale";
+import { numberText, parseNumber, toPosition, toValue, type Range } from "./scale";
 
 const kSliderSteps = 500;
 
@@ -28,6 +26,8 @@ function makeField(label: string, shown: () => string, commit: (text: string) =>
   });
   return field;
 }
+
+const textOf = (value: SettingValue): string => (typeof value === "number" ? numberText(value) : String(value));
 
 function markRow(row: Controller, text: string): void {
   row.domElement.classList.toggle("differs", text !== "");
@@ -86,13 +86,11 @@ export class NumberRow extends ValueRow {
     private readonly range: Range,
   ) {
     super(gui, model, "number-row");
-    const bounds = { min: "0", max: String(kSliderSteps), step: "1" };
-    this.slider = element("input", { type: "range", "aria-label": `${label}, slider`, ...bounds });
-    this.field = makeField(label, () => this.text(), (text) => this.commit(text));
+    this.slider = element("input", { type: "range", "aria-label": `${label}, slider`, min: "0", max: String(kSliderSteps), step: "1" });
+    // A text that is no number is a formula of the position; the program validates it.
+    this.field = makeField(label, () => this.text(), (text) => this.setValue(parseNumber(text) ?? text));
     this.slider.addEventListener("pointerdown", () => (this.held = true));
-    for (const end of ["pointerup", "pointercancel", "blur"]) {
-      this.slider.addEventListener(end, () => this.release());
-    }
+    for (const end of ["pointerup", "pointercancel", "blur"]) this.slider.addEventListener(end, () => this.release());
     this.slider.addEventListener("input", () => this.setValue(this.slid(Number(this.slider.value) / kSliderSteps)));
     this.$widget.append(this.slider, this.field);
     this.updateDisplay();
@@ -121,12 +119,7 @@ export class NumberRow extends ValueRow {
   }
 
   private text(): string {
-    return typeof this.model.value === "number" ? numberText(this.model.value) : String(this.model.value);
-  }
-
-  // A text that is no number is a formula of the position; the program validates it.
-  private commit(text: string): void {
-    this.setValue(parseNumber(text) ?? text);
+    return textOf(this.model.value);
   }
 }
 
@@ -152,8 +145,7 @@ class TextRow extends ValueRow {
   }
 
   private text(i: number): string {
-    const entry = this.entries()[i] ?? "";
-    return typeof entry === "number" ? numberText(entry) : String(entry);
+    return textOf(this.entries()[i] ?? "");
   }
 
   private commit(i: number, text: string): void {

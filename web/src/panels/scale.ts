@@ -10,17 +10,15 @@ function isLog(range: Range): boolean {
 // A typed value outside of the slider's range is at the slider's end.
 export function toPosition(value: number, range: Range): number {
   if (!(range.max > range.min)) return 0;
-  const position = isLog(range)
-    ? Math.log(value / range.min) / Math.log(range.max / range.min)
-    : (value - range.min) / (range.max - range.min);
+  const { min, max } = range;
+  const position = isLog(range) ? Math.log(value / min) / Math.log(max / min) : (value - min) / (max - min);
   return Number.isFinite(position) ? Math.max(0, Math.min(1, position)) : 0;
 }
 
 // Rounded to three digits, the precision of a slider.
 export function toValue(position: number, range: Range): number {
-  const value = isLog(range)
-    ? range.min * (range.max / range.min) ** position
-    : range.min + position * (range.max - range.min);
+  const { min, max } = range;
+  const value = isLog(range) ? min * (max / min) ** position : min + position * (max - min);
   return range.kind === "integer" ? Math.round(value) : Number(value.toPrecision(3));
 }
 

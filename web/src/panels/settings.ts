@@ -7,21 +7,20 @@ import { backTo, History, toLoaded, type SettingChange } from "../history";
 import { kMaterials } from "../materials";
 import { Newest } from "../newest";
 import type { Page } from "../page";
-import type { Scene, Setting, SettingValue, SideName } from "../protocol";
+import type { Command, Scene, Setting, SettingValue, SideName } from "../protocol";
 import type { Store } from "../store";
 import { shortcutButton } from "../shortcuts";
-import { addRow, NumberRow } from "./rows";
-import type { Row } from "./rows";
+import { addRow, NumberRow, type Row } from "./rows";
 
 type Target = SideName | "both";
 
 const kClosed = ["World", "Solver", "Line search"]; // closed at first
+const kConstants = ["young", "poisson", "density"] as const; // of a material
 const kOneChange = 1000; // [ms]: changes that follow each other faster are one change
 
 // Whether the same rows can show both lists.
 function sameShape(a: Setting[], b: Setting[]): boolean {
-  const shape = (all: Setting[]): string =>
-    JSON.stringify(all.map((s) => [s.key, s.label, s.group, s.unit, s.kind, s.min, s.max, s.choices]));
+  const shape = (all: Setting[]): string => JSON.stringify(all.map((s) => [s.key, s.label, s.group, s.unit, s.kind, s.min, s.max, s.choices]));
   return shape(a) === shape(b);
 }
 
@@ -30,7 +29,7 @@ function valueText(value: SettingValue): string {
 }
 
 export class Settings {
-  private readonly top: HTMLElement;
+  private readonly top = element("div", { class: "sides" });
   private readonly gui: GUI;
   private folders: GUI[] = [];
   private shown: Setting[] = [];
@@ -38,7 +37,7 @@ export class Settings {
   private readonly rows = new Map<string, Row>();
   private readonly senders = new Map<string, Newest<SettingValue>>();
   private readonly mouse: NumberRow;
-  private readonly surface: HTMLSelectElement;
+  private readonly surface = this.makeSurface();
   private readonly spring: GUI;
   private readonly history = new History();
   private readonly undoer: HTMLButtonElement;
@@ -55,15 +54,9 @@ export class Settings {
     private readonly store: Store,
     private readonly page: Page,
   ) {
-    this.top = element("div", { class: "sides" });
-    root.append(this.top);
-    this.surface = this.makeSurface();
-    root.append(element("label", { class: "surface-choice" }, element("span", {}, "Surface"), this.surface));
-    this.undoer = shortcutButton(
-      page,
-      { key: "z", does: "Undo the last change of a setting", group: "Simulation", run: () => void this.undo() },
-      { text: "Undo", steers: true },
-    );
+    root.append(this.top, element("label", { class: "surface-choice" }, element("span", {}, "Surface"), this.surface));
+    const undo = { key: "z", does: "Undo the last change of a setting", group: "Simulation", run: () => void this.undo() } as const;
+    this.undoer = shortcutButton(page, undo, { text: "Undo", steers: true });
     const title = "Restore the loaded value of every setting; the motion continues";
     this.resetter = button({ text: "Reset settings", title, steers: true }, () => void this.reset());
     const actions = element("div", { class: "setting-actions" }, this.undoer, this.resetter);
@@ -73,10 +66,8 @@ export class Settings {
     if (!store.source.live) this.gui.close();
     this.spring = this.gui.addFolder("Mouse spring").show(store.source.live).close();
     this.mouse = this.makeMouse(this.spring);
-    store.on("scene", () => this.update());
-    store.on("gone", () => this.update());
-    store.on("role", () => this.enable());
-    store.on("connected", () => this.enable());
+    for (const event of ["scene", "gone"] as const) store.on(event, () => this.update());
+    for (const event of ["role", "connected"] as const) store.on(event, () => this.enable());
   }
 
   private get scene(): Scene | null {
@@ -124,8 +115,7 @@ export class Settings {
       this.folders.push(folder);
       if (closed.includes(group)) folder.close();
       if (group === "Material") this.addMaterials(folder, settings);
-      for (const setting of settings) {
-        if (setting.group !== group) continue;
+      for (const setting of settings.filter((each) => each.group === group)) {
         this.addSetting(folder, setting);
         const formulas = this.formulas.get(setting.key);
         if (formulas) folder.$children.append(formulas);
@@ -149,9 +139,7 @@ export class Settings {
   private showMaterial(scene: Scene): void {
     if (!this.material) return;
     const value = (name: string): unknown => scene.settings.find(({ key }) => key === `material.${name}`)?.value;
-    const shown = kMaterials.find(
-      ({ young, poisson, density }) => value("young") === young && value("poisson") === poisson && value("density") === density,
-    );
+    const shown = kMaterials.find((material) => kConstants.every((name) => value(name) === material[name]));
     (this.material.object as { value: string }).value = shown?.name ?? "";
     this.material.updateDisplay();
     this.material.$widget.title = shown?.source ?? "";
@@ -160,57 +148,53 @@ export class Settings {
   private async takeMaterial(name: string): Promise<void> {
     const chosen = kMaterials.find((material) => material.name === name);
     if (!chosen) return this.update();
-    const values = { "material.young": chosen.young, "material.poisson": chosen.poisson, "material.density": chosen.density };
-    const changes: SettingChange[] = Object.entries(values)
-      .filter(([key]) => this.rows.has(key))
-      .map(([key, value]) => ({ key, value, ...this.side() }));
-    this.history.add(name, changes.flatMap(({ key }) => this.back(key)).reverse());
+    const values = kConstants.map((name) => ({ key: `material.${name}`, value: chosen[name], ...this.side() }));
+    const changes = values.filter(({ key }) => this.rows.has(key));
+    this.history.add(changes.flatMap(({ key }) => this.back(key)).reverse());
     this.newest = { key: "", at: 0 };
     await this.carryOut(changes);
-  }
-
-  // Sides that a change affects; undefined: the only side.
-  private sides(target = this.target): (SideName | undefined)[] {
-    if (!this.store.side("b")) return [undefined];
-    return target === "both" ? ["a", "b"] : [target];
   }
 
   private sceneOf(side: SideName | undefined): Scene | null {
     return this.store.side(side ?? "a")?.scene ?? null;
   }
 
-  // Changes that restore the present value of a setting, on each side that a change affects.
-  private back(key: string): SettingChange[] {
-    return this.sides().flatMap((side) => {
+  // Changes of each side that a change affects; the side is undefined if there is only one.
+  private onSides(target: Target, changes: (scene: Scene, side?: SideName) => SettingChange[]): SettingChange[] {
+    const both = target === "both" ? (["a", "b"] as const) : [target];
+    const sides = this.store.side("b") ? both : [undefined];
+    return sides.flatMap((side) => {
       const scene = this.sceneOf(side);
-      return scene ? [backTo(scene, key, side)] : [];
+      return scene ? changes(scene, side) : [];
     });
+  }
+
+  // Changes that restore the present value of a setting.
+  private back(key: string): SettingChange[] {
+    return this.onSides(this.target, (scene, side) => [backTo(scene, key, side)]);
   }
 
   private note(setting: Setting): void {
     const now = performance.now();
     const goesOn = this.newest.key === setting.key && now - this.newest.at < kOneChange;
     this.newest = { key: setting.key, at: now };
-    if (!goesOn) this.history.add(setting.label, this.back(setting.key));
+    if (!goesOn) this.history.add(this.back(setting.key));
   }
 
   private async undo(): Promise<void> {
     this.newest = { key: "", at: 0 };
-    while (this.history.last !== null) {
-      const changes = this.history.pop().filter((change) => this.changes(change));
+    for (let back = this.history.pop(); back; back = this.history.pop()) {
+      const changes = back.filter((change) => this.changes(change));
       if (changes.length > 0) return this.carryOut(changes);
     }
     this.page.notice("There is no change of a setting to undo.");
   }
 
   private async reset(): Promise<void> {
-    const changes = this.sides("both").flatMap((side) => {
-      const scene = this.sceneOf(side);
-      return scene ? toLoaded(scene, side) : [];
-    });
+    const changes = this.onSides("both", toLoaded);
     if (changes.length === 0) return this.page.notice("All settings have their loaded values.");
     this.newest = { key: "", at: 0 };
-    this.history.add("reset", changes.flatMap(({ key, side }) => backTo(this.sceneOf(side)!, key, side)).reverse());
+    this.history.add(changes.flatMap(({ key, side }) => backTo(this.sceneOf(side)!, key, side)).reverse());
     await this.carryOut(changes);
   }
 
@@ -230,17 +214,17 @@ export class Settings {
   }
 
   private addSetting(folder: GUI, setting: Setting): void {
-    const sender = new Newest<SettingValue>(
-      (value) => this.store.source.request({ do: "set", key: setting.key, value, ...this.side() }),
-      this.page.report,
-      () => this.update(),
-    );
+    const sender = this.makeSender((value) => ({ do: "set", key: setting.key, value, ...this.side() }));
     this.senders.set(setting.key, sender);
     const changed = (value: SettingValue): void => {
       this.note(setting);
       sender.push(value);
     };
     this.rows.set(setting.key, addRow(folder, setting, changed));
+  }
+
+  private makeSender(command: (value: SettingValue) => Command): Newest<SettingValue> {
+    return new Newest((value) => this.store.source.request(command(value)), this.page.report, () => this.update());
   }
 
   private side(): { side?: SideName } {
@@ -252,12 +236,8 @@ export class Settings {
     const row = new NumberRow(folder, "stiffness of the mouse's spring [N/m]", { value: 1000 }, range);
     row.name("stiffness [N/m]");
     row.$name.title = "Stiffness of the spring between the mouse and the dragged point";
-    const sender = new Newest<number>(
-      (value) => this.store.source.request({ do: "stiffness", value }),
-      this.page.report,
-      () => this.update(),
-    );
-    row.onChange((value: SettingValue) => sender.push(Number(value)));
+    const sender = this.makeSender((value) => ({ do: "stiffness", value: Number(value) }));
+    row.onChange((value: SettingValue) => sender.push(value));
     return row;
   }
 

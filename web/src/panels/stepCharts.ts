@@ -1,16 +1,14 @@
 // Charts of the microscope: over the iterations of one step, and over the steps.
 import type { Chosen } from "../plots/chosen";
-import { Chart, type ChartOptions, type Curve } from "../plots/chart";
+import { Chart, type ChartOptions, type Curve, type FilledCurve } from "../plots/chart";
 import { choice } from "../controls";
 import { element } from "../dom";
-import { short, withUnit } from "../plots/numbers";
-import type { Palette } from "../plots/palette";
+import { withUnit } from "../plots/numbers";
 import { SearchChart, type Search } from "../plots/search";
 import { nearest, thinned } from "../plots/table";
 import { paintVerticalLine } from "../plots/painting";
 import { aboveLowest } from "../plots/summaries";
 import type { IterationRow, MaybeNumber, StepRow } from "../protocol";
-import type uPlot from "uplot";
 
 export const kCharts = [
   ["search", "Line search: E along d"],
@@ -24,15 +22,13 @@ export const kCharts = [
 export type ChartName = (typeof kCharts)[number][0];
 
 const kStages = ["hessian", "factorize", "solve", "line_search", "gradient"] as const;
+type Stage = (typeof kStages)[number];
 const kStageColors = ["series1", "series2", "series3", "series4", "series5"] as const;
 
-const kIteration = { label: "iteration", integer: true };
-
 interface Plan {
-  options: Pick<ChartOptions, "label" | "x" | "y"> & { curves: Curve[] };
+  options: Pick<ChartOptions, "label" | "x" | "y">;
   x: number[];
-  columns: MaybeNumber[][];
-  text: (column: number, row: number) => string;
+  curves: FilledCurve[];
 }
 
 function curve(
@@ -40,115 +36,71 @@ function curve(
   label: string,
   meaning: string,
   color: Curve["color"],
+  values: MaybeNumber[],
   shape: Curve["shape"] = "both",
-): Curve {
-  return { key, label, meaning, color, shape, width: 1.75 };
+): FilledCurve {
+  return { key, label, meaning, color, values, shape, width: 1.75 };
+}
+
+function overIterations(label: string, y: ChartOptions["y"], curves: FilledCurve[]): Plan {
+  const x = curves[0].values.map((_, i) => i);
+  return { options: { label: `${label} over the iterations`, x: { label: "iteration", integer: true }, y }, x, curves };
 }
 
 function convergence(rows: readonly IterationRow[]): Plan {
   const positive = (values: MaybeNumber[]): MaybeNumber[] => values.map((v) => (v !== null && v > 0 ? v : null));
-  const columns = [
-    positive(rows.map((r) => r.gradient_norm)),
-    aboveLowest(rows.map((r) => r.value)),
-    positive(rows.map((r) => r.decrement)),
-  ];
-  return {
-    options: {
-      label: "Convergence over the iterations",
-      x: kIteration,
-      y: { label: "", log: true },
-      curves: [
-        curve("gradient", "|g|", "norm of the gradient before the iteration", "series1"),
-        curve("energy", "E − lowest E", "objective before the iteration, above its lowest value in this step", "series2"),
-        curve("decrement", "decrement", "−g·d / 2: decrease that the quadratic model predicts", "series3"),
-      ],
-    },
-    x: rows.map((_, i) => i),
-    columns,
-    text: (column, row) => short(columns[column]![row]),
-  };
+  const gradient = positive(rows.map((r) => r.gradient_norm));
+  const energy = aboveLowest(rows.map((r) => r.value));
+  const decrement = positive(rows.map((r) => r.decrement));
+  return overIterations("Convergence", { label: "", log: true }, [
+    curve("gradient", "|g|", "norm of the gradient before the iteration", "series1", gradient),
+    curve("energy", "E − lowest E", "objective before the iteration, above its lowest value in this step", "series2", energy),
+    curve("decrement", "decrement", "−g·d / 2: decrease that the quadratic model predicts", "series3", decrement),
+  ]);
 }
 
-function counted(
-  rows: readonly IterationRow[],
-  label: string,
-  meaning: string,
-  value: (row: IterationRow) => MaybeNumber,
-  shape: Curve["shape"],
-): Plan {
-  const column = rows.map(value);
-  return {
-    options: {
-      label: `${label} over the iterations`,
-      x: kIteration,
-      y: { label: "" },
-      curves: [curve("value", label, meaning, "series1", shape)],
-    },
-    x: rows.map((_, i) => i),
-    columns: [column],
-    text: (_column, row) => short(column[row]),
-  };
+function counted(label: string, meaning: string, values: MaybeNumber[], shape: Curve["shape"]): Plan {
+  return overIterations(label, { label: "" }, [curve("value", label, meaning, "series1", values, shape)]);
 }
 
 // Stacked bars: a later bar is drawn over the sum with the stages below it.
 function stages(rows: readonly IterationRow[]): Plan {
-  const order = [...kStages].reverse();
-  const columns = order.map((_, i) =>
-    rows.map((row) => kStages.slice(0, kStages.length - i).reduce((sum, stage) => sum + row.seconds[stage], 0)),
-  );
-  return {
-    options: {
-      label: "Time by stage over the iterations",
-      x: kIteration,
-      y: { label: "time", unit: "s" },
-      curves: order.map((stage) => {
-        const color = kStageColors[kStages.indexOf(stage)]!;
-        return curve(stage, stage.replace("_", " "), "wall time of this stage", color, "bars");
-      }),
-    },
-    x: rows.map((_, i) => i),
-    columns,
-    text: (column, row) => withUnit(rows[row]?.seconds[order[column]!], "s", 3),
-  };
+  const curves = kStages.map((stage, i) => {
+    const sums = rows.map((row) => kStages.slice(0, i + 1).reduce((sum, below) => sum + row.seconds[below], 0));
+    return curve(stage, stage.replace("_", " "), "wall time of this stage", kStageColors[i], sums, "bars");
+  });
+  return overIterations("Time by stage", { label: "time", unit: "s" }, curves.reverse());
 }
 
 function overSteps(steps: readonly StepRow[], width: number): Plan {
-  const whole = {
-    x: steps.map((s) => s.step),
-    columns: [steps.map((s) => s.iterations.length), steps.map((s) => (s.converged ? null : s.iterations.length))],
-  };
-  const table = thinned(whole, 0, steps.length, Math.max(100, width));
+  const counts = steps.map((s) => s.iterations.length);
+  const whole = { x: steps.map((s) => s.step), columns: [counts, counts.map((count, i) => (steps[i].converged ? null : count))] };
+  const { x, columns } = thinned(whole, 0, steps.length, Math.max(100, width));
   return {
-    options: {
-      label: "Iterations per step",
-      x: { label: "step", integer: true },
-      y: { label: "iterations" },
-      curves: [
-        curve("iterations", "iterations", "of the minimizer, per step", "series1", "line"),
-        curve("failed", "not converged", "steps that did not converge", "bad", "points"),
-      ],
-    },
-    x: table.x,
-    columns: table.columns,
-    text: (column, row) => short(table.columns[column]![row]),
+    options: { label: "Iterations per step", x: { label: "step", integer: true }, y: { label: "iterations" } },
+    x,
+    curves: [
+      curve("iterations", "iterations", "of the minimizer, per step", "series1", columns[0], "line"),
+      curve("failed", "not converged", "steps that did not converge", "bad", columns[1], "points"),
+    ],
   };
 }
 
-function planOf(name: Exclude<ChartName, "search">, chosen: Chosen, steps: readonly StepRow[], width: number): Plan {
+function planOf(name: Exclude<ChartName, "search">, chosen: Chosen, width: number): Plan {
   const rows = chosen.row()?.iterations ?? [];
   switch (name) {
     case "convergence":
       return convergence(rows);
     case "alpha":
-      return counted(rows, "α", "accepted step length; 0: no acceptable step", (r) => r.alpha, "both");
+      return counted("α", "accepted step length; 0: no acceptable step", rows.map((r) => r.alpha), "both");
     case "time":
       return stages(rows);
     case "inner":
-      return counted(rows, "inner iterations", "of the iterative linear solver", (r) => r.linear_iterations, "bars");
+      return counted("inner iterations", "of the iterative linear solver", rows.map((r) => r.linear_iterations), "bars");
     case "projected":
-      return counted(rows, "projected elements", "elements with a modified Hessian", (r) => r.projected_elements, "bars");
+      return counted("projected elements", "elements with a modified Hessian", rows.map((r) => r.projected_elements), "bars");
     case "steps":
-      return overSteps(steps, width);
+      return overSteps(chosen.rows(), width);
   }
 }
 
@@ -161,12 +113,11 @@ export class StepChart {
   private readonly search = new SearchChart();
   private readonly select;
   private configured = "";
-  private plan: Plan | null = null;
+  private x: number[] = [];
 
   constructor(
     name: ChartName,
     private readonly chosen: Chosen,
-    private readonly steps: () => readonly StepRow[],
     changed: () => void,
   ) {
     this.select = choice("", "Content of this chart", kCharts, name, changed);
@@ -193,43 +144,35 @@ export class StepChart {
 
   private showPlan(): void {
     const name = this.name as Exclude<ChartName, "search">;
-    const plan = planOf(name, this.chosen, this.steps(), this.chart.width);
-    this.plan = plan;
-    this.empty.textContent = plan.x.length === 0 ? "No iteration of a minimizer is available." : "";
-    this.chart.element.hidden = plan.x.length === 0;
+    const { options, x, curves } = planOf(name, this.chosen, this.chart.width);
+    this.x = x;
+    this.empty.textContent = x.length === 0 ? "No iteration of a minimizer is available." : "";
+    this.chart.element.hidden = x.length === 0;
     if (this.configured !== name) {
       this.configured = name;
-      const read = (key: string, x: number | null): string[] => this.read(key, x);
-      const paint = (u: uPlot, colors: Palette): void => this.paintChosen(u, colors);
-      const xRange = (): [number, number] | null => this.xRange();
-      this.chart.configure({ ...plan.options, read, paint, xRange, clicked: (x) => this.clicked(x) });
+      this.chart.configure({
+        ...options,
+        curves,
+        read: name === "time" ? (key, at) => this.stageText(key as Stage, at) : undefined,
+        paint: (u, colors) => paintVerticalLine(u, name === "steps" ? this.chosen.step : this.chosen.iteration, colors.accent, 0.6),
+        xRange: () => (this.x.length > 0 ? [this.x[0] - 0.5, this.x[this.x.length - 1] + 0.5] : null),
+        clicked: (at) => this.clicked(at),
+      });
     }
-    this.chart.show(plan.x, plan.columns);
+    this.chart.show(x, curves.map(({ values }) => values));
   }
 
-  private read(key: string, x: number | null): string[] {
-    const plan = this.plan;
-    if (!plan || x === null || plan.x.length === 0) return [];
-    const column = plan.options.curves.findIndex((c) => c.key === key);
-    return [plan.text(column, nearest(plan.x, x))];
-  }
-
-  private xRange(): [number, number] | null {
-    const x = this.plan?.x ?? [];
-    return x.length > 0 ? [x[0]! - 0.5, x[x.length - 1]! + 0.5] : null;
+  private stageText(stage: Stage, at: number | null): string[] {
+    const rows = this.chosen.row()?.iterations ?? [];
+    return at === null ? [] : [withUnit(rows[nearest(this.x, at)]?.seconds[stage], "s", 3)];
   }
 
   private clicked(x: number): void {
     const index = Math.round(x);
     const { side, step } = this.chosen;
     if (this.name === "steps") {
-      const numbers = this.steps().map((s) => s.step);
+      const numbers = this.chosen.rows().map((s) => s.step);
       if (numbers.length > 0) this.chosen.choose(side, numbers[nearest(numbers, index)]!, 0);
     } else if (index >= 0 && index < (this.chosen.row()?.iterations.length ?? 0)) this.chosen.choose(side, step, index);
-  }
-
-  // Draws a line at the chosen iteration or step.
-  private paintChosen(u: uPlot, colors: Palette): void {
-    paintVerticalLine(u, this.name === "steps" ? this.chosen.step : this.chosen.iteration, colors.accent, 0.6);
   }
 }

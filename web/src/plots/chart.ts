@@ -9,7 +9,9 @@ import { axis, padded, ranged, type Axis } from "./axes";
 import { oncePerFrame } from "../controls";
 import { element } from "../dom";
 import { titled } from "./legend";
+import { short, withUnit } from "./numbers";
 import { cssOf, inkOf, palette, sameLook, type Color, type Palette } from "./palette";
+import { nearest, type Table } from "./table";
 
 export interface Curve {
   key: string; // curves with the same key share an entry of the legend
@@ -21,13 +23,16 @@ export interface Curve {
   shape?: "line" | "points" | "both" | "bars";
 }
 
+export type FilledCurve = Curve & { values: MaybeNumber[] };
+
 export interface ChartOptions {
   label: string; // name for screen readers
   x: Axis;
   y: Axis & { log?: boolean };
   curves: Curve[];
   legend?: "side" | "top"; // top by default
-  read: (key: string, x: number | null) => string[]; // values for the legend at x, or at the end if x is null
+  read?: (key: string, x: number | null) => string[]; // texts for the legend at x, or without a cursor; default: the value
+  showsLast?: boolean; // without a cursor the legend shows the last values
   caption?: (x: number | null) => string; // text above the values
   xRange?: () => [number, number] | null;
   yRange?: () => [number, number] | null; // null: the range of the visible curves
@@ -49,7 +54,7 @@ export class Chart {
   private readonly legend = element("div", { class: "chart-legend", role: "group", "aria-label": "Curves" });
   private readonly caption = element("div", { class: "chart-caption" });
   private options: ChartOptions | null = null;
-  private data: { x: number[]; columns: MaybeNumber[][] } = { x: [], columns: [] };
+  private data: Table = { x: [], columns: [] };
   private chart: uPlot | null = null;
   private entries: Entry[] = [];
   private cursor: number | null = null;
@@ -64,10 +69,10 @@ export class Chart {
   }
 
   // A chart whose content does not change.
-  static of(x: number[], columns: MaybeNumber[][], options: ChartOptions): Chart {
+  static of(x: number[], curves: FilledCurve[], options: Omit<ChartOptions, "curves">): Chart {
     const chart = new Chart();
-    chart.configure(options);
-    chart.show(x, columns);
+    chart.configure({ ...options, curves });
+    chart.show(x, curves.map(({ values }) => values));
     return chart;
   }
 
@@ -94,11 +99,7 @@ export class Chart {
     const options = this.options;
     if (!options || width < 60 || height < 40 || this.data.columns.length !== options.curves.length) return;
     const colors = (this.look = palette(this.element));
-    this.chart = new uPlot(
-      this.settings(options, colors, width, height),
-      [this.data.x, ...this.data.columns],
-      this.plot,
-    );
+    this.chart = new uPlot(this.settings(options, colors, width, height), [this.data.x, ...this.data.columns], this.plot);
     this.readLegend();
   }
 
@@ -125,16 +126,9 @@ export class Chart {
       height,
       legend: { show: false },
       padding: [colors.fontSize * 0.6, colors.fontSize * 1.6, 0, 0],
-      cursor: {
-        y: false,
-        points: { size: 6 },
-        drag: { x: options.zoomed !== undefined, y: false, setScale: false, dist: 6 },
-      },
+      cursor: { y: false, points: { size: 6 }, drag: { x: options.zoomed !== undefined, y: false, setScale: false, dist: 6 } },
       scales: {
-        x: {
-          time: false,
-          range: (_u, low, high) => options.xRange?.() ?? padded(low, high, options.x.integer === true),
-        },
+        x: { time: false, range: (_u, low, high) => options.xRange?.() ?? padded(low, high, options.x.integer === true) },
         y: { distr: log ? 3 : 1, log: 10, range: (_u, low, high) => options.yRange?.() ?? ranged(low, high, log) },
       },
       axes: [axis(options.x, colors, false), axis(options.y, colors, true)],
@@ -160,11 +154,7 @@ export class Chart {
       pxAlign: 0,
       fill: shape === "bars" ? stroke : undefined,
       paths: shape === "bars" ? uPlot.paths.bars!({ size: [0.7, 40] }) : undefined,
-      points: {
-        show: (u, _series, first, last) => showsPoints(shape, last - first, u.over.clientWidth),
-        size: 6,
-        fill: stroke,
-      },
+      points: { show: (u, _series, first, last) => showsPoints(shape, last - first, u.over.clientWidth), size: 6, fill: stroke },
     };
   }
 
@@ -212,20 +202,13 @@ export class Chart {
       const sample = element("span", { class: "chart-sample" });
       const dashed = curve.dash ? "dashed" : "solid";
       sample.style.borderTop = `${Math.max(2, (curve.width ?? 1.5) * 1.4)}px ${dashed} ${cssOf(curve.color)}`;
-      const entry = element("button", {
-        type: "button",
-        class: "chart-entry",
-        title: `${curve.meaning ?? curve.label}. Click to hide or show it.`,
-      });
+      const title = `${curve.meaning ?? curve.label}. Click to hide or show it.`;
+      const entry = element("button", { type: "button", class: "chart-entry", title, "aria-pressed": String(!this.hidden.has(curve.key)) });
       entry.append(sample, element("span", { class: "chart-label" }, curve.label), values);
       entry.addEventListener("click", () => this.toggle(curve.key));
-      entry.setAttribute("aria-pressed", String(!this.hidden.has(curve.key)));
       return { key: curve.key, button: entry, values };
     });
-    this.legend.replaceChildren(
-      ...(this.options!.caption ? [this.caption] : []),
-      ...this.entries.map((entry) => entry.button),
-    );
+    this.legend.replaceChildren(...(this.options!.caption ? [this.caption] : []), ...this.entries.map(({ button }) => button));
   }
 
   private toggle(key: string): void {
@@ -238,14 +221,22 @@ export class Chart {
     const caption = this.options!.caption?.(this.cursor) ?? "";
     if (this.caption.textContent !== caption) this.caption.textContent = caption;
     for (const entry of this.entries) {
-      const texts = this.options!.read(entry.key, this.cursor);
-      if (entry.values.childElementCount !== texts.length)
-        entry.values.replaceChildren(...texts.map(() => element("span")));
+      const texts = this.options!.read?.(entry.key, this.cursor) ?? this.valueText(entry.key);
+      if (entry.values.childElementCount !== texts.length) entry.values.replaceChildren(...texts.map(() => element("span")));
       texts.forEach((text, i) => {
         const cell = entry.values.children[i]!;
         if (cell.textContent !== text) cell.textContent = text;
       });
     }
+  }
+
+  private valueText(key: string): string[] {
+    const { curves, y, showsLast } = this.options!;
+    const { x, columns } = this.data;
+    const at = this.cursor ?? (showsLast ? Infinity : null);
+    if (at === null || x.length === 0) return [];
+    const value = columns[curves.findIndex((curve) => curve.key === key)]?.[nearest(x, at)];
+    return [y.unit ? withUnit(value, y.unit, 3) : short(value)];
   }
 }
 

@@ -39,10 +39,7 @@ export class Chosen extends Emitter<Events> {
   private underWay: StepRow | null = null;
   private withUnderWay: StepRow[] = [];
   private readonly replies = new Map<string, IterationReply>();
-  private readonly questions = new Newest<ChosenIteration>(
-    (at) => this.ask(at),
-    () => {},
-  );
+  private readonly questions = new Newest((at: ChosenIteration) => this.ask(at));
 
   constructor(
     private readonly store: Store,
@@ -61,7 +58,7 @@ export class Chosen extends Emitter<Events> {
     store.on("gone", () => this.side === "b" && this.choose("a", this.newest("a")?.step ?? 0, 0));
     store.on("state", () => this.newRows());
     page.on("chosen", (at) => {
-      if (at.side === this.side && at.step === this.step && at.iteration === this.iteration) return;
+      if (keyOf(at) === keyOf(this)) return;
       this.following = false;
       this.set(at.side, at.step, at.iteration);
     });
@@ -77,11 +74,8 @@ export class Chosen extends Emitter<Events> {
     const steps = this.store.side(this.side)?.steps ?? [];
     const state = this.store.state?.[this.side];
     if (!state || state.iteration < 0 || !state.iterations?.length) return steps;
-    if (
-      this.underWay?.iterations !== state.iterations ||
-      this.underWay.step !== state.step + 1 ||
-      this.withUnderWay.length !== steps.length + 1
-    ) {
+    const known = this.underWay;
+    if (known?.iterations !== state.iterations || known.step !== state.step + 1 || this.withUnderWay.length !== steps.length + 1) {
       this.underWay = unfinished(state.step + 1, state.time, state.iterations);
       this.withUnderWay = [...steps, this.underWay];
     }
@@ -109,10 +103,8 @@ export class Chosen extends Emitter<Events> {
 
   // Chooses the same step of the other side, or its newest.
   chooseSide(side: SideName): void {
-    const row = this.following
-      ? this.newest(side)
-      : (this.store.side(side)?.steps.find((s) => s.step === this.step) ?? this.newest(side));
-    this.announce(side, row?.step ?? 0, 0);
+    const same = this.store.side(side)?.steps.find((s) => s.step === this.step);
+    this.announce(side, ((!this.following && same) || this.newest(side))?.step ?? 0, 0);
   }
 
   // Moves to the previous or next iteration, across steps.
@@ -158,23 +150,17 @@ export class Chosen extends Emitter<Events> {
     try {
       const reply = await this.store.source.ask<IterationReply>({ ask: "iteration", ...at });
       this.replies.set(keyOf(at), reply);
-      for (const oldest of this.replies.keys()) {
-        if (this.replies.size <= kRemembered) break;
-        this.replies.delete(oldest);
-      }
+      const [oldest] = this.replies.keys();
+      if (this.replies.size > kRemembered) this.replies.delete(oldest);
       this.take({ at, reply, why: "" });
     } catch (reason) {
-      this.failed(at, messageOf(reason));
-    } finally {
-      const now = performance.now();
-      this.restsUntil = now + kRest * (now - begun);
+      // A question that was interrupted is repeated after the next report of the program.
+      const why = messageOf(reason);
+      if (!why.startsWith("interrupted")) this.take({ at, reply: null, why });
+      else if (this.asked === keyOf(at)) this.asked = "";
     }
-  }
-
-  // A question that was interrupted is repeated after the next report of the program.
-  private failed(at: ChosenIteration, why: string): void {
-    if (!why.startsWith("interrupted")) this.take({ at, reply: null, why });
-    else if (this.asked === keyOf(at)) this.asked = "";
+    const now = performance.now();
+    this.restsUntil = now + kRest * (now - begun);
   }
 
   private take(seen: Seen): void {
@@ -226,10 +212,9 @@ export class Chosen extends Emitter<Events> {
   }
 
   private announce(side: SideName, step: number, iteration: number): void {
-    if (side === this.side && step === this.step && iteration === this.iteration)
-      return this.emit("changed", undefined);
+    const before = keyOf(this);
     this.set(side, step, iteration);
-    if (step > 0) this.page.emit("chosen", { side, step, iteration });
+    if (step > 0 && keyOf(this) !== before) this.page.emit("chosen", { side, step, iteration });
   }
 }
 

@@ -1,5 +1,7 @@
 // Values on a plane grid: the heights of their picture, and the quadratic function through samples.
-import type { IterationReply, MaybeNumber } from "../protocol";
+import type { FunctionReply, IterationReply, MaybeNumber } from "../protocol";
+import { finite } from "./numbers";
+import { lowerBound } from "./table";
 
 export interface Grid {
   x: number[]; // ascending
@@ -32,16 +34,15 @@ export interface Range {
 
 // Range of heights to show: all of them, unless a wall would flatten the valley. Includes the values in `keep`.
 export function heightRange(values: readonly MaybeNumber[], keep: readonly MaybeNumber[] = []): Range {
-  const known = values.filter((v): v is number => v !== null && Number.isFinite(v)).sort((p, q) => p - q);
-  const kept = keep.filter((v): v is number => v !== null && Number.isFinite(v));
+  const known = finite(values).sort((p, q) => p - q);
+  const kept = finite(keep);
   if (known.length === 0) return { low: 0, high: 1, cut: false };
   const low = Math.min(known[0]!, ...kept);
   const highest = known[known.length - 1]!;
   const quantile = known[Math.floor(0.75 * (known.length - 1))]!;
   const tall = highest - low > 4 * (quantile - low) && quantile > low;
-  const high = tall
-    ? Math.min(highest, Math.max(low + 2 * (quantile - low), ...kept.map((v) => v + 0.05 * (v - low))))
-    : highest;
+  const shown = Math.max(low + 2 * (quantile - low), ...kept.map((v) => v + 0.05 * (v - low)));
+  const high = tall ? Math.min(highest, shown) : highest;
   return high > low ? { low, high, cut: high < highest } : { low, high: low + (Math.abs(low) * 1e-9 || 1), cut: false };
 }
 
@@ -74,32 +75,17 @@ export function sample(grid: Grid, x: number, y: number): MaybeNumber {
 }
 
 function cell(axis: readonly number[], at: number): [index: number, fraction: number] {
-  const [first, last] = [axis[0]!, axis[axis.length - 1]!];
-  if (!(at >= first && at <= last) || axis.length < 2) return [-1, 0];
-  let [low, high] = [0, axis.length - 1];
-  while (high - low > 1) {
-    const middle = (low + high) >> 1;
-    if (axis[middle]! <= at) low = middle;
-    else high = middle;
-  }
-  return [low, (at - axis[low]!) / (axis[high]! - axis[low]!)];
+  if (!(at >= axis[0] && at <= axis[axis.length - 1]) || axis.length < 2) return [-1, 0];
+  const high = Math.max(1, lowerBound(axis, at));
+  return [high - 1, (at - axis[high - 1]) / (axis[high] - axis[high - 1])];
 }
 
 // value + gradient . p + 1/2 p' H p, with p from `center`.
-export interface Quadratic {
-  center: [number, number];
-  value: number;
-  gradient: [number, number];
-  xx: number;
-  xy: number;
-  yy: number;
-}
+export type Quadratic = FunctionReply["model"];
 
 export function quadraticAt(q: Quadratic, x: number, y: number): number {
   const [px, py] = [x - q.center[0], y - q.center[1]];
-  return (
-    q.value + q.gradient[0] * px + q.gradient[1] * py + 0.5 * (q.xx * px * px + 2 * q.xy * px * py + q.yy * py * py)
-  );
+  return q.value + q.gradient[0] * px + q.gradient[1] * py + 0.5 * (q.xx * px * px + 2 * q.xy * px * py + q.yy * py * py);
 }
 
 // Minimizer of the quadratic; null if it has no minimum.
@@ -121,30 +107,23 @@ export function quadraticFrom(grid: Grid): Quadratic | null {
   const [hx, hy] = [grid.x[2 * i]! - grid.x[i]!, grid.y[2 * j]! - grid.y[j]!];
   const at = (a: number, b: number): number => grid.value[b * j * n + a * i] ?? Number.NaN;
   const value = at(1, 1);
-  const quadratic = {
-    center: [grid.x[i]!, grid.y[j]!] as [number, number],
+  const quadratic: Quadratic = {
+    center: [grid.x[i], grid.y[j]],
     value,
-    gradient: [(at(2, 1) - at(0, 1)) / (2 * hx), (at(1, 2) - at(1, 0)) / (2 * hy)] as [number, number],
+    gradient: [(at(2, 1) - at(0, 1)) / (2 * hx), (at(1, 2) - at(1, 0)) / (2 * hy)],
     xx: (at(2, 1) - 2 * value + at(0, 1)) / (hx * hx),
     yy: (at(1, 2) - 2 * value + at(1, 0)) / (hy * hy),
     xy: (at(2, 2) - at(2, 0) - at(0, 2) + at(0, 0)) / (4 * hx * hy),
   };
-  return [value, ...quadratic.gradient, quadratic.xx, quadratic.xy, quadratic.yy].every(Number.isFinite)
-    ? quadratic
-    : null;
+  return Object.values(quadratic).flat().every(Number.isFinite) ? quadratic : null;
 }
 
 // Part of a segment inside the grid's rectangle; null if there is none. [Liang, Barsky 1984]
 export function clipped(grid: Grid, p: Point, q: Point): [Point, Point] | null {
   let [from, to] = [0, 1];
   const [dx, dy] = [q.x - p.x, q.y - p.y];
-  const [left, right, bottom, top] = [grid.x[0]!, grid.x[grid.x.length - 1]!, grid.y[0]!, grid.y[grid.y.length - 1]!];
-  for (const [slope, room] of [
-    [-dx, p.x - left],
-    [dx, right - p.x],
-    [-dy, p.y - bottom],
-    [dy, top - p.y],
-  ] as const) {
+  const { left, right, bottom, top } = edgesOf(grid);
+  for (const [slope, room] of [[-dx, p.x - left], [dx, right - p.x], [-dy, p.y - bottom], [dy, top - p.y]] as const) {
     if (slope === 0 && room < 0) return null;
     if (slope < 0) from = Math.max(from, room / slope);
     if (slope > 0) to = Math.min(to, room / slope);
@@ -154,8 +133,11 @@ export function clipped(grid: Grid, p: Point, q: Point): [Point, Point] | null {
   return [at(from), at(to)];
 }
 
-export function isInside(grid: Grid, p: Point): boolean {
-  return (
-    p.x >= grid.x[0]! && p.x <= grid.x[grid.x.length - 1]! && p.y >= grid.y[0]! && p.y <= grid.y[grid.y.length - 1]!
-  );
+export function isInside(grid: Grid, { x, y }: Point): boolean {
+  const { left, right, bottom, top } = edgesOf(grid);
+  return x >= left && x <= right && y >= bottom && y <= top;
+}
+
+function edgesOf({ x, y }: Grid): Record<"left" | "right" | "bottom" | "top", number> {
+  return { left: x[0], right: x[x.length - 1], bottom: y[0], top: y[y.length - 1] };
 }

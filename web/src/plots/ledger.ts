@@ -1,8 +1,9 @@
 // Energy of one side step by step: states as they are, works and losses summed up.
 import type { MaybeNumber, StepRow } from "../protocol";
 import type { Curve } from "./chart";
+import { extremes } from "../view/ranges";
 import { lowerBound } from "./table";
-import { short, withUnit } from "./numbers";
+import { finite, short, withUnit } from "./numbers";
 import { furtherColor, type Color } from "./palette";
 
 // All curves of a legend have different colors.
@@ -13,10 +14,7 @@ const kWider = { width: 2.5 };
 const kSum = { dash: [2, 3] }; // of sums over the steps
 
 export function ledgerColumns(potentials: readonly string[]): Curve[] {
-  const line = (key: string, label: string, meaning: string, color: Color, more: Partial<Curve> = {}): Curve => ({
-    ...{ key, label, meaning, color, width: 1.5 },
-    ...more,
-  });
+  const line = (key: string, label: string, meaning: string, color: Color, more: Partial<Curve>): Curve => ({ key, label, meaning, color, width: 1.5, ...more });
   const terms = potentials.map((name, i) => {
     const color = kTermColors[i] ?? furtherColor(i);
     return line(`potential_${name}`, `V: ${name.replaceAll("_", " ")}`, "a term of the potential energy", color, { width: 1.25 });
@@ -110,9 +108,7 @@ export class Ledger {
   // Range of the balance since the first step, and the largest energy so far.
   drift(): { drift: number; scale: number } {
     const last = this.step.length - 1;
-    return last < 0
-      ? { drift: 0, scale: 0 }
-      : { drift: this.highest[last]! - this.lowest[last]!, scale: this.largest[last]! };
+    return { drift: last < 0 ? 0 : this.highest[last] - this.lowest[last], scale: this.largest[last] ?? 0 };
   }
 
   private append(row: StepRow): void {
@@ -150,23 +146,13 @@ export function calmRange(one: Ledger, other: Ledger): [number, number] | null {
   const [calm, wild] = one.drift().scale <= other.drift().scale ? [one, other] : [other, one];
   const scale = calm.drift().scale;
   if (!(scale > 0) || wild.drift().scale <= kDwarfs * scale) return null;
-  let [low, high] = [0, 0];
-  for (const column of calm.columns)
-    for (const value of column) {
-      low = Math.min(low, value ?? 0);
-      high = Math.max(high, value ?? 0);
-    }
+  const [low, high] = extremes(calm.columns.flatMap((column) => [0, ...finite(column)])) ?? [0, 0];
   return [2 * low, 2 * high];
 }
 
 // Sum of the parts; null if a part is null.
 function sum(parts: readonly MaybeNumber[]): MaybeNumber {
-  let total = 0;
-  for (const part of parts) {
-    if (part === null) return null;
-    total += part;
-  }
-  return total;
+  return parts.reduce<MaybeNumber>((total, part) => (total === null || part === null ? null : total + part), 0);
 }
 
 function negated(value: MaybeNumber): MaybeNumber {

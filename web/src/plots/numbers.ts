@@ -41,8 +41,7 @@ export function withUnit(value: MaybeNumber | undefined, unit: string, digits = 
 function decimalsOf(gap: number): number {
   const first = Math.max(0, -Math.floor(Math.log10(gap) + 1e-9));
   const isWhole = (decimals: number): boolean => Math.abs(gap * 10 ** decimals - Math.round(gap * 10 ** decimals)) < 1e-6 * gap * 10 ** decimals;
-  const enough = [first, first + 1, first + 2].find(isWhole) ?? first + 2;
-  return Math.min(12, enough);
+  return Math.min(12, [first, first + 1].find(isWhole) ?? first + 2);
 }
 
 // Texts of an axis' ticks, with enough decimals to distinguish neighbors.
@@ -59,6 +58,10 @@ export function tickTexts(values: readonly (number | null)[], factor = 1): strin
     const digits = Math.min(12, Math.max(1, Math.ceil(Math.log10(Math.abs(v) / gap) + 1)));
     return plain ? v.toFixed(decimals).replace("-", "−") : short(v, digits);
   });
+}
+
+export function finite(values: readonly MaybeNumber[]): number[] {
+  return values.filter((value): value is number => value !== null && Number.isFinite(value));
 }
 
 export function plural(count: number, noun: string): string {

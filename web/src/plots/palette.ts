@@ -1,5 +1,5 @@
 // Colors of the page, read from the style sheet.
-const kPlain = ["text", "faint", "line", "panel", "raised", "accent", "good", "bad"] as const;
+const kPlain = ["background", "text", "faint", "line", "panel", "raised", "accent", "good", "bad"] as const;
 const kSeries = [1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14] as const;
 const kNames = [...kPlain, ...kSeries.map((i) => `series${i}` as const)];
 
@@ -17,6 +17,12 @@ function isName(color: Color): color is Name {
 
 function variableOf(name: Name): string {
   return `--${name.replace(/(\d+)/, "-$1")}`;
+}
+
+// Gives the variables the type of a color, so that their computed values are not light-dark() but one of its colors.
+export function registerColors(): void {
+  const type = { syntax: "<color>", inherits: true, initialValue: "#888888" };
+  for (const name of kNames) CSS.registerProperty({ name: variableOf(name), ...type });
 }
 
 // Color as a canvas expects it.
@@ -40,9 +46,7 @@ export function sameLook(a: Palette | null, b: Palette): boolean {
 
 export function palette(of: HTMLElement): Palette {
   const style = getComputedStyle(of);
-  const colors = Object.fromEntries(
-    kNames.map((name) => [name, style.getPropertyValue(variableOf(name)).trim() || "#888888"]),
-  ) as Record<Name, string>;
+  const colors = Object.fromEntries(kNames.map((name) => [name, style.getPropertyValue(variableOf(name))])) as Record<Name, string>;
   const fontSize = Number.parseFloat(style.fontSize) || 14;
   return { ...colors, fontSize, font: `${fontSize * 0.86}px ${style.fontFamily || "sans-serif"}` };
 }

@@ -3,32 +3,23 @@ import type uPlot from "uplot";
 import type { IterationReply, MaybeNumber, TrialRow } from "../protocol";
 import { text } from "../view/marks";
 import { Chart, type Curve } from "./chart";
-import { short } from "./numbers";
+import { finite, short } from "./numbers";
 import type { Palette } from "./palette";
 import { nearest } from "./table";
 import { inkOn, paintVerticalLine } from "./painting";
 
-export interface Search {
-  curve: IterationReply["curve"];
-  trials: TrialRow[];
-  maxStep?: MaybeNumber; // largest alpha that contact allows
+export interface Search extends Pick<IterationReply, "curve" | "trials">, Partial<Pick<IterationReply, "max_step">> {
   test: string; // acceptance test: "textbook", "slide" or "none"
   about?: string; // the iteration, where it is not clear from the context
 }
 
 // Range of the axis: the valley, and trials unless they dwarf it. Values are differences from E at alpha 0.
-export function searchRange(
-  values: readonly MaybeNumber[],
-  model: readonly MaybeNumber[],
-  trials: readonly MaybeNumber[],
-): [number, number] {
-  const known = (list: readonly MaybeNumber[]): number[] =>
-    list.filter((v): v is number => v !== null && Number.isFinite(v));
-  const lowest = Math.min(0, ...known(values), ...known(trials));
-  const promised = Math.min(0, ...known(model));
-  const depth = -lowest || -promised || Math.max(...known(values).map(Math.abs), 1e-300);
+export function searchRange(values: MaybeNumber[], model: MaybeNumber[], trials: MaybeNumber[]): [number, number] {
+  const lowest = Math.min(0, ...finite(values), ...finite(trials));
+  const promised = Math.min(0, ...finite(model));
+  const depth = -lowest || -promised || Math.max(...finite(values).map(Math.abs), 1e-300);
   const low = Math.max(Math.min(lowest, promised), -2 * depth); // a model without a minimum has no lower bound
-  const high = [...known(values), ...known(trials)].filter((v) => v > 0 && v <= 4 * depth);
+  const high = finite([...values, ...trials]).filter((v) => v > 0 && v <= 4 * depth);
   const top = Math.min(4 * depth, Math.max(0.25 * depth, ...high));
   const margin = 0.07 * (top - low);
   return [low - margin, top + margin];
@@ -46,13 +37,10 @@ export function alphaRange(alpha: readonly number[], trials: readonly TrialRow[]
 
 export class SearchChart {
   readonly chart = new Chart();
+  readonly element = this.chart.element;
   private search: Search | null = null;
 
   constructor(private readonly symbol = "E") {}
-
-  get element(): HTMLElement {
-    return this.chart.element;
-  }
 
   show(search: Search | null): void {
     this.search = search;
@@ -63,11 +51,10 @@ export class SearchChart {
       x: { label: "α" },
       y: { label: `${this.symbol} − ${this.symbol}(α = 0)` },
       curves: curvesOf(search, this.symbol),
-      read: (key, alpha) => this.read(key, alpha),
       xRange: () => alphaRange(search.curve.alpha, search.trials),
       yRange: () => this.range(),
       paint: (u, colors) => {
-        this.paintLimit(u, colors);
+        paintLimit(u, colors, search.max_step ?? null);
         this.paintTrials(u, colors);
       },
     });
@@ -86,8 +73,7 @@ export class SearchChart {
     const far = 20 * (high - low); // canvases take very long to dash extremely long lines
     const near = (v: number): number => Math.min(high + far, Math.max(low - far, v));
     const shifted = (values: MaybeNumber[]): MaybeNumber[] => values.map((v) => (v === null ? null : near(v - origin)));
-    const ahead = (values: MaybeNumber[]): MaybeNumber[] =>
-      shifted(values).map((v, i) => (curve.alpha[i]! < 0 ? null : v));
+    const ahead = (values: MaybeNumber[]): MaybeNumber[] => shifted(values).map((v, i) => (curve.alpha[i] < 0 ? null : v));
     const columns = [shifted(curve.value), shifted(curve.model), ahead(curve.textbook), ahead(curve.slide)];
     return columns.slice(0, curvesOf(this.search!, this.symbol).length);
   }
@@ -101,26 +87,6 @@ export class SearchChart {
       values.map((v, i) => (v === null || !shown(curve.alpha[i]!) ? null : v - origin));
     const tried = trials.filter((t) => shown(t.alpha)).map((t) => (t.value === null ? null : t.value - origin));
     return searchRange(shifted(curve.value), shifted(curve.model), tried);
-  }
-
-  private read(key: string, alpha: number | null): string[] {
-    if (!this.search || alpha === null) return [];
-    const column = curvesOf(this.search, this.symbol).findIndex((c) => c.key === key);
-    return [short(this.columns()[column]?.[nearest(this.search.curve.alpha, alpha)], 4)];
-  }
-
-  // Draws the largest step that contact allows.
-  private paintLimit(u: uPlot, colors: Palette): void {
-    const { maxStep } = this.search!;
-    if (maxStep === null || maxStep === undefined) return;
-    paintVerticalLine(u, maxStep, colors.bad, 0.6);
-    const ink = inkOn(u, colors, colors.bad);
-    const { left, top, width, height } = u.bbox;
-    const x = u.valToPos(maxStep, "x", true);
-    const words = limitText(maxStep);
-    const isRight = x + ink.em + ink.context.measureText(words).width < left + width;
-    text(ink, words, x + (isRight ? 0.5 : -0.5) * ink.em, top + height - ink.em, isRight ? "left" : "right");
-    ink.context.restore();
   }
 
   // Draws rejected trials as crosses and the accepted one as a dot. Values outside of the axis are drawn at its edge.
@@ -147,6 +113,19 @@ export class SearchChart {
     }
     ink.context.restore();
   }
+}
+
+// Draws the largest step that contact allows.
+function paintLimit(u: uPlot, colors: Palette, maxStep: MaybeNumber): void {
+  if (maxStep === null) return;
+  paintVerticalLine(u, maxStep, colors.bad, 0.6);
+  const ink = inkOn(u, colors, colors.bad);
+  const { left, top, width, height } = u.bbox;
+  const x = u.valToPos(maxStep, "x", true);
+  const words = limitText(maxStep);
+  const isRight = x + ink.em + ink.context.measureText(words).width < left + width;
+  text(ink, words, x + (isRight ? 0.5 : -0.5) * ink.em, top + height - ink.em, isRight ? "left" : "right");
+  ink.context.restore();
 }
 
 export function limitText(maxStep: number): string {

@@ -9,11 +9,12 @@ import { sample, type Point } from "./grid";
 import { legendOf, titled } from "./legend";
 import { cssOf, inkOf, palette, sameLook, type Palette } from "./palette";
 import { SurfaceBody } from "./surfaceBody";
-import type { SurfaceContent } from "./surfaceContent";
+import type { Mark, SurfaceContent } from "./surfaceContent";
 import { axisLabels, placed, type Placed } from "./surfaceLabels";
 import "./plots.css";
 
 const kAzimuth = -0.55; // default view
+const kArrows: Record<string, [number, number]> = { ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, 1], ArrowDown: [0, -1] };
 
 // Default polar angle: a flat picture is seen more from the side, so that the surface fills it.
 function usualPolar(aspect: number): number {
@@ -64,11 +65,7 @@ export class SurfaceView {
     const content = this.shown;
     this.colors = palette(this.element);
     if (!content || content.grid.x.length < 2 || content.grid.y.length < 2) return this.redraw();
-    if (this.renderer)
-      this.renderer.domElement.setAttribute(
-        "aria-label",
-        `${content.label}. The arrow keys turn it, + and − zoom, 0 resets.`,
-      );
+    this.renderer?.domElement.setAttribute("aria-label", `${content.label}. The arrow keys turn it, + and − zoom, 0 resets.`);
     this.stretch = this.wantedStretch();
     this.body = new SurfaceBody(content, this.colors, this.stretch);
     this.scene.add(this.body.group);
@@ -98,10 +95,7 @@ export class SurfaceView {
       return;
     }
     this.renderer.setPixelRatio(Math.min(2, window.devicePixelRatio));
-    this.renderer.clippingPlanes = [
-      new THREE.Plane(new THREE.Vector3(0, -1, 0), 0.96),
-      new THREE.Plane(new THREE.Vector3(0, 1, 0), 0.05),
-    ];
+    this.renderer.clippingPlanes = [[-1, 0.96], [1, 0.05]].map(([y, offset]) => new THREE.Plane(new THREE.Vector3(0, y, 0), offset));
     const canvas = this.renderer.domElement;
     canvas.tabIndex = 0;
     canvas.setAttribute("role", "img");
@@ -121,13 +115,8 @@ export class SurfaceView {
   }
 
   private home(): void {
-    this.camera.position
-      .setFromSphericalCoords(
-        5,
-        usualPolar(this.element.clientWidth / Math.max(1, this.element.clientHeight)),
-        kAzimuth,
-      )
-      .add(this.controls!.target);
+    const aspect = this.element.clientWidth / Math.max(1, this.element.clientHeight);
+    this.camera.position.setFromSphericalCoords(5, usualPolar(aspect), kAzimuth).add(this.controls!.target);
     this.fitted = 0;
     this.fit();
   }
@@ -195,13 +184,7 @@ export class SurfaceView {
   }
 
   private key(event: KeyboardEvent): void {
-    const arrows: Record<string, [number, number]> = {
-      ArrowLeft: [-1, 0],
-      ArrowRight: [1, 0],
-      ArrowUp: [0, 1],
-      ArrowDown: [0, -1],
-    };
-    const arrow = arrows[event.key];
+    const arrow = kArrows[event.key];
     if (arrow && event.shiftKey && this.nudged) this.nudged(...arrow);
     else if (arrow) this.turn(arrow[0] * 0.1, -arrow[1] * 0.07, 1);
     else if (event.key === "+" || event.key === "=") this.turn(0, 0, 0.9);
@@ -218,9 +201,13 @@ export class SurfaceView {
     this.controls!.dollyIn(zoom);
   }
 
+  private ring(): Mark | undefined {
+    return this.shown?.marks.find((mark) => mark.shape === "ring");
+  }
+
   // Drags the ring over the surface if the pointer is on it.
   private grab(event: PointerEvent): void {
-    const ring = this.shown?.marks.find((mark) => mark.shape === "ring");
+    const ring = this.ring();
     if (!this.dragged || !ring || !this.body || event.button !== 0) return;
     const value = ring.value ?? sample(this.shown!.grid, ring.x, ring.y) ?? this.body.frame.range.high;
     const at = this.body.frame.place(ring.x, ring.y, Math.min(value, this.body.frame.range.high)).project(this.camera);
@@ -243,17 +230,12 @@ export class SurfaceView {
   private dragTo(event: PointerEvent, done: boolean): void {
     if (!this.body) return;
     const box = this.element.getBoundingClientRect();
-    const pointer = new THREE.Vector2(
-      ((event.clientX - box.left) / box.width) * 2 - 1,
-      1 - ((event.clientY - box.top) / box.height) * 2,
-    );
+    const [x, y] = [(event.clientX - box.left) / box.width, (event.clientY - box.top) / box.height];
     const ray = new THREE.Raycaster();
-    ray.setFromCamera(pointer, this.camera);
+    ray.setFromCamera(new THREE.Vector2(2 * x - 1, 1 - 2 * y), this.camera);
     const hit = ray.intersectObject(this.body.surface, false).find((h) => h.point.y <= 0.97);
+    const ring = this.ring();
     if (hit) this.dragged?.(this.body.frame.at(hit.point), done);
-    else if (done && this.shown) {
-      const ring = this.shown.marks.find((mark) => mark.shape === "ring");
-      if (ring) this.dragged?.(ring, true);
-    }
+    else if (done && ring) this.dragged?.(ring, true);
   }
 }

@@ -46,12 +46,11 @@ export class SurfaceBody {
     const grid = new THREE.LineSegments(gridLines(this.frame, this.content.grid.value, 20), lines);
     const toValue = valueAtHeight(this.frame.range, this.frame.scale);
     const levels = Array.from({ length: 11 }, (_, i) => toValue((i + 1) / 12));
-    const level = (flat: boolean, color: string, opacity: number): THREE.LineSegments =>
-      new THREE.LineSegments(
-        levelLines(this.frame, this.content.grid.value, levels, flat),
-        new THREE.LineBasicMaterial({ color: color, transparent: true, opacity }),
-      );
-    this.group.add(surface, grid, level(false, "#ffffff", 0.45), level(true, this.colors.faint, 0.4));
+    this.group.add(surface, grid);
+    for (const [flat, color, opacity] of [[false, "#ffffff", 0.45], [true, this.colors.faint, 0.4]] as const) {
+      const contours = levelLines(this.frame, this.content.grid.value, levels, flat);
+      this.group.add(new THREE.LineSegments(contours, new THREE.LineBasicMaterial({ color, transparent: true, opacity })));
+    }
     return surface;
   }
 
@@ -128,17 +127,13 @@ export class SurfaceBody {
   }
 
   private addPath(): void {
-    const { direction } = this.content;
+    const { direction, path, draped } = this.content;
     if (direction) this.lineThrough(this.drape(direction.from, direction.to), this.colors.accent, true);
-    const pieces: THREE.Vector3[][] = [];
-    for (let i = 0; i + 1 < this.content.path.length; ++i) {
-      const [p, q] = [this.content.path[i]!, this.content.path[i + 1]!];
-      pieces.push(this.content.draped ? this.drape(p, q) : this.straight(p, q));
-    }
     // Segments that touch form one line.
     let line: THREE.Vector3[] = [];
-    for (const piece of pieces) {
-      const joins = line.length > 0 && piece.length > 0 && line[line.length - 1]!.distanceTo(piece[0]!) < 1e-6;
+    for (const [i, q] of path.slice(1).entries()) {
+      const piece = draped ? this.drape(path[i], q) : this.straight(path[i], q);
+      const joins = line.length > 0 && piece.length > 0 && line[line.length - 1].distanceTo(piece[0]) < 1e-6;
       if (!joins) {
         this.lineThrough(line, this.colors.text);
         line = [];
@@ -150,8 +145,7 @@ export class SurfaceBody {
   }
 
   private straight(p: Point & { value: MaybeNumber }, q: Point & { value: MaybeNumber }): THREE.Vector3[] {
-    if (p.value === null || q.value === null || !isInside(this.content.grid, p) || !isInside(this.content.grid, q))
-      return [];
+    if (p.value === null || q.value === null || !isInside(this.content.grid, p) || !isInside(this.content.grid, q)) return [];
     return [this.frame.place(p.x, p.y, p.value, 0.008), this.frame.place(q.x, q.y, q.value, 0.008)];
   }
 

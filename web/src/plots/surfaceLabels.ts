@@ -62,25 +62,16 @@ export function axisLabels(frame: Frame, names: SurfaceContent["axes"], camera: 
   add(names.y, new THREE.Vector3(side * 1.42, -0.02, 0), "text");
   tickTexts(alongX).forEach((text, i) => add(text, new THREE.Vector3(frame.across(alongX[i]!), -0.02, front * 1.12)));
   tickTexts(alongY).forEach((text, i) => add(text, new THREE.Vector3(side * 1.12, -0.02, frame.away(alongY[i]!))));
-  const post = leftPost(frame, camera);
+  const onScreen = (p: THREE.Vector3): number => p.clone().project(camera).x;
+  const post = frame.corners.reduce((left, p) => (onScreen(p) < onScreen(left) ? p : left));
   const toValue = valueAtHeight(frame.range, frame.scale);
   const { low, high } = frame.range;
   const even = frame.scale === "linear";
   const linear = even && high - low > 1e-3 * Math.max(Math.abs(low), Math.abs(high)); // avoids numbers of many digits
-  const heights = linear
-    ? ticks(low, high, 4)
-    : even
-      ? ticks(0, high - low, 4).map((v) => low + v)
-      : [0, 0.25, 0.5, 0.75, 1].map(toValue);
+  const above = even ? ticks(0, high - low, 4).map((v) => low + v) : [0, 0.25, 0.5, 0.75, 1].map(toValue);
+  const heights = linear ? ticks(low, high, 4) : above;
   const texts = linear ? tickTexts(heights) : heights.map((v) => short(v - low, 2));
   add(linear ? names.value : `${names.value} − lowest`, new THREE.Vector3(post.x, frame.tall * 1.12, post.z), "text");
-  texts.forEach((text, i) =>
-    add(text, new THREE.Vector3(post.x * 1.1, frame.height(heights[i]!) * frame.tall, post.z * 1.1)),
-  );
+  texts.forEach((text, i) => add(text, new THREE.Vector3(post.x * 1.1, frame.height(heights[i]) * frame.tall, post.z * 1.1)));
   return out;
-}
-
-function leftPost(frame: Frame, camera: THREE.Camera): THREE.Vector3 {
-  const onScreen = (p: THREE.Vector3): number => p.clone().project(camera).x;
-  return frame.corners.reduce((left, p) => (onScreen(p) < onScreen(left) ? p : left));
 }

@@ -57,6 +57,21 @@ function span(axis: readonly number[]): number {
   return axis[axis.length - 1]! - axis[0]! || 1;
 }
 
+// Samples at the corners of each cell, counter-clockwise.
+function cells({ x, y }: Grid): [number, number, number, number][] {
+  const rows = Array.from({ length: y.length - 1 }, (_, j) => j * x.length);
+  return rows.flatMap((row) =>
+    Array.from({ length: x.length - 1 }, (_, i): [number, number, number, number] => {
+      const a = row + i;
+      return [a, a + 1, a + x.length + 1, a + x.length];
+    }),
+  );
+}
+
+function isHole(value: MaybeNumber | undefined): value is null | undefined {
+  return value === null || value === undefined;
+}
+
 // Surface of the grid. Cells with a corner that is not finite are holes.
 export function surfaceGeometry(frame: Frame, values: readonly MaybeNumber[], colored: boolean): THREE.BufferGeometry {
   const { x, y } = frame.grid;
@@ -71,14 +86,7 @@ export function surfaceGeometry(frame: Frame, values: readonly MaybeNumber[], co
       color.setRGB(r / 255, g / 255, b / 255, THREE.SRGBColorSpace).toArray(colors, 3 * k);
     }
   });
-  const index: number[] = [];
-  for (let j = 0; j + 1 < y.length; ++j)
-    for (let i = 0; i + 1 < x.length; ++i) {
-      const a = j * x.length + i;
-      const corners = [a, a + 1, a + x.length, a + x.length + 1];
-      if (corners.some((k) => values[k] === null || values[k] === undefined)) continue;
-      index.push(a, a + 1, a + x.length + 1, a, a + x.length + 1, a + x.length);
-    }
+  const index = cells(frame.grid).flatMap(([a, b, c, d]) => ([a, b, c, d].some((k) => isHole(values[k])) ? [] : [a, b, c, a, c, d]));
   const geometry = new THREE.BufferGeometry();
   geometry.setAttribute("position", new THREE.BufferAttribute(positions, 3));
   if (colored) geometry.setAttribute("color", new THREE.BufferAttribute(colors, 3));
@@ -91,17 +99,9 @@ export function surfaceGeometry(frame: Frame, values: readonly MaybeNumber[], co
 export function blockedGeometry(frame: Frame, samples: readonly number[]): THREE.BufferGeometry {
   const blocked = new Set(samples);
   const { x, y } = frame.grid;
-  const points: THREE.Vector3[] = [];
-  for (let j = 0; j + 1 < y.length; ++j)
-    for (let i = 0; i + 1 < x.length; ++i) {
-      const a = j * x.length + i;
-      if (![a, a + 1, a + x.length, a + x.length + 1].some((k) => blocked.has(k))) continue;
-      const [p, q, r, s] = [[i, j], [i + 1, j], [i + 1, j + 1], [i, j + 1]].map(
-        ([column, row]) => new THREE.Vector3(frame.across(x[column!]!), -0.02, frame.away(y[row!]!)),
-      );
-      points.push(p!, q!, r!, p!, r!, s!);
-    }
-  return new THREE.BufferGeometry().setFromPoints(points);
+  const below = (k: number): THREE.Vector3 => new THREE.Vector3(frame.across(x[k % x.length]), -0.02, frame.away(y[Math.floor(k / x.length)]));
+  const shown = cells(frame.grid).filter((corners) => corners.some((k) => blocked.has(k)));
+  return new THREE.BufferGeometry().setFromPoints(shown.flatMap(([a, b, c, d]) => [a, b, c, a, c, d].map(below)));
 }
 
 // Grid lines, about `lines` in each direction.
@@ -109,10 +109,8 @@ export function gridLines(frame: Frame, values: readonly MaybeNumber[], lines: n
   const { x, y } = frame.grid;
   const points: number[] = [];
   const add = (k: number, l: number): void => {
-    const [v, w] = [values[k], values[l]];
-    if (v === null || v === undefined || w === null || w === undefined) return;
-    for (const [n, value] of [[k, v], [l, w]] as const)
-      points.push(...frame.place(x[n % x.length]!, y[Math.floor(n / x.length)]!, value, 0.002).toArray());
+    if (isHole(values[k]) || isHole(values[l])) return;
+    for (const n of [k, l]) points.push(...frame.place(x[n % x.length], y[Math.floor(n / x.length)], values[n]!, 0.002).toArray());
   };
   const [everyX, everyY] = [x, y].map(({ length }) => Math.max(1, Math.round((length - 1) / lines)));
   for (let j = 0; j < y.length; ++j)
@@ -128,14 +126,11 @@ export function gridLines(frame: Frame, values: readonly MaybeNumber[], lines: n
 export function levelLines(frame: Frame, values: readonly MaybeNumber[], levels: readonly number[], flat: boolean): THREE.BufferGeometry {
   const { x, y } = frame.grid;
   const points: number[] = [];
-  const corner = (k: number): Vec3 => [x[k % x.length]!, y[Math.floor(k / x.length)]!, values[k] as number];
-  for (let j = 0; j + 1 < y.length; ++j)
-    for (let i = 0; i + 1 < x.length; ++i) {
-      const a = j * x.length + i;
-      for (const triangle of [[a, a + 1, a + x.length + 1], [a, a + x.length + 1, a + x.length]]) {
-        if (triangle.some((k) => values[k] === null || values[k] === undefined)) continue;
-        for (const level of levels) cut(triangle.map(corner), level, frame, flat, points);
-      }
+  const corner = (k: number): Vec3 => [x[k % x.length], y[Math.floor(k / x.length)], values[k] as number];
+  for (const [a, b, c, d] of cells(frame.grid))
+    for (const triangle of [[a, b, c], [a, c, d]]) {
+      if (triangle.some((k) => isHole(values[k]))) continue;
+      for (const level of levels) cut(triangle.map(corner), level, frame, flat, points);
     }
   return lineGeometry(points);
 }

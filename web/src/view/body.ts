@@ -46,6 +46,11 @@ function meanEdge(geometry: Geometry): number {
   return count > 0 ? sum / count : 0;
 }
 
+function upload(attribute: THREE.BufferAttribute, array: THREE.TypedArray): void {
+  attribute.array = array;
+  attribute.needsUpdate = true;
+}
+
 export class Body {
   readonly root = new THREE.Group(); // meters inside, units of the stage outside
   readonly edge: number; // mean edge length at rest [m]
@@ -84,8 +89,7 @@ export class Body {
     this.mesh = new THREE.Mesh(this.shape(geometry.triangles, true), this.surface);
     this.wires = new THREE.LineSegments(this.shape(geometry.edges, false), this.lines);
     this.pins = new THREE.Points(this.shape(new Uint32Array(0), false), this.pinMaterial);
-    this.mesh.castShadow = true;
-    this.mesh.receiveShadow = true;
+    this.mesh.castShadow = this.mesh.receiveShadow = true;
     this.wires.renderOrder = 1;
     this.pins.renderOrder = 2;
     for (const object of [this.mesh, this.wires, this.pins]) object.frustumCulled = false;
@@ -103,14 +107,9 @@ export class Body {
   }
 
   show(picture: Pick<Picture, "positions" | "normals" | "values">): void {
-    this.positions.array = picture.positions;
-    this.normals.array = picture.normals;
-    this.positions.needsUpdate = true;
-    this.normals.needsUpdate = true;
-    if (picture.values) {
-      this.values.array = picture.values;
-      this.values.needsUpdate = true;
-    }
+    upload(this.positions, picture.positions);
+    upload(this.normals, picture.normals);
+    if (picture.values) upload(this.values, picture.values);
     this.box = coarseBox(picture.positions) ?? this.box;
     this.root.visible = true;
   }
@@ -152,8 +151,7 @@ export class Body {
     this.uniforms.fieldShown.value = this.bodies !== null;
     this.surface.specular.setScalar(this.gloss);
     if (!this.bodies) return;
-    this.values.array = this.bodies;
-    this.values.needsUpdate = true;
+    upload(this.values, this.bodies);
     const colors = bodyColors(own, this.bodyCount);
     this.showMap(colors.join(), () => bodyTexels(colors));
     this.uniforms.fieldLow.value = 0;
@@ -168,8 +166,7 @@ export class Body {
     const texels = make();
     const texture = new THREE.DataTexture(texels, texels.length / 4, 1);
     texture.colorSpace = THREE.SRGBColorSpace;
-    texture.magFilter = THREE.LinearFilter;
-    texture.minFilter = THREE.LinearFilter;
+    texture.magFilter = texture.minFilter = THREE.LinearFilter;
     texture.needsUpdate = true;
     this.uniforms.fieldMap.value = texture;
   }

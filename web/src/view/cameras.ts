@@ -51,8 +51,7 @@ export class CameraRig extends Emitter<{ changed: void }> implements Keeper {
     this.size = Math.max(new Vector3(...upper).sub(new Vector3(...lower)).length() / 2, 1e-12);
     if (key === this.shown) return;
     this.shown = key;
-    this.orientation.copy(this.viewOrientation("isometric"));
-    if (this.mode === "flat") this.orientation.copy(this.viewOrientation("front"));
+    this.orientation.copy(this.viewOrientation(this.mode === "flat" ? "front" : "isometric"));
     this.center(lower, upper);
   }
 
@@ -72,7 +71,7 @@ export class CameraRig extends Emitter<{ changed: void }> implements Keeper {
 
   setMode(mode: CameraMode): void {
     this.mode = mode;
-    if (mode === "turntable") this.level();
+    if (mode === "turntable") this.orientation.copy(lookingFrom(this.axis(2), sceneAxes(this.up).up, this.axis(0))); // levels the horizon
     if (mode === "flat") {
       this.faceAxis();
       this.orthographic = true;
@@ -163,7 +162,7 @@ export class CameraRig extends Emitter<{ changed: void }> implements Keeper {
   }
 
   private axis(k: 0 | 1 | 2): Vector3 {
-    return new Vector3(k === 0 ? 1 : 0, k === 1 ? 1 : 0, k === 2 ? 1 : 0).applyQuaternion(this.orientation);
+    return new Vector3().setComponent(k, 1).applyQuaternion(this.orientation);
   }
 
   private viewOrientation(name: ViewName): Quaternion {
@@ -178,11 +177,6 @@ export class CameraRig extends Emitter<{ changed: void }> implements Keeper {
       isometric: front.clone().multiplyScalar(1.5).add(right).addScaledVector(up, 0.8),
     };
     return lookingFrom(from[name].normalize(), up, right);
-  }
-
-  private level(): void {
-    const { up } = sceneAxes(this.up);
-    this.orientation.copy(lookingFrom(this.axis(2), up, this.axis(0)));
   }
 
   // Turns to the canonical view nearest to the present direction.

@@ -1,5 +1,5 @@
 // Card with the values at a clicked point: its vertex and its tet. It follows the moving body.
-import { element, messageOf } from "../dom";
+import { button, element, messageOf } from "../dom";
 import type { Highlight } from "../page";
 import type { Scene, SideName, TetReply, Vec3, VertexReply } from "../protocol";
 import type { Store } from "../store";
@@ -28,8 +28,7 @@ export class Card {
     private readonly side: SideName,
     private readonly changed: () => void,
   ) {
-    const close = element("button", { type: "button", "aria-label": "Close" }, "×");
-    close.addEventListener("click", () => this.close());
+    const close = button({ text: "×", label: "Close" }, () => this.close());
     this.element.hidden = true;
     this.element.append(close, this.vertex.element, this.fields.element, this.tet.element);
   }
@@ -54,23 +53,21 @@ export class Card {
     this.stale = true;
     if (this.asking || this.timer !== 0) return;
     this.stale = false;
-    this.timer = window.setTimeout(() => this.rest(), kPause);
+    this.timer = window.setTimeout(() => {
+      this.timer = 0;
+      if (this.stale) this.refresh();
+    }, kPause);
     void this.ask(this.chosen);
-  }
-
-  private rest(): void {
-    this.timer = 0;
-    if (this.stale) this.refresh();
   }
 
   private async ask(chosen: { triangle: number; vertex: number }): Promise<void> {
     this.asking = true;
     const { side } = this;
-    const asked = [
-      this.store.source.ask<VertexReply>({ ask: "vertex", side, vertex: chosen.vertex }),
-      this.store.source.ask<TetReply>({ ask: "tet", side, triangle: chosen.triangle }),
-    ] as const;
-    const [vertex, tet] = await Promise.allSettled(asked);
+    const { source } = this.store;
+    const [vertex, tet] = await Promise.allSettled([
+      source.ask<VertexReply>({ ask: "vertex", side, vertex: chosen.vertex }),
+      source.ask<TetReply>({ ask: "tet", side, triangle: chosen.triangle }),
+    ]);
     this.asking = false;
     const scene = this.store.side(side)?.scene;
     if (chosen === this.chosen && scene) this.fill(scene, vertex, tet);
@@ -104,23 +101,18 @@ export class Card {
 
 // Rows under a title that folds them. The elements persist when values change, so that the reader can press them.
 class Section {
-  readonly element = document.createElement("details");
-  private readonly title = document.createElement("summary");
-  private readonly table = document.createElement("table");
+  private readonly title = element("summary");
+  private readonly table = element("table");
+  readonly element = element("details", {}, this.title, this.table);
 
   constructor(open: boolean) {
     this.element.open = open;
-    this.element.append(this.title, this.table);
   }
 
   show(title: string, rows: Row[]): void {
     this.title.textContent = title;
-    this.table.replaceChildren();
-    for (const [label, value] of rows) {
-      const row = this.table.insertRow();
-      row.append(element("th", { scope: "row" }, label));
-      row.insertCell().textContent = value;
-    }
+    const cells = ([label, value]: Row): HTMLElement[] => [element("th", { scope: "row" }, label), element("td", {}, value)];
+    this.table.replaceChildren(...rows.map((row) => element("tr", {}, ...cells(row))));
   }
 }
 

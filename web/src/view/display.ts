@@ -71,7 +71,7 @@ export class Display extends Emitter<{ changed: void; camera: void; range: void 
 
   constructor() {
     super();
-    for (const rig of Object.values(this.cameras)) rig.on("changed", () => this.emit("camera", undefined));
+    this.eachCamera((rig) => rig.on("changed", () => this.emit("camera", undefined)));
   }
 
   // Camera of a side: that of side a while the cameras are linked.
@@ -89,9 +89,7 @@ export class Display extends Emitter<{ changed: void; camera: void; range: void 
   }
 
   setFields(fields: Field[], field: string, bodies: number): void {
-    this.bodies = bodies;
-    this.fields = fields;
-    this.field = field;
+    [this.fields, this.field, this.bodies] = [fields, field, bodies];
     this.emit("changed", undefined);
   }
 
@@ -102,18 +100,11 @@ export class Display extends Emitter<{ changed: void; camera: void; range: void 
     if (range) this.change({ fixedRange: true, low: range.low, high: range.high });
   }
 
-  eachCamera = (act: (rig: CameraRig) => void): void => {
-    act(this.cameras.a);
-    act(this.cameras.b);
-  };
+  eachCamera = (act: (rig: CameraRig) => void): void => Object.values(this.cameras).forEach(act);
 
   readonly cameraKeeper: Keeper = {
     save: () => ({ a: this.cameras.a.save(), b: this.cameras.b.save() }),
-    restore: (saved) => {
-      const { a, b } = fieldsOf(saved);
-      this.cameras.a.restore(a);
-      this.cameras.b.restore(b);
-    },
+    restore: (saved) => (["a", "b"] as const).forEach((side) => this.cameras[side].restore(fieldsOf(saved)[side])),
   };
 
   // Adds the smallest and the largest value of a picture.

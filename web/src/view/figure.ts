@@ -33,15 +33,17 @@ export class Figure {
     if (!scene) return false;
     this.display.cameras[this.name].show(scene.name, scene.lower, scene.upper, scene.up);
     const isOld = this.body !== null && this.body.geometry.generation !== scene.generation;
-    if (isOld) this.drop();
+    if (isOld) {
+      this.stage?.remove();
+      this.body = null;
+    }
     return this.takeGeometry() || isOld;
   }
 
   takeGeometry(): boolean {
     const { side, stage } = this;
     if (!stage || !side?.geometry || this.body?.geometry === side.geometry) return false;
-    this.drop();
-    stage.place(side.scene);
+    stage.place(side.scene); // show() below removes the present body
     this.body = new Body(side.geometry, side.scene.body_tets);
     stage.show(this.body);
     this.body.setPins(side.pins);
@@ -125,11 +127,6 @@ export class Figure {
 
   private largestPressure(): number {
     return this.pressures.get()?.high ?? 0;
-  }
-
-  private drop(): void {
-    this.stage?.remove();
-    this.body = null;
   }
 
   private field(): Field | null {

@@ -3,9 +3,7 @@ import type { Geometry } from "../protocol";
 import { pixelsPerMeter, type Lens } from "./lens";
 import { DepthGrid, kSteepest, screenPositions, type Surface } from "./picking";
 
-export interface Label {
-  x: number;
-  y: number;
+export interface Label extends Pick<Box, "x" | "y"> {
   text: string;
 }
 
@@ -72,9 +70,7 @@ function overlap(p: Box, q: Box): boolean {
   return !apartAcross && Math.abs(p.y - q.y) < (p.height + q.height) / 2;
 }
 
-interface Candidate {
-  x: number;
-  y: number;
+interface Candidate extends Pick<Box, "x" | "y"> {
   depth: number;
   text: () => string;
 }

@@ -8,12 +8,10 @@ import { inwardNormal } from "./pressing";
 export function markersOn(surface: Pick<Surface, "positions" | "triangles">, { triangles, weights }: Capture["markers"]): Dot[] {
   const { positions, triangles: corners } = surface;
   return triangles.flatMap((triangle, i) => {
-      if (3 * triangle + 2 >= corners.length) return []; // the markers belong to another surface, which is about to arrive
-      let at: Vec3 = [0, 0, 0];
-      for (let c = 0; c < 3; ++c)
-        at = along(at, weights[3 * i + c]!, vectorAt(positions, corners[3 * triangle + c]));
-      const [x, y, z] = inwardNormal(positions, corners, triangle);
-      return [{ at, normal: [-x, -y, -z] as Vec3 }];
+    if (3 * triangle + 2 >= corners.length) return []; // the markers belong to another surface, which is about to arrive
+    let at: Vec3 = [0, 0, 0];
+    for (let c = 0; c < 3; ++c) at = along(at, weights[3 * i + c], vectorAt(positions, corners[3 * triangle + c]));
+    return [{ at, normal: minus([0, 0, 0], inwardNormal(positions, corners, triangle)) }];
   });
 }
 

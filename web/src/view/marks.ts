@@ -126,8 +126,7 @@ function outline(ink: Ink, lens: Lens, positions: Vec3[]): Point | null {
   const points = positions.map((p) => onScreen(lens, p));
   if (points.length === 0 || points.some((p) => p === null)) return null;
   const corners = points as Point[];
-  for (let i = 0; i < corners.length; ++i)
-    for (let j = i + 1; j < corners.length; ++j) stroke(ink, [corners[i], corners[j]], 2.5, ink.accent);
+  corners.forEach((corner, i) => corners.slice(i + 1).forEach((other) => stroke(ink, [corner, other], 2.5, ink.accent)));
   for (const corner of corners) dot(ink, corner, 3.5, ink.accent);
   return corners.reduce((best, p) => (p[1] < best[1] ? p : best));
 }

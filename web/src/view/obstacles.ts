@@ -84,12 +84,10 @@ export class ObstacleBodies extends THREE.Group {
     for (const { plane, points, triangles } of obstacles) {
       if (plane) continue;
       const corners = Float32Array.from(triangles.flatMap((p) => points.slice(3 * p, 3 * p + 3)));
-      const shape = new THREE.BufferGeometry();
-      shape.setAttribute("position", new THREE.BufferAttribute(corners, 3));
+      const shape = new THREE.BufferGeometry().setAttribute("position", new THREE.BufferAttribute(corners, 3));
       shape.computeVertexNormals(); // those of the triangles, which share no corners
       const mesh = new THREE.Mesh(shape, this.material);
-      mesh.castShadow = true;
-      mesh.receiveShadow = true;
+      mesh.castShadow = mesh.receiveShadow = true;
       this.surfaces.add(mesh);
     }
   }

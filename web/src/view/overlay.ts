@@ -41,13 +41,12 @@ export interface Style {
 // Colors of the page's theme, unless the reader chose a background.
 export function readStyle(host: HTMLElement, settings: DisplaySettings, size: [number, number] | null): Style {
   const style = getComputedStyle(host);
-  const color = (variable: string): string => style.getPropertyValue(variable).trim() || "#808080";
   const own = settings.ownBackground ? settings.background : null;
   return {
-    text: own ? (isLight(own) ? "#1b1f27" : "#e8ebf0") : color("--text"),
-    background: own ?? color("--background"),
-    accent: color("--series-2"),
-    grid: color("--faint"),
+    text: own ? (isLight(own) ? "#1b1f27" : "#e8ebf0") : style.getPropertyValue("--text"),
+    background: own ?? style.getPropertyValue("--background"),
+    accent: style.getPropertyValue("--series-2"),
+    grid: style.getPropertyValue("--faint"),
     font: style.fontFamily,
     em: size ? Math.max(10, size[1] / 45) : parseFloat(style.fontSize),
   };

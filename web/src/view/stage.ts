@@ -7,7 +7,7 @@ import { sceneAxes } from "./cameras";
 import { ContactDots } from "./contacts";
 import type { DisplaySettings } from "./display";
 import { disposeOf } from "./dispose";
-import { dot, isInside, length, minus, type Lens } from "./lens";
+import { dot, isInside, length, minus, pixelsPerMeter, type Lens } from "./lens";
 import { ObstacleBodies } from "./obstacles";
 import type { Clip } from "./picking";
 import { roundStep } from "./ranges";
@@ -41,12 +41,10 @@ export class Stage {
   constructor(canvas: HTMLCanvasElement) {
     this.renderer = new THREE.WebGLRenderer({ canvas, antialias: true, powerPreference: "high-performance" });
     this.renderer.localClippingEnabled = true;
-    this.renderer.shadowMap.enabled = true;
-    this.renderer.shadowMap.autoUpdate = false;
+    Object.assign(this.renderer.shadowMap, { enabled: true, autoUpdate: false });
     this.sun.castShadow = true;
     this.sun.shadow.mapSize.set(1024, 1024);
-    this.sun.shadow.radius = 6;
-    this.sun.shadow.bias = -0.0008;
+    Object.assign(this.sun.shadow, { radius: 6, bias: -0.0008 });
     this.extras.matrixAutoUpdate = false;
     this.extras.add(this.contacts);
     this.scene.add(this.extras, this.sky, this.sun, this.sun.target, this.lamp, this.lamp.target, this.obstacles, this.tip);
@@ -108,11 +106,8 @@ export class Stage {
   }
 
   clip(clip: Clip | null): void {
-    const planes: THREE.Plane[] = [];
-    if (clip) {
-      const inside = (dot(clip.normal, this.center) - clip.offset) / this.radius; // depth of the scene's middle [radii]
-      planes.push(new THREE.Plane(new THREE.Vector3(...clip.normal), inside));
-    }
+    const inside = clip ? (dot(clip.normal, this.center) - clip.offset) / this.radius : 0; // depth of the scene's middle [radii]
+    const planes = clip ? [new THREE.Plane(new THREE.Vector3(...clip.normal), inside)] : [];
     for (const { material } of [this.obstacles, this.contacts]) material.clippingPlanes = planes;
     this.body?.clip(planes);
     this.renderer.shadowMap.needsUpdate = true;
@@ -154,9 +149,7 @@ export class Stage {
     const far = away + 2 * kGroundRadius + this.reach();
     if (lens.extent > 0) {
       const half = lens.extent / this.radius;
-      [this.orthographic.top, this.orthographic.bottom] = [half, -half];
-      [this.orthographic.left, this.orthographic.right] = [-half * aspect, half * aspect];
-      [this.orthographic.near, this.orthographic.far] = [-far, far];
+      Object.assign(this.orthographic, { top: half, bottom: -half, left: -half * aspect, right: half * aspect, near: -far, far });
       this.orthographic.updateProjectionMatrix();
       return this.orthographic;
     }
@@ -177,14 +170,13 @@ export class Stage {
   private adapt(body: Body, lens: Lens, pinColor: string): void {
     const middle = body.box ? middleOf(body.box) : this.center;
     const depth = Math.max(dot(minus(middle, lens.eye), lens.forward), 1e-3 * this.radius);
-    const half = lens.extent > 0 ? lens.extent : lens.slope * depth;
-    const pixels = lens.height / 2 / half; // pixels per meter
+    const pixels = pixelsPerMeter(lens, depth);
     const lift = (lens.extent > 0 ? lens.extent / this.radius : lens.slope) / (lens.height / 2);
     // Beyond this each triangle would fill the view, which takes minutes without a GPU and shows nothing.
     const height = lens.extent > 0 ? lens.extent : lens.slope * length(minus(this.center, lens.eye));
     this.isFar = this.reach() > kFar && this.reach() * this.radius > kFar * height;
     body.root.visible = !this.isFar;
-    this.hasLeft = body.box !== null && this.reach() * this.radius < 2 * half && !isInside(lens, middle);
+    this.hasLeft = body.box !== null && this.reach() * this.radius * pixels < lens.height && !isInside(lens, middle);
     body.adapt(body.edge * pixels, this.renderer.getPixelRatio(), lift, pinColor);
   }
 
@@ -200,8 +192,7 @@ export class Stage {
     const shadow = this.sun.shadow;
     this.sun.target.position.copy(center);
     this.sun.position.copy(center).addScaledVector(this.sun.userData.from as THREE.Vector3, 4 * radius);
-    Object.assign(shadow.camera, { left: -radius, right: radius, top: radius, bottom: -radius });
-    Object.assign(shadow.camera, { near: radius, far: 12 * radius });
+    Object.assign(shadow.camera, { left: -radius, right: radius, top: radius, bottom: -radius, near: radius, far: 12 * radius });
     shadow.normalBias = 0.012 * radius;
     shadow.camera.updateProjectionMatrix();
   }

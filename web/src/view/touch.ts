@@ -30,7 +30,11 @@ export class Touch {
     host.addEventListener("pointermove", (event) => this.move(event), { signal });
     for (const end of ["pointerup", "pointercancel", "lostpointercapture"] as const)
       host.addEventListener(end, (event) => this.up(event), { signal });
-    host.addEventListener("pointerleave", () => this.leave(), { signal });
+    const leave = (): void => {
+      this.cursor = this.hover = null;
+      view.redraw();
+    };
+    host.addEventListener("pointerleave", leave, { signal });
     host.addEventListener("wheel", (event) => this.wheel(event), { signal, passive: false });
     host.addEventListener("contextmenu", (event) => event.preventDefault(), { signal });
     window.addEventListener("blur", () => this.end(), { signal });
@@ -151,12 +155,6 @@ export class Touch {
     this.flush();
     this.end();
     if (reads) this.view.read(gesture.hit);
-  }
-
-  private leave(): void {
-    this.cursor = null;
-    this.hover = null;
-    this.view.redraw();
   }
 
   private wheel(event: WheelEvent): void {

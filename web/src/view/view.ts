@@ -64,7 +64,6 @@ export class View {
     return this.figure.surface();
   }
 
-  // PNG of the view.
   screenshot(): Promise<Blob> {
     this.drawNow();
     return this.screen.picture();
@@ -73,7 +72,7 @@ export class View {
   // Fixes the size in pixels, independent of the page's layout, for pictures without a screen.
   renderSize(width: number, height: number): void {
     this.fixedSize = [width, height];
-    this.restyle();
+    this.applyDisplay();
     this.drawNow();
   }
 
@@ -118,25 +117,25 @@ export class View {
     this.pace.drawn();
   }
 
-  // Runs after three.js, which listens, too, has restored its state.
-  private restored(): void {
-    setTimeout(() => {
-      if (this.listeners.signal.aborted) return;
-      this.screen.showMessage("");
-      this.applyDisplay();
-    });
-  }
-
   private listen(): void {
-    const lost = (): void => this.screen.showMessage("The graphics card is busy; the picture will return.");
-    this.screen.canvas.addEventListener("webglcontextlost", lost, { signal: this.listeners.signal });
-    this.screen.canvas.addEventListener("webglcontextrestored", () => this.restored(), { signal: this.listeners.signal });
-    const mine = (listener: () => void) => (side: SideName) => side === this.side && listener();
     const { store, display, page } = this;
     const { signal } = this.listeners;
+    const { canvas } = this.screen;
+    canvas.addEventListener("webglcontextlost", () => this.screen.showMessage("The graphics card is busy; the picture will return."), { signal });
+    const restored = (): void => {
+      if (signal.aborted) return;
+      this.screen.showMessage("");
+      this.applyDisplay();
+    };
+    canvas.addEventListener("webglcontextrestored", () => setTimeout(restored), { signal }); // after three.js, which listens, too
+    const mine = (listener: () => void) => (side: SideName) => side === this.side && listener();
     store.on("scene", mine(() => this.takeScene()), signal);
     store.on("geometry", mine(() => this.takeGeometry()), signal);
-    store.on("obstacles", mine(() => this.takeObstacles()), signal);
+    const takeObstacles = (): void => {
+      this.figure.takeObstacles();
+      this.applyDisplay();
+    };
+    store.on("obstacles", mine(takeObstacles), signal);
     store.on("picture", mine(() => this.takePicture()), signal);
     store.on("pins", mine(() => this.showPins(this.figure.side?.pins ?? [])), signal);
     store.on("state", () => this.takeState(), signal);
@@ -180,11 +179,6 @@ export class View {
     this.applyDisplay();
   }
 
-  private takeObstacles(): void {
-    this.figure.takeObstacles();
-    this.applyDisplay();
-  }
-
   private takePicture(): void {
     this.figure.takePicture();
     this.card.refresh();
@@ -192,7 +186,7 @@ export class View {
   }
 
   private applyDisplay(): void {
-    this.restyle();
+    this.style = readStyle(this.host, this.display.settings, this.fixedSize);
     this.figure.apply(this.style);
     this.reportUnnumbered();
     this.redraw();
@@ -204,10 +198,6 @@ export class View {
     if (missing && !this.reportedUnnumbered)
       this.page.notice("Points of the fine skin have no numbers; choose the cage of tets to see numbers.");
     this.reportedUnnumbered = missing;
-  }
-
-  private restyle(): void {
-    this.style = readStyle(this.host, this.display.settings, this.fixedSize);
   }
 
   private size(): [number, number] {
@@ -256,11 +246,10 @@ export class View {
   }
 
   private labels(lens: Lens): Label[] {
-    const { vertexLabels, faceLabels } = this.display.settings;
+    const { vertexLabels: vertices, faceLabels: tets } = this.display.settings;
     const surface = this.surface();
-    if (!surface || !this.figure.body || !(vertexLabels || faceLabels)) return [];
-    const options = { vertices: vertexLabels, tets: faceLabels, em: this.style.em, cursor: this.touch.cursor };
-    return chooseLabels(lens, surface, this.figure.body.geometry, options);
+    if (!surface || !this.figure.body || !(vertices || tets)) return [];
+    return chooseLabels(lens, surface, this.figure.body.geometry, { vertices, tets, em: this.style.em, cursor: this.touch.cursor });
   }
 
   // Value under the cursor in reading mode.
