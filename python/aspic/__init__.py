@@ -43,7 +43,11 @@ from .results import Run  # noqa: E402
 from .scenes import Body, Material, Scene  # noqa: E402
 from .simulations import NotConverged, Reports, Simulation, Trace, compare  # noqa: E402
 
-__all__ = [name for name in dir() if name[0].isupper() or name in (
-    "backtrack", "box", "capture", "check_derivatives", "compare", "cylinder", "fit", "integrator_names", "lame", "linear_solver_names",
-    "materials", "minimize", "minimizer_names", "plot", "read_mesh", "set_thread_count", "sphere", "test_function",
-    "test_functions", "thread_count", "torus", "verify", "view", "__version__")]
+__all__ = [
+    "Body", "Energy", "Equilibrium", "Hessian", "InvalidInput", "Iteration", "LinearSolver", "Material", "Mesh",
+    "NotConverged", "Objective", "Reports", "Run", "Scene", "Simulation", "Snapshot", "StepReport", "Surface",
+    "TetEnergy", "Trace", "Trajectory", "View", "__version__", "backtrack", "box", "capture", "check_derivatives",
+    "compare", "cylinder", "fit", "integrator_names", "lame", "linear_solver_names", "materials", "minimize",
+    "minimizer_names", "plot", "read_mesh", "set_thread_count", "sphere", "test_function", "test_functions",
+    "thread_count", "torus", "verify", "view",
+]

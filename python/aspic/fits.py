@@ -26,7 +26,10 @@ class Equilibrium:
     def __init__(self, scene, tolerance=1e-9):
         self._core = _aspic.Equilibrium(_source(scene), tolerance)
 
-    parameters = property(lambda self: self._core.parameters)
+    @property
+    def parameters(self):
+        """The parameters of the scene, (m, p)."""
+        return self._core.parameters
 
     def solve(self, parameters=None, start=None):
         """Positions at rest, (n, 3) [m], from `start` or the last solution. Raises RuntimeError without convergence."""
@@ -52,7 +55,10 @@ class Trajectory:
     def __init__(self, scene, steps, h=0.0, tolerance=1e-9):
         self._core = _aspic.Trajectory(_source(scene), steps, h or 0.0, tolerance)
 
-    parameters = property(lambda self: self._core.parameters)
+    @property
+    def parameters(self):
+        """The parameters of the scene, (m, p)."""
+        return self._core.parameters
 
     def _set(self, parameters, q, v):
         if parameters is not None:

@@ -1,6 +1,5 @@
 """The results of a run, as arrays."""
 import csv
-import functools
 import os
 import pathlib
 
@@ -13,7 +12,7 @@ class Run:
     """A folder that `aspic run` or a Simulation wrote."""
 
     def __init__(self, path):
-        self.path = pathlib.Path(path)
+        self.path, self._frame_files = pathlib.Path(path), None
         if not (self.path / "steps.csv").is_file():
             raise _aspic.InvalidInput(f"{self.path}: contains no run (there is no steps.csv)")
 
@@ -30,9 +29,12 @@ class Run:
         """The columns of iterations.csv."""
         return _columns(self.path / "iterations.csv")
 
-    @functools.cached_property
+    @property
     def frame_files(self):
-        return sorted((self.path / "frames").glob("body_*.vtu"))
+        """The paths of the frames, sorted."""
+        if self._frame_files is None:
+            self._frame_files = sorted((self.path / "frames").glob("body_*.vtu"))
+        return self._frame_files
 
     def frame(self, index):
         """A frame: points (n, 3) [m], tets (m, 4), point_fields and cell_fields by name."""

@@ -69,17 +69,60 @@ class Simulation:
     def v(self, v):
         self._core.set_v(v)
 
-    time = property(lambda self: self._core.time, doc="[s]")
-    h = property(lambda self: self._core.h, doc="Time step [s].")
-    steps_taken = property(lambda self: self._core.steps_taken)
-    name = property(lambda self: self._core.name)
-    notes = property(lambda self: self._core.notes, doc="Chosen defaults and warnings, as sentences.")
-    solver = property(lambda self: self._core.solver, doc="The methods and the reasons for their choice.")
-    state_hash = property(lambda self: self._core.state_hash, doc="As in steps.csv: 16 digits, equal on all machines.")
-    rest = property(lambda self: self._core.rest, doc="Rest positions, (n, 3) [m].")
-    tets = property(lambda self: self._core.tets, doc="Vertices of each tet, (m, 4).")
-    mass = property(lambda self: self._core.mass, doc="Mass of each vertex, (n,) [kg].")
-    pinned = property(lambda self: self._core.pinned, doc="Whether a pin holds each vertex, (n,).")
+    @property
+    def time(self):
+        """At the end of the last step [s]."""
+        return self._core.time
+
+    @property
+    def h(self):
+        """Time step [s]."""
+        return self._core.h
+
+    @property
+    def steps_taken(self):
+        """Since time 0."""
+        return self._core.steps_taken
+
+    @property
+    def name(self):
+        """Name of the scene."""
+        return self._core.name
+
+    @property
+    def notes(self):
+        """Chosen defaults and warnings, as sentences."""
+        return self._core.notes
+
+    @property
+    def solver(self):
+        """The methods and the reasons for their choice."""
+        return self._core.solver
+
+    @property
+    def state_hash(self):
+        """As in steps.csv: 16 digits, for any number of threads."""
+        return self._core.state_hash
+
+    @property
+    def rest(self):
+        """Rest positions, (n, 3) [m]."""
+        return self._core.rest
+
+    @property
+    def tets(self):
+        """Vertices of each tet, (m, 4)."""
+        return self._core.tets
+
+    @property
+    def mass(self):
+        """Mass of each vertex, (n,) [kg]."""
+        return self._core.mass
+
+    @property
+    def pinned(self):
+        """Whether a pin holds each vertex, (n,)."""
+        return self._core.pinned
 
     @property
     def bodies(self):

@@ -2,6 +2,7 @@
 
 pip install . compiles for this processor; pip wheel . --config-settings portable=1 for any x86-64-v3 one. The build folder
 build/wheel is kept, so that a second installation takes seconds. It needs the compiler and the libraries of CONTRIBUTING.md.
+The wheel also has the program `aspic`, which view() starts, and its scenes.
 """
 import base64
 import hashlib
@@ -33,16 +34,27 @@ def _build(portable, prefix):
                "ASPIC_MESHER": "OFF", "ASPIC_VIEWER": viewer, "ASPIC_PORTABLE": "ON" if portable else "OFF",
                "Python_EXECUTABLE": sys.executable, "ASPIC_PYTHON_DIR": "aspic"}
     _run("cmake", "-S", ".", "-B", build, "-G", "Ninja", *(f"-D{key}={value}" for key, value in options.items()))
-    _run("cmake", "--build", build, "--target", "_aspic")
+    _run("cmake", "--build", build, "--target", "_aspic", "aspic_cli")
     _run("cmake", "--install", build, "--prefix", prefix, "--component", "python")
+    return build / "bin/aspic"
+
+
+def _metadata():
+    requires = "".join(f"Requires-Dist: {name}\n" for name in PROJECT["dependencies"])
+    return (f"Metadata-Version: 2.1\nName: {PROJECT['name']}\nVersion: {PROJECT['version']}\n"
+            f"Summary: {PROJECT['description']}\nRequires-Python: {PROJECT['requires-python']}\n{requires}")
+
+
+def prepare_metadata_for_build_wheel(metadata_directory, config_settings=None):
+    info = pathlib.Path(metadata_directory) / f"{NAME}.dist-info"
+    info.mkdir()
+    (info / "METADATA").write_text(_metadata())
+    return info.name
 
 
 def _write_wheel(directory, files):
     info = f"{NAME}.dist-info"
-    requires = "".join(f"Requires-Dist: {name}\n" for name in PROJECT["dependencies"])
-    files[f"{info}/METADATA"] = (f"Metadata-Version: 2.1\nName: {PROJECT['name']}\nVersion: {PROJECT['version']}\n"
-                                 f"Summary: {PROJECT['description']}\nRequires-Python: {PROJECT['requires-python']}\n"
-                                 f"{requires}").encode()
+    files[f"{info}/METADATA"] = _metadata().encode()
     files[f"{info}/WHEEL"] = f"Wheel-Version: 1.0\nGenerator: aspic\nRoot-Is-Purelib: false\nTag: {TAG}\n".encode()
 
     def line(name, data):
@@ -58,10 +70,18 @@ def _write_wheel(directory, files):
 
 def build_wheel(wheel_directory, config_settings=None, metadata_directory=None):
     with tempfile.TemporaryDirectory() as prefix:
-        _build((config_settings or {}).get("portable"), prefix)
-        package = pathlib.Path(prefix)
-        return _write_wheel(wheel_directory, {path.relative_to(package).as_posix(): path.read_bytes()
-                                              for path in sorted(package.rglob("*")) if path.is_file()})
+        program = _build((config_settings or {}).get("portable"), prefix)
+        data = f"{NAME}.data"
+        return _write_wheel(wheel_directory, {**_files(prefix, ""), f"{data}/scripts/aspic": program.read_bytes(),
+                                              **_files(ROOT / "scenes", f"{data}/data/share/aspic/scenes/"),
+                                              **_files(ROOT / "assets", f"{data}/data/share/aspic/assets/")})
+
+
+def _files(folder, to):
+    """{name in the wheel: bytes} of the files below a folder."""
+    folder = pathlib.Path(folder)
+    return {to + path.relative_to(folder).as_posix(): path.read_bytes() for path in sorted(folder.rglob("*"))
+            if path.is_file()}
 
 
 def build_editable(wheel_directory, config_settings=None, metadata_directory=None):
