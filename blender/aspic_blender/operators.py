@@ -45,7 +45,7 @@ def outcome(run):
         return "ERROR", str(error)
     text = f"{frames} frames"
     if code == process.INTERRUPTED:
-        return "WARNING", f"Stopped after {text}; Continue goes on"
+        return "WARNING", f"Stopped after {text}; Continue resumes"
     if code == process.NOT_CONVERGED:
         return "WARNING", f"{text}; some steps did not converge, see the report"
     return "INFO", f"Baked {text}"

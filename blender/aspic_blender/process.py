@@ -14,7 +14,7 @@ class Run:
 
     def __init__(self, program, folder, arguments):
         self.folder = folder
-        self.step, self.cancelled = 0, False
+        self.step = 0
         environment = dict(os.environ)
         found = shutil.which(program)
         if not found:
@@ -40,7 +40,6 @@ class Run:
 
     def cancel(self):
         if self.is_running():
-            self.cancelled = True
             self.process.send_signal(signal.SIGINT)
 
     def wait(self):
