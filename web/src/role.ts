@@ -3,7 +3,9 @@ import { button, element } from "./dom";
 import type { Store } from "./store";
 
 export function makeRole(store: Store): HTMLElement {
-  const steer = button({ text: "Steer", title: "Steer from this page instead of the other one" }, () => store.source.send({ do: "take" }));
+  const steer = button({ text: "Steer", title: "Steer from this page instead of the other one" }, () =>
+    store.source.send({ do: "take" }),
+  );
   const role = element("div", { class: "group role", hidden: true }, element("strong", {}, "Watching"), steer);
   const show = (): void => {
     const may = store.steers && store.connected;

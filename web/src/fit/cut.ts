@@ -28,7 +28,12 @@ export interface Soup {
   edges: Uint32Array; // 2 corners per line
 }
 
-const kFaces = [[1, 2, 3], [0, 3, 2], [0, 1, 3], [0, 2, 1]];
+const kFaces = [
+  [1, 2, 3],
+  [0, 3, 2],
+  [0, 1, 3],
+  [0, 2, 1],
+];
 
 // Faces that belong to exactly one tet.
 export function boundaryOf({ points, tets }: TetMesh): Boundary {

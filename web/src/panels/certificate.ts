@@ -59,8 +59,15 @@ export const kColumns: Column[] = [
   },
   largestFirst("residual [N]", "norm of M a + dV/dx + dD/dx over free vertices", (row) => row.residual),
   { title: "threshold [N]", meaning: "largest residual of a converged step", value: (row) => row.residual_threshold || null },
-  { ...largestFirst("residual / threshold", "above 1: the step missed the threshold", excess), isBad: (row) => (excess(row) ?? 0) > 1 },
-  largestFirst("decrement [J]", "decrease of E that the last direction predicts: a measure of the distance from the minimum", (row) => row.decrement),
+  {
+    ...largestFirst("residual / threshold", "above 1: the step missed the threshold", excess),
+    isBad: (row) => (excess(row) ?? 0) > 1,
+  },
+  largestFirst(
+    "decrement [J]",
+    "decrease of E that the last direction predicts: a measure of the distance from the minimum",
+    (row) => row.decrement,
+  ),
   largestFirst("iterations", "of the minimizer", (row) => row.iterations.length),
   {
     title: "min det F",

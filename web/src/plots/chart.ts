@@ -99,7 +99,11 @@ export class Chart {
     const options = this.options;
     if (!options || width < 60 || height < 40 || this.data.columns.length !== options.curves.length) return;
     const colors = (this.look = palette(this.element));
-    this.chart = new uPlot(this.settings(options, colors, width, height), [this.data.x, ...this.data.columns], this.plot);
+    this.chart = new uPlot(
+      this.settings(options, colors, width, height),
+      [this.data.x, ...this.data.columns],
+      this.plot,
+    );
     this.readLegend();
   }
 
@@ -126,9 +130,16 @@ export class Chart {
       height,
       legend: { show: false },
       padding: [colors.fontSize * 0.6, colors.fontSize * 1.6, 0, 0],
-      cursor: { y: false, points: { size: 6 }, drag: { x: options.zoomed !== undefined, y: false, setScale: false, dist: 6 } },
+      cursor: {
+        y: false,
+        points: { size: 6 },
+        drag: { x: options.zoomed !== undefined, y: false, setScale: false, dist: 6 },
+      },
       scales: {
-        x: { time: false, range: (_u, low, high) => options.xRange?.() ?? padded(low, high, options.x.integer === true) },
+        x: {
+          time: false,
+          range: (_u, low, high) => options.xRange?.() ?? padded(low, high, options.x.integer === true),
+        },
         y: { distr: log ? 3 : 1, log: 10, range: (_u, low, high) => options.yRange?.() ?? ranged(low, high, log) },
       },
       axes: [axis(options.x, colors, false), axis(options.y, colors, true)],
@@ -154,7 +165,11 @@ export class Chart {
       pxAlign: 0,
       fill: shape === "bars" ? stroke : undefined,
       paths: shape === "bars" ? uPlot.paths.bars!({ size: [0.7, 40] }) : undefined,
-      points: { show: (u, _series, first, last) => showsPoints(shape, last - first, u.over.clientWidth), size: 6, fill: stroke },
+      points: {
+        show: (u, _series, first, last) => showsPoints(shape, last - first, u.over.clientWidth),
+        size: 6,
+        fill: stroke,
+      },
     };
   }
 

@@ -85,7 +85,9 @@ export type Quadratic = FunctionReply["model"];
 
 export function quadraticAt(q: Quadratic, x: number, y: number): number {
   const [px, py] = [x - q.center[0], y - q.center[1]];
-  return q.value + q.gradient[0] * px + q.gradient[1] * py + 0.5 * (q.xx * px * px + 2 * q.xy * px * py + q.yy * py * py);
+  return (
+    q.value + q.gradient[0] * px + q.gradient[1] * py + 0.5 * (q.xx * px * px + 2 * q.xy * px * py + q.yy * py * py)
+  );
 }
 
 // Minimizer of the quadratic; null if it has no minimum.
