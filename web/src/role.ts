@@ -10,7 +10,8 @@ export function makeRole(store: Store): HTMLElement {
   const show = (): void => {
     const may = store.steers && store.connected;
     role.hidden = store.steers || !store.source.live || !store.hello;
-    for (const control of document.querySelectorAll<HTMLButtonElement>("[data-steers]")) control.disabled = store.source.live && !may;
+    for (const control of document.querySelectorAll<HTMLButtonElement>("[data-steers]"))
+      control.disabled = store.source.live && !may;
   };
   for (const event of ["role", "connected"] as const) store.on(event, show);
   return role;

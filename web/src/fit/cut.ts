@@ -161,7 +161,10 @@ export function bodyBelow(mesh: TetMesh, boundary: Boundary, plane: Plane | null
   for (let t = 0; t < tets.length / 4; ++t) {
     const corners = [0, 1, 2, 3].map((k) => vectorAt(points, tets[4 * t + k]));
     const polygon = section(corners, corners.map(height), plane.normal);
-    maker.add(polygon.map((x) => ({ x, n: plane.normal, vertex: -1 })), t);
+    maker.add(
+      polygon.map((x) => ({ x, n: plane.normal, vertex: -1 })),
+      t,
+    );
   }
   return maker.soup();
 }

@@ -111,21 +111,7 @@ function compare(a: number, b: number): number {
   return a < b ? -1 : a > b ? 1 : 0;
 }
 
-export interface Totals {
-  steps: number;
-  failed: number;
-  iterations: number;
-  worstExcess: StepRow | null;
-  smallestVolume: StepRow | null;
-  inverted: number; // steps that end with an inverted tet
-  largestError: StepRow | null;
-  bounded: number; // steps whose energy bound was checked
-  held: number; // steps whose energy bound holds
-  smallestSlack: StepRow | null;
-  state: StepRow | null; // the last row with a hash
-}
-
-export function totals(steps: readonly StepRow[]): Totals {
+export function totals(steps: readonly StepRow[]) {
   const worst = (badness: (row: StepRow) => MaybeNumber): StepRow | null =>
     steps.reduce<StepRow | null>((found, row) => {
       const value = badness(row);
@@ -137,11 +123,11 @@ export function totals(steps: readonly StepRow[]): Totals {
     iterations: steps.reduce((sum, row) => sum + row.iterations.length, 0),
     worstExcess: worst(excess),
     smallestVolume: worst((row) => (row.min_det_F === null ? null : -row.min_det_F)),
-    inverted: steps.filter((row) => row.min_det_F !== null && row.min_det_F <= 0).length,
+    inverted: steps.filter((row) => row.min_det_F !== null && row.min_det_F <= 0).length, // at the end of the step
     largestError: worst((row) => (row.ledger_error === null ? null : Math.abs(row.ledger_error))),
     bounded: steps.filter(isBounded).length,
     held: steps.filter((row) => row.energy_bound === "holds").length,
     smallestSlack: worst((row) => (isBounded(row) ? -(row.energy_slack ?? 0) : null)),
-    state: steps.reduce<StepRow | null>((found, row) => (row.state_hash ? row : found), null),
+    state: steps.reduce<StepRow | null>((found, row) => (row.state_hash ? row : found), null), // the last row with a hash
   };
 }

@@ -72,7 +72,10 @@ export class Chart {
   static of(x: number[], curves: FilledCurve[], options: Omit<ChartOptions, "curves">): Chart {
     const chart = new Chart();
     chart.configure({ ...options, curves });
-    chart.show(x, curves.map(({ values }) => values));
+    chart.show(
+      x,
+      curves.map(({ values }) => values),
+    );
     return chart;
   }
 
@@ -218,12 +221,20 @@ export class Chart {
       const dashed = curve.dash ? "dashed" : "solid";
       sample.style.borderTop = `${Math.max(2, (curve.width ?? 1.5) * 1.4)}px ${dashed} ${cssOf(curve.color)}`;
       const title = `${curve.meaning ?? curve.label}. Click to hide or show it.`;
-      const entry = element("button", { type: "button", class: "chart-entry", title, "aria-pressed": String(!this.hidden.has(curve.key)) });
+      const entry = element("button", {
+        type: "button",
+        class: "chart-entry",
+        title,
+        "aria-pressed": String(!this.hidden.has(curve.key)),
+      });
       entry.append(sample, element("span", { class: "chart-label" }, curve.label), values);
       entry.addEventListener("click", () => this.toggle(curve.key));
       return { key: curve.key, button: entry, values };
     });
-    this.legend.replaceChildren(...(this.options!.caption ? [this.caption] : []), ...this.entries.map(({ button }) => button));
+    this.legend.replaceChildren(
+      ...(this.options!.caption ? [this.caption] : []),
+      ...this.entries.map(({ button }) => button),
+    );
   }
 
   private toggle(key: string): void {
@@ -237,7 +248,8 @@ export class Chart {
     if (this.caption.textContent !== caption) this.caption.textContent = caption;
     for (const entry of this.entries) {
       const texts = this.options!.read?.(entry.key, this.cursor) ?? this.valueText(entry.key);
-      if (entry.values.childElementCount !== texts.length) entry.values.replaceChildren(...texts.map(() => element("span")));
+      if (entry.values.childElementCount !== texts.length)
+        entry.values.replaceChildren(...texts.map(() => element("span")));
       texts.forEach((text, i) => {
         const cell = entry.values.children[i]!;
         if (cell.textContent !== text) cell.textContent = text;
