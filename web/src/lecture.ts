@@ -7,8 +7,6 @@ import type { FunctionQuestion, Lesson } from "./protocol";
 import { shortcutButton } from "./shortcuts";
 import type { Store } from "./store";
 
-export type ShowFunction = (question: FunctionQuestion) => void;
-
 export function matches(lesson: Lesson, words: string): boolean {
   const text = `${lesson.pages} ${lesson.title} ${lesson.claim} ${lesson.look}`.toLowerCase();
   const all = words.toLowerCase().split(/\s+/);
@@ -42,7 +40,7 @@ export class Lecture {
     private readonly root: HTMLElement,
     private readonly store: Store,
     private readonly page: Page,
-    private readonly showFunction: ShowFunction,
+    private readonly showFunction: (question: FunctionQuestion) => void,
   ) {
     const shortcut = { key: "l", does: "The lecture's pages", group: "Panels", run: () => this.toggle() } as const;
     this.opener = shortcutButton(page, shortcut, { text: "Lecture" });

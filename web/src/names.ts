@@ -67,7 +67,6 @@ const kStatuses: Record<string, string> = {
   undefined: "blew up",
 };
 
-// Display name of a step's status.
 export function statusName(status: string): string {
   return kStatuses[status] ?? status.replaceAll("_", " ");
 }

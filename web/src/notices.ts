@@ -45,7 +45,6 @@ export function showNotices(root: HTMLElement, store: Store, page: Page): void {
   showLasting();
 }
 
-// Shows errors in the page's own scripts.
 export function showOwnErrors(page: Page): void {
   const report = (text: string): void => page.notice(`Error in this page: ${text}`, "error");
   addEventListener("error", (event) => {

@@ -54,10 +54,9 @@ export function presets(scene: Scene): Preset[] {
   }
   all.push({ title: "Half the time step", label: "h / 2", overrides: [`time.step=${toml(scene.h / 2)}`] });
   const young = find(scene, "material.young")?.value;
-  if (typeof young === "number") {
-    all.push({ title: "Ten times as stiff", label: "10 E", overrides: [`material.young=${toml(10 * young)}`] });
-  } else if (typeof young === "string") {
-    all.push({ title: "Ten times as stiff", label: "10 E", overrides: [`material.young=${toml(`10 * (${young})`)}`] });
+  if (young !== undefined) {
+    const stiffer = typeof young === "number" ? 10 * young : `10 * (${String(young)})`;
+    all.push({ title: "Ten times as stiff", label: "10 E", overrides: [`material.young=${toml(stiffer)}`] });
   }
   all.push(choice(scene, "Another material", "material.model", "corotated", "neo_hookean"));
   return all;

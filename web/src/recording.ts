@@ -1,6 +1,7 @@
 // Reads a recorded run, as apps/viewer/recording.h writes it. The page's element "recording" contains base64 of gzip of
 // a pack of arrays.
 import { Pack } from "./pack";
+import { nearest } from "./plots/table";
 import type { Geometry, Hello, Obstacle, Scene, StepRow, Vec3 } from "./protocol";
 
 export interface RecordingHead {
@@ -47,11 +48,7 @@ export class Recording extends Pack<RecordingHead> {
   }
 
   nearestFrame(step: number): number {
-    const steps = this.head.frames.step;
-    let nearest = 0;
-    for (let frame = 1; frame < steps.length; ++frame)
-      if (Math.abs(steps[frame] - step) < Math.abs(steps[nearest] - step)) nearest = frame;
-    return nearest;
+    return nearest(this.head.frames.step, step);
   }
 
   // Positions, 3 coordinates per point [m].

@@ -61,7 +61,9 @@ export function openShortcutList(page: Page): void {
   const groups = kGroups.map((group) => {
     const rows = [...page.shortcuts.values()]
       .filter((shortcut) => shortcut.group === group)
-      .map(({ key, does }) => element("tr", {}, element("td", {}, element("kbd", {}, keyName(key))), element("td", {}, does)));
+      .map(({ key, does }) =>
+        element("tr", {}, element("td", {}, element("kbd", {}, keyName(key))), element("td", {}, does)),
+      );
     return rows.length === 0 ? null : element("section", {}, element("h3", {}, group), element("table", {}, ...rows));
   });
   openDialog("Keyboard shortcuts", [element("div", { class: "columns" }, ...groups)], "shortcuts");

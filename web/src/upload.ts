@@ -1,17 +1,12 @@
 // Packs files of the reader's machine for the command "load": a scene with its meshes, or a single mesh.
 import { saveFile } from "./dom";
 import { bytesOf } from "./pack";
-import type { FileReply, TextReply, UploadedFile } from "./protocol";
+import type { FileReply, SceneFilesReply, TextReply, UploadedFile } from "./protocol";
 import { type NamedBytes, unzip } from "./unzip";
 
 const kMostBytes = 200e6; // limit for all files together
 const kMostPacked = 15e6; // longest message that the program accepts, in characters
 const kMeshes = ["msh", "vtu", "mesh", "ele", "node", "obj", "ply", "stl", "off"];
-
-export interface Upload {
-  scene: string; // the name of one of the files
-  files: UploadedFile[];
-}
 
 const baseName = (path: string): string => path.slice(path.lastIndexOf("/") + 1);
 const extensionOf = (name: string): string => (/\.([^./]+)$/.exec(name)?.[1] ?? "").toLowerCase();
@@ -47,7 +42,7 @@ export function placed(files: readonly NamedBytes[], scene: string): NamedBytes[
   });
 }
 
-export async function prepareUpload(files: readonly File[]): Promise<Upload> {
+export async function prepareUpload(files: readonly File[]): Promise<Pick<SceneFilesReply, "scene" | "files">> {
   const total = files.reduce((sum, file) => sum + file.size, 0);
   if (total > kMostBytes) throw tooLarge(total);
   const read: NamedBytes[] = [];
@@ -89,7 +84,6 @@ function base64Of(bytes: Uint8Array): string {
   return text;
 }
 
-// Saves a file of the program.
 export function saveReply(reply: TextReply | FileReply): void {
   saveFile(reply.name, new Blob(["text" in reply ? reply.text : bytesOf(reply.base64)]));
 }

@@ -44,7 +44,9 @@ export class Gauge {
       torque: probe && withUnit(length(probe.torque), "Nm", 3),
       touches: probe && (probe.points > 0 ? `${probe.points} points` : "no contact"),
     };
-    this.parts.replaceChildren(...Object.entries(parts).flatMap(([name, value]) => [element("dt", {}, name), element("dd", {}, value ?? "–")]));
+    this.parts.replaceChildren(
+      ...Object.entries(parts).flatMap(([name, value]) => [element("dt", {}, name), element("dd", {}, value ?? "–")]),
+    );
     if (this.curve.add(probe)) this.redraw();
   }
 

@@ -28,7 +28,12 @@ export interface Soup {
   edges: Uint32Array; // 2 corners per line
 }
 
-const kFaces = [[1, 2, 3], [0, 3, 2], [0, 1, 3], [0, 2, 1]];
+const kFaces = [
+  [1, 2, 3],
+  [0, 3, 2],
+  [0, 1, 3],
+  [0, 2, 1],
+];
 
 // Faces that belong to exactly one tet.
 export function boundaryOf({ points, tets }: TetMesh): Boundary {
@@ -156,7 +161,10 @@ export function bodyBelow(mesh: TetMesh, boundary: Boundary, plane: Plane | null
   for (let t = 0; t < tets.length / 4; ++t) {
     const corners = [0, 1, 2, 3].map((k) => vectorAt(points, tets[4 * t + k]));
     const polygon = section(corners, corners.map(height), plane.normal);
-    maker.add(polygon.map((x) => ({ x, n: plane.normal, vertex: -1 })), t);
+    maker.add(
+      polygon.map((x) => ({ x, n: plane.normal, vertex: -1 })),
+      t,
+    );
   }
   return maker.soup();
 }

@@ -59,8 +59,15 @@ export const kColumns: Column[] = [
   },
   largestFirst("residual [N]", "norm of M a + dV/dx + dD/dx over free vertices", (row) => row.residual),
   { title: "threshold [N]", meaning: "largest residual of a converged step", value: (row) => row.residual_threshold || null },
-  { ...largestFirst("residual / threshold", "above 1: the step missed the threshold", excess), isBad: (row) => (excess(row) ?? 0) > 1 },
-  largestFirst("decrement [J]", "decrease of E that the last direction predicts: a measure of the distance from the minimum", (row) => row.decrement),
+  {
+    ...largestFirst("residual / threshold", "above 1: the step missed the threshold", excess),
+    isBad: (row) => (excess(row) ?? 0) > 1,
+  },
+  largestFirst(
+    "decrement [J]",
+    "decrease of E that the last direction predicts: a measure of the distance from the minimum",
+    (row) => row.decrement,
+  ),
   largestFirst("iterations", "of the minimizer", (row) => row.iterations.length),
   {
     title: "min det F",
@@ -104,21 +111,7 @@ function compare(a: number, b: number): number {
   return a < b ? -1 : a > b ? 1 : 0;
 }
 
-export interface Totals {
-  steps: number;
-  failed: number;
-  iterations: number;
-  worstExcess: StepRow | null;
-  smallestVolume: StepRow | null;
-  inverted: number; // steps that end with an inverted tet
-  largestError: StepRow | null;
-  bounded: number; // steps whose energy bound was checked
-  held: number; // steps whose energy bound holds
-  smallestSlack: StepRow | null;
-  state: StepRow | null; // the last row with a hash
-}
-
-export function totals(steps: readonly StepRow[]): Totals {
+export function totals(steps: readonly StepRow[]) {
   const worst = (badness: (row: StepRow) => MaybeNumber): StepRow | null =>
     steps.reduce<StepRow | null>((found, row) => {
       const value = badness(row);
@@ -130,11 +123,11 @@ export function totals(steps: readonly StepRow[]): Totals {
     iterations: steps.reduce((sum, row) => sum + row.iterations.length, 0),
     worstExcess: worst(excess),
     smallestVolume: worst((row) => (row.min_det_F === null ? null : -row.min_det_F)),
-    inverted: steps.filter((row) => row.min_det_F !== null && row.min_det_F <= 0).length,
+    inverted: steps.filter((row) => row.min_det_F !== null && row.min_det_F <= 0).length, // at the end of the step
     largestError: worst((row) => (row.ledger_error === null ? null : Math.abs(row.ledger_error))),
     bounded: steps.filter(isBounded).length,
     held: steps.filter((row) => row.energy_bound === "holds").length,
     smallestSlack: worst((row) => (isBounded(row) ? -(row.energy_slack ?? 0) : null)),
-    state: steps.reduce<StepRow | null>((found, row) => (row.state_hash ? row : found), null),
+    state: steps.reduce<StepRow | null>((found, row) => (row.state_hash ? row : found), null), // the last row with a hash
   };
 }

@@ -179,7 +179,8 @@ export class FunctionsPanel implements Panel {
   private restore(saved: unknown): void {
     const kept = saved as Partial<FunctionQuestion> | null;
     const start = kept?.start;
-    if (typeof kept?.name !== "string" || !Array.isArray(start) || !start.every(Number.isFinite) || start.length !== 2) return;
+    if (typeof kept?.name !== "string" || !Array.isArray(start) || !start.every(Number.isFinite) || start.length !== 2)
+      return;
     this.form.fill({ name: kept.name, start, settings: fieldsOf(kept.settings) as FunctionQuestion["settings"] });
     if (this.element.isConnected) this.formChanged();
     else this.asked = false;

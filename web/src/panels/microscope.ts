@@ -19,7 +19,9 @@ export class MicroscopePanel implements Panel {
   readonly name = "microscope";
   readonly title = "Microscope";
   readonly element = element("div", { class: "plot-panel", role: "group", "aria-label": "Solver microscope" });
-  private readonly sides = choice("", "Which side of the comparison", [], "a", (side) => this.chosen.chooseSide(side as SideName));
+  private readonly sides = choice("", "Which side of the comparison", [], "a", (side) =>
+    this.chosen.chooseSide(side as SideName),
+  );
   private readonly follow = checkbox("follow", "Follow the newest step", true, (on) => this.chosen.follow(on));
   private readonly words = element("div", { class: "plot-note", role: "status" });
   private readonly worst = element("ol", { class: "worst", hidden: "" });

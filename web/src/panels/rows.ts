@@ -164,7 +164,6 @@ function plainRow(controller: Controller, model: Model): Row {
   return { display, enable: (enabled) => controller.enable(enabled), mark: (text) => markRow(controller, text) };
 }
 
-// Choices by their display names.
 function named({ key, choices }: Setting): Record<string, string> {
   return Object.fromEntries(choices.map((value) => [choiceName(key, value), value]));
 }

@@ -20,7 +20,8 @@ const kOneChange = 1000; // [ms]: changes that follow each other faster are one 
 
 // Whether the same rows can show both lists.
 function sameShape(a: Setting[], b: Setting[]): boolean {
-  const shape = (all: Setting[]): string => JSON.stringify(all.map((s) => [s.key, s.label, s.group, s.unit, s.kind, s.min, s.max, s.choices]));
+  const shape = (all: Setting[]): string =>
+    JSON.stringify(all.map((s) => [s.key, s.label, s.group, s.unit, s.kind, s.min, s.max, s.choices]));
   return shape(a) === shape(b);
 }
 

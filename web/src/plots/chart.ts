@@ -72,7 +72,10 @@ export class Chart {
   static of(x: number[], curves: FilledCurve[], options: Omit<ChartOptions, "curves">): Chart {
     const chart = new Chart();
     chart.configure({ ...options, curves });
-    chart.show(x, curves.map(({ values }) => values));
+    chart.show(
+      x,
+      curves.map(({ values }) => values),
+    );
     return chart;
   }
 
@@ -99,7 +102,11 @@ export class Chart {
     const options = this.options;
     if (!options || width < 60 || height < 40 || this.data.columns.length !== options.curves.length) return;
     const colors = (this.look = palette(this.element));
-    this.chart = new uPlot(this.settings(options, colors, width, height), [this.data.x, ...this.data.columns], this.plot);
+    this.chart = new uPlot(
+      this.settings(options, colors, width, height),
+      [this.data.x, ...this.data.columns],
+      this.plot,
+    );
     this.readLegend();
   }
 
@@ -126,9 +133,16 @@ export class Chart {
       height,
       legend: { show: false },
       padding: [colors.fontSize * 0.6, colors.fontSize * 1.6, 0, 0],
-      cursor: { y: false, points: { size: 6 }, drag: { x: options.zoomed !== undefined, y: false, setScale: false, dist: 6 } },
+      cursor: {
+        y: false,
+        points: { size: 6 },
+        drag: { x: options.zoomed !== undefined, y: false, setScale: false, dist: 6 },
+      },
       scales: {
-        x: { time: false, range: (_u, low, high) => options.xRange?.() ?? padded(low, high, options.x.integer === true) },
+        x: {
+          time: false,
+          range: (_u, low, high) => options.xRange?.() ?? padded(low, high, options.x.integer === true),
+        },
         y: { distr: log ? 3 : 1, log: 10, range: (_u, low, high) => options.yRange?.() ?? ranged(low, high, log) },
       },
       axes: [axis(options.x, colors, false), axis(options.y, colors, true)],
@@ -154,7 +168,11 @@ export class Chart {
       pxAlign: 0,
       fill: shape === "bars" ? stroke : undefined,
       paths: shape === "bars" ? uPlot.paths.bars!({ size: [0.7, 40] }) : undefined,
-      points: { show: (u, _series, first, last) => showsPoints(shape, last - first, u.over.clientWidth), size: 6, fill: stroke },
+      points: {
+        show: (u, _series, first, last) => showsPoints(shape, last - first, u.over.clientWidth),
+        size: 6,
+        fill: stroke,
+      },
     };
   }
 
@@ -203,12 +221,20 @@ export class Chart {
       const dashed = curve.dash ? "dashed" : "solid";
       sample.style.borderTop = `${Math.max(2, (curve.width ?? 1.5) * 1.4)}px ${dashed} ${cssOf(curve.color)}`;
       const title = `${curve.meaning ?? curve.label}. Click to hide or show it.`;
-      const entry = element("button", { type: "button", class: "chart-entry", title, "aria-pressed": String(!this.hidden.has(curve.key)) });
+      const entry = element("button", {
+        type: "button",
+        class: "chart-entry",
+        title,
+        "aria-pressed": String(!this.hidden.has(curve.key)),
+      });
       entry.append(sample, element("span", { class: "chart-label" }, curve.label), values);
       entry.addEventListener("click", () => this.toggle(curve.key));
       return { key: curve.key, button: entry, values };
     });
-    this.legend.replaceChildren(...(this.options!.caption ? [this.caption] : []), ...this.entries.map(({ button }) => button));
+    this.legend.replaceChildren(
+      ...(this.options!.caption ? [this.caption] : []),
+      ...this.entries.map(({ button }) => button),
+    );
   }
 
   private toggle(key: string): void {
@@ -222,7 +248,8 @@ export class Chart {
     if (this.caption.textContent !== caption) this.caption.textContent = caption;
     for (const entry of this.entries) {
       const texts = this.options!.read?.(entry.key, this.cursor) ?? this.valueText(entry.key);
-      if (entry.values.childElementCount !== texts.length) entry.values.replaceChildren(...texts.map(() => element("span")));
+      if (entry.values.childElementCount !== texts.length)
+        entry.values.replaceChildren(...texts.map(() => element("span")));
       texts.forEach((text, i) => {
         const cell = entry.values.children[i]!;
         if (cell.textContent !== text) cell.textContent = text;

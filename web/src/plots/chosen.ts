@@ -75,7 +75,11 @@ export class Chosen extends Emitter<Events> {
     const state = this.store.state?.[this.side];
     if (!state || state.iteration < 0 || !state.iterations?.length) return steps;
     const known = this.underWay;
-    if (known?.iterations !== state.iterations || known.step !== state.step + 1 || this.withUnderWay.length !== steps.length + 1) {
+    if (
+      known?.iterations !== state.iterations ||
+      known.step !== state.step + 1 ||
+      this.withUnderWay.length !== steps.length + 1
+    ) {
       this.underWay = unfinished(state.step + 1, state.time, state.iterations);
       this.withUnderWay = [...steps, this.underWay];
     }

@@ -85,7 +85,9 @@ export type Quadratic = FunctionReply["model"];
 
 export function quadraticAt(q: Quadratic, x: number, y: number): number {
   const [px, py] = [x - q.center[0], y - q.center[1]];
-  return q.value + q.gradient[0] * px + q.gradient[1] * py + 0.5 * (q.xx * px * px + 2 * q.xy * px * py + q.yy * py * py);
+  return (
+    q.value + q.gradient[0] * px + q.gradient[1] * py + 0.5 * (q.xx * px * px + 2 * q.xy * px * py + q.yy * py * py)
+  );
 }
 
 // Minimizer of the quadratic; null if it has no minimum.
@@ -123,7 +125,12 @@ export function clipped(grid: Grid, p: Point, q: Point): [Point, Point] | null {
   let [from, to] = [0, 1];
   const [dx, dy] = [q.x - p.x, q.y - p.y];
   const { left, right, bottom, top } = edgesOf(grid);
-  for (const [slope, room] of [[-dx, p.x - left], [dx, right - p.x], [-dy, p.y - bottom], [dy, top - p.y]] as const) {
+  for (const [slope, room] of [
+    [-dx, p.x - left],
+    [dx, right - p.x],
+    [-dy, p.y - bottom],
+    [dy, top - p.y],
+  ] as const) {
     if (slope === 0 && room < 0) return null;
     if (slope < 0) from = Math.max(from, room / slope);
     if (slope > 0) to = Math.min(to, room / slope);

@@ -13,7 +13,6 @@ export function inkOn(u: uPlot, colors: Palette, color: string): Ink {
   return { context, em, text: color, halo: colors.panel, accent: color };
 }
 
-// Marks a position.
 export function paintVerticalLine(u: uPlot, at: number, color: string, opacity = 1): void {
   const x = Math.round(u.valToPos(at, "x", true));
   const { left, top, width, height } = u.bbox;

@@ -46,7 +46,8 @@ export function sameLook(a: Palette | null, b: Palette): boolean {
 
 export function palette(of: HTMLElement): Palette {
   const style = getComputedStyle(of);
-  const colors = Object.fromEntries(kNames.map((name) => [name, style.getPropertyValue(variableOf(name))])) as Record<Name, string>;
+  const values = kNames.map((name) => [name, style.getPropertyValue(variableOf(name))]);
+  const colors = Object.fromEntries(values) as Record<Name, string>;
   const fontSize = Number.parseFloat(style.fontSize) || 14;
   return { ...colors, fontSize, font: `${fontSize * 0.86}px ${style.fontFamily || "sans-serif"}` };
 }

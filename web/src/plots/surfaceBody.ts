@@ -145,7 +145,8 @@ export class SurfaceBody {
   }
 
   private straight(p: Point & { value: MaybeNumber }, q: Point & { value: MaybeNumber }): THREE.Vector3[] {
-    if (p.value === null || q.value === null || !isInside(this.content.grid, p) || !isInside(this.content.grid, q)) return [];
+    if (p.value === null || q.value === null || !isInside(this.content.grid, p) || !isInside(this.content.grid, q))
+      return [];
     return [this.frame.place(p.x, p.y, p.value, 0.008), this.frame.place(q.x, q.y, q.value, 0.008)];
   }
 

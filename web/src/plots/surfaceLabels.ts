@@ -72,6 +72,8 @@ export function axisLabels(frame: Frame, names: SurfaceContent["axes"], camera: 
   const heights = linear ? ticks(low, high, 4) : above;
   const texts = linear ? tickTexts(heights) : heights.map((v) => short(v - low, 2));
   add(linear ? names.value : `${names.value} − lowest`, new THREE.Vector3(post.x, frame.tall * 1.12, post.z), "text");
-  texts.forEach((text, i) => add(text, new THREE.Vector3(post.x * 1.1, frame.height(heights[i]) * frame.tall, post.z * 1.1)));
+  texts.forEach((text, i) =>
+    add(text, new THREE.Vector3(post.x * 1.1, frame.height(heights[i]) * frame.tall, post.z * 1.1)),
+  );
   return out;
 }

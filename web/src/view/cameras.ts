@@ -132,7 +132,6 @@ export class CameraRig extends Emitter<{ changed: void }> implements Keeper {
     };
   }
 
-  // Copies another camera.
   join(other: CameraRig): void {
     [this.mode, this.orthographic, this.distance] = [other.mode, other.orthographic, other.distance];
     this.target.copy(other.target);

@@ -39,7 +39,6 @@ export function unit(a: Vec3): Vec3 {
   return size > 0 ? [a[0] / size, a[1] / size, a[2] / size] : [0, 0, 0];
 }
 
-// Pixels per meter at a depth.
 export function pixelsPerMeter(lens: Lens, depth: number): number {
   const half = lens.extent > 0 ? lens.extent : lens.slope * depth;
   return lens.height / 2 / half;

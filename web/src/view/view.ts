@@ -92,7 +92,6 @@ export class View {
     this.redraw();
   }
 
-  // Draws once in the next frame.
   redraw(): void {
     if (this.frame === 0) this.frame = requestAnimationFrame(() => this.drawNow());
   }
