@@ -179,7 +179,7 @@ std::vector<StepField>& fields() {
           {"pin_work", "J", "work of moving pins, moving spring targets and time-dependent loads in this step"},
           kMeasured),
       optional(real<&R::obstacle_work>({"obstacle_work", "J", "work of moving obstacles"}, kMeasured)),
-      real<&R::damping_loss>({"damping_loss", "J", "energy dissipated by damping"}, kMeasured),
+      real<&R::damping_loss>({"damping_loss", "J", "energy dissipated by damping and friction"}, kMeasured),
       real<&R::numerical_loss>({"numerical_loss", "J", "energy dissipated by the integrator"}, kMeasured),
       real<&R::residual_work>({"residual_work", "J", "work of the residual"}, kMeasured),
       real<&R::ledger_error>({"ledger_error", "J", "remaining imbalance"}, kMeasured),

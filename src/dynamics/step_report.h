@@ -75,7 +75,7 @@ struct StepReport : Work {  // work of all solves of the step and of this report
   double pin_work = 0;              // work of moving pins and moving targets in this step
   double obstacle_work = 0;         // work of moving obstacles on bodies, including friction, in this step
   std::vector<double> target_work;  // share of the moving targets of each of Model::loads
-  double damping_loss = 0;          // energy dissipated by damping terms in this step
+  double damping_loss = 0;          // energy dissipated by damping and friction in this step
   double numerical_loss = 0;        // energy dissipated by the integrator in this step
   double residual_work = 0;         // work of the residual forces
   double ledger_error = 0;          // difference of both sides

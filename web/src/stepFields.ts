@@ -20,7 +20,7 @@ export interface StepFields {
   potential: MaybeNumber[]; // energy of each term of V; a dead load has -f . x, not zero at rest [J]
   pin_work: MaybeNumber; // work of moving pins, moving spring targets and time-dependent loads in this step [J]
   obstacle_work: MaybeNumber; // work of moving obstacles [J]
-  damping_loss: MaybeNumber; // energy dissipated by damping [J]
+  damping_loss: MaybeNumber; // energy dissipated by damping and friction [J]
   numerical_loss: MaybeNumber; // energy dissipated by the integrator [J]
   residual_work: MaybeNumber; // work of the residual [J]
   ledger_error: MaybeNumber; // remaining imbalance [J]

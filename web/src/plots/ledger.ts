@@ -25,9 +25,9 @@ export function ledgerColumns(potentials: readonly string[]): Curve[] {
     line("potential_total", "V", "potential energy, the sum of its terms", "series1", kWide),
     line("total", "T + V", "kinetic plus potential energy", "text", kWider),
     line("mouse_work", "work of the mouse", "work of the mouse's spring, summed over the steps", "series8", kSum),
-    line("probe_work", "work of the probe", "work of the tip, summed over the steps", "series10", kSum),
+    line("probe_work", "work of the probe", "work of the indenter, summed over the steps", "series10", kSum),
     line("pin_work", "work of pins", "work of moving pins and spring targets, summed over the steps", "series9", kSum),
-    line("damping_loss", "damping loss", "dissipated by damping, summed over the steps", "series7", kSum),
+    line("damping_loss", "dissipation", "dissipated by damping and friction, summed over the steps", "series7", kSum),
     line("numerical_loss", "numerical loss", "dissipated by the integrator, summed over the steps", "bad", kSum),
     line("balance", "balance", "T + V − works + losses: constant if every step is solved accurately", "good", kWider),
   ];
