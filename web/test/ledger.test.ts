@@ -7,18 +7,19 @@ const potentials = ["elasticity", "gravity"];
 const at = (ledger: Ledger, key: string): (number | null)[] =>
   ledger.columns[ledgerColumns(potentials).findIndex((c) => c.key === key)]!;
 
-// The mouse adds energy; damping and the integrator dissipate it. The ledger balances.
+// The mouse and an obstacle add energy; damping and the integrator dissipate it. The ledger balances.
 function steps(count: number): ReturnType<typeof stepRow>[] {
   let energy = 10;
   return Array.from({ length: count }, (_, i) => {
-    const [mouse, damping, numerical] = [0.5, 0.2, 0.1 * i];
-    energy += mouse - damping - numerical;
+    const [mouse, obstacle, damping, numerical] = [0.5, 0.25, 0.2, 0.1 * i];
+    energy += mouse + obstacle - damping - numerical;
     return stepRow({
       step: i + 1,
       time: 0.1 * (i + 1),
       kinetic: 0.25 * energy,
       potential: [0.5 * energy, 0.25 * energy],
       mouse_work: mouse,
+      obstacle_work: obstacle,
       damping_loss: damping,
       numerical_loss: numerical,
     });

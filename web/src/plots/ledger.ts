@@ -27,6 +27,7 @@ export function ledgerColumns(potentials: readonly string[]): Curve[] {
     line("mouse_work", "work of the mouse", "work of the mouse's spring, summed over the steps", "series8", kSum),
     line("probe_work", "work of the probe", "work of the indenter, summed over the steps", "series10", kSum),
     line("pin_work", "work of pins", "work of moving pins and spring targets, summed over the steps", "series9", kSum),
+    line("obstacle_work", "work of obstacles", "work of moving obstacles, summed over the steps", "series3", kSum),
     line("damping_loss", "dissipation", "dissipated by damping and friction, summed over the steps", "series7", kSum),
     line("numerical_loss", "numerical loss", "dissipated by the integrator, summed over the steps", "bad", kSum),
     line("balance", "balance", "T + V − works + losses: constant if every step is solved accurately", "good", kWider),
@@ -116,19 +117,20 @@ export class Ledger {
     const terms = this.potentials.map((_, i) => row.potential[i] ?? null);
     const potential = sum(terms);
     const total = sum([row.kinetic, potential]);
-    const flows = [row.mouse_work, row.probe_work, row.pin_work, row.damping_loss, row.numerical_loss];
+    const flows = [row.mouse_work, row.probe_work, row.pin_work, row.obstacle_work ?? 0, row.damping_loss, row.numerical_loss];
     const firstFlow = this.totalColumn + 1;
     const sums = flows.map((flow, i) => sum([last < 0 ? 0 : this.columns[firstFlow + i]![last]!, flow]));
-    const [mouse, probe, pins, damping, numerical] = sums as MaybeNumber[];
-    const balance = sum([total, negated(mouse!), negated(probe!), negated(pins!), damping!, numerical!]);
+    const [mouse, probe, pins, obstacles, damping, numerical] = sums as MaybeNumber[];
+    const works = [mouse!, probe!, pins!, obstacles!];
+    const balance = sum([total, ...works.map(negated), damping!, numerical!]);
     const values = [row.kinetic, ...terms, potential, total, ...sums, balance];
     values.forEach((value, i) => {
       if (value !== 0) this.first[i] ??= this.step.length;
       this.columns[i]!.push(value);
     });
-    const works = Math.abs(mouse ?? 0) + Math.abs(probe ?? 0) + Math.abs(pins ?? 0);
+    const given = works.reduce((all: number, work) => all + Math.abs(work ?? 0), 0);
     this.peak.push(Math.max(this.peak[last] ?? 0, total ?? 0));
-    this.given.push(Math.max(this.given[last] ?? Math.abs(balance ?? 0), works));
+    this.given.push(Math.max(this.given[last] ?? Math.abs(balance ?? 0), given));
     this.lowest.push(Math.min(this.lowest[last] ?? Infinity, balance ?? Infinity));
     this.highest.push(Math.max(this.highest[last] ?? -Infinity, balance ?? -Infinity));
     this.largest.push(Math.max(this.largest[last] ?? 0, ...values.map((v) => Math.abs(v ?? 0))));
