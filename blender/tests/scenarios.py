@@ -250,6 +250,57 @@ def killed_program_continues():
     check(len(simulated(folder, "Ball")) == 40)
 
 
+class CheckedLayout:
+    """Replaces the layout of a panel: each property and operator must exist."""
+
+    def __init__(self):
+        self.drawn = []
+
+    def prop(self, data, name, **_):
+        check(name in data.bl_rna.properties, name)
+        self.drawn.append(name)
+
+    def prop_search(self, data, name, source, list_name):
+        self.prop(data, name)
+        check(list_name in source.bl_rna.properties, list_name)
+
+    def operator(self, name):
+        check(getattr(bpy.ops.aspic, name.split(".")[1]).get_rna_type())  # raises KeyError for an unknown one
+        self.drawn.append(name)
+
+    def label(self, text):
+        self.drawn.append(text)
+
+    def nested(self, **_):
+        return self
+
+    row = box = nested
+
+    def separator(self):
+        pass
+
+
+@scenario
+def panel_draws_all_roles():
+    from types import SimpleNamespace
+    ob, panel = ball(), aspic_blender.panel.ASPIC_PT_sidebar
+    bpy.context.scene.aspic.status = "Baked 3 frames"
+
+    def drawn():
+        layout = CheckedLayout()
+        panel.draw(SimpleNamespace(layout=layout), bpy.context)
+        return layout.drawn
+
+    check({"young", "pin_group", "aspic.bake", "Baked 3 frames"} <= set(drawn()))
+    ob.aspic.stiffness_group = "Group"
+    check({"young_min", "young_max", "scale"} <= set(drawn()) and "young" not in drawn())
+    ob.aspic.role = "OBSTACLE"
+    check("friction" in drawn() and "pin_group" not in drawn())
+    operators.active = object()
+    check("aspic.cancel" in drawn() and "aspic.bake" not in drawn())
+    operators.active = None
+
+
 @scenario
 def edited_mesh_is_refused():
     ob = ball()
