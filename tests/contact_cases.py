@@ -34,14 +34,14 @@ def degenerate_shapes(steps):
         mesh = placed(SHAPES[upper](), (0, height, 0), flip=True, **turn)
         yield case(f"{upper} on {lower}{' crossed' if turn else ''}", [body("upper", mesh, more="velocity = [0, -1, 0]")],
                    obstacles=[("lower", surface_text(SHAPES[lower]()))], steps=steps, contact="friction = 0.2",
-                   check=touches, codes=(0, 3), limit=120)
+                   check=touches, codes=(0, 3))
     for cells in (3, 8):
         fine = placed(box((-.5, 0, -.5), (.5, .5, .5), (cells, cells // 2, cells)), (.013, 3.02, .027))
         yield case(f"box of {cells} cells on spike", [body("box", fine, more="velocity = [0, -1, 0]")],
                    obstacles=[("spike", surface_text(spike()))], steps=min(steps, 25), check=gap_above(1e-6))
     yield case("box slides over internal edges",
                [body("slider", placed(box((-.25, 0, -.25), (.25, .5, .25), (2, 2, 2)), (-.5, 1.02, 0)), more="velocity = [2, -0.5, 0]")],
-               obstacles=[("lower", surface_text(internal_edges()))], steps=steps, check=straight, limit=120)
+               obstacles=[("lower", surface_text(internal_edges()))], steps=steps, check=straight)
 
 
 def gap_above(least):
@@ -93,7 +93,7 @@ def impact(seed):
                           f"angular_velocity = [0, {chance.uniform(-1, 1) * speed / size:.2g}, {speed / size:.2g}]"))
     steps = chance.choice([6, 20])
     return case(f"impact {seed}", parts, h=2 * size / speed / steps, steps=steps, gravity=(0, 0, 0),
-                contact=f"friction = {chance.choice([0, 0, .3, 1])}", codes=(0, 3), limit=300)
+                contact=f"friction = {chance.choice([0, 0, .3, 1])}", codes=(0, 3))
 
 
 def blow(seed):
@@ -107,7 +107,7 @@ def blow(seed):
     mesh = placed(mesh, [-x for x in middle])
     reach = max(math.hypot(*p) for p in mesh[0]) + .01
     flying = body("flying", placed(mesh, (0, reach, 0)), young=young, density=density, more=f"velocity = [0, {-speed:.3g}, 0]")
-    rest = dict(h=reach / speed / chance.choice([1, 4]), steps=6, gravity=(0, 0, 0), contact=f"friction = {chance.choice([0, .3])}", codes=(0, 3), limit=300)
+    rest = dict(h=reach / speed / chance.choice([1, 4]), steps=6, gravity=(0, 0, 0), contact=f"friction = {chance.choice([0, .3])}", codes=(0, 3))
     if chance.random() < .5:
         return case(f"blow {seed}", [flying], obstacles=[("sheet", sheet(20, cells=chance.randint(1, 5)))], check=stays_above(0), **rest)
     wall = chance.choice([.05, .5])
@@ -131,13 +131,13 @@ def bad_surfaces(steps):
     yield case("shared vertex", [body("lower", spike()), body("upper", placed(spike(), (0, 6, 0), flip=True))], h=.01, steps=2, codes=(2,))
     shell = lattice([(-1, -.8, .8, 1)] * 3, keep=lambda cell: cell != (1, 1, 1))
     yield case("nested bodies", [body("shell", placed(shell, (0, 1.01, 0))), body("core", placed(box(), (0, .52, 0)))], planes=FLOOR,
-               h=.01, steps=steps, check=touches, codes=(0, 3), limit=120)
+               h=.01, steps=steps, check=touches, codes=(0, 3))
 
 
 def slivers(steps):
     for factor in (30, 1000):
         yield case(f"triangles of 1:{factor} onto sheet", [body("sliver", placed(sliver_box(factor), (0, .02, 0)), more="velocity = [0, -1, 0]")],
-                   obstacles=[("sheet", sheet())], steps=steps, check=all_of(touches, stays_above(0)), codes=(0, 3), limit=120)
+                   obstacles=[("sheet", sheet())], steps=steps, check=all_of(touches, stays_above(0)), codes=(0, 3))
     needle = obj_text([(-1000, 0, 0), (1000, 0, -.5), (1000, 0, .5), (-1000, 0, 1)], [(0, 2, 1), (0, 3, 2)])
     yield case("needle triangles as obstacle", [body("falling", placed(box(cells=(2, 2, 2)), (0, .05, .2)))], obstacles=[("needle", needle)],
                h=.01, steps=steps, codes=(0, 3))
@@ -163,15 +163,15 @@ def moving(steps):
     cube, down = body("cube", placed(box(cells=(2, 2, 2)), (0, .01, 0))), '{ displacement = [0, "-20 * t", 0] }'
     floor, lid = ("floor", sheet(5)), sheet(3, 1.03)
     yield case("press without end", [cube], obstacles=[floor, ("press", lid, down)], h=.01, steps=steps, codes=(3,), check=touches,
-               words=("cube", "press"), limit=300)
+               words=("cube", "press"))
     jaws = [("left", plate((-.8, .51, 0)), '{ displacement = ["10 * t", 0, 0] }'),
             ("right", plate((.8, .51, 0)), '{ displacement = ["-10 * t", 0, 0] }')]
-    yield case("jaws that close", [cube], obstacles=jaws, h=.01, steps=steps, gravity=(0, 0, 0), codes=(3,), words=("cube",), limit=300)
+    yield case("jaws that close", [cube], obstacles=jaws, h=.01, steps=steps, gravity=(0, 0, 0), codes=(3,), words=("cube",))
     for name, motion in (("into the body", '{ displacement = [0, "t < 0.025 ? 0 : -1.5", 0] }'),
                          ("to the other side", '{ displacement = [0, "t < 0.025 ? 0 : -9", 0] }'),
                          ("back and forth", '{ displacement = [0, "t > 0.025 && t < 0.045 ? -1.5 : 0", 0] }')):
         yield case(f"obstacle jumps {name}", [cube], obstacles=[floor, ("lid", lid, motion)], h=.01, steps=steps, codes=(0, 3),
-                   check=stays_above(0), words=("lid and cube",), limit=300)
+                   check=stays_above(0), words=("lid and cube",))
     strip = placed(lattice([[x / 4 for x in range(-4, 5)], (0, .1), (0, .2)]), (0, .05, 0))
     text, files = body("strip", strip)
     ridge = lambda tip, foot: obj_text([(0, tip, -1), (0, tip, 1), (.3, foot, 0), (-.3, foot, 0)], [(0, 1, 2), (1, 0, 3)])
@@ -179,7 +179,7 @@ def moving(steps):
     for name, obstacles in (("pushed from below", [("lower", ridge(0, -2), up)]),
                             ("squeezed from both sides", [("lower", ridge(0, -2), up), ("upper", ridge(.2, 2.2), back)])):
         yield case(f"pinned strip {name}", [(text + pin('"X < -0.99"') + pin('"X > 0.99"'), files)], obstacles=obstacles, h=.01, steps=steps,
-                   codes=(0, 3), check=touches, words=("strip",), limit=300)
+                   codes=(0, 3), check=touches, words=("strip",))
 
 
 def plate(x):
@@ -227,7 +227,7 @@ def sliding_edges(steps):
     slider = placed(box((-.1, 0, -.1), (.1, .2, .1)), (0, .01, -2))
     rails = [("rail", surface_text(placed(lattice([(-.1, .1), (-1, 0), (-9, 9)]), (0, 0, 0))))]
     yield case("box on a rail of its width", [body("slider", slider, more="velocity = [0, 0, 0.5]")], obstacles=rails, h=.01, steps=steps,
-               check=all_of(touches, stays_above(0)), limit=300)
+               check=all_of(touches, stays_above(0)))
 
 
 GROUPS = {"shapes": degenerate_shapes, "bullets": bullets, "surfaces": bad_surfaces, "slivers": slivers, "pins": pinned, "driven": driven, "moving": moving,

@@ -21,7 +21,7 @@ class Case:
     scene: str
     files: dict = dataclasses.field(default_factory=dict)
     codes: tuple = (0,)
-    limit: float = 60  # s
+    limit: float = 600  # s, of a run that hangs
     check: object = None
     planes: tuple = ()  # pairs of origin and normal
     obstacles: tuple = ()  # names of OBJ files

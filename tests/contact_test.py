@@ -29,7 +29,7 @@ class Folder(unittest.TestCase):
     def run_scene(self, text):
         (self.folder / "scene.toml").write_text(text)
         return subprocess.run([ASPIC, "run", "scene.toml", "--out", "run", "--force"], cwd=self.folder, capture_output=True, text=True,
-                              timeout=120)
+                              timeout=600)
 
     def run_cases(self, cases):
         for number, one in enumerate(cases):
@@ -89,7 +89,7 @@ class Scenes(Folder):
         folder = pathlib.Path(tempfile.mkdtemp(dir=self.folder))
         (folder / "scene.toml").write_text("gravity = [0, 0, 0]\n[time]\nduration = 0.01\n[[body]]\n" +
                                            "".join(f"{k} = {toml_text(v)}\n" for k, v in keys.items()))
-        subprocess.run([ASPIC, "run", "scene.toml", "--out", "run", "--quiet"], cwd=folder, check=True, timeout=60)
+        subprocess.run([ASPIC, "run", "scene.toml", "--out", "run", "--quiet"], cwd=folder, check=True, timeout=600)
         return exact.body_surfaces(folder / "run/frames/body_000000.vtu")[0]._replace(name="obstacle", is_obstacle=True)
 
     def test_frames_do_not_intersect(self):
@@ -101,7 +101,7 @@ class Scenes(Folder):
             checked += 1
             with self.subTest(path.name):
                 out = self.folder / path.stem
-                subprocess.run([ASPIC, "run", path, "--out", out, "--quiet"], timeout=300, check=True)
+                subprocess.run([ASPIC, "run", path, "--out", out, "--quiet"], timeout=600, check=True)
                 still = [o for o in scene.get("obstacle", []) if "motion" not in o]
                 planes = [(o["plane"].get("origin", [0, 0, 0]), o["plane"].get("normal", [0, 1, 0])) for o in still if "plane" in o]
                 surfaces = [self.obstacle(o) for o in still if "shape" in o or "mesh" in o]

@@ -184,8 +184,9 @@ class Verify(CommandLine):
         self.verify("--only", "free_fall")
         self.assertIn("n (n + 1)", self.results()[0]["formulas"][0])
         page = (self.folder / "out/verify/index.html").read_text()
+        judged = page[page.index("Free fall of an elastic box</h"):]  # after the update rules of all integrators
         shown = "<math" if "render" in self.aspic("--help").stdout else "tfrac12 g h^2"
-        self.assertEqual(page.count(shown), 3)
+        self.assertEqual(judged.count(shown), 3)
 
     def test_page_has_formulas_above_material_checks(self):
         self.verify("--only", "uniaxial_table")
