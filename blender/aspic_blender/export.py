@@ -101,11 +101,14 @@ def write(context):
     text += files.table("output", {"every": 1 / fps, "vtu": False, "usd": False})
     if scene.aspic.collide:
         text += "[contact]\n"
-    for name, each in zip(names(bodies + obstacles), sampled):
-        text += (body_text if each in sampled[:len(bodies)] else obstacle_text)(name, each, folder, preroll, fps)
+    named = list(zip(names(bodies + obstacles), sampled))
+    for name, each in named[:len(bodies)]:
+        text += body_text(name, each, folder, preroll, fps)
+    for name, each in named[len(bodies):]:
+        text += obstacle_text(name, each, folder, preroll, fps)
     with open(os.path.join(folder, "scene.toml"), "w", encoding="utf-8") as file:
         file.write(text)
-    write_job(folder, scene, list(zip(names(bodies + obstacles), sampled))[:len(bodies)], preroll)
+    write_job(folder, scene, named[:len(bodies)], preroll)
     return folder
 
 

@@ -16,18 +16,32 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr double kFarthestSurface = 0.5;  // maximum distance in diagonals of the surface
+constexpr double kLargestSurface = 10;    // maximum diagonal in diagonals of the body
 
-bool is_ply(const fs::path& path) { return path.extension() == ".ply" || path.extension() == ".PLY"; }
+constexpr const char* kPlacement = " m (it is placed like the body's mesh; export both together, in the same units)";
+
+double diagonal_of(const std::vector<Vec3d>& surface) {
+  const Box box = bounding_box(surface);
+  return norm(box.upper - box.lower);
+}
+
+// A surface in millimeters may surround the corner of a body in meters closely.
+void refuse_if_larger(const std::vector<Vec3d>& surface, const TetMesh& mesh, const std::string& body) {
+  const double diagonal = diagonal_of(surface), size = size_of(mesh);
+  if (diagonal > kLargestSurface * size)
+    throw InvalidInput("the diagonal of this surface is " + formatted("%.4g", diagonal) + " m, that of body '" + body +
+                       "' is " + formatted("%.4g", size) + kPlacement);
+}
 
 }  // namespace
 
+bool is_painted(const fs::path& path) { return path.extension() == ".ply" || path.extension() == ".PLY"; }
+
 void refuse_if_elsewhere(const std::vector<Vec3d>& surface, double farthest, const std::string& body) {
-  const Box box = bounding_box(surface);
-  const double diagonal = norm(box.upper - box.lower);
+  const double diagonal = diagonal_of(surface);
   if (farthest <= kFarthestSurface * diagonal) return;
   throw InvalidInput("body '" + body + "' is up to " + formatted("%.4g", farthest) +
-                     " m away from this surface, whose diagonal is " + formatted("%.4g", diagonal) +
-                     " m (it is placed like the body's mesh; export both together, in the same units)");
+                     " m away from this surface, whose diagonal is " + formatted("%.4g", diagonal) + kPlacement);
 }
 
 PaintedFields::PaintedFields(const AffineMap& place, SceneFiles& files, std::string body)
@@ -37,7 +51,7 @@ const std::vector<double>& PaintedFields::at_vertices(Table& table, const TetMes
   const Value file = *table.find("file");
   const Value* name = table.find("name");
   const fs::path path = files_.find(file);
-  if (!is_ply(path))
+  if (!is_painted(path))
     throw error_at(file.place, "file = " + toml_string(file.text()) + "; a painted surface is a PLY file");
   if (!name)
     throw error_at(file.place, "file = " + toml_string(file.text()) + " needs `name`, its attribute of vertices");
@@ -64,6 +78,7 @@ std::vector<double> PaintedFields::read(const fs::path& path, const std::string&
     if (!(norm(surface.vertices[v]) <= kLargestCoordinate))
       throw InvalidInput("vertex " + std::to_string(v) + " is beyond 1e30 m, where distances overflow; correct it");
   }
+  refuse_if_larger(surface.vertices, mesh, body_);
   if (!extension_) extension_ = std::make_unique<HarmonicExtension>(mesh);
   const SurfaceLocator locator(surface.vertices, surface.triangles);
   const std::vector<int>& given = extension_->given();

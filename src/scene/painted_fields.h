@@ -1,5 +1,6 @@
 // Fields of a body that were painted on a surface: vertex attributes of PLY files.
 #pragma once
+#include <filesystem>
 #include <map>
 #include <memory>
 #include <string>
@@ -12,6 +13,8 @@
 #include "scene/value.h"
 
 namespace aspic {
+
+bool is_painted(const std::filesystem::path& path);  // whether a file has the extension of a painted surface
 
 // Throws InvalidInput if points of a body are farther from a surface than half of the surface's diagonal: its units or
 // its placement are wrong. `farthest`: largest distance [m].

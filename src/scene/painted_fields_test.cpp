@@ -170,12 +170,16 @@ TEST(PaintedFields, MistakesAreExplained) {
   EXPECT_THAT(where("file = \"young.csv\", name = \"paint\""), HasSubstr("a painted surface is a PLY file"));
   EXPECT_THAT(where("file = \"cube.ply\""), HasSubstr("name"));
   EXPECT_THAT(where("file = \"cube.ply\", name = \"paint\", above = 1"),
-              AllOf(HasSubstr("s.toml:5:"), HasSubstr("no vertex has more than 1"), HasSubstr("lower `above`")));
+              AllOf(HasSubstr("s.toml:5:"), HasSubstr("the largest value of \"paint\" is 1, not above 1")));
   TriMesh elsewhere = cube_surface(2);
-  for (Vec3d& X : elsewhere.vertices) X = 1e-3 * X;  // millimeters
+  for (Vec3d& X : elsewhere.vertices) X = 1e-3 * X;  // kilometers for a body in meters
   folder.write("cube.ply", painted_ply(elsewhere, height));
   EXPECT_THAT(where("file = \"cube.ply\", name = \"paint\""),
               AllOf(HasSubstr("up to 1.73 m away"), HasSubstr("same units")));
+  for (Vec3d& X : elsewhere.vertices) X = 1e6 * X;  // millimeters; its corner is that of the body
+  folder.write("cube.ply", painted_ply(elsewhere, height));
+  EXPECT_THAT(where("file = \"cube.ply\", name = \"paint\""),
+              AllOf(HasSubstr("the diagonal of this surface is 1732 m"), HasSubstr("same units")));
   folder.write("cube.ply", painted_ply(cube_surface(2), [](const Vec3d&) { return NAN; }));
   EXPECT_THAT(where("file = \"cube.ply\", name = \"paint\""), AllOf(HasSubstr("cube.ply:11"), HasSubstr("nan")));
   folder.write("cube.ply", painted_ply({{{{0, 0, 1e300}}, {{1, 0, 0}}, {{0, 1, 0}}}, {{0, 1, 2}}}, height));

@@ -53,8 +53,9 @@ std::vector<char> painted_vertices(const Value& where, const SelectionScope& sco
   const double above = where["above"].number(),
                largest = *std::max_element(scope.painted->begin(), scope.painted->end());
   if (!(largest > above))
-    throw error_at(where.place, "where = " + shortened(inline_toml(where)) + " selects nothing of body '" + scope.body +
-                                    "': no vertex has more than " + number_text(largest) + " (lower `above`)");
+    throw error_at(where.place, "where selects nothing of body '" + scope.body + "': the largest value of " +
+                                    toml_string(where["name"].text()) + " is " + number_text(largest) + ", not above " +
+                                    number_text(above));
   std::vector<char> listed;
   for (const double value : *scope.painted) listed.push_back(value > above);
   return listed;

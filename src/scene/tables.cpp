@@ -84,8 +84,7 @@ std::vector<double> from_table(Table& table, const fs::path& path, const FieldSc
 
 std::vector<double> from_file(Table& table, const FieldScope& scope, const std::string& stem) {
   const fs::path path = scope.files.find(*table.find("file"));
-  const bool is_painted = path.extension() == ".ply" || path.extension() == ".PLY";
-  std::vector<double> values = is_painted ? from_painting(table, scope) : from_table(table, path, scope, stem);
+  std::vector<double> values = is_painted(path) ? from_painting(table, scope) : from_table(table, path, scope, stem);
   if (const Value* range = table.find("range")) {
     const double low = range->array()[0].number(), high = range->array()[1].number();
     for (double& value : values) value = (1 - value) * low + value * high;
