@@ -100,6 +100,7 @@ const ContactLaws& Barrier::laws() const { return impl_->laws; }
 int Barrier::self_touching_point() const { return impl_->search.self_touching_point(); }
 
 bool Barrier::has_moving_obstacle() const { return impl_->has_motion; }
+ContactMeter& Barrier::meter() const { return impl_->search.meter(); }
 
 std::vector<Vec3d> Barrier::obstacle_points(double time) const { return impl_->obstacles(time); }
 
@@ -142,6 +143,7 @@ double Barrier::obstacle_work(Positions x, double from, double to) const {
 double Barrier::value(Positions x, const Context& context) const {
   const std::vector<Vec3d> p = impl_->points(x, context.time);
   const auto stencils = impl_->search.at(p);
+  const ContactMeter::Span span(meter(), ContactMeter::forces);
   return parallel_sum(static_cast<int>(stencils->size()), [&](int first, int last) {
     double sum = 0;
     for (int k = first; k < last; ++k) sum += (*stencils)[k].value(p);
@@ -152,6 +154,7 @@ double Barrier::value(Positions x, const Context& context) const {
 void Barrier::add_gradient(Positions x, const Context& context, double scale, std::span<double> g) const {
   const std::vector<Vec3d> p = impl_->points(x, context.time);
   const auto stencils = impl_->search.at(p);
+  const ContactMeter::Span span(meter(), ContactMeter::forces);
   std::vector<std::array<Vec3d, 4>> forces(stencils->size());
   parallel_chunks(static_cast<int>(stencils->size()), [&](int first, int last) {
     for (int k = first; k < last; ++k) forces[k] = (*stencils)[k].gradient(p);
@@ -167,6 +170,7 @@ int Barrier::add_hessian(Positions x, const Context& context, double scale, cons
                          BlockSparse& H) const {
   const std::vector<Vec3d> p = impl_->points(x, context.time);
   const auto stencils = impl_->search.at(p);
+  const ContactMeter::Span span(meter(), ContactMeter::forces);
   const auto kind_of = [&](const ContactStencil& stencil) {
     if (stencil.is_over_plane()) return Definiteness::exact;
     for (const int own : stencil.point)
@@ -195,6 +199,7 @@ int Barrier::add_hessian(Positions x, const Context& context, double scale, cons
 }
 
 int Barrier::add_stops(Positions x, const Context& context, std::span<const double> d, const ScaledModel& model) const {
+  const ContactMeter::Span span(meter(), ContactMeter::bound);
   const auto& [scale, g, H] = model;
   const std::vector<Vec3d> p = impl_->points(x, context.time);
   const std::vector<Impact> impacts =
@@ -226,11 +231,13 @@ int Barrier::add_stops(Positions x, const Context& context, std::span<const doub
 }
 
 double Barrier::max_step(Positions x, const Context& context, std::span<const double> d) const {
+  const ContactMeter::Span span(meter(), ContactMeter::bound);
   return StepBound(impl_->mesh, impl_->laws, impl_->search, impl_->sizes)
       .largest(impl_->points(x, context.time), impl_->displacements(d));
 }
 
 double Barrier::max_step(Positions x, std::span<const double> d, double from, double to) const {
+  const ContactMeter::Span span(meter(), ContactMeter::bound);
   const std::vector<Vec3d> start = impl_->points(x, from), end = impl_->points(x, to);
   std::vector<Vec3d> u = impl_->displacements(d);
   for (size_t i = 0; i < u.size(); ++i)

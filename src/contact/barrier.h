@@ -4,6 +4,7 @@
 #pragma once
 #include <memory>
 
+#include "contact/contact_cost.h"
 #include "contact/contact_laws.h"
 #include "contact/contact_mesh.h"
 #include "contact/contact_stencil.h"
@@ -46,6 +47,7 @@ class Barrier : public Energy, public StepLimitingEnergy, public StoppingEnergy 
                 const ScaledModel& model) const override;
 
   const ContactMesh& mesh() const;
+  ContactMeter& meter() const;  // of its cost, and that of friction
   const ContactLaws& laws() const;
   // Returns a point whose distance to its own body at rest is zero; -1: none.
   int self_touching_point() const;

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "contact/contact_cost.h"
 #include "dynamics/initial_guess.h"
 #include "math/small.h"
 #include "optimize/minimize.h"
@@ -84,6 +85,8 @@ struct StepReport : Work {  // work of all solves of the step and of this report
   double energy_slack = 0;       // bound minus energy; 0 without a bound [J]
   std::uint64_t state_hash = 0;  // hash of the state at the end, see state_hash()
   double seconds = 0;            // wall time of the step
+  double cpu_seconds = 0;        // CPU time of the process
+  ContactCost contact_cost;
 };
 
 }  // namespace aspic
