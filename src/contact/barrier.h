@@ -35,6 +35,8 @@ class Barrier : public Energy, public StepLimitingEnergy, public StoppingEnergy 
   ~Barrier() override;
 
   std::string_view name() const override { return "contact"; }
+  // If obstacles advance along the next direction (StepContext::obstacle_end), the gradient includes the change of
+  // forces by their motion to first order, and bounds of steps and stops include the motion.
   double value(Positions x, const Context& context) const override;
   void add_gradient(Positions x, const Context& context, double scale, std::span<double> g) const override;
   int add_hessian(Positions x, const Context& context, double scale, const Projection& projection,

@@ -143,7 +143,7 @@ std::vector<Impact> StepBound::with_planes(std::span<const Vec3d> p, std::span<c
       if (!(gap + dot(plane.normal, u[i] - u[plane.point]) < landing)) continue;
       found.push_back({.point = {i, -1, -1, -1},
                        .distance = {.r = plane.normal, .d = 1},
-                       .offset = dot(plane.normal, p[plane.point]),
+                       .offset = dot(plane.normal, p[plane.point] + u[plane.point]),
                        .landing = landing,
                        .stiffness = kSpring * law.stiffness * mesh_.area[i] / law.reach});
     }

@@ -23,8 +23,9 @@ class IncrementalPotential : public Objective, public HasMetric, public HasParts
   // Set the step for subsequent evaluations of the terms of V and D. Called before begin_step().
   void set_potential_step(const StepContext& step);
   void set_damping_step(const StepContext& step);
-  // Sets the time of the obstacles [s]. Called after set_potential_step().
-  void move_obstacles(double time);
+  // Sets the time of the obstacles [s], and that at the end of the next direction, see StepContext::obstacle_end. Called
+  // after set_potential_step().
+  void move_obstacles(double time, std::optional<double> end = {});
   // Sets q~ [m], w and f, and discards what is known about the last step. Called before the first evaluation.
   void begin_step(std::span<const double> predicted, double inertia /* w */, double factor /* f */);
 
