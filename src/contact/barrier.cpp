@@ -105,7 +105,7 @@ struct Barrier::Impl {
 };
 
 void Barrier::Impl::add_obstacle_pull(std::span<const Vec3d> p, std::span<const Vec3d> u, double scale,
-                             std::span<double> g) const {
+                                      std::span<double> g) const {
   for (const ContactStencil& stencil : *search.at(p)) {
     std::array<Vec3d, 4> moved = {};
     bool moves = false;

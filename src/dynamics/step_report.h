@@ -65,8 +65,7 @@ struct StepReport : Work {  // work of all solves of the step and of this report
   double friction_residual = 0;  // change of the friction forces by the last update of the normal forces [N]
   std::string friction_pair;     // parts where it is largest
   double step_limit = std::numeric_limits<double>::infinity();  // bound of the last step length by contact
-  int friction_passes =
-      0;  // minimizations until the normal forces converged; 1 without friction, 0 without minimization
+  int friction_passes = 0;  // evaluations of the normal forces; 1 without friction, 0 without minimization
 
   // Ledger: kinetic + potential changes by pin_work + obstacle_work - damping_loss - numerical_loss + residual_work.
   // [J]

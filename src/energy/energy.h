@@ -33,8 +33,8 @@ class Energy {
   // Inputs of an evaluation besides x. A term that needs more than the time and the length of the step derives its own
   // context. A context may be used only with the term that made it.
   struct Context {
-    double time = 0;  // [s]
-    double h = 0;     // length of the step [s]; 0 in statics
+    double time = 0;                     // [s]
+    double h = 0;                        // length of the step [s]; 0 in statics
     std::optional<double> obstacle_end;  // see StepContext
     virtual ~Context() = default;
   };
