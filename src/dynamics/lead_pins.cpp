@@ -12,7 +12,7 @@ namespace aspic {
 namespace {
 
 constexpr double kSmallestPart = 1.0 / 1024;
-constexpr double kShortPart = 0.1;  // of what is left: directions that allow less are followed by a few iterations
+constexpr double kShortPart = 0.1;  // share of the remaining way; shorter moves are followed by a few iterations
 constexpr int kMaxParts = 200;
 constexpr int kPatience = 3;  // moves by less than kSmallestPart in a row
 
@@ -60,8 +60,8 @@ class Lead {
     return true;
   }
 
-  // Moves obstacles by as large a part of what is left as a Newton direction allows that takes their motion into
-  // account, with the free vertices. Returns the part.
+  // Moves obstacles and free vertices along a Newton direction that includes the motion of the obstacles, as far as
+  // contact allows. Returns the share of the remaining way.
   double carry() {
     g_.resize(reached_.size()), d_.resize(reached_.size());
     tools_.E.move_obstacles(time_at(done_), time_);
