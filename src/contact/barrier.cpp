@@ -39,6 +39,8 @@ ContactPoint foot_of(const ContactStencil& stencil, const ContactMesh& mesh, std
   return foot;
 }
 
+double obstacle_end(const Energy::Context& context) { return context.obstacle_end.value_or(context.time); }
+
 }  // namespace
 
 struct Barrier::Impl {
@@ -73,8 +75,19 @@ struct Barrier::Impl {
       if (mesh.row[i] >= 0) p[i] = point(x, mesh.row[i]);
     return p;
   }
-  std::vector<Vec3d> displacements(std::span<const double> d) const {
+
+  // Returns the displacements of obstacles between two times; zero for other points.
+  std::vector<Vec3d> obstacle_moves(double from, double to) const {
     std::vector<Vec3d> u(mesh.rest.size());
+    if (from == to || !has_motion) return u;
+    const std::vector<Vec3d> start = obstacles(from), end = obstacles(to);
+    for (size_t i = 0; i < u.size(); ++i) u[i] = end[i] - start[i];
+    return u;
+  }
+  // Adds the change of the gradient if obstacles move by u, to first order.
+  void add_obstacle_pull(std::span<const Vec3d> p, std::span<const Vec3d> u, double scale, std::span<double> g) const;
+  std::vector<Vec3d> displacements(std::span<const double> d, const Context& context) const {
+    std::vector<Vec3d> u = obstacle_moves(context.time, obstacle_end(context));
     for (int i = 0; i < mesh.point_count(); ++i)
       if (mesh.row[i] >= 0) u[i] = point(d, mesh.row[i]);
     return u;
@@ -91,6 +104,28 @@ struct Barrier::Impl {
   mutable double placed_at = 0;
 };
 
+void Barrier::Impl::add_obstacle_pull(std::span<const Vec3d> p, std::span<const Vec3d> u, double scale,
+                                      std::span<double> g) const {
+  for (const ContactStencil& stencil : *search.at(p)) {
+    std::array<Vec3d, 4> moved = {};
+    bool moves = false;
+    for (int k = 0; k < 4; ++k)
+      if (const int own = stencil.point[k]; own >= 0 && mesh.row[own] < 0) moved[k] = u[own];
+    for (const ContactPlane& plane : mesh.planes)
+      if (plane.part == stencil.parts[1]) moved[0] = -1.0 * u[plane.point];  // relative motion
+    for (const Vec3d& m : moved) moves = moves || squared_norm(m) > 0;
+    if (!moves) continue;
+    const DistanceHessian H = stencil.hessian(p, Definiteness::exact);
+    for (int i = 0; i < 4; ++i) {
+      const int own = stencil.point[i];
+      if (own < 0 || mesh.row[own] < 0) continue;
+      Vec3d change{};
+      for (int k = 0; k < 4; ++k) change = change + (i >= k ? H(i, k) : transpose(H(k, i))) * moved[k];
+      add_vec(scale * change, mesh.row[own], g);
+    }
+  }
+}
+
 Barrier::Barrier(ContactMesh mesh, const ContactOptions& options)
     : impl_(std::make_unique<Impl>(std::move(mesh), options)) {}
 Barrier::~Barrier() = default;
@@ -100,6 +135,7 @@ const ContactLaws& Barrier::laws() const { return impl_->laws; }
 int Barrier::self_touching_point() const { return impl_->search.self_touching_point(); }
 
 bool Barrier::has_moving_obstacle() const { return impl_->has_motion; }
+ContactMeter& Barrier::meter() const { return impl_->search.meter(); }
 
 std::vector<Vec3d> Barrier::obstacle_points(double time) const { return impl_->obstacles(time); }
 
@@ -142,6 +178,7 @@ double Barrier::obstacle_work(Positions x, double from, double to) const {
 double Barrier::value(Positions x, const Context& context) const {
   const std::vector<Vec3d> p = impl_->points(x, context.time);
   const auto stencils = impl_->search.at(p);
+  const ContactMeter::Span span(meter(), ContactMeter::forces);
   return parallel_sum(static_cast<int>(stencils->size()), [&](int first, int last) {
     double sum = 0;
     for (int k = first; k < last; ++k) sum += (*stencils)[k].value(p);
@@ -152,6 +189,7 @@ double Barrier::value(Positions x, const Context& context) const {
 void Barrier::add_gradient(Positions x, const Context& context, double scale, std::span<double> g) const {
   const std::vector<Vec3d> p = impl_->points(x, context.time);
   const auto stencils = impl_->search.at(p);
+  const ContactMeter::Span span(meter(), ContactMeter::forces);
   std::vector<std::array<Vec3d, 4>> forces(stencils->size());
   parallel_chunks(static_cast<int>(stencils->size()), [&](int first, int last) {
     for (int k = first; k < last; ++k) forces[k] = (*stencils)[k].gradient(p);
@@ -161,12 +199,15 @@ void Barrier::add_gradient(Positions x, const Context& context, double scale, st
       const int own = (*stencils)[k].point[i];
       if (own >= 0 && impl_->mesh.row[own] >= 0) add_vec(scale * forces[k][i], impl_->mesh.row[own], g);
     }
+  if (impl_->has_motion && obstacle_end(context) != context.time)
+    impl_->add_obstacle_pull(p, impl_->obstacle_moves(context.time, obstacle_end(context)), scale, g);
 }
 
 int Barrier::add_hessian(Positions x, const Context& context, double scale, const Projection& projection,
                          BlockSparse& H) const {
   const std::vector<Vec3d> p = impl_->points(x, context.time);
   const auto stencils = impl_->search.at(p);
+  const ContactMeter::Span span(meter(), ContactMeter::forces);
   const auto kind_of = [&](const ContactStencil& stencil) {
     if (stencil.is_over_plane()) return Definiteness::exact;
     for (const int own : stencil.point)
@@ -195,10 +236,10 @@ int Barrier::add_hessian(Positions x, const Context& context, double scale, cons
 }
 
 int Barrier::add_stops(Positions x, const Context& context, std::span<const double> d, const ScaledModel& model) const {
+  const ContactMeter::Span span(meter(), ContactMeter::bound);
   const auto& [scale, g, H] = model;
-  const std::vector<Vec3d> p = impl_->points(x, context.time);
-  const std::vector<Impact> impacts =
-      StepBound(impl_->mesh, impl_->laws, impl_->search, impl_->sizes).impacts(p, impl_->displacements(d));
+  const std::vector<Vec3d> p = impl_->points(x, context.time), u = impl_->displacements(d, context);
+  const std::vector<Impact> impacts = StepBound(impl_->mesh, impl_->laws, impl_->search, impl_->sizes).impacts(p, u);
   for (const Impact& impact : impacts) {
     const Vec3d n = impact.distance.normal();
     double gap = 0;
@@ -207,8 +248,8 @@ int Barrier::add_stops(Positions x, const Context& context, std::span<const doub
     for (int k = 0; k < impact.distance.count; ++k) {
       const int own = impact.point[impact.distance.point[k]];
       if (own < 0) continue;
-      gap += impact.distance.c[k] * dot(n, p[own]);
       row[k] = impl_->mesh.row[own];
+      gap += impact.distance.c[k] * dot(n, row[k] < 0 ? p[own] + u[own] : p[own]);
       c[k] = impact.distance.c[k];
     }
     const double k = scale * impact.stiffness;
@@ -226,15 +267,17 @@ int Barrier::add_stops(Positions x, const Context& context, std::span<const doub
 }
 
 double Barrier::max_step(Positions x, const Context& context, std::span<const double> d) const {
+  const ContactMeter::Span span(meter(), ContactMeter::bound);
   return StepBound(impl_->mesh, impl_->laws, impl_->search, impl_->sizes)
-      .largest(impl_->points(x, context.time), impl_->displacements(d));
+      .largest(impl_->points(x, context.time), impl_->displacements(d, context));
 }
 
 double Barrier::max_step(Positions x, std::span<const double> d, double from, double to) const {
-  const std::vector<Vec3d> start = impl_->points(x, from), end = impl_->points(x, to);
-  std::vector<Vec3d> u = impl_->displacements(d);
+  const ContactMeter::Span span(meter(), ContactMeter::bound);
+  const std::vector<Vec3d> start = impl_->points(x, from);
+  std::vector<Vec3d> u = impl_->obstacle_moves(from, to);
   for (size_t i = 0; i < u.size(); ++i)
-    if (impl_->mesh.row[i] < 0) u[i] = end[i] - start[i];
+    if (impl_->mesh.row[i] >= 0) u[i] = point(d, impl_->mesh.row[i]);
   return StepBound(impl_->mesh, impl_->laws, impl_->search, impl_->sizes).largest(start, std::move(u));
 }
 

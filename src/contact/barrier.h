@@ -4,6 +4,7 @@
 #pragma once
 #include <memory>
 
+#include "contact/contact_cost.h"
 #include "contact/contact_laws.h"
 #include "contact/contact_mesh.h"
 #include "contact/contact_stencil.h"
@@ -34,6 +35,8 @@ class Barrier : public Energy, public StepLimitingEnergy, public StoppingEnergy 
   ~Barrier() override;
 
   std::string_view name() const override { return "contact"; }
+  // If obstacles advance along the next direction (StepContext::obstacle_end), the gradient includes the change of
+  // forces by their motion to first order, and bounds of steps and stops include the motion.
   double value(Positions x, const Context& context) const override;
   void add_gradient(Positions x, const Context& context, double scale, std::span<double> g) const override;
   int add_hessian(Positions x, const Context& context, double scale, const Projection& projection,
@@ -46,6 +49,7 @@ class Barrier : public Energy, public StepLimitingEnergy, public StoppingEnergy 
                 const ScaledModel& model) const override;
 
   const ContactMesh& mesh() const;
+  ContactMeter& meter() const;  // of its cost, and that of friction
   const ContactLaws& laws() const;
   // Returns a point whose distance to its own body at rest is zero; -1: none.
   int self_touching_point() const;

@@ -123,6 +123,42 @@ TEST(Barrier, RoundObstaclesHaveExactDerivatives) {
   for (int i = 0; i < 9; ++i) EXPECT_NEAR(Hv[i], (high[i] - low[i]) / (2 * e), 1e-5 * max_abs(Hv)) << i;
 }
 
+// Obstacles that advance along a direction: a plane, a ball and a plate below a triangle.
+TEST(Barrier, ObstacleMotionChangesGradientToFirstOrder) {
+  const std::vector<Vec3d> X = {{{0, 0.05, 0}}, {{1, 0.03, 0}}, {{0.1, 0.06, 1}}};
+  const std::vector<Vec3d> plate = {{{-1, -0.04, -1}}, {{2, -0.04, -1}}, {{0, -0.02, 3}}};
+  const auto moving = [](const char* name, const Vec3d& velocity) {
+    const auto motion = [velocity](double time, std::span<const Vec3d> start, std::span<Vec3d> x) {
+      for (size_t i = 0; i < x.size(); ++i) x[i] = start[i] + time * velocity;
+    };
+    return ContactPart{.name = name, .is_obstacle = true, .motion = motion};
+  };
+  ContactMesh mesh;
+  mesh.add({.name = "body", .young = 1e5}, X, std::vector<Triangle>{{0, 1, 2}}, std::vector<int>{0, 1, 2});
+  mesh.add_plane(moving("plane", {{0.2, 1, 0}}), {{0, 0, 0}}, {{0, 1, 0}});
+  ContactPart ball = moving("ball", {{0.5, -1, 0.1}});
+  ball.radius = 0.5;
+  mesh.add_capsule(ball, {Vec3d{{0.3, 0.62, 0.3}}, Vec3d{{0.3, 0.62, 0.3}}});
+  mesh.add(moving("plate", {{0, 0.7, 0.3}}), plate, std::vector<Triangle>{{0, 2, 1}}, {});
+  const Barrier barrier(std::move(mesh), {.reach = 0.1});
+  std::vector<double> x;
+  for (const Vec3d& at : X) x.insert(x.end(), at.a, at.a + 3);
+  ASSERT_GE(barrier.summary(x, 0).contacts, 7);
+  const auto gradient = [&](double time, std::optional<double> end) {
+    Energy::Context context;
+    context.time = time;
+    context.obstacle_end = end;
+    std::vector<double> g(9);
+    barrier.add_gradient(x, context, 1, g);
+    return g;
+  };
+  const double e = 1e-7;
+  const std::vector<double> at_start = gradient(0, {}), pulled = gradient(0, e);
+  const std::vector<double> high = gradient(e, {}), low = gradient(-e, {});
+  for (int i = 0; i < 9; ++i)
+    EXPECT_NEAR((pulled[i] - at_start[i]) / e, (high[i] - low[i]) / (2 * e), 1e-5 * max_abs(at_start) / 0.01) << i;
+}
+
 TEST(Barrier, ExactHessianMatchesDifferences) {
   Boxes boxes(4e-4, 0.013, 0.3);
   boxes.shake(1e-4);

@@ -10,20 +10,22 @@
 namespace aspic {
 namespace {
 
-// A larger margin reduces the searches but adds pairs.
-constexpr double kMargin = 0.03;  // relative to the mean edge at a point
-constexpr double kLonger = 0.1;   // relative to the displacement of a point
+// Larger margins reduce the searches but add pairs: few within a part, where most features are an edge apart.
+constexpr double kMargin = 0.03;       // relative to the mean edge at a point
+constexpr double kMarginWithin = 0.1;  // the same for pairs of one part
+constexpr double kLonger = 0.1;        // relative to the displacement of a point
 constexpr double kRounding = 1e-6;
 constexpr double kMinShrink = 0.98;  // minimum shrink for which candidates are complete
 
 // Returns margins of at least half the reach, which the distances at rest need.
-std::vector<double> margins(const ContactMesh& mesh, double least) {
+std::vector<double> margins(PairScope scope, const ContactMesh& mesh, double least) {
+  const double share = scope == PairScope::within_parts ? kMarginWithin : kMargin;
   std::vector<double> length(mesh.rest.size(), 0.0);
   std::vector<int> count(mesh.rest.size(), 0);
   for (const Edge& edge : mesh.edges)
     for (const int p : edge) length[p] += norm(mesh.rest[edge[1]] - mesh.rest[edge[0]]), ++count[p];
   for (size_t p = 0; p < length.size(); ++p)
-    length[p] = mesh.row[p] < 0 ? least : std::max(least, kMargin * length[p] / std::max(1, count[p]));
+    length[p] = mesh.row[p] < 0 ? least : std::max(least, share * length[p] / std::max(1, count[p]));
   return length;
 }
 
@@ -99,7 +101,7 @@ class CandidateSearch::Near : public PairFilter {
 };
 
 CandidateSearch::CandidateSearch(PairScope scope, const ContactMesh& mesh, const ContactLaws& laws)
-    : scope_(scope), mesh_(mesh), laws_(laws), margin_(margins(mesh, laws.largest_reach())) {
+    : scope_(scope), mesh_(mesh), laws_(laws), margin_(margins(scope, mesh, laws.largest_reach())) {
   int edge = 0, triangle = 0;
   for (int part = 0; part < static_cast<int>(mesh.parts.size()); ++part) {
     SurfacePrimitives primitives{.vertices = std::vector<int>(mesh.parts[part].point_count)};

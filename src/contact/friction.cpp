@@ -224,6 +224,7 @@ void Friction::lag(Positions x, double time, Context& context) const {
   auto& own = static_cast<FrictionContext&>(context);
   const std::vector<Vec3d> points = barrier_.points(x, time);
   const auto stencils = barrier_.stencils(x, time);
+  const ContactMeter::Span span(barrier_.meter(), ContactMeter::forces);
   std::vector<Vec3d> start, end;
   if (barrier_.has_moving_obstacle())
     start = barrier_.points(x, own.obstacle_time), end = barrier_.points(x, context.time);
@@ -265,6 +266,7 @@ double Friction::obstacle_work(Positions x, const Context& context) const {
 }
 
 double Friction::value(Positions x, const Context& context) const {
+  const ContactMeter::Span span(barrier_.meter(), ContactMeter::forces);
   const FrictionContext& own = friction(context);
   double sum = 0;
   for (const Slider& slider : own.sliders) {
@@ -275,6 +277,7 @@ double Friction::value(Positions x, const Context& context) const {
 }
 
 void Friction::add_gradient(Positions x, const Context& context, double scale, std::span<double> g) const {
+  const ContactMeter::Span span(barrier_.meter(), ContactMeter::forces);
   const FrictionContext& own = friction(context);
   add_forces(own.sliders, {x, own.start}, scale, g);
 }
@@ -313,6 +316,7 @@ double Friction::creep(Positions x, const Context& context) const {
 
 // f is convex, so the Hessian needs no modification.
 int Friction::add_hessian(Positions x, const Context& context, double scale, const Projection&, BlockSparse& H) const {
+  const ContactMeter::Span span(barrier_.meter(), ContactMeter::forces);
   const FrictionContext& own = friction(context);
   for (const Slider& slider : own.sliders)
     add_stiffness(slider, stiffness(slider, slip(slider, x, own.start)), scale, H);
@@ -323,6 +327,7 @@ int Friction::add_hessian(Positions x, const Context& context, double scale, con
 // 0 while it slides. Models it as a sticking slider with the force 2 f u / e.
 int Friction::add_stops(Positions x, const Context& context, std::span<const double> d,
                         const ScaledModel& model) const {
+  const ContactMeter::Span span(barrier_.meter(), ContactMeter::forces);
   const auto& [scale, g, H] = model;
   const FrictionContext& own = friction(context);
   int count = 0;

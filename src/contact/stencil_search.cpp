@@ -93,6 +93,7 @@ std::optional<PathCandidates> StencilSearch::along(PairScope scope, std::span<co
 std::shared_ptr<const ContactStencils> StencilSearch::at(std::span<const Vec3d> points) const {
   const std::scoped_lock lock(mutex_);
   if (stencils_ && equal(points, points_)) return stencils_;
+  const ContactMeter::Span span(meter_, ContactMeter::search);
   auto between = between_.along(points, {}), within = within_.along(points, {});
   if (!between || !within) throw std::length_error(kTooMany);
   points_.assign(points.begin(), points.end());
@@ -132,6 +133,7 @@ void StencilSearch::add_point(const PathCandidates& candidates, std::span<const 
   const int own = mesh_.part[p];
   NearFeatures near;
   int other = -1;
+  int distances = 0;
   double reach = 0, radius = 0;
   const auto finish = [&] {
     for (const NearFeatures::Entry& entry : near.entries()) {
@@ -166,6 +168,7 @@ void StencilSearch::add_point(const PathCandidates& candidates, std::span<const 
       if (own == other) reach = std::min(reach, cap_[p]);
     }
     if (laws_(own, other).stiffness == 0 || candidates.least_gap(p, candidate, corner) >= radius + reach) continue;
+    ++distances;
     const Distance to_triangle = point_triangle_distance({x[p], x[corner[0]], x[corner[1]], x[corner[2]]});
     if (!(to_triangle.d < radius + reach)) continue;
     if (mesh_.parts[own].radius > 0) {
@@ -184,16 +187,19 @@ void StencilSearch::add_point(const PathCandidates& candidates, std::span<const 
       if (e < 0 || mesh_.edge_share[e] == 0) continue;
       const auto& [a, b] = mesh_.edges[e];
       if (a == p || b == p || !near.visits_edge(e)) continue;
+      ++distances;
       const Distance to_edge = point_edge_distance({x[p], x[a], x[b]});
       if (to_edge.d < radius + reach) near.add(to_edge, {p, a, b, -1}, mesh_.edge_share[e]);
     }
     for (const int q : corner) {
       if (mesh_.point_share[q] == 0 || !near.visits_point(q)) continue;
+      ++distances;
       const Distance to_point = point_point_distance(x[p], x[q]);
       if (to_point.d < radius + reach) near.add(to_point, {p, q, -1, -1}, mesh_.point_share[q]);
     }
   }
   finish();
+  if (distances > 0) meter_.add_distances(distances);
 }
 
 // A plane is a face with its foot in the interior.
@@ -216,6 +222,7 @@ void StencilSearch::add_planes(std::span<const Vec3d> x, int p, ContactStencils&
 
 void StencilSearch::add_edges(const EdgePair& pair, std::span<const Vec3d> x, ContactStencils& found) const {
   const Edge &a = mesh_.edges[pair.first], &b = mesh_.edges[pair.second];
+  meter_.add_distances(1);
   const Distance distance = edge_edge_distance({x[a[0]], x[a[1]], x[b[0]], x[b[1]]});
   const double reach = edge_reach(mesh_, laws_, pair);
   const int i = mesh_.part[a[0]], j = mesh_.part[b[0]];

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "contact/contact_candidates.h"
+#include "contact/contact_cost.h"
 #include "contact/contact_stencil.h"
 
 namespace aspic {
@@ -26,6 +27,7 @@ class StencilSearch {
   // many.
   std::optional<PathCandidates> along(PairScope scope, std::span<const Vec3d> points, std::span<const Vec3d> d) const;
 
+  ContactMeter& meter() const { return meter_; }
   int self_touching_point() const;  // a point whose distance to its own body at rest is zero; -1: none
 
  private:
@@ -38,6 +40,7 @@ class StencilSearch {
   const ContactMesh& mesh_;
   const ContactLaws& laws_;
   std::vector<double> cap_;  // upper bound of the reach of each point to its own body: half its distance at rest [m]
+  mutable ContactMeter meter_;
   mutable std::mutex mutex_;
   mutable CandidateSearch within_, between_;
   mutable std::vector<Vec3d> points_;  // positions of stencils_

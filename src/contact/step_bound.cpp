@@ -70,22 +70,26 @@ MovingPair StepBound::pair(const Line& line, PairKind kind, const std::array<int
   return moving;
 }
 
+double StepBound::step_of(const MovingPair& pair, const StepRule& rule) const {
+  const SafeStep step = largest_step(pair, rule);
+  search_.meter().add_distances(step.evaluations);
+  return step.alpha;
+}
+
 double StepBound::to_triangle(const Line& line, int i, const NearTriangle& near, double step) const {
   const Triangle& t = mesh_.triangles[near.triangle];
   const ContactLaw& law = laws_(mesh_.part[i], mesh_.part[t[0]]);
   if (line.candidates.least_gap(i, near, t) > law.radius + law.reach) return step;
-  return largest_step(pair(line, PairKind::point_triangle, {i, t[0], t[1], t[2]}),
-                      {.landing = kLanding * law.reach, .offset = law.radius, .horizon = step})
-      .alpha;
+  return step_of(pair(line, PairKind::point_triangle, {i, t[0], t[1], t[2]}),
+                 {.landing = kLanding * law.reach, .offset = law.radius, .horizon = step});
 }
 
 double StepBound::of_edges(const Line& line, const EdgePair& edges, double step) const {
   const Edge &a = mesh_.edges[edges.first], &b = mesh_.edges[edges.second];
   const ContactLaw& law = laws_(mesh_.part[a[0]], mesh_.part[b[0]]);
   if (line.candidates.least_gap(edges, a, b) > law.radius + law.edge_reach) return step;
-  return largest_step(pair(line, PairKind::edge_edge, {a[0], a[1], b[0], b[1]}),
-                      {.landing = kLanding * edge_reach(mesh_, laws_, edges), .offset = law.radius, .horizon = step})
-      .alpha;
+  return step_of(pair(line, PairKind::edge_edge, {a[0], a[1], b[0], b[1]}),
+                 {.landing = kLanding * edge_reach(mesh_, laws_, edges), .offset = law.radius, .horizon = step});
 }
 
 // Scales u, and `factor` with it, to a line with few enough candidates. Returns nothing if the line would be too short.
@@ -139,7 +143,7 @@ std::vector<Impact> StepBound::with_planes(std::span<const Vec3d> p, std::span<c
       if (!(gap + dot(plane.normal, u[i] - u[plane.point]) < landing)) continue;
       found.push_back({.point = {i, -1, -1, -1},
                        .distance = {.r = plane.normal, .d = 1},
-                       .offset = dot(plane.normal, p[plane.point]),
+                       .offset = dot(plane.normal, p[plane.point] + u[plane.point]),
                        .landing = landing,
                        .stiffness = kSpring * law.stiffness * mesh_.area[i] / law.reach});
     }

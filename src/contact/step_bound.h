@@ -42,6 +42,7 @@ class StepBound {
   double among(PairScope scope, std::span<const Vec3d> p, std::vector<Vec3d>& u) const;
   double to_planes(std::span<const Vec3d> p, std::span<const Vec3d> u, int i, double step) const;
   static MovingPair pair(const Line& line, PairKind kind, const std::array<int, 4>& point);
+  double step_of(const MovingPair& pair, const StepRule& rule) const;
   double to_triangle(const Line& line, int i, const NearTriangle& near, double step) const;
   double of_edges(const Line& line, const EdgePair& edges, double step) const;
   std::vector<Impact> with_planes(std::span<const Vec3d> p, std::span<const Vec3d> u) const;

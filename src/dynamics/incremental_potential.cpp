@@ -113,9 +113,9 @@ void IncrementalPotential::set_potential_step(const StepContext& step) {
   for (ActiveTerm& V : potential_) V.begin_step(step);
 }
 
-void IncrementalPotential::move_obstacles(double time) {
+void IncrementalPotential::move_obstacles(double time, std::optional<double> end) {
   for (ActiveTerm& V : potential_)
-    if (&V.energy() == model_.contact) V.begin_step({.h = V.context().h, .time = time});
+    if (&V.energy() == model_.contact) V.begin_step({.h = V.context().h, .time = time, .obstacle_end = end});
 }
 
 void IncrementalPotential::set_damping_step(const StepContext& step) {

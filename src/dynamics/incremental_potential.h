@@ -16,22 +16,23 @@
 
 namespace aspic {
 
-class IncrementalPotential : public Objective, public HasMetric, public HasParts, public HasStops {
+class IncrementalPotential : public Objective, public HasMetric, public HasParts, public HasStops, public HasLag {
  public:
   IncrementalPotential(const Model& model, const Pins& pins);  // both must outlive this
 
   // Set the step for subsequent evaluations of the terms of V and D. Called before begin_step().
   void set_potential_step(const StepContext& step);
   void set_damping_step(const StepContext& step);
-  // Sets the time of the obstacles [s]. Called after set_potential_step().
-  void move_obstacles(double time);
+  // Sets the time of the obstacles [s], and that at the end of the next direction, see StepContext::obstacle_end.
+  // Called after set_potential_step().
+  void move_obstacles(double time, std::optional<double> end = {});
   // Sets q~ [m], w and f, and discards what is known about the last step. Called before the first evaluation.
   void begin_step(std::span<const double> predicted, double inertia /* w */, double factor /* f */);
 
   // Returns whether a term of D has lagged coefficients, see LaggedEnergy.
-  bool is_lagged() const;
+  bool is_lagged() const override;
   // Evaluates the lagged coefficients at q.
-  void update_lagged(std::span<const double> q);
+  void update_lagged(std::span<const double> q) override;
 
   // Returns E(q). Sums the magnitudes of its terms for the rounding error.
   Evaluation evaluate(std::span<const double> q) override;

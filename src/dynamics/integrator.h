@@ -61,7 +61,7 @@ struct StepForces {
 struct StepSolve {
   MinimizeReport work = {.status = Status::converged};
   double decrement = 0;  // maximum over the minimizations [J]
-  int passes = 0;        // minimizations until lagged coefficients converged, maximum over the stages
+  int passes = 0;        // evaluations of lagged coefficients, maximum over the stages
   InitialGuess guess = InitialGuess::none;
 
   // Returns false if the step cannot continue from this stage.

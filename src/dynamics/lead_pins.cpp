@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
 #include <vector>
 
 #include "contact/barrier.h"
@@ -11,7 +12,9 @@ namespace aspic {
 namespace {
 
 constexpr double kSmallestPart = 1.0 / 1024;
+constexpr double kShortPart = 0.1;  // share of the remaining way; shorter moves are followed by a few iterations
 constexpr int kMaxParts = 200;
+constexpr int kPatience = 3;  // moves by less than kSmallestPart in a row
 
 MinimizeOptions rough(const MinimizeOptions& options) {
   MinimizeOptions few = options;
@@ -20,6 +23,111 @@ MinimizeOptions rough(const MinimizeOptions& options) {
   few.tolerance = 1e-2;
   few.stop = options.stop.without_deadline();  // a step needs a start
   return few;
+}
+
+// Pins and obstacles on their way to the positions at the end of the step.
+class Lead {
+ public:
+  Lead(const StepTools& tools, double time, std::span<const double> from, std::span<const double> to,
+       MinimizeReport& work)
+      : tools_(tools),
+        time_(time),
+        to_(to.begin(), to.end()),
+        from_(from),
+        reached_(from.begin(), from.end()),
+        work_(work) {}
+
+  double done() const { return done_; }
+  std::span<const double> reached() const { return reached_; }
+  const Evaluation& value() const { return *value_; }  // there, after a move
+
+  // Moves them to a part of the whole way, and the free vertices by alpha d. Returns false if that is blocked.
+  bool move(double next, double alpha = 0, std::span<const double> d = {}) {
+    trial_ = reached_;
+    for (size_t i = 0; i < d.size(); ++i) trial_[i] += alpha * d[i];
+    between_ = to_;
+    if (next < 1)
+      for (size_t i = 0; i < to_.size(); ++i) between_[i] = from_[i] + next * (to_[i] - from_[i]);
+    tools_.pins.copy_held(between_, trial_);
+    tools_.E.move_obstacles(time_at(next));
+    const Evaluation there = tools_.E.evaluate(trial_);
+    ++work_.values;
+    const bool is_finite = std::isfinite(there.value);
+    if (!is_finite || !is_free(tools_, {reached_, trial_, time_at(done_), time_at(next)})) return false;
+    done_ = next;
+    value_ = there;
+    reached_.swap(trial_);
+    return true;
+  }
+
+  // Moves obstacles and free vertices along a Newton direction that includes the motion of the obstacles, as far as
+  // contact allows. Returns the share of the remaining way.
+  double carry() {
+    g_.resize(reached_.size()), d_.resize(reached_.size());
+    tools_.E.move_obstacles(time_at(done_), time_);
+    tools_.E.gradient(reached_, g_);
+    ++work_.gradients, ++work_.iterations;
+    tools_.direction.begin();
+    DirectionReport made;
+    const bool is_made = tools_.direction.compute({tools_.E, reached_, g_, {}, tools_.options.stop}, d_, made);
+    work_.add(made);
+    const double reach = is_made ? tools_.E.max_step(reached_, d_) : 0;
+    for (double part = std::min(1.0, reach); part > kSmallestPart; part /= 2)
+      if (move(part < 1 ? done_ + part * (1 - done_) : 1, part, d_)) return part;
+    return 0;
+  }
+
+  // A few iterations where they are. Returns false if the user interrupts.
+  bool settle() {
+    tools_.E.move_obstacles(time_at(done_));
+    InitialIterate at(reached_);
+    at.value = value_;
+    const MinimizeReport spent =
+        tools_.minimizer.minimize(tools_.E, tools_.direction, at, rough(tools_.options), tools_.observe);
+    add_work(spent, work_);
+    value_.reset();
+    return spent.status != Status::interrupted;
+  }
+
+ private:
+  double time_at(double part) const {
+    return part < 1 ? tools_.obstacle_start + part * (time_ - tools_.obstacle_start) : time_;
+  }
+
+  const StepTools& tools_;
+  double time_;
+  std::vector<double> to_;
+  std::span<const double> from_;
+  std::vector<double> reached_;
+  MinimizeReport& work_;
+  double done_ = 0;
+  std::optional<Evaluation> value_;  // of reached_, if known
+  std::vector<double> trial_, between_, g_, d_;
+};
+
+// Both return whether all are where they belong.
+bool move_all(Lead& lead) {
+  double part = 0.5;  // of the whole way
+  for (int i = 0; i < kMaxParts && part >= kSmallestPart; ++i) {
+    if (!lead.move(std::min(1.0, lead.done() + part))) {
+      part /= 2;
+      continue;
+    }
+    if (lead.done() == 1) return true;
+    if (!lead.settle()) return false;
+    part *= 2;
+  }
+  return false;
+}
+
+bool carry_all(Lead& lead) {
+  for (int i = 0, short_moves = 0; i < kMaxParts && short_moves < kPatience; ++i) {
+    const double before = lead.done(), part = lead.carry();
+    if (lead.done() == 1) return true;
+    short_moves = lead.done() - before < kSmallestPart ? short_moves + 1 : 0;
+    if (part < kShortPart && !lead.settle()) return false;
+  }
+  return false;
 }
 
 }  // namespace
@@ -45,37 +153,12 @@ Evaluation lead_pins(const StepTools& tools, double time, std::span<const double
   tools.pins.place(time, q);
   const Evaluation at_once = tools.E.evaluate(q);
   ++work.values;
-  const auto time_at = [&](double part) {
-    return part < 1 ? tools.obstacle_start + part * (time - tools.obstacle_start) : time;
-  };
-  if (std::isfinite(at_once.value) && is_free(tools, {from, q, time_at(0), time})) return at_once;
-  const std::vector<double> to(q.begin(), q.end());
-
-  std::vector<double> reached(from.begin(), from.end()), trial = reached, between = reached;
-  double done = 0, part = 0.5;
-  for (int i = 0; i < kMaxParts && part >= kSmallestPart; ++i) {
-    const double next = std::min(1.0, done + part);
-    for (size_t k = 0; k < trial.size(); ++k) between[k] = next < 1 ? from[k] + next * (to[k] - from[k]) : to[k];
-    trial = reached;
-    tools.pins.copy_held(between, trial);
-    tools.E.move_obstacles(time_at(next));
-    const Evaluation there = tools.E.evaluate(trial);
-    ++work.values;
-    if (!std::isfinite(there.value) || !is_free(tools, {reached, trial, time_at(done), time_at(next)})) {
-      part /= 2;
-      continue;
-    }
-    done = next;
-    reached = trial;
-    if (done == 1) {
-      std::copy(reached.begin(), reached.end(), q.begin());
-      return there;
-    }
-    const MinimizeReport spent =
-        tools.minimizer.minimize(tools.E, tools.direction, {reached, there}, rough(tools.options), tools.observe);
-    add_work(spent, work);
-    if (spent.status == Status::interrupted) break;
-    part *= 2;
+  if (std::isfinite(at_once.value) && is_free(tools, {from, q, tools.obstacle_start, time})) return at_once;
+  Lead lead(tools, time, from, q, work);
+  const bool carries = tools.model.contact && tools.model.contact->has_moving_obstacle();
+  if (carries ? carry_all(lead) : move_all(lead)) {
+    std::copy(lead.reached().begin(), lead.reached().end(), q.begin());
+    return lead.value();
   }
   return tools.model.contact ? Evaluation{std::numeric_limits<double>::infinity()} : at_once;
 }

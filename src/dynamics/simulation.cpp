@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <ctime>
 #include <limits>
 #include <optional>
 
@@ -70,6 +71,8 @@ struct Simulation::Impl {
 
   StepReport step(const IterationObserver& observe, const StopToken& stop) {
     Stopwatch stopwatch;
+    const std::clock_t cpu = std::clock();
+    const ContactCost cost = model.contact ? model.contact->meter().total() : ContactCost{};
     before = state;
     minimize = options.solver.minimize;
     minimize.stop = stop.discarding();
@@ -109,6 +112,8 @@ struct Simulation::Impl {
     describe_state(report);
     report_seconds = minimize.stop.now() - advanced;
     report.seconds = stopwatch.lap();
+    report.cpu_seconds = static_cast<double>(std::clock() - cpu) / CLOCKS_PER_SEC;
+    if (model.contact) report.contact_cost = model.contact->meter().total().since(cost);
     return report;
   }
 

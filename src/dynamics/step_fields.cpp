@@ -170,8 +170,8 @@ std::vector<StepField>& fields() {
                                         kMeasured)),
       optional(real<&R::friction_residual>(
           {"friction_residual", "N", "change of friction by the last update of normal forces"}, kMeasured)),
-      optional(count<&R::friction_passes>(
-          {"friction_passes", "", "minimizations until the normal forces of friction settled"}, kCount)),
+      optional(
+          count<&R::friction_passes>({"friction_passes", "", "evaluations of the normal forces of friction"}, kCount)),
       {"potential", "J", "energy of each term of V; a dead load has -f . x, not zero at rest",
        StepFieldType::potentials, kTable | kJson | kViewer},
       real<&R::potential_total>({"potential_total", "J", "sum of the potential energies"}, kTable | kFrame | kJson),

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "contact/contact_cost.h"
 #include "dynamics/initial_guess.h"
 #include "math/small.h"
 #include "optimize/minimize.h"
@@ -64,8 +65,7 @@ struct StepReport : Work {  // work of all solves of the step and of this report
   double friction_residual = 0;  // change of the friction forces by the last update of the normal forces [N]
   std::string friction_pair;     // parts where it is largest
   double step_limit = std::numeric_limits<double>::infinity();  // bound of the last step length by contact
-  int friction_passes =
-      0;  // minimizations until the normal forces converged; 1 without friction, 0 without minimization
+  int friction_passes = 0;  // evaluations of the normal forces; 1 without friction, 0 without minimization
 
   // Ledger: kinetic + potential changes by pin_work + obstacle_work - damping_loss - numerical_loss + residual_work.
   // [J]
@@ -84,6 +84,8 @@ struct StepReport : Work {  // work of all solves of the step and of this report
   double energy_slack = 0;       // bound minus energy; 0 without a bound [J]
   std::uint64_t state_hash = 0;  // hash of the state at the end, see state_hash()
   double seconds = 0;            // wall time of the step
+  double cpu_seconds = 0;        // CPU time of the process
+  ContactCost contact_cost;
 };
 
 }  // namespace aspic

@@ -22,6 +22,8 @@ struct StepContext {
   // Positions at which coefficients that depend on x are evaluated. Empty: `start`.
   Positions shape = {};
   std::optional<double> obstacle_time = {};  // time of moving obstacles at the start [s]; empty: time - h
+  // Time to which moving obstacles advance along the next direction [s], see Barrier. Empty: `time`.
+  std::optional<double> obstacle_end = {};
 };
 
 // An energy is a function of the positions x and of a context. Evaluations change neither the energy nor the context,
@@ -31,8 +33,9 @@ class Energy {
   // Inputs of an evaluation besides x. A term that needs more than the time and the length of the step derives its own
   // context. A context may be used only with the term that made it.
   struct Context {
-    double time = 0;  // [s]
-    double h = 0;     // length of the step [s]; 0 in statics
+    double time = 0;                     // [s]
+    double h = 0;                        // length of the step [s]; 0 in statics
+    std::optional<double> obstacle_end;  // see StepContext
     virtual ~Context() = default;
   };
 
@@ -52,6 +55,7 @@ class Energy {
   virtual void begin_step(const StepContext& step, Context& context) const {
     context.time = step.time;
     context.h = step.h;
+    context.obstacle_end = step.obstacle_end;
   }
 
   virtual double value(Positions x, const Context& context) const = 0;  // V(x) [J]; +inf where V is undefined

@@ -72,14 +72,32 @@ void RowCorrection::residual_on_rows(std::span<const double> r, std::span<const 
     });
 }
 
+// The other numbers of y_ are zero.
+void RowCorrection::subtract_product() {
+  const BlockPattern& p = *H_->pattern;
+  for (const int row : rows_) {
+    const Vec3d y = vec_at(y_, row);
+    for (int64_t s = p.row_start[row]; s < p.diagonal(row); ++s)
+      add_vec(-1.0 * (transpose(H_->block[s]) * y), p.column[s], r_);
+    add_vec(-1.0 * (H_->block[p.diagonal(row)] * y), row, r_);
+    for (int64_t u = p.upper_start[row]; u < p.upper_start[row + 1]; ++u)
+      add_vec(-1.0 * (H_->block[p.upper_slot[u]] * y), p.upper_row[u], r_);
+  }
+  for (const Stencil& stencil : H_->stencils)
+    for_each_block(stencil, [&](int i, int j, const Mat3d& K) {
+      add_vec(-1.0 * (K * vec_at(y_, j)), i, r_);
+      add_vec(-1.0 * (transpose(K) * vec_at(y_, i)), j, r_);
+    });
+}
+
 void RowCorrection::apply(ApproximateInverse& preconditioner, std::span<const double> r, std::span<double> z) {
   if (!is_needed()) return preconditioner.apply(r, z);
   for (size_t k = 0; k < rows_.size(); ++k) set_vec(vec_at(r, rows_[k]), static_cast<int>(k), b_);
   solve_rows();
   std::fill(y_.begin(), y_.end(), 0.0);
   for (size_t k = 0; k < rows_.size(); ++k) set_vec(vec_at(x_, static_cast<int>(k)), rows_[k], y_);
-  H_->multiply(y_, r_);
-  for (size_t i = 0; i < r_.size(); ++i) r_[i] = r[i] - r_[i];
+  std::copy(r.begin(), r.end(), r_.begin());
+  subtract_product();
   preconditioner.apply(r_, z);
   for (size_t i = 0; i < y_.size(); ++i) z[i] += y_[i];
   residual_on_rows(r, z);

@@ -27,6 +27,7 @@ class RowCorrection {
   bool factorize_rows(const BlockSparse& H);
   void residual_on_rows(std::span<const double> r,
                         std::span<const double> z);  // b_ = r - H z on the rows of the stencils
+  void subtract_product();                           // r_ -= H y_ for y_ on the rows of the stencils
   void solve_rows() { cholesky_.substitute(b_, x_); }
 
   const BlockSparse* H_ = nullptr;

@@ -6,6 +6,7 @@
 #include "base/error.h"
 #include "base/stopwatch.h"
 #include "optimize/convergence.h"
+#include "optimize/lag_updates.h"
 
 namespace aspic {
 
@@ -51,8 +52,9 @@ struct Progress {
   const MinimizeOptions& options;
   Evaluation value;
   MinimizeReport report = {};
-  double slope = 0;             // g.d
-  LineSearchResult step = {};   // result of the last line search
+  double slope = 0;            // g.d
+  LineSearchResult step = {};  // result of the last line search
+  LagUpdates lag = {};
   bool last_direction = false;  // the criterion holds for this direction
 };
 
@@ -72,6 +74,7 @@ struct Minimizer::Impl {
 
   MinimizeReport minimize(Progress& at, const IterationObserver& observe);
   void begin(Progress& at);
+  End update_lagged(Progress& at, End end);
   End test_convergence(Progress& at);
   InnerAccuracy inner_accuracy(const Progress& at) const;
   bool find_direction(Progress& at, const Iterate& iterate, Iteration& iteration);
@@ -91,7 +94,7 @@ MinimizeReport Minimizer::Impl::minimize(Progress& at, const IterationObserver& 
   const auto ended = [&report](Status status) { return report.status = status, report; };
   for (int i = 0;; ++i) {
     report.iterations = i;
-    if (const End end = test_convergence(at)) return ended(*end);
+    if (const End end = update_lagged(at, test_convergence(at))) return ended(*end);
     LiveIteration iteration{{.index = i, .value = report.value, .gradient_norm = report.gradient_norm}, at.E};
     const End end = find_step(at, iteration);
     if (!end) take_step(at, iteration);
@@ -105,7 +108,8 @@ MinimizeReport Minimizer::Impl::minimize(Progress& at, const IterationObserver& 
       report.iterations = i + !end;
       return ended(Status::interrupted);
     }
-    if (end) return ended(*end);
+    if (!end) continue;
+    if (const End last = update_lagged(at, end)) return ended(*last);
   }
 }
 
@@ -113,9 +117,28 @@ void Minimizer::Impl::begin(Progress& at) {
   for (auto* v : {&g, &d, &line.trial, &line.gradient}) v->resize(at.x.size());
   line.trials.reserve(64);
   at.direction.begin();
+  HasLag* lagged = at.options.updates_lagged ? dynamic_cast<HasLag*>(&at.E) : nullptr;
+  at.lag.begin(lagged && lagged->is_lagged() ? lagged : nullptr);
   at.E.gradient(at.x, g);
   convergence.begin(at.E, at.options, g);
   at.report.gradients = 1;
+}
+
+// Updates lagged coefficients if this is due where the minimization would continue or end otherwise. Returns the final
+// status if it ends at this iterate.
+Minimizer::Impl::End Minimizer::Impl::update_lagged(Progress& at, End end) {
+  MinimizeReport& report = at.report;
+  if (!at.lag.is_due(report, end)) return end;
+  at.lag.update(at.x);
+  at.direction.note_change();
+  at.value = at.E.evaluate(at.x);
+  at.E.gradient(at.x, g);
+  at.E.note_iterate(at.x);
+  convergence.measure(g);
+  ++report.values, ++report.gradients, ++report.updates;
+  report.lost_accuracy = 0;
+  const End updated = test_convergence(at);
+  return at.lag.end_after(report, at.E.scales().gradient_round_off, end, updated);
 }
 
 // Returns the final status if the minimization ends at this iterate.
@@ -179,7 +202,7 @@ bool Minimizer::Impl::find_direction(Progress& at, const Iterate& iterate, Itera
   if (!(at.slope < 0)) return false;
   if (convergence.tests_direction()) {
     at.report.reached = convergence.size_of_direction(g, d);
-    at.last_direction = convergence.is_near_minimum(at.report.reached, iteration.direction);
+    at.last_direction = at.lag.is_current() && convergence.is_near_minimum(at.report.reached, iteration.direction);
   }
   return true;
 }
@@ -201,6 +224,7 @@ void Minimizer::Impl::take_step(Progress& at, Iteration& iteration) {
   convergence.note_hessian();
   std::swap_ranges(line.trial.begin(), line.trial.end(), at.x.begin());
   at.value = at.step.value;
+  at.lag.note_step();
   if (!at.step.gradient_known) {
     at.E.gradient(at.x, line.gradient);
     ++iteration.gradients;

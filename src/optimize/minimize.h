@@ -26,8 +26,10 @@ enum class Status {
   undefined,        // the value or the gradient is not finite at the initial guess
   // Only for time steps:
   unstable,    // an explicit scheme generated most of the energy of the body
-  inaccurate,  // the smallest substep of an adaptive time step exceeds its tolerance
+  inaccurate,  // the smallest substep of an adaptive time step exceeds its tolerance, or lagged coefficients of E do
+               // not settle in kMaxUpdates updates
 };
+inline constexpr int kMaxUpdates = 50;  // of lagged coefficients in a minimization
 inline constexpr int kStatusCount = 10;
 std::string_view to_string(Status status);
 inline bool is_success(Status status) { return status == Status::converged || status == Status::round_off; }
@@ -51,8 +53,9 @@ struct MinimizeOptions {
   int max_iterations = 200;  // then the status is `iteration_limit`
   double tolerance = 1e-6;   // its unit depends on the criterion
   Criterion criterion = Criterion::scale;
-  double h = 1;              // time step for the criteria velocity and acceleration [s]
-  double max_forcing = 0.1;  // largest relative residual of inner linear solves
+  double h = 1;                 // time step for the criteria velocity and acceleration [s]
+  double max_forcing = 0.1;     // largest relative residual of inner linear solves
+  bool updates_lagged = false;  // whether lagged coefficients are updated between iterations, see HasLag
   LineSearchOptions line_search;
   StopToken stop = {};  // polled in every iteration
 };
@@ -91,6 +94,7 @@ struct MinimizeReport : Work {
   double lost_accuracy = 0;             // see HasParts::lost_accuracy(); if positive, the status is round_off
   double decrement = 0;                 // -g.d / 2 of the last iteration; 0 without one
   int trials = 0, fallbacks = 0, projected_hessians = 0, projected_elements = 0;
+  int updates = 0;  // updates of lagged coefficients
 };
 
 // Called after every iteration.

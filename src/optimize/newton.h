@@ -28,6 +28,7 @@ class Newton : public SearchDirection {
   std::string_view name() const override { return system_.truncates() ? "newton_cg" : "newton"; }
   std::string description() const override;
   void begin() override;
+  void note_change() override { system_.drop_kept(); }
   bool compute(const Iterate& at, std::span<double> d, DirectionReport& report) override;
   bool fall_back() override;
   bool estimates_minimizer() const override { return true; }

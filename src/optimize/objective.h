@@ -91,6 +91,14 @@ class HasStops {
                                        std::span<double> g) = 0;
 };
 
+// Interface for objectives with lagged coefficients, such as the normal forces in friction.
+class HasLag {
+ public:
+  virtual ~HasLag() = default;
+  virtual bool is_lagged() const = 0;                         // whether there are any
+  virtual void update_lagged(std::span<const double> x) = 0;  // evaluates them at x
+};
+
 // Round-off counts as convergence only below this fraction of the forces that the gradient sums.
 inline constexpr double kResolved = 1e-3;
 

@@ -46,6 +46,8 @@ class SearchDirection {
 
   // Starts a minimization. Discards all data of the last one.
   virtual void begin() {}
+  // Called when E has changed a little between two directions. Discards data that depend on the difference.
+  virtual void note_change() { begin(); }
   // Writes the direction d, 3 entries per block row. Returns false if no descent direction was found.
   virtual bool compute(const Iterate& at, std::span<double> d, DirectionReport& report) = 0;
   // Called if compute() failed or no step along d decreases E. Returns whether a more cautious direction exists;

@@ -238,9 +238,9 @@ class Explainer {
   }
 
   Explanation inaccurate() const {
-    if (report_.friction_passes > 1)
+    if (report_.friction_passes >= kMaxUpdates)
       return {"normal forces and friction did not settle after " + std::to_string(report_.friction_passes) +
-                  " minimizations: the last one would change friction by " + text(report_.friction_residual) + " N",
+                  " updates: the last one changes friction by " + text(report_.friction_residual) + " N",
               "contact.friction" + (report_.friction_pair.empty() ? "" : " between " + report_.friction_pair),
               smaller_steps() + ", or less friction"};
     if (simulation_.options().adaptive.tolerance < kFinest) return too_fine();

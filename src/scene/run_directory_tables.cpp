@@ -1,5 +1,7 @@
 #include "scene/run_directory_tables.h"
 
+#include <utility>
+
 #include "base/error.h"
 #include "dynamics/step_fields.h"
 #include "scene/run_directory_layout.h"
@@ -75,7 +77,9 @@ const std::vector<std::string> kIterationColumns = {"step",
                                                     "products",
                                                     "cycles"};
 constexpr char kIterationBytes[] = "iteration_bytes";  // in checkpoints: the size of iterations.csv
-const std::vector<std::string> kTimingColumns = {"step", "seconds"};
+const std::vector<std::string> kTimingColumns = {"step",           "seconds",       "cpu_seconds",    "hessian",
+                                                 "factorize",      "solve_linear",  "line_search",    "gradient",
+                                                 "contact_search", "contact_bound", "contact_forces", "distances"};
 
 }  // namespace
 
@@ -100,11 +104,19 @@ void RunTables::add_start(const StepReport& report) { steps_.append(step_row(rep
 
 void RunTables::add(const StepReport& report) {
   steps_.append(step_row(report));
-  timings_.append(CsvRow().add(report.step).add(report.seconds));
+  CsvRow times;
+  times.add(report.step).add(report.seconds).add(report.cpu_seconds);
+  for (double& stage : stages_) times.add(std::exchange(stage, 0.0));
+  const ContactCost& contact = report.contact_cost;
+  times.add(contact.search).add(contact.bound).add(contact.forces);
+  timings_.append(times.add(static_cast<double>(contact.distances)));
 }
 
 void RunTables::add(int step, const Iteration& iteration) {
   const DirectionReport& direction = iteration.direction;
+  const double seconds[] = {direction.hessian_seconds, direction.factorize_seconds, direction.solve_seconds,
+                            iteration.line_search_seconds, iteration.gradient_seconds};
+  for (size_t k = 0; k < stages_.size(); ++k) stages_[k] += seconds[k];
   CsvRow row;
   row.add(step).add(iteration.index).add(iteration.value).add(iteration.gradient_norm).add(iteration.decrement);
   row.add(iteration.alpha).add(iteration.trials).add(iteration.gradients).add(direction.hessians);

@@ -1,5 +1,6 @@
 // The tables of a run. steps.csv and iterations.csv are bit-reproducible, timings.csv is not.
 #pragma once
+#include <array>
 
 #include "dynamics/simulation.h"
 #include "io/checkpoint.h"
@@ -26,6 +27,7 @@ class RunTables {
 
  private:
   CsvFile steps_, iterations_, timings_;
+  std::array<double, 5> stages_ = {};  // seconds of the iterations since the last step, as in timings.csv
 };
 
 }  // namespace aspic

@@ -1,0 +1,62 @@
+// Decides when a minimization updates lagged coefficients, such as the normal forces in friction.
+#pragma once
+#include <algorithm>
+#include <limits>
+#include <optional>
+
+#include "optimize/minimize.h"
+
+namespace aspic {
+
+// The minimizer is that of E with the coefficients evaluated there. Before, coefficients are updated at the first
+// iterate and where the forces have fallen to a part of those after the last update.
+class LagUpdates {
+ public:
+  using End = std::optional<Status>;  // empty: the minimization continues
+
+  // E: null if the coefficients are constant.
+  void begin(HasLag* E) {
+    *this = {};
+    E_ = E;
+    is_current_ = !E;
+  }
+  void note_step() { is_current_ = !E_; }
+  bool is_current() const { return is_current_; }  // whether the coefficients are those at x
+
+  // Returns whether to update at x, where the minimization would continue or end otherwise.
+  bool is_due(const MinimizeReport& report, End end) const {
+    if (is_current_) return false;
+    return end ? is_success(*end) : report.reached <= next_ * report.threshold;
+  }
+  void update(std::span<const double> x) {
+    E_->update_lagged(x);
+    is_current_ = true;
+  }
+  // Returns how the minimization ends after an update. before, after: its ends without and with the update.
+  End end_after(const MinimizeReport& report, double round_off, End before, End after) {
+    next_ = report.threshold > 0 ? std::max(1.0, kReduction * report.reached / report.threshold) : 1;
+    if (after) return after;
+    if (report.updates == kMaxUpdates) return Status::inaccurate;
+    if (!before) return {};
+    stalled_ = report.reached < kProgress * least_ ? 0 : stalled_ + 1;
+    least_ = std::min(least_, report.reached);
+    const bool is_noise = *before == Status::round_off && report.reached <= kNoise * round_off;
+    return is_noise && stalled_ >= kStalled ? End(Status::round_off) : std::nullopt;
+  }
+
+ private:
+  // Updates in every iteration would cycle: contact forces jump between short steps.
+  static constexpr double kReduction = 0.5;  // of the forces until the next update
+  static constexpr double kProgress = 0.9;   // updates at minimizers that reduce the forces by less are stalled
+  static constexpr double kNoise = 100;      // forces below this multiple of their rounding error are noise
+  static constexpr int kStalled = 3;         // updates that end in noise before the minimization ends there
+
+  HasLag* E_ = nullptr;
+  bool is_current_ = true;
+  static constexpr double kInfinity = std::numeric_limits<double>::infinity();
+  double next_ = kInfinity;  // ratio of the forces to their threshold at the next update
+  double least_ = kInfinity;
+  int stalled_ = 0;
+};
+
+}  // namespace aspic
