@@ -30,7 +30,8 @@ class Function {
   Function(const Function&) = delete;
   Function& operator=(const Function&) = delete;
 
-  Objective& E();  // throws std::runtime_error if it has expired
+  virtual void set_pins_zero(std::span<double>) const {}  // in a direction
+  Objective& E();                                         // throws std::runtime_error if it has expired
   void expire() { E_ = nullptr; }
   const Layout& layout() const { return layout_; }
   Callbacks& callbacks() { return *callbacks_; }

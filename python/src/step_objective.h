@@ -16,6 +16,7 @@ class StepObjective : public Function {
 
   Array begin_step(const py::object& q, const py::object& v, double h, const py::object& time);
   Array begin_statics(const py::object& q, const py::object& time);
+  void set_pins_zero(std::span<double> d) const override { parts_->pins.set_zero(d); }
   void update_lagged(const py::object& q);
   bool is_lagged() const { return parts_->E.is_lagged(); }
   double round_off() const { return parts_->E.last.round_off; }
