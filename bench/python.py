@@ -1,7 +1,7 @@
 #!/usr/bin/python3
 """Costs of the Python package: a solver written in Python, observers, Ctrl-C. Needs example_05_lecture_loop.
 
-PYTHONPATH=build/release/python bench/python.py [--build build/release] [--cells 8] [--csv FILE]
+PYTHONPATH=build/release/python bench/python.py [--build build/release] [--cells 2 6] [--csv FILE]
 """
 import argparse
 import csv
@@ -48,7 +48,7 @@ def compare_loops(build, n, repeats=5):
     ours, theirs = [], []
     for _ in range(repeats):
         seconds, tip = lecture_loop(n)
-        output = subprocess.run([build / "examples/example_05_lecture_loop", str(n)], capture_output=True, text=True,
+        output = subprocess.run([build / "bin/example_05_lecture_loop", str(n)], capture_output=True, text=True,
                                 check=True).stdout
         assert abs(float(re.findall(r"y = (\S+) m", output)[-1]) - tip) < 2e-6, (output, tip)
         ours.append(seconds)
@@ -100,7 +100,7 @@ def interrupt_latencies(tries=20):
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--build", type=pathlib.Path, default=ROOT / "build/release")
-    parser.add_argument("--cells", type=int, nargs="*", default=[2, 6, 10])
+    parser.add_argument("--cells", type=int, nargs="*", default=[2, 6])
     parser.add_argument("--csv", type=argparse.FileType("w"), help="also write the rows to a file")
     arguments = parser.parse_args()
     rows = []

@@ -34,8 +34,9 @@ def minimize(f, x0, direction="newton", line_search=None, observe=None, **option
 
 
 def backtrack(E, x, d, g, alpha=1.0, c=1e-4, p=0.5, smallest=1e-10):
-    """The lecture's line search: the first alpha, alpha p, alpha p^2, ... of sufficient decrease; 0: none."""
+    """The lecture's line search: the first alpha, alpha p, alpha p^2, ... of sufficient decrease up to round-off; 0: none."""
     alpha, value, slope = min(alpha, 0.99 * E.max_step(x, d)), E(x), float((g * d).sum())
+    value += E.round_off
     while not E(x + alpha * d) <= value + c * alpha * slope:
         alpha *= p
         if alpha < smallest:

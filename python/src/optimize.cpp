@@ -29,13 +29,14 @@ Objective& Function::E() {
 double Function::value(const py::handle& x) {
   const Use use(occupancy_, "objective");
   const std::vector<double> in = layout_.in(x, "x");
-  double value = 0;
+  Evaluation found;
   {
     const py::gil_scoped_release free;
-    value = E().value(in);
+    found = E().evaluate(in);
   }
   callbacks_->rethrow();
-  return value;
+  round_off_ = found.round_off;
+  return found.value;
 }
 
 Array Function::gradient(const py::handle& x) {
@@ -327,6 +328,7 @@ void bind_optimize(py::module_& m) {
       .def(
           "max_step", [](Function& f, const py::object& x, const py::object& d) { return f.max_step(x, d); },
           py::arg("x"), py::arg("d"), "Largest alpha for which contact allows the path from x to x + alpha d.")
+      .def_property_readonly("round_off", &Function::round_off, "Bound of the rounding error of the last E(x).")
       .def_property_readonly("shape", [](const Function& f) { return py::tuple(py::cast(f.layout().shape)); });
   py::class_<PythonFunction, Function, std::shared_ptr<PythonFunction>>(m, "PythonObjective")
       .def(py::init(&PythonFunction::make), py::arg("f"), py::arg("x"));

@@ -300,7 +300,6 @@ void bind_step_objective(py::module_& m) {
       .def("update_lagged", &StepObjective::update_lagged, py::arg("q"),
            "Takes the normal forces of friction from q. Minimize again until nothing changes.")
       .def_property_readonly("is_lagged", &StepObjective::is_lagged, "Whether friction needs update_lagged().")
-      .def_property_readonly("round_off", &StepObjective::round_off, "Bound of the rounding error of the last E(q).")
       .def_property_readonly("time", &StepObjective::time, "At the end of the step [s].");
 }
 

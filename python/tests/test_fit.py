@@ -143,7 +143,7 @@ def test_jax_adapter_has_the_gradients_of_differences(monkeypatch):
     monkeypatch.delitem(sys.modules, "aspic.jax", raising=False)
     adapter = importlib.import_module("aspic.jax")
     equilibrium, trajectory, sim = differentiable()
-    theta, v = equilibrium.parameters, np.where(sim.pinned[:, None], 0, .1)
+    theta, v = equilibrium.parameters, np.where(sim.pinned[:, None], 0, np.full(sim.q.shape, .1))
     rng = np.random.default_rng(8)
     for f, core, inputs in ((adapter.equilibrium, equilibrium, (theta,)),
                             (adapter.trajectory, trajectory, (theta, sim.q, v))):

@@ -186,7 +186,7 @@ def test_compare_equals_that_of_the_command_line(scenes, program, tmp_path):
     for i, result in enumerate(results.values()):
         assert result["same_minimizer"] and result["report"].ok
         for name in ("excess", "distance"):
-            assert result[name] == table[name][i]
+            assert result[name] == pytest.approx(table[name][i], rel=1e-9)
         for name in ("iterations", "trials", "objective"):
             assert getattr(result["report"], name) == table[name][i]
         assert len(result["trace"]["index"]) == table["iterations"][i] + 1
