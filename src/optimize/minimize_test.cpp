@@ -228,7 +228,9 @@ TEST(LineSearch, TakesTheStepsOfACustomSearch) {
     return 0.0;
   };
   const MinimizeReport report = Minimizer().minimize(f, *newton_with(), x, options, [](const LiveIteration& iteration) {
-    if (iteration.alpha > 0) EXPECT_EQ(iteration.tried.size(), 1u);
+    if (iteration.alpha > 0) {
+      EXPECT_EQ(iteration.tried.size(), 1u);
+    }
   });
   EXPECT_TRUE(is_success(report.status));
   EXPECT_NEAR(x[0], 1, 1e-8);
