@@ -6,13 +6,15 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <cstdlib>
+#include <ctime>
 #include <numeric>
 
 using namespace aspic;
 using Vector = std::vector<double>;
 
-Model hanging_bar() {
-  return ModelBuilder(make_box({0, 0, 0}, {0.4, 0.1, 0.1}, {8, 2, 2}))
+Model hanging_bar(int n) {
+  return ModelBuilder(make_box({0, 0, 0}, {0.4, 0.1, 0.1}, {4 * n, n, n}))
       .material("neo_hookean", {.young = 1e5 /* [Pa] */, .poisson = 0.4})
       .density(1000)           // [kg/m^3]
       .gravity({0, -9.81, 0})  // [m/s^2]
@@ -22,9 +24,11 @@ Model hanging_bar() {
 
 double norm(const Vector& v) { return std::sqrt(std::inner_product(v.begin(), v.end(), v.begin(), 0.0)); }
 
-int main() {
+// An argument is the number of cells along the short edges.
+int main(int count, char** arguments) {
+  const int n = count > 1 ? std::atoi(arguments[1]) : 2;
   const double h = 0.01;  // [s]
-  Model model = hanging_bar();
+  Model model = hanging_bar(n);
   const State start = at_rest(model.mesh);
 
   const Pins pins(model.pins, start.q);
@@ -33,6 +37,7 @@ int main() {
   solver->analyze(E.pattern());
 
   Vector q = start.q, qdot = start.qdot, predicted = q, g(q.size()), d(q.size()), trial(q.size());
+  const std::clock_t begin = std::clock();
   for (int step = 1; step <= 20; ++step) {
     const Vector before = q;
     for (size_t i = 0; i < q.size(); ++i) predicted[i] = q[i] + h * qdot[i];
@@ -56,8 +61,9 @@ int main() {
     if (step % 5 == 0)
       std::printf("t = %.2f s: the tip is at y = %.6f m (%d iterations)\n", step * h, q.end()[-2], iteration);
   }
+  std::printf("%.3f s of CPU time\n", double(std::clock() - begin) / CLOCKS_PER_SEC);
 
-  Simulation simulation(hanging_bar(), {.h = h, .solver = {}});
+  Simulation simulation(hanging_bar(n), {.h = h, .solver = {}});
   for (int step = 0; step < 20; ++step) simulation.step();
   double difference = 0;
   for (size_t i = 0; i < q.size(); ++i) difference = std::max(difference, std::abs(q[i] - simulation.state().q[i]));

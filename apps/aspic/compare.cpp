@@ -9,12 +9,13 @@
 #include <nlohmann/json.hpp>
 
 #include "aspic/commands.h"
-#include "aspic/comparison.h"
 #include "aspic/interrupt.h"
+#include "aspic/method_text.h"
 #include "aspic/plot.h"
 #include "aspic/report_page.h"
 #include "base/error.h"
 #include "base/parallel.h"
+#include "dynamics/method_comparison.h"
 #include "io/atomic_file.h"
 #include "io/csv.h"
 #include "scene/scene.h"
@@ -192,6 +193,9 @@ void create(const fs::path& folder) {
 int compare(const CompareArguments& arguments) {
   if (arguments.threads > 0) set_thread_count(arguments.threads);
   Scene scene = load_scene(arguments.input, {.overrides = arguments.overrides, .mesher = {}});
+  std::vector<ComparedMethod> methods;
+  for (const std::string& method : arguments.methods)
+    methods.push_back({method, method_named(method, scene.simulation.options().solver)});
   const fs::path folder = arguments.out.empty() ? fs::path("out") / ("compare_" + scene.name) : arguments.out;
   create(folder);
   const Model& model = scene.simulation.model();
@@ -201,7 +205,7 @@ int compare(const CompareArguments& arguments) {
   const auto begun = [](const std::string& method) { fmt::print(stderr, "{} ...\n", method); };
   catch_interrupts();
   const Comparison comparison =
-      compare_methods(scene.simulation, {.methods = arguments.methods,
+      compare_methods(scene.simulation, {.methods = methods,
                                          .step = arguments.step,
                                          .max_seconds = arguments.max_seconds,
                                          .begun = begun,

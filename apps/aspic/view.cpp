@@ -57,6 +57,7 @@ struct ViewArguments {
   fs::path input;
   std::vector<std::string> overrides;
   int port = 0, threads = 0;  // 0: any; all
+  std::string embed;
   bool no_browser = false, play = false;
 };
 
@@ -104,7 +105,7 @@ int view_run(const ViewArguments& arguments) {
       viewer::make_report(arguments.input, load_scene(scene_of_run(arguments.input)), {.max_bytes = kLargestRun});
   if (!report.note.empty()) fmt::print("note: {}\n", report.note);
   fmt::print("{}: {} frames of a run\n", arguments.input.string(), report.frames);
-  Server server({.port = arguments.port, .page = report.text, .log = log_line});
+  Server server({.port = arguments.port, .page = report.text, .embed = arguments.embed, .log = log_line});
   catch_interrupts();
   print_address(server, arguments.no_browser);
   return serve_until_interrupted(server);
@@ -130,7 +131,8 @@ int view_scene(const ViewArguments& arguments) {
   print_scene(session);
   if (arguments.play) session.handle(R"({"do":"play"})", Role::steers);
 
-  Server server({.port = arguments.port, .page = viewer::page(), .session = &session, .log = log_line});
+  Server server(
+      {.port = arguments.port, .page = viewer::page(), .session = &session, .embed = arguments.embed, .log = log_line});
   listener = &server;
   catch_interrupts();
   print_address(server, arguments.no_browser);
@@ -161,6 +163,8 @@ The address works on this machine only and contains a token. Several pages can w
       ->allow_extra_args(false);
   command->add_option("--port", arguments->port, "Port to listen on; any free port by default")
       ->check(CLI::Range(1, 65535));
+  command->add_option("--embed", arguments->embed, "Site that may show the page in a frame, such as a notebook server")
+      ->type_name("ORIGIN");
   command->add_flag("--no-browser", arguments->no_browser, "Only print the address");
   command->add_flag("--play", arguments->play, "Start the simulation immediately");
   command->add_option("--threads", arguments->threads, "Threads; all cores by default; results do not depend on it")

@@ -51,6 +51,9 @@ struct Server::Impl {
         retry(network),
         access(acceptor.local_endpoint().port()),
         room(network, options.log) {
+    if (!options.embed.empty() && !is_site(options.embed))
+      throw InvalidInput(
+          fmt::format("--embed {}: expected a site without a path, such as http://localhost:8888", options.embed));
     if (options.session) {
       simulation.emplace(*options.session, room);
       room.open(*simulation);

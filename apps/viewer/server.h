@@ -15,6 +15,7 @@ struct ServerOptions {
   int port = 0;                // 0: any free port
   std::string page;            // HTML
   Session* session = nullptr;  // null: serves only the page, for a recorded run
+  std::string embed = {};      // the site that may show the page in a frame, such as http://localhost:8888; "": none
 
   // Handles the POST requests of the page one by one and returns the response. The server responds to an InvalidInput
   // with its message and status 400. Empty: POST requests are refused.
@@ -25,7 +26,7 @@ struct ServerOptions {
 
 class Server {
  public:
-  // Starts to listen. Throws InvalidInput if the port is not available.
+  // Starts to listen. Throws InvalidInput if the port is not available or `embed` is not a site.
   explicit Server(ServerOptions options);
   ~Server();  // waits for the end of the current step
 

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <array>
 #include <cerrno>
 #include <system_error>
@@ -38,6 +39,23 @@ bool Access::is_token(std::string_view text) const {
   for (size_t i = 0; i < token_.size(); ++i)
     difference |= static_cast<unsigned char>(text[i]) ^ static_cast<unsigned char>(token_[i]);
   return difference == 0;
+}
+
+bool is_site(std::string_view text) {
+  const auto is_word = [](std::string_view word, auto belongs) {
+    return !word.empty() && std::all_of(word.begin(), word.end(), belongs);
+  };
+  const auto is_digit = [](char c) { return c >= '0' && c <= '9'; };
+  const auto is_of_host = [&](char c) {
+    return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || is_digit(c) || c == '.' || c == '-';
+  };
+  const size_t scheme_end = text.find("://");
+  const std::string_view scheme = text.substr(0, scheme_end);
+  if (scheme_end == text.npos || (scheme != "http" && scheme != "https")) return false;
+  text.remove_prefix(scheme_end + 3);
+  const size_t colon = text.find(':');
+  return is_word(text.substr(0, colon), is_of_host) &&
+         (colon == text.npos || is_word(text.substr(colon + 1), is_digit));
 }
 
 Target parse_target(std::string_view target) {

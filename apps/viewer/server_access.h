@@ -22,6 +22,9 @@ class Access {
   std::string token_;
 };
 
+// Returns whether `text` is scheme://host or scheme://host:port with http or https, as browsers name a site.
+bool is_site(std::string_view text);
+
 struct Target {
   std::string path, token;  // the parts of "/path?token=..."
 };

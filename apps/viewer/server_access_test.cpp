@@ -39,6 +39,15 @@ TEST(Access, AcceptsItsOwnPages) {
     EXPECT_FALSE(access.is_origin(origin)) << origin;
 }
 
+TEST(Site, IsSchemeHostAndPort) {
+  for (const char* site : {"http://localhost:8888", "https://hub.example.org", "http://127.0.0.1:80"})
+    EXPECT_TRUE(is_site(site)) << site;
+  for (const char* text :
+       {"", "*", "'self'", "localhost:8888", "http://", "http://*", "http://a:", "http://a:x", "http://a/",
+        "http://a b", "http://a;script-src *", "http://a\r\nX: y", "ftp://a", "http://u@a"})
+    EXPECT_FALSE(is_site(text)) << text;
+}
+
 TEST(Target, SplitsPathAndToken) {
   EXPECT_EQ(parse_target("/").path, "/");
   EXPECT_EQ(parse_target("/").token, "");

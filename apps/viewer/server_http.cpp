@@ -19,13 +19,14 @@ constexpr std::chrono::seconds kHeadTime(10), kBodyTime(60);
 
 std::string view(beast::string_view text) { return {text.data(), text.size()}; }
 
-// Content security policy: the page may run its own scripts and connect to this server only.
-std::string content_policy(int port) {
+// Content security policy: the page may run its own scripts and connect to this server only. `embed`: see
+// ServerOptions.
+std::string content_policy(int port, const std::string& embed) {
   return fmt::format(
       "default-src 'none'; script-src 'unsafe-inline'; style-src 'unsafe-inline'; img-src data: blob:; font-src data:; "
-      "media-src blob:; connect-src 'self' ws://127.0.0.1:{0} ws://localhost:{0} data: blob:; frame-ancestors 'none'; "
+      "media-src blob:; connect-src 'self' ws://127.0.0.1:{0} ws://localhost:{0} data: blob:; frame-ancestors {1}; "
       "base-uri 'none'; form-action 'none'",
-      port);
+      port, embed.empty() ? "'none'" : embed);
 }
 
 // A page hides the token in its address. After a reload it finds the token in the storage of its tab.
@@ -130,7 +131,7 @@ HttpConnection::Response HttpConnection::response(Status status, const std::stri
   Response made{status, 11};
   made.set(http::field::content_type, type);
   made.set(http::field::cache_control, "no-store");
-  made.set("Content-Security-Policy", content_policy(service_.access.port()));
+  made.set("Content-Security-Policy", content_policy(service_.access.port(), service_.options.embed));
   made.set("Cross-Origin-Opener-Policy", "same-origin");
   made.set("Cross-Origin-Resource-Policy", "same-origin");
   made.set("Referrer-Policy", "no-referrer");

@@ -106,6 +106,28 @@ TEST_F(ServerTest, ForbidsOtherConnectionsOfThePage) {
   EXPECT_EQ(fields["Cache-Control"], "no-store");
 }
 
+TEST_F(ServerTest, OnlyTheNamedSiteMayFrameThePage) {
+  const std::string site = "http://localhost:8888";
+  const auto ancestors = [](const Server& server) {
+    const std::string policy(ask(server, {.target = "/?token=" + token_of(server)}).fields["Content-Security-Policy"]);
+    const size_t begin = policy.find("frame-ancestors ");
+    return policy.substr(begin, policy.find(';', begin) - begin);
+  };
+  EXPECT_EQ(ancestors(*server_), "frame-ancestors 'none'");
+  server_.reset();
+  server_.emplace(ServerOptions{.page = "<p>the page</p>", .session = &*session_, .embed = site});
+  EXPECT_EQ(ancestors(*server_), "frame-ancestors " + site);
+  // The frame is a page of this server. The site around it gets nothing.
+  EXPECT_EQ(ask(*server_, {.target = with_token("/"), .origin = site}).status, 403);
+  EXPECT_EQ(ask(*server_, {.target = with_token("/session"), .origin = site, .upgrade = true}).status, 403);
+  EXPECT_FALSE(TestPage(*server_).is_refused());
+}
+
+TEST_F(ServerTest, RefusesToBeFramedByAnythingElse) {
+  for (const std::string text : {"*", "localhost:8888", "http://localhost:8888/tree", "http://a; script-src *"})
+    EXPECT_THROW(Server({.page = "", .embed = text}), InvalidInput) << text;
+}
+
 TEST_F(ServerTest, RefusesOtherNamesAndOtherSites) {
   const std::string port = std::to_string(server_->port());
   EXPECT_EQ(ask(*server_, {.target = with_token("/"), .host = "localhost:" + port}).status, 200);

@@ -31,6 +31,11 @@ class Equilibrium:
         """The parameters of the scene, (m, p)."""
         return self._core.parameters
 
+    @property
+    def shape(self):
+        """Of the result: (n, 3)."""
+        return self._core.shape
+
     def solve(self, parameters=None, start=None):
         """Positions at rest, (n, 3) [m], from `start` or the last solution. Raises RuntimeError without convergence."""
         return self._core.solve(parameters, start)
@@ -59,6 +64,11 @@ class Trajectory:
     def parameters(self):
         """The parameters of the scene, (m, p)."""
         return self._core.parameters
+
+    @property
+    def shape(self):
+        """Of the result: (steps + 1, n, 3)."""
+        return self._core.shape
 
     def _set(self, parameters, q, v):
         if parameters is not None:

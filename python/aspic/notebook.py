@@ -2,6 +2,16 @@
 import html
 
 
+def in_notebook():
+    """Whether this is the kernel of a notebook."""
+    try:
+        from IPython import get_ipython
+    except ImportError:
+        return False
+    shell = get_ipython()
+    return shell is not None and hasattr(shell, "kernel")
+
+
 class Player:
     """A page in a frame of its own. It needs neither a server nor a kernel."""
 

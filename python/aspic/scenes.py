@@ -190,24 +190,31 @@ class Scene:
         return sum(len(b.vertices) for b in self.bodies[:self.bodies.index(body)])
 
     def save(self, folder):
-        """Writes scene.toml and its inputs into a folder, for the command line. Returns the path of the file."""
+        """Writes scene.toml and its inputs into a folder, for the command line. Returns the path of the file.
+
+        Raises InvalidInput if the scene has energies in Python, which a file cannot hold.
+        """
+        if self.energies:
+            names = ", ".join(f"'{getattr(e, 'name', type(e).__name__)}'" for e in self.energies)
+            raise _aspic.InvalidInput(f"the scene has energies in Python ({names}), which neither a file nor the viewer "
+                                      "can hold; play a simulation with show(), or remove them from scene.energies")
         folder = pathlib.Path(folder)
         folder.mkdir(parents=True, exist_ok=True)
-        simulation = _aspic.Simulation(self._source(energies=False))
+        simulation = _aspic.Simulation(self._source())
         simulation.write_inputs(folder)
         (folder / "scene.toml").write_text(simulation.resolved)
         return folder / "scene.toml"
 
-    def _source(self, overrides=None, energies=True):
-        terms = self.energies if energies else []
+    def _source(self, overrides=None):
         if self._path is not None:
             merged = {**self._overrides, **(overrides or {})}
-            return _aspic.SceneSource(self._path, [f"{k}={_toml(v)}" for k, v in merged.items()], terms)
+            return _aspic.SceneSource(self._path, [f"{k}={_toml(v)}" for k, v in merged.items()],
+                                      self.energies)
         document = {**self.document, "body": [body.table for body in self.bodies]}
         for key, value in (overrides or {}).items():
             section, name = key.split(".")
             document[section] = {**document.get(section, {}), name: value}
-        return _aspic.SceneSource(document, self.name, terms)
+        return _aspic.SceneSource(document, self.name, self.energies)
 
 
 def _toml(value):

@@ -5,6 +5,7 @@ import tempfile
 import numpy as np
 
 from . import _aspic
+from .notebook import in_notebook
 from .results import Run
 from .scenes import Scene
 
@@ -142,37 +143,39 @@ class Simulation:
         self._core.restore(snapshot)
 
     # --- steps ---------------------------------------------------------------------------------------------------------
-    def step(self, observe=None):
+    def step(self, observe=None, direction=None, line_search=None):
         """Takes one step and returns its StepReport.
 
         observe(iteration) is called in every iteration; if it returns False, the step is dropped. The state stays
         after an exception or Ctrl-C.
+        direction(E, x, g) -> d and line_search(E, x, d, g) -> alpha replace those of the solver in this step. Pinned
+        entries of d are set to 0. An alpha of 0 ends the step as `stuck`.
         """
         if self._record and self._folder is None and not self._core.is_recording and self.steps_taken == 0:
             self._temporary = tempfile.TemporaryDirectory(prefix="aspic-run-", ignore_cleanup_errors=True)
             self._core.record(os.path.join(self._temporary.name, "run"), True, True)
-        return self._core.step(observe)
+        return self._core.step(observe, direction, line_search)
 
-    def steps(self, count=None, observe=None, check=False):
+    def steps(self, count=None, observe=None, check=False, **method):
         """Takes steps one by one and yields their reports. count: by default to the end of the scene's duration.
 
-        check: raise NotConverged at the first step that does not converge.
+        check: raise NotConverged at the first step that does not converge. method: direction and line_search of step().
         """
         last = self._core.steps_of_run if count is None else self.steps_taken + count
         while self.steps_taken < last:
-            report = self.step(observe)
+            report = self.step(observe, **method)
             if report.status == "interrupted":
                 return
             if check and not report.ok:
                 raise NotConverged(report)
             yield report
 
-    def run(self, count=None, observe=None, check=False, progress=False):
-        """Takes steps and returns their Reports; progress: show a line about them."""
+    def run(self, count=None, observe=None, check=False, progress=False, **method):
+        """Takes steps, see steps(), and returns their Reports; progress: show a line about them."""
         reports = Reports()
         last = self._core.steps_of_run if count is None else self.steps_taken + count
         show = _progress(last) if progress else None
-        for report in self.steps(count, observe, check):
+        for report in self.steps(count, observe, check, **method):
             reports.append(report)
             if show:
                 show(report)
@@ -210,7 +213,7 @@ def _progress(last):
             return
         shown[0] = now
         line = f"step {report.step}/{last}: {report.status}, {report.iterations} iterations, t = {report.time:.4g} s"
-        if _in_notebook():
+        if in_notebook():
             from IPython.display import display
             if handle:
                 handle[0].update({"text/plain": line}, raw=True)
@@ -222,19 +225,11 @@ def _progress(last):
     return show
 
 
-def _in_notebook():
-    try:
-        from IPython import get_ipython
-    except ImportError:
-        return False
-    shell = get_ipython()
-    return shell is not None and hasattr(shell, "kernel")
-
-
 class Trace:
     """An observer that keeps what every iteration did: sim.step(observe=trace), then trace["gradient_norm"].
 
-    landscape: also sample E along each direction (curves) and on a plane (slices).
+    Columns as in trace/iterations.csv; `trials`: an array per iteration with the columns alpha, value, bound, accepted and
+    by_slope. landscape: also sample E along each direction (curves) and on a plane (slices).
     """
 
     def __init__(self, landscape=False, samples=41):
@@ -243,7 +238,8 @@ class Trace:
 
     def __call__(self, it):
         self.iterations.append({"index": it.index, "value": it.value, "gradient_norm": it.gradient_norm,
-                                "decrement": it.decrement, "alpha": it.alpha, "trials": len(it.trials)})
+                                "decrement": it.decrement, "alpha": it.alpha, "trials": len(it.trials),
+                                "fallbacks": it.fallbacks, "gradients": it.gradients, **it.work})
         self.trials.append(it.trials)
         if self._landscape:
             self.curves.append(it.curve())
@@ -256,24 +252,17 @@ class Trace:
         return len(self.iterations)
 
 
-def compare(scene, methods, step=1):
-    """Solves one step by several methods, each from the same state.
+def compare(scene, methods, step=1, max_seconds=60):
+    """Solves one step by several methods, each from the same state, as `aspic compare` does.
 
-    methods: dicts of [solver] keys or names of methods. Returns a dict per method: its report, its trace, and the
-    largest distance of a vertex from the minimizer of Newton's method at round-off [m].
+    methods: dicts of [solver] keys or names of methods. max_seconds: limit per method. Returns a dict per method: its
+    report; trace, the columns index, value, gradient_norm, gradients, hessians and seconds over iterations; the
+    fastest of up to three runs [s]; distance, the largest of a vertex from the minimizer [m]; excess, that of E
+    relative to the start; same_minimizer; description.
     """
-    def solve(solver):
-        sim = Simulation(scene, solver=solver, record=False)
-        for _ in range(step - 1):
-            sim.step()
-        trace = Trace()
-        return sim.step(observe=trace), trace, sim.q
-
-    reference = solve({"tolerance": 1e-12, "max_iterations": 1000})[2]
-    results = {}
-    for method in methods:
-        solver = {"method": method} if isinstance(method, str) else dict(method)
-        report, trace, q = solve(solver)
-        name = method if isinstance(method, str) else ", ".join(str(v) for v in solver.values())
-        results[name] = {"report": report, "trace": trace, "distance": float(abs(q - reference).max())}
-    return results
+    scene = scene if isinstance(scene, Scene) else Scene.load(scene)
+    tables = [{"method": method} if isinstance(method, str) else dict(method) for method in methods]
+    sources = [(", ".join(str(value) for value in table.values()),
+                scene._source({f"solver.{key}": value for key, value in table.items()})) for table in tables]
+    results = _aspic.compare(scene._source(), sources, step, max_seconds)
+    return {result.pop("name"): result for result in results}

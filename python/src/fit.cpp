@@ -125,6 +125,7 @@ class PyEquilibrium {
   }
 
   Array parameters() const { return parameters_.out(); }
+  Shape shape() const { return {layout_.rows(), 3}; }
 
  private:
   PyEquilibrium(const SceneSource& source, double tolerance, const std::shared_ptr<Callbacks>& callbacks)
@@ -230,6 +231,7 @@ class PyTrajectory {
   }
 
   Array parameters() const { return parameters_.out(); }
+  Shape shape() const { return {options_.steps + 1, layout_.rows(), 3}; }
 
  private:
   PyTrajectory(const SceneSource& source, TrajectoryOptions options, std::shared_ptr<Callbacks> callbacks)
@@ -392,7 +394,8 @@ void bind_fit(py::module_& m) {
       .def("solve", &PyEquilibrium::solve)
       .def("vjp", &PyEquilibrium::vjp)
       .def("jvp", &PyEquilibrium::jvp)
-      .def_property_readonly("parameters", &PyEquilibrium::parameters);
+      .def_property_readonly("parameters", &PyEquilibrium::parameters)
+      .def_property_readonly("shape", [](const PyEquilibrium& e) { return py::tuple(py::cast(e.shape())); });
   py::class_<PyTrajectory>(m, "Trajectory")
       .def(py::init([](const std::shared_ptr<SceneSource>& source, int steps, double h, double tolerance) {
         return std::make_unique<PyTrajectory>(*source, trajectory_options(steps, h, tolerance));
@@ -402,7 +405,8 @@ void bind_fit(py::module_& m) {
       .def("simulate", &PyTrajectory::simulate)
       .def("vjp", &PyTrajectory::vjp)
       .def("value_and_gradient", &PyTrajectory::value_and_gradient)
-      .def_property_readonly("parameters", &PyTrajectory::parameters);
+      .def_property_readonly("parameters", &PyTrajectory::parameters)
+      .def_property_readonly("shape", [](const PyTrajectory& t) { return py::tuple(py::cast(t.shape())); });
   m.def("fit", &fit_data);
   m.def("capture", [](const std::shared_ptr<SceneSource>& source, const std::filesystem::path& folder,
                       const py::dict& numbers) { return capture(*source, folder, numbers); });

@@ -30,13 +30,15 @@ class Function {
   Function(const Function&) = delete;
   Function& operator=(const Function&) = delete;
 
-  Objective& E();  // throws std::runtime_error if it has expired
+  virtual void set_pins_zero(std::span<double>) const {}  // in a direction
+  Objective& E();                                         // throws std::runtime_error if it has expired
   void expire() { E_ = nullptr; }
   const Layout& layout() const { return layout_; }
   Callbacks& callbacks() { return *callbacks_; }
   Occupancy& occupancy() { return occupancy_; }
 
   double value(const py::handle& x);
+  double round_off() const { return round_off_; }  // of the last value
   Array gradient(const py::handle& x);
   std::shared_ptr<Hessian> hessian(const py::handle& x, const std::string& definiteness);
   double max_step(const py::handle& x, const py::handle& d);
@@ -48,6 +50,7 @@ class Function {
  private:
   Objective* E_;
   Layout layout_;
+  double round_off_ = 0;
   std::shared_ptr<const BlockPattern> pattern_;  // a copy of the last one
 };
 

@@ -14,7 +14,7 @@ class ObservedIteration : public Iteration {
 
   const LiveIteration& live() const;  // throws std::runtime_error after the observer has returned
   std::shared_ptr<Function> objective;
-  Array trials;  // a row per trial: alpha, value, bound, accepted
+  Array trials;  // a row per trial: alpha, value, bound, accepted, by_slope
 
   Array out(std::span<const double> values) const { return objective->layout().out(values); }
 

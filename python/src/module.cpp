@@ -13,6 +13,7 @@ PYBIND11_MODULE(_aspic, m) {
   bind_optimize(m);
   bind_simulation(m);
   bind_scene(m);
+  bind_compare(m);
   bind_results(m);
   bind_fit(m);
   bind_verification(m);

@@ -7,6 +7,7 @@
 
 #include "base/error.h"
 #include "bindings.h"
+#include "custom_method.h"
 #include "iteration.h"
 #include "optimize/derivative_check.h"
 #include "optimize/landscape.h"
@@ -28,13 +29,14 @@ Objective& Function::E() {
 double Function::value(const py::handle& x) {
   const Use use(occupancy_, "objective");
   const std::vector<double> in = layout_.in(x, "x");
-  double value = 0;
+  Evaluation found;
   {
     const py::gil_scoped_release free;
-    value = E().value(in);
+    found = E().evaluate(in);
   }
   callbacks_->rethrow();
-  return value;
+  round_off_ = found.round_off;
+  return found.value;
 }
 
 Array Function::gradient(const py::handle& x) {
@@ -76,11 +78,13 @@ ObservedIteration::ObservedIteration(const LiveIteration& live, const Layout& la
                                      std::shared_ptr<Callbacks> callbacks)
     : Iteration(live),
       objective(std::make_shared<Function>(&live.E, layout, std::move(callbacks))),
-      trials(Shape{static_cast<py::ssize_t>(live.tried.size()), 4}),
+      trials(Shape{static_cast<py::ssize_t>(live.tried.size()), 5}),
       live_(&live) {
   double* row = trials.mutable_data();
   for (const Trial& trial : live.tried)
-    for (const double x : {trial.alpha, trial.value, trial.bound, trial.accepted ? 1.0 : 0.0}) *row++ = x;
+    for (const double x :
+         {trial.alpha, trial.value, trial.bound, trial.accepted ? 1.0 : 0.0, trial.by_slope ? 1.0 : 0.0})
+      *row++ = x;
 }
 
 void ObservedIteration::expire() {
@@ -111,31 +115,6 @@ IterationObserver observer_of(const py::object& observe, const Layout& layout, s
 
 namespace {
 
-class PythonDirection : public SearchDirection {
- public:
-  PythonDirection(py::object compute, Layout layout, std::shared_ptr<Callbacks> callbacks)
-      : compute_(std::move(compute)), layout_(std::move(layout)), callbacks_(std::move(callbacks)) {}
-
-  std::string_view name() const override { return "python"; }
-  bool compute(const Iterate& at, std::span<double> d, DirectionReport&) override {
-    return callbacks_->call([&] {
-      const auto E = std::make_shared<Function>(&at.E, layout_, callbacks_);
-      struct Expire {
-        Function& E;
-        ~Expire() { E.expire(); }
-      } const at_end{*E};
-      const std::vector<double> found =
-          layout_.in(compute_(E, layout_.out(at.x), layout_.out(at.g)), "the search direction");
-      std::copy(found.begin(), found.end(), d.begin());
-    });
-  }
-
- private:
-  py::object compute_;
-  Layout layout_;
-  std::shared_ptr<Callbacks> callbacks_;
-};
-
 py::dict dict_of(const MinimizeReport& report, const Array& x) {
   py::dict result;
   result["x"] = x;
@@ -151,25 +130,28 @@ py::dict dict_of(const MinimizeReport& report, const Array& x) {
   return result;
 }
 
-py::dict minimize_function(Function& f, const py::object& start, const py::object& direction, const py::dict& options,
+// A line search written in Python among the options; None if there is none.
+py::object take_line_search(py::dict& options) {
+  if (!options.contains("line_search") || !PyCallable_Check(py::object(options["line_search"]).ptr()))
+    return py::none();
+  return options.attr("pop")("line_search");
+}
+
+py::dict minimize_function(Function& f, const py::object& start, const py::object& direction, py::dict options,
                            const py::object& observe) {
   const Use use(f.occupancy(), "objective");
   std::vector<double> x = f.layout().in(start, "x");
   const std::shared_ptr<Callbacks> callbacks(&f.callbacks(), [](auto*) {});  // f outlives the minimization
+  const MethodContext context{f.layout(), callbacks, [&f](std::span<double> d) { f.set_pins_zero(d); }};
   const bool is_named = py::isinstance<py::str>(direction);
+  const py::object line_search = take_line_search(options);
   Value table = to_value(options, "solver");
   if (is_named) table.table().set("method", {direction.cast<std::string>(), table.place});
   check_and_complete(table.table(), "solver", scene_schema(), "solver");
-  const SolverOptions chosen = solver_options(table);
-  std::unique_ptr<SearchDirection> search;
-  if (is_named) {
-    search = make_search_direction(chosen);
-  } else if (PyCallable_Check(direction.ptr())) {
-    search = std::make_unique<PythonDirection>(direction, f.layout(), callbacks);
-  } else {
-    throw InvalidInput("direction: must be the name of a method or callable, as direction(E, x, g)");
-  }
-  MinimizeOptions how = chosen.minimize;
+  SolverOptions chosen = solver_options(table);
+  const auto search = is_named ? make_search_direction(chosen) : make_python_direction(direction, context);
+  MinimizeOptions& how = chosen.minimize;
+  how.line_search.custom = make_python_line_search(line_search, context);
   how.stop = callbacks->token();
   const IterationObserver observer = observer_of(observe, f.layout(), callbacks);
   MinimizeReport report;
@@ -297,7 +279,24 @@ void bind_iteration(py::module_& m) {
       .def_readonly("gradient_norm", &It::gradient_norm, "|g| before the step.")
       .def_readonly("decrement", &It::decrement, "Newton decrement -g.d / 2.")
       .def_readonly("alpha", &It::alpha, "Accepted step length; 0: none.")
-      .def_readonly("trials", &It::trials, "A row per trial of the line search: alpha, value, bound, accepted.")
+      .def_readonly("trials", &It::trials,
+                    "A row per trial of the line search: alpha, value, bound, accepted, by_slope.")
+      .def_readonly("fallbacks", &It::fallbacks, "Fallbacks to a more cautious direction.")
+      .def_readonly("gradients", &It::gradients, "Evaluations of the gradient.")
+      .def_property_readonly(
+          "work",
+          [](const It& it) {
+            py::dict work;
+            work["hessians"] = it.direction.hessians;
+            work["projected"] = it.direction.projected;
+            work["projected_elements"] = it.direction.projected_elements;
+            work["factorizations"] = it.direction.factorizations;
+            work["linear_iterations"] = it.direction.linear_iterations;
+            work["products"] = it.direction.products;
+            work["cycles"] = it.direction.cycles;
+            return work;
+          },
+          "Hessians, modified elements, factorizations, iterations and products of the linear solver.")
       .def_property_readonly("projected_elements", [](const It& it) { return it.direction.projected_elements; })
       .def_readonly("E", &It::objective, "The objective.")
       .def_property_readonly("x", [](const It& it) { return it.out(it.live().x); })
@@ -329,6 +328,7 @@ void bind_optimize(py::module_& m) {
       .def(
           "max_step", [](Function& f, const py::object& x, const py::object& d) { return f.max_step(x, d); },
           py::arg("x"), py::arg("d"), "Largest alpha for which contact allows the path from x to x + alpha d.")
+      .def_property_readonly("round_off", &Function::round_off, "Bound of the rounding error of the last E(x).")
       .def_property_readonly("shape", [](const Function& f) { return py::tuple(py::cast(f.layout().shape)); });
   py::class_<PythonFunction, Function, std::shared_ptr<PythonFunction>>(m, "PythonObjective")
       .def(py::init(&PythonFunction::make), py::arg("f"), py::arg("x"));

@@ -6,6 +6,7 @@
 #include "base/error.h"
 #include "base/hash.h"
 #include "bindings.h"
+#include "custom_method.h"
 #include "dynamics/step_fields.h"
 #include "iteration.h"
 #include "python_energy.h"
@@ -66,8 +67,15 @@ SceneModel SceneSource::model(const std::shared_ptr<Callbacks>& callbacks) const
 }
 
 LiveSimulation::LiveSimulation(std::shared_ptr<const SceneSource> source)
-    : source_(std::move(source)), scene_(source_->scene(callbacks_)) {
+    : source_(std::move(source)),
+      scene_(source_->scene(callbacks_)),
+      solver_(scene_.simulation.options().solver),
+      pins_(scene_.simulation.model().pins, scene_.simulation.state().q) {
   callbacks_->rethrow();
+  // A recording of the scene as a file. The comment also changes its fingerprint, so that `aspic run --resume` refuses
+  // it.
+  if (source_->has_energies())
+    scene_.resolved.insert(0, "# This file lacks the energies that were written in Python.\n");
 }
 
 Layout LiveSimulation::layout() const {
@@ -94,9 +102,24 @@ StepReport LiveSimulation::take_step(const IterationObserver& observe) {
   return report;
 }
 
-Report LiveSimulation::step(const py::object& observe) {
+void LiveSimulation::set_method(const py::object& direction, const py::object& line_search) {
+  if (direction.is(direction_) && line_search.is(line_search_)) return;
+  Simulation& simulation = scene_.simulation;
+  const MethodContext context{layout(), callbacks_, [this](std::span<double> d) { pins_.set_zero(d); }};
+  direction_ = line_search_ = py::object();  // unknown after an exception
+  SolverOptions options = solver_;
+  options.minimize.line_search.custom = make_python_line_search(line_search, context);
+  simulation.set_solver(options);
+  if (!line_search.is_none() && !simulation.integrator().is_implicit)
+    throw InvalidInput("line_search: integrator = '" + simulation.options().integrator + "' does not minimize");
+  if (!direction.is_none()) simulation.set_direction(make_python_direction(direction, context));
+  direction_ = direction, line_search_ = line_search;
+}
+
+Report LiveSimulation::step(const py::object& observe, const py::object& direction, const py::object& line_search) {
   const Use use(occupancy_, "simulation");
   if (is_stepping_) throw std::runtime_error("step() was called inside a step of the same simulation");
+  set_method(direction, line_search);
   Simulation& simulation = scene_.simulation;
   const IterationObserver observer = observer_of(observe, layout(), callbacks_);
   is_stepping_ = true;
@@ -277,7 +300,6 @@ void bind_step_objective(py::module_& m) {
       .def("update_lagged", &StepObjective::update_lagged, py::arg("q"),
            "Takes the normal forces of friction from q. Minimize again until nothing changes.")
       .def_property_readonly("is_lagged", &StepObjective::is_lagged, "Whether friction needs update_lagged().")
-      .def_property_readonly("round_off", &StepObjective::round_off, "Bound of the rounding error of the last E(q).")
       .def_property_readonly("time", &StepObjective::time, "At the end of the step [s].");
 }
 
@@ -290,7 +312,8 @@ void bind_simulation(py::module_& m) {
       .def_property_readonly("time", [](const Simulation::Snapshot& s) { return s.state.time; });
   py::class_<LiveSimulation, std::shared_ptr<LiveSimulation>>(m, "Simulation")
       .def(py::init([](std::shared_ptr<SceneSource> source) { return std::make_shared<LiveSimulation>(source); }))
-      .def("step", &LiveSimulation::step, py::arg("observe") = py::none())
+      .def("step", &LiveSimulation::step, py::arg("observe") = py::none(), py::arg("direction") = py::none(),
+           py::arg("line_search") = py::none())
       .def_property_readonly("q", [](LiveSimulation& s) { return state_array(s, &State::q); })
       .def_property_readonly("v", [](LiveSimulation& s) { return state_array(s, &State::qdot); })
       .def("set_q", [](LiveSimulation& s, const py::object& q) { set_state(s, q, &State::q); })

@@ -7,6 +7,7 @@
 
 #include "arrays.h"
 #include "callbacks.h"
+#include "dynamics/pins.h"
 #include "function.h"
 #include "occupancy.h"
 #include "scene/run_directory.h"
@@ -22,6 +23,7 @@ class SceneSource {
   SceneSource(std::filesystem::path path, std::vector<std::string> overrides, std::vector<py::object> energies);
   SceneSource(const py::dict& document, std::string name, std::vector<py::object> energies);
 
+  bool has_energies() const { return !energies_.empty(); }
   // Require the GIL, and release it. Throw InvalidInput and what the energies raise.
   Scene scene(const std::shared_ptr<Callbacks>& callbacks) const;
   SceneModel model(const std::shared_ptr<Callbacks>& callbacks) const;
@@ -47,8 +49,9 @@ class LiveSimulation {
  public:
   explicit LiveSimulation(std::shared_ptr<const SceneSource> source);
 
-  // Takes one step. The state stays after an exception, Ctrl-C, and if `observe` returns False.
-  Report step(const py::object& observe);
+  // Takes one step. The state stays after an exception, Ctrl-C, and if `observe` returns False. None: the direction and
+  // the line search of the scene.
+  Report step(const py::object& observe, const py::object& direction, const py::object& line_search);
   // Records the steps from now on. `is_compact`: only the motion of the surfaces, and the tables.
   void record(const std::filesystem::path& folder, bool is_compact, bool overwrite);
   void flush();  // writes indices and the last checkpoint of the recording
@@ -64,11 +67,15 @@ class LiveSimulation {
  private:
   // Throws std::runtime_error if another thread takes a step or writes results.
   void check_idle() const;
+  void set_method(const py::object& direction, const py::object& line_search);
   StepReport take_step(const IterationObserver& observe);
 
   std::shared_ptr<const SceneSource> source_;
   std::shared_ptr<Callbacks> callbacks_ = std::make_shared<Callbacks>();
   Scene scene_;
+  SolverOptions solver_;  // of the scene
+  Pins pins_;
+  py::object direction_ = py::none(), line_search_ = py::none();  // in use
   std::optional<RunDirectory> recording_;
   bool is_stepping_ = false;  // guarded by the GIL
   Occupancy occupancy_;

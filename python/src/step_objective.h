@@ -16,23 +16,18 @@ class StepObjective : public Function {
 
   Array begin_step(const py::object& q, const py::object& v, double h, const py::object& time);
   Array begin_statics(const py::object& q, const py::object& time);
+  void set_pins_zero(std::span<double> d) const override { parts_->pins.set_zero(d); }
   void update_lagged(const py::object& q);
   bool is_lagged() const { return parts_->E.is_lagged(); }
-  double round_off() const { return parts_->E.last.round_off; }
   double time() const { return time_; }
 
  private:
-  struct RoundOff : public IncrementalPotential {
-    using IncrementalPotential::IncrementalPotential;
-    Evaluation evaluate(std::span<const double> q) override { return last = IncrementalPotential::evaluate(q); }
-    Evaluation last;
-  };
   struct Parts {
     explicit Parts(SceneModel made)
         : scene(std::move(made)), pins(scene.model.pins, scene.start.q), E(scene.model, pins) {}
     SceneModel scene;
     Pins pins;
-    RoundOff E;
+    IncrementalPotential E;
   };
 
   StepObjective(std::unique_ptr<Parts> parts, std::shared_ptr<Callbacks> callbacks, double time);

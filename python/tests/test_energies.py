@@ -1,4 +1,6 @@
 """Terms of the potential written in Python."""
+import subprocess
+
 import numpy as np
 import pytest
 from conftest import make_jelly
@@ -167,6 +169,25 @@ def test_wrong_result_of_an_energy_gets_one_line(method, result, message):
         sim = aspic.Simulation(scene)
         sim.objective().hessian(sim.q)
         sim.step()
+
+
+def test_files_and_the_viewer_refuse_energies_in_python(tmp_path):
+    scene = falling(lambda body: Floor(len(body.vertices)))
+    for use in (lambda: scene.save(tmp_path), lambda: aspic.view(scene), lambda: aspic.view(aspic.Simulation(scene))):
+        with pytest.raises(aspic.InvalidInput, match=r"energies in Python \('floor'\), which neither a file nor the viewer"):
+            use()
+    scene.energies.clear()
+    assert scene.save(tmp_path).exists()
+
+
+def test_recorded_run_with_energies_in_python_is_not_resumed(program, tmp_path):
+    sim = aspic.Simulation(falling(lambda body: Floor(len(body.vertices))), out=tmp_path / "run")
+    sim.run(2)
+    assert len(sim.results().steps["step"]) == 3
+    del sim
+    assert (tmp_path / "run/scene.toml").read_text().startswith("# This file lacks the energies")
+    result = subprocess.run([program, "run", "--resume", tmp_path / "run"], capture_output=True, text=True)
+    assert result.returncode != 0 and "scene.toml" in result.stderr, result.stderr
 
 
 def test_wrong_elements_get_one_line():

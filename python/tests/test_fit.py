@@ -1,4 +1,8 @@
 """Gradients through equilibria and motions, and fits."""
+import importlib
+import sys
+import types
+
 import numpy as np
 import pytest
 from conftest import make_jelly
@@ -80,6 +84,81 @@ def test_torch_differentiates_an_equilibrium_and_a_motion():
     inputs = (torch.ones(6, dtype=torch.float64, requires_grad=True),
               torch.full((8, 3), .1, dtype=torch.float64, requires_grad=True))
     assert torch.autograd.gradcheck(motion, inputs, eps=1e-3, atol=1e-5, rtol=1e-3)
+
+
+def test_jax_differentiates_an_equilibrium_and_a_motion():
+    jax = pytest.importorskip("jax", reason="jax is not installed (Debian has none); only a stand-in runs the adapter")
+    jax.config.update("jax_enable_x64", True)
+    from jax.test_util import check_grads
+
+    import aspic.jax
+    equilibrium, trajectory, sim = differentiable()
+    theta, v = jax.numpy.asarray(equilibrium.parameters), jax.numpy.full((8, 3), .1) * ~sim.pinned[:, None]
+    check_grads(jax.jit(lambda s: aspic.jax.equilibrium(equilibrium, s * theta)), (1.,), 1, ["rev"], eps=1e-4, rtol=1e-4)
+    check_grads(jax.jit(lambda s, v: aspic.jax.trajectory(trajectory, s * theta, sim.q, v)[-1] * 1e3), (1., v), 1,
+                ["rev"], eps=1e-3, rtol=1e-3)
+
+
+def differentiable():
+    return (aspic.Equilibrium(make_jelly(1), tolerance=1e-12), aspic.Trajectory(make_jelly(1), 2, .01, tolerance=1e-12),
+            aspic.Simulation(make_jelly(1)))
+
+
+class StandIn(types.ModuleType):
+    """The part of jax that the adapter uses, without tracing. Callbacks must return the shapes and dtypes they state."""
+
+    class ShapeDtypeStruct:
+        def __init__(self, shape, dtype):
+            self.shape, self.dtype = shape, np.dtype(dtype)
+
+    class tree_util:
+        @staticmethod
+        def tree_map(f, tree, *trees):
+            if isinstance(tree, tuple):
+                return tuple(StandIn.tree_util.tree_map(f, *parts) for parts in zip(tree, *trees, strict=True))
+            return f(tree, *trees)
+
+    @staticmethod
+    def pure_callback(f, result, *arrays):
+        def check(one, array):
+            assert array.shape == tuple(one.shape) and array.dtype == one.dtype
+            return array
+
+        return StandIn.tree_util.tree_map(check, result, f(*arrays))
+
+    class custom_vjp:
+        def __init__(self, f, nondiff_argnums):
+            assert nondiff_argnums == (0,)
+            self.f = f
+
+        def defvjp(self, forward, backward):
+            self.forward, self.backward = forward, backward
+
+        def __call__(self, *arguments):
+            return self.f(*arguments)
+
+
+def test_jax_adapter_has_the_gradients_of_differences(monkeypatch):
+    monkeypatch.setitem(sys.modules, "jax", StandIn("jax"))
+    monkeypatch.delitem(sys.modules, "aspic.jax", raising=False)
+    adapter = importlib.import_module("aspic.jax")
+    equilibrium, trajectory, sim = differentiable()
+    theta, v = equilibrium.parameters, np.where(sim.pinned[:, None], 0, np.full(sim.q.shape, .1))
+    rng = np.random.default_rng(8)
+    for f, core, inputs in ((adapter.equilibrium, equilibrium, (theta,)),
+                            (adapter.trajectory, trajectory, (theta, sim.q, v))):
+        result, residuals = f.forward(core, *inputs)
+        weights = rng.standard_normal(result.shape)
+        f(core, *(1.1 * one for one in inputs))  # moves it
+        gradients = f.backward(core, residuals, weights)
+        assert [g.shape for g in gradients] == [one.shape for one in inputs]
+        for k in {0, len(inputs) - 1}:  # q moves the pins
+            along = 1e-3 * inputs[k] * rng.uniform(-1, 1, inputs[k].shape)
+            found = differences(lambda x: (weights * f(core, *inputs[:k], x, *inputs[k + 1:])).sum(), inputs[k], [along])
+            np.testing.assert_allclose((along * gradients[k]).sum(), found[0], rtol=1e-4)
+    assert adapter.equilibrium(equilibrium, theta.astype(np.float32)).dtype == np.float32
+    sys.modules.pop("aspic.jax")
+    del aspic.jax
 
 
 def test_fit_recovers_the_modulus_of_a_synthetic_cube(tmp_path):

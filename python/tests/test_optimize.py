@@ -1,4 +1,6 @@
 """Objectives, linear solvers, minimization and derivatives."""
+import subprocess
+
 import numpy as np
 import pytest
 import scipy.sparse.linalg
@@ -119,6 +121,37 @@ def test_direction_and_line_search_in_python():
         result = aspic.minimize(f, start, newton, line_search)
         assert result.success and len(calls) >= result.iterations
         np.testing.assert_allclose(result.x, 1, atol=1e-3)
+
+
+@pytest.mark.parametrize("method", ["newton", "lbfgs", "gradient_descent"])
+def test_minimization_equals_that_of_the_command_line(method, program, tmp_path):
+    subprocess.run([program, "minimize", "rosenbrock", "--method", method, "--max-iterations", "20000", "--trace", tmp_path],
+                   check=True, capture_output=True)
+    start = next(f for f in aspic.test_functions() if f["name"] == "rosenbrock")["start"]
+    trace = aspic.Trace()
+    result = aspic.minimize(aspic.test_function("rosenbrock"), start, method, observe=trace, max_iterations=20000)
+    table = aspic.results._columns(tmp_path / "iterations.csv")
+    assert result.success and len(trace) == len(table["value"])
+    for name in set(table) - {"step", "solve", "iteration"}:
+        np.testing.assert_array_equal(trace[name], table[name], err_msg=name)
+
+
+def test_line_search_in_python_serves_every_method():
+    f, start = aspic.test_function("rosenbrock"), [-1.2, 1.]
+    for method in ("newton", "lbfgs", "gradient_descent"):
+        calls = []
+
+        def search(E, x, d, g):
+            calls.append(1)
+            return aspic.backtrack(E, x, d, g)
+
+        trace = aspic.Trace()
+        result = aspic.minimize(f, start, method, search, observe=trace, max_iterations=20000)
+        assert result.success and len(calls) >= result.iterations
+        np.testing.assert_allclose(result.x, 1, atol=1e-3)
+        assert set(trace["trials"][:-1]) == {1}
+    with pytest.raises(ZeroDivisionError):
+        aspic.minimize(f, start, line_search=lambda E, x, d, g: 1 / 0)
 
 
 def test_exceptions_of_directions_and_functions_arrive():

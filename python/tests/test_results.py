@@ -1,6 +1,9 @@
 """Recorded runs, frames and the page that plays them."""
 import html
+import os
 import re
+import subprocess
+import sys
 import urllib.request
 
 import numpy as np
@@ -94,4 +97,34 @@ def test_live_viewer_serves_the_scene(jelly, program):
     with aspic.view(jelly, browser=False) as view:
         with urllib.request.urlopen(view.address, timeout=20) as page:
             assert b"<!doctype html" in page.read().lower()
-        assert view.address in view._repr_html_()
+        assert f'href="{view.address}"' in view._repr_html_() and "iframe" not in view._repr_html_()
+    assert view._process.poll() is not None
+
+
+def test_live_viewer_in_a_notebook_is_framed_by_its_server_alone(jelly, program, monkeypatch, tmp_path):
+    del program
+    pytest.importorskip("jupyter_core")
+    monkeypatch.setenv("JUPYTER_RUNTIME_DIR", str(tmp_path))
+    monkeypatch.setenv("JPY_PARENT_PID", "17")
+    monkeypatch.setattr(aspic.live, "in_notebook", lambda: True)
+    (tmp_path / "nbserver-17.json").write_text('{"url": "http://localhost:8888/prefix/"}')
+    with aspic.view(jelly) as view:
+        assert f'<iframe src="{view.address}"' in view._repr_html_()
+        with urllib.request.urlopen(view.address, timeout=20) as page:
+            assert "frame-ancestors http://localhost:8888;" in page.headers["Content-Security-Policy"]
+    (tmp_path / "nbserver-17.json").unlink()
+    with aspic.view(jelly) as view:  # as in nbclient: nobody to frame it
+        assert "iframe" not in view._repr_html_()
+    with pytest.raises(RuntimeError, match="did not start.*--embed everyone: expected a site"):
+        aspic.view(jelly, embed="everyone")
+
+
+def test_live_viewer_ends_with_its_program(jelly, program, tmp_path):
+    del program
+    path = jelly.save(tmp_path)
+    code = f"import aspic; v = aspic.view({str(path)!r}); print(v._process.pid)"
+    environment = {key: value for key, value in os.environ.items() if key not in ("DISPLAY", "WAYLAND_DISPLAY")}
+    result = subprocess.run([sys.executable, "-c", code], env=environment, capture_output=True, text=True, timeout=60)
+    assert "open this address in a browser: http://127.0.0.1:" in result.stdout, result.stderr
+    with pytest.raises(ProcessLookupError):
+        os.kill(int(result.stdout.split()[-1]), 0)

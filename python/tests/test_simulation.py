@@ -59,14 +59,29 @@ def test_arrays_are_in_the_order_of_the_mesh(jelly):
 
 
 def test_arrays_outlive_the_simulation(jelly):
-    sim = aspic.Simulation(jelly)
-    sim.step()
-    q, fields, H = sim.q, sim.fields(), sim.objective().hessian(sim.q)
-    kept = q.copy()
-    del sim
+    sim, observed = aspic.Simulation(jelly), []
+    sim.step(observe=lambda it: observed.extend([it.x, it.g, it.trials, it.slice(3)["value"], it]))
+    arrays = [sim.q, sim.v, sim.mass, sim.tets, sim.pinned, sim.fields()["cauchy"], *observed[:4]]
+    kept = [array.copy() for array in arrays]
+    E, snapshot, run = sim.objective(), sim.snapshot(), sim.results()
+    q0 = E.begin_step(sim.q, sim.v, .01)
+    H, solver = E.hessian(q0, "clamped"), aspic.LinearSolver("cholesky")
+    solver.factorize(H)
+    g, page = E.gradient(q0), run.steps["status"]
+    del sim, E, run
     gc.collect()
-    np.testing.assert_array_equal(q, kept)
-    assert np.isfinite(fields["cauchy"]).all() and np.isfinite(H @ q).all()
+    for array, copy in zip(arrays, kept, strict=True):
+        np.testing.assert_array_equal(array, copy)
+    product = H @ q0
+    matrix = H.to_scipy()
+    del H
+    gc.collect()
+    np.testing.assert_allclose((matrix @ q0.ravel()).reshape(q0.shape), product, atol=1e-9 * abs(product).max())
+    d = solver.solve(g)
+    np.testing.assert_allclose(matrix @ d.ravel(), g.ravel(), atol=1e-9 * abs(g).max())
+    assert snapshot.time == pytest.approx(.01) and page[1] == "converged"
+    with pytest.raises(RuntimeError, match="over"):
+        observed[4].x
 
 
 def test_restored_snapshot_gives_the_same_bits(jelly):
@@ -135,9 +150,120 @@ def test_iteration_expires_with_its_observer(jelly):
         kept[0].E(np.zeros(kept[0].E.shape))
 
 
-def test_compare_finds_the_same_minimizer(jelly):
-    results = aspic.compare(jelly, ["newton", {"method": "lbfgs", "preconditioner": "none"}])
-    assert all(result["distance"] < 1e-6 for result in results.values())
+def columns(path):
+    return aspic.results._columns(path)
+
+
+def test_trace_equals_that_of_the_command_line(scenes, program, tmp_path):
+    path = scenes / "stretch.toml"
+    subprocess.run([program, "run", path, "--steps", "2", "--out", tmp_path / "run", "--quiet", "--trace", "--landscape",
+                    "1:1", "--set", "output.vtu=false", "--set", "output.report=false"], check=True)
+    sim, trace, first = aspic.Simulation(path, record=False), aspic.Trace(), aspic.Trace(landscape=True)
+    sim.step(observe=first)
+    sim.step(observe=trace)
+    iterations, trials = columns(tmp_path / "run/trace/iterations.csv"), columns(tmp_path / "run/trace/trials.csv")
+    for step, mine in ((1, first), (2, trace)):
+        rows = iterations["step"] == step
+        for name in set(iterations) - {"step", "solve", "iteration"}:
+            np.testing.assert_array_equal(mine[name], iterations[name][rows], err_msg=name)
+        tried = np.concatenate(mine.trials)
+        for i, name in enumerate(("alpha", "value", "bound", "accepted", "by_slope")):
+            np.testing.assert_array_equal(tried[:, i], trials[name][trials["step"] == step], err_msg=name)
+    for samples, name in ((first.curves[1], "curve"), (first.slices[1], "slice")):
+        table = columns(tmp_path / f"run/trace/{name}_1_1.csv")
+        assert set(samples) == set(table)
+        for column in table:
+            np.testing.assert_array_equal(samples[column].ravel(), table[column], err_msg=f"{name} {column}")
+
+
+def test_compare_equals_that_of_the_command_line(scenes, program, tmp_path):
+    path = scenes / "stretch.toml"
+    subprocess.run([program, "compare", path, "--methods", "newton,newton:clamped,lbfgs", "--step", "2", "--out",
+                    tmp_path], check=True, capture_output=True)
+    table = columns(tmp_path / "methods.csv")
+    results = aspic.compare(path, ["newton", {"method": "newton", "definiteness": "clamped"}, "lbfgs"], step=2)
+    assert list(results) == ["newton", "newton, clamped", "lbfgs"]
+    for i, result in enumerate(results.values()):
+        assert result["same_minimizer"] and result["report"].ok
+        for name in ("excess", "distance"):
+            assert result[name] == pytest.approx(table[name][i], rel=1e-9)
+        for name in ("iterations", "trials", "objective"):
+            assert getattr(result["report"], name) == table[name][i]
+        assert len(result["trace"]["index"]) == table["iterations"][i] + 1
+        assert result["trace"]["gradient_norm"][-1] == table["gradient_norm"][i]
+
+
+def test_compare_starts_from_the_settings_of_the_scene(jelly):
+    jelly.set("solver.tolerance", 1e-2)
+    rough = aspic.compare(jelly, ["newton"])["newton"]["report"].iterations
+    jelly.set("solver.tolerance", 1e-10)
+    assert aspic.compare(jelly, ["newton"])["newton"]["report"].iterations > rough
+    with pytest.raises(aspic.InvalidInput, match="did you mean 'newton'"):
+        aspic.compare(jelly, ["newtn"])
+
+
+def newton_by_hand(E, x, g):
+    return -aspic.LinearSolver("cholesky").factorize(E.hessian(x, "clamped")).solve(g)
+
+
+@pytest.mark.parametrize("method", [{"direction": newton_by_hand}, {"line_search": aspic.backtrack},
+                                    {"direction": newton_by_hand, "line_search": aspic.backtrack}])
+def test_own_direction_and_line_search_reach_the_minimizer(jelly, method):
+    sims = [aspic.Simulation(jelly, h=.01, solver={"tolerance": 1e-10}) for _ in range(2)]
+    reports = sims[0].run(4, check=True, **method)
+    sims[1].run(4, check=True)
+    np.testing.assert_allclose(sims[0].q, sims[1].q, atol=1e-9)
+    assert sum(reports["iterations"]) > 0
+
+
+def test_own_method_serves_one_step_alone(jelly):
+    sim, usual, calls = aspic.Simulation(jelly), aspic.Simulation(jelly), []
+    start = sim.snapshot()
+    sim.step(direction=lambda E, x, g: calls.append(1) or -g)
+    count = len(calls)
+    assert count > 0
+    sim.restore(start)
+    assert sim.step().state_hash == usual.step().state_hash
+    assert len(calls) == count
+
+
+def test_own_direction_leaves_pins_in_place(jelly):
+    sim = aspic.Simulation(jelly)
+    before = sim.q[sim.pinned]
+    sim.step(direction=lambda E, x, g: np.where(g == 0, 1., newton_by_hand(E, x, g)))
+    np.testing.assert_array_equal(sim.q[sim.pinned], before)
+
+
+def test_own_line_search_may_find_no_step(jelly):
+    report = aspic.Simulation(jelly).step(line_search=lambda E, x, d, g: 0)
+    assert report.status == "stuck" and "remedy" in report.explanation
+
+
+@pytest.mark.parametrize("method, error, message", [
+    ({"direction": lambda E, x, g: 1 / 0}, ZeroDivisionError, "division"),
+    ({"line_search": lambda E, x, d, g: 1 / 0}, ZeroDivisionError, "division"),
+    ({"direction": lambda E, x, g: g[:2]}, aspic.InvalidInput, "search direction: shape"),
+    ({"direction": lambda E, x, g: g * np.nan}, aspic.InvalidInput, "search direction.*must be finite"),
+    ({"line_search": lambda E, x, d, g: None}, aspic.InvalidInput, "step length of the line search: dtype object"),
+    ({"line_search": lambda E, x, d, g: d}, aspic.InvalidInput, r"step length of the line search: shape \(64, 3\)"),
+    ({"direction": "newton"}, aspic.InvalidInput, r"direction\(E, x, g\): must be callable"),
+])
+def test_failure_of_an_own_method_leaves_the_last_whole_step(jelly, method, error, message):
+    sim = aspic.Simulation(jelly)
+    sim.run(2)
+    before = sim.state_hash
+    with pytest.raises(error, match=message):
+        sim.step(**method)
+    assert sim.state_hash == before and sim.steps_taken == 2
+    assert sim.step().ok
+
+
+def test_own_method_needs_a_minimization(jelly):
+    sim = aspic.Simulation(jelly, h=1e-4, integrator="symplectic_euler")
+    for method in ({"direction": newton_by_hand}, {"line_search": aspic.backtrack}):
+        with pytest.raises(aspic.InvalidInput, match="symplectic_euler.*does not minimize"):
+            sim.step(**method)
+    assert sim.step().ok
 
 
 def test_loaded_scene_takes_overrides(scenes):

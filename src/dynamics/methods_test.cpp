@@ -1,10 +1,11 @@
 // All minimization methods on elastic bodies.
-#include <gtest/gtest.h>
+#include <gmock/gmock.h>
 
 #include <algorithm>
 #include <cmath>
 #include <map>
 
+#include "base/error.h"
 #include "base/parallel.h"
 #include "dynamics/models_test.h"
 #include "mesh/surface.h"
@@ -53,6 +54,46 @@ TEST(Methods, ReachSameMinimumOfTimeStep) {
     const double h = simulation.options().h, allowed = 2 * h * h * report.residual_threshold / least;
     EXPECT_LT(allowed, 1e-6);
     for (size_t i = 0; i < q.size(); ++i) EXPECT_NEAR(q[i], expected[i], allowed) << name_of(solver);
+  }
+}
+
+// A direction of a user of the library.
+class Borrowed : public SearchDirection {
+ public:
+  explicit Borrowed(const std::string& method) : method_(make_search_direction({.method = method, .minimize = {}})) {}
+  std::string_view name() const override { return "borrowed"; }
+  void begin() override { method_->begin(); }
+  bool compute(const Iterate& at, std::span<double> d, DirectionReport& report) override {
+    return ++calls, method_->compute(at, d, report);
+  }
+  bool fall_back() override { return method_->fall_back(); }
+  int calls = 0;
+
+ private:
+  std::unique_ptr<SearchDirection> method_;
+};
+
+TEST(Methods, CustomDirectionReplacesTheMethod) {
+  Simulation custom = simulate(beam(2), {.solver = {.minimize = {}}});
+  Simulation lbfgs = simulate(beam(2), {.solver = {.method = "lbfgs", .minimize = {}}});
+  auto direction = std::make_unique<Borrowed>("lbfgs");
+  const Borrowed& borrowed = *direction;
+  custom.set_direction(std::move(direction));
+  EXPECT_THAT(custom.solver_description(), testing::HasSubstr("borrowed"));
+  for (int step = 0; step < 3; ++step) {
+    const StepReport report = custom.step();
+    EXPECT_TRUE(is_success(report.status));
+    EXPECT_EQ(report.state_hash, lbfgs.step().state_hash);
+  }
+  EXPECT_GT(borrowed.calls, 3);
+  custom.set_solver({.minimize = {}});
+  EXPECT_THAT(custom.solver_description(), testing::Not(testing::HasSubstr("borrowed")));
+}
+
+TEST(Methods, CustomDirectionNeedsAMinimization) {
+  for (const char* integrator : {"symplectic_euler", "linearly_implicit_euler"}) {
+    Simulation simulation = simulate(beam(1), {.integrator = integrator, .solver = {}});
+    EXPECT_THROW(simulation.set_direction(std::make_unique<Borrowed>("newton")), InvalidInput) << integrator;
   }
 }
 

@@ -346,6 +346,14 @@ void Simulation::set_solver(const SolverOptions& solver) {
   impl_->options = std::move(options);
 }
 
+void Simulation::set_direction(std::unique_ptr<SearchDirection> direction) {
+  const IntegratorFacts& facts = impl_->integrator->facts();
+  if (!facts.is_implicit || facts.takes_one_iteration)
+    throw InvalidInput("a search direction of your own has no effect on integrator = '" + impl_->options.integrator +
+                       "', which does not minimize; try 'backward_euler'");
+  impl_->direction = std::move(direction);
+}
+
 void Simulation::set_pins(std::vector<Pin> pins) {
   const Pins new_pins(pins, impl_->start.q);
   if (!impl_->integrator->facts().is_static()) require_mass(impl_->model, new_pins);

@@ -51,9 +51,12 @@ class Simulation {
   // unchanged and the status is `interrupted`. A token that does not end the step does not affect the result.
   // Factorizations do not poll the token.
   StepReport step(const IterationObserver& observe = {}, const StopToken& stop = {});
-  // Both change the subsequent steps. They throw InvalidInput like the constructor, and then change nothing.
+  // These change the subsequent steps. They throw InvalidInput like the constructor, and then change nothing.
   // `solver` replaces all options of the minimization.
   void set_solver(const SolverOptions& solver);
+  // `direction` replaces that of the solver options until set_solver(). The integrator must minimize, and not in a
+  // single Newton iteration.
+  void set_direction(std::unique_ptr<SearchDirection> direction);
   // `pins` replaces all pins of the model. Their motions refer to the state at time 0.
   void set_pins(std::vector<Pin> pins);
 

@@ -1,5 +1,6 @@
 // Backtracking line search: starts with alpha_max and multiplies it by p until E decreases sufficiently.
 #pragma once
+#include <functional>
 #include <span>
 #include <vector>
 
@@ -15,12 +16,16 @@ enum class DecreaseTest {
   none,      // accept alpha_max: Newton's method without a line search
 };
 
+struct SearchLine;
+
 struct LineSearchOptions {
   double alpha_max = 1;               // first step length, > 0
   double sufficient_decrease = 1e-4;  // c, in (0, 1)
   double shrink = 0.5;                // p, in (0, 1)
   double tolerance = 1e-10;           // smallest alpha; the search then ends as stuck
   DecreaseTest test = DecreaseTest::textbook;
+  // Replaces backtracking, if set: returns alpha, which is accepted up to max_step() wherever E is finite. 0: stuck.
+  std::function<double(const SearchLine&)> custom = {};
 };
 
 // A step length that the search tested.
@@ -38,7 +43,8 @@ struct SearchLine {
   std::span<const double> x, d;
   Evaluation value;
   double slope;
-  StopToken stop = {};  // ends the search after the first trial
+  StopToken stop = {};             // ends the search after the first trial
+  std::span<const double> g = {};  // gradient at x
 };
 
 // Output vectors of a search. The caller sizes `trial` and `gradient` like x.

@@ -209,7 +209,7 @@ bool Minimizer::Impl::find_direction(Progress& at, const Iterate& iterate, Itera
 
 bool Minimizer::Impl::search_line(Progress& at, const StopToken& stop, Iteration& iteration) {
   Stopwatch stopwatch;
-  at.step = backtrack({at.E, at.x, d, at.value, at.slope, stop}, at.options.line_search, line);
+  at.step = backtrack({at.E, at.x, d, at.value, at.slope, stop, g}, at.options.line_search, line);
   iteration.trials += static_cast<int>(line.trials.size());
   iteration.gradients += at.step.gradients;
   iteration.line_search_seconds += stopwatch.lap();

@@ -213,6 +213,40 @@ class OffsetParabola : public Objective {
   }
 };
 
+TEST(LineSearch, TakesTheStepsOfACustomSearch) {
+  Rosenbrock f;
+  std::vector<double> x = {-0.8, 0.6, 0};
+  MinimizeOptions options = tight();
+  // Halves the step until E decreases by a tenth of the slope.
+  options.line_search.custom = [](const SearchLine& line) {
+    EXPECT_DOUBLE_EQ(line.E.dot(line.g, line.d), line.slope);
+    for (double alpha = 1; alpha > 1e-10; alpha /= 2) {
+      std::vector<double> trial(line.x.begin(), line.x.end());
+      for (size_t i = 0; i < trial.size(); ++i) trial[i] += alpha * line.d[i];
+      if (line.E.value(trial) <= line.value.value + 0.1 * alpha * line.slope) return alpha;
+    }
+    return 0.0;
+  };
+  const MinimizeReport report = Minimizer().minimize(f, *newton_with(), x, options, [](const LiveIteration& iteration) {
+    if (iteration.alpha > 0) {
+      EXPECT_EQ(iteration.tried.size(), 1u);
+    }
+  });
+  EXPECT_TRUE(is_success(report.status));
+  EXPECT_NEAR(x[0], 1, 1e-8);
+}
+
+TEST(LineSearch, CustomSearchWithoutAStepIsStuck) {
+  for (const double alpha : {0.0, -1.0, std::nan("")}) {
+    Rosenbrock f;
+    std::vector<double> x = {-0.8, 0.6, 0};
+    MinimizeOptions options = tight();
+    options.line_search.custom = [&](const SearchLine&) { return alpha; };
+    EXPECT_EQ(Minimizer().minimize(f, *newton_with(), x, options).status, Status::stuck);
+    EXPECT_EQ(x[0], -0.8);
+  }
+}
+
 TEST(LineSearch, DescendsBelowRoundOffOfValues) {
   OffsetParabola f;
   GradientDescent direction;

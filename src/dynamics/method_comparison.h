@@ -5,7 +5,7 @@
 
 #include "dynamics/simulation.h"
 
-namespace aspic::cli {
+namespace aspic {
 
 struct WorkPoint {
   int iteration = 0, gradients = 0, hessians = 0;  // totals up to this point
@@ -13,8 +13,13 @@ struct WorkPoint {
   double value = 0, gradient_norm = 0;  // E and |g| at this point
 };
 
+struct ComparedMethod {
+  std::string name;
+  SolverOptions solver;
+};
+
 struct MethodResult {
-  std::string method;       // as given by the user
+  std::string method;       // its name
   std::string description;  // including automatic choices
   StepReport report;
   std::vector<WorkPoint> work;  // initial guess, and the end of each iteration
@@ -34,15 +39,15 @@ struct Comparison {
 };
 
 struct ComparisonOptions {
-  std::vector<std::string> methods;  // see method_named()
+  std::vector<ComparedMethod> methods;
   int step = 1;
   double max_seconds = 60;                                    // time limit of one method
   std::function<void(const std::string& method)> begun = {};  // called before each method
   StopToken stop = {};                                        // polled in every iteration
 };
 
-// Advances the simulation to the step by its own method and solves the step by each method. Throws InvalidInput for an
-// unknown method, or if the step is not one minimization.
+// Advances the simulation to the step by its own method and solves the step by each method. Throws InvalidInput
+// if a method is not possible or the step is not one minimization.
 Comparison compare_methods(Simulation& simulation, const ComparisonOptions& options);
 
-}  // namespace aspic::cli
+}  // namespace aspic

@@ -1,15 +1,12 @@
-#include "aspic/comparison.h"
-
-#include <fmt/format.h>
+#include "dynamics/method_comparison.h"
 
 #include <algorithm>
 #include <cmath>
 
-#include "aspic/method_text.h"
 #include "base/error.h"
 #include "base/stopwatch.h"
 
-namespace aspic::cli {
+namespace aspic {
 namespace {
 
 constexpr int kMaxIterations = 1'000'000;  // practically unlimited; the time limit applies
@@ -28,7 +25,6 @@ class Comparer {
  public:
   Comparer(Simulation& simulation, const ComparisonOptions& options)
       : simulation_(simulation), options_(options), base_(simulation.options().solver) {
-    for (const std::string& method : options.methods) solvers_.push_back(method_named(method, base_));
     require_one_minimization();
   }
 
@@ -38,9 +34,9 @@ class Comparer {
     comparison.interrupted = true;
     if (!take_steps_before() || !solve_reference(comparison.reference)) return comparison;
     comparison.has_reference = true;
-    for (size_t i = 0; i < solvers_.size(); ++i) {
-      if (options_.begun) options_.begun(options_.methods[i]);
-      MethodResult result = run(options_.methods[i], solvers_[i], comparison.reference);
+    for (const ComparedMethod& method : options_.methods) {
+      if (options_.begun) options_.begun(method.name);
+      MethodResult result = run(method, comparison.reference);
       if (options_.stop.stopped()) return comparison;
       comparison.results.push_back(std::move(result));
     }
@@ -75,10 +71,9 @@ class Comparer {
       const StepReport report = simulation_.step({}, options_.stop);
       if (report.status == Status::interrupted) return false;
       if (!is_success(report.status))
-        throw InvalidInput(
-            fmt::format("step {} of the scene did not converge ({}), so there is no state to compare "
-                        "from; choose an earlier step",
-                        report.step, to_string(report.status)));
+        throw InvalidInput("step " + std::to_string(report.step) + " of the scene did not converge (" +
+                           std::string(to_string(report.status)) +
+                           "), so there is no state to compare from; choose an earlier step");
     }
     start_ = simulation_.snapshot();
     return true;
@@ -95,13 +90,14 @@ class Comparer {
     report = simulation_.step({}, options_.stop);
     if (report.status == Status::interrupted) return false;
     if (!is_success(report.status))
-      throw InvalidInput(fmt::format("Newton's method found no minimizer of step {} to compare with ({})",
-                                     options_.step, to_string(report.status)));
+      throw InvalidInput("Newton's method found no minimizer of step " + std::to_string(options_.step) +
+                         " to compare with (" + std::string(to_string(report.status)) + ")");
     reference_ = simulation_.state().q;
     return true;
   }
 
-  MethodResult run(const std::string& method, SolverOptions solver, const StepReport& reference) {
+  MethodResult run(const ComparedMethod& method, const StepReport& reference) {
+    SolverOptions solver = method.solver;
     solver.minimize.max_iterations = kMaxIterations;
     solver.time_budget = 0;
     MethodResult best;
@@ -112,7 +108,7 @@ class Comparer {
       if (i == 0 || result.seconds < best.seconds) best = std::move(result);
       if (best.seconds > kWorthRepeating || options_.stop.stopped()) break;
     }
-    best.method = method;
+    best.method = method.name;
     best.description = simulation_.solver_description();
     judge(reference, best);
     return best;
@@ -182,7 +178,6 @@ class Comparer {
   Simulation& simulation_;
   const ComparisonOptions& options_;
   const SolverOptions base_;
-  std::vector<SolverOptions> solvers_;
   Simulation::Snapshot start_;
   std::vector<double> reference_;  // q after the step
 };
@@ -193,4 +188,4 @@ Comparison compare_methods(Simulation& simulation, const ComparisonOptions& opti
   return Comparer(simulation, options).compare();
 }
 
-}  // namespace aspic::cli
+}  // namespace aspic
