@@ -1,4 +1,4 @@
-// The computations of the demonstrations, apart from their texts, which the engine in the browser uses, too.
+// The computations of the demonstrations; course.cpp has their texts.
 #include <map>
 #include <string_view>
 
@@ -7,10 +7,10 @@
 namespace aspic::cli::lecture {
 namespace {
 
-using Run = void (*)(const Stage&, Sheet&);
+using Computation = void (*)(const Stage&, Sheet&);
 
-const std::map<std::string_view, Run>& runs() {
-  static const std::map<std::string_view, Run> map = {
+const std::map<std::string_view, Computation>& computations() {
+  static const std::map<std::string_view, Computation> map = {
       {"02_fine_mesh", show_fine_mesh},
       {"03_tissue", show_tissue},
       {"05-09_equation_of_motion", show_equation_of_motion},
@@ -37,7 +37,7 @@ const std::map<std::string_view, Run>& runs() {
 }  // namespace
 
 void run_demonstration(const Demonstration& demonstration, const Stage& stage, Sheet& sheet) {
-  runs().at(demonstration.key)(stage, sheet);
+  computations().at(demonstration.key)(stage, sheet);
 }
 
 }  // namespace aspic::cli::lecture
