@@ -20,6 +20,7 @@ LIBRARIES = {  # first part of a third-party header: the files that may include 
     "nlohmann": r"src/scene/.*\.cpp|apps/.*|tests/.*|.*_test\.cpp",
     "expat.h": r"src/io/.*\.cpp",
     "zlib.h": r"src/io/.*\.cpp|.*_test\.h|fuzz/.*",
+    "emscripten.h": r"apps/engine/.*",
     "boost": r"apps/viewer/server\w*\.(h|cpp)|.*_test\.cpp",
     "CGAL": r"apps/mesh/.*",
     "CLI": r"apps/aspic/.*|apps/mesh/.*|bench/.*",
@@ -31,6 +32,8 @@ LIBRARIES = {  # first part of a third-party header: the files that may include 
     "gmock": r".*_test\.cpp|tests/.*",
     "benchmark": r"bench/.*",
 }
+
+PARTLY_MISSING = r"std::(ranges::|bit_cast\b|to_chars\(|from_chars\()"  # in the library of the WebAssembly build
 
 root = pathlib.Path(__file__).resolve().parent.parent
 
@@ -71,6 +74,8 @@ def check_sources(may_include):
                 theirs = re.match(r"#include <([\w+.]+)", line)
                 if theirs and theirs[1] in LIBRARIES and not re.fullmatch(LIBRARIES[theirs[1]], name):
                     yield f"{name}:{number}: {theirs[1]} may not be included here"
+                if module not in (None, "mesher", "base") and (names := re.search(PARTLY_MISSING, line)):
+                    yield f"{name}:{number}: {names[0]} is missing in libc++ 13; base/compat.h and base/number_chars.h replace it"
                 if name.startswith("src/") and name.endswith(".h") and re.match(r"#include <(iostream|regex)>", line):
                     yield f"{name}:{number}: slow to compile; not in a header"
 

@@ -2,7 +2,6 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
-#include <charconv>
 #include <filesystem>
 #include <optional>
 
@@ -11,6 +10,7 @@
 #include "aspic/lecture/course.h"
 #include "aspic/lecture/results.h"
 #include "base/error.h"
+#include "base/number_chars.h"
 #include "base/parallel.h"
 #include "base/stopwatch.h"
 
@@ -38,7 +38,7 @@ void list_pages() {
 
 int parse_page(const std::string& text) {
   int page = 0;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), page);
+  const auto [end, error] = from_chars(text.data(), text.data() + text.size(), page);
   if (error != std::errc() || end != text.data() + text.size() || page < 1 || page > kPages)
     throw InvalidInput(fmt::format("'{}' is not a page of the lecture; give 1 to {}, or 'all'", text, kPages));
   return page;
@@ -56,7 +56,7 @@ std::optional<int> draw_meshes(std::vector<Result>& results) {
 Result run_one(const Demonstration& demonstration, const Stage& stage, const fs::path& out) {
   Stopwatch stopwatch;
   Sheet sheet(out / demonstration.key);
-  demonstration.run(stage, sheet);
+  run_demonstration(demonstration, stage, sheet);
   return {&demonstration, std::move(sheet), stopwatch.lap()};
 }
 

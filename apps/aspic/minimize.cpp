@@ -5,7 +5,6 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <nlohmann/json.hpp>
 
@@ -13,6 +12,7 @@
 #include "aspic/interrupt.h"
 #include "aspic/plot.h"
 #include "base/error.h"
+#include "base/number_chars.h"
 #include "optimize/solver.h"
 #include "optimize/test_functions.h"
 #include "scene/expression_function.h"
@@ -37,7 +37,7 @@ Planar parse_start(const std::string& text) {
   const char* at = text.data();
   const char* const end = at + text.size();
   for (size_t i = 0; i < 2; ++i) {
-    const auto [rest, error] = std::from_chars(at, end, p[i]);
+    const auto [rest, error] = from_chars(at, end, p[i]);
     const bool closed = i == 0 ? rest != end && *rest == ',' : rest == end;
     if (error != std::errc() || !closed || !std::isfinite(p[i]))
       throw InvalidInput(fmt::format("--start {}: give two finite numbers x,y, such as -0.8,0.6", text));

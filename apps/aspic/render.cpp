@@ -5,7 +5,6 @@
 #include <unistd.h>
 
 #include <CLI/CLI.hpp>
-#include <charconv>
 #include <cmath>
 #include <filesystem>
 #include <system_error>
@@ -13,6 +12,7 @@
 #include "aspic/commands.h"
 #include "aspic/interrupt.h"
 #include "base/error.h"
+#include "base/number_chars.h"
 #include "io/atomic_file.h"
 #include "scene/run_directory.h"
 #include "viewer/recording.h"
@@ -41,9 +41,9 @@ viewer::RenderOptions render_options(const RenderArguments& arguments) {
                                 .dark = arguments.dark,
                                 .step = arguments.step};
   const char* end = arguments.size.data() + arguments.size.size();
-  const auto [x, width_error] = std::from_chars(arguments.size.data(), end, options.width);
+  const auto [x, width_error] = from_chars(arguments.size.data(), end, options.width);
   const bool has_both = width_error == std::errc() && x != end && *x == 'x' &&
-                        std::from_chars(x + 1, end, options.height).ptr == end && x + 1 != end;
+                        from_chars(x + 1, end, options.height).ptr == end && x + 1 != end;
   if (!has_both || std::min(options.width, options.height) < 16 || std::max(options.width, options.height) > 8192)
     throw InvalidInput(
         fmt::format("--size {}: write WIDTHxHEIGHT, each from 16 to 8192, such as 1280x720", arguments.size));

@@ -106,8 +106,8 @@ std::string pc2_archive(const std::string& name, const Surface& surface, const M
 }  // namespace
 
 Json animation_reply(const ShownSide& shown, const std::string& format) {
-  const Motion motion =
-      motion_of(shown, *std::ranges::find_if(kFormats, [&](const Format& f) { return format == f.name; }));
+  const Motion motion = motion_of(shown, *std::find_if(std::begin(kFormats), std::end(kFormats),
+                                                       [&](const Format& f) { return format == f.name; }));
   const std::string name = saved_name(shown.side.steered().scene);
   Json reply;
   if (format == "usd") {

@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
-#include <charconv>
 #include <chrono>
 #include <condition_variable>
 #include <exception>
@@ -12,6 +11,7 @@
 #include <vector>
 
 #include "base/error.h"
+#include "base/number_chars.h"
 #include "io/child_process.h"
 #include "io/external_program.h"
 #include "viewer/server.h"
@@ -105,7 +105,7 @@ class Arrivals {
  private:
   static int number(std::string_view text) {
     int value = 0;
-    std::from_chars(text.data(), text.data() + text.size(), value);
+    from_chars(text.data(), text.data() + text.size(), value);
     return value;
   }
 

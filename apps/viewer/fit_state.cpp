@@ -56,8 +56,9 @@ std::string setting_of(const std::filesystem::path& material) { return "material
 bool is_of_temporary(const std::optional<Recording::Comparison>& comparison, const TemporaryFolder* folder) {
   if (!comparison || !folder) return false;
   const std::string path = folder->path().string();
-  return std::ranges::any_of(comparison->overrides,
-                             [&](const std::string& text) { return text.find(path) != std::string::npos; });
+  const std::vector<std::string>& overrides = comparison->overrides;
+  return std::any_of(overrides.begin(), overrides.end(),
+                     [&](const std::string& text) { return text.find(path) != std::string::npos; });
 }
 
 // Root mean square of log(fitted / true) over the volume.
@@ -181,8 +182,9 @@ void FitState::save_material(const std::filesystem::path& folder) {
   known_.file = std::filesystem::absolute(folder) / kMaterialFile;
   write_material(known_.file, known_.outcome->material);
   if (simulated_ != task_ || !is_of_temporary(stage_.comparison(), folder_.get())) return;
-  std::ranges::replace(stage_.comparison()->overrides, setting_of(folder_->path() / kMaterialFile),
-                       setting_of(known_.file));
+  std::vector<std::string>& overrides = stage_.comparison()->overrides;
+  std::replace(overrides.begin(), overrides.end(), setting_of(folder_->path() / kMaterialFile),
+               setting_of(known_.file));
 }
 
 void FitState::require_saved_material() const {
@@ -208,7 +210,7 @@ Json FitState::json() const {
               {"warnings", known_.outcome ? known_.outcome->warnings : std::vector<std::string>{}},
               {"next", nullptr}};
   if (bench_ && !known_.young.empty()) {
-    const auto [least, most] = std::ranges::minmax_element(known_.young);
+    const auto [least, most] = std::minmax_element(known_.young.begin(), known_.young.end());
     fit["softest"] = *least, fit["stiffest"] = *most;
     fit["error"] = error_of(*bench_, known_.young);
   }

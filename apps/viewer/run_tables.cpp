@@ -1,12 +1,12 @@
 #include "viewer/run_tables.h"
 
 #include <algorithm>
-#include <charconv>
 #include <map>
 #include <optional>
 #include <system_error>
 
 #include "base/error.h"
+#include "base/number_chars.h"
 #include "dynamics/step_fields.h"
 #include "io/csv_reader.h"
 
@@ -142,7 +142,7 @@ std::vector<TraceFolder> trace_folders(const RunLayout& layout) {
   for (fs::directory_iterator entry(layout.root(), error), end; !error && entry != end; entry.increment(error)) {
     const std::string name = entry->path().filename().string();
     int after = 0;
-    if (name.starts_with(kAfter)) std::from_chars(name.data() + kAfter.size(), name.data() + name.size(), after);
+    if (name.starts_with(kAfter)) from_chars(name.data() + kAfter.size(), name.data() + name.size(), after);
     if (fs::is_regular_file(layout.trace(after) / "trials.csv", error) && layout.trace(after).filename() == name)
       folders.push_back({entry->path(), after});
   }

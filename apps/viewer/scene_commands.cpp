@@ -97,8 +97,9 @@ void set(const SessionOptions& options, Stage& stage, Arguments& arguments) {
   const ShownSide* only = arguments.has("side") ? &stage.named(arguments) : nullptr;
   arguments.finish();
   const auto is_compared = [&] {  // such a key keeps its values
-    return stage.comparison() &&
-           std::ranges::any_of(stage.comparison()->overrides, [&](const std::string& o) { return key_of(o) == key; });
+    if (!stage.comparison()) return false;
+    const std::vector<std::string>& overrides = stage.comparison()->overrides;
+    return std::any_of(overrides.begin(), overrides.end(), [&](const std::string& o) { return key_of(o) == key; });
   };
   struct Prepared {
     ShownSide& shown;

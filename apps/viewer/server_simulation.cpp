@@ -1,48 +1,18 @@
 #include "viewer/server_simulation.h"
 
 #include <algorithm>
+#include <utility>
 
 namespace aspic::viewer {
 namespace {
 
-using Seconds = std::chrono::duration<double>;
-
-constexpr Seconds kForgotten(0.1);    // longer delays are not made up for
-constexpr Seconds kLongestWait(1e4);  // for speeds near zero
-constexpr Seconds kRateWindow(0.5);
-
 constexpr size_t kInboxRequests = 1000, kInboxBytes = size_t{64} << 20;
 constexpr std::chrono::milliseconds kSlow(300);  // urgent requests interrupt longer work
-constexpr std::chrono::microseconds kBetweenPictures(16'600);
 
 }  // namespace
 
-Pacing::Clock::time_point Pacing::due(double time, double speed, Clock::time_point now) {
-  const auto since_start = [&] { return Seconds(std::min((time - start_time_) / speed, kLongestWait.count())); };
-  const bool continues = speed == speed_ && time >= last_time_;
-  last_time_ = time;
-  if (!continues || now - (start_ + since_start()) > kForgotten) {
-    start_ = now;
-    start_time_ = time;
-    speed_ = speed;
-  }
-  return start_ + std::chrono::duration_cast<Clock::duration>(since_start());
-}
-
-void Rate::start(double time, Clock::time_point now) {
-  start_ = now;
-  start_time_ = time;
-}
-
-bool Rate::update(double time, Clock::time_point now) {
-  const Seconds passed = now - start_;
-  if (passed < kRateWindow) return false;
-  value_ = std::max(0.0, (time - start_time_) / passed.count());
-  start(time, now);
-  return true;
-}
-
-SimulationThread::SimulationThread(Session& session, Audience& audience) : session_(session), audience_(audience) {
+SimulationThread::SimulationThread(Session& session, Audience& audience)
+    : session_(session), audience_(audience), paced_(session) {
   thread_ = std::thread([this] {
     try {
       run();
@@ -125,15 +95,10 @@ void SimulationThread::run() {
 
 // Waits until a request arrives, the next step is due, or a requested picture is due.
 void SimulationThread::wait() {
-  const bool playing = session_.is_playing();
-  const bool has_news = shown_ != session_.picture_version();
   std::unique_lock lock(mutex_);
   const auto woken = [&] { return woken_; };
-  const bool shows = pictures_wanted_ && has_news;
-  if (playing && shows) {
-    changed_.wait_until(lock, std::min(next_step_, next_picture_), woken);
-  } else if (playing || shows) {
-    changed_.wait_until(lock, playing ? next_step_ : next_picture_, woken);
+  if (const auto due = paced_.next(pictures_wanted_)) {
+    changed_.wait_until(lock, *due, woken);
   } else {
     changed_.wait(lock, woken);
   }
@@ -192,38 +157,20 @@ void SimulationThread::serve_fit() {
 }
 
 void SimulationThread::play() {
-  const bool starts = !was_playing_;
-  was_playing_ = session_.is_playing();
-  if (!was_playing_) return;
-  const Clock::time_point now = Clock::now();
-  if (starts) {
-    pacing_.pause();
-    rate_.start(session_.time(), now);
-  }
-  next_step_ = pacing_.due(session_.time(), session_.speed(), now);
-  if (next_step_ > now) return;
-  // Short steps are reported together.
-  const auto is_next_due = [&, together = now + kBetweenPictures] {
-    const Clock::time_point then = Clock::now();
-    return then < together && !is_woken() && pacing_.due(session_.time(), session_.speed(), then) <= then;
-  };
-  audience_.broadcast(interruptibly(Urgency::before_steps, [&] { return session_.advance(is_next_due); }));
-  if (rate_.update(session_.time(), Clock::now())) session_.note_rate(rate_.value());
-  next_step_ = pacing_.due(session_.time(), session_.speed(), Clock::now());
+  if (!paced_.is_step_due()) return;
+  audience_.broadcast(
+      interruptibly(Urgency::before_steps, [&] { return paced_.advance([this] { return is_woken(); }); }));
 }
 
 void SimulationThread::show_pictures() {
-  const long version = session_.picture_version();
-  const Clock::time_point now = Clock::now();
-  if (shown_ == version || now < next_picture_) return;
+  if (!paced_.are_pictures_due()) return;
   {
     const std::lock_guard lock(mutex_);
     if (!pictures_wanted_) return;
     pictures_wanted_ = false;
   }
-  shown_ = version;
-  next_picture_ = now + kBetweenPictures;
-  audience_.show(session_.pictures(), version);
+  Messages pictures = paced_.pictures();
+  audience_.show(std::move(pictures), paced_.shown_version());
 }
 
 }  // namespace aspic::viewer

@@ -2,8 +2,8 @@
 
 #include <fmt/format.h>
 
-#include <iterator>
 #include <new>
+#include <utility>
 
 #include "base/error.h"
 #include "contact/barrier.h"
@@ -82,7 +82,7 @@ Messages Session::greeting(Role role) const {
   for (const ShownSide& shown : impl_->stage.sides()) impl_->stage.send_all(shown);
   impl_->desk.send();
   impl_->playback.send_state();
-  std::ranges::move(impl_->stage.take_messages(), std::back_inserter(messages));
+  for (Message& message : impl_->stage.take_messages()) messages.push_back(std::move(message));
   return messages;
 }
 

@@ -45,7 +45,8 @@ std::vector<Field> ShownSide::fields() const {
 }
 
 bool ShownSide::has_field(const std::string& field) const {
-  return std::ranges::any_of(fields(), [&](const Field& f) { return f.name == field; });
+  const std::vector<Field> all = fields();
+  return std::any_of(all.begin(), all.end(), [&](const Field& f) { return f.name == field; });
 }
 
 Message text(const Json& json) { return {false, json.dump(-1, ' ', false, Json::error_handler_t::replace)}; }

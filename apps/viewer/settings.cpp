@@ -2,10 +2,10 @@
 
 #include <fmt/format.h>
 
-#include <charconv>
 #include <cmath>
 
 #include "base/error.h"
+#include "base/number_chars.h"
 #include "scene/schema.h"
 
 namespace aspic::viewer {
@@ -103,7 +103,7 @@ Json setting_json(const Table& document, const Row& row, const Value& value) {
 
 bool is_number_text(const std::string& text) {
   double number = 0;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
+  const auto [end, error] = from_chars(text.data(), text.data() + text.size(), number);
   return error == std::errc() && end == text.data() + text.size() && std::isfinite(number);
 }
 
@@ -135,7 +135,7 @@ void check_known(const std::string& key, const Table* document) {
   std::vector<std::string> known;
   for (const Row& row : rows())
     if (!document || find(*document, row.key)) known.push_back(row.key);
-  if (std::ranges::find(known, key) != known.end()) return;
+  if (std::find(known.begin(), known.end(), key) != known.end()) return;
   throw InvalidInput(
       fmt::format("'{}' cannot be changed while the simulation runs{}", shortened(key), suggestion(key, known)));
 }

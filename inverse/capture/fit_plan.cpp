@@ -1,10 +1,10 @@
 #include "capture/fit_plan.h"
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 
 #include "base/error.h"
+#include "base/number_chars.h"
 #include "capture/apparent_stiffness.h"
 #include "fit/quantity.h"
 #include "material/registry.h"
@@ -69,7 +69,7 @@ FitParameter parse_parameter(const std::string& text) {
   } else if (parameterization.starts_with("handles:")) {
     parameter.parameterization = Parameterization::handles;
     const char *first = parameterization.data() + 8, *last = parameterization.data() + parameterization.size();
-    const auto [end, error] = std::from_chars(first, last, parameter.handles);
+    const auto [end, error] = from_chars(first, last, parameter.handles);
     if (error != std::errc() || end != last || parameter.handles < 1)
       throw InvalidInput("'" + text + "': handles:N needs a whole number above 0, such as handles:40");
   } else {
@@ -88,7 +88,7 @@ std::string text_of(const FitParameter& parameter) {
 std::pair<std::string, double> parse_known(const std::string& text) {
   const auto [quantity, word] = halves(text, "poisson=0.45");
   double value = 0;
-  const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), value);
+  const auto [end, error] = from_chars(word.data(), word.data() + word.size(), value);
   if (error != std::errc() || end != word.data() + word.size() || !std::isfinite(value))
     throw InvalidInput("'" + text + "': '" + word + "' is not a finite number");
   return {quantity, value};

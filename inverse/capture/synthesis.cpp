@@ -97,7 +97,7 @@ class Bench {
     if (levels.empty()) throw InvalidInput("the stiffness varies from tet to tet; there are no regions to label");
     data().mesh.region.clear();
     for (const double E : sample(result_.truth, young, data().mesh)) {
-      const auto next = std::ranges::lower_bound(levels, E * (1 - 1e-6));
+      const auto next = std::lower_bound(levels.begin(), levels.end(), E * (1 - 1e-6));
       data().mesh.region.push_back(static_cast<int>(next - levels.begin()) + 1);
     }
   }
@@ -127,7 +127,7 @@ class Bench {
     for (const IndentationSite& s : sites) is_site[s.vertex] = 1;
     double young = 0;
     for (int t = 0; t < truth_.mesh.tet_count(); ++t)
-      if (std::ranges::any_of(truth_.mesh.tets[t], [&](int v) { return is_site[v] != 0; }))
+      if (std::any_of(truth_.mesh.tets[t].begin(), truth_.mesh.tets[t].end(), [&](int v) { return is_site[v] != 0; }))
         young = std::max(young, young_modulus(model_.elasticity.front()->parameters()[t].lame));
     return young;
   }

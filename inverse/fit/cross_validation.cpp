@@ -11,7 +11,7 @@ namespace {
 std::vector<std::string> groups_of(const Experiment& experiment) {
   std::vector<std::string> groups;
   for (const LoadCase& c : experiment.cases)
-    if (std::ranges::find(groups, c.group) == groups.end()) groups.push_back(c.group);
+    if (std::find(groups.begin(), groups.end(), c.group) == groups.end()) groups.push_back(c.group);
   return groups;
 }
 

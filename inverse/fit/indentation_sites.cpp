@@ -30,7 +30,7 @@ Normal normal_around(const std::vector<Patch>& all, const std::vector<Triangle>&
   Vec3d sum{};
   double area = 0;
   for (size_t k = 0; k < all.size(); ++k) {
-    const bool touches = std::ranges::find(surface[k], v) != surface[k].end();
+    const bool touches = std::find(surface[k].begin(), surface[k].end(), v) != surface[k].end();
     if (!touches && norm(all[k].center - mesh.rest[v]) > radius) continue;
     sum = sum + all[k].area;
     area += norm(all[k].area);
@@ -55,13 +55,13 @@ std::vector<int> free_vertices(const TetMesh& mesh, const std::vector<Triangle>&
   for (const int v : fixed) is_fixed[v] = 1;
   for (const Triangle& t : surface) {
     const bool is_held =
-        std::ranges::any_of(t, [&](int v) { return is_fixed[v] != 0; });  // an indenter would press on it
+        std::any_of(t.begin(), t.end(), [&](int v) { return is_fixed[v] != 0; });  // an indenter would press on it
     for (const int v : t) is_on_surface[v] = 1, is_beside[v] |= is_held ? 1 : 0;
   }
   std::vector<int> result;
   for (int v = 0; v < mesh.vertex_count(); ++v) {
     const auto is_near = [&](int f) { return norm(mesh.rest[f] - mesh.rest[v]) <= radius; };
-    if (is_on_surface[v] && !is_beside[v] && std::ranges::none_of(fixed, is_near)) result.push_back(v);
+    if (is_on_surface[v] && !is_beside[v] && std::none_of(fixed.begin(), fixed.end(), is_near)) result.push_back(v);
   }
   return result;
 }
@@ -82,9 +82,9 @@ std::vector<IndentationSite> indentation_sites(const TetMesh& mesh, std::span<co
   for (const IndentationSite& s : all) mean = mean + (1.0 / static_cast<double>(all.size())) * mesh.rest[s.vertex];
   for (size_t i = 0; i < all.size(); ++i) distance[i] = norm(mesh.rest[all[i].vertex] - mean);  // initially far outside
   while (static_cast<int>(chosen.size()) < count && !all.empty()) {
-    const size_t next = std::ranges::max_element(distance) - distance.begin();
+    const size_t next = std::max_element(distance.begin(), distance.end()) - distance.begin();
     if (!chosen.empty() && !(distance[next] > 0)) break;
-    if (chosen.empty()) std::ranges::fill(distance, std::numeric_limits<double>::infinity());
+    if (chosen.empty()) std::fill(distance.begin(), distance.end(), std::numeric_limits<double>::infinity());
     chosen.push_back(all[next]);
     for (size_t i = 0; i < all.size(); ++i)
       distance[i] = std::min(distance[i], norm(mesh.rest[all[i].vertex] - mesh.rest[all[next].vertex]));

@@ -97,7 +97,7 @@ void set_description(const ParameterMap& map, const TetMesh& mesh, const Posteri
     }
     if (sum > largest) largest = sum, parameter = u, best = std::move(drop);
   }
-  const size_t t = std::ranges::max_element(best) - best.begin();
+  const size_t t = std::max_element(best.begin(), best.end()) - best.begin();
   const FitParameter& what = map.fitted_parameters()[parameter];
   const std::string where =
       what.parameterization == Parameterization::uniform ? "of the whole body" : describe_place(mesh, best);
@@ -169,9 +169,10 @@ NextIndentation next_indentation(const Experiment& experiment, const FittedField
   if (result.candidates.empty())
     result.warnings.push_back(
         "there is no site for an indenter: all surface vertices are nearer to a held one than its radius");
-  std::ranges::stable_sort(result.candidates, [](const IndentationCandidate& a, const IndentationCandidate& b) {
-    return a.ok != b.ok ? a.ok : a.gain > b.gain;
-  });
+  std::stable_sort(result.candidates.begin(), result.candidates.end(),
+                   [](const IndentationCandidate& a, const IndentationCandidate& b) {
+                     return a.ok != b.ok ? a.ok : a.gain > b.gain;
+                   });
   result.gain = spread_gain(mesh, result.candidates);
   return result;
 }

@@ -32,7 +32,7 @@ class WeightedFields {
     }
   }
   void multiply_transposed(std::span<const double> g, std::span<double> p) const {
-    std::ranges::fill(p, 0.0);
+    std::fill(p.begin(), p.end(), 0.0);
     std::vector<double> part(root_.size());
     for (size_t u = 0; u < map_.fitted_parameters().size(); ++u) {
       for (size_t t = 0; t < root_.size(); ++t) part[t] = root_[t] * g[u * root_.size() + t];

@@ -88,7 +88,7 @@ class Refinement {
     std::vector<char> is_held(coarse_.mesh.rest.size(), 0);
     for (const int v : coarse_.fixed) is_held[v] = 1;
     const auto hold_edges = [&](const auto& corners) {
-      if (!std::ranges::all_of(corners, [&](int v) { return is_held[v] != 0; })) return;
+      if (!std::all_of(corners.begin(), corners.end(), [&](int v) { return is_held[v] != 0; })) return;
       for (size_t i = 0; i < corners.size(); ++i)
         for (size_t j = 0; j < i; ++j) fine_.fixed.push_back(middle(corners[i], corners[j]));
     };

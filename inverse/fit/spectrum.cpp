@@ -15,7 +15,7 @@ std::span<const double> column(const std::vector<double>& A, int rows, int j) {
 }
 
 bool all_finite(std::span<const double> values) {
-  return std::ranges::all_of(values, [](double v) { return std::isfinite(v); });
+  return std::all_of(values.begin(), values.end(), [](double v) { return std::isfinite(v); });
 }
 
 bool all_finite(const Columns& A) {
@@ -78,7 +78,10 @@ Columns dense_products(LeastSquares& data, const Columns& V) {
   const Columns rows = columns_of_transposed(data);
   const std::vector<double> A = product_transposed(rows, V);
   Columns JV(data.residual_count(), V.count());
-  for (int j = 0; j < V.count(); ++j) std::ranges::copy(column(A, data.residual_count(), j), JV[j].begin());
+  for (int j = 0; j < V.count(); ++j) {
+    const auto image = column(A, data.residual_count(), j);
+    std::copy(image.begin(), image.end(), JV[j].begin());
+  }
   return JV;
 }
 

@@ -38,7 +38,7 @@ Fields unseen_exactly(PosteriorGaussian& gaussian, const ParameterMap& map) {
   for (size_t u = 0; u < unseen.size(); ++u) {
     std::vector<double> unit(unseen[u].size(), 0.0);
     for (size_t t = 0; t < unit.size(); ++t) {
-      std::ranges::fill(a, 0.0);
+      std::fill(a.begin(), a.end(), 0.0);
       unit[t] = 1;
       map.add_fitted_transposed(static_cast<int>(u), unit, a);
       unit[t] = 0;

@@ -2,6 +2,7 @@
 
 #include <bit>
 
+#include "base/compat.h"
 #include "base/hash.h"
 #include "mesh/vertices.h"
 
@@ -14,7 +15,7 @@ std::uint64_t state_hash(const State& state, const Renumbering& vertices) {
     for (int user = 0; user < count; ++user) {
       const double* x = values->data() + 3 * static_cast<size_t>(vertices.from_user(user));
       for (int r = 0; r < 3; ++r) {
-        hash = (hash ^ std::bit_cast<std::uint64_t>(x[r])) * Fnv1a::kPrime;
+        hash = (hash ^ bit_cast<std::uint64_t>(x[r])) * Fnv1a::kPrime;
         hash ^= hash >> 32;
       }
     }

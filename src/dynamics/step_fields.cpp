@@ -1,8 +1,7 @@
 #include "dynamics/step_fields.h"
 
-#include <charconv>
-
 #include "base/hash.h"
+#include "base/number_chars.h"
 
 namespace aspic {
 namespace {
@@ -108,7 +107,7 @@ StepField state_hash() {
           [](const StepReport& r) { return StepValue(hex_digits(r.state_hash)); },
           [](StepReport& r, const StepValue& v) {
             const std::string& digits = std::get<std::string>(v);
-            std::from_chars(digits.data(), digits.data() + digits.size(), r.state_hash, 16);
+            from_chars(digits.data(), digits.data() + digits.size(), r.state_hash, 16);
             return true;
           },
           [](const StepReport& r) {

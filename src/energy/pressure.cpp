@@ -81,7 +81,7 @@ class SweptVolume {
     for (size_t t = 0; t < patch_.size(); ++t) {
       Mat9d K = hessian(sweep(x, t), pressure);
       const auto covers = [&](int v) { return projection.covers(v); };
-      if (projection.kind != Definiteness::exact && std::ranges::any_of(patch_[t], covers)) {
+      if (projection.kind != Definiteness::exact && std::any_of(patch_[t].begin(), patch_[t].end(), covers)) {
         const bool is_clamped = projection.kind == Definiteness::clamped;
         projected += modify_hessian(K, is_clamped ? EigenvalueFilter::clamp : EigenvalueFilter::absolute, 1) != 0;
       }

@@ -128,7 +128,8 @@ class ProbeTerm : public Probe {
     for_each_touched(indenter, x, [&](const Patch& patch, const Barycentric& b, const Vec3d&, const Response& r) {
       Mat3d K = r.hessian;
       const auto covers = [&](int v) { return projection.covers(v); };
-      if (is_sliding() && projection.kind != Definiteness::exact && std::ranges::any_of(patch.vertices, covers))
+      if (is_sliding() && projection.kind != Definiteness::exact &&
+          std::any_of(patch.vertices.begin(), patch.vertices.end(), covers))
         projected += modify_hessian(K, projection.kind);
       const auto& slot = slot_[&patch - patches_.data()];
       for (int i = 0; i < 3; ++i)

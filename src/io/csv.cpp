@@ -1,9 +1,9 @@
 #include "io/csv.h"
 
-#include <charconv>
 #include <cmath>
 
 #include "base/error.h"
+#include "base/number_chars.h"
 #include "io/atomic_file.h"
 #include "io/number_text.h"
 
@@ -67,7 +67,7 @@ CsvFile CsvFile::resume(const std::filesystem::path& path, const std::vector<std
   for (size_t end; (end = text.find('\n', kept)) != std::string::npos; kept = end + 1) {
     ++line;
     int next = 0;
-    if (std::from_chars(text.data() + kept, text.data() + end, next).ec != std::errc() || next < step) {
+    if (from_chars(text.data() + kept, text.data() + end, next).ec != std::errc() || next < step) {
       throw InvalidInput(path.string() + ":" + std::to_string(line) + ": the row does not begin with the next step");
     }
     if (next > last_step) break;

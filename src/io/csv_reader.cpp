@@ -1,9 +1,9 @@
 #include "io/csv_reader.h"
 
 #include <algorithm>
-#include <charconv>
 
 #include "base/error.h"
+#include "base/number_chars.h"
 #include "base/printable.h"
 #include "io/input_file.h"
 
@@ -46,7 +46,7 @@ std::string trimmed(const std::string& text) {
 
 template <class Number>
 bool parse(const std::string& text, Number& value) {
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  const auto [end, error] = from_chars(text.data(), text.data() + text.size(), value);
   return error == std::errc() && end == text.data() + text.size();
 }
 

@@ -1,10 +1,10 @@
 // Numbers as text and bytes that read back to the same bits, independent of the locale.
 #pragma once
 #include <bit>
-#include <charconv>
 #include <cstring>
 #include <string>
 
+#include "base/number_chars.h"
 #include "math/small.h"
 
 namespace aspic {
@@ -15,7 +15,7 @@ static_assert(std::endian::native == std::endian::little, "files are written in 
 template <class T>
 void append_number(std::string& text, T value) {
   char digits[32];
-  text.append(digits, std::to_chars(digits, digits + sizeof(digits), value).ptr);
+  text.append(digits, to_chars(digits, digits + sizeof(digits), value).ptr);
 }
 
 // "x y z"

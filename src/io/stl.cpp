@@ -6,6 +6,7 @@
 #include <cmath>
 #include <unordered_map>
 
+#include "base/compat.h"
 #include "base/error.h"
 #include "io/byte_cursor.h"
 #include "io/number_text.h"
@@ -19,7 +20,7 @@ constexpr size_t kHeaderSize = 80, kCountSize = 4, kTriangleSize = 50;  // parts
 struct PointHash {
   size_t operator()(const std::array<double, 3>& point) const {
     uint64_t hash = 0;
-    for (const double x : point) hash = (hash ^ std::bit_cast<uint64_t>(x)) * 0x9e3779b97f4a7c15u, hash ^= hash >> 29;
+    for (const double x : point) hash = (hash ^ bit_cast<uint64_t>(x)) * 0x9e3779b97f4a7c15u, hash ^= hash >> 29;
     return hash;
   }
 };

@@ -1,11 +1,11 @@
 #include "io/text_scanner.h"
 
 #include <algorithm>
-#include <charconv>
 #include <climits>
 #include <cmath>
 
 #include "base/error.h"
+#include "base/number_chars.h"
 
 namespace aspic {
 namespace {
@@ -23,7 +23,7 @@ std::string_view without_plus(std::string_view word) {
 std::optional<double> parse_number(std::string_view word) {
   word = without_plus(word);
   double value = 0;
-  const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), value);
+  const auto [end, error] = from_chars(word.data(), word.data() + word.size(), value);
   if (end != word.data() + word.size()) return std::nullopt;
   // Underflow gives zero; overflow is an error.
   if (error == std::errc::result_out_of_range && word.find_first_of("eE") != word.npos && word.rfind('-') > 0 &&
@@ -36,7 +36,7 @@ std::optional<double> parse_number(std::string_view word) {
 std::optional<int64_t> parse_integer(std::string_view word) {
   word = without_plus(word);
   int64_t value = 0;
-  const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), value);
+  const auto [end, error] = from_chars(word.data(), word.data() + word.size(), value);
   if (error != std::errc() || end != word.data() + word.size()) return std::nullopt;
   return value;
 }

@@ -4,12 +4,12 @@
 
 #include <algorithm>
 #include <bit>
-#include <charconv>
 #include <cstring>
 #include <utility>
 
 #include "base/error.h"
 #include "base/free_memory.h"
+#include "base/number_chars.h"
 #include "io/base64.h"
 
 namespace aspic {
@@ -150,7 +150,7 @@ std::vector<Number> parse_ascii(const VtkFile& file, const XmlElement& array, si
   std::vector<Number> numbers(count);
   for (size_t i = 0; i < count; ++i) {
     skip_blanks();
-    const auto [after, error] = std::from_chars(next, end, numbers[i]);
+    const auto [after, error] = from_chars(next, end, numbers[i]);
     if (error != std::errc()) fail_at(file, array, "number " + std::to_string(i + 1) + " cannot be read");
     next = after;
   }
@@ -222,7 +222,7 @@ int64_t count_attribute(const VtkFile& file, const XmlElement& element, std::str
   const std::string* text = element.attribute(name);
   if (!text) return fallback;
   int64_t value = -1;
-  const auto [after, error] = std::from_chars(text->data(), text->data() + text->size(), value);
+  const auto [after, error] = from_chars(text->data(), text->data() + text->size(), value);
   if (error != std::errc() || after != text->data() + text->size() || value < 0 || value > limit) {
     fail_at(file, element, std::string(name) + " = '" + *text + "' is not a number from 0 to " + std::to_string(limit));
   }

@@ -206,12 +206,30 @@ TEST(Ordering, IsPermutationWithLittleFill) {
   std::vector<int> natural(H.rows());
   for (int i = 0; i < H.rows(); ++i) natural[i] = i;
   const double natural_flops = find_supernodes(*H.pattern, natural).cost.flops;
-  for (std::vector<int> order : {fill_reducing_order(*H.pattern), minimum_degree_order(*H.pattern)}) {
+  for (std::vector<int> order :
+       {fill_reducing_order(*H.pattern), minimum_degree_order(*H.pattern), geometric_order(*H.pattern)}) {
     const double flops = find_supernodes(*H.pattern, order).cost.flops;
     EXPECT_LT(flops, natural_flops / 2);
     std::sort(order.begin(), order.end());
     EXPECT_EQ(order, natural);
   }
+}
+
+TEST(Ordering, GeometricDissectionHasLessFillThanMinimumDegree) {
+  const Matrix H = spring_lattice({.nx = 18, .ny = 18, .nz = 18});
+  const auto flops_of = [&](const std::vector<int>& order) { return find_supernodes(*H.pattern, order).cost.flops; };
+  const double geometric = flops_of(geometric_order(*H.pattern));
+  EXPECT_LT(geometric, 0.75 * flops_of(minimum_degree_order(*H.pattern)));
+  EXPECT_LT(geometric, 1.25 * flops_of(fill_reducing_order(*H.pattern)));
+}
+
+// Pinned vertices have no couplings; coincident vertices cannot be separated by a plane.
+TEST(Ordering, GeometricDissectionAcceptsDegeneratePositions) {
+  Matrix H = spring_lattice({.nx = 6, .ny = 6, .nz = 6});
+  for (Vec3d& x : H.pattern->rest_position) x = {};
+  std::vector<int> order = geometric_order(*H.pattern);
+  std::sort(order.begin(), order.end());
+  for (int i = 0; i < H.rows(); ++i) ASSERT_EQ(order[i], i);
 }
 
 }  // namespace

@@ -1,12 +1,16 @@
 #include "linalg/ordering.h"
 
+#ifdef ASPIC_METIS
 #include <metis.h>
+#endif
 
 #include <Eigen/OrderingMethods>
 #include <Eigen/SparseCore>
 #include <limits>
 #include <mutex>
 #include <numeric>
+
+#include "linalg/elimination.h"
 
 namespace aspic {
 namespace {
@@ -22,7 +26,9 @@ bool is_permutation(const std::vector<int>& order) {
   return true;
 }
 
+#ifdef ASPIC_METIS
 std::vector<int> nested_dissection_order(const BlockPattern& pattern) {
+  if (2 * pattern.block_count() >= std::numeric_limits<idx_t>::max()) return {};
   idx_t rows = pattern.rows();
   std::vector<idx_t> start(rows + 1, 0), neighbor;
   neighbor.reserve(2 * (pattern.block_count() - rows));
@@ -44,6 +50,15 @@ std::vector<int> nested_dissection_order(const BlockPattern& pattern) {
   if (status != METIS_OK) return {};
   return {order.begin(), order.end()};
 }
+#else
+// Long thin bodies have less fill by minimum degree.
+std::vector<int> nested_dissection_order(const BlockPattern& pattern) {
+  if (static_cast<int>(pattern.rest_position.size()) != pattern.rows()) return {};
+  std::vector<int> order = geometric_order(pattern);
+  const auto flops = [&](const std::vector<int>& o) { return find_supernodes(pattern, o).cost.flops; };
+  return flops(order) < flops(minimum_degree_order(pattern)) ? order : std::vector<int>{};
+}
+#endif
 
 }  // namespace
 
@@ -67,13 +82,12 @@ std::vector<int> minimum_degree_order(const BlockPattern& pattern) {
 std::vector<int> fill_reducing_order(const BlockPattern& pattern) {
   const int rows = pattern.rows();
   std::vector<int> order;
-  const int64_t edges = pattern.block_count() - rows;
-  if (edges == 0) {  // edge case that neither library handles well
+  if (pattern.block_count() == rows) {  // edge case that neither library handles well
     order.resize(rows);
     std::iota(order.begin(), order.end(), 0);
     return order;
   }
-  if (rows >= kTiny && 2 * edges < std::numeric_limits<idx_t>::max()) order = nested_dissection_order(pattern);
+  if (rows >= kTiny) order = nested_dissection_order(pattern);
   if (static_cast<int>(order.size()) != rows || !is_permutation(order)) order = minimum_degree_order(pattern);
   return order;
 }

@@ -6,6 +6,7 @@
 #include <cstddef>
 #include <span>
 
+#include "base/compat.h"
 #include "math/pack.h"
 #include "math/small.h"
 
@@ -32,10 +33,10 @@ using ParameterArray = std::array<T, kParameterCount<M>>;
 // Converts parameters to another scalar: double to Pack (in all lanes) or to Jet (as constants).
 template <class M, class To, class From = double>
 typename M::template Params<To> broadcast_params(const typename M::template Params<From>& p) {
-  const auto from = std::bit_cast<ParameterArray<M, From>>(p);
+  const auto from = aspic::bit_cast<ParameterArray<M, From>>(p);
   ParameterArray<M, To> to;
   for (std::size_t k = 0; k < from.size(); ++k) to[k] = To(from[k]);
-  return std::bit_cast<typename M::template Params<To>>(to);
+  return aspic::bit_cast<typename M::template Params<To>>(to);
 }
 
 // Packs one parameter set per lane: 1 to kPackWidth sets; the last one also fills the remaining lanes.
@@ -44,10 +45,10 @@ typename M::template Params<Pack> pack_params(std::span<const typename M::templa
   ParameterArray<M, Pack> to;
   for (int lane = 0; lane < kPackWidth; ++lane) {
     const std::size_t i = static_cast<std::size_t>(lane) < lanes.size() ? lane : lanes.size() - 1;
-    const auto from = std::bit_cast<ParameterArray<M, double>>(lanes[i]);
+    const auto from = aspic::bit_cast<ParameterArray<M, double>>(lanes[i]);
     for (std::size_t k = 0; k < to.size(); ++k) to[k].set(lane, from[k]);
   }
-  return std::bit_cast<typename M::template Params<Pack>>(to);
+  return aspic::bit_cast<typename M::template Params<Pack>>(to);
 }
 
 }  // namespace aspic

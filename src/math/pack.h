@@ -8,6 +8,8 @@
 #include <limits>
 #include <utility>
 
+#include "base/compat.h"
+
 namespace aspic {
 
 // Lets unqualified calls on a double never convert to Pack.
@@ -73,7 +75,7 @@ inline bool all_ordinary(Pack a) {
 // f/(2 + f), f = m - 1, s^2 < 0.0295. Because 2s = f - s f, ln m = f - s (f - R), R = 2 s^2/3 + 2 s^4/5 + ...
 inline Pack log(Pack a) {
   if (!all_ordinary(a)) return map(a, [](double x) { return std::log(x); });
-  constexpr long long kSqrtHalf = std::bit_cast<long long>(0.70710678118654752);
+  constexpr long long kSqrtHalf = bit_cast<long long>(0.70710678118654752);
   constexpr double kLn2High = 0x1.62e42fefa0000p-1, kLn2Low = 0x1.cf79abc9e3b3ap-40;  // k * high is exact
   const PackBits bits = (PackBits)a.v, k_bits = (bits - kSqrtHalf) >> 52;
   const Pack k = __builtin_convertvector(k_bits, Pack::Lanes);
@@ -89,7 +91,7 @@ inline Pack log(Pack a) {
 // digits, and a final Newton step rounds once.
 inline Pack cbrt(Pack a) {
   if (!all_ordinary(a)) return map(a, [](double x) { return std::cbrt(x); });
-  constexpr double kTwoThirdsOfOne = 2.0 / 3 * static_cast<double>(std::bit_cast<long long>(0.97));
+  constexpr double kTwoThirdsOfOne = 2.0 / 3 * static_cast<double>(bit_cast<long long>(0.97));
   const Pack bits = __builtin_convertvector((PackBits)a.v, Pack::Lanes);
   const Pack third = (1.0 / 3) * bits + kTwoThirdsOfOne;
   Pack y((Pack::Lanes) __builtin_convertvector(third.v, PackBits));

@@ -49,7 +49,7 @@ Vector samples_along(const LiveIteration& at, int samples) {
   Vector alphas;
   for (int i = 0; i < around; ++i) alphas.push_back(between(-0.5 * at.alpha, 3 * at.alpha, i, around));
   for (int i = 0; i < samples - around; ++i) alphas.push_back(between(-0.2 * last, last, i, samples - around));
-  std::ranges::sort(alphas);
+  std::sort(alphas.begin(), alphas.end());
   return alphas;
 }
 

@@ -1,7 +1,6 @@
 #include "scene/run_directory_layout.h"
 
 #include <algorithm>
-#include <charconv>
 #include <fstream>
 #include <optional>
 #include <set>
@@ -9,6 +8,7 @@
 
 #include "base/error.h"
 #include "base/formatted.h"
+#include "base/number_chars.h"
 #include "io/atomic_file.h"
 #include "io/checkpoint.h"
 #include "io/input_file.h"
@@ -28,7 +28,7 @@ std::optional<int> frame_number(const fs::path& file) {
       (extension == ".obj" || extension == ".ply") && (stem.starts_with("skin_") || stem.starts_with("obstacle_"));
   if (!(is_vtu || is_surface) || digits.size() < 6) return {};
   int number = 0;
-  const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), number);
+  const auto [end, error] = from_chars(digits.data(), digits.data() + digits.size(), number);
   if (error != std::errc() || end != digits.data() + digits.size() || number < 0) return {};
   return number;
 }

@@ -1,11 +1,11 @@
 #include "scene/tables.h"
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <set>
 
 #include "base/error.h"
+#include "base/number_chars.h"
 #include "io/atomic_file.h"
 #include "io/vtu.h"
 #include "mesh/tet_shape.h"
@@ -33,7 +33,7 @@ std::vector<std::string_view> split_words(std::string_view line) {
 
 bool parse_finite(std::string_view word, double& value) {
   if (word.starts_with('+')) word.remove_prefix(1);
-  const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), value);
+  const auto [end, error] = from_chars(word.data(), word.data() + word.size(), value);
   return error == std::errc() && end == word.data() + word.size() && std::isfinite(value);
 }
 

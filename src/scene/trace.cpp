@@ -1,10 +1,10 @@
 #include "scene/trace.h"
 
-#include <charconv>
 #include <nlohmann/json.hpp>
 #include <system_error>
 
 #include "base/error.h"
+#include "base/number_chars.h"
 #include "optimize/landscape.h"
 
 namespace aspic {
@@ -93,7 +93,7 @@ void write_slice(const std::filesystem::path& path, const Slice& slice) {
 
 bool read_number(std::string_view text, int least, int& number) {
   const auto end = text.data() + text.size();
-  const auto [stop, error] = std::from_chars(text.data(), end, number);
+  const auto [stop, error] = from_chars(text.data(), end, number);
   return error == std::errc() && stop == end && number >= least;
 }
 

@@ -1,10 +1,10 @@
 #include "scene/value.h"
 
-#include <charconv>
 #include <cmath>
 #include <utility>
 
 #include "base/check.h"
+#include "base/number_chars.h"
 
 namespace aspic {
 namespace {
@@ -93,7 +93,7 @@ std::string number_text(double value) {
   if (std::isnan(value)) return "nan";
   if (std::isinf(value)) return value > 0 ? "inf" : "-inf";
   char buffer[40];
-  const auto end = std::to_chars(buffer, buffer + sizeof buffer, value).ptr;
+  const auto end = to_chars(buffer, buffer + sizeof buffer, value).ptr;
   return std::string(buffer, end);
 }
 

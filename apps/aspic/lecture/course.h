@@ -1,7 +1,6 @@
 // The lecture "From Energy to Motion": its 62 pages and their demonstrations.
 #pragma once
 #include <filesystem>
-#include <functional>
 #include <string>
 #include <vector>
 
@@ -44,10 +43,12 @@ struct Demonstration {
   std::vector<int> pages;  // ascending
   std::string title;
   std::string claim;  // claim of the slides, with formulas
-  std::function<void(const Stage&, Sheet&)> run;
 };
 const std::vector<Demonstration>& demonstrations();
 std::vector<const Demonstration*> demonstrations_of(int page);
+std::string pages_text(const std::vector<int>& pages);  // "5, 7-9"
+
+void run_demonstration(const Demonstration& demonstration, const Stage& stage, Sheet& sheet);
 
 // Returns why a page has no demonstration; empty if it has one.
 std::string reason_for_none(int page);

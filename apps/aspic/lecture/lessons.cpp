@@ -7,7 +7,6 @@
 #include <optional>
 
 #include "aspic/lecture/course.h"
-#include "aspic/lecture/results.h"
 #include "base/error.h"
 #include "viewer/surface.h"
 

@@ -132,18 +132,6 @@ void add_result(ReportPage& page, const Result& result) {
 
 }  // namespace
 
-std::string pages_text(const std::vector<int>& pages) {
-  std::string text;
-  for (size_t i = 0; i < pages.size();) {
-    size_t j = i;
-    while (j + 1 < pages.size() && pages[j + 1] == pages[j] + 1) ++j;
-    text += fmt::format("{}{}", text.empty() ? "" : ", ", pages[i]);
-    if (j > i) text += fmt::format("-{}", pages[j]);
-    i = j + 1;
-  }
-  return text;
-}
-
 void print(const Result& result) {
   const Demonstration& d = *result.demonstration;
   fmt::print("\npages {}: {}\n  claim: {}\n", pages_text(d.pages), d.title, d.claim);

@@ -14,7 +14,6 @@ struct Result {
   double seconds = 0;
 };
 
-std::string pages_text(const std::vector<int>& pages);  // "5, 7-9"
 void print(const Result& result);
 std::string count_text(const std::vector<Result>& results);  // number of passing pages, and pages that cannot be judged
 

@@ -1,4 +1,4 @@
-#include "viewer/server_simulation.h"
+#include "viewer/pacing.h"
 
 #include <gtest/gtest.h>
 
