@@ -41,7 +41,7 @@ Problem known_problem(const std::string& name) {
 Minimization minimize(const Problem& problem, const SolverOptions& options, const ShowIteration& show) {
   check(options);
   const auto direction = make_search_direction(options);
-  Minimization done{.method = options.method, .definiteness = options.definiteness};
+  Minimization done{.method = options.method, .definiteness = definiteness_of(options)};
   std::replace(done.method.begin(), done.method.end(), '_', ' ');
   std::vector<double> x = {problem.start[0], problem.start[1], 0};
   const auto observe = [&](const LiveIteration& live) {

@@ -13,6 +13,7 @@
 #include "aspic/plot.h"
 #include "base/error.h"
 #include "base/number_chars.h"
+#include "optimize/hessian_policy.h"
 #include "optimize/solver.h"
 #include "optimize/test_functions.h"
 #include "scene/expression_function.h"
@@ -141,7 +142,7 @@ std::string describe(const Minimization& done) {
     case Status::no_descent:
       return fmt::format(
           "no descent direction after {} iterations: {}", report.iterations,
-          done.definiteness == "exact"
+          done.definiteness == NewtonDefiniteness::exact
               ? "the Hessian is not positive definite; try --definiteness on_demand"
               : "the quadratic model has no minimum here, and f may have none; try --method gradient_descent");
     case Status::undefined:

@@ -31,8 +31,8 @@ struct IterationRecord {
 };
 
 struct Minimization {
-  std::string method;        // description
-  std::string definiteness;  // as given by the user
+  std::string method;  // description
+  NewtonDefiniteness definiteness = {};
   std::vector<IterationRecord> iterations;
   MinimizeReport report;
   Planar end{};

@@ -8,6 +8,7 @@
 #include "aspic/minimize.h"
 #include "aspic/plot.h"
 #include "base/error.h"
+#include "optimize/hessian_policy.h"
 
 namespace aspic::cli {
 namespace {
@@ -61,8 +62,8 @@ Planar along(const IterationRecord& record, double alpha) {
 }
 
 Definiteness projection(const Minimization& done, const IterationRecord& record) {
-  if (done.definiteness == "absolute") return Definiteness::absolute;
-  const bool clamped = done.definiteness == "clamped" || record.iteration.direction.projected;
+  if (done.definiteness == NewtonDefiniteness::absolute) return Definiteness::absolute;
+  const bool clamped = done.definiteness == NewtonDefiniteness::clamped || record.iteration.direction.projected;
   return clamped ? Definiteness::clamped : Definiteness::exact;
 }
 

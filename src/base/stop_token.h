@@ -1,19 +1,15 @@
 // Cooperative cancellation of long computations.
 #pragma once
-#include <chrono>
 #include <functional>
 #include <limits>
 #include <memory>
 #include <utility>
 
+#include "base/stopwatch.h"
+
 namespace aspic {
 
 using WallClock = std::function<double()>;  // returns seconds since any fixed time
-
-// Returns the time of a clock that never goes backward [s].
-inline double steady_seconds() {
-  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
-}
 
 // Stops a computation in one of two ways. A request discards the current work: the computation ends at its next poll of
 // the token with status `interrupted`. A deadline keeps the best result: the status is `budget`. Results that end at a

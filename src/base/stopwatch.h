@@ -1,21 +1,21 @@
 // Wall time of the stages of a computation.
 #pragma once
-#include <chrono>
 
 namespace aspic {
+
+double steady_seconds();  // time of a clock that never goes backward [s]
 
 class Stopwatch {
  public:
   // Returns the seconds since the last lap or the construction.
   double lap() {
-    const auto now = std::chrono::steady_clock::now();
-    const double seconds = std::chrono::duration<double>(now - last_).count();
+    const double now = steady_seconds(), seconds = now - last_;
     last_ = now;
     return seconds;
   }
 
  private:
-  std::chrono::steady_clock::time_point last_ = std::chrono::steady_clock::now();
+  double last_ = steady_seconds();
 };
 
 }  // namespace aspic

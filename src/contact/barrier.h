@@ -4,9 +4,9 @@
 #pragma once
 #include <memory>
 
-#include "contact/contact_cost.h"
 #include "contact/contact_laws.h"
 #include "contact/contact_mesh.h"
+#include "contact/contact_meter.h"
 #include "contact/contact_stencil.h"
 #include "energy/energy.h"
 

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "contact/contact_candidates.h"
-#include "contact/contact_cost.h"
+#include "contact/contact_meter.h"
 #include "contact/contact_stencil.h"
 
 namespace aspic {

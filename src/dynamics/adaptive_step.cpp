@@ -5,7 +5,7 @@
 #include <utility>
 
 #include "base/error.h"
-#include "dynamics/lead_pins.h"
+#include "dynamics/advance_boundary.h"
 
 namespace aspic {
 namespace {

@@ -29,7 +29,7 @@ class Guesser {  // owns the scratch vectors
  public:
   // Writes the initial guess to `q` and returns its kind. Pinned vertices are at their positions at `known.time`. If
   // the requested guess has infinite energy, uses the best one. If all have, moves the pins in substeps (see
-  // lead_pins.h). Adds the evaluations to `work`.
+  // advance_boundary.h). Adds the evaluations to `work`.
   Guess guess(const StepTools& tools, InitialGuess requested, const GuessContext& known, std::span<double> q,
               MinimizeReport& work);
 

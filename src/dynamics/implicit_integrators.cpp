@@ -1,9 +1,9 @@
 // Backward Euler, its linearization, the second-order backward difference formula, and the static limit.
 #include <algorithm>
 
+#include "dynamics/advance_boundary.h"
 #include "dynamics/implicit_stage.h"
 #include "dynamics/lagged.h"
-#include "dynamics/lead_pins.h"
 #include "dynamics/runge_kutta.h"
 #include "dynamics/runge_kutta_tables.h"
 

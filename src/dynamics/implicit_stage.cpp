@@ -2,8 +2,8 @@
 
 #include <algorithm>
 
+#include "dynamics/advance_boundary.h"
 #include "dynamics/lagged.h"
-#include "dynamics/lead_pins.h"
 
 namespace aspic {
 namespace {

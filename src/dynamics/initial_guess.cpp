@@ -5,9 +5,9 @@
 
 #include "base/error.h"
 #include "contact/barrier.h"
+#include "dynamics/advance_boundary.h"
 #include "dynamics/guesser.h"
 #include "dynamics/integrator.h"
-#include "dynamics/lead_pins.h"
 
 namespace aspic {
 
@@ -96,7 +96,7 @@ Guess Guesser::guess(const StepTools& tools, InitialGuess requested, const Guess
   }
 
   std::copy(known.q.begin(), known.q.end(), q.begin());
-  Guess best = {InitialGuess::current, lead_pins(tools, known.time, known.q, q, work)};
+  Guess best = {InitialGuess::current, advance_boundary(tools, known.time, known.q, q, work)};
   if (requested == InitialGuess::current) return best;
   if (tools.model.contact && !std::isfinite(best.value.value))
     return best;  // pins are at the end of the last feasible path

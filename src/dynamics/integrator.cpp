@@ -3,7 +3,7 @@
 #include <array>
 
 #include "base/error.h"
-#include "dynamics/lead_pins.h"
+#include "dynamics/advance_boundary.h"
 #include "dynamics/runge_kutta_tables.h"
 #include "dynamics/simulation.h"
 

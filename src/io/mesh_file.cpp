@@ -171,47 +171,47 @@ const std::vector<MeshFormat>& mesh_formats() {
   return list;
 }
 
-std::variant<TetMesh, TriMesh> read_mesh(const fs::path& path) {
+std::variant<TetMesh, TriMesh> read_mesh(const std::string& path) {
   const Format& format = format_of(path);
   check_memory(path);
   MeshContent content = format.read(path);
   if (!content.tets.empty())
     return TetMesh{std::move(content.vertices), std::move(content.tets), std::move(content.region)};
   if (!content.triangles.empty()) return TriMesh{std::move(content.vertices), std::move(content.triangles)};
-  throw InvalidInput(path.string() + ": holds " +
+  throw InvalidInput(path + ": holds " +
                      (format.holds_tets && format.holds_triangles ? "neither tets nor triangles"
                       : format.holds_tets                         ? "no tets"
                                                                   : "no faces") +
                      "; export the mesh again with its elements");
 }
 
-TetMesh read_tet_mesh(const fs::path& path) {
+TetMesh read_tet_mesh(const std::string& path) {
   auto mesh = read_mesh(path);
   if (auto* tets = std::get_if<TetMesh>(&mesh)) return std::move(*tets);
-  throw InvalidInput(path.string() + ": holds a surface, no tets; fill it with 'aspic mesh " +
-                     path.filename().string() + " -o " + path.stem().string() + ".msh'");
+  throw InvalidInput(path + ": holds a surface, no tets; fill it with 'aspic mesh " +
+                     fs::path(path).filename().string() + " -o " + fs::path(path).stem().string() + ".msh'");
 }
 
-TriMesh read_tri_mesh(const fs::path& path) {
+TriMesh read_tri_mesh(const std::string& path) {
   auto mesh = read_mesh(path);
   if (auto* triangles = std::get_if<TriMesh>(&mesh)) return std::move(*triangles);
   return boundary_surface(std::get<TetMesh>(mesh)).surface;
 }
 
-void write_mesh(const fs::path& path, const TetMesh& mesh, FileEncoding encoding) {
+void write_mesh(const std::string& path, const TetMesh& mesh, FileEncoding encoding) {
   const Format& format = format_of(path);
   if (!format.write_tets)
-    throw InvalidInput(path.string() + ": " + format.name + " cannot hold tets; write .msh, .mesh, .node or .vtu");
+    throw InvalidInput(path + ": " + format.name + " cannot hold tets; write .msh, .mesh, .node or .vtu");
   ASPIC_CHECK(mesh.region.empty() || mesh.region.size() == mesh.tets.size());
   ASPIC_CHECK(are_indices_valid(mesh.tets, mesh.vertex_count()));
   check_vertices(path, mesh.rest);
   format.write_tets(path, mesh, encoding);
 }
 
-void write_mesh(const fs::path& path, const TriMesh& mesh, FileEncoding encoding) {
+void write_mesh(const std::string& path, const TriMesh& mesh, FileEncoding encoding) {
   const Format& format = format_of(path);
   if (!format.write_triangles)
-    throw InvalidInput(path.string() + ": " + format.name +
+    throw InvalidInput(path + ": " + format.name +
                        " is not written for triangles; write .obj, .ply, .stl, .off, .msh or .mesh");
   ASPIC_CHECK(are_indices_valid(mesh.triangles, mesh.vertex_count()));
   check_vertices(path, mesh.vertices);

@@ -1,6 +1,5 @@
 // Reads and writes mesh files; the extension selects the format. Readers repair nothing.
 #pragma once
-#include <filesystem>
 #include <string>
 #include <variant>
 #include <vector>
@@ -19,16 +18,16 @@ const std::vector<MeshFormat>& mesh_formats();  // all, in the order of help tex
 
 // Returns the tets of the file, or its triangles if it has no tets; quads are split. Either file names a .node/.ele
 // pair. Throws InvalidInput with file, line (or byte offset) and remedy.
-std::variant<TetMesh, TriMesh> read_mesh(const std::filesystem::path& path);
+std::variant<TetMesh, TriMesh> read_mesh(const std::string& path);
 // Reads tets. Throws InvalidInput like read_mesh(), and if the file has no tets.
-TetMesh read_tet_mesh(const std::filesystem::path& path);
+TetMesh read_tet_mesh(const std::string& path);
 // Reads triangles, or the boundary of the tets. Throws InvalidInput like read_mesh().
-TriMesh read_tri_mesh(const std::filesystem::path& path);
+TriMesh read_tri_mesh(const std::string& path);
 
 enum class FileEncoding { ascii, binary };  // formats of text only reject binary
 // Reading the file back gives the same bits. The file appears whole or not at all. Throws InvalidInput if it cannot be
 // written, if a coordinate is not finite, or if the format does not hold such elements or this encoding.
-void write_mesh(const std::filesystem::path& path, const TetMesh& mesh, FileEncoding encoding = FileEncoding::ascii);
-void write_mesh(const std::filesystem::path& path, const TriMesh& mesh, FileEncoding encoding = FileEncoding::ascii);
+void write_mesh(const std::string& path, const TetMesh& mesh, FileEncoding encoding = FileEncoding::ascii);
+void write_mesh(const std::string& path, const TriMesh& mesh, FileEncoding encoding = FileEncoding::ascii);
 
 }  // namespace aspic

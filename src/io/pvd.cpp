@@ -5,7 +5,7 @@
 
 namespace aspic {
 
-void write_pvd(const std::filesystem::path& path, const std::vector<std::pair<double, std::string>>& frames,
+void write_pvd(const std::string& path, const std::vector<std::pair<double, std::string>>& frames,
                const std::vector<std::string>& others) {
   std::string text =
       "<?xml version=\"1.0\"?>\n<VTKFile type=\"Collection\" version=\"0.1\" byte_order=\"LittleEndian\">\n"

@@ -1,6 +1,5 @@
 // VTK XML unstructured grids (.vtu) and their time index (.pvd), as read by ParaView and meshio.
 #pragma once
-#include <filesystem>
 #include <span>
 #include <string>
 #include <string_view>
@@ -35,23 +34,23 @@ struct Vtu : VtuFields {
 
 // Reads ascii, inline base64 and appended data, raw or zlib-compressed. Splits quads and skips lines and points. Throws
 // InvalidInput with file and line for other cells, and for inconsistent counts, indices or sizes.
-Vtu read_vtu(const std::filesystem::path& path);
+Vtu read_vtu(const std::string& path);
 Vtu parse_vtu(std::string_view contents, const std::string& file);  // `file` is the name in messages
 // Reads only the points, 3 coordinates each [m]. Throws InvalidInput like read_vtu().
-std::vector<double> read_vtu_points(const std::filesystem::path& path);
+std::vector<double> read_vtu_points(const std::string& path);
 
 // Writes inline base64, zlib-compressed. `points`: 3 coordinates per point [m], in double precision; tets index points.
 // Point fields have one entry of `components` values per point, cell fields one per tet. The output is reproducible.
 // Throws InvalidInput if the file cannot be written.
-void write_vtu(const std::filesystem::path& path, std::span<const double> points, const std::vector<Tet>& tets,
+void write_vtu(const std::string& path, std::span<const double> points, const std::vector<Tet>& tets,
                const VtuFields& fields = {});
 
 // Writes a surface in the same way; cell fields have one entry per triangle.
-void write_surface_vtu(const std::filesystem::path& path, const TriMesh& surface, const VtuFields& fields = {});
+void write_surface_vtu(const std::string& path, const TriMesh& surface, const VtuFields& fields = {});
 
 // Writes the index of a time series: (time [s], file name relative to the index). `others`: empty, or a second file
 // name for each frame. Throws InvalidInput if the file cannot be written.
-void write_pvd(const std::filesystem::path& path, const std::vector<std::pair<double, std::string>>& frames,
+void write_pvd(const std::string& path, const std::vector<std::pair<double, std::string>>& frames,
                const std::vector<std::string>& others = {});
 
 }  // namespace aspic

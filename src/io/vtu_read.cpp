@@ -215,12 +215,12 @@ std::vector<int> region_of(const std::string& file, const std::vector<Field>& ce
 
 }  // namespace
 
-Vtu read_vtu(const std::filesystem::path& path) { return parse_vtu(read_file(path), path.string()); }
+Vtu read_vtu(const std::string& path) { return parse_vtu(read_file(path), path); }
 
-std::vector<double> read_vtu_points(const std::filesystem::path& path) {
+std::vector<double> read_vtu_points(const std::string& path) {
   const std::string contents = read_file(path);
-  const XmlElement root = parse_xml(contents, path.string(), "AppendedData");
-  const VtkFile file = vtk_file(root, "UnstructuredGrid", path.string());
+  const XmlElement root = parse_xml(contents, path, "AppendedData");
+  const VtkFile file = vtk_file(root, "UnstructuredGrid", path);
   std::vector<double> points;
   for (const XmlElement& piece : section(file, root, "UnstructuredGrid").children) {
     if (piece.name != "Piece") continue;

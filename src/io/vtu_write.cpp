@@ -115,7 +115,7 @@ void append_cells(const std::vector<std::array<int, kCorners>>& cells, std::stri
 }
 
 template <class Cell>
-void write(const std::filesystem::path& path, std::span<const double> points, const std::vector<Cell>& cells,
+void write(const std::string& path, std::span<const double> points, const std::vector<Cell>& cells,
            const VtuFields& fields) {
   const size_t point_count = points.size() / 3;
   std::string text =
@@ -138,12 +138,12 @@ void write(const std::filesystem::path& path, std::span<const double> points, co
 
 }  // namespace
 
-void write_vtu(const std::filesystem::path& path, std::span<const double> points, const std::vector<Tet>& tets,
+void write_vtu(const std::string& path, std::span<const double> points, const std::vector<Tet>& tets,
                const VtuFields& fields) {
   write(path, points, tets, fields);
 }
 
-void write_surface_vtu(const std::filesystem::path& path, const TriMesh& surface, const VtuFields& fields) {
+void write_surface_vtu(const std::string& path, const TriMesh& surface, const VtuFields& fields) {
   std::vector<double> points;
   for (const Vec3d& x : surface.vertices) points.insert(points.end(), x.a, x.a + 3);
   write(path, points, surface.triangles, fields);

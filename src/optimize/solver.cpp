@@ -16,12 +16,6 @@ namespace {
 
 using Direction = std::unique_ptr<SearchDirection>;
 
-NewtonDefiniteness definiteness(const SolverOptions& options) {
-  for (const NewtonDefiniteness d : all_definiteness())
-    if (to_string(d) == options.definiteness) return d;
-  return NewtonDefiniteness::on_demand;
-}
-
 struct Method {
   std::string name;
   Direction (*make)(const SolverOptions&);
@@ -39,9 +33,9 @@ Preconditioner preconditioner(const SolverOptions& options, const std::string& m
 }
 
 Direction make_newton(const SolverOptions& options) {
-  return std::make_unique<Newton>(make_linear_solver(options.linear), definiteness(options));
+  return std::make_unique<Newton>(make_linear_solver(options.linear), definiteness_of(options));
 }
-Direction make_truncated_newton(const SolverOptions& options) { return make_newton_cg(definiteness(options)); }
+Direction make_truncated_newton(const SolverOptions& options) { return make_newton_cg(definiteness_of(options)); }
 Direction make_lbfgs(const SolverOptions& options) { return std::make_unique<LBFGS>(preconditioner(options, "lbfgs")); }
 Direction make_nonlinear_cg(const SolverOptions& options) {
   return std::make_unique<NonlinearCG>(preconditioner(options, "nonlinear_cg"));
@@ -121,6 +115,12 @@ std::vector<std::string> preconditioner_names() {
   std::vector<std::string> names = {"auto"};
   for (const PreconditionerKind kind : all_preconditioners()) names.emplace_back(to_string(kind));
   return names;
+}
+
+NewtonDefiniteness definiteness_of(const SolverOptions& options) {
+  for (const NewtonDefiniteness d : all_definiteness())
+    if (to_string(d) == options.definiteness) return d;
+  return NewtonDefiniteness::on_demand;
 }
 
 std::vector<std::string> definiteness_names() {

@@ -9,6 +9,8 @@
 
 namespace aspic {
 
+enum class NewtonDefiniteness;  // see optimize/hessian_policy.h
+
 struct SolverOptions {
   std::string method = "newton";        // see minimizer_names()
   std::vector<std::string> fallback;    // methods to try in this order if the one before finds no step
@@ -29,6 +31,8 @@ std::vector<std::string> decrease_test_names();   // for decrease_test_named()
 // Return the value for MinimizeOptions and LineSearchOptions. Throw InvalidInput for an unknown name.
 Criterion criterion_named(const std::string& name);
 DecreaseTest decrease_test_named(const std::string& name);
+
+NewtonDefiniteness definiteness_of(const SolverOptions& options);  // of a valid name
 
 // An unknown name, or an option that none of the selected methods uses.
 struct SolverConflict {

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <filesystem>
 #include <limits>
 #include <optional>
 #include <sstream>
@@ -242,7 +243,7 @@ RunDirectory::RunDirectory(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) 
 RunDirectory::~RunDirectory() = default;
 RunDirectory::RunDirectory(RunDirectory&&) noexcept = default;
 
-RunDirectory RunDirectory::create(const fs::path& path, const Scene& scene, ExistingRun existing) {
+RunDirectory RunDirectory::create(const std::string& path, const Scene& scene, ExistingRun existing) {
   auto impl = std::make_unique<Impl>(RunLayout(path), scene);
   const RunLayout& layout = impl->layout;
   const OutputOptions& output = scene.output;
@@ -263,15 +264,15 @@ RunDirectory RunDirectory::create(const fs::path& path, const Scene& scene, Exis
   return RunDirectory(std::move(impl));
 }
 
-RunDirectory RunDirectory::resume(const fs::path& path, Scene& scene) {
+RunDirectory RunDirectory::resume(const std::string& path, Scene& scene) {
   auto impl = std::make_unique<Impl>(RunLayout(path), scene);
   const RunLayout& layout = impl->layout;
   impl->lock.emplace(path);
-  if (!layout.holds_run()) throw InvalidInput(path.string() + ": contains no run to continue");
+  if (!layout.holds_run()) throw InvalidInput(path + ": contains no run to continue");
   layout.refuse_links();
   std::error_code error;
   if (!fs::exists(layout.checkpoint(), error) && !fs::exists(previous_checkpoint(layout.checkpoint()), error))
-    throw InvalidInput(path.string() +
+    throw InvalidInput(path +
                        ": the run ended before its first checkpoint, so nothing is lost; restart it with --force");
   const NewestCheckpoint newest = read_newest_checkpoint(layout.checkpoint());
   check_same_scene(layout, scene, newest.checkpoint);
@@ -315,14 +316,14 @@ void RunDirectory::finish(const Simulation& simulation) {
   impl_->tables.close();
 }
 
-const fs::path& RunDirectory::path() const { return impl_->layout.root(); }
-fs::path RunDirectory::trace_folder(int first_step) const { return impl_->layout.trace(first_step); }
+std::string RunDirectory::path() const { return impl_->layout.root(); }
+std::string RunDirectory::trace_folder(int first_step) const { return impl_->layout.trace(first_step); }
 
-fs::path scene_of_run(const fs::path& run) {
+std::string scene_of_run(const std::string& run) {
   const RunLayout layout(run);
   std::error_code error;
   if (!fs::exists(layout.scene(), error)) {
-    throw InvalidInput(run.string() + ": contains no run to continue (scene.toml is missing)" +
+    throw InvalidInput(run + ": contains no run to continue (scene.toml is missing)" +
                        (layout.holds_run() ? "; it ended before its start: restart it with --force" : ""));
   }
   return layout.scene();

@@ -1,6 +1,5 @@
 // The results of a run in one directory, readable by ParaView, Blender and spreadsheets at any time.
 #pragma once
-#include <filesystem>
 #include <memory>
 
 #include "scene/scene.h"
@@ -13,10 +12,10 @@ class RunDirectory {
  public:
   // Creates the directory with scene.toml, frame 0 and the indices. Throws InvalidInput if it exists (`overwrite`
   // removes the files of a run first) or cannot be written.
-  static RunDirectory create(const std::filesystem::path& path, const Scene& scene, ExistingRun existing);
+  static RunDirectory create(const std::string& path, const Scene& scene, ExistingRun existing);
   // Continues an earlier run: restores the simulation from the newest readable checkpoint and removes later frames.
   // Throws InvalidInput if there is no run to continue.
-  static RunDirectory resume(const std::filesystem::path& path, Scene& scene);
+  static RunDirectory resume(const std::string& path, Scene& scene);
   ~RunDirectory();
   RunDirectory(RunDirectory&&) noexcept;
 
@@ -25,8 +24,8 @@ class RunDirectory {
   void on_step(const StepReport& report, const Simulation& simulation);  // steps.csv, frames, checkpoint
   void finish(const Simulation& simulation);                             // last checkpoint, indices, closes files
 
-  const std::filesystem::path& path() const;                 // of the directory
-  std::filesystem::path trace_folder(int first_step) const;  // folder of a trace that begins after the step
+  std::string path() const;                        // of the directory
+  std::string trace_folder(int first_step) const;  // folder of a trace that begins after the step
 
  private:
   struct Impl;
@@ -35,6 +34,6 @@ class RunDirectory {
 };
 
 // Returns the path of the resolved scene of a run directory, which resume() needs.
-std::filesystem::path scene_of_run(const std::filesystem::path& run);
+std::string scene_of_run(const std::string& run);
 
 }  // namespace aspic

@@ -1,6 +1,7 @@
 #include "scene/scene.h"
 
 #include <algorithm>
+#include <filesystem>
 
 #include "base/error.h"
 #include "io/atomic_file.h"
@@ -50,14 +51,14 @@ SceneModel load_scene_model(const fs::path& path, const SceneOptions& options) {
   return build_scene_model(std::move(input.source), std::move(input.files), options);
 }
 
-Scene load_scene(const fs::path& path, const SceneOptions& options) {
+Scene load_scene(const std::string& path, const SceneOptions& options) {
   SceneInput input = read_scene(path, options);
   return build_scene(std::move(input.source), std::move(input.files), options);
 }
 
-void write_inputs(const Scene& scene, const fs::path& folder) {
+void write_inputs(const Scene& scene, const std::string& folder) {
   const auto prepared = [&](const std::string& name) {
-    const fs::path target = folder / name;
+    const fs::path target = fs::path(folder) / name;
     std::error_code error;
     fs::create_directories(target.parent_path(), error);
     if (error) throw InvalidInput(target.parent_path().string() + ": cannot be created: " + error.message());

@@ -1,7 +1,6 @@
 // Makes a simulation from a TOML scene, or from a mesh file alone.
 #pragma once
 #include <cstdint>
-#include <filesystem>
 #include <functional>
 #include <limits>
 #include <string>
@@ -39,12 +38,12 @@ struct Scene {
   OutputOptions output;
   // The inputs of `resolved` by their names there ("inputs/bunny.msh"): files to copy, and meshes that were made from a
   // surface.
-  std::vector<std::pair<std::string, std::filesystem::path>> input_files = {};
+  std::vector<std::pair<std::string, std::string>> input_files = {};
   std::vector<std::pair<std::string, TetMesh>> generated_meshes = {};
 };
 
 // Writes the inputs below `folder`, so that `resolved` can be run from there. Throws InvalidInput.
-void write_inputs(const Scene& scene, const std::filesystem::path& folder);
+void write_inputs(const Scene& scene, const std::string& folder);
 
 // Called before work that takes seconds, with a description: "checking 5821794 tets of body 'liver'".
 using Announce = std::function<void(const std::string& what)>;
@@ -59,7 +58,7 @@ struct TetLimit {
 
 struct SceneOptions {
   std::vector<std::string> overrides = {};  // "material.young=2e5", "time.step=0.005", "body.bunny.scale=2"
-  std::filesystem::path mesher = {};        // path of aspic-mesh; empty: searched
+  std::string mesher = {};                  // path of aspic-mesh; empty: searched
   bool allow_outside = false;               // read files from outside the scene's folder and the folder above it
   Announce announce = {};                   // empty: not called
   TetLimit limit = {};
@@ -69,7 +68,7 @@ struct SceneOptions {
 
 // A .toml file is a scene; any mesh file becomes one with sensible defaults. Throws InvalidInput with file, line,
 // column, value, remedy and nearest known name.
-Scene load_scene(const std::filesystem::path& path, const SceneOptions& options = {});
+Scene load_scene(const std::string& path, const SceneOptions& options = {});
 
 // Returns the reference of all scene keys, docs/scene.md.
 std::string scene_reference();

@@ -1,4 +1,4 @@
-#include "dynamics/lead_pins.h"
+#include "dynamics/advance_boundary.h"
 
 #include <algorithm>
 #include <cmath>
@@ -148,8 +148,8 @@ void add_work(const MinimizeReport& spent, MinimizeReport& work) {
   work.fallbacks += spent.fallbacks;
 }
 
-Evaluation lead_pins(const StepTools& tools, double time, std::span<const double> from, std::span<double> q,
-                     MinimizeReport& work) {
+Evaluation advance_boundary(const StepTools& tools, double time, std::span<const double> from, std::span<double> q,
+                            MinimizeReport& work) {
   tools.pins.place(time, q);
   const Evaluation at_once = tools.E.evaluate(q);
   ++work.values;

@@ -17,8 +17,8 @@ bool is_free(const StepTools& tools, const ContactPath& path);
 // and obstacles from their positions at the start of the step, while the energy stays finite. If a single move would
 // invert elements of a barrier material, the pins move in fractions, each followed by a few iterations for the free
 // vertices. The energy remains infinite if no fraction is small enough. Returns E at q and adds the counts to `work`.
-Evaluation lead_pins(const StepTools& tools, double time, std::span<const double> from, std::span<double> q,
-                     MinimizeReport& work);
+Evaluation advance_boundary(const StepTools& tools, double time, std::span<const double> from, std::span<double> q,
+                            MinimizeReport& work);
 
 // Adds the counts of `spent` to those of `work`; status and values are unchanged.
 void add_work(const MinimizeReport& spent, MinimizeReport& work);
