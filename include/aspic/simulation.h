@@ -1,6 +1,7 @@
 // Simulation advances a model in time, one minimization per step. IncrementalPotential is the function E that a step
 // minimizes, for loops of one's own.
 #pragma once
+#include "contact/contact_cost.h"
 #include "dynamics/incremental_potential.h"
 #include "dynamics/initial_guess.h"
 #include "dynamics/integrator_facts.h"

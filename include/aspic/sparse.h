@@ -2,6 +2,7 @@
 // solve once per right-hand side.
 #pragma once
 #include "base/stop_token.h"
+#include "base/stopwatch.h"
 #include "linalg/block_sparse.h"
 #include "linalg/linear_solver.h"
 #include "linalg/projection.h"
