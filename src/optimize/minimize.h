@@ -53,9 +53,10 @@ struct MinimizeOptions {
   int max_iterations = 200;  // then the status is `iteration_limit`
   double tolerance = 1e-6;   // its unit depends on the criterion
   Criterion criterion = Criterion::scale;
-  double h = 1;                 // time step for the criteria velocity and acceleration [s]
-  double max_forcing = 0.1;     // largest relative residual of inner linear solves
-  bool updates_lagged = false;  // whether lagged coefficients are updated between iterations, see HasLag
+  double h = 1;                         // time step for the criteria velocity and acceleration [s]
+  double max_forcing = 0.1;             // largest relative residual of inner linear solves
+  bool updates_lagged = false;          // whether lagged coefficients are updated between iterations, see HasLag
+  std::span<const double> lag_at = {};  // iterate at which a time step evaluates them instead; empty: updates them
   LineSearchOptions line_search;
   StopToken stop = {};  // polled in every iteration
 };
