@@ -146,7 +146,9 @@ TEST_F(ObstacleFiles, FramesHavePressureAndGap) {
     const bool is_base = frame.mesh.rest[v][1] < 0.1;
     EXPECT_EQ(fields[2].values[v] > 0, is_base);
     EXPECT_EQ(std::isfinite(fields[3].values[v]), is_base);
-    if (is_base) EXPECT_NEAR(fields[3].values[v], frame.mesh.rest[v][1] + 1e-3, 1e-8);
+    if (is_base) {
+      EXPECT_NEAR(fields[3].values[v], frame.mesh.rest[v][1] + 1e-3, 1e-8);
+    }
     touching += is_base;
   }
   EXPECT_EQ(touching, 9);

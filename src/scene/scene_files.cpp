@@ -78,7 +78,7 @@ fs::path SceneFiles::find(const Value& name) const {
 
 std::string SceneFiles::keep(const fs::path& source, const std::string& stem) {
   const std::string name = "inputs/" + stem + source.extension().string();
-  kept_files.emplace_back(name, source);
+  kept_files.emplace_back(name, source.string());
   return name;
 }
 

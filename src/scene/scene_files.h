@@ -30,7 +30,7 @@ class SceneFiles {
   std::string keep(const std::filesystem::path& source, const std::string& stem);
   std::string keep(const TetMesh& mesh, const std::string& stem);
 
-  std::vector<std::pair<std::string, std::filesystem::path>> kept_files;
+  std::vector<std::pair<std::string, std::string>> kept_files;
   std::vector<std::pair<std::string, TetMesh>> kept_meshes;
 
  private:
