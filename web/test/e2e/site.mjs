@@ -1,0 +1,140 @@
+// The page of ./run site in Chromium, from a file and from a plain web server. tools/site_test runs it.
+import assert from "node:assert/strict";
+import { readFileSync, writeFileSync } from "node:fs";
+import { createServer } from "node:http";
+import { createRequire } from "node:module";
+import { join } from "node:path";
+import { test } from "node:test";
+import { pathToFileURL } from "node:url";
+import { gunzipSync } from "node:zlib";
+import { atTheEnd, downloaded, drop, findBody, frames, isDrawn, keepPicture, openPage, pressAndWait, settled, temporaryFolder } from "./harness.mjs";
+
+const site = process.env.SITE;
+const html = readFileSync(site, "utf8");
+
+async function serve() {
+  const server = createServer((request, response) => {
+    response.writeHead(request.url === "/" ? 200 : 404, { "Content-Type": "text/html" });
+    response.end(request.url === "/" ? html : "");
+  });
+  await new Promise((resolve) => server.listen(0, "127.0.0.1", resolve));
+  atTheEnd(() => server.close());
+  return `http://127.0.0.1:${server.address().port}/`;
+}
+
+const places = { "a file": pathToFileURL(site).href, "a web server": await serve() };
+
+async function openSite(address, scene = "bunny") {
+  const opened = await openPage(address, { engine: true, keepsPixels: true });
+  await opened.until(`the scene ${scene}`, ({ state, pictures, scenes }) => state && pictures.a && scenes.a.name === scene);
+  return opened;
+}
+
+const lastHash = ({ messages }) => messages.findLast(({ kind, steps }) => kind === "steps" && steps.length > 0).steps.at(-1).state_hash;
+
+async function loadScene({ page, until }, name) {
+  await page.keyboard.press("Shift+O");
+  await page.getByRole("dialog").getByRole("button", { name: new RegExp(`^${name}`) }).click();
+  await until(`the scene ${name}`, ({ scenes, pictures, geometries }) => scenes.a.name === name && pictures.a.generation === geometries.a.generation);
+}
+
+async function takeSteps(opened, count) {
+  for (let step = 1; step <= count; ++step)
+    await pressAndWait(opened, "s", `step ${step}`, ({ state, pictures }) => state.a.step === step && pictures.a.step === step);
+}
+
+// The engine of the page under Node.js: opens a scene and returns its messages.
+async function engineInNode(scene) {
+  const element = (id) => JSON.parse(html.match(new RegExp(`id="${id}">(.*?)</script>`, "s"))[1]);
+  const unpacked = (id) => gunzipSync(Buffer.from(element(id), "base64"));
+  const messages = [];
+  const post = (message) => typeof message === "string" && messages.push(JSON.parse(message));
+  const engine = await createRequire(import.meta.url)(process.env.ENGINE)({ wasmBinary: unpacked("engine-module"), post });
+  for (const [path, text] of Object.entries(JSON.parse(unpacked("engine-files")))) {
+    engine.FS.mkdirTree(path.slice(0, path.lastIndexOf("/")));
+    engine.FS.writeFile(path, text);
+  }
+  assert.ok(engine.ccall("engine_open", "boolean", ["string"], [scene]), JSON.stringify(messages.at(-1)));
+  return { messages, handle: (message) => engine.ccall("engine_handle", null, ["string"], [JSON.stringify(message)]) };
+}
+
+for (const [place, address] of Object.entries(places)) {
+  test(`from ${place}, the body is dragged and the minimization is shown`, async () => {
+    const opened = await openSite(address);
+    const { page, heard, until, close } = opened;
+    await pressAndWait(opened, "i", "an iteration", ({ state }) => state.a.iteration >= 0 || state.a.step === 1);
+    while (heard.state.a.step === 0) await pressAndWait(opened, "i", "an iteration", () => true);
+    await page.getByRole("tab", { name: "Landscape" }).click();
+    const { slice } = await until("the slice", () => heard.messages.find(({ kind, reply }) => kind === "reply" && reply?.slice)?.reply);
+    assert.equal(slice.value.length, slice.columns * slice.rows);
+    const canvas = page.getByRole("tabpanel", { name: "Landscape" }).locator("canvas").first();
+    await until("its surface", () => isDrawn(canvas));
+    await settled(opened);
+    const [x, y] = await findBody(opened);
+    await page.mouse.down();
+    await page.mouse.move(x + 60, y - 40, { steps: 4 });
+    await until("a grab", ({ state }) => state.a.grab);
+    await pressAndWait(opened, " ", "a run", ({ state }) => state.playing);
+    const { step } = heard.state.a;
+    await until("ten steps with a force", ({ state }) => state.a.step >= step + 10 && state.a.grab && Math.hypot(...state.a.grab.force) > 0);
+    await keepPicture(page, `site_${place.split(" ").at(-1)}`);
+    await page.mouse.up();
+    await until("a release", ({ state }) => !state.a.grab);
+    await pressAndWait(opened, " ", "a pause", ({ state }) => !state.playing);
+    await frames(page);
+    await close();
+  });
+}
+
+test("Chromium and Node.js compute the same state", async () => {
+  const opened = await openSite(places["a file"]);
+  for (const name of ["cantilever", "twist", "contact"]) {
+    const node = await engineInNode(`/scenes/${name}.toml`);
+    for (let step = 0; step < 20; ++step) node.handle({ do: "step" });
+    await loadScene(opened, name);
+    await takeSteps(opened, 20);
+    assert.equal(lastHash(opened.heard), lastHash(node), name);
+    console.log(`${name}: state ${lastHash(opened.heard)} after 20 steps`);
+  }
+  await opened.close();
+});
+
+test("the address opens a page of the lecture", async () => {
+  const opened = await openSite(`${places["a file"]}#lecture/33`, "33_mouse");
+  await opened.page.getByRole("heading", { name: /^Pages 33-34/ }).waitFor();
+  await opened.until("the recorded mouse", ({ state }) => state.replaying && state.b);
+  await opened.close();
+});
+
+test("a link and a saved page open the workspace", async () => {
+  const opened = await openSite(places["a file"]);
+  await loadScene(opened, "twist");
+  await opened.page.keyboard.press("Shift+C");
+  await opened.page.waitForFunction(() => location.hash.startsWith("#s="));
+  const link = opened.page.url();
+  const saved = await downloaded(opened.page, () => opened.page.keyboard.press("Shift+H"));
+  assert.equal(saved.suggestedFilename(), "twist.html");
+  const copy = join(temporaryFolder(), "twist.html");
+  writeFileSync(copy, readFileSync(await saved.path()));
+  await opened.close();
+  for (const address of [link, pathToFileURL(copy).href]) await (await openSite(address, "twist")).close();
+});
+
+test("a damaged link is reported", async () => {
+  const opened = await openSite(`${places["a file"]}#s=damaged`);
+  await opened.page.locator(".notice.error").filter({ hasText: "The link is damaged" }).waitFor();
+  await opened.close();
+});
+
+// A closed surface without tets.
+const kOctahedron = `v 1 0 0\nv -1 0 0\nv 0 1 0\nv 0 -1 0\nv 0 0 1\nv 0 0 -1
+f 1 3 5\nf 3 2 5\nf 2 4 5\nf 4 1 5\nf 3 1 6\nf 2 3 6\nf 4 2 6\nf 1 4 6\n`;
+
+test("a dropped surface moves with a cage", async () => {
+  const opened = await openSite(places["a file"]);
+  await drop(opened.page, [["octahedron.obj", Buffer.from(kOctahedron)]]);
+  await opened.until("the body", ({ scenes, pictures, geometries }) => scenes.a.name === "octahedron" && pictures.a.generation === geometries.a.generation);
+  assert.ok(opened.heard.scenes.a.notes.some((note) => note.includes("cubes around the surface")), opened.heard.scenes.a.notes.join("; "));
+  await takeSteps(opened, 3);
+  await opened.close();
+});
