@@ -191,7 +191,7 @@ export async function openPage(address, { size = kSize, watchRequests = true, ke
   page.on("console", (message) => message.type() === "error" && errors.push(message.text()));
   const origin = new URL(address).origin;
   page.on("request", (request) => {
-    const own = request.url() === address || request.url().startsWith(`${origin}/`) || /^(data|blob):/.test(request.url());
+    const own = request.url() === address.replace(/#.*/, "") || request.url().startsWith(`${origin}/`) || /^(data|blob):/.test(request.url());
     if (watchRequests && !own) errors.push(`requested ${request.url()}`);
   });
   page.on("websocket", (socket) => {

@@ -36,6 +36,7 @@ async function loadScene({ page, until }, name) {
   await page.keyboard.press("Shift+O");
   await page.getByRole("dialog").getByRole("button", { name: new RegExp(`^${name}`) }).click();
   await until(`the scene ${name}`, ({ scenes, pictures, geometries }) => scenes.a.name === name && pictures.a.generation === geometries.a.generation);
+  await page.getByRole("dialog").waitFor({ state: "detached" }); // takes keys
 }
 
 async function takeSteps(opened, count) {
