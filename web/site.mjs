@@ -1,6 +1,6 @@
 // node site.mjs PAGE ENGINE ROOT OUT: writes OUT, the page with the engine, the shipped scenes and the bunny. ENGINE is the
 // script engine.js of the compiler, beside engine.wasm. OUT needs no server: it works from a file, too.
-import { build } from "esbuild";
+import { build, transform } from "esbuild";
 import { mkdirSync, readdirSync, readFileSync, writeFileSync } from "node:fs";
 import { dirname, join, relative } from "node:path";
 import { fileURLToPath } from "node:url";
@@ -24,7 +24,8 @@ function shippedFiles() {
 
 async function workerScript() {
   const bundled = await build({ entryPoints: [join(here, "src/worker.ts")], bundle: true, minify: true, format: "iife", target: "es2022", write: false });
-  return readFileSync(engine, "utf8") + bundled.outputFiles[0].text;
+  const { code } = await transform(readFileSync(engine, "utf8"), { minify: true });
+  return code + bundled.outputFiles[0].text;
 }
 
 const packed = (bytes) => gzipSync(bytes, { level: 9 }).toString("base64");

@@ -1,4 +1,4 @@
-// The page of ./run site in Chromium, from a file and from a plain web server. tools/site_test runs it.
+// The page of ./run site in Chromium, from a file and from web servers, and its engine under Node.js. tools/site_test runs it.
 import assert from "node:assert/strict";
 import { readFileSync, writeFileSync } from "node:fs";
 import { createServer } from "node:http";
@@ -6,26 +6,33 @@ import { createRequire } from "node:module";
 import { join } from "node:path";
 import { test } from "node:test";
 import { pathToFileURL } from "node:url";
-import { gunzipSync } from "node:zlib";
-import { atTheEnd, downloaded, drop, findBody, frames, isDrawn, keepPicture, openPage, pressAndWait, settled, temporaryFolder } from "./harness.mjs";
+import { gunzipSync, gzipSync } from "node:zlib";
+import { atTheEnd, downloaded, drop, findBody, frames, isDrawn, keepPicture, openPage, pageModule, pressAndWait, root, settled, temporaryFolder } from "./harness.mjs";
 
 const site = process.env.SITE;
 const html = readFileSync(site, "utf8");
+const [kMostEngine, kMostPage] = [1.0e6, 1.8e6]; // bytes, compressed
 
-async function serve() {
+const kFrame = `<!doctype html><iframe sandbox="allow-scripts" src="/" style="width: 1000px; height: 600px"></iframe>`;
+const kIsolated = { "Cross-Origin-Opener-Policy": "same-origin", "Cross-Origin-Embedder-Policy": "require-corp" };
+
+// Serves the page at / and a sandboxed frame with it at /frame.
+async function serve(headers = {}) {
+  const texts = { "/": html, "/frame": kFrame };
   const server = createServer((request, response) => {
-    response.writeHead(request.url === "/" ? 200 : 404, { "Content-Type": "text/html" });
-    response.end(request.url === "/" ? html : "");
+    const text = texts[request.url];
+    response.writeHead(text ? 200 : 404, { "Content-Type": "text/html", ...headers });
+    response.end(text);
   });
   await new Promise((resolve) => server.listen(0, "127.0.0.1", resolve));
   atTheEnd(() => server.close());
   return `http://127.0.0.1:${server.address().port}/`;
 }
 
-const places = { "a file": pathToFileURL(site).href, "a web server": await serve() };
+const places = { "a file": pathToFileURL(site).href, "a web server": await serve(), "an isolated server": await serve(kIsolated) };
 
-async function openSite(address, scene = "bunny") {
-  const opened = await openPage(address, { engine: true, keepsPixels: true });
+async function openSite(address, scene = "bunny", options = {}) {
+  const opened = await openPage(address, { engine: true, keepsPixels: true, ...options });
   await opened.until(`the scene ${scene}`, ({ state, pictures, scenes }) => state && pictures.a && scenes.a.name === scene);
   return opened;
 }
@@ -56,7 +63,9 @@ async function engineInNode(scene) {
     engine.FS.writeFile(path, text);
   }
   assert.ok(engine.ccall("engine_open", "boolean", ["string"], [scene]), JSON.stringify(messages.at(-1)));
-  return { messages, handle: (message) => engine.ccall("engine_handle", null, ["string"], [JSON.stringify(message)]) };
+  const bytes = () => engine.HEAPU8.length;
+  const write = (path, text) => engine.FS.writeFile(path, text);
+  return { messages, bytes, write, handle: (message) => engine.ccall("engine_handle", null, ["string"], [JSON.stringify(message)]) };
 }
 
 for (const [place, address] of Object.entries(places)) {
@@ -86,6 +95,73 @@ for (const [place, address] of Object.entries(places)) {
     await close();
   });
 }
+
+test("the page works in a sandboxed frame", async () => {
+  const opened = await openSite(`${places["a web server"]}frame`);
+  const frame = opened.page.frameLocator("iframe");
+  await frame.getByRole("button", { name: "1 iteration" }).waitFor();
+  await frame.getByRole("button", { name: /^Step/ }).click();
+  await opened.until("a step", ({ state, pictures }) => state.a.step === 1 && pictures.a.step === 1);
+  await opened.close();
+});
+
+// Sends each command, then takes a step. Returns the refusals.
+function refusals({ messages, handle }, commands) {
+  return commands.flatMap((command) => {
+    messages.length = 0;
+    handle({ ...command, id: 1 });
+    handle({ do: "step" });
+    const { kind, why } = messages.find(({ id }) => id === 1);
+    return kind === "refused" ? [`${JSON.stringify(command)}: ${why}`] : [];
+  });
+}
+
+test("the engine runs every scene and every page of the lecture", async () => {
+  const engine = await engineInNode("/scenes/bunny.toml");
+  const { lessons } = engine.messages.find(({ kind }) => kind === "hello");
+  engine.handle({ ask: "gallery", id: 2 });
+  const { scenes } = engine.messages.find(({ id }) => id === 2).reply;
+  assert.ok(scenes.length >= 20 && lessons.length >= 20, `${scenes.length} scenes, ${lessons.length} lessons`);
+  assert.deepEqual(lessons.filter(({ missing }) => missing), []);
+  const failed = refusals(engine, [
+    ...scenes.map(({ path }) => ({ do: "load", scene: path })),
+    ...lessons.map(({ id }) => ({ do: "lesson", lesson: id })),
+  ]);
+  assert.deepEqual(failed, []);
+});
+
+test("the sizes are within their limits", () => {
+  const engine = html.match(/id="engine-module">"(.*?)"/)[1].length * 0.75;
+  const page = gzipSync(html, { level: 9 }).length;
+  console.log(`engine: ${(engine / 1e6).toFixed(2)} MB, page: ${(page / 1e6).toFixed(2)} MB, both compressed`);
+  assert.ok(engine <= kMostEngine && page <= kMostPage);
+});
+
+// Prints speeds without a limit: they depend on the machine and on its load.
+test("a body of 1512 vertices moves", async () => {
+  const { messages, write, handle } = await engineInNode("/scenes/bunny.toml");
+  const scene = readFileSync(join(root, "scenes/cantilever.toml"), "utf8").replace("[15, 3, 3]", "[41, 5, 5]");
+  write("/scenes/beam.toml", scene);
+  handle({ do: "load", scene: "/scenes/beam.toml" });
+  const start = performance.now();
+  for (let step = 0; step < 100; ++step) handle({ do: "step" });
+  console.log(`${(1e5 / (performance.now() - start)).toFixed(0)} steps per second under Node.js`);
+  assert.equal(messages.findLast(({ kind }) => kind === "state").a.step, 100);
+});
+
+test("a thousand resets do not grow the memory", async () => {
+  const { messages, bytes, handle } = await engineInNode("/scenes/cantilever.toml");
+  const reset = (count) => {
+    for (let i = 0; i < count; ++i) {
+      handle({ do: "step" });
+      handle({ do: "reset" });
+      messages.length = 0;
+    }
+    return bytes();
+  };
+  const before = reset(100);
+  assert.equal(reset(1000), before);
+});
 
 test("Chromium and Node.js compute the same state", async () => {
   const opened = await openSite(places["a file"]);
@@ -124,6 +200,16 @@ test("a link and a saved page open the workspace", async () => {
 test("a damaged link is reported", async () => {
   const opened = await openSite(`${places["a file"]}#s=damaged`);
   await opened.page.locator(".notice.error").filter({ hasText: "The link is damaged" }).waitFor();
+  await opened.close();
+});
+
+test("a link with a scene that is too large is refused", async () => {
+  const { linkText } = await pageModule("share.ts");
+  const overrides = ["body.0.shape.box.cells=[400, 400, 400]"];
+  const link = await linkText({ aspic_workspace: 1, scene: "/scenes/cantilever.toml", overrides, settings: {}, compare: null, page: {} });
+  const opened = await openSite(places["a file"] + link);
+  await opened.page.locator(".notice.error").filter({ hasText: "tets" }).waitFor();
+  await pressAndWait(opened, "s", "a step of the old scene", ({ state }) => state.a.step === 1);
   await opened.close();
 });
 
