@@ -52,9 +52,6 @@ if(EMSCRIPTEN)  # WebAssembly has no fused multiply-add
   add_link_options(-fwasm-exceptions)
   set(ASPIC_ARCH -msimd128)
   set(ASPIC_CONTRACT off)
-elseif(ASPIC_BITS STREQUAL "portable")
-  set(ASPIC_ARCH -march=x86-64)
-  set(ASPIC_CONTRACT off)
 elseif(ASPIC_PORTABLE)
   set(ASPIC_ARCH -march=x86-64-v3)
 else()
@@ -76,7 +73,7 @@ endif()
 # WebAssembly. Sanitizer builds with clang keep their flags.
 function(compile_quickly target)
   if(EMSCRIPTEN)
-    target_compile_options(${target} PRIVATE -Os -finline-functions)  # emcc disables inlining at -Os, which doubles the size
+    target_compile_options(${target} PRIVATE -Os -finline-functions)  # emcc disables inlining at -Os
   elseif(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
     target_compile_options(${target} PRIVATE $<$<CONFIG:Release>:-O1>)
   endif()
