@@ -3,7 +3,9 @@ set(CMAKE_CXX_STANDARD 20)
 set(CMAKE_CXX_STANDARD_REQUIRED ON)
 set(CMAKE_CXX_EXTENSIONS OFF)
 set(CMAKE_EXPORT_COMPILE_COMMANDS ON)
-set(CMAKE_POSITION_INDEPENDENT_CODE ON)
+if(NOT EMSCRIPTEN)
+  set(CMAKE_POSITION_INDEPENDENT_CODE ON)
+endif()
 set(CMAKE_RUNTIME_OUTPUT_DIRECTORY ${CMAKE_BINARY_DIR}/bin) # aspic finds aspic-mesh beside itself
 if(NOT CMAKE_BUILD_TYPE)
   set(CMAKE_BUILD_TYPE Release CACHE STRING "" FORCE)
@@ -43,7 +45,14 @@ if(CCACHE)  # clones of the project share what they have compiled, with the debu
   set(CMAKE_CXX_COMPILER_LAUNCHER ${CMAKE_COMMAND} -E env CCACHE_BASEDIR=${PROJECT_SOURCE_DIR} CCACHE_NOHASHDIR=1 ${CCACHE})
 endif()
 
-if(ASPIC_PORTABLE)
+set(ASPIC_CONTRACT fast)
+if(EMSCRIPTEN)  # WebAssembly has no fused multiply-add
+  # The vectorizer of straight-line code in emscripten 3.1.6 miscompiles "x = A * x + b": never enable it.
+  add_compile_options(-msimd128 -fno-slp-vectorize -fwasm-exceptions)
+  add_link_options(-fwasm-exceptions)
+  set(ASPIC_ARCH -msimd128)
+  set(ASPIC_CONTRACT off)
+elseif(ASPIC_PORTABLE)
   set(ASPIC_ARCH -march=x86-64-v3)
 else()
   set(ASPIC_ARCH -march=native)
@@ -51,7 +60,7 @@ endif()
 
 add_library(aspic_build INTERFACE)
 # Fused multiply-add is enabled; reassociation is not, so that results of a binary are bit-reproducible.
-target_compile_options(aspic_build INTERFACE ${ASPIC_ARCH} -ffp-contract=fast -fno-math-errno -Wall -Wextra -Wshadow
+target_compile_options(aspic_build INTERFACE ${ASPIC_ARCH} -ffp-contract=${ASPIC_CONTRACT} -fno-math-errno -Wall -Wextra -Wshadow
                                              -Wno-missing-field-initializers)  # {.a = 1}: the rest has defaults
 if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")  # false alarms inside the headers of GCC 12
   target_compile_options(aspic_build INTERFACE -Wno-maybe-uninitialized -Wno-restrict)
@@ -60,10 +69,12 @@ if(ASPIC_UNITY AND CMAKE_CXX_COMPILER_ID STREQUAL "GNU")  # takes the files of a
   target_compile_options(aspic_build INTERFACE -Wno-subobject-linkage)
 endif()
 
-# Compiles the code around the numerics with less optimization, which saves a third of the time. Sanitizer builds with
-# clang keep their flags.
+# Compiles the code around the numerics with less optimization, which saves a third of the time, and of the size in
+# WebAssembly. Sanitizer builds with clang keep their flags.
 function(compile_quickly target)
-  if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
+  if(EMSCRIPTEN)
+    target_compile_options(${target} PRIVATE -Os -finline-functions)  # emcc disables inlining at -Os
+  elseif(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
     target_compile_options(${target} PRIVATE $<$<CONFIG:Release>:-O1>)
   endif()
 endfunction()

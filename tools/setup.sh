@@ -17,6 +17,7 @@ test_programs="python3 chromium ffmpeg codespell $plot_programs"
 test_packages="libgtest-dev libgmock-dev libbenchmark-dev libsuitesparse-dev python3-meshio python3-jsonschema"
 python_packages="pybind11-dev python3-dev python3-numpy python3-scipy python3-matplotlib"
 python_test_packages="python3-pytest python3-nbclient python3-nbformat python3-ipykernel python3-torch mypy"
+wasm_packages="emscripten"
 bench_packages="libbenchmark-dev"
 fuzz_programs="clang:clang++" # with libFuzzer and its sanitizers, which clang recommends and we name
 fuzz_packages="libclang-rt-14-dev llvm-14"
@@ -182,6 +183,46 @@ fetch_oracles() {
   say "Fetching the npm package $tinyusdz_package, which reads our USD files in the tests ..."
   logged oracles npm install --prefix "$root/build/oracles" --no-save "$tinyusdz_package" ||
     say "warning: it could not be fetched; our USD files will be read by our own parser alone"
+}
+
+# Sources that the WebAssembly build compiles: those of Debian 12, checked by their hashes.
+debian_pool=http://deb.debian.org/debian/pool/main
+wasm_sources="
+  z/zlib/zlib_1.2.13.dfsg.orig.tar.bz2 71feb7947e3c00ef125f83b79a4e529bde31171e5babe48b391f06758d1ab0a1
+  e/expat/expat_2.5.0.orig.tar.gz ab00ee05c7067fd10a35c5d2a4922ebba746ddd50ff83b79c828da17bbdf1757
+  m/muparser/muparser_2.3.3.orig.tar.gz 91d26d8274ae9cd9c776ee58250aeddc6b574f369eafd03b25045b858a2b8177"
+fetch_wasm_sources() {
+  set -- $wasm_sources
+  while [ $# -gt 0 ]; do
+    fetch_source "$1" "$2"
+    shift 2
+  done
+}
+
+# fetch_source PATH HASH: unpacks a source archive of Debian into build/sources, unless it is there.
+fetch_source() {
+  archive=${1##*/}
+  folder=$root/build/sources/${archive%%_*}
+  [ ! -d "$folder" ] || return 0
+  say "Fetching $archive from Debian ..."
+  part=$(mktemp -d)
+  if logged "source-${archive%%_*}" /usr/lib/apt/apt-helper download-file "$debian_pool/$1" "$part/$archive" "SHA256:$2" &&
+    mkdir -p "$part/unpacked" "$root/build/sources" && tar -xf "$part/$archive" -C "$part/unpacked"; then
+    mv "$part/unpacked" "$folder"
+    rm -rf "$part"
+  else
+    rm -rf "$part"
+    die "$debian_pool/$1 could not be fetched (is the network away?)"
+  fi
+}
+
+# Builds out/site/index.html.
+build_site() {
+  need "$core_packages $wasm_packages" "$core_programs $viewer_programs"
+  fetch_wasm_sources
+  export NODE_PATH=/usr/share/nodejs # where Debian's emscripten finds its modules
+  preset wasm
+  build site
 }
 
 # Shapes for `./run bench characters`, in build/shapes and nowhere else: the bunny, and what Debian's package libcgal-demo

@@ -1,12 +1,10 @@
 #include "aspic/gallery.h"
 
-#include <algorithm>
 #include <cstdlib>
 #include <fstream>
 
 #include "aspic/shipped_files.h"
 #include "base/error.h"
-#include "base/printable.h"
 #include "io/atomic_file.h"
 
 namespace aspic::cli {
@@ -14,31 +12,9 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr size_t kLongestAbout = 300, kLongestPath = 4096;
-
-std::string about(const fs::path& scene) {
-  std::ifstream in(scene);
-  std::string line;
-  std::getline(in, line);
-  if (line.empty() || line[0] != '#') return "";
-  const size_t text = line.find_first_not_of("# ");
-  return text == std::string::npos ? "" : printable(line.substr(text, kLongestAbout));
-}
+constexpr size_t kLongestPath = 4096;
 
 }  // namespace
-
-std::vector<viewer::OfferedScene> scenes_below(const fs::path& folder) {
-  std::vector<viewer::OfferedScene> scenes;
-  std::error_code error;
-  for (fs::recursive_directory_iterator i(folder, error), end; !error && i != end; i.increment(error))
-    if (i->path().extension() == ".toml" && i->is_regular_file(error))
-      scenes.push_back({i->path().lexically_relative(folder).generic_string(), about(i->path()), i->path()});
-  const auto is_inside = [](const viewer::OfferedScene& s) { return s.name.find('/') != std::string::npos; };
-  std::sort(scenes.begin(), scenes.end(), [&](const auto& x, const auto& y) {
-    return std::pair(is_inside(x), x.name) < std::pair(is_inside(y), y.name);
-  });
-  return scenes;
-}
 
 // The folder "lecture" distinguishes it from other folders named scenes.
 fs::path shipped_scenes() { return shipped_file("scenes/lecture").parent_path(); }

@@ -3,12 +3,9 @@
 #include <filesystem>
 #include <vector>
 
-#include "viewer/session.h"
+#include "viewer/offered_scenes.h"
 
 namespace aspic::cli {
-
-// Returns all scenes below `folder` by name. The first comment line of each is its description.
-std::vector<viewer::OfferedScene> scenes_below(const std::filesystem::path& folder);
 
 // Returns the folder of the shipped scenes; empty if missing.
 std::filesystem::path shipped_scenes();

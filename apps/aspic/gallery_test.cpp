@@ -17,13 +17,13 @@ TEST_F(SceneGallery, ListsScenesWithTheirFirstComment) {
   write_file(path("b.toml"), "# A beam.\n[time]\n");
   write_file(path("sub/a.toml"), "[time]\n");
   write_file(path("notes.txt"), "# none\n");
-  const auto scenes = scenes_below(folder);
+  const auto scenes = viewer::scenes_below(folder);
   ASSERT_EQ(scenes.size(), 2u);
   EXPECT_EQ(scenes[0].name, "b.toml");
   EXPECT_EQ(scenes[0].about, "A beam.");
   EXPECT_EQ(scenes[1].name, "sub/a.toml");
   EXPECT_EQ(scenes[1].about, "");
-  EXPECT_THAT(scenes_below(path("none")), IsEmpty());
+  EXPECT_THAT(viewer::scenes_below(path("none")), IsEmpty());
 }
 
 TEST_F(SceneGallery, RemembersWhatWasOpenedNewestFirst) {

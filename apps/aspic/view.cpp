@@ -123,7 +123,7 @@ int view_scene(const ViewArguments& arguments) {
                   {.lessons = lecture::lessons(fs::path("out") / "lecture" / "meshes"),
                    .gallery =
                        [&] {
-                         return viewer::Gallery{scenes_below(shipped_scenes()), recent.read()};
+                         return viewer::Gallery{viewer::scenes_below(shipped_scenes()), recent.read()};
                        },
                    .note_loaded = [&](const fs::path& scene) { recent.note(scene); },
                    .announce = announce});

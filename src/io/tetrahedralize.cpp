@@ -3,17 +3,36 @@
 #include <cmath>
 #include <sstream>
 #include <system_error>
+#include <utility>
 
 #include "base/error.h"
 #include "io/atomic_file.h"
 #include "io/external_program.h"
 #include "io/mesh_file.h"
 #include "io/number_text.h"
+#include "mesh/box.h"
+#include "mesh/cage.h"
 
 namespace aspic {
-namespace {
 
 namespace fs = std::filesystem;
+
+#ifdef __EMSCRIPTEN__  // a browser runs no other program
+
+Tetrahedralization tetrahedralize(const fs::path& path, const TetrahedralizeOptions& options) {
+  const TriMesh surface = read_tri_mesh(path);
+  const Box box = bounding_box(surface.vertices);
+  TetMesh cage = make_cage(surface, options.size > 0 ? options.size : norm(box.upper - box.lower) / 25);
+  if (cage.tets.empty()) throw InvalidInput(path.string() + ": is flat; a body needs a closed surface");
+  return {std::move(cage),
+          {"this page has no mesher, so that the tets are those of cubes around the surface; for tets that follow it, "
+           "install Aspic and run: ./run mesh " +
+           path.filename().string()}};
+}
+
+#else
+
+namespace {
 
 constexpr const char* kProgram = "aspic-mesh";
 constexpr int kOutOfTime = 4;  // exit code of the program
@@ -70,5 +89,7 @@ Tetrahedralization tetrahedralize(const fs::path& surface, const TetrahedralizeO
   if (!fs::exists(result, error)) throw InvalidInput(surface.string() + ": " + kProgram + " wrote no mesh: " + said);
   return {read_tet_mesh(result), notes(folder.path() / "output", words[1])};
 }
+
+#endif
 
 }  // namespace aspic

@@ -90,7 +90,7 @@ class Builder {
     if (!element.text.empty() || std::all_of(piece.begin(), piece.end(), is_blank)) return;
     const char* end = document_.data() + document_.size();
     const char* first = std::find_if_not(document_.data() + position(), end, is_blank);
-    element.text = {first, std::find(first, end, '<')};
+    element.text = {first, static_cast<size_t>(std::find(first, end, '<') - first)};
   }
 
   std::string_view document_;

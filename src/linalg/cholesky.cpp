@@ -111,7 +111,7 @@ struct Cholesky::Front {
   int64_t rows;      // rows of the panel
   double *panel, *update;
 
-  LowerMatrix update_matrix() const { return {update, 3 * static_cast<int64_t>(below), true}; }
+  LowerMatrix update_matrix() const { return {update, 3 * static_cast<std::ptrdiff_t>(below), true}; }
   double* column(int j, int c) const {  // column c of block column j; entry (i, 3 j + c) of the front is at [i]
     return j < width ? panel + (3 * j + c) * rows : update_matrix().column(3 * (j - width) + c) - 3 * width;
   }
@@ -181,7 +181,7 @@ bool Cholesky::factorize_supernode(const BlockSparse& H, int s, DenseCholesky& k
   if (!kernels.factorize(f.panel, static_cast<int>(f.rows), columns, f.rows)) return false;
   if (!pivots_are_sound(H, s, f.panel)) return false;
   if (below == 0) return true;
-  const ConstMatrix L21{f.panel + columns, f.rows, below, columns};
+  const ConstMatrix L21{f.panel + columns, static_cast<std::ptrdiff_t>(f.rows), below, columns};
   kernels.put_outer_product(DenseCholesky::Product::set, L21, f.update_matrix(), below);
   for_each_strip(f.width, f.width + f.below, [&](int first, int last) { add_children(s, f, first, last); });
   return true;

@@ -5,6 +5,7 @@ import { openGallery } from "./gallery";
 import { makeMenu } from "./menu";
 import type { Page } from "./page";
 import type { Recording, SceneReply, SideName, TextReply } from "./protocol";
+import type { Sharing } from "./share";
 import { shortcutButton } from "./shortcuts";
 import type { Store } from "./store";
 import { isSceneOrMesh, prepareUpload, saveReply } from "./upload";
@@ -19,6 +20,7 @@ export class Files {
     private readonly store: Store,
     private readonly page: Page,
     private readonly video: Video,
+    private readonly sharing: Sharing | null,
   ) {}
 
   // Includes the commands that make pictures. A recorded run has fewer commands.
@@ -36,8 +38,18 @@ export class Files {
       this.item("Shift+M", "Save the deformed mesh", false, () => this.openMesh()),
       this.item("Shift+E", "Export the motion (USD, glTF, PC2, video, GIF)", false, () => openAnimation(this.store, this.page, this.video)),
       scene,
+      ...this.shareItems(),
       ...pictures,
     ]);
+  }
+
+  private shareItems(): HTMLButtonElement[] {
+    const sharing = this.sharing;
+    if (!sharing) return [];
+    return [
+      this.item("Shift+C", "Copy a link that opens this workspace", false, () => this.try(sharing.copyLink())),
+      this.item("Shift+H", "Save this page, with the workspace, as one file", false, () => this.try(sharing.savePage())),
+    ];
   }
 
   private item(key: string, does: string, steers: boolean, run: () => void): HTMLButtonElement {

@@ -20,6 +20,18 @@ export function neighbor(lessons: Lesson[], from: Lesson | null, by: 1 | -1): Le
   return shown[shown.indexOf(from) + by] ?? null;
 }
 
+// Lesson of a page of the lecture; null: none. `pages`: "5, 7-9".
+export function lessonOf(lessons: Lesson[], page: number): Lesson | null {
+  const shows = (range: string): boolean => {
+    const [first, last = first] = range.split("-").map(Number);
+    return first! <= page && page <= last!;
+  };
+  return lessons.find(({ pages }) => pages.split(",").some(shows)) ?? null;
+}
+
+// Page that the address chooses: "#lecture/33". NaN: none.
+const pageOf = (hash: string): number => Number(/^#lecture\/(\d+)$/.exec(hash)?.[1] ?? NaN);
+
 function pagesText({ pages }: Lesson): string {
   return /[-,]/.test(pages) ? `Pages ${pages}` : `Page ${pages}`;
 }
@@ -28,6 +40,7 @@ export class Lecture {
   private lessons: Lesson[] = [];
   private current: Lesson | null = null;
   private replaying = false;
+  private hasReadAddress = false;
   private readonly card = element("article", { class: "lesson", "aria-live": "polite" });
   private readonly replay = element("p", { class: "replay", hidden: true });
   private readonly list = element("ol", { class: "lessons" });
@@ -49,6 +62,10 @@ export class Lecture {
     root.append(turn, this.card, this.replay, this.search, this.list);
     this.search.addEventListener("input", () => this.fill());
     store.on("hello", (hello) => this.greet(hello.lessons));
+    store.on("role", (steers) => {
+      if (steers && !this.hasReadAddress) this.openFromAddress();
+    });
+    addEventListener("hashchange", () => this.openFromAddress());
     store.on("state", ({ replaying, playing }) => this.showReplay(replaying, playing));
   }
 
@@ -59,6 +76,16 @@ export class Lecture {
     this.opener.hidden = lessons.length === 0;
     if (lessons.length === 0) this.root.hidden = true;
     this.fill();
+  }
+
+  private openFromAddress(): void {
+    this.hasReadAddress = true;
+    const page = pageOf(location.hash);
+    if (Number.isNaN(page)) return;
+    const lesson = lessonOf(this.lessons, page);
+    if (!lesson) return this.page.notice(`The lecture's page ${page} has no demonstration.`);
+    if (this.root.hidden) this.toggle();
+    void this.open(lesson);
   }
 
   private toggle(): void {

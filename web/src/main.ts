@@ -4,6 +4,7 @@ import "./style.css";
 import "./shell.css";
 import { makeCompareButton } from "./compare";
 import { Dock } from "./dock";
+import { embeddedEngine } from "./engine";
 import { Files } from "./files";
 import { openFit } from "./fit/fitPage";
 import { Lecture } from "./lecture";
@@ -27,6 +28,7 @@ import { drawForProgram } from "./program";
 import { RecordedSource } from "./recorded";
 import { renderPictures } from "./render";
 import { makeRole } from "./role";
+import { Sharing } from "./share";
 import { listenToKeys } from "./shortcuts";
 import { Sidebar } from "./sidebar";
 import { overSocket, sessionAddress } from "./socket";
@@ -44,7 +46,8 @@ function area(id: string): HTMLElement {
   return found;
 }
 
-function buildPage(store: Store, page: Page): void {
+// `sharing`: null without an engine.
+function buildPage(store: Store, page: Page, sharing: Sharing | null): void {
   showNotices(area("messages"), store, page);
   const theme = new Theme(page);
   const display = new Display();
@@ -61,18 +64,29 @@ function buildPage(store: Store, page: Page): void {
   const lecture = new Lecture(area("left"), store, page, (question) => functions.open(question));
   const video = new Video(store, page, views.draw);
   area("views").append(video.indicator);
-  const files = new Files(store, page, video).makeMenu([makeScreenshotButton(store, page, views.draw), video.opener]);
+  const files = new Files(store, page, video, sharing).makeMenu([makeScreenshotButton(store, page, views.draw), video.opener]);
   const live = store.source.live ? [makeCompareButton(store, page), lecture.opener] : [];
   makeToolbar(area("toolbar"), store, page, theme, [makeRole(store), ...live, files, sidebar.opener]);
   listenToKeys(page);
 }
 
-function openPage(source: Source): void {
+function openPage(source: Source, html: string | null = null): void {
   const page = new Page();
   showOwnErrors(page);
   const store = new Store(source);
-  buildPage(store, page);
+  const sharing = html === null ? null : new Sharing(html, store, page);
+  buildPage(store, page, sharing);
+  const stop = store.on("role", () => {
+    stop();
+    void sharing?.open().catch(page.report);
+  });
   store.start();
+}
+
+function openLive(): void {
+  const engine = embeddedEngine();
+  if (engine) openPage(new LiveSource(engine), `<!doctype html>\n${document.documentElement.outerHTML}`);
+  else openPage(new LiveSource(overSocket(sessionAddress())));
 }
 
 registerColors();
@@ -81,6 +95,6 @@ const query = new URL(location.href).searchParams;
 const recording = embedded("recording");
 if (query.has("meshes")) void drawForProgram(drawMeshPictures);
 else if (fit !== null) void openFit(fit);
-else if (recording === null) openPage(new LiveSource(overSocket(sessionAddress())));
+else if (recording === null) openLive();
 else if (query.has("render")) void drawForProgram(renderPictures(new RecordedSource(recording)));
 else openPage(new RecordedSource(recording));

@@ -9,6 +9,7 @@ const kErrorLasts = 15000;
 const kGone = 6; // failed reconnections after which the program has probably ended
 
 export function connectionText(failures: number): string {
+  if (failures === Infinity) return "The simulation in this page has ended. Reload the page to start it again.";
   return failures < kGone
     ? "Connection lost. Reconnecting."
     : "The program does not answer. It has probably ended: start aspic view again and open the address that it prints. " +

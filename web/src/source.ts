@@ -1,8 +1,8 @@
-// Source of messages: a running program (live.ts, over socket.ts) or a recorded run inside the page (recorded.ts). Panels do
-// not depend on which.
+// Source of messages: a running program (live.ts, over socket.ts or engine.ts) or a recorded run inside the page
+// (recorded.ts). Panels do not depend on which.
 import type { Command, Geometry, Picture, Query, ServerMessage } from "./protocol";
 
-// failures: failed connections in a row; 0: connected
+// failures: failed connections in a row; 0: connected; Infinity: the program has ended for good
 export type Incoming = { message: ServerMessage } | { geometry: Geometry } | { picture: Picture } | { failures: number };
 
 export interface Source {

@@ -71,13 +71,32 @@ function tooLarge(bytes: number): Error {
 }
 
 async function gzipBase64(bytes: Uint8Array<ArrayBuffer>): Promise<string> {
-  const stream = new Blob([bytes]).stream().pipeThrough(new CompressionStream("gzip"));
-  return base64Of(new Uint8Array(await new Response(stream).arrayBuffer()));
+  return base64Of(await bytesThrough(new CompressionStream("gzip"), bytes));
+}
+
+// Compresses or decompresses. Rejects a result of more than `most` bytes.
+export async function bytesThrough(
+  packer: CompressionStream | DecompressionStream,
+  bytes: Uint8Array<ArrayBuffer>,
+  most = Infinity,
+): Promise<Uint8Array<ArrayBuffer>> {
+  const reader = new Blob([bytes]).stream().pipeThrough(packer).getReader();
+  const parts: Uint8Array<ArrayBuffer>[] = [];
+  let total = 0;
+  for (let next = await reader.read(); !next.done; next = await reader.read()) {
+    parts.push(next.value);
+    total += next.value.length;
+    if (total > most) {
+      void reader.cancel();
+      throw new Error(`more than ${most} bytes`);
+    }
+  }
+  return new Uint8Array(await new Blob(parts).arrayBuffer());
 }
 
 const kPortion = 0x6000; // a multiple of 3, and within the argument limit of a call
 
-function base64Of(bytes: Uint8Array): string {
+export function base64Of(bytes: Uint8Array): string {
   let text = "";
   for (let at = 0; at < bytes.length; at += kPortion)
     text += btoa(String.fromCharCode(...bytes.subarray(at, at + kPortion)));

@@ -82,19 +82,24 @@ export function isWorkspace(text: string): boolean {
   return text.includes('"aspic_workspace"');
 }
 
-export async function saveWorkspace(store: Store, page: Page): Promise<void> {
+// `isShipped`: whether the reader has a scene, so that the workspace needs no files.
+export async function workspaceOf(store: Store, page: Page, isShipped: (scene: string) => boolean = () => false): Promise<Workspace> {
   const { scene, overrides, compare } = await store.source.ask<Recording>({ ask: "recording" });
   const shown = store.side("a")?.scene;
-  const whole = await wholeScene(store);
-  if (!whole) page.notice(`The meshes are too large for a workspace, so it opens only where ${scene} exists.`);
-  const workspace: Workspace = {
+  const known = isShipped(scene);
+  const whole = known ? null : await wholeScene(store);
+  if (!whole && !known) page.notice(`The meshes are too large for a workspace, so it opens only where ${scene} exists.`);
+  return {
     aspic_workspace: 1,
     ...(whole ?? { scene, overrides }),
     settings: Object.fromEntries((shown?.settings ?? []).map((setting) => [setting.key, setting.value])),
     compare,
     page: Object.fromEntries([...page.keepers].map(([name, keeper]) => [name, keeper.save()])),
   };
-  const text = JSON.stringify(workspace, null, 1);
+}
+
+export async function saveWorkspace(store: Store, page: Page): Promise<void> {
+  const text = JSON.stringify(await workspaceOf(store, page), null, 1);
   saveFile(fileName(`${store.name}.aspic`, "json"), new Blob([text], { type: "application/json" }));
 }
 

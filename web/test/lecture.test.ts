@@ -1,6 +1,6 @@
 import assert from "node:assert/strict";
 import { test } from "node:test";
-import { matches, neighbor } from "../src/lecture";
+import { lessonOf, matches, neighbor } from "../src/lecture";
 import type { Lesson } from "../src/protocol";
 
 const lesson = (id: string, more: Partial<Lesson> = {}): Lesson => ({
@@ -26,4 +26,13 @@ test("previous and next skip missing lessons", () => {
   assert.equal(neighbor(lessons, lessons[2], -1), lessons[0]);
   assert.equal(neighbor(lessons, lessons[2], 1), null);
   assert.equal(neighbor(lessons, null, 1), lessons[0]);
+});
+
+test("a page of the lecture has the lesson that covers it", () => {
+  const lessons = [lesson("a", { pages: "5, 7-9" }), lesson("b", { pages: "33-34" }), lesson("c", { pages: "8, 10" })];
+  assert.equal(lessonOf(lessons, 5)?.id, "a");
+  assert.equal(lessonOf(lessons, 8)?.id, "a");
+  assert.equal(lessonOf(lessons, 10)?.id, "c");
+  assert.equal(lessonOf(lessons, 34)?.id, "b");
+  assert.equal(lessonOf(lessons, 6), null);
 });

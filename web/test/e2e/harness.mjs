@@ -154,9 +154,31 @@ function story({ state, sent, messages, pictures }) {
   return `${JSON.stringify(state)}; sent: ${sent.slice(-5).join(" ").slice(-800)}; reported: ${reported.join(", ")}; picture of step ${pictures.a?.step}`;
 }
 
+// The same for the engine in a worker of the page.
+async function listenToWorker(page, heard) {
+  await page.exposeFunction("sentToWorker", (text) => heard.sent.push(text));
+  await page.exposeFunction("heardFromWorker", (text, isBinary) => heard.take(isBinary ? Buffer.from(text, "base64") : text));
+  await page.addInitScript(() => {
+    const base64 = (bytes) => btoa(Array.from(new Uint8Array(bytes), (byte) => String.fromCharCode(byte)).join(""));
+    window.Worker = class extends Worker {
+      constructor(...what) {
+        super(...what);
+        this.addEventListener("message", ({ data }) => {
+          const isBinary = typeof data !== "string";
+          void window.heardFromWorker(isBinary ? base64(data) : data, isBinary);
+        });
+      }
+      postMessage(message, ...more) {
+        if (typeof message === "string" && message !== "ready") void window.sentToWorker(message);
+        super.postMessage(message, ...more);
+      }
+    };
+  });
+}
+
 // Opens a new page. `close` fails on errors of its scripts, violations of its content policy and foreign requests,
 // except `expected` errors.
-export async function openPage(address, { size = kSize, watchRequests = true, keepsPixels = false, expected = /^$/, prepare, ...context } = {}) {
+export async function openPage(address, { size = kSize, watchRequests = true, keepsPixels = false, engine = false, expected = /^$/, prepare, ...context } = {}) {
   const inside = await (await theBrowser()).newContext({ viewport: { width: size[0], height: size[1] }, ...context });
   contexts.add(inside);
   const page = await inside.newPage();
@@ -169,13 +191,14 @@ export async function openPage(address, { size = kSize, watchRequests = true, ke
   page.on("console", (message) => message.type() === "error" && errors.push(message.text()));
   const origin = new URL(address).origin;
   page.on("request", (request) => {
-    const own = request.url() === address || request.url().startsWith(`${origin}/`) || /^(data|blob):/.test(request.url());
+    const own = request.url() === address.replace(/#.*/, "") || request.url().startsWith(`${origin}/`) || /^(data|blob):/.test(request.url());
     if (watchRequests && !own) errors.push(`requested ${request.url()}`);
   });
   page.on("websocket", (socket) => {
     socket.on("framereceived", ({ payload }) => heard.take(payload));
     socket.on("framesent", ({ payload }) => typeof payload === "string" && payload !== "ready" && heard.sent.push(payload));
   });
+  if (engine) await listenToWorker(page, heard);
   for (const script of [lookAtImages, noteDrawnTexts]) await page.addInitScript(script);
   await page.addInitScript(drawSimply, keepsPixels);
   await prepare?.(page);
@@ -312,6 +335,16 @@ export const contrast = (page, png) =>
     const image = await createImageBitmap(new Blob([Uint8Array.from(atob(base64), (c) => c.charCodeAt(0))]));
     return window.lookAt(image).contrast;
   }, png.toString("base64"));
+
+// Files that a reader drags from a folder.
+export async function drop(page, files) {
+  const transfer = await page.evaluateHandle((list) => {
+    const made = new DataTransfer();
+    for (const [name, base64] of list) made.items.add(new File([Uint8Array.from(atob(base64), (c) => c.charCodeAt(0))], name));
+    return made;
+  }, files.map(([name, bytes]) => [name, Buffer.from(bytes).toString("base64")]));
+  await page.dispatchEvent("body", "drop", { dataTransfer: transfer });
+}
 
 export const downloaded = async (page, act) => (await Promise.all([page.waitForEvent("download"), act()]))[0];
 

@@ -5,7 +5,7 @@ import { readFileSync, writeFileSync } from "node:fs";
 import { join } from "node:path";
 import { test } from "node:test";
 import { fileURLToPath } from "node:url";
-import { aspic, downloaded, findBody, frames, keepPicture, openSession, pressAndWait, startProgram, temporaryFolder } from "./harness.mjs";
+import { aspic, downloaded, drop, findBody, frames, keepPicture, openSession, pressAndWait, startProgram, temporaryFolder } from "./harness.mjs";
 
 const program = await startProgram("scenes/cantilever.toml");
 const read = async (file) => readFileSync(await file.path());
@@ -18,16 +18,6 @@ function hashOfRun(scene, steps) {
   const out = join(temporaryFolder(), "out");
   const output = execFileSync(aspic, ["run", scene, "--steps", String(steps), "--out", out], { encoding: "utf8", stdio: ["ignore", "pipe", "pipe"] });
   return output.match(/state +(\w+) after/)[1];
-}
-
-// Files that a reader drags from a folder.
-async function drop(page, files) {
-  const transfer = await page.evaluateHandle((list) => {
-    const made = new DataTransfer();
-    for (const [name, base64] of list) made.items.add(new File([Uint8Array.from(atob(base64), (c) => c.charCodeAt(0))], name));
-    return made;
-  }, files.map(([name, bytes]) => [name, Buffer.from(bytes).toString("base64")]));
-  await page.dispatchEvent("body", "drop", { dataTransfer: transfer });
 }
 
 async function savedMesh(page, format) {

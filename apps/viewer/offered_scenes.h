@@ -1,0 +1,13 @@
+// Scenes that a session offers to its pages.
+#pragma once
+#include <filesystem>
+#include <vector>
+
+#include "viewer/session.h"
+
+namespace aspic::viewer {
+
+// Returns all scenes below `folder` by name. The first comment line of each is its description.
+std::vector<OfferedScene> scenes_below(const std::filesystem::path& folder);
+
+}  // namespace aspic::viewer

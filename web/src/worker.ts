@@ -1,0 +1,98 @@
+// The script of the engine's worker: passes messages between the page (engine.ts) and a session (apps/engine/engine.cpp).
+import type { EngineParts } from "./engine";
+
+interface Engine {
+  FS: { mkdirTree(folder: string): void; writeFile(path: string, text: string): void };
+  lengthBytesUTF8(text: string): number;
+  stringToUTF8(text: string, place: number, most: number): void;
+  _malloc(bytes: number): number;
+  _free(place: number): void;
+  _engine_open(scene: number): number;
+  _engine_handle(message: number): void;
+  _engine_run(wantsPictures: boolean): number;
+  _engine_pause(wantsPictures: boolean): number;
+}
+
+type Post = (message: string | ArrayBuffer) => void;
+
+// Made by the compiler; its text precedes this script.
+declare function createEngine(options: { wasmBinary: ArrayBuffer; post: Post }): Promise<Engine>;
+
+interface Scope {
+  onmessage: ((event: { data: EngineParts | string }) => void) | null;
+  postMessage(message: string | ArrayBuffer, transfer?: ArrayBuffer[]): void;
+}
+const scope = globalThis as unknown as Scope;
+
+const post: Post = (message) => scope.postMessage(message, typeof message === "string" ? [] : [message]);
+const ended = (reason: unknown): void => post(JSON.stringify({ kind: "ended", why: String(reason) }));
+
+// Copies the text into the memory of the engine during the call. Uploads would not fit on its stack, where ccall() puts
+// texts.
+function withText<Result>(made: Engine, text: string, call: (place: number) => Result): Result {
+  const bytes = made.lengthBytesUTF8(text) + 1;
+  const place = made._malloc(bytes);
+  if (place === 0) throw new Error("there is not enough memory for this message");
+  try {
+    made.stringToUTF8(text, place, bytes);
+    return call(place);
+  } finally {
+    made._free(place);
+  }
+}
+
+let engine: Engine | null = null;
+let wantsPictures = true; // the first ones need no request
+let timer: ReturnType<typeof setTimeout> | undefined;
+
+// Lets waiting messages of the page pass before it continues; a timeout of zero would wait for 4 ms.
+const atOnce = new MessageChannel();
+let isQueued = false;
+atOnce.port2.onmessage = () => {
+  isQueued = false;
+  guarded(run);
+};
+
+async function open({ module, files, scene }: EngineParts): Promise<void> {
+  const made = await createEngine({ wasmBinary: module, post });
+  for (const [path, text] of Object.entries(files)) {
+    made.FS.mkdirTree(path.slice(0, path.lastIndexOf("/")));
+    made.FS.writeFile(path, text);
+  }
+  if (!withText(made, scene, made._engine_open)) return;
+  engine = made;
+  run();
+}
+
+function run(): void {
+  if (!engine) return;
+  clearTimeout(timer);
+  if (engine._engine_run(wantsPictures)) wantsPictures = false;
+  const pause = engine._engine_pause(wantsPictures);
+  if (pause >= 1) timer = setTimeout(() => guarded(run), pause);
+  else if (pause >= 0 && !isQueued) {
+    isQueued = true;
+    atOnce.port1.postMessage(null);
+  }
+}
+
+function carryOut(message: string): void {
+  if (message === "ready") wantsPictures = true;
+  else if (engine) withText(engine, message, engine._engine_handle);
+  run();
+}
+
+// An exception here is a trap of the engine: an exhausted memory, or a bug. Its state is then undefined.
+function guarded(work: () => void): void {
+  try {
+    work();
+  } catch (reason) {
+    engine = null;
+    ended(reason);
+  }
+}
+
+scope.onmessage = ({ data }) => {
+  if (typeof data === "string") guarded(() => carryOut(data));
+  else void open(data).catch(ended);
+};

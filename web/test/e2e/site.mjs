@@ -1,0 +1,227 @@
+// The page of ./run site in Chromium, from a file and from web servers, and its engine under Node.js. tools/site_test runs it.
+import assert from "node:assert/strict";
+import { readFileSync, writeFileSync } from "node:fs";
+import { createServer } from "node:http";
+import { createRequire } from "node:module";
+import { join } from "node:path";
+import { test } from "node:test";
+import { pathToFileURL } from "node:url";
+import { gunzipSync, gzipSync } from "node:zlib";
+import { atTheEnd, downloaded, drop, findBody, frames, isDrawn, keepPicture, openPage, pageModule, pressAndWait, root, settled, temporaryFolder } from "./harness.mjs";
+
+const site = process.env.SITE;
+const html = readFileSync(site, "utf8");
+const [kMostEngine, kMostPage] = [1.45e6, 1.95e6]; // bytes, compressed
+
+const kFrame = `<!doctype html><link rel="icon" href="data:,"><iframe sandbox="allow-scripts" src="/" style="width: 1000px; height: 600px"></iframe>`;
+const kIsolated = { "Cross-Origin-Opener-Policy": "same-origin", "Cross-Origin-Embedder-Policy": "require-corp" };
+
+// Serves the page at / and a sandboxed frame with it at /frame.
+async function serve(headers = {}) {
+  const texts = { "/": html, "/frame": kFrame };
+  const server = createServer((request, response) => {
+    const text = texts[request.url];
+    response.writeHead(text ? 200 : 404, { "Content-Type": "text/html", ...headers });
+    response.end(text);
+  });
+  await new Promise((resolve) => server.listen(0, "127.0.0.1", resolve));
+  atTheEnd(() => server.close());
+  return `http://127.0.0.1:${server.address().port}/`;
+}
+
+const places = { "a file": pathToFileURL(site).href, "a web server": await serve(), "an isolated server": await serve(kIsolated) };
+
+async function openSite(address, scene = "bunny", options = {}) {
+  const opened = await openPage(address, { engine: true, keepsPixels: true, ...options });
+  await opened.until(`the scene ${scene}`, ({ state, pictures, scenes }) => state && pictures.a && scenes.a.name === scene);
+  return opened;
+}
+
+const lastHash = ({ messages }) => messages.findLast(({ kind, steps }) => kind === "steps" && steps.length > 0).steps.at(-1).state_hash;
+
+async function loadScene({ page, until }, name) {
+  await page.keyboard.press("Shift+O");
+  await page.getByRole("dialog").getByRole("button", { name: new RegExp(`^${name}`) }).click();
+  await until(`the scene ${name}`, ({ scenes, pictures, geometries }) => scenes.a.name === name && pictures.a.generation === geometries.a.generation);
+  await page.getByRole("dialog").waitFor({ state: "detached" }); // takes keys
+}
+
+async function takeSteps(opened, count) {
+  for (let step = 1; step <= count; ++step)
+    await pressAndWait(opened, "s", `step ${step}`, ({ state, pictures }) => state.a.step === step && pictures.a.step === step);
+}
+
+// The engine of the page under Node.js: opens a scene and returns its messages.
+async function engineInNode(scene) {
+  const element = (id) => JSON.parse(html.match(new RegExp(`id="${id}">(.*?)</script>`, "s"))[1]);
+  const unpacked = (id) => gunzipSync(Buffer.from(element(id), "base64"));
+  const messages = [];
+  const post = (message) => typeof message === "string" && messages.push(JSON.parse(message));
+  const engine = await createRequire(import.meta.url)(process.env.ENGINE)({ wasmBinary: unpacked("engine-module"), post });
+  for (const [path, text] of Object.entries(JSON.parse(unpacked("engine-files")))) {
+    engine.FS.mkdirTree(path.slice(0, path.lastIndexOf("/")));
+    engine.FS.writeFile(path, text);
+  }
+  assert.ok(engine.ccall("engine_open", "boolean", ["string"], [scene]), JSON.stringify(messages.at(-1)));
+  const bytes = () => engine.HEAPU8.length;
+  const write = (path, text) => engine.FS.writeFile(path, text);
+  return { messages, bytes, write, handle: (message) => engine.ccall("engine_handle", null, ["string"], [JSON.stringify(message)]) };
+}
+
+for (const [place, address] of Object.entries(places)) {
+  test(`from ${place}, the body is dragged and the minimization is shown`, async () => {
+    const opened = await openSite(address);
+    const { page, heard, until, close } = opened;
+    await pressAndWait(opened, "i", "an iteration", ({ state }) => state.a.iteration >= 0 || state.a.step === 1);
+    while (heard.state.a.step === 0) await pressAndWait(opened, "i", "an iteration", () => true);
+    await page.getByRole("tab", { name: "Landscape" }).click();
+    const { slice } = await until("the slice", () => heard.messages.find(({ kind, reply }) => kind === "reply" && reply?.slice)?.reply);
+    assert.equal(slice.value.length, slice.columns * slice.rows);
+    const canvas = page.getByRole("tabpanel", { name: "Landscape" }).locator("canvas").first();
+    await until("its surface", () => isDrawn(canvas));
+    await settled(opened);
+    const [x, y] = await findBody(opened);
+    await page.mouse.down();
+    await page.mouse.move(x + 60, y - 40, { steps: 4 });
+    await until("a grab", ({ state }) => state.a.grab);
+    await pressAndWait(opened, " ", "a run", ({ state }) => state.playing);
+    const { step } = heard.state.a;
+    await until("ten steps with a force", ({ state }) => state.a.step >= step + 10 && state.a.grab && Math.hypot(...state.a.grab.force) > 0);
+    await keepPicture(page, `site_${place.split(" ").at(-1)}`);
+    await page.mouse.up();
+    await until("a release", ({ state }) => !state.a.grab);
+    await pressAndWait(opened, " ", "a pause", ({ state }) => !state.playing);
+    await frames(page);
+    await close();
+  });
+}
+
+test("the page works in a sandboxed frame", async () => {
+  const opened = await openSite(`${places["a web server"]}frame`);
+  const frame = opened.page.frameLocator("iframe");
+  await frame.getByRole("button", { name: "1 iteration" }).waitFor();
+  await frame.getByRole("button", { name: /^Step/ }).click();
+  await opened.until("a step", ({ state, pictures }) => state.a.step === 1 && pictures.a.step === 1);
+  await opened.close();
+});
+
+// Sends each command, then takes a step. Returns the refusals.
+function refusals({ messages, handle }, commands) {
+  return commands.flatMap((command) => {
+    messages.length = 0;
+    handle({ ...command, id: 1 });
+    handle({ do: "step" });
+    const { kind, why } = messages.find(({ id }) => id === 1);
+    return kind === "refused" ? [`${JSON.stringify(command)}: ${why}`] : [];
+  });
+}
+
+test("the engine runs every scene and every page of the lecture", async () => {
+  const engine = await engineInNode("/scenes/bunny.toml");
+  const { lessons } = engine.messages.find(({ kind }) => kind === "hello");
+  engine.handle({ ask: "gallery", id: 2 });
+  const { scenes } = engine.messages.find(({ id }) => id === 2).reply;
+  assert.ok(scenes.length >= 20 && lessons.length >= 20, `${scenes.length} scenes, ${lessons.length} lessons`);
+  assert.deepEqual(lessons.filter(({ missing }) => missing), []);
+  const failed = refusals(engine, [
+    ...scenes.map(({ path }) => ({ do: "load", scene: path })),
+    ...lessons.map(({ id }) => ({ do: "lesson", lesson: id })),
+  ]);
+  assert.deepEqual(failed, []);
+});
+
+test("the sizes are within their limits", () => {
+  const engine = html.match(/id="engine-module">"(.*?)"/)[1].length * 0.75;
+  const page = gzipSync(html, { level: 9 }).length;
+  console.log(`engine: ${(engine / 1e6).toFixed(2)} MB, page: ${(page / 1e6).toFixed(2)} MB, both compressed`);
+  assert.ok(engine <= kMostEngine && page <= kMostPage);
+});
+
+// Prints speeds without a limit: they depend on the machine and on its load.
+test("a body of 1512 vertices moves", async () => {
+  const { messages, write, handle } = await engineInNode("/scenes/bunny.toml");
+  const scene = readFileSync(join(root, "scenes/cantilever.toml"), "utf8").replace("[15, 3, 3]", "[41, 5, 5]");
+  write("/scenes/beam.toml", scene);
+  handle({ do: "load", scene: "/scenes/beam.toml" });
+  const start = performance.now();
+  for (let step = 0; step < 100; ++step) handle({ do: "step" });
+  console.log(`${(1e5 / (performance.now() - start)).toFixed(0)} steps per second under Node.js`);
+  assert.equal(messages.findLast(({ kind }) => kind === "state").a.step, 100);
+});
+
+test("a thousand resets do not grow the memory", async () => {
+  const { messages, bytes, handle } = await engineInNode("/scenes/cantilever.toml");
+  const reset = (count) => {
+    for (let i = 0; i < count; ++i) {
+      handle({ do: "step" });
+      handle({ do: "reset" });
+      messages.length = 0;
+    }
+    return bytes();
+  };
+  const before = reset(100);
+  assert.equal(reset(1000), before);
+});
+
+test("Chromium and Node.js compute the same state", async () => {
+  const opened = await openSite(places["a file"]);
+  for (const name of ["cantilever", "twist", "contact"]) {
+    const node = await engineInNode(`/scenes/${name}.toml`);
+    for (let step = 0; step < 20; ++step) node.handle({ do: "step" });
+    await loadScene(opened, name);
+    await takeSteps(opened, 20);
+    assert.equal(lastHash(opened.heard), lastHash(node), name);
+    console.log(`${name}: state ${lastHash(opened.heard)} after 20 steps`);
+  }
+  await opened.close();
+});
+
+test("the address opens a page of the lecture", async () => {
+  const opened = await openSite(`${places["a file"]}#lecture/33`, "33_mouse");
+  await opened.page.getByRole("heading", { name: /^Pages 33-34/ }).waitFor();
+  await opened.until("the recorded mouse", ({ state }) => state.replaying && state.b);
+  await opened.close();
+});
+
+test("a link and a saved page open the workspace", async () => {
+  const opened = await openSite(places["a file"]);
+  await loadScene(opened, "twist");
+  await opened.page.keyboard.press("Shift+C");
+  await opened.page.waitForFunction(() => location.hash.startsWith("#s="));
+  const link = opened.page.url();
+  const saved = await downloaded(opened.page, () => opened.page.keyboard.press("Shift+H"));
+  assert.equal(saved.suggestedFilename(), "twist.html");
+  const copy = join(temporaryFolder(), "twist.html");
+  writeFileSync(copy, readFileSync(await saved.path()));
+  await opened.close();
+  for (const address of [link, pathToFileURL(copy).href]) await (await openSite(address, "twist")).close();
+});
+
+test("a damaged link is reported", async () => {
+  const opened = await openSite(`${places["a file"]}#s=damaged`);
+  await opened.page.locator(".notice.error").filter({ hasText: "The link is damaged" }).waitFor();
+  await opened.close();
+});
+
+test("a link with a scene that is too large is refused", async () => {
+  const { linkText } = await pageModule("share.ts");
+  const overrides = ["body.0.shape.box.cells=[400, 400, 400]"];
+  const link = await linkText({ aspic_workspace: 1, scene: "/scenes/cantilever.toml", overrides, settings: {}, compare: null, page: {} });
+  const opened = await openSite(places["a file"] + link);
+  await opened.page.locator(".notice.error").filter({ hasText: "tets" }).waitFor();
+  await pressAndWait(opened, "s", "a step of the old scene", ({ state }) => state.a.step === 1);
+  await opened.close();
+});
+
+// A closed surface without tets.
+const kOctahedron = `v 1 0 0\nv -1 0 0\nv 0 1 0\nv 0 -1 0\nv 0 0 1\nv 0 0 -1
+f 1 3 5\nf 3 2 5\nf 2 4 5\nf 4 1 5\nf 3 1 6\nf 2 3 6\nf 4 2 6\nf 1 4 6\n`;
+
+test("a dropped surface moves with a cage", async () => {
+  const opened = await openSite(places["a file"]);
+  await drop(opened.page, [["octahedron.obj", Buffer.from(kOctahedron)]]);
+  await opened.until("the body", ({ scenes, pictures, geometries }) => scenes.a.name === "octahedron" && pictures.a.generation === geometries.a.generation);
+  assert.ok(opened.heard.scenes.a.notes.some((note) => note.includes("cubes around the surface")), opened.heard.scenes.a.notes.join("; "));
+  await takeSteps(opened, 3);
+  await opened.close();
+});
