@@ -10,6 +10,7 @@
 #include <set>
 
 #include "mesh/surface.h"
+#include "mesh/surface_orientation.h"
 #include "mesh/tet_shape.h"
 
 namespace aspic {
@@ -25,14 +26,6 @@ double smallest_dihedral(const TetMesh& mesh) {
   double smallest = 180;
   for (int t = 0; t < mesh.tet_count(); ++t) smallest = std::min(smallest, dihedral_range(corners(mesh, t))[0]);
   return smallest;
-}
-
-// Returns the volume enclosed by a closed surface, by the divergence theorem.
-double enclosed_volume(const TriMesh& surface) {
-  double sum = 0;
-  for (const auto& [a, b, c] : surface.triangles)
-    sum += dot(surface.vertices[a], cross(surface.vertices[b], surface.vertices[c])) / 6;
-  return sum;
 }
 
 int euler_characteristic(const TriMesh& surface) {

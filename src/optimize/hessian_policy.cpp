@@ -107,27 +107,29 @@ class HessianOnDemand : public HessianPolicy {
     return true;
   }
 
-  // Doubles d while E decreases and the parabola through E at both ends of d has its minimum beyond 2 d. Returns E at x
-  // + d, or at the largest feasible step along d.
+  // Doubles d while E decreases, the step remains feasible, and the parabola through E at both ends of d has its minimum
+  // beyond 2 d. Returns E at x + d, or at the largest feasible step along d.
   double lengthen(NewtonTask& task) {
-    const double reach = task.E.max_step(task.x, task.d);
-    double end = value_ahead(task, std::min(1.0, reach));
+    double end = value_ahead(task, task.d, std::min(1.0, task.E.max_step(task.x, task.d)));
     double slope = task.E.dot(task.g, task.d), size = 0;
     for (const double di : task.d) size = std::max(size, std::abs(di));
     for (double length = 2; 4 * (end - *task.value - slope) < -slope; length *= 2, slope *= 2) {
-      if (reach < length || length * size > task.E.scales().x) break;
-      const double further = value_ahead(task, 2);
+      if (length * size > task.E.scales().x) break;
+      twice_.assign(task.d.begin(), task.d.end());
+      for (double& di : twice_) di *= 2;
+      if (task.E.max_step(task.x, twice_) < 1) break;  // contact bounds steps along d by 1 and knows no more
+      const double further = value_ahead(task, twice_, 1);
       if (!(further < end)) break;
-      for (double& di : task.d) di *= 2;
+      std::copy(twice_.begin(), twice_.end(), task.d.begin());
       end = further;
     }
     return end;
   }
 
   // Returns E at x + alpha d.
-  double value_ahead(NewtonTask& task, double alpha) {
+  double value_ahead(NewtonTask& task, std::span<const double> d, double alpha) {
     ahead_.resize(task.x.size());
-    for (size_t i = 0; i < ahead_.size(); ++i) ahead_[i] = task.x[i] + alpha * task.d[i];
+    for (size_t i = 0; i < ahead_.size(); ++i) ahead_[i] = task.x[i] + alpha * d[i];
     ++task.report.values;
     return task.E.value(ahead_);
   }
@@ -138,7 +140,7 @@ class HessianOnDemand : public HessianPolicy {
   int absolute_span_ = 0;      // next value of absolute_left_ after an overshoot
   int modified_in_a_row_ = 0;  // successive directions of modified Hessians
   double last_value_ = 0;      // E at the last iterate with such a direction
-  std::vector<double> ahead_;
+  std::vector<double> ahead_, twice_;
 };
 
 }  // namespace
