@@ -107,8 +107,8 @@ class HessianOnDemand : public HessianPolicy {
     return true;
   }
 
-  // Doubles d while E decreases, the step remains feasible, and the parabola through E at both ends of d has its minimum
-  // beyond 2 d. Returns E at x + d, or at the largest feasible step along d.
+  // Doubles d while E decreases, the step remains feasible, and the parabola through E at both ends of d has its
+  // minimum beyond 2 d. Returns E at x + d, or at the largest feasible step along d.
   double lengthen(NewtonTask& task) {
     double end = value_ahead(task, task.d, std::min(1.0, task.E.max_step(task.x, task.d)));
     double slope = task.E.dot(task.g, task.d), size = 0;

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <utility>
 
@@ -107,6 +108,25 @@ class DoubleWell : public PlanarFunction {
 // Each step with absolute eigenvalues doubles the distance from the saddle, which would take 20 steps.
 TEST(Newton, OnDemandLeavesSaddleInFewIterations) {
   DoubleWell f;
+  Newton direction(make_linear_solver("cholesky"));
+  std::vector<double> x = {1e-6, 0.1, 0};
+  const MinimizeOptions options{.tolerance = 1e-10, .criterion = Criterion::absolute};
+  const MinimizeReport report = Minimizer().minimize(f, direction, x, options);
+  EXPECT_EQ(report.status, Status::converged);
+  EXPECT_LT(report.iterations, 12);
+  EXPECT_NEAR(x[0], 1, 1e-9);
+}
+
+// As in contact: bounds of steps are at most 1.
+class BoundedDoubleWell : public DoubleWell {
+ public:
+  double max_step(std::span<const double> x, std::span<const double> d) override {
+    return std::min(1.0, (1.5 - x[0]) / std::max(d[0], 1e-300));
+  }
+};
+
+TEST(Newton, OnDemandLeavesSaddleInFewIterationsWithBoundedSteps) {
+  BoundedDoubleWell f;
   Newton direction(make_linear_solver("cholesky"));
   std::vector<double> x = {1e-6, 0.1, 0};
   const MinimizeOptions options{.tolerance = 1e-10, .criterion = Criterion::absolute};
