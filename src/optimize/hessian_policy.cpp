@@ -117,7 +117,7 @@ class HessianOnDemand : public HessianPolicy {
       if (length * size > task.E.scales().x) break;
       twice_.assign(task.d.begin(), task.d.end());
       for (double& di : twice_) di *= 2;
-      if (task.E.max_step(task.x, twice_) < 1) break;  // contact bounds steps along d by 1 and knows no more
+      if (task.E.max_step(task.x, twice_) < 1) break;  // the bounds of contact are at most 1
       const double further = value_ahead(task, twice_, 1);
       if (!(further < end)) break;
       std::copy(twice_.begin(), twice_.end(), task.d.begin());
