@@ -37,7 +37,7 @@ export function showNotices(root: HTMLElement, store: Store, page: Page): void {
 
   const showLasting = (): void => {
     const lost = store.failures ?? 0;
-    const text = lost ? connectionText(lost) : store.busy;
+    const text = store.failures === null ? "Starting." : lost ? connectionText(lost) : store.busy;
     lasting.textContent = text;
     lasting.className = `lasting ${lost ? "error" : "busy"}`;
     lasting.hidden = text === "";
