@@ -1,4 +1,4 @@
-// Interface of the engine for web/src/engine/worker.ts: a session whose messages go to the page by postMessage().
+// Interface of the engine for web/src/worker.ts: a session whose messages go to the page by postMessage().
 #include <emscripten.h>
 
 #include <algorithm>

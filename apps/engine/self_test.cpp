@@ -25,12 +25,12 @@ __attribute__((noinline)) void transform(std::span<Vec3d> points, const double* 
 }
 
 bool transforms_points() {
-  const double A[9] = {0, 0, 1, 0, 1, 0, -1, 0, 0}, b[3] = {0, 0, 0};
+  const double A[9] = {0, 0, 1, 0, 1, 0, -1, 0, 0}, b[3] = {1, 2, 4};
   std::vector<Vec3d> points;
   for (int i = 0; i < 5; ++i) points.push_back({{1.0 + i, 2.0 + i, 3.0 + i}});
   transform(points, A, b);
   for (int i = 0; i < 5; ++i)
-    if (points[i][0] != 3 + i || points[i][1] != 2 + i || points[i][2] != -1 - i) return false;
+    if (points[i][0] != 4 + i || points[i][1] != 4 + i || points[i][2] != 3 - i) return false;
   return true;
 }
 

@@ -8,6 +8,7 @@
 #include "mesh/components.h"
 #include "mesh/surface.h"
 #include "mesh/surface_orientation.h"
+#include "mesh/tet_shape.h"
 #include "triangle_tree.h"
 
 namespace aspic {
@@ -40,16 +41,10 @@ void sample(const TriMesh& mesh, Visit visit) {
   }
 }
 
-double tet_volume(const TetMesh& tets) {
-  double sum = 0;
-  for (int t = 0; t < tets.tet_count(); ++t) sum += volume(tets, t);
-  return sum;
-}
-
 }  // namespace
 
 Fidelity fidelity(const TriMesh& body, const TetMesh& tets, double allowed) {
-  Fidelity result{.volume = std::abs(enclosed_volume(body)), .filled = tet_volume(tets)};
+  Fidelity result{.volume = std::abs(enclosed_volume(body)), .filled = total_volume(tets)};
   result.parts = edge_connected_parts(body.triangles);
   result.filled_parts = static_cast<int>(tet_components(tets).size());
   const TriMesh boundary = boundary_surface(tets).surface;

@@ -12,6 +12,7 @@
 #include "capture/unstated_values.h"
 #include "fit/load_case.h"
 #include "fit/next_indentation.h"
+#include "mesh/tet_shape.h"
 
 namespace aspic {
 namespace {
@@ -21,16 +22,10 @@ constexpr double kGravity = 9.81;         // [m/s^2]
 constexpr double kMinArm = 0.01;          // lever arm of a force about the indenter's center, relative to its radius
 constexpr double kMinSigma = 1e-4;        // minimum sigma of exact data, relative to the largest motion or force
 
-double volume_of(const TetMesh& mesh) {
-  double sum = 0;
-  for (int t = 0; t < mesh.tet_count(); ++t) sum += volume(mesh, t);
-  return sum;
-}
-
 class Bench {
  public:
   Bench(const Scene& scene, const SynthesisOptions& options)
-      : model_(scene.simulation.model()), options_(options), size_(std::cbrt(volume_of(model_.mesh))) {
+      : model_(scene.simulation.model()), options_(options), size_(std::cbrt(total_volume(model_.mesh))) {
     if (model_.bodies.size() != 1)
       throw InvalidInput(scene.name + ": has " + std::to_string(model_.bodies.size()) +
                          " bodies; the bench measures one: remove the others");

@@ -86,11 +86,15 @@ struct Barrier::Impl {
   }
   // Adds the change of the gradient if obstacles move by u, to first order.
   void add_obstacle_pull(std::span<const Vec3d> p, std::span<const Vec3d> u, double scale, std::span<double> g) const;
-  std::vector<Vec3d> displacements(std::span<const double> d, const Context& context) const {
-    std::vector<Vec3d> u = obstacle_moves(context.time, obstacle_end(context));
+  // Returns the displacements of all points if obstacles move between two times.
+  std::vector<Vec3d> displacements(std::span<const double> d, double from, double to) const {
+    std::vector<Vec3d> u = obstacle_moves(from, to);
     for (int i = 0; i < mesh.point_count(); ++i)
       if (mesh.row[i] >= 0) u[i] = point(d, mesh.row[i]);
     return u;
+  }
+  std::vector<Vec3d> displacements(std::span<const double> d, const Context& context) const {
+    return displacements(d, context.time, obstacle_end(context));
   }
 
   ContactMesh mesh;
@@ -274,11 +278,8 @@ double Barrier::max_step(Positions x, const Context& context, std::span<const do
 
 double Barrier::max_step(Positions x, std::span<const double> d, double from, double to) const {
   const ContactMeter::Span span(meter(), ContactMeter::bound);
-  const std::vector<Vec3d> start = impl_->points(x, from);
-  std::vector<Vec3d> u = impl_->obstacle_moves(from, to);
-  for (size_t i = 0; i < u.size(); ++i)
-    if (impl_->mesh.row[i] >= 0) u[i] = point(d, impl_->mesh.row[i]);
-  return StepBound(impl_->mesh, impl_->laws, impl_->search, impl_->sizes).largest(start, std::move(u));
+  return StepBound(impl_->mesh, impl_->laws, impl_->search, impl_->sizes)
+      .largest(impl_->points(x, from), impl_->displacements(d, from, to));
 }
 
 std::vector<std::string> Barrier::blocked_parts(Positions x, double from, double to) const {

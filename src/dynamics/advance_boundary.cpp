@@ -26,10 +26,10 @@ MinimizeOptions rough(const MinimizeOptions& options) {
 }
 
 // Pins and obstacles on their way to the positions at the end of the step.
-class Lead {
+class Boundary {
  public:
-  Lead(const StepTools& tools, double time, std::span<const double> from, std::span<const double> to,
-       MinimizeReport& work)
+  Boundary(const StepTools& tools, double time, std::span<const double> from, std::span<const double> to,
+           MinimizeReport& work)
       : tools_(tools),
         time_(time),
         to_(to.begin(), to.end()),
@@ -106,26 +106,26 @@ class Lead {
 };
 
 // Both return whether all are where they belong.
-bool move_all(Lead& lead) {
+bool move_all(Boundary& boundary) {
   double part = 0.5;  // of the whole way
   for (int i = 0; i < kMaxParts && part >= kSmallestPart; ++i) {
-    if (!lead.move(std::min(1.0, lead.done() + part))) {
+    if (!boundary.move(std::min(1.0, boundary.done() + part))) {
       part /= 2;
       continue;
     }
-    if (lead.done() == 1) return true;
-    if (!lead.settle()) return false;
+    if (boundary.done() == 1) return true;
+    if (!boundary.settle()) return false;
     part *= 2;
   }
   return false;
 }
 
-bool carry_all(Lead& lead) {
+bool carry_all(Boundary& boundary) {
   for (int i = 0, short_moves = 0; i < kMaxParts && short_moves < kPatience; ++i) {
-    const double before = lead.done(), part = lead.carry();
-    if (lead.done() == 1) return true;
-    short_moves = lead.done() - before < kSmallestPart ? short_moves + 1 : 0;
-    if (part < kShortPart && !lead.settle()) return false;
+    const double before = boundary.done(), part = boundary.carry();
+    if (boundary.done() == 1) return true;
+    short_moves = boundary.done() - before < kSmallestPart ? short_moves + 1 : 0;
+    if (part < kShortPart && !boundary.settle()) return false;
   }
   return false;
 }
@@ -154,11 +154,11 @@ Evaluation advance_boundary(const StepTools& tools, double time, std::span<const
   const Evaluation at_once = tools.E.evaluate(q);
   ++work.values;
   if (std::isfinite(at_once.value) && is_free(tools, {from, q, tools.obstacle_start, time})) return at_once;
-  Lead lead(tools, time, from, q, work);
+  Boundary boundary(tools, time, from, q, work);
   const bool carries = tools.model.contact && tools.model.contact->has_moving_obstacle();
-  if (carries ? carry_all(lead) : move_all(lead)) {
-    std::copy(lead.reached().begin(), lead.reached().end(), q.begin());
-    return lead.value();
+  if (carries ? carry_all(boundary) : move_all(boundary)) {
+    std::copy(boundary.reached().begin(), boundary.reached().end(), q.begin());
+    return boundary.value();
   }
   return tools.model.contact ? Evaluation{std::numeric_limits<double>::infinity()} : at_once;
 }

@@ -97,11 +97,11 @@ class QuasiStatic : public Integrator {
     tools.E.set_potential_step(context);
     tools.E.set_damping_step(context);
     tools.E.begin_step(start.q, 0, 1);
-    MinimizeReport lead;
-    const Guess guess = guesser_.guess(tools, tools.guess, {start.q, start.qdot, 0, tools.end_time}, end.q, lead);
+    MinimizeReport guessing;
+    const Guess guess = guesser_.guess(tools, tools.guess, {start.q, start.qdot, 0, tools.end_time}, end.q, guessing);
     solve.guess = guess.used;
     solve.add(minimize_lagged(tools, tools.options, {end.q, guess.value}, solve));
-    add_work(lead, solve.work);
+    add_work(guessing, solve.work);
     std::fill(end.qdot.begin(), end.qdot.end(), 0.0);
     forces.add(tools.E, 1, end.q, {}, solve.work);
     forces.add_bounds(tools, ResidualBound::threshold, 1, end.q);

@@ -61,7 +61,7 @@ MinimizeReport ImplicitStage::minimize(const StepTools& tools, const StageOption
     solve.decrement = std::max(solve.decrement, report.decrement / tools.E.scales().gradient_unit);
     return report;
   }
-  MinimizeReport lead;
+  MinimizeReport guessing;
   const GuessContext known{.q = variables.q,
                            .qdot = variables.v,
                            .ahead = options.ahead,
@@ -69,10 +69,10 @@ MinimizeReport ImplicitStage::minimize(const StepTools& tools, const StageOption
                            .predicted = predicted_,
                            .beta = options.beta,
                            .tries_last_increment = options.tries_last_increment};
-  const Guess guess = guesser_.guess(tools, tools.guess, known, q_, lead);
+  const Guess guess = guesser_.guess(tools, tools.guess, known, q_, guessing);
   solve.guess = guess.used;
   MinimizeReport report = minimize_lagged(tools, minimize, {q_, guess.value}, solve);
-  add_work(lead, report);
+  add_work(guessing, report);
   return report;
 }
 

@@ -26,7 +26,7 @@ struct MethodResult {
   double seconds = 0;           // time of the fastest run
   double excess = 0;            // (E - E*) / (E at the start - E*), where E* is that of the reference
   double distance = 0;          // largest distance of a vertex from the reference [m]
-  double allowed_distance = 0;  // in the mass norm [m sqrt(kg)], see same_minimizer(); infinite in statics
+  double allowed_distance = 0;  // bound for the same minimizer, in the mass norm [m sqrt(kg)]; infinite in statics
   double mass_distance = 0;     // distance in the mass norm
   bool same_minimizer = false;
 };

@@ -22,7 +22,12 @@ namespace fs = std::filesystem;
 Tetrahedralization tetrahedralize(const fs::path& path, const TetrahedralizeOptions& options) {
   const TriMesh surface = read_tri_mesh(path);
   const Box box = bounding_box(surface.vertices);
-  TetMesh cage = make_cage(surface, options.size > 0 ? options.size : norm(box.upper - box.lower) / 25);
+  TetMesh cage;
+  try {
+    cage = make_cage(surface, options.size > 0 ? options.size : norm(box.upper - box.lower) / 25);
+  } catch (const InvalidInput& e) {
+    throw InvalidInput(path.string() + ": " + e.what());
+  }
   if (cage.tets.empty()) throw InvalidInput(path.string() + ": is flat; a body needs a closed surface");
   return {std::move(cage),
           {"this page has no mesher, so that the tets are those of cubes around the surface; for tets that follow it, "

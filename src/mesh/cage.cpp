@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/error.h"
+#include "base/formatted.h"
 #include "mesh/box.h"
 #include "mesh/generators.h"
 
@@ -14,11 +16,14 @@ class Cubes {
   Cubes(const Box& box, double size) {
     for (int axis = 0; axis < 3; ++axis) {
       const double extent = box.upper[axis] - box.lower[axis];
-      cells_[axis] = std::max(1, static_cast<int>(std::ceil(extent / size)));
+      cells_[axis] = static_cast<int>(std::clamp(std::ceil(extent / size), 1.0, kMostCubes + 1));
       lower_[axis] = box.lower[axis] - kMargin * size;
       edge_[axis] = (extent + 2 * kMargin * size) / cells_[axis];
       upper_[axis] = lower_[axis] + cells_[axis] * edge_[axis];
     }
+    if (1.0 * cells_[0] * cells_[1] * cells_[2] > kMostCubes)
+      throw InvalidInput("the box around the surface has more than " + three_digits(kMostCubes) +
+                         " cubes; choose larger ones than " + three_digits(size) + " m");
     kept_.assign(static_cast<size_t>(cells_[0]) * cells_[1] * cells_[2], 0);
   }
 
@@ -69,6 +74,7 @@ class Cubes {
   }
 
  private:
+  static constexpr double kMostCubes = 1e6;
   static constexpr double kMargin = 1e-3;   // around the surface, in edges
   static constexpr double kSpacing = 0.25;  // between the points of the surface that are looked up, in edges
   // Rays avoid the vertices and edges of regular surfaces.

@@ -6,7 +6,8 @@
 namespace aspic {
 
 // Returns the cubes with edges of about `size` [m] that are inside the surface or meet it, each cut into six tets. Has
-// no tets if the surface has no extent along an axis. Self-intersecting surfaces are accepted.
+// no tets if the surface has no extent along an axis. Self-intersecting surfaces are accepted. Throws InvalidInput if
+// the bounding box has too many cubes.
 TetMesh make_cage(const TriMesh& surface, double size);
 
 }  // namespace aspic

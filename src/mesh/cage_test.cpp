@@ -2,19 +2,15 @@
 
 #include <gtest/gtest.h>
 
+#include "base/error.h"
 #include "mesh/embed.h"
 #include "mesh/generators.h"
 #include "mesh/surface.h"
 #include "mesh/surface_orientation.h"
+#include "mesh/tet_shape.h"
 
 namespace aspic {
 namespace {
-
-double volume_of(const TetMesh& mesh) {
-  double sum = 0;
-  for (int t = 0; t < mesh.tet_count(); ++t) sum += volume(mesh, t);
-  return sum;
-}
 
 TEST(Cage, ContainsTheSurfaceAndLittleMore) {
   const TriMesh surface = boundary_surface(make_torus(1, 0.4, 0.1)).surface;
@@ -22,8 +18,8 @@ TEST(Cage, ContainsTheSurfaceAndLittleMore) {
     const TetMesh cage = make_cage(surface, size);
     for (int t = 0; t < cage.tet_count(); ++t) ASSERT_GT(volume(cage, t), 0);
     const double enclosed = enclosed_volume(surface);
-    EXPECT_GT(volume_of(cage), enclosed);
-    EXPECT_LT(volume_of(cage), enclosed * (1 + 10 * size));
+    EXPECT_GT(total_volume(cage), enclosed);
+    EXPECT_LT(total_volume(cage), enclosed * (1 + 10 * size));
     EXPECT_EQ(embed(cage, surface).outside, 0);
   }
 }
@@ -34,6 +30,11 @@ TEST(Cage, KeepsThinParts) {
   const TetMesh cage = make_cage(surface, 0.25);
   EXPECT_EQ(cage.tet_count(), 4 * 4 * 6);
   EXPECT_EQ(embed(cage, surface).outside, 0);
+}
+
+TEST(Cage, RefusesTooManyCubes) {
+  const TriMesh surface = boundary_surface(make_torus(1, 0.4, 0.1)).surface;
+  for (const double size : {1e-3, 1e-300}) EXPECT_THROW(make_cage(surface, size), InvalidInput);
 }
 
 TEST(Cage, IsEmptyForFlatSurfaces) {

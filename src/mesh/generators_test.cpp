@@ -16,12 +16,6 @@
 namespace aspic {
 namespace {
 
-double total_volume(const TetMesh& mesh) {
-  double sum = 0;
-  for (int t = 0; t < mesh.tet_count(); ++t) sum += volume(mesh, t);
-  return sum;
-}
-
 double smallest_dihedral(const TetMesh& mesh) {
   double smallest = 180;
   for (int t = 0; t < mesh.tet_count(); ++t) smallest = std::min(smallest, dihedral_range(corners(mesh, t))[0]);

@@ -42,6 +42,12 @@ double mean_ratio(const TetCorners& X) {
   return 12 * root * std::abs(root) / sum;
 }
 
+double total_volume(const TetMesh& mesh) {
+  double sum = 0;
+  for (int t = 0; t < mesh.tet_count(); ++t) sum += volume(mesh, t);
+  return sum;
+}
+
 double flat_volume(const TetCorners& X) {
   double size = 0;
   for (const Vec3d& x : X) size = std::max({size, std::abs(x[0]), std::abs(x[1]), std::abs(x[2])});

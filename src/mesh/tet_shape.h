@@ -32,6 +32,8 @@ std::array<double, 2> dihedral_range(const TetCorners& corners);
 // inverted one [Liu and Joe 1994].
 double mean_ratio(const TetCorners& corners);
 
+double total_volume(const TetMesh& mesh);  // [m^3]
+
 // Returns the threshold below which volumes are at the round-off level of the corners: the tet counts as flat.
 double flat_volume(const TetCorners& corners);
 
