@@ -2,6 +2,9 @@
 
 #include <gtest/gtest.h>
 
+#include "base/error.h"
+#include "viewer/server.h"
+
 namespace aspic::viewer {
 namespace {
 
@@ -56,6 +59,11 @@ TEST(Target, SplitsPathAndToken) {
   EXPECT_EQ(parse_target("/?x=1&token=ab&y=2").token, "ab");
   EXPECT_EQ(parse_target("/?mytoken=ab&&").token, "");
   EXPECT_EQ(parse_target("").path, "");
+}
+
+TEST(Access, RefusesToBeFramedByAnythingElse) {
+  for (const std::string text : {"*", "localhost:8888", "http://localhost:8888/tree", "http://a; script-src *"})
+    EXPECT_THROW(Server({.page = "", .embed = text}), InvalidInput) << text;
 }
 
 }  // namespace

@@ -13,6 +13,7 @@ struct IntegratorFacts {
   bool is_implicit = true;           // each step minimizes
   bool is_multistep = false;         // uses the start of the previous step of the same length
   bool takes_one_iteration = false;  // performs one Newton iteration instead of a minimization
+  bool minimizes_twice = false;      // per step, the second time from the first result
   bool is_backward_euler = false;    // its objective is that of backward Euler
   bool ends_beyond_minimum = false;  // extrapolates the end of a step from the minimizer
   bool gains_energy = false;         // adds energy for any step length

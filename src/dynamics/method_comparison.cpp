@@ -49,22 +49,19 @@ class Comparer {
   // If a step is one minimization, all methods have the same minimizer. Later stages depend on earlier ones, and a
   // single iteration need not reach a minimizer.
   void require_one_minimization() const {
-    const std::string& integrator = simulation_.options().integrator;
+    const IntegratorFacts& facts = simulation_.integrator();
     const auto require = [&](bool holds, const char* reason) {
       if (!holds)
-        throw InvalidInput("time.integrator = '" + integrator + "' " + reason +
+        throw InvalidInput("the integrator " + std::string(facts.name) + " " + reason +
                            "; compare methods with an implicit one of one minimization per step, such as "
                            "backward_euler");
     };
-    require(simulation_.integrator().is_implicit, "minimizes nothing");
-    require(!simulation_.integrator().takes_one_iteration, "always takes one iteration");
-    require(integrator != "tr_bdf2", "minimizes twice per step, the second time from the first result");
-    require(!simulation_.integrator().is_multistep || options_.step > 1,
-            "minimizes twice in its first step (try --step 2)");
+    require(facts.is_implicit, "minimizes nothing");
+    require(!facts.takes_one_iteration, "always takes one iteration");
+    require(!facts.minimizes_twice, "minimizes twice per step, the second time from the first result");
+    require(!facts.is_multistep || options_.step > 1, "minimizes twice in its first step (compare in a later one)");
     if (simulation_.options().adaptive.tolerance > 0)
-      throw InvalidInput(
-          "time.adaptive divides a step into substeps; compare methods with "
-          "--set time.adaptive.tolerance=0");
+      throw InvalidInput("adaptive steps are divided into substeps; compare methods with a constant step length");
   }
 
   bool take_steps_before() {

@@ -39,6 +39,7 @@ inline constexpr Tableau kTrBdf2 = {
          .tex =
              R"tex(\begin{gathered} y_\gamma = y_i + \tfrac{\gamma h}{2} (\dot y_i + \dot y_\gamma) \\ y_{i+1} = y_i + w h (\dot y_i + \dot y_\gamma) + \tfrac{\gamma h}{2} \dot y_{i+1} \\ y = (q, v), \quad \gamma = 2 - \sqrt2, \quad w = \tfrac{\sqrt2}{4} \end{gathered})tex",
          .order = 2,
+         .minimizes_twice = true,
          .ends_beyond_minimum = true},
     .stages = 3,
     .A = {{0}, {kD, kD}, {kW, kW, kD}},
