@@ -219,7 +219,7 @@ def in_units(length, mass):
 
 class Units(CommandLine):
     def test_millimeters_and_megapascals_change_nothing_but_numbers(self):
-        columns = ("status", "friction_passes", "contacts", "min_gap_pair")
+        columns = ("status", "contacts", "min_gap_pair")
         runs = {}
         for name, units in (("m and kg", (1, 1)), ("mm and t", (1e3, 1e-3)), ("km and g", (1e-3, 1e3))):
             self.write("scene.toml", in_units(*units))
@@ -231,8 +231,9 @@ class Units(CommandLine):
         for name, rows in runs.items():
             with self.subTest(name):
                 self.assertEqual([[row[c] for c in columns] for row in rows], [[row[c] for c in columns] for row in meters])
-                for row, known in zip(rows, meters):  # round-off may decide the last iteration
-                    self.assertLess(abs(int(row["iterations"]) - int(known["iterations"])), 2, row["step"])
+                for row, known in zip(rows, meters):  # round-off may decide the last iteration, and whether it updates friction
+                    for column in ("iterations", "friction_passes"):
+                        self.assertLess(abs(int(row[column]) - int(known[column])), 2, (column, row["step"]))
 
 
 class Commands(CommandLine):

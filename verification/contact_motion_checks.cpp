@@ -119,7 +119,7 @@ void check_third_law(const Subject& subject, Findings& found) {
     const Energy& friction = *model.damping.back();
     const auto context = friction.make_context();
     friction.begin_step({.start = start, .h = 1e-3}, *context);
-    dynamic_cast<const LaggedEnergy&>(friction).update_lagged(q, *context);
+    dynamic_cast<const LaggedEnergy&>(friction).update_lagged(q, false, *context);
     std::vector<double> f(q.size());
     friction.add_gradient(q, *context, 1, f);
     worst_friction.force = std::max(worst_friction.force, max_abs(f) > 0 ? resultant(q, f).force : 0);

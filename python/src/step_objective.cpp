@@ -65,7 +65,7 @@ Array StepObjective::begin(const std::vector<double>& v, double h) {
 void StepObjective::update_lagged(const py::object& q) {
   const Use use(occupancy_, "objective");
   const std::vector<double> at = layout().in(q, "q");
-  parts_->E.update_lagged(at);
+  parts_->E.update_lagged(at, false);
 }
 
 }  // namespace aspic::python

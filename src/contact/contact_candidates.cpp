@@ -13,9 +13,9 @@ namespace {
 // Larger margins reduce the searches but add pairs: few within a part, where most features are an edge apart.
 constexpr double kMargin = 0.03;       // relative to the mean edge at a point
 constexpr double kMarginWithin = 0.1;  // the same for pairs of one part
-constexpr double kLonger = 0.1;        // relative to the displacement of a point
+constexpr double kLonger = 0.1;        // relative to the displacement of a point, but at most kMostMargins margins
+constexpr double kMostMargins = 4;
 constexpr double kRounding = 1e-6;
-constexpr double kMinShrink = 0.98;  // minimum shrink for which candidates are complete
 
 // Returns margins of at least half the reach, which the distances at rest need.
 std::vector<double> margins(PairScope scope, const ContactMesh& mesh, double least) {
@@ -61,7 +61,7 @@ double edge_reach(const ContactMesh& mesh, const ContactLaws& laws, const EdgePa
   return std::min(reach, pair_distance(PairKind::edge_edge, {X[a], X[b], X[e], X[f]}).d / 2);
 }
 
-// Accepts pairs that can come closer than their reach while their points stay in their boxes.
+// Accepts pairs that can come closer than their reach.
 class CandidateSearch::Near : public PairFilter {
  public:
   Near(const CandidateSearch& search, int a, int b)
@@ -70,34 +70,35 @@ class CandidateSearch::Near : public PairFilter {
         edges_a_(std::span(search.mesh_.edges).subspan(search.surfaces_[a].first_edge)),
         edges_b_(std::span(search.mesh_.edges).subspan(search.surfaces_[b].first_edge)),
         triangles_b_(std::span(search.mesh_.triangles).subspan(search.surfaces_[b].first_triangle)),
-        reach_((1 + kRounding) * search.laws_(a, b).reach),
-        edge_reach_((1 + kRounding) * search.laws_(a, b).edge_reach),
-        between_((1 + kRounding) * search.laws_(a, b).radius),
-        shrink_(search.least_shrink()) {}
+        reach_((1 + kRounding) * (search.laws_(a, b).radius + search.laws_(a, b).reach)),
+        edge_reach_((1 + kRounding) * (search.laws_(a, b).radius + search.laws_(a, b).edge_reach)) {}
 
   bool accepts_vertex_triangle(int v, int t) const override {
     const int p = first_point_ + v;
     const auto& [a, b, c] = triangles_b_[t];
-    const auto& x = search_.center_;
-    const auto& r = search_.radius_;
-    return shrink_ * point_triangle_distance({x[p], x[a], x[b], x[c]}).d <=
-           between_ + reach_ + r[p] + std::max({r[a], r[b], r[c]});
+    const auto& x = search_.start_;
+    return point_triangle_distance({x[p], x[a], x[b], x[c]}).d <=
+           reach_ + std::max({closing(p, a), closing(p, b), closing(p, c)});
   }
   bool accepts_edge_edge(int first, int second) const override {
     const auto& [a, b] = edges_a_[first];
     const auto& [e, f] = edges_b_[second];
-    const auto& x = search_.center_;
-    const auto& r = search_.radius_;
-    return shrink_ * edge_edge_distance({x[a], x[b], x[e], x[f]}).d <=
-           between_ + edge_reach_ + std::max(r[a], r[b]) + std::max(r[e], r[f]);
+    const auto& x = search_.start_;
+    return edge_edge_distance({x[a], x[b], x[e], x[f]}).d <=
+           edge_reach_ + std::max({closing(a, e), closing(a, f), closing(b, e), closing(b, f)});
   }
 
  private:
+  // Bounds the change of the difference of two points.
+  double closing(int i, int j) const {
+    return norm(search_.move_[i] - search_.move_[j]) + search_.by_[i] + search_.by_[j];
+  }
+
   const CandidateSearch& search_;
   int first_point_;
   std::span<const Edge> edges_a_, edges_b_;
   std::span<const Triangle> triangles_b_;
-  double reach_, edge_reach_, between_, shrink_;
+  double reach_, edge_reach_;
 };
 
 CandidateSearch::CandidateSearch(PairScope scope, const ContactMesh& mesh, const ContactLaws& laws)
@@ -115,52 +116,48 @@ CandidateSearch::CandidateSearch(PairScope scope, const ContactMesh& mesh, const
   }
 }
 
+// Returns the path in the frame of each body at its start, without the motion of its center.
 CandidateSearch::Path CandidateSearch::path(std::span<const Vec3d> x, std::span<const Vec3d> d) const {
-  Path path{{x.begin(), x.end()}, {x.begin(), x.end()}, std::vector<double>(x.size(), 1.0)};
+  Path path{{x.begin(), x.end()}, {x.begin(), x.end()}};
   for (size_t i = 0; i < d.size(); ++i) path.to[i] = x[i] + d[i];
   if (scope_ == PairScope::between_parts) return path;
   for (const ContactPart& part : mesh_.parts) {
-    if (part.is_obstacle || part.point_count == 0) continue;
     const auto of_part = [&](auto& points) { return std::span(points).subspan(part.first_point, part.point_count); };
-    const Frame from = frame_of(of_part(mesh_.rest), of_part(x));
-    Frame to = d.empty() ? from : frame_of(of_part(mesh_.rest), of_part(path.to));
-    const double cosine = (trace(transpose(from.rotation) * to.rotation) - 1) / 2;
-    double shrink = std::sqrt(std::max(0.0, (1 + cosine) / 2)) - kRounding;
-    if (!(shrink >= kMinShrink)) to.rotation = from.rotation, shrink = 1;
-    for (Vec3d& p : of_part(path.from)) p = transpose(from.rotation) * (p - from.center);
-    for (Vec3d& p : of_part(path.to)) p = transpose(to.rotation) * (p - to.center);
-    std::fill_n(path.shrink.begin() + part.first_point, part.point_count, shrink);
+    if (part.is_obstacle) {  // has no pairs
+      std::fill_n(of_part(path.from).begin(), part.point_count, Vec3d{});
+      std::fill_n(of_part(path.to).begin(), part.point_count, Vec3d{});
+      continue;
+    }
+    if (part.point_count == 0) continue;
+    const Frame frame = frame_of(of_part(mesh_.rest), of_part(x));
+    const Vec3d end = d.empty() ? frame.center : mean(of_part(path.to));
+    for (Vec3d& p : of_part(path.from)) p = transpose(frame.rotation) * (p - frame.center);
+    for (Vec3d& p : of_part(path.to)) p = transpose(frame.rotation) * (p - end);
   }
   return path;
 }
 
-double CandidateSearch::least_shrink() const { return scope_ == PairScope::within_parts ? kMinShrink : 1; }
-
+// Returns whether the candidates are complete at x, which has the least squared distance to start_ + t move_ where it
+// is tested.
 bool CandidateSearch::covers(std::span<const Vec3d> x) const {
+  double along = 0, square = 0;
+  for (size_t p = 0; p < x.size(); ++p) along += dot(move_[p], x[p] - start_[p]), square += squared_norm(move_[p]);
+  const double t = square > 0 ? std::clamp(along / square, 0.0, 1.0) : 0.0;
   for (size_t p = 0; p < x.size(); ++p)
-    if (!boxes_[p].contains(x[p])) return false;
+    if (!(squared_norm(x[p] - start_[p] - t * move_[p]) <= by_[p] * by_[p])) return false;
   return true;
 }
 
-// Sets the boxes around a path.
+// Selects the positions that the next candidates cover.
 void CandidateSearch::surround(const Path& path) {
   const size_t n = path.from.size();
-  boxes_.assign(n, {});
-  radius_.resize(n);
+  start_ = path.from;
+  move_.resize(n);
+  by_.resize(n);
   for (size_t p = 0; p < n; ++p) {
-    Box& box = boxes_[p];
-    box.add(path.from[p]);
-    box.add(path.to[p]);
-    const double by = margin_[p] + kLonger * norm(path.to[p] - path.from[p]);
-    Vec3d far;
-    for (int axis = 0; axis < 3; ++axis) {
-      box.lower[axis] -= by;
-      box.upper[axis] += by;
-      far[axis] = std::max(path.from[p][axis] - box.lower[axis], box.upper[axis] - path.from[p][axis]);
-    }
-    radius_[p] = norm(far);
+    move_[p] = path.to[p] - path.from[p];
+    by_[p] = margin_[p] + std::min(kLonger * norm(move_[p]), kMostMargins * margin_[p]);
   }
-  center_ = path.from;
 }
 
 std::optional<PathCandidates> CandidateSearch::along(std::span<const Vec3d> x, std::span<const Vec3d> d) {
@@ -170,10 +167,25 @@ std::optional<PathCandidates> CandidateSearch::along(std::span<const Vec3d> x, s
     candidates_ = find();
   }
   if (!candidates_) return {};
-  PathCandidates found{candidates_, std::vector<double>(x.size()), std::move(wanted.shrink)};
-  for (size_t p = 0; p < x.size(); ++p)
-    found.moved[p] = std::max(norm(wanted.from[p] - center_[p]), norm(wanted.to[p] - center_[p]));
+  PathCandidates found{candidates_, std::move(wanted.from), std::move(wanted.to)};
+  for (size_t p = 0; p < x.size(); ++p) {
+    found.from[p] = found.from[p] - start_[p];
+    found.to[p] = found.to[p] - start_[p];
+  }
   return found;
+}
+
+// Returns a box around the positions of a part that the next candidates cover, inflated by its radius and `radius`.
+SweptBox CandidateSearch::bounds_of(int part, double radius) const {
+  SweptBox box;
+  const int first = mesh_.parts[part].first_point;
+  for (int p = first; p < first + mesh_.parts[part].point_count; ++p) {
+    const double by = (1 + kRounding) * (by_[p] + radius + mesh_.parts[part].radius);
+    box.start.add(start_[p] - Vec3d{{by, by, by}});
+    box.start.add(start_[p] + Vec3d{{by, by, by}});
+    box.move.add(move_[p]);
+  }
+  return box;
 }
 
 // Appends the pairs, in indices of the mesh. Returns false if there are too many.
@@ -187,15 +199,15 @@ bool CandidateSearch::find_pairs(ClosePairs& all) {
     return found.is_complete && all.vertex_triangle.size() <= limit && all.edge_edge.size() <= limit;
   };
   const int parts = static_cast<int>(surfaces_.size());
-  // Half of the maximum excess of a gap in the boxes over their distance.
-  const double widest = *std::max_element(radius_.begin(), radius_.end());
-  const double radius = (laws_.largest_reach() / 2 + (1 - least_shrink()) * widest) / least_shrink();
+  const double radius = (1 + kRounding) * laws_.largest_reach() / 2;
   std::vector<double> radii(std::max({mesh_.rest.size(), mesh_.edges.size(), mesh_.triangles.size()}));
   const auto query_of = [&](int part, const PairFilter* filter) {
     const SurfacePrimitives& own = surfaces_[part].finder.primitives();
     const size_t count = std::max({own.vertices.size(), own.edges.size(), own.triangles.size()});
     std::fill_n(radii.begin(), count, radius + mesh_.parts[part].radius);
-    return PairQuery{.path = boxes_,
+    return PairQuery{.x = start_,
+                     .dx = move_,
+                     .by = by_,
                      .vertex_radius = std::span(radii).first(own.vertices.size()),
                      .edge_radius = std::span(radii).first(own.edges.size()),
                      .triangle_radius = std::span(radii).first(own.triangles.size()),
@@ -209,14 +221,16 @@ bool CandidateSearch::find_pairs(ClosePairs& all) {
     }
     return true;
   }
-  std::vector<Box> bounds(parts);
-  for (int a = 0; a < parts; ++a) {
-    surfaces_[a].finder.place(query_of(a, nullptr));
-    bounds[a] = surfaces_[a].finder.bounds();
-  }
+  std::vector<SweptBox> bounds(parts);
+  for (int a = 0; a < parts; ++a) bounds[a] = bounds_of(a, radius);
+  std::vector<bool> is_placed(parts, false);
   for (int a = 0; a < parts; ++a)
     for (int b = a + 1; b < parts; ++b) {
       if (!bounds[a].overlaps(bounds[b]) || (mesh_.parts[a].is_obstacle && mesh_.parts[b].is_obstacle)) continue;
+      for (const int part : {a, b}) {
+        if (!is_placed[part]) surfaces_[part].finder.place(query_of(part, nullptr));
+        is_placed[part] = true;
+      }
       const PairFinder &first = surfaces_[a].finder, &second = surfaces_[b].finder;
       const Near near(*this, a, b), back(*this, b, a);
       if (!append(first.find_between(second, true, &near, limit), a, b)) return false;
@@ -234,7 +248,7 @@ std::shared_ptr<const ContactCandidates> CandidateSearch::find() {
   candidates.start.assign(mesh_.rest.size() + 1, 0);
   candidates.triangles.reserve(pairs.vertex_triangle.size());
   candidates.edge_pairs.reserve(pairs.edge_edge.size());
-  const auto& x = center_;
+  const auto& x = start_;
   for (const auto& [p, t] : pairs.vertex_triangle) {
     const auto& [a, b, c] = mesh_.triangles[t];
     ++candidates.start[p + 1];

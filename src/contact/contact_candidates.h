@@ -1,6 +1,7 @@
 // Pairs of a point and a triangle, or of two edges, that may come close while the points stay near given positions.
 #pragma once
 #include <algorithm>
+#include <cmath>
 #include <memory>
 #include <optional>
 #include <span>
@@ -33,19 +34,23 @@ struct ContactCandidates {
   }
 };
 
-// Candidates for a path of all points. Between frames that differ by a rotation of angle a, the distance of points that
-// are fixed to them shrinks at most by the factor cos(a / 2), which bounds the singular values of (1 - t) I + t R.
+// Candidates for a path of all points, with its ends relative to the positions at the search. The points of a pair move
+// together, so their relative displacement bounds the change of its gap.
 struct PathCandidates {
   std::shared_ptr<const ContactCandidates> pairs;
-  std::vector<double> moved;   // largest distance of each point from its position at the search [m]
-  std::vector<double> shrink;  // cos(a / 2) of the part of each point
+  std::vector<Vec3d> from, to;  // displacements of each point since the search [m]
 
   // Return lower bounds of the gap along the path.
   double least_gap(int point, const NearTriangle& near, const Triangle& t) const {
-    return shrink[point] * near.gap - moved[point] - std::max({moved[t[0]], moved[t[1]], moved[t[2]]});
+    return near.gap - std::max({apart(point, t[0]), apart(point, t[1]), apart(point, t[2])});
   }
   double least_gap(const EdgePair& pair, const Edge& a, const Edge& b) const {
-    return shrink[a[0]] * pair.gap - std::max(moved[a[0]], moved[a[1]]) - std::max(moved[b[0]], moved[b[1]]);
+    return pair.gap - std::max({apart(a[0], b[0]), apart(a[0], b[1]), apart(a[1], b[0]), apart(a[1], b[1])});
+  }
+
+ private:
+  double apart(int i, int j) const {
+    return std::sqrt(std::max(squared_norm(from[i] - from[j]), squared_norm(to[i] - to[j])));
   }
 };
 
@@ -68,7 +73,6 @@ class CandidateSearch {
  private:
   struct Path {
     std::vector<Vec3d> from, to;
-    std::vector<double> shrink;  // per point
   };
   // The primitives of a part: their first indices in the mesh, and trees over them.
   struct Surface {
@@ -78,20 +82,20 @@ class CandidateSearch {
   class Near;
 
   Path path(std::span<const Vec3d> x, std::span<const Vec3d> d) const;
-  double least_shrink() const;
   bool covers(std::span<const Vec3d> x) const;
   void surround(const Path& path);
+  SweptBox bounds_of(int part, double radius) const;
   bool find_pairs(ClosePairs& all);
   std::shared_ptr<const ContactCandidates> find();
 
   PairScope scope_;
   const ContactMesh& mesh_;
   const ContactLaws& laws_;
-  std::vector<double> margin_;  // inflation of the box of each point beyond its path [m]
+  std::vector<double> margin_;  // least distance of each point from the paths that its candidates cover [m]
   std::vector<Surface> surfaces_;
-  std::vector<Box> boxes_;      // per point; the candidates are complete while it stays inside
-  std::vector<Vec3d> center_;   // per point
-  std::vector<double> radius_;  // largest distance of the box of each point from its center
+  // The candidates are complete while there is a t in [0, 1] such that all points are within by_ of start_ + t move_.
+  std::vector<Vec3d> start_, move_;
+  std::vector<double> by_;
   std::shared_ptr<const ContactCandidates> candidates_;
 };
 

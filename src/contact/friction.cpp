@@ -10,9 +10,6 @@
 namespace aspic {
 namespace {
 
-// Updates in a step after which known sliders keep their directions, because normals rotate within a small gap around
-// an edge and updates would alternate.
-constexpr int kTurning = 4;
 constexpr double kStaticReach = 1e-2;  // width of f in statics, relative to the reach of the barrier
 
 struct Weight {
@@ -51,7 +48,6 @@ struct FrictionContext : Energy::Context {
   double obstacle_time = 0;  // time of the obstacles at the start [s]
   std::vector<Slider> sliders;
   std::optional<std::vector<Slider>> before;  // the sliders before the last update of this step
-  int updates = 0;                            // in this step
   std::map<ContactName, Slider> known;        // sliders of earlier updates
 };
 
@@ -207,20 +203,18 @@ void Friction::begin_step(const StepContext& step, Context& context) const {
   auto& own = static_cast<FrictionContext&>(context);
   own.start.assign(step.start.begin(), step.start.end());
   own.obstacle_time = step.obstacle_time.value_or(step.time - step.h);
-  own.updates = 0;
   own.before.reset();
   own.known.clear();
-  lag(step.shape.empty() ? step.start : step.shape, own.obstacle_time, context);
+  lag(step.shape.empty() ? step.start : step.shape, own.obstacle_time, false, context);
 }
 
-void Friction::update_lagged(Positions x, Context& context) const {
+void Friction::update_lagged(Positions x, bool keeps_directions, Context& context) const {
   auto& own = static_cast<FrictionContext&>(context);
-  ++own.updates;
   own.before = std::move(own.sliders);
-  lag(x, context.time, context);
+  lag(x, context.time, keeps_directions, context);
 }
 
-void Friction::lag(Positions x, double time, Context& context) const {
+void Friction::lag(Positions x, double time, bool keeps_directions, Context& context) const {
   auto& own = static_cast<FrictionContext&>(context);
   const std::vector<Vec3d> points = barrier_.points(x, time);
   const auto stencils = barrier_.stencils(x, time);
@@ -245,7 +239,7 @@ void Friction::lag(Positions x, double time, Context& context) const {
                                         barrier_.obstacle_displacement(stencil, start, end);
     }
     Slider& known = own.known.try_emplace(name_of((*stencils)[first]), slider).first->second;
-    if (own.updates > kTurning)
+    if (keeps_directions)
       slider = known, slider.force = force;
     else
       known = slider;

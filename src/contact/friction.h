@@ -15,7 +15,7 @@ class Friction : public Energy, public LaggedEnergy, public StoppingEnergy {
   std::string_view name() const override { return "friction"; }
   std::unique_ptr<Context> make_context() const override;
   void begin_step(const StepContext& step, Context& context) const override;
-  void update_lagged(Positions x, Context& context) const override;
+  void update_lagged(Positions x, bool keeps_directions, Context& context) const override;
   double value(Positions x, const Context& context) const override;
   void add_gradient(Positions x, const Context& context, double scale, std::span<double> g) const override;
   // Returns the work [J] on friction of obstacles that move during the step.
@@ -33,7 +33,7 @@ class Friction : public Energy, public LaggedEnergy, public StoppingEnergy {
                 const ScaledModel& model) const override;
 
  private:
-  void lag(Positions x, double time, Context& context) const;
+  void lag(Positions x, double time, bool keeps_directions, Context& context) const;
 
   const Barrier& barrier_;
   double speed_;

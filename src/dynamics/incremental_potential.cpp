@@ -135,8 +135,8 @@ bool IncrementalPotential::is_lagged() const {
   return std::any_of(damping_.begin(), damping_.end(), [](const ActiveTerm& D) { return D.is_lagged(); });
 }
 
-void IncrementalPotential::update_lagged(std::span<const double> q) {
-  for (ActiveTerm& D : damping_) D.update_lagged(q);
+void IncrementalPotential::update_lagged(std::span<const double> q, bool keeps_directions) {
+  for (ActiveTerm& D : damping_) D.update_lagged(q, keeps_directions);
   if (is_lagged()) iterate_.clear();  // the forces known there use the earlier coefficients
 }
 

@@ -32,7 +32,7 @@ class IncrementalPotential : public Objective, public HasMetric, public HasParts
   // Returns whether a term of D has lagged coefficients, see LaggedEnergy.
   bool is_lagged() const override;
   // Evaluates the lagged coefficients at q.
-  void update_lagged(std::span<const double> q) override;
+  void update_lagged(std::span<const double> q, bool keeps_directions) override;
 
   // Returns E(q). Sums the magnitudes of its terms for the rounding error.
   Evaluation evaluate(std::span<const double> q) override;

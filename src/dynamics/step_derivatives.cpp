@@ -87,7 +87,7 @@ class StepCheck {
 
   std::vector<TermDerivatives> run() {
     for (const NamedState& at : states()) {
-      if (at.name == kTouching) E_.update_lagged(at.q);
+      if (at.name == kTouching) E_.update_lagged(at.q, false);
       const std::vector<std::string> names = simulation_.potential_names();
       for (size_t k = 0; k < names.size(); ++k) check(names[k], at, differentiable(E_.potential()[k], E_.pattern()));
       for (const ActiveTerm& D : E_.damping()) check(std::string(D.name()), at, differentiable(D, E_.pattern()));

@@ -73,7 +73,8 @@ class Energy {
 class LaggedEnergy {
  public:
   virtual ~LaggedEnergy() = default;
-  virtual void update_lagged(Positions x, Energy::Context& context) const = 0;  // evaluates them at x
+  // Evaluates them at x. keeps_directions: not the directions, where they are known from earlier in the step.
+  virtual void update_lagged(Positions x, bool keeps_directions, Energy::Context& context) const = 0;
 };
 
 // A term that is not defined beyond some steps, such as a barrier.
@@ -126,8 +127,8 @@ class ActiveTerm {
   // Prepares the context for a step.
   void begin_step(const StepContext& step) { energy_->begin_step(step, *context_); }
   bool is_lagged() const { return lagged_; }
-  void update_lagged(Positions x) {
-    if (lagged_) lagged_->update_lagged(x, *context_);
+  void update_lagged(Positions x, bool keeps_directions) {
+    if (lagged_) lagged_->update_lagged(x, keeps_directions, *context_);
   }
   const Energy& energy() const { return *energy_; }
   const Energy::Context& context() const { return *context_; }

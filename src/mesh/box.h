@@ -19,6 +19,16 @@ struct Box {
       upper[axis] = std::max(upper[axis], x[axis]);
     }
   }
+  void merge(const Box& other) {
+    add(other.lower);
+    add(other.upper);
+  }
+  Vec3d center() const { return 0.5 * lower + 0.5 * upper; }
+  double sides() const {  // sum of the lengths of its sides [m]; 0: empty
+    double sum = 0;
+    for (int axis = 0; axis < 3; ++axis) sum += std::max(upper[axis] - lower[axis], 0.0);
+    return sum;
+  }
   bool overlaps(const Box& other) const {
     double apart = 0;  // largest gap along an axis; branch-free, because searches would mispredict branches
     for (int axis = 0; axis < 3; ++axis)

@@ -1,27 +1,28 @@
-// Binary tree of axis-aligned boxes over items in Morton order. Finds the items whose boxes overlap a box or those of
-// another tree, are near a point, or lie on a ray.
+// Binary tree of axis-aligned boxes, at rest or moving, over items in Morton order. Finds the items whose boxes overlap
+// a box or those of another tree, are near a point, or lie on a ray.
 #pragma once
 #include <span>
 #include <utility>
 #include <vector>
 
-#include "mesh/box.h"
+#include "mesh/swept_box.h"
 
 namespace aspic {
 
-class BoxTree {
+template <class B>
+class BoxTreeOf {
  public:
-  explicit BoxTree(std::span<const Box> boxes);
+  explicit BoxTreeOf(std::span<const B> boxes);
   std::span<const int> items() const { return items_; }  // in Morton order
 
   // Replaces the boxes of the items and keeps their order. Requires as many boxes as before. Queries stay correct, but
   // visit more nodes after the items have moved past each other.
-  void refit(std::span<const Box> boxes);
+  void refit(std::span<const B> boxes);
   // Returns the sum of the sides of all boxes of the tree, relative to that of the items. It grows as the order
   // degrades.
   double looseness() const;
 
-  Box bounds() const { return items_.empty() ? Box{} : bounds_[root().index]; }  // box around all items
+  B bounds() const { return items_.empty() ? B{} : bounds_[root().index]; }  // box around all items
 
   // Calls visit(item) for the items whose box overlaps `box` until it returns false.
   template <class Visit>
@@ -34,7 +35,7 @@ class BoxTree {
   // concurrently.
   int part_count() const { return static_cast<int>(parts_.size()); }
   template <class Visit>
-  void for_each_pair(int part, const BoxTree& other, Visit visit) const {
+  void for_each_pair(int part, const BoxTreeOf& other, Visit visit) const {
     if (!other.items_.empty()) pairs<false>(parts_[part], other, other.root(), visit);
   }
   // The same for pairs of items of this tree. Each pair is visited once over all parts.
@@ -74,11 +75,11 @@ class BoxTree {
   Node root() const { return {0, 0, static_cast<int>(items_.size())}; }
   void add_parts(Node node);
   // Computes the bounds of the nodes below `node` with more than `above` items, given those of the smaller nodes.
-  void bound(Node node, std::span<const Box> boxes, int above);
+  void bound(Node node, std::span<const B> boxes, int above);
 
   // Descends into the node with more items. A pair of items of one tree is visited where the first item comes earlier.
   template <bool kIsOwn, class Visit>
-  bool pairs(Node node, const BoxTree& tree, Node other, Visit& visit) const {
+  bool pairs(Node node, const BoxTreeOf& tree, Node other, Visit& visit) const {
     if (kIsOwn && other.end <= node.begin + 1) return true;
     if (!bounds_[node.index].overlaps(tree.bounds_[other.index])) return true;
     if (node.count() <= kBlock && other.count() <= kBlock) return block_pairs<kIsOwn>(node, tree, other, visit);
@@ -88,7 +89,7 @@ class BoxTree {
   }
 
   template <bool kIsOwn, class Visit>
-  bool block_pairs(Node node, const BoxTree& tree, Node other, Visit& visit) const {
+  bool block_pairs(Node node, const BoxTreeOf& tree, Node other, Visit& visit) const {
     for (int i = node.begin; i < node.end; ++i)
       for (int j = kIsOwn ? std::max(other.begin, i + 1) : other.begin; j < other.end; ++j)
         if (leaves_[i].overlaps(tree.leaves_[j]) && !visit(items_[i], tree.items_[j])) return false;
@@ -122,9 +123,12 @@ class BoxTree {
   }
 
   std::vector<int> items_;
-  std::vector<Box> bounds_;  // bounds of the nodes in preorder
-  std::vector<Box> leaves_;  // boxes of items_
+  std::vector<B> bounds_;    // bounds of the nodes in preorder
+  std::vector<B> leaves_;    // boxes of items_
   std::vector<Node> parts_;  // the largest subtrees of at most kPart items
 };
+
+using BoxTree = BoxTreeOf<Box>;
+using SweptBoxTree = BoxTreeOf<SweptBox>;
 
 }  // namespace aspic

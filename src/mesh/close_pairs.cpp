@@ -15,41 +15,46 @@ constexpr double kMaxLoose = 1.5;  // looseness relative to a new tree at which 
 
 using Pairs = std::vector<std::array<int, 2>>;
 
-// Inflates the box by the radius and rounds outward.
-void inflate(Box& box, double radius) {
+double largest_component(const Vec3d& x) { return std::max({std::abs(x[0]), std::abs(x[1]), std::abs(x[2])}); }
+
+// Inflates the box of points that move by up to `length` by the radius, and rounds outward.
+void inflate(Box& box, double radius, double length) {
   constexpr double kOutward = 4 * std::numeric_limits<double>::epsilon();
   for (int axis = 0; axis < 3; ++axis) {
     const double largest = std::max(std::abs(box.lower[axis]), std::abs(box.upper[axis]));
-    const double by = radius + kOutward * (largest + radius);
+    const double by = radius + kOutward * (largest + length + radius);
     box.lower[axis] -= by;
     box.upper[axis] += by;
   }
 }
 
-bool is_bounded(const Box& box) {
-  return std::all_of(box.lower.a, box.lower.a + 3, [](double x) { return std::isfinite(x); }) &&
-         std::all_of(box.upper.a, box.upper.a + 3, [](double x) { return std::isfinite(x); });
+bool is_finite(const Vec3d& x) {
+  return std::all_of(x.a, x.a + 3, [](double xi) { return std::isfinite(xi); });
 }
 
 template <class Points>
-Box primitive_box(const Points& points, std::span<const Box> path, double radius) {
-  Box box;
+SweptBox primitive_box(const Points& points, const PairQuery& query, double radius) {
+  SweptBox box;
+  double by = 0, length = 0;
   for (const int point : points) {
-    if (!is_bounded(path[point])) return {};
-    box.add(path[point].lower);
-    box.add(path[point].upper);
+    const Vec3d move = query.dx.empty() ? Vec3d{} : query.dx[point];
+    if (!is_finite(query.x[point]) || !is_finite(move)) return {};
+    box.start.add(query.x[point]);
+    box.move.add(move);
+    length = std::max(length, largest_component(move));
+    if (!query.by.empty()) by = std::max(by, query.by[point]);
   }
-  inflate(box, radius);
+  inflate(box.start, radius + by, length);
   return box;
 }
 
 // `points_of(i)` returns the positions of primitive i as a range of indices.
 template <class PointsOf>
-void bound_primitives(const PointsOf& points_of, std::span<const Box> path, std::span<const double> radius,
-                      std::vector<Box>& boxes) {
+void bound_primitives(const PointsOf& points_of, const PairQuery& query, std::span<const double> radius,
+                      std::vector<SweptBox>& boxes) {
   ASPIC_CHECK(radius.empty() || radius.size() == boxes.size());
   parallel_chunks(static_cast<int>(boxes.size()), [&](int first, int last) {
-    for (int i = first; i < last; ++i) boxes[i] = primitive_box(points_of(i), path, radius.empty() ? 0 : radius[i]);
+    for (int i = first; i < last; ++i) boxes[i] = primitive_box(points_of(i), query, radius.empty() ? 0 : radius[i]);
   });
 }
 
@@ -107,18 +112,6 @@ class PairCollector {
 
 }  // namespace
 
-std::vector<Box> swept_boxes(std::span<const Vec3d> x, std::span<const Vec3d> dx) {
-  ASPIC_CHECK(dx.empty() || dx.size() == x.size());
-  std::vector<Box> boxes(x.size());
-  parallel_chunks(static_cast<int>(x.size()), [&](int first, int last) {
-    for (int i = first; i < last; ++i) {
-      boxes[i].add(x[i]);
-      if (!dx.empty()) boxes[i].add(x[i] + dx[i]);
-    }
-  });
-  return boxes;
-}
-
 void PairFinder::Tree::fit() {
   if (!tree.empty()) {
     tree.front().refit(boxes);
@@ -133,21 +126,11 @@ void PairFinder::place(const PairQuery& query) {
   vertices_.boxes.resize(primitives_.vertices.size());
   edges_.boxes.resize(primitives_.edges.size());
   triangles_.boxes.resize(primitives_.triangles.size());
-  bound_primitives([&](int i) { return std::array<int, 1>{primitives_.vertices[i]}; }, query.path, query.vertex_radius,
+  bound_primitives([&](int i) { return std::array<int, 1>{primitives_.vertices[i]}; }, query, query.vertex_radius,
                    vertices_.boxes);
-  bound_primitives([&](int i) { return primitives_.edges[i]; }, query.path, query.edge_radius, edges_.boxes);
-  bound_primitives([&](int i) { return primitives_.triangles[i]; }, query.path, query.triangle_radius,
-                   triangles_.boxes);
+  bound_primitives([&](int i) { return primitives_.edges[i]; }, query, query.edge_radius, edges_.boxes);
+  bound_primitives([&](int i) { return primitives_.triangles[i]; }, query, query.triangle_radius, triangles_.boxes);
   for (Tree* tree : {&vertices_, &edges_, &triangles_}) tree->fit();
-}
-
-Box PairFinder::bounds() const {
-  Box all;
-  for (const Tree* tree : {&vertices_, &edges_, &triangles_}) {
-    all.add((**tree).bounds().lower);
-    all.add((**tree).bounds().upper);
-  }
-  return all;
 }
 
 ClosePairs PairFinder::find(const PairQuery& query) {
@@ -155,7 +138,7 @@ ClosePairs PairFinder::find(const PairQuery& query) {
   const auto& vertices = primitives_.vertices;
   const auto& edges = primitives_.edges;
   const auto& triangles = primitives_.triangles;
-  const BoxTree &of_vertices = *vertices_, &of_edges = *edges_;
+  const SweptBoxTree &of_vertices = *vertices_, &of_edges = *edges_;
   PairCollector vertex_triangle(of_vertices.part_count(), query.limit), edge_edge(of_edges.part_count(), query.limit);
   parallel_for(of_vertices.part_count(), [&](int part) {
     of_vertices.for_each_pair(part, *triangles_, [&](int v, int t) {
@@ -178,7 +161,7 @@ ClosePairs PairFinder::find(const PairQuery& query) {
 
 ClosePairs PairFinder::find_between(const PairFinder& other, bool has_edges, const PairFilter* filter,
                                     size_t limit) const {
-  const BoxTree &of_vertices = *vertices_, &of_edges = *edges_;
+  const SweptBoxTree &of_vertices = *vertices_, &of_edges = *edges_;
   PairCollector vertex_triangle(of_vertices.part_count(), limit), edge_edge(of_edges.part_count(), limit);
   parallel_for(of_vertices.part_count(), [&](int part) {
     of_vertices.for_each_pair(part, *other.triangles_, [&](int v, int t) {

@@ -32,15 +32,14 @@ class PairFilter {
 };
 
 struct PairQuery {
-  std::span<const Box> path;  // box around the path of each position; see swept_boxes()
-  // Radius of each primitive, by which its box is inflated [m]; empty: 0.
+  std::span<const Vec3d> x;         // positions [m]
+  std::span<const Vec3d> dx = {};   // their displacements [m]; empty: 0
+  std::span<const double> by = {};  // radius of the ball around each moving position [m]; empty: 0
+  // Radius of each primitive, by which its box is inflated in addition [m]; empty: 0.
   std::span<const double> vertex_radius, edge_radius, triangle_radius;
   const PairFilter* filter = nullptr;  // null: accepts all
   size_t limit = size_t{1} << 25;      // maximum number of pairs of each kind
 };
-
-// Returns boxes around the rounded segments from x to x + dx [m]. An empty dx counts as zero.
-std::vector<Box> swept_boxes(std::span<const Vec3d> x, std::span<const Vec3d> dx);
 
 class PairFinder {
  public:
@@ -48,14 +47,13 @@ class PairFinder {
 
   const SurfacePrimitives& primitives() const { return primitives_; }
 
-  // Finds the accepted pairs without a common vertex whose inflated boxes overlap. The result depends on the query
-  // alone; trees of earlier queries only save time. Costs O(n log n + pairs) while the surfaces are locally separated,
-  // with memory proportional to the pairs. Positions that are not finite are in no pair.
+  // Finds the accepted pairs without a common vertex whose inflated boxes overlap while they move. The result depends
+  // on the query alone; trees of earlier queries only save time. Costs O(n log n + pairs) while the surfaces are
+  // locally separated, with memory proportional to the pairs. Positions that are not finite are in no pair.
   ClosePairs find(const PairQuery& query);
 
   // Sets the boxes of the query, for find_between().
   void place(const PairQuery& query);
-  Box bounds() const;  // box around all placed primitives
   // Finds pairs with overlapping boxes: a vertex of this and a triangle of `other`, and with `has_edges` an edge of
   // each. Requires that both are placed. `filter` and `limit` are as in PairQuery; vertices of this and `other` count
   // as different.
@@ -64,12 +62,12 @@ class PairFinder {
  private:
   // Rebuilt when motion has degraded it.
   struct Tree {
-    std::vector<Box> boxes;
-    std::vector<BoxTree> tree;  // one tree; empty before the first query
-    double looseness = 0;       // looseness when it was built
+    std::vector<SweptBox> boxes;
+    std::vector<SweptBoxTree> tree;  // one tree; empty before the first query
+    double looseness = 0;            // looseness when it was built
 
     void fit();
-    const BoxTree& operator*() const { return tree.front(); }
+    const SweptBoxTree& operator*() const { return tree.front(); }
   };
 
   SurfacePrimitives primitives_;

@@ -7,6 +7,7 @@
 #include <random>
 
 #include "base/parallel.h"
+#include "mesh/distance.h"
 #include "mesh/generators.h"
 #include "mesh/surface.h"
 #include "mesh/topology.h"
@@ -40,36 +41,44 @@ struct Scene {
 };
 
 ClosePairs find(PairFinder& finder, const Scene& scene, const PairFilter* filter = nullptr, size_t limit = 1 << 20) {
-  const std::vector<Box> path = swept_boxes(scene.x, scene.dx);
-  return finder.find({path, scene.vertex_radius, scene.edge_radius, scene.triangle_radius, filter, limit});
+  return finder.find({.x = scene.x,
+                      .dx = scene.dx,
+                      .vertex_radius = scene.vertex_radius,
+                      .edge_radius = scene.edge_radius,
+                      .triangle_radius = scene.triangle_radius,
+                      .filter = filter,
+                      .limit = limit});
 }
 
-template <class Points>
-Box inflated_box(const Scene& scene, const Points& points, double radius) {
-  Box box;
-  for (const int i : points) box.add(scene.x[i]), box.add(scene.x[i] + scene.dx[i]);
-  const Vec3d by = {{radius, radius, radius}};
-  return {box.lower - by, box.upper + by};
+// Returns whether boxes around two primitives, seen from the other primitive, come closer than the radius.
+template <class A, class B>
+bool meet(const Scene& scene, const A& a, const B& b, double radius) {
+  for (int axis = 0; axis < 3; ++axis) {
+    constexpr double kInfinity = std::numeric_limits<double>::infinity();
+    double least = kInfinity, most = -kInfinity, closing = 0, opening = 0;
+    for (const int i : a)
+      for (const int j : b) {
+        const double apart = scene.x[i][axis] - scene.x[j][axis], change = scene.dx[i][axis] - scene.dx[j][axis];
+        least = std::min(least, apart), most = std::max(most, apart);
+        closing = std::max(closing, -change), opening = std::max(opening, change);
+      }
+    if (least - closing > radius || most + opening < -radius) return false;
+  }
+  return true;
 }
 
-// Tests all pairs of boxes.
+// Tests all pairs.
 ClosePairs brute_force(const Scene& scene) {
   const auto& [vertices, edges, triangles] = scene.primitives;
   ClosePairs pairs;
-  std::vector<Box> of_edge, of_triangle;
-  for (size_t e = 0; e < edges.size(); ++e) of_edge.push_back(inflated_box(scene, edges[e], scene.edge_radius[e]));
-  for (size_t t = 0; t < triangles.size(); ++t)
-    of_triangle.push_back(inflated_box(scene, triangles[t], scene.triangle_radius[t]));
-  for (int v = 0; v < static_cast<int>(vertices.size()); ++v) {
-    const Box box = inflated_box(scene, std::array{vertices[v]}, scene.vertex_radius[v]);
+  for (int v = 0; v < static_cast<int>(vertices.size()); ++v)
     for (int t = 0; t < static_cast<int>(triangles.size()); ++t)
-      if (box.overlaps(of_triangle[t]) &&
+      if (meet(scene, std::array{vertices[v]}, triangles[t], scene.vertex_radius[v] + scene.triangle_radius[t]) &&
           std::find(triangles[t].begin(), triangles[t].end(), vertices[v]) == triangles[t].end())
         pairs.vertex_triangle.push_back({v, t});
-  }
   for (int a = 0; a < static_cast<int>(edges.size()); ++a)
     for (int b = a + 1; b < static_cast<int>(edges.size()); ++b)
-      if (of_edge[a].overlaps(of_edge[b]) &&
+      if (meet(scene, edges[a], edges[b], scene.edge_radius[a] + scene.edge_radius[b]) &&
           !lists_vertex_twice(std::array{edges[a][0], edges[a][1], edges[b][0], edges[b][1]}))
         pairs.edge_edge.push_back({a, b});
   return pairs;
@@ -105,6 +114,39 @@ TEST(PairFinder, AgreesWithBruteForceWhileSurfacesMove) {
     EXPECT_GT(pairs.edge_edge.size(), 100);
     for (size_t i = 0; i < scene.x.size(); ++i) scene.x[i] = scene.x[i] + scene.dx[i];
   }
+}
+
+// A surface that moves and turns as a whole meets itself nowhere, however long its path is.
+TEST(PairFinder, PointsThatMoveTogetherAreNoPairs) {
+  Scene scene = two_spheres(10, 0);
+  PairFinder finder(scene.primitives);
+  const ClosePairs at_rest = find(finder, scene);
+  for (Vec3d& dx : scene.dx) dx = {{5, -3, 2}};
+  expect_equal(find(finder, scene), at_rest);
+  for (size_t i = 0; i < scene.x.size(); ++i) scene.dx[i] = scene.dx[i] + 0.1 * cross({{0, 0, 1}}, scene.x[i]);
+  EXPECT_LT(find(finder, scene).edge_edge.size(), 2 * at_rest.edge_edge.size());
+}
+
+// All triangles that a vertex reaches at one of many times are found.
+TEST(PairFinder, FindsWhatComesCloseOnTheWay) {
+  const Scene scene = two_spheres(11, 0.3);
+  PairFinder finder(scene.primitives);
+  const ClosePairs pairs = find(finder, scene, nullptr, 1 << 24);
+  const auto& [vertices, edges, triangles] = scene.primitives;
+  int close = 0;
+  for (const double t : {0.0, 0.11, 0.37, 0.5, 0.73, 1.0}) {
+    const auto at = [&](int i) { return scene.x[i] + t * scene.dx[i]; };
+    for (int v = 0; v < static_cast<int>(vertices.size()); ++v)
+      for (int k = 0; k < static_cast<int>(triangles.size()); ++k) {
+        const auto& [a, b, c] = triangles[k];
+        const int p = vertices[v];
+        if (p == a || p == b || p == c) continue;
+        if (pair_distance(PairKind::point_triangle, {at(p), at(a), at(b), at(c)}).d > 0.04) continue;
+        ++close;
+        EXPECT_TRUE(std::binary_search(pairs.vertex_triangle.begin(), pairs.vertex_triangle.end(), std::array{v, k}));
+      }
+  }
+  EXPECT_GT(close, 100);
 }
 
 TEST(PairFinder, AgreesWithBruteForceAfterPositionsAreShuffled) {
@@ -203,9 +245,11 @@ TEST(PairFinder, FindsPairsBetweenTwoLists) {
   const auto half = halves(scene.primitives);
   const int vertices = static_cast<int>(half[0].vertices.size()), edges = static_cast<int>(half[0].edges.size()),
             triangles = static_cast<int>(half[0].triangles.size());
-  const std::vector<Box> path = swept_boxes(scene.x, scene.dx);
-  const PairQuery query{path, std::span(scene.vertex_radius).first(vertices), std::span(scene.edge_radius).first(edges),
-                        std::span(scene.triangle_radius).first(triangles)};
+  const PairQuery query{.x = scene.x,
+                        .dx = scene.dx,
+                        .vertex_radius = std::span(scene.vertex_radius).first(vertices),
+                        .edge_radius = std::span(scene.edge_radius).first(edges),
+                        .triangle_radius = std::span(scene.triangle_radius).first(triangles)};
   PairFinder a(half[0]), b(half[1]);
   a.place(query);
   b.place(query);
@@ -222,8 +266,8 @@ TEST(PairFinder, AcceptsEmptyLists) {
   PairFinder finder({});
   EXPECT_TRUE(finder.find({}).is_complete);
   PairFinder vertices({{0, 1}, {}, {}});
-  const std::vector<Box> path = swept_boxes(std::vector<Vec3d>(2), {});
-  EXPECT_TRUE(vertices.find({path}).vertex_triangle.empty());
+  const std::vector<Vec3d> x(2);
+  EXPECT_TRUE(vertices.find({.x = x}).vertex_triangle.empty());
 }
 
 }  // namespace

@@ -9,7 +9,8 @@
 namespace aspic {
 
 // The minimizer is that of E with the coefficients evaluated there. Before, coefficients are updated at the first
-// iterate and where the forces have fallen to a part of those after the last update.
+// iterate and where the forces have fallen to a part of those after the last update: a smaller part after each update
+// that did not reduce the forces, since updates would alternate.
 class LagUpdates {
  public:
   using End = std::optional<Status>;  // empty: the minimization continues
@@ -28,13 +29,16 @@ class LagUpdates {
     if (is_current_) return false;
     return end ? is_success(*end) : report.reached <= next_ * report.threshold;
   }
-  void update(std::span<const double> x) {
-    E_->update_lagged(x);
+  void update(std::span<const double> x, bool is_minimum) {
+    minima_ += is_minimum;
+    E_->update_lagged(x, minima_ > kTurning);
     is_current_ = true;
   }
   // Returns how the minimization ends after an update. before, after: its ends without and with the update.
   End end_after(const MinimizeReport& report, double round_off, End before, End after) {
-    next_ = report.threshold > 0 ? std::max(1.0, kReduction * report.reached / report.threshold) : 1;
+    if (!(report.reached < kProgress * changed_)) reduction_ *= kLess;
+    changed_ = report.reached;
+    next_ = report.threshold > 0 ? std::max(1.0, reduction_ * report.reached / report.threshold) : 1;
     if (after) return after;
     if (report.updates == kMaxUpdates) return Status::inaccurate;
     if (!before) return {};
@@ -47,15 +51,21 @@ class LagUpdates {
  private:
   // Updates in every iteration would cycle: contact forces jump between short steps.
   static constexpr double kReduction = 0.5;  // of the forces until the next update
-  static constexpr double kProgress = 0.9;   // updates at minimizers that reduce the forces by less are stalled
-  static constexpr double kNoise = 100;      // forces below this multiple of their rounding error are noise
-  static constexpr int kStalled = 3;         // updates that end in noise before the minimization ends there
+  static constexpr double kLess = 0.1;       // factor of this reduction after an update without progress
+  // Updates at minimizers with all directions: normals rotate within a small gap around an edge and would alternate.
+  static constexpr int kTurning = 2;
+  static constexpr double kProgress = 0.9;  // updates at minimizers that reduce the forces by less are stalled
+  static constexpr double kNoise = 100;     // forces below this multiple of their rounding error are noise
+  static constexpr int kStalled = 3;        // updates that end in noise before the minimization ends there
 
   HasLag* E_ = nullptr;
   bool is_current_ = true;
   static constexpr double kInfinity = std::numeric_limits<double>::infinity();
   double next_ = kInfinity;  // ratio of the forces to their threshold at the next update
   double least_ = kInfinity;
+  double changed_ = kInfinity;  // forces after the last update
+  double reduction_ = kReduction;
+  int minima_ = 0;  // updates at minimizers
   int stalled_ = 0;
 };
 

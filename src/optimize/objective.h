@@ -95,8 +95,9 @@ class HasStops {
 class HasLag {
  public:
   virtual ~HasLag() = default;
-  virtual bool is_lagged() const = 0;                         // whether there are any
-  virtual void update_lagged(std::span<const double> x) = 0;  // evaluates them at x
+  virtual bool is_lagged() const = 0;  // whether there are any
+  // Evaluates them at x. keeps_directions: not the directions of forces, where they are known from earlier updates.
+  virtual void update_lagged(std::span<const double> x, bool keeps_directions) = 0;
 };
 
 // Round-off counts as convergence only below this fraction of the forces that the gradient sums.

@@ -1,0 +1,31 @@
+// Boxes around points that move along lines. Unlike boxes around their paths, they tell apart points that move
+// together.
+#pragma once
+#include "mesh/box.h"
+
+namespace aspic {
+
+// Contains the points x + t u, 0 <= t <= 1, with x in `start` and u in `move`.
+struct SweptBox {
+  Box start, move;
+
+  void merge(const SweptBox& other) {
+    start.merge(other.start);
+    move.merge(other.move);
+  }
+  Vec3d center() const { return start.center(); }
+  double sides() const { return start.sides() + move.sides(); }
+  // Returns false if no point of this meets a point of the other at the same t.
+  bool overlaps(const SweptBox& other) const {
+    double apart = 0;
+    for (int axis = 0; axis < 3; ++axis) {
+      const double closing = std::max(0.0, other.move.upper[axis] - move.lower[axis]);
+      const double opening = std::max(0.0, move.upper[axis] - other.move.lower[axis]);
+      apart = std::max(apart, std::max(start.lower[axis] - other.start.upper[axis] - closing,
+                                       other.start.lower[axis] - start.upper[axis] - opening));
+    }
+    return !(apart > 0);
+  }
+};
+
+}  // namespace aspic
