@@ -1,5 +1,4 @@
-// Boxes around points that move along lines. Unlike boxes around their paths, they tell apart points that move
-// together.
+// Boxes around points that move along lines. Two of them are apart if the points move together at a distance.
 #pragma once
 #include "mesh/box.h"
 
