@@ -57,7 +57,7 @@ async function engineInNode(scene) {
   const unpacked = (id) => gunzipSync(Buffer.from(element(id), "base64"));
   const messages = [];
   const post = (message) => typeof message === "string" && messages.push(JSON.parse(message));
-  const engine = await createRequire(import.meta.url)(process.env.ENGINE)({ wasmBinary: unpacked("engine-module"), post });
+  const engine = await createRequire(import.meta.url)(process.env.ENGINE)({ wasmBinary: unpacked("engine-module"), post, isStopRequested: () => false });
   for (const [path, text] of Object.entries(JSON.parse(unpacked("engine-files")))) {
     engine.FS.mkdirTree(path.slice(0, path.lastIndexOf("/")));
     engine.FS.writeFile(path, text);
