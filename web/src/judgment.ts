@@ -7,20 +7,18 @@ import type { Judgment, Measure } from "./protocol";
 // JSON has no infinity.
 const numberOf = (value: number | string): number => (typeof value === "string" ? Number(value.replace("inf", "Infinity")) : value);
 
-function row(measure: Measure): HTMLElement {
-  const { what, value, unit, relation, bound, holds, reason } = measure;
-  const judged = relation === undefined ? "" : holds ? "pass" : "fail";
-  const limit = relation === undefined ? "" : `${relation} ${short(numberOf(bound!))}`;
-  const cells = [what, `${short(numberOf(value))} ${unit}`.trim(), limit].map((text) => element("td", {}, text));
-  return element("tr", { title: reason }, ...cells, element("td", {}, element("span", { class: judged }, judged)));
+function item({ what, value, unit, relation, bound, holds, reason }: Measure): HTMLElement {
+  const mark = relation === undefined ? "" : holds ? "pass" : "fail";
+  const limit = relation === undefined ? "" : ` (${relation} ${short(numberOf(bound!))})`;
+  const text = `${what}: ${`${short(numberOf(value))} ${unit}`.trim()}${limit}`;
+  return element("li", {}, element("span", { class: mark }, mark), ` ${text}`, reason ? element("small", {}, reason) : null);
 }
 
 function resultElements({ passes, seconds, measures, remarks }: Judgment): HTMLElement[] {
-  const head = element("tr", {}, ...["measured", "value", "bound", ""].map((text) => element("th", {}, text)));
   const verdict = passes ? "pass" : "fail";
   return [
-    element("p", {}, element("span", { class: verdict }, verdict), ` ${seconds.toFixed(1)} s`),
-    element("div", { class: "measures" }, element("table", {}, head, ...measures.map(row))),
+    element("p", {}, element("b", { class: verdict }, verdict), ` in ${seconds.toFixed(1)} s`),
+    element("ul", {}, ...measures.map(item)),
     ...remarks.map((remark) => element("p", { class: "faint" }, remark)),
   ];
 }

@@ -1,5 +1,7 @@
-// The page of ./run site in Chromium, from a file and from web servers, and its engine under Node.js. tools/site_test runs it.
+// The page of ./run site in Chromium, from a file and from web servers, and its engine under Node.js, which computes what
+// the native build of portable bits (ASPIC) computes. tools/site_test runs it.
 import assert from "node:assert/strict";
+import { spawnSync } from "node:child_process";
 import { readFileSync, writeFileSync } from "node:fs";
 import { createServer } from "node:http";
 import { createRequire } from "node:module";
@@ -7,7 +9,7 @@ import { join } from "node:path";
 import { test } from "node:test";
 import { pathToFileURL } from "node:url";
 import { gunzipSync, gzipSync } from "node:zlib";
-import { atTheEnd, downloaded, drop, findBody, frames, isDrawn, keepPicture, openPage, pageModule, pressAndWait, root, settled, temporaryFolder } from "./harness.mjs";
+import { aspic, atTheEnd, downloaded, drop, findBody, frames, isDrawn, keepPicture, openPage, pageModule, pressAndWait, root, settled, temporaryFolder } from "./harness.mjs";
 
 const site = process.env.SITE;
 const html = readFileSync(site, "utf8");
@@ -51,21 +53,42 @@ async function takeSteps(opened, count) {
     await pressAndWait(opened, "s", `step ${step}`, ({ state, pictures }) => state.a.step === step && pictures.a.step === step);
 }
 
-// The engine of the page under Node.js: opens a scene and returns its messages.
-async function engineInNode(scene) {
-  const element = (id) => JSON.parse(html.match(new RegExp(`id="${id}">(.*?)</script>`, "s"))[1]);
-  const unpacked = (id) => gunzipSync(Buffer.from(element(id), "base64"));
+const element = (id) => JSON.parse(html.match(new RegExp(`id="${id}">(.*?)</script>`, "s"))[1]);
+const unpacked = (id) => gunzipSync(Buffer.from(element(id), "base64"));
+
+// The engine of the page under Node.js, before it has a task.
+async function freshEngine() {
   const messages = [];
   const post = (message) => typeof message === "string" && messages.push(JSON.parse(message));
-  const engine = await createRequire(import.meta.url)(process.env.ENGINE)({ wasmBinary: unpacked("engine-module"), post, isStopRequested: () => false });
+  const engine = await createRequire(import.meta.url)(process.env.ENGINE)({
+    wasmBinary: unpacked("engine-module"), post, isStopRequested: () => false });
   for (const [path, text] of Object.entries(JSON.parse(unpacked("engine-files")))) {
     engine.FS.mkdirTree(path.slice(0, path.lastIndexOf("/")));
     engine.FS.writeFile(path, text);
   }
+  return { engine, messages };
+}
+
+// Opens a scene.
+async function engineInNode(scene) {
+  const { engine, messages } = await freshEngine();
   assert.ok(engine.ccall("engine_open", "boolean", ["string"], [scene]), JSON.stringify(messages.at(-1)));
   const bytes = () => engine.HEAPU8.length;
   const write = (path, text) => engine.FS.writeFile(path, text);
   return { messages, bytes, write, handle: (message) => engine.ccall("engine_handle", null, ["string"], [JSON.stringify(message)]) };
+}
+
+// Runs the native program with portable bits. Exit code 3: a step did not converge, or a check fails.
+function runNative(...args) {
+  const { status, stderr } = spawnSync(aspic, args, { cwd: root, encoding: "utf8" });
+  assert.ok(status === 0 || status === 3, `${args.join(" ")}: ${stderr}`);
+}
+
+function nativeHashes(scene, steps) {
+  const out = temporaryFolder();
+  runNative("run", scene, "--steps", String(steps), "--out", out, "--force", "--quiet");
+  const [header, ...rows] = readFileSync(join(out, "steps.csv"), "utf8").trim().split("\n").map((row) => row.split(","));
+  return rows.slice(1).map((row) => row[header.indexOf("state_hash")]); // the first is that of the start
 }
 
 for (const [place, address] of Object.entries(places)) {
@@ -163,7 +186,27 @@ test("a thousand resets do not grow the memory", async () => {
   assert.equal(reset(1000), before);
 });
 
-test("Chromium and Node.js compute the same state", async () => {
+const hashesIn = (messages) => messages.flatMap(({ kind, side, steps }) => (kind === "steps" && side === "a" ? steps : [])).map((row) => row.state_hash);
+
+test("every scene has the same states natively and under Node.js", async () => {
+  const steps = 3;
+  const differing = [];
+  const { messages, handle } = await engineInNode("/scenes/bunny.toml");
+  handle({ ask: "gallery", id: 1 });
+  const { scenes } = messages.find(({ id }) => id === 1).reply;
+  for (const { path } of scenes) {
+    handle({ do: "load", scene: path });
+    messages.length = 0;
+    for (let step = 0; step < steps; ++step) handle({ do: "step" });
+    const [native, node] = [nativeHashes(path.slice(1), steps), hashesIn(messages)];
+    console.log(`${path}: ${native.at(-1)} ${node.at(-1)}`);
+    assert.equal(native.length, steps);
+    if (native.join() !== node.join()) differing.push(path);
+  }
+  assert.deepEqual(differing, []);
+});
+
+test("Chromium, Node.js and the native build compute the same state", async () => {
   const opened = await openSite(places["a file"]);
   for (const name of ["cantilever", "twist", "contact"]) {
     const node = await engineInNode(`/scenes/${name}.toml`);
@@ -171,9 +214,28 @@ test("Chromium and Node.js compute the same state", async () => {
     await loadScene(opened, name);
     await takeSteps(opened, 20);
     assert.equal(lastHash(opened.heard), lastHash(node), name);
+    assert.equal(lastHash(opened.heard), nativeHashes(`scenes/${name}.toml`, 20).at(-1), name);
     console.log(`${name}: state ${lastHash(opened.heard)} after 20 steps`);
   }
   await opened.close();
+});
+
+// Wall times differ.
+const judged = ({ measures, passes }) => ({ passes, measures: measures.filter(({ unit }) => unit !== "s") });
+
+test("the page judges the lecture by the numbers of the native build", async () => {
+  const out = temporaryFolder();
+  runNative("lecture", "all", "--out", out);
+  const { demonstrations } = JSON.parse(readFileSync(join(out, "lecture.json"), "utf8"));
+  assert.ok(demonstrations.length >= 19);
+  for (const native of demonstrations) {
+    const { engine, messages } = await freshEngine();
+    engine.ccall("engine_judge", "boolean", ["string"], [native.key]);
+    const { kind, result, why } = messages.at(-1);
+    assert.equal(kind, "judged", `${native.key}: ${why}`);
+    assert.deepEqual(judged(result), judged(native), native.key);
+    console.log(`${native.key}: ${result.measures.length} numbers, ${result.passes ? "pass" : "fail"}, ${result.seconds.toFixed(1)} s`);
+  }
 });
 
 test("the address opens a page of the lecture", async () => {
