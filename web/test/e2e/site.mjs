@@ -275,6 +275,25 @@ test("a link with a scene that is too large is refused", async () => {
   await opened.close();
 });
 
+// Gradient descent that needs minutes for a step.
+const kEndless = ["body.0.shape.box.cells=[41, 5, 5]", "solver.method=gradient_descent", "solver.tolerance=1e-12", "solver.max_iterations=1000000"];
+
+test("a long step is stopped, from a file and from web servers", async () => {
+  const { linkText } = await pageModule("share.ts");
+  const link = await linkText({ aspic_workspace: 1, scene: "/scenes/cantilever.toml", overrides: kEndless, settings: {}, compare: null, page: {} });
+  for (const [place, address] of Object.entries(places)) {
+    const opened = await openSite(address + link, "cantilever");
+    await opened.page.keyboard.press("s"); // runs until it is stopped
+    await frames(opened.page);
+    await opened.page.waitForTimeout(1000);
+    const start = performance.now();
+    await pressAndWait(opened, "r", "a reset", () => true);
+    assert.deepEqual(hashesIn(opened.heard.messages), [], "the step did not end by itself");
+    console.log(`${place}: stopped after ${(performance.now() - start).toFixed(0)} ms`);
+    await opened.close();
+  }
+});
+
 // A closed surface without tets.
 const kOctahedron = `v 1 0 0\nv -1 0 0\nv 0 1 0\nv 0 -1 0\nv 0 0 1\nv 0 0 -1
 f 1 3 5\nf 3 2 5\nf 2 4 5\nf 4 1 5\nf 3 1 6\nf 2 3 6\nf 4 2 6\nf 1 4 6\n`;
