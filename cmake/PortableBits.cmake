@@ -6,9 +6,9 @@ if(NOT EXISTS ${musl}/src/math/sin.c)
 endif()
 enable_language(C)
 set(musl_sources)
-foreach(name acos asin atan atan2 cbrt cos cosh exp exp2 exp_data expm1 hypot log log10 log_data pow pow_data scalbn sin sincos
-             sinh tan tanh __cos __expo2 __rem_pio2 __rem_pio2_large __sin __tan __math_divzero __math_invalid __math_oflow
-             __math_uflow __math_xflow)
+foreach(name acos acosh asin asinh atan atan2 atanh cbrt cos cosh exp exp2 exp_data expm1 hypot log log10 log1p log2 log2_data
+             log_data pow pow_data scalbn sin sincos sinh tan tanh __cos __expo2 __rem_pio2 __rem_pio2_large __sin __tan
+             __math_divzero __math_invalid __math_oflow __math_uflow __math_xflow)
   list(APPEND musl_sources ${musl}/src/math/${name}.c)
 endforeach()
 add_library(aspic_musl OBJECT ${musl_sources})

@@ -19,3 +19,7 @@ foreach(module math linalg optimize energy mesh contact dynamics)
                       -sALLOW_MEMORY_GROWTH=1 -sMAXIMUM_MEMORY=4096MB)
   add_dependencies(wasm_tests test_${module})
 endforeach()
+foreach(name affine_motion integrators models)  # shared with `aspic verify`
+  target_sources(test_dynamics PRIVATE ${PROJECT_SOURCE_DIR}/verification/${name}.cpp)
+endforeach()
+target_include_directories(test_dynamics PRIVATE ${PROJECT_SOURCE_DIR})

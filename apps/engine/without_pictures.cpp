@@ -1,5 +1,5 @@
-// The drawing functions of plot.h, mesh_picture.h and minimize.h. They run other programs, which a browser does not have: sheets of
-// this engine have Pictures::none.
+// The drawing functions of plot.h, mesh_picture.h and minimize.h. They run other programs, which a browser does not
+// have: sheets of this engine have Pictures::none.
 #include "aspic/mesh_picture.h"
 #include "aspic/minimize.h"
 #include "aspic/plot.h"
