@@ -52,6 +52,10 @@ if(EMSCRIPTEN)  # WebAssembly has no fused multiply-add
   add_link_options(-fwasm-exceptions)
   set(ASPIC_ARCH -msimd128)
   set(ASPIC_CONTRACT off)
+elseif(ASPIC_BITS STREQUAL "portable")
+  set(ASPIC_ARCH -march=x86-64)
+  set(ASPIC_CONTRACT off)
+  add_compile_definitions(EIGEN_DONT_VECTORIZE)  # its order of sums depends on the SIMD instructions
 elseif(ASPIC_PORTABLE)
   set(ASPIC_ARCH -march=x86-64-v3)
 else()

@@ -8,11 +8,13 @@
 #include "aspic/commands.h"
 #include "aspic/interrupt.h"
 #include "aspic/lecture/course.h"
+#include "aspic/lecture/result_json.h"
 #include "aspic/lecture/results.h"
 #include "base/error.h"
 #include "base/number_chars.h"
 #include "base/parallel.h"
 #include "base/stopwatch.h"
+#include "io/atomic_file.h"
 
 namespace aspic::cli {
 namespace lecture {
@@ -74,6 +76,7 @@ int run_page(int page, const LectureArguments& arguments) {
   if (const auto stopped = draw_meshes(results)) return *stopped;
   bool passes = true;
   for (const Result& result : results) {
+    write_file(result.sheet.folder() / "result.json", to_json(result).dump(2) + "\n");
     print(result);
     passes = passes && result.sheet.passes();
   }

@@ -9,13 +9,17 @@
 #include <string>
 
 #include "aspic/lecture/lessons.h"
+#include "aspic/lecture/result_json.h"
+#include "base/error.h"
 #include "base/parallel.h"
+#include "base/stopwatch.h"
 #include "engine/self_test.h"
 #include "viewer/offered_scenes.h"
 #include "viewer/pacing.h"
 #include "viewer/scene_json.h"
 
 EM_JS(void, post_text, (const char* text, int size), { Module.post(UTF8ToString(text, size)); });
+EM_JS(bool, is_stop_requested, (), { return Module.isStopRequested(); });
 EM_JS(void, post_bytes, (const char* bytes, int size), { Module.post(HEAPU8.slice(bytes, bytes + size).buffer); });
 
 namespace aspic::engine {
@@ -47,6 +51,7 @@ SessionOptions options() {
               },
           .timeline_bytes = kTimelineBytes,
           .most_tets = kMostTets,
+          .wants_stop = [] { return is_stop_requested(); },
           .announce =
               [](const std::string& what) {
                 post_json({{"kind", "busy"}, {"what", what}});
@@ -60,10 +65,11 @@ struct Engine {
   void serve_fit() {
     const std::optional<FitTask> task = session.take_fit();
     if (!task) return;
-    run_fit(*task, [&](FitNews news) {
+    const auto report = [&](FitNews news) {
       news.task = task->number;
       post(session.note_fit(news));
-    });
+    };
+    run_fit(*task, report, StopToken([] { return is_stop_requested(); }));
   }
 
   Session session;
@@ -72,6 +78,38 @@ struct Engine {
 
 std::unique_ptr<Engine> engine;
 
+// Throws std::runtime_error.
+void prepare() {
+  set_thread_count(1);
+  if (const std::string wrong = self_test(); !wrong.empty())
+    throw std::runtime_error("this engine is miscompiled: " + wrong + " has a wrong result");
+}
+
+// Returns whether there was no exception; otherwise posts {"kind": "ended", "why": ...}.
+template <class Work>
+bool carry_out(Work work) {
+  try {
+    prepare();
+    work();
+    return true;
+  } catch (const std::exception& e) {
+    post_json({{"kind", "ended"}, {"why", e.what()}});
+    return false;
+  }
+}
+
+cli::lecture::Result judge(const std::string& lesson) {
+  namespace lecture = cli::lecture;
+  for (const lecture::Demonstration& demonstration : lecture::demonstrations()) {
+    if (!lesson.starts_with(demonstration.key)) continue;
+    Stopwatch stopwatch;
+    lecture::Sheet sheet("/lecture", lecture::Pictures::none);
+    lecture::run_demonstration(demonstration, lecture::Stage("", "/meshes"), sheet);
+    return {&demonstration, std::move(sheet), stopwatch.lap()};
+  }
+  throw InvalidInput("no lesson '" + lesson + "'");
+}
+
 }  // namespace
 }  // namespace aspic::engine
 
@@ -79,19 +117,17 @@ using namespace aspic::engine;
 
 extern "C" {
 
-// Opens a session of the scene and posts its greeting. Returns false after posting {"kind": "ended", "why": ...}.
+// Opens a session of the scene and posts its greeting.
 EMSCRIPTEN_KEEPALIVE bool engine_open(const char* scene) {
-  aspic::set_thread_count(1);
-  try {
-    if (const std::string wrong = self_test(); !wrong.empty())
-      throw std::runtime_error("this engine is miscompiled: " + wrong + " has a wrong result");
+  return carry_out([&] {
     engine = std::make_unique<Engine>(scene);
     post(engine->session.greeting(Role::steers));
-    return true;
-  } catch (const std::exception& e) {
-    post_json({{"kind", "ended"}, {"why", e.what()}});
-    return false;
-  }
+  });
+}
+
+// Runs the demonstration of a lesson as `aspic lecture` does, and posts its measures.
+EMSCRIPTEN_KEEPALIVE bool engine_judge(const char* lesson) {
+  return carry_out([&] { post_json({{"kind", "judged"}, {"result", aspic::cli::lecture::to_json(judge(lesson))}}); });
 }
 
 EMSCRIPTEN_KEEPALIVE void engine_handle(const char* text) {

@@ -9,7 +9,8 @@ constexpr int kMaxCatchingUp = 100'000;  // maximum number of steps of side b pe
 
 }  // namespace
 
-Playback::Playback(Stage& stage, Commands& commands) : stage_(stage), commands_(commands) {
+Playback::Playback(Stage& stage, Commands& commands, std::function<bool()> wants_stop)
+    : stage_(stage), commands_(commands), wants_stop_(std::move(wants_stop)) {
   commands["play"] = {plain([this] { is_playing_ = true; }), false};
   commands["pause"] = {plain([this] { is_playing_ = false; }), false};
   commands["step"] = {plain([this] { step(); }), false};
@@ -24,7 +25,8 @@ Playback::Playback(Stage& stage, Commands& commands) : stage_(stage), commands_(
 }
 
 StopToken Playback::stop_token() const {
-  return StopToken([this] { return is_interrupted_.load(std::memory_order_relaxed); });
+  return StopToken(
+      [this] { return is_interrupted_.load(std::memory_order_relaxed) || (wants_stop_ && wants_stop_()); });
 }
 
 void Playback::send_state() {

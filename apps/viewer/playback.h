@@ -12,8 +12,9 @@ namespace aspic::viewer {
 
 class Playback {
  public:
-  // Adds play, pause, step, iterate, reset, rewind and speed to the commands. A replay calls any of them.
-  Playback(Stage& stage, Commands& commands);
+  // Adds play, pause, step, iterate, reset, rewind and speed to the commands. A replay calls any of them. `wants_stop`
+  // also stops steps; empty: never.
+  Playback(Stage& stage, Commands& commands, std::function<bool()> wants_stop);
 
   // Shows other sides: paused at their start, or playing their recording.
   void install(std::vector<ShownSide> sides, std::optional<Recording::Comparison> comparison = std::nullopt,
@@ -26,7 +27,7 @@ class Playback {
   double speed() const { return speed_; }       // [simulated s / s]
   void set_rate(double rate) { rate_ = rate; }  // measured speed
   void send_state();                            // also sends the steps since the last call
-  StopToken stop_token() const;                 // stopped from interrupt() until allow()
+  StopToken stop_token() const;                 // stopped from interrupt() until allow(), and by `wants_stop`
   void interrupt() { is_interrupted_ = true; }  // from any thread
   void allow() { is_interrupted_ = false; }
 
@@ -47,6 +48,7 @@ class Playback {
 
   Stage& stage_;
   const Commands& commands_;
+  std::function<bool()> wants_stop_;
   std::optional<Replay> replayed_;
   bool is_playing_ = false;
   double speed_ = 1, rate_ = 0;

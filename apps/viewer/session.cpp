@@ -44,7 +44,7 @@ struct Session::Impl {
   Commands commands;
   Questions questions;
   Stage stage{options};
-  Playback playback{stage, commands};
+  Playback playback{stage, commands, options.wants_stop};
   BenchDesk desk{options, stage, playback};
   PictureEncoder encoder;
 };

@@ -25,6 +25,7 @@ struct Answer {
 // A page of a lecture in the viewer: its scene, comparison, recorded mouse and panel.
 struct Lesson {
   std::string id, pages, title, claim, look;
+  std::string question, answer;  // for the reader; empty: none
   std::string panel = "energy";  // "energy", "microscope", "landscape" or "functions"
   std::string function;          // JSON of a question for the functions panel; empty: none
   std::string missing;           // reason why it cannot be shown; empty: none
@@ -56,6 +57,7 @@ struct SessionOptions {
   std::function<void(const std::filesystem::path& scene)> note_loaded = {};  // for Gallery::recent
   size_t timeline_bytes = size_t{256} << 20;                                 // memory for snapshots, per side
   double most_tets = 1e18;                                     // per side; also limited by the free memory
+  std::function<bool()> wants_stop = {};                       // polled by long work in a program without threads
   std::function<void(const std::string& what)> announce = {};  // announces a long operation; "" at its end
 };
 

@@ -291,7 +291,8 @@ TEST(IndenterDepth, IsTwiceDifferentiableAcrossRimOfDisc) {
 std::vector<Triangle> top() {
   std::vector<Triangle> triangles;
   for (const Triangle& t : surface())
-    if (std::ranges::all_of(t, [](int v) { return box_mesh().rest[v][2] > 0.6 - 1e-9; })) triangles.push_back(t);
+    if (std::all_of(t.begin(), t.end(), [](int v) { return box_mesh().rest[v][2] > 0.6 - 1e-9; }))
+      triangles.push_back(t);
   return triangles;
 }
 
@@ -353,7 +354,7 @@ TEST(Pressure, FollowsSurfaceInsidePatch) {
     ++inner;
     Vec3d force{};  // sum of -p dA / 3 over the triangles at the vertex
     for (const Triangle& t : top())
-      if (std::ranges::find(t, v) != t.end())
+      if (std::find(t.begin(), t.end(), v) != t.end())
         force = force + (-3.0 / 6) * cross(at(t[1]) - at(t[0]), at(t[2]) - at(t[0]));
     for (int r = 0; r < 3; ++r) EXPECT_NEAR(g[3 * v + r], force[r], 1e-14);
   }

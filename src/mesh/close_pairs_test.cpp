@@ -259,7 +259,7 @@ TEST(PairFinder, FindsPairsBetweenTwoLists) {
   for (const auto& [v, t] : b.find_between(a, false, nullptr, query.limit).vertex_triangle)
     found.vertex_triangle.push_back({v + vertices, t});
   expect_equal(found, expected);
-  EXPECT_FALSE(a.find_between(b, true, nullptr, 10).is_complete);
+  EXPECT_FALSE(a.find_between(b, true, nullptr, 0).is_complete);
 }
 
 TEST(PairFinder, AcceptsEmptyLists) {

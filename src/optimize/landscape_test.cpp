@@ -53,8 +53,11 @@ TEST(Landscape, ShortAcceptedStepHasSamplesAround) {
     ASSERT_EQ(iteration.alpha, 0.125);
     const auto curve = curve_along(iteration, 1e-4, 101);
     ASSERT_EQ(curve.size(), 101u);
-    EXPECT_GE(std::ranges::count_if(curve, [](const CurvePoint& point) { return std::abs(point.alpha) < 0.2; }), 30);
-    EXPECT_TRUE(std::ranges::is_sorted(curve, {}, &CurvePoint::alpha));
+    EXPECT_GE(
+        std::count_if(curve.begin(), curve.end(), [](const CurvePoint& point) { return std::abs(point.alpha) < 0.2; }),
+        30);
+    EXPECT_TRUE(std::is_sorted(curve.begin(), curve.end(),
+                               [](const CurvePoint& a, const CurvePoint& b) { return a.alpha < b.alpha; }));
   });
 }
 

@@ -23,10 +23,20 @@ export function formulasOf(id: string): string[] {
   return name ? formulas[name]! : [];
 }
 
+// Shrinks a formula that is wider than its place; below kSmallest it scrolls.
+const kSmallest = 0.65;
+function fit(shown: HTMLElement): void {
+  shown.style.fontSize = "";
+  const scale = shown.clientWidth / shown.scrollWidth;
+  if (scale < 1) shown.style.fontSize = `${Math.max(kSmallest, 0.99 * scale)}em`;
+}
+
 function elements(list: string[], title?: string): HTMLElement[] {
+  const resized = new ResizeObserver((entries) => entries.forEach(({ target }) => fit(target as HTMLElement)));
   return list.map((text) => {
     const shown = element("div", { class: "formula", title });
     shown.innerHTML = text;
+    resized.observe(shown);
     return shown;
   });
 }

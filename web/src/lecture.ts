@@ -2,6 +2,7 @@
 // reader drags the body.
 import { button, element } from "./dom";
 import { formulaElements } from "./formulas";
+import { Judge } from "./judgment";
 import type { Page } from "./page";
 import type { FunctionQuestion, Lesson } from "./protocol";
 import { shortcutButton } from "./shortcuts";
@@ -36,12 +37,18 @@ function pagesText({ pages }: Lesson): string {
   return /[-,]/.test(pages) ? `Pages ${pages}` : `Page ${pages}`;
 }
 
+function questionElements({ question, answer = "" }: Lesson): HTMLElement[] {
+  if (!question) return [];
+  return [element("p", { class: "question" }, question), element("details", {}, element("summary", {}, "Answer"), answer)];
+}
+
 export class Lecture {
   private lessons: Lesson[] = [];
   private current: Lesson | null = null;
   private replaying = false;
   private hasReadAddress = false;
   private readonly card = element("article", { class: "lesson", "aria-live": "polite" });
+  private readonly judge = new Judge();
   private readonly replay = element("p", { class: "replay", hidden: true });
   private readonly list = element("ol", { class: "lessons" });
   private readonly search = element("input", { type: "search", placeholder: "Search", "aria-label": "Search the lecture" });
@@ -138,7 +145,10 @@ export class Lecture {
       element("p", { class: "claim" }, lesson.claim),
       ...formulaElements(lesson.id),
       element("p", {}, lesson.look),
+      ...questionElements(lesson),
+      this.judge.root,
     );
+    this.judge.show(lesson.id);
     this.fill();
     this.list.querySelector("[aria-current]")?.scrollIntoView({ block: "nearest" });
     this.root.scrollTop = 0; // on a phone the panel itself scrolls; show its text first

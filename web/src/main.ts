@@ -4,7 +4,7 @@ import "./style.css";
 import "./shell.css";
 import { makeCompareButton } from "./compare";
 import { Dock } from "./dock";
-import { embeddedEngine } from "./engine";
+import { embeddedEngine, hasEngine } from "./engine";
 import { Files } from "./files";
 import { openFit } from "./fit/fitPage";
 import { Lecture } from "./lecture";
@@ -84,8 +84,7 @@ function openPage(source: Source, html: string | null = null): void {
 }
 
 function openLive(): void {
-  const engine = embeddedEngine();
-  if (engine) openPage(new LiveSource(engine), `<!doctype html>\n${document.documentElement.outerHTML}`);
+  if (hasEngine()) openPage(new LiveSource(embeddedEngine()), `<!doctype html>\n${document.documentElement.outerHTML}`);
   else openPage(new LiveSource(overSocket(sessionAddress())));
 }
 

@@ -112,10 +112,29 @@ export interface Lesson {
   pages: string; // "33-34"
   title: string;
   claim: string; // statement of the lecture
-  look: string; // what to look at, in two sentences
+  look: string; // what to look at and to try
+  question?: string; // for the reader
+  answer?: string;
   panel: PanelName; // panel to open
   function?: FunctionQuestion; // question for the functions panel
   missing?: string; // reason why it cannot be shown
+}
+// Numbers of a lesson's demonstration, judged as by `aspic lecture`.
+export interface Measure {
+  what: string;
+  value: number | string; // "inf": overflow
+  unit: string;
+  relation?: string; // "<="; none: not judged
+  bound?: number | string;
+  holds?: boolean;
+  reason?: string; // source of the bound
+}
+export interface Judgment {
+  pages: number[];
+  passes: boolean;
+  seconds: number;
+  measures: Measure[];
+  remarks: string[];
 }
 export type PanelName = "energy" | "microscope" | "landscape" | "functions";
 

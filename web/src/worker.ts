@@ -1,5 +1,6 @@
 // The script of the engine's worker: passes messages between the page (engine.ts) and a session (apps/engine/engine.cpp).
 import type { EngineParts } from "./engine";
+import type { Flagged } from "./host";
 
 interface Engine {
   FS: { mkdirTree(folder: string): void; writeFile(path: string, text: string): void };
@@ -8,6 +9,7 @@ interface Engine {
   _malloc(bytes: number): number;
   _free(place: number): void;
   _engine_open(scene: number): number;
+  _engine_judge(lesson: number): number;
   _engine_handle(message: number): void;
   _engine_run(wantsPictures: boolean): number;
   _engine_pause(wantsPictures: boolean): number;
@@ -16,10 +18,11 @@ interface Engine {
 type Post = (message: string | ArrayBuffer) => void;
 
 // Made by the compiler; its text precedes this script.
-declare function createEngine(options: { wasmBinary: ArrayBuffer; post: Post }): Promise<Engine>;
+declare function createEngine(options: { wasmBinary: ArrayBuffer; post: Post; isStopRequested: () => boolean }): Promise<Engine>;
 
 interface Scope {
-  onmessage: ((event: { data: EngineParts | string }) => void) | null;
+  onmessage: ((event: { data: Flagged<EngineParts | string> }) => void) | null;
+  importScripts(url: string): void;
   postMessage(message: string | ArrayBuffer, transfer?: ArrayBuffer[]): void;
 }
 const scope = globalThis as unknown as Scope;
@@ -41,6 +44,22 @@ function withText<Result>(made: Engine, text: string, call: (place: number) => R
   }
 }
 
+// Whether the page has revoked the flag (host.ts). Work shorter than kPatience never loads it, which takes a few ms.
+const [kPatience, kPeriod] = [300, 150]; // [ms]
+let flag = "";
+let isStopped = false;
+let nextLook = 0; // [ms]
+function isStopRequested(): boolean {
+  if (isStopped || performance.now() < nextLook) return isStopped;
+  try {
+    scope.importScripts(flag);
+  } catch {
+    isStopped = true;
+  }
+  nextLook = performance.now() + kPeriod;
+  return isStopped;
+}
+
 let engine: Engine | null = null;
 let wantsPictures = true; // the first ones need no request
 let timer: ReturnType<typeof setTimeout> | undefined;
@@ -53,13 +72,14 @@ atOnce.port2.onmessage = () => {
   guarded(run);
 };
 
-async function open({ module, files, scene }: EngineParts): Promise<void> {
-  const made = await createEngine({ wasmBinary: module, post });
+async function open({ module, files, task }: EngineParts): Promise<void> {
+  const made = await createEngine({ wasmBinary: module, post, isStopRequested });
   for (const [path, text] of Object.entries(files)) {
     made.FS.mkdirTree(path.slice(0, path.lastIndexOf("/")));
     made.FS.writeFile(path, text);
   }
-  if (!withText(made, scene, made._engine_open)) return;
+  if ("judge" in task) return void withText(made, task.judge, made._engine_judge);
+  if (!withText(made, task.scene, made._engine_open)) return;
   engine = made;
   run();
 }
@@ -84,6 +104,7 @@ function carryOut(message: string): void {
 
 // An exception here is a trap of the engine: an exhausted memory, or a bug. Its state is then undefined.
 function guarded(work: () => void): void {
+  nextLook = performance.now() + kPatience;
   try {
     work();
   } catch (reason) {
@@ -93,6 +114,9 @@ function guarded(work: () => void): void {
 }
 
 scope.onmessage = ({ data }) => {
-  if (typeof data === "string") guarded(() => carryOut(data));
-  else void open(data).catch(ended);
+  if (flag !== data.flag) isStopped = false;
+  flag = data.flag;
+  const { message } = data;
+  if (typeof message === "string") guarded(() => carryOut(message));
+  else void open(message).catch(ended);
 };

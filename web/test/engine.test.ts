@@ -1,33 +1,34 @@
 import assert from "node:assert/strict";
 import { test } from "node:test";
-import { type EngineParts, type EngineWorker, overWorker } from "../src/engine";
+import { type EngineParts, judgeOver, overWorker } from "../src/engine";
+import type { EngineWorker } from "../src/host";
 import { LiveSource } from "../src/live";
 import type { Incoming } from "../src/source";
 
-const kParts: EngineParts = { module: new ArrayBuffer(8), files: { "/scenes/a.toml": "" }, scene: "/scenes/a.toml" };
+const kParts: EngineParts = { module: new ArrayBuffer(8), files: { "/scenes/a.toml": "" }, task: { scene: "/scenes/a.toml" } };
 
-class FakeWorker {
-  onmessage: EngineWorker["onmessage"] = null;
-  onerror: EngineWorker["onerror"] = null;
-  posted: unknown[] = [];
-  postMessage(message: unknown): void {
+class FakeWorker implements EngineWorker<EngineParts | string> {
+  onmessage: ((message: string | ArrayBuffer) => void) | null = null;
+  posted: (EngineParts | string)[] = [];
+  stops = 0;
+  ended = false;
+  send(message: EngineParts | string, stops: boolean): void {
     this.posted.push(message);
+    if (stops) ++this.stops;
+  }
+  end(): void {
+    this.ended = true;
+    this.onmessage = null;
   }
   sends(message: unknown): void {
-    this.call(this.onmessage, { data: JSON.stringify(message) });
-  }
-  fails(message: string): void {
-    this.call(this.onerror, { message });
-  }
-  private call(listener: unknown, event: unknown): void {
-    (listener as ((event: unknown) => void) | null)?.(event);
+    this.onmessage?.(JSON.stringify(message));
   }
 }
 
 async function connect(parts = Promise.resolve(kParts)): Promise<{ source: LiveSource; worker: FakeWorker; received: Incoming[] }> {
   const worker = new FakeWorker();
   const received: Incoming[] = [];
-  const source = new LiveSource(overWorker(() => worker as unknown as EngineWorker, () => parts));
+  const source = new LiveSource(overWorker(() => worker, () => parts));
   source.start((incoming) => received.push(incoming));
   await new Promise((resolve) => setTimeout(resolve, 0));
   return { source, worker, received };
@@ -53,16 +54,36 @@ test("the reason of an ended engine is reported once", async () => {
   const asked = source.request({ do: "play" });
   worker.sends({ kind: "ended", why: "out of memory" });
   await assert.rejects(asked, /connection/);
-  worker.fails("again");
+  worker.sends({ kind: "ended", why: "again" });
   assert.equal(texts(received).match(/out of memory/g)?.length, 1);
   assert.ok(!texts(received).includes("again"));
   await assert.rejects(source.request({ do: "play" }), /no connection/);
 });
 
-test("a script error and damaged parts are reported", async () => {
-  const failing = await connect();
-  failing.worker.fails("SyntaxError");
-  assert.match(texts(failing.received), /SyntaxError/);
+test("damaged parts are reported", async () => {
   const damaged = await connect(Promise.reject(new Error("truncated")));
   assert.match(texts(damaged.received), /engine in this page is damaged.*truncated/);
+});
+
+test("only urgent commands stop the work under way", async () => {
+  const { source, worker } = await connect();
+  worker.sends({ kind: "busy", what: "" });
+  source.send({ do: "play" });
+  void source.ask({ ask: "recording" });
+  assert.equal(worker.stops, 0);
+  source.send({ do: "pause" });
+  void source.request({ do: "reset" });
+  assert.equal(worker.stops, 2);
+});
+
+test("a judgment ends its worker", async () => {
+  const workers = [new FakeWorker(), new FakeWorker(), new FakeWorker()] as const;
+  const judgments = workers.map((worker) => judgeOver(() => worker, () => Promise.resolve(kParts)));
+  workers[0].sends({ kind: "judged", result: { passes: true } });
+  workers[1].sends({ kind: "ended", why: "out of memory" });
+  assert.deepEqual(await judgments[0]!.result, { passes: true });
+  await assert.rejects(judgments[1]!.result, /out of memory/);
+  judgments[2]!.stop();
+  await assert.rejects(judgments[2]!.result, /stopped/);
+  assert.ok(workers.every(({ ended }) => ended));
 });

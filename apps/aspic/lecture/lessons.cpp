@@ -32,7 +32,9 @@ enum class Shape { of_the_scene, real_mesh };
 struct Staging {
   const char* demonstration;  // its key
   const char* part = "";      // appended to the title if a demonstration has several lessons
-  const char* look;
+  const char* look;           // includes one thing to try
+  const char* question;       // for the reader
+  const char* answer;
   const char* panel = "energy";
   const char* scene = "";  // scene of scenes/lecture; empty: none
   const char* field = "";  // field for colors
@@ -73,6 +75,9 @@ const std::vector<Staging>& stagings() {
            "The thin wires are the edges of tets at the surface: come closer to see them. So that it moves while you "
            "watch, this mesh has fewer tets than the slide's; aspic lecture 2 simulates more than 100 000. Press S, "
            "and choose the chart \"Time by stage over the iterations\": it shows the wall time of the step.",
+       .question = "Which stage of a step grows fastest when the mesh gets finer: assembly or the linear solve?",
+       .answer = "The linear solve. Assembly grows in proportion to the tets; the factorization of a mesh of n "
+                 "vertices in space takes about n^2 operations.",
        .panel = "microscope",
        .scene = "02_fine_mesh"},
       {.demonstration = "03_tissue",
@@ -80,71 +85,108 @@ const std::vector<Staging>& stagings() {
            "The colors show Young's modulus: stiff skin over soft fat over muscle. Play: the indenter sinks in, and "
            "the energy V in the plot grows faster than the square of its depth because the tissue stiffens. Color "
            "by von Mises stress to see where it is loaded.",
+       .question = "The indenter sinks twice as deep. Does V become four times as large?",
+       .answer = "More than that. V of a linear material grows with the square of the depth; this tissue stiffens "
+                 "under compression.",
        .scene = "03_tissue",
        .field = "young",
        .shape = Shape::of_the_scene},
       {.demonstration = "05-09_equation_of_motion",
        .look = "Play: V falls while T rises, and vice versa, as M q'' = -dV/dq exchanges them. Shift and click "
                "on a vertex to read where its three entries are in q.",
+       .question = "At which moments is T largest?",
+       .answer = "When V is smallest: T + V changes only by what the integrator dissipates.",
        .scene = "05_swing"},
       {.demonstration = "06_chutes",
        .look =
            "Play: the bodies fall on the chutes, slide and tumble to the floor. Dots are contact points, colored by "
            "pressure. Drag a body against the other, or up a chute: nothing intersects. The energy plot has a curve "
            "for contact.",
+       .question = "Why does no surface ever pass through another, although nothing is corrected afterwards?",
+       .answer = "The barrier is infinite where surfaces touch, so no minimizer touches; and every iterate moves only "
+                 "as far as no two surfaces meet on the way.",
        .scene = "06_chutes"},
       {.demonstration = "08-10_springs_beside_elements",
-       .look = "The same mesh twice, elements on the left and springs along the edges on the right: both obey the same "
-               "equation with another V. Springs do not resist changes of volume and sag differently.",
+       .look =
+           "Play, then drag each: elements on the left, springs along the edges on the right, on the same mesh. Both "
+           "obey the same equation with another V. Springs do not resist changes of volume and sag differently.",
+       .question = "On what does V depend in each of the two meshes?",
+       .answer = "Springs: on the lengths of the edges only. Elements: on the deformation gradient F of each tet, and "
+                 "so on its change of volume det F.",
        .scene = "08_springs_beside_elements"},
       {.demonstration = "10-18_differences",
-       .look = "The same motion in steps of h and of h/2: differences of q approximate its derivatives, more "
-               "accurately for shorter steps. See how the two bodies drift apart, and how much more T the shorter "
-               "steps keep.",
+       .look =
+           "The same motion in steps of h and of h/2: differences of q approximate its derivatives, more "
+           "accurately for shorter steps. Play and see how the two bodies drift apart, and how much more T the shorter "
+           "steps keep.",
+       .question = "What happens to the errors of (q_i - q_(i-1)) / h and of the second difference when h is halved?",
+       .answer = "The error of the first halves, that of the second falls to a quarter at t_i, because it is symmetric "
+                 "about it.",
        .scene = "05_swing",
        .comparison = {{{"time.step=0.005"}, "h / 2"}}},
       {.demonstration = "19-22_explicit_or_implicit",
        .look =
            "With steps this short both schemes give the same motion; where dV/dq is evaluated hardly matters. Make h "
            "ten times as long and play again: only one of them stays stable.",
+       .question = "Both schemes share M, q~ and V. What makes only one of them unstable for long steps?",
+       .answer = "The explicit scheme extrapolates the force at q_i. A vibration of angular frequency w grows if h > 2 "
+                 "/ w; the implicit force at q_(i+1) always opposes it.",
        .scene = "05_swing",
        .shape = Shape::of_the_scene,
        .overrides = {"time.step=5e-4", "solver.mass=lumped"},
        .comparison = {{{"time.integrator=symplectic_euler"}, "explicit"}}},
       {.demonstration = "23_printed_forward_euler",
-       .look = "Left the printed formula, which is symplectic Euler, right the classical forward Euler, both with the "
+       .look = "Play: left the printed formula, which is symplectic Euler, right the classical forward Euler, both "
+               "with the "
                "same h. T + V of the printed one stays in a band, that of the classical one grows until it explodes.",
+       .question = "Where do the two formulas evaluate dV/dq?",
+       .answer = "The printed one at q_i, the classical one at q_(i-1). The force that is late by one step adds energy "
+                 "to every vibration.",
        .scene = "05_swing",
        .shape = Shape::of_the_scene,
        .overrides = {"time.step=5e-4", "solver.mass=lumped", "time.integrator=symplectic_euler", "gravity=[0, 0, 0]"},
        .comparison = {{{"time.integrator=forward_euler"}, "classical"}}},
       {.demonstration = "24_backward_euler",
-       .look =
-           "Left backward Euler, right the explicit scheme with the same h = 0.01 s. The explicit one explodes within "
-           "a few steps; backward Euler needs a minimization per step and dissipates energy.",
+       .look = "Play: left backward Euler, right the explicit scheme with the same h = 0.01 s. The explicit one "
+               "explodes within "
+               "a few steps; backward Euler needs a minimization per step and dissipates energy.",
+       .question = "What is the price of this stability?",
+       .answer =
+           "A minimization per step, and numerical damping: T + V falls although the equation dissipates nothing.",
        .scene = "05_swing",
        .overrides = {"gravity=[0, 0, 0]"},
        .comparison = {{{"time.integrator=symplectic_euler"}, "explicit"}}},
       {.demonstration = "25_drag",
        .look = "A recorded mouse pulls the highest point by a spring: the line shows the spring, the number its force. "
                "Take over at any time and pull; the energy plot shows the work of the mouse.",
+       .question = "Where does the energy of the body come from?",
+       .answer = "From the work of the mouse, the force of the spring times the motion of the cursor. It equals the "
+                 "gain of energy plus the losses.",
        .scene = "25_drag",
        .overrides = {"spring=[]"},
        .drag = slow_drag()},
       {.demonstration = "26-31_optimization",
        .look = "Take single steps and choose an iteration: the gradient of E is the residual of the equation. Where it "
                "is zero, E has its minimum and the equation holds.",
+       .question = "Is every point where the gradient of E is zero a minimum?",
+       .answer = "No, V is not convex: it may be a saddle or a maximum. For short steps the term with M dominates and "
+                 "E is convex; then the solution is unique.",
        .panel = "microscope",
        .scene = "05_swing"},
       {.demonstration = "32_one_minimization_per_step",
        .look = "Take one iteration at a time: the body moves a little and E falls at a fixed time. The step "
                "is complete when the minimization has converged.",
+       .question = "What changes in E from one step to the next?",
+       .answer = "q~, which moves the minimum of the inertia term; V changes only by moving pins and loads.",
        .panel = "microscope",
        .scene = "05_swing"},
       {.demonstration = "33-34_explosion",
        .part = "explicit",
        .look = "The same mouse drags both: left implicit, right explicit. The explicit scheme explodes within a few "
-               "steps and ends; the implicit one continues, and stays stable whatever you do with the mouse.",
+               "steps and ends; the implicit one continues, and stays stable: take over and pull as hard as you can.",
+       .question = "The implicit scheme is stable for every h. Is it also accurate?",
+       .answer =
+           "No. Stable means that errors do not grow; long steps still damp the motion. Make h shorter and compare.",
        .scene = "33_mouse",
        .overrides = {"spring=[]"},
        .comparison = {{{"time.integrator=symplectic_euler"}, "explicit"}},
@@ -152,7 +194,11 @@ const std::vector<Staging>& stagings() {
       {.demonstration = "33-34_explosion",
        .part = "linearized",
        .look = "The same mouse drags both: left one minimization per step, right one linear system per step. Where the "
-               "body bends far, the linear system is inaccurate and the energy grows.",
+               "body bends far, the linear system is inaccurate and the energy grows. Halve h and reset: how far does "
+               "it come now?",
+       .question = "How is the linearized scheme related to Newton's method?",
+       .answer =
+           "It is the first iteration with the full step, without a line search and without a test of the residual.",
        .scene = "33_mouse",
        .overrides = {"spring=[]"},
        .comparison = {{{"time.integrator=linearly_implicit_euler"}, "linearized"}},
@@ -161,24 +207,36 @@ const std::vector<Staging>& stagings() {
        .look =
            "Choose an iteration: with q = q_i + h v the same E is a function of the velocities, its minimum the same "
            "motion. Only the labels of the axes would change.",
+       .question = "The first form has h^2 in front of V, this one does not. Why is the motion the same?",
+       .answer = "Because q - q~ = h (v - v_i), E(q) = h^2 E(v). A constant factor does not move the minimum.",
        .panel = "microscope",
        .scene = "05_swing"},
       {.demonstration = "38-42_gradient_descent",
        .part = "Rosenbrock's valley",
        .look = "Each step follows the steepest descent across the valley, so the path zig-zags. 200 "
                "iterations are not enough. Drag the start elsewhere, or choose Newton's method for the same start.",
+       .question = "Why do successive steps turn by nearly right angles?",
+       .answer = "A step ends about where E stops falling along its direction. There the gradient has no component "
+                 "along that direction.",
        .panel = "functions",
        .function = question("rosenbrock", -1, -0.5, {{"method", "gradient_descent"}})},
       {.demonstration = "38-42_gradient_descent",
        .part = "two bumps",
        .look = "Where the level lines are nearly circles the gradient points at the minimum and a few dozen iterations "
                "are enough. Drag the start to the other side of the bump and compare the paths.",
+       .question = "Which number decides how fast gradient descent converges near a minimum?",
+       .answer = "The condition number of the Hessian, its largest divided by its smallest eigenvalue. It is 1 if the "
+                 "level lines are circles.",
        .panel = "functions",
        .function = question("two_bump", -0.3, 0.9, {{"method", "gradient_descent"}})},
       {.demonstration = "38-42_gradient_descent",
        .part = "a step of a body",
-       .look = "Left Newton's method, right gradient descent on the same steps, to the same tolerance. Compare the "
-               "number of iterations and the time that each step takes.",
+       .look =
+           "Play: left Newton's method, right gradient descent on the same steps, to the same tolerance. Compare the "
+           "number of iterations and the time that each step takes.",
+       .question = "An iteration of gradient descent is cheaper. Why does its step take longer?",
+       .answer = "It needs far more iterations: stiff and soft deformations together make the condition number of the "
+                 "Hessian large.",
        .panel = "microscope",
        .scene = "05_swing",
        .shape = Shape::of_the_scene,
@@ -187,6 +245,8 @@ const std::vector<Staging>& stagings() {
       {.demonstration = "43-51_quadratic_model",
        .look = "The second surface is the quadratic model: it touches E at the iterate and has the same slope and "
                "curvature there. Newton's step goes to the model's lowest point; step through the iterations.",
+       .question = "For which E is one iteration of Newton's method enough?",
+       .answer = "For a quadratic E with a positive definite Hessian: the model is then E itself.",
        .panel = "functions",
        .function = question("rosenbrock", -0.8, 0.3, {{"method", "newton"}})},
       {.demonstration = "53+62_pure_newton",
@@ -194,18 +254,28 @@ const std::vector<Staging>& stagings() {
                "iteration. Choose B above the table: right E jumps far up in the first iteration, the iterates end "
                "outside the range "
                "of numbers, and the body stays squashed because its step has no result.",
+       .question = "Both start at the same point with the same direction. Why does E rise without a line search?",
+       .answer = "The model is accurate only near the iterate. The full step leaves this region and inverts tets; a "
+                 "shorter one does not.",
        .panel = "microscope",
        .scene = "53_hard_step",
        .comparison = {{{"solver.line_search.test=none"}, "without line search"}}},
       {.demonstration = "54-59_overshoot",
        .look = "The minimum of the model is E = 0, but the true E there is a hundred times as high as at the start. "
-               "A quarter of the same step lies lower: the line search finds it.",
+               "A quarter of the same step lies lower: the line search finds it. Drag the start along the valley to "
+               "where the full step succeeds.",
+       .question = "Why does a short enough step along this direction always lower E?",
+       .answer =
+           "The slope of E along d is d'g = -d'H d, which is negative if H is positive definite: E falls at first.",
        .panel = "functions",
        .function = question("rosenbrock", 0, 0, {{"method", "newton"}})},
       {.demonstration = "60-61_backtracking",
        .look = "Take one step and choose an iteration with several trials: those above the line are rejected, alpha "
                "shrinks by p until one lies below. Change \u03b1_max, c and p in the settings, Line search, and step "
                "again.",
+       .question = "What happens for c = 0, and for c > 1/2?",
+       .answer = "c = 0 accepts any decrease, however small, so the iterates may stall. c > 1/2 rejects Newton's full "
+                 "step even on a quadratic E, which lowers E by half of its slope.",
        .panel = "microscope",
        .scene = "53_hard_step"},
   };
@@ -298,6 +368,8 @@ Lesson lesson_of(const Demonstration& demonstration, const Staging& staging, con
                 .title = demonstration.title + (part.empty() ? "" : ": " + part),
                 .claim = demonstration.claim,
                 .look = staging.look,
+                .question = staging.question,
+                .answer = staging.answer,
                 .panel = staging.panel};
   if (!staging.function.is_null()) lesson.function = staging.function.dump();
   if (*staging.scene) set_scene(staging, place, lesson);

@@ -35,7 +35,7 @@ bool Measure::holds() const {
   return relation == Relation::shown || value == bound;
 }
 
-Sheet::Sheet(std::filesystem::path folder) : folder_(std::move(folder)) {
+Sheet::Sheet(std::filesystem::path folder, Pictures pictures) : folder_(std::move(folder)), pictures_(pictures) {
   std::error_code error;
   std::filesystem::create_directories(folder_, error);
   if (error) throw InvalidInput(folder_.string() + ": cannot be created: " + error.message());
@@ -71,6 +71,7 @@ void Sheet::draw_by(const std::string& name, const std::string& caption,
 }
 
 void Sheet::draw(const std::string& name, const std::string& caption, MeshPicture picture) {
+  if (pictures_ == Pictures::none) return;
   meshes_.push_back({{folder_ / name, caption}, std::move(picture)});
 }
 
@@ -100,6 +101,7 @@ bool Sheet::passes() const {
 }
 
 bool Sheet::can_draw() {
+  if (pictures_ == Pictures::none) return false;
   if (!has_gnuplot() && !reported_missing_) remark("no charts: gnuplot is not installed (Debian package gnuplot-nox)");
   reported_missing_ = !has_gnuplot();
   return has_gnuplot();

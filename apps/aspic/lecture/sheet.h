@@ -28,10 +28,12 @@ struct Measure {
 };
 std::string to_string(Relation relation);
 
+enum class Pictures { drawn, none };
+
 class Sheet {
  public:
   // Writes to `folder`, which is created. Throws InvalidInput.
-  explicit Sheet(std::filesystem::path folder);
+  explicit Sheet(std::filesystem::path folder, Pictures pictures = Pictures::drawn);
 
   void at_most(std::string what, double value, double bound, std::string unit, std::string reason);
   void at_least(std::string what, double value, double bound, std::string unit, std::string reason);
@@ -64,9 +66,10 @@ class Sheet {
     MeshPicture picture;
   };
 
-  bool can_draw();  // reports once that gnuplot is missing
+  bool can_draw();  // reports once if gnuplot is missing
 
   std::filesystem::path folder_;
+  Pictures pictures_;
   std::vector<Measure> measures_;
   std::vector<std::string> remarks_;
   std::vector<Figure> figures_;

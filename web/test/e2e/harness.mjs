@@ -169,7 +169,8 @@ async function listenToWorker(page, heard) {
         });
       }
       postMessage(message, ...more) {
-        if (typeof message === "string" && message !== "ready") void window.sentToWorker(message);
+        const text = message.message; // host.ts
+        if (typeof text === "string" && text !== "ready") void window.sentToWorker(text);
         super.postMessage(message, ...more);
       }
     };

@@ -1,0 +1,76 @@
+// Starts the engine's worker in this page or, for a page from a file, in a sandboxed frame.
+//
+// A busy worker reads no messages, and only isolated pages share memory with it. So the worker loads an empty script from
+// a URL, the flag, from time to time: once its owner has revoked the flag, this fails, and the work stops. Browsers let a
+// worker load such a URL if the page comes from a server or is sandboxed, but not if it comes from a file.
+
+export interface Flagged<Message> {
+  message: Message;
+  flag: string; // URL; revoked: stop
+}
+
+export interface EngineWorker<Message> {
+  onmessage: ((message: string | ArrayBuffer) => void) | null;
+  send(message: Message, stops: boolean): void; // `stops`: the worker drops its current work
+  end(): void;
+}
+
+interface Request {
+  message: unknown;
+  stops: boolean;
+}
+
+// Runs the script in a worker, which posts to `port`. Returns a function that passes a request to it. The frame contains
+// the text of this function, so it uses nothing outside.
+function startHere(script: string, port: MessagePort): { pass: (request: Request) => void; end: () => void } {
+  const urlOf = (text: string): string => URL.createObjectURL(new Blob([text], { type: "text/javascript" }));
+  const worker = new Worker(urlOf(script));
+  let flag = urlOf("");
+  worker.onmessage = ({ data }: MessageEvent<string | ArrayBuffer>) => port.postMessage(data, typeof data === "string" ? [] : [data]);
+  worker.onerror = (event) => port.postMessage(JSON.stringify({ kind: "ended", why: event.message }));
+  const pass = ({ message, stops }: Request): void => {
+    if (stops) {
+      URL.revokeObjectURL(flag);
+      flag = urlOf("");
+    }
+    worker.postMessage({ message, flag });
+  };
+  return { pass, end: () => worker.terminate() };
+}
+
+const kFrameScript = `let started;
+onmessage = ({ data, ports }) => started ? started.pass(data) : (started = (${startHere.toString()})(data, ports[0]));`;
+
+// A frame like startHere(). It keeps requests until it has loaded.
+function startInFrame(script: string, port: MessagePort): ReturnType<typeof startHere> {
+  const frame = document.createElement("iframe");
+  frame.setAttribute("sandbox", "allow-scripts");
+  frame.hidden = true;
+  frame.srcdoc = `<script>${kFrameScript.replaceAll("</", "<\\/")}</script>`;
+  const waiting: Request[] = [];
+  const send = (request: Request): void => frame.contentWindow?.postMessage(request, "*");
+  let hasLoaded = false;
+  frame.onload = () => {
+    frame.contentWindow?.postMessage(script, "*", [port]);
+    hasLoaded = true;
+    waiting.forEach(send);
+  };
+  document.body.append(frame);
+  return { pass: (request) => void (hasLoaded ? send(request) : waiting.push(request)), end: () => frame.remove() };
+}
+
+export function startWorker<Message>(script: string): EngineWorker<Message> {
+  const { port1, port2 } = new MessageChannel();
+  const start = location.protocol === "file:" ? startInFrame : startHere;
+  const { pass, end } = start(script, port2);
+  const worker: EngineWorker<Message> = {
+    onmessage: null,
+    send: (message, stops) => pass({ message, stops }),
+    end: () => {
+      worker.onmessage = null;
+      end();
+    },
+  };
+  port1.onmessage = ({ data }: MessageEvent<string | ArrayBuffer>) => worker.onmessage?.(data);
+  return worker;
+}
