@@ -11,11 +11,12 @@ namespace aspic {
 namespace {
 
 // Larger margins reduce the searches but add pairs: few within a part, where most features are an edge apart.
-constexpr double kMargin = 0.03;       // relative to the mean edge at a point
-constexpr double kMarginWithin = 0.1;  // the same for pairs of one part
-constexpr double kLonger = 0.1;        // relative to the displacement of a point, but at most kMostMargins margins
-constexpr double kMostMargins = 4;
+constexpr double kMargin = 0.05;        // relative to the mean edge at a point
+constexpr double kMarginWithin = 0.15;  // the same for pairs of one part
+constexpr double kLonger = 0.1;         // relative to the displacement of a point
+constexpr double kMostMargins = 4;      // the most that kLonger adds within a part, relative to the margin
 constexpr double kRounding = 1e-6;
+constexpr double kMinShrink = 0.995;  // minimum shrink for which candidates are complete
 
 // Returns margins of at least half the reach, which the distances at rest need.
 std::vector<double> margins(PairScope scope, const ContactMesh& mesh, double least) {
@@ -71,20 +72,21 @@ class CandidateSearch::Near : public PairFilter {
         edges_b_(std::span(search.mesh_.edges).subspan(search.surfaces_[b].first_edge)),
         triangles_b_(std::span(search.mesh_.triangles).subspan(search.surfaces_[b].first_triangle)),
         reach_((1 + kRounding) * (search.laws_(a, b).radius + search.laws_(a, b).reach)),
-        edge_reach_((1 + kRounding) * (search.laws_(a, b).radius + search.laws_(a, b).edge_reach)) {}
+        edge_reach_((1 + kRounding) * (search.laws_(a, b).radius + search.laws_(a, b).edge_reach)),
+        shrink_(search.least_shrink()) {}
 
   bool accepts_vertex_triangle(int v, int t) const override {
     const int p = first_point_ + v;
     const auto& [a, b, c] = triangles_b_[t];
     const auto& x = search_.start_;
-    return point_triangle_distance({x[p], x[a], x[b], x[c]}).d <=
+    return shrink_ * point_triangle_distance({x[p], x[a], x[b], x[c]}).d <=
            reach_ + std::max({closing(p, a), closing(p, b), closing(p, c)});
   }
   bool accepts_edge_edge(int first, int second) const override {
     const auto& [a, b] = edges_a_[first];
     const auto& [e, f] = edges_b_[second];
     const auto& x = search_.start_;
-    return edge_edge_distance({x[a], x[b], x[e], x[f]}).d <=
+    return shrink_ * edge_edge_distance({x[a], x[b], x[e], x[f]}).d <=
            edge_reach_ + std::max({closing(a, e), closing(a, f), closing(b, e), closing(b, f)});
   }
 
@@ -98,7 +100,7 @@ class CandidateSearch::Near : public PairFilter {
   int first_point_;
   std::span<const Edge> edges_a_, edges_b_;
   std::span<const Triangle> triangles_b_;
-  double reach_, edge_reach_;
+  double reach_, edge_reach_, shrink_;
 };
 
 CandidateSearch::CandidateSearch(PairScope scope, const ContactMesh& mesh, const ContactLaws& laws)
@@ -116,9 +118,8 @@ CandidateSearch::CandidateSearch(PairScope scope, const ContactMesh& mesh, const
   }
 }
 
-// Returns the path in the frame of each body at its start, without the motion of its center.
 CandidateSearch::Path CandidateSearch::path(std::span<const Vec3d> x, std::span<const Vec3d> d) const {
-  Path path{{x.begin(), x.end()}, {x.begin(), x.end()}};
+  Path path{{x.begin(), x.end()}, {x.begin(), x.end()}, std::vector<double>(x.size(), 1.0)};
   for (size_t i = 0; i < d.size(); ++i) path.to[i] = x[i] + d[i];
   if (scope_ == PairScope::between_parts) return path;
   for (const ContactPart& part : mesh_.parts) {
@@ -129,13 +130,23 @@ CandidateSearch::Path CandidateSearch::path(std::span<const Vec3d> x, std::span<
       continue;
     }
     if (part.point_count == 0) continue;
-    const Frame frame = frame_of(of_part(mesh_.rest), of_part(x));
-    const Vec3d end = d.empty() ? frame.center : mean(of_part(path.to));
-    for (Vec3d& p : of_part(path.from)) p = transpose(frame.rotation) * (p - frame.center);
-    for (Vec3d& p : of_part(path.to)) p = transpose(frame.rotation) * (p - end);
+    const Frame from = frame_of(of_part(mesh_.rest), of_part(x));
+    Frame to = d.empty() ? from : frame_of(of_part(mesh_.rest), of_part(path.to));
+    const double cosine = (trace(transpose(from.rotation) * to.rotation) - 1) / 2;
+    double shrink = std::sqrt(std::max(0.0, (1 + cosine) / 2)) - kRounding;
+    if (!(shrink >= kMinShrink)) to.rotation = from.rotation, shrink = 1;
+    for (Vec3d& p : of_part(path.from)) p = transpose(from.rotation) * (p - from.center);
+    for (Vec3d& p : of_part(path.to)) p = transpose(to.rotation) * (p - to.center);
+    std::fill_n(path.shrink.begin() + part.first_point, part.point_count, shrink);
   }
   return path;
 }
+
+double CandidateSearch::least_shrink() const { return scope_ == PairScope::within_parts ? kMinShrink : 1; }
+
+// Points x, y in frames with rotations I and R, and those on the line between them, differ from (1 - t) x + t y, turned
+// by a factor that shrinks it at most, by t (1 - t) |(I - R) (y - x)| <= twist |y - x|.
+double CandidateSearch::twist() const { return std::sqrt(1 - least_shrink() * least_shrink()) / 2; }
 
 // Returns whether the candidates are complete at x, which has the least squared distance to start_ + t move_ where it
 // is tested.
@@ -156,7 +167,8 @@ void CandidateSearch::surround(const Path& path) {
   by_.resize(n);
   for (size_t p = 0; p < n; ++p) {
     move_[p] = path.to[p] - path.from[p];
-    by_[p] = margin_[p] + std::min(kLonger * norm(move_[p]), kMostMargins * margin_[p]);
+    const double most = scope_ == PairScope::within_parts ? kMostMargins * margin_[p] : Box::kInfinity;
+    by_[p] = margin_[p] + std::min(kLonger * norm(move_[p]), most);
   }
 }
 
@@ -167,7 +179,7 @@ std::optional<PathCandidates> CandidateSearch::along(std::span<const Vec3d> x, s
     candidates_ = find();
   }
   if (!candidates_) return {};
-  PathCandidates found{candidates_, std::move(wanted.from), std::move(wanted.to)};
+  PathCandidates found{candidates_, std::move(wanted.from), std::move(wanted.to), std::move(wanted.shrink)};
   for (size_t p = 0; p < x.size(); ++p) {
     found.from[p] = found.from[p] - start_[p];
     found.to[p] = found.to[p] - start_[p];
@@ -199,7 +211,10 @@ bool CandidateSearch::find_pairs(ClosePairs& all) {
     return found.is_complete && all.vertex_triangle.size() <= limit && all.edge_edge.size() <= limit;
   };
   const int parts = static_cast<int>(surfaces_.size());
-  const double radius = (1 + kRounding) * laws_.largest_reach() / 2;
+  const double radius = (1 + kRounding) * laws_.largest_reach() / (2 * least_shrink());
+  std::vector<double> by(by_);
+  for (size_t p = 0; p < by.size(); ++p)
+    by[p] = (1 + kRounding) * (by_[p] + twist() * (norm(move_[p]) + 2 * by_[p]) / least_shrink());
   std::vector<double> radii(std::max({mesh_.rest.size(), mesh_.edges.size(), mesh_.triangles.size()}));
   const auto query_of = [&](int part, const PairFilter* filter) {
     const SurfacePrimitives& own = surfaces_[part].finder.primitives();
@@ -207,7 +222,7 @@ bool CandidateSearch::find_pairs(ClosePairs& all) {
     std::fill_n(radii.begin(), count, radius + mesh_.parts[part].radius);
     return PairQuery{.x = start_,
                      .dx = move_,
-                     .by = by_,
+                     .by = by,
                      .vertex_radius = std::span(radii).first(own.vertices.size()),
                      .edge_radius = std::span(radii).first(own.edges.size()),
                      .triangle_radius = std::span(radii).first(own.triangles.size()),

@@ -35,17 +35,21 @@ struct ContactCandidates {
 };
 
 // Candidates for a path of all points, with its ends relative to the positions at the search. The points of a pair move
-// together, so their relative displacement bounds the change of its gap.
+// together, so their relative displacement bounds the change of its gap. Between frames that differ by a rotation of
+// angle a, the distance of points that are fixed to them shrinks at most by the factor cos(a / 2), which bounds the
+// singular values of (1 - t) I + t R.
 struct PathCandidates {
   std::shared_ptr<const ContactCandidates> pairs;
   std::vector<Vec3d> from, to;  // displacements of each point since the search [m]
+  std::vector<double> shrink;   // cos(a / 2) of the part of each point
 
   // Return lower bounds of the gap along the path.
   double least_gap(int point, const NearTriangle& near, const Triangle& t) const {
-    return near.gap - std::max({apart(point, t[0]), apart(point, t[1]), apart(point, t[2])});
+    return shrink[point] * near.gap - std::max({apart(point, t[0]), apart(point, t[1]), apart(point, t[2])});
   }
   double least_gap(const EdgePair& pair, const Edge& a, const Edge& b) const {
-    return pair.gap - std::max({apart(a[0], b[0]), apart(a[0], b[1]), apart(a[1], b[0]), apart(a[1], b[1])});
+    return shrink[a[0]] * pair.gap -
+           std::max({apart(a[0], b[0]), apart(a[0], b[1]), apart(a[1], b[0]), apart(a[1], b[1])});
   }
 
  private:
@@ -73,6 +77,7 @@ class CandidateSearch {
  private:
   struct Path {
     std::vector<Vec3d> from, to;
+    std::vector<double> shrink;  // per point
   };
   // The primitives of a part: their first indices in the mesh, and trees over them.
   struct Surface {
@@ -82,6 +87,8 @@ class CandidateSearch {
   class Near;
 
   Path path(std::span<const Vec3d> x, std::span<const Vec3d> d) const;
+  double least_shrink() const;
+  double twist() const;
   bool covers(std::span<const Vec3d> x) const;
   void surround(const Path& path);
   SweptBox bounds_of(int part, double radius) const;

@@ -29,9 +29,8 @@ class LagUpdates {
     if (is_current_) return false;
     return end ? is_success(*end) : report.reached <= next_ * report.threshold;
   }
-  void update(std::span<const double> x, bool is_minimum) {
-    minima_ += is_minimum;
-    E_->update_lagged(x, minima_ > kTurning);
+  void update(std::span<const double> x) {
+    E_->update_lagged(x, ++updates_ > kTurning);
     is_current_ = true;
   }
   // Returns how the minimization ends after an update. before, after: its ends without and with the update.
@@ -51,9 +50,9 @@ class LagUpdates {
  private:
   // Updates in every iteration would cycle: contact forces jump between short steps.
   static constexpr double kReduction = 0.5;  // of the forces until the next update
-  static constexpr double kLess = 0.1;       // factor of this reduction after an update without progress
-  // Updates at minimizers with all directions: normals rotate within a small gap around an edge and would alternate.
-  static constexpr int kTurning = 2;
+  static constexpr double kLess = 0.3;       // factor of this reduction after an update without progress
+  // Updates with all directions. Normals rotate within a small gap around an edge, and updates would alternate.
+  static constexpr int kTurning = 12;
   static constexpr double kProgress = 0.9;  // updates at minimizers that reduce the forces by less are stalled
   static constexpr double kNoise = 100;     // forces below this multiple of their rounding error are noise
   static constexpr int kStalled = 3;        // updates that end in noise before the minimization ends there
@@ -65,7 +64,7 @@ class LagUpdates {
   double least_ = kInfinity;
   double changed_ = kInfinity;  // forces after the last update
   double reduction_ = kReduction;
-  int minima_ = 0;  // updates at minimizers
+  int updates_ = 0;
   int stalled_ = 0;
 };
 

@@ -129,7 +129,7 @@ void Minimizer::Impl::begin(Progress& at) {
 Minimizer::Impl::End Minimizer::Impl::update_lagged(Progress& at, End end) {
   MinimizeReport& report = at.report;
   if (!at.lag.is_due(report, end)) return end;
-  at.lag.update(at.x, end.has_value());
+  at.lag.update(at.x);
   at.direction.note_change();
   at.value = at.E.evaluate(at.x);
   at.E.gradient(at.x, g);
