@@ -118,7 +118,8 @@ TEST(PairFinder, AgreesWithBruteForceWhileSurfacesMove) {
 
 // A surface that moves and turns as a whole meets itself nowhere, however long its path is.
 TEST(PairFinder, PointsThatMoveTogetherAreNoPairs) {
-  Scene scene = two_spheres(10, 0);
+  Scene scene = two_spheres(10, 1);
+  scene.dx.assign(scene.x.size(), {});
   PairFinder finder(scene.primitives);
   const ClosePairs at_rest = find(finder, scene);
   for (Vec3d& dx : scene.dx) dx = {{5, -3, 2}};
