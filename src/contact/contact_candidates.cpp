@@ -145,8 +145,8 @@ CandidateSearch::Path CandidateSearch::path(std::span<const Vec3d> x, std::span<
 double CandidateSearch::least_shrink() const { return scope_ == PairScope::within_parts ? kMinShrink : 1; }
 
 // A difference of two points that is y0 in a frame at the start and y1 in one at the end, which is turned by R, is
-// z = (1 - t) y0 + t R y1 on the way. With y = (1 - t) y0 + t y1 and M = (1 - t) I + t R, which shrinks y at most by the
-// factor above, |z - M y| = t (1 - t) |(I - R) (y1 - y0)| <= twist |y1 - y0|.
+// z = (1 - t) y0 + t R y1 on the way. With y = (1 - t) y0 + t y1 and M = (1 - t) I + t R, which shrinks y at most by
+// the factor above, |z - M y| = t (1 - t) |(I - R) (y1 - y0)| <= twist |y1 - y0|.
 double CandidateSearch::twist() const { return std::sqrt(1 - least_shrink() * least_shrink()) / 2; }
 
 // Returns whether the candidates are complete at x, which has the least squared distance to start_ + t move_ where it
