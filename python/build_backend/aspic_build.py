@@ -1,6 +1,6 @@
 """PEP 517 backend without requirements: CMake builds and installs the package, this makes a wheel of it.
 
-pip install . compiles for this processor; pip wheel . --config-settings portable=1 for any x86-64-v3 one. The build folder
+pip install . compiles for this processor; pip wheel . --no-deps --config-settings portable=1 for any x86-64-v3 one. The build folder
 build/wheel is kept, so that a second installation takes seconds. It needs the compiler and the libraries of CONTRIBUTING.md.
 The wheel also has the program `aspic`, which view() starts, and its scenes.
 """
@@ -62,9 +62,12 @@ def _write_wheel(directory, files):
         return f"{name},sha256={digest},{len(data)}\n"
 
     files[f"{info}/RECORD"] = ("".join(line(*file) for file in files.items()) + f"{info}/RECORD,,\n").encode()
-    with zipfile.ZipFile(pathlib.Path(directory) / f"{NAME}-{TAG}.whl", "w", zipfile.ZIP_DEFLATED) as wheel:
+    with zipfile.ZipFile(pathlib.Path(directory) / f"{NAME}-{TAG}.whl", "w") as wheel:
         for name, data in files.items():
-            wheel.writestr(name, data)
+            entry = zipfile.ZipInfo(name)
+            entry.compress_type = zipfile.ZIP_DEFLATED
+            entry.external_attr = (0o100755 if "/scripts/" in name else 0o100644) << 16  # mode, of a regular file
+            wheel.writestr(entry, data)
     return f"{NAME}-{TAG}.whl"
 
 
