@@ -30,12 +30,15 @@ class LagUpdates {
     return end ? is_success(*end) : report.reached <= next_ * report.threshold;
   }
   void update(std::span<const double> x) {
-    E_->update_lagged(x, ++updates_ > kTurning);
+    E_->update_lagged(x, ++counted_ > kTurning);
     is_current_ = true;
   }
   // Returns how the minimization ends after an update. before, after: its ends without and with the update.
   End end_after(const MinimizeReport& report, double round_off, End before, End after) {
-    if (!(report.reached < kProgress * changed_)) reduction_ *= kLess;
+    if (!(report.reached < kProgress * changed_)) {
+      reduction_ *= kLess;
+      counted_ += kWithoutProgress;
+    }
     changed_ = report.reached;
     next_ = report.threshold > 0 ? std::max(1.0, reduction_ * report.reached / report.threshold) : 1;
     if (after) return after;
@@ -53,6 +56,7 @@ class LagUpdates {
   static constexpr double kLess = 0.3;       // factor of this reduction after an update without progress
   // Updates with all directions. Normals rotate within a small gap around an edge, and updates would alternate.
   static constexpr int kTurning = 12;
+  static constexpr int kWithoutProgress = 2;  // an update that did not reduce the forces counts for so many more
   static constexpr double kProgress = 0.9;  // updates at minimizers that reduce the forces by less are stalled
   static constexpr double kNoise = 100;     // forces below this multiple of their rounding error are noise
   static constexpr int kStalled = 3;        // updates that end in noise before the minimization ends there
@@ -64,7 +68,7 @@ class LagUpdates {
   double least_ = kInfinity;
   double changed_ = kInfinity;  // forces after the last update
   double reduction_ = kReduction;
-  int updates_ = 0;
+  int counted_ = 0;  // updates
   int stalled_ = 0;
 };
 
