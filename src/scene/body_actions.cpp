@@ -151,8 +151,24 @@ void add_pins(Builder& builder, const PlacedBody& body) {
   }
 }
 
+// The stiffness of a spring at each of the vertices [N/m]: that of the scene times the painted value, if any.
+std::vector<double> stiffness_at(const std::vector<int>& vertices, const Value& spring, const SelectionScope& scope) {
+  std::vector<double> result;
+  for (const int v : vertices) {
+    result.push_back(spring["stiffness"].number() * (scope.painted ? (*scope.painted)[v] : 1));
+    if (!(result.back() > 0))
+      throw error_at(spring["where"].place,
+                     "vertex " + std::to_string(v) + " of body '" + scope.body + "' has the painted value " +
+                         number_text((*scope.painted)[v]) +
+                         ", by which the stiffness of its spring is multiplied: set above = 0 or larger");
+  }
+  return result;
+}
+
 void add_point_springs(Builder& builder, const PlacedBody& body, Value& scene, const std::string& name) {
-  const std::vector<int> vertices = select_vertices(scene["where"], builder.scope(body, scene));
+  const SelectionScope scope = builder.scope(body, scene);
+  const std::vector<int> vertices = select_vertices(scene["where"], scope);
+  const std::vector<double> stiffness = stiffness_at(vertices, scene, scope);
   std::vector<Vec3d> rest = chosen(body.mesh.rest, vertices), targets = chosen(body.start, vertices);
   if (const Value* target = scene.find("target")) {
     targets.assign(vertices.size(), target->vector());
@@ -162,7 +178,7 @@ void add_point_springs(Builder& builder, const PlacedBody& body, Value& scene, c
   for (size_t i = 0; i < vertices.size(); ++i) {
     const Vec3d start = targets[i];
     if (motion) motion(start, 0);  // evaluates the formula early
-    builder.point_springs.push_back({body.model_vertex(vertices[i]), scene["stiffness"].number(),
+    builder.point_springs.push_back({body.model_vertex(vertices[i]), stiffness[i],
                                      [start, motion](double time) { return motion ? motion(start, time) : start; }});
   }
 }

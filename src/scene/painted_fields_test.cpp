@@ -119,6 +119,27 @@ TEST(PaintedFields, SelectsVerticesAboveThreshold) {
   EXPECT_EQ(pinned(with("{ file = \"cube.ply\", name = \"paint\" }")), pinned(with("\"x > 0.51\"")));
 }
 
+TEST(PaintedFields, ScaleTheStiffnessOfSprings) {
+  const TestFolder folder;
+  folder.write("cube.ply", painted_ply(cube_surface(3), [](const Vec3d& X) { return X[0]; }));
+  const auto spring = [](const std::string& where, double stiffness) {
+    return "[[body.spring]]\nwhere = " + where + "\nstiffness = " + number_text(stiffness) + "\n";
+  };
+  const auto stepped = [&](const std::string& springs) {
+    Scene scene = load_scene(folder.write("s.toml", cube(4, springs)));
+    scene.simulation.step();
+    return positions(scene);
+  };
+  const std::vector<double> painted = stepped(spring("{ file = \"cube.ply\", name = \"paint\", above = 0.3 }", 400));
+  const std::vector<double> listed = stepped(spring("\"x > 0.3 && x < 0.6\"", 200) +
+                                             spring("\"x > 0.6 && x < 0.8\"", 300) + spring("\"x > 0.8\"", 400));
+  ASSERT_EQ(painted.size(), listed.size());
+  for (size_t i = 0; i < painted.size(); ++i) EXPECT_NEAR(painted[i], listed[i], 1e-9);
+  EXPECT_THAT(
+      refusal_of(folder.write("s.toml", cube(4, spring("{ file = \"cube.ply\", name = \"paint\", above = -1 }", 400)))),
+      AllOf(HasSubstr("s.toml:"), HasSubstr("painted value 0"), HasSubstr("above = 0")));
+}
+
 TEST(PaintedFields, SelectsTrianglesAndTetsWithAllCorners) {
   const TestFolder folder;
   folder.write("cube.ply", painted_ply(cube_surface(3), [](const Vec3d& X) { return X[0]; }));
