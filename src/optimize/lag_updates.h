@@ -56,7 +56,7 @@ class LagUpdates {
   static constexpr double kLess = 0.3;       // factor of this reduction after an update without progress
   // Updates with all directions. Normals rotate within a small gap around an edge, and updates would alternate.
   static constexpr int kTurning = 12;
-  static constexpr int kWithoutProgress = 2;  // an update that did not reduce the forces counts for so many more
+  static constexpr int kWithoutProgress = 2;  // added to the count for one that did not reduce the forces
   static constexpr double kProgress = 0.9;    // updates at minimizers that reduce the forces by less are stalled
   static constexpr double kNoise = 100;       // forces below this multiple of their rounding error are noise
   static constexpr int kStalled = 3;          // updates that end in noise before the minimization ends there
