@@ -173,9 +173,10 @@ std::vector<double> CurveMisfit::guess(int start) const {
   for (size_t k = 0; k < own_.size(); ++k) {
     const ExtraParameter& extra = info_.extra[own_[k].index];
     double value = extra.fallback;
-    if (start > 0 && extra.max - extra.min > kPowers)
+    if (start > 0 && extra.max - extra.min >= kPowers) {
       value = std::pow(10.0, 3 * unit(random) - 2);  // 0.01 to 10
-    else if (start > 0)
+      if (extra.min < 0 && unit(random) < 0.5) value = -value;
+    } else if (start > 0)
       value = extra.min + unit(random) * (extra.max - extra.min);
     value = std::clamp(value, extra.min, extra.max);
     p.push_back(own_[k].is_log ? std::log(value) : value);

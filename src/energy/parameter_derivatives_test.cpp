@@ -92,7 +92,9 @@ TEST(ParameterDerivatives, MatchDifferencesOfForces) {
       V->set_parameters(bodies.parameters);
       std::vector<double> error(dg.size());
       for (size_t i = 0; i < dg.size(); ++i) error[i] = dg[i] - (8 * (p1[i] - m1[i]) - (p2[i] - m2[i])) / (12 * kStep);
-      const bool is_beyond_reach = info.name == "spline" && k > 6;  // acts at larger strains
+      // They act at larger strains, or not at all: the second term of ogden has no share.
+      const bool is_beyond_reach =
+          (info.name == "spline" && k > 6) || (info.name == "gent" && k == 2) || (info.name == "ogden" && k == 3);
       if (!(info.name == "arap" && k == 1) && !is_beyond_reach) {
         EXPECT_GT(largest(dg), 1e-3) << info.name << " " << k;
       }

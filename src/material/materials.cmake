@@ -13,5 +13,8 @@ set(materials
   "linear Linear"
   "mooney_rivlin MooneyRivlin"
   "fung Fung"
+  "yeoh Yeoh"
+  "gent Gent"
+  "ogden Ogden"
   "spline Spline"
 )

@@ -51,8 +51,9 @@ std::vector<NamedState> smooth_states() {
   states.push_back({"equal singular values, two", random_rotation(random) * diagonal(1.5, 0.8, 0.8)});
   const Mat3d A = random_deformation(random);
   states.push_back({"J = 1e-8, small", std::cbrt(1e-8 / determinant(A)) * A});
+  const bool has_limit = std::is_same_v<M, Gent> || std::is_same_v<M, Ogden>;  // of strains that change the shape
   if (!std::is_same_v<M, Fung>) {  // the exponential of Fung overflows in these
-    states.push_back({"J = 1e-8, flat", {{1, 0, 0, 0.25, 1, 0, -0.5, 0.125, 1e-8}}});
+    if (!has_limit) states.push_back({"J = 1e-8, flat", {{1, 0, 0, 0.25, 1, 0, -0.5, 0.125, 1e-8}}});
     states.push_back({"|F| = 1e6", 1e6 / std::sqrt(squared_norm(A)) * A});
   }
   if (M::info().barrier) return states;
