@@ -14,6 +14,7 @@
 #include "energy/springs.h"
 #include "mesh/surface.h"
 #include "mesh/tet_shape.h"
+#include "scene/body_fibres.h"
 #include "scene/body_grabs.h"
 #include "scene/expression.h"
 #include "scene/motion.h"
@@ -364,6 +365,7 @@ void add_loads(Builder& builder, const Vec3d& gravity) {
     add_springs(builder, body);
     add_pressures(builder, body);
   }
+  add_fibres(builder.bodies, {builder.up, builder.files}, builder.model);
   Model& model = builder.model;
   add_linear_load(model, "body_force", std::move(per_volume));
   add_linear_load(model, "traction", std::move(per_area));

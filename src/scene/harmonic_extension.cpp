@@ -9,7 +9,15 @@
 namespace aspic {
 namespace {
 
-// Gradients of the four linear shape functions [1/m].
+std::vector<char> on_boundary(const TetMesh& mesh) {
+  std::vector<char> flags(mesh.rest.size(), 0);
+  for (const Triangle& triangle : boundary_triangles(mesh, 0, mesh.tet_count()))
+    for (const int v : triangle) flags[v] = 1;
+  return flags;
+}
+
+}  // namespace
+
 std::array<Vec3d, 4> shape_gradients(const TetCorners& X) {
   const Mat3d G = inverse(from_columns(X[1] - X[0], X[2] - X[0], X[3] - X[0]));  // rows: gradients of 1, 2, 3
   std::array<Vec3d, 4> gradients{};
@@ -21,14 +29,12 @@ std::array<Vec3d, 4> shape_gradients(const TetCorners& X) {
   return gradients;
 }
 
-}  // namespace
+HarmonicExtension::HarmonicExtension(const TetMesh& mesh) : HarmonicExtension(mesh, on_boundary(mesh)) {}
 
-HarmonicExtension::HarmonicExtension(const TetMesh& mesh) {
+HarmonicExtension::HarmonicExtension(const TetMesh& mesh, const std::vector<char>& is_given) {
   std::vector<char> is_inner(mesh.rest.size(), 0);
   for (const Tet& tet : mesh.tets)
-    for (const int v : tet) is_inner[v] = 1;
-  for (const Triangle& triangle : boundary_triangles(mesh, 0, mesh.tet_count()))
-    for (const int v : triangle) is_inner[v] = 0;
+    for (const int v : tet) is_inner[v] = !is_given[v];
   std::vector<int> row(mesh.rest.size(), -1);
   for (int v = 0; v < mesh.vertex_count(); ++v) {
     if (is_inner[v]) row[v] = static_cast<int>(inner_.size());
@@ -52,8 +58,8 @@ HarmonicExtension::HarmonicExtension(const TetMesh& mesh) {
   matrix_.analyze(static_cast<int>(inner_.size()), places);
   if (!matrix_.factorize(values))
     throw InvalidInput(
-        "the interior of its painted surface cannot be filled, because tets are too flat or memory is "
-        "too small; use a better or coarser mesh");
+        "a harmonic field cannot be computed, because tets are too flat or memory is too small; use a "
+        "better or coarser mesh");
 }
 
 void HarmonicExtension::extend(std::span<double> values) {

@@ -1,18 +1,26 @@
-// Harmonic fields in a tet mesh: linear finite elements for Laplace's equation with values on the boundary.
+// Harmonic fields in a tet mesh: linear finite elements for Laplace's equation.
 #pragma once
+#include <array>
 #include <span>
 #include <vector>
 
 #include "linalg/scalar_cholesky.h"
 #include "mesh/tet_mesh.h"
+#include "mesh/tet_shape.h"
 
 namespace aspic {
 
+// Gradients of the four linear shape functions of a tet [1/m].
+std::array<Vec3d, 4> shape_gradients(const TetCorners& X);
+
 class HarmonicExtension {
  public:
-  explicit HarmonicExtension(const TetMesh& mesh);  // throws InvalidInput if the matrix cannot be factorized
+  // Values are given on the boundary. Throws InvalidInput if the matrix cannot be factorized.
+  explicit HarmonicExtension(const TetMesh& mesh);
+  // Values are given at the flagged vertices, at least one of each connected part; other boundaries have none.
+  HarmonicExtension(const TetMesh& mesh, const std::vector<char>& is_given);
 
-  // Vertices with given values: those of the boundary, and those without tets.
+  // Vertices with given values, and those without tets.
   const std::vector<int>& given() const { return given_; }
 
   // Fills in the other vertices. The result stays within the range of the given values, which obtuse tets would

@@ -31,6 +31,7 @@ void add_body(Schema& s) {
             key("angular_velocity", kNumbers, "adds omega x (x - center of mass) to the velocity", Units{"rad/s"},
                 Usual{"[0.0, 0.0, 0.0]", "at rest"}),
             key("damping", kTable, "damping", Members{"damping"}, Usual{"{}"}),
+            key("fibre", kTables, "families of fibres", Members{"fibre"}),
             key("pin", kTables, "prescribed positions", Members{"pin"}),
             key("spring", kTables, "springs", Members{"spring"}),
             key("grab", kTables, "points dragged along a path", Members{"grab"}),

@@ -1,0 +1,105 @@
+#include "scene/body_fibres.h"
+
+#include "base/formatted.h"
+#include "energy/fibres.h"
+#include "mesh/tet_shape.h"
+#include "scene/harmonic_extension.h"
+#include "scene/placement.h"
+#include "scene/schema.h"
+#include "scene/selection.h"
+#include "scene/tables.h"
+
+namespace aspic {
+namespace {
+
+struct BodyFibre {
+  PlacedBody& body;
+  Value& scene;
+  const FibreScope& scope;
+
+  std::vector<int> selected(const char* key) const {
+    Value& where = *scene.table().find(key);
+    const bool is_painted = where.is_table() && where.find("file");
+    return select_vertices(where, {body.mesh, scope.up, body.name(),
+                                   is_painted ? &body.painted->at_vertices(where.table(), body.mesh) : nullptr});
+  }
+};
+
+// The potential is 0 at `from` and 1 at `to`, and no flux leaves the rest of the surface.
+std::vector<Vec3d> flow(const BodyFibre& fibre) {
+  const TetMesh& mesh = fibre.body.mesh;
+  std::vector<char> is_given(mesh.rest.size(), 0);
+  std::vector<double> potential(mesh.rest.size(), 0.0);
+  for (const int v : fibre.selected("from")) is_given[v] = 1;
+  for (const int v : fibre.selected("to")) {
+    if (is_given[v])
+      throw error_at(fibre.scene["to"].place, "vertex " + std::to_string(v) + " of body '" + fibre.body.name() +
+                                                  "' is in `from` and in `to`; fibres run between separate places");
+    is_given[v] = 1;
+    potential[v] = 1;
+  }
+  HarmonicExtension(mesh, is_given).extend(potential);
+  std::vector<Vec3d> directions(mesh.tets.size(), Vec3d{});
+  for (int t = 0; t < mesh.tet_count(); ++t) {
+    const std::array<Vec3d, 4> gradients = shape_gradients(corners(mesh, t));
+    for (int i = 0; i < 4; ++i) directions[t] = directions[t] + potential[mesh.tets[t][i]] * gradients[i];
+  }
+  return directions;
+}
+
+std::vector<Vec3d> given_directions(const BodyFibre& fibre) {
+  const VectorField field(fibre.scene["direction"]);
+  std::vector<Vec3d> directions;
+  for (int t = 0; t < fibre.body.mesh.tet_count(); ++t) directions.push_back(field.at(centroid(fibre.body.mesh, t)));
+  return directions;
+}
+
+// Unit vectors, one per tet of the user.
+std::vector<Vec3d> directions_of(const BodyFibre& fibre) {
+  const Value* direction = fibre.scene.find("direction");
+  std::vector<Vec3d> directions = direction ? given_directions(fibre) : flow(fibre);
+  for (size_t t = 0; t < directions.size(); ++t) {
+    const double length = norm(directions[t]);
+    if (!(length > 0) || !std::isfinite(length)) {
+      const Vec3d X = centroid(fibre.body.mesh, static_cast<int>(t));
+      throw error_at((direction ? *direction : fibre.scene["from"]).place,
+                     "fibres of body '" + fibre.body.name() + "' have no direction in tet " + std::to_string(t) +
+                         formatted(" at (%.3g, %.3g, %.3g) m", X[0], X[1], X[2]) +
+                         (direction ? ": its length is " + number_text(length) : ": neither place reaches it"));
+    }
+    directions[t] = (1 / length) * directions[t];
+  }
+  return directions;
+}
+
+std::vector<Fibre> fibres_of(const BodyFibre& fibre, const std::string& name) {
+  PlacedBody& body = fibre.body;
+  const auto values = [&](const char* key) {
+    return tet_values(fibre.scene.table(), scene_schema().key("fibre", key),
+                      {body.mesh, fibre.scope.files, body.name() + "." + name, *body.painted});
+  };
+  const std::vector<Vec3d> directions = directions_of(fibre);
+  const std::vector<double> stiffness = values("stiffness"), exponent = values("exponent"),
+                            dispersion = values("dispersion");
+  std::vector<Fibre> fibres(directions.size());
+  for (size_t t = 0; t < fibres.size(); ++t)
+    fibres[body.numbering.tet.from_user(static_cast<int>(t))] = {directions[t], stiffness[t], exponent[t],
+                                                                 dispersion[t]};
+  return fibres;
+}
+
+}  // namespace
+
+void add_fibres(std::vector<PlacedBody>& bodies, const FibreScope& scope, Model& model) {
+  int number = 0;
+  for (PlacedBody& body : bodies) {
+    Value* list = body.scene.table().find("fibre");
+    if (!list) continue;
+    for (Value& scene : list->array()) {
+      const std::string name = ++number == 1 ? "fibre" : "fibre_" + std::to_string(number);
+      model.loads.push_back(make_fibres(name, model.mesh, body.first_tet, fibres_of({body, scene, scope}, name)));
+    }
+  }
+}
+
+}  // namespace aspic
