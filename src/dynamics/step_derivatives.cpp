@@ -38,6 +38,7 @@ class Noise {
 };
 
 constexpr const char* kTouching = "touching";
+constexpr double kNegligible = 1e-12;  // stiffness of a term relative to that of the stiffest, such as slack fibres
 
 std::vector<double> near_rest(const TetMesh& mesh, double edge) {
   Noise noise;
@@ -88,6 +89,7 @@ class StepCheck {
   std::vector<TermDerivatives> run() {
     for (const NamedState& at : states()) {
       if (at.name == kTouching) E_.update_lagged(at.q, false);
+      negligible_ = kNegligible * stiffness(at.q);
       const std::vector<std::string> names = simulation_.potential_names();
       for (size_t k = 0; k < names.size(); ++k) check(names[k], at, differentiable(E_.potential()[k], E_.pattern()));
       for (const ActiveTerm& D : E_.damping()) check(std::string(D.name()), at, differentiable(D, E_.pattern()));
@@ -147,7 +149,21 @@ class StepCheck {
   bool is_finite(const std::vector<double>& q) { return std::isfinite(E_.value(q)); }
 
   void check(const std::string& term, const NamedState& at, const Differentiable& f) {
-    results_.push_back({term, at.name, check_derivatives(f, at.q, {.length = edge_, .tolerance = tolerance_})});
+    const DerivativeCheckOptions options{
+        .length = edge_, .tolerance = tolerance_, .negligible = negligible_, .fixed = {}};
+    results_.push_back({term, at.name, check_derivatives(f, at.q, options)});
+  }
+
+  // Returns the largest change of a force of one term of V per unit of random displacements [N/m].
+  double stiffness(const std::vector<double>& q) const {
+    std::vector<double> d(q.size()), Hd(q.size());
+    std::generate(d.begin(), d.end(), Noise());
+    double largest = 0;
+    for (const ActiveTerm& V : E_.potential()) {
+      differentiable(V, E_.pattern()).hessian_times(q, d, Hd);
+      largest = std::max(largest, max_abs(Hd));
+    }
+    return largest;
   }
 
   void check_E(const NamedState& at) {
@@ -189,7 +205,7 @@ class StepCheck {
   std::vector<double> start_;
   Pins pins_;
   IncrementalPotential E_;
-  double edge_, tolerance_, inertia_ = 1;
+  double edge_, tolerance_, inertia_ = 1, negligible_ = 0;
   std::vector<double> predicted_;
   std::vector<TermDerivatives> results_;
 };

@@ -102,7 +102,7 @@ class Checker {
     return relative(worst, hessian_scale(Hd));
   }
   double hessian_scale(const Vector& Hd) const {
-    double largest = kRestShare * largest_gradient_ / options_.length;
+    double largest = std::max(options_.negligible, kRestShare * largest_gradient_ / options_.length);
     for (size_t i = 0; i < Hd.size(); ++i)
       if (!is_fixed(i)) largest = std::max(largest, std::abs(Hd[i]));
     return largest;

@@ -22,6 +22,7 @@ struct DerivativeCheckOptions {
   int directions = 3;       // number of random directions; the largest error is reported
   uint64_t seed = 7;        // seed of their entries, uniform in [-1, 1]
   double tolerance = 1e-6;  // bound of the smallest error
+  double negligible = 0;    // products H d below this size are zero
   std::vector<char> fixed;  // marks entries of x that are constant; empty: none
 };
 
