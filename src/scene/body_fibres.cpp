@@ -3,6 +3,7 @@
 #include "base/formatted.h"
 #include "energy/fibres.h"
 #include "mesh/tet_shape.h"
+#include "scene/expression.h"
 #include "scene/harmonic_extension.h"
 #include "scene/placement.h"
 #include "scene/schema.h"
@@ -15,6 +16,7 @@ namespace {
 struct BodyFibre {
   PlacedBody& body;
   Value& scene;
+  std::string name;  // of the term
   const FibreScope& scope;
 
   std::vector<int> selected(const char* key) const {
@@ -72,32 +74,59 @@ std::vector<Vec3d> directions_of(const BodyFibre& fibre) {
   return directions;
 }
 
-std::vector<Fibre> fibres_of(const BodyFibre& fibre, const std::string& name) {
+// Values of a key of a section, one per tet of the user.
+std::vector<double> values(const BodyFibre& fibre, const char* section, const char* key) {
   PlacedBody& body = fibre.body;
-  const auto values = [&](const char* key) {
-    return tet_values(fibre.scene.table(), scene_schema().key("fibre", key),
-                      {body.mesh, fibre.scope.files, body.name() + "." + name, *body.painted});
-  };
+  return tet_values(fibre.scene.table(), scene_schema().key(section, key),
+                    {body.mesh, fibre.scope.files, body.name() + "." + fibre.name, *body.painted});
+}
+
+void add_fibre(const BodyFibre& fibre, Model& model) {
   const std::vector<Vec3d> directions = directions_of(fibre);
-  const std::vector<double> stiffness = values("stiffness"), exponent = values("exponent"),
-                            dispersion = values("dispersion");
+  const auto stiffness = values(fibre, "fibre", "stiffness"), exponent = values(fibre, "fibre", "exponent"),
+             dispersion = values(fibre, "fibre", "dispersion");
   std::vector<Fibre> fibres(directions.size());
-  for (size_t t = 0; t < fibres.size(); ++t)
-    fibres[body.numbering.tet.from_user(static_cast<int>(t))] = {directions[t], stiffness[t], exponent[t],
-                                                                 dispersion[t]};
-  return fibres;
+  for (int t = 0; t < fibre.body.mesh.tet_count(); ++t)
+    fibres[fibre.body.numbering.tet.from_user(t)] = {directions[t], stiffness[t], exponent[t], dispersion[t]};
+  model.loads.push_back(make_fibres(fibre.name, model.mesh, fibre.body.first_tet, fibres));
+}
+
+// Activations outside 0 to 1 throw InvalidInput, possibly long after the scene was read.
+std::function<double(double)> activation_of(const Value& value) {
+  const Expression formula(value.is_text() ? value.text() : number_text(value.number()),
+                           ExpressionVariables::position_and_time);
+  if (formula.depends_on_position()) throw error_at(value.place, "activation: its formula may use only t");
+  return [formula, place = value.place](double time) {
+    const double a = formula.at({}, time);
+    if (!(a >= 0 && a <= 1))
+      throw error_at(place, "activation = " + number_text(a) + " at t = " + number_text(time) +
+                                "; must be >= 0 and <= 1 (try min(1, max(0, ...)))");
+    return a;
+  };
+}
+
+void add_muscle(const BodyFibre& fibre, Model& model) {
+  const std::vector<Vec3d> directions = directions_of(fibre);
+  const auto strength = values(fibre, "muscle", "strength"), optimal = values(fibre, "muscle", "optimal_stretch");
+  std::vector<MuscleFibre> fibres(directions.size());
+  for (int t = 0; t < fibre.body.mesh.tet_count(); ++t)
+    fibres[fibre.body.numbering.tet.from_user(t)] = {directions[t], strength[t], optimal[t]};
+  model.loads.push_back(
+      make_muscle(fibre.name, model.mesh, fibre.body.first_tet, fibres, activation_of(fibre.scene["activation"])));
 }
 
 }  // namespace
 
 void add_fibres(std::vector<PlacedBody>& bodies, const FibreScope& scope, Model& model) {
-  int number = 0;
-  for (PlacedBody& body : bodies) {
-    Value* list = body.scene.table().find("fibre");
-    if (!list) continue;
-    for (Value& scene : list->array()) {
-      const std::string name = ++number == 1 ? "fibre" : "fibre_" + std::to_string(number);
-      model.loads.push_back(make_fibres(name, model.mesh, body.first_tet, fibres_of({body, scene, scope}, name)));
+  for (const std::string section : {"fibre", "muscle"}) {
+    int number = 0;
+    for (PlacedBody& body : bodies) {
+      Value* list = body.scene.table().find(section);
+      if (!list) continue;
+      for (Value& scene : list->array()) {
+        const std::string name = section + (++number == 1 ? "" : "_" + std::to_string(number));
+        (section == "fibre" ? add_fibre : add_muscle)({body, scene, name, scope}, model);
+      }
     }
   }
 }

@@ -11,7 +11,7 @@ struct FibreScope {
   SceneFiles& files;
 };
 
-// Adds a load for each [[body.fibre]]: fibre, fibre_2, ... Throws InvalidInput.
+// Adds a load for each [[body.fibre]] and [[body.muscle]]: fibre, fibre_2, ..., muscle, ... Throws InvalidInput.
 void add_fibres(std::vector<PlacedBody>& bodies, const FibreScope& scope, Model& model);
 
 }  // namespace aspic

@@ -6,6 +6,7 @@
 
 #include "material/fibre_law.h"
 #include "scene/scene_cases_test.h"
+#include "scene/value.h"
 
 namespace aspic {
 namespace {
@@ -74,6 +75,39 @@ TEST(Fibres, AreATermOfTheEnergyBalance) {
   EXPECT_GT(report.potential[at - names.begin()], 0);
 }
 
+std::string muscle(const std::string& keys) {
+  return "[[body.muscle]]\nstrength = 2e4\ndirection = [1, 0, 0]\n" + keys + "\n";
+}
+
+// Without load, E l (l^2 - 1) / 2 + strength activation (1 - 4 (1 - l)^2) = 0.
+TEST(Muscle, ContractsUntilTheMaterialBalancesIt) {
+  for (const double activation : {0.0, 0.5, 1.0}) {
+    double low = 0.7, high = 1;
+    for (int i = 0; i < 100; ++i) {
+      const double l = 0.5 * (low + high);
+      (1e5 * l * (l * l - 1) / 2 + 2e4 * activation * (1 - 4 * (1 - l) * (1 - l)) > 0 ? high : low) = l;
+    }
+    std::string text = pulled(muscle("activation = " + number_text(activation)));
+    text.replace(text.find("value = [4e4"), 12, "value = [0");
+    Scene scene = load(text);
+    EXPECT_TRUE(is_success(scene.simulation.step().status));
+    EXPECT_NEAR(stretch(positions(scene)), high, 1e-9) << activation;
+  }
+}
+
+TEST(Muscle, WorkOfTheActivationBalancesTheEnergy) {
+  Scene scene = load(kCube + "[[body.pin]]\nwhere = \"x < 0.1\"\n" + muscle("activation = \"min(1, 20 * t)\""));
+  double largest = 0, work = 0;
+  for (int i = 0; i < 10; ++i) {
+    const StepReport report = scene.simulation.step();
+    EXPECT_TRUE(is_success(report.status));
+    for (const double energy : report.potential) largest = std::max(largest, std::abs(energy));
+    EXPECT_LE(std::abs(report.ledger_error), 1e-9 * largest);
+    work += report.target_work.back();
+  }
+  EXPECT_GT(work, 0);
+}
+
 TEST(Fibres, MistakesAreExplained) {
   const auto of = [](const std::string& keys) { return refusal(pulled(fibre(keys))); };
   EXPECT_THAT(of("direction = [\"X - 0.125\", 0, 0]"),
@@ -83,6 +117,9 @@ TEST(Fibres, MistakesAreExplained) {
   EXPECT_THAT(of("direction = [1, 0, 0]\nfrom = \"x < 0.1\"\nto = \"x > 0.9\""), HasSubstr("excludes"));
   EXPECT_THAT(of("direction = [1, 0, 0]\ndispersion = 0.4"), HasSubstr("dispersion = 0.4; must be"));
   EXPECT_THAT(of("direction = [1, 0]"), HasSubstr("direction"));
+  EXPECT_THAT(refusal(kCube + muscle("")), HasSubstr("activation"));
+  EXPECT_THAT(refusal(kCube + muscle("activation = \"X\"")), HasSubstr("may use only t"));
+  EXPECT_THAT(refusal(kCube + muscle("activation = 1.5")), HasSubstr("activation = 1.5 at t = 0"));
 }
 
 }  // namespace

@@ -12,23 +12,37 @@ void add_damping(Schema& s) {
                    Units{"Pa s"}, kNotNegative, Members{"field"}, Usual{"0.0", "none"})});
 }
 
-void add_fibre(Schema& s) {
+void add_fibres(Schema& s) {
   const auto per_tet = kNumber | kExpression | kTable;
+  const Key direction = key("direction", kExpressions, "a, of any length: function of the centroid (X, Y, Z) at rest",
+                            kRequired),
+            from = key("from", kExpression | kTable, "fibres run from here, like the flow of a potential ...",
+                       Members{"where"}, kRequired),
+            to = key("to", kExpression | kTable, "... to here, such as from origin to insertion", Members{"where"},
+                     kRequired);
   add_section(
       s,
       {"fibre", "[[body.fibre]]",
        "Fibres in the tets, beside the material: k1/(2 k2) (exp(k2 E^2) - 1) in tension, E = H : F'F - 1, "
        "H = kappa I + (1 - 3 kappa) a a' for fibres along a [Gasser 2006]."},
-      {key("direction", kExpressions, "a, of any length: function of the centroid (X, Y, Z) at rest", kRequired),
-       key("from", kExpression | kTable, "fibres run from here, like the flow of a potential ...", Members{"where"},
-           kRequired),
-       key("to", kExpression | kTable, "... to here, such as from origin to insertion", Members{"where"}, kRequired),
-       key("stiffness", per_tet, "k1", Units{"Pa"}, kNotNegative, Members{"field"}, kRequired),
+      {direction, from, to, key("stiffness", per_tet, "k1", Units{"Pa"}, kNotNegative, Members{"field"}, kRequired),
        key("exponent", per_tet, "k2", Range{.min = 1e-3, .max = 1e6}, Members{"field"},
            Usual{"1.0", "moderate stiffening"}),
        key("dispersion", per_tet, "kappa: 0 along a, 1/3 in all directions", Range{.min = 0, .max = 1.0 / 3},
            Members{"field"}, Usual{"0.0", "all along a"})});
   s.alternatives.push_back({"fibre", {{"direction"}, {"from", "to"}}, true});
+
+  add_section(
+      s,
+      {"muscle", "[[body.muscle]]",
+       "Active fibres along a, beside the material. Their nominal stress is strength * activation at the "
+       "optimal stretch and falls to 0 at 0.4 and 1.6 times of it [Blemker 2005]."},
+      {direction, from, to,
+       key("strength", per_tet, "largest active stress", Units{"Pa"}, kNotNegative, Members{"field"}, kRequired),
+       key("activation", kNumber | kMovingExpression, "0 (passive) to 1; function of the time t", kRequired),
+       key("optimal_stretch", per_tet, "stretch of the largest force", kPositive, Members{"field"},
+           Usual{"1.0", "the rest shape"})});
+  s.alternatives.push_back({"muscle", {{"direction"}, {"from", "to"}}, true});
 }
 
 void add_where(Schema& s) {
@@ -163,7 +177,7 @@ void add_loads(Schema& s) {
 
 void add_action_sections(Schema& s) {
   add_damping(s);
-  add_fibre(s);
+  add_fibres(s);
   add_where(s);
   add_motion(s);
   add_pin_and_spring(s);

@@ -32,6 +32,7 @@ void add_body(Schema& s) {
                 Usual{"[0.0, 0.0, 0.0]", "at rest"}),
             key("damping", kTable, "damping", Members{"damping"}, Usual{"{}"}),
             key("fibre", kTables, "families of fibres", Members{"fibre"}),
+            key("muscle", kTables, "active fibres", Members{"muscle"}),
             key("pin", kTables, "prescribed positions", Members{"pin"}),
             key("spring", kTables, "springs", Members{"spring"}),
             key("grab", kTables, "points dragged along a path", Members{"grab"}),
