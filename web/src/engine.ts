@@ -2,13 +2,14 @@
 // its parts; without them the page talks to a program over a WebSocket.
 import { type EngineWorker, startWorker } from "./host";
 import type { Transport, TransportListener } from "./live";
-import { embedded, unpacked } from "./pack";
+import type { Packed } from "./lzma";
+import { embedded } from "./pack";
 import type { Judgment } from "./protocol";
 
 // First message to the worker.
 export interface EngineParts {
-  module: ArrayBuffer; // WebAssembly
-  files: Record<string, string>; // texts by paths
+  module: Packed; // WebAssembly
+  files: Packed; // JSON, texts by paths
   task: { scene: string } | { judge: string }; // path of a scene; id of a lesson
 }
 
@@ -19,18 +20,16 @@ const kFirstScene = "/scenes/bunny.toml";
 // Commands that stop the step under way, as those of a server: apps/viewer/server_room.cpp.
 const kUrgent = /^\{"do":"(pause|reset|load|set|rewind|lesson|replay|compare|end_compare|stop_fit)"/;
 
-async function partsFor(task: EngineParts["task"]): Promise<EngineParts> {
-  return {
-    module: await unpacked(embedded("engine-module") ?? ""),
-    files: JSON.parse(new TextDecoder().decode(await unpacked(embedded("engine-files") ?? ""))) as EngineParts["files"],
-    task,
-  };
-}
+const partsFor = (task: EngineParts["task"]): EngineParts => ({
+  module: embedded<Packed>("engine-module")!,
+  files: embedded<Packed>("engine-files")!,
+  task,
+});
 
 export const hasEngine = (): boolean => document.getElementById("engine") !== null;
-const openWorker: Opener = () => startWorker(embedded("engine") ?? "");
+const openWorker: Opener = () => startWorker(embedded<string>("engine")!);
 
-export const embeddedEngine = (): Transport => overWorker(openWorker, () => partsFor({ scene: kFirstScene }));
+export const embeddedEngine = (): Transport => overWorker(openWorker, partsFor({ scene: kFirstScene }));
 
 export interface Judging {
   result: Promise<Judgment>;
@@ -38,9 +37,9 @@ export interface Judging {
 }
 
 // Judges a page of the lecture in a worker of its own.
-export const judgeLesson = (id: string): Judging => judgeOver(openWorker, () => partsFor({ judge: id }));
+export const judgeLesson = (id: string): Judging => judgeOver(openWorker, partsFor({ judge: id }));
 
-export function judgeOver(open: Opener, parts: () => Promise<EngineParts>): Judging {
+export function judgeOver(open: Opener, parts: EngineParts): Judging {
   const worker = open();
   let stop = (): void => {};
   const result = new Promise<Judgment>((resolve, reject) => {
@@ -50,12 +49,12 @@ export function judgeOver(open: Opener, parts: () => Promise<EngineParts>): Judg
       if (why !== null) reject(new Error(why));
       else resolve((JSON.parse(data as string) as { result: Judgment }).result);
     };
-    parts().then((ready) => worker.send(ready, false), reject);
+    worker.send(parts, false);
   });
   return { result: result.finally(() => worker.end()), stop };
 }
 
-export function overWorker(open: Opener, parts: () => Promise<EngineParts>): Transport {
+export function overWorker(open: Opener, parts: EngineParts): Transport {
   let worker: EngineWorker<EngineParts | string> | null = null;
   const start = (listener: TransportListener): void => {
     const opened = open();
@@ -73,10 +72,7 @@ export function overWorker(open: Opener, parts: () => Promise<EngineParts>): Tra
       }
       listener.received(data);
     };
-    parts().then(
-      (ready) => opened.send(ready, false),
-      (reason: unknown) => end(`the engine in this page is damaged (${String(reason)})`),
-    );
+    opened.send(parts, false);
   };
   const send = (text: string): boolean => {
     worker?.send(text, kUrgent.test(text));

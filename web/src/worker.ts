@@ -1,6 +1,7 @@
 // The script of the engine's worker: passes messages between the page (engine.ts) and a session (apps/engine/engine.cpp).
 import type { EngineParts } from "./engine";
 import type { Flagged } from "./host";
+import { unpackLzma } from "./lzma";
 
 interface Engine {
   FS: { mkdirTree(folder: string): void; writeFile(path: string, text: string): void };
@@ -18,7 +19,7 @@ interface Engine {
 type Post = (message: string | ArrayBuffer) => void;
 
 // Made by the compiler; its text precedes this script.
-declare function createEngine(options: { wasmBinary: ArrayBuffer; post: Post; isStopRequested: () => boolean }): Promise<Engine>;
+declare function createEngine(options: { wasmBinary: Uint8Array; post: Post; isStopRequested: () => boolean }): Promise<Engine>;
 
 interface Scope {
   onmessage: ((event: { data: Flagged<EngineParts | string> }) => void) | null;
@@ -73,8 +74,8 @@ atOnce.port2.onmessage = () => {
 };
 
 async function open({ module, files, task }: EngineParts): Promise<void> {
-  const made = await createEngine({ wasmBinary: module, post, isStopRequested });
-  for (const [path, text] of Object.entries(files)) {
+  const made = await createEngine({ wasmBinary: unpackLzma(module), post, isStopRequested });
+  for (const [path, text] of Object.entries(JSON.parse(new TextDecoder().decode(unpackLzma(files))) as Record<string, string>)) {
     made.FS.mkdirTree(path.slice(0, path.lastIndexOf("/")));
     made.FS.writeFile(path, text);
   }

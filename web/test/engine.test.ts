@@ -5,7 +5,7 @@ import type { EngineWorker } from "../src/host";
 import { LiveSource } from "../src/live";
 import type { Incoming } from "../src/source";
 
-const kParts: EngineParts = { module: new ArrayBuffer(8), files: { "/scenes/a.toml": "" }, task: { scene: "/scenes/a.toml" } };
+const kParts: EngineParts = { module: { size: 0, lzma: "" }, files: { size: 0, lzma: "" }, task: { scene: "/scenes/a.toml" } };
 
 class FakeWorker implements EngineWorker<EngineParts | string> {
   onmessage: ((message: string | ArrayBuffer) => void) | null = null;
@@ -25,19 +25,18 @@ class FakeWorker implements EngineWorker<EngineParts | string> {
   }
 }
 
-async function connect(parts = Promise.resolve(kParts)): Promise<{ source: LiveSource; worker: FakeWorker; received: Incoming[] }> {
+function connect(): { source: LiveSource; worker: FakeWorker; received: Incoming[] } {
   const worker = new FakeWorker();
   const received: Incoming[] = [];
-  const source = new LiveSource(overWorker(() => worker, () => parts));
+  const source = new LiveSource(overWorker(() => worker, kParts));
   source.start((incoming) => received.push(incoming));
-  await new Promise((resolve) => setTimeout(resolve, 0));
   return { source, worker, received };
 }
 
 const texts = (received: Incoming[]): string => JSON.stringify(received);
 
 test("the worker gets the engine, then messages", async () => {
-  const { source, worker, received } = await connect();
+  const { source, worker, received } = connect();
   assert.deepEqual(worker.posted, [kParts]);
   await assert.rejects(source.request({ do: "play" }), /no connection/);
   worker.sends({ kind: "busy", what: "" });
@@ -49,7 +48,7 @@ test("the worker gets the engine, then messages", async () => {
 });
 
 test("the reason of an ended engine is reported once", async () => {
-  const { source, worker, received } = await connect();
+  const { source, worker, received } = connect();
   worker.sends({ kind: "busy", what: "" });
   const asked = source.request({ do: "play" });
   worker.sends({ kind: "ended", why: "out of memory" });
@@ -60,13 +59,8 @@ test("the reason of an ended engine is reported once", async () => {
   await assert.rejects(source.request({ do: "play" }), /no connection/);
 });
 
-test("damaged parts are reported", async () => {
-  const damaged = await connect(Promise.reject(new Error("truncated")));
-  assert.match(texts(damaged.received), /engine in this page is damaged.*truncated/);
-});
-
 test("only urgent commands stop the work under way", async () => {
-  const { source, worker } = await connect();
+  const { source, worker } = connect();
   worker.sends({ kind: "busy", what: "" });
   source.send({ do: "play" });
   void source.ask({ ask: "recording" });
@@ -78,7 +72,7 @@ test("only urgent commands stop the work under way", async () => {
 
 test("a judgment ends its worker", async () => {
   const workers = [new FakeWorker(), new FakeWorker(), new FakeWorker()] as const;
-  const judgments = workers.map((worker) => judgeOver(() => worker, () => Promise.resolve(kParts)));
+  const judgments = workers.map((worker) => judgeOver(() => worker, kParts));
   workers[0].sends({ kind: "judged", result: { passes: true } });
   workers[1].sends({ kind: "ended", why: "out of memory" });
   assert.deepEqual(await judgments[0]!.result, { passes: true });

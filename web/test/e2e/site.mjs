@@ -8,7 +8,7 @@ import { createRequire } from "node:module";
 import { join } from "node:path";
 import { test } from "node:test";
 import { pathToFileURL } from "node:url";
-import { gunzipSync, gzipSync } from "node:zlib";
+import { gzipSync } from "node:zlib";
 import { aspic, atTheEnd, downloaded, drop, findBody, frames, isDrawn, keepPicture, openPage, pageModule, pressAndWait, root, settled, temporaryFolder } from "./harness.mjs";
 
 const site = process.env.SITE;
@@ -54,7 +54,8 @@ async function takeSteps(opened, count) {
 }
 
 const element = (id) => JSON.parse(html.match(new RegExp(`id="${id}">(.*?)</script>`, "s"))[1]);
-const unpacked = (id) => gunzipSync(Buffer.from(element(id), "base64"));
+const { unpackLzma } = await pageModule("lzma.ts");
+const unpacked = (id) => unpackLzma(element(id));
 
 // The engine of the page under Node.js, before it has a task.
 async function freshEngine() {
@@ -62,7 +63,7 @@ async function freshEngine() {
   const post = (message) => typeof message === "string" && messages.push(JSON.parse(message));
   const engine = await createRequire(import.meta.url)(process.env.ENGINE)({
     wasmBinary: unpacked("engine-module"), post, isStopRequested: () => false });
-  for (const [path, text] of Object.entries(JSON.parse(unpacked("engine-files")))) {
+  for (const [path, text] of Object.entries(JSON.parse(new TextDecoder().decode(unpacked("engine-files"))))) {
     engine.FS.mkdirTree(path.slice(0, path.lastIndexOf("/")));
     engine.FS.writeFile(path, text);
   }
@@ -154,7 +155,7 @@ test("the engine runs every scene and every page of the lecture", async () => {
 });
 
 test("the sizes are within their limits", () => {
-  const engine = html.match(/id="engine-module">"(.*?)"/)[1].length * 0.75;
+  const engine = element("engine-module").lzma.length * 0.75;
   const page = gzipSync(html, { level: 9 }).length;
   console.log(`engine: ${(engine / 1e6).toFixed(2)} MB, page: ${(page / 1e6).toFixed(2)} MB, both compressed`);
   assert.ok(engine <= kMostEngine && page <= kMostPage);
