@@ -50,6 +50,10 @@ if(EMSCRIPTEN)  # WebAssembly has no fused multiply-add
   # The vectorizer of straight-line code in emscripten 3.1.6 miscompiles "x = A * x + b": never enable it.
   add_compile_options(-msimd128 -fno-slp-vectorize -fwasm-exceptions)
   add_link_options(-fwasm-exceptions)
+  if(ASPIC_WASM_THREADS)
+    add_compile_options(-pthread)
+    add_link_options(-pthread)
+  endif()
   set(ASPIC_ARCH -msimd128)
   set(ASPIC_CONTRACT off)
 elseif(ASPIC_BITS STREQUAL "portable")

@@ -1,15 +1,17 @@
-// node site.mjs PAGE ENGINE ROOT OUT: writes OUT, the page with the engine, the shipped scenes and the bunny. ENGINE is the
-// script engine.js of the compiler, beside engine.wasm. OUT needs no server: it works from a file, too.
+// node site.mjs PAGE ENGINE ROOT OUT [THREADS]: writes OUT, the page with the engine, the shipped scenes and the bunny.
+// ENGINE is the script engine.js of the compiler, beside engine.wasm. OUT needs no server: it works from a file, too.
+// THREADS is ENGINE with threads, for a file of its own beside OUT: a page from a file cannot use it.
 import { build, transform } from "esbuild";
 import { execFileSync } from "node:child_process";
-import { mkdirSync, readdirSync, readFileSync, writeFileSync } from "node:fs";
+import { createHash } from "node:crypto";
+import { mkdirSync, readdirSync, readFileSync, rmSync, writeFileSync } from "node:fs";
 import { dirname, join, relative } from "node:path";
 import { fileURLToPath } from "node:url";
 import { gzipSync } from "node:zlib";
 
 const here = dirname(fileURLToPath(import.meta.url));
-const [page, engine, root, out] = process.argv.slice(2);
-if (!out) throw new Error("node site.mjs PAGE ENGINE ROOT OUT");
+const [page, engine, root, out, threads] = process.argv.slice(2);
+if (!out) throw new Error("node site.mjs PAGE ENGINE ROOT OUT [THREADS]");
 
 const kFolders = ["scenes", "scenes/lecture"];
 
@@ -23,31 +25,43 @@ function shippedFiles() {
   return files;
 }
 
-async function workerScript() {
-  const bundled = await build({ entryPoints: [join(here, "src/worker.ts")], bundle: true, minify: true, format: "iife", target: "es2022", write: false });
-  const { code } = await transform(readFileSync(engine, "utf8"), { minify: true });
-  return code + bundled.outputFiles[0].text;
-}
-
 // As web/src/lzma.ts unpacks it. Neither code nor texts have a period of 4 bytes, which LZMA would expect (pb).
 const packed = (bytes) => ({
   size: bytes.length,
   lzma: execFileSync("xz", ["--format=lzma", "--lzma1=preset=9e,lc=4,pb=0", "--stdout"], { input: bytes, maxBuffer: 1e9 }).toString("base64"),
 });
+async function workerScript() {
+  const bundled = await build({ entryPoints: [join(here, "src/worker.ts")], bundle: true, minify: true, format: "iife", target: "es2022", write: false });
+  return bundled.outputFiles[0].text;
+}
+
+const minified = async (path) => (await transform(readFileSync(path, "utf8"), { minify: true })).code;
+const program = async (script) => ({ script: await minified(script), module: packed(readFileSync(script.replace(/\.js$/, ".wasm"))) });
+
+// Returns the name of the file, which differs for every version of the engine.
+async function writeThreads() {
+  const text = JSON.stringify({ ...(await program(threads)), threadScript: await minified(threads.replace(/\.js$/, ".worker.js")) });
+  const name = `threads-${createHash("sha256").update(text).digest("hex").slice(0, 12)}.json`;
+  writeFileSync(join(dirname(out), name), text);
+  return name;
+}
+
+mkdirSync(dirname(out), { recursive: true });
+for (const name of readdirSync(dirname(out))) if (/^threads-\w+\.json$/.test(name)) rmSync(join(dirname(out), name));
 // Every "<" is escaped, because a script element ends at the first "</script", wherever it is.
 const element = (id, content) => `<script type="application/json" id="${id}">${JSON.stringify(content).replaceAll("<", "\\u003c")}</script>`;
 
 const parts = {
   engine: await workerScript(),
-  "engine-module": packed(readFileSync(engine.replace(/\.js$/, ".wasm"))),
+  "engine-program": await program(engine),
   "engine-files": packed(Buffer.from(JSON.stringify(shippedFiles()))),
+  ...(threads ? { "engine-threads": await writeThreads() } : {}),
 };
 const html = readFileSync(page, "utf8").replace("<!-- recording -->", () => Object.entries(parts).map(([id, content]) => element(id, content)).join("\n"));
-mkdirSync(dirname(out), { recursive: true });
 writeFileSync(out, html);
 
 const size = (name, bytes) => `  ${name}: ${(bytes / 1e6).toFixed(2)} MB`;
 console.log(`${relative(process.cwd(), out) || out}: ${(Buffer.byteLength(html) / 1e6).toFixed(2)} MB, ${(gzipSync(html).length / 1e6).toFixed(2)} MB compressed by gzip`);
-const sizeOf = (id) => (parts[id].lzma.length * 3) / 4;
-console.log(size("engine, compressed", sizeOf("engine-module")));
-console.log(size("scenes and meshes, compressed", sizeOf("engine-files")));
+const sizeOf = ({ lzma }) => (lzma.length * 3) / 4;
+console.log(size("engine, compressed", sizeOf(parts["engine-program"].module)));
+console.log(size("scenes and meshes, compressed", sizeOf(parts["engine-files"])));

@@ -6,9 +6,14 @@ import type { Packed } from "./lzma";
 import { embedded } from "./pack";
 import type { Judgment } from "./protocol";
 
-// First message to the worker.
-export interface EngineParts {
+interface Program {
+  script: string; // of the compiler
   module: Packed; // WebAssembly
+  threadScript?: string; // script of its threads; absent: there is one thread
+}
+
+// First message to the worker.
+export interface EngineParts extends Program {
   files: Packed; // JSON, texts by paths
   task: { scene: string } | { judge: string }; // path of a scene; id of a lesson
 }
@@ -20,16 +25,22 @@ const kFirstScene = "/scenes/bunny.toml";
 // Commands that stop the step under way, as those of a server: apps/viewer/server_room.cpp.
 const kUrgent = /^\{"do":"(pause|reset|load|set|rewind|lesson|replay|compare|end_compare|stop_fit)"/;
 
-const partsFor = (task: EngineParts["task"]): EngineParts => ({
-  module: embedded<Packed>("engine-module")!,
-  files: embedded<Packed>("engine-files")!,
-  task,
-});
+// The program with threads is a file beside the page. Only isolated pages can run it.
+async function threadedProgram(): Promise<Program | null> {
+  const name = embedded("engine-threads");
+  if (name === null || !crossOriginIsolated) return null;
+  return fetch(name).then((response) => response.json() as Promise<Program>).catch(() => null);
+}
+
+async function partsFor(task: EngineParts["task"]): Promise<EngineParts> {
+  const program = (await threadedProgram()) ?? embedded<Program>("engine-program")!;
+  return { ...program, files: embedded<Packed>("engine-files")!, task };
+}
 
 export const hasEngine = (): boolean => document.getElementById("engine") !== null;
 const openWorker: Opener = () => startWorker(embedded<string>("engine")!);
 
-export const embeddedEngine = (): Transport => overWorker(openWorker, partsFor({ scene: kFirstScene }));
+export const embeddedEngine = (): Transport => overWorker(openWorker, () => partsFor({ scene: kFirstScene }));
 
 export interface Judging {
   result: Promise<Judgment>;
@@ -37,9 +48,9 @@ export interface Judging {
 }
 
 // Judges a page of the lecture in a worker of its own.
-export const judgeLesson = (id: string): Judging => judgeOver(openWorker, partsFor({ judge: id }));
+export const judgeLesson = (id: string): Judging => judgeOver(openWorker, () => partsFor({ judge: id }));
 
-export function judgeOver(open: Opener, parts: EngineParts): Judging {
+export function judgeOver(open: Opener, parts: () => Promise<EngineParts>): Judging {
   const worker = open();
   let stop = (): void => {};
   const result = new Promise<Judgment>((resolve, reject) => {
@@ -49,12 +60,12 @@ export function judgeOver(open: Opener, parts: EngineParts): Judging {
       if (why !== null) reject(new Error(why));
       else resolve((JSON.parse(data as string) as { result: Judgment }).result);
     };
-    worker.send(parts, false);
+    void parts().then((ready) => worker.send(ready, false));
   });
   return { result: result.finally(() => worker.end()), stop };
 }
 
-export function overWorker(open: Opener, parts: EngineParts): Transport {
+export function overWorker(open: Opener, parts: () => Promise<EngineParts>): Transport {
   let worker: EngineWorker<EngineParts | string> | null = null;
   const start = (listener: TransportListener): void => {
     const opened = open();
@@ -72,7 +83,7 @@ export function overWorker(open: Opener, parts: EngineParts): Transport {
       }
       listener.received(data);
     };
-    opened.send(parts, false);
+    void parts().then((ready) => opened.send(ready, false));
   };
   const send = (text: string): boolean => {
     worker?.send(text, kUrgent.test(text));

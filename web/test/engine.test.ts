@@ -5,7 +5,7 @@ import type { EngineWorker } from "../src/host";
 import { LiveSource } from "../src/live";
 import type { Incoming } from "../src/source";
 
-const kParts: EngineParts = { module: { size: 0, lzma: "" }, files: { size: 0, lzma: "" }, task: { scene: "/scenes/a.toml" } };
+const kParts: EngineParts = { script: "", module: { size: 0, lzma: "" }, files: { size: 0, lzma: "" }, task: { scene: "/scenes/a.toml" } };
 
 class FakeWorker implements EngineWorker<EngineParts | string> {
   onmessage: ((message: string | ArrayBuffer) => void) | null = null;
@@ -25,18 +25,19 @@ class FakeWorker implements EngineWorker<EngineParts | string> {
   }
 }
 
-function connect(): { source: LiveSource; worker: FakeWorker; received: Incoming[] } {
+async function connect(): Promise<{ source: LiveSource; worker: FakeWorker; received: Incoming[] }> {
   const worker = new FakeWorker();
   const received: Incoming[] = [];
-  const source = new LiveSource(overWorker(() => worker, kParts));
+  const source = new LiveSource(overWorker(() => worker, () => Promise.resolve(kParts)));
   source.start((incoming) => received.push(incoming));
+  await new Promise((resolve) => setTimeout(resolve, 0));
   return { source, worker, received };
 }
 
 const texts = (received: Incoming[]): string => JSON.stringify(received);
 
 test("the worker gets the engine, then messages", async () => {
-  const { source, worker, received } = connect();
+  const { source, worker, received } = await connect();
   assert.deepEqual(worker.posted, [kParts]);
   await assert.rejects(source.request({ do: "play" }), /no connection/);
   worker.sends({ kind: "busy", what: "" });
@@ -48,7 +49,7 @@ test("the worker gets the engine, then messages", async () => {
 });
 
 test("the reason of an ended engine is reported once", async () => {
-  const { source, worker, received } = connect();
+  const { source, worker, received } = await connect();
   worker.sends({ kind: "busy", what: "" });
   const asked = source.request({ do: "play" });
   worker.sends({ kind: "ended", why: "out of memory" });
@@ -60,7 +61,7 @@ test("the reason of an ended engine is reported once", async () => {
 });
 
 test("only urgent commands stop the work under way", async () => {
-  const { source, worker } = connect();
+  const { source, worker } = await connect();
   worker.sends({ kind: "busy", what: "" });
   source.send({ do: "play" });
   void source.ask({ ask: "recording" });
@@ -72,7 +73,7 @@ test("only urgent commands stop the work under way", async () => {
 
 test("a judgment ends its worker", async () => {
   const workers = [new FakeWorker(), new FakeWorker(), new FakeWorker()] as const;
-  const judgments = workers.map((worker) => judgeOver(() => worker, kParts));
+  const judgments = workers.map((worker) => judgeOver(() => worker, () => Promise.resolve(kParts)));
   workers[0].sends({ kind: "judged", result: { passes: true } });
   workers[1].sends({ kind: "ended", why: "out of memory" });
   assert.deepEqual(await judgments[0]!.result, { passes: true });

@@ -62,7 +62,7 @@ async function freshEngine() {
   const messages = [];
   const post = (message) => typeof message === "string" && messages.push(JSON.parse(message));
   const engine = await createRequire(import.meta.url)(process.env.ENGINE)({
-    wasmBinary: unpacked("engine-module"), post, isStopRequested: () => false });
+    wasmBinary: unpackLzma(element("engine-program").module), post, isStopRequested: () => false });
   for (const [path, text] of Object.entries(JSON.parse(new TextDecoder().decode(unpacked("engine-files"))))) {
     engine.FS.mkdirTree(path.slice(0, path.lastIndexOf("/")));
     engine.FS.writeFile(path, text);
@@ -155,7 +155,7 @@ test("the engine runs every scene and every page of the lecture", async () => {
 });
 
 test("the sizes are within their limits", () => {
-  const engine = element("engine-module").lzma.length * 0.75;
+  const engine = element("engine-program").module.lzma.length * 0.75;
   const page = gzipSync(html, { level: 9 }).length;
   console.log(`engine: ${(engine / 1e6).toFixed(2)} MB, page: ${(page / 1e6).toFixed(2)} MB, both compressed`);
   assert.ok(engine <= kMostEngine && page <= kMostPage);
