@@ -81,7 +81,7 @@ endif()
 # WebAssembly. Sanitizer builds with clang keep their flags.
 function(compile_quickly target)
   if(EMSCRIPTEN)
-    target_compile_options(${target} PRIVATE -Os -finline-functions)  # emcc disables inlining at -Os
+    target_compile_options(${target} PRIVATE -Oz -finline-functions)  # emcc disables inlining at -Oz
   elseif(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
     target_compile_options(${target} PRIVATE $<$<CONFIG:Release>:-O1>)
   endif()
