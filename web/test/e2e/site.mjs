@@ -169,6 +169,13 @@ test("the sizes are within their limits", () => {
   assert.ok(engine <= kMostEngine && page <= kMostPage);
 });
 
+test("each page of the lecture has formulas, something to try, and a question with its answer", async () => {
+  const { messages } = await engineInNode("/scenes/cantilever.toml");
+  const { lessons } = messages.find(({ kind }) => kind === "hello");
+  const { formulasOf } = await pageModule("formulas.ts");
+  for (const { id, look, question, answer } of lessons) assert.ok(formulasOf(id).length > 0 && look && question && answer, id);
+});
+
 // Prints speeds without a limit: they depend on the machine and on its load.
 test("a body of 1512 vertices moves", async () => {
   const { messages, write, handle } = await engineInNode("/scenes/bunny.toml");
