@@ -5,7 +5,7 @@ import { spawnSync } from "node:child_process";
 import { readdirSync, readFileSync, writeFileSync } from "node:fs";
 import { createServer } from "node:http";
 import { createRequire } from "node:module";
-import { dirname, join } from "node:path";
+import { basename, dirname, join } from "node:path";
 import { test } from "node:test";
 import { pathToFileURL } from "node:url";
 import { gzipSync } from "node:zlib";
@@ -13,7 +13,7 @@ import { aspic, atTheEnd, downloaded, drop, findBody, frames, isDrawn, keepPictu
 
 const site = process.env.SITE;
 const html = readFileSync(site, "utf8");
-const [kMostEngine, kMostPage] = [1.5e6, 2e6]; // bytes, compressed
+const [kMostEngine, kMostPage] = [1e6, 1.8e6]; // bytes, compressed: the engine as in the page, the page by gzip
 
 const kFrame = `<!doctype html><link rel="icon" href="data:,"><iframe sandbox="allow-scripts" src="/" style="width: 1000px; height: 600px"></iframe>`;
 const kIsolated = { "Cross-Origin-Opener-Policy": "same-origin", "Cross-Origin-Embedder-Policy": "require-corp" };
@@ -182,9 +182,9 @@ test("a body of 1512 vertices moves", async () => {
   const scene = readFileSync(join(root, "scenes/cantilever.toml"), "utf8").replace("[15, 3, 3]", "[41, 5, 5]");
   write("/scenes/beam.toml", scene);
   handle({ do: "load", scene: "/scenes/beam.toml" });
-  const start = performance.now();
+  const start = process.cpuUsage();
   for (let step = 0; step < 100; ++step) handle({ do: "step" });
-  console.log(`${(1e5 / (performance.now() - start)).toFixed(0)} steps per second under Node.js`);
+  console.log(`${(1e8 / process.cpuUsage(start).user).toFixed(0)} steps per second of processor time under Node.js`);
   assert.equal(messages.findLast(({ kind }) => kind === "state").a.step, 100);
 });
 
@@ -214,35 +214,43 @@ function hashesOf({ messages, handle }, path) {
   return hashesIn(messages);
 }
 
-// Paths of all scenes of the repository. Those that the page does not have need no other files.
+// All scenes of the repository: their paths in the engine, and natively. Those that the page does not ship need no other
+// files; pillow.toml is coarser, because it has more tets than the page allows.
 function everyScene({ messages, handle, write }) {
   handle({ ask: "gallery", id: 1 });
-  const paths = messages.find(({ id }) => id === 1).reply.scenes.map(({ path }) => path);
-  for (const folder of ["scenes/capture", "tests/random_scenes"])
-    for (const name of readdirSync(join(root, folder)).filter((name) => name.endsWith(".toml"))) {
-      write(`/${folder}/${name}`, readFileSync(join(root, folder, name), "utf8"));
-      paths.push(`/${folder}/${name}`);
-    }
-  return paths;
+  const shipped = messages.find(({ id }) => id === 1).reply.scenes.map(({ path }) => ({ path, native: path.slice(1) }));
+  const others = ["scenes/capture", "tests/random_scenes"].flatMap((folder) =>
+    readdirSync(join(root, folder)).filter((name) => name.endsWith(".toml")).map((name) => join(folder, name)));
+  const copies = temporaryFolder();
+  return shipped.concat(others.map((name) => {
+    const text = readFileSync(join(root, name), "utf8").replace("height = 0.06, size = 0.004", "height = 0.06, size = 0.006");
+    const native = join(copies, basename(name));
+    writeFileSync(native, text);
+    write(`/${name}`, text);
+    return { path: `/${name}`, native };
+  }));
 }
 
 test("every scene has the same states natively and under Node.js", async () => {
   const differing = [];
   const engine = await engineInNode("/scenes/bunny.toml");
-  for (const path of everyScene(engine)) {
-    const [native, node] = [nativeHashes(path.slice(1), kSteps), hashesOf(engine, path)];
-    console.log(`${path}: ${native.at(-1)} ${node.at(-1)}`);
-    assert.equal(native.length, kSteps);
-    if (native.join() !== node.join()) differing.push(path);
+  for (const { path, native } of everyScene(engine)) {
+    const [expected, hashes] = [nativeHashes(native, kSteps), hashesOf(engine, path)];
+    console.log(`${path}: ${expected.at(-1)} ${hashes.at(-1)}`);
+    assert.equal(expected.length, kSteps);
+    if (expected.join() !== hashes.join()) differing.push(path);
   }
   assert.deepEqual(differing, []);
 });
 
 test("every scene has the same states with threads", async () => {
   const [single, threaded] = [await engineInNode("/scenes/bunny.toml"), await engineInNode("/scenes/bunny.toml", 3)];
-  const paths = everyScene(single);
   everyScene(threaded);
-  for (const path of paths) assert.deepEqual(hashesOf(threaded, path), hashesOf(single, path), path);
+  for (const { path } of everyScene(single)) {
+    const expected = hashesOf(single, path);
+    assert.equal(expected.length, kSteps);
+    assert.deepEqual(hashesOf(threaded, path), expected, path);
+  }
   assert.equal(threaded.engine.PThread.runningWorkers.length, 3);
   threaded.engine.PThread.terminateAllThreads();
 });
@@ -320,9 +328,12 @@ test("a link and a saved page open the workspace", async () => {
 
 test("an exhausted memory is reported in words", async () => {
   const { engine, messages, handle } = await engineInNode("/scenes/cantilever.toml");
-  for (const bytes of [256, 16, 1].map((mebibytes) => mebibytes << 20)) while (engine._malloc(bytes)); // leaves less than 1 MiB
+  const taken = [];
+  for (const bytes of [256, 16, 1].map((mebibytes) => mebibytes << 20))
+    for (let place; (place = engine._malloc(bytes)) !== 0; ) taken.push(place);
   handle({ do: "load", scene: "/scenes/bunny.toml", id: 1 });
   assert.match(messages.find(({ id }) => id === 1).why, /not enough memory/);
+  taken.forEach((place) => engine._free(place));
   handle({ do: "step" });
   assert.equal(messages.findLast(({ kind }) => kind === "state").a.step, 1, "the scene before it continues");
 });
