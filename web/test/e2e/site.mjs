@@ -184,7 +184,7 @@ test("a body of 1512 vertices moves", async () => {
   handle({ do: "load", scene: "/scenes/beam.toml" });
   const start = process.cpuUsage();
   for (let step = 0; step < 100; ++step) handle({ do: "step" });
-  console.log(`${(1e8 / process.cpuUsage(start).user).toFixed(0)} steps per second of processor time under Node.js`);
+  console.log(`${(1e8 / process.cpuUsage(start).user).toFixed(0)} steps per second of CPU time under Node.js`);
   assert.equal(messages.findLast(({ kind }) => kind === "state").a.step, 100);
 });
 
