@@ -50,6 +50,10 @@ if(EMSCRIPTEN)  # WebAssembly has no fused multiply-add
   # The vectorizer of straight-line code in emscripten 3.1.6 miscompiles "x = A * x + b": never enable it.
   add_compile_options(-msimd128 -fno-slp-vectorize -fwasm-exceptions)
   add_link_options(-fwasm-exceptions)
+  if(ASPIC_WASM_THREADS)
+    add_compile_options(-pthread)
+    add_link_options(-pthread)
+  endif()
   set(ASPIC_ARCH -msimd128)
   set(ASPIC_CONTRACT off)
 elseif(ASPIC_BITS STREQUAL "portable")
@@ -77,7 +81,7 @@ endif()
 # WebAssembly. Sanitizer builds with clang keep their flags.
 function(compile_quickly target)
   if(EMSCRIPTEN)
-    target_compile_options(${target} PRIVATE -Os -finline-functions)  # emcc disables inlining at -Os
+    target_compile_options(${target} PRIVATE -Oz -finline-functions)  # emcc disables inlining at -Oz
   elseif(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
     target_compile_options(${target} PRIVATE $<$<CONFIG:Release>:-O1>)
   endif()

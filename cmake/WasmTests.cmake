@@ -8,8 +8,11 @@ target_include_directories(aspic_gtest SYSTEM PUBLIC ${gtest}/googletest/include
 target_compile_options(aspic_gtest PRIVATE -w)
 
 add_custom_target(wasm_tests)
-foreach(module math linalg optimize energy mesh contact dynamics)
+foreach(module math linalg optimize energy mesh contact dynamics engine)
   file(GLOB tests CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/src/${module}/*_test.cpp)
+  if(module STREQUAL "engine")
+    set(tests ${PROJECT_SOURCE_DIR}/tests/engine_self_test.cpp)
+  endif()
   add_executable(test_${module} EXCLUDE_FROM_ALL ${tests})
   set_target_properties(test_${module} PROPERTIES UNITY_BUILD OFF)
   target_link_libraries(test_${module} PRIVATE aspic_capture aspic_build Eigen3::Eigen aspic_gtest)
@@ -23,3 +26,12 @@ foreach(name affine_motion integrators models)  # shared with `aspic verify`
   target_sources(test_dynamics PRIVATE ${PROJECT_SOURCE_DIR}/verification/${name}.cpp)
 endforeach()
 target_include_directories(test_dynamics PRIVATE ${PROJECT_SOURCE_DIR})
+
+# The engine's guard against miscompilation, also compiled with what it guards against.
+set(guard ${PROJECT_SOURCE_DIR}/apps/engine/self_test.cpp)
+add_library(miscompiled_guard OBJECT EXCLUDE_FROM_ALL ${guard})
+target_compile_options(miscompiled_guard PRIVATE -Dengine=miscompiled -fslp-vectorize)
+target_link_libraries(miscompiled_guard PRIVATE aspic_build)
+target_include_directories(miscompiled_guard PRIVATE ${PROJECT_SOURCE_DIR}/apps ${PROJECT_SOURCE_DIR}/src)
+target_sources(test_engine PRIVATE ${guard} $<TARGET_OBJECTS:miscompiled_guard>)
+target_include_directories(test_engine PRIVATE ${PROJECT_SOURCE_DIR}/apps)

@@ -17,7 +17,7 @@ test_programs="python3 chromium ffmpeg codespell $plot_programs"
 test_packages="libgtest-dev libgmock-dev libbenchmark-dev libsuitesparse-dev python3-meshio python3-jsonschema"
 python_packages="pybind11-dev python3-dev python3-numpy python3-scipy python3-matplotlib"
 python_test_packages="python3-pytest python3-nbclient python3-nbformat python3-ipykernel python3-torch mypy"
-wasm_packages="emscripten"
+wasm_packages="emscripten xz-utils"
 bench_packages="libbenchmark-dev"
 fuzz_programs="clang:clang++" # with libFuzzer and its sanitizers, which clang recommends and we name
 fuzz_packages="libclang-rt-14-dev llvm-14"
@@ -216,13 +216,25 @@ fetch_source() {
   fi
 }
 
-# Builds out/site/index.html.
-build_site() {
+# Prepares the build folder of a preset for WebAssembly.
+wasm_preset() {
   need "$core_packages $wasm_packages" "$core_programs $viewer_programs"
   fetch_wasm_sources
   export NODE_PATH=/usr/share/nodejs # where Debian's emscripten finds its modules
-  preset wasm
+  preset "$1"
+}
+
+# build_site [threads]: builds out/site/index.html; with `threads` also a file beside it with an engine for isolated pages.
+build_site() {
+  if [ "${1-}" = threads ]; then
+    wasm_preset wasm-threads
+    build aspic_engine
+    threads_engine=$build_dir/bin/engine.js
+  fi
+  wasm_preset wasm
   build site
+  [ "${1-}" != threads ] || node "$root/web/site.mjs" "$build_dir/web/page.html" "$build_dir/bin/engine.js" "$root" \
+    "$root/out/site/index.html" "$threads_engine" >&2
 }
 
 # Shapes for `./run bench characters`, in build/shapes and nowhere else: the bunny, and what Debian's package libcgal-demo

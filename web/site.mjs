@@ -1,14 +1,17 @@
-// node site.mjs PAGE ENGINE ROOT OUT: writes OUT, the page with the engine, the shipped scenes and the bunny. ENGINE is the
-// script engine.js of the compiler, beside engine.wasm. OUT needs no server: it works from a file, too.
+// node site.mjs PAGE ENGINE ROOT OUT [THREADS]: writes OUT, the page with the engine, the shipped scenes and the bunny.
+// ENGINE is the script engine.js of the compiler, beside engine.wasm. OUT needs no server: it works from a file, too.
+// THREADS is ENGINE with threads, for a file of its own beside OUT: a page from a file cannot use it.
 import { build, transform } from "esbuild";
-import { mkdirSync, readdirSync, readFileSync, writeFileSync } from "node:fs";
+import { execFileSync } from "node:child_process";
+import { createHash } from "node:crypto";
+import { mkdirSync, readdirSync, readFileSync, rmSync, writeFileSync } from "node:fs";
 import { dirname, join, relative } from "node:path";
 import { fileURLToPath } from "node:url";
 import { gzipSync } from "node:zlib";
 
 const here = dirname(fileURLToPath(import.meta.url));
-const [page, engine, root, out] = process.argv.slice(2);
-if (!out) throw new Error("node site.mjs PAGE ENGINE ROOT OUT");
+const [page, engine, root, out, threads] = process.argv.slice(2);
+if (!out) throw new Error("node site.mjs PAGE ENGINE ROOT OUT [THREADS]");
 
 const kFolders = ["scenes", "scenes/lecture"];
 
@@ -22,26 +25,43 @@ function shippedFiles() {
   return files;
 }
 
+// As web/src/lzma.ts unpacks it. Neither code nor texts have a period of 4 bytes, which LZMA would expect (pb).
+const packed = (bytes) => ({
+  size: bytes.length,
+  lzma: execFileSync("xz", ["--format=lzma", "--lzma1=preset=9e,lc=4,pb=0", "--stdout"], { input: bytes, maxBuffer: 1e9 }).toString("base64"),
+});
 async function workerScript() {
   const bundled = await build({ entryPoints: [join(here, "src/worker.ts")], bundle: true, minify: true, format: "iife", target: "es2022", write: false });
-  const { code } = await transform(readFileSync(engine, "utf8"), { minify: true });
-  return code + bundled.outputFiles[0].text;
+  return bundled.outputFiles[0].text;
 }
 
-const packed = (bytes) => gzipSync(bytes, { level: 9 }).toString("base64");
+const minified = async (path) => (await transform(readFileSync(path, "utf8"), { minify: true })).code;
+const program = async (script) => ({ script: await minified(script), module: packed(readFileSync(script.replace(/\.js$/, ".wasm"))) });
+
+// Returns the name of the file, which differs for every version of the engine.
+async function writeThreads() {
+  const text = JSON.stringify({ ...(await program(threads)), threadScript: await minified(threads.replace(/\.js$/, ".worker.js")) });
+  const name = `threads-${createHash("sha256").update(text).digest("hex").slice(0, 12)}.json`;
+  writeFileSync(join(dirname(out), name), text);
+  return name;
+}
+
+mkdirSync(dirname(out), { recursive: true });
+for (const name of readdirSync(dirname(out))) if (/^threads-\w+\.json$/.test(name)) rmSync(join(dirname(out), name));
 // Every "<" is escaped, because a script element ends at the first "</script", wherever it is.
-const element = (id, text) => `<script type="application/json" id="${id}">${JSON.stringify(text).replaceAll("<", "\\u003c")}</script>`;
+const element = (id, content) => `<script type="application/json" id="${id}">${JSON.stringify(content).replaceAll("<", "\\u003c")}</script>`;
 
 const parts = {
   engine: await workerScript(),
-  "engine-module": packed(readFileSync(engine.replace(/\.js$/, ".wasm"))),
-  "engine-files": packed(JSON.stringify(shippedFiles())),
+  "engine-program": await program(engine),
+  "engine-files": packed(Buffer.from(JSON.stringify(shippedFiles()))),
+  ...(threads ? { "engine-threads": await writeThreads() } : {}),
 };
-const html = readFileSync(page, "utf8").replace("<!-- recording -->", () => Object.entries(parts).map(([id, text]) => element(id, text)).join("\n"));
-mkdirSync(dirname(out), { recursive: true });
+const html = readFileSync(page, "utf8").replace("<!-- recording -->", () => Object.entries(parts).map(([id, content]) => element(id, content)).join("\n"));
 writeFileSync(out, html);
 
-const size = (name, text) => `  ${name}: ${(Buffer.byteLength(text) / 1e6).toFixed(2)} MB`;
+const size = (name, bytes) => `  ${name}: ${(bytes / 1e6).toFixed(2)} MB`;
 console.log(`${relative(process.cwd(), out) || out}: ${(Buffer.byteLength(html) / 1e6).toFixed(2)} MB, ${(gzipSync(html).length / 1e6).toFixed(2)} MB compressed by gzip`);
-console.log(size("engine, compressed", Buffer.from(parts["engine-module"], "base64")));
-console.log(size("scenes and meshes, compressed", Buffer.from(parts["engine-files"], "base64")));
+const sizeOf = ({ lzma }) => (lzma.length * 3) / 4;
+console.log(size("engine, compressed", sizeOf(parts["engine-program"].module)));
+console.log(size("scenes and meshes, compressed", sizeOf(parts["engine-files"])));

@@ -20,6 +20,7 @@
 
 EM_JS(void, post_text, (const char* text, int size), { Module.post(UTF8ToString(text, size)); });
 EM_JS(bool, is_stop_requested, (), { return Module.isStopRequested(); });
+EM_JS(int, worker_count, (), { return Module.workers || 0; });
 EM_JS(void, post_bytes, (const char* bytes, int size), { Module.post(HEAPU8.slice(bytes, bytes + size).buffer); });
 
 namespace aspic::engine {
@@ -80,7 +81,7 @@ std::unique_ptr<Engine> engine;
 
 // Throws std::runtime_error.
 void prepare() {
-  set_thread_count(1);
+  set_thread_count(1 + worker_count());
   if (const std::string wrong = self_test(); !wrong.empty())
     throw std::runtime_error("this engine is miscompiled: " + wrong + " has a wrong result");
 }

@@ -2,13 +2,19 @@
 // its parts; without them the page talks to a program over a WebSocket.
 import { type EngineWorker, startWorker } from "./host";
 import type { Transport, TransportListener } from "./live";
-import { embedded, unpacked } from "./pack";
+import type { Packed } from "./lzma";
+import { embedded } from "./pack";
 import type { Judgment } from "./protocol";
 
+interface Program {
+  script: string; // of the compiler
+  module: Packed; // WebAssembly
+  threadScript?: string; // script of its threads; absent: there is one thread
+}
+
 // First message to the worker.
-export interface EngineParts {
-  module: ArrayBuffer; // WebAssembly
-  files: Record<string, string>; // texts by paths
+export interface EngineParts extends Program {
+  files: Packed; // JSON, texts by paths
   task: { scene: string } | { judge: string }; // path of a scene; id of a lesson
 }
 
@@ -19,16 +25,20 @@ const kFirstScene = "/scenes/bunny.toml";
 // Commands that stop the step under way, as those of a server: apps/viewer/server_room.cpp.
 const kUrgent = /^\{"do":"(pause|reset|load|set|rewind|lesson|replay|compare|end_compare|stop_fit)"/;
 
+// The program with threads is a file beside the page. Only isolated pages can run it.
+async function threadedProgram(): Promise<Program | null> {
+  const name = embedded("engine-threads");
+  if (name === null || !crossOriginIsolated) return null;
+  return fetch(name).then((response) => response.json() as Promise<Program>).catch(() => null);
+}
+
 async function partsFor(task: EngineParts["task"]): Promise<EngineParts> {
-  return {
-    module: await unpacked(embedded("engine-module") ?? ""),
-    files: JSON.parse(new TextDecoder().decode(await unpacked(embedded("engine-files") ?? ""))) as EngineParts["files"],
-    task,
-  };
+  const program = (await threadedProgram()) ?? embedded<Program>("engine-program")!;
+  return { ...program, files: embedded<Packed>("engine-files")!, task };
 }
 
 export const hasEngine = (): boolean => document.getElementById("engine") !== null;
-const openWorker: Opener = () => startWorker(embedded("engine") ?? "");
+const openWorker: Opener = () => startWorker(embedded<string>("engine")!);
 
 export const embeddedEngine = (): Transport => overWorker(openWorker, () => partsFor({ scene: kFirstScene }));
 
@@ -50,7 +60,7 @@ export function judgeOver(open: Opener, parts: () => Promise<EngineParts>): Judg
       if (why !== null) reject(new Error(why));
       else resolve((JSON.parse(data as string) as { result: Judgment }).result);
     };
-    parts().then((ready) => worker.send(ready, false), reject);
+    void parts().then((ready) => worker.send(ready, false));
   });
   return { result: result.finally(() => worker.end()), stop };
 }
@@ -73,10 +83,7 @@ export function overWorker(open: Opener, parts: () => Promise<EngineParts>): Tra
       }
       listener.received(data);
     };
-    parts().then(
-      (ready) => opened.send(ready, false),
-      (reason: unknown) => end(`the engine in this page is damaged (${String(reason)})`),
-    );
+    void parts().then((ready) => opened.send(ready, false));
   };
   const send = (text: string): boolean => {
     worker?.send(text, kUrgent.test(text));

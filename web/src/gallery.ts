@@ -2,6 +2,7 @@
 // the program's machine.
 import "./gallery.css";
 import { button, chooseFiles, element, labeled, messageOf, openDialog } from "./dom";
+import { hasEngine } from "./engine";
 import type { GalleryReply } from "./protocol";
 import type { Store } from "./store";
 
@@ -21,9 +22,10 @@ export function openGallery(store: Store, openFiles: (files: File[]) => Promise<
     }
   };
   const load = (scene: string): Promise<void> => work(() => store.source.request({ do: "load", scene }));
+  const paths = hasEngine() ? [] : [makePathForm(store, load)]; // a program in the page has no files but its scenes
   const dialog = openDialog(
     "Load a scene or a mesh",
-    [makePathForm(store, load), problem, makeFileChooser((files) => work(() => openFiles(files))), shelves],
+    [...paths, problem, makeFileChooser((files) => work(() => openFiles(files))), shelves],
     "gallery",
   );
   void store.source

@@ -20,52 +20,43 @@ interface Request {
   stops: boolean;
 }
 
-// Runs the script in a worker, which posts to `port`. Returns a function that passes a request to it. The frame contains
-// the text of this function, so it uses nothing outside.
-function startHere(script: string, port: MessagePort): { pass: (request: Request) => void; end: () => void } {
+// Runs the script in a worker that serves the port. Returns a function that ends it. The frame contains the text of this
+// function, so it uses nothing outside.
+function startHere(script: string, port: MessagePort): () => void {
   const urlOf = (text: string): string => URL.createObjectURL(new Blob([text], { type: "text/javascript" }));
   const worker = new Worker(urlOf(script));
   let flag = urlOf("");
   worker.onmessage = ({ data }: MessageEvent<string | ArrayBuffer>) => port.postMessage(data, typeof data === "string" ? [] : [data]);
   worker.onerror = (event) => port.postMessage(JSON.stringify({ kind: "ended", why: event.message }));
-  const pass = ({ message, stops }: Request): void => {
+  port.onmessage = ({ data: { message, stops } }: MessageEvent<Request>) => {
     if (stops) {
       URL.revokeObjectURL(flag);
       flag = urlOf("");
     }
     worker.postMessage({ message, flag });
   };
-  return { pass, end: () => worker.terminate() };
+  return () => worker.terminate();
 }
 
-const kFrameScript = `let started;
-onmessage = ({ data, ports }) => started ? started.pass(data) : (started = (${startHere.toString()})(data, ports[0]));`;
+const kFrameScript = `onmessage = ({ data, ports }) => (${startHere.toString()})(data, ports[0]);`;
 
-// A frame like startHere(). It keeps requests until it has loaded.
-function startInFrame(script: string, port: MessagePort): ReturnType<typeof startHere> {
+function startInFrame(script: string, port: MessagePort): () => void {
   const frame = document.createElement("iframe");
   frame.setAttribute("sandbox", "allow-scripts");
   frame.hidden = true;
   frame.srcdoc = `<script>${kFrameScript.replaceAll("</", "<\\/")}</script>`;
-  const waiting: Request[] = [];
-  const send = (request: Request): void => frame.contentWindow?.postMessage(request, "*");
-  let hasLoaded = false;
-  frame.onload = () => {
-    frame.contentWindow?.postMessage(script, "*", [port]);
-    hasLoaded = true;
-    waiting.forEach(send);
-  };
+  frame.onload = () => frame.contentWindow?.postMessage(script, "*", [port]);
   document.body.append(frame);
-  return { pass: (request) => void (hasLoaded ? send(request) : waiting.push(request)), end: () => frame.remove() };
+  return () => frame.remove();
 }
 
 export function startWorker<Message>(script: string): EngineWorker<Message> {
   const { port1, port2 } = new MessageChannel();
   const start = location.protocol === "file:" ? startInFrame : startHere;
-  const { pass, end } = start(script, port2);
+  const end = start(script, port2);
   const worker: EngineWorker<Message> = {
     onmessage: null,
-    send: (message, stops) => pass({ message, stops }),
+    send: (message, stops) => port1.postMessage({ message, stops }),
     end: () => {
       worker.onmessage = null;
       end();

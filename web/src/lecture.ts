@@ -91,15 +91,19 @@ export class Lecture {
     if (Number.isNaN(page)) return;
     const lesson = lessonOf(this.lessons, page);
     if (!lesson) return this.page.notice(`The lecture's page ${page} has no demonstration.`);
-    if (this.root.hidden) this.toggle();
+    if (this.root.hidden) this.show(true);
     void this.open(lesson);
   }
 
   private toggle(): void {
     if (this.lessons.length === 0) return;
-    this.root.hidden = !this.root.hidden;
-    this.opener.setAttribute("aria-expanded", String(!this.root.hidden));
+    this.show(this.root.hidden === true);
     if (!this.root.hidden) this.search.focus();
+  }
+
+  private show(visible: boolean): void {
+    this.root.hidden = !visible;
+    this.opener.setAttribute("aria-expanded", String(visible));
   }
 
   private fill(): void {

@@ -8,6 +8,7 @@ import { embeddedEngine, hasEngine } from "./engine";
 import { Files } from "./files";
 import { openFit } from "./fit/fitPage";
 import { Lecture } from "./lecture";
+import { makeInvitation } from "./invitation";
 import { LiveSource } from "./live";
 import { drawMeshPictures } from "./meshPicture";
 import { showNotices, showOwnErrors } from "./notices";
@@ -84,8 +85,10 @@ function openPage(source: Source, html: string | null = null): void {
 }
 
 function openLive(): void {
-  if (hasEngine()) openPage(new LiveSource(embeddedEngine()), `<!doctype html>\n${document.documentElement.outerHTML}`);
-  else openPage(new LiveSource(overSocket(sessionAddress())));
+  if (hasEngine()) {
+    openPage(new LiveSource(embeddedEngine()), `<!doctype html>\n${document.documentElement.outerHTML}`);
+    if (location.hash === "") area("views").append(makeInvitation());
+  } else openPage(new LiveSource(overSocket(sessionAddress())));
 }
 
 registerColors();

@@ -3,10 +3,10 @@
 const kTypes = { u8: Uint8Array, u16: Uint16Array, u32: Uint32Array, f32: Float32Array };
 export type Numbers = Uint8Array | Uint16Array | Uint32Array | Float32Array;
 
-// Text of the page's element with this id, as the program writes it; null if there is none.
-export function embedded(id: string): string | null {
+// Content of the page's element with this id, as the program writes it; null if there is none.
+export function embedded<Content = string>(id: string): Content | null {
   const found = document.getElementById(id);
-  return found ? (JSON.parse(found.textContent ?? "") as string) : null;
+  return found ? (JSON.parse(found.textContent ?? "") as Content) : null;
 }
 
 export function bytesOf(base64: string): Uint8Array<ArrayBuffer> {

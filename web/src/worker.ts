@@ -1,6 +1,7 @@
 // The script of the engine's worker: passes messages between the page (engine.ts) and a session (apps/engine/engine.cpp).
 import type { EngineParts } from "./engine";
 import type { Flagged } from "./host";
+import { unpackLzma } from "./lzma";
 
 interface Engine {
   FS: { mkdirTree(folder: string): void; writeFile(path: string, text: string): void };
@@ -17,8 +18,17 @@ interface Engine {
 
 type Post = (message: string | ArrayBuffer) => void;
 
-// Made by the compiler; its text precedes this script.
-declare function createEngine(options: { wasmBinary: ArrayBuffer; post: Post; isStopRequested: () => boolean }): Promise<Engine>;
+interface EngineOptions {
+  wasmBinary: Uint8Array;
+  post: Post;
+  isStopRequested: () => boolean;
+  workers: number; // beside this one
+  mainScriptUrlOrBlob: Blob; // for the scripts of the workers
+  locateFile: () => string; // URL of these scripts
+}
+
+// Made by the compiler; its script defines it.
+declare function createEngine(options: EngineOptions): Promise<Engine>;
 
 interface Scope {
   onmessage: ((event: { data: Flagged<EngineParts | string> }) => void) | null;
@@ -72,9 +82,21 @@ atOnce.port2.onmessage = () => {
   guarded(run);
 };
 
-async function open({ module, files, task }: EngineParts): Promise<void> {
-  const made = await createEngine({ wasmBinary: module, post, isStopRequested });
-  for (const [path, text] of Object.entries(files)) {
+const kMostThreads = 8;
+const blobOf = (text: string): Blob => new Blob([text], { type: "text/javascript" });
+
+async function create({ script, module, threadScript }: EngineParts): Promise<Engine> {
+  const main = blobOf(script);
+  scope.importScripts(URL.createObjectURL(main));
+  const workers = threadScript === undefined ? 0 : Math.min(navigator.hardwareConcurrency, kMostThreads) - 1;
+  const locateFile = (): string => URL.createObjectURL(blobOf(threadScript ?? ""));
+  return createEngine({ wasmBinary: unpackLzma(module), post, isStopRequested, workers, mainScriptUrlOrBlob: main, locateFile });
+}
+
+async function open(parts: EngineParts): Promise<void> {
+  const { files, task } = parts;
+  const made = await create(parts);
+  for (const [path, text] of Object.entries(JSON.parse(new TextDecoder().decode(unpackLzma(files))) as Record<string, string>)) {
     made.FS.mkdirTree(path.slice(0, path.lastIndexOf("/")));
     made.FS.writeFile(path, text);
   }

@@ -5,7 +5,7 @@ import type { EngineWorker } from "../src/host";
 import { LiveSource } from "../src/live";
 import type { Incoming } from "../src/source";
 
-const kParts: EngineParts = { module: new ArrayBuffer(8), files: { "/scenes/a.toml": "" }, task: { scene: "/scenes/a.toml" } };
+const kParts: EngineParts = { script: "", module: { size: 0, lzma: "" }, files: { size: 0, lzma: "" }, task: { scene: "/scenes/a.toml" } };
 
 class FakeWorker implements EngineWorker<EngineParts | string> {
   onmessage: ((message: string | ArrayBuffer) => void) | null = null;
@@ -25,10 +25,10 @@ class FakeWorker implements EngineWorker<EngineParts | string> {
   }
 }
 
-async function connect(parts = Promise.resolve(kParts)): Promise<{ source: LiveSource; worker: FakeWorker; received: Incoming[] }> {
+async function connect(): Promise<{ source: LiveSource; worker: FakeWorker; received: Incoming[] }> {
   const worker = new FakeWorker();
   const received: Incoming[] = [];
-  const source = new LiveSource(overWorker(() => worker, () => parts));
+  const source = new LiveSource(overWorker(() => worker, () => Promise.resolve(kParts)));
   source.start((incoming) => received.push(incoming));
   await new Promise((resolve) => setTimeout(resolve, 0));
   return { source, worker, received };
@@ -58,11 +58,6 @@ test("the reason of an ended engine is reported once", async () => {
   assert.equal(texts(received).match(/out of memory/g)?.length, 1);
   assert.ok(!texts(received).includes("again"));
   await assert.rejects(source.request({ do: "play" }), /no connection/);
-});
-
-test("damaged parts are reported", async () => {
-  const damaged = await connect(Promise.reject(new Error("truncated")));
-  assert.match(texts(damaged.received), /engine in this page is damaged.*truncated/);
 });
 
 test("only urgent commands stop the work under way", async () => {

@@ -136,9 +136,9 @@ const std::vector<Staging>& stagings() {
        .overrides = {"time.step=5e-4", "solver.mass=lumped"},
        .comparison = {{{"time.integrator=symplectic_euler"}, "explicit"}}},
       {.demonstration = "23_printed_forward_euler",
-       .look = "Play: left the printed formula, which is symplectic Euler, right the classical forward Euler, both "
-               "with the "
-               "same h. T + V of the printed one stays in a band, that of the classical one grows until it explodes.",
+       .look =
+           "Play: A is the printed formula, which is symplectic Euler, B the classical forward Euler, both with "
+           "the same h. T + V of the printed one stays in a band, that of the classical one grows until it explodes.",
        .question = "Where do the two formulas evaluate dV/dq?",
        .answer = "The printed one at q_i, the classical one at q_(i-1). The force that is late by one step adds energy "
                  "to every vibration.",
@@ -147,7 +147,7 @@ const std::vector<Staging>& stagings() {
        .overrides = {"time.step=5e-4", "solver.mass=lumped", "time.integrator=symplectic_euler", "gravity=[0, 0, 0]"},
        .comparison = {{{"time.integrator=forward_euler"}, "classical"}}},
       {.demonstration = "24_backward_euler",
-       .look = "Play: left backward Euler, right the explicit scheme with the same h = 0.01 s. The explicit one "
+       .look = "Play: A is backward Euler, B the explicit scheme with the same h = 0.01 s. The explicit one "
                "explodes within "
                "a few steps; backward Euler needs a minimization per step and dissipates energy.",
        .question = "What is the price of this stability?",
@@ -182,7 +182,7 @@ const std::vector<Staging>& stagings() {
        .scene = "05_swing"},
       {.demonstration = "33-34_explosion",
        .part = "explicit",
-       .look = "The same mouse drags both: left implicit, right explicit. The explicit scheme explodes within a few "
+       .look = "The same mouse drags both: A is implicit, B explicit. The explicit scheme explodes within a few "
                "steps and ends; the implicit one continues, and stays stable: take over and pull as hard as you can.",
        .question = "The implicit scheme is stable for every h. Is it also accurate?",
        .answer =
@@ -193,7 +193,7 @@ const std::vector<Staging>& stagings() {
        .drag = wild_drag()},
       {.demonstration = "33-34_explosion",
        .part = "linearized",
-       .look = "The same mouse drags both: left one minimization per step, right one linear system per step. Where the "
+       .look = "The same mouse drags both: A solves one minimization per step, B one linear system per step. Where the "
                "body bends far, the linear system is inaccurate and the energy grows. Halve h and reset: how far does "
                "it come now?",
        .question = "How is the linearized scheme related to Newton's method?",
@@ -231,9 +231,8 @@ const std::vector<Staging>& stagings() {
        .function = question("two_bump", -0.3, 0.9, {{"method", "gradient_descent"}})},
       {.demonstration = "38-42_gradient_descent",
        .part = "a step of a body",
-       .look =
-           "Play: left Newton's method, right gradient descent on the same steps, to the same tolerance. Compare the "
-           "number of iterations and the time that each step takes.",
+       .look = "Play: A is Newton's method, B gradient descent on the same steps, to the same tolerance. Compare the "
+               "number of iterations and the time that each step takes.",
        .question = "An iteration of gradient descent is cheaper. Why does its step take longer?",
        .answer = "It needs far more iterations: stiff and soft deformations together make the condition number of the "
                  "Hessian large.",
@@ -250,8 +249,8 @@ const std::vector<Staging>& stagings() {
        .panel = "functions",
        .function = question("rosenbrock", -0.8, 0.3, {{"method", "newton"}})},
       {.demonstration = "53+62_pure_newton",
-       .look = "Take one step (S): left Newton's method with a line search, right without. Left E falls in every "
-               "iteration. Choose B above the table: right E jumps far up in the first iteration, the iterates end "
+       .look = "Take one step (S): A is Newton's method with a line search, B without. The E of A falls in every "
+               "iteration. Choose B above the table: its E jumps far up in the first iteration, the iterates end "
                "outside the range "
                "of numbers, and the body stays squashed because its step has no result.",
        .question = "Both start at the same point with the same direction. Why does E rise without a line search?",

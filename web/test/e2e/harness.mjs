@@ -154,25 +154,27 @@ function story({ state, sent, messages, pictures }) {
   return `${JSON.stringify(state)}; sent: ${sent.slice(-5).join(" ").slice(-800)}; reported: ${reported.join(", ")}; picture of step ${pictures.a?.step}`;
 }
 
-// The same for the engine in a worker of the page.
+// The same for the engine in a worker of the page, at the page's end of the port between them: web/src/host.ts.
 async function listenToWorker(page, heard) {
   await page.exposeFunction("sentToWorker", (text) => heard.sent.push(text));
   await page.exposeFunction("heardFromWorker", (text, isBinary) => heard.take(isBinary ? Buffer.from(text, "base64") : text));
   await page.addInitScript(() => {
     const base64 = (bytes) => btoa(Array.from(new Uint8Array(bytes), (byte) => String.fromCharCode(byte)).join(""));
-    window.Worker = class extends Worker {
-      constructor(...what) {
-        super(...what);
-        this.addEventListener("message", ({ data }) => {
-          const isBinary = typeof data !== "string";
-          void window.heardFromWorker(isBinary ? base64(data) : data, isBinary);
-        });
-      }
-      postMessage(message, ...more) {
-        const text = message.message; // host.ts
-        if (typeof text === "string" && text !== "ready") void window.sentToWorker(text);
-        super.postMessage(message, ...more);
-      }
+    const hear = ({ data }) => {
+      if (typeof data === "string") void window.heardFromWorker(data, false);
+      else if (data instanceof ArrayBuffer) void window.heardFromWorker(base64(data), true);
+    };
+    const { prototype } = MessagePort;
+    const { set } = Object.getOwnPropertyDescriptor(prototype, "onmessage");
+    const take = function (handler) {
+      this.addEventListener("message", hear);
+      set.call(this, handler);
+    };
+    Object.defineProperty(prototype, "onmessage", { set: take });
+    const { postMessage } = prototype;
+    prototype.postMessage = function (data, ...more) {
+      if (typeof data?.message === "string" && data.message !== "ready") void window.sentToWorker(data.message);
+      postMessage.call(this, data, ...more);
     };
   });
 }

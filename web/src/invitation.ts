@@ -1,0 +1,9 @@
+// First words to a reader who opens the page of ./run site: they go with the first touch or key.
+import { element } from "./dom";
+
+export function makeInvitation(): HTMLElement {
+  const words = "Drag the body. Play starts the time, 1 iteration shows the minimization at work, and Lecture explains it page by page.";
+  const shown = element("p", { class: "invitation" }, words);
+  for (const event of ["pointerdown", "keydown"]) addEventListener(event, () => shown.remove(), { once: true, capture: true });
+  return shown;
+}
