@@ -4,6 +4,7 @@
 
 #include "base/check.h"
 #include "mesh/grouped_elements.h"
+#include "mesh/tet_nodes.h"
 #include "mesh/tet_shape.h"
 
 namespace aspic {
@@ -13,9 +14,32 @@ Triangle corners(const Tet& tet, int face) {
   return {tet[kTetFaces[face][0]], tet[kTetFaces[face][1]], tet[kTetFaces[face][2]]};
 }
 
+void append_triangles(const Face& face, std::vector<Triangle>& triangles) {
+  const auto& [a, b, c] = face.corners;
+  const auto& [ab, bc, ca] = face.mids;
+  if (face.is_quadratic())
+    triangles.insert(triangles.end(), {{a, ab, ca}, {ab, b, bc}, {ca, bc, c}, {ab, bc, ca}});
+  else
+    triangles.push_back(face.corners);
+}
+
+int edge_between(int a, int b) {
+  for (int k = 0; k < 6; ++k)
+    if (std::minmax(kTetEdges[k][0], kTetEdges[k][1]) == std::minmax(a, b)) return k;
+  return -1;
+}
+
+Face face_of(const TetMesh& mesh, int tet, int face) {
+  Face result{corners(mesh.tets[tet], face)};
+  if (!is_quadratic(mesh, tet)) return result;
+  for (int c = 0; c < 3; ++c)
+    result.mids[c] = mesh.mids[tet][edge_between(kTetFaces[face][c], kTetFaces[face][(c + 1) % 3])];
+  return result;
+}
+
 }  // namespace
 
-std::vector<Triangle> boundary_triangles(const TetMesh& mesh, int first, int count) {
+std::vector<Face> boundary_faces(const TetMesh& mesh, int first, int count) {
   ASPIC_CHECK(first >= 0 && count >= 0 && first + count <= mesh.tet_count());
   const auto faces = grouped_elements<3>(mesh.vertex_count(), [&](const auto& visit) {
     for (int t = first; t < first + count; ++t)
@@ -26,9 +50,17 @@ std::vector<Triangle> boundary_triangles(const TetMesh& mesh, int first, int cou
     if (end == begin + 1) places.push_back(begin->place);
   });
   std::sort(places.begin(), places.end());  // in the order of the tets
+  std::vector<Face> boundary;
+  boundary.reserve(places.size());
+  for (int place : places) boundary.push_back(face_of(mesh, place / 4, place % 4));
+  return boundary;
+}
+
+std::vector<Triangle> boundary_triangles(const TetMesh& mesh, int first, int count) {
+  const std::vector<Face> faces = boundary_faces(mesh, first, count);
   std::vector<Triangle> triangles;
-  triangles.reserve(places.size());
-  for (int place : places) triangles.push_back(corners(mesh.tets[place / 4], place % 4));
+  triangles.reserve(faces.size());
+  for (const Face& face : faces) append_triangles(face, triangles);
   return triangles;
 }
 

@@ -6,8 +6,19 @@
 
 namespace aspic {
 
-// Returns the triangles that belong to exactly one of tets [first, first + count), outward oriented, with vertex
-// indices of the tet mesh, in a deterministic order.
+// A face of a tet, outward oriented.
+struct Face {
+  Triangle corners;
+  Triangle mids = {-1, -1, -1};  // mid-edge nodes after each corner; -1 for a linear tet
+
+  bool is_quadratic() const { return mids[0] >= 0; }
+};
+
+// Returns the faces that belong to exactly one of tets [first, first + count), in a deterministic order.
+std::vector<Face> boundary_faces(const TetMesh& mesh, int first, int count);
+
+// Returns these faces as triangles with vertex indices of the tet mesh: one for each linear face, and four between the
+// nodes of each quadratic one.
 std::vector<Triangle> boundary_triangles(const TetMesh& mesh, int first, int count);
 
 struct BoundarySurface {

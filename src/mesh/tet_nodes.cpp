@@ -1,0 +1,73 @@
+#include "mesh/tet_nodes.h"
+
+#include <algorithm>
+
+#include "base/check.h"
+#include "mesh/grouped_elements.h"
+
+namespace aspic {
+namespace {
+
+// The four corners, and the octahedron between them around its diagonal from edge 0 to edge 5.
+constexpr int kParts[8][4] = {{0, 4, 6, 7}, {4, 1, 5, 8}, {6, 5, 2, 9}, {7, 8, 9, 3},
+                              {4, 5, 9, 8}, {4, 8, 9, 7}, {4, 7, 9, 6}, {4, 6, 9, 5}};
+
+}  // namespace
+
+TetNodes nodes_of(const TetMesh& mesh, int tet) {
+  TetNodes nodes{{}, 4};
+  std::copy_n(mesh.tets[tet].begin(), 4, nodes.node.begin());
+  if (!is_quadratic(mesh, tet)) return nodes;
+  std::copy_n(mesh.mids[tet].begin(), 6, nodes.node.begin() + 4);
+  nodes.count = 10;
+  return nodes;
+}
+
+TetMesh raise_order(TetMesh mesh) {
+  ASPIC_CHECK(mesh.mids.empty());
+  const auto edges = grouped_elements<2>(mesh.vertex_count(), [&](const auto& visit) {
+    for (int t = 0; t < mesh.tet_count(); ++t)
+      for (int k = 0; k < 6; ++k) visit({mesh.tets[t][kTetEdges[k][0]], mesh.tets[t][kTetEdges[k][1]]}, 6 * t + k);
+  });
+  std::vector<int> first_use(6 * mesh.tets.size());  // the first place of the same edge
+  for_each_group(edges, [&](const GroupedElement<2>* begin, const GroupedElement<2>* end) {
+    for (const GroupedElement<2>* use = begin; use < end; ++use) first_use[use->place] = begin->place;
+  });
+  mesh.mids.resize(mesh.tets.size());
+  for (int place = 0; place < static_cast<int>(first_use.size()); ++place) {
+    const int first = first_use[place];
+    int& node = mesh.mids[place / 6][place % 6];
+    node = first < place ? mesh.mids[first / 6][first % 6] : mesh.vertex_count();
+    if (first == place) mesh.rest.emplace_back();
+  }
+  straighten_edges(mesh, mesh.rest);
+  return mesh;
+}
+
+void straighten_edges(const TetMesh& mesh, std::vector<Vec3d>& positions) {
+  for (int t = 0; t < mesh.tet_count(); ++t)
+    for (int k = 0; k < 6 && is_quadratic(mesh, t); ++k)
+      positions[mesh.mids[t][k]] =
+          0.5 * (positions[mesh.tets[t][kTetEdges[k][0]]] + positions[mesh.tets[t][kTetEdges[k][1]]]);
+}
+
+LinearParts linear_parts(const TetMesh& mesh) {
+  LinearParts parts;
+  parts.mesh.rest = mesh.rest;
+  const auto add = [&](int t, const Tet& part) {
+    parts.mesh.tets.push_back(part);
+    parts.tet.push_back(t);
+    if (!mesh.region.empty()) parts.mesh.region.push_back(mesh.region[t]);
+  };
+  for (int t = 0; t < mesh.tet_count(); ++t) {
+    const TetNodes nodes = nodes_of(mesh, t);
+    if (nodes.count == 4) {
+      add(t, mesh.tets[t]);
+      continue;
+    }
+    for (const auto& [a, b, c, d] : kParts) add(t, {nodes[a], nodes[b], nodes[c], nodes[d]});
+  }
+  return parts;
+}
+
+}  // namespace aspic
