@@ -16,6 +16,7 @@
 #include "dynamics/step_derivatives.h"
 #include "io/mesh_file.h"
 #include "mesh/doctor.h"
+#include "mesh/tet_nodes.h"
 #include "scene/scene.h"
 
 namespace aspic::cli {
@@ -217,9 +218,14 @@ TetMesh body_mesh(const TetMesh& all, const BodyRange& body) {
   TetMesh mesh;
   mesh.rest.assign(all.rest.begin() + body.first_vertex, all.rest.begin() + body.first_vertex + body.vertex_count);
   mesh.tets.assign(all.tets.begin() + body.first_tet, all.tets.begin() + body.first_tet + body.tet_count);
+  int corners = 0;  // they precede the mid-edge nodes
   for (Tet& tet : mesh.tets) {
-    for (int& corner : tet) corner -= body.first_vertex;
+    for (int& corner : tet) {
+      corner -= body.first_vertex;
+      corners = std::max(corners, corner + 1);
+    }
   }
+  if (body.tet_count > 0 && is_quadratic(all, body.first_tet)) mesh.rest.resize(corners);
   return mesh;
 }
 

@@ -54,10 +54,8 @@ void keep_carriers(const Model& model, RecordedBody& body) {
 }
 
 std::vector<double> lumped_mass(const Model& model) {
-  std::vector<double> mass(model.mesh.rest.size(), 0.0);
-  for (size_t t = 0; t < model.density.size(); ++t)
-    for (const int v : model.mesh.tets[t]) mass[v] += model.density[t] * volume(model.mesh, static_cast<int>(t)) / 4;
-  return mass;
+  const MassMatrix mass(model.mesh, model.density, MassKind::lumped);
+  return {mass.vertex_mass().begin(), mass.vertex_mass().end()};
 }
 
 }  // namespace

@@ -9,6 +9,7 @@
 
 #include "mesh/box.h"
 #include "mesh/surface.h"
+#include "mesh/tet_nodes.h"
 #include "mesh/tet_shape.h"
 #include "mesh/topology.h"
 #include "mesh/triangle_shape.h"
@@ -39,21 +40,28 @@ Incidence::Incidence(int vertex_count, std::span<const std::pair<int, int>> vert
 
 Incidence tets_of_vertices(const TetMesh& mesh) {
   std::vector<std::pair<int, int>> pairs;
-  pairs.reserve(4 * mesh.tets.size());
+  pairs.reserve((mesh.mids.empty() ? 4 : 10) * mesh.tets.size());
   for (int t = 0; t < mesh.tet_count(); ++t)
-    for (const int v : mesh.tets[t]) pairs.emplace_back(v, t);
+    for (const int v : nodes_of(mesh, t)) pairs.emplace_back(v, t);
   return {mesh.vertex_count(), pairs};
 }
 
 template <class Corners>
 int tet_with(const TetMesh& mesh, const Incidence& tets, const Corners& corners) {
   for (const int t : tets.around(corners[0])) {
-    const Tet& tet = mesh.tets[t];
+    const TetNodes tet = nodes_of(mesh, t);
     if (std::all_of(corners.begin(), corners.end(),
                     [&](int v) { return std::find(tet.begin(), tet.end(), v) != tet.end(); }))
       return t;
   }
   return tets.around(corners[0]).front();
+}
+
+// The linear tet itself, or the parts of a quadratic one.
+TetMesh parts_of(const TetMesh& mesh, int tet) {
+  TetMesh one{mesh.rest, {mesh.tets[tet]}, {}};
+  if (is_quadratic(mesh, tet)) one.mids = {mesh.mids[tet]};
+  return linear_parts(one).mesh;
 }
 
 void add_edges(Surface& surface) {
@@ -147,7 +155,12 @@ Surface boundary_of(const Model& model) {
 TetPoint tet_point(const Surface& surface, const TetMesh& mesh, int triangle, const Vec3d& corner_weights) {
   const Triangle& corners = surface.triangles[triangle];
   if (!surface.is_fine) {
-    TetPoint point{mesh.tets[surface.tet[triangle]], {}};
+    const TetMesh parts = parts_of(mesh, surface.tet[triangle]);
+    const auto has_corners = [&](const Tet& part) {
+      return std::all_of(corners.begin(), corners.end(),
+                         [&](int c) { return std::find(part.begin(), part.end(), surface.anchor(c)) != part.end(); });
+    };
+    TetPoint point{*std::find_if(parts.tets.begin(), parts.tets.end(), has_corners), {}};
     for (int c = 0; c < 3; ++c)
       for (int i = 0; i < 4; ++i)
         if (point.vertices[i] == surface.anchor(corners[c])) point.weights[i] = corner_weights[c];
@@ -161,7 +174,16 @@ TetPoint tet_point(const Surface& surface, const TetMesh& mesh, int triangle, co
     rest = rest + corner_weights[c] * surface.rest[corners[c]];
   }
   const int tet = surface.tets[corners[nearest]];
-  return {mesh.tets[tet], barycentric(aspic::corners(mesh, tet), rest)};
+  const TetMesh parts = parts_of(mesh, tet);
+  TetPoint best;
+  double most =
+      -std::numeric_limits<double>::infinity();  // the smallest coordinate in the part that contains the point
+  for (int p = 0; p < parts.tet_count(); ++p) {
+    const std::array<double, 4> weights = barycentric(aspic::corners(parts, p), rest);
+    const double least = *std::min_element(weights.begin(), weights.end());
+    if (least > most) most = least, best = {parts.tets[p], weights};
+  }
+  return best;
 }
 
 SurfacePoint nearest_surface_point(const Surface& surface, const Vec3d& rest) {

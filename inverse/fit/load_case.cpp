@@ -89,7 +89,7 @@ const LoadCase& LoadedBody::readable(const Experiment& experiment, const LoadCas
 
 std::unique_ptr<Energy> make_pressure_of(const LoadCase& load, const TetMesh& mesh) {
   if (load.is_dead_pressure) return make_dead_pressure(mesh, load.pressed, load.pressure);
-  return make_pressure(mesh, load.pressed, load.pressure);
+  return make_pressure(mesh, linear_faces(load.pressed), load.pressure);
 }
 
 Model LoadedBody::make_model(const std::string& material, std::span<const MaterialParameters> parameters) {

@@ -28,8 +28,7 @@ struct CustomMaterial {
 
 ElasticityMaker custom_material(std::string name, int extra, std::shared_ptr<const CustomDensity> density) {
   return [=](const TetMesh& mesh, int first, std::span<const MaterialParameters> parameters) {
-    return std::make_unique<MaterialTerm<CustomMaterial>>(name, mesh, first, parameters,
-                                                          CustomMaterial{density, extra});
+    return make_material_term(name, mesh, first, parameters, CustomMaterial{density, extra});
   };
 }
 

@@ -8,6 +8,7 @@
 #include "base/parallel.h"
 #include "mesh/doctor.h"
 #include "mesh/locate.h"
+#include "mesh/tet_nodes.h"
 
 namespace aspic {
 namespace {
@@ -25,7 +26,8 @@ void check_finite(const TriMesh& skin) {
 
 Embedding embed(const TetMesh& cage, const TriMesh& skin) {
   check_finite(skin);
-  const TetLocator locator(cage);
+  const TetMesh tets = linear_parts(cage).mesh;
+  const TetLocator locator(tets);
   Embedding embedding;
   embedding.vertices.resize(skin.vertices.size());
   embedding.weights.resize(skin.vertices.size());
@@ -33,7 +35,7 @@ Embedding embed(const TetMesh& cage, const TriMesh& skin) {
   parallel_chunks(skin.vertex_count(), [&](int first, int last) {
     for (int v = first; v < last; ++v) {
       const Located carrier = locator.locate(skin.vertices[v]);
-      embedding.vertices[v] = cage.tets[carrier.tet];
+      embedding.vertices[v] = tets.tets[carrier.tet];
       embedding.weights[v] = carrier.weights;
       is_outside[v] = carrier.is_outside();
     }

@@ -1,5 +1,5 @@
 // Fine surfaces (skins) embedded in coarse tet meshes (cages): each skin vertex is a fixed combination of the corners
-// of one tet.
+// of one tet, or of one of the linear parts of a quadratic tet.
 #pragma once
 #include <span>
 

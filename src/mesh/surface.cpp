@@ -39,6 +39,12 @@ Face face_of(const TetMesh& mesh, int tet, int face) {
 
 }  // namespace
 
+std::vector<Face> linear_faces(std::span<const Triangle> triangles) {
+  std::vector<Face> faces;
+  for (const Triangle& triangle : triangles) faces.push_back({triangle});
+  return faces;
+}
+
 std::vector<Face> boundary_faces(const TetMesh& mesh, int first, int count) {
   ASPIC_CHECK(first >= 0 && count >= 0 && first + count <= mesh.tet_count());
   const auto faces = grouped_elements<3>(mesh.vertex_count(), [&](const auto& visit) {

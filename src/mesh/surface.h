@@ -1,5 +1,6 @@
 // Boundary surfaces of tetrahedral meshes.
 #pragma once
+#include <span>
 #include <vector>
 
 #include "mesh/tet_mesh.h"
@@ -13,6 +14,8 @@ struct Face {
 
   bool is_quadratic() const { return mids[0] >= 0; }
 };
+
+std::vector<Face> linear_faces(std::span<const Triangle> triangles);
 
 // Returns the faces that belong to exactly one of tets [first, first + count), in a deterministic order.
 std::vector<Face> boundary_faces(const TetMesh& mesh, int first, int count);

@@ -51,6 +51,17 @@ void straighten_edges(const TetMesh& mesh, std::vector<Vec3d>& positions) {
           0.5 * (positions[mesh.tets[t][kTetEdges[k][0]]] + positions[mesh.tets[t][kTetEdges[k][1]]]);
 }
 
+// At the centroid dN_n/dl_i is 0 for a corner n, and 1 for the mid-edge nodes of the edges at corner i.
+std::array<Vec3d, 4> center_corners(const TetMesh& mesh, int tet, std::span<const double> x) {
+  const TetNodes nodes = nodes_of(mesh, tet);
+  const auto at = [&](int v) { return Vec3d{{x[3 * v], x[3 * v + 1], x[3 * v + 2]}}; };
+  if (nodes.count == 4) return {at(nodes[0]), at(nodes[1]), at(nodes[2]), at(nodes[3])};
+  std::array<Vec3d, 4> corners{};
+  for (int k = 0; k < 6; ++k)
+    for (const int c : kTetEdges[k]) corners[c] = corners[c] + at(nodes[4 + k]);
+  return corners;
+}
+
 LinearParts linear_parts(const TetMesh& mesh) {
   LinearParts parts;
   parts.mesh.rest = mesh.rest;

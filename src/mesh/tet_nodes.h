@@ -1,6 +1,7 @@
 // Nodes of linear and quadratic tets. Code that handles both loops over nodes_of() instead of the corners.
 #pragma once
 #include <array>
+#include <span>
 #include <vector>
 
 #include "mesh/tet_mesh.h"
@@ -27,6 +28,10 @@ TetMesh raise_order(TetMesh mesh);
 
 // Moves the mid-edge nodes to the midpoints of their edges. `positions`: one per vertex.
 void straighten_edges(const TetMesh& mesh, std::vector<Vec3d>& positions);
+
+// Corners of the linear tet that has the deformation gradient of the tet's centroid; those of a linear tet itself. x: 3
+// entries per vertex.
+std::array<Vec3d, 4> center_corners(const TetMesh& mesh, int tet, std::span<const double> x);
 
 // A mesh of linear tets with the same vertices: the linear tets themselves, and eight parts of each quadratic tet.
 struct LinearParts {

@@ -68,8 +68,8 @@ TEST(Renumbering, KeepsMidNodesOnTheirEdges) {
   const TetMesh stored = from_user(numbering, user);
   for (int t = 0; t < stored.tet_count(); ++t)
     for (int k = 0; k < 6; ++k) {
-      const Vec3d midpoint = 0.5 * (stored.rest[stored.tets[t][kTetEdges[k][0]]] +
-                                    stored.rest[stored.tets[t][kTetEdges[k][1]]]);
+      const Vec3d midpoint =
+          0.5 * (stored.rest[stored.tets[t][kTetEdges[k][0]]] + stored.rest[stored.tets[t][kTetEdges[k][1]]]);
       EXPECT_EQ(norm(stored.rest[stored.mids[t][k]] - midpoint), 0);
     }
   EXPECT_EQ(to_user(numbering, stored).mids, user.mids);

@@ -15,6 +15,7 @@
 #include "mesh/generators.h"
 #include "mesh/surface.h"
 #include "mesh/surface_orientation.h"
+#include "mesh/tet_nodes.h"
 #include "scene/placement.h"
 
 namespace aspic {
@@ -132,6 +133,15 @@ BodyMesh with_skin(TetMesh tets, TriMesh skin) {
   return body;
 }
 
+// Makes the tets quadratic if the body has order 2.
+void raise_order_of(const Value& body, TetMesh& mesh) {
+  const Value& order = body["order"];
+  if (order.number() != 2) return;
+  if (!body["elastic"].boolean())
+    throw error_at(order.place, "order = 2; quadratic tets need elastic = true (remove one of the two)");
+  mesh = raise_order(std::move(mesh));
+}
+
 // For skins chosen by the scene. The surface of a filled mesh is always slightly outside.
 void note_outside(const BodyMesh& body, const std::string& name, std::vector<std::string>& notes) {
   if (const int outside = body.embedding.outside; outside > 0)
@@ -234,6 +244,7 @@ BodyMesh make_body_mesh(Value& body, MeshLoader& loader, std::optional<LoadedMes
   loader.report_if_many(mesh.tets.tet_count(),
                         "checking " + std::to_string(mesh.tets.tet_count()) + " tets of body '" + name + "'");
   heed(diagnose(mesh.tets), "body '" + name + "'", loader.notes);
+  raise_order_of(body, mesh.tets);
 
   const Value* skin = body.find("skin");
   if (!skin && mesh.surface.empty()) return with_boundary_as_skin(std::move(mesh.tets));

@@ -92,8 +92,9 @@ void write_frame(const std::filesystem::path& path, const Simulation& simulation
   for (Field& field : point_fields) field.values = vertex.to_user(field.values, field.components);
   std::vector<Field> fields = cell_fields(simulation, real);
   for (Field& field : fields) field.values = tet.to_user(field.values, field.components);
-  write_vtu(path, vertex.to_user(state.q, 3), to_user(model.numbering, model.mesh).tets,
-            {point_fields, fields, file_fields(state.time, report)});
+  const TetMesh mesh = to_user(model.numbering, model.mesh);
+  write_vtu(path, vertex.to_user(state.q, 3), mesh.tets, {point_fields, fields, file_fields(state.time, report)},
+            mesh.mids);
 }
 
 }  // namespace aspic
