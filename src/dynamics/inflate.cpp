@@ -177,8 +177,9 @@ void inflate(Model& model, std::vector<double>& q) {
   grow(model, scale, start, q);
   model.damping = std::move(damping);
   model.loads.insert(model.loads.begin(), std::make_move_iterator(loads.begin()), std::make_move_iterator(loads.end()));
+  const LinearParts parts = linear_parts(model.mesh);
   for (const BodyRange& body : model.bodies) {
-    const double share = volume_of(model, body, q) / volume_of(model, body, start);
+    const double share = volume_of(parts, body, q) / volume_of(parts, body, start);
     if (!(share > kVolume))
       throw InvalidInput("body '" + body.name + "' regains only " + std::to_string(int(100 * share)) +
                          " % of its volume: it is enclosed by other surfaces or collapsed; move it further away");

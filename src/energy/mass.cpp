@@ -140,21 +140,30 @@ void MassMatrix::assign_to(double scale, BlockSparse& H) const {
   H.stencils.clear();
 }
 
+namespace {
+
+// w' M y of one tet, divided by its mass.
+double mass_product(const TetNodes& nodes, MassKind kind, std::span<const double> w, std::span<const double> y) {
+  const TetIntegrals& integrals = tet_integrals(nodes.count);
+  const auto product = [&](int u, int v) {
+    double sum = 0;
+    for (int r = 0; r < 3; ++r) sum += w[3 * nodes[u] + r] * y[3 * nodes[v] + r];
+    return sum;
+  };
+  double sum = 0;
+  for (int u = 0; u < nodes.count; ++u) {
+    if (kind == MassKind::lumped) sum += integrals.lumped[u] * product(u, u);
+    for (int v = 0; v < nodes.count && kind == MassKind::consistent; ++v) sum += integrals.products[u][v] * product(u, v);
+  }
+  return sum / (kind == MassKind::lumped ? integrals.lumped_sum : integrals.products_sum);
+}
+
+}  // namespace
+
 void add_density_gradient(const TetMesh& mesh, MassKind kind, std::span<const double> w, std::span<const double> y,
                           std::span<double> gradient) {
-  ASPIC_CHECK(mesh.mids.empty());
   parallel_chunks(mesh.tet_count(), [&](int first, int last) {
-    for (int t = first; t < last; ++t) {
-      Vec3d w_sum{}, y_sum{};
-      double own = 0;  // diagonal entry of each vertex
-      for (const int v : mesh.tets[t])
-        for (int r = 0; r < 3; ++r) {
-          w_sum[r] += w[3 * v + r], y_sum[r] += y[3 * v + r];
-          own += w[3 * v + r] * y[3 * v + r];
-        }
-      const double product = kind == MassKind::lumped ? own / 4 : (dot(w_sum, y_sum) + own) / 20;
-      gradient[t] += volume(mesh, t) * product;
-    }
+    for (int t = first; t < last; ++t) gradient[t] += volume(mesh, t) * mass_product(nodes_of(mesh, t), kind, w, y);
   });
 }
 

@@ -47,7 +47,7 @@ class MassMatrix {
   std::vector<int64_t> target_slot_;  // slots of the columns up to the diagonal
 };
 
-// gradient += d(w' M y)/d(density), one entry per tet; w and y have 3 entries per vertex. Requires linear tets.
+// gradient += d(w' M y)/d(density), one entry per tet; w and y have 3 entries per vertex.
 void add_density_gradient(const TetMesh& mesh, MassKind kind, std::span<const double> w, std::span<const double> y,
                           std::span<double> gradient);
 

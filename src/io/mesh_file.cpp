@@ -85,6 +85,9 @@ void write_tetgen(const fs::path& path, const TetMesh& mesh, FileEncoding encodi
 
 MeshContent read_vtu_mesh(const fs::path& path) {
   Vtu vtu = read_vtu(path);
+  if (!vtu.mesh.mids.empty())
+    throw InvalidInput(path.string() +
+                       ": has quadratic tets (type 24); give a mesh of linear ones, which order = 2 makes quadratic");
   if (!vtu.mesh.tets.empty())
     return {std::move(vtu.mesh.rest), std::move(vtu.mesh.tets), std::move(vtu.mesh.region), {}};
   return {std::move(vtu.triangles.vertices), {}, {}, std::move(vtu.triangles.triangles)};
