@@ -153,7 +153,8 @@ double mass_product(const TetNodes& nodes, MassKind kind, std::span<const double
   double sum = 0;
   for (int u = 0; u < nodes.count; ++u) {
     if (kind == MassKind::lumped) sum += integrals.lumped[u] * product(u, u);
-    for (int v = 0; v < nodes.count && kind == MassKind::consistent; ++v) sum += integrals.products[u][v] * product(u, v);
+    for (int v = 0; v < nodes.count && kind == MassKind::consistent; ++v)
+      sum += integrals.products[u][v] * product(u, v);
   }
   return sum / (kind == MassKind::lumped ? integrals.lumped_sum : integrals.products_sum);
 }

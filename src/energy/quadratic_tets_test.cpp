@@ -68,8 +68,7 @@ BlockPattern bound_pattern(const TetMesh& mesh, Energy& V) {
 void expect_derivatives(Energy& V, const std::vector<double>& x, const std::string& what,
                         const StepContext& step = {}) {
   const BlockPattern pattern = bound_pattern(small(), V);
-  const DerivativeReport report =
-      check_derivatives(differentiable(ActiveTerm(V, step), pattern), x, {.length = 0.2});
+  const DerivativeReport report = check_derivatives(differentiable(ActiveTerm(V, step), pattern), x, {.length = 0.2});
   for (const DerivativeCheck* check : {&report.gradient, &report.hessian})
     EXPECT_TRUE(check->passed) << what << ": " << check->smallest_error;
 }
@@ -130,8 +129,7 @@ TEST(QuadraticElasticity, AffineStateHasUniformStressAndNoInnerForces) {
   for_each_material([&]<class M>() {
     MaterialParameters p{lame_from_young_poisson(1, 0.3), {}};
     for (size_t k = 0; k < M::info().extra.size(); ++k) p.extra[k] = M::info().extra[k].fallback;
-    const auto V =
-        make_tet_elasticity(M::info().name, mesh, 0, std::vector<MaterialParameters>(mesh.tet_count(), p));
+    const auto V = make_tet_elasticity(M::info().name, mesh, 0, std::vector<MaterialParameters>(mesh.tet_count(), p));
     EXPECT_NEAR(V->value(x), 0.48 * M::psi(kAffine, M::params(p)), 1e-13) << M::info().name;
     std::vector<double> g(x.size(), 0.0);
     V->add_gradient(x, 1, g);
@@ -274,7 +272,8 @@ TEST(QuadraticMass, IntegratesQuadraticFieldsExactly) {
   const MassMatrix mass(small(), density, MassKind::consistent);
   std::vector<double> product(3 * small().rest.size());
   for (const auto& [a, b] : {std::pair<std::array<int, 3>, std::array<int, 3>>{{2, 0, 0}, {2, 0, 0}},
-                             {{1, 1, 0}, {0, 0, 2}}, {{0, 0, 0}, {0, 1, 1}}}) {
+                             {{1, 1, 0}, {0, 0, 2}},
+                             {{0, 0, 0}, {0, 1, 1}}}) {
     mass.multiply(monomial(small(), a), product);
     EXPECT_NEAR(dot(monomial(small(), b), product), 9 * integral({a[0] + b[0], a[1] + b[1], a[2] + b[2]}), 1e-13);
   }

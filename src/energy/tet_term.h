@@ -96,10 +96,15 @@ class TetTerm : public Base {
     return at_points([&](int q) { return Ds[q] * batches_[batch].rest_inverse; });
   }
   template <class OfPoint>
-  static Points at_points(const OfPoint& of_point) {
-    Points values;
-    for (int q = 0; q < kPoints; ++q) values[q] = of_point(q);
-    return values;
+  static auto at_points(const OfPoint& of_point) {
+    using Value = decltype(of_point(0));
+    if constexpr (kPoints == 1) {
+      return std::array<Value, 1>{of_point(0)};
+    } else {
+      std::array<Value, kPoints> values;
+      for (int q = 0; q < kPoints; ++q) values[q] = of_point(q);
+      return values;
+    }
   }
   static int place(int batch, int point) { return kPoints * batch + point; }  // in the list of parameters
 
@@ -195,12 +200,12 @@ class TetTerm : public Base {
       }
     }
     const Points F_i = F(batch.i, x);
-    std::array<Mat9<Pack>, kPoints> A;
     unsigned projected = 0;
-    for (int q = 0; q < kPoints; ++q) {
-      A[q] = material_.hessian(F_i[q], p[q]);
-      projected |= project(A[q], F_i[q], p[q], tets.lanes_covered(projection), projection.kind);
-    }
+    const auto A = at_points([&](int q) {
+      Mat9<Pack> A_q = material_.hessian(F_i[q], p[q]);
+      projected |= project(A_q, F_i[q], p[q], tets.lanes_covered(projection), projection.kind);
+      return A_q;
+    });
     tets.scatter_hessian(A, weight, H);
     return static_cast<char>(std::popcount(projected));
   }
