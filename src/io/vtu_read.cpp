@@ -45,7 +45,8 @@ void check_cell_shape(const VtkFile& file, const XmlElement& at, int64_t type, i
   if (expected < 0 && !passed_over) {
     fail_at(file, at,
             "cell " + std::to_string(cell) + " has type " + std::to_string(type) +
-                "; only tets (10, 24), triangles (5) and quads (9) can be read (in ParaView: Tetrahedralize)");
+                "; only tets (10), quadratic tets (24), triangles (5) and quads (9) can be read (in ParaView: "
+                "Tetrahedralize)");
   }
   if (expected >= 0 && corners != expected) {
     fail_at(file, at,
