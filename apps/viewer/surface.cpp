@@ -69,31 +69,19 @@ void add_edges(Surface& surface) {
                 [&](const EdgeUse* first, const EdgeUse*) { surface.edges.push_back(first->edge); });
 }
 
-bool is_single_vertex(const std::array<double, 4>& weights) { return weights[0] == 1; }
-
 }  // namespace
 
 std::span<const int> Surface::tets_at(int vertex) const {
   return std::span(tets).subspan(tets_start[vertex], tets_start[vertex + 1] - tets_start[vertex]);
 }
 
-int Surface::anchor(int vertex) const {
-  const auto& w = weights[vertex];
-  return carrier[vertex][std::max_element(w.begin(), w.end()) - w.begin()];
-}
+int Surface::anchor(int vertex) const { return carrier[vertex].nearest_vertex(); }
 
 uint32_t Surface::user_number(int vertex, const Numbering& numbering) const {
   return is_fine ? kNoVertex : static_cast<uint32_t>(numbering.vertex.to_user(anchor(vertex)));
 }
 
-Vec3d Surface::position(int vertex, std::span<const double> x) const {
-  Vec3d sum{};
-  for (int i = 0; i < 4; ++i) {
-    const int v = carrier[vertex][i];
-    sum = sum + weights[vertex][i] * Vec3d{{x[3 * v], x[3 * v + 1], x[3 * v + 2]}};
-  }
-  return sum;
-}
+Vec3d Surface::position(int vertex, std::span<const double> x) const { return carrier[vertex].position(x); }
 
 bool Surface::has_same_shape(const Surface& other) const {
   return rest.size() == other.rest.size() && triangles == other.triangles;
@@ -106,8 +94,8 @@ double size_of(const Surface& surface) {
 
 bool has_fine_skin(const Scene& scene) {
   for (const Skin& skin : scene.skins)
-    for (const auto& weights : skin.embedding.weights)
-      if (!is_single_vertex(weights)) return true;
+    for (const Carrier& carrier : skin.embedding.carriers)
+      if (carrier.count > 1) return true;
   return false;
 }
 
@@ -120,11 +108,10 @@ Surface fine_surface(const Scene& scene) {
     surface.rest.insert(surface.rest.end(), skin.rest.vertices.begin(), skin.rest.vertices.end());
     for (const Triangle& t : skin.rest.triangles)
       surface.triangles.push_back({t[0] + first, t[1] + first, t[2] + first});
-    surface.carrier.insert(surface.carrier.end(), skin.embedding.vertices.begin(), skin.embedding.vertices.end());
-    surface.weights.insert(surface.weights.end(), skin.embedding.weights.begin(), skin.embedding.weights.end());
+    surface.carrier.insert(surface.carrier.end(), skin.embedding.carriers.begin(), skin.embedding.carriers.end());
   }
   for (int v = 0; v <= surface.vertex_count(); ++v) surface.tets_start.push_back(v);
-  for (const Tet& carrier : surface.carrier) surface.tets.push_back(tet_with(mesh, tets, carrier));
+  for (const Carrier& carrier : surface.carrier) surface.tets.push_back(tet_with(mesh, tets, carrier.vertices()));
   for (const Triangle& t : surface.triangles) surface.tet.push_back(surface.tets[t[0]]);
   add_edges(surface);
   return surface;
@@ -138,8 +125,7 @@ Surface boundary_of(const Model& model) {
   surface.triangles = std::move(boundary.surface.triangles);
   surface.tets_start.push_back(0);
   for (const int v : boundary.tet_vertex) {
-    surface.carrier.push_back({v, v, v, v});
-    surface.weights.push_back({1, 0, 0, 0});
+    surface.carrier.push_back(Carrier::of_vertex(v));
     const std::span<const int> around = tets.around(v);
     surface.tets.insert(surface.tets.end(), around.begin(), around.end());
     surface.tets_start.push_back(static_cast<int>(surface.tets.size()));

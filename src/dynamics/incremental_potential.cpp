@@ -118,6 +118,8 @@ IncrementalPotential::IncrementalPotential(const Model& model, const Pins& pins)
   for (const auto& V : model.elasticity) add(*V, potential_);
   for (const auto& V : model.loads) add(*V, potential_);
   for (const auto& D : model.damping) add(*D, damping_);
+  for (size_t k = 0; k < potential_.size(); ++k)
+    if (const auto* stiff = dynamic_cast<const StiffEnergy*>(&potential_[k].energy())) stiff_.emplace_back(stiff, k);
   for (auto* v : {&predicted_, &offset_, &term_}) v->resize(3 * pattern_.rows());
   for (Terms* parts : {&last_, &of_iterate_}) {
     parts->values.resize(potential_.size());
@@ -223,9 +225,17 @@ const BlockSparse& IncrementalPotential::evaluate_hessian(std::span<const double
   for (const ActiveTerm& V : potential_) projected_elements_ += V.add_hessian(q, factor_, projection, H_);
   for (const ActiveTerm& D : damping_) projected_elements_ += D.add_hessian(q, factor_, projection, H_);
   pins_.set_identity(H_);
+  stiff_rows_.clear();
+  for (const auto& [stiff, k] : stiff_) stiff->add_stiff_rows(q, factor_, stiff_rows_);
+  for (StiffRow& row : stiff_rows_)
+    for (size_t n = 0; n < row.vertex.size(); ++n) row.g[n] = pins_.free_part(row.vertex[n], row.g[n]);
 
   gradient_round_off_ = gradient_round_off_at(q);
   return H_;
+}
+
+void IncrementalPotential::note_newton_step(std::span<const double> q, std::span<const double> d) {
+  for (const auto& [stiff, k] : stiff_) stiff->note_newton_step(q, d, potential_[k].context());
 }
 
 // Positions have rounding errors of eps |q|, so forces have errors of eps |q| times the stiffness at a vertex.

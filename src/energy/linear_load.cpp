@@ -85,11 +85,12 @@ void add_traction(const std::vector<Vec3d>& X, const Face& face, const Vec3d& tr
   for (const LoadPoint& point : points) add_load(point, traction, force);
 }
 
-std::unique_ptr<Energy> make_dead_pressure(const TetMesh& mesh, std::span<const Triangle> patch, double pressure) {
+std::unique_ptr<Energy> make_dead_pressure(const TetMesh& mesh, std::span<const Face> patch, double pressure) {
   std::vector<double> force(3 * mesh.rest.size());
-  for (const auto& [a, b, c] : patch) {
+  for (const Face& face : patch) {
+    const auto& [a, b, c] = face.corners;
     const Vec3d n = cross(mesh.rest[b] - mesh.rest[a], mesh.rest[c] - mesh.rest[a]);
-    add_traction(mesh.rest, {{a, b, c}}, (-pressure / norm(n)) * n, force);
+    add_traction(mesh.rest, face, (-pressure / norm(n)) * n, force);
   }
   return make_linear_load("dead_pressure", std::move(force));
 }

@@ -26,6 +26,6 @@ void add_body_force(const TetMesh& mesh, int tet, const Vec3d& force_density, st
 void add_traction(const std::vector<Vec3d>& X, const Face& face, const Vec3d& traction, std::span<double> force);
 
 // A pressure [Pa] on boundary triangles of linear tets, against their outward normals and per area of the rest shape.
-std::unique_ptr<Energy> make_dead_pressure(const TetMesh& mesh, std::span<const Triangle> patch, double pressure);
+std::unique_ptr<Energy> make_dead_pressure(const TetMesh& mesh, std::span<const Face> patch, double pressure);
 
 }  // namespace aspic

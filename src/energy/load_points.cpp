@@ -15,29 +15,24 @@ std::vector<int> listed(const std::array<int, N>& nodes) {
   return {nodes.begin(), nodes.end()};
 }
 
-double quadratic_shape(int node, const std::array<double, 4>& l) {
-  if (node < 4) return l[node] * (2 * l[node] - 1);
-  return 4 * l[kTetEdges[node - 4][0]] * l[kTetEdges[node - 4][1]];
-}
-
 }  // namespace
 
 void append_load_points(const TetMesh& mesh, int tet, std::vector<LoadPoint>& points) {
   const TetNodes nodes = nodes_of(mesh, tet);
   const double size = volume(mesh, tet) / 4;
   if (nodes.count == 4) {
-    points.push_back({centroid(mesh, tet), {}, listed(mesh.tets[tet]), std::vector<double>(4, size)});
+    points.push_back({centroid(mesh, tet), {}, listed(mesh.tets[tet]), size, std::vector<double>(4, 1)});
     return;
   }
   const TetCorners X = corners(mesh, tet);
   for (int q = 0; q < 4; ++q) {
-    LoadPoint point{{}, {}, listed(nodes.node), {}};
+    LoadPoint point{{}, {}, listed(nodes.node), size, {}};
     std::array<double, 4> l;
     for (int c = 0; c < 4; ++c) {
       l[c] = point_coordinate(q, c);
       point.position = point.position + l[c] * X[c];
     }
-    for (int n = 0; n < 10; ++n) point.shares.push_back(size * quadratic_shape(n, l));
+    for (const double shape : quadratic_shapes(l)) point.shares.push_back(shape);
     points.push_back(std::move(point));
   }
 }
@@ -47,21 +42,22 @@ void append_load_points(const std::vector<Vec3d>& X, const Face& face, std::vect
   const Vec3d n = cross(X[b] - X[a], X[c] - X[a]);
   const double size = norm(n) / 2 / 3;
   if (!face.is_quadratic()) {
-    points.push_back({(1.0 / 3) * (X[a] + X[b] + X[c]), n, listed(face.corners), std::vector<double>(3, size)});
+    points.push_back({(1.0 / 3) * (X[a] + X[b] + X[c]), n, listed(face.corners), size, std::vector<double>(3, 1)});
     return;
   }
   for (int q = 0; q < 3; ++q) {  // the shape functions of the corners have the integral 0
     std::array<double, 3> l = {1.0 / 6, 1.0 / 6, 1.0 / 6};
     l[q] = 2.0 / 3;
-    LoadPoint point{l[0] * X[a] + l[1] * X[b] + l[2] * X[c], n, listed(nodes_of(face)), {}};
-    for (const double shape : face_shapes(l)) point.shares.push_back(size * shape);
+    LoadPoint point{l[0] * X[a] + l[1] * X[b] + l[2] * X[c], n, listed(nodes_of(face)), size, {}};
+    for (const double shape : face_shapes(l)) point.shares.push_back(shape);
     points.push_back(std::move(point));
   }
 }
 
 void add_load(const LoadPoint& point, const Vec3d& load, std::span<double> force) {
+  const Vec3d f = point.size * load;
   for (size_t n = 0; n < point.nodes.size(); ++n)
-    for (int r = 0; r < 3; ++r) force[3 * point.nodes[n] + r] += point.shares[n] * load[r];
+    for (int r = 0; r < 3; ++r) force[3 * point.nodes[n] + r] += point.shares[n] * f[r];
 }
 
 }  // namespace aspic

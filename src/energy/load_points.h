@@ -8,12 +8,13 @@
 
 namespace aspic {
 
-// A point at which a load is evaluated, and its share of each node: the force on node n is shares[n] times the load.
+// A point at which a load is evaluated: the force on node n is size shares[n] times the load.
 struct LoadPoint {
   Vec3d position;              // [m]
   Vec3d normal{};              // outward, of any length; only on faces
   std::vector<int> nodes;      // vertices of the mesh
-  std::vector<double> shares;  // integrals of the shape functions over the part of the point [m^3] or [m^2]
+  double size;                 // [m^3] or [m^2]
+  std::vector<double> shares;  // times size: integrals of the shape functions over the part of the point
 };
 
 // One point per linear element, and points of degree 2 in quadratic ones.

@@ -10,7 +10,6 @@
 
 #include "energy/make_tet_term.h"
 #include "energy/projection_derivative.h"
-#include "energy/quadratic_batch.h"
 #include "energy/tet_elasticity.h"
 #include "energy/tet_term.h"
 #include "math/dual.h"
@@ -21,7 +20,7 @@ template <class M, class Batch>
 class MaterialTerm : public TetTerm<M, TetElasticity, Batch> {
   using Term = TetTerm<M, TetElasticity, Batch>;
   using Points = typename Batch::Points;
-  using Term::at_points, Term::batch_count, Term::batches_, Term::F, Term::for_each_batch, Term::kPoints;
+  using Term::at, Term::at_points, Term::batch_count, Term::batches_, Term::F, Term::for_each_batch, Term::kPoints;
   using Term::material_, Term::params_, Term::place, Term::reduce;
 
  public:
@@ -41,8 +40,8 @@ class MaterialTerm : public TetTerm<M, TetElasticity, Batch> {
   void evaluate(Positions x, TetFields& fields) const override {
     parallel_for(batch_count(), [&](int i) {
       const Points F_i = F(i, x);
-      Mat3<Pack> cauchy = stress(i, F_i[0]);
-      for (int q = 1; q < kPoints; ++q) cauchy = cauchy + stress(i, F_i[q]);
+      Mat3<Pack> cauchy = stress(i, at(F_i, 0));
+      for (int q = 1; q < kPoints; ++q) cauchy = cauchy + stress(i, at(F_i, q));
       constexpr double kShare = 1.0 / kPoints;  // fields are means over the points
       const Pack psi = kShare * this->density_sum(i, F_i, params_);
       const Pack J = Batch::least_determinant(F_i);
@@ -69,7 +68,7 @@ class MaterialTerm : public TetTerm<M, TetElasticity, Batch> {
     for_each_batch([&](int i) {
       const auto rate = [&](int k) { return lanes_of([&](int l) { return change[entry(i, l, k)]; }); };
       const Points F_i = F(i, x);
-      batches_[i].scatter_gradient(at_points([&](int q) { return stress_rate(i, F_i[q], rate); }),
+      batches_[i].scatter_gradient(at_points([&](int q) { return stress_rate(i, at(F_i, q), rate); }),
                                    Pack(scale) * batches_[i].volume, g);
     });
   }
@@ -81,8 +80,8 @@ class MaterialTerm : public TetTerm<M, TetElasticity, Batch> {
       const Pack weight = Pack(scale) * batches_[i].volume;
       for (int k = 0; k < parameter_count_; ++k) {
         const auto rate = [&](int j) { return Pack(j == k ? 1.0 : 0.0); };
-        Pack work = inner(stress_rate(i, F_i[0], rate), W[0]);
-        for (int q = 1; q < kPoints; ++q) work += inner(stress_rate(i, F_i[q], rate), W[q]);
+        Pack work = inner(stress_rate(i, at(F_i, 0), rate), at(W, 0));
+        for (int q = 1; q < kPoints; ++q) work += inner(stress_rate(i, at(F_i, q), rate), at(W, q));
         const Pack sum = weight * work;
         for (int l = 0; l < batches_[i].count; ++l) gradient[entry(i, l, k)] += sum[l];
       }
@@ -93,7 +92,7 @@ class MaterialTerm : public TetTerm<M, TetElasticity, Batch> {
                                Definiteness definiteness, const HessianDerivatives& out) const override {
     for_each_batch([&](int i) {
       const Points F_i = F(i, x), U = F(i, u), W = F(i, w);
-      for (int q = 0; q < kPoints; ++q) add_hessian_derivatives({i, q, F_i[q]}, U[q], W[q], definiteness, out);
+      for (int q = 0; q < kPoints; ++q) add_hessian_derivatives({i, q, at(F_i, q)}, at(U, q), at(W, q), definiteness, out);
     });
   }
 
@@ -110,9 +109,9 @@ class MaterialTerm : public TetTerm<M, TetElasticity, Batch> {
     // Adds factor times the derivatives of U : A W, where A = dP/dF.
     const auto add = [&](const Pack& factor, const Mat3<Pack>& left, const Mat3<Pack>& right) {
       if (!out.x.empty()) {
-        Points rate = {};
-        rate[point.q] = second_stress_rate(point.batch, point.F, left, right);
-        tets.scatter_gradient(rate, factor * weight, out.x);
+        const Mat3<Pack> rate = second_stress_rate(point.batch, point.F, left, right);
+        tets.scatter_gradient(at_points([&](int q) { return q == point.q ? rate : Mat3<Pack>{}; }), factor * weight,
+                              out.x);
       }
       for (int k = 0; k < (out.parameters.empty() ? 0 : parameter_count_); ++k) {
         const Pack sum = factor * weight * inner(left, second_parameter_rate(point.batch, point.F, right, k));
@@ -212,19 +211,10 @@ class MaterialTerm : public TetTerm<M, TetElasticity, Batch> {
   std::vector<MaterialParameters> parameters_;  // in the order of the mesh
 };
 
-// Chooses the element by the order of the first tet; all tets of the term have the same.
-template <class M>
-std::unique_ptr<TetElasticity> make_material_term(std::string name, const TetMesh& mesh, int first,
-                                                  std::span<const MaterialParameters> parameters, M material = {}) {
-  if (!parameters.empty() && is_quadratic(mesh, first))
-    return std::make_unique<MaterialTerm<M, QuadraticTetBatch>>(std::move(name), mesh, first, parameters, material);
-  return std::make_unique<MaterialTerm<M, TetBatch>>(std::move(name), mesh, first, parameters, material);
-}
-
-template <class M>
+template <class M, class Batch>
 std::unique_ptr<TetElasticity> make_tet_term(const TetMesh& mesh, int first,
                                              std::span<const MaterialParameters> parameters) {
-  return make_material_term<M>("elasticity", mesh, first, parameters);
+  return std::make_unique<MaterialTerm<M, Batch>>("elasticity", mesh, first, parameters);
 }
 
 }  // namespace aspic

@@ -40,17 +40,28 @@ QuadraticTetBatch::Points QuadraticTetBatch::edges(Positions x) const {
   return edges;
 }
 
-// F is linear: at corner q it is (F_q - kFar sum) / (kNear - kFar), where the sum contains all four points.
+// F is linear: at corner q it is (F_q - kFar sum) / (kNear - kFar), where the sum contains all four points. det F is
+// cubic, and bounded by its Bernstein coefficients: products of three corners. The bound is the result unless it proves
+// that det F is positive in the whole tet.
 Pack QuadraticTetBatch::least_determinant(const Points& F) {
   const Mat3<Pack> sum = (F[0] + F[1]) + (F[2] + F[3]);
+  const auto lesser = [](Pack a, Pack b) { return -max(-a, -b); };
+  Points corner;
   Pack least = determinant(F[0]);
-  for (const Mat3<Pack>& F_q : F) {
-    const Pack at_point = determinant(F_q);
-    const Pack at_corner = determinant(Pack(1 / (kNear - kFar)) * (F_q - Pack(kFar) * sum));
-    least = -max(-least, -at_point);
-    least = -max(-least, -at_corner);
+  for (int q = 0; q < kPoints; ++q) {
+    corner[q] = Pack(1 / (kNear - kFar)) * (F[q] - Pack(kFar) * sum);
+    least = lesser(lesser(least, determinant(F[q])), determinant(corner[q]));
   }
-  return least;
+  Pack bound = least;
+  for (int i = 0; i < kPoints; ++i)
+    for (int j = 0; j < kPoints; ++j) {
+      if (i != j) bound = lesser(bound, Pack(1.0 / 3) * inner(cofactor(corner[i]), corner[j]));
+      for (int k = 0; k < j && j < i; ++k) {
+        const Mat3<Pack> mixed = cofactor(corner[i] + corner[j]) - cofactor(corner[i]) - cofactor(corner[j]);
+        bound = lesser(bound, Pack(1.0 / 6) * inner(mixed, corner[k]));
+      }
+    }
+  return where_positive(bound, least, bound);
 }
 
 void QuadraticTetBatch::scatter_gradient(const Points& P, Pack weight, std::span<double> g) const {

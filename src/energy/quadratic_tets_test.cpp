@@ -11,6 +11,7 @@
 #include "energy/linear_load.h"
 #include "energy/mass.h"
 #include "energy/pressure.h"
+#include "energy/stiff_energy.h"
 #include "energy/tet_elasticity.h"
 #include "material/list.h"
 #include "math/vectors.h"
@@ -45,6 +46,18 @@ std::vector<MaterialParameters> different_parameters(const TetMesh& mesh, const 
   return parameters;
 }
 
+// With a mean volume, except for some tets.
+std::vector<MaterialParameters> nearly_incompressible(const TetMesh& mesh, const MaterialInfo& info) {
+  constexpr double kPoisson[] = {0.49, 0.2, 0.499, 0.47};
+  std::vector<MaterialParameters> parameters = different_parameters(mesh, info);
+  for (int t = 0; t < mesh.tet_count(); ++t)
+    parameters[t].lame = lame_from_young_poisson(1 + 0.1 * t, kPoisson[t % 4]);
+  return parameters;
+}
+
+using ParametersOf = std::vector<MaterialParameters> (*)(const TetMesh& mesh, const MaterialInfo& info);
+constexpr ParametersOf kBothParameters[] = {different_parameters, nearly_incompressible};
+
 std::vector<double> positions(const TetMesh& mesh, const Mat3d& A, double noise, const Vec3d& shift = {}) {
   std::mt19937 random(3);
   std::uniform_real_distribution<double> uniform(-noise, noise);
@@ -74,10 +87,11 @@ void expect_derivatives(Energy& V, const std::vector<double>& x, const std::stri
 }
 
 TEST(QuadraticElasticity, DerivativesMatchDifferencesForEveryMaterial) {
-  for (const MaterialInfo& info : materials()) {
-    const auto V = make_tet_elasticity(info.name, small(), 0, different_parameters(small(), info));
-    expect_derivatives(*V, positions(small(), kAffine, 0.02), info.name);
-  }
+  for (const ParametersOf parameters_of : kBothParameters)
+    for (const MaterialInfo& info : materials()) {
+      const auto V = make_tet_elasticity(info.name, small(), 0, parameters_of(small(), info));
+      expect_derivatives(*V, positions(small(), kAffine, 0.02), info.name);
+    }
 }
 
 // F = sum x_n grad N_n, from the barycentric coordinates l and their gradients b.
@@ -117,6 +131,32 @@ TEST(QuadraticElasticity, MatchesPlainSumOverFourPoints) {
     EXPECT_NEAR(V->value(x), plain, 1e-12 * std::abs(plain)) << M::info().name;
     EXPECT_NEAR(V->min_det_F(x), least, 1e-12) << M::info().name;
   });
+}
+
+TEST(QuadraticElasticity, LeastDeterminantIsBelowInvertedInterior) {
+  const TetMesh mesh = quadratic_box({1, 1, 1});
+  const auto V = make_tet_elasticity("neo_hookean", mesh, 0,
+                                     std::vector<MaterialParameters>(6, {lame_from_young_poisson(1, 0.3), {}}));
+  int inverted = 0, proven = 0;
+  for (int state = 1; state <= 40; ++state) {
+    const std::vector<double> x = positions(mesh, kAffine, 0.005 * state);
+    double sampled = INFINITY;
+    for (int t = 0; t < mesh.tet_count(); ++t)
+      for (int i = 0; i <= 6; ++i)
+        for (int j = 0; i + j <= 6; ++j)
+          for (int k = 0; i + j + k <= 6; ++k)
+            sampled = std::min(sampled, determinant(plain_gradient(
+                                            mesh, t, x, {i / 6.0, j / 6.0, k / 6.0, (6 - i - j - k) / 6.0})));
+    const double least = V->min_det_F(x);
+    if (sampled < 0) {
+      EXPECT_LE(least, sampled);
+    } else if (least > 0) {
+      ++proven;
+    }
+    inverted += sampled < 0;
+  }
+  EXPECT_GT(inverted, 5);
+  EXPECT_GT(proven, 5);
 }
 
 TEST(QuadraticElasticity, AffineStateHasUniformStressAndNoInnerForces) {
@@ -198,10 +238,10 @@ TEST(QuadraticElasticity, BitsDoNotDependOnThreadCount) {
   EXPECT_EQ(results[2], results[0]);
 }
 
-TEST(QuadraticElasticity, ParameterDerivativesMatchDifferences) {
+void expect_parameter_derivatives(ParametersOf parameters_of) {
   for (const char* material : {"neo_hookean", "fung"}) {
     const MaterialInfo& info = material_info(material);
-    std::vector<MaterialParameters> parameters = different_parameters(small(), info);
+    std::vector<MaterialParameters> parameters = parameters_of(small(), info);
     const auto V = make_tet_elasticity(material, small(), 0, parameters);
     const std::vector<double> x = positions(small(), kAffine, 0.02);
     const int count = V->parameter_count();
@@ -229,23 +269,128 @@ TEST(QuadraticElasticity, ParameterDerivativesMatchDifferences) {
   }
 }
 
-TEST(QuadraticElasticity, HessianDerivativesMatchDifferences) {
-  const auto V =
-      make_tet_elasticity("neo_hookean", small(), 0, different_parameters(small(), material_info("neo_hookean")));
+TEST(QuadraticElasticity, ParameterDerivativesMatchDifferences) {
+  for (const ParametersOf parameters_of : kBothParameters) expect_parameter_derivatives(parameters_of);
+}
+
+void expect_hessian_derivatives(ParametersOf parameters_of, Definiteness definiteness) {
+  std::vector<MaterialParameters> parameters = parameters_of(small(), material_info("neo_hookean"));
+  const auto V = make_tet_elasticity("neo_hookean", small(), 0, parameters);
   const BlockPattern pattern = bound_pattern(small(), *V);
   const std::vector<double> x = positions(small(), kAffine, 0.02), u = positions(small(), kAffine, 0.5);
-  std::vector<double> derivative(x.size(), 0.0), moved = x, Hu(x.size());
-  V->add_hessian_derivatives(x, u, u, Definiteness::exact, {1, derivative, {}});
-  const auto energy = [&](double step) {
-    for (size_t i = 0; i < x.size(); ++i) moved[i] = x[i] + step * std::sin(static_cast<double>(i));
+  const auto direction = [](size_t i) { return std::sin(1.0 + static_cast<double>(i)); };
+  std::vector<double> by_x(x.size(), 0.0), by_parameters(2 * parameters.size(), 0.0), Hu(x.size());
+  V->add_hessian_derivatives(x, u, u, definiteness, {1, by_x, by_parameters});
+  const auto energy = [&](double x_step, double parameter_step) {
+    std::vector<double> moved = x;
+    for (size_t i = 0; i < x.size(); ++i) moved[i] += x_step * direction(i);
+    std::vector<MaterialParameters> other = parameters;
+    for (size_t t = 0; t < other.size(); ++t) {
+      other[t].lame.mu += parameter_step * direction(2 * t);
+      other[t].lame.lambda += parameter_step * direction(2 * t + 1);
+    }
+    V->set_parameters(other);
     BlockSparse H(pattern);
-    V->add_hessian(moved, 1, {Definiteness::exact}, H);
+    V->add_hessian(moved, 1, {definiteness}, H);
     H.multiply(u, Hu);
     return dot(u, Hu);
   };
-  double along = 0;
-  for (size_t i = 0; i < x.size(); ++i) along += derivative[i] * std::sin(static_cast<double>(i));
-  EXPECT_NEAR((energy(1e-5) - energy(-1e-5)) / 2e-5, along, 1e-7 * std::abs(along));
+  double along_x = 0, along_parameters = 0;
+  for (size_t i = 0; i < x.size(); ++i) along_x += by_x[i] * direction(i);
+  for (size_t i = 0; i < by_parameters.size(); ++i) along_parameters += by_parameters[i] * direction(i);
+  EXPECT_NEAR((energy(1e-5, 0) - energy(-1e-5, 0)) / 2e-5, along_x, 2e-7 * std::abs(along_x));
+  EXPECT_NEAR((energy(0, 1e-5) - energy(0, -1e-5)) / 2e-5, along_parameters, 2e-7 * std::abs(along_parameters));
+}
+
+TEST(QuadraticElasticity, HessianDerivativesMatchDifferences) {
+  for (const ParametersOf parameters_of : kBothParameters) {
+    expect_hessian_derivatives(parameters_of, Definiteness::exact);
+    expect_hessian_derivatives(parameters_of, Definiteness::clamped);
+  }
+}
+
+double mean_J(const TetMesh& mesh, int t, const std::vector<double>& x) {
+  const double near = (5 + 3 * std::sqrt(5)) / 20, far = (5 - std::sqrt(5)) / 20;
+  double J = 0;
+  for (int q = 0; q < 4; ++q) {
+    std::array<double, 4> l = {far, far, far, far};
+    l[q] = near;
+    J += determinant(plain_gradient(mesh, t, x, l)) / 4;
+  }
+  return J;
+}
+
+TEST(MeanVolume, AddsBulkEnergyOfMeanJ) {
+  const MaterialInfo& info = material_info("neo_hookean");
+  const std::vector<MaterialParameters> parameters = nearly_incompressible(small(), info);
+  std::vector<MaterialParameters> pointwise = parameters;
+  for (MaterialParameters& p : pointwise) p.lame.lambda = std::min(p.lame.lambda, 1.5 * p.lame.mu);
+  const auto V = make_tet_elasticity(info.name, small(), 0, parameters);
+  const std::vector<double> x = positions(small(), kAffine, 0.02);
+  double expected = make_tet_elasticity(info.name, small(), 0, pointwise)->value(x);
+  for (int t = 0; t < small().tet_count(); ++t) {
+    const double bulk = parameters[t].lame.lambda - pointwise[t].lame.lambda, J = mean_J(small(), t, x);
+    expected += volume(small(), t) * bulk / 2 * (J - 1) * (J - 1);
+  }
+  EXPECT_NEAR(V->value(x), expected, 1e-12 * expected);
+}
+
+TEST(MeanVolume, StiffRowsArePartOfHessian) {
+  const auto V =
+      make_tet_elasticity("neo_hookean", small(), 0, nearly_incompressible(small(), material_info("neo_hookean")));
+  const auto* stiff = dynamic_cast<const StiffEnergy*>(V.get());
+  ASSERT_TRUE(stiff);
+  const BlockPattern pattern = bound_pattern(small(), *V);
+  const std::vector<double> x = positions(small(), identity3<double>(), 0);  // without pressure
+  StiffRows rows;
+  stiff->add_stiff_rows(x, 2, rows);
+  EXPECT_EQ(rows.size(), 27u) << "a quarter of the 36 tets is compressible";
+  BlockSparse H(pattern), shape(pattern);
+  std::vector<MaterialParameters> pointwise(V->parameters().begin(), V->parameters().end());
+  for (MaterialParameters& p : pointwise) p.lame.lambda = std::min(p.lame.lambda, 1.5 * p.lame.mu);
+  const auto V_shape = make_tet_elasticity("neo_hookean", small(), 0, pointwise);
+  V_shape->bind(pattern);
+  V->add_hessian(x, 2, {Definiteness::exact}, H);
+  V_shape->add_hessian(x, 2, {Definiteness::exact}, shape);
+  const std::vector<double> d = positions(small(), kAffine, 0.5);
+  std::vector<double> Hd(d.size()), shape_d(d.size());
+  H.multiply(d, Hd), shape.multiply(d, shape_d);
+  double expected = dot(d, shape_d);
+  for (const StiffRow& row : rows) {
+    double along = 0;
+    for (size_t n = 0; n < row.vertex.size(); ++n) along += dot(row.g[n], point(d, row.vertex[n]));
+    expected += row.weight * along * along;
+  }
+  EXPECT_NEAR(dot(d, Hd), expected, 1e-12 * expected);
+}
+
+// A Newton step linearizes the pressure; the next Hessian uses it in place of K (mean J - 1).
+TEST(MeanVolume, HessianUsesPressureOfNewtonStep) {
+  const auto V =
+      make_tet_elasticity("neo_hookean", small(), 0, nearly_incompressible(small(), material_info("neo_hookean")));
+  const BlockPattern pattern = bound_pattern(small(), *V);
+  ActiveTerm term(*V, {});
+  const std::vector<double> x = positions(small(), kAffine, 0.02);
+  const std::vector<double> still(x.size(), 0.0);
+  const auto hessian = [&] {
+    BlockSparse H(pattern);
+    term.add_hessian(x, 1, {Definiteness::exact}, H);
+    std::vector<double> entries;
+    for (const Mat3d& block : H.block) entries.insert(entries.end(), block.a, block.a + 9);
+    return entries;
+  };
+  const std::vector<double> exact = hessian();
+  const auto* stiff = dynamic_cast<const StiffEnergy*>(V.get());
+  const auto expect_exact = [&] {
+    const std::vector<double> now = hessian();
+    for (size_t i = 0; i < now.size(); ++i) ASSERT_NEAR(now[i], exact[i], 1e-12 * max_abs(exact));
+  };
+  stiff->note_newton_step(x, still, term.context());
+  expect_exact();  // no step: the same pressure
+  stiff->note_newton_step(x, positions(small(), kAffine, 0), term.context());
+  EXPECT_NE(hessian(), exact);
+  term.begin_step({});
+  EXPECT_EQ(hessian(), exact);
 }
 
 TEST(QuadraticDamping, DerivativesMatchDifferences) {

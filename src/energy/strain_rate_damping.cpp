@@ -60,7 +60,7 @@ class StrainRateDamping : public TetTerm<GreenStrainRate, Damping, Batch> {
   using Term = TetTerm<GreenStrainRate, Damping, Batch>;
   using Points = typename Batch::Points;
   using Context = Energy::Context;
-  using Term::at_points, Term::batch_count, Term::batches_, Term::F, Term::for_each_batch, Term::kPoints;
+  using Term::at, Term::at_points, Term::batch_count, Term::batches_, Term::F, Term::for_each_batch, Term::kPoints;
   using Term::params_, Term::place;
 
  public:
@@ -82,7 +82,7 @@ class StrainRateDamping : public TetTerm<GreenStrainRate, Damping, Batch> {
     parallel_for(batch_count(), [&](int i) {
       const Points F_i = F(i, step.start);
       for (int q = 0; q < kPoints; ++q) {
-        const Mat3<Pack> E = GreenStrainRate::green_strain(F_i[q]);
+        const Mat3<Pack> E = GreenStrainRate::green_strain(at(F_i, q));
         auto& p = start.params[place(i, q)];
         p.per_step = Pack(step.h > 0 ? 1 / step.h : 0.0);
         p.xx = E(0, 0), p.yy = E(1, 1), p.zz = E(2, 2);
@@ -102,17 +102,17 @@ class StrainRateDamping : public TetTerm<GreenStrainRate, Damping, Batch> {
       const auto* p = &start.params[place(i, 0)];
       const Points F_i = F(i, x), W = F(i, w), F_start = F(i, start.x);
       const Pack weight = Pack(scale) * tets.volume * p[0].per_step;
-      const auto FtW = [&](int q) { return transpose(F_i[q]) * W[q]; };
+      const auto FtW = [&](int q) { return transpose(at(F_i, q)) * at(W, q); };
       if (!gradients.start.empty()) {
         const auto rate = [&](int q) {
           const Mat3<Pack> product = FtW(q);
-          return F_start[q] * (Pack(0.5) * (product + transpose(product)));
+          return at(F_start, q) * (Pack(0.5) * (product + transpose(product)));
         };
         tets.scatter_gradient(at_points(rate), -weight * p[0].viscosity, gradients.start);
       }
       if (gradients.coefficients.empty()) return;
-      Pack work = inner(FtW(0), GreenStrainRate::increment(F_i[0], p[0]));
-      for (int q = 1; q < kPoints; ++q) work += inner(FtW(q), GreenStrainRate::increment(F_i[q], p[q]));
+      Pack work = inner(FtW(0), GreenStrainRate::increment(at(F_i, 0), p[0]));
+      for (int q = 1; q < kPoints; ++q) work += inner(FtW(q), GreenStrainRate::increment(at(F_i, q), p[q]));
       const Pack rate = weight * work;
       for (int l = 0; l < tets.count; ++l) gradients.coefficients[tets.tet[l] - first_] += rate[l];
     });

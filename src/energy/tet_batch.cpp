@@ -48,7 +48,7 @@ void TetBatch::bind(const BlockPattern& pattern) {
 }
 
 void TetBatch::scatter_gradient(const Points& P, Pack weight, std::span<double> g) const {
-  const Mat3<Pack> f = weight * (P[0] * transpose(rest_inverse));  // the sum of all four forces vanishes
+  const Mat3<Pack> f = weight * (P * transpose(rest_inverse));  // the sum of all four forces vanishes
   std::array<Pack, 3> first;
   for (int r = 0; r < 3; ++r) first[r] = -(f(r, 0) + f(r, 1) + f(r, 2));
   scatter3(first, [&](int l) { return &g[3 * vertex[0][l]]; });
@@ -56,8 +56,9 @@ void TetBatch::scatter_gradient(const Points& P, Pack weight, std::span<double> 
     scatter3({f(0, v - 1), f(1, v - 1), f(2, v - 1)}, [&](int l) { return &g[3 * vertex[v][l]]; });
 }
 
-void TetBatch::scatter_hessian(const std::array<Mat9<Pack>, kPoints>& A, Pack weight, BlockSparse& H) const {
-  scatter_blocks([&](int) { return TangentBlocks(*this, A[0], weight); }, H);
+void TetBatch::scatter_hessian(const Mat9<Pack>& A, Pack weight, BlockSparse& H) const {
+  const TangentBlocks blocks(*this, A, weight);
+  scatter_blocks([&](int u, int v) { return blocks.block(u, v); }, H);
 }
 
 }  // namespace aspic

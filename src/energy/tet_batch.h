@@ -76,7 +76,7 @@ struct TangentBlocks {
 
 struct TetBatch : BatchOf<4> {  // vertices ascend within a tet, so that block (u, v) with u > v is stored
   static constexpr int kPoints = 1;
-  using Points = std::array<Mat3<Pack>, kPoints>;  // one matrix per quadrature point
+  using Points = Mat3<Pack>;  // one matrix per quadrature point
 
   TetBatch() = default;
   TetBatch(const TetMesh& mesh, std::span<const int> tets);
@@ -88,21 +88,19 @@ struct TetBatch : BatchOf<4> {  // vertices ascend within a tet, so that block (
     Mat3<Pack> Ds;
     for (int c = 0; c < 3; ++c)
       for (int r = 0; r < 3; ++r) Ds(r, c) = corner[c + 1][r] - corner[0][r];
-    return {Ds};
+    return Ds;
   }
-  static Pack least_determinant(const Points& F) { return determinant(F[0]); }
+  static Pack least_determinant(const Points& F) { return determinant(F); }
 
   void scatter_gradient(const Points& P, Pack weight, std::span<double> g) const;  // g_v += weight P b_v
-  void scatter_hessian(const std::array<Mat9<Pack>, kPoints>& A, Pack weight, BlockSparse& H) const;
-  // H_uv += blocks_at(point).block(u, v), v <= u
-  template <class BlocksAt>
-  void scatter_blocks(const BlocksAt& blocks_at, BlockSparse& H) const {
-    const auto blocks = blocks_at(0);
+  void scatter_hessian(const Mat9<Pack>& A, Pack weight, BlockSparse& H) const;
+  template <class Block>  // H_uv += block(u, v), v <= u
+  void scatter_blocks(const Block& block, BlockSparse& H) const {
 #pragma GCC unroll 4
     for (int u = 0; u < 4; ++u)
 #pragma GCC unroll 4
       for (int v = 0; v <= u; ++v)
-        scatter9(blocks.block(u, v), [&](int l) { return H.block[slot[u * (u + 1) / 2 + v][l]].a; });
+        scatter9(block(u, v), [&](int l) { return H.block[slot[u * (u + 1) / 2 + v][l]].a; });
   }
   void bind(const BlockPattern& pattern);
 };

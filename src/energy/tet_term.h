@@ -58,7 +58,7 @@ class TetTerm : public Base {
     const std::vector<Params<Pack>>& p = params(context);
     for_each_batch([&](int i) {
       const Points F_i = F(i, x);
-      batches_[i].scatter_gradient(at_points([&](int q) { return material_.pk1(F_i[q], p[place(i, q)]); }),
+      batches_[i].scatter_gradient(at_points([&](int q) { return material_.pk1(at(F_i, q), p[place(i, q)]); }),
                                    Pack(scale) * batches_[i].volume, g);
     });
   }
@@ -93,15 +93,22 @@ class TetTerm : public Base {
 
   Points F(int batch, Positions x) const {
     const Points Ds = batches_[batch].edges(x);
-    return at_points([&](int q) { return Ds[q] * batches_[batch].rest_inverse; });
+    return at_points([&](int q) { return at(Ds, q) * batches_[batch].rest_inverse; });
+  }
+  // An entry of one matrix per quadrature point, and all from a function of the point. Linear tets have only one, and
+  // no array: it would cost registers.
+  static const Mat3<Pack>& at(const Points& points, int q) {
+    if constexpr (kPoints == 1)
+      return points;
+    else
+      return points[q];
   }
   template <class OfPoint>
   static auto at_points(const OfPoint& of_point) {
-    using Value = decltype(of_point(0));
     if constexpr (kPoints == 1) {
-      return std::array<Value, 1>{of_point(0)};
+      return of_point(0);
     } else {
-      std::array<Value, kPoints> values;
+      std::array<decltype(of_point(0)), kPoints> values;
       for (int q = 0; q < kPoints; ++q) values[q] = of_point(q);
       return values;
     }
@@ -110,8 +117,8 @@ class TetTerm : public Base {
 
   // Returns the sum of psi over the quadrature points.
   Pack density_sum(int batch, const Points& F_i, const std::vector<Params<Pack>>& p) const {
-    Pack psi = material_.psi(F_i[0], p[place(batch, 0)]);
-    for (int q = 1; q < kPoints; ++q) psi += material_.psi(F_i[q], p[place(batch, q)]);
+    Pack psi = material_.psi(at(F_i, 0), p[place(batch, 0)]);
+    for (int q = 1; q < kPoints; ++q) psi += material_.psi(at(F_i, q), p[place(batch, q)]);
     return psi;
   }
   int batch_count() const { return static_cast<int>(batches_.size()); }
@@ -192,18 +199,23 @@ class TetTerm : public Base {
     if constexpr (requires { typename M::Law; }) {
       if (projection.kind == Definiteness::exact) {
         const Points Ds = tets.edges(x);
-        const auto blocks_at = [&](int q) {
-          return LawBlocks(tets, Ds[q], M::law_derivatives(Ds[q] * tets.rest_inverse, p[q]), weight);
-        };
-        tets.scatter_blocks(blocks_at, H);
+        if constexpr (kPoints == 1) {
+          const LawBlocks blocks(tets, Ds, M::law_derivatives(Ds * tets.rest_inverse, p[0]), weight);
+          tets.scatter_blocks([&](int u, int v) { return blocks.block(u, v); }, H);
+        } else {
+          const auto blocks_at = [&](int q) {
+            return LawBlocks(tets, Ds[q], M::law_derivatives(Ds[q] * tets.rest_inverse, p[q]), weight);
+          };
+          tets.scatter_blocks(blocks_at, H);
+        }
         return 0;
       }
     }
     const Points F_i = F(batch.i, x);
     unsigned projected = 0;
     const auto A = at_points([&](int q) {
-      Mat9<Pack> A_q = material_.hessian(F_i[q], p[q]);
-      projected |= project(A_q, F_i[q], p[q], tets.lanes_covered(projection), projection.kind);
+      Mat9<Pack> A_q = material_.hessian(at(F_i, q), p[q]);
+      projected |= project(A_q, at(F_i, q), p[q], tets.lanes_covered(projection), projection.kind);
       return A_q;
     });
     tets.scatter_hessian(A, weight, H);

@@ -1,6 +1,7 @@
 #include "mesh/surface.h"
 
 #include <algorithm>
+#include <set>
 
 #include "base/check.h"
 #include "mesh/grouped_elements.h"
@@ -60,6 +61,27 @@ std::vector<Face> boundary_faces(const TetMesh& mesh, int first, int count) {
   boundary.reserve(places.size());
   for (int place : places) boundary.push_back(face_of(mesh, place / 4, place % 4));
   return boundary;
+}
+
+std::vector<Face> faces_of(const TetMesh& mesh, std::span<const Triangle> triangles) {
+  if (mesh.mids.empty()) return linear_faces(triangles);
+  const auto from_least = [](Triangle t) {
+    std::rotate(t.begin(), std::min_element(t.begin(), t.end()), t.end());
+    return t;
+  };
+  std::set<Triangle> left;
+  for (const Triangle& t : triangles) left.insert(from_least(t));
+  std::vector<Face> faces;
+  for (const Face& face : boundary_faces(mesh, 0, mesh.tet_count())) {
+    std::vector<Triangle> parts;
+    append_triangles(face, parts);
+    const auto is_left = [&](const Triangle& t) { return left.count(from_least(t)) > 0; };
+    if (!std::all_of(parts.begin(), parts.end(), is_left)) continue;
+    for (const Triangle& t : parts) left.erase(from_least(t));
+    faces.push_back(face);
+  }
+  for (const Triangle& t : left) faces.push_back({t});
+  return faces;
 }
 
 std::vector<Triangle> boundary_triangles(const TetMesh& mesh, int first, int count) {

@@ -20,6 +20,9 @@ std::vector<Face> linear_faces(std::span<const Triangle> triangles);
 // Returns the faces that belong to exactly one of tets [first, first + count), in a deterministic order.
 std::vector<Face> boundary_faces(const TetMesh& mesh, int first, int count);
 
+// Joins boundary triangles of a mesh to faces: a quadratic one for all its four triangles, else linear ones.
+std::vector<Face> faces_of(const TetMesh& mesh, std::span<const Triangle> triangles);
+
 // Returns these faces as triangles with vertex indices of the tet mesh: one for each linear face, and four between the
 // nodes of each quadratic one.
 std::vector<Triangle> boundary_triangles(const TetMesh& mesh, int first, int count);

@@ -23,6 +23,19 @@ TetNodes nodes_of(const TetMesh& mesh, int tet) {
   return nodes;
 }
 
+std::array<double, 10> quadratic_shapes(const std::array<double, 4>& l) {
+  std::array<double, 10> N{};
+  for (int n = 0; n < 4; ++n) N[n] = l[n] * (2 * l[n] - 1);
+  for (int k = 0; k < 6; ++k) N[4 + k] = 4 * l[kTetEdges[k][0]] * l[kTetEdges[k][1]];
+  return N;
+}
+
+double quadratic_derivative(int n, int i, const std::array<double, 4>& l) {
+  if (n < 4) return n == i ? 4 * l[i] - 1 : 0;
+  const auto& [a, b] = kTetEdges[n - 4];
+  return i == a ? 4 * l[b] : i == b ? 4 * l[a] : 0;
+}
+
 TetMesh raise_order(TetMesh mesh) {
   ASPIC_CHECK(mesh.mids.empty());
   const auto edges = grouped_elements<2>(mesh.vertex_count(), [&](const auto& visit) {
@@ -41,6 +54,27 @@ TetMesh raise_order(TetMesh mesh) {
     if (first == place) mesh.rest.emplace_back();
   }
   straighten_edges(mesh, mesh.rest);
+  return mesh;
+}
+
+TetMesh lower_order(TetMesh mesh) {
+  if (mesh.mids.empty()) return mesh;
+  std::vector<int> number(mesh.rest.size(), 0);
+  for (const MidNodes& mids : mesh.mids)
+    for (const int v : mids)
+      if (v >= 0) number[v] = -1;
+  for (const Tet& tet : mesh.tets)
+    for (const int v : tet) number[v] = 0;
+  int count = 0;
+  for (size_t v = 0; v < number.size(); ++v) {
+    if (number[v] < 0) continue;
+    mesh.rest[count] = mesh.rest[v];
+    number[v] = count++;
+  }
+  mesh.rest.resize(count);
+  mesh.mids.clear();
+  for (Tet& tet : mesh.tets)
+    for (int& v : tet) v = number[v];
   return mesh;
 }
 

@@ -23,8 +23,15 @@ struct TetNodes {
 inline bool is_quadratic(const TetMesh& mesh, int tet) { return !mesh.mids.empty() && mesh.mids[tet][0] >= 0; }
 TetNodes nodes_of(const TetMesh& mesh, int tet);
 
+// Returns the shape functions N_n of a quadratic tet at barycentric coordinates l, and dN_n/dl_i.
+std::array<double, 10> quadratic_shapes(const std::array<double, 4>& l);
+double quadratic_derivative(int n, int i, const std::array<double, 4>& l);
+
 // Makes all tets of a linear mesh quadratic. The new nodes follow the vertices, in the order of the tets.
 TetMesh raise_order(TetMesh mesh);
+
+// Makes all tets linear and removes the vertices that are only mid-edge nodes.
+TetMesh lower_order(TetMesh mesh);
 
 // Moves the mid-edge nodes to the midpoints of their edges. `positions`: one per vertex.
 void straighten_edges(const TetMesh& mesh, std::vector<Vec3d>& positions);

@@ -39,6 +39,24 @@ TEST(RaiseOrder, AddsOneNodePerEdgeAtMidpoint) {
   EXPECT_TRUE(std::equal(linear.tets.begin(), linear.tets.end(), mesh.tets.begin()));
 }
 
+TEST(LowerOrder, RestoresLinearMesh) {
+  const TetMesh linear = linear_box(), mesh = lower_order(raise_order(linear));
+  EXPECT_EQ(mesh.tets, linear.tets);
+  EXPECT_TRUE(mesh.mids.empty());
+  ASSERT_EQ(mesh.vertex_count(), linear.vertex_count());
+  for (int v = 0; v < mesh.vertex_count(); ++v) EXPECT_EQ(norm(mesh.rest[v] - linear.rest[v]), 0);
+}
+
+TEST(FacesOf, JoinsFourTrianglesToQuadraticFace) {
+  const TetMesh mesh = raise_order(linear_box());
+  std::vector<Triangle> triangles = boundary_triangles(mesh, 0, mesh.tet_count());
+  triangles.erase(triangles.begin());
+  const std::vector<Face> faces = faces_of(mesh, triangles);
+  const auto is_quadratic = [](const Face& face) { return face.is_quadratic(); };
+  EXPECT_EQ(std::count_if(faces.begin(), faces.end(), is_quadratic), static_cast<int>(triangles.size() / 4));
+  EXPECT_EQ(faces.size(), triangles.size() / 4 + 3) << "three triangles of an incomplete face";
+}
+
 TEST(NodesOf, LinearTetHasFourCorners) {
   const TetMesh mesh = linear_box();
   const TetNodes nodes = nodes_of(mesh, 7);

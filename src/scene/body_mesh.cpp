@@ -118,10 +118,7 @@ LoadedMesh resolve_mesh(Value& body, MeshLoader& loader, std::optional<LoadedMes
 BodyMesh with_boundary_as_skin(TetMesh tets) {
   BoundarySurface boundary = boundary_surface(tets);
   BodyMesh body;
-  for (const int v : boundary.tet_vertex) {
-    body.embedding.vertices.push_back({v, v, v, v});
-    body.embedding.weights.push_back({1, 0, 0, 0});
-  }
+  for (const int v : boundary.tet_vertex) body.embedding.carriers.push_back(Carrier::of_vertex(v));
   body.skin = std::move(boundary.surface);
   body.tets = std::move(tets);
   return body;
@@ -210,7 +207,7 @@ std::string MeshLoader::why_not_in_memory(double more_tets) const {
 
 LoadedMesh load_mesh(const fs::path& path, double size, MeshLoader& loader) {
   check_size(path, loader);
-  std::variant<TetMesh, TriMesh> mesh = read_mesh(path);
+  std::variant<TetMesh, TriMesh> mesh = read_mesh(path, &loader.notes);
   if (TetMesh* tets = std::get_if<TetMesh>(&mesh)) {
     const int count = tets->tet_count();
     const std::string why = loader.limit.counts_files ? loader.why_not(count) : loader.why_not_in_memory(count);

@@ -195,8 +195,8 @@ class SceneBuilder {
       }
       note_start(body, source_.notes);
       add_to_model(body);
-      for (Tet& corners : mesh.embedding.vertices)
-        for (int& v : corners) v = body.model_vertex(v);
+      for (Carrier& carrier : mesh.embedding.carriers)
+        for (int n = 0; n < carrier.count; ++n) carrier.vertex[n] = body.model_vertex(carrier.vertex[n]);
       skins_.push_back({std::move(mesh.skin), std::move(mesh.embedding), body.name()});
       bodies_.push_back(std::move(body));
     }
