@@ -57,9 +57,13 @@ class TetTerm : public Base {
   void add_gradient(Positions x, const Context& context, double scale, std::span<double> g) const override {
     const std::vector<Params<Pack>>& p = params(context);
     for_each_batch([&](int i) {
-      const Points F_i = F(i, x);
-      batches_[i].scatter_gradient(at_points([&](int q) { return material_.pk1(at(F_i, q), p[place(i, q)]); }),
-                                   Pack(scale) * batches_[i].volume, g);
+      if constexpr (kPoints == 1) {
+        batches_[i].scatter_gradient(material_.pk1(F(i, x), p[i]), Pack(scale) * batches_[i].volume, g);
+      } else {
+        const Points F_i = F(i, x);
+        batches_[i].scatter_gradient(at_points([&](int q) { return material_.pk1(F_i[q], p[place(i, q)]); }),
+                                     Pack(scale) * batches_[i].volume, g);
+      }
     });
   }
 
