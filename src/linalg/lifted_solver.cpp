@@ -11,7 +11,8 @@
 namespace aspic {
 namespace {
 
-constexpr int kRestart = 30;  // vectors of each basis
+constexpr int kRestart = 30;      // vectors of each basis
+constexpr double kUseful = 0.99;  // reduction of the residual by a cycle
 
 double along(const StiffRow& row, std::span<const double> x) {  // g . x
   double sum = 0;
@@ -38,7 +39,7 @@ void subtract(const StiffRow& row, BlockSparse& A) {
 double mean_diagonal(const BlockSparse& A) {
   double sum = 0;
   for (int row = 0; row < A.pattern->rows(); ++row) sum += trace(A.block[A.pattern->diagonal(row)]) / 3;
-  return sum / std::max(1, A.pattern->rows());
+  return sum > 0 ? sum / A.pattern->rows() : 1;
 }
 
 // A rotation of rows i and i + 1 of the Hessenberg matrix.
@@ -112,7 +113,7 @@ double LiftedSolver::primal_norm(std::span<const double> r, double factor) {
 struct LiftedSolver::Cycle {
   double target;  // of the primal residual
   SolveReport& report;
-  double residual = 0;                           // primal, at the end
+  std::vector<double>&x, &r;  // solution and residual of the lifted system
   std::array<std::array<double, kRestart + 1>, kRestart> h{};  // columns of the triangular factor
   std::array<Rotation, kRestart> rotation{};
   std::array<double, kRestart + 1> right{};
@@ -129,12 +130,11 @@ struct LiftedSolver::Cycle {
   }
 };
 
-// Adds to x the solution for the right-hand side b. Returns whether no further cycle is needed.
-bool LiftedSolver::run(Cycle& cycle, std::span<const double> b, std::span<double> x, const Precondition& precondition) {
-  const size_t n = b.size(), size = t_.size();
-  v_[0].assign(size, 0.0);
-  std::copy(b.begin(), b.end(), v_[0].begin());
-  const double start = norm(b);
+// Improves cycle.x, with the residual cycle.r. Returns whether no further cycle is needed.
+bool LiftedSolver::run(Cycle& cycle, const Precondition& precondition) {
+  const size_t size = cycle.r.size();
+  const double start = norm(cycle.r);
+  v_[0] = cycle.r;
   for (double& vi : v_[0]) vi /= start;
   t_ = v_[0];
   cycle.right[0] = start;
@@ -157,18 +157,18 @@ bool LiftedSolver::run(Cycle& cycle, std::span<const double> b, std::span<double
     rotation.apply(h[j], h[j + 1]);
     rotation.apply(cycle.right[j], cycle.right[j + 1]);
     cycle.size = j + 1;
-    if (!(below > 0)) break;  // an exact solution, or NaN
+    is_done = !(below > 0) || cycle.report.iterations >= max_iterations_;  // an exact solution, or NaN
+    if (!(below > 0)) break;
     for (size_t i = 0; i < size; ++i) {
       w[i] /= below;
       t_[i] = rotation.c * w[i] - rotation.s * t_[i];
     }
-    cycle.residual = primal_norm(t_, cycle.right[j + 1]);
-    is_done = cycle.residual <= cycle.target || cycle.report.iterations >= max_iterations_;
+    is_done = is_done || primal_norm(t_, cycle.right[j + 1]) <= cycle.target;
     cycle.report.stopped = stop_.stopped();
     is_done = is_done || cycle.report.stopped;
   }
   const std::vector<double> y = cycle.coefficients();
-  for (int j = 0; j < cycle.size; ++j) add_scaled(y[j], std::span(z_[j]).first(n), x);
+  for (int j = 0; j < cycle.size; ++j) add_scaled(y[j], z_[j], cycle.x);
   return is_done;
 }
 
@@ -182,28 +182,31 @@ SolveReport LiftedSolver::solve(std::span<const double> b, std::span<double> x, 
     report.ok = true;
     return report;
   }
-  std::vector<double> r(b.begin(), b.end());
-  double residual = size, before = size;
-  do {
-    before = residual;
-    Cycle cycle{tolerance * size, report};
-    const bool is_done = run(cycle, r, x, precondition);
-    H_->multiply(x, r);
+  std::vector<double> lifted(t_.size(), 0.0), r(t_.size(), 0.0);
+  std::copy(b.begin(), b.end(), r.begin());
+  for (double before = INFINITY;;) {
+    Cycle cycle{tolerance * size, report, lifted, r};
+    const bool is_done = run(cycle, precondition);
+    apply(lifted, r);
     ++report.products;
-    for (size_t i = 0; i < r.size(); ++i) r[i] = b[i] - r[i];
-    residual = norm(r);
-    if (is_done && (report.stopped || report.iterations >= max_iterations_)) break;
-  } while (residual > tolerance * size && residual < 0.9 * before);
-  report.relative_residual = residual / size;
+    for (size_t i = 0; i < r.size(); ++i) r[i] = (i < b.size() ? b[i] : 0) - r[i];
+    const double residual = primal_norm(r, 1);
+    if (is_done || !(residual < kUseful * before)) break;
+    before = residual;
+  }
+  std::copy_n(lifted.begin(), x.size(), x.begin());
   judge(b, x, tolerance, report);
   return report;
 }
 
 void LiftedSolver::judge(std::span<const double> b, std::span<const double> x, double tolerance, SolveReport& report) {
   H_->multiply(x, right_);
+  ++report.products;
   const double curvature = dot(x, right_), slope = dot(b, x);
+  for (size_t i = 0; i < b.size(); ++i) primal_[i] = b[i] - right_[i];
+  report.relative_residual = norm(primal_) / norm(b);
   report.indefinite = curvature <= 0 || slope <= 0;
-  report.ok = !report.indefinite && !report.stopped && report.relative_residual <= tolerance;
+  report.ok = !report.indefinite && !report.stopped && report.relative_residual <= 1.01 * tolerance;
 }
 
 }  // namespace aspic

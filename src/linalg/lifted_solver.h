@@ -34,7 +34,7 @@ class LiftedSolver {
   void apply(std::span<const double> z, std::span<double> w) const;
   void apply_preconditioner(std::span<const double> r, std::span<double> z, const Precondition& precondition);
   double primal_norm(std::span<const double> r, double factor);  // |b - H x| for the lifted residual factor r
-  bool run(Cycle& cycle, std::span<const double> b, std::span<double> x, const Precondition& precondition);
+  bool run(Cycle& cycle, const Precondition& precondition);
   void judge(std::span<const double> b, std::span<const double> x, double tolerance, SolveReport& report);
 
   const BlockSparse* H_ = nullptr;

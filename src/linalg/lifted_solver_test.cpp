@@ -28,7 +28,7 @@ class StiffChain {
         row.vertex[n] = first + (3 * n) % 10;  // in any order
         for (int r = 0; r < 3; ++r) row.g[n][r] = uniform(random);
       }
-      row.weight = weight, row.compliance = 5;
+      row.weight = weight, row.compliance = 10;
       add(row);
     }
     for (int i = 0; i < 3 * rows; ++i) b.push_back(uniform(random));
@@ -103,7 +103,7 @@ TEST(LiftedSolver, AgreesWithCholesky) {
 }
 
 TEST(LiftedSolver, ReportsNegativeCurvature) {
-  StiffChain chain(10);
+  StiffChain chain(1e-3);
   for (int i = 0; i < chain.pattern().rows(); ++i)
     chain.H.block[chain.pattern().diagonal(i)] = -1.0 * chain.H.block[chain.pattern().diagonal(i)];
   LiftedSolver solver;
