@@ -124,14 +124,13 @@ void add_cook_checks(std::vector<Check>& checks) {
                    "14.73",
        check_split,
        {"Cook1974", "Pelteret2016", "Williams1952"}});
-  checks.push_back(
-      {"statics",
-       "cook_incompressible",
-       "Cook's membrane, nearly incompressible, with quadratic tets",
-       "Plane strain, neo_hookean_isochoric, mu = 80.1938, nu = 0.4999, a load of 100 on the right edge.",
-       "Biquadratic quadrilaterals with linear discontinuous pressures on a graded grid",
-       check_incompressible,
-       {"Cook1974", "Simo1985"}});
+  checks.push_back({"statics",
+                    "cook_incompressible",
+                    "Cook's membrane, nearly incompressible, with quadratic tets",
+                    "Plane strain, neo_hookean_isochoric, mu = 80.1938, nu = 0.4999, a load of 100 on the right edge.",
+                    "Biquadratic quadrilaterals with linear discontinuous pressures on a graded grid",
+                    check_incompressible,
+                    {"Cook1974", "Simo1985"}});
 }
 
 }  // namespace aspic::verify

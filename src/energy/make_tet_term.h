@@ -1,5 +1,5 @@
-// Instantiated for each material and element in a generated file of its own (see src/CMakeLists.txt), so that changing a
-// material recompiles two files, and kernels of linear tets do not depend on those of quadratic ones.
+// Instantiated for each material and element in a generated file of its own (see src/CMakeLists.txt), so that changing
+// a material recompiles two files, and kernels of linear tets do not depend on those of quadratic ones.
 #pragma once
 #include <memory>
 #include <span>

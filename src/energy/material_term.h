@@ -92,7 +92,8 @@ class MaterialTerm : public TetTerm<M, TetElasticity, Batch> {
                                Definiteness definiteness, const HessianDerivatives& out) const override {
     for_each_batch([&](int i) {
       const Points F_i = F(i, x), U = F(i, u), W = F(i, w);
-      for (int q = 0; q < kPoints; ++q) add_hessian_derivatives({i, q, at(F_i, q)}, at(U, q), at(W, q), definiteness, out);
+      for (int q = 0; q < kPoints; ++q)
+        add_hessian_derivatives({i, q, at(F_i, q)}, at(U, q), at(W, q), definiteness, out);
     });
   }
 

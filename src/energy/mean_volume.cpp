@@ -16,9 +16,9 @@
 namespace aspic {
 namespace {
 
-constexpr double kPointwise = 1.5;            // largest la_pt / mu
-constexpr double kNearlyIncompressible = 9;   // la / mu at Poisson's ratio 0.45
-constexpr double kCompliance = 0.6;           // g' A^-1 g times modulus / volume, measured on Delaunay meshes
+constexpr double kPointwise = 1.5;           // largest la_pt / mu
+constexpr double kNearlyIncompressible = 9;  // la / mu at Poisson's ratio 0.45
+constexpr double kCompliance = 0.6;          // g' A^-1 g times modulus / volume, measured on Delaunay meshes
 
 double pointwise_lambda(const Lame& lame) { return std::min(lame.lambda, kPointwise * lame.mu); }
 bool is_split(const Lame& lame) { return lame.lambda > kPointwise * lame.mu; }
@@ -191,8 +191,7 @@ class VolumeTerm : public TetTerm<GivenPressure, Energy, QuadraticTetBatch> {
   // Adds the derivatives of scale u . H w with respect to x, and calls visit(tet, derivative with respect to K).
   template <class Visit>
   void add_hessian_derivatives(Positions x, std::span<const double> u, std::span<const double> w,
-                               Definiteness definiteness, double scale, std::span<double> g,
-                               const Visit& visit) const {
+                               Definiteness definiteness, double scale, std::span<double> g, const Visit& visit) const {
     for_each_batch([&](int i) {
       const Points F_i = F(i, x), U = F(i, u), W = F(i, w);
       const Pack K = bulk_[i], change = mean_J(F_i) - 1.0;
@@ -376,7 +375,8 @@ class MeanVolume : public TetElasticity, public StiffEnergy {
       bulk_change[t] = change[entry(t) + 1] - lambda;
     }
     shape_->add_parameter_force(x, pointwise_change, scale, g);
-    volume_.add_bulk_force(x, [&](int t) { return bulk_change[t]; }, scale, g);
+    volume_.add_bulk_force(
+        x, [&](int t) { return bulk_change[t]; }, scale, g);
   }
 
   void add_parameter_gradient(Positions x, std::span<const double> w, double scale,

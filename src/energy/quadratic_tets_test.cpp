@@ -50,8 +50,7 @@ std::vector<MaterialParameters> different_parameters(const TetMesh& mesh, const 
 std::vector<MaterialParameters> nearly_incompressible(const TetMesh& mesh, const MaterialInfo& info) {
   constexpr double kPoisson[] = {0.49, 0.2, 0.499, 0.47};
   std::vector<MaterialParameters> parameters = different_parameters(mesh, info);
-  for (int t = 0; t < mesh.tet_count(); ++t)
-    parameters[t].lame = lame_from_young_poisson(1 + 0.1 * t, kPoisson[t % 4]);
+  for (int t = 0; t < mesh.tet_count(); ++t) parameters[t].lame = lame_from_young_poisson(1 + 0.1 * t, kPoisson[t % 4]);
   return parameters;
 }
 
@@ -145,8 +144,8 @@ TEST(QuadraticElasticity, LeastDeterminantIsBelowInvertedInterior) {
       for (int i = 0; i <= 6; ++i)
         for (int j = 0; i + j <= 6; ++j)
           for (int k = 0; i + j + k <= 6; ++k)
-            sampled = std::min(sampled, determinant(plain_gradient(
-                                            mesh, t, x, {i / 6.0, j / 6.0, k / 6.0, (6 - i - j - k) / 6.0})));
+            sampled = std::min(
+                sampled, determinant(plain_gradient(mesh, t, x, {i / 6.0, j / 6.0, k / 6.0, (6 - i - j - k) / 6.0})));
     const double least = V->min_det_F(x);
     if (sampled < 0) {
       EXPECT_LE(least, sampled);

@@ -19,8 +19,9 @@ std::unique_ptr<TetElasticity> make_tet_elasticity(std::string_view material, co
     return term;
   };
   const bool ignores_lambda = material == "arap";
-  return !ignores_lambda && needs_mean_volume(mesh, first, parameters) ? make_mean_volume(maker, mesh, first, parameters)
-                                                    : maker(mesh, first, parameters);
+  return !ignores_lambda && needs_mean_volume(mesh, first, parameters)
+             ? make_mean_volume(maker, mesh, first, parameters)
+             : maker(mesh, first, parameters);
 }
 
 }  // namespace aspic

@@ -158,7 +158,8 @@ class GmshReader {
     const GmshElementType* type = gmsh_element_type(number);
     if (!type) in.fail("element type " + std::to_string(number) + " is unknown; export 4-node tets or triangles");
     if (type->dimension == 3 && number != kGmshTet && number != kGmshQuadraticTet)
-      in.fail("the mesh has " + std::string(type->name) + ", which are not read; export it with 4-node or 10-node tets only");
+      in.fail("the mesh has " + std::string(type->name) +
+              ", which are not read; export it with 4-node or 10-node tets only");
     if (type->dimension == 2 && number != kGmshTriangle && number != kGmshQuadrangle) lost_ = type->name;
     return *type;
   }

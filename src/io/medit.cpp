@@ -122,7 +122,8 @@ class MeditReader {
     if (is_read && !sections_.emplace(word, text_.position()).second)
       text_.fail("a second section " + shown(word) + "; merge it with the first");
     if (const auto lost = lost_solids().find(word); lost != lost_solids().end() && text_.integer("a count") != 0)
-      text_.fail("the mesh has " + std::string(lost->second) + ", which are not read; export it with 4-node or 10-node tets only");
+      text_.fail("the mesh has " + std::string(lost->second) +
+                 ", which are not read; export it with 4-node or 10-node tets only");
     const auto& skipped = skipped_sections();
     if (is_read || lost_solids().contains(word) || std::find(skipped.begin(), skipped.end(), word) != skipped.end())
       return;
@@ -179,8 +180,7 @@ class MeditReader {
     }
   }
 
-  static constexpr std::string_view kRead[] = {"Vertices", "Tetrahedra", "TetrahedraP2", "Triangles",
-                                               "Quadrilaterals"};
+  static constexpr std::string_view kRead[] = {"Vertices", "Tetrahedra", "TetrahedraP2", "Triangles", "Quadrilaterals"};
 
   TextScanner text_;
   MeshContent content_;

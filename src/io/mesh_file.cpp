@@ -88,8 +88,8 @@ void write_tetgen(const fs::path& path, const TetMesh& mesh, FileEncoding encodi
 MeshContent read_vtu_mesh(const fs::path& path) {
   Vtu vtu = read_vtu(path);
   if (!vtu.mesh.tets.empty())
-    return {std::move(vtu.mesh.rest), std::move(vtu.mesh.tets), std::move(vtu.mesh.region), {},
-            std::move(vtu.mesh.mids)};
+    return {
+        std::move(vtu.mesh.rest), std::move(vtu.mesh.tets), std::move(vtu.mesh.region), {}, std::move(vtu.mesh.mids)};
   return {std::move(vtu.triangles.vertices), {}, {}, std::move(vtu.triangles.triangles)};
 }
 

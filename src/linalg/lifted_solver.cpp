@@ -113,7 +113,7 @@ double LiftedSolver::primal_norm(std::span<const double> r, double factor) {
 struct LiftedSolver::Cycle {
   double target;  // of the primal residual
   SolveReport& report;
-  std::vector<double>&x, &r;  // solution and residual of the lifted system
+  std::vector<double>&x, &r;                                   // solution and residual of the lifted system
   std::array<std::array<double, kRestart + 1>, kRestart> h{};  // columns of the triangular factor
   std::array<Rotation, kRestart> rotation{};
   std::array<double, kRestart + 1> right{};

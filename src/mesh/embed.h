@@ -11,14 +11,14 @@ namespace aspic {
 
 // The point sum of weight[n] x_n over the first `count` vertices.
 struct Carrier {
-  int count = 0;                      // 1, 4 or 10: a vertex, a linear or a quadratic tet
-  std::array<int, 10> vertex{};       // nodes of the tet
-  std::array<double, 10> weight{};    // shape functions, sum to 1; some negative
+  int count = 0;                    // 1, 4 or 10: a vertex, a linear or a quadratic tet
+  std::array<int, 10> vertex{};     // nodes of the tet
+  std::array<double, 10> weight{};  // shape functions, sum to 1; some negative
 
   static Carrier of_vertex(int v) { return {1, {v}, {1}}; }
   std::span<const int> vertices() const { return std::span(vertex).first(count); }
-  int nearest_vertex() const;                         // the vertex with the largest weight
-  Vec3d position(std::span<const double> x) const;    // x: 3 per vertex [m]
+  int nearest_vertex() const;                       // the vertex with the largest weight
+  Vec3d position(std::span<const double> x) const;  // x: 3 per vertex [m]
 };
 
 struct Embedding {
