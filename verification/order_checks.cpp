@@ -6,6 +6,7 @@
 #include "dynamics/integrator.h"
 #include "material/list.h"
 #include "mesh/generators.h"
+#include "mesh/tet_nodes.h"
 #include "verification/families.h"
 #include "verification/integrators.h"
 #include "verification/statics.h"
@@ -68,20 +69,45 @@ std::vector<Point> quadrature() {
   return points;
 }
 
-Vec3d combination(const Point& point, const std::array<Vec3d, 4>& corner) {
-  Vec3d sum{};
-  for (int c = 0; c < 4; ++c) sum = sum + point.share[c] * corner[c];
-  return sum;
-}
+// The shape functions of a tet at a point, and their gradients.
+struct Shapes {
+  TetNodes nodes;
+  std::array<double, 10> N;
+  std::array<Vec3d, 10> gradient;
 
-std::array<Vec3d, 4> corners(const TetMesh& mesh, int t, const std::vector<double>& x) {
-  std::array<Vec3d, 4> corner;
-  for (int c = 0; c < 4; ++c) {
-    const double* at = &x[3 * mesh.tets[t][c]];
-    corner[c] = {{at[0], at[1], at[2]}};
+  Shapes(const TetMesh& mesh, int t, const Point& point) : nodes(nodes_of(mesh, t)), N{}, gradient{} {
+    const Mat3d B = inverse(edge_matrix(mesh, t));
+    const double* l = point.share;
+    std::array<Vec3d, 4> b{};
+    for (int i = 1; i < 4; ++i) {
+      b[i] = {{B(i - 1, 0), B(i - 1, 1), B(i - 1, 2)}};
+      b[0] = b[0] - b[i];
+    }
+    const bool is_linear = nodes.count == 4;
+    for (int i = 0; i < 4; ++i) {
+      N[i] = is_linear ? l[i] : l[i] * (2 * l[i] - 1);
+      gradient[i] = (is_linear ? 1 : 4 * l[i] - 1) * b[i];
+    }
+    for (int k = 0; k < 6; ++k) {
+      const auto [i, j] = kTetEdges[k];
+      N[4 + k] = 4 * l[i] * l[j];
+      gradient[4 + k] = 4 * l[i] * b[j] + 4 * l[j] * b[i];
+    }
   }
-  return corner;
-}
+
+  Vec3d position(std::span<const double> x) const {
+    Vec3d sum{};
+    for (int n = 0; n < nodes.count; ++n) sum = sum + N[n] * aspic::point(x, nodes[n]);
+    return sum;
+  }
+  Mat3d F(std::span<const double> x) const {
+    Mat3d sum{};
+    for (int n = 0; n < nodes.count; ++n)
+      for (int c = 0; c < 3; ++c)
+        for (int r = 0; r < 3; ++r) sum(r, c) += x[3 * nodes[n] + r] * gradient[n][c];
+    return sum;
+  }
+};
 
 TetMesh irregular_cube(int n) {
   TetMesh mesh = make_box({{0, 0, 0}}, {{1, 1, 1}}, {n, n, n});
@@ -100,23 +126,28 @@ std::vector<double> load_of(const std::string& material, const MaterialParameter
   const std::vector<Point> points = quadrature();
   with_material(material, [&]<class M>() {
     const auto p = M::params(parameters);
-    for (int t = 0; t < mesh.tet_count(); ++t) {
-      const auto corner = corners(mesh, t, rest);
+    for (int t = 0; t < mesh.tet_count(); ++t)
       for (const Point& point : points) {
-        const Vec3d b = body_force<M>(Exact(combination(point, corner)), p);
-        for (int c = 0; c < 4; ++c)
+        const Shapes shapes(mesh, t, point);
+        const Vec3d b = body_force<M>(Exact(shapes.position(rest)), p);
+        for (int n = 0; n < shapes.nodes.count; ++n)
           for (int r = 0; r < 3; ++r)
-            load[3 * mesh.tets[t][c] + r] += volume(mesh, t) * point.weight * point.share[c] * b[r];
+            load[3 * shapes.nodes[n] + r] += volume(mesh, t) * point.weight * shapes.N[n] * b[r];
       }
-    }
   });
   return load;
 }
 
-// Uses n cells per edge, with every inner vertex moved by up to a fifth of a cell; E = 1 Pa. The body force belongs to
-// `material`; the tets use `taken`.
-SpaceError manufactured_error(const std::string& material, const std::string& taken, double poisson, int n) {
-  const TetMesh mesh = irregular_cube(n);
+// An irregular cube of n cells per edge, of linear or quadratic tets.
+struct Cube {
+  int n;
+  bool is_quadratic = false;
+};
+
+// Every inner vertex is moved by up to a fifth of a cell; E = 1 Pa. The body force belongs to `material`; the tets use
+// `taken`.
+SpaceError manufactured_error(const std::string& material, const std::string& taken, double poisson, const Cube& cube) {
+  const TetMesh mesh = cube.is_quadratic ? raise_order(irregular_cube(cube.n)) : irregular_cube(cube.n);
   const std::vector<double> rest = at_rest(mesh).q;
   Model model = make_model(mesh, {.material = taken, .young = 1, .poisson = poisson, .gravity = {}});
   model.pins.push_back(
@@ -124,17 +155,15 @@ SpaceError manufactured_error(const std::string& material, const std::string& ta
   model.loads.push_back(make_growing_load(
       load_of(material, material_parameters(material, {.young = 1, .poisson = poisson}), mesh, rest)));
   const Simulation simulation = equilibrium(std::move(model), 2, material);
-  SpaceError error{1.0 / n, 0, 0};
+  SpaceError error{1.0 / cube.n, 0, 0};
   const std::vector<Point> points = quadrature();
   for (int t = 0; t < mesh.tet_count(); ++t) {
-    const auto corner = corners(mesh, t, rest), moved = corners(mesh, t, simulation.state().q);
-    const Mat3d F =
-        from_columns(moved[1] - moved[0], moved[2] - moved[0], moved[3] - moved[0]) * inverse(edge_matrix(mesh, t));
     for (const Point& point : points) {
-      const Exact exact(combination(point, corner));
-      const Vec3d d = combination(point, moved) - exact.x;
+      const Shapes shapes(mesh, t, point);
+      const Exact exact(shapes.position(rest));
+      const Vec3d d = shapes.position(simulation.state().q) - exact.x;
       error.l2 += volume(mesh, t) * point.weight * dot(d, d);
-      error.h1 += volume(mesh, t) * point.weight * squared_norm(F - exact.F);
+      error.h1 += volume(mesh, t) * point.weight * squared_norm(shapes.F(simulation.state().q) - exact.F);
     }
   }
   error.l2 = std::sqrt(error.l2), error.h1 = std::sqrt(error.h1);
@@ -217,7 +246,7 @@ void check_space_order(const Subject& subject, Findings& found) {
   for (const MaterialInfo& info : materials()) {
     Curve l2{info.name + ", L2", {}, {}}, h1{info.name + ", H1", {}, {}};
     for (const int n : cells) {
-      const SpaceError error = manufactured_error(info.name, subject.replacement(info.name), 0.3, n);
+      const SpaceError error = manufactured_error(info.name, subject.replacement(info.name), 0.3, {n});
       l2.x.push_back(error.h), l2.y.push_back(error.l2);
       h1.x.push_back(error.h), h1.y.push_back(error.h1);
     }
@@ -228,6 +257,27 @@ void check_space_order(const Subject& subject, Findings& found) {
     found.expect(info.name + ": order in H1", {order_between(h1.y[h1.y.size() - 2], h1.y.back()), 1, tolerance},
                  reason);
     if (info.name != "neo_hookean_log" && info.name != "stable_neo_hookean" && info.name != "stvk") continue;
+    plot.curves.push_back(l2);
+    plot.curves.push_back(h1);
+  }
+  found.plots.push_back(plot);
+}
+
+void check_quadratic_order(const Subject& subject, Findings& found) {
+  Plot plot{"quadratic tets, nu = 0.3", "edge of a cell h [m]", "error", Scales::logarithmic, {}};
+  const std::vector<int> cells = subject.quick ? std::vector<int>{2, 4} : std::vector<int>{2, 4, 8};
+  for (const char* material : {"neo_hookean_log", "stable_neo_hookean", "stvk", "linear"}) {
+    Curve l2{std::string(material) + ", L2", {}, {}}, h1{std::string(material) + ", H1", {}, {}};
+    for (const int n : cells) {
+      const SpaceError error = manufactured_error(material, subject.replacement(material), 0.3, {n, true});
+      l2.x.push_back(error.h), l2.y.push_back(error.l2);
+      h1.x.push_back(error.h), h1.y.push_back(error.h1);
+    }
+    const std::string reason = "the next term of the error has the relative size h, with 4 or 8 cells along an edge";
+    found.expect(std::string(material) + ": order in L2", {order_between(l2.y[l2.y.size() - 2], l2.y.back()), 3, 0.2},
+                 reason);
+    found.expect(std::string(material) + ": order in H1", {order_between(h1.y[h1.y.size() - 2], h1.y.back()), 2, 0.2},
+                 reason);
     plot.curves.push_back(l2);
     plot.curves.push_back(h1);
   }
@@ -246,6 +296,14 @@ void add_order_checks(std::vector<Check>& checks) {
                     check_space_order,
                     {"Roache1998"},
                     {R"tex(\|x_h - x\|_{L^2} = O(h^2), \quad \|F_h - F\|_{L^2} = O(h))tex"}});
+  checks.push_back({"orders",
+                    "space_quadratic",
+                    "Order in space of quadratic tets",
+                    "The manufactured solution of orders/space on quadratic tets with straight edges.",
+                    "Quadratic elements: 3 in L2, 2 in H1",
+                    check_quadratic_order,
+                    {"Roache1998"},
+                    {R"tex(\|x_h - x\|_{L^2} = O(h^3), \quad \|F_h - F\|_{L^2} = O(h^2))tex"}});
   checks.push_back(
       {"orders",
        "time",

@@ -1,9 +1,10 @@
-// Patch tests: linear tets represent affine states exactly on any mesh.
+// Patch tests: tets represent affine states exactly on any mesh.
 #include <algorithm>
 #include <cmath>
 
 #include "math/vectors.h"
 #include "mesh/generators.h"
+#include "mesh/tet_nodes.h"
 #include "verification/families.h"
 #include "verification/statics.h"
 #include "verification/uniaxial.h"
@@ -52,6 +53,7 @@ void check_patch(const Subject& subject, Findings& found) {
     shapes.push_back({"distorted box of five tets per cell", irregular_box(BoxCut::five)});
     shapes.push_back({"sphere", make_sphere(0.5, 0.2)});
   }
+  shapes.push_back({"distorted box of quadratic tets", raise_order(irregular_box(BoxCut::kuhn))});
   for (const Shape& shape : shapes)
     for (const MaterialInfo& info : materials()) {
       const Patch patch = patch_error(shape.mesh, subject.replacement(info.name), 0.4);
@@ -121,7 +123,7 @@ void add_patch_checks(std::vector<Check>& checks) {
                     "Patch test: an affine state, held at the boundary",
                     "The boundary is stretched and sheared by one F; every vertex inside must find F X and every tet "
                     "the same stress, whatever the mesh.",
-                    "Linear elements represent linear fields",
+                    "Linear and quadratic elements represent linear fields",
                     check_patch,
                     {"Irons1972"},
                     {R"tex(x = F X)tex"}});

@@ -45,9 +45,9 @@ std::unique_ptr<Energy> make_growing_load(std::vector<double> force, std::functi
 std::vector<double> traction_on(const TetMesh& mesh, const std::function<bool(const Vec3d&)>& is_loaded,
                                 const Vec3d& traction) {
   std::vector<double> force(3 * mesh.rest.size());
-  for (const Triangle& triangle : boundary_triangles(mesh, 0, mesh.tet_count()))
-    if (std::all_of(triangle.begin(), triangle.end(), [&](int v) { return is_loaded(mesh.rest[v]); }))
-      add_traction(mesh.rest, triangle, traction, force);
+  for (const Face& face : boundary_faces(mesh, 0, mesh.tet_count()))
+    if (std::all_of(face.corners.begin(), face.corners.end(), [&](int v) { return is_loaded(mesh.rest[v]); }))
+      add_traction(mesh.rest, face, traction, force);
   return force;
 }
 

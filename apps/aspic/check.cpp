@@ -16,6 +16,7 @@
 #include "dynamics/step_derivatives.h"
 #include "io/mesh_file.h"
 #include "mesh/doctor.h"
+#include "mesh/tet_nodes.h"
 #include "scene/scene.h"
 
 namespace aspic::cli {
@@ -212,15 +213,19 @@ int check_mesh(const CheckArguments& arguments, Mesh mesh) {
   return has_errors(findings) ? exit_bad_input : exit_done;
 }
 
-// Returns one body as a separate mesh. `all` is the whole mesh in the user's numbering.
+// Returns one body as a separate mesh of linear tets. `all` is the whole mesh in the user's numbering.
 TetMesh body_mesh(const TetMesh& all, const BodyRange& body) {
+  const auto in_body = [&](auto& nodes) {
+    for (int& v : nodes) v = v < 0 ? v : v - body.first_vertex;
+  };
   TetMesh mesh;
   mesh.rest.assign(all.rest.begin() + body.first_vertex, all.rest.begin() + body.first_vertex + body.vertex_count);
   mesh.tets.assign(all.tets.begin() + body.first_tet, all.tets.begin() + body.first_tet + body.tet_count);
-  for (Tet& tet : mesh.tets) {
-    for (int& corner : tet) corner -= body.first_vertex;
-  }
-  return mesh;
+  std::for_each(mesh.tets.begin(), mesh.tets.end(), in_body);
+  if (all.mids.empty()) return mesh;
+  mesh.mids.assign(all.mids.begin() + body.first_tet, all.mids.begin() + body.first_tet + body.tet_count);
+  std::for_each(mesh.mids.begin(), mesh.mids.end(), in_body);
+  return lower_order(std::move(mesh));
 }
 
 int check_scene(const CheckArguments& arguments) {
@@ -252,7 +257,10 @@ int check(const CheckArguments& arguments) {
   if (!arguments.plot.empty() || arguments.json) throw InvalidInput("--plot and --json require --derivatives");
   if (arguments.input.extension() == ".toml") return check_scene(arguments);
   if (!arguments.overrides.empty()) throw InvalidInput("--set needs a scene; a mesh has no values to override");
-  return std::visit([&](auto mesh) { return check_mesh(arguments, std::move(mesh)); }, read_mesh(arguments.input));
+  std::vector<std::string> notes;
+  auto mesh = read_mesh(arguments.input, &notes);
+  for (const std::string& note : notes) fmt::print("note: {}\n", printable(note));
+  return std::visit([&](auto m) { return check_mesh(arguments, std::move(m)); }, std::move(mesh));
 }
 
 }  // namespace

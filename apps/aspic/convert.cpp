@@ -47,8 +47,10 @@ int write(const ConvertArguments& arguments, const Mesh& mesh, const std::string
 
 int convert(const ConvertArguments& arguments) {
   const MeshFormat& format = format_of(arguments.out);
-  const auto mesh = read_mesh(arguments.in);
+  std::vector<std::string> notes;
+  const auto mesh = read_mesh(arguments.in, &notes);
   fmt::print("{}: {}\n", printable(arguments.in.string()), std::visit([](const auto& m) { return describe(m); }, mesh));
+  for (const std::string& note : notes) fmt::print("note: {}\n", printable(note));
 
   if (const auto* tets = std::get_if<TetMesh>(&mesh)) {
     if (format.writes_tets && !arguments.surface) return write(arguments, *tets, "");

@@ -50,8 +50,10 @@ std::vector<Prediction> predictions_of(const DataSet& data, const FitOutcome& ou
   std::vector<Prediction> predictions = {{"fit", held_out_by_fit(data, outcome, left_out)}};
   if (!with_baselines) return predictions;
   const Experiment training = without_groups(data.experiment, plan.left_out);
-  for (const Baseline baseline : {Baseline::homogeneous, Baseline::per_example_linear, Baseline::bickel})
+  for (const Baseline baseline : {Baseline::homogeneous, Baseline::per_example_linear, Baseline::bickel}) {
+    if (baseline == Baseline::bickel && !training.mesh.mids.empty()) continue;  // needs linear tets
     predictions.push_back({std::string(name(baseline)), predict(baseline, training, left_out, baseline_options(plan))});
+  }
   return predictions;
 }
 

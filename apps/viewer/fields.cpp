@@ -6,6 +6,7 @@
 #include "base/parallel.h"
 #include "energy/energy.h"
 #include "math/eigen3.h"
+#include "mesh/tet_nodes.h"
 #include "mesh/tet_shape.h"
 
 namespace aspic::viewer {
@@ -93,10 +94,8 @@ TetFields tet_fields_at(const View& view) {
 }
 
 Mat3d deformation_gradient(const TetMesh& mesh, int tet, std::span<const double> x) {
-  const auto [a, b, c, d] = mesh.tets[tet];
-  const Mat3d Ds = from_columns(aspic::point(x, b) - aspic::point(x, a), aspic::point(x, c) - aspic::point(x, a),
-                                aspic::point(x, d) - aspic::point(x, a));
-  return Ds * inverse(edge_matrix(mesh, tet));
+  const auto [a, b, c, d] = center_corners(mesh, tet, x);
+  return from_columns(b - a, c - a, d - a) * inverse(edge_matrix(mesh, tet));
 }
 
 Vec3d stretches(const Mat3d& F) {

@@ -44,8 +44,8 @@ Json vertex_reply(const ShownSide& shown, int vertex) {
     values[field.name] = all[vertex];
   }
   double mass = 0;
-  for (int i = 0; i < 4; ++i)
-    mass += surface.weights[vertex][i] * model.mass->vertex_mass()[surface.carrier[vertex][i]];
+  const Carrier& carrier = surface.carrier[vertex];
+  for (int n = 0; n < carrier.count; ++n) mass += carrier.weight[n] * model.mass->vertex_mass()[carrier.vertex[n]];
   const int user = surface.is_fine ? -1 : model.numbering.vertex.to_user(surface.anchor(vertex));
   return {{"vertex", user},
           {"first_entry", surface.is_fine ? -1 : 3 * user},

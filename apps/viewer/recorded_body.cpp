@@ -28,7 +28,6 @@ void find_places(RecordedBody& body) {
       if (!is_new) continue;
       body.places.rest.push_back(recorded.surface.rest[v]);
       body.places.carrier.push_back(recorded.surface.carrier[v]);
-      body.places.weights.push_back(recorded.surface.weights[v]);
       body.places.tets.insert(body.places.tets.end(), around.begin(), around.end());
       body.places.tets_start.push_back(static_cast<int>(body.places.tets.size()));
     }
@@ -40,8 +39,8 @@ void keep_carriers(const Model& model, RecordedBody& body) {
   std::vector<int> point(model.mesh.rest.size(), -1);
   const auto for_carriers = [&](auto act) {
     for (RecordedSurface& recorded : body.surfaces)
-      for (Tet& carrier : recorded.surface.carrier)
-        for (int& v : carrier) act(v);
+      for (Carrier& carrier : recorded.surface.carrier)
+        for (int n = 0; n < carrier.count; ++n) act(carrier.vertex[n]);
   };
   for_carriers([&](int v) { point[v] = 0; });
   for (size_t v = 0; v < point.size(); ++v) {
@@ -54,10 +53,8 @@ void keep_carriers(const Model& model, RecordedBody& body) {
 }
 
 std::vector<double> lumped_mass(const Model& model) {
-  std::vector<double> mass(model.mesh.rest.size(), 0.0);
-  for (size_t t = 0; t < model.density.size(); ++t)
-    for (const int v : model.mesh.tets[t]) mass[v] += model.density[t] * volume(model.mesh, static_cast<int>(t)) / 4;
-  return mass;
+  const MassMatrix mass(model.mesh, model.density, MassKind::lumped);
+  return {mass.vertex_mass().begin(), mass.vertex_mass().end()};
 }
 
 }  // namespace
@@ -93,8 +90,7 @@ RecordedBody body_of_skins(const Scene& scene) {
     body.source.push_back(v);
     body.is_pinned.push_back(recorded.surface.is_fine ? 0 : pins.has(anchor));
     body.mass.push_back(recorded.surface.is_fine ? 0 : mass[anchor]);
-    recorded.surface.carrier[v] = {v, v, v, v};
-    recorded.surface.weights[v] = {1, 0, 0, 0};
+    recorded.surface.carrier[v] = Carrier::of_vertex(v);
   }
   return body;
 }

@@ -264,22 +264,22 @@ class Recorder {
   void add_surface(ArrayPack& pack, const RecordedSurface& recorded) const {
     const Surface& surface = recorded.surface;
     const std::string prefix = recorded.name + ".";
-    const bool is_plain =
-        std::all_of(surface.weights.begin(), surface.weights.end(), [](const auto& w) { return w[0] == 1; });
+    int width = 1;  // the same for all vertices
+    for (const Carrier& carrier : surface.carrier) width = std::max(width, carrier.count);
     std::vector<uint32_t> triangles, corners;
     std::vector<float> weights;
     for (const Triangle& t : surface.triangles) triangles.insert(triangles.end(), t.begin(), t.end());
-    for (size_t v = 0; v < surface.rest.size(); ++v) {
-      const auto width = is_plain ? 1 : 4;
-      corners.insert(corners.end(), surface.carrier[v].begin(), surface.carrier[v].begin() + width);
-      weights.insert(weights.end(), surface.weights[v].begin(), surface.weights[v].begin() + width);
-    }
+    for (const Carrier& carrier : surface.carrier)
+      for (int n = 0; n < width; ++n) {
+        corners.push_back(carrier.vertex[n < carrier.count ? n : 0]);
+        weights.push_back(static_cast<float>(carrier.weight[n]));  // 0 beyond its vertices
+      }
     pack.add(prefix + "rest", flat(surface.rest));
     pack.add(prefix + "triangles", triangles);
     pack.add(prefix + "tet", recorded.tet);
     pack.add(prefix + "vertex", recorded.vertex);
     pack.add(prefix + "corners", corners);
-    if (!is_plain) pack.add(prefix + "weights", weights);
+    if (width > 1) pack.add(prefix + "weights", weights);
     if (!recorded.place.empty()) pack.add(prefix + "place", recorded.place);
   }
 

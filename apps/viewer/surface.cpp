@@ -9,6 +9,7 @@
 
 #include "mesh/box.h"
 #include "mesh/surface.h"
+#include "mesh/tet_nodes.h"
 #include "mesh/tet_shape.h"
 #include "mesh/topology.h"
 #include "mesh/triangle_shape.h"
@@ -39,16 +40,16 @@ Incidence::Incidence(int vertex_count, std::span<const std::pair<int, int>> vert
 
 Incidence tets_of_vertices(const TetMesh& mesh) {
   std::vector<std::pair<int, int>> pairs;
-  pairs.reserve(4 * mesh.tets.size());
+  pairs.reserve((mesh.mids.empty() ? 4 : 10) * mesh.tets.size());
   for (int t = 0; t < mesh.tet_count(); ++t)
-    for (const int v : mesh.tets[t]) pairs.emplace_back(v, t);
+    for (const int v : nodes_of(mesh, t)) pairs.emplace_back(v, t);
   return {mesh.vertex_count(), pairs};
 }
 
 template <class Corners>
 int tet_with(const TetMesh& mesh, const Incidence& tets, const Corners& corners) {
   for (const int t : tets.around(corners[0])) {
-    const Tet& tet = mesh.tets[t];
+    const TetNodes tet = nodes_of(mesh, t);
     if (std::all_of(corners.begin(), corners.end(),
                     [&](int v) { return std::find(tet.begin(), tet.end(), v) != tet.end(); }))
       return t;
@@ -56,12 +57,17 @@ int tet_with(const TetMesh& mesh, const Incidence& tets, const Corners& corners)
   return tets.around(corners[0]).front();
 }
 
+// The linear tet itself, or the parts of a quadratic one.
+TetMesh parts_of(const TetMesh& mesh, int tet) {
+  TetMesh one{mesh.rest, {mesh.tets[tet]}, {}};
+  if (is_quadratic(mesh, tet)) one.mids = {mesh.mids[tet]};
+  return linear_parts(one).mesh;
+}
+
 void add_edges(Surface& surface) {
   for_each_edge(edge_uses(surface.triangles),
                 [&](const EdgeUse* first, const EdgeUse*) { surface.edges.push_back(first->edge); });
 }
-
-bool is_single_vertex(const std::array<double, 4>& weights) { return weights[0] == 1; }
 
 }  // namespace
 
@@ -69,23 +75,13 @@ std::span<const int> Surface::tets_at(int vertex) const {
   return std::span(tets).subspan(tets_start[vertex], tets_start[vertex + 1] - tets_start[vertex]);
 }
 
-int Surface::anchor(int vertex) const {
-  const auto& w = weights[vertex];
-  return carrier[vertex][std::max_element(w.begin(), w.end()) - w.begin()];
-}
+int Surface::anchor(int vertex) const { return carrier[vertex].nearest_vertex(); }
 
 uint32_t Surface::user_number(int vertex, const Numbering& numbering) const {
   return is_fine ? kNoVertex : static_cast<uint32_t>(numbering.vertex.to_user(anchor(vertex)));
 }
 
-Vec3d Surface::position(int vertex, std::span<const double> x) const {
-  Vec3d sum{};
-  for (int i = 0; i < 4; ++i) {
-    const int v = carrier[vertex][i];
-    sum = sum + weights[vertex][i] * Vec3d{{x[3 * v], x[3 * v + 1], x[3 * v + 2]}};
-  }
-  return sum;
-}
+Vec3d Surface::position(int vertex, std::span<const double> x) const { return carrier[vertex].position(x); }
 
 bool Surface::has_same_shape(const Surface& other) const {
   return rest.size() == other.rest.size() && triangles == other.triangles;
@@ -98,8 +94,8 @@ double size_of(const Surface& surface) {
 
 bool has_fine_skin(const Scene& scene) {
   for (const Skin& skin : scene.skins)
-    for (const auto& weights : skin.embedding.weights)
-      if (!is_single_vertex(weights)) return true;
+    for (const Carrier& carrier : skin.embedding.carriers)
+      if (carrier.count > 1) return true;
   return false;
 }
 
@@ -112,11 +108,10 @@ Surface fine_surface(const Scene& scene) {
     surface.rest.insert(surface.rest.end(), skin.rest.vertices.begin(), skin.rest.vertices.end());
     for (const Triangle& t : skin.rest.triangles)
       surface.triangles.push_back({t[0] + first, t[1] + first, t[2] + first});
-    surface.carrier.insert(surface.carrier.end(), skin.embedding.vertices.begin(), skin.embedding.vertices.end());
-    surface.weights.insert(surface.weights.end(), skin.embedding.weights.begin(), skin.embedding.weights.end());
+    surface.carrier.insert(surface.carrier.end(), skin.embedding.carriers.begin(), skin.embedding.carriers.end());
   }
   for (int v = 0; v <= surface.vertex_count(); ++v) surface.tets_start.push_back(v);
-  for (const Tet& carrier : surface.carrier) surface.tets.push_back(tet_with(mesh, tets, carrier));
+  for (const Carrier& carrier : surface.carrier) surface.tets.push_back(tet_with(mesh, tets, carrier.vertices()));
   for (const Triangle& t : surface.triangles) surface.tet.push_back(surface.tets[t[0]]);
   add_edges(surface);
   return surface;
@@ -130,8 +125,7 @@ Surface boundary_of(const Model& model) {
   surface.triangles = std::move(boundary.surface.triangles);
   surface.tets_start.push_back(0);
   for (const int v : boundary.tet_vertex) {
-    surface.carrier.push_back({v, v, v, v});
-    surface.weights.push_back({1, 0, 0, 0});
+    surface.carrier.push_back(Carrier::of_vertex(v));
     const std::span<const int> around = tets.around(v);
     surface.tets.insert(surface.tets.end(), around.begin(), around.end());
     surface.tets_start.push_back(static_cast<int>(surface.tets.size()));
@@ -147,7 +141,12 @@ Surface boundary_of(const Model& model) {
 TetPoint tet_point(const Surface& surface, const TetMesh& mesh, int triangle, const Vec3d& corner_weights) {
   const Triangle& corners = surface.triangles[triangle];
   if (!surface.is_fine) {
-    TetPoint point{mesh.tets[surface.tet[triangle]], {}};
+    const TetMesh parts = parts_of(mesh, surface.tet[triangle]);
+    const auto has_corners = [&](const Tet& part) {
+      return std::all_of(corners.begin(), corners.end(),
+                         [&](int c) { return std::find(part.begin(), part.end(), surface.anchor(c)) != part.end(); });
+    };
+    TetPoint point{*std::find_if(parts.tets.begin(), parts.tets.end(), has_corners), {}};
     for (int c = 0; c < 3; ++c)
       for (int i = 0; i < 4; ++i)
         if (point.vertices[i] == surface.anchor(corners[c])) point.weights[i] = corner_weights[c];
@@ -161,7 +160,16 @@ TetPoint tet_point(const Surface& surface, const TetMesh& mesh, int triangle, co
     rest = rest + corner_weights[c] * surface.rest[corners[c]];
   }
   const int tet = surface.tets[corners[nearest]];
-  return {mesh.tets[tet], barycentric(aspic::corners(mesh, tet), rest)};
+  const TetMesh parts = parts_of(mesh, tet);
+  TetPoint best;
+  double most =
+      -std::numeric_limits<double>::infinity();  // the smallest coordinate in the part that contains the point
+  for (int p = 0; p < parts.tet_count(); ++p) {
+    const std::array<double, 4> weights = barycentric(aspic::corners(parts, p), rest);
+    const double least = *std::min_element(weights.begin(), weights.end());
+    if (least > most) most = least, best = {parts.tets[p], weights};
+  }
+  return best;
 }
 
 SurfacePoint nearest_surface_point(const Surface& surface, const Vec3d& rest) {

@@ -16,10 +16,9 @@ struct Surface {
   std::vector<Vec3d> rest;
   std::vector<Triangle> triangles;
   std::vector<std::array<int, 2>> edges;
-  std::vector<int> tet;                        // behind each triangle
-  std::vector<Tet> carrier;                    // model vertices that carry each vertex
-  std::vector<std::array<double, 4>> weights;  // and their weights
-  std::vector<int> tets_start, tets;           // tets at each vertex, to average values per tet
+  std::vector<int> tet;               // behind each triangle
+  std::vector<Carrier> carrier;       // model vertices that carry each vertex
+  std::vector<int> tets_start, tets;  // tets at each vertex, to average values per tet
 
   int vertex_count() const { return static_cast<int>(rest.size()); }
   int triangle_count() const { return static_cast<int>(triangles.size()); }

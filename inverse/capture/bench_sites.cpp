@@ -65,8 +65,9 @@ std::vector<int> held_vertices(const TetMesh& truth, std::span<const int> held, 
   const Embedding where = embed(truth, {mesh.rest, {}});
   std::vector<int> vertices;
   for (int v = 0; v < mesh.vertex_count(); ++v) {
-    double share = 0;  // share of the corners that carry the vertex
-    for (int i = 0; i < 4; ++i) share += is_held[where.vertices[v][i]] ? where.weights[v][i] : 0;
+    double share = 0;  // share of the nodes that carry the vertex
+    const Carrier& carrier = where.carriers[v];
+    for (int n = 0; n < carrier.count; ++n) share += is_held[carrier.vertex[n]] ? carrier.weight[n] : 0;
     if (share > 0.99) vertices.push_back(v);
   }
   return vertices;

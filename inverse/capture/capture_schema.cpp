@@ -27,6 +27,7 @@ void add_document(Schema& s) {
            {key("version", kInteger, "of this format", Range{.min = 1, .max = 1}, kRequired),
             key("name", kText, "of the data set; default: the folder's name"),
             key("mesh", kText, "tet mesh of the body at rest", kRequired),
+            key("order", kInteger, "of its tets", Range{.min = 1, .max = 2}, Usual{"1"}),
             key("fixed", kExpression | kTable | kIntegers, "held vertices; default: none", Members{"where"}),
             key("density", kNumber | kExpression | kTable, "for gravity", Units{"kg/m^3"}, Range{.min = 0},
                 Members{"field"}, Usual{"1000.0"}),

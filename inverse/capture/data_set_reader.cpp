@@ -14,6 +14,7 @@
 #include "capture/unstated_values.h"
 #include "io/mesh_file.h"
 #include "mesh/box.h"
+#include "mesh/tet_nodes.h"
 #include "scene/placement.h"
 #include "scene/selection.h"
 #include "scene/tables.h"
@@ -70,11 +71,12 @@ class DataSetReader {
 
   void read_rest() {
     const fs::path path = settings_.file("mesh");
-    user_mesh_ = read_tet_mesh(path);
+    user_mesh_ = read_tet_mesh(path, &data_.notes);
     const double unit = settings_.unit("mesh");
     if (unit != 1)
       for (Vec3d& X : user_mesh_.rest) X = unit * X;
     add_notes(path.filename().string(), diagnose(user_mesh_), data_.notes);
+    if (settings_["order"].number() == 2) user_mesh_ = raise_order(std::move(user_mesh_));
     data_.numbering = locality_numbering(user_mesh_);
     data_.experiment.mesh = from_user(data_.numbering, user_mesh_);
     size_ = size_of(user_mesh_);

@@ -161,7 +161,8 @@ class DataSetWriter {
     for (const int v : fixed) list += (list.empty() ? "" : ", ") + std::to_string(v);
     std::string text =
         "# Measurements, in SI units: docs/capture_format.md\nversion = 1\nname = " + toml_string(data_.name) +
-        "\nmesh = \"rest.msh\"\ndensity = " + density_text() + "\nfixed = [" + list + "]\n";
+        "\nmesh = \"rest.msh\"" + (data_.experiment.mesh.mids.empty() ? "" : "\norder = 2") +
+        "\ndensity = " + density_text() + "\nfixed = [" + list + "]\n";
     for (const Indenter& indenter : indenters_)
       text += "\n[[tip]]\nname = " + toml_string(indenter_name(indenter)) +
               "\nshape = " + (indenter.shape == IndenterShape::disc ? "\"disc\"" : "\"sphere\"") +

@@ -72,6 +72,8 @@ struct Equilibrium::Impl {
     use(parameters);
     update_terms(x);
     K.block = E.hessian(x, {Definiteness::exact}).block;  // copied, because E may overwrite it
+    stiff_rows = E.stiff_rows();
+    solver->set_stiff_rows(stiff_rows.empty() ? nullptr : &stiff_rows);
     if (!is_analyzed) solver->analyze(E.pattern());
     is_analyzed = true;
     solver->begin();
@@ -141,6 +143,7 @@ struct Equilibrium::Impl {
   MinimizeOptions minimize;
   std::unique_ptr<LinearSolver> solver;  // factorization of K
   BlockSparse K;
+  StiffRows stiff_rows;  // of K
   ElasticParameters theta;
   std::vector<MaterialParameters> parameters, linear_parameters;
   const std::vector<MaterialParameters>* in_force = &parameters;

@@ -88,8 +88,9 @@ const LoadCase& LoadedBody::readable(const Experiment& experiment, const LoadCas
 }
 
 std::unique_ptr<Energy> make_pressure_of(const LoadCase& load, const TetMesh& mesh) {
-  if (load.is_dead_pressure) return make_dead_pressure(mesh, load.pressed, load.pressure);
-  return make_pressure(mesh, load.pressed, load.pressure);
+  const std::vector<Face> patch = faces_of(mesh, load.pressed);
+  if (load.is_dead_pressure) return make_dead_pressure(mesh, patch, load.pressure);
+  return make_pressure(mesh, patch, load.pressure);
 }
 
 Model LoadedBody::make_model(const std::string& material, std::span<const MaterialParameters> parameters) {

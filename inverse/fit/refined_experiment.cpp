@@ -9,19 +9,24 @@
 #include "base/parallel.h"
 #include "fit/load_case.h"
 #include "mesh/surface.h"
+#include "mesh/tet_nodes.h"
 #include "mesh/tet_shape.h"
 
 namespace aspic {
 namespace {
 
-constexpr double kRichardson = 4.0 / 3;  // 1 / (1 - 1/2^2)
-constexpr double kMaxMultiple = 10;      // multiple of the force with known error
+constexpr double kMaxMultiple = 10;  // multiple of the force with known error
+
+// Factor 1 / (1 - 1/2^p) for errors of order p.
+double richardson(const TetMesh& mesh) { return mesh.mids.empty() ? 4.0 / 3 : 8.0 / 7; }
 
 class Refinement {
  public:
   explicit Refinement(const Experiment& coarse) : coarse_(coarse) {
     fine_.mesh.rest = coarse.mesh.rest;
+    keep_mid_nodes();
     for (int t = 0; t < coarse.mesh.tet_count(); ++t) split(t);
+    add_mid_nodes();
     for (const SurfacePoint& marker : coarse.markers) fine_.markers.push_back(in_part(marker));
     hold();
     for (LoadCase load : coarse.cases) {
@@ -33,6 +38,23 @@ class Refinement {
   Experiment take() { return std::move(fine_); }
 
  private:
+  // The mid-edge nodes of quadratic tets are corners of the parts.
+  void keep_mid_nodes() {
+    for (size_t t = 0; t < coarse_.mesh.mids.size(); ++t)
+      for (int k = 0; k < 6; ++k) {
+        const Tet& tet = coarse_.mesh.tets[t];
+        middle_[std::minmax(tet[kTetEdges[k][0]], tet[kTetEdges[k][1]])] = coarse_.mesh.mids[t][k];
+      }
+  }
+
+  void add_mid_nodes() {
+    if (coarse_.mesh.mids.empty()) return;
+    for (const Tet& tet : fine_.mesh.tets) {
+      MidNodes& mids = fine_.mesh.mids.emplace_back();
+      for (int k = 0; k < 6; ++k) mids[k] = middle(tet[kTetEdges[k][0]], tet[kTetEdges[k][1]]);
+    }
+  }
+
   int middle(int a, int b) {
     const auto [place, is_new] = middle_.try_emplace(std::minmax(a, b), fine_.mesh.vertex_count());
     if (is_new) fine_.mesh.rest.push_back(0.5 * (coarse_.mesh.rest[a] + coarse_.mesh.rest[b]));
@@ -87,13 +109,16 @@ class Refinement {
     fine_.fixed = coarse_.fixed;
     std::vector<char> is_held(coarse_.mesh.rest.size(), 0);
     for (const int v : coarse_.fixed) is_held[v] = 1;
-    const auto hold_edges = [&](const auto& corners) {
-      if (!std::all_of(corners.begin(), corners.end(), [&](int v) { return is_held[v] != 0; })) return;
-      for (size_t i = 0; i < corners.size(); ++i)
-        for (size_t j = 0; j < i; ++j) fine_.fixed.push_back(middle(corners[i], corners[j]));
+    const auto all_held = [&](const auto& nodes) {
+      return std::all_of(nodes.begin(), nodes.end(), [&](int v) { return is_held[v] != 0; });
     };
-    for (const Triangle& t : boundary_triangles(coarse_.mesh, 0, coarse_.mesh.tet_count())) hold_edges(t);
-    for (const Tet& t : coarse_.mesh.tets) hold_edges(t);
+    for (const Triangle& t : boundary_triangles(coarse_.mesh, 0, coarse_.mesh.tet_count()))
+      for (int i = 0; i < 3 && all_held(t); ++i) fine_.fixed.push_back(middle(t[i], t[(i + 1) % 3]));
+    for (int t = 0; t < coarse_.mesh.tet_count(); ++t)
+      for (int part = 8 * t; part < 8 * (t + 1) && all_held(nodes_of(coarse_.mesh, t)); ++part) {
+        const TetNodes nodes = nodes_of(fine_.mesh, part);
+        fine_.fixed.insert(fine_.fixed.end(), nodes.begin(), nodes.end());
+      }
     std::sort(fine_.fixed.begin(), fine_.fixed.end());
     fine_.fixed.erase(std::unique(fine_.fixed.begin(), fine_.fixed.end()), fine_.fixed.end());
   }
@@ -137,9 +162,9 @@ Predictions predicted(const Experiment& experiment, const std::string& material,
 }
 
 // Force on fine meshes from F on the mesh and on the refined one; extrapolates log |F|.
-double factor_in_limit(const Wrench& coarse, const Wrench& fine) {
+double factor_in_limit(const Wrench& coarse, const Wrench& fine, double factor) {
   const double on_mesh = norm(coarse.force), on_fine = norm(fine.force);
-  return on_mesh > 0 && on_fine > 0 ? std::pow(on_fine / on_mesh, kRichardson - 1) : 1;
+  return on_mesh > 0 && on_fine > 0 ? std::pow(on_fine / on_mesh, factor - 1) : 1;
 }
 
 Wrench scaled(const Wrench& w, double factor) { return {factor * w.force, factor * w.torque}; }
@@ -200,12 +225,13 @@ MeshErrors mesh_errors(const Experiment& experiment, const std::string& material
   const Predictions on_mesh = on(experiment), on_fine = on(fine);
   MeshErrors errors{{}, on_mesh.failure.empty() ? on_fine.failure : on_mesh.failure};
   if (!errors.failure.empty()) return errors;
+  const double factor = richardson(experiment.mesh);
   for (size_t c = 0; c < on_mesh.cases.size(); ++c) {
     const CasePrediction &coarse = on_mesh.cases[c], &better = on_fine.cases[c];
     MeshError& error = errors.cases.emplace_back();
     for (size_t k = 0; k < coarse.markers.size(); ++k)
-      error.markers.push_back(kRichardson * (better.markers[k] - coarse.markers[k]));
-    const Wrench limit = scaled(better.wrench, factor_in_limit(coarse.wrench, better.wrench));
+      error.markers.push_back(factor * (better.markers[k] - coarse.markers[k]));
+    const Wrench limit = scaled(better.wrench, factor_in_limit(coarse.wrench, better.wrench, factor));
     error.wrench = {limit.force - coarse.wrench.force, limit.torque - coarse.wrench.torque};
     error.force_on_mesh = coarse.wrench.force;
   }

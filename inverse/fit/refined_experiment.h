@@ -1,8 +1,8 @@
 // Discretization error of a fit: linear tets are too stiff. The same body is solved under the same loads on a mesh with
-// half the edge length. Errors are quadratic in the edge length, so 4/3 of the difference is the error [Richardson
-// 1911]. It is subtracted from the measurements, and a fraction of it is added to their standard deviations (like the
-// approximation errors of [Kaipio and Somersalo 2007]). Forces are proportional to the unknown stiffness, so their
-// extrapolation is geometric: it keeps the sign, and the error is relative.
+// half the edge length. Errors are quadratic in the edge length, and cubic with quadratic tets, so 4/3 or 8/7 of the
+// difference is the error [Richardson 1911]. It is subtracted from the measurements, and a fraction of it is added to
+// their standard deviations (like the approximation errors of [Kaipio and Somersalo 2007]). Forces are proportional to
+// the unknown stiffness, so their extrapolation is geometric: it keeps the sign, and the error is relative.
 #pragma once
 #include <span>
 #include <string>

@@ -227,12 +227,9 @@ struct Trajectory::Impl {
         if (const double a = damping[k]->mass_factor(static_cast<int>(i / 3)); a != 0)
           moved[i] -= options.h * a * (after.q[i] - now.q[i]);
     add_density_gradient(mesh, model.mass->kind(), mu, moved, density);
-    for (int t = 0; t < mesh.tet_count(); ++t) {
-      double work = 0;
-      for (const int v : mesh.tets[t])
-        for (int r = 0; r < 3; ++r) work += mu[3 * v + r] * (*gravity)[r];
-      density[t] += f * volume(mesh, t) / 4 * work;
-    }
+    std::vector<double> weight(moved.size());
+    for (size_t i = 0; i < weight.size(); ++i) weight[i] = f * (*gravity)[i % 3];
+    add_density_gradient(mesh, model.mass->kind(), mu, weight, density);
   }
 
   struct Stored {
@@ -301,7 +298,7 @@ std::optional<Vec3d> gravity_of(const Model& model, std::span<const double> q) {
   const Vec3d acceleration = (1 / model.mass->total()) * total;
   double error = 0, size = 0;
   for (size_t i = 0; i < force.size(); ++i) {
-    const double expected = model.mass->vertex_mass()[i / 3] * acceleration[i % 3];
+    const double expected = model.mass->row_sums()[i / 3] * acceleration[i % 3];
     error = std::max(error, std::abs(force[i] - expected));
     size = std::max(size, std::abs(expected));
   }

@@ -1,5 +1,6 @@
 #include "dynamics/explanation_places.h"
 #include "base/formatted.h"
+#include "mesh/tet_nodes.h"
 #include "mesh/vertices.h"
 
 #include <cmath>
@@ -20,12 +21,8 @@ std::string named(const Model& model, const char* kind, int index, int BodyRange
 }
 
 double signed_volume(const TetMesh& mesh, int tet, std::span<const double> x) {
-  const auto corner = [&](int v) {
-    const size_t i = 3 * static_cast<size_t>(mesh.tets[tet][v]);
-    return Vec3d{{x[i], x[i + 1], x[i + 2]}};
-  };
-  const Vec3d a = corner(0);
-  return determinant(from_columns(corner(1) - a, corner(2) - a, corner(3) - a)) / 6;
+  const auto [a, b, c, d] = center_corners(mesh, tet, x);
+  return determinant(from_columns(b - a, c - a, d - a)) / 6;
 }
 
 }  // namespace

@@ -9,6 +9,7 @@
 #include "base/parallel.h"
 #include "contact/barrier.h"
 #include "mesh/components.h"
+#include "mesh/tet_nodes.h"
 
 namespace aspic {
 namespace {
@@ -35,21 +36,40 @@ BlockPattern pattern_of(const Model& model) {
   return pattern;
 }
 
+// Integrals of |grad N|^2 from those of l_i^2, volume / 10, and l_i l_j, volume / 20.
+void add_quadratic_stiffness(const TetMesh& mesh, int tet, std::vector<double>& stiffness) {
+  const Mat3d Dm = edge_matrix(mesh, tet), inverse_Dm = inverse(Dm);
+  const double V = std::abs(determinant(Dm)) / 6;
+  std::array<Vec3d, 4> b{};  // grad l_i
+  for (int i = 1; i < 4; ++i) {
+    b[i] = {{inverse_Dm(i - 1, 0), inverse_Dm(i - 1, 1), inverse_Dm(i - 1, 2)}};
+    b[0] = b[0] - b[i];
+  }
+  for (int i = 0; i < 4; ++i) stiffness[mesh.tets[tet][i]] += 0.6 * V * squared_norm(b[i]);
+  for (int k = 0; k < 6; ++k) {
+    const Vec3d &p = b[kTetEdges[k][0]], &q = b[kTetEdges[k][1]];
+    stiffness[mesh.mids[tet][k]] += 1.6 * V * (squared_norm(p) + squared_norm(q) + aspic::dot(p, q));
+  }
+}
+
 // Returns for each vertex v the sum over its tets of volume |grad N_v|^2: the diagonal of the stiffness matrix for a
 // unit modulus [m].
 std::vector<double> unit_stiffness(const TetMesh& mesh) {
   std::vector<double> stiffness(mesh.vertex_count(), 0.0);
-  for (const Tet& tet : mesh.tets)
-    for (int k = 0; k < 4; ++k) {
+  for (int t = 0; t < mesh.tet_count(); ++t) {
+    const Tet& tet = mesh.tets[t];
+    if (is_quadratic(mesh, t)) add_quadratic_stiffness(mesh, t, stiffness);
+    for (int k = 0; k < 4 && !is_quadratic(mesh, t); ++k) {
       const Vec3d &A = mesh.rest[tet[(k + 1) % 4]], &B = mesh.rest[tet[(k + 2) % 4]], &C = mesh.rest[tet[(k + 3) % 4]];
       const Vec3d normal = cross(B - A, C - A);  // twice the area of the face opposite to v
       const double six_volumes = std::abs(dot(normal, mesh.rest[tet[k]] - A));
       if (six_volumes > 0) stiffness[tet[k]] += dot(normal, normal) / (6 * six_volumes);
     }
+  }
   return stiffness;
 }
 
-// Returns the longest edge of the tets at each vertex [m]. Unlike the volume, it does not underestimate slivers.
+// Returns the longest edge of the linear tets at each vertex [m]. Unlike the volume, it does not underestimate slivers.
 std::vector<double> longest_edge(const TetMesh& mesh) {
   std::vector<double> longest(mesh.vertex_count(), 0.0);
   for (const Tet& tet : mesh.tets) {
@@ -65,14 +85,14 @@ std::vector<double> longest_edge(const TetMesh& mesh) {
 // tets or belong to one body, and their stiffnesses (modulus times edge) are within a factor kSoft of each other: those
 // of the stiffest vertex, or kSoft times less, or kSoft^2 times less, ...
 std::vector<int> parts_of(const TetMesh& mesh, std::span<const double> modulus) {
-  std::vector<double> stiffness = longest_edge(mesh);
+  std::vector<double> stiffness = longest_edge(linear_parts(mesh).mesh);
   for (int v = 0; v < mesh.vertex_count(); ++v) stiffness[v] *= modulus[v];
   const std::vector<std::vector<int>> components = tet_components(mesh);
   std::vector<int> component(mesh.vertex_count(), 0);
   std::vector<double> stiffest(components.size() + 1, 0.0);
   for (size_t c = 0; c < components.size(); ++c)
     for (const int t : components[c])
-      for (const int v : mesh.tets[t]) component[v] = static_cast<int>(c);
+      for (const int v : nodes_of(mesh, t)) component[v] = static_cast<int>(c);
   for (int v = 0; v < mesh.vertex_count(); ++v)
     if (std::isfinite(stiffness[v])) stiffest[component[v]] = std::max(stiffest[component[v]], stiffness[v]);
   std::map<std::pair<int, int>, int> number;
@@ -98,6 +118,8 @@ IncrementalPotential::IncrementalPotential(const Model& model, const Pins& pins)
   for (const auto& V : model.elasticity) add(*V, potential_);
   for (const auto& V : model.loads) add(*V, potential_);
   for (const auto& D : model.damping) add(*D, damping_);
+  for (size_t k = 0; k < potential_.size(); ++k)
+    if (const auto* stiff = dynamic_cast<const StiffEnergy*>(&potential_[k].energy())) stiff_.emplace_back(stiff, k);
   for (auto* v : {&predicted_, &offset_, &term_}) v->resize(3 * pattern_.rows());
   for (Terms* parts : {&last_, &of_iterate_}) {
     parts->values.resize(potential_.size());
@@ -203,9 +225,17 @@ const BlockSparse& IncrementalPotential::evaluate_hessian(std::span<const double
   for (const ActiveTerm& V : potential_) projected_elements_ += V.add_hessian(q, factor_, projection, H_);
   for (const ActiveTerm& D : damping_) projected_elements_ += D.add_hessian(q, factor_, projection, H_);
   pins_.set_identity(H_);
+  stiff_rows_.clear();
+  for (const auto& [stiff, k] : stiff_) stiff->add_stiff_rows(q, factor_, stiff_rows_);
+  for (StiffRow& row : stiff_rows_)
+    for (size_t n = 0; n < row.vertex.size(); ++n) row.g[n] = pins_.free_part(row.vertex[n], row.g[n]);
 
   gradient_round_off_ = gradient_round_off_at(q);
   return H_;
+}
+
+void IncrementalPotential::note_newton_step(std::span<const double> q, std::span<const double> d) {
+  for (const auto& [stiff, k] : stiff_) stiff->note_newton_step(q, d, potential_[k].context());
 }
 
 // Positions have rounding errors of eps |q|, so forces have errors of eps |q| times the stiffness at a vertex.

@@ -12,11 +12,17 @@
 
 #include "dynamics/model.h"
 #include "dynamics/pins.h"
+#include "energy/stiff_energy.h"
 #include "optimize/objective.h"
 
 namespace aspic {
 
-class IncrementalPotential : public Objective, public HasMetric, public HasParts, public HasStops, public HasLag {
+class IncrementalPotential : public Objective,
+                             public HasMetric,
+                             public HasParts,
+                             public HasStops,
+                             public HasStiffRows,
+                             public HasLag {
  public:
   IncrementalPotential(const Model& model, const Pins& pins);  // both must outlive this
 
@@ -49,6 +55,8 @@ class IncrementalPotential : public Objective, public HasMetric, public HasParts
   // Adds the stops of contact and friction, see HasStops.
   const BlockSparse* add_stops(std::span<const double> q, std::span<const double> d, double max_step,
                                std::span<double> g) override;
+  const StiffRows& stiff_rows() const override { return stiff_rows_; }
+  void note_newton_step(std::span<const double> q, std::span<const double> d) override;
   // x: radius of the body [m]. value: energy of doubling the size of the body, in units of E, without constant offsets
   // of the potential. gradient_unit: f, because g is a force times f.
   ObjectiveScales scales() const override {
@@ -117,6 +125,8 @@ class IncrementalPotential : public Objective, public HasMetric, public HasParts
   WholePart whole_{*this};  // used if there is one part
   const Pins& pins_;
   std::vector<ActiveTerm> potential_, damping_;
+  std::vector<std::pair<const StiffEnergy*, size_t>> stiff_;  // with the index in potential_
+  StiffRows stiff_rows_;
   BlockPattern pattern_;
   BlockSparse H_;
   std::optional<BlockSparse> metric_;  // computed on first use

@@ -13,6 +13,7 @@
 #include "energy/tet_elasticity.h"
 #include "math/vectors.h"
 #include "mesh/box.h"
+#include "mesh/tet_nodes.h"
 #include "optimize/minimize.h"
 #include "optimize/solver.h"
 
@@ -63,31 +64,37 @@ double signed_volume(const Vec3d& a, const Vec3d& b, const Vec3d& c, const Vec3d
   return dot(cross(b - a, c - a), d - a) / 6;
 }
 
-double volume_of(const Model& model, const BodyRange& body, const std::vector<double>& q) {
+// Calls visit(tet) for the linear tets of a body.
+template <class Visit>
+void for_linear_tets(const LinearParts& parts, const BodyRange& body, const Visit& visit) {
+  for (int p = 0; p < parts.mesh.tet_count(); ++p)
+    if (parts.tet[p] >= body.first_tet && parts.tet[p] < body.first_tet + body.tet_count) visit(parts.mesh.tets[p]);
+}
+
+double volume_of(const LinearParts& parts, const BodyRange& body, const std::vector<double>& q) {
   double sum = 0;
-  for (int t = body.first_tet; t < body.first_tet + body.tet_count; ++t) {
-    const auto& [a, b, c, d] = model.mesh.tets[t];
-    sum += signed_volume(point(q, a), point(q, b), point(q, c), point(q, d));
-  }
+  for_linear_tets(parts, body, [&](const Tet& tet) {
+    sum += signed_volume(point(q, tet[0]), point(q, tet[1]), point(q, tet[2]), point(q, tet[3]));
+  });
   return sum;
 }
 
-bool encloses(const Model& model, const BodyRange& body, const std::vector<double>& q, const Vec3d& x) {
-  for (int t = body.first_tet; t < body.first_tet + body.tet_count; ++t) {
-    const auto& [i, j, k, l] = model.mesh.tets[t];
-    const Vec3d a = point(q, i), b = point(q, j), c = point(q, k), d = point(q, l);
-    if (signed_volume(x, b, c, d) >= 0 && signed_volume(a, x, c, d) >= 0 && signed_volume(a, b, x, d) >= 0 &&
-        signed_volume(a, b, c, x) >= 0)
-      return true;
-  }
-  return false;
+bool encloses(const LinearParts& parts, const BodyRange& body, const std::vector<double>& q, const Vec3d& x) {
+  bool is_inside = false;
+  for_linear_tets(parts, body, [&](const Tet& tet) {
+    const Vec3d a = point(q, tet[0]), b = point(q, tet[1]), c = point(q, tet[2]), d = point(q, tet[3]);
+    is_inside |= signed_volume(x, b, c, d) >= 0 && signed_volume(a, x, c, d) >= 0 && signed_volume(a, b, x, d) >= 0 &&
+                 signed_volume(a, b, c, x) >= 0;
+  });
+  return is_inside;
 }
 
 // Rejects bodies inside of other bodies, whose surfaces do not intersect.
 void require_outside(const Model& model, const std::vector<double>& q) {
+  const LinearParts parts = linear_parts(model.mesh);
   for (const BodyRange& inner : model.bodies)
     for (const BodyRange& outer : model.bodies)
-      if (&inner != &outer && encloses(model, outer, q, point(q, inner.first_vertex)))
+      if (&inner != &outer && encloses(parts, outer, q, point(q, inner.first_vertex)))
         throw InvalidInput("body '" + outer.name + "' encloses the center of body '" + inner.name +
                            "'; move one of them");
 }
@@ -170,8 +177,9 @@ void inflate(Model& model, std::vector<double>& q) {
   grow(model, scale, start, q);
   model.damping = std::move(damping);
   model.loads.insert(model.loads.begin(), std::make_move_iterator(loads.begin()), std::make_move_iterator(loads.end()));
+  const LinearParts parts = linear_parts(model.mesh);
   for (const BodyRange& body : model.bodies) {
-    const double share = volume_of(model, body, q) / volume_of(model, body, start);
+    const double share = volume_of(parts, body, q) / volume_of(parts, body, start);
     if (!(share > kVolume))
       throw InvalidInput("body '" + body.name + "' regains only " + std::to_string(int(100 * share)) +
                          " % of its volume: it is enclosed by other surfaces or collapsed; move it further away");

@@ -217,7 +217,7 @@ TEST(Newton, SinglePinHasEquilibriumWithEverySolver) {
     for (const Triangle& t : boundary_triangles(model.mesh, 0, model.mesh.tet_count()))
       for (const double end : {0.0, 1.0})
         if (std::all_of(t.begin(), t.end(), [&](int v) { return model.mesh.rest[v][0] == end; }))
-          add_traction(model.mesh.rest, t, {{2000 * (2 * end - 1), 0, 0}}, force);
+          add_traction(model.mesh.rest, {t}, {{2000 * (2 * end - 1), 0, 0}}, force);
     model.loads.push_back(make_linear_load("tension", force));
     model.pins.push_back({"corner", {0}, {}});
     SimulationOptions options{.h = 1, .integrator = "quasi_static"};

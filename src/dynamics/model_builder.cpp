@@ -70,8 +70,8 @@ MaterialParameters material_parameters(const std::string& material, const Elasti
 
 std::vector<double> weights(const MassMatrix& mass, const Vec3d& acceleration) {
   std::vector<double> force;
-  force.reserve(3 * mass.vertex_mass().size());
-  for (const double m : mass.vertex_mass())
+  force.reserve(3 * mass.row_sums().size());
+  for (const double m : mass.row_sums())
     for (int r = 0; r < 3; ++r) force.push_back(m * acceleration[r]);
   return force;
 }

@@ -8,6 +8,7 @@
 #include "dynamics/incremental_potential.h"
 #include "math/vectors.h"
 #include "mesh/box.h"
+#include "mesh/tet_nodes.h"
 
 namespace aspic {
 namespace {
@@ -237,7 +238,7 @@ std::string entry_name(int entry) {
 
 int tet_with(const TetMesh& mesh, int vertex, int other) {
   for (int t = 0; t < mesh.tet_count(); ++t) {
-    const Tet& tet = mesh.tets[t];
+    const TetNodes tet = nodes_of(mesh, t);
     const auto holds = [&](int v) { return std::find(tet.begin(), tet.end(), v) != tet.end(); };
     if (holds(vertex) && holds(other)) return t;
   }

@@ -1,6 +1,7 @@
 #include "energy/custom_elasticity.h"
 
 #include "energy/material_term.h"
+#include "energy/quadratic_batch.h"
 
 namespace aspic {
 namespace {
@@ -28,8 +29,12 @@ struct CustomMaterial {
 
 ElasticityMaker custom_material(std::string name, int extra, std::shared_ptr<const CustomDensity> density) {
   return [=](const TetMesh& mesh, int first, std::span<const MaterialParameters> parameters) {
-    return std::make_unique<MaterialTerm<CustomMaterial>>(name, mesh, first, parameters,
-                                                          CustomMaterial{density, extra});
+    const CustomMaterial material{density, extra};
+    if (!parameters.empty() && is_quadratic(mesh, first))
+      return std::unique_ptr<TetElasticity>(
+          std::make_unique<MaterialTerm<CustomMaterial, QuadraticTetBatch>>(name, mesh, first, parameters, material));
+    return std::unique_ptr<TetElasticity>(
+        std::make_unique<MaterialTerm<CustomMaterial, TetBatch>>(name, mesh, first, parameters, material));
   };
 }
 

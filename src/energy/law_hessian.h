@@ -21,7 +21,7 @@ struct LawBlocks {
   Corners f, y;        // only for densities that are nonlinear in I1
   Mat3<Pack> tension;  // psi_J D d_v in column v - 1
 
-  LawBlocks(const TetBatch& tets, const Mat3<Pack>& Ds, const Derivatives& d, Pack weight)
+  LawBlocks(const TetLanes& tets, const Mat3<Pack>& Ds, const Derivatives& d, Pack weight)
       : identity(Pack(2.0) * weight * d.dI), b(tets.shape_gradients()) {
     const Pack D = determinant(tets.rest_inverse);
     g = with_sum_zero(D * cofactor(Ds));

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "base/parallel.h"
+#include "energy/load_points.h"
 
 namespace aspic {
 namespace {
@@ -73,24 +74,23 @@ std::unique_ptr<Energy> make_linear_load(std::string name, std::vector<double> c
 }
 
 void add_body_force(const TetMesh& mesh, int tet, const Vec3d& force_density, std::span<double> force) {
-  for (const int v : mesh.tets[tet])
-    for (int r = 0; r < 3; ++r) force[3 * v + r] += volume(mesh, tet) / 4 * force_density[r];
+  std::vector<LoadPoint> points;
+  append_load_points(mesh, tet, points);
+  for (const LoadPoint& point : points) add_load(point, force_density, force);
 }
 
-void add_traction(const std::vector<Vec3d>& X, const Triangle& triangle, const Vec3d& traction,
-                  std::span<double> force) {
-  const auto [a, b, c] = triangle;
-  const Vec3d n = cross(X[b] - X[a], X[c] - X[a]);
-  const double area = norm(n) / 2;
-  for (const int v : triangle)
-    for (int r = 0; r < 3; ++r) force[3 * v + r] += area / 3 * traction[r];
+void add_traction(const std::vector<Vec3d>& X, const Face& face, const Vec3d& traction, std::span<double> force) {
+  std::vector<LoadPoint> points;
+  append_load_points(X, face, points);
+  for (const LoadPoint& point : points) add_load(point, traction, force);
 }
 
-std::unique_ptr<Energy> make_dead_pressure(const TetMesh& mesh, std::span<const Triangle> patch, double pressure) {
+std::unique_ptr<Energy> make_dead_pressure(const TetMesh& mesh, std::span<const Face> patch, double pressure) {
   std::vector<double> force(3 * mesh.rest.size());
-  for (const auto& [a, b, c] : patch) {
+  for (const Face& face : patch) {
+    const auto& [a, b, c] = face.corners;
     const Vec3d n = cross(mesh.rest[b] - mesh.rest[a], mesh.rest[c] - mesh.rest[a]);
-    add_traction(mesh.rest, {a, b, c}, (-pressure / norm(n)) * n, force);
+    add_traction(mesh.rest, face, (-pressure / norm(n)) * n, force);
   }
   return make_linear_load("dead_pressure", std::move(force));
 }

@@ -1,5 +1,5 @@
-// Instantiated for each material in its own generated file (see src/CMakeLists.txt), so that changing a material
-// recompiles one file.
+// Instantiated for each material and element in a generated file of its own (see src/CMakeLists.txt), so that changing
+// a material recompiles two files, and kernels of linear tets do not depend on those of quadratic ones.
 #pragma once
 #include <memory>
 #include <span>
@@ -8,7 +8,10 @@
 
 namespace aspic {
 
-template <class M>
+struct TetBatch;
+struct QuadraticTetBatch;
+
+template <class M, class Batch>
 std::unique_ptr<TetElasticity> make_tet_term(const TetMesh& mesh, int first,
                                              std::span<const MaterialParameters> parameters);
 

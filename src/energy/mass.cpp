@@ -1,36 +1,44 @@
 #include "energy/mass.h"
 
 #include <algorithm>
+#include <utility>
 
 #include "base/check.h"
 #include "base/parallel.h"
+#include "energy/tet_integrals.h"
+#include "mesh/tet_nodes.h"
 
 namespace aspic {
 
 MassMatrix::MassMatrix(const TetMesh& mesh, std::span<const double> density, MassKind kind)
-    : kind_(kind), lumped_(mesh.vertex_count(), 0.0) {
+    : kind_(kind), lumped_(mesh.vertex_count(), 0.0), row_sums_(mesh.vertex_count(), 0.0) {
   ASPIC_CHECK(static_cast<int>(density.size()) == mesh.tet_count());
-  for (int t = 0; t < mesh.tet_count(); ++t)
-    for (const int v : mesh.tets[t]) lumped_[v] += density[t] * volume(mesh, t) / 4;
+  Couplings couplings;
+  couplings.reserve(kind == MassKind::lumped ? 0 : (mesh.mids.empty() ? 6 : 45) * mesh.tets.size());
+  for (int t = 0; t < mesh.tet_count(); ++t) {
+    const TetNodes nodes = nodes_of(mesh, t);
+    const TetIntegrals& integrals = tet_integrals(nodes.count);
+    const double mass = density[t] * volume(mesh, t);
+    for (int u = 0; u < nodes.count; ++u) {
+      lumped_[nodes[u]] += integrals.lumped[u] * mass / integrals.lumped_sum;
+      row_sums_[nodes[u]] += integrals.mean[u] * mass / integrals.mean_sum;
+      for (int v = 0; v < u && kind == MassKind::consistent; ++v) couplings.emplace_back(nodes[u], nodes[v]);
+    }
+  }
+  const BlockPattern pattern = make_pattern(rows(), std::move(couplings));
   if (kind == MassKind::lumped) {
-    store_rows(make_pattern(rows(), {}), lumped_);
+    row_sums_ = lumped_;
+    store_rows(pattern, lumped_);
     return;
   }
-  Couplings couplings;
-  couplings.reserve(6 * mesh.tets.size());
-  for (const Tet& tet : mesh.tets)
-    for (int u = 0; u < 4; ++u)
-      for (int v = 0; v < u; ++v) couplings.emplace_back(tet[u], tet[v]);
-  const BlockPattern pattern = make_pattern(rows(), std::move(couplings));
-  // integral of N_u N_v over a tet = volume / 20 (1 + [u = v])
   std::vector<double> lower(pattern.block_count(), 0.0);
   for (int t = 0; t < mesh.tet_count(); ++t) {
-    const Tet& tet = mesh.tets[t];
-    const double m = density[t] * volume(mesh, t) / 20;
-    for (int u = 0; u < 4; ++u) {
-      lower[pattern.diagonal(tet[u])] += 2 * m;
-      for (int v = 0; v < u; ++v) lower[pattern.slot(std::max(tet[u], tet[v]), std::min(tet[u], tet[v]))] += m;
-    }
+    const TetNodes nodes = nodes_of(mesh, t);
+    const TetIntegrals& integrals = tet_integrals(nodes.count);
+    const double m = density[t] * volume(mesh, t) / integrals.products_sum;
+    for (int u = 0; u < nodes.count; ++u)
+      for (int v = 0; v <= u; ++v)
+        lower[pattern.slot(std::max(nodes[u], nodes[v]), std::min(nodes[u], nodes[v]))] += integrals.products[u][v] * m;
   }
   store_rows(pattern, lower);
 }
@@ -132,20 +140,31 @@ void MassMatrix::assign_to(double scale, BlockSparse& H) const {
   H.stencils.clear();
 }
 
+namespace {
+
+// w' M y of one tet, divided by its mass.
+double mass_product(const TetNodes& nodes, MassKind kind, std::span<const double> w, std::span<const double> y) {
+  const TetIntegrals& integrals = tet_integrals(nodes.count);
+  const auto product = [&](int u, int v) {
+    double sum = 0;
+    for (int r = 0; r < 3; ++r) sum += w[3 * nodes[u] + r] * y[3 * nodes[v] + r];
+    return sum;
+  };
+  double sum = 0;
+  for (int u = 0; u < nodes.count; ++u) {
+    if (kind == MassKind::lumped) sum += integrals.lumped[u] * product(u, u);
+    for (int v = 0; v < nodes.count && kind == MassKind::consistent; ++v)
+      sum += integrals.products[u][v] * product(u, v);
+  }
+  return sum / (kind == MassKind::lumped ? integrals.lumped_sum : integrals.products_sum);
+}
+
+}  // namespace
+
 void add_density_gradient(const TetMesh& mesh, MassKind kind, std::span<const double> w, std::span<const double> y,
                           std::span<double> gradient) {
   parallel_chunks(mesh.tet_count(), [&](int first, int last) {
-    for (int t = first; t < last; ++t) {
-      Vec3d w_sum{}, y_sum{};
-      double own = 0;  // diagonal entry of each vertex
-      for (const int v : mesh.tets[t])
-        for (int r = 0; r < 3; ++r) {
-          w_sum[r] += w[3 * v + r], y_sum[r] += y[3 * v + r];
-          own += w[3 * v + r] * y[3 * v + r];
-        }
-      const double product = kind == MassKind::lumped ? own / 4 : (dot(w_sum, y_sum) + own) / 20;
-      gradient[t] += volume(mesh, t) * product;
-    }
+    for (int t = first; t < last; ++t) gradient[t] += volume(mesh, t) * mass_product(nodes_of(mesh, t), kind, w, y);
   });
 }
 

@@ -1,4 +1,4 @@
-// Mass matrix M of linear tetrahedra: one scalar per vertex pair, the same for x, y and z.
+// Mass matrix M of tetrahedra: one scalar per vertex pair, the same for x, y and z.
 #pragma once
 #include <span>
 #include <vector>
@@ -9,8 +9,8 @@
 namespace aspic {
 
 enum class MassKind {
-  consistent,  // integrals of products of the linear shape functions
-  lumped,      // diagonal: row sums of the consistent matrix
+  consistent,  // integrals of products of the shape functions
+  lumped,      // diagonal: the masses of vertex_mass()
 };
 
 class MassMatrix {
@@ -19,8 +19,11 @@ class MassMatrix {
   MassMatrix(const TetMesh& mesh, std::span<const double> density, MassKind kind);
 
   MassKind kind() const { return kind_; }
-  std::span<const double> vertex_mass() const { return lumped_; }  // row sums [kg]
-  double total() const;                                            // mass of all vertices [kg]
+  // Positive shares of the mass [kg]: row sums of linear tets, scaled diagonals of quadratic ones, see TetIntegrals.
+  std::span<const double> vertex_mass() const { return lumped_; }
+  // Row sums of this matrix [kg], which weights are proportional to; negative at some corners of quadratic tets.
+  std::span<const double> row_sums() const { return row_sums_; }
+  double total() const;  // mass of all vertices [kg]
 
   void multiply(std::span<const double> x, std::span<double> y) const;                  // y = M x; 3 entries per vertex
   double squared_distance(std::span<const double> x, std::span<const double> y) const;  // (x - y)' M (x - y)
@@ -36,7 +39,7 @@ class MassMatrix {
   void store_rows(const BlockPattern& pattern, std::span<const double> lower);
 
   MassKind kind_;
-  std::vector<double> lumped_;
+  std::vector<double> lumped_, row_sums_;
   // Both triangles of the symmetric matrix, row by row, columns ascending, so that products read memory in order.
   std::vector<int64_t> row_start_, lower_start_;  // lower_start_ counts only the columns up to the diagonal
   std::vector<int> column_;

@@ -16,10 +16,12 @@
 
 namespace aspic {
 
-template <class M>
-class MaterialTerm : public TetTerm<M, TetElasticity> {
-  using Term = TetTerm<M, TetElasticity>;
-  using Term::batch_count, Term::batches_, Term::F, Term::for_each_batch, Term::material_, Term::params_, Term::reduce;
+template <class M, class Batch>
+class MaterialTerm : public TetTerm<M, TetElasticity, Batch> {
+  using Term = TetTerm<M, TetElasticity, Batch>;
+  using Points = typename Batch::Points;
+  using Term::at, Term::at_points, Term::batch_count, Term::batches_, Term::F, Term::for_each_batch, Term::kPoints;
+  using Term::material_, Term::params_, Term::place, Term::reduce;
 
  public:
   // Uses tets [first, first + parameters.size()) of the mesh.
@@ -31,16 +33,19 @@ class MaterialTerm : public TetTerm<M, TetElasticity> {
         parameters_(parameters.begin(), parameters.end()) {}
 
   double min_det_F(Positions x) const override {
-    return reduce([&](int i) { return min(determinant(F(i, x))); }, [](double a, double b) { return std::min(a, b); },
-                  INFINITY);
+    return reduce([&](int i) { return min(Batch::least_determinant(F(i, x))); },
+                  [](double a, double b) { return std::min(a, b); }, INFINITY);
   }
 
   void evaluate(Positions x, TetFields& fields) const override {
     parallel_for(batch_count(), [&](int i) {
-      const Mat3<Pack> Fi = F(i, x);
-      const Pack psi = material_.psi(Fi, params_[i]), J = determinant(Fi);
-      const Mat3<Pack> cauchy = (Pack(1.0) / J) * (material_.pk1(Fi, params_[i]) * transpose(Fi));
-      for (int l = 0; l < batches_[i].count; ++l) write(batches_[i].tet[l], l, psi, J, cauchy, fields);
+      const Points F_i = F(i, x);
+      Mat3<Pack> cauchy = stress(i, at(F_i, 0));
+      for (int q = 1; q < kPoints; ++q) cauchy = cauchy + stress(i, at(F_i, q));
+      constexpr double kShare = 1.0 / kPoints;  // fields are means over the points
+      const Pack psi = kShare * this->density_sum(i, F_i, params_);
+      const Pack J = Batch::least_determinant(F_i);
+      for (int l = 0; l < batches_[i].count; ++l) write(batches_[i].tet[l], l, psi, J, Pack(kShare) * cauchy, fields);
     });
   }
 
@@ -54,7 +59,7 @@ class MaterialTerm : public TetTerm<M, TetElasticity> {
     parallel_for(batch_count(), [&](int i) {
       std::array<typename Term::template Params<double>, kPackWidth> lanes;
       for (int l = 0; l < kPackWidth; ++l) lanes[l] = M::params(parameters_[tet(i, l)]);
-      params_[i] = pack_params<M>(lanes);
+      for (int q = 0; q < kPoints; ++q) params_[place(i, q)] = pack_params<M>(lanes);
     });
   }
 
@@ -62,18 +67,22 @@ class MaterialTerm : public TetTerm<M, TetElasticity> {
                            std::span<double> g) const override {
     for_each_batch([&](int i) {
       const auto rate = [&](int k) { return lanes_of([&](int l) { return change[entry(i, l, k)]; }); };
-      batches_[i].scatter_gradient(stress_rate(i, x, rate), Pack(scale) * batches_[i].volume, g);
+      const Points F_i = F(i, x);
+      batches_[i].scatter_gradient(at_points([&](int q) { return stress_rate(i, at(F_i, q), rate); }),
+                                   Pack(scale) * batches_[i].volume, g);
     });
   }
 
   void add_parameter_gradient(Positions x, std::span<const double> w, double scale,
                               std::span<double> gradient) const override {
     parallel_for(batch_count(), [&](int i) {
-      const Mat3<Pack> W = F(i, w);
+      const Points W = F(i, w), F_i = F(i, x);
       const Pack weight = Pack(scale) * batches_[i].volume;
       for (int k = 0; k < parameter_count_; ++k) {
-        const Mat3<Pack> dP = stress_rate(i, x, [&](int j) { return Pack(j == k ? 1.0 : 0.0); });
-        const Pack sum = weight * inner(dP, W);
+        const auto rate = [&](int j) { return Pack(j == k ? 1.0 : 0.0); };
+        Pack work = inner(stress_rate(i, at(F_i, 0), rate), at(W, 0));
+        for (int q = 1; q < kPoints; ++q) work += inner(stress_rate(i, at(F_i, q), rate), at(W, q));
+        const Pack sum = weight * work;
         for (int l = 0; l < batches_[i].count; ++l) gradient[entry(i, l, k)] += sum[l];
       }
     });
@@ -82,33 +91,52 @@ class MaterialTerm : public TetTerm<M, TetElasticity> {
   void add_hessian_derivatives(Positions x, std::span<const double> u, std::span<const double> w,
                                Definiteness definiteness, const HessianDerivatives& out) const override {
     for_each_batch([&](int i) {
-      const TetBatch& tets = batches_[i];
-      const Pack weight = Pack(out.scale) * tets.volume;
-      const Mat3<Pack> F_i = F(i, x);
-      // Adds factor times the derivatives of U : A W, where A = dP/dF.
-      const auto add = [&](const Pack& factor, const Mat3<Pack>& U, const Mat3<Pack>& W) {
-        if (!out.x.empty()) tets.scatter_gradient(second_stress_rate(i, F_i, U, W), factor * weight, out.x);
-        for (int k = 0; k < (out.parameters.empty() ? 0 : parameter_count_); ++k) {
-          const Pack sum = factor * weight * inner(U, second_parameter_rate(i, F_i, W, k));
-          for (int l = 0; l < tets.count; ++l) out.parameters[entry(i, l, k)] += sum[l];
-        }
-      };
-      const Mat3<Pack> U = F(i, u), W = F(i, w);
-      const unsigned all = (1U << kPackWidth) - 1;
-      const Mat9<Pack> A = definiteness == Definiteness::exact ? Mat9<Pack>{} : material_.hessian(F_i, params_[i]);
-      const unsigned modified = definiteness == Definiteness::exact ? 0 : indefinite_lanes(A) & all;
-      if (modified != all) add(lanes_from_bits<Pack>(all & ~modified), U, W);
-      if (modified == 0) return;
-      const SymmetricEigen<9, Pack> S = modified_product_derivative(A, U, W, definiteness);
-      for (int k = 0; k < 9; ++k) {
-        Mat3<Pack> direction;
-        std::copy(&S.vectors[9 * k], &S.vectors[9 * k] + 9, direction.a);
-        add(lanes_from_bits<Pack>(modified) * S.values[k], direction, direction);
-      }
+      const Points F_i = F(i, x), U = F(i, u), W = F(i, w);
+      for (int q = 0; q < kPoints; ++q)
+        add_hessian_derivatives({i, q, at(F_i, q)}, at(U, q), at(W, q), definiteness, out);
     });
   }
 
  private:
+  struct QuadraturePoint {
+    int batch, q;
+    const Mat3<Pack>& F;
+  };
+
+  void add_hessian_derivatives(const QuadraturePoint& point, const Mat3<Pack>& U, const Mat3<Pack>& W,
+                               Definiteness definiteness, const HessianDerivatives& out) const {
+    const Batch& tets = batches_[point.batch];
+    const Pack weight = Pack(out.scale) * tets.volume;
+    // Adds factor times the derivatives of U : A W, where A = dP/dF.
+    const auto add = [&](const Pack& factor, const Mat3<Pack>& left, const Mat3<Pack>& right) {
+      if (!out.x.empty()) {
+        const Mat3<Pack> rate = second_stress_rate(point.batch, point.F, left, right);
+        tets.scatter_gradient(at_points([&](int q) { return q == point.q ? rate : Mat3<Pack>{}; }), factor * weight,
+                              out.x);
+      }
+      for (int k = 0; k < (out.parameters.empty() ? 0 : parameter_count_); ++k) {
+        const Pack sum = factor * weight * inner(left, second_parameter_rate(point.batch, point.F, right, k));
+        for (int l = 0; l < tets.count; ++l) out.parameters[entry(point.batch, l, k)] += sum[l];
+      }
+    };
+    const unsigned all = (1U << kPackWidth) - 1;
+    const Mat9<Pack> A =
+        definiteness == Definiteness::exact ? Mat9<Pack>{} : material_.hessian(point.F, params_[place(point.batch, 0)]);
+    const unsigned modified = definiteness == Definiteness::exact ? 0 : indefinite_lanes(A) & all;
+    if (modified != all) add(lanes_from_bits<Pack>(all & ~modified), U, W);
+    if (modified == 0) return;
+    const SymmetricEigen<9, Pack> S = modified_product_derivative(A, U, W, definiteness);
+    for (int k = 0; k < 9; ++k) {
+      Mat3<Pack> direction;
+      std::copy(&S.vectors[9 * k], &S.vectors[9 * k] + 9, direction.a);
+      add(lanes_from_bits<Pack>(modified) * S.values[k], direction, direction);
+    }
+  }
+
+  Mat3<Pack> stress(int i, const Mat3<Pack>& F_q) const {  // Cauchy stress
+    return (Pack(1.0) / determinant(F_q)) * (material_.pk1(F_q, params_[place(i, 0)]) * transpose(F_q));
+  }
+
   // Returns the number of entries of MaterialParameters::extra that the material uses.
   static int extra_count(const M& material) {
     if constexpr (requires { M::info(); })
@@ -148,14 +176,15 @@ class MaterialTerm : public TetTerm<M, TetElasticity> {
 
   // Returns dP for parameter rates rate(k) at constant F.
   template <class Rate>
-  Mat3<Pack> stress_rate(int i, Positions x, const Rate& rate) const {
-    return rates(material_.pk1(constant_matrix(F(i, x)), M::params(moving_parameters<Pack>(i, rate))));
+  Mat3<Pack> stress_rate(int i, const Mat3<Pack>& F_q, const Rate& rate) const {
+    return rates(material_.pk1(constant_matrix(F_q), M::params(moving_parameters<Pack>(i, rate))));
   }
 
   // Returns the derivative of U : A W with respect to F, A = dP/dF: by symmetry the mixed second derivative of P along
   // U and W.
   Mat3<Pack> second_stress_rate(int i, const Mat3<Pack>& F_i, const Mat3<Pack>& U, const Mat3<Pack>& W) const {
-    const auto p = broadcast_params<M, Dual<Dual<Pack>>, Dual<Pack>>(broadcast_params<M, Dual<Pack>, Pack>(params_[i]));
+    const auto p =
+        broadcast_params<M, Dual<Dual<Pack>>, Dual<Pack>>(broadcast_params<M, Dual<Pack>, Pack>(params_[place(i, 0)]));
     return rates(rates(material_.pk1(dual_matrix(dual_matrix(F_i, U), constant_matrix(W)), p)));
   }
 
@@ -183,10 +212,10 @@ class MaterialTerm : public TetTerm<M, TetElasticity> {
   std::vector<MaterialParameters> parameters_;  // in the order of the mesh
 };
 
-template <class M>
+template <class M, class Batch>
 std::unique_ptr<TetElasticity> make_tet_term(const TetMesh& mesh, int first,
                                              std::span<const MaterialParameters> parameters) {
-  return std::make_unique<MaterialTerm<M>>("elasticity", mesh, first, parameters);
+  return std::make_unique<MaterialTerm<M, Batch>>("elasticity", mesh, first, parameters);
 }
 
 }  // namespace aspic

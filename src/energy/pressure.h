@@ -8,10 +8,12 @@
 #pragma once
 #include <functional>
 #include <memory>
+#include <span>
 #include <string>
 #include <vector>
 
 #include "energy/energy.h"
+#include "mesh/surface.h"
 #include "mesh/tet_mesh.h"
 
 namespace aspic {
@@ -27,10 +29,10 @@ class Pressure : public SteadyEnergy {
 // Pressure as a function of time: t [s] to p [Pa].
 using PressureOfTime = std::function<double(double)>;
 
-// Return the term for a patch of boundary triangles of the mesh, outward oriented; the mesh need not outlive it.
-// `pressure`: [Pa], the initial value or a function of time. `name` appears in reports; the default is "pressure".
-std::unique_ptr<Pressure> make_pressure(const TetMesh& mesh, std::vector<Triangle> patch, double pressure);
-std::unique_ptr<Energy> make_pressure(std::string name, const TetMesh& mesh, std::vector<Triangle> patch,
+// Return the term for a patch of boundary faces of the mesh, which need not outlive it. `pressure`: [Pa], the initial
+// value or a function of time. `name` appears in reports; the default is "pressure".
+std::unique_ptr<Pressure> make_pressure(const TetMesh& mesh, std::span<const Face> patch, double pressure);
+std::unique_ptr<Energy> make_pressure(std::string name, const TetMesh& mesh, std::span<const Face> patch,
                                       PressureOfTime pressure);
 
 }  // namespace aspic

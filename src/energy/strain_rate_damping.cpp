@@ -1,3 +1,4 @@
+#include "energy/quadratic_batch.h"
 #include "energy/tet_elasticity.h"
 #include "energy/tet_term.h"
 
@@ -54,10 +55,17 @@ struct GreenStrainRate {
   }
 };
 
-class StrainRateDamping : public TetTerm<GreenStrainRate, Damping> {
+template <class Batch>
+class StrainRateDamping : public TetTerm<GreenStrainRate, Damping, Batch> {
+  using Term = TetTerm<GreenStrainRate, Damping, Batch>;
+  using Points = typename Batch::Points;
+  using Context = Energy::Context;
+  using Term::at, Term::at_points, Term::batch_count, Term::batches_, Term::F, Term::for_each_batch, Term::kPoints;
+  using Term::params_, Term::place;
+
  public:
-  StrainRateDamping(const TetMesh& mesh, int first, std::span<const Params<double>> parameters)
-      : TetTerm("strain_rate_damping", mesh, first, parameters),
+  StrainRateDamping(const TetMesh& mesh, int first, std::span<const GreenStrainRate::Params<double>> parameters)
+      : Term("strain_rate_damping", mesh, first, parameters),
         first_(first),
         count_(static_cast<int>(parameters.size())) {}
 
@@ -72,11 +80,14 @@ class StrainRateDamping : public TetTerm<GreenStrainRate, Damping> {
     Start& start = static_cast<Start&>(context);
     start.x.assign(step.start.begin(), step.start.end());
     parallel_for(batch_count(), [&](int i) {
-      const Mat3<Pack> E = GreenStrainRate::green_strain(F(i, step.start));
-      auto& p = start.params[i];
-      p.per_step = Pack(step.h > 0 ? 1 / step.h : 0.0);
-      p.xx = E(0, 0), p.yy = E(1, 1), p.zz = E(2, 2);
-      p.xy = E(0, 1), p.yz = E(1, 2), p.zx = E(2, 0);
+      const Points F_i = F(i, step.start);
+      for (int q = 0; q < kPoints; ++q) {
+        const Mat3<Pack> E = GreenStrainRate::green_strain(at(F_i, q));
+        auto& p = start.params[place(i, q)];
+        p.per_step = Pack(step.h > 0 ? 1 / step.h : 0.0);
+        p.xx = E(0, 0), p.yy = E(1, 1), p.zz = E(2, 2);
+        p.xy = E(0, 1), p.yz = E(1, 2), p.zx = E(2, 0);
+      }
     });
   }
 
@@ -87,16 +98,22 @@ class StrainRateDamping : public TetTerm<GreenStrainRate, Damping> {
                        const DampingGradients& gradients) const override {
     const Start& start = static_cast<const Start&>(context);
     for_each_batch([&](int i) {
-      const TetBatch& tets = batches_[i];
-      const auto& p = start.params[i];
-      const Mat3<Pack> F_i = F(i, x), W = F(i, w), FtW = transpose(F_i) * W;
-      const Pack weight = Pack(scale) * tets.volume * p.per_step;
+      const Batch& tets = batches_[i];
+      const auto* p = &start.params[place(i, 0)];
+      const Points F_i = F(i, x), W = F(i, w), F_start = F(i, start.x);
+      const Pack weight = Pack(scale) * tets.volume * p[0].per_step;
+      const auto FtW = [&](int q) { return transpose(at(F_i, q)) * at(W, q); };
       if (!gradients.start.empty()) {
-        const Mat3<Pack> symmetric = Pack(0.5) * (FtW + transpose(FtW));
-        tets.scatter_gradient(F(i, start.x) * symmetric, -weight * p.viscosity, gradients.start);
+        const auto rate = [&](int q) {
+          const Mat3<Pack> product = FtW(q);
+          return at(F_start, q) * (Pack(0.5) * (product + transpose(product)));
+        };
+        tets.scatter_gradient(at_points(rate), -weight * p[0].viscosity, gradients.start);
       }
       if (gradients.coefficients.empty()) return;
-      const Pack rate = weight * inner(FtW, GreenStrainRate::increment(F_i, p));
+      Pack work = inner(FtW(0), GreenStrainRate::increment(at(F_i, 0), p[0]));
+      for (int q = 1; q < kPoints; ++q) work += inner(FtW(q), GreenStrainRate::increment(at(F_i, q), p[q]));
+      const Pack rate = weight * work;
       for (int l = 0; l < tets.count; ++l) gradients.coefficients[tets.tet[l] - first_] += rate[l];
     });
   }
@@ -104,9 +121,9 @@ class StrainRateDamping : public TetTerm<GreenStrainRate, Damping> {
  private:
   struct Start : Context {  // data of the start of the step
     std::vector<double> x;
-    std::vector<Params<Pack>> params;  // E_start and 1/h
+    std::vector<GreenStrainRate::Params<Pack>> params;  // E_start and 1/h
   };
-  const std::vector<Params<Pack>>& params(const Context& context) const override {
+  const std::vector<GreenStrainRate::Params<Pack>>& params(const Context& context) const override {
     return static_cast<const Start&>(context).params;
   }
 
@@ -118,7 +135,9 @@ class StrainRateDamping : public TetTerm<GreenStrainRate, Damping> {
 std::unique_ptr<Damping> make_strain_rate_damping(const TetMesh& mesh, int first, std::span<const double> viscosity) {
   std::vector<GreenStrainRate::Params<double>> parameters;
   for (const double eta : viscosity) parameters.push_back({eta, 0, 0, 0, 0, 0, 0, 0});
-  return std::make_unique<StrainRateDamping>(mesh, first, parameters);
+  if (!parameters.empty() && is_quadratic(mesh, first))
+    return std::make_unique<StrainRateDamping<QuadraticTetBatch>>(mesh, first, parameters);
+  return std::make_unique<StrainRateDamping<TetBatch>>(mesh, first, parameters);
 }
 
 }  // namespace aspic

@@ -298,7 +298,7 @@ std::vector<Triangle> top() {
 
 TEST(Pressure, DerivativesMatchDifferences) {
   for (const double p : {3.0, -3.0}) {
-    const auto V = make_pressure(box_mesh(), top(), p);
+    const auto V = make_pressure(box_mesh(), linear_faces(top()), p);
     V->bind(box_pattern());
     const std::vector<double> x = shaken(0.05);
     const DerivativeReport report =
@@ -309,7 +309,7 @@ TEST(Pressure, DerivativesMatchDifferences) {
 }
 
 TEST(Pressure, HasNoResultantOnClosedSurface) {
-  const auto V = make_pressure(box_mesh(), surface(), 3);
+  const auto V = make_pressure(box_mesh(), linear_faces(surface()), 3);
   const std::vector<double> x = shaken(0.05);
   double volume = 0;  // volume of the deformed body
   for (const Tet& tet : box_mesh().tets) {
@@ -330,7 +330,7 @@ TEST(Pressure, HasNoResultantOnClosedSurface) {
 }
 
 TEST(Pressure, IsPressureTimesAreaOnMovingPatch) {
-  const auto V = make_pressure(box_mesh(), top(), 3);
+  const auto V = make_pressure(box_mesh(), linear_faces(top()), 3);
   std::vector<double> x = box_at_rest();
   for (size_t i = 2; i < x.size(); i += 3) x[i] *= 0.9;
   EXPECT_NEAR(V->swept_volume(x), -0.06 * 0.8, 1e-15);
@@ -342,7 +342,7 @@ TEST(Pressure, IsPressureTimesAreaOnMovingPatch) {
 }
 
 TEST(Pressure, FollowsSurfaceInsidePatch) {
-  const auto V = make_pressure(box_mesh(), top(), 3);
+  const auto V = make_pressure(box_mesh(), linear_faces(top()), 3);
   const std::vector<double> x = shaken(0.05);
   const auto at = [&](int v) { return Vec3d{{x[3 * v], x[3 * v + 1], x[3 * v + 2]}}; };
   std::vector<double> g(x.size());
@@ -362,7 +362,7 @@ TEST(Pressure, FollowsSurfaceInsidePatch) {
 }
 
 TEST(Pressure, ModifiedHessianIsPositiveSemidefinite) {
-  const auto V = make_pressure(box_mesh(), top(), 3);
+  const auto V = make_pressure(box_mesh(), linear_faces(top()), 3);
   V->bind(box_pattern());
   const std::vector<double> x = shaken(0.05);
   for (const Definiteness kind : {Definiteness::exact, Definiteness::clamped, Definiteness::absolute}) {

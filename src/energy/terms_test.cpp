@@ -256,7 +256,7 @@ TEST(LinearLoad, GravityOfBodyIsItsWeight) {
 }
 
 TEST(LinearLoad, PressureOnClosedSurfaceHasNoResultant) {
-  const auto load = make_dead_pressure(small_mesh(), boundary_triangles(small_mesh(), 0, small_mesh().tet_count()), 1);
+  const auto load = make_dead_pressure(small_mesh(), boundary_faces(small_mesh(), 0, small_mesh().tet_count()), 1);
   std::vector<double> force(3 * small_mesh().rest.size(), 0.0);
   load->add_gradient(force, {}, 1, force);
   double sum[3] = {0, 0, 0};

@@ -1,5 +1,5 @@
 // Sum over tets of volume * psi(F) for one energy density M, as a term of V. Base is Energy or an interface derived
-// from it. Included only where it is instantiated.
+// from it; Batch is the element. Included only where it is instantiated.
 #pragma once
 #include <algorithm>
 #include <bit>
@@ -22,7 +22,7 @@
 
 namespace aspic {
 
-template <class M, class Base>
+template <class M, class Base, class Batch = TetBatch>
 class TetTerm : public Base {
  public:
   template <class T>
@@ -33,7 +33,7 @@ class TetTerm : public Base {
   TetTerm(std::string name, const TetMesh& mesh, int first, std::span<const Params<double>> parameters, M material = {})
       : material_(std::move(material)),
         batches_((parameters.size() + kPackWidth - 1) / kPackWidth),
-        params_(batches_.size()),
+        params_(kPoints * batches_.size()),
         name_(std::move(name)),
         tets_per_group_(group_size(parameters.size())) {
     const std::vector<int> order = locality_order(mesh, first, parameters.size());
@@ -49,7 +49,7 @@ class TetTerm : public Base {
 
   double value(Positions x, const Context& context) const override {
     const std::vector<Params<Pack>>& p = params(context);
-    const double V = reduce([&](int i) { return sum(batches_[i].volume * material_.psi(F(i, x), p[i])); },
+    const double V = reduce([&](int i) { return sum(batches_[i].volume * density_sum(i, F(i, x), p)); },
                             [](double a, double b) { return a + b; }, 0.0);
     return std::isnan(V) ? INFINITY : V;  // zero-volume lanes with infinite density
   }
@@ -57,15 +57,21 @@ class TetTerm : public Base {
   void add_gradient(Positions x, const Context& context, double scale, std::span<double> g) const override {
     const std::vector<Params<Pack>>& p = params(context);
     for_each_batch([&](int i) {
-      batches_[i].scatter_gradient(material_.pk1(F(i, x), p[i]), Pack(scale) * batches_[i].volume, g);
+      if constexpr (kPoints == 1) {
+        batches_[i].scatter_gradient(material_.pk1(F(i, x), p[i]), Pack(scale) * batches_[i].volume, g);
+      } else {
+        const Points F_i = F(i, x);
+        batches_[i].scatter_gradient(at_points([&](int q) { return material_.pk1(F_i[q], p[place(i, q)]); }),
+                                     Pack(scale) * batches_[i].volume, g);
+      }
     });
   }
 
   void add_couplings(Couplings& couplings) const override {
-    for (const TetBatch& batch : batches_)
+    for (const Batch& batch : batches_)
       for (int l = 0; l < batch.count; ++l)
-        for (int u = 0; u < 4; ++u)
-          for (int v = 0; v < u; ++v) couplings.emplace_back(batch.vertex[u][l], batch.vertex[v][l]);
+        for (size_t u = 0; u < batch.vertex.size(); ++u)
+          for (size_t v = 0; v < u; ++v) couplings.emplace_back(batch.vertex[u][l], batch.vertex[v][l]);
   }
 
   void bind(const BlockPattern& pattern) override {
@@ -80,13 +86,45 @@ class TetTerm : public Base {
     projected.assign(batches_.size(), 0);
     for_each_batch([&](int i) {
       if (i + 1 < batch_count()) batches_[i + 1].prefetch_blocks(H);
-      projected[i] = add_batch_hessian({i, p[i], Pack(scale) * batches_[i].volume}, x, projection, H);
+      projected[i] = add_batch_hessian({i, &p[place(i, 0)], Pack(scale) * batches_[i].volume}, x, projection, H);
     });
     return std::accumulate(projected.begin(), projected.end(), 0);
   }
 
  protected:
-  Mat3<Pack> F(int batch, Positions x) const { return batches_[batch].deformation_gradient(x); }
+  static constexpr int kPoints = Batch::kPoints;
+  using Points = typename Batch::Points;  // one matrix per quadrature point
+
+  Points F(int batch, Positions x) const {
+    const Points Ds = batches_[batch].edges(x);
+    return at_points([&](int q) { return at(Ds, q) * batches_[batch].rest_inverse; });
+  }
+  // An entry of one matrix per quadrature point, and all from a function of the point. Linear tets have only one, and
+  // no array: it would cost registers.
+  static const Mat3<Pack>& at(const Points& points, int q) {
+    if constexpr (kPoints == 1)
+      return points;
+    else
+      return points[q];
+  }
+  template <class OfPoint>
+  static auto at_points(const OfPoint& of_point) {
+    if constexpr (kPoints == 1) {
+      return of_point(0);
+    } else {
+      std::array<decltype(of_point(0)), kPoints> values;
+      for (int q = 0; q < kPoints; ++q) values[q] = of_point(q);
+      return values;
+    }
+  }
+  static int place(int batch, int point) { return kPoints * batch + point; }  // in the list of parameters
+
+  // Returns the sum of psi over the quadrature points.
+  Pack density_sum(int batch, const Points& F_i, const std::vector<Params<Pack>>& p) const {
+    Pack psi = material_.psi(at(F_i, 0), p[place(batch, 0)]);
+    for (int q = 1; q < kPoints; ++q) psi += material_.psi(at(F_i, q), p[place(batch, q)]);
+    return psi;
+  }
   int batch_count() const { return static_cast<int>(batches_.size()); }
 
   // Calls body(batch) for all batches: color after color, with the groups of a color in parallel.
@@ -112,11 +150,11 @@ class TetTerm : public Base {
     return result;
   }
 
-  // Returns the parameters of each batch in a step.
+  // Returns the parameters of each batch and quadrature point in a step.
   virtual const std::vector<Params<Pack>>& params(const Energy::Context&) const { return params_; }
 
   [[no_unique_address]] M material_;  // empty except for a CustomDensity
-  std::vector<TetBatch> batches_;
+  std::vector<Batch> batches_;
   std::vector<Params<Pack>> params_;
 
  private:
@@ -146,32 +184,44 @@ class TetTerm : public Base {
         lanes[l] = parameters_of(own[l]);
       }
       const size_t batch = group * batches_per_group() + i;
-      batches_[batch] = TetBatch(mesh, std::span(own).first(count));
-      params_[batch] = pack_params<M>(lanes);
+      batches_[batch] = Batch(mesh, std::span(own).first(count));
+      for (int q = 0; q < kPoints; ++q) params_[kPoints * batch + q] = pack_params<M>(lanes);
     }
   }
 
   struct WeightedBatch {
     int i;
-    const Params<Pack>& params;
+    const Params<Pack>* params;  // one per quadrature point
     Pack weight;
   };
 
   // Returns the number of modified lanes.
   char add_batch_hessian(const WeightedBatch& batch, Positions x, const Projection& projection, BlockSparse& H) const {
-    const auto& [i, p, weight] = batch;
-    const TetBatch& tets = batches_[i];
+    const Batch& tets = batches_[batch.i];
+    const Params<Pack>* p = batch.params;
+    const Pack weight = batch.weight;
     if constexpr (requires { typename M::Law; }) {
       if (projection.kind == Definiteness::exact) {
-        const Mat3<Pack> Ds = tets.edges(x);
-        const LawBlocks blocks(tets, Ds, M::law_derivatives(Ds * tets.rest_inverse, p), weight);
-        tets.scatter_blocks([&](int u, int v) { return blocks.block(u, v); }, H);
+        const Points Ds = tets.edges(x);
+        if constexpr (kPoints == 1) {
+          const LawBlocks blocks(tets, Ds, M::law_derivatives(Ds * tets.rest_inverse, p[0]), weight);
+          tets.scatter_blocks([&](int u, int v) { return blocks.block(u, v); }, H);
+        } else {
+          const auto blocks_at = [&](int q) {
+            return LawBlocks(tets, Ds[q], M::law_derivatives(Ds[q] * tets.rest_inverse, p[q]), weight);
+          };
+          tets.scatter_blocks(blocks_at, H);
+        }
         return 0;
       }
     }
-    const Mat3<Pack> F_i = F(i, x);
-    Mat9<Pack> A = material_.hessian(F_i, p);
-    const unsigned projected = project(A, F_i, p, tets.lanes_covered(projection), projection.kind);
+    const Points F_i = F(batch.i, x);
+    unsigned projected = 0;
+    const auto A = at_points([&](int q) {
+      Mat9<Pack> A_q = material_.hessian(at(F_i, q), p[q]);
+      projected |= project(A_q, at(F_i, q), p[q], tets.lanes_covered(projection), projection.kind);
+      return A_q;
+    });
     tets.scatter_hessian(A, weight, H);
     return static_cast<char>(std::popcount(projected));
   }
@@ -199,7 +249,7 @@ class TetTerm : public Base {
     for (int i = group * batches_per_group(); i < last; ++i) {
       if (i + kAhead < batch_count()) {
         batches_[i + kAhead].prefetch();
-        prefetch(&params_[i + kAhead], sizeof params_[0]);
+        prefetch(&params_[place(i + kAhead, 0)], kPoints * sizeof params_[0]);
       }
       body(i);
     }

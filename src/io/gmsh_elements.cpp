@@ -16,7 +16,7 @@ const GmshElementType* gmsh_element_type(int number) {
       {8, 1, 3, "3-node lines (second order)"},
       {9, 2, 6, "6-node triangles (second order)"},
       {10, 2, 9, "9-node quadrangles (second order)"},
-      {11, 3, 10, "10-node tets (second order)"},
+      {kGmshQuadraticTet, 3, 10, "10-node tets (second order)"},
       {12, 3, 27, "27-node hexahedra (second order)"},
       {13, 3, 18, "18-node prisms (second order)"},
       {14, 3, 14, "14-node pyramids (second order)"},

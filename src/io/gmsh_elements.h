@@ -12,7 +12,7 @@ struct GmshElementType {
   int number, dimension, nodes;
   std::string_view name;
 };
-inline constexpr int kGmshTriangle = 2, kGmshQuadrangle = 3, kGmshTet = 4;
+inline constexpr int kGmshTriangle = 2, kGmshQuadrangle = 3, kGmshTet = 4, kGmshQuadraticTet = 11;
 
 const GmshElementType* gmsh_element_type(int number);  // null if unknown [Gmsh reference manual, MSH file format]
 

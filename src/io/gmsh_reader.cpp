@@ -157,9 +157,9 @@ class GmshReader {
   const GmshElementType& checked_type(GmshSource& in, int number) {
     const GmshElementType* type = gmsh_element_type(number);
     if (!type) in.fail("element type " + std::to_string(number) + " is unknown; export 4-node tets or triangles");
-    if (type->dimension == 3 && number != kGmshTet)
-      in.fail("the mesh has " + std::string(type->name) + ", which are not read; export it with 4-node tets only" +
-              (type->name.find("tets") != type->name.npos ? " (first order)" : ""));
+    if (type->dimension == 3 && number != kGmshTet && number != kGmshQuadraticTet)
+      in.fail("the mesh has " + std::string(type->name) +
+              ", which are not read; export it with 4-node or 10-node tets only");
     if (type->dimension == 2 && number != kGmshTriangle && number != kGmshQuadrangle) lost_ = type->name;
     return *type;
   }
@@ -173,12 +173,18 @@ class GmshReader {
   // Version 2 stores node tags as 4-byte integers, version 4 as 8-byte integers.
   void read_element(GmshSource& in, const GmshElementType& type, int group, int entity) {
     constexpr std::string_view kWhat = "a node of an element";
-    if (type.number != kGmshTet && type.number != kGmshTriangle && type.number != kGmshQuadrangle)
+    const bool is_tet = type.number == kGmshTet || type.number == kGmshQuadraticTet;
+    if (!is_tet && type.number != kGmshTriangle && type.number != kGmshQuadrangle)
       return is_4_ ? in.skip_sizes(type.nodes, kWhat) : in.skip_integers(type.nodes, kWhat);
-    Tet nodes{};
+    std::array<int, 10> nodes;
+    nodes.fill(-1);
     for (int i = 0; i < type.nodes; ++i) nodes[i] = corner(in, is_4_ ? in.size(kWhat) : in.integer(kWhat));
-    if (type.number != kGmshTet) return add_fan({nodes.data(), static_cast<size_t>(type.nodes)}, content_.triangles);
-    content_.tets.push_back(nodes);
+    if (!is_tet) return add_fan({nodes.data(), static_cast<size_t>(type.nodes)}, content_.triangles);
+    content_.tets.push_back({nodes[0], nodes[1], nodes[2], nodes[3]});
+    if (type.number == kGmshQuadraticTet || !content_.mids.empty()) {
+      content_.mids.resize(content_.tets.size(), {-1, -1, -1, -1, -1, -1});
+      std::copy(nodes.begin() + 4, nodes.end(), content_.mids.back().begin());
+    }
     groups_.push_back(group);
     entities_.push_back(entity);
   }

@@ -76,7 +76,6 @@ const std::map<std::string_view, std::string_view>& lost_solids() {
                                                                      {"Pentahedra", "prisms"},
                                                                      {"Wedges", "prisms"},
                                                                      {"Pyramids", "pyramids"},
-                                                                     {"TetrahedraP2", "10-node tets (second order)"},
                                                                      {"TetrahedraP3", "20-node tets (third order)"},
                                                                      {"TetrahedraP4", "35-node tets (fourth order)"}};
   return names;
@@ -90,7 +89,9 @@ class MeditReader {
     find_sections();
     if (!seek("Vertices")) text_.fail("the file has no 'Vertices'; export the mesh again");
     read_vertices();
-    if (seek("Tetrahedra")) read_tets();
+    if (seek("Tetrahedra")) read_tets<4>();
+    if (seek("TetrahedraP2")) read_tets<10>();
+    clear_labels_of_zero();
     if (seek("Triangles")) read_polygons<3>("the number of triangles");
     if (seek("Quadrilaterals")) read_polygons<4>("the number of quadrilaterals");
     return std::move(content_);
@@ -121,7 +122,8 @@ class MeditReader {
     if (is_read && !sections_.emplace(word, text_.position()).second)
       text_.fail("a second section " + shown(word) + "; merge it with the first");
     if (const auto lost = lost_solids().find(word); lost != lost_solids().end() && text_.integer("a count") != 0)
-      text_.fail("the mesh has " + std::string(lost->second) + ", which are not read; export it with 4-node tets only");
+      text_.fail("the mesh has " + std::string(lost->second) +
+                 ", which are not read; export it with 4-node or 10-node tets only");
     const auto& skipped = skipped_sections();
     if (is_read || lost_solids().contains(word) || std::find(skipped.begin(), skipped.end(), word) != skipped.end())
       return;
@@ -150,15 +152,21 @@ class MeditReader {
     return element;
   }
 
+  template <size_t nodes>
   void read_tets() {
-    const int count = text_.count("the number of tets", 10);
-    content_.tets.resize(static_cast<size_t>(count));
-    content_.region.resize(content_.tets.size());
-    for (size_t t = 0; t < content_.tets.size(); ++t) {
-      content_.tets[t] = read_corners<4>();
-      content_.region[t] = text_.small_integer("the reference of a tet");
+    const int count = text_.count("the number of tets", 2 * (nodes + 1));
+    for (int t = 0; t < count; ++t) {
+      const std::array<int, nodes> tet = read_corners<nodes>();
+      content_.tets.push_back({tet[0], tet[1], tet[2], tet[3]});
+      content_.region.push_back(text_.small_integer("the reference of a tet"));
+      if (nodes == 4) continue;
+      content_.mids.resize(content_.tets.size(), {-1, -1, -1, -1, -1, -1});
+      std::copy(tet.begin() + 4, tet.end(), content_.mids.back().begin());
     }
-    // Reference 0 means no label.
+  }
+
+  // Reference 0 means no label.
+  void clear_labels_of_zero() {
     if (std::all_of(content_.region.begin(), content_.region.end(), [](int label) { return label == 0; }))
       content_.region.clear();
   }
@@ -172,7 +180,7 @@ class MeditReader {
     }
   }
 
-  static constexpr std::string_view kRead[] = {"Vertices", "Tetrahedra", "Triangles", "Quadrilaterals"};
+  static constexpr std::string_view kRead[] = {"Vertices", "Tetrahedra", "TetrahedraP2", "Triangles", "Quadrilaterals"};
 
   TextScanner text_;
   MeshContent content_;

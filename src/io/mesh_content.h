@@ -12,6 +12,8 @@ struct MeshContent {
   std::vector<Tet> tets;
   std::vector<int> region;  // label of each tet; may be empty
   std::vector<Triangle> triangles;
+  // Mid-edge nodes of each tet in any order, {-1, ...} for a linear one; empty: all are linear.
+  std::vector<MidNodes> mids = {};
 };
 
 // Splits a polygon of at least three corners into a fan of triangles.

@@ -15,10 +15,12 @@
 #include "io/obj.h"
 #include "io/off.h"
 #include "io/ply.h"
+#include "io/quadratic_content.h"
 #include "io/stl.h"
 #include "io/tetgen.h"
 #include "io/vtu.h"
 #include "mesh/surface.h"
+#include "mesh/tet_nodes.h"
 
 namespace aspic {
 namespace {
@@ -86,7 +88,8 @@ void write_tetgen(const fs::path& path, const TetMesh& mesh, FileEncoding encodi
 MeshContent read_vtu_mesh(const fs::path& path) {
   Vtu vtu = read_vtu(path);
   if (!vtu.mesh.tets.empty())
-    return {std::move(vtu.mesh.rest), std::move(vtu.mesh.tets), std::move(vtu.mesh.region), {}};
+    return {
+        std::move(vtu.mesh.rest), std::move(vtu.mesh.tets), std::move(vtu.mesh.region), {}, std::move(vtu.mesh.mids)};
   return {std::move(vtu.triangles.vertices), {}, {}, std::move(vtu.triangles.triangles)};
 }
 
@@ -171,10 +174,12 @@ const std::vector<MeshFormat>& mesh_formats() {
   return list;
 }
 
-std::variant<TetMesh, TriMesh> read_mesh(const std::string& path) {
+std::variant<TetMesh, TriMesh> read_mesh(const std::string& path, std::vector<std::string>* notes) {
   const Format& format = format_of(path);
   check_memory(path);
   MeshContent content = format.read(path);
+  const std::string note = remove_mid_nodes(content);
+  if (notes && !note.empty()) notes->push_back(fs::path(path).filename().string() + ": " + note);
   if (!content.tets.empty())
     return TetMesh{std::move(content.vertices), std::move(content.tets), std::move(content.region)};
   if (!content.triangles.empty()) return TriMesh{std::move(content.vertices), std::move(content.triangles)};
@@ -185,8 +190,8 @@ std::variant<TetMesh, TriMesh> read_mesh(const std::string& path) {
                      "; export the mesh again with its elements");
 }
 
-TetMesh read_tet_mesh(const std::string& path) {
-  auto mesh = read_mesh(path);
+TetMesh read_tet_mesh(const std::string& path, std::vector<std::string>* notes) {
+  auto mesh = read_mesh(path, notes);
   if (auto* tets = std::get_if<TetMesh>(&mesh)) return std::move(*tets);
   throw InvalidInput(path + ": holds a surface, no tets; fill it with 'aspic mesh " +
                      fs::path(path).filename().string() + " -o " + fs::path(path).stem().string() + ".msh'");
@@ -205,7 +210,10 @@ void write_mesh(const std::string& path, const TetMesh& mesh, FileEncoding encod
   ASPIC_CHECK(mesh.region.empty() || mesh.region.size() == mesh.tets.size());
   ASPIC_CHECK(are_indices_valid(mesh.tets, mesh.vertex_count()));
   check_vertices(path, mesh.rest);
-  format.write_tets(path, mesh, encoding);
+  if (mesh.mids.empty())
+    format.write_tets(path, mesh, encoding);
+  else
+    format.write_tets(path, lower_order(mesh), encoding);
 }
 
 void write_mesh(const std::string& path, const TriMesh& mesh, FileEncoding encoding) {

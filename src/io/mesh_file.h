@@ -16,11 +16,12 @@ struct MeshFormat {
 };
 const std::vector<MeshFormat>& mesh_formats();  // all, in the order of help texts
 
-// Returns the tets of the file, or its triangles if it has no tets; quads are split. Either file names a .node/.ele
-// pair. Throws InvalidInput with file, line (or byte offset) and remedy.
-std::variant<TetMesh, TriMesh> read_mesh(const std::string& path);
+// Returns the tets of the file, or its triangles if it has no tets; quads are split. Quadratic tets become linear, with
+// a note in `notes`. Either file names a .node/.ele pair. Throws InvalidInput with file, line (or byte offset) and
+// remedy.
+std::variant<TetMesh, TriMesh> read_mesh(const std::string& path, std::vector<std::string>* notes = nullptr);
 // Reads tets. Throws InvalidInput like read_mesh(), and if the file has no tets.
-TetMesh read_tet_mesh(const std::string& path);
+TetMesh read_tet_mesh(const std::string& path, std::vector<std::string>* notes = nullptr);
 // Reads triangles, or the boundary of the tets. Throws InvalidInput like read_mesh().
 TriMesh read_tri_mesh(const std::string& path);
 

@@ -28,7 +28,7 @@ struct VtuFields {
 };
 
 struct Vtu : VtuFields {
-  TetMesh mesh;       // points are rest positions; region is set if the file has a cell field "region"
+  TetMesh mesh;       // points are the vertices; region is set if the file has a cell field "region"
   TriMesh triangles;  // triangle cells if there are no tets
 };
 
@@ -40,10 +40,10 @@ Vtu parse_vtu(std::string_view contents, const std::string& file);  // `file` is
 std::vector<double> read_vtu_points(const std::string& path);
 
 // Writes inline base64, zlib-compressed. `points`: 3 coordinates per point [m], in double precision; tets index points.
-// Point fields have one entry of `components` values per point, cell fields one per tet. The output is reproducible.
-// Throws InvalidInput if the file cannot be written.
+// Point fields have one entry of `components` values per point, cell fields one per tet. `mids`: see TetMesh. The
+// output is reproducible. Throws InvalidInput if the file cannot be written.
 void write_vtu(const std::string& path, std::span<const double> points, const std::vector<Tet>& tets,
-               const VtuFields& fields = {});
+               const VtuFields& fields = {}, const std::vector<MidNodes>& mids = {});
 
 // Writes a surface in the same way; cell fields have one entry per triangle.
 void write_surface_vtu(const std::string& path, const TriMesh& surface, const VtuFields& fields = {});

@@ -11,7 +11,9 @@ namespace aspic {
 namespace {
 
 // Cell types of VTK [vtkCellType.h]; types 2 and 3 are several vertices and a line.
-constexpr int kVertex = 1, kPolyLine = 4, kTriangle = 5, kQuad = 9, kTet = 10;
+constexpr int kVertex = 1, kPolyLine = 4, kTriangle = 5, kQuad = 9, kTet = 10, kQuadraticTet = 24;
+
+bool is_tet(int64_t type) { return type == kTet || type == kQuadraticTet; }
 
 constexpr int64_t kMaxCount = std::numeric_limits<int>::max() / 4;
 
@@ -38,12 +40,13 @@ const XmlElement& named_array(const VtkFile& file, const XmlElement& parent, std
 }
 
 void check_cell_shape(const VtkFile& file, const XmlElement& at, int64_t type, int64_t corners, size_t cell) {
-  const auto expected = type == kTet ? 4 : type == kTriangle ? 3 : type == kQuad ? 4 : -1;
+  const auto expected = type == kTet ? 4 : type == kTriangle ? 3 : type == kQuad ? 4 : type == kQuadraticTet ? 10 : -1;
   const bool passed_over = type >= kVertex && type <= kPolyLine;
   if (expected < 0 && !passed_over) {
     fail_at(file, at,
             "cell " + std::to_string(cell) + " has type " + std::to_string(type) +
-                "; only tets (10), triangles (5) and quads (9) can be read (in ParaView: Tetrahedralize)");
+                "; only tets (10), quadratic tets (24), triangles (5) and quads (9) can be read (in ParaView: "
+                "Tetrahedralize)");
   }
   if (expected >= 0 && corners != expected) {
     fail_at(file, at,
@@ -108,6 +111,7 @@ Piece read_piece(const VtkFile& file, const XmlElement& element) {
 // Kept cells: their corners, and the index of the original cell.
 struct Kept {
   std::vector<Tet> tets;
+  std::vector<MidNodes> mids;  // one per tet
   std::vector<Triangle> triangles;
   std::vector<size_t> tet_source, triangle_source;
 };
@@ -117,9 +121,11 @@ Kept kept_cells(const Piece& piece, int first_point) {
   for (size_t cell = 0; cell < piece.cells; ++cell) {
     const size_t start = cell == 0 ? 0 : static_cast<size_t>(piece.offsets[cell - 1]);
     const auto corner = [&](size_t i) { return first_point + static_cast<int>(piece.connectivity[start + i]); };
-    if (piece.types[cell] == kTet) {
+    if (is_tet(piece.types[cell])) {
       kept.tets.push_back({corner(0), corner(1), corner(2), corner(3)});
       kept.tet_source.push_back(cell);
+      MidNodes& mids = kept.mids.emplace_back(MidNodes{-1, -1, -1, -1, -1, -1});
+      for (size_t k = 0; k < 6 && piece.types[cell] == kQuadraticTet; ++k) mids[k] = corner(4 + k);
     } else if (piece.types[cell] == kTriangle || piece.types[cell] == kQuad) {
       kept.triangles.push_back({corner(0), corner(1), corner(2)});
       kept.triangle_source.push_back(cell);
@@ -243,7 +249,7 @@ Vtu parse_vtu(std::string_view contents, const std::string& name) {
     pieces.push_back(read_piece(file, element));
     points += pieces.back().points;
     if (points > static_cast<size_t>(kMaxCount)) fail_at(file, element, "too many points");
-    has_tets |= std::count(pieces.back().types.begin(), pieces.back().types.end(), kTet) > 0;
+    has_tets |= std::any_of(pieces.back().types.begin(), pieces.back().types.end(), is_tet);
   }
 
   Vtu vtu;
@@ -262,11 +268,14 @@ Vtu parse_vtu(std::string_view contents, const std::string& name) {
     append_fields(file, *piece.element, first, std::move(cell_fields), vtu.cell_fields);
     if (has_tets) {
       vtu.mesh.tets.insert(vtu.mesh.tets.end(), kept.tets.begin(), kept.tets.end());
+      vtu.mesh.mids.insert(vtu.mesh.mids.end(), kept.mids.begin(), kept.mids.end());
     } else {
       vtu.triangles.triangles.insert(vtu.triangles.triangles.end(), kept.triangles.begin(), kept.triangles.end());
     }
   }
   if (has_tets) vtu.mesh.region = region_of(file.name, vtu.cell_fields);
+  std::vector<MidNodes>& mids = vtu.mesh.mids;
+  if (std::all_of(mids.begin(), mids.end(), [](const MidNodes& m) { return m[0] < 0; })) mids.clear();
   return vtu;
 }
 

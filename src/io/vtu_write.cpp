@@ -102,21 +102,28 @@ void append_file_fields(const std::vector<Field>& fields, std::string& text) {
   text += "</FieldData>\n";
 }
 
-template <size_t kCorners>
-void append_cells(const std::vector<std::array<int, kCorners>>& cells, std::string& text) {
-  constexpr uint8_t kVtkTriangle = 5, kVtkTet = 10;
-  constexpr uint8_t kType = kCorners == 4 ? kVtkTet : kVtkTriangle;
-  const std::span<const int> corners(cells.empty() ? nullptr : cells.front().data(), kCorners * cells.size());
-  std::vector<int64_t> offsets(cells.size());
-  for (size_t i = 0; i < cells.size(); ++i) offsets[i] = static_cast<int64_t>(kCorners * (i + 1));
-  append_array({"Int32", "connectivity"}, bytes_of<int32_t>(corners), text);
-  append_array({"Int64", "offsets"}, bytes_of<int64_t>(std::span<const int64_t>(offsets)), text);
-  append_array({"UInt8", "types"}, std::string(cells.size(), static_cast<char>(kType)), text);
+constexpr uint8_t kVtkTriangle = 5, kVtkTet = 10, kVtkQuadraticTet = 24;
+
+struct Cells {
+  std::vector<int> connectivity;
+  std::vector<int64_t> offsets;  // end of each cell in the connectivity
+  std::string types;
+
+  template <class Nodes>
+  void add(const Nodes& nodes, uint8_t type) {
+    connectivity.insert(connectivity.end(), nodes.begin(), nodes.end());
+    offsets.push_back(static_cast<int64_t>(connectivity.size()));
+    types.push_back(static_cast<char>(type));
+  }
+};
+
+void append_cells(const Cells& cells, std::string& text) {
+  append_array({"Int32", "connectivity"}, bytes_of<int32_t>(std::span<const int>(cells.connectivity)), text);
+  append_array({"Int64", "offsets"}, bytes_of<int64_t>(std::span<const int64_t>(cells.offsets)), text);
+  append_array({"UInt8", "types"}, cells.types, text);
 }
 
-template <class Cell>
-void write(const std::string& path, std::span<const double> points, const std::vector<Cell>& cells,
-           const VtuFields& fields) {
+void write(const std::string& path, std::span<const double> points, const Cells& cells, const VtuFields& fields) {
   const size_t point_count = points.size() / 3;
   std::string text =
       "<?xml version=\"1.0\"?>\n"
@@ -124,14 +131,14 @@ void write(const std::string& path, std::span<const double> points, const std::v
       "compressor=\"vtkZLibDataCompressor\">\n<UnstructuredGrid>\n";
   append_file_fields(fields.file_fields, text);
   text += "<Piece NumberOfPoints=\"" + std::to_string(point_count) + "\" NumberOfCells=\"" +
-          std::to_string(cells.size()) + "\">\n<Points>\n";
+          std::to_string(cells.types.size()) + "\">\n<Points>\n";
   append_array({"Float64", "Points", 3}, bytes_of<double>(points), text);
   text += "</Points>\n<Cells>\n";
   append_cells(cells, text);
   text += "</Cells>\n<PointData>\n";
   append_fields(fields.point_fields, point_count, text);
   text += "</PointData>\n<CellData>\n";
-  append_fields(fields.cell_fields, cells.size(), text);
+  append_fields(fields.cell_fields, cells.types.size(), text);
   text += "</CellData>\n</Piece>\n</UnstructuredGrid>\n</VTKFile>\n";
   write_file(path, text);
 }
@@ -139,14 +146,24 @@ void write(const std::string& path, std::span<const double> points, const std::v
 }  // namespace
 
 void write_vtu(const std::string& path, std::span<const double> points, const std::vector<Tet>& tets,
-               const VtuFields& fields) {
-  write(path, points, tets, fields);
+               const VtuFields& fields, const std::vector<MidNodes>& mids) {
+  Cells cells;
+  for (size_t t = 0; t < tets.size(); ++t) {
+    cells.connectivity.insert(cells.connectivity.end(), tets[t].begin(), tets[t].end());
+    if (mids.empty() || mids[t][0] < 0)
+      cells.add(std::span<const int>(), kVtkTet);
+    else
+      cells.add(mids[t], kVtkQuadraticTet);
+  }
+  write(path, points, cells, fields);
 }
 
 void write_surface_vtu(const std::string& path, const TriMesh& surface, const VtuFields& fields) {
   std::vector<double> points;
   for (const Vec3d& x : surface.vertices) points.insert(points.end(), x.a, x.a + 3);
-  write(path, points, surface.triangles, fields);
+  Cells cells;
+  for (const Triangle& triangle : surface.triangles) cells.add(triangle, kVtkTriangle);
+  write(path, points, cells, fields);
 }
 
 }  // namespace aspic

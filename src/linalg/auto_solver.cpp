@@ -166,8 +166,8 @@ bool AutoSolver::factorize_with_choice() {
 bool AutoSolver::factorize(const BlockSparse& H) {
   H_ = &H;
   if (!is_chosen_) choice_ = cheapest(H);
-  if (choice_ == kBlockJacobi && !H.stencils.empty())
-    choice_ = kMultigrid;  // for stiff rows, which the prediction ignores
+  const bool has_stiff_rows = !H.stencils.empty() || (stiff_ && !stiff_->empty());
+  if (choice_ == kBlockJacobi && has_stiff_rows) choice_ = kMultigrid;  // the prediction ignores them
   is_chosen_ = has_chosen_ = true;
   return factorize_with_choice();
 }

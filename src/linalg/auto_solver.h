@@ -35,6 +35,10 @@ class AutoSolver : public LinearSolver {
   void set_stop(const StopToken& stop) override {
     for (LinearSolver* solver : solver_) solver->set_stop(stop);
   }
+  void set_stiff_rows(const StiffRows* rows) override {
+    stiff_ = rows;
+    for (LinearSolver* solver : solver_) solver->set_stiff_rows(rows);
+  }
   void analyze(const BlockPattern& pattern) override;
   void begin() override;
   bool factorize(const BlockSparse& H) override;
@@ -58,6 +62,7 @@ class AutoSolver : public LinearSolver {
   std::array<bool, 3> is_analyzed_ = {};
   const BlockPattern* pattern_ = nullptr;
   const BlockSparse* H_ = nullptr;
+  const StiffRows* stiff_ = nullptr;
   CostPrediction prediction_;
   bool fits_ = false;        // whether the factor fits into memory
   double affordable_ = 0;    // block-Jacobi iterations that cost as much as a factorization, per solve

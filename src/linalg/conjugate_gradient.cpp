@@ -20,7 +20,19 @@ ConjugateGradient::ConjugateGradient(int max_iterations)
     : ConjugateGradient(std::make_unique<BlockJacobi>(), max_iterations) {}
 
 ConjugateGradient::ConjugateGradient(std::unique_ptr<ApproximateInverse> preconditioner, int max_iterations)
-    : preconditioner_(std::move(preconditioner)), max_iterations_(max_iterations) {}
+    : preconditioner_(std::move(preconditioner)), max_iterations_(max_iterations) {
+  lifted_.set_max_iterations(max_iterations);
+}
+
+void ConjugateGradient::set_max_iterations(int count) {
+  max_iterations_ = count;
+  lifted_.set_max_iterations(count);
+}
+
+void ConjugateGradient::set_stop(const StopToken& stop) {
+  stop_ = stop;
+  lifted_.set_stop(stop);
+}
 
 void ConjugateGradient::analyze(const BlockPattern& pattern) {
   const size_t rows = pattern.rows();
@@ -32,18 +44,20 @@ void ConjugateGradient::analyze(const BlockPattern& pattern) {
 
 bool ConjugateGradient::factorize(const BlockSparse& H) {
   ASPIC_CHECK(3 * static_cast<size_t>(H.pattern->rows()) == r_.size());
+  const BlockSparse& matrix = is_lifted() ? lifted_.separate(H, *stiff_) : H;
   const bool is_kept = is_made_ && preconditioner_->is_multigrid() && rate_ <= kTolerable * first_rate_;
   if (!is_kept) {
-    is_made_ = preconditioner_->factorize(H);
+    is_made_ = preconditioner_->factorize(matrix);
     first_rate_ = rate_ = 0;
   }
   H_ = is_made_ ? &H : nullptr;
-  if (is_made_ && !correction_.factorize(H)) correction_.drop();  // the iteration detects negative curvature
+  if (is_made_ && !correction_.factorize(matrix)) correction_.drop();  // the iteration detects negative curvature
   return is_made_;
 }
 
 SolveReport ConjugateGradient::solve(std::span<const double> b, std::span<double> x, double tolerance) {
   ASPIC_CHECK(H_ && b.size() == r_.size() && x.size() == b.size());
+  if (is_lifted()) return solve_lifted(b, x, tolerance);
   SolveReport report;
   std::fill(x.begin(), x.end(), 0.0);
   std::copy(b.begin(), b.end(), r_.begin());
@@ -95,10 +109,25 @@ SolveReport ConjugateGradient::solve(std::span<const double> b, std::span<double
   }
   if (!is_measured && !report.stopped && tolerance < kTrusted) residual = measure(b, x, report);
   report.relative_residual = residual / b_norm;
-  rate_ = report.iterations / std::max(1e-3, -std::log10(report.relative_residual));
-  if (first_rate_ == 0) first_rate_ = rate_;
+  note_rate(report);
   report.ok = !report.indefinite && report.relative_residual <= tolerance;
   return report;
+}
+
+SolveReport ConjugateGradient::solve_lifted(std::span<const double> b, std::span<double> x, double tolerance) {
+  int cycles = 0;
+  SolveReport report = lifted_.solve(b, x, tolerance, [&](std::span<const double> r, std::span<double> z) {
+    correction_.apply(*preconditioner_, r, z);
+    cycles += preconditioner_->is_multigrid();
+  });
+  report.cycles = cycles;
+  note_rate(report);
+  return report;
+}
+
+void ConjugateGradient::note_rate(const SolveReport& report) {
+  rate_ = report.iterations / std::max(1e-3, -std::log10(report.relative_residual));
+  if (first_rate_ == 0) first_rate_ = rate_;
 }
 
 void ConjugateGradient::precondition(SolveReport& report) {

@@ -9,6 +9,7 @@
 
 #include "base/stop_token.h"
 #include "linalg/block_sparse.h"
+#include "linalg/stiff_rows.h"
 
 namespace aspic {
 
@@ -32,6 +33,8 @@ class LinearSolver {
   // Starts a new sequence of similar matrices. Discards all data of earlier matrices, so that results depend on this
   // sequence alone.
   virtual void begin() {}
+  // Sets the stiff rows of subsequent matrices; null: none. They must outlive the solves. Direct solvers ignore them.
+  virtual void set_stiff_rows(const StiffRows*) {}
   // Returns false if H is not positive definite. H must outlive the solves.
   virtual bool factorize(const BlockSparse& H) = 0;
   // Solves H x = b up to |b - H x| <= tolerance |b|; direct solvers ignore the tolerance. b, x: 3 entries per row.

@@ -8,6 +8,7 @@
 #include "base/parallel.h"
 #include "mesh/doctor.h"
 #include "mesh/locate.h"
+#include "mesh/tet_nodes.h"
 
 namespace aspic {
 namespace {
@@ -21,20 +22,47 @@ void check_finite(const TriMesh& skin) {
   }
 }
 
+// Shape functions at barycentric coordinates l; outside of the tet their tangent at a point inside, because quadratic
+// functions grow fast.
+Carrier carrier_in(const TetNodes& nodes, const std::array<double, 4>& l) {
+  Carrier carrier{nodes.count, nodes.node, {}};
+  if (nodes.count == 4) {
+    std::copy(l.begin(), l.end(), carrier.weight.begin());
+    return carrier;
+  }
+  std::array<double, 4> inside{};
+  double sum = 0;
+  for (int i = 0; i < 4; ++i) sum += inside[i] = std::max(l[i], 0.0);
+  for (double& coordinate : inside) coordinate /= sum;
+  carrier.weight = quadratic_shapes(inside);
+  for (int n = 0; n < 10; ++n)
+    for (int i = 0; i < 4; ++i) carrier.weight[n] += quadratic_derivative(n, i, inside) * (l[i] - inside[i]);
+  return carrier;
+}
+
 }  // namespace
+
+int Carrier::nearest_vertex() const {
+  return vertex[std::max_element(weight.begin(), weight.begin() + count) - weight.begin()];
+}
+
+Vec3d Carrier::position(std::span<const double> x) const {
+  Vec3d sum{};
+  for (int n = 0; n < count; ++n)
+    for (int axis = 0; axis < 3; ++axis) sum[axis] += weight[n] * x[3 * vertex[n] + axis];
+  return sum;
+}
 
 Embedding embed(const TetMesh& cage, const TriMesh& skin) {
   check_finite(skin);
   const TetLocator locator(cage);
   Embedding embedding;
-  embedding.vertices.resize(skin.vertices.size());
-  embedding.weights.resize(skin.vertices.size());
+  embedding.carriers.resize(skin.vertices.size());
   std::vector<char> is_outside(skin.vertices.size());
   parallel_chunks(skin.vertex_count(), [&](int first, int last) {
     for (int v = first; v < last; ++v) {
       const Located carrier = locator.locate(skin.vertices[v]);
-      embedding.vertices[v] = cage.tets[carrier.tet];
-      embedding.weights[v] = carrier.weights;
+      embedding.carriers[v] = carrier_in(nodes_of(cage, carrier.tet), carrier.weights);
       is_outside[v] = carrier.is_outside();
     }
   });
@@ -43,16 +71,11 @@ Embedding embed(const TetMesh& cage, const TriMesh& skin) {
 }
 
 void carry(const Embedding& embedding, std::span<const double> x, std::span<double> skin_x) {
-  ASPIC_CHECK(skin_x.size() == 3 * embedding.vertices.size());
-  parallel_chunks(static_cast<int>(embedding.vertices.size()), [&](int first, int last) {
+  ASPIC_CHECK(skin_x.size() == 3 * embedding.carriers.size());
+  parallel_chunks(static_cast<int>(embedding.carriers.size()), [&](int first, int last) {
     for (int v = first; v < last; ++v) {
-      const Tet& tet = embedding.vertices[v];
-      const std::array<double, 4>& w = embedding.weights[v];
-      for (int axis = 0; axis < 3; ++axis) {
-        double sum = 0;
-        for (int c = 0; c < 4; ++c) sum += w[c] * x[3 * tet[c] + axis];
-        skin_x[3 * v + axis] = sum;
-      }
+      const Vec3d at = embedding.carriers[v].position(x);
+      std::copy(at.a, at.a + 3, &skin_x[3 * v]);
     }
   });
 }

@@ -3,10 +3,12 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <numeric>
 #include <random>
 
 #include "base/error.h"
 #include "mesh/generators.h"
+#include "mesh/tet_nodes.h"
 #include "mesh/tet_shape.h"
 
 namespace aspic {
@@ -46,7 +48,8 @@ TEST(Embedding, ReproducesAffineMapsInsideAndOutside) {
 
 TEST(Embedding, WeightsSumToOne) {
   const Embedding embedding = embed(make_torus(1, 0.4, 0.3), random_skin(300, 1.5));
-  for (const auto& w : embedding.weights) EXPECT_NEAR(w[0] + w[1] + w[2] + w[3], 1, 1e-13);
+  for (const Carrier& c : embedding.carriers)
+    EXPECT_NEAR(std::accumulate(c.weight.begin(), c.weight.end(), 0.0), 1, 1e-13);
 }
 
 TEST(Embedding, FindsNearestTetNotNearestCentroid) {
@@ -58,7 +61,7 @@ TEST(Embedding, FindsNearestTetNotNearestCentroid) {
   TriMesh skin;
   skin.vertices = {{{0, 0.3, 0}}};
   const Embedding embedding = embed(cage, skin);
-  EXPECT_EQ(embedding.vertices[0], cage.tets[0]);
+  EXPECT_TRUE(std::equal(cage.tets[0].begin(), cage.tets[0].end(), embedding.carriers[0].vertex.begin()));
   EXPECT_EQ(embedding.outside, 1);
 }
 
@@ -72,7 +75,7 @@ TEST(Embedding, AgreesWithSearchOfAllTets) {
     double nearest = 1e9;
     for (int t = 0; t < cage.tet_count(); ++t)
       nearest = std::min(nearest, squared_distance(corners(cage, t), skin.vertices[v]));
-    const Tet& tet = embedding.vertices[v];
+    const auto& tet = embedding.carriers[v].vertex;
     const TetCorners X = {cage.rest[tet[0]], cage.rest[tet[1]], cage.rest[tet[2]], cage.rest[tet[3]]};
     EXPECT_NEAR(squared_distance(X, skin.vertices[v]), nearest, 1e-8 * nearest);
   }
@@ -94,7 +97,27 @@ TEST(Embedding, SkipsFlatTets) {
   TriMesh skin;
   skin.vertices = {{{2.5, 0.5, 0}}};
   const Embedding embedding = embed(cage, skin);
-  for (int v : embedding.vertices[0]) EXPECT_LT(v, first);
+  for (int v : embedding.carriers[0].vertices()) EXPECT_LT(v, first);
+}
+
+TEST(Embedding, QuadraticCageCarriesQuadraticMapsInside) {
+  const TetMesh cage = raise_order(make_box({{-1, -1, -1}}, {{1, 1, 1}}, {3, 3, 3}));
+  const TriMesh skin = random_skin(300, 1.1);  // some vertices are outside
+  const auto map = [](const Vec3d& X) {
+    return Vec3d{{X[0] + 0.3 * X[1] * X[2], X[1] - 0.2 * X[0] * X[0], X[2] + 0.1 * X[0]}};
+  };
+  std::vector<double> x, carried(3 * skin.vertices.size());
+  for (const Vec3d& X : cage.rest) {
+    const Vec3d y = map(X);
+    x.insert(x.end(), y.a, y.a + 3);
+  }
+  carry(embed(cage, skin), x, carried);
+  for (int v = 0; v < skin.vertex_count(); ++v) {
+    const Vec3d &X = skin.vertices[v], expected = map(X);
+    const double outside = std::max({std::abs(X[0]), std::abs(X[1]), std::abs(X[2]), 1.0}) - 1;
+    for (int r = 0; r < 3; ++r)  // outside along the tangent: an error of second order
+      EXPECT_NEAR(carried[3 * v + r], expected[r], outside > 0 ? 0.05 : 1e-14);
+  }
 }
 
 TEST(Embedding, RejectsCageWithoutVolume) {

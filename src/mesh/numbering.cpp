@@ -35,6 +35,10 @@ TetMesh rearranged(const TetMesh& mesh, const VertexSource& vertex_source, const
     for (int& corner : corners) corner = vertex_name(corner);
     result.tets.push_back(corners);
     if (!mesh.region.empty()) result.region.push_back(mesh.region[source]);
+    if (mesh.mids.empty()) continue;
+    MidNodes mids = mesh.mids[source];
+    for (int& node : mids) node = node < 0 ? node : vertex_name(node);
+    result.mids.push_back(mids);
   }
   return result;
 }

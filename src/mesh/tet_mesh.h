@@ -9,11 +9,15 @@ namespace aspic {
 
 using Tet = std::array<int, 4>;
 using Triangle = std::array<int, 3>;
+using MidNodes = std::array<int, 6>;  // one per edge of a tet, see kTetEdges
 
 struct TetMesh {
   std::vector<Vec3d> rest;  // X, one per vertex [m]
   std::vector<Tet> tets;    // positively oriented: volume(mesh, t) > 0
   std::vector<int> region;  // label of each tet; empty if the mesh has none
+  // Mid-edge nodes of quadratic tets, one entry per tet, {-1, ...} for a linear one; empty: all are linear. Nodes are
+  // vertices. Edges are straight at rest, with the nodes at their midpoints.
+  std::vector<MidNodes> mids = {};
 
   int vertex_count() const { return static_cast<int>(rest.size()); }
   int tet_count() const { return static_cast<int>(tets.size()); }

@@ -83,6 +83,7 @@ struct Minimizer::Impl {
   void take_step(Progress& at, Iteration& iteration);
 
   std::vector<double> g, d;
+  HasStiffRows* stiff = nullptr;
   LineSearchScratch line;
   Convergence convergence;
   Cost cost;  // kept between minimizations
@@ -119,6 +120,7 @@ void Minimizer::Impl::begin(Progress& at) {
   at.direction.begin();
   HasLag* lagged = at.options.updates_lagged ? dynamic_cast<HasLag*>(&at.E) : nullptr;
   at.lag.begin(lagged && lagged->is_lagged() ? lagged : nullptr);
+  stiff = at.direction.estimates_minimizer() ? dynamic_cast<HasStiffRows*>(&at.E) : nullptr;
   at.E.gradient(at.x, g);
   convergence.begin(at.E, at.options, g);
   at.report.gradients = 1;
@@ -222,6 +224,7 @@ void Minimizer::Impl::take_step(Progress& at, Iteration& iteration) {
   const double begin = at.options.stop.now();
   at.report.gradient_round_off = at.E.scales().gradient_round_off;  // uses the last Hessian
   convergence.note_hessian();
+  if (stiff) stiff->note_newton_step(at.x, d);
   std::swap_ranges(line.trial.begin(), line.trial.end(), at.x.begin());
   at.value = at.step.value;
   at.lag.note_step();
@@ -253,6 +256,7 @@ MinimizeReport Minimizer::minimize(Objective& E, SearchDirection& direction, Ini
   const Evaluation value = initial.value ? *initial.value : E.evaluate(initial.x);
   Progress at{E, direction, initial.x, options, value};
   MinimizeReport report = impl_->minimize(at, observe);
+  if (impl_->stiff) impl_->stiff->note_newton_step({}, {});
   if (!initial.value) ++report.values;
   return report;
 }

@@ -37,7 +37,10 @@ void NewtonSystem::begin() {
 }
 
 void NewtonSystem::begin_direction(Objective& E, const StopToken& stop, bool is_first, double gradient_norm) {
-  if (is_first) stops_ = dynamic_cast<HasStops*>(&E);
+  if (is_first) {
+    stops_ = dynamic_cast<HasStops*>(&E);
+    stiff_ = truncates_ ? nullptr : dynamic_cast<HasStiffRows*>(&E);
+  }
   stop_ = stop;
   is_first_ = is_first;
   gradient_norm_ = gradient_norm;
@@ -60,6 +63,8 @@ bool NewtonSystem::solve(NewtonTask& task, const Projection& projection) {
     analyzed_version_ = H.pattern->version;
   }
   ++report.factorizations;
+  const bool is_stiff = stiff_ && !stiff_->stiff_rows().empty();
+  solver_->set_stiff_rows(is_stiff ? &stiff_->stiff_rows() : nullptr);
   const bool is_definite = solver_->factorize(H);
   report.factorize_seconds += stopwatch.lap();
   const bool is_exact = projection.kind == Definiteness::exact;
@@ -67,7 +72,7 @@ bool NewtonSystem::solve(NewtonTask& task, const Projection& projection) {
   if (is_definite && solve_factorized(task)) {
     if (avoid_stops(task)) {
       exact_ = nullptr;  // it contains springs now
-    } else if (is_exact && !report.truncated && !report.stopped) {
+    } else if (is_exact && !is_stiff && !report.truncated && !report.stopped) {
       kept_.keep(task.E, H, task.x);
     }
     return true;

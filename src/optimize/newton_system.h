@@ -85,6 +85,7 @@ class NewtonSystem {
   uint64_t analyzed_version_ = 0, semidefinite_version_ = 0;
   KeptHessian kept_;
   HasStops* stops_ = nullptr;           // of the objective, if it has any
+  HasStiffRows* stiff_ = nullptr;       // the objective, if its Hessian may have stiff rows
   const BlockSparse* exact_ = nullptr;  // the last Hessian of this direction, if exact
   StopToken stop_;
   bool is_first_ = true;

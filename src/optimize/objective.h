@@ -6,6 +6,7 @@
 
 #include "linalg/block_sparse.h"
 #include "linalg/projection.h"
+#include "linalg/stiff_rows.h"
 
 namespace aspic {
 
@@ -89,6 +90,16 @@ class HasStops {
   // length from x along d. Returns the Hessian, or null if nothing was added.
   virtual const BlockSparse* add_stops(std::span<const double> x, std::span<const double> d, double max_step,
                                        std::span<double> g) = 0;
+};
+
+// Interface for objectives whose Hessian has stiff rows.
+class HasStiffRows {
+ public:
+  virtual ~HasStiffRows() = default;
+  virtual const StiffRows& stiff_rows() const = 0;  // of the last Hessian
+  // Called when the minimizer moves along a Newton direction d from x. Hessians up to the next call may use the
+  // linearization at x + d of the forces of these rows. Empty: none is known.
+  virtual void note_newton_step(std::span<const double> x, std::span<const double> d) = 0;
 };
 
 // Interface for objectives with lagged coefficients, such as the normal forces in friction.

@@ -9,11 +9,11 @@
 #include "dynamics/model_builder.h"
 #include "dynamics/pins.h"
 #include "energy/linear_load.h"
+#include "energy/load_points.h"
 #include "energy/pressure.h"
 #include "energy/rayleigh_damping.h"
 #include "energy/springs.h"
 #include "mesh/surface.h"
-#include "mesh/tet_shape.h"
 #include "scene/body_fibres.h"
 #include "scene/body_grabs.h"
 #include "scene/expression.h"
@@ -217,6 +217,9 @@ void add_springs(Builder& builder, const PlacedBody& body) {
     } else if (scene.find("between")) {
       add_springs_between(builder, body, scene);
     } else {
+      if (!body.mesh.mids.empty())
+        throw error_at(scene["edges"].place, "edges: springs along the edges need linear tets; body '" + body.name() +
+                                                 "' has order = 2 (remove it)");
       const std::vector<Spring> edges =
           edge_springs(builder.model.mesh, body.first_tet, body.mesh.tet_count(), scene["stiffness"].number());
       builder.springs.insert(builder.springs.end(), edges.begin(), edges.end());
@@ -252,44 +255,29 @@ class LoadDensity {
   Place place_;
 };
 
-// The load on one triangle or tet, in equal parts on its corners.
-struct LoadPatch {
-  Vec3d center, normal;
-  std::vector<int> corners;  // in the model
-  double size;               // area [m^2] or volume [m^3] per corner
-};
-
 struct LoadGroup {
   LoadDensity density;
-  std::vector<LoadPatch> patches;
+  std::vector<LoadPoint> points;  // nodes in the model
 
   void add_to(std::span<double> force, double time) const {
-    for (const LoadPatch& patch : patches) {
-      const Vec3d f = patch.size * density.at(patch.center, patch.normal, time);
-      for (const int v : patch.corners)
-        for (int r = 0; r < 3; ++r) force[3 * v + r] += f[r];
-    }
+    for (const LoadPoint& point : points) add_load(point, density.at(point.position, point.normal, time), force);
   }
 };
 
-template <size_t N>
-std::vector<int> in_model(const PlacedBody& body, const std::array<int, N>& corners) {
-  std::vector<int> vertices;
-  for (const int v : corners) vertices.push_back(body.model_vertex(v));
-  return vertices;
+void renumber(const PlacedBody& body, std::vector<LoadPoint>& points) {
+  for (LoadPoint& point : points)
+    for (int& v : point.nodes) v = body.model_vertex(v);
 }
 
 void add_tractions(const Builder& builder, const PlacedBody& body, std::vector<LoadGroup>& groups) {
   Array& tractions = list_of(body, "traction");
   if (tractions.empty()) return;
-  const std::vector<Vec3d>& X = body.mesh.rest;
-  const std::vector<Triangle> boundary = boundary_triangles(body.mesh, 0, body.mesh.tet_count());
+  const std::vector<Face> boundary = boundary_faces(body.mesh, 0, body.mesh.tet_count());
   for (Value& scene : tractions) {
     LoadGroup group{LoadDensity(scene), {}};
-    for (const Triangle& t : select_triangles(scene["where"], builder.scope(body, scene), boundary)) {
-      const Vec3d n = cross(X[t[1]] - X[t[0]], X[t[2]] - X[t[0]]);
-      group.patches.push_back({(1.0 / 3) * (X[t[0]] + X[t[1]] + X[t[2]]), n, in_model(body, t), norm(n) / 2 / 3});
-    }
+    for (const Face& face : select_faces(scene["where"], builder.scope(body, scene), boundary))
+      append_load_points(body.mesh.rest, face, group.points);
+    renumber(body, group.points);
     groups.push_back(std::move(group));
   }
 }
@@ -298,7 +286,7 @@ void add_tractions(const Builder& builder, const PlacedBody& body, std::vector<L
 void add_pressures(Builder& builder, const PlacedBody& body) {
   Array& pressures = list_of(body, "pressure");
   if (pressures.empty()) return;
-  const std::vector<Triangle> boundary = boundary_triangles(body.mesh, 0, body.mesh.tet_count());
+  const std::vector<Face> boundary = boundary_faces(body.mesh, 0, body.mesh.tet_count());
   for (Value& scene : pressures) {
     const Value& value = scene["value"];
     const Expression p(value.is_text() ? value.text() : number_text(value.number()),
@@ -308,9 +296,11 @@ void add_pressures(Builder& builder, const PlacedBody& body) {
                      "value: a follower pressure is uniform, so its formula "
                      "may use only t (for a load of X, Y, Z with fixed direction: dead_pressure of a "
                      "[[body.traction]])");
-    std::vector<Triangle> patch = select_triangles(scene["where"], builder.scope(body, scene), boundary);
-    for (Triangle& t : patch)
-      for (int& v : t) v = body.model_vertex(v);
+    std::vector<Face> patch = select_faces(scene["where"], builder.scope(body, scene), boundary);
+    for (Face& face : patch) {
+      for (int& v : face.corners) v = body.model_vertex(v);
+      for (int& v : face.mids) v = v < 0 ? v : body.model_vertex(v);
+    }
     const int number = ++builder.pressures;
     const auto of_time = [p, place = value.place](double t) {
       try {
@@ -321,7 +311,7 @@ void add_pressures(Builder& builder, const PlacedBody& body) {
     };
     of_time(0);
     builder.model.loads.push_back(make_pressure(number == 1 ? "pressure" : "pressure_" + std::to_string(number),
-                                                builder.model.mesh, std::move(patch), of_time));
+                                                builder.model.mesh, patch, of_time));
   }
 }
 
@@ -329,8 +319,8 @@ void add_body_forces(const Builder& builder, const PlacedBody& body, std::vector
   for (Value& scene : list_of(body, "force")) {
     LoadGroup group{LoadDensity(scene), {}};
     for (const int t : select_tets(scene["where"], builder.scope(body, scene)))
-      group.patches.push_back(
-          {centroid(body.mesh, t), {}, in_model(body, body.mesh.tets[t]), volume(body.mesh, t) / 4});
+      append_load_points(body.mesh, t, group.points);
+    renumber(body, group.points);
     groups.push_back(std::move(group));
   }
 }

@@ -27,6 +27,10 @@ std::string pulled(const std::string& fibres) {
 
 std::string fibre(const std::string& keys) { return "[[body.fibre]]\nstiffness = 3e4\nexponent = 0.8\n" + keys + "\n"; }
 
+std::string muscle(const std::string& keys) {
+  return "[[body.muscle]]\nstrength = 2e4\ndirection = [1, 0, 0]\n" + keys + "\n";
+}
+
 std::vector<double> equilibrium(const std::string& fibres) {
   Scene scene = load(pulled(fibres));
   EXPECT_TRUE(is_success(scene.simulation.step().status));
@@ -57,6 +61,19 @@ TEST(Fibres, PulledCubeHasTheStretchOfTheFormula) {
   EXPECT_NEAR(stretch(equilibrium(across + fibre("direction = [1, 0, 0]"))), exact_stretch(3e4), 1e-9);
 }
 
+TEST(Fibres, QuadraticTetsHaveTheSameStretch) {
+  for (const std::string& part : {fibre("direction = [1, 0, 0]"), muscle("activation = 0.5")}) {
+    const auto stretched = [&](const std::string& order) {
+      std::string text = pulled(part);
+      text.insert(text.find("material = "), order);
+      Scene scene = load(text);
+      EXPECT_TRUE(is_success(scene.simulation.step().status));
+      return stretch(positions(scene));
+    };
+    EXPECT_NEAR(stretched("order = 2\n"), stretched(""), 1e-9);
+  }
+}
+
 TEST(Fibres, RunFromOnePlaceToAnother) {
   const std::vector<double> straight = equilibrium(fibre("direction = [1, 0, 0]"));
   const std::vector<double> flowing =
@@ -73,10 +90,6 @@ TEST(Fibres, AreATermOfTheEnergyBalance) {
   const auto at = std::find(names.begin(), names.end(), "fibre");
   ASSERT_NE(at, names.end());
   EXPECT_GT(report.potential[at - names.begin()], 0);
-}
-
-std::string muscle(const std::string& keys) {
-  return "[[body.muscle]]\nstrength = 2e4\ndirection = [1, 0, 0]\n" + keys + "\n";
 }
 
 // Without load, E l (l^2 - 1) / 2 + strength activation (1 - 4 (1 - l)^2) = 0.

@@ -4,9 +4,20 @@
 #include <memory>
 
 #include "energy/grab_paths.h"
+#include "mesh/tet_nodes.h"
+#include "mesh/topology.h"
 
 namespace aspic {
 namespace {
+
+bool belong_to_one_tet(const TetMesh& mesh, const Tet& vertices) {
+  for (int t = 0; t < mesh.tet_count(); ++t) {
+    const TetNodes nodes = nodes_of(mesh, t);
+    const auto has = [&](int v) { return std::find(nodes.begin(), nodes.end(), v) != nodes.end(); };
+    if (std::all_of(vertices.begin(), vertices.end(), has)) return true;
+  }
+  return false;
+}
 
 // Returns the four vertices in the numbering of the body. Throws InvalidInput unless they belong to one tet.
 Tet corners_of(const Value& point, const PlacedBody& body) {
@@ -19,13 +30,7 @@ Tet corners_of(const Value& point, const PlacedBody& body) {
                                        body.name() + "', " + std::to_string(body.mesh.vertex_count() - 1));
     corners[i] = static_cast<int>(index);
   }
-  const auto sorted = [](Tet t) {
-    std::sort(t.begin(), t.end());
-    return t;
-  };
-  const Tet wanted = sorted(corners);
-  const auto is_wanted = [&](const Tet& t) { return sorted(t) == wanted; };
-  if (std::none_of(body.mesh.tets.begin(), body.mesh.tets.end(), is_wanted))
+  if (lists_vertex_twice(corners) || !belong_to_one_tet(body.mesh, corners))
     throw error_at(point.place, "point: no tet of body '" + body.name() + "' has the vertices " +
                                     std::to_string(corners[0]) + ", " + std::to_string(corners[1]) + ", " +
                                     std::to_string(corners[2]) + ", " + std::to_string(corners[3]) +

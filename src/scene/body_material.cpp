@@ -203,8 +203,9 @@ void note_locking(const std::vector<MaterialParameters>& parameters, const std::
   double highest = -1;
   for (const MaterialParameters& p : parameters) highest = std::max(highest, poisson_ratio(p.lame));
   if (highest > kLockingPoisson + 1e-9)
-    notes.push_back("body '" + body + "': Poisson's ratio reaches " + number_text(std::round(1e9 * highest) / 1e9) +
-                    "; linear tets lock above 0.45 and deform too little: set material.poisson = 0.45");
+    notes.push_back(
+        "body '" + body + "': Poisson's ratio reaches " + number_text(std::round(1e9 * highest) / 1e9) +
+        "; linear tets lock above 0.45 and deform too little: set order = 2 in the body, or material.poisson = 0.45");
 }
 
 template <class Source>
@@ -213,7 +214,7 @@ BodyMaterial material_from(Source& source, const std::string& model, const Place
   BodyMaterial material{model, {}, source.density()};
   if (body.scene["elastic"].boolean()) {
     material.parameters = source.parameters();
-    note_locking(material.parameters, body.name(), notes);
+    if (body.mesh.mids.empty()) note_locking(material.parameters, body.name(), notes);
   } else {
     material.model = kModelOfNothing;
     material.parameters.resize(body.mesh.tets.size());  // all stiffness is zero

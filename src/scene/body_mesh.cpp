@@ -15,6 +15,7 @@
 #include "mesh/generators.h"
 #include "mesh/surface.h"
 #include "mesh/surface_orientation.h"
+#include "mesh/tet_nodes.h"
 #include "scene/placement.h"
 
 namespace aspic {
@@ -117,10 +118,7 @@ LoadedMesh resolve_mesh(Value& body, MeshLoader& loader, std::optional<LoadedMes
 BodyMesh with_boundary_as_skin(TetMesh tets) {
   BoundarySurface boundary = boundary_surface(tets);
   BodyMesh body;
-  for (const int v : boundary.tet_vertex) {
-    body.embedding.vertices.push_back({v, v, v, v});
-    body.embedding.weights.push_back({1, 0, 0, 0});
-  }
+  for (const int v : boundary.tet_vertex) body.embedding.carriers.push_back(Carrier::of_vertex(v));
   body.skin = std::move(boundary.surface);
   body.tets = std::move(tets);
   return body;
@@ -130,6 +128,15 @@ BodyMesh with_skin(TetMesh tets, TriMesh skin) {
   BodyMesh body{std::move(tets), std::move(skin), {}};
   body.embedding = embed(body.tets, body.skin);
   return body;
+}
+
+// Makes the tets quadratic if the body has order 2.
+void raise_order_of(const Value& body, TetMesh& mesh) {
+  const Value& order = body["order"];
+  if (order.number() != 2) return;
+  if (!body["elastic"].boolean())
+    throw error_at(order.place, "order = 2; quadratic tets need elastic = true (remove one of the two)");
+  mesh = raise_order(std::move(mesh));
 }
 
 // For skins chosen by the scene. The surface of a filled mesh is always slightly outside.
@@ -200,7 +207,7 @@ std::string MeshLoader::why_not_in_memory(double more_tets) const {
 
 LoadedMesh load_mesh(const fs::path& path, double size, MeshLoader& loader) {
   check_size(path, loader);
-  std::variant<TetMesh, TriMesh> mesh = read_mesh(path);
+  std::variant<TetMesh, TriMesh> mesh = read_mesh(path, &loader.notes);
   if (TetMesh* tets = std::get_if<TetMesh>(&mesh)) {
     const int count = tets->tet_count();
     const std::string why = loader.limit.counts_files ? loader.why_not(count) : loader.why_not_in_memory(count);
@@ -234,6 +241,7 @@ BodyMesh make_body_mesh(Value& body, MeshLoader& loader, std::optional<LoadedMes
   loader.report_if_many(mesh.tets.tet_count(),
                         "checking " + std::to_string(mesh.tets.tet_count()) + " tets of body '" + name + "'");
   heed(diagnose(mesh.tets), "body '" + name + "'", loader.notes);
+  raise_order_of(body, mesh.tets);
 
   const Value* skin = body.find("skin");
   if (!skin && mesh.surface.empty()) return with_boundary_as_skin(std::move(mesh.tets));

@@ -9,6 +9,7 @@
 #include "io/ply.h"
 #include "mesh/doctor.h"
 #include "mesh/surface_locator.h"
+#include "mesh/tet_nodes.h"
 
 namespace aspic {
 namespace {
@@ -79,7 +80,7 @@ std::vector<double> PaintedFields::read(const fs::path& path, const std::string&
       throw InvalidInput("vertex " + std::to_string(v) + " is beyond 1e30 m, where distances overflow; correct it");
   }
   refuse_if_larger(surface.vertices, mesh, body_);
-  if (!extension_) extension_ = std::make_unique<HarmonicExtension>(mesh);
+  if (!extension_) extension_ = std::make_unique<HarmonicExtension>(linear_parts(mesh).mesh);
   const SurfaceLocator locator(surface.vertices, surface.triangles);
   const std::vector<int>& given = extension_->given();
   std::vector<double> values(mesh.rest.size(), 0.0), distance(given.size());

@@ -6,6 +6,8 @@
 #include "contact/barrier.h"
 #include "dynamics/step_fields.h"
 #include "io/vtu.h"
+#include "mesh/tet_nodes.h"
+#include "mesh/tet_shape.h"
 
 namespace aspic {
 namespace {
@@ -31,10 +33,25 @@ std::vector<double> region_of_tets(const TetMesh& mesh) {
   return {mesh.region.begin(), mesh.region.end()};
 }
 
+// Returns the pressure, minus a third of the trace of the stress, averaged by volume over the tets at each vertex:
+// pressures of single tets that are nearly incompressible may oscillate.
+std::vector<double> pressure_of_vertices(const TetMesh& mesh, const std::vector<double>& cauchy) {
+  std::vector<double> pressure(mesh.rest.size(), 0.0), size(mesh.rest.size(), 0.0);
+  for (int t = 0; t < mesh.tet_count(); ++t) {
+    const double V = volume(mesh, t), *stress = &cauchy[6 * static_cast<size_t>(t)];
+    for (const int v : nodes_of(mesh, t)) {
+      pressure[v] -= V * (stress[0] + stress[1] + stress[2]) / 3;
+      size[v] += V;
+    }
+  }
+  for (size_t v = 0; v < size.size(); ++v)
+    if (size[v] > 0) pressure[v] /= size[v];
+  return pressure;
+}
+
 // In the storage order of the model.
-std::vector<Field> cell_fields(const Simulation& simulation, FieldType real) {
+std::vector<Field> cell_fields(const Simulation& simulation, TetFields tet, FieldType real) {
   const Model& model = simulation.model();
-  TetFields tet = simulation.tet_fields();
   constexpr FieldType kLabel = FieldType::int32;
   std::vector<Field> fields;
   fields.push_back({"energy_density", 1, std::move(tet.energy_density), real});
@@ -88,12 +105,16 @@ void write_frame(const std::filesystem::path& path, const Simulation& simulation
   const auto& [vertex, tet] = model.numbering;
   std::vector<Field> point_fields = {{"displacement", 3, displacement(model.mesh, state.q), real},
                                      {"velocity", 3, state.qdot, real}};
+  TetFields tet_fields = simulation.tet_fields();
+  if (!model.mesh.mids.empty())
+    point_fields.push_back({"pressure", 1, pressure_of_vertices(model.mesh, tet_fields.cauchy), real});
   add_contact_fields(simulation, real, point_fields);
   for (Field& field : point_fields) field.values = vertex.to_user(field.values, field.components);
-  std::vector<Field> fields = cell_fields(simulation, real);
+  std::vector<Field> fields = cell_fields(simulation, std::move(tet_fields), real);
   for (Field& field : fields) field.values = tet.to_user(field.values, field.components);
-  write_vtu(path, vertex.to_user(state.q, 3), to_user(model.numbering, model.mesh).tets,
-            {point_fields, fields, file_fields(state.time, report)});
+  const TetMesh mesh = to_user(model.numbering, model.mesh);
+  write_vtu(path, vertex.to_user(state.q, 3), mesh.tets, {point_fields, fields, file_fields(state.time, report)},
+            mesh.mids);
 }
 
 }  // namespace aspic

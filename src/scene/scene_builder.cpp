@@ -26,10 +26,26 @@ std::vector<MaterialParameters> from_user(const Renumbering& tet, const std::vec
   return stored;
 }
 
+struct Offsets {
+  int tets, vertices;
+};
+
+void append_mids(const TetMesh& mesh, const Offsets& offsets, TetMesh& all) {
+  constexpr MidNodes kLinear = {-1, -1, -1, -1, -1, -1};
+  if (mesh.mids.empty() && all.mids.empty()) return;
+  all.mids.resize(offsets.tets, kLinear);
+  for (MidNodes mids : mesh.mids) {
+    for (int& node : mids) node += offsets.vertices;
+    all.mids.push_back(mids);
+  }
+  all.mids.resize(all.tets.size(), kLinear);
+}
+
 void append(const TetMesh& mesh, TetMesh& all) {
   const int offset = all.vertex_count(), first_tet = all.tet_count();
   all.rest.insert(all.rest.end(), mesh.rest.begin(), mesh.rest.end());
   for (const Tet& t : mesh.tets) all.tets.push_back({t[0] + offset, t[1] + offset, t[2] + offset, t[3] + offset});
+  append_mids(mesh, {first_tet, offset}, all);
   if (mesh.region.empty() && all.region.empty()) return;
   all.region.resize(first_tet, 0);  // bodies without labels have 0
   all.region.insert(all.region.end(), mesh.region.begin(), mesh.region.end());
@@ -179,8 +195,8 @@ class SceneBuilder {
       }
       note_start(body, source_.notes);
       add_to_model(body);
-      for (Tet& corners : mesh.embedding.vertices)
-        for (int& v : corners) v = body.model_vertex(v);
+      for (Carrier& carrier : mesh.embedding.carriers)
+        for (int n = 0; n < carrier.count; ++n) carrier.vertex[n] = body.model_vertex(carrier.vertex[n]);
       skins_.push_back({std::move(mesh.skin), std::move(mesh.embedding), body.name()});
       bodies_.push_back(std::move(body));
     }

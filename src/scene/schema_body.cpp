@@ -22,6 +22,7 @@ void add_body(Schema& s) {
   add_placement_keys(s, "body");
   add_keys(s, "body",
            {key("friction", kNumber, "coefficient of friction in contact; default: contact.friction", kNotNegative),
+            key("order", kInteger, "2: quadratic tets", Range{.min = 1, .max = 2}, Usual{"1", "linear tets"}),
             key("elastic", kBoolean, "false: no elastic energy, as for a mass-spring body",
                 Usual{"true", "a body is a continuum"}),
             key("material", kTable, "material", Members{"material"}, Usual{"{}"}),

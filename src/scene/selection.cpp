@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "base/error.h"
+#include "mesh/tet_nodes.h"
 #include "mesh/tet_shape.h"
 #include "mesh/vertices.h"
 #include "scene/expression.h"
@@ -61,7 +62,8 @@ std::vector<char> painted_vertices(const Value& where, const SelectionScope& sco
   return listed;
 }
 
-// One flag per vertex of the body for a list of indices or painted values; empty for other selections.
+// One flag per vertex of the body for a list of indices or painted values; empty for other selections. Between two
+// listed corners, the mid-edge node is listed too.
 std::vector<char> listed_vertices(const Value& where, const SelectionScope& scope) {
   if (where.is_table() && where.find("file")) return painted_vertices(where, scope);
   const Value* list = where.is_table() ? where.find("vertices") : nullptr;
@@ -73,6 +75,11 @@ std::vector<char> listed_vertices(const Value& where, const SelectionScope& scop
       throw error_at(index.place, "vertices: " + std::to_string(i) + " is beyond the last vertex of body '" +
                                       scope.body + "', " + std::to_string(scope.mesh.vertex_count() - 1));
     listed[i] = 1;
+  }
+  for (const MidNodes& mids : scope.mesh.mids) {
+    const Tet& corners = scope.mesh.tets[&mids - scope.mesh.mids.data()];
+    for (int k = 0; k < 6; ++k)
+      if (listed[corners[kTetEdges[k][0]]] && listed[corners[kTetEdges[k][1]]]) listed[mids[k]] = 1;
   }
   return listed;
 }
@@ -96,6 +103,29 @@ auto placed(const Value& where, const Select& select) {
     if (text.starts_with(to_string(where.place))) throw;
     throw error_at(where.place, text);
   }
+}
+
+const Triangle& corners_of(const Triangle& triangle) { return triangle; }
+const Triangle& corners_of(const Face& face) { return face.corners; }
+
+template <class Element>
+std::vector<Element> selected_elements(const Value& where, const SelectionScope& scope,
+                                       const std::vector<Element>& boundary) {
+  const std::vector<char> listed = listed_vertices(where, scope);
+  const std::vector<Element> selected = placed(where, [&] {
+    const Predicate holds = listed.empty() ? geometric(where, scope) : nullptr;
+    const auto is_listed = [&](int v) { return listed[v] != 0; };
+    const std::vector<Vec3d>& X = scope.mesh.rest;
+    std::vector<Element> result;
+    for (const Element& element : boundary) {
+      const Triangle& t = corners_of(element);
+      const Vec3d center = (1.0 / 3) * (X[t[0]] + X[t[1]] + X[t[2]]);
+      if (holds ? holds(center) : std::all_of(t.begin(), t.end(), is_listed)) result.push_back(element);
+    }
+    return result;
+  });
+  require_some(selected, where, scope, "boundary triangle");
+  return selected;
 }
 
 }  // namespace
@@ -131,20 +161,11 @@ std::vector<int> select_tets(const Value& where, const SelectionScope& scope) {
 
 std::vector<Triangle> select_triangles(const Value& where, const SelectionScope& scope,
                                        const std::vector<Triangle>& boundary) {
-  const std::vector<char> listed = listed_vertices(where, scope);
-  const std::vector<Triangle> selected = placed(where, [&] {
-    const Predicate holds = listed.empty() ? geometric(where, scope) : nullptr;
-    const auto is_listed = [&](int v) { return listed[v] != 0; };
-    const std::vector<Vec3d>& X = scope.mesh.rest;
-    std::vector<Triangle> result;
-    for (const Triangle& t : boundary) {
-      const Vec3d center = (1.0 / 3) * (X[t[0]] + X[t[1]] + X[t[2]]);
-      if (holds ? holds(center) : std::all_of(t.begin(), t.end(), is_listed)) result.push_back(t);
-    }
-    return result;
-  });
-  require_some(selected, where, scope, "boundary triangle");
-  return selected;
+  return selected_elements(where, scope, boundary);
+}
+
+std::vector<Face> select_faces(const Value& where, const SelectionScope& scope, const std::vector<Face>& boundary) {
+  return selected_elements(where, scope, boundary);
 }
 
 }  // namespace aspic

@@ -3,6 +3,7 @@
 #include <string>
 #include <vector>
 
+#include "mesh/surface.h"
 #include "mesh/tet_mesh.h"
 #include "scene/value.h"
 
@@ -20,5 +21,6 @@ std::vector<int> select_vertices(const Value& where, const SelectionScope& scope
 std::vector<int> select_tets(const Value& where, const SelectionScope& scope);
 std::vector<Triangle> select_triangles(const Value& where, const SelectionScope& scope,
                                        const std::vector<Triangle>& boundary);
+std::vector<Face> select_faces(const Value& where, const SelectionScope& scope, const std::vector<Face>& boundary);
 
 }  // namespace aspic

@@ -149,7 +149,7 @@ export function edgesOf(triangles: Uint32Array): Uint32Array {
 export function carried(surface: RecordedSurface, points: Float32Array): Float32Array {
   const { corners, weights, geometry } = surface;
   const positions = new Float32Array(geometry.rest.length);
-  const perVertex = weights ? 4 : 1;
+  const perVertex = (3 * corners.length) / geometry.rest.length;
   for (let c = 0; c < corners.length; ++c) {
     const to = 3 * Math.floor(c / perVertex);
     const from = 3 * corners[c];

@@ -1,0 +1,21 @@
+// Nearly incompressible solids of quadratic tets. A part of the bulk modulus acts on the mean J of each tet only, which
+// avoids locking [Simo, Taylor and Pister 1985; weakly penalized as in Hadjicharalambous et al. 2014]:
+//   V = sum over tets of int psi(F; mu, la_pt) dX + volume (la - la_pt)/2 (mean J - 1)^2,   la_pt = min(la, 3/2 mu)
+// The moduli of small strains are those of psi(F; mu, la). The remaining pointwise part, with Poisson's ratio 0.3, is
+// needed: the mean leaves three modes per tet without energy.
+#pragma once
+#include <memory>
+#include <span>
+
+#include "energy/tet_elasticity.h"
+
+namespace aspic {
+
+// Returns whether a term of these tets uses the mean volume: quadratic tets with a Poisson's ratio above 0.45.
+bool needs_mean_volume(const TetMesh& mesh, int first, std::span<const MaterialParameters> parameters);
+
+// `make_shape`: makes the first term for other parameters.
+std::unique_ptr<TetElasticity> make_mean_volume(const ElasticityMaker& make_shape, const TetMesh& mesh, int first,
+                                                std::span<const MaterialParameters> parameters);
+
+}  // namespace aspic

@@ -1,0 +1,478 @@
+// Terms of V on quadratic tets: derivatives, invariants, exact integrals.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <random>
+
+#include "base/parallel.h"
+#include "dynamics/step_derivatives.h"
+#include "energy/linear_load.h"
+#include "energy/mass.h"
+#include "energy/pressure.h"
+#include "energy/stiff_energy.h"
+#include "energy/tet_elasticity.h"
+#include "material/list.h"
+#include "math/vectors.h"
+#include "mesh/generators.h"
+#include "mesh/numbering.h"
+#include "mesh/tet_nodes.h"
+#include "mesh/tet_shape.h"
+
+namespace aspic {
+namespace {
+
+const Vec3d kSize = {{1, 0.8, 0.6}};
+
+// Renumbered, so that mid-edge nodes and corners are in any order.
+TetMesh quadratic_box(std::array<int, 3> cells) {
+  const TetMesh mesh = raise_order(make_box({{0, 0, 0}}, kSize, cells));
+  return from_user(locality_numbering(mesh), mesh);
+}
+
+const TetMesh& small() {
+  static const TetMesh mesh = quadratic_box({3, 2, 1});  // 36 tets
+  return mesh;
+}
+
+std::vector<MaterialParameters> different_parameters(const TetMesh& mesh, const MaterialInfo& info) {
+  std::vector<MaterialParameters> parameters;
+  for (int t = 0; t < mesh.tet_count(); ++t) {
+    MaterialParameters p{lame_from_young_poisson(1 + 0.1 * t, 0.1 + 0.004 * (t % 60)), {}};
+    for (size_t k = 0; k < info.extra.size(); ++k) p.extra[k] = info.extra[k].fallback;
+    parameters.push_back(p);
+  }
+  return parameters;
+}
+
+// With a mean volume, except for some tets.
+std::vector<MaterialParameters> nearly_incompressible(const TetMesh& mesh, const MaterialInfo& info) {
+  constexpr double kPoisson[] = {0.49, 0.2, 0.499, 0.47};
+  std::vector<MaterialParameters> parameters = different_parameters(mesh, info);
+  for (int t = 0; t < mesh.tet_count(); ++t) parameters[t].lame = lame_from_young_poisson(1 + 0.1 * t, kPoisson[t % 4]);
+  return parameters;
+}
+
+using ParametersOf = std::vector<MaterialParameters> (*)(const TetMesh& mesh, const MaterialInfo& info);
+constexpr ParametersOf kBothParameters[] = {different_parameters, nearly_incompressible};
+
+std::vector<double> positions(const TetMesh& mesh, const Mat3d& A, double noise, const Vec3d& shift = {}) {
+  std::mt19937 random(3);
+  std::uniform_real_distribution<double> uniform(-noise, noise);
+  std::vector<double> x;
+  for (const Vec3d& X : mesh.rest) {
+    const Vec3d y = A * X + shift;
+    for (int r = 0; r < 3; ++r) x.push_back(y[r] + (noise > 0 ? uniform(random) : 0));
+  }
+  return x;
+}
+const Mat3d kAffine = {{1.1, 0.2, 0.1, -0.15, 0.95, 0.05, 0.1, 0, 1.05}};
+
+BlockPattern bound_pattern(const TetMesh& mesh, Energy& V) {
+  Couplings couplings;
+  V.add_couplings(couplings);
+  const BlockPattern pattern = make_pattern(mesh.vertex_count(), couplings);
+  V.bind(pattern);
+  return pattern;
+}
+
+void expect_derivatives(Energy& V, const std::vector<double>& x, const std::string& what,
+                        const StepContext& step = {}) {
+  const BlockPattern pattern = bound_pattern(small(), V);
+  const DerivativeReport report = check_derivatives(differentiable(ActiveTerm(V, step), pattern), x, {.length = 0.2});
+  for (const DerivativeCheck* check : {&report.gradient, &report.hessian})
+    EXPECT_TRUE(check->passed) << what << ": " << check->smallest_error;
+}
+
+TEST(QuadraticElasticity, DerivativesMatchDifferencesForEveryMaterial) {
+  for (const ParametersOf parameters_of : kBothParameters)
+    for (const MaterialInfo& info : materials()) {
+      const auto V = make_tet_elasticity(info.name, small(), 0, parameters_of(small(), info));
+      expect_derivatives(*V, positions(small(), kAffine, 0.02), info.name);
+    }
+}
+
+// F = sum x_n grad N_n, from the barycentric coordinates l and their gradients b.
+Mat3d plain_gradient(const TetMesh& mesh, int t, const std::vector<double>& x, const std::array<double, 4>& l) {
+  const TetNodes nodes = nodes_of(mesh, t);
+  const Mat3d B = inverse(edge_matrix(mesh, t));
+  Vec3d b[4] = {};
+  for (int v = 1; v < 4; ++v) {
+    b[v] = {{B(v - 1, 0), B(v - 1, 1), B(v - 1, 2)}};
+    b[0] = b[0] - b[v];
+  }
+  Mat3d F{};
+  for (int n = 0; n < 10; ++n) {
+    const auto [i, j] = std::pair(n < 4 ? n : kTetEdges[n - 4][0], n < 4 ? n : kTetEdges[n - 4][1]);
+    const Vec3d grad = n < 4 ? (4 * l[i] - 1) * b[i] : 4 * l[i] * b[j] + 4 * l[j] * b[i];
+    for (int r = 0; r < 3; ++r)
+      for (int c = 0; c < 3; ++c) F(r, c) += x[3 * nodes[n] + r] * grad[c];
+  }
+  return F;
+}
+
+TEST(QuadraticElasticity, MatchesPlainSumOverFourPoints) {
+  const std::vector<double> x = positions(small(), kAffine, 0.02);
+  const double near = (5 + 3 * std::sqrt(5)) / 20, far = (5 - std::sqrt(5)) / 20;
+  for_each_material([&]<class M>() {
+    const auto parameters = different_parameters(small(), M::info());
+    const auto V = make_tet_elasticity(M::info().name, small(), 0, parameters);
+    double plain = 0, least = INFINITY;
+    for (int t = 0; t < small().tet_count(); ++t)
+      for (int q = 0; q < 4; ++q) {
+        std::array<double, 4> l = {far, far, far, far}, corner = {0, 0, 0, 0};
+        l[q] = near, corner[q] = 1;
+        const Mat3d F = plain_gradient(small(), t, x, l);
+        plain += volume(small(), t) / 4 * M::psi(F, M::params(parameters[t]));
+        least = std::min({least, determinant(F), determinant(plain_gradient(small(), t, x, corner))});
+      }
+    EXPECT_NEAR(V->value(x), plain, 1e-12 * std::abs(plain)) << M::info().name;
+    EXPECT_NEAR(V->min_det_F(x), least, 1e-12) << M::info().name;
+  });
+}
+
+TEST(QuadraticElasticity, LeastDeterminantIsBelowInvertedInterior) {
+  const TetMesh mesh = quadratic_box({1, 1, 1});
+  const auto V = make_tet_elasticity("neo_hookean", mesh, 0,
+                                     std::vector<MaterialParameters>(6, {lame_from_young_poisson(1, 0.3), {}}));
+  int inverted = 0, proven = 0;
+  for (int state = 1; state <= 40; ++state) {
+    const std::vector<double> x = positions(mesh, kAffine, 0.005 * state);
+    double sampled = INFINITY;
+    for (int t = 0; t < mesh.tet_count(); ++t)
+      for (int i = 0; i <= 6; ++i)
+        for (int j = 0; i + j <= 6; ++j)
+          for (int k = 0; i + j + k <= 6; ++k)
+            sampled = std::min(
+                sampled, determinant(plain_gradient(mesh, t, x, {i / 6.0, j / 6.0, k / 6.0, (6 - i - j - k) / 6.0})));
+    const double least = V->min_det_F(x);
+    if (sampled < 0) {
+      EXPECT_LE(least, sampled);
+    } else if (least > 0) {
+      ++proven;
+    }
+    inverted += sampled < 0;
+  }
+  EXPECT_GT(inverted, 5);
+  EXPECT_GT(proven, 5);
+}
+
+TEST(QuadraticElasticity, AffineStateHasUniformStressAndNoInnerForces) {
+  const TetMesh mesh = quadratic_box({4, 3, 3});
+  const std::vector<double> x = positions(mesh, kAffine, 0);
+  const std::vector<Triangle> boundary = boundary_triangles(mesh, 0, mesh.tet_count());
+  std::vector<char> is_inner(mesh.rest.size(), 1);
+  for (const Triangle& t : boundary)
+    for (const int v : t) is_inner[v] = 0;
+  for_each_material([&]<class M>() {
+    MaterialParameters p{lame_from_young_poisson(1, 0.3), {}};
+    for (size_t k = 0; k < M::info().extra.size(); ++k) p.extra[k] = M::info().extra[k].fallback;
+    const auto V = make_tet_elasticity(M::info().name, mesh, 0, std::vector<MaterialParameters>(mesh.tet_count(), p));
+    EXPECT_NEAR(V->value(x), 0.48 * M::psi(kAffine, M::params(p)), 1e-13) << M::info().name;
+    std::vector<double> g(x.size(), 0.0);
+    V->add_gradient(x, 1, g);
+    double inner = 0;
+    for (size_t v = 0; v < is_inner.size(); ++v)
+      for (int r = 0; r < 3 && is_inner[v]; ++r) inner = std::max(inner, std::abs(g[3 * v + r]));
+    EXPECT_LT(inner, 1e-14) << M::info().name;
+  });
+}
+
+TEST(QuadraticElasticity, RigidMotionChangesNeitherEnergyNorForces) {
+  const Mat3d R =
+      from_columns<double>({{2. / 3, 2. / 3, 1. / 3}}, {{-2. / 3, 1. / 3, 2. / 3}}, {{1. / 3, -2. / 3, 2. / 3}});
+  const auto V = make_tet_elasticity("neo_hookean_log", small(), 0,
+                                     different_parameters(small(), material_info("neo_hookean_log")));
+  const std::vector<double> x = positions(small(), kAffine, 0.02);
+  std::vector<double> moved, g(x.size(), 0.0), g_moved(x.size(), 0.0);
+  for (size_t v = 0; v < small().rest.size(); ++v) {
+    const Vec3d y = R * point(x, static_cast<int>(v)) + Vec3d{{3, -2, 5}};
+    moved.insert(moved.end(), y.a, y.a + 3);
+  }
+  EXPECT_NEAR(V->value(moved), V->value(x), 1e-13 * V->value(x));
+  V->add_gradient(x, 1, g);
+  V->add_gradient(moved, 1, g_moved);
+  for (int v = 0; v < small().vertex_count(); ++v)
+    EXPECT_LT(norm(point(g_moved, v) - R * point(g, v)), 1e-13 * max_abs(g) * 10);
+}
+
+TEST(QuadraticElasticity, AbsoluteHessianHasNoNegativeCurvature) {
+  const auto V =
+      make_tet_elasticity("neo_hookean", small(), 0, different_parameters(small(), material_info("neo_hookean")));
+  const BlockPattern pattern = bound_pattern(small(), *V);
+  const std::vector<double> x = positions(small(), kAffine, 0.3);
+  BlockSparse H(pattern);
+  EXPECT_GT(V->add_hessian(x, 1, {Definiteness::absolute}, H), 0);
+  std::mt19937 random(5);
+  std::uniform_real_distribution<double> uniform(-1, 1);
+  std::vector<double> d(x.size()), Hd(x.size());
+  for (int trial = 0; trial < 20; ++trial) {
+    for (double& di : d) di = uniform(random);
+    H.multiply(d, Hd);
+    EXPECT_GT(dot(d, Hd), 0);
+  }
+}
+
+TEST(QuadraticElasticity, BitsDoNotDependOnThreadCount) {
+  const TetMesh mesh = quadratic_box({9, 7, 5});
+  const std::vector<double> x = positions(mesh, kAffine, 0.01);
+  std::vector<std::vector<double>> results;
+  const int before = thread_count();
+  for (const int threads : {1, 2, 5}) {
+    set_thread_count(threads);
+    const auto V =
+        make_tet_elasticity("neo_hookean", mesh, 0, different_parameters(mesh, material_info("neo_hookean")));
+    const BlockPattern pattern = bound_pattern(mesh, *V);
+    BlockSparse H(pattern);
+    std::vector<double> sums(x.size(), 0.0);
+    V->add_gradient(x, 1, sums);
+    V->add_hessian(x, 1, {Definiteness::clamped}, H);
+    sums.push_back(V->value(x));
+    for (const Mat3d& block : H.block) sums.insert(sums.end(), block.a, block.a + 9);
+    results.push_back(sums);
+  }
+  set_thread_count(before);
+  EXPECT_EQ(results[1], results[0]);
+  EXPECT_EQ(results[2], results[0]);
+}
+
+void expect_parameter_derivatives(ParametersOf parameters_of) {
+  for (const char* material : {"neo_hookean", "fung"}) {
+    const MaterialInfo& info = material_info(material);
+    std::vector<MaterialParameters> parameters = parameters_of(small(), info);
+    const auto V = make_tet_elasticity(material, small(), 0, parameters);
+    const std::vector<double> x = positions(small(), kAffine, 0.02);
+    const int count = V->parameter_count();
+    std::vector<double> change(parameters.size() * count), force(x.size(), 0.0), gradient(change.size(), 0.0);
+    for (size_t i = 0; i < change.size(); ++i) change[i] = std::sin(1.0 + static_cast<double>(i));
+    V->add_parameter_force(x, change, 1, force);
+    std::vector<double> difference(x.size(), 0.0);
+    constexpr double kStep = 1e-5;
+    for (const double sign : {1.0, -1.0}) {
+      std::vector<MaterialParameters> other = parameters;
+      for (size_t t = 0; t < other.size(); ++t) {
+        other[t].lame.mu += sign * kStep * change[count * t];
+        other[t].lame.lambda += sign * kStep * change[count * t + 1];
+        for (int k = 2; k < count; ++k) other[t].extra[k - 2] += sign * kStep * change[count * t + k];
+      }
+      V->set_parameters(other);
+      V->add_gradient(x, sign / (2 * kStep), difference);
+    }
+    V->set_parameters(parameters);
+    double error = 0;
+    for (size_t i = 0; i < x.size(); ++i) error = std::max(error, std::abs(force[i] - difference[i]));
+    EXPECT_LT(error, 1e-7 * max_abs(force)) << material;
+    V->add_parameter_gradient(x, x, 1, gradient);
+    EXPECT_NEAR(dot(gradient, change), dot(force, x), 1e-12 * std::abs(dot(force, x))) << material;
+  }
+}
+
+TEST(QuadraticElasticity, ParameterDerivativesMatchDifferences) {
+  for (const ParametersOf parameters_of : kBothParameters) expect_parameter_derivatives(parameters_of);
+}
+
+void expect_hessian_derivatives(ParametersOf parameters_of, Definiteness definiteness) {
+  std::vector<MaterialParameters> parameters = parameters_of(small(), material_info("neo_hookean"));
+  const auto V = make_tet_elasticity("neo_hookean", small(), 0, parameters);
+  const BlockPattern pattern = bound_pattern(small(), *V);
+  const std::vector<double> x = positions(small(), kAffine, 0.02), u = positions(small(), kAffine, 0.5);
+  const auto direction = [](size_t i) { return std::sin(1.0 + static_cast<double>(i)); };
+  std::vector<double> by_x(x.size(), 0.0), by_parameters(2 * parameters.size(), 0.0), Hu(x.size());
+  V->add_hessian_derivatives(x, u, u, definiteness, {1, by_x, by_parameters});
+  const auto energy = [&](double x_step, double parameter_step) {
+    std::vector<double> moved = x;
+    for (size_t i = 0; i < x.size(); ++i) moved[i] += x_step * direction(i);
+    std::vector<MaterialParameters> other = parameters;
+    for (size_t t = 0; t < other.size(); ++t) {
+      other[t].lame.mu += parameter_step * direction(2 * t);
+      other[t].lame.lambda += parameter_step * direction(2 * t + 1);
+    }
+    V->set_parameters(other);
+    BlockSparse H(pattern);
+    V->add_hessian(moved, 1, {definiteness}, H);
+    H.multiply(u, Hu);
+    return dot(u, Hu);
+  };
+  double along_x = 0, along_parameters = 0;
+  for (size_t i = 0; i < x.size(); ++i) along_x += by_x[i] * direction(i);
+  for (size_t i = 0; i < by_parameters.size(); ++i) along_parameters += by_parameters[i] * direction(i);
+  EXPECT_NEAR((energy(1e-5, 0) - energy(-1e-5, 0)) / 2e-5, along_x, 2e-7 * std::abs(along_x));
+  EXPECT_NEAR((energy(0, 1e-5) - energy(0, -1e-5)) / 2e-5, along_parameters, 2e-7 * std::abs(along_parameters));
+}
+
+TEST(QuadraticElasticity, HessianDerivativesMatchDifferences) {
+  for (const ParametersOf parameters_of : kBothParameters) {
+    expect_hessian_derivatives(parameters_of, Definiteness::exact);
+    expect_hessian_derivatives(parameters_of, Definiteness::clamped);
+  }
+}
+
+double mean_J(const TetMesh& mesh, int t, const std::vector<double>& x) {
+  const double near = (5 + 3 * std::sqrt(5)) / 20, far = (5 - std::sqrt(5)) / 20;
+  double J = 0;
+  for (int q = 0; q < 4; ++q) {
+    std::array<double, 4> l = {far, far, far, far};
+    l[q] = near;
+    J += determinant(plain_gradient(mesh, t, x, l)) / 4;
+  }
+  return J;
+}
+
+TEST(MeanVolume, AddsBulkEnergyOfMeanJ) {
+  const MaterialInfo& info = material_info("neo_hookean");
+  const std::vector<MaterialParameters> parameters = nearly_incompressible(small(), info);
+  std::vector<MaterialParameters> pointwise = parameters;
+  for (MaterialParameters& p : pointwise) p.lame.lambda = std::min(p.lame.lambda, 1.5 * p.lame.mu);
+  const auto V = make_tet_elasticity(info.name, small(), 0, parameters);
+  const std::vector<double> x = positions(small(), kAffine, 0.02);
+  double expected = make_tet_elasticity(info.name, small(), 0, pointwise)->value(x);
+  for (int t = 0; t < small().tet_count(); ++t) {
+    const double bulk = parameters[t].lame.lambda - pointwise[t].lame.lambda, J = mean_J(small(), t, x);
+    expected += volume(small(), t) * bulk / 2 * (J - 1) * (J - 1);
+  }
+  EXPECT_NEAR(V->value(x), expected, 1e-12 * expected);
+}
+
+TEST(MeanVolume, StiffRowsArePartOfHessian) {
+  const auto V =
+      make_tet_elasticity("neo_hookean", small(), 0, nearly_incompressible(small(), material_info("neo_hookean")));
+  const auto* stiff = dynamic_cast<const StiffEnergy*>(V.get());
+  ASSERT_TRUE(stiff);
+  const BlockPattern pattern = bound_pattern(small(), *V);
+  const std::vector<double> x = positions(small(), identity3<double>(), 0);  // without pressure
+  StiffRows rows;
+  stiff->add_stiff_rows(x, 2, rows);
+  EXPECT_EQ(rows.size(), 27u) << "a quarter of the 36 tets is compressible";
+  BlockSparse H(pattern), shape(pattern);
+  std::vector<MaterialParameters> pointwise(V->parameters().begin(), V->parameters().end());
+  for (MaterialParameters& p : pointwise) p.lame.lambda = std::min(p.lame.lambda, 1.5 * p.lame.mu);
+  const auto V_shape = make_tet_elasticity("neo_hookean", small(), 0, pointwise);
+  V_shape->bind(pattern);
+  V->add_hessian(x, 2, {Definiteness::exact}, H);
+  V_shape->add_hessian(x, 2, {Definiteness::exact}, shape);
+  const std::vector<double> d = positions(small(), kAffine, 0.5);
+  std::vector<double> Hd(d.size()), shape_d(d.size());
+  H.multiply(d, Hd), shape.multiply(d, shape_d);
+  double expected = dot(d, shape_d);
+  for (const StiffRow& row : rows) {
+    double along = 0;
+    for (size_t n = 0; n < row.vertex.size(); ++n) along += dot(row.g[n], point(d, row.vertex[n]));
+    expected += row.weight * along * along;
+  }
+  EXPECT_NEAR(dot(d, Hd), expected, 1e-12 * expected);
+}
+
+// A Newton step linearizes the pressure; the next Hessian uses it in place of K (mean J - 1).
+TEST(MeanVolume, HessianUsesPressureOfNewtonStep) {
+  const auto V =
+      make_tet_elasticity("neo_hookean", small(), 0, nearly_incompressible(small(), material_info("neo_hookean")));
+  const BlockPattern pattern = bound_pattern(small(), *V);
+  ActiveTerm term(*V, {});
+  const std::vector<double> x = positions(small(), kAffine, 0.02);
+  const std::vector<double> still(x.size(), 0.0);
+  const auto hessian = [&] {
+    BlockSparse H(pattern);
+    term.add_hessian(x, 1, {Definiteness::exact}, H);
+    std::vector<double> entries;
+    for (const Mat3d& block : H.block) entries.insert(entries.end(), block.a, block.a + 9);
+    return entries;
+  };
+  const std::vector<double> exact = hessian();
+  const auto* stiff = dynamic_cast<const StiffEnergy*>(V.get());
+  const auto expect_exact = [&] {
+    const std::vector<double> now = hessian();
+    for (size_t i = 0; i < now.size(); ++i) ASSERT_NEAR(now[i], exact[i], 1e-12 * max_abs(exact));
+  };
+  stiff->note_newton_step(x, still, term.context());
+  expect_exact();  // no step: the same pressure
+  stiff->note_newton_step(x, positions(small(), kAffine, 0), term.context());
+  EXPECT_NE(hessian(), exact);
+  term.begin_step({});
+  EXPECT_EQ(hessian(), exact);
+}
+
+TEST(QuadraticDamping, DerivativesMatchDifferences) {
+  const auto D = make_strain_rate_damping(small(), 0, std::vector<double>(small().tet_count(), 0.7));
+  const std::vector<double> start = positions(small(), identity3<double>(), 0.01);
+  expect_derivatives(*D, positions(small(), kAffine, 0.02), "strain_rate_damping", {.start = start, .h = 0.1});
+}
+
+// Values of X^a Y^b Z^c at the nodes, along each axis; its integral over the box.
+std::vector<double> monomial(const TetMesh& mesh, const std::array<int, 3>& power) {
+  std::vector<double> values;
+  for (const Vec3d& X : mesh.rest)
+    values.insert(values.end(), 3, std::pow(X[0], power[0]) * std::pow(X[1], power[1]) * std::pow(X[2], power[2]));
+  return values;
+}
+double integral(const std::array<int, 3>& power) {
+  double product = 1;
+  for (int r = 0; r < 3; ++r) product *= std::pow(kSize[r], power[r] + 1) / (power[r] + 1);
+  return product;
+}
+
+TEST(QuadraticMass, IntegratesQuadraticFieldsExactly) {
+  const std::vector<double> density(small().tet_count(), 3.0);
+  const MassMatrix mass(small(), density, MassKind::consistent);
+  std::vector<double> product(3 * small().rest.size());
+  for (const auto& [a, b] : {std::pair<std::array<int, 3>, std::array<int, 3>>{{2, 0, 0}, {2, 0, 0}},
+                             {{1, 1, 0}, {0, 0, 2}},
+                             {{0, 0, 0}, {0, 1, 1}}}) {
+    mass.multiply(monomial(small(), a), product);
+    EXPECT_NEAR(dot(monomial(small(), b), product), 9 * integral({a[0] + b[0], a[1] + b[1], a[2] + b[2]}), 1e-13);
+  }
+  const std::vector<double> one = monomial(small(), {0, 0, 0});
+  mass.multiply(one, product);
+  for (int v = 0; v < small().vertex_count(); ++v) EXPECT_NEAR(mass.row_sums()[v], product[3 * v], 1e-15);
+}
+
+TEST(QuadraticMass, LumpedMassesArePositiveAndSumToTotal) {
+  const std::vector<double> density(small().tet_count(), 3.0);
+  for (const MassKind kind : {MassKind::consistent, MassKind::lumped}) {
+    const MassMatrix mass(small(), density, kind);
+    EXPECT_GT(*std::min_element(mass.vertex_mass().begin(), mass.vertex_mass().end()), 0);
+    EXPECT_NEAR(mass.total(), 3 * 0.48, 1e-13);
+    EXPECT_NEAR(std::accumulate(mass.row_sums().begin(), mass.row_sums().end(), 0.0), 3 * 0.48, 1e-13);
+  }
+}
+
+TEST(QuadraticLoads, WorkOnQuadraticDisplacementIsExact) {
+  const std::vector<double> u = monomial(small(), {2, 0, 0});
+  std::vector<double> force(u.size(), 0.0);
+  for (int t = 0; t < small().tet_count(); ++t) add_body_force(small(), t, {{1, 0, 0}}, force);
+  EXPECT_NEAR(dot(force, u), integral({2, 0, 0}), 1e-14);
+  std::fill(force.begin(), force.end(), 0.0);
+  for (const Face& face : boundary_faces(small(), 0, small().tet_count()))
+    if (std::all_of(face.corners.begin(), face.corners.end(), [](int v) { return small().rest[v][2] > 0.6 - 1e-9; }))
+      add_traction(small().rest, face, {{0, 1, 0}}, force);
+  EXPECT_NEAR(dot(force, u), 0.8 / 3, 1e-14);  // int X^2 over the top
+}
+
+TEST(QuadraticPressure, DerivativesMatchDifferences) {
+  std::vector<Face> top;
+  for (const Face& face : boundary_faces(small(), 0, small().tet_count()))
+    if (std::all_of(face.corners.begin(), face.corners.end(), [](int v) { return small().rest[v][2] > 0.6 - 1e-9; }))
+      top.push_back(face);
+  const auto V = make_pressure(small(), top, 3);
+  expect_derivatives(*V, positions(small(), kAffine, 0.05), "pressure");
+}
+
+TEST(QuadraticPressure, SweepsVolumeChangeOfClosedSurface) {
+  const auto V = make_pressure(small(), boundary_faces(small(), 0, small().tet_count()), 3);
+  EXPECT_NEAR(V->value(positions(small(), kAffine, 0)), 3 * 0.48 * (determinant(kAffine) - 1), 1e-14);
+  const std::vector<double> x = positions(small(), kAffine, 0.05);
+  std::vector<double> g(x.size(), 0.0);
+  V->add_gradient(x, 1, g);
+  Vec3d force{}, torque{};
+  for (int v = 0; v < small().vertex_count(); ++v)
+    force = force + point(g, v), torque = torque + cross(point(x, v), point(g, v));
+  EXPECT_LT(norm(force), 1e-14);
+  EXPECT_LT(norm(torque), 1e-14);
+  // X -> X + c X^2 along x is a quadratic map with the volume change c X^2 Y Z of the box.
+  std::vector<double> bent;
+  for (const Vec3d& X : small().rest) bent.insert(bent.end(), {X[0] + 0.2 * X[0] * X[0], X[1], X[2]});
+  EXPECT_NEAR(V->value(bent), 3 * 0.2 * 0.48, 1e-14);
+}
+
+}  // namespace
+}  // namespace aspic

@@ -1,0 +1,212 @@
+#include "linalg/lifted_solver.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "base/check.h"
+#include "base/parallel.h"
+#include "math/vectors.h"
+
+namespace aspic {
+namespace {
+
+constexpr int kRestart = 30;      // vectors of each basis
+constexpr double kUseful = 0.99;  // reduction of the residual by a cycle
+
+double along(const StiffRow& row, std::span<const double> x) {  // g . x
+  double sum = 0;
+  for (size_t n = 0; n < row.vertex.size(); ++n) sum += dot(row.g[n], vec_at(x, row.vertex[n]));
+  return sum;
+}
+
+void add(const StiffRow& row, double factor, std::span<double> x) {  // x += factor g
+  for (size_t n = 0; n < row.vertex.size(); ++n) add_vec(factor * row.g[n], row.vertex[n], x);
+}
+
+// Subtracts weight g g' from the blocks.
+void subtract(const StiffRow& row, BlockSparse& A) {
+  for (size_t n = 0; n < row.vertex.size(); ++n)
+    for (size_t m = 0; m < row.vertex.size(); ++m) {
+      const int high = row.vertex[n], low = row.vertex[m];
+      if (low > high) continue;
+      Mat3d& block = A.block[A.pattern->slot(high, low)];
+      for (int c = 0; c < 3; ++c)
+        for (int r = 0; r < 3; ++r) block(r, c) -= row.weight * (row.g[n][r] * row.g[m][c]);
+    }
+}
+
+double mean_diagonal(const BlockSparse& A) {
+  double sum = 0;
+  for (int row = 0; row < A.pattern->rows(); ++row) sum += trace(A.block[A.pattern->diagonal(row)]) / 3;
+  return sum > 0 ? sum / A.pattern->rows() : 1;
+}
+
+// A rotation of rows i and i + 1 of the Hessenberg matrix.
+struct Rotation {
+  double c, s;
+  static Rotation that_clears(double above, double below) {
+    const double length = std::hypot(above, below);
+    return length > 0 ? Rotation{above / length, below / length} : Rotation{1, 0};
+  }
+  void apply(double& above, double& below) const {
+    const double a = above;
+    above = c * a + s * below;
+    below = c * below - s * a;
+  }
+};
+
+}  // namespace
+
+const BlockSparse& LiftedSolver::separate(const BlockSparse& H, const StiffRows& rows) {
+  H_ = &H, rows_ = &rows;
+  if (!A_ || A_->pattern != H.pattern) A_.emplace(*H.pattern);
+  A_->block = H.block;
+  A_->stencils = H.stencils;
+  for (const StiffRow& row : rows) subtract(row, *A_);
+  const double stiffness = mean_diagonal(*A_);
+  scale_.clear();
+  for (const StiffRow& row : rows) scale_.push_back(std::sqrt(stiffness / (row.compliance + 1 / row.weight)));
+  const size_t size = 3 * static_cast<size_t>(H.pattern->rows()) + rows.size();
+  v_.resize(kRestart + 1), z_.resize(kRestart);
+  for (auto* basis : {&v_, &z_})
+    for (std::vector<double>& v : *basis)
+      if (v.size() != size) v.clear();
+  t_.resize(size);
+  primal_.resize(size - rows.size()), right_.resize(size - rows.size());
+  return *A_;
+}
+
+// w = [A B'; B -D^-1] z in units of scale_.
+void LiftedSolver::apply(std::span<const double> z, std::span<double> w) const {
+  const size_t n = primal_.size();
+  A_->multiply(z.first(n), w.first(n));
+  for (size_t e = 0; e < rows(); ++e) {
+    const StiffRow& row = (*rows_)[e];
+    const double p = scale_[e] * z[n + e];
+    add(row, p, w.first(n));
+    w[n + e] = scale_[e] * (along(row, z.first(n)) - p / row.weight);
+  }
+}
+
+void LiftedSolver::apply_preconditioner(std::span<const double> r, std::span<double> z,
+                                        const Precondition& precondition) {
+  const size_t n = primal_.size();
+  std::copy_n(r.begin(), n, right_.begin());
+  for (size_t e = 0; e < rows(); ++e) {
+    const StiffRow& row = (*rows_)[e];
+    const double p = -r[n + e] / scale_[e] / (row.compliance + 1 / row.weight);
+    z[n + e] = p / scale_[e];
+    add(row, -p, right_);
+  }
+  precondition(right_, z.first(n));
+}
+
+// The residual of H d = b is r_d + B'D r_p.
+double LiftedSolver::primal_norm(std::span<const double> r, double factor) {
+  const size_t n = primal_.size();
+  std::copy_n(r.begin(), n, primal_.begin());
+  for (size_t e = 0; e < rows(); ++e) add((*rows_)[e], (*rows_)[e].weight * r[n + e] / scale_[e], primal_);
+  return std::abs(factor) * norm(primal_);
+}
+
+struct LiftedSolver::Cycle {
+  double target;  // of the primal residual
+  SolveReport& report;
+  std::vector<double>&x, &r;                                   // solution and residual of the lifted system
+  std::array<std::array<double, kRestart + 1>, kRestart> h{};  // columns of the triangular factor
+  std::array<Rotation, kRestart> rotation{};
+  std::array<double, kRestart + 1> right{};
+  int size = 0;
+
+  // Solves the triangular system.
+  std::vector<double> coefficients() const {
+    std::vector<double> y(right.begin(), right.begin() + size);
+    for (int i = size - 1; i >= 0; --i) {
+      for (int j = i + 1; j < size; ++j) y[i] -= h[j][i] * y[j];
+      y[i] /= h[i][i];
+    }
+    return y;
+  }
+};
+
+// Improves cycle.x, with the residual cycle.r. Returns whether no further cycle is needed.
+bool LiftedSolver::run(Cycle& cycle, const Precondition& precondition) {
+  const size_t size = cycle.r.size();
+  const double start = norm(cycle.r);
+  v_[0] = cycle.r;
+  for (double& vi : v_[0]) vi /= start;
+  t_ = v_[0];
+  cycle.right[0] = start;
+  bool is_done = false;
+  for (int j = 0; j < kRestart && !is_done; ++j) {
+    z_[j].resize(size), v_[j + 1].resize(size);
+    apply_preconditioner(v_[j], z_[j], precondition);
+    ++cycle.report.iterations, ++cycle.report.products;
+    std::vector<double>& w = v_[j + 1];
+    apply(z_[j], w);
+    auto& h = cycle.h[j];
+    for (int i = 0; i <= j; ++i) {
+      h[i] = dot(w, v_[i]);
+      add_scaled(-h[i], v_[i], w);
+    }
+    h[j + 1] = norm(w);
+    const double below = h[j + 1];
+    for (int i = 0; i < j; ++i) cycle.rotation[i].apply(h[i], h[i + 1]);
+    Rotation& rotation = cycle.rotation[j] = Rotation::that_clears(h[j], h[j + 1]);
+    rotation.apply(h[j], h[j + 1]);
+    rotation.apply(cycle.right[j], cycle.right[j + 1]);
+    cycle.size = j + 1;
+    is_done = !(below > 0) || cycle.report.iterations >= max_iterations_;  // an exact solution, or NaN
+    if (!(below > 0)) break;
+    for (size_t i = 0; i < size; ++i) {
+      w[i] /= below;
+      t_[i] = rotation.c * w[i] - rotation.s * t_[i];
+    }
+    is_done = is_done || primal_norm(t_, cycle.right[j + 1]) <= cycle.target;
+    cycle.report.stopped = stop_.stopped();
+    is_done = is_done || cycle.report.stopped;
+  }
+  const std::vector<double> y = cycle.coefficients();
+  for (int j = 0; j < cycle.size; ++j) add_scaled(y[j], z_[j], cycle.x);
+  return is_done;
+}
+
+SolveReport LiftedSolver::solve(std::span<const double> b, std::span<double> x, double tolerance,
+                                const Precondition& precondition) {
+  ASPIC_CHECK(H_ && b.size() == primal_.size());
+  SolveReport report;
+  std::fill(x.begin(), x.end(), 0.0);
+  const double size = norm(b);
+  if (size == 0) {
+    report.ok = true;
+    return report;
+  }
+  std::vector<double> lifted(t_.size(), 0.0), r(t_.size(), 0.0);
+  std::copy(b.begin(), b.end(), r.begin());
+  for (double before = INFINITY;;) {
+    Cycle cycle{tolerance * size, report, lifted, r};
+    const bool is_done = run(cycle, precondition);
+    apply(lifted, r);
+    ++report.products;
+    for (size_t i = 0; i < r.size(); ++i) r[i] = (i < b.size() ? b[i] : 0) - r[i];
+    const double residual = primal_norm(r, 1);
+    if (is_done || !(residual < kUseful * before)) break;
+    before = residual;
+  }
+  std::copy_n(lifted.begin(), x.size(), x.begin());
+  judge(b, x, tolerance, report);
+  return report;
+}
+
+void LiftedSolver::judge(std::span<const double> b, std::span<const double> x, double tolerance, SolveReport& report) {
+  H_->multiply(x, right_);
+  ++report.products;
+  const double curvature = dot(x, right_), slope = dot(b, x);
+  for (size_t i = 0; i < b.size(); ++i) primal_[i] = b[i] - right_[i];
+  report.relative_residual = norm(primal_) / norm(b);
+  report.indefinite = curvature <= 0 || slope <= 0;
+  report.ok = !report.indefinite && !report.stopped && report.relative_residual <= 1.01 * tolerance;
+}
+
+}  // namespace aspic
