@@ -256,7 +256,8 @@ test("every scene has the same states with threads", async () => {
 });
 
 for (const place of ["a file", "an isolated server"]) test(`Chromium from ${place}, Node.js and the native build compute the same state`, async () => {
-  const opened = await openSite(places[place]);
+  const prepare = (page) => page.addInitScript(() => Object.defineProperty(navigator, "hardwareConcurrency", { get: () => 3 })); // two threads
+  const opened = await openSite(places[place], "bunny", { prepare });
   const hasThreads = requested.includes(new URL(places[place]).host + "/" + threads.name);
   assert.equal(hasThreads, place === "an isolated server");
   for (const name of ["cantilever", "twist", "contact"]) {
