@@ -14,6 +14,7 @@ interface Program {
 
 // First message to the worker.
 export interface EngineParts extends Program {
+  workers: number; // threads beside the first
   files: Packed; // JSON, texts by paths
   task: { scene: string } | { judge: string }; // path of a scene; id of a lesson
 }
@@ -25,16 +26,20 @@ const kFirstScene = "/scenes/bunny.toml";
 // Commands that stop the step under way, as those of a server: apps/viewer/server_room.cpp.
 const kUrgent = /^\{"do":"(pause|reset|load|set|rewind|lesson|replay|compare|end_compare|stop_fit)"/;
 
+// Processors without that of the page, which draws: threads that wait for one make a step slower, not faster.
+const kMostThreads = 8;
+const threadCount = (): number => Math.min(navigator.hardwareConcurrency - 1, kMostThreads);
+
 // The program with threads is a file beside the page. Only isolated pages can run it.
 async function threadedProgram(): Promise<Program | null> {
   const name = embedded("engine-threads");
-  if (name === null || !crossOriginIsolated) return null;
+  if (name === null || !crossOriginIsolated || threadCount() < 2) return null;
   return fetch(name).then((response) => response.json() as Promise<Program>).catch(() => null);
 }
 
 async function partsFor(task: EngineParts["task"]): Promise<EngineParts> {
   const program = (await threadedProgram()) ?? embedded<Program>("engine-program")!;
-  return { ...program, files: embedded<Packed>("engine-files")!, task };
+  return { ...program, workers: threadCount() - 1, files: embedded<Packed>("engine-files")!, task };
 }
 
 export const hasEngine = (): boolean => document.getElementById("engine") !== null;

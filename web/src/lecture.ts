@@ -155,7 +155,7 @@ export class Lecture {
     this.judge.show(lesson.id);
     this.fill();
     this.list.querySelector("[aria-current]")?.scrollIntoView({ block: "nearest" });
-    this.root.scrollTop = 0; // on a phone the panel itself scrolls; show its text first
+    document.scrollingElement?.scrollTo(0, 0); // on a phone the whole page scrolls; show the view first
     this.page.emit("panel", lesson.panel);
     if (lesson.function) this.showFunction(lesson.function);
   }

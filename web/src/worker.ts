@@ -82,15 +82,14 @@ atOnce.port2.onmessage = () => {
   guarded(run);
 };
 
-const kMostThreads = 8;
 const blobOf = (text: string): Blob => new Blob([text], { type: "text/javascript" });
 
-async function create({ script, module, threadScript }: EngineParts): Promise<Engine> {
+async function create({ script, module, threadScript, workers }: EngineParts): Promise<Engine> {
   const main = blobOf(script);
   scope.importScripts(URL.createObjectURL(main));
-  const workers = threadScript === undefined ? 0 : Math.min(navigator.hardwareConcurrency, kMostThreads) - 1;
   const locateFile = (): string => URL.createObjectURL(blobOf(threadScript ?? ""));
-  return createEngine({ wasmBinary: unpackLzma(module), post, isStopRequested, workers, mainScriptUrlOrBlob: main, locateFile });
+  const used = threadScript === undefined ? 0 : workers;
+  return createEngine({ wasmBinary: unpackLzma(module), post, isStopRequested, workers: used, mainScriptUrlOrBlob: main, locateFile });
 }
 
 async function open(parts: EngineParts): Promise<void> {

@@ -256,7 +256,8 @@ test("every scene has the same states with threads", async () => {
 });
 
 for (const place of ["a file", "an isolated server"]) test(`Chromium from ${place}, Node.js and the native build compute the same state`, async () => {
-  const opened = await openSite(places[place]);
+  const prepare = (page) => page.addInitScript(() => Object.defineProperty(navigator, "hardwareConcurrency", { get: () => 3 })); // two threads
+  const opened = await openSite(places[place], "bunny", { prepare });
   const hasThreads = requested.includes(new URL(places[place]).host + "/" + threads.name);
   assert.equal(hasThreads, place === "an isolated server");
   for (const name of ["cantilever", "twist", "contact"]) {
@@ -344,15 +345,20 @@ test("a damaged link is reported", async () => {
   await opened.close();
 });
 
-test("a link with a scene that is too large is refused", async () => {
-  const { linkText } = await pageModule("share.ts");
-  const overrides = ["body.0.shape.box.cells=[400, 400, 400]"];
-  const link = await linkText({ aspic_workspace: 1, scene: "/scenes/cantilever.toml", overrides, settings: {}, compare: null, page: {} });
-  const opened = await openSite(places["a file"] + link);
-  await opened.page.locator(".notice.error").filter({ hasText: "tets" }).waitFor();
-  await pressAndWait(opened, "s", "a step of the old scene", ({ state }) => state.a.step === 1);
-  await opened.close();
-});
+const kTooMuch = [
+  ["a scene that is too large", "body.0.shape.box.cells=[400, 400, 400]", "tets"],
+  ["a formula that is too long", `body.0.material.young="1e5${" + 1".repeat(600)}"`, "characters; at most"],
+];
+
+for (const [what, override, why] of kTooMuch)
+  test(`a link with ${what} is refused`, async () => {
+    const { linkText } = await pageModule("share.ts");
+    const link = await linkText({ aspic_workspace: 1, scene: "/scenes/cantilever.toml", overrides: [override], settings: {}, compare: null, page: {} });
+    const opened = await openSite(places["a file"] + link);
+    await opened.page.locator(".notice.error").filter({ hasText: why }).waitFor();
+    await pressAndWait(opened, "s", "a step of the old scene", ({ state }) => state.a.step === 1);
+    await opened.close();
+  });
 
 // Gradient descent that needs minutes for a step.
 const kEndless = ["body.0.shape.box.cells=[41, 5, 5]", "solver.method=gradient_descent", "solver.tolerance=1e-12", "solver.max_iterations=1000000"];
