@@ -3,5 +3,6 @@
 #include "io/mesh_file.h"
 #include "mesh/generators.h"
 #include "mesh/numbering.h"
+#include "mesh/surface.h"
 #include "mesh/tet_mesh.h"
 #include "mesh/vertices.h"
