@@ -7,4 +7,5 @@
 #include "energy/pressure.h"
 #include "energy/rayleigh_damping.h"
 #include "energy/springs.h"
+#include "energy/stiff_energy.h"
 #include "energy/tet_elasticity.h"

@@ -6,3 +6,4 @@
 #include "linalg/block_sparse.h"
 #include "linalg/linear_solver.h"
 #include "linalg/projection.h"
+#include "linalg/stiff_rows.h"
