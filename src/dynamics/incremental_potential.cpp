@@ -81,12 +81,25 @@ std::vector<double> longest_edge(const TetMesh& mesh) {
   return longest;
 }
 
+// Gives all nodes of a quadratic tet the stiffness of its stiffest: changes of volume are felt by the mid-edge nodes
+// alone.
+void share_in_quadratic_tets(const TetMesh& mesh, std::vector<double>& stiffness) {
+  const std::vector<double> own = stiffness;
+  for (int t = 0; t < mesh.tet_count(); ++t) {
+    if (!is_quadratic(mesh, t)) continue;
+    double largest = 0;
+    for (const int v : nodes_of(mesh, t)) largest = std::max(largest, own[v]);
+    for (const int v : nodes_of(mesh, t)) stiffness[v] = std::max(stiffness[v], largest);
+  }
+}
+
 // Returns the part of each vertex, numbered in the order of their first vertices. Vertices of one part are connected by
 // tets or belong to one body, and their stiffnesses (modulus times edge) are within a factor kSoft of each other: those
 // of the stiffest vertex, or kSoft times less, or kSoft^2 times less, ...
 std::vector<int> parts_of(const TetMesh& mesh, std::span<const double> modulus) {
   std::vector<double> stiffness = longest_edge(linear_parts(mesh).mesh);
   for (int v = 0; v < mesh.vertex_count(); ++v) stiffness[v] *= modulus[v];
+  share_in_quadratic_tets(mesh, stiffness);
   const std::vector<std::vector<int>> components = tet_components(mesh);
   std::vector<int> component(mesh.vertex_count(), 0);
   std::vector<double> stiffest(components.size() + 1, 0.0);
