@@ -17,6 +17,7 @@ const std::vector<Check>& checks() {
     add_bending_checks(list);
     add_cook_checks(list);
     add_solid_checks(list);
+    add_volume_checks(list);
     add_cylinder_checks(list);
     add_vibration_checks(list);
     add_column_checks(list);

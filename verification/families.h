@@ -24,5 +24,6 @@ void add_bending_checks(std::vector<Check>& checks);
 void add_column_checks(std::vector<Check>& checks);
 void add_cook_checks(std::vector<Check>& checks);
 void add_solid_checks(std::vector<Check>& checks);
+void add_volume_checks(std::vector<Check>& checks);
 
 }  // namespace aspic::verify
