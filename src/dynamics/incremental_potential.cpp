@@ -10,6 +10,7 @@
 #include "contact/barrier.h"
 #include "mesh/components.h"
 #include "mesh/tet_nodes.h"
+#include "mesh/tet_shape.h"
 
 namespace aspic {
 namespace {
@@ -38,13 +39,9 @@ BlockPattern pattern_of(const Model& model) {
 
 // Integrals of |grad N|^2 from those of l_i^2, volume / 10, and l_i l_j, volume / 20.
 void add_quadratic_stiffness(const TetMesh& mesh, int tet, std::vector<double>& stiffness) {
-  const Mat3d Dm = edge_matrix(mesh, tet), inverse_Dm = inverse(Dm);
-  const double V = std::abs(determinant(Dm)) / 6;
-  std::array<Vec3d, 4> b{};  // grad l_i
-  for (int i = 1; i < 4; ++i) {
-    b[i] = {{inverse_Dm(i - 1, 0), inverse_Dm(i - 1, 1), inverse_Dm(i - 1, 2)}};
-    b[0] = b[0] - b[i];
-  }
+  const TetCorners X = corners(mesh, tet);
+  const double V = std::abs(signed_volume(X));
+  const std::array<Vec3d, 4> b = shape_gradients(X);  // grad l_i
   for (int i = 0; i < 4; ++i) stiffness[mesh.tets[tet][i]] += 0.6 * V * squared_norm(b[i]);
   for (int k = 0; k < 6; ++k) {
     const Vec3d &p = b[kTetEdges[k][0]], &q = b[kTetEdges[k][1]];

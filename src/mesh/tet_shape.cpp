@@ -14,6 +14,17 @@ constexpr int kOppositeEdges[6][2] = {{2, 3}, {3, 1}, {1, 2}, {0, 3}, {2, 0}, {0
 
 }  // namespace
 
+std::array<Vec3d, 4> shape_gradients(const TetCorners& X) {
+  const Mat3d G = inverse(from_columns(X[1] - X[0], X[2] - X[0], X[3] - X[0]));  // rows: gradients of 1, 2, 3
+  std::array<Vec3d, 4> gradients{};
+  for (int i = 0; i < 3; ++i)
+    for (int axis = 0; axis < 3; ++axis) {
+      gradients[i + 1][axis] = G(i, axis);
+      gradients[0][axis] -= G(i, axis);
+    }
+  return gradients;
+}
+
 double longest_edge(const TetCorners& X) {
   double longest = 0;
   for (const auto& [a, b] : kEdges) longest = std::max(longest, norm(X[b] - X[a]));

@@ -23,6 +23,9 @@ inline double signed_volume(const TetCorners& X) {
   return determinant(from_columns(X[1] - X[0], X[2] - X[0], X[3] - X[0])) / 6;
 }
 
+// Gradients of the four linear shape functions [1/m].
+std::array<Vec3d, 4> shape_gradients(const TetCorners& corners);
+
 double longest_edge(const TetCorners& corners);
 
 // Returns the smallest and largest dihedral angle at the six edges [degrees]; 0 and 180 for a flat tet.

@@ -68,7 +68,7 @@ class LagUpdates {
   double least_ = kInfinity;
   double changed_ = kInfinity;  // forces after the last update
   double reduction_ = kReduction;
-  int counted_ = 0;  // updates
+  int counted_ = 0;  // updates, and kWithoutProgress for each that did not reduce the forces
   int stalled_ = 0;
 };
 

@@ -38,9 +38,7 @@ struct Builder {
 
   // For the selection `where` of an action.
   SelectionScope scope(const PlacedBody& body, Value& action) const {
-    Value& where = *action.table().find("where");
-    const bool is_painted = where.is_table() && where.find("file");
-    return {body.mesh, up, body.name(), is_painted ? &body.painted->at_vertices(where.table(), body.mesh) : nullptr};
+    return selection_scope(body, *action.table().find("where"), up);
   }
 };
 
@@ -289,26 +287,16 @@ void add_pressures(Builder& builder, const PlacedBody& body) {
   const std::vector<Face> boundary = boundary_faces(body.mesh, 0, body.mesh.tet_count());
   for (Value& scene : pressures) {
     const Value& value = scene["value"];
-    const Expression p(value.is_text() ? value.text() : number_text(value.number()),
-                       ExpressionVariables::position_and_time);
-    if (p.depends_on_position())
-      throw error_at(value.place,
-                     "value: a follower pressure is uniform, so its formula "
-                     "may use only t (for a load of X, Y, Z with fixed direction: dead_pressure of a "
-                     "[[body.traction]])");
+    const auto of_time = function_of_time(value,
+                                          "value: a follower pressure is uniform, so its formula "
+                                          "may use only t (for a load of X, Y, Z with fixed direction: dead_pressure "
+                                          "of a [[body.traction]])");
     std::vector<Face> patch = select_faces(scene["where"], builder.scope(body, scene), boundary);
     for (Face& face : patch) {
       for (int& v : face.corners) v = body.model_vertex(v);
       for (int& v : face.mids) v = v < 0 ? v : body.model_vertex(v);
     }
     const int number = ++builder.pressures;
-    const auto of_time = [p, place = value.place](double t) {
-      try {
-        return p.at({}, t);
-      } catch (const InvalidInput& e) {  // possibly long after the scene was read
-        throw error_at(place, e.what());
-      }
-    };
     of_time(0);
     builder.model.loads.push_back(make_pressure(number == 1 ? "pressure" : "pressure_" + std::to_string(number),
                                                 builder.model.mesh, patch, of_time));
@@ -382,6 +370,11 @@ void add_damping(PlacedBody& body, size_t index, MassKind kind, SceneFiles& file
 }
 
 }  // namespace
+
+SelectionScope selection_scope(const PlacedBody& body, Value& where, const Vec3d& up) {
+  const bool is_painted = where.is_table() && where.find("file");
+  return {body.mesh, up, body.name(), is_painted ? &body.painted->at_vertices(where.table(), body.mesh) : nullptr};
+}
 
 void add_actions(const SceneActions& actions, Model& model) {
   const auto& [bodies, gravity, mass, files, notes] = actions;

@@ -7,6 +7,7 @@
 #include "dynamics/model.h"
 #include "scene/painted_fields.h"
 #include "scene/scene_files.h"
+#include "scene/selection.h"
 #include "scene/value.h"
 
 namespace aspic {
@@ -23,6 +24,9 @@ struct PlacedBody {
   std::string name() const { return scene["name"].text(); }
   int model_vertex(int own) const { return first_vertex + numbering.vertex.from_user(own); }
 };
+
+// For a selection of an action. up: against gravity, of length 1.
+SelectionScope selection_scope(const PlacedBody& body, Value& where, const Vec3d& up);
 
 struct SceneActions {
   std::vector<PlacedBody>& bodies;

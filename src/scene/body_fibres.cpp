@@ -3,11 +3,9 @@
 #include "base/formatted.h"
 #include "energy/fibres.h"
 #include "mesh/tet_shape.h"
-#include "scene/expression.h"
 #include "scene/harmonic_extension.h"
 #include "scene/placement.h"
 #include "scene/schema.h"
-#include "scene/selection.h"
 #include "scene/tables.h"
 
 namespace aspic {
@@ -21,9 +19,7 @@ struct BodyFibre {
 
   std::vector<int> selected(const char* key) const {
     Value& where = *scene.table().find(key);
-    const bool is_painted = where.is_table() && where.find("file");
-    return select_vertices(where, {body.mesh, scope.up, body.name(),
-                                   is_painted ? &body.painted->at_vertices(where.table(), body.mesh) : nullptr});
+    return select_vertices(where, selection_scope(body, where, scope.up));
   }
 };
 
@@ -93,11 +89,9 @@ void add_fibre(const BodyFibre& fibre, Model& model) {
 
 // Activations outside 0 to 1 throw InvalidInput, possibly long after the scene was read.
 std::function<double(double)> activation_of(const Value& value) {
-  const Expression formula(value.is_text() ? value.text() : number_text(value.number()),
-                           ExpressionVariables::position_and_time);
-  if (formula.depends_on_position()) throw error_at(value.place, "activation: its formula may use only t");
-  return [formula, place = value.place](double time) {
-    const double a = formula.at({}, time);
+  const auto of_time = function_of_time(value, "activation: its formula may use only t");
+  return [of_time, place = value.place](double time) {
+    const double a = of_time(time);
     if (!(a >= 0 && a <= 1))
       throw error_at(place, "activation = " + number_text(a) + " at t = " + number_text(time) +
                                 "; must be >= 0 and <= 1 (try min(1, max(0, ...)))");

@@ -18,17 +18,6 @@ std::vector<char> on_boundary(const TetMesh& mesh) {
 
 }  // namespace
 
-std::array<Vec3d, 4> shape_gradients(const TetCorners& X) {
-  const Mat3d G = inverse(from_columns(X[1] - X[0], X[2] - X[0], X[3] - X[0]));  // rows: gradients of 1, 2, 3
-  std::array<Vec3d, 4> gradients{};
-  for (int i = 0; i < 3; ++i)
-    for (int axis = 0; axis < 3; ++axis) {
-      gradients[i + 1][axis] = G(i, axis);
-      gradients[0][axis] -= G(i, axis);
-    }
-  return gradients;
-}
-
 HarmonicExtension::HarmonicExtension(const TetMesh& mesh) : HarmonicExtension(mesh, on_boundary(mesh)) {}
 
 HarmonicExtension::HarmonicExtension(const TetMesh& mesh, const std::vector<char>& is_given) {
@@ -58,8 +47,8 @@ HarmonicExtension::HarmonicExtension(const TetMesh& mesh, const std::vector<char
   matrix_.analyze(static_cast<int>(inner_.size()), places);
   if (!matrix_.factorize(values))
     throw InvalidInput(
-        "a harmonic field cannot be computed, because tets are too flat or memory is too small; use a "
-        "better or coarser mesh");
+        "a harmonic field cannot be computed, because tets are too flat, a separate part of the body has no given "
+        "values, or memory is too small; use a better or coarser mesh");
 }
 
 void HarmonicExtension::extend(std::span<double> values) {

@@ -1,17 +1,12 @@
 // Harmonic fields in a tet mesh: linear finite elements for Laplace's equation.
 #pragma once
-#include <array>
 #include <span>
 #include <vector>
 
 #include "linalg/scalar_cholesky.h"
 #include "mesh/tet_mesh.h"
-#include "mesh/tet_shape.h"
 
 namespace aspic {
-
-// Gradients of the four linear shape functions of a tet [1/m].
-std::array<Vec3d, 4> shape_gradients(const TetCorners& X);
 
 class HarmonicExtension {
  public:

@@ -151,4 +151,17 @@ bool VectorField::depends_on_time() const {
   return std::any_of(formula_.begin(), formula_.end(), [](const Expression& f) { return f.depends_on_time(); });
 }
 
+std::function<double(double t)> function_of_time(const Value& value, const std::string& only_time) {
+  const Expression formula(value.is_text() ? value.text() : number_text(value.number()),
+                           ExpressionVariables::position_and_time);
+  if (formula.depends_on_position()) throw error_at(value.place, only_time);
+  return [formula, place = value.place](double t) {
+    try {
+      return formula.at({}, t);
+    } catch (const InvalidInput& e) {
+      throw error_at(place, e.what());
+    }
+  };
+}
+
 }  // namespace aspic

@@ -1,6 +1,8 @@
 // Placement of a body: rest shape, shape at time 0, velocity.
 #pragma once
+#include <functional>
 #include <span>
+#include <string>
 #include <vector>
 
 #include "math/small.h"
@@ -43,5 +45,9 @@ class VectorField {
   std::vector<double> number_;  // NaN: the formula applies
   std::vector<Expression> formula_;
 };
+
+// Returns a number or a formula of t as a function that throws InvalidInput at the place of `value`, possibly long
+// after the scene was read. `only_time`: why X, Y and Z are refused.
+std::function<double(double t)> function_of_time(const Value& value, const std::string& only_time);
 
 }  // namespace aspic
