@@ -12,6 +12,7 @@
 #include "capture/unstated_values.h"
 #include "fit/load_case.h"
 #include "fit/next_indentation.h"
+#include "mesh/tet_nodes.h"
 #include "mesh/tet_shape.h"
 
 namespace aspic {
@@ -121,9 +122,11 @@ class Bench {
     std::vector<char> is_site(truth_.mesh.rest.size(), 0);
     for (const IndentationSite& s : sites) is_site[s.vertex] = 1;
     double young = 0;
-    for (int t = 0; t < truth_.mesh.tet_count(); ++t)
-      if (std::any_of(truth_.mesh.tets[t].begin(), truth_.mesh.tets[t].end(), [&](int v) { return is_site[v] != 0; }))
+    for (int t = 0; t < truth_.mesh.tet_count(); ++t) {
+      const TetNodes nodes = nodes_of(truth_.mesh, t);
+      if (std::any_of(nodes.begin(), nodes.end(), [&](int v) { return is_site[v] != 0; }))
         young = std::max(young, young_modulus(model_.elasticity.front()->parameters()[t].lame));
+    }
     return young;
   }
 

@@ -41,8 +41,12 @@ TEST_F(VirtualBench, RefusesPinsAlongSomeDirections) {
 
 // The truth explains exact data in a misfit on the same mesh.
 TEST_F(VirtualBench, TruthExplainsExactDataOnSameMesh) {
-  const Scene block = scene();
-  for (const IndenterContact contact : {IndenterContact::bonded, IndenterContact::sliding}) {
+  const std::string pin = "[[body.pin]]\nwhere = \"Z < 1e-6\"\n";
+  const std::pair<IndenterContact, std::string> benches[] = {
+      {IndenterContact::bonded, pin}, {IndenterContact::sliding, pin}, {IndenterContact::bonded, "order = 2\n" + pin}};
+  for (const auto& [contact, body] : benches) {
+    SCOPED_TRACE(body);
+    const Scene block = scene(body);
     SynthesisOptions options = exact();
     options.contact = contact;
     options.torques = true;
@@ -61,7 +65,7 @@ TEST_F(VirtualBench, TruthExplainsExactDataOnSameMesh) {
     Misfit misfit(data.experiment, map);
     std::vector<double> r(misfit.residual_count());
     ASSERT_TRUE(misfit.evaluate(p, r)) << misfit.failure();
-    for (size_t i = 0; i < r.size(); ++i) EXPECT_NEAR(r[i], 0, 1e-3) << misfit.what(static_cast<int>(i));
+    for (size_t k = 0; k < r.size(); ++k) EXPECT_NEAR(r[k], 0, 1e-3) << misfit.what(static_cast<int>(k));
   }
 }
 

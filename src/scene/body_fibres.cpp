@@ -36,7 +36,11 @@ std::vector<Vec3d> flow(const BodyFibre& fibre) {
     is_given[v] = 1;
     potential[v] = 1;
   }
-  HarmonicExtension(mesh, is_given).extend(potential);
+  try {
+    HarmonicExtension(mesh, is_given).extend(potential);
+  } catch (const InvalidInput& e) {
+    throw error_at(fibre.scene["from"].place, e.what());
+  }
   std::vector<Vec3d> directions(mesh.tets.size(), Vec3d{});
   for (int t = 0; t < mesh.tet_count(); ++t) {
     const std::array<Vec3d, 4> gradients = shape_gradients(corners(mesh, t));

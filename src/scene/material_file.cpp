@@ -9,6 +9,7 @@
 #include "io/vtu.h"
 #include "material/registry.h"
 #include "mesh/locate.h"
+#include "mesh/tet_nodes.h"
 #include "mesh/tet_shape.h"
 #include "mesh/vertices.h"
 #include "scene/schema.h"
@@ -118,7 +119,8 @@ void write_material(const std::filesystem::path& path, const FittedMaterial& mat
     }
   std::vector<Field> model;
   if (!material.model.empty()) model.push_back({kModelField + material.model, 1, {1}, FieldType::int32});
-  write_vtu(path, rest_positions(material.mesh), material.mesh.tets, {{}, fields, model});
+  const TetMesh mesh = lower_order(material.mesh);
+  write_vtu(path, rest_positions(mesh), mesh.tets, {{}, fields, model});
 }
 
 MaterialSampling sampling(const FittedMaterial& material, std::span<const Vec3d> centroids) {

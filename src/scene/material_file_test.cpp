@@ -12,6 +12,7 @@
 #include "io/mesh_file.h"
 #include "io/vtu.h"
 #include "mesh/generators.h"
+#include "mesh/tet_nodes.h"
 #include "scene/scene_cases_test.h"
 
 namespace aspic {
@@ -75,6 +76,16 @@ MATCHER_P(EachIsNear, expected, "") {
   for (size_t i = 0; i < arg.size(); ++i)
     if (std::abs(arg[i] - expected[i]) > 1e-9 * std::abs(expected[i])) return false;
   return true;
+}
+
+TEST_F(MaterialFile, OfQuadraticTetsHasTheirCornersOnly) {
+  FittedMaterial material = graded(2);
+  material.mesh = raise_order(material.mesh);
+  write_material(path("quadratic.vtu"), material);
+  const FittedMaterial again = read_material(path("quadratic.vtu"));
+  EXPECT_EQ(again.mesh.vertex_count(), 27);
+  EXPECT_EQ(again.mesh.tets, graded(2).mesh.tets);
+  EXPECT_EQ(again.values, material.values);
 }
 
 TEST_F(MaterialFile, ReadsBackWhatIsWritten) {
