@@ -35,9 +35,10 @@ struct RunTotals {
 };
 
 struct InvertedTets {
-  int count = 0;         // number of tets with det F <= 0
-  double least_det = 1;  // smallest det F of all tets
-  std::string worst;     // tet with this value, and its position: "tet 12 at (0, 0.1, 0.2) m"
+  int count = 0;               // number of tets with det F <= 0
+  double least_det = 1;        // smallest det F of all tets
+  std::string worst;           // tet with this value, and its position: "tet 12 at (0, 0.1, 0.2) m"
+  bool are_quadratic = false;  // whether there are quadratic tets
 };
 InvertedTets inverted_tets(const Simulation& simulation);
 

@@ -157,6 +157,30 @@ TEST(Contact, RisingPlaneLiftsBlock) {
 }
 
 // A pinned body blocks the plane, which stays at its position when later steps retry.
+// The plane pushes the block within a step. A stop at any poll drops the step or changes nothing.
+TEST(Contact, InterruptedStepIsRepeatedWithEqualBits) {
+  const PlaneScene rising{.motion = [](const Vec3d& x, double t) { return x + Vec3d{{0, 0.5 * t, 0}}; }};
+  Simulation whole = above_plane({{0, -9.81, 0}}, 0.5, 0.01, rising);
+  Simulation limited = above_plane({{0, -9.81, 0}}, 0.5, 0.01, rising);
+  int dropped = 0;
+  for (int step = 0; step < 4; ++step) {
+    const StepReport expected = whole.step();
+    for (int polls = 0;; ++polls) {
+      ASSERT_LT(polls, 10000);
+      int left = polls;
+      const StepReport report = limited.step({}, StopToken([&left] { return left-- <= 0; }));
+      if (report.status == Status::interrupted) {
+        ++dropped;
+        continue;
+      }
+      EXPECT_EQ(report.status, expected.status) << polls;
+      EXPECT_EQ(report.state_hash, expected.state_hash) << polls;
+      break;
+    }
+  }
+  EXPECT_GT(dropped, 40);
+}
+
 TEST(Contact, BlockedObstacleEndsUndefined) {
   Model model = block({}).build();
   std::vector<int> rows(model.mesh.rest.size());

@@ -149,6 +149,7 @@ Minimizer::Impl::End Minimizer::Impl::test_convergence(Progress& at) {
   report.value = at.value.value;
   report.gradient_norm = std::sqrt(at.E.dot(g, g));
   convergence.describe(report);
+  if (at.options.stop.requested()) return Status::interrupted;  // the iterate may be that of an incomplete search
   if (!std::isfinite(report.value) || !std::isfinite(report.gradient_norm)) return Status::undefined;
   if (at.last_direction || report.gradient_norm == 0) return Status::converged;
   if (!convergence.tests_direction() && report.reached <= report.threshold) {

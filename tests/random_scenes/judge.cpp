@@ -24,7 +24,8 @@ bool is_finite(std::span<const double> v) {
   return std::all_of(v.begin(), v.end(), [](double x) { return std::isfinite(x); });
 }
 
-// For each body, whether its material has an infinite barrier against inversion.
+// For each body, whether no tet can invert: its material has an infinite barrier against inversion, and its tets are
+// linear. Quadratic tets have the barrier at four inner points, not at their corners.
 std::vector<bool> barriers(const std::string& text) {
   std::vector<bool> found;
   for (size_t at = text.find("[[body]]"); at != std::string::npos;) {
@@ -33,7 +34,8 @@ std::vector<bool> barriers(const std::string& text) {
     const auto has = [&](const MaterialInfo& m) {
       return m.barrier && body.find("model = \"" + m.name + "\"") != std::string::npos;
     };
-    found.push_back(std::any_of(materials().begin(), materials().end(), has));
+    const bool is_linear = body.find("order = 2") == std::string::npos;
+    found.push_back(is_linear && std::any_of(materials().begin(), materials().end(), has));
     at = next;
   }
   return found;

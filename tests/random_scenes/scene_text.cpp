@@ -108,6 +108,7 @@ class SceneText {
     const bool is_elastic = !draw_.chance(0.05);
     if (!is_elastic) line("elastic", "false");
     material(is_elastic);
+    if (is_elastic && draw_.chance(0.15)) line("order", "2");
     deform();
     if (draw_.chance(0.3)) line("velocity", draw_.vector(draw_.logarithmic(0.01, 100)));
     if (draw_.chance(0.2)) line("angular_velocity", draw_.vector(draw_.logarithmic(0.1, 1000)));
@@ -234,7 +235,7 @@ class SceneText {
   void traction() {
     const double pressure = young_ * draw_.logarithmic(1e-4, 3);
     text_ += "[[body.traction]]\nwhere = \"all\"\n" +
-             (draw_.chance(0.5) ? "pressure = " + shortest(draw_.chance(0.5) ? pressure : -pressure)
+             (draw_.chance(0.5) ? "dead_pressure = " + shortest(draw_.chance(0.5) ? pressure : -pressure)
                                 : "value = " + draw_.vector(pressure)) +
              "\n";
   }
