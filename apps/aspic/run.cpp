@@ -292,7 +292,7 @@ int run(const RunArguments& arguments) {
                    .blown_up = runner.has_blown_up(),
                    .solver = scene.simulation.integrator().is_implicit ? scene.simulation.solver_description() : "",
                    .inverted = inverted_tets(scene.simulation),
-                   .state_hash = state_hash(scene.simulation.state(), scene.simulation.model().numbering.vertex),
+                   .state_hash = scene.simulation.state_hash(),
                    .pins = pin_names(scene.simulation.model()),
                    .directory = directory.path()});
   }

@@ -14,7 +14,7 @@ constexpr size_t kPinBytes = sizeof(Pin) + 64;  // size of a pin set by hand
 }  // namespace
 
 size_t Snapshot::bytes() const {
-  size_t numbers = state.q.size() + state.qdot.size();
+  size_t numbers = state.q.size() + state.qdot.size() + state.internal.size();
   if (previous) numbers += previous->q.size() + previous->qdot.size();
   size_t size = sizeof(Snapshot) + sizeof(double) * numbers;
   if (pins) size += kPinBytes * pins->size();  // counts shared pins several times
@@ -133,7 +133,9 @@ Simulation::Snapshot History::simulation_state(const Snapshot& snapshot, const S
 }
 
 void History::restore(const Snapshot& snapshot, Simulation& simulation) {
-  const Simulation::Snapshot state = simulation_state(snapshot, simulation.options());
+  Simulation::Snapshot state = simulation_state(snapshot, simulation.options());
+  // After a change of the viscoelastic branches they are relaxed.
+  if (state.state.internal.size() != simulation.state().internal.size()) state.state.internal.clear();
   simulation.restore(state);
   start_time_ = state.start.time;
 }

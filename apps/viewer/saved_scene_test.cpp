@@ -38,7 +38,7 @@ fs::path written(const Json& reply, const fs::path& folder) {
 std::string hash_after(const fs::path& scene_path, int steps) {
   Scene scene = load_scene(scene_path);
   for (int i = 0; i < steps; ++i) scene.simulation.step();
-  return hex_digits(state_hash(scene.simulation.state(), scene.simulation.model().numbering.vertex));
+  return hex_digits(scene.simulation.state_hash());
 }
 
 std::string hash_after(const std::string& toml, int steps) {

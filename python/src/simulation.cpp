@@ -340,11 +340,7 @@ void bind_simulation(py::module_& m) {
       .def_property_readonly("notes", [](LiveSimulation& s) { return s.scene().notes; })
       .def_property_readonly("resolved", [](LiveSimulation& s) { return s.scene().resolved; })
       .def_property_readonly("solver", [](LiveSimulation& s) { return s.simulation().solver_description(); })
-      .def_property_readonly("state_hash",
-                             [](LiveSimulation& s) {
-                               const Simulation& simulation = s.simulation();
-                               return hex_digits(state_hash(simulation.state(), simulation.model().numbering.vertex));
-                             })
+      .def_property_readonly("state_hash", [](LiveSimulation& s) { return hex_digits(s.simulation().state_hash()); })
       .def("fields", &fields_of)
       .def("snapshot", [](LiveSimulation& s) { return s.simulation().snapshot(); })
       .def("restore", &LiveSimulation::restore)

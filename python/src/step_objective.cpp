@@ -15,6 +15,9 @@ std::shared_ptr<StepObjective> StepObjective::make(const SceneSource& source, do
     parts = std::make_unique<Parts>(std::move(model));
   }
   callbacks->rethrow();
+  if (!parts->E.internal().empty())
+    throw InvalidInput("an Objective has no history, which '" + parts->E.internal().names()[0] +
+                       "' needs; use a Simulation, or remove [[body.viscoelastic]]");
   return std::shared_ptr<StepObjective>(new StepObjective(std::move(parts), std::move(callbacks), time));
 }
 

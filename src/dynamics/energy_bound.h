@@ -4,6 +4,7 @@
 // With moving pins, the comparison uses the positions q_s: pinned vertices at the end of the step, free ones at its
 // start. With u = (q_s - q_t) / h, which is zero except at pins, the right side is
 //   V(q_s) + D(q_s) + 1/2 |u - v_t|_M^2,   D: damping potential; moving targets at the end of the step.
+// With internal variables, V includes their stored energy, whose gain is at most D(q_(t+1)) - D(q_t).
 // The ledger supplies both sides; the minimizer supplies E. A violated bound reveals an incorrect energy.
 #pragma once
 #include "dynamics/step_report.h"

@@ -27,7 +27,8 @@ class BackwardEuler : public Integrator {
                                .ahead = tools.h,
                                .tries_last_increment = false,  // equals the extrapolated guess
                                .once = facts().takes_one_iteration};
-    stage_.solve(tools, options, {end.q, end.qdot, acceleration_}, solve, forces);
+    if (stage_.solve(tools, options, {end.q, end.qdot, acceleration_}, solve, forces))
+      tools.E.end_internal(end.q, end.internal);
     end.time = tools.end_time;
     return solve;
   }
@@ -80,7 +81,7 @@ class Bdf2 : public Integrator {
   std::vector<double> acceleration_;
 };
 
-// q_new = argmin V(q)
+// q_new = argmin V(q) + D(q), where D contains only terms with internal variables
 class QuasiStatic : public Integrator {
  public:
   QuasiStatic()
@@ -96,11 +97,13 @@ class QuasiStatic : public Integrator {
     const StepContext context{start.q, 0, tools.end_time, {}, tools.obstacle_start};
     tools.E.set_potential_step(context);
     tools.E.set_damping_step(context);
+    tools.E.set_internal(start.internal, tools.h);
     tools.E.begin_step(start.q, 0, 1);
     MinimizeReport guessing;
     const Guess guess = guesser_.guess(tools, tools.guess, {start.q, start.qdot, 0, tools.end_time}, end.q, guessing);
     solve.guess = guess.used;
-    solve.add(minimize_lagged(tools, tools.options, {end.q, guess.value}, solve));
+    if (solve.add(minimize_lagged(tools, tools.options, {end.q, guess.value}, solve)))
+      tools.E.end_internal(end.q, end.internal);
     add_work(guessing, solve.work);
     std::fill(end.qdot.begin(), end.qdot.end(), 0.0);
     forces.add(tools.E, 1, end.q, {}, solve.work);

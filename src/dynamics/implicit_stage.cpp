@@ -84,6 +84,7 @@ bool ImplicitStage::solve(const StepTools& tools, const StageOptions& options, c
   const StepContext context{a, beta, options.time, tools.start.q, tools.obstacle_start};
   tools.E.set_potential_step(context);
   tools.E.set_damping_step(context);
+  tools.E.set_internal(tools.start.internal, beta);
   tools.E.begin_step(predicted_, 1, beta * beta);
   if (!solve.add(minimize(tools, options, variables, solve))) return false;
 

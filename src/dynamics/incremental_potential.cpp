@@ -119,7 +119,7 @@ std::vector<int> parts_of(const TetMesh& mesh, std::span<const double> modulus) 
 }  // namespace
 
 IncrementalPotential::IncrementalPotential(const Model& model, const Pins& pins)
-    : model_(model), pins_(pins), pattern_(pattern_of(model)), H_(pattern_) {
+    : model_(model), pins_(pins), internal_(model), pattern_(pattern_of(model)), H_(pattern_) {
   model.mass->bind(pattern_);
   const auto add = [this](Energy& term, std::vector<ActiveTerm>& terms) {
     term.bind(pattern_);

@@ -10,6 +10,7 @@
 #include <span>
 #include <vector>
 
+#include "dynamics/internal_terms.h"
 #include "dynamics/model.h"
 #include "dynamics/pins.h"
 #include "energy/stiff_energy.h"
@@ -29,6 +30,15 @@ class IncrementalPotential : public Objective,
   // Set the step for subsequent evaluations of the terms of V and D. Called before begin_step().
   void set_potential_step(const StepContext& step);
   void set_damping_step(const StepContext& step);
+  // Set internal variables at the start of the step and its duration [s], after set_damping_step() or instead of it for
+  // terms without them. `z` must outlive the step.
+  void set_internal(std::span<const double> z, double duration) { internal_.set(damping_, z, duration); }
+  void set_internal_step(const StepContext& step, std::span<const double> z, double duration) {
+    internal_.begin(damping_, step, z, duration);
+  }
+  InternalEnergies internal_energies(const InternalStep& step) const { return internal_.energies(damping_, step); }
+  // Writes the internal variables at the end of a step that ends at q.
+  void end_internal(std::span<const double> q, std::span<double> z) const { internal_.end(damping_, q, z); }
   // Sets the time of the obstacles [s], and that at the end of the next direction, see StepContext::obstacle_end.
   // Called after set_potential_step().
   void move_obstacles(double time, std::optional<double> end = {});
@@ -96,6 +106,7 @@ class IncrementalPotential : public Objective,
   // The terms of V after elasticity, and those of D, in the order of the model.
   std::span<const ActiveTerm> loads() const { return std::span(potential_).subspan(model_.elasticity.size()); }
   const std::vector<ActiveTerm>& damping() const { return damping_; }  // terms of D
+  const InternalTerms& internal() const { return internal_; }          // terms of D with internal variables
   const BlockPattern& pattern() const { return pattern_; }             // of the Hessian: one block row per vertex
 
  private:
@@ -125,6 +136,7 @@ class IncrementalPotential : public Objective,
   WholePart whole_{*this};  // used if there is one part
   const Pins& pins_;
   std::vector<ActiveTerm> potential_, damping_;
+  InternalTerms internal_;
   std::vector<std::pair<const StiffEnergy*, size_t>> stiff_;  // with the index in potential_
   StiffRows stiff_rows_;
   BlockPattern pattern_;

@@ -33,6 +33,7 @@ struct StepTools : SolveTools {
   double h, end_time;     // length and end of the step [s]
   // Times of the obstacles at the start and the end of the step; equal if the step is dropped [s].
   double obstacle_start = 0, obstacle_end = 0;
+  bool is_dropped = false;  // the state stays at the start of the step
 };
 
 enum class ResidualBound { none, threshold };  // bound that a solve guarantees

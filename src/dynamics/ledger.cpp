@@ -177,11 +177,20 @@ void Ledger::allow_moved_pins(const StepTools& tools, const State& end, BoundedE
   }
   ++work.values;
   tools.E.set_damping_step({start.q, tools.h, tools.end_time, start.q, tools.obstacle_start});
+  tools.E.set_internal(start.internal, tools.h);
   for (const ActiveTerm& term : tools.E.damping()) D += term.value(moved_);
   for (size_t i = 0; i < moved_.size(); ++i) moved_[i] = (moved_[i] - start.q[i]) / tools.h - start.qdot[i];
   T = kinetic_energy(*tools.model.mass, moved_, momentum_);
   bounded.allowed = V + D + T;
   bounded.magnitude += D + T;
+}
+
+InternalEnergies Ledger::internal_energies(const StepTools& tools, const State& end) {
+  if (tools.E.internal().empty()) return {};
+  const State& start = tools.start;
+  const StepContext step{start.q, tools.h, tools.end_time, start.q, tools.obstacle_start};
+  tools.E.set_internal_step(step, start.internal, tools.is_dropped ? 0 : tools.h);
+  return tools.E.internal_energies({start.q, end.q, end.internal});
 }
 
 // Requires that residual_ is r of this step, and that the contexts of the loads are at its end.
@@ -233,6 +242,7 @@ BoundedEnergies Ledger::add(const StepTools& tools, const Integrator& integrator
   double potential_before = 0;
   const double target = target_work(tools, integrator.facts().order, end, potential_before, report);
   for (const double V : elastic_energies(tools.model, start.q, {}, report)) potential_before += V;
+  const InternalEnergies internal = internal_energies(tools, end);
   const double kinetic_before = kinetic_energy(*tools.model.mass, start.qdot, momentum_);
   tools.model.mass->multiply(forces.acceleration, Ma_);
 
@@ -273,19 +283,26 @@ BoundedEnergies Ledger::add(const StepTools& tools, const Integrator& integrator
   for (const double V : elastic_energies(tools.model, end.q, tools.E.known_values(end.q), report))
     report.potential.push_back(V);
   for (const ActiveTerm& V : tools.E.loads()) report.potential.push_back(V.value(end.q));
+  tools.E.internal().append_stored(end.internal, report.potential);
   for (const double V : report.potential) report.potential_total += V;
+  double stored = 0;  // in internal variables
+  for (size_t k = tools.E.potential().size(); k < report.potential.size(); ++k) stored += report.potential[k];
+  const double potential_after = report.potential_total - stored;
   report.kinetic = kinetic_energy(*tools.model.mass, end.qdot, momentum_);
 
   const double kinetic_gain = report.kinetic - kinetic_before,
-               potential_gain = report.potential_total - potential_before;
+               potential_gain = potential_after - potential_before + internal.gain;
   const double pin_work = reaction_work + target;
   const ObstacleWork obstacles = work_of_obstacles(tools, end, report);
-  const double loss = (inertia_work - kinetic_gain) + gradient_work - (potential_gain - target - obstacles.contact);
-  const double dissipated = damping_work + obstacles.friction;
+  const double conservative = internal.work - internal.loss;  // stored or lost numerically
+  const double loss =
+      (inertia_work - kinetic_gain) + gradient_work - (potential_gain - target - obstacles.contact) + conservative;
+  const double dissipated = damping_work + obstacles.friction - conservative;
   note_residual(tools, forces, report);
   report.pin_work += pin_work;
   report.obstacle_work += obstacles.contact + obstacles.friction;
   report.damping_loss += dissipated;
+  report.viscoelastic_loss += internal.loss;
   report.numerical_loss += loss;
   report.residual_work += residual_work;
   report.ledger_error += kinetic_gain + potential_gain - pin_work - (obstacles.contact + obstacles.friction) +
@@ -296,7 +313,7 @@ BoundedEnergies Ledger::add(const StepTools& tools, const Integrator& integrator
   double magnitude = report.kinetic + kinetic_before + jump + std::abs(potential_before);
   for (const double V : report.potential) magnitude += std::abs(V);
   BoundedEnergies bounded = {.allowed = potential_before + kinetic_before + target,
-                             .reached = report.potential_total + jump,
+                             .reached = potential_after + internal.gain + jump,
                              .magnitude = magnitude,
                              .round_off = round_off + kLastDigits * tools.E.growth_stiffness()};
   pins_moved |= tools.model.contact && tools.model.contact->has_moving_obstacle();

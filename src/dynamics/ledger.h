@@ -6,6 +6,8 @@
 // holds exactly, where the loss of the integrator itself is
 //   numerical_loss = (a' M dx - dT) + G . dx - (dV - work of moving targets):
 // zero for midpoint with linear forces, 1/2 dv' M dv + dV/dx . dx - dV for backward Euler.
+// Terms with internal variables (InternalTerms) have a stored energy, which is part of dV, and a loss. What their work
+// exceeds both is part of numerical_loss instead of C . dx.
 #pragma once
 #include <vector>
 
@@ -35,6 +37,8 @@ class Ledger {
   // Writes the residual of the part of the model that is farthest from its threshold, and its worst vertex.
   void note_residual(const StepTools& tools, const StepForces& forces, StepReport& report);
   void note_worst_vertex(const StepTools& tools, int part, StepReport& report) const;
+  // Returns the energies of the internal variables in the step.
+  static InternalEnergies internal_energies(const StepTools& tools, const State& end);
   void add_resultants(const StepTools& tools, const State& end, const StepForces& forces, Resultants& sums);
 
   std::vector<double> Ma_, momentum_, residual_;

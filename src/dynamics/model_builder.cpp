@@ -6,6 +6,7 @@
 #include "base/error.h"
 #include "base/formatted.h"
 #include "energy/linear_load.h"
+#include "energy/maxwell_branches.h"
 #include "energy/rayleigh_damping.h"
 #include "energy/springs.h"
 
@@ -181,6 +182,14 @@ ModelBuilder& ModelBuilder::strain_rate_damping(double viscosity) {
   return *this;
 }
 
+ModelBuilder& ModelBuilder::maxwell_branch(double shear, double relaxation_time) {
+  require_not_negative(shear, "shear modulus of a Maxwell branch [Pa]");
+  require(relaxation_time > 0 && std::isfinite(relaxation_time),
+          "relaxation time of a Maxwell branch = " + text_of(relaxation_time) + " s; it must be positive and finite");
+  branches_.emplace_back(shear, relaxation_time);
+  return *this;
+}
+
 Model ModelBuilder::build() {
   require(make_elasticity_ != nullptr, "the model has no material; call material() before build()");
   require(!model_.density.empty(), "the model has no density; call density() before build()");
@@ -194,6 +203,10 @@ Model ModelBuilder::build() {
   if (viscosity_)
     model.damping.push_back(
         make_strain_rate_damping(model.mesh, 0, std::vector<double>(model.mesh.tet_count(), *viscosity_)));
+  std::vector<MaxwellBranch> branches;
+  for (const auto& [shear, time] : branches_)
+    branches.push_back({std::vector<double>(model.mesh.tet_count(), shear), time});
+  if (!branches.empty()) model.damping.push_back(make_maxwell_branches("viscoelastic", model.mesh, 0, branches));
   return model;
 }
 

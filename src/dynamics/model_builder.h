@@ -66,6 +66,8 @@ class ModelBuilder {
   ModelBuilder& rayleigh_damping(double mass_factor, double stiffness_factor);
   // Adds a viscous stress eta dE/dt in every tet. Units: eta [Pa s].
   ModelBuilder& strain_rate_damping(double viscosity);
+  // Adds a Maxwell branch in every tet, see energy/maxwell_branches.h. Units: G [Pa], relaxation time [s].
+  ModelBuilder& maxwell_branch(double shear, double relaxation_time);
 
   // Returns the model; the builder is empty afterwards. Throws InvalidInput if material or density are missing.
   Model build();
@@ -81,6 +83,7 @@ class ModelBuilder {
   std::optional<Vec3d> gravity_;
   std::optional<std::pair<double, double>> rayleigh_;  // a, b
   std::optional<double> viscosity_;
+  std::vector<std::pair<double, double>> branches_;  // G, relaxation time
 };
 
 // Returns the vertex forces mass * acceleration, 3 per vertex [N].

@@ -24,6 +24,13 @@ bool is_finite(const StepReport& report) {
   return std::isfinite(report.residual) && std::isfinite(report.kinetic) && std::isfinite(report.potential_total);
 }
 
+// Empty: zeros.
+void require_internal(const std::vector<double>& internal, size_t size) {
+  if (!internal.empty() && internal.size() != size)
+    throw InvalidInput("the state has " + std::to_string(internal.size()) + " internal variables; the model needs " +
+                       std::to_string(size));
+}
+
 }  // namespace
 
 struct Simulation::Impl {
@@ -42,6 +49,8 @@ struct Simulation::Impl {
       throw InvalidInput("h = " + three_digits(options.h) + "; it must be positive");
     require_possible(options);
     if (!integrator->facts().is_static()) require_mass(model, *pins);
+    E->internal().require_support(integrator->facts());
+    if (state.internal.empty()) state.internal.assign(E->internal().size(), 0.0);
     pins->place(state.time, state.q);
     require_finite_energy(model, state.q);
     require_apart(model, state, integrator->facts());
@@ -104,6 +113,7 @@ struct Simulation::Impl {
           report.status = Status::unstable;
         } else if (needs_previous()) {
           previous = adaptive ? adaptive->previous() : before;
+          previous.internal.clear();  // not needed
           has_previous = true;
         }
       }
@@ -190,7 +200,8 @@ struct Simulation::Impl {
   void restore_start(const StepTools& with, double time, StepReport& report) {
     report.residual = report.residual_threshold = report.residual_round_off = 0;
     report.worst_vertex = -1;
-    report.pin_work = report.obstacle_work = report.damping_loss = report.friction_loss = 0;
+    report.pin_work = report.obstacle_work = 0;
+    report.damping_loss = report.friction_loss = report.viscoelastic_loss = 0;
     report.friction_creep = report.friction_residual = 0;
     report.friction_pair.clear();
     report.numerical_loss = report.residual_work = report.ledger_error = report.energy_slack = 0;
@@ -202,6 +213,7 @@ struct Simulation::Impl {
     has_previous = has_previous && time == before.time;
     StepTools stand_still = tools(with.observe, time);
     stand_still.obstacle_end = obstacle_time;
+    stand_still.is_dropped = true;
     set_time(time);
     forces.reset(state.q.size());
     for (const ActiveTerm& V : E->potential()) V.add_gradient(state.q, 1, forces.gradient);
@@ -219,7 +231,12 @@ struct Simulation::Impl {
     }
     report.min_det_F = INFINITY;
     for (const auto& V : model.elasticity) report.min_det_F = std::min(report.min_det_F, V->min_det_F(state.q));
-    report.state_hash = state_hash(state, model.numbering.vertex);
+    report.state_hash = hash();
+  }
+
+  std::uint64_t hash() const {
+    const std::uint64_t positions = aspic::state_hash(state, model.numbering.vertex);
+    return continued_hash(positions, E->internal().to_user(state.internal, model.numbering.tet));
   }
 
   void describe(const StepSolve& solved, StepReport& report) const {
@@ -269,6 +286,7 @@ Simulation::Simulation(Model model, State initial, SimulationOptions options) {
   if (initial.q.size() != n || initial.qdot.size() != n)
     throw InvalidInput("the initial state has " + std::to_string(initial.q.size()) + " and " +
                        std::to_string(initial.qdot.size()) + " entries; the model needs " + std::to_string(n));
+  require_internal(initial.internal, InternalTerms(model).size());
   impl_ = std::make_unique<Impl>(std::move(model), std::move(initial), std::move(options));
 }
 Simulation::Simulation(Model model, SimulationOptions options) {
@@ -285,6 +303,7 @@ StepReport Simulation::step(const IterationObserver& observe, const StopToken& s
 const Model& Simulation::model() const { return impl_->model; }
 const State& Simulation::state() const { return impl_->state; }
 const SimulationOptions& Simulation::options() const { return impl_->options; }
+std::uint64_t Simulation::state_hash() const { return impl_->hash(); }
 int Simulation::steps_taken() const { return impl_->steps_taken; }
 double Simulation::obstacle_time() const { return impl_->obstacle_time; }
 
@@ -295,6 +314,7 @@ std::vector<std::string> Simulation::potential_names() const {
     names.push_back(one ? "elasticity" : "elasticity_" + impl_->model.bodies[body].name);
   }
   for (const auto& V : impl_->model.loads) names.emplace_back(V->name());
+  for (std::string& name : impl_->E->internal().names()) names.push_back(std::move(name));
   return names;
 }
 
@@ -325,6 +345,7 @@ double Simulation::kinetic_energy() const {
 std::vector<double> Simulation::potential_energies() const {
   std::vector<double> energies;
   for (const ActiveTerm& V : impl_->E->potential()) energies.push_back(V.value(impl_->state.q));
+  impl_->E->internal().append_stored(impl_->state.internal, energies);
   return energies;
 }
 
@@ -394,8 +415,10 @@ void Simulation::restore(const Snapshot& snapshot) {
       if (v->size() != n)
         throw InvalidInput("the checkpoint has " + std::to_string(v->size()) + " entries; this scene needs " +
                            std::to_string(n));
+  require_internal(snapshot.state.internal, impl_->E->internal().size());
   if (impl_->adaptive) impl_->adaptive->set_level(snapshot.level);
   impl_->state = snapshot.state;
+  if (impl_->state.internal.empty()) impl_->state.internal.assign(impl_->E->internal().size(), 0.0);
   impl_->start = snapshot.start;
   impl_->steps_taken = snapshot.steps_taken;
   impl_->outside_work = snapshot.outside_work;

@@ -1,5 +1,6 @@
 // Advances a model in time, with one minimization per step.
 #pragma once
+#include <cstdint>
 #include <memory>
 #include <optional>
 #include <string>
@@ -61,8 +62,10 @@ class Simulation {
   void set_pins(std::vector<Pin> pins);
 
   // The references are valid until this is destroyed or assigned to.
-  const Model& model() const;                // with the pins of set_pins()
-  const State& state() const;                // after the last step
+  const Model& model() const;  // with the pins of set_pins()
+  const State& state() const;  // after the last step
+  // Hash of the state and its internal variables, see state_hash(). These are in the user's order of tets.
+  std::uint64_t state_hash() const;
   const SimulationOptions& options() const;  // with the solver of set_solver()
   int steps_taken() const;                   // since time 0
 

@@ -8,17 +8,20 @@
 
 namespace aspic {
 
+std::uint64_t continued_hash(std::uint64_t hash, std::span<const double> values) {
+  for (const double value : values) {
+    hash = (hash ^ bit_cast<std::uint64_t>(value)) * Fnv1a::kPrime;
+    hash ^= hash >> 32;
+  }
+  return hash;
+}
+
 std::uint64_t state_hash(const State& state, const Renumbering& vertices) {
   std::uint64_t hash = Fnv1a::kBasis;
   for (const std::vector<double>* values : {&state.q, &state.qdot}) {
     const int count = static_cast<int>(values->size() / 3);
-    for (int user = 0; user < count; ++user) {
-      const double* x = values->data() + 3 * static_cast<size_t>(vertices.from_user(user));
-      for (int r = 0; r < 3; ++r) {
-        hash = (hash ^ bit_cast<std::uint64_t>(x[r])) * Fnv1a::kPrime;
-        hash ^= hash >> 32;
-      }
-    }
+    for (int user = 0; user < count; ++user)
+      hash = continued_hash(hash, std::span(*values).subspan(3 * static_cast<size_t>(vertices.from_user(user)), 3));
   }
   return hash;
 }

@@ -1,6 +1,7 @@
 // Positions and velocities of all vertices at one time.
 #pragma once
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "mesh/numbering.h"
@@ -12,6 +13,8 @@ struct TetMesh;
 struct State {
   std::vector<double> q, qdot;  // positions [m] and velocities [m/s], 3 per vertex
   double time = 0;              // [s]
+  // Internal variables of the damping terms, see InternalTerms; empty: none, or zeros at the start of a simulation.
+  std::vector<double> internal = {};
 };
 
 // Returns the state of a body in its rest shape, with zero velocities at time 0.
@@ -22,5 +25,7 @@ State at_rest(const TetMesh& mesh);
 //   hash = (hash xor w) * 0x100000001b3 mod 2^64, then hash = hash xor (hash >> 32), from hash = 0xcbf29ce484222325.
 // Each step is a bijection, so states that differ in one number have different hashes.
 std::uint64_t state_hash(const State& state, const Renumbering& vertices);
+// Continues a hash with the bits of more numbers.
+std::uint64_t continued_hash(std::uint64_t hash, std::span<const double> values);
 
 }  // namespace aspic

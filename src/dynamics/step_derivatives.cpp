@@ -79,6 +79,7 @@ class StepCheck {
     const StepContext context{state_.q, is_static ? 0 : h, state_.time + h};
     E_.set_potential_step(context);
     E_.set_damping_step(context);
+    E_.set_internal(state_.internal, h);
     std::vector<double> predicted = state_.q;
     if (!is_static)
       for (size_t i = 0; i < predicted.size(); ++i) predicted[i] += h * state_.qdot[i];
@@ -92,7 +93,8 @@ class StepCheck {
       if (at.name == kTouching) E_.update_lagged(at.q, false);
       negligible_ = kNegligible * stiffness(at.q);
       const std::vector<std::string> names = simulation_.potential_names();
-      for (size_t k = 0; k < names.size(); ++k) check(names[k], at, differentiable(E_.potential()[k], E_.pattern()));
+      for (size_t k = 0; k < E_.potential().size(); ++k)
+        check(names[k], at, differentiable(E_.potential()[k], E_.pattern()));
       for (const ActiveTerm& D : E_.damping()) check(std::string(D.name()), at, differentiable(D, E_.pattern()));
       if (inertia_ != 0) check("inertia", at, inertia());
       check_E(at);

@@ -101,7 +101,7 @@ StepField converged() {
 StepField state_hash() {
   return {"state_hash",
           "",
-          "[hash](determinism.md#compare-two-runs) of positions and velocities",
+          "[hash](determinism.md#compare-two-runs) of the state",
           StepFieldType::hash,
           kMeasured,
           [](const StepReport& r) { return StepValue(hex_digits(r.state_hash)); },
@@ -171,7 +171,8 @@ std::vector<StepField>& fields() {
           {"friction_residual", "N", "change of friction by the last update of normal forces"}, kMeasured)),
       optional(
           count<&R::friction_passes>({"friction_passes", "", "evaluations of the normal forces of friction"}, kCount)),
-      {"potential", "J", "energy of each term of V; a dead load has -f . x, not zero at rest",
+      {"potential", "J",
+       "energy of each term of V and of viscoelastic branches; a dead load has -f . x, not zero at rest",
        StepFieldType::potentials, kTable | kJson | kViewer},
       real<&R::potential_total>({"potential_total", "J", "sum of the potential energies"}, kTable | kFrame | kJson),
       real<&R::pin_work>(
@@ -179,6 +180,8 @@ std::vector<StepField>& fields() {
           kMeasured),
       optional(real<&R::obstacle_work>({"obstacle_work", "J", "work of moving obstacles"}, kMeasured)),
       real<&R::damping_loss>({"damping_loss", "J", "energy dissipated by damping and friction"}, kMeasured),
+      optional(real<&R::viscoelastic_loss>(
+          {"viscoelastic_loss", "J", "share of viscoelastic branches in `damping_loss`"}, kMeasured)),
       real<&R::numerical_loss>({"numerical_loss", "J", "energy dissipated by the integrator"}, kMeasured),
       real<&R::residual_work>({"residual_work", "J", "work of the residual"}, kMeasured),
       real<&R::ledger_error>({"ledger_error", "J", "remaining imbalance"}, kMeasured),

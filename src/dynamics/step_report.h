@@ -69,13 +69,15 @@ struct StepReport : Work {  // work of all solves of the step and of this report
 
   // Ledger: kinetic + potential changes by pin_work + obstacle_work - damping_loss - numerical_loss + residual_work.
   // [J]
-  double kinetic = 0;               // at the end of the step
-  std::vector<double> potential;    // one per term of V, named by Simulation::potential_names()
+  double kinetic = 0;  // at the end of the step
+  // One per term of V, then the energies stored by internal variables; named by Simulation::potential_names().
+  std::vector<double> potential;
   double potential_total = 0;       // sum of `potential`
   double pin_work = 0;              // work of moving pins and moving targets in this step
   double obstacle_work = 0;         // work of moving obstacles on bodies, including friction, in this step
   std::vector<double> target_work;  // share of the moving targets of each of Model::loads
   double damping_loss = 0;          // energy dissipated by damping and friction in this step
+  double viscoelastic_loss = 0;     // share of the terms with internal variables in damping_loss
   double numerical_loss = 0;        // energy dissipated by the integrator in this step
   double residual_work = 0;         // work of the residual forces
   double ledger_error = 0;          // difference of both sides
