@@ -14,6 +14,7 @@
 #include "energy/rayleigh_damping.h"
 #include "energy/springs.h"
 #include "mesh/surface.h"
+#include "scene/body_branches.h"
 #include "scene/body_fibres.h"
 #include "scene/body_grabs.h"
 #include "scene/expression.h"
@@ -377,13 +378,14 @@ SelectionScope selection_scope(const PlacedBody& body, Value& where, const Vec3d
 }
 
 void add_actions(const SceneActions& actions, Model& model) {
-  const auto& [bodies, gravity, mass, files, notes] = actions;
+  const auto& [bodies, gravity, mass, files, notes, memory] = actions;
   const double g = norm(gravity);
   Builder builder{bodies, g > 0 ? (-1 / g) * gravity : Vec3d{{0, 1, 0}}, model, files, notes, {}, {}, 0};
   for (const PlacedBody& body : bodies) add_pins(builder, body);
   add_loads(builder, gravity);
   add_grabs(bodies, model);
   for (size_t i = 0; i < bodies.size(); ++i) add_damping(bodies[i], i, mass, files, model);
+  add_branches(bodies, {files, memory}, model);
 }
 
 }  // namespace aspic

@@ -34,6 +34,7 @@ struct SceneActions {
   MassKind mass;
   SceneFiles& files;
   std::vector<std::string>& notes;  // receives notes for the user
+  std::int64_t memory;              // maximum memory [bytes]
 };
 
 // Adds pins, loads and damping to a model that has its mesh, mass and elasticity. Throws InvalidInput.

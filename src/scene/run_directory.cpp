@@ -12,6 +12,7 @@
 
 #include "base/error.h"
 #include "base/printable.h"
+#include "dynamics/internal_terms.h"
 #include "io/atomic_file.h"
 #include "io/checkpoint.h"
 #include "io/vtu.h"
@@ -104,6 +105,9 @@ Checkpoint to_checkpoint(const Simulation& simulation, const std::string& scene,
                        {"frame_times", frame_times}};
   if (snapshot.obstacle_time && *snapshot.obstacle_time != snapshot.state.time)
     checkpoint.arrays.emplace_back("obstacle_time", std::vector<double>{*snapshot.obstacle_time});
+  if (const InternalTerms terms(simulation.model()); !terms.empty())
+    checkpoint.arrays.emplace_back("internal",
+                                   terms.to_user(snapshot.state.internal, simulation.model().numbering.tet));
   return checkpoint;
 }
 
@@ -124,6 +128,16 @@ State state_of(const Checkpoint& checkpoint, const std::string& prefix, const Mo
   return from_user(model.numbering.vertex, state);
 }
 
+void read_internal(const Checkpoint& checkpoint, const Model& model, State& state) {
+  const InternalTerms terms(model);
+  if (terms.empty()) return;
+  const std::vector<double>& values = checkpoint.array("internal");
+  if (values.size() != terms.size())
+    throw InvalidInput("the checkpoint has " + std::to_string(values.size()) +
+                       " internal variables; this scene needs " + std::to_string(terms.size()));
+  state.internal = terms.from_user(values, model.numbering.tet);
+}
+
 Simulation::Snapshot to_snapshot(const Checkpoint& checkpoint, const Model& model) {
   Simulation::Snapshot snapshot;
   const int64_t steps = checkpoint.integer("steps_taken");
@@ -135,6 +149,7 @@ Simulation::Snapshot to_snapshot(const Checkpoint& checkpoint, const Model& mode
   snapshot.outside_work = only_number(checkpoint, "outside_work");
   if (checkpoint.find("obstacle_time")) snapshot.obstacle_time = only_number(checkpoint, "obstacle_time");
   read_history(checkpoint.array("history"), model.numbering.vertex, snapshot);
+  read_internal(checkpoint, model, snapshot.state);
   return snapshot;
 }
 

@@ -7,6 +7,7 @@
 #include "base/error.h"
 #include "base/printable.h"
 #include "dynamics/integrator.h"
+#include "dynamics/internal_terms.h"
 #include "dynamics/simulation_checks.h"
 #include "scene/body_actions.h"
 #include "scene/body_material.h"
@@ -122,6 +123,7 @@ class SceneBuilder {
     if (const Value* contact = source_.document.find("contact"); contact && (*contact)["start"].text() == "inflate")
       inflate_from((*contact)["start"].place, state);
     const SimulationOptions options = options_of(source_.document, source_.notes);
+    require_integrator(options.integrator);
     put_in_order(source_.document);
     for (std::string& note : source_.notes) note = printable(note);
     return {printable(source_.name),
@@ -155,6 +157,14 @@ class SceneBuilder {
   }
 
  private:
+  void require_integrator(const std::string& name) const {
+    try {
+      InternalTerms(model_).require_support(make_integrator(name)->facts());
+    } catch (const InvalidInput& e) {
+      throw error_at((*source_.document.find("time"))["integrator"].place, e.what());
+    }
+  }
+
   void inflate_from(const Place& place, State& state) {
     mesh_loader().report_if_many(model_.mesh.tet_count(), "moving bodies apart that overlap at the start");
     try {
@@ -226,7 +236,9 @@ class SceneBuilder {
       export_moduli(parameters);
     }
     model_.mass = std::make_unique<MassMatrix>(model_.mesh, model_.density, kind);
-    add_actions({bodies_, source_.document.find("gravity")->vector(), kind, files_, source_.notes}, model_);
+    add_actions(
+        {bodies_, source_.document.find("gravity")->vector(), kind, files_, source_.notes, options_.limit.memory},
+        model_);
     MeshLoader loader = mesh_loader();
     add_scene_contact(source_.document, loader, model_);
     for (const PlacedBody& body : bodies_) note_parts(body, model_, source_.notes);

@@ -12,6 +12,21 @@ void add_damping(Schema& s) {
                    Units{"Pa s"}, kNotNegative, Members{"field"}, Usual{"0.0", "none"})});
 }
 
+void add_viscoelastic(Schema& s) {
+  const auto per_tet = kNumber | kExpression | kTable;
+  add_section(
+      s,
+      {"viscoelastic", "[[body.viscoelastic]]",
+       "A Maxwell branch beside the material, for creep and relaxation: a stress s in the rest frame, zero at the "
+       "start, with s' + s / tau = 2 G E', E = (F'F - I)/2. The material is the response to slow loads; fast ones add "
+       "the branches. Requires the integrator `backward_euler`, `linearly_implicit_euler` or `quasi_static`; time "
+       "passes in the latter, too."},
+      {key("shear", per_tet, "shear modulus G", Units{"Pa"}, kNotNegative, Members{"field"}, kRequired),
+       key("ratio", per_tet, "G over the shear modulus of the material", kNotNegative, Members{"field"}, kRequired),
+       key("relaxation_time", kNumber, "tau", Units{"s"}, kPositive, kRequired)});
+  s.alternatives.push_back({"viscoelastic", {{"shear"}, {"ratio"}}, true});
+}
+
 void add_fibres(Schema& s) {
   const auto per_tet = kNumber | kExpression | kTable;
   const Key direction = key("direction", kExpressions, "a, of any length: function of the centroid (X, Y, Z) at rest",
@@ -177,6 +192,7 @@ void add_loads(Schema& s) {
 
 void add_action_sections(Schema& s) {
   add_damping(s);
+  add_viscoelastic(s);
   add_fibres(s);
   add_where(s);
   add_motion(s);

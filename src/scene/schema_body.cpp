@@ -32,6 +32,7 @@ void add_body(Schema& s) {
             key("angular_velocity", kNumbers, "adds omega x (x - center of mass) to the velocity", Units{"rad/s"},
                 Usual{"[0.0, 0.0, 0.0]", "at rest"}),
             key("damping", kTable, "damping", Members{"damping"}, Usual{"{}"}),
+            key("viscoelastic", kTables, "branches for creep and relaxation", Members{"viscoelastic"}),
             key("fibre", kTables, "families of fibres", Members{"fibre"}),
             key("muscle", kTables, "active fibres", Members{"muscle"}),
             key("pin", kTables, "prescribed positions", Members{"pin"}),

@@ -17,17 +17,18 @@ export interface StepFields {
   friction_loss: MaybeNumber; // share of friction in damping_loss [J]
   friction_creep: MaybeNumber; // largest slip of a sticking contact in this step [m]
   friction_residual: MaybeNumber; // change of friction by the last update of normal forces [N]
-  potential: MaybeNumber[]; // energy of each term of V; a dead load has -f . x, not zero at rest [J]
+  potential: MaybeNumber[]; // energy of each term of V and of viscoelastic branches; a dead load has -f . x, not zero at rest [J]
   pin_work: MaybeNumber; // work of moving pins, moving spring targets and time-dependent loads in this step [J]
   obstacle_work: MaybeNumber; // work of moving obstacles [J]
   damping_loss: MaybeNumber; // energy dissipated by damping and friction [J]
+  viscoelastic_loss: MaybeNumber; // share of viscoelastic branches in damping_loss [J]
   numerical_loss: MaybeNumber; // energy dissipated by the integrator [J]
   residual_work: MaybeNumber; // work of the residual [J]
   ledger_error: MaybeNumber; // remaining imbalance [J]
   decrement: MaybeNumber; // Newton decrement -g.d / 2 of the last iteration [J]
   energy_bound: string; // holds, broken, not_guaranteed, none: the bound of backward Euler
   energy_slack: MaybeNumber; // bound minus energy [J]
-  state_hash: string | null; // hash of positions and velocities
+  state_hash: string | null; // hash of the state
   seconds: MaybeNumber; // wall time [s]
 }
 
@@ -52,6 +53,7 @@ export const kUnknownStep: StepFields = {
   pin_work: null,
   obstacle_work: null,
   damping_loss: null,
+  viscoelastic_loss: null,
   numerical_loss: null,
   residual_work: null,
   ledger_error: null,
