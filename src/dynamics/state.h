@@ -20,8 +20,8 @@ struct State {
 // Returns the state of a body in its rest shape, with zero velocities at time 0.
 State at_rest(const TetMesh& mesh);
 
-// A 64-bit hash of a state, equal on all machines. For the bits w of all positions and then all velocities, as IEEE 754
-// doubles in the user's order of vertices:
+// A 64-bit hash of positions and velocities, equal on all machines. For the bits w of all positions and then all
+// velocities, as IEEE 754 doubles in the user's order of vertices:
 //   hash = (hash xor w) * 0x100000001b3 mod 2^64, then hash = hash xor (hash >> 32), from hash = 0xcbf29ce484222325.
 // Each step is a bijection, so states that differ in one number have different hashes.
 std::uint64_t state_hash(const State& state, const Renumbering& vertices);
