@@ -133,9 +133,7 @@ Simulation::Snapshot History::simulation_state(const Snapshot& snapshot, const S
 }
 
 void History::restore(const Snapshot& snapshot, Simulation& simulation) {
-  Simulation::Snapshot state = simulation_state(snapshot, simulation.options());
-  // After a change of the viscoelastic branches they are relaxed.
-  if (state.state.internal.size() != simulation.state().internal.size()) state.state.internal.clear();
+  const Simulation::Snapshot state = simulation_state(snapshot, simulation.options());
   simulation.restore(state);
   start_time_ = state.start.time;
 }

@@ -89,6 +89,20 @@ TEST(Session, IsBitReproducibleAfterRewinding) {
   EXPECT_TRUE(page.rows().empty());
 }
 
+TEST(Session, RewindsViscoelasticBranches) {
+  Page page(kBeam + "[[body.viscoelastic]]\nratio = 2\nrelaxation_time = 0.02\n");
+  page.steps(7);
+  const Json hash = page.rows().back().at("state_hash");
+  page.send({{"do", "rewind"}, {"step", 3}});
+  page.steps(4);
+  EXPECT_EQ(page.rows().back().at("state_hash"), hash);
+  EXPECT_GT(number(page.rows().back().at("viscoelastic_loss")), 0);
+  const std::string why = page.refused({{"do", "set"}, {"key", "time.integrator"}, {"value", "bdf2"}});
+  EXPECT_NE(why.find("choose backward_euler"), std::string::npos) << why;
+  page.steps(1);
+  EXPECT_EQ(page.side()["step"], 8);
+}
+
 TEST(Session, ThinsOutALongHistory) {
   Page page(kBeam, {}, {.timeline_bytes = 200'000});
   page.steps(60);
