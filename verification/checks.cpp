@@ -18,6 +18,8 @@ const std::vector<Check>& checks() {
     add_cook_checks(list);
     add_solid_checks(list);
     add_volume_checks(list);
+    add_heart_checks(list);
+    add_tissue_checks(list);
     add_cylinder_checks(list);
     add_vibration_checks(list);
     add_column_checks(list);
