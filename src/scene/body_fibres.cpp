@@ -42,6 +42,25 @@ class BodyFibre {
   std::vector<FibreDirections> directions() const {
     return fibre_directions({body_, scene_, scope_.up, scope_.files, stem() + ".directions"});
   }
+  // Exports the directions of the first family of each body as the fields fibre_x, fibre_y, fibre_z.
+  void export_directions(const std::vector<FibreDirections>& directions, Model& model) const {
+    const auto component = [&](int r) -> std::vector<double>& {
+      const std::string name = std::string("fibre_") + static_cast<char>('x' + r);
+      for (auto& [known, values] : model.tet_fields)
+        if (known == name) return values;
+      return model.tet_fields.emplace_back(name, std::vector<double>(model.mesh.tets.size(), 0.0)).second;
+    };
+    const int first = body_.first_tet;
+    if (component(0)[first] != 0 || component(1)[first] != 0 || component(2)[first] != 0) return;
+    for (int t = 0; t < body_.mesh.tet_count(); ++t) {
+      const int at = first + body_.numbering.tet.from_user(t);
+      Vec3d sum{};
+      for (int q = 0; q < fibre_point_count(body_.mesh, t); ++q) sum = sum + directions[t][q];
+      const double length = norm(sum);
+      for (int r = 0; r < 3 && length > 0; ++r) component(r)[at] = sum[r] / length;
+    }
+  }
+
   // Values of a key, one per tet of the user.
   std::vector<double> values(const char* section, const char* key) const {
     return tet_values(scene_.table(), scene_schema().key(section, key),
@@ -74,6 +93,7 @@ void add_fibre(BodyFibre fibre, Model& model) {
                   {"exponent", "dispersion", "along", "across", "shear", "straight_stretch", "straight_stiffness"},
                   "law = " + toml_string(law));
   const std::vector<FibreDirections> directions = fibre.directions();
+  fibre.export_directions(directions, model);
   const auto values = [&](const char* key) { return fibre.values("fibre", key); };
   const auto stiffness = values("stiffness"), a = values(needed[0].c_str()), b = values(needed[1].c_str());
   const FibrePlace place = fibre.place(model);
@@ -121,6 +141,7 @@ void add_muscle(BodyFibre muscle, Model& model) {
   const std::vector<std::string> hill = {"curvature", "lengthening"};
   muscle.need_only(is_slowed ? hill : std::vector<std::string>{}, hill, "a muscle without max_velocity");
   const std::vector<FibreDirections> directions = muscle.directions();
+  muscle.export_directions(directions, model);
   const auto values = [&](const char* key) { return muscle.values("muscle", key); };
   const auto strength = values("strength");
   const Activation activation = activation_of(muscle["activation"]);
