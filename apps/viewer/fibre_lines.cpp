@@ -33,7 +33,8 @@ Message fibres_message(const ShownSide& shown) {
     const std::array<double, 2> shares = edge_shares({X[i], X[j], X[k]}, a);
     lines.insert(lines.end(), {t, static_cast<float>(shares[0]), static_cast<float>(shares[1])});
   }
-  return text({{"kind", "fibres"}, {"side", shown.name}, {"generation", shown.generation}, {"lines", std::move(lines)}});
+  return text(
+      {{"kind", "fibres"}, {"side", shown.name}, {"generation", shown.generation}, {"lines", std::move(lines)}});
 }
 
 }  // namespace aspic::viewer

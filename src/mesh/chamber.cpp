@@ -57,7 +57,8 @@ TetMesh make_chamber(const Chamber& chamber, const ChamberCells& cells) {
     for (int i = 0; i < sectors.count_in(j); ++i)
       for (int s = 0; s <= cells.layers; ++s)
         mesh.rest.push_back(chamber.point(static_cast<double>(s) / cells.layers,
-                                          std::pow(static_cast<double>(j) / cells.rings, cells.grading), j == 0 ? 0 : std::numbers::pi / 2 * i / j));
+                                          std::pow(static_cast<double>(j) / cells.rings, cells.grading),
+                                          j == 0 ? 0 : std::numbers::pi / 2 * i / j));
   for (Triangle triangle : sectors.triangles()) {
     std::sort(triangle.begin(), triangle.end());
     for (int s = 0; s < cells.layers; ++s) {

@@ -15,10 +15,10 @@ struct Chamber {
 };
 
 struct ChamberCells {
-  int rings;         // from the tip to the base
-  int layers;        // through the wall
-  int quarters = 4;     // of a turn: 1 to 4
-  double grading = 1;   // exponent of the heights: above 1, cells at the tip are smaller
+  int rings;           // from the tip to the base
+  int layers;          // through the wall
+  int quarters = 4;    // of a turn: 1 to 4
+  double grading = 1;  // exponent of the heights: above 1, cells at the tip are smaller
 };
 
 // Meshes the chamber with prisms of three tets. Ring j of a layer has j cells per quarter, so that doubled counts
