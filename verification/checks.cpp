@@ -19,6 +19,8 @@ const std::vector<Check>& checks() {
     add_solid_checks(list);
     add_volume_checks(list);
     add_viscoelastic_checks(list);
+    add_heart_checks(list);
+    add_tissue_checks(list);
     add_cylinder_checks(list);
     add_vibration_checks(list);
     add_column_checks(list);

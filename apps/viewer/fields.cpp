@@ -60,7 +60,10 @@ const KnownField* find_field(const std::string& name) {
 
 // The fields that a material exports and that have a label.
 const Field kMaterialFields[] = {{.name = "young", .label = "Young's modulus", .unit = "Pa", .is_log = true},
-                                 {.name = "poisson", .label = "Poisson's ratio", .unit = ""}};
+                                 {.name = "poisson", .label = "Poisson's ratio", .unit = ""},
+                                 {.name = "fibre_x", .label = "fibres along x", .unit = ""},
+                                 {.name = "fibre_y", .label = "fibres along y", .unit = ""},
+                                 {.name = "fibre_z", .label = "fibres along z", .unit = ""}};
 
 }  // namespace
 

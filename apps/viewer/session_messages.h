@@ -30,6 +30,7 @@ Message geometry_message(const ShownSide& shown);
 Message obstacles_message(const ShownSide& shown);
 Message steps_message(const ShownSide& shown, int from);
 Message pins_message(const ShownSide& shown);
+Message fibres_message(const ShownSide& shown);
 Json state_of(const ShownSide& shown);
 Message refusal(const Json& id, const std::string& why);
 

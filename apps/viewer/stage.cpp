@@ -95,6 +95,7 @@ Recording Stage::recording() {
 
 void Stage::send_shape(const ShownSide& shown) {
   send(geometry_message(shown));
+  if (tet_field(shown.side.model(), "fibre_x")) send(fibres_message(shown));
   if (shown.side.model().contact) send(obstacles_message(shown));
 }
 

@@ -1,22 +1,31 @@
 #include "energy/fibres.h"
 
-#include "energy/quadratic_batch.h"
-#include "energy/tet_term.h"
+#include "energy/fibre_term.h"
 #include "material/fibre_law.h"
+#include "material/guccione_law.h"
 #include "material/muscle_law.h"
+#include "material/tension_law.h"
+#include "material/weiss_law.h"
 
 namespace aspic {
 namespace {
 
-template <class Batch>
-class Muscle final : public TetTerm<MuscleLaw, Energy, Batch> {
+template <class Law, class Fibre, class Own>
+std::unique_ptr<Energy> passive(const FibrePlace& place, std::span<const Fibre> fibres, const Own& own) {
+  return for_order_of(place, fibres, [&]<class Batch>() -> std::unique_ptr<Energy> {
+    return std::make_unique<FibreTerm<Law, Energy, Batch>>(place, fibres, own);
+  });
+}
+
+template <class Law, class Batch>
+class Muscle final : public FibreTerm<Law, Energy, Batch> {
  public:
-  using Term = TetTerm<MuscleLaw, Energy, Batch>;
+  using Term = FibreTerm<Law, Energy, Batch>;
   using Context = Energy::Context;
 
-  Muscle(std::string name, const TetMesh& mesh, int first, std::span<const MuscleLaw::Params<double>> parameters,
-         std::function<double(double)> activation)
-      : Term(std::move(name), mesh, first, parameters), activation_(std::move(activation)) {}
+  template <class Fibre, class Own>
+  Muscle(const FibrePlace& place, std::span<const Fibre> fibres, const Own& own, Activation activation)
+      : Term(place, fibres, own), activation_(std::move(activation)) {}
 
   std::unique_ptr<Context> make_context() const override {
     auto context = std::make_unique<Activated>();
@@ -29,48 +38,70 @@ class Muscle final : public TetTerm<MuscleLaw, Energy, Batch> {
   }
 
  private:
+  using Packs = std::vector<typename Law::template Params<Pack>>;
   struct Activated : Context {
-    std::vector<MuscleLaw::Params<Pack>> params;
+    Packs params;
   };
 
   void activate(double time, Activated& context) const {
     const Pack activation(activation_(time));
     context.params = this->params_;
-    for (MuscleLaw::Params<Pack>& p : context.params) p.tension = activation * p.tension;
+    for (auto& p : context.params) p.tension = activation * p.tension;
   }
-  const std::vector<MuscleLaw::Params<Pack>>& params(const Context& context) const override {
-    return static_cast<const Activated&>(context).params;
-  }
+  const Packs& params(const Context& context) const override { return static_cast<const Activated&>(context).params; }
 
-  std::function<double(double)> activation_;
+  Activation activation_;
 };
 
-// Calls make.template operator()<Batch>() for the order of the elements.
-template <class Make>
-std::unique_ptr<Energy> for_order(const TetMesh& mesh, int first, bool is_empty, const Make& make) {
-  if (!is_empty && is_quadratic(mesh, first)) return make.template operator()<QuadraticTetBatch>();
-  return make.template operator()<TetBatch>();
+template <class Law, class Fibre, class Own>
+std::unique_ptr<Energy> active(const FibrePlace& place, std::span<const Fibre> fibres, const Own& own,
+                               Activation activation) {
+  return for_order_of(place, fibres, [&]<class Batch>() -> std::unique_ptr<Energy> {
+    return std::make_unique<Muscle<Law, Batch>>(place, fibres, own, std::move(activation));
+  });
 }
 
 }  // namespace
 
-std::unique_ptr<Energy> make_fibres(std::string name, const TetMesh& mesh, int first, std::span<const Fibre> fibres) {
-  std::vector<FibreLaw::Params<double>> parameters;
-  parameters.reserve(fibres.size());
-  for (const auto& [a, k1, k2, kappa] : fibres) parameters.push_back({k1, k2, kappa, a[0], a[1], a[2]});
-  return for_order(mesh, first, fibres.empty(), [&]<class Batch>() -> std::unique_ptr<Energy> {
-    return std::make_unique<TetTerm<FibreLaw, Energy, Batch>>(std::move(name), mesh, first, parameters);
+int fibre_point_count(const TetMesh& mesh, int tet) { return is_quadratic(mesh, tet) ? 4 : 1; }
+
+std::array<double, 4> fibre_point(const TetMesh& mesh, int tet, int point) {
+  if (!is_quadratic(mesh, tet)) return {0.25, 0.25, 0.25, 0.25};
+  std::array<double, 4> l;
+  for (int i = 0; i < 4; ++i) l[i] = point_coordinate(point, i);
+  return l;
+}
+
+std::unique_ptr<Energy> make_fibres(const FibrePlace& place, std::span<const Fibre> fibres) {
+  return passive<FibreLaw>(place, fibres, [](const Fibre& f) {
+    return FibreLaw::Params<double>{f.stiffness, f.exponent, f.dispersion, 0, 0, 0};
   });
 }
 
-std::unique_ptr<Energy> make_muscle(std::string name, const TetMesh& mesh, int first,
-                                    std::span<const MuscleFibre> fibres, std::function<double(double)> activation) {
-  std::vector<MuscleLaw::Params<double>> parameters;
-  parameters.reserve(fibres.size());
-  for (const auto& [a, strength, optimal] : fibres) parameters.push_back({strength, optimal, a[0], a[1], a[2]});
-  return for_order(mesh, first, fibres.empty(), [&]<class Batch>() -> std::unique_ptr<Energy> {
-    return std::make_unique<Muscle<Batch>>(std::move(name), mesh, first, parameters, std::move(activation));
+std::unique_ptr<Energy> make_fibres(const FibrePlace& place, std::span<const GuccioneFibre> fibres) {
+  return passive<GuccioneLaw>(place, fibres, [](const GuccioneFibre& f) {
+    return GuccioneLaw::Params<double>{f.stiffness, f.along, f.across, f.shear, 0, 0, 0};
   });
+}
+
+std::unique_ptr<Energy> make_fibres(const FibrePlace& place, std::span<const WeissFibre> fibres) {
+  return passive<WeissLaw>(place, fibres, [](const WeissFibre& f) {
+    return WeissLaw::Params<double>{f.stiffness, f.exponent, f.straight_stretch, f.straight_stiffness, 0, 0, 0};
+  });
+}
+
+std::unique_ptr<Energy> make_muscle(const FibrePlace& place, std::span<const MuscleFibre> fibres,
+                                    Activation activation) {
+  const auto own = [](const MuscleFibre& f) {
+    return MuscleLaw::Params<double>{f.strength, f.optimal_stretch, 0, 0, 0};
+  };
+  return active<MuscleLaw>(place, fibres, own, std::move(activation));
+}
+
+std::unique_ptr<Energy> make_muscle(const FibrePlace& place, std::span<const TensionFibre> fibres,
+                                    Activation activation) {
+  const auto own = [](const TensionFibre& f) { return TensionLaw::Params<double>{f.strength, 0, 0, 0}; };
+  return active<TensionLaw>(place, fibres, own, std::move(activation));
 }
 
 }  // namespace aspic

@@ -1,9 +1,9 @@
 #include "scene/body_fibres.h"
 
-#include "base/formatted.h"
+#include <algorithm>
+
 #include "energy/fibres.h"
-#include "mesh/tet_shape.h"
-#include "scene/harmonic_extension.h"
+#include "scene/fibre_directions.h"
 #include "scene/placement.h"
 #include "scene/schema.h"
 #include "scene/tables.h"
@@ -11,88 +11,118 @@
 namespace aspic {
 namespace {
 
-struct BodyFibre {
-  PlacedBody& body;
-  Value& scene;
-  std::string name;  // of the term
-  const FibreScope& scope;
+// One table of a body and the name of its term.
+class BodyFibre {
+ public:
+  BodyFibre(PlacedBody& body, Value& scene, std::string name, const FibreScope& scope)
+      : body_(body), scene_(scene), name_(std::move(name)), scope_(scope) {}
 
-  std::vector<int> selected(const char* key) const {
-    Value& where = *scene.table().find(key);
-    return select_vertices(where, selection_scope(body, where, scope.up));
+  std::string law() const { return scene_["law"].text(); }
+  const Value& operator[](const char* key) const { return scene_[key]; }
+  bool has(const char* key) const { return scene_.find(key) != nullptr; }
+  FibrePlace place(const Model& model, const std::string& name = "") const {
+    return {name.empty() ? name_ : name, model.mesh, body_.first_tet};
   }
+  std::string suffix() const { return name_.substr(std::min(name_.size(), name_.find('_'))); }
+
+  // Removes the defaults of other keys among `all`, and refuses those that are given or missing.
+  void need_only(const std::vector<std::string>& needed, const std::vector<std::string>& all,
+                 const std::string& cause) {
+    Table& table = scene_.table();
+    for (const std::string& key : all) {
+      const bool is_needed = std::find(needed.begin(), needed.end(), key) != needed.end();
+      const Value* value = table.find(key);
+      if (is_needed && !value) throw error_at(scene_.place, cause + " needs `" + key + "`");
+      if (!is_needed && is_given(table, key))
+        throw error_at(value->place, key + " = " + inline_toml(*value) + "; " + cause + " does not use it (remove it)");
+      if (!is_needed) erase(table, key);
+    }
+  }
+
+  std::vector<FibreDirections> directions() const {
+    return fibre_directions({body_, scene_, scope_.up, scope_.files, stem() + ".directions"});
+  }
+  // Exports the directions of the first family of each body as the fields fibre_x, fibre_y, fibre_z.
+  void export_directions(const std::vector<FibreDirections>& directions, Model& model) const {
+    const auto component = [&](int r) -> std::vector<double>& {
+      const std::string name = std::string("fibre_") + static_cast<char>('x' + r);
+      for (auto& [known, values] : model.tet_fields)
+        if (known == name) return values;
+      return model.tet_fields.emplace_back(name, std::vector<double>(model.mesh.tets.size(), 0.0)).second;
+    };
+    const int first = body_.first_tet;
+    if (component(0)[first] != 0 || component(1)[first] != 0 || component(2)[first] != 0) return;
+    for (int t = 0; t < body_.mesh.tet_count(); ++t) {
+      const int at = first + body_.numbering.tet.from_user(t);
+      Vec3d sum{};
+      for (int q = 0; q < fibre_point_count(body_.mesh, t); ++q) sum = sum + directions[t][q];
+      const double length = norm(sum);
+      for (int r = 0; r < 3 && length > 0; ++r) component(r)[at] = sum[r] / length;
+    }
+  }
+
+  // Values of a key, one per tet of the user.
+  std::vector<double> values(const char* section, const char* key) const {
+    return tet_values(scene_.table(), scene_schema().key(section, key),
+                      {body_.mesh, scope_.files, stem(), *body_.painted});
+  }
+
+  // of_user(t): the fibre of a tet of the user. Returns them in the order of the model.
+  template <class OfUser>
+  auto in_model(const OfUser& of_user) const {
+    std::vector<decltype(of_user(0))> fibres(body_.mesh.tets.size());
+    for (int t = 0; t < body_.mesh.tet_count(); ++t) fibres[body_.numbering.tet.from_user(t)] = of_user(t);
+    return fibres;
+  }
+
+ private:
+  std::string stem() const { return body_.name() + "." + name_; }
+
+  PlacedBody& body_;
+  Value& scene_;
+  std::string name_;
+  const FibreScope& scope_;
 };
 
-// The potential is 0 at `from` and 1 at `to`, and no flux leaves the rest of the surface.
-std::vector<Vec3d> flow(const BodyFibre& fibre) {
-  const TetMesh& mesh = fibre.body.mesh;
-  std::vector<char> is_given(mesh.rest.size(), 0);
-  std::vector<double> potential(mesh.rest.size(), 0.0);
-  for (const int v : fibre.selected("from")) is_given[v] = 1;
-  for (const int v : fibre.selected("to")) {
-    if (is_given[v])
-      throw error_at(fibre.scene["to"].place, "vertex " + std::to_string(v) + " of body '" + fibre.body.name() +
-                                                  "' is in `from` and in `to`; fibres run between separate places");
-    is_given[v] = 1;
-    potential[v] = 1;
+void add_fibre(BodyFibre fibre, Model& model) {
+  const std::string law = fibre.law();
+  std::vector<std::string> needed = {"exponent", "dispersion"};
+  if (law == "guccione") needed = {"along", "across", "shear"};
+  if (law == "weiss") needed = {"exponent", "straight_stretch", "straight_stiffness"};
+  fibre.need_only(needed,
+                  {"exponent", "dispersion", "along", "across", "shear", "straight_stretch", "straight_stiffness"},
+                  "law = " + toml_string(law));
+  const std::vector<FibreDirections> directions = fibre.directions();
+  fibre.export_directions(directions, model);
+  const auto values = [&](const char* key) { return fibre.values("fibre", key); };
+  const auto stiffness = values("stiffness"), a = values(needed[0].c_str()), b = values(needed[1].c_str());
+  const FibrePlace place = fibre.place(model);
+  if (law == "gasser") {
+    const std::vector<Fibre> list = fibre.in_model([&](int t) {
+      return Fibre{directions[t], stiffness[t], a[t], b[t]};
+    });
+    return model.loads.push_back(make_fibres(place, list));
   }
-  try {
-    HarmonicExtension(mesh, is_given).extend(potential);
-  } catch (const InvalidInput& e) {
-    throw error_at(fibre.scene["from"].place, e.what());
+  const auto c = values(needed[2].c_str());
+  if (law == "guccione") {
+    const std::vector<GuccioneFibre> list = fibre.in_model([&](int t) {
+      return GuccioneFibre{directions[t], stiffness[t], a[t], b[t], c[t]};
+    });
+    return model.loads.push_back(make_fibres(place, list));
   }
-  std::vector<Vec3d> directions(mesh.tets.size(), Vec3d{});
-  for (int t = 0; t < mesh.tet_count(); ++t) {
-    const std::array<Vec3d, 4> gradients = shape_gradients(corners(mesh, t));
-    for (int i = 0; i < 4; ++i) directions[t] = directions[t] + potential[mesh.tets[t][i]] * gradients[i];
-  }
-  return directions;
-}
-
-std::vector<Vec3d> given_directions(const BodyFibre& fibre) {
-  const VectorField field(fibre.scene["direction"]);
-  std::vector<Vec3d> directions;
-  for (int t = 0; t < fibre.body.mesh.tet_count(); ++t) directions.push_back(field.at(centroid(fibre.body.mesh, t)));
-  return directions;
-}
-
-// Unit vectors, one per tet of the user.
-std::vector<Vec3d> directions_of(const BodyFibre& fibre) {
-  const Value* direction = fibre.scene.find("direction");
-  std::vector<Vec3d> directions = direction ? given_directions(fibre) : flow(fibre);
-  for (size_t t = 0; t < directions.size(); ++t) {
-    const double length = norm(directions[t]);
-    if (!(length > 0) || !std::isfinite(length)) {
-      const Vec3d X = centroid(fibre.body.mesh, static_cast<int>(t));
-      throw error_at((direction ? *direction : fibre.scene["from"]).place,
-                     "fibres of body '" + fibre.body.name() + "' have no direction in tet " + std::to_string(t) +
-                         formatted(" at (%.3g, %.3g, %.3g) m", X[0], X[1], X[2]) +
-                         (direction ? ": its length is " + number_text(length) : ": neither place reaches it"));
-    }
-    directions[t] = (1 / length) * directions[t];
-  }
-  return directions;
-}
-
-// Values of a key of a section, one per tet of the user.
-std::vector<double> values(const BodyFibre& fibre, const char* section, const char* key) {
-  PlacedBody& body = fibre.body;
-  return tet_values(fibre.scene.table(), scene_schema().key(section, key),
-                    {body.mesh, fibre.scope.files, body.name() + "." + fibre.name, *body.painted});
-}
-
-void add_fibre(const BodyFibre& fibre, Model& model) {
-  const std::vector<Vec3d> directions = directions_of(fibre);
-  const auto stiffness = values(fibre, "fibre", "stiffness"), exponent = values(fibre, "fibre", "exponent"),
-             dispersion = values(fibre, "fibre", "dispersion");
-  std::vector<Fibre> fibres(directions.size());
-  for (int t = 0; t < fibre.body.mesh.tet_count(); ++t)
-    fibres[fibre.body.numbering.tet.from_user(t)] = {directions[t], stiffness[t], exponent[t], dispersion[t]};
-  model.loads.push_back(make_fibres(fibre.name, model.mesh, fibre.body.first_tet, fibres));
+  const std::vector<WeissFibre> list = fibre.in_model([&](int t) {
+    return WeissFibre{directions[t], stiffness[t], a[t], b[t], c[t]};
+  });
+  for (const WeissFibre& f : list)
+    if (f.exponent * (f.straight_stretch - 1) > kMostWeissStiffening)
+      throw error_at(fibre["exponent"].place,
+                     "exponent (straight_stretch - 1) = " + number_text(f.exponent * (f.straight_stretch - 1)) +
+                         "; must be at most " + number_text(kMostWeissStiffening) + " (fibres straighten earlier)");
+  model.loads.push_back(make_fibres(place, list));
 }
 
 // Activations outside 0 to 1 throw InvalidInput, possibly long after the scene was read.
-std::function<double(double)> activation_of(const Value& value) {
+Activation activation_of(const Value& value) {
   const auto of_time = function_of_time(value, "activation: its formula may use only t");
   return [of_time, place = value.place](double time) {
     const double a = of_time(time);
@@ -103,14 +133,36 @@ std::function<double(double)> activation_of(const Value& value) {
   };
 }
 
-void add_muscle(const BodyFibre& fibre, Model& model) {
-  const std::vector<Vec3d> directions = directions_of(fibre);
-  const auto strength = values(fibre, "muscle", "strength"), optimal = values(fibre, "muscle", "optimal_stretch");
-  std::vector<MuscleFibre> fibres(directions.size());
-  for (int t = 0; t < fibre.body.mesh.tet_count(); ++t)
-    fibres[fibre.body.numbering.tet.from_user(t)] = {directions[t], strength[t], optimal[t]};
-  model.loads.push_back(
-      make_muscle(fibre.name, model.mesh, fibre.body.first_tet, fibres, activation_of(fibre.scene["activation"])));
+void add_muscle(BodyFibre muscle, Model& model) {
+  const bool is_tension = muscle.law() == "tension", is_slowed = muscle.has("max_velocity");
+  muscle.need_only(is_tension ? std::vector<std::string>{} : std::vector<std::string>{"optimal_stretch"},
+                   {"optimal_stretch"}, "law = " + toml_string(muscle.law()));
+  if (is_tension) muscle.need_only({}, {"max_velocity"}, "law = \"tension\"");
+  const std::vector<std::string> hill = {"curvature", "lengthening"};
+  muscle.need_only(is_slowed ? hill : std::vector<std::string>{}, hill, "a muscle without max_velocity");
+  const std::vector<FibreDirections> directions = muscle.directions();
+  muscle.export_directions(directions, model);
+  const auto values = [&](const char* key) { return muscle.values("muscle", key); };
+  const auto strength = values("strength");
+  const Activation activation = activation_of(muscle["activation"]);
+  if (is_tension) {
+    const std::vector<TensionFibre> list = muscle.in_model([&](int t) {
+      return TensionFibre{directions[t], strength[t]};
+    });
+    return model.loads.push_back(make_muscle(muscle.place(model), list, activation));
+  }
+  const auto optimal = values("optimal_stretch");
+  const std::vector<MuscleFibre> list = muscle.in_model([&](int t) {
+    return MuscleFibre{directions[t], strength[t], optimal[t]};
+  });
+  model.loads.push_back(make_muscle(muscle.place(model), list, activation));
+  if (!is_slowed) return;
+  const auto velocity = values("max_velocity"), curvature = values("curvature"), lengthening = values("lengthening");
+  const std::vector<MuscleVelocity> slowed = muscle.in_model([&](int t) {
+    return MuscleVelocity{{directions[t], strength[t], optimal[t]}, velocity[t], curvature[t], lengthening[t]};
+  });
+  model.damping.push_back(
+      make_muscle_velocity(muscle.place(model, "muscle_velocity" + muscle.suffix()), slowed, activation));
 }
 
 }  // namespace
@@ -123,7 +175,7 @@ void add_fibres(std::vector<PlacedBody>& bodies, const FibreScope& scope, Model&
       if (!list) continue;
       for (Value& scene : list->array()) {
         const std::string name = section + (++number == 1 ? "" : "_" + std::to_string(number));
-        (section == "fibre" ? add_fibre : add_muscle)({body, scene, name, scope}, model);
+        (section == "fibre" ? add_fibre : add_muscle)(BodyFibre(body, scene, name, scope), model);
       }
     }
   }

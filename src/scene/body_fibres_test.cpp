@@ -4,6 +4,8 @@
 
 #include <algorithm>
 
+#include "base/error.h"
+#include "io/vtu.h"
 #include "material/fibre_law.h"
 #include "scene/scene_cases_test.h"
 #include "scene/value.h"
@@ -121,6 +123,103 @@ TEST(Muscle, WorkOfTheActivationBalancesTheEnergy) {
   EXPECT_GT(work, 0);
 }
 
+// The stress of Guccione's law along its fibres is l C exp(bf E^2) bf E, E = (l^2 - 1)/2.
+TEST(Fibres, GuccionesLawHasTheStretchOfTheFormula) {
+  double low = 1, high = 2;
+  for (int i = 0; i < 100; ++i) {
+    const double l = 0.5 * (low + high), E = (l * l - 1) / 2;
+    (l * (1e5 * E + 1e4 * std::exp(6 * E * E) * 6 * E) > kTraction ? high : low) = l;
+  }
+  const std::string law =
+      "[[body.fibre]]\nlaw = \"guccione\"\nstiffness = 1e4\nalong = 6\nacross = 2\nshear = 3\ndirection = [1, 0, 0]\n";
+  EXPECT_NEAR(stretch(equilibrium(law)), high, 1e-9);
+}
+
+// l P = C3 (exp(C4 (l - 1)) - 1) while fibres straighten, and C5 l + C6 beyond.
+TEST(Fibres, WeisssLawHasTheStretchOfTheFormula) {
+  for (const double straight : {1.05, 1.9}) {
+    double low = 1, high = 2;
+    for (int i = 0; i < 100; ++i) {
+      const double l = 0.5 * (low + high), pull = 1e3 * (std::exp(4 * (std::min(l, straight) - 1)) - 1);
+      const double fibres = (pull + 2e5 * std::max(l - straight, 0.0)) / l;
+      (1e5 * l * (l * l - 1) / 2 + fibres > kTraction ? high : low) = l;
+    }
+    const std::string law =
+        "[[body.fibre]]\nlaw = \"weiss\"\nstiffness = 1e3\nexponent = 4\nstraight_stiffness = 2e5\n";
+    EXPECT_NEAR(stretch(equilibrium(law + "direction = [1, 0, 0]\nstraight_stretch = " + number_text(straight) + "\n")),
+                high, 1e-9);
+  }
+}
+
+// Without load, l (E (l^2 - 1) / 2 + T) = 0.
+TEST(Muscle, TensionContractsUntilTheMaterialBalancesIt) {
+  std::string text = pulled(muscle("activation = 0.5\nlaw = \"tension\""));
+  text.replace(text.find("value = [4e4"), 12, "value = [0");
+  Scene scene = load(text);
+  EXPECT_TRUE(is_success(scene.simulation.step().status));
+  EXPECT_NEAR(stretch(positions(scene)), std::sqrt(1 - 2 * 1e4 / 1e5), 1e-9);
+}
+
+// In a plate between y = 0 and 1 the angle to the circumference x falls from 60 to -60 degrees.
+TEST(Fibres, HelixTurnsThroughTheWall) {
+  const std::string helix =
+      "helix = { inner = \"y < 0.1\", outer = \"y > 0.9\", axis = [0, 0, 1], inner_angle_deg = 60, "
+      "outer_angle_deg = -60 }";
+  const std::string formula = "direction = [\"-cos(pi / 3 * (1 - 2 * Y))\", 0, \"sin(pi / 3 * (1 - 2 * Y))\"]";
+  const std::vector<double> expected = equilibrium(fibre(formula)), wound = equilibrium(fibre(helix));
+  ASSERT_EQ(wound.size(), expected.size());
+  for (size_t i = 0; i < wound.size(); ++i) EXPECT_NEAR(wound[i], expected[i], 1e-9);
+}
+
+TEST(Fibres, DirectionsFromFilesGiveTheSameShape) {
+  const TestFolder folder;
+  const std::string laws = pulled(fibre("direction = [1, 1, 0]")), key = "direction = [1, 1, 0]";
+  const auto with = [&](const std::string& directions) {
+    std::string text = laws;
+    text.replace(text.find(key), key.size(), "directions = { " + directions + " }");
+    Scene scene = load_scene(folder.write("scene.toml", text));
+    EXPECT_TRUE(is_success(scene.simulation.step().status));
+    return positions(scene);
+  };
+  Scene straight = load(laws);
+  const TetMesh& mesh = straight.simulation.model().mesh;
+  std::string lines = "ax ay az\n";
+  for (int t = 0; t < mesh.tet_count(); ++t) lines += t % 2 ? "1 1 0\n" : "-2, -2, 0\n";
+  folder.write("fibres.txt", lines);
+  Field per_tet{"a", 3, {}}, per_vertex{"b", 3, {}};
+  for (int t = 0; t < mesh.tet_count(); ++t) per_tet.values.insert(per_tet.values.end(), {3, 3, 0});
+  for (int v = 0; v < mesh.vertex_count(); ++v) {
+    const double sign = v % 2 ? 1 : -1;  // of axes without a sense
+    per_vertex.values.insert(per_vertex.values.end(), {sign, sign, 0});
+  }
+  std::vector<double> points;
+  for (const Vec3d& X : mesh.rest) points.insert(points.end(), {X[0], X[1], X[2]});
+  write_vtu((folder / "fibres.vtu").string(), points, mesh.tets, {{per_vertex}, {per_tet}});
+  EXPECT_TRUE(is_success(straight.simulation.step().status));
+  for (const std::string& file :
+       {"file = \"fibres.txt\"", "file = \"fibres.vtu\", name = \"a\"", "file = \"fibres.vtu\", name = \"b\""})
+    for (size_t i = 0; const double q : with(file)) EXPECT_NEAR(q, positions(straight)[i++], 1e-9) << file;
+  EXPECT_THAT(refusal(pulled(fibre("directions = { file = \"none.txt\" }"))), HasSubstr("none.txt"));
+  folder.write("few.txt", "1 0 0\n");
+  EXPECT_THROW(with("file = \"few.txt\""), InvalidInput);
+  EXPECT_THROW(with("file = \"fibres.vtu\", name = \"c\""), InvalidInput);
+}
+
+TEST(Muscle, LosesEnergyByItsVelocity) {
+  const std::string text = kCube + "[[body.pin]]\nwhere = \"x < 0.1\"\n";
+  Scene scene = load(text + muscle("activation = \"min(1, 20 * t)\"\nmax_velocity = 5"));
+  double largest = 0, loss = 0;
+  for (int i = 0; i < 10; ++i) {
+    const StepReport report = scene.simulation.step();
+    EXPECT_TRUE(is_success(report.status));
+    EXPECT_GE(report.damping_loss, 0);
+    for (const double energy : report.potential) largest = std::max(largest, std::abs(energy));
+    EXPECT_LE(std::abs(report.ledger_error), 1e-9 * largest);
+    loss += report.damping_loss;
+  }
+  EXPECT_GT(loss, 0);
+}
+
 TEST(Fibres, MistakesAreExplained) {
   const auto of = [](const std::string& keys) { return refusal(pulled(fibre(keys))); };
   EXPECT_THAT(of("direction = [\"X - 0.125\", 0, 0]"),
@@ -131,6 +230,16 @@ TEST(Fibres, MistakesAreExplained) {
   EXPECT_THAT(of("direction = [1, 0, 0]\ndispersion = 0.4"), HasSubstr("dispersion = 0.4; must be"));
   EXPECT_THAT(of("direction = [1, 0]"), HasSubstr("direction"));
   EXPECT_THAT(refusal(kCube + muscle("")), HasSubstr("activation"));
+  EXPECT_THAT(refusal(kCube + "[[body.muscle]]\nstrength = 1\nactivation = 1\n"),
+              HasSubstr("muscle needs one of: direction | from, to | helix | directions"));
+  EXPECT_THAT(of("direction = [1, 0, 0]\nlaw = \"guccione\""), HasSubstr("exponent = 0.8"));
+  EXPECT_THAT(refusal(kCube + "[[body.fibre]]\nlaw = \"guccione\"\nstiffness = 1\ndirection = [1, 0, 0]\nalong = 1\n"),
+              HasSubstr("law = \"guccione\" needs `across`"));
+  EXPECT_THAT(of("direction = [1, 0, 0]\nlaw = \"weiss\"\nstraight_stretch = 99\nstraight_stiffness = 1"),
+              HasSubstr("must be at most 10"));
+  EXPECT_THAT(refusal(kCube + muscle("activation = 1\ncurvature = 0.3")), HasSubstr("without max_velocity"));
+  EXPECT_THAT(refusal(kCube + muscle("activation = 1\nlaw = \"tension\"\noptimal_stretch = 1.1")),
+              HasSubstr("does not use it"));
   EXPECT_THAT(refusal(kCube + muscle("activation = \"X\"")), HasSubstr("may use only t"));
   EXPECT_THAT(refusal(kCube + muscle("activation = 1.5")), HasSubstr("activation = 1.5 at t = 0"));
 }

@@ -24,16 +24,6 @@ const char* const kModelOfNothing = "neo_hookean";
 
 std::string four_digits(double length) { return formatted("%.4g", length); }
 
-bool is_given(const Table& table, const std::string& key) {
-  for (const Member& m : table.members)
-    if (m.key == key) return m.place.source != nullptr;
-  return false;
-}
-
-void erase(Table& table, const std::string& key) {
-  std::erase_if(table.members, [&](const Member& m) { return m.key == key; });
-}
-
 class FromScene {
  public:
   FromScene(PlacedBody& body, SceneFiles& files)

@@ -11,6 +11,7 @@
 #include "base/printable.h"
 #include "io/mesh_file.h"
 #include "io/tetrahedralize.h"
+#include "mesh/chamber.h"
 #include "mesh/doctor.h"
 #include "mesh/generators.h"
 #include "mesh/surface.h"
@@ -114,6 +115,21 @@ LoadedMesh resolve_mesh(Value& body, MeshLoader& loader, std::optional<LoadedMes
   return *std::move(loaded);
 }
 
+TetMesh chamber_mesh(const Value& shape, const MeshLoader& loader) {
+  const auto number = [&](const char* key) { return shape[key].number(); };
+  const Chamber chamber{number("inner_radius"), number("inner_length"), number("outer_radius"), number("outer_length"),
+                        number("base")};
+  const auto need = [&](bool holds, const char* key, const std::string& condition) {
+    if (!holds)
+      throw error_at(shape[key].place, std::string(key) + " = " + number_text(number(key)) + "; " + condition);
+  };
+  need(chamber.outer_radius > chamber.inner_radius, "outer_radius", "must be above inner_radius");
+  need(chamber.outer_length > chamber.inner_length, "outer_length", "must be above inner_length");
+  need(std::abs(chamber.base) < chamber.inner_length, "base", "must be within inner_length of the center");
+  check_count(tets_in_chamber(chamber, number("size")), shape, loader);
+  return make_chamber(chamber, chamber_cells(chamber, number("size")));
+}
+
 // Exact: each vertex of the boundary is a vertex of the tets.
 BodyMesh with_boundary_as_skin(TetMesh tets) {
   BoundarySurface boundary = boundary_surface(tets);
@@ -174,6 +190,7 @@ TetMesh shape_mesh(const Value& shape, const MeshLoader& loader) {
     check_count(tets_in(4.19, size / r), *s, loader);
     return make_sphere(r, size);
   }
+  if (const Value* c = shape.find("chamber")) return chamber_mesh(*c, loader);
   const Value& t = shape["torus"];
   const double major = number(t, "major_radius"), minor = number(t, "minor_radius"), size = number(t, "size");
   if (!(minor < major))

@@ -27,37 +27,87 @@ void add_viscoelastic(Schema& s) {
   s.alternatives.push_back({"viscoelastic", {{"shear"}, {"ratio"}}, true});
 }
 
+// The groups of keys that give directions.
+std::vector<Key> direction_keys() {
+  const auto where = kExpression | kTable;
+  return {key("direction", kExpressions, "a, of any length: function of the place (X, Y, Z) at rest", kRequired),
+          key("from", where, "fibres run from here, like the flow of a potential ...", Members{"where"}, kRequired),
+          key("to", where, "... to here, such as from origin to insertion", Members{"where"}, kRequired),
+          key("helix", kTable, "fibres wind around an axis, as in the wall of the heart", Members{"helix"}, kRequired),
+          key("directions", kTable, "a from a file", Members{"directions"}, kRequired)};
+}
+
+void add_directions(Schema& s) {
+  const auto where = kExpression | kTable;
+  const auto angle = [](const char* name, const char* meaning, Usual usual) {
+    return key(name, kNumber, meaning, Units{"degrees"}, Range{.min = -180, .max = 180}, std::move(usual));
+  };
+  add_section(s,
+              {"helix", "helix = { ... } in a fibre or muscle",
+               "Fibres in the wall, at an angle to the circumference that changes from the inner to the outer surface "
+               "with a potential between them [Bayer 2012]."},
+              {key("inner", where, "inner surface", Members{"where"}, kRequired),
+               key("outer", where, "outer surface", Members{"where"}, kRequired),
+               key("axis", kNumbers, "from the apex to the base, of any length", Usual{"[0.0, 0.0, 1.0]", "along z"}),
+               angle("inner_angle_deg",
+                     "inner angle: 0 along the circumference, counterclockwise seen from the base; 90 "
+                     "along the axis",
+                     {"60.0", "measured in hearts"}),
+               angle("outer_angle_deg", "outer angle", {"-60.0", "measured in hearts"})});
+  add_section(s,
+              {"directions", "directions = { ... } in a fibre or muscle",
+               "Vectors of any length in a VTU file, per tet or per vertex, or three numbers per tet in a text file."},
+              {key("file", kText, "VTU file, or text with a line per tet", kRequired),
+               key("name", kText, "field of a VTU file"), key("hash", kText, "hash of the file, in resolved scenes")});
+}
+
 void add_fibres(Schema& s) {
   const auto per_tet = kNumber | kExpression | kTable;
-  const Key direction = key("direction", kExpressions, "a, of any length: function of the centroid (X, Y, Z) at rest",
-                            kRequired),
-            from = key("from", kExpression | kTable, "fibres run from here, like the flow of a potential ...",
-                       Members{"where"}, kRequired),
-            to = key("to", kExpression | kTable, "... to here, such as from origin to insertion", Members{"where"},
-                     kRequired);
-  add_section(
-      s,
+  const std::vector<std::vector<std::string>> directions = {{"direction"}, {"from", "to"}, {"helix"}, {"directions"}};
+  s.sections.push_back(
       {"fibre", "[[body.fibre]]",
-       "Fibres in the tets, beside the material: k1/(2 k2) (exp(k2 E^2) - 1) in tension, E = H : F'F - 1, "
-       "H = kappa I + (1 - 3 kappa) a a' for fibres along a [Gasser 2006]."},
-      {direction, from, to, key("stiffness", per_tet, "k1", Units{"Pa"}, kNotNegative, Members{"field"}, kRequired),
-       key("exponent", per_tet, "k2", Range{.min = 1e-3, .max = 1e6}, Members{"field"},
-           Usual{"1.0", "moderate stiffening"}),
-       key("dispersion", per_tet, "kappa: 0 along a, 1/3 in all directions", Range{.min = 0, .max = 1.0 / 3},
-           Members{"field"}, Usual{"0.0", "all along a"})});
-  s.alternatives.push_back({"fibre", {{"direction"}, {"from", "to"}}, true});
+       "Fibres along a in the tets, beside the material. `gasser`: k1/(2 k2) (exp(k2 E^2) - 1) in tension, E = H : F'F "
+       "- 1, H = kappa I + (1 - 3 kappa) a a' [Gasser 2006]. `guccione`: C/2 (exp(Q) - 1), Q = bf Eaa^2 + bt (Ess^2 + "
+       "Enn^2 + 2 Esn^2) + 2 bfs (Eas^2 + Ean^2) with the Green strain E [Guccione 1991]. `weiss`: l dpsi/dl = C3 "
+       "(exp(C4 (l - 1)) - 1) for stretches 1 < l < l*, then linear with the slope C5 [Weiss 1996]."});
+  add_keys(s, "fibre", direction_keys());
+  add_keys(s, "fibre",
+           {key("law", kText, "energy of the fibres", Choices{{"gasser", "guccione", "weiss"}},
+                Usual{"\"gasser\"", "collagen with dispersion"}),
+            key("stiffness", per_tet, "k1, C or C3", Units{"Pa"}, kNotNegative, Members{"field"}, kRequired),
+            key("exponent", per_tet, "k2 or C4", Range{.min = 1e-3, .max = 1e6}, Members{"field"},
+                Usual{"1.0", "moderate stiffening"}),
+            key("dispersion", per_tet, "kappa: 0 along a, 1/3 in all directions", Range{.min = 0, .max = 1.0 / 3},
+                Members{"field"}, Usual{"0.0", "all along a"}),
+            key("along", per_tet, "bf of guccione", kNotNegative, Members{"field"}),
+            key("across", per_tet, "bt of guccione", kNotNegative, Members{"field"}),
+            key("shear", per_tet, "bfs of guccione", kNotNegative, Members{"field"}),
+            key("straight_stretch", per_tet, "l* of weiss", Range{.min = 1, .min_open = true}, Members{"field"}),
+            key("straight_stiffness", per_tet, "C5 of weiss", Units{"Pa"}, kNotNegative, Members{"field"})});
+  s.alternatives.push_back({"fibre", directions, true});
 
-  add_section(
-      s,
+  s.sections.push_back(
       {"muscle", "[[body.muscle]]",
-       "Active fibres along a, beside the material. Their nominal stress is strength * activation at the "
-       "optimal stretch and falls to 0 at 0.4 and 1.6 times of it [Blemker 2005]."},
-      {direction, from, to,
-       key("strength", per_tet, "largest active stress", Units{"Pa"}, kNotNegative, Members{"field"}, kRequired),
-       key("activation", kNumber | kMovingExpression, "0 (passive) to 1; function of the time t", kRequired),
-       key("optimal_stretch", per_tet, "stretch of the largest force", kPositive, Members{"field"},
-           Usual{"1.0", "the rest shape"})});
-  s.alternatives.push_back({"muscle", {{"direction"}, {"from", "to"}}, true});
+       "Active fibres along a, beside the material. `blemker`: their nominal stress is strength * activation at the "
+       "optimal stretch and falls to 0 at 0.4 and 1.6 times of it [Blemker 2005]; with `max_velocity` it also depends "
+       "on the velocity, (1 - v)/(1 + v/k) in shortening [Hill 1938]. `tension`: energy strength * activation / 2 "
+       "(|F a|^2 - 1), a stress that does not depend on the stretch [Land 2015]."});
+  add_keys(s, "muscle", direction_keys());
+  add_keys(s, "muscle",
+           {key("law", kText, "energy of the fibres", Choices{{"blemker", "tension"}},
+                Usual{"\"blemker\"", "skeletal muscle"}),
+            key("strength", per_tet, "largest active stress", Units{"Pa"}, kNotNegative, Members{"field"}, kRequired),
+            key("activation", kNumber | kMovingExpression, "0 (passive) to 1; function of the time t", kRequired),
+            key("optimal_stretch", per_tet, "stretch of the largest force", kPositive, Members{"field"},
+                Usual{"1.0", "the rest shape"}),
+            key("max_velocity", per_tet, "v = 1: optimal lengths per second without load; default: any", Units{"1/s"},
+                kPositive, Members{"field"}),
+            key("curvature", per_tet, "k of the force-velocity curve", kPositive, Members{"field"},
+                Usual{"0.25", "most muscles"}),
+            key("lengthening", per_tet, "relative force of fast lengthening",
+                Range{.min = 1, .max = 10, .min_open = true}, Members{"field"}, Usual{"1.5", "most muscles"})});
+  s.alternatives.push_back({"muscle", directions, true});
+  add_directions(s);
 }
 
 void add_where(Schema& s) {

@@ -56,7 +56,8 @@ void add_shapes(Schema& s) {
   shape("cylinder", "from z = 0 to z = height");
   shape("sphere", "about the origin");
   shape("torus", "about the z axis");
-  s.alternatives.push_back({"shape", {{"box"}, {"cylinder"}, {"sphere"}, {"torus"}}, true});
+  shape("chamber", "a hollow ellipsoid about the z axis, open above");
+  s.alternatives.push_back({"shape", {{"box"}, {"cylinder"}, {"sphere"}, {"torus"}, {"chamber"}}, true});
 
   add_section(s, {"box", "box = { ... }", "A box cut into cells, each into tets."},
               {key("lower", kNumbers, "lowest corner", Units{"m"}, Usual{"[0.0, 0.0, 0.0]", "the origin"}),
@@ -78,6 +79,15 @@ void add_shapes(Schema& s) {
   length("torus", "major_radius", "radius of the center line");
   length("torus", "minor_radius", "radius of the tube");
   length("torus", "size", "approximate edge length");
+  s.sections.push_back({"chamber", "chamber = { ... }",
+                        "A hollow ellipsoid about the z axis with its center at the origin and its tip below, cut off "
+                        "at the base: an idealized chamber of the heart."});
+  length("chamber", "inner_radius", "semi-axis of the cavity across z");
+  length("chamber", "inner_length", "semi-axis of the cavity along z");
+  length("chamber", "outer_radius", "semi-axis of the outer surface across z");
+  length("chamber", "outer_length", "semi-axis of the outer surface along z");
+  add_keys(s, "chamber", {key("base", kNumber, "z of the cut", Units{"m"}, Usual{"0.0", "half an ellipsoid"})});
+  length("chamber", "size", "approximate edge length along the axis");
 }
 
 void add_placement(Schema& s) {

@@ -61,6 +61,16 @@ const Value* Table::find(std::string_view key) const {
 
 Value* Table::find(std::string_view key) { return const_cast<Value*>(std::as_const(*this).find(key)); }
 
+bool is_given(const Table& table, std::string_view key) {
+  for (const Member& m : table.members)
+    if (m.key == key) return m.place.source != nullptr;
+  return false;
+}
+
+void erase(Table& table, std::string_view key) {
+  std::erase_if(table.members, [&](const Member& m) { return m.key == key; });
+}
+
 void Table::set(std::string_view key, Value value) {
   const Place place = value.place;
   for (Member& m : members) {

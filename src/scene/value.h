@@ -65,6 +65,10 @@ struct Member {
   Value value;
 };
 
+// Returns whether the user gave the key: it is not a default.
+bool is_given(const Table& table, std::string_view key);
+void erase(Table& table, std::string_view key);
+
 // Returns the shortest text that reads back to the same bits, in any locale.
 std::string number_text(double value);
 std::string point_text(const Vec3d& X);          // "(0.5, 1, 0)"

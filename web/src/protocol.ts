@@ -93,6 +93,7 @@ export type ServerMessage =
   | { kind: "steps"; side: SideName; from: number; steps: StepRow[] } // rows of steps from+1, ...; all later rows are invalid
   | Capture
   | { kind: "pins"; side: SideName; vertices: number[] } // vertices of the surface
+  | { kind: "fibres"; side: SideName; generation: number; lines: number[] } // triangle, shares of its edges from corner 0; ...
   | State
   | { kind: "busy"; what: string } // "" when finished
   | { kind: "reply"; id: number; reply: unknown }

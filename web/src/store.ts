@@ -12,6 +12,7 @@ export interface Side {
   picture: Picture | null;
   steps: StepRow[]; // consecutive steps, from 1 unless the first were dropped
   pins: number[];
+  fibres: number[];
   obstacles: Obstacle[];
 }
 
@@ -25,6 +26,7 @@ interface Events {
   picture: SideName;
   steps: { side: SideName; from: number };
   pins: SideName;
+  fibres: SideName;
   capture: Capture;
   state: State;
   busy: string;
@@ -106,6 +108,12 @@ export class Store extends Emitter<Events> {
       case "pins":
         if (this.sides[message.side]) this.sides[message.side]!.pins = message.vertices;
         return this.emit("pins", message.side);
+      case "fibres": {
+        const side = this.current(message);
+        if (!side) return;
+        side.fibres = message.lines;
+        return this.emit("fibres", message.side);
+      }
       case "obstacles": {
         const side = this.current(message);
         if (!side) return;
@@ -137,7 +145,7 @@ export class Store extends Emitter<Events> {
   private receiveScene(scene: Scene): void {
     const known = this.sides[scene.side];
     if (known && known.scene.generation === scene.generation) known.scene = scene;
-    else this.sides[scene.side] = { scene, geometry: null, picture: null, steps: known?.steps ?? [], pins: [], obstacles: [] };
+    else this.sides[scene.side] = { scene, geometry: null, picture: null, steps: known?.steps ?? [], pins: [], fibres: [], obstacles: [] };
     this.emit("scene", scene.side);
   }
 

@@ -98,6 +98,7 @@ function addNumbers(folder: Folder): void {
   folder.add("vertexLabels", "Vertex numbers");
   folder.add("faceLabels", "Tet numbers");
   folder.add("pins", "Pins");
+  folder.add("fibres", "Fibres");
   folder.add("axes", "Axes");
 }
 

@@ -6,6 +6,7 @@ import { bodiesOf, bodyColors, bodyTexels } from "./bodies";
 import { mapTexels, type MapName } from "./colorMaps";
 import type { DisplaySettings } from "./display";
 import { disposeOf } from "./dispose";
+import { FibreLines } from "./fibres";
 import { kSkinPoint } from "./labels";
 import { vectorAt } from "./lens";
 import { makeFieldUniforms, makePinMaterial, makeSurfaceMaterial } from "./shading";
@@ -69,6 +70,7 @@ export class Body {
   private readonly bodies: Float32Array | null; // body index of each vertex if there are several bodies
   private readonly wires: THREE.LineSegments;
   private readonly pins: THREE.Points;
+  private readonly fibres = new FibreLines();
   private gloss = 0;
   private mapShown: string | null = null; // name of the current map, or the colors of the bodies
 
@@ -93,7 +95,7 @@ export class Body {
     this.wires.renderOrder = 1;
     this.pins.renderOrder = 2;
     for (const object of [this.mesh, this.wires, this.pins]) object.frustumCulled = false;
-    this.root.add(this.mesh, this.wires, this.pins);
+    this.root.add(this.mesh, this.wires, this.pins, this.fibres);
     this.root.visible = false; // the first picture brings the normals
     this.root.matrixAutoUpdate = false;
   }
@@ -110,6 +112,7 @@ export class Body {
     upload(this.positions, picture.positions);
     upload(this.normals, picture.normals);
     if (picture.values) upload(this.values, picture.values);
+    this.fibres.show(this.geometry.triangles, picture.positions);
     this.box = coarseBox(picture.positions) ?? this.box;
     this.root.visible = true;
   }
@@ -118,6 +121,7 @@ export class Body {
     this.mesh.visible = settings.fill;
     this.wires.visible = settings.wires || !settings.fill;
     this.pins.visible = settings.pins;
+    this.fibres.visible = settings.fibres;
     this.surface.color.set(settings.bodyColor);
     this.surface.shininess = Math.max(1, settings.shininess);
     this.gloss = settings.shininess > 0 ? 0.09 : 0;
@@ -172,12 +176,18 @@ export class Body {
   }
 
   clip(planes: THREE.Plane[]): void {
-    for (const material of [this.surface, this.lines, this.pinMaterial]) material.clippingPlanes = planes;
+    for (const material of [this.surface, this.lines, this.pinMaterial, this.fibres.material]) material.clippingPlanes = planes;
   }
 
   setPins(vertices: number[]): void {
     const n = this.current.length / 3;
     this.pins.geometry.setIndex(new THREE.BufferAttribute(new Uint32Array(vertices.filter((v) => v < n)), 1));
+  }
+
+  // `lines`: as in the message "fibres".
+  setFibres(lines: number[]): void {
+    this.fibres.set(lines, this.geometry.triangles);
+    this.fibres.show(this.geometry.triangles, this.current);
   }
 
   // Adapts to the view: `edgePixels` is an edge's length [px], `ratio` the device pixels per pixel. Wires of a dense

@@ -25,6 +25,7 @@ export const kDefaults = {
   shadows: true,
   axes: true,
   pins: true,
+  fibres: true,
   clip: "off" as "off" | "x" | "y" | "z",
   clipAt: 0.5, // position in the box of the scene, 0 to 1
   clipOther: false, // keep the other half

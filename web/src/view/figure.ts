@@ -47,6 +47,7 @@ export class Figure {
     this.body = new Body(side.geometry, side.scene.body_tets);
     stage.show(this.body);
     this.body.setPins(side.pins);
+    this.body.setFibres(side.fibres);
     this.pressures.reset();
     this.takeObstacles();
     this.takePicture();

@@ -137,6 +137,11 @@ export class View {
     store.on("obstacles", mine(takeObstacles), signal);
     store.on("picture", mine(() => this.takePicture()), signal);
     store.on("pins", mine(() => this.showPins(this.figure.side?.pins ?? [])), signal);
+    const takeFibres = (): void => {
+      this.figure.body?.setFibres(this.figure.side?.fibres ?? []);
+      this.redraw();
+    };
+    store.on("fibres", mine(takeFibres), signal);
     store.on("state", () => this.takeState(), signal);
     store.on("capture", () => this.redraw(), signal);
     display.on("changed", () => this.applyDisplay(), signal);
