@@ -28,6 +28,7 @@ constexpr int kManyTets = 300'000;                 // about a second of work
 constexpr std::uintmax_t kManyBytes = 30'000'000;  // of a file
 constexpr double kBytesPerTet = 1000;              // upper bound of the size in a file
 constexpr double kBytesInModel = 500;              // lower bound of the memory of a simulated tet
+constexpr double kBytesOfQuadratic = 3000;         // of a quadratic one
 
 // Replaces the option in the remedy by a whole command.
 std::string sentence(const Finding& finding) {
@@ -146,12 +147,23 @@ BodyMesh with_skin(TetMesh tets, TriMesh skin) {
   return body;
 }
 
+// Returns why tets do not fit into the memory; empty: they do.
+std::string lack_of_memory(const TetLimit& limit, double tets, double bytes_per_tet) {
+  const double bytes = tets * bytes_per_tet;
+  const auto available = static_cast<double>(std::min(limit.memory, free_memory()));
+  if (bytes <= available) return "";
+  return "about " + rounded_text(tets) + " tets need at least " + rounded_text(bytes / 1e9) + " GB; " +
+         rounded_text(available / 1e9) + " GB of memory are free";
+}
+
 // Makes the tets quadratic if the body has order 2.
-void raise_order_of(const Value& body, TetMesh& mesh) {
+void raise_order_of(const Value& body, const TetLimit& limit, TetMesh& mesh) {
   const Value& order = body["order"];
   if (order.number() != 2) return;
   if (!body["elastic"].boolean())
     throw error_at(order.place, "order = 2; quadratic tets need elastic = true (remove one of the two)");
+  if (const std::string why = lack_of_memory(limit, mesh.tet_count(), kBytesOfQuadratic); !why.empty())
+    throw error_at(order.place, "order = 2: " + why + " (choose a coarser mesh, or order = 1)");
   mesh = raise_order(std::move(mesh));
 }
 
@@ -215,11 +227,7 @@ std::string MeshLoader::why_not(double more_tets) const {
 }
 
 std::string MeshLoader::why_not_in_memory(double more_tets) const {
-  const double bytes = (tets + more_tets) * kBytesInModel;
-  const auto available = static_cast<double>(std::min(limit.memory, free_memory()));
-  if (bytes <= available) return "";
-  return "about " + rounded_text(tets + more_tets) + " tets need at least " + rounded_text(bytes / 1e9) + " GB; " +
-         rounded_text(available / 1e9) + " GB of memory are free";
+  return lack_of_memory(limit, tets + more_tets, kBytesInModel);
 }
 
 LoadedMesh load_mesh(const fs::path& path, double size, MeshLoader& loader) {
@@ -258,7 +266,7 @@ BodyMesh make_body_mesh(Value& body, MeshLoader& loader, std::optional<LoadedMes
   loader.report_if_many(mesh.tets.tet_count(),
                         "checking " + std::to_string(mesh.tets.tet_count()) + " tets of body '" + name + "'");
   heed(diagnose(mesh.tets), "body '" + name + "'", loader.notes);
-  raise_order_of(body, mesh.tets);
+  raise_order_of(body, loader.limit, mesh.tets);
 
   const Value* skin = body.find("skin");
   if (!skin && mesh.surface.empty()) return with_boundary_as_skin(std::move(mesh.tets));
