@@ -118,6 +118,7 @@ class SceneText {
     if (draw_.chance(0.15)) traction();
     if (draw_.chance(0.1))
       text_ += "[[body.force]]\nvalue = " + draw_.vector(young_ / length_ * draw_.logarithmic(1e-4, 10)) + "\n";
+    viscoelastic();
   }
 
   void shape() {
@@ -186,6 +187,16 @@ class SceneText {
     line("damping", "{ mass = " + draw_.one_of<std::string>({"0", "0.5", "50"}) +
                         ", stiffness = " + draw_.one_of<std::string>({"0", "0.001", "1"}) +
                         ", viscosity = " + draw_.one_of<std::string>({"0", "10", "1e5"}) + " }");
+  }
+
+  void viscoelastic() {
+    const bool is_possible =
+        integrator_ == "backward_euler" || integrator_ == "quasi_static" || integrator_ == "linearly_implicit_euler";
+    for (int count = draw_.chance(0.15) ? draw_.integer(1, 3) : 0; count > 0; --count) {
+      const std::string shear = shortest(young_ * draw_.logarithmic(1e-3, 10)),
+                        time = shortest(h_ * draw_.logarithmic(1e-6, 1e6));
+      if (is_possible) text_ += "[[body.viscoelastic]]\nshear = " + shear + "\nrelaxation_time = " + time + "\n";
+    }
   }
 
   std::string motion() {
