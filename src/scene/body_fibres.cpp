@@ -25,6 +25,13 @@ class BodyFibre {
   }
   std::string suffix() const { return name_.substr(std::min(name_.size(), name_.find('_'))); }
 
+  static std::string missing(std::string_view key, std::string text) {
+    return text.append(" needs `").append(key) + '`';
+  }
+  static std::string unused(std::string_view key, const Value& value, const std::string& cause) {
+    return std::string(key).append(" = ").append(inline_toml(value)) + "; " + cause + " does not use it (remove it)";
+  }
+
   // Removes the defaults of other keys among `all`, and refuses those that are given or missing.
   void need_only(const std::vector<std::string>& needed, const std::vector<std::string>& all,
                  const std::string& cause) {
@@ -32,9 +39,8 @@ class BodyFibre {
     for (const std::string& key : all) {
       const bool is_needed = std::find(needed.begin(), needed.end(), key) != needed.end();
       const Value* value = table.find(key);
-      if (is_needed && !value) throw error_at(scene_.place, cause + " needs `" + key + "`");
-      if (!is_needed && is_given(table, key))
-        throw error_at(value->place, key + " = " + inline_toml(*value) + "; " + cause + " does not use it (remove it)");
+      if (is_needed && !value) throw error_at(scene_.place, missing(key, cause));
+      if (!is_needed && is_given(table, key)) throw error_at(value->place, unused(key, *value, cause));
       if (!is_needed) erase(table, key);
     }
   }

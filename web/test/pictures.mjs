@@ -100,6 +100,22 @@ async function drawLandscape(browser) {
   await panel.screenshot({ path: join(out, "landscape.png") });
 }
 
+// The chamber of a heart with its fibres, at rest and contracted.
+async function drawHeart(browser) {
+  const page = await openPage(browser, await startProgram("scenes/tissue/heart.toml"), 800);
+  for (const key of "ww") await page.keyboard.press(key); // without wires
+  const box = await page.locator("#views .view").boundingBox();
+  const clip = { x: box.x + box.width / 2 - 240, y: box.y, width: 480, height: box.height };
+  await settled(page);
+  await page.screenshot({ path: join(out, "heart0.png"), clip });
+  for (let step = 1; step <= 13; ++step) {
+    await page.keyboard.press("s");
+    await reached(page, step);
+  }
+  await settled(page);
+  await page.screenshot({ path: join(out, "heart13.png"), clip });
+}
+
 // Report of a run: its certificate.
 async function drawReport(browser, folder) {
   const run = join(folder, "run");
@@ -118,6 +134,7 @@ const browser = await launchChromium();
 try {
   await drawViewer(browser);
   await drawLandscape(browser);
+  await drawHeart(browser);
   await drawReport(browser, folder);
 } finally {
   await browser.close();
