@@ -2,20 +2,19 @@
 // its parts; without them the page talks to a program over a WebSocket.
 import { type EngineWorker, startWorker } from "./host";
 import type { Transport, TransportListener } from "./live";
-import type { Packed } from "./lzma";
 import { embedded } from "./pack";
 import type { Judgment } from "./protocol";
 
 interface Program {
   script: string; // of the compiler
-  module: Packed; // WebAssembly
+  module: string; // WebAssembly, in base64 of xz
   threadScript?: string; // script of its threads; absent: there is one thread
 }
 
 // First message to the worker.
 export interface EngineParts extends Program {
   workers: number; // threads beside the first
-  files: Packed; // JSON, texts by paths
+  files: string; // JSON, texts by paths, in base64 of xz
   task: { scene: string } | { judge: string }; // path of a scene; id of a lesson
 }
 
@@ -39,7 +38,7 @@ async function threadedProgram(): Promise<Program | null> {
 
 async function partsFor(task: EngineParts["task"]): Promise<EngineParts> {
   const program = (await threadedProgram()) ?? embedded<Program>("engine-program")!;
-  return { ...program, workers: threadCount() - 1, files: embedded<Packed>("engine-files")!, task };
+  return { ...program, workers: threadCount() - 1, files: embedded("engine-files")!, task };
 }
 
 export const hasEngine = (): boolean => document.getElementById("engine") !== null;

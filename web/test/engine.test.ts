@@ -5,7 +5,7 @@ import type { EngineWorker } from "../src/host";
 import { LiveSource } from "../src/live";
 import type { Incoming } from "../src/source";
 
-const kParts: EngineParts = { script: "", module: { size: 0, lzma: "" }, workers: 0, files: { size: 0, lzma: "" }, task: { scene: "/scenes/a.toml" } };
+const kParts: EngineParts = { script: "", module: "", workers: 0, files: "", task: { scene: "/scenes/a.toml" } };
 
 class FakeWorker implements EngineWorker<EngineParts | string> {
   onmessage: ((message: string | ArrayBuffer) => void) | null = null;

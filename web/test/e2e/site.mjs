@@ -19,7 +19,7 @@ const kFrame = `<!doctype html><link rel="icon" href="data:,"><iframe sandbox="a
 const kIsolated = { "Cross-Origin-Opener-Policy": "same-origin", "Cross-Origin-Embedder-Policy": "require-corp" };
 
 const element = (id) => JSON.parse(html.match(new RegExp(`id="${id}">(.*?)</script>`, "s"))[1]);
-const { unpackLzma } = await pageModule("lzma.ts");
+const { unpackXz } = await pageModule("xz.ts");
 
 const threads = { name: element("engine-threads"), text: "" };
 threads.text = readFileSync(join(dirname(site), threads.name), "utf8");
@@ -67,8 +67,9 @@ async function freshEngine(workers = 0) {
   const post = (message) => typeof message === "string" && messages.push(JSON.parse(message));
   const { module } = workers ? JSON.parse(threads.text) : element("engine-program");
   const engine = await createRequire(import.meta.url)(workers ? process.env.THREADS : process.env.ENGINE)({
-    wasmBinary: unpackLzma(module), post, isStopRequested: () => false, workers });
-  for (const [path, text] of Object.entries(JSON.parse(new TextDecoder().decode(unpackLzma(element("engine-files")))))) {
+    wasmBinary: await unpackXz(module), post, isStopRequested: () => false, workers });
+  const files = JSON.parse(new TextDecoder().decode(await unpackXz(element("engine-files"))));
+  for (const [path, text] of Object.entries(files)) {
     engine.FS.mkdirTree(path.slice(0, path.lastIndexOf("/")));
     engine.FS.writeFile(path, text);
   }
@@ -163,7 +164,7 @@ test("the engine runs every scene and every page of the lecture", async () => {
 });
 
 test("the sizes are within their limits", () => {
-  const engine = element("engine-program").module.lzma.length * 0.75;
+  const engine = element("engine-program").module.length * 0.75;
   const page = gzipSync(html, { level: 9 }).length;
   console.log(`engine: ${(engine / 1e6).toFixed(2)} MB, page: ${(page / 1e6).toFixed(2)} MB, both compressed`);
   assert.ok(engine <= kMostEngine && page <= kMostPage);
