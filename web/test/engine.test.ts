@@ -48,6 +48,20 @@ test("the worker gets the engine, then messages", async () => {
   assert.equal(await asked, "one");
 });
 
+test("early messages are shown until the engine's first", async () => {
+  for (const isLate of [false, true]) {
+    const worker = new FakeWorker();
+    const received: Incoming[] = [];
+    const early = async (): Promise<string[]> => ['{"kind":"busy","what":"early"}'];
+    const source = new LiveSource(overWorker(() => worker, () => Promise.resolve(kParts), early));
+    source.start((incoming) => received.push(incoming));
+    if (isLate) worker.sends({ kind: "busy", what: "" });
+    await new Promise((resolve) => setTimeout(resolve, 0));
+    assert.equal(texts(received).includes("early"), !isLate);
+    assert.equal(texts(received).includes("failures"), isLate, "the early messages do not connect the page");
+  }
+});
+
 test("the reason of an ended engine is reported once", async () => {
   const { source, worker, received } = await connect();
   worker.sends({ kind: "busy", what: "" });
