@@ -5,7 +5,8 @@ import { build, transform } from "esbuild";
 import { execFileSync } from "node:child_process";
 import { createHash } from "node:crypto";
 import { mkdirSync, readdirSync, readFileSync, rmSync, writeFileSync } from "node:fs";
-import { dirname, join, relative } from "node:path";
+import { createRequire } from "node:module";
+import { dirname, join, relative, resolve } from "node:path";
 import { fileURLToPath } from "node:url";
 import { gzipSync } from "node:zlib";
 
@@ -25,11 +26,11 @@ function shippedFiles() {
   return files;
 }
 
-// As web/src/lzma.ts unpacks it. Neither code nor texts have a period of 4 bytes, which LZMA would expect (pb).
-const packed = (bytes) => ({
-  size: bytes.length,
-  lzma: execFileSync("xz", ["--format=lzma", "--lzma1=preset=9e,lc=4,pb=0", "--stdout"], { input: bytes, maxBuffer: 1e9 }).toString("base64"),
-});
+// As web/src/xz.ts unpacks it. Neither code nor texts have a period of 4 bytes, which LZMA would expect (pb). The dictionary
+// is allocated when unpacking.
+const kXz = ["--format=xz", "--check=crc32", "--lzma2=preset=9e,lc=4,pb=0,dict=8MiB", "--stdout"];
+const packed = (bytes) => execFileSync("xz", kXz, { input: bytes, maxBuffer: 1e9 }).toString("base64");
+
 async function workerScript() {
   const bundled = await build({ entryPoints: [join(here, "src/worker.ts")], bundle: true, minify: true, format: "iife", target: "es2022", write: false });
   return bundled.outputFiles[0].text;
@@ -37,6 +38,22 @@ async function workerScript() {
 
 const minified = async (path) => (await transform(readFileSync(path, "utf8"), { minify: true })).code;
 const program = async (script) => ({ script: await minified(script), module: packed(readFileSync(script.replace(/\.js$/, ".wasm"))) });
+
+// The first scene (web/src/engine.ts) as this engine shows it; the page shows it while its engine starts.
+async function opening(script, files) {
+  const [texts, pictures] = [[], []];
+  const post = (message) => void (typeof message === "string" ? texts.push(message) : pictures.push(Buffer.from(message).toString("base64")));
+  const wasmBinary = readFileSync(script.replace(/\.js$/, ".wasm"));
+  const made = await createRequire(import.meta.url)(resolve(script))({ wasmBinary, post, isStopRequested: () => false });
+  for (const [path, text] of Object.entries(files)) {
+    made.FS.mkdirTree(dirname(path));
+    made.FS.writeFile(path, text);
+  }
+  if (!made.ccall("engine_open", "boolean", ["string"], ["/scenes/bunny.toml"])) throw new Error(texts.at(-1));
+  made.ccall("engine_run", "boolean", ["boolean"], [true]);
+  const scene = texts.find((text) => JSON.parse(text).kind === "scene");
+  return gzipSync(JSON.stringify({ scene, pictures }), { level: 9 }).toString("base64");
+}
 
 // Returns the name of the file, which differs for every version of the engine.
 async function writeThreads() {
@@ -51,10 +68,12 @@ for (const name of readdirSync(dirname(out))) if (/^threads-\w+\.json$/.test(nam
 // Every "<" is escaped, because a script element ends at the first "</script", wherever it is.
 const element = (id, content) => `<script type="application/json" id="${id}">${JSON.stringify(content).replaceAll("<", "\\u003c")}</script>`;
 
+const files = shippedFiles();
 const parts = {
+  "engine-opening": await opening(engine, files),
   engine: await workerScript(),
   "engine-program": await program(engine),
-  "engine-files": packed(Buffer.from(JSON.stringify(shippedFiles()))),
+  "engine-files": packed(Buffer.from(JSON.stringify(files))),
   ...(threads ? { "engine-threads": await writeThreads() } : {}),
 };
 const html = readFileSync(page, "utf8").replace("<!-- recording -->", () => Object.entries(parts).map(([id, content]) => element(id, content)).join("\n"));
@@ -62,6 +81,7 @@ writeFileSync(out, html);
 
 const size = (name, bytes) => `  ${name}: ${(bytes / 1e6).toFixed(2)} MB`;
 console.log(`${relative(process.cwd(), out) || out}: ${(Buffer.byteLength(html) / 1e6).toFixed(2)} MB, ${(gzipSync(html).length / 1e6).toFixed(2)} MB compressed by gzip`);
-const sizeOf = ({ lzma }) => (lzma.length * 3) / 4;
+const sizeOf = (base64) => (base64.length * 3) / 4;
 console.log(size("engine, compressed", sizeOf(parts["engine-program"].module)));
+console.log(size("first picture", sizeOf(parts["engine-opening"])));
 console.log(size("scenes and meshes, compressed", sizeOf(parts["engine-files"])));

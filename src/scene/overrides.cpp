@@ -4,6 +4,7 @@
 #include <filesystem>
 
 #include "base/error.h"
+#include "base/printable.h"
 #include "scene/schema.h"
 #include "scene/toml_reader.h"
 
@@ -71,8 +72,8 @@ struct Assignment {
       apply_to(table.find(words[i])->table(), key->table, i + 1);
     } else {
       const std::vector<std::string> known = scene_schema().names(section);
-      fail(key ? "'" + words[i] + "' has no keys of its own"
-               : "unknown key '" + words[i] + "' in " + section + suggestion(words[i], known));
+      fail(key ? shown(words[i]) + " has no keys of its own"
+               : "unknown key " + shown(words[i]) + " in " + section + suggestion(words[i], known));
     }
   }
 
@@ -86,7 +87,7 @@ struct Assignment {
       const bool is_meant =
           element.is_table() && (name_of(element.table(), key, k) == words[i + 1] || std::to_string(k) == words[i + 1]);
       if (!is_meant) continue;
-      if (i + 2 >= words.size()) fail("a key of " + words[i + 1] + " is missing");
+      if (i + 2 >= words.size()) fail("a key of " + shortened(words[i + 1]) + " is missing");
       apply_to(element.table(), key.table, i + 2);
       picked = true;
     }
@@ -106,7 +107,7 @@ struct Assignment {
     std::vector<std::string> known = scene_schema().names(key.table);
     for (size_t k = 0; k < list.array().size(); ++k)
       if (list.array()[k].is_table()) known.push_back(name_of(list.array()[k].table(), key, k));
-    fail("unknown key or name '" + word + "' of " + key.name + suggestion(word, known));
+    fail("unknown key or name " + shown(word) + " of " + key.name + suggestion(word, known));
   }
 };
 
@@ -118,13 +119,13 @@ std::string unknown_first_word(const std::string& word) {
       return std::string("unknown key '").append(word).append("' (did you mean '").append(section) + "." + word + "'?)";
   std::vector<std::string> known = schema.names("scene");
   for (const std::string& name : schema.names("body")) known.push_back(name);
-  return std::string("unknown key '") + word + "'" + suggestion(word, known);
+  return "unknown key " + shown(word) + suggestion(word, known);
 }
 
 }  // namespace
 
 void apply_override(Table& document, const std::string& text) {
-  const std::string source = "--set " + text;
+  const std::string source = "--set " + shortened(text);
   const size_t equals = text.find('=');
   if (equals == std::string::npos) throw InvalidInput(source + ": KEY=VALUE is expected, for example time.step=0.005");
   if (trimmed(text.substr(equals + 1)).empty())

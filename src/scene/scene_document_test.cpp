@@ -212,6 +212,19 @@ TEST(Override, ErrorsNameTheOverride) {
   EXPECT_THAT(document_refusal(kBox, {"gravity=[0, 0, 0]\ntime=3"}), StartsWith("--set gravity"));
 }
 
+TEST(Override, ErrorsShortenLongTexts) {
+  const std::string filler(100'000, 'x');
+  const auto expect_short = [](const std::string& override_text) {
+    const std::string why = document_refusal(kBox, {override_text});
+    EXPECT_THAT(why, StartsWith("--set " + override_text.substr(0, 57) + "...: "));
+    EXPECT_LT(why.size(), 1000);
+  };
+  for (const char* place : {"", "time.", "body.", "time.step.", "body.0.material.", "body.pin."})
+    for (const char* value : {"", "=", "=1", "=[1"}) expect_short(place + filler + value);
+  for (const char* key : {"time.step", "gravity", "body.0.material", "solver.method"})
+    for (const char* quote : {"", "\"", "[", "{"}) expect_short(std::string(key) + "=" + quote + filler);
+}
+
 TEST(SceneDocument, MutatedScenesAreReadOrRejected) {
   const std::string scene =
       "gravity = [0, -9.81, 0]\n[time]\nstep = 0.01\n[solver]\nline_search = { p = 0.5 }\n" + kBox +

@@ -119,7 +119,8 @@ class Checker {
           hint.insert(0, std::string(" (it belongs to ").append(k.section).append(")"));
           break;
         }
-    error(m.place, "unknown key " + m.key + " = " + shortened(inline_toml(m.value)) + " in " + section + hint);
+    error(m.place,
+          "unknown key " + shortened(m.key) + " = " + shortened(inline_toml(m.value)) + " in " + section + hint);
   }
 
   void check_number(Value& value, const Value& whole, const Key& key) {
@@ -225,7 +226,8 @@ class Checker {
       if (m.value.is_number()) {
         check_float(m.value, m.value, key);
       } else {
-        error(m.value.place, key.name + "." + m.key + " = " + shortened(inline_toml(m.value)) + "; a number is needed");
+        error(m.value.place,
+              key.name + "." + shortened(m.key) + " = " + shortened(inline_toml(m.value)) + "; a number is needed");
       }
     }
   }

@@ -2,20 +2,19 @@
 // its parts; without them the page talks to a program over a WebSocket.
 import { type EngineWorker, startWorker } from "./host";
 import type { Transport, TransportListener } from "./live";
-import type { Packed } from "./lzma";
-import { embedded } from "./pack";
+import { bytesOf, embedded, unpacked } from "./pack";
 import type { Judgment } from "./protocol";
 
 interface Program {
   script: string; // of the compiler
-  module: Packed; // WebAssembly
+  module: string; // WebAssembly, in base64 of xz
   threadScript?: string; // script of its threads; absent: there is one thread
 }
 
 // First message to the worker.
 export interface EngineParts extends Program {
   workers: number; // threads beside the first
-  files: Packed; // JSON, texts by paths
+  files: string; // JSON, texts by paths, in base64 of xz
   task: { scene: string } | { judge: string }; // path of a scene; id of a lesson
 }
 
@@ -39,13 +38,21 @@ async function threadedProgram(): Promise<Program | null> {
 
 async function partsFor(task: EngineParts["task"]): Promise<EngineParts> {
   const program = (await threadedProgram()) ?? embedded<Program>("engine-program")!;
-  return { ...program, workers: threadCount() - 1, files: embedded<Packed>("engine-files")!, task };
+  return { ...program, workers: threadCount() - 1, files: embedded("engine-files")!, task };
 }
 
 export const hasEngine = (): boolean => document.getElementById("engine") !== null;
 const openWorker: Opener = () => startWorker(embedded<string>("engine")!);
 
-export const embeddedEngine = (): Transport => overWorker(openWorker, () => partsFor({ scene: kFirstScene }));
+export const embeddedEngine = (): Transport => overWorker(openWorker, () => partsFor({ scene: kFirstScene }), opening);
+
+// Messages about the first scene that the page shows before the engine has started. None if it opens with another scene.
+async function opening(): Promise<(string | ArrayBuffer)[]> {
+  const packed = embedded("engine-opening");
+  if (packed === null || location.hash !== "" || embedded("workspace") !== null) return [];
+  const { scene, pictures } = JSON.parse(new TextDecoder().decode(await unpacked(packed))) as { scene: string; pictures: string[] };
+  return [scene, ...pictures.map((picture) => bytesOf(picture).buffer)];
+}
 
 export interface Judging {
   result: Promise<Judgment>;
@@ -70,7 +77,9 @@ export function judgeOver(open: Opener, parts: () => Promise<EngineParts>): Judg
   return { result: result.finally(() => worker.end()), stop };
 }
 
-export function overWorker(open: Opener, parts: () => Promise<EngineParts>): Transport {
+type Early = () => Promise<(string | ArrayBuffer)[]>; // messages to show until the worker's first one
+
+export function overWorker(open: Opener, parts: () => Promise<EngineParts>, early: Early = () => Promise.resolve([])): Transport {
   let worker: EngineWorker<EngineParts | string> | null = null;
   const start = (listener: TransportListener): void => {
     const opened = open();
@@ -89,6 +98,7 @@ export function overWorker(open: Opener, parts: () => Promise<EngineParts>): Tra
       listener.received(data);
     };
     void parts().then((ready) => opened.send(ready, false));
+    void early().then((messages) => worker ?? messages.forEach(listener.received));
   };
   const send = (text: string): boolean => {
     worker?.send(text, kUrgent.test(text));

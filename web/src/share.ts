@@ -24,7 +24,8 @@ export async function workspaceOfLink(hash: string): Promise<Workspace | null> {
     const base64 = hash.slice(kPrefix.length).replaceAll("-", "+").replaceAll("_", "/");
     const packed = Uint8Array.from(atob(base64), (character) => character.charCodeAt(0));
     text = new TextDecoder("utf-8", { fatal: true }).decode(await bytesThrough(new DecompressionStream("deflate-raw"), packed, kMostUnpacked));
-  } catch {
+  } catch (reason) {
+    if (reason instanceof RangeError) throw new Error(`The link contains more than ${kMostUnpacked / 1e6} MB, too much for a workspace.`);
     throw new Error("The link is damaged or incomplete. Copy all of it, to the last character.");
   }
   return parseWorkspace(text);
@@ -46,11 +47,18 @@ export class Sharing {
     private readonly page: Page,
   ) {}
 
-  // Opens the workspace of the address or of the page, if it has one.
+  // Opens the workspace of the address, now and whenever it changes, or else that of the page.
   async open(): Promise<void> {
+    addEventListener("hashchange", () => void this.openLink().catch(this.page.report));
+    if (await this.openLink()) return;
     const saved = embedded(kElement);
-    const workspace = (await workspaceOfLink(location.hash)) ?? (saved === null ? null : parseWorkspace(saved));
+    if (saved !== null) await openWorkspace(parseWorkspace(saved), this.store, this.page);
+  }
+
+  private async openLink(): Promise<boolean> {
+    const workspace = await workspaceOfLink(location.hash);
     if (workspace) await openWorkspace(workspace, this.store, this.page);
+    return workspace !== null;
   }
 
   async copyLink(): Promise<void> {

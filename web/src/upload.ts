@@ -74,7 +74,7 @@ async function gzipBase64(bytes: Uint8Array<ArrayBuffer>): Promise<string> {
   return base64Of(await bytesThrough(new CompressionStream("gzip"), bytes));
 }
 
-// Compresses or decompresses. Rejects a result of more than `most` bytes.
+// Compresses or decompresses. Rejects a result of more than `most` bytes with a RangeError.
 export async function bytesThrough(
   packer: CompressionStream | DecompressionStream,
   bytes: Uint8Array<ArrayBuffer>,
@@ -88,7 +88,7 @@ export async function bytesThrough(
     total += next.value.length;
     if (total > most) {
       void reader.cancel();
-      throw new Error(`more than ${most} bytes`);
+      throw new RangeError(`more than ${most} bytes`);
     }
   }
   return new Uint8Array(await new Blob(parts).arrayBuffer());

@@ -1,7 +1,7 @@
 // The script of the engine's worker: passes messages between the page (engine.ts) and a session (apps/engine/engine.cpp).
 import type { EngineParts } from "./engine";
 import type { Flagged } from "./host";
-import { unpackLzma } from "./lzma";
+import { unpackXz } from "./xz";
 
 interface Engine {
   FS: { mkdirTree(folder: string): void; writeFile(path: string, text: string): void };
@@ -89,13 +89,14 @@ async function create({ script, module, threadScript, workers }: EngineParts): P
   scope.importScripts(URL.createObjectURL(main));
   const locateFile = (): string => URL.createObjectURL(blobOf(threadScript ?? ""));
   const used = threadScript === undefined ? 0 : workers;
-  return createEngine({ wasmBinary: unpackLzma(module), post, isStopRequested, workers: used, mainScriptUrlOrBlob: main, locateFile });
+  return createEngine({ wasmBinary: await unpackXz(module), post, isStopRequested, workers: used, mainScriptUrlOrBlob: main, locateFile });
 }
 
 async function open(parts: EngineParts): Promise<void> {
   const { files, task } = parts;
   const made = await create(parts);
-  for (const [path, text] of Object.entries(JSON.parse(new TextDecoder().decode(unpackLzma(files))) as Record<string, string>)) {
+  const texts = JSON.parse(new TextDecoder().decode(await unpackXz(files))) as Record<string, string>;
+  for (const [path, text] of Object.entries(texts)) {
     made.FS.mkdirTree(path.slice(0, path.lastIndexOf("/")));
     made.FS.writeFile(path, text);
   }

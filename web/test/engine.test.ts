@@ -5,7 +5,7 @@ import type { EngineWorker } from "../src/host";
 import { LiveSource } from "../src/live";
 import type { Incoming } from "../src/source";
 
-const kParts: EngineParts = { script: "", module: { size: 0, lzma: "" }, workers: 0, files: { size: 0, lzma: "" }, task: { scene: "/scenes/a.toml" } };
+const kParts: EngineParts = { script: "", module: "", workers: 0, files: "", task: { scene: "/scenes/a.toml" } };
 
 class FakeWorker implements EngineWorker<EngineParts | string> {
   onmessage: ((message: string | ArrayBuffer) => void) | null = null;
@@ -46,6 +46,20 @@ test("the worker gets the engine, then messages", async () => {
   assert.deepEqual(JSON.parse(worker.posted[1] as string), { ask: "recording", id: 2 });
   worker.sends({ kind: "reply", id: 2, reply: "one" });
   assert.equal(await asked, "one");
+});
+
+test("early messages are shown until the engine's first", async () => {
+  for (const isLate of [false, true]) {
+    const worker = new FakeWorker();
+    const received: Incoming[] = [];
+    const early = async (): Promise<string[]> => ['{"kind":"busy","what":"early"}'];
+    const source = new LiveSource(overWorker(() => worker, () => Promise.resolve(kParts), early));
+    source.start((incoming) => received.push(incoming));
+    if (isLate) worker.sends({ kind: "busy", what: "" });
+    await new Promise((resolve) => setTimeout(resolve, 0));
+    assert.equal(texts(received).includes("early"), !isLate);
+    assert.equal(texts(received).includes("failures"), isLate, "the early messages do not connect the page");
+  }
 });
 
 test("the reason of an ended engine is reported once", async () => {

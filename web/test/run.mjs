@@ -13,7 +13,7 @@ const out = mkdtempSync(join(tmpdir(), "aspic-page-"));
 await build({
   entryPoints: tests.map((name) => join(here, name)),
   bundle: true,
-  platform: "node",
+  external: ["node:*"], // packages are those of browsers
   format: "esm",
   outdir: out,
   outExtension: { ".js": ".mjs" },

@@ -29,7 +29,7 @@ test("damaged and foreign links are refused", async () => {
 test("a link that unpacks to too much is refused", async () => {
   const bomb = await linkText({ ...kWorkspace, scene: "x".repeat(3_000_000) });
   assert.ok(bomb.length < 8000);
-  await assert.rejects(workspaceOfLink(bomb), /damaged/);
+  await assert.rejects(workspaceOfLink(bomb), /more than 1 MB/);
 });
 
 test("a saved page has one workspace that cannot end its element", () => {

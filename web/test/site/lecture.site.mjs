@@ -1,0 +1,64 @@
+// The pages of the lecture: their texts, and their numbers judged in the page.
+import assert from "node:assert/strict";
+import { readFileSync } from "node:fs";
+import { join } from "node:path";
+import { test } from "node:test";
+import { pageModule, temporaryFolder } from "../e2e/harness.mjs";
+import { engineInNode, openSite, places, runNative, testsAll } from "./site.mjs";
+
+test("each page of the lecture has formulas, something to try, and a question with its answer", async () => {
+  const { messages } = await engineInNode("/scenes/cantilever.toml");
+  const { lessons } = messages.find(({ kind }) => kind === "hello");
+  const { formulasOf } = await pageModule("formulas.ts");
+  for (const { id, look, question, answer } of lessons) assert.ok(formulasOf(id).length > 0 && look && question && answer, id);
+});
+
+const kLongest = 3600e3; // a judgment [ms]
+
+const covers = ({ pages }, number) =>
+  pages.split(",").some((range) => {
+    const [first, last = first] = range.split("-").map(Number);
+    return first <= number && number <= last;
+  });
+
+// A page of the lesson whose address opens this lesson: the first one that covers it.
+function addressOf(lesson, lessons) {
+  for (let number = 1; number <= 100; ++number) if (lessons.find((other) => covers(other, number)) === lesson) return `#lecture/${number}`;
+  throw new Error(`no address opens pages ${lesson.pages}`);
+}
+
+// Opens the page of the lecture, and lets it judge itself.
+async function judgedByPage({ page, heard, until }, { pages }, address) {
+  await page.evaluate((hash) => void (location.hash = hash), address);
+  await page.getByRole("heading", { name: new RegExp(`^Pages? ${pages}:`) }).waitFor();
+  heard.messages.length = 0;
+  await page.getByRole("button", { name: "Judge this page by numbers" }).click();
+  const verdict = page.locator(".judgment b, .judgment .error");
+  await verdict.waitFor({ timeout: kLongest });
+  assert.equal(await verdict.textContent(), "pass", `page ${pages}`);
+  return until("the numbers", () => heard.messages.find(({ kind }) => kind === "judged")?.result);
+}
+
+// Wall times differ.
+const judged = ({ measures, passes }) => ({ passes, measures: measures.filter(({ unit }) => unit !== "s") });
+
+// Pages that take seconds.
+const kQuickPages = ["03_tissue", "05-09_equation_of_motion", "53+62_pure_newton", "54-59_overshoot", "60-61_backtracking"];
+
+test("the page judges the lecture by the numbers of the native build", async () => {
+  const out = temporaryFolder();
+  const opened = await openSite(places["a file"]);
+  const { lessons } = opened.heard.messages.find(({ kind }) => kind === "hello");
+  const chosen = testsAll ? lessons : lessons.filter(({ id }) => kQuickPages.includes(id));
+  assert.ok(chosen.length >= kQuickPages.length);
+  for (const lesson of chosen) {
+    const result = await judgedByPage(opened, lesson, addressOf(lesson, lessons));
+    runNative(["lecture", String(result.pages[0]), "--out", out]);
+    const native = JSON.parse(readFileSync(join(out, result.key, "result.json"), "utf8"));
+    assert.deepEqual(judged(result), judged(native), lesson.id);
+    assert.ok(result.passes, lesson.id);
+    console.log(`${lesson.id}: ${result.measures.length} numbers in ${result.seconds.toFixed(1)} s`);
+  }
+  console.log(`${chosen.length} of ${lessons.length} pages`);
+  await opened.close();
+});
