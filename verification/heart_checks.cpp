@@ -166,7 +166,7 @@ void expect_tips(Findings& found, const ChamberCells& cells, const Tips& z, cons
 }
 
 void check_inflation(const Subject& subject, Findings& found) {
-  const Beat beat{{1e4, 1, 1, 1, 1e6}, 1e4, 0, 10};
+  const Beat beat{{1e4 * subject.stiffness, 1, 1, 1, 1e6}, 1e4, 0, 10};
   constexpr Tips kReference{-26.60, -28.27};
   const auto expect = [&](const ChamberCells& cells, double tolerance) {
     expect_tips(found, cells, tips(cells, beat, subject.replacement(kMatrix)), kReference,
@@ -180,7 +180,7 @@ void check_inflation(const Subject& subject, Findings& found) {
 
 // The outer tip converges slowly, because fibres have no common direction at the axis.
 void check_contraction(const Subject& subject, Findings& found) {
-  const Beat beat{{2e3, 8, 2, 4, 1e7}, 1.5e4, 6e4, 20};
+  const Beat beat{{2e3 * subject.stiffness, 8, 2, 4, 1e7}, 1.5e4, 6e4, 20};
   constexpr Tips kReference{-12.37, -15.46};
   const auto tips_of = [&](const ChamberCells& cells) { return tips(cells, beat, subject.replacement(kMatrix)); };
   const auto cells = [](int rings) { return ChamberCells{rings, rings / 2, 4, 1.4}; };

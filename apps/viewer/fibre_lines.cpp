@@ -1,7 +1,7 @@
-// The fibres at the displayed surface.
-#include <cmath>
+#include "viewer/fibre_lines.h"
 
-#include "viewer/session_messages.h"
+#include <array>
+#include <cmath>
 
 namespace aspic::viewer {
 namespace {
@@ -19,22 +19,22 @@ std::array<double, 2> edge_shares(const std::array<Vec3d, 3>& X, const Vec3d& a)
 
 }  // namespace
 
-Message fibres_message(const ShownSide& shown) {
-  const Model& model = shown.side.model();
+bool has_fibres(const Model& model) { return tet_field(model, "fibre_x") != nullptr; }
+
+Json fibre_lines(const Model& model, const Surface& surface) {
   std::array<const std::vector<double>*, 3> of_axis{};
   for (int r = 0; r < 3; ++r) of_axis[r] = tet_field(model, std::string("fibre_") + static_cast<char>('x' + r));
   Json lines = Json::array();
-  for (int t = 0; of_axis[0] && t < shown.surface.triangle_count(); ++t) {
+  for (int t = 0; of_axis[0] && t < surface.triangle_count(); ++t) {
     Vec3d a;
-    for (int r = 0; r < 3; ++r) a[r] = (*of_axis[r])[shown.surface.tet[t]];
+    for (int r = 0; r < 3; ++r) a[r] = (*of_axis[r])[surface.tet[t]];
     if (norm(a) == 0) continue;
-    const auto [i, j, k] = shown.surface.triangles[t];
-    const auto& X = shown.surface.rest;
+    const auto [i, j, k] = surface.triangles[t];
+    const auto& X = surface.rest;
     const std::array<double, 2> shares = edge_shares({X[i], X[j], X[k]}, a);
     lines.insert(lines.end(), {t, static_cast<float>(shares[0]), static_cast<float>(shares[1])});
   }
-  return text(
-      {{"kind", "fibres"}, {"side", shown.name}, {"generation", shown.generation}, {"lines", std::move(lines)}});
+  return lines;
 }
 
 }  // namespace aspic::viewer

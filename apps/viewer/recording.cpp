@@ -17,6 +17,7 @@
 #include "io/checkpoint.h"
 #include "io/gzip.h"
 #include "scene/scene_document.h"
+#include "viewer/fibre_lines.h"
 #include "viewer/fields.h"
 #include "viewer/page.h"
 #include "viewer/recorded_body.h"
@@ -199,6 +200,9 @@ class Recorder {
     head["scenes"] = scene_messages(box_of(std::span<const float>(frames.front().x)), note);
     const Model& model = scene_.simulation.model();
     head["obstacles"] = obstacles_json(model, 0);
+    if (has_fibres(model))
+      for (const RecordedSurface& recorded : body_.surfaces)
+        head["fibres"].push_back(fibre_lines(model, recorded.surface));
     head["toml"] = scene_text_;
     head["steps"] = Json::array();
     for (const StepRow& row : tables_.steps) head["steps"].push_back(to_json(row));

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "base/printable.h"
+#include "viewer/fibre_lines.h"
 #include "viewer/picture.h"
 #include "viewer/scene_json.h"
 
@@ -111,6 +112,13 @@ Message pins_message(const ShownSide& shown) {
   for (int v = 0; v < shown.surface.vertex_count(); ++v)
     if (shown.side.pins().has(shown.surface.anchor(v))) vertices.push_back(v);
   return text({{"kind", "pins"}, {"side", shown.name}, {"vertices", std::move(vertices)}});
+}
+
+Message fibres_message(const ShownSide& shown) {
+  return text({{"kind", "fibres"},
+               {"side", shown.name},
+               {"generation", shown.generation},
+               {"lines", fibre_lines(shown.side.model(), shown.surface)}});
 }
 
 Json state_of(const ShownSide& shown) {

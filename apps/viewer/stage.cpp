@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "base/error.h"
+#include "viewer/fibre_lines.h"
 
 namespace aspic::viewer {
 namespace {
@@ -95,7 +96,7 @@ Recording Stage::recording() {
 
 void Stage::send_shape(const ShownSide& shown) {
   send(geometry_message(shown));
-  if (tet_field(shown.side.model(), "fibre_x")) send(fibres_message(shown));
+  if (has_fibres(shown.side.model())) send(fibres_message(shown));
   if (shown.side.model().contact) send(obstacles_message(shown));
 }
 

@@ -152,6 +152,8 @@ export class RecordedSource implements Source {
     this.receive({ message: { ...scene, field: this.field } });
     this.receive({ geometry });
     this.sendObstacles(this.opened().head.obstacles);
+    const lines = this.opened().head.fibres?.[this.shown];
+    if (lines) this.receive({ message: { kind: "fibres", side: "a", generation: scene.generation, lines } });
     const vertices = [...geometry.vertex.keys()].filter((vertex) => this.isPinned(vertex));
     this.receive({ message: { kind: "pins", side: "a", vertices } });
   }

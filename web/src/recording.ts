@@ -9,6 +9,7 @@ export interface RecordingHead {
   hello: Hello;
   scenes: Scene[]; // one scene per surface; the first is shown initially
   obstacles?: Obstacle[]; // missing in recordings of earlier versions
+  fibres?: number[][]; // lines of each surface, as in the message "fibres"
   toml: string; // the complete scene
   steps: StepRow[];
   frames: { step: number[]; time: number[]; obstacles?: Obstacle[][] }; // obstacles: of each frame, if any move
