@@ -210,9 +210,6 @@ void check_oscillating_pull(const Subject& subject, Findings& found) {
 }  // namespace
 
 void add_viscoelastic_checks(std::vector<Check>& checks) {
-  const std::string modulus =
-      R"tex(G^*_h = G\, \phi\, \frac{z - 1}{z - e^{-x}},\quad z = e^{i\omega h},\ x = h/\tau,)tex"
-      R"tex(\ \phi = \frac{1 - e^{-x}}{x};\qquad G^* = G \frac{i\omega\tau}{1 + i\omega\tau})tex";
   checks.push_back({"viscoelasticity",
                     "relaxation",
                     "Relaxation after a ramp",
@@ -229,7 +226,8 @@ void add_viscoelastic_checks(std::vector<Check>& checks) {
                     "The modulus of the scheme in closed form, and that of a Maxwell branch",
                     check_oscillation,
                     {"Simo1987"},
-                    {modulus}});
+                    {R"tex(G^*_h = G \phi \frac{z - 1}{z - e^{-x}},\quad z = e^{i\omega h},\quad x = h/\tau)tex",
+                     R"tex(\phi = \frac{1 - e^{-x}}{x},\quad G^* = G \frac{i\omega\tau}{1 + i\omega\tau})tex"}});
   checks.push_back(
       {"viscoelasticity",
        "pull",

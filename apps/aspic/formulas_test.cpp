@@ -54,7 +54,11 @@ TEST(Formulas, EveryClosedFormReferenceIsRendered) {
                                          "contact/frames",
                                          "contact/units",
                                          "statics/cook_incompressible",
-                                         "statics/beam_incompressible"};
+                                         "statics/beam_incompressible",
+                                         "tissue/heart_beam",
+                                         "tissue/heart_inflation",
+                                         "tissue/heart_contraction",
+                                         "tissue/dispersed_fibres"};
   for (const verify::Check& check : verify::checks()) {
     EXPECT_EQ(check.formulas.empty(), without.contains(check.key())) << check.key();
     expect_rendered(check.key(), check.formulas);

@@ -117,14 +117,14 @@ class StepCheck {
     return all;
   }
 
-  // Returns the current state, with contact perturbed by up to a hundredth of an edge, because the second derivatives
-  // of friction have a kink at zero slip.
+  // Returns the current state, with contact or damping perturbed by up to a hundredth of an edge, because the second
+  // derivatives of friction and of muscle_velocity have a kink at rest.
   std::vector<double> near_start() {
     std::vector<double> q = state_.q;
-    if (!model_.contact) return q;
+    if (!model_.contact && model_.damping.empty()) return q;
     std::vector<double> d(q.size());
     std::generate(d.begin(), d.end(), [this, noise = Noise{}]() mutable { return 0.01 * edge_ * noise(); });
-    add_scaled(0.5 * E_.max_step(q, d), d, q);
+    add_scaled(0.5 * std::min(1.0, E_.max_step(q, d)), d, q);
     return q;
   }
 

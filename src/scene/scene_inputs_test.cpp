@@ -167,7 +167,8 @@ TEST(Scene, TetsBeyondMemoryAreRejectedBeforeGeneration) {
                     HasSubstr("fewer cells")));
   EXPECT_EQ(refused(box, {.memory = 400'000}), "");
   const std::string quadratic = box + "\norder = 2";
-  EXPECT_THAT(refused(quadratic, {.memory = 2'000'000}), HasSubstr("order = 2: about 750 tets need at least 0.00225 GB"));
+  EXPECT_THAT(refused(quadratic, {.memory = 2'000'000}),
+              HasSubstr("order = 2: about 750 tets need at least 0.00225 GB"));
   EXPECT_EQ(refused(quadratic, {.memory = 2'300'000}), "");
   write_mesh(folder / "box.msh", make_box({{0, 0, 0}}, {{1, 1, 1}}, {5, 5, 5}));
   EXPECT_THAT(refused("mesh = \"box.msh\"", {.memory = 300'000}), AllOf(HasSubstr("box.msh"), HasSubstr("coarser")));
