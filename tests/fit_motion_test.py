@@ -182,6 +182,9 @@ class FitMotionErrors(CommandLine):
         self.refused("velocity is a formula", None, "--set", 'velocity=["X", 0, 0]')
         self.refused("has 2 bodies", scene=self.write("two.toml", BALL + BALL[BALL.index("[[body]]"):].replace(
             '"cube"', '"other"')))
+        scene = self.write("creep.toml", BALL + "[[body.viscoelastic]]\nratio = 1\nrelaxation_time = 1\n")
+        self.refused(f"creep.toml:{BALL.count(chr(10)) + 1}", scene=scene)
+        self.refused("it has 'viscoelastic'; remove it", scene=scene)
         self.refused("the body has no elasticity", None, "--set", "elastic=false", names="young")
         self.refused("--time-limit", None, "--time-limit", "nan")
         self.assertIn("--fit", self.aspic("fit-motion", "cube.toml", "bad.csv", code=2).stderr)

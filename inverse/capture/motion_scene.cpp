@@ -33,7 +33,15 @@ void require_motion(const SceneModel& scene, const std::vector<std::string>& nam
   if (scene.model.bodies.size() != 1)
     throw InvalidInput(file + ": has " + std::to_string(scene.model.bodies.size()) +
                        " bodies; a motion is fitted to one, so keep only the body with the markers");
-  const Value& velocity = scene.document.find("body")->array()[0]["velocity"];
+  const Value& body = scene.document.find("body")->array()[0];
+  for (const auto& D : scene.model.damping) {
+    const std::string name(D->name());
+    if (name == "rayleigh_damping" || name == "strain_rate_damping") continue;
+    const Value* list = body.find(name.starts_with("viscoelastic") ? "viscoelastic" : "muscle");
+    throw error_at(list ? list->array()[0].place : body.place,
+                   "a motion is fitted to a body with `damping` alone, but it has '" + name + "'; remove it");
+  }
+  const Value& velocity = body["velocity"];
   for (const Value& component : velocity.array())
     if (component.is_text() && has(names, "velocity"))
       throw error_at(velocity.place,
