@@ -56,6 +56,7 @@ export class Body {
   readonly edge: number; // mean edge length at rest [m]
   readonly numbered: boolean; // whether some vertex has a user's number
   box: Box | null;
+  hasPicture = false; // the first picture brings the normals
   private readonly positions: THREE.BufferAttribute;
   private readonly normals: THREE.BufferAttribute;
   private readonly values: THREE.BufferAttribute;
@@ -94,7 +95,7 @@ export class Body {
     this.pins.renderOrder = 2;
     for (const object of [this.mesh, this.wires, this.pins]) object.frustumCulled = false;
     this.root.add(this.mesh, this.wires, this.pins);
-    this.root.visible = false; // the first picture brings the normals
+    this.root.visible = false;
     this.root.matrixAutoUpdate = false;
   }
 
@@ -111,7 +112,7 @@ export class Body {
     upload(this.normals, picture.normals);
     if (picture.values) upload(this.values, picture.values);
     this.box = coarseBox(picture.positions) ?? this.box;
-    this.root.visible = true;
+    this.hasPicture = this.root.visible = true;
   }
 
   apply(settings: DisplaySettings): void {
