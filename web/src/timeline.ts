@@ -19,6 +19,7 @@ export function makeTimeline(store: Store, page: Page): HTMLElement {
     title: "Rewind to a step (Left and Right while it has the focus)",
     "data-steers": store.source.live,
     step: "1",
+    max: "0", // until the first state
   });
   const place = element("span", { class: "place" });
   const ends = element("span", { class: "faint ends" });

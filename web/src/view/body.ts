@@ -57,6 +57,7 @@ export class Body {
   readonly edge: number; // mean edge length at rest [m]
   readonly numbered: boolean; // whether some vertex has a user's number
   box: Box | null;
+  hasPicture = false; // the first picture brings the normals
   private readonly positions: THREE.BufferAttribute;
   private readonly normals: THREE.BufferAttribute;
   private readonly values: THREE.BufferAttribute;
@@ -114,7 +115,7 @@ export class Body {
     if (picture.values) upload(this.values, picture.values);
     this.fibres.show(this.geometry.triangles, picture.positions);
     this.box = coarseBox(picture.positions) ?? this.box;
-    this.root.visible = true;
+    this.hasPicture = this.root.visible = true;
   }
 
   apply(settings: DisplaySettings): void {

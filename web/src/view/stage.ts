@@ -175,7 +175,7 @@ export class Stage {
     // Beyond this each triangle would fill the view, which takes minutes without a GPU and shows nothing.
     const height = lens.extent > 0 ? lens.extent : lens.slope * length(minus(this.center, lens.eye));
     this.isFar = this.reach() > kFar && this.reach() * this.radius > kFar * height;
-    body.root.visible = !this.isFar;
+    body.root.visible = body.hasPicture && !this.isFar;
     this.hasLeft = body.box !== null && this.reach() * this.radius * pixels < lens.height && !isInside(lens, middle);
     body.adapt(body.edge * pixels, this.renderer.getPixelRatio(), lift, pinColor);
   }
