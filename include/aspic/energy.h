@@ -2,6 +2,7 @@
 #pragma once
 #include "energy/damping.h"
 #include "energy/energy.h"
+#include "energy/internal_variables.h"
 #include "energy/linear_load.h"
 #include "energy/mass.h"
 #include "energy/pressure.h"

@@ -5,6 +5,7 @@
 #include "dynamics/incremental_potential.h"
 #include "dynamics/initial_guess.h"
 #include "dynamics/integrator_facts.h"
+#include "dynamics/internal_terms.h"
 #include "dynamics/pins.h"
 #include "dynamics/simulation.h"
 #include "dynamics/stable_step.h"
