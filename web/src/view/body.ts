@@ -97,7 +97,7 @@ export class Body {
     this.pins.renderOrder = 2;
     for (const object of [this.mesh, this.wires, this.pins]) object.frustumCulled = false;
     this.root.add(this.mesh, this.wires, this.pins, this.fibres);
-    this.root.visible = false; // the first picture brings the normals
+    this.root.visible = false;
     this.root.matrixAutoUpdate = false;
   }
 
