@@ -62,6 +62,28 @@ test("no formula is cut off on a phone", async () => {
   await opened.close();
 });
 
+// Drops pictures, but no geometry, once `window.dropsPictures` is set.
+const dropPictures = (page) =>
+  page.addInitScript(() => {
+    const { set } = Object.getOwnPropertyDescriptor(MessagePort.prototype, "onmessage");
+    const isPicture = (data) => data instanceof ArrayBuffer && new Uint32Array(data, 0, 1)[0] === 2;
+    const withoutPictures = (handler) => (event) => (window.dropsPictures && isPicture(event.data) ? undefined : handler(event));
+    Object.defineProperty(MessagePort.prototype, "onmessage", { set: function (handler) { set.call(this, withoutPictures(handler)); } });
+  });
+
+test("a body is hidden until its first picture", async () => {
+  const opened = await openSite(places["a file"], "bunny", { prepare: dropPictures });
+  const canvas = opened.page.locator("#views canvas").first();
+  await opened.until("the bunny", () => isDrawn(canvas));
+  await opened.page.evaluate(() => void (window.dropsPictures = true));
+  await opened.page.keyboard.press("Shift+O");
+  await opened.page.getByRole("dialog").getByRole("button", { name: /^cantilever/ }).click();
+  await opened.until("the geometry", ({ scenes, geometries }) => scenes.a.name === "cantilever" && geometries.a.generation === scenes.a.generation);
+  await frames(opened.page, 4);
+  assert.equal(await isDrawn(canvas), false);
+  await opened.close();
+});
+
 test("a link and a saved page open the workspace", async () => {
   const opened = await openSite(places["a file"]);
   await loadScene(opened, "twist");
