@@ -4,6 +4,7 @@
 
 #include "energy/fibres.h"
 #include "scene/fibre_directions.h"
+#include "scene/piecewise_linear.h"
 #include "scene/placement.h"
 #include "scene/schema.h"
 #include "scene/tables.h"
@@ -127,9 +128,19 @@ void add_fibre(BodyFibre fibre, Model& model) {
   model.loads.push_back(make_fibres(place, list));
 }
 
+std::function<double(double t)> level_over_time(const Value& value) {
+  if (!value.is_array()) return function_of_time(value, "activation: its formula may use only t");
+  PiecewiseLinear<double> level;
+  for (const Value& k : value.array()) {
+    level.times.push_back(k["time"].number());
+    level.values.push_back(k["level"].number());
+  }
+  return [level](double t) { return level.at(t); };
+}
+
 // Activations outside 0 to 1 throw InvalidInput, possibly long after the scene was read.
 Activation activation_of(const Value& value) {
-  const auto of_time = function_of_time(value, "activation: its formula may use only t");
+  const auto of_time = level_over_time(value);
   return [of_time, place = value.place](double time) {
     const double a = of_time(time);
     if (!(a >= 0 && a <= 1))

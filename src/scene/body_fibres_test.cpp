@@ -110,6 +110,15 @@ TEST(Muscle, ContractsUntilTheMaterialBalancesIt) {
   }
 }
 
+TEST(Muscle, ActivationIsAFunctionOrValuesAtTimes) {
+  const auto contracted = [](const std::string& activation) {
+    return equilibrium(muscle("activation = " + activation));
+  };
+  const std::vector<double> by_function = contracted("\"min(1, t)\"");
+  EXPECT_EQ(contracted("[{ time = 0, level = 0 }, { time = 1, level = 1 }]"), by_function);
+  EXPECT_NE(contracted("[{ time = 0, level = 0.25 }]"), by_function);
+}
+
 TEST(Muscle, WorkOfTheActivationBalancesTheEnergy) {
   Scene scene = load(kCube + "[[body.pin]]\nwhere = \"x < 0.1\"\n" + muscle("activation = \"min(1, 20 * t)\""));
   double largest = 0, work = 0;
@@ -196,7 +205,7 @@ TEST(Fibres, DirectionsFromFilesGiveTheSameShape) {
   for (const Vec3d& X : mesh.rest) points.insert(points.end(), {X[0], X[1], X[2]});
   write_vtu((folder / "fibres.vtu").string(), points, mesh.tets, {{per_vertex}, {per_tet}});
   EXPECT_TRUE(is_success(straight.simulation.step().status));
-  for (const std::string& file :
+  for (const char* file :
        {"file = \"fibres.txt\"", "file = \"fibres.vtu\", name = \"a\"", "file = \"fibres.vtu\", name = \"b\""})
     for (size_t i = 0; const double q : with(file)) EXPECT_NEAR(q, positions(straight)[i++], 1e-9) << file;
   EXPECT_THAT(refusal(pulled(fibre("directions = { file = \"none.txt\" }"))), HasSubstr("none.txt"));
@@ -230,6 +239,10 @@ TEST(Fibres, MistakesAreExplained) {
   EXPECT_THAT(of("direction = [1, 0, 0]\ndispersion = 0.4"), HasSubstr("dispersion = 0.4; must be"));
   EXPECT_THAT(of("direction = [1, 0]"), HasSubstr("direction"));
   EXPECT_THAT(refusal(kCube + muscle("")), HasSubstr("activation"));
+  EXPECT_THAT(refusal(kCube + muscle("activation = []")), HasSubstr("activation = []; at least one is needed"));
+  EXPECT_THAT(refusal(kCube + muscle("activation = [{ time = 0, level = 2 }]")), HasSubstr("level = 2"));
+  EXPECT_THAT(refusal(kCube + muscle("activation = [{ time = 1, level = 1 }, { time = 1, level = 0 }]")),
+              HasSubstr("must be later than the previous one"));
   EXPECT_THAT(refusal(kCube + "[[body.muscle]]\nstrength = 1\nactivation = 1\n"),
               HasSubstr("muscle needs one of: direction | from, to | helix | directions"));
   EXPECT_THAT(of("direction = [1, 0, 0]\nlaw = \"guccione\""), HasSubstr("exponent = 0.8"));

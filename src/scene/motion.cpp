@@ -6,6 +6,7 @@
 
 #include "base/error.h"
 #include "scene/expression.h"
+#include "scene/piecewise_linear.h"
 #include "scene/placement.h"
 
 namespace aspic {
@@ -39,19 +40,12 @@ Motion spin(const Value& motion, const std::vector<Vec3d>& starts) {
 }
 
 Motion keyframed(const Value& keyframes) {
-  std::vector<double> times;
-  std::vector<Vec3d> offsets;
+  PiecewiseLinear<Vec3d> offset;
   for (const Value& k : keyframes.array()) {
-    times.push_back(k["time"].number());
-    offsets.push_back(k["displacement"].vector());
+    offset.times.push_back(k["time"].number());
+    offset.values.push_back(k["displacement"].vector());
   }
-  return [times, offsets](const Vec3d& start, double time) {
-    const size_t next = std::upper_bound(times.begin(), times.end(), time) - times.begin();
-    if (next == 0) return start + offsets.front();
-    if (next == times.size()) return start + offsets.back();
-    const double s = (time - times[next - 1]) / (times[next] - times[next - 1]);
-    return start + ((1 - s) * offsets[next - 1] + s * offsets[next]);
-  };
+  return [offset](const Vec3d& start, double time) { return start + offset.at(time); };
 }
 
 Motion displaced(const Value& displacement) {

@@ -95,16 +95,16 @@ void check_times(const Array& places) {
   }
 }
 
-void check_keyframes(const Value& keyframes) {
+void check_keyframes(const Value& keyframes, const std::string& key) {
   check_times(keyframes.array());
-  if (keyframes.array().empty()) throw error_at(keyframes.place, "keyframes = []; at least one is needed");
+  if (keyframes.array().empty()) throw error_at(keyframes.place, key + " = []; at least one is needed");
 }
 
 void check_motion(const Value& holder) {
   const Value* motion = holder.find("motion");
   if (!motion || !motion->is_table()) return;
   if (const Value* spin = motion->find("rotate")) check_axis(*spin);
-  if (const Value* keyframes = motion->find("keyframes")) check_keyframes(*keyframes);
+  if (const Value* keyframes = motion->find("keyframes")) check_keyframes(*keyframes, "keyframes");
   if (const Value* recording = motion->find("recording"); recording && !recording->find("mesh"))
     throw error_at(recording->place, "recording needs `mesh`, the recorded surface at rest");
 }
@@ -181,6 +181,9 @@ void complete_scene(Table& document) {
   name_tables(bodies, body_name);
   for (Value& body : bodies) {
     complete_material(*body.table().find("material"));
+    if (const Value* muscles = body.find("muscle"))
+      for (const Value& muscle : muscles->array())
+        if (muscle["activation"].is_array()) check_keyframes(muscle["activation"], "activation");
     if (Value* pins = body.table().find("pin")) {
       name_tables(pins->array(), [](const Table&, size_t i) { return "pin" + std::to_string(i + 1); });
       for (const Value& pin : pins->array()) {

@@ -97,7 +97,8 @@ void add_fibres(Schema& s) {
            {key("law", kText, "energy of the fibres", Choices{{"blemker", "tension"}},
                 Usual{"\"blemker\"", "skeletal muscle"}),
             key("strength", per_tet, "largest active stress", Units{"Pa"}, kNotNegative, Members{"field"}, kRequired),
-            key("activation", kNumber | kMovingExpression, "0 (passive) to 1; function of the time t", kRequired),
+            key("activation", kNumber | kMovingExpression | kTables,
+                "0 (passive) to 1: function of the time t, or values at times", Members{"activation"}, kRequired),
             key("optimal_stretch", per_tet, "stretch of the largest force", kPositive, Members{"field"},
                 Usual{"1.0", "the rest shape"}),
             key("max_velocity", per_tet, "v = 1: optimal lengths per second without load; default: any", Units{"1/s"},
@@ -107,6 +108,11 @@ void add_fibres(Schema& s) {
             key("lengthening", per_tet, "relative force of fast lengthening",
                 Range{.min = 1, .max = 10, .min_open = true}, Members{"field"}, Usual{"1.5", "most muscles"})});
   s.alternatives.push_back({"muscle", directions, true});
+  add_section(s,
+              {"activation", "activation = [{ ... }, ...] in a muscle",
+               "A value at a time: linear between them, constant before and after."},
+              {key("time", kNumber, "ascending", Units{"s"}, kNotNegative, kRequired),
+               key("level", kNumber, "activation", Range{.min = 0, .max = 1}, kRequired)});
   add_directions(s);
 }
 
