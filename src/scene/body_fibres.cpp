@@ -141,13 +141,15 @@ std::function<double(double t)> level_over_time(const Value& value) {
 // Activations outside 0 to 1 throw InvalidInput, possibly long after the scene was read.
 Activation activation_of(const Value& value) {
   const auto of_time = level_over_time(value);
-  return [of_time, place = value.place](double time) {
+  const Activation checked = [of_time, place = value.place](double time) {
     const double a = of_time(time);
     if (!(a >= 0 && a <= 1))
       throw error_at(place, "activation = " + number_text(a) + " at t = " + number_text(time) +
                                 "; must be >= 0 and <= 1 (try min(1, max(0, ...)))");
     return a;
   };
+  checked(0);  // already where the scene is read
+  return checked;
 }
 
 void add_muscle(BodyFibre muscle, Model& model) {
