@@ -21,17 +21,30 @@ export function neighbor(lessons: Lesson[], from: Lesson | null, by: 1 | -1): Le
   return shown[shown.indexOf(from) + by] ?? null;
 }
 
-// Lesson of a page of the lecture; null: none. `pages`: "5, 7-9".
-export function lessonOf(lessons: Lesson[], page: number): Lesson | null {
-  const shows = (range: string): boolean => {
+// Pages of a lesson: "5, 7-9" gives 5, 7, 8, 9.
+function pageNumbers({ pages }: Lesson): number[] {
+  return pages.split(",").flatMap((range) => {
     const [first, last = first] = range.split("-").map(Number);
-    return first! <= page && page <= last!;
-  };
-  return lessons.find(({ pages }) => pages.split(",").some(shows)) ?? null;
+    return Array.from({ length: last! - first! + 1 }, (_, k) => first! + k);
+  });
 }
 
-// Page that the address chooses: "#lecture/33". NaN: none.
-const pageOf = (hash: string): number => Number(/^#lecture\/(\d+)$/.exec(hash)?.[1] ?? NaN);
+const lessonsOf = (lessons: Lesson[], page: number): Lesson[] => lessons.filter((lesson) => pageNumbers(lesson).includes(page));
+
+// Lesson that the address chooses: "#lecture/33" the first of page 33, "#lecture/33/2" its second. null: none;
+// undefined: the address is not about the lecture.
+export function lessonAt(lessons: Lesson[], hash: string): Lesson | null | undefined {
+  const [match, page, part = 1] = /^#lecture\/(\d+)(?:\/(\d+))?$/.exec(hash) ?? [];
+  if (!match) return undefined;
+  return lessonsOf(lessons, Number(page))[Number(part) - 1] ?? null;
+}
+
+// Address that opens the lesson: of its pages the one on which fewest lessons precede it.
+export function addressOf(lessons: Lesson[], lesson: Lesson): string {
+  const places = pageNumbers(lesson).map((page) => ({ page, part: lessonsOf(lessons, page).indexOf(lesson) + 1 }));
+  const { page, part } = places.reduce((best, place) => (place.part < best.part ? place : best));
+  return part === 1 ? `#lecture/${page}` : `#lecture/${page}/${part}`;
+}
 
 function pagesText({ pages }: Lesson): string {
   return /[-,]/.test(pages) ? `Pages ${pages}` : `Page ${pages}`;
@@ -87,10 +100,9 @@ export class Lecture {
 
   private openFromAddress(): void {
     this.hasReadAddress = true;
-    const page = pageOf(location.hash);
-    if (Number.isNaN(page)) return;
-    const lesson = lessonOf(this.lessons, page);
-    if (!lesson) return this.page.notice(`The lecture's page ${page} has no demonstration.`);
+    const lesson = lessonAt(this.lessons, location.hash);
+    if (lesson === undefined) return;
+    if (lesson === null) return this.page.notice(`The lecture has no demonstration at ${location.hash}.`);
     if (this.root.hidden) this.show(true);
     void this.open(lesson);
   }
@@ -143,6 +155,7 @@ export class Lecture {
     }
     this.page.emit("cleared", undefined);
     this.current = lesson;
+    history.replaceState(null, "", new URL(addressOf(this.lessons, lesson), location.href)); // for links and reloads
     this.replay.hidden = !this.replaying; // the recorded mouse of an earlier lesson
     this.card.replaceChildren(
       element("h2", {}, `${pagesText(lesson)}: ${lesson.title}`),

@@ -1,6 +1,6 @@
 import assert from "node:assert/strict";
 import { test } from "node:test";
-import { lessonOf, matches, neighbor } from "../src/lecture";
+import { addressOf, lessonAt, matches, neighbor } from "../src/lecture";
 import type { Lesson } from "../src/protocol";
 
 const lesson = (id: string, more: Partial<Lesson> = {}): Lesson => ({
@@ -28,11 +28,20 @@ test("previous and next skip missing lessons", () => {
   assert.equal(neighbor(lessons, null, 1), lessons[0]);
 });
 
-test("a page of the lecture has the lesson that covers it", () => {
+test("an address opens the lesson that covers its page", () => {
   const lessons = [lesson("a", { pages: "5, 7-9" }), lesson("b", { pages: "33-34" }), lesson("c", { pages: "8, 10" })];
-  assert.equal(lessonOf(lessons, 5)?.id, "a");
-  assert.equal(lessonOf(lessons, 8)?.id, "a");
-  assert.equal(lessonOf(lessons, 10)?.id, "c");
-  assert.equal(lessonOf(lessons, 34)?.id, "b");
-  assert.equal(lessonOf(lessons, 6), null);
+  assert.equal(lessonAt(lessons, "#lecture/5")?.id, "a");
+  assert.equal(lessonAt(lessons, "#lecture/8")?.id, "a");
+  assert.equal(lessonAt(lessons, "#lecture/8/2")?.id, "c");
+  assert.equal(lessonAt(lessons, "#lecture/10")?.id, "c");
+  assert.equal(lessonAt(lessons, "#lecture/34")?.id, "b");
+  for (const none of ["#lecture/6", "#lecture/8/3", "#lecture/8/0"]) assert.equal(lessonAt(lessons, none), null, none);
+  for (const other of ["", "#s=abc", "#lecture/x", "#lecture/8/"]) assert.equal(lessonAt(lessons, other), undefined, other);
+});
+
+test("each lesson has an address, also beside others on the same pages", () => {
+  const lessons = [lesson("a"), lesson("b"), lesson("c", { pages: "32-34" }), lesson("d", { pages: "34, 36" })];
+  const addresses = lessons.map((each) => addressOf(lessons, each));
+  assert.deepEqual(addresses, ["#lecture/33", "#lecture/33/2", "#lecture/32", "#lecture/36"]);
+  assert.deepEqual(addresses.map((address) => lessonAt(lessons, address)), lessons);
 });

@@ -15,22 +15,11 @@ test("each page of the lecture has formulas, something to try, and a question wi
 
 const kLongest = 3600e3; // a judgment [ms]
 
-const covers = ({ pages }, number) =>
-  pages.split(",").some((range) => {
-    const [first, last = first] = range.split("-").map(Number);
-    return first <= number && number <= last;
-  });
-
-// A page of the lesson whose address opens this lesson: the first one that covers it.
-function addressOf(lesson, lessons) {
-  for (let number = 1; number <= 100; ++number) if (lessons.find((other) => covers(other, number)) === lesson) return `#lecture/${number}`;
-  throw new Error(`no address opens pages ${lesson.pages}`);
-}
-
 // Opens the page of the lecture, and lets it judge itself.
-async function judgedByPage({ page, heard, until }, { pages }, address) {
+async function judgedByPage({ page, heard, until }, { pages, title }, address) {
   await page.evaluate((hash) => void (location.hash = hash), address);
-  await page.getByRole("heading", { name: new RegExp(`^Pages? ${pages}:`) }).waitFor();
+  await page.getByRole("heading", { name: `${pages}: ${title}` }).waitFor();
+  assert.equal(await page.evaluate(() => location.hash), address);
   heard.messages.length = 0;
   await page.getByRole("button", { name: "Judge this page by numbers" }).click();
   const verdict = page.locator(".judgment b, .judgment .error");
@@ -49,10 +38,11 @@ test("the page judges the lecture by the numbers of the native build", async () 
   const out = temporaryFolder();
   const opened = await openSite(places["a file"]);
   const { lessons } = opened.heard.messages.find(({ kind }) => kind === "hello");
+  const { addressOf } = await pageModule("lecture.ts");
   const chosen = testsAll ? lessons : lessons.filter(({ id }) => kQuickPages.includes(id));
   assert.ok(chosen.length >= kQuickPages.length);
   for (const lesson of chosen) {
-    const result = await judgedByPage(opened, lesson, addressOf(lesson, lessons));
+    const result = await judgedByPage(opened, lesson, addressOf(lessons, lesson));
     runNative(["lecture", String(result.pages[0]), "--out", out]);
     const native = JSON.parse(readFileSync(join(out, result.key, "result.json"), "utf8"));
     assert.deepEqual(judged(result), judged(native), lesson.id);
