@@ -4,6 +4,7 @@
 #include <cmath>
 #include <map>
 #include <optional>
+#include <utility>
 
 #include "math/vectors.h"
 
@@ -11,6 +12,9 @@ namespace aspic {
 namespace {
 
 constexpr double kStaticReach = 1e-2;  // width of f in statics, relative to the reach of the barrier
+
+// Identifies a contact within a step: a point and a part, or two edges.
+using ContactName = std::array<int, 5>;
 
 struct Weight {
   int row;
@@ -25,6 +29,7 @@ struct Slider {
   double width = 0;  // e [m]
   Vec3d moved = {};  // displacement of the obstacle during the step [m]
   std::array<int, 2> parts = {};
+  ContactName name = {};
 };
 
 // A normal force, and the stencils that share it.
@@ -34,21 +39,59 @@ struct Traction {
   Vec3d force{};              // [N]
 };
 
-// Identifies a contact within a step: a point and a part, or two edges.
-using ContactName = std::array<int, 5>;
-
 ContactName name_of(const ContactStencil& stencil) {
   if (stencil.radius > 0 || stencil.is_of_edges())
     return {stencil.point[0], stencil.point[1], stencil.point[2], stencil.point[3], stencil.parts[1]};
   return {stencil.point[0], -1, -1, -1, stencil.parts[1]};
 }
 
+// A normal force times mu before and after an update [N].
+struct ForceChange {
+  double before = 0, after = 0;
+  double size() const { return after - before; }
+};
+
+struct Update {
+  std::map<ContactName, ForceChange> changes;
+  double part = 1;  // that was kept
+
+  double change(const ContactName& name) const {
+    const auto found = changes.find(name);
+    return found == changes.end() ? 0 : found->second.size();
+  }
+};
+
+Update update_between(std::span<const Slider> before, std::span<const Slider> after) {
+  Update update;
+  for (const Slider& slider : before) update.changes[slider.name].before = slider.force;
+  for (const Slider& slider : after) update.changes[slider.name].after = slider.force;
+  return update;
+}
+
+// Returns the part to keep of the second of two updates: less than 1 if they are nearly opposite. By the secant through
+// both, the next update then changes nothing [Irons 1969].
+double relaxation(const Update& first, const Update& second) {
+  constexpr double kOpposite = -0.5;  // cosine
+  constexpr double kLeast = 0.1;
+  double squares[2] = {}, product = 0;
+  for (const auto& [name, change] : first.changes) squares[0] += change.size() * change.size();
+  for (const auto& [name, change] : second.changes) {
+    squares[1] += change.size() * change.size();
+    product += change.size() * first.change(name);
+  }
+  if (!(product < kOpposite * std::sqrt(squares[0] * squares[1]))) return 1;
+  const double part = first.part * (squares[0] - product) / (squares[0] + squares[1] - 2 * product);
+  return std::clamp(part, kLeast, 1.0);
+}
+
 struct FrictionContext : Energy::Context {
   std::vector<double> start;
   double obstacle_time = 0;  // time of the obstacles at the start [s]
   std::vector<Slider> sliders;
-  std::optional<std::vector<Slider>> before;  // the sliders before the last update of this step
-  std::map<ContactName, Slider> known;        // sliders of earlier updates
+  std::optional<std::vector<Slider>> before;   // the sliders before the last update of this step
+  std::optional<std::vector<Slider>> updated;  // the sliders of the last update, if it was relaxed
+  std::map<ContactName, Slider> known;         // sliders of earlier updates
+  Update earlier_update, last_update;
 };
 
 const FrictionContext& friction(const Energy::Context& context) { return static_cast<const FrictionContext&>(context); }
@@ -204,6 +247,8 @@ void Friction::begin_step(const StepContext& step, Context& context) const {
   own.start.assign(step.start.begin(), step.start.end());
   own.obstacle_time = step.obstacle_time.value_or(step.time - step.h);
   own.before.reset();
+  own.updated.reset();
+  own.last_update = {};
   own.known.clear();
   lag(step.shape.empty() ? step.start : step.shape, own.obstacle_time, false, context);
 }
@@ -211,7 +256,24 @@ void Friction::begin_step(const StepContext& step, Context& context) const {
 void Friction::update_lagged(Positions x, bool keeps_directions, Context& context) const {
   auto& own = static_cast<FrictionContext&>(context);
   own.before = std::move(own.sliders);
+  own.updated.reset();
   lag(x, context.time, keeps_directions, context);
+  own.earlier_update = std::exchange(own.last_update, update_between(*own.before, own.sliders));
+}
+
+bool Friction::relax_lagged(Context& context) const {
+  auto& own = static_cast<FrictionContext&>(context);
+  if (!own.before) return false;
+  const double part = own.last_update.part = relaxation(own.earlier_update, own.last_update);
+  if (part == 1) return false;
+  own.updated = own.sliders;
+  for (Slider& slider : own.sliders) slider.force -= (1 - part) * own.last_update.changes[slider.name].size();
+  for (const Slider& slider : *own.before)
+    if (own.last_update.changes[slider.name].after == 0) {
+      own.sliders.push_back(slider);
+      own.sliders.back().force *= 1 - part;
+    }
+  return true;
 }
 
 void Friction::lag(Positions x, double time, bool keeps_directions, Context& context) const {
@@ -233,12 +295,13 @@ void Friction::lag(Positions x, double time, bool keeps_directions, Context& con
     const double width = context.h > 0 ? speed_ * context.h : kStaticReach * law.reach;
     Slider& slider = own.sliders.emplace_back(slider_of(barrier_.mesh(), traction, force, width));
     slider.parts = (*stencils)[first].parts;
+    slider.name = name_of((*stencils)[first]);
     for (size_t s = first; s < k && !start.empty(); ++s) {
       const ContactStencil& stencil = (*stencils)[s];
       slider.moved = slider.moved + traction.share[s - first] * side(barrier_.mesh(), stencil) *
                                         barrier_.obstacle_displacement(stencil, start, end);
     }
-    Slider& known = own.known.try_emplace(name_of((*stencils)[first]), slider).first->second;
+    Slider& known = own.known.try_emplace(slider.name, slider).first->second;
     if (keeps_directions)
       slider = known, slider.force = force;
     else
@@ -279,7 +342,7 @@ void Friction::add_gradient(Positions x, const Context& context, double scale, s
 void Friction::add_change(Positions x, const Context& context, std::span<double> g) const {
   const FrictionContext& own = friction(context);
   if (!own.before) return;
-  add_forces(own.sliders, {x, own.start}, 1, g);
+  add_forces(own.updated ? *own.updated : own.sliders, {x, own.start}, 1, g);
   add_forces(*own.before, {x, own.start}, -1, g);
 }
 

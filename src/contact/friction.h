@@ -1,7 +1,8 @@
 // Coulomb friction as a dissipation potential of a step [Li 2020, section 5]: D = sum of mu lambda f(|u|) over the
 // stencils of a barrier, where u is the tangential relative displacement since the start of the step and lambda is the
 // normal force. f(y) = y^2 / e - y^3 / (3 e^2) for y < e = speed * h, and y - e / 3 beyond. Bodies at rest creep at
-// less than this speed. Normal forces and tangents are lagged, see LaggedEnergy.
+// less than this speed. Normal forces and tangents are lagged, see LaggedEnergy. Updates
+// of normal forces that alternate are relaxed [Irons 1969].
 #pragma once
 #include "contact/barrier.h"
 
@@ -16,6 +17,7 @@ class Friction : public Energy, public LaggedEnergy, public StoppingEnergy {
   std::unique_ptr<Context> make_context() const override;
   void begin_step(const StepContext& step, Context& context) const override;
   void update_lagged(Positions x, bool keeps_directions, Context& context) const override;
+  bool relax_lagged(Context& context) const override;
   double value(Positions x, const Context& context) const override;
   void add_gradient(Positions x, const Context& context, double scale, std::span<double> g) const override;
   // Returns the work [J] on friction of obstacles that move during the step.

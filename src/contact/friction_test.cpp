@@ -137,6 +137,30 @@ TEST(Friction, KeepsDirectionsOfKnownContacts) {
   EXPECT_GT(std::abs(direction(false) - g[2] / g[1]), 1e-3);
 }
 
+// The second of two opposite updates is halved, also where contacts vanish.
+TEST(Friction, RelaxesAlternatingForces) {
+  for (const double lift : {1e-3, 1.0}) {
+    SCOPED_TRACE(lift);
+    const Sliding at = over_plane(20 * kWidth, 0);
+    std::vector<double> lifted = at.start;
+    for (size_t k = 2; k < lifted.size(); k += 3) lifted[k] += lift;
+    at.friction->update_lagged(lifted, false, *at.context);
+    const std::vector<double> low = at.gradient(at.x);
+    EXPECT_FALSE(at.friction->relax_lagged(*at.context));
+    at.friction->update_lagged(at.start, false, *at.context);
+    const std::vector<double> high = at.gradient(at.x);
+    at.friction->update_lagged(lifted, false, *at.context);
+    EXPECT_TRUE(at.friction->relax_lagged(*at.context));
+    const std::vector<double> relaxed = at.gradient(at.x);
+    std::vector<double> change(at.x.size());
+    at.friction->add_change(at.x, *at.context, change);
+    for (size_t i = 0; i < relaxed.size(); ++i) {
+      EXPECT_NEAR(relaxed[i], (low[i] + high[i]) / 2, 1e-12 * max_abs(high)) << i;
+      EXPECT_NEAR(change[i], low[i] - high[i], 1e-12 * max_abs(high)) << i;
+    }
+  }
+}
+
 // Coulomb friction: while all contacts slide, the force is mu times the normal force.
 TEST(Friction, SlidingForceMatchesCoulomb) {
   const Sliding at = over_plane(0.1, 0);

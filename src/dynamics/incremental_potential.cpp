@@ -172,6 +172,13 @@ void IncrementalPotential::update_lagged(std::span<const double> q, bool keeps_d
   if (is_lagged()) iterate_.clear();  // the forces known there use the earlier coefficients
 }
 
+bool IncrementalPotential::relax_lagged() {
+  bool is_relaxed = false;
+  for (ActiveTerm& D : damping_) is_relaxed = D.relax_lagged() || is_relaxed;
+  if (is_relaxed) iterate_.clear();
+  return is_relaxed;
+}
+
 Evaluation IncrementalPotential::evaluate(std::span<const double> q) {
   double E = 0, magnitude = factor_ * growth_stiffness_;
   const auto add = [&](double term) { E += term, magnitude += std::abs(term); };

@@ -49,6 +49,7 @@ class IncrementalPotential : public Objective,
   bool is_lagged() const override;
   // Evaluates the lagged coefficients at q.
   void update_lagged(std::span<const double> q, bool keeps_directions) override;
+  bool relax_lagged() override;
 
   // Returns E(q). Sums the magnitudes of its terms for the rounding error.
   Evaluation evaluate(std::span<const double> q) override;

@@ -75,6 +75,8 @@ class LaggedEnergy {
   virtual ~LaggedEnergy() = default;
   // Evaluates them at x. keeps_directions: not the directions, where they are known from earlier in the step.
   virtual void update_lagged(Positions x, bool keeps_directions, Energy::Context& context) const = 0;
+  // Undoes a part of the last update if the last two alternate. Returns whether it did.
+  virtual bool relax_lagged(Energy::Context& context) const = 0;
 };
 
 // A term that is not defined beyond some steps, such as a barrier.
@@ -130,6 +132,7 @@ class ActiveTerm {
   void update_lagged(Positions x, bool keeps_directions) {
     if (lagged_) lagged_->update_lagged(x, keeps_directions, *context_);
   }
+  bool relax_lagged() { return lagged_ && lagged_->relax_lagged(*context_); }
   const Energy& energy() const { return *energy_; }
   const Energy::Context& context() const { return *context_; }
   std::string_view name() const { return energy_->name(); }

@@ -20,8 +20,8 @@ class HillTerm final : public FibreTerm<HillLaw, Damping, Batch> {
   using Term::params_, Term::place;
 
  public:
-  HillTerm(const FibrePlace& place, std::span<const MuscleVelocity> fibres, Activation activation)
-      : Term(place, fibres, &own_params), activation_(std::move(activation)) {}
+  HillTerm(const FibrePlace& tets, std::span<const MuscleVelocity> fibres, Activation activation)
+      : Term(tets, fibres, &own_params), activation_(std::move(activation)) {}
 
   std::unique_ptr<Context> make_context() const override {
     auto start = std::make_unique<Start>();
@@ -77,9 +77,9 @@ class HillTerm final : public FibreTerm<HillLaw, Damping, Batch> {
   };
 
   // Returns d2psi / dl dl_n.
-  Pack mixed_derivative(const Start& start, int place, const Pack& l) const {
-    const auto& given = params_[place];
-    HillLaw::Params<Pack> p = start.params[place];
+  Pack mixed_derivative(const Start& start, int index, const Pack& l) const {
+    const auto& given = params_[index];
+    HillLaw::Params<Pack> p = start.params[index];
     const Pack curvature = HillLaw::response(l, p).curvature;
     p.tension = Pack(start.h > 0 ? start.activation : 0.0) * given.tension / (given.start * given.start) *
                 muscle_force(p.start / given.start).change;

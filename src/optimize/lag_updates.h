@@ -35,7 +35,8 @@ class LagUpdates {
   }
   // Returns how the minimization ends after an update. before, after: its ends without and with the update.
   End end_after(const MinimizeReport& report, double round_off, End before, End after) {
-    if (!(report.reached < kProgress * changed_)) {
+    is_reduced_ = report.reached < kProgress * changed_;
+    if (!is_reduced_) {
       reduction_ *= kLess;
       counted_ += kWithoutProgress;
     }
@@ -48,6 +49,13 @@ class LagUpdates {
     least_ = std::min(least_, report.reached);
     const bool is_noise = *before == Status::round_off && report.reached <= kNoise * round_off;
     return is_noise && stalled_ >= kStalled ? End(Status::round_off) : std::nullopt;
+  }
+  // Relaxes an update at a minimizer, or one that did not reduce the forces, if updates alternate. Returns whether it
+  // did.
+  bool relax(bool is_minimizer) {
+    if ((!is_minimizer && is_reduced_) || !E_->relax_lagged()) return false;
+    is_current_ = false;
+    return true;
   }
 
  private:
@@ -68,7 +76,8 @@ class LagUpdates {
   double least_ = kInfinity;
   double changed_ = kInfinity;  // forces after the last update
   double reduction_ = kReduction;
-  int counted_ = 0;  // updates, and kWithoutProgress for each that did not reduce the forces
+  bool is_reduced_ = true;  // whether the last update reduced the forces
+  int counted_ = 0;         // updates, and kWithoutProgress for each that did not reduce the forces
   int stalled_ = 0;
 };
 

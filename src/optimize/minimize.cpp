@@ -75,6 +75,7 @@ struct Minimizer::Impl {
   MinimizeReport minimize(Progress& at, const IterationObserver& observe);
   void begin(Progress& at);
   End update_lagged(Progress& at, End end);
+  void evaluate_lagged(Progress& at);
   End test_convergence(Progress& at);
   InnerAccuracy inner_accuracy(const Progress& at) const;
   bool find_direction(Progress& at, const Iterate& iterate, Iteration& iteration);
@@ -132,15 +133,25 @@ Minimizer::Impl::End Minimizer::Impl::update_lagged(Progress& at, End end) {
   MinimizeReport& report = at.report;
   if (!at.lag.is_due(report, end)) return end;
   at.lag.update(at.x);
+  ++report.updates;
+  evaluate_lagged(at);
+  const End updated = test_convergence(at);
+  const End last = at.lag.end_after(report, at.E.scales().gradient_round_off, end, updated);
+  if (!last && at.lag.relax(end.has_value())) {
+    evaluate_lagged(at);
+    test_convergence(at);  // for the report: only coefficients of this iterate end the minimization
+  }
+  return last;
+}
+
+void Minimizer::Impl::evaluate_lagged(Progress& at) {
   at.direction.note_change();
   at.value = at.E.evaluate(at.x);
   at.E.gradient(at.x, g);
   at.E.note_iterate(at.x);
   convergence.measure(g);
-  ++report.values, ++report.gradients, ++report.updates;
-  report.lost_accuracy = 0;
-  const End updated = test_convergence(at);
-  return at.lag.end_after(report, at.E.scales().gradient_round_off, end, updated);
+  ++at.report.values, ++at.report.gradients;
+  at.report.lost_accuracy = 0;
 }
 
 // Returns the final status if the minimization ends at this iterate.

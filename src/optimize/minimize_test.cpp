@@ -5,6 +5,7 @@
 #include <cmath>
 #include <set>
 #include <stdexcept>
+#include <utility>
 
 #include "optimize/gradient_descent.h"
 #include "optimize/newton.h"
@@ -99,6 +100,37 @@ TEST(Minimize, LineSearchRejectsNaN) {
   });
   EXPECT_TRUE(f.met_nan);
   EXPECT_LT(x[0] * x[0] + x[1] * x[1], 4);
+}
+
+// f = ((x - c)^2 + y^2) / 2, where c = 3 - 2 x at the last update: updates alternate about x = 1, further each time.
+class Alternating : public PlanarFunction, public HasLag {
+ public:
+  explicit Alternating(bool relaxes) : relaxes_(relaxes) {}
+  double at(const Planar& p) const override { return ((p[0] - c_) * (p[0] - c_) + p[1] * p[1]) / 2; }
+  Planar gradient_at(const Planar& p) const override { return {p[0] - c_, p[1]}; }
+  PlanarHessian hessian_at(const Planar&) const override { return {1, 0, 1}; }
+  bool is_lagged() const override { return true; }
+  void update_lagged(std::span<const double> x, bool) override { before_ = std::exchange(c_, 3 - 2 * x[0]); }
+  bool relax_lagged() override {
+    if (relaxes_) c_ = before_ + (c_ - before_) / 3;
+    return relaxes_;
+  }
+
+ private:
+  bool relaxes_;
+  double c_ = 0, before_ = 0;
+};
+
+TEST(Minimize, AlternatingUpdatesAreRelaxed) {
+  for (const bool relaxes : {true, false}) {
+    Alternating f(relaxes);
+    std::vector<double> x = {0.3, 0.6, 0};
+    MinimizeOptions options = tight();
+    options.updates_lagged = true;
+    const MinimizeReport report = Minimizer().minimize(f, *newton_with(), x, options);
+    EXPECT_EQ(report.status == Status::converged, relaxes);
+    EXPECT_EQ(std::abs(x[0] - 1) < 1e-9, relaxes);
+  }
 }
 
 TEST(Minimize, IterationLimitIsNotSuccess) {

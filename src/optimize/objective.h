@@ -109,6 +109,8 @@ class HasLag {
   virtual bool is_lagged() const = 0;  // whether there are any
   // Evaluates them at x. keeps_directions: not the directions of forces, where they are known from earlier updates.
   virtual void update_lagged(std::span<const double> x, bool keeps_directions) = 0;
+  // Undoes a part of the last update if the last two alternate. Returns whether it did.
+  virtual bool relax_lagged() = 0;
 };
 
 // Round-off counts as convergence only below this fraction of the forces that the gradient sums.
