@@ -68,8 +68,8 @@ Update update_between(std::span<const Slider> before, std::span<const Slider> af
   return update;
 }
 
-// Returns the part to keep of the second of two updates: less than 1 if they are nearly opposite. By the secant through
-// both, the next update then changes nothing [Irons 1969].
+// Returns the part to keep of the second of two updates: less than 1 if they are nearly opposite, or the first was
+// relaxed, too. By the secant through both, the next update then changes nothing [Irons 1969].
 double relaxation(const Update& first, const Update& second) {
   constexpr double kOpposite = -0.5;  // cosine
   constexpr double kLeast = 0.1;
@@ -79,7 +79,8 @@ double relaxation(const Update& first, const Update& second) {
     squares[1] += change.size() * change.size();
     product += change.size() * first.change(name);
   }
-  if (!(product < kOpposite * std::sqrt(squares[0] * squares[1]))) return 1;
+  const bool are_opposite = product < kOpposite * std::sqrt(squares[0] * squares[1]);
+  if (first.part == 1 && !are_opposite) return 1;
   const double part = first.part * (squares[0] - product) / (squares[0] + squares[1] - 2 * product);
   return std::clamp(part, kLeast, 1.0);
 }
