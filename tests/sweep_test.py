@@ -18,7 +18,7 @@ import unittest
 from command_line import ASPIC, CommandLine
 from crash_test import Crash
 
-KILLS = 40
+KILLS = 25
 ORACLE = pathlib.Path(__file__).with_name("sweep_oracle.py")
 STUDY = """scene = "beam.toml"
 [vary]
@@ -163,7 +163,7 @@ class Continued(Sweep):
         self.assert_same_folder("whole", "run")
 
     def test_resumes_after_termination(self):
-        self.beam("beam.toml", 4, "8, 2, 2")
+        self.beam("beam.toml", 2, "8, 2, 2", "[output]\nevery = 1\n")
         process = self.start(*self.LINE)
         self.wait_for_step("run", 3)
         process.send_signal(signal.SIGTERM)
@@ -171,7 +171,7 @@ class Continued(Sweep):
         self.assertEqual(process.returncode, 143)
         self.assertIn("stopped: by signal 15", (self.folder / "run/outcome.txt").read_text())
         self.assertIn("resuming after step", self.aspic(*self.LINE).stdout)
-        self.assertIn("all 400 steps are computed", self.aspic(*self.LINE).stdout)
+        self.assertIn("all 200 steps are computed", self.aspic(*self.LINE).stdout)
         self.aspic(*self.LINE[:-2], "whole")
         self.assertEqual((self.folder / "run/steps.csv").read_bytes(), (self.folder / "whole/steps.csv").read_bytes())
 

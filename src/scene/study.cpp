@@ -79,6 +79,13 @@ bool is_range(const Table& table) {
   return is_number("from") || is_number("to") || table.find("count");
 }
 
+std::vector<std::string> overrides_of(const std::vector<std::string>& keys, const std::vector<std::string>& values) {
+  std::vector<std::string> texts;
+  for (size_t k = 0; k < keys.size(); ++k)
+    if (!values[k].empty()) texts.push_back(keys[k] + "=" + values[k]);
+  return texts;
+}
+
 class StudyReader {
  public:
   explicit StudyReader(const fs::path& path) : path_(path), document_(read_toml(read_toml_text(path), path.string())) {}
@@ -215,23 +222,25 @@ class StudyReader {
     std::vector<std::string> values = v.values;
     if (v.drawn) values = {value_text(v.drawn->from), value_text(v.drawn->to), v.values.front()};
     for (const std::string& value : values) {
-      Study single{.scene = {}, .keys = study_.keys, .cases = {study_.cases.front()}};
-      single.cases[0][k] = value;
-      check_case(single.overrides(0), to_string(v.place), v.key + "=" + value);
+      std::vector<std::string> first_case = study_.cases.front();
+      first_case[k] = value;
+      check_case(first_case, k, [&](size_t key) { return to_string(variations_[key].place); });
     }
   }
 
-  // Replaces the place "--set KEY=VALUE" in messages by that in the study.
-  void check_case(const std::vector<std::string>& overrides, const std::string& place, const std::string& about) const {
+  // Replaces the place "--set KEY=VALUE" in messages by `place_of` the key; other messages get the place of key `k`.
+  template <class PlaceOf>
+  void check_case(const std::vector<std::string>& values, size_t k, const PlaceOf& place_of) const {
     try {
-      read_scene_document(text_, study_.scene.string(), overrides);
+      read_scene_document(text_, study_.scene.string(), overrides_of(study_.keys, values));
     } catch (const InvalidInput& e) {
       std::string reason = e.what();
       reason = reason.substr(0, reason.find('\n'));
-      for (const std::string& assignment : overrides)
-        if (const std::string source = "--set " + shortened(assignment) + ": "; reason.starts_with(source))
-          throw InvalidInput(place + ": " + shortened(assignment) + ": " + reason.substr(source.size()));
-      throw InvalidInput(place + ": " + about + ": " + reason);
+      for (size_t key = 0; key < values.size(); ++key) {
+        const std::string source = "--set " + shortened(study_.keys[key] + "=" + values[key]) + ": ";
+        if (reason.starts_with(source)) reason = reason.substr(source.size()), k = key;
+      }
+      throw InvalidInput(place_of(k) + ": " + shortened(study_.keys[k] + "=" + values[k]) + ": " + reason);
     }
   }
 
@@ -258,7 +267,7 @@ class StudyReader {
         throw InvalidInput(rows.where() + ": more than " + std::to_string(kMaxCases) + " cases; divide the table");
       std::vector<std::string>& values = study_.cases.emplace_back();
       for (const size_t c : columns) values.push_back(rows.text(c));
-      check_case(study_.overrides(study_.cases.size() - 1), rows.where(), "this row");
+      check_case(values, 0, [&](size_t) { return rows.where(); });
     }
     if (study_.cases.empty()) throw InvalidInput(file.string() + ": has no rows; each row is a case");
   }
@@ -272,12 +281,7 @@ class StudyReader {
 
 }  // namespace
 
-std::vector<std::string> Study::overrides(size_t index) const {
-  std::vector<std::string> texts;
-  for (size_t k = 0; k < keys.size(); ++k)
-    if (!cases[index][k].empty()) texts.push_back(keys[k] + "=" + cases[index][k]);
-  return texts;
-}
+std::vector<std::string> Study::overrides(size_t index) const { return overrides_of(keys, cases[index]); }
 
 Study read_study(const fs::path& path) { return StudyReader(path).read(); }
 

@@ -33,7 +33,7 @@ struct SweepArguments {
 std::string shell_word(const std::string& word) {
   const auto is_plain = [](char c) {
     return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') ||
-           std::string_view("_-+=./:,").find(c) != std::string_view::npos;
+           std::string_view("_-+=./:,%").find(c) != std::string_view::npos;
   };
   if (!word.empty() && std::all_of(word.begin(), word.end(), is_plain)) return word;
   std::string quoted = "'";
@@ -83,7 +83,7 @@ std::string slurm_script(const SweepArguments& arguments, const Study& study) {
 #SBATCH --output={4}
 #SBATCH --open-mode=append
 # Submit from the folder in which `aspic sweep` ran. Further options: sbatch --time=1:00:00 --mem=2G SCRIPT
-# A task runs every {1}th line; a line that was interrupted continues when it runs again.
+# Task I runs the lines I, I + {1}, ... of jobs.txt. Submit again to continue what was interrupted.
 awk -v task="$SLURM_ARRAY_TASK_ID" 'NR % {1} == task % {1}' {3} | {{
   code=0
   while IFS= read -r line; do sh -c "$line" </dev/null || code=$?; done
@@ -168,7 +168,7 @@ void add_sweep(CLI::App& app, Action& action) {
   CLI::App* command = app.add_subcommand("sweep", "Writes the cases of a study as commands; collects their results");
   command->footer(R"(
 Examples:
-  aspic sweep scenes/drop_study.toml -o study     write study/cases.csv, study/jobs.txt and study/slurm.sh
+  aspic sweep drop_study.toml -o study            write study/cases.csv, study/jobs.txt and study/slurm.sh
   tr '\n' '\0' < study/jobs.txt | xargs -0 -n 1 -P 4 sh -c
                                                   run all cases, four at a time; GNU parallel and sbatch do, too
   aspic sweep collect study                       write study/results.csv and study/index.html
