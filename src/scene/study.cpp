@@ -160,8 +160,10 @@ class StudyReader {
 
   void read_scene() {
     const Value& scene = *document_.find("scene");
-    study_.scene = path_.parent_path() / scene.text();
     std::error_code error;
+    study_.scene = path_.parent_path() / scene.text();
+    if (const fs::path plain = study_.scene.lexically_normal(); fs::equivalent(plain, study_.scene, error))
+      study_.scene = plain;
     if (study_.scene.extension() != ".toml" || !fs::is_regular_file(study_.scene, error))
       throw error_at(scene.place, "scene = " + toml_string(scene.text()) + "; " + printable(study_.scene.string()) +
                                       (study_.scene.extension() != ".toml" ? " is no .toml file" : " does not exist") +

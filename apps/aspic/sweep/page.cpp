@@ -3,9 +3,8 @@
 
 #include <algorithm>
 #include <array>
-#include <map>
-#include <numeric>
 #include <optional>
+#include <utility>
 
 #include "aspic/plot.h"
 #include "aspic/report_page.h"
@@ -36,16 +35,17 @@ constexpr std::array kQuantities = {Quantity{"potential_total", "potential energ
 
 bool is_done(const CaseResult& result) { return result.state == CaseState::done; }
 
-std::vector<Cell> case_cells(const StudyResults& study, size_t i) {
+// The case, then the given cells, then the values of the keys.
+std::vector<Cell> case_row(const StudyResults& study, size_t i, const std::vector<Cell>& more) {
   std::vector<Cell> cells = {{case_name(i)}};
+  cells.insert(cells.end(), more.begin(), more.end());
   for (const std::string& value : study.cases[i]) cells.push_back({value});
   return cells;
 }
 
-std::vector<std::string> header(const StudyResults& study, const std::vector<std::string>& more) {
-  std::vector<std::string> columns = {"case"};
+std::vector<std::string> header(const StudyResults& study, std::vector<std::string> columns) {
+  columns.insert(columns.begin(), "case");
   columns.insert(columns.end(), study.keys.begin(), study.keys.end());
-  columns.insert(columns.end(), more.begin(), more.end());
   return columns;
 }
 
@@ -69,9 +69,8 @@ void add_failures(ReportPage& page, const StudyResults& study) {
   for (const size_t i : order) {
     const CaseResult& result = study.results[i];
     const bool is_open = result.state == CaseState::running || result.state == CaseState::not_begun;
-    rows.push_back(case_cells(study, i));
-    rows.back().push_back({to_string(result.state), is_open ? Verdict::neutral : Verdict::fail});
-    rows.back().push_back({result.reason});
+    const Cell state{to_string(result.state), is_open ? Verdict::neutral : Verdict::fail};
+    rows.push_back(case_row(study, i, {state, {result.reason}}));
   }
   page.heading("Cases that are not done");
   add_table(page, header(study, {"status", "reason"}), std::move(rows));
@@ -97,28 +96,25 @@ AxisScale scale_of(const Numbers& values) {
   return *least > 0 && *most > kLogSpan * *least ? AxisScale::logarithmic : AxisScale::linear;
 }
 
-// If few values of one other key vary, each has its own series; otherwise all cases are points of one.
+// Of two keys, each value of the other one has its own series, if there are few. Otherwise all cases are points of one.
 std::vector<Series> series_of(const StudyResults& study, size_t key, const Numbers& x, const Numbers& y) {
-  std::map<std::string, Series> parts;
+  std::vector<std::pair<std::string, std::vector<Point2>>> parts;  // in the order of the cases
   size_t at = 0;
   for (size_t i = 0; i < study.cases.size(); ++i) {
     if (!is_done(study.results[i])) continue;
-    const bool is_pair = study.keys.size() == 2;
-    const std::string label = is_pair ? study.keys[1 - key] + " = " + study.cases[i][1 - key] : "";
-    Series& part = parts[label];
-    part.label = label;
-    part.x.push_back(x[at]);
-    part.y.push_back(y[at++]);
+    const std::string label = study.keys.size() == 2 ? study.keys[1 - key] + " = " + study.cases[i][1 - key] : "";
+    auto part = std::find_if(parts.begin(), parts.end(), [&](const auto& known) { return known.first == label; });
+    if (part == parts.end()) part = parts.insert(part, {label, {}});
+    part->second.push_back({x[at], y[at]});
+    ++at;
   }
-  if (parts.size() > kMaxSeries) return {{"", x, y, SeriesStyle::points}};
+  if (study.keys.size() > 2 || parts.size() > kMaxSeries || 2 * parts.size() > x.size())
+    return {{"", x, y, SeriesStyle::points}};
   std::vector<Series> series;
-  for (auto& [_, part] : parts) {
-    std::vector<size_t> order(part.x.size());
-    std::iota(order.begin(), order.end(), size_t{0});
-    std::sort(order.begin(), order.end(), [&](size_t a, size_t b) { return part.x[a] < part.x[b]; });
-    Series sorted{part.label, {}, {}, study.keys.size() <= 2 ? SeriesStyle::line_and_points : SeriesStyle::points};
-    for (const size_t i : order) sorted.x.push_back(part.x[i]), sorted.y.push_back(part.y[i]);
-    series.push_back(std::move(sorted));
+  for (auto& [label, points] : parts) {
+    std::sort(points.begin(), points.end());
+    Series& line = series.emplace_back(Series{label, {}, {}, SeriesStyle::line_and_points});
+    for (const Point2& point : points) line.x.push_back(point[0]), line.y.push_back(point[1]);
   }
   return series;
 }
@@ -147,10 +143,11 @@ void add_cases(ReportPage& page, const StudyResults& study) {
   std::vector<std::vector<Cell>> rows;
   for (size_t i = 0; i < study.cases.size(); ++i) {
     if (!is_done(study.results[i])) continue;
-    rows.push_back(case_cells(study, i));
+    std::vector<Cell> values;
     for (const char* column :
          {"time", "kinetic", "potential_total", "least_det_F", "iterations", "seconds", "state_hash"})
-      rows.back().push_back({study.results[i].value(column)});
+      values.push_back({study.results[i].value(column)});
+    rows.push_back(case_row(study, i, values));
   }
   if (rows.empty()) return;
   page.heading("Cases that are done");
