@@ -192,6 +192,19 @@ class Continued(Sweep):
         first.kill()
         first.communicate()
 
+    def test_processes_that_start_together_do_no_harm(self):
+        self.beam("beam.toml", 0.1, "3, 1, 1")
+        self.aspic(*self.LINE[:-2], "whole", "--continue")
+        for _ in range(10):
+            processes = [self.start(*self.LINE) for _ in range(3)]
+            for process in processes:
+                complaint = process.communicate(timeout=60)[1]
+                self.assertIn(process.returncode, (0, 2), complaint)
+                self.assertIn("is writing results" if process.returncode else "", complaint)
+            self.assertIn(0, [process.returncode for process in processes])
+            self.assert_same_folder("whole", "run", ignore=("timings.csv", "report.html"))
+            shutil.rmtree(self.folder / "run")
+
     def test_other_scenes_and_folders_are_refused(self):
         self.beam("beam.toml", 0.02)
         self.aspic(*self.LINE)

@@ -192,7 +192,7 @@ class StudyReader {
                                                               "sample from ranges)",
                                                               count, kMaxCases));
     for (Variation& v : variations_)
-      if (v.drawn) draw(*sample, v);
+      if (v.drawn && sample) draw(*sample, v);
     for (size_t i = 0; i < static_cast<size_t>(count); ++i) study_.cases.push_back(member(i, draws));
     for (size_t k = 0; k < variations_.size(); ++k) check_values(k);
   }
