@@ -268,7 +268,6 @@ std::string outcome(const Runner& runner, const Scene& scene, int unconverged) {
 
 int report_complete(const RunArguments& arguments, const fs::path& directory, int last_step) {
   const int unconverged = count_steps(directory, last_step).unconverged;
-  write_outcome(directory, unconverged > 0 ? kUnconverged : kDone);
   const std::string failures = unconverged > 0 ? fmt::format("; {} did not converge", unconverged) : "";
   if (!arguments.quiet)
     fmt::print(human_stream(arguments), "{}: all {} steps are computed{}\n", directory.string(), last_step, failures);

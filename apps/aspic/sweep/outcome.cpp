@@ -90,12 +90,11 @@ bool has_checkpoint(const fs::path& run) {
 }
 
 bool is_complete(const fs::path& run, const Scene& scene, int last_step) {
+  const std::string outcome = read_outcome(run);
+  if (outcome != kDone && outcome != kUnconverged) return false;
   const RunLayout layout(run);
   std::error_code error;
-  // The end of a run removes the previous checkpoint, then writes the report.
-  if (!fs::exists(layout.checkpoint(), error) || fs::exists(previous_checkpoint(layout.checkpoint()), error))
-    return false;
-  if (scene.output.report && !fs::exists(layout.report(), error)) return false;
+  if (!layout.holds_run() || !fs::exists(layout.checkpoint(), error)) return false;
   const Checkpoint checkpoint = read_checkpoint(layout.checkpoint());
   return checkpoint.fingerprint == fingerprint(scene.resolved) && checkpoint.integer("steps_taken") >= last_step &&
          count_steps(run, last_step).last == last_step;

@@ -30,7 +30,7 @@ struct StepCounts {
 // Counts the steps up to `last_step` in steps.csv. Throws InvalidInput.
 StepCounts count_steps(const std::filesystem::path& run, int last_step);
 bool has_checkpoint(const std::filesystem::path& run);
-// Whether the run has computed the steps of this scene and written all of its files.
+// Whether a process has computed the steps of this scene and written all files of the run, the outcome last.
 bool is_complete(const std::filesystem::path& run, const Scene& scene, int last_step);
 
 }  // namespace aspic::cli
