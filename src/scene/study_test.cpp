@@ -16,7 +16,6 @@ namespace {
 using testing::AllOf;
 using testing::ElementsAre;
 using testing::HasSubstr;
-using testing::StartsWith;
 
 // The first numbers of the published generator from state 0.
 TEST(StudyDraws, MatchSplitMix64) {
