@@ -35,6 +35,7 @@ void add_capture(CLI::App& app, Action& action);
 void add_lecture(CLI::App& app, Action& action);
 void add_modes(CLI::App& app, Action& action);
 void add_schema(CLI::App& app, Action& action);
+void add_sweep(CLI::App& app, Action& action);
 void add_verify(CLI::App& app, Action& action);
 void add_completion(CLI::App& app, Action& action);
 void add_viewer_commands(CLI::App& app, Action& action);  // view, report, render

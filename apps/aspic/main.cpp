@@ -142,6 +142,7 @@ int run_program(int argc, char** argv) {
   add_capture(app, action);
   add_modes(app, action);
   add_lecture(app, action);
+  add_sweep(app, action);
   add_schema(app, action);
   add_verify(app, action);
   add_viewer_commands(app, action);

@@ -3,7 +3,6 @@
 
 #include <CLI/CLI.hpp>
 #include <filesystem>
-#include <fstream>
 #include <optional>
 
 #include "aspic/commands.h"
@@ -13,14 +12,15 @@
 #include "aspic/run_report.h"
 #include "aspic/step_json.h"
 #include "aspic/summary.h"
+#include "aspic/sweep/outcome.h"
 #include "base/error.h"
 #include "base/parallel.h"
 #include "base/printable.h"
 #include "base/stop_token.h"
 #include "dynamics/state.h"
-#include "io/input_file.h"
 #include "scene/explanation.h"
 #include "scene/run_directory.h"
+#include "scene/run_directory_layout.h"
 #include "scene/scene.h"
 #include "scene/trace.h"
 
@@ -34,7 +34,8 @@ struct RunArguments {
   std::vector<std::string> overrides, landscapes;
   int threads = 0, steps = 0;  // 0: not given
   double time_limit = 0;       // [s]; 0: not given
-  bool force = false, resume = false, trace = false, quiet = false, json = false, allow_unconverged = false;
+  bool force = false, resume = false, continues = false, trace = false, quiet = false, json = false,
+       allow_unconverged = false;
 };
 
 constexpr int kWarningsShown = 5;
@@ -90,26 +91,14 @@ Scene load(const RunArguments& arguments) {
 }
 
 RunDirectory open_directory(const RunArguments& arguments, Scene& scene) {
-  if (arguments.resume) return RunDirectory::resume(directory_to_resume(arguments), scene);
-  const fs::path path = arguments.out.empty() ? fs::path("out") / scene.name : arguments.out;
+  if (arguments.resume || (arguments.continues && has_checkpoint(directory_to_resume(arguments))))
+    return RunDirectory::resume(directory_to_resume(arguments), scene);
+  const bool is_named = !arguments.out.empty() || arguments.continues;
+  const fs::path path = is_named ? directory_to_resume(arguments) : fs::path("out") / scene.name;
+  // Without a checkpoint nothing is lost.
+  const bool replaces = arguments.force || (arguments.continues && RunLayout(path).holds_run());
   if (scene.simulation.model().mesh.tet_count() >= kManyTets) announce(arguments, "writing the first frame");
-  return RunDirectory::create(path, scene, arguments.force ? ExistingRun::overwrite : ExistingRun::refuse);
-}
-
-// Number of unconverged steps before the resumption; the exit code covers the whole run.
-int unconverged_before(const fs::path& directory, int steps) {
-  std::ifstream file = open_input(directory / "steps.csv");
-  std::string line;
-  std::getline(file, line);  // step,time,status,...
-  int count = 0;
-  while (std::getline(file, line)) {
-    const int step = std::atoi(line.c_str());
-    if (step == 0) continue;
-    if (step > steps) break;
-    const auto has = [&](Status status) { return line.find(fmt::format(",{},", to_string(status))) != line.npos; };
-    if (!has(Status::converged) && !has(Status::round_off) && !has(Status::budget)) ++count;
-  }
-  return count;
+  return RunDirectory::create(path, scene, replaces ? ExistingRun::overwrite : ExistingRun::refuse);
 }
 
 // Simulates the steps of one run and notifies the observers.
@@ -250,7 +239,8 @@ void print_start(std::FILE* stream, const RunArguments& arguments, const Scene& 
   fmt::print(stream, "{}: {} vertices, {} tets; {}, {}; {} threads; into {}\n", scene.name,
              simulation.model().mesh.vertex_count(), simulation.model().mesh.tet_count(),
              simulation.options().integrator, simulation.solver_description(), thread_count(), directory.string());
-  if (arguments.resume) fmt::print(stream, "resuming after step {}\n", simulation.steps_taken());
+  if (arguments.resume || simulation.steps_taken() > 0)
+    fmt::print(stream, "resuming after step {}\n", simulation.steps_taken());
   std::fflush(stream);
 }
 
@@ -267,6 +257,23 @@ int exit_code(const RunArguments& arguments, bool has_run_out, int unconverged) 
   return exit_done;
 }
 
+std::string outcome(const Runner& runner, const Scene& scene, int unconverged) {
+  const int steps = scene.simulation.steps_taken();
+  if (runner.has_blown_up()) return fmt::format("{}: the explicit scheme blew up after step {}", kFailed, steps);
+  if (steps < runner.last_step())
+    return runner.has_run_out() ? fmt::format("{}: by the time limit", kStopped)
+                                : fmt::format("{}: by signal {}", kStopped, interrupt_signal());
+  return unconverged > 0 ? kUnconverged : kDone;
+}
+
+int report_complete(const RunArguments& arguments, const fs::path& directory, int last_step) {
+  const int unconverged = count_steps(directory, last_step).unconverged;
+  const std::string failures = unconverged > 0 ? fmt::format("; {} did not converge", unconverged) : "";
+  if (!arguments.quiet)
+    fmt::print(human_stream(arguments), "{}: all {} steps are computed{}\n", directory.string(), last_step, failures);
+  return exit_code(arguments, false, unconverged);
+}
+
 int run(const RunArguments& arguments) {
   const WallClock clock = steady_seconds;
   StopToken stop([] { return interrupt_signal() != 0; });
@@ -274,10 +281,14 @@ int run(const RunArguments& arguments) {
   if (arguments.threads > 0) set_thread_count(arguments.threads);
   landscapes(arguments);  // throws for bad input before anything is written
   Scene scene = load(arguments);
+  const int last_step = arguments.steps > 0 ? arguments.steps : scene.steps;
+  if (arguments.continues && is_complete(directory_to_resume(arguments), scene, last_step))
+    return report_complete(arguments, directory_to_resume(arguments), last_step);
   RunDirectory directory = open_directory(arguments, scene);
   catch_interrupts();  // from here on there are results to keep
+  if (arguments.continues) write_outcome(directory.path(), running_here());
 
-  const int earlier = unconverged_before(directory.path(), scene.simulation.steps_taken());
+  const int earlier = count_steps(directory.path(), scene.simulation.steps_taken()).unconverged;
 
   Runner runner(arguments, scene, directory, stop);
   if (!arguments.quiet) print_start(runner.human(), arguments, scene, directory.path());
@@ -297,6 +308,8 @@ int run(const RunArguments& arguments) {
                    .directory = directory.path()});
   }
   write_run_report(directory.path(), scene, arguments.quiet ? nullptr : runner.human());
+  if (arguments.continues)
+    write_outcome(directory.path(), outcome(runner, scene, earlier + runner.totals().unconverged));
   if (runner.has_blown_up()) return exit_unconverged;  // --allow-unconverged does not apply to an unfinished run
   return exit_code(arguments, runner.has_run_out(), earlier + runner.totals().unconverged);
 }
@@ -312,6 +325,7 @@ Examples:
   aspic run scenes/bunny.toml                     results in out/bunny
   aspic run beam.toml --set material.young=2e5 time.step=0.005 --out out/soft
   aspic run beam.toml --resume                    continue an interrupted run, bit-reproducibly
+  aspic run beam.toml --out out/a --continue      begin, resume, or do nothing if all steps are computed
   aspic run beam.toml --time-limit 3600           at most an hour; --resume continues
   aspic run beam.toml --json | jq .iterations     one line of JSON per step
   aspic run beam.toml --landscape 12:0            the first iteration of step 12 in detail
@@ -333,6 +347,11 @@ solver.time_budget ended it) or an explicit scheme blew up, which ends the run;
   command->add_option("--out", arguments->out, "Directory for the results; out/NAME by default");
   command->add_flag("--force", arguments->force, "Replace the results of an earlier run");
   command->add_flag("--resume", arguments->resume, "Continue the run in the directory")->excludes("--force");
+  command
+      ->add_flag("--continue", arguments->continues,
+                 "Begin the run, resume it, or do nothing if all steps are computed; refuses another scene")
+      ->excludes("--force")
+      ->excludes("--resume");
   command->add_flag("--trace", arguments->trace,
                     "Write every trial of every iteration to DIRECTORY/trace; changes no result");
   command
@@ -343,7 +362,12 @@ solver.time_budget ended it) or an explicit scheme blew up, which ends the run;
   command->add_flag("--quiet", arguments->quiet, "Print only warnings and errors");
   command->add_flag("--json", arguments->json, "Print one line of JSON per step on stdout, all else on stderr");
   command->add_flag("--allow-unconverged", arguments->allow_unconverged, "Exit with 0 even if a step did not converge");
-  command->callback([arguments, &action] { action = [arguments] { return run(*arguments); }; });
+  command->callback([arguments, &action] {
+    action = [arguments] {
+      if (!arguments->continues) return run(*arguments);
+      return recorded(directory_to_resume(*arguments), [&] { return run(*arguments); });
+    };
+  });
 }
 
 }  // namespace aspic::cli

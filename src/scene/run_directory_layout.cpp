@@ -74,9 +74,10 @@ std::vector<fs::path> trace_folders(const fs::path& root) {
 bool is_name_of_run(const fs::path& file) {
   const std::string name = file.filename().string();
   const RunLayout layout("");
-  for (const fs::path& known : {layout.scene(), layout.steps(), layout.iterations(), layout.timings(),
-                                layout.checkpoint(), previous_checkpoint(layout.checkpoint()), layout.index(),
-                                layout.usd(), layout.report(), layout.frames(), layout.skins(), layout.obstacles()})
+  for (const fs::path& known :
+       {layout.scene(), layout.steps(), layout.iterations(), layout.timings(), layout.checkpoint(),
+        previous_checkpoint(layout.checkpoint()), layout.index(), layout.usd(), layout.report(), layout.outcome(),
+        layout.frames(), layout.skins(), layout.obstacles()})
     if (name == known.filename()) return true;
   return name.starts_with("trace") || is_unfinished(file);
 }
@@ -140,7 +141,8 @@ void RunLayout::refuse_links() const {
 bool RunLayout::is_barely_begun() const {
   std::error_code error;
   for (fs::directory_iterator entry(root_, error), end; !error && entry != end; entry.increment(error))
-    if (fs::is_directory(entry->symlink_status()) ? !fs::is_empty(entry->path(), error) : !is_unfinished(entry->path()))
+    if (fs::is_directory(entry->symlink_status()) ? !fs::is_empty(entry->path(), error)
+                                                  : !is_unfinished(entry->path()) && entry->path() != outcome())
       return false;
   return !error;
 }
@@ -148,7 +150,7 @@ bool RunLayout::is_barely_begun() const {
 void RunLayout::remove_run(const std::vector<fs::path>& needed) const {
   remove_unfinished();
   // First files that allow resuming, and indices.
-  std::vector<fs::path> files = {checkpoint(), previous_checkpoint(checkpoint()), index(), usd(), report()};
+  std::vector<fs::path> files = {checkpoint(), previous_checkpoint(checkpoint()), index(), usd(), report(), outcome()};
   for (const fs::path& file : named_inputs(root_, scene())) files.push_back(file);
   for (const fs::path& file : files_in(frames(), [](const fs::path& f) { return frame_number(f).has_value(); })) {
     files.push_back(file);

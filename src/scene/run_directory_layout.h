@@ -19,6 +19,7 @@ class RunLayout {
   std::filesystem::path index() const { return root_ / "run.pvd"; }
   std::filesystem::path usd() const { return root_ / "run.usda"; }
   std::filesystem::path report() const { return root_ / "report.html"; }
+  std::filesystem::path outcome() const { return root_ / "outcome.txt"; }  // of aspic run --continue
   std::filesystem::path frames() const { return root_ / "frames"; }
   std::filesystem::path skins() const { return root_ / "skins"; }
   std::filesystem::path obstacles() const { return root_ / "obstacles"; }
@@ -34,7 +35,7 @@ class RunLayout {
   std::filesystem::path skin_cache(const std::string& skin) const { return skins() / ("skin_" + skin + ".pc2"); }
 
   bool holds_run() const;        // contains a steps.csv with the header of runs
-  bool is_barely_begun() const;  // contains only unfinished files of a run that was killed
+  bool is_barely_begun() const;  // contains at most an outcome and unfinished files of a run that was killed
   // Throws InvalidInput if a file or folder that a run writes is a link, whose target does not belong to the run.
   void refuse_links() const;
   // Removes every file of the run, also inputs, except those in `needed`.

@@ -10,16 +10,12 @@
 #include <sstream>
 #include <string>
 
-#include "base/error.h"
-
 namespace aspic {
 namespace {
 
 // Returns the process that holds the lock, from a line of /proc/locks:
 //   1: FLOCK  ADVISORY  WRITE 4711 08:01:131 0 EOF
-std::string holder_of(int descriptor) {
-  struct stat info {};
-  if (::fstat(descriptor, &info) != 0) return "another process";
+std::string holder_of(const struct stat& info) {
   std::ifstream locks("/proc/locks");
   for (std::string line; std::getline(locks, line);) {
     std::istringstream words(line);
@@ -27,18 +23,23 @@ std::string holder_of(int descriptor) {
     words >> number >> kind >> mode >> access >> process >> file;
     if (kind == "FLOCK" && file.substr(file.rfind(':') + 1) == std::to_string(info.st_ino)) return "process " + process;
   }
-  return "another process";
+  return "";
 }
 
 }  // namespace
 
+std::string RunLock::holder(const std::filesystem::path& folder) {
+  struct stat info {};
+  return ::stat(folder.c_str(), &info) == 0 ? holder_of(info) : "";
+}
+
 RunLock::RunLock(const std::filesystem::path& folder)
     : descriptor_(::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC)) {
   if (descriptor_ < 0 || ::flock(descriptor_, LOCK_EX | LOCK_NB) == 0 || errno != EWOULDBLOCK) return;
-  const std::string holder = holder_of(descriptor_);
   ::close(descriptor_);
-  throw InvalidInput(folder.string() + ": " + holder +
-                     " is writing results into it; wait for its end, stop it, or choose another directory with --out");
+  const std::string process = holder(folder);
+  throw FolderInUse(folder.string() + ": " + (process.empty() ? "another process" : process) +
+                    " is writing results into it; wait for its end, stop it, or choose another directory with --out");
 }
 
 RunLock::~RunLock() {

@@ -97,15 +97,6 @@ std::string remedy_in_scene(BadInitialState::Kind kind) {
   return "";
 }
 
-int steps_of(const Value& time) {
-  // Rounded quotient: 2 / 0.01 must not become 201 steps.
-  const double steps = std::ceil(time["duration"].number() / time["step"].number() - 1e-6);
-  if (steps > 1e9)
-    throw error_at(time["duration"].place, "duration = " + number_text(time["duration"].number()) + " needs " +
-                                               number_text(steps) + " steps; choose a longer step");
-  return static_cast<int>(std::max(steps, 0.0));
-}
-
 class SceneBuilder {
  public:
   SceneBuilder(SceneSource source, SceneFiles files, const SceneOptions& options)
@@ -285,6 +276,15 @@ class SceneBuilder {
 };
 
 }  // namespace
+
+int steps_of(const Value& time) {
+  // Rounded quotient: 2 / 0.01 must not become 201 steps.
+  const double steps = std::ceil(time["duration"].number() / time["step"].number() - 1e-6);
+  if (steps > 1e9)
+    throw error_at(time["duration"].place, "duration = " + number_text(time["duration"].number()) + " needs " +
+                                               number_text(steps) + " steps; choose a longer step");
+  return static_cast<int>(std::max(steps, 0.0));
+}
 
 SceneModel build_scene_model(SceneSource source, SceneFiles files, const SceneOptions& options) {
   return SceneBuilder(std::move(source), std::move(files), options).build_model();

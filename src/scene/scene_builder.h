@@ -22,5 +22,7 @@ struct SceneSource {
 // Both throw InvalidInput.
 SceneModel build_scene_model(SceneSource source, SceneFiles files, const SceneOptions& options);
 Scene build_scene(SceneSource source, SceneFiles files, const SceneOptions& options);
+// Returns the number of steps, from the checked table `time` of a scene.
+int steps_of(const Value& time);
 
 }  // namespace aspic
