@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <stdexcept>
 
 #include "base/error.h"
 #include "distributed/petsc_solver.h"
@@ -39,6 +40,14 @@ Simulation::Snapshot scatter(const Simulation::Snapshot& whole, const MeshShare&
   return local;
 }
 
+// Iterative solves depend on the number of ranks. At small tolerances they are accurate enough that Newton counts do
+// not.
+SimulationOptions with_accurate_solves(SimulationOptions options) {
+  MinimizeOptions& minimize = options.solver.minimize;
+  minimize.max_forcing = std::min(minimize.max_forcing, std::max(1e-6, 1e4 * minimize.tolerance));
+  return options;
+}
+
 MeshShare share_of_this_rank(const Model& model) {
   const int ranks = rank_count(), vertices = model.mesh.vertex_count();
   if (vertices < ranks)
@@ -57,7 +66,7 @@ DistributedSimulation::DistributedSimulation(const WholeProblem& whole, const Si
       whole_tets_(whole.model.mesh.tet_count()) {
   const Simulation::Snapshot local = scatter(start, share_);
   simulation_ = std::make_unique<Simulation>(share_model(whole.model, whole.materials, share_, *ranks_), local.start,
-                                             whole.options);
+                                             with_accurate_solves(whole.options));
   simulation_->restore(local);
   make_solver(whole.options.solver);
 }
@@ -79,6 +88,7 @@ void DistributedSimulation::make_solver(const SolverOptions& options) {
 StepReport DistributedSimulation::step(const IterationObserver& observe) {
   if (petsc_) petsc_->set_positions(simulation_->state().q);
   StepReport report = simulation_->step(observe);
+  if (!has_equal_ghosts()) throw std::runtime_error("copies of vertices differ between ranks");
   report.elements = whole_tets_;
   return report;
 }

@@ -26,19 +26,17 @@ class DistributedSimulation {
   DistributedSimulation(const WholeProblem& whole, const Simulation::Snapshot& start);
   ~DistributedSimulation();
 
-  // Advances by one time step. The report is that of the whole model, but for the hash of the state.
+  // Advances by one time step. The report is that of the whole model, except for the hash of the state. Throws
+  // std::runtime_error on all ranks if copies of vertices differ, which would be a defect of this program.
   StepReport step(const IterationObserver& observe = {});
   // Returns the snapshot of the whole model on rank 0; an empty one on other ranks.
   Simulation::Snapshot gather() const;
 
   int steps_taken() const { return simulation_->steps_taken(); }
   std::string solver_description() const { return simulation_->solver_description(); }
-  const MeshShare& share() const { return share_; }
-  const Simulation& simulation() const { return *simulation_; }  // of the local vertices
-  // Returns whether the ghosts of all ranks have the bits of their owners.
-  bool has_equal_ghosts() const;
 
  private:
+  bool has_equal_ghosts() const;  // whether the ghosts of all ranks have the bits of their owners
   void make_solver(const SolverOptions& options);
 
   MeshShare share_;

@@ -1,4 +1,4 @@
-// Parts of a model whose forces differ so much that each needs a convergence test of its own.
+// Parts of a model that need convergence tests of their own, because their forces have different orders of magnitude.
 #pragma once
 #include <span>
 #include <vector>
