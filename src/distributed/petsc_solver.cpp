@@ -41,6 +41,8 @@ constexpr const char* kOptions[][2] = {
     {"-mg_coarse_sub_pc_type", "lu"},
 };
 
+constexpr double kTolerable = 1.5;  // growth of the iterations per digit with a preconditioner of an earlier matrix
+
 void set_options() {
   for (const auto& [name, value] : kOptions) check(PetscOptionsSetValue(nullptr, name, value));
   // PETSc's own product of several ranks adds in the order of arrival, so that results differ from run to run.
@@ -67,6 +69,8 @@ PetscSession::~PetscSession() { PetscFinalize(); }
 struct PetscSolver::Objects {
   RowsOfRank rows;
   bool is_new = true;  // no matrix of this sequence yet
+  // Iterations per digit of the first and the last solve with this preconditioner; 0: none.
+  double first_rate = 0, rate = 0;
   Mat A = nullptr;
   KSP ksp = nullptr;
   Vec x = nullptr, b = nullptr;
@@ -81,8 +85,14 @@ struct PetscSolver::Objects {
     VecDestroy(&x);
     VecDestroy(&b);
   }
+  // A failed solve renews the preconditioner.
+  void note_rate(const SolveReport& report) {
+    rate = report.ok ? report.iterations / std::max(1e-3, -std::log10(report.relative_residual)) : 0;
+    if (first_rate == 0) first_rate = rate;
+  }
   void make(const MeshShare& mesh, std::span<const double> positions) {
     clear();
+    first_rate = rate = 0;
     A = rows.make_matrix();
     check(MatCreateVecs(A, &x, &b));
     set_rigid_motions(mesh, positions, x, A);
@@ -109,6 +119,9 @@ void PetscSolver::begin() { petsc_->is_new = true; }
 bool PetscSolver::factorize(const BlockSparse& H) {
   if (std::exchange(petsc_->is_new, false)) petsc_->make(mesh_, x_);
   petsc_->rows.fill(H, petsc_->A);
+  const bool is_kept = petsc_->rate > 0 && petsc_->rate <= kTolerable * petsc_->first_rate;
+  if (!is_kept) petsc_->first_rate = petsc_->rate = 0;
+  check(KSPSetReusePreconditioner(petsc_->ksp, is_kept ? PETSC_TRUE : PETSC_FALSE));
   check(KSPSetOperators(petsc_->ksp, petsc_->A, petsc_->A));
   const PetscErrorCode error = KSPSetUp(petsc_->ksp);
   if (share_.max(error == PETSC_ERR_MEM) > 0) check(PETSC_ERR_MEM);
@@ -142,6 +155,7 @@ SolveReport PetscSolver::solve(std::span<const double> b, std::span<double> x, d
   report.indefinite = result[1] > 0;
   report.relative_residual = result[2];
   report.iterations = report.products = report.cycles = iterations;
+  petsc_->note_rate(report);
   return report;
 }
 

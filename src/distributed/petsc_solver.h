@@ -19,8 +19,9 @@ class PetscSession {
 };
 
 // The matrix and the hierarchy are made for the first matrix of a sequence, with the rigid motions of the positions
-// that set_positions() has set; later matrices of the sequence keep the prolongators. Each sequence starts from
-// nothing, so that it does not depend on earlier ones. Requires a PetscSession.
+// that set_positions() has set. Later matrices of the sequence keep the preconditioner, or its prolongators alone if
+// the iterations grow. Each sequence starts from nothing, so that it does not depend on earlier ones. Requires a
+// PetscSession.
 class PetscSolver : public LinearSolver {
  public:
   // All must outlive this.

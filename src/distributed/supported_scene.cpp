@@ -11,10 +11,10 @@ InvalidInput not_supported(const Place& place, const std::string& what, const st
   return error_at(place, what + " is not supported by aspic-mpi; " + remedy);
 }
 
-// Refuses keys of a table that the user has given.
+// Refuses keys that have no default.
 void refuse_keys(const Table& table, std::initializer_list<const char*> keys) {
   for (const Member& member : table.members)
-    if (member.place.source && std::find(keys.begin(), keys.end(), member.key) != keys.end())
+    if (std::find(keys.begin(), keys.end(), member.key) != keys.end())
       throw not_supported(member.place, member.key, "remove it, or use aspic run");
 }
 
@@ -56,11 +56,14 @@ void require_constant_loads(const Value& body, const char* loads, std::initializ
 }
 
 void require_supported_body(const Value& body) {
-  refuse_keys(body.table(), {"damping", "friction", "viscoelastic", "fibre", "muscle", "spring", "grab", "pressure"});
+  refuse_keys(body.table(), {"friction", "viscoelastic", "fibre", "muscle", "spring", "grab", "pressure"});
+  for (const Member& member : body["damping"].table().members)
+    if (!member.value.is_number() || member.value.number() != 0)
+      throw not_supported(member.value.place, "damping." + member.key, "remove it, or use aspic run");
   require_number(body, "order", 1);
   if (const Value& elastic = body["elastic"]; !elastic.boolean())
     throw not_supported(elastic.place, "elastic = false", "use aspic run");
-  refuse_keys(body["material"].table(), {"file", "frame", "hash"});
+  refuse_keys(body["material"].table(), {"file"});
   require_constant_loads(body, "traction", {"value", "dead_pressure"});
   require_constant_loads(body, "force", {"value"});
 }
