@@ -46,10 +46,12 @@ Recorder open(const RunArguments& arguments) {
     const std::string directory = arguments.out.empty() ? arguments.input : arguments.out;
     if (!fs::is_directory(directory)) throw InvalidInput(directory + ": no run to resume; start it without --resume");
     Scene scene = load_scene(scene_of_run(directory), options);
+    distributed::require_vertex_per_rank(scene.simulation.model().mesh);
     RunDirectory opened = RunDirectory::resume(directory, scene);
     return {std::move(scene), std::move(opened)};
   }
   Scene scene = load_scene(arguments.input, options);
+  distributed::require_vertex_per_rank(scene.simulation.model().mesh);
   const std::string path = arguments.out.empty() ? (fs::path("out") / scene.name).string() : arguments.out;
   RunDirectory created =
       RunDirectory::create(path, scene, arguments.force ? ExistingRun::overwrite : ExistingRun::refuse);

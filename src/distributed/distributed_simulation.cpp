@@ -48,18 +48,16 @@ SimulationOptions with_accurate_solves(SimulationOptions options) {
   return options;
 }
 
-MeshShare share_of_this_rank(const Model& model) {
-  const int ranks = rank_count(), vertices = model.mesh.vertex_count();
-  if (vertices < ranks)
-    throw InvalidInput("the scene has " + std::to_string(vertices) + " vertices for " + std::to_string(ranks) +
-                       " ranks; use fewer");
-  return make_mesh_share(model.mesh, model.bodies, rank_of_this_process(), ranks);
-}
-
 }  // namespace
 
+void require_vertex_per_rank(const TetMesh& mesh) {
+  if (mesh.vertex_count() < rank_count())
+    throw InvalidInput("the scene has " + std::to_string(mesh.vertex_count()) + " vertices for " +
+                       std::to_string(rank_count()) + " ranks; use fewer ranks");
+}
+
 DistributedSimulation::DistributedSimulation(const WholeProblem& whole, const Simulation::Snapshot& start)
-    : share_(share_of_this_rank(whole.model)),
+    : share_(make_mesh_share(whole.model.mesh, whole.model.bodies, rank_of_this_process(), rank_count())),
       ranks_(std::make_unique<MpiRanks>(whole.model.mesh, share_)),
       of_model_(*ranks_, share_.first(), share_.own()),
       halo_(std::make_unique<Halo>(share_)),

@@ -19,10 +19,13 @@ struct WholeProblem {
   SimulationOptions options;
 };
 
+// Throws InvalidInput if there are more ranks than vertices. Not collective.
+void require_vertex_per_rank(const TetMesh& mesh);
+
 class DistributedSimulation {
  public:
-  // `start`: on rank 0 the snapshot from which the simulation continues; ignored on other ranks. Throws InvalidInput on
-  // all ranks if there are more ranks than vertices.
+  // `start`: on rank 0 the snapshot from which the simulation continues; ignored on other ranks. Requires a vertex per
+  // rank.
   DistributedSimulation(const WholeProblem& whole, const Simulation::Snapshot& start);
   ~DistributedSimulation();
 

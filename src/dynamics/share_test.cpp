@@ -7,16 +7,20 @@ namespace {
 
 using testing::ElementsAre;
 
-// Three processes whose values are v, v + 1 and v + 2 for each value v of this one.
-class ThreeRanks : public Ranks {
+// The values of the processes are multiples of those of the first one.
+class MultipleRanks : public Ranks {
  public:
+  explicit MultipleRanks(std::vector<double> factors) : factors_(std::move(factors)) {}
   std::vector<double> gather(std::span<const double> own) const override {
     std::vector<double> all;
-    for (int rank = 0; rank < 3; ++rank)
-      for (const double v : own) all.push_back(v + rank);
+    for (const double factor : factors_)
+      for (const double v : own) all.push_back(factor * v);
     return all;
   }
   std::vector<int> parts(std::span<const double>) const override { return {}; }
+
+ private:
+  std::vector<double> factors_;
 };
 
 TEST(Share, WholeModelReturnsItsArguments) {
@@ -35,7 +39,7 @@ TEST(Share, WholeModelReturnsItsArguments) {
 }
 
 TEST(Share, CombinesTheValuesOfAllProcesses) {
-  const ThreeRanks ranks;
+  const MultipleRanks ranks({1, 2, 3});
   const Share share(ranks, 10, 4);
   EXPECT_EQ(share.own(7), 4);
   EXPECT_EQ(share.in_whole(2), 12);
@@ -46,22 +50,21 @@ TEST(Share, CombinesTheValuesOfAllProcesses) {
   EXPECT_FALSE(share.all(false));
   std::vector<double> values = {1, 5};
   share.sum(values);
-  EXPECT_THAT(values, ElementsAre(6, 18));
+  EXPECT_THAT(values, ElementsAre(6, 30));
 }
 
 TEST(Share, SumsInTheOrderOfTheProcesses) {
-  const ThreeRanks ranks;
-  const double tiny = 1e-17;  // is lost in every sum with a number near 1
-  EXPECT_EQ(Share(ranks, 0, 1).sum(tiny), tiny + (1 + tiny) + (2 + tiny));
+  EXPECT_EQ(Share(MultipleRanks({1, 1e17, -1e17}), 0, 1).sum(1), 0);
+  EXPECT_EQ(Share(MultipleRanks({1e17, -1e17, 1}), 0, 1).sum(1), 1);
 }
 
 TEST(Share, LargestValueHasItsVertexInTheWholeModel) {
-  const ThreeRanks ranks;
+  const MultipleRanks ranks({1, 3, 2});
   double value = 1;
   int vertex = 2;
   Share(ranks, 10, 4).find_largest(value, vertex);
   EXPECT_EQ(value, 3);
-  EXPECT_EQ(vertex, 14);
+  EXPECT_EQ(vertex, 36);  // three times 10 + 2
 }
 
 }  // namespace
