@@ -10,6 +10,7 @@
 #include <string>
 #include <utility>
 
+#include "distributed/mpi_ranks.h"
 #include "distributed/petsc_matrix.h"
 #include "distributed/rank_cg.h"
 
