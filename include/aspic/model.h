@@ -2,4 +2,5 @@
 #pragma once
 #include "dynamics/model.h"
 #include "dynamics/model_builder.h"
+#include "dynamics/share.h"
 #include "dynamics/state.h"

@@ -3,12 +3,11 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <map>
 
 #include "base/check.h"
 #include "base/parallel.h"
 #include "contact/barrier.h"
-#include "mesh/components.h"
+#include "dynamics/stiffness_parts.h"
 #include "mesh/tet_nodes.h"
 #include "mesh/tet_shape.h"
 
@@ -20,11 +19,6 @@ constexpr double kEpsilon = std::numeric_limits<double>::epsilon();
 // Strain that defines the smallest characteristic force, for bodies at rest. Far above round-off and far below the
 // default tolerance.
 constexpr double kMinStrain = 1e-9;
-
-// Regions of one body are tested separately if their moduli times edge lengths differ by more than this factor. At the
-// default tolerance of 1e-6, a region that is softer by less is resolved to 1e-4 of its own forces, and one whose tets
-// are smaller by less to 1e-2, because forces grow with areas.
-constexpr double kSoft = 100;
 
 BlockPattern pattern_of(const Model& model) {
   Couplings couplings;
@@ -66,60 +60,15 @@ std::vector<double> unit_stiffness(const TetMesh& mesh) {
   return stiffness;
 }
 
-// Returns the longest edge of the linear tets at each vertex [m]. Unlike the volume, it does not underestimate slivers.
-std::vector<double> longest_edge(const TetMesh& mesh) {
-  std::vector<double> longest(mesh.vertex_count(), 0.0);
-  for (const Tet& tet : mesh.tets) {
-    double square = 0;
-    for (int a = 0; a < 4; ++a)
-      for (int b = 0; b < a; ++b) square = std::max(square, squared_norm(mesh.rest[tet[a]] - mesh.rest[tet[b]]));
-    for (const int v : tet) longest[v] = std::max(longest[v], std::sqrt(square));
-  }
-  return longest;
-}
-
-// Gives all nodes of a quadratic tet the stiffness of its stiffest: changes of volume are felt by the mid-edge nodes
-// alone.
-void share_in_quadratic_tets(const TetMesh& mesh, std::vector<double>& stiffness) {
-  const std::vector<double> own = stiffness;
-  for (int t = 0; t < mesh.tet_count(); ++t) {
-    if (!is_quadratic(mesh, t)) continue;
-    double largest = 0;
-    for (const int v : nodes_of(mesh, t)) largest = std::max(largest, own[v]);
-    for (const int v : nodes_of(mesh, t)) stiffness[v] = std::max(stiffness[v], largest);
-  }
-}
-
-// Returns the part of each vertex, numbered in the order of their first vertices. Vertices of one part are connected by
-// tets or belong to one body, and their stiffnesses (modulus times edge) are within a factor kSoft of each other: those
-// of the stiffest vertex, or kSoft times less, or kSoft^2 times less, ...
-std::vector<int> parts_of(const TetMesh& mesh, std::span<const double> modulus) {
-  std::vector<double> stiffness = longest_edge(linear_parts(mesh).mesh);
-  for (int v = 0; v < mesh.vertex_count(); ++v) stiffness[v] *= modulus[v];
-  share_in_quadratic_tets(mesh, stiffness);
-  const std::vector<std::vector<int>> components = tet_components(mesh);
-  std::vector<int> component(mesh.vertex_count(), 0);
-  std::vector<double> stiffest(components.size() + 1, 0.0);
-  for (size_t c = 0; c < components.size(); ++c)
-    for (const int t : components[c])
-      for (const int v : nodes_of(mesh, t)) component[v] = static_cast<int>(c);
-  for (int v = 0; v < mesh.vertex_count(); ++v)
-    if (std::isfinite(stiffness[v])) stiffest[component[v]] = std::max(stiffest[component[v]], stiffness[v]);
-  std::map<std::pair<int, int>, int> number;
-  std::vector<int> part(mesh.vertex_count());
-  for (int v = 0; v < mesh.vertex_count(); ++v) {
-    constexpr int kSoftest = 20;
-    const double softer = std::log(stiffest[component[v]] / stiffness[v]) / std::log(kSoft);
-    const int level = softer > 0 ? static_cast<int>(std::min<double>(softer, kSoftest)) : 0;
-    part[v] = number.try_emplace({component[v], level}, static_cast<int>(number.size())).first->second;
-  }
-  return part;
-}
-
 }  // namespace
 
 IncrementalPotential::IncrementalPotential(const Model& model, const Pins& pins)
-    : model_(model), pins_(pins), internal_(model), pattern_(pattern_of(model)), H_(pattern_) {
+    : model_(model),
+      pins_(pins),
+      own_(model.share.own(model.mesh.vertex_count())),
+      internal_(model),
+      pattern_(pattern_of(model)),
+      H_(pattern_) {
   model.mass->bind(pattern_);
   const auto add = [this](Energy& term, std::vector<ActiveTerm>& terms) {
     term.bind(pattern_);
@@ -179,10 +128,15 @@ bool IncrementalPotential::relax_lagged() {
   return is_relaxed;
 }
 
+double IncrementalPotential::squared_distance_to_prediction(std::span<const double> q) const {
+  if (model_.share.is_whole()) return model_.mass->squared_distance(q, predicted_);
+  return model_.share.sum(model_.mass->squared_distance(q, predicted_, own_));
+}
+
 Evaluation IncrementalPotential::evaluate(std::span<const double> q) {
   double E = 0, magnitude = factor_ * growth_stiffness_;
   const auto add = [&](double term) { E += term, magnitude += std::abs(term); };
-  if (inertia_ != 0) add(0.5 * inertia_ * model_.mass->squared_distance(q, predicted_));
+  if (inertia_ != 0) add(0.5 * inertia_ * squared_distance_to_prediction(q));
   for (size_t k = 0; k < potential_.size(); ++k) add(factor_ * (last_.values[k] = potential_[k].value(q)));
   for (const ActiveTerm& D : damping_) add(factor_ * D.value(q));
   return {E, kEpsilon * magnitude};
@@ -218,14 +172,18 @@ void IncrementalPotential::note_iterate(std::span<const double> q) {
   std::swap(last_, of_iterate_);
 }
 
+bool IncrementalPotential::is_iterate(std::span<const double> q) const {
+  return model_.share.all(std::equal(q.begin(), q.end(), iterate_.begin(), iterate_.end()));
+}
+
 std::span<const double> IncrementalPotential::known_values(std::span<const double> q) const {
-  if (!std::equal(q.begin(), q.end(), iterate_.begin(), iterate_.end())) return {};
+  if (!is_iterate(q)) return {};
   return of_iterate_.values;
 }
 
 bool IncrementalPotential::add_known_forces(std::span<const double> q, double weight, std::span<double> gradient,
                                             std::span<double> damping) const {
-  if (!std::equal(q.begin(), q.end(), iterate_.begin(), iterate_.end())) return false;
+  if (!is_iterate(q)) return false;
   const double scale = weight / factor_;
   for (size_t i = 0; i < gradient.size(); ++i) gradient[i] += scale * of_iterate_.gradient[i];
   for (size_t i = 0; i < of_iterate_.damping.size(); ++i) damping[i] += scale * of_iterate_.damping[i];
@@ -257,7 +215,7 @@ void IncrementalPotential::note_newton_step(std::span<const double> q, std::span
 
 // Positions have rounding errors of eps |q|, so forces have errors of eps |q| times the stiffness at a vertex.
 double IncrementalPotential::gradient_round_off_at(std::span<const double> q) {
-  const double stiffness = parallel_sum(pattern_.rows(), [&](int first, int last) {
+  const double stiffness = parallel_sum(own_, [&](int first, int last) {
     double sum = 0, size = 0;
     for (int i = first; i < last; ++i) {
       for (int r = 0; r < 3; ++r) size = std::max(size, std::abs(q[3 * i + r]));
@@ -268,18 +226,25 @@ double IncrementalPotential::gradient_round_off_at(std::span<const double> q) {
   });
   for (Part& part : parts_) part.sum = part.largest = 0;
   if (!parts_.empty())
-    for (int i = 0; i < pattern_.rows(); ++i) {
+    for (int i = 0; i < own_; ++i) {
       Part& part = parts_[part_of_[i]];
       for (int r = 0; r < 3; ++r) part.largest = std::max(part.largest, std::abs(q[3 * i + r]));
       if (!pins_.holds(i)) part.sum += squared_norm(H_.block[pattern_.diagonal(i)]);
     }
-  for (Part& part : parts_) part.round_off = kEpsilon * part.largest * std::sqrt(part.sum);
-  return kEpsilon * *std::max_element(largest_.begin(), largest_.end()) * std::sqrt(stiffness);
+  sum_parts();
+  for (Part& part : parts_) part.round_off = kEpsilon * model_.share.max(part.largest) * std::sqrt(part.sum);
+  const double size = model_.share.max(*std::max_element(largest_.begin(), largest_.end()));
+  return kEpsilon * size * std::sqrt(model_.share.sum(stiffness));
+}
+
+double IncrementalPotential::largest_position(std::span<const double> q) const {
+  double size = 0;
+  for (const double qi : q) size = std::max(size, std::abs(qi));
+  return model_.share.max(size);
 }
 
 double IncrementalPotential::total_gradient_round_off(std::span<const double> q) const {
-  double size = 0;
-  for (const double qi : q) size = std::max(size, std::abs(qi));
+  const double size = largest_position(q);
   const double at_rest = kEpsilon * size * std::hypot(inertia_ * mass_norm_, factor_ * rest_stiffness_);
   return std::max(gradient_round_off_, at_rest) + kEpsilon * gradient_scale_;
 }
@@ -290,8 +255,7 @@ void IncrementalPotential::add_part_round_off(std::span<const double> q, double 
     round_offs[0] += weight * (total_gradient_round_off(q) / factor_);
     return;
   }
-  double size = 0;
-  for (const double qi : q) size = std::max(size, std::abs(qi));
+  const double size = largest_position(q);
   for (size_t k = 0; k < parts_.size(); ++k) {
     const Part& part = parts_[k];
     const double at_rest = kEpsilon * size * std::hypot(inertia_ * part.mass_norm, factor_ * part.rest_stiffness);
@@ -303,7 +267,8 @@ void IncrementalPotential::add_part_round_off(std::span<const double> q, double 
 void IncrementalPotential::add_part_norms(std::span<const double> v, bool is_exact) {
   if (parts_.empty()) return;
   for (Part& part : parts_) part.sum = 0;
-  for (int i = 0; i < pattern_.rows(); ++i) parts_[part_of_[i]].sum += squared_norm(pins_.free_part(i, point(v, i)));
+  for (int i = 0; i < own_; ++i) parts_[part_of_[i]].sum += squared_norm(pins_.free_part(i, point(v, i)));
+  sum_parts();
   for (Part& part : parts_) {
     part.scale += std::sqrt(part.sum);
     if (is_exact) part.exact += std::sqrt(part.sum);
@@ -313,14 +278,15 @@ void IncrementalPotential::add_part_norms(std::span<const double> v, bool is_exa
 void IncrementalPotential::measure_parts(std::span<const double> g, std::span<GradientPart> parts) {
   if (parts_.empty()) return whole_.measure_parts(g, parts);
   for (Part& part : parts_) part.sum = 0;
-  for (int i = 0; i < pattern_.rows(); ++i) parts_[part_of_[i]].sum += squared_norm(point(g, i));
+  for (int i = 0; i < own_; ++i) parts_[part_of_[i]].sum += squared_norm(point(g, i));
+  sum_parts();
   for (size_t k = 0; k < parts_.size(); ++k) parts[k] = {std::sqrt(parts_[k].sum), parts_[k].scale};
 }
 
 double IncrementalPotential::lost_accuracy(std::span<const double> q, std::span<const GradientPart> parts) {
   constexpr double kPositionRoundOff = 16 * kEpsilon;  // rounding error of inertia, from positions
-  double size = 0, lost = 0;
-  for (const double qi : q) size = std::max(size, std::abs(qi));
+  double lost = 0;
+  const double size = largest_position(q);
   for (size_t k = 0; k < parts.size(); ++k) {
     const double exact = parts_.empty() ? exact_scale_ : parts_[k].exact;
     const double mass = parts_.empty() ? mass_norm_ : parts_[k].mass_norm;
@@ -333,13 +299,27 @@ double IncrementalPotential::lost_accuracy(std::span<const double> q, std::span<
 double IncrementalPotential::relative_decrement(std::span<const double> g, std::span<const double> d) {
   if (parts_.empty()) return whole_.relative_decrement(g, d);
   for (Part& part : parts_) part.sum = 0;
-  for (int i = 0; i < pattern_.rows(); ++i) parts_[part_of_[i]].sum += aspic::dot(point(g, i), point(d, i));
+  for (int i = 0; i < own_; ++i) parts_[part_of_[i]].sum += aspic::dot(point(g, i), point(d, i));
+  sum_parts();
   double largest = 0;  // the decrease of coupled parts may be shared
   for (const Part& part : parts_) {
     const double scale = inertia_ * part.growth_inertia + factor_ * part.growth_stiffness;
     if (scale > 0) largest = std::max(largest, std::abs(part.sum) / 2 / scale);
   }
   return std::sqrt(largest);
+}
+
+void IncrementalPotential::sum_parts() {
+  if (model_.share.is_whole() || parts_.empty()) return;
+  std::vector<double> sums;
+  for (const Part& part : parts_) sums.push_back(part.sum);
+  model_.share.sum(sums);
+  for (size_t k = 0; k < parts_.size(); ++k) parts_[k].sum = sums[k];
+}
+
+double IncrementalPotential::dot(std::span<const double> a, std::span<const double> b) {
+  const size_t own = 3 * static_cast<size_t>(own_);
+  return model_.share.sum(Objective::dot(a.first(own), b.first(own)));
 }
 
 const BlockSparse& IncrementalPotential::metric() {
@@ -370,14 +350,14 @@ const BlockSparse* IncrementalPotential::add_stops(std::span<const double> q, st
 }
 
 double IncrementalPotential::free_norm(std::span<const double> v) const {
-  return std::sqrt(parallel_sum(pattern_.rows(), [&](int first, int last) {
+  return std::sqrt(model_.share.sum(parallel_sum(own_, [&](int first, int last) {
     double sum = 0;
     for (int i = first; i < last; ++i) {
       const Vec3d free = pins_.free_part(i, point(v, i));
       for (int r = 0; r < 3; ++r) sum += free[r] * free[r];
     }
     return sum;
-  }));
+  })));
 }
 
 void IncrementalPotential::add_term_gradient(const ActiveTerm& term, std::span<const double> q, std::span<double> g,
@@ -385,7 +365,7 @@ void IncrementalPotential::add_term_gradient(const ActiveTerm& term, std::span<c
   term.add_gradient(q, factor_, term_);
   const bool is_exact = term.energy().has_constant_gradient();
   add_part_norms(term_, is_exact);
-  const double squared = parallel_sum(pattern_.rows(), [&](int first, int last) {
+  double squared = parallel_sum(own_, [&](int first, int last) {
     double square = 0;
     for (int i = first; i < last; ++i) {
       const Vec3d free = pins_.free_part(i, point(term_, i));
@@ -399,13 +379,17 @@ void IncrementalPotential::add_term_gradient(const ActiveTerm& term, std::span<c
     }
     return square;
   });
+  std::fill(term_.begin() + 3 * static_cast<std::ptrdiff_t>(own_), term_.end(), 0.0);
+  squared = model_.share.sum(squared);
   gradient_scale_ += std::sqrt(squared);
   if (is_exact) exact_scale_ += std::sqrt(squared);
 }
 
 void IncrementalPotential::measure(const TetMesh& mesh) {
   Vec3d center{};
-  for (const Vec3d& X : mesh.rest) center = center + (1.0 / mesh.vertex_count()) * X;
+  const double count = model_.share.sum(own_);
+  for (int v = 0; v < own_; ++v) center = center + (1.0 / count) * mesh.rest[v];
+  model_.share.sum(center.a);
   std::vector<double> rest(term_.size()), growth(term_.size());
   for (int v = 0; v < mesh.vertex_count(); ++v) {
     const Vec3d offset = mesh.rest[v] - center;
@@ -415,6 +399,7 @@ void IncrementalPotential::measure(const TetMesh& mesh) {
       growth[3 * v + r] = offset[r];
     }
   }
+  radius_ = model_.share.max(radius_);
   H_.set_zero();
   const std::vector<double> unit = unit_stiffness(mesh);
   std::vector<double> modulus(unit.size());
@@ -430,10 +415,12 @@ void IncrementalPotential::measure(const TetMesh& mesh) {
   for (int v = 0; v < pattern_.rows(); ++v)
     pattern_.rest_modulus[v] = trace(H_.block[pattern_.diagonal(v)]) / pattern_.rest_modulus[v];
   growth_stiffness_ = dot(growth, term_);
-  for (int v = 0; v < pattern_.rows(); ++v) {
+  for (int v = 0; v < own_; ++v) {
     rest_stiffness_ = std::hypot(rest_stiffness_, std::sqrt(squared_norm(H_.block[pattern_.diagonal(v)])));
     mass_norm_ = std::hypot(mass_norm_, std::sqrt(3.0) * model_.mass->vertex_mass()[v]);
   }
+  rest_stiffness_ = model_.share.norm(rest_stiffness_);
+  mass_norm_ = model_.share.norm(mass_norm_);
   model_.mass->multiply(growth, term_);
   growth_inertia_ = dot(growth, term_);
   measure_parts(mesh, modulus, growth);
@@ -442,28 +429,43 @@ void IncrementalPotential::measure(const TetMesh& mesh) {
 
 void IncrementalPotential::measure_parts(const TetMesh& mesh, std::span<const double> modulus,
                                          std::span<double> growth) {
-  part_of_ = parts_of(mesh, modulus);
-  const int count = *std::max_element(part_of_.begin(), part_of_.end()) + 1;
+  const Share& share = model_.share;
+  part_of_ = share.is_whole() ? parts_of(mesh, modulus) : share.ranks().parts(modulus.first(own_));
+  const int count = static_cast<int>(share.max(*std::max_element(part_of_.begin(), part_of_.end()))) + 1;
   if (count <= 1) return part_of_.clear();
   parts_.resize(count);
-  std::vector<Vec3d> center(count);
-  std::vector<int> size(count);
-  for (int v = 0; v < mesh.vertex_count(); ++v)
-    center[part_of_[v]] = center[part_of_[v]] + mesh.rest[v], ++size[part_of_[v]];
+  std::vector<double> sums(4 * static_cast<size_t>(count));  // of the positions, and number of vertices
+  for (int v = 0; v < own_; ++v) {
+    const std::span<double> sum = std::span(sums).subspan(4 * static_cast<size_t>(part_of_[v]), 4);
+    for (int r = 0; r < 3; ++r) sum[r] += mesh.rest[v][r];
+    ++sum[3];
+  }
+  share.sum(sums);
+  const auto to_center = [&](int v) {
+    const std::span<const double> sum = std::span(sums).subspan(4 * static_cast<size_t>(part_of_[v]), 4);
+    return mesh.rest[v] - (1.0 / sum[3]) * Vec3d{{sum[0], sum[1], sum[2]}};
+  };
   for (int v = 0; v < mesh.vertex_count(); ++v) {
-    Part& part = parts_[part_of_[v]];
-    const Vec3d offset = mesh.rest[v] - (1.0 / size[part_of_[v]]) * center[part_of_[v]];
-    part.radius = std::max(part.radius, norm(offset));
-    part.rest_stiffness = std::hypot(part.rest_stiffness, std::sqrt(squared_norm(H_.block[pattern_.diagonal(v)])));
-    part.mass_norm = std::hypot(part.mass_norm, std::sqrt(3.0) * model_.mass->vertex_mass()[v]);
+    const Vec3d offset = to_center(v);
     for (int r = 0; r < 3; ++r) growth[3 * v + r] = offset[r];
   }
+  for (int v = 0; v < own_; ++v) {
+    Part& part = parts_[part_of_[v]];
+    part.radius = std::max(part.radius, norm(to_center(v)));
+    part.rest_stiffness = std::hypot(part.rest_stiffness, std::sqrt(squared_norm(H_.block[pattern_.diagonal(v)])));
+    part.mass_norm = std::hypot(part.mass_norm, std::sqrt(3.0) * model_.mass->vertex_mass()[v]);
+  }
   H_.multiply(growth, term_);
-  for (int v = 0; v < mesh.vertex_count(); ++v)
-    parts_[part_of_[v]].growth_stiffness += aspic::dot(point(growth, v), point(term_, v));
+  for (int v = 0; v < own_; ++v) parts_[part_of_[v]].growth_stiffness += aspic::dot(point(growth, v), point(term_, v));
   model_.mass->multiply(growth, term_);
-  for (int v = 0; v < mesh.vertex_count(); ++v)
-    parts_[part_of_[v]].growth_inertia += aspic::dot(point(growth, v), point(term_, v));
+  for (int v = 0; v < own_; ++v) parts_[part_of_[v]].growth_inertia += aspic::dot(point(growth, v), point(term_, v));
+  for (Part& part : parts_) {
+    part.radius = share.max(part.radius);
+    part.rest_stiffness = share.norm(part.rest_stiffness);
+    part.mass_norm = share.norm(part.mass_norm);
+    part.growth_stiffness = share.sum(part.growth_stiffness);
+    part.growth_inertia = share.sum(part.growth_inertia);
+  }
 }
 
 }  // namespace aspic

@@ -59,6 +59,8 @@ class IncrementalPotential : public Objective,
   const BlockSparse& evaluate_hessian(std::span<const double> q, const Projection& projection) override;
   // Keeps the values and forces of the last evaluation as those at q.
   void note_iterate(std::span<const double> q) override;
+  double dot(std::span<const double> a, std::span<const double> b) override;
+  double largest(double value) override { return model_.share.max(value); }
   const BlockSparse& metric() override;  // M, with identity rows for pinned vertices
   // Returns the smallest bound of the terms of V.
   double max_step(std::span<const double> q, std::span<const double> d) override;
@@ -122,7 +124,11 @@ class IncrementalPotential : public Objective,
   // moduli times edge lengths differ by more than kSoft. `growth` is scratch.
   void measure_parts(const TetMesh& mesh, std::span<const double> modulus, std::span<double> growth);
   void add_part_norms(std::span<const double> v, bool is_exact);
+  bool is_iterate(std::span<const double> q) const;          // whether the last minimization ended at q
+  void sum_parts();                                          // adds Part::sum of all processes
+  double largest_position(std::span<const double> q) const;  // largest |q| of all vertices
   void add_term_gradient(const ActiveTerm& term, std::span<const double> q, std::span<double> g, std::span<double> sum);
+  double squared_distance_to_prediction(std::span<const double> q) const;  // (q - q~)' M (q - q~)
   double free_norm(std::span<const double> v) const;
   double gradient_round_off_at(std::span<const double> q);
 
@@ -136,6 +142,7 @@ class IncrementalPotential : public Objective,
   const Model& model_;
   WholePart whole_{*this};  // used if there is one part
   const Pins& pins_;
+  int own_;  // number of own vertices, see Share
   std::vector<ActiveTerm> potential_, damping_;
   InternalTerms internal_;
   std::vector<std::pair<const StiffEnergy*, size_t>> stiff_;  // with the index in potential_

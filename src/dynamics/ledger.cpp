@@ -22,6 +22,13 @@ class LongSum {
     high_ = sum;
   }
   double value() const { return high_ + low_; }
+  // Adds the sums of all processes, in their order.
+  void sum(const Share& share) {
+    if (share.is_whole()) return;
+    const double own[] = {high_, low_};
+    high_ = low_ = 0;
+    for (const double part : share.ranks().gather(own)) add(part);
+  }
 
  private:
   double high_ = 0, low_ = 0;
@@ -60,6 +67,8 @@ void note_friction(const StepTools& tools, const ActiveTerm& term, std::span<con
   if (parts[0] >= 0) report.friction_pair = tools.model.contact->mesh().pair_name(parts);
 }
 
+int own_vertices(const StepTools& tools) { return tools.model.share.own(tools.pins.vertex_count()); }
+
 struct ObstacleWork {
   double contact = 0, friction = 0;  // [J]
 };
@@ -83,11 +92,12 @@ ObstacleWork work_of_obstacles(const StepTools& tools, const State& end, StepRep
 
 }  // namespace
 
-double kinetic_energy(const MassMatrix& mass, std::span<const double> qdot, std::span<double> momentum) {
-  mass.multiply(qdot, momentum);
+double kinetic_energy(const Model& model, std::span<const double> qdot, std::span<double> momentum) {
+  model.mass->multiply(qdot, momentum);
   double T = 0;
-  for (size_t i = 0; i < qdot.size(); ++i) T += 0.5 * qdot[i] * momentum[i];
-  return T;
+  const int own = 3 * model.share.own(model.mesh.vertex_count());
+  for (int i = 0; i < own; ++i) T += 0.5 * qdot[i] * momentum[i];
+  return model.share.sum(T);
 }
 
 // Returns the energy that the loads gain from the motion of their targets during the step: with the body at its start,
@@ -123,7 +133,7 @@ void Ledger::begin(const Model& model, std::span<const double> q) {
 
 std::span<const double> Ledger::elastic_energies(const Model& model, std::span<const double> q,
                                                  std::span<const double> known, Work& work) {
-  if (std::equal(q.begin(), q.end(), last_q_.begin(), last_q_.end())) return elastic_;
+  if (model.share.all(std::equal(q.begin(), q.end(), last_q_.begin(), last_q_.end()))) return elastic_;
   elastic_.clear();
   if (known.empty()) {
     for (const auto& V : model.elasticity) elastic_.push_back(V->value(q));
@@ -137,12 +147,13 @@ std::span<const double> Ledger::elastic_energies(const Model& model, std::span<c
 
 void Ledger::note_worst_vertex(const StepTools& tools, int part, StepReport& report) const {
   double most = 0;
-  for (int v = 0; v < tools.pins.vertex_count(); ++v) {
+  for (int v = 0; v < own_vertices(tools); ++v) {
     if (tools.E.part_of(v) != part) continue;
     const Vec3d left = tools.pins.free_part(v, point(residual_, v));
     const double size = std::hypot(left[0], left[1], left[2]);
     if (size > most) most = size, report.worst_vertex = v;
   }
+  tools.model.share.find_largest(most, report.worst_vertex);
   report.worst_residual = most;
 }
 
@@ -180,7 +191,7 @@ void Ledger::allow_moved_pins(const StepTools& tools, const State& end, BoundedE
   tools.E.set_internal(start.internal, tools.h);
   for (const ActiveTerm& term : tools.E.damping()) D += term.value(moved_);
   for (size_t i = 0; i < moved_.size(); ++i) moved_[i] = (moved_[i] - start.q[i]) / tools.h - start.qdot[i];
-  T = kinetic_energy(*tools.model.mass, moved_, momentum_);
+  T = kinetic_energy(tools.model, moved_, momentum_);
   bounded.allowed = V + D + T;
   bounded.magnitude += D + T;
 }
@@ -205,7 +216,13 @@ void Ledger::add_resultants(const StepTools& tools, const State& end, const Step
     sum.force = sum.force + force;
     sum.moment = sum.moment + cross(point(end.q, vertex), force);
   };
-  const auto update = [part](const Resultant& now, Resultant& mean) {
+  const int own = own_vertices(tools);
+  const auto sum = [&model](Resultant& now) {
+    model.share.sum(now.force.a);
+    model.share.sum(now.moment.a);
+  };
+  const auto update = [&sum, part](Resultant& now, Resultant& mean) {
+    sum(now);
     mean.force = mean.force + part * (now.force - mean.force);
     mean.moment = mean.moment + part * (now.moment - mean.moment);
   };
@@ -213,8 +230,9 @@ void Ledger::add_resultants(const StepTools& tools, const State& end, const Step
     Resultant now;
     const std::vector<int>& vertices = model.pins[p].vertices;
     for (size_t i = 0; i < vertices.size(); ++i)
-      add(vertices[i], tools.pins.reaction_of(static_cast<int>(p), static_cast<int>(i), point(residual_, vertices[i])),
-          now);
+      if (vertices[i] < own)
+        add(vertices[i],
+            tools.pins.reaction_of(static_cast<int>(p), static_cast<int>(i), point(residual_, vertices[i])), now);
     update(now, sums.pins[p]);
   }
   for (size_t b = 0; b < model.bodies.size(); ++b) {
@@ -228,7 +246,8 @@ void Ledger::add_resultants(const StepTools& tools, const State& end, const Step
   for (size_t k = 0; k < model.loads.size(); ++k) {
     tools.E.loads()[k].add_gradient(end.q, -1, load_);
     sums.loads[k] = {};
-    for (int v = 0; v < tools.pins.vertex_count(); ++v) add(v, point(load_, v), sums.loads[k]);
+    for (int v = 0; v < own; ++v) add(v, point(load_, v), sums.loads[k]);
+    sum(sums.loads[k]);
     std::fill(load_.begin(), load_.end(), 0.0);
   }
 }
@@ -243,7 +262,7 @@ BoundedEnergies Ledger::add(const StepTools& tools, const Integrator& integrator
   const double target = target_work(tools, integrator.facts().order, end, potential_before, report);
   for (const double V : elastic_energies(tools.model, start.q, {}, report)) potential_before += V;
   const InternalEnergies internal = internal_energies(tools, end);
-  const double kinetic_before = kinetic_energy(*tools.model.mass, start.qdot, momentum_);
+  const double kinetic_before = kinetic_energy(tools.model, start.qdot, momentum_);
   tools.model.mass->multiply(forces.acceleration, Ma_);
 
   double jump = 0, round_off = 0;
@@ -251,7 +270,7 @@ BoundedEnergies Ledger::add(const StepTools& tools, const Integrator& integrator
   LongSum inertia, gradient, damping, reaction, residuals;
   LongSum* const sums[] = {&inertia, &gradient, &damping};
   bool pins_moved = false;
-  for (int v = 0; v < tools.pins.vertex_count(); ++v) {
+  for (int v = 0; v < own_vertices(tools); ++v) {
     const Vec3d x = point(end.q, v), dx = x - point(start.q, v);
     for (int i = 3 * v; i < 3 * v + 3; ++i) {
       residual_[i] = Ma_[i] + forces.gradient[i] + forces.damping[i];
@@ -274,6 +293,11 @@ BoundedEnergies Ledger::add(const StepTools& tools, const Integrator& integrator
       pins_moved |= std::abs(moved[r]) > std::numeric_limits<double>::epsilon() * std::abs(x[r]);
     }
   }
+  const Share& share = tools.model.share;
+  for (LongSum* sum : {&inertia, &gradient, &damping, &reaction, &residuals}) sum->sum(share);
+  for (double* sum : {&jump, &round_off}) *sum = share.sum(*sum);
+  share.sum(squares_);
+  pins_moved = share.max(pins_moved) > 0;
   const double reaction_work = reaction.value(), residual_work = residuals.value();
   const double inertia_work = inertia.value(), gradient_work = gradient.value(), damping_work = damping.value();
 
@@ -288,7 +312,7 @@ BoundedEnergies Ledger::add(const StepTools& tools, const Integrator& integrator
   double stored = 0;  // in internal variables
   for (size_t k = tools.E.potential().size(); k < report.potential.size(); ++k) stored += report.potential[k];
   const double potential_after = report.potential_total - stored;
-  report.kinetic = kinetic_energy(*tools.model.mass, end.qdot, momentum_);
+  report.kinetic = kinetic_energy(tools.model, end.qdot, momentum_);
 
   const double kinetic_gain = report.kinetic - kinetic_before,
                potential_gain = potential_after - potential_before + internal.gain;

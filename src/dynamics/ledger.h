@@ -50,6 +50,6 @@ class Ledger {
 };
 
 // Returns 1/2 qdot' M qdot [J]; `momentum` receives M qdot.
-double kinetic_energy(const MassMatrix& mass, std::span<const double> qdot, std::span<double> momentum);
+double kinetic_energy(const Model& model, std::span<const double> qdot, std::span<double> momentum);
 
 }  // namespace aspic

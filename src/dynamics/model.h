@@ -6,6 +6,7 @@
 #include <utility>
 #include <vector>
 
+#include "dynamics/share.h"
 #include "energy/energy.h"
 #include "energy/mass.h"
 #include "energy/tet_elasticity.h"
@@ -41,7 +42,7 @@ struct Model {
   // The user's numbering of vertices and tets, for messages and files. Everything in the model and the state is in the
   // order of the mesh.
   Numbering numbering;
-  std::vector<BodyRange> bodies;  // cover the mesh, ascending
+  std::vector<BodyRange> bodies;  // cover the mesh, or the own vertices of a share, ascending
   std::vector<double> density;    // one per tet [kg/m^3]
   // Fields to export with the results, by name, one value per tet: "young" [Pa], "poisson" [1].
   std::vector<std::pair<std::string, std::vector<double>>> tet_fields;
@@ -52,6 +53,8 @@ struct Model {
   std::vector<Pin> pins;                                   // Dirichlet conditions
   const Barrier* contact = nullptr;                        // one of the loads; null: no contact
   const Friction* friction = nullptr;                      // one of the damping terms; null: no friction
+  // If several processes hold the model, value(), min_det_F() and the counts of its terms are those of the whole model.
+  Share share;
 };
 
 }  // namespace aspic

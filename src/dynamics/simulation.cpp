@@ -133,7 +133,7 @@ struct Simulation::Impl {
     constexpr double kRoundOff = 1e-12;  // round-off of elastic energies, relative to the stiffness of the body
     set_time(start.time);
     start_force.assign(start.q.size(), 0.0);
-    start_energy = aspic::kinetic_energy(*model.mass, start.qdot, start_force) + kRoundOff * E->growth_stiffness();
+    start_energy = aspic::kinetic_energy(model, start.qdot, start_force) + kRoundOff * E->growth_stiffness();
     start_force.assign(start.q.size(), 0.0);
     for (const auto& V : model.elasticity) start_energy += std::abs(V->value(start.q));
     for (const ActiveTerm& V : E->loads())
@@ -177,6 +177,7 @@ struct Simulation::Impl {
       speed = std::max(speed, std::abs(with.start.qdot[i]));
       change = std::max(change, std::abs(forces.acceleration.empty() ? 0 : forces.acceleration[i]) * with.h);
     }
+    for (double* size : {&position, &speed, &change}) *size = model.share.max(*size);
     const double round_off = std::numeric_limits<double>::epsilon() * position / with.h, most = std::max(speed, change);
     if (most == 0 || round_off <= kResolved * most) return;
     report.lost_accuracy = std::max(report.lost_accuracy, std::min(1.0, round_off / most));
@@ -339,7 +340,7 @@ StepReport Simulation::start_report() const {
 
 double Simulation::kinetic_energy() const {
   std::vector<double> momentum(impl_->state.qdot.size());
-  return aspic::kinetic_energy(*impl_->model.mass, impl_->state.qdot, momentum);
+  return aspic::kinetic_energy(impl_->model, impl_->state.qdot, momentum);
 }
 
 std::vector<double> Simulation::potential_energies() const {

@@ -96,6 +96,17 @@ double MassMatrix::squared_distance(std::span<const double> x, std::span<const d
   });
 }
 
+double MassMatrix::squared_distance(std::span<const double> x, std::span<const double> y, int count) const {
+  return parallel_sum(count, [&](int first, int last) {
+    double sum = 0;
+    for (int i = first; i < last; ++i)
+      for (int64_t k = row_start_[i]; k < row_start_[i + 1]; ++k)
+        for (int r = 0; r < 3; ++r)
+          sum += (x[3 * i + r] - y[3 * i + r]) * entry_[k] * (x[3 * column_[k] + r] - y[3 * column_[k] + r]);
+    return sum;
+  });
+}
+
 void MassMatrix::add_couplings(Couplings& couplings) const {
   for (int i = 0; i < rows(); ++i)
     for (int64_t k = row_start_[i]; column_[k] < i; ++k) couplings.emplace_back(i, column_[k]);

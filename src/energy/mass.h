@@ -27,6 +27,8 @@ class MassMatrix {
 
   void multiply(std::span<const double> x, std::span<double> y) const;                  // y = M x; 3 entries per vertex
   double squared_distance(std::span<const double> x, std::span<const double> y) const;  // (x - y)' M (x - y)
+  // Returns the share of the first `count` rows in squared_distance(). The shares of all rows add up to it.
+  double squared_distance(std::span<const double> x, std::span<const double> y, int count) const;
   void add_couplings(Couplings& couplings) const;      // appends the vertex pairs of its off-diagonal blocks
   void bind(const BlockPattern& target);               // stores the slots that add_to() writes
   void add_to(double scale, BlockSparse& H) const;     // H += scale M

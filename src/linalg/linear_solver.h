@@ -39,6 +39,9 @@ class LinearSolver {
   virtual bool factorize(const BlockSparse& H) = 0;
   // Solves H x = b up to |b - H x| <= tolerance |b|; direct solvers ignore the tolerance. b, x: 3 entries per row.
   virtual SolveReport solve(std::span<const double> b, std::span<double> x, double tolerance) = 0;
+  // Returns a solver for singular and indefinite matrices of the same pattern. If one has negative curvature, x is a
+  // descent direction for a function with the gradient -b.
+  virtual std::unique_ptr<LinearSolver> make_semidefinite_solver() const;
   // Sets the token that subsequent solves poll. Direct solvers ignore it.
   virtual void set_stop(const StopToken&) {}
 };

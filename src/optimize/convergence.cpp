@@ -68,9 +68,9 @@ void Convergence::describe(MinimizeReport& report) {
 double Convergence::size_of_direction(std::span<const double> g, std::span<const double> d) {
   switch (options_->criterion) {
     case Criterion::velocity:
-      return largest_displacement(d) / options_->h;
+      return E_->largest(largest_displacement(d)) / options_->h;
     case Criterion::acceleration:
-      return largest_displacement(d) / (options_->h * options_->h);
+      return E_->largest(largest_displacement(d)) / (options_->h * options_->h);
     default:
       return parts_of_E_->relative_decrement(g, d);
   }

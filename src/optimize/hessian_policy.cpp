@@ -113,6 +113,7 @@ class HessianOnDemand : public HessianPolicy {
     double end = value_ahead(task, task.d, std::min(1.0, task.E.max_step(task.x, task.d)));
     double slope = task.E.dot(task.g, task.d), size = 0;
     for (const double di : task.d) size = std::max(size, std::abs(di));
+    size = task.E.largest(size);
     for (double length = 2; 4 * (end - *task.value - slope) < -slope; length *= 2, slope *= 2) {
       if (length * size > task.E.scales().x) break;
       twice_.assign(task.d.begin(), task.d.end());

@@ -46,7 +46,7 @@ void NewtonSystem::begin_direction(Objective& E, const StopToken& stop, bool is_
   gradient_norm_ = gradient_norm;
   exact_ = nullptr;
   solver_->set_stop(stop);
-  semidefinite_solver_.set_stop(stop);
+  semidefinite_solver_->set_stop(stop);
 }
 
 bool NewtonSystem::solve(NewtonTask& task, const Projection& projection) {
@@ -88,11 +88,11 @@ bool NewtonSystem::solve_semidefinite(const BlockSparse& H, NewtonTask& task) {
   DirectionReport& report = task.report;
   Stopwatch stopwatch;
   if (semidefinite_version_ != H.pattern->version) {
-    semidefinite_solver_.analyze(*H.pattern);
+    semidefinite_solver_->analyze(*H.pattern);
     semidefinite_version_ = H.pattern->version;
   }
-  if (!semidefinite_solver_.factorize(H)) return false;
-  const SolveReport solved = semidefinite_solver_.solve(task.g, task.d, task.forcing);
+  if (!semidefinite_solver_->factorize(H)) return false;
+  const SolveReport solved = semidefinite_solver_->solve(task.g, task.d, task.forcing);
   report.stopped = report.stopped || solved.stopped;
   report.add(solved);
   report.solve_seconds += stopwatch.lap();

@@ -80,8 +80,7 @@ class NewtonSystem {
 
   std::unique_ptr<LinearSolver> solver_;
   bool truncates_;
-  // Handles singular and indefinite matrices.
-  ConjugateGradient semidefinite_solver_{std::make_unique<BlockJacobi>(BlockJacobi::Blocks::modified)};
+  std::unique_ptr<LinearSolver> semidefinite_solver_ = solver_->make_semidefinite_solver();
   uint64_t analyzed_version_ = 0, semidefinite_version_ = 0;
   KeptHessian kept_;
   HasStops* stops_ = nullptr;           // of the objective, if it has any

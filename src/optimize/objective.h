@@ -47,7 +47,9 @@ class Objective {
   }
   // Called when the minimizer has moved to x, where it evaluated the last value and the last gradient.
   virtual void note_iterate(std::span<const double> /*x*/) {}
-  virtual double dot(std::span<const double> a, std::span<const double> b);  // a distributed objective sums over ranks
+  // Overrides of these two combine the results of the processes that share x.
+  virtual double dot(std::span<const double> a, std::span<const double> b);
+  virtual double largest(double value) { return value; }  // the maximum of the values of these processes
 
  protected:
   // Computes the Hessian and sets projected_elements_.

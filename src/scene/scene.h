@@ -28,6 +28,8 @@ struct Skin {
   std::string body;     // name of its BodyRange
 };
 
+struct Table;  // see scene/value.h
+
 struct Scene {
   std::string name;                // file name without extension
   std::string resolved;            // TOML with all defaults filled in; running it gives the same bits
@@ -64,6 +66,9 @@ struct SceneOptions {
   TetLimit limit = {};
   double mesher_seconds = 0;               // wall time after which filling a surface fails; 0: default of the mesher
   std::function<void(Model&)> amend = {};  // changes the model before it is simulated
+  // Called with the document and its defaults before meshes are read. Throws InvalidInput for what the caller does not
+  // support.
+  std::function<void(const Table&)> require = {};
 };
 
 // A .toml file is a scene; any mesh file becomes one with sensible defaults. Throws InvalidInput with file, line,

@@ -103,6 +103,7 @@ class SceneBuilder {
       : source_(std::move(source)), files_(std::move(files)), options_(options) {}
 
   SceneModel build_model() {
+    if (options_.require) options_.require(source_.document);
     note_version();
     add_bodies();
     mesh_loader().report_if_many(model_.mesh.tet_count(),

@@ -1,0 +1,238 @@
+#!/usr/bin/env python3
+"""A scene on several MPI ranks has the results of aspic run, and an error of one rank ends all.
+
+usage: ASPIC=... ASPIC_MPI=path/to/aspic-mpi MPIRUN=... MPI_EXCEPTION=... mpi_test.py [TestCase...]
+"""
+import os
+import pathlib
+import shutil
+import signal
+import struct
+import subprocess
+import time
+import unittest
+
+from command_line import CommandLine
+from crash_test import checkpoint, state_hash
+
+BEAM = """[time]
+step = 0.01
+duration = 0.03
+{time}
+[solver]
+tolerance = 1e-10
+{solver}
+[output]
+checkpoint_every = 0
+[[body]]
+name = "beam"
+shape = {{ box = {{ upper = [0.4, 0.1, 0.1], cells = [{cells}] }} }}
+material = {{ model = "neo_hookean", young = 1e5, poisson = 0.4 }}
+{before_pin}
+[[body.pin]]
+where = "x < 1e-9"
+{body}
+"""
+# Two bodies, a moving pin, a roller, a traction, and materials of different stiffness, so that there are several parts.
+MANY = """
+[[body.pin]]
+name = "pull"
+where = "x > 0.4 - 1e-9"
+motion = { linear = { velocity = [0.2, 0, 0] } }
+[[body]]
+name = "ball"
+shape = { sphere = { radius = 0.1, size = 0.05 } }
+translate = [1, 0, 0]
+material = { model = "stable_neo_hookean", young = "X > 1 ? 1e7 : 1e4", poisson = 0.3 }
+[[body.pin]]
+where = { lowest = 0.2 }
+axes = "y"
+[[body.traction]]
+where = { highest = 0.1 }
+value = [50, -100, 0]
+"""
+
+
+def environment():
+    root = {"OMPI_ALLOW_RUN_AS_ROOT": "1", "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1"} if os.geteuid() == 0 else {}
+    return os.environ | root | {"OMP_NUM_THREADS": "1", "OPENBLAS_NUM_THREADS": "1", "OMPI_MCA_mpi_yield_when_idle": "1"}
+
+
+class Ranks(CommandLine):
+    TIMEOUT = 600
+
+    def scene(self, name="beam.toml", cells="8, 2, 2", **parts):
+        return self.write(name, BEAM.format(**{"time": "", "solver": "", "before_pin": "", "body": "", "cells": cells} | parts))
+
+    def command(self, ranks, *arguments, program="ASPIC_MPI"):
+        return [os.environ["MPIRUN"], "--oversubscribe", "-n", str(ranks), os.environ[program], *arguments]
+
+    def mpi(self, ranks, *arguments, code=0, program="ASPIC_MPI"):
+        done = subprocess.run(self.command(ranks, *arguments, program=program), cwd=self.folder, env=environment(),
+                              capture_output=True, text=True, timeout=self.TIMEOUT)
+        self.assertEqual(done.returncode, code, f"{ranks} ranks {arguments}\n{done.stdout}\n{done.stderr}")
+        return done
+
+    def start_mpi(self, ranks, *arguments):
+        return subprocess.Popen(self.command(ranks, *arguments), cwd=self.folder, env=environment(),
+                                stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+
+    def positions(self, run):
+        return [x for (x,) in struct.iter_unpack("<d", checkpoint(self.folder / run / "checkpoint.bin")["q"])]
+
+    def distance(self, one, other):
+        """Largest difference of a coordinate [m]."""
+        left, right = self.positions(one), self.positions(other)
+        self.assertEqual(len(left), len(right))
+        return max(abs(a - b) for a, b in zip(left, right))
+
+    def column(self, run, name):
+        return [row[name] for row in self.steps(run)]
+
+    def wait_for_steps(self, run, count):
+        table, end = self.folder / run / "steps.csv", time.monotonic() + self.TIMEOUT
+        while not table.exists() or len(table.read_text().splitlines()) < count + 2:
+            self.assertLess(time.monotonic(), end, "no steps")
+            time.sleep(0.02)
+
+
+class Equality(Ranks):
+    NUMBERS = ("kinetic", "potential_total", "pin_work", "numerical_loss", "min_det_F")
+
+    def assert_equal_runs(self, ranks, scene):
+        self.aspic("run", scene, "--out", "serial", "--force", "--quiet")
+        counts = None
+        for n in ranks:
+            self.mpi(n, "run", scene, "--out", "ranks", "--force", "--quiet")
+            self.assertLess(self.distance("serial", "ranks"), 1e-10, f"{n} ranks [m]")
+            counts = counts or self.column("ranks", "iterations")
+            self.assertEqual(self.column("ranks", "iterations"), counts, f"{n} ranks")
+            for name in ("status", "energy_bound", "criterion", "initial_guess"):
+                self.assertEqual(self.column("serial", name), self.column("ranks", name), f"{n} ranks")
+            self.assert_equal_energies(n)
+        return counts
+
+    def assert_equal_energies(self, ranks):
+        for serial, distributed in zip(self.steps("serial"), self.steps("ranks")):
+            scale = abs(float(serial["kinetic"])) + abs(float(serial["potential_total"]))
+            for name in self.NUMBERS:
+                self.assertAlmostEqual(float(serial[name]), float(distributed[name]), delta=1e-9 * max(1, scale),
+                                       msg=f"{ranks} ranks: {name}")
+            self.assertLess(abs(float(distributed["ledger_error"])), 1e-12 * max(1, scale))
+            for name in serial:
+                if name.startswith(("reaction_", "load_", "body_")):
+                    self.assertAlmostEqual(float(serial[name]), float(distributed[name]), delta=1e-6, msg=name)
+
+    def test_falling_beam(self):
+        counts = self.assert_equal_runs((1, 2, 3, 4), self.scene())
+        self.assertEqual(counts, self.column("serial", "iterations"))
+
+    def test_ranks_with_few_vertices(self):
+        self.assert_equal_runs((4,), self.scene(cells="2, 1, 1"))
+
+    def test_two_bodies_with_moving_pins_and_tractions(self):
+        self.assert_equal_runs((1, 2, 3, 4), self.scene(body=MANY, solver='linear = "block_jacobi"'))
+
+    def test_equilibrium_by_decrement(self):
+        scene = self.scene(time='integrator = "quasi_static"', solver='criterion = "decrement"\ninitial_guess = "current"')
+        self.assert_equal_runs((1, 3), scene)
+
+
+class SameBits(Ranks):
+    def test_same_bits_again_and_after_resuming(self):
+        scene = self.scene()
+        for run in ("one", "other"):
+            self.mpi(2, "run", scene, "--out", run, "--quiet")
+        self.assert_same_results("one", "other")
+        self.assertEqual(self.column("one", "state_hash")[-1], state_hash(checkpoint(self.folder / "one/checkpoint.bin")))
+        self.mpi(2, "run", scene, "--out", "part", "--steps", "1", "--quiet")
+        shutil.copytree(self.folder / "part", self.folder / "elsewhere")
+        self.mpi(2, "run", "part", "--resume", "--quiet")
+        self.assertEqual(self.column("one", "state_hash"), self.column("part", "state_hash"))
+        self.mpi(3, "run", "elsewhere", "--resume", "--quiet")
+        self.assertLess(self.distance("one", "elsewhere"), 1e-10)
+
+
+class Refusals(Ranks):
+    def assert_refused(self, key, **parts):
+        text = (self.folder / self.scene(**parts)).read_text().splitlines()
+        line = 1 + next(n for n, content in enumerate(text) if key in content)
+        said = self.mpi(1, "run", "beam.toml", code=2).stderr
+        self.assertEqual(said.count("error:"), 1, said)
+        self.assertIn(f"beam.toml:{line}:", said)
+        self.assertIn("is not supported by aspic-mpi; ", said)
+        self.assertFalse((self.folder / "out").exists(), key)
+
+    def test_names_the_line_of_a_key(self):
+        for solver in ('linear = "cholesky"', 'method = "lbfgs"', 'fallback = ["lbfgs"]', "time_budget = 1",
+                       'definiteness = "progressive"'):
+            self.assert_refused(solver, solver=solver)
+        for time_ in ('integrator = "bdf2"', "adaptive = { tolerance = 0.1 }"):
+            self.assert_refused(time_, time=time_)
+        where = 'where = "x > 0.3"\n'
+        for body in ("damping = { viscosity = 1 }", "order = 2", "elastic = false", "[contact]", "friction = 0.1"):
+            self.assert_refused(body, body=body if body[0] == "[" else "", before_pin=body if body[0] != "[" else "")
+        for table, keys in (("spring", where + "stiffness = 1"), ("pressure", where + "value = 1"),
+                            ("viscoelastic", "shear = 1\nrelaxation_time = 1"),
+                            ("fibre", "direction = [1, 0, 0]\nstiffness = 1"),
+                            ("muscle", "direction = [1, 0, 0]\nstrength = 1\nactivation = 1")):
+            self.assert_refused(f"[[body.{table}]]", body=f"[[body.{table}]]\n{keys}")
+        self.assert_refused("value =", body='[[body.force]]\nvalue = ["t", 0, 0]')
+        self.assert_refused("value =", body='[[body.traction]]\n' + where + 'value = ["X", 0, "sin(t)"]')
+
+    def test_bad_input_is_reported_once(self):
+        said = self.mpi(3, "run", self.scene(solver="tolerance = 1"), code=2).stderr
+        self.assertEqual(said.count("beam.toml:"), 1, said)
+        said = self.mpi(9, "run", self.scene(cells="1, 1, 1"), code=2).stderr
+        self.assertEqual(said.count("the scene has 8 vertices for 9 ranks; use fewer ranks"), 1, said)
+
+
+class Faults(Ranks):
+    SECONDS = 60  # a second or two on processors without other work
+
+    def rank_processes(self, launcher):
+        """Returns {rank: process id} of the children of mpirun."""
+        found = {}
+        for path in pathlib.Path("/proc").glob("[0-9]*"):
+            try:
+                if int((path / "stat").read_text().rsplit(")", 1)[1].split()[1]) != launcher.pid:
+                    continue
+                values = dict(v.split("=", 1) for v in (path / "environ").read_text().split("\0") if "=" in v)
+                found[int(values["OMPI_COMM_WORLD_RANK"])] = int(path.name)
+            except (OSError, KeyError):
+                pass  # it has ended, or is not a rank
+        return found
+
+    def test_exception_on_one_rank_ends_all(self):
+        for kind, code, text in (("input", 2, "mesh.msh:7: a test (rank 2)"), ("internal", 1, "a test (rank 2)")):
+            begin = time.monotonic()
+            self.assertIn(text, self.mpi(3, kind, code=code, program="MPI_EXCEPTION").stderr)
+            self.assertLess(time.monotonic() - begin, self.SECONDS)
+
+    def test_killed_rank_ends_the_run(self):
+        for rank in (0, 1):
+            run = f"killed{rank}"
+            process = self.start_mpi(2, "run", self.scene(), "--set", "time.duration=100", "--out", run)
+            self.addCleanup(process.kill)
+            self.wait_for_steps(run, 1)
+            os.kill(self.rank_processes(process)[rank], signal.SIGKILL)
+            out, err = process.communicate(timeout=self.SECONDS)
+            self.assertNotEqual(process.returncode, 0)
+            self.assertIn("exited on signal 9 (Killed)", out + err)
+            done = len(self.steps(run))
+            self.mpi(2, "run", run, "--resume", "--steps", str(done + 1), "--quiet")
+            self.assertEqual(self.column(run, "step")[-1], str(done + 1))
+
+    def test_usr1_stops_after_a_step(self):
+        process = self.start_mpi(2, "run", self.scene(), "--set", "time.duration=100", "--out", "run")
+        self.addCleanup(process.kill)
+        self.wait_for_steps("run", 1)
+        process.send_signal(signal.SIGUSR1)  # mpirun forwards it
+        out, err = process.communicate(timeout=self.SECONDS)
+        self.assertEqual(process.returncode, 4, out + err)
+        self.assertIn("--resume continues", out)
+        self.assertEqual(self.column("run", "state_hash")[-1], state_hash(checkpoint(self.folder / "run/checkpoint.bin")))
+
+
+if __name__ == "__main__":
+    unittest.main()
