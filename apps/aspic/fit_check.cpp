@@ -110,7 +110,7 @@ void print_json(const DataSet& data, const std::vector<DataFinding>& findings) {
 }  // namespace
 
 int check_data(const fs::path& path, const CheckDataOptions& options) {
-  const DataSet data = read_data_set(path);
+  const DataSet data = read_data_set(path, options.registers);
   const std::vector<DataFinding> findings = diagnose(data);
   if (options.json) {
     print_json(data, findings);
