@@ -29,14 +29,15 @@ double range_of(const ForceSeries& s) {
   return range;
 }
 
-// From the median difference of successive samples, which ramps and steps hardly change.
+// From the median second difference of successive samples, which linear ramps and a few steps do not change.
 double noise_of(const ForceSeries& s) {
   constexpr double kMedianOfNormal = 0.6745;
   double noise = 0;
   for (int axis = 0; axis < 3; ++axis) {
-    std::vector<double> steps;
-    for (size_t i = 1; i < s.values.size(); ++i) steps.push_back(std::abs(s.values[i][axis] - s.values[i - 1][axis]));
-    noise = std::max(noise, median(std::move(steps)) / (kMedianOfNormal * std::sqrt(2.0)));
+    std::vector<double> bends;
+    for (size_t i = 2; i < s.values.size(); ++i)
+      bends.push_back(std::abs(s.values[i][axis] - 2 * s.values[i - 1][axis] + s.values[i - 2][axis]));
+    noise = std::max(noise, median(std::move(bends)) / (kMedianOfNormal * std::sqrt(6.0)));
   }
   return noise;
 }

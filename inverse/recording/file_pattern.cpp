@@ -68,7 +68,7 @@ std::vector<fs::path> matching_files(const fs::path& pattern) {
   }
   if (error) throw InvalidInput(folder.string() + ": cannot be listed: " + error.message());
   if (names.empty())
-    throw InvalidInput(pattern.string() + ": no file matches; * stands for any characters of a file's name");
+    throw InvalidInput(pattern.string() + ": no file matches; * matches any characters of a file's name");
   std::sort(names.begin(), names.end(), naturally_less);
   std::vector<fs::path> files;
   for (const std::string& name : names) files.push_back(folder / name);

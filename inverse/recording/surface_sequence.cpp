@@ -36,7 +36,7 @@ bool has_markers(const PlyHeader& header) {
 // The vertices whose property "marker" is a number from 0; without the property, all vertices.
 NamedPoints points_of_ply(const std::string& file, const std::string& contents) {
   if (!has_markers(parse_ply_header(file, contents))) return all_vertices(parse_ply(file, contents).vertices);
-  const PaintedSurface painted = parse_painted_ply(file, contents, "marker");
+  const PaintedSurface painted = parse_painted_points(file, contents, "marker");
   NamedPoints points;
   for (size_t v = 0; v < painted.value.size(); ++v) {
     const double number = painted.value[v];
