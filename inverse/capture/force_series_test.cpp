@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 
 #include <cmath>
+#include <random>
 
 #include "base/error.h"
 
@@ -42,9 +43,11 @@ TEST(SteadyForces, RefusesRampAndNamesPlateau) {
 
 TEST(SteadyForces, RefusesDriftBelowNoise) {
   ForceSeries series{.file = "load.csv", .is_axial = true};
+  std::mt19937 random(1);
+  std::normal_distribution<double> noise(0, 0.2);
   for (int i = 0; i <= 1000; ++i) {
     series.times.push_back(0.01 * i);
-    series.values.push_back({{0.001 * i + 0.2 * std::sin(37.0 * i), 0, 0}});
+    series.values.push_back({{0.001 * i + noise(random), 0, 0}});
   }
   const SteadyForce force = steady_force(series, 5, default_duration(series));
   EXPECT_FALSE(force.is_steady);
