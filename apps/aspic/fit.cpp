@@ -30,11 +30,17 @@ namespace fs = std::filesystem;
 
 struct FitArguments {
   fs::path data, out = "material.vtu", options;
+  std::string registers;  // "rigid", "similarity"; empty: none
   std::string model = FitPlan().model;
   std::vector<std::string> parameters, known;
   int threads = 0;  // 0: not given
   bool check = false, force = false, resume = false, quiet = false, verbose = false, allow_unconverged = false;
 };
+
+std::optional<RegistrationKind> registration_kind(const FitArguments& arguments) {
+  if (arguments.registers.empty()) return std::nullopt;
+  return arguments.registers == "rigid" ? RegistrationKind::rigid : RegistrationKind::similarity;
+}
 
 FitPlan plan_of(const FitArguments& arguments) {
   FitPlan plan;
@@ -172,17 +178,18 @@ int run(const FitArguments& arguments) {
   if (arguments.data.extension() == ".csv")
     throw InvalidInput(arguments.data.string() + ": a data set is a folder; to fit curves: aspic fit-curves " +
                        arguments.data.string());
-  if (arguments.check) return check_data(arguments.data);
+  if (arguments.check) return check_data(arguments.data, {.charts = {}, .registers = registration_kind(arguments)});
   if (arguments.threads > 0) set_thread_count(arguments.threads);
   FitPlan plan = plan_of(arguments);
   const bool has_baselines = read_fit_options(arguments.options, plan);
   if (arguments.out.extension() != ".vtu")
     throw InvalidInput(arguments.out.string() + ": a material file is a .vtu; choose such a name with -o");
-  const DataSet data = read_data_set(arguments.data);
+  const DataSet data = read_data_set(arguments.data, registration_kind(arguments));
   check_findings(data, arguments.data);
   plan = completed(std::move(plan), data.experiment);
   const std::string options = "# aspic fit\ndata = \"" + fingerprint_of(data.experiment) + "\"\n" + text_of(plan);
   FitFolder folder = FitFolder::open(arguments.out, options, existing(arguments));
+  if (data.registration) write_registration(folder.path() / "registration.toml", *data.registration);
   catch_interrupts();  // from here on there are results to keep
 
   if (!arguments.quiet) print_start(arguments, data, plan, folder);
@@ -220,6 +227,7 @@ Examples:
   aspic fit pillow                             writes material.vtu and material.fit/report.html
   aspic fit pillow -o soft.vtu --known poisson=0.45 --options careful.toml
   aspic fit pillow --model fung --unknown young=handles:40 --unknown b=uniform
+  aspic fit pillow --register rigid            moves the markers onto the mesh; material.fit/registration.toml keeps the motion
   aspic fit pillow --resume                    continues an interrupted fit, bit-reproducibly
 then in a scene: material = {{ file = "material.vtu" }}
 
@@ -248,6 +256,8 @@ void add_fit(CLI::App& app, Action& action) {
       ->allow_extra_args(false);
   command->add_option("--known", arguments->known, "QUANTITY=NUMBER to keep, such as poisson=0.45; can be repeated")
       ->allow_extra_args(false);
+  command->add_option("--register", arguments->registers, "Align markers or scan with the mesh: rigid or similarity")
+      ->check(CLI::IsMember({"rigid", "similarity"}));
   command->add_option("--options", arguments->options, "TOML file of further options, listed below");
   command->add_option("--threads", arguments->threads, "Threads; all cores by default; results do not depend on it")
       ->check(CLI::Range(1, 1024));

@@ -16,7 +16,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr size_t kMaxSeries = 12;  // limit per chart
+constexpr size_t kMaxSeries = 12;    // limit per chart
+constexpr size_t kMaxPoints = 1000;  // limit per series
 
 std::string_view word(Severity severity) {
   return severity == Severity::error ? "error" : severity == Severity::warning ? "warning" : "note";
@@ -53,7 +54,9 @@ Chart motion_against_distance(const Experiment& experiment) {
     const LoadCase& load = *group.back();
     if (load.positions.empty() || chart.series.size() == kMaxSeries) continue;
     Series series{load.name, {}, {}, SeriesStyle::points};
-    for (const MarkerReading& reading : load.positions) {
+    const size_t stride = (load.positions.size() + kMaxPoints - 1) / kMaxPoints;
+    for (size_t i = 0; i < load.positions.size(); i += stride) {
+      const MarkerReading& reading = load.positions[i];
       const Vec3d X = position(experiment.markers[reading.marker], experiment.mesh.rest);
       series.x.push_back(1e3 * norm(X - load.touch.center));
       series.y.push_back(1e3 * norm(reading.position - X));
@@ -110,7 +113,7 @@ void print_json(const DataSet& data, const std::vector<DataFinding>& findings) {
 }  // namespace
 
 int check_data(const fs::path& path, const CheckDataOptions& options) {
-  const DataSet data = read_data_set(path);
+  const DataSet data = read_data_set(path, options.registers);
   const std::vector<DataFinding> findings = diagnose(data);
   if (options.json) {
     print_json(data, findings);

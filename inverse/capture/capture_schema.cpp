@@ -34,7 +34,17 @@ void add_document(Schema& s) {
             key("up", kNumbers, "for selections by height", Usual{"[0.0, 1.0, 0.0]"}),
             key("markers", kText, "table of markers", Usual{"\"markers.csv\""}),
             key("cases", kText, "table of load cases", Usual{"\"cases.csv\""}),
-            key("positions", kText, "table of positions", Usual{"\"positions.csv\""}),
+            key("positions", kText, "table of positions, or a recording; * selects a sequence of files",
+                Usual{"\"positions.csv\""}),
+            key("rest_frame", kInteger, "frame of the recording that shows the body at rest; default: the first",
+                Range{.min = 0}),
+            key("registration", kText,
+                "motion from the coordinates of the markers to those of the mesh, as --register writes it"),
+            key("scan", kText, "surface at rest in the coordinates of the markers, for --register"),
+            key("forces", kText, "time series of force, for cases with a time or a frame"),
+            key("steady", kNumber | kText,
+                "duration of a steady force, or \"off\" to take the force as it is; default: a 20th of the series",
+                Units{"s"}, kPositive, Choices{{"off"}}),
             key("units", kTable, "of the tables", Members{"units"}, Usual{"{}"}),
             key("columns", kTable, "names of columns", Members{"columns"}, Usual{"{}"}),
             key("deviation", kTable, "of readings", Members{"deviation"}, Usual{"{}"}),
@@ -60,7 +70,7 @@ void add_indenters_and_patches(Schema& s) {
 }
 
 void add_units(Schema& s) {
-  for (const char* quantity : {"length", "mesh", "force", "torque", "angle", "pressure", "gravity"})
+  for (const char* quantity : {"length", "mesh", "recording", "force", "torque", "angle", "pressure", "gravity"})
     add_keys(s, "units", {key(quantity, kText, "of this quantity", Choices{unit_names(quantity)})});
   add_keys(s, "deviation",
            {key("position", kNumber, "of positions", Units{"length"}, kPositive),
@@ -79,8 +89,9 @@ void add_columns(Schema& s) {
   add_table("columns_of_markers", marker_columns());
   add_table("columns_of_cases", case_columns());
   add_table("columns_of_positions", position_columns());
+  add_table("columns_of_forces", series_columns());
   for (const std::string& name : all) add_keys(s, "columns", {key(name, kText, "its name in all tables")});
-  for (const char* table : {"markers", "cases", "positions"})
+  for (const char* table : {"markers", "cases", "positions", "forces"})
     add_keys(s, "columns",
              {key(table, kTable, "names in this table alone", Members{std::string("columns_of_") + table})});
 }
@@ -95,16 +106,21 @@ const std::vector<std::string>& marker_columns() {
 
 const std::vector<std::string>& case_columns() {
   static const std::vector<std::string> names = {
-      "case",      "group",     "tip",         "touch_x",     "touch_y",       "touch_z",    "axis_x",     "axis_y",
-      "axis_z",    "center_x",  "center_y",    "center_z",    "depth",         "rotation_x", "rotation_y", "rotation_z",
-      "gravity_x", "gravity_y", "gravity_z",   "pressure",    "dead_pressure", "patch",      "force",      "force_x",
-      "force_y",   "force_z",   "force_sd",    "force_sd_x",  "force_sd_y",    "force_sd_z", "torque_x",   "torque_y",
-      "torque_z",  "torque_sd", "torque_sd_x", "torque_sd_y", "torque_sd_z"};
+      "case",       "group",      "frame",     "time",      "tip",         "touch_x",     "touch_y",       "touch_z",
+      "axis_x",     "axis_y",     "axis_z",    "center_x",  "center_y",    "center_z",    "depth",         "rotation_x",
+      "rotation_y", "rotation_z", "gravity_x", "gravity_y", "gravity_z",   "pressure",    "dead_pressure", "patch",
+      "force",      "force_x",    "force_y",   "force_z",   "force_sd",    "force_sd_x",  "force_sd_y",    "force_sd_z",
+      "torque_x",   "torque_y",   "torque_z",  "torque_sd", "torque_sd_x", "torque_sd_y", "torque_sd_z"};
   return names;
 }
 
 const std::vector<std::string>& position_columns() {
   static const std::vector<std::string> names = {"case", "marker", "x", "y", "z", "sd", "sd_x", "sd_y", "sd_z"};
+  return names;
+}
+
+const std::vector<std::string>& series_columns() {
+  static const std::vector<std::string> names = {"time", "force", "force_x", "force_y", "force_z"};
   return names;
 }
 

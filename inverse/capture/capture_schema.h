@@ -10,5 +10,6 @@ const Schema& capture_schema();  // the document is the section "capture"
 const std::vector<std::string>& marker_columns();
 const std::vector<std::string>& case_columns();
 const std::vector<std::string>& position_columns();
+const std::vector<std::string>& series_columns();
 
 }  // namespace aspic

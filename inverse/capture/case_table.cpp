@@ -11,7 +11,7 @@
 namespace aspic {
 namespace {
 
-constexpr int kMaxCases = 20'000;
+constexpr int kMaxCases = 20'000, kMaxSteadyNotes = 20;
 // If only the axial force was measured, standard deviation of the lateral force, relative to the force.
 constexpr double kForceAcross = 0.3;
 
@@ -35,6 +35,7 @@ class CaseReader {
                      "; give each case its own name");
       cases.push_back(std::move(load));
       data_.source.case_line.push_back(table_.line());
+      data_.case_frame.push_back(frame_);
     }
     if (cases.empty()) throw InvalidInput(data_.source.cases + ": has no cases; a fit needs at least one");
   }
@@ -42,6 +43,7 @@ class CaseReader {
  private:
   LoadCase row() {
     LoadCase load;
+    frame_ = {table_.integer("frame"), table_.number("time")};
     const std::string number = std::to_string(data_.experiment.cases.size() + 1);
     load.name = table_.text("case").empty() ? "case " + number : table_.text("case");
     load.group = table_.text("group").empty() ? load.name : table_.text("group");
@@ -129,11 +131,54 @@ class CaseReader {
     if (load.force && along) table_.error("force and force_x, force_y, force_z are both given; keep one of them");
     load.force_sigma = force_sd ? *force_sd : default_sigma("force", newton);
     if (along && !load.force) take_force_along_axis(load, *along);
+    if (!load.force && !along && load.indenter) take_force_of_series(load, force_sd.has_value());
     load.torque = table_.vector("torque_", newton_meter * sign);
     const std::optional<Vec3d> torque_sd = table_.sigma("torque_sd", newton_meter);
     load.torque_sigma = torque_sd ? *torque_sd : default_sigma("torque", newton_meter);
     if ((load.force || load.torque) && !load.indenter)
       table_.error("has a force or torque but no indenter; give its pose, or leave the force blank");
+  }
+
+  void take_force_of_series(LoadCase& load, bool has_sigma) {
+    if (!scope_.forces) return;
+    try {
+      const std::optional<double> time = scope_.recorded ? scope_.recorded->time_of(frame_) : frame_.time;
+      if (!time) return table_.error("force and time are blank; the time selects the force in " + scope_.forces->file);
+      const std::optional<SteadyForce> steady = force_at(*time);
+      if (!steady) return;
+      const bool is_stated = has_sigma || norm(load.force_sigma) > 0;
+      if (!is_stated) load.force_sigma = scope_.forces->is_axial ? along_all(steady->sigma[0]) : steady->sigma;
+      if (scope_.forces->is_axial) {
+        take_force_along_axis(load, steady->mean[0]);
+      } else {
+        load.force = steady->mean;
+      }
+    } catch (const InvalidInput& error) {
+      table_.error(error.what());
+    }
+  }
+
+  static Vec3d along_all(double sigma) { return {{sigma, sigma, sigma}}; }
+
+  // Empty after adding an error: not steady.
+  std::optional<SteadyForce> force_at(double time) {
+    const Value* steady = settings_.find("steady");
+    if (steady && steady->is_text()) {
+      const double interval = scope_.recorded ? scope_.recorded->interval() : 0;
+      return SteadyForce{true, resampled(*scope_.forces, time, interval), {}, "taken at its time"};
+    }
+    SteadyForce force =
+        steady_force(*scope_.forces, time, steady ? steady->number() : default_duration(*scope_.forces));
+    if (!force.is_steady) {
+      table_.error(
+          "time = " + number_text(time) + " s: " + force.reason +
+          ". steady = SECONDS in capture.toml changes the duration, steady = \"off\" takes the force as it is");
+      return std::nullopt;
+    }
+    if (++steady_notes_ <= kMaxSteadyNotes)
+      data_.notes.push_back(table_.where() + ": force of " + scope_.forces->file + " at " + number_text(time) +
+                            " s: " + force.reason);
+    return force;
   }
 
   // A gauge that measures only the axial force does not determine the lateral force.
@@ -156,6 +201,8 @@ class CaseReader {
   const CaseScope& scope_;
   DataSet& data_;
   MeasuredTable table_;
+  CaseFrame frame_;  // of the current row
+  int steady_notes_ = 0;
   std::map<std::string, int> line_of_;
   std::map<std::string, IndenterPose> touch_of_;  // touch of each group
 };
@@ -180,6 +227,7 @@ void sort_cases(DataSet& data) {
   });
   cases = in_order(cases, order);
   data.source.case_line = in_order(data.source.case_line, order);
+  data.case_frame = in_order(data.case_frame, order);
 }
 
 }  // namespace

@@ -5,6 +5,8 @@
 #include <vector>
 
 #include "capture/data_set.h"
+#include "capture/force_series.h"
+#include "capture/recorded_positions.h"
 #include "capture/settings.h"
 #include "capture/surface_projection.h"
 
@@ -14,6 +16,8 @@ struct CaseScope {
   const std::map<std::string, Indenter>& indenters;
   const std::map<std::string, std::vector<Triangle>>& patches;
   const SurfaceProjection& surface;
+  const ForceSeries* forces = nullptr;          // of cases without a force of their own
+  const RecordedPositions* recorded = nullptr;  // has the times of frames
 };
 
 // Appends the cases group by group, each from the smallest load on, and their lines.

@@ -3,9 +3,11 @@
 #pragma once
 #include <filesystem>
 #include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
+#include "capture/registration.h"
 #include "fit/misfit.h"
 #include "mesh/doctor.h"
 #include "mesh/numbering.h"
@@ -17,10 +19,17 @@ struct DataSource {
   std::string settings = "capture.toml", markers = "markers.csv", cases = "cases.csv", positions = "positions.csv";
   std::vector<int> marker_line, case_line;
   std::vector<std::vector<int>> position_line;  // line per case and position
+  std::vector<std::string> frame;               // place of each case in a recording
 
   std::string marker(int m) const;           // "markers.csv:12"
   std::string load_case(int c) const;        // "cases.csv:3"
   std::string position(int c, int i) const;  // "positions.csv:40"
+};
+
+// Frame of the recording that shows a case; empty without a recording.
+struct CaseFrame {
+  std::optional<int> number;
+  std::optional<double> time;  // [s]
 };
 
 struct DataSet {
@@ -28,14 +37,16 @@ struct DataSet {
   Experiment experiment;  // the mesh is renumbered for locality
   Numbering numbering;    // maps to the user's vertices and tets
   std::vector<std::string> marker_names;
-  std::vector<double> marker_gap;  // original distance of each marker from the surface [m]
+  std::vector<double> marker_gap;            // original distance of each marker from the surface [m]
+  std::vector<CaseFrame> case_frame;         // one per case
+  std::optional<Registration> registration;  // if it was requested
   DataSource source;
   std::vector<std::string> notes;  // assumptions, conversions and corrections of the reader
 };
 
-// Reads a data set. `path`: the folder, or its capture.toml. Throws InvalidInput with file, line, value and remedy, one
-// line per error.
-DataSet read_data_set(const std::filesystem::path& path);
+// Reads a data set. `path`: the folder, or its capture.toml. `registers`: the motion of the markers to the mesh is
+// found first. Throws InvalidInput with file, line, value and remedy, one line per error.
+DataSet read_data_set(const std::filesystem::path& path, std::optional<RegistrationKind> registers = {});
 // Writes a data set, which reads back exactly if the axis of each pose is that of the touch, rotated by the pose.
 // Replaces an existing data set atomically. `beside` writes further files to the given folder, which appear together
 // with the data. Throws InvalidInput.

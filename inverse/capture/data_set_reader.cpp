@@ -2,12 +2,15 @@
 #include <cmath>
 
 #include "base/error.h"
+#include "base/function_ref.h"
 #include "base/printable.h"
 #include "capture/capture_schema.h"
 #include "capture/case_table.h"
 #include "capture/data_findings.h"
 #include "capture/data_set.h"
 #include "capture/patch_table.h"
+#include "capture/recorded_positions.h"
+#include "capture/rigid_motion.h"
 #include "capture/settings.h"
 #include "capture/surface_projection.h"
 #include "capture/units.h"
@@ -37,7 +40,8 @@ void add_notes(const std::string& what, const std::vector<Finding>& findings, st
 
 class DataSetReader {
  public:
-  explicit DataSetReader(const fs::path& path) : settings_(path) {
+  DataSetReader(const fs::path& path, std::optional<RegistrationKind> registers)
+      : settings_(path), registers_(registers) {
     data_.source.settings = settings_.file_name();
     data_.source.markers = settings_["markers"].text();
     data_.source.cases = settings_["cases"].text();
@@ -47,11 +51,16 @@ class DataSetReader {
   DataSet read() {
     read_name();
     read_rest();
+    read_recorded();
     const SurfaceProjection surface(data_.experiment.mesh);
+    register_markers(surface);
     read_markers(surface);
     read_indenters();
     read_patches(surface);
-    read_cases(settings_, {indenters_, patches_, surface}, errors_, data_);
+    if (settings_.find("forces")) forces_ = read_force_series(settings_, errors_, data_.notes);
+    read_cases(settings_,
+               {indenters_, patches_, surface, forces_ ? &*forces_ : nullptr, recorded_ ? &*recorded_ : nullptr},
+               errors_, data_);
     read_positions();
     errors_.finish();
     choose_sigmas(data_);
@@ -109,10 +118,107 @@ class DataSetReader {
     std::sort(data_.experiment.fixed.begin(), data_.experiment.fixed.end());
   }
 
+  void read_recorded() {
+    if (!settings_.is_given("positions")) return;
+    const fs::path path = settings_.file_or_pattern("positions");
+    if (is_recording(path)) recorded_.emplace(read_recording(path), settings_, size_, data_.notes);
+  }
+
+  // The registration of the settings, or one that is found now.
+  void register_markers(const SurfaceProjection& surface) {
+    const Value* given = settings_.find("registration");
+    if (given && registers_)
+      throw error_at(given->place, "registration is given; remove the key, or do not use --register");
+    if (given) to_mesh_ = read_registration(settings_.file("registration"));
+    if (registers_) {
+      data_.registration = found_registration(surface);
+      to_mesh_ = data_.registration->to_mesh;
+      data_.notes.push_back(text_of(*data_.registration));
+    }
+    if (recorded_) recorded_->set_registration(to_mesh_);
+  }
+
+  Registration found_registration(const SurfaceProjection& surface) {
+    if (settings_.find("scan")) {
+      std::vector<Vec3d> points = read_tri_mesh(settings_.file("scan")).vertices;
+      const double unit = settings_["units"].find("recording") ? settings_.unit("recording") : settings_.unit("length");
+      for (Vec3d& p : points) p = unit * p;
+      return register_to_surface(surface, points, *registers_);
+    }
+    std::vector<Vec3d> points, placed, targets;
+    if (has_table("markers")) {
+      ErrorList ignored;  // read_marker_table() reports errors of the table
+      std::vector<std::string> notes;
+      MeasuredTable table(settings_.file("markers"), settings_.columns("markers"), ignored, notes);
+      while (table.next()) add_point(table, points, placed, targets);
+    } else if (recorded_) {
+      for (const std::string& name : recorded_->names())
+        if (const std::optional<Vec3d> p = recorded_->rest(name)) points.push_back(*p);
+    }
+    if (placed.size() >= 3) return register_to_targets(placed, targets, *registers_);
+    return register_to_surface(surface, points, *registers_);
+  }
+
+  // A marker with coordinates and a vertex is a pair of corresponding points.
+  void add_point(MeasuredTable& table, std::vector<Vec3d>& points, std::vector<Vec3d>& placed,
+                 std::vector<Vec3d>& targets) {
+    std::optional<Vec3d> p = table.vector("", settings_.unit("length"));
+    if (!p && recorded_) p = recorded_->rest(table.text("marker"));
+    if (!p) return;
+    points.push_back(*p);
+    const std::optional<int> vertex = table.integer("vertex");
+    if (!vertex || *vertex < 0 || *vertex >= user_mesh_.vertex_count()) return;
+    placed.push_back(*p);
+    targets.push_back(user_mesh_.rest[*vertex]);
+  }
+
+  bool has_table(std::string_view key) const {
+    std::error_code error;
+    return settings_.is_given(key) || fs::exists(settings_.folder() / settings_[key].text(), error);
+  }
+
   void read_markers(const SurfaceProjection& surface) {
+    if (recorded_ && !has_table("markers")) {
+      read_recorded_markers(surface);
+    } else {
+      read_marker_table(surface);
+    }
+  }
+
+  void read_recorded_markers(const SurfaceProjection& surface) {
+    data_.source.markers = data_.source.positions;
+    size_t hidden = 0;
+    for (const std::string& name : recorded_->names()) {
+      const std::optional<Vec3d> rest = recorded_->rest(name);
+      if (!rest) {
+        ++hidden;
+        continue;
+      }
+      Vec3d gap{};
+      const SurfacePoint point = point_near(*rest, surface, gap, [&](const std::string& text) {
+        errors_.add(recorded_->where_at_rest() + ": '" + name + "': " + text);
+      });
+      add_marker(name, point, gap);
+    }
+    if (hidden > 0)
+      data_.notes.push_back(recorded_->where_at_rest() + ": " + std::to_string(hidden) +
+                            " points were not seen at rest, where they are placed on the body; they are not used");
+    if (data_.marker_names.empty())
+      errors_.add(recorded_->where_at_rest() + ": no point was seen; choose another rest_frame");
+  }
+
+  void add_marker(const std::string& name, const SurfacePoint& point, const Vec3d& gap) {
+    marker_of_.try_emplace(name, static_cast<int>(data_.marker_names.size()));
+    data_.experiment.markers.push_back(point);
+    data_.marker_names.push_back(name);
+    data_.marker_gap.push_back(norm(gap));
+    gap_.push_back(gap);
+  }
+
+  void read_marker_table(const SurfaceProjection& surface) {
     MeasuredTable table(settings_.file("markers"), settings_.columns("markers"), errors_, data_.notes);
     const bool has_corners = table.has("corner_1"), has_points = table.has("x");
-    if (!has_corners && !has_points && !table.has("vertex"))
+    if (!has_corners && !has_points && !table.has("vertex") && !recorded_)
       throw InvalidInput(data_.source.markers +
                          ":1: has no column x, vertex or corner_1 for the position of a marker (columns in " +
                          data_.source.settings + " gives them other names)");
@@ -123,45 +229,54 @@ class DataSetReader {
         throw InvalidInput(data_.source.markers + ": more than " + std::to_string(kMaxMarkers) + " markers");
       const std::string given = table.text("marker");
       const std::string name = given.empty() ? std::to_string(data_.marker_names.size()) : given;
-      const int index = static_cast<int>(data_.marker_names.size());
-      if (const auto [other, is_new] = marker_of_.try_emplace(name, index); !is_new)
+      if (const auto other = marker_of_.find(name); other != marker_of_.end())
         table.error("the marker '" + name + "' already occurs in line " +
                     std::to_string(data_.source.marker_line[other->second]) + "; give each its own name");
       Vec3d gap{};
-      data_.experiment.markers.push_back(marker(table, surface, gap));
-      data_.marker_names.push_back(name);
-      data_.marker_gap.push_back(norm(gap));
-      gap_.push_back(gap);
+      const SurfacePoint point = marker(table, surface, gap);
+      add_marker(name, point, gap);
       data_.source.marker_line.push_back(table.line());
     }
   }
 
   SurfacePoint marker(MeasuredTable& table, const SurfaceProjection& surface, Vec3d& gap) {
     if (!table.text("corner_1").empty()) return marker_in_triangle(table);
-    if (const std::optional<int> vertex = table.integer("vertex")) return marker_at_vertex(table, *vertex);
-    const std::optional<Vec3d> p = table.vector("", settings_.unit("length"));
+    if (const std::optional<int> vertex = table.integer("vertex")) return marker_at_vertex(table, gap);
+    const std::optional<Vec3d> p = position_at_rest(table);
     if (!p) {
-      table.error("the marker has no position; give x, y, z or vertex");
+      table.error(recorded_ ? "the marker has no position; give x, y, z or a marker that the recording shows at rest"
+                            : "the marker has no position; give x, y, z or vertex");
       return {};
     }
-    const ProjectedPoint projected = surface.nearest(*p);
-    gap = *p - projected.position;
+    return point_near(*p, surface, gap, [&](const std::string& text) { table.error(text); });
+  }
+
+  std::optional<Vec3d> position_at_rest(MeasuredTable& table) {
+    const std::optional<Vec3d> p = table.vector("", settings_.unit("length"));
+    if (p) return to_mesh_(*p);
+    return recorded_ ? recorded_->rest(table.text("marker")) : std::nullopt;
+  }
+
+  SurfacePoint point_near(const Vec3d& p, const SurfaceProjection& surface, Vec3d& gap,
+                          FunctionRef<void(const std::string&)> error) const {
+    const ProjectedPoint projected = surface.nearest(p);
+    gap = p - projected.position;
     if (projected.distance > kFarOff * size_)
-      table.error("the marker lies " + three_digits(projected.distance) +
-                  " m off the surface of the body, whose size is " + three_digits(size_) + " m; " +
-                  unit_hint(surface, *p));
+      error("the marker lies " + three_digits(projected.distance) + " m off the surface of the body, whose size is " +
+            three_digits(size_) + " m; " + unit_hint(surface, p));
     return projected.point;
   }
 
   // Suggests a unit if another one would move the point onto the body.
   std::string unit_hint(const SurfaceProjection& surface, const Vec3d& p) const {
-    const double length = settings_.unit("length");
+    const char* key = recorded_ && !has_table("markers") ? "recording" : "length";
+    const double length = recorded_ && !has_table("markers") ? recorded_->unit() : settings_.unit("length");
     for (const std::string& unit : unit_names("length")) {
       const double factor = unit_in_si("length", unit) / length;
       if (surface.nearest(factor * p).distance < kFarOff * size_ && norm(factor * p) > kFarOff * size_)
-        return "in " + unit + " it would not: units = { length = \"" + unit + "\" }";
+        return "in " + unit + " it would not: units = { " + key + " = \"" + unit + "\" }";
     }
-    return "correct it, or align the mesh with the markers";
+    return "correct it, or align the markers with the mesh by --register rigid";
   }
 
   std::optional<int> stored_vertex(MeasuredTable& table, const char* column) {
@@ -173,7 +288,8 @@ class DataSetReader {
     return std::nullopt;
   }
 
-  SurfacePoint marker_at_vertex(MeasuredTable& table, int) {
+  // Of a marker that also has a position, only the motion counts.
+  SurfacePoint marker_at_vertex(MeasuredTable& table, Vec3d& gap) {
     const std::optional<int> v = stored_vertex(table, "vertex");
     if (!v) return {};
     const auto found = corner_of_.find(*v);
@@ -183,6 +299,7 @@ class DataSetReader {
     }
     SurfacePoint point{found->second.first, {}};
     point.weights[found->second.second] = 1;
+    if (const std::optional<Vec3d> p = position_at_rest(table)) gap = *p - data_.experiment.mesh.rest[*v];
     return point;
   }
 
@@ -243,6 +360,7 @@ class DataSetReader {
 
   void read_positions() {
     data_.source.position_line.resize(data_.experiment.cases.size());
+    if (recorded_) return read_recorded_positions();
     const Value& name = settings_["positions"];
     std::error_code error;
     if (!settings_.is_given("positions") && !fs::exists(settings_.folder() / name.text(), error)) {
@@ -259,11 +377,42 @@ class DataSetReader {
       case_of[data_.experiment.cases[c].name] = static_cast<int>(c);
     std::map<std::pair<int, int>, int> line_of;
     for (size_t count = 0; table.next(); ++count) {
-      if (count == kMaxReadings)
-        throw InvalidInput(data_.source.positions + ": more than " + std::to_string(kMaxReadings) +
-                           " positions; remove markers or cases");
+      if (count == kMaxReadings) throw too_many_positions();
       read_position(table, case_of, line_of);
     }
+  }
+
+  void read_recorded_positions() {
+    const double sd = position_sigma();
+    const std::vector<int> markers = recorded_->points(data_.marker_names);
+    size_t count = 0;
+    for (size_t c = 0; c < data_.experiment.cases.size(); ++c) {
+      const RecordedFrame* frame = nullptr;
+      try {
+        frame = &recorded_->frame(data_.case_frame[c]);
+      } catch (const InvalidInput& error) {
+        errors_.add(data_.source.load_case(static_cast<int>(c)) + ": " + error.what());
+        continue;
+      }
+      for (size_t m = 0; m < markers.size(); ++m) {
+        if (markers[m] < 0 || !is_seen(frame->positions[markers[m]])) continue;
+        if (++count > kMaxReadings) throw too_many_positions();
+        data_.experiment.cases[c].positions.push_back(
+            {static_cast<int>(m), recorded_->on_mesh(frame->positions[markers[m]]) - gap_[m], recorded_->sigma(sd)});
+      }
+      data_.source.frame.resize(data_.experiment.cases.size());
+      data_.source.frame[c] = frame->where;
+    }
+  }
+
+  InvalidInput too_many_positions() const {
+    return InvalidInput(data_.source.positions + ": more than " + std::to_string(kMaxReadings) +
+                        " positions; remove markers or cases");
+  }
+
+  double position_sigma() const {  // [m]; 0: chosen later
+    const Value* typical = settings_["deviation"].find("position");
+    return typical ? typical->number() * settings_.unit("length") * scale_of(to_mesh_) : 0;
   }
 
   void read_position(MeasuredTable& table, const std::map<std::string, int>& case_of,
@@ -271,14 +420,13 @@ class DataSetReader {
     const int c = table.index_of("case", case_of), m = table.index_of("marker", marker_of_);
     const double length = settings_.unit("length");
     const std::optional<Vec3d> p = table.vector("", length);
-    const std::optional<Vec3d> sd = table.sigma("sd", length);
+    const std::optional<Vec3d> sd = table.sigma("sd", length * scale_of(to_mesh_));
     if (c < 0 || m < 0 || !p) return;  // blank: hidden from the cameras
     if (const auto [first, is_new] = line_of.try_emplace({c, m}, table.line()); !is_new)
       table.error("this marker was given for this case in line " + std::to_string(first->second) + " already");
-    const Value* typical = settings_["deviation"].find("position");
-    const double all = typical ? typical->number() * length : 0;
+    const double all = position_sigma();
     // Uses the displacement from rest, because the measured surface never matches the mesh exactly.
-    data_.experiment.cases[c].positions.push_back({m, *p - gap_[m], sd ? *sd : Vec3d{{all, all, all}}});
+    data_.experiment.cases[c].positions.push_back({m, to_mesh_(*p) - gap_[m], sd ? *sd : Vec3d{{all, all, all}}});
     data_.source.position_line[c].push_back(table.line());
   }
 
@@ -286,7 +434,11 @@ class DataSetReader {
   ErrorList errors_;
   DataSet data_;
   TetMesh user_mesh_;
-  double size_ = 0;  // size of the body [m]
+  std::optional<RegistrationKind> registers_;
+  AffineMap to_mesh_;  // from the coordinates of the markers
+  std::optional<ForceSeries> forces_;
+  std::optional<RecordedPositions> recorded_;  // if the positions are those of a recording
+  double size_ = 0;                            // size of the body [m]
   std::map<std::string, int> marker_of_;
   std::vector<Vec3d> gap_;                             // offset of each marker at rest from its surface point [m]
   std::map<int, std::pair<Triangle, int>> corner_of_;  // a triangle of each vertex of the surface, and which corner
@@ -296,6 +448,8 @@ class DataSetReader {
 
 }  // namespace
 
-DataSet read_data_set(const fs::path& path) { return DataSetReader(path).read(); }
+DataSet read_data_set(const fs::path& path, std::optional<RegistrationKind> registers) {
+  return DataSetReader(path, registers).read();
+}
 
 }  // namespace aspic

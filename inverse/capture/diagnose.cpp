@@ -21,6 +21,10 @@ Vec3d displacement(const Experiment& experiment, const MarkerReading& reading) {
 
 std::vector<DataFinding> diagnose(const DataSet& data) {
   DataFindings findings;
+  if (data.registration)
+    for (const std::string& ambiguity : data.registration->ambiguities)
+      findings.warning("registration", ambiguity,
+                       "add points elsewhere, or give a vertex of the mesh to 3 markers in the table of markers");
   diagnose_loads(data, findings);
   diagnose_forces(data, findings);
   diagnose_positions(data, findings);

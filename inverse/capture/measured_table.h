@@ -39,6 +39,7 @@ class MeasuredTable {
 
   bool next();
   int line() const { return csv_.line(); }
+  std::string where() const { return csv_.where(); }
   void error(const std::string& text);  // error in this row
 
   bool has(std::string_view column) const { return index_.contains(column); }

@@ -42,6 +42,16 @@ fs::path CaptureSettings::file(std::string_view key) const {
   return files_.find(name);
 }
 
+fs::path CaptureSettings::file_or_pattern(std::string_view key) const {
+  const Value& name = (*this)[key];
+  if (name.text().find('*') == std::string::npos) return file(key);
+  const fs::path pattern = fs::path(name.text()).lexically_normal();
+  if (pattern.is_absolute() || *pattern.begin() == "..")
+    throw error_at(name.place, std::string(key) + " = " + toml_string(name.text()) +
+                                   " is outside the data set; copy the files into its folder");
+  return folder_ / pattern;
+}
+
 double CaptureSettings::unit(const std::string& quantity) const {
   const Value& units = (*this)["units"];
   if (const Value* name = units.find(quantity)) return unit_in_si(quantity, name->text());
@@ -51,9 +61,10 @@ double CaptureSettings::unit(const std::string& quantity) const {
 }
 
 ColumnNames CaptureSettings::columns(const std::string& table_name) const {
-  ColumnNames names{table_name == "markers" ? marker_columns()
-                    : table_name == "cases" ? case_columns()
-                                            : position_columns(),
+  ColumnNames names{table_name == "markers"  ? marker_columns()
+                    : table_name == "cases"  ? case_columns()
+                    : table_name == "forces" ? series_columns()
+                                             : position_columns(),
                     {}};
   const Value& columns = (*this)["columns"];
   const auto is_known = [&](const std::string& name) {

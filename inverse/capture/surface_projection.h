@@ -21,6 +21,7 @@ class SurfaceProjection {
 
   const std::vector<Triangle>& triangles() const { return triangles_; }  // boundary triangles, outward oriented
   ProjectedPoint nearest(const Vec3d& p) const;
+  Vec3d center(const Triangle& t) const { return (1.0 / 3) * (mesh_.rest[t[0]] + mesh_.rest[t[1]] + mesh_.rest[t[2]]); }
 
  private:
   const TetMesh& mesh_;

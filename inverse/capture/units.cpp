@@ -45,7 +45,9 @@ constexpr Unit kUnits[] = {
     {"gravity", "g", kStandardGravity},
 };
 
-std::string_view kind_of(std::string_view quantity) { return quantity == "mesh" ? "length" : quantity; }
+std::string_view kind_of(std::string_view quantity) {
+  return quantity == "mesh" || quantity == "recording" ? "length" : quantity;
+}
 
 }  // namespace
 

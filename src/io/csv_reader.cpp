@@ -55,6 +55,8 @@ bool parse(const std::string& text, Number& value) {
 CsvReader::CsvReader(const std::filesystem::path& path, CsvOrigin origin)
     : path_(path), in_(open_input(path)), origin_(origin) {
   if (!read_line()) throw InvalidInput(path.string() + ": is empty; a table begins with its column names");
+  // A separator at the end of the header names no column.
+  while (origin == CsvOrigin::foreign && cells_.size() > 1 && cells_.back().empty()) cells_.pop_back();
   columns_ = cells_;
 }
 
