@@ -49,12 +49,16 @@ class LoadedBody {
  private:
   bool has_force() const { return load_.force.has_value(); }
   bool has_torque() const { return load_.torque.has_value(); }
+  bool has_wrench() const { return has_force() || has_torque(); }
   static const LoadCase& readable(const Experiment& experiment, const LoadCase& load);  // throws if invalid
   Model make_model(const std::string& material, std::span<const MaterialParameters> parameters);
   void apply(double part);  // fraction of the load
   bool try_from(std::span<const double> start);
   bool load_in_parts();
   bool solved(const SolveReport& report);
+  Wrench wrench();                                                          // at x()
+  Wrench wrench_change(std::span<const double> dtheta);                     // along dx_
+  void add_wrench_transposed(const Wrench& bar, std::span<double> thetabar);  // to xbar_ and thetabar
   void put_change(const Wrench& change, std::span<double> dr) const;  // with dx_
   void predict_readings();
 
@@ -62,6 +66,7 @@ class LoadedBody {
   const LoadCase& load_;
   Probe* probe_ = nullptr;           // in the model; null without an indenter
   std::vector<ScaledLoad*> scaled_;  // weight and pressure in the model
+  std::shared_ptr<GripMotion> grip_;  // in the model; null without a grip
   std::vector<double> rest_;
   Equilibrium equilibrium_;
   CasePrediction prediction_;
@@ -69,7 +74,7 @@ class LoadedBody {
   bool is_solved_ = false;
   std::string failure_;
   Misfit::Counts counts_;
-  std::vector<double> dx_, xbar_, start_;  // scratch
+  std::vector<double> dx_, xbar_, start_, force_;  // scratch
 };
 
 }  // namespace aspic

@@ -35,6 +35,7 @@ struct Gel {
     experiment.cases.push_back(pressed());
     experiment.cases.push_back(pressed());
     experiment.cases.back().is_dead_pressure = true;
+    experiment.cases.push_back(gripped());
   }
 
   static std::string text(double x) { return std::to_string(std::lround(1000 * x)) + " mm"; }
@@ -46,6 +47,20 @@ struct Gel {
     load.pose = load.touch;
     load.pose.center = {{x + 0.3 * depth, 0.04, 0.062 - depth}};
     load.pose.rotation = {{0, 0.1, 0}};
+    load.force = load.torque = Vec3d{};
+    load.force_sigma = {{0.01, 0.01, 0.02}};
+    load.torque_sigma = {{1e-4, 1e-4, 1e-4}};
+    add_markers(load);
+    return load;
+  }
+  // The top is lifted, moved sideways and twisted, under gravity.
+  LoadCase gripped() const {
+    LoadCase load{.name = "gripped", .group = "gripped"};
+    Grip grip{.center = {{0.04, 0.04, 0.05}}, .displacement = {{0.004, -0.002, 0.003}}, .rotation = {{0.05, 0, 0.2}}};
+    for (int v = 0; v < experiment.mesh.vertex_count(); ++v)
+      if (experiment.mesh.rest[v][2] > 0.05 - 1e-9) grip.vertices.push_back(v);
+    load.grip = grip;
+    load.gravity = {{0, 0, -9.81}};
     load.force = load.torque = Vec3d{};
     load.force_sigma = {{0.01, 0.01, 0.02}};
     load.torque_sigma = {{1e-4, 1e-4, 1e-4}};
