@@ -108,7 +108,7 @@ def block(cells=7, young=2e4, poisson=0.45):
     markers = on_sides(size, 80, 1, lambda p: p[2] < 0.04)
     motions = [("pull", "pull", (0, 0, 2e-3), (0, 0, 0)), ("press", "press", (0, 0, -2e-3), (0, 0, 0)),
                ("shear", "shear", (4e-3, 0, 0), (0, 0, 0)), ("twist", "twist", (0, 0, 0), (0, 0, 0.15))]
-    return Truth("block", size, (6, 6, 6), markers, grip_readings(solid, markers, motions), GRIPPED.format(height=0.04),
+    return Truth("block", size, (4, 4, 4), markers, grip_readings(solid, markers, motions), GRIPPED.format(height=0.04),
                  young, poisson)
 
 
@@ -118,7 +118,7 @@ def tensile(cells=5, young=6e4, poisson=0.4):
     solid = fem.Solid(fem.box(planes, planes, graded(0.08, 2 * cells + 2, 0.4)), uniform(young), poisson)
     markers = on_sides(size, 60, 2, lambda p: p[2] < 0.08)
     motions = [(f"{1000 * d:g} mm", f"{1000 * d:g} mm", (0, 0, d), (0, 0, 0)) for d in (1.5e-3, 3e-3, 4.5e-3)]
-    return Truth("tensile", size, (4, 4, 14), markers, grip_readings(solid, markers, motions),
+    return Truth("tensile", size, (3, 3, 10), markers, grip_readings(solid, markers, motions),
                  GRIPPED.format(height=0.08), young, poisson)
 
 
@@ -130,7 +130,7 @@ def weight(cells=7, young=5e3, poisson=0.45):
     markers = on_sides(size, 80, 3, lambda p: p[2] < 0.04)
     motions = [("stand", "stand", None, None), ("press", "press", (0, 0, -2e-3), (0, 0, 0)),
                ("shear", "shear", (4e-3, 0, 0), (0, 0, 0))]
-    return Truth("weight", size, (6, 6, 6), markers, grip_readings(solid, markers, motions, gravity),
+    return Truth("weight", size, (4, 4, 4), markers, grip_readings(solid, markers, motions, gravity),
                  GRIPPED.format(height=0.04), young, poisson)
 
 
@@ -142,7 +142,7 @@ FIELDS = {
 }
 
 
-def ball(cells=9, poisson=0.45):
+def ball(cells=7, poisson=0.45):
     size, planes, field = np.array([0.06] * 3), np.linspace(0, 0.06, cells + 1), FIELDS["ball"]
     solid = fem.Solid(fem.box(planes, planes, planes), field, poisson)
     markers = on_sides(size, 300, 4, lambda p: p[2] < 0.06)
@@ -150,7 +150,7 @@ def ball(cells=9, poisson=0.45):
     motions = [("pull", "pull", (0, 0, a), (0, 0, 0)), ("press", "press", (0, 0, -a), (0, 0, 0)),
                ("shear x", "shear x", (1.5 * a, 0, 0), (0, 0, 0)), ("shear y", "shear y", (0, 1.5 * a, 0), (0, 0, 0)),
                ("twist", "twist", (0, 0, 0), (0, 0, 0.2)), ("bend", "bend", (0, 0, 0), (0.12, 0, 0))]
-    return Truth("ball", size, (8, 8, 8), markers, grip_readings(solid, markers, motions), GRIPPED.format(height=0.06),
+    return Truth("ball", size, (6, 6, 6), markers, grip_readings(solid, markers, motions), GRIPPED.format(height=0.06),
                  field, poisson)
 
 
@@ -166,7 +166,7 @@ radius = {sphere}
 """
 
 
-def layers(fine=4, poisson=0.45):
+def layers(fine=3, poisson=0.45):
     """15 kPa above 45 kPa, pressed in the middle: a quarter of the body is solved."""
     size, half, disc, sphere = np.array([0.08, 0.08, 0.04]), 0.04, 0.012, 0.016
     inner = np.linspace(0, 0.015, fine + 2)
@@ -197,7 +197,7 @@ def layers(fine=4, poisson=0.45):
                        "touch_z": 0.04 + (0 if tip == "disc" else sphere), "axis_x": 0, "axis_y": 0, "axis_z": -1,
                        "depth": depth}
             readings.append(Reading(columns, found, force))
-    return Truth("layers", size, (10, 10, 5), markers, readings, TIPS.format(disc=disc, sphere=sphere),
+    return Truth("layers", size, (8, 8, 5), markers, readings, TIPS.format(disc=disc, sphere=sphere),
                  FIELDS["layers"], poisson, (INTERFACE,))
 
 
