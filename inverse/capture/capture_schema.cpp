@@ -23,25 +23,25 @@ void add_sections_of_scenes(Schema& s) {
 }
 
 void add_document(Schema& s) {
-  add_keys(s, "capture",
-           {key("version", kInteger, "of this format", Range{.min = 1, .max = 1}, kRequired),
-            key("name", kText, "of the data set; default: the folder's name"),
-            key("mesh", kText, "tet mesh of the body at rest", kRequired),
-            key("order", kInteger, "of its tets", Range{.min = 1, .max = 2}, Usual{"1"}),
-            key("fixed", kExpression | kTable | kIntegers, "held vertices; default: none", Members{"where"}),
-            key("density", kNumber | kExpression | kTable, "for gravity", Units{"kg/m^3"}, Range{.min = 0},
-                Members{"field"}, Usual{"1000.0"}),
-            key("up", kNumbers, "for selections by height", Usual{"[0.0, 1.0, 0.0]"}),
-            key("markers", kText, "table of markers", Usual{"\"markers.csv\""}),
-            key("cases", kText, "table of load cases", Usual{"\"cases.csv\""}),
-            key("positions", kText, "table of positions", Usual{"\"positions.csv\""}),
-            key("units", kTable, "of the tables", Members{"units"}, Usual{"{}"}),
-            key("columns", kTable, "names of columns", Members{"columns"}, Usual{"{}"}),
-            key("deviation", kTable, "of readings", Members{"deviation"}, Usual{"{}"}),
-            key("force_of", kText, "whose force on the other was measured", Choices{{"tip", "body"}}, Usual{"\"tip\""}),
-            key("tip", kTables, "tips of probes", Members{"tip"}),
-            key("grip", kTables, "clamps of a rig", Members{"grip"}),
-            key("patch", kTables, "patches under pressure", Members{"patch"})});
+  add_keys(
+      s, "capture",
+      {key("version", kInteger, "of this format", Range{.min = 1, .max = 1}, kRequired),
+       key("name", kText, "of the data set; default: the folder's name"),
+       key("mesh", kText, "tet mesh of the body at rest", kRequired),
+       key("order", kInteger, "of its tets; default: 2 up to 2000 tets, 1 above", Range{.min = 1, .max = 2}),
+       key("fixed", kExpression | kTable | kIntegers, "held vertices; default: none", Members{"where"}),
+       key("density", kNumber | kExpression | kTable, "for gravity", Units{"kg/m^3"}, Range{.min = 0}, Members{"field"},
+           Usual{"1000.0"}),
+       key("up", kNumbers, "for selections by height", Usual{"[0.0, 1.0, 0.0]"}),
+       key("markers", kText, "table of markers", Usual{"\"markers.csv\""}),
+       key("cases", kText, "table of load cases", Usual{"\"cases.csv\""}),
+       key("positions", kText, "table of positions", Usual{"\"positions.csv\""}),
+       key("units", kTable, "of the tables", Members{"units"}, Usual{"{}"}),
+       key("columns", kTable, "names of columns", Members{"columns"}, Usual{"{}"}),
+       key("deviation", kTable, "of readings", Members{"deviation"}, Usual{"{}"}),
+       key("force_of", kText, "whose force on the other was measured", Choices{{"tip", "body"}}, Usual{"\"tip\""}),
+       key("tip", kTables, "tips of probes", Members{"tip"}), key("grip", kTables, "clamps of a rig", Members{"grip"}),
+       key("patch", kTables, "patches under pressure", Members{"patch"})});
 }
 
 void add_indenters_and_patches(Schema& s) {
@@ -101,12 +101,12 @@ const std::vector<std::string>& marker_columns() {
 
 const std::vector<std::string>& case_columns() {
   static const std::vector<std::string> names = {
-      "case",      "group",     "grip",        "move_x",      "move_y",        "move_z",
-      "tip",       "touch_x",   "touch_y",     "touch_z",     "axis_x",        "axis_y",
-      "axis_z",    "center_x",  "center_y",    "center_z",    "depth",         "rotation_x", "rotation_y", "rotation_z",
-      "gravity_x", "gravity_y", "gravity_z",   "pressure",    "dead_pressure", "patch",      "force",      "force_x",
-      "force_y",   "force_z",   "force_sd",    "force_sd_x",  "force_sd_y",    "force_sd_z", "torque_x",   "torque_y",
-      "torque_z",  "torque_sd", "torque_sd_x", "torque_sd_y", "torque_sd_z"};
+      "case",      "group",     "grip",      "move_x",        "move_y",      "move_z",     "tip",
+      "touch_x",   "touch_y",   "touch_z",   "axis_x",        "axis_y",      "axis_z",     "center_x",
+      "center_y",  "center_z",  "depth",     "rotation_x",    "rotation_y",  "rotation_z", "gravity_x",
+      "gravity_y", "gravity_z", "pressure",  "dead_pressure", "patch",       "force",      "force_x",
+      "force_y",   "force_z",   "force_sd",  "force_sd_x",    "force_sd_y",  "force_sd_z", "torque_x",
+      "torque_y",  "torque_z",  "torque_sd", "torque_sd_x",   "torque_sd_y", "torque_sd_z"};
   return names;
 }
 

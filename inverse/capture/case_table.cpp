@@ -159,8 +159,9 @@ class CaseReader {
     if (!load.indenter && !load.grip) return;
     const Vec3d axis = load.indenter ? load.pose.axis : load.grip->displacement;
     if (norm(axis) == 0)
-      return table_.error("the column force is the component along the motion of the grip, which only rotates; give "
-                          "force_x, force_y, force_z");
+      return table_.error(
+          "the column force is the component along the motion of the grip, which only rotates; give "
+          "force_x, force_y, force_z");
     const Vec3d a = unit(axis);
     load.force = force * a;
     for (int i = 0; i < 3; ++i)

@@ -25,7 +25,8 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr size_t kMaxMarkers = 1'000'000, kMaxReadings = 5'000'000;
-constexpr double kFarOff = 0.1;  // fraction of the body's size; farther markers are errors
+constexpr int kMaxQuadratic = 2000;  // tets that are quadratic by default; a fit also solves on eight times as many
+constexpr double kFarOff = 0.1;      // fraction of the body's size; farther markers are errors
 
 void add_notes(const std::string& what, const std::vector<Finding>& findings, std::vector<std::string>& notes) {
   for (const Finding& f : findings) {
@@ -77,7 +78,7 @@ class DataSetReader {
     if (unit != 1)
       for (Vec3d& X : user_mesh_.rest) X = unit * X;
     add_notes(path.filename().string(), diagnose(user_mesh_), data_.notes);
-    if (settings_["order"].number() == 2) user_mesh_ = raise_order(std::move(user_mesh_));
+    if (user_mesh_.mids.empty() && order() == 2) user_mesh_ = raise_order(std::move(user_mesh_));
     data_.numbering = locality_numbering(user_mesh_);
     data_.experiment.mesh = from_user(data_.numbering, user_mesh_);
     size_ = size_of(user_mesh_);
@@ -86,6 +87,11 @@ class DataSetReader {
                                                    {user_mesh_, settings_.files(), "density", painted});
     data_.experiment.density = data_.numbering.tet.from_user(density);
     read_fixed();
+  }
+
+  int order() const {
+    if (const Value* given = settings_.find("order")) return given->integer();
+    return user_mesh_.tet_count() <= kMaxQuadratic ? 2 : 1;
   }
 
   SelectionScope scope() const {

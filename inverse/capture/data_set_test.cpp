@@ -306,7 +306,8 @@ TEST_F(DataSetFile, InteriorAndMissingVerticesAreNoMarkers) {
 }
 
 TEST_F(DataSetFile, ReadsMotionsOfGrips) {
-  measured("units = { length = \"mm\", mesh = \"m\", angle = \"deg\" }\n[[grip]]\nname = \"top\"\nwhere = \"z > 0.0599\"\n");
+  measured(
+      "units = { length = \"mm\", mesh = \"m\", angle = \"deg\" }\n[[grip]]\nname = \"top\"\nwhere = \"z > 0.0599\"\n");
   folder.write("markers.csv", "marker,x,y,z\nA,50,40,60\n");
   std::filesystem::remove(path("positions.csv"));
   folder.write("cases.csv", "case,grip,move_x,move_y,move_z,force,torque_x,torque_y,torque_z\npull,,0,3,4,3,,,\n");
@@ -332,8 +333,9 @@ TEST_F(DataSetFile, RefusesGripsWithPlaceAndRemedy) {
               HasSubstr("cases.csv:2: there is no grip; describe it as [[grip]] in capture.toml"));
   EXPECT_THAT(refusal_of(top, "case,grip,force\ndeep,grip,1\n"),
               HasSubstr("cases.csv:2: the motion of the grip is missing; give move_x, move_y, move_z"));
-  EXPECT_THAT(refusal_of(top, "case,grip,move_x,move_y,move_z,touch_x,touch_y,touch_z,depth\n"
-                              "deep,grip,0,0,1e-3,0.05,0.04,0.07,0.001\n"),
+  EXPECT_THAT(refusal_of(top,
+                         "case,grip,move_x,move_y,move_z,touch_x,touch_y,touch_z,depth\n"
+                         "deep,grip,0,0,1e-3,0.05,0.04,0.07,0.001\n"),
               HasSubstr("cases.csv:2: has an indenter and a grip"));
   EXPECT_THAT(refusal_of(top, "case,grip,rotation_x,rotation_y,rotation_z,force\ndeep,grip,0,0,0.1,1\n"),
               HasSubstr("the grip, which only rotates; give force_x, force_y, force_z"));

@@ -100,12 +100,12 @@ class DataSetWriter {
   }
 
   void write_cases() const {
-    Csv csv({"case",       "group",     "grip",        "move_x",      "move_y",     "move_z",        "tip",
-             "touch_x",    "touch_y",   "touch_z",     "axis_x",
-             "axis_y",     "axis_z",    "center_x",    "center_y",    "center_z",   "rotation_x",    "rotation_y",
-             "rotation_z", "gravity_x", "gravity_y",   "gravity_z",   "pressure",   "dead_pressure", "patch",
-             "force_x",    "force_y",   "force_z",     "force_sd_x",  "force_sd_y", "force_sd_z",    "torque_x",
-             "torque_y",   "torque_z",  "torque_sd_x", "torque_sd_y", "torque_sd_z"});
+    Csv csv({"case",        "group",      "grip",          "move_x",     "move_y",     "move_z",    "tip",
+             "touch_x",     "touch_y",    "touch_z",       "axis_x",     "axis_y",     "axis_z",    "center_x",
+             "center_y",    "center_z",   "rotation_x",    "rotation_y", "rotation_z", "gravity_x", "gravity_y",
+             "gravity_z",   "pressure",   "dead_pressure", "patch",      "force_x",    "force_y",   "force_z",
+             "force_sd_x",  "force_sd_y", "force_sd_z",    "torque_x",   "torque_y",   "torque_z",  "torque_sd_x",
+             "torque_sd_y", "torque_sd_z"});
     for (const LoadCase& load : data_.experiment.cases) csv.add(row_of(load));
     csv.write(folder_ / "cases.csv");
   }
@@ -175,7 +175,7 @@ class DataSetWriter {
   void write_settings() const {
     std::string text =
         "# Measurements, in SI units: docs/capture_format.md\nversion = 1\nname = " + toml_string(data_.name) +
-        "\nmesh = \"rest.msh\"" + (data_.experiment.mesh.mids.empty() ? "" : "\norder = 2") +
+        "\nmesh = \"rest.msh\"" + (data_.experiment.mesh.mids.empty() ? "\norder = 1" : "\norder = 2") +
         "\ndensity = " + density_text() + "\nfixed = " + list_of(data_.experiment.fixed) + "\n";
     for (const Indenter& indenter : indenters_)
       text += "\n[[tip]]\nname = " + toml_string(indenter_name(indenter)) +

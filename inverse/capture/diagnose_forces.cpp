@@ -115,11 +115,12 @@ class ForceDiagnosis {
     if (against.empty()) return;
     if (2 * static_cast<int>(against.size()) > measured)
       return findings_.error(where(against.front()),
-                             "the force opposes the motion of the " + device(cases_[against.front()]) + ", here and in " +
-                                 std::to_string(against.size() - 1) + " other cases",
+                             "the force opposes the motion of the " + device(cases_[against.front()]) +
+                                 ", here and in " + std::to_string(against.size() - 1) + " other cases",
                              "if the force of the body on the tip was measured, set force_of = \"body\"");
     for (const size_t c : against)
-      findings_.warning(where(c), "the force opposes the motion of the " + device(cases_[c]) + ", unlike in the other cases",
+      findings_.warning(where(c),
+                        "the force opposes the motion of the " + device(cases_[c]) + ", unlike in the other cases",
                         "correct its sign, or leave it blank");
   }
 

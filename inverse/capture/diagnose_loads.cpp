@@ -87,8 +87,7 @@ class LoadDiagnosis {
     if (turn > 2 * std::numbers::pi)
       return findings_.error(where_, finding, "it would fit in degrees: units = { angle = \"deg\" }");
     if (turn > kTurned)
-      findings_.warning(where_, finding,
-                        "rotation_x, _y, _z are a rotation vector in rad: check units: angle");
+      findings_.warning(where_, finding, "rotation_x, _y, _z are a rotation vector in rad: check units: angle");
   }
 
   // Forces of an indenter smaller than the triangles depend on the mesh.
@@ -183,9 +182,10 @@ class LoadDiagnosis {
     if (is_glued && is_pulled)
       return findings_.warning(data_.source.settings, what + ": only the indenter or the grip holds the body",
                                "fix the part on the table: fixed = { lowest = 0.02 }");
-    findings_.error(data_.source.settings,
-                    what + (is_glued ? ": the body would follow the indenter or the grip" : ": the body would be pushed away"),
-                    "fix the part on the table: fixed = { lowest = 0.02 }");
+    findings_.error(
+        data_.source.settings,
+        what + (is_glued ? ": the body would follow the indenter or the grip" : ": the body would be pushed away"),
+        "fix the part on the table: fixed = { lowest = 0.02 }");
   }
 
   const DataSet& data_;

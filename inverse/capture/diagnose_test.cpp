@@ -290,7 +290,8 @@ TEST(Diagnosis, MissingContactAndMissingSupportAreErrors) {
   data.experiment.fixed.clear();
   EXPECT_THAT(diagnose(data), Contains(finding(Severity::error, "capture.toml", "follow the indenter or the grip")));
   data.experiment.cases[1].gravity = {{0, 0, -9.81}};
-  EXPECT_THAT(diagnose(data), Contains(finding(Severity::warning, "capture.toml", "only the indenter or the grip holds")));
+  EXPECT_THAT(diagnose(data),
+              Contains(finding(Severity::warning, "capture.toml", "only the indenter or the grip holds")));
   for (LoadCase& load : data.experiment.cases) load.indenter->contact = IndenterContact::sliding;
   EXPECT_THAT(diagnose(data), Contains(finding(Severity::error, "capture.toml", "pushed away", "fixed")));
   data = data_in_lines();

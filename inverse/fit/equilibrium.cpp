@@ -164,7 +164,7 @@ struct Equilibrium::Impl {
   MinimizeOptions minimize;
   std::unique_ptr<LinearSolver> solver;  // factorization of K
   BlockSparse K;
-  StiffRows stiff_rows;  // of K
+  StiffRows stiff_rows;                 // of K
   std::optional<BlockSparse> all_rows;  // K with the rows of pinned vertices, if they move
   ElasticParameters theta;
   std::vector<MaterialParameters> parameters, linear_parameters;

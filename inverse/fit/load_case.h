@@ -42,7 +42,8 @@ class LoadedBody {
   bool multiply(std::span<const double> dtheta, std::span<double> dr);
   bool add_transposed(std::span<const double> w, std::span<double> thetabar);
   bool has_layer() const { return probe_ != nullptr; }
-  bool multiply_by_layer(std::span<double> dr);  // dr/dlog k, k the stiffness of the indenter's layer
+  bool common_error(std::span<double> dr) const;  // see Misfit; writes 0 if there is none
+  bool multiply_by_layer(std::span<double> dr);   // dr/dlog k, k the stiffness of the indenter's layer
 
   const Misfit::Counts& counts() const { return counts_; }
 
@@ -56,16 +57,16 @@ class LoadedBody {
   bool try_from(std::span<const double> start);
   bool load_in_parts();
   bool solved(const SolveReport& report);
-  Wrench wrench();                                                          // at x()
-  Wrench wrench_change(std::span<const double> dtheta);                     // along dx_
+  Wrench wrench();                                                            // at x()
+  Wrench wrench_change(std::span<const double> dtheta);                       // along dx_
   void add_wrench_transposed(const Wrench& bar, std::span<double> thetabar);  // to xbar_ and thetabar
-  void put_change(const Wrench& change, std::span<double> dr) const;  // with dx_
+  void put_change(const Wrench& change, std::span<double> dr) const;          // with dx_
   void predict_readings();
 
   const Experiment& experiment_;
   const LoadCase& load_;
-  Probe* probe_ = nullptr;           // in the model; null without an indenter
-  std::vector<ScaledLoad*> scaled_;  // weight and pressure in the model
+  Probe* probe_ = nullptr;            // in the model; null without an indenter
+  std::vector<ScaledLoad*> scaled_;   // weight and pressure in the model
   std::shared_ptr<GripMotion> grip_;  // in the model; null without a grip
   std::vector<double> rest_;
   Equilibrium equilibrium_;

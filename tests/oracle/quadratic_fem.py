@@ -1,4 +1,4 @@
-"""Statics of soft solids by quadratic tets in NumPy and SciPy, independent of Aspic: its own meshes, elements and law.
+"""Equilibria of soft solids by quadratic tets in NumPy and SciPy, independent of Aspic: its own meshes, elements and law.
 
 Energy density: mu/2 (x + b x^2) + K/4 (j^2 - 1 - 2 log j), x = J^(-2/3) I1 - 3, where j is the mean of J over a tet
 (mean dilatation). mu and K are those of E and nu at small strains. The mesh is a graded box of cells that are cut into
