@@ -70,8 +70,8 @@ class DataSetFile : public FolderTest {
                  "case,group,touch_x,touch_y,touch_z,depth,force_x,force_y,force_z,force_sd\n"
                  "deep,p,0.05,0.04,0.07,0.004,0,0,-1,0.01\nshallow,p,0.05,0.04,0.07,0.002,,,,\n");
     folder.write("positions.csv", "case,marker,x,y,z,sd\ndeep,A,0.05,0.04,0.056,1e-4\nshallow,B,0.02,0.03,0.0599,\n");
-    folder.write("capture.toml",
-                 "version = 1\nmesh = \"rest.msh\"\nfixed = \"z < 1e-9\"\n" + settings + "\n[[tip]]\nradius = 0.01\n");
+    folder.write("capture.toml", "version = 1\nmesh = \"rest.msh\"\norder = 1\nfixed = \"z < 1e-9\"\n" + settings +
+                                     "\n[[tip]]\nradius = 0.01\n");
     return folder;
   }
   std::string refusal() {
@@ -168,7 +168,7 @@ TEST_F(DataSetFile, AcceptsUnitsAndColumnNamesOfOtherPrograms) {
                "1\t50\t40\t70\t4\t0\t0\t90\t0\t0\t250");
   folder.write("positions.csv", "case,marker,X [mm],Y [mm],Z [mm]\n1,A,50,40,56\n");
   folder.write("capture.toml",
-               "version = 1\nmesh = \"rest.msh\"\nforce_of = \"body\"\nfixed = [0, 4]\n"
+               "version = 1\nmesh = \"rest.msh\"\norder = 1\nforce_of = \"body\"\nfixed = [0, 4]\n"
                "units = { length = \"mm\", mesh = \"m\", force = \"g\", angle = \"deg\" }\n"
                "columns = { x = \"X [mm]\", y = \"Y [mm]\", z = \"Z [mm]\", cases = { force_z = \"Scale\" } }\n"
                "[[tip]]\nradius = 10\n");
@@ -194,7 +194,8 @@ TEST_F(DataSetFile, AxialForceLeavesLateralForceUndetermined) {
 TEST_F(DataSetFile, PatchesAndMarkersAtVerticesAreFound) {
   measured("[[patch]]\nname = \"top\"\nwhere = { highest = 0.001 }");
   folder.write("capture.toml",
-               "version = 1\nmesh = \"rest.msh\"\nup = [0, 0, 2]\nfixed = { lowest = 0.0 }\n[[patch]]\nname = \"top\"\n"
+               "version = 1\nmesh = \"rest.msh\"\norder = 1\nup = [0, 0, 2]\nfixed = { lowest = 0.0 }\n[[patch]]\nname "
+               "= \"top\"\n"
                "where = { highest = 0.001 }\n");
   const int top_corner = 3;  // of x = y = 0, z = 0.06
   folder.write("markers.csv", "vertex\n" + std::to_string(top_corner) + "\n");
@@ -339,6 +340,21 @@ TEST_F(DataSetFile, RefusesGripsWithPlaceAndRemedy) {
               HasSubstr("cases.csv:2: has an indenter and a grip"));
   EXPECT_THAT(refusal_of(top, "case,grip,rotation_x,rotation_y,rotation_z,force\ndeep,grip,0,0,0.1,1\n"),
               HasSubstr("the grip, which only rotates; give force_x, force_y, force_z"));
+}
+
+TEST_F(DataSetFile, SmallMeshesAreQuadraticByDefault) {
+  measured();
+  const auto experiment = [&](const std::string& order) {
+    folder.write("capture.toml",
+                 "version = 1\nmesh = \"rest.msh\"\nfixed = \"z < 1e-9\"\n" + order + "\n[[tip]]\nradius = 0.01\n");
+    return read_data_set(folder).experiment;
+  };
+  EXPECT_TRUE(experiment("order = 1").mesh.mids.empty());
+  const Experiment quadratic = experiment("");
+  EXPECT_EQ(quadratic.mesh.mids.size(), test_box().tets.size());
+  EXPECT_EQ(quadratic.fixed.size(), 99u);  // 11 x 9
+  write_mesh(path("rest.msh"), make_box({{0, 0, 0}}, {{0.1, 0.08, 0.06}}, {10, 8, 6}));
+  EXPECT_TRUE(experiment("").mesh.mids.empty());  // 2880 tets
 }
 
 TEST_F(DataSetFile, ForcesAloneAreData) {
