@@ -8,6 +8,7 @@
 #include "aspic/commands.h"
 #include "aspic/plot.h"
 #include "base/error.h"
+#include "capture/case_table.h"
 #include "capture/data_set.h"
 #include "capture/surface_projection.h"
 
@@ -38,8 +39,8 @@ Chart force_against_depth(const Experiment& experiment) {
   for (const auto& group : cases_by_group(experiment)) {
     Series series{group.front()->group, {0}, {0}, SeriesStyle::line_and_points};
     for (const LoadCase* load : group) {
-      if (!load->indenter || !load->force) continue;
-      series.x.push_back(1e3 * norm(load->pose.center - load->touch.center));
+      if ((!load->indenter && !load->grip) || !load->force) continue;
+      series.x.push_back(1e3 * load_size(*load));
       series.y.push_back(norm(*load->force));
     }
     if (series.x.size() > 1 && chart.series.size() < kMaxSeries) chart.series.push_back(std::move(series));
@@ -58,7 +59,7 @@ Chart motion_against_distance(const Experiment& experiment) {
     for (size_t i = 0; i < load.positions.size(); i += stride) {
       const MarkerReading& reading = load.positions[i];
       const Vec3d X = position(experiment.markers[reading.marker], experiment.mesh.rest);
-      series.x.push_back(1e3 * norm(X - load.touch.center));
+      series.x.push_back(1e3 * norm(X - (load.grip ? load.grip->center : load.touch.center)));
       series.y.push_back(1e3 * norm(reading.position - X));
     }
     chart.series.push_back(std::move(series));

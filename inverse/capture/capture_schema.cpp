@@ -27,7 +27,7 @@ void add_document(Schema& s) {
            {key("version", kInteger, "of this format", Range{.min = 1, .max = 1}, kRequired),
             key("name", kText, "of the data set; default: the folder's name"),
             key("mesh", kText, "tet mesh of the body at rest", kRequired),
-            key("order", kInteger, "of its tets", Range{.min = 1, .max = 2}, Usual{"1"}),
+            key("order", kInteger, "of its tets; default: 2 up to 2000 tets, 1 above", Range{.min = 1, .max = 2}),
             key("fixed", kExpression | kTable | kIntegers, "held vertices; default: none", Members{"where"}),
             key("density", kNumber | kExpression | kTable, "for gravity", Units{"kg/m^3"}, Range{.min = 0},
                 Members{"field"}, Usual{"1000.0"}),
@@ -50,6 +50,7 @@ void add_document(Schema& s) {
             key("deviation", kTable, "of readings", Members{"deviation"}, Usual{"{}"}),
             key("force_of", kText, "whose force on the other was measured", Choices{{"tip", "body"}}, Usual{"\"tip\""}),
             key("tip", kTables, "tips of probes", Members{"tip"}),
+            key("grip", kTables, "clamps of a rig", Members{"grip"}),
             key("patch", kTables, "patches under pressure", Members{"patch"})});
 }
 
@@ -62,6 +63,11 @@ void add_indenters_and_patches(Schema& s) {
        key("radius", kNumber, "of the tip", Units{"length"}, kPositive, kRequired),
        key("stiffness", kNumber, "of its elastic layer; default: far above the estimated stiffness of the body",
            Units{"Pa/m"}, kPositive)});
+  add_keys(s, "grip",
+           {key("name", kText, "as the table of cases calls it", Usual{"\"grip\""}),
+            key("where", kExpression | kTable | kIntegers, "vertices that it moves", kRequired, Members{"where"}),
+            key("center", kNumbers, "of rotations and torques, at rest; default: the mean of its vertices",
+                Units{"length"})});
   add_keys(s, "patch",
            {key("name", kText, "as the table of cases calls it", Usual{"\"patch\""}),
             key("where", kExpression | kTable, "boundary triangles, by centroid", Members{"where"}),
@@ -106,11 +112,12 @@ const std::vector<std::string>& marker_columns() {
 
 const std::vector<std::string>& case_columns() {
   static const std::vector<std::string> names = {
-      "case",       "group",      "frame",     "time",      "tip",         "touch_x",     "touch_y",       "touch_z",
-      "axis_x",     "axis_y",     "axis_z",    "center_x",  "center_y",    "center_z",    "depth",         "rotation_x",
-      "rotation_y", "rotation_z", "gravity_x", "gravity_y", "gravity_z",   "pressure",    "dead_pressure", "patch",
-      "force",      "force_x",    "force_y",   "force_z",   "force_sd",    "force_sd_x",  "force_sd_y",    "force_sd_z",
-      "torque_x",   "torque_y",   "torque_z",  "torque_sd", "torque_sd_x", "torque_sd_y", "torque_sd_z"};
+      "case",        "group",       "frame",         "time",       "grip",       "move_x",     "move_y",    "move_z",
+      "tip",         "touch_x",     "touch_y",       "touch_z",    "axis_x",     "axis_y",     "axis_z",    "center_x",
+      "center_y",    "center_z",    "depth",         "rotation_x", "rotation_y", "rotation_z", "gravity_x", "gravity_y",
+      "gravity_z",   "pressure",    "dead_pressure", "patch",      "force",      "force_x",    "force_y",   "force_z",
+      "force_sd",    "force_sd_x",  "force_sd_y",    "force_sd_z", "torque_x",   "torque_y",   "torque_z",  "torque_sd",
+      "torque_sd_x", "torque_sd_y", "torque_sd_z"};
   return names;
 }
 

@@ -50,6 +50,7 @@ class CaseReader {
     load.gravity = table_.vector("gravity_", settings_.unit("gravity")).value_or(Vec3d{});
     read_pressure(load);
     read_indenter(load);
+    read_grip(load);
     read_wrench(load);
     return load;
   }
@@ -119,6 +120,22 @@ class CaseReader {
     touch_of_[load.group] = load.touch;
   }
 
+  void read_grip(LoadCase& load) {
+    const std::optional<Vec3d> move = table_.vector("move_", settings_.unit("length")),
+                               rotation = table_.vector("rotation_", settings_.unit("angle"));
+    const bool is_named = !table_.text("grip").empty();
+    if (!is_named && !move) return;
+    if (load.indenter)
+      return table_.error("has an indenter and a grip; give each its own case, or leave the columns of one blank");
+    if (!move && !rotation)
+      return table_.error("the motion of the grip is missing; give move_x, move_y, move_z or its rotation");
+    const Grip* grip = named(scope_.grips, table_.text("grip"), "grip", "grip");
+    if (!grip) return;
+    load.grip = *grip;
+    load.grip->displacement = move.value_or(Vec3d{});
+    load.grip->rotation = rotation.value_or(Vec3d{});
+  }
+
   static Vec3d unit(const Vec3d& axis) { return (1 / norm(axis)) * axis; }
   Vec3d inward_axis(const Vec3d& p) const { return -1.0 * scope_.surface.nearest(p).normal; }
 
@@ -135,8 +152,9 @@ class CaseReader {
     load.torque = table_.vector("torque_", newton_meter * sign);
     const std::optional<Vec3d> torque_sd = table_.sigma("torque_sd", newton_meter);
     load.torque_sigma = torque_sd ? *torque_sd : default_sigma("torque", newton_meter);
-    if ((load.force || load.torque) && !load.indenter)
-      table_.error("has a force or torque but no indenter; give its pose, or leave the force blank");
+    if ((load.force || load.torque) && !load.indenter && !load.grip)
+      table_.error(
+          "has a force or torque but no indenter and no grip; give its pose or motion, or leave the force blank");
   }
 
   void take_force_of_series(LoadCase& load, bool has_sigma) {
@@ -183,8 +201,13 @@ class CaseReader {
 
   // A gauge that measures only the axial force does not determine the lateral force.
   void take_force_along_axis(LoadCase& load, double force) {
-    if (!load.indenter) return;
-    const Vec3d a = unit(load.pose.axis);
+    if (!load.indenter && !load.grip) return;
+    const Vec3d axis = load.indenter ? load.pose.axis : load.grip->displacement;
+    if (norm(axis) == 0)
+      return table_.error(
+          "the column force is the component along the motion of the grip, which only rotates; give "
+          "force_x, force_y, force_z");
+    const Vec3d a = unit(axis);
     load.force = force * a;
     for (int i = 0; i < 3; ++i)
       load.force_sigma[i] =
@@ -241,7 +264,8 @@ double sigma_along(const LoadCase& load) {
   const double size = load.force ? norm(*load.force) : 0;
   if (!(size > 0)) return norm(load.force_sigma);
   const Vec3d d = (1 / size) * *load.force;
-  const bool is_along_axis = load.indenter && norm(cross(d, load.pose.axis)) < 1e-9 * norm(load.pose.axis);
+  const Vec3d axis = load.grip ? load.grip->displacement : load.pose.axis;
+  const bool is_along_axis = (load.indenter || load.grip) && norm(cross(d, axis)) < 1e-9 * norm(axis);
   double stated = 0, of_gauge = 0;
   bool is_of_gauge = is_along_axis;
   for (int i = 0; i < 3; ++i) {
@@ -256,6 +280,7 @@ double sigma_along(const LoadCase& load) {
 
 double load_size(const LoadCase& load) {
   if (load.indenter) return norm(load.pose.center - load.touch.center);
+  if (load.grip) return norm(load.grip->displacement) + load.grip->radius * norm(load.grip->rotation);
   if (load.pressure != 0) return std::abs(load.pressure);
   return norm(load.gravity);
 }

@@ -14,6 +14,7 @@ namespace aspic {
 
 struct CaseScope {
   const std::map<std::string, Indenter>& indenters;
+  const std::map<std::string, Grip>& grips;  // without motion
   const std::map<std::string, std::vector<Triangle>>& patches;
   const SurfaceProjection& surface;
   const ForceSeries* forces = nullptr;          // of cases without a force of their own
@@ -23,7 +24,8 @@ struct CaseScope {
 // Appends the cases group by group, each from the smallest load on, and their lines.
 void read_cases(const CaptureSettings& settings, const CaseScope& scope, ErrorList& errors, DataSet& data);
 
-// Size of the load of a case: displacement of the indenter [m], pressure [Pa] or gravity [m/s^2].
+// Size of the load of a case: displacement of the indenter or of the vertices of the grip [m], pressure [Pa] or gravity
+// [m/s^2].
 double load_size(const LoadCase& load);
 
 // Standard deviation of the force along its direction [N]. Excludes the unbounded lateral uncertainty of a single-axis

@@ -28,7 +28,8 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr size_t kMaxMarkers = 1'000'000, kMaxReadings = 5'000'000;
-constexpr double kFarOff = 0.1;  // fraction of the body's size; farther markers are errors
+constexpr int kMaxQuadratic = 2000;  // tets that are quadratic by default; a fit also solves on eight times as many
+constexpr double kFarOff = 0.1;      // fraction of the body's size; farther markers are errors
 
 void add_notes(const std::string& what, const std::vector<Finding>& findings, std::vector<std::string>& notes) {
   for (const Finding& f : findings) {
@@ -56,11 +57,13 @@ class DataSetReader {
     register_markers(surface);
     read_markers(surface);
     read_indenters();
+    read_grips();
     read_patches(surface);
     if (settings_.find("forces")) forces_ = read_force_series(settings_, errors_, data_.notes);
-    read_cases(settings_,
-               {indenters_, patches_, surface, forces_ ? &*forces_ : nullptr, recorded_ ? &*recorded_ : nullptr},
-               errors_, data_);
+    read_cases(
+        settings_,
+        {indenters_, grips_, patches_, surface, forces_ ? &*forces_ : nullptr, recorded_ ? &*recorded_ : nullptr},
+        errors_, data_);
     read_positions();
     errors_.finish();
     choose_sigmas(data_);
@@ -85,7 +88,7 @@ class DataSetReader {
     if (unit != 1)
       for (Vec3d& X : user_mesh_.rest) X = unit * X;
     add_notes(path.filename().string(), diagnose(user_mesh_), data_.notes);
-    if (settings_["order"].number() == 2) user_mesh_ = raise_order(std::move(user_mesh_));
+    if (user_mesh_.mids.empty() && order() == 2) user_mesh_ = raise_order(std::move(user_mesh_));
     data_.numbering = locality_numbering(user_mesh_);
     data_.experiment.mesh = from_user(data_.numbering, user_mesh_);
     size_ = size_of(user_mesh_);
@@ -96,6 +99,11 @@ class DataSetReader {
     read_fixed();
   }
 
+  int order() const {
+    if (const Value* given = settings_.find("order")) return given->integer();
+    return user_mesh_.tet_count() <= kMaxQuadratic ? 2 : 1;
+  }
+
   SelectionScope scope() const {
     const Vec3d up = settings_["up"].vector();
     if (norm(up) == 0) throw error_at(settings_["up"].place, "up = [0, 0, 0]; it needs a direction");
@@ -103,19 +111,45 @@ class DataSetReader {
   }
 
   void read_fixed() {
-    const Value* where = settings_.find("fixed");
-    if (!where) return;
-    Value selection = *where;
-    if (where->is_array()) {
-      if (where->array().empty()) return;
-      selection = {Table{}, where->place};
-      selection.table().set("vertices", *where);
-      for (const Value& v : where->array())
-        if (v.number() < 0) throw error_at(v.place, "fixed: " + inline_toml(v) + " is no vertex; count from 0");
+    if (const Value* where = settings_.find("fixed")) data_.experiment.fixed = selected(*where, "fixed");
+  }
+
+  // Returns ascending vertices of a list or a selection.
+  std::vector<int> selected(const Value& where, const std::string& key) const {
+    Value selection = where;
+    if (where.is_array()) {
+      if (where.array().empty()) return {};
+      selection = {Table{}, where.place};
+      selection.table().set("vertices", where);
+      for (const Value& v : where.array())
+        if (v.number() < 0) throw error_at(v.place, key + ": " + inline_toml(v) + " is no vertex; count from 0");
     }
-    for (const int v : select_vertices(selection, scope()))
-      data_.experiment.fixed.push_back(data_.numbering.vertex.from_user(v));
-    std::sort(data_.experiment.fixed.begin(), data_.experiment.fixed.end());
+    std::vector<int> vertices;
+    for (const int v : select_vertices(selection, scope())) vertices.push_back(data_.numbering.vertex.from_user(v));
+    std::sort(vertices.begin(), vertices.end());
+    return vertices;
+  }
+
+  void read_grips() {
+    const Value* grips = settings_.find("grip");
+    if (!grips) return;
+    const std::vector<Vec3d>& rest = data_.experiment.mesh.rest;
+    const std::vector<int>& fixed = data_.experiment.fixed;
+    for (const Value& g : grips->array()) {
+      Grip grip{.vertices = selected(g["where"], "where")};
+      if (grip.vertices.empty()) throw error_at(g["where"].place, "where: the grip holds no vertex; list some");
+      for (const int v : grip.vertices) {
+        if (std::binary_search(fixed.begin(), fixed.end(), v))
+          throw error_at(g["where"].place, "where: the grip moves vertex " +
+                                               std::to_string(data_.numbering.vertex.to_user(v)) +
+                                               ", which is fixed; leave it out here or in fixed");
+        grip.center = grip.center + (1.0 / static_cast<double>(grip.vertices.size())) * rest[v];
+      }
+      if (const Value* center = g.find("center")) grip.center = settings_.unit("length") * center->vector();
+      for (const int v : grip.vertices) grip.radius = std::max(grip.radius, norm(rest[v] - grip.center));
+      if (!grips_.try_emplace(g["name"].text(), grip).second)
+        throw error_at(g["name"].place, "name = " + toml_string(g["name"].text()) + " is used by another grip");
+    }
   }
 
   void read_recorded() {
@@ -443,6 +477,7 @@ class DataSetReader {
   std::vector<Vec3d> gap_;                             // offset of each marker at rest from its surface point [m]
   std::map<int, std::pair<Triangle, int>> corner_of_;  // a triangle of each vertex of the surface, and which corner
   std::map<std::string, Indenter> indenters_;
+  std::map<std::string, Grip> grips_;
   std::map<std::string, std::vector<Triangle>> patches_;
 };
 

@@ -36,6 +36,14 @@ void expect_equal(const LoadCase& a, const LoadCase& b) {
     expect_equal(a.pose.axis, b.pose.axis);
     expect_equal(a.pose.rotation, b.pose.rotation);
   }
+  ASSERT_EQ(a.grip.has_value(), b.grip.has_value());
+  if (a.grip) {
+    EXPECT_EQ(a.grip->vertices, b.grip->vertices);
+    EXPECT_EQ(a.grip->radius, b.grip->radius);
+    expect_equal(a.grip->center, b.grip->center);
+    expect_equal(a.grip->displacement, b.grip->displacement);
+    expect_equal(a.grip->rotation, b.grip->rotation);
+  }
   expect_equal(a.gravity, b.gravity);
   EXPECT_EQ(a.pressure, b.pressure);
   EXPECT_EQ(a.is_dead_pressure, b.is_dead_pressure);
@@ -62,8 +70,8 @@ class DataSetFile : public FolderTest {
                  "case,group,touch_x,touch_y,touch_z,depth,force_x,force_y,force_z,force_sd\n"
                  "deep,p,0.05,0.04,0.07,0.004,0,0,-1,0.01\nshallow,p,0.05,0.04,0.07,0.002,,,,\n");
     folder.write("positions.csv", "case,marker,x,y,z,sd\ndeep,A,0.05,0.04,0.056,1e-4\nshallow,B,0.02,0.03,0.0599,\n");
-    folder.write("capture.toml",
-                 "version = 1\nmesh = \"rest.msh\"\nfixed = \"z < 1e-9\"\n" + settings + "\n[[tip]]\nradius = 0.01\n");
+    folder.write("capture.toml", "version = 1\nmesh = \"rest.msh\"\norder = 1\nfixed = \"z < 1e-9\"\n" + settings +
+                                     "\n[[tip]]\nradius = 0.01\n");
     return folder;
   }
   std::string refusal() {
@@ -95,6 +103,17 @@ TEST_F(DataSetFile, ReadsBackToTheSameBits) {
   pressed.name = pressed.group = "press at rest";
   pressed.is_dead_pressure = true;
   data.experiment.cases.push_back(pressed);
+  const TetMesh& mesh = data.experiment.mesh;
+  Grip top{.center = {{0.051, 0.04, 0.06}}, .displacement = {{0, 1e-3, 2e-3}}, .rotation = {{0.1, 0, -0.2}}};
+  for (int v = 0; v < mesh.vertex_count(); ++v)
+    if (mesh.rest[v][2] > 0.06 - 1e-9) top.vertices.push_back(v);
+  for (const int v : top.vertices) top.radius = std::max(top.radius, norm(mesh.rest[v] - top.center));
+  LoadCase gripped = hung;
+  gripped.name = gripped.group = "gripped";
+  gripped.grip = top;
+  gripped.force = gripped.torque = Vec3d{{0.1, 0.2, 0.3}};
+  gripped.force_sigma = gripped.torque_sigma = {{0.01, 0.01, 0.02}};
+  data.experiment.cases.push_back(gripped);
   for (size_t t = 0; t < data.experiment.density.size(); ++t) data.experiment.density[t] = 1000 + 1.0 / (1 + t);
 
   write_data_set(folder / "data", data);
@@ -149,7 +168,7 @@ TEST_F(DataSetFile, AcceptsUnitsAndColumnNamesOfOtherPrograms) {
                "1\t50\t40\t70\t4\t0\t0\t90\t0\t0\t250");
   folder.write("positions.csv", "case,marker,X [mm],Y [mm],Z [mm]\n1,A,50,40,56\n");
   folder.write("capture.toml",
-               "version = 1\nmesh = \"rest.msh\"\nforce_of = \"body\"\nfixed = [0, 4]\n"
+               "version = 1\nmesh = \"rest.msh\"\norder = 1\nforce_of = \"body\"\nfixed = [0, 4]\n"
                "units = { length = \"mm\", mesh = \"m\", force = \"g\", angle = \"deg\" }\n"
                "columns = { x = \"X [mm]\", y = \"Y [mm]\", z = \"Z [mm]\", cases = { force_z = \"Scale\" } }\n"
                "[[tip]]\nradius = 10\n");
@@ -175,7 +194,8 @@ TEST_F(DataSetFile, AxialForceLeavesLateralForceUndetermined) {
 TEST_F(DataSetFile, PatchesAndMarkersAtVerticesAreFound) {
   measured("[[patch]]\nname = \"top\"\nwhere = { highest = 0.001 }");
   folder.write("capture.toml",
-               "version = 1\nmesh = \"rest.msh\"\nup = [0, 0, 2]\nfixed = { lowest = 0.0 }\n[[patch]]\nname = \"top\"\n"
+               "version = 1\nmesh = \"rest.msh\"\norder = 1\nup = [0, 0, 2]\nfixed = { lowest = 0.0 }\n[[patch]]\nname "
+               "= \"top\"\n"
                "where = { highest = 0.001 }\n");
   const int top_corner = 3;  // of x = y = 0, z = 0.06
   folder.write("markers.csv", "vertex\n" + std::to_string(top_corner) + "\n");
@@ -284,6 +304,57 @@ TEST_F(DataSetFile, InteriorAndMissingVerticesAreNoMarkers) {
   folder.write("markers.csv", "marker,vertex\nA," + std::to_string(inside) + "\nB,100000\n");
   EXPECT_THAT(refusal(), HasSubstr("markers.csv:2: vertex = " + std::to_string(inside) + " is inside the body"));
   EXPECT_THAT(refusal(), HasSubstr("markers.csv:3: vertex = 100000; the mesh has the vertices 0 to"));
+}
+
+TEST_F(DataSetFile, ReadsMotionsOfGrips) {
+  measured(
+      "units = { length = \"mm\", mesh = \"m\", angle = \"deg\" }\n[[grip]]\nname = \"top\"\nwhere = \"z > 0.0599\"\n");
+  folder.write("markers.csv", "marker,x,y,z\nA,50,40,60\n");
+  std::filesystem::remove(path("positions.csv"));
+  folder.write("cases.csv", "case,grip,move_x,move_y,move_z,force,torque_x,torque_y,torque_z\npull,,0,3,4,3,,,\n");
+  const LoadCase load = read_data_set(folder).experiment.cases[0];
+  ASSERT_TRUE(load.grip);
+  EXPECT_EQ(load.grip->vertices.size(), 30u);  // 6 x 5
+  EXPECT_NEAR(norm(load.grip->center - Vec3d{{0.05, 0.04, 0.06}}), 0, 1e-15);
+  EXPECT_NEAR(norm(load.grip->displacement - Vec3d{{0, 0.003, 0.004}}), 0, 1e-15);
+  EXPECT_NEAR(norm(*load.force - Vec3d{{0, 1.8, 2.4}}), 0, 1e-12);  // along the motion
+  EXPECT_NEAR(load_size(load), 0.005, 1e-15);
+}
+
+TEST_F(DataSetFile, RefusesGripsWithPlaceAndRemedy) {
+  const auto refusal_of = [&](const std::string& grip, const std::string& cases) {
+    measured(grip);
+    folder.write("cases.csv", cases);
+    return refusal();
+  };
+  const std::string top = "[[grip]]\nwhere = \"z > 0.0599\"\n";
+  EXPECT_THAT(refusal_of("[[grip]]\nwhere = \"z < 0.03\"\n", "case,move_x,move_y,move_z\ndeep,0,0,1e-3\n"),
+              HasSubstr("is fixed; leave it out here or in fixed"));
+  EXPECT_THAT(refusal_of("", "case,grip,move_x,move_y,move_z\ndeep,top,0,0,1e-3\n"),
+              HasSubstr("cases.csv:2: there is no grip; describe it as [[grip]] in capture.toml"));
+  EXPECT_THAT(refusal_of(top, "case,grip,force\ndeep,grip,1\n"),
+              HasSubstr("cases.csv:2: the motion of the grip is missing; give move_x, move_y, move_z"));
+  EXPECT_THAT(refusal_of(top,
+                         "case,grip,move_x,move_y,move_z,touch_x,touch_y,touch_z,depth\n"
+                         "deep,grip,0,0,1e-3,0.05,0.04,0.07,0.001\n"),
+              HasSubstr("cases.csv:2: has an indenter and a grip"));
+  EXPECT_THAT(refusal_of(top, "case,grip,rotation_x,rotation_y,rotation_z,force\ndeep,grip,0,0,0.1,1\n"),
+              HasSubstr("the grip, which only rotates; give force_x, force_y, force_z"));
+}
+
+TEST_F(DataSetFile, SmallMeshesAreQuadraticByDefault) {
+  measured();
+  const auto experiment = [&](const std::string& order) {
+    folder.write("capture.toml",
+                 "version = 1\nmesh = \"rest.msh\"\nfixed = \"z < 1e-9\"\n" + order + "\n[[tip]]\nradius = 0.01\n");
+    return read_data_set(folder).experiment;
+  };
+  EXPECT_TRUE(experiment("order = 1").mesh.mids.empty());
+  const Experiment quadratic = experiment("");
+  EXPECT_EQ(quadratic.mesh.mids.size(), test_box().tets.size());
+  EXPECT_EQ(quadratic.fixed.size(), 99u);  // 11 x 9
+  write_mesh(path("rest.msh"), make_box({{0, 0, 0}}, {{0.1, 0.08, 0.06}}, {10, 8, 6}));
+  EXPECT_TRUE(experiment("").mesh.mids.empty());  // 2880 tets
 }
 
 TEST_F(DataSetFile, ForcesAloneAreData) {

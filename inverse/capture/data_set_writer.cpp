@@ -18,6 +18,7 @@ bool same(const Vec3d& a, const Vec3d& b) { return a[0] == b[0] && a[1] == b[1] 
 bool same(const Indenter& a, const Indenter& b) {
   return a.shape == b.shape && a.contact == b.contact && a.radius == b.radius && a.stiffness == b.stiffness;
 }
+bool same(const Grip& a, const Grip& b) { return a.vertices == b.vertices && same(a.center, b.center); }
 
 class Csv {
  public:
@@ -61,6 +62,8 @@ class DataSetWriter {
       const auto is_equal = [&](const Indenter& indenter) { return same(indenter, *load.indenter); };
       if (load.indenter && std::none_of(indenters_.begin(), indenters_.end(), is_equal))
         indenters_.push_back(*load.indenter);
+      if (load.grip && std::none_of(grips_.begin(), grips_.end(), [&](const Grip& g) { return same(g, *load.grip); }))
+        grips_.push_back(*load.grip);
       if (!load.pressed.empty() && std::find(patches_.begin(), patches_.end(), load.pressed) == patches_.end())
         patches_.push_back(load.pressed);
       if (load.indenter && !same(load.pose.axis, turned_axis(load.touch, load.pose.rotation)))
@@ -75,6 +78,10 @@ class DataSetWriter {
     const auto found =
         std::find_if(indenters_.begin(), indenters_.end(), [&](const Indenter& t) { return same(t, indenter); });
     return numbered("tip", found - indenters_.begin(), indenters_.size());
+  }
+  std::string grip_name(const Grip& grip) const {
+    const auto found = std::find_if(grips_.begin(), grips_.end(), [&](const Grip& g) { return same(g, grip); });
+    return numbered("grip", found - grips_.begin(), grips_.size());
   }
   std::string patch_name(size_t p) const { return numbered("patch", p, patches_.size()); }
 
@@ -93,11 +100,12 @@ class DataSetWriter {
   }
 
   void write_cases() const {
-    Csv csv({"case",       "group",     "tip",         "touch_x",     "touch_y",    "touch_z",       "axis_x",
-             "axis_y",     "axis_z",    "center_x",    "center_y",    "center_z",   "rotation_x",    "rotation_y",
-             "rotation_z", "gravity_x", "gravity_y",   "gravity_z",   "pressure",   "dead_pressure", "patch",
-             "force_x",    "force_y",   "force_z",     "force_sd_x",  "force_sd_y", "force_sd_z",    "torque_x",
-             "torque_y",   "torque_z",  "torque_sd_x", "torque_sd_y", "torque_sd_z"});
+    Csv csv({"case",        "group",      "grip",          "move_x",     "move_y",     "move_z",    "tip",
+             "touch_x",     "touch_y",    "touch_z",       "axis_x",     "axis_y",     "axis_z",    "center_x",
+             "center_y",    "center_z",   "rotation_x",    "rotation_y", "rotation_z", "gravity_x", "gravity_y",
+             "gravity_z",   "pressure",   "dead_pressure", "patch",      "force_x",    "force_y",   "force_z",
+             "force_sd_x",  "force_sd_y", "force_sd_z",    "torque_x",   "torque_y",   "torque_z",  "torque_sd_x",
+             "torque_sd_y", "torque_sd_z"});
     for (const LoadCase& load : data_.experiment.cases) csv.add(row_of(load));
     csv.write(folder_ / "cases.csv");
   }
@@ -105,11 +113,13 @@ class DataSetWriter {
   CsvRow row_of(const LoadCase& load) const {
     using Maybe = std::optional<Vec3d>;
     CsvRow row;
-    row.add(load.name).add(load.group).add(load.indenter ? indenter_name(*load.indenter) : "");
+    row.add(load.name).add(load.group).add(load.grip ? grip_name(*load.grip) : "");
+    add(row, load.grip ? Maybe(load.grip->displacement) : std::nullopt);
+    row.add(load.indenter ? indenter_name(*load.indenter) : "");
     add(row, load.indenter ? Maybe(load.touch.center) : std::nullopt);
     add(row, load.indenter ? Maybe(load.touch.axis) : std::nullopt);
     add(row, load.indenter ? Maybe(load.pose.center) : std::nullopt);
-    add(row, load.indenter ? Maybe(load.pose.rotation) : std::nullopt);
+    add(row, load.indenter ? Maybe(load.pose.rotation) : load.grip ? Maybe(load.grip->rotation) : std::nullopt);
     add(row, load.gravity);
     if (load.is_dead_pressure)
       row.add("").add(load.pressure);
@@ -153,22 +163,30 @@ class DataSetWriter {
     return "{ file = \"density.csv\" }";
   }
 
-  void write_settings() const {
-    std::vector<int> fixed;
-    for (const int v : data_.experiment.fixed) fixed.push_back(user(v));
-    std::sort(fixed.begin(), fixed.end());
+  std::string list_of(const std::vector<int>& vertices) const {
+    std::vector<int> numbers;
+    for (const int v : vertices) numbers.push_back(user(v));
+    std::sort(numbers.begin(), numbers.end());
     std::string list;
-    for (const int v : fixed) list += (list.empty() ? "" : ", ") + std::to_string(v);
+    for (const int v : numbers) list += (list.empty() ? "" : ", ") + std::to_string(v);
+    return "[" + list + "]";
+  }
+
+  void write_settings() const {
     std::string text =
         "# Measurements, in SI units: docs/capture_format.md\nversion = 1\nname = " + toml_string(data_.name) +
-        "\nmesh = \"rest.msh\"" + (data_.experiment.mesh.mids.empty() ? "" : "\norder = 2") +
-        "\ndensity = " + density_text() + "\nfixed = [" + list + "]\n";
+        "\nmesh = \"rest.msh\"" + (data_.experiment.mesh.mids.empty() ? "\norder = 1" : "\norder = 2") +
+        "\ndensity = " + density_text() + "\nfixed = " + list_of(data_.experiment.fixed) + "\n";
     for (const Indenter& indenter : indenters_)
       text += "\n[[tip]]\nname = " + toml_string(indenter_name(indenter)) +
               "\nshape = " + (indenter.shape == IndenterShape::disc ? "\"disc\"" : "\"sphere\"") +
               "\ncontact = " + (indenter.contact == IndenterContact::bonded ? "\"bonded\"" : "\"sliding\"") +
               "\nradius = " + inline_toml({indenter.radius, {}}) +
               "\nstiffness = " + inline_toml({indenter.stiffness, {}}) + "\n";
+    for (const Grip& grip : grips_)
+      text += "\n[[grip]]\nname = " + toml_string(grip_name(grip)) + "\nwhere = " + list_of(grip.vertices) +
+              "\ncenter = [" + number_text(grip.center[0]) + ", " + number_text(grip.center[1]) + ", " +
+              number_text(grip.center[2]) + "]\n";
     for (size_t p = 0; p < patches_.size(); ++p)
       text += "\n[[patch]]\nname = " + toml_string(patch_name(p)) +
               "\ntriangles = " + toml_string(patch_name(p) + ".csv") + "\n";
@@ -178,6 +196,7 @@ class DataSetWriter {
   const fs::path& folder_;
   const DataSet& data_;
   std::vector<Indenter> indenters_;
+  std::vector<Grip> grips_;  // without regard to their motions
   std::vector<std::vector<Triangle>> patches_;
 };
 

@@ -19,6 +19,10 @@ bool same_load(const LoadCase& a, const LoadCase& b) {
   if (a.indenter.has_value() != b.indenter.has_value() || a.pressure != b.pressure ||
       !nearly_same(a.gravity, b.gravity) || (a.pressure != 0 && a.is_dead_pressure != b.is_dead_pressure))
     return false;
+  if (a.grip.has_value() != b.grip.has_value()) return false;
+  if (a.grip && (a.grip->vertices != b.grip->vertices || !nearly_same(a.grip->displacement, b.grip->displacement) ||
+                 !nearly_same(a.grip->rotation, b.grip->rotation)))
+    return false;
   if (!a.pressed.empty() && a.pressed != b.pressed) return false;
   return !a.indenter || (a.indenter->radius == b.indenter->radius && a.indenter->shape == b.indenter->shape &&
                          nearly_same(a.touch.center, b.touch.center) && nearly_same(a.touch.axis, b.touch.axis) &&

@@ -91,13 +91,22 @@ class ForceDiagnosis {
     return false;
   }
 
-  // The force must act along the motion of the indenter.
+  static std::string device(const LoadCase& load) { return load.grip ? "grip" : "indenter"; }
+
+  // Motion that the force must not oppose; 0: there is none. A grip also carries the weight of the body.
+  static Vec3d way_of(const LoadCase& load) {
+    if (load.indenter) return load.pose.center - load.touch.center;
+    return load.grip && load.pressure == 0 && norm(load.gravity) == 0 ? load.grip->displacement : Vec3d{};
+  }
+
+  // The force must act along the motion of the indenter or of the grip.
   void examine_signs() {
     std::vector<size_t> against;
     int measured = 0;
     for (size_t c = 0; c < cases_.size(); ++c) {
-      if (!cases_[c].indenter || !cases_[c].force) continue;
-      const Vec3d way = cases_[c].pose.center - cases_[c].touch.center;
+      if (!cases_[c].force) continue;
+      const Vec3d way = way_of(cases_[c]);
+      if (norm(way) == 0) continue;
       const double along = dot(way, *cases_[c].force);
       ++measured;
       const double noise = 3 * sigma_along(cases_[c]);
@@ -106,11 +115,12 @@ class ForceDiagnosis {
     if (against.empty()) return;
     if (2 * static_cast<int>(against.size()) > measured)
       return findings_.error(where(against.front()),
-                             "the force opposes the motion of the indenter, here and in " +
-                                 std::to_string(against.size() - 1) + " other cases",
+                             "the force opposes the motion of the " + device(cases_[against.front()]) +
+                                 ", here and in " + std::to_string(against.size() - 1) + " other cases",
                              "if the force of the body on the tip was measured, set force_of = \"body\"");
     for (const size_t c : against)
-      findings_.warning(where(c), "the force opposes the motion of the indenter, unlike in the other cases",
+      findings_.warning(where(c),
+                        "the force opposes the motion of the " + device(cases_[c]) + ", unlike in the other cases",
                         "correct its sign, or leave it blank");
   }
 

@@ -13,6 +13,7 @@ namespace aspic {
 namespace {
 
 constexpr double kDeep = 0.5;        // fraction of the body's size; deeper indentations are implausible
+constexpr double kGripFar = 2;       // fraction of the body's size; grips that move farther are implausible
 constexpr double kLoose = 0.05;      // fraction of the body's size; larger gaps at the touch are not round-off
 constexpr double kHuge = 100;        // fraction of the body's size; larger radii are in another unit
 constexpr double kTurned = 1;        // [rad] implausible rotation of a bonded indenter
@@ -34,11 +35,12 @@ class LoadDiagnosis {
       const LoadCase& load = experiment_.cases[c];
       where_ = data_.source.load_case(static_cast<int>(c)) + " (" + load.name + ")";
       if (load.indenter) examine_indenter(load);
+      if (load.grip) examine_grip(load);
       examine_gravity(load);
       examine_pressure(load);
-      const bool is_loaded = load.indenter || load.pressure != 0 || norm(load.gravity) > 0;
+      const bool is_loaded = load.indenter || load.grip || load.pressure != 0 || norm(load.gravity) > 0;
       if (!is_loaded)
-        findings_.warning(where_, "has no load: no indenter, no pressure, no gravity",
+        findings_.warning(where_, "has no load: no indenter, no grip, no pressure, no gravity",
                           "it has no information about the material; give its load, or remove the row");
     }
     examine_holds();
@@ -65,19 +67,27 @@ class LoadDiagnosis {
                         "the radius of the indenter, " + three_digits(load.indenter->radius) +
                             " m, is large relative to the body, " + three_digits(size_) + " m",
                         "check radius of [[tip]] and units: length");
-    examine_turn(load);
+    examine_turn("indenter", "the touch", norm(load.pose.rotation));
     examine_touch(load, off);
     examine_resolution(load);
   }
 
-  void examine_turn(const LoadCase& load) {
-    const double turn = norm(load.pose.rotation);
+  void examine_grip(const LoadCase& load) {
+    const double way = norm(load.grip->displacement);
+    if (way > kGripFar * size_)
+      findings_.error(where_, "the grip moves " + three_digits(way) + " m on a body of " + three_digits(size_) + " m",
+                      "check units: length = \"mm\" or \"cm\"; move_x, move_y, move_z are a displacement from rest");
+    else if (load_size(load) == 0)
+      findings_.note(where_, "the grip is where it was at rest", "move it, or remove the row");
+    examine_turn("grip", "rest", norm(load.grip->rotation));
+  }
+
+  void examine_turn(const std::string& what, const std::string& since, double turn) {
+    const std::string finding = "the " + what + " rotates by " + three_digits(turn) + " rad since " + since;
     if (turn > 2 * std::numbers::pi)
-      return findings_.error(where_, "the indenter rotates by " + three_digits(turn) + " rad since the touch",
-                             "it would fit in degrees: units = { angle = \"deg\" }");
+      return findings_.error(where_, finding, "it would fit in degrees: units = { angle = \"deg\" }");
     if (turn > kTurned)
-      findings_.warning(where_, "the indenter rotates by " + three_digits(turn) + " rad since the touch",
-                        "rotation_x, _y, _z are a rotation vector in rad: check units: angle");
+      findings_.warning(where_, finding, "rotation_x, _y, _z are a rotation vector in rad: check units: angle");
   }
 
   // Forces of an indenter smaller than the triangles depend on the mesh.
@@ -162,7 +172,7 @@ class LoadDiagnosis {
       area = std::max(area, norm(cross(X[fixed[1]] - X[fixed[0]], X[fixed[i]] - X[fixed[0]])));
     if (area > 1e-6 * size_ * size_) return;
     const bool is_glued = std::all_of(experiment_.cases.begin(), experiment_.cases.end(), [](const LoadCase& load) {
-      return load.indenter && load.indenter->contact == IndenterContact::bonded;
+      return load.grip || (load.indenter && load.indenter->contact == IndenterContact::bonded);
     });
     const bool is_pulled = std::any_of(experiment_.cases.begin(), experiment_.cases.end(), [](const LoadCase& load) {
       return load.pressure != 0 || norm(load.gravity) > 0;
@@ -170,11 +180,12 @@ class LoadDiagnosis {
     const std::string what =
         fixed.empty() ? "no vertex is fixed" : std::to_string(fixed.size()) + " vertices are fixed, all on one line";
     if (is_glued && is_pulled)
-      return findings_.warning(data_.source.settings, what + ": only the indenter holds the body",
+      return findings_.warning(data_.source.settings, what + ": only the indenter or the grip holds the body",
                                "fix the part on the table: fixed = { lowest = 0.02 }");
-    findings_.error(data_.source.settings,
-                    what + (is_glued ? ": the body would follow the indenter" : ": the body would be pushed away"),
-                    "fix the part on the table: fixed = { lowest = 0.02 }");
+    findings_.error(
+        data_.source.settings,
+        what + (is_glued ? ": the body would follow the indenter or the grip" : ": the body would be pushed away"),
+        "fix the part on the table: fixed = { lowest = 0.02 }");
   }
 
   const DataSet& data_;

@@ -288,9 +288,10 @@ TEST(Diagnosis, MissingContactAndMissingSupportAreErrors) {
               Contains(finding(Severity::error, "cases.csv:2", "does not touch the body", "first contact")));
   data = data_in_lines();
   data.experiment.fixed.clear();
-  EXPECT_THAT(diagnose(data), Contains(finding(Severity::error, "capture.toml", "follow the indenter")));
+  EXPECT_THAT(diagnose(data), Contains(finding(Severity::error, "capture.toml", "follow the indenter or the grip")));
   data.experiment.cases[1].gravity = {{0, 0, -9.81}};
-  EXPECT_THAT(diagnose(data), Contains(finding(Severity::warning, "capture.toml", "only the indenter holds")));
+  EXPECT_THAT(diagnose(data),
+              Contains(finding(Severity::warning, "capture.toml", "only the indenter or the grip holds")));
   for (LoadCase& load : data.experiment.cases) load.indenter->contact = IndenterContact::sliding;
   EXPECT_THAT(diagnose(data), Contains(finding(Severity::error, "capture.toml", "pushed away", "fixed")));
   data = data_in_lines();

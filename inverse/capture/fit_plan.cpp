@@ -187,6 +187,10 @@ std::string fingerprint_of(const Experiment& e) {
     }
     for (const IndenterPose* pose : {&c.touch, &c.pose})
       add_vector(pose->center), add_vector(pose->axis), add_vector(pose->rotation);
+    if (c.grip) {
+      add(c.grip->vertices);
+      for (const Vec3d* v : {&c.grip->center, &c.grip->displacement, &c.grip->rotation}) add_vector(*v);
+    }
     add_vector(c.gravity);
     hash.add(&c.pressure, sizeof c.pressure);
     if (c.is_dead_pressure) hash.add("dead", 4);

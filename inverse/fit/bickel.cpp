@@ -121,8 +121,12 @@ ExplainedCase explain(const Experiment& experiment, int load_case, const BickelO
 BickelPrediction simulate(const Experiment& experiment, const LoadCase& load, const StrainSpaceModuli& moduli,
                           const BickelOptions& options, Path path) {
   ASPIC_CHECK(moduli.tet_count() == experiment.mesh.tet_count() && options.increments > 0);
-  IncrementalBody body(experiment, load, moduli, options);
   BickelPrediction result;
+  if (load.grip) {
+    result.failure = load.name + ": the increments of this model have no grips";
+    return result;
+  }
+  IncrementalBody body(experiment, load, moduli, options);
   result.ok = true;
   const int n = options.increments, steps = path == Path::load ? n : 2 * n;
   for (int k = 1; k <= steps && result.ok; ++k) result.ok = body.go_to(static_cast<double>(k <= n ? k : 2 * n - k) / n);

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include "base/check.h"
 #include "base/formatted.h"
@@ -44,6 +45,7 @@ struct Equilibrium::Impl {
     pins.place(0, x);
     parameters = linear_parameters = theta.get();
     for (auto* v : {&trial, &b, &u}) v->resize(x.size());
+    if (pins.any_moves()) all_rows.emplace(E.pattern());
     linear_x.reserve(x.size());
   }
 
@@ -72,6 +74,10 @@ struct Equilibrium::Impl {
     use(parameters);
     update_terms(x);
     K.block = E.hessian(x, {Definiteness::exact}).block;  // copied, because E may overwrite it
+    if (all_rows) {
+      all_rows->set_zero();
+      for (const ActiveTerm& V : E.potential()) V.add_hessian(x, 1, {Definiteness::exact}, *all_rows);
+    }
     stiff_rows = E.stiff_rows();
     solver->set_stiff_rows(stiff_rows.empty() ? nullptr : &stiff_rows);
     if (!is_analyzed) solver->analyze(E.pattern());
@@ -124,6 +130,21 @@ struct Equilibrium::Impl {
     return report;
   }
 
+  void force_tangent(std::span<const double> dtheta, std::span<const double> dx, std::span<double> dg) {
+    ASPIC_CHECK(all_rows && !linear_x.empty());
+    use(linear_parameters);
+    all_rows->multiply(dx, dg);
+    theta.add_force(linear_x, dtheta, 1, dg);
+  }
+
+  void add_force_transposed(std::span<const double> gbar, std::span<double> xbar, std::span<double> thetabar) {
+    ASPIC_CHECK(all_rows && !linear_x.empty());
+    use(linear_parameters);
+    all_rows->multiply(gbar, u);
+    for (size_t i = 0; i < u.size(); ++i) xbar[i] += u[i];
+    theta.add_gradient(linear_x, gbar, 1, thetabar);
+  }
+
   // Sets the parameters of the elastic terms to those of the last solve or the linearization.
   void use(const std::vector<MaterialParameters>& wanted) {
     if (in_force == &wanted) return;
@@ -143,7 +164,8 @@ struct Equilibrium::Impl {
   MinimizeOptions minimize;
   std::unique_ptr<LinearSolver> solver;  // factorization of K
   BlockSparse K;
-  StiffRows stiff_rows;  // of K
+  StiffRows stiff_rows;                 // of K
+  std::optional<BlockSparse> all_rows;  // K with the rows of pinned vertices, if they move
   ElasticParameters theta;
   std::vector<MaterialParameters> parameters, linear_parameters;
   const std::vector<MaterialParameters>* in_force = &parameters;
@@ -185,6 +207,16 @@ SolveReport Equilibrium::tangent(std::span<const double> dtheta, std::span<doubl
 }
 SolveReport Equilibrium::add_adjoint(std::span<const double> xbar, std::span<double> thetabar) {
   return impl_->add_adjoint(xbar, thetabar);
+}
+void Equilibrium::add_forces(std::span<double> g) const {
+  for (const ActiveTerm& V : impl_->E.potential()) V.add_gradient(impl_->x, 1, g);
+}
+void Equilibrium::force_tangent(std::span<const double> dtheta, std::span<const double> dx, std::span<double> dg) {
+  impl_->force_tangent(dtheta, dx, dg);
+}
+void Equilibrium::add_force_transposed(std::span<const double> gbar, std::span<double> xbar,
+                                       std::span<double> thetabar) {
+  impl_->add_force_transposed(gbar, xbar, thetabar);
 }
 const std::string& Equilibrium::failure() const { return impl_->failure; }
 std::string Equilibrium::solver_description() const { return impl_->solver->description(); }

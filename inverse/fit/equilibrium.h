@@ -50,6 +50,14 @@ class Equilibrium {
   // thetabar += (dx/dtheta)' xbar
   SolveReport add_adjoint(std::span<const double> xbar, std::span<double> thetabar);
 
+  // Forces that pins with a motion need: g += dV/dx at x(), 3 per vertex [N]. It is 0 at free vertices.
+  void add_forces(std::span<double> g) const;
+  // Their change along a tangent, with all rows of K: dg = K dx + d(grad V)/dtheta dtheta. Both require a linearization
+  // of a model whose pins move.
+  void force_tangent(std::span<const double> dtheta, std::span<const double> dx, std::span<double> dg);
+  // xbar += K gbar, thetabar += gbar' d(grad V)/dtheta, for gbar that is 0 at free vertices
+  void add_force_transposed(std::span<const double> gbar, std::span<double> xbar, std::span<double> thetabar);
+
   const std::string& failure() const;      // message of the last failed solve() or factorize()
   std::string solver_description() const;  // choice for tangents and adjoints, and its reason
 

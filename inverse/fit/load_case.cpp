@@ -66,7 +66,7 @@ LoadedBody::LoadedBody(const Experiment& experiment, const LoadCase& load, const
       load_(readable(experiment, load)),
       rest_(rest_positions(experiment.mesh)),
       equilibrium_(make_model(material, parameters), rest_, options) {
-  for (auto* v : {&dx_, &xbar_, &start_}) v->resize(rest_.size());
+  for (auto* v : {&dx_, &xbar_, &start_, &force_}) v->resize(rest_.size());
   prediction_.x = rest_;
   prediction_.markers.resize(load.positions.size());
 }
@@ -74,8 +74,9 @@ LoadedBody::LoadedBody(const Experiment& experiment, const LoadCase& load, const
 const LoadCase& LoadedBody::readable(const Experiment& experiment, const LoadCase& load) {
   if (load.positions.empty() && !load.force && !load.torque)
     throw InvalidInput(load.name + ": no measurements; give positions of markers, a force or a torque");
-  if (!load.indenter && (load.force || load.torque))
-    throw InvalidInput(load.name + ": a force or torque needs an indenter");
+  if (!load.indenter && !load.grip && (load.force || load.torque))
+    throw InvalidInput(load.name + ": a force or torque needs an indenter or a grip");
+  if (load.indenter && load.grip) throw InvalidInput(load.name + ": an indenter and a grip exclude each other");
   for (const MarkerReading& reading : load.positions) {
     if (reading.marker < 0 || reading.marker >= static_cast<int>(experiment.markers.size()))
       throw InvalidInput(load.name + ": marker " + std::to_string(reading.marker) + " is unknown; there are " +
@@ -95,12 +96,16 @@ std::unique_ptr<Energy> make_pressure_of(const LoadCase& load, const TetMesh& me
 
 Model LoadedBody::make_model(const std::string& material, std::span<const MaterialParameters> parameters) {
   const TetMesh& mesh = experiment_.mesh;
-  Model model = ModelBuilder(mesh)
-                    .material(material, parameters)
-                    .density(experiment_.density)
-                    .mass(MassKind::lumped)
-                    .pin("fixed", experiment_.fixed)
-                    .build();
+  ModelBuilder builder(mesh);
+  builder.material(material, parameters)
+      .density(experiment_.density)
+      .mass(MassKind::lumped)
+      .pin("fixed", experiment_.fixed);
+  if (load_.grip) {
+    grip_ = std::make_shared<GripMotion>(*load_.grip, 1);
+    builder.pin("grip", load_.grip->vertices, [motion = grip_](const Vec3d& X, double) { return (*motion)(X); });
+  }
+  Model model = builder.build();
   const auto add_scaled = [&](std::unique_ptr<Energy> load) {
     auto scaled = std::make_unique<ScaledLoad>(std::move(load));
     scaled_.push_back(scaled.get());
@@ -131,12 +136,15 @@ std::string LoadedBody::what(int residual) const {
 }
 
 void LoadedBody::apply(double part) {
+  if (grip_) *grip_ = GripMotion(*load_.grip, part);
   for (ScaledLoad* load : scaled_) load->set_factor(part);
   if (probe_) probe_->set_pose(part == 1 ? load_.pose : between(load_.touch, load_.pose, part));
 }
 
 bool LoadedBody::try_from(std::span<const double> start) {
   equilibrium_.set_x(start);
+  // A grip that moves too far at once would start from inverted tets, whose equilibria are others.
+  if (grip_ && !(equilibrium_.model().elasticity[0]->min_det_F(equilibrium_.x()) > 0)) return false;
   const MinimizeReport report = equilibrium_.solve();
   ++counts_.equilibria;
   counts_.newton_iterations += report.iterations;
@@ -160,9 +168,11 @@ bool LoadedBody::load_in_parts() {
       if (part < kSmallestPart) break;
     }
   }
-  failure_ = done < 1 ? load_.name + ", at " + std::to_string(std::lround(100 * (done + 2 * part))) +
-                            " % of the load: " + equilibrium_.failure()
-                      : std::string();
+  failure_ = done < 1
+                 ? load_.name + ", at " + std::to_string(std::lround(100 * (done + 2 * part))) + " % of the load: " +
+                       (equilibrium_.failure().empty() ? "the motion of the grip inverts tets that it holds"
+                                                       : equilibrium_.failure())
+                 : std::string();
   apply(1);
   return done == 1;
 }
@@ -180,7 +190,30 @@ void LoadedBody::predict_readings() {
   std::copy(x().begin(), x().end(), prediction_.x.begin());
   for (size_t k = 0; k < load_.positions.size(); ++k)
     prediction_.markers[k] = at(experiment_.markers[load_.positions[k].marker], x());
-  if (probe_) prediction_.wrench = probe_->wrench(x());
+  prediction_.wrench = wrench();
+}
+
+Wrench LoadedBody::wrench() {
+  if (probe_) return probe_->wrench(x());
+  if (!grip_) return {};
+  std::fill(force_.begin(), force_.end(), 0.0);
+  equilibrium_.add_forces(force_);
+  return wrench_of(*load_.grip, x(), force_);
+}
+
+Wrench LoadedBody::wrench_change(std::span<const double> dtheta) {
+  if (!has_wrench()) return {};
+  if (probe_) return probe_->wrench_product(equilibrium_.linearized_x(), dx_);
+  equilibrium_.force_tangent(dtheta, dx_, force_);
+  return wrench_of(*load_.grip, equilibrium_.linearized_x(), force_);
+}
+
+void LoadedBody::add_wrench_transposed(const Wrench& bar, std::span<double> thetabar) {
+  const std::span<const double> x = equilibrium_.linearized_x();
+  if (probe_) return probe_->add_wrench_transposed(x, bar, 1, xbar_);
+  std::fill(force_.begin(), force_.end(), 0.0);
+  add_wrench_of_transposed(*load_.grip, x, bar, force_);
+  equilibrium_.add_force_transposed(force_, xbar_, thetabar);
 }
 
 void LoadedBody::residuals(std::span<double> r) const {
@@ -227,6 +260,19 @@ bool LoadedBody::solved(const SolveReport& report) {
   return false;
 }
 
+bool LoadedBody::common_error(std::span<double> dr) const {
+  std::fill(dr.begin(), dr.end(), 0.0);
+  if (load_.common_errors.size() != load_.positions.size()) return false;
+  size_t i = 0;
+  const auto put = [&](const Vec3d& error, const Vec3d& sigma) {
+    for (int k = 0; k < 3; ++k) dr[i++] = error[k] / sigma[k];
+  };
+  for (size_t k = 0; k < load_.positions.size(); ++k) put(load_.common_errors[k], load_.positions[k].sigma);
+  if (has_force()) put(load_.common_wrench_error.force, load_.force_sigma);
+  if (has_torque()) put(load_.common_wrench_error.torque, load_.torque_sigma);
+  return true;
+}
+
 void LoadedBody::put_change(const Wrench& change, std::span<double> dr) const {
   size_t i = 0;
   const auto put = [&](const Vec3d& d, const Vec3d& sigma) {
@@ -240,8 +286,7 @@ void LoadedBody::put_change(const Wrench& change, std::span<double> dr) const {
 bool LoadedBody::multiply(std::span<const double> dtheta, std::span<double> dr) {
   ++counts_.solves;
   if (!solved(equilibrium_.tangent(dtheta, dx_))) return false;
-  const bool has_wrench = has_force() || has_torque();
-  put_change(has_wrench ? probe_->wrench_product(equilibrium_.linearized_x(), dx_) : Wrench{}, dr);
+  put_change(wrench_change(dtheta), dr);
   return true;
 }
 
@@ -274,11 +319,11 @@ bool LoadedBody::add_transposed(std::span<const double> w, std::span<double> the
     for (int k = 0; k < 3; ++k)
       for (int r = 0; r < 3; ++r) xbar_[3 * point.vertices[k] + r] += point.weights[k] * bar[r];
   }
-  if (has_force() || has_torque()) {
+  if (has_wrench()) {
     Wrench bar;
     if (has_force()) bar.force = take(load_.force_sigma);
     if (has_torque()) bar.torque = take(load_.torque_sigma);
-    probe_->add_wrench_transposed(equilibrium_.linearized_x(), bar, 1, xbar_);
+    add_wrench_transposed(bar, thetabar);
   }
   ++counts_.solves;
   return solved(equilibrium_.add_adjoint(xbar_, thetabar));

@@ -42,26 +42,32 @@ class LoadedBody {
   bool multiply(std::span<const double> dtheta, std::span<double> dr);
   bool add_transposed(std::span<const double> w, std::span<double> thetabar);
   bool has_layer() const { return probe_ != nullptr; }
-  bool multiply_by_layer(std::span<double> dr);  // dr/dlog k, k the stiffness of the indenter's layer
+  bool common_error(std::span<double> dr) const;  // see Misfit; writes 0 if there is none
+  bool multiply_by_layer(std::span<double> dr);   // dr/dlog k, k the stiffness of the indenter's layer
 
   const Misfit::Counts& counts() const { return counts_; }
 
  private:
   bool has_force() const { return load_.force.has_value(); }
   bool has_torque() const { return load_.torque.has_value(); }
+  bool has_wrench() const { return has_force() || has_torque(); }
   static const LoadCase& readable(const Experiment& experiment, const LoadCase& load);  // throws if invalid
   Model make_model(const std::string& material, std::span<const MaterialParameters> parameters);
   void apply(double part);  // fraction of the load
   bool try_from(std::span<const double> start);
   bool load_in_parts();
   bool solved(const SolveReport& report);
-  void put_change(const Wrench& change, std::span<double> dr) const;  // with dx_
+  Wrench wrench();                                                            // at x()
+  Wrench wrench_change(std::span<const double> dtheta);                       // along dx_
+  void add_wrench_transposed(const Wrench& bar, std::span<double> thetabar);  // to xbar_ and thetabar
+  void put_change(const Wrench& change, std::span<double> dr) const;          // with dx_
   void predict_readings();
 
   const Experiment& experiment_;
   const LoadCase& load_;
-  Probe* probe_ = nullptr;           // in the model; null without an indenter
-  std::vector<ScaledLoad*> scaled_;  // weight and pressure in the model
+  Probe* probe_ = nullptr;            // in the model; null without an indenter
+  std::vector<ScaledLoad*> scaled_;   // weight and pressure in the model
+  std::shared_ptr<GripMotion> grip_;  // in the model; null without a grip
   std::vector<double> rest_;
   Equilibrium equilibrium_;
   CasePrediction prediction_;
@@ -69,7 +75,7 @@ class LoadedBody {
   bool is_solved_ = false;
   std::string failure_;
   Misfit::Counts counts_;
-  std::vector<double> dx_, xbar_, start_;  // scratch
+  std::vector<double> dx_, xbar_, start_, force_;  // scratch
 };
 
 }  // namespace aspic

@@ -11,6 +11,7 @@
 
 #include "energy/probe.h"
 #include "fit/equilibrium.h"
+#include "fit/grip.h"
 #include "fit/least_squares.h"
 #include "fit/parameter_map.h"
 
@@ -28,20 +29,25 @@ struct MarkerReading {
   Vec3d sigma{};     // standard deviations [m], > 0
 };
 
-// A static state: body, supports and loads are at rest; measured are marker positions and, with an indenter, force and
-// torque.
+// A static state: body, supports and loads are at rest; measured are marker positions and, with an indenter or a grip,
+// its force and torque.
 struct LoadCase {
   std::string name;   // "poke 3, depth 2"
   std::string group;  // cases that are held out together: "poke 3"
   std::optional<Indenter> indenter;
   IndenterPose touch, pose;  // pose of the indenter: at rest, and in this case
+  std::optional<Grip> grip;  // excludes an indenter
   Vec3d gravity{};           // [m/s^2]
   double pressure = 0;       // [Pa] over `pressed`: a follower pressure, or a dead load
   bool is_dead_pressure = false;
   std::vector<Triangle> pressed;
   std::vector<MarkerReading> positions;
-  std::optional<Vec3d> force, torque;  // measured, of the indenter on the body [N, N m]
+  std::optional<Vec3d> force, torque;  // measured, on the body [N, N m]
   Vec3d force_sigma{}, torque_sigma{};
+  // Errors of the readings that have one standard normal factor in common, in all cases: the uncertainty of a
+  // correction. One per position [m]; empty: none.
+  std::vector<Vec3d> common_errors;
+  Wrench common_wrench_error;
 };
 
 struct Experiment {
@@ -82,6 +88,7 @@ class Misfit : public LeastSquares {
   // along it do not determine the stiffness of the body.
   int nuisance_count() const override;
   void nuisance(int k, std::span<double> dr) override;
+  bool common_error(std::span<double> dr) const override;  // of LoadCase::common_errors
   std::vector<std::pair<int, int>> residuals_by_case() const override;
 
   // Equilibria of the last successful evaluate(), case by case; empty before. A misfit with this state, evaluated and

@@ -4,6 +4,7 @@
 
 #include "base/error.h"
 #include "base/parallel.h"
+#include "fit/common_errors.h"
 #include "fit/refined_experiment.h"
 #include "fit/taylor_test.h"
 #include "mesh/generators.h"
@@ -35,6 +36,7 @@ struct Gel {
     experiment.cases.push_back(pressed());
     experiment.cases.push_back(pressed());
     experiment.cases.back().is_dead_pressure = true;
+    experiment.cases.push_back(gripped());
   }
 
   static std::string text(double x) { return std::to_string(std::lround(1000 * x)) + " mm"; }
@@ -46,6 +48,20 @@ struct Gel {
     load.pose = load.touch;
     load.pose.center = {{x + 0.3 * depth, 0.04, 0.062 - depth}};
     load.pose.rotation = {{0, 0.1, 0}};
+    load.force = load.torque = Vec3d{};
+    load.force_sigma = {{0.01, 0.01, 0.02}};
+    load.torque_sigma = {{1e-4, 1e-4, 1e-4}};
+    add_markers(load);
+    return load;
+  }
+  // The top is lifted, moved sideways and twisted, under gravity.
+  LoadCase gripped() const {
+    LoadCase load{.name = "gripped", .group = "gripped"};
+    Grip grip{.center = {{0.04, 0.04, 0.05}}, .displacement = {{0.004, -0.002, 0.003}}, .rotation = {{0.05, 0, 0.2}}};
+    for (int v = 0; v < experiment.mesh.vertex_count(); ++v)
+      if (experiment.mesh.rest[v][2] > 0.05 - 1e-9) grip.vertices.push_back(v);
+    load.grip = grip;
+    load.gravity = {{0, 0, -9.81}};
     load.force = load.torque = Vec3d{};
     load.force_sigma = {{0.01, 0.01, 0.02}};
     load.torque_sigma = {{1e-4, 1e-4, 1e-4}};
@@ -249,6 +265,30 @@ TEST(Misfit, OnRefinedMeshHasDerivativesPerMapTet) {
   ASSERT_TRUE(misfit.evaluate(stepped(p, dp, h), above) && misfit.evaluate(stepped(p, dp, -h), below))
       << misfit.failure();
   for (size_t i = 0; i < r.size(); ++i) EXPECT_NEAR((above[i] - below[i]) / (2 * h), dr[i], 1e-5 * norm(dr));
+}
+
+TEST(Misfit, CommonErrorSpansAllCasesAndIsWhitened) {
+  Gel gel;
+  gel.experiment.cases = {gel.hung(), gel.gripped()};
+  const ParameterMap map = gel.map();
+  gel.measure(map, std::vector<double>(map.guess().begin(), map.guess().end()), 1);
+  for (LoadCase& load : gel.experiment.cases) load.common_errors.assign(load.positions.size(), {{1e-4, 0, -2e-4}});
+  gel.experiment.cases[1].common_wrench_error.force = {{0, 0, 0.05}};
+  Misfit misfit(gel.experiment, map);
+  WithUncertainLayers whitened(misfit);
+  std::vector<double> r(misfit.residual_count()), Lr = r, n = r;
+  ASSERT_TRUE(misfit.evaluate(map.guess(), r) && whitened.evaluate(map.guess(), Lr));
+  ASSERT_TRUE(misfit.common_error(n));
+  EXPECT_EQ(n[0], 1);   // 1e-4 of 1e-4
+  EXPECT_EQ(n[2], -2);  // 2e-4 of 1e-4
+  EXPECT_EQ(n[n.size() - 4], 2.5);
+  const double squares = dot(n, n);
+  EXPECT_NEAR(dot(n, Lr), dot(n, r) / std::sqrt(1 + squares), 1e-6 * norm(n) * norm(r));
+  for (size_t i = 0; i < r.size(); ++i)  // other directions remain
+    EXPECT_NEAR(Lr[i] - dot(n, Lr) / squares * n[i], r[i] - dot(n, r) / squares * n[i], 1e-6 * norm(r));
+  gel.experiment.cases[0].common_errors.clear();
+  gel.experiment.cases[1].common_errors.clear();
+  EXPECT_FALSE(misfit.common_error(n));
 }
 
 TEST(Misfit, NamesEachResidual) {

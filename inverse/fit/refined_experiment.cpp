@@ -28,9 +28,10 @@ class Refinement {
     for (int t = 0; t < coarse.mesh.tet_count(); ++t) split(t);
     add_mid_nodes();
     for (const SurfacePoint& marker : coarse.markers) fine_.markers.push_back(in_part(marker));
-    hold();
+    fine_.fixed = in_parts(coarse.fixed);
     for (LoadCase load : coarse.cases) {
       load.pressed = split(load.pressed);
+      if (load.grip) load.grip->vertices = in_parts(load.grip->vertices);
       fine_.cases.push_back(std::move(load));
     }
   }
@@ -104,23 +105,23 @@ class Refinement {
     return parts;
   }
 
-  // Holds the midpoint of an edge if a surrounding surface triangle or tet is held.
-  void hold() {
-    fine_.fixed = coarse_.fixed;
+  // Adds the midpoint of an edge to held vertices if a surrounding surface triangle or tet is held.
+  std::vector<int> in_parts(std::vector<int> held) {
     std::vector<char> is_held(coarse_.mesh.rest.size(), 0);
-    for (const int v : coarse_.fixed) is_held[v] = 1;
+    for (const int v : held) is_held[v] = 1;
     const auto all_held = [&](const auto& nodes) {
       return std::all_of(nodes.begin(), nodes.end(), [&](int v) { return is_held[v] != 0; });
     };
     for (const Triangle& t : boundary_triangles(coarse_.mesh, 0, coarse_.mesh.tet_count()))
-      for (int i = 0; i < 3 && all_held(t); ++i) fine_.fixed.push_back(middle(t[i], t[(i + 1) % 3]));
+      for (int i = 0; i < 3 && all_held(t); ++i) held.push_back(middle(t[i], t[(i + 1) % 3]));
     for (int t = 0; t < coarse_.mesh.tet_count(); ++t)
       for (int part = 8 * t; part < 8 * (t + 1) && all_held(nodes_of(coarse_.mesh, t)); ++part) {
         const TetNodes nodes = nodes_of(fine_.mesh, part);
-        fine_.fixed.insert(fine_.fixed.end(), nodes.begin(), nodes.end());
+        held.insert(held.end(), nodes.begin(), nodes.end());
       }
-    std::sort(fine_.fixed.begin(), fine_.fixed.end());
-    fine_.fixed.erase(std::unique(fine_.fixed.begin(), fine_.fixed.end()), fine_.fixed.end());
+    std::sort(held.begin(), held.end());
+    held.erase(std::unique(held.begin(), held.end()), held.end());
+    return held;
   }
 
   const Experiment& coarse_;
@@ -249,6 +250,9 @@ Experiment without_mesh_errors(Experiment experiment, const MeshErrors& errors) 
     const Wrench own = load.force ? error.for_force_in_limit(*load.force) : error.wrench;
     if (load.force) shift(*load.force, load.force_sigma, own.force);
     if (load.torque) shift(*load.torque, load.torque_sigma, own.torque);
+    load.common_errors.clear();
+    for (size_t k = 0; k < load.positions.size(); ++k) load.common_errors.push_back(kUncertain * error.markers[k]);
+    load.common_wrench_error = {kUncertain * own.force, kUncertain * own.torque};
   }
   return experiment;
 }

@@ -1,0 +1,307 @@
+"""Equilibria of soft solids by quadratic tets in NumPy and SciPy, independent of Aspic: its own meshes, elements and law.
+
+Energy density: mu/2 (x + b x^2) + K/4 (j^2 - 1 - 2 log j), x = J^(-2/3) I1 - 3, where j is the mean of J over a tet
+(mean dilatation). mu and K are those of E and nu at small strains. The mesh is a graded box of cells that are cut into
+twelve tets around their center; interior vertices are jittered. Lengths in m, forces in N, stresses in Pa.
+"""
+import dataclasses
+import itertools
+
+import numpy as np
+import scipy.sparse as sparse
+import scipy.sparse.linalg as splinalg
+
+ROUND_OFF = 1e-5  # relative residual that is accepted where the energy does not fall any more
+EDGES = np.array([(0, 1), (1, 2), (0, 2), (0, 3), (1, 3), (2, 3)])
+A, B = (5 + 3 * 5 ** 0.5) / 20, (5 - 5 ** 0.5) / 20
+POINTS = B + (A - B) * np.eye(4)  # barycentric coordinates, weight 1/4 each; exact for polynomials of degree 2
+# Points of a triangle with weights that sum to 1; exact for polynomials of degree 4 [Dunavant 1985].
+P, Q = 0.445948490915965, 0.091576213509771
+FACE_POINTS = np.array([p for a in (P, Q) for p in ((a, a, 1 - 2 * a), (a, 1 - 2 * a, a), (1 - 2 * a, a, a))])
+FACE_WEIGHTS = np.repeat([0.223381589678011, 0.109951743655322], 3)
+
+
+def shapes(l):
+    """Quadratic shape functions of tets (4 coordinates, 10 nodes) or triangles (3 coordinates, 6 nodes)."""
+    l = np.asarray(l)
+    edges = EDGES[:3] if l.shape[-1] == 3 else EDGES
+    return np.concatenate([l * (2 * l - 1), 4 * l[..., edges[:, 0]] * l[..., edges[:, 1]]], axis=-1)
+
+
+def shape_slopes(l):
+    """dN/dl of a tet: 10 x 4."""
+    slopes = np.zeros((10, 4))
+    slopes[np.arange(4), np.arange(4)] = 4 * l - 1
+    for k, (i, j) in enumerate(EDGES):
+        slopes[4 + k, i], slopes[4 + k, j] = 4 * l[j], 4 * l[i]
+    return slopes
+
+
+@dataclasses.dataclass
+class Mesh:
+    X: np.ndarray      # nodes: corners, then middles of edges
+    tets: np.ndarray   # 10 nodes each
+    faces: np.ndarray  # 6 nodes of each boundary triangle, outward
+
+    def linear(self):
+        """Values at all nodes of fields that are linear in each tet, from those at the corners."""
+        corners = self.tets[:, :4].max() + 1
+        middles = np.unique(np.concatenate([self.tets[:, 4:].reshape(-1, 1), self.tets[:, EDGES].reshape(-1, 2)], 1), axis=0)
+        rows = np.concatenate([np.arange(corners), middles[:, 0], middles[:, 0]])
+        columns = np.concatenate([np.arange(corners), middles[:, 1], middles[:, 2]])
+        values = np.concatenate([np.ones(corners), np.full(2 * len(middles), 0.5)])
+        return sparse.csr_matrix((values, (rows, columns)), (len(self.X), corners))
+
+
+def box(xs, ys, zs, jitter=0.2, seed=0):
+    """Quadratic mesh of a box with the given grid planes. Planes are kept: jitter moves vertices inside cells' layers
+    only along them, and cell centers in all directions."""
+    random = np.random.default_rng(seed)
+    n = [len(v) for v in (xs, ys, zs)]
+    grid = np.stack(np.meshgrid(xs, ys, zs, indexing="ij"), -1)
+    widths = [np.min(np.diff(v)) for v in (xs, ys, zs)]
+    for axis in (0, 1):
+        inside = tuple(slice(1, -1) for _ in range(3))
+        grid[inside][..., axis] += jitter * widths[axis] * random.uniform(-0.5, 0.5, grid[inside].shape[:3])
+    index = np.arange(np.prod(n)).reshape(n)
+    vertices, tets = [grid.reshape(-1, 3)], []
+    count = grid.size // 3
+    for i, j, k in itertools.product(*(range(m - 1) for m in n)):
+        corner = {d: index[i + d[0], j + d[1], k + d[2]] for d in itertools.product((0, 1), repeat=3)}
+        parity = {d: (i + j + k + sum(d)) % 2 for d in corner}
+        middle = np.mean([vertices[0][v] for v in corner.values()], 0)
+        vertices.append((middle + jitter * random.uniform(-0.3, 0.3, 3) * widths)[None])
+        for axis, side in itertools.product(range(3), (0, 1)):
+            a, b = [m for m in range(3) if m != axis]
+            ring = []
+            for p, q in ((0, 0), (1, 0), (1, 1), (0, 1)):
+                d = [0, 0, 0]
+                d[axis], d[a], d[b] = side, p, q
+                ring.append(tuple(d))
+            start = next(r for r in range(4) if parity[ring[r]] == 0)  # the diagonal joins even vertices
+            ring = [corner[d] for d in ring[start:] + ring[:start]]
+            tets += [(ring[0], ring[1], ring[2], count), (ring[0], ring[2], ring[3], count)]
+        count += 1
+    return quadratic(np.concatenate(vertices), np.array(tets))
+
+
+def quadratic(X, tets):
+    sides = X[tets[:, 1:]] - X[tets[:, :1]]
+    flipped = np.linalg.det(sides) < 0
+    tets[flipped] = tets[flipped][:, [0, 1, 3, 2]]
+    pairs, inverse = np.unique(np.sort(tets[:, EDGES].reshape(-1, 2), 1), axis=0, return_inverse=True)
+    all_tets = np.concatenate([tets, len(X) + inverse.reshape(-1, 6)], 1)
+    nodes = np.concatenate([X, X[pairs].mean(1)])
+    # A face in only one tet is on the boundary. Local edges: EDGES of the nodes in their order.
+    local = np.array([(0, 2, 1), (0, 1, 3), (1, 2, 3), (0, 3, 2)])
+    faces = tets[:, local].reshape(-1, 3)
+    _, first, counts = np.unique(np.sort(faces, 1), axis=0, return_index=True, return_counts=True)
+    faces = faces[first[counts == 1]]
+    keys = {tuple(p): len(X) + m for m, p in enumerate(pairs)}
+    middles = [[keys[tuple(sorted((f[a], f[b])))] for a, b in EDGES[:3]] for f in faces]
+    return Mesh(nodes, all_tets, np.concatenate([faces, np.array(middles).reshape(-1, 3)], 1))
+
+
+@dataclasses.dataclass
+class Indenter:
+    """Rigid, frictionless, pressing down: all points within `rounding` of an upward cylinder of radius `flat` whose end
+    is at `center`. A sphere: flat = 0. `stiffness` of the penalty in Pa/m."""
+    center: np.ndarray
+    flat: float
+    rounding: float
+    stiffness: float
+
+    def depth(self, x):
+        """Depth of points inside, and its gradient."""
+        u = x - self.center
+        radial = np.hypot(u[:, 0], u[:, 1])
+        outside = np.maximum(0, 1 - self.flat / np.maximum(radial, 1e-300))
+        away = np.stack([u[:, 0] * outside, u[:, 1] * outside, np.minimum(u[:, 2], 0)], 1)
+        distance = np.linalg.norm(away, axis=1)
+        is_above = (outside == 0) & (u[:, 2] > 0)  # inside the cylinder: pushed down
+        n = np.where(is_above[:, None], [0.0, 0.0, 1.0], -away / np.maximum(distance, 1e-300)[:, None])
+        return self.rounding + np.where(is_above, u[:, 2], -distance), n
+
+
+class Solid:
+    """young(points), poisson: at small strains. `b`: stiffening. `weight`: force per volume [N/m^3]."""
+
+    def __init__(self, mesh, young, poisson, b=0.3, weight=(0, 0, 0)):
+        self.mesh, self.b = mesh, b
+        corners = mesh.X[mesh.tets[:, :4]]
+        sides = corners[:, 1:] - corners[:, :1]
+        self.volume = np.linalg.det(sides) / 6
+        assert self.volume.min() > 0
+        inverse = np.linalg.inv(sides)  # grad l_i for i > 0: its columns
+        barycentric = np.concatenate([-inverse.sum(2, keepdims=True), inverse], 2).transpose(0, 2, 1)
+        self.G = np.array([shape_slopes(l) @ barycentric for l in POINTS])  # points, tets, nodes, xyz
+        E = np.array([young(l @ corners) * np.ones(len(corners)) for l in POINTS])
+        self.mu, self.K = E / (2 + 2 * poisson), E.mean(0) / (3 - 6 * poisson)
+        self.indenter = None
+        dofs = (3 * mesh.tets[:, :, None] + np.arange(3)).reshape(-1, 30)
+        self.rows, self.columns, self.dofs = np.repeat(dofs, 30, 1).ravel(), np.tile(dofs, (1, 30)).ravel(), dofs
+        X = mesh.X[mesh.faces[:, :3]]
+        self.face_area = np.linalg.norm(np.cross(X[:, 1] - X[:, 0], X[:, 2] - X[:, 0]), axis=1) / 2
+        self.face_shapes = shapes(FACE_POINTS)
+        per_node = np.array([shapes(l) for l in POINTS]).sum(0) / 4
+        load = self.volume[:, None, None] * per_node[:, None] * np.asarray(weight, float)
+        self.load = np.bincount(dofs.ravel(), load.ravel(), mesh.X.size)
+
+    def evaluate(self, x, wants_matrix=False):
+        """Energy without contact, gradient and matrix; infinite energy if a tet is inverted."""
+        xe, V = x.reshape(-1, 3)[self.mesh.tets], self.volume
+        Fs = [xe.transpose(0, 2, 1) @ G for G in self.G]
+        Js = np.array([np.linalg.det(F) for F in Fs])
+        if Js.min() <= 0:
+            return np.inf, None, None
+        j = Js.mean(0)
+        energy = (V * self.K / 4 * (j ** 2 - 1 - 2 * np.log(j))).sum() - self.load @ x
+        pressure, bulk = self.K / 2 * (j - 1 / j), self.K / 2 * (1 + j ** -2)
+        g, K = np.zeros((len(V), 10, 3)), np.zeros((len(V), 30, 30)) if wants_matrix else None
+        dj = np.zeros((len(V), 10, 3))
+        for F, J, G, mu in zip(Fs, Js, self.G, self.mu):
+            H, I1, a = np.linalg.inv(F).transpose(0, 2, 1), (F ** 2).sum((1, 2)), J ** (-2 / 3)
+            X, slope = a * I1 - 3, mu / 2 * (1 + 2 * self.b * (a * I1 - 3))
+            energy += (V / 4 * mu / 2 * (X + self.b * X ** 2)).sum()
+            s = lambda v: v[:, None, None]
+            dX = s(a) * (2 * F - s(2 / 3 * I1) * H)
+            g += s(V / 4) * (G @ (s(slope) * dX + s(pressure * J) * H).transpose(0, 2, 1))
+            dj += (G @ (s(J) * H).transpose(0, 2, 1)) / 4
+            if wants_matrix:
+                D = lambda p, q: p.reshape(-1, 9, 1) * q.reshape(-1, 1, 9)
+                # The derivative of H = F^-T: dH_ij = -H_il dF_kl H_kj.
+                crossed = (H[:, :, None, None, :] * H.transpose(0, 2, 1)[:, None, :, :, None]).reshape(-1, 9, 9)
+                tangent = s(slope * a) * (2 * np.eye(9) - 4 / 3 * (D(F, H) + D(H, F)) + s(4 / 9 * I1) * D(H, H)
+                                          + s(2 / 3 * I1) * crossed)
+                tangent += s(mu * self.b) * D(dX, dX) + s(pressure * J) * (D(H, H) - crossed)
+                strain = np.zeros((len(V), 3, 3, 10, 3))  # dF / du
+                for i in range(3):
+                    strain[:, i, :, :, i] = G.transpose(0, 2, 1)
+                strain = strain.reshape(-1, 9, 30)
+                K += strain.transpose(0, 2, 1) @ ((s(V / 4) * tangent) @ strain)
+        gradient = np.bincount(self.dofs.ravel(), g.ravel(), x.size) - self.load
+        matrix = None
+        if wants_matrix:
+            flat = dj.reshape(-1, 30)
+            K += (V * bulk)[:, None, None] * flat[:, :, None] * flat[:, None]
+            matrix = sparse.csr_matrix((K.ravel(), (self.rows, self.columns)), (x.size, x.size))
+        return energy, gradient, matrix
+
+    def contact(self, x, wants_matrix=False):
+        """Energy, gradient and matrix (Gauss-Newton) of the indenter, and its force on the body."""
+        faces, N = self.mesh.faces, self.face_shapes
+        points = np.einsum("qa,far->fqr", N, x.reshape(-1, 3)[faces]).reshape(-1, 3)
+        depth, n = self.indenter.depth(points)
+        weight = (self.face_area[:, None] * FACE_WEIGHTS).ravel() * self.indenter.stiffness
+        pushed = np.flatnonzero(depth > 0)
+        depth, n, weight, face, point = depth[pushed], n[pushed], weight[pushed], pushed // len(N), pushed % len(N)
+        pull = (weight * depth)[:, None] * n
+        dofs = (3 * faces[face][:, :, None] + np.arange(3)).reshape(-1, 18)
+        rows = (N[point][:, :, None] * n[:, None]).reshape(-1, 18)  # d depth / d nodes
+        gradient = np.bincount(dofs.ravel(), ((weight * depth)[:, None] * rows).ravel(), x.size)
+        matrix = None
+        if wants_matrix:
+            J = sparse.csr_matrix((rows.ravel(), dofs.ravel(), 18 * np.arange(len(rows) + 1)), (len(rows), x.size))
+            matrix = (J.T @ sparse.diags(weight) @ J).tocsr()
+        return (weight * depth ** 2).sum() / 2, gradient, matrix, -pull.sum(0)
+
+    def total(self, x, wants_matrix=False):
+        energy, gradient, matrix = self.evaluate(x, wants_matrix)
+        if self.indenter is not None and np.isfinite(energy):
+            more, slope, block, _ = self.contact(x, wants_matrix)
+            energy, gradient = energy + more, gradient + slope
+            matrix = matrix + block if wants_matrix else None
+        return energy, gradient, matrix
+
+    def solve(self, x, held, iterations=60, tolerance=1e-7):
+        """Minimizes from x, whose entries `held` (a mask of degrees of freedom) stay. Returns the positions."""
+        x, free = x.copy(), np.flatnonzero(~held)
+        coarse = sparse.kron(self.mesh.linear(), sparse.eye(3)).tocsr()[free]
+        coarse = coarse[:, np.flatnonzero(~held[:coarse.shape[1]])]  # vertices come first
+        for _ in range(iterations):
+            energy, gradient, matrix = self.total(x, True)
+            size = np.abs(gradient[free]).max()
+            balanced = np.abs(gradient).max()  # includes reactions
+            if size <= tolerance * balanced:
+                return x
+            K = matrix[free][:, free]
+            step = conjugate_gradients(K, -gradient[free], TwoLevel(K, coarse, free // 3), 1e-4)
+            length, slope = 1.0, step @ gradient[free]
+            while True:
+                trial = x.copy()
+                trial[free] += length * step
+                value, rest, _ = self.total(trial)
+                # Close to the minimum, differences of energies are round-off.
+                if value <= energy + 1e-4 * length * slope or (
+                        np.isfinite(value) and np.abs(rest[free]).max() < 0.5 * size):
+                    break
+                length /= 2
+                if length < 1e-6:
+                    if size <= ROUND_OFF * balanced:
+                        return x
+                    raise RuntimeError(f"no descent; residual {size:.3g} of {balanced:.3g} N")
+            x = trial
+        raise RuntimeError(f"no equilibrium; residual {size:.3g} of {balanced:.3g} N")
+
+
+class TwoLevel:
+    """Preconditioner: an exact solve for the displacements of linear tets, plus those of each node by itself."""
+
+    def __init__(self, K, coarse, nodes):
+        self.coarse = coarse
+        self.factor = splinalg.splu((coarse.T @ K @ coarse).tocsc(), permc_spec="MMD_AT_PLUS_A", diag_pivot_thresh=0,
+                                    options={"SymmetricMode": True})
+        K = K.tocoo()
+        same = nodes[K.row] == nodes[K.col]
+        block = sparse.csr_matrix((K.data[same], (K.row[same], K.col[same])), K.shape).tocsc()
+        self.blocks = splinalg.splu(block, permc_spec="NATURAL", diag_pivot_thresh=0, options={"SymmetricMode": True})
+
+    def __call__(self, r):
+        return self.coarse @ self.factor.solve(self.coarse.T @ r) + self.blocks.solve(r)
+
+
+def conjugate_gradients(K, b, precondition, tolerance, iterations=2000):
+    x, r = np.zeros_like(b), b.copy()
+    z = precondition(r)
+    p, rz, first = z.copy(), r @ z, np.linalg.norm(b)
+    for _ in range(iterations):
+        Kp = K @ p
+        curvature = p @ Kp
+        if curvature <= 0:  # an indefinite matrix: the last descent direction
+            return x if x.any() else z
+        x += rz / curvature * p
+        r -= rz / curvature * Kp
+        if np.linalg.norm(r) <= tolerance * first:
+            break
+        z = precondition(r)
+        p, rz = z + (r @ z) / rz * p, r @ z
+    return x
+
+
+class Interpolation:
+    """Values of nodal fields at fixed points of the body at rest."""
+
+    def __init__(self, mesh, points):
+        corners = mesh.X[mesh.tets[:, :4]]
+        inverse = np.linalg.inv(corners[:, 1:] - corners[:, :1])
+        self.nodes, self.weights = [], []
+        for p in points:
+            l = np.einsum("er,erk->ek", p - corners[:, 0], inverse)
+            l = np.concatenate([1 - l.sum(1, keepdims=True), l], 1)
+            best = l.min(1).argmax()
+            assert l[best].min() > -1e-6, p
+            self.nodes.append(mesh.tets[best])
+            self.weights.append(shapes(l[best]))
+
+    def __call__(self, x):
+        return np.einsum("pa,par->pr", np.array(self.weights), x.reshape(-1, 3)[np.array(self.nodes)])
+
+
+def rotation(vector):
+    """Matrix of a rotation vector [Rodrigues]."""
+    angle = np.linalg.norm(vector)
+    if angle == 0:
+        return np.eye(3)
+    a = np.asarray(vector) / angle
+    cross = np.array([[0, -a[2], a[1]], [a[2], 0, -a[0]], [-a[1], a[0], 0]])
+    return np.eye(3) + np.sin(angle) * cross + (1 - np.cos(angle)) * cross @ cross
