@@ -74,7 +74,7 @@ TEST(EnergyBound, EqualsItsDefinition) {
     const StepReport report = simulation.step();
     std::vector<double> jump = simulation.state().qdot, Mjump(jump.size());
     for (size_t k = 0; k < jump.size(); ++k) jump[k] -= start.qdot[k];
-    const double lost = kinetic_energy(*simulation.model().mass, jump, Mjump);
+    const double lost = kinetic_energy(simulation.model(), jump, Mjump);
     EXPECT_NEAR(report.energy_slack, before - report.potential_total - lost, 1e-10 * (std::abs(before) + 1));
     before = report.kinetic + report.potential_total;
   }
