@@ -9,8 +9,8 @@ namespace {
 
 void require_recording(const Recording& recording) {
   require(!recording.names.empty() && !recording.frames.empty(), "a recording has points and frames");
-  require_printable(recording.names);
-  require_printable(recording.notes);
+  fuzz::require_printable(recording.names);
+  fuzz::require_printable(recording.notes);
   for (const RecordedFrame& frame : recording.frames) {
     require(frame.positions.size() == recording.names.size(), "a frame has a position per point");
     require(frame_numbered(recording, frame.number) >= 0, "frames are found by their number");

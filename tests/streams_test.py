@@ -45,6 +45,7 @@ USES = {
     "view": (["--help"], ["none.toml"]),
     "report": (["--help"], ["none"]),
     "completion": (["bash"], ["none"]),
+    "sweep": (["--help"], ["none.toml", "-o", "study"]),
     "render": (["--help"], ["none", "-o", "none.png"]),
 }
 DOCUMENTED = {0, 1, 2, 3, 4, 130, 141, 143}

@@ -165,7 +165,7 @@ class Continued(Sweep):
         self.assert_same_folder("whole", "run")
 
     def test_resumes_after_termination(self):
-        self.beam("beam.toml", 2, "8, 2, 2", "[output]\nevery = 1\n")
+        self.beam("beam.toml", 20, "8, 2, 2", "[output]\nevery = 100\n")
         process = self.start(*self.LINE)
         self.wait_for_step("run", 3)
         process.send_signal(signal.SIGTERM)
@@ -173,7 +173,7 @@ class Continued(Sweep):
         self.assertEqual(process.returncode, 143)
         self.assertIn("stopped: by signal 15", (self.folder / "run/outcome.txt").read_text())
         self.assertIn("resuming after step", self.aspic(*self.LINE).stdout)
-        self.assertIn("all 200 steps are computed", self.aspic(*self.LINE).stdout)
+        self.assertIn("all 2000 steps are computed", self.aspic(*self.LINE).stdout)
         self.aspic(*self.LINE[:-2], "whole")
         self.assertEqual((self.folder / "run/steps.csv").read_bytes(), (self.folder / "whole/steps.csv").read_bytes())
 
@@ -246,7 +246,7 @@ class Collected(Sweep):
 100,,0.4
 100,x < -1,0.4
 1,,0.4
-100,,400
+100,,40000
 100,,300
 """
 
@@ -272,7 +272,7 @@ class Collected(Sweep):
         self.assertIn("1 done, 1 not begun, 1 killed, 1 unconverged, 1 failed", text)
         self.assertIn("x < -1", rows[1]["reason"])
         self.assertRegex(rows[2]["reason"], r"\d+ of 40 steps did not converge, the first is step \d+ \(iteration_limit\)")
-        self.assertRegex(rows[3]["reason"], r"after step \d+ of 40000; run the jobs again")
+        self.assertRegex(rows[3]["reason"], r"after step \d+ of 4000000; run the jobs again")
         self.assertEqual(rows[4]["reason"], "")
         page = (self.folder / "study/index.html").read_text()
         self.assertLess(page.index("did not converge, the first"), page.index("Cases that are done"))

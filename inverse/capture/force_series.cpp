@@ -89,8 +89,10 @@ SteadyForce judged(const ForceSeries& s, double time, double duration, const Spr
   begin = center, end = center + 1;
   while (begin > 0 && is_near(begin - 1)) --begin;
   while (end < s.times.size() && is_near(end)) ++end;
-  const size_t count = end - begin, middle = begin + count / 2;
   const double length = s.times[end - 1] - s.times[begin];
+  const size_t edge = (end - begin) / 10;  // may be the end of a ramp
+  begin += edge, end -= edge;
+  const size_t count = end - begin, middle = begin + count / 2;
   const double drift = count > 1 ? entry_norm(mean_between(s, middle, end) - mean_between(s, begin, middle)) : 0;
   const double allowed =
       kBand * spread.range + 3 * spread.noise / std::sqrt(std::max(1.0, static_cast<double>(count) / 2));

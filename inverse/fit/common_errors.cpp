@@ -61,12 +61,7 @@ bool WithUncertainLayers::evaluate(std::span<const double> p, std::span<double> 
 
 void WithUncertainLayers::learn() {
   is_known_ = true;
-  std::vector<double> common(static_cast<size_t>(residual_count()));
-  const bool has_common = data_.common_error(common);
-  if (data_.nuisance_count() == 0 || !linearize()) {
-    if (has_common) errors_.add(0, std::move(common));
-    return;
-  }
+  if (data_.nuisance_count() == 0 || !linearize()) return;
   std::vector<std::vector<double>> unbounded;
   for (int k = 0; k < data_.nuisance_count(); ++k) {
     std::vector<double>& dr = unbounded.emplace_back(static_cast<size_t>(residual_count()));
@@ -77,7 +72,6 @@ void WithUncertainLayers::learn() {
       errors_.add(first, std::move(n));
     }
   }
-  if (has_common) errors_.add(0, std::move(common));
   for (std::vector<double>& n : unbounded) errors_.add_unbounded(std::move(n));
 }
 

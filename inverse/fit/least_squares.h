@@ -22,9 +22,6 @@ class LeastSquares {
   // along them do not determine p (WithUncertainLayers). Valid as long as J.
   virtual int nuisance_count() const { return 0; }
   virtual void nuisance(int /*k*/, std::span<double> /*dr*/) {}
-  // Error of all residuals that is known but for a standard normal factor, such as the uncertainty of a correction.
-  // Returns false if there is none.
-  virtual bool common_error(std::span<double> /*dr*/) const { return false; }
   // First residual and count of each part with an independent deviation from the assumption; empty: common to all.
   virtual std::vector<std::pair<int, int>> residuals_by_case() const { return {}; }
 };

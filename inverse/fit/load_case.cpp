@@ -260,19 +260,6 @@ bool LoadedBody::solved(const SolveReport& report) {
   return false;
 }
 
-bool LoadedBody::common_error(std::span<double> dr) const {
-  std::fill(dr.begin(), dr.end(), 0.0);
-  if (load_.common_errors.size() != load_.positions.size()) return false;
-  size_t i = 0;
-  const auto put = [&](const Vec3d& error, const Vec3d& sigma) {
-    for (int k = 0; k < 3; ++k) dr[i++] = error[k] / sigma[k];
-  };
-  for (size_t k = 0; k < load_.positions.size(); ++k) put(load_.common_errors[k], load_.positions[k].sigma);
-  if (has_force()) put(load_.common_wrench_error.force, load_.force_sigma);
-  if (has_torque()) put(load_.common_wrench_error.torque, load_.torque_sigma);
-  return true;
-}
-
 void LoadedBody::put_change(const Wrench& change, std::span<double> dr) const {
   size_t i = 0;
   const auto put = [&](const Vec3d& d, const Vec3d& sigma) {

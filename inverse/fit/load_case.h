@@ -42,8 +42,7 @@ class LoadedBody {
   bool multiply(std::span<const double> dtheta, std::span<double> dr);
   bool add_transposed(std::span<const double> w, std::span<double> thetabar);
   bool has_layer() const { return probe_ != nullptr; }
-  bool common_error(std::span<double> dr) const;  // see Misfit; writes 0 if there is none
-  bool multiply_by_layer(std::span<double> dr);   // dr/dlog k, k the stiffness of the indenter's layer
+  bool multiply_by_layer(std::span<double> dr);  // dr/dlog k, k the stiffness of the indenter's layer
 
   const Misfit::Counts& counts() const { return counts_; }
 

@@ -207,13 +207,6 @@ void Misfit::multiply_transposed(std::span<const double> w, std::span<double> pb
 int Misfit::nuisance_count() const { return impl_->has_layers() ? 1 : 0; }
 void Misfit::nuisance(int, std::span<double> dr) { impl_->multiply_by_layers(dr); }
 
-bool Misfit::common_error(std::span<double> dr) const {
-  bool exists = false;
-  for (const Impl::Case& c : impl_->cases)
-    exists |= c.body->common_error(dr.subspan(c.first, c.body->residual_count()));
-  return exists;
-}
-
 std::vector<double> Misfit::state() const {
   std::vector<double> x;
   for (const Impl::Case& c : impl_->cases) x.insert(x.end(), c.body->accepted().begin(), c.body->accepted().end());

@@ -44,10 +44,6 @@ struct LoadCase {
   std::vector<MarkerReading> positions;
   std::optional<Vec3d> force, torque;  // measured, on the body [N, N m]
   Vec3d force_sigma{}, torque_sigma{};
-  // Errors of the readings that have one standard normal factor in common, in all cases: the uncertainty of a
-  // correction. One per position [m]; empty: none.
-  std::vector<Vec3d> common_errors;
-  Wrench common_wrench_error;
 };
 
 struct Experiment {
@@ -88,7 +84,6 @@ class Misfit : public LeastSquares {
   // along it do not determine the stiffness of the body.
   int nuisance_count() const override;
   void nuisance(int k, std::span<double> dr) override;
-  bool common_error(std::span<double> dr) const override;  // of LoadCase::common_errors
   std::vector<std::pair<int, int>> residuals_by_case() const override;
 
   // Equilibria of the last successful evaluate(), case by case; empty before. A misfit with this state, evaluated and

@@ -250,9 +250,6 @@ Experiment without_mesh_errors(Experiment experiment, const MeshErrors& errors) 
     const Wrench own = load.force ? error.for_force_in_limit(*load.force) : error.wrench;
     if (load.force) shift(*load.force, load.force_sigma, own.force);
     if (load.torque) shift(*load.torque, load.torque_sigma, own.torque);
-    load.common_errors.clear();
-    for (size_t k = 0; k < load.positions.size(); ++k) load.common_errors.push_back(kUncertain * error.markers[k]);
-    load.common_wrench_error = {kUncertain * own.force, kUncertain * own.torque};
   }
   return experiment;
 }

@@ -86,8 +86,7 @@ std::string after_colon(const std::string& outcome) {
 }
 
 // Sets state and reason of a run that did not end.
-void judge_unfinished(const fs::path& run, const std::string& outcome, CaseResult& result) {
-  const std::string process = RunLock::holder(run);
+void judge_unfinished(const std::string& process, const std::string& outcome, CaseResult& result) {
   const std::string progress = result.all_steps > 0 ? fmt::format("after step {} of {}", result.steps, result.all_steps)
                                                     : "before its first step";
   if (!process.empty()) {
@@ -116,6 +115,7 @@ void judge_complete(const BadSteps& bad, CaseResult& result) {
 
 void read(const fs::path& run, CaseResult& result) {
   const RunLayout layout(run);
+  const std::string process = RunLock::holder(run);  // first: without one, the outcome is final
   const std::string outcome = read_outcome(run);
   std::error_code error;
   BadSteps bad;
@@ -132,7 +132,7 @@ void read(const fs::path& run, CaseResult& result) {
     result.state = CaseState::failed;
     result.reason = fmt::format("its tables end after step {}; remove its folder and run the jobs again", result.steps);
   } else if (!is_at_end || outcome.starts_with(kRunning)) {
-    judge_unfinished(run, outcome, result);
+    judge_unfinished(process, outcome, result);
   } else {
     judge_complete(bad, result);
   }
