@@ -1,5 +1,4 @@
 # Fits of measurements of an independent finite element program, if Debian's Python has NumPy and SciPy.
-find_program(ASPIC_DEBIAN_PYTHON python3 PATHS /usr/bin NO_DEFAULT_PATH)
 if(ASPIC_DEBIAN_PYTHON)
   add_test(NAME oracle.QuadraticFem COMMAND ${ASPIC_DEBIAN_PYTHON} ${CMAKE_CURRENT_LIST_DIR}/oracle/quadratic_fem_test.py)
   set_tests_properties(oracle.QuadraticFem PROPERTIES SKIP_RETURN_CODE 77 ENVIRONMENT "OMP_NUM_THREADS=1;OPENBLAS_NUM_THREADS=1")

@@ -1,8 +1,6 @@
 # Other programs read the result files.
 add_executable(results_samples ${CMAKE_CURRENT_LIST_DIR}/results_samples.cpp)
 target_link_libraries(results_samples PRIVATE aspic aspic_build)
-# Debian's Python, because packages such as python3-meshio are invisible to others.
-find_program(ASPIC_DEBIAN_PYTHON python3 PATHS /usr/bin NO_DEFAULT_PATH)
 if(ASPIC_DEBIAN_PYTHON)
   add_test(NAME results_oracle COMMAND ${ASPIC_DEBIAN_PYTHON} ${CMAKE_CURRENT_LIST_DIR}/results_oracle.py
                                        $<TARGET_FILE:results_samples>
