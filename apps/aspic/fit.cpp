@@ -81,7 +81,7 @@ void check_findings(const DataSet& data, const fs::path& path) {
 class Fitter {
  public:
   Fitter(const FitArguments& arguments, const DataSet& data, const FitPlan& plan, FitFolder& folder)
-      : arguments_(arguments), data_(data), plan_(plan), folder_(folder), residuals_(residual_count(data, plan)) {
+      : data_(data), plan_(plan), folder_(folder), residuals_(residual_count(data, plan)) {
     if (!arguments.quiet) progress_.emplace(stdout, arguments.verbose);
   }
 
@@ -121,7 +121,6 @@ class Fitter {
     return announced_ = true;
   }
 
-  const FitArguments& arguments_;
   const DataSet& data_;
   const FitPlan& plan_;
   FitFolder& folder_;

@@ -160,7 +160,9 @@ class SurfaceRegistration {
     if (!result.ambiguities.empty()) return;  // other poses differ by these motions
     std::vector<AffineMap> listed = {chosen.map};
     for (const auto& [rms, fit] : found) {
-      const auto is_same = [&](const AffineMap& other) { return distance(fit.map, other) < kOther * spread_of(few_); };
+      const auto is_same = [&, &map = fit.map](const AffineMap& other) {
+        return distance(map, other) < kOther * spread_of(few_);
+      };
       if (!is_as_good(rms, best) || std::any_of(listed.begin(), listed.end(), is_same)) continue;
       listed.push_back(fit.map);
       const Mat3d turn = rotation_of(fit.map) * transpose(rotation_of(chosen.map));

@@ -13,7 +13,7 @@ namespace {
 
 constexpr std::string_view kDirectoryEnd("PK\x05\x06", 4);
 constexpr uint32_t kDirectoryEntry = 0x02014b50, kLocalHead = 0x04034b50;
-constexpr size_t kEndBytes = 22, kEntryBytes = 46;
+constexpr size_t kEndBytes = 22;
 constexpr uint64_t kLargestRatio = 1032;  // of deflate [zlib technical details]
 constexpr uint16_t kStored = 0, kDeflatedMethod = 8;
 
