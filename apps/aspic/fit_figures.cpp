@@ -6,6 +6,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "capture/left_out.h"
 #include "fit/bickel.h"
 #include "fit/quantity.h"
 #include "io/atomic_file.h"
@@ -14,24 +15,6 @@ namespace aspic::cli {
 namespace {
 
 using Json = nlohmann::ordered_json;
-
-bool is_left_out(const LoadCase& c, const FitPlan& plan) {
-  return std::find(plan.left_out.begin(), plan.left_out.end(), c.group) != plan.left_out.end();
-}
-
-HeldOut held_out_by_fit(const DataSet& data, const FitOutcome& outcome, const Experiment& left_out) {
-  std::vector<CasePrediction> predictions;
-  for (const CaseOutcome& c : outcome.cases) {
-    if (!c.left_out) continue;
-    if (!c.ok) return {.failure = "a group could not be predicted"};
-    CasePrediction& prediction = predictions.emplace_back();
-    prediction.markers = c.markers;
-    prediction.wrench = c.wrench;
-  }
-  if (predictions.size() != left_out.cases.size() || outcome.cases.size() != data.experiment.cases.size())
-    return {.failure = "no group was predicted"};
-  return compare(left_out, predictions);
-}
 
 BickelOptions baseline_options(const FitPlan& plan) {
   BickelOptions options;
@@ -45,9 +28,9 @@ BickelOptions baseline_options(const FitPlan& plan) {
 
 std::vector<Prediction> predictions_of(const DataSet& data, const FitOutcome& outcome, bool with_baselines) {
   const FitPlan& plan = outcome.plan;
-  const Experiment left_out = subset(data.experiment, [&](const LoadCase& c) { return is_left_out(c, plan); });
+  const Experiment left_out = left_out_cases(data, plan);
   if (left_out.cases.empty()) return {};
-  std::vector<Prediction> predictions = {{"fit", held_out_by_fit(data, outcome, left_out)}};
+  std::vector<Prediction> predictions = {{"fit", left_out_errors(data, outcome)}};
   if (!with_baselines) return predictions;
   const Experiment training = without_groups(data.experiment, plan.left_out);
   for (const Baseline baseline : {Baseline::homogeneous, Baseline::per_example_linear, Baseline::bickel}) {

@@ -39,6 +39,7 @@ const Schema& fit_options_schema() {
          key("leave_out", kText | kNames, "groups of cases to predict instead of fitting", Usual{"[]"}),
          key("baselines", kBoolean, "predicts leave_out by simpler models as well", Usual{"false"}),
          key("mesh_errors", kBoolean, "corrects the discretization error with a finer mesh", Usual{"true"}),
+         key("law_errors", kBoolean, "includes the choice of the law in standard deviations", Usual{"true"}),
          key("uncertainty", kBoolean, "computes standard deviations and the next poke", Usual{"true"}),
          key("cross_validation", kBoolean, "predicts each group from the others", Usual{"true"}),
          key("method", kText, "minimization method", Choices{fit_method_names()}, Usual{"\"auto\""}),
@@ -67,6 +68,7 @@ bool read_fit_options(Table document, const std::string& source, FitPlan& plan) 
   plan.parts = parts_of(option("parts"));
   plan.refine = option("refine").integer();
   plan.mesh_errors = option("mesh_errors").boolean();
+  plan.law_errors = option("law_errors").boolean();
   plan.uncertainty = option("uncertainty").boolean();
   plan.cross_validation = option("cross_validation").boolean();
   const Value& left_out = option("leave_out");

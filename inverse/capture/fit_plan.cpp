@@ -6,6 +6,7 @@
 #include "base/error.h"
 #include "base/number_chars.h"
 #include "capture/apparent_stiffness.h"
+#include "fit/law_errors.h"
 #include "fit/quantity.h"
 #include "material/registry.h"
 #include "scene/scene_files.h"
@@ -126,6 +127,7 @@ FitPlan completed(FitPlan plan, const Experiment& experiment) {
            .guess = 0});
   for (FitParameter& u : plan.parameters)
     if (u.guess == 0) u.guess = default_value(material_quantity(plan.model, u.quantity), experiment);
+  plan.law_errors = plan.law_errors && !rival_of(plan.model).empty();
   // Standard deviations that include the mesh correction exceed the random errors. The discrepancy principle would
   // treat the difference as noise and oversmooth the field.
   const bool is_field = std::any_of(plan.parameters.begin(), plan.parameters.end(),
@@ -164,6 +166,7 @@ std::string text_of(const FitPlan& plan) {
   add("parts", std::to_string(plan.parts));
   add("refine", std::to_string(plan.refine));
   add("mesh_errors", plan.mesh_errors ? "true" : "false");
+  add("law_errors", plan.law_errors ? "true" : "false");
   add("equilibrium.tolerance", number_text(plan.equilibrium.tolerance));
   return text;
 }

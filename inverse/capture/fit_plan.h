@@ -26,6 +26,7 @@ struct FitPlan {
   // sufficient number, up to kMaxParts; 0: none.
   int parts = 0;
   bool mesh_errors = false;  // correct measurements by the discretization error relative to a finer mesh
+  bool law_errors = false;   // include the choice of the law in standard deviations
 };
 
 // Parses "young=tets", "poisson=uniform", "b=handles:40". Throws InvalidInput.

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "base/formatted.h"
+#include "capture/left_out.h"
 
 namespace aspic {
 namespace {
@@ -76,32 +77,35 @@ std::vector<GroupMisfit> fitted_groups(const DataSet& data, const FitOutcome& ou
   return groups;
 }
 
-// Held-out errors of positions and forces relative to the peaks: root mean square over the groups, with the noise of
-// readings subtracted; < 0: none.
+// Held-out errors of positions and forces relative to the largest motion and force of the data: root mean square over
+// the groups, with the noise of readings subtracted; < 0: none.
 struct HeldOutErrors {
   double position = -1, force = -1;
 };
 
-HeldOutErrors beyond_noise(const DataSet& data, const CrossValidation& held_out) {
-  double squares[2] = {}, groups[2] = {};
-  const auto add = [&](int what, double error, double variance, double peak) {
+HeldOutErrors beyond_noise(const std::vector<HeldOut>& groups) {
+  double largest[2] = {}, squares[2] = {}, count[2] = {};
+  const auto add = [&](int what, double error, double noise, double peak) {
     if (!(peak > 0)) return;
-    squares[what] += std::max(error * error - variance, 0.0) / (peak * peak);
-    ++groups[what];
+    squares[what] += std::max(error * error - noise * noise, 0.0);
+    largest[what] = std::max(largest[what], peak);
+    ++count[what];
   };
-  for (const HeldOut& group : held_out.groups) {
+  for (const HeldOut& group : groups) {
     if (!group.ok) continue;
-    double positions = 0, forces = 0;  // sums of variances
-    for (const LoadCase& load : data.experiment.cases) {
-      if (load.group != group.group) continue;
-      for (const MarkerReading& reading : load.positions) positions += squared_norm(reading.sigma);
-      if (load.force) forces += squared_norm(load.force_sigma);
-    }
-    add(0, group.position_error, positions / std::max(group.readings, 1), group.peak_motion);
-    add(1, group.force_error, forces / std::max(group.forces, 1), group.peak_force);
+    add(0, group.position_error, group.position_noise, group.peak_motion);
+    add(1, group.force_error, group.force_noise, group.peak_force);
   }
-  const auto rms = [&](int what) { return groups[what] > 0 ? std::sqrt(squares[what] / groups[what]) : -1; };
+  const auto rms = [&](int what) { return count[what] > 0 ? std::sqrt(squares[what] / count[what]) / largest[what] : -1; };
   return {rms(0), rms(1)};
+}
+
+// Every group that is predicted by a fit of others.
+std::vector<HeldOut> predicted_groups(const DataSet& data, const FitOutcome& outcome) {
+  std::vector<HeldOut> groups;
+  if (outcome.held_out) groups = outcome.held_out->groups;
+  if (!outcome.plan.left_out.empty()) groups.push_back(left_out_errors(data, outcome));
+  return groups;
 }
 
 std::string percents(const HeldOutErrors& errors) {
@@ -135,7 +139,7 @@ class Reasons {
     if (squares > kTooManySquares)
       add("unexplained", "|r|^2 is " + three_digits(squares) +
                              " per reading: the model is too simple, or the standard deviations are too small");
-    if (outcome_.held_out) add_poor_predictions(beyond_noise(data_, *outcome_.held_out));
+    add_poor_predictions(beyond_noise(predicted_groups(data_, outcome_)));
   }
 
   std::vector<FitReason> take() { return std::move(reasons_); }

@@ -5,6 +5,7 @@
 
 #include "capture/fit_troubles.h"
 #include "capture/fit_verdict.h"
+#include "fit/law_errors.h"
 #include "fit/quantity.h"
 
 namespace aspic {
@@ -72,10 +73,9 @@ MaterialFit::MaterialFit(const DataSet& data, const FitPlan& plan, const FitMemo
 }
 
 FitOutcome MaterialFit::run() {
-  if (is_field() || plan_.mesh_errors) {
+  if (is_field() || has_model_errors()) {
     if (!fit_single_values("uniform")) return std::move(outcome_);
-    if (plan_.mesh_errors && take_off_mesh_errors() && !fit_single_values("uniform_corrected"))
-      return std::move(outcome_);
+    if (learn_model_errors() && !fit_single_values("uniform_corrected")) return std::move(outcome_);
     if (!is_field()) outcome_.uniform.reset();
   }
   fit_fields();
@@ -121,24 +121,42 @@ bool MaterialFit::has_single_values(FitModel& model, const FitReport& report) {
   return false;
 }
 
-bool MaterialFit::take_off_mesh_errors() {
-  if (is_stopped()) return false;
+bool MaterialFit::has_model_errors() const { return plan_.mesh_errors || plan_.law_errors; }
+
+bool MaterialFit::learn_model_errors() {
+  if (plan_.law_errors) add_law_errors();
+  if (plan_.mesh_errors) take_off_mesh_errors();
+  return has_model_errors() && !is_stopped();
+}
+
+void MaterialFit::add_law_errors() {
+  if (is_stopped()) return;
+  begin(FitStage::mesh_errors, "differences between laws");
+  const std::string failure = simulated_.add_law_errors(plan_, material_);
+  if (failure.empty()) return;
+  add_warnings({"standard deviations do NOT include the choice of the law: with " + rival_of(plan_.model) + " " + failure});
+  plan_.law_errors = false;
+}
+
+void MaterialFit::take_off_mesh_errors() {
+  if (is_stopped()) return;
   if (simulated_.is_too_large_for_mesh_errors()) {
     add_warnings({"the discretization error was NOT computed: the simulated mesh has " +
                   std::to_string(simulated_.mesh().tet_count()) + " tets, and " +
                   std::to_string(SimulatedData::kTooFine) +
                   " are the maximum; the material includes this error (use a coarser mesh, or a smaller "
                   "option refine)"});
-    return plan_.mesh_errors = false;
+    plan_.mesh_errors = false;
+    return;
   }
   begin(FitStage::mesh_errors, "discretization error, by a mesh of eight times as many tets");
   const std::string failure = simulated_.take_off_mesh_errors(plan_, material_);
   if (!failure.empty()) {
     add_warnings({"the discretization error was NOT computed: on the finer mesh " + failure});
-    return plan_.mesh_errors = false;
+    plan_.mesh_errors = false;
+    return;
   }
   outcome_.mesh_error = simulated_.mesh_error();
-  return true;
 }
 
 void MaterialFit::fit_until_mesh_errors_settle(std::optional<FitModel>& model) {
@@ -153,7 +171,7 @@ void MaterialFit::fit_until_mesh_errors_settle(std::optional<FitModel>& model) {
                   StoredModel{memory_, name, fingerprint_});
     outcome_.report = fit_stage(is_one_value ? FitStage::uniform : FitStage::field, *model, options, start);
     const std::vector<double>& p = outcome_.report.p;
-    if (!plan_.mesh_errors || !is_success(outcome_.report.status)) return;
+    if (!has_model_errors() || !is_success(outcome_.report.status)) return;
     const double change = change_between(start, p);
     if (pass > 0 && change < (is_many(p) ? kSettledField : kSettled)) return;
     if (pass == kPasses) {
@@ -166,7 +184,7 @@ void MaterialFit::fit_until_mesh_errors_settle(std::optional<FitModel>& model) {
     start = p;
     material_ = model->map.parameters(p);
     model.reset();
-    take_off_mesh_errors();  // otherwise the last errors remain
+    learn_model_errors();  // otherwise the last errors remain
   }
 }
 

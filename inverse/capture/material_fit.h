@@ -46,7 +46,12 @@ class MaterialFit {
   // material_fit.cpp: stages from data to material. False: no further stage.
   bool fit_single_values(const std::string& name);
   bool has_single_values(FitModel& model, const FitReport& report);
-  bool take_off_mesh_errors();  // false: unknown, and the data remain unchanged
+  bool has_model_errors() const;
+  // Errors of mesh and law for the last material; if they are unknown, the data remain unchanged. False: none, or
+  // stopped.
+  bool learn_model_errors();
+  void take_off_mesh_errors();
+  void add_law_errors();
   void fit_fields();
   void fit_and_describe();
   // Replaces an unsupported field by one value; stores the reasons.

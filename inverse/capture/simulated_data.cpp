@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "capture/surface_projection.h"
+#include "fit/law_errors.h"
 
 namespace aspic {
 
@@ -19,9 +20,22 @@ std::string SimulatedData::take_off_mesh_errors(const FitPlan& plan, const std::
   MeshErrors errors = mesh_errors(simulated_, plan.model, material, plan.equilibrium);
   if (errors.cases.empty()) return errors.failure;
   errors_ = std::move(errors.cases);
-  corrected_ = without_mesh_errors(simulated_, {errors_, {}});
-  fitted_ = without_groups(corrected_, left_out_);
+  correct();
   return "";
+}
+
+std::string SimulatedData::add_law_errors(const FitPlan& plan, const std::vector<MaterialParameters>& material) {
+  LawErrors errors = law_errors(simulated_, plan.model, material, plan.equilibrium);
+  if (errors.cases.empty()) return errors.failure;
+  law_errors_ = std::move(errors.cases);
+  correct();
+  return "";
+}
+
+void SimulatedData::correct() {
+  corrected_ = without_mesh_errors(simulated_, {errors_, {}});
+  for (size_t c = 0; c < law_errors_.size(); ++c) corrected_.cases[c].common_errors.push_back(law_errors_[c]);
+  fitted_ = without_groups(corrected_, left_out_);
 }
 
 double SimulatedData::mesh_error() const {

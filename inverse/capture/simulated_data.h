@@ -20,9 +20,11 @@ class SimulatedData {
   const Experiment& fitted() const { return fitted_; }
 
   bool is_too_large_for_mesh_errors() const;
-  // Corrects the measurements by the discretization error for a material. Returns the reason if
-  // this is impossible, so that nothing changes; otherwise empty.
+  // Both are for a material. They return the reason if they are impossible, so that nothing changes; otherwise empty.
+  // Corrects the measurements by the discretization error.
   std::string take_off_mesh_errors(const FitPlan& plan, const std::vector<MaterialParameters>& material);
+  // Includes the choice of the law in the errors of the measurements.
+  std::string add_law_errors(const FitPlan& plan, const std::vector<MaterialParameters>& material);
   // Error of the positions: root mean square over the largest motion; < 0: unknown.
   double mesh_error() const;
   // Relative discretization error of the force of case c, see MeshError; 0: unknown.
@@ -32,9 +34,12 @@ class SimulatedData {
   CasePrediction on_finer_mesh(size_t c, const CasePrediction& prediction) const;
 
  private:
+  void correct();
+
   std::vector<std::string> left_out_;
   Experiment simulated_, corrected_, fitted_;
   std::vector<MeshError> errors_;  // per case; empty: unknown
+  std::vector<CommonError> law_errors_;
 };
 
 }  // namespace aspic

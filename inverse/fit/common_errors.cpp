@@ -61,9 +61,9 @@ bool WithUncertainLayers::evaluate(std::span<const double> p, std::span<double> 
 
 void WithUncertainLayers::learn() {
   is_known_ = true;
-  if (data_.nuisance_count() == 0 || !linearize()) return;
+  const bool has_nuisances = data_.nuisance_count() > 0 && linearize();
   std::vector<std::vector<double>> unbounded;
-  for (int k = 0; k < data_.nuisance_count(); ++k) {
+  for (int k = 0; has_nuisances && k < data_.nuisance_count(); ++k) {
     std::vector<double>& dr = unbounded.emplace_back(static_cast<size_t>(residual_count()));
     data_.nuisance(k, dr);
     for (const auto& [first, count] : data_.residuals_by_case()) {
@@ -71,6 +71,11 @@ void WithUncertainLayers::learn() {
       for (double& x : n) x *= kLayerSigma;
       errors_.add(first, std::move(n));
     }
+  }
+  for (int k = 0; k < data_.common_error_count(); ++k) {
+    std::vector<double> n(static_cast<size_t>(residual_count()));
+    data_.common_error(k, n);
+    errors_.add(0, std::move(n));
   }
   for (std::vector<double>& n : unbounded) errors_.add_unbounded(std::move(n));
 }

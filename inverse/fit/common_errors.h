@@ -36,8 +36,8 @@ inline constexpr double kLayerSigma = 3;  // a factor of 20
 
 class WithUncertainLayers : public LeastSquares {
  public:
-  // Stores a reference to `data`, whose nuisance directions it projects out. They are evaluated at the first p where r
-  // exists, so that the problem remains one of least squares.
+  // Stores a reference to `data`, whose nuisance directions it projects out and whose common error it whitens. They are
+  // evaluated at the first p where r exists, so that the problem remains one of least squares.
   explicit WithUncertainLayers(LeastSquares& data) : data_(data) {}
 
   int parameter_count() const override { return data_.parameter_count(); }

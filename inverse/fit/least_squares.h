@@ -22,6 +22,10 @@ class LeastSquares {
   // along them do not determine p (WithUncertainLayers). Valid as long as J.
   virtual int nuisance_count() const { return 0; }
   virtual void nuisance(int /*k*/, std::span<double> /*dr*/) {}
+  // Errors of all residuals that are known but for a standard normal factor each, such as the uncertainty of a
+  // correction.
+  virtual int common_error_count() const { return 0; }
+  virtual void common_error(int /*k*/, std::span<double> /*dr*/) const {}
   // First residual and count of each part with an independent deviation from the assumption; empty: common to all.
   virtual std::vector<std::pair<int, int>> residuals_by_case() const { return {}; }
 };

@@ -260,6 +260,17 @@ bool LoadedBody::solved(const SolveReport& report) {
   return false;
 }
 
+void LoadedBody::common_error(int k, std::span<double> dr) const {
+  const CommonError& error = load_.common_errors.at(k);
+  size_t i = 0;
+  const auto put = [&](const Vec3d& e, const Vec3d& sigma) {
+    for (int axis = 0; axis < 3; ++axis) dr[i++] = e[axis] / sigma[axis];
+  };
+  for (size_t m = 0; m < load_.positions.size(); ++m) put(error.markers.at(m), load_.positions[m].sigma);
+  if (has_force()) put(error.wrench.force, load_.force_sigma);
+  if (has_torque()) put(error.wrench.torque, load_.torque_sigma);
+}
+
 void LoadedBody::put_change(const Wrench& change, std::span<double> dr) const {
   size_t i = 0;
   const auto put = [&](const Vec3d& d, const Vec3d& sigma) {

@@ -207,6 +207,14 @@ void Misfit::multiply_transposed(std::span<const double> w, std::span<double> pb
 int Misfit::nuisance_count() const { return impl_->has_layers() ? 1 : 0; }
 void Misfit::nuisance(int, std::span<double> dr) { impl_->multiply_by_layers(dr); }
 
+int Misfit::common_error_count() const {
+  return static_cast<int>(impl_->experiment.cases.front().common_errors.size());
+}
+
+void Misfit::common_error(int k, std::span<double> dr) const {
+  for (const Impl::Case& c : impl_->cases) c.body->common_error(k, dr.subspan(c.first, c.body->residual_count()));
+}
+
 std::vector<double> Misfit::state() const {
   std::vector<double> x;
   for (const Impl::Case& c : impl_->cases) x.insert(x.end(), c.body->accepted().begin(), c.body->accepted().end());

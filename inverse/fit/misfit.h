@@ -29,6 +29,12 @@ struct MarkerReading {
   Vec3d sigma{};     // standard deviations [m], > 0
 };
 
+// Errors of all readings of a case that one standard normal factor multiplies, the same in all cases.
+struct CommonError {
+  std::vector<Vec3d> markers;  // one per position [m]
+  Wrench wrench;
+};
+
 // A static state: body, supports and loads are at rest; measured are marker positions and, with an indenter or a grip,
 // its force and torque.
 struct LoadCase {
@@ -44,6 +50,7 @@ struct LoadCase {
   std::vector<MarkerReading> positions;
   std::optional<Vec3d> force, torque;  // measured, on the body [N, N m]
   Vec3d force_sigma{}, torque_sigma{};
+  std::vector<CommonError> common_errors;  // equally many in all cases
 };
 
 struct Experiment {
@@ -84,6 +91,8 @@ class Misfit : public LeastSquares {
   // along it do not determine the stiffness of the body.
   int nuisance_count() const override;
   void nuisance(int k, std::span<double> dr) override;
+  int common_error_count() const override;
+  void common_error(int k, std::span<double> dr) const override;
   std::vector<std::pair<int, int>> residuals_by_case() const override;
 
   // Equilibria of the last successful evaluate(), case by case; empty before. A misfit with this state, evaluated and

@@ -267,6 +267,29 @@ TEST(Misfit, OnRefinedMeshHasDerivativesPerMapTet) {
   for (size_t i = 0; i < r.size(); ++i) EXPECT_NEAR((above[i] - below[i]) / (2 * h), dr[i], 1e-5 * norm(dr));
 }
 
+TEST(Misfit, CommonErrorSpansAllCasesAndIsWhitened) {
+  Gel gel;
+  gel.experiment.cases = {gel.hung(), gel.gripped()};
+  const ParameterMap map = gel.map();
+  gel.measure(map, std::vector<double>(map.guess().begin(), map.guess().end()), 1);
+  for (LoadCase& load : gel.experiment.cases)
+    load.common_errors = {{.markers = std::vector<Vec3d>(load.positions.size(), {{1e-4, 0, -2e-4}}), .wrench = {}}};
+  gel.experiment.cases[1].common_errors[0].wrench.force = {{0, 0, 0.05}};
+  Misfit misfit(gel.experiment, map);
+  WithUncertainLayers whitened(misfit);
+  std::vector<double> r(misfit.residual_count()), Lr = r, n = r;
+  ASSERT_TRUE(misfit.evaluate(map.guess(), r) && whitened.evaluate(map.guess(), Lr));
+  ASSERT_EQ(misfit.common_error_count(), 1);
+  misfit.common_error(0, n);
+  EXPECT_EQ(n[0], 1);   // 1e-4 of 1e-4
+  EXPECT_EQ(n[2], -2);  // 2e-4 of 1e-4
+  EXPECT_EQ(n[n.size() - 4], 2.5);
+  const double squares = dot(n, n);
+  EXPECT_NEAR(dot(n, Lr), dot(n, r) / std::sqrt(1 + squares), 1e-6 * norm(n) * norm(r));
+  for (size_t i = 0; i < r.size(); ++i)  // other directions remain
+    EXPECT_NEAR(Lr[i] - dot(n, Lr) / squares * n[i], r[i] - dot(n, r) / squares * n[i], 1e-6 * norm(r));
+}
+
 TEST(Misfit, NamesEachResidual) {
   Gel gel;
   const ParameterMap map = gel.map();

@@ -6,8 +6,7 @@
 #include <utility>
 
 #include "base/check.h"
-#include "base/parallel.h"
-#include "fit/load_case.h"
+#include "fit/predictions.h"
 #include "mesh/surface.h"
 #include "mesh/tet_nodes.h"
 #include "mesh/tet_shape.h"
@@ -129,39 +128,6 @@ class Refinement {
   std::map<std::pair<int, int>, int> middle_;
 };
 
-struct Predictions {
-  std::vector<CasePrediction> cases;
-  std::string failure;
-};
-
-Predictions predicted(const Experiment& experiment, const std::string& material,
-                      std::span<const MaterialParameters> parameters, const EquilibriumOptions& options) {
-  Predictions result;
-  const int count = static_cast<int>(experiment.cases.size());
-  result.cases.resize(count);
-  std::vector<std::string> failures(count);
-  std::vector<int> begin;
-  for (int c = 0; c < count; ++c)
-    if (c == 0 || experiment.cases[c].group.empty() || experiment.cases[c].group != experiment.cases[c - 1].group)
-      begin.push_back(c);
-  begin.push_back(count);
-  parallel_for(static_cast<int>(begin.size()) - 1, [&](int g) {
-    std::vector<double> last;
-    for (int c = begin[g]; c < begin[g + 1]; ++c) {
-      LoadedBody body(experiment, experiment.cases[c], material, parameters, options);
-      if (!body.solve(parameters, last)) {
-        failures[c] = body.failure();
-        return;
-      }
-      result.cases[c] = body.prediction();
-      last = std::move(result.cases[c].x);
-    }
-  });
-  for (const std::string& failure : failures)
-    if (!failure.empty()) result.failure += (result.failure.empty() ? "" : "; ") + failure;
-  return result;
-}
-
 // Force on fine meshes from F on the mesh and on the refined one; extrapolates log |F|.
 double factor_in_limit(const Wrench& coarse, const Wrench& fine, double factor) {
   const double on_mesh = norm(coarse.force), on_fine = norm(fine.force);
@@ -250,6 +216,9 @@ Experiment without_mesh_errors(Experiment experiment, const MeshErrors& errors) 
     const Wrench own = load.force ? error.for_force_in_limit(*load.force) : error.wrench;
     if (load.force) shift(*load.force, load.force_sigma, own.force);
     if (load.torque) shift(*load.torque, load.torque_sigma, own.torque);
+    CommonError& common = load.common_errors.emplace_back();
+    for (const Vec3d& e : error.markers) common.markers.push_back(kUncertain * e);
+    common.wrench = scaled(own, kUncertain);
   }
   return experiment;
 }
