@@ -187,14 +187,30 @@ TEST(FitVerdict, PoorHeldOutPredictionsAreNotGood) {
 
 // A small motion has a relatively large noise.
 TEST(FitVerdict, NoiseOfHeldOutReadingsIsTolerated) {
-  DataSet data = three_indentations();
-  for (LoadCase& load : data.experiment.cases)
-    for (MarkerReading& reading : load.positions) reading.sigma = {{5e-4, 5e-4, 5e-4}};
-  FitOutcome outcome = perfect(data);
-  outcome.held_out = held_out_indentation(0.09, 0.01);  // 8.7 % are noise
-  EXPECT_THAT(reasons(outcome, data), ElementsAre());
-  outcome.held_out = held_out_indentation(0.11, 0.01);
-  EXPECT_THAT(reasons(outcome, data), ElementsAre("predicts_badly"));
+  FitOutcome outcome = perfect();
+  outcome.held_out = held_out_indentation(0.09, 0.01);
+  outcome.held_out->groups[0].position_noise = 0.00087;
+  EXPECT_THAT(reasons(outcome), ElementsAre());
+  outcome.held_out->groups[0].position_error = 0.0011;
+  EXPECT_THAT(reasons(outcome), ElementsAre("predicts_badly"));
+}
+
+// Errors are relative to the largest motion and force of all groups: a group that is hardly pressed has a small force.
+TEST(FitVerdict, HeldOutErrorsAreRelativeToTheLargestGroup) {
+  FitOutcome outcome = perfect();
+  outcome.held_out = held_out_indentation(0.01, 0.01);
+  outcome.held_out->groups.push_back(outcome.held_out->groups[0]);
+  outcome.held_out->groups[1].peak_force = outcome.held_out->groups[1].force_error = 0.05;
+  EXPECT_THAT(reasons(outcome), ElementsAre());
+}
+
+TEST(FitVerdict, PoorPredictionsOfLeftOutGroupsAreNotGood) {
+  FitOutcome outcome = perfect();
+  outcome.plan.left_out = {"poke 3"};
+  for (const size_t c : {4, 5}) outcome.cases[c].left_out = true;
+  EXPECT_THAT(reasons(outcome), ElementsAre());
+  outcome.cases[5].wrench.force = 1.5 * *three_indentations().experiment.cases[5].force;
+  EXPECT_THAT(reasons(outcome), ElementsAre("predicts_badly"));
 }
 
 TEST(FitVerdict, OneValueInsteadOfFieldIsNotGood) {

@@ -3,14 +3,23 @@
 #include <algorithm>
 #include <cmath>
 
+#include "capture/local_refinement.h"
 #include "capture/surface_projection.h"
 #include "fit/law_errors.h"
 
 namespace aspic {
+namespace {
+
+// Data without discretization errors come from the same mesh.
+bool is_refined_locally(const Experiment& data, const FitPlan& plan) {
+  return plan.mesh_errors && data.mesh.tet_count() <= SimulatedData::kTooFine / kMostGrowth;
+}
+
+}  // namespace
 
 SimulatedData::SimulatedData(const Experiment& data, const FitPlan& plan)
     : left_out_(plan.left_out),
-      simulated_(refined(data, plan.refine)),
+      simulated_(refined(is_refined_locally(data, plan) ? locally_refined(data) : data, plan.refine)),
       corrected_(simulated_),
       fitted_(without_groups(simulated_, left_out_)) {}
 

@@ -34,9 +34,11 @@ struct Misfit::Impl {
       residual_count += c.body->residual_count();
     }
     per_tet = map.parameters_per_tet();
-    parts = experiment.mesh.tet_count() / map.tet_count();
+    parts_of.resize(map.tet_count());
+    for (int t = 0; t < experiment.mesh.tet_count(); ++t)
+      parts_of[experiment.parent.empty() ? t : experiment.parent[t]].push_back(t);
     dtheta.resize(static_cast<size_t>(per_tet) * map.tet_count());
-    dtheta_of_parts.resize(dtheta.size() * parts);
+    dtheta_of_parts.resize(static_cast<size_t>(per_tet) * experiment.mesh.tet_count());
     dp.resize(map.size());
     if (cases.empty()) throw InvalidInput("there is no load case to fit");
   }
@@ -58,7 +60,7 @@ struct Misfit::Impl {
   }
 
   std::vector<MaterialParameters> parameters_at(std::span<const double> p) const {
-    return for_parts(map.parameters(p), experiment.mesh.tet_count());
+    return of_tets(experiment, map.parameters(p));
   }
 
   // Changes of the material parameters of each simulated tet.
@@ -66,9 +68,9 @@ struct Misfit::Impl {
     map.multiply(linear_p, direction, dtheta);
     parallel_chunks(map.tet_count(), [&](int first, int last) {
       for (int t = first; t < last; ++t)
-        for (int part = 0; part < parts; ++part)
+        for (const int part : parts_of[t])
           std::copy_n(dtheta.begin() + static_cast<ptrdiff_t>(per_tet) * t, per_tet,
-                      dtheta_of_parts.begin() + static_cast<ptrdiff_t>(per_tet) * (parts * t + part));
+                      dtheta_of_parts.begin() + static_cast<ptrdiff_t>(per_tet) * part);
     });
     return dtheta_of_parts;
   }
@@ -79,9 +81,10 @@ struct Misfit::Impl {
       std::fill(dtheta.begin() + static_cast<ptrdiff_t>(per_tet) * first,
                 dtheta.begin() + static_cast<ptrdiff_t>(per_tet) * last, 0.0);
       for (const Case& c : cases)
-        for (int t = first * parts; t < last * parts; ++t)
-          for (int k = 0; k < per_tet; ++k)
-            dtheta[static_cast<size_t>(per_tet) * (t / parts) + k] += c.thetabar[static_cast<size_t>(per_tet) * t + k];
+        for (int t = first; t < last; ++t)
+          for (const int part : parts_of[t])
+            for (int k = 0; k < per_tet; ++k)
+              dtheta[static_cast<size_t>(per_tet) * t + k] += c.thetabar[static_cast<size_t>(per_tet) * part + k];
     });
   }
 
@@ -183,13 +186,23 @@ struct Misfit::Impl {
   const ParameterMap& map;
   std::vector<Case> cases;
   int residual_count = 0;
-  int per_tet = 2, parts = 1;  // parameters of a tet; tets that are simulated by tets of the map
+  int per_tet = 2;                         // parameters of a tet
+  std::vector<std::vector<int>> parts_of;  // simulated tets of each tet of the map
   bool has_solved = false, is_linearized = false;
   std::vector<double> accepted_p, linear_p;  // p of the last successful evaluation, and of the Jacobian
   std::vector<MaterialParameters> accepted_parameters;
   std::vector<double> dp, dtheta, dtheta_of_parts;  // scratch
   std::string failure;
 };
+
+std::vector<MaterialParameters> of_tets(const Experiment& experiment, std::span<const MaterialParameters> parameters) {
+  if (experiment.parent.empty() || parameters.size() == experiment.mesh.tets.size())
+    return {parameters.begin(), parameters.end()};
+  std::vector<MaterialParameters> result;
+  result.reserve(experiment.parent.size());
+  for (const int t : experiment.parent) result.push_back(parameters[t]);
+  return result;
+}
 
 Misfit::Misfit(const Experiment& experiment, const ParameterMap& map, const EquilibriumOptions& options)
     : impl_(std::make_unique<Impl>(experiment, map, options)) {}

@@ -55,11 +55,15 @@ struct LoadCase {
 
 struct Experiment {
   TetMesh mesh;                 // at rest, in the order of the fit
+  std::vector<int> parent;      // of a refined mesh: tet of the material's mesh, for each tet; empty: the same mesh
   std::vector<int> fixed;       // held vertices
   std::vector<double> density;  // one per tet [kg/m^3]
   std::vector<SurfacePoint> markers;
   std::vector<LoadCase> cases;  // group by group, each from the smallest load on
 };
+
+// Parameters of each tet of the experiment's mesh, from those of each tet of the material's mesh.
+std::vector<MaterialParameters> of_tets(const Experiment& experiment, std::span<const MaterialParameters> parameters);
 
 Vec3d at_rest(const Experiment& experiment, const SurfacePoint& point);
 
@@ -73,8 +77,7 @@ struct CasePrediction {
 
 class Misfit : public LeastSquares {
  public:
-  // Stores references to both. The experiment's mesh is that of the map, or a refinement with equally many consecutive
-  // parts per tet, which have its material. Throws InvalidInput for a case without residuals.
+  // Stores references to both. The experiment's mesh is that of the map, or a refinement of it. Throws InvalidInput for a case without residuals.
   Misfit(const Experiment& experiment, const ParameterMap& map, const EquilibriumOptions& options = {});
   ~Misfit() override;
 

@@ -65,6 +65,7 @@ class Refinement {
     fine_.mesh.tets.push_back(tet);
     if (volume(fine_.mesh, fine_.mesh.tet_count() - 1) < 0)
       std::swap(fine_.mesh.tets.back()[2], fine_.mesh.tets.back()[3]);
+    fine_.parent.push_back(coarse_.parent.empty() ? parent : coarse_.parent[parent]);
     if (!coarse_.mesh.region.empty()) fine_.mesh.region.push_back(coarse_.mesh.region[parent]);
     if (!coarse_.density.empty()) fine_.density.push_back(coarse_.density[parent]);
   }
@@ -174,20 +175,11 @@ Experiment refined(Experiment experiment, int times) {
   return experiment;
 }
 
-std::vector<MaterialParameters> for_parts(std::span<const MaterialParameters> parameters, int tet_count) {
-  const int tets = static_cast<int>(parameters.size());
-  ASPIC_CHECK(tets > 0 && tet_count % tets == 0);
-  std::vector<MaterialParameters> result;
-  result.reserve(static_cast<size_t>(tet_count));
-  for (const MaterialParameters& p : parameters) result.insert(result.end(), static_cast<size_t>(tet_count / tets), p);
-  return result;
-}
-
 MeshErrors mesh_errors(const Experiment& experiment, const std::string& material,
                        std::span<const MaterialParameters> parameters, const EquilibriumOptions& options) {
   const Experiment fine = refined(experiment);
   const auto on = [&](const Experiment& e) {
-    return predicted(e, material, for_parts(parameters, e.mesh.tet_count()), options);
+    return predicted(e, material, of_tets(e, parameters), options);
   };
   const Predictions on_mesh = on(experiment), on_fine = on(fine);
   MeshErrors errors{{}, on_mesh.failure.empty() ? on_fine.failure : on_mesh.failure};

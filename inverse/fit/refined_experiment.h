@@ -16,9 +16,6 @@ namespace aspic {
 Experiment refined(const Experiment& experiment);
 Experiment refined(Experiment experiment, int times);
 
-// Parameters of the tets of a refined mesh; the parts of a tet are consecutive.
-std::vector<MaterialParameters> for_parts(std::span<const MaterialParameters> parameters, int tet_count);
-
 // Limit of fine meshes minus mesh of the fit, for the predictions of a case.
 struct MeshError {
   std::vector<Vec3d> markers;  // one per position [m]
@@ -38,7 +35,7 @@ struct MeshErrors {
   std::string failure;           // why
 };
 
-// Requires one parameter set per tet of the experiment's mesh or of its unrefined mesh.
+// Requires one parameter set per tet of the material's mesh.
 MeshErrors mesh_errors(const Experiment& experiment, const std::string& material,
                        std::span<const MaterialParameters> parameters, const EquilibriumOptions& options = {});
 

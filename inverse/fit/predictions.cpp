@@ -1,0 +1,36 @@
+#include "fit/predictions.h"
+
+#include "base/parallel.h"
+#include "fit/load_case.h"
+
+namespace aspic {
+
+Predictions predicted(const Experiment& experiment, const std::string& material,
+                      std::span<const MaterialParameters> parameters, const EquilibriumOptions& options) {
+  Predictions result;
+  const int count = static_cast<int>(experiment.cases.size());
+  result.cases.resize(count);
+  std::vector<std::string> failures(count);
+  std::vector<int> begin;
+  for (int c = 0; c < count; ++c)
+    if (c == 0 || experiment.cases[c].group.empty() || experiment.cases[c].group != experiment.cases[c - 1].group)
+      begin.push_back(c);
+  begin.push_back(count);
+  parallel_for(static_cast<int>(begin.size()) - 1, [&](int g) {
+    std::vector<double> last;
+    for (int c = begin[g]; c < begin[g + 1]; ++c) {
+      LoadedBody body(experiment, experiment.cases[c], material, parameters, options);
+      if (!body.solve(parameters, last)) {
+        failures[c] = body.failure();
+        return;
+      }
+      result.cases[c] = body.prediction();
+      last = std::move(result.cases[c].x);
+    }
+  });
+  for (const std::string& failure : failures)
+    if (!failure.empty()) result.failure += (result.failure.empty() ? "" : "; ") + failure;
+  return result;
+}
+
+}  // namespace aspic
