@@ -127,7 +127,7 @@ FitPlan completed(FitPlan plan, const Experiment& experiment) {
            .guess = 0});
   for (FitParameter& u : plan.parameters)
     if (u.guess == 0) u.guess = default_value(material_quantity(plan.model, u.quantity), experiment);
-  plan.law_errors = plan.law_errors && !rival_of(plan.model).empty();
+  plan.law_errors = plan.law_errors && has_law_errors(plan.model);
   // Standard deviations that include the mesh correction exceed the random errors. The discrepancy principle would
   // treat the difference as noise and oversmooth the field.
   const bool is_field = std::any_of(plan.parameters.begin(), plan.parameters.end(),

@@ -14,6 +14,7 @@ namespace aspic {
 namespace {
 
 constexpr double kEdge = 0.5;       // longest edge below an indenter, relative to its radius
+constexpr double kReach = 1.1, kDepth = 0.25;  // of the refined surface layer, relative to the radius
 constexpr int kRimGenerations = 3;  // bisections that halve a tet
 
 // Corners of the tets of a mesh; those of quadratic tets are not their mid-edge nodes.
@@ -90,6 +91,18 @@ class HeldSet {
   std::vector<int> rim_;
 };
 
+// The place that an indenter touches at rest.
+struct Contact {
+  Vec3d center{}, axis{};
+  double radius = 0;
+
+  // Whether a point lies below the indenter, near the surface.
+  bool touches(const Vec3d& X) const {
+    const Vec3d d = X - center;
+    return norm(d) < kReach * radius && std::abs(dot(d, axis)) < kDepth * radius;
+  }
+};
+
 class LocalRefinement {
  public:
   explicit LocalRefinement(const Experiment& coarse)
@@ -98,7 +111,7 @@ class LocalRefinement {
     bool has_grip = false;
     for (const LoadCase& load : coarse.cases) {
       if (load.grip) has_grip = true, mark_rim(held(load.grip->vertices));
-      if (load.indenter) add_place(load);
+      if (load.indenter) add_contact(load);
     }
     if (has_grip) mark_rim(fixed_.front());
   }
@@ -129,12 +142,11 @@ class LocalRefinement {
     return fixed_[place->second];
   }
 
-  void add_place(const LoadCase& load) {
-    const double radius = load.indenter->radius;
-    const bool is_sphere = load.indenter->shape == IndenterShape::sphere;
-    const Vec3d place = load.touch.center + (is_sphere ? radius / norm(load.touch.axis) : 0.0) * load.touch.axis;
-    const auto is_same = [&](const auto& known) { return norm(known.first - place) == 0 && known.second == radius; };
-    if (std::none_of(places_.begin(), places_.end(), is_same)) places_.emplace_back(place, radius);
+  void add_contact(const LoadCase& load) {
+    Contact contact{load.touch.center, PlacedIndenter(load.touch).pose.axis, load.indenter->radius};
+    if (load.indenter->shape == IndenterShape::sphere) contact.center = contact.center + contact.radius * contact.axis;
+    const auto is_same = [&](const Contact& c) { return norm(c.center - contact.center) == 0 && c.radius == contact.radius; };
+    if (std::none_of(contacts_.begin(), contacts_.end(), is_same)) contacts_.push_back(contact);
   }
 
   void mark_rim(const HeldSet& set) {
@@ -147,16 +159,10 @@ class LocalRefinement {
     });
     if (is_at_rim && part.generation < kRimGenerations) return true;
     const double size = mesh_.longest_edge(part.tet);
-    return std::any_of(places_.begin(), places_.end(), [&](const std::pair<Vec3d, double>& touched) {
-      return size > kEdge * touched.second && distance_below(part, touched.first) < touched.second;
+    return std::any_of(contacts_.begin(), contacts_.end(), [&](const Contact& c) {
+      const auto is_touched = [&](int v) { return c.touches(mesh_.rest()[v]); };
+      return size > kEdge * c.radius && std::any_of(part.tet.begin(), part.tet.end(), is_touched);
     });
-  }
-
-  // Distance of the closest corner from the place that an indenter touches.
-  double distance_below(const BisectedMesh::Part& part, const Vec3d& place) const {
-    double least = norm(mesh_.rest()[part.tet[0]] - place);
-    for (const int v : part.tet) least = std::min(least, norm(mesh_.rest()[v] - place));
-    return least;
   }
 
   void put_mesh() {
@@ -197,7 +203,7 @@ class LocalRefinement {
   std::vector<HeldSet> fixed_;               // the fixed vertices, then those of grips
   std::map<std::vector<int>, int> grips_;    // index of a grip's vertices
   std::vector<char> is_rim_;                 // per corner
-  std::vector<std::pair<Vec3d, double>> places_;  // that indenters touch, and their radii
+  std::vector<Contact> contacts_;
   std::vector<std::vector<int>> support_;    // of the vertices of the fine mesh
 };
 

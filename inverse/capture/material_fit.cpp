@@ -134,7 +134,7 @@ void MaterialFit::add_law_errors() {
   begin(FitStage::mesh_errors, "differences between laws");
   const std::string failure = simulated_.add_law_errors(plan_, material_);
   if (failure.empty()) return;
-  add_warnings({"standard deviations do NOT include the choice of the law: with " + rival_of(plan_.model) + " " + failure});
+  add_warnings({"standard deviations do NOT include the choice of the law: with another one " + failure});
   plan_.law_errors = false;
 }
 

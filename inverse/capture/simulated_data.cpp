@@ -43,7 +43,10 @@ std::string SimulatedData::add_law_errors(const FitPlan& plan, const std::vector
 
 void SimulatedData::correct() {
   corrected_ = without_mesh_errors(simulated_, {errors_, {}});
-  for (size_t c = 0; c < law_errors_.size(); ++c) corrected_.cases[c].common_errors.push_back(law_errors_[c]);
+  for (size_t c = 0; c < law_errors_.size(); ++c) {
+    std::vector<CommonError>& all = corrected_.cases[c].common_errors;
+    all.insert(all.end(), law_errors_[c].begin(), law_errors_[c].end());
+  }
   fitted_ = without_groups(corrected_, left_out_);
 }
 

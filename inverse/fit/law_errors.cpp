@@ -1,31 +1,51 @@
 #include "fit/law_errors.h"
 
+#include <algorithm>
+
 #include "fit/predictions.h"
 
 namespace aspic {
+namespace {
 
-std::string rival_of(const std::string& material) {
-  if (material == "neo_hookean" || material == "stable_neo_hookean" || material == "neo_hookean_log" ||
-      material == "neo_hookean_log_j2")
-    return "neo_hookean_isochoric";
-  if (material == "neo_hookean_isochoric" || material == "neo_hookean_2020") return "neo_hookean_log";
-  return "";
+constexpr const char* kCoupled[] = {"neo_hookean", "stable_neo_hookean", "neo_hookean_log", "neo_hookean_log_j2"};
+constexpr const char* kIsochoric[] = {"neo_hookean_isochoric", "neo_hookean_2020"};
+
+template <class Names>
+bool is_one_of(const Names& names, const std::string& material) {
+  return std::find(std::begin(names), std::end(names), material) != std::end(names);
+}
+
+CommonError difference(const CasePrediction& from, const CasePrediction& to) {
+  CommonError error;
+  for (size_t k = 0; k < from.markers.size(); ++k) error.markers.push_back(to.markers[k] - from.markers[k]);
+  error.wrench = {to.wrench.force - from.wrench.force, to.wrench.torque - from.wrench.torque};
+  return error;
+}
+
+}  // namespace
+
+bool has_law_errors(const std::string& material) {
+  return is_one_of(kCoupled, material) || is_one_of(kIsochoric, material);
 }
 
 LawErrors law_errors(const Experiment& experiment, const std::string& material,
                      std::span<const MaterialParameters> parameters, const EquilibriumOptions& options) {
-  const std::string rival = rival_of(material);
-  if (rival.empty()) return {};
+  if (!has_law_errors(material)) return {};
   const std::vector<MaterialParameters> own = of_tets(experiment, parameters);
+  std::vector<MaterialParameters> stiffening = own;
+  for (MaterialParameters& p : stiffening) p.extra = {kStiffening};
+  const bool is_coupled = is_one_of(kCoupled, material);
   const Predictions ours = predicted(experiment, material, own, options);
-  const Predictions theirs = predicted(experiment, rival, own, options);
-  LawErrors errors{{}, ours.failure.empty() ? theirs.failure : ours.failure};
+  const Predictions rival =
+      predicted(experiment, is_coupled ? "neo_hookean_isochoric" : "neo_hookean_log", own, options);
+  const Predictions stiffer = predicted(experiment, "yeoh", stiffening, options);
+  LawErrors errors;
+  for (const Predictions* p : {&ours, &rival, &stiffer})
+    if (errors.failure.empty()) errors.failure = p->failure;
   if (!errors.failure.empty()) return errors;
   for (size_t c = 0; c < ours.cases.size(); ++c) {
-    const CasePrediction &a = ours.cases[c], &b = theirs.cases[c];
-    CommonError& error = errors.cases.emplace_back();
-    for (size_t k = 0; k < a.markers.size(); ++k) error.markers.push_back(b.markers[k] - a.markers[k]);
-    error.wrench = {b.wrench.force - a.wrench.force, b.wrench.torque - a.wrench.torque};
+    const CasePrediction& isochoric = is_coupled ? rival.cases[c] : ours.cases[c];
+    errors.cases.push_back({difference(ours.cases[c], rival.cases[c]), difference(isochoric, stiffer.cases[c])});
   }
   return errors;
 }

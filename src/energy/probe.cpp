@@ -178,7 +178,7 @@ class ProbeTerm : public Probe {
 
   void add_patch(const TetMesh& mesh, const Triangle& triangle) {
     const Corners X = {mesh.rest[triangle[0]], mesh.rest[triangle[1]], mesh.rest[triangle[2]]};
-    const double edge = longest_edge(X), ideal = std::ceil((is_sliding() ? 4 : 8) * edge / indenter_.radius);
+    const double edge = longest_edge(X), ideal = std::ceil((is_sliding() ? 16 : 8) * edge / indenter_.radius);
     const bool is_near = depth(indenter_, touch_, X[0]).value > -edge - indenter_.radius;
     if (!is_near && !is_sliding()) return;
     if (is_near && edge > kLongestEdge * indenter_.radius) throw_indenter_too_small(edge);

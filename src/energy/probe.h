@@ -5,7 +5,7 @@
 //   bonded:  phi = |x - target|^2 / 2 for the points that the indenter touches at rest, which follow it as if glued to
 //   it
 // The points are the centroids of equal parts of the boundary triangles. Their distance is at most an eighth (bonded)
-// or a quarter (sliding) of the radius.
+// or a sixteenth (sliding) of the radius.
 #pragma once
 #include <memory>
 #include <span>
