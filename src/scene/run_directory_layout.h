@@ -26,6 +26,10 @@ class RunLayout {
   std::filesystem::path trace(int first_step) const;  // "trace", or "trace_after_12" of a run resumed there
 
   static std::string frame_file(int frame);  // "frames/body_000123.vtu", relative to the root
+  // Frames of several processes: an index, and the piece of each process.
+  static std::string pieces_file(int frame);           // "frames/body_000123.pvtu"
+  static std::string piece_file(int frame, int rank);  // "frames/piece_000123_00004.vtu"
+  std::string file_of_frame(int frame) const;          // pieces_file() if it exists, else frame_file()
   static std::string obstacle_file() { return "obstacles/obstacles.vtu"; }
   static std::string obstacle_frame_file(int frame);  // "frames/obstacles_000123.vtu"
   std::filesystem::path obstacle_frame(const std::string& name, int frame) const;
