@@ -9,6 +9,7 @@
 #include <optional>
 
 #include "base/error.h"
+#include "base/free_memory.h"
 #include "base/printable.h"
 #include "base/stopwatch.h"
 #include "distributed/box_slices.h"
@@ -16,6 +17,7 @@
 #include "distributed/exchange.h"
 #include "distributed/guarded.h"
 #include "distributed/rank_files.h"
+#include "distributed/rank_memory.h"
 #include "distributed/scatter.h"
 #include "distributed/supported_scene.h"
 #include "scene/scene_builder.h"
@@ -86,7 +88,12 @@ void require_start(const SceneModel& scene, const std::string& file) {
   }
 }
 
-Opened open(const RunArguments& arguments) {
+distributed::MemoryNeed memory_need(const Table& document, double vertices) {
+  return {vertices, distributed::rank_count(), (*document.find("solver"))["linear"].text() != "block_jacobi"};
+}
+
+// `ranks_here`: number of ranks on the machine of rank 0.
+Opened open(const RunArguments& arguments, int ranks_here) {
   Opened opened;
   opened.run_directory = arguments.out;
   fs::path path = arguments.input;
@@ -105,7 +112,9 @@ Opened open(const RunArguments& arguments) {
   opened.text = opened.has_overrides ? read_toml_text(path) : to_toml(document);
   leave_out_surfaces(document);
   if (distributed::can_be_sliced(document)) {
-    require_numbers(distributed::size_of_boxes(document));
+    const distributed::MeshSize size = distributed::size_of_boxes(document);
+    require_numbers(size);
+    distributed::require_memory(memory_need(document, size.vertices), ranks_here, static_cast<double>(free_memory()));
     opened.name = printable(input.source.name);
     opened.notes = std::move(input.source.notes);
     mark_version(document, opened.notes);
@@ -115,6 +124,8 @@ Opened open(const RunArguments& arguments) {
   } else {
     SceneModel& whole = opened.whole.emplace(build_scene_model(std::move(input.source), std::move(input.files), options));
     require_vertex_per_rank(whole.model.mesh.vertex_count());
+    distributed::require_memory(memory_need(whole.document, whole.model.mesh.vertex_count()), ranks_here,
+                                static_cast<double>(free_memory()));
     require_start(whole, opened.file);
     opened.name = whole.name;
     opened.notes = std::move(whole.notes);
@@ -259,7 +270,8 @@ class Runner {
 
 int run(const RunArguments& arguments) {
   Opened opened;
-  distributed::succeeds_on(0, [&] { opened = open(arguments); });
+  const int ranks_here = distributed::ranks_on_this_machine();
+  distributed::succeeds_on(0, [&] { opened = open(arguments, ranks_here); });
   catch_signals();
   Runner runner(arguments, std::move(opened));
   return runner.run();

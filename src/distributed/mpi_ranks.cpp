@@ -3,6 +3,7 @@
 #include <mpi.h>
 
 #include "distributed/rank_parts.h"
+#include "distributed/traffic.h"
 
 // MPI aborts the program after an error by default, so return values need no check.
 namespace aspic::distributed {
@@ -10,6 +11,7 @@ std::vector<double> MpiRanks::gather(std::span<const double> own) const {
   const int count = static_cast<int>(own.size());
   std::vector<double> all(own.size() * share_.ranks());
   MPI_Allgather(own.data(), count, MPI_DOUBLE, all.data(), count, MPI_DOUBLE, MPI_COMM_WORLD);
+  ++own_traffic().reductions;
   return all;
 }
 

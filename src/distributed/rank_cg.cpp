@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "distributed/traffic.h"
 #include "math/vectors.h"
 
 namespace aspic::distributed {
@@ -44,6 +45,7 @@ bool RankCg::advance(std::span<double> x, double rz, SolveReport& report) {
 }
 
 SolveReport RankCg::solve(std::span<const double> b, std::span<double> x, double tolerance) {
+  const Traffic before = own_traffic();
   constexpr int kMaxIterations = 10'000;
   SolveReport report;
   std::fill(x.begin(), x.end(), 0.0);
@@ -62,6 +64,8 @@ SolveReport RankCg::solve(std::span<const double> b, std::span<double> x, double
     for (int i = 0; i < own_; ++i) p_[i] = z_[i] + beta * p_[i];
   }
   halo_.update(x);
+  linear_traffic() += own_traffic() - before;
+  linear_traffic().iterations += report.iterations;
   report.relative_residual = b_norm > 0 ? residual / b_norm : 0;
   report.ok = !report.indefinite && report.relative_residual <= tolerance;
   return report;

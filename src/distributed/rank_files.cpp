@@ -1,5 +1,8 @@
 #include "distributed/rank_files.h"
 
+#include <sys/resource.h>
+
+#include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <optional>
@@ -11,7 +14,9 @@
 #include "distributed/guarded.h"
 #include "distributed/rank_checkpoint.h"
 #include "distributed/rank_frames.h"
+#include "distributed/traffic.h"
 #include "io/atomic_file.h"
+#include "io/number_text.h"
 #include "io/vtu.h"
 #include "scene/run_directory_tables.h"
 #include "scene/run_folder.h"
@@ -90,6 +95,30 @@ struct RankFiles::Impl {
         throw InvalidInput(file.string() + ": " + (error ? "is missing" : "is empty") +
                            ", so the run cannot be continued; restore it, or restart the run with --force");
     }
+  }
+
+  // One row per rank: its share, memory and communication.
+  void write_ranks(const DistributedSimulation& simulation) const {
+    const MeshShare& share = simulation.share();
+    const LinearTraffic& linear = linear_traffic();
+    const double iterations = std::max(1.0, linear.iterations);
+    rusage usage{};
+    getrusage(RUSAGE_SELF, &usage);
+    const std::vector<double> all = gather_all(std::vector<double>{
+        double(share.rank), double(share.own()), double(share.local_vertices() - share.own()),
+        double(share.user_tet.size()), double(usage.ru_maxrss) * 1024, linear.iterations, linear.messages / iterations,
+        linear.bytes / iterations, linear.reductions / iterations});
+    succeeds_on(0, [&] {
+      std::string text =
+          "rank,vertices,ghosts,tets,peak_bytes,linear_iterations,messages_per_iteration,bytes_per_iteration,"
+          "reductions_per_iteration\n";
+      constexpr size_t kColumns = 9;
+      for (size_t i = 0; i < all.size(); ++i) {
+        append_number(text, all[i]);
+        text += (i + 1) % kColumns == 0 ? "\n" : ",";
+      }
+      write_file(layout.ranks(), text);
+    });
   }
 
   RunLayout layout;
@@ -176,6 +205,7 @@ void RankFiles::on_step(const StepReport& report, const std::vector<Iteration>& 
 
 void RankFiles::finish(const DistributedSimulation& simulation) {
   impl_->save_checkpoint(simulation);
+  impl_->write_ranks(simulation);
   succeeds_on(0, [&] {
     std::error_code ignored;  // the previous checkpoint depends on interruptions; results must not
     fs::remove(previous_checkpoint(impl_->layout.checkpoint()), ignored);

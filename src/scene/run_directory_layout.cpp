@@ -81,7 +81,7 @@ bool is_name_of_run(const fs::path& file) {
   const std::string name = file.filename().string();
   const RunLayout layout("");
   for (const fs::path& known :
-       {layout.scene(), layout.steps(), layout.iterations(), layout.timings(), layout.checkpoint(),
+       {layout.scene(), layout.steps(), layout.iterations(), layout.timings(), layout.ranks(), layout.checkpoint(),
         previous_checkpoint(layout.checkpoint()), layout.index(), layout.usd(), layout.report(), layout.outcome(),
         layout.frames(), layout.skins(), layout.obstacles()})
     if (name == known.filename()) return true;
@@ -177,7 +177,7 @@ void RunLayout::remove_run(const std::vector<fs::path>& needed) const {
     for (const fs::path& file : files_in(folder, is_trace_file)) files.push_back(file);
   }
   // The table of steps last: without it the directory is no run.
-  files.insert(files.end(), {scene(), iterations(), timings(), steps()});
+  files.insert(files.end(), {scene(), iterations(), timings(), ranks(), steps()});
   for (const fs::path& file : files) {
     const auto is_same = [&](const fs::path& other) {
       std::error_code error;

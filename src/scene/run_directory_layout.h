@@ -15,6 +15,7 @@ class RunLayout {
   std::filesystem::path steps() const { return root_ / "steps.csv"; }
   std::filesystem::path iterations() const { return root_ / "iterations.csv"; }
   std::filesystem::path timings() const { return root_ / "timings.csv"; }
+  std::filesystem::path ranks() const { return root_ / "ranks.csv"; }  // of aspic-mpi
   std::filesystem::path checkpoint() const { return root_ / "checkpoint.bin"; }
   std::filesystem::path index() const { return root_ / "run.pvd"; }
   std::filesystem::path usd() const { return root_ / "run.usda"; }

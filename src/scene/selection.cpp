@@ -75,7 +75,7 @@ std::vector<char> listed_vertices(const Value& where, const SelectionScope& scop
   if (where.is_table() && where.find("file")) return painted_vertices(where, scope);
   const Value* list = where.is_table() ? where.find("vertices") : nullptr;
   if (!list) return {};
-  std::vector<char> listed(scope.mesh.rest.size(), 0);
+  std::vector<char> listed(std::max<size_t>(1, scope.mesh.rest.size()), 0);  // not empty for a part without vertices
   const int count = scope.whole ? scope.whole->vertex_count() : scope.mesh.vertex_count();
   for (const Value& index : list->array()) {
     const std::int64_t i = std::get<std::int64_t>(index.data);
