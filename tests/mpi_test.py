@@ -4,6 +4,7 @@
 usage: ASPIC=... ASPIC_MPI=path/to/aspic-mpi MPIRUN=... MPI_EXCEPTION=... mpi_test.py [TestCase...]
 """
 import base64
+import csv
 import os
 import pathlib
 import shutil
@@ -280,6 +281,59 @@ value = [50, "-100 * t", 0]
         said = self.mpi(3, "run", self.scene(body='[[body.traction]]\nwhere = "x > 9"\nvalue = [1, 0, 0]'), code=2).stderr
         self.assertEqual(said.count("error: beam.toml:"), 1, said)
         self.assertIn("selects no boundary triangle of body 'beam', which extends from (0, 0, 0) to (0.4, 0.1, 0.1)", said)
+
+
+class Shares(Ranks):
+    """Memory, iterations and communication of the ranks."""
+
+    def ranks(self, run):
+        with open(self.folder / run / "ranks.csv", newline="") as file:
+            return [{name: float(value) for name, value in row.items()} for row in csv.DictReader(file)]
+
+    def test_memory_halves_when_ranks_double(self):
+        self.mpi(1, "run", self.scene(), "--steps", "1", "--out", "small", "--quiet")
+        process = self.ranks("small")[0]["peak_bytes"]
+        scene = self.scene(cells="48, 12, 12")
+        peaks = {}
+        for n in (1, 2, 4):
+            self.mpi(n, "run", scene, "--steps", "1", "--set", "solver.tolerance=1e-4", "--out", f"on{n}", "--quiet")
+            ranks = self.ranks(f"on{n}")
+            self.assertEqual(sum(rank["vertices"] for rank in ranks), 49 * 13 * 13)
+            peaks[n] = max(rank["peak_bytes"] for rank in ranks) - process
+            self.assertLess(max(rank["peak_bytes"] for rank in ranks) - process, 14000 * ranks[0]["vertices"])
+        self.assertLess(peaks[2], 0.65 * peaks[1])  # ghosts and buffers of MPI come on top of one half
+        self.assertLess(peaks[4], 0.70 * peaks[2])
+
+    def test_iterations_hardly_grow_with_ranks(self):
+        body = "deform = { twist = { axis = [1, 0, 0], angle_deg = 90 } }\n"
+        for name, before_pin in (("straight", ""), ("twisted", body)):
+            scene = self.scene(cells="24, 6, 6", before_pin=before_pin)
+            counts = {}
+            for n in (1, 4, 16):
+                options = ("--set", "solver.tolerance=1e-4", "--set", "solver.max_iterations=3", "--steps", "1")
+                self.mpi(n, "run", scene, *options, "--out", "run", "--force", "--quiet", "--allow-unconverged")
+                counts[n] = self.ranks("run")[0]["linear_iterations"]
+            self.assertLessEqual(max(counts.values()), 1.5 * counts[1], f"{name}: {counts}")
+
+    def test_communication_of_block_jacobi(self):
+        """Per iteration a message to each neighbor and three sums: p'Hp, r'r and r'z."""
+        self.mpi(2, "run", self.scene(solver='linear = "block_jacobi"'), "--out", "run", "--quiet")
+        for rank in self.ranks("run"):
+            self.assertGreater(rank["linear_iterations"], 100)
+            self.assertAlmostEqual(rank["messages_per_iteration"], 1, delta=0.05)
+            self.assertAlmostEqual(rank["reductions_per_iteration"], 3, delta=0.1)
+        sent, ghosts = [sum(rank[name] for rank in self.ranks("run")) for name in ("bytes_per_iteration", "ghosts")]
+        self.assertAlmostEqual(sent, 24 * ghosts, delta=0.05 * sent)
+
+    def test_too_large_a_mesh_is_refused_before_it_is_made(self):
+        begin = time.monotonic()
+        said = self.mpi(2, "run", self.scene(cells="600, 600, 600"), code=2).stderr
+        self.assertEqual(said.count("error:"), 1, said)
+        self.assertIn("217081801 vertices on 2 ranks need about", said)
+        self.assertIn("GB are free; use more machines", said)
+        self.assertLess(time.monotonic() - begin, 60)
+        said = self.mpi(1, "run", self.scene(cells="3000, 3000, 3000"), code=2).stderr
+        self.assertIn("the scene has 1.62e+11 tets; at most 2147483647 are supported", said)
 
 
 class SameBits(Ranks):

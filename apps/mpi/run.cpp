@@ -122,7 +122,8 @@ Opened open(const RunArguments& arguments, int ranks_here) {
     put_in_order(document);
     opened.resolved = to_toml(document);
   } else {
-    SceneModel& whole = opened.whole.emplace(build_scene_model(std::move(input.source), std::move(input.files), options));
+    SceneModel& whole =
+        opened.whole.emplace(build_scene_model(std::move(input.source), std::move(input.files), options));
     require_vertex_per_rank(whole.model.mesh.vertex_count());
     distributed::require_memory(memory_need(whole.document, whole.model.mesh.vertex_count()), ranks_here,
                                 static_cast<double>(free_memory()));
@@ -153,9 +154,8 @@ class Runner {
     steps_ = arguments_.steps > 0 ? arguments_.steps : steps_of(*document.find("time"));
     const OutputOptions output = output_options(*document.find("output"));
     SceneFiles files(fs::path(opened_.file).parent_path(), false);
-    distributed::RankScene scene =
-        is_sliced_ ? distributed::make_box_slices(document)
-                   : distributed::scatter(opened_.whole ? &*opened_.whole : nullptr);
+    distributed::RankScene scene = is_sliced_ ? distributed::make_box_slices(document)
+                                              : distributed::scatter(opened_.whole ? &*opened_.whole : nullptr);
     opened_.whole.reset();
     simulation_.emplace(std::move(scene), std::move(document), std::move(files));
     const std::vector<std::string>& notes = simulation_->notes();
@@ -224,8 +224,8 @@ class Runner {
                           report.worst_residual);
     }
     if (prints_)
-      fmt::print(stderr, "warning: step {} did not converge: {}; {}{}{}\n", report.step, to_string(report.status), place,
-                 remedy_for(report.status),
+      fmt::print(stderr, "warning: step {} did not converge: {}; {}{}{}\n", report.step, to_string(report.status),
+                 place, remedy_for(report.status),
                  unconverged_ == kShown ? " (further failures are only counted)" : "");
   }
 

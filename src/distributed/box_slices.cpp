@@ -30,8 +30,8 @@ struct Key {
 struct BoxBody {
   BoxGrid grid;
   AffineMap place;
-  BodyRange range;  // in the whole mesh
-  Box box = {};     // of the placed vertices
+  BodyRange range;   // in the whole mesh
+  Box box = {};      // of the placed vertices
   Box centers = {};  // of the centroids of its tets
 
   Vec3d position(int own) const { return place(grid.position(own)); }
@@ -205,12 +205,12 @@ class Slicer {
     for (const std::array<int, 3>& cell : cells_of_own(b)) {
       std::vector<Tet> of_cell;
       body.grid.append_cell(cell[0], cell[1], cell[2], of_cell);
-      int number = body.range.first_tet +
-                   body.grid.cell(cell[0], cell[1], cell[2]) * body.grid.tets_per_cell();
+      int number = body.range.first_tet + body.grid.cell(cell[0], cell[1], cell[2]) * body.grid.tets_per_cell();
       for (Tet& tet : of_cell) {
         const std::uint64_t code = hilbert_index(center_of(body, tet), body.centers.lower, cube_size(body.centers));
         for (int& v : tet) v += body.range.first_vertex;
-        if (std::any_of(tet.begin(), tet.end(), [&](int v) { return number_of_own(v) >= 0; })) all.push_back({code, number, tet});
+        if (std::any_of(tet.begin(), tet.end(), [&](int v) { return number_of_own(v) >= 0; }))
+          all.push_back({code, number, tet});
         ++number;
       }
     }
@@ -233,7 +233,8 @@ class Slicer {
       for (int corner = 0; corner < 8; ++corner) {
         std::array<int, 3> cell = {at[0] - (corner & 1), at[1] - (corner >> 1 & 1), at[2] - (corner >> 2)};
         bool is_inside = true;
-        for (int axis = 0; axis < 3; ++axis) is_inside = is_inside && cell[axis] >= 0 && cell[axis] < grid.cells()[axis];
+        for (int axis = 0; axis < 3; ++axis)
+          is_inside = is_inside && cell[axis] >= 0 && cell[axis] < grid.cells()[axis];
         if (is_inside) cells.push_back(cell);
       }
     }
@@ -249,7 +250,7 @@ class Slicer {
   }
 
   // Replaces the user's numbers by those of the whole mesh. Ranks ask for those of ghosts: the rank that has a slice of
-  // the user's order knows its numbers from the owners.
+  // the user's order has received its numbers from the owners.
   void name_ghosts(std::vector<std::vector<Tet>>& tets) {
     for (const auto& of_body : tets)
       for (const Tet& tet : of_body)
@@ -262,8 +263,9 @@ class Slicer {
       for (Tet& tet : of_body)
         for (int& v : tet) {
           const int own = number_of_own(v);
-          v = own >= 0 ? own
-                       : ghost_number_[std::lower_bound(ghost_user_.begin(), ghost_user_.end(), v) - ghost_user_.begin()];
+          v = own >= 0
+                  ? own
+                  : ghost_number_[std::lower_bound(ghost_user_.begin(), ghost_user_.end(), v) - ghost_user_.begin()];
         }
   }
 
@@ -296,8 +298,8 @@ class Slicer {
       facts.box = body.box;
       const auto& n = body.grid.cells();
       for (int corner = 0; corner < 8; ++corner)
-        facts.corners.push_back(body.position(
-            body.grid.vertex(corner & 1 ? n[0] : 0, corner & 2 ? n[1] : 0, corner & 4 ? n[2] : 0)));
+        facts.corners.push_back(
+            body.position(body.grid.vertex(corner & 1 ? n[0] : 0, corner & 2 ? n[1] : 0, corner & 4 ? n[2] : 0)));
     }
   }
 

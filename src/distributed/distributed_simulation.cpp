@@ -28,7 +28,8 @@ SimulationOptions with_accurate_solves(SimulationOptions options) {
 // What the constructor of Simulation would check on one rank alone.
 void require_mass_here(const LocalModel& local, const SimulationOptions& options) {
   all_succeed([&] {
-    const bool is_finite = std::all_of(local.start.q.begin(), local.start.q.end(), [](double x) { return std::isfinite(x); });
+    const bool is_finite =
+        std::all_of(local.start.q.begin(), local.start.q.end(), [](double x) { return std::isfinite(x); });
     if (!is_finite) throw InvalidInput("the initial positions are not finite");
     if (options.integrator != "quasi_static") require_mass(local.model, Pins(local.model.pins, local.start.q));
   });

@@ -43,15 +43,14 @@ Received<T> exchange(std::span<const T> values, std::span<const int> counts) {
 void send_bytes(int to, std::string_view bytes);
 std::string receive_bytes(int from);
 
-std::string broadcast_text(std::string text);         // of rank 0
+std::string broadcast_text(std::string text);                  // of rank 0
 std::vector<std::string> gather_texts(std::string_view text);  // of all ranks, on all ranks
 // Returns the values of all ranks, one rank after the other, on all ranks.
 template <class T>
 std::vector<T> gather_all(const std::vector<T>& own) {
   static_assert(std::is_trivially_copyable_v<T>);
   std::vector<T> all;
-  for (const std::string& bytes :
-       gather_texts({reinterpret_cast<const char*>(own.data()), own.size() * sizeof(T)})) {
+  for (const std::string& bytes : gather_texts({reinterpret_cast<const char*>(own.data()), own.size() * sizeof(T)})) {
     const size_t begin = all.size();
     all.resize(begin + bytes.size() / sizeof(T));
     if (!bytes.empty()) std::memcpy(all.data() + begin, bytes.data(), bytes.size());

@@ -121,7 +121,8 @@ class Maker {
   std::vector<int> vertices_of(const BodyRange& body) const {
     const std::vector<int>& numbers = scene_.share.vertex;
     std::vector<int> vertices;
-    for (const auto& [begin, end] : {std::pair{0, scene_.share.own()}, {scene_.share.own(), scene_.share.local_vertices()}}) {
+    for (const auto& [begin, end] :
+         {std::pair{0, scene_.share.own()}, {scene_.share.own(), scene_.share.local_vertices()}}) {
       const auto first = std::lower_bound(numbers.begin() + begin, numbers.begin() + end, body.first_vertex);
       const auto last = std::lower_bound(first, numbers.begin() + end, body.first_vertex + body.vertex_count);
       for (auto v = first; v != last; ++v) vertices.push_back(static_cast<int>(v - numbers.begin()));
@@ -154,8 +155,8 @@ class Maker {
     } else {
       for (const int v : body.part_vertices) body.start.push_back(vec_at(scene_.q, v));
     }
-    const int own = static_cast<int>(std::count_if(body.part_vertices.begin(), body.part_vertices.end(),
-                                                   [&](int v) { return v < share.own(); }));
+    const int own = static_cast<int>(
+        std::count_if(body.part_vertices.begin(), body.part_vertices.end(), [&](int v) { return v < share.own(); }));
     const int first = own > 0 ? body.part_vertices[0] : 0;
     model().bodies.push_back({range.name, first, own, tets.first_tet, tets.counted + tets.halo});
     bodies_.push_back(std::move(body));
@@ -244,8 +245,8 @@ class Maker {
       const std::span<const MaterialParameters> all(material.parameters);
       ElasticityOfRank parts;
       parts.counted = make_tet_elasticity(material.model, model().mesh, tets.first_tet, all.first(tets.counted));
-      parts.halo = make_tet_elasticity(material.model, model().mesh, tets.first_tet + tets.counted,
-                                       all.subspan(tets.counted));
+      parts.halo =
+          make_tet_elasticity(material.model, model().mesh, tets.first_tet + tets.counted, all.subspan(tets.counted));
       model().elasticity.push_back(make_shared_elasticity(std::move(parts), model().share));
     }
   }

@@ -17,11 +17,11 @@ struct MeshShare {
   };
 
   int rank = 0;
-  std::vector<int> cut;              // first own vertex of each rank, and the number of vertices
-  std::vector<int> vertex;           // of the whole mesh, for each local one: first the own ones, then ghosts, ascending
-  std::vector<int> user_vertex;      // user's number of each local vertex
-  std::vector<int> user_tet;         // user's number of each local tet, body by body
-  std::vector<Body> bodies;          // local tets
+  std::vector<int> cut;          // first own vertex of each rank, and the number of vertices
+  std::vector<int> vertex;       // of the whole mesh, for each local one: first the own ones, then ghosts, ascending
+  std::vector<int> user_vertex;  // user's number of each local vertex
+  std::vector<int> user_tet;     // user's number of each local tet, body by body
+  std::vector<Body> bodies;      // local tets
   std::vector<BodyRange> of_bodies;  // ranges of the bodies in the whole mesh
 
   int ranks() const { return static_cast<int>(cut.size()) - 1; }

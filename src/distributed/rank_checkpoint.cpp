@@ -118,7 +118,8 @@ std::vector<double> read_doubles(const fs::path& path, std::uint64_t position, s
 
 // The checksum of a slice of the file.
 Checked check_slice(const fs::path& path, std::uint64_t size) {
-  const auto rank = static_cast<std::uint64_t>(rank_of_this_process()), ranks = static_cast<std::uint64_t>(rank_count());
+  const auto rank = static_cast<std::uint64_t>(rank_of_this_process()),
+             ranks = static_cast<std::uint64_t>(rank_count());
   const std::uint64_t begin = size / ranks * rank, end = rank + 1 == ranks ? size : size / ranks * (rank + 1);
   std::ifstream file = open_input(path);
   file.seekg(static_cast<std::streamoff>(begin));
@@ -151,7 +152,8 @@ std::string defect_of(const fs::path& path, CheckpointLayout& layout) {
   for (const std::string& other : gather_texts(error))
     if (!other.empty()) return other;
   std::uint32_t sum = checkpoint_checksum(nullptr, 0);
-  for (const Checked& part : gather_all(std::vector<Checked>{own})) sum = joined_checksum(sum, part.checksum, part.bytes);
+  for (const Checked& part : gather_all(std::vector<Checked>{own}))
+    sum = joined_checksum(sum, part.checksum, part.bytes);
   return sum == stored ? "" : path.string() + ": is damaged: its checksum is wrong";
 }
 

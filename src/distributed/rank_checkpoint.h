@@ -1,5 +1,5 @@
-// Checkpoints that all ranks write and read together, each a slice in the user's order. The files are those of aspic run,
-// so any number of ranks can continue.
+// Checkpoints that all ranks write and read together, each a slice in the user's order. The files are those of aspic
+// run, so any number of ranks can continue.
 #pragma once
 #include <filesystem>
 #include <optional>

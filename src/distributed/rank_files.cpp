@@ -104,10 +104,10 @@ struct RankFiles::Impl {
     const double iterations = std::max(1.0, linear.iterations);
     rusage usage{};
     getrusage(RUSAGE_SELF, &usage);
-    const std::vector<double> all = gather_all(std::vector<double>{
-        double(share.rank), double(share.own()), double(share.local_vertices() - share.own()),
-        double(share.user_tet.size()), double(usage.ru_maxrss) * 1024, linear.iterations, linear.messages / iterations,
-        linear.bytes / iterations, linear.reductions / iterations});
+    const std::vector<double> all = gather_all(
+        std::vector<double>{double(share.rank), double(share.own()), double(share.local_vertices() - share.own()),
+                            double(share.user_tet.size()), double(usage.ru_maxrss) * 1024, linear.iterations,
+                            linear.messages / iterations, linear.bytes / iterations, linear.reductions / iterations});
     succeeds_on(0, [&] {
       std::string text =
           "rank,vertices,ghosts,tets,peak_bytes,linear_iterations,messages_per_iteration,bytes_per_iteration,"

@@ -10,8 +10,8 @@
 namespace aspic::distributed {
 
 struct RunPlan {
-  std::string path;         // of the directory
-  std::string resolved;     // see Scene
+  std::string path;      // of the directory
+  std::string resolved;  // see Scene
   OutputOptions output;
 };
 

@@ -21,8 +21,7 @@ Piece piece_of(const Simulation& local, const MeshShare& share) {
   Piece piece;
   for (const MeshShare::Body& body : share.bodies)
     for (int t = body.first_tet; t < body.first_tet + body.counted; ++t) piece.tets.push_back(t);
-  std::sort(piece.tets.begin(), piece.tets.end(),
-            [&](int a, int b) { return share.user_tet[a] < share.user_tet[b]; });
+  std::sort(piece.tets.begin(), piece.tets.end(), [&](int a, int b) { return share.user_tet[a] < share.user_tet[b]; });
   std::vector<int> place(share.local_vertices(), -1);
   std::fill(place.begin(), place.begin() + share.own(), 0);
   const std::vector<Tet>& tets = local.model().mesh.tets;
@@ -72,7 +71,8 @@ void write_pieces(const RunLayout& layout, const DistributedSimulation& simulati
     fields.point_fields.push_back(numbers("vertex", piece.vertices, share.user_vertex));
     fields.cell_fields.push_back(numbers("tet", piece.tets, share.user_tet));
   }
-  const std::string file = is_whole ? RunLayout::frame_file(options.frame) : RunLayout::piece_file(options.frame, share.rank);
+  const std::string file =
+      is_whole ? RunLayout::frame_file(options.frame) : RunLayout::piece_file(options.frame, share.rank);
   write_vtu((layout.root() / file).string(), piece.points, piece.corners, fields);
   wait_for_all();  // an index has all of its pieces
   if (is_whole || share.rank > 0) return;

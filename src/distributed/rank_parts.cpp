@@ -15,7 +15,8 @@ namespace {
 // Values per vertex whose ghosts are those of their owners.
 class VertexValues {
  public:
-  VertexValues(const MeshShare& share, Halo& halo) : halo_(halo), values_(3 * static_cast<size_t>(share.local_vertices())) {}
+  VertexValues(const MeshShare& share, Halo& halo)
+      : halo_(halo), values_(3 * static_cast<size_t>(share.local_vertices())) {}
   double& operator[](int v) { return values_[3 * static_cast<size_t>(v)]; }
   void update() { halo_.update(values_); }
 

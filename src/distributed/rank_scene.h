@@ -12,9 +12,9 @@ namespace aspic::distributed {
 
 // Facts about a whole body for its selections.
 struct BodyFacts {
-  Box box;                                // of the placed rest shape
+  Box box;                                 // of the placed rest shape
   std::pair<double, double> heights = {};  // least and largest against gravity [m]; unused for generated boxes
-  std::vector<Vec3d> corners = {};        // of a generated box: its extent along any direction; else empty
+  std::vector<Vec3d> corners = {};         // of a generated box: its extent along any direction; else empty
 };
 
 struct RankScene {

@@ -36,8 +36,8 @@ SharedFile::SharedFile(SharedFile&&) noexcept = default;
 SharedFile SharedFile::create(const fs::path& path) {
   auto impl = std::make_unique<Impl>();
   impl->path = path.string();
-  impl->check(MPI_File_open(MPI_COMM_WORLD, impl->path.c_str(), MPI_MODE_CREATE | MPI_MODE_WRONLY, MPI_INFO_NULL,
-                            &impl->file));
+  impl->check(
+      MPI_File_open(MPI_COMM_WORLD, impl->path.c_str(), MPI_MODE_CREATE | MPI_MODE_WRONLY, MPI_INFO_NULL, &impl->file));
   impl->check(MPI_File_set_size(impl->file, 0));
   return SharedFile(std::move(impl));
 }

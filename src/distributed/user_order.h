@@ -22,8 +22,8 @@ class UserOrder {
 
  private:
   int first_, all_;
-  std::vector<int> sent_;                         // own vertices, grouped by the rank of their slice
-  std::vector<int> slice_;                        // vertices of the slice (from 0), grouped by the rank of their owner
+  std::vector<int> sent_;                        // own vertices, grouped by the rank of their slice
+  std::vector<int> slice_;                       // vertices of the slice (from 0), grouped by the rank of their owner
   std::vector<int> sent_counts_, slice_counts_;  // of vertices for each rank
 };
 

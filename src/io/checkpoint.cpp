@@ -37,8 +37,7 @@ void append_name(std::string& bytes, const std::string& name) {
 std::string encoded(const Checkpoint& checkpoint) {
   std::vector<std::pair<std::string, uint64_t>> counts;
   for (const auto& [name, values] : checkpoint.arrays) counts.emplace_back(name, values.size());
-  const CheckpointLayout layout =
-      checkpoint_layout({checkpoint.fingerprint, {}, checkpoint.integers}, counts);
+  const CheckpointLayout layout = checkpoint_layout({checkpoint.fingerprint, {}, checkpoint.integers}, counts);
   std::string bytes;
   for (size_t k = 0; k < layout.arrays.size(); ++k) {
     const std::vector<double>& values = checkpoint.arrays[k].second;

@@ -46,9 +46,8 @@ void add_five_cell(const BoxGrid& grid, int i, int j, int k, std::vector<Tet>& t
 
 // Positively oriented.
 void orient(const BoxGrid& grid, Tet& tet) {
-  const TetMesh alone{{grid.position(tet[0]), grid.position(tet[1]), grid.position(tet[2]), grid.position(tet[3])},
-                      {{0, 1, 2, 3}},
-                      {}};
+  const TetMesh alone{
+      {grid.position(tet[0]), grid.position(tet[1]), grid.position(tet[2]), grid.position(tet[3])}, {{0, 1, 2, 3}}, {}};
   if (volume(alone, 0) < 0) std::swap(tet[2], tet[3]);
 }
 

@@ -141,9 +141,9 @@ void add_pins(Builder& builder, const PlacedBody& body) {
       const Value* other = holders[v].pin;
       if (!holders[v].add(scene, pin.directions))
         throw error_at(scene["where"].place, "vertex " + std::to_string(body.user_vertex(v)) + " of body '" +
-                                                 body.name() + "' at " + point_text(body.mesh.rest[v]) + " is in pin '" +
-                                                 (*other)["name"].text() + "' and in pin '" + scene["name"].text() +
-                                                 "', which constrain the same direction; " +
+                                                 body.name() + "' at " + point_text(body.mesh.rest[v]) +
+                                                 " is in pin '" + (*other)["name"].text() + "' and in pin '" +
+                                                 scene["name"].text() + "', which constrain the same direction; " +
                                                  leave_out(*other, scene, leaves_any));
       pin.vertices.push_back(body.model_vertex(v));
     }

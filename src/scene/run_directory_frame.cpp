@@ -103,11 +103,10 @@ VtuFields frame_fields(const Simulation& simulation, const StepReport* report, b
   const State& state = simulation.state();
   VtuFields fields;
   fields.point_fields = {{"displacement", 3, displacement(model.mesh, state.q), real},
-                                 {"velocity", 3, state.qdot, real}};
+                         {"velocity", 3, state.qdot, real}};
   TetFields tet_fields = simulation.tet_fields();
   if (!model.mesh.mids.empty())
-    fields.point_fields.push_back(
-        {"pressure", 1, pressure_of_vertices(model.mesh, tet_fields.cauchy), real});
+    fields.point_fields.push_back({"pressure", 1, pressure_of_vertices(model.mesh, tet_fields.cauchy), real});
   add_contact_fields(simulation, real, fields.point_fields);
   fields.cell_fields = cell_fields(simulation, std::move(tet_fields), real);
   fields.file_fields = file_fields(state.time, report);

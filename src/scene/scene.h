@@ -50,9 +50,7 @@ struct SceneInputs {
   const std::vector<std::pair<std::string, std::string>>& files;         // see Scene::input_files
   const std::vector<std::pair<std::string, TetMesh>>& generated_meshes;  // see Scene
 };
-inline SceneInputs inputs_of(const Scene& scene) {
-  return {scene.resolved, scene.input_files, scene.generated_meshes};
-}
+inline SceneInputs inputs_of(const Scene& scene) { return {scene.resolved, scene.input_files, scene.generated_meshes}; }
 
 // Writes the inputs below `folder`, so that `resolved` can be run from there. Throws InvalidInput.
 void write_inputs(const SceneInputs& inputs, const std::string& folder);

@@ -18,7 +18,7 @@ struct SceneModel {
   Model model;
   State start;
   SimulationOptions options;
-  std::vector<std::pair<std::string, std::string>> input_files;  // see Scene
+  std::vector<std::pair<std::string, std::string>> input_files;        // see Scene
   std::vector<std::pair<std::string, TetMesh>> generated_meshes = {};  // see Scene
 };
 

@@ -164,7 +164,8 @@ std::vector<int> select_vertices(const Value& where, const SelectionScope& scope
       if (holds ? holds(scope.mesh.rest[v]) : listed[v]) result.push_back(v);
     return result;
   });
-  require_some(selected, [&](int v) { return scope.whole->is_own(v); }, where, scope, "vertex");
+  require_some(
+      selected, [&](int v) { return scope.whole->is_own(v); }, where, scope, "vertex");
   return selected;
 }
 
@@ -180,7 +181,8 @@ std::vector<int> select_tets(const Value& where, const SelectionScope& scope) {
     }
     return result;
   });
-  require_some(selected, [&](int t) { return any_own(scope, scope.mesh.tets[t]); }, where, scope, "tet");
+  require_some(
+      selected, [&](int t) { return any_own(scope, scope.mesh.tets[t]); }, where, scope, "tet");
   return selected;
 }
 

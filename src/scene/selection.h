@@ -11,8 +11,8 @@
 
 namespace aspic {
 
-// The body of which a mesh is a part, if several processes hold the body together. Numbers of the whole body are those of
-// the user.
+// The body of which a mesh is a part, if several processes hold the body together. Numbers of the whole body are those
+// of the user.
 class WholeBody {
  public:
   virtual ~WholeBody() = default;
