@@ -129,7 +129,7 @@ class Equality(Ranks):
                     self.assertAlmostEqual(float(serial[name]), float(distributed[name]), delta=1e-6, msg=name)
 
     def test_falling_beam(self):
-        counts = self.assert_equal_runs((1, 2, 3, 4), self.scene())
+        counts = self.assert_equal_runs((1, 2, 3, 4), self.scene(solver='linear = "multigrid"'))
         self.assertEqual(counts, self.column("serial", "iterations"))
 
     def test_ranks_with_few_vertices(self):
@@ -293,7 +293,7 @@ class Shares(Ranks):
     def test_memory_halves_when_ranks_double(self):
         self.mpi(1, "run", self.scene(), "--steps", "1", "--out", "small", "--quiet")
         process = self.ranks("small")[0]["peak_bytes"]
-        scene = self.scene(cells="48, 12, 12")
+        scene = self.scene(cells="48, 12, 12", solver='linear = "multigrid"')
         peaks = {}
         for n in (1, 2, 4):
             self.mpi(n, "run", scene, "--steps", "1", "--set", "solver.tolerance=1e-4", "--out", f"on{n}", "--quiet")
@@ -307,13 +307,22 @@ class Shares(Ranks):
     def test_iterations_hardly_grow_with_ranks(self):
         body = "deform = { twist = { axis = [1, 0, 0], angle_deg = 90 } }\n"
         for name, before_pin in (("straight", ""), ("twisted", body)):
-            scene = self.scene(cells="24, 6, 6", before_pin=before_pin)
+            scene = self.scene(cells="24, 6, 6", before_pin=before_pin, solver='linear = "multigrid"')
             counts = {}
             for n in (1, 4, 16):
                 options = ("--set", "solver.tolerance=1e-4", "--set", "solver.max_iterations=3", "--steps", "1")
                 self.mpi(n, "run", scene, *options, "--out", "run", "--force", "--quiet", "--allow-unconverged")
                 counts[n] = self.ranks("run")[0]["linear_iterations"]
             self.assertLessEqual(max(counts.values()), 1.5 * counts[1], f"{name}: {counts}")
+
+    def test_auto_chooses_by_predicted_cost(self):
+        """Soft bodies and short steps: block-Jacobi, with three sums per iteration. Equilibria: GAMG."""
+        for time_, is_gamg in (("", False), ('integrator = "quasi_static"', True)):
+            counts = {}
+            for solver in ("auto", "multigrid" if is_gamg else "block_jacobi"):
+                self.mpi(2, "run", self.scene(time=time_, solver=f'linear = "{solver}"'), "--out", "run", "--force", "--quiet")
+                counts[solver] = self.column("run", "state_hash"), self.ranks("run")[0]["linear_iterations"]
+            self.assertEqual(len(set(map(str, counts.values()))), 1, counts)
 
     def test_communication_of_block_jacobi(self):
         """Per iteration a message to each neighbor and three sums: p'Hp, r'r and r'z."""
@@ -338,7 +347,7 @@ class Shares(Ranks):
 
 class SameBits(Ranks):
     def test_same_bits_again_and_after_resuming(self):
-        scene = self.scene()
+        scene = self.scene(solver='linear = "multigrid"')
         for run in ("one", "other"):
             self.mpi(2, "run", scene, "--out", run, "--quiet")
         self.assert_same_results("one", "other", (".vtu", ".pvtu", ".pvd", ".bin"))

@@ -8,6 +8,7 @@
 
 #include "distributed/guarded.h"
 #include "distributed/petsc_solver.h"
+#include "distributed/rank_auto.h"
 #include "distributed/rank_cg.h"
 #include "dynamics/pins.h"
 #include "dynamics/simulation_checks.h"
@@ -75,16 +76,20 @@ void DistributedSimulation::make_solver(const SolverOptions& options) {
   std::unique_ptr<LinearSolver> solver;
   if (options.linear == "block_jacobi") {
     solver = std::make_unique<RankCg>(of_model_, *halo_);
+  } else if (options.linear == "auto") {
+    auto chosen = std::make_unique<RankAuto>(share_, of_model_, *halo_);
+    set_positions_ = [solver = chosen.get()](std::span<const double> x) { solver->set_positions(x); };
+    solver = std::move(chosen);
   } else {
-    auto petsc = std::make_unique<PetscSolver>(share_, of_model_, *halo_);
-    petsc_ = petsc.get();
-    solver = std::move(petsc);
+    auto gamg = std::make_unique<PetscSolver>(share_, of_model_, *halo_);
+    set_positions_ = [solver = gamg.get()](std::span<const double> x) { solver->set_positions(x); };
+    solver = std::move(gamg);
   }
   simulation_->set_direction(std::make_unique<Newton>(std::move(solver), definiteness_of(options)));
 }
 
 StepReport DistributedSimulation::step(const IterationObserver& observe) {
-  if (petsc_) petsc_->set_positions(simulation_->state().q);
+  if (set_positions_) set_positions_(simulation_->state().q);
   StepReport report = simulation_->step(observe);
   if (!has_equal_ghosts()) throw std::runtime_error("copies of vertices differ between ranks");
   complete(report);

@@ -1,6 +1,8 @@
 // A simulation on several ranks. Every function is collective unless it is const.
 #pragma once
+#include <functional>
 #include <memory>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -14,8 +16,6 @@
 #include "scene/value.h"
 
 namespace aspic::distributed {
-
-class PetscSolver;
 
 struct NamedPlace {
   int user_vertex;
@@ -58,7 +58,8 @@ class DistributedSimulation {
   std::unique_ptr<UserOrder> user_order_;
   std::unique_ptr<Simulation> simulation_;
   std::vector<std::string> notes_;
-  PetscSolver* petsc_ = nullptr;  // null: conjugate gradients with block-Jacobi
+  // Passes positions to the solver before each step; empty: it needs none.
+  std::function<void(std::span<const double>)> set_positions_;
 };
 
 }  // namespace aspic::distributed

@@ -46,7 +46,6 @@ bool RankCg::advance(std::span<double> x, double rz, SolveReport& report) {
 
 SolveReport RankCg::solve(std::span<const double> b, std::span<double> x, double tolerance) {
   const Traffic before = own_traffic();
-  constexpr int kMaxIterations = 10'000;
   SolveReport report;
   std::fill(x.begin(), x.end(), 0.0);
   std::copy_n(b.begin(), own_, r_.begin());
@@ -56,7 +55,7 @@ SolveReport RankCg::solve(std::span<const double> b, std::span<double> x, double
   precondition();
   p_ = z_;
   double rz = dot(r_, z_);
-  while (residual > tolerance * b_norm && report.iterations < kMaxIterations && advance(x, rz, report)) {
+  while (residual > tolerance * b_norm && report.iterations < max_iterations_ && advance(x, rz, report)) {
     residual = std::sqrt(dot(r_, r_));
     precondition();
     const double next = dot(r_, z_), beta = next / rz;

@@ -3,6 +3,7 @@
 #include <mpi.h>
 
 #include <algorithm>
+#include <exception>
 #include <stdexcept>
 #include <string>
 
@@ -43,7 +44,8 @@ SharedFile SharedFile::create(const fs::path& path) {
 }
 
 SharedFile::~SharedFile() {
-  if (impl_ && impl_->file != MPI_FILE_NULL) MPI_File_close(&impl_->file);
+  // Closing waits for other ranks, which an exception on this rank alone must not.
+  if (impl_ && impl_->file != MPI_FILE_NULL && std::uncaught_exceptions() == 0) MPI_File_close(&impl_->file);
 }
 
 void SharedFile::write_all(std::uint64_t position, const void* data, std::size_t bytes) const {
