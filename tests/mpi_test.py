@@ -300,7 +300,7 @@ class Shares(Ranks):
             ranks = self.ranks(f"on{n}")
             self.assertEqual(sum(rank["vertices"] for rank in ranks), 49 * 13 * 13)
             peaks[n] = max(rank["peak_bytes"] for rank in ranks) - process
-            self.assertLess(max(rank["peak_bytes"] for rank in ranks) - process, 14000 * ranks[0]["vertices"])
+        self.assertLess(peaks[1], 12000 * 49 * 13 * 13)
         self.assertLess(peaks[2], 0.65 * peaks[1])  # ghosts and buffers of MPI come on top of one half
         self.assertLess(peaks[4], 0.70 * peaks[2])
 
@@ -310,7 +310,7 @@ class Shares(Ranks):
             scene = self.scene(cells="24, 6, 6", before_pin=before_pin, solver='linear = "multigrid"')
             counts = {}
             for n in (1, 4, 16):
-                options = ("--set", "solver.tolerance=1e-4", "--set", "solver.max_iterations=3", "--steps", "1")
+                options = ("--set", "material.young=1e7", "--set", "solver.max_iterations=2", "--steps", "1")
                 self.mpi(n, "run", scene, *options, "--out", "run", "--force", "--quiet", "--allow-unconverged")
                 counts[n] = self.ranks("run")[0]["linear_iterations"]
             self.assertLessEqual(max(counts.values()), 1.5 * counts[1], f"{name}: {counts}")
