@@ -160,7 +160,7 @@ void add_pins(const Side& side, Table& document, std::vector<std::string>& notes
 
 // ---------------------------------------------------------------- files
 
-std::vector<ZipEntry> inputs_of(const Scene& scene) {
+std::vector<ZipEntry> zipped_inputs(const Scene& scene) {
   const TemporaryFolder folder;
   write_inputs(scene, folder.path());
   std::vector<ZipEntry> files;
@@ -196,7 +196,7 @@ SavedScene saved_scene(const Side& side, SavedHand hand) {
   put_in_order(document);
   saved.files.push_back({saved.name + ".toml", "# Saved by the viewer, with all values. To run it: aspic run " +
                                                    saved.name + ".toml\n" + to_toml(document)});
-  for (ZipEntry& file : inputs_of(scene)) saved.files.push_back(std::move(file));
+  for (ZipEntry& file : zipped_inputs(scene)) saved.files.push_back(std::move(file));
   return saved;
 }
 

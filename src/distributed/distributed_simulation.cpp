@@ -1,44 +1,22 @@
 #include "distributed/distributed_simulation.h"
 
 #include <algorithm>
-#include <array>
+#include <cmath>
+#include <exception>
 #include <stdexcept>
+#include <utility>
 
-#include "base/error.h"
+#include "distributed/guarded.h"
 #include "distributed/petsc_solver.h"
+#include "distributed/rank_auto.h"
 #include "distributed/rank_cg.h"
-#include "distributed/share_model.h"
+#include "dynamics/pins.h"
+#include "dynamics/simulation_checks.h"
 #include "optimize/newton.h"
+#include "scene/scene_builder.h"
 
 namespace aspic::distributed {
 namespace {
-
-// Returns the state of rank 0 on all ranks, for the local vertices.
-State scatter(const State& whole, const MeshShare& share) {
-  State local;
-  std::vector<double> values(3 * static_cast<size_t>(share.cut.back()));
-  for (const auto& [from, to] : {std::pair{&whole.q, &local.q}, std::pair{&whole.qdot, &local.qdot}}) {
-    if (share.rank == 0) values = *from;
-    broadcast(values);
-    *to = local_part(values, share);
-  }
-  local.time = whole.time;
-  broadcast({&local.time, 1});
-  return local;
-}
-
-Simulation::Snapshot scatter(const Simulation::Snapshot& whole, const MeshShare& share) {
-  std::array<double, 3> numbers = {static_cast<double>(whole.steps_taken), whole.obstacle_time.value_or(0),
-                                   whole.previous ? 1.0 : 0.0};
-  broadcast(numbers);
-  Simulation::Snapshot local;
-  local.state = scatter(whole.state, share);
-  local.start = scatter(whole.start, share);
-  local.steps_taken = static_cast<int>(numbers[0]);
-  local.obstacle_time = numbers[1];
-  if (numbers[2] > 0) local.previous = scatter(whole.previous ? *whole.previous : State{}, share);
-  return local;
-}
 
 // Iterative solves depend on the number of ranks. At small tolerances they are accurate enough that Newton counts do
 // not.
@@ -48,25 +26,48 @@ SimulationOptions with_accurate_solves(SimulationOptions options) {
   return options;
 }
 
-}  // namespace
-
-void require_vertex_per_rank(const TetMesh& mesh) {
-  if (mesh.vertex_count() < rank_count())
-    throw InvalidInput("the scene has " + std::to_string(mesh.vertex_count()) + " vertices for " +
-                       std::to_string(rank_count()) + " ranks; use fewer ranks");
+// What the constructor of Simulation would check on one rank alone.
+void require_mass_here(const LocalModel& local, const SimulationOptions& options) {
+  all_succeed([&] {
+    const bool is_finite =
+        std::all_of(local.start.q.begin(), local.start.q.end(), [](double x) { return std::isfinite(x); });
+    if (!is_finite) throw InvalidInput("the initial positions are not finite");
+    if (options.integrator != "quasi_static") require_mass(local.model, Pins(local.model.pins, local.start.q));
+  });
 }
 
-DistributedSimulation::DistributedSimulation(const WholeProblem& whole, const Simulation::Snapshot& start)
-    : share_(make_mesh_share(whole.model.mesh, whole.model.bodies, rank_of_this_process(), rank_count())),
-      ranks_(std::make_unique<MpiRanks>(whole.model.mesh, share_)),
-      of_model_(*ranks_, share_.first(), share_.own()),
+}  // namespace
+
+DistributedSimulation::DistributedSimulation(RankScene scene, Table document, SceneFiles files)
+    : share_(scene.share),
       halo_(std::make_unique<Halo>(share_)),
-      whole_tets_(whole.model.mesh.tet_count()) {
-  const Simulation::Snapshot local = scatter(start, share_);
-  simulation_ = std::make_unique<Simulation>(share_model(whole.model, whole.materials, share_, *ranks_), local.start,
-                                             with_accurate_solves(whole.options));
-  simulation_->restore(local);
-  make_solver(whole.options.solver);
+      ranks_(std::make_unique<MpiRanks>(share_, *halo_)),
+      of_model_(*ranks_, share_.first(), share_.own()),
+      user_order_(std::make_unique<UserOrder>(share_)) {
+  SimulationOptions options;
+  all_succeed([&] { options = simulation_options(document, notes_); });
+  LocalModel local = make_local_model({scene, document, std::move(files)}, of_model_);
+  notes_.insert(notes_.end(), local.notes.begin(), local.notes.end());
+  scene = {};
+  require_mass_here(local, options);
+  make_simulation(std::move(local), with_accurate_solves(options));
+  make_solver(options.solver);
+}
+
+// All ranks fail together, because terms have the values of the whole model.
+void DistributedSimulation::make_simulation(LocalModel local, const SimulationOptions& options) {
+  std::exception_ptr failure;
+  try {
+    simulation_ = std::make_unique<Simulation>(std::move(local.model), std::move(local.start), options);
+  } catch (const BadInitialState& e) {
+    failure = std::make_exception_ptr(BadInitialState(
+        e.kind, "the initial shape has infinite energy: tets are inverted or flat", remedy_in_scene(e.kind)));
+  } catch (const InvalidInput&) {
+    failure = std::current_exception();
+  }
+  all_succeed([&] {
+    if (failure) std::rethrow_exception(failure);
+  });
 }
 
 DistributedSimulation::~DistributedSimulation() = default;
@@ -75,36 +76,70 @@ void DistributedSimulation::make_solver(const SolverOptions& options) {
   std::unique_ptr<LinearSolver> solver;
   if (options.linear == "block_jacobi") {
     solver = std::make_unique<RankCg>(of_model_, *halo_);
+  } else if (options.linear == "auto") {
+    auto chosen = std::make_unique<RankAuto>(share_, of_model_, *halo_);
+    set_positions_ = [solver = chosen.get()](std::span<const double> x) { solver->set_positions(x); };
+    solver = std::move(chosen);
   } else {
-    auto petsc = std::make_unique<PetscSolver>(share_, of_model_, *halo_);
-    petsc_ = petsc.get();
-    solver = std::move(petsc);
+    auto gamg = std::make_unique<PetscSolver>(share_, of_model_, *halo_);
+    set_positions_ = [solver = gamg.get()](std::span<const double> x) { solver->set_positions(x); };
+    solver = std::move(gamg);
   }
   simulation_->set_direction(std::make_unique<Newton>(std::move(solver), definiteness_of(options)));
 }
 
 StepReport DistributedSimulation::step(const IterationObserver& observe) {
-  if (petsc_) petsc_->set_positions(simulation_->state().q);
+  if (set_positions_) set_positions_(simulation_->state().q);
   StepReport report = simulation_->step(observe);
   if (!has_equal_ghosts()) throw std::runtime_error("copies of vertices differ between ranks");
-  report.elements = whole_tets_;
+  complete(report);
   return report;
 }
 
-Simulation::Snapshot DistributedSimulation::gather() const {
-  const Simulation::Snapshot local = simulation_->snapshot();
-  Simulation::Snapshot whole = local;
-  const auto gather_state = [this](const State& from, State& to) {
-    to.q = gather_vertices(share_, from.q);
-    to.qdot = gather_vertices(share_, from.qdot);
-  };
-  gather_state(local.state, whole.state);
-  gather_state(local.start, whole.start);
-  if (local.previous) gather_state(*local.previous, *whole.previous);
-  return whole;
+StepReport DistributedSimulation::start_report() {
+  StepReport report = simulation_->start_report();
+  complete(report);
+  return report;
 }
 
-bool DistributedSimulation::has_equal_ghosts() const {
+void DistributedSimulation::complete(StepReport& report) {
+  report.state_hash = state_hash();
+  const BodyRange& last = share_.of_bodies.back();
+  report.elements = last.first_tet + last.tet_count;
+}
+
+void DistributedSimulation::restore(Simulation::Snapshot own) {
+  add_ghosts(own.state);
+  add_ghosts(own.start);
+  if (own.previous) add_ghosts(*own.previous);
+  simulation_->restore(own);
+}
+
+void DistributedSimulation::add_ghosts(State& own) {
+  for (std::vector<double>* values : {&own.q, &own.qdot}) {
+    values->resize(3 * static_cast<size_t>(share_.local_vertices()));
+    halo_->update(*values);
+  }
+}
+
+std::uint64_t DistributedSimulation::state_hash() {
+  const State& state = simulation_->state();
+  const std::vector<double> q = user_order_->to_user(state.q);
+  return hash_of_slices(q, user_order_->to_user(state.qdot));
+}
+
+NamedPlace DistributedSimulation::place_of(int whole_vertex) {
+  double numbers[4] = {};
+  if (share_.owns(whole_vertex)) {
+    const int v = whole_vertex - share_.first();
+    for (int r = 0; r < 3; ++r) numbers[r] = simulation_->state().q[3 * static_cast<size_t>(v) + r];
+    numbers[3] = share_.user_vertex[v];
+  }
+  of_model_.sum(numbers);
+  return {static_cast<int>(numbers[3]), {{numbers[0], numbers[1], numbers[2]}}};
+}
+
+bool DistributedSimulation::has_equal_ghosts() {
   std::vector<double> q = simulation_->state().q;
   halo_->update(q);
   return of_model_.all(q == simulation_->state().q);

@@ -7,8 +7,10 @@
 #include <string>
 
 #include "base/error.h"
+#include "distributed/exchange.h"
 #include "distributed/mpi_ranks.h"
 #include "distributed/petsc_solver.h"
+#include "dynamics/simulation_checks.h"
 
 namespace aspic::distributed {
 namespace {
@@ -30,6 +32,8 @@ int guarded(const std::function<int()>& body) {
     const PetscSession session;
     try {
       return body();
+    } catch (const Refused&) {
+      return kBadInput;
     } catch (const InvalidInput& e) {
       return end_all(kBadInput, e.what());
     } catch (const std::exception& e) {
@@ -41,17 +45,28 @@ int guarded(const std::function<int()>& body) {
   }
 }
 
-bool succeeds_on(int rank, const std::function<void()>& body) {
-  int has_failed = 0;
-  if (rank == rank_of_this_process()) {
-    try {
-      body();
-    } catch (const InvalidInput& e) {
-      std::fprintf(stderr, "error: %s\n", e.what());
-      has_failed = 1;
-    }
+void all_succeed(const std::function<void()>& body) {
+  std::string error;
+  double rank_of_error = -rank_count();  // minus the rank, so that the largest is the first
+  try {
+    body();
+  } catch (const InvalidInput& e) {
+    error = e.what();
+    rank_of_error = -rank_of_this_process();
+    const bool is_about_start = dynamic_cast<const BadInitialState*>(&e) != nullptr;
+    if (is_about_start) rank_of_error += rank_count();
   }
-  return largest_of_ranks(has_failed) == 0;
+  const double own = rank_of_error;
+  max_over_ranks({&rank_of_error, 1});
+  if (rank_of_error == -rank_count()) return;
+  if (own == rank_of_error) std::fprintf(stderr, "error: %s\n", error.c_str());
+  throw Refused();
+}
+
+void succeeds_on(int rank, const std::function<void()>& body) {
+  all_succeed([&] {
+    if (rank == rank_of_this_process()) body();
+  });
 }
 
 }  // namespace aspic::distributed

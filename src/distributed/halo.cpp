@@ -4,6 +4,8 @@
 
 #include <algorithm>
 
+#include "distributed/traffic.h"
+
 namespace aspic::distributed {
 
 Halo::Halo(const MeshShare& share) {
@@ -47,6 +49,7 @@ void Halo::update(std::span<double> x) {
     to_send = end;
   }
   MPI_Waitall(static_cast<int>(requests.size()), requests.data(), MPI_STATUSES_IGNORE);
+  own_traffic() += {static_cast<double>(neighbors_.size()), static_cast<double>(buffer_.size() * sizeof(double)), 0};
 }
 
 }  // namespace aspic::distributed

@@ -4,8 +4,6 @@
 #include <cstdint>
 #include <numeric>
 
-#include "base/check.h"
-
 namespace aspic::distributed {
 
 int MeshShare::local(int whole_vertex) const {
@@ -14,52 +12,41 @@ int MeshShare::local(int whole_vertex) const {
   return found != vertex.end() && *found == whole_vertex ? static_cast<int>(found - vertex.begin()) : -1;
 }
 
-MeshShare make_mesh_share(const TetMesh& whole, std::span<const BodyRange> bodies, int rank, int ranks) {
-  ASPIC_CHECK(whole.vertex_count() >= ranks && whole.mids.empty());
-  MeshShare share;
-  share.rank = rank;
-  for (int r = 0; r <= ranks; ++r)
-    share.cut.push_back(static_cast<int>(std::int64_t{whole.vertex_count()} * r / ranks));
+std::vector<int> equal_cuts(int count, int parts) {
+  std::vector<int> cut;
+  for (int p = 0; p <= parts; ++p) cut.push_back(static_cast<int>(std::int64_t{count} * p / parts));
+  return cut;
+}
+
+std::vector<Tet> arrange(const std::vector<std::vector<Tet>>& tets, const std::vector<std::vector<int>>& numbers,
+                         MeshShare& share) {
   std::vector<int> ghosts;
-  for (const BodyRange& body : bodies) {
-    std::vector<int> halo;
-    MeshShare::Body& tets = share.bodies.emplace_back();
-    tets.first_tet = static_cast<int>(share.tet.size());
-    for (int t = body.first_tet; t < body.first_tet + body.tet_count; ++t) {
-      const Tet& tet = whole.tets[t];
-      if (std::none_of(tet.begin(), tet.end(), [&](int v) { return share.owns(v); })) continue;
-      (share.owns(*std::min_element(tet.begin(), tet.end())) ? share.tet : halo).push_back(t);
+  for (const std::vector<Tet>& of_body : tets)
+    for (const Tet& tet : of_body)
       std::copy_if(tet.begin(), tet.end(), std::back_inserter(ghosts), [&](int v) { return !share.owns(v); });
-    }
-    tets.counted = static_cast<int>(share.tet.size()) - tets.first_tet;
-    tets.halo = static_cast<int>(halo.size());
-    share.tet.insert(share.tet.end(), halo.begin(), halo.end());
-  }
   std::sort(ghosts.begin(), ghosts.end());
   ghosts.erase(std::unique(ghosts.begin(), ghosts.end()), ghosts.end());
   share.vertex.resize(share.own());
   std::iota(share.vertex.begin(), share.vertex.end(), share.first());
   share.vertex.insert(share.vertex.end(), ghosts.begin(), ghosts.end());
-  return share;
-}
 
-TetMesh local_mesh(const TetMesh& whole, const MeshShare& share) {
-  TetMesh mesh;
-  for (const int v : share.vertex) mesh.rest.push_back(whole.rest[v]);
-  for (const int t : share.tet) {
-    Tet tet = whole.tets[t];
-    for (int& v : tet) v = share.local(v);
-    mesh.tets.push_back(tet);
+  std::vector<Tet> local;
+  for (size_t b = 0; b < tets.size(); ++b) {
+    MeshShare::Body& body = share.bodies.emplace_back();
+    body.first_tet = static_cast<int>(local.size());
+    for (const bool is_counted : {true, false}) {
+      int& count = is_counted ? body.counted : body.halo;
+      for (size_t t = 0; t < tets[b].size(); ++t) {
+        Tet tet = tets[b][t];
+        if (share.owns(*std::min_element(tet.begin(), tet.end())) != is_counted) continue;
+        for (int& v : tet) v = share.local(v);
+        local.push_back(tet);
+        share.user_tet.push_back(numbers[b][t]);
+        ++count;
+      }
+    }
   }
-  return mesh;
-}
-
-std::vector<double> local_part(std::span<const double> whole, const MeshShare& share) {
-  std::vector<double> part;
-  part.reserve(3 * share.vertex.size());
-  for (const int v : share.vertex)
-    for (int r = 0; r < 3; ++r) part.push_back(whole[3 * static_cast<size_t>(v) + r]);
-  return part;
+  return local;
 }
 
 }  // namespace aspic::distributed

@@ -2,43 +2,21 @@
 
 #include <mpi.h>
 
-#include "dynamics/stiffness_parts.h"
+#include "distributed/rank_parts.h"
+#include "distributed/traffic.h"
 
 // MPI aborts the program after an error by default, so return values need no check.
 namespace aspic::distributed {
-namespace {
-
-struct Pieces {
-  std::vector<int> count, start;  // of each rank
-};
-
-Pieces pieces(const MeshShare& share, int components) {
-  Pieces all;
-  for (int r = 0; r < share.ranks(); ++r) {
-    all.count.push_back(components * (share.cut[r + 1] - share.cut[r]));
-    all.start.push_back(components * share.cut[r]);
-  }
-  return all;
-}
-
-}  // namespace
-
 std::vector<double> MpiRanks::gather(std::span<const double> own) const {
   const int count = static_cast<int>(own.size());
   std::vector<double> all(own.size() * share_.ranks());
   MPI_Allgather(own.data(), count, MPI_DOUBLE, all.data(), count, MPI_DOUBLE, MPI_COMM_WORLD);
+  ++own_traffic().reductions;
   return all;
 }
 
-std::vector<int> MpiRanks::parts(std::span<const double> modulus) const {
-  const Pieces all = pieces(share_, 1);
-  std::vector<double> whole(whole_.rest.size());
-  MPI_Allgatherv(modulus.data(), share_.own(), MPI_DOUBLE, whole.data(), all.count.data(), all.start.data(), MPI_DOUBLE,
-                 MPI_COMM_WORLD);
-  const std::vector<int> part = parts_of(whole_, whole);
-  std::vector<int> local;
-  for (const int v : share_.vertex) local.push_back(part[v]);
-  return local;
+std::vector<int> MpiRanks::parts(const TetMesh& mesh, std::span<const double> modulus) const {
+  return parts_of_ranks(mesh, share_, halo_, modulus);
 }
 
 int rank_of_this_process() {
@@ -57,14 +35,6 @@ int largest_of_ranks(int own) {
   int largest = own;
   MPI_Allreduce(&own, &largest, 1, MPI_INT, MPI_MAX, MPI_COMM_WORLD);
   return largest;
-}
-
-std::vector<double> gather_vertices(const MeshShare& share, std::span<const double> local, int components) {
-  const Pieces all = pieces(share, components);
-  std::vector<double> whole(share.rank == 0 ? components * static_cast<size_t>(share.cut.back()) : 0);
-  MPI_Gatherv(local.data(), components * share.own(), MPI_DOUBLE, whole.data(), all.count.data(), all.start.data(),
-              MPI_DOUBLE, 0, MPI_COMM_WORLD);
-  return whole;
 }
 
 void broadcast(std::span<double> values) {

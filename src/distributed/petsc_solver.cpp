@@ -13,6 +13,7 @@
 #include "distributed/mpi_ranks.h"
 #include "distributed/petsc_matrix.h"
 #include "distributed/rank_cg.h"
+#include "distributed/traffic.h"
 
 namespace aspic::distributed {
 namespace {
@@ -50,6 +51,11 @@ void set_options() {
   int ranks = 1;
   MPI_Comm_size(PETSC_COMM_WORLD, &ranks);
   if (ranks > 1) check(PetscOptionsSetValue(nullptr, "-matptap_via", "hypre"));
+}
+
+// PETSc counts what its own functions send.
+Traffic traffic_of_petsc() {
+  return {petsc_send_ct + petsc_isend_ct, petsc_send_len + petsc_isend_len, petsc_allreduce_ct + petsc_gather_ct};
 }
 
 }  // namespace
@@ -136,7 +142,9 @@ SolveReport PetscSolver::solve(std::span<const double> b, std::span<double> x, d
   const size_t own = 3 * static_cast<size_t>(mesh_.own());
   copy_to(b.first(own), petsc_->b);
   check(KSPSetTolerances(petsc_->ksp, tolerance, 0, PETSC_DEFAULT, kMaxIterations));
+  const Traffic before = traffic_of_petsc();
   check(KSPSolve(petsc_->ksp, petsc_->b, petsc_->x));
+  linear_traffic() += traffic_of_petsc() - before;
   copy_from(petsc_->x, x.first(own));
   halo_.update(x);
 
@@ -156,6 +164,7 @@ SolveReport PetscSolver::solve(std::span<const double> b, std::span<double> x, d
   report.indefinite = result[1] > 0;
   report.relative_residual = result[2];
   report.iterations = report.products = report.cycles = iterations;
+  linear_traffic().iterations += iterations;
   petsc_->note_rate(report);
   return report;
 }

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "distributed/traffic.h"
 #include "math/vectors.h"
 
 namespace aspic::distributed {
@@ -44,7 +45,7 @@ bool RankCg::advance(std::span<double> x, double rz, SolveReport& report) {
 }
 
 SolveReport RankCg::solve(std::span<const double> b, std::span<double> x, double tolerance) {
-  constexpr int kMaxIterations = 10'000;
+  const Traffic before = own_traffic();
   SolveReport report;
   std::fill(x.begin(), x.end(), 0.0);
   std::copy_n(b.begin(), own_, r_.begin());
@@ -54,7 +55,7 @@ SolveReport RankCg::solve(std::span<const double> b, std::span<double> x, double
   precondition();
   p_ = z_;
   double rz = dot(r_, z_);
-  while (residual > tolerance * b_norm && report.iterations < kMaxIterations && advance(x, rz, report)) {
+  while (residual > tolerance * b_norm && report.iterations < max_iterations_ && advance(x, rz, report)) {
     residual = std::sqrt(dot(r_, r_));
     precondition();
     const double next = dot(r_, z_), beta = next / rz;
@@ -62,6 +63,8 @@ SolveReport RankCg::solve(std::span<const double> b, std::span<double> x, double
     for (int i = 0; i < own_; ++i) p_[i] = z_[i] + beta * p_[i];
   }
   halo_.update(x);
+  linear_traffic() += own_traffic() - before;
+  linear_traffic().iterations += report.iterations;
   report.relative_residual = b_norm > 0 ? residual / b_norm : 0;
   report.ok = !report.indefinite && report.relative_residual <= tolerance;
   return report;

@@ -13,7 +13,8 @@ namespace aspic::distributed {
 class RankCg : public LinearSolver {
  public:
   // Both must outlive this.
-  RankCg(const Share& share, Halo& halo) : share_(share), halo_(halo) {}
+  RankCg(const Share& share, Halo& halo, int max_iterations = 10'000)
+      : share_(share), halo_(halo), max_iterations_(max_iterations) {}
 
   std::string_view name() const override { return "block_jacobi"; }
   std::string description() const override { return "conjugate gradients with block_jacobi"; }
@@ -31,6 +32,7 @@ class RankCg : public LinearSolver {
 
   const Share& share_;
   Halo& halo_;
+  int max_iterations_;
   BlockJacobi jacobi_{BlockJacobi::Blocks::modified};
   const BlockSparse* H_ = nullptr;
   int own_ = 0;

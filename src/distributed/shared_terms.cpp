@@ -2,6 +2,9 @@
 
 #include <utility>
 
+#include "base/check.h"
+#include "math/vectors.h"
+
 namespace aspic::distributed {
 namespace {
 
@@ -77,25 +80,32 @@ class SharedElasticity : public TetElasticity {
 
 class SharedLoad : public Energy {
  public:
-  SharedLoad(std::unique_ptr<Energy> own, const Share& share) : own_(std::move(own)), share_(share) {}
+  SharedLoad(std::unique_ptr<Energy> local, int own_entries, const Share& share)
+      : local_(std::move(local)), own_(own_entries), share_(share) {}
 
-  std::string_view name() const override { return own_->name(); }
-  bool has_constant_gradient() const override { return own_->has_constant_gradient(); }
-  void add_couplings(Couplings& couplings) const override { own_->add_couplings(couplings); }
-  void bind(const BlockPattern& pattern) override { own_->bind(pattern); }
-  std::unique_ptr<Context> make_context() const override { return own_->make_context(); }
-  void begin_step(const StepContext& step, Context& context) const override { own_->begin_step(step, context); }
-  double value(Positions x, const Context& context) const override { return share_.sum(own_->value(x, context)); }
+  std::string_view name() const override { return local_->name(); }
+  bool has_constant_gradient() const override { return true; }
+  std::unique_ptr<Context> make_context() const override { return local_->make_context(); }
+  void begin_step(const StepContext& step, Context& context) const override { local_->begin_step(step, context); }
+  double value(Positions x, const Context& context) const override {
+    const std::vector<double> g = gradient(x, context);
+    return share_.sum(dot(std::span(g).first(own_), x.first(own_)));
+  }
   void add_gradient(Positions x, const Context& context, double scale, std::span<double> g) const override {
-    own_->add_gradient(x, context, scale, g);
+    const std::vector<double> unscaled = gradient(x, context);
+    for (int i = 0; i < own_; ++i) g[i] += scale * unscaled[i];
   }
-  int add_hessian(Positions x, const Context& context, double scale, const Projection& projection,
-                  BlockSparse& H) const override {
-    return static_cast<int>(share_.sum(own_->add_hessian(x, context, scale, projection, H)));
-  }
+  int add_hessian(Positions, const Context&, double, const Projection&, BlockSparse&) const override { return 0; }
 
  private:
-  std::unique_ptr<Energy> own_;
+  std::vector<double> gradient(Positions x, const Context& context) const {
+    std::vector<double> g(x.size(), 0.0);
+    local_->add_gradient(x, context, 1, g);
+    return g;
+  }
+
+  std::unique_ptr<Energy> local_;
+  int own_;
   Share share_;
 };
 
@@ -105,8 +115,9 @@ std::unique_ptr<TetElasticity> make_shared_elasticity(ElasticityOfRank parts, co
   return std::make_unique<SharedElasticity>(std::move(parts), share);
 }
 
-std::unique_ptr<Energy> make_shared_load(std::unique_ptr<Energy> own, const Share& share) {
-  return std::make_unique<SharedLoad>(std::move(own), share);
+std::unique_ptr<Energy> make_shared_load(std::unique_ptr<Energy> local, int own_entries, const Share& share) {
+  ASPIC_CHECK(local->has_constant_gradient());
+  return std::make_unique<SharedLoad>(std::move(local), own_entries, share);
 }
 
 }  // namespace aspic::distributed

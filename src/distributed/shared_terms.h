@@ -13,7 +13,8 @@ struct ElasticityOfRank {
 };
 std::unique_ptr<TetElasticity> make_shared_elasticity(ElasticityOfRank parts, const Share& share);
 
-// `own`: a load without energy and forces at the ghosts.
-std::unique_ptr<Energy> make_shared_load(std::unique_ptr<Energy> own, const Share& share);
+// `local`: a load whose gradient does not depend on x, as on one rank, so that it is wrong at ghosts. `own_entries`: 3
+// times the number of own vertices.
+std::unique_ptr<Energy> make_shared_load(std::unique_ptr<Energy> local, int own_entries, const Share& share);
 
 }  // namespace aspic::distributed

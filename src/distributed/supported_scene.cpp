@@ -1,7 +1,6 @@
 #include "distributed/supported_scene.h"
 
 #include <algorithm>
-#include <cctype>
 #include <string>
 
 namespace aspic::distributed {
@@ -33,26 +32,20 @@ void require_number(const Value& table, const char* key, double supported) {
                       "use " + number_text(supported) + ", or aspic run");
 }
 
-// Whether a formula uses the variable t.
-bool uses_time(const Value& value) {
-  if (value.is_array()) return std::any_of(value.array().begin(), value.array().end(), uses_time);
-  if (!value.is_text()) return false;
-  const std::string& text = value.text();
-  const auto is_name = [](char c) { return std::isalnum(static_cast<unsigned char>(c)) || c == '_' || c == '.'; };
-  for (size_t i = 0; i < text.size(); ++i)
-    if (text[i] == 't' && (i == 0 || !is_name(text[i - 1])) && (i + 1 == text.size() || !is_name(text[i + 1])))
-      return true;
-  return false;
+// A painted selection needs the whole surface of a body.
+void refuse_painted(const Value& body, const char* actions) {
+  const Value* list = body.find(actions);
+  if (!list) return;
+  for (const Value& action : list->array())
+    if (const Value& where = action["where"]; where.is_table() && where.find("file"))
+      throw not_supported(where.place, "a painted selection", "use a formula, box, sphere or vertices, or aspic run");
 }
 
-void require_constant_loads(const Value& body, const char* loads, std::initializer_list<const char*> keys) {
-  const Value* list = body.find(loads);
-  if (!list) return;
-  for (const Value& load : list->array())
-    for (const char* key : keys)
-      if (const Value* value = load.find(key); value && uses_time(*value))
-        throw not_supported(value->place, "a " + std::string(loads) + " that depends on t",
-                            "make it constant, or use aspic run");
+// The files of surfaces that aspic run writes by default are left out.
+void refuse_surfaces(const Value& output) {
+  for (const char* key : {"obj", "ply"})
+    if (output[key].boolean())
+      throw not_supported(output[key].place, std::string(key) + " = true", "it writes VTU pieces; remove the key");
 }
 
 void require_supported_body(const Value& body) {
@@ -63,9 +56,7 @@ void require_supported_body(const Value& body) {
   require_number(body, "order", 1);
   if (const Value& elastic = body["elastic"]; !elastic.boolean())
     throw not_supported(elastic.place, "elastic = false", "use aspic run");
-  refuse_keys(body["material"].table(), {"file"});
-  require_constant_loads(body, "traction", {"value", "dead_pressure"});
-  require_constant_loads(body, "force", {"value"});
+  for (const char* actions : {"pin", "traction", "force"}) refuse_painted(body, actions);
 }
 
 }  // namespace
@@ -82,6 +73,7 @@ void require_supported(const Table& document) {
   require_number(solver, "time_budget", 0);
   require_text(solver, "linear", {"auto", "multigrid", "block_jacobi"});
   require_text(solver, "definiteness", {"auto", "on_demand", "clamped", "absolute", "exact"});
+  refuse_surfaces(*document.find("output"));
   for (const Value& body : document.find("body")->array()) require_supported_body(body);
 }
 

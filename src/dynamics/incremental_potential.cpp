@@ -430,7 +430,7 @@ void IncrementalPotential::measure(const TetMesh& mesh) {
 void IncrementalPotential::measure_parts(const TetMesh& mesh, std::span<const double> modulus,
                                          std::span<double> growth) {
   const Share& share = model_.share;
-  part_of_ = share.is_whole() ? parts_of(mesh, modulus) : share.ranks().parts(modulus.first(own_));
+  part_of_ = share.is_whole() ? parts_of(mesh, modulus) : share.ranks().parts(mesh, modulus.first(own_));
   const int count = static_cast<int>(share.max(*std::max_element(part_of_.begin(), part_of_.end()))) + 1;
   if (count <= 1) return part_of_.clear();
   parts_.resize(count);

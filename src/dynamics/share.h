@@ -6,15 +6,17 @@
 
 namespace aspic {
 
+struct TetMesh;
+
 // Communication of these processes. All of them must call the same functions in the same order.
 class Ranks {
  public:
   virtual ~Ranks() = default;
   // Returns the values of all processes, one process after the other. All processes must pass equally many.
   virtual std::vector<double> gather(std::span<const double> own) const = 0;
-  // Returns parts_of() for the vertices of this process, computed from the whole mesh. `modulus`: of its own vertices
-  // [Pa].
-  virtual std::vector<int> parts(std::span<const double> modulus) const = 0;
+  // Returns parts_of() for the vertices of this process, computed from the whole mesh. `mesh`: that of this process.
+  // `modulus`: of its own vertices [Pa].
+  virtual std::vector<int> parts(const TetMesh& mesh, std::span<const double> modulus) const = 0;
 };
 
 // Each vertex of the whole model belongs to one process. Those of this process come first in its model. Copies of

@@ -17,7 +17,7 @@ class MultipleRanks : public Ranks {
       for (const double v : own) all.push_back(factor * v);
     return all;
   }
-  std::vector<int> parts(std::span<const double>) const override { return {}; }
+  std::vector<int> parts(const TetMesh&, std::span<const double>) const override { return {}; }
 
  private:
   std::vector<double> factors_;

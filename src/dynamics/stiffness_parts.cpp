@@ -15,18 +15,6 @@ namespace {
 // are smaller by less to 1e-2, because forces grow with areas.
 constexpr double kSoft = 100;
 
-// Returns the longest edge of the linear tets at each vertex [m]. Unlike the volume, it does not underestimate slivers.
-std::vector<double> longest_edge(const TetMesh& mesh) {
-  std::vector<double> longest(mesh.vertex_count(), 0.0);
-  for (const Tet& tet : mesh.tets) {
-    double square = 0;
-    for (int a = 0; a < 4; ++a)
-      for (int b = 0; b < a; ++b) square = std::max(square, squared_norm(mesh.rest[tet[a]] - mesh.rest[tet[b]]));
-    for (const int v : tet) longest[v] = std::max(longest[v], std::sqrt(square));
-  }
-  return longest;
-}
-
 // Gives all nodes of a quadratic tet the stiffness of its stiffest: changes of volume are felt by the mid-edge nodes
 // alone.
 void share_in_quadratic_tets(const TetMesh& mesh, std::vector<double>& stiffness) {
@@ -40,6 +28,23 @@ void share_in_quadratic_tets(const TetMesh& mesh, std::vector<double>& stiffness
 }
 
 }  // namespace
+
+std::vector<double> longest_edge(const TetMesh& mesh) {
+  std::vector<double> longest(mesh.vertex_count(), 0.0);
+  for (const Tet& tet : mesh.tets) {
+    double square = 0;
+    for (int a = 0; a < 4; ++a)
+      for (int b = 0; b < a; ++b) square = std::max(square, squared_norm(mesh.rest[tet[a]] - mesh.rest[tet[b]]));
+    for (const int v : tet) longest[v] = std::max(longest[v], std::sqrt(square));
+  }
+  return longest;
+}
+
+int softness_level(double stiffest, double stiffness) {
+  constexpr int kSoftest = 20;
+  const double softer = std::log(stiffest / stiffness) / std::log(kSoft);
+  return softer > 0 ? static_cast<int>(std::min<double>(softer, kSoftest)) : 0;
+}
 
 std::vector<int> parts_of(const TetMesh& mesh, std::span<const double> modulus) {
   std::vector<double> stiffness = longest_edge(linear_parts(mesh).mesh);
@@ -56,9 +61,7 @@ std::vector<int> parts_of(const TetMesh& mesh, std::span<const double> modulus) 
   std::map<std::pair<int, int>, int> number;
   std::vector<int> part(mesh.vertex_count());
   for (int v = 0; v < mesh.vertex_count(); ++v) {
-    constexpr int kSoftest = 20;
-    const double softer = std::log(stiffest[component[v]] / stiffness[v]) / std::log(kSoft);
-    const int level = softer > 0 ? static_cast<int>(std::min<double>(softer, kSoftest)) : 0;
+    const int level = softness_level(stiffest[component[v]], stiffness[v]);
     part[v] = number.try_emplace({component[v], level}, static_cast<int>(number.size())).first->second;
   }
   return part;

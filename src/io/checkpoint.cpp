@@ -3,10 +3,14 @@
 #include <zlib.h>
 
 #include <cstring>
+#include <fstream>
+#include <utility>
 
+#include "base/check.h"
 #include "base/error.h"
 #include "base/hash.h"
 #include "io/atomic_file.h"
+#include "io/input_file.h"
 #include "io/number_text.h"
 
 namespace aspic {
@@ -31,24 +35,15 @@ void append_name(std::string& bytes, const std::string& name) {
 }
 
 std::string encoded(const Checkpoint& checkpoint) {
-  std::string body;
-  append_name(body, checkpoint.fingerprint);
-  append_bytes(body, uint64_t{checkpoint.integers.size()});
-  for (const auto& [name, value] : checkpoint.integers) {
-    append_name(body, name);
-    append_bytes(body, value);
+  std::vector<std::pair<std::string, uint64_t>> counts;
+  for (const auto& [name, values] : checkpoint.arrays) counts.emplace_back(name, values.size());
+  const CheckpointLayout layout = checkpoint_layout({checkpoint.fingerprint, {}, checkpoint.integers}, counts);
+  std::string bytes;
+  for (size_t k = 0; k < layout.arrays.size(); ++k) {
+    const std::vector<double>& values = checkpoint.arrays[k].second;
+    bytes += layout.arrays[k].before;
+    bytes.append(reinterpret_cast<const char*>(values.data()), values.size() * sizeof(double));
   }
-  append_bytes(body, uint64_t{checkpoint.arrays.size()});
-  for (const auto& [name, values] : checkpoint.arrays) {
-    append_name(body, name);
-    append_bytes(body, uint64_t{values.size()});
-    body.append(reinterpret_cast<const char*>(values.data()), values.size() * sizeof(double));
-  }
-  std::string bytes(kCheckpointMagic);
-  append_bytes(bytes, kWordOrderMark);
-  append_bytes(bytes, kVersion);
-  append_bytes(bytes, uint64_t{kCheckpointHeadSize + body.size() + kChecksumSize});
-  bytes += body;
   append_bytes(bytes, checksum(bytes));
   return bytes;
 }
@@ -136,7 +131,113 @@ void keep_as(const fs::path& path, const fs::path& kept) {
   fs::remove(fresh, error);  // rename keeps both names if they refer to one file
 }
 
+// Reads the parts of a file that are not the numbers of arrays.
+class LayoutReader {
+ public:
+  explicit LayoutReader(const fs::path& path) : path_(path), file_(open_input(path)) {}
+
+  CheckpointLayout read() {
+    std::error_code error;
+    const uint64_t size = fs::file_size(path_, error);
+    if (error) fail("cannot be read");
+    CheckpointLayout layout;
+    if (take(kCheckpointMagic.size()) != kCheckpointMagic) fail("is not a checkpoint");
+    if (number<uint32_t>() != kWordOrderMark) fail("was written on a machine of another byte order, or is damaged");
+    if (number<uint32_t>() != kVersion) fail("is a checkpoint of another version");
+    layout.size = number<uint64_t>();
+    if (layout.size != size) fail("is cut short or damaged");
+    layout.head.fingerprint = name();
+    for (uint64_t n = number<uint64_t>(); n > 0; --n) {
+      std::string key = name();
+      layout.head.integers.emplace_back(std::move(key), number<int64_t>());
+    }
+    for (uint64_t n = number<uint64_t>(); n > 0; --n) {
+      CheckpointLayout::Array array;
+      array.name = name();
+      array.count = number<uint64_t>();
+      array.position = position_;
+      if (array.count > size / sizeof(double)) fail("is cut short or damaged");
+      skip(array.count * sizeof(double));
+      layout.arrays.push_back(std::move(array));
+    }
+    if (position_ + kChecksumSize != size) fail("is damaged: it does not end where it should");
+    return layout;
+  }
+
+ private:
+  [[noreturn]] void fail(const std::string& what) const { throw InvalidInput(path_.string() + ": " + what); }
+
+  std::string take(uint64_t count) {
+    constexpr uint64_t kLongest = 1 << 20;
+    if (count > kLongest) fail("is damaged");
+    std::string bytes(count, '\0');
+    if (!file_.read(bytes.data(), static_cast<std::streamsize>(count))) fail("is cut short or damaged");
+    position_ += count;
+    return bytes;
+  }
+  void skip(uint64_t count) {
+    position_ += count;
+    file_.seekg(static_cast<std::streamoff>(position_));
+  }
+  template <class T>
+  T number() {
+    T value;
+    std::memcpy(&value, take(sizeof(T)).data(), sizeof(T));
+    return value;
+  }
+  std::string name() { return take(number<uint64_t>()); }
+
+  const fs::path& path_;
+  std::ifstream file_;
+  uint64_t position_ = 0;
+};
+
 }  // namespace
+
+const CheckpointLayout::Array& CheckpointLayout::array(std::string_view name) const {
+  for (const Array& candidate : arrays)
+    if (candidate.name == name) return candidate;
+  throw InvalidInput("the checkpoint has no array '" + std::string(name) + "'");
+}
+
+CheckpointLayout checkpoint_layout(Checkpoint head, const std::vector<std::pair<std::string, uint64_t>>& counts) {
+  std::string bytes(kCheckpointMagic);
+  append_bytes(bytes, kWordOrderMark);
+  append_bytes(bytes, kVersion);
+  const size_t place_of_size = bytes.size();
+  append_bytes(bytes, uint64_t{0});
+  append_name(bytes, head.fingerprint);
+  append_bytes(bytes, uint64_t{head.integers.size()});
+  for (const auto& [name, value] : head.integers) {
+    append_name(bytes, name);
+    append_bytes(bytes, value);
+  }
+  append_bytes(bytes, uint64_t{counts.size()});
+  CheckpointLayout layout;
+  layout.head = std::move(head);
+  for (const auto& [name, count] : counts) {
+    append_name(bytes, name);
+    append_bytes(bytes, count);
+    const uint64_t position = layout.size + bytes.size();
+    layout.arrays.push_back({name, count, position, std::move(bytes)});
+    layout.size = position + count * sizeof(double);
+    bytes.clear();
+  }
+  ASPIC_CHECK(!layout.arrays.empty());
+  layout.size += kChecksumSize;
+  std::memcpy(layout.arrays[0].before.data() + place_of_size, &layout.size, sizeof(layout.size));
+  return layout;
+}
+
+CheckpointLayout read_checkpoint_layout(const fs::path& path) { return LayoutReader(path).read(); }
+
+uint32_t checkpoint_checksum(const void* bytes, size_t count) {
+  return checksum({static_cast<const char*>(bytes), count});
+}
+
+uint32_t joined_checksum(uint32_t first, uint32_t second, uint64_t bytes_of_second) {
+  return static_cast<uint32_t>(crc32_combine(first, second, static_cast<z_off_t>(bytes_of_second)));
+}
 
 const std::vector<double>* Checkpoint::find(std::string_view name) const {
   for (const auto& [key, values] : arrays)
@@ -161,9 +262,13 @@ fs::path previous_checkpoint(const fs::path& path) {
 }
 
 void write_checkpoint(const fs::path& path, const Checkpoint& checkpoint) {
+  keep_previous_checkpoint(path);
+  write_file(path, encoded(checkpoint));
+}
+
+void keep_previous_checkpoint(const fs::path& path) {
   std::error_code error;
   if (fs::exists(path, error)) keep_as(path, previous_checkpoint(path));
-  write_file(path, encoded(checkpoint));
 }
 
 Checkpoint read_checkpoint(const fs::path& path) {

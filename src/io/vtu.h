@@ -48,6 +48,10 @@ void write_vtu(const std::string& path, std::span<const double> points, const st
 // Writes a surface in the same way; cell fields have one entry per triangle.
 void write_surface_vtu(const std::string& path, const TriMesh& surface, const VtuFields& fields = {});
 
+// Writes the index of a grid in pieces (.pvtu): `pieces` are file names relative to it, with the given fields; values
+// of `fields` are ignored, except those of the file fields. Throws InvalidInput if the file cannot be written.
+void write_pvtu(const std::string& path, const std::vector<std::string>& pieces, const VtuFields& fields);
+
 // Writes the index of a time series: (time [s], file name relative to the index). `others`: empty, or a second file
 // name for each frame. Throws InvalidInput if the file cannot be written.
 void write_pvd(const std::string& path, const std::vector<std::pair<double, std::string>>& frames,

@@ -143,7 +143,43 @@ void write(const std::string& path, std::span<const double> points, const Cells&
   write_file(path, text);
 }
 
+const char* type_name(FieldType type) {
+  switch (type) {
+    case FieldType::float64:
+      return "Float64";
+    case FieldType::float32:
+      return "Float32";
+    case FieldType::int32:
+      return "Int32";
+  }
+  return "";
+}
+
+void declare_fields(const char* section, const std::vector<Field>& fields, std::string& text) {
+  text += std::string("<") + section + ">\n";
+  for (const Field& field : fields) {
+    text += std::string("<PDataArray type=\"") + type_name(field.type) + "\" Name=\"" + xml_escaped(field.name) + "\"";
+    if (field.components != 1) text += " NumberOfComponents=\"" + std::to_string(field.components) + "\"";
+    text += "/>\n";
+  }
+  text += std::string("</") + section + ">\n";
+}
+
 }  // namespace
+
+void write_pvtu(const std::string& path, const std::vector<std::string>& pieces, const VtuFields& fields) {
+  std::string text =
+      "<?xml version=\"1.0\"?>\n"
+      "<VTKFile type=\"PUnstructuredGrid\" version=\"1.0\" byte_order=\"LittleEndian\" header_type=\"UInt32\" "
+      "compressor=\"vtkZLibDataCompressor\">\n<PUnstructuredGrid GhostLevel=\"0\">\n";
+  append_file_fields(fields.file_fields, text);
+  text += "<PPoints>\n<PDataArray type=\"Float64\" Name=\"Points\" NumberOfComponents=\"3\"/>\n</PPoints>\n";
+  declare_fields("PPointData", fields.point_fields, text);
+  declare_fields("PCellData", fields.cell_fields, text);
+  for (const std::string& piece : pieces) text += "<Piece Source=\"" + xml_escaped(piece) + "\"/>\n";
+  text += "</PUnstructuredGrid>\n</VTKFile>\n";
+  write_file(path, text);
+}
 
 void write_vtu(const std::string& path, std::span<const double> points, const std::vector<Tet>& tets,
                const VtuFields& fields, const std::vector<MidNodes>& mids) {

@@ -96,10 +96,14 @@ double predict_iterations(const BlockSparse& H) {
 }
 
 double predict_iterations(const BlockSparse& H, std::vector<char>& held) {
+  return predict_iterations(uniform_stiffness(H, H.pattern->rows(), held));
+}
+
+UniformStiffness uniform_stiffness(const BlockSparse& H, int rows, std::vector<char>& held) {
   const BlockPattern& p = *H.pattern;
   find_held_rows(H, held);
-  double uniform = 0, diagonal = 0;  // 1' H 1 and 1' D 1 over the rows away from pinned vertices
-  for (int row = 0; row < p.rows(); ++row) {
+  double uniform = 0, diagonal = 0;
+  for (int row = 0; row < rows; ++row) {
     double sum = 0;
     bool beside_pin = held[row];
     const auto add = [&](int64_t slot, int neighbor) {
@@ -113,6 +117,11 @@ double predict_iterations(const BlockSparse& H, std::vector<char>& held) {
     uniform += sum + own;
     diagonal += own;
   }
+  return {uniform, diagonal};
+}
+
+double predict_iterations(const UniformStiffness& stiffness) {
+  const auto [uniform, diagonal] = stiffness;
   const double round_off = kRoundOff * diagonal;
   if (!(diagonal > 0) || uniform < -round_off) return 1;  // an indefinite matrix is detected after few iterations
   return uniform > round_off ? kIterations * std::sqrt(diagonal / uniform) : std::numeric_limits<double>::infinity();

@@ -19,6 +19,12 @@ CostPrediction predict_cholesky(const BlockPattern& pattern);
 // because the mass dominates; stiff bodies and statics are hard.
 double predict_iterations(const BlockSparse& H);
 double predict_iterations(const BlockSparse& H, std::vector<char>& scratch);
+// The sums behind the prediction, over the first `rows` rows, for matrices of which processes have a part each.
+struct UniformStiffness {
+  double uniform = 0, diagonal = 0;  // 1' H 1 and 1' D 1 over the rows away from pinned vertices
+};
+UniformStiffness uniform_stiffness(const BlockSparse& H, int rows, std::vector<char>& scratch);
+double predict_iterations(const UniformStiffness& stiffness);
 
 // Predicts the cheapest solver for each sequence of matrices from its first one: a factorization, or conjugate
 // gradients with multigrid or block-Jacobi. If the chosen solver does not converge, the next one in the order

@@ -97,6 +97,10 @@ std::vector<int> order_by(const Code& code, std::span<const Vec3d> points) {
 std::vector<int> morton_order(std::span<const Vec3d> points) { return order_by(morton_code, points); }
 std::vector<int> hilbert_order(std::span<const Vec3d> points) { return order_by(hilbert_code, points); }
 
+uint64_t hilbert_index(const Vec3d& point, const Vec3d& lower, double size) {
+  return hilbert_code(cell_of(point, {lower, size}));
+}
+
 std::vector<Vec3d> centroids(const TetMesh& mesh) { return centroids(mesh, 0, mesh.tets.size()); }
 
 std::vector<Vec3d> centroids(const TetMesh& mesh, int first, size_t count) {

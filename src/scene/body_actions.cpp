@@ -140,10 +140,10 @@ void add_pins(Builder& builder, const PlacedBody& body) {
     for (const int v : vertices) {
       const Value* other = holders[v].pin;
       if (!holders[v].add(scene, pin.directions))
-        throw error_at(scene["where"].place, "vertex " + std::to_string(v) + " of body '" + body.name() + "' at " +
-                                                 point_text(body.mesh.rest[v]) + " is in pin '" +
-                                                 (*other)["name"].text() + "' and in pin '" + scene["name"].text() +
-                                                 "', which constrain the same direction; " +
+        throw error_at(scene["where"].place, "vertex " + std::to_string(body.user_vertex(v)) + " of body '" +
+                                                 body.name() + "' at " + point_text(body.mesh.rest[v]) +
+                                                 " is in pin '" + (*other)["name"].text() + "' and in pin '" +
+                                                 scene["name"].text() + "', which constrain the same direction; " +
                                                  leave_out(*other, scene, leaves_any));
       pin.vertices.push_back(body.model_vertex(v));
     }
@@ -374,7 +374,8 @@ void add_damping(PlacedBody& body, size_t index, MassKind kind, SceneFiles& file
 
 SelectionScope selection_scope(const PlacedBody& body, Value& where, const Vec3d& up) {
   const bool is_painted = where.is_table() && where.find("file");
-  return {body.mesh, up, body.name(), is_painted ? &body.painted->at_vertices(where.table(), body.mesh) : nullptr};
+  return {body.mesh, up, body.name(), is_painted ? &body.painted->at_vertices(where.table(), body.mesh) : nullptr,
+          body.whole};
 }
 
 void add_actions(const SceneActions& actions, Model& model) {

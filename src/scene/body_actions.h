@@ -20,9 +20,15 @@ struct PlacedBody {
   int first_vertex = 0, first_tet = 0;  // offsets in the model
   Numbering numbering = {};             // numbering of the body alone
   std::shared_ptr<PaintedFields> painted = {};
+  // If the model has a part of the body: the whole body, and the vertices of the model.
+  const WholeBody* whole = nullptr;
+  std::vector<int> part_vertices = {};
 
   std::string name() const { return scene["name"].text(); }
-  int model_vertex(int own) const { return first_vertex + numbering.vertex.from_user(own); }
+  int model_vertex(int own) const {
+    return whole ? part_vertices[own] : first_vertex + numbering.vertex.from_user(own);
+  }
+  int user_vertex(int own) const { return whole ? whole->number_of_vertex(own) : own; }  // for messages
 };
 
 // For a selection of an action. up: against gravity, of length 1.

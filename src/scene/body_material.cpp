@@ -54,14 +54,16 @@ class FromScene {
  private:
   std::vector<double> values(const std::string& name) {
     return tet_values(material_, scene_schema().key("material", name),
-                      {body_.mesh, files_, body_.name(), *body_.painted});
+                      {body_.mesh, files_, body_.name(), *body_.painted, body_.whole});
   }
 
   Lame checked(const Lame& lame, size_t tet) const {
     if (lame.lambda > -2.0 / 3 * lame.mu) return lame;
-    throw error_at(material_.find("lambda")->place, "lambda = " + number_text(lame.lambda) + " in tet " +
-                                                        std::to_string(tet) +
-                                                        "; must be > -2/3 mu = " + number_text(-2.0 / 3 * lame.mu));
+    throw error_at(
+        material_.find("lambda")->place,
+        "lambda = " + number_text(lame.lambda) + " in tet " +
+            std::to_string(body_.whole ? body_.whole->number_of_tet(static_cast<int>(tet)) : static_cast<int>(tet)) +
+            "; must be > -2/3 mu = " + number_text(-2.0 / 3 * lame.mu));
   }
 
   PlacedBody& body_;

@@ -61,17 +61,9 @@ void check_count(double tets, const Value& shape, const MeshLoader& loader) {
 }
 
 TetMesh box_mesh(const Value& box, const MeshLoader& loader) {
-  const Vec3d lower = box["lower"].vector(), upper = box["upper"].vector();
-  double count[3];
-  for (int i = 0; i < 3; ++i) {
-    const Value* size = box.find("size");
-    count[i] =
-        size ? std::max(1.0, std::round((upper[i] - lower[i]) / size->number())) : box["cells"].array()[i].number();
-  }
-  const bool five = box["cut"].text() == "five";
-  check_count((five ? 5 : 6) * count[0] * count[1] * count[2], box, loader);
-  const std::array<int, 3> cells = {int(count[0]), int(count[1]), int(count[2])};
-  return make_box(lower, upper, cells, five ? BoxCut::five : BoxCut::kuhn);
+  const BoxCells count = cells_of(box);
+  check_count(count.tets(), box, loader);
+  return make_box(box["lower"].vector(), box["upper"].vector(), count.integers(), count.cut);
 }
 
 // A tet of edge length s has the volume s^3 / (6 sqrt 2).
@@ -188,6 +180,20 @@ void check_size(const fs::path& path, const MeshLoader& loader) {
 }
 
 }  // namespace
+
+double BoxCells::tets() const { return (cut == BoxCut::five ? 5 : 6) * count[0] * count[1] * count[2]; }
+
+BoxCells cells_of(const Value& box) {
+  const Vec3d lower = box["lower"].vector(), upper = box["upper"].vector();
+  BoxCells cells;
+  for (int i = 0; i < 3; ++i) {
+    const Value* size = box.find("size");
+    cells.count[i] =
+        size ? std::max(1.0, std::round((upper[i] - lower[i]) / size->number())) : box["cells"].array()[i].number();
+  }
+  cells.cut = box["cut"].text() == "five" ? BoxCut::five : BoxCut::kuhn;
+  return cells;
+}
 
 TetMesh shape_mesh(const Value& shape, const MeshLoader& loader) {
   const auto number = [](const Value& table, const char* key) { return table[key].number(); };

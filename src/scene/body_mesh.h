@@ -1,11 +1,13 @@
 // The mesh of a body: read, generated, or made by filling a surface; checked and placed.
 #pragma once
+#include <array>
 #include <filesystem>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "mesh/embed.h"
+#include "mesh/generators.h"
 #include "mesh/tet_mesh.h"
 #include "scene/scene.h"
 #include "scene/scene_files.h"
@@ -37,6 +39,16 @@ struct MeshLoader {
 // Reads a mesh; fills a surface with tets of edge length `size` (0: default of the mesher). Defects throw InvalidInput;
 // warnings become notes.
 LoadedMesh load_mesh(const std::filesystem::path& path, double size, MeshLoader& loader);
+
+// Cells of the checked table shape.box.
+struct BoxCells {
+  std::array<double, 3> count;  // may exceed the range of int
+  BoxCut cut;
+
+  double tets() const;
+  std::array<int, 3> integers() const { return {int(count[0]), int(count[1]), int(count[2])}; }
+};
+BoxCells cells_of(const Value& box);
 
 TetMesh shape_mesh(const Value& shape, const MeshLoader& loader);  // generates one of the table's shapes
 

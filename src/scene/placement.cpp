@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "scene/selection.h"
 #include "scene/tables.h"
 
 namespace aspic {
@@ -44,11 +45,17 @@ Mat3d rotation_of(const Value& body) {
   return rotation((*rotate)["axis"].vector(), kRadians * (*rotate)["angle_deg"].number());
 }
 
-std::vector<Vec3d> twisted(const Value& twist, const std::vector<Vec3d>& X, const Vec3d& center) {
+std::vector<Vec3d> twisted(const Value& twist, const std::vector<Vec3d>& X, const Vec3d& center,
+                           const WholeBody* whole) {
   const Vec3d axis = twist["axis"].vector();
   const Vec3d a = (1 / norm(axis)) * axis;
   double low = INFINITY, high = -INFINITY;
-  for (const Vec3d& P : X) low = std::min(low, dot(a, P - center)), high = std::max(high, dot(a, P - center));
+  if (whole) {
+    const auto [lowest, highest] = whole->heights(a);
+    low = lowest - dot(a, center), high = highest - dot(a, center);
+  } else {
+    for (const Vec3d& P : X) low = std::min(low, dot(a, P - center)), high = std::max(high, dot(a, P - center));
+  }
   const double rate = high > low ? kRadians * twist["angle_deg"].number() / (high - low) : 0;
   std::vector<Vec3d> x;
   for (const Vec3d& P : X) {
@@ -99,13 +106,14 @@ AffineMap from_placed(const Value& body, Frame frame) {
   return {back, -1.0 * (back * place.b)};
 }
 
-std::vector<Vec3d> deformed(Value& body, const std::vector<Vec3d>& X, SceneFiles& files, const std::string& stem) {
+std::vector<Vec3d> deformed(Value& body, const std::vector<Vec3d>& X, SceneFiles& files, const std::string& stem,
+                            const WholeBody* whole) {
   Value* deform = body.table().find("deform");
   if (!deform) return X;
-  const Box box = bounding_box(X);
+  const Box box = whole ? whole->box() : bounding_box(X);
   const Vec3d center = 0.5 * (box.lower + box.upper);
   if (deform->find("file")) return displaced_by_file(*deform, X, files, stem);
-  if (const Value* twist = deform->find("twist")) return twisted(*twist, X, center);
+  if (const Value* twist = deform->find("twist")) return twisted(*twist, X, center, whole);
   std::vector<Vec3d> x;
   if (const Value* displacement = deform->find("displacement")) {
     const VectorField u(*displacement);

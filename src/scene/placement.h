@@ -13,6 +13,8 @@
 
 namespace aspic {
 
+class WholeBody;
+
 struct AffineMap {
   Mat3d A = identity3<double>();
   Vec3d b{};
@@ -27,8 +29,10 @@ AffineMap placement_of(const Value& body);  // scale, then rotate, then translat
 enum class Frame { mesh, scaled, placed };
 AffineMap from_placed(const Value& body, Frame frame);  // maps placed points to that frame
 
-// Returns the shape at time 0 of the placed rest shape X. Files are added to the results as `stem`.
-std::vector<Vec3d> deformed(Value& body, const std::vector<Vec3d>& X, SceneFiles& files, const std::string& stem);
+// Returns the shape at time 0 of the placed rest shape X. Files are added to the results as `stem`. `whole`: null if X
+// is the whole body.
+std::vector<Vec3d> deformed(Value& body, const std::vector<Vec3d>& X, SceneFiles& files, const std::string& stem,
+                            const WholeBody* whole = nullptr);
 
 // Returns velocity(X) + omega x (x - center of mass).
 std::vector<Vec3d> velocities(const Value& body, const std::vector<Vec3d>& X, const std::vector<Vec3d>& x,

@@ -20,6 +20,7 @@
 #include "scene/run_directory_layout.h"
 #include "scene/run_directory_skins.h"
 #include "scene/run_directory_tables.h"
+#include "scene/run_folder.h"
 #include "scene/run_lock.h"
 
 namespace aspic {
@@ -27,32 +28,6 @@ namespace {
 
 namespace fs = std::filesystem;
 using Clock = std::chrono::steady_clock;
-
-void create_folder(const fs::path& folder) {
-  std::error_code error;
-  fs::create_directories(folder, error);
-  if (error)
-    throw InvalidInput(folder.string() + ": cannot be created: " + error.message() +
-                       "; choose a writable directory with --out");
-}
-
-// Removes an earlier run, or throws.
-void make_room(const RunLayout& layout, const Scene& scene, ExistingRun existing) {
-  const std::string name = layout.root().string();
-  std::error_code error;
-  if (!fs::is_directory(layout.root(), error)) throw InvalidInput(name + ": is a file; results need a directory");
-  if (layout.is_barely_begun()) return layout.remove_unfinished();
-  if (!layout.holds_run()) {
-    throw InvalidInput(name + ": is not empty and contains no run; choose another directory, or empty this one");
-  }
-  if (existing == ExistingRun::refuse) {
-    throw InvalidInput(name + ": already contains a run; --force replaces it, --resume continues it");
-  }
-  layout.refuse_links();
-  std::vector<fs::path> needed;  // inputs of the new run may lie in the old one
-  for (const auto& [_, source] : scene.input_files) needed.push_back(source);
-  layout.remove_run(needed);
-}
 
 State to_user(const Renumbering& vertex, const State& stored) {
   return {vertex.to_user(stored.q, 3), vertex.to_user(stored.qdot, 3), stored.time};
@@ -153,30 +128,6 @@ Simulation::Snapshot to_snapshot(const Checkpoint& checkpoint, const Model& mode
   return snapshot;
 }
 
-// ":12: 'young = 2e5' here, 'young = 1e5' in the run"
-std::string first_difference(const std::string& here, const std::string& in_run) {
-  std::istringstream ours(here), theirs(in_run);
-  for (int line = 1;; ++line) {
-    std::string a, b;
-    const bool has_a = !!std::getline(ours, a), has_b = !!std::getline(theirs, b);
-    if (!has_a && !has_b) return ": it was changed after the run began";
-    if (a != b || has_a != has_b)
-      return std::string(":")
-                 .append(std::to_string(line))
-                 .append(": ")
-                 .append(shown(a))
-                 .append(" now, ")
-                 .append(shown(b)) +
-             " in the run";
-  }
-}
-
-void check_same_scene(const RunLayout& layout, const Scene& scene, const Checkpoint& checkpoint) {
-  if (checkpoint.fingerprint == fingerprint(scene.resolved)) return;
-  throw InvalidInput(layout.root().string() + ": was computed with another scene; continue with the run's own scene (" +
-                     layout.scene().string() + first_difference(scene.resolved, read_file(layout.scene())) + ")");
-}
-
 }  // namespace
 
 struct RunDirectory::Impl {
@@ -196,18 +147,20 @@ struct RunDirectory::Impl {
   void write_index() const {
     std::vector<std::pair<double, std::string>> frames;
     std::vector<std::string> others;
+    if (!output.vtu) return;
     for (const double time : frame_times) {
       const int frame = static_cast<int>(frames.size());
-      frames.emplace_back(time, RunLayout::frame_file(frame));
+      frames.emplace_back(time, frame_files[frame]);
       if (!obstacles.at_start().empty()) others.push_back(obstacles.file_of(frame));
     }
-    if (output.vtu) write_pvd(layout.index(), frames, others);
+    write_pvd(layout.index(), frames, others);
   }
 
   // Frames that the checkpoint counts are not computed again.
-  void require_frames(int count) const {
+  void require_frames(int count) {
     for (int frame = 0; frame < count && output.vtu; ++frame) {
-      const fs::path file = layout.root() / RunLayout::frame_file(frame);
+      frame_files.push_back(layout.file_of_frame(frame));
+      const fs::path file = layout.root() / frame_files.back();
       std::error_code error;
       if (const auto size = fs::file_size(file, error); error || size == 0)
         throw InvalidInput(file.string() + ": " + (error ? "is missing" : "is empty") +
@@ -217,8 +170,10 @@ struct RunDirectory::Impl {
 
   void add_frame(const Simulation& simulation, const StepReport* report) {
     const int frame = static_cast<int>(frame_times.size());
-    if (output.vtu)
-      write_frame(layout.root() / RunLayout::frame_file(frame), simulation, report, output.double_precision);
+    if (output.vtu) {
+      frame_files.push_back(RunLayout::frame_file(frame));
+      write_frame(layout.root() / frame_files.back(), simulation, report, output.double_precision);
+    }
     skins->add_frame(frame, simulation.state().q);
     frame_times.push_back(simulation.state().time);
     obstacles.add_frame(frame, simulation.obstacle_time());
@@ -248,7 +203,8 @@ struct RunDirectory::Impl {
   OutputOptions output;
   std::string scene_fingerprint;
   RunObstacles obstacles;
-  std::vector<double> frame_times;  // [s]
+  std::vector<double> frame_times;       // [s]
+  std::vector<std::string> frame_files;  // relative to the root; empty without VTU
   RunTables tables;
   std::optional<RunSkins> skins;
   Clock::time_point last_checkpoint = Clock::now();
@@ -265,7 +221,7 @@ RunDirectory RunDirectory::create(const std::string& path, const Scene& scene, E
   std::error_code error;
   if (!fs::exists(path, error)) create_folder(path);
   impl->lock.emplace(path);
-  make_room(layout, scene, existing);
+  make_room(layout, inputs_of(scene), existing);
   impl->tables = RunTables::create(layout, scene.simulation);
   impl->tables.add_start(scene.simulation.start_report());
   write_inputs(scene, path);
@@ -283,14 +239,9 @@ RunDirectory RunDirectory::resume(const std::string& path, Scene& scene) {
   auto impl = std::make_unique<Impl>(RunLayout(path), scene);
   const RunLayout& layout = impl->layout;
   impl->lock.emplace(path);
-  if (!layout.holds_run()) throw InvalidInput(path + ": contains no run to continue");
-  layout.refuse_links();
-  std::error_code error;
-  if (!fs::exists(layout.checkpoint(), error) && !fs::exists(previous_checkpoint(layout.checkpoint()), error))
-    throw InvalidInput(path +
-                       ": the run ended before its first checkpoint, so nothing is lost; restart it with --force");
+  require_checkpoint(layout);
   const NewestCheckpoint newest = read_newest_checkpoint(layout.checkpoint());
-  check_same_scene(layout, scene, newest.checkpoint);
+  require_same_scene(layout, scene.resolved, newest.checkpoint.fingerprint);
   scene.simulation.restore(to_snapshot(newest.checkpoint, scene.simulation.model()));
   if (!newest.note.empty()) {
     scene.notes.push_back(newest.note);

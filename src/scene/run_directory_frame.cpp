@@ -97,24 +97,31 @@ void add_contact_fields(const Simulation& simulation, FieldType real, std::vecto
 
 }  // namespace
 
-void write_frame(const std::filesystem::path& path, const Simulation& simulation, const StepReport* report,
-                 bool double_precision) {
+VtuFields frame_fields(const Simulation& simulation, const StepReport* report, bool double_precision) {
   const FieldType real = double_precision ? FieldType::float64 : FieldType::float32;
   const Model& model = simulation.model();
   const State& state = simulation.state();
-  const auto& [vertex, tet] = model.numbering;
-  std::vector<Field> point_fields = {{"displacement", 3, displacement(model.mesh, state.q), real},
-                                     {"velocity", 3, state.qdot, real}};
+  VtuFields fields;
+  fields.point_fields = {{"displacement", 3, displacement(model.mesh, state.q), real},
+                         {"velocity", 3, state.qdot, real}};
   TetFields tet_fields = simulation.tet_fields();
   if (!model.mesh.mids.empty())
-    point_fields.push_back({"pressure", 1, pressure_of_vertices(model.mesh, tet_fields.cauchy), real});
-  add_contact_fields(simulation, real, point_fields);
-  for (Field& field : point_fields) field.values = vertex.to_user(field.values, field.components);
-  std::vector<Field> fields = cell_fields(simulation, std::move(tet_fields), real);
-  for (Field& field : fields) field.values = tet.to_user(field.values, field.components);
+    fields.point_fields.push_back({"pressure", 1, pressure_of_vertices(model.mesh, tet_fields.cauchy), real});
+  add_contact_fields(simulation, real, fields.point_fields);
+  fields.cell_fields = cell_fields(simulation, std::move(tet_fields), real);
+  fields.file_fields = file_fields(state.time, report);
+  return fields;
+}
+
+void write_frame(const std::filesystem::path& path, const Simulation& simulation, const StepReport* report,
+                 bool double_precision) {
+  const Model& model = simulation.model();
+  const auto& [vertex, tet] = model.numbering;
+  VtuFields fields = frame_fields(simulation, report, double_precision);
+  for (Field& field : fields.point_fields) field.values = vertex.to_user(field.values, field.components);
+  for (Field& field : fields.cell_fields) field.values = tet.to_user(field.values, field.components);
   const TetMesh mesh = to_user(model.numbering, model.mesh);
-  write_vtu(path, vertex.to_user(state.q, 3), mesh.tets, {point_fields, fields, file_fields(state.time, report)},
-            mesh.mids);
+  write_vtu(path, vertex.to_user(simulation.state().q, 3), mesh.tets, fields, mesh.mids);
 }
 
 }  // namespace aspic

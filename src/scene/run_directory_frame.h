@@ -4,8 +4,12 @@
 
 #include "dynamics/simulation.h"
 #include "dynamics/step_report.h"
+#include "io/vtu.h"
 
 namespace aspic {
+
+// Returns the fields of a frame in the storage order of the model. `report`: see write_frame().
+VtuFields frame_fields(const Simulation& simulation, const StepReport* report, bool double_precision);
 
 // `report`: the step that ends at the frame, written as field data; null for the start.
 void write_frame(const std::filesystem::path& path, const Simulation& simulation, const StepReport* report,

@@ -4,6 +4,7 @@
 #include <fstream>
 #include <optional>
 #include <set>
+#include <string_view>
 #include <system_error>
 
 #include "base/error.h"
@@ -19,11 +20,16 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// Returns the number in a file name of frame_file, skin_frame, obstacle_frame_file or obstacle_frame.
+// Returns the number in a file name of frame_file, pieces_file, piece_file, skin_frame, obstacle_frame_file or
+// obstacle_frame.
 std::optional<int> frame_number(const fs::path& file) {
   const std::string stem = file.stem().string(), extension = file.extension().string();
-  const std::string digits = stem.substr(stem.rfind('_') + 1);
-  const bool is_vtu = extension == ".vtu" && (stem == "body_" + digits || stem == "obstacles_" + digits);
+  constexpr std::string_view kPiece = "piece_";
+  const bool is_piece = extension == ".vtu" && stem.starts_with(kPiece);
+  const size_t begin = is_piece ? kPiece.size() : stem.rfind('_') + 1;
+  const std::string digits = stem.substr(begin, is_piece ? stem.find('_', begin) - begin : std::string::npos);
+  const bool is_frame = stem == "body_" + digits || stem == "obstacles_" + digits;
+  const bool is_vtu = is_piece || (extension == ".pvtu" && is_frame) || (extension == ".vtu" && is_frame);
   const bool is_surface =
       (extension == ".obj" || extension == ".ply") && (stem.starts_with("skin_") || stem.starts_with("obstacle_"));
   if (!(is_vtu || is_surface) || digits.size() < 6) return {};
@@ -75,7 +81,7 @@ bool is_name_of_run(const fs::path& file) {
   const std::string name = file.filename().string();
   const RunLayout layout("");
   for (const fs::path& known :
-       {layout.scene(), layout.steps(), layout.iterations(), layout.timings(), layout.checkpoint(),
+       {layout.scene(), layout.steps(), layout.iterations(), layout.timings(), layout.ranks(), layout.checkpoint(),
         previous_checkpoint(layout.checkpoint()), layout.index(), layout.usd(), layout.report(), layout.outcome(),
         layout.frames(), layout.skins(), layout.obstacles()})
     if (name == known.filename()) return true;
@@ -111,6 +117,15 @@ std::vector<fs::path> named_inputs(const fs::path& root, const fs::path& scene) 
 }  // namespace
 
 std::string RunLayout::frame_file(int frame) { return formatted("frames/body_%06d.vtu", frame); }
+
+std::string RunLayout::pieces_file(int frame) { return formatted("frames/body_%06d.pvtu", frame); }
+
+std::string RunLayout::piece_file(int frame, int rank) { return formatted("frames/piece_%06d_%05d.vtu", frame, rank); }
+
+std::string RunLayout::file_of_frame(int frame) const {
+  std::error_code error;
+  return fs::exists(root_ / pieces_file(frame), error) ? pieces_file(frame) : frame_file(frame);
+}
 
 std::string RunLayout::obstacle_frame_file(int frame) { return formatted("frames/obstacles_%06d.vtu", frame); }
 
@@ -162,7 +177,7 @@ void RunLayout::remove_run(const std::vector<fs::path>& needed) const {
     for (const fs::path& file : files_in(folder, is_trace_file)) files.push_back(file);
   }
   // The table of steps last: without it the directory is no run.
-  files.insert(files.end(), {scene(), iterations(), timings(), steps()});
+  files.insert(files.end(), {scene(), iterations(), timings(), ranks(), steps()});
   for (const fs::path& file : files) {
     const auto is_same = [&](const fs::path& other) {
       std::error_code error;

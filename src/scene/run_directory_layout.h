@@ -15,6 +15,7 @@ class RunLayout {
   std::filesystem::path steps() const { return root_ / "steps.csv"; }
   std::filesystem::path iterations() const { return root_ / "iterations.csv"; }
   std::filesystem::path timings() const { return root_ / "timings.csv"; }
+  std::filesystem::path ranks() const { return root_ / "ranks.csv"; }  // of aspic-mpi
   std::filesystem::path checkpoint() const { return root_ / "checkpoint.bin"; }
   std::filesystem::path index() const { return root_ / "run.pvd"; }
   std::filesystem::path usd() const { return root_ / "run.usda"; }
@@ -26,6 +27,10 @@ class RunLayout {
   std::filesystem::path trace(int first_step) const;  // "trace", or "trace_after_12" of a run resumed there
 
   static std::string frame_file(int frame);  // "frames/body_000123.vtu", relative to the root
+  // Frames of several processes: an index, and the piece of each process.
+  static std::string pieces_file(int frame);           // "frames/body_000123.pvtu"
+  static std::string piece_file(int frame, int rank);  // "frames/piece_000123_00004.vtu"
+  std::string file_of_frame(int frame) const;          // pieces_file() if it exists, else frame_file()
   static std::string obstacle_file() { return "obstacles/obstacles.vtu"; }
   static std::string obstacle_frame_file(int frame);  // "frames/obstacles_000123.vtu"
   std::filesystem::path obstacle_frame(const std::string& name, int frame) const;

@@ -22,12 +22,9 @@ void copy_file(const fs::path& source, const fs::path& target) {
   write_file(target, read_file(source));
 }
 
-struct SceneInput {
-  SceneSource source;
-  SceneFiles files;
-};
+}  // namespace
 
-SceneInput read_scene(const fs::path& path, const SceneOptions& options) {
+SceneInput read_scene_input(const fs::path& path, const SceneOptions& options) {
   if (path.extension() == ".toml") {
     SceneSource source{read_scene_document(read_toml_text(path), path.string(), options.overrides),
                        path.stem().string(),
@@ -44,19 +41,17 @@ SceneInput read_scene(const fs::path& path, const SceneOptions& options) {
   return {std::move(source), std::move(files)};
 }
 
-}  // namespace
-
 SceneModel load_scene_model(const fs::path& path, const SceneOptions& options) {
-  SceneInput input = read_scene(path, options);
+  SceneInput input = read_scene_input(path, options);
   return build_scene_model(std::move(input.source), std::move(input.files), options);
 }
 
 Scene load_scene(const std::string& path, const SceneOptions& options) {
-  SceneInput input = read_scene(path, options);
+  SceneInput input = read_scene_input(path, options);
   return build_scene(std::move(input.source), std::move(input.files), options);
 }
 
-void write_inputs(const Scene& scene, const std::string& folder) {
+void write_inputs(const SceneInputs& inputs, const std::string& folder) {
   const auto prepared = [&](const std::string& name) {
     const fs::path target = fs::path(folder) / name;
     std::error_code error;
@@ -64,8 +59,8 @@ void write_inputs(const Scene& scene, const std::string& folder) {
     if (error) throw InvalidInput(target.parent_path().string() + ": cannot be created: " + error.message());
     return target;
   };
-  for (const auto& [name, source] : scene.input_files) aspic::copy_file(source, prepared(name));
-  for (const auto& [name, mesh] : scene.generated_meshes) write_mesh(prepared(name), mesh);
+  for (const auto& [name, source] : inputs.files) aspic::copy_file(source, prepared(name));
+  for (const auto& [name, mesh] : inputs.generated_meshes) write_mesh(prepared(name), mesh);
 }
 
 }  // namespace aspic

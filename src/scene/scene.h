@@ -44,8 +44,17 @@ struct Scene {
   std::vector<std::pair<std::string, TetMesh>> generated_meshes = {};
 };
 
+// What a run needs beside its results to be repeated.
+struct SceneInputs {
+  const std::string& resolved;                                           // see Scene
+  const std::vector<std::pair<std::string, std::string>>& files;         // see Scene::input_files
+  const std::vector<std::pair<std::string, TetMesh>>& generated_meshes;  // see Scene
+};
+inline SceneInputs inputs_of(const Scene& scene) { return {scene.resolved, scene.input_files, scene.generated_meshes}; }
+
 // Writes the inputs below `folder`, so that `resolved` can be run from there. Throws InvalidInput.
-void write_inputs(const Scene& scene, const std::string& folder);
+void write_inputs(const SceneInputs& inputs, const std::string& folder);
+inline void write_inputs(const Scene& scene, const std::string& folder) { write_inputs(inputs_of(scene), folder); }
 
 // Called before work that takes seconds, with a description: "checking 5821794 tets of body 'liver'".
 using Announce = std::function<void(const std::string& what)>;

@@ -53,50 +53,6 @@ void append(const TetMesh& mesh, TetMesh& all) {
   all.region.resize(all.tets.size(), 0);
 }
 
-SimulationOptions options_of(const Table& document, std::vector<std::string>& notes) {
-  const Value& time = *document.find("time");
-  SimulationOptions options;
-  options.h = time["step"].number();
-  options.integrator = time["integrator"].text();
-  options.adaptive.tolerance = time["adaptive"]["tolerance"].number();
-  const Value& solver = *document.find("solver");
-  options.initial_guess = solver["initial_guess"].text();
-  options.solver = solver_options(solver);
-  if (const auto conflict = find_conflict(options)) {
-    const Value& table = conflict->option == "adaptive" ? time : solver;
-    throw error_at(table[conflict->option].place, conflict->reason);
-  }
-  if (!make_integrator(options.integrator)->facts().is_implicit && options.solver.method != SolverOptions().method)
-    notes.push_back("integrator = '" + options.integrator + "' does not minimize: solver.method = '" +
-                    options.solver.method + "' has no effect");
-  return options;
-}
-
-OutputOptions output_of(const Value& table) {
-  return {.every = table["every"].number(),
-          .vtu = table["vtu"].boolean(),
-          .obj = table["obj"].boolean(),
-          .ply = table["ply"].boolean(),
-          .pc2 = table["pc2"].boolean(),
-          .usd = table["usd"].boolean(),
-          .report = table["report"].boolean(),
-          .double_precision = table["precision"].text() == "double",
-          .checkpoint_every = table["checkpoint_every"].number()};
-}
-
-std::string remedy_in_scene(BadInitialState::Kind kind) {
-  switch (kind) {
-    case BadInitialState::Kind::inverted_tets:
-      return "set material.model = \"stable_neo_hookean\", which tolerates inversion, or choose a smaller initial "
-             "deformation";
-    case BadInitialState::Kind::no_mass:
-      return "remove them (aspic check MESH --repair) or pin them";
-    case BadInitialState::Kind::touches_itself:
-      return "merge the coincident vertices (aspic check MESH --repair) or leave a gap";
-  }
-  return "";
-}
-
 class SceneBuilder {
  public:
   SceneBuilder(SceneSource source, SceneFiles files, const SceneOptions& options)
@@ -104,7 +60,7 @@ class SceneBuilder {
 
   SceneModel build_model() {
     if (options_.require) options_.require(source_.document);
-    note_version();
+    mark_version(source_.document, source_.notes);
     add_bodies();
     mesh_loader().report_if_many(model_.mesh.tet_count(),
                                  "setting up " + std::to_string(model_.mesh.vertex_count()) +
@@ -114,7 +70,7 @@ class SceneBuilder {
     State state = start();
     if (const Value* contact = source_.document.find("contact"); contact && (*contact)["start"].text() == "inflate")
       inflate_from((*contact)["start"].place, state);
-    const SimulationOptions options = options_of(source_.document, source_.notes);
+    const SimulationOptions options = simulation_options(source_.document, source_.notes);
     require_integrator(options.integrator);
     put_in_order(source_.document);
     for (std::string& note : source_.notes) note = printable(note);
@@ -124,13 +80,14 @@ class SceneBuilder {
             std::move(model_),
             std::move(state),
             options,
-            std::move(files_.kept_files)};
+            std::move(files_.kept_files),
+            std::move(files_.kept_meshes)};
   }
 
   Scene build() {
     SceneModel scene = build_model();
     const int steps = steps_of(*scene.document.find("time"));
-    const OutputOptions output = output_of(*scene.document.find("output"));
+    const OutputOptions output = output_options(*scene.document.find("output"));
     try {
       return {std::move(scene.name),
               to_toml(scene.document),
@@ -140,7 +97,7 @@ class SceneBuilder {
               steps,
               output,
               std::move(scene.input_files),
-              std::move(files_.kept_meshes)};
+              std::move(scene.generated_meshes)};
     } catch (const BadInitialState& e) {
       throw InvalidInput(source_.file + ": " + e.cause + "; " + remedy_in_scene(e.kind));
     } catch (const InvalidInput& e) {
@@ -164,17 +121,6 @@ class SceneBuilder {
     } catch (const InvalidInput& e) {
       throw error_at(place, std::string("start = \"inflate\": ") + e.what());
     }
-  }
-
-  void note_version() {
-    const std::string current = ASPIC_VERSION;
-    if (const Value* made_by = source_.document.find("version")) {
-      if (made_by->text() != current)
-        source_.notes.push_back("this scene was resolved by version " + made_by->text() + "; this is " + current +
-                                ", so the last digits may differ");
-    }
-    std::erase_if(source_.document.members, [](const Member& m) { return m.key == "version"; });
-    source_.document.members.insert(source_.document.members.begin(), Member{"version", {}, {current, {}}});
   }
 
   MeshLoader mesh_loader() {
@@ -225,7 +171,7 @@ class SceneBuilder {
       model_.density.insert(model_.density.end(), density.begin(), density.end());
       const std::vector<MaterialParameters> parameters = from_user(tet, material.parameters);
       model_.elasticity.push_back(make_tet_elasticity(material.model, model_.mesh, body.first_tet, parameters));
-      export_moduli(parameters);
+      export_moduli(parameters, model_);
     }
     model_.mass = std::make_unique<MassMatrix>(model_.mesh, model_.density, kind);
     add_actions(
@@ -234,16 +180,6 @@ class SceneBuilder {
     MeshLoader loader = mesh_loader();
     add_scene_contact(source_.document, loader, model_);
     for (const PlacedBody& body : bodies_) note_parts(body, model_, source_.notes);
-  }
-
-  // The material fields of the results; zero where a body is not elastic.
-  void export_moduli(const std::vector<MaterialParameters>& parameters) {
-    if (model_.tet_fields.empty()) model_.tet_fields = {{"young", {}}, {"poisson", {}}};
-    for (const MaterialParameters& p : parameters) {
-      const bool elastic = p.lame.mu > 0;
-      model_.tet_fields[0].second.push_back(elastic ? young_modulus(p.lame) : 0);
-      model_.tet_fields[1].second.push_back(elastic ? poisson_ratio(p.lame) : 0);
-    }
   }
 
   State start() {
@@ -277,6 +213,70 @@ class SceneBuilder {
 };
 
 }  // namespace
+
+std::string remedy_in_scene(BadInitialState::Kind kind) {
+  switch (kind) {
+    case BadInitialState::Kind::inverted_tets:
+      return "set material.model = \"stable_neo_hookean\", which tolerates inversion, or choose a smaller initial "
+             "deformation";
+    case BadInitialState::Kind::no_mass:
+      return "remove them (aspic check MESH --repair) or pin them";
+    case BadInitialState::Kind::touches_itself:
+      return "merge the coincident vertices (aspic check MESH --repair) or leave a gap";
+  }
+  return "";
+}
+
+SimulationOptions simulation_options(const Table& document, std::vector<std::string>& notes) {
+  const Value& time = *document.find("time");
+  SimulationOptions options;
+  options.h = time["step"].number();
+  options.integrator = time["integrator"].text();
+  options.adaptive.tolerance = time["adaptive"]["tolerance"].number();
+  const Value& solver = *document.find("solver");
+  options.initial_guess = solver["initial_guess"].text();
+  options.solver = solver_options(solver);
+  if (const auto conflict = find_conflict(options)) {
+    const Value& table = conflict->option == "adaptive" ? time : solver;
+    throw error_at(table[conflict->option].place, conflict->reason);
+  }
+  if (!make_integrator(options.integrator)->facts().is_implicit && options.solver.method != SolverOptions().method)
+    notes.push_back("integrator = '" + options.integrator + "' does not minimize: solver.method = '" +
+                    options.solver.method + "' has no effect");
+  return options;
+}
+
+OutputOptions output_options(const Value& table) {
+  return {.every = table["every"].number(),
+          .vtu = table["vtu"].boolean(),
+          .obj = table["obj"].boolean(),
+          .ply = table["ply"].boolean(),
+          .pc2 = table["pc2"].boolean(),
+          .usd = table["usd"].boolean(),
+          .report = table["report"].boolean(),
+          .double_precision = table["precision"].text() == "double",
+          .checkpoint_every = table["checkpoint_every"].number()};
+}
+
+void mark_version(Table& document, std::vector<std::string>& notes) {
+  const std::string current = ASPIC_VERSION;
+  if (const Value* made_by = document.find("version")) {
+    if (made_by->text() != current)
+      notes.push_back("this scene was resolved by version " + made_by->text() + "; this is " + current +
+                      ", so the last digits may differ");
+  }
+  std::erase_if(document.members, [](const Member& m) { return m.key == "version"; });
+  document.members.insert(document.members.begin(), Member{"version", {}, {current, {}}});
+}
+
+void export_moduli(std::span<const MaterialParameters> parameters, Model& model) {
+  if (model.tet_fields.empty()) model.tet_fields = {{"young", {}}, {"poisson", {}}};
+  for (const MaterialParameters& p : parameters) {
+    const bool elastic = p.lame.mu > 0;
+    model.tet_fields[0].second.push_back(elastic ? young_modulus(p.lame) : 0);
+    model.tet_fields[1].second.push_back(elastic ? poisson_ratio(p.lame) : 0);
+  }
+}
 
 int steps_of(const Value& time) {
   // Rounded quotient: 2 / 0.01 must not become 201 steps.

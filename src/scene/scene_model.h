@@ -18,7 +18,8 @@ struct SceneModel {
   Model model;
   State start;
   SimulationOptions options;
-  std::vector<std::pair<std::string, std::string>> input_files;  // see Scene
+  std::vector<std::pair<std::string, std::string>> input_files;        // see Scene
+  std::vector<std::pair<std::string, TetMesh>> generated_meshes = {};  // see Scene
 };
 
 // Reads the same files as load_scene() and throws the same errors, except those of the initial state.

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "base/error.h"
 #include "mesh/tet_nodes.h"
@@ -16,9 +17,15 @@ namespace {
 // Selections by height extend slightly beyond their fraction, so that a flat base is complete despite round-off.
 constexpr double kHeightSlack = 1e-9;
 
-Predicate by_height(const SelectionScope& scope, double lowest, double highest) {
+std::pair<double, double> heights_of(const SelectionScope& scope) {
+  if (scope.whole) return scope.whole->heights(scope.up);
   double low = INFINITY, high = -INFINITY;
   for (const Vec3d& X : scope.mesh.rest) low = std::min(low, dot(scope.up, X)), high = std::max(high, dot(scope.up, X));
+  return {low, high};
+}
+
+Predicate by_height(const SelectionScope& scope, double lowest, double highest) {
+  const auto [low, high] = heights_of(scope);
   const double height = high - low, slack = kHeightSlack * height;
   const double below = low + lowest * height + slack, above = high - highest * height - slack;
   const Vec3d up = scope.up;
@@ -68,13 +75,15 @@ std::vector<char> listed_vertices(const Value& where, const SelectionScope& scop
   if (where.is_table() && where.find("file")) return painted_vertices(where, scope);
   const Value* list = where.is_table() ? where.find("vertices") : nullptr;
   if (!list) return {};
-  std::vector<char> listed(scope.mesh.rest.size(), 0);
+  std::vector<char> listed(std::max<size_t>(1, scope.mesh.rest.size()), 0);  // not empty for a part without vertices
+  const int count = scope.whole ? scope.whole->vertex_count() : scope.mesh.vertex_count();
   for (const Value& index : list->array()) {
     const std::int64_t i = std::get<std::int64_t>(index.data);
-    if (i >= scope.mesh.vertex_count())
+    if (i >= count)
       throw error_at(index.place, "vertices: " + std::to_string(i) + " is beyond the last vertex of body '" +
-                                      scope.body + "', " + std::to_string(scope.mesh.vertex_count() - 1));
-    listed[i] = 1;
+                                      scope.body + "', " + std::to_string(count - 1));
+    const int v = scope.whole ? scope.whole->vertex_of_part(static_cast<int>(i)) : static_cast<int>(i);
+    if (v >= 0) listed[v] = 1;
   }
   for (const MidNodes& mids : scope.mesh.mids) {
     const Tet& corners = scope.mesh.tets[&mids - scope.mesh.mids.data()];
@@ -84,13 +93,28 @@ std::vector<char> listed_vertices(const Value& where, const SelectionScope& scop
   return listed;
 }
 
-template <class Selected>
-void require_some(const Selected& selected, const Value& where, const SelectionScope& scope, const char* what) {
-  if (!selected.empty()) return;
-  const Box box = bounding_box(scope.mesh.rest);
-  throw error_at(where.place, "where = " + shortened(inline_toml(where)) + " selects no " + what + " of body '" +
-                                  scope.body + "', which extends from " + point_text(box.lower) + " to " +
-                                  point_text(box.upper));
+InvalidInput nothing_selected(const Value& where, const SelectionScope& scope, const char* what) {
+  const Box box = scope.whole ? scope.whole->box() : bounding_box(scope.mesh.rest);
+  return error_at(where.place, "where = " + shortened(inline_toml(where)) + " selects no " + what + " of body '" +
+                                   scope.body + "', which extends from " + point_text(box.lower) + " to " +
+                                   point_text(box.upper));
+}
+
+// `has_own(element)`: whether it has a vertex that belongs to this part of the body.
+template <class Selected, class HasOwn>
+void require_some(const Selected& selected, const HasOwn& has_own, const Value& where, const SelectionScope& scope,
+                  const char* what) {
+  if (scope.whole) {
+    scope.whole->note_selection(nothing_selected(where, scope, what).what(),
+                                std::any_of(selected.begin(), selected.end(), has_own));
+  } else if (selected.empty()) {
+    throw nothing_selected(where, scope, what);
+  }
+}
+
+template <class Corners>
+bool any_own(const SelectionScope& scope, const Corners& corners) {
+  return std::any_of(corners.begin(), corners.end(), [&](int v) { return scope.whole->is_own(v); });
 }
 
 // Runs `select`, whose formulas may fail at a point, and adds the place.
@@ -124,7 +148,8 @@ std::vector<Element> selected_elements(const Value& where, const SelectionScope&
     }
     return result;
   });
-  require_some(selected, where, scope, "boundary triangle");
+  const auto has_own = [&](const Element& element) { return any_own(scope, corners_of(element)); };
+  require_some(selected, has_own, where, scope, "boundary triangle");
   return selected;
 }
 
@@ -139,7 +164,8 @@ std::vector<int> select_vertices(const Value& where, const SelectionScope& scope
       if (holds ? holds(scope.mesh.rest[v]) : listed[v]) result.push_back(v);
     return result;
   });
-  require_some(selected, where, scope, "vertex");
+  require_some(
+      selected, [&](int v) { return scope.whole->is_own(v); }, where, scope, "vertex");
   return selected;
 }
 
@@ -155,7 +181,8 @@ std::vector<int> select_tets(const Value& where, const SelectionScope& scope) {
     }
     return result;
   });
-  require_some(selected, where, scope, "tet");
+  require_some(
+      selected, [&](int t) { return any_own(scope, scope.mesh.tets[t]); }, where, scope, "tet");
   return selected;
 }
 

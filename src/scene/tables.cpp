@@ -176,7 +176,8 @@ std::vector<double> tet_values(Table& table, const Key& key, const FieldScope& s
   }
   for (int t = 0; t < mesh.tet_count(); ++t)
     if (!key.range.contains(values[t]))
-      throw error_at(value.place, key.name + " = " + number_text(values[t]) + " in tet " + std::to_string(t) + " at " +
+      throw error_at(value.place, key.name + " = " + number_text(values[t]) + " in tet " +
+                                      std::to_string(scope.whole ? scope.whole->number_of_tet(t) : t) + " at " +
                                       point_text(centroid(mesh, t)) + "; must be " + key.range.text());
   return values;
 }

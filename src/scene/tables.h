@@ -8,6 +8,7 @@
 #include "scene/painted_fields.h"
 #include "scene/scene_files.h"
 #include "scene/schema.h"
+#include "scene/selection.h"
 #include "scene/value.h"
 
 namespace aspic {
@@ -22,6 +23,7 @@ struct FieldScope {
   SceneFiles& files;
   std::string stem;  // name of files in the results
   PaintedFields& painted;
+  const WholeBody* whole = nullptr;  // null: the mesh is the whole body
 };
 
 // Returns `table[key.name]` for each tet: a number, a formula of the centroid, a number per region, or a file, checked
