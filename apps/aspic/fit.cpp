@@ -14,12 +14,15 @@
 #include "aspic/fit_report.h"
 #include "aspic/fit_summary.h"
 #include "aspic/interrupt.h"
+#include "aspic/law_table.h"
+#include "aspic/relaxation_results.h"
 #include "base/error.h"
 #include "base/parallel.h"
 #include "base/printable.h"
 #include "capture/fit_folder.h"
 #include "capture/fit_run.h"
 #include "capture/fit_verdict.h"
+#include "capture/histories.h"
 #include "material/registry.h"
 #include "scene/value.h"
 
@@ -44,7 +47,7 @@ std::optional<RegistrationKind> registration_kind(const FitArguments& arguments)
 
 FitPlan plan_of(const FitArguments& arguments) {
   FitPlan plan;
-  plan.model = material_info(arguments.model).name;
+  plan.model = arguments.model == kAutoLaw ? kAutoLaw : material_info(arguments.model).name;
   for (const std::string& text : arguments.parameters) plan.parameters.push_back(parse_parameter(text));
   for (const std::string& text : arguments.known) plan.known.push_back(parse_known(text));
   return plan;
@@ -186,7 +189,8 @@ int run(const FitArguments& arguments) {
   const DataSet data = read_data_set(arguments.data, registration_kind(arguments));
   check_findings(data, arguments.data);
   plan = completed(std::move(plan), data.experiment);
-  const std::string options = "# aspic fit\ndata = \"" + fingerprint_of(data.experiment) + "\"\n" + text_of(plan);
+  std::string options = "# aspic fit\ndata = \"" + fingerprint_of(data.experiment) + "\"\n" + text_of(plan);
+  if (!data.histories.empty()) options += "histories = \"" + fingerprint_of(data.histories) + "\"\n";
   FitFolder folder = FitFolder::open(arguments.out, options, existing(arguments));
   if (data.registration) write_registration(folder.path() / "registration.toml", *data.registration);
   catch_interrupts();  // from here on there are results to keep
@@ -204,6 +208,9 @@ int run(const FitArguments& arguments) {
   const FitVerdict judged = verdict(data, outcome);
   write_figures(folder.path() / "figures.json", outcome, judged, figures);
   if (!arguments.quiet) print_fit(stdout, data, outcome), print_figures(stdout, figures);
+  if (!arguments.quiet && outcome.law_choice) print_laws(stdout, *outcome.law_choice);
+  if (!arguments.quiet && outcome.relaxation) print_relaxation(stdout, *outcome.relaxation);
+  if (outcome.relaxation) write_relaxation(folder.path(), *outcome.relaxation);
   if (arguments.quiet)
     for (const std::string& warning : outcome.warnings) fmt::print(stderr, "warning: {}\n", warning);
   std::fflush(stdout);
@@ -215,7 +222,7 @@ int run(const FitArguments& arguments) {
 }
 
 std::vector<std::string> model_names() {
-  std::vector<std::string> names;
+  std::vector<std::string> names = {kAutoLaw};
   for (const MaterialInfo& info : materials()) names.push_back(info.name);
   return names;
 }
@@ -246,7 +253,9 @@ void add_fit(CLI::App& app, Action& action) {
   command->add_option("-o,--out", arguments->out, "Material file to write; material.vtu by default");
   command->add_flag("--check", arguments->check, "Validate the data set and exit");
   command
-      ->add_option("--model", arguments->model, "Strain energy density (see aspic materials); neo_hookean by default")
+      ->add_option("--model", arguments->model,
+                   "Strain energy density (see aspic materials), or auto: the simplest of those that the data support; "
+                   "neo_hookean by default")
       ->check(CLI::IsMember(model_names()));
   command
       ->add_option("--unknown", arguments->parameters,

@@ -7,6 +7,8 @@
 #include <nlohmann/json.hpp>
 
 #include "capture/left_out.h"
+#include "aspic/law_table.h"
+#include "aspic/relaxation_results.h"
 #include "fit/bickel.h"
 #include "fit/quantity.h"
 #include "io/atomic_file.h"
@@ -158,6 +160,8 @@ void write_figures(const std::filesystem::path& file, const FitOutcome& outcome,
   if (outcome.held_out)
     json["cross_validation"] = {{"position_error", outcome.held_out->position_error},
                                 {"force_error", outcome.held_out->force_error}};
+  if (outcome.law_choice) json["laws"] = json_of(*outcome.law_choice);
+  if (outcome.relaxation) json["relaxation"] = json_of(*outcome.relaxation);
   json["truth"] = Json::array();
   for (const Judgment& j : figures.judgments) json["truth"].push_back(json_of(j));
   json["left_out"] = Json::object();

@@ -6,14 +6,13 @@
 
 #include "base/error.h"
 #include "capture/data_findings.h"
+#include "capture/histories.h"
 #include "scene/placement.h"
 
 namespace aspic {
 namespace {
 
 constexpr int kMaxCases = 20'000, kMaxSteadyNotes = 20;
-// If only the axial force was measured, standard deviation of the lateral force, relative to the force.
-constexpr double kForceAcross = 0.3;
 
 class CaseReader {
  public:
@@ -148,7 +147,8 @@ class CaseReader {
     if (load.force && along) table_.error("force and force_x, force_y, force_z are both given; keep one of them");
     load.force_sigma = force_sd ? *force_sd : default_sigma("force", newton);
     if (along && !load.force) take_force_along_axis(load, *along);
-    if (!load.force && !along && load.indenter) take_force_of_series(load, force_sd.has_value());
+    if (!load.force && !along && (load.indenter || load.grip) && !has_histories(settings_))
+      take_force_of_series(load, force_sd.has_value());
     load.torque = table_.vector("torque_", newton_meter * sign);
     const std::optional<Vec3d> torque_sd = table_.sigma("torque_sd", newton_meter);
     load.torque_sigma = torque_sd ? *torque_sd : default_sigma("torque", newton_meter);

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "capture/registration.h"
+#include "fit/load_history.h"
 #include "fit/misfit.h"
 #include "mesh/doctor.h"
 #include "mesh/numbering.h"
@@ -34,8 +35,10 @@ struct CaseFrame {
 
 struct DataSet {
   std::string name;
-  Experiment experiment;  // the mesh is renumbered for locality
-  Numbering numbering;    // maps to the user's vertices and tets
+  Experiment experiment;                    // the mesh is renumbered for locality
+  std::vector<LoadHistory> histories = {};  // on the same body
+  bool histories_end_static = false;        // all cases are the last states of histories
+  Numbering numbering;                      // maps to the user's vertices and tets
   std::vector<std::string> marker_names;
   std::vector<double> marker_gap;            // original distance of each marker from the surface [m]
   std::vector<CaseFrame> case_frame;         // one per case

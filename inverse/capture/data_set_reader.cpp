@@ -8,6 +8,7 @@
 #include "capture/case_table.h"
 #include "capture/data_findings.h"
 #include "capture/data_set.h"
+#include "capture/histories.h"
 #include "capture/patch_table.h"
 #include "capture/recorded_positions.h"
 #include "capture/rigid_motion.h"
@@ -66,8 +67,12 @@ class DataSetReader {
         errors_, data_);
     read_positions();
     errors_.finish();
+    const ForceSeries* series = forces_ ? &*forces_ : nullptr;
+    if (has_histories(settings_)) add_end_forces(series, data_);
     choose_sigmas(data_);
     choose_layers(data_);
+    if (has_histories(settings_)) take_histories(series, errors_, data_);
+    errors_.finish();
     data_.name = printable(data_.name);
     for (std::string& note : data_.notes) note = printable(note);
     return std::move(data_);

@@ -19,6 +19,11 @@ int parts_of(const Value& parts) {
   return parts.text() == "auto" ? -1 : 0;
 }
 
+int branches_of(const Value& branches) {
+  if (!branches.is_text()) return branches.integer();
+  return branches.text() == "auto" ? 0 : -1;
+}
+
 }  // namespace
 
 const Schema& fit_options_schema() {
@@ -35,6 +40,8 @@ const Schema& fit_options_schema() {
          key("rule", kText, "rule that chooses the weight", Choices{weight_rule_names()}, Usual{"\"auto\""}),
          key("parts", kInteger | kText, "number of parts of constant stiffness", Range{.min = 2, .max = kMaxParts},
              Choices{{"off", "auto"}}, Usual{"\"off\""}),
+         key("branches", kInteger | kText, "number of relaxation times, for data with histories",
+             Range{.min = 1, .max = kMaxBranches}, Choices{{"off", "auto"}}, Usual{"\"auto\""}),
          key("refine", kInteger, "simulates with every tet in 8^refine", Range{.min = 0, .max = 4}, Usual{"0"}),
          key("leave_out", kText | kNames, "groups of cases to predict instead of fitting", Usual{"[]"}),
          key("baselines", kBoolean, "predicts leave_out by simpler models as well", Usual{"false"}),
@@ -66,6 +73,7 @@ bool read_fit_options(Table document, const std::string& source, FitPlan& plan) 
   plan.fit.tolerance = option("tolerance").number();
   plan.fit.max_iterations = option("iterations").integer();
   plan.parts = parts_of(option("parts"));
+  plan.branches = branches_of(option("branches"));
   plan.refine = option("refine").integer();
   plan.mesh_errors = option("mesh_errors").boolean();
   plan.law_errors = option("law_errors").boolean();

@@ -7,6 +7,7 @@
 #include "base/number_chars.h"
 #include "capture/apparent_stiffness.h"
 #include "fit/law_errors.h"
+#include "capture/law_choice.h"
 #include "fit/quantity.h"
 #include "material/registry.h"
 #include "scene/scene_files.h"
@@ -101,6 +102,12 @@ std::vector<FitParameter> single_values(std::vector<FitParameter> parameters) {
 }
 
 FitPlan completed(FitPlan plan, const Experiment& experiment) {
+  if (plan.model == kAutoLaw) {
+    plan.model = "neo_hookean";  // has E and nu only, as all laws do
+    plan = completed(std::move(plan), experiment);
+    plan.model = kAutoLaw;
+    return plan;
+  }
   for (const auto& [quantity, value] : plan.known) {
     material_quantity(plan.model, quantity);
     check_range(quantity, value);
@@ -164,6 +171,7 @@ std::string text_of(const FitPlan& plan) {
   add("max_iterations", std::to_string(plan.fit.max_iterations));
   for (const std::string& group : plan.left_out) add("leave_out." + group, "true");
   add("parts", std::to_string(plan.parts));
+  add("branches", std::to_string(plan.branches));
   add("refine", std::to_string(plan.refine));
   add("mesh_errors", plan.mesh_errors ? "true" : "false");
   add("law_errors", plan.law_errors ? "true" : "false");

@@ -13,7 +13,7 @@
 namespace aspic {
 
 struct FitPlan {
-  std::string model = "neo_hookean";
+  std::string model = "neo_hookean";                  // or kAutoLaw
   std::vector<FitParameter> parameters;               // empty: young per tet, all others uniform; guess 0: automatic
   std::vector<std::pair<std::string, double>> known;  // uniform, not fitted: {"poisson", 0.45}
   RegularizerOptions regularizer;
@@ -25,6 +25,7 @@ struct FitPlan {
   // Number of parts of constant stiffness that replace a field per tet if they fit the data as well; < 0: the smallest
   // sufficient number, up to kMaxParts; 0: none.
   int parts = 0;
+  int branches = 0;          // number of Maxwell branches for data with histories; 0: automatic, < 0: none
   bool mesh_errors = false;  // correct measurements by the discretization error relative to a finer mesh
   bool law_errors = false;   // include the choice of the law in standard deviations
 };
@@ -40,7 +41,7 @@ inline constexpr int kMaxParts = 4;
 std::vector<FitParameter> single_values(std::vector<FitParameter> parameters);
 
 // Returns the plan with all choices that depend on data and model. Throws InvalidInput for names that the model or the
-// data do not have.
+// data do not have. With model = kAutoLaw only E and nu can be named; the law adds its own.
 FitPlan completed(FitPlan plan, const Experiment& experiment);
 
 // One "key = value" per line. Fits with equal text and data are bit-reproducible.

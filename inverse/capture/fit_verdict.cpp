@@ -142,6 +142,14 @@ class Reasons {
     add_poor_predictions(beyond_noise(predicted_groups(data_, outcome_)));
   }
 
+  void add_about_relaxation(const RelaxationFit& fit) {
+    if (!fit.is_ok()) return add("relaxation_failed", fit.failure);
+    if (!fit.undetermined.empty()) add("relaxation_undetermined", fit.undetermined);
+    if (fit.squares > kTooManySquares * fit.residuals)
+      add("relaxation_unexplained", "|r|^2 of the histories is " + three_digits(fit.squares / fit.residuals) +
+                                        " per reading: the branches do not explain them");
+  }
+
   std::vector<FitReason> take() { return std::move(reasons_); }
   void add(std::string name, std::string text) { reasons_.push_back({std::move(name), std::move(text)}); }
 
@@ -217,6 +225,7 @@ FitVerdict verdict(const DataSet& data, const FitOutcome& outcome) {
     reasons.add("field_rejected", "one value replaces the field: " + reason.text);
   reasons.add_against_field();
   reasons.add_others();
+  if (outcome.relaxation) reasons.add_about_relaxation(*outcome.relaxation);
   result.reasons = reasons.take();
   result.text = result.is_good() ? "Converged; the fit explains the readings within their standard deviations."
                                  : "Do not rely on this material: " + result.reasons.front().text + ".";

@@ -29,19 +29,6 @@ double range_of(const ForceSeries& s) {
   return range;
 }
 
-// From the median second difference of successive samples, which linear ramps and a few steps do not change.
-double noise_of(const ForceSeries& s) {
-  constexpr double kMedianOfNormal = 0.6745;
-  double noise = 0;
-  for (int axis = 0; axis < 3; ++axis) {
-    std::vector<double> bends;
-    for (size_t i = 2; i < s.values.size(); ++i)
-      bends.push_back(std::abs(s.values[i][axis] - 2 * s.values[i - 1][axis] + s.values[i - 2][axis]));
-    noise = std::max(noise, median(std::move(bends)) / (kMedianOfNormal * std::sqrt(6.0)));
-  }
-  return noise;
-}
-
 size_t first_at(const ForceSeries& s, double time) {
   return static_cast<size_t>(std::lower_bound(s.times.begin(), s.times.end(), time) - s.times.begin());
 }
@@ -128,11 +115,30 @@ std::string elsewhere(const ForceSeries& s, double time, double duration, const 
 
 }  // namespace
 
+double largest_force(const ForceSeries& s) {
+  double largest = 0;
+  for (const Vec3d& v : s.values) largest = std::max(largest, entry_norm(v));
+  return largest;
+}
+
+double noise_of(const ForceSeries& s) {
+  constexpr double kMedianOfNormal = 0.6745;
+  double noise = 0;
+  for (int axis = 0; axis < 3; ++axis) {
+    std::vector<double> bends;
+    for (size_t i = 2; i < s.values.size(); ++i)
+      bends.push_back(std::abs(s.values[i][axis] - 2 * s.values[i - 1][axis] + s.values[i - 2][axis]));
+    noise = std::max(noise, median(std::move(bends)) / (kMedianOfNormal * std::sqrt(6.0)));
+  }
+  return noise;
+}
+
 ForceSeries read_force_series(const CaptureSettings& settings, ErrorList& errors, std::vector<std::string>& notes) {
   const std::filesystem::path path = settings.file("forces");
   MeasuredTable table(path, settings.columns("forces"), errors, notes);
   ForceSeries series{.file = path.filename().string()};
   series.is_axial = table.has("force");
+  series.has_stated_sigma = settings["deviation"].find("force") != nullptr;
   if (!table.has("time") || (!series.is_axial && !table.has("force_x")))
     throw InvalidInput(series.file +
                        ":1: needs the columns time and force, or time, force_x, force_y and force_z (columns in " +

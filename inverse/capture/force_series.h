@@ -13,10 +13,16 @@ struct ForceSeries {
   std::vector<double> times;  // [s], ascending
   std::vector<Vec3d> values;  // [N]; only x, the component along the axis of the indenter, if it is_axial
   bool is_axial = false;
+  bool has_stated_sigma = false;  // deviation.force of the settings
 };
 
 // Reads the table of the key `forces`: time [s], and force or force_x, force_y, force_z. Throws InvalidInput.
 ForceSeries read_force_series(const CaptureSettings& settings, ErrorList& errors, std::vector<std::string>& notes);
+
+double largest_force(const ForceSeries& series);  // largest absolute entry [N]
+// Standard deviation of the noise, from the median second difference of successive samples, which linear ramps and a
+// few steps do not change [N].
+double noise_of(const ForceSeries& series);
 
 struct SteadyForce {
   bool is_steady = false;

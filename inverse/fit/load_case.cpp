@@ -94,6 +94,12 @@ std::unique_ptr<Energy> make_pressure_of(const LoadCase& load, const TetMesh& me
   return make_pressure(mesh, patch, load.pressure);
 }
 
+std::unique_ptr<Probe> make_probe_of(const Experiment& experiment, const LoadCase& load) {
+  auto probe = make_probe_beside_support(experiment, *load.indenter, load.touch);
+  probe->set_pose(load.pose);
+  return probe;
+}
+
 Model LoadedBody::make_model(const std::string& material, std::span<const MaterialParameters> parameters) {
   const TetMesh& mesh = experiment_.mesh;
   ModelBuilder builder(mesh);
@@ -118,8 +124,7 @@ Model LoadedBody::make_model(const std::string& material, std::span<const Materi
   }
   if (load_.pressure != 0) add_scaled(make_pressure_of(load_, mesh));
   if (load_.indenter) {
-    auto probe = make_probe_beside_support(experiment_, *load_.indenter, load_.touch);
-    probe->set_pose(load_.pose);
+    auto probe = make_probe_of(experiment_, load_);
     probe_ = probe.get();
     model.loads.push_back(std::move(probe));
   }

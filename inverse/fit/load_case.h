@@ -13,6 +13,9 @@ namespace aspic {
 // Pressure of a case with load.pressure != 0.
 std::unique_ptr<Energy> make_pressure_of(const LoadCase& load, const TetMesh& mesh);
 
+// Indenter of a case at its pose.
+std::unique_ptr<Probe> make_probe_of(const Experiment& experiment, const LoadCase& load);
+
 class LoadedBody {
  public:
   // Stores references to both. Throws InvalidInput for a case without residuals, or an invalid one.

@@ -25,8 +25,9 @@ enum class Parameterization {
 struct FitParameter {
   std::string quantity = "young";
   Parameterization parameterization = Parameterization::tets;
-  int handles = 0;     // number of radial basis functions, for Parameterization::handles
-  double guess = 1e5;  // initial guess [SI]
+  int handles = 0;         // number of radial basis functions, for Parameterization::handles
+  double guess = 1e5;      // initial guess [SI]
+  double prior_sigma = 0;  // of values that are uniform or per region, on the fitted scale; 0: that of the regularizer
 };
 
 class ParameterMap {

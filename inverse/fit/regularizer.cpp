@@ -198,10 +198,12 @@ class SumOfPriors : public Regularizer {
     for (size_t u = 0; u < map.fitted_parameters().size(); ++u) {
       const auto [first, count] = map.range(static_cast<int>(u));
       const double guess = map.guess()[first];
-      const Parameterization parameterization = map.fitted_parameters()[u].parameterization;
+      const FitParameter& parameter = map.fitted_parameters()[u];
+      const Parameterization parameterization = parameter.parameterization;
+      const double sigma = parameter.prior_sigma > 0 ? parameter.prior_sigma : options.prior_sigma;
       std::unique_ptr<Prior> prior;
       if (parameterization == Parameterization::uniform || parameterization == Parameterization::regions)
-        prior = std::make_unique<ValuePrior>(guess, options.prior_sigma);
+        prior = std::make_unique<ValuePrior>(guess, sigma);
       else
         prior = std::make_unique<FieldPrior>(mesh, map.basis(static_cast<int>(u)), options, guess);
       parts_.push_back({static_cast<size_t>(first), static_cast<size_t>(count), std::move(prior)});

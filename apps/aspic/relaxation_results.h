@@ -1,0 +1,16 @@
+// Fitted relaxation times on the terminal, as JSON, and as files of the folder of a fit.
+#pragma once
+#include <cstdio>
+#include <filesystem>
+#include <nlohmann/json.hpp>
+
+#include "fit/relaxation_fit.h"
+
+namespace aspic::cli {
+
+void print_relaxation(std::FILE* stream, const RelaxationFit& fit);
+nlohmann::ordered_json json_of(const RelaxationFit& fit);
+// Writes viscoelastic.toml, relaxation.csv and relaxation.svg (with gnuplot).
+void write_relaxation(const std::filesystem::path& folder, const RelaxationFit& fit);
+
+}  // namespace aspic::cli

@@ -1,0 +1,53 @@
+// Comparison of strain energy densities by what they predict, and the choice of one of them.
+#pragma once
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "fit/uncertainty.h"
+
+namespace aspic {
+
+// A fitted value of one law.
+struct LawValue {
+  std::string quantity, unit, where;
+  double value = 0;                  // [SI]
+  std::optional<Interval> interval;  // 95 % interval; empty: unknown
+};
+
+// Fit of one law. Squares are those of the residuals in standard deviations.
+struct LawTrial {
+  std::string law;
+  std::string failure;  // why there is no fit; empty if there is one
+  std::vector<LawValue> values;
+  int parameters = 0;  // number of fitted values
+  int residuals = 0;
+  double squares = 0;                              // |r|^2
+  double roughness = 0;                            // R of the prior
+  std::vector<double> information;                 // eigenvalues d of J'J relative to the prior
+  double position_error = -1, force_error = -1;    // held out, relative to the peaks; < 0: none
+  std::vector<double> held_out_squares;            // |r|^2 of each held-out group; empty: none
+  double evidence_loss = 0;                        // log evidence of the best law minus that of this one
+  double held_out_loss = 0, held_out_scatter = 0;  // the same for held-out log probability, and its standard error
+  bool is_as_good = false;                         // not distinguished from the best law
+  std::string verdict;                             // "chosen", "as good, but with 2 more values", ...
+
+  bool is_fitted() const { return failure.empty(); }
+};
+
+struct LawChoice {
+  std::vector<LawTrial> trials;
+  int chosen = -1;  // index of a trial; < 0: none
+  double noise_factor =
+      1;                   // common factor of the standard deviations, from the best law; > 1: no law explains the data
+  double strain = 0;       // 95 % of the body stay below this stretch in all cases: largest |stretch - 1|
+  std::string simplified;  // parameterization that replaced a field for the comparison; empty: none
+  std::string text;        // conclusion, in sentences
+};
+
+inline constexpr char kAutoLaw[] = "auto";
+
+// Computes the losses and verdicts of the trials and chooses a law by the rule of docs/fitting.md.
+void judge_laws(LawChoice& choice);
+
+}  // namespace aspic

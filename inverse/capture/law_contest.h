@@ -1,0 +1,14 @@
+// Fits every law of a comparison to the same measurements.
+#pragma once
+#include "capture/fit_run.h"
+
+namespace aspic {
+
+// `plan`: completed, with model = kAutoLaw. Fields per tet and at handles are replaced by one value, or one per region.
+// A stop returns what has been fitted so far, without a choice.
+LawChoice choose_law(const DataSet& data, const FitPlan& plan, const FitCallbacks& callbacks);
+
+// Plan of the fit with the chosen law.
+FitPlan plan_with_law(const FitPlan& plan, const LawChoice& choice);
+
+}  // namespace aspic

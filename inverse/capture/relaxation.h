@@ -1,0 +1,13 @@
+// Relaxation times of a data set with histories, after the fit of its material.
+#pragma once
+#include "capture/fit_run.h"
+
+namespace aspic {
+
+// Adds the branches to the outcome, and multiplies its stiffness by the factor that they imply.
+void add_relaxation(const DataSet& data, const FitCallbacks& callbacks, FitOutcome& outcome);
+
+// [[body.viscoelastic]] sections of a scene with the fitted branches.
+std::string scene_text(const RelaxationFit& fit);
+
+}  // namespace aspic

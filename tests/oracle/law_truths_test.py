@@ -1,0 +1,58 @@
+"""`aspic fit --model auto` on measurements of quadratic_fem.py, whose law is Yeoh's with b2 = 1 and b3 = 0.
+
+usage: ASPIC=path/to/aspic law_truths_test.py. Exit code 77: NumPy or SciPy is missing."""
+import json
+import os
+import pathlib
+import subprocess
+import sys
+import tempfile
+import unittest
+
+try:
+    import numpy  # noqa: F401
+    import scipy  # noqa: F401
+except ImportError:
+    sys.exit(77)
+import capture_truths as truths
+
+
+class Laws(unittest.TestCase):
+    def choose(self, truth, seed, *arguments, options=""):
+        """Returns the comparison of laws, the rows by law, and the values of the material."""
+        with tempfile.TemporaryDirectory() as name:
+            folder = pathlib.Path(name)
+            truths.write(truth, folder / "data", 0.01, seed, "order = 1")
+            (folder / "options.toml").write_text("mesh_errors = false\n" + options)
+            done = subprocess.run([os.environ["ASPIC"], "fit", "data", "--model", "auto", "--unknown", "young=uniform",
+                                   "--options", "options.toml", *arguments], cwd=folder, capture_output=True, text=True)
+            self.assertIn(done.returncode, (0, 3), done.stdout + done.stderr)
+            self.output = done.stdout + done.stderr
+            figures = json.loads((folder / "material.fit" / "figures.json").read_text())
+        laws = figures["laws"]
+        return laws, {t["law"]: t for t in laws["trials"]}, figures["values"]
+
+    def test_large_strains_choose_the_law_of_the_data(self):
+        truth = truths.stiffening(0.6)
+        for seed in (1, 2, 3):
+            laws, trials, values = self.choose(truth, seed)
+            self.assertEqual(laws["chosen"], "yeoh", self.output)
+            self.assertFalse(trials["neo_hookean"]["as_good"])
+            self.assertGreater(trials["neo_hookean"]["evidence_loss"], 20)
+            self.assertGreater(laws["strain"], 0.3)
+            self.assertIn("b2", values)
+
+    def test_small_strains_do_not_distinguish_laws(self):
+        truth = truths.stiffening(0.06)
+        for seed in (1, 2, 3):
+            laws, trials, _ = self.choose(truth, seed)
+            self.assertEqual(trials[laws["chosen"]]["parameters"], 2, self.output)  # the simplest: E and nu
+            for law in ("neo_hookean", "yeoh", "fung", "gent", "mooney_rivlin", "ogden"):
+                self.assertTrue(trials[law]["ok"], trials[law])
+            self.assertTrue(trials["yeoh"]["as_good"], self.output)
+            self.assertIn("do not distinguish", laws["text"])
+            self.assertLess(laws["strain"], 0.1)
+
+
+if __name__ == "__main__":
+    unittest.main()

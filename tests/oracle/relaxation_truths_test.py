@@ -1,0 +1,150 @@
+"""`aspic fit` on ramp-and-hold and creep tests of a bar of a generalized Maxwell solid, by closed forms.
+
+With Poisson's ratio 0 the bar is uniaxial, and a Maxwell branch with the shear modulus ratio G of a material with the
+shear modulus G = E / 2 has Young's modulus ratio E: E(t) = E (1 + sum of ratio exp(-t / tau)).
+
+usage: ASPIC=path/to/aspic relaxation_truths_test.py. Exit code 77: NumPy is missing."""
+import json
+import os
+import pathlib
+import subprocess
+import sys
+import tempfile
+import unittest
+
+try:
+    import numpy as np
+    import scipy  # noqa: F401  (capture_truths)
+except ImportError:
+    sys.exit(77)
+import capture_truths as truths
+
+YOUNG, LENGTH, SIDE, STRAIN, RAMP, END = 2e4, 0.04, 0.01, 1e-3, 0.5, 300.0
+TWO = ((0.5, 1.5), (0.8, 40.0))  # ratio, relaxation time [s]
+
+SETTINGS = """version = 1
+mesh = "rest.msh"
+fixed = "z < 1e-6"
+order = 1
+steady = "history"
+"""
+GRIPPED = """forces = "load.csv"
+[[grip]]
+name = "top"
+where = "z > 0.04 - 1e-6"
+"""
+
+
+def ramp_force(t, branches):
+    """The convolution of E(t) with the rate of a ramp that ends at RAMP, integrated by hand."""
+    start = np.maximum(t - RAMP, 0)
+    response = t - start + sum(g * tau * (np.exp(-start / tau) - np.exp(-t / tau)) for g, tau in branches)
+    return SIDE ** 2 * YOUNG * STRAIN / RAMP * response
+
+
+def write_bar(folder, cells=(1, 1, 2)):
+    folder.mkdir()
+    X, tets = truths.kuhn_box((SIDE, SIDE, LENGTH), cells)
+    truths.write_gmsh(folder / "rest.msh", X, tets, np.ones(len(tets), int))
+    return X
+
+
+def write_hold(folder, branches, noise, seed, samples=3000):
+    """Uniform samples of the force, as a testing machine writes them."""
+    X = write_bar(folder)
+    t = np.linspace(0, END, samples + 1)[1:]
+    t = np.sort(np.concatenate([t, np.linspace(0, 2, 201)[1:]]))
+    t = np.unique(t)
+    force = ramp_force(t, branches)
+    force += noise * force.max() * np.random.default_rng(seed).normal(size=len(t))
+    (folder / "capture.toml").write_text(SETTINGS + GRIPPED)
+    truths.write_table(folder / "load.csv", [{"time": float(a), "force": float(f)} for a, f in zip(t, force)])
+    truths.write_table(folder / "markers.csv", [{"marker": "A", "vertex": len(X) - 1}])
+    rows = [("start", 0.0, 0.0), ("peak", RAMP, STRAIN * LENGTH), ("end", END, STRAIN * LENGTH)]
+    truths.write_table(folder / "cases.csv", [
+        {"case": name, "group": "hold", "time": time, "grip": "top", "move_x": 0.0, "move_y": 0.0, "move_z": move}
+        for name, time, move in rows])
+
+
+def write_creep(folder, ratio, tau, noise, seed):
+    """A sudden dead load: strain = load / E (1 - ratio / (1 + ratio) exp(-t / (tau (1 + ratio))))."""
+    write_bar(folder)
+    (folder / "capture.toml").write_text(SETTINGS + '[[patch]]\nname = "top"\nwhere = "z > 0.04 - 1e-6"\n')
+    corners = np.array([(x, y, LENGTH) for x in (0, SIDE) for y in (0, SIDE)])
+    truths.write_table(folder / "markers.csv",
+                       [{"marker": m, **dict(zip("xyz", map(float, p)))} for m, p in enumerate(corners)])
+    times = np.concatenate([[0], 0.2 * 1.25 ** np.arange(28)])
+    random = np.random.default_rng(seed)
+    strain = STRAIN * (1 - ratio / (1 + ratio) * np.exp(-times / (tau * (1 + ratio))))
+    sd = noise * STRAIN * LENGTH
+    truths.write_table(folder / "cases.csv", [
+        {"case": f"t{k}", "group": "creep", "time": float(t), "dead_pressure": -YOUNG * STRAIN, "patch": "top"}
+        for k, t in enumerate(times)])
+    truths.write_table(folder / "positions.csv", [
+        {"case": f"t{k}", "marker": m, "x": float(p[0]), "y": float(p[1]),
+         "z": float(LENGTH * (1 + e) + sd * random.normal()), "sd": sd}
+        for k, e in enumerate(strain) for m, p in enumerate(corners)])
+
+
+class Relaxation(unittest.TestCase):
+    def fit(self, write, options="", code=0):
+        with tempfile.TemporaryDirectory() as name:
+            folder = pathlib.Path(name)
+            write(folder / "data")
+            (folder / "options.toml").write_text("cross_validation = false\nmesh_errors = false\n" + options)
+            done = subprocess.run(
+                [os.environ["ASPIC"], "fit", "data", "--unknown", "young=uniform", "--known", "poisson=0", "--options",
+                 "options.toml"], cwd=folder, capture_output=True, text=True)
+            self.assertEqual(done.returncode, code, done.stdout + done.stderr)
+            self.output = done.stdout + done.stderr
+            if code == 2:
+                return None
+            results = folder / "material.fit"
+            self.scene = (results / "viscoelastic.toml").read_text() if (results / "viscoelastic.toml").exists() else ""
+            return json.loads((results / "figures.json").read_text())
+
+    def assert_inside(self, interval, truth):
+        self.assertLess(interval["lower"], truth)
+        self.assertGreater(interval["upper"], truth)
+
+    def test_ramp_and_hold_has_two_relaxation_times(self):
+        for seed in (1, 2, 3):
+            figures = self.fit(lambda folder: write_hold(folder, TWO, 0.005, seed))
+            found = figures["relaxation"]["branches"]
+            self.assertEqual(len(found), 2, self.output)
+            for branch, (ratio, tau) in zip(found, TWO):
+                self.assertAlmostEqual(branch["ratio"] / ratio, 1, delta=0.03)
+                self.assertAlmostEqual(branch["relaxation_time"] / tau, 1, delta=0.03)
+            young = figures["values"]["young"]["everywhere"]
+            self.assertAlmostEqual(young["value"] / YOUNG, 1, delta=0.01)
+            self.assert_inside(young, YOUNG)
+            self.assertEqual(self.scene.count("[[body.viscoelastic]]"), 2)
+
+    def test_hold_that_ends_early_corrects_the_stiffness(self):
+        # The last force is far above the long-term one.
+        slow = ((0.6, 150.0),)
+        figures = self.fit(lambda folder: write_hold(folder, slow, 0.002, 1), "branches = 1\n")
+        self.assertAlmostEqual(figures["values"]["young"]["everywhere"]["value"] / YOUNG, 1, delta=0.02)
+        self.assert_inside(figures["values"]["young"]["everywhere"], YOUNG)
+        self.assert_inside(figures["relaxation"]["branches"][0]["time_interval"], 150)
+
+    def test_creep_of_markers_gives_the_branch(self):
+        figures = self.fit(lambda folder: write_creep(folder, 0.6, 5.0, 0.005, 1))
+        found = figures["relaxation"]["branches"]
+        self.assertEqual(len(found), 1, self.output)
+        self.assertAlmostEqual(found[0]["relaxation_time"] / 5, 1, delta=0.03)
+        self.assertAlmostEqual(found[0]["ratio"] / 0.6, 1, delta=0.03)
+        self.assertAlmostEqual(figures["values"]["young"]["everywhere"]["value"] / YOUNG, 1, delta=0.01)
+
+    def test_hold_without_motion_in_time_is_refused(self):
+        def write(folder):
+            write_hold(folder, TWO, 0.005, 1)
+            rows = (folder / "cases.csv").read_text().splitlines()
+            (folder / "cases.csv").write_text("\n".join([rows[0], rows[-1]]) + "\n")
+        self.fit(write, code=2)
+        self.assertIn("cases.csv:2", self.output)
+        self.assertIn("has one time only", self.output)
+
+
+if __name__ == "__main__":
+    unittest.main()
