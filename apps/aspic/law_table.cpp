@@ -41,7 +41,6 @@ LawJson json_of(const LawTrial& trial) {
           {"force_error", trial.force_error},
           {"evidence_loss", finite_number(trial.evidence_loss)},
           {"held_out_loss", finite_number(trial.held_out_loss)},
-          {"held_out_scatter", finite_number(trial.held_out_scatter)},
           {"as_good", trial.is_as_good},
           {"verdict", trial.verdict}};
 }
@@ -49,13 +48,14 @@ LawJson json_of(const LawTrial& trial) {
 }  // namespace
 
 void print_laws(std::FILE* stream, const LawChoice& choice) {
-  fmt::print(stream, "laws       {:<22} {:>8} {:>10} {:>9} {:>9}  {}\n", "", "|r|^2", "evidence", "held out:", "", "");
-  fmt::print(stream, "           {:<22} {:>8} {:>10} {:>9} {:>9}  {}\n", "", "/reading", "loss", "positions", "forces",
-             "");
+  constexpr const char* kRow = "{:<10} {:<22} {:>8} {:>9} {:>9} {:>9} {:>8}  {}\n";
+  fmt::print(stream, kRow, "laws", "", "|r|^2 per", "log", "held out", "", "", "");
+  fmt::print(stream, kRow, "", "", "reading", "evidence", "log prob.", "positions", "forces", "");
   for (const LawTrial& t : choice.trials) {
     if (t.is_fitted())
-      fmt::print(stream, "           {:<22} {:>8.3g} {:>10.3g} {:>9} {:>9}  {}; {}\n", t.law, t.squares / t.residuals,
-                 t.evidence_loss, error_text(t.position_error), error_text(t.force_error), t.verdict, values_text(t));
+      fmt::print(stream, kRow, "", t.law, fmt::format("{:.3g}", t.squares / t.residuals),
+                 fmt::format("{:.2f}", -t.evidence_loss), fmt::format("{:.2f}", -t.held_out_loss),
+                 error_text(t.position_error), error_text(t.force_error), t.verdict + "; " + values_text(t));
     else
       fmt::print(stream, "           {:<22} {}\n", t.law, t.verdict);
   }

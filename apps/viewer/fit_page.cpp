@@ -7,6 +7,7 @@
 
 #include "capture/fit_verdict.h"
 #include "capture/fitted_values.h"
+#include "capture/result_notes.h"
 #include "fit/quantity.h"
 #include "io/base64.h"
 #include "io/gzip.h"
@@ -50,7 +51,7 @@ class FitPack {
                  {"heldOut", held_out()},
                  {"history", history()},
                  {"weights", weights()},
-                 {"notes", data_.notes},
+                 {"notes", notes()},
                  {"warnings", outcome_.warnings},
                  {"verdict", verdict_json()},
                  {"markerNames", data_.marker_names},
@@ -101,6 +102,12 @@ class FitPack {
     pack_.add("reading.deviation", sigma);
     pack_.add("reading.predicted", predicted);
     pack_.add("reading.heldOut", held_out);
+  }
+
+  std::vector<std::string> notes() const {
+    std::vector<std::string> all = result_notes(outcome_);
+    all.insert(all.end(), data_.notes.begin(), data_.notes.end());
+    return all;
   }
 
   Json verdict_json() const {

@@ -43,6 +43,14 @@ double default_value(const Quantity& quantity, const Experiment& experiment) {
                                                   : quantity.typical;
 }
 
+// Only E and nu are quantities of all laws.
+void require_common(const std::string& quantity) {
+  if (quantity != "young" && quantity != "poisson")
+    throw InvalidInput("'" + quantity +
+                       "': a choice of laws (auto) accepts young and poisson only; name one law to give '" + quantity +
+                       "'");
+}
+
 void check_range(const std::string& quantity, double value) {
   const Range& range = scene_schema().key("material", quantity).range;
   if (!std::isfinite(value) || !range.contains(value))
@@ -104,6 +112,8 @@ std::vector<FitParameter> single_values(std::vector<FitParameter> parameters) {
 FitPlan completed(FitPlan plan, const Experiment& experiment) {
   if (plan.model == kAutoLaw) {
     plan.model = "neo_hookean";  // has E and nu only, as all laws do
+    for (const FitParameter& u : plan.parameters) require_common(u.quantity);
+    for (const auto& [quantity, value] : plan.known) require_common(quantity);
     plan = completed(std::move(plan), experiment);
     plan.model = kAutoLaw;
     return plan;

@@ -39,21 +39,8 @@ double log_evidence(const LawTrial& trial, double factor) {
 
 double held_out_log_probability(const LawTrial& trial, double factor) {
   double sum = 0;
-  for (const double squares : trial.held_out_squares) sum -= squares / (2 * factor * factor);
+  for (const PredictiveResiduals& group : trial.held_out) sum += group.log_probability(factor);
   return sum;
-}
-
-// Standard error of a sum of differences over groups: from their scatter [Vehtari et al. 2017, eq. 24].
-double scatter_of_sum(const LawTrial& trial, const LawTrial& best, double factor) {
-  const size_t n = trial.held_out_squares.size();
-  if (n < 2) return 0;
-  const auto loss = [&](size_t g) {
-    return (trial.held_out_squares[g] - best.held_out_squares[g]) / (2 * factor * factor);
-  };
-  double mean = 0, squares = 0;
-  for (size_t g = 0; g < n; ++g) mean += loss(g) / static_cast<double>(n);
-  for (size_t g = 0; g < n; ++g) squares += (loss(g) - mean) * (loss(g) - mean);
-  return std::sqrt(static_cast<double>(n) * squares / static_cast<double>(n - 1));
 }
 
 template <class Score>
@@ -64,9 +51,7 @@ const LawTrial* best_by(const std::vector<LawTrial>& trials, const Score& score)
   return best;
 }
 
-bool predicts_as_well(const LawTrial& trial) {
-  return trial.is_fitted() && trial.held_out_loss <= std::max(kStrong, trial.held_out_scatter);
-}
+bool predicts_as_well(const LawTrial& trial) { return trial.is_fitted() && trial.held_out_loss <= kStrong; }
 
 bool is_simpler(const LawTrial& a, const LawTrial& b) {
   if (a.parameters != b.parameters) return a.parameters < b.parameters;
@@ -82,7 +67,6 @@ void add_losses(LawChoice& choice) {
     if (!trial.is_fitted()) continue;
     trial.evidence_loss = evidence(*likeliest) - evidence(trial);
     trial.held_out_loss = held_out(*predictor) - held_out(trial);
-    trial.held_out_scatter = scatter_of_sum(trial, *predictor, factor);
   }
 }
 
@@ -132,7 +116,7 @@ std::string conclusion(const LawChoice& choice) {
     text += "No law explains the readings: their standard deviations count as " + three_digits(choice.noise_factor) +
             " times larger. ";
   if (!choice.simplified.empty()) text += "The laws were compared with " + choice.simplified + ". ";
-  if (chosen.held_out_squares.empty()) text += "No group was held out. ";
+  if (chosen.held_out.empty()) text += "No group was held out. ";
   if (!text.empty()) text.pop_back();
   return text;
 }

@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "fit/predictive_probability.h"
 #include "fit/uncertainty.h"
 
 namespace aspic {
@@ -22,15 +23,15 @@ struct LawTrial {
   std::vector<LawValue> values;
   int parameters = 0;  // number of fitted values
   int residuals = 0;
-  double squares = 0;                              // |r|^2
-  double roughness = 0;                            // R of the prior
-  std::vector<double> information;                 // eigenvalues d of J'J relative to the prior
-  double position_error = -1, force_error = -1;    // held out, relative to the peaks; < 0: none
-  std::vector<double> held_out_squares;            // |r|^2 of each held-out group; empty: none
-  double evidence_loss = 0;                        // log evidence of the best law minus that of this one
-  double held_out_loss = 0, held_out_scatter = 0;  // the same for held-out log probability, and its standard error
-  bool is_as_good = false;                         // not distinguished from the best law
-  std::string verdict;                             // "chosen", "as good, but with 2 more values", ...
+  double squares = 0;                            // |r|^2
+  double roughness = 0;                          // R of the prior
+  std::vector<double> information;               // eigenvalues d of J'J relative to the prior
+  double position_error = -1, force_error = -1;  // held out, relative to the peaks; < 0: none
+  std::vector<PredictiveResiduals> held_out;     // of each held-out group; empty: none
+  double evidence_loss = 0;                      // log evidence of the best law minus that of this one
+  double held_out_loss = 0;                      // the same for the log probability of all held-out groups
+  bool is_as_good = false;                       // not distinguished from the best law
+  std::string verdict;                           // "chosen", "as good, but with 2 more values", ...
 
   bool is_fitted() const { return failure.empty(); }
 };

@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <limits>
 
 namespace aspic {
@@ -14,7 +15,11 @@ LawTrial trial(std::string law, int parameters, double squares, std::vector<doub
   LawTrial t{.law = std::move(law), .failure = {}, .values = {}, .parameters = parameters, .residuals = 300};
   t.squares = squares;
   t.information.assign(static_cast<size_t>(parameters), 1e3);
-  t.held_out_squares = std::move(held_out);
+  for (const double squares_of_group : held_out) {
+    PredictiveResiduals group{.squares = squares_of_group, .Jr = {0}, .JJ = {0}, .seen = {1}, .prior = {1}};
+    group.is_valid = std::isfinite(squares_of_group);
+    t.held_out.push_back(std::move(group));
+  }
   return t;
 }
 

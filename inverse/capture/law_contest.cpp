@@ -266,8 +266,18 @@ class LawContest {
         cross_validate(simulated_.fitted(), model.map, *model.prior, fitted, {options, plan_.equilibrium, observe});
     trial.position_error = held_out.position_error;
     trial.force_error = held_out.force_error;
-    for (const HeldOut& group : held_out.groups)
-      trial.held_out_squares.push_back(group.ok ? group.squares : std::numeric_limits<double>::infinity());
+    for (const HeldOut& group : held_out.groups) trial.held_out.push_back(predicted(model, group));
+  }
+
+  PredictiveResiduals predicted(FitModel& model, const HeldOut& group) const {
+    if (!group.ok) return {};
+    const auto part = [&](bool is_seen) {
+      return subset(simulated_.fitted(), [&](const LoadCase& c) { return (c.group != group.group) == is_seen; });
+    };
+    const Experiment others = part(true), own = part(false);
+    Misfit of_others(others, model.map, plan_.equilibrium), of_own(own, model.map, plan_.equilibrium);
+    WithUncertainLayers seen(of_others), left_out(of_own);
+    return predictive_residuals(seen, left_out, *model.prior, group.p);
   }
 
   bool is_stopped() const { return callbacks_.stop.stopped(); }

@@ -4,7 +4,6 @@
 #include <cmath>
 
 #include "fit/common_errors.h"
-#include "math/vectors.h"
 
 namespace aspic {
 namespace {
@@ -43,15 +42,13 @@ void finish(HeldOut& h) {
 
 void predict(const Experiment& left_out, const ParameterMap& map, const EquilibriumOptions& options, HeldOut& h) {
   Misfit misfit(left_out, map, options);
-  WithUncertainLayers data(misfit);
   std::vector<double> r(misfit.residual_count());
-  if (!data.evaluate(h.p, r)) {
+  if (!misfit.evaluate(h.p, r)) {
     h.failure = "no equilibrium was found with the material of the other cases: " + misfit.failure();
     return;
   }
   for (size_t c = 0; c < left_out.cases.size(); ++c)
     add_case(left_out, left_out.cases[c], misfit.prediction(static_cast<int>(c)), h);
-  h.squares = dot(r, r);
   finish(h);
 }
 

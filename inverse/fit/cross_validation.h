@@ -23,7 +23,6 @@ struct HeldOut {
   double position_noise = 0;                // expected part from the standard deviations alone [m]
   double peak_force = 0;                    // measured maximum [N]
   double force_error = 0, force_noise = 0;  // the same for forces [N]
-  double squares = 0;                       // |r|^2, with uncertain layers
   std::vector<double> p;                    // fitted without the group
 
   double relative_position_error() const { return peak_motion > 0 ? position_error / peak_motion : 0; }

@@ -34,6 +34,14 @@ Vec3d marker_at(const SurfacePoint& point, std::span<const double> x) {
   return sum;
 }
 
+LoadCase without_load(LoadCase load) {
+  load.gravity = {};
+  load.pressure = 0;
+  load.pose = load.touch;
+  if (load.grip) load.grip->displacement = load.grip->rotation = {};
+  return load;
+}
+
 // Place in a history: between the waypoints segment and segment + 1.
 struct Stop {
   double time;
@@ -235,7 +243,7 @@ HistoryPrediction simulate(const Experiment& body, const LoadHistory& history, c
     for (const MarkerReading& reading : load.positions)
       prediction.markers.push_back(marker_at(body.markers[static_cast<size_t>(reading.marker)], now.x()));
   };
-  LoadCase last = history.waypoints.front();
+  LoadCase last = without_load(history.waypoints.front());
   double time = history.times.front();
   for (const Stop& stop : stops_of(history)) {
     const bool is_first = stop.part == 0;

@@ -16,7 +16,7 @@ constexpr double kStrong = 3;      // difference of log evidence with a ratio of
 constexpr double kDistinct = 1.5;  // smallest ratio of two relaxation times
 constexpr double kRatio = 0.3, kRatioSigma = 2;  // prior of the ratios: median, and standard deviation of the logarithm
 constexpr double kSigmas = 1.96;                 // of a 95 % interval
-constexpr double kUndeterminedLog = 1.5;            // standard deviation of a logarithm
+constexpr double kUndeterminedLog = 1.5;         // standard deviation of a logarithm
 constexpr double kFarOutside = 3;                // relaxation times beyond the range of the readings by this factor
 
 // Times between which relaxation is visible: from the shortest distance of two readings to the longest duration [s].

@@ -9,6 +9,7 @@
 #include <random>
 
 #include "fit/history_misfit.h"
+#include "fit/indented_block_test.h"
 #include "mesh/generators.h"
 #include "mesh/surface.h"
 
@@ -115,6 +116,58 @@ TEST(LoadHistory, MatchesCreepOfStandardLinearSolid) {
   }
 }
 
+// After a long hold the branches carry no stress: the body is that of a static case with the same indenter.
+TEST(LoadHistory, LongHoldOfIndenterEndsLikeStatics) {
+  test::IndentedBlock block;
+  block.add_indentation(test::IndentedBlock::sites()[0], 0.006, 0.01);
+  const ParameterMap map = block.map();
+  Misfit statics(block.experiment, map);
+  std::vector<double> r(statics.residual_count());
+  ASSERT_TRUE(statics.evaluate(map.guess(), r));
+  const LoadCase& pressed = block.experiment.cases[0];
+  LoadCase touching = pressed;
+  touching.pose = touching.touch;
+  touching.positions.clear();
+  LoadHistory history{.name = "poke", .times = {0, 1, 1000}, .waypoints = {touching, touching, pressed}};
+  history.waypoints[1] = pressed;
+  history.waypoints[1].positions.clear();
+  for (const double t : {0.5, 1.0, 2.0, 1000.0}) history.forces.push_back({t, {{0, 0, 1}}, 0, 1});
+  const ViscoelasticMaterial material{map.material(), map.parameters(map.guess()), {{1.0, 3.0}}};
+  const HistoryPrediction prediction = simulate(block.experiment, history, material, {});
+  ASSERT_TRUE(prediction.is_ok()) << prediction.failure;
+  const CasePrediction& expected = statics.prediction(0);
+  EXPECT_NEAR(prediction.forces.back(), expected.wrench.force[2], 1e-4 * norm(expected.wrench.force));
+  EXPECT_GT(std::abs(prediction.forces[1]), 1.5 * std::abs(prediction.forces.back()));
+  ASSERT_EQ(prediction.markers.size(), expected.markers.size());
+  for (size_t m = 0; m < expected.markers.size(); ++m)
+    EXPECT_LT(norm(prediction.markers[m] - expected.markers[m]), 1e-4 * 0.006);
+}
+
+// Loads beyond one Newton solve are divided; the path has no effect on a body without branches.
+TEST(LoadHistory, SuddenLoadIsDividedUntilItConverges) {
+  const Bar b = bar();
+  LoadHistory history{.name = "pull", .times = {0, 1}, .waypoints = {stretched(b, 1.5), stretched(b, 1.5)}};
+  history.forces.push_back({0.5, {{0, 0, 1}}, 0, 1});
+  const HistoryPrediction sudden = simulate(b.body, history, b.material, {});
+  ASSERT_TRUE(sudden.is_ok()) << sudden.failure;
+  history.waypoints[0] = stretched(b, 0);
+  history.times = {0, 10, 11};
+  history.waypoints.push_back(history.waypoints.back());
+  history.forces[0].time = 10.5;
+  const HistoryPrediction slow = simulate(b.body, history, b.material, {});
+  ASSERT_TRUE(slow.is_ok()) << slow.failure;
+  EXPECT_NEAR(sudden.forces[0] / slow.forces[0], 1, 1e-6);
+}
+
+TEST(LoadHistory, CollapsedGripHasNoEquilibrium) {
+  const Bar b = bar();
+  LoadHistory history{.name = "crush", .times = {0, 1}, .waypoints = {stretched(b, 0), stretched(b, -1.5)}};
+  history.forces.push_back({1, {{0, 0, 1}}, 0, 1});
+  const HistoryPrediction prediction = simulate(b.body, history, b.material, {});
+  EXPECT_FALSE(prediction.is_ok());
+  EXPECT_NE(prediction.failure.find("crush: no equilibrium"), std::string::npos);
+}
+
 TEST(HistoryMisfit, JacobianMatchesCentralDifferences) {
   const Bar b = bar();
   const std::vector<LoadHistory> histories = {ramp_and_hold(b, kTwo, 0, 1)};
@@ -160,7 +213,7 @@ TEST(RelaxationFit, IntervalsCoverTheTruth) {
   int inside = 0, total = 0;
   for (unsigned seed = 1; seed <= 40; ++seed) {
     const RelaxationFit fit =
-        fit_relaxation(b.body, {ramp_and_hold(b, kOne, 0.01, 100 + seed)}, b.material, {.branches = 1});
+        fit_relaxation(b.body, {ramp_and_hold(b, kOne, 0.003, 100 + seed)}, b.material, {.branches = 1});
     ASSERT_TRUE(fit.is_ok()) << fit.failure;
     const FittedBranch& found = fit.branches[0];
     const auto count = [&](const Interval& interval, double truth) {
@@ -170,10 +223,11 @@ TEST(RelaxationFit, IntervalsCoverTheTruth) {
     count(found.ratio_interval, kOne[0].ratio);
     count(found.time_interval, kOne[0].time);
     count(fit.scale_interval, 1);
-    EXPECT_NEAR(found.ratio / kOne[0].ratio, 1, 0.04);
-    EXPECT_NEAR(found.time / kOne[0].time, 1, 0.08);
+    EXPECT_NEAR(found.ratio / kOne[0].ratio, 1, 0.03);
+    EXPECT_NEAR(found.time / kOne[0].time, 1, 0.03);
   }
-  EXPECT_GT(inside, 0.88 * total);
+  RecordProperty("inside", inside);
+  EXPECT_GT(inside, 0.88 * total) << total;
   EXPECT_LT(inside, total);
 }
 

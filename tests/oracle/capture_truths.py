@@ -135,17 +135,16 @@ def weight(cells=7, young=5e3, poisson=0.45):
 
 
 def stiffening(strain, b=1.0, cells=3, young=2e4, poisson=0.45):
-    """A cube whose law is Yeoh's with b2 = b, pulled, pressed and sheared in three steps each up to `strain`."""
-    size, steps = np.array([0.02, 0.02, 0.02]), (1 / 3, 2 / 3, 1)
-    planes = np.linspace(0, 0.02, cells + 1)
-    solid = fem.Solid(fem.box(planes, planes, planes), uniform(young), poisson, b)
-    markers = on_sides(size, 40, 6, lambda p: p[2] < 0.02)
-    move = 0.02 * strain
-    motions = [(f"{name} {k}", name, tuple(part * d for d in direction), (0, 0, 0))
-               for name, direction in (("pull", (0, 0, move)), ("press", (0, 0, -move / 2)), ("shear", (move, 0, 0)))
-               for k, part in enumerate(steps)]
-    return Truth("stiffening", size, (2, 2, 2), markers, grip_readings(solid, markers, motions),
-                 GRIPPED.format(height=0.02), young, poisson)
+    """A bar whose law is Yeoh's with b2 = b: pulled, pressed, and twisted while it is pulled, in three steps each."""
+    size, length, steps = np.array([0.02, 0.02, 0.06]), 0.06, (1 / 3, 2 / 3, 1)
+    planes = graded(0.02, cells, 0.2)
+    solid = fem.Solid(fem.box(planes, planes, graded(length, 3 * cells, 0.4)), uniform(young), poisson, b)
+    markers = on_sides(size, 40, 6, lambda p: p[2] < length)
+    kinds = (("pull", length * strain, 0), ("press", -0.3 * length * strain, 0), ("twist", 0.2 * length * strain, 3 * strain))
+    motions = [(f"{name} {k}", name, (0, 0, part * move), (0, 0, part * turn))
+               for name, move, turn in kinds for k, part in enumerate(steps)]
+    return Truth("stiffening", size, (2, 2, 6), markers, grip_readings(solid, markers, motions),
+                 GRIPPED.format(height=length), young, poisson)
 
 
 BALL = np.array([0.034, 0.027, 0.035]), 0.015, 1e4, 3e4  # center, radius, E outside and inside
