@@ -17,7 +17,7 @@ namespace {
 
 constexpr int kRampSteps = 8;       // minimum number per ramp
 constexpr int kHoldSteps = 10;      // first step of a hold: its length / 2^kHoldSteps; then lengths double
-constexpr int kMaxBisections = 6;     // of a step without an equilibrium
+constexpr int kMaxBisections = 6;   // of a step without an equilibrium
 constexpr double kSameTime = 1e-9;  // relative to the duration of the history
 
 Vec3d blend(const Vec3d& a, const Vec3d& b, double part) { return (1 - part) * a + part * b; }

@@ -17,15 +17,17 @@ except ImportError:
 import capture_truths as truths
 
 
+SEEDS = (1, 2, 3)
+
+
 class Laws(unittest.TestCase):
-    def choose(self, truth, seed, *arguments, options=""):
+    def choose(self, truth, seed, noise):
         """Returns the comparison of laws, the rows by law, and the values of the material."""
         with tempfile.TemporaryDirectory() as name:
             folder = pathlib.Path(name)
-            truths.write(truth, folder / "data", 0.01, seed, "order = 1")
-            (folder / "options.toml").write_text("mesh_errors = false\n" + options)
-            done = subprocess.run([os.environ["ASPIC"], "fit", "data", "--model", "auto", "--unknown", "young=uniform",
-                                   "--options", "options.toml", *arguments], cwd=folder, capture_output=True, text=True)
+            truths.write(truth, folder / "data", noise, seed)
+            done = subprocess.run([os.environ["ASPIC"], "fit", "data", "--model", "auto", "--unknown", "young=uniform"],
+                                  cwd=folder, capture_output=True, text=True)
             self.assertIn(done.returncode, (0, 3), done.stdout + done.stderr)
             self.output = done.stdout + done.stderr
             figures = json.loads((folder / "material.fit" / "figures.json").read_text())
@@ -34,22 +36,21 @@ class Laws(unittest.TestCase):
 
     def test_large_strains_choose_the_law_of_the_data(self):
         truth = truths.stiffening(0.6)
-        for seed in (1, 2, 3):
-            laws, trials, values = self.choose(truth, seed)
+        for seed in SEEDS:
+            laws, trials, values = self.choose(truth, seed, 0.003)
             self.assertEqual(laws["chosen"], "yeoh", self.output)
             self.assertFalse(trials["neo_hookean"]["as_good"])
             self.assertGreater(trials["neo_hookean"]["evidence_loss"], 20)
             self.assertGreater(laws["strain"], 0.3)
-            self.assertIn("b2", values)
+            self.assertAlmostEqual(values["b2"]["everywhere"]["value"], 1, delta=0.15)
 
     def test_small_strains_do_not_distinguish_laws(self):
         truth = truths.stiffening(0.06)
-        for seed in (1, 2, 3):
-            laws, trials, _ = self.choose(truth, seed)
+        for seed in SEEDS:
+            laws, trials, _ = self.choose(truth, seed, 0.01)
             self.assertEqual(trials[laws["chosen"]]["parameters"], 2, self.output)  # the simplest: E and nu
-            for law in ("neo_hookean", "yeoh", "fung", "gent", "mooney_rivlin", "ogden"):
-                self.assertTrue(trials[law]["ok"], trials[law])
-            self.assertTrue(trials["yeoh"]["as_good"], self.output)
+            for law in ("neo_hookean", "yeoh", "fung", "gent"):
+                self.assertTrue(trials[law]["as_good"], self.output)
             self.assertIn("do not distinguish", laws["text"])
             self.assertLess(laws["strain"], 0.1)
 
