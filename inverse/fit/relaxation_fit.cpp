@@ -13,6 +13,7 @@ namespace aspic {
 namespace {
 
 constexpr double kStrong = 3;      // difference of log evidence with a ratio of 20 to 1 [Kass and Raftery 1995]
+constexpr int kIterations = 40;    // per initial guess
 constexpr double kDistinct = 1.5;  // smallest ratio of two relaxation times
 constexpr double kRatio = 0.3, kRatioSigma = 2;  // prior of the ratios: median, and standard deviation of the logarithm
 constexpr double kSigmas = 1.96;                 // of a 95 % interval
@@ -97,20 +98,25 @@ class RelaxationFitter {
     return {std::move(means), std::move(sigmas)};
   }
 
-  // Relaxation times that are spread over the range, and those of one branch less with another one.
+  // The last fit with another branch, and relaxation times that are spread over the range.
   std::vector<std::vector<double>> starts(int count) const {
     std::vector<std::vector<double>> all;
     const double ratio = decay_of(histories_) / count;
+    if (has_last_fit())
+      for (const double part : {0.2, 0.8}) {
+        std::vector<double>& p = all.emplace_back(candidates_.back().p);
+        p.insert(p.end(), {std::log(0.3 * ratio), std::log(range_.at(part))});
+      }
     for (const double shift : {0.5, 0.25}) {
       std::vector<double>& p = all.emplace_back(std::vector<double>{0});
       for (int b = 0; b < count; ++b) p.insert(p.end(), {std::log(ratio), std::log(range_.at((b + shift) / count))});
     }
-    if (candidates_.empty() || !candidates_.back().failure.empty()) return all;
-    for (const double part : {0.2, 0.8}) {
-      std::vector<double>& p = all.emplace_back(candidates_.back().p);
-      p.insert(p.end(), {std::log(0.3 * ratio), std::log(range_.at(part))});
-    }
     return all;
+  }
+  bool has_last_fit() const { return !candidates_.empty() && candidates_.back().failure.empty(); }
+  // Whether another branch in two places has reduced |r|^2 too little to make its evidence decisive.
+  bool is_hopeless(const Candidate& best) const {
+    return has_last_fit() && best.failure.empty() && candidates_.back().squares - best.squares < 2 * kStrong;
   }
 
   Candidate fitted(int count) {
@@ -119,11 +125,13 @@ class RelaxationFitter {
     HistoryMisfit misfit(body_, histories_, material_, count, options_.equilibrium);
     result_.residuals = misfit.residual_count();
     IndependentPriors priors = prior(count);
-    FitOptions fit_options{.tolerance = 1e-4, .weight = 1, .stop = options_.stop};
+    const FitOptions fit_options{.max_iterations = kIterations, .weight = 1, .stop = options_.stop};
+    int tried = 0;
     for (const std::vector<double>& start : starts(count)) {
+      if (tried++ == 2 && is_hopeless(best)) break;
       const FitReport report = fit(misfit, priors, start, fit_options);
       if (is_stopped()) return best;
-      if (!is_success(report.status)) {
+      if (!is_success(report.status) && report.status != Status::iteration_limit) {
         if (best.p.empty()) best.failure = report.message + (misfit.failure().empty() ? "" : ": " + misfit.failure());
         continue;
       }
