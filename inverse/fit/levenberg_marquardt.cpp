@@ -11,8 +11,8 @@
 namespace aspic {
 namespace {
 
-constexpr double kNegligible = 1e-6;  // decrement, in posterior standard deviations, if no step is found
-constexpr double kNear = 0.01;        // distance from the minimum in standard deviations; cheap for few parameters
+constexpr double kNegligibleDecrement = 1e-6;  // decrement, in posterior standard deviations, if no step is found
+constexpr double kNear = 0.01;  // distance from the minimum in standard deviations; cheap for few parameters
 
 constexpr double kFirstDamping = 1e-3, kMinDamping = 1e-14, kLargestDamping = 1e12;
 constexpr double kUnseen = 1e-14;  // relative to the largest diagonal entry; smaller ones count as 0
@@ -120,7 +120,7 @@ Status levenberg_marquardt(FitRun& run, FitPoint& at, FitGoal& goal) {
     }
     run.note(done, at);
     if (!found && run.is_stopped()) return run.stop_status();
-    if (!found) return decrement <= kNegligible ? Status::round_off : Status::stuck;
+    if (!found) return decrement <= kNegligibleDecrement ? Status::round_off : Status::stuck;
     if (run.options.stop.requested()) return Status::interrupted;
   }
 }

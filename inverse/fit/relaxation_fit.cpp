@@ -12,9 +12,9 @@
 namespace aspic {
 namespace {
 
-constexpr double kStrong = 3;      // difference of log evidence with a ratio of 20 to 1 [Kass and Raftery 1995]
-constexpr int kIterations = 40;    // per initial guess
-constexpr double kDistinct = 1.5;  // smallest ratio of two relaxation times
+constexpr double kStrong = 3;            // difference of log evidence with a ratio of 20 to 1 [Kass and Raftery 1995]
+constexpr int kIterationsPerStart = 40;  // per initial guess
+constexpr double kDistinct = 1.5;        // smallest ratio of two relaxation times
 constexpr double kRatio = 0.3, kRatioSigma = 2;  // prior of the ratios: median, and standard deviation of the logarithm
 constexpr double kSigmas = 1.96;                 // of a 95 % interval
 constexpr double kUndeterminedLog = 1.5;         // standard deviation of a logarithm
@@ -125,7 +125,7 @@ class RelaxationFitter {
     HistoryMisfit misfit(body_, histories_, material_, count, options_.equilibrium);
     result_.residuals = misfit.residual_count();
     IndependentPriors priors = prior(count);
-    const FitOptions fit_options{.max_iterations = kIterations, .weight = 1, .stop = options_.stop};
+    const FitOptions fit_options{.max_iterations = kIterationsPerStart, .weight = 1, .stop = options_.stop};
     int tried = 0;
     for (const std::vector<double>& start : starts(count)) {
       if (tried++ == 2 && is_hopeless(best)) break;
