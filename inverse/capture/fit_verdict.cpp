@@ -11,7 +11,7 @@ namespace {
 
 constexpr double kMissed = 4;                             // standard deviations, root mean square over a group
 constexpr double kDisagree = 1.5;                         // ratio of the stiffnesses implied by two groups
-constexpr double kCoarse = 1;                             // relative error of a force on the mesh: a factor of 2
+constexpr double kCoarseMesh = 1;                         // relative error of a force on the mesh: a factor of 2
 constexpr double kTooManySquares = 2.25;                  // |r|^2 per reading
 constexpr double kPoorPosition = 0.05, kPoorForce = 0.1;  // held-out errors beyond noise, relative to the peak
 constexpr double kWorse = 1.1;                            // ratio of held-out errors, field to one value
@@ -96,7 +96,9 @@ HeldOutErrors beyond_noise(const std::vector<HeldOut>& groups) {
     add(0, group.position_error, group.position_noise, group.peak_motion);
     add(1, group.force_error, group.force_noise, group.peak_force);
   }
-  const auto rms = [&](int what) { return count[what] > 0 ? std::sqrt(squares[what] / count[what]) / largest[what] : -1; };
+  const auto rms = [&](int what) {
+    return count[what] > 0 ? std::sqrt(squares[what] / count[what]) / largest[what] : -1;
+  };
   return {rms(0), rms(1)};
 }
 
@@ -128,7 +130,7 @@ class Reasons {
 
   void add_others() {
     for (size_t c = 0; c < outcome_.cases.size(); ++c)
-      if (outcome_.cases[c].relative_mesh_error > kCoarse) {
+      if (outcome_.cases[c].relative_mesh_error > kCoarseMesh) {
         add("mesh_too_coarse", "'" + data_.experiment.cases[c].name + "': the mesh changes the force by a factor of " +
                                    three_digits(1 + outcome_.cases[c].relative_mesh_error) +
                                    "; refine it around the indenter (option refine) or use a wider one");

@@ -145,6 +145,14 @@ class Relaxation(unittest.TestCase):
         self.assertIn("cases.csv:2", self.output)
         self.assertIn("has one time only", self.output)
 
+    def test_histories_need_times(self):
+        def write(folder):
+            write_hold(folder, TWO, 0.005, 1)
+            text = (folder / "cases.csv").read_text()
+            (folder / "cases.csv").write_text(text.replace("case,group,time", "case,group,moment"))
+        self.fit(write, code=2)
+        self.assertIn('steady = "history" needs cases with a time', self.output)
+
 
 if __name__ == "__main__":
     unittest.main()
