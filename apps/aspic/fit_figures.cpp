@@ -6,9 +6,9 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
-#include "capture/left_out.h"
 #include "aspic/law_table.h"
 #include "aspic/relaxation_results.h"
+#include "capture/left_out.h"
 #include "fit/bickel.h"
 #include "fit/quantity.h"
 #include "io/atomic_file.h"
