@@ -25,6 +25,7 @@ struct FitPlan {
   // Number of parts of constant stiffness that replace a field per tet if they fit the data as well; < 0: the smallest
   // sufficient number, up to kMaxParts; 0: none.
   int parts = 0;
+  bool robust = false;       // robust_loss.h instead of squares
   bool mesh_errors = false;  // correct measurements by the discretization error relative to a finer mesh
   bool law_errors = false;   // include the choice of the law in standard deviations
 };

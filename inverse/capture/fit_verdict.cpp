@@ -96,7 +96,9 @@ HeldOutErrors beyond_noise(const std::vector<HeldOut>& groups) {
     add(0, group.position_error, group.position_noise, group.peak_motion);
     add(1, group.force_error, group.force_noise, group.peak_force);
   }
-  const auto rms = [&](int what) { return count[what] > 0 ? std::sqrt(squares[what] / count[what]) / largest[what] : -1; };
+  const auto rms = [&](int what) {
+    return count[what] > 0 ? std::sqrt(squares[what] / count[what]) / largest[what] : -1;
+  };
   return {rms(0), rms(1)};
 }
 
@@ -119,7 +121,9 @@ class Reasons {
 
   void add_against_field() {
     if (!outcome_.mesh_errors_settle)
-      add("mesh_not_settled", "the mesh correction and the material do not converge: refine the mesh (option refine)");
+      add("mesh_not_settled",
+          "the corrections of the data for mesh, systematic errors or outliers and the material do not converge: "
+          "refine the mesh (option refine)");
     for (const std::string& where : outcome_.at_bound)
       add("at_bound", where + " is at its bound: the readings do not determine it");
     add_missed_groups();
