@@ -121,6 +121,23 @@ Json values_of(const FitOutcome& outcome) {
   return values;
 }
 
+Json errors_of(const FitOutcome& outcome) {
+  Json errors = Json::array();
+  for (const EstimatedError& e : outcome.errors) {
+    Json error = {{"name", e.name}, {"unit", e.unit}, {"value", e.value}, {"prior_deviation", e.prior_sigma}};
+    if (e.sigma >= 0) error["deviation"] = e.sigma, error["determined_by"] = e.is_from_data() ? "data" : "prior";
+    errors.push_back(std::move(error));
+  }
+  return errors;
+}
+
+Json outliers_of(const FitOutcome& outcome) {
+  Json outliers = Json::array();
+  for (const Outlier& o : outcome.outliers)
+    outliers.push_back({{"case", o.load_case}, {"reading", o.reading}, {"weight", o.weight}});
+  return outliers;
+}
+
 }  // namespace
 
 FitFigures figures_of(const DataSet& data, const FitOutcome& outcome, const std::filesystem::path& truth,
@@ -151,6 +168,8 @@ void write_figures(const std::filesystem::path& file, const FitOutcome& outcome,
                {"squares", 2 * report.misfit},
                {"values", values_of(outcome)},
                {"warnings", outcome.warnings}};
+  if (!outcome.errors.empty()) json["errors"] = errors_of(outcome);
+  if (outcome.plan.robust) json["outliers"] = outliers_of(outcome);
   if (outcome.uniform) json["squares_of_one_value"] = 2 * outcome.uniform->misfit;
   if (outcome.posterior && outcome.posterior->ok)
     json["posterior"] = {{"informed", outcome.posterior->informed},

@@ -73,6 +73,25 @@ void print_held_out(std::FILE* stream, const FitOutcome& outcome) {
                two_digit_percent(worst->relative_position_error()), two_digit_percent(worst->relative_force_error()));
 }
 
+void print_errors(std::FILE* stream, const FitOutcome& outcome) {
+  std::string head = "errors";
+  for (const EstimatedError& e : outcome.errors) {
+    fmt::print(stream, "{:<10} {:<28} {} +- {}, {}\n", head, e.name, value_text(e.value, e.unit),
+               e.sigma < 0 ? "unknown" : value_text(e.sigma, e.unit),
+               e.is_from_data() ? "determined by the data" : "determined by its prior");
+    head.clear();
+  }
+}
+
+void print_outliers(std::FILE* stream, const FitOutcome& outcome) {
+  constexpr size_t kMost = 10;
+  for (size_t i = 0; i < std::min(outcome.outliers.size(), kMost); ++i)
+    fmt::print(stream, "{:<10} {} in '{}' counts {:.2g}\n", i == 0 ? "outliers" : "", outcome.outliers[i].reading,
+               outcome.outliers[i].load_case, outcome.outliers[i].weight);
+  if (outcome.outliers.size() > kMost)
+    fmt::print(stream, "           and {} more, see figures.json\n", outcome.outliers.size() - kMost);
+}
+
 }  // namespace
 
 std::string value_text(double value, const std::string& unit) {
@@ -91,6 +110,8 @@ void print_fit(std::FILE* stream, const DataSet& data, const FitOutcome& outcome
   print_misfit(stream, outcome);
   print_values(stream, outcome);
   print_parts(stream, outcome);
+  print_errors(stream, outcome);
+  print_outliers(stream, outcome);
   if (outcome.posterior && outcome.posterior->ok)
     fmt::print(stream, "learned    the data determine {:.1f} of {} directions of the material\n",
                outcome.posterior->informed, outcome.parameter_count);

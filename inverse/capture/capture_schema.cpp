@@ -28,6 +28,8 @@ void add_document(Schema& s) {
       {key("version", kInteger, "of this format", Range{.min = 1, .max = 1}, kRequired),
        key("name", kText, "of the data set; default: the folder's name"),
        key("mesh", kText, "tet mesh of the body at rest", kRequired),
+       key("mesh_gravity", kNumbers,
+           "acceleration of gravity when the mesh was scanned; default: the mesh is unloaded", Units{"gravity"}),
        key("order", kInteger, "of its tets; default: 2 up to 2000 tets, 1 above", Range{.min = 1, .max = 2}),
        key("fixed", kExpression | kTable | kIntegers, "held vertices; default: none", Members{"where"}),
        key("density", kNumber | kExpression | kTable, "for gravity", Units{"kg/m^3"}, Range{.min = 0}, Members{"field"},
@@ -50,6 +52,7 @@ void add_document(Schema& s) {
        key("units", kTable, "of the tables", Members{"units"}, Usual{"{}"}),
        key("columns", kTable, "names of columns", Members{"columns"}, Usual{"{}"}),
        key("deviation", kTable, "of readings", Members{"deviation"}, Usual{"{}"}),
+       key("errors", kTable, "standard deviations of systematic errors", Members{"errors"}, Usual{"{}"}),
        key("force_of", kText, "whose force on the other was measured", Choices{{"tip", "body"}}, Usual{"\"tip\""}),
        key("tip", kTables, "tips of probes", Members{"tip"}),
        key("grip", kTables, "clamps of a rig", Members{"grip"}),
@@ -64,7 +67,9 @@ void add_indenters_and_patches(Schema& s) {
        key("contact", kText, "bonded: glued on at the touch", Choices{{"sliding", "bonded"}}, Usual{"\"sliding\""}),
        key("radius", kNumber, "of the tip", Units{"length"}, kPositive, kRequired),
        key("stiffness", kNumber, "of its elastic layer; default: far above the estimated stiffness of the body",
-           Units{"Pa/m"}, kPositive)});
+           Units{"Pa/m"}, kPositive),
+       key("stiffness_deviation", kNumber | kText, "of the logarithm of a given stiffness", kNotNegative,
+           Choices{{"unknown"}}, Usual{"0.0"})});
   add_keys(s, "grip",
            {key("name", kText, "as the table of cases calls it", Usual{"\"grip\""}),
             key("where", kExpression | kTable | kIntegers, "vertices that it moves", kRequired, Members{"where"}),
@@ -84,6 +89,17 @@ void add_units(Schema& s) {
            {key("position", kNumber, "of positions", Units{"length"}, kPositive),
             key("force", kNumber, "of forces", Units{"force"}, kPositive),
             key("torque", kNumber, "of torques", Units{"torque"}, kPositive)});
+}
+
+void add_errors(Schema& s) {
+  add_keys(s, "errors",
+           {key("position", kNumber, "of an indenter or grip, along x, y and z, per group", Units{"length"}, kPositive),
+            key("rotation", kNumber, "of an indenter or grip, about x, y and z, per group", Units{"angle"}, kPositive),
+            key("backlash", kNumber, "lost motion along the way of an indenter or grip, per session", Units{"length"},
+                kPositive),
+            key("tare", kNumber, "offset of the force, along x, y and z, per session", Units{"force"}, kPositive),
+            key("force_scale", kNumber, "relative, of forces and torques, per session", kPositive),
+            key("length_scale", kNumber, "relative, of the motions of markers, per session", kPositive)});
 }
 
 void add_columns(Schema& s) {
@@ -114,12 +130,12 @@ const std::vector<std::string>& marker_columns() {
 
 const std::vector<std::string>& case_columns() {
   static const std::vector<std::string> names = {
-      "case",        "group",       "frame",         "time",       "grip",       "move_x",     "move_y",    "move_z",
-      "tip",         "touch_x",     "touch_y",       "touch_z",    "axis_x",     "axis_y",     "axis_z",    "center_x",
-      "center_y",    "center_z",    "depth",         "rotation_x", "rotation_y", "rotation_z", "gravity_x", "gravity_y",
-      "gravity_z",   "pressure",    "dead_pressure", "patch",      "force",      "force_x",    "force_y",   "force_z",
-      "force_sd",    "force_sd_x",  "force_sd_y",    "force_sd_z", "torque_x",   "torque_y",   "torque_z",  "torque_sd",
-      "torque_sd_x", "torque_sd_y", "torque_sd_z"};
+      "case",      "group",       "session",     "frame",         "time",       "grip",       "move_x",     "move_y",
+      "move_z",    "tip",         "touch_x",     "touch_y",       "touch_z",    "axis_x",     "axis_y",     "axis_z",
+      "center_x",  "center_y",    "center_z",    "depth",         "rotation_x", "rotation_y", "rotation_z", "gravity_x",
+      "gravity_y", "gravity_z",   "pressure",    "dead_pressure", "patch",      "force",      "force_x",    "force_y",
+      "force_z",   "force_sd",    "force_sd_x",  "force_sd_y",    "force_sd_z", "torque_x",   "torque_y",   "torque_z",
+      "torque_sd", "torque_sd_x", "torque_sd_y", "torque_sd_z"};
   return names;
 }
 
@@ -139,6 +155,7 @@ const Schema& capture_schema() {
     add_document(s);
     add_indenters_and_patches(s);
     add_units(s);
+    add_errors(s);
     add_columns(s);
     add_sections_of_scenes(s);
     return s;

@@ -46,7 +46,9 @@ class CaseReader {
     const std::string number = std::to_string(data_.experiment.cases.size() + 1);
     load.name = table_.text("case").empty() ? "case " + number : table_.text("case");
     load.group = table_.text("group").empty() ? load.name : table_.text("group");
-    load.gravity = table_.vector("gravity_", settings_.unit("gravity")).value_or(Vec3d{});
+    load.session = table_.text("session");
+    load.gravity =
+        table_.vector("gravity_", settings_.unit("gravity")).value_or(data_.experiment.scan_gravity.value_or(Vec3d{}));
     read_pressure(load);
     read_indenter(load);
     read_grip(load);
@@ -102,6 +104,8 @@ class CaseReader {
     const Indenter* indenter = named(scope_.indenters, table_.text("tip"), "tip", "tip");
     if (!indenter) return;
     load.indenter = *indenter;
+    load.tip = table_.text("tip").empty() ? scope_.indenters.begin()->first : table_.text("tip");
+    load.layer_sigma = scope_.layer_sigmas.at(load.tip);
     if (const auto last = touch_of_.find(load.group); last != touch_of_.end() && !touch && !(center && depth)) {
       touch = last->second.center;
       if (!axis) axis = last->second.axis;
@@ -208,6 +212,7 @@ class CaseReader {
           "the column force is the component along the motion of the grip, which only rotates; give "
           "force_x, force_y, force_z");
     const Vec3d a = unit(axis);
+    load.gauge = a;
     load.force = force * a;
     for (int i = 0; i < 3; ++i)
       load.force_sigma[i] =

@@ -12,7 +12,9 @@
 #include "capture/patch_table.h"
 #include "capture/recorded_positions.h"
 #include "capture/rigid_motion.h"
+#include "capture/scan_gravity.h"
 #include "capture/settings.h"
+#include "capture/stated_errors.h"
 #include "capture/surface_projection.h"
 #include "capture/units.h"
 #include "capture/unstated_values.h"
@@ -61,12 +63,13 @@ class DataSetReader {
     read_grips();
     read_patches(surface);
     if (settings_.find("forces")) forces_ = read_force_series(settings_, errors_, data_.notes);
-    read_cases(
-        settings_,
-        {indenters_, grips_, patches_, surface, forces_ ? &*forces_ : nullptr, recorded_ ? &*recorded_ : nullptr},
-        errors_, data_);
+    read_cases(settings_,
+               {indenters_, layer_sigmas_, grips_, patches_, surface, forces_ ? &*forces_ : nullptr,
+                recorded_ ? &*recorded_ : nullptr},
+               errors_, data_);
     read_positions();
     errors_.finish();
+    data_.experiment.errors = read_systematic_errors(settings_, data_.experiment.cases);
     const ForceSeries* series = forces_ ? &*forces_ : nullptr;
     if (has_histories(settings_)) add_end_forces(series, data_);
     choose_sigmas(data_);
@@ -102,6 +105,8 @@ class DataSetReader {
                                                    {user_mesh_, settings_.files(), "density", painted});
     data_.experiment.density = data_.numbering.tet.from_user(density);
     read_fixed();
+    if (const Value* gravity = settings_.find("mesh_gravity"))
+      data_.experiment.scan_gravity = read_scan_gravity(settings_, *gravity);
   }
 
   int order() const {
@@ -370,6 +375,7 @@ class DataSetReader {
                         t["contact"].text() == "bonded" ? IndenterContact::bonded : IndenterContact::sliding,
                         settings_.unit("length") * t["radius"].number(), 0};
       if (const Value* k = t.find("stiffness")) indenter.stiffness = k->number();
+      layer_sigmas_.emplace(t["name"].text(), read_layer_sigma(t));
       if (!indenters_.try_emplace(t["name"].text(), indenter).second)
         throw error_at(t["name"].place, "name = " + toml_string(t["name"].text()) + " is used by another tip");
     }
@@ -482,6 +488,7 @@ class DataSetReader {
   std::vector<Vec3d> gap_;                             // offset of each marker at rest from its surface point [m]
   std::map<int, std::pair<Triangle, int>> corner_of_;  // a triangle of each vertex of the surface, and which corner
   std::map<std::string, Indenter> indenters_;
+  std::map<std::string, std::optional<double>> layer_sigmas_;
   std::map<std::string, Grip> grips_;
   std::map<std::string, std::vector<Triangle>> patches_;
 };

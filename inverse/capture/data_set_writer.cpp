@@ -3,6 +3,7 @@
 #include "base/error.h"
 #include "capture/case_table.h"
 #include "capture/data_set.h"
+#include "capture/stated_errors.h"
 #include "capture/surface_projection.h"
 #include "io/atomic_file.h"
 #include "io/csv.h"
@@ -100,12 +101,12 @@ class DataSetWriter {
   }
 
   void write_cases() const {
-    Csv csv({"case",        "group",      "grip",          "move_x",     "move_y",     "move_z",    "tip",
-             "touch_x",     "touch_y",    "touch_z",       "axis_x",     "axis_y",     "axis_z",    "center_x",
-             "center_y",    "center_z",   "rotation_x",    "rotation_y", "rotation_z", "gravity_x", "gravity_y",
-             "gravity_z",   "pressure",   "dead_pressure", "patch",      "force_x",    "force_y",   "force_z",
-             "force_sd_x",  "force_sd_y", "force_sd_z",    "torque_x",   "torque_y",   "torque_z",  "torque_sd_x",
-             "torque_sd_y", "torque_sd_z"});
+    Csv csv({"case",        "group",       "session",    "grip",          "move_x",     "move_y",     "move_z",
+             "tip",         "touch_x",     "touch_y",    "touch_z",       "axis_x",     "axis_y",     "axis_z",
+             "center_x",    "center_y",    "center_z",   "rotation_x",    "rotation_y", "rotation_z", "gravity_x",
+             "gravity_y",   "gravity_z",   "pressure",   "dead_pressure", "patch",      "force_x",    "force_y",
+             "force_z",     "force_sd_x",  "force_sd_y", "force_sd_z",    "torque_x",   "torque_y",   "torque_z",
+             "torque_sd_x", "torque_sd_y", "torque_sd_z"});
     for (const LoadCase& load : data_.experiment.cases) csv.add(row_of(load));
     csv.write(folder_ / "cases.csv");
   }
@@ -113,7 +114,7 @@ class DataSetWriter {
   CsvRow row_of(const LoadCase& load) const {
     using Maybe = std::optional<Vec3d>;
     CsvRow row;
-    row.add(load.name).add(load.group).add(load.grip ? grip_name(*load.grip) : "");
+    row.add(load.name).add(load.group).add(load.session).add(load.grip ? grip_name(*load.grip) : "");
     add(row, load.grip ? Maybe(load.grip->displacement) : std::nullopt);
     row.add(load.indenter ? indenter_name(*load.indenter) : "");
     add(row, load.indenter ? Maybe(load.touch.center) : std::nullopt);
@@ -172,17 +173,29 @@ class DataSetWriter {
     return "[" + list + "]";
   }
 
+  std::string layer_sigma_text(const Indenter& indenter) const {
+    for (const LoadCase& load : data_.experiment.cases)
+      if (load.indenter && same(*load.indenter, indenter) && load.layer_sigma)
+        return inline_toml({*load.layer_sigma, {}});
+    return "\"unknown\"";
+  }
+
   void write_settings() const {
     std::string text =
         "# Measurements, in SI units: docs/capture_format.md\nversion = 1\nname = " + toml_string(data_.name) +
         "\nmesh = \"rest.msh\"" + (data_.experiment.mesh.mids.empty() ? "\norder = 1" : "\norder = 2") +
         "\ndensity = " + density_text() + "\nfixed = " + list_of(data_.experiment.fixed) + "\n";
+    if (const std::optional<Vec3d>& g = data_.experiment.scan_gravity)
+      text +=
+          "mesh_gravity = [" + number_text((*g)[0]) + ", " + number_text((*g)[1]) + ", " + number_text((*g)[2]) + "]\n";
+    if (!data_.experiment.errors.empty()) text += "errors = " + errors_text(data_.experiment.errors) + "\n";
     for (const Indenter& indenter : indenters_)
       text += "\n[[tip]]\nname = " + toml_string(indenter_name(indenter)) +
               "\nshape = " + (indenter.shape == IndenterShape::disc ? "\"disc\"" : "\"sphere\"") +
               "\ncontact = " + (indenter.contact == IndenterContact::bonded ? "\"bonded\"" : "\"sliding\"") +
               "\nradius = " + inline_toml({indenter.radius, {}}) +
-              "\nstiffness = " + inline_toml({indenter.stiffness, {}}) + "\n";
+              "\nstiffness = " + inline_toml({indenter.stiffness, {}}) +
+              "\nstiffness_deviation = " + layer_sigma_text(indenter) + "\n";
     for (const Grip& grip : grips_)
       text += "\n[[grip]]\nname = " + toml_string(grip_name(grip)) + "\nwhere = " + list_of(grip.vertices) +
               "\ncenter = [" + number_text(grip.center[0]) + ", " + number_text(grip.center[1]) + ", " +

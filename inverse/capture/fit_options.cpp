@@ -45,6 +45,8 @@ const Schema& fit_options_schema() {
          key("refine", kInteger, "simulates with every tet in 8^refine", Range{.min = 0, .max = 4}, Usual{"0"}),
          key("leave_out", kText | kNames, "groups of cases to predict instead of fitting", Usual{"[]"}),
          key("baselines", kBoolean, "predicts leave_out by simpler models as well", Usual{"false"}),
+         key("loss", kText, "squares, or robust: outliers count less", Choices{{"squares", "robust"}},
+             Usual{"\"squares\""}),
          key("mesh_errors", kBoolean, "corrects the discretization error with a finer mesh", Usual{"true"}),
          key("law_errors", kBoolean, "includes the choice of the law in standard deviations", Usual{"true"}),
          key("uncertainty", kBoolean, "computes standard deviations and the next poke", Usual{"true"}),
@@ -75,6 +77,7 @@ bool read_fit_options(Table document, const std::string& source, FitPlan& plan) 
   plan.parts = parts_of(option("parts"));
   plan.branches = branches_of(option("branches"));
   plan.refine = option("refine").integer();
+  plan.robust = option("loss").text() == "robust";
   plan.mesh_errors = option("mesh_errors").boolean();
   plan.law_errors = option("law_errors").boolean();
   plan.uncertainty = option("uncertainty").boolean();

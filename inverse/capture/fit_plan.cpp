@@ -150,6 +150,10 @@ FitPlan completed(FitPlan plan, const Experiment& experiment) {
   const bool is_field = std::any_of(plan.parameters.begin(), plan.parameters.end(),
                                     [](const FitParameter& u) { return u.parameterization == Parameterization::tets; });
   if (is_field && plan.mesh_errors && plan.fit.weight_rule == "auto") plan.fit.weight_rule = "evidence";
+  if (is_field && experiment.scan_gravity)
+    throw InvalidInput("the mesh was scanned under load (mesh_gravity), which allows " +
+                       std::to_string(Misfit::kMaxUnloaded) +
+                       " fitted values and no field of tets; use --unknown young=uniform, regions or handles:10");
   check_refinement(plan, experiment.mesh);
   const std::vector<std::string> groups = groups_of(experiment);
   for (const std::string& group : plan.left_out)
@@ -183,6 +187,7 @@ std::string text_of(const FitPlan& plan) {
   add("parts", std::to_string(plan.parts));
   add("branches", std::to_string(plan.branches));
   add("refine", std::to_string(plan.refine));
+  if (plan.robust) add("loss", quoted("robust"));
   add("mesh_errors", plan.mesh_errors ? "true" : "false");
   add("law_errors", plan.law_errors ? "true" : "false");
   add("equilibrium.tolerance", number_text(plan.equilibrium.tolerance));
@@ -220,7 +225,16 @@ std::string fingerprint_of(const Experiment& e) {
     for (const std::optional<Vec3d>* reading : {&c.force, &c.torque})
       add_vector(reading->value_or(Vec3d{{1e300, 0, 0}}));
     add_vector(c.force_sigma), add_vector(c.torque_sigma);
+    if (c.layer_sigma) hash.add("layer", 5), hash.add(&*c.layer_sigma, sizeof *c.layer_sigma);
+    if (c.gauge) hash.add("gauge", 5), add_vector(*c.gauge);
   }
+  for (const SystematicError& error : e.errors) {
+    const double numbers[] = {static_cast<double>(error.kind), static_cast<double>(error.axis), error.sigma};
+    add(error.scope), hash.add(numbers, sizeof numbers);
+  }
+  if (e.scan_gravity) hash.add("scan", 4), add_vector(*e.scan_gravity);
+  if (!e.errors.empty())
+    for (const LoadCase& c : e.cases) add(c.session), add(c.tip);
   return hash.text();
 }
 

@@ -26,6 +26,7 @@ struct FitPlan {
   // sufficient number, up to kMaxParts; 0: none.
   int parts = 0;
   int branches = 0;          // number of Maxwell branches for data with histories; 0: automatic, < 0: none
+  bool robust = false;       // robust_loss.h instead of squares
   bool mesh_errors = false;  // correct measurements by the discretization error relative to a finer mesh
   bool law_errors = false;   // include the choice of the law in standard deviations
 };

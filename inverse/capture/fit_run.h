@@ -59,6 +59,22 @@ struct FoundParts {
   double squares = 0;          // |r|^2 of the kept division, or of the last one tried
 };
 
+// Estimate of a systematic error, in SI units.
+struct EstimatedError {
+  std::string name, unit;  // "tare z", "N"
+  double value = 0;
+  double sigma = -1;  // posterior standard deviation; < 0: unknown
+  double prior_sigma = 0;
+
+  bool is_from_data() const { return sigma >= 0 && 2 * sigma * sigma < prior_sigma * prior_sigma; }
+};
+
+// Reading with a large error, which the robust loss weights less.
+struct Outlier {
+  std::string load_case, reading;  // reading: name of a marker, "force" or "torque"
+  double weight = 1;
+};
+
 // Reason why a material is not reliable.
 struct FitReason {
   std::string name, text;  // "group_missed", "the forces of 'poke 2' are missed by 12 standard deviations"
@@ -73,8 +89,10 @@ struct FitOutcome {
   std::vector<CaseOutcome> cases;        // one per case of the data
   std::vector<FitReason> against_field;  // why one value replaces the requested field; empty: it does not
   bool mesh_errors_settle = true;        // false: they did not converge with the material
-  std::vector<std::string> at_bound;     // quantities: "young in 3 tets"
-  double mesh_error = -1;  // error of the positions: root mean square over the largest motion; < 0: unknown
+  std::vector<EstimatedError> errors;
+  std::vector<Outlier> outliers;
+  std::vector<std::string> at_bound;  // quantities: "young in 3 tets"
+  double mesh_error = -1;             // error of the positions: root mean square over the largest motion; < 0: unknown
   std::optional<Posterior> posterior;
   std::optional<FoundParts> parts;
   std::optional<CrossValidation> held_out;

@@ -94,7 +94,9 @@ TEST(FitRun, ShowsThePredictionThatTheMisfitCounts) {
     add(outcome.cases[c].wrench.force, *load.force, load.force_sigma);
   }
   EXPECT_GT(outcome.report.misfit, 100);
-  EXPECT_NEAR(squares, 2 * outcome.report.misfit, 1e-6 * squares);
+  // The misfit also counts the deviations of the layers from their common stiffness.
+  EXPECT_LE(squares, 2 * outcome.report.misfit * (1 + 1e-9));
+  EXPECT_NEAR(squares, 2 * outcome.report.misfit, 1e-4 * squares);
 }
 
 // Forces of one indentation belong to another body, so that no field explains all three.

@@ -121,7 +121,9 @@ class Reasons {
 
   void add_against_field() {
     if (!outcome_.mesh_errors_settle)
-      add("mesh_not_settled", "the mesh correction and the material do not converge: refine the mesh (option refine)");
+      add("mesh_not_settled",
+          "the corrections of the data for mesh, systematic errors or outliers and the material do not converge: "
+          "refine the mesh (option refine)");
     for (const std::string& where : outcome_.at_bound)
       add("at_bound", where + " is at its bound: the readings do not determine it");
     add_missed_groups();

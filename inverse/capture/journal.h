@@ -35,6 +35,7 @@ class Journal : public LeastSquares {
   void multiply(std::span<const double> dp, std::span<double> dr) override;
   void multiply_transposed(std::span<const double> w, std::span<double> pbar) override;
   int nuisance_count() const override { return model_.nuisance_count(); }
+  NuisancePrior nuisance_prior(int k) const override { return model_.nuisance_prior(k); }
   void nuisance(int k, std::span<double> dr) override;
   int common_error_count() const override { return model_.common_error_count(); }
   void common_error(int k, std::span<double> dr) const override { model_.common_error(k, dr); }

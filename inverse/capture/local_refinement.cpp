@@ -125,6 +125,8 @@ class LocalRefinement {
     if (mesh_.parts().size() == corners_.tets.size()) return coarse_;
     put_mesh();
     fine_.fixed = vertices_in(fixed_.front());
+    fine_.errors = coarse_.errors;
+    fine_.scan_gravity = coarse_.scan_gravity;
     const SurfaceProjection surface(fine_.mesh);
     for (const SurfacePoint& marker : coarse_.markers)
       fine_.markers.push_back(surface.nearest(position(marker, coarse_.mesh.rest)).point);

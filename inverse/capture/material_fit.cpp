@@ -12,7 +12,8 @@ namespace aspic {
 namespace {
 
 constexpr int kPasses = 8;
-constexpr double kSettled = 1e-3;       // relative change of a value
+constexpr double kSettled = 1e-3;  // relative change of a value
+constexpr double kSettledCorrection = 0.02;
 constexpr double kSettledField = 0.03;  // root mean square of more than kFewValues, whose noise is larger
 constexpr size_t kFewValues = 50;
 // Initial guesses to try if the first is so soft that the loads crush the body.
@@ -73,7 +74,7 @@ MaterialFit::MaterialFit(const DataSet& data, const FitPlan& plan, const FitMemo
 }
 
 FitOutcome MaterialFit::run() {
-  if (is_field() || has_model_errors()) {
+  if (is_field() || has_model_errors() || has_corrections()) {
     if (!fit_single_values("uniform")) return std::move(outcome_);
     if (learn_model_errors() && !fit_single_values("uniform_corrected")) return std::move(outcome_);
     if (!is_field()) outcome_.uniform.reset();
@@ -104,10 +105,16 @@ bool MaterialFit::fit_single_values(const std::string& name) {
                    {memory_, name + suffix(factor), fingerprint_});
     const FitReport report = fit_stage(FitStage::uniform, model, options);
     outcome_.uniform = outcome_.report = report;
-    if (!has_failed(report)) return has_single_values(model, report);
-    outcome_.failure = describe_failure(data_, report, model.misfit.failure());
+    if (has_failed(report)) {
+      outcome_.failure = describe_failure(data_, report, model.misfit.failure());
+      continue;
+    }
+    if (!has_single_values(model, report)) return false;
+    break;
   }
-  return false;
+  if (!outcome_.failure.empty()) return false;
+  use_corrections();
+  return true;
 }
 
 bool MaterialFit::has_single_values(FitModel& model, const FitReport& report) {
@@ -116,7 +123,10 @@ bool MaterialFit::has_single_values(FitModel& model, const FitReport& report) {
   material_ = model.map.parameters(report.p);
   outcome_.failure = describe_runaway(data_, material_.front());
   if (!outcome_.failure.empty()) return false;
-  if (report.status != Status::interrupted) return true;
+  if (report.status != Status::interrupted) {
+    correct_data(model, report.p);
+    return true;
+  }
   describe(model, report.p);
   return false;
 }
@@ -171,12 +181,12 @@ void MaterialFit::fit_until_mesh_errors_settle(std::optional<FitModel>& model) {
                   StoredModel{memory_, name, fingerprint_});
     outcome_.report = fit_stage(is_one_value ? FitStage::uniform : FitStage::field, *model, options, start);
     const std::vector<double>& p = outcome_.report.p;
-    if (!has_model_errors() || !is_success(outcome_.report.status)) return;
-    const double change = change_between(start, p);
-    if (pass > 0 && change < (is_many(p) ? kSettledField : kSettled)) return;
+    if ((!has_model_errors() && !has_corrections()) || !is_success(outcome_.report.status)) return;
+    const double change = change_between(start, p), corrections = correct_data(*model, p);
+    if (pass > 0 && change < (is_many(p) ? kSettledField : kSettled) && corrections < kSettledCorrection) return;
     if (pass == kPasses) {
       outcome_.mesh_errors_settle = false;
-      return add_warnings({"discretization error and material do not converge: after " + std::to_string(kPasses) +
+      return add_warnings({"corrections of the data and material do not converge: after " + std::to_string(kPasses) +
                            " rounds it still changes by " + std::to_string(change) +
                            " (of log E); refine the mesh (option refine)"});
     }
@@ -184,6 +194,7 @@ void MaterialFit::fit_until_mesh_errors_settle(std::optional<FitModel>& model) {
     start = p;
     material_ = model->map.parameters(p);
     model.reset();
+    use_corrections();
     learn_model_errors();  // otherwise the last errors remain
   }
 }

@@ -73,6 +73,14 @@ class MaterialFit {
   void predict_group(const std::string& group, const ParameterMap& map, std::span<const double> p,
                      const UsePrediction& use);
 
+  // material_fit_corrections.cpp: systematic errors and weights of readings. correct_data() computes them for p and
+  // returns their largest change; use_corrections() applies them to the data.
+  bool has_corrections() const;
+  double correct_data(FitModel& model, std::span<const double> p);
+  void use_corrections();
+  void list_errors(WithUncertainLayers& about_fit, std::span<const double> p);
+  void list_outliers();
+
   // material_fit_parts.cpp: values in parts if requested and supported by the data; otherwise those of the field
   std::vector<double> divided(FitModel& model);
   std::vector<double> keep(const Parts& parts, const ParameterMap& map, int unknown, FoundParts& found);
@@ -89,6 +97,8 @@ class MaterialFit {
   const FitMemory& memory_;
   const FitCallbacks& callbacks_;
   SimulatedData simulated_;
+  std::vector<double> corrected_errors_;
+  std::vector<CaseWeights> corrected_weights_;
   std::vector<MaterialParameters> material_;  // last fitted parameters
   std::string fingerprint_;
   FitOutcome outcome_;

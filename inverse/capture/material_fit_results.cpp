@@ -10,7 +10,7 @@ namespace {
 
 constexpr double kLearnt = 1;  // number of determined directions below which the data are uninformative
 
-// Prediction that r is computed from, with the layer stiffness implied by the readings.
+// Prediction for residuals r at the estimated systematic errors and layer stiffness.
 void put_layers_in(std::span<const double> r, const LoadCase& fitted, CasePrediction& shown) {
   auto residual = r.begin();
   const auto put = [&](const Vec3d& reading, const Vec3d& sigma, Vec3d& to) {
@@ -39,6 +39,7 @@ void MaterialFit::learn_uncertainty(FitModel& model) {
         {"the data hardly determine how the stiffness varies: the standard deviations are those of the "
          "prior (--unknown young=uniform fits one value)"});
   }
+  list_errors(about_fit, report.p);
   add_warnings(outcome_.posterior->warnings);
 }
 
@@ -58,7 +59,9 @@ void MaterialFit::describe(FitModel& model, std::span<const double> p) {
     outcome_.report.misfit = dot(r, r) / 2;
     if (const std::string worst = describe_worst_row(data_, plan_.left_out, model.misfit, r); !worst.empty())
       add_warnings({worst});
+    about_fit.errors().apply_transposed(r);
   }
+  list_outliers();
   int fitted = 0;
   for (size_t c = 0; c < outcome_.cases.size(); ++c) {
     CaseOutcome& outcome = outcome_.cases[c];
@@ -69,7 +72,7 @@ void MaterialFit::describe(FitModel& model, std::span<const double> p) {
     CasePrediction prediction = model.misfit.prediction(fitted++);
     if (!ok) continue;
     put_layers_in(std::span(r).subspan(first, count), load, prediction);
-    prediction = simulated_.on_finer_mesh(c, prediction);
+    prediction = simulated_.as_read_on_finer_mesh(c, prediction);
     outcome.ok = true;
     outcome.markers = std::move(prediction.markers);
     outcome.wrench = prediction.wrench;
@@ -90,7 +93,7 @@ void MaterialFit::predict_group(const std::string& group, const ParameterMap& ma
   int own = 0;
   for (size_t c = 0; c < data_.experiment.cases.size(); ++c)
     if (data_.experiment.cases[c].group == group)
-      use(outcome_.cases[c], simulated_.on_finer_mesh(c, misfit.prediction(own++)));
+      use(outcome_.cases[c], simulated_.as_read_on_finer_mesh(c, misfit.prediction(own++)));
 }
 
 void MaterialFit::predict_left_out(const ParameterMap& map, std::span<const double> p) {
@@ -124,7 +127,8 @@ CrossValidation MaterialFit::cross_validated(FitModel& model, const FitReport& r
     begin(FitStage::cross_validation,
           "'" + name + "' is held out (" + std::to_string(group + 1) + " of " + std::to_string(groups) + ")");
   };
-  return cross_validate(simulated_.fitted(), model.map, *model.prior, report, {options, plan_.equilibrium, observe});
+  return cross_validate(simulated_.fitted(), model.map, *model.prior, report,
+                        {options, plan_.equilibrium, observe, &simulated_.all()});
 }
 
 // Baseline for a field.

@@ -6,6 +6,7 @@
 #include "capture/local_refinement.h"
 #include "capture/surface_projection.h"
 #include "fit/law_errors.h"
+#include "fit/systematic_errors.h"
 
 namespace aspic {
 namespace {
@@ -19,9 +20,43 @@ bool is_refined_locally(const Experiment& data, const FitPlan& plan) {
 
 SimulatedData::SimulatedData(const Experiment& data, const FitPlan& plan)
     : left_out_(plan.left_out),
-      simulated_(refined(is_refined_locally(data, plan) ? locally_refined(data) : data, plan.refine)),
-      corrected_(simulated_),
-      fitted_(without_groups(simulated_, left_out_)) {}
+      measured_(refined(is_refined_locally(data, plan) ? locally_refined(data) : data, plan.refine)),
+      simulated_(measured_) {
+  update();
+}
+
+// Estimated errors of a group are no part of a prediction from other groups.
+void SimulatedData::update() {
+  std::vector<double> all, common;
+  for (const SystematicError& e : simulated_.errors) {
+    all.push_back(e.value);
+    common.push_back(is_of_group(e) ? 0 : e.value);
+  }
+  simulated_ = without_errors(measured_, all);
+  fitted_ = weighted(without_groups(without_model_errors(simulated_), left_out_), weights_);
+  predicted_ = without_model_errors(without_errors(measured_, common));
+  size_t fitted = 0;
+  for (LoadCase& load : predicted_.cases)
+    if (fitted < fitted_.cases.size() && load.name == fitted_.cases[fitted].name) {
+      const LoadCase& same = fitted_.cases[fitted++];
+      for (size_t k = 0; k < load.positions.size(); ++k) load.positions[k].is_outlier = same.positions[k].is_outlier;
+    }
+}
+
+Experiment SimulatedData::without_model_errors(const Experiment& experiment) const {
+  Experiment corrected = without_mesh_errors(experiment, {errors_, {}});
+  for (size_t c = 0; c < law_errors_.size(); ++c) {
+    std::vector<CommonError>& all = corrected.cases[c].common_errors;
+    all.insert(all.end(), law_errors_[c].begin(), law_errors_[c].end());
+  }
+  return corrected;
+}
+
+void SimulatedData::correct(std::vector<double> errors, std::vector<CaseWeights> weights) {
+  for (size_t k = 0; k < errors.size(); ++k) simulated_.errors[k].value = errors[k];
+  weights_ = std::move(weights);
+  update();
+}
 
 bool SimulatedData::is_too_large_for_mesh_errors() const { return mesh().tet_count() > kTooFine; }
 
@@ -29,7 +64,7 @@ std::string SimulatedData::take_off_mesh_errors(const FitPlan& plan, const std::
   MeshErrors errors = mesh_errors(simulated_, plan.model, material, plan.equilibrium);
   if (errors.cases.empty()) return errors.failure;
   errors_ = std::move(errors.cases);
-  correct();
+  update();
   return "";
 }
 
@@ -37,17 +72,8 @@ std::string SimulatedData::add_law_errors(const FitPlan& plan, const std::vector
   LawErrors errors = law_errors(simulated_, plan.model, material, plan.equilibrium);
   if (errors.cases.empty()) return errors.failure;
   law_errors_ = std::move(errors.cases);
-  correct();
+  update();
   return "";
-}
-
-void SimulatedData::correct() {
-  corrected_ = without_mesh_errors(simulated_, {errors_, {}});
-  for (size_t c = 0; c < law_errors_.size(); ++c) {
-    std::vector<CommonError>& all = corrected_.cases[c].common_errors;
-    all.insert(all.end(), law_errors_[c].begin(), law_errors_[c].end());
-  }
-  fitted_ = without_groups(corrected_, left_out_);
 }
 
 double SimulatedData::mesh_error() const {
@@ -63,14 +89,15 @@ double SimulatedData::mesh_error() const {
   return largest > 0 ? std::sqrt(sum / count / largest) : -1;
 }
 
-CasePrediction SimulatedData::on_finer_mesh(size_t c, const CasePrediction& prediction) const {
+CasePrediction SimulatedData::as_read_on_finer_mesh(size_t c, const CasePrediction& prediction) const {
   CasePrediction finer = prediction;
-  if (errors_.empty()) return finer;
-  for (size_t k = 0; k < finer.markers.size(); ++k) finer.markers[k] = finer.markers[k] + errors_[c].markers[k];
-  const Wrench error = errors_[c].for_force_on_mesh(finer.wrench.force);
-  finer.wrench.force = finer.wrench.force + error.force;
-  finer.wrench.torque = finer.wrench.torque + error.torque;
-  return finer;
+  if (!errors_.empty()) {
+    for (size_t k = 0; k < finer.markers.size(); ++k) finer.markers[k] = finer.markers[k] + errors_[c].markers[k];
+    const Wrench error = errors_[c].for_force_on_mesh(finer.wrench.force);
+    finer.wrench.force = finer.wrench.force + error.force;
+    finer.wrench.torque = finer.wrench.torque + error.torque;
+  }
+  return as_read(simulated_, simulated_.cases[c], std::move(finer));
 }
 
 }  // namespace aspic

@@ -1,4 +1,5 @@
-// Measurements for a fit: on the simulated mesh, corrected by its discretization error, without held-out groups.
+// Measurements for a fit: on the simulated mesh, without systematic errors and discretization error, weighted by a
+// robust loss, and without held-out groups.
 #pragma once
 #include <string>
 #include <vector>
@@ -6,6 +7,7 @@
 #include "capture/fit_plan.h"
 #include "fit/misfit.h"
 #include "fit/refined_experiment.h"
+#include "fit/robust_loss.h"
 
 namespace aspic {
 
@@ -16,8 +18,14 @@ class SimulatedData {
   SimulatedData(const Experiment& data, const FitPlan& plan);
 
   const TetMesh& mesh() const { return simulated_.mesh; }
-  const Experiment& all() const { return corrected_; }
+  // For predictions of groups that were not fitted: with the systematic errors of sessions and tips alone.
+  const Experiment& all() const { return predicted_; }
   const Experiment& fitted() const { return fitted_; }
+  const std::vector<SystematicError>& errors() const { return simulated_.errors; }
+  const std::vector<CaseWeights>& weights() const { return weights_; }  // of the fitted cases; empty: 1
+
+  // Corrects loads and readings for systematic errors of these values, and weights readings.
+  void correct(std::vector<double> errors, std::vector<CaseWeights> weights);
 
   bool is_too_large_for_mesh_errors() const;
   // Both are for a material. They return the reason if they are impossible, so that nothing changes; otherwise empty.
@@ -30,14 +38,16 @@ class SimulatedData {
   // Relative discretization error of the force of case c, see MeshError; 0: unknown.
   double relative_force_error(size_t c) const { return errors_.empty() ? 0 : errors_[c].relative_force_error(); }
   double force_factor(size_t c) const { return errors_.empty() ? 1 : errors_[c].force_factor(); }
-  // Prediction for case c, corrected to a finer mesh.
-  CasePrediction on_finer_mesh(size_t c, const CasePrediction& prediction) const;
+  // Readings that the instruments show of a prediction for case c, corrected to a finer mesh.
+  CasePrediction as_read_on_finer_mesh(size_t c, const CasePrediction& prediction) const;
 
  private:
-  void correct();
+  void update();
+  Experiment without_model_errors(const Experiment& experiment) const;
 
   std::vector<std::string> left_out_;
-  Experiment simulated_, corrected_, fitted_;
+  Experiment measured_, simulated_, predicted_, fitted_;
+  std::vector<CaseWeights> weights_;
   std::vector<MeshError> errors_;  // per case; empty: unknown
   std::vector<std::vector<CommonError>> law_errors_;  // per case; empty: unknown
 };

@@ -55,6 +55,7 @@ bool WithUncertainLayers::evaluate(std::span<const double> p, std::span<double> 
   is_linearized_ = false;
   if (!data_.evaluate(p, r)) return false;
   if (!is_known_) learn();
+  if (!shift_.empty()) add_scaled(1, shift_, r);
   errors_.apply(r);
   return true;
 }
@@ -62,13 +63,15 @@ bool WithUncertainLayers::evaluate(std::span<const double> p, std::span<double> 
 void WithUncertainLayers::learn() {
   is_known_ = true;
   const bool has_nuisances = data_.nuisance_count() > 0 && linearize();
-  std::vector<std::vector<double>> unbounded;
-  for (int k = 0; has_nuisances && k < data_.nuisance_count(); ++k) {
-    std::vector<double>& dr = unbounded.emplace_back(static_cast<size_t>(residual_count()));
-    data_.nuisance(k, dr);
+  const int nuisances = has_nuisances ? data_.nuisance_count() : 0;
+  std::vector<std::vector<double>> directions(nuisances, std::vector<double>(residual_count()));
+  for (int k = 0; k < nuisances; ++k) {
+    data_.nuisance(k, directions[k]);
+    const double sigma = data_.nuisance_prior(k).case_sigma;
+    if (!(sigma > 0)) continue;
     for (const auto& [first, count] : data_.residuals_by_case()) {
-      std::vector<double> n(dr.begin() + first, dr.begin() + first + count);
-      for (double& x : n) x *= kLayerSigma;
+      std::vector<double> n(directions[k].begin() + first, directions[k].begin() + first + count);
+      for (double& x : n) x *= sigma;
       errors_.add(first, std::move(n));
     }
   }
@@ -77,7 +80,35 @@ void WithUncertainLayers::learn() {
     data_.common_error(k, n);
     errors_.add(0, std::move(n));
   }
-  for (std::vector<double>& n : unbounded) errors_.add_unbounded(std::move(n));
+  for (int k = 0; k < nuisances; ++k) add_bounded(directions[k], data_.nuisance_prior(k));
+  for (int k = 0; k < nuisances; ++k)
+    if (!std::isfinite(data_.nuisance_prior(k).sigma)) errors_.add_unbounded(std::move(directions[k]));
+}
+
+void WithUncertainLayers::add_bounded(const std::vector<double>& dr, const NuisancePrior& prior) {
+  if (!std::isfinite(prior.sigma)) return;
+  if (prior.value != 0) {
+    shift_.resize(dr.size(), 0.0);
+    add_scaled(-prior.value, dr, shift_);
+  }
+  bounded_.push_back({prior.sigma, dr});
+  std::vector<double> n = dr;
+  for (double& x : n) x *= prior.sigma;
+  errors_.add(0, std::move(n));
+}
+
+// The minimum over q has q = -sigma^2 N' e, where e = L'L (r - N q_now) are the residuals there.
+std::vector<double> WithUncertainLayers::estimates(std::span<const double> r) const {
+  std::vector<double> e(r.begin(), r.end()), q;
+  errors_.apply_transposed(e);
+  for (const Bounded& b : bounded_) q.push_back(-b.sigma * b.sigma * dot(b.dr, e));
+  return q;
+}
+
+std::vector<double> WithUncertainLayers::whitened_direction(int k) const {
+  std::vector<double> n = bounded_[k].dr;
+  errors_.apply(n);
+  return n;
 }
 
 bool WithUncertainLayers::linearize() { return is_linearized_ = is_linearized_ || data_.linearize(); }

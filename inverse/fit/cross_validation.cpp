@@ -19,6 +19,7 @@ std::vector<std::string> groups_of(const Experiment& experiment) {
 void add_case(const Experiment& experiment, const LoadCase& measured, const CasePrediction& predicted, HeldOut& h) {
   for (size_t i = 0; i < measured.positions.size(); ++i) {
     const MarkerReading& reading = measured.positions[i];
+    if (reading.is_outlier) continue;
     const double error = squared_norm(predicted.markers[i] - reading.position);
     h.peak_motion =
         std::max(h.peak_motion, norm(reading.position - at_rest(experiment, experiment.markers[reading.marker])));
@@ -93,7 +94,8 @@ CrossValidation cross_validate(const Experiment& experiment, const ParameterMap&
     HeldOut& h = result.groups.emplace_back();
     h.group = groups[g];
     const Experiment seen = subset(experiment, [&](const LoadCase& c) { return c.group != h.group; });
-    const Experiment left_out = subset(experiment, [&](const LoadCase& c) { return c.group == h.group; });
+    const Experiment& whole = chosen.to_predict ? *chosen.to_predict : experiment;
+    const Experiment left_out = subset(whole, [&](const LoadCase& c) { return c.group == h.group; });
     Misfit misfit(seen, map, chosen.equilibrium);
     WithUncertainLayers data(misfit);
     const FitReport report = fit(data, regularizer, fitted.p, options);

@@ -49,6 +49,7 @@ struct CrossValidationOptions {
   FitOptions fit = {};
   EquilibriumOptions equilibrium = {};
   CrossValidationObserver observe = {};
+  const Experiment* to_predict = nullptr;  // cases for comparisons with predictions; null: those that are fitted
 };
 
 // `fitted`: fit of all cases; its p is the initial guess and its weight is kept.

@@ -134,7 +134,7 @@ struct Equilibrium::Impl {
     ASPIC_CHECK(all_rows && !linear_x.empty());
     use(linear_parameters);
     all_rows->multiply(dx, dg);
-    theta.add_force(linear_x, dtheta, 1, dg);
+    if (!dtheta.empty()) theta.add_force(linear_x, dtheta, 1, dg);
   }
 
   void add_force_transposed(std::span<const double> gbar, std::span<double> xbar, std::span<double> thetabar) {

@@ -52,8 +52,8 @@ class Equilibrium {
 
   // Forces that pins with a motion need: g += dV/dx at x(), 3 per vertex [N]. It is 0 at free vertices.
   void add_forces(std::span<double> g) const;
-  // Their change along a tangent, with all rows of K: dg = K dx + d(grad V)/dtheta dtheta. Both require a linearization
-  // of a model whose pins move.
+  // Their change along a tangent, with all rows of K: dg = K dx + d(grad V)/dtheta dtheta; an empty dtheta is 0. Both
+  // require a linearization of a model whose pins move.
   void force_tangent(std::span<const double> dtheta, std::span<const double> dx, std::span<double> dg);
   // xbar += K gbar, thetabar += gbar' d(grad V)/dtheta, for gbar that is 0 at free vertices
   void add_force_transposed(std::span<const double> gbar, std::span<double> xbar, std::span<double> thetabar);

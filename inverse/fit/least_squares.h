@@ -1,10 +1,18 @@
 // Residuals r(p) of a model with products of their Jacobian, for fits and their uncertainty.
 #pragma once
+#include <limits>
 #include <span>
 #include <utility>
 #include <vector>
 
 namespace aspic {
+
+// Normal distribution with mean 0 of a nuisance parameter.
+struct NuisancePrior {
+  double sigma = std::numeric_limits<double>::infinity();  // standard deviation
+  double case_sigma = 0;                                   // that of an independent part per case
+  double value = 0;                                        // of the parameter in r
+};
 
 class LeastSquares {
  public:
@@ -18,9 +26,10 @@ class LeastSquares {
   virtual void multiply(std::span<const double> dp, std::span<double> dr) = 0;              // dr = J dp
   virtual void multiply_transposed(std::span<const double> w, std::span<double> pbar) = 0;  // pbar = J' w
 
-  // Nuisance directions: changes of r with convenient assumptions of the model, such as a contact stiffness. Residuals
-  // along them do not determine p (WithUncertainLayers). Valid as long as J.
+  // Nuisance directions: changes of r with parameters that are not fitted, such as errors of a pose or the stiffness of
+  // a layer. Residuals along them do not determine p (WithUncertainLayers). Valid as long as J.
   virtual int nuisance_count() const { return 0; }
+  virtual NuisancePrior nuisance_prior(int /*k*/) const { return {}; }
   virtual void nuisance(int /*k*/, std::span<double> /*dr*/) {}
   // Errors of all residuals that are known but for a standard normal factor each, such as the uncertainty of a
   // correction.

@@ -243,7 +243,7 @@ bool LoadedBody::linearize(std::span<const MaterialParameters> parameters) {
   prediction_.x = accepted_;
   equilibrium_.set_parameters(parameters);
   ++counts_.factorizations;
-  if (equilibrium_.factorize()) return true;
+  if (equilibrium_.factorize()) return store_wrench(), true;
   failure_ = load_.name + ": " + equilibrium_.failure();
   return false;
 }

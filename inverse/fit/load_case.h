@@ -7,6 +7,7 @@
 
 #include "fit/misfit.h"
 #include "fit/scaled_load.h"
+#include "fit/systematic_errors.h"
 
 namespace aspic {
 
@@ -44,9 +45,10 @@ class LoadedBody {
   bool predict(std::span<const double> dtheta, std::span<double> x);
   bool multiply(std::span<const double> dtheta, std::span<double> dr);
   bool add_transposed(std::span<const double> w, std::span<double> thetabar);
-  bool has_layer() const { return probe_ != nullptr; }
   void common_error(int k, std::span<double> dr) const;  // of LoadCase::common_errors, in standard deviations
-  bool multiply_by_layer(std::span<double> dr);          // dr/dlog k, k the stiffness of the indenter's layer
+  bool has_unknown_layer() const { return probe_ && !load_.layer_sigma; }
+  bool multiply_by_layer(std::span<double> dr);  // dr/dlog k, k the stiffness of the indenter's layer
+  bool multiply_by_error(const SystematicError& error, std::span<double> dr);  // 0 if it does not concern the case
 
   const Misfit::Counts& counts() const { return counts_; }
 
@@ -61,9 +63,13 @@ class LoadedBody {
   bool load_in_parts();
   bool solved(const SolveReport& report);
   Wrench wrench();                                                            // at x()
+  void store_wrench();                                                        // for derivatives by systematic errors
   Wrench wrench_change(std::span<const double> dtheta);                       // along dx_
   void add_wrench_transposed(const Wrench& bar, std::span<double> thetabar);  // to xbar_ and thetabar
   void put_change(const Wrench& change, std::span<double> dr) const;          // with dx_
+  void put_change_of_reading(const SystematicError& error, std::span<double> dr) const;
+  bool move_probe(const Twist& twist, Wrench& change);  // dx_ and the change of the wrench
+  bool move_grip(const Twist& twist, Wrench& change);
   void predict_readings();
 
   const Experiment& experiment_;
@@ -78,6 +84,8 @@ class LoadedBody {
   bool is_solved_ = false;
   std::string failure_;
   Misfit::Counts counts_;
+  Wrench linear_wrench_;                           // at the linearization
+  std::vector<double> linear_force_;               // of a grip at the linearization; empty without systematic errors
   std::vector<double> dx_, xbar_, start_, force_;  // scratch
 };
 

@@ -6,8 +6,11 @@
 #include "base/check.h"
 #include "base/error.h"
 #include "base/parallel.h"
+#include "fit/common_errors.h"
 #include "fit/load_case.h"
 #include "fit/refined_experiment.h"
+#include "fit/unloaded_shape.h"
+#include "math/vectors.h"
 
 namespace aspic {
 
@@ -17,6 +20,12 @@ Vec3d at_rest(const Experiment& experiment, const SurfacePoint& point) {
   return X;
 }
 
+namespace {
+
+constexpr double kShapeStep = 1e-3;  // of a fitted value, for the change of the unloaded shape
+
+}  // namespace
+
 struct Misfit::Impl {
   struct Case {
     std::unique_ptr<LoadedBody> body;
@@ -25,14 +34,13 @@ struct Misfit::Impl {
     bool ok = false;
   };
 
-  Impl(const Experiment& e, const ParameterMap& m, const EquilibriumOptions& options) : experiment(e), map(m) {
-    const std::vector<MaterialParameters> guess = parameters_at(map.guess());
-    for (const LoadCase& load : experiment.cases) {
-      Case& c = cases.emplace_back();
-      c.body = std::make_unique<LoadedBody>(experiment, load, map.material(), guess, options);
-      c.first = residual_count;
-      residual_count += c.body->residual_count();
-    }
+  Impl(const Experiment& e, const ParameterMap& m, const EquilibriumOptions& o) : experiment(e), map(m), options(o) {
+    if (experiment.cases.empty()) throw InvalidInput("there is no load case to fit");
+    if (is_scanned() && map.size() > kMaxUnloaded)
+      throw InvalidInput("a mesh that was scanned under load allows " + std::to_string(kMaxUnloaded) +
+                         " values to fit; there are " + std::to_string(map.size()) + " (try --unknown young=uniform)");
+    cases = bodies(experiment, parameters_at(map.guess()));
+    for (const Case& c : cases) residual_count += c.body->residual_count();
     per_tet = map.parameters_per_tet();
     parts_of.resize(map.tet_count());
     for (int t = 0; t < experiment.mesh.tet_count(); ++t)
@@ -40,7 +48,20 @@ struct Misfit::Impl {
     dtheta.resize(static_cast<size_t>(per_tet) * map.tet_count());
     dtheta_of_parts.resize(static_cast<size_t>(per_tet) * experiment.mesh.tet_count());
     dp.resize(map.size());
-    if (cases.empty()) throw InvalidInput("there is no load case to fit");
+  }
+
+  bool is_scanned() const { return experiment.scan_gravity.has_value(); }
+
+  std::vector<Case> bodies(const Experiment& of, const std::vector<MaterialParameters>& guess) const {
+    std::vector<Case> result;
+    int first = 0;
+    for (const LoadCase& load : of.cases) {
+      Case& c = result.emplace_back();
+      c.body = std::make_unique<LoadedBody>(of, load, map.material(), guess, options);
+      c.first = first;
+      first += c.body->residual_count();
+    }
+    return result;
   }
 
   int case_count() const { return static_cast<int>(cases.size()); }
@@ -88,7 +109,64 @@ struct Misfit::Impl {
     });
   }
 
+  // Equilibria of bodies with the unloaded shape of p, from those of the last evaluation; nothing if there are none.
+  struct Shape {
+    std::unique_ptr<Experiment> experiment;
+    std::vector<Case> cases;
+  };
+  std::optional<Shape> unloaded_at(std::span<const double> p, const std::vector<MaterialParameters>& parameters) {
+    UnloadedShape found = unloaded(experiment, map.material(), parameters_at(p), options);
+    failure = found.failure;
+    if (!found.experiment) return {};
+    Shape shape{std::make_unique<Experiment>(std::move(*found.experiment)), {}};
+    shape.cases = bodies(*shape.experiment, parameters);
+    for_each(case_count(), [&](int c) {
+      Case& own = shape.cases[c];
+      if (has_solved) own.body->restore(cases[c].body->accepted());
+      own.ok = own.body->solve(parameters, {});
+      own.body->accept();
+    });
+    if (!all_ok(shape.cases)) return {};
+    return shape;
+  }
+
+  bool evaluate_unloaded(std::span<const double> p, std::span<double> r) {
+    std::optional<Shape> shape = unloaded_at(p, parameters_at(p));
+    if (!shape) return false;
+    cases = std::move(shape->cases);
+    unloaded_experiment = std::move(shape->experiment);
+    is_linearized = false;
+    has_solved = true;
+    put_residuals(cases, r);
+    accepted_p.assign(p.begin(), p.end());
+    accepted_parameters = parameters_at(p);
+    return true;
+  }
+
+  static void put_residuals(std::vector<Case>& of, std::span<double> r) {
+    for (Case& c : of) c.body->residuals(r.subspan(c.first, c.body->residual_count()));
+  }
+
+  // shape_slopes[k] = (dr/dX) (dX/dp_k), X the unloaded shape.
+  bool linearize_shape() {
+    shape_slopes.clear();
+    std::vector<double> p = accepted_p, ahead(static_cast<size_t>(residual_count)), back = ahead;
+    for (size_t k = 0; k < p.size(); ++k) {
+      for (const double sign : {1.0, -1.0}) {
+        p[k] = accepted_p[k] + sign * kShapeStep;
+        std::optional<Shape> shape = unloaded_at(p, accepted_parameters);
+        p[k] = accepted_p[k];
+        if (!shape) return false;
+        put_residuals(shape->cases, sign > 0 ? ahead : back);
+      }
+      std::vector<double>& slope = shape_slopes.emplace_back(ahead);
+      for (size_t i = 0; i < slope.size(); ++i) slope[i] = (ahead[i] - back[i]) / (2 * kShapeStep);
+    }
+    return true;
+  }
+
   bool evaluate(std::span<const double> p, std::span<double> r) {
+    if (is_scanned()) return evaluate_unloaded(p, r);
     const std::vector<MaterialParameters> parameters = parameters_at(p);
     if (is_linearized) {
       for (size_t i = 0; i < dp.size(); ++i) dp[i] = p[i] - linear_p[i];
@@ -128,9 +206,10 @@ struct Misfit::Impl {
     });
   }
 
-  bool all_ok() {
+  bool all_ok() { return all_ok(cases); }
+  bool all_ok(const std::vector<Case>& of) {
     failure.clear();
-    for (const Case& c : cases)
+    for (const Case& c : of)
       if (!c.ok) failure += (failure.empty() ? "" : "; ") + c.body->failure();
     return failure.empty();
   }
@@ -140,6 +219,7 @@ struct Misfit::Impl {
     is_linearized = false;
     for_each_case([&](Case& c) { c.ok = c.body->linearize(accepted_parameters); });
     if (!all_ok()) return false;
+    if (is_scanned() && !linearize_shape()) return false;
     linear_p = accepted_p;
     return is_linearized = true;
   }
@@ -148,6 +228,7 @@ struct Misfit::Impl {
     ASPIC_CHECK(is_linearized);
     const std::vector<double>& tangent = theta_tangent(direction);
     for_each_case([&](Case& c) { c.ok = c.body->multiply(tangent, dr.subspan(c.first, c.body->residual_count())); });
+    for (size_t k = 0; k < shape_slopes.size(); ++k) add_scaled(direction[k], shape_slopes[k], dr);
     mark_unless_ok(dr);
   }
 
@@ -160,19 +241,23 @@ struct Misfit::Impl {
     sum_theta_adjoints();
     std::fill(pbar.begin(), pbar.end(), 0.0);
     map.add_transposed(linear_p, dtheta, pbar);
+    for (size_t k = 0; k < shape_slopes.size(); ++k) pbar[k] += dot(shape_slopes[k], w);
     mark_unless_ok(pbar);
   }
 
-  bool has_layers() const {
-    return std::any_of(cases.begin(), cases.end(), [](const Case& c) { return c.body->has_layer(); });
+  int error_count() const { return static_cast<int>(experiment.errors.size()); }
+  bool has_unknown_layers() const {
+    return std::any_of(cases.begin(), cases.end(), [](const Case& c) { return c.body->has_unknown_layer(); });
   }
 
-  void multiply_by_layers(std::span<double> dr) {
+  // dr = the derivative by error k, or by the stiffness of the unknown layers.
+  void multiply_by_nuisance(int k, std::span<double> dr) {
     ASPIC_CHECK(is_linearized);
     for_each_case([&](Case& c) {
       const std::span<double> part = dr.subspan(c.first, c.body->residual_count());
       std::fill(part.begin(), part.end(), 0.0);
-      c.ok = !c.body->has_layer() || c.body->multiply_by_layer(part);
+      c.ok = k < error_count() ? c.body->multiply_by_error(experiment.errors[k], part)
+                               : !c.body->has_unknown_layer() || c.body->multiply_by_layer(part);
     });
     mark_unless_ok(dr);
   }
@@ -184,7 +269,10 @@ struct Misfit::Impl {
 
   const Experiment& experiment;
   const ParameterMap& map;
+  EquilibriumOptions options;
+  std::unique_ptr<Experiment> unloaded_experiment;  // that `cases` refers to, of a scanned mesh
   std::vector<Case> cases;
+  std::vector<std::vector<double>> shape_slopes;
   int residual_count = 0;
   int per_tet = 2;                         // parameters of a tet
   std::vector<std::vector<int>> parts_of;  // simulated tets of each tet of the map
@@ -217,8 +305,13 @@ void Misfit::multiply_transposed(std::span<const double> w, std::span<double> pb
   impl_->multiply_transposed(w, pbar);
 }
 
-int Misfit::nuisance_count() const { return impl_->has_layers() ? 1 : 0; }
-void Misfit::nuisance(int, std::span<double> dr) { impl_->multiply_by_layers(dr); }
+int Misfit::nuisance_count() const { return impl_->error_count() + (impl_->has_unknown_layers() ? 1 : 0); }
+void Misfit::nuisance(int k, std::span<double> dr) { impl_->multiply_by_nuisance(k, dr); }
+NuisancePrior Misfit::nuisance_prior(int k) const {
+  if (k == impl_->error_count()) return {.case_sigma = kLayerSigma};
+  const SystematicError& error = impl_->experiment.errors[k];
+  return {.sigma = error.sigma, .value = error.value};
+}
 
 int Misfit::common_error_count() const {
   return static_cast<int>(impl_->experiment.cases.front().common_errors.size());

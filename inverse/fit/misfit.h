@@ -14,6 +14,7 @@
 #include "fit/grip.h"
 #include "fit/least_squares.h"
 #include "fit/parameter_map.h"
+#include "fit/systematic_error.h"
 
 namespace aspic {
 
@@ -24,9 +25,10 @@ struct SurfacePoint {
 };
 
 struct MarkerReading {
-  int marker = 0;    // index into Experiment::markers
-  Vec3d position{};  // measured [m]
-  Vec3d sigma{};     // standard deviations [m], > 0
+  int marker = 0;           // index into Experiment::markers
+  Vec3d position{};         // measured [m]
+  Vec3d sigma{};            // standard deviations [m], > 0
+  bool is_outlier = false;  // not compared with predictions of held-out cases
 };
 
 // Errors of all readings of a case that one standard normal factor multiplies, the same in all cases.
@@ -38,19 +40,24 @@ struct CommonError {
 // A static state: body, supports and loads are at rest; measured are marker positions and, with an indenter or a grip,
 // its force and torque.
 struct LoadCase {
-  std::string name;   // "poke 3, depth 2"
-  std::string group;  // cases that are held out together: "poke 3"
+  std::string name;          // "poke 3, depth 2"
+  std::string group;         // cases that are held out together: "poke 3"
+  std::string session, tip;  // with common systematic errors of instruments and of the layer
   std::optional<Indenter> indenter;
-  IndenterPose touch, pose;  // pose of the indenter: at rest, and in this case
-  std::optional<Grip> grip;  // excludes an indenter
-  Vec3d gravity{};           // [m/s^2]
-  double pressure = 0;       // [Pa] over `pressed`: a follower pressure, or a dead load
+  std::optional<double> layer_sigma;  // standard deviation of the logarithm of the layer's stiffness; empty: unknown
+  IndenterPose touch, pose;           // pose of the indenter: at rest, and in this case
+  std::optional<Grip> grip;           // excludes an indenter
+  Vec3d gravity{};                    // [m/s^2]
+  double pressure = 0;                // [Pa] over `pressed`: a follower pressure, or a dead load
   bool is_dead_pressure = false;
   std::vector<Triangle> pressed;
   std::vector<MarkerReading> positions;
   std::optional<Vec3d> force, torque;  // measured, on the body [N, N m]
   Vec3d force_sigma{}, torque_sigma{};
   std::vector<CommonError> common_errors;  // equally many in all cases
+  std::optional<Vec3d> gauge;              // axis along which alone the force was measured
+  // Of the correction of the pose for systematic errors: its rotation vector [rad], and the direction of backlash.
+  Vec3d turned{}, backward{};
 };
 
 struct Experiment {
@@ -60,6 +67,9 @@ struct Experiment {
   std::vector<double> density;  // one per tet [kg/m^3]
   std::vector<SurfacePoint> markers;
   std::vector<LoadCase> cases;  // group by group, each from the smallest load on
+  std::vector<SystematicError> errors;
+  // Acceleration of gravity when the mesh was scanned [m/s^2]; empty: the mesh is unloaded (unloaded_shape.h).
+  std::optional<Vec3d> scan_gravity;
 };
 
 // Parameters of each tet of the experiment's mesh, from those of each tet of the material's mesh.
@@ -77,7 +87,10 @@ struct CasePrediction {
 
 class Misfit : public LeastSquares {
  public:
-  // Stores references to both. The experiment's mesh is that of the map, or a refinement of it. Throws InvalidInput for a case without residuals.
+  // Stores references to both. The experiment's mesh is that of the map, or a refinement of it. A scanned mesh is
+  // unloaded for each p; J includes the change of its shape by differences, so at most kMaxUnloaded parameters are
+  // accepted. Throws InvalidInput for a case without residuals.
+  static constexpr int kMaxUnloaded = 20;
   Misfit(const Experiment& experiment, const ParameterMap& map, const EquilibriumOptions& options = {});
   ~Misfit() override;
 
@@ -90,9 +103,10 @@ class Misfit : public LeastSquares {
   // Products that cannot be computed are NaN; see failure().
   void multiply(std::span<const double> dp, std::span<double> dr) override;
   void multiply_transposed(std::span<const double> w, std::span<double> pbar) override;
-  // The logarithm of the layer stiffness of all indenters: scaling it with the body changes no positions, so residuals
-  // along it do not determine the stiffness of the body.
+  // The systematic errors of the experiment, and at last the logarithm of the stiffness of all layers that is unknown:
+  // scaling it with the body changes no positions, so residuals along it do not determine the stiffness of the body.
   int nuisance_count() const override;
+  NuisancePrior nuisance_prior(int k) const override;
   void nuisance(int k, std::span<double> dr) override;
   int common_error_count() const override;
   void common_error(int k, std::span<double> dr) const override;

@@ -2,12 +2,16 @@
 
 #include "base/parallel.h"
 #include "fit/load_case.h"
+#include "fit/unloaded_shape.h"
 
 namespace aspic {
 
-Predictions predicted(const Experiment& experiment, const std::string& material,
+Predictions predicted(const Experiment& given, const std::string& material,
                       std::span<const MaterialParameters> parameters, const EquilibriumOptions& options) {
   Predictions result;
+  const UnloadedShape shape = unloaded(given, material, parameters, options);
+  if (!shape.experiment) return {{}, shape.failure};
+  const Experiment& experiment = *shape.experiment;
   const int count = static_cast<int>(experiment.cases.size());
   result.cases.resize(count);
   std::vector<std::string> failures(count);

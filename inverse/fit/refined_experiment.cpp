@@ -28,6 +28,8 @@ class Refinement {
     add_mid_nodes();
     for (const SurfacePoint& marker : coarse.markers) fine_.markers.push_back(in_part(marker));
     fine_.fixed = in_parts(coarse.fixed);
+    fine_.errors = coarse.errors;
+    fine_.scan_gravity = coarse.scan_gravity;
     for (LoadCase load : coarse.cases) {
       load.pressed = split(load.pressed);
       if (load.grip) load.grip->vertices = in_parts(load.grip->vertices);
@@ -178,9 +180,7 @@ Experiment refined(Experiment experiment, int times) {
 MeshErrors mesh_errors(const Experiment& experiment, const std::string& material,
                        std::span<const MaterialParameters> parameters, const EquilibriumOptions& options) {
   const Experiment fine = refined(experiment);
-  const auto on = [&](const Experiment& e) {
-    return predicted(e, material, of_tets(e, parameters), options);
-  };
+  const auto on = [&](const Experiment& e) { return predicted(e, material, of_tets(e, parameters), options); };
   const Predictions on_mesh = on(experiment), on_fine = on(fine);
   MeshErrors errors{{}, on_mesh.failure.empty() ? on_fine.failure : on_mesh.failure};
   if (!errors.failure.empty()) return errors;

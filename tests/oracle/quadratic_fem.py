@@ -105,11 +105,13 @@ def quadratic(X, tets):
 @dataclasses.dataclass
 class Indenter:
     """Rigid, frictionless, pressing down: all points within `rounding` of an upward cylinder of radius `flat` whose end
-    is at `center`. A sphere: flat = 0. `stiffness` of the penalty in Pa/m."""
+    is at `center`. A sphere: flat = 0. `stiffness` of the penalty in Pa/m; its pressure is quadratic in depths below
+    `softening` and linear beyond."""
     center: np.ndarray
     flat: float
     rounding: float
     stiffness: float
+    softening: float = 0
 
     def depth(self, x):
         """Depth of points inside, and its gradient."""
@@ -121,6 +123,15 @@ class Indenter:
         is_above = (outside == 0) & (u[:, 2] > 0)  # inside the cylinder: pushed down
         n = np.where(is_above[:, None], [0.0, 0.0, 1.0], -away / np.maximum(distance, 1e-300)[:, None])
         return self.rounding + np.where(is_above, u[:, 2], -distance), n
+
+
+    def response(self, d):
+        """Energy per stiffness of depths, and its first two derivatives."""
+        e = self.softening
+        soft = d < e
+        with np.errstate(divide="ignore", invalid="ignore"):
+            return (np.where(soft, d ** 3 / (6 * e), d * (d - e) / 2 + e ** 2 / 6),
+                    np.where(soft, d ** 2 / (2 * e), d - e / 2), np.where(soft, d / e, 1.0))
 
 
 class Solid:
@@ -195,15 +206,16 @@ class Solid:
         weight = (self.face_area[:, None] * FACE_WEIGHTS).ravel() * self.indenter.stiffness
         pushed = np.flatnonzero(depth > 0)
         depth, n, weight, face, point = depth[pushed], n[pushed], weight[pushed], pushed // len(N), pushed % len(N)
-        pull = (weight * depth)[:, None] * n
+        value, slope, curvature = self.indenter.response(depth)
+        pull = (weight * slope)[:, None] * n
         dofs = (3 * faces[face][:, :, None] + np.arange(3)).reshape(-1, 18)
         rows = (N[point][:, :, None] * n[:, None]).reshape(-1, 18)  # d depth / d nodes
-        gradient = np.bincount(dofs.ravel(), ((weight * depth)[:, None] * rows).ravel(), x.size)
+        gradient = np.bincount(dofs.ravel(), ((weight * slope)[:, None] * rows).ravel(), x.size)
         matrix = None
         if wants_matrix:
             J = sparse.csr_matrix((rows.ravel(), dofs.ravel(), 18 * np.arange(len(rows) + 1)), (len(rows), x.size))
-            matrix = (J.T @ sparse.diags(weight) @ J).tocsr()
-        return (weight * depth ** 2).sum() / 2, gradient, matrix, -pull.sum(0)
+            matrix = (J.T @ sparse.diags(weight * curvature) @ J).tocsr()
+        return (weight * value).sum(), gradient, matrix, -pull.sum(0)
 
     def total(self, x, wants_matrix=False):
         energy, gradient, matrix = self.evaluate(x, wants_matrix)

@@ -1,0 +1,80 @@
+// Corrections of the data that depend on the fit: systematic errors, and weights of a robust loss.
+#include <algorithm>
+#include <cmath>
+
+#include "capture/material_fit.h"
+#include "fit/nuisance_estimates.h"
+#include "fit/systematic_errors.h"
+
+namespace aspic {
+namespace {
+
+double change_of_weights(const std::vector<CaseWeights>& before, const std::vector<CaseWeights>& after) {
+  double largest = 0;
+  for (size_t c = 0; c < after.size(); ++c) {
+    const auto compare = [&](double now, double then) { largest = std::max(largest, std::abs(now - then)); };
+    for (size_t k = 0; k < after[c].positions.size(); ++k)
+      compare(after[c].positions[k], before.empty() ? 1 : before[c].positions[k]);
+    compare(after[c].force, before.empty() ? 1 : before[c].force);
+    compare(after[c].torque, before.empty() ? 1 : before[c].torque);
+  }
+  return largest;
+}
+
+}  // namespace
+
+bool MaterialFit::has_corrections() const { return !data_.experiment.errors.empty() || plan_.robust; }
+
+// The largest change of an error in standard deviations of its prior, or of a weight.
+double MaterialFit::correct_data(FitModel& model, std::span<const double> p) {
+  std::vector<double> r(static_cast<size_t>(model.misfit.residual_count()));
+  if (!has_corrections() || !model.data().evaluate(p, r)) return 0;
+  const std::vector<SystematicError>& errors = simulated_.errors();
+  const std::vector<double> values = model.with_layers->estimates(r);
+  double largest = 0;
+  for (size_t k = 0; k < values.size(); ++k)
+    largest = std::max(largest, std::abs(values[k] - errors[k].value) / errors[k].sigma);
+  std::vector<CaseWeights> weights;
+  if (plan_.robust) {
+    model.with_layers->errors().apply_transposed(r);
+    weights = robust_weights(simulated_.fitted(), r, simulated_.weights());
+    largest = std::max(largest, change_of_weights(simulated_.weights(), weights));
+  }
+  corrected_errors_ = values;
+  corrected_weights_ = std::move(weights);
+  return largest;
+}
+
+void MaterialFit::use_corrections() {
+  if (has_corrections()) simulated_.correct(corrected_errors_, corrected_weights_);
+}
+
+void MaterialFit::list_errors(WithUncertainLayers& about_fit, std::span<const double> p) {
+  Posterior* posterior = outcome_.posterior && outcome_.posterior->ok ? &*outcome_.posterior : nullptr;
+  const std::vector<NuisanceEstimate> estimates =
+      nuisance_estimates(about_fit, p, posterior ? posterior->gaussian.get() : nullptr);
+  outcome_.errors.clear();
+  for (size_t k = 0; k < estimates.size(); ++k) {
+    const SystematicError& error = simulated_.errors()[k];
+    const double factor = posterior ? posterior->applied_factor : 1;
+    outcome_.errors.push_back({name_of(error), unit_of(error), estimates[k].value,
+                               std::min(factor * estimates[k].sigma, error.sigma), error.sigma});
+  }
+}
+
+void MaterialFit::list_outliers() {
+  outcome_.outliers.clear();
+  const std::vector<LoadCase>& cases = simulated_.fitted().cases;
+  const std::vector<CaseWeights>& weights = simulated_.weights();
+  for (size_t c = 0; c < weights.size(); ++c) {
+    const auto add = [&](double weight, const std::string& reading) {
+      if (is_outlier(weight)) outcome_.outliers.push_back({cases[c].name, reading, weight});
+    };
+    for (size_t k = 0; k < weights[c].positions.size(); ++k)
+      add(weights[c].positions[k], data_.marker_names[cases[c].positions[k].marker]);
+    add(weights[c].force, "force");
+    add(weights[c].torque, "torque");
+  }
+}
+
+}  // namespace aspic

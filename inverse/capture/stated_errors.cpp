@@ -1,0 +1,66 @@
+#include "capture/stated_errors.h"
+
+#include <algorithm>
+
+#include "base/error.h"
+
+namespace aspic {
+namespace {
+
+struct StatedError {
+  const char* key;
+  ErrorKind kind;
+  const char* unit;  // quantity of its unit; empty: dimensionless
+  const char* needs;
+};
+constexpr StatedError kStated[] = {
+    {"position", ErrorKind::position, "length", "an indenter or a grip"},
+    {"rotation", ErrorKind::rotation, "angle", "an indenter or a grip"},
+    {"backlash", ErrorKind::backlash, "length", "an indenter or a grip"},
+    {"tare", ErrorKind::tare, "force", "a force"},
+    {"force_scale", ErrorKind::force_scale, "", "a force or a torque"},
+    {"length_scale", ErrorKind::length_scale, "", "positions of markers"},
+};
+
+}  // namespace
+
+std::vector<SystematicError> read_systematic_errors(const CaptureSettings& settings,
+                                                    const std::vector<LoadCase>& cases) {
+  const Value& table = settings["errors"];
+  ErrorSigmas sigmas{};
+  for (const StatedError& stated : kStated)
+    if (const Value* sigma = table.find(stated.key))
+      sigmas[static_cast<size_t>(stated.kind)] = sigma->number() * (*stated.unit ? settings.unit(stated.unit) : 1.0);
+  std::vector<SystematicError> errors = systematic_errors(cases, sigmas);
+  for (const StatedError& stated : kStated) {
+    const Value* sigma = table.find(stated.key);
+    const bool is_used =
+        std::any_of(errors.begin(), errors.end(), [&](const SystematicError& e) { return e.kind == stated.kind; });
+    if (sigma && !is_used)
+      throw error_at(sigma->place, std::string(stated.key) + " = " + number_text(sigma->number()) +
+                                       " concerns no case, because none has " + stated.needs + "; remove the key");
+  }
+  return errors;
+}
+
+std::optional<double> read_layer_sigma(const Value& tip) {
+  const Value &deviation = tip["stiffness_deviation"], *stiffness = tip.find("stiffness");
+  const bool is_given = deviation.place.line > 0;
+  if (is_given && !stiffness)
+    throw error_at(deviation.place, "stiffness_deviation needs the stiffness of the tip; add stiffness, or remove it");
+  if (!stiffness || deviation.is_text()) return std::nullopt;
+  return deviation.number();
+}
+
+std::string errors_text(const std::vector<SystematicError>& errors) {
+  std::string text;
+  for (const StatedError& stated : kStated) {
+    const auto first =
+        std::find_if(errors.begin(), errors.end(), [&](const SystematicError& e) { return e.kind == stated.kind; });
+    if (first == errors.end()) continue;
+    text += (text.empty() ? "" : ", ") + std::string(stated.key) + " = " + inline_toml({first->sigma, {}});
+  }
+  return "{ " + text + " }";
+}
+
+}  // namespace aspic
