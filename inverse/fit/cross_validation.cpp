@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "fit/common_errors.h"
+#include "fit/condensed_readings.h"
 
 namespace aspic {
 namespace {
@@ -92,7 +93,7 @@ CrossValidation cross_validate(const Experiment& experiment, const ParameterMap&
     if (options.stop.stopped()) break;
     HeldOut& h = result.groups.emplace_back();
     h.group = groups[g];
-    const Experiment seen = subset(experiment, [&](const LoadCase& c) { return c.group != h.group; });
+    const Experiment seen = condensed(subset(experiment, [&](const LoadCase& c) { return c.group != h.group; }));
     const Experiment left_out = subset(experiment, [&](const LoadCase& c) { return c.group == h.group; });
     Misfit misfit(seen, map, chosen.equilibrium);
     WithUncertainLayers data(misfit);
