@@ -37,7 +37,7 @@ const Schema& fit_options_schema() {
              Choices{{"off", "auto"}}, Usual{"\"off\""}),
          key("refine", kInteger, "simulates with every tet in 8^refine", Range{.min = 0, .max = 4}, Usual{"0"}),
          key("leave_out", kText | kNames, "groups of cases to predict instead of fitting", Usual{"[]"}),
-         key("baselines", kBoolean, "predicts leave_out by simpler models as well", Usual{"false"}),
+         key("baselines", kBoolean, "predicts leave_out by simpler models as well", Usual{"true"}),
          key("mesh_errors", kBoolean, "corrects the discretization error with a finer mesh", Usual{"true"}),
          key("law_errors", kBoolean, "includes the choice of the law in standard deviations", Usual{"true"}),
          key("uncertainty", kBoolean, "computes standard deviations and the next poke", Usual{"true"}),
@@ -54,6 +54,7 @@ const Schema& fit_options_schema() {
 }
 
 bool read_fit_options(Table document, const std::string& source, FitPlan& plan) {
+  const bool wants_baselines = document.find("baselines") != nullptr;
   check_and_complete(document, source, fit_options_schema(), "fit");
   const auto option = [&](const char* key) -> const Value& { return *document.find(key); };
   plan.regularizer.smoothness = smoothness_named(option("smooth").text());
@@ -78,11 +79,11 @@ bool read_fit_options(Table document, const std::string& source, FitPlan& plan) 
   else
     for (const Value& group : left_out.array()) plan.left_out.push_back(group.text());
   const Value& baselines = option("baselines");
-  if (baselines.boolean() && plan.left_out.empty())
+  if (baselines.boolean() && wants_baselines && plan.left_out.empty())
     throw error_at(baselines.place,
                    "baselines = true predicts the groups of leave_out; name some, such as "
                    "leave_out = [\"poke 1\"]");
-  return baselines.boolean();
+  return baselines.boolean() && !plan.left_out.empty();
 }
 
 }  // namespace aspic
