@@ -111,7 +111,8 @@ Json comparison_json(const FitOutcome& outcome, const FitFigures& figures) {
   add("cross-validation", validated);
   Json predicted = Json::array();
   for (const Prediction& p : figures.predictions)
-    if (p.held_out.ok) predicted.push_back(model(p.method == "fit" ? "this fit" : p.method, all_groups(beyond_noise({p.held_out}))));
+    if (p.held_out.ok)
+      predicted.push_back(model(p.method == "fit" ? "this fit" : p.method, all_groups(beyond_noise({p.held_out}))));
   add("left out", predicted);
   return list;
 }

@@ -60,8 +60,8 @@ std::string errors_text(const PredictionErrors& errors) {
   if (errors.position >= 0)
     text += fmt::format("positions within {} of the largest motion", two_digit_percent(errors.position));
   if (errors.force >= 0)
-    text +=
-        fmt::format("{}forces within {} of the largest force", text.empty() ? "" : ", ", two_digit_percent(errors.force));
+    text += fmt::format("{}forces within {} of the largest force", text.empty() ? "" : ", ",
+                        two_digit_percent(errors.force));
   return text;
 }
 

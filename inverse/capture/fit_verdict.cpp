@@ -244,7 +244,8 @@ std::vector<PredictionErrors> beyond_noise(const std::vector<HeldOut>& groups) {
 }
 
 PredictionErrors all_groups(const std::vector<PredictionErrors>& groups) {
-  return {"", root_mean_square(groups, &PredictionErrors::position), root_mean_square(groups, &PredictionErrors::force)};
+  return {"", root_mean_square(groups, &PredictionErrors::position),
+          root_mean_square(groups, &PredictionErrors::force)};
 }
 
 std::vector<FitReason> reasons_against_field(const DataSet& data, const FitOutcome& outcome) {

@@ -38,7 +38,7 @@ class SimulatedData {
 
   std::vector<std::string> left_out_;
   Experiment simulated_, corrected_, fitted_;
-  std::vector<MeshError> errors_;  // per case; empty: unknown
+  std::vector<MeshError> errors_;                     // per case; empty: unknown
   std::vector<std::vector<CommonError>> law_errors_;  // per case; empty: unknown
 };
 

@@ -31,6 +31,13 @@ IndentedBlock dense_block(int per_triangle) {
   for (MarkerReading& reading : block.experiment.cases[1].positions)
     for (int i = 0; i < 3; ++i) reading.sigma[i] *= uniform(random);
   block.measure(block.map(), block.map().guess(), random);
+  // A common error that is no motion of the corners, and a small one of the force.
+  for (LoadCase& load : block.experiment.cases) {
+    CommonError& error = load.common_errors.emplace_back();
+    for (size_t k = 0; k < load.positions.size(); ++k)
+      error.markers.push_back({{1e-4 * uniform(random), 1e-4, -2e-4 * uniform(random)}});
+    error.wrench.force = 0.3 * load.force_sigma;
+  }
   return block;
 }
 

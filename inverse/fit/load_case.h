@@ -43,7 +43,7 @@ class LoadedBody {
   bool add_transposed(std::span<const double> w, std::span<double> thetabar);
   bool has_layer() const { return probe_ != nullptr; }
   void common_error(int k, std::span<double> dr) const;  // of LoadCase::common_errors, in standard deviations
-  bool multiply_by_layer(std::span<double> dr);   // dr/dlog k, k the stiffness of the indenter's layer
+  bool multiply_by_layer(std::span<double> dr);          // dr/dlog k, k the stiffness of the indenter's layer
 
   const Misfit::Counts& counts() const { return counts_; }
 

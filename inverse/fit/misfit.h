@@ -78,7 +78,8 @@ struct CasePrediction {
 
 class Misfit : public LeastSquares {
  public:
-  // Stores references to both. The experiment's mesh is that of the map, or a refinement of it. Throws InvalidInput for a case without residuals.
+  // Stores references to both. The experiment's mesh is that of the map, or a refinement of it. Throws InvalidInput for
+  // a case without residuals.
   Misfit(const Experiment& experiment, const ParameterMap& map, const EquilibriumOptions& options = {});
   ~Misfit() override;
 

@@ -178,9 +178,7 @@ Experiment refined(Experiment experiment, int times) {
 MeshErrors mesh_errors(const Experiment& experiment, const std::string& material,
                        std::span<const MaterialParameters> parameters, const EquilibriumOptions& options) {
   const Experiment fine = refined(experiment);
-  const auto on = [&](const Experiment& e) {
-    return predicted(e, material, of_tets(e, parameters), options);
-  };
+  const auto on = [&](const Experiment& e) { return predicted(e, material, of_tets(e, parameters), options); };
   const Predictions on_mesh = on(experiment), on_fine = on(fine);
   MeshErrors errors{{}, on_mesh.failure.empty() ? on_fine.failure : on_mesh.failure};
   if (!errors.failure.empty()) return errors;
