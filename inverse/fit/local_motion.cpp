@@ -120,10 +120,10 @@ double middle_of(PerNeighbor values) {
 
 // Weighted least squares for u = c[0] + c[1] t[1] + c[2] t[2] + c[3] t[3].
 std::array<Vec3d, 4> field(std::span<const Row4> terms, std::span<const Vec3d> motion, const PerNeighbor& weight) {
-  constexpr double kRidge = 1e-3;  // regularizes the normal slope for coplanar neighbors
+  constexpr double kSlopeRidge = 1e-3;  // regularizes the normal slope for coplanar neighbors
   std::array<Row4, 4> A{};
   std::array<Vec3d, 4> b{};
-  for (int k = 1; k < 4; ++k) A[k][k] = kRidge;
+  for (int k = 1; k < 4; ++k) A[k][k] = kSlopeRidge;
   for (int n = 0; n < kMotionNeighbors; ++n)
     for (int k = 0; k < 4; ++k) {
       const double scaled = weight[n] * terms[n][k];
