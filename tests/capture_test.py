@@ -46,7 +46,7 @@ class Capture(Captured):
 
     def test_scene_becomes_a_faultless_data_set(self):
         self.assertIn("6 cases, 20 markers", self.capture().stdout)
-        text = self.aspic("fit", "--check", "data").stdout
+        text = self.aspic("check", "data").stdout
         self.assertIn("6 cases in 3 groups", text)
         self.assertNotIn("error:", text)
 
@@ -67,7 +67,7 @@ class Capture(Captured):
         self.capture("data", "--no-force")
         with open(self.folder / "data/cases.csv", newline="") as file:
             self.assertEqual({row["force_x"] for row in csv.DictReader(file)}, {""})
-        self.assertIn("only ratios of stiffness", self.aspic("fit", "--check", "data").stdout)
+        self.assertIn("only ratios of stiffness", self.aspic("check", "data").stdout)
 
     def test_accepts_torques_gravity_and_own_mesh(self):
         self.write("box.mesh", box_mesh(3))
@@ -131,7 +131,7 @@ class BadData(Captured):
         self.capture()
 
     def refused(self, *messages):
-        for command in (("fit", "--check", "data"), ("fit", "data")):
+        for command in (("check", "data"), ("fit", "data")):
             done = self.aspic(*command, code=2, timeout=20)
             for message in messages:
                 self.assertIn(message, done.stdout + done.stderr)
@@ -146,7 +146,7 @@ class BadData(Captured):
 
     def test_finds_forces_in_grams(self):
         self.change_cells("cases", ["force_x", "force_y", "force_z"], lambda f: str(round(1e4 * float(f) / 9.8)))
-        text = self.aspic("fit", "--check", "data").stdout
+        text = self.aspic("check", "data").stdout
         self.assertIn("cases.csv", text)
         self.assertIn('units = { force = "g" }', text)
 

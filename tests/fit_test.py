@@ -171,6 +171,29 @@ class Fit(FitCommand):
         self.assertIn("none.toml", self.fit("--options", "none.toml", code=2).stderr)
         self.assertIn("cross_validation = true", self.aspic("fit", "--help").stdout)
 
+    def test_options_beside_the_data_are_read_without_a_flag(self):
+        beside = self.folder / "layers/aspic.fit.toml"
+        beside.write_text("\n" + QUICK_OPTIONS + 'smooth = "tv"\n')
+        uniform = QUICK[2:]
+        self.fit(*uniform, "-q")
+        stored = (self.folder / "material.fit/options.toml").read_text()
+        for line in ('smooth = "tv"', "# smooth: layers/aspic.fit.toml:5", "# mesh_errors: layers/aspic.fit.toml:2",
+                     "# iterations: default", "# young: command line", "# model: default"):
+            self.assertIn(line + "\n", stored)
+        self.fit(*uniform, "-q", "--force", *self.options(QUICK_OPTIONS))
+        stored = (self.folder / "material.fit/options.toml").read_text()
+        for line in ('smooth = "h1"', "# smooth: default", "# mesh_errors: options.toml:1"):
+            self.assertIn(line + "\n", stored)
+        beside.write_text('mesh_errors = false\nsmoth = "tv"\n')
+        refused = self.fit(*uniform, "--force", code=2).stderr
+        self.assertIn("layers/aspic.fit.toml:2", refused)
+        self.assertIn("did you mean 'smooth'?", refused)
+
+    def test_help_lists_at_most_twelve_flags(self):
+        flags = re.findall(r"^  (-[^ ]+)", self.aspic("fit", "--help").stdout, re.M)
+        self.assertIn("-h,--help", flags)
+        self.assertLessEqual(len(flags) - 1, 12, flags)
+
     def test_bad_input_names_the_remedy(self):
         for arguments, message in (
                 (("--unknown", "yuong=tets"), "did you mean 'young'?"),
@@ -192,7 +215,7 @@ class Fit(FitCommand):
         self.assertFalse((self.folder / "material.fit").exists())
 
     def test_check_reads_and_writes_no_material(self):
-        self.fit("--check")
+        self.aspic("check", "layers")
         self.assertFalse((self.folder / "material.vtu").exists())
 
 

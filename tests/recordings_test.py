@@ -260,7 +260,7 @@ class Registration(Measured):
         line = {name: (10.0 + 30 * i, 50.0, 100.0) for i, name in enumerate(self.names)}
         files.write_trc(self.data / "walk.trc", self.names, [line] * 5)
         self.use("walk.trc", range(2, 6))
-        said = self.aspic("fit", "data", "--check", "--register", "rigid").stdout
+        said = self.aspic("check", "data", "--register", "rigid").stdout
         self.assertIn("the points lie on a line: the rotation about it is not determined", said)
 
 
@@ -304,7 +304,7 @@ class Forces(Measured):
         self.assertRegex(said, r"cases.csv:2: time = 0.5 s: not steady: the force stays within .* only from .* s; the nearest "
                                r"steady state is at (0\.99|1)")
         self.write("data/capture.toml", 'steady = "off"\n' + (self.data / "capture.toml").read_text())
-        self.aspic("fit", "data", "--check")
+        self.aspic("check", "data")
 
     def test_times_outside_the_series_are_refused(self):
         set_cells(self.data / "cases.csv", {"time": [99, 3.5, 5.5, ""]})

@@ -54,7 +54,7 @@ class Signals(Crash):
                                        stream="stdout")
             self.assertEqual(got, code, said)
             self.assertIn("the finished cases", said)
-            self.assertNotIn("error:", self.aspic("fit", "--check", "data").stdout)
+            self.assertNotIn("error:", self.aspic("check", "data").stdout)
 
     def test_view_ends_successfully(self):
         for with_signal in self.CODES:

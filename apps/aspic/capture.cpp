@@ -121,7 +121,7 @@ Examples:
   aspic capture scenes/capture/pillow.toml                     into out/pillow_data
   aspic capture scenes/capture/pillow.toml -o pillow --pokes 12 --tip disc:0.01
   aspic capture scenes/capture/pillow.toml -o hung --pokes 0 --gravity 0,0,-1 --gravity 1,0,0
-then: aspic fit out/pillow_data --check, and without --check
+then: aspic check out/pillow_data, and aspic fit out/pillow_data
 
 Exit codes: 0 done, 2 bad input, 3 some case has no equilibrium and was omitted, 130 interrupted by Ctrl-C,
 143 by kill: finished cases are written.)");

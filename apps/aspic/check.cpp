@@ -1,4 +1,4 @@
-// `aspic check`: examines a mesh, or every mesh of a scene.
+// `aspic check`: examines a mesh, every mesh of a scene, or a data set.
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
@@ -10,6 +10,7 @@
 #include <variant>
 
 #include "aspic/commands.h"
+#include "aspic/fit_check.h"
 #include "aspic/plot.h"
 #include "base/error.h"
 #include "base/printable.h"
@@ -141,6 +142,7 @@ int check_derivatives(const Scene& scene, const CheckDerivativesOptions& options
 struct CheckArguments {
   fs::path input, output, plot;
   std::vector<std::string> overrides;
+  std::string registers;    // registration of a data set; empty: none
   double tolerance = 1e-6;  // tolerance of derivatives
   bool repair = false, derivatives = false, json = false;
 };
@@ -248,7 +250,24 @@ int check_scene(const CheckArguments& arguments) {
   return wrong ? exit_bad_input : exit_done;
 }
 
+bool is_data_set(const fs::path& input) {
+  std::error_code error;
+  return fs::is_directory(input, error) || input.filename() == "capture.toml";
+}
+
+int check_measurements(const CheckArguments& arguments) {
+  if (arguments.repair || arguments.derivatives || !arguments.overrides.empty())
+    throw InvalidInput(arguments.input.string() + ": --repair, --derivatives and --set do not apply to a data set");
+  CheckDataOptions options{.charts = {}, .json = arguments.json};
+  if (!arguments.registers.empty())
+    options.registers = arguments.registers == "rigid" ? RegistrationKind::rigid : RegistrationKind::similarity;
+  return check_data(arguments.input, options);
+}
+
 int check(const CheckArguments& arguments) {
+  if (is_data_set(arguments.input)) return check_measurements(arguments);
+  if (!arguments.registers.empty())
+    throw InvalidInput("--register needs a data set; give the folder that contains capture.toml");
   if (arguments.derivatives) {
     if (arguments.repair) throw InvalidInput("--repair and --derivatives cannot be combined");
     const Scene scene = load_scene(arguments.input, {.overrides = arguments.overrides, .mesher = {}});
@@ -267,13 +286,15 @@ int check(const CheckArguments& arguments) {
 
 void add_check(CLI::App& app, Action& action) {
   const auto arguments = std::make_shared<CheckArguments>();
-  CLI::App* command = app.add_subcommand("check", "Reports errors and suspicious values of a scene or a mesh");
+  CLI::App* command =
+      app.add_subcommand("check", "Reports errors and suspicious values of a scene, a mesh or a data set");
   command->footer(
       "\nExamples:\n  aspic check bunny.mesh\n  aspic check scenes/bunny.toml\n"
+      "  aspic check pillow                           a data set of measurements\n"
       "  aspic check broken.mesh --repair -o mended.mesh\n"
       "  aspic check scenes/bunny.toml --derivatives --plot errors.svg\n"
       "Exit code 2 if there are errors (after a repair, if requested), 3 if a derivative is wrong.");
-  command->add_option("INPUT", arguments->input, "Scene (.toml) or mesh")->required();
+  command->add_option("INPUT", arguments->input, "Scene (.toml), mesh, or folder of a data set")->required();
   command
       ->add_option("--set", arguments->overrides,
                    "Override values of the scene: material.young=2e5; several may follow")
@@ -289,7 +310,10 @@ void add_check(CLI::App& app, Action& action) {
   command->add_option("--tolerance", arguments->tolerance, "With --derivatives: relative tolerance; 1e-6 by default")
       ->check(CLI::PositiveNumber);
   command->add_option("--plot", arguments->plot, "With --derivatives: plot error over step (.svg or .png)");
-  command->add_flag("--json", arguments->json, "With --derivatives: print one line of JSON per term and state");
+  command->add_option("--register", arguments->registers, "Align markers or scan of a data set: rigid or similarity")
+      ->check(CLI::IsMember({"rigid", "similarity"}));
+  command->add_flag("--json", arguments->json,
+                    "Print JSON: findings of a data set, or with --derivatives one line per term and state");
   command->callback([arguments, &action] { action = [arguments] { return check(*arguments); }; });
 }
 

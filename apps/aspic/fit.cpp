@@ -7,7 +7,6 @@
 #include <optional>
 
 #include "aspic/commands.h"
-#include "aspic/fit_check.h"
 #include "aspic/fit_figures.h"
 #include "aspic/fit_options.h"
 #include "aspic/fit_progress.h"
@@ -23,6 +22,8 @@
 #include "capture/fit_run.h"
 #include "capture/fit_verdict.h"
 #include "capture/histories.h"
+#include "fit/quantity.h"
+#include "io/atomic_file.h"
 #include "material/registry.h"
 #include "scene/value.h"
 
@@ -37,7 +38,7 @@ struct FitArguments {
   std::string model = FitPlan().model;
   std::vector<std::string> parameters, known;
   int threads = 0;  // 0: not given
-  bool check = false, force = false, resume = false, quiet = false, verbose = false, allow_unconverged = false;
+  bool force = false, resume = false, quiet = false, verbose = false, allow_unconverged = false;
 };
 
 std::optional<RegistrationKind> registration_kind(const FitArguments& arguments) {
@@ -51,6 +52,24 @@ FitPlan plan_of(const FitArguments& arguments) {
   for (const std::string& text : arguments.parameters) plan.parameters.push_back(parse_parameter(text));
   for (const std::string& text : arguments.known) plan.known.push_back(parse_known(text));
   return plan;
+}
+
+// Comments for options.toml: where each option comes from.
+std::string origins_of(const FitArguments& arguments, const fs::path& options_file) {
+  std::string text = "\n# Origins of the options\n";
+  const auto add = [&](const std::string& option, const std::string& origin) {
+    text += "# " + option + ": " + origin + "\n";
+  };
+  const std::string given = "command line", fallback = "default";
+  add("model", arguments.model == FitPlan().model ? fallback : given);
+  for (const Quantity& quantity : material_quantities(material_info(arguments.model).name)) {
+    const auto names = [&](const std::string& option) { return option.starts_with(quantity.name + "="); };
+    const bool is_given = std::any_of(arguments.parameters.begin(), arguments.parameters.end(), names) ||
+                          std::any_of(arguments.known.begin(), arguments.known.end(), names);
+    add(quantity.name, is_given ? given : fallback);
+  }
+  for (const OptionOrigin& origin : fit_option_origins(options_file)) add(origin.option, origin.place);
+  return text;
 }
 
 ExistingFit existing(const FitArguments& arguments) {
@@ -71,13 +90,13 @@ void check_findings(const DataSet& data, const fs::path& path) {
     if (finding.severity == Severity::warning) warnings.push_back(describe(finding));
   }
   if (!errors.empty()) {
-    errors.push_back(fmt::format("(aspic fit --check {} prints details)", path.string()));
+    errors.push_back(fmt::format("(aspic check {} prints details)", path.string()));
     throw InvalidInput(errors);
   }
   const int count = static_cast<int>(warnings.size());
   for (int i = 0; i < std::min(count, kMaxPrinted); ++i) fmt::print(stderr, "warning: {}\n", warnings[i]);
   if (count > kMaxPrinted)
-    fmt::print(stderr, "warning: and {} more: aspic fit --check {}\n", count - kMaxPrinted, printable(path.string()));
+    fmt::print(stderr, "warning: and {} more: aspic check {}\n", count - kMaxPrinted, printable(path.string()));
 }
 
 // Runs one fit and notifies its observers.
@@ -180,10 +199,10 @@ int run(const FitArguments& arguments) {
   if (arguments.data.extension() == ".csv")
     throw InvalidInput(arguments.data.string() + ": a data set is a folder; to fit curves: aspic fit-curves " +
                        arguments.data.string());
-  if (arguments.check) return check_data(arguments.data, {.charts = {}, .registers = registration_kind(arguments)});
   if (arguments.threads > 0) set_thread_count(arguments.threads);
   FitPlan plan = plan_of(arguments);
-  const bool has_baselines = read_fit_options(arguments.options, plan);
+  const fs::path options_file = options_of(arguments.data, arguments.options);
+  const bool has_baselines = read_fit_options(options_file, plan);
   if (arguments.out.extension() != ".vtu")
     throw InvalidInput(arguments.out.string() + ": a material file is a .vtu; choose such a name with -o");
   const DataSet data = read_data_set(arguments.data, registration_kind(arguments));
@@ -191,6 +210,7 @@ int run(const FitArguments& arguments) {
   plan = completed(std::move(plan), data.experiment);
   std::string options = "# aspic fit\ndata = \"" + fingerprint_of(data.experiment) + "\"\n" + text_of(plan);
   if (!data.histories.empty()) options += "histories = \"" + fingerprint_of(data.histories) + "\"\n";
+  options += origins_of(arguments, options_file);
   FitFolder folder = FitFolder::open(arguments.out, options, existing(arguments));
   if (data.registration) write_registration(folder.path() / "registration.toml", *data.registration);
   catch_interrupts();  // from here on there are results to keep
@@ -206,7 +226,8 @@ int run(const FitArguments& arguments) {
   folder.add_weights(outcome.report);
   const FitFigures figures = figures_of(data, outcome, truth_beside(arguments.data), has_baselines);
   const FitVerdict judged = verdict(data, outcome);
-  write_figures(folder.path() / "figures.json", outcome, judged, figures);
+  const std::string json = figures_json(data, outcome, judged, figures);
+  write_file(folder.path() / "figures.json", json);
   if (!arguments.quiet) print_fit(stdout, data, outcome), print_figures(stdout, figures);
   if (!arguments.quiet && outcome.law_choice) print_laws(stdout, *outcome.law_choice);
   if (!arguments.quiet && outcome.relaxation) print_relaxation(stdout, *outcome.relaxation);
@@ -216,7 +237,7 @@ int run(const FitArguments& arguments) {
   std::fflush(stdout);
   print_verdict(judged, arguments.quiet);
   print_use(arguments, !outcome.interrupted);
-  write_fit_report(folder.report(), data, outcome, fitter.history(), arguments.quiet ? nullptr : stdout);
+  write_fit_report(folder.report(), {data, outcome, fitter.history(), json}, arguments.quiet ? nullptr : stdout);
   if (!outcome.interrupted) folder.finish();
   return exit_code(arguments, judged.is_good());
 }
@@ -229,7 +250,7 @@ std::vector<std::string> model_names() {
 
 constexpr std::string_view kFooter = R"(
 Examples:
-  aspic fit pillow --check                     validates the data set
+  aspic check pillow                           validates the data set
   aspic fit pillow                             writes material.vtu and material.fit/report.html
   aspic fit pillow -o soft.vtu --known poisson=0.45 --options careful.toml
   aspic fit pillow --model fung --unknown young=handles:40 --unknown b=uniform
@@ -237,7 +258,7 @@ Examples:
   aspic fit pillow --resume                    continues an interrupted fit, bit-reproducibly
 then in a scene: material = {{ file = "material.vtu" }}
 
-Keys of the file of --options, with their defaults:
+Keys of aspic.fit.toml beside capture.toml, or of the file of --options, with their defaults:
 {}
 Exit codes: 0 the verdict is good, 2 bad input or data with errors, 3 the fit failed, did not converge, or its
 material is not reliable (unless --allow-unconverged): the reasons are printed and written to figures.json;
@@ -251,7 +272,6 @@ void add_fit(CLI::App& app, Action& action) {
   command->footer(fmt::format(kFooter, fit_options_text()));
   command->add_option("DATA", arguments->data, "Folder of a data set, or its capture.toml")->required();
   command->add_option("-o,--out", arguments->out, "Material file to write; material.vtu by default");
-  command->add_flag("--check", arguments->check, "Validate the data set and exit");
   command
       ->add_option("--model", arguments->model,
                    "Strain energy density (see aspic materials), or auto: the simplest of those that the data support; "
@@ -266,7 +286,8 @@ void add_fit(CLI::App& app, Action& action) {
       ->allow_extra_args(false);
   command->add_option("--register", arguments->registers, "Align markers or scan with the mesh: rigid or similarity")
       ->check(CLI::IsMember({"rigid", "similarity"}));
-  command->add_option("--options", arguments->options, "TOML file of further options, listed below");
+  command->add_option("--options", arguments->options,
+                      "TOML file of further options, listed below; by default aspic.fit.toml of the data set");
   command->add_option("--threads", arguments->threads, "Threads; all cores by default; results do not depend on it")
       ->check(CLI::Range(1, 1024));
   command->add_flag("--force", arguments->force, "Replace an earlier fit");

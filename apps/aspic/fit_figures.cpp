@@ -4,19 +4,16 @@
 
 #include <algorithm>
 #include <cmath>
-#include <nlohmann/json.hpp>
 
+#include "aspic/fit_json.h"
 #include "aspic/law_table.h"
 #include "aspic/relaxation_results.h"
 #include "capture/left_out.h"
 #include "fit/bickel.h"
 #include "fit/quantity.h"
-#include "io/atomic_file.h"
 
 namespace aspic::cli {
 namespace {
-
-using Json = nlohmann::ordered_json;
 
 BickelOptions baseline_options(const FitPlan& plan) {
   BickelOptions options;
@@ -106,7 +103,12 @@ Json json_of(const HeldOut& h) {
 
 Json json_of(const FitVerdict& judged) {
   Json reasons = Json::array();
-  for (const FitReason& reason : judged.reasons) reasons.push_back({{"name", reason.name}, {"text", reason.text}});
+  for (const FitReason& reason : judged.reasons) {
+    Json json = {{"name", reason.name}, {"text", reason.text}};
+    if (reason.value) json["value"] = *reason.value;
+    if (reason.limit) json["limit"] = *reason.limit;
+    reasons.push_back(json);
+  }
   return {{"good", judged.is_good()}, {"text", judged.text}, {"reasons", reasons}};
 }
 
@@ -154,8 +156,8 @@ void print_figures(std::FILE* stream, const FitFigures& figures) {
   for (const Prediction& p : figures.predictions) print_prediction(stream, p);
 }
 
-void write_figures(const std::filesystem::path& file, const FitOutcome& outcome, const FitVerdict& judged,
-                   const FitFigures& figures) {
+std::string figures_json(const DataSet& data, const FitOutcome& outcome, const FitVerdict& judged,
+                         const FitFigures& figures) {
   const FitReport& report = outcome.report;
   Json json = {{"converged", is_success(report.status)},
                {"words", report.message},
@@ -185,7 +187,12 @@ void write_figures(const std::filesystem::path& file, const FitOutcome& outcome,
   for (const Judgment& j : figures.judgments) json["truth"].push_back(json_of(j));
   json["left_out"] = Json::object();
   for (const Prediction& p : figures.predictions) json["left_out"][p.method] = json_of(p.held_out);
-  write_file(file, json.dump(1) + "\n");
+  json["limits"] = {{"missed", kMissed}, {"squares_per_reading", kTooManySquares}};
+  json["held_out"] = held_out_json(data, outcome);
+  json["comparison"] = comparison_json(outcome, figures);
+  json["cases"] = cases_json(data, outcome);
+  json["histogram"] = histogram_json(data, outcome);
+  return json.dump(1) + "\n";
 }
 
 }  // namespace aspic::cli

@@ -24,7 +24,8 @@ struct FitFigures {
 FitFigures figures_of(const DataSet& data, const FitOutcome& outcome, const std::filesystem::path& truth,
                       bool with_baselines);
 void print_figures(std::FILE* stream, const FitFigures& figures);
-void write_figures(const std::filesystem::path& file, const FitOutcome& outcome, const FitVerdict& judged,
-                   const FitFigures& figures);
+// Text of figures.json, whose numbers the report shows.
+std::string figures_json(const DataSet& data, const FitOutcome& outcome, const FitVerdict& judged,
+                         const FitFigures& figures);
 
 }  // namespace aspic::cli

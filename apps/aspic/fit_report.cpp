@@ -5,14 +5,12 @@
 #include <exception>
 
 #include "io/atomic_file.h"
-#include "viewer/fit_page.h"
 
 namespace aspic::cli {
 
-void write_fit_report(const std::filesystem::path& file, const DataSet& data, const FitOutcome& outcome,
-                      const std::vector<FitIteration>& history, std::FILE* stream) {
+void write_fit_report(const std::filesystem::path& file, const viewer::FitPageContent& content, std::FILE* stream) {
   try {
-    const std::string html = viewer::fit_page(data, outcome, history);
+    const std::string html = viewer::fit_page(content);
     write_file(file, html);
     if (stream)
       fmt::print(stream, "report     {} ({:.1f} MB): open it in a browser\n", file.string(),

@@ -4,11 +4,11 @@
 #include <filesystem>
 
 #include "capture/fit_run.h"
+#include "viewer/fit_page.h"
 
 namespace aspic::cli {
 
 // Prints its path, or the reason of its absence, to `stream` (null: nothing).
-void write_fit_report(const std::filesystem::path& file, const DataSet& data, const FitOutcome& outcome,
-                      const std::vector<FitIteration>& history, std::FILE* stream);
+void write_fit_report(const std::filesystem::path& file, const viewer::FitPageContent& content, std::FILE* stream);
 
 }  // namespace aspic::cli

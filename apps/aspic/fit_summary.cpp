@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "capture/fit_verdict.h"
 #include "capture/fitted_values.h"
 
 namespace aspic::cli {
@@ -54,23 +55,25 @@ void print_parts(std::FILE* stream, const FitOutcome& outcome) {
                two_digit_percent(found.volume[k]));
 }
 
+std::string errors_text(const PredictionErrors& errors) {
+  std::string text;
+  if (errors.position >= 0)
+    text += fmt::format("positions within {} of the largest motion", two_digit_percent(errors.position));
+  if (errors.force >= 0)
+    text += fmt::format("{}forces within {} of the largest force", text.empty() ? "" : ", ",
+                        two_digit_percent(errors.force));
+  return text;
+}
+
 void print_held_out(std::FILE* stream, const FitOutcome& outcome) {
   if (!outcome.held_out) return;
-  const CrossValidation& all = *outcome.held_out;
-  std::string text;
-  if (all.position_error >= 0)
-    text += fmt::format("positions within {} of the peak motion", two_digit_percent(all.position_error));
-  if (all.force_error >= 0)
-    text += fmt::format("{}forces within {} of the peak force", text.empty() ? "" : ", ",
-                        two_digit_percent(all.force_error));
+  const std::vector<PredictionErrors> groups = beyond_noise(outcome.held_out->groups);
+  const std::string text = errors_text(all_groups(groups));
   if (text.empty()) return;
-  fmt::print(stream, "held out   each group predicted from the others: {} (root mean square)\n", text);
-  const auto worst = std::max_element(all.groups.begin(), all.groups.end(), [](const HeldOut& a, const HeldOut& b) {
-    return a.relative_position_error() < b.relative_position_error();
-  });
-  if (all.groups.size() > 1 && worst->ok)
-    fmt::print(stream, "           worst: '{}', positions {}, forces {}\n", worst->group,
-               two_digit_percent(worst->relative_position_error()), two_digit_percent(worst->relative_force_error()));
+  fmt::print(stream, "held out   each group predicted from the others: {} (beyond the noise)\n", text);
+  const auto worst = std::max_element(groups.begin(), groups.end(),
+                                      [](const auto& a, const auto& b) { return a.position < b.position; });
+  if (groups.size() > 1) fmt::print(stream, "           worst: '{}', {}\n", worst->group, errors_text(*worst));
 }
 
 void print_errors(std::FILE* stream, const FitOutcome& outcome) {

@@ -30,8 +30,7 @@ void write_run_report(const std::filesystem::path&, const Scene& scene, std::FIL
   if (scene.output.report && stream) fmt::print(stream, "no report.html: this aspic was built without its viewer\n");
 }
 
-void write_fit_report(const std::filesystem::path&, const DataSet&, const FitOutcome&, const std::vector<FitIteration>&,
-                      std::FILE* stream) {
+void write_fit_report(const std::filesystem::path&, const viewer::FitPageContent&, std::FILE* stream) {
   if (stream) fmt::print(stream, "no report.html: this aspic was built without its viewer\n");
 }
 

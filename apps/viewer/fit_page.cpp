@@ -5,7 +5,7 @@
 #include <cmath>
 #include <limits>
 
-#include "capture/fit_verdict.h"
+#include "capture/case_figures.h"
 #include "capture/fitted_values.h"
 #include "capture/result_notes.h"
 #include "fit/quantity.h"
@@ -34,8 +34,12 @@ void append_nothing(std::vector<float>& list) { list.insert(list.end(), 3, kNotA
 
 class FitPack {
  public:
-  FitPack(const DataSet& data, const FitOutcome& outcome, const std::vector<FitIteration>& history)
-      : data_(data), outcome_(outcome), history_(history) {}
+  explicit FitPack(const FitPageContent& content)
+      : data_(content.data), outcome_(content.outcome), history_(content.history), figures_(content.figures) {
+    for (size_t c = 0; c < outcome_.cases.size(); ++c)
+      shown_.push_back(shown_readings(data_.experiment.cases[c], outcome_.cases[c]));
+    choose_markers();
+  }
 
   std::string text() {
     add_body();
@@ -48,13 +52,12 @@ class FitPack {
                  {"fit", fit_json()},
                  {"quantities", quantities()},
                  {"cases", cases()},
-                 {"heldOut", held_out()},
+                 {"figures", Json::parse(figures_)},
                  {"history", history()},
                  {"weights", weights()},
                  {"notes", notes()},
                  {"warnings", outcome_.warnings},
-                 {"verdict", verdict_json()},
-                 {"markerNames", data_.marker_names},
+                 {"markerNames", marker_names()},
                  {"nextPoke", next_indentation()}};
     std::string text;
     append_base64(gzipped(pack_.bytes(std::move(head))), text);
@@ -62,17 +65,30 @@ class FitPack {
   }
 
  private:
+  // All markers, or those of the shown readings if there are too many.
+  void choose_markers() {
+    const size_t count = data_.experiment.markers.size();
+    std::vector<char> is_used(count, count <= kMaxShownReadings);
+    for (size_t c = 0; c < shown_.size(); ++c)
+      for (const int i : shown_[c]) is_used[data_.experiment.cases[c].positions[i].marker] = 1;
+    index_of_.resize(count, 0);
+    for (size_t m = 0; m < count; ++m)
+      if (is_used[m]) index_of_[m] = static_cast<uint32_t>(markers_.size()), markers_.push_back(static_cast<int>(m));
+  }
+
+  Json marker_names() const {
+    Json names = Json::array();
+    for (const int m : markers_) names.push_back(data_.marker_names.empty() ? "" : data_.marker_names[m]);
+    return names;
+  }
+
   void add_body() {
     const TetMesh& mesh = outcome_.material.mesh;
     std::vector<float> points, markers;
     for (const Vec3d& X : mesh.rest) append(X, points);
     std::vector<uint32_t> tets, fixed;
     for (const Tet& tet : mesh.tets) tets.insert(tets.end(), tet.begin(), tet.end());
-    for (const aspic::SurfacePoint& marker : data_.experiment.markers) {
-      Vec3d X{};
-      for (int k = 0; k < 3; ++k) X = X + marker.weights[k] * data_.experiment.mesh.rest[marker.vertices[k]];
-      append(X, markers);
-    }
+    for (const int m : markers_) append(at_rest(data_.experiment, data_.experiment.markers[m]), markers);
     for (const int v : data_.experiment.fixed)
       fixed.push_back(static_cast<uint32_t>(data_.numbering.vertex.to_user(v)));
     pack_.add("points", points);
@@ -85,15 +101,16 @@ class FitPack {
 
   void add_readings() {
     std::vector<uint32_t> marker;
-    std::vector<float> measured, sigma, predicted, held_out;
+    std::vector<float> measured, sigma, predicted, on_mesh, held_out;
     for (size_t c = 0; c < data_.experiment.cases.size(); ++c) {
       const LoadCase& load = data_.experiment.cases[c];
       const CaseOutcome& outcome = outcome_.cases[c];
-      for (size_t i = 0; i < load.positions.size(); ++i) {
-        marker.push_back(static_cast<uint32_t>(load.positions[i].marker));
+      for (const int i : shown_[c]) {
+        marker.push_back(index_of_[load.positions[i].marker]);
         append(load.positions[i].position, measured);
         append(outcome.marker_sigma.empty() ? load.positions[i].sigma : outcome.marker_sigma[i], sigma);
         outcome.ok ? append(outcome.markers[i], predicted) : append_nothing(predicted);
+        outcome.ok ? append(outcome.markers_on_mesh[i], on_mesh) : append_nothing(on_mesh);
         outcome.has_held_out ? append(outcome.held_out_markers[i], held_out) : append_nothing(held_out);
       }
     }
@@ -101,6 +118,7 @@ class FitPack {
     pack_.add("reading.measured", measured);
     pack_.add("reading.deviation", sigma);
     pack_.add("reading.predicted", predicted);
+    pack_.add("reading.onMesh", on_mesh);
     pack_.add("reading.heldOut", held_out);
   }
 
@@ -108,13 +126,6 @@ class FitPack {
     std::vector<std::string> all = result_notes(outcome_);
     all.insert(all.end(), data_.notes.begin(), data_.notes.end());
     return all;
-  }
-
-  Json verdict_json() const {
-    const FitVerdict judged = verdict(data_, outcome_);
-    Json reasons = Json::array();
-    for (const FitReason& reason : judged.reasons) reasons.push_back({{"name", reason.name}, {"text", reason.text}});
-    return {{"good", judged.is_good()}, {"text", judged.text}, {"reasons", reasons}};
   }
 
   Json counts() const {
@@ -183,57 +194,14 @@ class FitPack {
       Json item = {{"name", load.name},
                    {"group", load.group},
                    {"first", first},
-                   {"count", load.positions.size()},
+                   {"count", shown_[c].size()},
+                   {"hidden", load.positions.size() - shown_[c].size()},
                    {"leftOut", outcome.left_out},
-                   {"ok", outcome.ok},
-                   {"pressure", load.pressure},
-                   {"gravity", norm(load.gravity)},
-                   {"tip", nullptr},
-                   {"force", nullptr},
-                   {"torque", nullptr}};
-      if (load.indenter)
-        item["tip"] = {{"shape", load.indenter->shape == IndenterShape::sphere ? "sphere" : "disc"},
-                       {"radius", load.indenter->radius},
-                       {"touch", vector(load.touch.center)},
-                       {"center", vector(load.pose.center)},
-                       {"axis", vector(load.touch.axis)},
-                       {"turn", vector(load.pose.rotation)}};
-      const bool is_fitted = outcome.ok && !outcome.left_out;
-      if (load.force)
-        item["force"] =
-            reading(*load.force, is_fitted ? outcome.force_sigma : load.force_sigma, outcome, &Wrench::force);
-      if (load.torque)
-        item["torque"] =
-            reading(*load.torque, is_fitted ? outcome.torque_sigma : load.torque_sigma, outcome, &Wrench::torque);
+                   {"ok", outcome.ok}};
       list.push_back(std::move(item));
-      first += load.positions.size();
+      first += shown_[c].size();
     }
     return list;
-  }
-
-  static Json reading(const Vec3d& measured, const Vec3d& sigma, const CaseOutcome& outcome, Vec3d Wrench::*part) {
-    return {{"measured", vector(measured)},
-            {"deviation", vector(sigma)},
-            {"predicted", outcome.ok ? vector(outcome.wrench.*part) : Json()},
-            {"heldOut", outcome.has_held_out ? vector(outcome.held_out_wrench.*part) : Json()}};
-  }
-
-  Json held_out() const {
-    if (!outcome_.held_out) return {};
-    Json groups = Json::array();
-    for (const HeldOut& g : outcome_.held_out->groups)
-      groups.push_back({{"group", g.group},
-                        {"ok", g.ok},
-                        {"failure", g.failure},
-                        {"peakMotion", number_json(g.peak_motion)},
-                        {"positionError", number_json(g.position_error)},
-                        {"positionNoise", number_json(g.position_noise)},
-                        {"peakForce", number_json(g.peak_force)},
-                        {"forceError", number_json(g.force_error)},
-                        {"forceNoise", number_json(g.force_noise)}});
-    return {{"groups", groups},
-            {"position", number_json(outcome_.held_out->position_error)},
-            {"force", number_json(outcome_.held_out->force_error)}};
   }
 
   Json history() const {
@@ -272,13 +240,17 @@ class FitPack {
   const DataSet& data_;
   const FitOutcome& outcome_;
   const std::vector<FitIteration>& history_;
+  const std::string& figures_;
+  std::vector<std::vector<int>> shown_;  // readings in the page, per case
+  std::vector<int> markers_;             // in the page
+  std::vector<uint32_t> index_of_;       // place of each marker in the page
   ArrayPack pack_;
 };
 
 }  // namespace
 
-std::string fit_page(const DataSet& data, const FitOutcome& outcome, const std::vector<FitIteration>& history) {
-  return page_with(fmt::format("{}{}{}", kFitBegin, FitPack(data, outcome, history).text(), kFitEnd));
+std::string fit_page(const FitPageContent& content) {
+  return page_with(fmt::format("{}{}{}", kFitBegin, FitPack(content).text(), kFitEnd));
 }
 
 }  // namespace aspic::viewer

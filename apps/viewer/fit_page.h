@@ -7,7 +7,13 @@
 
 namespace aspic::viewer {
 
-// `history`: the iterations of the fit in ascending order.
-std::string fit_page(const DataSet& data, const FitOutcome& outcome, const std::vector<FitIteration>& history);
+struct FitPageContent {
+  const DataSet& data;
+  const FitOutcome& outcome;
+  const std::vector<FitIteration>& history;  // in ascending order
+  const std::string& figures;                // text of figures.json
+};
+
+std::string fit_page(const FitPageContent& content);
 
 }  // namespace aspic::viewer

@@ -1,105 +1,25 @@
 #include <algorithm>
-#include <array>
 
+#include "base/parallel.h"
 #include "capture/case_table.h"
 #include "capture/data_findings.h"
 #include "capture/surface_projection.h"
+#include "fit/local_motion.h"
 #include "math/vectors.h"
-#include "mesh/box.h"
 
 namespace aspic {
 namespace {
 
-constexpr int kNeighbors = 12;
 constexpr size_t kMaxListed = 5;      // listed findings per kind; others are counted
 constexpr double kOffSurface = 0.02;  // fraction of the body's size
 constexpr double kSuspicious = 6;     // multiple of the differences between neighbors
+constexpr double kAgreeing = 3;       // standard deviations within which a motion agrees with its neighbors
 constexpr double kNoticeable = 0.05;  // fraction of the largest motion of the case
 constexpr double kReach = 2;          // radii around an indenter within which the surface follows it
 constexpr double kFar = 1;            // fraction of the body's size; larger motions are implausible
 constexpr double kFarthest = 10;      // the same for a single marker; larger motions are errors
 constexpr double kLever = 3;  // multiple of the indenter's displacement; larger median motions have another cause
 constexpr double kFinestPosition = 1e-9;  // fraction of the body's size; no instrument has smaller deviations
-
-// Indices of the nearest of the given markers at rest, for each marker.
-std::vector<std::vector<int>> neighbors(const std::vector<Vec3d>& X) {
-  std::vector<Box> boxes(X.size());
-  for (size_t i = 0; i < X.size(); ++i) boxes[i].add(X[i]);
-  const BoxTree tree(boxes);
-  std::vector<std::vector<int>> nearest(X.size());
-  for (size_t i = 0; i < X.size(); ++i) {
-    std::vector<std::pair<double, int>> found;
-    double reach = Box::kInfinity;
-    tree.for_each_near(X[i], reach, [&](int j) {
-      if (j == static_cast<int>(i)) return;
-      const std::pair<double, int> candidate = {dot(X[j] - X[i], X[j] - X[i]), j};
-      found.insert(std::upper_bound(found.begin(), found.end(), candidate), candidate);
-      if (found.size() > kNeighbors) found.pop_back();
-      if (found.size() == kNeighbors) reach = found.back().first;
-    });
-    for (const auto& [distance, j] : found) nearest[i].push_back(j);
-  }
-  return nearest;
-}
-
-using Row4 = std::array<double, 4>;
-
-// Solves the symmetric positive definite A c = b for three right-hand sides.
-std::array<Vec3d, 4> solve(std::array<Row4, 4> A, std::array<Vec3d, 4> b) {
-  for (int k = 0; k < 4; ++k)
-    for (int i = k + 1; i < 4; ++i) {
-      const double l = A[i][k] / A[k][k];
-      for (int j = k; j < 4; ++j) A[i][j] -= l * A[k][j];
-      b[i] = b[i] - l * b[k];
-    }
-  for (int k = 3; k >= 0; --k) {
-    for (int j = k + 1; j < 4; ++j) b[k] = b[k] - A[k][j] * b[j];
-    b[k] = (1 / A[k][k]) * b[k];
-  }
-  return b;
-}
-
-struct Expected {
-  Vec3d u{};          // motion of the marker predicted from its neighbors
-  double spread = 0;  // median deviation of the neighbors from such a field
-  double range = 0;   // median deviation of the neighbors from the marker's expected motion
-};
-
-// Fits the field u = c + B (X - X_i) / reach with the least sum of |u_j - u| over the neighbors, by reweighted least
-// squares, which downweights outliers among the neighbors.
-Expected expected(const std::vector<Vec3d>& X, const std::vector<Vec3d>& u, int i, const std::vector<int>& near) {
-  constexpr int kSweeps = 8;
-  constexpr double kRidge = 1e-3;  // regularizes the normal slope for coplanar neighbors
-  const double reach = norm(X[near.back()] - X[i]);
-  const auto terms = [&](int j) {
-    const Vec3d r = (reach > 0 ? 1 / reach : 0) * (X[j] - X[i]);
-    return Row4{1, r[0], r[1], r[2]};
-  };
-  std::vector<double> weight(near.size(), 1), difference(near.size());
-  std::array<Vec3d, 4> c{};
-  for (int sweep = 0; sweep < kSweeps; ++sweep) {
-    std::array<Row4, 4> A{};
-    std::array<Vec3d, 4> b{};
-    for (int k = 1; k < 4; ++k) A[k][k] = kRidge;
-    for (size_t n = 0; n < near.size(); ++n) {
-      const Row4 t = terms(near[n]);
-      for (int k = 0; k < 4; ++k) {
-        for (int l = 0; l < 4; ++l) A[k][l] += weight[n] * t[k] * t[l];
-        b[k] = b[k] + (weight[n] * t[k]) * u[near[n]];
-      }
-    }
-    c = solve(A, b);
-    for (size_t n = 0; n < near.size(); ++n) {
-      const Row4 t = terms(near[n]);
-      difference[n] = norm(u[near[n]] - (t[0] * c[0] + t[1] * c[1] + t[2] * c[2] + t[3] * c[3]));
-    }
-    const double typical = median(difference);
-    for (size_t n = 0; n < near.size(); ++n) weight[n] = typical > 0 ? typical / std::max(difference[n], typical) : 1;
-  }
-  std::vector<double> range;
-  for (const int j : near) range.push_back(norm(u[j] - c[0]));
-  return {c[0], median(difference), median(range)};
-}
 
 class PositionDiagnosis {
  public:
@@ -166,15 +86,16 @@ class PositionDiagnosis {
       const std::vector<MarkerReading>& readings = experiment_.cases[c].positions;
       for (size_t i = 0; i < readings.size(); ++i) {
         const MarkerReading& r = readings[i];
-        const std::string where = data_.source.position(static_cast<int>(c), static_cast<int>(i));
-        const std::string who = name(r.marker) + " in '" + experiment_.cases[c].name + "'";
+        const auto where = [&] { return data_.source.position(static_cast<int>(c), static_cast<int>(i)); };
+        const auto who = [&] { return name(r.marker) + " in '" + experiment_.cases[c].name + "'"; };
         if (!(norm(displacement(experiment_, r)) < kFarthest * size_))
-          return refuse(where, who + " is far outside the body of size " + three_digits(size_) + " m",
+          return refuse(where(), who() + " is far outside the body of size " + three_digits(size_) + " m",
                         "correct its position, or remove the row");
         const double finest = std::min({r.sigma[0], r.sigma[1], r.sigma[2]});
         if (finest < kFinestPosition * size_)
           return refuse(
-              where, who + " has a standard deviation of " + three_digits(finest) + " m, which no instrument attains",
+              where(),
+              who() + " has a standard deviation of " + three_digits(finest) + " m, which no instrument attains",
               "check the unit of sd; leave it blank for 1 % of the largest motion");
       }
     }
@@ -238,34 +159,48 @@ class PositionDiagnosis {
     return load_size(load) * std::min(1.0, kReach * load.indenter->radius / distance);
   }
 
+  // Neighbors of the markers at rest. Cases with the same markers share them.
+  const std::vector<MotionNeighbors>& neighbors(const std::vector<Vec3d>& X) {
+    const auto are_same = [](const Vec3d& a, const Vec3d& b) { return squared_norm(a - b) == 0; };
+    if (!std::equal(X.begin(), X.end(), neighbors_of_.begin(), neighbors_of_.end(), are_same))
+      neighbors_of_ = X, neighbors_ = nearest_points(X);
+    return neighbors_;
+  }
+
+  // Whether a motion agrees with those of all neighbors; then no field through them is needed.
+  static bool agrees(const std::vector<Vec3d>& u, size_t i, const MotionNeighbors& near, double sigma) {
+    return std::all_of(near.begin(), near.end(), [&](int j) { return norm(u[j] - u[i]) <= kAgreeing * sigma; });
+  }
+
   void examine_outliers(int c) {
-    const std::vector<MarkerReading>& readings = experiment_.cases[c].positions;
-    if (readings.size() <= kNeighbors) return;
+    const LoadCase& load = experiment_.cases[c];
+    const std::vector<MarkerReading>& readings = load.positions;
+    if (readings.size() <= kMotionNeighbors) return;
     std::vector<Vec3d> X, u;
-    double largest = 0;
     for (const MarkerReading& r : readings) {
       X.push_back(position(experiment_.markers[r.marker], experiment_.mesh.rest));
       u.push_back(displacement(experiment_, r));
     }
-    const std::vector<std::vector<int>> near = neighbors(X);
-    std::vector<double> excess(u.size()), spread(u.size()), range(u.size());
+    const std::vector<MotionNeighbors>& near = neighbors(X);
+    std::vector<ExpectedMotion> typical(u.size());
+    parallel_chunks(static_cast<int>(u.size()), [&](int first, int last) {
+      for (int i = first; i < last; ++i)
+        typical[i] = agrees(u, i, near[i], norm(readings[i].sigma)) ? ExpectedMotion{u[i], 0, 0}
+                                                                    : expected_motion(X, u, i, near[i]);
+    });
+    double largest = 0;
+    for (const ExpectedMotion& motion : typical) largest = std::max(largest, norm(motion.u));
     for (size_t i = 0; i < u.size(); ++i) {
-      const Expected typical = expected(X, u, static_cast<int>(i), near[i]);
-      spread[i] = typical.spread;
-      range[i] = typical.range;
-      excess[i] = norm(u[i] - typical.u);
-      largest = std::max(largest, norm(typical.u));
-    }
-    for (size_t i = 0; i < u.size(); ++i) {
-      const double tolerated = kSuspicious * (spread[i] + norm(readings[i].sigma));
+      const double excess = norm(u[i] - typical[i].u);
+      const double tolerated = kSuspicious * (typical[i].spread + norm(readings[i].sigma));
       // The top of a sharp dent differs from its neighbors, but not by more than they differ from each other, nor by
       // more than the estimated motion by the indenter.
-      if (excess[i] > std::max({tolerated, kNoticeable * largest, range[i], by_tip(experiment_.cases[c], X[i])}) &&
+      if (excess > std::max({tolerated, kNoticeable * largest, typical[i].range, by_tip(load, X[i])}) &&
           ++outliers_ <= kMaxListed)
         findings_.warning(data_.source.position(c, static_cast<int>(i)),
-                          name(readings[i].marker) + " in '" + experiment_.cases[c].name + "' is " +
-                              three_digits(excess[i]) + " m away from the motion of its neighbors, which differ by " +
-                              three_digits(spread[i]) + " m",
+                          name(readings[i].marker) + " in '" + load.name + "' is " + three_digits(excess) +
+                              " m away from the motion of its neighbors, which differ by " +
+                              three_digits(typical[i].spread) + " m",
                           "correct the tracking, remove the row, or increase its sd");
     }
   }
@@ -275,6 +210,8 @@ class PositionDiagnosis {
   DataFindings& findings_;
   double size_;
   size_t outliers_ = 0;
+  std::vector<Vec3d> neighbors_of_;  // markers at rest whose neighbors are known
+  std::vector<MotionNeighbors> neighbors_;
 };
 
 }  // namespace

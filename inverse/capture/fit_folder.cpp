@@ -43,9 +43,16 @@ std::vector<std::string> lines_of(const std::string& text) {
   return lines;
 }
 
+// Options without comments, which state their origins.
+std::vector<std::string> options_in(const std::string& text) {
+  std::vector<std::string> lines = lines_of(text);
+  std::erase_if(lines, [](const std::string& line) { return line.empty() || line.starts_with('#'); });
+  return lines;
+}
+
 // First difference of two texts: "smooth = "h1" then, smooth = "tv" now".
 std::string difference(const std::string& then, const std::string& now) {
-  const std::vector<std::string> a = lines_of(then), b = lines_of(now);
+  const std::vector<std::string> a = options_in(then), b = options_in(now);
   for (size_t i = 0; i < std::max(a.size(), b.size()); ++i) {
     const std::string one = i < a.size() ? a[i] : "nothing", other = i < b.size() ? b[i] : "nothing";
     if (one != other) return "the stored option is '" + one + "', the new one is '" + other + "'";

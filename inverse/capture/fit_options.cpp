@@ -44,7 +44,7 @@ const Schema& fit_options_schema() {
              Range{.min = 1, .max = kMaxBranches}, Choices{{"off", "auto"}}, Usual{"\"auto\""}),
          key("refine", kInteger, "simulates with every tet in 8^refine", Range{.min = 0, .max = 4}, Usual{"0"}),
          key("leave_out", kText | kNames, "groups of cases to predict instead of fitting", Usual{"[]"}),
-         key("baselines", kBoolean, "predicts leave_out by simpler models as well", Usual{"false"}),
+         key("baselines", kBoolean, "predicts leave_out by simpler models as well", Usual{"true"}),
          key("loss", kText, "squares, or robust: outliers count less", Choices{{"squares", "robust"}},
              Usual{"\"squares\""}),
          key("mesh_errors", kBoolean, "corrects the discretization error with a finer mesh", Usual{"true"}),
@@ -63,6 +63,7 @@ const Schema& fit_options_schema() {
 }
 
 bool read_fit_options(Table document, const std::string& source, FitPlan& plan) {
+  const bool wants_baselines = document.find("baselines") != nullptr;
   check_and_complete(document, source, fit_options_schema(), "fit");
   const auto option = [&](const char* key) -> const Value& { return *document.find(key); };
   plan.regularizer.smoothness = smoothness_named(option("smooth").text());
@@ -89,11 +90,11 @@ bool read_fit_options(Table document, const std::string& source, FitPlan& plan) 
   else
     for (const Value& group : left_out.array()) plan.left_out.push_back(group.text());
   const Value& baselines = option("baselines");
-  if (baselines.boolean() && plan.left_out.empty())
+  if (baselines.boolean() && wants_baselines && plan.left_out.empty())
     throw error_at(baselines.place,
                    "baselines = true predicts the groups of leave_out; name some, such as "
                    "leave_out = [\"poke 1\"]");
-  return baselines.boolean();
+  return baselines.boolean() && !plan.left_out.empty();
 }
 
 }  // namespace aspic

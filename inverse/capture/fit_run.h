@@ -41,6 +41,9 @@ struct CaseOutcome {
   bool ok = false;        // a prediction exists
   std::vector<Vec3d> markers;
   Wrench wrench;
+  // The same without the correction for the discretization error.
+  std::vector<Vec3d> markers_on_mesh;
+  Wrench wrench_on_mesh;
   bool has_held_out = false;  // predicted by a fit without its group
   std::vector<Vec3d> held_out_markers;
   Wrench held_out_wrench;
@@ -78,6 +81,8 @@ struct Outlier {
 // Reason why a material is not reliable.
 struct FitReason {
   std::string name, text;  // "group_missed", "the forces of 'poke 2' are missed by 12 standard deviations"
+  // The figure that exceeds its limit; empty for reasons without a figure.
+  std::optional<double> value = {}, limit = {};
 };
 
 struct FitOutcome {

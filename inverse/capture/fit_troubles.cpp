@@ -32,7 +32,7 @@ std::string describe_failure(const DataSet& data, const FitReport& report, const
   const std::vector<LoadCase>& cases = data.experiment.cases;
   const auto found = std::find_if(cases.begin(), cases.end(), is_named);
   if (found == cases.end())
-    return report.message + (why.empty() ? "" : " (" + why + ")") + "; aspic fit --check lists suspicious rows";
+    return report.message + (why.empty() ? "" : " (" + why + ")") + "; aspic check lists suspicious rows";
   return report.message + "\n" + data.source.load_case(static_cast<int>(found - cases.begin())) + ": " +
          why.substr(0, why.find("; ")) + "; check its load and its pose, or remove the row";
 }

@@ -4,17 +4,13 @@
 #include <cmath>
 
 #include "base/formatted.h"
-#include "capture/left_out.h"
 
 namespace aspic {
 namespace {
 
-constexpr double kMissed = 4;                             // standard deviations, root mean square over a group
-constexpr double kDisagree = 1.5;                         // ratio of the stiffnesses implied by two groups
-constexpr double kCoarseMesh = 1;                         // relative error of a force on the mesh: a factor of 2
-constexpr double kTooManySquares = 2.25;                  // |r|^2 per reading
-constexpr double kPoorPosition = 0.05, kPoorForce = 0.1;  // held-out errors beyond noise, relative to the peak
-constexpr double kWorse = 1.1;                            // ratio of held-out errors, field to one value
+constexpr double kDisagree = 1.5;  // ratio of the stiffnesses implied by two groups
+constexpr double kCoarseMesh = 1;      // relative error of a force on the mesh: a factor of 2
+constexpr double kWorse = 1.1;     // ratio of held-out errors, field to one value
 
 // Compares the readings of a group with the predictions.
 class GroupMisfit {
@@ -77,42 +73,24 @@ std::vector<GroupMisfit> fitted_groups(const DataSet& data, const FitOutcome& ou
   return groups;
 }
 
-// Held-out errors of positions and forces relative to the largest motion and force of the data: root mean square over
-// the groups, with the noise of readings subtracted; < 0: none.
-struct HeldOutErrors {
-  double position = -1, force = -1;
-};
-
-HeldOutErrors beyond_noise(const std::vector<HeldOut>& groups) {
-  double largest[2] = {}, squares[2] = {}, count[2] = {};
-  const auto add = [&](int what, double error, double noise, double peak) {
-    if (!(peak > 0)) return;
-    squares[what] += std::max(error * error - noise * noise, 0.0);
-    largest[what] = std::max(largest[what], peak);
-    ++count[what];
-  };
-  for (const HeldOut& group : groups) {
-    if (!group.ok) continue;
-    add(0, group.position_error, group.position_noise, group.peak_motion);
-    add(1, group.force_error, group.force_noise, group.peak_force);
-  }
-  const auto rms = [&](int what) {
-    return count[what] > 0 ? std::sqrt(squares[what] / count[what]) / largest[what] : -1;
-  };
-  return {rms(0), rms(1)};
+double root_mean_square(const std::vector<PredictionErrors>& groups, double PredictionErrors::*error) {
+  double squares = 0, count = 0;
+  for (const PredictionErrors& group : groups)
+    if (group.*error >= 0) squares += group.*error * (group.*error), ++count;
+  return count > 0 ? std::sqrt(squares / count) : -1;
 }
 
-// Every group that is predicted by a fit of others.
-std::vector<HeldOut> predicted_groups(const DataSet& data, const FitOutcome& outcome) {
-  std::vector<HeldOut> groups;
-  if (outcome.held_out) groups = outcome.held_out->groups;
-  if (!outcome.plan.left_out.empty()) groups.push_back(left_out_errors(data, outcome));
-  return groups;
-}
-
-std::string percents(const HeldOutErrors& errors) {
+std::string percents(const PredictionErrors& errors) {
   const auto percent = [](double part) { return part < 0 ? "-" : three_digits(100 * part) + " %"; };
   return percent(errors.position) + " (positions) and " + percent(errors.force) + " (forces)";
+}
+
+// How well a good fit explains the readings.
+std::string explained(const FitOutcome& outcome) {
+  const double count = std::max(outcome.residuals, 1), squares = 2 * outcome.report.misfit / count;
+  const bool is_within = squares <= 1 + 3 * std::sqrt(2 / count);  // the scatter of chi^2
+  return "the fit explains the readings within " + (is_within ? "" : three_digits(std::sqrt(squares)) + " times ") +
+         "their standard deviations";
 }
 
 class Reasons {
@@ -133,16 +111,20 @@ class Reasons {
   void add_others() {
     for (size_t c = 0; c < outcome_.cases.size(); ++c)
       if (outcome_.cases[c].relative_mesh_error > kCoarseMesh) {
-        add("mesh_too_coarse", "'" + data_.experiment.cases[c].name + "': the mesh changes the force by a factor of " +
-                                   three_digits(1 + outcome_.cases[c].relative_mesh_error) +
-                                   "; refine it around the indenter (option refine) or use a wider one");
+        add("mesh_too_coarse",
+            "'" + data_.experiment.cases[c].name + "': the mesh changes the force by a factor of " +
+                three_digits(1 + outcome_.cases[c].relative_mesh_error) +
+                "; refine it around the indenter (option refine) or use a wider one",
+            1 + outcome_.cases[c].relative_mesh_error, 1 + kCoarseMesh);
         break;
       }
     add_disagreement();
     const double squares = outcome_.residuals > 0 ? 2 * outcome_.report.misfit / outcome_.residuals : 0;
     if (squares > kTooManySquares)
-      add("unexplained", "|r|^2 is " + three_digits(squares) +
-                             " per reading: the model is too simple, or the standard deviations are too small");
+      add("unexplained",
+          "|r|^2 is " + three_digits(squares) +
+              " per reading: the model is too simple, or the standard deviations are too small",
+          squares, kTooManySquares);
     add_poor_predictions(beyond_noise(predicted_groups(data_, outcome_)));
   }
 
@@ -155,13 +137,29 @@ class Reasons {
   }
 
   std::vector<FitReason> take() { return std::move(reasons_); }
-  void add(std::string name, std::string text) { reasons_.push_back({std::move(name), std::move(text)}); }
+  void add(std::string name, std::string text, std::optional<double> value = {}, std::optional<double> limit = {}) {
+    reasons_.push_back({std::move(name), std::move(text), value, limit});
+  }
 
  private:
-  void add_poor_predictions(const HeldOutErrors& errors) {
-    if (errors.position > kPoorPosition || errors.force > kPoorForce)
-      add("predicts_badly", "held-out groups are predicted with errors of " + percents(errors) +
-                                " beyond the noise: fit fewer values, measure more, or trust it only near pokes");
+  void add_poor_predictions(const std::vector<PredictionErrors>& groups) {
+    const PredictionErrors all = all_groups(groups);
+    const std::string remedy = " beyond the noise: fit fewer values, measure more, or trust it only near pokes";
+    if (all.is_poor(1)) {
+      add_excess("predicts_badly", "held-out groups are predicted with errors of " + percents(all) + remedy, all, 1);
+    } else {
+      for (const PredictionErrors& group : groups)
+        if (group.is_poor(kSingle))
+          return add_excess("predicts_badly",
+                            "'" + group.group + "' is predicted with errors of " + percents(group) + remedy, group,
+                            kSingle);
+    }
+  }
+
+  // Adds the error that exceeds its limit most.
+  void add_excess(const std::string& name, const std::string& text, const PredictionErrors& errors, double factor) {
+    const bool is_force = errors.force / kPoorForce > errors.position / kPoorPosition;
+    add(name, text, is_force ? errors.force : errors.position, factor * (is_force ? kPoorForce : kPoorPosition));
   }
 
   void add_missed_groups() {
@@ -169,7 +167,8 @@ class Reasons {
       const auto [what, sigmas] = g.missed_most();
       if (sigmas > kMissed)
         add("group_missed",
-            "the " + what + " of '" + g.name() + "' are missed by " + three_digits(sigmas) + " standard deviations");
+            "the " + what + " of '" + g.name() + "' are missed by " + three_digits(sigmas) + " standard deviations",
+            sigmas, kMissed);
     }
   }
 
@@ -180,9 +179,10 @@ class Reasons {
       return std::hypot(std::max(v.position_error, 0.0), std::max(v.force_error, 0.0));
     };
     if (error(field) > kWorse * error(one))
-      add("held_out_worse", "held-out groups are predicted with errors of " +
-                                percents({field.position_error, field.force_error}) + ", by one value with " +
-                                percents({one.position_error, one.force_error}));
+      add("held_out_worse",
+          "held-out groups are predicted with errors of " + percents({"", field.position_error, field.force_error}) +
+              ", by one value with " + percents({"", one.position_error, one.force_error}),
+          error(field), kWorse * error(one));
   }
 
   void add_disagreement() {
@@ -198,9 +198,11 @@ class Reasons {
     const double sigma = std::hypot(stiffest->stiffness_sigma() / stiffest->stiffness(),
                                     softest->stiffness_sigma() / softest->stiffness());
     if (ratio > kDisagree && std::log(ratio) > kMissed * sigma)
-      add("groups_disagree", "the forces of '" + stiffest->name() + "' imply a body " + three_digits(ratio) +
-                                 " times as stiff as those of '" + softest->name() +
-                                 "': one of them is wrong, or the model does not fit the body");
+      add("groups_disagree",
+          "the forces of '" + stiffest->name() + "' imply a body " + three_digits(ratio) +
+              " times as stiff as those of '" + softest->name() +
+              "': one of them is wrong, or the model does not fit the body",
+          ratio, kDisagree);
   }
 
   const DataSet& data_;
@@ -208,7 +210,53 @@ class Reasons {
   std::vector<FitReason> reasons_;
 };
 
+HeldOut left_out_group(const DataSet& data, const FitOutcome& outcome, const std::string& name) {
+  const Experiment group = subset(data.experiment, [&](const LoadCase& c) { return c.group == name; });
+  std::vector<CasePrediction> predictions;
+  for (size_t c = 0; c < outcome.cases.size(); ++c) {
+    if (data.experiment.cases[c].group != name) continue;
+    if (!outcome.cases[c].ok) return {.group = name, .failure = "could not be predicted"};
+    CasePrediction& prediction = predictions.emplace_back();
+    prediction.markers = outcome.cases[c].markers;
+    prediction.wrench = outcome.cases[c].wrench;
+  }
+  if (predictions.empty() || predictions.size() != group.cases.size())
+    return {.group = name, .failure = "was not predicted"};
+  return compare(group, predictions);
+}
+
 }  // namespace
+
+bool PredictionErrors::is_poor(double factor) const {
+  return position > factor * kPoorPosition || force > factor * kPoorForce;
+}
+
+std::vector<HeldOut> predicted_groups(const DataSet& data, const FitOutcome& outcome) {
+  std::vector<HeldOut> groups;
+  if (outcome.held_out) groups = outcome.held_out->groups;
+  for (const std::string& name : outcome.plan.left_out) groups.push_back(left_out_group(data, outcome, name));
+  return groups;
+}
+
+std::vector<PredictionErrors> beyond_noise(const std::vector<HeldOut>& groups) {
+  double motion = 0, force = 0;
+  for (const HeldOut& group : groups)
+    if (group.ok) motion = std::max(motion, group.peak_motion), force = std::max(force, group.peak_force);
+  const auto relative = [](double error, double noise, double peak, double largest) {
+    return peak > 0 ? std::sqrt(std::max(error * error - noise * noise, 0.0)) / largest : -1;
+  };
+  std::vector<PredictionErrors> errors;
+  for (const HeldOut& group : groups)
+    if (group.ok)
+      errors.push_back({group.group, relative(group.position_error, group.position_noise, group.peak_motion, motion),
+                        relative(group.force_error, group.force_noise, group.peak_force, force)});
+  return errors;
+}
+
+PredictionErrors all_groups(const std::vector<PredictionErrors>& groups) {
+  return {"", root_mean_square(groups, &PredictionErrors::position),
+          root_mean_square(groups, &PredictionErrors::force)};
+}
 
 std::vector<FitReason> reasons_against_field(const DataSet& data, const FitOutcome& outcome) {
   Reasons reasons(data, outcome);
@@ -226,12 +274,12 @@ FitVerdict verdict(const DataSet& data, const FitOutcome& outcome) {
   Reasons reasons(data, outcome);
   if (!is_success(outcome.report.status)) reasons.add("not_converged", outcome.report.message);
   for (const FitReason& reason : outcome.against_field)
-    reasons.add("field_rejected", "one value replaces the field: " + reason.text);
+    reasons.add("field_rejected", "one value replaces the field: " + reason.text, reason.value, reason.limit);
   reasons.add_against_field();
   reasons.add_others();
   if (outcome.relaxation) reasons.add_about_relaxation(*outcome.relaxation);
   result.reasons = reasons.take();
-  result.text = result.is_good() ? "Converged; the fit explains the readings within their standard deviations."
+  result.text = result.is_good() ? "Converged; " + explained(outcome) + "."
                                  : "Do not rely on this material: " + result.reasons.front().text + ".";
   return result;
 }

@@ -7,6 +7,26 @@
 
 namespace aspic {
 
+// Limits of figures under a good verdict.
+inline constexpr double kMissed = 4;                             // standard deviations, root mean square over a group
+inline constexpr double kTooManySquares = 2.25;                  // |r|^2 per reading
+inline constexpr double kPoorPosition = 0.05, kPoorForce = 0.1;  // held-out errors beyond the noise, over the peak
+inline constexpr double kSingle = 2;                             // multiple of them for a single group
+
+// Errors of a held-out group beyond the noise of its readings, relative to the largest motion and force of all groups;
+// < 0: none.
+struct PredictionErrors {
+  std::string group;
+  double position = -1, force = -1;
+
+  bool is_poor(double factor) const;  // exceeds a multiple of the limits
+};
+
+// Groups that were predicted from others, by cross-validation or because the fit leaves them out.
+std::vector<HeldOut> predicted_groups(const DataSet& data, const FitOutcome& outcome);
+std::vector<PredictionErrors> beyond_noise(const std::vector<HeldOut>& groups);  // of the predicted ones
+PredictionErrors all_groups(const std::vector<PredictionErrors>& groups);        // root mean square
+
 struct FitVerdict {
   std::vector<FitReason> reasons;  // reasons against the material; empty: the verdict is good
   std::string text;                // a sentence

@@ -30,6 +30,7 @@ class Journal : public LeastSquares {
 
   int parameter_count() const override { return model_.parameter_count(); }
   int residual_count() const override { return model_.residual_count(); }
+  int reading_count() const override { return model_.reading_count(); }
   bool evaluate(std::span<const double> p, std::span<double> r) override;
   bool linearize() override;
   void multiply(std::span<const double> dp, std::span<double> dr) override;

@@ -13,9 +13,9 @@
 namespace aspic {
 namespace {
 
-constexpr double kEdge = 0.5;       // longest edge below an indenter, relative to its radius
+constexpr double kEdge = 0.5;                  // longest edge below an indenter, relative to its radius
 constexpr double kReach = 1.1, kDepth = 0.25;  // of the refined surface layer, relative to the radius
-constexpr int kRimGenerations = 3;  // bisections that halve a tet
+constexpr int kRimGenerations = 3;             // bisections that halve a tet
 
 // Corners of the tets of a mesh; those of quadratic tets are not their mid-edge nodes.
 struct Corners {
@@ -147,7 +147,9 @@ class LocalRefinement {
   void add_contact(const LoadCase& load) {
     Contact contact{load.touch.center, PlacedIndenter(load.touch).pose.axis, load.indenter->radius};
     if (load.indenter->shape == IndenterShape::sphere) contact.center = contact.center + contact.radius * contact.axis;
-    const auto is_same = [&](const Contact& c) { return norm(c.center - contact.center) == 0 && c.radius == contact.radius; };
+    const auto is_same = [&](const Contact& c) {
+      return norm(c.center - contact.center) == 0 && c.radius == contact.radius;
+    };
     if (std::none_of(contacts_.begin(), contacts_.end(), is_same)) contacts_.push_back(contact);
   }
 
@@ -156,9 +158,8 @@ class LocalRefinement {
   }
 
   bool is_large(const BisectedMesh::Part& part) const {
-    const bool is_at_rim = std::any_of(part.tet.begin(), part.tet.end(), [&](int v) {
-      return v < static_cast<int>(is_rim_.size()) && is_rim_[v];
-    });
+    const bool is_at_rim = std::any_of(part.tet.begin(), part.tet.end(),
+                                       [&](int v) { return v < static_cast<int>(is_rim_.size()) && is_rim_[v]; });
     if (is_at_rim && part.generation < kRimGenerations) return true;
     const double size = mesh_.longest_edge(part.tet);
     return std::any_of(contacts_.begin(), contacts_.end(), [&](const Contact& c) {
@@ -202,11 +203,11 @@ class LocalRefinement {
   Corners corners_;
   BisectedMesh mesh_;
   Experiment fine_;
-  std::vector<HeldSet> fixed_;               // the fixed vertices, then those of grips
-  std::map<std::vector<int>, int> grips_;    // index of a grip's vertices
-  std::vector<char> is_rim_;                 // per corner
+  std::vector<HeldSet> fixed_;             // the fixed vertices, then those of grips
+  std::map<std::vector<int>, int> grips_;  // index of a grip's vertices
+  std::vector<char> is_rim_;               // per corner
   std::vector<Contact> contacts_;
-  std::vector<std::vector<int>> support_;    // of the vertices of the fine mesh
+  std::vector<std::vector<int>> support_;  // of the vertices of the fine mesh
 };
 
 }  // namespace

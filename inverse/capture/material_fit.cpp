@@ -5,6 +5,7 @@
 
 #include "capture/fit_troubles.h"
 #include "capture/fit_verdict.h"
+#include "fit/condensed_readings.h"
 #include "fit/law_errors.h"
 #include "fit/quantity.h"
 
@@ -51,7 +52,11 @@ FitModel::FitModel(const Experiment& data, const Experiment& simulated, const Fi
                    std::vector<FitParameter> parameters, const StoredModel& stored)
     : map(data.mesh, plan.model, known_parameters(plan, data), std::move(parameters)),
       prior(make_regularizer(data.mesh, map, plan.regularizer)),
-      misfit(simulated, map, plan.equilibrium) {
+      is_condensed(!plan.robust && has_dense_readings(simulated)),
+      fitted(is_condensed ? condensed(simulated) : simulated),
+      misfit(fitted, map, plan.equilibrium),
+      simulated_(simulated),
+      equilibrium_(plan.equilibrium) {
   const FitMemory& memory = stored.memory;
   if (!memory.folder.empty()) {
     const ModelState state{[this] { return misfit.state(); },
@@ -59,6 +64,13 @@ FitModel::FitModel(const Experiment& data, const Experiment& simulated, const Fi
     journal.emplace(misfit, state, memory.folder / stored.name, stored.fingerprint, memory.start);
   }
   with_layers.emplace(recorded());
+}
+
+Misfit& FitModel::of_all_readings() {
+  if (!is_condensed) return misfit;
+  whole_.emplace(simulated_, map, equilibrium_);
+  whole_->set_state(misfit.state());
+  return *whole_;
 }
 
 MaterialFit::MaterialFit(const DataSet& data, const FitPlan& plan, const FitMemory& memory,
@@ -249,7 +261,7 @@ void MaterialFit::fit_and_describe() {
 FitReport MaterialFit::fit_stage(FitStage which, FitModel& model, const FitOptions& options,
                                  const std::vector<double>& start) {
   outcome_.parameter_count = model.map.size();
-  outcome_.residuals = model.misfit.residual_count();
+  outcome_.residuals = model.misfit.reading_count();
   const auto observe = [&](const FitIteration& iteration, std::span<const double> p) {
     if (callbacks_.iterate) callbacks_.iterate(which, iteration, p);
   };

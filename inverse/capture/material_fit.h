@@ -29,11 +29,21 @@ struct FitModel {
   LeastSquares& recorded() { return journal ? static_cast<LeastSquares&>(*journal) : misfit; }
   LeastSquares& data() { return *with_layers; }  // the residuals to minimize
 
+  // The same model with all readings instead of condensed ones, in the same state.
+  Misfit& of_all_readings();
+
   ParameterMap map;
   std::unique_ptr<Regularizer> prior;
+  bool is_condensed;  // a robust loss needs each reading
+  Experiment fitted;  // with condensed readings
   Misfit misfit;
   std::optional<Journal> journal;
   std::optional<WithUncertainLayers> with_layers;  // wraps the recorded model
+
+ private:
+  const Experiment& simulated_;
+  EquilibriumOptions equilibrium_;
+  std::optional<Misfit> whole_;
 };
 
 class MaterialFit {
@@ -69,7 +79,8 @@ class MaterialFit {
   CrossValidation cross_validated(FitModel& model, const FitReport& report, FitOptions options);
   void cross_validate_one_value();
   void find_next_indentation(FitModel& model);
-  using UsePrediction = std::function<void(CaseOutcome&, const CasePrediction&)>;
+  // Called with the prediction on the mesh and the one that is corrected for its discretization error.
+  using UsePrediction = std::function<void(CaseOutcome&, const CasePrediction& on_mesh, const CasePrediction&)>;
   void predict_group(const std::string& group, const ParameterMap& map, std::span<const double> p,
                      const UsePrediction& use);
 

@@ -39,6 +39,8 @@ void MaterialFit::learn_uncertainty(FitModel& model) {
         {"the data hardly determine how the stiffness varies: the standard deviations are those of the "
          "prior (--unknown young=uniform fits one value)"});
   }
+  // For a few values the prior is weak by intention.
+  if (!has_many_values()) std::erase(outcome_.posterior->warnings, outcome_.posterior->weight_warning);
   list_errors(about_fit, report.p);
   add_warnings(outcome_.posterior->warnings);
 }
@@ -51,13 +53,14 @@ void MaterialFit::describe(FitModel& model, std::span<const double> p) {
   outcome_.at_bound = values_at_bound(model.map, p);
   outcome_.counts = model.misfit.counts();
   outcome_.cases.resize(data_.experiment.cases.size());
-  std::vector<double> r(static_cast<size_t>(model.misfit.residual_count()));
   if (model.journal) model.journal->catch_up();
-  WithUncertainLayers about_fit(model.misfit);
+  Misfit& misfit = model.of_all_readings();
+  std::vector<double> r(static_cast<size_t>(misfit.residual_count()));
+  WithUncertainLayers about_fit(misfit);
   const bool ok = about_fit.evaluate(p, r);
   if (ok) {
     outcome_.report.misfit = dot(r, r) / 2;
-    if (const std::string worst = describe_worst_row(data_, plan_.left_out, model.misfit, r); !worst.empty())
+    if (const std::string worst = describe_worst_row(data_, plan_.left_out, misfit, r); !worst.empty())
       add_warnings({worst});
     about_fit.errors().apply_transposed(r);
   }
@@ -67,11 +70,13 @@ void MaterialFit::describe(FitModel& model, std::span<const double> p) {
     CaseOutcome& outcome = outcome_.cases[c];
     outcome.left_out = is_left_out(plan_.left_out, data_.experiment.cases[c]);
     if (outcome.left_out) continue;
-    const auto [first, count] = model.misfit.residuals_of(fitted);
+    const auto [first, count] = misfit.residuals_of(fitted);
     const LoadCase& load = simulated_.fitted().cases[fitted];
-    CasePrediction prediction = model.misfit.prediction(fitted++);
+    CasePrediction prediction = misfit.prediction(fitted++);
     if (!ok) continue;
     put_layers_in(std::span(r).subspan(first, count), load, prediction);
+    outcome.markers_on_mesh = prediction.markers;
+    outcome.wrench_on_mesh = prediction.wrench;
     prediction = simulated_.as_read_on_finer_mesh(c, prediction);
     outcome.ok = true;
     outcome.markers = std::move(prediction.markers);
@@ -91,18 +96,23 @@ void MaterialFit::predict_group(const std::string& group, const ParameterMap& ma
   std::vector<double> r(static_cast<size_t>(misfit.residual_count()));
   if (!misfit.evaluate(p, r)) return add_warnings({"'" + group + "' could not be predicted: " + misfit.failure()});
   int own = 0;
-  for (size_t c = 0; c < data_.experiment.cases.size(); ++c)
-    if (data_.experiment.cases[c].group == group)
-      use(outcome_.cases[c], simulated_.as_read_on_finer_mesh(c, misfit.prediction(own++)));
+  for (size_t c = 0; c < data_.experiment.cases.size(); ++c) {
+    if (data_.experiment.cases[c].group != group) continue;
+    const CasePrediction& on_mesh = misfit.prediction(own++);
+    use(outcome_.cases[c], on_mesh, simulated_.as_read_on_finer_mesh(c, on_mesh));
+  }
 }
 
 void MaterialFit::predict_left_out(const ParameterMap& map, std::span<const double> p) {
   for (const std::string& group : plan_.left_out)
-    predict_group(group, map, p, [](CaseOutcome& outcome, const CasePrediction& prediction) {
-      outcome.ok = outcome.has_held_out = true;
-      outcome.markers = outcome.held_out_markers = prediction.markers;
-      outcome.wrench = outcome.held_out_wrench = prediction.wrench;
-    });
+    predict_group(group, map, p,
+                  [](CaseOutcome& outcome, const CasePrediction& on_mesh, const CasePrediction& prediction) {
+                    outcome.ok = outcome.has_held_out = true;
+                    outcome.markers_on_mesh = on_mesh.markers;
+                    outcome.wrench_on_mesh = on_mesh.wrench;
+                    outcome.markers = outcome.held_out_markers = prediction.markers;
+                    outcome.wrench = outcome.held_out_wrench = prediction.wrench;
+                  });
 }
 
 void MaterialFit::cross_validate_groups(FitModel& model) {
@@ -112,13 +122,14 @@ void MaterialFit::cross_validate_groups(FitModel& model) {
   add_warnings(held_out.warnings);
   for (const HeldOut& group : held_out.groups)
     if (group.ok)
-      predict_group(group.group, model.map, group.p, [](CaseOutcome& outcome, const CasePrediction& prediction) {
-        outcome.has_held_out = true;
-        outcome.held_out_markers = prediction.markers;
-        outcome.held_out_wrench = prediction.wrench;
-      });
+      predict_group(group.group, model.map, group.p,
+                    [](CaseOutcome& outcome, const CasePrediction&, const CasePrediction& prediction) {
+                      outcome.has_held_out = true;
+                      outcome.held_out_markers = prediction.markers;
+                      outcome.held_out_wrench = prediction.wrench;
+                    });
   outcome_.held_out = std::move(held_out);
-  if (has_many_values()) cross_validate_one_value();
+  if (is_field()) cross_validate_one_value();
 }
 
 CrossValidation MaterialFit::cross_validated(FitModel& model, const FitReport& report, FitOptions options) {

@@ -53,9 +53,15 @@ bool MeasuredTable::next() { return csv_.next(); }
 
 void MeasuredTable::error(const std::string& text) { errors_.add(csv_.where() + ": " + text); }
 
-std::string MeasuredTable::text(std::string_view column) const {
+const std::string& MeasuredTable::text(std::string_view column) const {
+  static const std::string kBlank;
   const auto found = index_.find(column);
-  return found == index_.end() ? "" : csv_.text(found->second);
+  return found == index_.end() ? kBlank : csv_.text(found->second);
+}
+
+bool MeasuredTable::is_blank(std::string_view column) const {
+  const auto found = index_.find(column);
+  return found == index_.end() || csv_.is_blank(found->second);
 }
 
 std::optional<double> MeasuredTable::number(std::string_view column, double unit) {
@@ -89,9 +95,8 @@ std::optional<Vec3d> MeasuredTable::vector(const std::string& prefix, double uni
   int given = 0;
   for (int i = 0; i < 3; ++i) {
     const std::string name = prefix + "xyz"[i];
-    const std::string written = text(name);
     const std::optional<double> value = number(name, unit);
-    if (!value && !written.empty()) return std::nullopt;  // the error is listed
+    if (!value && !is_blank(name)) return std::nullopt;  // the error is listed
     if (value) v[i] = *value, ++given;
   }
   if (given == 3) return v;
@@ -113,7 +118,7 @@ std::optional<Vec3d> MeasuredTable::sigma(const std::string& name, double unit) 
 }
 
 int MeasuredTable::index_of(const std::string& column, const std::map<std::string, int>& known) {
-  const std::string name = text(column);
+  const std::string& name = text(column);
   if (name.empty() && known.size() == 1) return 0;
   if (const auto found = known.find(name); found != known.end()) return found->second;
   if (name.empty()) {

@@ -43,7 +43,8 @@ class MeasuredTable {
   void error(const std::string& text);  // error in this row
 
   bool has(std::string_view column) const { return index_.contains(column); }
-  std::string text(std::string_view column) const;  // empty: blank or no such column
+  bool is_blank(std::string_view column) const;            // or no such column
+  const std::string& text(std::string_view column) const;  // empty: blank or no such column
   // Empty if blank, if there is no such column, or after adding an error: not a number, or not finite.
   std::optional<double> number(std::string_view column, double unit = 1);
   std::optional<int> integer(std::string_view column);

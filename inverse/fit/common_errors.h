@@ -46,6 +46,7 @@ class WithUncertainLayers : public LeastSquares {
 
   int parameter_count() const override { return data_.parameter_count(); }
   int residual_count() const override { return data_.residual_count(); }
+  int reading_count() const override { return data_.reading_count(); }
   bool evaluate(std::span<const double> p, std::span<double> r) override;
   bool linearize() override;
   void multiply(std::span<const double> dp, std::span<double> dr) override;

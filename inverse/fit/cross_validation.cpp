@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "fit/common_errors.h"
+#include "fit/condensed_readings.h"
 
 namespace aspic {
 namespace {
@@ -93,7 +94,7 @@ CrossValidation cross_validate(const Experiment& experiment, const ParameterMap&
     if (options.stop.stopped()) break;
     HeldOut& h = result.groups.emplace_back();
     h.group = groups[g];
-    const Experiment seen = subset(experiment, [&](const LoadCase& c) { return c.group != h.group; });
+    const Experiment seen = condensed(subset(experiment, [&](const LoadCase& c) { return c.group != h.group; }));
     const Experiment& whole = chosen.to_predict ? *chosen.to_predict : experiment;
     const Experiment left_out = subset(whole, [&](const LoadCase& c) { return c.group == h.group; });
     Misfit misfit(seen, map, chosen.equilibrium);

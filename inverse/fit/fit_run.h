@@ -29,6 +29,7 @@ class FitRun {
   Regularizer& prior() { return regularizer_; }
   int parameter_count() const { return data_.parameter_count(); }
   int residuals() const { return data_.residual_count(); }
+  int readings() const { return data_.reading_count(); }
   // Returns false if r is undefined or not finite at p.
   bool evaluate(std::span<const double> p, FitPoint& point);
   bool linearize(const FitPoint& at);  // linearizes J at this point; false if it does not exist

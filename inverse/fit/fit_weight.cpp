@@ -37,8 +37,8 @@ std::optional<double> balanced_weight(FitRun& run, const FitPoint& at) {
 // Far above the number of residuals one step suffices for |r|^2; near it, accuracy must be within its scatter.
 constexpr double kFar = 0.5;  // distance of log (|r|^2 / number)
 
-double log_ratio(const FitRun& run, double misfit) { return std::log(std::max(2 * misfit / run.residuals(), 1e-300)); }
-double scatter(const FitRun& run) { return std::sqrt(0.5 * std::sqrt(2.0 * run.residuals())); }
+double log_ratio(const FitRun& run, double misfit) { return std::log(std::max(2 * misfit / run.readings(), 1e-300)); }
+double scatter(const FitRun& run) { return std::sqrt(0.5 * std::sqrt(2.0 * run.readings())); }
 
 Status fit_loosely(FitRun& run, FitPoint& at, FitGoal& goal, FitMethod method) {
   FitGoal loose = goal;
@@ -147,7 +147,7 @@ Status fit_by_discrepancy(FitRun& run, FitPoint& at, FitGoal& goal, FitMethod me
   const std::optional<double> balanced = balanced_weight(run, at);
   if (!balanced) return Status::undefined;
   run.weight = run.options.first_weight > 0 ? run.options.first_weight : 0.1 * *balanced;
-  Discrepancy rule(run.residuals());
+  Discrepancy rule(run.readings());
   std::vector<WeightTrial>& trials = run.report.weights;
   auto verdict = Discrepancy::Verdict::try_on;
   for (int i = 0; i < kTrials && verdict == Discrepancy::Verdict::try_on; ++i) {
@@ -160,7 +160,7 @@ Status fit_by_discrepancy(FitRun& run, FitPoint& at, FitGoal& goal, FitMethod me
   if (verdict == Discrepancy::Verdict::unexplained && !go_to(run, at, most_cautious(trials))) return Status::undefined;
   const Status status = method(run, at, goal);
   if (rule.is_met(at.misfit)) verdict = Discrepancy::Verdict::fits;
-  run.report.message = describe(verdict, 2 * at.misfit, run.residuals());
+  run.report.message = describe(verdict, 2 * at.misfit, run.readings());
   return status;
 }
 
@@ -196,7 +196,7 @@ Status fit_by_l_curve(FitRun& run, FitPoint& at, FitGoal& goal, FitMethod method
     if (status == Status::stuck && trials.size() >= 3) break;  // the weight is too small to continue
     if (!is_success(status)) return status;
     trials.push_back(trial_at(run, at));
-    if (2 * at.misfit < 0.1 * run.residuals()) break;  // noise is being fitted
+    if (2 * at.misfit < 0.1 * run.readings()) break;  // noise is being fitted
   }
   size_t corner = trials.size() - 1;
   double sharpest = 0;

@@ -1,7 +1,7 @@
-// Uncertainty by the choice of the strain energy law: real tissue follows none exactly. Laws of equal Young's modulus and
-// Poisson's ratio differ beyond small strains, by the coupling of shear and volume and by stiffening. The differences of
-// their predictions are common errors of all readings, with one standard normal factor each: approximation errors
-// [Kaipio and Somersalo 2007].
+// Uncertainty by the choice of the strain energy law: real tissue follows none exactly. Laws of equal Young's modulus
+// and Poisson's ratio differ beyond small strains, by the coupling of shear and volume and by stiffening. The
+// differences of their predictions are common errors of all readings, with one standard normal factor each:
+// approximation errors [Kaipio and Somersalo 2007].
 #pragma once
 #include <span>
 #include <string>

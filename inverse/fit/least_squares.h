@@ -19,6 +19,8 @@ class LeastSquares {
   virtual ~LeastSquares() = default;
   virtual int parameter_count() const = 0;
   virtual int residual_count() const = 0;
+  // Number of readings with independent errors that the residuals represent: the expectation of |r|^2.
+  virtual int reading_count() const { return residual_count(); }
   // Computes r(p). Returns false if it is undefined (no equilibrium found), so that another p must be tried.
   virtual bool evaluate(std::span<const double> p, std::span<double> r) = 0;
   // Linearizes: J = dr/dp at the p of the last successful evaluate(). Returns false if it does not exist.

@@ -298,6 +298,11 @@ Misfit::~Misfit() = default;
 
 int Misfit::parameter_count() const { return impl_->map.size(); }
 int Misfit::residual_count() const { return impl_->residual_count; }
+int Misfit::reading_count() const {
+  int count = impl_->residual_count;
+  for (const LoadCase& load : impl_->experiment.cases) count += load.merged;
+  return count;
+}
 bool Misfit::evaluate(std::span<const double> p, std::span<double> r) { return impl_->evaluate(p, r); }
 bool Misfit::linearize() { return impl_->linearize(); }
 void Misfit::multiply(std::span<const double> dp, std::span<double> dr) { impl_->multiply(dp, dr); }

@@ -52,6 +52,7 @@ struct LoadCase {
   bool is_dead_pressure = false;
   std::vector<Triangle> pressed;
   std::vector<MarkerReading> positions;
+  int merged = 0;  // coordinates of readings that `positions` represent beyond their own, see condensed()
   std::optional<Vec3d> force, torque;  // measured, on the body [N, N m]
   Vec3d force_sigma{}, torque_sigma{};
   std::vector<CommonError> common_errors;  // equally many in all cases
@@ -96,6 +97,7 @@ class Misfit : public LeastSquares {
 
   int parameter_count() const override;
   int residual_count() const override;
+  int reading_count() const override;
   // Each case starts from the equilibrium of the last linearization, corrected by the tangent, or from its last one; on
   // failure by load stepping. The first time, each starts from the previous case of its group.
   bool evaluate(std::span<const double> p, std::span<double> r) override;

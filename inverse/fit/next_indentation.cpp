@@ -7,6 +7,7 @@
 #include "base/error.h"
 #include "base/formatted.h"
 #include "fit/common_errors.h"
+#include "fit/condensed_readings.h"
 #include "fit/cross_validation.h"
 #include "fit/field_text.h"
 #include "fit/quantity.h"
@@ -110,6 +111,7 @@ void judge(const Experiment& experiment, const FittedField& fitted, Posterior& p
   const auto& [map, mesh, p] = fitted;
   Experiment one = subset(experiment, [](const LoadCase&) { return false; });
   one.cases = {candidate.load};
+  one = condensed(one);
   try {
     Misfit misfit(one, map, options.equilibrium);
     WithUncertainLayers data(misfit);

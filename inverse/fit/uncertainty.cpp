@@ -231,7 +231,7 @@ Posterior posterior(LeastSquares& data, Regularizer& prior, double weight, const
   const double roughness = prior.value(p), squares = dot(r, r);
   result.log_evidence = log_evidence(squares, weight, roughness, s);
   judge_weight(prior, weight, p, s, result);
-  judge_noise(squares, data.residual_count(), result, s);
+  judge_noise(squares, data.reading_count(), result, s);
   result.informed = informed(s);
   result.gaussian = std::make_shared<PosteriorGaussian>(std::move(before), std::move(s));
   warn_of_rank(result);

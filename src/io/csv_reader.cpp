@@ -12,24 +12,31 @@ namespace {
 
 constexpr size_t kLongestLine = size_t{1} << 20;  // longer than any line that Aspic writes
 
-// A line break inside quotes ends the line: no table here has such cells.
-std::vector<std::string> split(std::string_view line, char separator) {
-  std::vector<std::string> cells(1);
+// Splits a line into cells, whose memory is reused. A line break inside quotes ends the line: no table here has such
+// cells.
+void split(std::string_view line, char separator, std::vector<std::string>& cells) {
+  size_t count = 0;
+  const auto next_cell = [&]() -> std::string& {
+    if (++count > cells.size()) cells.emplace_back();
+    cells[count - 1].clear();
+    return cells[count - 1];
+  };
+  std::string* cell = &next_cell();
   bool quoted = false;
   for (size_t i = 0; i < line.size(); ++i) {
     if (line[i] == '"') {
       if (quoted && i + 1 < line.size() && line[i + 1] == '"') {
-        cells.back() += line[++i];
+        *cell += line[++i];
       } else {
         quoted = !quoted;
       }
     } else if (line[i] == separator && !quoted) {
-      cells.emplace_back();
+      cell = &next_cell();
     } else if (line[i] != '\r' || quoted) {
-      cells.back() += line[i];
+      *cell += line[i];
     }
   }
-  return cells;
+  cells.resize(count);
 }
 
 void make_printable(std::vector<std::string>& cells) {
@@ -39,13 +46,13 @@ void make_printable(std::vector<std::string>& cells) {
 
 constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
 
-std::string trimmed(const std::string& text) {
-  const size_t first = text.find_first_not_of(" \t\r");
-  return first == std::string::npos ? "" : text.substr(first, text.find_last_not_of(" \t\r") + 1 - first);
+void trim(std::string& text) {
+  text.erase(text.find_last_not_of(" \t\r") + 1);
+  text.erase(0, std::min(text.find_first_not_of(" \t\r"), text.size()));
 }
 
 template <class Number>
-bool parse(const std::string& text, Number& value) {
+bool parse(std::string_view text, Number& value) {
   const auto [end, error] = from_chars(text.data(), text.data() + text.size(), value);
   return error == std::errc() && end == text.data() + text.size();
 }
@@ -63,7 +70,8 @@ CsvReader::CsvReader(const std::filesystem::path& path, CsvOrigin origin)
 // Reads the next line without its line break; false at the end. The last line of a foreign table may lack the break.
 bool CsvReader::read_text(std::string& line) {
   line.clear();
-  for (int c; (c = in_.get()) != std::char_traits<char>::eof();) {
+  std::streambuf& buffer = *in_.rdbuf();
+  for (int c; (c = buffer.sbumpc()) != std::char_traits<char>::eof();) {
     if (c == '\n') {
       ++line_;
       return true;
@@ -82,17 +90,17 @@ bool CsvReader::read_line() {
   std::string line;
   if (origin_ == CsvOrigin::aspic) {
     if (!read_text(line)) return false;
-    cells_ = split(line, separator_);
+    split(line, separator_, cells_);
     make_printable(cells_);
     return true;
   }
   do {
     if (!read_text(line)) return false;
     if (line_ == 1 && line.starts_with(kByteOrderMark)) line.erase(0, kByteOrderMark.size());
-  } while (trimmed(line).empty() || line.starts_with('#'));
+  } while (line.find_first_not_of(" \t\r") == std::string::npos || line.starts_with('#'));
   if (columns_.empty()) choose_separator(line);
-  cells_ = split(line, separator_);
-  for (std::string& cell : cells_) cell = trimmed(cell);
+  split(line, separator_, cells_);
+  for (std::string& cell : cells_) trim(cell);
   make_printable(cells_);
   while (!columns_.empty() && cells_.size() > columns_.size() && cells_.back().empty()) cells_.pop_back();
   return true;
@@ -130,9 +138,14 @@ bool CsvReader::next() {
 std::string CsvReader::where() const { return path_.string() + ":" + std::to_string(line_); }
 
 std::optional<double> CsvReader::try_number(size_t column) const {
-  std::string text = cells_[column];
-  if (origin_ == CsvOrigin::foreign && text.starts_with('+')) text.erase(0, 1);
-  if (separator_ != ',') std::replace(text.begin(), text.end(), ',', '.');
+  std::string_view text = cells_[column];
+  if (origin_ == CsvOrigin::foreign && text.starts_with('+')) text.remove_prefix(1);
+  std::string with_points;
+  if (separator_ != ',' && text.find(',') != std::string_view::npos) {
+    with_points = text;
+    std::replace(with_points.begin(), with_points.end(), ',', '.');
+    text = with_points;
+  }
   double value = 0;
   return parse(text, value) ? std::optional(value) : std::nullopt;
 }

@@ -6,20 +6,21 @@ import type { Vec3 } from "../src/protocol";
 import { bodyBelow, boundaryOf, section, type Soup, type TetMesh } from "../src/fit/cut";
 import {
   closeness,
-  depthOf,
   groupCurve,
   groupsOf,
-  histogram,
+  isCorrected,
   markerName,
-  residuals,
-  travel,
+  percentile,
+  stiffness,
   unpackFit,
   verdict,
   worstMarkers,
-  type Case,
+  type CaseFigures,
   type Fit,
   type FitHead,
 } from "../src/fit/data";
+import { colorCaption } from "../src/fit/maps";
+import { trust } from "../src/fit/trust";
 
 // Unit cube of n^3 cells, six tets each around the diagonal.
 function cube(n: number): TetMesh {
@@ -87,40 +88,44 @@ test("a plane cuts tets in triangles or quadrilaterals", () => {
   assert.equal(section(corners, [-1, -1, 1, 1], [0, 0, 1]).length, 4);
 });
 
-const kTip = { shape: "sphere" as const, radius: 0.1, axis: [0, -1, 0] as Vec3, touch: [0, 1, 0] as Vec3 };
-
-function poke(name: string, group: string, depth: number, first: number, more: Partial<Case> = {}): Case {
+// A poke or twist of the group whose response is ten times the load.
+function caseFigures(name: string, group: string, load: number, more: Partial<CaseFigures> = {}): CaseFigures {
   return {
     name,
     group,
-    first,
-    count: 1,
-    leftOut: false,
-    ok: true,
-    pressure: 0,
-    gravity: 0,
-    tip: { ...kTip, center: [0, 1 - depth, 0] },
-    force: { measured: [0, -10 * depth, 0], deviation: [0.1, 0.2, 0.1], predicted: [0, -11 * depth, 0], heldOut: null },
+    left_out: false,
+    load: { name: "depth", unit: "m", value: load },
+    response: { name: "force", unit: "N", measured: 10 * load, deviation: 0.2, fitted: 11 * load, on_mesh: 12 * load, held_out: null },
+    stiffness_unit: "N/m",
+    rms: 1,
+    readings: 6,
     ...more,
   };
 }
 
 // Two pokes at one place, deepest first, and a held-out case.
 function head(): FitHead {
+  const shown = (name: string, group: string, first: number, leftOut = false) => ({ name, group, first, count: 1, hidden: 0, leftOut, ok: true });
   return {
     format: 1,
     name: "block",
     version: "1",
     model: "neo_hookean",
-    counts: { vertices: 4, tets: 1, markers: 2, cases: 3, unknowns: 1, residuals: 12, equilibria: 9 },
-    fit: { words: "converged", success: true, interrupted: false, mesh: "a material per tet of 6, simulated on 6 tets", method: "lm", rule: "auto", iterations: 3, weight: 1, misfit: 6, roughness: 1, uniformMisfit: null, informed: null, noiseFactor: null },
-    quantities: [],
-    cases: [
-      poke("a, 2", "a", 0.2, 0),
-      poke("a, 1", "a", 0.1, 1),
-      poke("b", "b", 0.3, 2, { leftOut: true, force: { measured: [0, -3, 0], deviation: [0.1, 0.1, 0.1], predicted: [0, -4, 0], heldOut: [0, -4, 0] } }),
+    counts: { tets: 1, markers: 2, cases: 3, unknowns: 1, residuals: 12, equilibria: 9 },
+    fit: { words: "converged", success: true, interrupted: false, mesh: "a material per tet of 6, simulated on 6 tets", method: "lm", iterations: 3, weight: 1, misfit: 6, roughness: 1, uniformMisfit: null, informed: null },
+    quantities: [
+      { name: "young", unit: "Pa", isLog: true, varies: false, rows: [{ where: "everywhere", value: 12_000, lower: 11_000, upper: 13_000 }] },
+      { name: "poisson", unit: "", isLog: false, varies: false, rows: [{ where: "given", value: 0.4, lower: null, upper: null }] },
     ],
-    heldOut: null,
+    cases: [shown("a, 2", "a", 0), shown("a, 1", "a", 1), shown("b", "b", 2, true)],
+    figures: {
+      verdict: { good: true, text: "Converged.", reasons: [] },
+      limits: { missed: 4, squares_per_reading: 2.25 },
+      held_out: null,
+      comparison: [{ how: "cross-validation", models: [{ model: "this fit", position: 0.012, force: 0.034 }] }],
+      cases: [caseFigures("a, 2", "a", 0.2), caseFigures("a, 1", "a", 0.1), caseFigures("b", "b", 0.3, { left_out: true, rms: null })],
+      histogram: { limit: 4, counts: [1, 2] },
+    },
     history: [],
     weights: [],
     notes: [],
@@ -136,6 +141,7 @@ async function fitOf(what: FitHead): Promise<Fit> {
     ["reading.measured", "f32", Float32Array.of(0, -0.5, 0, 1, 0, 0, 0, -1, 0)],
     ["reading.deviation", "f32", new Float32Array(9).fill(0.125)],
     ["reading.predicted", "f32", Float32Array.of(0, -0.75, 0, 1, 0, 0.125, 0, -2, 0)],
+    ["reading.onMesh", "f32", Float32Array.of(0, -1, 0, 1, 0, 0.5, 0, -2, 0)],
     ["reading.heldOut", "f32", new Float32Array(9).fill(NaN)],
   ];
   let at = 0;
@@ -152,36 +158,28 @@ async function fitOf(what: FitHead): Promise<Fit> {
   return unpackFit(gzipSync(bytes).toString("base64"));
 }
 
-test("groups keep order, curves sort by depth", async () => {
-  const fit = await fitOf(head());
-  const groups = groupsOf(fit.head.cases);
+test("groups keep order, curves sort by load", () => {
+  const { cases, figures } = head();
+  const groups = groupsOf(cases);
   assert.deepEqual(groups, [{ name: "a", cases: [0, 1] }, { name: "b", cases: [2] }]);
-  const curve = groupCurve(fit, groups[0]);
-  assert.deepEqual([curve.x.unit, curve.y.unit], ["m", "N"]);
-  assert.deepEqual(curve.samples.map(({ x }) => Math.round(10 * x)), [1, 2]);
-  assert.ok(curve.samples.every(({ measured: f }, i) => Math.abs(f! - [1, 2][i]) < 1e-12), "a push is positive along the way of the tip");
-  assert.ok(Math.abs(curve.samples[0].deviation - 0.2) < 1e-12);
-  assert.ok(curve.samples.every(({ heldOut }) => heldOut === null));
-  const leftOut = groupCurve(fit, groups[1]);
-  assert.ok(leftOut.leftOut && leftOut.samples[0].fitted === null && leftOut.samples[0].heldOut === 4);
+  const curve = groupCurve(figures, groups[0]);
+  assert.deepEqual([curve.x, curve.y], [{ label: "depth", unit: "m" }, { label: "force", unit: "N" }]);
+  assert.deepEqual(curve.samples.map(({ name }) => name), ["a, 1", "a, 2"]);
+  assert.ok(!curve.leftOut && groupCurve(figures, groups[1]).leftOut);
 });
 
-test("a curve without forces shows marker motion", async () => {
-  const what = head();
-  for (const c of what.cases) c.force = null;
-  const fit = await fitOf(what);
-  const curve = groupCurve(fit, { cases: [0] });
-  assert.deepEqual([curve.y.unit, ...curve.samples.map(({ measured, fitted, heldOut }) => [measured, fitted, heldOut])], ["m", [0.5, 0.75, null]]);
-  for (const c of what.cases) c.tip = null;
-  what.cases[0].pressure = 300;
-  assert.deepEqual(groupCurve(await fitOf(what), { cases: [0] }).samples.map(({ x }) => x), [300]);
+test("stiffness is response over load", () => {
+  const poke = caseFigures("a", "a", 0.2);
+  assert.equal(stiffness(poke, 3), 15);
+  assert.equal(stiffness({ ...poke, stiffness_unit: "" }, 3), null);
+  assert.equal(stiffness(caseFigures("a", "a", 0), 3), null);
 });
 
-test("residuals exclude held-out readings", async () => {
-  const { all, ofCase } = residuals(await fitOf(head()));
-  assert.equal(all.length, 12);
-  assert.equal(ofCase[2], null);
-  assert.ok(Math.abs(all[1] + 2) < 1e-6 && Math.abs(all[4] + 0.2 / 0.2) < 1e-6);
+test("raw predictions are shown if they differ", () => {
+  const { figures } = head();
+  assert.ok(isCorrected(figures));
+  for (const c of figures.cases) c.response.on_mesh = c.response.fitted;
+  assert.ok(!isCorrected(figures));
 });
 
 test("the worst markers come first", async () => {
@@ -190,73 +188,47 @@ test("the worst markers come first", async () => {
   const [one] = worstMarkers(fit, 9, 1);
   assert.equal(one.marker, 1);
   assert.ok(Math.abs(one.sigmas - 1 / Math.sqrt(3)) < 1e-6);
+  assert.ok(Math.abs(one.onMesh - 0.5) < 1e-6);
 });
 
-test("a histogram counts outliers at its ends", () => {
-  const { middle, count } = histogram([-9, -0.9, 0.1, 0.2, 7, NaN], 1, 4);
-  assert.deepEqual(count, [2, 0, 2, 1]);
-  assert.deepEqual(middle, [-0.75, -0.25, 0.25, 0.75]);
+test("percentiles interpolate and skip values that are not finite", () => {
+  assert.equal(percentile([4, 1, NaN, 3, 2, 5], 0.5), 3);
+  assert.equal(percentile([0, 10], 0.02), 0.2);
+  assert.ok(Number.isNaN(percentile([], 0.5)));
 });
 
-test("a resting tip points along its axis", () => {
-  assert.deepEqual(travel({ ...kTip, center: kTip.touch }), [0, -1, 0]);
-  assert.equal(depthOf({ ...kTip, center: [0, 0.5, 0] }), 0.5);
+test("captions state clipped colors", () => {
+  const shown = { label: "E", unit: "Pa", map: "viridis" as const, log: true };
+  const caption = (values: number[], range: [number, number]): string => colorCaption({ ...shown, values: Float32Array.from(values), range });
+  assert.equal(caption([1000, 2000, 900_000], [1000, 2000]), "Colors span the 2 % and 98 % percentiles of the tets, 1 kPa to 2 kPa; the values range from 1 kPa to 900 kPa.");
+  assert.equal(caption([1000, 2000], [1000, 2000]), "Colors span 1 kPa to 2 kPa.");
+  assert.equal(caption([1000, 1000], [1000, 1000]), "All tets have the value 1 kPa.");
 });
 
 test("the program's verdict lists each reason once", () => {
-  const what = head();
+  const what = head().figures;
   assert.equal(closeness(6, 12), 1);
-  assert.deepEqual(verdict({ ...what, verdict: { good: true, text: "Converged.", reasons: [] } }), { text: "Converged.", kind: "good", reasons: [] });
+  assert.deepEqual(verdict(what), { text: "Converged.", kind: "good", reasons: [] });
   const text = "Do not rely on this material: E is at its bound.";
   const reasons = [{ name: "at_bound", text: "E is at its bound" }, { name: "group_missed", text: "'a' is missed" }];
   assert.deepEqual(verdict({ ...what, verdict: { good: false, text, reasons } }), { text, kind: "bad", reasons: ["'a' is missed"] });
 });
 
-test("without a verdict nothing is good", () => {
+test("the first paragraph has values, errors and a judgment", () => {
   const what = head();
-  assert.equal(verdict(what).kind, "plain");
-  assert.equal(verdict({ ...what, fit: { ...what.fit, success: false } }).kind, "bad");
-  assert.equal(verdict({ ...what, fit: { ...what.fit, interrupted: true } }).kind, "bad");
+  const good = trust(what);
+  for (const part of ["Young's modulus: 12 kPa (95 %: 11 kPa to 13 kPa)", "1.2 % of the largest motion and 3.4 % of the largest force", "Trust predictions"]) assert.ok(good.includes(part), good);
+  assert.ok(!good.includes("Poisson"), "given values are no results");
+  what.figures.verdict.good = false;
+  assert.ok(trust(what).includes("Do not rely"));
+  what.figures.comparison = [];
+  assert.ok(trust(what).includes("untested"));
 });
 
 test("markers have the data set's names", () => {
   assert.equal(markerName({ ...head(), markerNames: ["nose", ""] }, 0), "nose");
   assert.equal(markerName({ ...head(), markerNames: ["nose", ""] }, 1), "2");
   assert.equal(markerName(head(), 1), "2");
-});
-
-// Pressed in slightly and turned about the axis, deepest first.
-function twist(name: string, angle: number, more: Partial<Case> = {}): Case {
-  const torque = { measured: [0, -0.5 * angle, 0] as Vec3, deviation: [0.1, 0.02, 0.1] as Vec3, predicted: [0, -0.6 * angle, 0] as Vec3, heldOut: null };
-  return poke(name, "twist", 0.01, 0, { tip: { ...kTip, center: [0, 0.99, 0], turn: [0, -angle, 0] }, torque, ...more });
-}
-
-test("a twist is drawn as torque over angle", async () => {
-  const fit = await fitOf({ ...head(), cases: [twist("twist 2", 0.4), twist("twist 1", 0.2)] });
-  const curve = groupCurve(fit, { cases: [0, 1] });
-  assert.deepEqual([curve.x.label, curve.x.unit, curve.y.label, curve.y.unit], ["angle", "rad", "torque", "N m"]);
-  assert.deepEqual(curve.samples.map(({ x }) => x), [0.2, 0.4]);
-  assert.deepEqual(curve.samples.map(({ measured }) => measured), [0.1, 0.2]);
-  assert.ok(curve.samples.every(({ fitted: t }, i) => Math.abs(t! - [0.12, 0.24][i]) < 1e-12));
-  assert.equal(curve.samples[0].deviation, 0.02);
-});
-
-test("a twist without torques shows marker motion", async () => {
-  const fit = await fitOf({ ...head(), cases: [twist("twist", 0.4, { torque: null })] });
-  const curve = groupCurve(fit, { cases: [0] });
-  assert.deepEqual([curve.x.label, curve.y.label, curve.y.unit], ["angle", "mean motion", "m"]);
-});
-
-test("a slightly turned poke is no twist", async () => {
-  const cases = [poke("a", "a", 0.2, 0, { tip: { ...kTip, center: [0, 0.8, 0], turn: [0, 0.01, 0] } })];
-  const curve = groupCurve(await fitOf({ ...head(), cases }), { cases: [0] });
-  assert.deepEqual([curve.x.label, curve.y.label], ["depth", "force"]);
-});
-
-test("residuals count torques", async () => {
-  const { all } = residuals(await fitOf({ ...head(), cases: [twist("twist", 0.4)] }));
-  assert.equal(all.length, 9);
-  assert.ok(Math.abs(all[7] + 0.04 / 0.02) < 1e-9);
 });
 
 test("damaged fits are refused", async () => {

@@ -14,7 +14,7 @@ import { kSkinPoint } from "../view/labels";
 import { length, minus } from "../view/lens";
 import { kBarWidth } from "../view/marks";
 import { readStyle } from "../view/overlay";
-import { extremes, logRange, type ColorRange } from "../view/ranges";
+import { logRange, type ColorRange } from "../view/ranges";
 import { Screen } from "../view/screen";
 import { bodyBelow, boundaryOf, type Boundary, type Plane, type Soup, type TetMesh } from "./cut";
 
@@ -24,7 +24,7 @@ export interface Shown {
   values: Float32Array; // one value per tet
   map: MapName;
   log: boolean;
-  range?: [number, number]; // range of the colors; default: the range of the values
+  range: [number, number]; // range of the colors; values outside have the colors of its ends
 }
 
 export interface Note {
@@ -150,7 +150,7 @@ export class BodyView {
   }
 
   private range(shown: Shown): ColorRange {
-    const [low, high] = shown.range ?? extremes(shown.values) ?? [0, 0];
+    const [low, high] = shown.range;
     const positive = shown.log ? logRange(low, high) : null;
     return positive ? { ...positive, log: true } : { low, high, log: false };
   }

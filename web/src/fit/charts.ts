@@ -7,7 +7,7 @@ import { inkOn } from "../plots/painting";
 import { nearest } from "../plots/table";
 import type { MaybeNumber } from "../protocol";
 import { text } from "../view/marks";
-import { closeness, histogram, type FitHead, type GroupCurve } from "./data";
+import { closeness, isCorrected, type FitHead, type Figures, type GroupCurve } from "./data";
 
 // Error bars of one standard deviation, in device pixels.
 function paintErrorBars(u: uPlot, colors: Palette, curve: GroupCurve): void {
@@ -17,9 +17,9 @@ function paintErrorBars(u: uPlot, colors: Palette, curve: GroupCurve): void {
   ctx.lineWidth = devicePixelRatio;
   const cap = 4 * devicePixelRatio;
   ctx.beginPath();
-  for (const { x, measured, deviation } of curve.samples) {
+  for (const { load, response: { measured, deviation } } of curve.samples) {
     if (measured === null) continue;
-    const column = u.valToPos(x, "x", true);
+    const column = u.valToPos(load.value, "x", true);
     const [top, bottom] = [measured + deviation, measured - deviation].map((y) => u.valToPos(y, "y", true));
     ctx.moveTo(column, top);
     ctx.lineTo(column, bottom);
@@ -39,62 +39,46 @@ function around(values: readonly MaybeNumber[], includeZero: boolean): [number, 
   return [low === 0 ? 0 : low - margin, high + margin];
 }
 
-export function loadChart(name: string, curve: GroupCurve): Chart {
+export function loadChart(name: string, curve: GroupCurve, figures: Figures): Chart {
   const { samples } = curve;
-  const x = samples.map((s) => s.x);
-  const [fitted, heldOut, measured] = (["fitted", "heldOut", "measured"] as const).map((key) => samples.map((s) => s[key]));
+  const x = samples.map((s) => s.load.value);
+  const [fitted, onMesh, heldOut, measured] = (["fitted", "on_mesh", "held_out", "measured"] as const).map((key) => samples.map((s) => s.response[key]));
   const shape = x.length > 2 ? "line" : "both";
   const all: FilledCurve[] = [
-    { key: "fitted", label: "fitted", meaning: "predicted by the fitted material", color: "series1", width: 2, shape, values: fitted },
-    { key: "heldOut", label: curve.leftOut ? "predicted" : "held out", meaning: "predicted by a fit without this group", color: "series2", width: 2, dash: [6, 4], shape, values: heldOut },
+    { key: "fitted", label: "fitted", meaning: "predicted by the fitted material, corrected for the discretization error", color: "series1", width: 2, shape, values: fitted },
+    { key: "onMesh", label: "on the mesh", meaning: "the same as simulated, without the correction", color: "series3", width: 1.5, dash: [2, 3], shape, values: isCorrected(figures) ? onMesh : x.map(() => null) },
+    { key: "heldOut", label: curve.leftOut ? "predicted" : "held out", meaning: "predicted by a fit without this group, corrected", color: "series2", width: 2, dash: [6, 4], shape, values: heldOut },
     { key: "measured", label: "measured", meaning: "measured, ± one standard deviation", color: "text", shape: "points", values: measured },
   ];
   const curves = all.filter(({ key, values }) => key === "measured" || values.some((v) => v !== null));
-  const spread = samples.flatMap(({ measured: m, deviation }) => (m === null ? [] : [m - deviation, m + deviation]));
+  const spread = samples.flatMap(({ response: { measured: m, deviation } }) => (m === null ? [] : [m - deviation, m + deviation]));
   return Chart.of(x, curves, {
     label: `${name}: ${curve.y.label} against ${curve.x.label}, measured and fitted`,
     x: { label: curve.x.label, unit: curve.x.unit },
     y: curve.y,
     showsLast: true,
     xRange: () => around(x, true),
-    yRange: () => around([...spread, ...fitted, ...heldOut], true),
+    yRange: () => around([...spread, ...curves.flatMap(({ values }) => values)], true),
     paint: (u, colors) => paintErrorBars(u, colors, curve),
   });
 }
 
-const kLimit = 4; // range of the histogram in standard deviations
-const kBins = 32;
-
 // Histogram of residuals beside the expected counts for normally distributed noise.
-export function histogramChart(values: readonly number[]): Chart {
-  const { middle, count } = histogram(values, kLimit, kBins);
-  const width = (2 * kLimit) / kBins;
-  const normal = middle.map((r) => (values.length * width * Math.exp((-r * r) / 2)) / Math.sqrt(2 * Math.PI));
+export function histogramChart({ histogram: { limit, counts: count } }: Figures): Chart {
+  const width = (2 * limit) / count.length;
+  const middle = count.map((_, i) => -limit + (i + 0.5) * width);
+  const total = count.reduce((sum, n) => sum + n, 0);
+  const normal = middle.map((r) => (total * width * Math.exp((-r * r) / 2)) / Math.sqrt(2 * Math.PI));
   const curves: FilledCurve[] = [
-    { key: "count", label: "residuals", meaning: "(fitted − measured) / standard deviation; values beyond ±4 are in the outermost bins", color: "series1", shape: "bars", values: count },
+    { key: "count", label: "residuals", meaning: `(fitted − measured) / standard deviation; values beyond ±${limit} are in the outermost bins`, color: "series1", shape: "bars", values: count },
     { key: "normal", label: "normal", meaning: "expected from noise with the given standard deviations", color: "series2", width: 2, values: normal },
   ];
   return Chart.of(middle, curves, {
     label: "Histogram of the residuals",
     x: { label: "residual [standard deviations]" },
-    y: { label: "readings" },
-    xRange: () => [-kLimit, kLimit],
+    y: { label: "number of coordinates" },
+    xRange: () => [-limit, limit],
     yRange: () => [0, 1.08 * Math.max(...count, ...normal, 1)],
-  });
-}
-
-export function caseChart(names: readonly string[], ofCase: readonly MaybeNumber[]): Chart {
-  const x = ofCase.map((_, i) => i + 1);
-  const curves: FilledCurve[] = [
-    { key: "rms", label: "of a case", color: "series1", shape: "bars", values: [...ofCase] },
-    { key: "one", label: "as expected", meaning: "1: consistent with the standard deviations", color: "series2", dash: [6, 4], values: x.map(() => 1) },
-  ];
-  return Chart.of(x, curves, {
-    label: "Root mean square of the residuals of each case",
-    x: { label: "case", integer: true },
-    y: { label: "rms [standard deviations]" },
-    caption: (at) => (at === null ? "" : (names[Math.min(names.length - 1, Math.max(0, Math.round(at) - 1))] ?? "")),
-    yRange: () => [0, 1.1 * Math.max(1, ...ofCase.map((v) => v ?? 0))],
   });
 }
 
@@ -116,8 +100,8 @@ export function weightChart(head: FitHead): Chart | null {
   ];
   return Chart.of(x, curves, {
     label: "Misfit against roughness for every trial weight",
-    x: { label: "roughness R, as a power of ten" },
-    y: { label: "|r|² per reading", log },
+    x: { label: "log₁₀ of the roughness R (no unit)" },
+    y: { label: "|r|² per reading (no unit)", log },
     read: (key, at) => (key === "trials" && at !== null ? [`weight ${short(trials[nearest(x, at)].weight, 3)}`] : []),
     xRange: () => around([...x, log10(head.fit.roughness)], false),
     yRange: () => (log ? null : around([...misfit, 1], true)),
@@ -155,7 +139,7 @@ export function historyChart(head: FitHead): Chart | null {
   return Chart.of(x, curves, {
     label: "Misfit, prior and decrement over the iterations",
     x: { label: "iteration", integer: true },
-    y: { label: "", log: true },
+    y: { label: "objective (no unit)", log: true },
     showsLast: true,
   });
 }

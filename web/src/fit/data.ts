@@ -1,7 +1,7 @@
 // A fit inside the page, as far as the page reads what apps/viewer/fit_page.cpp packs, and quantities derived from it.
 import { Pack, unpacked } from "../pack";
 import type { MaybeNumber, Vec3 } from "../protocol";
-import { dot, length, minus, unit, vectorAt } from "../view/lens";
+import { length, minus, vectorAt } from "../view/lens";
 
 export interface ValueRow {
   where: string;
@@ -14,43 +14,67 @@ export interface Quantity {
   name: string;
   unit: string;
   isLog: boolean; // shown on a logarithmic scale
+  varies: boolean; // over the body
   rows: ValueRow[];
-}
-
-export interface Tip {
-  radius: number; // [m]
-  touch: Vec3;
-  center: Vec3;
-  axis: Vec3;
-  turn?: Vec3; // rotation since first contact [rad]
-}
-
-// Force or torque of the tip on the body.
-export interface Reading {
-  measured: Vec3;
-  deviation: Vec3;
-  predicted: Vec3 | null;
-  heldOut: Vec3 | null;
 }
 
 export interface Case {
   name: string;
   group: string;
-  first: number; // index of its first reading
-  count: number;
+  first: number; // index of its first reading in the page
+  count: number; // readings in the page
+  hidden: number; // readings that are not in the page
   leftOut: boolean;
   ok: boolean;
-  pressure: number; // [Pa]
-  gravity: number; // [m/s^2]
-  tip: Tip | null;
-  force: Reading | null; // [N]
-  torque?: Reading | null; // [N m]
 }
 
-export interface HeldOutGroup extends Record<"peakMotion" | "positionError" | "peakForce" | "forceError", MaybeNumber> {
+interface Measure {
+  name: string;
+  unit: string;
+}
+
+// Figures of a case as in figures.json.
+export interface CaseFigures {
+  name: string;
+  group: string;
+  left_out: boolean;
+  load: Measure & { value: number };
+  // Predictions: corrected for the discretization error, as simulated on the mesh, and by a fit without the group.
+  response: Measure & { deviation: number } & Record<"measured" | "fitted" | "on_mesh" | "held_out", MaybeNumber>;
+  stiffness_unit: string; // of response over load; empty if that is no stiffness
+  rms: MaybeNumber; // of the residuals [standard deviations]
+  readings: number;
+}
+
+type GroupErrors = Record<"peak_motion" | "position_error" | "position_beyond_noise" | "peak_force" | "force_error" | "force_beyond_noise", MaybeNumber>;
+
+export interface HeldOutGroup extends Partial<GroupErrors> {
   group: string;
   ok: boolean;
   failure: string;
+  poor?: boolean; // above the limit of a single group
+}
+
+export interface Comparison {
+  how: string; // "cross-validation" or "left out"
+  models: ({ model: string } & Record<"position" | "force", MaybeNumber>)[];
+}
+
+interface Reason {
+  name: string;
+  text: string;
+  value?: number;
+  limit?: number;
+}
+
+// figures.json as far as the page shows it
+export interface Figures {
+  verdict: { good: boolean; text: string; reasons: Reason[] };
+  limits: { missed: number; squares_per_reading: number };
+  held_out: { groups: HeldOutGroup[]; position: MaybeNumber; force: MaybeNumber; largest_motion: MaybeNumber; largest_force: MaybeNumber; poor: boolean; limits: { position: number; force: number; single: number } } | null;
+  comparison: Comparison[];
+  cases: CaseFigures[];
+  histogram: { limit: number; counts: number[] };
 }
 
 type WeightTrial = Record<"weight" | "misfit" | "roughness", MaybeNumber>; // misfit: |r|^2 / 2
@@ -60,7 +84,6 @@ export interface FitHead {
   name: string;
   version: string;
   model: string;
-  verdict?: { good: boolean; text: string; reasons: { text: string }[] }; // verdict of the program
   counts: Record<"tets" | "markers" | "cases" | "unknowns" | "residuals" | "equilibria", number>;
   fit: WeightTrial & {
     words: string;
@@ -74,7 +97,7 @@ export interface FitHead {
   };
   quantities: Quantity[];
   cases: Case[];
-  heldOut: { groups: HeldOutGroup[]; position: MaybeNumber; force: MaybeNumber } | null;
+  figures: Figures;
   history: (WeightTrial & { decrement: MaybeNumber })[];
   weights: WeightTrial[];
   notes: string[];
@@ -102,129 +125,28 @@ export function groupsOf(cases: readonly Case[]): { name: string; cases: number[
   return names.map((name) => ({ name, cases: cases.flatMap((c, i) => (c.group === name ? [i] : [])) }));
 }
 
-// Unit direction of the tip's travel since first contact; its axis if it has not moved.
-export function travel(tip: Tip): Vec3 {
-  const way = minus(tip.center, tip.touch);
-  return unit(length(way) > 1e-12 ? way : tip.axis);
-}
-
-function turnAxis(tip: Tip): Vec3 {
-  const turn = tip.turn ?? tip.axis;
-  return unit(length(turn) > 1e-12 ? turn : tip.axis);
-}
-
-export const depthOf = (tip: Tip): number => length(minus(tip.center, tip.touch));
-
-interface Sample {
-  x: number;
-  measured: MaybeNumber;
-  deviation: number;
-  fitted: MaybeNumber;
-  heldOut: MaybeNumber;
-}
-
 // Curve of one group for a chart: load against response, with one standard deviation of the measurements.
 export interface GroupCurve {
   x: { label: string; unit: string };
   y: { label: string; unit: string };
-  samples: Sample[];
+  samples: CaseFigures[]; // by ascending load
   leftOut: boolean;
 }
 
-type Answer = "force" | "torque" | "motion";
-
-const turnOf = (tip: Tip): number => length(tip.turn ?? [0, 0, 0]);
-
-// Whether the group is a twist: a tip that turns on the spot moves its rim by more than its center.
-function isTwist(cases: readonly Case[]): boolean {
-  const largest = (of: (tip: Tip) => number): number => Math.max(0, ...cases.map((c) => (c.tip ? of(c.tip) : 0)));
-  return cases.every((c) => c.tip !== null) && largest((tip) => tip.radius * turnOf(tip)) > largest(depthOf);
+export function groupCurve(figures: Figures, group: { cases: number[] }): GroupCurve {
+  const samples = group.cases.map((c) => figures.cases[c]).sort((a, b) => a.load.value - b.load.value);
+  const [{ load, response }] = samples;
+  return { x: { label: load.name, unit: load.unit }, y: { label: response.name, unit: response.unit }, samples, leftOut: samples.some((c) => c.left_out) };
 }
 
-const kAnswers: Record<Answer, { label: string; unit: string }> = {
-  force: { label: "force", unit: "N" },
-  torque: { label: "torque", unit: "N m" },
-  motion: { label: "mean motion", unit: "m" },
-};
-
-export function groupCurve(fit: Fit, group: { cases: number[] }): GroupCurve {
-  const cases = group.cases.map((c) => fit.head.cases[c]);
-  const load = loadAxis(cases);
-  const isMeasured = (answer: "force" | "torque"): boolean => load.byTip && cases.some((c) => (c[answer] ?? null) !== null);
-  const answer = load.twists && isMeasured("torque") ? "torque" : isMeasured("force") && !load.twists ? "force" : "motion";
-  const sample = (c: Case): Omit<Sample, "x"> => (answer === "motion" ? motionSample(fit, c) : tipSample(c, answer));
-  const samples = cases.map((c, i) => ({ ...sample(c), x: load.of(c, i) }));
-  samples.sort((a, b) => a.x - b.x);
-  return { x: load, y: kAnswers[answer], samples, leftOut: cases.some((c) => c.leftOut) };
+// Response over load, such as a force over a displacement; null without a load.
+export function stiffness(figures: CaseFigures, response: MaybeNumber): MaybeNumber {
+  return figures.stiffness_unit === "" || response === null || !(figures.load.value > 0) ? null : response / figures.load.value;
 }
 
-interface LoadAxis {
-  label: string;
-  unit: string;
-  byTip: boolean;
-  twists: boolean;
-  of: (c: Case, i: number) => number;
-}
-
-function loadAxis(cases: readonly Case[]): LoadAxis {
-  const byTip = cases.every((c) => c.tip !== null);
-  if (isTwist(cases)) return { label: "angle", unit: "rad", byTip, twists: true, of: (c) => (c.tip ? turnOf(c.tip) : 0) };
-  if (byTip) return { label: "depth", unit: "m", byTip, twists: false, of: (c) => (c.tip ? depthOf(c.tip) : 0) };
-  if (cases.some((c) => c.pressure !== 0)) return { label: "pressure", unit: "Pa", byTip, twists: false, of: (c) => c.pressure };
-  return { label: "acceleration of gravity", unit: "m/s²", byTip, twists: false, of: (c, i) => c.gravity || i };
-}
-
-// Response along the tip's travel, or about its axis of rotation; positive where the tip pushes or twists the body.
-function tipSample(c: Case, answer: "force" | "torque"): Omit<Sample, "x"> {
-  const reading = c[answer];
-  if (!c.tip || !reading) return { measured: null, deviation: 0, fitted: null, heldOut: null };
-  const way = answer === "force" ? travel(c.tip) : turnAxis(c.tip);
-  const { measured, deviation, predicted, heldOut } = reading;
-  return {
-    measured: dot(measured, way),
-    deviation: Math.hypot(way[0] * deviation[0], way[1] * deviation[1], way[2] * deviation[2]),
-    fitted: predicted && !c.leftOut ? dot(predicted, way) : null,
-    heldOut: heldOut ? dot(heldOut, way) : null,
-  };
-}
-
-function motionSample(fit: Fit, c: Case): Omit<Sample, "x"> {
-  const [marker, rest] = [fit.indices("reading.marker"), fit.floats("markers")];
-  const mean = (name: string): MaybeNumber => {
-    const positions = fit.floats(name);
-    let sum = 0;
-    for (let i = c.first; i < c.first + c.count; ++i) sum += length(minus(vectorAt(positions, i), vectorAt(rest, marker[i])));
-    return c.count > 0 && Number.isFinite(sum) ? sum / c.count : null;
-  };
-  const deviations = fit.floats("reading.deviation");
-  let variance = 0;
-  for (let i = c.first; i < c.first + c.count; ++i) variance += length(vectorAt(deviations, i)) ** 2 / 3;
-  return {
-    measured: mean("reading.measured"),
-    deviation: c.count > 0 ? Math.sqrt(variance) / c.count : 0,
-    fitted: c.leftOut ? null : mean("reading.predicted"),
-    heldOut: mean("reading.heldOut"),
-  };
-}
-
-// Residuals of all fitted readings in standard deviations, and the root mean square of each case; null where nothing was
-// fitted.
-export function residuals(fit: Fit): { all: number[]; ofCase: MaybeNumber[] } {
-  const [measured, predicted] = [fit.floats("reading.measured"), fit.floats("reading.predicted")];
-  const deviation = fit.floats("reading.deviation");
-  const all: number[] = [];
-  const ofCase = fit.head.cases.map((c) => {
-    if (c.leftOut || !c.ok) return null;
-    const own: number[] = [];
-    for (let i = 3 * c.first; i < 3 * (c.first + c.count); ++i) own.push((predicted[i] - measured[i]) / deviation[i]);
-    for (const reading of [c.force, c.torque])
-      if (reading?.predicted)
-        for (let k = 0; k < 3; ++k) own.push((reading.predicted[k] - reading.measured[k]) / reading.deviation[k]);
-    all.push(...own);
-    return own.length > 0 ? Math.sqrt(own.reduce((sum, r) => sum + r * r, 0) / own.length) : null;
-  });
-  return { all, ofCase };
-}
+// Whether the correction for the discretization error changes predictions noticeably.
+export const isCorrected = ({ cases }: Figures): boolean =>
+  cases.some(({ response: { fitted, on_mesh: raw } }) => fitted !== null && raw !== null && Math.abs(fitted - raw) > 1e-6 * Math.abs(fitted));
 
 // Name of a marker in the data set.
 export const markerName = (head: FitHead, marker: number): string => head.markerNames?.[marker] || String(marker + 1);
@@ -233,12 +155,13 @@ export interface WorstMarker {
   case: number;
   marker: number;
   error: Vec3; // predicted - measured [m]
+  onMesh: number; // length of the error without the correction for the discretization error [m]
   sigmas: number; // root mean square over the three coordinates, in standard deviations
 }
 
 // Readings with the largest residuals.
 export function worstMarkers(fit: Fit, count: number, onlyCase: number | null = null): WorstMarker[] {
-  const [measured, predicted] = [fit.floats("reading.measured"), fit.floats("reading.predicted")];
+  const [measured, predicted, onMesh] = ["measured", "predicted", "onMesh"].map((name) => fit.floats(`reading.${name}`));
   const [deviation, marker] = [fit.floats("reading.deviation"), fit.indices("reading.marker")];
   const found: WorstMarker[] = [];
   fit.head.cases.forEach((c, index) => {
@@ -246,29 +169,21 @@ export function worstMarkers(fit: Fit, count: number, onlyCase: number | null = 
     for (let i = c.first; i < c.first + c.count; ++i) {
       const error = minus(vectorAt(predicted, i), vectorAt(measured, i));
       const sigmas = Math.hypot(...error.map((e, k) => e / deviation[3 * i + k])) / Math.sqrt(3);
-      found.push({ case: index, marker: marker[i], error, sigmas });
+      found.push({ case: index, marker: marker[i], error, onMesh: length(minus(vectorAt(onMesh, i), vectorAt(measured, i))), sigmas });
     }
   });
   return found.sort((a, b) => b.sigmas - a.sigmas).slice(0, count);
 }
 
-// Counts of values in equal bins over [-limit, limit]. Values outside are in the outermost bins.
-export function histogram(values: readonly number[], limit: number, bins: number): { middle: number[]; count: number[] } {
-  const width = (2 * limit) / bins;
-  const count = new Array<number>(bins).fill(0);
-  for (const value of values)
-    if (Number.isFinite(value)) ++count[Math.min(bins - 1, Math.max(0, Math.floor((value + limit) / width)))];
-  return { middle: count.map((_, i) => -limit + (i + 0.5) * width), count };
+// The program's verdict, and reasons other than the one in its text.
+export function verdict({ verdict: { text, good, reasons } }: Figures): { text: string; kind: "good" | "bad"; reasons: string[] } {
+  return { text, kind: good ? "good" : "bad", reasons: reasons.map((reason) => reason.text).filter((reason) => !text.includes(reason)) };
 }
 
-// The program's verdict, and reasons other than the one in its text. Reports of older programs have only the status of the
-// fit.
-export function verdict({ verdict, fit }: FitHead): { text: string; kind: "good" | "bad" | "plain"; reasons: string[] } {
-  if (verdict) {
-    const { text, good, reasons } = verdict;
-    return { text, kind: good ? "good" : "bad", reasons: reasons.map((reason) => reason.text).filter((reason) => !text.includes(reason)) };
-  }
-  if (fit.interrupted) return { text: "Interrupted before convergence. Run the same command with --resume to continue.", kind: "bad", reasons: [] };
-  if (!fit.success) return { text: `Not converged: ${fit.words}. Do not rely on it.`, kind: "bad", reasons: [] };
-  return { text: fit.words, kind: "plain", reasons: [] };
+// Value below which a fraction of the finite values lies, by linear interpolation.
+export function percentile(values: ArrayLike<number>, fraction: number): number {
+  const sorted = Array.from(values).filter(Number.isFinite).sort((a, b) => a - b);
+  const at = fraction * (sorted.length - 1);
+  const [low, high] = [sorted[Math.floor(at)] ?? NaN, sorted[Math.ceil(at)] ?? NaN];
+  return low + (at - Math.floor(at)) * (high - low);
 }

@@ -4,38 +4,36 @@ import { button, element, listOf, messageOf, type Child } from "../dom";
 import { formulaElements } from "../formulas";
 import { Page } from "../page";
 import type { Chart } from "../plots/chart";
-import { plural, short, withUnit } from "../plots/numbers";
-import type { MaybeNumber, Vec3 } from "../protocol";
+import { plural, short } from "../plots/numbers";
+import type { Vec3 } from "../protocol";
 import { Theme } from "../theme";
 import { CameraRig } from "../view/cameras";
-import { caseChart, histogramChart, historyChart, loadChart, weightChart } from "./charts";
-import { closeness, groupCurve, groupsOf, residuals, unpackFit, verdict, type Fit, type HeldOutGroup, type Quantity, type ValueRow } from "./data";
+import { histogramChart, historyChart, loadChart, weightChart } from "./charts";
+import { closeness, groupCurve, groupsOf, isCorrected, unpackFit, verdict, type Fit, type Quantity, type ValueRow } from "./data";
 import { FittedBody } from "./bodyView";
 import { Maps } from "./maps";
 import { Misfits } from "./misfits";
 import { numberTable } from "./numberTable";
+import { caseTable, comparisonTables, heldOutTable, percent } from "./tables";
+import { kQuantityNames, trust, valueText } from "./trust";
 
 function section(title: string, about: string, ...children: Child[]): HTMLElement {
   return element("section", { "aria-label": title }, element("h2", {}, title), about ? element("p", { class: "about" }, about) : null, ...children);
 }
-
-const percent = (part: MaybeNumber): string => (part === null || part < 0 ? "–" : `${short(100 * part, 2)} %`);
-const ratio = (part: MaybeNumber, whole: MaybeNumber): MaybeNumber => (part === null || whole === null || !(whole > 0) ? null : part / whole);
-
-const valueText = (value: MaybeNumber, unit: string): string => (unit === "" ? short(value, 3) : withUnit(value, unit, 3));
 
 function card(name: string, value: string, meaning: string): HTMLElement {
   return element("div", { class: "card", title: meaning }, element("span", { class: "card-name" }, name), element("strong", {}, value), element("span", { class: "card-meaning" }, meaning));
 }
 
 function cards({ head }: Fit): HTMLElement {
-  const { fit, counts, heldOut } = head;
+  const { fit, counts, figures: { held_out: heldOut, limits } } = head;
   const list = element("div", { class: "cards" });
-  list.append(card("misfit per reading", short(closeness(fit.misfit, counts.residuals), 3), "|r|²: 1 is consistent with the standard deviations"));
-  if (fit.uniformMisfit !== null) list.append(card("one value for all", short(closeness(fit.uniformMisfit, counts.residuals), 3), "misfit per reading of a uniform material"));
-  if (heldOut && (heldOut.position ?? -1) >= 0) list.append(card("held-out positions", percent(heldOut.position), "relative to the peak motion"));
-  if (heldOut && (heldOut.force ?? -1) >= 0) list.append(card("held-out forces", percent(heldOut.force), "relative to the peak force"));
-  if (fit.informed !== null) list.append(card("learned", `${short(fit.informed, 3)} of ${counts.unknowns}`, "parameters that the data determine"));
+  list.append(card("misfit |r|² per reading", short(closeness(fit.misfit, counts.residuals), 3), `no unit; 1: consistent with the standard deviations; limit ${limits.squares_per_reading}`));
+  if (fit.uniformMisfit !== null) list.append(card("one value for all", short(closeness(fit.uniformMisfit, counts.residuals), 3), "|r|² per reading of a uniform material"));
+  const heldOutCard = (name: string, error: number, limit: number, peak: string): HTMLElement => card(name, percent(error), `error beyond the noise, of the largest ${peak}; limit ${percent(limit)}`);
+  if (heldOut && heldOut.position !== null) list.append(heldOutCard("held-out positions", heldOut.position, heldOut.limits.position, "motion"));
+  if (heldOut && heldOut.force !== null) list.append(heldOutCard("held-out forces", heldOut.force, heldOut.limits.force, "force"));
+  if (fit.informed !== null) list.append(card("determined by the data", `${short(fit.informed, 3)} of ${counts.unknowns}`, "number of parameters"));
   return list;
 }
 
@@ -44,28 +42,13 @@ function valueTable(quantities: readonly Quantity[]): HTMLElement {
     element(
       "tr",
       { class: first ? "first" : "" },
-      element("th", { scope: "row" }, first ? q.name : ""),
+      element("th", { scope: "row" }, first ? (kQuantityNames[q.name] ?? q.name) + (q.unit === "" ? " (no unit)" : "") : ""),
       element("td", {}, r.where),
       element("td", { class: "number" }, valueText(r.value, q.unit)),
       element("td", { class: "number" }, r.lower === null ? "–" : `${valueText(r.lower, q.unit)} to ${valueText(r.upper, q.unit)}`),
     );
   const rows = quantities.flatMap((q) => q.rows.map((r, i) => row(q, r, i === 0)));
   return numberTable(["quantity", "where", "value", "95 % interval"], 2, element("tbody", {}, ...rows));
-}
-
-function heldOutTable(groups: readonly HeldOutGroup[]): HTMLElement {
-  const titles = ["held out", "position error", "of peak motion", "force error", "of peak force"];
-  const row = (g: HeldOutGroup): HTMLElement => {
-    if (!g.ok) return element("tr", {}, element("th", { scope: "row" }, g.group), element("td", { colspan: "4" }, g.failure || "could not be predicted"));
-    const cells = [
-      withUnit(g.positionError, "m", 3),
-      percent(ratio(g.positionError, g.peakMotion)),
-      (g.peakForce ?? 0) > 0 ? withUnit(g.forceError, "N", 3) : "–",
-      percent(ratio(g.forceError, g.peakForce)),
-    ];
-    return element("tr", {}, element("th", { scope: "row" }, g.group), ...cells.map((text) => element("td", { class: "number" }, text)));
-  };
-  return numberTable(titles, 1, element("tbody", {}, ...groups.map(row)));
 }
 
 function words(title: string, list: readonly string[], className: string): HTMLElement | null {
@@ -96,44 +79,53 @@ function report(fit: Fit): HTMLElement {
   rig.show(fit.head.name, body.lower, body.upper, body.up);
   const maps = new Maps(fit, body, rig);
   const misfits = new Misfits(fit, body, rig);
-  return element("main", { class: "fit" }, found(fit), section("Stiffness and its uncertainty", "", maps.element), loads(fit), residualSection(fit, misfits), made(fit));
+  return element("main", { class: "fit" }, found(fit), section("Stiffness and its uncertainty", "", maps.element), loads(fit), predictions(fit), residualSection(fit, misfits), made(fit));
 }
 
 function found(fit: Fit): HTMLElement {
   const { head } = fit;
-  const judged = verdict(head);
+  const judged = verdict(head.figures);
   const next = head.nextPoke ? element("div", { class: "words next" }, element("h3", {}, "Next best poke"), element("p", {}, head.nextPoke.words)) : null;
   return section(
     "Result",
-    "",
+    trust(head),
     element("div", { class: `verdict ${judged.kind}` }, element("p", {}, judged.text), judged.reasons.length > 0 ? listOf(judged.reasons) : null),
     cards(fit),
     element("div", { class: "columns" }, element("div", {}, valueTable(head.quantities)), element("div", {}, words("Warnings", head.warnings, "warnings"), next, words("Assumptions", head.notes, ""))),
   );
 }
 
+const kCorrected = "“Corrected” predictions include the correction for the discretization error of the mesh and are compared with the readings; those “on the mesh” are what a simulation on this mesh shows. ";
+const kBars = "Bars and ± are one standard deviation of the reading, with that of the correction. Held-out values are predicted by a fit without that group.";
+
 function loads(fit: Fit): HTMLElement {
+  const { figures } = fit.head;
   const grid = element("div", { class: "charts" });
   for (const group of groupsOf(fit.head.cases)) {
-    const curve = groupCurve(fit, group);
-    grid.append(figure(curve.leftOut ? `${group.name} (held out)` : group.name, loadChart(group.name, curve)));
+    if (group.cases.length < 2) continue; // the table shows its single case
+    const curve = groupCurve(figures, group);
+    grid.append(figure(curve.leftOut ? `${group.name} (held out)` : group.name, loadChart(group.name, curve, figures)));
   }
-  const groups = fit.head.heldOut?.groups ?? [];
+  return section("Measured and fitted", (isCorrected(figures) ? kCorrected : "") + kBars, grid, element("div", { class: "wide" }, caseTable(figures)));
+}
+
+function predictions({ head: { figures } }: Fit): HTMLElement {
+  const table = heldOutTable(figures);
+  if (!table) return section("Predictions of unseen groups", "No group was held out, so predictions of other loads are untested (cross_validation, leave_out).");
   return section(
-    "Measured and fitted",
-    "Readings and predictions of the fitted material, corrected for the mesh. Bars are one standard deviation of the reading and of the correction. The dashed curve is predicted by a fit without that group.",
-    grid,
-    groups.length > 0 ? heldOutTable(groups) : null,
+    "Predictions of unseen groups",
+    "Root mean square errors, also without the part that the noise of the readings explains. Percentages are relative to the largest motion and force of all groups. This is the figure to trust.",
+    element("div", { class: "wide" }, table),
+    ...comparisonTables(figures.comparison),
   );
 }
 
 function residualSection(fit: Fit, misfits: Misfits): HTMLElement {
-  const found = residuals(fit);
-  const names = fit.head.cases.map((c) => c.name);
+  const { limits } = fit.head.figures;
   return section(
     "Residuals",
-    "Fitted minus measured, in standard deviations. A histogram wider than the normal curve, or a case with large residuals, indicates a model too simple or a bad reading.",
-    element("div", { class: "charts" }, figure("All readings", histogramChart(found.all)), figure("By case", caseChart(names, found.ofCase))),
+    `Fitted minus measured, in standard deviations (sd). A histogram wider than the normal curve indicates a model too simple or bad readings. Groups that are missed by more than ${limits.missed} sd make the verdict bad.`,
+    element("div", { class: "charts" }, figure("All coordinates", histogramChart(fit.head.figures))),
     misfits.element,
   );
 }

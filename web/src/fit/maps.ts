@@ -3,10 +3,13 @@ import { element } from "../dom";
 import { checkbox, choice } from "../controls";
 import type { Vec3 } from "../protocol";
 import { sceneAxes, type CameraRig } from "../view/cameras";
+import { short, withUnit } from "../plots/numbers";
 import { along, vectorAt } from "../view/lens";
+import { extremes } from "../view/ranges";
 import { makeArrows, makeBalls } from "./arrows";
 import { BodyView, type Cut, type FittedBody, type Note, type Shown } from "./bodyView";
-import type { Fit } from "./data";
+import { percentile, type Fit } from "./data";
+import { kQuantityNames as kNames } from "./trust";
 
 interface Field {
   key: string;
@@ -14,7 +17,20 @@ interface Field {
   shown: Shown;
 }
 
-const kNames: Record<string, string> = { young: "Young's modulus", poisson: "Poisson's ratio", density: "density" };
+const kEnds = [0.02, 0.98]; // percentiles of the tets at the ends of the colors, so that a few tets do not flatten the picture
+
+function clipped(values: Float32Array): [number, number] {
+  return [percentile(values, kEnds[0]), percentile(values, kEnds[1])];
+}
+
+// Range of the colors in words, and the values outside.
+export function colorCaption({ values, range: [low, high], unit }: Shown): string {
+  const [least, most] = extremes(values) ?? [NaN, NaN];
+  const text = (value: number): string => (unit === "" ? short(value, 3) : withUnit(value, unit, 3));
+  if (least >= low && most <= high) return least === most ? `All tets have the value ${text(least)}.` : `Colors span ${text(low)} to ${text(high)}.`;
+  const [first, last] = kEnds.map((part) => `${Math.round(100 * part)} %`);
+  return `Colors span the ${first} and ${last} percentiles of the tets, ${text(low)} to ${text(high)}; the values range from ${text(least)} to ${text(most)}.`;
+}
 
 // Half width of the 95 % interval of a normal distribution, in standard deviations.
 const kDeviations95 = 1.96;
@@ -26,11 +42,11 @@ function fieldsOf(fit: Fit): { values: Field[]; doubts: Field[] } {
     const name = kNames[key] ?? key;
     const [value, sigma, learned] = [array(key), array(`${key}_deviation`), array(`${key}_reduction`)];
     if (!value) continue;
-    values.push({ key, title: name, shown: { label: key === "young" ? "E" : key, unit, values: value, map: "viridis", log } });
+    values.push({ key, title: name, shown: { label: key === "young" ? "E" : key, unit, values: value, map: "viridis", log, range: clipped(value) } });
     if (sigma) {
       const numbers = log ? sigma.map((s) => Math.exp(kDeviations95 * s)) : sigma;
       const title = `${name}: ${log ? "known within a factor" : "standard deviation"}`;
-      const shown: Shown = { label: log ? "factor" : "deviation", unit: "", values: numbers, map: "cividis", log: false };
+      const shown: Shown = { label: log ? "factor" : "deviation", unit: "", values: numbers, map: "cividis", log: false, range: clipped(numbers) };
       doubts.push({ key: `${key}.deviation`, title, shown });
     }
     if (learned) {
@@ -66,13 +82,18 @@ export class Maps {
   private column(label: string, fields: Field[], rig: CameraRig): HTMLElement {
     const view = new BodyView(this.body, rig, `${label} on the body`);
     this.views.push(view);
-    view.show(fields[0].shown);
+    const caption = element("p", { class: "hint" });
+    const show = ({ shown }: Field): void => {
+      view.show(shown);
+      caption.textContent = colorCaption(shown);
+    };
+    show(fields[0]);
     view.slice(this.cut);
     const pick = choice("", label, fields.map(({ key, title }) => [key, title] as const), fields[0].key, (key) => {
       const field = fields.find((f) => f.key === key);
-      if (field) view.show(field.shown);
+      if (field) show(field);
     });
-    return element("div", { class: "map" }, pick.element, view.element);
+    return element("div", { class: "map" }, pick.element, view.element, caption);
   }
 
   private controls(): HTMLElement {

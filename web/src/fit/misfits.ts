@@ -33,7 +33,7 @@ export class Misfits {
       "div",
       { class: "map-row misfits" },
       element("div", { class: "map plot-panel" }, pick.element, this.view.element, this.note),
-      numberTable(["marker", "case", "error", "standard deviations"], 2, this.table),
+      numberTable(["marker", "case", "error, corrected", "error on the mesh", "error [sd]"], 2, this.table),
     );
     this.show(null);
   }
@@ -50,12 +50,14 @@ export class Misfits {
     const size = this.body.size;
     const notes: Note[] = worst.slice(0, 1).map((w) => ({ at: vectorAt(rest, w.marker), words: `marker ${markerName(this.fit.head, w.marker)}: ${withUnit(length(w.error), "m", 3)}` }));
     this.view.mark([makeArrows(arrows, 0.005 * size, "#d55e00"), makeBalls(arrows.map((a) => a.from), 0.006 * size, "#1b1f27")], notes);
-    this.note.textContent = worst.length > 0 ? `Arrows are ${short(scale, 3)} times as long as the residuals, at the rest positions of the markers.` : "This case has no measured positions.";
+    const hidden = this.fit.head.cases.reduce((sum, c, i) => sum + (onlyCase === null || onlyCase === i ? c.hidden : 0), 0);
+    const others = hidden > 0 ? ` ${hidden} readings with smaller residuals are not in this page.` : "";
+    this.note.textContent = worst.length > 0 ? `Arrows are ${short(scale, 3)} times as long as the residuals, at the rest positions of the markers.${others}` : "This case has no measured positions.";
     this.table.replaceChildren(...worst.slice(0, kRows).map((w) => this.row(w)));
   }
 
   private row(w: WorstMarker): HTMLElement {
-    const cells = [markerName(this.fit.head, w.marker), this.fit.head.cases[w.case].name, withUnit(length(w.error), "m", 3), short(w.sigmas, 3)];
+    const cells = [markerName(this.fit.head, w.marker), this.fit.head.cases[w.case].name, withUnit(length(w.error), "m", 3), withUnit(w.onMesh, "m", 3), short(w.sigmas, 3)];
     return element("tr", {}, ...cells.map((text, i) => element("td", { class: i > 1 ? "number" : "" }, text)));
   }
 }

@@ -1,6 +1,7 @@
 // The report of a fit, opened from disk without a network: its numbers, its curves, and the body cut open.
 import assert from "node:assert/strict";
 import { spawnSync } from "node:child_process";
+import { readFileSync } from "node:fs";
 import { join } from "node:path";
 import { test } from "node:test";
 import { pathToFileURL } from "node:url";
@@ -33,6 +34,9 @@ test("the report repeats the terminal's summary", async () => {
   await found.getByRole("row").filter({ hasText: "softest tet" }).waitFor();
   assert.equal(await found.locator(".card").count(), 5);
   await page.getByRole("heading", { name: "Next best poke" }).waitFor();
+  const first = await found.locator(".about").first().innerText();
+  assert.match(first, /Young's modulus: [\d.]+ kPa to [\d.]+ kPa/);
+  assert.match(first, /% of the largest motion and [\d.]+ % of the largest force/);
   await keepPicture(page, "fit_report");
   await close();
 });
@@ -45,7 +49,21 @@ test("every group has measured, fitted, held-out curves", async () => {
   const canvas = charts.first().locator("canvas").first();
   await canvas.scrollIntoViewIfNeeded();
   await until("a curve", () => isDrawn(canvas));
-  for (const title of ["All readings", "By case", "Convergence"]) await page.locator("figcaption", { hasText: title }).waitFor();
+  for (const title of ["All coordinates", "Convergence"]) await page.locator("figcaption", { hasText: title }).waitFor();
+  await close();
+});
+
+test("the verdict agrees with all rows", async () => {
+  const { page, close } = await open();
+  const { verdict, held_out: heldOut } = JSON.parse(readFileSync(join(folder, "layers.fit", "figures.json"), "utf8"));
+  const text = await page.getByRole("region", { name: "Result" }).locator(".verdict").innerText();
+  for (const reason of verdict.reasons) assert.ok(text.includes(reason.text), reason.text);
+  const bad = await page.locator("tr.bad").count();
+  assert.equal(bad, heldOut.groups.filter((g) => g.poor || !g.ok).length + (heldOut.poor ? 1 : 0));
+  if (verdict.good) assert.equal(bad, 0);
+  const table = page.getByRole("region", { name: "Measured and fitted" }).getByRole("table");
+  for (const row of await table.locator("tbody tr").all()) assert.match(await row.innerText(), /depth [\d.]+ mm.*[\d.]+ m?N ± [\d.]+ [mµ]?N.* k?N\/m/s);
+  await page.getByText("Colors span").first().waitFor();
   await close();
 });
 

@@ -1,0 +1,120 @@
+#include "aspic/fit_json.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "capture/case_figures.h"
+
+namespace aspic::cli {
+namespace {
+
+Json known(double value) { return value >= 0 && std::isfinite(value) ? Json(value) : Json(); }
+Json value_or_null(const std::optional<double>& value) {
+  return value && std::isfinite(*value) ? Json(*value) : Json();
+}
+
+Json measure(const Measure& m) { return {{"name", m.name}, {"unit", m.unit}}; }
+
+const PredictionErrors* errors_of(const std::vector<PredictionErrors>& all, const std::string& group) {
+  const auto found = std::find_if(all.begin(), all.end(), [&](const PredictionErrors& e) { return e.group == group; });
+  return found == all.end() ? nullptr : &*found;
+}
+
+Json group_json(const HeldOut& g, const PredictionErrors* beyond, bool is_alone) {
+  Json json = {{"group", g.group}, {"ok", g.ok}, {"failure", g.failure}};
+  if (!g.ok) return json;
+  json["peak_motion"] = known(g.peak_motion);
+  json["position_error"] = g.readings > 0 ? known(g.position_error) : Json();
+  json["position_noise"] = g.readings > 0 ? known(g.position_noise) : Json();
+  json["peak_force"] = g.forces > 0 ? known(g.peak_force) : Json();
+  json["force_error"] = g.forces > 0 ? known(g.force_error) : Json();
+  json["force_noise"] = g.forces > 0 ? known(g.force_noise) : Json();
+  json["position_beyond_noise"] = beyond ? known(beyond->position) : Json();
+  json["force_beyond_noise"] = beyond ? known(beyond->force) : Json();
+  json["poor"] = beyond && beyond->is_poor(is_alone ? 1 : kSingle);
+  return json;
+}
+
+}  // namespace
+
+Json cases_json(const DataSet& data, const FitOutcome& outcome) {
+  const std::vector<CaseFigures> figures = case_figures(data, outcome);
+  Json list = Json::array();
+  for (size_t c = 0; c < figures.size(); ++c) {
+    const CaseFigures& f = figures[c];
+    Json load = measure(f.load), response = measure(f.response);
+    load["value"] = f.load_value;
+    response["measured"] = value_or_null(f.values.measured);
+    response["deviation"] = f.values.sigma;
+    response["fitted"] = value_or_null(f.values.fitted);
+    response["on_mesh"] = value_or_null(f.values.on_mesh);
+    response["held_out"] = value_or_null(f.values.held_out);
+    list.push_back({{"name", data.experiment.cases[c].name},
+                    {"group", data.experiment.cases[c].group},
+                    {"left_out", outcome.cases[c].left_out},
+                    {"load", load},
+                    {"response", response},
+                    {"stiffness_unit", stiffness_unit(f)},
+                    {"rms", value_or_null(f.rms)},
+                    {"readings", f.readings}});
+  }
+  return list;
+}
+
+Json histogram_json(const DataSet& data, const FitOutcome& outcome) {
+  constexpr double kLimit = 4;
+  constexpr int kBins = 32;
+  std::vector<int> counts(kBins, 0);
+  for (size_t c = 0; c < outcome.cases.size(); ++c)
+    for_each_residual(data.experiment.cases[c], outcome.cases[c], [&](double r) {
+      if (std::isfinite(r))
+        ++counts[static_cast<size_t>(std::clamp(std::floor((r + kLimit) / (2 * kLimit) * kBins), 0.0, kBins - 1.0))];
+    });
+  return {{"limit", kLimit}, {"counts", counts}};
+}
+
+Json held_out_json(const DataSet& data, const FitOutcome& outcome) {
+  const std::vector<HeldOut> predicted = predicted_groups(data, outcome);
+  if (predicted.empty()) return {};
+  const std::vector<PredictionErrors> errors = beyond_noise(predicted);
+  Json groups = Json::array();
+  double motion = 0, force = 0;
+  for (const HeldOut& g : predicted) {
+    groups.push_back(group_json(g, errors_of(errors, g.group), errors.size() == 1));
+    if (g.ok) motion = std::max(motion, g.peak_motion), force = std::max(force, g.peak_force);
+  }
+  const PredictionErrors all = all_groups(errors);
+  return {{"groups", groups},
+          {"position", known(all.position)},
+          {"force", known(all.force)},
+          {"largest_motion", known(motion)},
+          {"largest_force", known(force)},
+          {"poor", all.is_poor(1)},
+          {"limits", {{"position", kPoorPosition}, {"force", kPoorForce}, {"single", kSingle}}}};
+}
+
+Json comparison_json(const FitOutcome& outcome, const FitFigures& figures) {
+  Json list = Json::array();
+  const auto add = [&](const std::string& how, const Json& models) {
+    if (!models.empty()) list.push_back({{"how", how}, {"models", models}});
+  };
+  const auto model = [](const std::string& name, const PredictionErrors& errors) {
+    return Json({{"model", name}, {"position", known(errors.position)}, {"force", known(errors.force)}});
+  };
+  const auto all_of = [](const CrossValidation& v) { return all_groups(beyond_noise(v.groups)); };
+  Json validated = Json::array();
+  if (outcome.held_out && !outcome.held_out->groups.empty()) {
+    const bool is_field = outcome.held_out_of_one_value.has_value();
+    validated.push_back(model(is_field ? "this fit" : "this fit (one value per parameter)", all_of(*outcome.held_out)));
+    if (is_field) validated.push_back(model("one value per parameter", all_of(*outcome.held_out_of_one_value)));
+  }
+  add("cross-validation", validated);
+  Json predicted = Json::array();
+  for (const Prediction& p : figures.predictions)
+    if (p.held_out.ok)
+      predicted.push_back(model(p.method == "fit" ? "this fit" : p.method, all_groups(beyond_noise({p.held_out}))));
+  add("left out", predicted);
+  return list;
+}
+
+}  // namespace aspic::cli
