@@ -57,14 +57,14 @@ TEST_F(StatedErrors, LayersCountAsStated) {
   EXPECT_EQ(data.experiment.cases[1].layer_sigma, 0.2);
   ASSERT_EQ(data.experiment.errors.size(), 1u);
   EXPECT_EQ(data.experiment.errors[0].kind, ErrorKind::layer);
-  EXPECT_THAT(refusal("", "stiffness_deviation = 0.2\n"), HasSubstr("capture.toml:8: stiffness_deviation needs"));
+  EXPECT_THAT(refusal("", "stiffness_deviation = 0.2\n"), HasSubstr("capture.toml:8:23: stiffness_deviation needs"));
 }
 
 TEST_F(StatedErrors, GravityOfTheScanIsThatOfCases) {
   const DataSet data = read("mesh_gravity = [0, 0, -9.81]");
   ASSERT_TRUE(data.experiment.scan_gravity);
   EXPECT_EQ(data.experiment.cases[0].gravity[2], -9.81);
-  EXPECT_THAT(refusal("mesh_gravity = [0, 0, 0]"), HasSubstr("capture.toml:5: mesh_gravity = [0, 0, 0]"));
+  EXPECT_THAT(refusal("mesh_gravity = [0, 0, 0]"), HasSubstr("capture.toml:5:16: mesh_gravity = [0, 0, 0]"));
   EXPECT_THAT(refusal("mesh_gravity = [0, 0, 1]", "contact = \"bonded\"\n"), HasSubstr("use contact = \"sliding\""));
   EXPECT_THAT(refusal("mesh_gravity = [0, 0, 1]", "[[grip]]\nwhere = \"z > 0.05\"\n"), HasSubstr("give the unloaded"));
 }
