@@ -4,7 +4,9 @@
 
 #include "base/parallel.h"
 #include "fit/common_errors.h"
+#include "fit/fit.h"
 #include "fit/indented_block_test.h"
+#include "fit/regularizer.h"
 #include "math/vectors.h"
 
 namespace aspic {
