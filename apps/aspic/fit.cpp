@@ -22,6 +22,7 @@
 #include "capture/fit_run.h"
 #include "capture/fit_verdict.h"
 #include "capture/histories.h"
+#include "capture/law_choice.h"
 #include "fit/quantity.h"
 #include "io/atomic_file.h"
 #include "material/registry.h"
@@ -62,7 +63,8 @@ std::string origins_of(const FitArguments& arguments, const fs::path& options_fi
   };
   const std::string given = "command line", fallback = "default";
   add("model", arguments.model == FitPlan().model ? fallback : given);
-  for (const Quantity& quantity : material_quantities(material_info(arguments.model).name)) {
+  const std::string law = arguments.model == kAutoLaw ? FitPlan().model : arguments.model;  // with E and nu
+  for (const Quantity& quantity : material_quantities(law)) {
     const auto names = [&](const std::string& option) { return option.starts_with(quantity.name + "="); };
     const bool is_given = std::any_of(arguments.parameters.begin(), arguments.parameters.end(), names) ||
                           std::any_of(arguments.known.begin(), arguments.known.end(), names);

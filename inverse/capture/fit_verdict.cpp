@@ -9,7 +9,7 @@ namespace aspic {
 namespace {
 
 constexpr double kDisagree = 1.5;  // ratio of the stiffnesses implied by two groups
-constexpr double kCoarseMesh = 1;      // relative error of a force on the mesh: a factor of 2
+constexpr double kCoarseMesh = 1;  // relative error of a force on the mesh: a factor of 2
 constexpr double kWorse = 1.1;     // ratio of held-out errors, field to one value
 
 // Compares the readings of a group with the predictions.

@@ -48,7 +48,7 @@ class SimulatedData {
   std::vector<std::string> left_out_;
   Experiment measured_, simulated_, predicted_, fitted_;
   std::vector<CaseWeights> weights_;
-  std::vector<MeshError> errors_;  // per case; empty: unknown
+  std::vector<MeshError> errors_;                     // per case; empty: unknown
   std::vector<std::vector<CommonError>> law_errors_;  // per case; empty: unknown
 };
 

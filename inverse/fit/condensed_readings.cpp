@@ -166,7 +166,7 @@ void replace_markers(std::vector<MarkerReading>& positions, const std::vector<Su
 // Estimates of systematic errors need each reading.
 bool has_dense_readings(const Experiment& experiment) {
   return experiment.errors.empty() && std::any_of(experiment.cases.begin(), experiment.cases.end(),
-                     [](const LoadCase& load) { return load.positions.size() >= kMany; });
+                                                  [](const LoadCase& load) { return load.positions.size() >= kMany; });
 }
 
 Experiment condensed(const Experiment& experiment) {

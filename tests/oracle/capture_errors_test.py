@@ -190,10 +190,12 @@ class Fits(unittest.TestCase):
         truth, vertices, tets = scanned()
         regions = np.ones(len(tets), int)
         disturb = lambda folder: truths.write_gmsh(folder / "rest.msh", vertices, tets, regions)
-        figures = self.fit(truth, "mesh_gravity = [0, 0, 9.81]", disturb=disturb)
+        law = "law_errors = false\n"  # which the few readings of two weighings do not separate from E
+        figures = self.fit(truth, "mesh_gravity = [0, 0, 9.81]", law, disturb)
         self.assertLess(abs(self.young(figures)["value"] / 5e3 - 1), 0.02)
-        without = self.fit(truth, disturb=disturb)
-        self.assertGreater(abs(self.young(without)["value"] / 5e3 - 1), 0.1)
+        without = self.fit(truth, options=law, disturb=disturb)
+        self.assertGreater(abs(self.young(without)["value"] / 5e3 - 1), 0.04)
+        self.assertLess(self.young(without)["upper"], 5e3)
 
 
 if __name__ == "__main__":
