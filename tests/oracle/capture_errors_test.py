@@ -69,19 +69,17 @@ def pressed(stiffness, young=2e4):
 
 
 def scanned():
-    """A block that hung upside down from its lower side during the scan, in two other poses."""
+    """A block that hung from its lower side during the scan, and stands in the measurement: its motion is twice the sag."""
     gravity = (0, 0, 9.81)
     solid, size, points = standing(gravity)
     held = np.repeat(solid.mesh.X[:, 2] < 1e-9, 3)
     corners, tets = truths.kuhn_box(size, (3, 3, 3))
     read = fem.Interpolation(solid.mesh, np.concatenate([corners, points]))
     scan = read(solid.solve(solid.mesh.X.ravel(), held))
-    readings = []
-    for name, g in (("stand", (0, 0, -9.81)), ("lie", (9.81, 0, 0))):
-        solid = standing(g)[0]
-        x = solid.solve(solid.mesh.X.ravel(), held)
-        columns = {"case": name, "group": name, **{"gravity_" + a: v for a, v in zip("xyz", g)}}
-        readings.append(truths.Reading(columns, read(x)[len(corners):], np.zeros(3)))
+    solid = standing()[0]
+    x = solid.solve(solid.mesh.X.ravel(), held)
+    columns = {"case": "stand", "group": "stand", "gravity_x": 0.0, "gravity_y": 0.0, "gravity_z": -9.81}
+    readings = [truths.Reading(columns, read(x)[len(corners):], np.zeros(3))]
     truth = truths.Truth("scanned", size, (3, 3, 3), scan[len(corners):], readings, 'fixed = "z < 1e-6"\n', 5e3, 0.4)
     return truth, scan[:len(corners)], tets
 
@@ -190,11 +188,10 @@ class Fits(unittest.TestCase):
         truth, vertices, tets = scanned()
         regions = np.ones(len(tets), int)
         disturb = lambda folder: truths.write_gmsh(folder / "rest.msh", vertices, tets, regions)
-        law = "law_errors = false\n"  # which the few readings of two weighings do not separate from E
-        figures = self.fit(truth, "mesh_gravity = [0, 0, 9.81]", law, disturb)
-        self.assertLess(abs(self.young(figures)["value"] / 5e3 - 1), 0.02)
-        without = self.fit(truth, options=law, disturb=disturb)
-        self.assertGreater(abs(self.young(without)["value"] / 5e3 - 1), 0.025)
+        figures = self.fit(truth, "mesh_gravity = [0, 0, 9.81]", disturb=disturb)
+        self.assertLess(abs(self.young(figures)["value"] / 5e3 - 1), 0.03)  # too soft by 2 % on tets of 13 mm
+        without = self.fit(truth, disturb=disturb)
+        self.assertLess(abs(self.young(without)["value"] / 2.5e3 - 1), 0.05)  # the weight seems to move it twice as far
 
 
 if __name__ == "__main__":
