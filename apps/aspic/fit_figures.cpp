@@ -171,6 +171,8 @@ std::string figures_json(const DataSet& data, const FitOutcome& outcome, const F
                {"values", values_of(outcome)},
                {"warnings", outcome.warnings}};
   if (!outcome.errors.empty()) json["errors"] = errors_of(outcome);
+  for (const FoundCommonError& e : outcome.common_errors)
+    json["common_errors"].push_back({{"cause", e.cause}, {"standard_deviations", e.sigmas}});
   if (outcome.plan.robust) json["outliers"] = outliers_of(outcome);
   if (outcome.uniform) json["squares_of_one_value"] = 2 * outcome.uniform->misfit;
   if (outcome.posterior && outcome.posterior->ok)

@@ -85,6 +85,12 @@ struct FitReason {
   std::optional<double> value = {}, limit = {};
 };
 
+// Estimated factor of a common error of the readings (CommonError), in standard deviations.
+struct FoundCommonError {
+  std::string cause;
+  double sigmas = 0;
+};
+
 struct FitOutcome {
   FitPlan plan;                      // completed
   FitReport report;                  // report of the last started stage
@@ -95,6 +101,7 @@ struct FitOutcome {
   std::vector<FitReason> against_field;  // why one value replaces the requested field; empty: it does not
   bool mesh_errors_settle = true;        // false: they did not converge with the material
   std::vector<EstimatedError> errors;
+  std::vector<FoundCommonError> common_errors;
   std::vector<Outlier> outliers;
   std::vector<std::string> at_bound;  // quantities: "young in 3 tets"
   double mesh_error = -1;             // error of the positions: root mean square over the largest motion; < 0: unknown

@@ -125,6 +125,12 @@ class Reasons {
           "|r|^2 is " + three_digits(squares) +
               " per reading: the model is too simple, or the standard deviations are too small",
           squares, kTooManySquares);
+    for (const FoundCommonError& error : outcome_.common_errors)
+      if (std::abs(error.sigmas) > kMissed)
+        add("unexplained",
+            "the readings need " + three_digits(std::abs(error.sigmas)) + " standard deviations of the error of " +
+                error.cause + ": the model is wrong, or the readings",
+            std::abs(error.sigmas), kMissed);
     add_poor_predictions(beyond_noise(predicted_groups(data_, outcome_)));
   }
 

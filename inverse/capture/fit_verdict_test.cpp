@@ -173,6 +173,17 @@ TEST(FitVerdict, TooManySquaresPerReadingAreNotGood) {
   EXPECT_THAT(reasons(outcome), ElementsAre("unexplained"));
 }
 
+// The error of a law can hide that a model is wrong, because it moves all readings.
+TEST(FitVerdict, ModelThatNeedsALargeErrorOfMeshOrLawIsNotGood) {
+  FitOutcome outcome = perfect();
+  outcome.common_errors = {{"the mesh", 1.5}, {"the law, by its stiffening", -3.9}};
+  EXPECT_THAT(reasons(outcome), ElementsAre());
+  outcome.common_errors[1].sigmas = -4.1;
+  EXPECT_THAT(reasons(outcome), ElementsAre("unexplained"));
+  EXPECT_THAT(verdict(three_indentations(), outcome).text,
+              HasSubstr("4.1 standard deviations of the error of the law, by its stiffening"));
+}
+
 TEST(FitVerdict, PoorHeldOutPredictionsAreNotGood) {
   FitOutcome outcome = perfect();
   outcome.held_out = held_out_indentation(0.01, 1.97);

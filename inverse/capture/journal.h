@@ -38,8 +38,6 @@ class Journal : public LeastSquares {
   int nuisance_count() const override { return model_.nuisance_count(); }
   NuisancePrior nuisance_prior(int k) const override { return model_.nuisance_prior(k); }
   void nuisance(int k, std::span<double> dr) override;
-  int common_error_count() const override { return model_.common_error_count(); }
-  void common_error(int k, std::span<double> dr) const override { model_.common_error(k, dr); }
   std::vector<std::pair<int, int>> residuals_by_case() const override { return model_.residuals_by_case(); }
 
   bool is_replaying() const { return position_ < end_; }

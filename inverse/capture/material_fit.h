@@ -90,6 +90,7 @@ class MaterialFit {
   double correct_data(FitModel& model, std::span<const double> p);
   void use_corrections();
   void list_errors(WithUncertainLayers& about_fit, std::span<const double> p);
+  void list_common_errors(const WithUncertainLayers& about_fit, std::span<const double> r);
   void list_outliers();
 
   // material_fit_parts.cpp: values in parts if requested and supported by the data; otherwise those of the field

@@ -30,7 +30,8 @@ double MaterialFit::correct_data(FitModel& model, std::span<const double> p) {
   std::vector<double> r(static_cast<size_t>(model.misfit.residual_count()));
   if (!has_corrections() || !model.data().evaluate(p, r)) return 0;
   const std::vector<SystematicError>& errors = simulated_.errors();
-  const std::vector<double> values = model.with_layers->estimates(r);
+  std::vector<double> values = model.with_layers->estimates(r);
+  values.resize(errors.size());  // those of common errors follow
   double largest = 0;
   for (size_t k = 0; k < values.size(); ++k)
     largest = std::max(largest, std::abs(values[k] - errors[k].value) / errors[k].sigma);
@@ -54,12 +55,20 @@ void MaterialFit::list_errors(WithUncertainLayers& about_fit, std::span<const do
   const std::vector<NuisanceEstimate> estimates =
       nuisance_estimates(about_fit, p, posterior ? posterior->gaussian.get() : nullptr);
   outcome_.errors.clear();
-  for (size_t k = 0; k < estimates.size(); ++k) {
+  for (size_t k = 0; k < std::min(estimates.size(), simulated_.errors().size()); ++k) {
     const SystematicError& error = simulated_.errors()[k];
     const double factor = posterior ? posterior->applied_factor : 1;
     outcome_.errors.push_back({name_of(error), unit_of(error), estimates[k].value,
                                std::min(factor * estimates[k].sigma, error.sigma), error.sigma});
   }
+}
+
+void MaterialFit::list_common_errors(const WithUncertainLayers& about_fit, std::span<const double> r) {
+  outcome_.common_errors.clear();
+  const std::vector<double> all = about_fit.estimates(r);
+  const std::vector<CommonError>& errors = simulated_.fitted().cases.front().common_errors;
+  for (size_t k = 0; k < errors.size() && simulated_.errors().size() + k < all.size(); ++k)
+    outcome_.common_errors.push_back({errors[k].cause, all[simulated_.errors().size() + k]});
 }
 
 void MaterialFit::list_outliers() {

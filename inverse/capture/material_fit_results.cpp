@@ -62,6 +62,7 @@ void MaterialFit::describe(FitModel& model, std::span<const double> p) {
     outcome_.report.misfit = dot(r, r) / 2;
     if (const std::string worst = describe_worst_row(data_, plan_.left_out, misfit, r); !worst.empty())
       add_warnings({worst});
+    list_common_errors(about_fit, r);
     about_fit.errors().apply_transposed(r);
   }
   list_outliers();
@@ -83,7 +84,7 @@ void MaterialFit::describe(FitModel& model, std::span<const double> p) {
     outcome.wrench = prediction.wrench;
     for (const MarkerReading& reading : load.positions) outcome.marker_sigma.push_back(reading.sigma);
     outcome.force_sigma = simulated_.force_factor(c) * load.force_sigma;
-    outcome.torque_sigma = simulated_.force_factor(c) * load.torque_sigma;
+    outcome.torque_sigma = simulated_.torque_factor(c) * load.torque_sigma;
     if (load.force) outcome.relative_mesh_error = simulated_.relative_force_error(c);
   }
 }

@@ -89,11 +89,16 @@ double SimulatedData::mesh_error() const {
   return largest > 0 ? std::sqrt(sum / count / largest) : -1;
 }
 
+double SimulatedData::relative_force_error(size_t c) const {
+  const bool is_noise = errors_.empty() || norm(errors_[c].wrench.force) < norm(measured_.cases[c].force_sigma);
+  return is_noise ? 0 : errors_[c].relative_force_error();
+}
+
 CasePrediction SimulatedData::as_read_on_finer_mesh(size_t c, const CasePrediction& prediction) const {
   CasePrediction finer = prediction;
   if (!errors_.empty()) {
     for (size_t k = 0; k < finer.markers.size(); ++k) finer.markers[k] = finer.markers[k] + errors_[c].markers[k];
-    const Wrench error = errors_[c].for_force_on_mesh(finer.wrench.force);
+    const Wrench error = errors_[c].for_wrench_on_mesh(finer.wrench);
     finer.wrench.force = finer.wrench.force + error.force;
     finer.wrench.torque = finer.wrench.torque + error.torque;
   }

@@ -35,9 +35,10 @@ class SimulatedData {
   std::string add_law_errors(const FitPlan& plan, const std::vector<MaterialParameters>& material);
   // Error of the positions: root mean square over the largest motion; < 0: unknown.
   double mesh_error() const;
-  // Relative discretization error of the force of case c, see MeshError; 0: unknown.
-  double relative_force_error(size_t c) const { return errors_.empty() ? 0 : errors_[c].relative_force_error(); }
+  // Relative discretization error of the force of case c, see MeshError; 0: unknown, or below the noise.
+  double relative_force_error(size_t c) const;
   double force_factor(size_t c) const { return errors_.empty() ? 1 : errors_[c].force_factor(); }
+  double torque_factor(size_t c) const { return errors_.empty() ? 1 : errors_[c].torque_factor(); }
   // Readings that the instruments show of a prediction for case c, corrected to a finer mesh.
   CasePrediction as_read_on_finer_mesh(size_t c, const CasePrediction& prediction) const;
 

@@ -75,11 +75,6 @@ void WithUncertainLayers::learn() {
       errors_.add(first, std::move(n));
     }
   }
-  for (int k = 0; k < data_.common_error_count(); ++k) {
-    std::vector<double> n(static_cast<size_t>(residual_count()));
-    data_.common_error(k, n);
-    errors_.add(0, std::move(n));
-  }
   for (int k = 0; k < nuisances; ++k) add_bounded(directions[k], data_.nuisance_prior(k));
   for (int k = 0; k < nuisances; ++k)
     if (!std::isfinite(data_.nuisance_prior(k).sigma)) errors_.add_unbounded(std::move(directions[k]));

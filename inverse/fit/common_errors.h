@@ -40,7 +40,7 @@ inline constexpr double kLayerSigma = 3;  // a factor of 20
 // where L whitens the covariance I + N sigma^2 N'. An unbounded parameter is projected out.
 class WithUncertainLayers : public LeastSquares {
  public:
-  // Stores a reference to `data`, whose common errors it whitens as well. N is evaluated at the first p where r exists,
+  // Stores a reference to `data`. N is evaluated at the first p where r exists,
   // so that the problem remains one of least squares. With q_now at estimates(r), a minimum is one over p and q.
   explicit WithUncertainLayers(LeastSquares& data) : data_(data) {}
 

@@ -15,8 +15,8 @@ bool is_one_of(const Names& names, const std::string& material) {
   return std::find(std::begin(names), std::end(names), material) != std::end(names);
 }
 
-CommonError difference(const CasePrediction& from, const CasePrediction& to) {
-  CommonError error;
+CommonError difference(const std::string& cause, const CasePrediction& from, const CasePrediction& to) {
+  CommonError error{.cause = "the law, by its " + cause, .markers = {}, .wrench = {}};
   for (size_t k = 0; k < from.markers.size(); ++k) error.markers.push_back(to.markers[k] - from.markers[k]);
   error.wrench = {to.wrench.force - from.wrench.force, to.wrench.torque - from.wrench.torque};
   return error;
@@ -45,7 +45,8 @@ LawErrors law_errors(const Experiment& experiment, const std::string& material,
   if (!errors.failure.empty()) return errors;
   for (size_t c = 0; c < ours.cases.size(); ++c) {
     const CasePrediction& isochoric = is_coupled ? rival.cases[c] : ours.cases[c];
-    errors.cases.push_back({difference(ours.cases[c], rival.cases[c]), difference(isochoric, stiffer.cases[c])});
+    errors.cases.push_back({difference("coupling of shear and volume", ours.cases[c], rival.cases[c]),
+                            difference("stiffening", isochoric, stiffer.cases[c])});
   }
   return errors;
 }

@@ -28,15 +28,12 @@ class LeastSquares {
   virtual void multiply(std::span<const double> dp, std::span<double> dr) = 0;              // dr = J dp
   virtual void multiply_transposed(std::span<const double> w, std::span<double> pbar) = 0;  // pbar = J' w
 
-  // Nuisance directions: changes of r with parameters that are not fitted, such as errors of a pose or the stiffness of
-  // a layer. Residuals along them do not determine p (WithUncertainLayers). Valid as long as J.
+  // Nuisance directions: changes of r with parameters that are not fitted, such as errors of a pose, the stiffness of a
+  // layer, or the factor of an uncertain correction. Residuals along them do not determine p (WithUncertainLayers).
+  // Valid as long as J.
   virtual int nuisance_count() const { return 0; }
   virtual NuisancePrior nuisance_prior(int /*k*/) const { return {}; }
   virtual void nuisance(int /*k*/, std::span<double> /*dr*/) {}
-  // Errors of all residuals that are known but for a standard normal factor each, such as the uncertainty of a
-  // correction.
-  virtual int common_error_count() const { return 0; }
-  virtual void common_error(int /*k*/, std::span<double> /*dr*/) const {}
   // First residual and count of each part with an independent deviation from the assumption; empty: common to all.
   virtual std::vector<std::pair<int, int>> residuals_by_case() const { return {}; }
 };

@@ -246,18 +246,24 @@ struct Misfit::Impl {
   }
 
   int error_count() const { return static_cast<int>(experiment.errors.size()); }
+  int bounded_count() const { return error_count() + static_cast<int>(experiment.cases.front().common_errors.size()); }
   bool has_unknown_layers() const {
     return std::any_of(cases.begin(), cases.end(), [](const Case& c) { return c.body->has_unknown_layer(); });
   }
 
-  // dr = the derivative by error k, or by the stiffness of the unknown layers.
+  // dr = the derivative by a systematic error, by the factor of a common one, or by the stiffness of the unknown
+  // layers.
   void multiply_by_nuisance(int k, std::span<double> dr) {
     ASPIC_CHECK(is_linearized);
     for_each_case([&](Case& c) {
       const std::span<double> part = dr.subspan(c.first, c.body->residual_count());
       std::fill(part.begin(), part.end(), 0.0);
-      c.ok = k < error_count() ? c.body->multiply_by_error(experiment.errors[k], part)
-                               : !c.body->has_unknown_layer() || c.body->multiply_by_layer(part);
+      if (k < error_count())
+        c.ok = c.body->multiply_by_error(experiment.errors[k], part);
+      else if (k < bounded_count())
+        c.body->common_error(k - error_count(), part);
+      else
+        c.ok = !c.body->has_unknown_layer() || c.body->multiply_by_layer(part);
     });
     mark_unless_ok(dr);
   }
@@ -310,20 +316,13 @@ void Misfit::multiply_transposed(std::span<const double> w, std::span<double> pb
   impl_->multiply_transposed(w, pbar);
 }
 
-int Misfit::nuisance_count() const { return impl_->error_count() + (impl_->has_unknown_layers() ? 1 : 0); }
+int Misfit::nuisance_count() const { return impl_->bounded_count() + (impl_->has_unknown_layers() ? 1 : 0); }
 void Misfit::nuisance(int k, std::span<double> dr) { impl_->multiply_by_nuisance(k, dr); }
 NuisancePrior Misfit::nuisance_prior(int k) const {
-  if (k == impl_->error_count()) return {.case_sigma = kLayerSigma};
+  if (k == impl_->bounded_count()) return {.case_sigma = kLayerSigma};
+  if (k >= impl_->error_count()) return {.sigma = 1};
   const SystematicError& error = impl_->experiment.errors[k];
   return {.sigma = error.sigma, .value = error.value};
-}
-
-int Misfit::common_error_count() const {
-  return static_cast<int>(impl_->experiment.cases.front().common_errors.size());
-}
-
-void Misfit::common_error(int k, std::span<double> dr) const {
-  for (const Impl::Case& c : impl_->cases) c.body->common_error(k, dr.subspan(c.first, c.body->residual_count()));
 }
 
 std::vector<double> Misfit::state() const {

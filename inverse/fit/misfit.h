@@ -33,6 +33,7 @@ struct MarkerReading {
 
 // Errors of all readings of a case that one standard normal factor multiplies, the same in all cases.
 struct CommonError {
+  std::string cause;           // "the mesh"
   std::vector<Vec3d> markers;  // one per position [m]
   Wrench wrench;
 };
@@ -105,13 +106,12 @@ class Misfit : public LeastSquares {
   // Products that cannot be computed are NaN; see failure().
   void multiply(std::span<const double> dp, std::span<double> dr) override;
   void multiply_transposed(std::span<const double> w, std::span<double> pbar) override;
-  // The systematic errors of the experiment, and at last the logarithm of the stiffness of all layers that is unknown:
-  // scaling it with the body changes no positions, so residuals along it do not determine the stiffness of the body.
+  // The systematic errors of the experiment, its common errors, and at last the logarithm of the stiffness of all
+  // layers that is unknown: scaling it with the body changes no positions, so residuals along it do not determine the
+  // stiffness of the body.
   int nuisance_count() const override;
   NuisancePrior nuisance_prior(int k) const override;
   void nuisance(int k, std::span<double> dr) override;
-  int common_error_count() const override;
-  void common_error(int k, std::span<double> dr) const override;
   std::vector<std::pair<int, int>> residuals_by_case() const override;
 
   // Equilibria of the last successful evaluate(), case by case; empty before. A misfit with this state, evaluated and

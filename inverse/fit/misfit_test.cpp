@@ -273,14 +273,16 @@ TEST(Misfit, CommonErrorSpansAllCasesAndIsWhitened) {
   const ParameterMap map = gel.map();
   gel.measure(map, std::vector<double>(map.guess().begin(), map.guess().end()), 1);
   for (LoadCase& load : gel.experiment.cases)
-    load.common_errors = {{.markers = std::vector<Vec3d>(load.positions.size(), {{1e-4, 0, -2e-4}}), .wrench = {}}};
+    load.common_errors = {
+        {.cause = "", .markers = std::vector<Vec3d>(load.positions.size(), {{1e-4, 0, -2e-4}}), .wrench = {}}};
   gel.experiment.cases[1].common_errors[0].wrench.force = {{0, 0, 0.05}};
   Misfit misfit(gel.experiment, map);
   WithUncertainLayers whitened(misfit);
   std::vector<double> r(misfit.residual_count()), Lr = r, n = r;
   ASSERT_TRUE(misfit.evaluate(map.guess(), r) && whitened.evaluate(map.guess(), Lr));
-  ASSERT_EQ(misfit.common_error_count(), 1);
-  misfit.common_error(0, n);
+  ASSERT_EQ(misfit.nuisance_count(), 1);
+  ASSERT_TRUE(misfit.linearize());
+  misfit.nuisance(0, n);
   EXPECT_EQ(n[0], 1);   // 1e-4 of 1e-4
   EXPECT_EQ(n[2], -2);  // 2e-4 of 1e-4
   EXPECT_EQ(n[n.size() - 4], 2.5);

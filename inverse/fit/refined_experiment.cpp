@@ -131,10 +131,10 @@ class Refinement {
   std::map<std::pair<int, int>, int> middle_;
 };
 
-// Force on fine meshes from F on the mesh and on the refined one; extrapolates log |F|.
-double factor_in_limit(const Wrench& coarse, const Wrench& fine, double factor) {
-  const double on_mesh = norm(coarse.force), on_fine = norm(fine.force);
-  return on_mesh > 0 && on_fine > 0 ? std::pow(on_fine / on_mesh, factor - 1) : 1;
+// Force or torque on fine meshes from F on the mesh and on the refined one; extrapolates log |F|.
+Vec3d in_limit(const Vec3d& coarse, const Vec3d& fine, double factor) {
+  const double on_mesh = norm(coarse), on_fine = norm(fine);
+  return (on_mesh > 0 && on_fine > 0 ? std::pow(on_fine / on_mesh, factor - 1) : 1) * fine;
 }
 
 Wrench scaled(const Wrench& w, double factor) { return {factor * w.force, factor * w.torque}; }
@@ -145,6 +145,8 @@ double multiple_of(const Vec3d& known, const Vec3d& other) {
   return squares > 0 ? std::clamp(dot(known, other) / squares, 0.0, kMaxMultiple) : 1;
 }
 
+double ratio(const Vec3d& a, const Vec3d& b) { return norm(b) > 0 ? norm(a) / norm(b) : 1; }
+
 void shift(Vec3d& value, Vec3d& sigma, const Vec3d& error) {
   value = value - error;
   for (int i = 0; i < 3; ++i) sigma[i] = std::hypot(sigma[i], kUncertain * norm(error));
@@ -152,21 +154,22 @@ void shift(Vec3d& value, Vec3d& sigma, const Vec3d& error) {
 
 }  // namespace
 
-Wrench MeshError::for_force_on_mesh(const Vec3d& force) const {
-  return scaled(wrench, multiple_of(force_on_mesh, force));
+// A twist has a torque and hardly any force, so each is scaled by itself.
+Wrench MeshError::for_wrench_on_mesh(const Wrench& other) const {
+  return {multiple_of(on_mesh.force, other.force) * wrench.force,
+          multiple_of(on_mesh.torque, other.torque) * wrench.torque};
 }
 
-Wrench MeshError::for_force_in_limit(const Vec3d& force) const {
-  return scaled(wrench, multiple_of(force_on_mesh + wrench.force, force));
+Wrench MeshError::for_wrench_in_limit(const Wrench& other) const {
+  return {multiple_of(on_mesh.force + wrench.force, other.force) * wrench.force,
+          multiple_of(on_mesh.torque + wrench.torque, other.torque) * wrench.torque};
 }
 
-double MeshError::force_factor() const {
-  const double on_mesh = norm(force_on_mesh);
-  return on_mesh > 0 ? norm(force_on_mesh + wrench.force) / on_mesh : 1;
-}
+double MeshError::force_factor() const { return ratio(on_mesh.force + wrench.force, on_mesh.force); }
+double MeshError::torque_factor() const { return ratio(on_mesh.torque + wrench.torque, on_mesh.torque); }
 
 double MeshError::relative_force_error() const {
-  const double smaller = std::min(norm(force_on_mesh), norm(force_on_mesh + wrench.force));
+  const double smaller = std::min(norm(on_mesh.force), norm(on_mesh.force + wrench.force));
   return smaller > 0 ? norm(wrench.force) / smaller : 0;
 }
 
@@ -190,9 +193,9 @@ MeshErrors mesh_errors(const Experiment& experiment, const std::string& material
     MeshError& error = errors.cases.emplace_back();
     for (size_t k = 0; k < coarse.markers.size(); ++k)
       error.markers.push_back(factor * (better.markers[k] - coarse.markers[k]));
-    const Wrench limit = scaled(better.wrench, factor_in_limit(coarse.wrench, better.wrench, factor));
-    error.wrench = {limit.force - coarse.wrench.force, limit.torque - coarse.wrench.torque};
-    error.force_on_mesh = coarse.wrench.force;
+    error.wrench = {in_limit(coarse.wrench.force, better.wrench.force, factor) - coarse.wrench.force,
+                    in_limit(coarse.wrench.torque, better.wrench.torque, factor) - coarse.wrench.torque};
+    error.on_mesh = coarse.wrench;
   }
   return errors;
 }
@@ -205,10 +208,13 @@ Experiment without_mesh_errors(Experiment experiment, const MeshErrors& errors) 
     const MeshError& error = errors.cases[c];
     for (size_t k = 0; k < load.positions.size(); ++k)
       shift(load.positions[k].position, load.positions[k].sigma, error.markers[k]);
-    const Wrench own = load.force ? error.for_force_in_limit(*load.force) : error.wrench;
+    const Wrench limit{error.on_mesh.force + error.wrench.force, error.on_mesh.torque + error.wrench.torque};
+    const Wrench own =
+        error.for_wrench_in_limit({load.force.value_or(limit.force), load.torque.value_or(limit.torque)});
     if (load.force) shift(*load.force, load.force_sigma, own.force);
     if (load.torque) shift(*load.torque, load.torque_sigma, own.torque);
     CommonError& common = load.common_errors.emplace_back();
+    common.cause = "the mesh";
     for (const Vec3d& e : error.markers) common.markers.push_back(kUncertain * e);
     common.wrench = scaled(own, kUncertain);
   }

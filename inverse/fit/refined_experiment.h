@@ -20,12 +20,14 @@ Experiment refined(Experiment experiment, int times);
 struct MeshError {
   std::vector<Vec3d> markers;  // one per position [m]
   Wrench wrench;
-  Vec3d force_on_mesh{};  // predicted on the mesh of the fit [N]
+  Wrench on_mesh;  // predicted on the mesh of the fit
 
-  // Error of another force on the same body, which grows with the force.
-  Wrench for_force_on_mesh(const Vec3d& force) const;
-  Wrench for_force_in_limit(const Vec3d& force) const;
-  double force_factor() const;  // |limit force| / |force on the mesh|; 1 without a force
+  // Errors of another force and torque on the same body, which grow with them.
+  Wrench for_wrench_on_mesh(const Wrench& other) const;
+  Wrench for_wrench_in_limit(const Wrench& other) const;
+  // Sizes in the limit over those on the mesh; 1 without a force or torque.
+  double force_factor() const;
+  double torque_factor() const;
   // |error of the force| over the smaller of both forces; 0 without a force.
   double relative_force_error() const;
 };

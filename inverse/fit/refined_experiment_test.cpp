@@ -110,7 +110,7 @@ Experiment pushed(double measured) {
 
 MeshErrors errors_of_force(double on_mesh, double in_limit) {
   MeshErrors errors{{MeshError{}}, ""};
-  errors.cases[0].force_on_mesh = {{0, 0, on_mesh}};
+  errors.cases[0].on_mesh.force = {{0, 0, on_mesh}};
   errors.cases[0].wrench.force = {{0, 0, in_limit - on_mesh}};
   return errors;
 }
@@ -130,10 +130,22 @@ TEST(RefinedExperiment, CorrectionsScaleWithTheForce) {
     const LoadCase load = without_mesh_errors(pushed(measured), errors).cases[0];
     EXPECT_NEAR((*load.force)[2], 0.8 * measured, 1e-12);
     EXPECT_NEAR(load.force_sigma[2], std::hypot(0.1, 0.2 * measured / 3), 1e-12);
-    EXPECT_NEAR(errors.cases[0].for_force_on_mesh({{0, 0, 0.8 * measured}}).force[2], 0.2 * measured, 1e-12)
+    EXPECT_NEAR(errors.cases[0].for_wrench_on_mesh({{{0, 0, 0.8 * measured}}, {}}).force[2], 0.2 * measured, 1e-12)
         << "the mesh error is added to predictions again";
   }
   EXPECT_DOUBLE_EQ(errors.cases[0].relative_force_error(), 0.25);
+}
+
+// A twist: forces are round-off, and their ratios mean nothing.
+TEST(RefinedExperiment, CorrectionOfATorqueIsThatOfTheTorque) {
+  Experiment e = pushed(3e-9);
+  e.cases[0].torque = Vec3d{{0, 0, 0.5}};
+  e.cases[0].torque_sigma = {{0.01, 0.01, 0.01}};
+  MeshErrors errors = errors_of_force(1e-9, 7e-9);
+  errors.cases[0].on_mesh.torque = {{0, 0, 1.1}};
+  errors.cases[0].wrench.torque = {{0, 0, -0.1}};
+  EXPECT_NEAR((*without_mesh_errors(e, errors).cases[0].torque)[2], 0.55, 1e-12);
+  EXPECT_NEAR(errors.cases[0].torque_factor(), 1 / 1.1, 1e-12);
 }
 
 TEST(RefinedExperiment, TellsWhyNothingIsKnown) {

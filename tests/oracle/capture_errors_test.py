@@ -68,18 +68,21 @@ def pressed(stiffness, young=2e4):
     return truths.Truth("pressed", size, (6, 6, 3), markers, readings, settings, young, 0.4)
 
 
-def scanned():
-    """A block that hung from its lower side during the scan, and stands in the measurement: its motion is twice the sag."""
+def scanned(poses={"stand": (0.0, 0.0, -9.81)}):
+    """A block that hung from its lower side during the scan, and is measured in other poses: names and gravity. When it
+    stands, its motion is twice the sag."""
     gravity = (0, 0, 9.81)
     solid, size, points = standing(gravity)
     held = np.repeat(solid.mesh.X[:, 2] < 1e-9, 3)
     corners, tets = truths.kuhn_box(size, (3, 3, 3))
     read = fem.Interpolation(solid.mesh, np.concatenate([corners, points]))
     scan = read(solid.solve(solid.mesh.X.ravel(), held))
-    solid = standing()[0]
-    x = solid.solve(solid.mesh.X.ravel(), held)
-    columns = {"case": "stand", "group": "stand", "gravity_x": 0.0, "gravity_y": 0.0, "gravity_z": -9.81}
-    readings = [truths.Reading(columns, read(x)[len(corners):], np.zeros(3))]
+    readings = []
+    for name, g in poses.items():
+        solid = standing(g)[0]
+        x = solid.solve(solid.mesh.X.ravel(), held)
+        columns = {"case": name, "group": name, **{"gravity_" + a: v for a, v in zip("xyz", g)}}
+        readings.append(truths.Reading(columns, read(x)[len(corners):], np.zeros(3)))
     truth = truths.Truth("scanned", size, (3, 3, 3), scan[len(corners):], readings, 'fixed = "z < 1e-6"\n', 5e3, 0.4)
     return truth, scan[:len(corners)], tets
 
@@ -192,6 +195,12 @@ class Fits(unittest.TestCase):
         self.assertLess(abs(self.young(figures)["value"] / 5e3 - 1), 0.03)  # too soft by 2 % on tets of 13 mm
         without = self.fit(truth, disturb=disturb)
         self.assertLess(abs(self.young(without)["value"] / 2.5e3 - 1), 0.05)  # the weight seems to move it twice as far
+
+    def test_error_of_a_law_does_not_hide_a_scan_under_gravity(self):
+        truth, vertices, tets = scanned({"stand": (0.0, 0.0, -9.81), "lie": (9.81, 0.0, 0.0)})
+        disturb = lambda folder: truths.write_gmsh(folder / "rest.msh", vertices, tets, np.ones(len(tets), int))
+        for settings, is_good in (("", False), ("mesh_gravity = [0, 0, 9.81]", True)):
+            self.assertEqual(self.fit(truth, settings, disturb=disturb)["verdict"]["good"], is_good, settings)
 
 
 if __name__ == "__main__":
