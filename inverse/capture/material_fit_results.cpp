@@ -83,8 +83,8 @@ void MaterialFit::describe(FitModel& model, std::span<const double> p) {
     outcome.markers = std::move(prediction.markers);
     outcome.wrench = prediction.wrench;
     for (const MarkerReading& reading : load.positions) outcome.marker_sigma.push_back(reading.sigma);
-    outcome.force_sigma = simulated_.force_factor(c) * load.force_sigma;
-    outcome.torque_sigma = simulated_.torque_factor(c) * load.torque_sigma;
+    outcome.force_sigma = simulated_.wrench_factor(c) * load.force_sigma;
+    outcome.torque_sigma = simulated_.wrench_factor(c) * load.torque_sigma;
     if (load.force) outcome.relative_mesh_error = simulated_.relative_force_error(c);
   }
 }

@@ -57,7 +57,7 @@ std::vector<double> mesh_factors(const DataSet& data, const FitOutcome& outcome,
   }
   if (std::any_of(ends.cases.begin(), ends.cases.end(), [](const LoadCase& c) { return !c.force; })) return factors;
   const MeshErrors errors = mesh_errors(ends, outcome.plan.model, material, outcome.plan.equilibrium);
-  for (size_t h = 0; h < errors.cases.size(); ++h) factors[h] = errors.cases[h].force_factor();
+  for (size_t h = 0; h < errors.cases.size(); ++h) factors[h] = errors.cases[h].factor();
   return factors;
 }
 

@@ -37,8 +37,7 @@ class SimulatedData {
   double mesh_error() const;
   // Relative discretization error of the force of case c, see MeshError; 0: unknown, or below the noise.
   double relative_force_error(size_t c) const;
-  double force_factor(size_t c) const { return errors_.empty() ? 1 : errors_[c].force_factor(); }
-  double torque_factor(size_t c) const { return errors_.empty() ? 1 : errors_[c].torque_factor(); }
+  double wrench_factor(size_t c) const { return errors_.empty() ? 1 : errors_[c].factor(); }
   // Readings that the instruments show of a prediction for case c, corrected to a finer mesh.
   CasePrediction as_read_on_finer_mesh(size_t c, const CasePrediction& prediction) const;
 

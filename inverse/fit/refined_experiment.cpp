@@ -7,6 +7,7 @@
 
 #include "base/check.h"
 #include "fit/predictions.h"
+#include "mesh/box.h"
 #include "mesh/surface.h"
 #include "mesh/tet_nodes.h"
 #include "mesh/tet_shape.h"
@@ -131,21 +132,28 @@ class Refinement {
   std::map<std::pair<int, int>, int> middle_;
 };
 
-// Force or torque on fine meshes from F on the mesh and on the refined one; extrapolates log |F|.
-Vec3d in_limit(const Vec3d& coarse, const Vec3d& fine, double factor) {
-  const double on_mesh = norm(coarse), on_fine = norm(fine);
-  return (on_mesh > 0 && on_fine > 0 ? std::pow(on_fine / on_mesh, factor - 1) : 1) * fine;
-}
-
 Wrench scaled(const Wrench& w, double factor) { return {factor * w.force, factor * w.torque}; }
 
-// Ratio of the other force to `known` along it. An opposite force is noise and has no error.
-double multiple_of(const Vec3d& known, const Vec3d& other) {
-  const double squares = dot(known, known);
-  return squares > 0 ? std::clamp(dot(known, other) / squares, 0.0, kMaxMultiple) : 1;
+double product(const Wrench& a, const Wrench& b, double lever) {
+  return dot(a.force, b.force) + dot(a.torque, b.torque) / (lever * lever);
 }
 
-double ratio(const Vec3d& a, const Vec3d& b) { return norm(b) > 0 ? norm(a) / norm(b) : 1; }
+// Ratio of another wrench to `known` along it. An opposite one is noise and has no error.
+double multiple_of(const Wrench& known, const Wrench& other, double lever) {
+  const double squares = product(known, known, lever);
+  return squares > 0 ? std::clamp(product(known, other, lever) / squares, 0.0, kMaxMultiple) : 1;
+}
+
+double ratio(const Wrench& a, const Wrench& b, double lever) {
+  const double squares = product(b, b, lever);
+  return squares > 0 ? std::sqrt(product(a, a, lever) / squares) : 1;
+}
+
+// On fine meshes, from that on the mesh and on the refined one; extrapolates the logarithm of its size.
+Wrench in_limit(const Wrench& coarse, const Wrench& fine, double lever, double factor) {
+  const double growth = ratio(fine, coarse, lever);
+  return scaled(fine, growth > 0 ? std::pow(growth, factor - 1) : 1);
+}
 
 void shift(Vec3d& value, Vec3d& sigma, const Vec3d& error) {
   value = value - error;
@@ -154,22 +162,23 @@ void shift(Vec3d& value, Vec3d& sigma, const Vec3d& error) {
 
 }  // namespace
 
-// A twist has a torque and hardly any force, so each is scaled by itself.
+Wrench MeshError::limit() const { return {on_mesh.force + wrench.force, on_mesh.torque + wrench.torque}; }
+
 Wrench MeshError::for_wrench_on_mesh(const Wrench& other) const {
-  return {multiple_of(on_mesh.force, other.force) * wrench.force,
-          multiple_of(on_mesh.torque, other.torque) * wrench.torque};
+  return scaled(wrench, multiple_of(on_mesh, other, lever));
 }
 
-Wrench MeshError::for_wrench_in_limit(const Wrench& other) const {
-  return {multiple_of(on_mesh.force + wrench.force, other.force) * wrench.force,
-          multiple_of(on_mesh.torque + wrench.torque, other.torque) * wrench.torque};
+Wrench MeshError::for_measured(const LoadCase& load) const {
+  Wrench known = limit();
+  if (!load.force) known.force = {};
+  if (!load.torque) known.torque = {};
+  return scaled(wrench, multiple_of(known, {load.force.value_or(Vec3d{}), load.torque.value_or(Vec3d{})}, lever));
 }
 
-double MeshError::force_factor() const { return ratio(on_mesh.force + wrench.force, on_mesh.force); }
-double MeshError::torque_factor() const { return ratio(on_mesh.torque + wrench.torque, on_mesh.torque); }
+double MeshError::factor() const { return ratio(limit(), on_mesh, lever); }
 
 double MeshError::relative_force_error() const {
-  const double smaller = std::min(norm(on_mesh.force), norm(on_mesh.force + wrench.force));
+  const double smaller = std::min(norm(on_mesh.force), norm(limit().force));
   return smaller > 0 ? norm(wrench.force) / smaller : 0;
 }
 
@@ -193,8 +202,9 @@ MeshErrors mesh_errors(const Experiment& experiment, const std::string& material
     MeshError& error = errors.cases.emplace_back();
     for (size_t k = 0; k < coarse.markers.size(); ++k)
       error.markers.push_back(factor * (better.markers[k] - coarse.markers[k]));
-    error.wrench = {in_limit(coarse.wrench.force, better.wrench.force, factor) - coarse.wrench.force,
-                    in_limit(coarse.wrench.torque, better.wrench.torque, factor) - coarse.wrench.torque};
+    error.lever = size_of(experiment.mesh) / 2;
+    const Wrench limit = in_limit(coarse.wrench, better.wrench, error.lever, factor);
+    error.wrench = {limit.force - coarse.wrench.force, limit.torque - coarse.wrench.torque};
     error.on_mesh = coarse.wrench;
   }
   return errors;
@@ -208,9 +218,7 @@ Experiment without_mesh_errors(Experiment experiment, const MeshErrors& errors) 
     const MeshError& error = errors.cases[c];
     for (size_t k = 0; k < load.positions.size(); ++k)
       shift(load.positions[k].position, load.positions[k].sigma, error.markers[k]);
-    const Wrench limit{error.on_mesh.force + error.wrench.force, error.on_mesh.torque + error.wrench.torque};
-    const Wrench own =
-        error.for_wrench_in_limit({load.force.value_or(limit.force), load.torque.value_or(limit.torque)});
+    const Wrench own = error.for_measured(load);
     if (load.force) shift(*load.force, load.force_sigma, own.force);
     if (load.torque) shift(*load.torque, load.torque_sigma, own.torque);
     CommonError& common = load.common_errors.emplace_back();

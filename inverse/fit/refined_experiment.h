@@ -22,12 +22,13 @@ struct MeshError {
   Wrench wrench;
   Wrench on_mesh;  // predicted on the mesh of the fit
 
-  // Errors of another force and torque on the same body, which grow with them.
+  double lever = 1;  // [m]: sizes of wrenches are |force| and |torque| / lever, so a twist without a force has one, too
+
+  Wrench limit() const;
+  // Errors of another wrench on the same body, or of what was measured of it; they grow with it.
   Wrench for_wrench_on_mesh(const Wrench& other) const;
-  Wrench for_wrench_in_limit(const Wrench& other) const;
-  // Sizes in the limit over those on the mesh; 1 without a force or torque.
-  double force_factor() const;
-  double torque_factor() const;
+  Wrench for_measured(const LoadCase& load) const;
+  double factor() const;  // size of the limit over that on the mesh; 1 without a wrench
   // |error of the force| over the smaller of both forces; 0 without a force.
   double relative_force_error() const;
 };

@@ -137,7 +137,7 @@ TEST(RefinedExperiment, CorrectionsScaleWithTheForce) {
 }
 
 // A twist: forces are round-off, and their ratios mean nothing.
-TEST(RefinedExperiment, CorrectionOfATorqueIsThatOfTheTorque) {
+TEST(RefinedExperiment, ATwistIsScaledByItsTorque) {
   Experiment e = pushed(3e-9);
   e.cases[0].torque = Vec3d{{0, 0, 0.5}};
   e.cases[0].torque_sigma = {{0.01, 0.01, 0.01}};
@@ -145,7 +145,18 @@ TEST(RefinedExperiment, CorrectionOfATorqueIsThatOfTheTorque) {
   errors.cases[0].on_mesh.torque = {{0, 0, 1.1}};
   errors.cases[0].wrench.torque = {{0, 0, -0.1}};
   EXPECT_NEAR((*without_mesh_errors(e, errors).cases[0].torque)[2], 0.55, 1e-12);
-  EXPECT_NEAR(errors.cases[0].torque_factor(), 1 / 1.1, 1e-12);
+  EXPECT_NEAR(errors.cases[0].factor(), 1 / 1.1, 1e-12);
+}
+
+// A pull of a symmetric body: torques on the mesh are errors of the mesh.
+TEST(RefinedExperiment, ATorqueThatTheMeshAddsIsTakenOff) {
+  Experiment e = pushed(-1);
+  e.cases[0].torque = Vec3d{{-1e-5, 0, 0}};
+  MeshErrors errors = errors_of_force(-1.25, -1);
+  errors.cases[0].on_mesh.torque = {{2e-3, 0, 0}};
+  errors.cases[0].wrench.torque = {{-2e-3, 0, 0}};
+  EXPECT_NEAR((*without_mesh_errors(e, errors).cases[0].torque)[0], 2e-3, 1e-4);
+  EXPECT_NEAR(errors.cases[0].for_wrench_on_mesh({{{0, 0, -1.25}}, {{2e-3, 0, 0}}}).torque[0], -2e-3, 1e-12);
 }
 
 TEST(RefinedExperiment, TellsWhyNothingIsKnown) {
