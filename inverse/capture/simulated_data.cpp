@@ -61,7 +61,7 @@ void SimulatedData::correct(std::vector<double> errors, std::vector<CaseWeights>
 bool SimulatedData::is_too_large_for_mesh_errors() const { return mesh().tet_count() > kTooFine; }
 
 std::string SimulatedData::take_off_mesh_errors(const FitPlan& plan, const std::vector<MaterialParameters>& material) {
-  MeshErrors errors = mesh_errors(simulated_, plan.model, material, plan.equilibrium);
+  MeshErrors errors = mesh_errors(simulated_, plan.model, material, plan.equilibrium, &error_predictions_);
   if (errors.cases.empty()) return errors.failure;
   errors_ = std::move(errors.cases);
   update();
@@ -69,7 +69,7 @@ std::string SimulatedData::take_off_mesh_errors(const FitPlan& plan, const std::
 }
 
 std::string SimulatedData::add_law_errors(const FitPlan& plan, const std::vector<MaterialParameters>& material) {
-  LawErrors errors = law_errors(simulated_, plan.model, material, plan.equilibrium);
+  LawErrors errors = law_errors(simulated_, plan.model, material, plan.equilibrium, &error_predictions_);
   if (errors.cases.empty()) return errors.failure;
   law_errors_ = std::move(errors.cases);
   update();

@@ -48,6 +48,7 @@ class SimulatedData {
   std::vector<std::string> left_out_;
   Experiment measured_, simulated_, predicted_, fitted_;
   std::vector<CaseWeights> weights_;
+  ErrorPredictions error_predictions_;                // for the last material
   std::vector<MeshError> errors_;                     // per case; empty: unknown
   std::vector<std::vector<CommonError>> law_errors_;  // per case; empty: unknown
 };

@@ -2,8 +2,6 @@
 
 #include <algorithm>
 
-#include "fit/predictions.h"
-
 namespace aspic {
 namespace {
 
@@ -29,16 +27,22 @@ bool has_law_errors(const std::string& material) {
 }
 
 LawErrors law_errors(const Experiment& experiment, const std::string& material,
-                     std::span<const MaterialParameters> parameters, const EquilibriumOptions& options) {
+                     std::span<const MaterialParameters> parameters, const EquilibriumOptions& options,
+                     ErrorPredictions* last) {
   if (!has_law_errors(material)) return {};
   const std::vector<MaterialParameters> own = of_tets(experiment, parameters);
   std::vector<MaterialParameters> stiffening = own;
   for (MaterialParameters& p : stiffening) p.extra = {kStiffening};
   const bool is_coupled = is_one_of(kCoupled, material);
-  const Predictions ours = predicted(experiment, material, own, options);
-  const Predictions rival =
-      predicted(experiment, is_coupled ? "neo_hookean_isochoric" : "neo_hookean_log", own, options);
-  const Predictions stiffer = predicted(experiment, "yeoh", stiffening, options);
+  ErrorPredictions first;
+  auto& [ours, on_fine_mesh, rival, stiffer] = last ? *last : first;
+  const auto starting = [&](const Predictions& before) -> const Predictions& {
+    return before.cases.empty() ? ours : before;
+  };
+  ours = predicted(experiment, material, own, options, ours);
+  rival =
+      predicted(experiment, is_coupled ? "neo_hookean_isochoric" : "neo_hookean_log", own, options, starting(rival));
+  stiffer = predicted(experiment, "yeoh", stiffening, options, starting(stiffer));
   LawErrors errors;
   for (const Predictions* p : {&ours, &rival, &stiffer})
     if (errors.failure.empty()) errors.failure = p->failure;

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "fit/misfit.h"
+#include "fit/predictions.h"
 
 namespace aspic {
 
@@ -21,8 +21,10 @@ struct LawErrors {
   std::string failure;                          // why; empty: the law has none
 };
 
-// Requires one parameter set per tet of the material's mesh.
+// Requires one parameter set per tet of the material's mesh. Starts from the predictions for another material, which it
+// replaces.
 LawErrors law_errors(const Experiment& experiment, const std::string& material,
-                     std::span<const MaterialParameters> parameters, const EquilibriumOptions& options = {});
+                     std::span<const MaterialParameters> parameters, const EquilibriumOptions& options = {},
+                     ErrorPredictions* last = nullptr);
 
 }  // namespace aspic

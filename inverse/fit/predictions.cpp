@@ -7,7 +7,8 @@
 namespace aspic {
 
 Predictions predicted(const Experiment& given, const std::string& material,
-                      std::span<const MaterialParameters> parameters, const EquilibriumOptions& options) {
+                      std::span<const MaterialParameters> parameters, const EquilibriumOptions& options,
+                      const Predictions& start) {
   Predictions result;
   const UnloadedShape shape = unloaded(given, material, parameters, options);
   if (!shape.experiment) return {{}, shape.failure};
@@ -24,12 +25,13 @@ Predictions predicted(const Experiment& given, const std::string& material,
     std::vector<double> last;
     for (int c = begin[g]; c < begin[g + 1]; ++c) {
       LoadedBody body(experiment, experiment.cases[c], material, parameters, options);
-      if (!body.solve(parameters, last)) {
+      const bool has_start = c < static_cast<int>(start.cases.size()) && !start.cases[c].x.empty();
+      if (!body.solve(parameters, has_start ? start.cases[c].x : last)) {
         failures[c] = body.failure();
         return;
       }
       result.cases[c] = body.prediction();
-      last = std::move(result.cases[c].x);
+      last = result.cases[c].x;
     }
   });
   for (const std::string& failure : failures)

@@ -6,7 +6,6 @@
 #include <utility>
 
 #include "base/check.h"
-#include "fit/predictions.h"
 #include "mesh/box.h"
 #include "mesh/surface.h"
 #include "mesh/tet_nodes.h"
@@ -149,6 +148,22 @@ double ratio(const Wrench& a, const Wrench& b, double lever) {
   return squares > 0 ? std::sqrt(product(a, a, lever) / squares) : 1;
 }
 
+Vec3d interpolated_motion(const TetMesh& mesh, int tet, const std::array<double, 4>& l, std::span<const double> x) {
+  const TetNodes nodes = nodes_of(mesh, tet);
+  const std::array<double, 10> quadratic = quadratic_shapes(l);
+  Vec3d u{};
+  for (int n = 0; n < nodes.count; ++n)
+    for (int i = 0; i < 3; ++i)
+      u[i] += (nodes.count == 4 ? l[n] : quadratic[n]) * (x[3 * nodes[n] + i] - mesh.rest[nodes[n]][i]);
+  return u;
+}
+
+Predictions prolonged(const TetMesh& mesh, const TetMesh& fine, Predictions predictions) {
+  for (CasePrediction& c : predictions.cases)
+    if (!c.x.empty()) c.x = prolonged(mesh, fine, c.x);
+  return predictions;
+}
+
 // On fine meshes, from that on the mesh and on the refined one; extrapolates the logarithm of its size.
 Wrench in_limit(const Wrench& coarse, const Wrench& fine, double lever, double factor) {
   const double growth = ratio(fine, coarse, lever);
@@ -182,6 +197,20 @@ double MeshError::relative_force_error() const {
   return smaller > 0 ? norm(wrench.force) / smaller : 0;
 }
 
+std::vector<double> prolonged(const TetMesh& mesh, const TetMesh& fine, std::span<const double> x) {
+  std::vector<double> result(x.begin(), x.end());
+  result.resize(3 * fine.rest.size());
+  for (int part = 0; part < fine.tet_count(); ++part) {
+    const int t = part / 8;
+    for (const int v : nodes_of(fine, part))
+      if (v >= mesh.vertex_count()) {
+        const Vec3d X = fine.rest[v], u = interpolated_motion(mesh, t, barycentric(corners(mesh, t), X), x);
+        for (int i = 0; i < 3; ++i) result[3 * v + i] = X[i] + u[i];
+      }
+  }
+  return result;
+}
+
 Experiment refined(const Experiment& experiment) { return Refinement(experiment).take(); }
 
 Experiment refined(Experiment experiment, int times) {
@@ -190,10 +219,17 @@ Experiment refined(Experiment experiment, int times) {
 }
 
 MeshErrors mesh_errors(const Experiment& experiment, const std::string& material,
-                       std::span<const MaterialParameters> parameters, const EquilibriumOptions& options) {
+                       std::span<const MaterialParameters> parameters, const EquilibriumOptions& options,
+                       ErrorPredictions* last) {
   const Experiment fine = refined(experiment);
-  const auto on = [&](const Experiment& e) { return predicted(e, material, of_tets(e, parameters), options); };
-  const Predictions on_mesh = on(experiment), on_fine = on(fine);
+  const auto on = [&](const Experiment& e, const Predictions& start) {
+    return predicted(e, material, of_tets(e, parameters), options, start);
+  };
+  ErrorPredictions first;
+  Predictions& on_mesh = (last ? *last : first).on_mesh;
+  Predictions& on_fine = (last ? *last : first).on_fine_mesh;
+  on_mesh = on(experiment, on_mesh);
+  on_fine = on(fine, on_fine.cases.empty() ? prolonged(experiment.mesh, fine.mesh, on_mesh) : on_fine);
   MeshErrors errors{{}, on_mesh.failure.empty() ? on_fine.failure : on_mesh.failure};
   if (!errors.failure.empty()) return errors;
   const double factor = richardson(experiment.mesh);

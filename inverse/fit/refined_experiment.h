@@ -8,12 +8,14 @@
 #include <string>
 #include <vector>
 
-#include "fit/misfit.h"
+#include "fit/predictions.h"
 
 namespace aspic {
 
 // Splits every tet in eight, with the octahedron cut along its shortest diagonal.
 Experiment refined(const Experiment& experiment);
+// Positions x of a mesh, interpolated at the vertices of the refined one.
+std::vector<double> prolonged(const TetMesh& mesh, const TetMesh& fine, std::span<const double> x);
 Experiment refined(Experiment experiment, int times);
 
 // Limit of fine meshes minus mesh of the fit, for the predictions of a case.
@@ -38,9 +40,11 @@ struct MeshErrors {
   std::string failure;           // why
 };
 
-// Requires one parameter set per tet of the material's mesh.
+// Requires one parameter set per tet of the material's mesh. Starts from the predictions for another material, which it
+// replaces.
 MeshErrors mesh_errors(const Experiment& experiment, const std::string& material,
-                       std::span<const MaterialParameters> parameters, const EquilibriumOptions& options = {});
+                       std::span<const MaterialParameters> parameters, const EquilibriumOptions& options = {},
+                       ErrorPredictions* last = nullptr);
 
 // Corrects the measurements to a body like the mesh; standard deviations grow by kUncertain of the error, and so does
 // an error with one factor for all readings, because the error of a mesh is systematic.

@@ -8,19 +8,26 @@
 #include "fit/load_case.h"
 #include "mesh/generators.h"
 #include "mesh/surface.h"
+#include "mesh/tet_nodes.h"
 
 namespace aspic {
 namespace {
 
 constexpr double kColumnYoung = 1e4;
 
+std::vector<int> at_bottom(const TetMesh& mesh) {
+  std::vector<int> result;
+  for (int v = 0; v < mesh.vertex_count(); ++v)
+    if (mesh.rest[v][2] < 1e-9) result.push_back(v);
+  return result;
+}
+
 // A column that stands on z = 0 and sags; markers on its top and sides.
 Experiment column(int cells) {
   Experiment e;
   e.mesh = make_box({{0, 0, 0}}, {{0.1, 0.1, 0.2}}, {cells, cells, 2 * cells});
   e.density.assign(e.mesh.tets.size(), 1000);
-  for (int v = 0; v < e.mesh.vertex_count(); ++v)
-    if (e.mesh.rest[v][2] < 1e-9) e.fixed.push_back(v);
+  e.fixed = at_bottom(e.mesh);
   LoadCase load{.name = "weight", .group = "weight", .gravity = {{1, 0, -9.81}}};
   for (const Triangle& t : boundary_triangles(e.mesh, 0, e.mesh.tet_count())) {
     if (e.mesh.rest[t[0]][2] < 0.19 || e.mesh.rest[t[1]][2] < 0.19 || e.mesh.rest[t[2]][2] < 0.19) continue;
@@ -87,6 +94,44 @@ TEST(RefinedExperiment, TellsWhatAFarFinerMeshWouldSay) {
   const double difference = sag(column(12)) - sag(coarse);
   EXPECT_LT(difference, 0) << "linear tets are too stiff";
   EXPECT_NEAR(mean, 16.0 / 15 * difference, 0.15 * std::abs(difference));
+}
+
+int iterations(const Predictions& predictions) { return predictions.cases.at(0).solve.iterations; }
+
+TEST(RefinedExperiment, PredictionsStartFromTheLastOnes) {
+  for (const bool is_quadratic : {false, true}) {
+    Experiment coarse = column(2);
+    if (is_quadratic) coarse.mesh = raise_order(coarse.mesh);
+    coarse.cases[0].gravity = {{2, 0, -2}};
+    coarse.fixed = at_bottom(coarse.mesh);
+    const Experiment fine = refined(coarse);
+    const auto of = [&](const Experiment& e) { return of_tets(e, material(coarse)); };
+    const Predictions cold = predicted(fine, "neo_hookean", of(fine));
+    ErrorPredictions last;
+    ASSERT_EQ(mesh_errors(coarse, "neo_hookean", material(coarse), {}, &last).failure, "");
+    EXPECT_LT(iterations(last.on_fine_mesh), iterations(cold)) << "starts from the interpolated equilibrium";
+    const Vec3d first = last.on_fine_mesh.cases[0].markers[0];
+    EXPECT_NEAR(norm(first - cold.cases[0].markers[0]), 0, 1e-7 * norm(first));
+    ASSERT_EQ(mesh_errors(coarse, "neo_hookean", material(coarse), {}, &last).failure, "");
+    EXPECT_LE(iterations(last.on_mesh), 1);
+    EXPECT_LE(iterations(last.on_fine_mesh), 1);
+    EXPECT_NEAR(norm(last.on_fine_mesh.cases[0].markers[0] - first), 0, 1e-7 * norm(first));
+  }
+}
+
+TEST(RefinedExperiment, PositionsOfQuadraticTetsAreInterpolatedByTheirShapeFunctions) {
+  const TetMesh coarse = raise_order(column(1).mesh);
+  Experiment e;
+  e.mesh = coarse;
+  const TetMesh fine = refined(e).mesh;
+  const auto moved = [](const TetMesh& mesh) {
+    std::vector<double> x;
+    for (const Vec3d& X : mesh.rest) x.insert(x.end(), {X[0] + X[1] * X[2], X[1] - X[0] * X[0], 2 * X[2]});
+    return x;
+  };
+  const std::vector<double> x = prolonged(coarse, fine, moved(coarse)), exact = moved(fine);
+  ASSERT_EQ(x.size(), exact.size());
+  for (size_t i = 0; i < x.size(); ++i) EXPECT_NEAR(x[i], exact[i], 1e-14);
 }
 
 TEST(RefinedExperiment, ErrorsCorrectMeasurementsAndIncreaseTheirSigma) {
