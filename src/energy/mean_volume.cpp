@@ -16,9 +16,9 @@
 namespace aspic {
 namespace {
 
-constexpr double kPointwise = 1.5;           // largest la_pt / mu
-constexpr double kNearlyIncompressible = 9;  // la / mu at Poisson's ratio 0.45
-constexpr double kCompliance = 0.6;          // g' A^-1 g times modulus / volume, measured on Delaunay meshes
+constexpr double kPointwise = 1.5;   // largest la_pt / mu
+constexpr double kCompliance = 0.6;  // g' A^-1 g times modulus / volume, measured on Delaunay meshes
+constexpr double kStiff = 1.8;       // smallest K times compliance of stiff rows, at Poisson's ratio 0.45
 
 double pointwise_lambda(const Lame& lame) { return std::min(lame.lambda, kPointwise * lame.mu); }
 bool is_split(const Lame& lame) { return lame.lambda > kPointwise * lame.mu; }
@@ -163,7 +163,8 @@ class VolumeTerm : public TetTerm<GivenPressure, Energy, QuadraticTetBatch> {
         row.compliance = V * compliance_[i][l] / scale;
       }
     }
-    rows.erase(std::remove_if(rows.begin() + begin, rows.end(), [](const StiffRow& row) { return !(row.weight > 0); }),
+    rows.erase(std::remove_if(rows.begin() + begin, rows.end(),
+                              [](const StiffRow& row) { return !(row.weight * row.compliance > (1 + 1e-9) * kStiff); }),
                rows.end());
   }
 
@@ -423,9 +424,8 @@ class MeanVolume : public TetElasticity, public StiffEnergy {
 
 bool needs_mean_volume(const TetMesh& mesh, int first, std::span<const MaterialParameters> parameters) {
   if (parameters.empty() || !is_quadratic(mesh, first)) return false;
-  return std::any_of(parameters.begin(), parameters.end(), [](const MaterialParameters& p) {
-    return p.lame.lambda > kNearlyIncompressible * (1 + 1e-9) * p.lame.mu;
-  });
+  return std::any_of(parameters.begin(), parameters.end(),
+                     [](const MaterialParameters& p) { return p.lame.lambda > (1 + 1e-9) * kPointwise * p.lame.mu; });
 }
 
 std::unique_ptr<TetElasticity> make_mean_volume(const ElasticityMaker& make_shape, const TetMesh& mesh, int first,

@@ -2,7 +2,7 @@
 // avoids locking [Simo, Taylor and Pister 1985; weakly penalized as in Hadjicharalambous et al. 2014]:
 //   V = sum over tets of int psi(F; mu, la_pt) dX + volume (la - la_pt)/2 (mean J - 1)^2,   la_pt = min(la, 3/2 mu)
 // The moduli of small strains are those of psi(F; mu, la). The remaining pointwise part, with Poisson's ratio 0.3, is
-// needed: the mean leaves three modes per tet without energy.
+// needed: the mean leaves three modes per tet without energy. The energy is continuous in Poisson's ratio.
 #pragma once
 #include <memory>
 #include <span>
@@ -11,7 +11,7 @@
 
 namespace aspic {
 
-// Returns whether a term of these tets uses the mean volume: quadratic tets with a Poisson's ratio above 0.45.
+// Returns whether a term of these tets uses the mean volume: quadratic tets with a Poisson's ratio above 0.3.
 bool needs_mean_volume(const TetMesh& mesh, int first, std::span<const MaterialParameters> parameters);
 
 // `make_shape`: makes the first term for other parameters.

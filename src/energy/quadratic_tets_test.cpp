@@ -334,6 +334,24 @@ TEST(MeanVolume, AddsBulkEnergyOfMeanJ) {
   EXPECT_NEAR(V->value(x), expected, 1e-12 * expected);
 }
 
+// A fit that crosses the threshold sees no jump of forces.
+TEST(MeanVolume, IsContinuousInPoissonsRatio) {
+  const std::vector<double> x = positions(small(), kAffine, 0.02);
+  const auto gradient = [&](double poisson) {
+    const std::vector<MaterialParameters> one(small().tets.size(), {lame_from_young_poisson(1e5, poisson), {}});
+    const auto V = make_tet_elasticity("neo_hookean", small(), 0, one);
+    std::vector<double> g(x.size(), 0.0);
+    V->add_gradient(x, 1, g);
+    return std::pair(V->value(x), g);
+  };
+  for (const double poisson : {0.3, 0.45}) {
+    const auto [below, below_g] = gradient(poisson - 1e-9);
+    const auto [above, above_g] = gradient(poisson + 1e-9);
+    EXPECT_NEAR(above / below, 1, 1e-6) << poisson;
+    for (size_t i = 0; i < x.size(); ++i) EXPECT_NEAR(above_g[i], below_g[i], 1e-6 * max_abs(below_g)) << poisson;
+  }
+}
+
 TEST(MeanVolume, StiffRowsArePartOfHessian) {
   const auto V =
       make_tet_elasticity("neo_hookean", small(), 0, nearly_incompressible(small(), material_info("neo_hookean")));
