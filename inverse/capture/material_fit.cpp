@@ -13,7 +13,7 @@ namespace aspic {
 namespace {
 
 constexpr int kPasses = 8;
-constexpr double kSettled = 1e-3;  // relative change of a value
+constexpr double kSettled = 0.02;  // relative change of a value; errors of the mesh change as much
 constexpr double kSettledCorrection = 0.02;
 constexpr double kSettledField = 0.03;  // root mean square of more than kFewValues, whose noise is larger
 constexpr size_t kFewValues = 50;
