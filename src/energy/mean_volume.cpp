@@ -29,28 +29,22 @@ std::vector<MaterialParameters> pointwise(std::span<const MaterialParameters> pa
   return result;
 }
 
-// psi(F) = p J: the work of a given pressure.
-struct GivenPressure {
+// psi = p J: the work of a given pressure.
+struct GivenPressureLaw {
   template <class T>
   struct Params {
     T p;  // [Pa]
   };
   template <class T>
-  static T psi(const Mat3<T>& F, const Params<T>& given) {
-    return given.p * determinant(F);
+  static T energy(const T&, const T& J, const Params<T>& given) {
+    return given.p * J;
   }
   template <class T>
-  static Mat3<T> pk1(const Mat3<T>& F, const Params<T>& given) {
-    return given.p * cofactor(F);
-  }
-  template <class T>
-  static Mat9<T> hessian(const Mat3<T>& F, const Params<T>& given) {
-    Mat9<T> H;
-    std::fill(std::begin(H.a), std::end(H.a), T(0.0));
-    add_determinant_hessian(F, given.p, H);
-    return H;
+  static LawDerivativesLinearInI1<T> derivatives(const T&, const T&, const Params<T>& given) {
+    return {T(0.0), given.p, T(0.0)};
   }
 };
+using GivenPressure = FromInvariants<GivenPressureLaw>;
 
 using Points = QuadraticTetBatch::Points;
 constexpr int kPoints = QuadraticTetBatch::kPoints;
