@@ -61,6 +61,13 @@ Json cases_json(const DataSet& data, const FitOutcome& outcome) {
   return list;
 }
 
+Json groups_json(const DataSet& data, const FitOutcome& outcome) {
+  Json list = Json::array();
+  for (const GroupError& e : group_errors(data, outcome))
+    list.push_back({{"group", e.group}, {"readings", e.readings}, {"standard_deviations", e.sigmas}});
+  return list;
+}
+
 Json histogram_json(const DataSet& data, const FitOutcome& outcome) {
   constexpr double kLimit = 4;
   constexpr int kBins = 32;
