@@ -28,7 +28,8 @@ export function outlierTable({ outliers }: Figures): HTMLElement | null {
 }
 
 function lawValues(law: LawFigures): string {
-  const all = Object.entries(law.values ?? {}).flatMap(([name, places]) => Object.entries(places).map(([where, v]) => `${name}${where === "everywhere" ? "" : ` (${where})`} ${valueText(v.value, v.unit ?? "", 4)}`));
+  const byName = Object.entries(law.values ?? {}).sort(([a], [b]) => Number(b === "young") - Number(a === "young"));
+  const all = byName.flatMap(([name, places]) => Object.entries(places).map(([where, v]) => `${name}${where === "everywhere" ? "" : ` (${where})`} ${valueText(v.value, v.unit ?? "", 4)}`));
   return all.join(", ");
 }
 
