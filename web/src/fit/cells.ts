@@ -9,6 +9,11 @@ export function row(head: string, cells: readonly string[], className = ""): HTM
   return element("tr", { class: className }, element("th", { scope: "row" }, head), ...cells.map((text) => element("td", { class: "number" }, text)));
 }
 
+// A row with a failure instead of its numbers.
+export function failedRow(head: string, failure: string, columns: number, className = ""): HTMLElement {
+  return element("tr", { class: className }, element("th", { scope: "row" }, head), element("td", { class: "number", colspan: String(columns) }, failure));
+}
+
 export const valueText = (value: MaybeNumber, unit: string, digits = 3): string => (unit === "" ? short(value, digits) : withUnit(value, unit, digits));
 
 // Digits that distinguish the ends of an interval.

@@ -57,7 +57,7 @@ export interface HeldOutGroup extends Partial<GroupErrors> {
 
 export interface Comparison {
   how: string; // "cross-validation" or "left out"
-  models: ({ model: string } & Record<"position" | "force", MaybeNumber>)[];
+  models: ({ model: string; failure?: string } & Record<"position" | "force", MaybeNumber>)[];
 }
 
 export interface Reason {

@@ -116,7 +116,7 @@ function errors({ head: { figures } }: Fit): HTMLElement | null {
   );
 }
 
-const kCorrected = "“Corrected” predictions include the correction for the discretization error of the mesh and are compared with the readings; those “on the mesh” are what a simulation on this mesh shows. ";
+const kCorrected = "“Corrected” predictions include the corrections for the discretization error and for systematic errors, and are compared with the readings; those “on the mesh” are what a simulation on this mesh shows. ";
 const kBars = "Bars and ± are one standard deviation of the reading, with that of the correction. Held-out values are predicted by a fit without that group.";
 
 function loads(fit: Fit): HTMLElement {

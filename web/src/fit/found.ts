@@ -2,7 +2,7 @@
 import { element, type Child } from "../dom";
 import { Chart, type FilledCurve } from "../plots/chart";
 import { short } from "../plots/numbers";
-import { digitsOf, intervalText, percent, row, valueText } from "./cells";
+import { digitsOf, failedRow, intervalText, percent, row, valueText } from "./cells";
 import type { Figures, FoundError, HistoryFigures, LawFigures, RelaxationFigures } from "./data";
 import { numberTable } from "./numberTable";
 
@@ -35,7 +35,7 @@ function lawValues(law: LawFigures): string {
 
 export function lawTable(laws: NonNullable<Figures["laws"]>): HTMLElement {
   const rows = laws.trials.map((t) => {
-    if (!t.ok) return element("tr", {}, element("th", { scope: "row" }, t.law), element("td", { colspan: "7" }, t.verdict));
+    if (!t.ok) return failedRow(t.law, t.verdict, 7);
     const losses = [t.evidence_loss, t.held_out_loss].map((loss) => (loss === null || loss === undefined ? "–" : short(-loss, 3)));
     const cells = [short(t.squares_per_reading, 3), ...losses, percent(t.position_error), percent(t.force_error)];
     const texts = [lawValues(t), t.verdict].map((text) => element("td", { class: "prose" }, text));
@@ -60,7 +60,7 @@ export function branchTable(relaxation: RelaxationFigures): HTMLElement {
 export function trialTable(relaxation: RelaxationFigures): HTMLElement | null {
   if (relaxation.trials.length < 2) return null;
   const rows = relaxation.trials.map((t) =>
-    t.failure === "" ? row(String(t.branches), [short(t.squares_per_reading, 3), short(t.log_evidence, 4)], t.branches === relaxation.branches.length ? "total" : "") : element("tr", {}, element("th", { scope: "row" }, String(t.branches)), element("td", { colspan: "2", class: "number" }, t.failure)),
+    t.failure === "" ? row(String(t.branches), [short(t.squares_per_reading, 3), short(t.log_evidence, 4)], t.branches === relaxation.branches.length ? "total" : "") : failedRow(String(t.branches), t.failure, 2),
   );
   return numberTable(["branches", "|r|² per reading", "log evidence"], 1, element("tbody", {}, ...rows));
 }

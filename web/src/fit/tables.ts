@@ -2,7 +2,7 @@
 import { element, type Child } from "../dom";
 import { short, withUnit } from "../plots/numbers";
 import type { MaybeNumber } from "../protocol";
-import { percent, row } from "./cells";
+import { failedRow, percent, row } from "./cells";
 import { isCorrected, stiffness, type CaseFigures, type Figures, type HeldOutGroup } from "./data";
 import { numberTable } from "./numberTable";
 
@@ -32,7 +32,7 @@ export function caseTable(figures: Figures): HTMLElement {
 }
 
 function groupRow(g: HeldOutGroup, largest: { motion: MaybeNumber; force: MaybeNumber }): HTMLElement {
-  if (!g.ok) return element("tr", { class: "bad" }, element("th", { scope: "row" }, g.group), element("td", { colspan: "6" }, g.failure || "could not be predicted"));
+  if (!g.ok) return failedRow(g.group, g.failure || "could not be predicted", 6, "bad");
   const errors = (error: MaybeNumber | undefined, unit: string, peak: MaybeNumber | undefined, beyond: MaybeNumber | undefined): string[] =>
     error === null || error === undefined ? ["–", "–", "–"] : [withUnit(error, unit, 3), percent(ratio(error, peak)), percent(beyond)];
   return row(
@@ -65,7 +65,7 @@ export function comparisonTables({ comparison }: Figures): Child[] {
   const compared = comparison.filter(({ models }) => models.length > 1);
   if (compared.length === 0) return [element("p", { class: "hint" }, `No simpler model was compared. ${kLeaveOut}`)];
   return compared.flatMap(({ how, models }) => {
-    const rows = models.map(({ model, position, force }) => row(model, [percent(position), percent(force)]));
+    const rows = models.map(({ model, position, force, failure }) => (failure === undefined ? row(model, [percent(position), percent(force)]) : failedRow(model, failure, 2)));
     return [element("h3", {}, `Simpler models: ${kHow[how] ?? how}`), numberTable(["model", "position error beyond noise, of largest motion", "force error beyond noise, of largest force"], 1, element("tbody", {}, ...rows))];
   });
 }
