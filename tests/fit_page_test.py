@@ -124,6 +124,11 @@ class FitPage(CommandLine):
             self.assert_near(number(text, ""), squares, 0.01)
         for error in figures.get("common_errors", []):
             self.assertIn(f"error of {error['cause']}", checks)
+        for truth in figures["truth"]:
+            name = {"young": "Young's modulus"}.get(truth["quantity"], truth["quantity"])
+            if truth["coverage"] >= 0:
+                text = checks[f"tets whose 95 % interval of {name} contains the truth"][1][0]
+                self.assertLess(abs(number(text, "%") - 100 * truth["coverage"]), 0.6)
         self.check_values(tables)
 
     def check_values(self, tables):

@@ -4,6 +4,7 @@ import { short } from "../plots/numbers";
 import type { FitHead, Reason } from "./data";
 import { percent, row } from "./cells";
 import { numberTable } from "./numberTable";
+import { kQuantityNames } from "./trust";
 
 export interface Check {
   what: string;
@@ -49,6 +50,11 @@ function heldOutErrors({ figures: { held_out: heldOut } }: FitHead): Check[] {
   return list;
 }
 
+// Of synthetic data: the part of the tets whose interval contains the truth.
+function coverage({ figures: { truth } }: FitHead): Check[] {
+  return (truth ?? []).filter((t) => t.coverage >= 0).map((t) => ({ what: `tets whose 95 % interval of ${kQuantityNames[t.quantity] ?? t.quantity} contains the truth`, value: percent(t.coverage), limit: "", fails: false }));
+}
+
 // Reasons whose figures are in no other row, such as one held-out group.
 function others(reasons: readonly Reason[], shown: readonly Check[]): Check[] {
   const own = ["group_missed", "unexplained", ...(shown.some((c) => c.what.startsWith("held-out") && c.fails) ? ["predicts_badly"] : [])];
@@ -58,7 +64,7 @@ function others(reasons: readonly Reason[], shown: readonly Check[]): Check[] {
 }
 
 export function checksOf(head: FitHead): Check[] {
-  const list = [...squaresOf(head), ...worstGroup(head), ...commonErrors(head), ...heldOutErrors(head)];
+  const list = [...squaresOf(head), ...worstGroup(head), ...commonErrors(head), ...heldOutErrors(head), ...coverage(head)];
   return [...list, ...others(head.figures.verdict.reasons, list)];
 }
 

@@ -110,6 +110,7 @@ export interface Figures {
   residuals: number;
   squares: number; // |r|^2
   groups: { group: string; readings: string; standard_deviations: number }[];
+  truth?: { quantity: string; error: number; coverage: number }[]; // of synthetic data; coverage < 0: unknown
   errors?: FoundError[];
   common_errors?: { cause: string; standard_deviations: number }[];
   outliers?: { case: string; reading: string; weight: number }[];
