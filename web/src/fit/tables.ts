@@ -66,6 +66,6 @@ export function comparisonTables({ comparison }: Figures): Child[] {
   if (compared.length === 0) return [element("p", { class: "hint" }, `No simpler model was compared. ${kLeaveOut}`)];
   return compared.flatMap(({ how, models }) => {
     const rows = models.map(({ model, position, force, failure }) => (failure === undefined ? row(model, [percent(position), percent(force)]) : failedRow(model, failure, 2)));
-    return [element("h3", {}, `Simpler models: ${kHow[how] ?? how}`), numberTable(["model", "position error beyond noise, of largest motion", "force error beyond noise, of largest force"], 1, element("tbody", {}, ...rows))];
+    return [element("h3", {}, `Simpler models: ${kHow[how] ?? how}`), element("div", { class: "wide" }, numberTable(["model", "positions, beyond noise", "forces, beyond noise"], 1, element("tbody", {}, ...rows)))];
   });
 }
