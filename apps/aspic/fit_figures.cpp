@@ -190,6 +190,7 @@ std::string figures_json(const DataSet& data, const FitOutcome& outcome, const F
   json["left_out"] = Json::object();
   for (const Prediction& p : figures.predictions) json["left_out"][p.method] = json_of(p.held_out);
   json["limits"] = {{"missed", kMissed}, {"squares_per_reading", kTooManySquares}};
+  json["groups"] = groups_json(data, outcome);
   json["held_out"] = held_out_json(data, outcome);
   json["comparison"] = comparison_json(outcome, figures);
   json["cases"] = cases_json(data, outcome);

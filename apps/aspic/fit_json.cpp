@@ -61,6 +61,13 @@ Json cases_json(const DataSet& data, const FitOutcome& outcome) {
   return list;
 }
 
+Json groups_json(const DataSet& data, const FitOutcome& outcome) {
+  Json list = Json::array();
+  for (const GroupError& e : group_errors(data, outcome))
+    list.push_back({{"group", e.group}, {"readings", e.readings}, {"standard_deviations", e.sigmas}});
+  return list;
+}
+
 Json histogram_json(const DataSet& data, const FitOutcome& outcome) {
   constexpr double kLimit = 4;
   constexpr int kBins = 32;
@@ -110,9 +117,12 @@ Json comparison_json(const FitOutcome& outcome, const FitFigures& figures) {
   }
   add("cross-validation", validated);
   Json predicted = Json::array();
-  for (const Prediction& p : figures.predictions)
-    if (p.held_out.ok)
-      predicted.push_back(model(p.method == "fit" ? "this fit" : p.method, all_groups(beyond_noise({p.held_out}))));
+  for (const Prediction& p : figures.predictions) {
+    const PredictionErrors errors = p.held_out.ok ? all_groups(beyond_noise({p.held_out})) : PredictionErrors{};
+    Json row = model(p.method == "fit" ? "this fit" : p.method, errors);
+    if (!p.held_out.ok) row["failure"] = p.held_out.failure;
+    predicted.push_back(row);
+  }
   add("left out", predicted);
   return list;
 }

@@ -9,6 +9,8 @@ namespace aspic::cli {
 using Json = nlohmann::ordered_json;
 
 Json cases_json(const DataSet& data, const FitOutcome& outcome);
+// Largest error of each fitted group [standard deviations].
+Json groups_json(const DataSet& data, const FitOutcome& outcome);
 // Counts of residuals in equal bins of standard deviations; those beyond the limit are in the outermost bins.
 Json histogram_json(const DataSet& data, const FitOutcome& outcome);
 // Errors of each predicted group with their limits; null without any.

@@ -27,7 +27,7 @@ LawJson json_of(const LawTrial& trial) {
   if (!trial.is_fitted()) return {{"law", trial.law}, {"ok", false}, {"verdict", trial.verdict}};
   LawJson values = LawJson::object();
   for (const LawValue& v : trial.values) {
-    values[v.quantity][v.where] = {{"value", v.value}};
+    values[v.quantity][v.where] = {{"value", v.value}, {"unit", v.unit}};
     if (v.interval)
       values[v.quantity][v.where]["lower"] = v.interval->lower,
       values[v.quantity][v.where]["upper"] = v.interval->upper;

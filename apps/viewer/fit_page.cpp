@@ -7,7 +7,6 @@
 
 #include "capture/case_figures.h"
 #include "capture/fitted_values.h"
-#include "capture/result_notes.h"
 #include "fit/quantity.h"
 #include "io/base64.h"
 #include "io/gzip.h"
@@ -55,7 +54,7 @@ class FitPack {
                  {"figures", Json::parse(figures_)},
                  {"history", history()},
                  {"weights", weights()},
-                 {"notes", notes()},
+                 {"notes", data_.notes},
                  {"warnings", outcome_.warnings},
                  {"markerNames", marker_names()},
                  {"nextPoke", next_indentation()}};
@@ -120,12 +119,6 @@ class FitPack {
     pack_.add("reading.predicted", predicted);
     pack_.add("reading.onMesh", on_mesh);
     pack_.add("reading.heldOut", held_out);
-  }
-
-  std::vector<std::string> notes() const {
-    std::vector<std::string> all = result_notes(outcome_);
-    all.insert(all.end(), data_.notes.begin(), data_.notes.end());
-    return all;
   }
 
   Json counts() const {

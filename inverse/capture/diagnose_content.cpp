@@ -69,10 +69,11 @@ class ContentDiagnosis {
       groups.insert(load.group);
       for (const MarkerReading& r : load.positions) seen.insert(r.marker);
     }
-    if (numbers < kFewNumbers)
-      findings_.warning(data_.source.positions,
+    if (numbers < kFewNumbers && data_.histories.empty())
+      findings_.warning(seen.empty() ? data_.source.cases : data_.source.positions,
                         "only " + std::to_string(numbers) + " numbers were measured in " +
-                            std::to_string(experiment_.cases.size()) + " cases",
+                            std::to_string(experiment_.cases.size()) +
+                            (experiment_.cases.size() == 1 ? " case" : " cases"),
                         "enough for one value of the whole body; locating stiff parts needs more markers or cases");
     if (groups.size() == 1 && experiment_.cases.size() > 1)
       findings_.note(data_.source.cases, "all cases are of one group",

@@ -169,13 +169,12 @@ class Reasons {
   }
 
   void add_missed_groups() {
-    for (const GroupMisfit& g : fitted_groups(data_, outcome_)) {
-      const auto [what, sigmas] = g.missed_most();
-      if (sigmas > kMissed)
+    for (const GroupError& e : group_errors(data_, outcome_))
+      if (e.sigmas > kMissed)
         add("group_missed",
-            "the " + what + " of '" + g.name() + "' are missed by " + three_digits(sigmas) + " standard deviations",
-            sigmas, kMissed);
-    }
+            "the " + e.readings + " of '" + e.group + "' are missed by " + three_digits(e.sigmas) +
+                " standard deviations",
+            e.sigmas, kMissed);
   }
 
   void add_worse_than_one_value() {
@@ -235,6 +234,15 @@ HeldOut left_out_group(const DataSet& data, const FitOutcome& outcome, const std
 
 bool PredictionErrors::is_poor(double factor) const {
   return position > factor * kPoorPosition || force > factor * kPoorForce;
+}
+
+std::vector<GroupError> group_errors(const DataSet& data, const FitOutcome& outcome) {
+  std::vector<GroupError> errors;
+  for (const GroupMisfit& g : fitted_groups(data, outcome)) {
+    const auto [readings, sigmas] = g.missed_most();
+    errors.push_back({g.name(), readings, sigmas});
+  }
+  return errors;
 }
 
 std::vector<HeldOut> predicted_groups(const DataSet& data, const FitOutcome& outcome) {

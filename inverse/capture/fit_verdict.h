@@ -22,6 +22,13 @@ struct PredictionErrors {
   bool is_poor(double factor) const;  // exceeds a multiple of the limits
 };
 
+// Readings of a fitted group with the largest error, root mean square in standard deviations.
+struct GroupError {
+  std::string group, readings;  // "poke 2", "forces"
+  double sigmas = 0;
+};
+std::vector<GroupError> group_errors(const DataSet& data, const FitOutcome& outcome);
+
 // Groups that were predicted from others, by cross-validation or because the fit leaves them out.
 std::vector<HeldOut> predicted_groups(const DataSet& data, const FitOutcome& outcome);
 std::vector<PredictionErrors> beyond_noise(const std::vector<HeldOut>& groups);  // of the predicted ones

@@ -3,6 +3,8 @@ import assert from "node:assert/strict";
 import { test } from "node:test";
 import { gzipSync } from "node:zlib";
 import type { Vec3 } from "../src/protocol";
+import { intervalText } from "../src/fit/cells";
+import { checksOf } from "../src/fit/checks";
 import { bodyBelow, boundaryOf, section, type Soup, type TetMesh } from "../src/fit/cut";
 import {
   closeness,
@@ -119,6 +121,9 @@ function head(): FitHead {
     ],
     cases: [shown("a, 2", "a", 0), shown("a, 1", "a", 1), shown("b", "b", 2, true)],
     figures: {
+      residuals: 12,
+      squares: 12,
+      groups: [{ group: "a", readings: "forces", standard_deviations: 1.5 }],
       verdict: { good: true, text: "Converged.", reasons: [] },
       limits: { missed: 4, squares_per_reading: 2.25 },
       held_out: null,
@@ -191,6 +196,13 @@ test("the worst markers come first", async () => {
   assert.ok(Math.abs(one.onMesh - 0.5) < 1e-6);
 });
 
+test("outliers count with their stated deviations", async () => {
+  const what = head();
+  what.figures.outliers = [{ case: "a, 1", reading: "2", weight: 0.01 }];
+  const [one] = worstMarkers(await fitOf(what), 9, 1);
+  assert.ok(Math.abs(one.sigmas - 10 / Math.sqrt(3)) < 1e-6, "a weight of 0.01 widens the deviation tenfold");
+});
+
 test("percentiles interpolate and skip values that are not finite", () => {
   assert.equal(percentile([4, 1, NaN, 3, 2, 5], 0.5), 3);
   assert.equal(percentile([0, 10], 0.02), 0.2);
@@ -208,21 +220,42 @@ test("captions state clipped colors", () => {
 test("the program's verdict lists each reason once", () => {
   const what = head().figures;
   assert.equal(closeness(6, 12), 1);
-  assert.deepEqual(verdict(what), { text: "Converged.", kind: "good", reasons: [] });
+  assert.deepEqual(verdict(what), { title: "Good. Converged.", kind: "good", reasons: [] });
   const text = "Do not rely on this material: E is at its bound.";
   const reasons = [{ name: "at_bound", text: "E is at its bound" }, { name: "group_missed", text: "'a' is missed" }];
-  assert.deepEqual(verdict({ ...what, verdict: { good: false, text, reasons } }), { text, kind: "bad", reasons: ["'a' is missed"] });
+  assert.deepEqual(verdict({ ...what, verdict: { good: false, text, reasons } }), { title: "Do not rely on this material:", kind: "bad", reasons: ["E is at its bound", "'a' is missed"] });
+  const interrupted = [{ name: "interrupted", text: "the same command continues the fit" }];
+  assert.equal(verdict({ ...what, verdict: { good: false, text: "Interrupted.", reasons: interrupted } }).title, "Interrupted.");
 });
 
-test("the first paragraph has values, errors and a judgment", () => {
+test("the first paragraph has errors and a judgment", () => {
   const what = head();
   const good = trust(what);
-  for (const part of ["Young's modulus: 12 kPa (95 %: 11 kPa to 13 kPa)", "1.2 % of the largest motion and 3.4 % of the largest force", "Trust predictions"]) assert.ok(good.includes(part), good);
-  assert.ok(!good.includes("Poisson"), "given values are no results");
+  for (const part of ["1.2 % of the largest motion and 3.4 % of the largest force", "Trust predictions"]) assert.ok(good.includes(part), good);
   what.figures.verdict.good = false;
-  assert.ok(trust(what).includes("Do not rely"));
+  assert.ok(!trust(what).includes("Trust"));
+  what.figures.verdict.good = true;
   what.figures.comparison = [];
-  assert.ok(trust(what).includes("untested"));
+  assert.ok(trust(what).includes("untested") && !trust(what).includes("Trust"));
+});
+
+test("every figure above its limit is marked", () => {
+  const what = head();
+  const failing = (): string[] => checksOf(what).filter((c) => c.fails).map((c) => c.what);
+  assert.deepEqual(failing(), []);
+  what.figures.squares = 28;
+  what.figures.groups[0].standard_deviations = 4.1;
+  what.figures.common_errors = [{ cause: "the mesh", standard_deviations: -5 }];
+  what.figures.held_out = { groups: [], position: 0.06, force: 0.09, largest_motion: 1, largest_force: 1, poor: true, limits: { position: 0.05, force: 0.1, single: 2 } };
+  assert.deepEqual(failing(), ["|r|² per reading (expected: 1)", "group with the largest error, rms: forces of a", "error of the mesh", "held-out positions: error beyond the noise, of the largest motion"]);
+  what.figures.verdict = { good: false, text: "", reasons: [{ name: "groups_disagree", text: "'a' disagrees with 'b'", value: 2, limit: 1.5 }] };
+  assert.equal(failing().at(-1), "'a' disagrees with 'b'");
+});
+
+test("digits distinguish the ends of an interval", () => {
+  assert.equal(intervalText(20_002, 20_008, "Pa"), "20.002 kPa to 20.008 kPa");
+  assert.equal(intervalText(0.44, 0.46, ""), "0.44 to 0.46");
+  assert.equal(intervalText(null, null, "Pa"), "–");
 });
 
 test("markers have the data set's names", () => {

@@ -125,7 +125,7 @@ function paintChosen(u: uPlot, colors: Palette, x: MaybeNumber, y: MaybeNumber, 
 
 // History of all iterations in order, over all starts and weights.
 export function historyChart(head: FitHead): Chart | null {
-  if (head.history.length < 2) return null;
+  if (head.history.length < 3) return null;
   const x = head.history.map((_, i) => i + 1);
   const positive = (value: MaybeNumber): MaybeNumber => (value !== null && value > 0 ? value : null);
   const misfit = head.history.map((i) => positive(i.misfit));

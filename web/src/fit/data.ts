@@ -57,18 +57,65 @@ export interface HeldOutGroup extends Partial<GroupErrors> {
 
 export interface Comparison {
   how: string; // "cross-validation" or "left out"
-  models: ({ model: string } & Record<"position" | "force", MaybeNumber>)[];
+  models: ({ model: string; failure?: string } & Record<"position" | "force", MaybeNumber>)[];
 }
 
-interface Reason {
+export interface Reason {
   name: string;
   text: string;
   value?: number;
   limit?: number;
 }
 
+// A systematic error of the instruments, in SI units.
+export interface FoundError {
+  name: string;
+  unit: string;
+  value: number;
+  deviation?: number;
+  prior_deviation: number;
+  determined_by?: string;
+}
+
+export interface LawFigures {
+  law: string;
+  ok: boolean;
+  verdict: string;
+  values?: Record<string, Record<string, { value: number; unit?: string }>>;
+  squares_per_reading?: number;
+  position_error?: number; // < 0: none
+  force_error?: number;
+  evidence_loss?: MaybeNumber;
+  held_out_loss?: MaybeNumber;
+}
+
+type Ends = Record<"lower" | "upper", number>;
+
+export interface HistoryFigures {
+  name: string;
+  points: Record<"time" | "measured" | "sd" | "fitted", number>[];
+}
+
+export interface RelaxationFigures {
+  squares_per_reading: number;
+  readings: number;
+  scale: Ends & { value: number };
+  branches: { ratio: number; ratio_interval: Ends; relaxation_time: number; time_interval: Ends }[];
+  trials: { branches: number; failure: string; squares_per_reading: number; log_evidence: number }[];
+  curves: HistoryFigures[];
+}
+
 // figures.json as far as the page shows it
 export interface Figures {
+  residuals: number;
+  squares: number; // |r|^2
+  groups: { group: string; readings: string; standard_deviations: number }[];
+  truth?: { quantity: string; error: number; coverage: number }[]; // of synthetic data; coverage < 0: unknown
+  errors?: FoundError[];
+  common_errors?: { cause: string; standard_deviations: number }[];
+  outliers?: { case: string; reading: string; weight: number }[];
+  laws?: { chosen: string; text: string; trials: LawFigures[] };
+  relaxation?: ({ ok: true } & RelaxationFigures) | { ok: false; failure: string };
   verdict: { good: boolean; text: string; reasons: Reason[] };
   limits: { missed: number; squares_per_reading: number };
   held_out: { groups: HeldOutGroup[]; position: MaybeNumber; force: MaybeNumber; largest_motion: MaybeNumber; largest_force: MaybeNumber; poor: boolean; limits: { position: number; force: number; single: number } } | null;
@@ -163,21 +210,25 @@ export interface WorstMarker {
 export function worstMarkers(fit: Fit, count: number, onlyCase: number | null = null): WorstMarker[] {
   const [measured, predicted, onMesh] = ["measured", "predicted", "onMesh"].map((name) => fit.floats(`reading.${name}`));
   const [deviation, marker] = [fit.floats("reading.deviation"), fit.indices("reading.marker")];
+  const weights = new Map((fit.head.figures.outliers ?? []).map((o) => [`${o.case}\n${o.reading}`, o.weight]));
   const found: WorstMarker[] = [];
   fit.head.cases.forEach((c, index) => {
     if (!c.ok || (onlyCase !== null && index !== onlyCase)) return;
     for (let i = c.first; i < c.first + c.count; ++i) {
       const error = minus(vectorAt(predicted, i), vectorAt(measured, i));
-      const sigmas = Math.hypot(...error.map((e, k) => e / deviation[3 * i + k])) / Math.sqrt(3);
+      const weight = weights.get(`${c.name}\n${markerName(fit.head, marker[i])}`) ?? 1; // of the robust loss, within the deviation
+      const sigmas = Math.hypot(...error.map((e, k) => e / deviation[3 * i + k])) / Math.sqrt(3 * weight);
       found.push({ case: index, marker: marker[i], error, onMesh: length(minus(vectorAt(onMesh, i), vectorAt(measured, i))), sigmas });
     }
   });
   return found.sort((a, b) => b.sigmas - a.sigmas).slice(0, count);
 }
 
-// The program's verdict, and reasons other than the one in its text.
-export function verdict({ verdict: { text, good, reasons } }: Figures): { text: string; kind: "good" | "bad"; reasons: string[] } {
-  return { text, kind: good ? "good" : "bad", reasons: reasons.map((reason) => reason.text).filter((reason) => !text.includes(reason)) };
+// The program's verdict, and all its reasons.
+export function verdict({ verdict: { text, good, reasons } }: Figures): { title: string; kind: "good" | "bad"; reasons: string[] } {
+  const texts = reasons.map((reason) => reason.text);
+  const repeats = texts.some((reason) => text.includes(reason));
+  return { title: good ? `Good. ${text}` : repeats ? "Do not rely on this material:" : text, kind: good ? "good" : "bad", reasons: texts };
 }
 
 // Value below which a fraction of the finite values lies, by linear interpolation.

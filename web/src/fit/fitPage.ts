@@ -9,32 +9,19 @@ import type { Vec3 } from "../protocol";
 import { Theme } from "../theme";
 import { CameraRig } from "../view/cameras";
 import { histogramChart, historyChart, loadChart, weightChart } from "./charts";
-import { closeness, groupCurve, groupsOf, isCorrected, unpackFit, verdict, type Fit, type Quantity, type ValueRow } from "./data";
+import { digitsOf, intervalText, valueText } from "./cells";
+import { checkTable } from "./checks";
+import { groupCurve, groupsOf, isCorrected, unpackFit, verdict, type Fit, type Quantity, type ValueRow } from "./data";
 import { FittedBody } from "./bodyView";
+import { branchTable, errorTable, historyFigures, lawTable, outlierTable, trialTable } from "./found";
 import { Maps } from "./maps";
 import { Misfits } from "./misfits";
 import { numberTable } from "./numberTable";
-import { caseTable, comparisonTables, heldOutTable, percent } from "./tables";
-import { kQuantityNames, trust, valueText } from "./trust";
+import { caseTable, comparisonTables, heldOutTable, kLeaveOut } from "./tables";
+import { kQuantityNames, trust } from "./trust";
 
 function section(title: string, about: string, ...children: Child[]): HTMLElement {
   return element("section", { "aria-label": title }, element("h2", {}, title), about ? element("p", { class: "about" }, about) : null, ...children);
-}
-
-function card(name: string, value: string, meaning: string): HTMLElement {
-  return element("div", { class: "card", title: meaning }, element("span", { class: "card-name" }, name), element("strong", {}, value), element("span", { class: "card-meaning" }, meaning));
-}
-
-function cards({ head }: Fit): HTMLElement {
-  const { fit, counts, figures: { held_out: heldOut, limits } } = head;
-  const list = element("div", { class: "cards" });
-  list.append(card("misfit |r|² per reading", short(closeness(fit.misfit, counts.residuals), 3), `no unit; 1: consistent with the standard deviations; limit ${limits.squares_per_reading}`));
-  if (fit.uniformMisfit !== null) list.append(card("one value for all", short(closeness(fit.uniformMisfit, counts.residuals), 3), "|r|² per reading of a uniform material"));
-  const heldOutCard = (name: string, error: number, limit: number, peak: string): HTMLElement => card(name, percent(error), `error beyond the noise, of the largest ${peak}; limit ${percent(limit)}`);
-  if (heldOut && heldOut.position !== null) list.append(heldOutCard("held-out positions", heldOut.position, heldOut.limits.position, "motion"));
-  if (heldOut && heldOut.force !== null) list.append(heldOutCard("held-out forces", heldOut.force, heldOut.limits.force, "force"));
-  if (fit.informed !== null) list.append(card("determined by the data", `${short(fit.informed, 3)} of ${counts.unknowns}`, "number of parameters"));
-  return list;
 }
 
 function valueTable(quantities: readonly Quantity[]): HTMLElement {
@@ -44,8 +31,8 @@ function valueTable(quantities: readonly Quantity[]): HTMLElement {
       { class: first ? "first" : "" },
       element("th", { scope: "row" }, first ? (kQuantityNames[q.name] ?? q.name) + (q.unit === "" ? " (no unit)" : "") : ""),
       element("td", {}, r.where),
-      element("td", { class: "number" }, valueText(r.value, q.unit)),
-      element("td", { class: "number" }, r.lower === null ? "–" : `${valueText(r.lower, q.unit)} to ${valueText(r.upper, q.unit)}`),
+      element("td", { class: "number" }, valueText(r.value, q.unit, digitsOf(r.lower, r.upper))),
+      element("td", { class: "number" }, intervalText(r.lower, r.upper, q.unit)),
     );
   const rows = quantities.flatMap((q) => q.rows.map((r, i) => row(q, r, i === 0)));
   return numberTable(["quantity", "where", "value", "95 % interval"], 2, element("tbody", {}, ...rows));
@@ -77,25 +64,59 @@ function report(fit: Fit): HTMLElement {
   const body = new FittedBody({ points: fit.floats("points"), tets: fit.indices("tets") }, upward(fit));
   const rig = new CameraRig();
   rig.show(fit.head.name, body.lower, body.upper, body.up);
-  const maps = new Maps(fit, body, rig);
+  const varies = fit.head.quantities.some((q) => q.varies);
+  const map = varies || fit.head.nextPoke ? section(varies ? "Stiffness and its uncertainty" : "Next best poke", "", new Maps(fit, body, rig).element) : null;
   const misfits = new Misfits(fit, body, rig);
-  return element("main", { class: "fit" }, found(fit), section("Stiffness and its uncertainty", "", maps.element), loads(fit), predictions(fit), residualSection(fit, misfits), made(fit));
+  const sections = [result(fit), laws(fit), relaxation(fit), errors(fit), map, loads(fit), predictions(fit), residualSection(fit, misfits), made(fit)];
+  return element("main", { class: "fit" }, ...sections.filter((part) => part !== null));
 }
 
-function found(fit: Fit): HTMLElement {
+function result(fit: Fit): HTMLElement {
   const { head } = fit;
   const judged = verdict(head.figures);
   const next = head.nextPoke ? element("div", { class: "words next" }, element("h3", {}, "Next best poke"), element("p", {}, head.nextPoke.words)) : null;
+  const isAllInformed = head.fit.informed === null || head.fit.informed > head.counts.unknowns - 0.05;
+  const informed = isAllInformed ? null : element("p", { class: "hint" }, `The data determine ${short(head.fit.informed, 3)} of ${plural(head.counts.unknowns, "parameter")}; the prior determines the rest.`);
   return section(
     "Result",
-    trust(head),
-    element("div", { class: `verdict ${judged.kind}` }, element("p", {}, judged.text), judged.reasons.length > 0 ? listOf(judged.reasons) : null),
-    cards(fit),
-    element("div", { class: "columns" }, element("div", {}, valueTable(head.quantities)), element("div", {}, words("Warnings", head.warnings, "warnings"), next, words("Assumptions", head.notes, ""))),
+    "",
+    element("div", { class: `verdict ${judged.kind}` }, element("p", {}, judged.title), judged.reasons.length > 0 ? listOf(judged.reasons) : null),
+    element("p", { class: "about" }, trust(head)),
+    element("div", { class: "columns" }, element("div", { class: "wide" }, valueTable(head.quantities), informed), element("div", { class: "wide" }, checkTable(head))),
+    element("div", { class: "columns" }, words("Warnings", head.warnings, "warnings"), next, words("Assumptions", head.notes, "")),
   );
 }
 
-const kCorrected = "“Corrected” predictions include the correction for the discretization error of the mesh and are compared with the readings; those “on the mesh” are what a simulation on this mesh shows. ";
+function laws({ head: { figures } }: Fit): HTMLElement | null {
+  if (!figures.laws) return null;
+  const about = `${figures.laws.text} Log evidence and held-out log probability are relative to the best law; a difference of 3 is a ratio of 20 to 1. Held-out errors include the noise.`;
+  return section("Comparison of laws", about, element("div", { class: "wide" }, lawTable(figures.laws)));
+}
+
+function relaxation({ head: { figures: { relaxation: found } } }: Fit): HTMLElement | null {
+  if (!found) return null;
+  if (!found.ok) return section("Relaxation", `No relaxation times: ${found.failure}`);
+  return section(
+    "Relaxation",
+    `Fitted to ${found.readings} readings of the histories. The material above is the long-term response, whose stiffness these readings multiply by the factor in the last row.`,
+    element("div", { class: "columns" }, ...[branchTable(found), trialTable(found)].map((table) => table && element("div", { class: "wide" }, table))),
+    found.curves.some((c) => c.points.length > 0) ? element("div", { class: "charts" }, ...historyFigures(found)) : element("p", { class: "hint" }, "Curves are drawn for forces; these histories have positions only."),
+  );
+}
+
+function errors({ head: { figures } }: Fit): HTMLElement | null {
+  const [systematic, outliers] = [errorTable(figures), outlierTable(figures)];
+  if (!systematic && !outliers && !figures.outliers) return null;
+  return section(
+    "Errors of the measurement",
+    "",
+    ...(systematic ? [element("p", { class: "about" }, "Systematic errors that the data set states. Intervals of the material include them. Estimates beyond 3 standard deviations of their prior are marked."), element("div", { class: "wide" }, systematic)] : []),
+    ...(figures.outliers ? [element("h3", {}, "Outliers"), outliers ?? element("p", {}, "No reading is more than 5 standard deviations off.")] : []),
+    outliers ? element("p", { class: "hint" }, "Readings more than 5 standard deviations off. Weight: the part of the reading that the fit uses.") : null,
+  );
+}
+
+const kCorrected = "“Corrected” predictions include the corrections for the discretization error and for systematic errors, and are compared with the readings; those “on the mesh” are what a simulation on this mesh shows. ";
 const kBars = "Bars and ± are one standard deviation of the reading, with that of the correction. Held-out values are predicted by a fit without that group.";
 
 function loads(fit: Fit): HTMLElement {
@@ -111,22 +132,27 @@ function loads(fit: Fit): HTMLElement {
 
 function predictions({ head: { figures } }: Fit): HTMLElement {
   const table = heldOutTable(figures);
-  if (!table) return section("Predictions of unseen groups", "No group was held out, so predictions of other loads are untested (cross_validation, leave_out).");
+  if (!table) return section("Predictions of unseen groups", `No group was held out, so predictions of other loads are untested. ${kLeaveOut}`);
   return section(
     "Predictions of unseen groups",
     "Root mean square errors, also without the part that the noise of the readings explains. Percentages are relative to the largest motion and force of all groups. This is the figure to trust.",
     element("div", { class: "wide" }, table),
-    ...comparisonTables(figures.comparison),
+    ...comparisonTables(figures),
   );
 }
 
-function residualSection(fit: Fit, misfits: Misfits): HTMLElement {
-  const { limits } = fit.head.figures;
+const kFewest = 30; // residuals of a histogram
+
+function residualSection(fit: Fit, misfits: Misfits): HTMLElement | null {
+  const { limits, histogram } = fit.head.figures;
+  const hasMarkers = fit.head.cases.some((c) => c.count > 0);
+  const hasMany = histogram.counts.reduce((sum, n) => sum + n, 0) >= kFewest;
+  if (!hasMarkers && !hasMany) return null;
   return section(
     "Residuals",
     `Fitted minus measured, in standard deviations (sd). A histogram wider than the normal curve indicates a model too simple or bad readings. Groups that are missed by more than ${limits.missed} sd make the verdict bad.`,
-    element("div", { class: "charts" }, figure("All coordinates", histogramChart(fit.head.figures))),
-    misfits.element,
+    hasMany ? element("div", { class: "charts" }, figure("All coordinates", histogramChart(fit.head.figures))) : null,
+    hasMarkers ? misfits.element : null,
   );
 }
 
@@ -138,14 +164,12 @@ const kSymbols =
 function made({ head }: Fit): HTMLElement {
   const [weights, history] = [weightChart(head), historyChart(head)];
   const { fit, counts } = head;
-  const facts = `${head.model}, ${fit.method}: ${fit.words} after ${plural(fit.iterations, "iteration")} and ${counts.equilibria} equilibria; ${counts.unknowns} parameters, ${counts.residuals} readings, weight ${short(fit.weight, 3)}; ${fit.mesh}.`;
+  const facts = `${head.model}, ${fit.method}: ${fit.words} after ${plural(fit.iterations, "iteration")} and ${counts.equilibria} equilibria; ${plural(counts.unknowns, "parameter")}, ${plural(counts.residuals, "reading")}, weight ${short(fit.weight, 3)}; ${fit.mesh}.`;
   return section(
     "How it was fitted",
     facts,
-    ...formulaElements("fit_objective"),
-    element("p", { class: "about" }, kSymbols),
-    ...(fit.informed === null ? [] : formulaElements("fit_interval")),
     element("div", { class: "charts" }, weights && figure("Weight of the smoothness", weights), history && figure("Convergence", history)),
+    element("details", {}, element("summary", {}, "Formulas"), ...formulaElements("fit_objective"), element("p", { class: "about" }, kSymbols), ...(fit.informed === null ? [] : formulaElements("fit_interval"))),
   );
 }
 

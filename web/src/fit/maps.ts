@@ -74,7 +74,7 @@ export class Maps {
     this.cut = cutInFront(body.up);
     const row = element("div", { class: "map-row" });
     if (values.length > 0) row.append(this.column("Quantity", values, rig));
-    if (doubts.length > 0) row.append(this.column("Uncertainty", doubts, rig));
+    if (doubts.length > 0 && fit.head.quantities.some((q) => q.varies)) row.append(this.column("Uncertainty", doubts, rig));
     this.element.append(this.controls(), row, element("p", { class: "hint" }, "Drag to turn, shift-drag to move, ctrl-wheel to zoom, double-click to see all. Both views move together."));
     this.mark();
   }

@@ -8,7 +8,7 @@ import { makeArrows, makeBalls, type Arrow } from "./arrows";
 import { numberTable } from "./numberTable";
 import { BodyView, type FittedBody, type Note } from "./bodyView";
 import { along, length, vectorAt } from "../view/lens";
-import { markerName, worstMarkers, type Fit, type WorstMarker } from "./data";
+import { isCorrected, markerName, worstMarkers, type Fit, type WorstMarker } from "./data";
 
 const kArrows = 60;
 const kRows = 10;
@@ -19,12 +19,14 @@ export class Misfits {
   private readonly view: BodyView;
   private readonly note = element("p", { class: "hint" });
   private readonly table = element("tbody");
+  private readonly isCorrected: boolean;
 
   constructor(
     private readonly fit: Fit,
     private readonly body: FittedBody,
     rig: CameraRig,
   ) {
+    this.isCorrected = isCorrected(fit.head.figures);
     this.view = new BodyView(body, rig, "Largest marker residuals on the body");
     this.view.showWires(false);
     const cases: [string, string][] = [["all", "all cases"], ...fit.head.cases.map((c, i): [string, string] => [String(i), c.name])];
@@ -33,7 +35,7 @@ export class Misfits {
       "div",
       { class: "map-row misfits" },
       element("div", { class: "map plot-panel" }, pick.element, this.view.element, this.note),
-      numberTable(["marker", "case", "error, corrected", "error on the mesh", "error [sd]"], 2, this.table),
+      numberTable(["marker", "case", ...(this.isCorrected ? ["error, corrected", "error on the mesh"] : ["error"]), "error [sd]"], 2, this.table),
     );
     this.show(null);
   }
@@ -57,7 +59,7 @@ export class Misfits {
   }
 
   private row(w: WorstMarker): HTMLElement {
-    const cells = [markerName(this.fit.head, w.marker), this.fit.head.cases[w.case].name, withUnit(length(w.error), "m", 3), withUnit(w.onMesh, "m", 3), short(w.sigmas, 3)];
+    const cells = [markerName(this.fit.head, w.marker), this.fit.head.cases[w.case].name, withUnit(length(w.error), "m", 3), ...(this.isCorrected ? [withUnit(w.onMesh, "m", 3)] : []), short(w.sigmas, 3)];
     return element("tr", {}, ...cells.map((text, i) => element("td", { class: i > 1 ? "number" : "" }, text)));
   }
 }

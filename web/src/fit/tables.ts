@@ -2,15 +2,11 @@
 import { element, type Child } from "../dom";
 import { short, withUnit } from "../plots/numbers";
 import type { MaybeNumber } from "../protocol";
-import { isCorrected, stiffness, type CaseFigures, type Comparison, type Figures, type HeldOutGroup } from "./data";
+import { failedRow, percent, row } from "./cells";
+import { isCorrected, stiffness, type CaseFigures, type Figures, type HeldOutGroup } from "./data";
 import { numberTable } from "./numberTable";
 
-export const percent = (part: MaybeNumber | undefined): string => (part === null || part === undefined || part < 0 ? "–" : part === 0 ? "0 %" : `${short(100 * part, 2)} %`);
 const ratio = (part: MaybeNumber | undefined, whole: MaybeNumber | undefined): MaybeNumber => (part === null || part === undefined || !((whole ?? 0) > 0) ? null : part / (whole ?? 1));
-
-function row(head: string, cells: readonly string[], className = ""): HTMLElement {
-  return element("tr", { class: className }, element("th", { scope: "row" }, head), ...cells.map((text) => element("td", { class: "number" }, text)));
-}
 
 const unitOf = (unit: string): string => unit.replace("^2", "²");
 
@@ -23,7 +19,7 @@ export function caseTable(figures: Figures): HTMLElement {
     ["load", true, (c) => `${c.load.name} ${withUnit(c.load.value, unitOf(c.load.unit), 3)}`],
     ["response", true, (c) => c.response.name],
     ["measured", true, (c) => (c.response.measured === null ? "–" : `${withUnit(c.response.measured, c.response.unit, 3)} ± ${withUnit(c.response.deviation, c.response.unit, 2)}`)],
-    ["fitted, corrected", has("fitted"), response("fitted")],
+    [isCorrected(figures) ? "fitted, corrected" : "fitted", has("fitted"), response("fitted")],
     ["on the mesh", isCorrected(figures), response("on_mesh")],
     ["held out", has("held_out"), response("held_out")],
     ["stiffness, measured", cases.some((c) => c.stiffness_unit !== ""), (c) => withUnit(stiffness(c, c.response.measured), c.stiffness_unit, 3)],
@@ -36,7 +32,7 @@ export function caseTable(figures: Figures): HTMLElement {
 }
 
 function groupRow(g: HeldOutGroup, largest: { motion: MaybeNumber; force: MaybeNumber }): HTMLElement {
-  if (!g.ok) return element("tr", { class: "bad" }, element("th", { scope: "row" }, g.group), element("td", { colspan: "6" }, g.failure || "could not be predicted"));
+  if (!g.ok) return failedRow(g.group, g.failure || "could not be predicted", 6, "bad");
   const errors = (error: MaybeNumber | undefined, unit: string, peak: MaybeNumber | undefined, beyond: MaybeNumber | undefined): string[] =>
     error === null || error === undefined ? ["–", "–", "–"] : [withUnit(error, unit, 3), percent(ratio(error, peak)), percent(beyond)];
   return row(
@@ -63,9 +59,13 @@ const kHow: Record<string, string> = {
   "left out": "Groups that no model was fitted to",
 };
 
-export function comparisonTables(list: readonly Comparison[]): Child[] {
-  return list.flatMap(({ how, models }) => {
-    const rows = models.map(({ model, position, force }) => row(model, [percent(position), percent(force)]));
-    return [element("h3", {}, `Simpler models: ${kHow[how] ?? how}`), numberTable(["model", "position error beyond noise, of largest motion", "force error beyond noise, of largest force"], 1, element("tbody", {}, ...rows))];
+export const kLeaveOut = "With leave_out in aspic.fit.toml, the named groups are also predicted by simpler models.";
+
+export function comparisonTables({ comparison }: Figures): Child[] {
+  const compared = comparison.filter(({ models }) => models.length > 1);
+  if (compared.length === 0) return [element("p", { class: "hint" }, `No simpler model was compared. ${kLeaveOut}`)];
+  return compared.flatMap(({ how, models }) => {
+    const rows = models.map(({ model, position, force, failure }) => (failure === undefined ? row(model, [percent(position), percent(force)]) : failedRow(model, failure, 2)));
+    return [element("h3", {}, `Simpler models: ${kHow[how] ?? how}`), element("div", { class: "wide" }, numberTable(["model", "positions, beyond noise", "forces, beyond noise"], 1, element("tbody", {}, ...rows)))];
   });
 }
