@@ -283,6 +283,131 @@ value = [50, "-100 * t", 0]
         self.assertIn("selects no boundary triangle of body 'beam', which extends from (0, 0, 0) to (0.4, 0.1, 0.1)", said)
 
 
+class Slices(Ranks):
+    """Binary .msh files of version 4.1 are read in slices, others in one piece, with the same bits."""
+
+    BODIES = """translate = [0, 0, 0.5]
+rotate = { axis = [1, 2, 3], angle_deg = 20 }
+[[body.pin]]
+where = { highest = 0.3 }
+[[body]]
+name = "block"
+shape = { box = { upper = [0.1, 0.1, 0.1], size = 0.03 } }
+translate = [0, 1, 0]
+material = { model = "stable_neo_hookean", young = "X > 0.05 ? 1e7 : 1e4", poisson = 0.3 }
+"""
+
+    def msh(self, name, is_binary, points, tets, tags=None):
+        """Writes a file of two volumes and a surface; the second volume has the physical group 7."""
+        tags = tags or [n + 5 for n in range(len(points))]
+        out = [b"$MeshFormat\n4.1 %d 8\n" % is_binary + (struct.pack("<i", 1) + b"\n" if is_binary else b"") + b"$EndMeshFormat\n"]
+
+        def put(code, *values):
+            out.append(struct.pack("<" + code, *values) if is_binary else (" ".join(map(repr, values)) + "\n").encode())
+
+        def section(title, write):
+            out.append(b"$%s\n" % title)
+            write()
+            out.append((b"\n" if is_binary else b"") + b"$End%s\n" % title)
+
+        def entities():
+            put("4q", 0, 0, 1, 2)
+            for dimension, tag, group in ((2, 4, 0), (3, 1, 0), (3, 2, 7)):
+                put("i6d", tag, *[0.0] * 3, *[1.0] * 3)
+                put("qi", 1, group) if group else put("q", 0)
+                put("q", 0)
+
+        def nodes():
+            half = len(points) // 3
+            put("4q", 2, len(points), min(tags), max(tags))
+            for dimension, tag, part in ((2, 4, range(half)), (3, 1, range(half, len(points)))):
+                put("iiiq", dimension, tag, 0, len(part))
+                for n in part:
+                    put("q", tags[n])
+                for n in part:
+                    put("3d", *points[n])
+
+        def elements():
+            half = len(tets) // 2
+            put("4q", 3, len(tets) + 1, 1, len(tets) + 1)
+            for dimension, tag, kind, part in ((3, 1, 4, tets[:half]), (2, 4, 2, [tets[0][:3]]), (3, 2, 4, tets[half:])):
+                put("iiiq", dimension, tag, kind, len(part))
+                for number, element in enumerate(part):
+                    put(f"{1 + len(element)}q", number + 1, *(tags[n] for n in element))
+
+        out.append(b"$PhysicalNames\n1\n3 7 \"skull\"\n$EndPhysicalNames\n")
+        for title, write in ((b"Entities", entities), (b"Nodes", nodes), (b"Elements", elements)):
+            section(title, write)
+        (self.folder / name).write_bytes(b"".join(out))
+
+    def bar(self, n=(8, 3, 2)):
+        """Points and tets of a distorted bar, in an order that is far from Hilbert's."""
+        number = lambda i, j, k: (i * (n[1] + 1) + j) * (n[2] + 1) + k
+        points = [(0.05 * i + 0.004 * ((7 * i + 3 * j + 5 * k) % 5), 0.04 * j, 0.05 * k + 0.003 * (i * j % 4))
+                  for i in range(n[0] + 1) for j in range(n[1] + 1) for k in range(n[2] + 1)]
+        steps = ((0, 1, 2), (1, 2, 0), (2, 0, 1), (0, 2, 1), (2, 1, 0), (1, 0, 2))
+        tets = []
+        for i in range(n[0]):
+            for j in range(n[1]):
+                for k in range(n[2]):
+                    for order in steps:
+                        at, corners = [i, j, k], [number(i, j, k)]
+                        for axis in order:
+                            at[axis] += 1
+                            corners.append(number(*at))
+                        tets.append(corners if order in steps[:3] else [corners[c] for c in (0, 2, 1, 3)])
+        return points, tets[::2] + tets[1::2]
+
+    def mesh_scene(self, name):
+        text = (self.folder / self.scene(before_pin=self.BODIES, output='precision = "double"')).read_text()
+        shape = next(line for line in text.splitlines() if line.startswith("shape = { box = { upper = [0.4"))
+        return self.write(f"{name}.toml", text.replace(shape, f'mesh = "{name}.msh"'))
+
+    def test_slices_have_the_bits_of_the_whole(self):
+        points, tets = self.bar()
+        self.msh("binary.msh", True, points, tets)
+        self.msh("text.msh", False, points, tets)
+        self.aspic("run", self.mesh_scene("binary"), "--out", "serial", "--quiet")
+        for n in (1, 2, 3, 4):
+            for name, what in (("binary", "meshes in slices"), ("text", "meshes in one piece")):
+                said = self.mpi(n, "run", self.mesh_scene(name), "--out", name, "--force").stdout
+                self.assertIn(what, said)
+            self.assertEqual(self.column("binary", "state_hash"), self.column("text", "state_hash"), f"{n} ranks")
+            self.assertEqual((self.folder / "binary/scene.toml").read_bytes(), (self.folder / "text/scene.toml").read_bytes())
+            files = ["checkpoint.bin", *(f"frames/{f.name}" for f in (self.folder / "text/frames").iterdir())]
+            self.assertGreater(len(files), 4)
+            for file in files:
+                self.assertEqual((self.folder / "binary" / file).read_bytes(), (self.folder / "text" / file).read_bytes(), file)
+            self.assertLess(self.distance("serial", "binary"), 1e-10, f"{n} ranks [m]")
+            self.assertEqual(self.column("serial", "iterations"), self.column("binary", "iterations"))
+        self.assertIn(b'Name="region"', (self.folder / "binary/frames/piece_000001_00002.vtu").read_bytes())
+        self.mpi(3, "run", "binary", "--resume", "--steps", "4", "--quiet")
+        self.assertEqual(len(self.steps("binary")), 4)
+
+    def test_other_files_are_read_in_one_piece(self):
+        points, tets = self.bar()
+        self.msh("sparse.msh", True, points, tets, tags=[3 * n + 2 for n in range(len(points))])
+        self.assertIn("meshes in one piece", self.mpi(2, "run", self.mesh_scene("sparse"), "--steps", "1").stdout)
+        self.msh("whole.msh", True, points, tets)
+        (self.folder / "cut.msh").write_bytes((self.folder / "whole.msh").read_bytes()[:-500])
+        self.assertIn("cut.msh: byte ", self.mpi(2, "run", self.mesh_scene("cut"), code=2).stderr)
+        nan = [(float("nan"), 0.0, 0.0)] + points[1:]
+        self.msh("nan.msh", True, nan, tets)
+        self.assertIn("nan.msh: byte ", self.mpi(2, "run", self.mesh_scene("nan"), code=2).stderr)
+
+    def test_defects_of_slices_are_refused(self):
+        points, tets = self.bar()
+        for defect, found in (("inverted_tets", tets[:40] + [[tets[40][c] for c in (1, 0, 2, 3)]] + tets[41:]),
+                              ("repeated_tets", tets + tets[:1])):
+            self.msh("bad.msh", True, points, found)
+            for n in (1, 3):
+                said = self.mpi(n, "run", self.mesh_scene("bad"), code=2).stderr
+                self.assertEqual(said.count("error:"), 1, said)
+                self.assertIn("body 'beam': its mesh has " + defect, said)
+        self.msh("bad.msh", True, points + [(0.1, 0.1, 9.0)], tets)
+        self.assertIn("unreferenced_vertices", self.mpi(3, "run", self.mesh_scene("bad"), code=2).stderr)
+
+
 class Shares(Ranks):
     """Memory, iterations and communication of the ranks."""
 

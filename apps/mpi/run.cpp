@@ -12,10 +12,10 @@
 #include "base/free_memory.h"
 #include "base/printable.h"
 #include "base/stopwatch.h"
-#include "distributed/box_slices.h"
 #include "distributed/distributed_simulation.h"
 #include "distributed/exchange.h"
 #include "distributed/guarded.h"
+#include "distributed/mesh_slices.h"
 #include "distributed/rank_files.h"
 #include "distributed/rank_memory.h"
 #include "distributed/scatter.h"
@@ -70,11 +70,11 @@ void require_vertex_per_rank(double vertices) {
 }
 
 // Numbers of vertices and tets are 32-bit integers.
-void require_numbers(const distributed::MeshSize& size) {
+void require_numbers(double vertices, double tets) {
   constexpr double kMost = 2147483647;
-  if (size.tets > kMost)
-    throw InvalidInput(fmt::format("the scene has {:.3g} tets; at most {:.0f} are supported", size.tets, kMost));
-  require_vertex_per_rank(size.vertices);
+  if (tets > kMost)
+    throw InvalidInput(fmt::format("the scene has {:.3g} tets; at most {:.0f} are supported", tets, kMost));
+  require_vertex_per_rank(vertices);
 }
 
 // Reports errors of the initial state with the user's numbers.
@@ -90,6 +90,39 @@ void require_start(const SceneModel& scene, const std::string& file) {
 
 distributed::MemoryNeed memory_need(const Table& document, double vertices) {
   return {vertices, distributed::rank_count(), (*document.find("solver"))["linear"].text() != "block_jacobi"};
+}
+
+// Returns false if the meshes must be read as a whole. `ranks_here`: number of ranks on the machine of rank 0.
+bool open_slices(SceneInput& input, int ranks_here, Opened& opened) {
+  Table document = input.source.document;
+  if (!input.source.meshes.empty()) return false;
+  const std::optional<distributed::SlicedBodies> bodies = distributed::sliced_bodies(document, input.files);
+  if (!bodies) return false;
+  double vertices = 0, tets = 0;
+  for (const auto& body : *bodies) vertices += body->vertex_count(), tets += body->tet_count();
+  require_numbers(vertices, tets);
+  distributed::require_memory(memory_need(document, vertices), ranks_here, static_cast<double>(free_memory()));
+  if (!distributed::resolve_slices(*bodies, document, input.files)) return false;
+  opened.name = printable(input.source.name);
+  opened.notes = std::move(input.source.notes);
+  mark_version(document, opened.notes);
+  put_in_order(document);
+  opened.resolved = to_toml(document);
+  opened.input_files = std::move(input.files.kept_files);
+  return true;
+}
+
+void open_whole(SceneInput input, const SceneOptions& options, int ranks_here, Opened& opened) {
+  SceneModel& whole = opened.whole.emplace(build_scene_model(std::move(input.source), std::move(input.files), options));
+  require_vertex_per_rank(whole.model.mesh.vertex_count());
+  distributed::require_memory(memory_need(whole.document, whole.model.mesh.vertex_count()), ranks_here,
+                              static_cast<double>(free_memory()));
+  require_start(whole, opened.file);
+  opened.name = whole.name;
+  opened.notes = std::move(whole.notes);
+  opened.input_files = std::move(whole.input_files);
+  opened.generated_meshes = std::move(whole.generated_meshes);
+  opened.resolved = to_toml(whole.document);
 }
 
 // `ranks_here`: number of ranks on the machine of rank 0.
@@ -111,29 +144,7 @@ Opened open(const RunArguments& arguments, int ranks_here) {
   opened.has_overrides = path.extension() == ".toml";
   opened.text = opened.has_overrides ? read_toml_text(path) : to_toml(document);
   leave_out_surfaces(document);
-  if (distributed::can_be_sliced(document)) {
-    const distributed::MeshSize size = distributed::size_of_boxes(document);
-    require_numbers(size);
-    distributed::require_memory(memory_need(document, size.vertices), ranks_here, static_cast<double>(free_memory()));
-    opened.name = printable(input.source.name);
-    opened.notes = std::move(input.source.notes);
-    mark_version(document, opened.notes);
-    distributed::resolve_boxes(document);
-    put_in_order(document);
-    opened.resolved = to_toml(document);
-  } else {
-    SceneModel& whole =
-        opened.whole.emplace(build_scene_model(std::move(input.source), std::move(input.files), options));
-    require_vertex_per_rank(whole.model.mesh.vertex_count());
-    distributed::require_memory(memory_need(whole.document, whole.model.mesh.vertex_count()), ranks_here,
-                                static_cast<double>(free_memory()));
-    require_start(whole, opened.file);
-    opened.name = whole.name;
-    opened.notes = std::move(whole.notes);
-    opened.input_files = std::move(whole.input_files);
-    opened.generated_meshes = std::move(whole.generated_meshes);
-    opened.resolved = to_toml(whole.document);
-  }
+  if (!open_slices(input, ranks_here, opened)) open_whole(std::move(input), options, ranks_here, opened);
   if (opened.run_directory.empty()) opened.run_directory = (fs::path("out") / opened.name).string();
   return opened;
 }
@@ -154,8 +165,8 @@ class Runner {
     steps_ = arguments_.steps > 0 ? arguments_.steps : steps_of(*document.find("time"));
     const OutputOptions output = output_options(*document.find("output"));
     SceneFiles files(fs::path(opened_.file).parent_path(), false);
-    distributed::RankScene scene = is_sliced_ ? distributed::make_box_slices(document)
-                                              : distributed::scatter(opened_.whole ? &*opened_.whole : nullptr);
+    distributed::RankScene scene =
+        is_sliced_ ? make_slices(document, files) : distributed::scatter(opened_.whole ? &*opened_.whole : nullptr);
     opened_.whole.reset();
     simulation_.emplace(std::move(scene), std::move(document), std::move(files));
     const std::vector<std::string>& notes = simulation_->notes();
@@ -177,6 +188,16 @@ class Runner {
   }
 
  private:
+  static distributed::RankScene make_slices(const Table& document, const SceneFiles& files) {
+    std::optional<distributed::SlicedBodies> bodies;
+    distributed::all_succeed([&] {
+      bodies = distributed::sliced_bodies(document, files);
+      if (!bodies)
+        throw InvalidInput("a mesh file differs from that of rank 0; keep it unchanged until the run starts");
+    });
+    return distributed::make_mesh_slices(document, *bodies);
+  }
+
   Table share_document() {
     for (std::string* text : {&opened_.text, &opened_.file, &opened_.run_directory, &opened_.resolved})
       *text = distributed::broadcast_text(*text);
@@ -233,9 +254,10 @@ class Runner {
     for (const std::string& note : opened_.notes) fmt::print("note: {}\n", note);
     const BodyRange& last = simulation_->share().of_bodies.back();
     const Simulation& local = simulation_->local();
-    fmt::print("{}: {} vertices, {} tets; {}, {}; {} ranks; into {}\n", opened_.name,
+    fmt::print("{}: {} vertices, {} tets; {}, {}; {} ranks, meshes in {}; into {}\n", opened_.name,
                last.first_vertex + last.vertex_count, last.first_tet + last.tet_count, local.options().integrator,
-               local.solver_description(), distributed::rank_count(), printable(opened_.run_directory));
+               local.solver_description(), distributed::rank_count(), is_sliced_ ? "slices" : "one piece",
+               printable(opened_.run_directory));
     if (simulation_->steps_taken() > 0) fmt::print("resuming after step {}\n", simulation_->steps_taken());
     std::fflush(stdout);
   }

@@ -267,8 +267,8 @@ BodyMesh make_body_mesh(Value& body, MeshLoader& loader, std::optional<LoadedMes
   LoadedMesh mesh = resolve_mesh(body, loader, std::move(loaded));
   loader.tets += mesh.tets.tet_count();
   check_fingerprint(body.table(), "mesh_hash", fingerprint_of(mesh.tets), "the mesh of body '" + name + "'");
-  const AffineMap place = placement_of(body);
-  for (Vec3d& X : mesh.tets.rest) X = place(X);
+  const AffineMap map = placement_of(body);
+  place(map, mesh.tets.rest);
   loader.report_if_many(mesh.tets.tet_count(),
                         "checking " + std::to_string(mesh.tets.tet_count()) + " tets of body '" + name + "'");
   heed(diagnose(mesh.tets), "body '" + name + "'", loader.notes);
@@ -278,7 +278,7 @@ BodyMesh make_body_mesh(Value& body, MeshLoader& loader, std::optional<LoadedMes
   if (!skin && mesh.surface.empty()) return with_boundary_as_skin(std::move(mesh.tets));
   const fs::path path = skin ? loader.files.find(*skin) : mesh.surface;
   TriMesh surface = read_tri_mesh(path);
-  for (Vec3d& X : surface.vertices) X = place(X);
+  place(map, surface.vertices);
   const bool is_chosen = skin != nullptr;
   body.table().set("skin", {loader.files.keep(path, name + ".skin"), {}});
   BodyMesh result = with_skin(std::move(mesh.tets), std::move(surface));

@@ -98,6 +98,10 @@ AffineMap placement_of(const Value& body) {
   return {rotation_of(body) * diagonal(body["scale"]), body["translate"].vector()};
 }
 
+void place(const AffineMap& map, std::span<Vec3d> points) {
+  for (Vec3d& X : points) X = map(X);
+}
+
 AffineMap from_placed(const Value& body, Frame frame) {
   if (frame == Frame::placed) return {};
   const AffineMap place = placement_of(body);

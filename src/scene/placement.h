@@ -24,6 +24,8 @@ struct AffineMap {
 Mat3d rotation(const Vec3d& axis, double angle /* [rad] */);  // the axis has any length but 0
 
 AffineMap placement_of(const Value& body);  // scale, then rotate, then translate
+// Maps points. A function for all programs, because inlined code may round differently.
+void place(const AffineMap& map, std::span<Vec3d> points);
 
 // Coordinates of a body: those of its mesh file, after `scale`, or after the whole placement.
 enum class Frame { mesh, scaled, placed };
