@@ -13,11 +13,11 @@ namespace fs = std::filesystem;
 
 class BodyFrames : public RunPositions {
  public:
-  BodyFrames(const RunLayout& layout, const Model& model) : root_(layout.root()), model_(model) {}
+  BodyFrames(const RunLayout& layout, const Model& model) : layout_(layout), model_(model) {}
 
   std::vector<double> frame(int index) override {
-    const fs::path file = root_ / RunLayout::frame_file(index);
-    const std::vector<double> x = read_vtu_points(file);
+    const fs::path file = layout_.root() / layout_.file_of_frame(index);
+    const std::vector<double> x = points_of(file);
     const size_t expected = 3 * model_.mesh.rest.size();
     if (x.size() != expected)
       throw InvalidInput(file.string() + ": has " + std::to_string(x.size() / 3) + " points; the scene has " +
@@ -27,7 +27,14 @@ class BodyFrames : public RunPositions {
   bool are_of_model() const override { return true; }
 
  private:
-  fs::path root_;
+  static std::vector<double> points_of(const fs::path& file) {
+    if (file.extension() != ".pvtu") return read_vtu_points(file);
+    std::vector<double> x;
+    for (const Vec3d& point : read_pvtu(file).mesh.rest) x.insert(x.end(), point.a, point.a + 3);
+    return x;
+  }
+
+  RunLayout layout_;
   const Model& model_;
 };
 
@@ -70,7 +77,7 @@ bool is_there(const fs::path& file) {
 }  // namespace
 
 std::unique_ptr<RunPositions> run_positions(const RunLayout& layout, const Scene& scene, int frames) {
-  if (is_there(layout.root() / RunLayout::frame_file(0)))
+  if (is_there(layout.root() / layout.file_of_frame(0)))
     return std::make_unique<BodyFrames>(layout, scene.simulation.model());
   if (!scene.skins.empty() && is_there(layout.skins())) return std::make_unique<SkinCaches>(layout, scene, frames);
   throw InvalidInput(layout.root().string() +

@@ -31,9 +31,10 @@ class Run:
 
     @property
     def frame_files(self):
-        """The paths of the frames, sorted."""
+        """The paths of the frames, sorted. Frames of several ranks are .pvtu."""
         if self._frame_files is None:
-            self._frame_files = sorted((self.path / "frames").glob("body_*.vtu"))
+            found = {path.stem: path for kind in ("vtu", "pvtu") for path in (self.path / "frames").glob(f"body_*.{kind}")}
+            self._frame_files = [found[name] for name in sorted(found)]
         return self._frame_files
 
     def frame(self, index):

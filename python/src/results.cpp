@@ -30,7 +30,7 @@ py::dict read_frame(const fs::path& path) {
   Vtu vtu;
   {
     const py::gil_scoped_release free;
-    vtu = read_vtu(path);
+    vtu = aspic::read_frame(path);
   }
   py::array_t<int> tets({static_cast<py::ssize_t>(vtu.mesh.tets.size()), py::ssize_t{4}});
   if (!vtu.mesh.tets.empty()) std::copy_n(vtu.mesh.tets.data()->data(), tets.size(), tets.mutable_data());

@@ -33,6 +33,57 @@ def test_run_is_read_as_arrays(jelly, tmp_path):
     aspic.Simulation(jelly, out=tmp_path / "run", overwrite=True)
 
 
+def write_piece(path, frame, cells):
+    """Writes some tets of a frame as a piece in plain text."""
+    vertices, corners = np.unique(frame["tets"][cells], return_inverse=True)
+
+    def array(kind, name, values):
+        values = np.asarray(values)
+        width = values.shape[1] if values.ndim > 1 else 1
+        numbers = " ".join(map(repr, values.ravel().tolist()))
+        return f'<DataArray type="{kind}" Name="{name}" NumberOfComponents="{width}" format="ascii">{numbers}</DataArray>'
+
+    point_data = [array("Float64", name, values[vertices]) for name, values in frame["point_fields"].items()]
+    cell_data = [array("Float64", name, values[cells]) for name, values in frame["cell_fields"].items()]
+    path.write_text(
+        '<VTKFile type="UnstructuredGrid" byte_order="LittleEndian"><UnstructuredGrid>'
+        f'<Piece NumberOfPoints="{len(vertices)}" NumberOfCells="{len(cells)}">'
+        f'<Points>{array("Float64", "Points", frame["points"][vertices])}</Points>'
+        f'<PointData>{"".join(point_data)}{array("Int32", "vertex", vertices)}</PointData>'
+        f'<CellData>{"".join(cell_data)}{array("Int32", "tet", cells)}</CellData>'
+        f'<Cells>{array("Int64", "connectivity", corners.ravel())}'
+        f'{array("Int64", "offsets", 4 * np.arange(1, len(cells) + 1))}{array("UInt8", "types", np.full(len(cells), 10))}'
+        '</Cells></Piece></UnstructuredGrid></VTKFile>')
+
+
+def test_pieces_of_several_ranks_are_one_frame(jelly, tmp_path):
+    sim = aspic.Simulation(jelly, out=tmp_path / "run")
+    sim.run(2)
+    run, whole = sim.results(), [sim.results().frame(i) for i in range(3)]
+    frames = tmp_path / "ranks/frames"
+    frames.mkdir(parents=True)
+    (tmp_path / "ranks/steps.csv").write_bytes((tmp_path / "run/steps.csv").read_bytes())
+    for i, frame in enumerate(whole):
+        names = [f"piece_{i:06}_{rank:05}.vtu" for rank in range(3)]
+        for rank, name in enumerate(names):
+            write_piece(frames / name, frame, np.arange(rank, len(frame["tets"]), 3))
+        pieces = "".join(f'<Piece Source="{name}"/>' for name in names)
+        (frames / f"body_{i:06}.pvtu").write_text(
+            f'<VTKFile type="PUnstructuredGrid"><PUnstructuredGrid>{pieces}</PUnstructuredGrid></VTKFile>')
+    pieces = aspic.Run(tmp_path / "ranks")
+    np.testing.assert_array_equal(pieces.positions(), run.positions())
+    for i, frame in enumerate(whole):
+        found = pieces.frame(i)
+        np.testing.assert_array_equal(found["tets"], frame["tets"])
+        for kind in ("point_fields", "cell_fields"):
+            assert set(found[kind]) == set(frame[kind]) and found[kind]
+            for name, values in frame[kind].items():
+                np.testing.assert_array_equal(found[kind][name], values)
+    (frames / "piece_000001_00002.vtu").unlink()
+    with pytest.raises(aspic.InvalidInput, match="piece_000001_00002.vtu"):
+        pieces.frame(1)
+
+
 def test_motion_of_the_surface_is_kept_without_a_folder(jelly):
     sim = aspic.Simulation(jelly)
     sim.run(3)

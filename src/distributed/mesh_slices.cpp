@@ -93,7 +93,7 @@ void for_each_part(std::vector<Body>& bodies, int BodyRange::*first_of, int Body
 }
 
 // Replaces boxes by the smallest ones that contain those of all ranks.
-void merge_over_ranks(std::vector<Box*> boxes) {
+void merge_over_ranks(const std::vector<Box*>& boxes) {
   std::vector<double> ends;
   for (const Box* box : boxes)
     for (int axis = 0; axis < 3; ++axis) ends.insert(ends.end(), {-box->lower[axis], box->upper[axis]});

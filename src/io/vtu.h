@@ -38,6 +38,11 @@ Vtu read_vtu(const std::string& path);
 Vtu parse_vtu(std::string_view contents, const std::string& file);  // `file` is the name in messages
 // Reads only the points, 3 coordinates each [m]. Throws InvalidInput like read_vtu().
 std::vector<double> read_vtu_points(const std::string& path);
+// Reads the pieces of a .pvtu and returns the whole grid of tets, in the order of the fields "vertex" and "tet", which
+// it removes. Throws InvalidInput if they are missing, or if vertices or tets are.
+Vtu read_pvtu(const std::string& path);
+// Returns the grid of a frame of a run, a .vtu or .pvtu.
+Vtu read_frame(const std::string& path);
 
 // Writes inline base64, zlib-compressed. `points`: 3 coordinates per point [m], in double precision; tets index points.
 // Point fields have one entry of `components` values per point, cell fields one per tet. `mids`: see TetMesh. The
