@@ -334,7 +334,7 @@ TEST(MeanVolume, AddsBulkEnergyOfMeanJ) {
   EXPECT_NEAR(V->value(x), expected, 1e-12 * expected);
 }
 
-// A fit that crosses the threshold sees no jump of forces.
+// A fit that crosses the threshold has no jump of forces.
 TEST(MeanVolume, IsContinuousInPoissonsRatio) {
   const std::vector<double> x = positions(small(), kAffine, 0.02);
   const auto gradient = [&](double poisson) {
