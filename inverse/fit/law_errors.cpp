@@ -35,22 +35,22 @@ LawErrors law_errors(const Experiment& experiment, const std::string& material,
   for (MaterialParameters& p : stiffening) p.extra = {kStiffening};
   const bool is_coupled = is_one_of(kCoupled, material);
   ErrorPredictions first;
-  auto& [ours, on_fine_mesh, rival, stiffer] = last ? *last : first;
+  ErrorPredictions& p = last ? *last : first;
   const auto starting = [&](const Predictions& before) -> const Predictions& {
-    return before.cases.empty() ? ours : before;
+    return before.cases.empty() ? p.on_mesh : before;
   };
-  ours = predicted(experiment, material, own, options, ours);
-  rival =
-      predicted(experiment, is_coupled ? "neo_hookean_isochoric" : "neo_hookean_log", own, options, starting(rival));
-  stiffer = predicted(experiment, "yeoh", stiffening, options, starting(stiffer));
+  p.on_mesh = predicted(experiment, material, own, options, p.on_mesh);
+  p.other_law = predicted(experiment, is_coupled ? "neo_hookean_isochoric" : "neo_hookean_log", own, options,
+                          starting(p.other_law));
+  p.stiffening_law = predicted(experiment, "yeoh", stiffening, options, starting(p.stiffening_law));
   LawErrors errors;
-  for (const Predictions* p : {&ours, &rival, &stiffer})
-    if (errors.failure.empty()) errors.failure = p->failure;
+  for (const Predictions* each : {&p.on_mesh, &p.other_law, &p.stiffening_law})
+    if (errors.failure.empty()) errors.failure = each->failure;
   if (!errors.failure.empty()) return errors;
-  for (size_t c = 0; c < ours.cases.size(); ++c) {
-    const CasePrediction& isochoric = is_coupled ? rival.cases[c] : ours.cases[c];
-    errors.cases.push_back({difference("coupling of shear and volume", ours.cases[c], rival.cases[c]),
-                            difference("stiffening", isochoric, stiffer.cases[c])});
+  for (size_t c = 0; c < p.on_mesh.cases.size(); ++c) {
+    const CasePrediction &ours = p.on_mesh.cases[c], &rival = p.other_law.cases[c];
+    errors.cases.push_back({difference("coupling of shear and volume", ours, rival),
+                            difference("stiffening", is_coupled ? rival : ours, p.stiffening_law.cases[c])});
   }
   return errors;
 }
