@@ -142,11 +142,16 @@ class VolumeTerm : public TetTerm<GivenPressure, Energy, QuadraticTetBatch> {
   }
 
   void add_stiff_rows(Positions x, double scale, StiffRows& rows) const {
-    const size_t begin = rows.size();
     for (int i = 0; i < batch_count(); ++i) {
       const QuadraticTetBatch& tets = batches_[i];
+      const Pack stiffness = bulk_[i] * compliance_[i];
+      const auto is_stiff = [&](int l) { return stiffness[l] > (1 + 1e-9) * kStiff; };
+      int l = 0;
+      while (l < tets.count && !is_stiff(l)) ++l;
+      if (l == tets.count) continue;
       const NodeRates g = node_rates(i, x);
-      for (int l = 0; l < tets.count; ++l) {
+      for (; l < tets.count; ++l) {
+        if (!is_stiff(l)) continue;
         const double V = tet_volume(i)[l];
         StiffRow& row = rows.emplace_back();
         for (int n = 0; n < 10; ++n) {
@@ -157,9 +162,6 @@ class VolumeTerm : public TetTerm<GivenPressure, Energy, QuadraticTetBatch> {
         row.compliance = V * compliance_[i][l] / scale;
       }
     }
-    rows.erase(std::remove_if(rows.begin() + begin, rows.end(),
-                              [](const StiffRow& row) { return !(row.weight * row.compliance > (1 + 1e-9) * kStiff); }),
-               rows.end());
   }
 
   // g += scale sum over tets of rate (mean J - 1) d(volume mean J)/dx
