@@ -65,10 +65,15 @@ class Crash(CommandLine):
     def scene(self, name="beam.toml", duration=0.4, cells="3, 1, 1", extra=""):
         return self.beam(name, duration, cells, EVERY_STEP + extra)
 
+    def whole_lines(self, path):
+        """The bytes of the whole lines. If a process is killed during a write, the system completes whole pages of the file."""
+        data = path.read_bytes()
+        if data and not data.endswith(b"\n"):
+            self.assertEqual(len(data) % mmap.PAGESIZE, 0, f"{path}: torn within a page: {data[-60:]!r}")
+        return data[: data.rfind(b"\n") + 1]
+
     def assert_whole_table(self, path):
-        text = path.read_text()
-        self.assertTrue(text.endswith("\n"), f"{path}: torn last line {text[-60:]!r}")
-        rows = list(csv.reader(text.splitlines()))
+        rows = list(csv.reader(self.whole_lines(path).decode().splitlines()))
         self.assertEqual({len(row) for row in rows}, {len(rows[0])}, f"{path}: rows of different lengths")
 
     def assert_readable(self, run):
@@ -148,11 +153,7 @@ class Killed(Crash):
             json.loads(line)
 
     def drop_torn_line(self, lines):
-        """If a process is killed during a write, the system completes whole pages of the file."""
-        text = (self.folder / "lines.json").read_bytes()
-        if text and not text.endswith(b"\n"):
-            self.assertEqual(len(text) % mmap.PAGESIZE, 0, "a line is torn within a page")
-            lines.truncate(text.rfind(b"\n") + 1)
+        lines.truncate(len(self.whole_lines(self.folder / "lines.json")))
 
     def test_killed_report_leaves_the_old_one(self):
         self.aspic("run", self.scene(), "--out", "run")
