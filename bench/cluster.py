@@ -8,7 +8,7 @@ steps of 1/60 s, with GAMG.
 iterations: linear iterations of two Newton iterations, for the beam and for the beam twisted by 90 degrees
 strong: one step of the same beam on several ranks; weak: of finer beams, with about as many vertices per rank
 size: one step of large beams, with memory per vertex; serial: three steps against aspic run, at tolerance 1e-10
-Times are CPU times of all ranks, with the start and the time that ranks wait for each other (they poll).
+CPU times are those of all ranks, with the start and the time that ranks wait for each other (they poll).
 """
 import argparse
 import csv
@@ -19,6 +19,7 @@ import struct
 import subprocess
 import sys
 import tempfile
+import time
 
 SCENE = """[time]
 step = {step}
@@ -46,19 +47,19 @@ def scene(folder, n, steps=1, solver="", deform=""):
 
 
 def run(options, ranks, path, out="run"):
-    """Returns (steps, ranks, CPU time in s) of a run with aspic-mpi, or with aspic for 0 ranks."""
+    """Returns (steps, ranks, CPU time in s, wall time in s) of a run with aspic-mpi, or with aspic for 0 ranks."""
     launch = ["mpirun", "--oversubscribe", "-n", str(ranks), options.bin / "aspic-mpi"] if ranks else [options.bin / "aspic"]
     root = {"OMPI_ALLOW_RUN_AS_ROOT": "1", "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1"} if os.geteuid() == 0 else {}
     threads = {"OMP_NUM_THREADS": "1", "OPENBLAS_NUM_THREADS": "1", "OMPI_MCA_mpi_yield_when_idle": "1"}
     one = [] if ranks else ["--threads", "1"]
-    before = resource.getrusage(resource.RUSAGE_CHILDREN).ru_utime
+    before, begin = resource.getrusage(resource.RUSAGE_CHILDREN).ru_utime, time.monotonic()
     done = subprocess.run([*launch, "run", path, "--out", path.parent / out, "--force", "--allow-unconverged", *one],
                           env=os.environ | root | threads, capture_output=True, text=True)
     if done.returncode:
         sys.exit(done.stdout + done.stderr)
     tables = [list(csv.DictReader(open(path.parent / out / f"{name}.csv"))) if (path.parent / out / f"{name}.csv").exists()
               else [] for name in ("steps", "ranks")]
-    return *tables, resource.getrusage(resource.RUSAGE_CHILDREN).ru_utime - before
+    return *tables, resource.getrusage(resource.RUSAGE_CHILDREN).ru_utime - before, time.monotonic() - begin
 
 
 def positions(checkpoint):
@@ -102,14 +103,14 @@ def iterations(options, folder):
 
 
 def one_step(options, ranks, path):
-    steps, per_rank, seconds = run(options, ranks, path)
+    steps, per_rank, *seconds = run(options, ranks, path)
     vertices = int(total(per_rank, "vertices"))
     memory = max(float(r["peak_bytes"]) for r in per_rank)
-    row(ranks, vertices, int(total(steps[1:] or steps, "iterations")), int(per_rank[0]["linear_iterations"]), seconds,
+    row(ranks, vertices, int(total(steps[1:] or steps, "iterations")), int(per_rank[0]["linear_iterations"]), *seconds,
         memory / 1e6, (total(per_rank, "peak_bytes") - 45e6 * ranks) / vertices / 1e3)
 
 
-STEP = ("ranks", "vertices", "Newton", "linear iterations", "CPU s", "largest rank, MB", "KB per vertex beyond 45 MB")
+STEP = ("ranks", "vertices", "Newton", "linear iterations", "CPU s", "wall s", "largest rank, MB", "KB per vertex beyond 45 MB")
 
 
 def strong(options, folder):
@@ -136,11 +137,11 @@ def serial(options, folder):
     header("n", "vertices", "aspic run: Newton", "CPU s", *(t for r in ranks_ for t in (f"{r} ranks: Newton", "CPU s")), "largest distance, m")
     for n in options.cells or [7, 14]:
         path = scene(folder, n, steps=3, solver="tolerance = 1e-10")
-        steps, _, seconds = run(options, 0, path, "serial")
+        steps, _, seconds, _ = run(options, 0, path, "serial")
         cells, far = [int(total(steps, "iterations")), seconds], 0.0
         own = positions(folder / "serial/checkpoint.bin")
         for ranks in ranks_:
-            steps, _, seconds = run(options, ranks, path)
+            steps, _, seconds, _ = run(options, ranks, path)
             cells += [int(total(steps, "iterations")), seconds]
             far = max(far, max(abs(a - b) for a, b in zip(own, positions(folder / "run/checkpoint.bin"))))
         row(n, len(own) // 3, *cells, far)
