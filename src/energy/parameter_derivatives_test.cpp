@@ -43,7 +43,8 @@ struct TwoBodies {
   explicit TwoBodies(const MaterialInfo& info) : material(info.name), extra(static_cast<int>(info.extra.size())) {
     for (int t = kFirst; t < mesh.tet_count(); ++t) {
       MaterialParameters p{lame_from_young_poisson(1 + 0.1 * t, 0.1 + 0.003 * t), {}};
-      for (int k = 0; k < extra; ++k) p.extra[k] = info.extra[k].fallback * (0.8 + 0.003 * t);
+      for (int k = 0; k < extra; ++k)
+        p.extra[k] = (info.name != "neo_hookean_fibres" ? info.extra[k].fallback : 0.5 * (k + 1)) * (0.8 + 0.003 * t);
       parameters.push_back(p);
     }
     const std::vector<double> noise = Numbers()(3 * mesh.rest.size());

@@ -17,4 +17,5 @@ set(materials
   "gent Gent"
   "ogden Ogden"
   "spline Spline"
+  "neo_hookean_fibres NeoHookeanFibres"
 )

@@ -52,7 +52,7 @@ std::vector<NamedState> smooth_states() {
   const Mat3d A = random_deformation(random);
   states.push_back({"J = 1e-8, small", std::cbrt(1e-8 / determinant(A)) * A});
   const bool has_limit = std::is_same_v<M, Gent> || std::is_same_v<M, Ogden>;  // of strains that change the shape
-  if (!std::is_same_v<M, Fung>) {  // the exponential of Fung overflows in these
+  if (!std::is_same_v<M, Fung> && !std::is_same_v<M, NeoHookeanFibres>) {      // their exponentials overflow in these
     if (!has_limit) states.push_back({"J = 1e-8, flat", {{1, 0, 0, 0.25, 1, 0, -0.5, 0.125, 1e-8}}});
     states.push_back({"|F| = 1e6", 1e6 / std::sqrt(squared_norm(A)) * A});
   }

@@ -58,11 +58,19 @@ void check_beside_file(const Value& material) {
   }
 }
 
+void check_fibres(const Value& material) {
+  const Value* ratio = material.find("fibre_ratio");
+  if (ratio && !material.find("fibre_x") && !material.find("fibre_y") && !material.find("fibre_z"))
+    throw error_at(ratio->place, "fibre_ratio = " + shortened(inline_toml(*ratio)) +
+                                     "; these fibres have no direction (add fibre_x, fibre_y, fibre_z)");
+}
+
 void complete_material(Value& material) {
   if (material.find("file")) return check_beside_file(material);
   const MaterialInfo& info = material_info(material["model"].text());
   const std::vector<std::string> plain = {"model", "density", "young", "poisson", "lambda", "mu", "shear", "bulk"};
   std::vector<std::string> accepted = plain;
+  check_fibres(material);
   for (const ExtraParameter& extra : info.extra) {
     accepted.push_back(extra.name);
     if (!material.find(extra.name)) material.table().set(extra.name, {extra.fallback, material.place});
