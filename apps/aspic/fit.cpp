@@ -64,11 +64,14 @@ std::string origins_of(const FitArguments& arguments, const fs::path& options_fi
   const std::string given = "command line", fallback = "default";
   add("model", arguments.model == FitPlan().model ? fallback : given);
   const std::string law = arguments.model == kAutoLaw ? FitPlan().model : arguments.model;  // with E and nu
-  for (const Quantity& quantity : material_quantities(law)) {
-    const auto names = [&](const std::string& option) { return option.starts_with(quantity.name + "="); };
+  std::vector<std::string> quantities;
+  for (const Quantity& quantity : material_quantities(law)) quantities.push_back(quantity.name);
+  if (fibre_components(law)) quantities.emplace_back(kFibreDirection);
+  for (const std::string& quantity : quantities) {
+    const auto names = [&](const std::string& option) { return option.starts_with(quantity + "="); };
     const bool is_given = std::any_of(arguments.parameters.begin(), arguments.parameters.end(), names) ||
                           std::any_of(arguments.known.begin(), arguments.known.end(), names);
-    add(quantity.name, is_given ? given : fallback);
+    add(quantity, is_given ? given : fallback);
   }
   for (const OptionOrigin& origin : fit_option_origins(options_file)) add(origin.option, origin.place);
   return text;

@@ -123,6 +123,18 @@ Json values_of(const FitOutcome& outcome) {
   return values;
 }
 
+Json fibres_of(const FitOutcome& outcome) {
+  const auto axis = [](const Vec3d& a) { return Json{a[0], a[1], a[2]}; };
+  Json fibres = Json::array();
+  for (const FoundFibres& f : outcome.fibres) {
+    Json found = {{"where", f.where}, {"direction", axis(f.direction)}, {"others", Json::array()}};
+    if (f.cone >= 0) found["cone_95"] = f.cone;
+    for (const Vec3d& other : f.others) found["others"].push_back(axis(other));
+    fibres.push_back(std::move(found));
+  }
+  return fibres;
+}
+
 Json errors_of(const FitOutcome& outcome) {
   Json errors = Json::array();
   for (const EstimatedError& e : outcome.errors) {
@@ -170,6 +182,7 @@ std::string figures_json(const DataSet& data, const FitOutcome& outcome, const F
                {"squares", 2 * report.misfit},
                {"values", values_of(outcome)},
                {"warnings", outcome.warnings}};
+  if (!outcome.fibres.empty()) json["fibres"] = fibres_of(outcome);
   if (!outcome.errors.empty()) json["errors"] = errors_of(outcome);
   for (const FoundCommonError& e : outcome.common_errors)
     json["common_errors"].push_back({{"cause", e.cause}, {"standard_deviations", e.sigmas}});

@@ -42,6 +42,14 @@ void print_misfit(std::FILE* stream, const FitOutcome& outcome) {
   fmt::print(stream, "\n");
 }
 
+void print_fibres(std::FILE* stream, const FitOutcome& outcome) {
+  std::string head = "fibres";
+  for (const FoundFibres& f : outcome.fibres) {
+    fmt::print(stream, "{:<10} {:<13} {}\n", head, f.where, fibre_text(f));
+    head.clear();
+  }
+}
+
 void print_parts(std::FILE* stream, const FitOutcome& outcome) {
   if (!outcome.parts) return;
   const FoundParts& found = *outcome.parts;
@@ -112,6 +120,7 @@ void print_fit(std::FILE* stream, const DataSet& data, const FitOutcome& outcome
   fmt::print(stream, "mesh       {}\n", describe_mesh(outcome));
   print_misfit(stream, outcome);
   print_values(stream, outcome);
+  print_fibres(stream, outcome);
   print_parts(stream, outcome);
   print_errors(stream, outcome);
   print_outliers(stream, outcome);

@@ -54,7 +54,7 @@ class FitPack {
                  {"figures", Json::parse(figures_)},
                  {"history", history()},
                  {"weights", weights()},
-                 {"notes", data_.notes},
+                 {"notes", notes()},
                  {"warnings", outcome_.warnings},
                  {"markerNames", marker_names()},
                  {"nextPoke", next_indentation()}};
@@ -149,6 +149,14 @@ class FitPack {
         {"informed", outcome_.posterior && outcome_.posterior->ok ? number_json(outcome_.posterior->informed) : Json()},
         {"noiseFactor",
          outcome_.posterior && outcome_.posterior->ok ? number_json(outcome_.posterior->noise_factor) : Json()}};
+  }
+
+  Json notes() const {
+    std::vector<std::string> notes = data_.notes;
+    for (const FoundFibres& f : outcome_.fibres)
+      notes.push_back("Direction of the fibres " + (f.where == "everywhere" ? f.where : "in " + f.where) + ": " +
+                      fibre_text(f) + ".");
+    return notes;
   }
 
   Json quantities() const {

@@ -64,6 +64,57 @@ void check_refinement(const FitPlan& plan, const TetMesh& mesh) {
                        std::to_string(plan.refine) + " tets; " + std::to_string(kMaxTets) + " are the most");
 }
 
+bool is_direction_known(const FitPlan& plan) {
+  return std::any_of(plan.known.begin(), plan.known.end(), [&](const auto& k) {
+    return material_quantity(plan.model, k.first).role == QuantityRole::component;
+  });
+}
+
+// Replaces an unknown direction of fibres by its tilts. It is unknown unless it is given.
+void complete_direction(FitPlan& plan) {
+  if (!fibre_components(plan.model)) return;
+  const auto found = std::find_if(plan.parameters.begin(), plan.parameters.end(),
+                                  [](const FitParameter& u) { return u.quantity == kFibreDirection; });
+  FitParameter direction{.quantity = kFibreDirection, .parameterization = Parameterization::uniform};
+  if (found != plan.parameters.end()) {
+    direction = *found;
+    if (direction.parameterization != Parameterization::uniform &&
+        direction.parameterization != Parameterization::regions)
+      throw InvalidInput("'" + text_of(direction) +
+                         "': a direction of fibres is uniform or per region; use fibre_direction=regions");
+    if (is_direction_known(plan))
+      throw InvalidInput("fibre_direction is in --unknown, and --known gives its components; remove one of the two");
+    plan.parameters.erase(found);
+  } else if (is_direction_known(plan) || is_fitted(plan, kFibreTilts[0]) || is_fitted(plan, kFibreTilts[1])) {
+    return;
+  }
+  for (const char* tilt : kFibreTilts)
+    plan.parameters.push_back({.quantity = tilt,
+                               .parameterization = direction.parameterization,
+                               .handles = 0,
+                               .guess = 0,
+                               .prior_sigma = kTiltSigma});
+}
+
+// Index of the region of each tet among the ascending labels.
+std::vector<int> regions_of(const TetMesh& mesh) {
+  std::vector<int> labels = mesh.region, index;
+  std::sort(labels.begin(), labels.end());
+  labels.erase(std::unique(labels.begin(), labels.end()), labels.end());
+  for (const int label : mesh.region)
+    index.push_back(static_cast<int>(std::lower_bound(labels.begin(), labels.end(), label) - labels.begin()));
+  return index;
+}
+
+void set_directions(const FitPlan& plan, const TetMesh& mesh, std::vector<MaterialParameters>& parameters) {
+  const std::optional<int> first = fibre_components(plan.model);
+  if (!first || plan.fibre_directions.empty()) return;
+  const std::vector<int> region = plan.fibre_directions.size() > 1 ? regions_of(mesh) : std::vector<int>{};
+  for (size_t t = 0; t < parameters.size(); ++t)
+    for (int r = 0; r < 3; ++r)
+      parameters[t].extra[*first + r] = plan.fibre_directions[region.empty() ? 0 : region[t]][r];
+}
+
 }  // namespace
 
 FitParameter parse_parameter(const std::string& text) {
@@ -105,7 +156,8 @@ std::pair<std::string, double> parse_known(const std::string& text) {
 }
 
 std::vector<FitParameter> single_values(std::vector<FitParameter> parameters) {
-  for (FitParameter& u : parameters) u.parameterization = Parameterization::uniform, u.handles = 0;
+  for (FitParameter& u : parameters)
+    if (!is_tilt(u.quantity)) u.parameterization = Parameterization::uniform, u.handles = 0;
   return parameters;
 }
 
@@ -122,9 +174,14 @@ FitPlan completed(FitPlan plan, const Experiment& experiment) {
     material_quantity(plan.model, quantity);
     check_range(quantity, value);
   }
+  complete_direction(plan);
   for (size_t i = 0; i < plan.parameters.size(); ++i) {
     const std::string& quantity = plan.parameters[i].quantity;
-    material_quantity(plan.model, quantity);
+    const QuantityRole role = material_quantity(plan.model, quantity).role;
+    const bool is_single_tilt = role == QuantityRole::tilt && plan.parameters[i].prior_sigma == 0;
+    if (role == QuantityRole::component || is_single_tilt)
+      throw InvalidInput("'" + text_of(plan.parameters[i]) + "': a direction has more coordinates; use " +
+                         kFibreDirection + "=uniform or " + kFibreDirection + "=regions");
     if (is_known(plan, quantity))
       throw InvalidInput(quantity + " is in both --known and --unknown; remove one of the two");
     for (size_t j = 0; j < i; ++j)
@@ -136,7 +193,7 @@ FitPlan completed(FitPlan plan, const Experiment& experiment) {
   }
   // Default: stiffness per tet, all others uniform.
   for (const Quantity& quantity : material_quantities(plan.model))
-    if (!is_fitted(plan, quantity.name) && !is_known(plan, quantity.name))
+    if (quantity.role != QuantityRole::component && !is_fitted(plan, quantity.name) && !is_known(plan, quantity.name))
       plan.parameters.push_back(
           {.quantity = quantity.name,
            .parameterization = is_stiffness(quantity.name) ? Parameterization::tets : Parameterization::uniform,
@@ -172,6 +229,10 @@ std::string text_of(const FitPlan& plan) {
   for (const FitParameter& u : plan.parameters) {
     add("unknown." + u.quantity, quoted(text_of(u)));
     add("guess." + u.quantity, number_text(u.guess));
+  }
+  for (size_t k = 0; k < plan.fibre_directions.size(); ++k) {
+    const Vec3d& a = plan.fibre_directions[k];
+    add("fibre_direction." + std::to_string(k), number_text(a[0]) + " " + number_text(a[1]) + " " + number_text(a[2]));
   }
   for (const auto& [quantity, value] : plan.known) add("known." + quantity, number_text(value));
   const char* smooth[] = {"none", "h1", "tv"};
@@ -250,7 +311,9 @@ std::vector<MaterialParameters> known_parameters(const FitPlan& plan, const Expe
   MaterialParameters parameters;
   parameters.lame = lame_from_young_poisson(value(quantities[0]), value(quantities[1]));
   for (size_t k = 2; k < quantities.size(); ++k) parameters.extra[k - 2] = value(quantities[k]);
-  return std::vector<MaterialParameters>(experiment.mesh.tets.size(), parameters);
+  std::vector<MaterialParameters> all(experiment.mesh.tets.size(), parameters);
+  set_directions(plan, experiment.mesh, all);
+  return all;
 }
 
 Experiment without_groups(const Experiment& experiment, const std::vector<std::string>& groups) {

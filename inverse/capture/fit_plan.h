@@ -16,6 +16,9 @@ struct FitPlan {
   std::string model = "neo_hookean";                  // or kAutoLaw
   std::vector<FitParameter> parameters;               // empty: young per tet, all others uniform; guess 0: automatic
   std::vector<std::pair<std::string, double>> known;  // uniform, not fitted: {"poisson", 0.45}
+  // Reference directions of the fibres, to which their tilts refer: one per region of the mesh, ascending, or one for
+  // all; empty: the model has no tilts.
+  std::vector<Vec3d> fibre_directions = {};
   RegularizerOptions regularizer;
   FitOptions fit;
   EquilibriumOptions equilibrium;
@@ -31,14 +34,14 @@ struct FitPlan {
   bool law_errors = false;   // include the choice of the law in standard deviations
 };
 
-// Parses "young=tets", "poisson=uniform", "b=handles:40". Throws InvalidInput.
+// Parses "young=tets", "poisson=uniform", "b=handles:40", "fibre_direction=regions". Throws InvalidInput.
 FitParameter parse_parameter(const std::string& text);
 std::string text_of(const FitParameter& parameter);
 std::pair<std::string, double> parse_known(const std::string& text);  // "poisson=0.45"
 
 inline constexpr int kMaxParts = 4;
 
-// The same parameters, each uniform over the body.
+// The same parameters, each uniform over the body but the tilts.
 std::vector<FitParameter> single_values(std::vector<FitParameter> parameters);
 
 // Returns the plan with all choices that depend on data and model. Throws InvalidInput for names that the model or the

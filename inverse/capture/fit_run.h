@@ -91,6 +91,16 @@ struct FoundCommonError {
   double sigmas = 0;
 };
 
+// Direction of the fibres of a region, as an axis: its sign is irrelevant.
+struct FoundFibres {
+  std::string where;  // "everywhere", "region 3"
+  Vec3d direction;
+  // Half the opening of the cone that contains the direction with 95 % [degrees]; 90: undetermined, < 0: unknown. It
+  // includes `others`.
+  double cone = -1;
+  std::vector<Vec3d> others;  // directions of other minima that explain the data as well
+};
+
 struct FitOutcome {
   FitPlan plan;                      // completed
   FitReport report;                  // report of the last started stage
@@ -100,6 +110,7 @@ struct FitOutcome {
   std::vector<CaseOutcome> cases;        // one per case of the data
   std::vector<FitReason> against_field;  // why one value replaces the requested field; empty: it does not
   bool mesh_errors_settle = true;        // false: they did not converge with the material
+  std::vector<FoundFibres> fibres;       // empty: no directions are fitted
   std::vector<EstimatedError> errors;
   std::vector<FoundCommonError> common_errors;
   std::vector<Outlier> outliers;

@@ -119,6 +119,13 @@ class Reasons {
         break;
       }
     add_disagreement();
+    for (const FoundFibres& f : outcome_.fibres)
+      if (f.cone >= 90)
+        add("fibres_undetermined",
+            "the readings do not determine the direction of the fibres " +
+                (f.where == "everywhere" ? f.where : "in " + f.where) +
+                ": fibres act in tension only, so stretch the body along several axes",
+            f.cone, 90);
     const double squares = outcome_.residuals > 0 ? 2 * outcome_.report.misfit / outcome_.residuals : 0;
     if (squares > kTooManySquares)
       add("unexplained",

@@ -55,6 +55,7 @@ std::vector<FittedQuantity> fitted_quantities(const ParameterMap& map, const Tet
   std::vector<FittedQuantity> result;
   for (size_t u = 0; u < map.fitted_parameters().size(); ++u) {
     const FitParameter& parameter = map.fitted_parameters()[u];
+    if (is_tilt(parameter.quantity)) continue;  // see FoundFibres
     const int index = static_cast<int>(u);
     FittedQuantity& q = result.emplace_back();
     q.name = parameter.quantity;
@@ -103,6 +104,15 @@ FittedMaterial fitted_material(const DataSet& data, const ParameterMap& map, std
     material.further.emplace_back(q.name + "_reduction", tet.to_user(q.reduction));
   }
   return material;
+}
+
+std::string fibre_text(const FoundFibres& fibres) {
+  const auto axis_text = [](const Vec3d& a) { return formatted("(%.3f, %.3f, %.3f)", a[0], a[1], a[2]); };
+  std::string text = axis_text(fibres.direction);
+  if (fibres.cone >= 90) text += ", undetermined: 95 % within 90 degrees";
+  if (fibres.cone >= 0 && fibres.cone < 90) text += formatted(", 95 %% within %.2g degrees", fibres.cone);
+  for (const Vec3d& other : fibres.others) text += ", or " + axis_text(other);
+  return text;
 }
 
 std::string describe_mesh(const FitOutcome& outcome) {

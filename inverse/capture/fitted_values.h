@@ -20,6 +20,9 @@ FittedMaterial fitted_material(const DataSet& data, const ParameterMap& map, std
 // "young in 3 tets".
 std::vector<std::string> values_at_bound(const ParameterMap& map, std::span<const double> p);
 
+// "(0.6, 0, 0.8), 95 % within 3.2 degrees".
+std::string fibre_text(const FoundFibres& fibres);
+
 // "a material per tet of 384, simulated on 3072 (refine = 1); positions err by ...".
 std::string describe_mesh(const FitOutcome& outcome);
 

@@ -86,6 +86,7 @@ MaterialFit::MaterialFit(const DataSet& data, const FitPlan& plan, const FitMemo
 }
 
 FitOutcome MaterialFit::run() {
+  if (fits_fibres(plan_) && !find_fibres()) return std::move(outcome_);
   if (is_field() || has_model_errors() || has_corrections()) {
     if (!fit_single_values("uniform")) return std::move(outcome_);
     if (learn_model_errors() && !fit_single_values("uniform_corrected")) return std::move(outcome_);
@@ -130,8 +131,7 @@ bool MaterialFit::fit_single_values(const std::string& name) {
 }
 
 bool MaterialFit::has_single_values(FitModel& model, const FitReport& report) {
-  for (size_t u = 0; u < plan_.parameters.size(); ++u)
-    plan_.parameters[u].guess = model.map.values(static_cast<int>(u), report.p).front();
+  adopt_values(model.map, report.p, plan_);
   material_ = model.map.parameters(report.p);
   outcome_.failure = describe_runaway(data_, material_.front());
   if (!outcome_.failure.empty()) return false;

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "capture/fibre_search.h"
 #include "capture/fit_run.h"
 #include "capture/simulated_data.h"
 #include "fit/common_errors.h"
@@ -71,6 +72,12 @@ class MaterialFit {
   FitReport fit_stage(FitStage which, FitModel& model, const FitOptions& options,
                       const std::vector<double>& start = {});
 
+  // material_fit_fibres.cpp: directions of fibres. False: no further stage.
+  bool find_fibres();
+  FibreTrial fit_fibres(FitPlan& plan, const std::string& name, const std::string& what);
+  void describe_fibres(const ParameterMap& map, std::span<const double> p);
+  double cone_of_fibres(const ParameterMap& map, std::span<const double> p, size_t region);
+
   // material_fit_results.cpp: results
   void learn_uncertainty(FitModel& model);
   void describe(FitModel& model, std::span<const double> p);
@@ -109,6 +116,7 @@ class MaterialFit {
   const FitMemory& memory_;
   const FitCallbacks& callbacks_;
   SimulatedData simulated_;
+  FibreSearch fibres_;
   std::vector<double> corrected_errors_;
   std::vector<CaseWeights> corrected_weights_;
   std::vector<MaterialParameters> material_;  // last fitted parameters

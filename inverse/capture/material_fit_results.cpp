@@ -50,6 +50,7 @@ void MaterialFit::describe(FitModel& model, std::span<const double> p) {
   const Posterior* posterior = outcome_.posterior && outcome_.posterior->ok ? &*outcome_.posterior : nullptr;
   outcome_.quantities = fitted_quantities(model.map, mesh(), p, posterior);
   outcome_.material = fitted_material(data_, model.map, p, outcome_.quantities);
+  describe_fibres(model.map, p);
   outcome_.at_bound = values_at_bound(model.map, p);
   outcome_.counts = model.misfit.counts();
   outcome_.cases.resize(data_.experiment.cases.size());

@@ -74,6 +74,9 @@ CurveErrors errors_of(const TestCurve& curve, std::span<const double> predicted)
 CurveMisfit::CurveMisfit(const std::vector<TestCurve>& curves, const CurveFitOptions& options)
     : curves_(curves), options_(options), info_(material_info(options.material)) {
   if (curves.empty()) throw InvalidInput("there is no curve to fit");
+  if (fibre_components(info_.name))
+    throw InvalidInput("the model " + info_.name +
+                       " is anisotropic; curves need an isotropic one (`aspic fit` finds fibres from motions)");
   for (const TestCurve& curve : curves) check(curve);
   if (!(options.poisson > -1 && options.poisson < 0.5))
     throw InvalidInput("poisson = " + six_digits(options.poisson) + " must lie between -1 and 0.5 (try 0.49)");

@@ -162,6 +162,50 @@ TEST(Misfit, JacobianHasTaylorSlope2) {
   }
 }
 
+// The direction of the fibres and its two tilts.
+ParameterMap map_of_fibres(const TetMesh& mesh) {
+  const MaterialParameters known{lame_from_young_poisson(2e4, 0.4), {4, 2, 0.5, 0.3, 0.8}};
+  return {mesh,
+          "neo_hookean_fibres",
+          std::vector<MaterialParameters>(mesh.tet_count(), known),
+          {{"young", Parameterization::uniform, 0, 2e4},
+           {"fibre_tilt_1", Parameterization::uniform, 0, 0},
+           {"fibre_ratio", Parameterization::uniform, 0, 4},
+           {"fibre_tilt_2", Parameterization::uniform, 0, 0}}};
+}
+
+TEST(Misfit, DerivativesByFibreDirectionMatchDifferences) {
+  Gel gel;
+  const ParameterMap map = map_of_fibres(gel.experiment.mesh);
+  gel.measure(map, std::vector<double>(map.guess().begin(), map.guess().end()), 1);
+  Misfit misfit(gel.experiment, map, kMisfitExact);
+  const std::vector<double> p = stepped(map.guess(), Numbers(4)(map.size()), 0.3);
+  std::vector<double> r(misfit.residual_count()), dr(r.size()), plus(r.size()), minus(r.size()), pbar(map.size());
+  ASSERT_TRUE(misfit.evaluate(p, r)) << misfit.failure();
+  ASSERT_TRUE(misfit.linearize()) << misfit.failure();
+  std::vector<std::vector<double>> jacobian;
+  for (int i = 0; i < map.size(); ++i) {
+    std::vector<double> unit(map.size());
+    unit[i] = 1;
+    misfit.multiply(unit, dr);
+    jacobian.push_back(dr);
+  }
+  const std::vector<double> w = Numbers(7)(r.size());
+  misfit.multiply_transposed(w, pbar);
+  for (int i = 0; i < map.size(); ++i) {
+    EXPECT_NEAR(pbar[i], dot(w, jacobian[i]), 1e-7 * norm(jacobian[i]) * norm(w)) << i;
+    constexpr double kStep = 1e-4;
+    std::vector<double> unit(map.size());
+    unit[i] = 1;
+    ASSERT_TRUE(misfit.evaluate(stepped(p, unit, kStep), plus) && misfit.evaluate(stepped(p, unit, -kStep), minus));
+    double error = 0;
+    for (size_t k = 0; k < r.size(); ++k)
+      error = std::hypot(error, (plus[k] - minus[k]) / (2 * kStep) - jacobian[i][k]);
+    EXPECT_GT(norm(jacobian[i]), 0.1) << i;
+    EXPECT_LT(error, 1e-5 * norm(jacobian[i])) << i;
+  }
+}
+
 TEST(Misfit, TransposedProductIsTransposeAfterOtherTrials) {
   Gel gel;
   const ParameterMap map = gel.map();

@@ -8,6 +8,7 @@
 #include "base/parallel.h"
 #include "fit/quantity.h"
 #include "fit/quantity_scale.h"
+#include "fit/tangent_frame.h"
 
 namespace aspic {
 namespace {
@@ -15,7 +16,7 @@ namespace {
 // Internal representation of a fitted quantity.
 struct Fitted {
   QuantityRole role = QuantityRole::stiffness;
-  int extra = 0;  // index into MaterialParameters::extra
+  int extra = 0;  // index into MaterialParameters::extra; of a tilt: 0 or 1
   QuantityScale scale;
   FieldBasis basis;
   int first = 0;  // index of its first entry in p
@@ -60,10 +61,13 @@ QuantityScale scale_of(const ExtraParameter& extra) {
 
 void set_quantity(const FitParameter& u, const MaterialInfo& info, Fitted& f) {
   const Quantity q = material_quantity(info.name, u.quantity);
+  if (q.role == QuantityRole::component)
+    throw InvalidInput("'" + u.quantity + "' is a component of a direction; fit " + kFibreDirection + " instead");
   check_guess(u, q);
   f.role = q.role;
   f.extra = q.extra;
   if (q.role == QuantityRole::compressibility) f.scale = QuantityScale::bounded(q.min, q.max);
+  if (q.role == QuantityRole::tilt) f.scale = QuantityScale::any();
   if (q.role == QuantityRole::own) f.scale = scale_of(info.extra[static_cast<size_t>(q.extra)]);
 }
 
@@ -97,24 +101,57 @@ struct ParameterMap::Impl {
   std::vector<Fitted> fitted;
   std::vector<double> guess;
 
+  int first_component = 0;  // of the direction of fibres, in MaterialParameters::extra
+
+  Vec3d direction_of(const MaterialParameters& m) const {
+    return {{m.extra[first_component], m.extra[first_component + 1], m.extra[first_component + 2]}};
+  }
+  // Part of the direction in a list of mu, lambda, extra...
+  Vec3d direction_part(const double* theta) const {
+    const double* a = theta + 2 + first_component;
+    return {{a[0], a[1], a[2]}};
+  }
+
   const Fitted* find(QuantityRole role) const {
     const auto found = std::find_if(fitted.begin(), fitted.end(), [&](const Fitted& f) { return f.role == role; });
     return found == fitted.end() ? nullptr : &*found;
   }
 
-  // dtheta/dz of one quantity in every tet; only E and nu change two entries of theta.
+  // dtheta/dz of one quantity in every tet.
   struct Slopes {
-    std::vector<Lame> lame;     // empty for an extra
-    std::vector<double> extra;  // empty for E and nu
+    std::vector<Lame> lame;        // of E and nu
+    std::vector<double> extra;     // of an extra
+    std::vector<Vec3d> direction;  // of a tilt
   };
   Slopes slopes(const Fitted& f, std::span<const double> p) const;
   std::vector<Elastic> elastic_at(std::span<const double> p) const;
+  // Calls visit(tet, frame, u, v) for the tilts of each tet.
+  template <class Visit>
+  void for_each_tilt(std::span<const double> p, const Visit& visit) const;
+  void check_directions() const;
 };
+
+template <class Visit>
+void ParameterMap::Impl::for_each_tilt(std::span<const double> p, const Visit& visit) const {
+  std::vector<double> tilt[2];
+  for (const Fitted& f : fitted)
+    if (f.role == QuantityRole::tilt) tilt[f.extra] = f.field(p);
+  for (size_t t = 0; t < known.size(); ++t) visit(t, TangentFrame(direction_of(known[t])), tilt[0][t], tilt[1][t]);
+}
+
+// Both tilts are fitted, or none, and there is a reference direction.
+void ParameterMap::Impl::check_directions() const {
+  const auto tilts =
+      std::count_if(fitted.begin(), fitted.end(), [](const Fitted& f) { return f.role == QuantityRole::tilt; });
+  if (tilts == 0) return;
+  ASPIC_CHECK(tilts == 2);
+  for (const MaterialParameters& m : known) ASPIC_CHECK(norm(direction_of(m)) > 0);
+}
 
 std::vector<Elastic> ParameterMap::Impl::elastic_at(std::span<const double> p) const {
   std::vector<Elastic> e = elastic;
   for (const Fitted& f : fitted) {
-    if (f.role == QuantityRole::own) continue;
+    if (f.role != QuantityRole::stiffness && f.role != QuantityRole::compressibility) continue;
     const std::vector<double> z = f.field(p);
     parallel_chunks(static_cast<int>(z.size()), [&](int first, int last) {
       for (int t = first; t < last; ++t)
@@ -128,6 +165,13 @@ ParameterMap::Impl::Slopes ParameterMap::Impl::slopes(const Fitted& f, std::span
   const std::vector<double> z = f.field(p);
   const int tets = static_cast<int>(z.size());
   Slopes slopes;
+  if (f.role == QuantityRole::tilt) {
+    slopes.direction.resize(z.size());
+    for_each_tilt(p, [&](size_t t, const TangentFrame& frame, double u, double v) {
+      slopes.direction[t] = frame.slope(f.extra, u, v);
+    });
+    return slopes;
+  }
   if (f.role == QuantityRole::own) {
     slopes.extra.resize(z.size());
     parallel_chunks(tets, [&](int first, int last) {
@@ -154,6 +198,7 @@ ParameterMap::ParameterMap(const TetMesh& mesh, std::string material, std::vecto
   const MaterialInfo& info = material_info(material);
   impl_->material = std::move(material);
   impl_->per_tet = 2 + static_cast<int>(info.extra.size());
+  impl_->first_component = fibre_components(info.name).value_or(0);
   impl_->known = std::move(known);
   for (const MaterialParameters& m : impl_->known)
     impl_->elastic.push_back({young_modulus(m.lame), poisson_ratio(m.lame)});
@@ -170,6 +215,7 @@ ParameterMap::ParameterMap(const TetMesh& mesh, std::string material, std::vecto
     impl_->fitted.push_back(std::move(f));
     impl_->parameters.push_back(u);
   }
+  impl_->check_directions();
 }
 
 ParameterMap::~ParameterMap() = default;
@@ -202,6 +248,11 @@ std::vector<MaterialParameters> ParameterMap::parameters(std::span<const double>
     const std::vector<double> z = f.field(p);
     for (int t = 0; t < tets; ++t) theta[t].extra[f.extra] = f.scale.value(z[t]);
   }
+  if (impl_->find(QuantityRole::tilt))
+    impl_->for_each_tilt(p, [&](size_t t, const TangentFrame& frame, double u, double v) {
+      const Vec3d a = frame.direction(u, v);
+      for (int r = 0; r < 3; ++r) theta[t].extra[impl_->first_component + r] = a[r];
+    });
   return theta;
 }
 
@@ -217,6 +268,8 @@ void ParameterMap::multiply(std::span<const double> p, std::span<const double> d
         double* d = dtheta.data() + static_cast<size_t>(n) * t;
         if (f.role == QuantityRole::own)
           d[2 + f.extra] += slopes.extra[t] * dz[t];
+        else if (f.role == QuantityRole::tilt)
+          for (int r = 0; r < 3; ++r) d[2 + impl_->first_component + r] += slopes.direction[t][r] * dz[t];
         else
           d[0] += slopes.lame[t].mu * dz[t], d[1] += slopes.lame[t].lambda * dz[t];
       }
@@ -234,8 +287,12 @@ void ParameterMap::add_transposed(std::span<const double> p, std::span<const dou
     parallel_chunks(tets, [&](int first, int last) {
       for (int t = first; t < last; ++t) {
         const double* d = thetabar.data() + static_cast<size_t>(n) * t;
-        zbar[t] = f.role == QuantityRole::own ? slopes.extra[t] * d[2 + f.extra]
-                                              : slopes.lame[t].mu * d[0] + slopes.lame[t].lambda * d[1];
+        if (f.role == QuantityRole::own)
+          zbar[t] = slopes.extra[t] * d[2 + f.extra];
+        else if (f.role == QuantityRole::tilt)
+          zbar[t] = dot(slopes.direction[t], impl_->direction_part(d));
+        else
+          zbar[t] = slopes.lame[t].mu * d[0] + slopes.lame[t].lambda * d[1];
       }
     });
     f.basis.add_transposed(zbar, f.part(pbar));

@@ -1,6 +1,8 @@
 // Maps the parameters p of a fit to the material of every tet.
 //   p -> z = W p: each fitted quantity in each tet on its fitted scale (log E, ...), see quantity_scale.h
 //     -> E, nu, extra -> mu, lambda, extra
+// Two tilts per value turn the direction of fibres, see tangent_frame.h; the reference direction of a tet is its known
+// one.
 #pragma once
 #include <memory>
 #include <span>
@@ -20,7 +22,7 @@ enum class Parameterization {
   tets
 };  // uniform; per region; radial basis functions; per tet
 
-// A fitted quantity: "young", "poisson" or one of the material's own (MaterialInfo::extra). Positive quantities are
+// A fitted quantity: "young", "poisson", one of the material's own (MaterialInfo::extra), or a tilt. Positive ones are
 // fitted as logarithms, bounded ones by a smooth map of the line to their range.
 struct FitParameter {
   std::string quantity = "young";

@@ -28,7 +28,8 @@ TetMesh two_layers() {
 }
 
 std::vector<MaterialParameters> known(const TetMesh& mesh, double extra = 0.25) {
-  return std::vector<MaterialParameters>(mesh.tets.size(), {lame_from_young_poisson(2e5, 0.3), {extra}});
+  return std::vector<MaterialParameters>(mesh.tets.size(),
+                                         {lame_from_young_poisson(2e5, 0.3), {extra, 1, 0.2, -0.5, 0.8}});
 }
 
 std::vector<double> numbers(size_t n, unsigned seed) {
@@ -217,7 +218,13 @@ INSTANTIATE_TEST_SUITE_P(
                             "fung",
                             {{"young", Parameterization::tets, 0, 1e5},
                              {"poisson", Parameterization::uniform, 0, 0.3},
-                             {"b", Parameterization::handles, 7, 12}}}),
+                             {"b", Parameterization::handles, 7, 12}}},
+                    MapCase{"Fibres",
+                            "neo_hookean_fibres",
+                            {{"fibre_tilt_2", Parameterization::regions, 0, 0},
+                             {"fibre_ratio", Parameterization::uniform, 0, 2},
+                             {"fibre_tilt_1", Parameterization::regions, 0, 0.5},
+                             {"young", Parameterization::tets, 0, 1e5}}}),
     [](const auto& each) { return each.param.name; });
 
 TEST(ParameterMap, RefusesWhatCannotBeFitted) {

@@ -1,5 +1,6 @@
 // Scale on which a quantity is fitted: a smooth increasing map of z in (-inf, inf) to its value.
 //   positive              q = exp(z)
+//   any                   q = z
 //   in (lower, upper)     q = middle + half tanh(z / 2): the logistic curve, z = +-2 reaches 12 % and 88 % of the range
 //   in a range of powers  log q = middle + half tanh(z / half), z = log(q / center) in the middle of the range
 //   powers from zero      log(1 + q): linear below 1, a logarithm above
@@ -11,6 +12,11 @@ namespace aspic {
 class QuantityScale {
  public:
   static QuantityScale positive() { return {}; }
+  static QuantityScale any() {
+    QuantityScale scale;
+    scale.is_log_ = false;
+    return scale;
+  }
   static QuantityScale bounded(double lower, double upper) {
     QuantityScale scale;
     scale.is_log_ = false;

@@ -147,6 +147,33 @@ def stiffening(strain, b=1.0, cells=3, young=2e4, poisson=0.45):
                  GRIPPED.format(height=length), young, poisson)
 
 
+FIBRE_RATIO, FIBRE_EXPONENT = 4.0, 1.0
+
+
+def axis(azimuth, elevation):
+    """Unit vector of two angles in degrees."""
+    a, e = np.radians([azimuth, elevation])
+    return np.array([np.cos(a) * np.cos(e), np.sin(a) * np.cos(e), np.sin(e)])
+
+
+def fibrous(axes, cells=4, young=2e4, poisson=0.45, only_press=False):
+    """A block of layers of equal height with fibres along one axis each, pulled, sheared, twisted and bent."""
+    size, height, a = np.array([0.04, 0.04, 0.04]), 0.04, 4e-3
+    interfaces = tuple(height * (k + 1) / len(axes) for k in range(len(axes) - 1))
+    direction = lambda points: np.array(axes)[np.searchsorted(interfaces, points[..., 2])]
+    planes, up = graded(height, cells, 0.3), np.linspace(0, height, cells + 1)
+    solid = fem.Solid(fem.box(planes, planes, up), uniform(young), poisson, b=0,
+                      fibres=fem.Fibres(direction, FIBRE_RATIO, FIBRE_EXPONENT))
+    markers = on_sides(size, 80, 8, lambda p: p[2] < height)
+    motions = [("pull", "pull", (0, 0, a), (0, 0, 0)), ("shear x", "shear x", (a, 0, 0), (0, 0, 0)),
+               ("shear y", "shear y", (0, a, 0), (0, 0, 0)), ("twist", "twist", (0, 0, 0), (0, 0, 0.2)),
+               ("bend", "bend", (0, 0, 0), (0.1, 0, 0))]
+    if only_press:
+        motions = [(f"press {k}", f"press {k}", (0, 0, -k * 1e-3), (0, 0, 0)) for k in (1, 2)]
+    return Truth("fibrous", size, (3, 3, 2 * len(axes) if len(axes) > 1 else 3), markers,
+                 grip_readings(solid, markers, motions), GRIPPED.format(height=height), young, poisson, interfaces)
+
+
 BALL = np.array([0.034, 0.027, 0.035]), 0.015, 1e4, 3e4  # center, radius, E outside and inside
 INTERFACE, LOWER, UPPER = 0.024, 45e3, 15e3              # of two layers
 FIELDS = {

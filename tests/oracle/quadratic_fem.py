@@ -1,7 +1,8 @@
 """Equilibria of soft solids by quadratic tets in NumPy and SciPy, independent of Aspic: its own meshes, elements and law.
 
-Energy density: mu/2 (x + b x^2) + K/4 (j^2 - 1 - 2 log j), x = J^(-2/3) I1 - 3, where j is the mean of J over a tet
-(mean dilatation). mu and K are those of E and nu at small strains. The mesh is a graded box of cells that are cut into
+Energy density: mu/2 (x + b x^2) + k1/(2 k2) (exp(k2 s^2) - 1) + K/4 (j^2 - 1 - 2 log j), x = J^(-2/3) I1 - 3, where j is the mean of J over a tet
+(mean dilatation). mu and K are those of E and nu at small strains. s is the strain |F a|^2 - 1 of fibres along a, smoothly
+0 in compression. The mesh is a graded box of cells that are cut into
 twelve tets around their center; interior vertices are jittered. Lengths in m, forces in N, stresses in Pa.
 """
 import dataclasses
@@ -134,11 +135,29 @@ class Indenter:
                     np.where(soft, d ** 2 / (2 * e), d - e / 2), np.where(soft, d / e, 1.0))
 
 
+@dataclasses.dataclass
+class Fibres:
+    direction: object      # of points
+    ratio: float           # k1 / mu
+    exponent: float = 1.0  # k2
+
+    def response(self, strain):
+        """Energy per k1, and its first two derivatives with respect to the strain."""
+        e = 0.01
+        t = np.clip(strain / e, 0, 1)
+        taut = np.maximum(strain - e, 0)
+        s = e * (t ** 3 - t ** 4 / 2) + taut
+        ds, dds = 3 * t ** 2 - 2 * t ** 3, (6 * t - 6 * t ** 2) / e
+        k = self.exponent
+        growth = np.exp(k * s ** 2)
+        return (growth - 1) / (2 * k), growth * s * ds, growth * ((1 + 2 * k * s ** 2) * ds ** 2 + s * dds)
+
+
 class Solid:
     """young(points), poisson: at small strains. `b`: stiffening. `weight`: force per volume [N/m^3]."""
 
-    def __init__(self, mesh, young, poisson, b=0.3, weight=(0, 0, 0)):
-        self.mesh, self.b = mesh, b
+    def __init__(self, mesh, young, poisson, b=0.3, weight=(0, 0, 0), fibres=None):
+        self.mesh, self.b, self.fibres = mesh, b, fibres
         corners = mesh.X[mesh.tets[:, :4]]
         sides = corners[:, 1:] - corners[:, :1]
         self.volume = np.linalg.det(sides) / 6
@@ -148,6 +167,8 @@ class Solid:
         self.G = np.array([shape_slopes(l) @ barycentric for l in POINTS])  # points, tets, nodes, xyz
         E = np.array([young(l @ corners) * np.ones(len(corners)) for l in POINTS])
         self.mu, self.K = E / (2 + 2 * poisson), E.mean(0) / (3 - 6 * poisson)
+        if fibres:
+            self.axes = np.array([np.broadcast_to(fibres.direction(l @ corners), (len(corners), 3)) for l in POINTS])
         self.indenter = None
         dofs = (3 * mesh.tets[:, :, None] + np.arange(3)).reshape(-1, 30)
         self.rows, self.columns, self.dofs = np.repeat(dofs, 30, 1).ravel(), np.tile(dofs, (1, 30)).ravel(), dofs
@@ -170,13 +191,21 @@ class Solid:
         pressure, bulk = self.K / 2 * (j - 1 / j), self.K / 2 * (1 + j ** -2)
         g, K = np.zeros((len(V), 10, 3)), np.zeros((len(V), 30, 30)) if wants_matrix else None
         dj = np.zeros((len(V), 10, 3))
-        for F, J, G, mu in zip(Fs, Js, self.G, self.mu):
+        for q, (F, J, G, mu) in enumerate(zip(Fs, Js, self.G, self.mu)):
             H, I1, a = np.linalg.inv(F).transpose(0, 2, 1), (F ** 2).sum((1, 2)), J ** (-2 / 3)
             X, slope = a * I1 - 3, mu / 2 * (1 + 2 * self.b * (a * I1 - 3))
             energy += (V / 4 * mu / 2 * (X + self.b * X ** 2)).sum()
             s = lambda v: v[:, None, None]
             dX = s(a) * (2 * F - s(2 / 3 * I1) * H)
-            g += s(V / 4) * (G @ (s(slope) * dX + s(pressure * J) * H).transpose(0, 2, 1))
+            P = s(slope) * dX + s(pressure * J) * H
+            if self.fibres:
+                fibre = self.axes[q]
+                Fa = np.einsum("eij,ej->ei", F, fibre)
+                f, df, ddf = (self.fibres.ratio * mu * v for v in self.fibres.response((Fa ** 2).sum(1) - 1))
+                energy += (V / 4 * f).sum()
+                dE = 2 * Fa[:, :, None] * fibre[:, None]
+                P = P + s(df) * dE
+            g += s(V / 4) * (G @ P.transpose(0, 2, 1))
             dj += (G @ (s(J) * H).transpose(0, 2, 1)) / 4
             if wants_matrix:
                 D = lambda p, q: p.reshape(-1, 9, 1) * q.reshape(-1, 1, 9)
@@ -185,6 +214,9 @@ class Solid:
                 tangent = s(slope * a) * (2 * np.eye(9) - 4 / 3 * (D(F, H) + D(H, F)) + s(4 / 9 * I1) * D(H, H)
                                           + s(2 / 3 * I1) * crossed)
                 tangent += s(mu * self.b) * D(dX, dX) + s(pressure * J) * (D(H, H) - crossed)
+                if self.fibres:
+                    aa = fibre[:, None, :, None, None] * fibre[:, None, None, None, :] * np.eye(3)[None, :, None, :, None]
+                    tangent += s(2 * df) * aa.reshape(-1, 9, 9) + s(ddf) * D(dE, dE)
                 strain = np.zeros((len(V), 3, 3, 10, 3))  # dF / du
                 for i in range(3):
                     strain[:, i, :, :, i] = G.transpose(0, 2, 1)

@@ -54,6 +54,28 @@ class Elements(unittest.TestCase):
         self.assertLess(np.linalg.norm(slope - K @ d), 1e-6 * np.linalg.norm(slope))
         self.assertLess(abs(K - K.T).max(), 1e-9 * abs(K).max())
 
+    def test_derivatives_of_fibres_match_differences(self):
+        axes = lambda points: np.stack([np.cos(points[..., 0]), np.sin(points[..., 0]), 0 * points[..., 0]], -1)
+        solid = fem.Solid(cube(1), uniform, POISSON, fibres=fem.Fibres(axes, 5.0, 2.0))
+        random = np.random.default_rng(1)
+        x = (1.02 * solid.mesh.X + 0.02 * random.normal(size=solid.mesh.X.shape)).ravel()
+        d, h = random.normal(size=x.size), 1e-6
+        energy, gradient, K = solid.evaluate(x, True)
+        values = [solid.evaluate(x + s * h * d) for s in (-1, 1)]
+        self.assertAlmostEqual((values[1][0] - values[0][0]) / (2 * h) / (gradient @ d), 1, delta=1e-6)
+        slope = (values[1][1] - values[0][1]) / (2 * h)
+        self.assertLess(np.linalg.norm(slope - K @ d), 1e-5 * np.linalg.norm(slope))
+
+    def test_stretched_fibres_have_their_energy(self):
+        along = lambda points: np.array([0.0, 0.6, 0.8])
+        with_fibres, without = (fem.Solid(cube(1), uniform, POISSON, fibres=f) for f in (fem.Fibres(along, 3.0, 2.0), None))
+        mu = YOUNG / (2 + 2 * POISSON)
+        for stretch, strain in ((1.2, 0.64 * 0.44), (0.9, 0)):
+            x = (with_fibres.mesh.X * [1, 1, stretch]).ravel()
+            more = with_fibres.evaluate(x)[0] - without.evaluate(x)[0]
+            taut = max(strain - 0.005, 0)
+            self.assertAlmostEqual(more / mu, 3 / 4 * (np.exp(2 * taut ** 2) - 1), delta=1e-12)
+
     def test_patch_of_homogeneous_strain_is_exact(self):
         solid = fem.Solid(cube(2), uniform, POISSON)
         F = np.eye(3) + 0.1 * np.array([[1, 2, -1], [0.5, -0.5, 1], [0, 1, 0.3]])
