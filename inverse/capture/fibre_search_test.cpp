@@ -31,7 +31,7 @@ TEST(TangentFrame, DirectionsAreUnitVectorsWithExactSlopes) {
 }
 
 TEST(FibreCone, CoversTheWorseTiltOrEverything) {
-  const TangentFrame frame({{1, 2, 3}});
+  const TangentFrame frame(Vec3d{{1, 2, 3}});
   const Vec3d du = frame.slope(0, 0, 0), dv = frame.slope(1, 0, 0);
   EXPECT_NEAR(cone_of({1e-4, 0, 4e-4}, du, dv), 2.4477 * 0.02, 1e-5);
   EXPECT_NEAR(cone_of({2.5e-4, 1.5e-4, 2.5e-4}, du, dv), 2.4477 * 0.02, 1e-5);  // rotated by 45 degrees
