@@ -15,6 +15,7 @@ constexpr double kDegrees = 180 / std::numbers::pi;
 constexpr double kAsGood = 3;          // log probability by which another minimum may be worse
 constexpr int kSearchIterations = 10;  // maximum per start
 constexpr double kSearchTolerance = 1e-2;
+constexpr double kWeakestRatio = 10;  // upper over lower end of the interval of fibre_ratio: fibres may have no effect
 
 std::vector<std::string> names_of_regions(const TetMesh& mesh, size_t count) {
   std::vector<std::string> names;
@@ -30,6 +31,15 @@ Vec3d as_axis(const Vec3d& a) {
   for (int r = 1; r < 3; ++r)
     if (std::abs(a[r]) > std::abs(a[largest])) largest = r;
   return a[largest] < 0 ? -1.0 * a : a;
+}
+
+bool may_have_no_effect(const std::vector<FittedQuantity>& quantities, size_t region) {
+  for (const FittedQuantity& q : quantities) {
+    if (q.name != kFibreRatio || q.rows.empty()) continue;
+    const std::optional<Interval>& ratio = q.rows[std::min(region, q.rows.size() - 1)].interval;
+    if (ratio && ratio->upper > kWeakestRatio * ratio->lower) return true;
+  }
+  return false;
 }
 
 }  // namespace
@@ -118,6 +128,8 @@ void MaterialFit::describe_fibres(const ParameterMap& map, std::span<const doubl
       found.others.push_back(as_axis(other.directions[r]));
       cone = std::max(cone, std::min(angle + own, std::numbers::pi / 2));
     }
+    // A cone is that of the fitted ratio.
+    if (cone >= 0 && may_have_no_effect(outcome_.quantities, r)) cone = std::numbers::pi / 2;
     found.cone = cone < 0 ? -1 : kDegrees * cone;
   }
 }

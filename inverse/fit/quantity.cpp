@@ -7,7 +7,7 @@
 namespace aspic {
 namespace {
 
-constexpr char kStiffness[] = "young", kFirstComponent[] = "fibre_x", kFibreRatio[] = "fibre_ratio";
+constexpr char kStiffness[] = "young", kFirstComponent[] = "fibre_x";
 constexpr double kTypicalRatio = 1;  // without fibres, the direction has no effect
 constexpr double kAnyTilt = 1e300;
 

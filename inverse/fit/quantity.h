@@ -14,6 +14,7 @@ namespace aspic {
 // direction in its tangent plane (tangent_frame.h), which replaces the components in a fit.
 enum class QuantityRole { stiffness, compressibility, own, component, tilt };
 
+inline constexpr const char* kFibreRatio = "fibre_ratio";
 inline constexpr const char* kFibreDirection = "fibre_direction";  // both tilts, in a plan
 inline constexpr const char* kFibreTilts[] = {"fibre_tilt_1", "fibre_tilt_2"};
 inline constexpr double kTiltSigma = 3;  // standard deviation of the prior of a tilt: hardly any prior
