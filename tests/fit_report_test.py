@@ -61,7 +61,7 @@ class FitReport(CommandLine):
             limits, groups = held_out["limits"], held_out["groups"]
             factor = limits["single"] if sum(g["ok"] for g in groups) > 1 else 1
             for group in groups:
-                for what in ("position", "force"):
+                for what in ("position", "force", "torque"):
                     error = group.get(what + "_beyond_noise")
                     if error is not None and error > factor * limits[what]:
                         self.assertTrue(group["poor"])

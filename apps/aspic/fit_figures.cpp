@@ -66,13 +66,14 @@ void print_prediction(std::FILE* stream, const Prediction& prediction) {
     fmt::print(stream, "held out   {}: no prediction: {}\n", prediction.method, h.failure);
     return;
   }
-  const double motion = std::max(h.peak_motion, 1e-300), force = std::max(h.peak_force, 1e-300);
-  fmt::print(stream, "held out   {}: positions within {} of the peak motion (noise: {})", prediction.method,
-             percent(h.relative_position_error()), percent(h.position_noise / motion));
-  if (h.forces > 0)
-    fmt::print(stream, ", forces within {} of the peak force (noise: {})", percent(h.relative_force_error()),
-               percent(h.force_noise / force));
-  fmt::print(stream, "\n");
+  std::vector<std::string> errors;
+  for (const ReadingKind& kind : kReadingKinds) {
+    const ReadingErrors& e = h.*kind.errors;
+    if (e.count > 0)
+      errors.push_back(fmt::format("{}s within {} of the peak {} (noise: {})", kind.name, percent(e.relative()),
+                                   kind.peak, percent(e.relative_noise())));
+  }
+  fmt::print(stream, "held out   {}: {}\n", prediction.method, fmt::join(errors, ", "));
 }
 
 Json json_of(const Judgment& j) {
@@ -92,13 +93,14 @@ Json json_of(const Judgment& j) {
 
 Json json_of(const HeldOut& h) {
   if (!h.ok) return {{"ok", false}, {"failure", h.failure}};
-  return {{"ok", true},
-          {"peak_motion", h.peak_motion},
-          {"position_error", h.position_error},
-          {"position_noise", h.position_noise},
-          {"peak_force", h.peak_force},
-          {"force_error", h.force_error},
-          {"force_noise", h.force_noise}};
+  Json json = {{"ok", true}};
+  for (const ReadingKind& kind : kReadingKinds) {
+    const ReadingErrors& e = h.*kind.errors;
+    json[std::string("peak_") + kind.peak] = e.peak;
+    json[std::string(kind.name) + "_error"] = e.error;
+    json[std::string(kind.name) + "_noise"] = e.noise;
+  }
+  return json;
 }
 
 Json json_of(const FitVerdict& judged) {
@@ -195,7 +197,8 @@ std::string figures_json(const DataSet& data, const FitOutcome& outcome, const F
                          {"scale_is_unknown", outcome.posterior->scale_is_unknown}};
   if (outcome.held_out)
     json["cross_validation"] = {{"position_error", outcome.held_out->position_error},
-                                {"force_error", outcome.held_out->force_error}};
+                                {"force_error", outcome.held_out->force_error},
+                                {"torque_error", outcome.held_out->torque_error}};
   if (outcome.law_choice) json["laws"] = json_of(*outcome.law_choice);
   if (outcome.relaxation) json["relaxation"] = json_of(*outcome.relaxation);
   json["truth"] = Json::array();

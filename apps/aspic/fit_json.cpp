@@ -23,14 +23,14 @@ const PredictionErrors* errors_of(const std::vector<PredictionErrors>& all, cons
 Json group_json(const HeldOut& g, const PredictionErrors* beyond, bool is_alone) {
   Json json = {{"group", g.group}, {"ok", g.ok}, {"failure", g.failure}};
   if (!g.ok) return json;
-  json["peak_motion"] = known(g.peak_motion);
-  json["position_error"] = g.readings > 0 ? known(g.position_error) : Json();
-  json["position_noise"] = g.readings > 0 ? known(g.position_noise) : Json();
-  json["peak_force"] = g.forces > 0 ? known(g.peak_force) : Json();
-  json["force_error"] = g.forces > 0 ? known(g.force_error) : Json();
-  json["force_noise"] = g.forces > 0 ? known(g.force_noise) : Json();
-  json["position_beyond_noise"] = beyond ? known(beyond->position) : Json();
-  json["force_beyond_noise"] = beyond ? known(beyond->force) : Json();
+  for (const ReadingKind& kind : kReadingKinds) {
+    const ReadingErrors& e = g.*kind.errors;
+    const std::string name = kind.name;
+    json[std::string("peak_") + kind.peak] = e.count > 0 ? known(e.peak) : Json();
+    json[name + "_error"] = e.count > 0 ? known(e.error) : Json();
+    json[name + "_noise"] = e.count > 0 ? known(e.noise) : Json();
+    json[name + "_beyond_noise"] = beyond ? known(beyond->*kind.beyond_noise) : Json();
+  }
   json["poor"] = beyond && beyond->is_poor(is_alone ? 1 : kSingle);
   return json;
 }
@@ -85,19 +85,18 @@ Json held_out_json(const DataSet& data, const FitOutcome& outcome) {
   if (predicted.empty()) return {};
   const std::vector<PredictionErrors> errors = beyond_noise(predicted);
   Json groups = Json::array();
-  double motion = 0, force = 0;
-  for (const HeldOut& g : predicted) {
-    groups.push_back(group_json(g, errors_of(errors, g.group), errors.size() == 1));
-    if (g.ok) motion = std::max(motion, g.peak_motion), force = std::max(force, g.peak_force);
-  }
+  for (const HeldOut& g : predicted) groups.push_back(group_json(g, errors_of(errors, g.group), errors.size() == 1));
   const PredictionErrors all = all_groups(errors);
-  return {{"groups", groups},
-          {"position", known(all.position)},
-          {"force", known(all.force)},
-          {"largest_motion", known(motion)},
-          {"largest_force", known(force)},
-          {"poor", all.is_poor(1)},
-          {"limits", {{"position", kPoorPosition}, {"force", kPoorForce}, {"single", kSingle}}}};
+  Json json = {{"groups", groups}, {"poor", all.is_poor(1)}, {"limits", {{"single", kSingle}}}};
+  for (const ReadingKind& kind : kReadingKinds) {
+    double peak = 0;
+    for (const HeldOut& g : predicted)
+      if (g.ok) peak = std::max(peak, (g.*kind.errors).peak);
+    json[kind.name] = known(all.*kind.beyond_noise);
+    json[std::string("largest_") + kind.peak] = known(peak);
+    json["limits"][kind.name] = kind.limit;
+  }
+  return json;
 }
 
 Json comparison_json(const FitOutcome& outcome, const FitFigures& figures) {
@@ -106,7 +105,9 @@ Json comparison_json(const FitOutcome& outcome, const FitFigures& figures) {
     if (!models.empty()) list.push_back({{"how", how}, {"models", models}});
   };
   const auto model = [](const std::string& name, const PredictionErrors& errors) {
-    return Json({{"model", name}, {"position", known(errors.position)}, {"force", known(errors.force)}});
+    Json row = {{"model", name}};
+    for (const ReadingKind& kind : kReadingKinds) row[kind.name] = known(errors.*kind.beyond_noise);
+    return row;
   };
   const auto all_of = [](const CrossValidation& v) { return all_groups(beyond_noise(v.groups)); };
   Json validated = Json::array();

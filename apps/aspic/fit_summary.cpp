@@ -64,13 +64,12 @@ void print_parts(std::FILE* stream, const FitOutcome& outcome) {
 }
 
 std::string errors_text(const PredictionErrors& errors) {
-  std::string text;
-  if (errors.position >= 0)
-    text += fmt::format("positions within {} of the largest motion", two_digit_percent(errors.position));
-  if (errors.force >= 0)
-    text += fmt::format("{}forces within {} of the largest force", text.empty() ? "" : ", ",
-                        two_digit_percent(errors.force));
-  return text;
+  std::vector<std::string> texts;
+  for (const ReadingKind& kind : kReadingKinds)
+    if (errors.*kind.beyond_noise >= 0)
+      texts.push_back(fmt::format("{}s within {} of the largest {}", kind.name,
+                                  two_digit_percent(errors.*kind.beyond_noise), kind.peak));
+  return fmt::format("{}", fmt::join(texts, ", "));
 }
 
 void print_held_out(std::FILE* stream, const FitOutcome& outcome) {

@@ -80,9 +80,20 @@ double root_mean_square(const std::vector<PredictionErrors>& groups, double Pred
   return count > 0 ? std::sqrt(squares / count) : -1;
 }
 
+double beyond_noise(const ReadingErrors& e, double largest) {
+  constexpr double kLeastPeak = 10;  // standard deviations; a smaller peak may be noise
+  if (!(e.peak > 0)) return -1;
+  return std::sqrt(std::max(e.error * e.error - e.noise * e.noise, 0.0)) / std::max(largest, kLeastPeak * e.noise);
+}
+
 std::string percents(const PredictionErrors& errors) {
-  const auto percent = [](double part) { return part < 0 ? "-" : three_digits(100 * part) + " %"; };
-  return percent(errors.position) + " (positions) and " + percent(errors.force) + " (forces)";
+  std::string text;
+  for (const ReadingKind& kind : kReadingKinds) {
+    const double error = errors.*kind.beyond_noise;
+    if (error < 0) continue;
+    text += (text.empty() ? "" : ", ") + three_digits(100 * error) + " % (" + kind.name + "s)";
+  }
+  return text.empty() ? "-" : text;
 }
 
 // How well a good fit explains the readings.
@@ -171,8 +182,11 @@ class Reasons {
 
   // Adds the error that exceeds its limit most.
   void add_excess(const std::string& name, const std::string& text, const PredictionErrors& errors, double factor) {
-    const bool is_force = errors.force / kPoorForce > errors.position / kPoorPosition;
-    add(name, text, is_force ? errors.force : errors.position, factor * (is_force ? kPoorForce : kPoorPosition));
+    const ReadingKind& worst = *std::max_element(
+        std::begin(kReadingKinds), std::end(kReadingKinds), [&](const ReadingKind& a, const ReadingKind& b) {
+          return errors.*a.beyond_noise / a.limit < errors.*b.beyond_noise / b.limit;
+        });
+    add(name, text, errors.*worst.beyond_noise, factor * worst.limit);
   }
 
   void add_missed_groups() {
@@ -188,12 +202,13 @@ class Reasons {
     if (!outcome_.held_out || !outcome_.held_out_of_one_value) return;
     const CrossValidation &field = *outcome_.held_out, &one = *outcome_.held_out_of_one_value;
     const auto error = [](const CrossValidation& v) {
-      return std::hypot(std::max(v.position_error, 0.0), std::max(v.force_error, 0.0));
+      return std::hypot(std::max(v.position_error, 0.0), std::max(v.force_error, 0.0), std::max(v.torque_error, 0.0));
     };
     if (error(field) > kWorse * error(one))
       add("held_out_worse",
-          "held-out groups are predicted with errors of " + percents({"", field.position_error, field.force_error}) +
-              ", by one value with " + percents({"", one.position_error, one.force_error}),
+          "held-out groups are predicted with errors of " +
+              percents({"", field.position_error, field.force_error, field.torque_error}) + ", by one value with " +
+              percents({"", one.position_error, one.force_error, one.torque_error}),
           error(field), kWorse * error(one));
   }
 
@@ -240,7 +255,8 @@ HeldOut left_out_group(const DataSet& data, const FitOutcome& outcome, const std
 }  // namespace
 
 bool PredictionErrors::is_poor(double factor) const {
-  return position > factor * kPoorPosition || force > factor * kPoorForce;
+  return std::any_of(std::begin(kReadingKinds), std::end(kReadingKinds),
+                     [&](const ReadingKind& kind) { return this->*kind.beyond_noise > factor * kind.limit; });
 }
 
 std::vector<GroupError> group_errors(const DataSet& data, const FitOutcome& outcome) {
@@ -260,23 +276,24 @@ std::vector<HeldOut> predicted_groups(const DataSet& data, const FitOutcome& out
 }
 
 std::vector<PredictionErrors> beyond_noise(const std::vector<HeldOut>& groups) {
-  double motion = 0, force = 0;
-  for (const HeldOut& group : groups)
-    if (group.ok) motion = std::max(motion, group.peak_motion), force = std::max(force, group.peak_force);
-  const auto relative = [](double error, double noise, double peak, double largest) {
-    return peak > 0 ? std::sqrt(std::max(error * error - noise * noise, 0.0)) / largest : -1;
-  };
   std::vector<PredictionErrors> errors;
   for (const HeldOut& group : groups)
-    if (group.ok)
-      errors.push_back({group.group, relative(group.position_error, group.position_noise, group.peak_motion, motion),
-                        relative(group.force_error, group.force_noise, group.peak_force, force)});
+    if (group.ok) errors.push_back({.group = group.group});
+  for (const ReadingKind& kind : kReadingKinds) {
+    double peak = 0;
+    for (const HeldOut& group : groups)
+      if (group.ok) peak = std::max(peak, (group.*kind.errors).peak);
+    auto of_group = errors.begin();
+    for (const HeldOut& group : groups)
+      if (group.ok) (*of_group++).*kind.beyond_noise = beyond_noise(group.*kind.errors, peak);
+  }
   return errors;
 }
 
 PredictionErrors all_groups(const std::vector<PredictionErrors>& groups) {
-  return {"", root_mean_square(groups, &PredictionErrors::position),
-          root_mean_square(groups, &PredictionErrors::force)};
+  PredictionErrors all;
+  for (const ReadingKind& kind : kReadingKinds) all.*kind.beyond_noise = root_mean_square(groups, kind.beyond_noise);
+  return all;
 }
 
 std::vector<FitReason> reasons_against_field(const DataSet& data, const FitOutcome& outcome) {

@@ -8,19 +8,30 @@
 namespace aspic {
 
 // Limits of figures under a good verdict.
-inline constexpr double kMissed = 4;                             // standard deviations, root mean square over a group
-inline constexpr double kTooManySquares = 2.25;                  // |r|^2 per reading
-inline constexpr double kPoorPosition = 0.05, kPoorForce = 0.1;  // held-out errors beyond the noise, over the peak
-inline constexpr double kSingle = 2;                             // multiple of them for a single group
+inline constexpr double kMissed = 4;             // standard deviations, root mean square over a group
+inline constexpr double kTooManySquares = 2.25;  // |r|^2 per reading
+inline constexpr double kSingle = 2;             // multiple of the limits of held-out errors for a single group
 
-// Errors of a held-out group beyond the noise of its readings, relative to the largest motion and force of all groups;
-// < 0: none.
+// Errors of a held-out group beyond the noise of its readings, relative to the largest motion, force and torque of all
+// groups, or to 10 standard deviations if that is more; < 0: none.
 struct PredictionErrors {
   std::string group;
-  double position = -1, force = -1;
+  double position = -1, force = -1, torque = -1;
 
   bool is_poor(double factor) const;  // exceeds a multiple of the limits
 };
+
+// Kinds of held-out readings.
+struct ReadingKind {
+  const char *name, *peak;
+  ReadingErrors HeldOut::*errors;
+  double PredictionErrors::*beyond_noise;
+  double limit;  // under a good verdict
+};
+inline constexpr ReadingKind kReadingKinds[] = {
+    {"position", "motion", &HeldOut::positions, &PredictionErrors::position, 0.05},
+    {"force", "force", &HeldOut::forces, &PredictionErrors::force, 0.1},
+    {"torque", "torque", &HeldOut::torques, &PredictionErrors::torque, 0.1}};
 
 // Readings of a fitted group with the largest error, root mean square in standard deviations.
 struct GroupError {

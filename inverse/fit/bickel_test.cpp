@@ -283,8 +283,8 @@ TEST(Simulate, IsTheLinearBodyWhereAllExamplesAgree) {
   const BickelPrediction p = simulate(e, e.cases[3], moduli, kGel);
   ASSERT_TRUE(p.ok) << p.failure;
   const HeldOut h = compare(subset(e, [&](const LoadCase& c) { return &c == &e.cases[3]; }), std::vector{p.prediction});
-  EXPECT_LT(h.relative_position_error(), 0.01);  // the volume term differs by what is of second order in the strain
-  EXPECT_LT(h.relative_force_error(), 0.1);
+  EXPECT_LT(h.positions.relative(), 0.01);  // the volume term differs by what is of second order in the strain
+  EXPECT_LT(h.forces.relative(), 0.1);
   // After retraction no deformation remains.
   const BickelPrediction back = simulate(e, e.cases[3], moduli, kGel, Path::load_and_back);
   ASSERT_TRUE(back.ok) << back.failure;
@@ -308,8 +308,8 @@ TEST(Predict, EveryBaselineFindsAHomogeneousLinearBody) {
   for (const Baseline b : kBaselines) {
     const HeldOut h = predict(b, with_group(e, left, false), with_group(e, left, true), kGel);
     ASSERT_TRUE(h.ok) << name(b) << ": " << h.failure;
-    EXPECT_LT(h.relative_position_error(), 0.02) << name(b);
-    EXPECT_LT(h.relative_force_error(), b == Baseline::bickel || b == Baseline::bickel_total ? 0.1 : 0.02) << name(b);
+    EXPECT_LT(h.positions.relative(), 0.02) << name(b);
+    EXPECT_LT(h.forces.relative(), b == Baseline::bickel || b == Baseline::bickel_total ? 0.1 : 0.02) << name(b);
   }
 }
 
@@ -323,9 +323,9 @@ TEST(Predict, OneModulusMissesAStiffeningBody) {
   for (const Baseline b : kBaselines) {
     const HeldOut h = predict(b, with_group(e, left, false), with_group(e, left, true), kGel);
     ASSERT_TRUE(h.ok) << name(b) << ": " << h.failure;
-    force.push_back(h.relative_force_error());
-    RecordProperty(std::string(name(b)) + ", positions", std::to_string(h.relative_position_error()));
-    RecordProperty(std::string(name(b)) + ", forces", std::to_string(h.relative_force_error()));
+    force.push_back(h.forces.relative());
+    RecordProperty(std::string(name(b)) + ", positions", std::to_string(h.positions.relative()));
+    RecordProperty(std::string(name(b)) + ", forces", std::to_string(h.forces.relative()));
   }
   EXPECT_GT(force[0], 0.05);
   EXPECT_LT(force[1], force[0]);

@@ -16,29 +16,32 @@ std::vector<std::string> groups_of(const Experiment& experiment) {
   return groups;
 }
 
-// Adds sums of squares, see finish().
+// Adds squares, see finish().
+void add(const Vec3d& error, const Vec3d& sigma, double measured, ReadingErrors& errors) {
+  errors.peak = std::max(errors.peak, measured);
+  errors.error += squared_norm(error);
+  errors.noise += squared_norm(sigma);
+  ++errors.count;
+}
+
 void add_case(const Experiment& experiment, const LoadCase& measured, const CasePrediction& predicted, HeldOut& h) {
   for (size_t i = 0; i < measured.positions.size(); ++i) {
     const MarkerReading& reading = measured.positions[i];
     if (reading.is_outlier) continue;
-    const double error = squared_norm(predicted.markers[i] - reading.position);
-    h.peak_motion =
-        std::max(h.peak_motion, norm(reading.position - at_rest(experiment, experiment.markers[reading.marker])));
-    h.largest_error = std::max(h.largest_error, std::sqrt(error));
-    h.position_error += error;
-    h.position_noise += squared_norm(reading.sigma);
-    ++h.readings;
+    const Vec3d error = predicted.markers[i] - reading.position;
+    h.largest_error = std::max(h.largest_error, norm(error));
+    add(error, reading.sigma, norm(reading.position - at_rest(experiment, experiment.markers[reading.marker])),
+        h.positions);
   }
-  if (!measured.force) return;
-  h.peak_force = std::max(h.peak_force, norm(*measured.force));
-  h.force_error += squared_norm(predicted.wrench.force - *measured.force);
-  h.force_noise += squared_norm(measured.force_sigma);
-  ++h.forces;
+  if (measured.force)
+    add(predicted.wrench.force - *measured.force, measured.force_sigma, norm(*measured.force), h.forces);
+  if (measured.torque)
+    add(predicted.wrench.torque - *measured.torque, measured.torque_sigma, norm(*measured.torque), h.torques);
 }
 
 void finish(HeldOut& h) {
-  for (double* sum : {&h.position_error, &h.position_noise}) *sum = std::sqrt(*sum / std::max(h.readings, 1));
-  for (double* sum : {&h.force_error, &h.force_noise}) *sum = std::sqrt(*sum / std::max(h.forces, 1));
+  for (ReadingErrors* errors : {&h.positions, &h.forces, &h.torques})
+    for (double* sum : {&errors->error, &errors->noise}) *sum = std::sqrt(*sum / std::max(errors->count, 1));
   h.ok = true;
 }
 
@@ -54,12 +57,11 @@ void predict(const Experiment& left_out, const ParameterMap& map, const Equilibr
   finish(h);
 }
 
-double root_mean_square(const std::vector<HeldOut>& groups, bool (*has)(const HeldOut&),
-                        double (*error)(const HeldOut&)) {
+double root_mean_square(const std::vector<HeldOut>& groups, ReadingErrors HeldOut::*kind) {
   double sum = 0;
   int count = 0;
   for (const HeldOut& h : groups)
-    if (h.ok && has(h)) sum += error(h) * error(h), ++count;
+    if (h.ok && (h.*kind).peak > 0) sum += (h.*kind).relative() * (h.*kind).relative(), ++count;
   return count > 0 ? std::sqrt(sum / count) : -1;
 }
 
@@ -107,12 +109,9 @@ CrossValidation cross_validate(const Experiment& experiment, const ParameterMap&
       h.failure = "the fit to the other cases failed: " + report.message;
     if (!h.ok) result.warnings.push_back(h.group + " could not be predicted: " + h.failure);
   }
-  result.position_error = root_mean_square(
-      result.groups, [](const HeldOut& h) { return h.peak_motion > 0; },
-      [](const HeldOut& h) { return h.relative_position_error(); });
-  result.force_error = root_mean_square(
-      result.groups, [](const HeldOut& h) { return h.peak_force > 0; },
-      [](const HeldOut& h) { return h.relative_force_error(); });
+  result.position_error = root_mean_square(result.groups, &HeldOut::positions);
+  result.force_error = root_mean_square(result.groups, &HeldOut::forces);
+  result.torque_error = root_mean_square(result.groups, &HeldOut::torques);
   return result;
 }
 

@@ -11,28 +11,30 @@
 
 namespace aspic {
 
+// Errors of readings of one kind: positions, forces or torques [m, N, N m].
+struct ReadingErrors {
+  int count = 0;     // number of readings
+  double peak = 0;   // measured maximum; of positions: of the displacement of a marker
+  double error = 0;  // root mean square of |predicted - measured|
+  double noise = 0;  // expected part from the standard deviations alone
+
+  double relative() const { return peak > 0 ? error / peak : 0; }
+  double relative_noise() const { return peak > 0 ? noise / peak : 0; }
+};
+
 struct HeldOut {
   std::string group;
   bool ok = false;
   std::string failure;  // why there is no prediction
-  int readings = 0;     // number of marker readings in the group
-  int forces = 0;
-  double peak_motion = 0;                   // measured maximum displacement of a marker [m]
-  double position_error = 0;                // root mean square of |predicted - measured| [m]
-  double largest_error = 0;                 // [m]
-  double position_noise = 0;                // expected part from the standard deviations alone [m]
-  double peak_force = 0;                    // measured maximum [N]
-  double force_error = 0, force_noise = 0;  // the same for forces [N]
-  std::vector<double> p;                    // fitted without the group
-
-  double relative_position_error() const { return peak_motion > 0 ? position_error / peak_motion : 0; }
-  double relative_force_error() const { return peak_force > 0 ? force_error / peak_force : 0; }
+  ReadingErrors positions, forces, torques;
+  double largest_error = 0;  // of the positions [m]
+  std::vector<double> p;     // fitted without the group
 };
 
 struct CrossValidation {
   std::vector<HeldOut> groups;  // in the order of the cases
   // Root mean square over the predicted groups, relative to the peak of each; < 0: none.
-  double position_error = -1, force_error = -1;
+  double position_error = -1, force_error = -1, torque_error = -1;
   std::vector<std::string> warnings;
 };
 

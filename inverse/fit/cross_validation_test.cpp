@@ -49,12 +49,12 @@ TEST(CrossValidation, OfTheRightModelLeavesTheNoise) {
   EXPECT_TRUE(result.warnings.empty());
   for (const HeldOut& h : result.groups) {
     ASSERT_TRUE(h.ok) << h.failure;
-    EXPECT_EQ(h.forces, 2);
-    EXPECT_EQ(h.readings, 2 * static_cast<int>(study.block.experiment.markers.size()));
-    EXPECT_NEAR(h.position_error, h.position_noise, 0.1 * h.position_noise);
-    EXPECT_LT(h.force_error, 2.5 * h.force_noise);
-    EXPECT_LT(h.relative_position_error(), 0.02);
-    EXPECT_GE(h.largest_error, h.position_error);
+    EXPECT_EQ(h.forces.count, 2);
+    EXPECT_EQ(h.positions.count, 2 * static_cast<int>(study.block.experiment.markers.size()));
+    EXPECT_NEAR(h.positions.error, h.positions.noise, 0.1 * h.positions.noise);
+    EXPECT_LT(h.forces.error, 2.5 * h.forces.noise);
+    EXPECT_LT(h.positions.relative(), 0.02);
+    EXPECT_GE(h.largest_error, h.positions.error);
     EXPECT_NE(h.p, result.groups[0].p == h.p ? result.groups[1].p : result.groups[0].p);
   }
   EXPECT_LT(result.position_error, 0.02);

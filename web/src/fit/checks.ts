@@ -1,7 +1,7 @@
 // The checks of the verdict: every figure beside its limit.
 import { element } from "../dom";
 import { short } from "../plots/numbers";
-import type { FitHead, Reason } from "./data";
+import { kReadingKinds, type FitHead, type Reason } from "./data";
 import { percent, row } from "./cells";
 import { numberTable } from "./numberTable";
 import { kQuantityNames } from "./trust";
@@ -43,9 +43,9 @@ function commonErrors({ figures: { common_errors: errors, limits } }: FitHead): 
 function heldOutErrors({ figures: { held_out: heldOut } }: FitHead): Check[] {
   if (!heldOut) return [{ what: "held-out groups", value: "not tested", limit: "", fails: false }];
   const list = [];
-  for (const [key, peak] of [["position", "motion"], ["force", "force"]] as const) {
-    const [error, limit] = [heldOut[key], heldOut.limits[key]];
-    if (error !== null) list.push({ what: `held-out ${key}s: error beyond the noise, of the largest ${peak}`, value: percent(error), limit: percent(limit), fails: error > limit });
+  for (const { name, peak } of kReadingKinds) {
+    const [error, limit] = [heldOut[name], heldOut.limits[name]];
+    if (error !== null) list.push({ what: `held-out ${name}s: error beyond the noise, of the largest ${peak}`, value: percent(error), limit: percent(limit), fails: error > limit });
   }
   return list;
 }

@@ -46,7 +46,21 @@ export interface CaseFigures {
   readings: number;
 }
 
-type GroupErrors = Record<"peak_motion" | "position_error" | "position_beyond_noise" | "peak_force" | "force_error" | "force_beyond_noise", MaybeNumber>;
+export type ReadingName = "position" | "force" | "torque";
+export type PeakName = "motion" | "force" | "torque";
+// Kinds of held-out readings.
+export interface ReadingKind {
+  name: ReadingName;
+  peak: PeakName;
+  unit: string;
+}
+export const kReadingKinds: readonly ReadingKind[] = [
+  { name: "position", peak: "motion", unit: "m" },
+  { name: "force", peak: "force", unit: "N" },
+  { name: "torque", peak: "torque", unit: "N m" },
+];
+
+type GroupErrors = Record<`peak_${PeakName}` | `${ReadingName}_${"error" | "noise" | "beyond_noise"}`, MaybeNumber>;
 
 export interface HeldOutGroup extends Partial<GroupErrors> {
   group: string;
@@ -55,9 +69,15 @@ export interface HeldOutGroup extends Partial<GroupErrors> {
   poor?: boolean; // above the limit of a single group
 }
 
+export type HeldOutFigures = Record<ReadingName | `largest_${PeakName}`, MaybeNumber> & {
+  groups: HeldOutGroup[];
+  poor: boolean;
+  limits: Record<ReadingName | "single", number>;
+};
+
 export interface Comparison {
   how: string; // "cross-validation" or "left out"
-  models: ({ model: string; failure?: string } & Record<"position" | "force", MaybeNumber>)[];
+  models: ({ model: string; failure?: string } & Record<ReadingName, MaybeNumber>)[];
 }
 
 export interface Reason {
@@ -118,7 +138,7 @@ export interface Figures {
   relaxation?: ({ ok: true } & RelaxationFigures) | { ok: false; failure: string };
   verdict: { good: boolean; text: string; reasons: Reason[] };
   limits: { missed: number; squares_per_reading: number };
-  held_out: { groups: HeldOutGroup[]; position: MaybeNumber; force: MaybeNumber; largest_motion: MaybeNumber; largest_force: MaybeNumber; poor: boolean; limits: { position: number; force: number; single: number } } | null;
+  held_out: HeldOutFigures | null;
   comparison: Comparison[];
   cases: CaseFigures[];
   histogram: { limit: number; counts: number[] };

@@ -3,7 +3,7 @@ import { element, type Child } from "../dom";
 import { short, withUnit } from "../plots/numbers";
 import type { MaybeNumber } from "../protocol";
 import { failedRow, percent, row } from "./cells";
-import { isCorrected, stiffness, type CaseFigures, type Figures, type HeldOutGroup } from "./data";
+import { isCorrected, kReadingKinds, stiffness, type CaseFigures, type Figures, type HeldOutFigures, type HeldOutGroup, type ReadingKind, type ReadingName } from "./data";
 import { numberTable } from "./numberTable";
 
 const ratio = (part: MaybeNumber | undefined, whole: MaybeNumber | undefined): MaybeNumber => (part === null || part === undefined || !((whole ?? 0) > 0) ? null : part / (whole ?? 1));
@@ -31,13 +31,17 @@ export function caseTable(figures: Figures): HTMLElement {
   return numberTable(["case", ...columns.map(([title]) => title)], 1, element("tbody", {}, ...rows));
 }
 
-function groupRow(g: HeldOutGroup, largest: { motion: MaybeNumber; force: MaybeNumber }): HTMLElement {
-  if (!g.ok) return failedRow(g.group, g.failure || "could not be predicted", 6, "bad");
-  const errors = (error: MaybeNumber | undefined, unit: string, peak: MaybeNumber | undefined, beyond: MaybeNumber | undefined): string[] =>
-    error === null || error === undefined ? ["–", "–", "–"] : [withUnit(error, unit, 3), percent(ratio(error, peak)), percent(beyond)];
+function errorCells(g: HeldOutGroup, { name, peak, unit }: ReadingKind, heldOut: HeldOutFigures): string[] {
+  const error = g[`${name}_error`];
+  if (error === null || error === undefined) return ["–", "–", "–"];
+  return [withUnit(error, unit, 3), percent(ratio(error, heldOut[`largest_${peak}`])), percent(g[`${name}_beyond_noise`])];
+}
+
+function groupRow(g: HeldOutGroup, kinds: readonly ReadingKind[], heldOut: HeldOutFigures): HTMLElement {
+  if (!g.ok) return failedRow(g.group, g.failure || "could not be predicted", 3 * kinds.length, "bad");
   return row(
     g.group,
-    [...errors(g.position_error, "m", largest.motion, g.position_beyond_noise), ...errors(g.force_error, "N", largest.force, g.force_beyond_noise)],
+    kinds.flatMap((kind) => errorCells(g, kind, heldOut)),
     g.poor ? "bad" : "",
   );
 }
@@ -45,13 +49,19 @@ function groupRow(g: HeldOutGroup, largest: { motion: MaybeNumber; force: MaybeN
 // Root mean square errors of the groups, and their limits.
 export function heldOutTable({ held_out: heldOut }: Figures): HTMLElement | null {
   if (!heldOut) return null;
-  const titles = ["held out", "position error", "of largest motion", "beyond noise", "force error", "of largest force", "beyond noise"];
   const { groups, limits } = heldOut;
-  const largest = { motion: heldOut.largest_motion, force: heldOut.largest_force };
-  const all = row("all (rms)", ["", "", percent(heldOut.position), "", "", percent(heldOut.force)], heldOut.poor ? "bad total" : "total");
-  const allowed = row("limit for all", ["", "", percent(limits.position), "", "", percent(limits.force)], "limit");
-  const single = groups.length > 1 ? row("limit for one group", ["", "", percent(limits.single * limits.position), "", "", percent(limits.single * limits.force)], "limit") : null;
-  return numberTable(titles, 1, element("tbody", {}, ...groups.map((g) => groupRow(g, largest)), all, allowed, single ?? ""));
+  const kinds = kReadingKinds.filter(({ name }) => groups.some((g) => typeof g[`${name}_error`] === "number"));
+  const titles = ["held out", ...kinds.flatMap(({ name, peak }) => [`${name} error`, `of largest ${peak}`, "beyond noise"])];
+  const total = (head: string, of: (name: ReadingName) => MaybeNumber, state: string) =>
+    row(
+      head,
+      kinds.flatMap(({ name }) => ["", "", percent(of(name))]),
+      state,
+    );
+  const all = total("all (rms)", (name) => heldOut[name], heldOut.poor ? "bad total" : "total");
+  const allowed = total("limit for all", (name) => limits[name], "limit");
+  const single = groups.length > 1 ? total("limit for one group", (name) => limits.single * limits[name], "limit") : null;
+  return numberTable(titles, 1, element("tbody", {}, ...groups.map((g) => groupRow(g, kinds, heldOut)), all, allowed, single ?? ""));
 }
 
 const kHow: Record<string, string> = {
@@ -65,7 +75,16 @@ export function comparisonTables({ comparison }: Figures): Child[] {
   const compared = comparison.filter(({ models }) => models.length > 1);
   if (compared.length === 0) return [element("p", { class: "hint" }, `No simpler model was compared. ${kLeaveOut}`)];
   return compared.flatMap(({ how, models }) => {
-    const rows = models.map(({ model, position, force, failure }) => (failure === undefined ? row(model, [percent(position), percent(force)]) : failedRow(model, failure, 2)));
-    return [element("h3", {}, `Simpler models: ${kHow[how] ?? how}`), element("div", { class: "wide" }, numberTable(["model", "positions, beyond noise", "forces, beyond noise"], 1, element("tbody", {}, ...rows)))];
+    const kinds = kReadingKinds.filter(({ name }) => models.some((m) => typeof m[name] === "number"));
+    const rows = models.map((m) =>
+      m.failure === undefined
+        ? row(
+            m.model,
+            kinds.map(({ name }) => percent(m[name])),
+          )
+        : failedRow(m.model, m.failure, kinds.length),
+    );
+    const titles = ["model", ...kinds.map(({ name }) => `${name}s, beyond noise`)];
+    return [element("h3", {}, `Simpler models: ${kHow[how] ?? how}`), element("div", { class: "wide" }, numberTable(titles, 1, element("tbody", {}, ...rows)))];
   });
 }
