@@ -253,9 +253,11 @@ Parts find_parts(LeastSquares& model, const FittedField& field, int unknown, int
     if (!s.ok) return parts;
     model.multiply_transposed(r, g);
     parts.estimate = sample_parts({mesh, s, g, first, z, noise_factor}, levels, options);
-    levels = parts.estimate.levels;
     if (is_last) widen(parts.estimate, z);
-    std::copy(parts.estimate.mean.begin(), parts.estimate.mean.end(), z.begin());
+    // The mean with the last pass damps cycles of two passes.
+    const double part = pass == 0 || is_last ? 1 : 0.5;
+    for (int k = 0; k < count; ++k) levels[k] += part * (parts.estimate.levels[k] - levels[k]);
+    for (int t = 0; t < tets; ++t) z[t] += part * (parts.estimate.mean[t] - z[t]);
   }
   parts.ok = model.evaluate(parts.p, r);
   parts.squares = dot(r, r);
