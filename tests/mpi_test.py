@@ -5,7 +5,10 @@ usage: ASPIC=... ASPIC_MPI=path/to/aspic-mpi MPIRUN=... MPI_EXCEPTION=... mpi_te
 """
 import base64
 import csv
+import math
 import os
+import random
+import resource
 import pathlib
 import shutil
 import signal
@@ -406,6 +409,123 @@ material = { model = "stable_neo_hookean", young = "X > 0.05 ? 1e7 : 1e4", poiss
                 self.assertIn("body 'beam': its mesh has " + defect, said)
         self.msh("bad.msh", True, points + [(0.1, 0.1, 9.0)], tets)
         self.assertIn("unreferenced_vertices", self.mpi(3, "run", self.mesh_scene("bad"), code=2).stderr)
+
+
+class Orders(Ranks):
+    """Orders of convergence, certificates and energies of runs on 2 and 4 ranks, against closed forms in this file."""
+
+    COUNTS = (2, 4)
+
+    def steps_of(self, ranks, text):
+        """Runs a scene and returns the rows of steps.csv as numbers, with certificate and energy balance checked."""
+        self.write("order.toml", text)
+        self.mpi(ranks, "run", "order.toml", "--out", "run", "--force", "--quiet")
+        rows = [{name: float(value) if value and name not in ("status", "criterion", "initial_guess", "energy_bound",
+                                                              "state_hash", "min_gap_pair") else value
+                 for name, value in row.items()} for row in self.steps("run")]
+        before, *later = [self.first_row(), *rows]
+        for row in later:
+            self.assertEqual(row["status"], "converged")
+            self.assertLess(row["residual"], row["residual_threshold"])
+            self.assertIn(row["energy_bound"], ("holds", "none"))
+            change = row["kinetic"] + row["potential_total"] - before["kinetic"] - before["potential_total"]
+            balance = row["pin_work"] - row["damping_loss"] - row["numerical_loss"] + row["residual_work"]
+            scale = abs(row["kinetic"]) + abs(row["potential_total"]) + 1e-3
+            if row["initial_guess"] != "none" and row["energy_bound"] == "holds":  # statics has no energy balance
+                self.assertAlmostEqual(change, balance, delta=1e-12 * scale)
+            before = row
+        return rows
+
+    def first_row(self):
+        with open(self.folder / "run/steps.csv", newline="") as file:
+            row = next(csv.DictReader(file))
+        return {name: float(row[name]) for name in ("kinetic", "potential_total")}
+
+    def orders(self, errors):
+        return [math.log2(a / b) for a, b in zip(errors, errors[1:])]
+
+    def falling(self, step, pin=True):
+        text = BEAM.format(time="", solver="", output="vtu = false", before_pin="", body="", cells="6, 2, 2")
+        text = text.replace("step = 0.01\nduration = 0.03", f"step = {step!r}\nduration = 0.08")
+        return text if pin else text.replace('[[body.pin]]\nwhere = "x < 1e-9"\n', "")
+
+    def test_a_free_body_falls_by_the_closed_form(self):
+        """Backward Euler: the body falls by g h^2 n (n + 1) / 2, an error of g h t / 2, and loses m (g h)^2 / 2 per step."""
+        g, mass, t = 9.81, 1000 * 0.4 * 0.1 * 0.1, 0.08
+        for ranks in self.COUNTS:
+            errors = []
+            for step in (0.02, 0.01, 0.005):
+                rows, n = self.steps_of(ranks, self.falling(step, pin=False)), round(t / step)
+                heights = self.positions("run")[1::3]
+                fallen = {round(y, 9) for y in heights} - {round(y - g * step**2 * n * (n + 1) / 2, 9) for y in (0, 0.05, 0.1)}
+                self.assertEqual(fallen, set(), f"{ranks} ranks")
+                errors.append(max(heights) - (0.1 - g * t**2 / 2))
+                for row in rows:
+                    self.assertAlmostEqual(row["numerical_loss"], mass * (g * step)**2 / 2, delta=1e-9)
+            for order in self.orders([abs(e) for e in errors]):
+                self.assertAlmostEqual(order, 1, delta=1e-6)
+
+    def test_backward_euler_has_order_one(self):
+        """A clamped beam swings; the reference has steps of 1/32 of the largest."""
+        self.write("fine.toml", self.falling(0.02 / 32))
+        self.aspic("run", "fine.toml", "--out", "fine", "--quiet")
+        for ranks in self.COUNTS:
+            errors = []
+            for step in (0.02, 0.01, 0.005):
+                self.steps_of(ranks, self.falling(step))
+                errors.append(self.distance("fine", "run"))
+            # With an error C h (1 - 1 / 32), C h (1/2 - 1/32), ... the measured order is above 1.
+            for order, exact in zip(self.orders(errors), (math.log2(31 / 15), math.log2(15 / 7))):
+                self.assertAlmostEqual(order, exact, delta=0.1, msg=f"{ranks} ranks: {errors}")
+
+    BAR = """gravity = [50, 0, 0]
+[time]
+integrator = "quasi_static"
+step = 1
+duration = 1
+[solver]
+tolerance = 1e-10
+linear = "multigrid"
+[output]
+vtu = false
+[[body]]
+name = "bar"
+shape = {{ box = {{ upper = [0.4, 0.1, 0.1], cells = [{0}, {1}, {1}] }} }}
+material = {{ model = "stvk", young = 1e5, poisson = 0.3 }}
+[[body.pin]]
+name = "wall"
+where = "x < 1e-9"
+[[body.pin]]
+name = "guide"
+where = "x > 1e-9"
+axes = "yz"
+"""
+
+    def energy_of_bar(self):
+        """Least energy of a hanging bar that cannot contract laterally: psi = M (s^2 - 1)^2 / 8, P = M s (s^2 - 1) / 2."""
+        young, poisson, load, length, area, n = 1e5, 0.3, 1000 * 50, 0.4, 0.01, 1000
+        modulus = young * (1 - poisson) / ((1 + poisson) * (1 - 2 * poisson))
+        total = 0
+        for i in range(n + 1):  # Simpson's rule
+            stress, s = load * length * (1 - i / n), 1.0
+            for _ in range(30):
+                s -= (modulus * s * (s * s - 1) / 2 - stress) / (modulus * (3 * s * s - 1) / 2)
+            weight = (1 if i in (0, n) else 4 if i % 2 else 2) * length / n / 3
+            total += weight * area * (modulus / 8 * (s * s - 1)**2 - stress * (s - 1))
+        return total
+
+    def test_equilibria_of_linear_tets_have_energies_of_order_two(self):
+        exact, weight = self.energy_of_bar(), 1000 * 0.4 * 0.1 * 0.1 * 50
+        for ranks in self.COUNTS:
+            errors = []
+            for n in (1, 2, 4):
+                row = self.steps_of(ranks, self.BAR.format(4 * n, n))[-1]
+                errors.append(row["potential_total"] - self.first_row()["potential_total"] - exact)
+                self.assertAlmostEqual(row["reaction_bar.wall_x"], -weight, delta=1e-6 * weight)
+            self.assertGreater(min(errors), 0, "a conforming method overestimates the energy")
+            orders = self.orders(errors)
+            self.assertGreater(orders[0], 1.8, f"{ranks} ranks: {errors}")
+            self.assertAlmostEqual(orders[1], 2, delta=0.1, msg=f"{ranks} ranks: {errors}")
 
 
 class Shares(Ranks):
