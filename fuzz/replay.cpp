@@ -47,9 +47,22 @@ class Random {
 
 // Numbers at which programs fail: the limits of integers, and sizes.
 std::uint64_t dangerous_number(Random& random) {
-  constexpr std::uint64_t kNumbers[] = {
-      0, 1, 2, 3, 4, 0x7f, 0xff, 0x7fff, 0xffff, 0x7fffffff, 0x80000000, 0xffffffff, 0x7ff0000000000000,
-      0x7fffffffffffffff, 0x8000000000000000, 0xffffffffffffffff};
+  constexpr std::uint64_t kNumbers[] = {0,
+                                        1,
+                                        2,
+                                        3,
+                                        4,
+                                        0x7f,
+                                        0xff,
+                                        0x7fff,
+                                        0xffff,
+                                        0x7fffffff,
+                                        0x80000000,
+                                        0xffffffff,
+                                        0x7ff0000000000000,
+                                        0x7fffffffffffffff,
+                                        0x8000000000000000,
+                                        0xffffffffffffffff};
   return kNumbers[random.below(std::size(kNumbers))] - random.below(2);
 }
 
