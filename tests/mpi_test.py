@@ -141,6 +141,13 @@ class Equality(Ranks):
     def test_two_bodies_with_moving_pins_and_tractions(self):
         self.assert_equal_runs((1, 2, 3, 4), self.scene(body=MANY, solver='linear = "block_jacobi"'))
 
+    def test_rayleigh_damping(self):
+        body = "damping = { mass = 2, stiffness = 0.01 }\n"
+        self.assert_equal_runs((1, 2, 4), self.scene(before_pin=body, body=MANY, solver='linear = "multigrid"'))
+        self.assertGreater(min(float(loss) for loss in self.column("ranks", "damping_loss")), 0)
+        for serial, distributed in zip(self.column("serial", "damping_loss"), self.column("ranks", "damping_loss")):
+            self.assertAlmostEqual(float(serial), float(distributed), delta=1e-9)
+
     def test_equilibrium_by_decrement(self):
         scene = self.scene(time='integrator = "quasi_static"', solver='criterion = "decrement"\ninitial_guess = "current"')
         self.assert_equal_runs((1, 3), scene)
@@ -289,6 +296,8 @@ value = [50, "-100 * t", 0]
 class Slices(Ranks):
     """Binary .msh files of version 4.1 are read in slices, others in one piece, with the same bits."""
 
+    MUTANTS = int(os.environ.get("ASPIC_MUTANTS", 30))
+
     BODIES = """translate = [0, 0, 0.5]
 rotate = { axis = [1, 2, 3], angle_deg = 20 }
 [[body.pin]]
@@ -409,6 +418,42 @@ material = { model = "stable_neo_hookean", young = "X > 0.05 ? 1e7 : 1e4", poiss
                 self.assertIn("body 'beam': its mesh has " + defect, said)
         self.msh("bad.msh", True, points + [(0.1, 0.1, 9.0)], tets)
         self.assertIn("unreferenced_vertices", self.mpi(3, "run", self.mesh_scene("bad"), code=2).stderr)
+
+
+    def mutant(self, data, number):
+        """A copy with one to three damages, the same in every run."""
+        rng, data = random.Random(number), bytearray(data)
+        for _ in range(rng.randint(1, 3)):
+            at, kind = rng.randrange(len(data)), rng.randrange(4)
+            if kind == 0:
+                data[at] ^= 1 << rng.randrange(8)
+            elif kind == 1:
+                value = rng.choice((0, 1, -1, 2**31 - 1, 2**31, 2**63 - 1, -2**63, 0x7ff0 << 48))
+                data[at:at + 8] = struct.pack("<q", value)[:len(data) - at]
+            elif kind == 2:
+                del data[at:at + rng.randint(1, 40)]
+            else:
+                data[at:at] = data[:rng.randint(1, 40)]
+        return bytes(data)
+
+    def test_damaged_files_are_read_or_refused(self):
+        """Ranks neither crash, hang nor need more memory than for the whole file."""
+        points, tets = self.bar((2, 1, 1))
+        self.msh("good.msh", True, points, tets)
+        good, scene = (self.folder / "good.msh").read_bytes(), self.mesh_scene("bad")
+        limit = 8 << 30  # of addresses [bytes]
+        codes = []
+        for number in range(self.MUTANTS):
+            (self.folder / "bad.msh").write_bytes(self.mutant(good, number))
+            command = self.command(1 + number % 2, "run", scene, "--out", "bad", "--force", "--quiet", "--steps", "1")
+            done = subprocess.run(command, cwd=self.folder, env=environment(), capture_output=True, text=True, timeout=60,
+                                  preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_AS, (limit, limit)))
+            said = f"mutant {number}: {done.stdout}{done.stderr}"
+            self.assertIn(done.returncode, (0, 2, 3), said)
+            self.assertNotIn("signal", said)
+            self.assertTrue(done.returncode != 2 or "error:" in done.stderr, said)
+            codes.append(done.returncode)
+        self.assertTrue({0, 2} <= set(codes), "some are read, and some refused")
 
 
 class Orders(Ranks):
