@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 #include <optional>
 
 #include "io/gmsh.h"
@@ -57,7 +58,7 @@ void gmsh_slices(std::string_view bytes) {
   const std::filesystem::path path = folder_of_process() / "slices.msh";
   put_file(path, bytes);
   const std::optional<GmshSlices> file = GmshSlices::open(path);
-  if (!file) return;
+  if (!file) return gmsh(bytes);
   MeshContent mesh;
   for (std::int64_t v = 0; v < file->vertex_count(); v += kSlice)
     for (const Vec3d& x : file->vertices(v, std::min(kSlice, file->vertex_count() - v))) mesh.vertices.push_back(x);
@@ -69,7 +70,8 @@ void gmsh_slices(std::string_view bytes) {
   require(whole.vertices.size() == mesh.vertices.size() && whole.tets == mesh.tets && whole.region == mesh.region,
           "slices have the tets of the whole");
   for (size_t v = 0; v < mesh.vertices.size(); ++v)
-    require(whole.vertices[v].a == mesh.vertices[v].a, "slices have the vertices of the whole");
+    require(std::memcmp(&whole.vertices[v], &mesh.vertices[v], sizeof(Vec3d)) == 0,
+            "slices have the vertices of the whole");
 }
 
 void medit(std::string_view bytes) { require_valid(parse_medit("file", bytes)); }

@@ -94,9 +94,10 @@ std::string describe(const DataFinding& finding) {
   return finding.where + ": " + finding.what + (finding.remedy.empty() ? "" : "; ") + finding.remedy;
 }
 
-// Rejects data sets with errors and prints the first warnings of others.
-void check_findings(const DataSet& data, const fs::path& path) {
+// Rejects data sets with errors and prints the first warnings of others, but not for each job.
+void check_findings(const DataSet& data, const FitArguments& arguments) {
   constexpr int kMaxPrinted = 3;
+  const fs::path& path = arguments.data;
   std::vector<std::string> errors, warnings;
   for (const DataFinding& finding : diagnose(data)) {
     if (finding.severity == Severity::error) errors.push_back(describe(finding));
@@ -106,7 +107,7 @@ void check_findings(const DataSet& data, const fs::path& path) {
     errors.push_back(fmt::format("(aspic check {} prints details)", path.string()));
     throw InvalidInput(errors);
   }
-  const int count = static_cast<int>(warnings.size());
+  const int count = arguments.job.empty() ? static_cast<int>(warnings.size()) : 0;
   for (int i = 0; i < std::min(count, kMaxPrinted); ++i) fmt::print(stderr, "warning: {}\n", warnings[i]);
   if (count > kMaxPrinted)
     fmt::print(stderr, "warning: and {} more: aspic check {}\n", count - kMaxPrinted, printable(path.string()));
@@ -258,9 +259,9 @@ int end_of_complete(const FitArguments& arguments) {
   return is_good || arguments.allow_unconverged || !arguments.job.empty() ? exit_done : exit_unconverged;
 }
 
-bool has_nothing_to_do(const FitArguments& arguments) {
+bool has_nothing_to_do(const FitArguments& arguments, const std::string& options) {
   if (!arguments.continues && !arguments.lists_jobs && arguments.job.empty()) return false;
-  return FitFolder::is_complete(arguments.out);
+  return FitFolder::is_complete(arguments.out, options);
 }
 
 int run(const FitArguments& arguments) {
@@ -274,12 +275,12 @@ int run(const FitArguments& arguments) {
   if (arguments.out.extension() != ".vtu")
     throw InvalidInput(arguments.out.string() + ": a material file is a .vtu; choose such a name with -o");
   const DataSet data = read_data_set(arguments.data, registration_kind(arguments));
-  check_findings(data, arguments.data);
+  check_findings(data, arguments);
   plan = completed(std::move(plan), data.experiment);
   std::string options = "# aspic fit\ndata = \"" + fingerprint_of(data.experiment) + "\"\n" + text_of(plan);
   if (!data.histories.empty()) options += "histories = \"" + fingerprint_of(data.histories) + "\"\n";
   options += origins_of(arguments, options_file);
-  if (has_nothing_to_do(arguments)) return end_of_complete(arguments);
+  if (has_nothing_to_do(arguments, options)) return end_of_complete(arguments);
   FitFolder folder = FitFolder::open(arguments.out, options, existing(arguments));
   if (!arguments.job.empty() && FitJobs::is_done(folder.jobs(), arguments.job)) return exit_done;
   if (data.registration && arguments.job.empty())

@@ -68,9 +68,12 @@ const char* to_string(FitStage stage) {
   return kNames[static_cast<size_t>(stage)];
 }
 
-bool FitFolder::is_complete(const fs::path& material) {
-  const fs::path path = fs::path(material).replace_extension(".fit");
-  return fs::exists(options_file(path)) && journals(path).empty() && fs::exists(material);
+bool FitFolder::is_complete(const fs::path& material, const std::string& options) {
+  FitFolder folder;
+  folder.path_ = fs::path(material).replace_extension(".fit");
+  if (!fs::exists(options_file(folder.path_)) || !journals(folder.path_).empty() || !fs::exists(material)) return false;
+  folder.require_same(options);
+  return true;
 }
 
 void FitFolder::require_same(const std::string& options) const {

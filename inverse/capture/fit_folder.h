@@ -25,8 +25,8 @@ class FitFolder {
 
   const std::filesystem::path& path() const { return path_; }
   std::filesystem::path report() const { return path_ / "report.html"; }
-  // Whether the fit of this material file has ended, with whichever options.
-  static bool is_complete(const std::filesystem::path& material);
+  // Whether the fit of this material file has ended. Throws InvalidInput if it had other options.
+  static bool is_complete(const std::filesystem::path& material, const std::string& options);
 
   FitMemory memory() const { return {path_, start_}; }
   bool is_resumed() const { return start_ == JournalStart::resume; }
