@@ -296,7 +296,7 @@ value = [50, "-100 * t", 0]
 class Slices(Ranks):
     """Binary .msh files of version 4.1 are read in slices, others in one piece, with the same bits."""
 
-    MUTANTS = int(os.environ.get("ASPIC_MUTANTS", 30))
+    MUTANTS = int(os.environ.get("ASPIC_MUTANTS", 20))
 
     BODIES = """translate = [0, 0, 0.5]
 rotate = { axis = [1, 2, 3], angle_deg = 20 }
@@ -512,16 +512,17 @@ class Orders(Ranks):
 
     def test_backward_euler_has_order_one(self):
         """A clamped beam swings; the reference has steps of 1/32 of the largest."""
-        self.write("fine.toml", self.falling(0.02 / 32))
+        self.write("fine.toml", self.falling(0.01 / 32))
         self.aspic("run", "fine.toml", "--out", "fine", "--quiet")
         for ranks in self.COUNTS:
             errors = []
-            for step in (0.02, 0.01, 0.005):
+            for step in (0.01, 0.005, 0.0025):
                 self.steps_of(ranks, self.falling(step))
                 errors.append(self.distance("fine", "run"))
-            # With an error C h (1 - 1 / 32), C h (1/2 - 1/32), ... the measured order is above 1.
-            for order, exact in zip(self.orders(errors), (math.log2(31 / 15), math.log2(15 / 7))):
-                self.assertAlmostEqual(order, exact, delta=0.1, msg=f"{ranks} ranks: {errors}")
+            # Errors C h have C h (1 - 1/32), C h (1/2 - 1/32), ... with this reference. The next term of the error halves.
+            first, second = (exact - order for order, exact in zip(self.orders(errors), (math.log2(31 / 15), math.log2(15 / 7))))
+            self.assertLess(abs(first), 0.2, f"{ranks} ranks: {errors}")
+            self.assertLess(abs(second), 0.7 * abs(first), f"{ranks} ranks: {errors}")
 
     BAR = """gravity = [50, 0, 0]
 [time]
