@@ -1,6 +1,10 @@
+#include <algorithm>
 #include <cmath>
+#include <cstring>
+#include <optional>
 
 #include "io/gmsh.h"
+#include "io/gmsh_slices.h"
 #include "io/medit.h"
 #include "io/mesh_content.h"
 #include "io/obj.h"
@@ -11,6 +15,7 @@
 #include "io/vtu.h"
 #include "mesh/doctor.h"
 #include "mesh/surface.h"
+#include "several_files.h"
 #include "targets.h"
 
 namespace aspic::fuzz {
@@ -47,6 +52,28 @@ void require_lengths(const std::vector<Field>& fields, size_t items) {
 }  // namespace
 
 void gmsh(std::string_view bytes) { require_valid(parse_gmsh("file", bytes)); }
+
+void gmsh_slices(std::string_view bytes) {
+  constexpr std::int64_t kSlice = 7;
+  const std::filesystem::path path = folder_of_process() / "slices.msh";
+  put_file(path, bytes);
+  const std::optional<GmshSlices> file = GmshSlices::open(path);
+  if (!file) return gmsh(bytes);
+  MeshContent mesh;
+  for (std::int64_t v = 0; v < file->vertex_count(); v += kSlice)
+    for (const Vec3d& x : file->vertices(v, std::min(kSlice, file->vertex_count() - v))) mesh.vertices.push_back(x);
+  for (std::int64_t t = 0; t < file->tet_count(); t += kSlice)
+    for (const Tet& tet : file->tets(t, std::min(kSlice, file->tet_count() - t))) mesh.tets.push_back(tet);
+  for (std::int64_t t = 0; file->has_regions() && t < file->tet_count(); ++t) mesh.region.push_back(file->region(t));
+  require_valid(mesh);
+  const MeshContent whole = parse_gmsh("file", bytes);
+  require(whole.vertices.size() == mesh.vertices.size() && whole.tets == mesh.tets && whole.region == mesh.region,
+          "slices have the tets of the whole");
+  for (size_t v = 0; v < mesh.vertices.size(); ++v)
+    require(std::memcmp(&whole.vertices[v], &mesh.vertices[v], sizeof(Vec3d)) == 0,
+            "slices have the vertices of the whole");
+}
+
 void medit(std::string_view bytes) { require_valid(parse_medit("file", bytes)); }
 void obj(std::string_view bytes) { require_valid(parse_obj("file", bytes)); }
 void off(std::string_view bytes) { require_valid(parse_off("file", bytes)); }

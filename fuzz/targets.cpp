@@ -8,6 +8,7 @@ namespace aspic::fuzz {
 std::span<const Target> targets() {
   static constexpr auto kTargets = std::to_array<Target>({
       {"gmsh", gmsh},
+      {"gmsh_slices", gmsh_slices},
       {"medit", medit},
       {"tetgen", tetgen},
       {"vtu", vtu},

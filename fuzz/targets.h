@@ -18,6 +18,7 @@ struct Target {
 
 // Surfaces and meshes.
 void gmsh(std::string_view bytes);
+void gmsh_slices(std::string_view bytes);  // compared with gmsh()
 void medit(std::string_view bytes);
 void tetgen(std::string_view bytes);  // .node, a line "====", .ele
 void vtu(std::string_view bytes);

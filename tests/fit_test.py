@@ -4,15 +4,19 @@
 usage: ASPIC=path/to/aspic fit_test.py [TestCase...]
 """
 import atexit
+import contextlib
 import csv
 import functools
 import json
+import os
 import pathlib
+import random
 import re
 import shutil
 import signal
 import subprocess
 import tempfile
+import time
 import unittest
 
 from command_line import ASPIC, CommandLine
@@ -269,6 +273,107 @@ class FitInterruption(FitCommand):
         code, _ = self.interrupt(signal.SIGKILL)
         self.assertEqual(code, -signal.SIGKILL)
         self.resume_and_compare()
+
+
+class FitJobs(FitCommand):
+    """Other processes compute the independent fits, in any order, and some are killed: the bits are those of one process."""
+
+    LINES = ("mesh_errors = false", "iterations = 12")
+    FIELD = ("--options", "jobs.toml", "--unknown", "young=handles:6", "--known", "poisson=0.4", "--allow-unconverged")
+    LAWS = ("--options", "jobs.toml", "--unknown", "young=uniform", "--known", "poisson=0.4", "--allow-unconverged",
+            "--model", "auto")
+
+    def setUp(self):
+        super().setUp()
+        self.write("jobs.toml", "\n".join(self.LINES) + "\n")
+        self.random = random.Random(7)
+
+    def jobs(self, options, codes=(4,)):
+        done = subprocess.run([ASPIC, "fit", "layers", *options, "-o", "part.vtu", "--jobs", "--program", ASPIC],
+                              cwd=self.folder, capture_output=True, text=True, timeout=300)
+        self.assertIn(done.returncode, codes, done.stderr)
+        return done.returncode
+
+    def lines(self):
+        return (self.folder / "part.fit/jobs.txt").read_text().splitlines()
+
+    def run_lines(self, lines, kills=0):
+        """Runs shuffled lines, two at a time; kills some of their processes at random times."""
+        self.random.shuffle(lines)
+        process = subprocess.Popen(["xargs", "-0", "-n", "1", "-P", "2", "sh", "-c"], stdin=subprocess.PIPE, cwd=self.folder,
+                                   stdout=subprocess.PIPE, stderr=subprocess.STDOUT)
+        process.stdin.write("\0".join("exec " + line for line in lines).encode())
+        process.stdin.close()
+        while kills > 0 and process.poll() is None:
+            time.sleep(self.random.uniform(0, 0.1))
+            children = subprocess.run(["pgrep", "-P", str(process.pid)], capture_output=True, text=True).stdout.split()
+            for child in children[:1]:
+                with contextlib.suppress(ProcessLookupError):
+                    os.kill(int(child), signal.SIGKILL)
+            kills -= 1
+        said = process.stdout.read().decode()
+        process.stdout.close()
+        process.wait(timeout=300)
+        return process.returncode, said
+
+    def run_rounds(self, options):
+        """Repeats --jobs and its lines until the fit is complete; returns the names of all jobs, by round."""
+        rounds = []
+        while self.jobs(options, codes=(0, 4)) == 4:
+            lines = self.lines()
+            rounds.append({line.split(" --job ")[1].rsplit("-", 1)[0] for line in lines})
+            self.assertLess(len(rounds), 12, "no end")
+            if len(rounds) == 1:
+                self.run_lines(list(lines), kills=3)
+                self.jobs(options)  # lists what was killed
+                again = self.lines()
+                self.assertTrue(set(again) <= set(lines) and again, "the killed jobs are listed again")
+            self.assertEqual(self.run_lines(list(lines)), (0, ""), "lines of finished jobs do nothing")
+        return rounds
+
+    def assert_equal_fits(self):
+        for name in ("vtu", "fit/history.csv"):
+            self.assertEqual(self.bytes_of(f"part.{name}"), self.bytes_of(f"whole.{name}"), name)
+        # Equilibria count those of this process.
+        figures = [json.loads(re.sub(rb'"equilibria": *\d+', b'"x": 0', self.bytes_of(f"{name}.fit/figures.json")))
+                   for name in ("part", "whole")]
+        self.assertEqual(*figures)
+        self.assertTrue(figures[0]["held_out"])
+        self.assertEqual(sorted(p.name for p in (self.folder / "part.fit").iterdir()),
+                         sorted(p.name for p in (self.folder / "whole.fit").iterdir()), "no jobs remain")
+
+    def test_groups_of_a_field(self):
+        shutil.copytree(fitted(self.FIELD, self.LINES), self.folder, dirs_exist_ok=True)
+        rounds = self.run_rounds(self.FIELD)
+        self.assertEqual(rounds[0], {"held_out_1", "held_out_2", "one_value_held_out_1", "one_value_held_out_2"})
+        self.assert_equal_fits()
+
+    def test_laws(self):
+        shutil.copytree(fitted(self.LAWS, self.LINES), self.folder, dirs_exist_ok=True)
+        rounds = self.run_rounds(self.LAWS)
+        self.assertIn("law_yeoh_first", rounds[0])
+        self.assertIn("law_yeoh_held_out_2", rounds[1])
+        self.assertIn("held_out_2", rounds[-1])
+        self.assert_equal_fits()
+
+    def test_mistakes_and_repeated_commands(self):
+        self.assertIn("no fit has been begun", self.fit(*self.FIELD, "-o", "part.vtu", "--job", "x", code=2).stderr)
+        self.jobs(self.FIELD)
+        self.assertIn("no such job", self.fit(*self.FIELD, "-o", "part.vtu", "--job", "x", code=2).stderr)
+        other = [*self.FIELD[:-1], "--model", "stvk"]
+        self.assertIn("model", self.fit(*other, "-o", "part.vtu", "--jobs", code=2).stderr)
+        lines = self.lines()
+        self.assertEqual(self.run_lines(lines[:1]), (0, ""))
+        result = next((self.folder / "part.fit/jobs").iterdir())
+        result.write_bytes(result.read_bytes()[:-1])  # damaged: counts as missing
+        self.jobs(self.FIELD)
+        self.assertEqual(sorted(self.lines()), sorted(lines))
+        self.assertEqual(self.fit(*self.FIELD, "-o", "part.vtu", "--continue").returncode, 0)  # computes the jobs itself
+        material = self.bytes_of("part.vtu")
+        self.assertIn("complete", self.fit(*self.FIELD, "-o", "part.vtu", "--continue").stdout)
+        self.assertIn("model", self.fit(*other, "-o", "part.vtu", "--continue", code=2).stderr)
+        self.assertEqual(self.run_lines(lines), (0, ""))
+        self.assertEqual(self.bytes_of("part.vtu"), material)
 
 
 if __name__ == "__main__":

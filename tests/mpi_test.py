@@ -5,7 +5,10 @@ usage: ASPIC=... ASPIC_MPI=path/to/aspic-mpi MPIRUN=... MPI_EXCEPTION=... mpi_te
 """
 import base64
 import csv
+import math
 import os
+import random
+import resource
 import pathlib
 import shutil
 import signal
@@ -137,6 +140,13 @@ class Equality(Ranks):
 
     def test_two_bodies_with_moving_pins_and_tractions(self):
         self.assert_equal_runs((1, 2, 3, 4), self.scene(body=MANY, solver='linear = "block_jacobi"'))
+
+    def test_rayleigh_damping(self):
+        body = "damping = { mass = 2, stiffness = 0.01 }\n"
+        self.assert_equal_runs((1, 2, 4), self.scene(before_pin=body, body=MANY, solver='linear = "multigrid"'))
+        self.assertGreater(min(float(loss) for loss in self.column("ranks", "damping_loss")), 0)
+        for serial, distributed in zip(self.column("serial", "damping_loss"), self.column("ranks", "damping_loss")):
+            self.assertAlmostEqual(float(serial), float(distributed), delta=1e-9)
 
     def test_equilibrium_by_decrement(self):
         scene = self.scene(time='integrator = "quasi_static"', solver='criterion = "decrement"\ninitial_guess = "current"')
@@ -286,6 +296,8 @@ value = [50, "-100 * t", 0]
 class Slices(Ranks):
     """Binary .msh files of version 4.1 are read in slices, others in one piece, with the same bits."""
 
+    MUTANTS = int(os.environ.get("ASPIC_MUTANTS", 20))
+
     BODIES = """translate = [0, 0, 0.5]
 rotate = { axis = [1, 2, 3], angle_deg = 20 }
 [[body.pin]]
@@ -406,6 +418,160 @@ material = { model = "stable_neo_hookean", young = "X > 0.05 ? 1e7 : 1e4", poiss
                 self.assertIn("body 'beam': its mesh has " + defect, said)
         self.msh("bad.msh", True, points + [(0.1, 0.1, 9.0)], tets)
         self.assertIn("unreferenced_vertices", self.mpi(3, "run", self.mesh_scene("bad"), code=2).stderr)
+
+
+    def mutant(self, data, number):
+        """A copy with one to three damages, the same in every run."""
+        rng, data = random.Random(number), bytearray(data)
+        for _ in range(rng.randint(1, 3)):
+            at, kind = rng.randrange(len(data)), rng.randrange(4)
+            if kind == 0:
+                data[at] ^= 1 << rng.randrange(8)
+            elif kind == 1:
+                value = rng.choice((0, 1, -1, 2**31 - 1, 2**31, 2**63 - 1, -2**63, 0x7ff0 << 48))
+                data[at:at + 8] = struct.pack("<q", value)[:len(data) - at]
+            elif kind == 2:
+                del data[at:at + rng.randint(1, 40)]
+            else:
+                data[at:at] = data[:rng.randint(1, 40)]
+        return bytes(data)
+
+    def test_damaged_files_are_read_or_refused(self):
+        """Ranks neither crash, hang nor need more memory than for the whole file."""
+        points, tets = self.bar((2, 1, 1))
+        self.msh("good.msh", True, points, tets)
+        good, scene = (self.folder / "good.msh").read_bytes(), self.mesh_scene("bad")
+        limit = 8 << 30  # of addresses [bytes]
+        codes = []
+        for number in range(self.MUTANTS):
+            (self.folder / "bad.msh").write_bytes(self.mutant(good, number))
+            command = self.command(1 + number % 2, "run", scene, "--out", "bad", "--force", "--quiet", "--steps", "1")
+            done = subprocess.run(command, cwd=self.folder, env=environment(), capture_output=True, text=True, timeout=60,
+                                  preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_AS, (limit, limit)))
+            said = f"mutant {number}: {done.stdout}{done.stderr}"
+            self.assertIn(done.returncode, (0, 2, 3), said)
+            self.assertNotIn("signal", said)
+            self.assertTrue(done.returncode != 2 or "error:" in done.stderr, said)
+            codes.append(done.returncode)
+        self.assertTrue({0, 2} <= set(codes), "some are read, and some refused")
+
+
+class Orders(Ranks):
+    """Orders of convergence, certificates and energies of runs on 2 and 4 ranks, against closed forms in this file."""
+
+    COUNTS = (2, 4)
+
+    def steps_of(self, ranks, text):
+        """Runs a scene and returns the rows of steps.csv as numbers, with certificate and energy balance checked."""
+        self.write("order.toml", text)
+        self.mpi(ranks, "run", "order.toml", "--out", "run", "--force", "--quiet")
+        rows = [{name: float(value) if value and name not in ("status", "criterion", "initial_guess", "energy_bound",
+                                                              "state_hash", "min_gap_pair") else value
+                 for name, value in row.items()} for row in self.steps("run")]
+        before, *later = [self.first_row(), *rows]
+        for row in later:
+            self.assertEqual(row["status"], "converged")
+            self.assertLess(row["residual"], row["residual_threshold"])
+            self.assertIn(row["energy_bound"], ("holds", "none"))
+            change = row["kinetic"] + row["potential_total"] - before["kinetic"] - before["potential_total"]
+            balance = row["pin_work"] - row["damping_loss"] - row["numerical_loss"] + row["residual_work"]
+            scale = abs(row["kinetic"]) + abs(row["potential_total"]) + 1e-3
+            if row["initial_guess"] != "none" and row["energy_bound"] == "holds":  # statics has no energy balance
+                self.assertAlmostEqual(change, balance, delta=1e-12 * scale)
+            before = row
+        return rows
+
+    def first_row(self):
+        with open(self.folder / "run/steps.csv", newline="") as file:
+            row = next(csv.DictReader(file))
+        return {name: float(row[name]) for name in ("kinetic", "potential_total")}
+
+    def orders(self, errors):
+        return [math.log2(a / b) for a, b in zip(errors, errors[1:])]
+
+    def falling(self, step, pin=True):
+        text = BEAM.format(time="", solver="", output="vtu = false", before_pin="", body="", cells="6, 2, 2")
+        text = text.replace("step = 0.01\nduration = 0.03", f"step = {step!r}\nduration = 0.08")
+        return text if pin else text.replace('[[body.pin]]\nwhere = "x < 1e-9"\n', "")
+
+    def test_a_free_body_falls_by_the_closed_form(self):
+        """Backward Euler: the body falls by g h^2 n (n + 1) / 2, an error of g h t / 2, and loses m (g h)^2 / 2 per step."""
+        g, mass, t = 9.81, 1000 * 0.4 * 0.1 * 0.1, 0.08
+        for ranks in self.COUNTS:
+            errors = []
+            for step in (0.02, 0.01, 0.005):
+                rows, n = self.steps_of(ranks, self.falling(step, pin=False)), round(t / step)
+                heights = self.positions("run")[1::3]
+                fallen = {round(y, 9) for y in heights} - {round(y - g * step**2 * n * (n + 1) / 2, 9) for y in (0, 0.05, 0.1)}
+                self.assertEqual(fallen, set(), f"{ranks} ranks")
+                errors.append(max(heights) - (0.1 - g * t**2 / 2))
+                for row in rows:
+                    self.assertAlmostEqual(row["numerical_loss"], mass * (g * step)**2 / 2, delta=1e-9)
+            for order in self.orders([abs(e) for e in errors]):
+                self.assertAlmostEqual(order, 1, delta=1e-6)
+
+    def test_backward_euler_has_order_one(self):
+        """A clamped beam swings; the reference has steps of 1/32 of the largest."""
+        self.write("fine.toml", self.falling(0.01 / 32))
+        self.aspic("run", "fine.toml", "--out", "fine", "--quiet")
+        for ranks in self.COUNTS:
+            errors = []
+            for step in (0.01, 0.005, 0.0025):
+                self.steps_of(ranks, self.falling(step))
+                errors.append(self.distance("fine", "run"))
+            # Errors C h have C h (1 - 1/32), C h (1/2 - 1/32), ... with this reference. The next term of the error halves.
+            first, second = (exact - order for order, exact in zip(self.orders(errors), (math.log2(31 / 15), math.log2(15 / 7))))
+            self.assertLess(abs(first), 0.2, f"{ranks} ranks: {errors}")
+            self.assertLess(abs(second), 0.7 * abs(first), f"{ranks} ranks: {errors}")
+
+    BAR = """gravity = [50, 0, 0]
+[time]
+integrator = "quasi_static"
+step = 1
+duration = 1
+[solver]
+tolerance = 1e-10
+linear = "multigrid"
+[output]
+vtu = false
+[[body]]
+name = "bar"
+shape = {{ box = {{ upper = [0.4, 0.1, 0.1], cells = [{0}, {1}, {1}] }} }}
+material = {{ model = "stvk", young = 1e5, poisson = 0.3 }}
+[[body.pin]]
+name = "wall"
+where = "x < 1e-9"
+[[body.pin]]
+name = "guide"
+where = "x > 1e-9"
+axes = "yz"
+"""
+
+    def energy_of_bar(self):
+        """Least energy of a hanging bar that cannot contract laterally: psi = M (s^2 - 1)^2 / 8, P = M s (s^2 - 1) / 2."""
+        young, poisson, load, length, area, n = 1e5, 0.3, 1000 * 50, 0.4, 0.01, 1000
+        modulus = young * (1 - poisson) / ((1 + poisson) * (1 - 2 * poisson))
+        total = 0
+        for i in range(n + 1):  # Simpson's rule
+            stress, s = load * length * (1 - i / n), 1.0
+            for _ in range(30):
+                s -= (modulus * s * (s * s - 1) / 2 - stress) / (modulus * (3 * s * s - 1) / 2)
+            weight = (1 if i in (0, n) else 4 if i % 2 else 2) * length / n / 3
+            total += weight * area * (modulus / 8 * (s * s - 1)**2 - stress * (s - 1))
+        return total
+
+    def test_equilibria_of_linear_tets_have_energies_of_order_two(self):
+        exact, weight = self.energy_of_bar(), 1000 * 0.4 * 0.1 * 0.1 * 50
+        for ranks in self.COUNTS:
+            errors = []
+            for n in (1, 2, 4):
+                row = self.steps_of(ranks, self.BAR.format(4 * n, n))[-1]
+                errors.append(row["potential_total"] - self.first_row()["potential_total"] - exact)
+                self.assertAlmostEqual(row["reaction_bar.wall_x"], -weight, delta=1e-6 * weight)
+            self.assertGreater(min(errors), 0, "a conforming method overestimates the energy")
+            orders = self.orders(errors)
+            self.assertGreater(orders[0], 1.8, f"{ranks} ranks: {errors}")
+            self.assertAlmostEqual(orders[1], 2, delta=0.1, msg=f"{ranks} ranks: {errors}")
 
 
 class Shares(Ranks):

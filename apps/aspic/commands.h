@@ -14,7 +14,7 @@ enum ExitCode {
   exit_internal_error = 1,
   exit_bad_input = 2,
   exit_unconverged = 3,  // a step or minimization; check --derivatives: one is wrong; verify: a row fails
-  exit_time_limit = 4,   // --time-limit reached
+  exit_time_limit = 4,   // --time-limit reached; fit --jobs: jobs remain
   exit_signal = 128,     // plus the number of the signal: 130 after Ctrl-C, 143 after a plain kill
 };
 

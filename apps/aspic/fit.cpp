@@ -4,6 +4,7 @@
 #include <CLI/CLI.hpp>
 #include <cmath>
 #include <filesystem>
+#include <nlohmann/json.hpp>
 #include <optional>
 
 #include "aspic/commands.h"
@@ -13,6 +14,7 @@
 #include "aspic/fit_report.h"
 #include "aspic/fit_summary.h"
 #include "aspic/interrupt.h"
+#include "aspic/job_list.h"
 #include "aspic/law_table.h"
 #include "aspic/relaxation_results.h"
 #include "base/error.h"
@@ -39,7 +41,11 @@ struct FitArguments {
   std::string model = FitPlan().model;
   std::vector<std::string> parameters, known;
   int threads = 0;  // 0: not given
-  bool force = false, resume = false, quiet = false, verbose = false, allow_unconverged = false;
+  bool force = false, resume = false, continues = false, quiet = false, verbose = false, allow_unconverged = false;
+  bool lists_jobs = false;
+  std::string job, program = "aspic";  // job: the single one to compute
+
+  JobMode mode() const { return lists_jobs ? JobMode::list : job.empty() ? JobMode::all : JobMode::single; }
 };
 
 std::optional<RegistrationKind> registration_kind(const FitArguments& arguments) {
@@ -79,6 +85,8 @@ std::string origins_of(const FitArguments& arguments, const fs::path& options_fi
 
 ExistingFit existing(const FitArguments& arguments) {
   if (arguments.resume) return ExistingFit::resume;
+  if (!arguments.job.empty()) return ExistingFit::share;
+  if (arguments.continues || arguments.lists_jobs) return ExistingFit::proceed;
   return arguments.force ? ExistingFit::overwrite : ExistingFit::refuse;
 }
 
@@ -86,9 +94,10 @@ std::string describe(const DataFinding& finding) {
   return finding.where + ": " + finding.what + (finding.remedy.empty() ? "" : "; ") + finding.remedy;
 }
 
-// Rejects data sets with errors and prints the first warnings of others.
-void check_findings(const DataSet& data, const fs::path& path) {
+// Rejects data sets with errors and prints the first warnings of others, but not for each job.
+void check_findings(const DataSet& data, const FitArguments& arguments) {
   constexpr int kMaxPrinted = 3;
+  const fs::path& path = arguments.data;
   std::vector<std::string> errors, warnings;
   for (const DataFinding& finding : diagnose(data)) {
     if (finding.severity == Severity::error) errors.push_back(describe(finding));
@@ -98,7 +107,7 @@ void check_findings(const DataSet& data, const fs::path& path) {
     errors.push_back(fmt::format("(aspic check {} prints details)", path.string()));
     throw InvalidInput(errors);
   }
-  const int count = static_cast<int>(warnings.size());
+  const int count = arguments.job.empty() ? static_cast<int>(warnings.size()) : 0;
   for (int i = 0; i < std::min(count, kMaxPrinted); ++i) fmt::print(stderr, "warning: {}\n", warnings[i]);
   if (count > kMaxPrinted)
     fmt::print(stderr, "warning: and {} more: aspic check {}\n", count - kMaxPrinted, printable(path.string()));
@@ -108,7 +117,11 @@ void check_findings(const DataSet& data, const fs::path& path) {
 class Fitter {
  public:
   Fitter(const FitArguments& arguments, const DataSet& data, const FitPlan& plan, FitFolder& folder)
-      : data_(data), plan_(plan), folder_(folder), residuals_(residual_count(data, plan)) {
+      : data_(data),
+        plan_(plan),
+        folder_(folder),
+        jobs_(folder.jobs(), arguments.mode(), arguments.job),
+        residuals_(residual_count(data, plan)) {
     if (!arguments.quiet) progress_.emplace(stdout, arguments.verbose);
   }
 
@@ -117,12 +130,15 @@ class Fitter {
                                  .iterate = [this](FitStage stage, const FitIteration& iteration,
                                                    std::span<const double>) { iterate(stage, iteration); },
                                  .stop = StopToken([this] { return is_interrupted(); })};
-    FitOutcome outcome = fit_material(data_, plan_, folder_.memory(), callbacks);
+    FitMemory memory = folder_.memory();
+    memory.jobs = &jobs_;
+    FitOutcome outcome = fit_material(data_, plan_, memory, callbacks);
     if (progress_) progress_->finish();
     return outcome;
   }
 
   const std::vector<FitIteration>& history() const { return history_; }
+  const FitJobs& jobs() const { return jobs_; }
 
  private:
   static int residual_count(const DataSet& data, const FitPlan& plan) {
@@ -137,7 +153,7 @@ class Fitter {
   }
 
   void iterate(FitStage stage, const FitIteration& iteration) {
-    folder_.add(stage, iteration);
+    if (jobs_.mode() != JobMode::single) folder_.add(stage, iteration);
     if (stage == FitStage::field) history_.push_back(iteration);
     if (progress_) progress_->show(stage, iteration, residuals_);
   }
@@ -151,6 +167,7 @@ class Fitter {
   const DataSet& data_;
   const FitPlan& plan_;
   FitFolder& folder_;
+  FitJobs jobs_;
   int residuals_;
   bool announced_ = false;
   std::optional<FitProgress> progress_;
@@ -200,6 +217,53 @@ fs::path truth_beside(const fs::path& data) {
   return (fs::is_directory(data) ? data : data.parent_path()) / "truth.vtu";
 }
 
+// Command of one job. Threads are those of the process with --jobs, if given.
+std::string job_line(const FitArguments& arguments, const std::string& job) {
+  std::string line = fmt::format("{} fit {}", arguments.program, shell_word(arguments.data));
+  const auto add = [&](const char* option, const std::string& value) {
+    line += fmt::format(" {} {}", option, shell_word(value));
+  };
+  line += " -o " + shell_word(arguments.out);
+  if (arguments.model != FitPlan().model) add("--model", arguments.model);
+  for (const std::string& text : arguments.parameters) add("--unknown", text);
+  for (const std::string& text : arguments.known) add("--known", text);
+  if (!arguments.registers.empty()) add("--register", arguments.registers);
+  if (!arguments.options.empty()) line += " --options " + shell_word(arguments.options);
+  return fmt::format("{} --threads {} --quiet --job {}\n", line, std::max(arguments.threads, 1), job);
+}
+
+int list_jobs(const FitArguments& arguments, const FitFolder& folder, const std::vector<std::string>& missing) {
+  JobList jobs{folder.path(), arguments.out.stem().string(), "", std::max(arguments.threads, 1)};
+  for (const std::string& job : missing) jobs.lines += job_line(arguments, job);
+  write_jobs(jobs);
+  if (!arguments.quiet) {
+    fmt::print("jobs       {} in {}\n", missing.size(), (folder.path() / "jobs.txt").string());
+    print_how_to_run(jobs);
+    fmt::print("then       the same command again\n");
+  }
+  return exit_time_limit;
+}
+
+int end_of_job(const FitArguments& arguments, const FitJobs& jobs) {
+  if (jobs.has_computed()) return exit_done;
+  if (interrupt_signal()) return exit_signal + interrupt_signal();
+  throw InvalidInput(fmt::format("--job {}: this fit has no such job, or not yet; the command with --jobs lists them",
+                                 printable(arguments.job)));
+}
+
+// Ends a repeated command whose work is done.
+int end_of_complete(const FitArguments& arguments) {
+  const fs::path figures = fs::path(arguments.out).replace_extension(".fit") / "figures.json";
+  const bool is_good = nlohmann::json::parse(read_file(figures)).at("verdict").at("good").get<bool>();
+  if (!arguments.quiet) fmt::print("complete   {}; --force repeats the fit\n", arguments.out.string());
+  return is_good || arguments.allow_unconverged || !arguments.job.empty() ? exit_done : exit_unconverged;
+}
+
+bool has_nothing_to_do(const FitArguments& arguments, const std::string& options) {
+  if (!arguments.continues && !arguments.lists_jobs && arguments.job.empty()) return false;
+  return FitFolder::is_complete(arguments.out, options);
+}
+
 int run(const FitArguments& arguments) {
   if (arguments.data.extension() == ".csv")
     throw InvalidInput(arguments.data.string() + ": a data set is a folder; to fit curves: aspic fit-curves " +
@@ -211,18 +275,23 @@ int run(const FitArguments& arguments) {
   if (arguments.out.extension() != ".vtu")
     throw InvalidInput(arguments.out.string() + ": a material file is a .vtu; choose such a name with -o");
   const DataSet data = read_data_set(arguments.data, registration_kind(arguments));
-  check_findings(data, arguments.data);
+  check_findings(data, arguments);
   plan = completed(std::move(plan), data.experiment);
   std::string options = "# aspic fit\ndata = \"" + fingerprint_of(data.experiment) + "\"\n" + text_of(plan);
   if (!data.histories.empty()) options += "histories = \"" + fingerprint_of(data.histories) + "\"\n";
   options += origins_of(arguments, options_file);
+  if (has_nothing_to_do(arguments, options)) return end_of_complete(arguments);
   FitFolder folder = FitFolder::open(arguments.out, options, existing(arguments));
-  if (data.registration) write_registration(folder.path() / "registration.toml", *data.registration);
+  if (!arguments.job.empty() && FitJobs::is_done(folder.jobs(), arguments.job)) return exit_done;
+  if (data.registration && arguments.job.empty())
+    write_registration(folder.path() / "registration.toml", *data.registration);
   catch_interrupts();  // from here on there are results to keep
 
   if (!arguments.quiet) print_start(arguments, data, plan, folder);
   Fitter fitter(arguments, data, plan, folder);
   const FitOutcome outcome = fitter.run();
+  if (!arguments.job.empty()) return end_of_job(arguments, fitter.jobs());
+  if (!fitter.jobs().missing().empty()) return list_jobs(arguments, folder, fitter.jobs().missing());
   if (!outcome.has_material()) {
     fmt::print(stderr, "the fit failed: {}\n", outcome.failure);
     return interrupt_signal() ? exit_signal + interrupt_signal() : exit_unconverged;
@@ -261,13 +330,14 @@ Examples:
   aspic fit pillow --model fung --unknown young=handles:40 --unknown b=uniform
   aspic fit pillow --register rigid            moves the markers onto the mesh; material.fit/registration.toml keeps the motion
   aspic fit pillow --resume                    continues an interrupted fit, bit-reproducibly
+  aspic fit pillow --model auto --jobs         writes material.fit/jobs.txt for xargs, GNU parallel or Slurm
 then in a scene: material = {{ file = "material.vtu" }}
 
 Keys of aspic.fit.toml beside capture.toml, or of the file of --options, with their defaults:
 {}
 Exit codes: 0 the verdict is good, 2 bad input or data with errors, 3 the fit failed, did not converge, or its
 material is not reliable (unless --allow-unconverged): the reasons are printed and written to figures.json;
-130 interrupted by Ctrl-C, 143 by kill: the current material is written, --resume continues.)";
+4 --jobs: jobs remain; 130 interrupted by Ctrl-C, 143 by kill: the current material is written, --resume continues.)";
 
 }  // namespace
 
@@ -297,6 +367,16 @@ void add_fit(CLI::App& app, Action& action) {
       ->check(CLI::Range(1, 1024));
   command->add_flag("--force", arguments->force, "Replace an earlier fit");
   command->add_flag("--resume", arguments->resume, "Continue an interrupted fit")->excludes("--force");
+  command->add_flag("--continue", arguments->continues, "Begin the fit, resume it, or do nothing if it is complete")
+      ->excludes("--force", "--resume");
+  command
+      ->add_flag("--jobs", arguments->lists_jobs,
+                 "As --continue, but write the independent fits without a result to material.fit/jobs.txt, one command "
+                 "each, and end with exit code 4; repeat the command when they have run")
+      ->excludes("--force", "--resume");
+  command->add_option("--job", arguments->job, "Compute only this job of jobs.txt")
+      ->excludes("--force", "--resume", "--jobs", "--continue");
+  command->add_option("--program", arguments->program, "Program in the commands of --jobs; aspic by default");
   command->add_flag("-q,--quiet", arguments->quiet, "Print only warnings and errors");
   command->add_flag("-v,--verbose", arguments->verbose, "Print a line per iteration")->excludes("--quiet");
   command->add_flag("--allow-unconverged", arguments->allow_unconverged,

@@ -68,22 +68,41 @@ const char* to_string(FitStage stage) {
   return kNames[static_cast<size_t>(stage)];
 }
 
+bool FitFolder::is_complete(const fs::path& material, const std::string& options) {
+  FitFolder folder;
+  folder.path_ = fs::path(material).replace_extension(".fit");
+  if (!fs::exists(options_file(folder.path_)) || !journals(folder.path_).empty() || !fs::exists(material)) return false;
+  folder.require_same(options);
+  return true;
+}
+
+void FitFolder::require_same(const std::string& options) const {
+  const std::string change = difference(read_file(options_file(path_)), options);
+  if (!change.empty())
+    throw InvalidInput(path_.string() + ": cannot be resumed: " + change + " (the same command, or --force)");
+}
+
 FitFolder FitFolder::open(const fs::path& material, const std::string& options, ExistingFit existing) {
   FitFolder folder;
   folder.path_ = fs::path(material).replace_extension(".fit");
   const fs::path& path = folder.path_;
   std::error_code error;
   const bool is_there = fs::is_directory(path, error);
-  if (is_there) folder.lock_ = std::make_shared<const RunLock>(path);
+  if (is_there && existing != ExistingFit::share) folder.lock_ = std::make_shared<const RunLock>(path);
   const bool is_begun = fs::exists(options_file(path)), is_unfinished = !journals(path).empty();
+  if (existing == ExistingFit::share) {
+    if (!is_begun) throw InvalidInput(path.string() + ": no fit has been begun; the command with --jobs begins it");
+    folder.require_same(options);
+    folder.start_ = JournalStart::read;
+    return folder;
+  }
+  if (existing == ExistingFit::proceed) existing = is_begun ? ExistingFit::resume : ExistingFit::overwrite;
   if (existing != ExistingFit::refuse) refuse_links(path, [](const fs::path&) { return true; });
   if (existing == ExistingFit::resume) {
     if (!is_begun) throw InvalidInput(path.string() + ": no fit to resume; start it without --resume");
     if (!is_unfinished)
       throw InvalidInput(path.string() + ": this fit is complete; --force replaces it, -o writes another");
-    const std::string change = difference(read_file(options_file(path)), options);
-    if (!change.empty())
-      throw InvalidInput(path.string() + ": cannot be resumed: " + change + " (the same command, or --force)");
+    folder.require_same(options);
     folder.start_ = JournalStart::resume;
     if (fs::exists(history_file(path)))
       folder.rows_on_disk_ = std::max(0, static_cast<int>(lines_of(read_file(history_file(path))).size()) - 1);
@@ -102,7 +121,8 @@ FitFolder FitFolder::open(const fs::path& material, const std::string& options, 
   write_file(begun, "");
   for (const fs::path& file : journals(path))
     if (file != begun) remove_file(file);
-  for (const char* name : {"history.csv", "weights.csv", "report.html"})
+  fs::remove_all(folder.jobs(), error);
+  for (const char* name : {"history.csv", "weights.csv", "report.html", "jobs.txt", "slurm.sh"})
     if (fs::exists(path / name)) remove_file(path / name);
   write_file(options_file(path), options);
   folder.history_ = kHistoryHead;
@@ -130,6 +150,9 @@ void FitFolder::add_weights(const FitReport& report) {
 }
 
 void FitFolder::finish() {
+  std::error_code error;
+  fs::remove_all(jobs(), error);
+  for (const char* name : {"jobs.txt", "slurm.sh"}) fs::remove(path_ / name, error);
   for (const fs::path& file : journals(path_)) remove_file(file);
 }
 

@@ -9,7 +9,13 @@
 
 namespace aspic {
 
-enum class ExistingFit { refuse, overwrite, resume };
+enum class ExistingFit {
+  refuse,
+  overwrite,
+  resume,
+  proceed,  // begins, or resumes
+  share,    // reads the state of a fit that another process may continue; changes no file
+};
 
 class FitFolder {
  public:
@@ -19,9 +25,13 @@ class FitFolder {
 
   const std::filesystem::path& path() const { return path_; }
   std::filesystem::path report() const { return path_ / "report.html"; }
+  // Whether the fit of this material file has ended. Throws InvalidInput if it had other options.
+  static bool is_complete(const std::filesystem::path& material, const std::string& options);
+
   FitMemory memory() const { return {path_, start_}; }
   bool is_resumed() const { return start_ == JournalStart::resume; }
-  int iterations_before() const { return rows_on_disk_; }  // rows before the resumption
+  std::filesystem::path jobs() const { return path_ / "jobs"; }  // results of jobs, see FitJobs
+  int iterations_before() const { return rows_on_disk_; }        // rows before the resumption
 
   // Adds a row of history.csv. A resumed fit repeats its first rows, which exist already.
   void add(FitStage stage, const FitIteration& iteration);
@@ -30,6 +40,8 @@ class FitFolder {
   void finish();  // removes the state for resumption
 
  private:
+  void require_same(const std::string& options) const;
+
   std::filesystem::path path_;
   std::shared_ptr<const RunLock> lock_;
   JournalStart start_ = JournalStart::anew;

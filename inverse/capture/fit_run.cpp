@@ -10,12 +10,14 @@ namespace {
 
 FitOutcome fit_with_chosen_law(const DataSet& data, const FitPlan& plan, const FitMemory& memory,
                                const FitCallbacks& callbacks) {
-  LawChoice choice = choose_law(data, plan, callbacks);
+  FitJobs all;
+  FitJobs& jobs = memory.jobs ? *memory.jobs : all;
+  LawChoice choice = choose_law(data, plan, jobs, callbacks);
   FitOutcome outcome;
-  if (callbacks.stop.stopped()) {
+  if (callbacks.stop.stopped() || jobs.is_waiting()) {
     outcome.plan = plan;
     outcome.interrupted = true;
-    outcome.failure = "stopped before a law was chosen; --resume repeats the comparison";
+    outcome.failure = "stopped before a law was chosen; --resume continues the comparison";
   } else {
     outcome = fit_material(data, plan_with_law(plan, choice), memory, callbacks);
   }

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "capture/data_set.h"
+#include "capture/fit_jobs.h"
 #include "capture/fit_plan.h"
 #include "capture/journal.h"
 #include "capture/law_choice.h"
@@ -125,7 +126,7 @@ struct FitOutcome {
   std::optional<RelaxationFit> relaxation;  // for data with histories
   std::vector<std::string> warnings;
   std::string failure;       // why there is no material; empty if there is one
-  bool interrupted = false;  // the material is the current estimate
+  bool interrupted = false;  // the material is the current estimate; also if results of jobs are missing
   int parameter_count = 0, residuals = 0;
   int simulated_tets = 0;  // equal to those of the data, or more (FitPlan::refine)
   Misfit::Counts counts;
@@ -155,6 +156,7 @@ struct FitCallbacks {
 struct FitMemory {
   std::filesystem::path folder;
   JournalStart start = JournalStart::anew;
+  FitJobs* jobs = nullptr;  // null: all are computed, and none is stored
 };
 
 // Fits a material. Throws InvalidInput for incompatible data and plan; a failed fit is reported in the outcome.

@@ -39,8 +39,9 @@ Journal::Journal(LeastSquares& model, ModelState state, fs::path stem, const std
       journal_path_(with_ending(stem, ".journal")),
       state_path_(with_ending(stem, ".state")),
       fingerprint_(fingerprint) {
-  const bool can_resume = start == JournalStart::resume && fs::exists(state_path_) && fs::exists(journal_path_);
+  const bool can_resume = start != JournalStart::anew && fs::exists(state_path_) && fs::exists(journal_path_);
   if (!can_resume) {
+    if (start == JournalStart::read) return;
     remove(stem);
     out_ = OutputFile::create(journal_path_);
     return;
@@ -48,12 +49,14 @@ Journal::Journal(LeastSquares& model, ModelState state, fs::path stem, const std
   const Checkpoint saved = read_newest_checkpoint(state_path_).checkpoint;
   if (saved.fingerprint != fingerprint)
     throw InvalidInput(state_path_.string() + ": belongs to another fit (other data or options)" + kRemedy);
-  out_ = OutputFile::open_existing(journal_path_);
   end_ = static_cast<std::uint64_t>(saved.integer("journal_bytes"));
-  if (out_.size() < end_)
-    throw InvalidInput(journal_path_.string() + ": has " + std::to_string(out_.size()) + " bytes where " +
+  if (const std::uintmax_t size = fs::file_size(journal_path_); size < end_)
+    throw InvalidInput(journal_path_.string() + ": has " + std::to_string(size) + " bytes where " +
                        std::to_string(end_) + " are needed" + kRemedy);
-  out_.truncate(end_);
+  if (start == JournalStart::resume) {
+    out_ = OutputFile::open_existing(journal_path_);
+    out_.truncate(end_);
+  }
   in_ = open_input(journal_path_);
   resumed_p_ = saved.array("p");
   resumed_state_ = saved.array("state");

@@ -19,7 +19,11 @@ struct ModelState {
   std::function<void(std::span<const double>)> set;
 };
 
-enum class JournalStart { anew, resume };
+enum class JournalStart {
+  anew,
+  resume,
+  read,  // as resume, but changes no file: another process may read them, too
+};
 
 class Journal : public LeastSquares {
  public:

@@ -1,6 +1,7 @@
 #include "capture/law_contest.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <set>
@@ -120,26 +121,47 @@ struct Contender {
   std::string failure;
 };
 
+constexpr int kNumbersOfIteration = 10;
+
+std::array<double, kNumbersOfIteration> numbers_of(const FitIteration& i) {
+  return {static_cast<double>(i.index),
+          static_cast<double>(i.start),
+          i.weight,
+          i.misfit,
+          i.roughness,
+          i.objective,
+          i.decrement,
+          i.step,
+          static_cast<double>(i.inner),
+          static_cast<double>(i.trials)};
+}
+
+FitIteration iteration_of(const double* n) {
+  return {.index = static_cast<int>(n[0]),
+          .start = static_cast<int>(n[1]),
+          .weight = n[2],
+          .misfit = n[3],
+          .roughness = n[4],
+          .objective = n[5],
+          .decrement = n[6],
+          .step = n[7],
+          .inner = static_cast<int>(n[8]),
+          .trials = static_cast<int>(n[9])};
+}
+
 class LawContest {
  public:
-  LawContest(const DataSet& data, const FitPlan& plan, const FitCallbacks& callbacks)
+  LawContest(const DataSet& data, const FitPlan& plan, FitJobs& jobs, const FitCallbacks& callbacks)
       : data_(data),
         plan_(simplified(plan, data.experiment.mesh, choice_.simplified)),
+        jobs_(jobs),
         callbacks_(callbacks),
         simulated_(data.experiment, plan_) {}
 
   LawChoice run() {
     for (const Law& law : known_laws())
       contenders_.push_back({.law = law, .plan = with_law(plan_, law), .p = {}, .material = {}, .failure = {}});
-    find_reference();
-    take_off_mesh_errors(contenders_.front());
-    for (Contender& contender : contenders_) fit(contender, "");
-    if (is_stopped()) return choice_;
-    if (plan_.mesh_errors) {
-      take_off_mesh_errors(*std::min_element(contenders_.begin(), contenders_.end(),
-                                             [](const auto& a, const auto& b) { return a.objective < b.objective; }));
-      for (Contender& contender : contenders_) fit(contender, " with the mesh correction of the best one");
-    }
+    if (!fit_all() || (jobs_.is_distributed() && !hold_out_all())) return choice_;
     for (Contender& contender : contenders_) {
       if (is_stopped()) return choice_;
       describe(contender);
@@ -149,6 +171,73 @@ class LawContest {
   }
 
  private:
+  // False: stopped, or results of jobs are missing.
+  bool fit_all() {
+    // All laws start from the moduli of the first one.
+    run_job(contenders_.front(), "reference", JobKind::common, [&] { find_reference(); });
+    take_off_mesh_errors(contenders_.front());
+    for (Contender& c : contenders_) {
+      const bool is_first = &c == &contenders_.front();
+      run_job(c, "first", is_first ? JobKind::common : JobKind::independent, [&] { fit(c, ""); });
+      if (is_first) reference_ = c.p;
+    }
+    if (is_stopped() || jobs_.is_waiting()) return false;
+    if (!plan_.mesh_errors) return true;
+    take_off_mesh_errors(*std::min_element(contenders_.begin(), contenders_.end(),
+                                           [](const auto& a, const auto& b) { return a.objective < b.objective; }));
+    for (Contender& c : contenders_)
+      run_job(c, "second", JobKind::independent, [&] { fit(c, " with the mesh correction of the best one"); });
+    return !is_stopped() && !jobs_.is_waiting();
+  }
+
+  // Computes what describe() needs, before the uncertainties, which only one process computes.
+  bool hold_out_all() {
+    for (const Contender& c : contenders_) {
+      if (!plan_.cross_validation || c.p.empty() || !c.failure.empty()) continue;
+      FitModel model = model_of(c, c.plan.parameters);
+      held_out(model, c);
+    }
+    return !is_stopped() && !jobs_.is_waiting();
+  }
+
+  // Changes the contender by `action` or by the stored result of an earlier one, with the same iterations.
+  void run_job(Contender& c, const std::string& stage, JobKind kind, const std::function<void()>& action) {
+    if (is_stopped()) return;
+    Fingerprint question;
+    const std::string text = text_of(c.plan) + fingerprint_of(simulated_.fitted());
+    question.add(text.data(), text.size());
+    for (const std::vector<double>* p : {&c.p, &reference_}) question.add(p->data(), p->size() * sizeof(double));
+    bool is_computed = false;
+    const std::optional<JobResult> result =
+        jobs_.result("law_" + c.law.name + "_" + stage, question, kind, [&]() -> std::optional<JobResult> {
+          is_computed = true;
+          iterations_.clear();
+          action();
+          return is_stopped() ? std::nullopt : std::optional(result_of(c));
+        });
+    if (result && !is_computed) restore(*result, c);
+  }
+
+  JobResult result_of(const Contender& c) const {
+    JobResult result{{c.objective, static_cast<double>(c.p.size())}, c.failure};
+    result.numbers.insert(result.numbers.end(), c.p.begin(), c.p.end());
+    for (const FitIteration& i : iterations_)
+      for (const double number : numbers_of(i)) result.numbers.push_back(number);
+    return result;
+  }
+
+  void restore(const JobResult& result, Contender& c) {
+    auto number = result.numbers.begin();
+    c.objective = *number++;
+    const auto count = static_cast<std::ptrdiff_t>(*number++);
+    c.p.assign(number, number + count);
+    number += count;
+    c.failure = result.text;
+    if (!c.p.empty()) c.material = model_of(c, c.plan.parameters).map.parameters(c.p);
+    for (; number != result.numbers.end(); number += kNumbersOfIteration)
+      if (callbacks_.iterate && !jobs_.is_waiting()) callbacks_.iterate(FitStage::law, iteration_of(&*number), c.p);
+  }
+
   FitModel model_of(const Contender& c, std::vector<FitParameter> parameters) const {
     return {data_.experiment, simulated_.fitted(), c.plan, std::move(parameters), {kNoMemory, "", ""}};
   }
@@ -177,8 +266,8 @@ class LawContest {
           if (own.name == u.quantity) u.guess = own.guesses[std::min(k, own.guesses.size() - 1)];
       FitModel model = model_of(c, parameters);
       std::vector<double>& start = starts.emplace_back(model.map.guess().begin(), model.map.guess().end());
-      const std::vector<double>& reference = contenders_.front().p;  // its parameters come first
-      std::copy_n(reference.begin(), std::min(reference.size(), start.size()), start.begin());
+      // Its parameters come first.
+      std::copy_n(reference_.begin(), std::min(reference_.size(), start.size()), start.begin());
     }
     return starts;
   }
@@ -199,6 +288,7 @@ class LawContest {
     FitOptions options = plan_.fit;
     options.stop = StopToken([this] { return is_stopped(); });
     const auto observe = [&](const FitIteration& iteration, std::span<const double> p) {
+      iterations_.push_back(iteration);
       if (callbacks_.iterate) callbacks_.iterate(FitStage::law, iteration, p);
     };
     const FitReport report = aspic::fit(model.data(), *model.prior, start, options, observe);
@@ -256,17 +346,22 @@ class LawContest {
 
   void hold_out(FitModel& model, const Contender& c, LawTrial& trial) {
     if (!plan_.cross_validation) return;
-    FitReport fitted{.p = c.p, .weight = 1};
+    const CrossValidation held_out = this->held_out(model, c);
+    trial.position_error = held_out.position_error;
+    trial.force_error = held_out.force_error;
+    for (const HeldOut& group : held_out.groups) trial.held_out.push_back(predicted(model, group));
+  }
+
+  CrossValidation held_out(FitModel& model, const Contender& c) {
+    const FitReport fitted{.p = c.p, .weight = 1};
     FitOptions options = plan_.fit;
     options.stop = StopToken([this] { return is_stopped(); });
     const auto observe = [&](int, int, const std::string& group) {
       if (callbacks_.begin) callbacks_.begin(FitStage::law, c.law.name + ": '" + group + "' is held out");
     };
-    const CrossValidation held_out =
-        cross_validate(simulated_.fitted(), model.map, *model.prior, fitted, {options, plan_.equilibrium, observe});
-    trial.position_error = held_out.position_error;
-    trial.force_error = held_out.force_error;
-    for (const HeldOut& group : held_out.groups) trial.held_out.push_back(predicted(model, group));
+    const HeldOutJobs jobs{jobs_, "law_" + c.law.name + "_held_out", c.plan, [this] { return is_stopped(); }};
+    return cross_validate(simulated_.fitted(), model.map, *model.prior, fitted,
+                          {options, plan_.equilibrium, observe, nullptr, jobs.store(simulated_.fitted(), fitted)});
   }
 
   PredictiveResiduals predicted(FitModel& model, const HeldOut& group) const {
@@ -286,17 +381,20 @@ class LawContest {
   const DataSet& data_;
   LawChoice choice_;
   FitPlan plan_;
+  FitJobs& jobs_;
   const FitCallbacks& callbacks_;
   SimulatedData simulated_;
   std::vector<Contender> contenders_;
+  std::vector<double> reference_;         // parameters of the first law, from which the others start
+  std::vector<FitIteration> iterations_;  // of the job that is being computed
 };
 
 const FitMemory LawContest::kNoMemory = {};
 
 }  // namespace
 
-LawChoice choose_law(const DataSet& data, const FitPlan& plan, const FitCallbacks& callbacks) {
-  return LawContest(data, plan, callbacks).run();
+LawChoice choose_law(const DataSet& data, const FitPlan& plan, FitJobs& jobs, const FitCallbacks& callbacks) {
+  return LawContest(data, plan, jobs, callbacks).run();
 }
 
 FitPlan plan_with_law(const FitPlan& plan, const LawChoice& choice) {

@@ -5,8 +5,8 @@
 namespace aspic {
 
 // `plan`: completed, with model = kAutoLaw. Fields per tet and at handles are replaced by one value, or one per region.
-// A stop returns what has been fitted so far, without a choice.
-LawChoice choose_law(const DataSet& data, const FitPlan& plan, const FitCallbacks& callbacks);
+// A stop, or a job that is left to another process, returns what has been fitted so far, without a choice.
+LawChoice choose_law(const DataSet& data, const FitPlan& plan, FitJobs& jobs, const FitCallbacks& callbacks);
 
 // Plan of the fit with the chosen law.
 FitPlan plan_with_law(const FitPlan& plan, const LawChoice& choice);

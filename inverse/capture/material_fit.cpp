@@ -79,7 +79,8 @@ MaterialFit::MaterialFit(const DataSet& data, const FitPlan& plan, const FitMemo
       plan_(completed(plan, data.experiment)),
       memory_(memory),
       callbacks_(callbacks),
-      simulated_(data.experiment, plan_) {
+      simulated_(data.experiment, plan_),
+      jobs_(memory.jobs ? *memory.jobs : all_jobs_) {
   if (!memory.folder.empty()) fingerprint_ = fingerprint_of(data.experiment) + "\n" + text_of(plan_);
   outcome_.plan = plan_;
   outcome_.simulated_tets = simulated_.mesh().tet_count();
@@ -250,6 +251,10 @@ void MaterialFit::fit_and_describe() {
   outcome_.failure = describe_runaway(data_, model.map.parameters(report.p).front());
   if (!outcome_.failure.empty()) return;
   if (!is_over(report)) return describe(model, report.p);
+  if (jobs_.is_distributed()) {
+    if (plan_.cross_validation) hold_out_groups(model);  // first, because its jobs need none of the stages below
+    if (outcome_.interrupted) return;
+  }
   learn_uncertainty(model);
   const std::vector<double> p = divided(model);
   describe(model, p);

@@ -82,9 +82,15 @@ class MaterialFit {
   void learn_uncertainty(FitModel& model);
   void describe(FitModel& model, std::span<const double> p);
   void predict_left_out(const ParameterMap& map, std::span<const double> p);
+  struct HeldOutGroups {
+    CrossValidation all;                          // predictions of the fit
+    std::optional<CrossValidation> of_one_value;  // baseline for a field
+  };
+  HeldOutGroups hold_out_groups(FitModel& model);  // interrupted if a result is missing
   void cross_validate_groups(FitModel& model);
-  CrossValidation cross_validated(FitModel& model, const FitReport& report, FitOptions options);
-  void cross_validate_one_value();
+  CrossValidation cross_validated(FitModel& model, const FitReport& report, FitOptions options,
+                                  const std::string& name);
+  std::optional<CrossValidation> cross_validated_one_value();
   void find_next_indentation(FitModel& model);
   // Called with the prediction on the mesh and the one that is corrected for its discretization error.
   using UsePrediction = std::function<void(CaseOutcome&, const CasePrediction& on_mesh, const CasePrediction&)>;
@@ -117,6 +123,8 @@ class MaterialFit {
   const FitCallbacks& callbacks_;
   SimulatedData simulated_;
   FibreSearch fibres_;
+  FitJobs all_jobs_;  // without storage
+  FitJobs& jobs_;
   std::vector<double> corrected_errors_;
   std::vector<CaseWeights> corrected_weights_;
   std::vector<MaterialParameters> material_;  // last fitted parameters

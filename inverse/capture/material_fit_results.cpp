@@ -117,12 +117,19 @@ void MaterialFit::predict_left_out(const ParameterMap& map, std::span<const doub
                   });
 }
 
+MaterialFit::HeldOutGroups MaterialFit::hold_out_groups(FitModel& model) {
+  HeldOutGroups held_out{cross_validated(model, outcome_.report, plan_.fit, "held_out"), {}};
+  if (is_field() && !is_stopped() && !jobs_.has_computed()) held_out.of_one_value = cross_validated_one_value();
+  outcome_.interrupted |= jobs_.is_waiting();
+  return held_out;
+}
+
 void MaterialFit::cross_validate_groups(FitModel& model) {
   if (!plan_.cross_validation || is_stopped()) return;
-  CrossValidation held_out = cross_validated(model, outcome_.report, plan_.fit);
+  HeldOutGroups held_out = hold_out_groups(model);
   if (outcome_.interrupted) return;  // the last group may be incomplete
-  add_warnings(held_out.warnings);
-  for (const HeldOut& group : held_out.groups)
+  add_warnings(held_out.all.warnings);
+  for (const HeldOut& group : held_out.all.groups)
     if (group.ok)
       predict_group(group.group, model.map, group.p,
                     [](CaseOutcome& outcome, const CasePrediction&, const CasePrediction& prediction) {
@@ -130,30 +137,32 @@ void MaterialFit::cross_validate_groups(FitModel& model) {
                       outcome.held_out_markers = prediction.markers;
                       outcome.held_out_wrench = prediction.wrench;
                     });
-  outcome_.held_out = std::move(held_out);
-  if (is_field()) cross_validate_one_value();
+  outcome_.held_out = std::move(held_out.all);
+  outcome_.held_out_of_one_value = std::move(held_out.of_one_value);
 }
 
-CrossValidation MaterialFit::cross_validated(FitModel& model, const FitReport& report, FitOptions options) {
+CrossValidation MaterialFit::cross_validated(FitModel& model, const FitReport& report, FitOptions options,
+                                             const std::string& name) {
   options.stop = StopToken([this] { return is_stopped(); });
-  const auto observe = [&](int group, int groups, const std::string& name) {
+  const auto observe = [&](int group, int groups, const std::string& label) {
     begin(FitStage::cross_validation,
-          "'" + name + "' is held out (" + std::to_string(group + 1) + " of " + std::to_string(groups) + ")");
+          "'" + label + "' is held out (" + std::to_string(group + 1) + " of " + std::to_string(groups) + ")");
   };
-  return cross_validate(simulated_.fitted(), model.map, *model.prior, report,
-                        {options, plan_.equilibrium, observe, &simulated_.all()});
+  const HeldOutJobs jobs{jobs_, name, plan_, [this] { return is_stopped(); }};
+  return cross_validate(
+      simulated_.fitted(), model.map, *model.prior, report,
+      {options, plan_.equilibrium, observe, &simulated_.all(), jobs.store(simulated_.fitted(), report)});
 }
 
 // Baseline for a field.
-void MaterialFit::cross_validate_one_value() {
+std::optional<CrossValidation> MaterialFit::cross_validated_one_value() {
   FitOptions options = plan_.fit;
   options.method = options.weight_rule = "auto";
   options.weight = -1;
   FitModel one(data_.experiment, simulated_.fitted(), plan_, single_values(plan_.parameters), {{}, "", ""});
   const FitReport report = fit(one.data(), *one.prior, one.map.guess(), options);
-  if (!is_success(report.status)) return;
-  CrossValidation held_out = cross_validated(one, report, options);
-  if (!outcome_.interrupted) outcome_.held_out_of_one_value = std::move(held_out);
+  if (!is_success(report.status)) return std::nullopt;
+  return cross_validated(one, report, options, "one_value_held_out");
 }
 
 void MaterialFit::find_next_indentation(FitModel& model) {

@@ -57,6 +57,33 @@ void predict(const Experiment& left_out, const ParameterMap& map, const Equilibr
   finish(h);
 }
 
+struct HoldOut {
+  const std::string& group;
+  const ParameterMap& map;
+  Regularizer& regularizer;
+  const std::vector<double>& guess;
+  const FitOptions& options;
+  const CrossValidationOptions& chosen;
+};
+
+// Fits the other groups and predicts this one.
+HeldOut hold_out(const Experiment& experiment, const HoldOut& what) {
+  HeldOut h{.group = what.group};
+  const EquilibriumOptions& equilibrium = what.chosen.equilibrium;
+  const Experiment seen = condensed(subset(experiment, [&](const LoadCase& c) { return c.group != h.group; }));
+  const Experiment& whole = what.chosen.to_predict ? *what.chosen.to_predict : experiment;
+  const Experiment left_out = subset(whole, [&](const LoadCase& c) { return c.group == h.group; });
+  Misfit misfit(seen, what.map, equilibrium);
+  WithUncertainLayers data(misfit);
+  const FitReport report = fit(data, what.regularizer, what.guess, what.options);
+  h.p = report.p;
+  if (is_success(report.status) || report.status == Status::iteration_limit)
+    predict(left_out, what.map, equilibrium, h);
+  else
+    h.failure = "the fit to the other cases failed: " + report.message;
+  return h;
+}
+
 double root_mean_square(const std::vector<HeldOut>& groups, ReadingErrors HeldOut::*kind) {
   double sum = 0;
   int count = 0;
@@ -94,20 +121,11 @@ CrossValidation cross_validate(const Experiment& experiment, const ParameterMap&
   for (size_t g = 0; g < groups.size(); ++g) {
     if (chosen.observe) chosen.observe(static_cast<int>(g), static_cast<int>(groups.size()), groups[g]);
     if (options.stop.stopped()) break;
-    HeldOut& h = result.groups.emplace_back();
-    h.group = groups[g];
-    const Experiment seen = condensed(subset(experiment, [&](const LoadCase& c) { return c.group != h.group; }));
-    const Experiment& whole = chosen.to_predict ? *chosen.to_predict : experiment;
-    const Experiment left_out = subset(whole, [&](const LoadCase& c) { return c.group == h.group; });
-    Misfit misfit(seen, map, chosen.equilibrium);
-    WithUncertainLayers data(misfit);
-    const FitReport report = fit(data, regularizer, fitted.p, options);
-    h.p = report.p;
-    if (is_success(report.status) || report.status == Status::iteration_limit)
-      predict(left_out, map, chosen.equilibrium, h);
-    else
-      h.failure = "the fit to the other cases failed: " + report.message;
-    if (!h.ok) result.warnings.push_back(h.group + " could not be predicted: " + h.failure);
+    const auto compute = [&] { return hold_out(experiment, {groups[g], map, regularizer, fitted.p, options, chosen}); };
+    std::optional<HeldOut> h = chosen.store ? chosen.store(static_cast<int>(g), groups[g], compute) : compute();
+    if (!h) continue;
+    if (!h->ok) result.warnings.push_back(h->group + " could not be predicted: " + h->failure);
+    result.groups.push_back(std::move(*h));
   }
   result.position_error = root_mean_square(result.groups, &HeldOut::positions);
   result.force_error = root_mean_square(result.groups, &HeldOut::forces);

@@ -2,6 +2,7 @@
 // predicts the group.
 #pragma once
 #include <functional>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -47,11 +48,16 @@ HeldOut compare(const Experiment& left_out, std::span<const CasePrediction> pred
 // Called before each group is held out.
 using CrossValidationObserver = std::function<void(int group, int groups, const std::string& name)>;
 
+// Returns the result of a group, stored or by `compute`; empty: the group is left out of the result.
+using HeldOutStore =
+    std::function<std::optional<HeldOut>(int group, const std::string& name, const std::function<HeldOut()>& compute)>;
+
 struct CrossValidationOptions {
   FitOptions fit = {};
   EquilibriumOptions equilibrium = {};
   CrossValidationObserver observe = {};
   const Experiment* to_predict = nullptr;  // cases for comparisons with predictions; null: those that are fitted
+  HeldOutStore store = {};                 // none: everything is computed
 };
 
 // `fitted`: fit of all cases; its p is the initial guess and its weight is kept.

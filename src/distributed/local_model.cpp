@@ -98,6 +98,8 @@ class Maker {
     all_succeed([&] { add_model(); });
     selections_.require_some();
     unify_loads();
+    for (std::unique_ptr<Energy>& damping : model().damping)
+      damping = make_shared_damping(std::move(damping), 3 * scene_.share.own(), model().share);
     return std::move(local_);
   }
 

@@ -109,6 +109,51 @@ class SharedLoad : public Energy {
   Share share_;
 };
 
+class SharedDamping : public Energy {
+ public:
+  SharedDamping(std::unique_ptr<Energy> local, int own_entries, const Share& share)
+      : local_(std::move(local)), own_(own_entries), share_(share) {}
+
+  std::string_view name() const override { return local_->name(); }
+  void add_couplings(Couplings& couplings) const override { local_->add_couplings(couplings); }
+  void bind(const BlockPattern& pattern) override { local_->bind(pattern); }
+  std::unique_ptr<Context> make_context() const override { return std::make_unique<Step>(local_->make_context()); }
+  void begin_step(const StepContext& step, Context& context) const override {
+    Energy::begin_step(step, context);
+    Step& own = static_cast<Step&>(context);
+    own.start.assign(step.start.begin(), step.start.begin() + own_);
+    local_->begin_step(step, *own.local);
+  }
+  double value(Positions x, const Context& context) const override {
+    if (context.h == 0) return 0;
+    const Step& step = static_cast<const Step&>(context);
+    std::vector<double> g(x.size(), 0.0);
+    local_->add_gradient(x, *step.local, 1, g);
+    double sum = 0;
+    for (int i = 0; i < own_; ++i) sum += g[i] * (x[i] - step.start[i]);
+    return share_.sum(sum) / 2;
+  }
+  void add_gradient(Positions x, const Context& context, double scale, std::span<double> g) const override {
+    local_->add_gradient(x, local_of(context), scale, g);
+  }
+  int add_hessian(Positions x, const Context& context, double scale, const Projection& projection,
+                  BlockSparse& H) const override {
+    return static_cast<int>(share_.sum(local_->add_hessian(x, local_of(context), scale, projection, H)));
+  }
+
+ private:
+  struct Step : Context {
+    explicit Step(std::unique_ptr<Context> of_local) : local(std::move(of_local)) {}
+    std::unique_ptr<Context> local;
+    std::vector<double> start;  // own positions at the start of the step
+  };
+  static const Context& local_of(const Context& context) { return *static_cast<const Step&>(context).local; }
+
+  std::unique_ptr<Energy> local_;
+  int own_;
+  Share share_;
+};
+
 }  // namespace
 
 std::unique_ptr<TetElasticity> make_shared_elasticity(ElasticityOfRank parts, const Share& share) {
@@ -118,6 +163,10 @@ std::unique_ptr<TetElasticity> make_shared_elasticity(ElasticityOfRank parts, co
 std::unique_ptr<Energy> make_shared_load(std::unique_ptr<Energy> local, int own_entries, const Share& share) {
   ASPIC_CHECK(local->has_constant_gradient());
   return std::make_unique<SharedLoad>(std::move(local), own_entries, share);
+}
+
+std::unique_ptr<Energy> make_shared_damping(std::unique_ptr<Energy> local, int own_entries, const Share& share) {
+  return std::make_unique<SharedDamping>(std::move(local), own_entries, share);
 }
 
 }  // namespace aspic::distributed

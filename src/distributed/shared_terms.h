@@ -17,4 +17,8 @@ std::unique_ptr<TetElasticity> make_shared_elasticity(ElasticityOfRank parts, co
 // times the number of own vertices.
 std::unique_ptr<Energy> make_shared_load(std::unique_ptr<Energy> local, int own_entries, const Share& share);
 
+// `local`: damping of the tets of this rank, a quadratic form of the motion x - start, so that D is half its product
+// with the gradient. `own_entries` as above.
+std::unique_ptr<Energy> make_shared_damping(std::unique_ptr<Energy> local, int own_entries, const Share& share);
+
 }  // namespace aspic::distributed

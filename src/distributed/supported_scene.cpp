@@ -50,9 +50,9 @@ void refuse_surfaces(const Value& output) {
 
 void require_supported_body(const Value& body) {
   refuse_keys(body.table(), {"friction", "viscoelastic", "fibre", "muscle", "spring", "grab", "pressure"});
-  for (const Member& member : body["damping"].table().members)
-    if (!member.value.is_number() || member.value.number() != 0)
-      throw not_supported(member.value.place, "damping." + member.key, "remove it, or use aspic run");
+  const Value& viscosity = body["damping"]["viscosity"];
+  if (!viscosity.is_number() || viscosity.number() != 0)
+    throw not_supported(viscosity.place, "damping.viscosity", "use damping.mass and damping.stiffness, or aspic run");
   require_number(body, "order", 1);
   if (const Value& elastic = body["elastic"]; !elastic.boolean())
     throw not_supported(elastic.place, "elastic = false", "use aspic run");

@@ -5,6 +5,7 @@
 #include <bit>
 #include <cmath>
 #include <fstream>
+#include <limits>
 #include <map>
 #include <set>
 
@@ -59,6 +60,8 @@ class GmshSlices::Headers {
     in_.clear();
     read_words(in_, slices_.nodes_.list[0].position, tag);
     slices_.first_tag_ = tag[0];
+    // Tags are positive. Differences of others might overflow.
+    if (tag[0] <= 0 || tag[0] > std::numeric_limits<std::int64_t>::max() - slices_.nodes_.count) return std::nullopt;
     return in_ ? std::optional(std::move(slices_)) : std::nullopt;
   }
 

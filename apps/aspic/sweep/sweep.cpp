@@ -8,6 +8,7 @@
 #include <memory>
 #include <sstream>
 
+#include "aspic/job_list.h"
 #include "base/error.h"
 #include "base/printable.h"
 #include "io/atomic_file.h"
@@ -22,30 +23,10 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr size_t kMaxArray = 1000;  // tasks of a job array; the default limit of Slurm is 1001
-
 struct SweepArguments {
   fs::path study, out, collected;
   std::string program = "aspic";
 };
-
-// Quotes a word for a POSIX shell.
-std::string shell_word(const std::string& word) {
-  const auto is_plain = [](char c) {
-    return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') ||
-           std::string_view("_-+=./:,%").find(c) != std::string_view::npos;
-  };
-  if (!word.empty() && std::all_of(word.begin(), word.end(), is_plain)) return word;
-  std::string quoted = "'";
-  for (const char c : word) quoted += c == '\'' ? "'\\''" : std::string(1, c);
-  return quoted + "'";
-}
-
-// A path that begins with - would be an option.
-std::string shell_word(const fs::path& path) {
-  const std::string text = path.string();
-  return shell_word(text.starts_with('-') ? "./" + text : text);
-}
 
 // Overrides that turn off what the scene writes besides its tables.
 std::vector<std::string> tables_only(const fs::path& scene) {
@@ -57,7 +38,7 @@ std::vector<std::string> tables_only(const fs::path& scene) {
 }
 
 struct StudyFiles {
-  std::string cases, jobs, slurm;
+  std::string cases, jobs;
   std::string scene;  // resolved scene of the first case; it changes with the scene of the study and its meshes
 };
 
@@ -75,28 +56,8 @@ std::string cases_table(const Study& study) {
   return text;
 }
 
-std::string slurm_script(const SweepArguments& arguments, const Study& study) {
-  return fmt::format(R"(#!/bin/sh
-#SBATCH --job-name={0}
-#SBATCH --array=1-{1}
-#SBATCH --cpus-per-task={2}
-#SBATCH --output={4}
-#SBATCH --open-mode=append
-# Submit from the folder in which `aspic sweep` ran. Further options: sbatch --time=1:00:00 --mem=2G SCRIPT
-# Task I runs the lines I, I + {1}, ... of jobs.txt. Submit again to continue what was interrupted.
-awk -v task="$SLURM_ARRAY_TASK_ID" 'NR % {1} == task % {1}' {3} | {{
-  code=0
-  while IFS= read -r line; do sh -c "$line" </dev/null || code=$?; done
-  exit $code
-}}
-)",
-                     shell_word(arguments.study.stem().string()), std::min(study.cases.size(), kMaxArray),
-                     study.threads, shell_word(arguments.out / "jobs.txt"),
-                     shell_word(arguments.out.string() + "/slurm-%a.log"));
-}
-
 StudyFiles make_files(const SweepArguments& arguments, const Study& study) {
-  StudyFiles files{cases_table(study), "", slurm_script(arguments, study), ""};
+  StudyFiles files{cases_table(study), "", ""};
   const std::vector<std::string> formats = study.frames ? std::vector<std::string>() : tables_only(study.scene);
   for (size_t i = 0; i < study.cases.size(); ++i) {
     std::vector<std::string> overrides = formats;
@@ -146,14 +107,12 @@ int write_study(SweepArguments arguments) {
   std::error_code error;
   fs::create_directories(arguments.out, error);
   if (error) throw InvalidInput(arguments.out.string() + ": cannot be created: " + error.message());
-  write_file(arguments.out / "jobs.txt", files.jobs);
-  write_file(arguments.out / "slurm.sh", files.slurm);
+  const JobList jobs{arguments.out, arguments.study.stem().string(), files.jobs, study.threads};
+  write_jobs(jobs);
   write_file(arguments.out / "scene.toml", files.scene);
   write_file(arguments.out / "cases.csv", files.cases);
-  const std::string jobs = shell_word(arguments.out / "jobs.txt");
   fmt::print("study      {} cases in {}\n", study.cases.size(), (arguments.out / "cases.csv").string());
-  fmt::print("run it     tr '\\n' '\\0' < {} | xargs -0 -n 1 -P \"$(nproc)\" sh -c\n", jobs);
-  fmt::print("       or  parallel < {}\n       or  sbatch {}\n", jobs, shell_word(arguments.out / "slurm.sh"));
+  print_how_to_run(jobs);
   fmt::print("results    aspic sweep collect {}\n", shell_word(arguments.out));
   return exit_done;
 }
