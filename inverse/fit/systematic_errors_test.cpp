@@ -28,6 +28,7 @@ struct Disturbed {
     cases[0].torque = Vec3d{}, cases[0].torque_sigma = {{1e-4, 2e-4, 1e-4}};
     for (int c = 1; c < 3; ++c) cases[c].indenter->contact = IndenterContact::sliding, cases[c].tip = "sliding";
     for (int c = 1; c < 3; ++c) cases[c].indenter->stiffness /= 20, cases[c].layer_sigma = 0.3;
+    for (int c = 1; c < 3; ++c) cases[c].indenter->friction = 0.4, cases[c].friction_sigma = 0.5;
     cases[1].pose.axis = {{0.1, 0.05, -1}};
     cases[2].indenter->shape = IndenterShape::sphere;
     cases[2].touch.center[0] -= 0.012, cases[2].pose.center[0] -= 0.012;
@@ -72,6 +73,7 @@ TEST(SystematicErrors, AreListedOncePerGroupSessionAndTip) {
   EXPECT_EQ(count[static_cast<int>(ErrorKind::rotation)], 3 * 5);
   EXPECT_EQ(count[static_cast<int>(ErrorKind::backlash)], 2);
   EXPECT_EQ(count[static_cast<int>(ErrorKind::layer)], 1);
+  EXPECT_EQ(count[static_cast<int>(ErrorKind::friction)], 1);
   EXPECT_EQ(count[static_cast<int>(ErrorKind::tare)], 3 + 1) << "a gauge has one axis";
   EXPECT_EQ(count[static_cast<int>(ErrorKind::force_scale)], 2);
   EXPECT_EQ(count[static_cast<int>(ErrorKind::length_scale)], 2);
