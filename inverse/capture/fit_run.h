@@ -1,5 +1,7 @@
 // Fits a material with its uncertainty to a data set: `aspic fit` without the terminal.
 #pragma once
+#include <algorithm>
+#include <cmath>
 #include <filesystem>
 #include <functional>
 #include <optional>
