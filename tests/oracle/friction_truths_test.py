@@ -20,7 +20,7 @@ import quadratic_fem as fem
 FRICTION, YOUNG, POISSON, RADIUS, LAYER = 0.3, 2e4, 0.45, 0.04, 1e9
 
 
-def plate(mu=FRICTION, cells=4, steps=4):
+def plate(mu=FRICTION, cells=3, steps=2):
     """A block that is held below, under a plate that covers it: pressed, and moved obliquely."""
     size = np.array([0.04, 0.04, 0.03])
     across, up = truths.graded(0.04, cells, 0.3), truths.graded(0.03, cells, 0.3)
@@ -58,7 +58,9 @@ def fit(truth, tip="", seed=1):
 
 
 class Friction(unittest.TestCase):
-    truth = plate()
+    @classmethod
+    def setUpClass(cls):
+        cls.truth = plate()
 
     def test_sliding_obeys_the_law_of_coulomb(self):
         for reading in self.truth.readings[1:]:

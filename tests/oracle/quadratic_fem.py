@@ -293,7 +293,7 @@ class Solid:
                 force = mu * weight[at] * self.indenter.response(depth[at])[1]
                 self.sliders = Sliders(at // len(N), at % len(N), force, normal[at], stuck[at], width)
                 before, x = x, self.solve(x, held)
-                if np.abs(x - before).max() < 1e-3 * width:
+                if np.abs(x - before).max() < 0.01 * width:
                     break
             else:
                 raise RuntimeError("the normal forces do not settle")
