@@ -32,7 +32,7 @@ def plate(mu=FRICTION, cells=3, steps=2):
         top = touch + np.array([0, 0, 0.1 * RADIUS])  # center of the rounding of the rim
         solid.indenter = fem.Indenter(top, 0.9 * RADIUS, 0.1 * RADIUS, LAYER, 0.02 * RADIUS)
         path = [top + np.array(move) * k / steps for k in range(1, steps + 1)]
-        x, force = solid.slide(solid.mesh.X.ravel(), held, path, mu, 2e-5)
+        x, force = solid.slide(solid.mesh.X.ravel(), held, path, mu, 5e-5)
         columns = {"case": name, "group": name, **{"touch_" + a: t for a, t in zip("xyz", touch)},
                    **{"axis_" + a: n for a, n in zip("xyz", (0, 0, -1))},
                    **{"center_" + a: c for a, c in zip("xyz", touch + move)}}
@@ -63,9 +63,10 @@ class Friction(unittest.TestCase):
         cls.truth = plate()
 
     def test_sliding_obeys_the_law_of_coulomb(self):
-        for reading in self.truth.readings[1:]:
-            ratio = np.linalg.norm(reading.force[:2]) / -reading.force[2]
-            self.assertLess(abs(ratio / FRICTION - 1), 0.1, reading.columns["case"])
+        ratios = [np.linalg.norm(r.force[:2]) / -r.force[2] for r in self.truth.readings]
+        self.assertLess(ratios[0], 0.001)
+        self.assertLess(abs(ratios[1] / FRICTION - 1), 0.05)
+        self.assertLess(ratios[2], 0.9 * FRICTION)  # parts of the face stick
 
     def test_coefficient_and_modulus_are_found(self):
         figures, summary = fit(self.truth, "friction = 0.5\nfriction_deviation = 0.7\n")

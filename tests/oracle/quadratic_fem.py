@@ -283,16 +283,17 @@ class Solid:
         """Moves the indenter with friction along the path of its center, step by step. Returns x and its force."""
         faces, N = self.mesh.faces, self.face_shapes
         points = lambda x: np.einsum("qa,far->fqr", N, x.reshape(-1, 3)[faces]).reshape(-1, 3)
-        self.sliders, weight = None, (self.face_area[:, None] * FACE_WEIGHTS).ravel() * self.indenter.stiffness
+        weight = (self.face_area[:, None] * FACE_WEIGHTS).ravel() * self.indenter.stiffness
         for center in path:
             stuck = points(x) + center - self.indenter.center
-            self.indenter.center = center
+            self.indenter.center, self.sliders = center, None
+            x = self.solve(x, held)  # for the first normal forces
             for lag in range(50):
                 depth, normal = self.indenter.depth(points(x))
                 at = np.flatnonzero(depth > 0)
                 force = mu * weight[at] * self.indenter.response(depth[at])[1]
                 self.sliders = Sliders(at // len(N), at % len(N), force, normal[at], stuck[at], width)
-                before, x = x, self.solve(x, held)
+                before, x = x, self.solve(x, held, 200)
                 if np.abs(x - before).max() < 0.01 * width:
                     break
             else:
