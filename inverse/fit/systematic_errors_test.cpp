@@ -79,7 +79,9 @@ TEST(SystematicErrors, AreListedOncePerGroupSessionAndTip) {
   EXPECT_EQ(count[static_cast<int>(ErrorKind::length_scale)], 2);
 }
 
+// The forces of points that begin to slip have kinks in their second derivative.
 void expect_derivatives(double friction) {
+  const double tolerance = friction > 0 ? 1e-4 : 2e-5;
   const Disturbed body(friction);
   const std::vector<double> values = body.values(0.5);
   const Experiment actual = without_errors(body.block.experiment, values);
@@ -89,7 +91,7 @@ void expect_derivatives(double friction) {
   for (size_t k = 0; k < values.size(); ++k) {
     const SystematicError& error = actual.errors[k];
     std::vector<double> more = values, less = values;
-    const double h = (getenv("HH")?atof(getenv("HH")):2e-3) * error.sigma;
+    const double h = 2e-3 * error.sigma;
     more[k] += h, less[k] -= h;
     const std::vector<double> above = body.residuals(more), below = body.residuals(less);
     misfit.nuisance(static_cast<int>(k), dr);
@@ -100,7 +102,7 @@ void expect_derivatives(double friction) {
     }
     // A sphere without friction has no rotation.
     const bool is_void = friction == 0 && error.kind == ErrorKind::rotation && error.scope == "side";
-    printf("%s diff %g rel %g\n", name_of(error).c_str(), difference, difference/size); EXPECT_LT(difference, 2e-5 * size + 1e-6 / error.sigma) << name_of(error);
+    EXPECT_LT(difference, tolerance * size + 1e-6 / error.sigma) << name_of(error);
     EXPECT_EQ(size > 1e-3 / error.sigma, !is_void) << name_of(error) << " " << size;
   }
 }
