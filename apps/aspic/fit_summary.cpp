@@ -92,9 +92,9 @@ std::string friction_text(const EstimatedError& e) {
 void print_errors(std::FILE* stream, const FitOutcome& outcome) {
   std::string head = "errors";
   for (const EstimatedError& e : outcome.errors) {
-    const std::string value = e.stated ? friction_text(e)
-                                       : value_text(e.value, e.unit) + " +- " +
-                                             (e.sigma < 0 ? "unknown" : value_text(e.sigma, e.unit));
+    const std::string value =
+        e.stated ? friction_text(e)
+                 : value_text(e.value, e.unit) + " +- " + (e.sigma < 0 ? "unknown" : value_text(e.sigma, e.unit));
     fmt::print(stream, "{:<10} {:<28} {}, {}\n", head, e.name, value,
                e.is_from_data() ? "determined by the data" : "determined by its prior");
     head.clear();

@@ -186,8 +186,8 @@ class DataSetWriter {
     double sigma = 0;
     for (const LoadCase& load : data_.experiment.cases)
       if (load.indenter && same(*load.indenter, indenter)) sigma = load.friction_sigma;
-    return "friction = " + inline_toml({indenter.friction, {}}) +
-           "\nfriction_deviation = " + inline_toml({sigma, {}}) + "\n";
+    return "friction = " + inline_toml({indenter.friction, {}}) + "\nfriction_deviation = " + inline_toml({sigma, {}}) +
+           "\n";
   }
 
   void write_settings() const {

@@ -65,7 +65,8 @@ double read_friction_sigma(const CaptureSettings& settings, const Value& tip) {
   if (friction.number() > 0 && tip["contact"].text() == "bonded")
     refuse(friction, "friction", "a bonded tip does not slide; use contact = \"sliding\", or remove friction");
   if (friction.number() > 0 && has_histories(settings))
-    refuse(friction, "friction", "loads that vary in time (steady = \"history\") allow no friction; remove one of both");
+    refuse(friction, "friction",
+           "loads that vary in time (steady = \"history\") allow no friction; remove one of both");
   return deviation.number();
 }
 

@@ -45,7 +45,7 @@ class Equilibrium {
   // equilibrium) or cannot be factorized; then there are no derivatives. They remain valid for this point until the
   // next linearization, even after further solves.
   bool factorize();
-  std::span<const double> linearized_x() const;                                 // empty if there are no derivatives
+  std::span<const double> linearized_x() const;  // empty if there are no derivatives
   // K u = b, or K' u = b; u = 0 on pinned vertices
   SolveReport solve_stiffness(std::span<const double> b, std::span<double> u, bool is_transposed = false);
   // dx = dx/dtheta dtheta; `dtheta` holds parameters_per_tet() numbers per tet.

@@ -106,7 +106,6 @@ TEST(IndenterFriction, LimitsAreFrictionlessAndBonded) {
   EXPECT_GT(norm(bonded - smooth), 0.1 * norm(bonded));
   const Vec3d rough = prediction(covered_block(IndenterContact::sliding, 10)).wrench.force;
   EXPECT_LT(norm(rough - bonded), 0.05 * norm(bonded));
-
 }
 
 }  // namespace

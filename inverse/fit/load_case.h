@@ -48,7 +48,7 @@ class LoadedBody {
   bool add_transposed(std::span<const double> w, std::span<double> thetabar);
   void common_error(int k, std::span<double> dr) const;  // of LoadCase::common_errors, in standard deviations
   bool has_unknown_layer() const { return probe_ && !load_.layer_sigma; }
-  bool multiply_by_layer(std::span<double> dr);  // dr/dlog k, k the stiffness of the indenter's layer
+  bool multiply_by_layer(std::span<double> dr);     // dr/dlog k, k the stiffness of the indenter's layer
   bool multiply_by_friction(std::span<double> dr);  // dr/dlog mu, mu the coefficient of friction of the indenter
   bool multiply_by_error(const SystematicError& error, std::span<double> dr);  // 0 if it does not concern the case
 
@@ -78,10 +78,10 @@ class LoadedBody {
 
   const Experiment& experiment_;
   const LoadCase& load_;
-  Probe* probe_ = nullptr;            // in the model; null without an indenter
+  Probe* probe_ = nullptr;             // in the model; null without an indenter
   ProbeFriction* friction_ = nullptr;  // in the model; null without friction
-  std::vector<ScaledLoad*> scaled_;   // weight and pressure in the model
-  std::shared_ptr<GripMotion> grip_;  // in the model; null without a grip
+  std::vector<ScaledLoad*> scaled_;    // weight and pressure in the model
+  std::shared_ptr<GripMotion> grip_;   // in the model; null without a grip
   std::vector<double> rest_;
   Equilibrium equilibrium_;
   CasePrediction prediction_;

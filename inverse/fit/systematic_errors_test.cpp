@@ -28,7 +28,8 @@ struct Disturbed {
     cases[0].torque = Vec3d{}, cases[0].torque_sigma = {{1e-4, 2e-4, 1e-4}};
     for (int c = 1; c < 3; ++c) cases[c].indenter->contact = IndenterContact::sliding, cases[c].tip = "sliding";
     for (int c = 1; c < 3; ++c) cases[c].indenter->stiffness /= 20, cases[c].layer_sigma = 0.3;
-    for (int c = 1; c < 3; ++c) cases[c].indenter->friction = friction, cases[c].friction_sigma = friction > 0 ? 0.5 : 0;
+    for (int c = 1; c < 3; ++c)
+      cases[c].indenter->friction = friction, cases[c].friction_sigma = friction > 0 ? 0.5 : 0;
     cases[1].pose.axis = {{0.1, 0.05, -1}};
     cases[2].indenter->shape = IndenterShape::sphere;
     cases[2].touch.center[0] -= 0.012, cases[2].pose.center[0] -= 0.012;

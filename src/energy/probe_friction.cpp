@@ -154,8 +154,7 @@ int ProbeFriction::add_hessian(Positions x, const Context& context, double scale
 }
 
 void ProbeFriction::add_friction(Positions x, double scale, std::span<double> g) const {
-  probe_.visit_touched(
-      x, [&](const TouchedPoint& point) { add(point, scale * traction_of(point).force, g); });
+  probe_.visit_touched(x, [&](const TouchedPoint& point) { add(point, scale * traction_of(point).force, g); });
 }
 
 Wrench ProbeFriction::wrench(Positions x) const {
@@ -174,14 +173,12 @@ Wrench ProbeFriction::wrench_product(Positions x, std::span<const double> dx) co
     const Traction traction = traction_of(point);
     const Vec3d dp = sum(point, dx), dq = traction.product * dp;
     total.force = total.force - dq;
-    total.torque =
-        total.torque - cross(dp, traction.force) - cross(point.position - probe_.pose().center, dq);
+    total.torque = total.torque - cross(dp, traction.force) - cross(point.position - probe_.pose().center, dq);
   });
   return total;
 }
 
-void ProbeFriction::add_wrench_transposed(Positions x, const Wrench& wbar, double scale,
-                                          std::span<double> xbar) const {
+void ProbeFriction::add_wrench_transposed(Positions x, const Wrench& wbar, double scale, std::span<double> xbar) const {
   probe_.visit_touched(x, [&](const TouchedPoint& point) {
     const Traction traction = traction_of(point);
     const Vec3d qbar = wbar.force + cross(wbar.torque, point.position - probe_.pose().center);

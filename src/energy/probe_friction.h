@@ -1,5 +1,5 @@
-// Coulomb friction of a sliding indenter, D(x) = sum over points in contact of mu N f(|T (p - a)|), which is a potential
-// for lagged normal forces N and tangent planes T = I - n n' (see LaggedEnergy).
+// Coulomb friction of a sliding indenter, D(x) = sum over points in contact of mu N f(|T (p - a)|), which is a
+// potential for lagged normal forces N and tangent planes T = I - n n' (see LaggedEnergy).
 //   a      anchor: the place of the indenter that meets the point at rest if the indenter approaches along its axis.
 //          It moves with the indenter.
 //   f(y) = y^2 / e - y^3 / (3 e^2) for y < e, and y - e / 3 beyond, e = radius / 1000: points that stick creep by less
