@@ -79,7 +79,7 @@ TEST_F(StatedErrors, FrictionIsRefusedWithLineAndRemedy) {
   EXPECT_THAT(refusal("", "friction_deviation = 0.5\n"), HasSubstr("capture.toml:8:22: friction_deviation = 0.5: the"));
   EXPECT_THAT(refusal("", "friction = 0.3\ncontact = \"bonded\"\n"), HasSubstr("use contact = \"sliding\", or remove"));
   EXPECT_THAT(refusal("steady = \"history\"", "friction = 0.3\n"),
-              HasSubstr("capture.toml:9:12: friction = 0.3: loads"));
+              HasSubstr("capture.toml:8:12: friction = 0.3: loads"));
 }
 
 TEST_F(StatedErrors, GravityOfTheScanIsThatOfCases) {
