@@ -17,18 +17,18 @@
 namespace aspic {
 namespace {
 
-constexpr double kSide = 0.04, kHeight = 0.03, kYoung = 2e4;
+constexpr double kPlateSide = 0.04, kPlateHeight = 0.03, kPlateYoung = 2e4;
 
 // A block on z = 0 under a plate that covers it and moves down and along x.
 Experiment covered_block(IndenterContact contact, double friction) {
   Experiment e;
-  e.mesh = make_box({{0, 0, 0}}, {{kSide, kSide, kHeight}}, {3, 3, 3});
+  e.mesh = make_box({{0, 0, 0}}, {{kPlateSide, kPlateSide, kPlateHeight}}, {3, 3, 3});
   e.density.assign(e.mesh.tets.size(), 1000);
   for (int v = 0; v < e.mesh.vertex_count(); ++v)
     if (e.mesh.rest[v][2] < 1e-9) e.fixed.push_back(v);
   LoadCase load{.name = "slide", .group = "slide"};
-  load.indenter = Indenter{IndenterShape::disc, contact, kSide, 1e9, friction};
-  load.touch = {.center = {{kSide / 2, kSide / 2, kHeight}}};
+  load.indenter = Indenter{IndenterShape::disc, contact, kPlateSide, 1e9, friction};
+  load.touch = {.center = {{kPlateSide / 2, kPlateSide / 2, kPlateHeight}}};
   load.pose = load.touch;
   load.pose.center = load.pose.center + Vec3d{{1e-3, 0, -1.5e-3}};
   load.force = Vec3d{};
@@ -37,8 +37,8 @@ Experiment covered_block(IndenterContact contact, double friction) {
   return e;
 }
 
-CasePrediction prediction(const Experiment& e) {
-  const std::vector<MaterialParameters> material(e.mesh.tets.size(), {lame_from_young_poisson(kYoung, 0.45), {}});
+CasePrediction covered_prediction(const Experiment& e) {
+  const std::vector<MaterialParameters> material(e.mesh.tets.size(), {lame_from_young_poisson(kPlateYoung, 0.45), {}});
   LoadedBody body(e, e.cases[0], "neo_hookean", material, {});
   EXPECT_TRUE(body.solve(material, {})) << body.failure();
   return body.prediction();
@@ -49,7 +49,7 @@ TEST(IndenterFriction, DerivativesOfForcesMatchDifferences) {
     Experiment e = covered_block(IndenterContact::sliding, 0.4);
     LoadCase& load = e.cases[0];
     load.indenter->shape = shape;
-    if (shape == IndenterShape::sphere) load.touch.center[2] += kSide, load.pose.center[2] += kSide;
+    if (shape == IndenterShape::sphere) load.touch.center[2] += kPlateSide, load.pose.center[2] += kPlateSide;
     load.pose.rotation = {{0, 0, 0.02}};
     const auto probe = make_probe_of(e, load);
     std::mt19937 random(5);
@@ -94,17 +94,17 @@ TEST(IndenterFriction, DerivativesOfForcesMatchDifferences) {
 TEST(IndenterFriction, ForcesObeyCoulombsLaw) {
   Experiment e = covered_block(IndenterContact::sliding, 0.1);
   e.cases[0].pose.center = e.cases[0].touch.center + Vec3d{{5e-3, 0, -5e-4}};
-  const Vec3d force = prediction(e).wrench.force;
+  const Vec3d force = covered_prediction(e).wrench.force;
   EXPECT_NEAR(force[0], -0.1 * force[2], 0.02 * force[0]) << "the whole face slides along x";
 }
 
 TEST(IndenterFriction, LimitsAreFrictionlessAndBonded) {
-  const Vec3d smooth = prediction(covered_block(IndenterContact::sliding, 0)).wrench.force;
-  const Vec3d little = prediction(covered_block(IndenterContact::sliding, 1e-4)).wrench.force;
+  const Vec3d smooth = covered_prediction(covered_block(IndenterContact::sliding, 0)).wrench.force;
+  const Vec3d little = covered_prediction(covered_block(IndenterContact::sliding, 1e-4)).wrench.force;
   EXPECT_LT(norm(little - smooth), 3e-4 * norm(smooth));
-  const Vec3d bonded = prediction(covered_block(IndenterContact::bonded, 0)).wrench.force;
+  const Vec3d bonded = covered_prediction(covered_block(IndenterContact::bonded, 0)).wrench.force;
   EXPECT_GT(norm(bonded - smooth), 0.1 * norm(bonded));
-  const Vec3d rough = prediction(covered_block(IndenterContact::sliding, 10)).wrench.force;
+  const Vec3d rough = covered_prediction(covered_block(IndenterContact::sliding, 10)).wrench.force;
   EXPECT_LT(norm(rough - bonded), 0.05 * norm(bonded));
 }
 
