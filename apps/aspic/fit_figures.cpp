@@ -142,6 +142,8 @@ Json errors_of(const FitOutcome& outcome) {
   for (const EstimatedError& e : outcome.errors) {
     Json error = {{"name", e.name}, {"unit", e.unit}, {"value", e.value}, {"prior_deviation", e.prior_sigma}};
     if (e.sigma >= 0) error["deviation"] = e.sigma, error["determined_by"] = e.is_from_data() ? "data" : "prior";
+    if (e.stated) error["coefficient"] = e.coefficient();
+    if (e.stated && e.sigma >= 0) error["coefficient_95"] = {e.coefficient(-kSigmas95), e.coefficient(kSigmas95)};
     errors.push_back(std::move(error));
   }
   return errors;

@@ -69,7 +69,9 @@ void add_indenters_and_patches(Schema& s) {
        key("stiffness", kNumber, "of its elastic layer; default: far above the estimated stiffness of the body",
            Units{"Pa/m"}, kPositive),
        key("stiffness_deviation", kNumber | kText, "of the logarithm of a given stiffness", kNotNegative,
-           Choices{{"unknown"}}, Usual{"0.0"})});
+           Choices{{"unknown"}}, Usual{"0.0"}),
+       key("friction", kNumber, "coefficient, of a sliding tip", kNotNegative, Usual{"0.0"}),
+       key("friction_deviation", kNumber, "of the logarithm of friction", kNotNegative, Usual{"0.0"})});
   add_keys(s, "grip",
            {key("name", kText, "as the table of cases calls it", Usual{"\"grip\""}),
             key("where", kExpression | kTable | kIntegers, "vertices that it moves", kRequired, Members{"where"}),

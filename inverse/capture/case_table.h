@@ -8,14 +8,15 @@
 #include "capture/force_series.h"
 #include "capture/recorded_positions.h"
 #include "capture/settings.h"
+#include "capture/stated_errors.h"
 #include "capture/surface_projection.h"
 
 namespace aspic {
 
 struct CaseScope {
   const std::map<std::string, Indenter>& indenters;
-  const std::map<std::string, std::optional<double>>& layer_sigmas;  // of each indenter, see LoadCase
-  const std::map<std::string, Grip>& grips;                          // without motion
+  const std::map<std::string, TipSigmas>& tip_sigmas;  // of each indenter
+  const std::map<std::string, Grip>& grips;            // without motion
   const std::map<std::string, std::vector<Triangle>>& patches;
   const SurfaceProjection& surface;
   const ForceSeries* forces = nullptr;          // of cases without a force of their own

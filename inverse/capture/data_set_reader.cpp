@@ -64,7 +64,7 @@ class DataSetReader {
     read_patches(surface);
     if (settings_.find("forces")) forces_ = read_force_series(settings_, errors_, data_.notes);
     read_cases(settings_,
-               {indenters_, layer_sigmas_, grips_, patches_, surface, forces_ ? &*forces_ : nullptr,
+               {indenters_, tip_sigmas_, grips_, patches_, surface, forces_ ? &*forces_ : nullptr,
                 recorded_ ? &*recorded_ : nullptr},
                errors_, data_);
     read_positions();
@@ -373,9 +373,9 @@ class DataSetReader {
     for (const Value& t : indenters->array()) {
       Indenter indenter{t["shape"].text() == "disc" ? IndenterShape::disc : IndenterShape::sphere,
                         t["contact"].text() == "bonded" ? IndenterContact::bonded : IndenterContact::sliding,
-                        settings_.unit("length") * t["radius"].number(), 0};
+                        settings_.unit("length") * t["radius"].number(), 0, t["friction"].number()};
       if (const Value* k = t.find("stiffness")) indenter.stiffness = k->number();
-      layer_sigmas_.emplace(t["name"].text(), read_layer_sigma(t));
+      tip_sigmas_.emplace(t["name"].text(), read_tip_sigmas(settings_, t));
       if (!indenters_.try_emplace(t["name"].text(), indenter).second)
         throw error_at(t["name"].place, "name = " + toml_string(t["name"].text()) + " is used by another tip");
     }
@@ -488,7 +488,7 @@ class DataSetReader {
   std::vector<Vec3d> gap_;                             // offset of each marker at rest from its surface point [m]
   std::map<int, std::pair<Triangle, int>> corner_of_;  // a triangle of each vertex of the surface, and which corner
   std::map<std::string, Indenter> indenters_;
-  std::map<std::string, std::optional<double>> layer_sigmas_;
+  std::map<std::string, TipSigmas> tip_sigmas_;
   std::map<std::string, Grip> grips_;
   std::map<std::string, std::vector<Triangle>> patches_;
 };

@@ -17,7 +17,8 @@ namespace fs = std::filesystem;
 
 bool same(const Vec3d& a, const Vec3d& b) { return a[0] == b[0] && a[1] == b[1] && a[2] == b[2]; }
 bool same(const Indenter& a, const Indenter& b) {
-  return a.shape == b.shape && a.contact == b.contact && a.radius == b.radius && a.stiffness == b.stiffness;
+  return a.shape == b.shape && a.contact == b.contact && a.radius == b.radius && a.stiffness == b.stiffness &&
+         a.friction == b.friction;
 }
 bool same(const Grip& a, const Grip& b) { return a.vertices == b.vertices && same(a.center, b.center); }
 
@@ -180,6 +181,15 @@ class DataSetWriter {
     return "\"unknown\"";
   }
 
+  std::string friction_text(const Indenter& indenter) const {
+    if (!(indenter.friction > 0)) return "";
+    double sigma = 0;
+    for (const LoadCase& load : data_.experiment.cases)
+      if (load.indenter && same(*load.indenter, indenter)) sigma = load.friction_sigma;
+    return "friction = " + inline_toml({indenter.friction, {}}) + "\nfriction_deviation = " + inline_toml({sigma, {}}) +
+           "\n";
+  }
+
   void write_settings() const {
     std::string text =
         "# Measurements, in SI units: docs/capture_format.md\nversion = 1\nname = " + toml_string(data_.name) +
@@ -195,7 +205,7 @@ class DataSetWriter {
               "\ncontact = " + (indenter.contact == IndenterContact::bonded ? "\"bonded\"" : "\"sliding\"") +
               "\nradius = " + inline_toml({indenter.radius, {}}) +
               "\nstiffness = " + inline_toml({indenter.stiffness, {}}) +
-              "\nstiffness_deviation = " + layer_sigma_text(indenter) + "\n";
+              "\nstiffness_deviation = " + layer_sigma_text(indenter) + "\n" + friction_text(indenter);
     for (const Grip& grip : grips_)
       text += "\n[[grip]]\nname = " + toml_string(grip_name(grip)) + "\nwhere = " + list_of(grip.vertices) +
               "\ncenter = [" + number_text(grip.center[0]) + ", " + number_text(grip.center[1]) + ", " +

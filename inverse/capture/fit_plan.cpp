@@ -287,6 +287,10 @@ std::string fingerprint_of(const Experiment& e) {
       add_vector(reading->value_or(Vec3d{{1e300, 0, 0}}));
     add_vector(c.force_sigma), add_vector(c.torque_sigma);
     if (c.layer_sigma) hash.add("layer", 5), hash.add(&*c.layer_sigma, sizeof *c.layer_sigma);
+    if (c.indenter && c.indenter->friction > 0) {
+      const double friction[] = {c.indenter->friction, c.friction_sigma};
+      hash.add("friction", 8), hash.add(friction, sizeof friction);
+    }
     if (c.gauge) hash.add("gauge", 5), add_vector(*c.gauge);
   }
   for (const SystematicError& error : e.errors) {

@@ -1,5 +1,7 @@
 // Fits a material with its uncertainty to a data set: `aspic fit` without the terminal.
 #pragma once
+#include <algorithm>
+#include <cmath>
 #include <filesystem>
 #include <functional>
 #include <optional>
@@ -69,7 +71,10 @@ struct EstimatedError {
   double value = 0;
   double sigma = -1;  // posterior standard deviation; < 0: unknown
   double prior_sigma = 0;
+  std::optional<double> stated = {};  // coefficient of friction; its logarithm has this error
 
+  // Coefficient at the given number of standard deviations from its estimate.
+  double coefficient(double sigmas = 0) const { return *stated * std::exp(value + sigmas * std::max(sigma, 0.0)); }
   bool is_from_data() const { return sigma >= 0 && 2 * sigma * sigma < prior_sigma * prior_sigma; }
 };
 

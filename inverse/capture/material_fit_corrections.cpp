@@ -21,6 +21,12 @@ double change_of_weights(const std::vector<CaseWeights>& before, const std::vect
   return largest;
 }
 
+std::optional<double> stated_friction(const Experiment& experiment, const SystematicError& error) {
+  for (const LoadCase& load : experiment.cases)
+    if (error.kind == ErrorKind::friction && concerns(error, load)) return load.indenter->friction;
+  return {};
+}
+
 }  // namespace
 
 bool MaterialFit::has_corrections() const { return !data_.experiment.errors.empty() || plan_.robust; }
@@ -59,7 +65,8 @@ void MaterialFit::list_errors(WithUncertainLayers& about_fit, std::span<const do
     const SystematicError& error = simulated_.errors()[k];
     const double factor = posterior ? posterior->applied_factor : 1;
     outcome_.errors.push_back({name_of(error), unit_of(error), estimates[k].value,
-                               std::min(factor * estimates[k].sigma, error.sigma), error.sigma});
+                               std::min(factor * estimates[k].sigma, error.sigma), error.sigma,
+                               stated_friction(data_.experiment, error)});
   }
 }
 

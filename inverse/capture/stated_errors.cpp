@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "base/error.h"
+#include "capture/histories.h"
 
 namespace aspic {
 namespace {
@@ -43,6 +44,8 @@ std::vector<SystematicError> read_systematic_errors(const CaptureSettings& setti
   return errors;
 }
 
+namespace {
+
 std::optional<double> read_layer_sigma(const Value& tip) {
   const Value &deviation = tip["stiffness_deviation"], *stiffness = tip.find("stiffness");
   const bool is_given = deviation.place.line > 0;
@@ -50,6 +53,27 @@ std::optional<double> read_layer_sigma(const Value& tip) {
     throw error_at(deviation.place, "stiffness_deviation needs the stiffness of the tip; add stiffness, or remove it");
   if (!stiffness || deviation.is_text()) return std::nullopt;
   return deviation.number();
+}
+
+double read_friction_sigma(const CaptureSettings& settings, const Value& tip) {
+  const Value &friction = tip["friction"], &deviation = tip["friction_deviation"];
+  const auto refuse = [](const Value& value, const char* key, const char* why) {
+    throw error_at(value.place, std::string(key) + " = " + number_text(value.number()) + ": " + why);
+  };
+  if (deviation.number() > 0 && !(friction.number() > 0))
+    refuse(deviation, "friction_deviation", "the coefficient is 0; give the most probable friction, such as 0.3");
+  if (friction.number() > 0 && tip["contact"].text() == "bonded")
+    refuse(friction, "friction", "a bonded tip does not slide; use contact = \"sliding\", or remove friction");
+  if (friction.number() > 0 && has_histories(settings))
+    refuse(friction, "friction",
+           "loads that vary in time (steady = \"history\") allow no friction; remove one of both");
+  return deviation.number();
+}
+
+}  // namespace
+
+TipSigmas read_tip_sigmas(const CaptureSettings& settings, const Value& tip) {
+  return {read_layer_sigma(tip), read_friction_sigma(settings, tip)};
 }
 
 std::string errors_text(const std::vector<SystematicError>& errors) {

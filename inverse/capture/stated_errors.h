@@ -12,8 +12,13 @@ namespace aspic {
 // Throws InvalidInput for errors that concern no case.
 std::vector<SystematicError> read_systematic_errors(const CaptureSettings& settings,
                                                     const std::vector<LoadCase>& cases);
-// Standard deviation of the logarithm of the stiffness of a [[tip]]; empty: unknown.
-std::optional<double> read_layer_sigma(const Value& tip);
+// Standard deviations of logarithms.
+struct TipSigmas {
+  std::optional<double> layer;  // of the stiffness of the layer; empty: unknown
+  double friction = 0;          // of the coefficient
+};
+// Throws InvalidInput for inconsistent keys of a [[tip]].
+TipSigmas read_tip_sigmas(const CaptureSettings& settings, const Value& tip);
 
 // The keys of `errors` for these errors, as an inline table in SI units.
 std::string errors_text(const std::vector<SystematicError>& errors);

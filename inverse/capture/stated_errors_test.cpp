@@ -60,6 +60,28 @@ TEST_F(StatedErrors, LayersCountAsStated) {
   EXPECT_THAT(refusal("", "stiffness_deviation = 0.2\n"), HasSubstr("capture.toml:8:23: stiffness_deviation needs"));
 }
 
+TEST_F(StatedErrors, FrictionHasAPriorPerTip) {
+  EXPECT_EQ(read("").experiment.cases[0].indenter->friction, 0.0);
+  EXPECT_TRUE(read("", "friction = 0.3\n").experiment.errors.empty()) << "known";
+  const DataSet data = read("", "friction = 0.3\nfriction_deviation = 0.5\n");
+  EXPECT_EQ(data.experiment.cases[1].indenter->friction, 0.3);
+  ASSERT_EQ(data.experiment.errors.size(), 1u);
+  EXPECT_EQ(name_of(data.experiment.errors[0]), "friction of 'tip'");
+  EXPECT_EQ(data.experiment.errors[0].sigma, 0.5);
+  write_data_set(path("copy"), data);
+  const DataSet copy = read_data_set(path("copy"));
+  EXPECT_EQ(copy.experiment.cases[0].indenter->friction, 0.3);
+  EXPECT_EQ(copy.experiment.cases[0].friction_sigma, 0.5);
+}
+
+TEST_F(StatedErrors, FrictionIsRefusedWithLineAndRemedy) {
+  EXPECT_THAT(refusal("", "friction = -0.3\n"), HasSubstr("capture.toml:8:12: friction = -0.3"));
+  EXPECT_THAT(refusal("", "friction_deviation = 0.5\n"), HasSubstr("capture.toml:8:22: friction_deviation = 0.5: the"));
+  EXPECT_THAT(refusal("", "friction = 0.3\ncontact = \"bonded\"\n"), HasSubstr("use contact = \"sliding\", or remove"));
+  EXPECT_THAT(refusal("steady = \"history\"", "friction = 0.3\n"),
+              HasSubstr("capture.toml:8:12: friction = 0.3: loads"));
+}
+
 TEST_F(StatedErrors, GravityOfTheScanIsThatOfCases) {
   const DataSet data = read("mesh_gravity = [0, 0, -9.81]");
   ASSERT_TRUE(data.experiment.scan_gravity);

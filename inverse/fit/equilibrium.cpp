@@ -7,8 +7,10 @@
 #include "base/check.h"
 #include "base/formatted.h"
 #include "dynamics/incremental_potential.h"
+#include "energy/lagged_product.h"
 #include "fit/elastic_parameters.h"
 #include "linalg/auto_solver.h"
+#include "math/vectors.h"
 #include "optimize/newton.h"
 
 namespace aspic {
@@ -42,6 +44,9 @@ struct Equilibrium::Impl {
         theta(model) {
     minimize.tolerance = o.tolerance;
     minimize.max_iterations = o.max_iterations;
+    minimize.updates_lagged = true;
+    for (const auto& D : model.damping)
+      if (const auto* term = dynamic_cast<const LaggedProduct*>(D.get())) lagged.push_back(term);
     pins.place(0, x);
     parameters = linear_parameters = theta.get();
     for (auto* v : {&trial, &b, &u}) v->resize(x.size());
@@ -107,12 +112,34 @@ struct Equilibrium::Impl {
     return false;
   }
 
-  SolveReport solve_stiffness(std::span<const double> rhs, std::span<double> result) {
+  SolveReport solve_stiffness(std::span<const double> rhs, std::span<double> result, bool is_transposed = false) {
     ASPIC_CHECK(!linear_x.empty());
     if (rhs.data() != b.data()) std::copy(rhs.begin(), rhs.end(), b.begin());
+    const SolveReport report = solve_symmetric(result);
+    return lagged.empty() || !report.ok ? report : add_lagged(report, result, is_transposed);
+  }
+
+  SolveReport solve_symmetric(std::span<double> result) {
     pins.set_zero(b);
     SolveReport report = solver->solve(b, result, options.adjoint_tolerance);
     report.ok = report.ok || (!report.indefinite && report.relative_residual <= kUsable);
+    return report;
+  }
+
+  // result = (S + C)^-1 b from S^-1 b, as the sum of (-S^-1 C)^k S^-1 b.
+  SolveReport add_lagged(SolveReport report, std::span<double> result, bool is_transposed) {
+    std::vector<double> term(result.begin(), result.end());
+    for (int k = 0; k < kMaxTerms; ++k) {
+      std::fill(b.begin(), b.end(), 0.0);
+      for (const LaggedProduct* D : lagged)
+        is_transposed ? D->add_lagged_transposed(linear_x, term, -1, b) : D->add_lagged_product(linear_x, term, -1, b);
+      report = solve_symmetric(term);
+      if (!report.ok) return report;
+      add_scaled(1, term, result);
+      report.relative_residual = norm(term) / norm(result);
+      if (!(report.relative_residual > options.adjoint_tolerance)) return report;
+    }
+    report.ok = report.relative_residual <= kUsable;
     return report;
   }
 
@@ -125,7 +152,7 @@ struct Equilibrium::Impl {
 
   SolveReport add_adjoint(std::span<const double> xbar, std::span<double> thetabar) {
     use(linear_parameters);
-    const SolveReport report = solve_stiffness(xbar, u);
+    const SolveReport report = solve_stiffness(xbar, u, true);
     theta.add_gradient(linear_x, u, -1, thetabar);
     return report;
   }
@@ -153,6 +180,7 @@ struct Equilibrium::Impl {
   }
 
   static constexpr double kUsable = 1e-9;  // residual of a solve that stagnates in round-off
+  static constexpr int kMaxTerms = 100;    // see add_lagged()
 
   EquilibriumOptions options;
   Model model;
@@ -167,6 +195,7 @@ struct Equilibrium::Impl {
   StiffRows stiff_rows;                 // of K
   std::optional<BlockSparse> all_rows;  // K with the rows of pinned vertices, if they move
   ElasticParameters theta;
+  std::vector<const LaggedProduct*> lagged;
   std::vector<MaterialParameters> parameters, linear_parameters;
   const std::vector<MaterialParameters>* in_force = &parameters;
   std::vector<double> linear_x;  // empty: no derivatives
@@ -199,8 +228,8 @@ void Equilibrium::set_x(std::span<const double> x) {
 
 bool Equilibrium::factorize() { return impl_->factorize(); }
 std::span<const double> Equilibrium::linearized_x() const { return impl_->linear_x; }
-SolveReport Equilibrium::solve_stiffness(std::span<const double> b, std::span<double> u) {
-  return impl_->solve_stiffness(b, u);
+SolveReport Equilibrium::solve_stiffness(std::span<const double> b, std::span<double> u, bool is_transposed) {
+  return impl_->solve_stiffness(b, u, is_transposed);
 }
 SolveReport Equilibrium::tangent(std::span<const double> dtheta, std::span<double> dx) {
   return impl_->tangent(dtheta, dx);

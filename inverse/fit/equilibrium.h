@@ -1,6 +1,8 @@
 // A body at rest under a load, x(theta) = argmin V(x; theta) over the free vertices, and its derivatives:
 //   tangent   K dx = -d(grad V)/dtheta dtheta
 //   adjoint   K mu = xbar,  thetabar = -mu' d(grad V)/dtheta        K = V''(x), true and unprojected
+// With friction, grad V includes its forces with normal forces at x. Then K has a part C that is not symmetric (see
+// LaggedProduct); K is solved by iterations u := S^-1 (b - C u), where S = K - C.
 #pragma once
 #include <memory>
 #include <span>
@@ -43,8 +45,9 @@ class Equilibrium {
   // equilibrium) or cannot be factorized; then there are no derivatives. They remain valid for this point until the
   // next linearization, even after further solves.
   bool factorize();
-  std::span<const double> linearized_x() const;                                 // empty if there are no derivatives
-  SolveReport solve_stiffness(std::span<const double> b, std::span<double> u);  // K u = b, u = 0 on pinned vertices
+  std::span<const double> linearized_x() const;  // empty if there are no derivatives
+  // K u = b, or K' u = b; u = 0 on pinned vertices
+  SolveReport solve_stiffness(std::span<const double> b, std::span<double> u, bool is_transposed = false);
   // dx = dx/dtheta dtheta; `dtheta` holds parameters_per_tet() numbers per tet.
   SolveReport tangent(std::span<const double> dtheta, std::span<double> dx);
   // thetabar += (dx/dtheta)' xbar

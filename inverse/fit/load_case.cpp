@@ -127,6 +127,11 @@ Model LoadedBody::make_model(const std::string& material, std::span<const Materi
     auto probe = make_probe_of(experiment_, load_);
     probe_ = probe.get();
     model.loads.push_back(std::move(probe));
+    if (load_.indenter->friction > 0) {
+      auto friction = std::make_unique<ProbeFriction>(mesh, *probe_, *load_.indenter, load_.touch);
+      friction_ = friction.get();
+      model.damping.push_back(std::move(friction));
+    }
   }
   return model;
 }
@@ -199,22 +204,28 @@ void LoadedBody::predict_readings() {
 }
 
 Wrench LoadedBody::wrench() {
-  if (probe_) return probe_->wrench(x());
+  if (probe_) return friction_ ? probe_->wrench(x()) + friction_->wrench(x()) : probe_->wrench(x());
   if (!grip_) return {};
   std::fill(force_.begin(), force_.end(), 0.0);
   equilibrium_.add_forces(force_);
   return wrench_of(*load_.grip, x(), force_);
 }
 
+Wrench LoadedBody::wrench_product(std::span<const double> dx) const {
+  const std::span<const double> x = equilibrium_.linearized_x();
+  return friction_ ? probe_->wrench_product(x, dx) + friction_->wrench_product(x, dx) : probe_->wrench_product(x, dx);
+}
+
 Wrench LoadedBody::wrench_change(std::span<const double> dtheta) {
   if (!has_wrench()) return {};
-  if (probe_) return probe_->wrench_product(equilibrium_.linearized_x(), dx_);
+  if (probe_) return wrench_product(dx_);
   equilibrium_.force_tangent(dtheta, dx_, force_);
   return wrench_of(*load_.grip, equilibrium_.linearized_x(), force_);
 }
 
 void LoadedBody::add_wrench_transposed(const Wrench& bar, std::span<double> thetabar) {
   const std::span<const double> x = equilibrium_.linearized_x();
+  if (friction_) friction_->add_wrench_transposed(x, bar, 1, xbar_);
   if (probe_) return probe_->add_wrench_transposed(x, bar, 1, xbar_);
   std::fill(force_.begin(), force_.end(), 0.0);
   add_wrench_of_transposed(*load_.grip, x, bar, force_);
@@ -293,17 +304,27 @@ bool LoadedBody::multiply(std::span<const double> dtheta, std::span<double> dr) 
   return true;
 }
 
-// V_probe and its wrench are proportional to k: K dx = -grad V_probe.
+// V_probe, friction and their wrench are proportional to k: K dx = -grad V_probe - q.
 bool LoadedBody::multiply_by_layer(std::span<double> dr) {
   const std::span<const double> x = equilibrium_.linearized_x();
   std::fill(xbar_.begin(), xbar_.end(), 0.0);
   probe_->add_gradient(x, -1, xbar_);
+  if (!friction_) return move_along_force(probe_->wrench(x), dr);
+  friction_->add_friction(x, -1, xbar_);
+  return move_along_force(probe_->wrench(x) + friction_->wrench(x), dr);
+}
+
+bool LoadedBody::multiply_by_friction(std::span<double> dr) {
+  const std::span<const double> x = equilibrium_.linearized_x();
+  std::fill(xbar_.begin(), xbar_.end(), 0.0);
+  friction_->add_friction(x, -1, xbar_);
+  return move_along_force(friction_->wrench(x), dr);
+}
+
+bool LoadedBody::move_along_force(Wrench own, std::span<double> dr) {
   ++counts_.solves;
   if (!solved(equilibrium_.solve_stiffness(xbar_, dx_))) return false;
-  Wrench change = probe_->wrench_product(x, dx_);
-  const Wrench own = probe_->wrench(x);
-  change.force = change.force + own.force, change.torque = change.torque + own.torque;
-  put_change(change, dr);
+  put_change(wrench_product(dx_) + own, dr);
   return true;
 }
 

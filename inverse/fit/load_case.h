@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "energy/probe_friction.h"
 #include "fit/misfit.h"
 #include "fit/scaled_load.h"
 #include "fit/systematic_errors.h"
@@ -47,7 +48,8 @@ class LoadedBody {
   bool add_transposed(std::span<const double> w, std::span<double> thetabar);
   void common_error(int k, std::span<double> dr) const;  // of LoadCase::common_errors, in standard deviations
   bool has_unknown_layer() const { return probe_ && !load_.layer_sigma; }
-  bool multiply_by_layer(std::span<double> dr);  // dr/dlog k, k the stiffness of the indenter's layer
+  bool multiply_by_layer(std::span<double> dr);     // dr/dlog k, k the stiffness of the indenter's layer
+  bool multiply_by_friction(std::span<double> dr);  // dr/dlog mu, mu the coefficient of friction of the indenter
   bool multiply_by_error(const SystematicError& error, std::span<double> dr);  // 0 if it does not concern the case
 
   const Misfit::Counts& counts() const { return counts_; }
@@ -63,6 +65,8 @@ class LoadedBody {
   bool load_in_parts();
   bool solved(const SolveReport& report);
   Wrench wrench();                                                            // at x()
+  Wrench wrench_product(std::span<const double> dx) const;                    // of an indenter, linearized
+  bool move_along_force(Wrench own, std::span<double> dr);                    // by -xbar_, which changes the wrench
   void store_wrench();                                                        // for derivatives by systematic errors
   Wrench wrench_change(std::span<const double> dtheta);                       // along dx_
   void add_wrench_transposed(const Wrench& bar, std::span<double> thetabar);  // to xbar_ and thetabar
@@ -74,9 +78,10 @@ class LoadedBody {
 
   const Experiment& experiment_;
   const LoadCase& load_;
-  Probe* probe_ = nullptr;            // in the model; null without an indenter
-  std::vector<ScaledLoad*> scaled_;   // weight and pressure in the model
-  std::shared_ptr<GripMotion> grip_;  // in the model; null without a grip
+  Probe* probe_ = nullptr;             // in the model; null without an indenter
+  ProbeFriction* friction_ = nullptr;  // in the model; null without friction
+  std::vector<ScaledLoad*> scaled_;    // weight and pressure in the model
+  std::shared_ptr<GripMotion> grip_;   // in the model; null without a grip
   std::vector<double> rest_;
   Equilibrium equilibrium_;
   CasePrediction prediction_;

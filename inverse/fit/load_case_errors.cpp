@@ -27,6 +27,7 @@ void LoadedBody::store_wrench() {
 bool LoadedBody::multiply_by_error(const SystematicError& error, std::span<double> dr) {
   if (!concerns(error, load_)) return true;
   if (error.kind == ErrorKind::layer) return multiply_by_layer(dr);
+  if (error.kind == ErrorKind::friction) return multiply_by_friction(dr);
   if (error.kind >= ErrorKind::tare) {
     put_change_of_reading(error, dr);
     return true;
@@ -70,11 +71,12 @@ bool LoadedBody::move_probe(const Twist& twist, Wrench& change) {
   const std::span<const double> x = equilibrium_.linearized_x();
   std::fill(xbar_.begin(), xbar_.end(), 0.0);
   probe_->add_wrench_transposed(x, {twist.center, twist.rotation}, -1, xbar_);  // H v - w x g
+  if (friction_) friction_->add_pose_product(x, twist.center, twist.rotation, -1, xbar_);
   ++counts_.solves;
   if (!solved(equilibrium_.solve_stiffness(xbar_, dx_))) return false;
   std::copy(dx_.begin(), dx_.end(), xbar_.begin());
   add_rigid_motion(twist, load_.pose.center, x, -1, xbar_);
-  change = probe_->wrench_product(x, xbar_);
+  change = wrench_product(xbar_);
   change.force = change.force + cross(twist.rotation, linear_wrench_.force);
   change.torque = change.torque + cross(twist.rotation, linear_wrench_.torque);
   return true;

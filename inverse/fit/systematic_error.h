@@ -12,7 +12,8 @@ namespace aspic {
 //   tare          reading of force = exp(force_scale) (force + e)              [N]    per session
 //   force_scale   the same, also for torques                                   [1]    per session
 //   length_scale  reading of the motion of a marker = exp(e) motion            [1]    per session
-enum class ErrorKind { position, rotation, backlash, layer, tare, force_scale, length_scale };
+//   friction      coefficient of friction of an indenter times exp(e)          [1]    per tip
+enum class ErrorKind { position, rotation, backlash, layer, tare, force_scale, length_scale, friction };
 
 struct SystematicError {
   static constexpr int kAlongGauge = 3;

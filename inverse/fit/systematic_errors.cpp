@@ -55,12 +55,13 @@ bool is_of_pose(ErrorKind kind) {
 
 const std::string& scope_of(ErrorKind kind, const LoadCase& load) {
   if (kind == ErrorKind::position || kind == ErrorKind::rotation) return load.group;
-  return kind == ErrorKind::layer ? load.tip : load.session;
+  return kind == ErrorKind::layer || kind == ErrorKind::friction ? load.tip : load.session;
 }
 
 bool can_change(ErrorKind kind, const LoadCase& load) {
   if (is_of_pose(kind)) return load.indenter || load.grip;
   if (kind == ErrorKind::layer) return load.indenter && load.layer_sigma.value_or(0) > 0;
+  if (kind == ErrorKind::friction) return load.indenter && load.friction_sigma > 0;
   if (kind == ErrorKind::length_scale) return !load.positions.empty();
   return load.force || (load.torque && kind == ErrorKind::force_scale);
 }
@@ -72,6 +73,7 @@ std::pair<int, int> axes_of(ErrorKind kind, const LoadCase& load) {
 }
 
 double sigma_of(ErrorKind kind, const LoadCase& load, const ErrorSigmas& sigmas) {
+  if (kind == ErrorKind::friction) return load.friction_sigma;
   return kind == ErrorKind::layer ? load.layer_sigma.value_or(0) : sigmas[static_cast<size_t>(kind)];
 }
 
@@ -106,6 +108,7 @@ void correct_load(const std::vector<SystematicError>& errors, LoadCase& load) {
   load.pose.axis = rotated(turn, load.pose.axis);
   load.pose.rotation = rotation_after(turn, load.pose.rotation);
   load.indenter->stiffness *= std::exp(total(errors, ErrorKind::layer, load));
+  load.indenter->friction *= std::exp(total(errors, ErrorKind::friction, load));
 }
 
 void correct_readings(const Experiment& experiment, LoadCase& load) {
@@ -165,8 +168,8 @@ std::vector<SystematicError> systematic_errors(const std::vector<LoadCase>& case
 }
 
 std::string name_of(const SystematicError& error) {
-  constexpr const char* kNames[] = {"position", "rotation",    "backlash",    "layer stiffness",
-                                    "tare",     "force scale", "length scale"};
+  constexpr const char* kNames[] = {"position", "rotation",    "backlash",     "layer stiffness",
+                                    "tare",     "force scale", "length scale", "friction"};
   constexpr const char* kAxes[] = {" x", " y", " z", " along the axis"};
   std::string name = kNames[static_cast<size_t>(error.kind)];
   if (is_of_group(error) || error.kind == ErrorKind::tare) name += kAxes[error.axis];

@@ -173,6 +173,12 @@ class ProbeTerm : public Probe {
     return count;
   }
 
+  void visit_touched(Positions x, const std::function<void(const TouchedPoint&)>& visit) const override {
+    for_each_touched(placed_, x, [&](const Patch& patch, const Barycentric& b, const Vec3d& p, const Response& r) {
+      visit({patch.vertices, b, p, r.gradient, r.hessian});
+    });
+  }
+
  private:
   bool is_sliding() const { return indenter_.contact == IndenterContact::sliding; }
 

@@ -1,12 +1,14 @@
 // A rigid indenter in contact with the surface of a body: V(x) = sum over surface points of (area k phi), an elastic
 // layer that is much stiffer than the body. The pose of the indenter is prescribed; its force results.
-//   sliding: frictionless. phi grows with the depth d of the point below the surface of the indenter:
+//   sliding: phi grows with the depth d of the point below the surface of the indenter:
 //            phi' = d^2 / (2 e) up to d = e, then d - e / 2, where e = radius / 50
 //   bonded:  phi = |x - target|^2 / 2 for the points that the indenter touches at rest, which follow it as if glued to
 //   it
 // The points are the centroids of equal parts of the boundary triangles. Their distance is at most an eighth (bonded)
 // or a sixteenth (sliding) of the radius.
 #pragma once
+#include <array>
+#include <functional>
 #include <memory>
 #include <span>
 
@@ -23,6 +25,7 @@ struct Indenter {
   IndenterContact contact = IndenterContact::bonded;
   double radius = 0;     // [m]
   double stiffness = 0;  // stiffness k of the layer [Pa/m]
+  double friction = 0;   // coefficient, of a sliding indenter; see ProbeFriction
 };
 
 // Pose of an indenter: the center of the sphere or of the flat end, its axis, and its rotation since it touched the
@@ -43,6 +46,15 @@ struct Wrench {
   Vec3d force{};   // force of the indenter on the body [N]
   Vec3d torque{};  // torque about the center of the indenter [N m]
 };
+inline Wrench operator+(const Wrench& a, const Wrench& b) { return {a.force + b.force, a.torque + b.torque}; }
+
+// A surface point in contact, with the derivatives of its energy by its position.
+struct TouchedPoint {
+  Triangle vertices;
+  std::array<double, 3> weights;  // of the vertices
+  Vec3d position{}, gradient{};
+  Mat3d hessian{};
+};
 
 class Probe : public SteadyEnergy {
  public:
@@ -55,6 +67,7 @@ class Probe : public SteadyEnergy {
   virtual Wrench wrench_product(Positions x, std::span<const double> dx) const = 0;
   virtual void add_wrench_transposed(Positions x, const Wrench& wbar, double scale, std::span<double> xbar) const = 0;
   virtual int touched_points(Positions x) const = 0;  // number of surface points in contact; 0: none
+  virtual void visit_touched(Positions x, const std::function<void(const TouchedPoint&)>& visit) const = 0;
 
   // V and its derivatives for another placement of the indenter.
   virtual double value_at(const PlacedIndenter& indenter, Positions x) const = 0;

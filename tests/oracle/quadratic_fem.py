@@ -136,6 +136,18 @@ class Indenter:
 
 
 @dataclasses.dataclass
+class Sliders:
+    """Points in contact with lagged forces mu N, normals, and positions at the end of a step if they stick. The energy
+    is that of a slip y: force * (sqrt(y^2 + width^2) - width)."""
+    face: np.ndarray
+    point: np.ndarray
+    force: np.ndarray
+    normal: np.ndarray
+    stuck: np.ndarray
+    width: float
+
+
+@dataclasses.dataclass
 class Fibres:
     direction: object      # of points
     ratio: float           # k1 / mu
@@ -169,7 +181,7 @@ class Solid:
         self.mu, self.K = E / (2 + 2 * poisson), E.mean(0) / (3 - 6 * poisson)
         if fibres:
             self.axes = np.array([np.broadcast_to(fibres.direction(l @ corners), (len(corners), 3)) for l in POINTS])
-        self.indenter = None
+        self.indenter = self.sliders = None
         dofs = (3 * mesh.tets[:, :, None] + np.arange(3)).reshape(-1, 30)
         self.rows, self.columns, self.dofs = np.repeat(dofs, 30, 1).ravel(), np.tile(dofs, (1, 30)).ravel(), dofs
         X = mesh.X[mesh.faces[:, :3]]
@@ -249,12 +261,55 @@ class Solid:
             matrix = (J.T @ sparse.diags(weight * curvature) @ J).tocsr()
         return (weight * value).sum(), gradient, matrix, -pull.sum(0)
 
+    def friction(self, x, wants_matrix=False):
+        s, size = self.sliders, x.size
+        N, nodes = self.face_shapes[s.point], self.mesh.faces[s.face]
+        u = np.einsum("fa,far->fr", N, x.reshape(-1, 3)[nodes]) - s.stuck
+        u -= (u * s.normal).sum(1, keepdims=True) * s.normal
+        root = np.sqrt((u ** 2).sum(1) + s.width ** 2)
+        dofs = (3 * nodes[:, :, None] + np.arange(3)).reshape(-1, 18)
+        pull = (s.force / root)[:, None] * u
+        gradient = np.bincount(dofs.ravel(), (N[:, :, None] * pull[:, None]).ravel(), size)
+        matrix = None
+        if wants_matrix:
+            T = np.eye(3) - s.normal[:, :, None] * s.normal[:, None]
+            K = (s.force / root)[:, None, None] * (T - u[:, :, None] * u[:, None] / root[:, None, None] ** 2)
+            blocks = (N[:, :, None, None, None] * N[:, None, :, None, None] * K[:, None, None]).transpose(0, 1, 3, 2, 4)
+            rows, columns = np.repeat(dofs, 18, 1), np.tile(dofs, (1, 18))
+            matrix = sparse.csr_matrix((blocks.ravel(), (rows.ravel(), columns.ravel())), (size, size))
+        return (s.force * (root - s.width)).sum(), gradient, matrix, -pull.sum(0)
+
+    def slide(self, x, held, path, mu, width):
+        """Moves the indenter with friction along the path of its center, step by step. Returns x and its force."""
+        faces, N = self.mesh.faces, self.face_shapes
+        points = lambda x: np.einsum("qa,far->fqr", N, x.reshape(-1, 3)[faces]).reshape(-1, 3)
+        weight = (self.face_area[:, None] * FACE_WEIGHTS).ravel() * self.indenter.stiffness
+        for center in path:
+            stuck = points(x) + center - self.indenter.center
+            self.indenter.center, self.sliders = center, None
+            x = self.solve(x, held)  # for the first normal forces
+            for lag in range(50):
+                depth, normal = self.indenter.depth(points(x))
+                at = np.flatnonzero(depth > 0)
+                force = mu * weight[at] * self.indenter.response(depth[at])[1]
+                self.sliders = Sliders(at // len(N), at % len(N), force, normal[at], stuck[at], width)
+                before, x = x, self.solve(x, held, 200)
+                if np.abs(x - before).max() < 0.01 * width:
+                    break
+            else:
+                raise RuntimeError("the normal forces do not settle")
+        return x, self.contact(x)[3] + self.friction(x)[3]
+
     def total(self, x, wants_matrix=False):
         energy, gradient, matrix = self.evaluate(x, wants_matrix)
         if self.indenter is not None and np.isfinite(energy):
             more, slope, block, _ = self.contact(x, wants_matrix)
             energy, gradient = energy + more, gradient + slope
             matrix = matrix + block if wants_matrix else None
+            if self.sliders is not None:
+                more, slope, block, _ = self.friction(x, wants_matrix)
+                energy, gradient = energy + more, gradient + slope
+                matrix = matrix + block if wants_matrix else None
         return energy, gradient, matrix
 
     def solve(self, x, held, iterations=60, tolerance=1e-7):

@@ -95,6 +95,8 @@ export interface FoundError {
   deviation?: number;
   prior_deviation: number;
   determined_by?: string;
+  coefficient?: number; // of friction, whose logarithm has the error
+  coefficient_95?: [number, number];
 }
 
 export interface LawFigures {

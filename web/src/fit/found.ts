@@ -8,16 +8,24 @@ import { numberTable } from "./numberTable";
 
 const kLargeError = 3; // estimate in prior standard deviations that is marked
 
+function interval95({ value, deviation, unit, coefficient_95: of }: FoundError): string {
+  if (deviation === undefined) return "–";
+  return of ? intervalText(of[0], of[1], unit) : intervalText(value - 1.96 * deviation, value + 1.96 * deviation, unit);
+}
+
 function errorRow(e: FoundError): HTMLElement {
-  const half = e.deviation === undefined ? null : 1.96 * e.deviation;
-  const interval = half === null ? "–" : intervalText(e.value - half, e.value + half, e.unit);
   const ratio = e.prior_deviation > 0 ? Math.abs(e.value) / e.prior_deviation : 0;
-  return row(e.name, [valueText(e.value, e.unit, 3), interval, `0 ± ${valueText(e.prior_deviation, e.unit, 3)}`, `${short(ratio, 2)} sd`, e.determined_by ?? "–"], ratio > kLargeError ? "large" : "");
+  return row(e.name, [valueText(e.coefficient ?? e.value, e.unit, 3), interval95(e), priorText(e), `${short(ratio, 2)} sd`, e.determined_by ?? "–"], ratio > kLargeError ? "large" : "");
+}
+
+function priorText({ prior_deviation: deviation, unit, value, coefficient }: FoundError): string {
+  const stated = coefficient === undefined ? "0 ±" : `${short(coefficient / Math.exp(value), 3)}, logarithm ±`;
+  return `${stated} ${valueText(deviation, unit, 3)}`;
 }
 
 export function errorTable({ errors }: Figures): HTMLElement | null {
   if (!errors || errors.length === 0) return null;
-  const unitless = (e: FoundError): FoundError => (e.unit === "" ? { ...e, name: `${e.name} (logarithm of the factor)` } : e);
+  const unitless = (e: FoundError): FoundError => (e.unit === "" && e.coefficient === undefined ? { ...e, name: `${e.name} (logarithm of the factor)` } : e);
   return numberTable(["error", "estimate", "95 % interval", "prior", "estimate / prior sd", "determined by"], 1, element("tbody", {}, ...errors.map((e) => errorRow(unitless(e)))));
 }
 
