@@ -210,7 +210,7 @@ std::string figures_json(const DataSet& data, const FitOutcome& outcome, const F
   json["limits"] = {{"missed", kMissed}, {"squares_per_reading", kTooManySquares}};
   json["groups"] = groups_json(data, outcome);
   json["held_out"] = held_out_json(data, outcome);
-  json["comparison"] = comparison_json(outcome, figures);
+  json["comparison"] = comparison_json(data, outcome, figures);
   json["cases"] = cases_json(data, outcome);
   json["histogram"] = histogram_json(data, outcome);
   return json.dump(1) + "\n";

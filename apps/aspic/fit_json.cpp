@@ -83,23 +83,21 @@ Json histogram_json(const DataSet& data, const FitOutcome& outcome) {
 Json held_out_json(const DataSet& data, const FitOutcome& outcome) {
   const std::vector<HeldOut> predicted = predicted_groups(data, outcome);
   if (predicted.empty()) return {};
-  const std::vector<PredictionErrors> errors = beyond_noise(predicted);
+  const std::vector<PredictionErrors> errors = beyond_noise(data, predicted);
   Json groups = Json::array();
   for (const HeldOut& g : predicted) groups.push_back(group_json(g, errors_of(errors, g.group), errors.size() == 1));
   const PredictionErrors all = all_groups(errors);
   Json json = {{"groups", groups}, {"poor", all.is_poor(1)}, {"limits", {{"single", kSingle}}}};
+  const HeldOut largest = largest_readings(data);
   for (const ReadingKind& kind : kReadingKinds) {
-    double peak = 0;
-    for (const HeldOut& g : predicted)
-      if (g.ok) peak = std::max(peak, (g.*kind.errors).peak);
     json[kind.name] = known(all.*kind.beyond_noise);
-    json[std::string("largest_") + kind.peak] = known(peak);
+    json[std::string("largest_") + kind.peak] = known((largest.*kind.errors).peak);
     json["limits"][kind.name] = kind.limit;
   }
   return json;
 }
 
-Json comparison_json(const FitOutcome& outcome, const FitFigures& figures) {
+Json comparison_json(const DataSet& data, const FitOutcome& outcome, const FitFigures& figures) {
   Json list = Json::array();
   const auto add = [&](const std::string& how, const Json& models) {
     if (!models.empty()) list.push_back({{"how", how}, {"models", models}});
@@ -109,7 +107,7 @@ Json comparison_json(const FitOutcome& outcome, const FitFigures& figures) {
     for (const ReadingKind& kind : kReadingKinds) row[kind.name] = known(errors.*kind.beyond_noise);
     return row;
   };
-  const auto all_of = [](const CrossValidation& v) { return all_groups(beyond_noise(v.groups)); };
+  const auto all_of = [](const CrossValidation& v) { return all_groups(beyond_noise(data, v.groups)); };
   Json validated = Json::array();
   if (outcome.held_out && !outcome.held_out->groups.empty()) {
     const bool is_field = outcome.held_out_of_one_value.has_value();
@@ -119,7 +117,7 @@ Json comparison_json(const FitOutcome& outcome, const FitFigures& figures) {
   add("cross-validation", validated);
   Json predicted = Json::array();
   for (const Prediction& p : figures.predictions) {
-    const PredictionErrors errors = p.held_out.ok ? all_groups(beyond_noise({p.held_out})) : PredictionErrors{};
+    const PredictionErrors errors = p.held_out.ok ? all_groups(beyond_noise(data, {p.held_out})) : PredictionErrors{};
     Json row = model(p.method == "fit" ? "this fit" : p.method, errors);
     if (!p.held_out.ok) row["failure"] = p.held_out.failure;
     predicted.push_back(row);

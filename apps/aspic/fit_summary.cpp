@@ -72,9 +72,9 @@ std::string errors_text(const PredictionErrors& errors) {
   return fmt::format("{}", fmt::join(texts, ", "));
 }
 
-void print_held_out(std::FILE* stream, const FitOutcome& outcome) {
+void print_held_out(std::FILE* stream, const DataSet& data, const FitOutcome& outcome) {
   if (!outcome.held_out) return;
-  const std::vector<PredictionErrors> groups = beyond_noise(outcome.held_out->groups);
+  const std::vector<PredictionErrors> groups = beyond_noise(data, outcome.held_out->groups);
   const std::string text = errors_text(all_groups(groups));
   if (text.empty()) return;
   fmt::print(stream, "held out   each group predicted from the others: {} (beyond the noise)\n", text);
@@ -134,7 +134,7 @@ void print_fit(std::FILE* stream, const DataSet& data, const FitOutcome& outcome
   if (outcome.posterior && outcome.posterior->ok)
     fmt::print(stream, "learned    the data determine {:.1f} of {} directions of the material\n",
                outcome.posterior->informed, outcome.parameter_count);
-  print_held_out(stream, outcome);
+  print_held_out(stream, data, outcome);
   if (outcome.next_indentation) fmt::print(stream, "next poke  {}\n", outcome.next_indentation->description);
   for (const std::string& warning : outcome.warnings) fmt::print(stream, "warning: {}\n", warning);
 }

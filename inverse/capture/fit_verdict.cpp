@@ -81,9 +81,10 @@ double root_mean_square(const std::vector<PredictionErrors>& groups, double Pred
 }
 
 double beyond_noise(const ReadingErrors& e, double largest) {
-  constexpr double kLeastPeak = 10;  // standard deviations; a smaller peak may be noise
+  constexpr double kLeastPeak = 10;  // standard deviations; smaller peaks may be noise
   if (!(e.peak > 0)) return -1;
-  return std::sqrt(std::max(e.error * e.error - e.noise * e.noise, 0.0)) / std::max(largest, kLeastPeak * e.noise);
+  return std::sqrt(std::max(e.error * e.error - e.noise * e.noise, 0.0)) /
+         std::max({largest, e.peak, kLeastPeak * e.noise});
 }
 
 std::string percents(const PredictionErrors& errors) {
@@ -149,7 +150,7 @@ class Reasons {
             "the readings need " + three_digits(std::abs(error.sigmas)) + " standard deviations of the error of " +
                 error.cause + ": the model is wrong, or the readings",
             std::abs(error.sigmas), kMissed);
-    add_poor_predictions(beyond_noise(predicted_groups(data_, outcome_)));
+    add_poor_predictions(beyond_noise(data_, predicted_groups(data_, outcome_)));
   }
 
   void add_about_relaxation(const RelaxationFit& fit) {
@@ -275,17 +276,25 @@ std::vector<HeldOut> predicted_groups(const DataSet& data, const FitOutcome& out
   return groups;
 }
 
-std::vector<PredictionErrors> beyond_noise(const std::vector<HeldOut>& groups) {
+HeldOut largest_readings(const DataSet& data) {
+  std::vector<CasePrediction> measured;
+  for (const LoadCase& c : data.experiment.cases) {
+    CasePrediction& own = measured.emplace_back();
+    for (const MarkerReading& reading : c.positions) own.markers.push_back(reading.position);
+    own.wrench = {c.force.value_or(Vec3d{}), c.torque.value_or(Vec3d{})};
+  }
+  return compare(data.experiment, measured);
+}
+
+std::vector<PredictionErrors> beyond_noise(const DataSet& data, const std::vector<HeldOut>& groups) {
+  const HeldOut all = largest_readings(data);
   std::vector<PredictionErrors> errors;
   for (const HeldOut& group : groups)
     if (group.ok) errors.push_back({.group = group.group});
   for (const ReadingKind& kind : kReadingKinds) {
-    double peak = 0;
-    for (const HeldOut& group : groups)
-      if (group.ok) peak = std::max(peak, (group.*kind.errors).peak);
     auto of_group = errors.begin();
     for (const HeldOut& group : groups)
-      if (group.ok) (*of_group++).*kind.beyond_noise = beyond_noise(group.*kind.errors, peak);
+      if (group.ok) (*of_group++).*kind.beyond_noise = beyond_noise(group.*kind.errors, (all.*kind.errors).peak);
   }
   return errors;
 }

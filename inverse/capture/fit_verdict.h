@@ -12,8 +12,8 @@ inline constexpr double kMissed = 4;             // standard deviations, root me
 inline constexpr double kTooManySquares = 2.25;  // |r|^2 per reading
 inline constexpr double kSingle = 2;             // multiple of the limits of held-out errors for a single group
 
-// Errors of a held-out group beyond the noise of its readings, relative to the largest motion, force and torque of all
-// groups, or to 10 standard deviations if that is more; < 0: none.
+// Errors of a held-out group beyond the noise of its readings, relative to the largest motion, force and torque of the
+// data, or to 10 standard deviations if that is more; < 0: none.
 struct PredictionErrors {
   std::string group;
   double position = -1, force = -1, torque = -1;
@@ -42,7 +42,9 @@ std::vector<GroupError> group_errors(const DataSet& data, const FitOutcome& outc
 
 // Groups that were predicted from others, by cross-validation or because the fit leaves them out.
 std::vector<HeldOut> predicted_groups(const DataSet& data, const FitOutcome& outcome);
-std::vector<PredictionErrors> beyond_noise(const std::vector<HeldOut>& groups);  // of the predicted ones
+HeldOut largest_readings(const DataSet& data);  // the peaks of all groups
+std::vector<PredictionErrors> beyond_noise(const DataSet& data,
+                                           const std::vector<HeldOut>& groups);  // of predicted ones
 PredictionErrors all_groups(const std::vector<PredictionErrors>& groups);        // root mean square
 
 struct FitVerdict {

@@ -16,9 +16,9 @@ namespace aspic {
 // with |r|^2 in the directions determined by the data. The mean is the best estimate in mean square. Tets near an
 // interface get intermediate values and larger standard deviations.
 struct PartsOptions {
-  int passes = 5;        // linearizations
-  int rank = 400;        // maximum directions of the last one; a quarter of that before
-  int sweeps = 1000;     // over all tets, per linearization, after a quarter as many for burn-in
+  int passes = 5;     // linearizations
+  int rank = 400;     // maximum directions of the last one; a quarter of that before
+  int sweeps = 1000;  // over all tets, per linearization, after a quarter as many for burn-in
   // Penalty per face of mean area between unlike tets [nats]; a single tet has four. Below 0.9, parts are scattered;
   // above 1.1, an inclusion shrinks and becomes the stiffer.
   double surface = 1;
