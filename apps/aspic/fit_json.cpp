@@ -107,7 +107,7 @@ Json comparison_json(const DataSet& data, const FitOutcome& outcome, const FitFi
     for (const ReadingKind& kind : kReadingKinds) row[kind.name] = known(errors.*kind.beyond_noise);
     return row;
   };
-  const auto all_of = [](const CrossValidation& v) { return all_groups(beyond_noise(data, v.groups)); };
+  const auto all_of = [&](const CrossValidation& v) { return all_groups(beyond_noise(data, v.groups)); };
   Json validated = Json::array();
   if (outcome.held_out && !outcome.held_out->groups.empty()) {
     const bool is_field = outcome.held_out_of_one_value.has_value();
