@@ -10,6 +10,7 @@
 #include "capture/quick_plan_test.h"
 #include "fit/quantity.h"
 #include "fit/tangent_frame.h"
+#include "io/folder_test.h"
 
 namespace aspic {
 namespace {

@@ -186,14 +186,14 @@ TEST(FitVerdict, PoorHeldOutTorquesAreNotGood) {
   outcome.held_out = held_out_indentation(0.01, 0.01);
   ReadingErrors& torques = outcome.held_out->groups[0].torques;
   torques = {.count = 2, .peak = 0.02, .error = 0.0019};
-  EXPECT_THAT(reasons(outcome), IsEmpty());
+  EXPECT_THAT(reasons(outcome), ElementsAre());
   torques.error = 0.0021;
   EXPECT_THAT(reasons(outcome), ElementsAre("predicts_badly"));
   EXPECT_THAT(verdict(three_indentations(), outcome).text, HasSubstr("1 % (forces), 10.5 % (torques)"));
   torques = {.count = 2, .peak = 1e-6, .error = 3e-6, .noise = 2e-6};  // of a symmetric pull: noise alone
   EXPECT_THAT(reasons(outcome), ElementsAre("predicts_badly"));
   torques.error = 2.5e-6;
-  EXPECT_THAT(reasons(outcome), IsEmpty());
+  EXPECT_THAT(reasons(outcome), ElementsAre());
 }
 
 TEST(FitVerdict, PoorHeldOutPredictionsAreNotGood) {
