@@ -54,7 +54,8 @@ class FitPack {
                  {"figures", Json::parse(figures_)},
                  {"history", history()},
                  {"weights", weights()},
-                 {"notes", notes()},
+                 {"fibres", fibres()},
+                 {"notes", data_.notes},
                  {"warnings", outcome_.warnings},
                  {"markerNames", marker_names()},
                  {"nextPoke", next_indentation()}};
@@ -151,12 +152,10 @@ class FitPack {
          outcome_.posterior && outcome_.posterior->ok ? number_json(outcome_.posterior->noise_factor) : Json()}};
   }
 
-  Json notes() const {
-    std::vector<std::string> notes = data_.notes;
-    for (const FoundFibres& f : outcome_.fibres)
-      notes.push_back("Direction of the fibres " + (f.where == "everywhere" ? f.where : "in " + f.where) + ": " +
-                      fibre_text(f) + ".");
-    return notes;
+  Json fibres() const {
+    Json list = Json::array();
+    for (const FoundFibres& f : outcome_.fibres) list.push_back(f.where + ": " + fibre_text(f) + ".");
+    return list;
   }
 
   Json quantities() const {

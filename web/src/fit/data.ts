@@ -169,6 +169,7 @@ export interface FitHead {
   figures: Figures;
   history: (WeightTrial & { decrement: MaybeNumber })[];
   weights: WeightTrial[];
+  fibres: string[]; // directions
   notes: string[];
   warnings: string[];
   markerNames?: string[]; // names in the data set, in the order of the markers

@@ -83,7 +83,7 @@ function result(fit: Fit): HTMLElement {
     element("div", { class: `verdict ${judged.kind}` }, element("p", {}, judged.title), judged.reasons.length > 0 ? listOf(judged.reasons) : null),
     element("p", { class: "about" }, trust(head)),
     element("div", { class: "columns" }, element("div", { class: "wide" }, valueTable(head.quantities), informed), element("div", { class: "wide" }, checkTable(head))),
-    element("div", { class: "columns" }, words("Warnings", head.warnings, "warnings"), next, words("Assumptions", head.notes, "")),
+    element("div", { class: "columns" }, words("Directions of fibres", head.fibres, ""), words("Warnings", head.warnings, "warnings"), next, words("Assumptions", head.notes, "")),
   );
 }
 
@@ -135,7 +135,7 @@ function predictions({ head: { figures } }: Fit): HTMLElement {
   if (!table) return section("Predictions of unseen groups", `No group was held out, so predictions of other loads are untested. ${kLeaveOut}`);
   return section(
     "Predictions of unseen groups",
-    "Root mean square errors, also without the part that the noise of the readings explains. Percentages are relative to the largest motion and force of all groups. This is the figure to trust.",
+    "Root mean square errors, also without the part that the noise of the readings explains. Percentages are relative to the largest motion, force and torque of all groups. This is the figure to trust.",
     element("div", { class: "wide" }, table),
     ...comparisonTables(figures),
   );

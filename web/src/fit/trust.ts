@@ -2,17 +2,19 @@
 import type { MaybeNumber } from "../protocol";
 import { short } from "../plots/numbers";
 import { percent } from "./cells";
-import type { FitHead } from "./data";
+import { kReadingKinds, type FitHead, type ReadingName } from "./data";
 
 export const kQuantityNames: Record<string, string> = { young: "Young's modulus", poisson: "Poisson's ratio", density: "density" };
 
 // What held-out groups say about predictions.
 function tested({ figures: { comparison } }: FitHead): string {
   const own = comparison.map(({ models }) => models[0]).filter((m) => m !== undefined);
-  const worst = (key: "position" | "force"): MaybeNumber => own.reduce<MaybeNumber>((most, m) => (m[key] === null ? most : Math.max(most ?? 0, m[key])), null);
-  const [position, force] = [worst("position"), worst("force")];
-  const parts = [position === null ? "" : `${percent(position)} of the largest motion`, force === null ? "" : `${percent(force)} of the largest force`].filter((text) => text !== "");
-  return parts.length === 0 ? "" : parts.join(" and ");
+  const worst = (key: ReadingName): MaybeNumber => own.reduce<MaybeNumber>((most, m) => (m[key] === null ? most : Math.max(most ?? 0, m[key])), null);
+  const parts = kReadingKinds.flatMap(({ name, peak }) => {
+    const error = worst(name);
+    return error === null ? [] : [`${percent(error)} of the largest ${peak}`];
+  });
+  return parts.join(", ");
 }
 
 export function trust(head: FitHead): string {
