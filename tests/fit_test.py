@@ -289,10 +289,10 @@ class FitJobs(FitCommand):
         self.random = random.Random(7)
 
     def jobs(self, options, codes=(4,)):
-        done = subprocess.run([ASPIC, "fit", "layers", *options, "-o", "part.vtu", "--jobs", "--program", ASPIC],
+        done = subprocess.run([ASPIC, "fit-jobs", "layers", *options, "-o", "part.vtu", "--program", ASPIC],
                               cwd=self.folder, capture_output=True, text=True, timeout=300)
         self.assertIn(done.returncode, codes, done.stderr)
-        return done.returncode
+        return done
 
     def lines(self):
         return (self.folder / "part.fit/jobs.txt").read_text().splitlines()
@@ -317,9 +317,9 @@ class FitJobs(FitCommand):
         return process.returncode, said
 
     def run_rounds(self, options):
-        """Repeats --jobs and its lines until the fit is complete; returns the names of all jobs, by round."""
+        """Repeats the list and its lines until the fit is complete; returns the names of all jobs, by round."""
         rounds = []
-        while self.jobs(options, codes=(0, 4)) == 4:
+        while self.jobs(options, codes=(0, 4)).returncode == 4:
             lines = self.lines()
             rounds.append({line.split(" --job ")[1].rsplit("-", 1)[0] for line in lines})
             self.assertLess(len(rounds), 12, "no end")
@@ -357,21 +357,21 @@ class FitJobs(FitCommand):
         self.assert_equal_fits()
 
     def test_mistakes_and_repeated_commands(self):
-        self.assertIn("no fit has been begun", self.fit(*self.FIELD, "-o", "part.vtu", "--job", "x", code=2).stderr)
+        self.assertIn("no fit has been begun", self.jobs([*self.FIELD, "--job", "x"], codes=(2,)).stderr)
         self.jobs(self.FIELD)
-        self.assertIn("no such job", self.fit(*self.FIELD, "-o", "part.vtu", "--job", "x", code=2).stderr)
+        self.assertIn("no such job", self.jobs([*self.FIELD, "--job", "x"], codes=(2,)).stderr)
         other = [*self.FIELD[:-1], "--model", "stvk"]
-        self.assertIn("model", self.fit(*other, "-o", "part.vtu", "--jobs", code=2).stderr)
+        self.assertIn("model", self.jobs(other, codes=(2,)).stderr)
         lines = self.lines()
         self.assertEqual(self.run_lines(lines[:1]), (0, ""))
         result = next((self.folder / "part.fit/jobs").iterdir())
         result.write_bytes(result.read_bytes()[:-1])  # damaged: counts as missing
         self.jobs(self.FIELD)
         self.assertEqual(sorted(self.lines()), sorted(lines))
-        self.assertEqual(self.fit(*self.FIELD, "-o", "part.vtu", "--continue").returncode, 0)  # computes the jobs itself
+        self.assertEqual(self.fit(*self.FIELD, "-o", "part.vtu", "--resume").returncode, 0)  # computes the jobs itself
         material = self.bytes_of("part.vtu")
-        self.assertIn("complete", self.fit(*self.FIELD, "-o", "part.vtu", "--continue").stdout)
-        self.assertIn("model", self.fit(*other, "-o", "part.vtu", "--continue", code=2).stderr)
+        self.assertIn("complete", self.jobs(self.FIELD, codes=(0,)).stdout)
+        self.assertIn("model", self.jobs(other, codes=(2,)).stderr)
         self.assertEqual(self.run_lines(lines), (0, ""))
         self.assertEqual(self.bytes_of("part.vtu"), material)
 

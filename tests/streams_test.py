@@ -34,6 +34,7 @@ USES = {
     "compare": (["cube.toml", "--methods", "newton,gradient_descent", "--out", "methods"], ["none.toml"]),
     "materials": (["--json"], ["none"]),
     "fit-motion": (["--help"], ["none.toml", "none.csv", "--fit", "young"]),
+    "fit-jobs": (["--help"], ["none"]),
     "fit-curves": (["curve.csv", "--material", "neo_hookean"], ["none.csv"]),
     "closed-loop": (["--loops", "1", "--increments", "10"], ["--loops", "nan"]),
     "minimize": (["rosenbrock"], ["none"]),

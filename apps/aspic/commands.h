@@ -14,7 +14,7 @@ enum ExitCode {
   exit_internal_error = 1,
   exit_bad_input = 2,
   exit_unconverged = 3,  // a step or minimization; check --derivatives: one is wrong; verify: a row fails
-  exit_time_limit = 4,   // --time-limit reached; fit --jobs: jobs remain
+  exit_time_limit = 4,   // --time-limit reached; fit-jobs: jobs remain
   exit_signal = 128,     // plus the number of the signal: 130 after Ctrl-C, 143 after a plain kill
 };
 
@@ -25,6 +25,7 @@ void add_check(CLI::App& app, Action& action);
 void add_mesh(CLI::App& app, Action& action);
 void add_convert(CLI::App& app, Action& action);
 void add_fit(CLI::App& app, Action& action);
+void add_fit_jobs(CLI::App& app, Action& action);
 void add_compare(CLI::App& app, Action& action);
 void add_materials(CLI::App& app, Action& action);
 void add_fit_curves(CLI::App& app, Action& action);

@@ -1,4 +1,5 @@
-// `aspic fit`: fits a material to measurements, with progress, and resumes interrupted fits.
+// `aspic fit`: fits a material to measurements, with progress, and resumes interrupted fits. `aspic fit-jobs`: the same
+// fit in many processes.
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
@@ -41,7 +42,7 @@ struct FitArguments {
   std::string model = FitPlan().model;
   std::vector<std::string> parameters, known;
   int threads = 0;  // 0: not given
-  bool force = false, resume = false, continues = false, quiet = false, verbose = false, allow_unconverged = false;
+  bool force = false, resume = false, quiet = false, verbose = false, allow_unconverged = false;
   bool lists_jobs = false;
   std::string job, program = "aspic";  // job: the single one to compute
 
@@ -86,7 +87,7 @@ std::string origins_of(const FitArguments& arguments, const fs::path& options_fi
 ExistingFit existing(const FitArguments& arguments) {
   if (arguments.resume) return ExistingFit::resume;
   if (!arguments.job.empty()) return ExistingFit::share;
-  if (arguments.continues || arguments.lists_jobs) return ExistingFit::proceed;
+  if (arguments.lists_jobs) return ExistingFit::proceed;
   return arguments.force ? ExistingFit::overwrite : ExistingFit::refuse;
 }
 
@@ -217,9 +218,9 @@ fs::path truth_beside(const fs::path& data) {
   return (fs::is_directory(data) ? data : data.parent_path()) / "truth.vtu";
 }
 
-// Command of one job. Threads are those of the process with --jobs, if given.
+// Command of one job. Threads are those of the process that lists it, if given.
 std::string job_line(const FitArguments& arguments, const std::string& job) {
-  std::string line = fmt::format("{} fit {}", arguments.program, shell_word(arguments.data));
+  std::string line = fmt::format("{} fit-jobs {}", arguments.program, shell_word(arguments.data));
   const auto add = [&](const char* option, const std::string& value) {
     line += fmt::format(" {} {}", option, shell_word(value));
   };
@@ -247,7 +248,7 @@ int list_jobs(const FitArguments& arguments, const FitFolder& folder, const std:
 int end_of_job(const FitArguments& arguments, const FitJobs& jobs) {
   if (jobs.has_computed()) return exit_done;
   if (interrupt_signal()) return exit_signal + interrupt_signal();
-  throw InvalidInput(fmt::format("--job {}: this fit has no such job, or not yet; the command with --jobs lists them",
+  throw InvalidInput(fmt::format("--job {}: this fit has no such job, or not yet; the command without --job lists them",
                                  printable(arguments.job)));
 }
 
@@ -260,7 +261,7 @@ int end_of_complete(const FitArguments& arguments) {
 }
 
 bool has_nothing_to_do(const FitArguments& arguments, const std::string& options) {
-  if (!arguments.continues && !arguments.lists_jobs && arguments.job.empty()) return false;
+  if (arguments.mode() == JobMode::all) return false;
   return FitFolder::is_complete(arguments.out, options);
 }
 
@@ -330,21 +331,23 @@ Examples:
   aspic fit pillow --model fung --unknown young=handles:40 --unknown b=uniform
   aspic fit pillow --register rigid            moves the markers onto the mesh; material.fit/registration.toml keeps the motion
   aspic fit pillow --resume                    continues an interrupted fit, bit-reproducibly
-  aspic fit pillow --model auto --jobs         writes material.fit/jobs.txt for xargs, GNU parallel or Slurm
 then in a scene: material = {{ file = "material.vtu" }}
 
 Keys of aspic.fit.toml beside capture.toml, or of the file of --options, with their defaults:
 {}
 Exit codes: 0 the verdict is good, 2 bad input or data with errors, 3 the fit failed, did not converge, or its
-material is not reliable (unless --allow-unconverged): the reasons are printed and written to figures.json;
-4 --jobs: jobs remain; 130 interrupted by Ctrl-C, 143 by kill: the current material is written, --resume continues.)";
+material is not reliable (unless --allow-unconverged): the reasons are printed and written to figures.json; 130 interrupted by Ctrl-C, 143 by kill: the current material is written, --resume continues.)";
 
-}  // namespace
+constexpr std::string_view kFooterOfJobs = R"(
+Begins or continues the fit of aspic fit with the same options, writes its independent fits without a result to
+material.fit/jobs.txt and slurm.sh, one command each, and ends with exit code 4. When they have run, the same command
+continues. Other exit codes are those of aspic fit.
 
-void add_fit(CLI::App& app, Action& action) {
-  const auto arguments = std::make_shared<FitArguments>();
-  CLI::App* command = app.add_subcommand("fit", "Fits a material to measurements, with its uncertainty");
-  command->footer(fmt::format(kFooter, fit_options_text()));
+Examples:
+  aspic fit-jobs pillow --model auto
+  tr '\n' '\0' < material.fit/jobs.txt | xargs -0 -n 1 -P 8 sh -c)";
+
+void add_common_options(CLI::App* command, const std::shared_ptr<FitArguments>& arguments) {
   command->add_option("DATA", arguments->data, "Folder of a data set, or its capture.toml")->required();
   command->add_option("-o,--out", arguments->out, "Material file to write; material.vtu by default");
   command
@@ -362,26 +365,39 @@ void add_fit(CLI::App& app, Action& action) {
   command->add_option("--register", arguments->registers, "Align markers or scan with the mesh: rigid or similarity")
       ->check(CLI::IsMember({"rigid", "similarity"}));
   command->add_option("--options", arguments->options,
-                      "TOML file of further options, listed below; by default aspic.fit.toml of the data set");
+                      "TOML file of further options, see aspic fit --help; by default aspic.fit.toml of the data set");
   command->add_option("--threads", arguments->threads, "Threads; all cores by default; results do not depend on it")
       ->check(CLI::Range(1, 1024));
-  command->add_flag("--force", arguments->force, "Replace an earlier fit");
-  command->add_flag("--resume", arguments->resume, "Continue an interrupted fit")->excludes("--force");
-  command->add_flag("--continue", arguments->continues, "Begin the fit, resume it, or do nothing if it is complete")
-      ->excludes("--force", "--resume");
-  command
-      ->add_flag("--jobs", arguments->lists_jobs,
-                 "As --continue, but write the independent fits without a result to material.fit/jobs.txt, one command "
-                 "each, and end with exit code 4; repeat the command when they have run")
-      ->excludes("--force", "--resume");
-  command->add_option("--job", arguments->job, "Compute only this job of jobs.txt")
-      ->excludes("--force", "--resume", "--jobs", "--continue");
-  command->add_option("--program", arguments->program, "Program in the commands of --jobs; aspic by default");
   command->add_flag("-q,--quiet", arguments->quiet, "Print only warnings and errors");
   command->add_flag("-v,--verbose", arguments->verbose, "Print a line per iteration")->excludes("--quiet");
   command->add_flag("--allow-unconverged", arguments->allow_unconverged,
                     "Exit with 0 even if the fit did not converge or its material is not reliable");
+}
+
+}  // namespace
+
+void add_fit(CLI::App& app, Action& action) {
+  const auto arguments = std::make_shared<FitArguments>();
+  CLI::App* command = app.add_subcommand("fit", "Fits a material to measurements, with its uncertainty");
+  command->footer(fmt::format(kFooter, fit_options_text()));
+  add_common_options(command, arguments);
+  command->add_flag("--force", arguments->force, "Replace an earlier fit");
+  command->add_flag("--resume", arguments->resume, "Continue an interrupted fit")->excludes("--force");
   command->callback([arguments, &action] { action = [arguments] { return run(*arguments); }; });
+}
+
+void add_fit_jobs(CLI::App& app, Action& action) {
+  const auto arguments = std::make_shared<FitArguments>();
+  CLI::App* command =
+      app.add_subcommand("fit-jobs", "Lists the independent fits of a fit for xargs, GNU parallel or Slurm");
+  command->footer(std::string(kFooterOfJobs));
+  add_common_options(command, arguments);
+  command->add_option("--job", arguments->job, "Compute only this job of jobs.txt");
+  command->add_option("--program", arguments->program, "Program in the commands; aspic by default");
+  command->callback([arguments, &action] {
+    arguments->lists_jobs = arguments->job.empty();
+    action = [arguments] { return run(*arguments); };
+  });
 }
 
 }  // namespace aspic::cli

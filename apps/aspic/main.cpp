@@ -133,6 +133,7 @@ int run_program(int argc, char** argv) {
   add_mesh(app, action);
   add_convert(app, action);
   add_fit(app, action);
+  add_fit_jobs(app, action);
   add_compare(app, action);
   add_materials(app, action);
   add_fit_curves(app, action);

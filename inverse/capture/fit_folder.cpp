@@ -91,7 +91,7 @@ FitFolder FitFolder::open(const fs::path& material, const std::string& options, 
   if (is_there && existing != ExistingFit::share) folder.lock_ = std::make_shared<const RunLock>(path);
   const bool is_begun = fs::exists(options_file(path)), is_unfinished = !journals(path).empty();
   if (existing == ExistingFit::share) {
-    if (!is_begun) throw InvalidInput(path.string() + ": no fit has been begun; the command with --jobs begins it");
+    if (!is_begun) throw InvalidInput(path.string() + ": no fit has been begun; the command without --job begins it");
     folder.require_same(options);
     folder.start_ = JournalStart::read;
     return folder;
