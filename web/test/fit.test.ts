@@ -127,7 +127,7 @@ function head(): FitHead {
       verdict: { good: true, text: "Converged.", reasons: [] },
       limits: { missed: 4, squares_per_reading: 2.25 },
       held_out: null,
-      comparison: [{ how: "cross-validation", models: [{ model: "this fit", position: 0.012, force: 0.034 }] }],
+      comparison: [{ how: "cross-validation", models: [{ model: "this fit", position: 0.012, force: 0.034, torque: null }] }],
       cases: [caseFigures("a, 2", "a", 0.2), caseFigures("a, 1", "a", 0.1), caseFigures("b", "b", 0.3, { left_out: true, rms: null })],
       histogram: { limit: 4, counts: [1, 2] },
     },
@@ -246,7 +246,7 @@ test("every figure above its limit is marked", () => {
   what.figures.squares = 28;
   what.figures.groups[0].standard_deviations = 4.1;
   what.figures.common_errors = [{ cause: "the mesh", standard_deviations: -5 }];
-  what.figures.held_out = { groups: [], position: 0.06, force: 0.09, largest_motion: 1, largest_force: 1, poor: true, limits: { position: 0.05, force: 0.1, single: 2 } };
+  what.figures.held_out = { groups: [], position: 0.06, force: 0.09, torque: null, largest_motion: 1, largest_force: 1, largest_torque: 0, poor: true, limits: { position: 0.05, force: 0.1, torque: 0.1, single: 2 } };
   assert.deepEqual(failing(), ["|r|² per reading (expected: 1)", "group with the largest error, rms: forces of a", "error of the mesh", "held-out positions: error beyond the noise, of the largest motion"]);
   what.figures.verdict = { good: false, text: "", reasons: [{ name: "groups_disagree", text: "'a' disagrees with 'b'", value: 2, limit: 1.5 }] };
   assert.equal(failing().at(-1), "'a' disagrees with 'b'");

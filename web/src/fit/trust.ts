@@ -14,7 +14,8 @@ function tested({ figures: { comparison } }: FitHead): string {
     const error = worst(name);
     return error === null ? [] : [`${percent(error)} of the largest ${peak}`];
   });
-  return parts.join(", ");
+  const last = parts.pop() ?? "";
+  return parts.length === 0 ? last : `${parts.join(", ")} and ${last}`;
 }
 
 export function trust(head: FitHead): string {
