@@ -94,6 +94,7 @@ FieldBasis FieldBasis::radial(const TetMesh& mesh, int count) {
     for (size_t s = begin; s < basis.weight_.size(); ++s) basis.weight_[s] /= sum;
     basis.close_row();
   }
+  basis.centers_ = centers.at;
   return basis;
 }
 

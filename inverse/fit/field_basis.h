@@ -18,6 +18,7 @@ class FieldBasis {
 
   int size() const { return size_; }  // number of coefficients
   bool is_identity() const { return is_identity_; }
+  const std::vector<Vec3d>& centers() const { return centers_; }  // of radial functions; empty for other fields
   int tet_count() const { return static_cast<int>(row_start_.size()) - 1; }
   void multiply(std::span<const double> p, std::span<double> z) const;        // z = W p
   void add_transposed(std::span<const double> z, std::span<double> p) const;  // p += W' z
@@ -35,6 +36,7 @@ class FieldBasis {
   bool is_identity_ = false;
   std::vector<int> row_start_{0}, index_;
   std::vector<double> weight_;
+  std::vector<Vec3d> centers_;
 };
 
 }  // namespace aspic

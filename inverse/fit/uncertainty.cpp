@@ -7,8 +7,10 @@
 #include "base/formatted.h"
 #include "fit/evidence.h"
 #include "fit/field_text.h"
+#include "fit/handle_gaps.h"
 #include "fit/principal_directions.h"
 #include "fit/quantity.h"
+#include "mesh/tet_shape.h"
 
 namespace aspic {
 namespace {
@@ -180,6 +182,25 @@ void set_fields(const Marginals& m, Posterior& result) {
   }
 }
 
+double variance_over_body(const TetMesh& mesh, std::span<const double> z) {
+  double all = 0, sum = 0, squares = 0;
+  for (size_t t = 0; t < z.size(); ++t) {
+    const double v = volume(mesh, static_cast<int>(t));
+    all += v, sum += v * z[t], squares += v * z[t] * z[t];
+  }
+  return std::max(squares / all - (sum / all) * (sum / all), 0.0);
+}
+
+// Adds the variance that a field may have between its handles, if it varies there as much as over the body.
+void add_handle_gaps(const FittedField& fitted, Marginals& m) {
+  for (int u = 0; u < static_cast<int>(m.after.size()); ++u) {
+    const std::vector<double> gaps = handle_gaps(fitted.mesh, fitted.map.basis(u));
+    if (gaps.empty()) continue;
+    const double field = variance_over_body(fitted.mesh, fitted.map.fitted_values(u, fitted.p));
+    for (size_t t = 0; t < gaps.size(); ++t) m.before[u][t] += field * gaps[t], m.after[u][t] += field * gaps[t];
+  }
+}
+
 double log_evidence(double misfit, double weight, double roughness, const Spectrum& s) {
   double determinant = 0;
   for (const double d : s.d) determinant += std::log1p(d);
@@ -235,7 +256,9 @@ Posterior posterior(LeastSquares& data, Regularizer& prior, double weight, const
   result.informed = informed(s);
   result.gaussian = std::make_shared<PosteriorGaussian>(std::move(before), std::move(s));
   warn_of_rank(result);
-  set_fields(marginals(*result.gaussian, map, options.marginals), result);
+  Marginals m = marginals(*result.gaussian, map, options.marginals);
+  add_handle_gaps(fitted, m);
+  set_fields(m, result);
   describe_seen(map, mesh, options.directions, result);
   describe_unseen(map, mesh, options.directions, result);
   result.ok = true;
