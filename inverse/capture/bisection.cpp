@@ -30,6 +30,13 @@ void BisectedMesh::bisect(const std::function<bool(const Part&)>& is_wanted) {
   }
 }
 
+std::vector<Midpoint> BisectedMesh::midpoints() const {
+  std::vector<Midpoint> all;
+  for (const auto& [edge, vertex] : middle_) all.push_back({vertex, edge.first, edge.second});
+  std::sort(all.begin(), all.end(), [](const Midpoint& m, const Midpoint& n) { return m.vertex < n.vertex; });
+  return all;
+}
+
 double BisectedMesh::longest_edge(const Tet& tet) const {
   const auto [a, b] = longest(tet);
   return norm(rest_[a] - rest_[b]);

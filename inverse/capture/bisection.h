@@ -6,6 +6,7 @@
 #include <utility>
 #include <vector>
 
+#include "fit/misfit.h"
 #include "mesh/tet_mesh.h"
 
 namespace aspic {
@@ -29,6 +30,7 @@ class BisectedMesh {
   // Corners of the initial tet, face or edge that contains a vertex, ascending.
   const std::vector<int>& support(int vertex) const { return support_[vertex]; }
   double longest_edge(const Tet& tet) const;
+  std::vector<Midpoint> midpoints() const;  // the new vertices, ascending
 
  private:
   using Edge = std::pair<int, int>;  // ascending

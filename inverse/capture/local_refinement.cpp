@@ -171,6 +171,7 @@ class LocalRefinement {
   void put_mesh() {
     TetMesh& mesh = fine_.mesh;
     mesh.rest = mesh_.rest();
+    fine_.midpoints = mesh_.midpoints();
     for (const BisectedMesh::Part& part : mesh_.parts()) {
       mesh.tets.push_back(part.tet);
       fine_.parent.push_back(coarse_.parent.empty() ? part.parent : coarse_.parent[part.parent]);

@@ -198,8 +198,12 @@ bool LoadedBody::solve(std::span<const MaterialParameters> parameters, std::span
 
 void LoadedBody::predict_readings() {
   std::copy(x().begin(), x().end(), prediction_.x.begin());
-  for (size_t k = 0; k < load_.positions.size(); ++k)
-    prediction_.markers[k] = at(experiment_.markers[load_.positions[k].marker], x());
+  for (size_t k = 0; k < load_.positions.size(); ++k) {
+    const int marker = load_.positions[k].marker;
+    prediction_.markers[k] = at(experiment_.markers[marker], x());
+    if (!experiment_.marker_offset.empty())
+      prediction_.markers[k] = prediction_.markers[k] + experiment_.marker_offset[marker];
+  }
   prediction_.wrench = wrench();
 }
 

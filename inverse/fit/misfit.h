@@ -63,13 +63,20 @@ struct LoadCase {
   Vec3d turned{}, backward{};
 };
 
+// A vertex of a refined mesh in the middle of an edge, in a body without loads.
+struct Midpoint {
+  int vertex, a, b;
+};
+
 struct Experiment {
-  TetMesh mesh;                 // at rest, in the order of the fit
-  std::vector<int> parent;      // of a refined mesh: tet of the material's mesh, for each tet; empty: the same mesh
-  std::vector<int> fixed;       // held vertices
-  std::vector<double> density;  // one per tet [kg/m^3]
+  TetMesh mesh;                     // at rest, in the order of the fit
+  std::vector<int> parent;          // of a refined mesh: tet of the material's mesh, for each tet; empty: the same mesh
+  std::vector<Midpoint> midpoints;  // of a refined mesh: corners that the mesh of the data lacks, after a and b
+  std::vector<int> fixed;           // held vertices
+  std::vector<double> density;      // one per tet [kg/m^3]
   std::vector<SurfacePoint> markers;
-  std::vector<LoadCase> cases;  // group by group, each from the smallest load on
+  std::vector<Vec3d> marker_offset;  // of an unloaded scan: distance of each marker from its surface point; empty: 0
+  std::vector<LoadCase> cases;       // group by group, each from the smallest load on
   std::vector<SystematicError> errors;
   // Acceleration of gravity when the mesh was scanned [m/s^2]; empty: the mesh is unloaded (unloaded_shape.h).
   std::optional<Vec3d> scan_gravity;

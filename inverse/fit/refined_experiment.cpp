@@ -23,6 +23,7 @@ class Refinement {
  public:
   explicit Refinement(const Experiment& coarse) : coarse_(coarse) {
     fine_.mesh.rest = coarse.mesh.rest;
+    fine_.midpoints = coarse.midpoints;
     keep_mid_nodes();
     for (int t = 0; t < coarse.mesh.tet_count(); ++t) split(t);
     add_mid_nodes();
@@ -45,7 +46,8 @@ class Refinement {
     for (size_t t = 0; t < coarse_.mesh.mids.size(); ++t)
       for (int k = 0; k < 6; ++k) {
         const Tet& tet = coarse_.mesh.tets[t];
-        middle_[std::minmax(tet[kTetEdges[k][0]], tet[kTetEdges[k][1]])] = coarse_.mesh.mids[t][k];
+        const int a = tet[kTetEdges[k][0]], b = tet[kTetEdges[k][1]], middle = coarse_.mesh.mids[t][k];
+        if (middle_.try_emplace(std::minmax(a, b), middle).second) fine_.midpoints.push_back({middle, a, b});
       }
   }
 
@@ -59,7 +61,9 @@ class Refinement {
 
   int middle(int a, int b) {
     const auto [place, is_new] = middle_.try_emplace(std::minmax(a, b), fine_.mesh.vertex_count());
-    if (is_new) fine_.mesh.rest.push_back(0.5 * (coarse_.mesh.rest[a] + coarse_.mesh.rest[b]));
+    if (!is_new) return place->second;
+    fine_.mesh.rest.push_back(0.5 * (fine_.mesh.rest[a] + fine_.mesh.rest[b]));
+    if (coarse_.mesh.mids.empty()) fine_.midpoints.push_back({place->second, a, b});
     return place->second;
   }
 

@@ -18,7 +18,8 @@ constexpr double kClose = 1e-10;    // largest distance of a vertex from the sca
 constexpr double kRoundOff = 1e-7;  // the same, accepted if it does not decrease any more
 constexpr double kTolerance = 1e-12;
 
-void center_mid_nodes(TetMesh& mesh) {
+void center(const std::vector<Midpoint>& midpoints, TetMesh& mesh) {
+  for (const auto& [vertex, a, b] : midpoints) mesh.rest[vertex] = 0.5 * (mesh.rest[a] + mesh.rest[b]);
   for (size_t t = 0; t < mesh.mids.size(); ++t)
     for (int k = 0; k < 6; ++k)
       mesh.rest[mesh.mids[t][k]] =
@@ -35,11 +36,12 @@ class Unloading {
  public:
   Unloading(const Experiment& scanned, const std::string& material, std::span<const MaterialParameters> parameters,
             const EquilibriumOptions& options)
-      : scanned_(scanned), material_(material), parameters_(parameters), options_(options), is_corner_(count(), 0) {
+      : scanned_(scanned), material_(material), parameters_(parameters), options_(options), is_scanned_(count(), 0) {
     options_.tolerance = std::min(options_.tolerance, kTolerance);
     for (const Tet& tet : scanned.mesh.tets)
-      for (const int v : tet) is_corner_[v] = 1;
-    for (const int v : scanned.fixed) is_corner_[v] = 0;  // they do not move
+      for (const int v : tet) is_scanned_[v] = 1;
+    for (const Midpoint& m : scanned.midpoints) is_scanned_[m.vertex] = 0;
+    for (const int v : scanned.fixed) is_scanned_[v] = 0;  // they do not move
   }
 
   UnloadedShape find() {
@@ -54,6 +56,7 @@ class Unloading {
       sag = std::max(sag, distance);
       if (distance <= kClose * sag || (distance <= kRoundOff * sag && distance >= 0.5 * before)) {
         shape.scan_gravity.reset();
+        for (const SurfacePoint& marker : scanned_.markers) shape.marker_offset.push_back(offset(marker, x));
         return {std::move(shape), ""};
       }
       before = distance;
@@ -86,16 +89,26 @@ class Unloading {
     return "";
   }
 
+  // From the point of the equilibrium to that of the scan.
+  Vec3d offset(const SurfacePoint& marker, std::span<const double> x) const {
+    Vec3d d{};
+    for (int i = 0; i < 3; ++i) {
+      const int v = marker.vertices[i];
+      d = d + marker.weights[i] * (scanned_.mesh.rest[v] - point(x, v));
+    }
+    return d;
+  }
+
   // Moves the shape by the distance of x from the scan; returns the largest.
   double correct(TetMesh& mesh, std::span<const double> x) const {
     double largest = 0;
     for (size_t v = 0; v < count(); ++v) {
-      if (!is_corner_[v]) continue;
+      if (!is_scanned_[v]) continue;
       const Vec3d d = scanned_.mesh.rest[v] - point(x, static_cast<int>(v));
       mesh.rest[v] = mesh.rest[v] + d;
       largest = std::max(largest, norm(d));
     }
-    center_mid_nodes(mesh);
+    center(scanned_.midpoints, mesh);
     return largest;
   }
 
@@ -103,7 +116,7 @@ class Unloading {
   const std::string& material_;
   std::span<const MaterialParameters> parameters_;
   EquilibriumOptions options_;
-  std::vector<char> is_corner_;  // and free
+  std::vector<char> is_scanned_;  // free corners of the mesh of the data
 };
 
 }  // namespace

@@ -1,7 +1,8 @@
 // The unloaded shape of a body that was scanned under gravity: rest positions X whose equilibrium x(X) under the
 // gravity of the scan has the scanned vertices. X := X + (scan - x(X)) converges if the weight strains the body
-// moderately
-//. Nodes in the middle of edges remain there.
+// moderately. The unloaded body has straight edges: vertices that refinement added, and nodes in the middle of edges,
+// are in the middle of unloaded edges, so a finer mesh is one of the same body. Under the gravity of the scan, edges
+// are curved, so markers are at constant distances from their surface points.
 #pragma once
 #include <optional>
 #include <span>
