@@ -150,6 +150,7 @@ class Fitter {
   }
 
   void begin(FitStage stage, const std::string& what) {
+    if (stage == FitStage::law) history_.clear();  // that of another law
     if (progress_) progress_->begin(stage, what);
   }
 

@@ -167,6 +167,13 @@ class Reasons {
   }
 
  private:
+  void add_about_laws(const LawChoice& choice) {
+    if (!choice.has_supported())
+      add("no_good_law",
+          "none of the compared laws has a good verdict: more readings, larger standard deviations, or "
+          "fewer values");
+  }
+
   void add_poor_predictions(const std::vector<PredictionErrors>& groups) {
     const PredictionErrors all = all_groups(groups);
     const std::string remedy = " beyond the noise: fit fewer values, measure more, or trust it only near pokes";
@@ -331,4 +338,5 @@ FitVerdict verdict(const DataSet& data, const FitOutcome& outcome) {
   return result;
 }
 
+  if (outcome.law_choice) reasons.add_about_laws(*outcome.law_choice);
 }  // namespace aspic

@@ -252,6 +252,14 @@ TEST(FitVerdict, OnlySomeReasonsSpeakAgainstAField) {
   std::vector<std::string> names;
   for (const FitReason& reason : reasons_against_field(three_indentations(), outcome)) names.push_back(reason.name);
   EXPECT_THAT(names, ElementsAre("mesh_not_settled", "held_out_worse"));
+TEST(FitVerdict, ALawIsNotGoodIfNoneIs) {
+  FitOutcome outcome = perfect();
+  outcome.law_choice = LawChoice{.trials = {{.law = "gent"}, {.law = "fung", .against = "b is at its bound"}}};
+  EXPECT_THAT(reasons(outcome), ElementsAre());
+  outcome.law_choice->trials[0].against = "limit is at its bound";
+  EXPECT_THAT(reasons(outcome), ElementsAre("no_good_law"));
+}
+
 }
 
 }  // namespace

@@ -61,7 +61,7 @@ FitModel::FitModel(const Experiment& data, const Experiment& simulated, const Fi
   if (!memory.folder.empty()) {
     const ModelState state{[this] { return misfit.state(); },
                            [this](std::span<const double> x) { misfit.set_state(x); }};
-    journal.emplace(misfit, state, memory.folder / stored.name, stored.fingerprint, memory.start);
+    journal.emplace(misfit, state, memory.folder / (memory.prefix + stored.name), stored.fingerprint, memory.start);
   }
   with_layers.emplace(recorded());
 }
