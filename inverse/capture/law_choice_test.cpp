@@ -98,7 +98,7 @@ TEST(LawChoice, NeverPrefersALawWithABadVerdict) {
               HasSubstr("neo_hookean would be preferred, but its verdict is bad: poisson is at its bound."));
 }
 
-TEST(LawChoice, SaysIfNoLawHasAGoodVerdict) {
+TEST(LawChoice, ReportsThatNoLawHasAGoodVerdict) {
   LawChoice choice{.trials = {trial("neo_hookean", 2, 280, {90, 90, 90}), trial("gent", 3, 300, {100, 100, 100})}};
   for (LawTrial& t : choice.trials) t.against = "young is at its bound";
   choice.trials.push_back(trial("fung", 3, 300, {}));

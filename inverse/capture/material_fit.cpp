@@ -240,9 +240,8 @@ void MaterialFit::fall_back(std::vector<FitReason> reasons) {
 }
 
 void MaterialFit::fit_and_describe() {
-  std::optional<FitModel> last;
-  fit_until_mesh_errors_settle(last);
-  FitModel& model = *last;
+  fit_until_mesh_errors_settle(last_);
+  FitModel& model = *last_;
   const FitReport& report = outcome_.report;
   if (has_failed(report) || report.status == Status::no_descent) {
     outcome_.failure = describe_failure(data_, report, model.misfit.failure());
