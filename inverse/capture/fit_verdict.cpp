@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "base/formatted.h"
+#include "capture/stated_errors.h"
 
 namespace aspic {
 namespace {
@@ -131,6 +132,11 @@ class Reasons {
         break;
       }
     add_disagreement();
+    for (const EstimatedError& e : outcome_.errors)
+      if (e.stated && e.coefficient() > kLargestFriction)
+        add("at_bound", "the " + e.name + " is " + three_digits(e.coefficient()) + ", and no dry contact exceeds " +
+                            three_digits(kLargestFriction) +
+                            ": the tip sticks (contact = \"bonded\"), or the readings do not determine it");
     for (const FoundFibres& f : outcome_.fibres)
       if (f.cone >= 90)
         add("fibres_undetermined",
@@ -161,12 +167,6 @@ class Reasons {
                                         " per reading: the branches do not explain them");
   }
 
-  std::vector<FitReason> take() { return std::move(reasons_); }
-  void add(std::string name, std::string text, std::optional<double> value = {}, std::optional<double> limit = {}) {
-    reasons_.push_back({std::move(name), std::move(text), value, limit});
-  }
-
- private:
   void add_about_laws(const LawChoice& choice) {
     if (!choice.has_supported())
       add("no_good_law",
@@ -174,6 +174,12 @@ class Reasons {
           "fewer values");
   }
 
+  std::vector<FitReason> take() { return std::move(reasons_); }
+  void add(std::string name, std::string text, std::optional<double> value = {}, std::optional<double> limit = {}) {
+    reasons_.push_back({std::move(name), std::move(text), value, limit});
+  }
+
+ private:
   void add_poor_predictions(const std::vector<PredictionErrors>& groups) {
     const PredictionErrors all = all_groups(groups);
     const std::string remedy = " beyond the noise: fit fewer values, measure more, or trust it only near pokes";
@@ -332,11 +338,11 @@ FitVerdict verdict(const DataSet& data, const FitOutcome& outcome) {
   reasons.add_against_field();
   reasons.add_others();
   if (outcome.relaxation) reasons.add_about_relaxation(*outcome.relaxation);
+  if (outcome.law_choice) reasons.add_about_laws(*outcome.law_choice);
   result.reasons = reasons.take();
   result.text = result.is_good() ? "Converged; " + explained(outcome) + "."
                                  : "Do not rely on this material: " + result.reasons.front().text + ".";
   return result;
 }
 
-  if (outcome.law_choice) reasons.add_about_laws(*outcome.law_choice);
 }  // namespace aspic
