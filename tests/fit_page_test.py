@@ -96,6 +96,7 @@ class FitPage(CommandLine):
                 [CHROMIUM, "--headless", "--no-sandbox", "--disable-gpu", "--use-gl=angle", "--use-angle=swiftshader",
                  "--enable-unsafe-swiftshader", f"--user-data-dir={profile}", "--virtual-time-budget=20000", "--dump-dom",
                  report.as_uri()], capture_output=True, text=True, timeout=300)
+        self.dom = done.stdout
         return Tables(done.stdout)
 
     def fit(self, *arguments, code=0):
@@ -245,6 +246,37 @@ class FitPage(CommandLine):
             lower, upper = (float(end.removesuffix(" s")) for end in interval.split(" to "))
             self.assertLess(lower, upper)
         self.assertIn("|r|² per reading of the histories", tables.table("check"))
+        self.assertEqual(self.captions(), ["hold: force"])
+        value = self.figures["values"]["young"]["everywhere"]["value"]
+        self.assert_near(value, young, 0.02)
+        self.assertIn("its stiffness includes the factor", self.dom)
+
+    def captions(self):
+        """Of the charts over time."""
+        section = re.search(r"<h2[^>]*>Relaxation</h2>.*?</section>", self.dom, re.S)[0]
+        return re.findall(r"<figcaption>(.*?)</figcaption>", section)
+
+    def test_creep(self):
+        """A sudden weight on a standard linear solid with Poisson's ratio 0, by its closed form: a chart per marker."""
+        (self.folder / "data").mkdir()
+        self.write("data/rest.mesh", box_mesh(1))
+        self.write("data/capture.toml", HOLD.split("forces =")[0] + '[[patch]]\nname = "top"\nwhere = "z > 1 - 1e-6"\n')
+        self.write("data/aspic.fit.toml", "mesh_errors = false\ncross_validation = false\nbranches = 1\n")
+        ratio, tau, strain, young, sd = 0.6, 5.0, 1e-3, 2e4, 2e-6
+        times = [0] + [0.2 * 1.25 ** k for k in range(28)]
+        self.write("data/markers.csv", "marker,x,y,z\nA,0,0,1\nB,1,1,1\n")
+        self.write("data/cases.csv", "case,group,time,dead_pressure,patch\n"
+                   + "".join(f"t{k},creep,{t!r},{-young * strain},top\n" for k, t in enumerate(times)))
+        rows = ["case,marker,x,y,z,sd"]
+        for k, t in enumerate(times):
+            e = strain * (1 - ratio / (1 + ratio) * math.exp(-t / (tau * (1 + ratio))))
+            rows += [f"t{k},{m},{x},{x},{1 + e + sd * math.sin(997 * k * k + x)!r},{sd}" for m, x in (("A", 0), ("B", 1))]
+        self.write("data/positions.csv", "\n".join(rows) + "\n")
+        tables = self.fit("--unknown", "young=uniform", "--known", "poisson=0", "--allow-unconverged")
+        self.assert_near(number(tables.table("relaxation")["branch 1: relaxation time"][1][0], "s"), tau, 0.05)
+        self.assertEqual(sorted(self.captions()), ["creep: motion of marker A", "creep: motion of marker B"])
+        self.assertIn("creep: motion of marker A against the logarithm of time", self.dom)
+        self.assertIn("<span>1 mm</span>", self.dom)  # the last value
 
 
 if __name__ == "__main__":

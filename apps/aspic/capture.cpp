@@ -135,7 +135,10 @@ Exit codes: 0 done, 2 bad input, 3 some case has no equilibrium and was omitted,
   command->add_option("--depth", b.deepest, "Largest depth, relative to the size of the body")->capture_default_str();
   command->add_option("--tip", a->indenter,
                       "Indenter: sphere[:RADIUS] or disc[:RADIUS] in m; default: 8 % of the body size");
-  command->add_option("--contact", a->contact, "Contact: bonded or sliding")->capture_default_str();
+  command
+      ->add_option("--contact", a->contact,
+                   "Contact: bonded, or sliding without friction (that of the scene is ignored)")
+      ->capture_default_str();
   command->add_option("--markers", b.markers, "Number of markers on the surface")->capture_default_str();
   command->add_option("--noise", b.noise, "Noise of positions, relative to the largest motion")->capture_default_str();
   command->add_option("--force-noise", b.force_noise, "Relative noise of forces")->capture_default_str();

@@ -150,6 +150,7 @@ class Fitter {
   }
 
   void begin(FitStage stage, const std::string& what) {
+    if (stage == FitStage::law) history_.clear();  // that of another law
     if (progress_) progress_->begin(stage, what);
   }
 
@@ -192,11 +193,15 @@ void print_start(const FitArguments& arguments, const DataSet& data, const FitPl
 }
 
 // Prints how to use the material in a scene.
-void print_use(const FitArguments& arguments, bool is_whole) {
+void print_use(const FitArguments& arguments, const FitOutcome& outcome, const fs::path& folder) {
   if (arguments.quiet) return;
   fmt::print("material   {0}; in a scene: material = {{ file = {1} }}\n", arguments.out.string(),
              toml_string(arguments.out.string()));
-  if (!is_whole) fmt::print("           current estimate; the same command with --resume continues bit-reproducibly\n");
+  if (outcome.relaxation && outcome.relaxation->is_ok())
+    fmt::print("           with the sections of {}, because this is the long-term stiffness\n",
+               (folder / "viscoelastic.toml").string());
+  if (outcome.interrupted)
+    fmt::print("           current estimate; the same command with --resume continues bit-reproducibly\n");
 }
 
 int exit_code(const FitArguments& arguments, bool is_good) {
@@ -311,7 +316,7 @@ int run(const FitArguments& arguments) {
     for (const std::string& warning : outcome.warnings) fmt::print(stderr, "warning: {}\n", warning);
   std::fflush(stdout);
   print_verdict(judged, arguments.quiet);
-  print_use(arguments, !outcome.interrupted);
+  print_use(arguments, outcome, folder.path());
   write_fit_report(folder.report(), {data, outcome, fitter.history(), json}, arguments.quiet ? nullptr : stdout);
   if (!outcome.interrupted) folder.finish();
   return exit_code(arguments, judged.is_good());

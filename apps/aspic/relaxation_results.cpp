@@ -15,20 +15,23 @@ std::string range_text(const Interval& interval, const char* unit) {
   return fmt::format("(95 %: {:.4g} to {:.4g}{})", interval.lower, interval.upper, unit);
 }
 
-void draw_curves(const std::filesystem::path& path, const RelaxationFit& fit) {
-  Chart chart{.title = "Relaxation",
+// Draws the curves of one unit, if there are any.
+void draw_curves(const std::filesystem::path& path, const RelaxationFit& fit, const std::string& unit) {
+  Chart chart{.title = unit == "N" ? "Relaxation" : "Creep",
               .x = {.label = "time [s]", .scale = AxisScale::logarithmic},
-              .y = {.label = "force [N]"},
+              .y = {.label = unit == "N" ? "force [N]" : "motion [m]"},
               .series = {}};
   for (size_t h = 0; h < fit.curves.size(); ++h) {
     const HistoryCurve& curve = fit.curves[h];
-    if (curve.measured.empty()) continue;
+    if (curve.unit != unit) continue;
     const int color = static_cast<int>(h);
-    Series measured{.label = curve.name + ", measured", .style = SeriesStyle::points, .color = color};
-    Series fitted{.label = curve.name + ", fitted", .color = color};
-    for (size_t k = 0; k < curve.measured.size(); ++k) {
-      measured.x.push_back(curve.measured[k].time), measured.y.push_back(curve.measured[k].value);
-      fitted.x.push_back(curve.measured[k].time), fitted.y.push_back(curve.fitted[k]);
+    const std::string name = curve.history + ", " + curve.reading;
+    Series measured{.label = name + ", measured", .style = SeriesStyle::points, .color = color};
+    Series fitted{.label = name + ", fitted", .color = color};
+    for (const HistoryPoint& p : curve.points) {
+      if (!(p.time > 0)) continue;
+      measured.x.push_back(p.time), measured.y.push_back(p.measured);
+      fitted.x.push_back(p.time), fitted.y.push_back(p.fitted);
     }
     chart.series.push_back(std::move(measured));
     chart.series.push_back(std::move(fitted));
@@ -44,8 +47,10 @@ void draw_curves(const std::filesystem::path& path, const RelaxationFit& fit) {
 
 void print_relaxation(std::FILE* stream, const RelaxationFit& fit) {
   if (!fit.is_ok()) return;
-  fmt::print(stream, "relaxation |r|^2 = {:.3g} per reading of {}; stiffness times {:.4g} {}\n",
-             fit.squares / fit.residuals, fit.residuals, fit.scale, range_text(fit.scale_interval, ""));
+  fmt::print(stream, "relaxation |r|^2 = {:.3g} per reading of {}; {}\n", fit.squares / fit.residuals, fit.residuals,
+             fit.scale_sigma > 0 ? fmt::format("the stiffness above includes their factor {:.4g} {}", fit.scale,
+                                               range_text(fit.scale_interval, ""))
+                                 : "with the given stiffness");
   for (const FittedBranch& b : fit.branches)
     fmt::print(stream, "           {:.4g} s {}: ratio {:.4g} {}, {:.3g} % of the shear modulus for fast loads\n",
                b.time, range_text(b.time_interval, " s"), b.ratio, range_text(b.ratio_interval, ""), 100 * b.fraction);
@@ -64,7 +69,10 @@ nlohmann::ordered_json json_of(const RelaxationFit& fit) {
   json["squares_per_reading"] = fit.squares / fit.residuals;
   json["readings"] = fit.residuals;
   json["noise_factor"] = fit.noise_factor;
-  json["scale"] = {{"value", fit.scale}, {"lower", fit.scale_interval.lower}, {"upper", fit.scale_interval.upper}};
+  json["scale"] = {{"value", fit.scale},
+                   {"lower", fit.scale_interval.lower},
+                   {"upper", fit.scale_interval.upper},
+                   {"known", fit.scale_sigma == 0}};
   json["branches"] = nlohmann::ordered_json::array();
   for (const FittedBranch& b : fit.branches)
     json["branches"].push_back({{"ratio", b.ratio},
@@ -81,12 +89,10 @@ nlohmann::ordered_json json_of(const RelaxationFit& fit) {
   json["curves"] = nlohmann::ordered_json::array();
   for (const HistoryCurve& curve : fit.curves) {
     nlohmann::ordered_json points = nlohmann::ordered_json::array();
-    for (size_t k = 0; k < curve.measured.size(); ++k)
-      points.push_back({{"time", curve.measured[k].time},
-                        {"measured", curve.measured[k].value},
-                        {"sd", curve.measured[k].sigma},
-                        {"fitted", curve.fitted[k]}});
-    json["curves"].push_back({{"name", curve.name}, {"points", points}});
+    for (const HistoryPoint& p : curve.points)
+      points.push_back({{"time", p.time}, {"measured", p.measured}, {"sd", p.sigma}, {"fitted", p.fitted}});
+    json["curves"].push_back(
+        {{"name", curve.history}, {"reading", curve.reading}, {"unit", curve.unit}, {"points", points}});
   }
   return json;
 }
@@ -94,16 +100,18 @@ nlohmann::ordered_json json_of(const RelaxationFit& fit) {
 void write_relaxation(const std::filesystem::path& folder, const RelaxationFit& fit) {
   if (!fit.is_ok()) return;
   write_file(folder / "viscoelastic.toml", scene_text(fit));
-  CsvFile file = CsvFile::create(folder / "relaxation.csv", {"history", "time", "measured", "sd", "fitted"});
+  CsvFile file =
+      CsvFile::create(folder / "relaxation.csv", {"history", "reading", "unit", "time", "measured", "sd", "fitted"});
   for (const HistoryCurve& curve : fit.curves)
-    for (size_t k = 0; k < curve.measured.size(); ++k) {
+    for (const HistoryPoint& p : curve.points) {
       CsvRow row;
-      row.add(curve.name).add(curve.measured[k].time).add(curve.measured[k].value);
-      row.add(curve.measured[k].sigma).add(curve.fitted[k]);
+      row.add(curve.history).add(curve.reading).add(curve.unit);
+      row.add(p.time).add(p.measured).add(p.sigma).add(p.fitted);
       file.append(row);
     }
   file.close();
-  draw_curves(folder / "relaxation.svg", fit);
+  draw_curves(folder / "relaxation.svg", fit, "N");
+  draw_curves(folder / "creep.svg", fit, "m");
 }
 
 }  // namespace aspic::cli

@@ -10,7 +10,7 @@ namespace aspic::cli {
 
 void print_relaxation(std::FILE* stream, const RelaxationFit& fit);
 nlohmann::ordered_json json_of(const RelaxationFit& fit);
-// Writes viscoelastic.toml, relaxation.csv and relaxation.svg (with gnuplot).
+// Writes viscoelastic.toml and relaxation.csv; with gnuplot relaxation.svg for forces and creep.svg for motions.
 void write_relaxation(const std::filesystem::path& folder, const RelaxationFit& fit);
 
 }  // namespace aspic::cli

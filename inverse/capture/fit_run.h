@@ -162,6 +162,7 @@ struct FitMemory {
   std::filesystem::path folder;
   JournalStart start = JournalStart::anew;
   FitJobs* jobs = nullptr;  // null: all are computed, and none is stored
+  std::string prefix = {};  // of the names of files, if one folder stores several fits
 };
 
 // Fits a material. Throws InvalidInput for incompatible data and plan; a failed fit is reported in the outcome.

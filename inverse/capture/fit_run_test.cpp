@@ -12,6 +12,7 @@
 #include "io/atomic_file.h"
 #include "io/folder_test.h"
 #include "material/registry.h"
+#include "mesh/tet_nodes.h"
 
 namespace aspic {
 namespace {
@@ -157,6 +158,44 @@ TEST(FitRun, ShowsForcesWithTheCorrectionForTheMesh) {
     add(shown.wrench.force - *load.force, shown.force_sigma);
   }
   EXPECT_NEAR(squares, 2 * outcome.report.misfit, 0.1 * squares) << "the page's residuals are those of the fit";
+}
+
+// A block of one material with Poisson's ratio 0.45, of quadratic tets, with its exact readings.
+DataSet nearly_incompressible_block() {
+  DataSet data = measured_block(2);
+  Experiment& e = data.experiment;
+  e.mesh = raise_order(std::move(e.mesh));
+  e.fixed.clear();
+  for (int v = 0; v < e.mesh.vertex_count(); ++v)
+    if (e.mesh.rest[static_cast<size_t>(v)][1] < 1e-9) e.fixed.push_back(v);
+  const std::vector<MaterialParameters> truth(e.mesh.tets.size(), {lame_from_young_poisson(2e4, 0.45), {}});
+  const ParameterMap map(e.mesh, "neo_hookean", truth,
+                         {{.quantity = "young", .parameterization = Parameterization::uniform}});
+  Misfit model(e, map);
+  std::vector<double> r(static_cast<size_t>(model.residual_count()));
+  EXPECT_TRUE(model.evaluate(std::vector<double>{std::log(2e4)}, r)) << model.failure();
+  for (size_t c = 0; c < e.cases.size(); ++c) {
+    const CasePrediction& prediction = model.prediction(static_cast<int>(c));
+    for (size_t i = 0; i < prediction.markers.size(); ++i) e.cases[c].positions[i].position = prediction.markers[i];
+    e.cases[c].force = prediction.wrench.force;
+  }
+  return data;
+}
+
+// The energy of quadratic tets changes at a Poisson's ratio of 0.3. The one of the result counts, not that of the
+// guess.
+TEST(FitRun, FindsPoissonsRatioFromAGuessBelowMeanVolume) {
+  const DataSet data = nearly_incompressible_block();
+  for (const double guess : {0.2, 0.45}) {
+    FitPlan plan = quick_plan({"young=uniform", "poisson=uniform"});
+    plan.known.clear();
+    plan.law_errors = false;
+    plan.parameters[1].guess = guess;
+    const FitOutcome outcome = fit_material(data, plan, {}, {});
+    ASSERT_TRUE(outcome.has_material()) << outcome.failure;
+    EXPECT_NEAR(young(outcome).rows.at(0).value, 2e4, 20) << guess;
+    EXPECT_NEAR(outcome.quantities.at(1).rows.at(0).value, 0.45, 1e-3) << guess;
+  }
 }
 
 TEST(FitRun, EveryModelBeginsInsideOfItsRanges) {

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "base/formatted.h"
+#include "capture/stated_errors.h"
 
 namespace aspic {
 namespace {
@@ -131,6 +132,11 @@ class Reasons {
         break;
       }
     add_disagreement();
+    for (const EstimatedError& e : outcome_.errors)
+      if (e.stated && e.coefficient() > kLargestFriction)
+        add("at_bound", "the " + e.name + " is " + three_digits(e.coefficient()) + ", and no dry contact exceeds " +
+                            three_digits(kLargestFriction) +
+                            ": the tip sticks (contact = \"bonded\"), or the readings do not determine it");
     for (const FoundFibres& f : outcome_.fibres)
       if (f.cone >= 90)
         add("fibres_undetermined",
@@ -159,6 +165,13 @@ class Reasons {
     if (fit.squares > kTooManySquares * fit.residuals)
       add("relaxation_unexplained", "|r|^2 of the histories is " + three_digits(fit.squares / fit.residuals) +
                                         " per reading: the branches do not explain them");
+  }
+
+  void add_about_laws(const LawChoice& choice) {
+    if (!choice.has_supported())
+      add("no_good_law",
+          "none of the compared laws has a good verdict: more readings, larger standard deviations, or "
+          "fewer values");
   }
 
   std::vector<FitReason> take() { return std::move(reasons_); }
@@ -325,6 +338,7 @@ FitVerdict verdict(const DataSet& data, const FitOutcome& outcome) {
   reasons.add_against_field();
   reasons.add_others();
   if (outcome.relaxation) reasons.add_about_relaxation(*outcome.relaxation);
+  if (outcome.law_choice) reasons.add_about_laws(*outcome.law_choice);
   result.reasons = reasons.take();
   result.text = result.is_good() ? "Converged; " + explained(outcome) + "."
                                  : "Do not rely on this material: " + result.reasons.front().text + ".";

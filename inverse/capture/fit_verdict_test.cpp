@@ -103,6 +103,16 @@ TEST(FitVerdict, ValuesAtTheirBoundsAreNotGood) {
   EXPECT_THAT(verdict(three_indentations(), outcome).text, HasSubstr("young in 3 tets is at its bound"));
 }
 
+TEST(FitVerdict, FrictionThatNoContactHasIsNotGood) {
+  FitOutcome outcome = perfect();
+  outcome.errors = {
+      {.name = "friction of 'tip'", .value = std::log(15.0), .sigma = 0.2, .prior_sigma = 2, .stated = 0.3}};
+  EXPECT_THAT(reasons(outcome), ElementsAre());
+  outcome.errors[0].value = std::log(20.0);
+  EXPECT_THAT(reasons(outcome), ElementsAre("at_bound"));
+  EXPECT_THAT(verdict(three_indentations(), outcome).text, HasSubstr("the friction of 'tip' is 6, and no dry contact"));
+}
+
 TEST(FitVerdict, NamesGroupsMissedByFourSigma) {
   FitOutcome outcome = perfect();
   for (const size_t c : {2, 3}) outcome.cases[c].wrench.force[0] += 3.5 * 0.01;
@@ -240,6 +250,14 @@ TEST(FitVerdict, OneValueInsteadOfFieldIsNotGood) {
   outcome.against_field = {{"at_bound", "young in 3 tets is at its bound"}};
   EXPECT_THAT(reasons(outcome), ElementsAre("field_rejected"));
   EXPECT_THAT(verdict(three_indentations(), outcome).text, HasSubstr("one value replaces the field: young in 3 tets"));
+}
+
+TEST(FitVerdict, ALawIsNotGoodIfNoneIs) {
+  FitOutcome outcome = perfect();
+  outcome.law_choice = LawChoice{.trials = {{.law = "gent"}, {.law = "fung", .against = "b is at its bound"}}};
+  EXPECT_THAT(reasons(outcome), ElementsAre());
+  outcome.law_choice->trials[0].against = "limit is at its bound";
+  EXPECT_THAT(reasons(outcome), ElementsAre("no_good_law"));
 }
 
 TEST(FitVerdict, OnlySomeReasonsSpeakAgainstAField) {

@@ -175,6 +175,22 @@ class HistoryReader {
   DataSet& data_;
 };
 
+// Samples whose mean counts as the force of the last state.
+Samples end_samples(const ForceSeries& series, const Waypoints& members, const DataSet& data) {
+  const double last = *data.case_frame[members.back()].time,
+               before = members.size() > 1 ? *data.case_frame[members[members.size() - 2]].time : last;
+  return samples_between(series, before + kEnd * (last - before), last);
+}
+
+// Replaces the time of the last state by the mean time of the samples of its force, if it is their mean.
+void use_time_of_force(const ForceSeries& series, const Waypoints& members, DataSet& data) {
+  const LoadCase& end = data.experiment.cases[members.back()];
+  const Samples mean = end_samples(series, members, data);
+  if (!end.force || mean.count == 0) return;
+  const Vec3d force = series.is_axial ? mean.value[0] * gauge_axis(end) : mean.value;
+  if (norm(force - *end.force) <= 1e-12 * norm(force)) data.case_frame[members.back()].time = mean.time;
+}
+
 void keep_cases(DataSet& data, const std::vector<bool>& is_kept) {
   const auto prune = [&](auto& list) {
     if (list.size() != is_kept.size()) return;
@@ -205,9 +221,7 @@ void add_end_forces(const ForceSeries* series, DataSet& data) {
   for (const auto& [group, members] : waypoints_of(data)) {
     LoadCase& end = data.experiment.cases[members.back()];
     if (end.force) continue;
-    const double last = *data.case_frame[members.back()].time,
-                 before = members.size() > 1 ? *data.case_frame[members[members.size() - 2]].time : last;
-    const Samples mean = samples_between(*series, before + kEnd * (last - before), last);
+    const Samples mean = end_samples(*series, members, data);
     const Vec3d gauge = gauge_axis(end);
     if (mean.count == 0 || (series->is_axial && norm(gauge) == 0)) continue;
     end.force = series->is_axial ? mean.value[0] * gauge : mean.value;
@@ -230,6 +244,7 @@ void take_histories(const ForceSeries* series, ErrorList& errors, DataSet& data)
     data.histories.push_back(reader.history(group, members));
     for (const size_t c : members) is_waypoint[c] = true;
     is_end[members.back()] = true;
+    if (series) use_time_of_force(*series, members, data);
   }
   if (data.histories.empty()) throw InvalidInput(data.source.cases + ": steady = \"history\" needs cases with a time");
   const bool has_static = std::find(is_waypoint.begin(), is_waypoint.end(), false) != is_waypoint.end();

@@ -51,8 +51,6 @@ const LawTrial* best_by(const std::vector<LawTrial>& trials, const Score& score)
   return best;
 }
 
-bool predicts_as_well(const LawTrial& trial) { return trial.is_fitted() && trial.held_out_loss <= kStrong; }
-
 bool is_simpler(const LawTrial& a, const LawTrial& b) {
   if (a.parameters != b.parameters) return a.parameters < b.parameters;
   return a.evidence_loss < b.evidence_loss;
@@ -70,25 +68,45 @@ void add_losses(LawChoice& choice) {
   }
 }
 
-// Marks the laws that predict held-out groups as well as the best one and, among these, have about the best evidence.
-void mark_best(std::vector<LawTrial>& trials) {
-  const bool is_predicted = std::any_of(trials.begin(), trials.end(), predicts_as_well);
-  const auto is_candidate = [&](const LawTrial& t) { return t.is_fitted() && (predicts_as_well(t) || !is_predicted); };
-  double least = std::numeric_limits<double>::infinity();
-  for (const LawTrial& trial : trials)
-    if (is_candidate(trial)) least = std::min(least, trial.evidence_loss);
-  for (LawTrial& trial : trials) trial.is_as_good = is_candidate(trial) && trial.evidence_loss <= least + kStrong;
+// Laws to choose from: those without a bad verdict if there are any.
+bool is_candidate(const LawTrial& trial, const LawChoice& choice) {
+  return choice.has_supported() ? trial.is_supported() : trial.is_fitted();
 }
 
-std::string verdict_of(const LawTrial& trial, const LawTrial& chosen) {
+double least_loss(const LawChoice& choice, double LawTrial::*loss) {
+  double least = std::numeric_limits<double>::infinity();
+  for (const LawTrial& trial : choice.trials)
+    if (is_candidate(trial, choice)) least = std::min(least, trial.*loss);
+  return least;
+}
+
+// Losses are NaN if no law predicts all groups.
+bool predicts_as_well(const LawTrial& trial, const LawChoice& choice) {
+  return !(trial.held_out_loss > least_loss(choice, &LawTrial::held_out_loss) + kStrong);
+}
+
+// Marks the candidates that predict held-out groups as well as the best one and, among these, have about the best
+// evidence.
+void mark_best(LawChoice& choice) {
+  const auto is_predictor = [&](const LawTrial& t) { return is_candidate(t, choice) && predicts_as_well(t, choice); };
+  double least = std::numeric_limits<double>::infinity();
+  for (const LawTrial& trial : choice.trials)
+    if (is_predictor(trial)) least = std::min(least, trial.evidence_loss);
+  for (LawTrial& trial : choice.trials)
+    trial.is_as_good = is_predictor(trial) && trial.evidence_loss <= least + kStrong;
+}
+
+std::string verdict_of(const LawTrial& trial, const LawChoice& choice) {
+  const LawTrial& chosen = choice.trials[static_cast<size_t>(choice.chosen)];
   if (!trial.is_fitted()) return "failed: " + trial.failure;
-  if (&trial == &chosen) return "chosen";
+  if (&trial == &chosen) return trial.is_supported() ? "chosen" : "chosen, but its verdict is bad: " + trial.against;
+  if (!trial.is_supported()) return "its verdict is bad: " + trial.against;
   const int more = trial.parameters - chosen.parameters;
   if (trial.is_as_good && more == 0) return "not distinguished from the chosen law, with as many values";
   if (trial.is_as_good)
     return "not distinguished from the chosen law, with " + std::to_string(more) + " more value" +
            (more > 1 ? "s" : "");
-  if (!predicts_as_well(trial)) return "predicts held-out groups worse";
+  if (!predicts_as_well(trial, choice)) return "predicts held-out groups worse";
   return "less probable";
 }
 
@@ -98,11 +116,21 @@ std::string enumerated(const std::vector<std::string>& names) {
   return text;
 }
 
+std::string about_bad_verdicts(const LawChoice& choice) {
+  if (!choice.has_supported()) return "No law has a good verdict: do not rely on any of them. ";
+  std::string text;
+  for (const LawTrial& trial : choice.trials)
+    if (trial.is_fitted() && !trial.is_supported())
+      text += "By these figures alone " + trial.law + " would be preferred, but its verdict is bad: " + trial.against +
+              ". ";
+  return text;
+}
+
 std::string conclusion(const LawChoice& choice) {
   const LawTrial& chosen = choice.trials[static_cast<size_t>(choice.chosen)];
   std::vector<std::string> equal, worse;
   for (const LawTrial& trial : choice.trials) {
-    if (&trial == &chosen || !trial.is_fitted()) continue;
+    if (&trial == &chosen || !is_candidate(trial, choice)) continue;
     (trial.is_as_good ? equal : worse).push_back(trial.law);
   }
   const std::string strains = "strains reach " + three_digits(100 * choice.strain) + " %";
@@ -112,6 +140,7 @@ std::string conclusion(const LawChoice& choice) {
   if (!worse.empty())
     text += chosen.law + (worse.size() == 1 ? " is better than " : " is better than each of ") + enumerated(worse) +
             (equal.empty() ? " (" + strains + "). " : ". ");
+  text += about_bad_verdicts(choice);
   if (choice.noise_factor > 1)
     text += "No law explains the readings: their standard deviations count as " + three_digits(choice.noise_factor) +
             " times larger. ";
@@ -123,6 +152,10 @@ std::string conclusion(const LawChoice& choice) {
 
 }  // namespace
 
+bool LawChoice::has_supported() const {
+  return std::any_of(trials.begin(), trials.end(), [](const LawTrial& t) { return t.is_supported(); });
+}
+
 void judge_laws(LawChoice& choice) {
   choice.noise_factor = noise_factor(choice.trials);
   choice.chosen = -1;
@@ -132,13 +165,12 @@ void judge_laws(LawChoice& choice) {
     return;
   }
   add_losses(choice);
-  mark_best(choice.trials);
+  mark_best(choice);
   for (size_t i = 0; i < choice.trials.size(); ++i)
     if (choice.trials[i].is_as_good &&
         (choice.chosen < 0 || is_simpler(choice.trials[i], choice.trials[static_cast<size_t>(choice.chosen)])))
       choice.chosen = static_cast<int>(i);
-  for (LawTrial& trial : choice.trials)
-    trial.verdict = verdict_of(trial, choice.trials[static_cast<size_t>(choice.chosen)]);
+  for (LawTrial& trial : choice.trials) trial.verdict = verdict_of(trial, choice);
   choice.text = conclusion(choice);
 }
 

@@ -30,10 +30,12 @@ struct LawTrial {
   std::vector<PredictiveResiduals> held_out;     // of each held-out group; empty: none
   double evidence_loss = 0;                      // log evidence of the best law minus that of this one
   double held_out_loss = 0;                      // the same for the log probability of all held-out groups
+  std::string against;                           // why the verdict of its material is bad; empty: good, or not judged
   bool is_as_good = false;                       // not distinguished from the best law
   std::string verdict;                           // "chosen", "as good, but with 2 more values", ...
 
   bool is_fitted() const { return failure.empty(); }
+  bool is_supported() const { return is_fitted() && against.empty(); }
 };
 
 struct LawChoice {
@@ -44,11 +46,14 @@ struct LawChoice {
   double strain = 0;       // 95 % of the body stay below this stretch in all cases: largest |stretch - 1|
   std::string simplified;  // parameterization that replaced a field for the comparison; empty: none
   std::string text;        // conclusion, in sentences
+
+  bool has_supported() const;  // a law that can be fitted and has no bad verdict
 };
 
 inline constexpr char kAutoLaw[] = "auto";
 
-// Computes the losses and verdicts of the trials and chooses a law by the rule of docs/fitting.md.
+// Computes the losses and verdicts of the trials and chooses a law by the rule of docs/fitting.md. A law with a bad
+// verdict is chosen only if no law has a good one.
 void judge_laws(LawChoice& choice);
 
 }  // namespace aspic

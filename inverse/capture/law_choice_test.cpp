@@ -80,6 +80,35 @@ TEST(LawChoice, UnpredictedGroupsExcludeALaw) {
   EXPECT_EQ(chosen(choice).law, "yeoh");
 }
 
+// The first law is simpler and predicts better, but its material is unreliable.
+TEST(LawChoice, NeverPrefersALawWithABadVerdict) {
+  LawChoice choice{.trials = {trial("neo_hookean", 2, 280, {90, 90, 90}), trial("gent", 3, 300, {100, 100, 100}),
+                              trial("yeoh", 4, 301, {100, 100, 101})}};
+  choice.trials[2].information = {1e3, 1e3, 1e3, 0.1};
+  judge_laws(choice);
+  EXPECT_EQ(chosen(choice).law, "neo_hookean");
+  choice.trials[0].against = "poisson is at its bound";
+  judge_laws(choice);
+  EXPECT_EQ(chosen(choice).law, "gent");
+  EXPECT_FALSE(choice.trials[0].is_as_good);
+  EXPECT_TRUE(choice.trials[2].is_as_good) << "compared with the candidates alone";
+  EXPECT_EQ(choice.trials[0].verdict, "its verdict is bad: poisson is at its bound");
+  EXPECT_THAT(choice.text, HasSubstr("do not distinguish gent from yeoh"));
+  EXPECT_THAT(choice.text,
+              HasSubstr("neo_hookean would be preferred, but its verdict is bad: poisson is at its bound."));
+}
+
+TEST(LawChoice, ReportsThatNoLawHasAGoodVerdict) {
+  LawChoice choice{.trials = {trial("neo_hookean", 2, 280, {90, 90, 90}), trial("gent", 3, 300, {100, 100, 100})}};
+  for (LawTrial& t : choice.trials) t.against = "young is at its bound";
+  choice.trials.push_back(trial("fung", 3, 300, {}));
+  choice.trials.back().failure = "no equilibrium";
+  judge_laws(choice);
+  EXPECT_EQ(chosen(choice).law, "neo_hookean");
+  EXPECT_EQ(choice.trials[0].verdict, "chosen, but its verdict is bad: young is at its bound");
+  EXPECT_THAT(choice.text, HasSubstr("No law has a good verdict"));
+}
+
 // If no law explains the data, their standard deviations grow, and small differences of |r|^2 decide nothing.
 TEST(LawChoice, UnexplainedDataDecideLess) {
   LawChoice choice{

@@ -58,22 +58,6 @@ int region_count(const TetMesh& mesh) {
   return static_cast<int>(std::set<int>(mesh.region.begin(), mesh.region.end()).size());
 }
 
-FitPlan simplified(FitPlan plan, const TetMesh& mesh, std::string& text) {
-  const int regions = region_count(mesh);
-  const bool has_regions = regions > 1 && regions <= kMaxRegions;
-  for (FitParameter& u : plan.parameters) {
-    if (!is_varying(u)) continue;
-    u.parameterization = has_regions ? Parameterization::regions : Parameterization::uniform;
-    u.handles = 0;
-    text = has_regions ? "one value per region instead of a field" : "one value instead of a field";
-  }
-  plan.parts = 0;
-  plan.fit.method = plan.fit.weight_rule = "auto";
-  plan.fit.weight = -1;
-  plan.fit.starts = 1;
-  return plan;
-}
-
 FitPlan with_law(FitPlan plan, const Law& law) {
   plan.model = law.name;
   for (const OwnParameter& own : law.own)
@@ -153,7 +137,7 @@ class LawContest {
  public:
   LawContest(const DataSet& data, const FitPlan& plan, FitJobs& jobs, const FitCallbacks& callbacks)
       : data_(data),
-        plan_(simplified(plan, data.experiment.mesh, choice_.simplified)),
+        plan_(simplified(plan, data.experiment.mesh, &choice_.simplified)),
         jobs_(jobs),
         callbacks_(callbacks),
         simulated_(data.experiment, plan_) {}
@@ -392,6 +376,22 @@ class LawContest {
 const FitMemory LawContest::kNoMemory = {};
 
 }  // namespace
+
+FitPlan simplified(FitPlan plan, const TetMesh& mesh, std::string* what) {
+  const int regions = region_count(mesh);
+  const bool has_regions = regions > 1 && regions <= kMaxRegions;
+  for (FitParameter& u : plan.parameters) {
+    if (!is_varying(u)) continue;
+    u.parameterization = has_regions ? Parameterization::regions : Parameterization::uniform;
+    u.handles = 0;
+    if (what) *what = has_regions ? "one value per region instead of a field" : "one value instead of a field";
+  }
+  plan.parts = 0;
+  plan.fit.method = plan.fit.weight_rule = "auto";
+  plan.fit.weight = -1;
+  plan.fit.starts = 1;
+  return plan;
+}
 
 LawChoice choose_law(const DataSet& data, const FitPlan& plan, FitJobs& jobs, const FitCallbacks& callbacks) {
   return LawContest(data, plan, jobs, callbacks).run();

@@ -61,7 +61,7 @@ FitModel::FitModel(const Experiment& data, const Experiment& simulated, const Fi
   if (!memory.folder.empty()) {
     const ModelState state{[this] { return misfit.state(); },
                            [this](std::span<const double> x) { misfit.set_state(x); }};
-    journal.emplace(misfit, state, memory.folder / stored.name, stored.fingerprint, memory.start);
+    journal.emplace(misfit, state, memory.folder / (memory.prefix + stored.name), stored.fingerprint, memory.start);
   }
   with_layers.emplace(recorded());
 }
@@ -240,9 +240,8 @@ void MaterialFit::fall_back(std::vector<FitReason> reasons) {
 }
 
 void MaterialFit::fit_and_describe() {
-  std::optional<FitModel> last;
-  fit_until_mesh_errors_settle(last);
-  FitModel& model = *last;
+  fit_until_mesh_errors_settle(last_);
+  FitModel& model = *last_;
   const FitReport& report = outcome_.report;
   if (has_failed(report) || report.status == Status::no_descent) {
     outcome_.failure = describe_failure(data_, report, model.misfit.failure());

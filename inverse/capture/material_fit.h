@@ -52,6 +52,9 @@ class MaterialFit {
   // Stores references to all arguments but the plan.
   MaterialFit(const DataSet& data, const FitPlan& plan, const FitMemory& memory, const FitCallbacks& callbacks);
   FitOutcome run();
+  // Multiplies the fitted stiffness of the outcome of run() by a factor: values, material and predictions. Returns
+  // false without an equilibrium.
+  bool multiply_stiffness(double factor, FitOutcome& outcome);
 
  private:
   // material_fit.cpp: stages from data to material. False: no further stage.
@@ -129,6 +132,8 @@ class MaterialFit {
   std::vector<CaseWeights> corrected_weights_;
   std::vector<MaterialParameters> material_;  // last fitted parameters
   std::string fingerprint_;
+  std::optional<FitModel> last_;   // model of the result
+  std::vector<double> described_;  // parameters of the result
   FitOutcome outcome_;
 };
 

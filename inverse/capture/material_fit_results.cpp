@@ -1,8 +1,10 @@
 #include <algorithm>
+#include <cmath>
 
 #include "capture/fit_troubles.h"
 #include "capture/fitted_values.h"
 #include "capture/material_fit.h"
+#include "fit/quantity.h"
 #include "math/vectors.h"
 
 namespace aspic {
@@ -54,6 +56,7 @@ void MaterialFit::describe(FitModel& model, std::span<const double> p) {
   outcome_.at_bound = values_at_bound(model.map, p);
   outcome_.counts = model.misfit.counts();
   outcome_.cases.resize(data_.experiment.cases.size());
+  described_.assign(p.begin(), p.end());
   if (model.journal) model.journal->catch_up();
   Misfit& misfit = model.of_all_readings();
   std::vector<double> r(static_cast<size_t>(misfit.residual_count()));
@@ -83,11 +86,31 @@ void MaterialFit::describe(FitModel& model, std::span<const double> p) {
     outcome.ok = true;
     outcome.markers = std::move(prediction.markers);
     outcome.wrench = prediction.wrench;
+    outcome.marker_sigma.clear();
     for (const MarkerReading& reading : load.positions) outcome.marker_sigma.push_back(reading.sigma);
     outcome.force_sigma = simulated_.wrench_factor(c) * load.force_sigma;
     outcome.torque_sigma = simulated_.wrench_factor(c) * load.torque_sigma;
     if (load.force) outcome.relative_mesh_error = simulated_.relative_force_error(c);
   }
+}
+
+bool MaterialFit::multiply_stiffness(double factor, FitOutcome& outcome) {
+  outcome_ = std::move(outcome);
+  const std::vector<std::string> warnings = outcome_.warnings;
+  std::vector<double> p = described_;
+  for (size_t u = 0; u < last_->map.fitted_parameters().size(); ++u) {
+    if (!is_stiffness(last_->map.fitted_parameters()[u].quantity)) continue;
+    const auto [first, count] = last_->map.range(static_cast<int>(u));
+    for (int k = first; k < first + count; ++k) p[static_cast<size_t>(k)] += std::log(factor);
+  }
+  for (CaseOutcome& c : outcome_.cases) c.ok = false;
+  describe(*last_, p);
+  predict_left_out(last_->map, p);
+  if (outcome_.parts)
+    for (double& value : outcome_.parts->values) value *= factor;
+  outcome_.warnings = warnings;
+  outcome = std::move(outcome_);
+  return std::all_of(outcome.cases.begin(), outcome.cases.end(), [](const CaseOutcome& c) { return c.ok; });
 }
 
 // Predicts the cases of a group with a material.

@@ -5,6 +5,7 @@
 
 #include "base/formatted.h"
 #include "base/number_chars.h"
+#include "capture/case_figures.h"
 #include "fit/quantity.h"
 #include "fit/refined_experiment.h"
 
@@ -31,6 +32,9 @@ std::vector<MaterialParameters> parameters_of(const DataSet& data, const FitOutc
 }
 
 double scale_sigma(const DataSet& data, const FitOutcome& outcome) {
+  if (std::none_of(outcome.quantities.begin(), outcome.quantities.end(),
+                   [](const FittedQuantity& q) { return is_stiffness(q.name); }))
+    return 0;  // given
   if (data.histories_end_static) return kUnknownScale;
   for (const FittedQuantity& q : outcome.quantities)
     if (is_stiffness(q.name) && !q.sigma.empty()) {
@@ -68,31 +72,91 @@ std::vector<LoadHistory> on_mesh(std::vector<LoadHistory> histories, const std::
   return histories;
 }
 
-void multiply_stiffness(double scale, FitOutcome& outcome) {
-  for (FittedQuantity& q : outcome.quantities) {
-    if (!is_stiffness(q.name)) continue;
-    for (double& value : q.values) value *= scale;
-    for (ValueRow& row : q.rows) {
-      row.value *= scale;
-      if (row.interval) row.interval->lower *= scale, row.interval->upper *= scale;
+// Names of markers, and forces as measured.
+void name_curves(const DataSet& data, std::span<const double> factors, RelaxationFit& fit) {
+  for (HistoryCurve& curve : fit.curves) {
+    if (curve.marker >= 0) {
+      const std::string name = data.marker_names.empty() ? std::to_string(curve.marker)
+                                                         : data.marker_names[static_cast<size_t>(curve.marker)];
+      curve.reading += " of marker " + name;
+      continue;
     }
+    for (size_t h = 0; h < data.histories.size(); ++h)
+      if (data.histories[h].name == curve.history)
+        for (HistoryPoint& p : curve.points) p.measured *= factors[h], p.sigma *= factors[h], p.fitted *= factors[h];
   }
-  for (auto& [name, values] : outcome.material.values)
-    if (is_stiffness(name))
-      for (double& value : values) value *= scale;
 }
 
-// The stiffness of the whole body is that of the histories, with their interval.
-void use_interval(const RelaxationFit& fit, FitOutcome& outcome) {
-  for (FittedQuantity& q : outcome.quantities)
-    if (is_stiffness(q.name) && q.rows.size() == 1)
-      q.rows.front().interval = Interval{q.rows.front().value / fit.scale * fit.scale_interval.lower,
-                                         q.rows.front().value / fit.scale * fit.scale_interval.upper};
+bool has_one_value(const FittedQuantity& q) { return q.rows.size() == 1; }
+
+// One value has the standard deviation of the histories, which include the first fit as a prior. Of several, they
+// determine a common factor. Its uncertainty comes on top if the first fit used the end of the histories only.
+void use_deviation(const RelaxationFit& fit, const DataSet& data, FitOutcome& outcome) {
+  for (FittedQuantity& q : outcome.quantities) {
+    if (!is_stiffness(q.name) || (!has_one_value(q) && !data.histories_end_static)) continue;
+    const auto combined = [&](double own) {
+      return has_one_value(q) ? fit.scale_sigma : std::hypot(own, fit.scale_sigma);
+    };
+    for (double& sigma : q.sigma) sigma = combined(sigma);
+    for (ValueRow& row : q.rows) {
+      if (!row.interval && !has_one_value(q)) continue;
+      const double own = row.interval ? std::log(row.interval->upper / row.interval->lower) / (2 * kSigmas95) : 0;
+      const double factor = std::exp(kSigmas95 * combined(own));
+      row.interval = Interval{row.value / factor, row.value * factor};
+    }
+    for (auto& [name, values] : outcome.material.further)
+      if (name == q.name + "_deviation") values = data.numbering.tet.to_user(q.sigma);
+  }
+}
+
+// The history until an earlier time inside its last segment.
+LoadHistory until(LoadHistory history, double time) {
+  const size_t last = history.times.size() - 1;
+  const double begin = history.times[last - 1], end = history.times[last];
+  if (!(time > begin && time < end)) return history;
+  history.waypoints[last] =
+      load_between(history.waypoints[last - 1], history.waypoints[last], (time - begin) / (end - begin));
+  history.times[last] = time;
+  std::erase_if(history.forces, [&](const ForceReading& reading) { return reading.time > time; });
+  return history;
+}
+
+// Shows predictions of the histories for their last states, which are no equilibria because the body may still relax.
+// `material`: long-term response, with the branches.
+void use_last_states(const RelaxationFit& fit, const DataSet& data, const ViscoelasticMaterial& material,
+                     std::span<const double> factors, FitOutcome& outcome) {
+  double squares = 0;
+  for (size_t c = 0; c < outcome.cases.size(); ++c) {
+    CaseOutcome& shown = outcome.cases[c];
+    const LoadCase& load = data.experiment.cases[c];
+    for (size_t h = 0; h < data.histories.size(); ++h) {
+      if (data.histories[h].waypoints.back().name != load.name || !shown.ok) continue;
+      const HistoryPrediction& prediction = fit.predictions[h];
+      const auto count = static_cast<std::ptrdiff_t>(load.positions.size());
+      shown.markers = shown.markers_on_mesh = {prediction.markers.end() - count, prediction.markers.end()};
+      const HistoryPrediction of_force =
+          simulate(data.experiment, until(data.histories[h], data.case_frame[c].time.value_or(0)), material,
+                   outcome.plan.equilibrium);
+      if (!of_force.is_ok()) continue;
+      shown.wrench_on_mesh = of_force.end;
+      shown.wrench = {factors[h] * of_force.end.force, factors[h] * of_force.end.torque};
+    }
+    for_each_residual(load, shown, [&](double r) { squares += r * r; });
+  }
+  outcome.report.misfit = squares / 2;
+}
+
+// Material of the fit with its branches.
+ViscoelasticMaterial fitted(ViscoelasticMaterial material, const RelaxationFit& fit) {
+  for (MaterialParameters& m : material.parameters) m.lame.mu *= fit.scale, m.lame.lambda *= fit.scale;
+  for (const FittedBranch& b : fit.branches) material.branches.push_back({b.ratio, b.time});
+  return material;
 }
 
 }  // namespace
 
-void add_relaxation(const DataSet& data, const FitCallbacks& callbacks, FitOutcome& outcome) {
+void add_relaxation(const DataSet& data, const FitCallbacks& callbacks, const MultiplyStiffness& multiply_stiffness,
+                    FitOutcome& outcome) {
   if (callbacks.begin) callbacks.begin(FitStage::relaxation, "relaxation times");
   if (data.experiment.mesh.tet_count() > kMaxTetsForSlowest)
     outcome.warnings.push_back("relaxation times are fitted by hundreds of simulations of " +
@@ -110,20 +174,24 @@ void add_relaxation(const DataSet& data, const FitCallbacks& callbacks, FitOutco
                                   }};
   RelaxationFit fit = fit_relaxation(data.experiment, histories, material, options);
   if (fit.is_stopped) outcome.interrupted = true;
-  for (size_t h = 0; h < fit.curves.size(); ++h) {
-    fit.curves[h].measured = data.histories[h].forces;
-    for (double& force : fit.curves[h].fitted) force *= factors[h];
-  }
+  name_curves(data, factors, fit);
   if (fit.is_ok()) {
-    multiply_stiffness(fit.scale, outcome);
-    if (data.histories_end_static) use_interval(fit, outcome);
+    const std::vector<FoundCommonError> common_errors = outcome.common_errors;
+    if (fit.scale != 1 && !multiply_stiffness(fit.scale, outcome))
+      fit.failure = "no equilibrium exists with the long-term stiffness, " + three_digits(fit.scale) +
+                    " times that of the first fit";
+    use_deviation(fit, data, outcome);
+    if (data.histories_end_static) {
+      outcome.common_errors = common_errors;
+      use_last_states(fit, data, fitted(material, fit), factors, outcome);
+    }
   }
   outcome.warnings.insert(outcome.warnings.end(), fit.warnings.begin(), fit.warnings.end());
   outcome.relaxation = std::move(fit);
 }
 
 std::string scene_text(const RelaxationFit& fit) {
-  std::string text;
+  std::string text = "# Beside the fitted material, whose stiffness is the long-term one.\n";
   for (const FittedBranch& branch : fit.branches)
     text += "[[body.viscoelastic]]\nratio = " + number_text(branch.ratio) +
             "\nrelaxation_time = " + number_text(branch.time) + "\n\n";

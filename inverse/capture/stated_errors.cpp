@@ -62,6 +62,9 @@ double read_friction_sigma(const CaptureSettings& settings, const Value& tip) {
   };
   if (deviation.number() > 0 && !(friction.number() > 0))
     refuse(deviation, "friction_deviation", "the coefficient is 0; give the most probable friction, such as 0.3");
+  if (friction.number() > kLargestFriction)
+    refuse(friction, "friction",
+           "no dry contact exceeds 5; a tip that does not slide is contact = \"bonded\", and 30 % is friction = 0.3");
   if (friction.number() > 0 && tip["contact"].text() == "bonded")
     refuse(friction, "friction", "a bonded tip does not slide; use contact = \"sliding\", or remove friction");
   if (friction.number() > 0 && has_histories(settings))

@@ -9,6 +9,9 @@
 
 namespace aspic {
 
+// Largest coefficient of friction of a tip. Measured ones are below 1 on tissue and skin, and reach 3 on dry silicone.
+inline constexpr double kLargestFriction = 5;
+
 // Throws InvalidInput for errors that concern no case.
 std::vector<SystematicError> read_systematic_errors(const CaptureSettings& settings,
                                                     const std::vector<LoadCase>& cases);

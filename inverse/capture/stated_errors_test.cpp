@@ -76,6 +76,8 @@ TEST_F(StatedErrors, FrictionHasAPriorPerTip) {
 
 TEST_F(StatedErrors, FrictionIsRefusedWithLineAndRemedy) {
   EXPECT_THAT(refusal("", "friction = -0.3\n"), HasSubstr("capture.toml:8:12: friction = -0.3"));
+  EXPECT_EQ(read("", "friction = 5\n").experiment.cases[0].indenter->friction, 5.0);
+  EXPECT_THAT(refusal("", "friction = 30\n"), HasSubstr("capture.toml:8:12: friction = 30: no dry contact exceeds 5"));
   EXPECT_THAT(refusal("", "friction_deviation = 0.5\n"), HasSubstr("capture.toml:8:22: friction_deviation = 0.5: the"));
   EXPECT_THAT(refusal("", "friction = 0.3\ncontact = \"bonded\"\n"), HasSubstr("use contact = \"sliding\", or remove"));
   EXPECT_THAT(refusal("steady = \"history\"", "friction = 0.3\n"),

@@ -26,6 +26,7 @@ class HistoryMisfit : public LeastSquares {
   const std::vector<HistoryPrediction>& predictions() const { return predictions_; }  // of the last evaluate()
   const std::string& failure() const { return failure_; }
   ViscoelasticMaterial material_of(std::span<const double> p) const;
+  void keep_scale() { is_scale_known_ = true; }  // p[0] has no effect
 
  private:
   std::vector<HistoryPrediction> predicted(std::span<const double> p) const;
@@ -35,6 +36,7 @@ class HistoryMisfit : public LeastSquares {
   const std::vector<LoadHistory>& histories_;
   ViscoelasticMaterial material_;
   int branches_, residuals_ = 0;
+  bool is_scale_known_ = false;
   const EquilibriumOptions& options_;
   std::vector<double> p_, r_;                 // of the last successful evaluation
   std::vector<std::vector<double>> columns_;  // of J

@@ -102,9 +102,9 @@ class HistoryBody {
     return advance(from, middle, duration / 2, halvings + 1) && advance(middle, to, duration / 2, halvings + 1);
   }
 
-  Vec3d force(const LoadCase& load) {
-    if (probe_) return probe_->wrench(x_).force;
-    return load.grip ? wrench_of(*load.grip, x_, force_).force : Vec3d{};
+  Wrench wrench(const LoadCase& load) {
+    if (probe_) return probe_->wrench(x_);
+    return load.grip ? wrench_of(*load.grip, x_, force_) : Wrench{};
   }
   std::span<const double> x() const { return x_; }
 
@@ -257,7 +257,8 @@ HistoryPrediction simulate(const Experiment& body, const LoadHistory& history, c
     time = stop.time;
     while (prediction.forces.size() < history.forces.size() &&
            history.forces[prediction.forces.size()].time <= time + same)
-      prediction.forces.push_back(dot(now.force(load), history.forces[prediction.forces.size()].axis));
+      prediction.forces.push_back(dot(now.wrench(load).force, history.forces[prediction.forces.size()].axis));
+    prediction.end = now.wrench(load);
     if (is_first || stop.part == 1) read_markers(end);
   }
   return prediction;

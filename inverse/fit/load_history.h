@@ -41,6 +41,7 @@ struct HistoryPrediction {
   std::string failure;         // empty: none
   std::vector<double> forces;  // one per reading of the history [N]
   std::vector<Vec3d> markers;  // of all waypoints, one after another [m]
+  Wrench end;                  // of the indenter or grip, in the last state
 
   bool is_ok() const { return failure.empty(); }
 };

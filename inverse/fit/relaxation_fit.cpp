@@ -88,9 +88,10 @@ class RelaxationFitter {
 
  private:
   bool is_stopped() const { return options_.stop.stopped(); }
+  bool is_scale_known() const { return options_.scale_sigma == 0; }
 
   IndependentPriors prior(int count) const {
-    std::vector<double> means = {0}, sigmas = {options_.scale_sigma};
+    std::vector<double> means = {0}, sigmas = {is_scale_known() ? 1 : options_.scale_sigma};
     for (int b = 0; b < count; ++b) {
       means.insert(means.end(), {std::log(kRatio), std::log(range_.at(0.5))});
       sigmas.insert(sigmas.end(), {kRatioSigma, std::log(range_.longest / range_.shortest) / 2});
@@ -123,6 +124,7 @@ class RelaxationFitter {
     if (options_.begin) options_.begin(std::to_string(count) + (count == 1 ? " branch" : " branches"));
     Candidate best;
     HistoryMisfit misfit(body_, histories_, material_, count, options_.equilibrium);
+    if (is_scale_known()) misfit.keep_scale();
     result_.residuals = misfit.residual_count();
     IndependentPriors priors = prior(count);
     const FitOptions fit_options{.max_iterations = kIterationsPerStart, .weight = 1, .stop = options_.stop};
@@ -201,7 +203,8 @@ class RelaxationFitter {
     result_.squares = c.squares;
     result_.noise_factor = factor;
     result_.scale = std::exp(c.p[0]);
-    result_.scale_interval = interval(0);
+    result_.scale_sigma = is_scale_known() ? 0 : factor * c.sigma[0];
+    result_.scale_interval = is_scale_known() ? Interval{1, 1} : interval(0);
     std::vector<size_t> order;
     for (size_t i = 1; i < c.p.size(); i += 2) order.push_back(i);
     std::sort(order.begin(), order.end(), [&](size_t a, size_t b) { return c.p[a + 1] < c.p[b + 1]; });
@@ -221,8 +224,10 @@ class RelaxationFitter {
                                  " per reading of the histories: branches do not explain them, or the standard "
                                  "deviations are too small; all intervals are " +
                                  three_digits(factor) + " times wider");
+    result_.predictions = c.predictions;
     for (size_t h = 0; h < histories_.size(); ++h)
-      result_.curves.push_back({histories_[h].name, histories_[h].forces, c.predictions[h].forces});
+      for (HistoryCurve& curve : curves_of(body_, histories_[h], c.predictions[h]))
+        result_.curves.push_back(std::move(curve));
   }
 
   const Experiment& body_;

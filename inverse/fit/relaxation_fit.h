@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "base/stop_token.h"
+#include "fit/history_curves.h"
 #include "fit/load_history.h"
 #include "fit/uncertainty.h"
 
@@ -15,7 +16,7 @@ inline constexpr int kMaxBranches = 3;
 
 struct RelaxationOptions {
   int branches = 0;        // 0: chosen by the evidence, from 1 to kMaxBranches
-  double scale_sigma = 2;  // prior standard deviation of the logarithm of the factor of the stiffness
+  double scale_sigma = 2;  // prior standard deviation of the logarithm of the factor of the stiffness; 0: it is 1
   EquilibriumOptions equilibrium;
   StopToken stop = {};
   std::function<void(const std::string& what)> begin = {};  // called before each fit
@@ -35,23 +36,18 @@ struct BranchTrial {
   double evidence = 0;  // log, up to a constant
 };
 
-// Readings of a history with the fit.
-struct HistoryCurve {
-  std::string name;
-  std::vector<ForceReading> measured;
-  std::vector<double> fitted;  // [N]
-};
-
 struct RelaxationFit {
   std::string failure;  // why there are no branches; empty: none
   bool is_stopped = false;
   std::vector<FittedBranch> branches;  // from the shortest time on
   double scale = 1;                    // factor of the stiffness of the material: of its long-term response
   Interval scale_interval;             // 95 %
+  double scale_sigma = 0;              // standard deviation of log scale; 0: known
   int residuals = 0;
   double squares = 0;       // |r|^2
   double noise_factor = 1;  // applied to the standard deviations
   std::vector<BranchTrial> trials;
+  std::vector<HistoryPrediction> predictions;  // one per history
   std::vector<HistoryCurve> curves;
   std::string undetermined;  // first branch that the readings do not determine; empty: none
   std::vector<std::string> warnings;

@@ -20,8 +20,9 @@ constexpr double kPointwise = 1.5;   // largest la_pt / mu
 constexpr double kCompliance = 0.6;  // g' A^-1 g times modulus / volume, measured on Delaunay meshes
 constexpr double kStiff = 1.8;       // smallest K times compliance of stiff rows, at Poisson's ratio 0.45
 
-double pointwise_lambda(const Lame& lame) { return std::min(lame.lambda, kPointwise * lame.mu); }
-bool is_split(const Lame& lame) { return lame.lambda > kPointwise * lame.mu; }
+// False for a Poisson's ratio of 0.3 with round-off.
+bool is_split(const Lame& lame) { return lame.lambda > (1 + 1e-9) * kPointwise * lame.mu; }
+double pointwise_lambda(const Lame& lame) { return is_split(lame) ? kPointwise * lame.mu : lame.lambda; }
 
 std::vector<MaterialParameters> pointwise(std::span<const MaterialParameters> parameters) {
   std::vector<MaterialParameters> result(parameters.begin(), parameters.end());
@@ -100,6 +101,8 @@ class VolumeTerm : public TetTerm<GivenPressure, Energy, QuadraticTetBatch> {
   }
 
   void set_parameters(std::span<const MaterialParameters> parameters) {
+    is_active_ = false;
+    for (const MaterialParameters& p : parameters) is_active_ |= is_split(p.lame);
     bulk_.assign(batches_.size(), Pack(0.0));
     compliance_.assign(batches_.size(), Pack(0.0));
     for (size_t i = 0; i < batches_.size(); ++i)
@@ -109,6 +112,8 @@ class VolumeTerm : public TetTerm<GivenPressure, Energy, QuadraticTetBatch> {
         compliance_[i].set(l, kCompliance / (lame.mu + pointwise_lambda(lame)));
       }
   }
+
+  bool is_active() const { return is_active_; }  // false: the energy is 0
 
   double value(Positions x, const Context&) const override {
     return reduce(
@@ -300,6 +305,7 @@ class VolumeTerm : public TetTerm<GivenPressure, Energy, QuadraticTetBatch> {
   }
 
   int first_;
+  bool is_active_ = false;
   std::vector<Pack> bulk_, compliance_;  // of each batch
 };
 
@@ -325,27 +331,30 @@ class MeanVolume : public TetElasticity, public StiffEnergy {
   }
 
   double value(Positions x, const Context& context) const override {
-    return shape_->value(x, context) + volume_.value(x, context);
+    const double shape = shape_->value(x, context);
+    return volume_.is_active() ? shape + volume_.value(x, context) : shape;
   }
   void add_gradient(Positions x, const Context& context, double scale, std::span<double> g) const override {
     shape_->add_gradient(x, context, scale, g);
-    volume_.add_gradient(x, context, scale, g);
+    if (volume_.is_active()) volume_.add_gradient(x, context, scale, g);
   }
   int add_hessian(Positions x, const Context& context, double scale, const Projection& projection,
                   BlockSparse& H) const override {
-    return shape_->add_hessian(x, context, scale, projection, H) +
-           volume_.add_hessian(x, context, scale, projection, H);
+    const int projected = shape_->add_hessian(x, context, scale, projection, H);
+    return volume_.is_active() ? projected + volume_.add_hessian(x, context, scale, projection, H) : projected;
   }
   void add_stiff_rows(Positions x, double scale, StiffRows& rows) const override {
-    volume_.add_stiff_rows(x, scale, rows);
+    if (volume_.is_active()) volume_.add_stiff_rows(x, scale, rows);
   }
   void note_newton_step(Positions x, std::span<const double> d, const Context& context) const override {
-    if (const auto* lag = dynamic_cast<const VolumeTerm::Lag*>(&context)) volume_.note_newton_step(x, d, *lag);
+    const auto* lag = dynamic_cast<const VolumeTerm::Lag*>(&context);
+    if (lag && volume_.is_active()) volume_.note_newton_step(x, d, *lag);
   }
 
   double min_det_F(Positions x) const override { return shape_->min_det_F(x); }
   void evaluate(Positions x, TetFields& fields) const override {
     shape_->evaluate(x, fields);
+    if (!volume_.is_active()) return;
     volume_.visit_pressures(x, [&](int tet, double change, double bulk) {
       fields.energy_density[tet] += 0.5 * bulk * change * change;
       for (int k = 0; k < 3; ++k) fields.cauchy[6 * tet + k] += bulk * change;
@@ -372,6 +381,7 @@ class MeanVolume : public TetElasticity, public StiffEnergy {
       bulk_change[t] = change[entry(t) + 1] - lambda;
     }
     shape_->add_parameter_force(x, pointwise_change, scale, g);
+    if (!volume_.is_active()) return;
     volume_.add_bulk_force(
         x, [&](int t) { return bulk_change[t]; }, scale, g);
   }
@@ -380,7 +390,7 @@ class MeanVolume : public TetElasticity, public StiffEnergy {
                               std::span<double> gradient) const override {
     std::vector<double> own(gradient.size(), 0.0), by_bulk(parameters_.size(), 0.0);
     shape_->add_parameter_gradient(x, w, scale, own);
-    volume_.visit_bulk_gradient(x, w, [&](int t, double rate) { by_bulk[t] = scale * rate; });
+    if (volume_.is_active()) volume_.visit_bulk_gradient(x, w, [&](int t, double rate) { by_bulk[t] = scale * rate; });
     add_chained(own, by_bulk, gradient);
   }
 
@@ -388,8 +398,9 @@ class MeanVolume : public TetElasticity, public StiffEnergy {
                                Definiteness definiteness, const HessianDerivatives& out) const override {
     std::vector<double> own(out.parameters.size(), 0.0), by_bulk(parameters_.size(), 0.0);
     shape_->add_hessian_derivatives(x, u, w, definiteness, {out.scale, out.x, own});
-    volume_.add_hessian_derivatives(x, u, w, definiteness, out.scale, out.x,
-                                    [&](int t, double rate) { by_bulk[t] = rate; });
+    if (volume_.is_active())
+      volume_.add_hessian_derivatives(x, u, w, definiteness, out.scale, out.x,
+                                      [&](int t, double rate) { by_bulk[t] = rate; });
     if (!out.parameters.empty()) add_chained(own, by_bulk, out.parameters);
   }
 
@@ -417,12 +428,6 @@ class MeanVolume : public TetElasticity, public StiffEnergy {
 };
 
 }  // namespace
-
-bool needs_mean_volume(const TetMesh& mesh, int first, std::span<const MaterialParameters> parameters) {
-  if (parameters.empty() || !is_quadratic(mesh, first)) return false;
-  return std::any_of(parameters.begin(), parameters.end(),
-                     [](const MaterialParameters& p) { return p.lame.lambda > (1 + 1e-9) * kPointwise * p.lame.mu; });
-}
 
 std::unique_ptr<TetElasticity> make_mean_volume(const ElasticityMaker& make_shape, const TetMesh& mesh, int first,
                                                 std::span<const MaterialParameters> parameters) {

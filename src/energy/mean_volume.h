@@ -11,10 +11,8 @@
 
 namespace aspic {
 
-// Returns whether a term of these tets uses the mean volume: quadratic tets with a Poisson's ratio above 0.3.
-bool needs_mean_volume(const TetMesh& mesh, int first, std::span<const MaterialParameters> parameters);
-
-// `make_shape`: makes the first term for other parameters.
+// Requires quadratic tets. Which tets are split depends on their current parameters, so that Poisson's ratio may cross
+// 0.3. `make_shape`: makes the first term for other parameters.
 std::unique_ptr<TetElasticity> make_mean_volume(const ElasticityMaker& make_shape, const TetMesh& mesh, int first,
                                                 std::span<const MaterialParameters> parameters);
 

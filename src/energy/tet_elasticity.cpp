@@ -19,7 +19,7 @@ std::unique_ptr<TetElasticity> make_tet_elasticity(std::string_view material, co
     return term;
   };
   const bool ignores_lambda = material == "arap";
-  return !ignores_lambda && needs_mean_volume(mesh, first, parameters)
+  return !ignores_lambda && !parameters.empty() && is_quadratic(mesh, first)
              ? make_mean_volume(maker, mesh, first, parameters)
              : maker(mesh, first, parameters);
 }

@@ -4,13 +4,18 @@ With Poisson's ratio 0 the bar is uniaxial, and a Maxwell branch with the shear 
 shear modulus G = E / 2 has Young's modulus ratio E: E(t) = E (1 + sum of ratio exp(-t / tau)).
 
 usage: ASPIC=path/to/aspic relaxation_truths_test.py. Exit code 77: NumPy is missing."""
+import base64
+import csv
 import json
 import os
 import pathlib
 import subprocess
 import sys
+import re
+import struct
 import tempfile
 import unittest
+import zlib
 
 try:
     import numpy as np
@@ -33,6 +38,38 @@ GRIPPED = """forces = "load.csv"
 name = "top"
 where = "z > 0.04 - 1e-6"
 """
+
+SCENE = """gravity = [0, 0, 0]
+[time]
+integrator = "quasi_static"
+step = {step}
+duration = {end}
+[solver]
+tolerance = 1e-10
+[output]
+vtu = false
+usd = false
+report = false
+[[body]]
+name = "bar"
+mesh = "data/rest.msh"
+material = {{ file = "material.vtu" }}
+[[body.pin]]
+where = "z < 1e-6"
+[[body.pin]]
+name = "top"
+where = "z > 0.04 - 1e-6"
+motion = {{ keyframes = [{{ time = 0, displacement = [0, 0, 0] }}, {{ time = {ramp}, displacement = [0, 0, {move}] }},
+    {{ time = {end}, displacement = [0, 0, {move}] }}] }}
+"""
+
+
+def cell_field(vtu, name):
+    """The numbers of a field of a compressed VTU with one block."""
+    data = re.search(rf'Name="{name}"[^>]*>\s*(\S+)', vtu)[1]
+    head = data.index("==") + 2
+    raw = zlib.decompress(base64.b64decode(data[head:]))
+    return np.array(struct.unpack(f"<{len(raw) // 8}d", raw))
 
 
 def ramp_force(t, branches):
@@ -87,20 +124,36 @@ def write_creep(folder, ratio, tau, noise, seed):
 
 
 class Relaxation(unittest.TestCase):
-    def fit(self, write, options="", code=0):
+    def simulated_forces(self, folder):
+        """Times and forces of `aspic run` with the written material and branches."""
+        (folder / "scene.toml").write_text(SCENE.format(step=RAMP / 2, ramp=RAMP, end=END, move=STRAIN * LENGTH) + self.scene)
+        done = subprocess.run([os.environ["ASPIC"], "run", "scene.toml", "--out", "run", "--quiet"], cwd=folder,
+                              capture_output=True, text=True)
+        self.assertEqual(done.returncode, 0, done.stdout + done.stderr)
+        with open(folder / "run" / "steps.csv", newline="") as file:
+            rows = [row for row in csv.DictReader(file) if row["step"] != "0"]
+        return (np.array([float(row["time"]) for row in rows]), np.array([float(row["reaction_bar.top_z"]) for row in rows]))
+
+    def fit(self, write, options="", code=0, arguments=(), simulates=False):
         with tempfile.TemporaryDirectory() as name:
             folder = pathlib.Path(name)
             write(folder / "data")
             (folder / "options.toml").write_text("cross_validation = false\nmesh_errors = false\n" + options)
-            done = subprocess.run(
-                [os.environ["ASPIC"], "fit", "data", "--unknown", "young=uniform", "--known", "poisson=0", "--options",
-                 "options.toml"], cwd=folder, capture_output=True, text=True)
+            arguments = arguments or ("--unknown", "young=uniform", "--known", "poisson=0")
+            done = subprocess.run([os.environ["ASPIC"], "fit", "data", *arguments, "--options", "options.toml"], cwd=folder,
+                                  capture_output=True, text=True)
             self.assertEqual(done.returncode, code, done.stdout + done.stderr)
             self.output = done.stdout + done.stderr
             if code == 2:
                 return None
             results = folder / "material.fit"
             self.scene = (results / "viscoelastic.toml").read_text() if (results / "viscoelastic.toml").exists() else ""
+            vtu = (folder / "material.vtu").read_text()
+            self.young = cell_field(vtu, "young")
+            self.deviation = cell_field(vtu, "young_deviation") if "young_deviation" in vtu else None
+            self.curves = (results / "relaxation.csv").read_text() if (results / "relaxation.csv").exists() else ""
+            if simulates:
+                self.times, self.forces = self.simulated_forces(folder)
             return json.loads((results / "figures.json").read_text())
 
     def assert_inside(self, interval, truth):
@@ -127,6 +180,46 @@ class Relaxation(unittest.TestCase):
         self.assertAlmostEqual(figures["values"]["young"]["everywhere"]["value"] / YOUNG, 1, delta=0.02)
         self.assert_inside(figures["values"]["young"]["everywhere"], YOUNG)
         self.assert_inside(figures["relaxation"]["branches"][0]["time_interval"], 150)
+
+    def test_outputs_have_one_stiffness(self):
+        # The body still relaxes at the end, where its force is 8 % above the long-term one.
+        slow = ((0.6, 150.0),)
+        figures = self.fit(lambda folder: write_hold(folder, slow, 0.002, 1), "branches = 1\n", simulates=True)
+        value = figures["values"]["young"]["everywhere"]
+        np.testing.assert_allclose(self.young, value["value"], rtol=1e-12)
+        np.testing.assert_allclose(self.deviation, np.log(value["upper"] / value["lower"]) / 2 / 1.96, rtol=1e-3)
+        self.assertIn(f"the stiffness above includes their factor {figures['relaxation']['scale']['value']:.4g}", self.output)
+        self.assertIn("viscoelastic.toml", self.output)
+        # The table of cases: the mean force of the last tenth of the hold, of the relaxing body.
+        response, = (case["response"] for case in figures["cases"])
+        end = ramp_force(np.linspace(0.9 * END, END, 101), slow).mean()
+        self.assertAlmostEqual(response["fitted"] / end, 1, delta=0.002)
+        self.assertGreater(figures["squares"], 1e-3)  # not that of a first fit of one force by one value
+        # A simulation with the written files has the forces of the closed form, at the peak and at the end.
+        for time in (RAMP, 10.0, END):
+            k = np.abs(self.times - time).argmin()
+            self.assertAlmostEqual(self.forces[k] / ramp_force(self.times[k:k + 1], slow)[0], 1, delta=0.005)
+
+    def test_given_stiffness_stays(self):
+        figures = self.fit(lambda folder: write_hold(folder, ((0.6, 30.0),), 0.002, 1), "branches = 1\n",
+                           arguments=("--known", f"young={YOUNG}", "--unknown", "poisson=uniform", "--allow-unconverged"))
+        np.testing.assert_allclose(self.young, YOUNG, rtol=1e-12)
+        scale = figures["relaxation"]["scale"]
+        self.assertEqual((scale["value"], scale["lower"], scale["upper"], scale["known"]), (1, 1, 1, True))
+        self.assertIn("with the given stiffness", self.output)
+        self.assertAlmostEqual(figures["relaxation"]["branches"][0]["relaxation_time"] / 30, 1, delta=0.03)
+
+    def test_creep_has_curves_of_motion(self):
+        figures = self.fit(lambda folder: write_creep(folder, 0.6, 5.0, 0.005, 1))
+        curves = figures["relaxation"]["curves"]
+        self.assertEqual([(c["name"], c["unit"]) for c in curves], [("creep", "m")] * 3)  # markers with the largest motions
+        for curve in curves:
+            self.assertRegex(curve["reading"], "motion of marker [0-3]")
+            for p in curve["points"]:
+                motion = STRAIN * LENGTH * (1 - 0.375 * np.exp(-p["time"] / 8))
+                self.assertAlmostEqual(p["measured"], motion, delta=4.5 * p["sd"])
+                self.assertAlmostEqual(p["fitted"], motion, delta=0.01 * STRAIN * LENGTH)
+        self.assertIn("creep,motion of marker", self.curves)
 
     def test_creep_of_markers_gives_the_branch(self):
         figures = self.fit(lambda folder: write_creep(folder, 0.6, 5.0, 0.005, 1))

@@ -114,14 +114,16 @@ export interface LawFigures {
 type Ends = Record<"lower" | "upper", number>;
 
 export interface HistoryFigures {
-  name: string;
+  name: string; // of the history
+  reading: string; // "force", "motion of marker 3"
+  unit: string;
   points: Record<"time" | "measured" | "sd" | "fitted", number>[];
 }
 
 export interface RelaxationFigures {
   squares_per_reading: number;
   readings: number;
-  scale: Ends & { value: number };
+  scale: Ends & { value: number; known?: boolean };
   branches: { ratio: number; ratio_interval: Ends; relaxation_time: number; time_interval: Ends }[];
   trials: { branches: number; failure: string; squares_per_reading: number; log_evidence: number }[];
   curves: HistoryFigures[];

@@ -98,9 +98,9 @@ function relaxation({ head: { figures: { relaxation: found } } }: Fit): HTMLElem
   if (!found.ok) return section("Relaxation", `No relaxation times: ${found.failure}`);
   return section(
     "Relaxation",
-    `Fitted to ${found.readings} readings of the histories. The material above is the long-term response, whose stiffness these readings multiply by the factor in the last row.`,
+    `Fitted to ${found.readings} readings of the histories. The material above is the long-term response${found.scale.known ? "" : "; its stiffness includes the factor in the last row"}.${found.curves.some((c) => c.unit === "m") ? " Motions are those of the markers that move farthest, along their largest displacement." : ""}`,
     element("div", { class: "columns" }, ...[branchTable(found), trialTable(found)].map((table) => table && element("div", { class: "wide" }, table))),
-    found.curves.some((c) => c.points.length > 0) ? element("div", { class: "charts" }, ...historyFigures(found)) : element("p", { class: "hint" }, "Curves are drawn for forces; these histories have positions only."),
+    element("div", { class: "charts" }, ...historyFigures(found)),
   );
 }
 

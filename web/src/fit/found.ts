@@ -61,7 +61,7 @@ export function branchTable(relaxation: RelaxationFigures): HTMLElement {
     line(`branch ${i + 1}: relaxation time`, b.relaxation_time, b.time_interval, "s"),
     line(`branch ${i + 1}: shear modulus / that of the material`, b.ratio, b.ratio_interval, ""),
   ]);
-  rows.push(line("long-term stiffness / that of the material", relaxation.scale.value, relaxation.scale, ""));
+  if (!relaxation.scale.known) rows.push(line("long-term stiffness / that of the first fit (included above)", relaxation.scale.value, relaxation.scale, ""));
   return numberTable(["relaxation", "value", "95 % interval"], 1, element("tbody", {}, ...rows));
 }
 
@@ -73,6 +73,7 @@ export function trialTable(relaxation: RelaxationFigures): HTMLElement | null {
   return numberTable(["branches", "|r|² per reading", "log evidence"], 1, element("tbody", {}, ...rows));
 }
 
+// On a logarithmic axis, so without a reading at the time 0.
 function historyChart(curve: HistoryFigures): Chart {
   const points = curve.points.filter((p) => p.time > 0);
   const curves: FilledCurve[] = [
@@ -80,13 +81,13 @@ function historyChart(curve: HistoryFigures): Chart {
     { key: "measured", label: "measured", color: "text", shape: "points", values: points.map((p) => p.measured) },
   ];
   return Chart.of(points.map((p) => Math.log10(p.time)), curves, {
-    label: `${curve.name}: force against the logarithm of time`,
+    label: `${curve.name}: ${curve.reading} against the logarithm of time`,
     x: { label: "log₁₀ of the time [s]" },
-    y: { label: "force", unit: "N" },
+    y: { label: curve.reading, unit: curve.unit },
     showsLast: true,
   });
 }
 
 export function historyFigures({ curves }: RelaxationFigures): Child[] {
-  return curves.filter((c) => c.points.length > 0).map((c) => element("figure", {}, element("figcaption", {}, c.name), historyChart(c).element));
+  return curves.map((c) => element("figure", {}, element("figcaption", {}, `${c.name}: ${c.reading}`), historyChart(c).element));
 }
