@@ -12,7 +12,7 @@ namespace aspic::distributed {
 namespace {
 
 // The factor of the coarse matrix is on every rank, so the number of pieces is limited. Sizes from 200 to 1000 vertices
-// cost the same on beams of 12,825 to 95,033 vertices.
+// cost about the same on beams of 12,825 to 95,033 vertices.
 constexpr int kMinPieceSize = 200, kMaxPieces = 512;
 constexpr int kFunctions = 4;  // (1, X, Y, Z), each with 3 directions
 

@@ -11,7 +11,7 @@ namespace {
 constexpr double kFew = 60;       // predicted iterations for two digits that cost as much as multigrid
 constexpr int kMaxJacobi = 1500;  // iterations before GAMG
 constexpr int kMaxMultigrid = 500;
-constexpr int kMaxRanks = 256;  // every rank factorizes the coarse matrix of all
+constexpr int kMaxRanks = 256;  // every rank factorizes the coarse matrix of all; an estimate
 
 }  // namespace
 
