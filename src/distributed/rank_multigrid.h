@@ -8,7 +8,7 @@
 
 namespace aspic::distributed {
 
-// Additive Schwarz method without overlap [Dolean, Jolivet and Nataf 2015]. One rank has multigrid alone. Vectors have
+// Additive Schwarz method without overlap. One rank has multigrid alone. Vectors have
 // 3 entries per local vertex; those of ghosts are neither read nor written. Every function is collective.
 class RankMultigrid : public ApproximateInverse {
  public:
