@@ -8,8 +8,8 @@
 
 namespace aspic::distributed {
 
-// Additive Schwarz method without overlap. One rank has multigrid alone. Vectors have
-// 3 entries per local vertex; those of ghosts are neither read nor written. Every function is collective.
+// Additive Schwarz method without overlap. One rank has multigrid alone. Vectors have 3 entries per local vertex; those
+// of ghosts are neither read nor written. Every function is collective.
 class RankMultigrid : public ApproximateInverse {
  public:
   // All must outlive this.
