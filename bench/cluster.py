@@ -1,10 +1,10 @@
 #!/usr/bin/env python3
 """Measures aspic-mpi on this machine and prints Markdown tables.
 
-usage: cluster.py [iterations] [strong] [weak] [size] [serial] [--bin build/mpi/bin] [--cells N...] [--ranks N...] [--newton N]
+usage: cluster.py [iterations] [strong] [weak] [size] [serial] [--bin build/mpi/bin] [--cells N...] [--ranks N...] [--newton N] [--linear auto]
 
 The beam is the box 0.4 x 0.1 x 0.1 m of 4n x n x n cells, clamped at x = 0: stable_neo_hookean, E = 1e7 Pa, nu = 0.45,
-steps of 1/60 s, with GAMG.
+steps of 1/60 s, with GAMG unless --linear is given.
 iterations: linear iterations of two Newton iterations, for the beam and for the beam twisted by 90 degrees
 strong: one step of the same beam on several ranks; weak: of finer beams, with about as many vertices per rank
 size: one step of large beams, with memory per vertex; serial: three steps against aspic run, at tolerance 1e-10
@@ -25,7 +25,7 @@ SCENE = """[time]
 step = {step}
 duration = {duration}
 [solver]
-linear = "multigrid"
+linear = "{linear}"
 {solver}
 [output]
 vtu = false
@@ -40,9 +40,13 @@ where = "x < 1e-9"
 TWIST = "deform = { twist = { axis = [1, 0, 0], angle_deg = 90 } }"
 
 
+LINEAR = "multigrid"
+
+
 def scene(folder, n, steps=1, solver="", deform=""):
     path = folder / "beam.toml"
-    path.write_text(SCENE.format(step=1 / 60, duration=steps / 60, n=n, x=4 * n, solver=solver, deform=deform))
+    path.write_text(SCENE.format(step=1 / 60, duration=steps / 60, n=n, x=4 * n, linear=LINEAR, solver=solver,
+                                 deform=deform))
     return path
 
 
@@ -155,7 +159,9 @@ def main():
     arguments.add_argument("--cells", type=int, nargs="+")
     arguments.add_argument("--ranks", type=int, nargs="+")
     arguments.add_argument("--newton", type=int, help="limit of Newton iterations for size")
+    arguments.add_argument("--linear", default=LINEAR, help="solver.linear of the scenes (default: %(default)s)")
     options = arguments.parse_args()
+    globals()["LINEAR"] = options.linear
     if unknown := set(options.kind) - set(kinds):
         arguments.error(f"unknown: {', '.join(unknown)}; there are {', '.join(kinds)}")
     for kind in options.kind or kinds:

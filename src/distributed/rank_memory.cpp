@@ -16,13 +16,20 @@ constexpr double kProcess = 50e6;          // libraries and MPI [bytes]
 constexpr double kWithMultigrid = 11'000;  // per own vertex [bytes]
 constexpr double kWithJacobi = 7'000;      // per own vertex [bytes]
 constexpr double kPerGhost = 2'500;        // [bytes]
+// Factor of the coarse matrix, of dissected cubes of pieces [bytes]. The pieces are those of CoarseSpace.
+constexpr double kFactor = 20'000, kPieceSize = 200, kMaxPieces = 512;
+
+double coarse_bytes(const MemoryNeed& need) {
+  if (!need.has_multigrid || need.ranks == 1) return 0;
+  return kFactor * std::pow(std::min(kMaxPieces, need.ranks + need.vertices / kPieceSize), 4.0 / 3);
+}
 
 }  // namespace
 
 double bytes_per_rank(const MemoryNeed& need) {
   const double own = need.vertices / need.ranks;
   const double ghosts = need.ranks > 1 ? std::min(need.vertices - own, 7 * std::pow(own, 2.0 / 3)) : 0;
-  return kProcess + (need.has_multigrid ? kWithMultigrid : kWithJacobi) * own + kPerGhost * ghosts;
+  return kProcess + (need.has_multigrid ? kWithMultigrid : kWithJacobi) * own + kPerGhost * ghosts + coarse_bytes(need);
 }
 
 void require_memory(const MemoryNeed& need, int ranks_here, double available) {

@@ -7,7 +7,7 @@ namespace aspic::distributed {
 struct MemoryNeed {
   double vertices = 0;  // of the whole mesh
   int ranks = 1;
-  bool has_multigrid = true;  // GAMG; else block-Jacobi
+  bool has_multigrid = true;  // a kind of multigrid; else block-Jacobi
 };
 // Upper estimate for the process of a rank [bytes].
 double bytes_per_rank(const MemoryNeed& need);
