@@ -276,7 +276,12 @@ class FitPage(CommandLine):
         self.assert_near(number(tables.table("relaxation")["branch 1: relaxation time"][1][0], "s"), tau, 0.05)
         self.assertEqual(sorted(self.captions()), ["creep: motion of marker A", "creep: motion of marker B"])
         self.assertIn("creep: motion of marker A against the logarithm of time", self.dom)
-        self.assertIn("<span>1 mm</span>", self.dom)  # the last value
+        with open(self.folder / "material.fit/relaxation.csv") as table:
+            last = [r for r in csv.DictReader(table) if float(r["time"]) == times[-1]]
+        self.assertEqual({(r["history"], r["unit"]) for r in last}, {("creep", "m")})
+        for r in last:  # the motion
+            self.assert_near(float(r["measured"]), 1e-3, 0.005)
+            self.assert_near(float(r["fitted"]), 1e-3, 0.005)
 
 
 if __name__ == "__main__":
