@@ -206,7 +206,7 @@ radius = {sphere}
 """
 
 
-def layers(fine=3, poisson=0.45):
+def layers(fine=4, poisson=0.45):
     """15 kPa above 45 kPa, pressed in the middle: a quarter of the body is solved."""
     size, half, disc, sphere = np.array([0.08, 0.08, 0.04]), 0.04, 0.012, 0.016
     inner = np.linspace(0, 0.015, fine + 2)
