@@ -40,12 +40,9 @@ where = "x < 1e-9"
 TWIST = "deform = { twist = { axis = [1, 0, 0], angle_deg = 90 } }"
 
 
-LINEAR = "multigrid"
-
-
-def scene(folder, n, steps=1, solver="", deform=""):
+def scene(options, folder, n, steps=1, solver="", deform=""):
     path = folder / "beam.toml"
-    path.write_text(SCENE.format(step=1 / 60, duration=steps / 60, n=n, x=4 * n, linear=LINEAR, solver=solver,
+    path.write_text(SCENE.format(step=1 / 60, duration=steps / 60, n=n, x=4 * n, linear=options.linear, solver=solver,
                                  deform=deform))
     return path
 
@@ -101,7 +98,7 @@ def iterations(options, folder):
     header("cells", *(f"{r} ranks" for r in options.ranks or [1, 4, 16, 64]))
     for n in options.cells or [6]:
         for name, deform in (("beam", ""), ("twisted", TWIST)):
-            path = scene(folder, n, solver="max_iterations = 2", deform=deform)
+            path = scene(options, folder, n, solver="max_iterations = 2", deform=deform)
             row(f"{name} {4 * n} x {n} x {n}",
                 *(int(run(options, r, path)[1][0]["linear_iterations"]) for r in options.ranks or [1, 4, 16, 64]))
 
@@ -120,27 +117,27 @@ STEP = ("ranks", "vertices", "Newton", "linear iterations", "CPU s", "wall s", "
 def strong(options, folder):
     header(*STEP)
     for ranks in options.ranks or [1, 2, 4]:
-        one_step(options, ranks, scene(folder, (options.cells or [14])[0]))
+        one_step(options, ranks, scene(options, folder, (options.cells or [14])[0]))
 
 
 def weak(options, folder):
     header(*STEP)
     for ranks in options.ranks or [1, 2, 4]:
-        one_step(options, ranks, scene(folder, round((options.cells or [10])[0] * ranks ** (1 / 3))))
+        one_step(options, ranks, scene(options, folder, round((options.cells or [10])[0] * ranks ** (1 / 3))))
 
 
 def size(options, folder):
     header(*STEP)
     for n in options.cells or [35]:
         for ranks in options.ranks or [2]:
-            one_step(options, ranks, scene(folder, n, solver=f"max_iterations = {options.newton}" if options.newton else ""))
+            one_step(options, ranks, scene(options, folder, n, solver=f"max_iterations = {options.newton}" if options.newton else ""))
 
 
 def serial(options, folder):
     ranks_ = options.ranks or [1, 2, 4]
     header("n", "vertices", "aspic run: Newton", "CPU s", *(t for r in ranks_ for t in (f"{r} ranks: Newton", "CPU s")), "largest distance, m")
     for n in options.cells or [7, 14]:
-        path = scene(folder, n, steps=3, solver="tolerance = 1e-10")
+        path = scene(options, folder, n, steps=3, solver="tolerance = 1e-10")
         steps, _, seconds, _ = run(options, 0, path, "serial")
         cells, far = [int(total(steps, "iterations")), seconds], 0.0
         own = positions(folder / "serial/checkpoint.bin")
@@ -159,9 +156,8 @@ def main():
     arguments.add_argument("--cells", type=int, nargs="+")
     arguments.add_argument("--ranks", type=int, nargs="+")
     arguments.add_argument("--newton", type=int, help="limit of Newton iterations for size")
-    arguments.add_argument("--linear", default=LINEAR, help="solver.linear of the scenes (default: %(default)s)")
+    arguments.add_argument("--linear", default="multigrid", help="solver.linear of the scenes (default: %(default)s)")
     options = arguments.parse_args()
-    globals()["LINEAR"] = options.linear
     if unknown := set(options.kind) - set(kinds):
         arguments.error(f"unknown: {', '.join(unknown)}; there are {', '.join(kinds)}")
     for kind in options.kind or kinds:

@@ -341,7 +341,8 @@ then in a scene: material = {{ file = "material.vtu" }}
 Keys of aspic.fit.toml beside capture.toml, or of the file of --options, with their defaults:
 {}
 Exit codes: 0 the verdict is good, 2 bad input or data with errors, 3 the fit failed, did not converge, or its
-material is not reliable (unless --allow-unconverged): the reasons are printed and written to figures.json; 130 interrupted by Ctrl-C, 143 by kill: the current material is written, --resume continues.)";
+material is not reliable (unless --allow-unconverged): the reasons are printed and written to figures.json;
+130 interrupted by Ctrl-C, 143 by kill: the current material is written, --resume continues.)";
 
 constexpr std::string_view kFooterOfJobs = R"(
 Begins or continues the fit of aspic fit with the same options, writes its independent fits without a result to

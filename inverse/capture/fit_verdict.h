@@ -56,7 +56,8 @@ struct FitVerdict {
 
 // Names of the reasons: interrupted, not_converged, mesh_not_settled, mesh_too_coarse, at_bound, group_missed,
 // held_out_worse, groups_disagree, unexplained, predicts_badly, field_rejected,
-// relaxation_failed, relaxation_undetermined, relaxation_unexplained, no_good_law.
+// relaxation_failed, relaxation_undetermined, relaxation_unexplained, no_good_law,
+// fibres_undetermined.
 FitVerdict verdict(const DataSet& data, const FitOutcome& outcome);
 
 // Reasons why one value is better than a field: mesh_not_settled, at_bound, group_missed, held_out_worse.
