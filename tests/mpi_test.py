@@ -607,10 +607,10 @@ class Shares(Ranks):
 
     def test_iterations_hardly_grow_with_ranks(self):
         twist = "deform = { twist = { axis = [1, 0, 0], angle_deg = 90 } }\n"
-        for linear, growth in (("multigrid", 1.5), ("auto", 3.5)):  # 20 without a coarse space
+        for linear in ("multigrid", "auto"):  # 20 times as many without a coarse space
             for before_pin in ("", twist):
                 counts = {n: self.iterations(n, linear, before_pin) for n in (1, 4, 16)}
-                self.assertLessEqual(max(counts.values()), growth * counts[1], f"{linear} {before_pin}: {counts}")
+                self.assertLessEqual(max(counts.values()), 1.5 * counts[1], f"{linear} {before_pin}: {counts}")
 
     def test_auto_chooses_by_predicted_cost(self):
         """Soft bodies and short steps: block-Jacobi. Equilibria: multigrid, whose coarse space adds a gather."""
@@ -622,7 +622,19 @@ class Shares(Ranks):
             self.mpi(ranks, "run", scene, "--out", "run", "--force", "--quiet")
             for rank in self.ranks("run"):
                 self.assertAlmostEqual(rank["reductions_per_iteration"], sums, delta=0.2)
-                self.assertLess(rank["messages_per_iteration"], ranks - 0.9)  # GAMG has several levels
+                # Two to each neighbor; GAMG has several levels.
+                self.assertLess(rank["messages_per_iteration"], 2.5 * (ranks - 1) + 0.1)
+
+    def test_gamg_replaces_multigrid_that_does_not_converge(self):
+        """Nearly incompressible linear tets: GAMG solves the same system after 500 iterations, from the same start."""
+        options = ("--set", "solver.max_iterations=1", "--set", "solver.tolerance=1e-4", "--steps", "1")
+        for linear in ("auto", "multigrid"):
+            scene = self.folder / self.scene(cells="24, 6, 6", young="1e7", solver=f'linear = "{linear}"')
+            scene.write_text(scene.read_text().replace("poisson = 0.4", "poisson = 0.49999"))
+            self.mpi(2, "run", scene, *options, "--out", linear, "--quiet", "--allow-unconverged")
+        self.assertEqual(self.column("auto", "state_hash"), self.column("multigrid", "state_hash"))
+        auto, gamg = (self.ranks(linear)[0]["linear_iterations"] for linear in ("auto", "multigrid"))
+        self.assertEqual(auto, 500 + gamg)
 
     def test_communication_of_block_jacobi(self):
         """Per iteration a message to each neighbor and three sums: p'Hp, r'r and r'z."""

@@ -11,10 +11,11 @@
 namespace aspic::distributed {
 namespace {
 
-// The factor of the coarse matrix is on every rank, so the number of pieces is limited. Sizes from 200 to 1000 vertices
-// cost about the same on beams of 12,825 to 95,033 vertices.
-constexpr int kMinPieceSize = 200, kMaxPieces = 512;
 constexpr int kFunctions = 4;  // (1, X, Y, Z), each with 3 directions
+
+// Maximum number of vertices of a piece; pieces have half of it on average. More pieces save iterations, but the factor
+// of their matrix is on every rank.
+int piece_size(int vertices) { return std::max({48, std::min(120, vertices / 32), vertices / 256}); }
 
 std::vector<char> isolated_rows(const BlockSparse& H, int rows) {
   const BlockPattern& p = *H.pattern;
@@ -48,7 +49,7 @@ void CoarseSpace::analyze(const BlockPattern& pattern, const BlockPattern& own) 
 }
 
 Aggregates CoarseSpace::pieces_of_own_vertices() const {
-  const int size = std::max(kMinPieceSize, mesh_.cut.back() / kMaxPieces);
+  const int size = piece_size(mesh_.cut.back());
   const Graph graph = graph_of(*own_);
   AggregationInput input{graph, own_->rest_position, own_->rest_modulus, isolated_, size};
   Aggregates pieces = make_aggregates(input);

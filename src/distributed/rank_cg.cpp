@@ -15,10 +15,15 @@ constexpr double kGrowth = 1.3;
 }  // namespace
 
 RankCg::RankCg(const Share& share, Halo& halo, int max_iterations)
-    : RankCg(share, halo, std::make_unique<BlockJacobi>(BlockJacobi::Blocks::modified), max_iterations) {}
+    : share_(share),
+      halo_(halo),
+      max_iterations_(max_iterations),
+      preconditioner_(std::make_unique<BlockJacobi>(BlockJacobi::Blocks::modified)) {}
 
-RankCg::RankCg(const Share& share, Halo& halo, std::unique_ptr<ApproximateInverse> preconditioner, int max_iterations)
-    : share_(share), halo_(halo), max_iterations_(max_iterations), preconditioner_(std::move(preconditioner)) {}
+RankCg::RankCg(const Share& share, Halo& halo, std::unique_ptr<RankMultigrid> multigrid, int max_iterations)
+    : share_(share), halo_(halo), max_iterations_(max_iterations), multigrid_(multigrid.get()) {
+  preconditioner_ = std::move(multigrid);
+}
 
 void RankCg::analyze(const BlockPattern& pattern) {
   own_ = 3 * share_.own(pattern.rows());
@@ -29,14 +34,25 @@ void RankCg::analyze(const BlockPattern& pattern) {
 
 bool RankCg::factorize(const BlockSparse& H) {
   H_ = &H;
-  const bool is_kept = is_made_ && preconditioner_->is_multigrid() && rate_ <= kGrowth * first_rate_;
-  if (is_kept) return true;
+  const bool is_kept = is_made_ && multigrid_ && rate_ <= kGrowth * first_rate_;
+  if (is_kept) return is_made_ = share_.all(multigrid_->follow(H));
   first_rate_ = rate_ = 0;
   return is_made_ = share_.all(preconditioner_->factorize(H));
 }
 
 double RankCg::dot(std::span<const double> a, std::span<const double> b) const {
   return share_.sum(aspic::dot(a.first(own_), b.first(own_)));
+}
+
+bool RankCg::start(std::span<const double> b, std::span<double> x) {
+  std::fill(x.begin(), x.end(), 0.0);
+  std::copy_n(b.begin(), own_, r_.begin());
+  std::fill(r_.begin() + own_, r_.end(), 0.0);
+  if (!multigrid_ || !multigrid_->start(r_, x)) return false;
+  halo_.update(x);
+  H_->multiply(x, q_);
+  for (int i = 0; i < own_; ++i) r_[i] -= q_[i];
+  return true;
 }
 
 void RankCg::precondition() {
@@ -51,7 +67,8 @@ double RankCg::advance(std::span<double> x, double rz, SolveReport& report) {
   const double curvature = dot(p_, q_);
   if (!(curvature > 0)) {
     report.indefinite = curvature <= 0;  // NaN is neither
-    if (report.iterations == 0) std::copy(z_.begin(), z_.end(), x.begin());
+    if (report.iterations == 0)
+      for (int i = 0; i < own_; ++i) x[i] += z_[i];
     return 0;
   }
   const double alpha = rz / curvature;
@@ -65,7 +82,7 @@ void RankCg::turn(double alpha, double& rz) {
   double sums[] = {aspic::dot(own(r_), own(z_)), aspic::dot(own(q_), own(z_))};
   share_.sum(sums);
   // Both are equal in exact arithmetic; the first tolerates a nonlinear preconditioner [Notay 2000].
-  const double beta = preconditioner_->is_multigrid() ? -alpha * sums[1] / rz : sums[0] / rz;
+  const double beta = multigrid_ ? -alpha * sums[1] / rz : sums[0] / rz;
   rz = sums[0];
   for (int i = 0; i < own_; ++i) p_[i] = z_[i] + beta * p_[i];
 }
@@ -80,15 +97,12 @@ void RankCg::note_rate(const SolveReport& report) {
 SolveReport RankCg::solve(std::span<const double> b, std::span<double> x, double tolerance) {
   const Traffic before = own_traffic();
   SolveReport report;
-  std::fill(x.begin(), x.end(), 0.0);
-  std::copy_n(b.begin(), own_, r_.begin());
-  std::fill(r_.begin() + own_, r_.end(), 0.0);
-  const double b_norm = std::sqrt(dot(r_, r_));
-  double residual = b_norm;
+  const double b_norm = std::sqrt(dot(b, b));
+  double residual = start(b, x) ? std::sqrt(dot(r_, r_)) : b_norm;
   precondition();
   p_ = z_;
   double rz = dot(r_, z_);
-  while (residual > tolerance * b_norm && report.iterations < max_iterations_) {
+  while (residual > tolerance * b_norm && report.iterations < max_iterations_ && rz > 0) {
     const double alpha = advance(x, rz, report);
     if (alpha == 0) break;
     residual = std::sqrt(dot(r_, r_));
@@ -101,7 +115,7 @@ SolveReport RankCg::solve(std::span<const double> b, std::span<double> x, double
   linear_traffic().iterations += report.iterations;
   report.relative_residual = b_norm > 0 ? residual / b_norm : 0;
   report.ok = !report.indefinite && report.relative_residual <= tolerance;
-  report.cycles = preconditioner_->is_multigrid() ? report.iterations : 0;
+  report.cycles = multigrid_ ? report.iterations : 0;
   note_rate(report);
   return report;
 }

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "distributed/halo.h"
+#include "distributed/rank_multigrid.h"
 #include "linalg/approximate_inverse.h"
 #include "linalg/linear_solver.h"
 
@@ -15,8 +16,7 @@ class RankCg : public LinearSolver {
   // With block-Jacobi. Blocks of the diagonal that are not positive definite are modified, so that the iteration
   // detects negative curvature. Both must outlive this.
   RankCg(const Share& share, Halo& halo, int max_iterations = 10'000);
-  // The preconditioner is that of all ranks.
-  RankCg(const Share& share, Halo& halo, std::unique_ptr<ApproximateInverse> preconditioner, int max_iterations);
+  RankCg(const Share& share, Halo& halo, std::unique_ptr<RankMultigrid> multigrid, int max_iterations);
 
   std::string_view name() const override { return preconditioner_->name(); }
   std::string description() const override { return "conjugate gradients with " + preconditioner_->description(); }
@@ -30,7 +30,8 @@ class RankCg : public LinearSolver {
 
  private:
   double dot(std::span<const double> a, std::span<const double> b) const;
-  void precondition();  // z = M^-1 r
+  bool start(std::span<const double> b, std::span<double> x);  // sets x and r; false: to 0 and b
+  void precondition();                                         // z = M^-1 r
   // Advances x along p. Returns the length of the step, or 0 if the curvature is not positive.
   double advance(std::span<double> x, double rz, SolveReport& report);
   void turn(double alpha, double& rz);  // sets the next p, and r'z
@@ -40,7 +41,8 @@ class RankCg : public LinearSolver {
   Halo& halo_;
   int max_iterations_;
   std::unique_ptr<ApproximateInverse> preconditioner_;
-  bool is_made_ = false;  // the preconditioner, for this matrix or an earlier one
+  RankMultigrid* multigrid_ = nullptr;  // preconditioner_, or null with block-Jacobi
+  bool is_made_ = false;                // the preconditioner, for this matrix or an earlier one
   // Iterations per digit of the first and the last solve with this preconditioner; 0: none.
   double first_rate_ = 0, rate_ = 0;
   const BlockSparse* H_ = nullptr;

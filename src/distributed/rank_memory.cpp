@@ -16,8 +16,8 @@ constexpr double kProcess = 50e6;          // libraries and MPI [bytes]
 constexpr double kWithMultigrid = 11'000;  // per own vertex [bytes]
 constexpr double kWithJacobi = 7'000;      // per own vertex [bytes]
 constexpr double kPerGhost = 2'500;        // [bytes]
-// Factor of the coarse matrix, of dissected cubes of pieces [bytes]. The pieces are those of CoarseSpace.
-constexpr double kFactor = 20'000, kPieceSize = 200, kMaxPieces = 512;
+// Factor of the coarse matrix, of dissected cubes of pieces [bytes]. Measured for the pieces of CoarseSpace.
+constexpr double kFactor = 14'000, kPieceSize = 45, kMaxPieces = 800;
 
 double coarse_bytes(const MemoryNeed& need) {
   if (!need.has_multigrid || need.ranks == 1) return 0;

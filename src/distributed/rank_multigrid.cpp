@@ -28,6 +28,7 @@ void RankMultigrid::analyze(const BlockPattern& pattern) {
   own_pattern_ = leading_part(pattern, mesh_.own());
   own_.analyze(own_pattern_);
   coarse_.analyze(pattern, own_pattern_);
+  residual_.assign(3 * static_cast<size_t>(pattern.rows()), 0.0);
 }
 
 bool RankMultigrid::factorize(const BlockSparse& H) {
@@ -37,13 +38,29 @@ bool RankMultigrid::factorize(const BlockSparse& H) {
     std::copy_n(H.block.begin(), own.block.size(), own.block.begin());
     is_definite = own_.factorize(own);
   }
-  return share_.all(is_definite) && (!has_coarse_space() || coarse_.factorize(H));
+  return share_.all(is_definite) && follow(H);
+}
+
+bool RankMultigrid::follow(const BlockSparse& H) {
+  H_ = &H;
+  return !has_coarse_space() || coarse_.factorize(H);
+}
+
+bool RankMultigrid::start(std::span<const double> b, std::span<double> x) {
+  if (!has_coarse_space()) return false;
+  std::fill(x.begin(), x.end(), 0.0);
+  coarse_.add_correction(b, x);
+  return true;
 }
 
 void RankMultigrid::apply(std::span<const double> r, std::span<double> z) {
   const size_t own = 3 * static_cast<size_t>(mesh_.own());
   own_.apply(r.first(own), z.first(own));
-  if (has_coarse_space()) coarse_.add_correction(r, z);
+  if (!has_coarse_space()) return;
+  halo_.update(z);
+  H_->multiply(z, residual_);
+  for (size_t i = 0; i < own; ++i) residual_[i] = r[i] - residual_[i];
+  coarse_.add_correction(residual_, z);
 }
 
 }  // namespace aspic::distributed
