@@ -19,7 +19,7 @@ import tempfile
 import time
 import unittest
 
-from command_line import ASPIC, CommandLine
+from command_line import ASPIC, CommandLine, box_mesh
 
 BODY = """
 [[body]]
@@ -273,6 +273,66 @@ class FitInterruption(FitCommand):
         code, _ = self.interrupt(signal.SIGKILL)
         self.assertEqual(code, -signal.SIGKILL)
         self.resume_and_compare()
+
+
+class FitWithFriction(CommandLine):
+    """The coefficient of a plate that presses and slides is estimated: equal bits for any threads and after a kill."""
+
+    SETTINGS = """version = 1
+mesh = "rest.mesh"
+order = 1
+fixed = "z < 1e-6"
+[[tip]]
+shape = "disc"
+radius = 1
+stiffness = 1e6
+friction = 0.5
+friction_deviation = 0.7
+"""
+    CASES = """case,touch_x,touch_y,touch_z,center_x,center_y,center_z,force_x,force_y,force_z,force_sd
+press,0.5,0.5,1,0.5,0.5,0.97,0,0,-700,20
+slide,0.5,0.5,1,0.6,0.5,0.97,210,0,-700,20
+"""
+    OPTIONS = ("--options", "friction.toml", "--unknown", "young=uniform", "--known", "poisson=0.4")
+
+    def setUp(self):
+        super().setUp()
+        (self.folder / "plate").mkdir()
+        self.write("plate/rest.mesh", box_mesh(2))
+        self.write("plate/capture.toml", self.SETTINGS)
+        self.write("plate/markers.csv", "marker,x,y,z\nA,0,0.5,0.5\n")
+        self.write("plate/cases.csv", self.CASES)
+        self.write("friction.toml", "mesh_errors = false\nlaw_errors = false\ncross_validation = false\n")
+
+    def results(self, name, *options):
+        """Material, history and figures of a fit; equilibria are counted per process."""
+        self.aspic("fit", "plate", *self.OPTIONS, "-o", f"{name}.vtu", *options)
+        folder = self.folder / f"{name}.fit"
+        figures = json.loads((folder / "figures.json").read_text())
+        del figures["equilibria"]
+        return figures, (self.folder / f"{name}.vtu").read_bytes(), (folder / "history.csv").read_bytes()
+
+    def test_bits_do_not_depend_on_threads(self):
+        figures, *files = self.results("one", "--threads", "1")
+        friction, = figures["errors"]
+        self.assertEqual(friction["determined_by"], "data")
+        self.assertAlmostEqual(friction["coefficient"], 0.3, delta=0.05)  # ratio of the forces
+        self.assertEqual(self.results("four", "--threads", "4"), (figures, *files))
+
+    def test_kill_9_and_resume_give_equal_bits(self):
+        whole = self.results("whole")
+        for iterations in (2, 6):  # in the first fit, and after a correction of the data
+            name = f"part{iterations}"
+            process = self.start("fit", "plate", *self.OPTIONS, "-o", f"{name}.vtu", "-v")
+            seen = 0
+            while seen < iterations:
+                line = process.stdout.readline()
+                self.assertTrue(line, "the fit ended")
+                seen += " iteration " in line
+            process.send_signal(signal.SIGKILL)
+            process.communicate(timeout=120)
+            self.assertEqual(process.returncode, -signal.SIGKILL)
+            self.assertEqual(self.results(name, "--resume"), whole, f"killed after {iterations} iterations")
 
 
 class FitJobs(FitCommand):
