@@ -103,24 +103,47 @@ def write_hold(folder, branches, noise, seed, samples=3000):
         for name, time, move in rows])
 
 
-def write_creep(folder, ratio, tau, noise, seed):
-    """A sudden dead load: strain = load / E (1 - ratio / (1 + ratio) exp(-t / (tau (1 + ratio))))."""
+SLOW = ((0.6, 600.0),)  # the hold ends long before the body is relaxed
+
+
+def add_static_pull(folder, error, sd, relaxes=True):
+    """Adds a case after complete relaxation, whose force has the relative error and standard deviation; without the rest
+    unless the bar relaxes."""
+    path = folder / "cases.csv"
+    with open(path, newline="") as file:
+        rows = list(csv.DictReader(file)) if relaxes else []
+    force = SIDE ** 2 * YOUNG * STRAIN
+    rows.append({"case": "pull", "group": "pull", "time": "", "grip": "top", "move_x": 0.0, "move_y": 0.0,
+                 "move_z": STRAIN * LENGTH, "force_z": (1 + error) * force, "force_sd_z": sd * force,
+                 **{f"force{part}_{a}": v for a in "xy" for part, v in (("", 0.0), ("_sd", force))}})
+    truths.write_table(path, rows)
+    if not relaxes:
+        (folder / "load.csv").unlink()
+        settings = (folder / "capture.toml").read_text()
+        (folder / "capture.toml").write_text(re.sub("(steady|forces) = .*\n", "", settings))
+
+
+def write_creep(folder, ratio, tau, noise, seed, count=28, has_static_end=False):
+    """A sudden dead load: strain = load / E (1 - ratio / (1 + ratio) exp(-t / (tau (1 + ratio)))), at `count` times. The
+    end: a static case after complete creep."""
     write_bar(folder)
     (folder / "capture.toml").write_text(SETTINGS + '[[patch]]\nname = "top"\nwhere = "z > 0.04 - 1e-6"\n')
     corners = np.array([(x, y, LENGTH) for x in (0, SIDE) for y in (0, SIDE)])
     truths.write_table(folder / "markers.csv",
                        [{"marker": m, **dict(zip("xyz", map(float, p)))} for m, p in enumerate(corners)])
-    times = np.concatenate([[0], 0.2 * 1.25 ** np.arange(28)])
+    times = np.concatenate([[0], 0.2 * 1.25 ** np.arange(count)])
     random = np.random.default_rng(seed)
     strain = STRAIN * (1 - ratio / (1 + ratio) * np.exp(-times / (tau * (1 + ratio))))
+    states = [(f"t{k}", "creep", float(t), e) for k, (t, e) in enumerate(zip(times, strain))]
+    states += [("end", "end", "", STRAIN)] * has_static_end
     sd = noise * STRAIN * LENGTH
     truths.write_table(folder / "cases.csv", [
-        {"case": f"t{k}", "group": "creep", "time": float(t), "dead_pressure": -YOUNG * STRAIN, "patch": "top"}
-        for k, t in enumerate(times)])
+        {"case": name, "group": group, "time": t, "dead_pressure": -YOUNG * STRAIN, "patch": "top"}
+        for name, group, t, _ in states])
     truths.write_table(folder / "positions.csv", [
-        {"case": f"t{k}", "marker": m, "x": float(p[0]), "y": float(p[1]),
+        {"case": name, "marker": m, "x": float(p[0]), "y": float(p[1]),
          "z": float(LENGTH * (1 + e) + sd * random.normal()), "sd": sd}
-        for k, e in enumerate(strain) for m, p in enumerate(corners)])
+        for name, _, _, e in states for m, p in enumerate(corners)])
 
 
 class Relaxation(unittest.TestCase):
@@ -155,6 +178,11 @@ class Relaxation(unittest.TestCase):
             if simulates:
                 self.times, self.forces = self.simulated_forces(folder)
             return json.loads((results / "figures.json").read_text())
+
+    def log_young(self, figures):
+        """Logarithm of the fitted over the true long-term modulus, and its standard deviation."""
+        young = figures["values"]["young"]["everywhere"]
+        return np.log(young["value"] / YOUNG), np.log(young["upper"] / young["lower"]) / 2 / 1.96
 
     def assert_inside(self, interval, truth):
         self.assertLess(interval["lower"], truth)
@@ -199,6 +227,48 @@ class Relaxation(unittest.TestCase):
         for time in (RAMP, 10.0, END):
             k = np.abs(self.times - time).argmin()
             self.assertAlmostEqual(self.forces[k] / ramp_force(self.times[k:k + 1], slow)[0], 1, delta=0.005)
+
+    def test_static_case_beside_a_history_counts_as_an_independent_reading(self):
+        fits = {}
+        for name, has_hold, has_pull in (("hold", True, False), ("pull", False, True), ("both", True, True)):
+            def write(folder):
+                write_hold(folder, SLOW, 0.002, 1)
+                if has_pull:
+                    add_static_pull(folder, 0.001, 0.002, has_hold)
+            fits[name] = self.fit(write, "branches = 1\n" if has_hold else "")
+        branch = fits["both"]["relaxation"]["branches"][0]
+        self.assertAlmostEqual(branch["ratio"] / SLOW[0][0], 1, delta=0.02)
+        self.assertAlmostEqual(branch["relaxation_time"] / SLOW[0][1], 1, delta=0.02)
+        self.assert_inside(branch["ratio_interval"], SLOW[0][0])
+        self.assert_inside(branch["time_interval"], SLOW[0][1])
+        # Both determine the long-term modulus independently: its logarithm has the weighted mean, and the sum of weights.
+        found = {name: self.log_young(figures) for name, figures in fits.items()}
+        self.assertGreater(found["hold"][1], 2 * found["both"][1])
+        weights = np.array([found[name][1] ** -2 for name in ("hold", "pull")])
+        mean = weights @ [found[name][0] for name in ("hold", "pull")] / weights.sum()
+        self.assertAlmostEqual(found["both"][1] * weights.sum() ** 0.5, 1, delta=0.03)
+        self.assertLess(abs(found["both"][0] - mean), 0.1 * found["both"][1])
+        self.assertLess(abs(found["both"][0]), 1.96 * found["both"][1])
+
+    def test_contradiction_of_static_case_and_history_is_not_good(self):
+        def write(folder):
+            write_hold(folder, ((0.6, 150.0),), 0.002, 1)
+            add_static_pull(folder, 0.05, 0.002)
+        figures = self.fit(write, "branches = 1\n", code=3)
+        self.assertIn("group_missed", [reason["name"] for reason in figures["verdict"]["reasons"]])
+
+    def test_static_motion_completes_a_short_creep_test(self):
+        found = {}
+        for has_end in (False, True):
+            figures = self.fit(lambda folder: write_creep(folder, 0.6, 5.0, 0.005, 1, 14, has_end))
+            found[has_end] = self.log_young(figures)
+            branch, = figures["relaxation"]["branches"]
+            self.assert_inside(branch["ratio_interval"], 0.6)
+            self.assert_inside(branch["time_interval"], 5)
+        self.assertAlmostEqual(branch["relaxation_time"] / 5, 1, delta=0.05)
+        self.assertAlmostEqual(branch["ratio"] / 0.6, 1, delta=0.03)
+        self.assertGreater(found[False][1], 3 * found[True][1])
+        self.assertLess(abs(found[True][0]), min(0.01, 1.96 * found[True][1]))
 
     def test_given_stiffness_stays(self):
         figures = self.fit(lambda folder: write_hold(folder, ((0.6, 30.0),), 0.002, 1), "branches = 1\n",
