@@ -221,6 +221,41 @@ TEST_P(Methods, ShowEveryIterateAndStopOnDemand) {
 INSTANTIATE_TEST_SUITE_P(Of, Methods, testing::Values("levenberg_marquardt", "gauss_newton_cg", "lbfgs"),
                          [](const auto& each) { return std::string(each.param); });
 
+// A model whose Jacobian has a relative error, like one with differences.
+class InaccurateModel : public CurvedModel {
+ public:
+  using CurvedModel::CurvedModel;
+  double error = 0;
+
+  void multiply(std::span<const double> dp, std::span<double> dr) override {
+    CurvedModel::multiply(dp, dr);
+    for (size_t i = 0; i < dr.size(); ++i) dr[i] += error * wrong_[i] * dp[0];
+  }
+  void multiply_transposed(std::span<const double> w, std::span<double> pbar) override {
+    CurvedModel::multiply_transposed(w, pbar);
+    for (size_t i = 0; i < w.size(); ++i) pbar[0] += error * wrong_[i] * w[i];
+  }
+
+ private:
+  std::vector<double> wrong_ = normal(static_cast<size_t>(residual_count()), 6);
+};
+
+TEST(Fit, ConvergesWithinTheErrorOfTheJacobian) {
+  Few few;
+  InaccurateModel model(3, 200, 0, 1);
+  model.observe(std::vector{0.7, -0.4, 1.2}, 1);
+  const FitReport exact = fit(model, *few.prior, few.map.guess(), {.tolerance = 1e-9, .weight = 0});
+  ASSERT_TRUE(is_success(exact.status)) << exact.message;
+  model.error = 4e-4;  // no step improves the fit
+  const FitReport close = fit(model, *few.prior, exact.p, {.weight = 0});
+  EXPECT_TRUE(is_success(close.status)) << close.message;
+  ASSERT_FALSE(close.history.empty());
+  EXPECT_GT(close.history.back().decrement, 1e-4);
+  EXPECT_LT(largest_difference(close.p, exact.p), 1e-6);
+  model.error = 0.1;
+  EXPECT_FALSE(is_success(fit(model, *few.prior, exact.p, {.weight = 0}).status));
+}
+
 TEST(Fit, ObjectiveNeverGrowsAtOneWeight) {
   Bar bar;
   CurvedModel model(bar.map.size(), 40, 0.4, 0.01);

@@ -11,7 +11,9 @@
 namespace aspic {
 namespace {
 
-constexpr double kNegligibleDecrement = 1e-6;  // decrement, in posterior standard deviations, if no step is found
+// Decrement, in posterior standard deviations, if no step is found. Jacobians with differences, such as those of scans
+// under gravity, have errors of about 1e-6 |r|.
+constexpr double kNegligibleDecrement = 1e-3;
 constexpr double kNear = 0.01;  // distance from the minimum in standard deviations; cheap for few parameters
 
 constexpr double kFirstDamping = 1e-3, kMinDamping = 1e-14, kLargestDamping = 1e12;

@@ -33,6 +33,7 @@ class Truth:
     young: object        # a number, or a function of points
     poisson: float
     layers: tuple = ()   # heights between regions of the mesh of the fit
+    scan: np.ndarray = None  # vertices of the mesh of the fit, in the order of kuhn_box; None: those of the box
 
     def largest(self):
         motion = max(np.linalg.norm(r.markers - self.markers, axis=1).max() for r in self.readings)
@@ -132,6 +133,34 @@ def weight(cells=7, young=5e3, poisson=0.45):
                ("shear", "shear", (4e-3, 0, 0), (0, 0, 0))]
     return Truth("weight", size, (4, 4, 4), markers, grip_readings(solid, markers, motions, gravity),
                  GRIPPED.format(height=0.04), young, poisson)
+
+
+def standing(gravity=(0, 0, -9.81), cells=5):
+    """A soft block that is held below, under gravity."""
+    size, planes = np.array([0.04, 0.04, 0.04]), graded(0.04, cells, 0.3)
+    solid = fem.Solid(fem.box(planes, planes, planes), uniform(5e3), 0.4, weight=1000 * np.array(gravity))
+    return solid, size, on_sides(size, 60, 3, lambda p: p[2] < 0.04)
+
+
+MESH_GRAVITY = "mesh_gravity = [0, 0, 9.81]\n"
+
+
+def scan(cells=9):
+    """A block that hung from its lower side during the scan, and is measured while it stands, when its motion is twice
+    the sag, and while it lies. On 5 instead of 9 cells the motions are 0.2 % too large."""
+    def equilibrium(*gravity):
+        solid, size, points = standing(gravity, cells)
+        read = fem.Interpolation(solid.mesh, np.concatenate([kuhn_box(size, (3, 3, 3))[0], points]))
+        return read(solid.solve(solid.mesh.X.ravel(), np.repeat(solid.mesh.X[:, 2] < 1e-9, 3)))
+
+    hanging, size = equilibrium(0, 0, 9.81), np.array([0.04, 0.04, 0.04])
+    corners = len(kuhn_box(size, (3, 3, 3))[0])
+    readings = []
+    for name, g in (("stand", (0.0, 0.0, -9.81)), ("lie", (9.81, 0.0, 0.0))):
+        columns = {"case": name, "group": name, **{"gravity_" + a: v for a, v in zip("xyz", g)}}
+        readings.append(Reading(columns, equilibrium(*g)[corners:], np.zeros(3)))
+    return Truth("scan", size, (3, 3, 3), hanging[corners:], readings, MESH_GRAVITY + 'fixed = "z < 1e-6"\n', 5e3, 0.4,
+                 scan=hanging[:corners])
 
 
 def stiffening(strain, b=1.0, cells=3, young=2e4, poisson=0.45):
@@ -241,7 +270,7 @@ def layers(fine=4, poisson=0.45):
                  FIELDS["layers"], poisson, (INTERFACE,))
 
 
-TRUTHS = {"block": block, "tensile": tensile, "weight": weight, "layers": layers, "ball": ball}
+TRUTHS = {"block": block, "tensile": tensile, "weight": weight, "scan": scan, "layers": layers, "ball": ball}
 
 
 def kuhn_box(size, cells):
@@ -298,7 +327,7 @@ def write(truth, folder, noise, seed, settings="", cells=None):
     random = np.random.default_rng(seed)
     X, tets = kuhn_box(truth.size, cells or truth.cells)
     heights = X[tets][:, :, 2].mean(1)
-    write_gmsh(folder / "rest.msh", X, tets, 1 + np.searchsorted(truth.layers, heights))
+    write_gmsh(folder / "rest.msh", X if truth.scan is None else truth.scan, tets, 1 + np.searchsorted(truth.layers, heights))
     motion, force, torque = (noise * v for v in truth.largest())
     (folder / "capture.toml").write_text(
         f'version = 1\nmesh = "rest.msh"\n{settings and settings + chr(10)}deviation = {{ position = {motion or 1e-7:.6g}, '
