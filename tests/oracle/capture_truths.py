@@ -10,6 +10,7 @@ import itertools
 import numpy as np
 
 import quadratic_fem as fem
+from polar_box import polar_box
 
 PENALTY = 1000  # stiffness of the penalty of an indenter, relative to E / radius
 
@@ -206,39 +207,72 @@ radius = {sphere}
 """
 
 
-def layers(fine=4, poisson=0.45):
-    """15 kPa above 45 kPa, pressed in the middle: a quarter of the body is solved."""
-    size, half, disc, sphere = np.array([0.08, 0.08, 0.04]), 0.04, 0.012, 0.016
-    inner = np.linspace(0, 0.015, fine + 2)
-    outer = half - (half - 0.015) * np.linspace(1, 0, fine + 1)[1:] ** 1.3
-    across = np.concatenate([inner, outer])
-    down = np.concatenate([INTERFACE * np.linspace(0, 1, fine) ** 0.8,
-                           0.04 - 0.016 * np.linspace(1, 0, fine + 1)[1:] ** 1.4])
-    mesh = fem.box(across, across, down)
+DISC, SPHERE = 0.012, 0.016  # radii of the indenters of the layers
+
+
+def graded_between(knots, sizes):
+    """Planes whose distances are about `sizes` at the knots, which are planes. Sizes vary linearly in between."""
+    planes = [knots[0]]
+    for a, b, first, last in zip(knots, knots[1:], sizes, sizes[1:]):
+        growth = last / first
+        cells = max(1, round((b - a) / first * (np.log(growth) / (growth - 1) if growth != 1 else 1)))
+        s = np.arange(1, cells + 1) / cells
+        planes.extend(a + (b - a) * (s if growth == 1 else (growth ** s - 1) / (growth - 1)))
+    return np.array(planes)
+
+
+def layers_mesh(tip, fine):
+    """A quarter of the body around the axis of the indenter; cells are small at the rim of the disc and below the tip."""
+    mm, size = 1e-3, 1e-3 / fine
+    if tip == "disc":
+        rings = graded_between(np.array([4, 8, 10.4, 11.2, 12.6, 40]) * mm, np.array([3, 2, 0.9, 0.5, 0.5, 8]) * size)
+        below = graded_between(np.array([0, 1, 16]) * mm, np.array([0.5, 0.6, 3.5]) * size)
+    else:
+        rings = graded_between(np.array([4, 9, 14, 40]) * mm, np.array([1.5, 1, 1.5, 8]) * size)
+        below = graded_between(np.array([0, 16]) * mm, np.array([0.7, 3.5]) * size)
+    down = np.concatenate([graded_between([0, INTERFACE], np.array([7, 3]) * size)[:-1], 0.04 - below[::-1]])
+    return polar_box(rings, (8 * mm, 16 * mm), down, round(3 * fine))
+
+
+def indented(tip, depths, markers, fine=1, poisson=0.45, penalty=PENALTY):
+    """Positions of markers and force [N] of a tip at each depth [m]. The origin of the markers is below the tip."""
+    mesh = layers_mesh(tip, fine)
     solid = fem.Solid(mesh, FIELDS["layers"], poisson)
-    X = mesh.X
+    X, height = mesh.X, mesh.X[:, 2].max()
     held = np.stack([X[:, 0] < 1e-9, X[:, 1] < 1e-9, np.zeros(len(X), bool)], 1)
     held[X[:, 2] < 1e-9] = True
+    read, found = fem.Interpolation(mesh, np.column_stack([np.abs(markers[:, :2]), markers[:, 2]])), []
+    radial, start = np.hypot(X[:, 0], X[:, 1]), X.copy()
+    push = (depths[0] / (1 + np.maximum(radial / DISC - 1, 0) * 4) ** 1.5 if tip == "disc" else
+            np.maximum(depths[0] - radial ** 2 / (2 * SPHERE), 0))
+    start[:, 2] -= push * (X[:, 2] / height) ** 1.5  # close to the indenter
+    x, last = start.ravel(), 0
+    for depth in depths:
+        if last and np.isfinite(solid.evaluate(X.ravel() + depth / last * (x - X.ravel()))[0]):
+            x = X.ravel() + depth / last * (x - X.ravel())
+        end, stiffness = np.array([0, 0, height - depth]), penalty * UPPER / DISC
+        solid.indenter = (fem.Disc(end, 0.9 * DISC, 0.1 * DISC, stiffness) if tip == "disc" else
+                          fem.Indenter(end + [0, 0, SPHERE], 0, SPHERE, stiffness))
+        x, last = solid.solve(x, held.ravel()), depth
+        positions = read(x)
+        positions[:, :2] *= np.where(markers[:, :2] < 0, -1, 1)
+        found.append((positions, 4 * solid.contact(x)[3][2]))
+    return found
+
+
+def layers(fine=1, poisson=0.45):
+    """15 kPa above 45 kPa, pressed in the middle: a quarter of the body is solved."""
+    size, half = np.array([0.08, 0.08, 0.04]), 0.04
     away = lambda p: p[2] < 0.04 or np.hypot(*(p[:2] - half)) > 0.018
-    markers = on_sides(size, 120, 5, away)
-    mirror = np.where(markers[:, :2] < half, -1, 1)
-    local = np.column_stack([np.abs(markers[:, :2] - half), markers[:, 2]])
-    read, readings = fem.Interpolation(mesh, local), []
+    markers, readings, middle = on_sides(size, 120, 5, away), [], np.array([half, half, 0])
     for tip, depths in (("disc", (1.5e-3, 3e-3)), ("sphere", (2e-3, 4e-3))):
-        flat, rounding = (0.9 * disc, 0.1 * disc) if tip == "disc" else (0, sphere)
-        x = X.ravel()
-        for depth in depths:
-            solid.indenter = fem.Indenter(np.array([0, 0, 0.04 + rounding - depth]), flat, rounding, PENALTY * UPPER / disc)
-            x = solid.solve(x, held.ravel())
-            found = read(x)
-            found[:, :2] = half + mirror * found[:, :2]
-            force = np.array([0, 0, 4 * solid.contact(x)[3][2]])
+        for depth, (positions, force) in zip(depths, indented(tip, depths, markers - middle, fine, poisson)):
             columns = {"case": f"{tip} {1000 * depth:g} mm", "group": tip, "tip": tip, "touch_x": half, "touch_y": half,
-                       "touch_z": 0.04 + (0 if tip == "disc" else sphere), "axis_x": 0, "axis_y": 0, "axis_z": -1,
+                       "touch_z": 0.04 + (0 if tip == "disc" else SPHERE), "axis_x": 0, "axis_y": 0, "axis_z": -1,
                        "depth": depth}
-            readings.append(Reading(columns, found, force))
-    return Truth("layers", size, (8, 8, 5), markers, readings, TIPS.format(disc=disc, sphere=sphere),
-                 FIELDS["layers"], poisson, (INTERFACE,))
+            readings.append(Reading(columns, positions + middle, np.array([0, 0, force])))
+    return Truth("layers", size, (8, 8, 5), markers, readings, TIPS.format(disc=DISC, sphere=SPHERE), FIELDS["layers"],
+                 poisson, (INTERFACE,))
 
 
 TRUTHS = {"block": block, "tensile": tensile, "weight": weight, "layers": layers, "ball": ball}
