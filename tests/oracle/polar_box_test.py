@@ -50,6 +50,17 @@ class RoundedDisc(unittest.TestCase):
             self.assertLess(np.abs((high - low) / 2e-6 - gradient[:, k]).max(), 1e-8)
             self.assertLess(np.abs((up - down) / 2e-6 - hessian[:, :, k]).max(), 1e-4)
 
+    def test_derivatives_of_contact_match_differences(self):
+        mesh = polar_box([0.5, 0.8, 0.9, 1, 1.1, 1.5, 2], (0.8, 1.5), np.array([-1, -0.5, 0]), 2)
+        solid, random = fem.Solid(mesh, uniform, POISSON), np.random.default_rng(1)
+        solid.indenter = fem.Disc(np.array([0, 0, -0.1]), 0.9, 0.1, 1e3)
+        x, d, h = mesh.X.ravel(), random.normal(size=mesh.X.size), 1e-6
+        _, gradient, K, force = solid.contact(x, True)
+        (low, down, *_), (high, up, *_) = (solid.contact(x + step * d) for step in (-h, h))
+        self.assertAlmostEqual((high - low) / (2 * h) / (gradient @ d), 1, delta=1e-4)
+        self.assertLess(np.linalg.norm((up - down) / (2 * h) - K @ d), 1e-3 * np.linalg.norm(K @ d))
+        self.assertAlmostEqual(-gradient[2::3].sum() / force[2], 1, delta=1e-9)
+
     def test_disc_matches_a_flat_punch(self):
         # F = 2 E a d / (1 - nu^2) on a half-space [Sneddon 1965]; the rim is rounded from 0.95 a on.
         depth, size = 0.01 * RADIUS, np.array([0.3, 0.06, 0.15, 8])

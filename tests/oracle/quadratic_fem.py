@@ -115,6 +115,7 @@ class Indenter:
     rounding: float
     stiffness: float
     softening: float = 0
+    is_curved: bool = True  # the matrix includes curvature()
 
     def depth(self, x):
         """Depth of points inside, and its gradient."""
@@ -325,7 +326,9 @@ class Solid:
         gradient = np.bincount(dofs.ravel(), ((weight * slope)[:, None] * rows).ravel(), x.size)
         matrix = None
         if wants_matrix:
-            K = curvature[:, None, None] * n[:, :, None] * n[:, None] + slope[:, None, None] * self.indenter.curvature(points[pushed])
+            K = curvature[:, None, None] * n[:, :, None] * n[:, None]
+            if self.indenter.is_curved:
+                K += slope[:, None, None] * self.indenter.curvature(points[pushed])
             matrix = point_matrices(weight[:, None, None] * K, N[point], dofs, x.size)
         return (weight * value).sum(), gradient, matrix, -pull.sum(0)
 
