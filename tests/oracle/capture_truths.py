@@ -10,8 +10,9 @@ import itertools
 import numpy as np
 
 import quadratic_fem as fem
+from polar_box import polar_box
 
-PENALTY = 1000  # stiffness of the penalty of an indenter, relative to E / radius
+PENALTY = 4000  # stiffness of the penalty of an indenter, relative to E / radius
 
 
 @dataclasses.dataclass
@@ -204,7 +205,7 @@ def fibrous(axes, cells=4, young=2e4, poisson=0.45, only_press=False):
 
 
 BALL = np.array([0.034, 0.027, 0.035]), 0.015, 1e4, 3e4  # center, radius, E outside and inside
-INTERFACE, LOWER, UPPER = 0.024, 45e3, 15e3              # of two layers
+INTERFACE, LOWER, UPPER, LAYERS_POISSON = 0.024, 45e3, 15e3, 0.45  # of two layers
 FIELDS = {
     "ball": lambda points: np.where(((points - BALL[0]) ** 2).sum(-1) < BALL[1] ** 2, BALL[3], BALL[2]),
     "layers": lambda points: np.where(points[..., 2] < INTERFACE, LOWER, UPPER),
@@ -235,39 +236,84 @@ radius = {sphere}
 """
 
 
-def layers(fine=4, poisson=0.45):
-    """15 kPa above 45 kPa, pressed in the middle: a quarter of the body is solved."""
-    size, half, disc, sphere = np.array([0.08, 0.08, 0.04]), 0.04, 0.012, 0.016
-    inner = np.linspace(0, 0.015, fine + 2)
-    outer = half - (half - 0.015) * np.linspace(1, 0, fine + 1)[1:] ** 1.3
-    across = np.concatenate([inner, outer])
-    down = np.concatenate([INTERFACE * np.linspace(0, 1, fine) ** 0.8,
-                           0.04 - 0.016 * np.linspace(1, 0, fine + 1)[1:] ** 1.4])
-    mesh = fem.box(across, across, down)
-    solid = fem.Solid(mesh, FIELDS["layers"], poisson)
-    X = mesh.X
+DISC, SPHERE = 0.012, 0.016  # radii of the indenters of the layers
+
+
+def graded_between(knots, sizes):
+    """Planes whose distances are about `sizes` at the knots, which are planes. Sizes vary linearly in between."""
+    planes = [knots[0]]
+    for a, b, first, last in zip(knots, knots[1:], sizes, sizes[1:]):
+        growth = last / first
+        cells = max(1, round((b - a) / first * (np.log(growth) / (growth - 1) if growth != 1 else 1)))
+        s = np.arange(1, cells + 1) / cells
+        planes.extend(a + (b - a) * (s if growth == 1 else (growth ** s - 1) / (growth - 1)))
+    return np.array(planes)
+
+
+def layers_mesh(tip, fine):
+    """A quarter of the body around the axis of the indenter; cells are small at the rim of the disc and below the tip."""
+    mm, size = 1e-3, 1e-3 / fine
+    if tip == "disc":
+        rings, widths = [4, 8, 10.4, 11.2, 12.6, 28, 40], [3.5, 2.5, 1.2, 0.7, 0.7, 4, 3]
+        below, heights = [0, 1, 16], [0.7, 0.8, 3.5]
+    else:
+        rings, widths = [4, 9, 14, 28, 40], [1.7, 1.2, 1.7, 4, 3]
+        below, heights = [0, 16], [0.9, 3.5]
+    spread = lambda knots, sizes: graded_between(mm * np.array(knots), size * np.array(sizes))
+    planes = np.concatenate([spread([0, 24], [2.5, 4])[:-1], 0.04 - spread(below, heights)[::-1]])
+    return polar_box(spread(rings, widths), (8 * mm, 16 * mm), planes, round(4 * fine))
+
+
+def indenter(tip, top, depth, stiffness):
+    """The tip after it has moved down by depth from the height `top`, which it touched."""
+    end = np.array([0, 0, top - depth])
+    return (fem.Disc(end, 0.9 * DISC, 0.1 * DISC, stiffness) if tip == "disc" else
+            fem.Indenter(end + [0, 0, SPHERE], 0, SPHERE, stiffness))
+
+
+def close_to(tip, X, depth):
+    """Nodes X, moved down as far as the tip pushes them, or nearly."""
+    radial, x = np.hypot(X[:, 0], X[:, 1]), X.copy()
+    push = (depth / (1 + np.maximum(radial / DISC - 1, 0) * 4) ** 1.5 if tip == "disc" else
+            np.maximum(depth - radial ** 2 / (2 * SPHERE), 0))
+    x[:, 2] -= push * (X[:, 2] / X[:, 2].max()) ** 1.5
+    return x.ravel()
+
+
+def indented(tip, depths, markers, fine=1, penalty=PENALTY):
+    """Positions of markers and force [N] of a tip at each depth [m]. The markers' origin is on the axis of the tip."""
+    mesh = layers_mesh(tip, fine)
+    solid, X = fem.Solid(mesh, FIELDS["layers"], LAYERS_POISSON), mesh.X
     held = np.stack([X[:, 0] < 1e-9, X[:, 1] < 1e-9, np.zeros(len(X), bool)], 1)
     held[X[:, 2] < 1e-9] = True
+    read, found = fem.Interpolation(mesh, np.column_stack([np.abs(markers[:, :2]), markers[:, 2]])), []
+    x, last = close_to(tip, X, depths[0]), depths[0]
+    for depth in depths:
+        further = X.ravel() + depth / last * (x - X.ravel())
+        x, last = further if np.isfinite(solid.evaluate(further)[0]) else x, depth
+        solid.indenter = indenter(tip, X[:, 2].max(), depth, penalty * UPPER / DISC)
+        # Far from equilibrium, the curvature of the indenter makes matrices indefinite.
+        for solid.indenter.is_curved, tolerance in ((False, 0.03), (True, 1e-7)):
+            x = solid.solve(x, held.ravel(), tolerance=tolerance)
+        positions = read(x)
+        positions[:, :2] *= np.where(markers[:, :2] < 0, -1, 1)
+        found.append((positions, 4 * solid.contact(x)[3][2]))
+    return found
+
+
+def layers(fine=1):
+    """15 kPa above 45 kPa, pressed in the middle: a quarter of the body is solved."""
+    size, half = np.array([0.08, 0.08, 0.04]), 0.04
     away = lambda p: p[2] < 0.04 or np.hypot(*(p[:2] - half)) > 0.018
-    markers = on_sides(size, 120, 5, away)
-    mirror = np.where(markers[:, :2] < half, -1, 1)
-    local = np.column_stack([np.abs(markers[:, :2] - half), markers[:, 2]])
-    read, readings = fem.Interpolation(mesh, local), []
+    markers, readings, middle = on_sides(size, 120, 5, away), [], np.array([half, half, 0])
     for tip, depths in (("disc", (1.5e-3, 3e-3)), ("sphere", (2e-3, 4e-3))):
-        flat, rounding = (0.9 * disc, 0.1 * disc) if tip == "disc" else (0, sphere)
-        x = X.ravel()
-        for depth in depths:
-            solid.indenter = fem.Indenter(np.array([0, 0, 0.04 + rounding - depth]), flat, rounding, PENALTY * UPPER / disc)
-            x = solid.solve(x, held.ravel())
-            found = read(x)
-            found[:, :2] = half + mirror * found[:, :2]
-            force = np.array([0, 0, 4 * solid.contact(x)[3][2]])
+        for depth, (positions, force) in zip(depths, indented(tip, depths, markers - middle, fine)):
             columns = {"case": f"{tip} {1000 * depth:g} mm", "group": tip, "tip": tip, "touch_x": half, "touch_y": half,
-                       "touch_z": 0.04 + (0 if tip == "disc" else sphere), "axis_x": 0, "axis_y": 0, "axis_z": -1,
+                       "touch_z": 0.04 + (0 if tip == "disc" else SPHERE), "axis_x": 0, "axis_y": 0, "axis_z": -1,
                        "depth": depth}
-            readings.append(Reading(columns, found, force))
-    return Truth("layers", size, (8, 8, 5), markers, readings, TIPS.format(disc=disc, sphere=sphere),
-                 FIELDS["layers"], poisson, (INTERFACE,))
+            readings.append(Reading(columns, positions + middle, np.array([0, 0, force])))
+    return Truth("layers", size, (8, 8, 5), markers, readings, TIPS.format(disc=DISC, sphere=SPHERE), FIELDS["layers"],
+                 LAYERS_POISSON, (INTERFACE,))
 
 
 TRUTHS = {"block": block, "tensile": tensile, "weight": weight, "scan": scan, "layers": layers, "ball": ball}

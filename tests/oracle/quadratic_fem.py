@@ -13,6 +13,8 @@ import scipy.sparse as sparse
 import scipy.sparse.linalg as splinalg
 
 ROUND_OFF = 1e-5  # relative residual that is accepted where the energy does not fall any more
+UP = np.array([0.0, 0.0, 1.0])
+BLOCK = 256  # tets that are evaluated at once, whose arrays fit into a cache
 EDGES = np.array([(0, 1), (1, 2), (0, 2), (0, 3), (1, 3), (2, 3)])
 A, B = (5 + 3 * 5 ** 0.5) / 20, (5 - 5 ** 0.5) / 20
 POINTS = B + (A - B) * np.eye(4)  # barycentric coordinates, weight 1/4 each; exact for polynomials of degree 2
@@ -65,25 +67,25 @@ def box(xs, ys, zs, jitter=0.2, seed=0):
         inside = tuple(slice(1, -1) for _ in range(3))
         grid[inside][..., axis] += jitter * widths[axis] * random.uniform(-0.5, 0.5, grid[inside].shape[:3])
     index = np.arange(np.prod(n)).reshape(n)
-    vertices, tets = [grid.reshape(-1, 3)], []
-    count = grid.size // 3
-    for i, j, k in itertools.product(*(range(m - 1) for m in n)):
-        corner = {d: index[i + d[0], j + d[1], k + d[2]] for d in itertools.product((0, 1), repeat=3)}
-        parity = {d: (i + j + k + sum(d)) % 2 for d in corner}
-        middle = np.mean([vertices[0][v] for v in corner.values()], 0)
-        vertices.append((middle + jitter * random.uniform(-0.3, 0.3, 3) * widths)[None])
-        for axis, side in itertools.product(range(3), (0, 1)):
-            a, b = [m for m in range(3) if m != axis]
-            ring = []
-            for p, q in ((0, 0), (1, 0), (1, 1), (0, 1)):
-                d = [0, 0, 0]
-                d[axis], d[a], d[b] = side, p, q
-                ring.append(tuple(d))
-            start = next(r for r in range(4) if parity[ring[r]] == 0)  # the diagonal joins even vertices
-            ring = [corner[d] for d in ring[start:] + ring[:start]]
-            tets += [(ring[0], ring[1], ring[2], count), (ring[0], ring[2], ring[3], count)]
-        count += 1
-    return quadratic(np.concatenate(vertices), np.array(tets))
+    steps = np.array(list(itertools.product(range(2), repeat=3)))
+    base = np.stack(np.meshgrid(*(np.arange(m - 1) for m in n), indexing="ij"), -1).reshape(-1, 1, 3)
+    cells = np.ravel_multi_index(tuple(np.moveaxis(base + steps, -1, 0)), n)
+    moves = jitter * random.uniform(-0.3, 0.3, (len(cells), 3)) * widths
+    return cut_cells(grid.reshape(-1, 3), cells, np.indices(n).sum(0).ravel() % 2, moves)
+
+
+def cut_cells(X, cells, parity, moves=0):
+    """Quadratic mesh of hexahedra, each cut into 12 tets around its center, which is moved by `moves`. Corner 4 a + 2 b + c
+    of a cell is that at (a, b, c) of a unit cube. Vertices of an edge differ in `parity`, 0 or 1: the diagonal of a
+    side joins those of parity 0."""
+    centers, tets = len(X) + np.arange(len(cells)), []
+    for axis, side in itertools.product(range(3), (0, 1)):
+        a, b = (4 >> m for m in range(3) if m != axis)
+        ring = cells[:, (4 >> axis) * side + np.array([0, a, a + b, b])]
+        turn = parity[ring[:, :1]]
+        ring = np.take_along_axis(ring, (np.arange(4) + turn) % 4, 1)
+        tets += [np.column_stack([ring[:, [0, 1, 2]], centers]), np.column_stack([ring[:, [0, 2, 3]], centers])]
+    return quadratic(np.concatenate([X, X[cells].mean(1) + moves]), np.stack(tets, 1).reshape(-1, 4))
 
 
 def quadratic(X, tets):
@@ -113,6 +115,7 @@ class Indenter:
     rounding: float
     stiffness: float
     softening: float = 0
+    is_curved: bool = True  # the matrix includes curvature()
 
     def depth(self, x):
         """Depth of points inside, and its gradient."""
@@ -125,6 +128,9 @@ class Indenter:
         n = np.where(is_above[:, None], [0.0, 0.0, 1.0], -away / np.maximum(distance, 1e-300)[:, None])
         return self.rounding + np.where(is_above, u[:, 2], -distance), n
 
+    def curvature(self, x):
+        """Second derivatives of depth(x), or zeros to leave them out of matrices."""
+        return np.zeros((len(x), 3, 3))
 
     def response(self, d):
         """Energy per stiffness of depths, and its first two derivatives."""
@@ -133,6 +139,37 @@ class Indenter:
         with np.errstate(divide="ignore", invalid="ignore"):
             return (np.where(soft, d ** 3 / (6 * e), d * (d - e) / 2 + e ** 2 / 6),
                     np.where(soft, d ** 2 / (2 * e), d - e / 2), np.where(soft, d / e, 1.0))
+
+
+@dataclasses.dataclass
+class Disc(Indenter):
+    """Indenter with a flat end at `center` and the radius flat + rounding. Its profile is z = w h((r - flat - z) / w - 1)
+    with the width w = `rounding`: h(t) is 0 below -1, t above 1, and has the second derivative 3/4 (1 - t^2) in between."""
+
+    def polar(self, x):
+        """Heights above the flat end, distances from the axis and directions away from it, and t."""
+        u = x - self.center
+        radial = np.hypot(u[:, 0], u[:, 1])
+        e = np.column_stack([u[:, :2] / np.maximum(radial, 1e-300)[:, None], 0 * radial])
+        return u[:, 2], radial, e, (radial - self.flat + u[:, 2]) / self.rounding - 1
+
+    def depth(self, x):
+        z, _, e, t = self.polar(x)
+        near = np.clip(t, -1, 1)
+        h = 3 / 16 + near / 2 + 3 / 8 * near ** 2 - near ** 4 / 16 + np.maximum(t - 1, 0)
+        slope = self.slope(near)[:, None]
+        return z - self.rounding * h, (1 - slope) * UP - slope * e
+
+    @staticmethod
+    def slope(t):
+        return (2 + 3 * t - t ** 3) / 4
+
+    def curvature(self, x):
+        _, radial, e, t = self.polar(x)
+        near, across = np.clip(t, -1, 1), e + UP
+        around = np.diag([1, 1, 0]) - e[:, :, None] * e[:, None]
+        return (-(0.75 * (1 - near ** 2) / self.rounding)[:, None, None] * across[:, :, None] * across[:, None]
+                - (self.slope(near) / np.maximum(radial, 1e-300))[:, None, None] * around)
 
 
 @dataclasses.dataclass
@@ -165,6 +202,28 @@ class Fibres:
         return (growth - 1) / (2 * k), growth * s * ds, growth * ((1 + 2 * k * s ** 2) * ds ** 2 + s * dds)
 
 
+def point_matrices(K, N, dofs, size):
+    """Sum of matrices K, 3 x 3, of points of faces with the shape functions N."""
+    blocks = (N[:, :, None, None, None] * N[:, None, :, None, None] * K[:, None, None]).transpose(0, 1, 3, 2, 4)
+    rows, columns = np.repeat(dofs, 18, 1), np.tile(dofs, (1, 18))
+    return sparse.csr_matrix((blocks.ravel(), (rows.ravel(), columns.ravel())), (size, size))
+
+
+class Assembly:
+    """Sums matrices of tets, 30 x 30 each, to one of all nodes."""
+
+    def __init__(self, mesh):
+        self.count = count = len(mesh.X)
+        keys, place = np.unique((mesh.tets[:, :, None] * count + mesh.tets[:, None]).ravel(), return_inverse=True)
+        self.columns, self.starts = keys % count, np.searchsorted(keys, count * np.arange(count + 1))
+        self.sums = sparse.csr_matrix((np.ones(len(place)), (place, np.arange(len(place)))))
+
+    def __call__(self, K):
+        blocks = K.reshape(-1, 10, 3, 10, 3).transpose(0, 1, 3, 2, 4).reshape(-1, 9)
+        return sparse.bsr_matrix(((self.sums @ blocks).reshape(-1, 3, 3), self.columns, self.starts),
+                                 (3 * self.count, 3 * self.count)).tocsr()
+
+
 class Solid:
     """young(points), poisson: at small strains. `b`: stiffening. `weight`: force per volume [N/m^3]."""
 
@@ -182,8 +241,8 @@ class Solid:
         if fibres:
             self.axes = np.array([np.broadcast_to(fibres.direction(l @ corners), (len(corners), 3)) for l in POINTS])
         self.indenter = self.sliders = None
-        dofs = (3 * mesh.tets[:, :, None] + np.arange(3)).reshape(-1, 30)
-        self.rows, self.columns, self.dofs = np.repeat(dofs, 30, 1).ravel(), np.tile(dofs, (1, 30)).ravel(), dofs
+        self.dofs = dofs = (3 * mesh.tets[:, :, None] + np.arange(3)).reshape(-1, 30)
+        self.assembly = Assembly(mesh)
         X = mesh.X[mesh.faces[:, :3]]
         self.face_area = np.linalg.norm(np.cross(X[:, 1] - X[:, 0], X[:, 2] - X[:, 0]), axis=1) / 2
         self.face_shapes = shapes(FACE_POINTS)
@@ -193,17 +252,30 @@ class Solid:
 
     def evaluate(self, x, wants_matrix=False):
         """Energy without contact, gradient and matrix; infinite energy if a tet is inverted."""
-        xe, V = x.reshape(-1, 3)[self.mesh.tets], self.volume
-        Fs = [xe.transpose(0, 2, 1) @ G for G in self.G]
+        energy, g = -self.load @ x, np.zeros((len(self.volume), 10, 3))
+        K = np.zeros((len(g), 30, 30)) if wants_matrix else None
+        for first in range(0, len(g), BLOCK):
+            some = slice(first, first + BLOCK)
+            more = self.evaluate_some(x.reshape(-1, 3)[self.mesh.tets[some]], some, g[some], K[some] if wants_matrix else None)
+            if not np.isfinite(more):
+                return np.inf, None, None
+            energy += more
+        gradient = np.bincount(self.dofs.ravel(), g.ravel(), x.size) - self.load
+        return energy, gradient, self.assembly(K) if wants_matrix else None
+
+    def evaluate_some(self, xe, some, g, K):
+        """Returns the energy of the tets `some`, and adds their gradients to g and their matrices to K, if any."""
+        V = self.volume[some]
+        Fs = [xe.transpose(0, 2, 1) @ G[some] for G in self.G]
         Js = np.array([np.linalg.det(F) for F in Fs])
         if Js.min() <= 0:
-            return np.inf, None, None
-        j = Js.mean(0)
-        energy = (V * self.K / 4 * (j ** 2 - 1 - 2 * np.log(j))).sum() - self.load @ x
-        pressure, bulk = self.K / 2 * (j - 1 / j), self.K / 2 * (1 + j ** -2)
-        g, K = np.zeros((len(V), 10, 3)), np.zeros((len(V), 30, 30)) if wants_matrix else None
+            return np.inf
+        j, bulk = Js.mean(0), self.K[some] / 2
+        energy = (V * bulk / 2 * (j ** 2 - 1 - 2 * np.log(j))).sum()
+        pressure = bulk * (j - 1 / j)
         dj = np.zeros((len(V), 10, 3))
-        for q, (F, J, G, mu) in enumerate(zip(Fs, Js, self.G, self.mu)):
+        for q, (F, J) in enumerate(zip(Fs, Js)):
+            G, mu = self.G[q][some], self.mu[q][some]
             H, I1, a = np.linalg.inv(F).transpose(0, 2, 1), (F ** 2).sum((1, 2)), J ** (-2 / 3)
             X, slope = a * I1 - 3, mu / 2 * (1 + 2 * self.b * (a * I1 - 3))
             energy += (V / 4 * mu / 2 * (X + self.b * X ** 2)).sum()
@@ -211,7 +283,7 @@ class Solid:
             dX = s(a) * (2 * F - s(2 / 3 * I1) * H)
             P = s(slope) * dX + s(pressure * J) * H
             if self.fibres:
-                fibre = self.axes[q]
+                fibre = self.axes[q][some]
                 Fa = np.einsum("eij,ej->ei", F, fibre)
                 f, df, ddf = (self.fibres.ratio * mu * v for v in self.fibres.response((Fa ** 2).sum(1) - 1))
                 energy += (V / 4 * f).sum()
@@ -219,7 +291,7 @@ class Solid:
                 P = P + s(df) * dE
             g += s(V / 4) * (G @ P.transpose(0, 2, 1))
             dj += (G @ (s(J) * H).transpose(0, 2, 1)) / 4
-            if wants_matrix:
+            if K is not None:
                 D = lambda p, q: p.reshape(-1, 9, 1) * q.reshape(-1, 1, 9)
                 # The derivative of H = F^-T: dH_ij = -H_il dF_kl H_kj.
                 crossed = (H[:, :, None, None, :] * H.transpose(0, 2, 1)[:, None, :, :, None]).reshape(-1, 9, 9)
@@ -234,16 +306,13 @@ class Solid:
                     strain[:, i, :, :, i] = G.transpose(0, 2, 1)
                 strain = strain.reshape(-1, 9, 30)
                 K += strain.transpose(0, 2, 1) @ ((s(V / 4) * tangent) @ strain)
-        gradient = np.bincount(self.dofs.ravel(), g.ravel(), x.size) - self.load
-        matrix = None
-        if wants_matrix:
+        if K is not None:
             flat = dj.reshape(-1, 30)
-            K += (V * bulk)[:, None, None] * flat[:, :, None] * flat[:, None]
-            matrix = sparse.csr_matrix((K.ravel(), (self.rows, self.columns)), (x.size, x.size))
-        return energy, gradient, matrix
+            K += (V * bulk * (1 + j ** -2))[:, None, None] * flat[:, :, None] * flat[:, None]
+        return energy
 
     def contact(self, x, wants_matrix=False):
-        """Energy, gradient and matrix (Gauss-Newton) of the indenter, and its force on the body."""
+        """Energy, gradient and matrix of the indenter, and its force on the body."""
         faces, N = self.mesh.faces, self.face_shapes
         points = np.einsum("qa,far->fqr", N, x.reshape(-1, 3)[faces]).reshape(-1, 3)
         depth, n = self.indenter.depth(points)
@@ -257,8 +326,10 @@ class Solid:
         gradient = np.bincount(dofs.ravel(), ((weight * slope)[:, None] * rows).ravel(), x.size)
         matrix = None
         if wants_matrix:
-            J = sparse.csr_matrix((rows.ravel(), dofs.ravel(), 18 * np.arange(len(rows) + 1)), (len(rows), x.size))
-            matrix = (J.T @ sparse.diags(weight * curvature) @ J).tocsr()
+            K = curvature[:, None, None] * n[:, :, None] * n[:, None]
+            if self.indenter.is_curved:
+                K += slope[:, None, None] * self.indenter.curvature(points[pushed])
+            matrix = point_matrices(weight[:, None, None] * K, N[point], dofs, x.size)
         return (weight * value).sum(), gradient, matrix, -pull.sum(0)
 
     def friction(self, x, wants_matrix=False):
@@ -274,9 +345,7 @@ class Solid:
         if wants_matrix:
             T = np.eye(3) - s.normal[:, :, None] * s.normal[:, None]
             K = (s.force / root)[:, None, None] * (T - u[:, :, None] * u[:, None] / root[:, None, None] ** 2)
-            blocks = (N[:, :, None, None, None] * N[:, None, :, None, None] * K[:, None, None]).transpose(0, 1, 3, 2, 4)
-            rows, columns = np.repeat(dofs, 18, 1), np.tile(dofs, (1, 18))
-            matrix = sparse.csr_matrix((blocks.ravel(), (rows.ravel(), columns.ravel())), (size, size))
+            matrix = point_matrices(K, N, dofs, size)
         return (s.force * (root - s.width)).sum(), gradient, matrix, -pull.sum(0)
 
     def slide(self, x, held, path, mu, width):
