@@ -11,7 +11,7 @@ namespace aspic::distributed {
 
 // M^-1 = (I - Q H) B + Q, where B is the multigrid of the ranks, and Q = P (P' H P)^-1 P' the correction by the coarse
 // space. If conjugate gradients start from Q b, P' r = 0 holds from then on, and M^-1 acts like the symmetric
-// (I - Q H) B (I - H Q) + Q, for half of its costs [Tang, Nabben, Vuik and Erlangga 2009, A-DEF2]. One rank has
+// (I - Q H) B (I - H Q) + Q, with fewer products [Tang, Nabben, Vuik and Erlangga 2009, A-DEF2]. One rank has
 // multigrid alone. Vectors have 3 entries per local vertex; those of ghosts are overwritten. Every function is
 // collective.
 class RankMultigrid : public ApproximateInverse {
