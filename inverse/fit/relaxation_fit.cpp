@@ -125,6 +125,7 @@ class RelaxationFitter {
     Candidate best;
     HistoryMisfit misfit(body_, histories_, material_, count, options_.equilibrium);
     if (is_scale_known()) misfit.keep_scale();
+    misfit.set_material(options_.material_at);
     result_.residuals = misfit.residual_count();
     IndependentPriors priors = prior(count);
     const FitOptions fit_options{.max_iterations = kIterationsPerStart, .weight = 1, .stop = options_.stop};
