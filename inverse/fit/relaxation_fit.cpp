@@ -67,7 +67,8 @@ struct Candidate {
 double log_evidence(const Candidate& c, double factor) {
   double determinant = 0;
   for (const double d : c.information) determinant += std::log1p(d / (factor * factor));
-  const double orders = std::lgamma(static_cast<double>((c.p.size() - 1) / 2) + 1);  // branches may be exchanged
+  const size_t branches = (c.p.size() - 1) / 2;
+  const double orders = std::lgamma(static_cast<double>(branches) + 1);  // branches may be exchanged
   return -c.squares / (2 * factor * factor) - c.roughness - determinant / 2 + orders;
 }
 
