@@ -11,12 +11,9 @@ FitOutcome fit_material(const DataSet& data, const FitPlan& plan, const FitMemor
   if (plan.model == kAutoLaw) return fit_with_chosen_law(data, completed(plan, data.experiment), memory, callbacks);
   MaterialFit fit(data, plan, memory, callbacks);
   FitOutcome outcome = fit.run();
-  if (outcome.posterior) outcome.posterior->gaussian.reset();  // refers to the prior, which no longer exists
   const bool has_branches = !data.histories.empty() && outcome.plan.branches >= 0;
-  if (has_branches && outcome.has_material() && !outcome.interrupted) {
-    const auto multiply_stiffness = [&](double factor, FitOutcome& of) { return fit.multiply_stiffness(factor, of); };
-    add_relaxation(data, callbacks, multiply_stiffness, outcome);
-  }
+  if (has_branches && outcome.has_material() && !outcome.interrupted) add_relaxation(data, callbacks, fit, outcome);
+  if (outcome.posterior) outcome.posterior->gaussian.reset();  // refers to the prior of `fit`
   return outcome;
 }
 

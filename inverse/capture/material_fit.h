@@ -9,6 +9,7 @@
 #include "capture/fibre_search.h"
 #include "capture/fit_run.h"
 #include "capture/simulated_data.h"
+#include "capture/stiffness_change.h"
 #include "fit/common_errors.h"
 #include "fit/misfit.h"
 #include "fit/parts.h"
@@ -52,9 +53,14 @@ class MaterialFit {
   // Stores references to all arguments but the plan.
   MaterialFit(const DataSet& data, const FitPlan& plan, const FitMemory& memory, const FitCallbacks& callbacks);
   FitOutcome run();
+  // Several stiffnesses with a posterior change as StiffnessChange describes, otherwise by a common factor. Linearizes
+  // at the factor and returns whether this makes a difference. `ends`: last states of histories.
+  bool relate_stiffness(const Experiment& ends, double log_factor, FitOutcome& outcome);
+  const std::optional<StiffnessChange>& stiffness_change() const { return change_; }
+  std::vector<MaterialParameters> material_at(double log_factor) const;
   // Multiplies the fitted stiffness of the outcome of run() by a factor: values, material and predictions. Returns
-  // false without an equilibrium.
-  bool multiply_stiffness(double factor, FitOutcome& outcome);
+  // false without an equilibrium. `sigma`: standard deviation of its logarithm.
+  bool multiply_stiffness(double factor, double sigma, FitOutcome& outcome);
 
  private:
   // material_fit.cpp: stages from data to material. False: no further stage.
@@ -84,6 +90,7 @@ class MaterialFit {
   // material_fit_results.cpp: results
   void learn_uncertainty(FitModel& model);
   void describe(FitModel& model, std::span<const double> p);
+  std::vector<double> with_factor(double log_factor) const;  // parameters
   void predict_left_out(const ParameterMap& map, std::span<const double> p);
   struct HeldOutGroups {
     CrossValidation all;                          // predictions of the fit
@@ -134,6 +141,7 @@ class MaterialFit {
   std::string fingerprint_;
   std::optional<FitModel> last_;   // model of the result
   std::vector<double> described_;  // parameters of the result
+  std::optional<StiffnessChange> change_;
   FitOutcome outcome_;
 };
 

@@ -94,15 +94,50 @@ void MaterialFit::describe(FitModel& model, std::span<const double> p) {
   }
 }
 
-bool MaterialFit::multiply_stiffness(double factor, FitOutcome& outcome) {
-  outcome_ = std::move(outcome);
-  const std::vector<std::string> warnings = outcome_.warnings;
+bool MaterialFit::relate_stiffness(const Experiment& ends, double log_factor, FitOutcome& outcome) {
+  const std::vector<FitParameter>& fitted = last_->map.fitted_parameters();
+  const bool has_several = std::any_of(fitted.begin(), fitted.end(), [](const FitParameter& u) {
+    return is_stiffness(u.quantity) && u.parameterization != Parameterization::uniform;
+  });
+  const bool has_posterior = outcome.posterior && outcome.posterior->ok && outcome.posterior->gaussian;
+  if (!has_several || !has_posterior || outcome.parts) return false;
+  const std::vector<double> p = with_factor(log_factor);
+  std::optional<StiffnessChange> change =
+      aspic::stiffness_change(ends, {last_->map, mesh(), p}, *outcome.posterior->gaussian, plan_.equilibrium);
+  if (!change) {
+    outcome.warnings.push_back("the last states of the histories have no derivatives with respect to the stiffness: " +
+                               std::string(change_ ? "its intervals may be too narrow"
+                                                   : "the histories multiply all its values by one factor"));
+    return false;
+  }
+  if (change_ && !change->differs_from(*change_)) return false;
+  change_ = std::move(change);
+  return true;
+}
+
+std::vector<MaterialParameters> MaterialFit::material_at(double log_factor) const {
+  return last_->map.parameters(with_factor(log_factor));
+}
+
+std::vector<double> MaterialFit::with_factor(double log_factor) const {
   std::vector<double> p = described_;
+  if (change_) {
+    add_scaled(log_factor, change_->p, p);
+    return p;
+  }
   for (size_t u = 0; u < last_->map.fitted_parameters().size(); ++u) {
     if (!is_stiffness(last_->map.fitted_parameters()[u].quantity)) continue;
     const auto [first, count] = last_->map.range(static_cast<int>(u));
-    for (int k = first; k < first + count; ++k) p[static_cast<size_t>(k)] += std::log(factor);
+    for (int k = first; k < first + count; ++k) p[static_cast<size_t>(k)] += log_factor;
   }
+  return p;
+}
+
+bool MaterialFit::multiply_stiffness(double factor, double sigma, FitOutcome& outcome) {
+  outcome_ = std::move(outcome);
+  const std::vector<std::string> warnings = outcome_.warnings;
+  const std::vector<double> p = with_factor(std::log(factor));
+  if (change_) narrow(*change_, last_->map, sigma, *outcome_.posterior);
   for (CaseOutcome& c : outcome_.cases) c.ok = false;
   describe(*last_, p);
   predict_left_out(last_->map, p);

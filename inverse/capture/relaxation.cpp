@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "base/formatted.h"
 #include "base/number_chars.h"
@@ -13,6 +14,7 @@ namespace aspic {
 namespace {
 
 constexpr double kUnknownScale = 2;  // prior standard deviation of the logarithm of the stiffness without other cases
+constexpr int kMaxPasses = 6;        // fits of the branches, each with the stiffness of the last one
 constexpr int kMaxTetsForSlowest = 3000;  // tets up to which the simulations take minutes
 
 // Parameters of every tet, in the order of the data.
@@ -43,6 +45,24 @@ double scale_sigma(const DataSet& data, const FitOutcome& outcome) {
       return std::sqrt(squares);
     }
   return kUnknownScale;
+}
+
+// Last state of each history as a static case with the standard deviations of its history.
+Experiment last_states(const DataSet& data) {
+  Experiment ends = data.experiment;
+  ends.cases.clear();
+  ends.errors.clear();
+  for (const LoadHistory& history : data.histories) {
+    LoadCase& end = ends.cases.emplace_back(history.waypoints.back());
+    end.force.reset();
+    end.torque.reset();
+    double sigma = std::numeric_limits<double>::infinity();
+    for (const ForceReading& reading : history.forces) sigma = std::min(sigma, reading.sigma);
+    if (history.forces.empty()) continue;
+    end.force = Vec3d{};
+    end.force_sigma = {{sigma, sigma, sigma}};
+  }
+  return ends;
 }
 
 // Forces in the limit of fine meshes over those on the mesh, in the last state of each history; 1 if unknown.
@@ -89,8 +109,9 @@ void name_curves(const DataSet& data, std::span<const double> factors, Relaxatio
 
 bool has_one_value(const FittedQuantity& q) { return q.rows.size() == 1; }
 
-// One value has the standard deviation of the histories, which include the first fit as a prior. Of several, they
-// determine a common factor. Its uncertainty comes on top if the first fit used the end of the histories only.
+// One value has the standard deviation of the histories, which include the first fit as a prior. Of several that were
+// fitted to the ends of the histories, they determine a common factor, whose uncertainty comes on top. Several that
+// were fitted to static cases have the right ones, see StiffnessChange.
 void use_deviation(const RelaxationFit& fit, const DataSet& data, FitOutcome& outcome) {
   for (FittedQuantity& q : outcome.quantities) {
     if (!is_stiffness(q.name) || (!has_one_value(q) && !data.histories_end_static)) continue;
@@ -155,7 +176,7 @@ ViscoelasticMaterial fitted(ViscoelasticMaterial material, const RelaxationFit& 
 
 }  // namespace
 
-void add_relaxation(const DataSet& data, const FitCallbacks& callbacks, const MultiplyStiffness& multiply_stiffness,
+void add_relaxation(const DataSet& data, const FitCallbacks& callbacks, MaterialFit& material_fit,
                     FitOutcome& outcome) {
   if (callbacks.begin) callbacks.begin(FitStage::relaxation, "relaxation times");
   if (data.experiment.mesh.tet_count() > kMaxTetsForSlowest)
@@ -165,19 +186,31 @@ void add_relaxation(const DataSet& data, const FitCallbacks& callbacks, const Mu
   ViscoelasticMaterial material{outcome.plan.model, parameters_of(data, outcome), {}};
   const std::vector<double> factors = mesh_factors(data, outcome, material.parameters);
   const std::vector<LoadHistory> histories = on_mesh(data.histories, factors);
-  const RelaxationOptions options{.branches = outcome.plan.branches,
-                                  .scale_sigma = scale_sigma(data, outcome),
-                                  .equilibrium = outcome.plan.equilibrium,
-                                  .stop = callbacks.stop,
-                                  .begin = [&](const std::string& what) {
-                                    if (callbacks.begin) callbacks.begin(FitStage::relaxation, what);
-                                  }};
-  RelaxationFit fit = fit_relaxation(data.experiment, histories, material, options);
+  const Experiment ends = last_states(data);
+  const bool is_related = !data.histories_end_static && material_fit.relate_stiffness(ends, 0, outcome);
+  RelaxationOptions options{.branches = outcome.plan.branches,
+                            .scale_sigma = scale_sigma(data, outcome),
+                            .equilibrium = outcome.plan.equilibrium,
+                            .stop = callbacks.stop,
+                            .begin = [&](const std::string& what) {
+                              if (callbacks.begin) callbacks.begin(FitStage::relaxation, what);
+                            }};
+  if (is_related) options.material_at = [&](double log_scale) { return material_fit.material_at(log_scale); };
+  RelaxationFit fit;
+  int passes = 0;
+  do {
+    if (is_related) options.scale_sigma = material_fit.stiffness_change()->sigma;
+    fit = fit_relaxation(data.experiment, histories, material, options);
+  } while (is_related && fit.is_ok() && ++passes < kMaxPasses &&
+           material_fit.relate_stiffness(ends, std::log(fit.scale), outcome));
+  if (passes == kMaxPasses)
+    outcome.warnings.push_back("the histories and the values of stiffness did not settle in " +
+                               std::to_string(kMaxPasses) + " fits: intervals of the stiffness may be too narrow");
   if (fit.is_stopped) outcome.interrupted = true;
   name_curves(data, factors, fit);
   if (fit.is_ok()) {
     const std::vector<FoundCommonError> common_errors = outcome.common_errors;
-    if (fit.scale != 1 && !multiply_stiffness(fit.scale, outcome))
+    if ((fit.scale != 1 || is_related) && !material_fit.multiply_stiffness(fit.scale, fit.scale_sigma, outcome))
       fit.failure = "no equilibrium exists with the long-term stiffness, " + three_digits(fit.scale) +
                     " times that of the first fit";
     use_deviation(fit, data, outcome);

@@ -26,7 +26,8 @@ HistoryMisfit::HistoryMisfit(const Experiment& body, const std::vector<LoadHisto
 
 ViscoelasticMaterial HistoryMisfit::material_of(std::span<const double> p) const {
   ViscoelasticMaterial material = material_;
-  const double scale = is_scale_known_ ? 1 : std::exp(p[0]);
+  const double scale = is_scale_known_ || material_at_ ? 1 : std::exp(p[0]);
+  if (material_at_) material.parameters = material_at_(p[0]);
   for (MaterialParameters& m : material.parameters) m.lame.mu *= scale, m.lame.lambda *= scale;
   material.branches.clear();
   for (size_t b = 0; b < static_cast<size_t>(branches_); ++b)

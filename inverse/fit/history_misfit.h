@@ -1,6 +1,7 @@
 // Misfit of histories as a function of the logarithms of a factor of the stiffness and of the ratios and relaxation
 // times of Maxwell branches: p = (log scale, log ratio_1, log time_1, ...). The Jacobian is dense, by differences.
 #pragma once
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -27,6 +28,8 @@ class HistoryMisfit : public LeastSquares {
   const std::string& failure() const { return failure_; }
   ViscoelasticMaterial material_of(std::span<const double> p) const;
   void keep_scale() { is_scale_known_ = true; }  // p[0] has no effect
+  // Parameters of every tet at p[0]; empty: p[0] multiplies all stiffnesses. Called in parallel.
+  void set_material(std::function<std::vector<MaterialParameters>(double)> at) { material_at_ = std::move(at); }
 
  private:
   std::vector<HistoryPrediction> predicted(std::span<const double> p) const;
@@ -35,6 +38,7 @@ class HistoryMisfit : public LeastSquares {
   const Experiment& body_;
   const std::vector<LoadHistory>& histories_;
   ViscoelasticMaterial material_;
+  std::function<std::vector<MaterialParameters>(double)> material_at_;
   int branches_, residuals_ = 0;
   bool is_scale_known_ = false;
   const EquilibriumOptions& options_;

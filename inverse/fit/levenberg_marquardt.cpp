@@ -77,8 +77,11 @@ struct MarquardtDamping {
 
 // g' A^-1 g for the undamped system if it is positive definite.
 double squared_decrement(const MatrixXd& A, std::span<const double> g, std::vector<double>& d) {
-  for (double damping = 0; damping < 1; damping = std::max(kMinDamping, 100 * damping))
+  double damping = 0;
+  while (damping < 1) {
     if (find_step(A, g, damping, d)) return std::max(0.0, -dot(g, d));
+    damping = std::max(kMinDamping, 100 * damping);
+  }
   return std::nan("");
 }
 

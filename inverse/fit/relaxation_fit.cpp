@@ -67,7 +67,8 @@ struct Candidate {
 double log_evidence(const Candidate& c, double factor) {
   double determinant = 0;
   for (const double d : c.information) determinant += std::log1p(d / (factor * factor));
-  const double orders = std::lgamma(static_cast<double>((c.p.size() - 1) / 2) + 1);  // branches may be exchanged
+  const size_t branches = (c.p.size() - 1) / 2;
+  const double orders = std::lgamma(static_cast<double>(branches) + 1);  // branches may be exchanged
   return -c.squares / (2 * factor * factor) - c.roughness - determinant / 2 + orders;
 }
 
@@ -125,6 +126,7 @@ class RelaxationFitter {
     Candidate best;
     HistoryMisfit misfit(body_, histories_, material_, count, options_.equilibrium);
     if (is_scale_known()) misfit.keep_scale();
+    misfit.set_material(options_.material_at);
     result_.residuals = misfit.residual_count();
     IndependentPriors priors = prior(count);
     const FitOptions fit_options{.max_iterations = kIterationsPerStart, .weight = 1, .stop = options_.stop};

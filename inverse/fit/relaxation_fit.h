@@ -13,10 +13,13 @@
 namespace aspic {
 
 inline constexpr int kMaxBranches = 3;
+using MaterialOfScale = std::function<std::vector<MaterialParameters>(double log_scale)>;
 
 struct RelaxationOptions {
   int branches = 0;        // 0: chosen by the evidence, from 1 to kMaxBranches
   double scale_sigma = 2;  // prior standard deviation of the logarithm of the factor of the stiffness; 0: it is 1
+  // Parameters of every tet at a logarithm of the factor; empty: it multiplies all stiffnesses.
+  MaterialOfScale material_at = {};
   EquilibriumOptions equilibrium;
   StopToken stop = {};
   std::function<void(const std::string& what)> begin = {};  // called before each fit

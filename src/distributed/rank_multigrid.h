@@ -27,7 +27,6 @@ class RankMultigrid : public ApproximateInverse {
   bool follow(const BlockSparse& H);                           // keeps B, and renews Q
   bool start(std::span<const double> b, std::span<double> x);  // x = Q b; false: there is no coarse space
   void apply(std::span<const double> r, std::span<double> z) override;
-  bool is_multigrid() const override { return true; }
 
  private:
   bool has_coarse_space() const { return mesh_.ranks() > 1; }

@@ -1,7 +1,6 @@
 // Gradient-based minimization: computes a direction, searches along it, and repeats until converged. The search
 // direction and the line search are exchangeable.
 #pragma once
-#include <concepts>
 #include <functional>
 #include <memory>
 #include <optional>
@@ -103,8 +102,8 @@ using IterationObserver = std::function<void(const LiveIteration&)>;
 
 // The initial guess of a minimization; x receives the result.
 struct InitialIterate {
-  template <std::convertible_to<std::span<double>> Vector>
-  InitialIterate(Vector&& initial) : x(initial) {}
+  InitialIterate(std::span<double> initial) : x(initial) {}
+  InitialIterate(std::vector<double>& initial) : x(initial) {}
   InitialIterate(std::span<double> initial, const Evaluation& E_of_x) : x(initial), value(E_of_x) {}
 
   std::span<double> x;              // 3 entries per block row

@@ -86,13 +86,13 @@ def write_bar(folder, cells=(1, 1, 2)):
     return X
 
 
-def write_hold(folder, branches, noise, seed, samples=3000):
+def write_hold(folder, branches, noise, seed, samples=3000, scale=1):
     """Uniform samples of the force, as a testing machine writes them."""
     X = write_bar(folder)
     t = np.linspace(0, END, samples + 1)[1:]
     t = np.sort(np.concatenate([t, np.linspace(0, 2, 201)[1:]]))
     t = np.unique(t)
-    force = ramp_force(t, branches)
+    force = scale * ramp_force(t, branches)
     force += noise * force.max() * np.random.default_rng(seed).normal(size=len(t))
     (folder / "capture.toml").write_text(SETTINGS + GRIPPED)
     truths.write_table(folder / "load.csv", [{"time": float(a), "force": float(f)} for a, f in zip(t, force)])
