@@ -216,8 +216,8 @@ FIELDS = {
 }
 
 
-def ball(cells=11, poisson=0.45):
-    size, planes, field = np.array([0.06] * 3), graded(0.06, cells, 0.4), FIELDS["ball"]
+def ball(cells=11, poisson=0.45, field=FIELDS["ball"]):
+    size, planes = np.array([0.06] * 3), graded(0.06, cells, 0.4)
     solid = fem.Solid(fem.box(planes, planes, planes), field, poisson)
     markers = on_sides(size, 3000, 4, lambda p: p[2] < 0.06)
     a = 4e-3
