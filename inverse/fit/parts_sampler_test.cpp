@@ -69,8 +69,8 @@ TEST(PartsSampler, TellsHowFarItMayBeOff) {
   EXPECT_GT(squares, expected / 2);
 }
 
-// Means over neighborhoods of all vertices, as data of a surface have: they hardly tell small and stiff parts from
-// large and soft ones.
+// Means over neighborhoods of all vertices: like data of a surface, they hardly distinguish small stiff parts from
+// large soft ones.
 PartsEstimate estimate_of_means(const Body& body, double noise, unsigned seed) {
   std::mt19937_64 random(seed);
   std::normal_distribution<double> normal;

@@ -1,10 +1,10 @@
 #!/usr/bin/python3
-"""What measurements tell at best about the stiff ball of capture_truths.py: bounds of Cramer and Rao.
+"""Cramer-Rao bounds of the stiff ball of capture_truths.py: the information in its measurements.
 
     tests/oracle/ball_information.py [MARKERS ...]
 
-Prints standard deviations of center, log radius, log E and log contrast that no unbiased estimate can fall below, even if it
-knows that the inclusion is a ball, for noise of 1 %.
+Prints the least standard deviations of unbiased estimates of center, log radius, log contrast and log E, for noise of 1 % and
+an inclusion that is known to be a ball.
 """
 import sys
 
