@@ -12,16 +12,18 @@ namespace aspic {
 
 // Posterior of a body of a few materials, each of one stiffness, with unknown locations, for a linearized model. Gibbs
 // sampling [Geman and Geman 1984] of
-//   exp(-|r|^2 / 2 - surface * sum over faces between unlike tets of (area / mean area)),
+//   exp(-|r|^2 / 2 - penalty * A),  A = sum over faces between unlike tets of (area / mean area),
 // with |r|^2 in the directions determined by the data. The mean is the best estimate in mean square. Tets near an
 // interface get intermediate values and larger standard deviations.
+//
+// Data often determine the stiffness of an inclusion times its volume far better than either of them. Then A decides:
+// it makes inclusions too small and too stiff. Therefore half of the samples have another prior, in which A counts only
+// in excess of that of a part of the same shape with another size; it makes them too large and too soft. The mean is
+// between both, and their difference is part of the standard deviation.
 struct PartsOptions {
   int passes = 5;     // linearizations
   int rank = 400;     // maximum directions of the last one; a quarter of that before
-  int sweeps = 1000;  // over all tets, per linearization, after a quarter as many for burn-in
-  // Penalty per face of mean area between unlike tets [nats]; a single tet has four. Below 0.9, parts are scattered;
-  // above 1.1, an inclusion shrinks and becomes the stiffer.
-  double surface = 1;
+  int sweeps = 1000;  // over all tets, per linearization and prior, after a quarter as many for burn-in
   unsigned seed = 3;
 };
 

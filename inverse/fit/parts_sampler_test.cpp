@@ -3,6 +3,9 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cmath>
+#include <numeric>
 #include <random>
 
 #include "mesh/generators.h"
@@ -64,6 +67,42 @@ TEST(PartsSampler, TellsHowFarItMayBeOff) {
   }
   EXPECT_LT(squares, 2 * expected);
   EXPECT_GT(squares, expected / 2);
+}
+
+// Means over neighborhoods of all vertices: like data of a surface, they hardly distinguish small stiff parts from
+// large soft ones.
+PartsEstimate estimate_of_means(const Body& body, double noise, unsigned seed) {
+  std::mt19937_64 random(seed);
+  std::normal_distribution<double> normal;
+  Spectrum s{.W = Columns(body.size()), .dual = Columns(body.size()), .complete = true};
+  std::vector<double> gradient(body.size(), 0.0);
+  for (int v = 0; v < body.mesh.vertex_count(); ++v) {
+    std::vector<double> weight(body.size(), 0.0), unit(body.size(), 0.0);
+    double sum = 0, mean = 0;
+    for (int t = 0; t < body.size(); ++t) {
+      const auto& [a, b, c, d] = body.mesh.tets[t];
+      const Vec3d x = 0.25 * (body.mesh.rest[a] + body.mesh.rest[b] + body.mesh.rest[c] + body.mesh.rest[d]);
+      sum += weight[t] = std::exp(-dot(x - body.mesh.rest[v], x - body.mesh.rest[v]) / 0.06);
+    }
+    for (int t = 0; t < body.size(); ++t) weight[t] /= sum, mean += weight[t] * body.truth[t];
+    unit[v] = 1;
+    s.W.push_back(unit), s.dual.push_back(weight), s.d.push_back(1 / (noise * noise));
+    gradient[v] = -(mean + noise * normal(random)) / (noise * noise);
+  }
+  return sample_parts({body.mesh, s, gradient, 0, std::vector<double>(body.size(), 0.0), 1}, {0, 1}, {.sweeps = 300});
+}
+
+TEST(PartsSampler, FindsTheSizeOfABlurredInclusion) {
+  const Body body(1.2);
+  const auto tets_inside = static_cast<double>(std::count(body.truth.begin(), body.truth.end(), 1.2));
+  double size = 0, level = 0;
+  for (unsigned seed = 1; seed <= 4; ++seed) {
+    const PartsEstimate e = estimate_of_means(body, 0.03, seed);
+    size += std::accumulate(e.share[1].begin(), e.share[1].end(), 0.0) / tets_inside / 4;
+    level += e.levels[1] / 4;
+  }
+  EXPECT_NEAR(size, 1, 0.15);
+  EXPECT_NEAR(level, 1.2, 0.15) << "a penalty of the surface alone finds 1.5";
 }
 
 TEST(PartsSampler, DrawsTheSameAgain) {

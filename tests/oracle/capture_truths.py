@@ -36,6 +36,10 @@ class Truth:
     layers: tuple = ()   # heights between regions of the mesh of the fit
     scan: np.ndarray = None  # vertices of the mesh of the fit, in the order of kuhn_box; None: those of the box
 
+    def with_first_markers(self, count):
+        readings = [dataclasses.replace(r, markers=r.markers[:count]) for r in self.readings]
+        return dataclasses.replace(self, markers=self.markers[:count], readings=readings)
+
     def largest(self):
         motion = max(np.linalg.norm(r.markers - self.markers, axis=1).max() for r in self.readings)
         force = max(np.linalg.norm(r.force) for r in self.readings)
@@ -212,10 +216,10 @@ FIELDS = {
 }
 
 
-def ball(cells=7, poisson=0.45):
-    size, planes, field = np.array([0.06] * 3), np.linspace(0, 0.06, cells + 1), FIELDS["ball"]
+def ball(cells=11, poisson=0.45, field=FIELDS["ball"]):
+    size, planes = np.array([0.06] * 3), graded(0.06, cells, 0.4)
     solid = fem.Solid(fem.box(planes, planes, planes), field, poisson)
-    markers = on_sides(size, 300, 4, lambda p: p[2] < 0.06)
+    markers = on_sides(size, 3000, 4, lambda p: p[2] < 0.06)
     a = 4e-3
     motions = [("pull", "pull", (0, 0, a), (0, 0, 0)), ("press", "press", (0, 0, -a), (0, 0, 0)),
                ("shear x", "shear x", (1.5 * a, 0, 0), (0, 0, 0)), ("shear y", "shear y", (0, 1.5 * a, 0), (0, 0, 0)),
