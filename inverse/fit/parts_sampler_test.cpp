@@ -55,6 +55,24 @@ TEST(PartsSampler, FindsValuesAndLocationsOfTwoParts) {
   EXPECT_LT(wrong, 0.05 * body.size()) << "of single readings alone, 7 % would be on the wrong side";
 }
 
+TEST(PartsSampler, FindsThreeLayers) {
+  Body body(0);
+  std::mt19937_64 random(1);
+  std::normal_distribution<double> normal;
+  for (int t = 0; t < body.size(); ++t) {
+    const auto& [a, b, c, d] = body.mesh.tets[t];
+    const double height =
+        (body.mesh.rest[a][2] + body.mesh.rest[b][2] + body.mesh.rest[c][2] + body.mesh.rest[d][2]) / 4;
+    body.truth[t] = height < 0.4 ? 0 : height < 0.6 ? 1 : 2;
+    body.read[t] = body.truth[t] + kNoise * normal(random);
+  }
+  const PartsEstimate e = body.estimate({0.2, 0.8, 1.7});
+  int wrong = 0;
+  for (int t = 0; t < body.size(); ++t) wrong += e.share[static_cast<size_t>(body.truth[t])][t] < 0.5 ? 1 : 0;
+  EXPECT_LT(wrong, 0.05 * body.size());
+  for (int k = 0; k < 3; ++k) EXPECT_NEAR(e.levels[k], k, 0.08);
+}
+
 TEST(PartsSampler, TellsHowFarItMayBeOff) {
   double squares = 0, expected = 0;
   for (unsigned seed = 1; seed <= 5; ++seed) {
