@@ -17,9 +17,9 @@ namespace aspic {
 // interface get intermediate values and larger standard deviations.
 //
 // Data often determine the stiffness of an inclusion times its volume far better than either of them. Then A decides:
-// it makes inclusions too small and too stiff. Therefore half of the samples have another prior, in which A counts only
-// in excess of that of a part of the same shape with another size; it makes them too large and too soft. The mean is
-// between both, and their difference is part of the standard deviation.
+// it makes inclusions too small and too stiff. Therefore a quarter of the samples has another prior, in which A counts
+// only in excess of that of a part of the same shape with another size; it makes them too large and too soft. The mean
+// is between both, and their difference is part of the standard deviation.
 struct PartsOptions {
   int passes = 5;     // linearizations
   int rank = 400;     // maximum directions of the last one; a quarter of that before

@@ -120,7 +120,7 @@ TEST(PartsSampler, FindsTheSizeOfABlurredInclusion) {
     level += e.levels[1] / 4;
   }
   EXPECT_NEAR(size, 1, 0.15);
-  EXPECT_NEAR(level, 1.2, 0.15) << "a penalty of the surface alone finds 1.5";
+  EXPECT_NEAR(level, 1.2, 0.2) << "a penalty of the surface alone finds 1.49";
 }
 
 TEST(PartsSampler, DrawsTheSameAgain) {
