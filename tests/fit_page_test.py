@@ -149,8 +149,8 @@ class FitPage(CommandLine):
     def assert_near(self, a, b, tolerance):
         self.assertLessEqual(abs(a - b), tolerance * max(abs(b), 1e-12), (a, b))
 
-    def capture(self):
-        self.write("truth.toml", BODY)
+    def capture(self, young="2e4"):
+        self.write("truth.toml", BODY.replace("2e4", young))
         self.aspic("capture", "truth.toml", "-o", "data", "--pokes", "3", "--depths", "1", "--tip", "disc:0.016", "--depth",
                    "0.06", "--markers", "30", "--noise", "0.02", "--force-noise", "0.02", "-q", timeout=300)
 
@@ -220,6 +220,26 @@ class FitPage(CommandLine):
                 self.assert_near(number(text, "%") / 100, trial[key], 0.06)
             self.assertIn("young", cells[5])
             self.assertIn("Pa", cells[5])
+
+    def test_parts(self):
+        """Values of parts have intervals, and the volumes and the contrast are those of figures.json."""
+        self.capture('"X < 0.05 ? 6e4 : 2e4"')
+        self.write("data/aspic.fit.toml", "mesh_errors = false\ncross_validation = false\nparts = 2\n")
+        tables = self.fit("--known", "poisson=0.4", "--allow-unconverged")
+        rows = [cells for t in tables.tables if t[0][1][0] == "quantity" for _, cells in t[1:]]
+        self.assertEqual([r[1] for r in rows], ["part 1", "part 2"])
+        parts, values = self.figures["parts"], self.figures["values"]["young"]
+        for true, value in zip((2e4, 6e4), values.values()):
+            self.assertLess(value["lower"], true)
+            self.assertGreater(value["upper"], true)
+        text = re.search(r"The parts are ([^<]*) of the body\. The stiffest is ([^<]*) times as stiff as the softest "
+                         r"\(95 %: ([^<]*) to ([^<]*)\)", self.dom)
+        self.assertAlmostEqual(sum(parts["volumes"]), 1, places=9)
+        for shown, volume in zip(text[1].split(", "), parts["volumes"], strict=True):
+            self.assert_near(number(shown, "%") / 100, volume, 0.06)
+        for shown, end in zip(text.groups()[1:], ("value", "lower", "upper")):
+            self.assert_near(float(shown), parts["contrast"][end], 0.01)
+        self.assert_near(parts["contrast"]["value"], values["part 2"]["value"] / values["part 1"]["value"], 1e-9)
 
     def test_relaxation(self):
         """A ramp of 0.1 s that is held, of a standard linear solid with Poisson's ratio 0, by its closed form."""

@@ -125,6 +125,14 @@ Json values_of(const FitOutcome& outcome) {
   return values;
 }
 
+Json parts_of(const FoundParts& found) {
+  Json json = {{"kept", found.are_kept}, {"volumes", found.volume}};
+  if (!found.are_kept) return json;
+  json["contrast"] = {{"value", found.values.back() / found.values.front()}};
+  if (found.contrast) json["contrast"].update({{"lower", found.contrast->lower}, {"upper", found.contrast->upper}});
+  return json;
+}
+
 Json fibres_of(const FitOutcome& outcome) {
   const auto axis = [](const Vec3d& a) { return Json{a[0], a[1], a[2]}; };
   Json fibres = Json::array();
@@ -186,6 +194,7 @@ std::string figures_json(const DataSet& data, const FitOutcome& outcome, const F
                {"squares", 2 * report.misfit},
                {"values", values_of(outcome)},
                {"warnings", outcome.warnings}};
+  if (outcome.parts) json["parts"] = parts_of(*outcome.parts);
   if (!outcome.fibres.empty()) json["fibres"] = fibres_of(outcome);
   if (!outcome.errors.empty()) json["errors"] = errors_of(outcome);
   for (const FoundCommonError& e : outcome.common_errors)

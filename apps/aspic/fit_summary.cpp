@@ -59,8 +59,11 @@ void print_parts(std::FILE* stream, const FitOutcome& outcome) {
     return;
   }
   for (size_t k = 0; k < found.values.size(); ++k)
-    fmt::print(stream, "{:<10} {:<10} in {} of the body\n", k == 0 ? "parts" : "", value_text(found.values[k], "Pa"),
+    fmt::print(stream, "{:<10} {:<13} {} of the body\n", k == 0 ? "parts" : "", "part " + std::to_string(k + 1),
                two_digit_percent(found.volume[k]));
+  const ValueRow contrast{"contrast", found.values.back() / found.values.front(), found.contrast};
+  fmt::print(stream, "{:<10} {:<13} {:<10} {}\n", "", contrast.where, value_text(contrast.value, ""),
+             interval_text(contrast, ""));
 }
 
 std::string errors_text(const PredictionErrors& errors) {

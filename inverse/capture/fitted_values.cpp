@@ -71,6 +71,18 @@ std::vector<FittedQuantity> fitted_quantities(const ParameterMap& map, const Tet
   return result;
 }
 
+void show_parts(const FoundParts& parts, std::vector<FittedQuantity>& quantities) {
+  const auto stiffness = std::find_if(quantities.begin(), quantities.end(), [](const FittedQuantity& q) {
+    return is_stiffness(q.name) && q.parameterization == Parameterization::tets;
+  });
+  if (stiffness == quantities.end()) return;
+  stiffness->rows.clear();
+  for (size_t k = 0; k < parts.values.size(); ++k) {
+    ValueRow& row = stiffness->rows.emplace_back(ValueRow{"part " + std::to_string(k + 1), parts.values[k], {}});
+    if (!parts.intervals.empty()) row.interval = parts.intervals[k];
+  }
+}
+
 std::vector<std::string> values_at_bound(const ParameterMap& map, std::span<const double> p) {
   std::vector<std::string> found;
   for (size_t u = 0; u < map.fitted_parameters().size(); ++u) {

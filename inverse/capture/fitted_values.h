@@ -12,6 +12,9 @@ namespace aspic {
 std::vector<FittedQuantity> fitted_quantities(const ParameterMap& map, const TetMesh& mesh, std::span<const double> p,
                                               const Posterior* posterior);
 
+// Lists the value of each part with its 95 % interval, in place of representative tets of the stiffness.
+void show_parts(const FoundParts& parts, std::vector<FittedQuantity>& quantities);
+
 // Returns the material in the user's numbering, with standard deviations and reductions.
 FittedMaterial fitted_material(const DataSet& data, const ParameterMap& map, std::span<const double> p,
                                const std::vector<FittedQuantity>& quantities);

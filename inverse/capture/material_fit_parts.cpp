@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <cmath>
 
 #include "capture/material_fit.h"
 #include "fit/quantity.h"
@@ -54,7 +55,14 @@ std::vector<double> MaterialFit::keep(const Parts& parts, const ParameterMap& ma
     found.values.push_back(map.value(parameter, e.levels[k]));
     found.volume.push_back(share_of_body(mesh(), e.share[k]));
   }
-  if (outcome_.posterior && outcome_.posterior->ok) set_sigmas(e.sigma, parameter, *outcome_.posterior);
+  if (!outcome_.posterior || !outcome_.posterior->ok) return parts.p;
+  set_sigmas(e.sigma, parameter, *outcome_.posterior);
+  for (size_t k = 0; k < e.levels.size(); ++k) {
+    const double s = kSigmas95 * e.level_sigma[k];
+    found.intervals.push_back({map.value(parameter, e.levels[k] - s), map.value(parameter, e.levels[k] + s)});
+  }
+  const double contrast = found.values.back() / found.values.front(), s = std::exp(kSigmas95 * e.contrast_sigma);
+  found.contrast = Interval{contrast / s, contrast * s};
   return parts.p;
 }
 

@@ -51,6 +51,7 @@ void MaterialFit::learn_uncertainty(FitModel& model) {
 void MaterialFit::describe(FitModel& model, std::span<const double> p) {
   const Posterior* posterior = outcome_.posterior && outcome_.posterior->ok ? &*outcome_.posterior : nullptr;
   outcome_.quantities = fitted_quantities(model.map, mesh(), p, posterior);
+  if (outcome_.parts && outcome_.parts->are_kept) show_parts(*outcome_.parts, outcome_.quantities);
   outcome_.material = fitted_material(data_, model.map, p, outcome_.quantities);
   describe_fibres(model.map, p);
   outcome_.at_bound = values_at_bound(model.map, p);
@@ -139,10 +140,12 @@ bool MaterialFit::multiply_stiffness(double factor, double sigma, FitOutcome& ou
   const std::vector<double> p = with_factor(std::log(factor));
   if (change_) narrow(*change_, last_->map, sigma, *outcome_.posterior);
   for (CaseOutcome& c : outcome_.cases) c.ok = false;
+  if (outcome_.parts) {
+    for (double& value : outcome_.parts->values) value *= factor;
+    for (Interval& interval : outcome_.parts->intervals) interval.lower *= factor, interval.upper *= factor;
+  }
   describe(*last_, p);
   predict_left_out(last_->map, p);
-  if (outcome_.parts)
-    for (double& value : outcome_.parts->values) value *= factor;
   outcome_.warnings = warnings;
   outcome = std::move(outcome_);
   return std::all_of(outcome.cases.begin(), outcome.cases.end(), [](const CaseOutcome& c) { return c.ok; });

@@ -109,6 +109,18 @@ TEST_F(Recovery, OfTwoPartsThatNobodyNamed) {
   EXPECT_NEAR(outcome.parts->values[0], 2e4, 0.1 * 2e4);
   EXPECT_NEAR(outcome.parts->values[1], 6e4, 0.2 * 6e4);
   EXPECT_NEAR(outcome.parts->volume[0], 0.5, 0.1);
+  const std::vector<ValueRow>& rows = outcome.quantities.front().rows;
+  ASSERT_EQ(rows.size(), 2u);
+  for (size_t k = 0; k < 2; ++k) {
+    EXPECT_EQ(rows[k].where, "part " + std::to_string(k + 1));
+    EXPECT_EQ(rows[k].value, outcome.parts->values[k]);
+    ASSERT_TRUE(rows[k].interval);
+    EXPECT_LT(rows[k].interval->lower, k == 0 ? 2e4 : 6e4);
+    EXPECT_GT(rows[k].interval->upper, k == 0 ? 2e4 : 6e4);
+  }
+  ASSERT_TRUE(outcome.parts->contrast);
+  EXPECT_LT(outcome.parts->contrast->lower, 3);
+  EXPECT_GT(outcome.parts->contrast->upper, 3);
 }
 
 }  // namespace

@@ -92,11 +92,15 @@ class Sampler {
   PartsEstimate run() {
     const int K = static_cast<int>(levels_.size());
     PartsEstimate e{.levels = std::vector<double>(K, 0.0),
+                    .level_sigma = std::vector<double>(K, 0.0),
                     .share = std::vector<std::vector<double>>(K, std::vector<double>(tets_, 0.0)),
                     .mean = std::vector<double>(tets_, 0.0),
                     .sigma = std::vector<double>(tets_, 0.0)};
     for (const Surface& surface : kSurfaces) add_samples(surface, e);
-    for (int t = 0; t < tets_; ++t) e.sigma[t] = std::sqrt(std::max(0.0, e.sigma[t] - e.mean[t] * e.mean[t]));
+    const auto sigma = [](double square, double mean) { return std::sqrt(std::max(0.0, square - mean * mean)); };
+    for (int k = 0; k < K; ++k) e.level_sigma[k] = sigma(e.level_sigma[k], e.levels[k]);
+    e.contrast_sigma = sigma(e.contrast_sigma, e.levels.back() - e.levels.front());
+    for (int t = 0; t < tets_; ++t) e.sigma[t] = sigma(e.sigma[t], e.mean[t]);
     return e;
   }
 
@@ -115,8 +119,12 @@ class Sampler {
     }
   }
 
+  // Adds values and their squares.
   void add_sample(double part, PartsEstimate& e) const {
-    for (size_t k = 0; k < levels_.size(); ++k) e.levels[k] += part * levels_[k];
+    const double contrast = levels_.back() - levels_.front();
+    e.contrast_sigma += part * contrast * contrast;
+    for (size_t k = 0; k < levels_.size(); ++k)
+      e.levels[k] += part * levels_[k], e.level_sigma[k] += part * levels_[k] * levels_[k];
     for (int t = 0; t < tets_; ++t) {
       const double z = levels_[label_[t]];
       e.share[label_[t]][t] += part;
@@ -254,9 +262,12 @@ Independent one_by_one(const ParameterMap& map, int unknown, const std::vector<d
 }
 
 // The change by one more linearization is a lower bound of the uncertainty.
-void widen(PartsEstimate& estimate, std::span<const double> before) {
-  for (size_t t = 0; t < before.size(); ++t)
-    estimate.sigma[t] = std::hypot(estimate.sigma[t], estimate.mean[t] - before[t]);
+void widen(PartsEstimate& e, std::span<const double> before, const std::vector<double>& levels) {
+  for (size_t t = 0; t < before.size(); ++t) e.sigma[t] = std::hypot(e.sigma[t], e.mean[t] - before[t]);
+  for (size_t k = 0; k < levels.size(); ++k)
+    e.level_sigma[k] = std::hypot(e.level_sigma[k], e.levels[k] - levels[k]);
+  const double contrast = e.levels.back() - e.levels.front(), contrast_before = levels.back() - levels.front();
+  e.contrast_sigma = std::hypot(e.contrast_sigma, contrast - contrast_before);
 }
 
 }  // namespace
@@ -307,7 +318,7 @@ Parts find_parts(LeastSquares& model, const FittedField& field, int unknown, int
     if (!s.ok) return parts;
     model.multiply_transposed(r, g);
     parts.estimate = sample_parts({mesh, s, g, first, z, noise_factor}, levels, options);
-    if (is_last) widen(parts.estimate, z);
+    if (is_last) widen(parts.estimate, z, levels);
     // The mean with the last pass damps cycles of two passes.
     const double part = pass == 0 || is_last ? 1 : 0.5;
     for (int k = 0; k < count; ++k) levels[k] += part * (parts.estimate.levels[k] - levels[k]);

@@ -29,6 +29,8 @@ struct PartsOptions {
 
 struct PartsEstimate {
   std::vector<double> levels;              // values of z, ascending: mean over the samples
+  std::vector<double> level_sigma;         // their standard deviations
+  double contrast_sigma = 0;               // standard deviation of levels.back() - levels.front()
   std::vector<std::vector<double>> share;  // share of each part in each tet: relative frequency
   std::vector<double> mean, sigma;         // mean and sigma of z in each tet
 };
@@ -57,7 +59,7 @@ struct Parts {
 };
 
 // Finds `count` parts of `parameter`, a value per tet, starting from the clusters of the field p. Each pass linearizes
-// the model at the mean of the previous samples; the change of the last pass increases the standard deviations.
+// the model at the mean of the previous samples; the change of the last pass increases all standard deviations.
 Parts find_parts(LeastSquares& model, const FittedField& field, int unknown, int count,
                  const PartsOptions& options = {});
 

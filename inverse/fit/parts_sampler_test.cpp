@@ -116,11 +116,33 @@ TEST(PartsSampler, FindsTheSizeOfABlurredInclusion) {
   double size = 0, level = 0;
   for (unsigned seed = 1; seed <= 4; ++seed) {
     const PartsEstimate e = estimate_of_means(body, 0.03, seed);
+    EXPECT_LT(std::abs(e.levels[1] - 1.2), 1.96 * e.level_sigma[1]) << "value " << e.levels[1];
     size += std::accumulate(e.share[1].begin(), e.share[1].end(), 0.0) / tets_inside / 4;
     level += e.levels[1] / 4;
   }
   EXPECT_NEAR(size, 1, 0.15);
   EXPECT_NEAR(level, 1.2, 0.2) << "a penalty of the surface alone finds 1.49";
+}
+
+TEST(PartsSampler, IntervalsOfValuesContainTheTruth) {
+  constexpr int kRuns = 30;
+  const double truths[] = {0, 1, 1};  // two values and their difference
+  int inside[3] = {};
+  double squares[3] = {};
+  for (unsigned seed = 1; seed <= kRuns; ++seed) {
+    const PartsEstimate e = Body(1, seed).estimate({0, 1});
+    const double found[] = {e.levels[0], e.levels[1], e.levels[1] - e.levels[0]};
+    const double sigma[] = {e.level_sigma[0], e.level_sigma[1], e.contrast_sigma};
+    for (int k = 0; k < 3; ++k) {
+      const double error = (found[k] - truths[k]) / sigma[k];
+      inside[k] += std::abs(error) < 1.96 ? 1 : 0;
+      squares[k] += error * error / kRuns;
+    }
+  }
+  for (int k = 0; k < 3; ++k) {
+    EXPECT_GE(inside[k], 26) << k << ": fewer than 26 of 30 have a probability of 2 % for 95 % intervals";
+    EXPECT_GT(squares[k], 0.3) << k << ": the interval is too wide";
+  }
 }
 
 TEST(PartsSampler, DrawsTheSameAgain) {

@@ -129,9 +129,17 @@ export interface RelaxationFigures {
   curves: HistoryFigures[];
 }
 
+// Parts of a stiffness field; the values table lists their values.
+export interface PartsFigures {
+  kept: boolean; // false: no division fits the measurements
+  volumes: number[]; // fractions of the body
+  contrast?: { value: number } & Partial<Ends>; // stiffest over softest
+}
+
 // figures.json as far as the page shows it
 export interface Figures {
   residuals: number;
+  parts?: PartsFigures;
   squares: number; // |r|^2
   groups: { group: string; readings: string; standard_deviations: number }[];
   truth?: { quantity: string; error: number; coverage: number }[]; // of synthetic data; coverage < 0: unknown

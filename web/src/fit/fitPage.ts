@@ -13,7 +13,7 @@ import { digitsOf, intervalText, valueText } from "./cells";
 import { checkTable } from "./checks";
 import { groupCurve, groupsOf, isCorrected, unpackFit, verdict, type Fit, type Quantity, type ValueRow } from "./data";
 import { FittedBody } from "./bodyView";
-import { branchTable, errorTable, historyFigures, lawTable, outlierTable, trialTable } from "./found";
+import { branchTable, errorTable, historyFigures, lawTable, outlierTable, partsText, trialTable } from "./found";
 import { Maps } from "./maps";
 import { Misfits } from "./misfits";
 import { numberTable } from "./numberTable";
@@ -77,12 +77,13 @@ function result(fit: Fit): HTMLElement {
   const next = head.nextPoke ? element("div", { class: "words next" }, element("h3", {}, "Next best poke"), element("p", {}, head.nextPoke.words)) : null;
   const isAllInformed = head.fit.informed === null || head.fit.informed > head.counts.unknowns - 0.05;
   const informed = isAllInformed ? null : element("p", { class: "hint" }, `The data determine ${short(head.fit.informed, 3)} of ${plural(head.counts.unknowns, "parameter")}; the prior determines the rest.`);
+  const parts = head.figures.parts ? element("p", { class: "hint" }, partsText(head.figures.parts)) : null;
   return section(
     "Result",
     "",
     element("div", { class: `verdict ${judged.kind}` }, element("p", {}, judged.title), judged.reasons.length > 0 ? listOf(judged.reasons) : null),
     element("p", { class: "about" }, trust(head)),
-    element("div", { class: "columns" }, element("div", { class: "wide" }, valueTable(head.quantities), informed), element("div", { class: "wide" }, checkTable(head))),
+    element("div", { class: "columns" }, element("div", { class: "wide" }, valueTable(head.quantities), parts, informed), element("div", { class: "wide" }, checkTable(head))),
     element("div", { class: "columns" }, words("Directions of fibres", head.fibres, ""), words("Warnings", head.warnings, "warnings"), next, words("Assumptions", head.notes, "")),
   );
 }

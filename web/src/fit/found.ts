@@ -3,7 +3,7 @@ import { element, type Child } from "../dom";
 import { Chart, type FilledCurve } from "../plots/chart";
 import { short } from "../plots/numbers";
 import { digitsOf, failedRow, intervalText, percent, row, valueText } from "./cells";
-import type { Figures, FoundError, HistoryFigures, LawFigures, RelaxationFigures } from "./data";
+import type { Figures, FoundError, HistoryFigures, LawFigures, PartsFigures, RelaxationFigures } from "./data";
 import { numberTable } from "./numberTable";
 
 const kLargeError = 3; // estimate in prior standard deviations that is marked
@@ -27,6 +27,13 @@ export function errorTable({ errors }: Figures): HTMLElement | null {
   if (!errors || errors.length === 0) return null;
   const unitless = (e: FoundError): FoundError => (e.unit === "" && e.coefficient === undefined ? { ...e, name: `${e.name} (logarithm of the factor)` } : e);
   return numberTable(["error", "estimate", "95 % interval", "prior", "estimate / prior sd", "determined by"], 1, element("tbody", {}, ...errors.map((e) => errorRow(unitless(e)))));
+}
+
+export function partsText({ kept, volumes, contrast }: PartsFigures): string {
+  if (!kept || !contrast) return "No division into parts fits the measurements as well as the field.";
+  const { value, lower = null, upper = null } = contrast;
+  const interval = lower === null ? "" : ` (95 %: ${intervalText(lower, upper, "")})`;
+  return `The parts are ${volumes.map(percent).join(", ")} of the body. The stiffest is ${short(value, digitsOf(lower, upper))} times as stiff as the softest${interval}.`;
 }
 
 export function outlierTable({ outliers }: Figures): HTMLElement | null {
