@@ -102,6 +102,7 @@ TEST_F(Recovery, OfTwoPartsThatNobodyNamed) {
   const Synthesis made = synthesize(scene, options);
   FitPlan fit = plan("young=tets");
   fit.parts = -1;
+  fit.uncertainty = true;
   const FitOutcome outcome = fit_material(made.data, fit, {}, {});
   ASSERT_TRUE(outcome.has_material()) << outcome.failure;
   ASSERT_TRUE(outcome.parts && outcome.parts->are_kept);

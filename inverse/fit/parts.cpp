@@ -59,6 +59,19 @@ int nearest(const std::vector<double>& levels, double z) {
   return best;
 }
 
+// Mean and standard deviation of weighted samples.
+class Moments {
+ public:
+  void add(double value, double weight) { weight_ += weight, sum_ += weight * value, squares_ += weight * value * value; }
+  double mean() const { return weight_ > 0 ? sum_ / weight_ : 0; }
+  double sigma() const {
+    return weight_ > 0 ? std::sqrt(std::max(0.0, squares_ / weight_ - mean() * mean())) : 0;
+  }
+
+ private:
+  double weight_ = 0, sum_ = 0, squares_ = 0;
+};
+
 class Sampler {
  public:
   Sampler(const LinearizedField& field, std::vector<double> levels, const PartsOptions& options)
@@ -91,16 +104,12 @@ class Sampler {
 
   PartsEstimate run() {
     const int K = static_cast<int>(levels_.size());
-    PartsEstimate e{.levels = std::vector<double>(K, 0.0),
-                    .level_sigma = std::vector<double>(K, 0.0),
-                    .share = std::vector<std::vector<double>>(K, std::vector<double>(tets_, 0.0)),
-                    .mean = std::vector<double>(tets_, 0.0),
-                    .sigma = std::vector<double>(tets_, 0.0)};
+    PartsEstimate e{.share = std::vector<std::vector<double>>(K, std::vector<double>(tets_, 0.0))};
+    level_.resize(K), z_.resize(tets_);
     for (const Surface& surface : kSurfaces) add_samples(surface, e);
-    const auto sigma = [](double square, double mean) { return std::sqrt(std::max(0.0, square - mean * mean)); };
-    for (int k = 0; k < K; ++k) e.level_sigma[k] = sigma(e.level_sigma[k], e.levels[k]);
-    e.contrast_sigma = sigma(e.contrast_sigma, e.levels.back() - e.levels.front());
-    for (int t = 0; t < tets_; ++t) e.sigma[t] = sigma(e.sigma[t], e.mean[t]);
+    for (const Moments& level : level_) e.levels.push_back(level.mean()), e.level_sigma.push_back(level.sigma());
+    e.contrast_sigma = contrast_.sigma();
+    for (const Moments& z : z_) e.mean.push_back(z.mean()), e.sigma.push_back(z.sigma());
     return e;
   }
 
@@ -119,16 +128,13 @@ class Sampler {
     }
   }
 
-  // Adds values and their squares.
-  void add_sample(double part, PartsEstimate& e) const {
-    const double contrast = levels_.back() - levels_.front();
-    e.contrast_sigma += part * contrast * contrast;
-    for (size_t k = 0; k < levels_.size(); ++k)
-      e.levels[k] += part * levels_[k], e.level_sigma[k] += part * levels_[k] * levels_[k];
+  void add_sample(double part, PartsEstimate& e) {
+    const double least = 1e-9 * total_;  // for parts that are always empty
+    for (size_t k = 0; k < levels_.size(); ++k) level_[k].add(levels_[k], part * std::max(size_[k], least));
+    contrast_.add(levels_.back() - levels_.front(), part * std::max(size_.back() * size_.front(), least * total_));
     for (int t = 0; t < tets_; ++t) {
-      const double z = levels_[label_[t]];
       e.share[label_[t]][t] += part;
-      e.mean[t] += part * z, e.sigma[t] += part * z * z;
+      z_[t].add(levels_[label_[t]], part);
     }
   }
 
@@ -232,6 +238,8 @@ class Sampler {
   std::vector<double> rows_, own_, volume_;         // per tet: directions; own curvature; volume
   std::vector<double> size_, area_, neutral_;  // of each part: volume; interface; part of it without penalty, by scale
   double total_ = 0;                           // volume of the body
+  std::vector<Moments> level_, z_;             // over the samples: of each part, and in each tet
+  Moments contrast_;                           // levels_.back() - levels_.front()
   std::vector<int> label_;
   std::mt19937_64 random_;
   std::normal_distribution<double> normal_;

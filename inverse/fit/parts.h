@@ -28,8 +28,9 @@ struct PartsOptions {
 };
 
 struct PartsEstimate {
-  std::vector<double> levels;              // values of z, ascending: mean over the samples
-  std::vector<double> level_sigma;         // their standard deviations
+  // Mean and sigma of z in each part, ascending: over the samples, weighted by the volume of the part. Without weights,
+  // samples of tiny parts of extreme stiffness would count as much as those of large ones.
+  std::vector<double> levels, level_sigma;
   double contrast_sigma = 0;               // standard deviation of levels.back() - levels.front()
   std::vector<std::vector<double>> share;  // share of each part in each tet: relative frequency
   std::vector<double> mean, sigma;         // mean and sigma of z in each tet

@@ -30,6 +30,18 @@ struct Body {
   }
   int size() const { return mesh.tet_count(); }
 
+  // Layers of 0, 1 and so on, below the given heights.
+  void set_layers(const std::vector<double>& heights, unsigned seed) {
+    std::mt19937_64 random(seed);
+    std::normal_distribution<double> normal;
+    for (int t = 0; t < size(); ++t) {
+      const auto& [a, b, c, d] = mesh.tets[t];
+      const double height = (mesh.rest[a][2] + mesh.rest[b][2] + mesh.rest[c][2] + mesh.rest[d][2]) / 4;
+      truth[t] = static_cast<double>(std::upper_bound(heights.begin(), heights.end(), height) - heights.begin());
+      read[t] = truth[t] + kNoise * normal(random);
+    }
+  }
+
   // r = (z - read) / noise, about z = 0, in the norm of the unit matrix.
   PartsEstimate estimate(std::vector<double> levels) const {
     Spectrum s{.W = Columns(size()), .dual = Columns(size()), .complete = true};
@@ -57,15 +69,7 @@ TEST(PartsSampler, FindsValuesAndLocationsOfTwoParts) {
 
 TEST(PartsSampler, FindsThreeLayers) {
   Body body(0);
-  std::mt19937_64 random(1);
-  std::normal_distribution<double> normal;
-  for (int t = 0; t < body.size(); ++t) {
-    const auto& [a, b, c, d] = body.mesh.tets[t];
-    const double height =
-        (body.mesh.rest[a][2] + body.mesh.rest[b][2] + body.mesh.rest[c][2] + body.mesh.rest[d][2]) / 4;
-    body.truth[t] = height < 0.4 ? 0 : height < 0.6 ? 1 : 2;
-    body.read[t] = body.truth[t] + kNoise * normal(random);
-  }
+  body.set_layers({0.4, 0.6}, 1);
   const PartsEstimate e = body.estimate({0.2, 0.8, 1.7});
   int wrong = 0;
   for (int t = 0; t < body.size(); ++t) wrong += e.share[static_cast<size_t>(body.truth[t])][t] < 0.5 ? 1 : 0;
@@ -130,7 +134,9 @@ TEST(PartsSampler, IntervalsOfValuesContainTheTruth) {
   int inside[3] = {};
   double squares[3] = {};
   for (unsigned seed = 1; seed <= kRuns; ++seed) {
-    const PartsEstimate e = Body(1, seed).estimate({0, 1});
+    Body body(0);
+    body.set_layers({0.6}, seed);
+    const PartsEstimate e = body.estimate({0, 1});
     const double found[] = {e.levels[0], e.levels[1], e.levels[1] - e.levels[0]};
     const double sigma[] = {e.level_sigma[0], e.level_sigma[1], e.contrast_sigma};
     for (int k = 0; k < 3; ++k) {
