@@ -149,10 +149,10 @@ class FitPage(CommandLine):
     def assert_near(self, a, b, tolerance):
         self.assertLessEqual(abs(a - b), tolerance * max(abs(b), 1e-12), (a, b))
 
-    def capture(self, young="2e4"):
+    def capture(self, young="2e4", pokes=3, markers=30):
         self.write("truth.toml", BODY.replace("2e4", young))
-        self.aspic("capture", "truth.toml", "-o", "data", "--pokes", "3", "--depths", "1", "--tip", "disc:0.016", "--depth",
-                   "0.06", "--markers", "30", "--noise", "0.02", "--force-noise", "0.02", "-q", timeout=300)
+        self.aspic("capture", "truth.toml", "-o", "data", "--pokes", str(pokes), "--depths", "1", "--tip", "disc:0.016",
+                   "--depth", "0.06", "--markers", str(markers), "--noise", "0.02", "--force-noise", "0.02", "-q", timeout=300)
 
     def change_table(self, name, change):
         path = self.folder / "data" / name
@@ -223,11 +223,11 @@ class FitPage(CommandLine):
 
     def test_parts(self):
         """Values of parts have intervals, and the volumes and the contrast are those of figures.json."""
-        self.capture('"X < 0.05 ? 6e4 : 2e4"')
-        self.write("data/aspic.fit.toml", "mesh_errors = false\ncross_validation = false\nparts = 2\n")
+        self.capture('"X < 0.06 ? 6e4 : 2e4"', pokes=4, markers=60)
+        self.write("data/aspic.fit.toml", "cross_validation = false\nparts = 2\n")
         tables = self.fit("--known", "poisson=0.4", "--allow-unconverged")
         rows = [cells for t in tables.tables if t[0][1][0] == "quantity" for _, cells in t[1:]]
-        self.assertEqual([r[1] for r in rows], ["part 1", "part 2"])
+        self.assertEqual([r[1] for r in rows], ["part 1", "part 2", "given"])
         parts, values = self.figures["parts"], self.figures["values"]["young"]
         for true, value in zip((2e4, 6e4), values.values()):
             self.assertLess(value["lower"], true)
