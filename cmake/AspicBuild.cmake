@@ -48,8 +48,10 @@ endif()
 set(ASPIC_CONTRACT fast)
 if(EMSCRIPTEN)  # WebAssembly has no fused multiply-add
   # The vectorizer of straight-line code in emscripten 3.1.6 miscompiles "x = A * x + b": never enable it.
-  add_compile_options(-msimd128 -fno-slp-vectorize -fwasm-exceptions)
-  add_link_options(-fwasm-exceptions)
+  # Link-time optimization also vectorizes. It removes the virtual functions that the engine never calls.
+  set(whole_program -flto -fwhole-program-vtables -fvirtual-function-elimination -fvisibility=hidden)
+  add_compile_options(-msimd128 -fno-slp-vectorize -fwasm-exceptions ${whole_program})
+  add_link_options(-fwasm-exceptions ${whole_program} -Wl,-mllvm,-vectorize-slp=false)
   if(ASPIC_WASM_THREADS)
     add_compile_options(-pthread)
     add_link_options(-pthread)

@@ -25,6 +25,12 @@ BickelOptions baseline_options(const FitPlan& plan) {
   return options;
 }
 
+// The model of increments has linear tets and no grips.
+bool can_interpolate(const Experiment& training) {
+  return training.mesh.mids.empty() &&
+         std::none_of(training.cases.begin(), training.cases.end(), [](const LoadCase& c) { return c.grip.has_value(); });
+}
+
 std::vector<Prediction> predictions_of(const DataSet& data, const FitOutcome& outcome, bool with_baselines) {
   const FitPlan& plan = outcome.plan;
   const Experiment left_out = left_out_cases(data, plan);
@@ -33,7 +39,7 @@ std::vector<Prediction> predictions_of(const DataSet& data, const FitOutcome& ou
   if (!with_baselines) return predictions;
   const Experiment training = without_groups(data.experiment, plan.left_out);
   for (const Baseline baseline : {Baseline::homogeneous, Baseline::per_example_linear, Baseline::bickel}) {
-    if (baseline == Baseline::bickel && !training.mesh.mids.empty()) continue;  // needs linear tets
+    if (baseline == Baseline::bickel && !can_interpolate(training)) continue;
     predictions.push_back({std::string(name(baseline)), predict(baseline, training, left_out, baseline_options(plan))});
   }
   return predictions;

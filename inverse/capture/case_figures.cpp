@@ -4,6 +4,8 @@
 #include <cmath>
 #include <numeric>
 
+#include "fit/gauge.h"
+
 namespace aspic {
 namespace {
 
@@ -113,7 +115,7 @@ Response motion_response(const Experiment& experiment, const LoadCase& load, con
   double variance = 0;
   for (const MarkerReading& reading : load.positions) {
     measured.push_back(reading.position);
-    variance += squared_norm(reading.sigma) / 3;
+    variance += rms_sigma(reading.sigma) * rms_sigma(reading.sigma);
   }
   result.measured = mean_motion(experiment, load, measured);
   result.sigma = std::sqrt(variance) / static_cast<double>(load.positions.size());
@@ -136,11 +138,13 @@ double squared_residual(const LoadCase& load, const CaseOutcome& outcome, size_t
 void for_each_residual(const LoadCase& load, const CaseOutcome& outcome, const std::function<void(double)>& use) {
   if (!outcome.ok || outcome.left_out) return;
   const auto add = [&](const Vec3d& error, const Vec3d& sigma) {
-    for (int k = 0; k < 3; ++k) use(error[k] / sigma[k]);
+    for (int k = 0; k < 3; ++k)
+      if (is_measured(sigma, k)) use(error[k] / sigma[k]);
   };
   for (size_t i = 0; i < load.positions.size(); ++i)
     add(outcome.markers[i] - load.positions[i].position, outcome.marker_sigma[i]);
-  if (load.force) add(outcome.wrench.force - *load.force, outcome.force_sigma);
+  if (load.force)
+    add(to_gauge(load, outcome.wrench.force - *load.force), gauge_sigma(load, outcome.force_sigma));
   if (load.torque) add(outcome.wrench.torque - *load.torque, outcome.torque_sigma);
 }
 

@@ -7,6 +7,7 @@
 #include "base/error.h"
 #include "capture/data_findings.h"
 #include "capture/histories.h"
+#include "fit/gauge.h"
 #include "scene/placement.h"
 
 namespace aspic {
@@ -204,7 +205,6 @@ class CaseReader {
     return force;
   }
 
-  // A gauge that measures only the axial force does not determine the lateral force.
   void take_force_along_axis(LoadCase& load, double force) {
     if (!load.indenter && !load.grip) return;
     const Vec3d axis = load.indenter ? load.pose.axis : load.grip->displacement;
@@ -215,9 +215,6 @@ class CaseReader {
     const Vec3d a = unit(axis);
     load.gauge = a;
     load.force = force * a;
-    for (int i = 0; i < 3; ++i)
-      load.force_sigma[i] =
-          std::hypot(load.force_sigma[i], kForceAcross * std::abs(force) * std::sqrt(std::max(0.0, 1 - a[i] * a[i])));
   }
 
   Vec3d default_sigma(const char* what, double in_si) const {
@@ -267,21 +264,11 @@ void read_cases(const CaptureSettings& settings, const CaseScope& scope, ErrorLi
 }
 
 double sigma_along(const LoadCase& load) {
+  if (load.gauge) return gauge_sigma(load, load.force_sigma)[0];
   const double size = load.force ? norm(*load.force) : 0;
   if (!(size > 0)) return norm(load.force_sigma);
   const Vec3d d = (1 / size) * *load.force;
-  const Vec3d axis = load.grip ? load.grip->displacement : load.pose.axis;
-  const bool is_along_axis = (load.indenter || load.grip) && norm(cross(d, axis)) < 1e-9 * norm(axis);
-  double stated = 0, of_gauge = 0;
-  bool is_of_gauge = is_along_axis;
-  for (int i = 0; i < 3; ++i) {
-    const double variance = load.force_sigma[i] * load.force_sigma[i];
-    const double left = variance - std::pow(kForceAcross * size, 2) * std::max(0.0, 1 - d[i] * d[i]);
-    is_of_gauge &= left > -1e-12 * variance;
-    stated += d[i] * d[i] * variance;
-    of_gauge += d[i] * d[i] * std::max(left, 0.0);
-  }
-  return std::sqrt(is_of_gauge ? of_gauge : stated);
+  return norm(Vec3d{{d[0] * load.force_sigma[0], d[1] * load.force_sigma[1], d[2] * load.force_sigma[2]}});
 }
 
 double load_size(const LoadCase& load) {

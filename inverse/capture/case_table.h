@@ -26,15 +26,11 @@ struct CaseScope {
 // Appends the cases group by group, each from the smallest load on, and their lines.
 void read_cases(const CaptureSettings& settings, const CaseScope& scope, ErrorList& errors, DataSet& data);
 
-// If only the axial force was measured, standard deviation of the lateral force, relative to the force.
-inline constexpr double kForceAcross = 0.3;
-
 // Size of the load of a case: displacement of the indenter or of the vertices of the grip [m], pressure [Pa] or gravity
 // [m/s^2].
 double load_size(const LoadCase& load);
 
-// Standard deviation of the force along its direction [N]. Excludes the unbounded lateral uncertainty of a single-axis
-// gauge.
+// Standard deviation of the force along its direction, or along that of a single-axis gauge [N].
 double sigma_along(const LoadCase& load);
 
 // Axis of an indenter that has rotated since the touch.

@@ -5,6 +5,7 @@
 
 #include "capture/capture_cases_test.h"
 #include "capture/case_table.h"
+#include "fit/gauge.h"
 #include "mesh/surface.h"
 
 namespace aspic {
@@ -187,8 +188,10 @@ TEST_F(DataSetFile, AxialForceLeavesLateralForceUndetermined) {
   folder.write("positions.csv", "case,marker,x,y,z\n1,A,0.05,0.04,0.056\n");
   const LoadCase load = read_data_set(folder).experiment.cases[0];
   expect_equal(*load.force, {{0, 0, -2}});
-  EXPECT_NEAR(load.force_sigma[2], 0.01, 1e-12);
-  EXPECT_GT(load.force_sigma[0], 0.5);
+  ASSERT_TRUE(load.gauge);
+  expect_equal(*load.gauge, {{0, 0, -1}});
+  EXPECT_NEAR(gauge_sigma(load, load.force_sigma)[0], 0.01, 1e-12);
+  EXPECT_EQ(measured_count(load), 3 + 1);
 }
 
 TEST_F(DataSetFile, PatchesAndMarkersAtVerticesAreFound) {

@@ -4,6 +4,7 @@
 
 #include "capture/data_findings.h"
 #include "capture/surface_projection.h"
+#include "fit/gauge.h"
 
 namespace aspic {
 namespace {
@@ -160,8 +161,8 @@ class ContentDiagnosis {
       double noise = 0;
       for (const MarkerReading& r : cases[c].positions) {
         const Vec3d d = displacement(experiment_, r);
-        for (int i = 0; i < 3; ++i) u[3 * r.marker + i] = d[i];
-        noise += dot(r.sigma, r.sigma);
+        for (int i = 0; i < 3; ++i)
+          if (is_measured(r.sigma, i)) u[3 * r.marker + i] = d[i], noise += r.sigma[i] * r.sigma[i];
       }
       double whole = 0, left = 0;
       for (const double x : u) whole += x * x;

@@ -4,6 +4,7 @@
 #include "capture/case_table.h"
 #include "capture/data_findings.h"
 #include "capture/surface_projection.h"
+#include "fit/gauge.h"
 #include "fit/local_motion.h"
 #include "math/vectors.h"
 
@@ -126,7 +127,7 @@ class PositionDiagnosis {
       for (const MarkerReading& r : load.positions)
         if (is_by_indenter_alone(load)) {
           way.push_back(load_size(load) + norm(load.pose.rotation) * size_);
-          noise.push_back(norm(r.sigma));
+          noise.push_back(std::sqrt(3.0) * rms_sigma(r.sigma));
         }
     if (way.empty()) return true;
     const double motion = default_motion([](const Vec3d& x, const Vec3d&) { return x; });

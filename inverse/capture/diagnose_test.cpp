@@ -118,8 +118,8 @@ TEST(Diagnosis, ForcesOnTheIndenterAreReported) {
 void measure_along_axis(LoadCase& load, double force) {
   const Vec3d& a = load.pose.axis;
   load.force = force * a;
-  for (int i = 0; i < 3; ++i)
-    load.force_sigma[i] = std::hypot(0.01, 0.3 * force * std::sqrt(std::max(0.0, 1 - a[i] * a[i])));
+  load.gauge = a;
+  load.force_sigma = {{0.01, 0.01, 0.01}};
 }
 
 DataSet data_of_one_axis(const Vec3d& axis) {

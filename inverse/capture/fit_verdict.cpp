@@ -5,6 +5,7 @@
 
 #include "base/formatted.h"
 #include "capture/stated_errors.h"
+#include "fit/gauge.h"
 
 namespace aspic {
 namespace {
@@ -21,7 +22,9 @@ class GroupMisfit {
   void add(const LoadCase& load, const CaseOutcome& outcome) {
     for (size_t k = 0; k < load.positions.size(); ++k)
       add(outcome.markers[k] - load.positions[k].position, outcome.marker_sigma[k], 3, positions_);
-    if (load.force) add_answer(*load.force, outcome.wrench.force, outcome.force_sigma, forces_);
+    if (load.force)
+      add_answer(to_gauge(load, *load.force), to_gauge(load, outcome.wrench.force),
+                 gauge_sigma(load, outcome.force_sigma), forces_);
     if (load.torque) add_answer(*load.torque, outcome.wrench.torque, outcome.torque_sigma, torques_);
   }
 

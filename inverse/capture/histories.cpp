@@ -227,12 +227,8 @@ void add_end_forces(const ForceSeries* series, DataSet& data) {
     end.force = series->is_axial ? mean.value[0] * gauge : mean.value;
     const double sigma =
         std::max(noise_of(*series), kLeastNoise * largest_force(*series)) / std::sqrt(static_cast<double>(mean.count));
-    if (norm(end.force_sigma) > 0) continue;
-    end.force_sigma = {{sigma, sigma, sigma}};
-    if (!series->is_axial) continue;
-    for (int i = 0; i < 3; ++i)
-      end.force_sigma[i] =
-          std::hypot(sigma, kForceAcross * norm(*end.force) * std::sqrt(std::max(0.0, 1 - gauge[i] * gauge[i])));
+    if (series->is_axial) end.gauge = gauge;
+    if (!(norm(end.force_sigma) > 0)) end.force_sigma = {{sigma, sigma, sigma}};
   }
 }
 

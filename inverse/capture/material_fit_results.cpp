@@ -4,6 +4,7 @@
 #include "capture/fit_troubles.h"
 #include "capture/fitted_values.h"
 #include "capture/material_fit.h"
+#include "fit/gauge.h"
 #include "fit/quantity.h"
 #include "math/vectors.h"
 
@@ -20,7 +21,14 @@ void put_layers_in(std::span<const double> r, const LoadCase& fitted, CasePredic
   };
   for (size_t k = 0; k < fitted.positions.size(); ++k)
     put(fitted.positions[k].position, fitted.positions[k].sigma, shown.markers[k]);
-  if (fitted.force) put(*fitted.force, fitted.force_sigma, shown.wrench.force);
+  if (fitted.force && fitted.gauge) {
+    const Vec3d& a = *fitted.gauge;
+    const double along = dot(a, *fitted.force) + *residual * gauge_sigma(fitted, fitted.force_sigma)[0];
+    shown.wrench.force = shown.wrench.force + (along - dot(a, shown.wrench.force)) * a;
+    residual += 3;
+  } else if (fitted.force) {
+    put(*fitted.force, fitted.force_sigma, shown.wrench.force);
+  }
   if (fitted.torque) put(*fitted.torque, fitted.torque_sigma, shown.wrench.torque);
 }
 

@@ -6,6 +6,7 @@
 #include <span>
 
 #include "base/parallel.h"
+#include "fit/gauge.h"
 
 namespace aspic {
 namespace {
@@ -178,8 +179,9 @@ Experiment condensed(const Experiment& experiment) {
   for (size_t c = 0; c < cases.size(); ++c) {
     LoadCase& load = result.cases[c];
     replace_markers(cases[c]->positions, cases[c]->markers, result);
-    load.merged += 3 * (static_cast<int>(load.positions.size()) - static_cast<int>(cases[c]->positions.size()));
+    load.merged += measured_count(load);
     load.positions = std::move(cases[c]->positions);
+    load.merged -= measured_count(load);
     for (size_t k = 0; k < load.common_errors.size(); ++k)
       load.common_errors[k].markers = std::move(cases[c]->errors[k]);
   }

@@ -5,6 +5,7 @@
 
 #include "fit/common_errors.h"
 #include "fit/condensed_readings.h"
+#include "fit/gauge.h"
 
 namespace aspic {
 namespace {
@@ -16,11 +17,11 @@ std::vector<std::string> groups_of(const Experiment& experiment) {
   return groups;
 }
 
-// Adds squares, see finish().
+// Adds squares of the measured components, see finish().
 void add(const Vec3d& error, const Vec3d& sigma, double measured, ReadingErrors& errors) {
   errors.peak = std::max(errors.peak, measured);
-  errors.error += squared_norm(error);
-  errors.noise += squared_norm(sigma);
+  for (int k = 0; k < 3; ++k)
+    if (is_measured(sigma, k)) errors.error += error[k] * error[k], errors.noise += sigma[k] * sigma[k];
   ++errors.count;
 }
 
@@ -34,7 +35,8 @@ void add_case(const Experiment& experiment, const LoadCase& measured, const Case
         h.positions);
   }
   if (measured.force)
-    add(predicted.wrench.force - *measured.force, measured.force_sigma, norm(*measured.force), h.forces);
+    add(to_gauge(measured, predicted.wrench.force - *measured.force),
+        gauge_sigma(measured, measured.force_sigma), norm(*measured.force), h.forces);
   if (measured.torque)
     add(predicted.wrench.torque - *measured.torque, measured.torque_sigma, norm(*measured.torque), h.torques);
 }

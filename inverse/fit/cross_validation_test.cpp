@@ -94,6 +94,23 @@ TEST(CrossValidation, ReportsAGroupThatCannotBePredicted) {
   EXPECT_LT(result.position_error, 0);
 }
 
+// Held-out errors and noise of forces contain no component that was not measured.
+TEST(CrossValidation, ComparesForcesAlongTheGauge) {
+  HeldOutStudy study(0.001);
+  study.measure(study.halves(1));
+  const std::string wrong = study.block.experiment.cases.front().group;
+  for (LoadCase& load : study.block.experiment.cases) {
+    load.gauge = load.pose.axis;
+    load.force = (load.group == wrong ? 1.4 : 1) * dot(*load.gauge, *load.force) * *load.gauge;
+  }
+  const CrossValidation result =
+      study.validate(study.block.map({{.parameterization = Parameterization::uniform, .guess = 1e4}}));
+  for (const HeldOut& h : result.groups) {
+    if (h.group == wrong) EXPECT_GT(h.forces.error, 20 * h.forces.noise);
+    EXPECT_LT(h.forces.noise, 0.01 * h.forces.peak);
+  }
+}
+
 TEST(CrossValidation, NeedsTwoGroups) {
   IndentedBlock block;
   block.add_indentation(IndentedBlock::sites()[0], 0.003, 0.01);

@@ -8,6 +8,7 @@
 #include "dynamics/model_builder.h"
 #include "energy/linear_load.h"
 #include "energy/pressure.h"
+#include "fit/gauge.h"
 #include "mesh/surface.h"
 #include "mesh/vertices.h"
 
@@ -142,6 +143,7 @@ std::string LoadedBody::what(int residual) const {
   const std::string of = reading < markers ? "marker " + std::to_string(load_.positions[reading].marker)
                          : reading == markers && has_force() ? "force"
                                                              : "torque";
+  if (of == "force" && load_.gauge) return load_.name + ": force along the gauge";
   return load_.name + ": " + of + ", " + kAxis[axis];
 }
 
@@ -243,7 +245,8 @@ void LoadedBody::residuals(std::span<double> r) const {
   };
   for (size_t k = 0; k < load_.positions.size(); ++k)
     put(prediction_.markers[k], load_.positions[k].position, load_.positions[k].sigma);
-  if (has_force()) put(prediction_.wrench.force, *load_.force, load_.force_sigma);
+  if (has_force())
+    put(to_gauge(load_, prediction_.wrench.force), to_gauge(load_, *load_.force), gauge_sigma(load_, load_.force_sigma));
   if (has_torque()) put(prediction_.wrench.torque, *load_.torque, load_.torque_sigma);
 }
 
@@ -287,7 +290,7 @@ void LoadedBody::common_error(int k, std::span<double> dr) const {
     for (int axis = 0; axis < 3; ++axis) dr[i++] = e[axis] / sigma[axis];
   };
   for (size_t m = 0; m < load_.positions.size(); ++m) put(error.markers.at(m), load_.positions[m].sigma);
-  if (has_force()) put(error.wrench.force, load_.force_sigma);
+  if (has_force()) put(to_gauge(load_, error.wrench.force), gauge_sigma(load_, load_.force_sigma));
   if (has_torque()) put(error.wrench.torque, load_.torque_sigma);
 }
 
@@ -297,7 +300,7 @@ void LoadedBody::put_change(const Wrench& change, std::span<double> dr) const {
     for (int k = 0; k < 3; ++k) dr[i++] = d[k] / sigma[k];
   };
   for (const MarkerReading& reading : load_.positions) put(at(experiment_.markers[reading.marker], dx_), reading.sigma);
-  if (has_force()) put(change.force, load_.force_sigma);
+  if (has_force()) put(to_gauge(load_, change.force), gauge_sigma(load_, load_.force_sigma));
   if (has_torque()) put(change.torque, load_.torque_sigma);
 }
 
@@ -349,7 +352,7 @@ bool LoadedBody::add_transposed(std::span<const double> w, std::span<double> the
   }
   if (has_wrench()) {
     Wrench bar;
-    if (has_force()) bar.force = take(load_.force_sigma);
+    if (has_force()) bar.force = from_gauge(load_, take(gauge_sigma(load_, load_.force_sigma)));
     if (has_torque()) bar.torque = take(load_.torque_sigma);
     add_wrench_transposed(bar, thetabar);
   }

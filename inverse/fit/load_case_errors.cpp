@@ -1,6 +1,7 @@
 // Derivatives of the residuals of a case with respect to systematic errors.
 #include <algorithm>
 
+#include "fit/gauge.h"
 #include "fit/load_case.h"
 #include "mesh/vertices.h"
 
@@ -57,11 +58,10 @@ void LoadedBody::put_change_of_reading(const SystematicError& error, std::span<d
   const bool scales = error.kind == ErrorKind::force_scale;
   SystematicError one = error;
   one.value = 1;
-  if (has_force())
-    put(scales                          ? linear_wrench_.force + tare_of(experiment_.errors, load_)
-        : error.kind == ErrorKind::tare ? tare_of({one}, load_)
-                                        : Vec3d{},
-        load_.force_sigma);
+  const Vec3d force = scales                          ? linear_wrench_.force + tare_of(experiment_.errors, load_)
+                      : error.kind == ErrorKind::tare ? tare_of({one}, load_)
+                                                      : Vec3d{};
+  if (has_force()) put(to_gauge(load_, force), gauge_sigma(load_, load_.force_sigma));
   if (has_torque()) put(scales ? linear_wrench_.torque : Vec3d{}, load_.torque_sigma);
 }
 

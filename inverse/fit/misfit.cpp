@@ -7,6 +7,7 @@
 #include "base/error.h"
 #include "base/parallel.h"
 #include "fit/common_errors.h"
+#include "fit/gauge.h"
 #include "fit/load_case.h"
 #include "fit/refined_experiment.h"
 #include "fit/unloaded_shape.h"
@@ -305,8 +306,8 @@ Misfit::~Misfit() = default;
 int Misfit::parameter_count() const { return impl_->map.size(); }
 int Misfit::residual_count() const { return impl_->residual_count; }
 int Misfit::reading_count() const {
-  int count = impl_->residual_count;
-  for (const LoadCase& load : impl_->experiment.cases) count += load.merged;
+  int count = 0;
+  for (const LoadCase& load : impl_->experiment.cases) count += load.merged + measured_count(load);
   return count;
 }
 bool Misfit::evaluate(std::span<const double> p, std::span<double> r) { return impl_->evaluate(p, r); }

@@ -336,6 +336,39 @@ TEST(Misfit, CommonErrorSpansAllCasesAndIsWhitened) {
     EXPECT_NEAR(Lr[i] - dot(n, Lr) / squares * n[i], r[i] - dot(n, r) / squares * n[i], 1e-6 * norm(r));
 }
 
+TEST(Misfit, GaugeMeasuresOneComponentOfTheForce) {
+  Gel gel;
+  const ParameterMap map = gel.map();
+  LoadCase& load = *std::find_if(gel.experiment.cases.begin(), gel.experiment.cases.end(),
+                                 [](const LoadCase& c) { return c.force.has_value(); });
+  load.gauge = Vec3d{{0.6, 0, 0.8}};
+  load.force_sigma = {{0.02, 0.02, 0.02}};
+  const auto residuals = [&](const Vec3d& change) {
+    Experiment changed = gel.experiment;
+    LoadCase& c = changed.cases[static_cast<size_t>(&load - gel.experiment.cases.data())];
+    c.force = *c.force + change;
+    Misfit misfit(changed, map, kMisfitExact);
+    std::vector<double> r(misfit.residual_count());
+    EXPECT_TRUE(misfit.evaluate(map.guess(), r)) << misfit.failure();
+    EXPECT_EQ(misfit.reading_count(), misfit.residual_count() - 2);
+    return r;
+  };
+  const std::vector<double> r = residuals({});
+  EXPECT_EQ(r, residuals({{0.8, 5, -0.6}}));
+  std::vector<double> along = residuals({{0.06, 0, 0.08}});
+  for (size_t i = 0; i < r.size(); ++i) along[i] -= r[i];
+  EXPECT_NEAR(*std::min_element(along.begin(), along.end()), -5, 1e-9);
+  EXPECT_NEAR(norm(along), 5, 1e-9);
+
+  Misfit misfit(gel.experiment, map, kMisfitExact);
+  std::vector<double> at(r.size()), dr(r.size()), pbar(map.size());
+  ASSERT_TRUE(misfit.evaluate(map.guess(), at) && misfit.linearize());
+  const std::vector<double> dp = Numbers(6)(map.size()), w = Numbers(7)(r.size());
+  misfit.multiply(dp, dr);
+  misfit.multiply_transposed(w, pbar);
+  EXPECT_NEAR(dot(w, dr), dot(pbar, dp), 1e-10 * norm(w) * norm(dr));
+}
+
 TEST(Misfit, NamesEachResidual) {
   Gel gel;
   const ParameterMap map = gel.map();

@@ -10,6 +10,7 @@
 #include "fit/condensed_readings.h"
 #include "fit/cross_validation.h"
 #include "fit/field_text.h"
+#include "fit/gauge.h"
 #include "fit/quantity.h"
 #include "math/vectors.h"
 #include "mesh/surface.h"
@@ -28,7 +29,7 @@ Instruments instruments(const Experiment& experiment, const NextIndentationOptio
   Instruments result;
   std::optional<Indenter> indenter = options.indenter;
   for (const LoadCase& c : experiment.cases) {
-    for (const MarkerReading& r : c.positions) position.push_back(norm(r.sigma) / std::sqrt(3.0));
+    for (const MarkerReading& r : c.positions) position.push_back(rms_sigma(r.sigma));
     if (c.force) force.push_back(norm(c.force_sigma) / std::sqrt(3.0));
     if (c.torque) torque.push_back(norm(c.torque_sigma) / std::sqrt(3.0));
     if (!c.indenter) continue;

@@ -247,7 +247,7 @@ test("every figure above its limit is marked", () => {
   what.figures.groups[0].standard_deviations = 4.1;
   what.figures.common_errors = [{ cause: "the mesh", standard_deviations: -5 }];
   what.figures.held_out = { groups: [], position: 0.06, force: 0.09, torque: null, largest_motion: 1, largest_force: 1, largest_torque: 0, poor: true, limits: { position: 0.05, force: 0.1, torque: 0.1, single: 2 } };
-  assert.deepEqual(failing(), ["|r|² per reading (expected: 1)", "group with the largest error, rms: forces of a", "error of the mesh", "held-out positions: error beyond the noise, of the largest motion"]);
+  assert.deepEqual(failing(), ["|r|² per reading (expected: 1)", "group with the largest error: forces of a", "error of the mesh", "held-out positions: error beyond the noise, of the largest motion"]);
   what.figures.verdict = { good: false, text: "", reasons: [{ name: "groups_disagree", text: "'a' disagrees with 'b'", value: 2, limit: 1.5 }] };
   assert.equal(failing().at(-1), "'a' disagrees with 'b'");
 });

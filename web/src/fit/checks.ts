@@ -30,7 +30,7 @@ function squaresOf(head: FitHead): Check[] {
 function worstGroup({ figures: { groups, limits } }: FitHead): Check[] {
   if (groups.length === 0) return [];
   const worst = groups.reduce((a, b) => (b.standard_deviations > a.standard_deviations ? b : a));
-  return [{ what: `group with the largest error, rms: ${worst.readings} of ${worst.group}`, value: deviations(worst.standard_deviations), limit: deviations(limits.missed), fails: worst.standard_deviations > limits.missed }];
+  return [{ what: `group with the largest error: ${worst.readings} of ${worst.group}`, value: deviations(worst.standard_deviations), limit: deviations(limits.missed), fails: worst.standard_deviations > limits.missed }];
 }
 
 function commonErrors({ figures: { common_errors: errors, limits } }: FitHead): Check[] {
