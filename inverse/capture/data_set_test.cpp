@@ -321,6 +321,38 @@ TEST_F(DataSetFile, ReadsMotionsOfGrips) {
   EXPECT_NEAR(load_size(load), 0.005, 1e-15);
 }
 
+TEST_F(DataSetFile, MissingColumnsOfGripsAreZeroOrUnmeasured) {
+  measured("units = { length = \"mm\", mesh = \"m\" }\n[[grip]]\nname = \"clamp\"\nwhere = \"z > 0.0599\"\n");
+  folder.write("markers.csv", "marker,x,y,z\nA,50,40,60\n");
+  std::filesystem::remove(path("positions.csv"));
+  // The example in docs/capture_format.md.
+  folder.write("cases.csv",
+               "case,grip,move_x,move_y,move_z,rotation_z,force_z,torque_z\n"
+               "pull 2 mm,clamp,0,0,2,,0.61,\n"
+               "twist,clamp,,,,0.3,,0.004\n");
+  const DataSet data = read_data_set(folder);
+  const LoadCase &pull = data.experiment.cases[0], &twist = data.experiment.cases[1];
+  EXPECT_EQ(pull.name, "pull 2 mm");
+  expect_equal(*pull.force, {{0, 0, 0.61}});
+  expect_equal(*pull.gauge, {{0, 0, 1}});
+  EXPECT_NEAR(pull.force_sigma[0], 0.3 * 0.61, 1e-12);
+  EXPECT_NEAR(pull.force_sigma[2], 0.01 * 0.61, 1e-12);
+  EXPECT_FALSE(pull.torque);
+  expect_equal(twist.grip->rotation, {{0, 0, 0.3}});
+  expect_equal(twist.grip->displacement, {{0, 0, 0}});
+  EXPECT_NEAR((*twist.torque)[2], 4e-6, 1e-18);
+  EXPECT_NEAR(twist.torque_sigma[1], 0.3 * 4e-6, 1e-18);
+
+  folder.write("cases.csv", "case,grip,move_z,force_z,force_sd_z\npull,clamp,2,0.61,0.02\n");
+  const LoadCase own = read_data_set(folder).experiment.cases[0];
+  EXPECT_NEAR(own.force_sigma[2], 0.02, 1e-15);
+  EXPECT_NEAR(own.grip->displacement[2], 2e-3, 1e-15);
+  folder.write("cases.csv", "case,grip,move_z,force_x,force_z\npull,clamp,2,0,0.61\n");
+  EXPECT_THAT(refusal(), HasSubstr("cases.csv:2: force_x, force_y, force_z: there is no column force_y; add it, with 0"));
+  folder.write("cases.csv", "case,grip,move_x,move_z\npull,clamp,,2\n");
+  EXPECT_THAT(refusal(), HasSubstr("cases.csv:2: move_x, move_y, move_z: some are blank"));
+}
+
 TEST_F(DataSetFile, RefusesGripsWithPlaceAndRemedy) {
   const auto refusal_of = [&](const std::string& grip, const std::string& cases) {
     measured(grip);
