@@ -397,5 +397,35 @@ TEST_F(DataSetFile, ForcesAloneAreData) {
   EXPECT_THAT(data.notes, testing::Contains(HasSubstr("only forces are fitted")));
 }
 
+TEST_F(DataSetFile, ForcesAloneNeedNoMarkers) {
+  measured();
+  folder.write("positions.csv", "case,marker,x,y,z\n");
+  EXPECT_THAT(read_data_set(folder).notes,
+              testing::Contains(HasSubstr("positions.csv has no row below its header: only forces are fitted")));
+  std::filesystem::remove(path("markers.csv"));
+  EXPECT_THAT(refusal(), HasSubstr("markers.csv"));
+  std::filesystem::remove(path("positions.csv"));
+  const DataSet data = read_data_set(folder);
+  EXPECT_TRUE(data.marker_names.empty());
+  EXPECT_TRUE(data.experiment.cases[1].force);
+}
+
+TEST_F(DataSetFile, PixelsAreScaledByTheRegistrationOnly) {
+  const auto first_of = [&](const std::string& unit) {
+    measured("positions = \"dic_*.csv\"\nregistration = \"registration.toml\"\nunits = { length = \"mm\", mesh = \"m\"" +
+             unit + " }\ndeviation = { position = 0.05 }");
+    for (const char* table : {"markers.csv", "positions.csv"}) std::filesystem::remove(path(table));
+    folder.write("registration.toml", "scale = 1e-4\ntranslate = [0, 0, 0.06]\n");
+    folder.write("dic_1.csv", "id,x,y,ux,uy\n0,501,400,1,0\n");
+    folder.write("cases.csv", "case,frame,touch_x,touch_y,touch_z,depth,force\n1,1,50,40,70,4,2\n");
+    return read_data_set(folder).experiment.cases[0].positions[0];
+  };
+  const MarkerReading reading = first_of("");
+  EXPECT_NEAR(reading.position[0], 0.0501, 1e-12);
+  EXPECT_NEAR(reading.sigma[0], 5e-5, 1e-15);  // 0.05 mm
+  EXPECT_GT(reading.sigma[2], 1);              // not measured
+  EXPECT_THAT(message_of([&] { first_of(", recording = \"m\""); }), "");
+}
+
 }  // namespace
 }  // namespace aspic

@@ -4,6 +4,7 @@
 
 #include "capture/data_findings.h"
 #include "capture/surface_projection.h"
+#include "mesh/box.h"
 
 namespace aspic {
 namespace {
@@ -154,14 +155,15 @@ class ContentDiagnosis {
     const std::vector<LoadCase>& cases = experiment_.cases;
     std::set<std::string> groups;
     std::vector<std::vector<double>> basis;
+    const double size = size_of(experiment_.mesh);
     int motions = 0;
     for (size_t c = 0; c < std::min(cases.size(), kMaxCompared); ++c) {
       std::vector<double> u(3 * experiment_.markers.size(), 0.0);
       double noise = 0;
       for (const MarkerReading& r : cases[c].positions) {
         const Vec3d d = displacement(experiment_, r);
-        for (int i = 0; i < 3; ++i) u[3 * r.marker + i] = d[i];
-        noise += dot(r.sigma, r.sigma);
+        for (int i = 0; i < 3; ++i)
+          if (r.sigma[i] < size) u[3 * r.marker + i] = d[i], noise += r.sigma[i] * r.sigma[i];  // else not measured
       }
       double whole = 0, left = 0;
       for (const double x : u) whole += x * x;

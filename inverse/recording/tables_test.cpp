@@ -106,6 +106,14 @@ TEST_F(RecordedTables, RefusesDamagedTables) {
   EXPECT_THAT(refusal("d.csv"), HasSubstr("has no points"));
 }
 
+TEST_F(RecordedTables, NotesNumbersOfFilesUnlikeFrames) {
+  for (const char* name : {"s_0.obj", "s_1.obj", "t_1.obj", "t_02.obj"}) folder.write(name, "v 1 2 3\n");
+  EXPECT_THAT(read("s_*.obj").notes,
+              ElementsAre("frames count the files from 1: frame 1 = s_0.obj to frame 2 = s_1.obj"));
+  EXPECT_THAT(read("t_*.obj").notes, ElementsAre());
+  EXPECT_THAT(read("s_0.obj").notes, ElementsAre());
+}
+
 TEST_F(RecordedTables, ReadsMarkersOfSurfaces) {
   folder.write("s_1.obj", "v 9 9 9\nv 8 8 8\nv 7 7 7\no A\nv 1 2 3\np -1\nf 1 2 3\n");
   folder.write("s_2.obj", "v 9 9 9\nv 8 8 8\nv 7 7 7\nf 1 2 3\no A\nv 1 2 4\np 4\n");
@@ -149,6 +157,10 @@ TEST(Npz, RefusesDamage) {
   EXPECT_THAT(npz_refusal(npy("<f8", "(99999999999, 99999999999, 3)", "")),
               HasSubstr("the shape of the array is larger"));
   EXPECT_THAT(npz_refusal(npy("<c16", "(1, 1, 3)", "")), HasSubstr("the type of the array is '<c16'"));
+  EXPECT_THAT(npz_refusal(npy("|O", "(1, 1, 3)", "")), HasSubstr("texts by astype(str)"));
+  const std::string infinity("\0\0\0\0\0\0\xf0\x7f", 8);
+  EXPECT_THAT(npz_refusal(npy("<f8", "(2, 1, 3)", std::string(32, '\0') + infinity + std::string(8, '\0'))),
+              HasSubstr("positions[1, 0, 1] of '0' is infinite; write NaN"));
   EXPECT_THAT(npz_refusal(npy("<f8", "(3,)", std::string(24, '\0'))), HasSubstr("positions has the shape (3)"));
   EXPECT_THAT(npz_refusal("no array"), HasSubstr("is no array of numpy"));
   const std::string archive = zipped({{"positions.npy", npy("<f8", "(1, 1, 3)", std::string(24, '\0'))}});
