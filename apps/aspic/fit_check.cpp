@@ -91,8 +91,8 @@ void draw_charts(const DataSet& data, const fs::path& folder, std::FILE* human) 
 int fixed_corners(const Experiment& experiment) {
   std::set<int> corners;
   for (const Tet& tet : experiment.mesh.tets) corners.insert(tet.begin(), tet.end());
-  return static_cast<int>(std::count_if(experiment.fixed.begin(), experiment.fixed.end(),
-                                        [&](int v) { return corners.contains(v); }));
+  return static_cast<int>(
+      std::count_if(experiment.fixed.begin(), experiment.fixed.end(), [&](int v) { return corners.contains(v); }));
 }
 
 void print_content(const DataSet& data) {

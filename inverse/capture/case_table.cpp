@@ -47,9 +47,8 @@ class CaseReader {
     load.name = table_.text("case").empty() ? "case " + number : table_.text("case");
     load.group = table_.text("group").empty() ? load.name : table_.text("group");
     load.session = table_.text("session");
-    load.gravity =
-        table_.vector("gravity_", settings_.unit("gravity"), MissingColumn::zero)
-            .value_or(data_.experiment.scan_gravity.value_or(Vec3d{}));
+    load.gravity = table_.vector("gravity_", settings_.unit("gravity"), MissingColumn::zero)
+                       .value_or(data_.experiment.scan_gravity.value_or(Vec3d{}));
     read_pressure(load);
     read_indenter(load);
     read_grip(load);
@@ -178,8 +177,7 @@ class CaseReader {
 
   static void widen_across(const Vec3d& axis, double value, Vec3d& sigma) {
     for (int i = 0; i < 3; ++i)
-      sigma[i] =
-          std::hypot(sigma[i], kForceAcross * std::abs(value) * std::sqrt(std::max(0.0, 1 - axis[i] * axis[i])));
+      sigma[i] = std::hypot(sigma[i], kForceAcross * std::abs(value) * std::sqrt(std::max(0.0, 1 - axis[i] * axis[i])));
   }
 
   void take_force_of_series(LoadCase& load) {

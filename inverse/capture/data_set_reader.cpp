@@ -224,8 +224,12 @@ class DataSetReader {
   void read_markers(const SurfaceProjection& surface) {
     if (recorded_ && !has_table("markers")) {
       read_recorded_markers(surface);
-    } else if (has_table("markers") || has_table("positions")) {
+    } else if (has_table("markers")) {
       read_marker_table(surface);
+    } else if (has_table("positions")) {
+      throw InvalidInput("there is no " + data_.source.markers + ", but " + data_.source.positions +
+                         " has positions of markers; add it with the columns marker, x, y, z at rest, or remove " +
+                         data_.source.positions + " to fit forces only");
     }
   }
 

@@ -348,7 +348,8 @@ TEST_F(DataSetFile, MissingColumnsOfGripsAreZeroOrUnmeasured) {
   EXPECT_NEAR(own.force_sigma[2], 0.02, 1e-15);
   EXPECT_NEAR(own.grip->displacement[2], 2e-3, 1e-15);
   folder.write("cases.csv", "case,grip,move_z,force_x,force_z\npull,clamp,2,0,0.61\n");
-  EXPECT_THAT(refusal(), HasSubstr("cases.csv:2: force_x, force_y, force_z: there is no column force_y; add it, with 0"));
+  EXPECT_THAT(refusal(),
+              HasSubstr("cases.csv:2: force_x, force_y, force_z: there is no column force_y; add it, with 0"));
   folder.write("cases.csv", "case,grip,move_x,move_z\npull,clamp,,2\n");
   EXPECT_THAT(refusal(), HasSubstr("cases.csv:2: move_x, move_y, move_z: some are blank"));
 }
@@ -403,7 +404,7 @@ TEST_F(DataSetFile, ForcesAloneNeedNoMarkers) {
   EXPECT_THAT(read_data_set(folder).notes,
               testing::Contains(HasSubstr("positions.csv has no row below its header: only forces are fitted")));
   std::filesystem::remove(path("markers.csv"));
-  EXPECT_THAT(refusal(), HasSubstr("markers.csv"));
+  EXPECT_THAT(refusal(), HasSubstr("there is no markers.csv, but positions.csv has positions of markers; add it with"));
   std::filesystem::remove(path("positions.csv"));
   const DataSet data = read_data_set(folder);
   EXPECT_TRUE(data.marker_names.empty());
@@ -412,8 +413,9 @@ TEST_F(DataSetFile, ForcesAloneNeedNoMarkers) {
 
 TEST_F(DataSetFile, PixelsAreScaledByTheRegistrationOnly) {
   const auto first_of = [&](const std::string& unit) {
-    measured("positions = \"dic_*.csv\"\nregistration = \"registration.toml\"\nunits = { length = \"mm\", mesh = \"m\"" +
-             unit + " }\ndeviation = { position = 0.05 }");
+    measured(
+        "positions = \"dic_*.csv\"\nregistration = \"registration.toml\"\nunits = { length = \"mm\", mesh = \"m\"" +
+        unit + " }\ndeviation = { position = 0.05 }");
     for (const char* table : {"markers.csv", "positions.csv"}) std::filesystem::remove(path(table));
     folder.write("registration.toml", "scale = 1e-4\ntranslate = [0, 0, 0.06]\n");
     folder.write("dic_1.csv", "id,x,y,ux,uy\n0,501,400,1,0\n");

@@ -51,8 +51,8 @@ class MeasuredTable {
   std::optional<double> number(std::string_view column, double unit = 1);
   std::optional<int> integer(std::string_view column);
   std::optional<double> positive(std::string_view column, double unit = 1);
-  // Reads columns "force_x", "force_y", "force_z" for "force_"; empty if all are blank; an error if only some are, or if
-  // a column is missing and does not count as 0.
+  // Reads columns "force_x", "force_y", "force_z" for "force_"; empty if all are blank; an error if only some are, or
+  // if a column is missing and does not count as 0.
   std::optional<Vec3d> vector(const std::string& prefix, double unit = 1,
                               MissingColumn missing = MissingColumn::refused);
   // Axis whose column is the only one of the three, such as 2 of "force_z"; -1: there are several, or none.

@@ -41,9 +41,9 @@ class RecordedPositions {
   AffineMap to_mesh_;
   int unmeasured_ = -1;  // axis of the mesh along which nothing was measured
   bool is_in_pixels_ = false;
-  double unit_ = 1;      // [m]; 1 for pixels
-  double size_ = 0;      // of the body [m]
-  int rest_ = 0;         // index of the frame at rest
+  double unit_ = 1;  // [m]; 1 for pixels
+  double size_ = 0;  // of the body [m]
+  int rest_ = 0;     // index of the frame at rest
   std::map<std::string, int, std::less<>> point_of_;
 };
 

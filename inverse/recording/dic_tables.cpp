@@ -111,7 +111,8 @@ class DicTable {
     const std::string& text = csv_.text(*name_);
     const std::optional<double> number = csv_.try_number(*name_);
     const bool is_whole = number && *number == std::floor(*number) && std::abs(*number) < 2e9;
-    return is_whole && text.find_first_of(".eE") != std::string::npos ? std::to_string(static_cast<int>(*number)) : text;
+    return is_whole && text.find_first_of(".eE") != std::string::npos ? std::to_string(static_cast<int>(*number))
+                                                                      : text;
   }
   std::string where() const { return printable(csv_.where()); }
 

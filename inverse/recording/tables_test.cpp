@@ -42,7 +42,8 @@ TEST_F(RecordedTables, ReadsDiceFrames) {
 
 TEST_F(RecordedTables, ReadsDiceHeadersAndRowsWithoutIds) {
   const std::string head =
-      "***\n*** Digital Image Correlation Engine (DICe), Copyright 2021\n*** Subset size: 27, step size: x 5 y 5\n***\n";
+      "***\n*** Digital Image Correlation Engine (DICe), Copyright 2021\n*** Subset size: 27, step size: x 5 y "
+      "5\n***\n";
   folder.write("s.txt", head +
                             "COORDINATE_X,COORDINATE_Y,DISPLACEMENT_X,DISPLACEMENT_Y,SIGMA\n1.0E+00,2,0.5,0,0.01\n"
                             "3,4,0,0.25,-1\n");
@@ -57,8 +58,9 @@ TEST_F(RecordedTables, ReadsDiceHeadersAndRowsWithoutIds) {
                             "1.200E+01,3,4,0,0\n");
   EXPECT_THAT(read("n.txt").names, ElementsAre("0", "12"));
   folder.write("bad.txt", head + "SUBSET_ID,COORDINATE_X,COORDINATE_Y,DISPLACEMENT_X\n0,1,2,0\n");
-  EXPECT_THAT(refusal("bad.txt"),
-              HasSubstr("bad.txt:5: is no table of image correlation; for a table of DICe (2D) it lacks DISPLACEMENT_Y"));
+  EXPECT_THAT(
+      refusal("bad.txt"),
+      HasSubstr("bad.txt:5: is no table of image correlation; for a table of DICe (2D) it lacks DISPLACEMENT_Y"));
 }
 
 TEST_F(RecordedTables, ReadsEarlierColumnsOfPyvale) {
@@ -99,7 +101,8 @@ TEST_F(RecordedTables, RefusesDamagedTables) {
   folder.write("a.csv", "X,Y,Z,U,V,W\n1,2,3,0,zero,0\n");
   EXPECT_THAT(refusal("a.csv"), HasSubstr("a.csv:2: V = 'zero' is not a number"));
   folder.write("b.csv", "X,Y,Z,U,V\n1,2,3,0,0\n");
-  EXPECT_THAT(refusal("b.csv"), HasSubstr("b.csv:1: is no table of image correlation; for a table of X, Y, Z, U, V, W it lacks W"));
+  EXPECT_THAT(refusal("b.csv"),
+              HasSubstr("b.csv:1: is no table of image correlation; for a table of X, Y, Z, U, V, W it lacks W"));
   folder.write("c.csv", "id,X,Y,Z,U,V,W\n7,1,2,3,0,0,0\n7,1,2,3,0,0,0\n");
   EXPECT_THAT(refusal("c.csv"), HasSubstr("c.csv:3: the point '7' is there twice"));
   folder.write("d.csv", "X,Y,Z,U,V,W\n");
