@@ -48,6 +48,9 @@ class Capture(Captured):
         self.assertIn("6 cases, 20 markers", self.capture().stdout)
         text = self.aspic("check", "data").stdout
         self.assertIn("6 cases in 3 groups", text)
+        self.assertIn("64 vertices, 162 tets, 16 vertices fixed", text)
+        self.change("data/capture.toml", "order = 1\n", "")
+        self.assertIn("64 vertices, 162 quadratic tets, 16 vertices fixed", self.aspic("check", "data").stdout)
         self.assertNotIn("error:", text)
 
     def test_writes_to_out_and_keeps_earlier_results(self):

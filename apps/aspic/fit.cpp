@@ -179,9 +179,8 @@ class Fitter {
 void print_start(const FitArguments& arguments, const DataSet& data, const FitPlan& plan, const FitFolder& folder) {
   for (const std::string& note : data.notes) fmt::print("note: {}\n", note);
   const Experiment& e = data.experiment;
-  fmt::print("{}: {} vertices, {} tets, {} markers, {} cases in {} groups; {} threads; into {}\n", data.name,
-             e.mesh.vertex_count(), e.mesh.tet_count(), e.markers.size(), e.cases.size(), groups_of(e).size(),
-             thread_count(), arguments.out.string());
+  fmt::print("{}: {}, {} markers, {} cases in {} groups; {} threads; into {}\n", data.name, mesh_text(e.mesh),
+             e.markers.size(), e.cases.size(), groups_of(e).size(), thread_count(), arguments.out.string());
   std::string parameters;
   for (const FitParameter& u : plan.parameters) parameters += (parameters.empty() ? "" : ", ") + text_of(u);
   fmt::print("{}: {}\n", plan.model, parameters.empty() ? "no parameters to fit" : parameters);

@@ -4,8 +4,10 @@
 
 #include <algorithm>
 #include <nlohmann/json.hpp>
+#include <set>
 
 #include "aspic/commands.h"
+#include "aspic/fit_summary.h"
 #include "aspic/plot.h"
 #include "base/error.h"
 #include "capture/case_table.h"
@@ -85,14 +87,21 @@ void draw_charts(const DataSet& data, const fs::path& folder, std::FILE* human) 
   }
 }
 
+// Number of fixed vertices, without mid-edge nodes.
+int fixed_corners(const Experiment& experiment) {
+  std::set<int> corners;
+  for (const Tet& tet : experiment.mesh.tets) corners.insert(tet.begin(), tet.end());
+  return static_cast<int>(
+      std::count_if(experiment.fixed.begin(), experiment.fixed.end(), [&](int v) { return corners.contains(v); }));
+}
+
 void print_content(const DataSet& data) {
   const Experiment& e = data.experiment;
   size_t positions = 0, forces = 0;
   for (const LoadCase& load : e.cases) positions += load.positions.size(), forces += load.force.has_value();
-  fmt::print(
-      "{}: {} vertices, {} tets, {} vertices fixed; {} markers; {} cases in {} groups with {} positions, {} forces\n",
-      data.name, e.mesh.vertex_count(), e.mesh.tet_count(), e.fixed.size(), e.markers.size(), e.cases.size(),
-      cases_by_group(e).size(), positions, forces);
+  fmt::print("{}: {}, {} vertices fixed; {} markers; {} cases in {} groups with {} positions, {} forces\n", data.name,
+             mesh_text(e.mesh), fixed_corners(e), e.markers.size(), e.cases.size(), cases_by_group(e).size(), positions,
+             forces);
   for (const std::string& note : data.notes) fmt::print("note: {}\n", note);
 }
 

@@ -7,6 +7,7 @@
 
 #include "capture/fit_verdict.h"
 #include "capture/fitted_values.h"
+#include "mesh/tet_nodes.h"
 
 namespace aspic::cli {
 namespace {
@@ -114,6 +115,11 @@ void print_outliers(std::FILE* stream, const FitOutcome& outcome) {
 }
 
 }  // namespace
+
+std::string mesh_text(const TetMesh& mesh) {
+  return fmt::format("{} vertices, {} {}tets", lower_order(mesh).vertex_count(), mesh.tet_count(),
+                     mesh.mids.empty() ? "" : "quadratic ");
+}
 
 std::string value_text(double value, const std::string& unit) {
   if (unit != "Pa" || value == 0 || !std::isfinite(value))

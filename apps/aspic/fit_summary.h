@@ -9,6 +9,9 @@ namespace aspic::cli {
 
 void print_fit(std::FILE* stream, const DataSet& data, const FitOutcome& outcome);
 
+// "176 vertices, 540 quadratic tets", without mid-edge nodes
+std::string mesh_text(const TetMesh& mesh);
+
 // "12.3 kPa"
 std::string value_text(double value, const std::string& unit);
 

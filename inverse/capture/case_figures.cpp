@@ -144,8 +144,10 @@ void for_each_residual(const LoadCase& load, const CaseOutcome& outcome, const s
   for (size_t i = 0; i < load.positions.size(); ++i)
     add(outcome.markers[i] - load.positions[i].position, outcome.marker_sigma[i]);
   if (load.force)
-    add(to_gauge(load, outcome.wrench.force - *load.force), gauge_sigma(load, outcome.force_sigma));
-  if (load.torque) add(outcome.wrench.torque - *load.torque, outcome.torque_sigma);
+    add(to_gauge(load.gauge, outcome.wrench.force - *load.force), gauge_sigma(load.gauge, outcome.force_sigma));
+  if (load.torque)
+    add(to_gauge(load.torque_gauge, outcome.wrench.torque - *load.torque),
+        gauge_sigma(load.torque_gauge, outcome.torque_sigma));
 }
 
 std::string stiffness_unit(const CaseFigures& figures) {

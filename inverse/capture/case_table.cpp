@@ -48,8 +48,8 @@ class CaseReader {
     load.name = table_.text("case").empty() ? "case " + number : table_.text("case");
     load.group = table_.text("group").empty() ? load.name : table_.text("group");
     load.session = table_.text("session");
-    load.gravity =
-        table_.vector("gravity_", settings_.unit("gravity")).value_or(data_.experiment.scan_gravity.value_or(Vec3d{}));
+    load.gravity = table_.vector("gravity_", settings_.unit("gravity"), MissingColumn::zero)
+                       .value_or(data_.experiment.scan_gravity.value_or(Vec3d{}));
     read_pressure(load);
     read_indenter(load);
     read_grip(load);
@@ -97,10 +97,10 @@ class CaseReader {
   // A row without a touch uses the last touch of its group.
   void read_indenter(LoadCase& load) {
     const double length = settings_.unit("length");
-    std::optional<Vec3d> touch = table_.vector("touch_", length), axis = table_.vector("axis_");
+    std::optional<Vec3d> touch = table_.vector("touch_", length), axis = table_.vector("axis_", 1, MissingColumn::zero);
     const std::optional<Vec3d> center = table_.vector("center_", length);
     const std::optional<double> depth = table_.number("depth", length);
-    const Vec3d rotation = table_.vector("rotation_", settings_.unit("angle")).value_or(Vec3d{});
+    const Vec3d rotation = table_.vector("rotation_", settings_.unit("angle"), MissingColumn::zero).value_or(Vec3d{});
     if (!touch && !center && !depth && table_.text("tip").empty()) return;
     const Indenter* indenter = named(scope_.indenters, table_.text("tip"), "tip", "tip");
     if (!indenter) return;
@@ -126,8 +126,8 @@ class CaseReader {
   }
 
   void read_grip(LoadCase& load) {
-    const std::optional<Vec3d> move = table_.vector("move_", settings_.unit("length")),
-                               rotation = table_.vector("rotation_", settings_.unit("angle"));
+    const std::optional<Vec3d> move = table_.vector("move_", settings_.unit("length"), MissingColumn::zero),
+                               rotation = table_.vector("rotation_", settings_.unit("angle"), MissingColumn::zero);
     const bool is_named = !table_.text("grip").empty();
     if (!is_named && !move) return;
     if (load.indenter)
@@ -147,30 +147,42 @@ class CaseReader {
   void read_wrench(LoadCase& load) {
     const double sign = settings_["force_of"].text() == "tip" ? 1 : -1;
     const double newton = settings_.unit("force"), newton_meter = settings_.unit("torque");
-    load.force = table_.vector("force_", newton * sign);
-    const std::optional<double> along = table_.number("force", newton * sign);
-    const std::optional<Vec3d> force_sd = table_.sigma("force_sd", newton);
-    if (load.force && along) table_.error("force and force_x, force_y, force_z are both given; keep one of them");
-    load.force_sigma = force_sd ? *force_sd : default_sigma("force", newton);
-    if (along && !load.force) take_force_along_axis(load, *along);
-    if (!load.force && !along && (load.indenter || load.grip) && !has_histories(settings_))
-      take_force_of_series(load, force_sd.has_value());
-    load.torque = table_.vector("torque_", newton_meter * sign);
-    const std::optional<Vec3d> torque_sd = table_.sigma("torque_sd", newton_meter);
-    load.torque_sigma = torque_sd ? *torque_sd : default_sigma("torque", newton_meter);
+    load.force_sigma = stated_sigma("force", newton);
+    load.force = components("force_", newton * sign, load.gauge);
+    const std::optional<double> axial = table_.number("force", newton * sign);
+    if (load.force && axial) table_.error("force and force_x, force_y, force_z are both given; keep one of them");
+    if (axial && !load.force) take_force_along_axis(load, *axial);
+    if (!load.force && !axial && (load.indenter || load.grip) && !has_histories(settings_)) take_force_of_series(load);
+    load.torque_sigma = stated_sigma("torque", newton_meter);
+    load.torque = components("torque_", newton_meter * sign, load.torque_gauge);
     if ((load.force || load.torque) && !load.indenter && !load.grip)
       table_.error(
           "has a force or torque but no indenter and no grip; give its pose or motion, or leave the force blank");
   }
 
-  void take_force_of_series(LoadCase& load, bool has_sigma) {
+  // `gauge`: axis of the only column, if there is one.
+  std::optional<Vec3d> components(const std::string& prefix, double unit, std::optional<Vec3d>& gauge) {
+    const int axis = table_.only_axis(prefix);
+    if (axis < 0) return table_.vector(prefix, unit);
+    const std::optional<Vec3d> v = table_.vector(prefix, unit, MissingColumn::zero);
+    if (v) gauge = along(axis);
+    return v;
+  }
+
+  static Vec3d along(int axis) {
+    Vec3d a{};
+    a[axis] = 1;
+    return a;
+  }
+
+  void take_force_of_series(LoadCase& load) {
     if (!scope_.forces) return;
     try {
       const std::optional<double> time = scope_.recorded ? scope_.recorded->time_of(frame_) : frame_.time;
       if (!time) return table_.error("force and time are blank; the time selects the force in " + scope_.forces->file);
       const std::optional<SteadyForce> steady = force_at(*time);
       if (!steady) return;
-      const bool is_stated = has_sigma || norm(load.force_sigma) > 0;
+      const bool is_stated = norm(load.force_sigma) > 0;
       if (!is_stated) load.force_sigma = scope_.forces->is_axial ? along_all(steady->sigma[0]) : steady->sigma;
       if (scope_.forces->is_axial) {
         take_force_along_axis(load, steady->mean[0]);
@@ -217,7 +229,16 @@ class CaseReader {
     load.force = force * a;
   }
 
-  Vec3d default_sigma(const char* what, double in_si) const {
+  // Standard deviation of a force or torque; zero: chosen later.
+  Vec3d stated_sigma(const std::string& what, double in_si) {
+    if (const int axis = table_.only_axis(what + "_"); axis >= 0) {
+      const std::string own = what + "_sd_" + "xyz"[axis];
+      if (!table_.is_blank(own)) return along_all(table_.positive(own, in_si).value_or(0));
+    }
+    return table_.sigma(what + "_sd", in_si).value_or(default_sigma(what, in_si));
+  }
+
+  Vec3d default_sigma(const std::string& what, double in_si) const {
     const Value* sd = settings_["deviation"].find(what);
     const double value = sd ? sd->number() * in_si : 0;  // 0: chosen after all rows are read
     return {{value, value, value}};
@@ -264,7 +285,7 @@ void read_cases(const CaptureSettings& settings, const CaseScope& scope, ErrorLi
 }
 
 double sigma_along(const LoadCase& load) {
-  if (load.gauge) return gauge_sigma(load, load.force_sigma)[0];
+  if (load.gauge) return gauge_sigma(load.gauge, load.force_sigma)[0];
   const double size = load.force ? norm(*load.force) : 0;
   if (!(size > 0)) return norm(load.force_sigma);
   const Vec3d d = (1 / size) * *load.force;

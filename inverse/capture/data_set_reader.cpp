@@ -224,8 +224,12 @@ class DataSetReader {
   void read_markers(const SurfaceProjection& surface) {
     if (recorded_ && !has_table("markers")) {
       read_recorded_markers(surface);
-    } else {
+    } else if (has_table("markers")) {
       read_marker_table(surface);
+    } else if (has_table("positions")) {
+      throw InvalidInput("there is no " + data_.source.markers + ", but " + data_.source.positions +
+                         " has positions of markers; add it with the columns marker, x, y, z at rest, or remove " +
+                         data_.source.positions + " to fit forces only");
     }
   }
 
@@ -421,10 +425,13 @@ class DataSetReader {
     for (size_t c = 0; c < data_.experiment.cases.size(); ++c)
       case_of[data_.experiment.cases[c].name] = static_cast<int>(c);
     std::map<std::pair<int, int>, int> line_of;
-    for (size_t count = 0; table.next(); ++count) {
+    size_t count = 0;
+    for (; table.next(); ++count) {
       if (count == kMaxReadings) throw too_many_positions();
       read_position(table, case_of, line_of);
     }
+    if (count == 0)
+      data_.notes.push_back(data_.source.positions + " has no row below its header: only forces are fitted");
   }
 
   void read_recorded_positions() {
@@ -457,7 +464,9 @@ class DataSetReader {
 
   double position_sigma() const {  // [m]; 0: chosen later
     const Value* typical = settings_["deviation"].find("position");
-    return typical ? typical->number() * settings_.unit("length") * scale_of(to_mesh_) : 0;
+    if (!typical) return 0;
+    const bool is_length = recorded_ && recorded_->is_in_pixels();  // otherwise in the scale of the coordinates
+    return typical->number() * settings_.unit("length") * (is_length ? 1 : scale_of(to_mesh_));
   }
 
   void read_position(MeasuredTable& table, const std::map<std::string, int>& case_of,

@@ -190,7 +190,7 @@ TEST_F(DataSetFile, AxialForceLeavesLateralForceUndetermined) {
   expect_equal(*load.force, {{0, 0, -2}});
   ASSERT_TRUE(load.gauge);
   expect_equal(*load.gauge, {{0, 0, -1}});
-  EXPECT_NEAR(gauge_sigma(load, load.force_sigma)[0], 0.01, 1e-12);
+  EXPECT_NEAR(gauge_sigma(load.gauge, load.force_sigma)[0], 0.01, 1e-12);
   EXPECT_EQ(measured_count(load), 3 + 1);
 }
 
@@ -324,6 +324,39 @@ TEST_F(DataSetFile, ReadsMotionsOfGrips) {
   EXPECT_NEAR(load_size(load), 0.005, 1e-15);
 }
 
+TEST_F(DataSetFile, MissingColumnsOfGripsAreZeroOrUnmeasured) {
+  measured("units = { length = \"mm\", mesh = \"m\" }\n[[grip]]\nname = \"clamp\"\nwhere = \"z > 0.0599\"\n");
+  folder.write("markers.csv", "marker,x,y,z\nA,50,40,60\n");
+  std::filesystem::remove(path("positions.csv"));
+  // The example in docs/capture_format.md.
+  folder.write("cases.csv",
+               "case,grip,move_x,move_y,move_z,rotation_z,force_z,torque_z\n"
+               "pull 2 mm,clamp,0,0,2,,0.61,\n"
+               "twist,clamp,,,,0.3,,0.004\n");
+  const DataSet data = read_data_set(folder);
+  const LoadCase &pull = data.experiment.cases[0], &twist = data.experiment.cases[1];
+  EXPECT_EQ(pull.name, "pull 2 mm");
+  expect_equal(*pull.force, {{0, 0, 0.61}});
+  expect_equal(*pull.gauge, {{0, 0, 1}});
+  EXPECT_NEAR(pull.force_sigma[2], 0.01 * 0.61, 1e-12);
+  EXPECT_FALSE(pull.torque);
+  expect_equal(twist.grip->rotation, {{0, 0, 0.3}});
+  expect_equal(twist.grip->displacement, {{0, 0, 0}});
+  EXPECT_NEAR((*twist.torque)[2], 4e-6, 1e-18);
+  expect_equal(*twist.torque_gauge, {{0, 0, 1}});
+  EXPECT_EQ(measured_count(twist), 1);
+
+  folder.write("cases.csv", "case,grip,move_z,force_z,force_sd_z\npull,clamp,2,0.61,0.02\n");
+  const LoadCase own = read_data_set(folder).experiment.cases[0];
+  EXPECT_NEAR(own.force_sigma[2], 0.02, 1e-15);
+  EXPECT_NEAR(own.grip->displacement[2], 2e-3, 1e-15);
+  folder.write("cases.csv", "case,grip,move_z,force_x,force_z\npull,clamp,2,0,0.61\n");
+  EXPECT_THAT(refusal(),
+              HasSubstr("cases.csv:2: force_x, force_y, force_z: there is no column force_y; add it, with 0"));
+  folder.write("cases.csv", "case,grip,move_x,move_z\npull,clamp,,2\n");
+  EXPECT_THAT(refusal(), HasSubstr("cases.csv:2: move_x, move_y, move_z: some are blank"));
+}
+
 TEST_F(DataSetFile, RefusesGripsWithPlaceAndRemedy) {
   const auto refusal_of = [&](const std::string& grip, const std::string& cases) {
     measured(grip);
@@ -366,6 +399,37 @@ TEST_F(DataSetFile, ForcesAloneAreData) {
   const DataSet data = read_data_set(folder);
   EXPECT_TRUE(data.experiment.cases[0].positions.empty());
   EXPECT_THAT(data.notes, testing::Contains(HasSubstr("only forces are fitted")));
+}
+
+TEST_F(DataSetFile, ForcesAloneNeedNoMarkers) {
+  measured();
+  folder.write("positions.csv", "case,marker,x,y,z\n");
+  EXPECT_THAT(read_data_set(folder).notes,
+              testing::Contains(HasSubstr("positions.csv has no row below its header: only forces are fitted")));
+  std::filesystem::remove(path("markers.csv"));
+  EXPECT_THAT(refusal(), HasSubstr("there is no markers.csv, but positions.csv has positions of markers; add it with"));
+  std::filesystem::remove(path("positions.csv"));
+  const DataSet data = read_data_set(folder);
+  EXPECT_TRUE(data.marker_names.empty());
+  EXPECT_TRUE(data.experiment.cases[1].force);
+}
+
+TEST_F(DataSetFile, PixelsAreScaledByTheRegistrationOnly) {
+  const auto first_of = [&](const std::string& unit) {
+    measured(
+        "positions = \"dic_*.csv\"\nregistration = \"registration.toml\"\nunits = { length = \"mm\", mesh = \"m\"" +
+        unit + " }\ndeviation = { position = 0.05 }");
+    for (const char* table : {"markers.csv", "positions.csv"}) std::filesystem::remove(path(table));
+    folder.write("registration.toml", "scale = 1e-4\ntranslate = [0, 0, 0.06]\n");
+    folder.write("dic_1.csv", "id,x,y,ux,uy\n0,501,400,1,0\n");
+    folder.write("cases.csv", "case,frame,touch_x,touch_y,touch_z,depth,force\n1,1,50,40,70,4,2\n");
+    return read_data_set(folder).experiment.cases[0].positions[0];
+  };
+  const MarkerReading reading = first_of("");
+  EXPECT_NEAR(reading.position[0], 0.0501, 1e-12);
+  EXPECT_NEAR(reading.sigma[0], 5e-5, 1e-15);  // 0.05 mm
+  EXPECT_GT(reading.sigma[2], 1);              // not measured
+  EXPECT_THAT(message_of([&] { first_of(", recording = \"m\""); }), "");
 }
 
 }  // namespace

@@ -257,6 +257,11 @@ TEST(Diagnosis, TooFewAndRankDeficientDataAreNoticed) {
     same.experiment.cases[c].positions = same.experiment.cases[c % 2].positions;
   EXPECT_THAT(diagnose(same), Contains(finding(Severity::warning, "positions.csv", "rank-deficient")));
 
+  DataSet planar = data_in_lines();
+  for (LoadCase& load : planar.experiment.cases)
+    for (MarkerReading& r : load.positions) r.sigma[0] = 1e3;  // not measured
+  EXPECT_THAT(diagnose(planar), Not(Contains(finding(Severity::warning, "positions.csv", "more than their noise"))));
+
   DataSet still = data_in_lines();
   for (LoadCase& load : still.experiment.cases)
     for (MarkerReading& r : load.positions)

@@ -63,9 +63,15 @@ const Schema& fit_options_schema() {
 }
 
 bool read_fit_options(Table document, const std::string& source, FitPlan& plan) {
+  const Value *given_weight = document.find("weight"), *given_rule = document.find("rule");
+  const bool is_weight_given = given_weight && given_weight->is_number();
+  const bool is_rule_given = given_rule && given_rule->is_text() && given_rule->text() != "auto";
   const bool wants_baselines = document.find("baselines") != nullptr;
   check_and_complete(document, source, fit_options_schema(), "fit");
   const auto option = [&](const char* key) -> const Value& { return *document.find(key); };
+  if (is_weight_given && is_rule_given)
+    throw error_at(option("rule").place, "rule = " + toml_string(option("rule").text()) +
+                                             " chooses the weight, but weight is a number; remove one of the two");
   plan.regularizer.smoothness = smoothness_named(option("smooth").text());
   const Value &prior = option("prior"), &weight = option("weight");
   plan.regularizer.prior_sigma = prior.is_text() ? std::numeric_limits<double>::infinity() : prior.number();

@@ -292,6 +292,7 @@ std::string fingerprint_of(const Experiment& e) {
       hash.add("friction", 8), hash.add(friction, sizeof friction);
     }
     if (c.gauge) hash.add("gauge", 5), add_vector(*c.gauge);
+    if (c.torque_gauge) hash.add("torque gauge", 12), add_vector(*c.torque_gauge);
   }
   for (const SystematicError& error : e.errors) {
     const double numbers[] = {static_cast<double>(error.kind), static_cast<double>(error.axis), error.sigma};

@@ -3,8 +3,10 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "capture/fit_options.h"
 #include "capture/quick_plan_test.h"
 #include "io/folder_test.h"
+#include "scene/toml_reader.h"
 
 namespace aspic {
 namespace {
@@ -31,6 +33,18 @@ TEST(FitPlan, CorrectedFieldsAreWeighedByTheirEvidence) {
   plan.fit.weight_rule = "l_curve";
   EXPECT_EQ(completed(plan, block().experiment).fit.weight_rule, "l_curve");
   EXPECT_EQ(completed(quick_plan({"young=regions"}), block().experiment).fit.weight_rule, "auto");
+}
+
+TEST(FitPlan, WeightExcludesItsRule) {
+  const auto read = [](const std::string& text) {
+    FitPlan plan;
+    read_fit_options(read_toml(text, "aspic.fit.toml"), "aspic.fit.toml", plan);
+    return plan;
+  };
+  EXPECT_THAT(message_of([&] { read("weight = 3\nrule = \"evidence\"\n"); }),
+              HasSubstr("rule = \"evidence\" chooses the weight, but weight is a number; remove one of the two"));
+  EXPECT_EQ(read("weight = 3\nrule = \"auto\"\n").fit.weight, 3);
+  EXPECT_EQ(read("weight = \"auto\"\nrule = \"evidence\"\n").fit.weight_rule, "evidence");
 }
 
 TEST(FitPlan, WhatDoesNotFitTogetherIsRefused) {

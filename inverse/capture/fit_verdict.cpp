@@ -23,9 +23,11 @@ class GroupMisfit {
     for (size_t k = 0; k < load.positions.size(); ++k)
       add(outcome.markers[k] - load.positions[k].position, outcome.marker_sigma[k], 3, positions_);
     if (load.force)
-      add_answer(to_gauge(load, *load.force), to_gauge(load, outcome.wrench.force),
-                 gauge_sigma(load, outcome.force_sigma), forces_);
-    if (load.torque) add_answer(*load.torque, outcome.wrench.torque, outcome.torque_sigma, torques_);
+      add_answer(to_gauge(load.gauge, *load.force), to_gauge(load.gauge, outcome.wrench.force),
+                 gauge_sigma(load.gauge, outcome.force_sigma), forces_);
+    if (load.torque)
+      add_answer(to_gauge(load.torque_gauge, *load.torque), to_gauge(load.torque_gauge, outcome.wrench.torque),
+                 gauge_sigma(load.torque_gauge, outcome.torque_sigma), torques_);
   }
 
   const std::string& name() const { return name_; }

@@ -21,15 +21,15 @@ void put_layers_in(std::span<const double> r, const LoadCase& fitted, CasePredic
   };
   for (size_t k = 0; k < fitted.positions.size(); ++k)
     put(fitted.positions[k].position, fitted.positions[k].sigma, shown.markers[k]);
-  if (fitted.force && fitted.gauge) {
-    const Vec3d& a = *fitted.gauge;
-    const double along = dot(a, *fitted.force) + *residual * gauge_sigma(fitted, fitted.force_sigma)[0];
-    shown.wrench.force = shown.wrench.force + (along - dot(a, shown.wrench.force)) * a;
+  // Predictions across a gauge stay as they are.
+  const auto put_along = [&](const std::optional<Vec3d>& gauge, const Vec3d& reading, const Vec3d& sigma, Vec3d& to) {
+    if (!gauge) return put(reading, sigma, to);
+    const double along = dot(*gauge, reading) + *residual * gauge_sigma(gauge, sigma)[0];
+    to = to + (along - dot(*gauge, to)) * *gauge;
     residual += 3;
-  } else if (fitted.force) {
-    put(*fitted.force, fitted.force_sigma, shown.wrench.force);
-  }
-  if (fitted.torque) put(*fitted.torque, fitted.torque_sigma, shown.wrench.torque);
+  };
+  if (fitted.force) put_along(fitted.gauge, *fitted.force, fitted.force_sigma, shown.wrench.force);
+  if (fitted.torque) put_along(fitted.torque_gauge, *fitted.torque, fitted.torque_sigma, shown.wrench.torque);
 }
 
 }  // namespace

@@ -90,18 +90,34 @@ std::optional<double> MeasuredTable::positive(std::string_view column, double un
   return std::nullopt;
 }
 
-std::optional<Vec3d> MeasuredTable::vector(const std::string& prefix, double unit) {
+std::optional<Vec3d> MeasuredTable::vector(const std::string& prefix, double unit, MissingColumn missing) {
   Vec3d v{};
-  int given = 0;
+  int given = 0, zeros = 0;
+  std::string absent;
   for (int i = 0; i < 3; ++i) {
     const std::string name = prefix + "xyz"[i];
     const std::optional<double> value = number(name, unit);
     if (!value && !is_blank(name)) return std::nullopt;  // the error is listed
     if (value) v[i] = *value, ++given;
+    if (has(name)) continue;
+    if (missing == MissingColumn::zero) ++zeros;
+    if (absent.empty()) absent = name;
   }
-  if (given == 3) return v;
-  if (given > 0) error(prefix + "x, " + prefix + "y, " + prefix + "z: some are blank; give all three, or none");
+  if (given == 0) return std::nullopt;
+  if (given + zeros == 3) return v;
+  const std::string all = prefix + "x, " + prefix + "y, " + prefix + "z";
+  if (!absent.empty() && missing == MissingColumn::refused)
+    error(all + ": there is no column " + absent + "; add it, with 0 where this component is 0");
+  else
+    error(all + ": some are blank; give all three, or none");
   return std::nullopt;
+}
+
+int MeasuredTable::only_axis(const std::string& prefix) const {
+  int axis = -1, count = 0;
+  for (int i = 0; i < 3; ++i)
+    if (has(prefix + "xyz"[i])) axis = i, ++count;
+  return count == 1 ? axis : -1;
 }
 
 std::optional<Vec3d> MeasuredTable::sigma(const std::string& name, double unit) {

@@ -30,6 +30,8 @@ struct ColumnNames {
   std::map<std::string, std::string> as_written;  // names of some of them in the file
 };
 
+enum class MissingColumn { refused, zero };
+
 class MeasuredTable {
  public:
   // Throws InvalidInput if the file cannot be read or a renamed column is missing. Notes unknown columns whose names
@@ -49,8 +51,12 @@ class MeasuredTable {
   std::optional<double> number(std::string_view column, double unit = 1);
   std::optional<int> integer(std::string_view column);
   std::optional<double> positive(std::string_view column, double unit = 1);
-  // Reads columns "force_x", "force_y", "force_z" for "force_"; empty if all are blank; an error if only some are.
-  std::optional<Vec3d> vector(const std::string& prefix, double unit = 1);
+  // Reads columns "force_x", "force_y", "force_z" for "force_"; empty if all are blank; an error if only some are, or
+  // if a column is missing and does not count as 0.
+  std::optional<Vec3d> vector(const std::string& prefix, double unit = 1,
+                              MissingColumn missing = MissingColumn::refused);
+  // Axis whose column is the only one of the three, such as 2 of "force_z"; -1: there are several, or none.
+  int only_axis(const std::string& prefix) const;
   // Reads one column for all directions, or three: "force_sd", or "force_sd_x" and so on.
   std::optional<Vec3d> sigma(const std::string& name, double unit);
   // Index of a name in a column; blank selects the only one. -1 after adding an error: unknown.

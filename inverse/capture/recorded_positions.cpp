@@ -11,8 +11,13 @@ namespace {
 constexpr double kAlongAxis = 0.9999;  // cosine
 constexpr double kUnknown = 1e3;  // standard deviation of a coordinate that was not measured, over the size of the body
 
-// The settings override the file, which overrides the unit of the tables.
+bool is_in_pixels(const Recording& recording, const CaptureSettings& settings) {
+  return recording.is_planar && !recording.unit && !settings["units"].find("recording");
+}
+
+// The settings override the file, which overrides the unit of the tables. The registration scales pixels to m.
 double unit_of(const Recording& recording, const CaptureSettings& settings) {
+  if (is_in_pixels(recording, settings)) return 1;
   if (settings["units"].find("recording")) return settings.unit("recording");
   return recording.unit.value_or(settings.unit("length"));
 }
@@ -21,7 +26,10 @@ double unit_of(const Recording& recording, const CaptureSettings& settings) {
 
 RecordedPositions::RecordedPositions(Recording recording, const CaptureSettings& settings, double size,
                                      std::vector<std::string>& notes)
-    : recording_(std::move(recording)), unit_(unit_of(recording_, settings)), size_(size) {
+    : recording_(std::move(recording)),
+      is_in_pixels_(aspic::is_in_pixels(recording_, settings)),
+      unit_(unit_of(recording_, settings)),
+      size_(size) {
   notes.insert(notes.end(), recording_.notes.begin(), recording_.notes.end());
   if (const Value* frame = settings.find("rest_frame")) {
     try {
@@ -32,7 +40,9 @@ RecordedPositions::RecordedPositions(Recording recording, const CaptureSettings&
   }
   if (recording_.is_planar) unmeasured_ = 2;
   if (recording_.is_planar)
-    notes.push_back(recording_.file + ": has two coordinates per point; z was not measured and counts as unknown");
+    notes.push_back(recording_.file + ": has two coordinates per point" +
+                    (is_in_pixels_ ? ", in pixels (units.recording states another unit)" : "") +
+                    "; z was not measured and counts as unknown");
   for (size_t i = 0; i < recording_.names.size(); ++i) point_of_[recording_.names[i]] = static_cast<int>(i);
 }
 

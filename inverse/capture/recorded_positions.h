@@ -28,7 +28,8 @@ class RecordedPositions {
 
   std::optional<double> time_of(const CaseFrame& wanted) const;  // [s]
   double interval() const;                                       // mean time between frames [s]; 0 without times
-  double unit() const { return unit_; }                          // [m]
+  double unit() const { return unit_; }                          // [m]; 1 for pixels
+  bool is_in_pixels() const { return is_in_pixels_; }            // of an image, without a stated unit
 
   void set_registration(const AffineMap& to_mesh);  // throws InvalidInput if a plane of an image becomes oblique
   Vec3d on_mesh(const Vec3d& position) const { return to_mesh_(unit_ * position); }  // [m]
@@ -39,9 +40,10 @@ class RecordedPositions {
   Recording recording_;
   AffineMap to_mesh_;
   int unmeasured_ = -1;  // axis of the mesh along which nothing was measured
-  double unit_ = 1;      // [m]
-  double size_ = 0;      // of the body [m]
-  int rest_ = 0;         // index of the frame at rest
+  bool is_in_pixels_ = false;
+  double unit_ = 1;  // [m]; 1 for pixels
+  double size_ = 0;  // of the body [m]
+  int rest_ = 0;     // index of the frame at rest
   std::map<std::string, int, std::less<>> point_of_;
 };
 

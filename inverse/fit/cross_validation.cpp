@@ -35,10 +35,11 @@ void add_case(const Experiment& experiment, const LoadCase& measured, const Case
         h.positions);
   }
   if (measured.force)
-    add(to_gauge(measured, predicted.wrench.force - *measured.force),
-        gauge_sigma(measured, measured.force_sigma), norm(*measured.force), h.forces);
+    add(to_gauge(measured.gauge, predicted.wrench.force - *measured.force),
+        gauge_sigma(measured.gauge, measured.force_sigma), norm(*measured.force), h.forces);
   if (measured.torque)
-    add(predicted.wrench.torque - *measured.torque, measured.torque_sigma, norm(*measured.torque), h.torques);
+    add(to_gauge(measured.torque_gauge, predicted.wrench.torque - *measured.torque),
+        gauge_sigma(measured.torque_gauge, measured.torque_sigma), norm(*measured.torque), h.torques);
 }
 
 void finish(HeldOut& h) {

@@ -1,26 +1,27 @@
-// Readings of one component: forces of a single-axis gauge, and positions without depth.
+// Readings of one component: forces and torques of single-axis gauges, and positions without depth.
 #pragma once
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include "fit/misfit.h"
 
 namespace aspic {
 
-// Components of a force that were measured: {its component along the gauge, 0, 0}, or all three without a gauge.
-inline Vec3d to_gauge(const LoadCase& load, const Vec3d& force) {
-  return load.gauge ? Vec3d{{dot(*load.gauge, force), 0, 0}} : force;
+// Measured components of a force or torque: {its component along the gauge, 0, 0}, or all three without a gauge.
+inline Vec3d to_gauge(const std::optional<Vec3d>& gauge, const Vec3d& v) {
+  return gauge ? Vec3d{{dot(*gauge, v), 0, 0}} : v;
 }
 
 // Transpose of to_gauge().
-inline Vec3d from_gauge(const LoadCase& load, const Vec3d& components) {
-  return load.gauge ? components[0] * *load.gauge : components;
+inline Vec3d from_gauge(const std::optional<Vec3d>& gauge, const Vec3d& components) {
+  return gauge ? components[0] * *gauge : components;
 }
 
 // Standard deviations of to_gauge() for those of the axes. Components that were not measured have infinite ones.
-inline Vec3d gauge_sigma(const LoadCase& load, const Vec3d& sigma) {
-  if (!load.gauge) return sigma;
-  const Vec3d& a = *load.gauge;
+inline Vec3d gauge_sigma(const std::optional<Vec3d>& gauge, const Vec3d& sigma) {
+  if (!gauge) return sigma;
+  const Vec3d& a = *gauge;
   return {{norm(Vec3d{{a[0] * sigma[0], a[1] * sigma[1], a[2] * sigma[2]}}), INFINITY, INFINITY}};
 }
 
@@ -46,8 +47,8 @@ inline int measured_count(const LoadCase& load) {
     for (int k = 0; k < 3; ++k) count += is_measured(sigma, k) ? 1 : 0;
   };
   for (const MarkerReading& reading : load.positions) add(reading.sigma);
-  if (load.force) add(gauge_sigma(load, load.force_sigma));
-  if (load.torque) add(load.torque_sigma);
+  if (load.force) add(gauge_sigma(load.gauge, load.force_sigma));
+  if (load.torque) add(gauge_sigma(load.torque_gauge, load.torque_sigma));
   return count;
 }
 

@@ -123,7 +123,7 @@ Model LoadedBody::make_model(const std::string& material, std::span<const Materi
     for (int t = 0; t < mesh.tet_count(); ++t) add_body_force(mesh, t, model.density[t] * load_.gravity, weight);
     add_scaled(make_linear_load("gravity", std::move(weight)));
   }
-  if (load_.pressure != 0) add_scaled(make_pressure_of(load_, mesh));
+  if (load_.pressure != 0) add_scaled(make_pressure_of(load_.gauge, mesh));
   if (load_.indenter) {
     auto probe = make_probe_of(experiment_, load_);
     probe_ = probe.get();
@@ -143,7 +143,8 @@ std::string LoadedBody::what(int residual) const {
   const std::string of = reading < markers ? "marker " + std::to_string(load_.positions[reading].marker)
                          : reading == markers && has_force() ? "force"
                                                              : "torque";
-  if (of == "force" && load_.gauge) return load_.name + ": force along the gauge";
+  if ((of == "force" && load_.gauge) || (of == "torque" && load_.torque_gauge))
+    return load_.name + ": " + of + " along the gauge";
   return load_.name + ": " + of + ", " + kAxis[axis];
 }
 
@@ -246,8 +247,11 @@ void LoadedBody::residuals(std::span<double> r) const {
   for (size_t k = 0; k < load_.positions.size(); ++k)
     put(prediction_.markers[k], load_.positions[k].position, load_.positions[k].sigma);
   if (has_force())
-    put(to_gauge(load_, prediction_.wrench.force), to_gauge(load_, *load_.force), gauge_sigma(load_, load_.force_sigma));
-  if (has_torque()) put(prediction_.wrench.torque, *load_.torque, load_.torque_sigma);
+    put(to_gauge(load_.gauge, prediction_.wrench.force), to_gauge(load_.gauge, *load_.force), gauge_sigma(load_.gauge, load_.force_sigma));
+  if (has_torque()) {
+    const auto& gauge = load_.torque_gauge;
+    put(to_gauge(gauge, prediction_.wrench.torque), to_gauge(gauge, *load_.torque), gauge_sigma(gauge, load_.torque_sigma));
+  }
 }
 
 void LoadedBody::restore(std::span<const double> x) {
@@ -290,8 +294,8 @@ void LoadedBody::common_error(int k, std::span<double> dr) const {
     for (int axis = 0; axis < 3; ++axis) dr[i++] = e[axis] / sigma[axis];
   };
   for (size_t m = 0; m < load_.positions.size(); ++m) put(error.markers.at(m), load_.positions[m].sigma);
-  if (has_force()) put(to_gauge(load_, error.wrench.force), gauge_sigma(load_, load_.force_sigma));
-  if (has_torque()) put(error.wrench.torque, load_.torque_sigma);
+  if (has_force()) put(to_gauge(load_.gauge, error.wrench.force), gauge_sigma(load_.gauge, load_.force_sigma));
+  if (has_torque()) put(to_gauge(load_.torque_gauge, error.wrench.torque), gauge_sigma(load_.torque_gauge, load_.torque_sigma));
 }
 
 void LoadedBody::put_change(const Wrench& change, std::span<double> dr) const {
@@ -300,8 +304,8 @@ void LoadedBody::put_change(const Wrench& change, std::span<double> dr) const {
     for (int k = 0; k < 3; ++k) dr[i++] = d[k] / sigma[k];
   };
   for (const MarkerReading& reading : load_.positions) put(at(experiment_.markers[reading.marker], dx_), reading.sigma);
-  if (has_force()) put(to_gauge(load_, change.force), gauge_sigma(load_, load_.force_sigma));
-  if (has_torque()) put(change.torque, load_.torque_sigma);
+  if (has_force()) put(to_gauge(load_.gauge, change.force), gauge_sigma(load_.gauge, load_.force_sigma));
+  if (has_torque()) put(to_gauge(load_.torque_gauge, change.torque), gauge_sigma(load_.torque_gauge, load_.torque_sigma));
 }
 
 bool LoadedBody::multiply(std::span<const double> dtheta, std::span<double> dr) {
@@ -352,8 +356,8 @@ bool LoadedBody::add_transposed(std::span<const double> w, std::span<double> the
   }
   if (has_wrench()) {
     Wrench bar;
-    if (has_force()) bar.force = from_gauge(load_, take(gauge_sigma(load_, load_.force_sigma)));
-    if (has_torque()) bar.torque = take(load_.torque_sigma);
+    if (has_force()) bar.force = from_gauge(load_.gauge, take(gauge_sigma(load_.gauge, load_.force_sigma)));
+    if (has_torque()) bar.torque = from_gauge(load_.torque_gauge, take(gauge_sigma(load_.torque_gauge, load_.torque_sigma)));
     add_wrench_transposed(bar, thetabar);
   }
   ++counts_.solves;

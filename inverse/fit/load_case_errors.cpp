@@ -61,8 +61,9 @@ void LoadedBody::put_change_of_reading(const SystematicError& error, std::span<d
   const Vec3d force = scales                          ? linear_wrench_.force + tare_of(experiment_.errors, load_)
                       : error.kind == ErrorKind::tare ? tare_of({one}, load_)
                                                       : Vec3d{};
-  if (has_force()) put(to_gauge(load_, force), gauge_sigma(load_, load_.force_sigma));
-  if (has_torque()) put(scales ? linear_wrench_.torque : Vec3d{}, load_.torque_sigma);
+  if (has_force()) put(to_gauge(load_.gauge, force), gauge_sigma(load_.gauge, load_.force_sigma));
+  const Vec3d torque = scales ? linear_wrench_.torque : Vec3d{};
+  if (has_torque()) put(to_gauge(load_.torque_gauge, torque), gauge_sigma(load_.torque_gauge, load_.torque_sigma));
 }
 
 // The energy of the probe is invariant under common rigid motions v of body and indenter, so its gradient g changes

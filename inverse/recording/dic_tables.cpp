@@ -43,6 +43,11 @@ const std::vector<DicDialect>& dialects() {
        .displacements = {"disp_u", "disp_v"},
        .failed = "converged",
        .is_flag = true},
+      {.program = "pyvale (2D, displacement_u)",  // earlier versions
+       .coordinates = {"subset_x", "subset_y"},
+       .displacements = {"displacement_u", "displacement_v"},
+       .failed = "converged",
+       .is_flag = true},
       {.program = "x, y, z, ux, uy, uz",
        .coordinates = {"x", "y", "z"},
        .displacements = {"ux", "uy", "uz"},
@@ -56,10 +61,37 @@ const std::vector<DicDialect>& dialects() {
   return table;
 }
 
-bool has_all(const std::vector<std::string>& columns, const std::vector<const char*>& wanted) {
-  return std::all_of(wanted.begin(), wanted.end(), [&](const char* name) {
-    return std::find(columns.begin(), columns.end(), name) != columns.end();
-  });
+// Required columns of a dialect that a table has, or lacks.
+struct Columns {
+  size_t present = 0;
+  std::vector<std::string> missing;
+};
+
+Columns compared(const std::vector<std::string>& columns, const DicDialect& dialect) {
+  Columns result;
+  for (const auto* names : {&dialect.coordinates, &dialect.displacements})
+    for (const char* name : *names) {
+      if (std::find(columns.begin(), columns.end(), name) != columns.end())
+        ++result.present;
+      else
+        result.missing.emplace_back(name);
+    }
+  return result;
+}
+
+// Names the columns that are missing for the dialect with the most columns in common; empty without common columns.
+std::string missing_columns(const std::vector<std::string>& columns) {
+  size_t most = 0;
+  std::string text;
+  for (const DicDialect& dialect : dialects()) {
+    const Columns own = compared(columns, dialect);
+    if (own.present <= most) continue;
+    most = own.present;
+    text.clear();
+    for (const std::string& name : own.missing) text += (text.empty() ? "" : ", ") + name;
+    text = std::string("; for a table of ") + dialect.program + " it lacks " + text;
+  }
+  return text;
 }
 
 // One table: the points of a frame.
@@ -73,7 +105,15 @@ class DicTable {
   }
 
   bool next() { return csv_.next() && ++row_; }
-  std::string name() const { return name_ ? csv_.text(*name_) : std::to_string(row_); }
+  // DICe writes whole numbers as 1.000E+00.
+  std::string name() const {
+    if (!name_) return std::to_string(row_);
+    const std::string& text = csv_.text(*name_);
+    const std::optional<double> number = csv_.try_number(*name_);
+    const bool is_whole = number && *number == std::floor(*number) && std::abs(*number) < 2e9;
+    return is_whole && text.find_first_of(".eE") != std::string::npos ? std::to_string(static_cast<int>(*number))
+                                                                      : text;
+  }
   std::string where() const { return printable(csv_.where()); }
 
   // Position at rest and in this frame; not seen if the correlation failed.
@@ -130,9 +170,8 @@ class DicReader {
     const CsvReader csv(file, CsvOrigin::foreign);
     const DicDialect* dialect = dialect_of(csv.columns());
     if (!dialect)
-      throw InvalidInput(file.string() +
-                         ":1: is no table of image correlation; known are those of DICe, pyvale and muDIC, "
-                         "and tables with the columns X, Y, Z, U, V, W");
+      throw InvalidInput(csv.where() + ": is no table of image correlation" + missing_columns(csv.columns()) +
+                         "; known are those of DICe, pyvale and muDIC, and tables with the columns X, Y, Z, U, V, W");
     return *dialect;
   }
 
@@ -186,7 +225,7 @@ class DicReader {
 
 const DicDialect* dialect_of(const std::vector<std::string>& columns) {
   for (const DicDialect& dialect : dialects())
-    if (has_all(columns, dialect.coordinates) && has_all(columns, dialect.displacements)) return &dialect;
+    if (compared(columns, dialect).missing.empty()) return &dialect;
   return nullptr;
 }
 

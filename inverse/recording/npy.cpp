@@ -77,7 +77,8 @@ class NpyReader {
     const bool is_text = size && (kind_ == 'U' || kind_ == 'S') && *size > 0 && *size < 100'000;
     if (!is_number && !is_text)
       data_.fail("the type of the array is " + shown(type) +
-                 "; known are float32, float64, int32, int64 and texts. Convert it by astype(float)");
+                 "; known are float32, float64, int32, int64 and texts. Convert numbers by astype(float), texts by "
+                 "astype(str)");
     size_ = static_cast<size_t>(*size);
     width_ = kind_ == 'U' ? 4 * size_ : size_;
     data_ = ByteCursor(file_, contents_, data_.position(), order_);

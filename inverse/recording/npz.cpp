@@ -86,6 +86,10 @@ class NpzReader {
       Vec3d p{};
       for (size_t axis = 0; axis < axes; ++axis)
         p[static_cast<int>(axis)] = positions.numbers[(f * points + i) * axes + axis];
+      for (int axis = 0; axis < 3; ++axis)
+        if (std::isinf(p[axis]))
+          fail("positions[" + std::to_string(f) + ", " + std::to_string(i) + ", " + std::to_string(axis) + "] of '" +
+               recording_.names[i] + "' is infinite; write NaN where a point was not seen");
       if (!is_seen(p)) p = {{kMissing, kMissing, kMissing}};
       frame.positions.push_back(p);
     }

@@ -7,6 +7,7 @@
 
 #include "base/error.h"
 #include "base/formatted.h"
+#include "base/number_chars.h"
 #include "base/printable.h"
 #include "io/atomic_file.h"
 #include "io/csv_reader.h"
@@ -23,6 +24,33 @@ std::string lower_extension(const fs::path& path) {
   std::string extension = path.extension().string();
   for (char& c : extension) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
   return extension;
+}
+
+// Last number in the name of a file; empty if it has none.
+std::optional<int> own_number(const fs::path& file) {
+  const std::string stem = file.stem().string();
+  const size_t last = stem.find_last_of("0123456789");
+  if (last == std::string::npos) return std::nullopt;
+  const size_t before = stem.find_last_not_of("0123456789", last);
+  const size_t first = before == std::string::npos ? 0 : before + 1;
+  int number = 0;
+  const auto [end, error] = from_chars(stem.data() + first, stem.data() + last + 1, number);
+  return error == std::errc() ? std::optional(number) : std::nullopt;
+}
+
+// Frames of a sequence are counted from 1, whatever the numbers in the names of its files.
+void note_numbers(const std::vector<fs::path>& files, Recording& recording) {
+  const auto frame = [&](size_t i) {
+    return "frame " + std::to_string(i + 1) + " = " + printable(files[i].filename().string());
+  };
+  for (size_t i = 0; i < files.size(); ++i) {
+    const std::optional<int> number = own_number(files[i]);
+    if (!number || *number == static_cast<int>(i) + 1) continue;
+    std::string text = "frames count the files from 1: " + frame(0);
+    if (files.size() > 1) text += " to " + frame(files.size() - 1);
+    recording.notes.push_back(text);
+    return;
+  }
 }
 
 double typical_interval(const Recording& recording) {
@@ -120,8 +148,12 @@ bool is_recording(const fs::path& path) {
 Recording read_recording(const fs::path& path) {
   const std::vector<fs::path> files = matching_files(path);
   const std::string file = printable(path.string()), extension = lower_extension(path);
-  if (extension == ".ply" || extension == ".obj") return read_surface_sequence(files);
-  if (extension != ".trc" && extension != ".c3d" && extension != ".npz") return read_dic_tables(files);
+  if (extension != ".trc" && extension != ".c3d" && extension != ".npz") {
+    Recording sequence =
+        extension == ".ply" || extension == ".obj" ? read_surface_sequence(files) : read_dic_tables(files);
+    if (is_pattern(path)) note_numbers(files, sequence);
+    return sequence;
+  }
   if (files.size() > 1)
     throw InvalidInput(file + ": matches " + std::to_string(files.size()) + " files, but " + extension +
                        " files hold all frames; name one of them");

@@ -40,6 +40,37 @@ TEST_F(RecordedTables, ReadsDiceFrames) {
   EXPECT_EQ(r.frames[2].positions[1][2], 7);
 }
 
+TEST_F(RecordedTables, ReadsDiceHeadersAndRowsWithoutIds) {
+  const std::string head =
+      "***\n*** Digital Image Correlation Engine (DICe), Copyright 2021\n*** Subset size: 27, step size: x 5 y "
+      "5\n***\n";
+  folder.write("s.txt", head +
+                            "COORDINATE_X,COORDINATE_Y,DISPLACEMENT_X,DISPLACEMENT_Y,SIGMA\n1.0E+00,2,0.5,0,0.01\n"
+                            "3,4,0,0.25,-1\n");
+  EXPECT_TRUE(is_recording(path("s.txt")));
+  const Recording r = read("s.txt");
+  EXPECT_TRUE(r.is_planar);
+  EXPECT_THAT(r.names, ElementsAre("1", "2"));
+  EXPECT_EQ(r.frames[1].positions[0][0], 1.5);
+  EXPECT_FALSE(is_seen(r.frames[1].positions[1]));
+  folder.write("n.txt", head +
+                            "SUBSET_ID,COORDINATE_X,COORDINATE_Y,DISPLACEMENT_X,DISPLACEMENT_Y\n0.000E+00,1,2,0,0\n"
+                            "1.200E+01,3,4,0,0\n");
+  EXPECT_THAT(read("n.txt").names, ElementsAre("0", "12"));
+  folder.write("bad.txt", head + "SUBSET_ID,COORDINATE_X,COORDINATE_Y,DISPLACEMENT_X\n0,1,2,0\n");
+  EXPECT_THAT(
+      refusal("bad.txt"),
+      HasSubstr("bad.txt:5: is no table of image correlation; for a table of DICe (2D) it lacks DISPLACEMENT_Y"));
+}
+
+TEST_F(RecordedTables, ReadsEarlierColumnsOfPyvale) {
+  folder.write("p.csv", "subset_x,subset_y,displacement_u,displacement_v,converged\n10,30,1,2,1\n10,60,1,2,0\n");
+  const Recording r = read("p.csv");
+  EXPECT_TRUE(r.is_planar);
+  EXPECT_EQ(r.frames[1].positions[0][1], 32);
+  EXPECT_FALSE(is_seen(r.frames[1].positions[1]));
+}
+
 TEST_F(RecordedTables, SubtractsDisplacementsOfPyvale) {
   folder.write(
       "p.csv",
@@ -70,11 +101,20 @@ TEST_F(RecordedTables, RefusesDamagedTables) {
   folder.write("a.csv", "X,Y,Z,U,V,W\n1,2,3,0,zero,0\n");
   EXPECT_THAT(refusal("a.csv"), HasSubstr("a.csv:2: V = 'zero' is not a number"));
   folder.write("b.csv", "X,Y,Z,U,V\n1,2,3,0,0\n");
-  EXPECT_THAT(refusal("b.csv"), HasSubstr("b.csv:1: is no table of image correlation"));
+  EXPECT_THAT(refusal("b.csv"),
+              HasSubstr("b.csv:1: is no table of image correlation; for a table of X, Y, Z, U, V, W it lacks W"));
   folder.write("c.csv", "id,X,Y,Z,U,V,W\n7,1,2,3,0,0,0\n7,1,2,3,0,0,0\n");
   EXPECT_THAT(refusal("c.csv"), HasSubstr("c.csv:3: the point '7' is there twice"));
   folder.write("d.csv", "X,Y,Z,U,V,W\n");
   EXPECT_THAT(refusal("d.csv"), HasSubstr("has no points"));
+}
+
+TEST_F(RecordedTables, NotesNumbersOfFilesUnlikeFrames) {
+  for (const char* name : {"s_0.obj", "s_1.obj", "t_1.obj", "t_02.obj"}) folder.write(name, "v 1 2 3\n");
+  EXPECT_THAT(read("s_*.obj").notes,
+              ElementsAre("frames count the files from 1: frame 1 = s_0.obj to frame 2 = s_1.obj"));
+  EXPECT_THAT(read("t_*.obj").notes, ElementsAre());
+  EXPECT_THAT(read("s_0.obj").notes, ElementsAre());
 }
 
 TEST_F(RecordedTables, ReadsMarkersOfSurfaces) {
@@ -120,6 +160,10 @@ TEST(Npz, RefusesDamage) {
   EXPECT_THAT(npz_refusal(npy("<f8", "(99999999999, 99999999999, 3)", "")),
               HasSubstr("the shape of the array is larger"));
   EXPECT_THAT(npz_refusal(npy("<c16", "(1, 1, 3)", "")), HasSubstr("the type of the array is '<c16'"));
+  EXPECT_THAT(npz_refusal(npy("|O", "(1, 1, 3)", "")), HasSubstr("texts by astype(str)"));
+  const std::string infinity("\0\0\0\0\0\0\xf0\x7f", 8);
+  EXPECT_THAT(npz_refusal(npy("<f8", "(2, 1, 3)", std::string(32, '\0') + infinity + std::string(8, '\0'))),
+              HasSubstr("positions[1, 0, 1] of '0' is infinite; write NaN"));
   EXPECT_THAT(npz_refusal(npy("<f8", "(3,)", std::string(24, '\0'))), HasSubstr("positions has the shape (3)"));
   EXPECT_THAT(npz_refusal("no array"), HasSubstr("is no array of numpy"));
   const std::string archive = zipped({{"positions.npy", npy("<f8", "(1, 1, 3)", std::string(24, '\0'))}});

@@ -97,7 +97,8 @@ bool CsvReader::read_line() {
   do {
     if (!read_text(line)) return false;
     if (line_ == 1 && line.starts_with(kByteOrderMark)) line.erase(0, kByteOrderMark.size());
-  } while (line.find_first_not_of(" \t\r") == std::string::npos || line.starts_with('#'));
+  } while (line.find_first_not_of(" \t\r") == std::string::npos || line.starts_with('#') ||
+           (columns_.empty() && line.starts_with("***")));
   if (columns_.empty()) choose_separator(line);
   split(line, separator_, cells_);
   for (std::string& cell : cells_) trim(cell);

@@ -10,8 +10,8 @@
 namespace aspic {
 
 // Origin of a table: Aspic, or another program. Foreign tables may separate cells by semicolons (with decimal commas or
-// points) or tabs, with blanks around them. Their empty lines and lines that begin with # are skipped, the last line
-// needs no line break, and a byte order mark is ignored.
+// points) or tabs, with blanks around them. Their empty lines, lines that begin with # and lines above the header that
+// begin with *** (DICe) are skipped, the last line needs no line break, and a byte order mark is ignored.
 enum class CsvOrigin { aspic, foreign };
 
 // Cells and column names are printable (base/printable.h) for any bytes in the file.
