@@ -306,6 +306,15 @@ TEST_F(DataSetFile, InteriorAndMissingVerticesAreNoMarkers) {
   EXPECT_THAT(refusal(), HasSubstr("markers.csv:3: vertex = 100000; the mesh has the vertices 0 to"));
 }
 
+TEST_F(DataSetFile, VerticesOutsideTrianglesOfAScanDoNotCount) {
+  measured("scan = \"scan.obj\"\n");
+  std::string scan = "v 0 0 0\nv 0.1 0 0\nv 0 0.08 0\nv 0.05 0.04 0.03\nv 0 0 0.06\nv 9 9 9\n";
+  folder.write("scan.obj", scan + "f 1 2 3\nf 1 2 5\nf 1 3 5\n");
+  const DataSet data = read_data_set(folder, RegistrationKind::rigid);
+  EXPECT_EQ(data.registration->points, 4);
+  EXPECT_LT(data.registration->largest, 1e-6);
+}
+
 TEST_F(DataSetFile, ReadsMotionsOfGrips) {
   measured(
       "units = { length = \"mm\", mesh = \"m\", angle = \"deg\" }\n[[grip]]\nname = \"top\"\nwhere = \"z > 0.0599\"\n");
