@@ -87,12 +87,15 @@ void draw_charts(const DataSet& data, const fs::path& folder, std::FILE* human) 
 
 void print_content(const DataSet& data) {
   const Experiment& e = data.experiment;
-  size_t positions = 0, forces = 0;
-  for (const LoadCase& load : e.cases) positions += load.positions.size(), forces += load.force.has_value();
+  size_t positions = 0, forces = 0, torques = 0;
+  for (const LoadCase& load : e.cases) {
+    positions += load.positions.size();
+    forces += load.force.has_value(), torques += load.torque.has_value();
+  }
   fmt::print(
-      "{}: {} vertices, {} tets, {} vertices fixed; {} markers; {} cases in {} groups with {} positions, {} forces\n",
+      "{}: {} vertices, {} tets, {} vertices fixed; {} markers; {} cases in {} groups with {} positions, {} forces{}\n",
       data.name, e.mesh.vertex_count(), e.mesh.tet_count(), e.fixed.size(), e.markers.size(), e.cases.size(),
-      cases_by_group(e).size(), positions, forces);
+      cases_by_group(e).size(), positions, forces, torques > 0 ? fmt::format(", {} torques", torques) : "");
   for (const std::string& note : data.notes) fmt::print("note: {}\n", note);
 }
 

@@ -420,7 +420,11 @@ class DataSetReader {
     const Value& name = settings_["positions"];
     std::error_code error;
     if (!settings_.is_given("positions") && !fs::exists(settings_.folder() / name.text(), error)) {
-      data_.notes.push_back("there is no " + name.text() + ": only forces are fitted");
+      const std::vector<LoadCase>& cases = data_.experiment.cases;
+      const bool has_torque =
+          std::any_of(cases.begin(), cases.end(), [](const LoadCase& load) { return load.torque.has_value(); });
+      data_.notes.push_back("there is no " + name.text() + ": only forces" + (has_torque ? " and torques" : "") +
+                            " are fitted");
       return;
     }
     MeasuredTable table(settings_.file("positions"), settings_.columns("positions"), errors_, data_.notes);

@@ -366,6 +366,20 @@ TEST_F(DataSetFile, SmallMeshesAreQuadraticByDefault) {
   EXPECT_TRUE(experiment("").mesh.mids.empty());  // 2880 tets
 }
 
+TEST_F(DataSetFile, TorquesAloneAreData) {
+  const auto twist = [&](const std::string& settings, const std::string& columns) {
+    measured(settings + "\n[[grip]]\nname = \"top\"\nwhere = \"z > 0.0599\"\n");
+    std::filesystem::remove(path("positions.csv"));
+    folder.write("cases.csv", "case,group,grip,rotation_x,rotation_y,rotation_z,torque_z,torque_x,torque_y" + columns);
+  };
+  twist("", "\ntwist,g,top,0,0,0.1,0.02,0,0\n");
+  EXPECT_THAT(read_data_set(folder).notes, testing::Contains(HasSubstr("only forces and torques are fitted")));
+  twist("errors = { backlash = 1e-4 }", "\ntwist,g,top,0,0,0.1,0.02,0,0\n");
+  EXPECT_THAT(refusal(), HasSubstr("that is displaced (rotations have no backlash); remove the key"));
+  twist("steady = \"history\"", ",time\nstart,g,top,0,0,0,0,0,0,0\ntwist,g,top,0,0,0.1,0.02,0,0,1\n");
+  EXPECT_THAT(refusal(), HasSubstr("torques of loads that vary in time (steady = \"history\") are not fitted"));
+}
+
 TEST_F(DataSetFile, ForcesAloneAreData) {
   measured();
   std::filesystem::remove(path("positions.csv"));

@@ -113,13 +113,11 @@ TEST(Registration, PrefersTheBestOfSimilarPoses) {
   std::normal_distribution<double> noise(0, 1e-4);
   for (Vec3d& p : points)
     for (double& x : p.a) x += noise(random);
-  for (const Vec3d axis : {Vec3d{{1, 0, 0.01}}, Vec3d{{0, 1, 0.01}}, Vec3d{{0.01, 0, 1}}}) {
-    AffineMap turned;
-    turned.A = rotation(axis, 3);
-    const Registration found = register_to_surface(surface, moved(turned, points), RegistrationKind::rigid);
-    EXPECT_LT(error_of(found, turned, points), 2e-4) << axis[0] << " " << axis[1];
-    EXPECT_FALSE(found.ambiguities.empty());
-  }
+  AffineMap turned;
+  turned.A = rotation({{1, 0, 0.01}}, 3);
+  const Registration found = register_to_surface(surface, moved(turned, points), RegistrationKind::rigid);
+  EXPECT_LT(error_of(found, turned, points), 2e-4);
+  EXPECT_FALSE(found.ambiguities.empty());
 }
 
 TEST(Registration, ReportsPointsOnALine) {
