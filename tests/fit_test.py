@@ -8,6 +8,7 @@ import contextlib
 import csv
 import functools
 import json
+import math
 import os
 import pathlib
 import random
@@ -333,6 +334,28 @@ slide,0.5,0.5,1,0.6,0.5,0.97,210,0,-700,20
             process.communicate(timeout=120)
             self.assertEqual(process.returncode, -signal.SIGKILL)
             self.assertEqual(self.results(name, "--resume"), whole, f"killed after {iterations} iterations")
+
+
+class FitWithLayer(CommandLine):
+    """The stiffness of the layer of a plate, whose logarithm is estimated, has a value and an interval."""
+
+    def test_layer_stiffness_has_value_and_interval(self):
+        (self.folder / "plate").mkdir()
+        self.write("plate/rest.mesh", box_mesh(2))
+        self.write("plate/capture.toml", 'version = 1\nmesh = "rest.mesh"\norder = 1\nfixed = "z < 1e-6"\n[[tip]]\n'
+                   'shape = "disc"\nradius = 1\ncontact = "bonded"\nstiffness = 1e6\nstiffness_deviation = 0.2\n')
+        self.write("plate/markers.csv", "marker,x,y,z\nA,0,0.5,0.5\n")
+        self.write("plate/cases.csv", "case,touch_x,touch_y,touch_z,depth,force_x,force_y,force_z,force_sd\n"
+                   "press,0.5,0.5,1,0.03,0,0,-700,20\n")
+        self.write("layer.toml", "mesh_errors = false\nlaw_errors = false\ncross_validation = false\n")
+        said = self.aspic("fit", "plate", "--options", "layer.toml", "--unknown", "young=uniform",
+                          "--known", "poisson=0.4", "-o", "layer.vtu").stdout
+        layer, = json.loads((self.folder / "layer.fit" / "figures.json").read_text())["errors"]
+        self.assertEqual(layer["unit"], "Pa/m")
+        self.assertAlmostEqual(layer["coefficient"] / 1e6, math.exp(layer["value"]), delta=1e-9)
+        low, high = layer["coefficient_95"]
+        self.assertTrue(low < layer["coefficient"] < high)
+        self.assertRegex(said, r"layer stiffness of 'tip' +\S+ Pa/m \(\S+ to \S+ with 95 %\)")
 
 
 class FitJobs(FitCommand):
