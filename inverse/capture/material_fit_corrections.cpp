@@ -9,6 +9,8 @@
 namespace aspic {
 namespace {
 
+constexpr double kLargestStep = 1;  // change of the logarithm of a layer stiffness per pass; readings depend nonlinearly on it
+
 double change_of_weights(const std::vector<CaseWeights>& before, const std::vector<CaseWeights>& after) {
   double largest = 0;
   for (size_t c = 0; c < after.size(); ++c) {
@@ -42,6 +44,9 @@ double MaterialFit::correct_data(FitModel& model, std::span<const double> p) {
   const std::vector<SystematicError>& errors = simulated_.errors();
   std::vector<double> values = model.with_layers->estimates(r);
   values.resize(errors.size());  // those of common errors follow
+  for (size_t k = 0; k < values.size(); ++k)
+    if (errors[k].kind == ErrorKind::layer)
+      values[k] = std::clamp(values[k], errors[k].value - kLargestStep, errors[k].value + kLargestStep);
   double largest = 0;
   for (size_t k = 0; k < values.size(); ++k)
     largest = std::max(largest, std::abs(values[k] - errors[k].value) / errors[k].sigma);
