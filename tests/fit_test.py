@@ -335,6 +335,45 @@ slide,0.5,0.5,1,0.6,0.5,0.97,210,0,-700,20
             self.assertEqual(self.results(name, "--resume"), whole, f"killed after {iterations} iterations")
 
 
+class FitWithLayer(CommandLine):
+    """A layer of half the true stiffness on a column of poisson 0, whose compression is uniform."""
+
+    YOUNG, LAYER = 60e3, 80e3  # Pa, Pa/m
+
+    def compressed(self, depth):
+        """Height and pressure of the column: E / 2 (1 / s - s) = layer (depth - (1 - s))."""
+        low, high = 0.5, 1.0
+        while high - low > 1e-12:
+            s = (low + high) / 2
+            low, high = (s, high) if self.YOUNG / 2 * (1 / s - s) > self.LAYER * (depth - 1 + s) else (low, s)
+        return low, self.YOUNG / 2 * (1 / low - low)
+
+    def test_estimates_layer_stiffness_with_interval(self):
+        (self.folder / "plate").mkdir()
+        self.write("plate/rest.mesh", box_mesh(3))
+        self.write("plate/capture.toml", 'version = 1\nmesh = "rest.mesh"\nfixed = "z < 1e-6"\n[[tip]]\n'
+                   'shape = "disc"\nradius = 3\ncontact = "bonded"\nstiffness = 4e4\nstiffness_deviation = 0.7\n')
+        heights = [0.3, 0.5, 0.6, 0.8, 1.0]
+        self.write("plate/markers.csv", "marker,x,y,z\n" + "".join(f"M{z},0,0.5,{z}\n" for z in heights))
+        cases, positions = "case,touch_x,touch_y,touch_z,axis_x,axis_y,axis_z,depth,force,force_sd\n", "case,marker,x,y,z,sd\n"
+        for depth in (0.025, 0.05, 0.075):
+            s, pressure = self.compressed(depth)
+            cases += f"{depth},0.5,0.5,1,0,0,-1,{depth},{pressure},10\n"
+            positions += "".join(f"{depth},M{z},0,0.5,{s * z},2.5e-4\n" for z in heights)
+        self.write("plate/cases.csv", cases)
+        self.write("plate/positions.csv", positions)
+        self.write("layer.toml", "mesh_errors = false\nlaw_errors = false\ncross_validation = false\n")
+        said = self.aspic("fit", "plate", "--options", "layer.toml", "--model", "neo_hookean_log", "--unknown",
+                          "young=uniform", "--known", "poisson=0", "-o", "layer.vtu").stdout
+        figures = json.loads((self.folder / "layer.fit" / "figures.json").read_text())
+        layer, = figures["errors"]
+        self.assertEqual(layer["unit"], "Pa/m")
+        self.assertAlmostEqual(layer["coefficient"] / self.LAYER, 1, delta=0.05)
+        low, high = layer["coefficient_95"]
+        self.assertTrue(low < layer["coefficient"] < high)
+        self.assertRegex(said, r"layer stiffness of 'tip' +\S+ Pa/m \(\S+ to \S+ with 95 %\)")
+
+
 class FitJobs(FitCommand):
     """Other processes compute the independent fits, in any order, and some are killed: the bits are those of one process."""
 

@@ -97,11 +97,15 @@ int fixed_corners(const Experiment& experiment) {
 
 void print_content(const DataSet& data) {
   const Experiment& e = data.experiment;
-  size_t positions = 0, forces = 0;
-  for (const LoadCase& load : e.cases) positions += load.positions.size(), forces += load.force.has_value();
-  fmt::print("{}: {}, {} vertices fixed; {} markers; {} cases in {} groups with {} positions, {} forces\n", data.name,
+  size_t positions = 0, forces = 0, torques = 0;
+  for (const LoadCase& load : e.cases) {
+    positions += load.positions.size();
+    forces += load.force.has_value(), torques += load.torque.has_value();
+  }
+  fmt::print("{}: {}, {} vertices fixed; {} markers; {} cases in {} groups with {} positions, {} forces{}
+", data.name,
              mesh_text(e.mesh), fixed_corners(e), e.markers.size(), e.cases.size(), cases_by_group(e).size(), positions,
-             forces);
+             forces, torques > 0 ? fmt::format(", {} torques", torques) : "");
   for (const std::string& note : data.notes) fmt::print("note: {}\n", note);
 }
 

@@ -87,17 +87,18 @@ void print_held_out(std::FILE* stream, const DataSet& data, const FitOutcome& ou
   if (groups.size() > 1) fmt::print(stream, "           worst: '{}', {}\n", worst->group, errors_text(*worst));
 }
 
-std::string friction_text(const EstimatedError& e) {
+std::string coefficient_text(const EstimatedError& e) {
   const std::string value = value_text(e.coefficient(), e.unit);
   if (e.sigma < 0) return value + ", interval unknown";
-  return fmt::format("{} ({:.3g} to {:.3g} with 95 %)", value, e.coefficient(-kSigmas95), e.coefficient(kSigmas95));
+  const auto bound = [&](double sigmas) { return fmt::format("{:.4g}", e.coefficient(sigmas)); };
+  return value + " (" + bound(-kSigmas95) + " to " + bound(kSigmas95) + " with 95 %)";
 }
 
 void print_errors(std::FILE* stream, const FitOutcome& outcome) {
   std::string head = "errors";
   for (const EstimatedError& e : outcome.errors) {
     const std::string value =
-        e.stated ? friction_text(e)
+        e.stated ? coefficient_text(e)
                  : value_text(e.value, e.unit) + " +- " + (e.sigma < 0 ? "unknown" : value_text(e.sigma, e.unit));
     fmt::print(stream, "{:<10} {:<28} {}, {}\n", head, e.name, value,
                e.is_from_data() ? "determined by the data" : "determined by its prior");

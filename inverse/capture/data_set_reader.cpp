@@ -182,9 +182,20 @@ class DataSetReader {
     if (recorded_) recorded_->set_registration(to_mesh_);
   }
 
+  // The vertices of the triangles: others, such as those inside a body, are not on its surface. Without triangles all.
+  static std::vector<Vec3d> surface_points(const TriMesh& scan) {
+    std::vector<char> is_used(scan.vertices.size(), scan.triangles.empty());
+    for (const Triangle& t : scan.triangles)
+      for (const int v : t) is_used[v] = 1;
+    std::vector<Vec3d> points;
+    for (size_t v = 0; v < is_used.size(); ++v)
+      if (is_used[v]) points.push_back(scan.vertices[v]);
+    return points;
+  }
+
   Registration found_registration(const SurfaceProjection& surface) {
     if (settings_.find("scan")) {
-      std::vector<Vec3d> points = read_tri_mesh(settings_.file("scan")).vertices;
+      std::vector<Vec3d> points = surface_points(read_tri_mesh(settings_.file("scan")));
       const double unit = settings_["units"].find("recording") ? settings_.unit("recording") : settings_.unit("length");
       for (Vec3d& p : points) p = unit * p;
       return register_to_surface(surface, points, *registers_);
@@ -413,7 +424,11 @@ class DataSetReader {
     const Value& name = settings_["positions"];
     std::error_code error;
     if (!settings_.is_given("positions") && !fs::exists(settings_.folder() / name.text(), error)) {
-      data_.notes.push_back("there is no " + name.text() + ": only forces are fitted");
+      const std::vector<LoadCase>& cases = data_.experiment.cases;
+      const bool has_torque =
+          std::any_of(cases.begin(), cases.end(), [](const LoadCase& load) { return load.torque.has_value(); });
+      data_.notes.push_back("there is no " + name.text() + ": only forces" + (has_torque ? " and torques" : "") +
+                            " are fitted");
       return;
     }
     MeasuredTable table(settings_.file("positions"), settings_.columns("positions"), errors_, data_.notes);

@@ -309,6 +309,15 @@ TEST_F(DataSetFile, InteriorAndMissingVerticesAreNoMarkers) {
   EXPECT_THAT(refusal(), HasSubstr("markers.csv:3: vertex = 100000; the mesh has the vertices 0 to"));
 }
 
+TEST_F(DataSetFile, VerticesOutsideTrianglesOfAScanDoNotCount) {
+  measured("scan = \"scan.obj\"\n");
+  std::string scan = "v 0 0 0\nv 0.1 0 0\nv 0 0.08 0\nv 0.05 0.04 0.03\nv 0 0 0.06\nv 9 9 9\n";
+  folder.write("scan.obj", scan + "f 1 2 3\nf 1 2 5\nf 1 3 5\n");
+  const DataSet data = read_data_set(folder, RegistrationKind::rigid);
+  EXPECT_EQ(data.registration->points, 4);
+  EXPECT_LT(data.registration->largest, 1e-6);
+}
+
 TEST_F(DataSetFile, ReadsMotionsOfGrips) {
   measured(
       "units = { length = \"mm\", mesh = \"m\", angle = \"deg\" }\n[[grip]]\nname = \"top\"\nwhere = \"z > 0.0599\"\n");
@@ -391,6 +400,20 @@ TEST_F(DataSetFile, SmallMeshesAreQuadraticByDefault) {
   EXPECT_EQ(quadratic.fixed.size(), 99u);  // 11 x 9
   write_mesh(path("rest.msh"), make_box({{0, 0, 0}}, {{0.1, 0.08, 0.06}}, {10, 8, 6}));
   EXPECT_TRUE(experiment("").mesh.mids.empty());  // 2880 tets
+}
+
+TEST_F(DataSetFile, TorquesAloneAreData) {
+  const auto twist = [&](const std::string& settings, const std::string& columns) {
+    measured(settings + "\n[[grip]]\nname = \"top\"\nwhere = \"z > 0.0599\"\n");
+    std::filesystem::remove(path("positions.csv"));
+    folder.write("cases.csv", "case,group,grip,rotation_x,rotation_y,rotation_z,torque_z,torque_x,torque_y" + columns);
+  };
+  twist("", "\ntwist,g,top,0,0,0.1,0.02,0,0\n");
+  EXPECT_THAT(read_data_set(folder).notes, testing::Contains(HasSubstr("only forces and torques are fitted")));
+  twist("errors = { backlash = 1e-4 }", "\ntwist,g,top,0,0,0.1,0.02,0,0\n");
+  EXPECT_THAT(refusal(), HasSubstr("that is displaced (rotations have no backlash); remove the key"));
+  twist("steady = \"history\"", ",time\nstart,g,top,0,0,0,0,0,0,0\ntwist,g,top,0,0,0.1,0.02,0,0,1\n");
+  EXPECT_THAT(refusal(), HasSubstr("torques of loads that vary in time (steady = \"history\") are not fitted"));
 }
 
 TEST_F(DataSetFile, ForcesAloneAreData) {

@@ -132,21 +132,22 @@ class ContentDiagnosis {
     for (size_t i = 0; i < X.size(); ++i) center = center + (1 / n) * X[i], t = t + (1 / n) * u[i];
     // Least squares of u = t + w x r: (sum |r|^2 I - r r') w = sum r x u.
     Mat3d J{};
-    double reach = 0;
     for (size_t i = 0; i < X.size(); ++i) {
       const Vec3d r = X[i] - center;
       J = J + dot(r, r) * identity3<double>() - from_columns(r[0] * r, r[1] * r, r[2] * r);
       moment = moment + cross(r, u[i]);
-      reach = std::max(reach, norm(r));
     }
     const double scale = trace(J);
     const bool turns = X.size() >= 3 && determinant(J) > 1e-9 * scale * scale * scale;
     const Vec3d w = turns ? inverse(J) * moment : Vec3d{};
-    const double moved = norm(t), turned = norm(w) * reach, noise = kStill * sd / std::sqrt(n);
-    if (std::max(moved, turned) <= noise) return;
+    // Both over their standard deviations: that of w is sd J^-1/2, large for markers that are close together.
+    const bool has_moved = norm(t) > kStill * sd / std::sqrt(n), has_turned = dot(w, moment) > std::pow(kStill * sd, 2);
+    if (!has_moved && !has_turned) return;
+    const std::string shift = has_moved ? three_digits(norm(t)) + " m" : "",
+                      turn = has_turned ? three_digits(norm(w)) + " rad" : "";
     findings_.warning(place,
-                      "fixed vertices moved: by " + three_digits(moved) + " m and " + three_digits(norm(w)) +
-                          " rad, seen at " + std::to_string(X.size()) + " markers",
+                      "fixed vertices moved: by " + shift + (has_moved && has_turned ? " and " : "") + turn +
+                          ", seen at " + std::to_string(X.size()) + " markers",
                       "remove this rigid motion from positions and pose of the case, or fix the camera");
   }
 

@@ -43,7 +43,7 @@ class ForceDiagnosis {
 
   void examine_missing() {
     std::vector<size_t> without;
-    bool has_force = false, has_other = false;
+    bool has_force = false, has_other = data_.experiment.scan_gravity.has_value();
     for (size_t c = 0; c < cases_.size(); ++c) {
       const LoadCase& load = cases_[c];
       has_force |= load.force.has_value() || load.torque.has_value();

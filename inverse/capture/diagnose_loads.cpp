@@ -38,8 +38,9 @@ class LoadDiagnosis {
       if (load.grip) examine_grip(load);
       examine_gravity(load);
       examine_pressure(load);
-      const bool is_loaded = load.indenter || load.grip || load.pressure != 0 || norm(load.gravity) > 0;
-      if (!is_loaded)
+      // A mesh under gravity is itself under load.
+      const bool has_gravity = norm(load.gravity) > 0 || experiment_.scan_gravity;
+      if (!load.indenter && !load.grip && load.pressure == 0 && !has_gravity)
         findings_.warning(where_, "has no load: no indenter, no grip, no pressure, no gravity",
                           "it has no information about the material; give its load, or remove the row");
     }

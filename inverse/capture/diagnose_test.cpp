@@ -238,6 +238,32 @@ TEST(Diagnosis, RigidMotionOfWhatIsFixedIsNoticed) {
   EXPECT_THAT(diagnose(data), Contains(finding(Severity::warning, "cases.csv:2", "0.02 rad")));
 }
 
+// Markers on a short line with noise: the rotation about it is large, but so is its standard deviation.
+TEST(Diagnosis, NoiseOfCloseMarkersIsNoRigidMotion) {
+  DataSet data = data_in_lines();
+  Experiment& e = data.experiment;
+  const SurfaceProjection surface(e.mesh);
+  const int first = static_cast<int>(e.markers.size());
+  for (int i = 0; i < 3; ++i) {
+    e.markers.push_back(surface.nearest({{0.03 + 0.02 * i, 0.03 + 0.0002 * (i % 2), -0.01}}).point);
+    data.marker_names.push_back("held " + std::to_string(i));
+    data.marker_gap.push_back(0);
+    const Vec3d X = position(e.markers[first + i], e.mesh.rest);
+    const double sd = 1e-4, noise = (i % 2 == 0 ? 1 : -1) * sd;
+    for (LoadCase& load : e.cases)
+      load.positions.push_back({first + i, X + Vec3d{{0, 0, noise}}, {{sd, sd, sd}}});
+  }
+  EXPECT_THAT(diagnose(data), Not(Contains(finding(Severity::warning, "", "fixed vertices moved"))));
+}
+
+TEST(Diagnosis, CaseWithoutGravityIsALoadOfAMeshUnderGravity) {
+  DataSet data = data_in_lines();
+  data.experiment.cases[0].indenter.reset();
+  EXPECT_THAT(diagnose(data), Contains(finding(Severity::warning, "cases.csv:2", "has no load")));
+  data.experiment.scan_gravity = {{0, 0, -9.81}};
+  EXPECT_THAT(diagnose(data), Not(Contains(finding(Severity::warning, "", "has no load"))));
+}
+
 TEST(Diagnosis, MarkersOffTheSurfaceAreNamed) {
   DataSet data = data_in_lines();
   data.marker_gap[7] = 0.005;

@@ -69,11 +69,11 @@ struct FoundParts {
 
 // Estimate of a systematic error, in SI units.
 struct EstimatedError {
-  std::string name, unit;  // "tare z", "N"
+  std::string name, unit;  // "tare z", "N"; the unit of `stated`, if any
   double value = 0;
   double sigma = -1;  // posterior standard deviation; < 0: unknown
   double prior_sigma = 0;
-  std::optional<double> stated = {};  // coefficient of friction; its logarithm has this error
+  std::optional<double> stated = {};  // friction, or layer stiffness [Pa/m]; its logarithm has this error
 
   // Coefficient at the given number of standard deviations from its estimate.
   double coefficient(double sigmas = 0) const { return *stated * std::exp(value + sigmas * std::max(sigma, 0.0)); }

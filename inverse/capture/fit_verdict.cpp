@@ -138,7 +138,7 @@ class Reasons {
       }
     add_disagreement();
     for (const EstimatedError& e : outcome_.errors)
-      if (e.stated && e.coefficient() > kLargestFriction)
+      if (e.stated && e.unit.empty() && e.coefficient() > kLargestFriction)
         add("at_bound", "the " + e.name + " is " + three_digits(e.coefficient()) + ", and no dry contact exceeds " +
                             three_digits(kLargestFriction) +
                             ": the tip sticks (contact = \"bonded\"), or the readings do not determine it");

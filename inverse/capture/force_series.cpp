@@ -12,6 +12,8 @@ namespace {
 
 constexpr double kBand = 0.01;              // deviation of a steady force over the range of the series
 constexpr double kNoiseBand = 4;            // the same over the standard deviation of the noise
+constexpr double kDriftOfForce = 0.005;     // drift of a steady force over the force itself
+constexpr double kDriftOfRange = 0.002;     // the same over the range of the series, for forces near 0
 constexpr double kDuration = 0.05;          // of a steady state over that of the series
 constexpr size_t kLeastSamples = 5;         // of a steady state
 constexpr size_t kMaxSamples = 50'000'000;  // of a series
@@ -67,6 +69,12 @@ struct Spread {
   double band() const { return kBand * range + kNoiseBand * noise; }
 };
 
+// Largest difference of the means of the two halves of a window of a steady force [N].
+double allowed_drift(double force, size_t samples, const Spread& spread) {
+  const double standard_error = 2 * spread.noise / std::sqrt(static_cast<double>(samples));
+  return std::max(kDriftOfForce * force, kDriftOfRange * spread.range) + 3 * standard_error;
+}
+
 SteadyForce judged(const ForceSeries& s, double time, double duration, const Spread& spread) {
   const size_t center = nearest_sample(s, time);
   size_t begin = std::min(first_at(s, time - duration / 4), center),
@@ -81,9 +89,8 @@ SteadyForce judged(const ForceSeries& s, double time, double duration, const Spr
   begin += edge, end -= edge;
   const size_t count = end - begin, middle = begin + count / 2;
   const double drift = count > 1 ? entry_norm(mean_between(s, middle, end) - mean_between(s, begin, middle)) : 0;
-  const double allowed =
-      kBand * spread.range + 3 * spread.noise / std::sqrt(std::max(1.0, static_cast<double>(count) / 2));
   SteadyForce force{false, mean_between(s, begin, end), {}, ""};
+  const double allowed = allowed_drift(entry_norm(force.mean), count, spread);
   for (size_t i = begin; i < end; ++i)
     for (int axis = 0; axis < 3; ++axis)
       force.sigma[axis] += std::pow(s.values[i][axis] - force.mean[axis], 2) / static_cast<double>(count);
@@ -96,7 +103,9 @@ SteadyForce judged(const ForceSeries& s, double time, double duration, const Spr
         "not steady: the force stays " + band + " only " + window + ", but must for " + three_digits(duration) + " s";
   else if (drift > allowed)
     force.reason = "not steady: the force drifts by " + three_digits(drift) + " N " + window + "; at most " +
-                   three_digits(allowed) + " N count as steady";
+                   three_digits(allowed) +
+                   " N count as steady. If the sensor drifts, subtract its drift from the series; if the body relaxes, "
+                   "wait longer or fit steady = \"history\"";
   else
     force.is_steady = true, force.reason = "steady " + band + " " + window + ", drift " + three_digits(drift) + " N";
   return force;

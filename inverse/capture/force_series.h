@@ -31,8 +31,8 @@ struct SteadyForce {
 };
 
 // The window around a time in which the force stays within 1 % of its range, or 4 times its noise, of the median there.
-// It is steady if the window is at least as long as `duration` [s] and the means of its halves agree. Throws
-// InvalidInput for a time outside the series.
+// It is steady if the window is at least as long as `duration` [s] and the means of its halves differ by at most 0.5 %
+// of the force, or 0.2 % of the range, and 3 standard errors. Throws InvalidInput for a time outside the series.
 SteadyForce steady_force(const ForceSeries& series, double time, double duration);
 double default_duration(const ForceSeries& series);  // [s]
 

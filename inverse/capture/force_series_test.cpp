@@ -54,6 +54,16 @@ TEST(SteadyForces, RefusesDriftBelowNoise) {
   EXPECT_THAT(force.reason, HasSubstr("drifts by"));
 }
 
+// The drift leaves the band of the steady force only after the default duration.
+TEST(SteadyForces, RefusesDriftWithinTheBand) {
+  ForceSeries series = hold(0.002);
+  for (size_t i = 0; i < series.times.size(); ++i) series.values[i][0] += 0.1 * series.times[i];
+  const SteadyForce force = steady_force(series, 5.5, default_duration(series));
+  EXPECT_FALSE(force.is_steady) << force.reason;
+  EXPECT_THAT(force.reason, HasSubstr("drifts by"));
+  EXPECT_THAT(force.reason, HasSubstr("subtract its drift"));
+}
+
 TEST(SteadyForces, NeedsTheGivenDuration) {
   EXPECT_TRUE(steady_force(hold(0), 5, 2.9).is_steady);
   EXPECT_FALSE(steady_force(hold(0), 5, 3.2).is_steady);

@@ -83,11 +83,20 @@ class HistoryReader {
         std::any_of(h.waypoints.begin(), h.waypoints.end(), [](const LoadCase& c) { return !c.positions.empty(); });
     if (h.forces.empty() && !has_markers)
       error(members.back(), "'" + name + "' has no force and no positions between " + three_digits(h.times.front()) +
-                                " s and " + three_digits(h.times.back()) + " s");
+                                " s and " + three_digits(h.times.back()) + " s" +
+                                (has_torques(h) ? kNoTorques + "give its forces or positions" : ""));
+    else if (has_torques(h))
+      data_.notes.push_back("torques of '" + name + "'" + kNoTorques + "its forces and positions are fitted");
     return h;
   }
 
  private:
+  static inline const std::string kNoTorques =
+      ": torques of loads that vary in time (steady = \"history\") are not fitted; ";
+  static bool has_torques(const LoadHistory& h) {
+    return std::any_of(h.waypoints.begin(), h.waypoints.end(), [](const LoadCase& c) { return c.torque.has_value(); });
+  }
+
   void error(size_t c, const std::string& text) {
     errors_.add(data_.source.load_case(static_cast<int>(c)) + ": " + text);
   }

@@ -9,6 +9,8 @@
 namespace aspic {
 namespace {
 
+constexpr double kLargestStep = 1;  // change of the logarithm of a layer stiffness per pass; readings depend nonlinearly on it
+
 double change_of_weights(const std::vector<CaseWeights>& before, const std::vector<CaseWeights>& after) {
   double largest = 0;
   for (size_t c = 0; c < after.size(); ++c) {
@@ -21,9 +23,13 @@ double change_of_weights(const std::vector<CaseWeights>& before, const std::vect
   return largest;
 }
 
-std::optional<double> stated_friction(const Experiment& experiment, const SystematicError& error) {
-  for (const LoadCase& load : experiment.cases)
-    if (error.kind == ErrorKind::friction && concerns(error, load)) return load.indenter->friction;
+// The friction or layer stiffness whose logarithm has the error.
+std::optional<double> stated_coefficient(const Experiment& experiment, const SystematicError& error) {
+  for (const LoadCase& load : experiment.cases) {
+    if (!load.indenter || !concerns(error, load)) continue;
+    if (error.kind == ErrorKind::friction) return load.indenter->friction;
+    if (error.kind == ErrorKind::layer) return load.indenter->stiffness;
+  }
   return {};
 }
 
@@ -38,6 +44,9 @@ double MaterialFit::correct_data(FitModel& model, std::span<const double> p) {
   const std::vector<SystematicError>& errors = simulated_.errors();
   std::vector<double> values = model.with_layers->estimates(r);
   values.resize(errors.size());  // those of common errors follow
+  for (size_t k = 0; k < values.size(); ++k)
+    if (errors[k].kind == ErrorKind::layer)
+      values[k] = std::clamp(values[k], errors[k].value - kLargestStep, errors[k].value + kLargestStep);
   double largest = 0;
   for (size_t k = 0; k < values.size(); ++k)
     largest = std::max(largest, std::abs(values[k] - errors[k].value) / errors[k].sigma);
@@ -64,9 +73,10 @@ void MaterialFit::list_errors(WithUncertainLayers& about_fit, std::span<const do
   for (size_t k = 0; k < std::min(estimates.size(), simulated_.errors().size()); ++k) {
     const SystematicError& error = simulated_.errors()[k];
     const double factor = posterior ? posterior->applied_factor : 1;
-    outcome_.errors.push_back({name_of(error), unit_of(error), estimates[k].value,
+    const char* layer_unit = error.kind == ErrorKind::layer ? "Pa/m" : "";
+    outcome_.errors.push_back({name_of(error), *layer_unit ? layer_unit : unit_of(error), estimates[k].value,
                                std::min(factor * estimates[k].sigma, error.sigma), error.sigma,
-                               stated_friction(data_.experiment, error)});
+                               stated_coefficient(data_.experiment, error)});
   }
 }
 

@@ -21,6 +21,7 @@ constexpr size_t kFewPoints = 200, kManyPoints = 20'000;  // for the search of a
 constexpr int kSearch = 30, kFinal = 200;                 // iterations
 constexpr double kUndetermined = 0.02;  // a motion that moves points off the surface by less, relative to its size
 constexpr double kAsGood = 1.5;         // ratio of distances of poses that fit equally well
+constexpr double kSame = 1.1;           // the same of poses that differ by noise only
 constexpr double kExact = 1e-4;         // distances over the size of the body that count as none
 constexpr double kOther = 0.05;         // distance of two poses over the spread of the points
 constexpr double kCollinear = 1e-3;     // spread across a line over the spread along it
@@ -87,18 +88,22 @@ class SurfaceRegistration {
           "length of the points");
     double best = found[0].first;
     for (const auto& [rms, fit] : found) best = std::min(best, rms);
-    // The first guess is the given pose: it is kept if it fits as well.
-    const auto chosen =
-        std::find_if(found.begin(), found.end(), [&](const auto& f) { return is_as_good(f.first, best); });
-    const PoseFit whole = final.run(chosen->second.map, kFinal);
+    const PoseFit& chosen = chosen_of(found, best);
+    const PoseFit whole = final.run(chosen.map, kFinal);
     Registration result{whole.map, scale_of(whole.map), static_cast<int>(points_.size()), whole.rms, whole.largest, {}};
     add_free_motions(whole, result);
-    add_other_poses(found, best, whole, result);
+    add_other_poses(found, best, chosen, result);
     return result;
   }
 
  private:
   double own_rms(const PoseFit& fit) const { return fit.rms / scale_of(fit.map); }  // in the scale of the points
+  // The best pose, but one near the given coordinates, the first guess, if its distance is not larger except for noise.
+  const PoseFit& chosen_of(const std::vector<std::pair<double, PoseFit>>& found, double best) const {
+    if (found[0].first <= kSame * best + kExact * spread_of(few_)) return found[0].second;
+    const auto by_rms = [](const auto& a, const auto& b) { return a.first < b.first; };
+    return std::min_element(found.begin(), found.end(), by_rms)->second;
+  }
   bool is_as_good(double rms, double best) const { return rms <= kAsGood * best + kExact * spread_of(few_); }
 
   std::vector<AffineMap> initial_guesses() const {

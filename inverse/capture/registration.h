@@ -22,8 +22,8 @@ struct Registration {
   std::vector<std::string> ambiguities;  // motions that the points do not determine, in words
 };
 
-// Finds the motion of the points that brings them closest to the surface. Of poses that fit equally well it returns the
-// one closest to the given coordinates, and lists the others. Throws InvalidInput for fewer than 3 points, or if the
+// Finds the motion of the points that brings them closest to the surface. It keeps the given coordinates if they fit
+// equally well, and lists other poses that do. Throws InvalidInput for fewer than 3 points, or if the
 // scale is not determined.
 Registration register_to_surface(const SurfaceProjection& surface, std::span<const Vec3d> points,
                                  RegistrationKind kind);

@@ -103,6 +103,23 @@ TEST(Registration, ReportsSymmetricPoses) {
   EXPECT_THAT(found.ambiguities[0], HasSubstr("turned by 180 deg"));
 }
 
+// A slightly tapered box: a turn by 180 degrees fits almost as well as the true pose.
+TEST(Registration, PrefersTheBestOfSimilarPoses) {
+  TetMesh mesh = make_box({{0, 0, 0}}, {{0.1, 0.06, 0.04}}, {10, 6, 4});
+  for (Vec3d& X : mesh.rest) X[1] += 0.15 * X[0] * (X[1] - 0.03), X[2] += 0.2 * X[1] * (X[2] - 0.02);
+  const SurfaceProjection surface(mesh);
+  std::vector<Vec3d> points = points_on(mesh, surface, 200, 6);
+  std::mt19937 random(7);
+  std::normal_distribution<double> noise(0, 1e-4);
+  for (Vec3d& p : points)
+    for (double& x : p.a) x += noise(random);
+  AffineMap turned;
+  turned.A = rotation({{1, 0, 0.01}}, 3);
+  const Registration found = register_to_surface(surface, moved(turned, points), RegistrationKind::rigid);
+  EXPECT_LT(error_of(found, turned, points), 2e-4);
+  EXPECT_FALSE(found.ambiguities.empty());
+}
+
 TEST(Registration, ReportsPointsOnALine) {
   const TetMesh mesh = lumpy_box();
   const SurfaceProjection surface(mesh);

@@ -17,8 +17,8 @@ struct StatedError {
 constexpr StatedError kStated[] = {
     {"position", ErrorKind::position, "length", "an indenter or a grip"},
     {"rotation", ErrorKind::rotation, "angle", "an indenter or a grip"},
-    {"backlash", ErrorKind::backlash, "length", "an indenter or a grip"},
-    {"tare", ErrorKind::tare, "force", "a force"},
+    {"backlash", ErrorKind::backlash, "length", "an indenter or a grip that is displaced (rotations have no backlash)"},
+    {"tare", ErrorKind::tare, "force", "a force (torques have no tare)"},
     {"force_scale", ErrorKind::force_scale, "", "a force or a torque"},
     {"length_scale", ErrorKind::length_scale, "", "positions of markers"},
 };

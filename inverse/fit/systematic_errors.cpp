@@ -59,7 +59,8 @@ const std::string& scope_of(ErrorKind kind, const LoadCase& load) {
 }
 
 bool can_change(ErrorKind kind, const LoadCase& load) {
-  if (is_of_pose(kind)) return load.indenter || load.grip;
+  if (is_of_pose(kind) && !load.indenter && !load.grip) return false;
+  if (is_of_pose(kind)) return kind != ErrorKind::backlash || norm(direction_of_motion(load)) > 0;
   if (kind == ErrorKind::layer) return load.indenter && load.layer_sigma.value_or(0) > 0;
   if (kind == ErrorKind::friction) return load.indenter && load.friction_sigma > 0;
   if (kind == ErrorKind::length_scale) return !load.positions.empty();

@@ -19,8 +19,8 @@ function errorRow(e: FoundError): HTMLElement {
 }
 
 function priorText({ prior_deviation: deviation, unit, value, coefficient }: FoundError): string {
-  const stated = coefficient === undefined ? "0 ±" : `${short(coefficient / Math.exp(value), 3)}, logarithm ±`;
-  return `${stated} ${valueText(deviation, unit, 3)}`;
+  if (coefficient === undefined) return `0 ± ${valueText(deviation, unit, 3)}`;
+  return `${valueText(coefficient / Math.exp(value), unit, 3)}, logarithm ± ${short(deviation, 3)}`;
 }
 
 export function errorTable({ errors }: Figures): HTMLElement | null {
