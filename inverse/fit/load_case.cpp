@@ -123,7 +123,7 @@ Model LoadedBody::make_model(const std::string& material, std::span<const Materi
     for (int t = 0; t < mesh.tet_count(); ++t) add_body_force(mesh, t, model.density[t] * load_.gravity, weight);
     add_scaled(make_linear_load("gravity", std::move(weight)));
   }
-  if (load_.pressure != 0) add_scaled(make_pressure_of(load_.gauge, mesh));
+  if (load_.pressure != 0) add_scaled(make_pressure_of(load_, mesh));
   if (load_.indenter) {
     auto probe = make_probe_of(experiment_, load_);
     probe_ = probe.get();
