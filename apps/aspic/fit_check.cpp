@@ -102,8 +102,7 @@ void print_content(const DataSet& data) {
     positions += load.positions.size();
     forces += load.force.has_value(), torques += load.torque.has_value();
   }
-  fmt::print("{}: {}, {} vertices fixed; {} markers; {} cases in {} groups with {} positions, {} forces{}
-", data.name,
+  fmt::print("{}: {}, {} vertices fixed; {} markers; {} cases in {} groups with {} positions, {} forces{}\n", data.name,
              mesh_text(e.mesh), fixed_corners(e), e.markers.size(), e.cases.size(), cases_by_group(e).size(), positions,
              forces, torques > 0 ? fmt::format(", {} torques", torques) : "");
   for (const std::string& note : data.notes) fmt::print("note: {}\n", note);
