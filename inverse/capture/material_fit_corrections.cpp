@@ -9,7 +9,8 @@
 namespace aspic {
 namespace {
 
-constexpr double kLargestStep = 1;  // change of the logarithm of a layer stiffness per pass; readings depend nonlinearly on it
+constexpr double kLargestStep =
+    1;  // change of the logarithm of a layer stiffness per pass; readings depend nonlinearly on it
 
 double change_of_weights(const std::vector<CaseWeights>& before, const std::vector<CaseWeights>& after) {
   double largest = 0;
