@@ -250,8 +250,7 @@ TEST(Diagnosis, NoiseOfCloseMarkersIsNoRigidMotion) {
     data.marker_gap.push_back(0);
     const Vec3d X = position(e.markers[first + i], e.mesh.rest);
     const double sd = 1e-4, noise = (i % 2 == 0 ? 1 : -1) * sd;
-    for (LoadCase& load : e.cases)
-      load.positions.push_back({first + i, X + Vec3d{{0, 0, noise}}, {{sd, sd, sd}}});
+    for (LoadCase& load : e.cases) load.positions.push_back({first + i, X + Vec3d{{0, 0, noise}}, {{sd, sd, sd}}});
   }
   EXPECT_THAT(diagnose(data), Not(Contains(finding(Severity::warning, "", "fixed vertices moved"))));
 }

@@ -58,13 +58,13 @@ struct CaseOutcome {
 
 // Parts of a divided stiffness field.
 struct FoundParts {
-  int tried = 0;               // tried numbers of parts
-  bool are_kept = false;       // false: none fits the data as well as the field
-  std::vector<double> values;  // [SI], ascending
+  int tried = 0;                     // tried numbers of parts
+  bool are_kept = false;             // false: none fits the data as well as the field
+  std::vector<double> values;        // [SI], ascending
   std::vector<Interval> intervals;   // 95 % intervals of the values; empty: unknown
   std::optional<Interval> contrast;  // 95 % interval of values.back() / values.front(); empty: unknown
-  std::vector<double> volume;  // fraction of the body for each part
-  double squares = 0;          // |r|^2 of the kept division, or of the last one tried
+  std::vector<double> volume;        // fraction of the body for each part
+  double squares = 0;                // |r|^2 of the kept division, or of the last one tried
 };
 
 // Estimate of a systematic error, in SI units.

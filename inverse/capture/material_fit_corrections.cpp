@@ -9,7 +9,8 @@
 namespace aspic {
 namespace {
 
-constexpr double kLargestStep = 1;  // change of the logarithm of a layer stiffness per pass; readings depend nonlinearly on it
+// Change of the logarithm of a layer stiffness per pass: estimates are linearized, and those far from the last diverge.
+constexpr double kLargestStep = 1;
 
 double change_of_weights(const std::vector<CaseWeights>& before, const std::vector<CaseWeights>& after) {
   double largest = 0;

@@ -44,7 +44,8 @@ TEST_F(StatedErrors, HaveUnitsGroupsAndSessions) {
 
 TEST_F(StatedErrors, AreRefusedWithLineAndRemedy) {
   EXPECT_THAT(refusal("errors = { tare = 0.05 }", "", ""), HasSubstr("capture.toml:5:"));
-  EXPECT_THAT(refusal("errors = { tare = 0.05 }", "", ""), HasSubstr("because none has a force (torques have no tare); remove the key"));
+  EXPECT_THAT(refusal("errors = { tare = 0.05 }", "", ""),
+              HasSubstr("because none has a force (torques have no tare); remove the key"));
   EXPECT_THAT(refusal("errors = { tara = 0.05 }"), HasSubstr("tare"));
   EXPECT_THAT(refusal("errors = { tare = -1 }"), HasSubstr("capture.toml:5:"));
 }
