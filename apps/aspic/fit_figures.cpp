@@ -27,8 +27,8 @@ BickelOptions baseline_options(const FitPlan& plan) {
 
 // The model of increments has linear tets and no grips.
 bool can_interpolate(const Experiment& training) {
-  return training.mesh.mids.empty() &&
-         std::none_of(training.cases.begin(), training.cases.end(), [](const LoadCase& c) { return c.grip.has_value(); });
+  return training.mesh.mids.empty() && std::none_of(training.cases.begin(), training.cases.end(),
+                                                    [](const LoadCase& c) { return c.grip.has_value(); });
 }
 
 std::vector<Prediction> predictions_of(const DataSet& data, const FitOutcome& outcome, bool with_baselines) {

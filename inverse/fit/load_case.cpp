@@ -247,10 +247,12 @@ void LoadedBody::residuals(std::span<double> r) const {
   for (size_t k = 0; k < load_.positions.size(); ++k)
     put(prediction_.markers[k], load_.positions[k].position, load_.positions[k].sigma);
   if (has_force())
-    put(to_gauge(load_.gauge, prediction_.wrench.force), to_gauge(load_.gauge, *load_.force), gauge_sigma(load_.gauge, load_.force_sigma));
+    put(to_gauge(load_.gauge, prediction_.wrench.force), to_gauge(load_.gauge, *load_.force),
+        gauge_sigma(load_.gauge, load_.force_sigma));
   if (has_torque()) {
     const auto& gauge = load_.torque_gauge;
-    put(to_gauge(gauge, prediction_.wrench.torque), to_gauge(gauge, *load_.torque), gauge_sigma(gauge, load_.torque_sigma));
+    put(to_gauge(gauge, prediction_.wrench.torque), to_gauge(gauge, *load_.torque),
+        gauge_sigma(gauge, load_.torque_sigma));
   }
 }
 
@@ -295,7 +297,8 @@ void LoadedBody::common_error(int k, std::span<double> dr) const {
   };
   for (size_t m = 0; m < load_.positions.size(); ++m) put(error.markers.at(m), load_.positions[m].sigma);
   if (has_force()) put(to_gauge(load_.gauge, error.wrench.force), gauge_sigma(load_.gauge, load_.force_sigma));
-  if (has_torque()) put(to_gauge(load_.torque_gauge, error.wrench.torque), gauge_sigma(load_.torque_gauge, load_.torque_sigma));
+  if (has_torque())
+    put(to_gauge(load_.torque_gauge, error.wrench.torque), gauge_sigma(load_.torque_gauge, load_.torque_sigma));
 }
 
 void LoadedBody::put_change(const Wrench& change, std::span<double> dr) const {
@@ -305,7 +308,8 @@ void LoadedBody::put_change(const Wrench& change, std::span<double> dr) const {
   };
   for (const MarkerReading& reading : load_.positions) put(at(experiment_.markers[reading.marker], dx_), reading.sigma);
   if (has_force()) put(to_gauge(load_.gauge, change.force), gauge_sigma(load_.gauge, load_.force_sigma));
-  if (has_torque()) put(to_gauge(load_.torque_gauge, change.torque), gauge_sigma(load_.torque_gauge, load_.torque_sigma));
+  if (has_torque())
+    put(to_gauge(load_.torque_gauge, change.torque), gauge_sigma(load_.torque_gauge, load_.torque_sigma));
 }
 
 bool LoadedBody::multiply(std::span<const double> dtheta, std::span<double> dr) {
@@ -357,7 +361,8 @@ bool LoadedBody::add_transposed(std::span<const double> w, std::span<double> the
   if (has_wrench()) {
     Wrench bar;
     if (has_force()) bar.force = from_gauge(load_.gauge, take(gauge_sigma(load_.gauge, load_.force_sigma)));
-    if (has_torque()) bar.torque = from_gauge(load_.torque_gauge, take(gauge_sigma(load_.torque_gauge, load_.torque_sigma)));
+    if (has_torque())
+      bar.torque = from_gauge(load_.torque_gauge, take(gauge_sigma(load_.torque_gauge, load_.torque_sigma)));
     add_wrench_transposed(bar, thetabar);
   }
   ++counts_.solves;

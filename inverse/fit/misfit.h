@@ -57,7 +57,7 @@ struct LoadCase {
   int merged = 0;  // coordinates of readings that `positions` represent beyond their own, see condensed()
   std::optional<Vec3d> force, torque;  // measured, on the body [N, N m]
   Vec3d force_sigma{}, torque_sigma{};
-  std::vector<CommonError> common_errors;  // equally many in all cases
+  std::vector<CommonError> common_errors;    // equally many in all cases
   std::optional<Vec3d> gauge, torque_gauge;  // axes along which alone force and torque were measured
   // Of the correction of the pose for systematic errors: its rotation vector [rad], and the direction of backlash.
   Vec3d turned{}, backward{};

@@ -62,11 +62,11 @@ int nearest(const std::vector<double>& levels, double z) {
 // Mean and standard deviation of weighted samples.
 class Moments {
  public:
-  void add(double value, double weight) { weight_ += weight, sum_ += weight * value, squares_ += weight * value * value; }
-  double mean() const { return weight_ > 0 ? sum_ / weight_ : 0; }
-  double sigma() const {
-    return weight_ > 0 ? std::sqrt(std::max(0.0, squares_ / weight_ - mean() * mean())) : 0;
+  void add(double value, double weight) {
+    weight_ += weight, sum_ += weight * value, squares_ += weight * value * value;
   }
+  double mean() const { return weight_ > 0 ? sum_ / weight_ : 0; }
+  double sigma() const { return weight_ > 0 ? std::sqrt(std::max(0.0, squares_ / weight_ - mean() * mean())) : 0; }
 
  private:
   double weight_ = 0, sum_ = 0, squares_ = 0;
@@ -272,8 +272,7 @@ Independent one_by_one(const ParameterMap& map, int unknown, const std::vector<d
 // The change by one more linearization is a lower bound of the uncertainty.
 void widen(PartsEstimate& e, std::span<const double> before, const std::vector<double>& levels) {
   for (size_t t = 0; t < before.size(); ++t) e.sigma[t] = std::hypot(e.sigma[t], e.mean[t] - before[t]);
-  for (size_t k = 0; k < levels.size(); ++k)
-    e.level_sigma[k] = std::hypot(e.level_sigma[k], e.levels[k] - levels[k]);
+  for (size_t k = 0; k < levels.size(); ++k) e.level_sigma[k] = std::hypot(e.level_sigma[k], e.levels[k] - levels[k]);
   const double contrast = e.levels.back() - e.levels.front(), contrast_before = levels.back() - levels.front();
   e.contrast_sigma = std::hypot(e.contrast_sigma, contrast - contrast_before);
 }

@@ -125,7 +125,8 @@ TEST(SystematicErrors, ReadingsInvertTheirCorrection) {
     for (size_t k = 0; k < raw.positions.size(); ++k)
       for (int a = 0; a < 3; ++a, ++i)
         ASSERT_NEAR(r[i], (shown.markers[k] - raw.positions[k].position)[a] / raw.positions[k].sigma[a], 1e-9);
-    const Vec3d error = to_gauge(raw.gauge, shown.wrench.force - *raw.force), sigma = gauge_sigma(raw.gauge, raw.force_sigma);
+    const Vec3d error = to_gauge(raw.gauge, shown.wrench.force - *raw.force),
+                sigma = gauge_sigma(raw.gauge, raw.force_sigma);
     for (int a = 0; a < 3; ++a, ++i) ASSERT_NEAR(r[i], error[a] / sigma[a], 1e-9);
     for (int a = 0; a < 3 && raw.torque; ++a, ++i)
       ASSERT_NEAR(r[i], (shown.wrench.torque - *raw.torque)[a] / raw.torque_sigma[a], 1e-9);
