@@ -232,11 +232,12 @@ class FitPage(CommandLine):
         for true, value in zip((2e4, 6e4), values.values()):
             self.assertLess(value["lower"], true)
             self.assertGreater(value["upper"], true)
-        text = re.search(r"The parts are ([^<]*) of the body\. The stiffest is ([^<]*) times as stiff as the softest "
+        text = re.search(r"(Part 1 is [^<]*)\. The stiffest is ([^<]*) times as stiff as the softest "
                          r"\(95 %: ([^<]*) to ([^<]*)\)", self.dom)
         self.assertAlmostEqual(sum(parts["volumes"]), 1, places=9)
-        for shown, volume in zip(text[1].split(", "), parts["volumes"], strict=True):
-            self.assert_near(number(shown, "%") / 100, volume, 0.06)
+        for k, (shown, volume) in enumerate(zip(text[1].split(", "), parts["volumes"], strict=True)):
+            share = re.fullmatch(rf"[Pp]art {k + 1} is (.*) of the body", shown)[1]
+            self.assert_near(number(share, "%") / 100, volume, 0.06)
         for shown, end in zip(text.groups()[1:], ("value", "lower", "upper")):
             self.assert_near(float(shown), parts["contrast"][end], 0.01)
         self.assert_near(parts["contrast"]["value"], values["part 2"]["value"] / values["part 1"]["value"], 1e-9)

@@ -106,7 +106,9 @@ TEST(CrossValidation, ComparesForcesAlongTheGauge) {
   const CrossValidation result =
       study.validate(study.block.map({{.parameterization = Parameterization::uniform, .guess = 1e4}}));
   for (const HeldOut& h : result.groups) {
-    if (h.group == wrong) EXPECT_GT(h.forces.error, 20 * h.forces.noise);
+    if (h.group == wrong) {
+      EXPECT_GT(h.forces.error, 20 * h.forces.noise);
+    }
     EXPECT_LT(h.forces.noise, 0.01 * h.forces.peak);
   }
 }

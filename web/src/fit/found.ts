@@ -33,7 +33,8 @@ export function partsText({ kept, volumes, contrast }: PartsFigures): string {
   if (!kept || !contrast) return "No division into parts fits the measurements as well as the field.";
   const { value, lower = null, upper = null } = contrast;
   const interval = lower === null ? "" : ` (95 %: ${intervalText(lower, upper, "")})`;
-  return `The parts are ${volumes.map(percent).join(", ")} of the body. The stiffest is ${short(value, digitsOf(lower, upper))} times as stiff as the softest${interval}.`;
+  const shares = volumes.map((volume, k) => `${k === 0 ? "Part" : "part"} ${k + 1} is ${percent(volume)} of the body`);
+  return `${shares.join(", ")}. The stiffest is ${short(value, digitsOf(lower, upper))} times as stiff as the softest${interval}.`;
 }
 
 export function outlierTable({ outliers }: Figures): HTMLElement | null {
