@@ -7,6 +7,7 @@
 
 #include "base/error.h"
 #include "base/parallel.h"
+#include "contact/contact_reach.h"
 #include "contact/stencil_search.h"
 #include "contact/step_bound.h"
 #include "math/vectors.h"
@@ -45,7 +46,17 @@ double obstacle_end(const Energy::Context& context) { return context.obstacle_en
 
 struct Barrier::Impl {
   Impl(ContactMesh m, const ContactOptions& options)
-      : mesh(std::move(m)), sizes(sizes_of(mesh)), laws(mesh, options), search(mesh, laws) {}
+      : mesh(std::move(m)), sizes(sizes_of(mesh)), laws(bounded_laws(options)), search(mesh, laws) {}
+
+  ContactLaws bounded_laws(const ContactOptions& options) const {
+    ContactLaws bounded(mesh, options);
+    if (options.reach > 0) return bounded;
+    std::vector<Vec3d> start = obstacles(0);
+    for (int i = 0; i < mesh.point_count() && !options.start.empty(); ++i)
+      if (mesh.row[i] >= 0) start[i] = point(options.start, mesh.row[i]);
+    bound_reaches(mesh, start, options.overlapping, bounded);
+    return bounded;
+  }
 
   // Returns positions of all points; only those of obstacles are set.
   std::vector<Vec3d> obstacles(double time) const {
@@ -137,6 +148,10 @@ Barrier::~Barrier() = default;
 const ContactMesh& Barrier::mesh() const { return impl_->mesh; }
 const ContactLaws& Barrier::laws() const { return impl_->laws; }
 int Barrier::self_touching_point() const { return impl_->search.self_touching_point(); }
+
+std::vector<Touch> Barrier::touches(Positions x, double time) const {
+  return aspic::touches(impl_->mesh, impl_->laws, impl_->search, impl_->points(x, time));
+}
 
 bool Barrier::has_moving_obstacle() const { return impl_->has_motion; }
 ContactMeter& Barrier::meter() const { return impl_->search.meter(); }

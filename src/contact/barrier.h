@@ -8,6 +8,7 @@
 #include "contact/contact_mesh.h"
 #include "contact/contact_meter.h"
 #include "contact/contact_stencil.h"
+#include "contact/touches.h"
 #include "energy/energy.h"
 
 namespace aspic {
@@ -51,6 +52,8 @@ class Barrier : public Energy, public StepLimitingEnergy, public StoppingEnergy 
   const ContactMesh& mesh() const;
   ContactMeter& meter() const;  // of its cost, and that of friction
   const ContactLaws& laws() const;
+  // Returns what separates surfaces that touch at x.
+  std::vector<Touch> touches(Positions x, double time) const;
   // Returns a point whose distance to its own body at rest is zero; -1: none.
   int self_touching_point() const;
   // Returns one entry per point of the mesh. Empty if a position is not finite.

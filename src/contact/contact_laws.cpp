@@ -7,7 +7,6 @@
 namespace aspic {
 namespace {
 
-constexpr double kReach = 1.0 / 50;      // relative to the mean edge
 constexpr double kStiffness = 1.0 / 10;  // relative to Young's modulus
 
 // The finer surface has the larger share of the integral: its points sample the pressure between the points of the
@@ -43,7 +42,8 @@ ContactLaws::ContactLaws(const ContactMesh& mesh, const ContactOptions& options)
     for (size_t j = 0; j < parts_; ++j) {
       const ContactPart &a = mesh.parts[i], &b = mesh.parts[j];
       if (a.is_obstacle && b.is_obstacle) continue;
-      const double reach = options.reach > 0 ? options.reach : kReach * std::min(a.mean_edge, b.mean_edge);
+      const double edge = std::min(a.mean_edge, b.mean_edge);
+      const double reach = options.reach > 0 ? options.reach : kReachPerEdge * edge;
       const double radius = a.radius + b.radius;
       law_[i * parts_ + j] = {.reach = reach,
                               .edge_reach = radius > 0 ? reach : kGuardReach * reach,
@@ -51,7 +51,10 @@ ContactLaws::ContactLaws(const ContactMesh& mesh, const ContactOptions& options)
                               .share = i == j ? 0.5 : share_of(a, b),
                               .friction = std::sqrt(a.friction * b.friction),
                               .radius = radius,
-                              .guard = i == j ? 0 : std::min(a.mean_triangle, b.mean_triangle)};
+                              .guard = i == j ? 0 : std::min(a.mean_triangle, b.mean_triangle),
+                              .edge = edge,
+                              .basis = options.reach > 0 ? ReachBasis::given : ReachBasis::edge,
+                              .length = edge};
     }
   for (const auto& [parts, friction] : options.pairs)
     law_[parts[0] * parts_ + parts[1]].friction = law_[parts[1] * parts_ + parts[0]].friction = friction;

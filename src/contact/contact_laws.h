@@ -1,6 +1,7 @@
 // Contact parameters for pairs of parts.
 #pragma once
 #include <array>
+#include <set>
 #include <vector>
 
 #include "contact/contact_mesh.h"
@@ -10,6 +11,12 @@ namespace aspic {
 // Reach of the guards between two edges, and of points of the coarser surface, relative to the reach of their surfaces.
 inline constexpr double kGuardReach = 0.25;
 
+inline constexpr double kReachPerEdge = 1.0 / 50;  // default reach relative to the mean edge of the finer surface
+
+// What a reach is derived from: contact.reach, the mean edge, the gap at the start, or the thickness of a part.
+// `touching`: the mean edge, for surfaces that touch at the start.
+enum class ReachBasis { given, edge, gap, touching, thickness };
+
 struct ContactLaw {
   double reach = 0;       // gap at which contact begins [m]
   double edge_reach = 0;  // reach of two edges [m]
@@ -18,6 +25,9 @@ struct ContactLaw {
   double friction = 0;    // coefficient
   double radius = 0;      // radius of a capsule [m]; gaps are distances minus this
   double guard = 0;       // minimum area of a point within the guards' reach [m^2]
+  double edge = 0;        // mean edge of the finer surface [m]
+  ReachBasis basis = ReachBasis::given;
+  double length = 0;  // edge, gap or thickness of which the reach is a fraction [m]
 };
 
 struct PairFriction {
@@ -26,10 +36,12 @@ struct PairFriction {
 };
 
 struct ContactOptions {
-  double reach = 0;      // [m]; 0: a fiftieth of the mean edge of the finer surface
+  double reach = 0;      // [m]; 0: see bound_reaches()
   double stiffness = 0;  // [Pa]; 0: a tenth of the smaller Young's modulus
   // Pairs with a coefficient other than the geometric mean of those of the parts.
   std::vector<PairFriction> pairs = {};
+  std::vector<double> start = {};                 // 3 per vertex of the model, at the start [m]; empty: at rest
+  std::set<std::array<int, 2>> overlapping = {};  // pairs of parts (ascending) that overlap at the start
 };
 
 // Parameters of all pairs of parts, for points of the first part near the second one.

@@ -7,15 +7,11 @@
 
 #include "base/error.h"
 #include "contact/barrier.h"
-#include "dynamics/incremental_potential.h"
-#include "dynamics/integrator.h"
-#include "dynamics/simulation_checks.h"
+#include "dynamics/settle.h"
 #include "energy/tet_elasticity.h"
 #include "math/vectors.h"
 #include "mesh/box.h"
 #include "mesh/tet_nodes.h"
-#include "optimize/minimize.h"
-#include "optimize/solver.h"
 
 namespace aspic {
 namespace {
@@ -24,26 +20,6 @@ constexpr double kSmallest = 1.0 / 64;  // minimum scale of bodies
 constexpr double kShrink = 0.85;        // ratio of two successive scales
 constexpr double kGrow = 1.1;           // the same while bodies grow
 constexpr double kVolume = 0.9;         // minimum fraction of its volume that a body must regain
-constexpr int kMaxSteps = 200;
-constexpr double kAtRest = 1e-3;  // maximum displacement in a step at rest, relative to the radius of the model
-
-// Returns why the surfaces overlap; nothing if they do not.
-std::optional<std::string> overlap(const Model& model, const std::vector<double>& q) {
-  try {
-    State state;
-    state.q = q;
-    require_apart(model, state, make_integrator("backward_euler")->facts());
-    return {};
-  } catch (const InvalidInput& e) {
-    return e.what();
-  }
-}
-
-std::set<int> pinned_vertices(const Model& model) {
-  std::set<int> pinned;
-  for (const Pin& pin : model.pins) pinned.insert(pin.vertices.begin(), pin.vertices.end());
-  return pinned;
-}
 
 std::vector<double> shrunk(const Model& model, const std::vector<double>& q, double scale) {
   const std::set<int> pinned = pinned_vertices(model);
@@ -77,47 +53,6 @@ double volume_of(const LinearParts& parts, const BodyRange& body, const std::vec
     sum += signed_volume(point(q, tet[0]), point(q, tet[1]), point(q, tet[2]), point(q, tet[3]));
   });
   return sum;
-}
-
-bool encloses(const LinearParts& parts, const BodyRange& body, const std::vector<double>& q, const Vec3d& x) {
-  bool is_inside = false;
-  for_linear_tets(parts, body, [&](const Tet& tet) {
-    const Vec3d a = point(q, tet[0]), b = point(q, tet[1]), c = point(q, tet[2]), d = point(q, tet[3]);
-    is_inside |= signed_volume(x, b, c, d) >= 0 && signed_volume(a, x, c, d) >= 0 && signed_volume(a, b, x, d) >= 0 &&
-                 signed_volume(a, b, c, x) >= 0;
-  });
-  return is_inside;
-}
-
-// Rejects bodies inside of other bodies, whose surfaces do not intersect.
-void require_outside(const Model& model, const std::vector<double>& q) {
-  const LinearParts parts = linear_parts(model.mesh);
-  for (const BodyRange& inner : model.bodies)
-    for (const BodyRange& outer : model.bodies)
-      if (&inner != &outer && encloses(parts, outer, q, point(q, inner.first_vertex)))
-        throw InvalidInput("body '" + outer.name + "' encloses the center of body '" + inner.name +
-                           "'; move one of them");
-}
-
-// Repeatedly minimizes 1/2 (x - q)' M (x - q) + h^2 V(x), where V is elasticity and contact, until x is at rest.
-void settle(const Model& model, const std::vector<double>& start, std::vector<double>& q) {
-  const Pins pins(model.pins, start);
-  IncrementalPotential E(model, pins);
-  const double radius = E.scales().x;
-  double mass = 0;
-  for (const double m : model.mass->vertex_mass()) mass += m;
-  const double h2 = mass * radius * radius / E.growth_stiffness();  // square of a vibration period
-  const std::unique_ptr<SearchDirection> direction = make_search_direction({});
-  for (int step = 0; step < kMaxSteps; ++step) {
-    const std::vector<double> before = q;
-    E.set_potential_step({.start = before, .h = std::sqrt(h2), .time = 0, .obstacle_time = 0});
-    E.begin_step(before, 1, h2);
-    const MinimizeReport report = Minimizer().minimize(E, *direction, {q}, {.max_iterations = 100, .tolerance = 1e-3});
-    if (!is_success(report.status)) return;
-    double moved = 0;
-    for (size_t i = 0; i < q.size(); ++i) moved = std::max(moved, std::abs(q[i] - before[i]));
-    if (moved < kAtRest * radius) return;
-  }
 }
 
 // Returns the model with bodies without pins at `scale` times their size, of a material that resists inversion. Mass
@@ -167,16 +102,7 @@ void inflate(Model& model, std::vector<double>& q) {
     why = overlap(model, q = shrunk(model, start, scale));
   }
   if (why) throw InvalidInput("shrinking does not separate the bodies: " + *why);
-  require_outside(model, q);
-  const auto other = std::stable_partition(model.loads.begin(), model.loads.end(),
-                                           [&](const auto& load) { return load.get() == model.contact; });
-  std::vector<std::unique_ptr<Energy>> loads(std::make_move_iterator(other),
-                                             std::make_move_iterator(model.loads.end()));
-  model.loads.erase(other, model.loads.end());
-  std::vector<std::unique_ptr<Energy>> damping = std::exchange(model.damping, {});
-  grow(model, scale, start, q);
-  model.damping = std::move(damping);
-  model.loads.insert(model.loads.begin(), std::make_move_iterator(loads.begin()), std::make_move_iterator(loads.end()));
+  without_other_terms(model, [&] { grow(model, scale, start, q); });
   const LinearParts parts = linear_parts(model.mesh);
   for (const BodyRange& body : model.bodies) {
     const double share = volume_of(parts, body, q) / volume_of(parts, body, start);

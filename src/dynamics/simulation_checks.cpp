@@ -4,14 +4,13 @@
 #include <cmath>
 #include <cstdio>
 #include <limits>
-#include <map>
-#include <utility>
 
 #include "base/error.h"
 #include "base/formatted.h"
 #include "contact/barrier.h"
+#include "contact/contact_reach.h"
+#include "contact/overlaps.h"
 #include "math/vectors.h"
-#include "mesh/self_intersection.h"
 
 namespace aspic {
 namespace {
@@ -47,26 +46,47 @@ std::optional<SolverConflict> budget_conflict(const SimulationOptions& options, 
 }
 
 // Rejects surfaces that intersect. The message lists the first pairs of parts with a location for each.
-void require_no_intersection(const ContactMesh& contact, const TriMesh& surface) {
+void require_no_intersection(const ContactMesh& contact, std::span<const Vec3d> x) {
   constexpr size_t kMaxListed = 10;
-  SelfIntersections found = self_intersections(surface, 100'000);
-  std::erase_if(found.pairs, [&](const auto& pair) {  // obstacles may intersect each other and themselves
-    return contact.row[contact.triangles[pair[0]][0]] < 0 && contact.row[contact.triangles[pair[1]][0]] < 0;
-  });
+  const Overlaps found = overlaps(contact, x);
   if (found.pairs.empty()) return;
-  const auto part_of = [&](int triangle) { return contact.part[contact.triangles[triangle][0]]; };
-  std::map<std::pair<int, int>, int> places;  // one triangle for each pair of parts
-  for (const auto& [s, t] : found.pairs) places.try_emplace(std::minmax(part_of(s), part_of(t)), s);
   std::string text;
-  size_t listed = 0;
-  for (const auto& [parts, triangle] : places) {
-    if (listed++ == kMaxListed) break;
-    text += (text.empty() ? "" : "; ") + contact.parts[parts.first].name + " and " + contact.parts[parts.second].name +
-            " near (" + coordinates(surface.vertices[contact.triangles[triangle][0]]) + ") m";
+  for (size_t i = 0; i < std::min(found.pairs.size(), kMaxListed); ++i) {
+    const auto& [parts, place] = found.pairs[i];
+    text += (i == 0 ? "" : "; ") + contact.parts[parts[0]].name + " and " + contact.parts[parts[1]].name + " near (" +
+            coordinates(place) + ") m";
   }
-  throw InvalidInput("surfaces intersect in the initial state: " + text + (places.size() > kMaxListed ? "; ..." : "") +
-                     " (" + std::to_string(found.pairs.size()) + (found.is_complete ? "" : " or more") +
-                     " pairs of triangles); move them apart");
+  throw InvalidInput("surfaces intersect in the initial state: " + text +
+                     (found.pairs.size() > kMaxListed ? "; ..." : "") + " (" + std::to_string(found.count) +
+                     (found.is_complete ? "" : " or more") + " pairs of triangles); move them apart");
+}
+
+// Rejects solids inside of other solids. Bodies may start inside of a closed obstacle, which contains them.
+void require_outside(const ContactMesh& contact, std::span<const Vec3d> x) {
+  for (const auto& [inner, outer, place] : enclosed_parts(contact, x))
+    if (!contact.parts[outer].is_obstacle)
+      throw InvalidInput((contact.parts[inner].is_obstacle ? "obstacle '" : "body '") + contact.parts[inner].name +
+                         "' starts inside of body '" + contact.parts[outer].name + "', near (" + coordinates(place) +
+                         ") m; move it out, or give the body a cavity");
+}
+
+// Rejects vertices behind a plane, or on it.
+void require_before_planes(const Model& model, std::span<const Vec3d> x) {
+  const ContactMesh& contact = model.contact->mesh();
+  for (const ContactPlane& plane : contact.planes)
+    for (int p = 0; p < contact.point_count(); ++p) {
+      if (contact.row[p] < 0) continue;
+      const double height = dot(plane.normal, x[p] - x[plane.point]);
+      if (height > 0) continue;
+      const std::string body = "body '" + contact.parts[contact.part[p]].name + "'",
+                        floor = "'" + contact.parts[plane.part].name + "'";
+      const std::string vertex = "vertex " + std::to_string(model.numbering.vertex.to_user(contact.row[p]));
+      const bool is_touching = -height <= kTouching * model.contact->laws()(contact.part[p], plane.part).edge;
+      throw InvalidInput(is_touching
+                             ? body + " touches the plane " + floor + " at the start, at " + vertex + "; leave a gap"
+                             : body + " starts behind the plane " + floor + ": " + vertex + " by " +
+                                   three_digits(-height) + " m; move it");
+    }
 }
 
 }  // namespace
@@ -118,14 +138,9 @@ void require_apart(const Model& model, const State& start, const IntegratorFacts
   const ContactMesh& contact = model.contact->mesh();
   Energy::Context at_start;
   at_start.time = time;
-  const TriMesh surface{model.contact->points(x, time), contact.triangles};
-  require_no_intersection(contact, surface);
-  for (const ContactPlane& plane : contact.planes)
-    for (int p = 0; p < contact.point_count(); ++p)
-      if (contact.row[p] >= 0 && !(dot(plane.normal, surface.vertices[p] - surface.vertices[plane.point]) > 0))
-        throw InvalidInput("body '" + contact.parts[contact.part[p]].name + "' starts behind the plane '" +
-                           contact.parts[plane.part].name + "', at vertex " +
-                           std::to_string(model.numbering.vertex.to_user(contact.row[p])) + "; move it");
+  const std::vector<Vec3d> points = model.contact->points(x, time);
+  require_no_intersection(contact, points);
+  require_before_planes(model, points);
   if (const int p = model.contact->self_touching_point(); p >= 0)
     throw BadInitialState(BadInitialState::Kind::touches_itself,
                           "body '" + contact.parts[contact.part[p]].name + "' touches itself at rest, at vertex " +
@@ -136,6 +151,7 @@ void require_apart(const Model& model, const State& start, const IntegratorFacts
   if (closest.contacts > 0 && (!std::isfinite(model.contact->value(x, at_start)) || closest.min_gap < least_gap))
     throw InvalidInput("surfaces touch or overlap in the initial state: " + contact.parts[closest.parts[0]].name +
                        " and " + contact.parts[closest.parts[1]].name + "; move them apart");
+  require_outside(contact, points);
 }
 
 std::optional<SolverConflict> find_conflict(const SimulationOptions& options) {

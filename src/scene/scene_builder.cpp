@@ -1,14 +1,15 @@
 #include "scene/scene_builder.h"
-#include "dynamics/inflate.h"
 
 #include <algorithm>
 #include <cmath>
 
 #include "base/error.h"
 #include "base/printable.h"
+#include "dynamics/inflate.h"
 #include "dynamics/integrator.h"
 #include "dynamics/internal_terms.h"
 #include "dynamics/simulation_checks.h"
+#include "dynamics/touching.h"
 #include "scene/body_actions.h"
 #include "scene/body_material.h"
 #include "scene/body_notes.h"
@@ -68,8 +69,7 @@ class SceneBuilder {
     add_model();
     if (options_.amend) options_.amend(model_);
     State state = start();
-    if (const Value* contact = source_.document.find("contact"); contact && (*contact)["start"].text() == "inflate")
-      inflate_from((*contact)["start"].place, state);
+    if (model_.contact) separate(state);
     const SimulationOptions options = simulation_options(source_.document, source_.notes);
     require_integrator(options.integrator);
     put_in_order(source_.document);
@@ -114,12 +114,17 @@ class SceneBuilder {
     }
   }
 
-  void inflate_from(const Place& place, State& state) {
-    mesh_loader().report_if_many(model_.mesh.tet_count(), "moving bodies apart that overlap at the start");
+  // Separates surfaces that touch or, if the scene allows it, overlap at the start.
+  void separate(State& state) {
+    MeshLoader loader = mesh_loader();
+    note_touching(separate_touching(model_, state.q), model_, loader);
+    const Value& start = (*source_.document.find("contact"))["start"];
+    if (start.text() != "inflate") return;
+    loader.report_if_many(model_.mesh.tet_count(), "moving bodies apart that overlap at the start");
     try {
       inflate(model_, state.q);
     } catch (const InvalidInput& e) {
-      throw error_at(place, std::string("start = \"inflate\": ") + e.what());
+      throw error_at(start.place, std::string("start = \"inflate\": ") + e.what());
     }
   }
 
@@ -178,8 +183,15 @@ class SceneBuilder {
         {bodies_, source_.document.find("gravity")->vector(), kind, files_, source_.notes, options_.limit.memory},
         model_);
     MeshLoader loader = mesh_loader();
-    add_scene_contact(source_.document, loader, model_);
+    add_scene_contact(source_.document, loader, initial_positions(), model_);
     for (const PlacedBody& body : bodies_) note_parts(body, model_, source_.notes);
+  }
+
+  std::vector<double> initial_positions() const {
+    std::vector<double> q;
+    for (const PlacedBody& body : bodies_)
+      for (const Vec3d& x : body.start) q.insert(q.end(), x.a, x.a + 3);
+    return model_.numbering.vertex.from_user(q, 3);
   }
 
   State start() {
@@ -194,12 +206,9 @@ class SceneBuilder {
         throw error_at(body.scene["velocity"].place, e.what());
       }
       for (size_t i = 0; i < v.size(); ++i)
-        for (int r = 0; r < 3; ++r) {
-          state.q.push_back(body.start[i][r]);
-          state.qdot.push_back(v[i][r]);
-        }
+        for (int r = 0; r < 3; ++r) state.qdot.push_back(v[i][r]);
     }
-    state.q = model_.numbering.vertex.from_user(state.q, 3);
+    state.q = initial_positions();
     state.qdot = model_.numbering.vertex.from_user(state.qdot, 3);
     return state;
   }

@@ -6,8 +6,11 @@
 
 #include "base/error.h"
 #include "contact/contact_mesh.h"
+#include "contact/contact_reach.h"
+#include "contact/overlaps.h"
 #include "dynamics/contact.h"
 #include "io/mesh_file.h"
+#include "math/vectors.h"
 #include "mesh/surface.h"
 #include "scene/motion.h"
 #include "scene/placement.h"
@@ -158,9 +161,59 @@ std::vector<PairFriction> pairs_of(const Value& options, const ContactMesh& cont
   return pairs;
 }
 
+// Returns the pairs of parts that intersect at the initial positions, or are behind a plane.
+std::set<std::array<int, 2>> overlapping_parts(const ContactMesh& contact, const std::vector<double>& q) {
+  std::vector<Vec3d> x = contact.rest;
+  for (int p = 0; p < contact.point_count(); ++p)
+    if (contact.row[p] >= 0) x[p] = point(q, contact.row[p]);
+  std::set<std::array<int, 2>> pairs;
+  for (const Overlaps::Pair& pair : overlaps(contact, x).pairs) pairs.insert(pair.parts);
+  for (const ContactPlane& plane : contact.planes)
+    for (int p = 0; p < contact.point_count(); ++p)
+      if (contact.row[p] >= 0 && dot(plane.normal, x[p] - x[plane.point]) < 0)
+        pairs.insert({contact.part[p], plane.part});
+  return pairs;
+}
+
+constexpr size_t kMaxListed = 4;
+
+// Adds notes on the reach of the pairs: that of most, then the smallest ones with their reasons.
+void note_reaches(const Barrier& contact, MeshLoader& loader) {
+  constexpr double kSlow = 1.0 / 20'000;  // reach relative to the edges below which steps need more iterations
+  struct Bounded {
+    std::array<int, 2> parts;
+    const ContactLaw* law;
+  };
+  std::vector<Bounded> bounded;
+  const ContactLaw* widest = nullptr;  // among those that only the edges bound
+  const int parts = static_cast<int>(contact.mesh().parts.size());
+  for (int a = 0; a < parts; ++a)
+    for (int b = a; b < parts; ++b) {
+      const ContactLaw& law = contact.laws()(a, b);
+      if (law.reach == 0) continue;
+      const bool is_usual = law.basis == ReachBasis::edge || law.basis == ReachBasis::given;
+      if (is_usual && (!widest || law.reach > widest->reach)) widest = &law;
+      if (!is_usual) bounded.push_back({{a, b}, &law});
+    }
+  std::stable_sort(bounded.begin(), bounded.end(),
+                   [](const Bounded& a, const Bounded& b) { return a.law->reach < b.law->reach; });
+  if (widest) loader.notes.push_back("contact begins at " + three_digits(widest->reach) + " m: " + reason_of(*widest));
+  for (size_t i = 0; i < std::min(bounded.size(), kMaxListed); ++i) {
+    const ContactLaw& law = *bounded[i].law;
+    loader.notes.push_back(
+        "contact of " + contact.mesh().pair_name(bounded[i].parts) + " begins at " + three_digits(law.reach) +
+        " m: " + reason_of(law) +
+        (law.reach < kSlow * law.edge ? "; steps take more iterations than with a larger contact.reach" : ""));
+  }
+  if (bounded.size() > kMaxListed)
+    loader.notes.push_back("contact of " + std::to_string(bounded.size() - kMaxListed) + " other pairs begins at " +
+                           three_digits(bounded[kMaxListed].law->reach) + " to " +
+                           three_digits(bounded.back().law->reach) + " m, for such reasons");
+}
+
 }  // namespace
 
-void add_scene_contact(Table& document, MeshLoader& loader, Model& model) {
+void add_scene_contact(Table& document, MeshLoader& loader, const std::vector<double>& q, Model& model) {
   Value* obstacles = document.find("obstacle");
   if (!document.find("contact") && !obstacles) return;
   if (!document.find("contact")) {
@@ -188,8 +241,9 @@ void add_scene_contact(Table& document, MeshLoader& loader, Model& model) {
     complete_names(obstacles->array(), model);
     for (Value& obstacle : obstacles->array()) add_obstacle(obstacle, friction_of(obstacle, friction), loader, contact);
   }
-  const ContactOptions given{
-      .reach = number("reach"), .stiffness = number("stiffness"), .pairs = pairs_of(options, contact)};
+  ContactOptions given{
+      .reach = number("reach"), .stiffness = number("stiffness"), .pairs = pairs_of(options, contact), .start = q};
+  if (options["start"].text() == "inflate") given.overlapping = overlapping_parts(contact, q);
   for (const ContactPart& part : contact.parts)
     if (!part.is_obstacle && given.reach > part.mean_edge)
       throw error_at(options["reach"].place, "reach = " + number_text(given.reach) + "; body '" + part.name +
@@ -205,9 +259,18 @@ void add_scene_contact(Table& document, MeshLoader& loader, Model& model) {
   const double weight = norm(document.find("gravity")->vector());
   const double creep = options.find("creep") || weight == 0 ? number("creep") : default_creep(weight, model);
   add_contact(std::move(contact), given, creep, model);
-  const ContactLaws& laws = model.contact->laws();
-  loader.notes.push_back("contact begins at " + three_digits(laws.largest_reach()) + " m" +
-                         (given.reach > 0 ? "" : " (a fiftieth of the mean edge of the finer surface)"));
+  note_reaches(*model.contact, loader);
+}
+
+void note_touching(const std::set<std::array<int, 2>>& pairs, const Model& model, MeshLoader& loader) {
+  if (pairs.empty()) return;
+  std::string names;
+  size_t listed = 0;
+  for (const auto& pair : pairs)
+    if (listed++ < kMaxListed) names += (names.empty() ? "" : "; ") + model.contact->mesh().pair_name(pair);
+  if (pairs.size() > kMaxListed) names += "; and " + std::to_string(pairs.size() - kMaxListed) + " other pairs";
+  loader.notes.push_back("surfaces touch at the start: " + names +
+                         "; the touching vertices are moved into their bodies by the distance at which contact begins");
 }
 
 }  // namespace aspic

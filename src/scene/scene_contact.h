@@ -1,5 +1,9 @@
 // Contact and obstacles of a scene.
 #pragma once
+#include <array>
+#include <set>
+#include <vector>
+
 #include "dynamics/model.h"
 #include "scene/body_mesh.h"
 #include "scene/value.h"
@@ -7,7 +11,10 @@
 namespace aspic {
 
 // Adds contact to a model that has its bodies, if the document has `contact` or an obstacle. Completes the names of
-// obstacles in the document. Throws InvalidInput.
-void add_scene_contact(Table& document, MeshLoader& loader, Model& model);
+// obstacles in the document. `q`: initial positions of the model. Throws InvalidInput.
+void add_scene_contact(Table& document, MeshLoader& loader, const std::vector<double>& q, Model& model);
+
+// Adds a note that names pairs of parts which touched at the start and were separated.
+void note_touching(const std::set<std::array<int, 2>>& pairs, const Model& model, MeshLoader& loader);
 
 }  // namespace aspic

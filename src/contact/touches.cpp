@@ -1,0 +1,107 @@
+#include "contact/touches.h"
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+
+#include "contact/contact_reach.h"
+
+namespace aspic {
+namespace {
+
+constexpr double kFacing = 0.05;    // least cosine of the angle between the outward normal of a point and the way out
+constexpr double kParallel = 1e-3;  // sine of the angle below which edges count as parallel
+constexpr double kClear = 1.001;    // relative to the reach
+
+class Touches {
+ public:
+  Touches(const ContactMesh& mesh, const ContactLaws& laws, std::span<const Vec3d> x)
+      : mesh_(mesh), laws_(laws), x_(x), outward_(x.size()) {
+    for (const Triangle& t : mesh.triangles)
+      for (const int p : t) outward_[p] = outward_[p] + area_vector(t);
+  }
+
+  void add_point_triangle(int p, int triangle) {
+    const Triangle& t = mesh_.triangles[triangle];
+    const ContactLaw& law = laws_(mesh_.part[p], mesh_.part[t[0]]);
+    const Distance distance = point_triangle_distance({x_[p], x_[t[0]], x_[t[1]], x_[t[2]]});
+    if (!touches(distance.d, law)) return;
+    const Vec3d normal = unit(law.radius > 0 ? distance.r : area_vector(t));  // from the triangle to the point
+    const double side = is_body(t[0]) || law.radius > 0 ? 1 : -sign(dot(normal, outward_[p]));
+    if (is_body(p) && faces(p, side * normal)) add({p}, side * normal, mesh_.part[t[0]]);
+    const bool is_facing =
+        law.radius > 0 || (is_body(p) ? faces(p, normal) : faces(p, normal) || faces(p, -1.0 * normal));
+    if (is_body(t[0]) && is_facing) add(t, -1.0 * normal, mesh_.part[p]);
+  }
+
+  void add_edges(const Edge& a, const Edge& b) {
+    const ContactLaw& law = laws_(mesh_.part[a[0]], mesh_.part[b[0]]);
+    const Distance distance = edge_edge_distance({x_[a[0]], x_[a[1]], x_[b[0]], x_[b[1]]});
+    if (!touches(distance.d, law)) return;
+    const Vec3d u = unit(x_[a[1]] - x_[a[0]]), v = unit(x_[b[1]] - x_[b[0]]);
+    Vec3d normal = law.radius > 0 ? distance.r : cross(u, v);
+    if (law.radius == 0 && norm(normal) < kParallel) return;
+    normal = unit(normal);
+    const double from_b = side_of(a, normal), from_a = side_of(b, normal);
+    if (law.radius == 0 && is_body(a[0]) && is_body(b[0]) && from_a == from_b) return;
+    if (is_body(a[0])) add(a, from_b * normal, mesh_.part[b[0]]);
+    if (is_body(b[0])) add(b, from_a * normal, mesh_.part[a[0]]);
+  }
+
+  void add_plane(int p, const ContactPlane& plane) {
+    if (is_body(p) && touches(std::abs(dot(plane.normal, x_[p] - x_[plane.point])), laws_(mesh_.part[p], plane.part)))
+      add({p}, plane.normal, plane.part);
+  }
+
+  std::vector<Touch> take() { return std::move(found_); }
+
+ private:
+  static double sign(double a) { return a < 0 ? -1 : 1; }
+  static Vec3d unit(const Vec3d& v) { return norm(v) > 0 ? (1 / norm(v)) * v : Vec3d{}; }
+  Vec3d area_vector(const Triangle& t) const { return 0.5 * cross(x_[t[1]] - x_[t[0]], x_[t[2]] - x_[t[0]]); }
+  bool is_body(int p) const { return mesh_.row[p] >= 0; }
+  static bool touches(double distance, const ContactLaw& law) {
+    return std::abs(distance - law.radius) <= kTouching * law.edge;
+  }
+  // Returns whether a way away from the other surface leads into the point's own body.
+  bool faces(int p, const Vec3d& away) const { return dot(outward_[p], away) < -kFacing * norm(outward_[p]); }
+  // Returns the sign of `normal` that leads into the body of an edge.
+  double side_of(const Edge& edge, const Vec3d& normal) const {
+    return -sign(dot(normal, outward_[edge[0]] + outward_[edge[1]]));
+  }
+  template <class Points>
+  void add(const Points& points, const Vec3d& away, int other) {
+    for (const int p : points) add_one(p, away, other);
+  }
+  void add(std::initializer_list<int> points, const Vec3d& away, int other) {
+    for (const int p : points) add_one(p, away, other);
+  }
+  void add_one(int p, const Vec3d& away, int other) {
+    const int own = mesh_.part[p];
+    const double by = kClear * std::min(laws_(own, other).reach, touching_reach(laws_(own, other)));
+    found_.push_back({p, away, by, {std::min(own, other), std::max(own, other)}});
+  }
+
+  const ContactMesh& mesh_;
+  const ContactLaws& laws_;
+  std::span<const Vec3d> x_;
+  std::vector<Vec3d> outward_;  // sum of the area vectors of the triangles at each point [m^2]
+  std::vector<Touch> found_;
+};
+
+}  // namespace
+
+std::vector<Touch> touches(const ContactMesh& mesh, const ContactLaws& laws, const StencilSearch& search,
+                           std::span<const Vec3d> x) {
+  const auto near = search.along(PairScope::between_parts, x, {});
+  if (!near) throw std::length_error("contact: too many features touch each other at the start");
+  Touches found(mesh, laws, x);
+  for (int p = 0; p < mesh.point_count(); ++p) {
+    for (const auto& [t, gap] : near->pairs->near(p)) found.add_point_triangle(p, t);
+    for (const ContactPlane& plane : mesh.planes) found.add_plane(p, plane);
+  }
+  for (const auto& [a, b, gap] : near->pairs->edge_pairs) found.add_edges(mesh.edges[a], mesh.edges[b]);
+  return found.take();
+}
+
+}  // namespace aspic
