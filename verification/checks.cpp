@@ -26,6 +26,7 @@ const std::vector<Check>& checks() {
     add_column_checks(list);
     add_contact_sliding_checks(list);
     add_contact_static_checks(list);
+    add_contact_start_checks(list);
     add_contact_motion_checks(list);
     add_contact_limit_checks(list);
     return list;

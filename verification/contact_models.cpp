@@ -44,6 +44,14 @@ Model make_touching(const TouchingModel& given) {
     first_tet += body.mesh.tet_count();
   }
   if (given.has_floor) contact.add_plane({.name = "floor", .friction = given.friction}, {}, {{0, 1, 0}});
+  for (const Wall& wall : given.walls) {
+    ContactPart part{.name = "wall", .friction = given.friction};
+    if (norm(wall.velocity) > 0)
+      part.motion = [u = wall.velocity](double time, std::span<const Vec3d> start, std::span<Vec3d> x) {
+        for (size_t i = 0; i < x.size(); ++i) x[i] = start[i] + time * u;
+      };
+    contact.add_plane(part, wall.origin, wall.normal);
+  }
   add_contact(std::move(contact), given.contact, given.creep, model);
   return model;
 }
@@ -83,11 +91,12 @@ void expect_contact(const std::string& name, const Simulation& simulation, Findi
   const std::vector<double>& q = simulation.state().q;
   TriMesh surface{contact.mesh().rest, contact.mesh().triangles};
   bool is_free = true;
+  const std::vector<Vec3d> obstacles = contact.obstacle_points(simulation.obstacle_time());
   for (int p = 0; p < contact.mesh().point_count(); ++p) {
     const int row = contact.mesh().row[p];
     if (row >= 0) surface.vertices[p] = point(q, row);
     for (const ContactPlane& plane : contact.mesh().planes)
-      is_free = is_free && (row < 0 || dot(plane.normal, surface.vertices[p] - plane.origin) > 0);
+      is_free = is_free && (row < 0 || dot(plane.normal, surface.vertices[p] - obstacles[plane.point]) > 0);
   }
   const ContactSummary summary = contact.summary(q, simulation.obstacle_time());
   is_free = is_free && summary.contacts > 0 && summary.min_gap > 0 && self_intersections(surface).pairs.empty();

@@ -19,9 +19,15 @@ struct TouchingBody {
   std::function<bool(const Vec3d&)> touches = {};
 };
 
+// A plane with a free side, which moves at constant velocity.
+struct Wall {
+  Vec3d origin, normal, velocity;  // [m], [1], [m/s]
+};
+
 struct TouchingModel {
   std::vector<TouchingBody> bodies;
   bool has_floor = false;  // the plane y = 0
+  std::vector<Wall> walls = {};
   std::string material = "neo_hookean_log";
   double poisson = 0.3;
   double friction = 0, creep = 0;  // creep [m/s]; 0: the default

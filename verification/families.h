@@ -8,6 +8,7 @@ namespace aspic::verify {
 
 void add_contact_sliding_checks(std::vector<Check>& checks);
 void add_contact_static_checks(std::vector<Check>& checks);
+void add_contact_start_checks(std::vector<Check>& checks);
 void add_contact_motion_checks(std::vector<Check>& checks);
 void add_contact_limit_checks(std::vector<Check>& checks);
 void add_material_checks(std::vector<Check>& checks);

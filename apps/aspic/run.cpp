@@ -292,6 +292,7 @@ int run(const RunArguments& arguments) {
 
   Runner runner(arguments, scene, directory, stop);
   if (!arguments.quiet) print_start(runner.human(), arguments, scene, directory.path());
+  if (!scene.start_warning.empty()) fmt::print(stderr, "warning: {}\n", scene.start_warning);
   runner.run();
   if (!arguments.quiet) {
     if (earlier > 0) fmt::print(runner.human(), "{} of the earlier steps did not converge\n", earlier);
@@ -302,6 +303,7 @@ int run(const RunArguments& arguments) {
                    .time_limit = runner.has_run_out() ? arguments.time_limit : 0,
                    .blown_up = runner.has_blown_up(),
                    .solver = scene.simulation.integrator().is_implicit ? scene.simulation.solver_description() : "",
+                   .start_warning = scene.start_warning,
                    .inverted = inverted_tets(scene.simulation),
                    .state_hash = scene.simulation.state_hash(),
                    .pins = pin_names(scene.simulation.model()),

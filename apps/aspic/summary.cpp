@@ -93,6 +93,16 @@ void print_certificate(std::FILE* stream, const RunTotals& totals) {
                totals.grew, totals.most_grown);
 }
 
+void print_contact(std::FILE* stream, const RunTotals& totals, const RunEnd& end) {
+  if (!end.start_warning.empty()) fmt::print(stream, "start      {}\n", end.start_warning);
+  if (totals.gap_error == 0) return;
+  fmt::print(stream, "contact    gaps of at most {:.3g} m remain between surfaces in contact", totals.gap_error);
+  if (totals.contact_force_error > 0)
+    fmt::print(stream, "; they make forces between prescribed motions too large by up to {:.2g} % (estimate)",
+               100 * totals.contact_force_error);
+  fmt::print(stream, "\n");
+}
+
 void print_inverted(std::FILE* stream, const RunTotals& totals, const InvertedTets& end) {
   if (totals.with_inverted_tets == 0 && end.count == 0) return;
   fmt::print(stream, "inverted   ");
@@ -147,6 +157,8 @@ void RunTotals::add(const StepReport& report) {
   substeps += report.substeps;
   rejected += report.rejected;
   if (!(report.min_det_F > 0) && with_inverted_tets++ == 0) first_inverted = report.step;
+  gap_error = std::max(gap_error, report.gap_error);
+  contact_force_error = std::max(contact_force_error, report.contact_force_error);
   least_det_F = std::min(least_det_F, report.min_det_F);
   seconds += report.seconds;
   time = report.time;
@@ -186,6 +198,7 @@ void print_summary(std::FILE* stream, const RunTotals& totals, const RunEnd& end
       fmt::print(stream, "budget     {} steps ended by solver.time_budget: these results depend on the clock\n",
                  totals.out_of_time);
     print_certificate(stream, totals);
+    print_contact(stream, totals, end);
     print_inverted(stream, totals, end.inverted);
     print_reactions(stream, totals, end);
     const auto per_step = [&](long count) { return static_cast<double>(count) / totals.steps; };

@@ -29,6 +29,7 @@ struct RunTotals {
   double time = 0;                                 // end of the last step [s]
   int with_inverted_tets = 0, first_inverted = 0;  // steps that end with an inverted tet: number, first
   double least_det_F = 1;                          // over all tets at the ends of steps
+  double gap_error = 0, contact_force_error = 0;   // maxima, see StepReport
   std::vector<Resultant> reactions;                // reaction of each pin in the last step
 
   void add(const StepReport& report);
@@ -48,6 +49,7 @@ struct RunEnd {
   double time_limit = 0;  // limit that ended the run [s]; 0: none
   bool blown_up = false;
   std::string solver;             // methods, their choices and the reasons; empty: no solver
+  std::string start_warning;      // see Scene::start_warning
   InvertedTets inverted;          // in the last state
   std::uint64_t state_hash = 0;   // hash of the last state
   std::vector<std::string> pins;  // names of RunTotals::reactions

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <mutex>
 #include <set>
 
@@ -154,6 +155,10 @@ std::vector<Touch> Barrier::touches(Positions x, double time) const {
 }
 
 bool Barrier::has_moving_obstacle() const { return impl_->has_motion; }
+int Barrier::obstacle_count() const {
+  const auto& parts = impl_->mesh.parts;
+  return static_cast<int>(std::count_if(parts.begin(), parts.end(), [](const auto& part) { return part.is_obstacle; }));
+}
 ContactMeter& Barrier::meter() const { return impl_->search.meter(); }
 
 std::vector<Vec3d> Barrier::obstacle_points(double time) const { return impl_->obstacles(time); }
@@ -341,12 +346,35 @@ std::vector<ContactPoint> Barrier::contact_points(Positions x, double time) cons
 ContactSummary Barrier::summary(Positions x, double time) const {
   const auto stencils = this->stencils(x, time);
   ContactSummary summary{.contacts = static_cast<int>(stencils->size())};
-  for (const ContactStencil& stencil : *stencils)
+  for (const ContactStencil& stencil : *stencils) {
     if (stencil.gap() < summary.min_gap)
       summary.min_gap = stencil.gap(), summary.parts = stencil.parts, summary.reach = stencil.reach;
+    summary.widest_reach = std::max(summary.widest_reach, stencil.reach);
+    summary.gap_work -= stencil.weight * stencil.b().first * stencil.gap();
+  }
   for (const ContactPoint& point : contact_points(x, time))
     summary.max_pressure = std::max(summary.max_pressure, point.pressure);
   return summary;
+}
+
+ContactEnergy Barrier::energy(Positions x, double time) const {
+  const std::vector<Vec3d> p = impl_->points(x, time);
+  struct Share {
+    double energy = 0, gap = std::numeric_limits<double>::infinity();
+  };
+  std::map<std::array<int, 2>, Share> shares;
+  ContactEnergy all;
+  for (const ContactStencil& stencil : *impl_->search.at(p)) {
+    const auto [first, second] = std::minmax(stencil.parts[0], stencil.parts[1]);
+    Share& share = shares[{first, second}];
+    share.energy += stencil.value(p);
+    share.gap = std::min(share.gap, stencil.gap());
+    all.total += stencil.value(p);
+  }
+  double most = 0;
+  for (const auto& [parts, share] : shares)
+    if (share.energy > most) most = share.energy, all.parts = parts, all.gap = share.gap;
+  return all;
 }
 
 }  // namespace aspic

@@ -20,6 +20,15 @@ struct ContactSummary {
   std::array<int, 2> parts = {-1, -1};                       // the parts with this gap
   double reach = 0;                                          // reach of their features [m]
   double max_pressure = 0;                                   // [Pa]
+  double widest_reach = 0;                                   // largest reach of these pairs [m]
+  double gap_work = 0;                                       // sum of the contact forces times their gaps [J]
+};
+
+// The energy of contact and the pair of parts with the largest share of it.
+struct ContactEnergy {
+  double total = 0;                     // [J]
+  std::array<int, 2> parts = {-1, -1};  // ascending
+  double gap = 0;                       // smallest gap of these parts [m]
 };
 
 // A surface point that is closer to another surface than the reach.
@@ -59,7 +68,9 @@ class Barrier : public Energy, public StepLimitingEnergy, public StoppingEnergy 
   // Returns one entry per point of the mesh. Empty if a position is not finite.
   std::vector<ContactPoint> contact_points(Positions x, double time) const;
   ContactSummary summary(Positions x, double time) const;
+  ContactEnergy energy(Positions x, double time) const;
   bool has_moving_obstacle() const;
+  int obstacle_count() const;
   // Returns pairs of moving obstacles and bodies, as "plate and ball", that would collide if obstacles moved and bodies
   // stayed at x.
   std::vector<std::string> blocked_parts(Positions x, double from, double to) const;

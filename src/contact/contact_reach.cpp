@@ -8,6 +8,7 @@
 
 #include "base/formatted.h"
 #include "contact/contact_candidates.h"
+#include "mesh/distance.h"
 
 namespace aspic {
 namespace {

@@ -10,7 +10,7 @@ namespace aspic {
 namespace {
 
 constexpr double kFacing = 0.05;    // least cosine of the angle between the outward normal of a point and the way out
-constexpr double kParallel = 1e-3;  // sine of the angle below which edges count as parallel
+constexpr double kAlmostParallel = 1e-3;  // sine of the angle below which edges count as parallel
 constexpr double kClear = 1.001;    // relative to the reach
 
 class Touches {
@@ -40,7 +40,7 @@ class Touches {
     if (!touches(distance.d, law)) return;
     const Vec3d u = unit(x_[a[1]] - x_[a[0]]), v = unit(x_[b[1]] - x_[b[0]]);
     Vec3d normal = law.radius > 0 ? distance.r : cross(u, v);
-    if (law.radius == 0 && norm(normal) < kParallel) return;
+    if (law.radius == 0 && norm(normal) < kAlmostParallel) return;
     normal = unit(normal);
     const double from_b = side_of(a, normal), from_a = side_of(b, normal);
     if (law.radius == 0 && is_body(a[0]) && is_body(b[0]) && from_a == from_b) return;

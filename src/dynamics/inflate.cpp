@@ -8,6 +8,7 @@
 #include "base/error.h"
 #include "contact/barrier.h"
 #include "dynamics/settle.h"
+#include "dynamics/state.h"
 #include "energy/tet_elasticity.h"
 #include "math/vectors.h"
 #include "mesh/box.h"

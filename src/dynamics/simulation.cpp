@@ -4,6 +4,7 @@
 #include <cmath>
 #include <ctime>
 #include <limits>
+#include <numeric>
 #include <optional>
 
 #include "base/error.h"
@@ -229,10 +230,23 @@ struct Simulation::Impl {
       report.min_gap = contact.contacts > 0 ? contact.min_gap : 0;
       if (contact.contacts > 0) report.min_gap_pair = model.contact->mesh().pair_name(contact.parts);
       report.max_pressure = contact.max_pressure;
+      report.gap_error = contact.widest_reach;
+      report.contact_force_error = force_error(contact.gap_work, report);
     }
     report.min_det_F = INFINITY;
     for (const auto& V : model.elasticity) report.min_det_F = std::min(report.min_det_F, V->min_det_F(state.q));
     report.state_hash = hash();
+  }
+
+  // A linear body that is shortened by s needs the force K s. Gaps g shorten it by s + g, with the energy
+  // K (s + g)^2 / 2. Hence the force is too large by the fraction g / (s + g) of itself.
+  double force_error(double gap_work, const StepReport& report) const {
+    const bool is_prescribed = !model.pins.empty() || model.contact->obstacle_count() > 1;
+    const auto first = report.potential.begin();
+    const size_t bodies = std::min(model.elasticity.size(), report.potential.size());
+    const double elastic = std::accumulate(first, first + static_cast<std::ptrdiff_t>(bodies), 0.0);
+    if (!is_prescribed || !(gap_work > 0)) return 0;
+    return elastic > gap_work / 2 ? gap_work / (2 * elastic) : 1;
   }
 
   std::uint64_t hash() const {

@@ -164,6 +164,12 @@ std::vector<StepField>& fields() {
                                  kMeasured)),
       optional(word<&R::min_gap_pair>({"min_gap_pair", "", "bodies or obstacles with this gap"}, kWord)),
       optional(real<&R::max_pressure>({"max_pressure", "Pa", "largest contact pressure"}, kMeasured)),
+      optional(real<&R::gap_error>(
+          {"gap_error", "m", "bound of the gap that remains between surfaces in contact: their largest reach"},
+          kMeasured)),
+      optional(real<&R::contact_force_error>(
+          {"contact_force_error", "1", "estimate of the relative excess of contact forces between prescribed motions"},
+          kMeasured)),
       optional(real<&R::friction_loss>({"friction_loss", "J", "share of friction in `damping_loss`"}, kMeasured)),
       optional(real<&R::friction_creep>({"friction_creep", "m", "largest slip of a sticking contact in this step"},
                                         kMeasured)),

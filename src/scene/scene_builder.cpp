@@ -89,10 +89,14 @@ class SceneBuilder {
     const int steps = steps_of(*scene.document.find("time"));
     const OutputOptions output = output_options(*scene.document.find("output"));
     try {
+      Simulation simulation(std::move(scene.model), std::move(scene.start), scene.options);
+      std::string warning = start_warning(simulation);
+      if (!warning.empty()) scene.notes.push_back(warning);
       return {std::move(scene.name),
               to_toml(scene.document),
               std::move(scene.notes),
-              Simulation(std::move(scene.model), std::move(scene.start), scene.options),
+              std::move(warning),
+              std::move(simulation),
               std::move(skins_),
               steps,
               output,

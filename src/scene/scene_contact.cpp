@@ -262,6 +262,21 @@ void add_scene_contact(Table& document, MeshLoader& loader, const std::vector<do
   note_reaches(*model.contact, loader);
 }
 
+std::string start_warning(const Simulation& simulation) {
+  constexpr double kWeak = 1e-3;  // pressure relative to the stiffness of contact; surfaces are at 98 % of the reach
+  const Barrier* contact = simulation.model().contact;
+  if (!contact) return "";
+  const std::vector<double>& q = simulation.state().q;
+  const ContactEnergy energy = contact->energy(q, simulation.obstacle_time());
+  if (energy.parts[0] < 0) return "";
+  const ContactLaw& law = contact->laws()(energy.parts[0], energy.parts[1]);
+  if (contact->summary(q, simulation.obstacle_time()).max_pressure < kWeak * law.stiffness) return "";
+  return "contact stores " + three_digits(energy.total) + " J at the start and pushes bodies apart, most " +
+         contact->mesh().pair_name(energy.parts) + ", whose gap of " + three_digits(energy.gap) +
+         " m is smaller than the distance at which contact begins, " + three_digits(law.reach) +
+         " m; choose a smaller contact.reach, or move them apart";
+}
+
 void note_touching(const std::set<std::array<int, 2>>& pairs, const Model& model, MeshLoader& loader) {
   if (pairs.empty()) return;
   std::string names;
