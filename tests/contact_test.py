@@ -2,6 +2,7 @@
 """Hard cases of contact through the program, with exact checks of every frame. tools/contact_cases runs longer ones.
 
 usage: ASPIC=path/to/aspic contact_test.py [TestCase...]"""
+import csv
 import dataclasses
 import math
 import pathlib
@@ -257,6 +258,64 @@ mesh = "table.obj"
             self.assertIn(words, done.stderr)
 
 
+class Start(Folder):
+    """Gaps, touching surfaces and enclosed parts in the initial state."""
+
+    HEAD = "[time]\nstep = 0.01\nduration = 0.1\n[output]\nreport = false\n"
+    CUBE = '[[body]]\nname = "cube"\nshape = { box = { upper = [1, 1, 1], cells = [2, 2, 2] } }\nmaterial = { young = 1e5 }\n'
+    FLOOR = '[[obstacle]]\nname = "floor"\nplane = { origin = [0, HEIGHT, 0] }\n'
+    FOUNDATION = ('[[body]]\nname = "foundation"\nshape = { box = { lower = [-1, -0.5, -1], upper = [2, 0, 2], cells = [6, 2, 6] } }\n'
+                  'material = { young = 1e5 }\n[[body.pin]]\nwhere = "y < -0.499"\n')
+
+    def steps(self):
+        with open(self.folder / "run/steps.csv", newline="") as table:
+            return list(csv.DictReader(table))
+
+    def test_nothing_pushes_at_the_start(self):
+        done = self.run_scene("gravity = [0, 0, 0]\n" + self.HEAD + self.CUBE + self.FLOOR.replace("HEIGHT", "-0.005"))
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertIn("contact of cube and floor begins at 0.001 m: a fifth of their gap at the start, 0.005 m", done.stdout)
+        self.assertNotIn("warning", done.stderr)
+        self.assertEqual({float(row["potential_contact"]) for row in self.steps()}, {0.})
+
+    def test_energy_at_the_start_is_a_warning(self):
+        done = self.run_scene(self.HEAD + self.CUBE + self.FLOOR.replace("HEIGHT", "-0.005") + "[contact]\nreach = 0.02\n")
+        self.assertRegex(done.stderr, r"warning: contact stores [\d.e+]+ J at the start and pushes bodies apart, most cube and floor, "
+                                      r"whose gap of 0.005 m .*; choose a smaller contact.reach")
+        self.assertRegex(done.stdout, r"start +contact stores")
+
+    def test_touching_surfaces_start(self):
+        for other, name in ((self.FLOOR.replace("HEIGHT", "0"), "cube and floor"), (self.FOUNDATION, "cube and foundation"),
+                            (self.FLOOR.replace("HEIGHT", "1e-9"), "cube and floor")):
+            done = self.run_scene(self.HEAD + "[contact]\n" + self.CUBE + other)
+            self.assertEqual(done.returncode, 0, done.stderr)
+            self.assertRegex(done.stdout, "surfaces touch at the start: .*" + "|".join((name, " and ".join(name.split(" and ")[::-1]))))
+            self.assertNotIn("warning", done.stderr)
+            highest = max(vertex[1] for path in sorted((self.folder / "run/frames").glob("body_*.vtu"))
+                          for surface in exact.body_surfaces(path) for vertex in surface.points)
+            self.assertLess(highest, 1.001)  # nothing is thrown off
+
+    def test_what_pierces_a_body_is_named(self):
+        (self.folder / "needle.obj").write_text("v 0.3 0.3 0.3\nv 0.3 0.32 -0.2\nv 0.3 0.34 -0.7\nf 1 2 3\n")
+        for obstacle in ('mesh = "needle.obj"', "capsule = { from = [0.3, 0.3, 0.3], to = [0.3, 0.35, -0.7], radius = 0.01 }"):
+            for start in ("apart", "inflate"):
+                pinned = '[[body.pin]]\nwhere = "all"\n'
+                done = self.run_scene(self.HEAD + f'[contact]\nstart = "{start}"\n' + self.CUBE + pinned + f'[[obstacle]]\nname = "pin"\n{obstacle}\n')
+                self.assertEqual(done.returncode, 2, done.stderr)
+                self.assertRegex(done.stderr, "surfaces intersect in the initial state: cube and pin near")
+
+    def test_obstacles_inside_bodies_are_named(self):
+        for obstacle in ("sphere = { center = [0.52, 0.51, 0.53], radius = 0.1 }",
+                         "shape = { box = { lower = [0.4, 0.4, 0.4], upper = [0.6, 0.6, 0.6], cells = [1, 1, 1] } }"):
+            done = self.run_scene(self.HEAD + self.CUBE + f'[[obstacle]]\nname = "core"\n{obstacle}\n')
+            self.assertEqual(done.returncode, 2, done.stderr)
+            self.assertIn("obstacle 'core' starts inside of body 'cube'", done.stderr)
+        drum = '[[obstacle]]\nname = "drum"\nshape = { box = { lower = [-1, -1, -1], upper = [2, 2, 2], cells = [1, 1, 1] } }\n'
+        done = self.run_scene(self.HEAD + self.CUBE + drum)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertIn("body 'cube' starts inside of obstacle 'drum', which contains it", done.stdout)
+
+
 class Inflate(Folder):
     """Bodies that overlap in the initial state are separated on request."""
 
@@ -313,9 +372,9 @@ plane = {}
 
     def test_default_and_hopeless_overlap_are_refused(self):
         for old, new, words in (('"inflate"', '"apart"', "cube and ball near"),
-                                ("translate = [0.15, 0.15, 0.02]", "translate = [0, 0.1, 0.02]", "body 'cube' encloses the center of body 'ball'"),
+                                ("translate = [0.15, 0.15, 0.02]", "translate = [0, 0.1, 0.02]", "body 'ball' starts inside of body 'cube'"),
                                 ("translate = [0.15, 0.15, 0.02]", "translate = [0.15, -0.05, 0]", "starts behind the plane")):
-            text = self.SCENE.replace("PIN", '[[body.pin]]\nwhere = "all"') if "encloses" in words else self.SCENE
+            text = self.SCENE.replace("PIN", '[[body.pin]]\nwhere = "all"') if "inside" in words else self.SCENE
             done = self.run_scene(text.replace(old, new).replace("PIN\n", ""))
             self.assertEqual(done.returncode, 2, done.stderr)
             self.assertIn(words, done.stderr)

@@ -15,7 +15,7 @@ namespace {
 
 constexpr double kPerGap = 1.0 / 5;         // reach relative to the gap at the start
 constexpr double kPerThickness = 1.0 / 10;  // reach relative to the thickness of a part
-constexpr double kPerTouching = 1.0 / 10;   // reach of touching surfaces relative to that of others
+constexpr double kPerTouching = 1.0 / 50;   // reach of touching surfaces relative to that of others
 constexpr double kThinArea = 1.0 / 20;      // fraction of the area of a part that may be thinner than its thickness
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
@@ -171,7 +171,7 @@ std::string reason_of(const ContactLaw& law) {
     case ReachBasis::gap:
       return "a fifth of their gap at the start, " + length;
     case ReachBasis::touching:
-      return "they touch at the start; a tenth of the reach of other surfaces, " + length;
+      return "they touch at the start; a fiftieth of the reach of other surfaces, " + length;
     case ReachBasis::thickness:
       return "a tenth of the thickness of the thinner one, " + length;
   }

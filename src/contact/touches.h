@@ -18,7 +18,7 @@ struct Touch {
 };
 
 // Returns the touches of features of different parts whose gap is at most kTouching mean edges. `x`: positions of all
-// points [m]. All of `by` together leave gaps of the reach, at most a tenth of the usual one.
+// points [m]. All of `by` together leave gaps of at least the reach, or of touching_reach() if that is smaller.
 std::vector<Touch> touches(const ContactMesh& mesh, const ContactLaws& laws, const StencilSearch& search,
                            std::span<const Vec3d> x);
 

@@ -4,7 +4,9 @@
 #include <cmath>
 
 #include "base/error.h"
+#include "base/formatted.h"
 #include "base/printable.h"
+#include "contact/barrier.h"
 #include "dynamics/inflate.h"
 #include "dynamics/integrator.h"
 #include "dynamics/internal_terms.h"
@@ -126,7 +128,11 @@ class SceneBuilder {
     if (start.text() != "inflate") return;
     loader.report_if_many(model_.mesh.tet_count(), "moving bodies apart that overlap at the start");
     try {
+      const std::vector<double> given = state.q;
       inflate(model_, state.q);
+      if (state.q != given)
+        loader.notes.push_back("bodies that overlapped at the start press on each other: contact stores " +
+                               three_digits(model_.contact->energy(state.q, 0).total) + " J");
     } catch (const InvalidInput& e) {
       throw error_at(start.place, std::string("start = \"inflate\": ") + e.what());
     }

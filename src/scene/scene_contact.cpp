@@ -179,7 +179,7 @@ constexpr size_t kMaxListed = 4;
 
 // Adds notes on the reach of the pairs: that of most, then the smallest ones with their reasons.
 void note_reaches(const Barrier& contact, MeshLoader& loader) {
-  constexpr double kSlow = 1.0 / 20'000;  // reach relative to the edges below which steps need more iterations
+  constexpr double kSlow = 1.0 / 1000;  // reach relative to the edges below which sliding takes many iterations
   struct Bounded {
     std::array<int, 2> parts;
     const ContactLaw* law;
@@ -200,10 +200,11 @@ void note_reaches(const Barrier& contact, MeshLoader& loader) {
   if (widest) loader.notes.push_back("contact begins at " + three_digits(widest->reach) + " m: " + reason_of(*widest));
   for (size_t i = 0; i < std::min(bounded.size(), kMaxListed); ++i) {
     const ContactLaw& law = *bounded[i].law;
-    loader.notes.push_back(
-        "contact of " + contact.mesh().pair_name(bounded[i].parts) + " begins at " + three_digits(law.reach) +
-        " m: " + reason_of(law) +
-        (law.reach < kSlow * law.edge ? "; steps take more iterations than with a larger contact.reach" : ""));
+    loader.notes.push_back("contact of " + contact.mesh().pair_name(bounded[i].parts) + " begins at " +
+                           three_digits(law.reach) + " m: " + reason_of(law) +
+                           (law.reach < kSlow * law.edge
+                                ? "; where they slide, steps take fewer iterations with a larger contact.reach"
+                                : ""));
   }
   if (bounded.size() > kMaxListed)
     loader.notes.push_back("contact of " + std::to_string(bounded.size() - kMaxListed) + " other pairs begins at " +
@@ -260,6 +261,11 @@ void add_scene_contact(Table& document, MeshLoader& loader, const std::vector<do
   const double creep = options.find("creep") || weight == 0 ? number("creep") : default_creep(weight, model);
   add_contact(std::move(contact), given, creep, model);
   note_reaches(*model.contact, loader);
+  const ContactMesh& mesh = model.contact->mesh();
+  for (const auto& [inner, outer, place] : enclosed_parts(mesh, model.contact->points(q, 0)))
+    if (mesh.parts[outer].is_obstacle)
+      loader.notes.push_back("body '" + mesh.parts[inner].name + "' starts inside of obstacle '" +
+                             mesh.parts[outer].name + "', which contains it");
 }
 
 std::string start_warning(const Simulation& simulation) {
@@ -270,6 +276,7 @@ std::string start_warning(const Simulation& simulation) {
   const ContactEnergy energy = contact->energy(q, simulation.obstacle_time());
   if (energy.parts[0] < 0) return "";
   const ContactLaw& law = contact->laws()(energy.parts[0], energy.parts[1]);
+  if (law.basis != ReachBasis::given) return "";  // separated at the start, and at rest
   if (contact->summary(q, simulation.obstacle_time()).max_pressure < kWeak * law.stiffness) return "";
   return "contact stores " + three_digits(energy.total) + " J at the start and pushes bodies apart, most " +
          contact->mesh().pair_name(energy.parts) + ", whose gap of " + three_digits(energy.gap) +
