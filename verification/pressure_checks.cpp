@@ -66,8 +66,8 @@ Simulation loaded(Model model) {
 void expect_vector(Findings& found, const std::string& name, const std::array<Vec3d, 2>& numbers, double size,
                    const std::string& unit) {
   for (int r = 0; r < 3; ++r)
-    found.expect(name + ", " + "xyz"[r], {numbers[0][r], numbers[1][r], 1e-9 * size}, "tolerance of the equilibrium",
-                 unit);
+    found.expect(
+        name + ", " + "xyz" [r], { numbers[0][r], numbers[1][r], 1e-9 * size }, "tolerance of the equilibrium", unit);
 }
 
 constexpr double kBarPressure = 3e3;  // [Pa]; E = 1e5 Pa
@@ -76,8 +76,7 @@ Model pressed_bar(int order) {
   const TetMesh mesh = with_order(make_box({{0, 0, 0}}, {{4, 1, 1}}, {8, 2, 2}), order);
   return model_of(mesh, {.young = 1e5, .poisson = 0.3, .gravity = {}})
       .pin("wall", [](const Vec3d& X) { return X[0] == 0; })
-      .pressure("pressure",
-                faces_where(mesh, [](const Vec3d& X) { return X[2] == 1 && X[0] >= 1 && X[0] <= 3; }),
+      .pressure("pressure", faces_where(mesh, [](const Vec3d& X) { return X[2] == 1 && X[0] >= 1 && X[0] <= 3; }),
                 [](double t) { return kBarPressure * std::min(t, 1.0); })
       .build();
 }
@@ -130,8 +129,7 @@ void check_octant(const Subject& subject, Findings& found) {
     for (int axis = 0; axis < 3; ++axis) {
       const int next = (axis + 1) % 3, last = (axis + 2) % 3;
       const auto is_rim = [axis](const Vec3d& X) { return std::abs(X[axis]) < 1e-9 && norm(X) < 1 + 1e-9; };
-      const Curve3 rim =
-          curve_of(simulation, is_rim, [&](const Vec3d& X) { return std::atan2(X[last], X[next]); });
+      const Curve3 rim = curve_of(simulation, is_rim, [&](const Vec3d& X) { return std::atan2(X[last], X[next]); });
       const double area = area_vector(rim)[axis];  // of the sector to the origin
       found.expect(elements + "reaction of the plane " + "xyz"[axis] + " = 0 / (p area)",
                    {-report.resultants.pins[axis].force[axis] / (kPressure * area), 1, 1e-8},
@@ -162,30 +160,33 @@ void add_pressure_checks(std::vector<Check>& checks) {
       {"statics",
        "open_pressure",
        "Follower pressure on a patch of a bar",
-       "A bar 4 x 1 x 1 m, E = 0.1 MPa, is bent by 3 kPa on 1 < x < 3 of its upper side. Force and moment of the load are "
+       "A bar 4 x 1 x 1 m, E = 0.1 MPa, is bent by 3 kPa on 1 < x < 3 of its upper side. Force and moment of the load "
+       "are "
        "those of p on the deformed patch.",
        "Stokes' theorem: integrals over the deformed rim alone",
        check_open_patch,
        {},
        {R"tex(\int_S n\, da = \tfrac{1}{2} \oint x \times dx, \quad \int_S x \times n\, da = -\tfrac{1}{2} \oint |x|^2\, dx)tex"}});
-  checks.push_back({"statics",
-                    "pressurized_octant",
-                    "An eighth of a hollow sphere under pressure",
-                    "Radii 1 and 2 m, E = 10 kPa, 2 kPa inside, three planes of symmetry. Each plane reacts with p times "
-                    "the deformed area of the cavity in it.",
-                    "Equilibrium of the content of the cavity",
-                    check_octant,
-                    {},
-                    {R"tex(R = p\, A)tex"}});
-  checks.push_back({"derivatives",
-                    "pressure",
-                    "Gradients and Hessians of a follower pressure",
-                    "The bar of statics/open_pressure, its pressure with the swept volume and the share of the rim, which "
-                    "is lagged.",
-                    "Central differences",
-                    check_rim_derivatives,
-                    {},
-                    {R"tex(\frac{f(x + h) - f(x - h)}{2 h} = \frac{df}{dx} + O(h^2))tex"}});
+  checks.push_back(
+      {"statics",
+       "pressurized_octant",
+       "An eighth of a hollow sphere under pressure",
+       "Radii 1 and 2 m, E = 10 kPa, 2 kPa inside, three planes of symmetry. Each plane reacts with p times "
+       "the deformed area of the cavity in it.",
+       "Equilibrium of the content of the cavity",
+       check_octant,
+       {},
+       {R"tex(R = p\, A)tex"}});
+  checks.push_back(
+      {"derivatives",
+       "pressure",
+       "Gradients and Hessians of a follower pressure",
+       "The bar of statics/open_pressure, its pressure with the swept volume and the share of the rim, which "
+       "is lagged.",
+       "Central differences",
+       check_rim_derivatives,
+       {},
+       {R"tex(\frac{f(x + h) - f(x - h)}{2 h} = \frac{df}{dx} + O(h^2))tex"}});
 }
 
 }  // namespace aspic::verify

@@ -113,8 +113,8 @@ class IncrementalPotential : public Objective,
   // Adds the forces of the terms of D that are rims of pressures: of all, or of one pressure.
   void add_rim_gradient(Positions q, double weight, std::span<double> g, const Energy* pressure = nullptr) const;
   bool has_rims() const { return !rims_.empty(); }
-  const InternalTerms& internal() const { return internal_; }          // terms of D with internal variables
-  const BlockPattern& pattern() const { return pattern_; }             // of the Hessian: one block row per vertex
+  const InternalTerms& internal() const { return internal_; }  // terms of D with internal variables
+  const BlockPattern& pattern() const { return pattern_; }     // of the Hessian: one block row per vertex
 
  private:
   struct Terms {                            // E by terms

@@ -11,10 +11,10 @@
 namespace aspic {
 
 struct PressureLoad {
-  std::string name;                            // in reports
-  std::vector<Face> patch;                     // boundary faces of the model's mesh
-  std::function<double(double time)> value;    // [Pa], positive inward
-  bool starts_at_rest = true;                  // whether the rim of the patch starts in its rest shape
+  std::string name;                          // in reports
+  std::vector<Face> patch;                   // boundary faces of the model's mesh
+  std::function<double(double time)> value;  // [Pa], positive inward
+  bool starts_at_rest = true;                // whether the rim of the patch starts in its rest shape
 };
 
 // A pressure on a closed patch, or on one whose rim is fixed, has the potential p W (see energy/pressure.h). On other

@@ -68,7 +68,8 @@ TEST(OpenPressure, DoesWorkInClosedLoop) {
     return Vec3d{{0.5 + c * d[0] + s * d[2], X[1], 1 + kWay * (part(0) - part(2)) - s * d[0] + c * d[2]}};
   };
   Model model = model_of(mesh, {.young = 1e4, .poisson = 0.3, .gravity = {}})
-                    .pin("all", [](const Vec3d&) { return true; }, motion)
+                    .pin(
+                        "all", [](const Vec3d&) { return true; }, motion)
                     .pressure("pressure", verify::faces_where(mesh, is_top), [](double) { return kPressure; })
                     .build();
   Simulation simulation = simulate(std::move(model), {.h = 1.0 / 64, .integrator = "quasi_static", .solver = {}});
@@ -107,9 +108,9 @@ TEST(OpenPressure, FormFollowsRimAndPins) {
   EXPECT_EQ(form_of(guided), PressureForm::open);
   EXPECT_EQ(form_of(moved), PressureForm::open);
   Model model = beam(1);
-  EXPECT_EQ(add_pressure({"all", boundary_faces(model.mesh, 0, model.mesh.tet_count()), [](double) { return 1.0; }},
-                         model),
-            PressureForm::closed);
+  EXPECT_EQ(
+      add_pressure({"all", boundary_faces(model.mesh, 0, model.mesh.tet_count()), [](double) { return 1.0; }}, model),
+      PressureForm::closed);
 }
 
 }  // namespace

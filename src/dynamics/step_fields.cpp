@@ -169,8 +169,8 @@ std::vector<StepField>& fields() {
                                         kMeasured)),
       optional(real<&R::friction_residual>(
           {"friction_residual", "N", "change of friction by the last update of normal forces"}, kMeasured)),
-      optional(
-          count<&R::friction_passes>({"friction_passes", "", "evaluations of lagged coefficients: friction, rims of pressures"}, kCount)),
+      optional(count<&R::friction_passes>(
+          {"friction_passes", "", "evaluations of lagged coefficients: friction, rims of pressures"}, kCount)),
       {"potential", "J",
        "energy of each term of V and of viscoelastic branches; a dead load has -f . x, not zero at rest",
        StepFieldType::potentials, kTable | kJson | kViewer},

@@ -18,18 +18,32 @@ struct LoadPoint {
 constexpr std::array<LoadPoint, 6> face_rule() {
   constexpr double a = 0.44594849091596488632, b = 0.091576213509770743460;
   constexpr double w = 0.22338158967801146570, v = 0.10995174365532186764;
-  return {{{{1 - 2 * a, a, a}, w}, {{a, 1 - 2 * a, a}, w}, {{a, a, 1 - 2 * a}, w},
-           {{1 - 2 * b, b, b}, v}, {{b, 1 - 2 * b, b}, v}, {{b, b, 1 - 2 * b}, v}}};
+  return {{{{1 - 2 * a, a, a}, w},
+           {{a, 1 - 2 * a, a}, w},
+           {{a, a, 1 - 2 * a}, w},
+           {{1 - 2 * b, b, b}, v},
+           {{b, 1 - 2 * b, b}, v},
+           {{b, b, 1 - 2 * b}, v}}};
 }
 
 // Degree 5 [Walkington 2000].
 constexpr std::array<LoadPoint, 14> tet_rule() {
   constexpr double a = 0.31088591926330060980, b = 0.092735250310891226402, c = 0.045503704125649649492, d = 0.5 - c;
   constexpr double u = 0.11268792571801585080, v = 0.073493043116361949544, w = 0.042546020777081466438;
-  return {{{{1 - 3 * a, a, a, a}, u}, {{a, 1 - 3 * a, a, a}, u}, {{a, a, 1 - 3 * a, a}, u}, {{a, a, a, 1 - 3 * a}, u},
-           {{1 - 3 * b, b, b, b}, v}, {{b, 1 - 3 * b, b, b}, v}, {{b, b, 1 - 3 * b, b}, v}, {{b, b, b, 1 - 3 * b}, v},
-           {{c, c, d, d}, w},         {{c, d, c, d}, w},         {{c, d, d, c}, w},
-           {{d, c, c, d}, w},         {{d, c, d, c}, w},         {{d, d, c, c}, w}}};
+  return {{{{1 - 3 * a, a, a, a}, u},
+           {{a, 1 - 3 * a, a, a}, u},
+           {{a, a, 1 - 3 * a, a}, u},
+           {{a, a, a, 1 - 3 * a}, u},
+           {{1 - 3 * b, b, b, b}, v},
+           {{b, 1 - 3 * b, b, b}, v},
+           {{b, b, 1 - 3 * b, b}, v},
+           {{b, b, b, 1 - 3 * b}, v},
+           {{c, c, d, d}, w},
+           {{c, d, c, d}, w},
+           {{c, d, d, c}, w},
+           {{d, c, c, d}, w},
+           {{d, c, d, c}, w},
+           {{d, d, c, c}, w}}};
 }
 
 constexpr std::array<LoadPoint, 6> kFaceRule = face_rule();

@@ -21,9 +21,9 @@ struct LoadElement {
 LoadElement load_element(const TetMesh& mesh, int tet);
 LoadElement load_element(const std::vector<Vec3d>& rest, const Face& face);
 
-// Adds the forces of a load, the integrals of load(X) times the shape functions, to `force`, 3 per vertex [N]. Exact for
-// polynomials in X: of degree 3 on linear faces and quadratic tets, 2 on quadratic faces, 4 on linear tets. load: [N/m^3]
-// or [Pa].
+// Adds the forces of a load, the integrals of load(X) times the shape functions, to `force`, 3 per vertex [N]. Exact
+// for polynomials in X: of degree 3 on linear faces and quadratic tets, 2 on quadratic faces, 4 on linear tets. load:
+// [N/m^3] or [Pa].
 void add_load(const LoadElement& element, FunctionRef<Vec3d(const Vec3d& X)> load, std::span<double> force);
 
 }  // namespace aspic

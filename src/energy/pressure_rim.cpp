@@ -53,7 +53,8 @@ class Rim : public PressureRim {
       return found->second;
     };
     for (const RimEdge& of : rim)
-      edges_.push_back({.node = {add(of.a), add(of.b), of.mid < 0 ? -1 : add(of.mid)}, .node_count = of.mid < 0 ? 2 : 3});
+      edges_.push_back(
+          {.node = {add(of.a), add(of.b), of.mid < 0 ? -1 : add(of.mid)}, .node_count = of.mid < 0 ? 2 : 3});
   }
 
   std::string_view name() const override { return "pressure_rim"; }
@@ -66,9 +67,9 @@ class Rim : public PressureRim {
   void bind(const BlockPattern& pattern) override {
     for (Edge& edge : edges_)
       for_each_pair(edge, [&](int k, int n, int m) {
-        const auto [low, high] = std::minmax(vertex(edge, n), vertex(edge, m));
-        edge.slot[k] = pattern.slot(high, low);
-        edge.is_transposed[k] = vertex(edge, n) < vertex(edge, m);
+        const int a = vertex(edge, n), b = vertex(edge, m);
+        edge.slot[k] = pattern.slot(std::max(a, b), std::min(a, b));
+        edge.is_transposed[k] = a < b;
       });
   }
 
@@ -183,8 +184,7 @@ class Rim : public PressureRim {
           u = u + N.value[n] * d;
           w = w + N.slope[n] * (0.5 * point(rest_, edge.node[n]) + (1.0 / 3) * d);
         }
-        for (int n = 0; n < edge.node_count; ++n)
-          add_vec((-weight * N.value[n]) * cross(u, w), edge.node[n], own.r);
+        for (int n = 0; n < edge.node_count; ++n) add_vec((-weight * N.value[n]) * cross(u, w), edge.node[n], own.r);
       }
   }
 

@@ -264,7 +264,8 @@ struct LoadGroup {
   }
   void add_to(std::span<double> force, double time) const {
     for (const LoadElement& element : elements)
-      add_load(element, [&](const Vec3d& X) { return density.at(X, element.normal, time); }, force);
+      add_load(
+          element, [&](const Vec3d& X) { return density.at(X, element.normal, time); }, force);
   }
 };
 

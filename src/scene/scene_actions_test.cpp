@@ -103,12 +103,13 @@ TEST(SceneLoads, FollowTimeAndBalanceEnergy) {
 TEST(SceneLoads, LinearFormulasAreIntegratedExactly) {
   for (const std::string order : {"1", "2"}) {
     const auto load_of = [&](const std::string& load_text) {
-      Scene scene = load("gravity = [0, 0, 0]\n[time]\nstep = 1\nintegrator = \"quasi_static\"\n" + kCube +
-                         "order = " + order + "\nmaterial = { young = 1e6, poisson = 0.3 }\n" +
-                         pin("where = \"x < 0.001\"") + load_text);
+      Scene scene =
+          load("gravity = [0, 0, 0]\n[time]\nstep = 1\nintegrator = \"quasi_static\"\n" + kCube + "order = " + order +
+               "\nmaterial = { young = 1e6, poisson = 0.3 }\n" + pin("where = \"x < 0.001\"") + load_text);
       return scene.simulation.step().resultants.loads[0];
     };
-    const Resultant twist = load_of("[[body.traction]]\nwhere = \"x > 0.999\"\nvalue = [0, \"0.5 - Z\", \"Y - 0.5\"]\n");
+    const Resultant twist =
+        load_of("[[body.traction]]\nwhere = \"x > 0.999\"\nvalue = [0, \"0.5 - Z\", \"Y - 0.5\"]\n");
     EXPECT_NEAR(twist.force[1], 0, 1e-14);
     EXPECT_NEAR(twist.moment[0], 1.0 / 6, 1e-6);  // about the deformed positions
     const Resultant press = load_of("[[body.traction]]\nwhere = \"z > 0.999\"\ndead_pressure = \"X * Y\"\n");
@@ -121,7 +122,7 @@ TEST(SceneLoads, LinearFormulasAreIntegratedExactly) {
   }
 }
 
-// In a bent bar, the load on a patch is p times its deformed area vector, and a note says that it has no potential.
+// In a bent bar, the load on a patch is p times its deformed area vector, and a note states that it has no potential.
 TEST(SceneLoads, PressureOnOpenPatchHasNoForcesAtItsRim) {
   Scene scene = load(
       "gravity = [0, 0, 0]\n[time]\nstep = 1\nintegrator = \"quasi_static\"\n[[body]]\nname = \"bar\"\nshape = { box = "
