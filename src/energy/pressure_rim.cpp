@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <map>
+#include <utility>
 
 #include "math/vectors.h"
 
@@ -34,10 +35,44 @@ struct Edge {
 };
 constexpr int kPairs[3][2] = {{1, 0}, {2, 0}, {2, 1}};
 
+struct RimUpdate {
+  std::vector<double> before, change;  // of r where it was updated
+};
+
 // The lagged shape of the rim: x0 and r(x0), 3 numbers per node.
 struct RimContext : Energy::Context {
   std::vector<double> shape, r;
+  std::vector<RimUpdate> updates;  // the last ones of this step
 };
+
+// Anderson's acceleration: moves r to where the secant through the last updates has no change [Anderson 1965]. The
+// lagged part of the tangent is antisymmetric, so that plain updates turn, and diverge under large pressures.
+void accelerate(std::span<const RimUpdate> updates, std::vector<double>& r) {
+  constexpr double kDependent = 1e-8;  // relative norm of what is left of a dependent difference
+  std::vector<std::vector<double>> basis, steps;
+  std::vector<double> left = updates.back().change;
+  for (size_t k = updates.size() - 1; k > 0; --k) {
+    std::vector<double> change = updates[k].change, step = updates[k].before;
+    add_scaled(-1, updates[k - 1].change, change);
+    add_scaled(-1, updates[k - 1].before, step);
+    add_scaled(1, change, step);  // difference of r
+    const double whole = norm(change);
+    for (size_t j = 0; j < basis.size(); ++j) {
+      const double part = dot(basis[j], change);
+      add_scaled(-part, basis[j], change);
+      add_scaled(-part, steps[j], step);
+    }
+    const double size = norm(change);
+    if (!(size > kDependent * whole)) break;
+    for (auto* v : {&change, &step})
+      for (double& x : *v) x /= size;
+    const double part = dot(change, left);
+    add_scaled(-part, change, left);
+    add_scaled(-part, step, r);
+    basis.push_back(std::move(change));
+    steps.push_back(std::move(step));
+  }
+}
 
 class Rim : public PressureRim {
  public:
@@ -81,10 +116,25 @@ class Rim : public PressureRim {
   }
   void begin_step(const StepContext& step, Context& context) const override {
     Energy::begin_step(step, context);
+    static_cast<RimContext&>(context).updates.clear();
     lag(step.shape.empty() ? step.start : step.shape, context);
   }
-  void update_lagged(Positions x, bool, Context& context) const override { lag(x, context); }
-  bool relax_lagged(Context&) const override { return false; }
+  void update_lagged(Positions x, bool, Context& context) const override {
+    auto& own = static_cast<RimContext&>(context);
+    RimUpdate update{product(own, difference(x, own.shape)), {}};
+    add_scaled(1, own.r, update.before);
+    lag(x, context);
+    update.change = own.r;
+    add_scaled(-1, update.before, update.change);
+    own.updates.push_back(std::move(update));
+    if (own.updates.size() > kUpdates) own.updates.erase(own.updates.begin());
+  }
+  bool relax_lagged(Context& context) const override {
+    auto& own = static_cast<RimContext&>(context);
+    if (own.updates.size() < 2) return false;
+    accelerate(own.updates, own.r);
+    return true;
+  }
 
   double value(Positions x, const Context& context) const override {
     const RimContext& own = rim(context);
@@ -128,6 +178,7 @@ class Rim : public PressureRim {
   }
 
  private:
+  static constexpr size_t kUpdates = 4;  // for the acceleration
   static const RimContext& rim(const Context& context) { return static_cast<const RimContext&>(context); }
   int vertex(const Edge& edge, int n) const { return nodes_[edge.node[n]]; }
 
