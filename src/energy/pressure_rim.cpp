@@ -48,7 +48,7 @@ struct RimContext : Energy::Context {
 // Anderson's acceleration: moves r to where the secant through the last updates has no change [Anderson 1965]. The
 // lagged part of the tangent is antisymmetric, so that plain updates turn, and diverge under large pressures.
 void accelerate(std::span<const RimUpdate> updates, std::vector<double>& r) {
-  constexpr double kDependent = 1e-8;  // relative norm of what is left of a dependent difference
+  constexpr double kDependent = 1e-8;  // relative norm of the new part of a dependent difference
   std::vector<std::vector<double>> basis, steps;
   std::vector<double> left = updates.back().change;
   for (size_t k = updates.size() - 1; k > 0; --k) {
