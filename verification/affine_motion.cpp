@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "energy/linear_load.h"
 #include "mesh/generators.h"
 #include "verification/integrators.h"
 
@@ -13,39 +14,17 @@ Vec3d moved(const Vec3d& X, double t) { return X + s(t) * (kB * X); }
 Vec3d velocity(const Vec3d& X, double t) { return 3 * std::cos(3 * t + 0.5) * (kB * X); }
 Vec3d acceleration(const Vec3d& X, double t) { return -9 * std::sin(3 * t + 0.5) * (kB * X); }
 
-class AffineLoad : public Energy {
- public:
-  AffineLoad(const MassMatrix& mass, const TetMesh& mesh, const TetElasticity& elasticity)
-      : mass_(mass), mesh_(mesh), elasticity_(elasticity) {}
-  std::string_view name() const override { return "affine_load"; }
-  std::unique_ptr<Context> make_context() const override { return std::make_unique<Force>(); }
-  void begin_step(const StepContext& step, Context& context) const override {
-    std::vector<double>& f = static_cast<Force&>(context).f;
-    f.resize(3 * mesh_.rest.size());
-    mass_.multiply(at_vertices(mesh_, [&](const Vec3d& X) { return acceleration(X, step.time); }), f);
-    elasticity_.add_gradient(at_vertices(mesh_, [&](const Vec3d& X) { return moved(X, step.time); }), 1, f);
-  }
-  double value(Positions x, const Context& context) const override {
-    const std::vector<double>& f = static_cast<const Force&>(context).f;
-    double V = 0;
-    for (size_t i = 0; i < f.size(); ++i) V -= f[i] * x[i];
-    return V;
-  }
-  void add_gradient(Positions, const Context& context, double scale, std::span<double> g) const override {
-    const std::vector<double>& f = static_cast<const Force&>(context).f;
-    for (size_t i = 0; i < f.size(); ++i) g[i] -= scale * f[i];
-  }
-  int add_hessian(Positions, const Context&, double, const Projection&, BlockSparse&) const override { return 0; }
-
- private:
-  struct Force : Context {
-    std::vector<double> f;  // forces at the current time [N]; empty before the first step
+// The dead load that moves the model in this way: M x'' + dV/dx.
+std::unique_ptr<Energy> make_affine_load(const Model& model) {
+  const auto add = [mesh = model.mesh, &mass = *model.mass, &elasticity = *model.elasticity[0]](
+                       double time, std::span<double> force) {
+    std::vector<double> inertia(force.size());
+    mass.multiply(at_vertices(mesh, [&](const Vec3d& X) { return acceleration(X, time); }), inertia);
+    for (size_t i = 0; i < force.size(); ++i) force[i] += inertia[i];
+    elasticity.add_gradient(at_vertices(mesh, [&](const Vec3d& X) { return moved(X, time); }), 1, force);
   };
-
-  const MassMatrix& mass_;
-  TetMesh mesh_;
-  const TetElasticity& elasticity_;
-};
+  return make_linear_load("affine_load", std::vector<double>(3 * model.mesh.rest.size(), 0.0), add);
+}
 
 }  // namespace
 
@@ -56,7 +35,7 @@ double affine_motion_error(const std::string& integrator, double h, Held held) {
     return held == Held::on_one_face ? X[0] < 1e-9 : std::any_of(X.a, X.a + 3, outer);
   };
   if (held != Held::nowhere) model.pins.push_back({"held", vertices_where(model.mesh, is_held), moved});
-  model.loads.push_back(std::make_unique<AffineLoad>(*model.mass, model.mesh, *model.elasticity[0]));
+  model.loads.push_back(make_affine_load(model));
   State start = at_rest(model.mesh);
   start.qdot = at_vertices(model.mesh, [](const Vec3d& X) { return velocity(X, 0); });
   SimulationOptions options{.h = h, .integrator = integrator, .solver = {}};

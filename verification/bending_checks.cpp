@@ -30,7 +30,7 @@ std::vector<double> drops(int n, const std::string& material, const std::vector<
                          {.material = material, .young = 1, .poisson = 0, .gravity = {}})
                     .pin("wall", [](const Vec3d& X) { return X[0] < 1e-9; })
                     .build();
-  model.loads.push_back(make_plane_hold(model.mesh, 1e3 * width));  // prevents lateral buckling of the narrow strip
+  hold_plane(model);  // prevents lateral buckling of the narrow strip
   const double area = height * width, inertia = width * height * height * height / 12;
   model.loads.push_back(make_growing_load(
       traction_on(model.mesh, [](const Vec3d& X) { return X[0] > 1 - 1e-9; }, {{0, -inertia / area, 0}}),

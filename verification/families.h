@@ -24,6 +24,7 @@ void add_vibration_checks(std::vector<Check>& checks);
 void add_bending_checks(std::vector<Check>& checks);
 void add_column_checks(std::vector<Check>& checks);
 void add_cook_checks(std::vector<Check>& checks);
+void add_pressure_checks(std::vector<Check>& checks);
 void add_solid_checks(std::vector<Check>& checks);
 void add_volume_checks(std::vector<Check>& checks);
 void add_viscoelastic_checks(std::vector<Check>& checks);

@@ -5,13 +5,11 @@
 #include <string>
 
 #include "energy/fibres.h"
-#include "energy/pressure.h"
 #include "mesh/chamber.h"
 #include "mesh/generators.h"
 #include "mesh/tet_nodes.h"
 #include "mesh/tet_shape.h"
 #include "verification/families.h"
-#include "verification/follower_pressure.h"
 #include "verification/models.h"
 #include "verification/statics.h"
 
@@ -60,9 +58,9 @@ double raised_beam(int n, const std::string& material) {
   Model model = body_of(mesh, kHeart, material)
                     .pin("wall", [](const Vec3d& X) { return X[0] == 0; })
                     .load(make_fibres({"fibre", mesh}, fibres))
-                    .load(make_follower_pressure(below, [](double t) { return 4 * std::min(t, 1.0); }))
+                    .pressure("pressure", below, [](double t) { return 4 * std::min(t, 1.0); })
                     .build();
-  const Simulation simulation = follower_equilibrium(std::move(model), 2, "beam of the heart benchmark");
+  const Simulation simulation = equilibrium(std::move(model), 2, "beam of the heart benchmark", 1e-8);
   const int end = vertices_where(mesh, [](const Vec3d& X) {
                     return X[0] > 1e-2 - 1e-9 && std::abs(X[1] - 5e-4) < 1e-9 && X[2] > 1e-3 - 1e-9;
                   }).at(0);
@@ -141,7 +139,7 @@ Tips tips(const ChamberCells& cells, const Beat& beat, const std::string& materi
     builder.pin("x", [&](const Vec3d& X) { return std::abs(X[0]) < 1e-9 && !is_base(X); }, {}, {{{1, 0, 0}}});
   }
   builder.load(make_fibres({"fibre", mesh}, fibres_in(mesh, guccione(beat.heart), helix)));
-  builder.load(make_pressure("pressure", mesh, inside, [p = beat.pressure](double t) { return p * std::min(t, 1.0); }));
+  builder.pressure("pressure", inside, [p = beat.pressure](double t) { return p * std::min(t, 1.0); });
   if (beat.tension > 0) {
     const auto active = fibres_in(mesh, TensionFibre{{}, beat.tension}, helix);
     builder.load(make_muscle({"muscle", mesh}, active, [](double t) { return std::min(t, 1.0); }));

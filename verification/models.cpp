@@ -1,5 +1,6 @@
 #include "verification/models.h"
 
+#include <algorithm>
 #include <stdexcept>
 
 #include "base/check.h"
@@ -7,42 +8,16 @@
 #include "mesh/generators.h"
 
 namespace aspic::verify {
-namespace {
-
-class PlaneHold : public Energy {
- public:
-  PlaneHold(const TetMesh& mesh, double stiffness, int axis, std::vector<int> vertices)
-      : stiffness_(stiffness), axis_(axis), vertices_(std::move(vertices)) {
-    for (const int v : vertices_) z_.push_back(mesh.rest[v][axis]);
-  }
-  std::string_view name() const override { return "plane_hold"; }
-  double value(Positions x, const Context&) const override {
-    double V = 0;
-    for (size_t k = 0; k < z_.size(); ++k) V += stiffness_ / 2 * distance(x, k) * distance(x, k);
-    return V;
-  }
-  void add_gradient(Positions x, const Context&, double scale, std::span<double> g) const override {
-    for (size_t k = 0; k < z_.size(); ++k) g[3 * vertices_[k] + axis_] += scale * stiffness_ * distance(x, k);
-  }
-  int add_hessian(Positions, const Context&, double scale, const Projection&, BlockSparse& H) const override {
-    for (const int v : vertices_) H.block[H.pattern->diagonal(v)](axis_, axis_) += scale * stiffness_;
-    return 0;
-  }
-
- private:
-  double distance(Positions x, size_t k) const { return x[3 * vertices_[k] + axis_] - z_[k]; }
-
-  double stiffness_;  // [N/m]
-  int axis_;
-  std::vector<int> vertices_;
-  std::vector<double> z_;
-};
-
-}  // namespace
-
-std::unique_ptr<Energy> make_plane_hold(const TetMesh& mesh, double stiffness, int axis, std::vector<int> vertices) {
-  if (vertices.empty()) vertices = vertices_where(mesh, [](const Vec3d&) { return true; });
-  return std::make_unique<PlaneHold>(mesh, stiffness, axis, std::move(vertices));
+void hold_plane(Model& model, int axis, std::vector<int> vertices) {
+  if (vertices.empty()) vertices = vertices_where(model.mesh, [](const Vec3d&) { return true; });
+  for (const Pin& pin : model.pins)
+    if (pin.directions.empty())
+      std::erase_if(vertices, [&](int v) {
+        return std::find(pin.vertices.begin(), pin.vertices.end(), v) != pin.vertices.end();
+      });
+  Vec3d normal{};
+  normal[axis] = 1;
+  model.pins.push_back({"plane", std::move(vertices), {}, {normal}});
 }
 
 TetMesh make_layer(int length, int height, double thickness,

@@ -12,10 +12,8 @@
 
 namespace aspic::verify {
 
-// V = k/2 sum (z - Z)^2 over all or the given vertices holds them in their planes z = const, or those of another axis.
-// A stiffness k far above that of the cells gives plane strain.
-std::unique_ptr<Energy> make_plane_hold(const TetMesh& mesh, double stiffness, int axis = 2,
-                                        std::vector<int> vertices = {});
+// Pins the vertices (empty: all) in their planes along an axis, except those that other pins hold: plane strain.
+void hold_plane(Model& model, int axis = 2, std::vector<int> vertices = {});
 
 // A body of one layer of cells, for plane problems: length x height cells of equal size, one cell thick, mapped from
 // [0, 1]^2 by `place`; thickness `thickness`.

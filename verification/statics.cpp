@@ -5,7 +5,6 @@
 
 #include "base/check.h"
 #include "energy/linear_load.h"
-#include "mesh/surface.h"
 
 namespace aspic::verify {
 
@@ -45,10 +44,16 @@ std::unique_ptr<Energy> make_growing_load(std::vector<double> force, std::functi
 std::vector<double> traction_on(const TetMesh& mesh, const std::function<bool(const Vec3d&)>& is_loaded,
                                 const Vec3d& traction) {
   std::vector<double> force(3 * mesh.rest.size());
-  for (const Face& face : boundary_faces(mesh, 0, mesh.tet_count()))
-    if (std::all_of(face.corners.begin(), face.corners.end(), [&](int v) { return is_loaded(mesh.rest[v]); }))
-      add_traction(mesh.rest, face, traction, force);
+  for (const Face& face : faces_where(mesh, is_loaded)) add_traction(mesh.rest, face, traction, force);
   return force;
+}
+
+std::vector<Face> faces_where(const TetMesh& mesh, const Predicate& is_part) {
+  std::vector<Face> patch = boundary_faces(mesh, 0, mesh.tet_count());
+  std::erase_if(patch, [&](const Face& face) {
+    return !std::all_of(face.corners.begin(), face.corners.end(), [&](int v) { return is_part(mesh.rest[v]); });
+  });
+  return patch;
 }
 
 Extrapolation extrapolate(const std::vector<double>& values) {

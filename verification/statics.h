@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "mesh/surface.h"
 #include "verification/models.h"
 
 namespace aspic::verify {
@@ -27,6 +28,9 @@ std::unique_ptr<Energy> make_growing_load(
 // [N].
 std::vector<double> traction_on(const TetMesh& mesh, const std::function<bool(const Vec3d&)>& is_loaded,
                                 const Vec3d& traction);
+
+// Faces of the boundary whose corners satisfy the predicate.
+std::vector<Face> faces_where(const TetMesh& mesh, const Predicate& is_part);
 
 // Limit of a sequence with errors C h^p, h halved each time, from its last three values.
 struct Extrapolation {

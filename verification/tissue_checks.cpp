@@ -12,7 +12,6 @@
 #include "mesh/tet_nodes.h"
 #include "mesh/tet_shape.h"
 #include "verification/families.h"
-#include "verification/follower_pressure.h"
 #include "verification/models.h"
 #include "verification/statics.h"
 
@@ -126,9 +125,9 @@ double inflated_artery(const Artery& artery, int n, const std::string& material)
                     .pin("x", [](const Vec3d& X) { return std::abs(X[0]) < 1e-9; }, {}, {{{1, 0, 0}}})
                     .load(make_fibres({"fibre", mesh}, family(1)))
                     .load(make_fibres({"fibre_2", mesh}, family(-1)))
-                    .load(make_follower_pressure(inside, [&](double t) { return artery.pressure * std::min(t, 1.0); }))
+                    .pressure("pressure", inside, [&](double t) { return artery.pressure * std::min(t, 1.0); })
                     .build();
-  const Simulation simulation = follower_equilibrium(std::move(model), 10, "artery", 1e-5);
+  const Simulation simulation = equilibrium(std::move(model), 10, "artery", 1e-8);
   double sum = 0;
   for (const int v : inner) sum += std::hypot(simulation.state().q[3 * v], simulation.state().q[3 * v + 1]);
   return sum / static_cast<double>(inner.size());

@@ -220,6 +220,8 @@ void bind_report(py::module_& m) {
       .def_readonly("potential_total", &Report::potential_total, "[J]")
       .def_readonly("pin_work", &Report::pin_work, "[J]")
       .def_readonly("damping_loss", &Report::damping_loss, "[J]")
+      .def_readonly("nonconservative_work", &Report::nonconservative_work,
+                    "Work of pressures on open patches beyond the change of their potential [J].")
       .def_readonly("numerical_loss", &Report::numerical_loss, "Energy lost by the integrator [J].")
       .def_readonly("ledger_error", &Report::ledger_error, "Difference of both sides of the energy balance [J].")
       .def_readonly("seconds", &Report::seconds, "Wall time.")

@@ -12,7 +12,8 @@ constexpr double kAccelerationTolerance = 1e-12;  // the mass matrix is well con
 
 void Acceleration::add_damping(const StepTools& tools, const MotionPoint& at, double h, double scale) {
   for (size_t i = 0; i < at.q.size(); ++i) drift_[i] = at.q[i] + h * at.v[i];
-  for (const ActiveTerm& D : tools.E.damping()) D.add_gradient(drift_, scale, damping_);
+  for (const ActiveTerm& D : tools.E.damping())
+    if (!dynamic_cast<const PressureRim*>(&D.energy())) D.add_gradient(drift_, scale, damping_);
 }
 
 bool Acceleration::solve(const StepTools& tools, const MotionPoint& at, std::span<double> acc, StepForces& forces,
@@ -30,6 +31,9 @@ bool Acceleration::solve(const StepTools& tools, const MotionPoint& at, std::spa
     add_damping(tools, at, tools.h, 0.5);
     add_damping(tools, at, -tools.h, -0.5);
   }
+  std::fill(drift_.begin(), drift_.end(), 0.0);  // from here on the forces of rims, which do not depend on v
+  tools.E.add_rim_gradient(at.q, 1, drift_);
+  for (size_t i = 0; i < n; ++i) damping_[i] += drift_[i];
 
   tools.pins.copy_held(acc, scratch_);
   std::copy(scratch_.begin(), scratch_.end(), acc.begin());
@@ -46,6 +50,7 @@ bool Acceleration::solve(const StepTools& tools, const MotionPoint& at, std::spa
     acc[i] += scratch_[i];
     forces.gradient[i] += at.weight * gradient_[i];
     forces.damping[i] += at.weight * damping_[i];
+    forces.rims[i] += at.weight * drift_[i];
     forces.acceleration[i] += at.weight * acc[i];
   }
   return solved.ok;

@@ -79,6 +79,8 @@ IncrementalPotential::IncrementalPotential(const Model& model, const Pins& pins)
   for (const auto& D : model.damping) add(*D, damping_);
   for (size_t k = 0; k < potential_.size(); ++k)
     if (const auto* stiff = dynamic_cast<const StiffEnergy*>(&potential_[k].energy())) stiff_.emplace_back(stiff, k);
+  for (size_t k = 0; k < damping_.size(); ++k)
+    if (const auto* rim = dynamic_cast<const PressureRim*>(&damping_[k].energy())) rims_.emplace_back(rim, k);
   for (auto* v : {&predicted_, &offset_, &term_}) v->resize(3 * pattern_.rows());
   for (Terms* parts : {&last_, &of_iterate_}) {
     parts->values.resize(potential_.size());
@@ -188,6 +190,12 @@ bool IncrementalPotential::add_known_forces(std::span<const double> q, double we
   for (size_t i = 0; i < gradient.size(); ++i) gradient[i] += scale * of_iterate_.gradient[i];
   for (size_t i = 0; i < of_iterate_.damping.size(); ++i) damping[i] += scale * of_iterate_.damping[i];
   return true;
+}
+
+void IncrementalPotential::add_rim_gradient(Positions q, double weight, std::span<double> g,
+                                            const Energy* pressure) const {
+  for (const auto& [rim, k] : rims_)
+    if (!pressure || pressure == &rim->pressure()) damping_[k].add_gradient(q, weight, g);
 }
 
 const BlockSparse& IncrementalPotential::evaluate_hessian(std::span<const double> q, const Projection& projection) {

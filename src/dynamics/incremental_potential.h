@@ -13,6 +13,7 @@
 #include "dynamics/internal_terms.h"
 #include "dynamics/model.h"
 #include "dynamics/pins.h"
+#include "energy/pressure_rim.h"
 #include "energy/stiff_energy.h"
 #include "optimize/objective.h"
 
@@ -109,8 +110,11 @@ class IncrementalPotential : public Objective,
   // The terms of V after elasticity, and those of D, in the order of the model.
   std::span<const ActiveTerm> loads() const { return std::span(potential_).subspan(model_.elasticity.size()); }
   const std::vector<ActiveTerm>& damping() const { return damping_; }  // terms of D
-  const InternalTerms& internal() const { return internal_; }          // terms of D with internal variables
-  const BlockPattern& pattern() const { return pattern_; }             // of the Hessian: one block row per vertex
+  // Adds the forces of the terms of D that are rims of pressures: of all, or of one pressure.
+  void add_rim_gradient(Positions q, double weight, std::span<double> g, const Energy* pressure = nullptr) const;
+  bool has_rims() const { return !rims_.empty(); }
+  const InternalTerms& internal() const { return internal_; }  // terms of D with internal variables
+  const BlockPattern& pattern() const { return pattern_; }     // of the Hessian: one block row per vertex
 
  private:
   struct Terms {                            // E by terms
@@ -146,6 +150,7 @@ class IncrementalPotential : public Objective,
   std::vector<ActiveTerm> potential_, damping_;
   InternalTerms internal_;
   std::vector<std::pair<const StiffEnergy*, size_t>> stiff_;  // with the index in potential_
+  std::vector<std::pair<const PressureRim*, size_t>> rims_;   // with the index in damping_
   StiffRows stiff_rows_;
   BlockPattern pattern_;
   BlockSparse H_;

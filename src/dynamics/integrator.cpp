@@ -46,7 +46,7 @@ int rank_of(Status status) {
 }  // namespace
 
 void StepForces::reset(size_t size) {
-  for (auto* v : {&gradient, &damping, &acceleration}) v->assign(size, 0.0);
+  for (auto* v : {&gradient, &damping, &rims, &acceleration}) v->assign(size, 0.0);
   for (auto* v : {&thresholds, &round_offs}) std::fill(v->begin(), v->end(), 0.0);
 }
 
@@ -74,6 +74,7 @@ void StepForces::add(const IncrementalPotential& E, double weight, Positions x, 
     for (const ActiveTerm& V : E.potential()) V.add_gradient(x, weight, gradient);
     for (const ActiveTerm& D : E.damping()) D.add_gradient(x, weight, damping);
   }
+  E.add_rim_gradient(x, weight, rims);
   for (size_t i = 0; i < acc.size(); ++i) acceleration[i] += weight * acc[i];
 }
 

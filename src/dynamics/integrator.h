@@ -42,6 +42,7 @@ enum class ResidualBound { none, threshold };  // bound that a solve guarantees
 // and the reaction of the pins on pinned vertices.
 struct StepForces {
   std::vector<double> gradient, damping;  // G = sum w dV/dx and C = sum w dD/dx [N]
+  std::vector<double> rims;               // share of the rims of pressures in C [N]
   std::vector<double> acceleration;       // a = sum w acc [m/s^2]; zero in statics
   // For each part of the objective (HasParts): the threshold of |r| (0 without a solve) and the rounding error of |r|
   // [N].

@@ -239,12 +239,13 @@ void Ledger::add_resultants(const StepTools& tools, const State& end, const Step
     const BodyRange& body = model.bodies[b];
     Resultant now;
     for (int v = body.first_vertex; v < body.first_vertex + body.vertex_count; ++v)  // elastic forces cancel
-      add(v, tools.pins.held_part(v, point(residual_, v)) - point(forces.gradient, v), now);
+      add(v, tools.pins.held_part(v, point(residual_, v)) - point(forces.gradient, v) - point(forces.rims, v), now);
     update(now, sums.bodies[b]);
   }
   load_.resize(end.q.size());
   for (size_t k = 0; k < model.loads.size(); ++k) {
     tools.E.loads()[k].add_gradient(end.q, -1, load_);
+    tools.E.add_rim_gradient(end.q, -1, load_, model.loads[k].get());
     sums.loads[k] = {};
     for (int v = 0; v < own; ++v) add(v, point(load_, v), sums.loads[k]);
     sum(sums.loads[k]);
@@ -267,7 +268,7 @@ BoundedEnergies Ledger::add(const StepTools& tools, const Integrator& integrator
 
   double jump = 0, round_off = 0;
   squares_.assign(tools.E.part_count(), 0.0);
-  LongSum inertia, gradient, damping, reaction, residuals;
+  LongSum inertia, gradient, damping, reaction, residuals, rims;
   LongSum* const sums[] = {&inertia, &gradient, &damping};
   bool pins_moved = false;
   for (int v = 0; v < own_vertices(tools); ++v) {
@@ -287,6 +288,7 @@ BoundedEnergies Ledger::add(const StepTools& tools, const Integrator& integrator
         if (!tools.pins.holds(v)) residuals.add((acting[k][r] - held[k][r]) * dx[r]);
         if (!tools.pins.is_free(v)) reaction.add(held[k][r] * dx[r]);
       }
+    for (int r = 0; r < 3; ++r) rims.add(forces.rims[3 * v + r] * dx[r]);
     const Vec3d left = tools.pins.free_part(v, point(residual_, v)), moved = tools.pins.held_part(v, dx);
     for (int r = 0; r < 3; ++r) {
       squares_[tools.E.part_of(v)] += left[r] * left[r];
@@ -294,7 +296,7 @@ BoundedEnergies Ledger::add(const StepTools& tools, const Integrator& integrator
     }
   }
   const Share& share = tools.model.share;
-  for (LongSum* sum : {&inertia, &gradient, &damping, &reaction, &residuals}) sum->sum(share);
+  for (LongSum* sum : {&inertia, &gradient, &damping, &reaction, &residuals, &rims}) sum->sum(share);
   for (double* sum : {&jump, &round_off}) *sum = share.sum(*sum);
   share.sum(squares_);
   pins_moved = share.max(pins_moved) > 0;
@@ -321,16 +323,18 @@ BoundedEnergies Ledger::add(const StepTools& tools, const Integrator& integrator
   const double conservative = internal.work - internal.loss;  // stored or lost numerically
   const double loss =
       (inertia_work - kinetic_gain) + gradient_work - (potential_gain - target - obstacles.contact) + conservative;
-  const double dissipated = damping_work + obstacles.friction - conservative;
+  const double rim_work = -rims.value();
+  const double dissipated = damping_work + rim_work + obstacles.friction - conservative;
   note_residual(tools, forces, report);
   report.pin_work += pin_work;
   report.obstacle_work += obstacles.contact + obstacles.friction;
+  report.nonconservative_work += rim_work;
   report.damping_loss += dissipated;
   report.viscoelastic_loss += internal.loss;
   report.numerical_loss += loss;
   report.residual_work += residual_work;
-  report.ledger_error += kinetic_gain + potential_gain - pin_work - (obstacles.contact + obstacles.friction) +
-                         dissipated + loss - residual_work;
+  report.ledger_error += kinetic_gain + potential_gain - pin_work - (obstacles.contact + obstacles.friction) -
+                         rim_work + dissipated + loss - residual_work;
 
   add_resultants(tools, end, forces, report.resultants);
 

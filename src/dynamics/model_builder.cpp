@@ -164,6 +164,12 @@ ModelBuilder& ModelBuilder::springs(std::string name, const Predicate& where, do
   return load(make_point_springs(std::move(name), std::move(springs)));
 }
 
+ModelBuilder& ModelBuilder::pressure(std::string name, std::vector<Face> patch, std::function<double(double)> value) {
+  require(!patch.empty(), "pressure '" + name + "' has no face");
+  pressures_.push_back({std::move(name), std::move(patch), std::move(value)});
+  return *this;
+}
+
 ModelBuilder& ModelBuilder::load(std::unique_ptr<Energy> term) {
   model_.loads.push_back(std::move(term));
   return *this;
@@ -197,6 +203,7 @@ Model ModelBuilder::build() {
   model.mass = std::make_unique<MassMatrix>(model.mesh, model.density, mass_kind_);
   model.elasticity.push_back(make_elasticity_(model.mesh, 0, parameters_));
   if (gravity_) model.loads.insert(model.loads.begin(), make_linear_load("gravity", weights(*model.mass, *gravity_)));
+  for (const PressureLoad& pressure : pressures_) add_pressure(pressure, model);
   if (rayleigh_)
     model.damping.push_back(
         make_rayleigh_damping(*model.mass, rayleigh_->first, model.elasticity[0].get(), rayleigh_->second));

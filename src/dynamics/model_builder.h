@@ -8,6 +8,7 @@
 // All functions throw InvalidInput for invalid values, such as a negative density, an unknown material or a predicate
 // that selects no vertex. Pins and loads keep the order of the calls; gravity is the first load.
 #pragma once
+#include <functional>
 #include <memory>
 #include <optional>
 #include <span>
@@ -16,6 +17,7 @@
 #include <vector>
 
 #include "dynamics/model.h"
+#include "dynamics/pressure_load.h"
 #include "mesh/vertices.h"
 
 namespace aspic {
@@ -59,6 +61,9 @@ class ModelBuilder {
   // `stiffness`: of each spring [N/m].
   ModelBuilder& springs(std::string name, const Predicate& where, double stiffness, const Motion& motion = {});
 
+  // Adds a follower pressure on boundary faces, see dynamics/pressure_load.h; after the other loads.
+  ModelBuilder& pressure(std::string name, std::vector<Face> patch, std::function<double(double time)> value);
+
   // Adds any other term of V.
   ModelBuilder& load(std::unique_ptr<Energy> term);
 
@@ -81,6 +86,7 @@ class ModelBuilder {
   std::vector<MaterialParameters> parameters_;
   MassKind mass_kind_ = MassKind::consistent;
   std::optional<Vec3d> gravity_;
+  std::vector<PressureLoad> pressures_;
   std::optional<std::pair<double, double>> rayleigh_;  // a, b
   std::optional<double> viscosity_;
   std::vector<std::pair<double, double>> branches_;  // G, relaxation time

@@ -100,7 +100,7 @@ struct Simulation::Impl {
     } else {
       if (!adaptive) {
         const BoundedEnergies bounded = ledger.add(with, *integrator, state, forces, report);
-        if (integrator->facts().is_backward_euler)
+        if (integrator->facts().is_backward_euler && !E->has_rims())  // their forces have no potential
           check_energy_bound(bounded, solved.work.value / (options.h * options.h), report);
       }
       if (!integrator->facts().is_implicit) outside_work += outside_work_of(report);
@@ -202,7 +202,7 @@ struct Simulation::Impl {
   void restore_start(const StepTools& with, double time, StepReport& report) {
     report.residual = report.residual_threshold = report.residual_round_off = 0;
     report.worst_vertex = -1;
-    report.pin_work = report.obstacle_work = 0;
+    report.pin_work = report.obstacle_work = report.nonconservative_work = 0;
     report.damping_loss = report.friction_loss = report.viscoelastic_loss = 0;
     report.friction_creep = report.friction_residual = 0;
     report.friction_pair.clear();

@@ -175,8 +175,8 @@ std::vector<StepField>& fields() {
                                         kMeasured)),
       optional(real<&R::friction_residual>(
           {"friction_residual", "N", "change of friction by the last update of normal forces"}, kMeasured)),
-      optional(
-          count<&R::friction_passes>({"friction_passes", "", "evaluations of the normal forces of friction"}, kCount)),
+      optional(count<&R::friction_passes>(
+          {"friction_passes", "", "evaluations of lagged coefficients: friction, rims of pressures"}, kCount)),
       {"potential", "J",
        "energy of each term of V and of viscoelastic branches; a dead load has -f . x, not zero at rest",
        StepFieldType::potentials, kTable | kJson | kViewer},
@@ -185,6 +185,9 @@ std::vector<StepField>& fields() {
           {"pin_work", "J", "work of moving pins, moving spring targets and time-dependent loads in this step"},
           kMeasured),
       optional(real<&R::obstacle_work>({"obstacle_work", "J", "work of moving obstacles"}, kMeasured)),
+      optional(real<&R::nonconservative_work>(
+          {"nonconservative_work", "J", "work of pressures on open patches beyond the change of their potential"},
+          kMeasured)),
       real<&R::damping_loss>({"damping_loss", "J", "energy dissipated by damping and friction"}, kMeasured),
       optional(real<&R::viscoelastic_loss>(
           {"viscoelastic_loss", "J", "share of viscoelastic branches in `damping_loss`"}, kMeasured)),

@@ -69,10 +69,12 @@ struct StepReport : Work {  // work of all solves of the step and of this report
   double friction_residual = 0;  // change of the friction forces by the last update of the normal forces [N]
   std::string friction_pair;     // parts where it is largest
   double step_limit = std::numeric_limits<double>::infinity();  // bound of the last step length by contact
-  int friction_passes = 0;  // evaluations of the normal forces; 1 without friction, 0 without minimization
+  // Evaluations of lagged coefficients: normal forces of friction, rims of pressures. 1 without them, 0 without
+  // minimization.
+  int friction_passes = 0;
 
-  // Ledger: kinetic + potential changes by pin_work + obstacle_work - damping_loss - numerical_loss + residual_work.
-  // [J]
+  // Ledger: kinetic + potential changes by pin_work + obstacle_work + nonconservative_work - damping_loss -
+  // numerical_loss + residual_work. [J]
   double kinetic = 0;  // at the end of the step
   // One per term of V, then the energies stored by internal variables; named by Simulation::potential_names().
   std::vector<double> potential;
@@ -80,6 +82,7 @@ struct StepReport : Work {  // work of all solves of the step and of this report
   double pin_work = 0;              // work of moving pins and moving targets in this step
   double obstacle_work = 0;         // work of moving obstacles on bodies, including friction, in this step
   std::vector<double> target_work;  // share of the moving targets of each of Model::loads
+  double nonconservative_work = 0;  // work of pressures on open patches beyond the loss of their potential in this step
   double damping_loss = 0;          // energy dissipated by damping and friction in this step
   double viscoelastic_loss = 0;     // share of the terms with internal variables in damping_loss
   double numerical_loss = 0;        // energy dissipated by the integrator in this step

@@ -74,15 +74,13 @@ std::unique_ptr<Energy> make_linear_load(std::string name, std::vector<double> c
 }
 
 void add_body_force(const TetMesh& mesh, int tet, const Vec3d& force_density, std::span<double> force) {
-  std::vector<LoadPoint> points;
-  append_load_points(mesh, tet, points);
-  for (const LoadPoint& point : points) add_load(point, force_density, force);
+  add_load(
+      load_element(mesh, tet), [&](const Vec3d&) { return force_density; }, force);
 }
 
 void add_traction(const std::vector<Vec3d>& X, const Face& face, const Vec3d& traction, std::span<double> force) {
-  std::vector<LoadPoint> points;
-  append_load_points(X, face, points);
-  for (const LoadPoint& point : points) add_load(point, traction, force);
+  add_load(
+      load_element(X, face), [&](const Vec3d&) { return traction; }, force);
 }
 
 std::unique_ptr<Energy> make_dead_pressure(const TetMesh& mesh, std::span<const Face> patch, double pressure) {

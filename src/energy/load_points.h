@@ -1,27 +1,29 @@
-// Quadrature of loads on tets and faces: exact for uniform loads.
+// Quadrature of loads on tets and faces.
 #pragma once
+#include <array>
 #include <span>
-#include <vector>
 
+#include "base/function_ref.h"
 #include "mesh/surface.h"
 #include "mesh/tet_mesh.h"
 
 namespace aspic {
 
-// A point at which a load is evaluated: the force on node n is size shares[n] times the load.
-struct LoadPoint {
-  Vec3d position;              // [m]
-  Vec3d normal{};              // outward, of any length; only on faces
-  std::vector<int> nodes;      // vertices of the mesh
-  double size;                 // [m^3] or [m^2]
-  std::vector<double> shares;  // times size: integrals of the shape functions over the part of the point
+// A tet or a face under a load.
+struct LoadElement {
+  std::array<int, 10> node{};  // vertices of the mesh: corners first
+  int corner_count = 0, node_count = 0;
+  std::array<Vec3d, 4> corner{};  // [m]
+  Vec3d normal{};                 // outward, of any length; only of faces
+  double size = 0;                // [m^3] or [m^2]
 };
 
-// One point per linear element, and points of degree 2 in quadratic ones.
-void append_load_points(const TetMesh& mesh, int tet, std::vector<LoadPoint>& points);
-void append_load_points(const std::vector<Vec3d>& rest, const Face& face, std::vector<LoadPoint>& points);
+LoadElement load_element(const TetMesh& mesh, int tet);
+LoadElement load_element(const std::vector<Vec3d>& rest, const Face& face);
 
-// Adds the forces of a load at the point to `force`, 3 per vertex [N]. `load`: [N/m^3] or [Pa].
-void add_load(const LoadPoint& point, const Vec3d& load, std::span<double> force);
+// Adds the forces of a load, the integrals of load(X) times the shape functions, to `force`, 3 per vertex [N]. Exact
+// for polynomials in X: of degree 3 on linear faces and quadratic tets, 2 on quadratic faces, 4 on linear tets. load:
+// [N/m^3] or [Pa].
+void add_load(const LoadElement& element, FunctionRef<Vec3d(const Vec3d& X)> load, std::span<double> force);
 
 }  // namespace aspic

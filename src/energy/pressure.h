@@ -1,10 +1,9 @@
-// V(x) = p * (volume swept outward by a surface patch from rest to x): a follower pressure, which pushes against the
-// outward normal for p > 0. Each point is assumed to move along a straight line, x(s) = X + s u:
+// V(x) = p * (volume swept outward by a surface patch from rest to x), which pushes against the outward normal for p >
+// 0. Each point is assumed to move along a straight line, x(s) = X + s u:
 //   swept = sum over triangles of mean(u) . int_0^1 a(s) ds, where a(s) is the area vector of the triangle at s
-// V is a function of x, so energy is conserved. The forces equal those of the pressure on a closed surface, at every
-// vertex inside a patch, and for any patch that moves along its rest normals. At the rim of an open patch they also
-// include the pressure on the side walls that the motion sweeps, which is of second order in the displacement if the
-// rim moves sideways.
+// V is a function of x, so energy is conserved. The forces equal those of a follower pressure on a closed surface and
+// at every vertex inside a patch. At the rim of an open patch they also include the pressure on the side walls that the
+// motion sweeps; pressure_rim.h removes it.
 #pragma once
 #include <functional>
 #include <memory>

@@ -8,9 +8,9 @@
 #include "base/error.h"
 #include "dynamics/model_builder.h"
 #include "dynamics/pins.h"
+#include "dynamics/pressure_load.h"
 #include "energy/linear_load.h"
 #include "energy/load_points.h"
-#include "energy/pressure.h"
 #include "energy/rayleigh_damping.h"
 #include "energy/springs.h"
 #include "mesh/surface.h"
@@ -256,17 +256,18 @@ class LoadDensity {
 
 struct LoadGroup {
   LoadDensity density;
-  std::vector<LoadPoint> points;  // nodes in the model
+  std::vector<LoadElement> elements;  // nodes in the model
 
+  void add(const PlacedBody& body, LoadElement element) {
+    for (int n = 0; n < element.node_count; ++n) element.node[n] = body.model_vertex(element.node[n]);
+    elements.push_back(element);
+  }
   void add_to(std::span<double> force, double time) const {
-    for (const LoadPoint& point : points) add_load(point, density.at(point.position, point.normal, time), force);
+    for (const LoadElement& element : elements)
+      add_load(
+          element, [&](const Vec3d& X) { return density.at(X, element.normal, time); }, force);
   }
 };
-
-void renumber(const PlacedBody& body, std::vector<LoadPoint>& points) {
-  for (LoadPoint& point : points)
-    for (int& v : point.nodes) v = body.model_vertex(v);
-}
 
 void add_tractions(const Builder& builder, const PlacedBody& body, std::vector<LoadGroup>& groups) {
   Array& tractions = list_of(body, "traction");
@@ -275,10 +276,14 @@ void add_tractions(const Builder& builder, const PlacedBody& body, std::vector<L
   for (Value& scene : tractions) {
     LoadGroup group{LoadDensity(scene), {}};
     for (const Face& face : select_faces(scene["where"], builder.scope(body, scene), boundary))
-      append_load_points(body.mesh.rest, face, group.points);
-    renumber(body, group.points);
+      group.add(body, load_element(body.mesh.rest, face));
     groups.push_back(std::move(group));
   }
+}
+
+bool starts_at_rest(const PlacedBody& body) {
+  return std::equal(body.start.begin(), body.start.end(), body.mesh.rest.begin(),
+                    [](const Vec3d& x, const Vec3d& X) { return std::equal(x.a, x.a + 3, X.a); });
 }
 
 // Each is a separate term: pressure, pressure_2, ...
@@ -299,8 +304,9 @@ void add_pressures(Builder& builder, const PlacedBody& body) {
     }
     const int number = ++builder.pressures;
     of_time(0);
-    builder.model.loads.push_back(make_pressure(number == 1 ? "pressure" : "pressure_" + std::to_string(number),
-                                                builder.model.mesh, patch, of_time));
+    const std::string name = number == 1 ? "pressure" : "pressure_" + std::to_string(number);
+    const PressureForm form = add_pressure({name, patch, of_time, starts_at_rest(body)}, builder.model);
+    builder.notes.push_back(name + " on body '" + body.name() + "': " + std::string(to_string(form)));
   }
 }
 
@@ -308,8 +314,7 @@ void add_body_forces(const Builder& builder, const PlacedBody& body, std::vector
   for (Value& scene : list_of(body, "force")) {
     LoadGroup group{LoadDensity(scene), {}};
     for (const int t : select_tets(scene["where"], builder.scope(body, scene)))
-      append_load_points(body.mesh, t, group.points);
-    renumber(body, group.points);
+      group.add(body, load_element(body.mesh, t));
     groups.push_back(std::move(group));
   }
 }

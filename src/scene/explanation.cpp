@@ -238,6 +238,9 @@ class Explainer {
   }
 
   Explanation inaccurate() const {
+    if (report_.friction_passes >= kMaxUpdates && report_.friction_residual == 0)
+      return {"the rims of pressures did not settle after " + std::to_string(report_.friction_passes) + " updates",
+              "body.pressure", "less pressure, or a rim that is fixed; in dynamics shorter steps"};
     if (report_.friction_passes >= kMaxUpdates)
       return {"normal forces and friction did not settle after " + std::to_string(report_.friction_passes) +
                   " updates: the last one changes friction by " + text(report_.friction_residual) + " N",

@@ -231,6 +231,14 @@ TEST(Explanation, UnsettledFrictionNamesPair) {
   EXPECT_THAT(why.place, HasSubstr("ear and foot"));
 }
 
+TEST(Explanation, UnsettledRimNamesPressure) {
+  Simulation simulation = simulate(beam(2), {});
+  StepReport report = simulation.step();
+  report.status = Status::inaccurate;
+  report.friction_passes = 50;
+  EXPECT_THAT(explain(simulation, report).place, HasSubstr("body.pressure"));
+}
+
 TEST(Explanation, AdaptiveStepDoesNotSuggestShorterSteps) {
   const Explanation why = first_failure({.adaptive = {1e-14}, .solver = {}}, Status::iteration_limit);
   EXPECT_THAT(why.remedy, testing::AllOf(HasSubstr("time.adaptive.tolerance"), testing::Not(HasSubstr("shorten"))));

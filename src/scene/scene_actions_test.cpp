@@ -2,9 +2,11 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <regex>
 
 #include "base/error.h"
+#include "mesh/surface.h"
 #include "scene/scene_cases_test.h"
 
 namespace aspic {
@@ -95,6 +97,52 @@ TEST(SceneLoads, FollowTimeAndBalanceEnergy) {
   EXPECT_NEAR(pulled(face + "value = [\"100 * t\", 0, 0]\n", 2), 100, 1e-9);
   EXPECT_NEAR(pulled(face + "dead_pressure = \"-100 * t * (1 + 0 * Y)\"\n", 1), 50, 1e-9);
   EXPECT_NEAR(pulled("[[body.force]]\nvalue = [\"10 * min(t, 0.6)\", 0, 0]\n", 2), 6, 1e-9);
+}
+
+// The torque of (-Z, Y) on a square is its polar moment, 1/6 m^4.
+TEST(SceneLoads, LinearFormulasAreIntegratedExactly) {
+  for (const std::string order : {"1", "2"}) {
+    const auto load_of = [&](const std::string& load_text) {
+      Scene scene =
+          load("gravity = [0, 0, 0]\n[time]\nstep = 1\nintegrator = \"quasi_static\"\n" + kCube + "order = " + order +
+               "\nmaterial = { young = 1e6, poisson = 0.3 }\n" + pin("where = \"x < 0.001\"") + load_text);
+      return scene.simulation.step().resultants.loads[0];
+    };
+    const Resultant twist =
+        load_of("[[body.traction]]\nwhere = \"x > 0.999\"\nvalue = [0, \"0.5 - Z\", \"Y - 0.5\"]\n");
+    EXPECT_NEAR(twist.force[1], 0, 1e-14);
+    EXPECT_NEAR(twist.moment[0], 1.0 / 6, 1e-6);  // about the deformed positions
+    const Resultant press = load_of("[[body.traction]]\nwhere = \"z > 0.999\"\ndead_pressure = \"X * Y\"\n");
+    EXPECT_NEAR(press.force[2], -1.0 / 4, 1e-13);
+    EXPECT_NEAR(press.moment[1], 1.0 / 6, 1e-5);
+    const Resultant pull = load_of("[[body.force]]\nvalue = [\"Z\", 0, \"X * X\"]\n");
+    EXPECT_NEAR(pull.force[0], 1.0 / 2, 1e-13);
+    EXPECT_NEAR(pull.force[2], 1.0 / 3, 1e-13);
+    EXPECT_NEAR(pull.moment[1], 1.0 / 3 - 1.0 / 4, 1e-5);
+  }
+}
+
+// In a bent bar, the load on a patch is p times its deformed area vector, and a note states that it has no potential.
+TEST(SceneLoads, PressureOnOpenPatchHasNoForcesAtItsRim) {
+  Scene scene = load(
+      "gravity = [0, 0, 0]\n[time]\nstep = 1\nintegrator = \"quasi_static\"\n[[body]]\nname = \"bar\"\nshape = { box = "
+      "{ upper = [4, 1, 1], cells = [8, 2, 2] } }\nmaterial = { young = 1e5, poisson = 0.3 }\n" +
+      pin("where = \"x < 0.001\"") + "[[body.pressure]]\nwhere = \"z > 0.999 && x > 0.999\"\nvalue = 400\n");
+  EXPECT_THAT(scene.notes, Contains(HasSubstr("open patch")));
+  const StepReport report = scene.simulation.step();
+  ASSERT_TRUE(is_success(report.status));
+  Vec3d area{};
+  const Model& model = scene.simulation.model();
+  for (const Face& face : boundary_faces(model.mesh, 0, model.mesh.tet_count())) {
+    const auto& [a, b, c] = face.corners;
+    const auto is_pressed = [&](int v) { return model.mesh.rest[v][2] > 0.999 && model.mesh.rest[v][0] > 0.999; };
+    if (!is_pressed(a) || !is_pressed(b) || !is_pressed(c)) continue;
+    const Vec3d x = vertex(scene.simulation.state().q, a);
+    area = area + 0.5 * cross(vertex(scene.simulation.state().q, b) - x, vertex(scene.simulation.state().q, c) - x);
+  }
+  EXPECT_LT(distance(report.resultants.loads[0].force, -400.0 * area), 1e-9 * 1200);
+  EXPECT_LT(distance(report.resultants.pins[0].force, 400.0 * area), 1e-3 * 1200);
+  EXPECT_GT(std::abs(area[0]), 0.1) << "the patch has turned";
 }
 
 TEST(SceneLoads, OfSeveralKindsAddUp) {

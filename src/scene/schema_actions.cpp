@@ -223,13 +223,18 @@ void add_grab(Schema& s) {
 void add_loads(Schema& s) {
   add_section(
       s, {"traction", "[[body.traction]]", "A dead load: force per rest area, of fixed direction."},
-      {where_key(), key("value", kMovingExpressions, "function of the centroid (X, Y, Z) and the time t", Units{"Pa"}),
+      {where_key(),
+       key("value", kMovingExpressions, "function of the point (X, Y, Z) at rest and the time t", Units{"Pa"}),
        key("dead_pressure", kNumber | kMovingExpression,
-           "along the inward normal at rest; function of the centroid and the time t", Units{"Pa"})});
+           "along the inward normal at rest; function of the point (X, Y, Z) at rest and the time t", Units{"Pa"})});
   s.alternatives.push_back({"traction", {{"value"}, {"dead_pressure"}}, true});
 
   s.sections.push_back(
-      {"pressure", "[[body.pressure]]", "A follower pressure: normal to the deformed surface, per deformed area."});
+      {"pressure", "[[body.pressure]]",
+       "A follower pressure: normal to the deformed surface, per deformed area. A note at the start states whether the "
+       "patch is closed or its rim fixed, so that the load has a potential, or open: then the share of its rim has "
+       "none "
+       "and is updated within each step, like friction."});
   add_keys(s, "pressure",
            {where_key(), key("value", kNumber | kMovingExpression, "uniform, positive inwards; function of the time t",
                              Units{"Pa"}, kRequired)});
@@ -240,7 +245,7 @@ void add_loads(Schema& s) {
   everywhere.fallback = "\"all\"";
   everywhere.reason = "the whole body";
   add_keys(s, "force",
-           {everywhere, key("value", kMovingExpressions, "function of the centroid (X, Y, Z) and the time t",
+           {everywhere, key("value", kMovingExpressions, "function of the point (X, Y, Z) at rest and the time t",
                             Units{"N/m^3"}, kRequired)});
 }
 

@@ -131,7 +131,8 @@ class Judge {
     double potential = 0, size = std::abs(report.kinetic);
     for (const double V : simulation_.potential_energies()) potential += V, size += std::abs(V);
     const double kinetic = simulation_.kinetic_energy();
-    for (const double w : {report.pin_work, report.damping_loss, report.numerical_loss, report.residual_work, size_})
+    for (const double w : {report.pin_work, report.nonconservative_work, report.damping_loss, report.numerical_loss,
+                           report.residual_work, size_})
       size += std::abs(w);
     const double open = std::abs(kinetic - report.kinetic) + std::abs(potential - report.potential_total) +
                         std::abs(report.ledger_error);

@@ -20,6 +20,7 @@ export interface StepFields {
   potential: MaybeNumber[]; // energy of each term of V and of viscoelastic branches; a dead load has -f . x, not zero at rest [J]
   pin_work: MaybeNumber; // work of moving pins, moving spring targets and time-dependent loads in this step [J]
   obstacle_work: MaybeNumber; // work of moving obstacles [J]
+  nonconservative_work: MaybeNumber; // work of pressures on open patches beyond the change of their potential [J]
   damping_loss: MaybeNumber; // energy dissipated by damping and friction [J]
   viscoelastic_loss: MaybeNumber; // share of viscoelastic branches in damping_loss [J]
   numerical_loss: MaybeNumber; // energy dissipated by the integrator [J]
@@ -52,6 +53,7 @@ export const kUnknownStep: StepFields = {
   potential: [],
   pin_work: null,
   obstacle_work: null,
+  nonconservative_work: null,
   damping_loss: null,
   viscoelastic_loss: null,
   numerical_loss: null,

@@ -27,7 +27,7 @@ export function ledgerColumns(potentials: readonly string[]): Curve[] {
     line("mouse_work", "work of the mouse", "work of the mouse's spring, summed over the steps", "series8", kSum),
     line("probe_work", "work of the probe", "work of the indenter, summed over the steps", "series10", kSum),
     line("pin_work", "work of pins", "work of moving pins and spring targets, summed over the steps", "series9", kSum),
-    line("obstacle_work", "work of obstacles", "work of moving obstacles, summed over the steps", "series3", kSum),
+    line("obstacle_work", "work of obstacles and pressures", "work of moving obstacles, and of pressures on open patches beyond the change of their potential, summed over the steps", "series3", kSum),
     line("damping_loss", "dissipation", "dissipated by damping and friction, summed over the steps", "series7", kSum),
     line("numerical_loss", "numerical loss", "dissipated by the integrator, summed over the steps", "bad", kSum),
     line("balance", "balance", "T + V − works + losses: constant if every step is solved accurately", "good", kWider),
@@ -117,7 +117,7 @@ export class Ledger {
     const terms = this.potentials.map((_, i) => row.potential[i] ?? null);
     const potential = sum(terms);
     const total = sum([row.kinetic, potential]);
-    const flows = [row.mouse_work, row.probe_work, row.pin_work, row.obstacle_work ?? 0, row.damping_loss, row.numerical_loss];
+    const flows = [row.mouse_work, row.probe_work, row.pin_work, (row.obstacle_work ?? 0) + (row.nonconservative_work ?? 0), row.damping_loss, row.numerical_loss];
     const firstFlow = this.totalColumn + 1;
     const sums = flows.map((flow, i) => sum([last < 0 ? 0 : this.columns[firstFlow + i]![last]!, flow]));
     const [mouse, probe, pins, obstacles, damping, numerical] = sums as MaybeNumber[];
