@@ -61,8 +61,7 @@ struct Artery {
   double hoop_slope(double around) const {
     const double c = std::cos(angle), s = std::sin(angle), across = 1 / (around * stretch);
     const double E = std::max(0.0, around * around * c * c + stretch * stretch * s * s - 1);
-    return mu * (around * around - across * across) +
-           2 * (k1 * E * std::exp(k2 * E * E)) * 2 * around * around * c * c;
+    return mu * (around * around - across * across) + 2 * (k1 * E * std::exp(k2 * E * E)) * 2 * around * around * c * c;
   }
   double pressure_at(double inner) const {  // by Simpson's rule in R
     constexpr int kParts = 200;

@@ -45,7 +45,8 @@ void refuse_painted(const Value& body, const char* actions) {
 void refuse_surfaces(const Value& output) {
   for (const char* key : {"obj", "ply", "mechanics"})
     if (output[key].boolean())
-      throw not_supported(output[key].place, std::string(key) + " = true", "it writes VTU pieces with the usual fields; remove the key");
+      throw not_supported(output[key].place, std::string(key) + " = true",
+                          "it writes VTU pieces with the usual fields; remove the key");
 }
 
 void require_supported_body(const Value& body) {

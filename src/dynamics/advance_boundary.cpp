@@ -14,7 +14,10 @@ namespace {
 constexpr double kSmallestPart = 1.0 / 1024;
 constexpr double kShortPart = 0.1;  // share of the remaining way; shorter moves are followed by a few iterations
 constexpr int kMaxParts = 200;
-constexpr int kPatience = 3;  // moves by less than kSmallestPart in a row
+// Obstacles that approach a body from a distance beyond the reach of contact move by the small share of their way that
+// the gap is. Afterwards, Newton directions carry the body along.
+constexpr double kSmallestApproach = 1e-8;
+constexpr int kPatience = 6;  // moves by less than kSmallestPart in a row
 // Largest rise of E in a move, relative to the energy of doubling the body. Newton's method reduces the exponent of an
 // exponential law by about 1 per iteration.
 constexpr double kMostRise = 1e3;
@@ -78,7 +81,7 @@ class Boundary {
     const bool is_made = tools_.direction.compute({tools_.E, reached_, g_, {}, tools_.options.stop}, d_, made);
     work_.add(made);
     const double reach = is_made ? tools_.E.max_step(reached_, d_) : 0;
-    for (double part = std::min(1.0, reach); part > kSmallestPart; part /= 2)
+    for (double part = std::min(1.0, reach); part > kSmallestApproach; part /= 2)
       if (move(part < 1 ? done_ + part * (1 - done_) : 1, part, d_)) return part;
     return 0;
   }
@@ -109,7 +112,7 @@ class Boundary {
   MinimizeReport& work_;
   double done_ = 0;
   double here_ = 0, most_ = std::numeric_limits<double>::infinity();  // E at reached_, and its largest rise
-  std::optional<Evaluation> value_;  // of reached_, if known
+  std::optional<Evaluation> value_;                                   // of reached_, if known
   std::vector<double> trial_, between_, g_, d_;
 };
 

@@ -31,8 +31,8 @@ TEST(LeadPins, MovesPinsInFractionsWithBarrierMaterial) {
   }
 }
 
-// A single move of the pins raises the energy of the fibres to 1e300 J, which Newton's method would reduce by a constant
-// factor per iteration.
+// A single move of the pins raises the energy of the fibres to 1e300 J, which Newton's method would reduce by a
+// constant factor per iteration.
 TEST(LeadPins, OneLargeStepOfExponentialFibresEndsLikeSmallOnes) {
   const auto stretched = [](int steps) {
     const TetMesh mesh = raise_order(make_box({}, {{0.04, 0.01, 0.01}}, {8, 2, 2}));

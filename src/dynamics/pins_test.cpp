@@ -105,7 +105,8 @@ TEST(PinsOfDirections, ShareVerticesIfTheyAgree) {
   const std::vector<Pin> pins = {{"grip", {0, 1}, lift}, {"plane", {1, 2}, {}, {m}}, {"rail", {2}, lift, {kX, kY}}};
   EXPECT_LT(disagreement(std::vector{&pins[0], &pins[1]}, start, 0.5), 1e-15);
   const Motion turn = [](const Vec3d& X, double t) { return X + Vec3d{{t, t, t}}; };
-  EXPECT_GT(disagreement(std::vector<const Pin*>{&pins[1], std::vector<Pin>{{"grip", {0}, turn}}.data()}, start, 0.5), 0.1);
+  EXPECT_GT(disagreement(std::vector<const Pin*>{&pins[1], std::vector<Pin>{{"grip", {0}, turn}}.data()}, start, 0.5),
+            0.1);
   const Pins held(pins, std::vector<double>{1, 2, 3, 1, 2, 3, 1, 2, 3});
   EXPECT_TRUE(held.holds(0) && held.holds(1) && !held.holds(2) && held.holds(2, 1) && !held.holds(2, 2));
   std::vector<double> x(9, 7.0);

@@ -15,6 +15,7 @@
 #include "dynamics/ledger.h"
 #include "dynamics/simulation_checks.h"
 #include "dynamics/state.h"
+#include "math/vectors.h"
 
 namespace aspic {
 namespace {

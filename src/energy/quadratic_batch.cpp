@@ -124,7 +124,8 @@ void QuadraticBatchAt<table>::scatter(Blocks& sum, BlockSparse& H) const {
 }
 
 template <const NodeTable& table>
-void QuadraticBatchAt<table>::scatter_hessian(const std::array<Mat9<Pack>, kPoints>& A, Pack weight, BlockSparse& H) const {
+void QuadraticBatchAt<table>::scatter_hessian(const std::array<Mat9<Pack>, kPoints>& A, Pack weight,
+                                              BlockSparse& H) const {
   scatter_blocks([&](int q) { return TangentBlocks(*this, A[q], weight); }, H);
 }
 

@@ -147,11 +147,11 @@ void add_pins(Builder& builder, const PlacedBody& body) {
       const auto time = time_of_conflict(pins, body.start[v], builder.duration);
       const Value& other = scenes[holders[v][holders[v].size() - 2]];
       if (time)
-        throw error_at(scene["where"].place, "vertex " + std::to_string(body.user_vertex(v)) + " of body '" +
-                                                 body.name() + "' at " + point_text(body.mesh.rest[v]) +
-                                                 " is in pin '" + other["name"].text() + "' and in pin '" + name +
-                                                 "', which prescribe different positions in the same direction at t = " +
-                                                 number_text(*time) + "; " + leave_out(other, scene, leaves_any));
+        throw error_at(scene["where"].place,
+                       "vertex " + std::to_string(body.user_vertex(v)) + " of body '" + body.name() + "' at " +
+                           point_text(body.mesh.rest[v]) + " is in pin '" + other["name"].text() + "' and in pin '" +
+                           name + "', which prescribe different positions in the same direction at t = " +
+                           number_text(*time) + "; " + leave_out(other, scene, leaves_any));
     }
   }
 }

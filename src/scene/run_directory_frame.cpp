@@ -117,7 +117,8 @@ void add_mechanics(const Simulation& simulation, std::span<const double> cauchy,
     F.values.insert(F.values.end(), rows.a, rows.a + 9);
     strain.values.insert(strain.values.end(), {E(0, 0), E(1, 1), E(2, 2), E(0, 1), E(1, 2), E(2, 0)});
     const double* s = &cauchy[6 * static_cast<size_t>(t)];
-    std::array<double, 3> values = symmetric_eigen<3, double>({s[0], s[3], s[5], s[3], s[1], s[4], s[5], s[4], s[2]}).values;
+    std::array<double, 3> values =
+        symmetric_eigen<3, double>({s[0], s[3], s[5], s[3], s[1], s[4], s[5], s[4], s[2]}).values;
     std::sort(values.rbegin(), values.rend());
     principal.values.insert(principal.values.end(), values.begin(), values.end());
   }

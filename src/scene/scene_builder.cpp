@@ -175,7 +175,8 @@ class SceneBuilder {
     }
     model_.mass = std::make_unique<MassMatrix>(model_.mesh, model_.density, kind);
     add_actions(
-        {bodies_, source_.document.find("gravity")->vector(), source_.document.find("time")->find("duration")->number(), kind, files_, source_.notes, options_.limit.memory},
+        {bodies_, source_.document.find("gravity")->vector(), source_.document.find("time")->find("duration")->number(),
+         kind, files_, source_.notes, options_.limit.memory},
         model_);
     MeshLoader loader = mesh_loader();
     add_scene_contact(source_.document, loader, model_);

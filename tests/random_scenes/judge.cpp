@@ -15,7 +15,7 @@ namespace {
 
 constexpr double kRoundOff = 1e-9;     // relative to the energies that are added and the forces that balance
 constexpr double kLastDigits = 1e-11;  // relative to energies that cancel in a body at rest
-constexpr int kMaxPolls = 20'000;  // of the stop token, in all steps of a scene
+constexpr int kMaxPolls = 20'000;      // of the stop token, in all steps of a scene
 
 bool is_finite(std::span<const double> v) {
   return std::all_of(v.begin(), v.end(), [](double x) { return std::isfinite(x); });
