@@ -14,3 +14,6 @@ add_test(NAME random_scenes.round_off COMMAND random_scenes --run 2657)
 # The first stage is solved with the mass matrix alone, and forces of 1e8 N leave a residual above the tolerance.
 add_test(NAME random_scenes.stiff_start
          COMMAND random_scenes --file ${CMAKE_CURRENT_LIST_DIR}/random_scenes/stiff_start.toml)
+# Free flight without gravity. The residual of the first step is the round-off of positions, above its threshold.
+add_test(NAME random_scenes.free_flight
+         COMMAND random_scenes --file ${CMAKE_CURRENT_LIST_DIR}/random_scenes/free_flight.toml)

@@ -63,7 +63,7 @@ void write_pieces(const RunLayout& layout, const DistributedSimulation& simulati
                   const FrameOptions& options) {
   const MeshShare& share = simulation.share();
   const Piece piece = piece_of(simulation.local(), share);
-  VtuFields fields = frame_fields(simulation.local(), report, options.double_precision);
+  VtuFields fields = frame_fields(simulation.local(), report, {.double_precision = options.double_precision});
   for (Field& field : fields.point_fields) select(piece.vertices, field);
   for (Field& field : fields.cell_fields) select(piece.tets, field);
   const bool is_whole = share.ranks() == 1;

@@ -43,9 +43,10 @@ void refuse_painted(const Value& body, const char* actions) {
 
 // The files of surfaces that aspic run writes by default are left out.
 void refuse_surfaces(const Value& output) {
-  for (const char* key : {"obj", "ply"})
+  for (const char* key : {"obj", "ply", "mechanics"})
     if (output[key].boolean())
-      throw not_supported(output[key].place, std::string(key) + " = true", "it writes VTU pieces; remove the key");
+      throw not_supported(output[key].place, std::string(key) + " = true",
+                          "it writes VTU pieces with the usual fields; remove the key");
 }
 
 void require_supported_body(const Value& body) {

@@ -14,7 +14,13 @@ namespace {
 constexpr double kSmallestPart = 1.0 / 1024;
 constexpr double kShortPart = 0.1;  // share of the remaining way; shorter moves are followed by a few iterations
 constexpr int kMaxParts = 200;
-constexpr int kPatience = 3;  // moves by less than kSmallestPart in a row
+// Obstacles that approach a body from a distance beyond the reach of contact move by the small share of their way that
+// the gap is. Afterwards, Newton directions carry the body along.
+constexpr double kSmallestApproach = 1e-8;
+constexpr int kPatience = 6;  // moves by less than kSmallestPart in a row
+// Largest rise of E in a move, relative to the energy of doubling the body. Newton's method reduces the exponent of an
+// exponential law by about 1 per iteration.
+constexpr double kMostRise = 1e3;
 
 MinimizeOptions rough(const MinimizeOptions& options) {
   MinimizeOptions few = options;
@@ -37,6 +43,8 @@ class Boundary {
         reached_(from.begin(), from.end()),
         work_(work) {}
 
+  // Limits the rise of E in each move, from `value` at the start.
+  void limit_rise(double value, double most) { here_ = value, most_ = most; }
   double done() const { return done_; }
   std::span<const double> reached() const { return reached_; }
   const Evaluation& value() const { return *value_; }  // there, after a move
@@ -52,10 +60,11 @@ class Boundary {
     tools_.E.move_obstacles(time_at(next));
     const Evaluation there = tools_.E.evaluate(trial_);
     ++work_.values;
-    const bool is_finite = std::isfinite(there.value);
-    if (!is_finite || !is_free(tools_, {reached_, trial_, time_at(done_), time_at(next)})) return false;
+    const bool is_low = std::isfinite(there.value) && there.value - here_ <= most_;
+    if (!is_low || !is_free(tools_, {reached_, trial_, time_at(done_), time_at(next)})) return false;
     done_ = next;
     value_ = there;
+    here_ = there.value;
     reached_.swap(trial_);
     return true;
   }
@@ -66,13 +75,13 @@ class Boundary {
     g_.resize(reached_.size()), d_.resize(reached_.size());
     tools_.E.move_obstacles(time_at(done_), time_);
     tools_.E.gradient(reached_, g_);
-    ++work_.gradients, ++work_.iterations;
+    ++work_.gradients, ++work_.carries;
     tools_.direction.begin();
     DirectionReport made;
     const bool is_made = tools_.direction.compute({tools_.E, reached_, g_, {}, tools_.options.stop}, d_, made);
     work_.add(made);
     const double reach = is_made ? tools_.E.max_step(reached_, d_) : 0;
-    for (double part = std::min(1.0, reach); part > kSmallestPart; part /= 2)
+    for (double part = std::min(1.0, reach); part > kSmallestApproach; part /= 2)
       if (move(part < 1 ? done_ + part * (1 - done_) : 1, part, d_)) return part;
     return 0;
   }
@@ -86,6 +95,7 @@ class Boundary {
         tools_.minimizer.minimize(tools_.E, tools_.direction, at, rough(tools_.options), tools_.observe);
     add_work(spent, work_);
     value_.reset();
+    here_ = spent.value;
     return spent.status != Status::interrupted;
   }
 
@@ -101,7 +111,8 @@ class Boundary {
   std::vector<double> reached_;
   MinimizeReport& work_;
   double done_ = 0;
-  std::optional<Evaluation> value_;  // of reached_, if known
+  double here_ = 0, most_ = std::numeric_limits<double>::infinity();  // E at reached_, and its largest rise
+  std::optional<Evaluation> value_;                                   // of reached_, if known
   std::vector<double> trial_, between_, g_, d_;
 };
 
@@ -142,6 +153,7 @@ bool is_free(const StepTools& tools, const ContactPath& path) {
 void add_work(const MinimizeReport& spent, MinimizeReport& work) {
   work.add(spent);
   work.iterations += spent.iterations;
+  work.carries += spent.carries;
   work.trials += spent.trials;
   work.projected_hessians += spent.projected_hessians;
   work.projected_elements += spent.projected_elements;
@@ -153,9 +165,17 @@ Evaluation advance_boundary(const StepTools& tools, double time, std::span<const
   tools.pins.place(time, q);
   const Evaluation at_once = tools.E.evaluate(q);
   ++work.values;
-  if (std::isfinite(at_once.value) && is_free(tools, {from, q, tools.obstacle_start, time})) return at_once;
-  Boundary boundary(tools, time, from, q, work);
+  const double most = kMostRise * tools.E.scales().value;
+  const bool is_possible = std::isfinite(at_once.value) && is_free(tools, {from, q, tools.obstacle_start, time});
+  if (is_possible && std::abs(at_once.value) <= most) return at_once;
   const bool carries = tools.model.contact && tools.model.contact->has_moving_obstacle();
+  Boundary boundary(tools, time, from, q, work);
+  if (!carries || is_possible) {
+    const double at_start = tools.E.value(from);
+    ++work.values;
+    if (is_possible && !(at_once.value - at_start > most)) return at_once;
+    if (!carries) boundary.limit_rise(at_start, most);
+  }
   if (carries ? carry_all(boundary) : move_all(boundary)) {
     std::copy(boundary.reached().begin(), boundary.reached().end(), q.begin());
     return boundary.value();

@@ -205,6 +205,31 @@ TEST(Contact, BlockedObstacleEndsUndefined) {
   }
 }
 
+// The gap is a thousandth of the way of the plate in a step, and the block is free.
+TEST(Contact, FastObstacleCarriesFreeBlock) {
+  Model model = block({}).build();
+  std::vector<int> rows(model.mesh.rest.size());
+  for (size_t i = 0; i < rows.size(); ++i) rows[i] = static_cast<int>(i);
+  ContactMesh contact;
+  contact.add({.name = "block", .young = kYoung}, model.mesh.rest,
+              boundary_triangles(model.mesh, 0, model.mesh.tet_count()), rows);
+  const auto rise = [](double time, std::span<const Vec3d> start, std::span<Vec3d> x) {
+    for (size_t i = 0; i < x.size(); ++i) x[i] = start[i] + Vec3d{{0, 200 * time, 0}};
+  };
+  double lowest = INFINITY;
+  for (const Vec3d& X : model.mesh.rest) lowest = std::min(lowest, X[1]);
+  const TetMesh plate = make_box({{-0.2, lowest - 0.052, -0.2}}, {{0.2, lowest - 0.002, 0.2}}, {1, 1, 1});
+  contact.add({.name = "plate", .is_obstacle = true, .motion = rise}, plate.rest,
+              boundary_triangles(plate, 0, plate.tet_count()), {});
+  add_contact(std::move(contact), {}, 0, model);
+  Simulation simulation(std::move(model), {.h = 0.01, .solver = {}});
+  for (int i = 1; i <= 3; ++i) {
+    const StepReport report = simulation.step();
+    ASSERT_TRUE(is_success(report.status)) << i << " " << to_string(report.status);
+    EXPECT_EQ(simulation.obstacle_time(), report.time);
+  }
+}
+
 // The intersection test is exact and shares no code with contact.
 TEST(Contact, CollidingBlocksNeverIntersect) {
   TetMesh mesh = make_box({{-0.05, 0.01, -0.05}}, {{0.05, 0.06, 0.05}}, {3, 2, 3});

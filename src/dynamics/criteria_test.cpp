@@ -256,5 +256,25 @@ TEST(Criteria, ReportsVelocitiesLostInTinySteps) {
   }
 }
 
+// The position of a free body has fewer digits than its acceleration needs: its residual is above the threshold.
+TEST(Criteria, ConvergedResidualsAreBelowThreshold) {
+  const TetMesh mesh = make_box({{-17.4, 52, -28.3}}, {{32.6, 102, 21.7}}, {2, 2, 2});
+  Model model = make_model(mesh, {.material = "linear", .young = 1e6, .poisson = 0.3});
+  model.loads.clear();
+  State state = at_rest(model.mesh);
+  for (size_t i = 0; i < state.qdot.size(); ++i) state.qdot[i] = std::array{-0.732137, -3.162278, 0.9225}[i % 3];
+  Simulation simulation(std::move(model), state, {.h = 0.01, .solver = {}});
+  int above = 0;
+  for (int i = 0; i < 20; ++i) {
+    const StepReport report = simulation.step();
+    ASSERT_TRUE(is_success(report.status)) << to_string(report.status);
+    const bool is_above = report.residual > report.residual_threshold;
+    above += is_above;
+    EXPECT_EQ(report.status, is_above ? Status::round_off : Status::converged) << i;
+    EXPECT_EQ(report.lost_accuracy > 0, is_above) << i;
+  }
+  EXPECT_GT(above, 0);
+}
+
 }  // namespace
 }  // namespace aspic

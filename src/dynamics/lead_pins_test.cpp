@@ -2,6 +2,8 @@
 #include <gtest/gtest.h>
 
 #include "dynamics/models_test.h"
+#include "energy/fibres.h"
+#include "mesh/tet_nodes.h"
 
 namespace aspic {
 namespace {
@@ -27,6 +29,30 @@ TEST(LeadPins, MovesPinsInFractionsWithBarrierMaterial) {
     for (const int v : simulation.model().pins[1].vertices)
       EXPECT_EQ(simulation.state().q[3 * v], 4 - 1.2) << integrator;
   }
+}
+
+// A single move of the pins raises the energy of the fibres to 1e300 J, which Newton's method would reduce by a
+// constant factor per iteration.
+TEST(LeadPins, OneLargeStepOfExponentialFibresEndsLikeSmallOnes) {
+  const auto stretched = [](int steps) {
+    const TetMesh mesh = raise_order(make_box({}, {{0.04, 0.01, 0.01}}, {8, 2, 2}));
+    Fibre fibre{{}, 2e3, 20, 0};
+    fibre.directions.fill((1 / std::sqrt(1.09)) * Vec3d{{1, 0.3, 0}});
+    Model model = model_of(mesh, {.material = "neo_hookean_log_j2", .young = 9e3, .poisson = 0.49, .gravity = {}})
+                      .pin("left", [](const Vec3d& X) { return X[0] < 1e-9; })
+                      .pin(
+                          "right", [](const Vec3d& X) { return X[0] > 0.04 - 1e-9; },
+                          [](const Vec3d& X, double t) {
+                            return X + Vec3d{{0.02 * t, 0, 0}};
+                          })
+                      .load(make_fibres({"fibres", mesh}, std::vector<Fibre>(mesh.tets.size(), fibre)))
+                      .build();
+    Simulation simulation = simulate(std::move(model), {.h = 1.0 / steps, .integrator = "quasi_static", .solver = {}});
+    for (int i = 0; i < steps; ++i) EXPECT_EQ(simulation.step().status, Status::converged) << i;
+    return simulation.potential_energies();
+  };
+  const std::vector<double> once = stretched(1), often = stretched(40);
+  for (size_t k = 0; k < often.size(); ++k) EXPECT_NEAR(once[k], often[k], 1e-6 * std::abs(often[k]));
 }
 
 TEST(LeadPins, InvertingPinsEndUndefined) {

@@ -128,6 +128,7 @@ double Ledger::target_work(const StepTools& tools, int order, const State& end, 
 void Ledger::begin(const Model& model, std::span<const double> q) {
   Work uncounted;
   last_q_.clear();
+  residual_.clear();
   elastic_energies(model, q, {}, uncounted);
 }
 

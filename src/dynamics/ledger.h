@@ -28,6 +28,9 @@ class Ledger {
   BoundedEnergies add(const StepTools& tools, const Integrator& integrator, const State& end, const StepForces& forces,
                       StepReport& report);
 
+  // Returns r of the last step; empty without one since begin().
+  std::span<const double> residual() const { return residual_; }
+
  private:
   double target_work(const StepTools& tools, int order, const State& end, double& loads_before, StepReport& report);
   // `known`: energies of all terms at q, elastic terms first; may be empty.

@@ -1,11 +1,12 @@
 #include "dynamics/pins.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <map>
 
-#include "base/check.h"
 #include "base/parallel.h"
+#include "math/symmetric_eigen.h"
 #include "math/vectors.h"
 
 namespace aspic {
@@ -15,60 +16,68 @@ constexpr double kMinSine = 1e-6;  // minimum sine of the angle between a direct
 
 Mat3d projector(std::span<const Vec3d> directions) {  // requires orthonormal directions
   Mat3d sum{};
-  for (const Vec3d& n : directions)
-    for (int r = 0; r < 3; ++r)
-      for (int c = 0; c < 3; ++c) sum(r, c) += n[r] * n[c];
+  for (const Vec3d& n : directions) sum = sum + outer(n, n);
   return sum;
 }
+Mat3d projector(const Pin& pin) { return pin.directions.empty() ? identity3<double>() : projector(pin.directions); }
 
-// Returns M^+ for the sum M over independent unit vectors: (M + k k')^-1 - k k', where k is a unit vector of the
-// kernel.
-Mat3d pseudo_inverse(const Mat3d& M, std::span<const Vec3d> directions) {
+// Returns M^+ for the sum M over unit vectors.
+Mat3d pseudo_inverse(const Mat3d& M) {
   if (squared_norm(M * M - M) < 1e-28) return M;  // orthonormal directions; exact along axes
-  if (directions.size() == 3) return inverse(M);
-  Vec3d k = cross(directions[0], directions[1]);
-  k = (1 / norm(k)) * k;
-  const Mat3d K = projector({&k, 1});
-  return inverse(M + K) - K;
+  std::array<double, 9> entries;
+  std::copy(M.a, M.a + 9, entries.begin());
+  const SymmetricEigen<3> e = symmetric_eigen<3, double>(entries);
+  Mat3d sum{};
+  for (int k = 0; k < 3; ++k) {
+    const Vec3d v = {{e.vectors[3 * k], e.vectors[3 * k + 1], e.vectors[3 * k + 2]}};
+    if (e.values[k] > kMinSine * kMinSine) sum = sum + (1 / e.values[k]) * outer(v, v);
+  }
+  return sum;
 }
 
 }  // namespace
 
-bool are_independent(std::span<const Vec3d> n) {
-  if (n.size() == 2) return dot(cross(n[0], n[1]), cross(n[0], n[1])) > kMinSine * kMinSine;
-  return n.size() == 1 || (n.size() == 3 && std::abs(dot(cross(n[0], n[1]), n[2])) > kMinSine);
+double disagreement(std::span<const Pin* const> pins, const Vec3d& start, double time) {
+  const auto moved = [&](const Pin& pin) { return pin.motion ? pin.motion(start, time) - start : Vec3d{}; };
+  Mat3d M{};
+  Vec3d sum{};
+  for (const Pin* pin : pins) {
+    M = M + projector(*pin);
+    sum = sum + projector(*pin) * moved(*pin);
+  }
+  const Vec3d mean = pseudo_inverse(M) * sum;
+  double most = 0;
+  for (const Pin* pin : pins) most = std::max(most, norm(projector(*pin) * (mean - moved(*pin))));
+  return most;
 }
 
 Pins::Pins(const std::vector<Pin>& pins, std::span<const double> start)
     : pins_(&pins), start_(start.begin(), start.end()), kind_(start.size() / 3, kFree), shares_(pins.size()) {
+  std::vector<int> holders(kind_.size(), 0);
   for (const Pin& pin : pins)
-    for (const int v : pin.vertices) {
-      if (!pin.directions.empty()) continue;
-      ASPIC_CHECK(kind_[v] == kFree);
-      kind_[v] = kHeld;
-    }
-  add_directions();
-}
-
-void Pins::add_directions() {
-  std::map<int, std::vector<Vec3d>> held;
-  for (const Pin& pin : *pins_)
-    for (const int v : pin.vertices)
-      if (!pin.directions.empty()) held[v].insert(held[v].end(), pin.directions.begin(), pin.directions.end());
+    for (const int v : pin.vertices) ++holders[v];
+  std::map<int, Mat3d> held;  // M of the vertices that one pin does not hold alone in all directions
+  std::vector<char> is_shared(pins.size(), 0);
+  for (size_t p = 0; p < pins.size(); ++p)
+    for (const int v : pins[p].vertices)
+      if (pins[p].directions.empty() && holders[v] == 1) {
+        kind_[v] = kHeld;
+      } else {
+        held[v] = held[v] + projector(pins[p]);
+        is_shared[p] = 1;
+      }
   std::map<int, Mat3d> inverses;
-  for (const auto& [v, directions] : held) {
-    ASPIC_CHECK(kind_[v] == kFree && are_independent(directions));
-    const Mat3d M = projector(directions), inverse = pseudo_inverse(M, directions);
-    inverses[v] = inverse;
-    kind_[v] = directions.size() == 3 ? kHeld : static_cast<int>(projector_.size());
-    if (directions.size() < 3) projector_.push_back(inverse * M);
+  for (const auto& [v, M] : held) {
+    const Mat3d inverse = inverses[v] = pseudo_inverse(M), P = inverse * M;
+    kind_[v] = trace(P) > 2.5 ? kHeld : static_cast<int>(projector_.size());
+    if (kind_[v] != kHeld) projector_.push_back(P);
   }
-  for (size_t p = 0; p < pins_->size(); ++p) {
-    const Pin& pin = (*pins_)[p];
-    if (pin.directions.empty()) continue;
-    const Mat3d own = projector(pin.directions);
-    for (const int v : pin.vertices) shares_[p].push_back({v, inverses[v] * own});
-  }
+  for (size_t p = 0; p < pins.size(); ++p)
+    for (size_t i = 0; is_shared[p] && i < pins[p].vertices.size(); ++i) {
+      const int v = pins[p].vertices[i];
+      const auto inverse = inverses.find(v);
+      shares_[p].push_back({v, inverse == inverses.end() ? identity3<double>() : inverse->second * projector(pins[p])});
+    }
 }
 
 bool Pins::holds(int vertex, int axis) const {
@@ -105,7 +114,7 @@ void Pins::place(double time, std::span<double> x) const {
     for (size_t i = 0; i < pin.vertices.size(); ++i) {
       const int v = pin.vertices[i];
       const Vec3d start = vec_at(start_, v);
-      if (pin.directions.empty())
+      if (shares_[p].empty())
         set_vec(pin.motion ? pin.motion(start, time) : start, v, x);
       else if (pin.motion)
         set_vec(vec_at(x, v) + shares_[p][i].factor * (pin.motion(start, time) - start), v, x);

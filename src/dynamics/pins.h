@@ -1,7 +1,7 @@
 // The Dirichlet conditions of a model: prescribed vertices, directions and positions as functions of time. For a vertex
 // with the prescribed directions n_k, M = sum of n_k n_k'. P = M^+ M projects onto the pinned space, Q = 1 - P onto the
 // free space, and M^+ (sum over the directions of one pin) is the share of that pin: the identity on its directions if
-// it is the only one.
+// it is the only one. Pins that prescribe the same direction of a vertex must agree; they share its reaction.
 #pragma once
 #include <span>
 #include <vector>
@@ -10,8 +10,9 @@
 
 namespace aspic {
 
-// Returns whether unit directions are linearly independent.
-bool are_independent(std::span<const Vec3d> directions);
+// Returns the largest distance of a vertex from the positions that `pins` prescribe for it along their directions, if
+// their mean square is smallest: 0 if the pins agree [m].
+double disagreement(std::span<const Pin* const> pins, const Vec3d& start, double time);
 
 class Pins {
  public:
@@ -40,14 +41,13 @@ class Pins {
     Mat3d factor;
   };
 
-  void add_directions();
   void set_zero(Stencil& stencil) const;
 
   const std::vector<Pin>* pins_;
   std::vector<double> start_;
   std::vector<int> kind_;                   // kFree, kHeld, or an index of projector_
   std::vector<Mat3d> projector_;            // P for partly pinned vertices
-  std::vector<std::vector<Share>> shares_;  // shares of the vertices of each pin with directions
+  std::vector<std::vector<Share>> shares_;  // of the vertices of each pin; empty: it holds all of them alone
 };
 
 }  // namespace aspic

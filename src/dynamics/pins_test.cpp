@@ -99,12 +99,24 @@ TEST(PinsOfDirections, CombineOnObliquePlanes) {
   EXPECT_LT(norm(a + b - held.held_part(0, f)), 1e-14) << "they must sum to the reaction";
 }
 
-TEST(PinsOfDirections, RejectDependentDirections) {
-  const Vec3d m{{0.6, 0.8, 0}};
-  EXPECT_TRUE(are_independent(std::vector{kX, m}));
-  EXPECT_FALSE(are_independent(std::vector{kX, kX}));
-  EXPECT_TRUE(are_independent(std::vector{kX, m, kZ}));
-  EXPECT_FALSE(are_independent(std::vector{kX, m, kY}));
+TEST(PinsOfDirections, ShareVerticesIfTheyAgree) {
+  const Vec3d m{{0.6, 0.8, 0}}, start{{1, 2, 3}};
+  const Motion lift = [](const Vec3d& X, double t) { return X + Vec3d{{0, 0, t}}; };
+  const std::vector<Pin> pins = {{"grip", {0, 1}, lift}, {"plane", {1, 2}, {}, {m}}, {"rail", {2}, lift, {kX, kY}}};
+  EXPECT_LT(disagreement(std::vector{&pins[0], &pins[1]}, start, 0.5), 1e-15);
+  const Motion turn = [](const Vec3d& X, double t) { return X + Vec3d{{t, t, t}}; };
+  EXPECT_GT(disagreement(std::vector<const Pin*>{&pins[1], std::vector<Pin>{{"grip", {0}, turn}}.data()}, start, 0.5),
+            0.1);
+  const Pins held(pins, std::vector<double>{1, 2, 3, 1, 2, 3, 1, 2, 3});
+  EXPECT_TRUE(held.holds(0) && held.holds(1) && !held.holds(2) && held.holds(2, 1) && !held.holds(2, 2));
+  std::vector<double> x(9, 7.0);
+  held.place(0.5, x);
+  EXPECT_LT(norm(point(x, 0) - Vec3d{{1, 2, 3.5}}) + norm(point(x, 1) - Vec3d{{1, 2, 3.5}}), 1e-14);
+  EXPECT_LT(norm(point(x, 2) - Vec3d{{1, 2, 7}}), 1e-14);
+  const Vec3d f{{4, 5, 6}};
+  EXPECT_LT(norm(held.reaction_of(0, 1, f) + held.reaction_of(1, 0, f) - f), 1e-14);
+  EXPECT_EQ(norm(held.reaction_of(0, 0, f) - f), 0);
+  EXPECT_LT(norm(held.reaction_of(1, 1, f) + held.reaction_of(2, 0, f) - Vec3d{{4, 5, 0}}), 1e-14);
 }
 
 // The solution of a rotated body with rotated planes and weight is the rotated solution.

@@ -16,6 +16,7 @@
 #include "dynamics/ledger.h"
 #include "dynamics/simulation_checks.h"
 #include "dynamics/state.h"
+#include "math/vectors.h"
 
 namespace aspic {
 namespace {
@@ -104,6 +105,7 @@ struct Simulation::Impl {
           check_energy_bound(bounded, solved.work.value / (options.h * options.h), report);
       }
       if (!integrator->facts().is_implicit) outside_work += outside_work_of(report);
+      note_lost_residual(report);
       note_lost_velocity(with, report);
       if (!is_finite(report)) {
         if (is_success(report.status)) report.status = Status::undefined;
@@ -167,6 +169,17 @@ struct Simulation::Impl {
       allowed += (std::abs(start_force[i]) + std::abs(load_force[i])) * std::abs(state.q[i] - start.q[i]);
     for (size_t body = 0; body < model.elasticity.size(); ++body) reached += report.potential[body];
     return reached > kBlownUp * allowed;
+  }
+
+  // The minimizer tests its own gradient. The residual of the report follows from velocities and accelerations, which
+  // have the rounding errors of positions.
+  void note_lost_residual(StepReport& report) const {
+    if (report.status != Status::converged || report.residual_threshold == 0) return;
+    if (report.residual <= report.residual_threshold) return;
+    const MinimizeOptions& solver = options.solver.minimize;
+    if (solver.criterion == Criterion::scale)
+      report.lost_accuracy = std::min(1.0, solver.tolerance * (report.residual / report.residual_threshold));
+    report.status = Status::round_off;
   }
 
   // Velocities are differences of rounded positions.
@@ -258,6 +271,7 @@ struct Simulation::Impl {
     report.status = solved.work.status;
     report.criterion = options.solver.minimize.criterion;
     report.iterations = solved.work.iterations;
+    report.carries = solved.work.carries;
     report.trials = solved.work.trials;
     report.projected_hessians = solved.work.projected_hessians;
     report.add(solved.work);  // substeps of an adaptive step are already in the ledger
@@ -362,6 +376,14 @@ std::vector<double> Simulation::potential_energies() const {
   for (const ActiveTerm& V : impl_->E->potential()) energies.push_back(V.value(impl_->state.q));
   impl_->E->internal().append_stored(impl_->state.internal, energies);
   return energies;
+}
+
+std::vector<double> Simulation::reactions() const {
+  const std::span<const double> residual = impl_->ledger.residual();
+  std::vector<double> forces(impl_->state.q.size(), std::numeric_limits<double>::quiet_NaN());
+  for (int v = 0; v < impl_->pins->vertex_count() && !residual.empty(); ++v)
+    set_vec(impl_->pins->held_part(v, point(residual, v)), v, forces);
+  return forces;
 }
 
 TetFields Simulation::tet_fields() const {

@@ -73,10 +73,12 @@ class Simulation {
   StepReport start_report() const;                   // step 0: energies and det F of the initial state
   double kinetic_energy() const;                     // of the current state [J]
   std::vector<double> potential_energies() const;    // of the current state, one per potential_names() [J]
-  TetFields tet_fields() const;                      // one value per tet at the current state, in the model's order
-  const IntegratorFacts& integrator() const;         // properties of the selected integrator
-  StableStep stable_step() const;                    // for an explicit integrator, at the initial state
-  std::string solver_description() const;            // methods and choices with their reasons, for logs
+  // Returns the forces of the pins on the vertices in the last step or substep; NaN if no step was taken [N].
+  std::vector<double> reactions() const;
+  TetFields tet_fields() const;               // one value per tet at the current state, in the model's order
+  const IntegratorFacts& integrator() const;  // properties of the selected integrator
+  StableStep stable_step() const;             // for an explicit integrator, at the initial state
+  std::string solver_description() const;     // methods and choices with their reasons, for logs
 
   // Everything besides model and options that subsequent steps depend on. Steps after restore() are bit-reproducible.
   struct Snapshot {

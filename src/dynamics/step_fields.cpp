@@ -154,7 +154,7 @@ std::vector<StepField>& fields() {
       real<&R::residual>({"residual", "N", "norm of M a + dV/dx + dD/dx over free vertices"}, kMeasured),
       real<&R::residual_threshold>({"residual_threshold", "N", "its threshold"}, kMeasured),
       real<&R::residual_round_off>({"residual_round_off", "N", "its round-off floor"}, kJson),
-      real<&R::lost_accuracy>({"lost_accuracy", "1", "share of the forces lost to round-off"}, kJson),
+      real<&R::lost_accuracy>({"lost_accuracy", "1", "share of the forces or velocities lost to round-off"}, kJson),
       count<&R::worst_vertex>({"worst_vertex", "", "vertex with the largest residual"}, kJson),
       real<&R::worst_residual>({"worst_residual", "N", "its residual"}, kJson),
       real<&R::min_det_F>({"min_det_F", "1", "smallest volume ratio of any tet; negative: inverted"}, kMeasured),
@@ -177,6 +177,8 @@ std::vector<StepField>& fields() {
           {"friction_residual", "N", "change of friction by the last update of normal forces"}, kMeasured)),
       optional(count<&R::friction_passes>(
           {"friction_passes", "", "evaluations of lagged coefficients: friction, rims of pressures"}, kCount)),
+      optional(count<&R::carries>(
+          {"carries", "", "Newton directions along which bodies moved with obstacles before the iterations"}, kCount)),
       {"potential", "J",
        "energy of each term of V and of viscoelastic branches; a dead load has -f . x, not zero at rest",
        StepFieldType::potentials, kTable | kJson | kViewer},

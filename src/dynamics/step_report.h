@@ -41,6 +41,7 @@ struct StepReport : Work {  // work of all solves of the step and of this report
   Status status = Status::converged;                       // the worst over all solves
   Criterion criterion = Criterion::scale;                  // convergence test of the minimizations
   int iterations = 0, trials = 0, projected_hessians = 0;  // sums over all solves
+  int carries = 0;                                         // Newton directions that carried bodies with obstacles
   int elements = 0;                                        // number of tets per evaluation
   double objective = 0, objective_gradient = 0;            // E and |g| at the end of the last minimization
   InitialGuess initial_guess = InitialGuess::none;         // initial guess of the last minimization
@@ -51,7 +52,7 @@ struct StepReport : Work {  // work of all solves of the step and of this report
   double residual_round_off = 0;  // the round-off floor of the residual [N]
   int worst_vertex = -1;          // vertex with the largest residual
   double worst_residual = 0;      // its residual [N]
-  double lost_accuracy = 0;       // fraction of weight, inertia or velocities lost to round-off, if above 1e-3; else 0
+  double lost_accuracy = 0;       // fraction of forces or velocities lost to round-off; 0 if it is tolerable
   double decrement = 0;           // -g.d / 2 of the last iteration, maximum over solves [J]; 0 without iterations
   double min_det_F = 0;           // minimum over all tets at the end [1]; negative: inverted
 

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 
 #include "base/error.h"
 #include "dynamics/models_test.h"
@@ -130,6 +131,36 @@ TEST(Viscoelastic, BuilderRejectsInvalidBranches) {
   const TetMesh mesh = make_box({{0, 0, 0}}, {{1, 1, 1}}, {1, 1, 1});
   EXPECT_THROW(ModelBuilder(mesh).maxwell_branch(-1, 1), InvalidInput);
   EXPECT_THROW(ModelBuilder(mesh).maxwell_branch(1, 0), InvalidInput);
+}
+
+// Order of the position of a pulled corner after 1 s of creep in quasi-static steps, from three step lengths.
+double order_of_creep(const std::function<double(double)>& pull) {
+  std::vector<double> x;
+  for (const int steps : {10, 20, 40}) {
+    const TetMesh mesh = make_box({{0, 0, 0}}, {{4, 1, 1}}, {4, 1, 1});
+    Model model = model_of(mesh, {.young = 1e5, .poisson = 0.3, .gravity = {}})
+                      .pin("wall", [](const Vec3d& X) { return X[0] < 1e-9; })
+                      .load(make_point_springs("pull", {{mesh.vertex_count() - 1, 2e3,
+                                                         [=](double t) {
+                                                           return Vec3d{{4 + pull(t), 1, 1}};
+                                                         }}}))
+                      .maxwell_branch(8e4, 0.5)
+                      .build();
+    SimulationOptions options{.h = 1.0 / steps, .integrator = "quasi_static", .solver = {}};
+    options.solver.minimize.tolerance = 1e-11;
+    Simulation simulation = simulate(std::move(model), options);
+    for (int i = 0; i < steps; ++i) EXPECT_TRUE(is_success(simulation.step().status));
+    x.push_back(simulation.state().q[3 * (mesh.vertex_count() - 1)]);
+  }
+  return std::log2((x[0] - x[1]) / (x[1] - x[2]));
+}
+
+TEST(Viscoelastic, CreepIsOfSecondOrderUnderContinuousLoads) {
+  EXPECT_NEAR(order_of_creep([](double t) { return t * t; }), 2, 0.1);
+}
+
+TEST(Viscoelastic, CreepAfterJumpIsOfFirstOrder) {
+  EXPECT_NEAR(order_of_creep([](double) { return 1.0; }), 1, 0.1);
 }
 
 // Statics of a held strain: the stress decays as exp(-t / tau) although the body rests.

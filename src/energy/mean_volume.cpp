@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "base/parallel.h"
+#include "energy/corner_barrier.h"
 #include "energy/projection_derivative.h"
 #include "energy/quadratic_batch.h"
 #include "energy/stiff_energy.h"
@@ -312,10 +313,12 @@ class VolumeTerm : public TetTerm<GivenPressure, Energy, QuadraticTetBatch> {
 class MeanVolume : public TetElasticity, public StiffEnergy {
  public:
   MeanVolume(const ElasticityMaker& make_shape, const TetMesh& mesh, int first,
-             std::span<const MaterialParameters> parameters)
+             std::span<const MaterialParameters> parameters, bool has_barrier)
       : shape_(make_shape(mesh, first, pointwise(parameters))),
         volume_(mesh, first, parameters),
-        parameters_(parameters.begin(), parameters.end()) {}
+        parameters_(parameters.begin(), parameters.end()) {
+    if (has_barrier) corners_ = make_corner_barrier(mesh, first, parameters, shape_->parameter_count());
+  }
 
   using TetElasticity::add_gradient, TetElasticity::add_hessian, TetElasticity::value;
   std::string_view name() const override { return shape_->name(); }
@@ -323,6 +326,7 @@ class MeanVolume : public TetElasticity, public StiffEnergy {
   void bind(const BlockPattern& pattern) override {
     shape_->bind(pattern);
     volume_.bind(pattern);
+    if (corners_) corners_->bind(pattern);
   }
   std::unique_ptr<Context> make_context() const override { return std::make_unique<VolumeTerm::Lag>(); }
   void begin_step(const StepContext& step, Context& context) const override {
@@ -331,17 +335,20 @@ class MeanVolume : public TetElasticity, public StiffEnergy {
   }
 
   double value(Positions x, const Context& context) const override {
-    const double shape = shape_->value(x, context);
-    return volume_.is_active() ? shape + volume_.value(x, context) : shape;
+    double V = shape_->value(x, context);
+    if (volume_.is_active()) V += volume_.value(x, context);
+    return corners_ ? V + corners_->value(x, context) : V;
   }
   void add_gradient(Positions x, const Context& context, double scale, std::span<double> g) const override {
     shape_->add_gradient(x, context, scale, g);
     if (volume_.is_active()) volume_.add_gradient(x, context, scale, g);
+    if (corners_) corners_->add_gradient(x, context, scale, g);
   }
   int add_hessian(Positions x, const Context& context, double scale, const Projection& projection,
                   BlockSparse& H) const override {
-    const int projected = shape_->add_hessian(x, context, scale, projection, H);
-    return volume_.is_active() ? projected + volume_.add_hessian(x, context, scale, projection, H) : projected;
+    int projected = shape_->add_hessian(x, context, scale, projection, H);
+    if (volume_.is_active()) projected += volume_.add_hessian(x, context, scale, projection, H);
+    return corners_ ? projected + corners_->add_hessian(x, context, scale, projection, H) : projected;
   }
   void add_stiff_rows(Positions x, double scale, StiffRows& rows) const override {
     if (volume_.is_active()) volume_.add_stiff_rows(x, scale, rows);
@@ -368,6 +375,7 @@ class MeanVolume : public TetElasticity, public StiffEnergy {
     std::copy(parameters.begin(), parameters.end(), parameters_.begin());
     shape_->set_parameters(pointwise(parameters));
     volume_.set_parameters(parameters);
+    if (corners_) corners_->set_parameters(parameters);
   }
 
   void add_parameter_force(Positions x, std::span<const double> change, double scale,
@@ -381,6 +389,7 @@ class MeanVolume : public TetElasticity, public StiffEnergy {
       bulk_change[t] = change[entry(t) + 1] - lambda;
     }
     shape_->add_parameter_force(x, pointwise_change, scale, g);
+    if (corners_) corners_->add_parameter_force(x, pointwise_change, scale, g);
     if (!volume_.is_active()) return;
     volume_.add_bulk_force(
         x, [&](int t) { return bulk_change[t]; }, scale, g);
@@ -390,6 +399,7 @@ class MeanVolume : public TetElasticity, public StiffEnergy {
                               std::span<double> gradient) const override {
     std::vector<double> own(gradient.size(), 0.0), by_bulk(parameters_.size(), 0.0);
     shape_->add_parameter_gradient(x, w, scale, own);
+    if (corners_) corners_->add_parameter_gradient(x, w, scale, own);
     if (volume_.is_active()) volume_.visit_bulk_gradient(x, w, [&](int t, double rate) { by_bulk[t] = scale * rate; });
     add_chained(own, by_bulk, gradient);
   }
@@ -398,6 +408,7 @@ class MeanVolume : public TetElasticity, public StiffEnergy {
                                Definiteness definiteness, const HessianDerivatives& out) const override {
     std::vector<double> own(out.parameters.size(), 0.0), by_bulk(parameters_.size(), 0.0);
     shape_->add_hessian_derivatives(x, u, w, definiteness, {out.scale, out.x, own});
+    if (corners_) corners_->add_hessian_derivatives(x, u, w, definiteness, {out.scale, out.x, own});
     if (volume_.is_active())
       volume_.add_hessian_derivatives(x, u, w, definiteness, out.scale, out.x,
                                       [&](int t, double rate) { by_bulk[t] = rate; });
@@ -422,7 +433,7 @@ class MeanVolume : public TetElasticity, public StiffEnergy {
     }
   }
 
-  std::unique_ptr<TetElasticity> shape_;
+  std::unique_ptr<TetElasticity> shape_, corners_;  // corners_: null without a barrier
   VolumeTerm volume_;
   std::vector<MaterialParameters> parameters_;  // in the order of the mesh
 };
@@ -430,8 +441,8 @@ class MeanVolume : public TetElasticity, public StiffEnergy {
 }  // namespace
 
 std::unique_ptr<TetElasticity> make_mean_volume(const ElasticityMaker& make_shape, const TetMesh& mesh, int first,
-                                                std::span<const MaterialParameters> parameters) {
-  return std::make_unique<MeanVolume>(make_shape, mesh, first, parameters);
+                                                std::span<const MaterialParameters> parameters, bool has_barrier) {
+  return std::make_unique<MeanVolume>(make_shape, mesh, first, parameters, has_barrier);
 }
 
 }  // namespace aspic

@@ -10,9 +10,12 @@ static_assert(kPackWidth <= 8, "transposed_ has one bit per lane");
 
 using Vec3Pack = std::array<Pack, 3>;
 
+Pack lesser(Pack a, Pack b) { return -max(-a, -b); }
+
 }  // namespace
 
-QuadraticTetBatch::QuadraticTetBatch(const TetMesh& mesh, std::span<const int> tets) : BatchOf<10>(tets) {
+template <const NodeTable& table>
+QuadraticBatchAt<table>::QuadraticBatchAt(const TetMesh& mesh, std::span<const int> tets) : BatchOf<10>(tets) {
   for (int l = 0; l < W; ++l) {
     set_rest_shape(mesh, l, mesh.tets[tet[l]], kPoints);
     const TetNodes nodes = nodes_of(mesh, tet[l]);
@@ -22,7 +25,8 @@ QuadraticTetBatch::QuadraticTetBatch(const TetMesh& mesh, std::span<const int> t
 }
 
 // Uses positions relative to the first node, so that rounding does not depend on the distance from the origin.
-QuadraticTetBatch::Points QuadraticTetBatch::edges(Positions x) const {
+template <const NodeTable& table>
+typename QuadraticBatchAt<table>::Points QuadraticBatchAt<table>::edges(Positions x) const {
   std::array<Vec3Pack, 10> d;
   for (int n = 0; n < 10; ++n) d[n] = gather3([&](int l) { return &x[3 * vertex[n][l]]; });
   for (int n = 9; n >= 0; --n)
@@ -32,8 +36,8 @@ QuadraticTetBatch::Points QuadraticTetBatch::edges(Positions x) const {
     std::array<Vec3Pack, 4> y = {};
 #pragma GCC unroll 10
     for (int n = 1; n < 10; ++n)
-      for (int k = 0; k < kQuadratic[n].count; ++k)
-        for (int r = 0; r < 3; ++r) y[kQuadratic[n].corner[k]][r] += kQuadratic[n].value[q][k] * d[n][r];
+      for (int k = 0; k < table[n].count; ++k)
+        for (int r = 0; r < 3; ++r) y[table[n].corner[k]][r] += table[n].value[q][k] * d[n][r];
     for (int c = 0; c < 3; ++c)
       for (int r = 0; r < 3; ++r) edges[q](r, c) = y[c + 1][r] - y[0][r];
   }
@@ -45,7 +49,6 @@ QuadraticTetBatch::Points QuadraticTetBatch::edges(Positions x) const {
 // that det F is positive in the whole tet.
 Pack QuadraticTetBatch::least_determinant(const Points& F) {
   const Mat3<Pack> sum = (F[0] + F[1]) + (F[2] + F[3]);
-  const auto lesser = [](Pack a, Pack b) { return -max(-a, -b); };
   Points corner;
   Pack least = determinant(F[0]);
   for (int q = 0; q < kPoints; ++q) {
@@ -64,7 +67,14 @@ Pack QuadraticTetBatch::least_determinant(const Points& F) {
   return where_positive(bound, least, bound);
 }
 
-void QuadraticTetBatch::scatter_gradient(const Points& P, Pack weight, std::span<double> g) const {
+Pack QuadraticCornerBatch::least_determinant(const Points& F) {
+  Pack least = determinant(F[0]);
+  for (int q = 1; q < kPoints; ++q) least = lesser(least, determinant(F[q]));
+  return least;
+}
+
+template <const NodeTable& table>
+void QuadraticBatchAt<table>::scatter_gradient(const Points& P, Pack weight, std::span<double> g) const {
   std::array<Vec3Pack, 10> force = {};
   for (int q = 0; q < kPoints; ++q) {
     const Mat3<Pack> f = weight * (P[q] * transpose(rest_inverse));  // the forces on the corners y
@@ -75,17 +85,18 @@ void QuadraticTetBatch::scatter_gradient(const Points& P, Pack weight, std::span
     }
 #pragma GCC unroll 10
     for (int n = 0; n < 10; ++n)
-      for (int k = 0; k < kQuadratic[n].count; ++k)
-        for (int r = 0; r < 3; ++r) force[n][r] += kQuadratic[n].value[q][k] * corner[kQuadratic[n].corner[k]][r];
+      for (int k = 0; k < table[n].count; ++k)
+        for (int r = 0; r < 3; ++r) force[n][r] += table[n].value[q][k] * corner[table[n].corner[k]][r];
   }
   for (int n = 0; n < 10; ++n) scatter3(force[n], [&](int l) { return &g[3 * vertex[n][l]]; });
 }
 
-void QuadraticTetBatch::add_point(int q, const CornerBlocks& K, Blocks& sum) {
+template <const NodeTable& table>
+void QuadraticBatchAt<table>::add_point(int q, const CornerBlocks& K, Blocks& sum) {
   for (int n = 0, block = 0; n < 10; ++n) {
-    const NodeDerivatives& row = kQuadratic[n];
+    const NodeDerivatives& row = table[n];
     for (int m = 0; m <= n; ++m, ++block) {
-      const NodeDerivatives& column = kQuadratic[m];
+      const NodeDerivatives& column = table[m];
       for (int i = 0; i < row.count; ++i)
         for (int j = 0; j < column.count; ++j) {
           const Pack weight = row.value[q][i] * column.value[q][j];
@@ -96,7 +107,8 @@ void QuadraticTetBatch::add_point(int q, const CornerBlocks& K, Blocks& sum) {
   }
 }
 
-void QuadraticTetBatch::scatter(Blocks& sum, BlockSparse& H) const {
+template <const NodeTable& table>
+void QuadraticBatchAt<table>::scatter(Blocks& sum, BlockSparse& H) const {
   for (int k = 0; k < kBlocks; ++k) {
     std::array<Pack, 9>& K = sum[k];
     if (transposed_[k] != 0) {
@@ -111,11 +123,14 @@ void QuadraticTetBatch::scatter(Blocks& sum, BlockSparse& H) const {
   }
 }
 
-void QuadraticTetBatch::scatter_hessian(const std::array<Mat9<Pack>, kPoints>& A, Pack weight, BlockSparse& H) const {
+template <const NodeTable& table>
+void QuadraticBatchAt<table>::scatter_hessian(const std::array<Mat9<Pack>, kPoints>& A, Pack weight,
+                                              BlockSparse& H) const {
   scatter_blocks([&](int q) { return TangentBlocks(*this, A[q], weight); }, H);
 }
 
-void QuadraticTetBatch::bind(const BlockPattern& pattern) {
+template <const NodeTable& table>
+void QuadraticBatchAt<table>::bind(const BlockPattern& pattern) {
   transposed_ = {};
   for (int l = 0; l < W; ++l)
     for (int u = 0, k = 0; u < 10; ++u)
@@ -127,5 +142,8 @@ void QuadraticTetBatch::bind(const BlockPattern& pattern) {
         if (vertex[u][l] < vertex[v][l]) transposed_[k] = static_cast<uint8_t>(transposed_[k] | 1U << l);
       }
 }
+
+template struct QuadraticBatchAt<kQuadratic>;
+template struct QuadraticBatchAt<kQuadraticCorners>;
 
 }  // namespace aspic

@@ -1,8 +1,8 @@
 // kPackWidth quadratic tets side by side, as in tet_batch.h. At each quadrature point a quadratic tet is a linear one
 // whose corners are combinations of the nodes,
 //   y_i = sum_n dN_n/dl_i x_n,   F = sum_i y_i b_i',
-// because dN_n/dl_i depends only on the point. Thus all laws use the kernels of linear tets. The four points integrate
-// quadratic functions exactly.
+// because dN_n/dl_i depends only on the point. Thus all laws use the kernels of linear tets. The four quadrature points
+// integrate quadratic functions exactly.
 #pragma once
 #include <array>
 #include <cstdint>
@@ -24,29 +24,34 @@ struct NodeDerivatives {
   std::array<std::array<double, 2>, 4> value{};  // at each point, for each corner i
 };
 
-constexpr std::array<NodeDerivatives, 10> quadratic_derivatives() {
-  std::array<NodeDerivatives, 10> nodes;
+using NodeTable = std::array<NodeDerivatives, 10>;
+
+// near, far: barycentric coordinates of each point at its own corner and at the others.
+constexpr NodeTable quadratic_derivatives(double near, double far) {
+  NodeTable nodes;
   for (int n = 0; n < 10; ++n) {
     const int i = n < 4 ? n : kTetEdges[n - 4][0], j = n < 4 ? n : kTetEdges[n - 4][1];
     nodes[n].count = n < 4 ? 1 : 2;
     nodes[n].corner = {i, j};
     for (int q = 0; q < 4; ++q)
-      nodes[n].value[q] = {4 * point_coordinate(q, j) - (n < 4 ? 1 : 0), n < 4 ? 0 : 4 * point_coordinate(q, i)};
+      nodes[n].value[q] = {4 * (q == j ? near : far) - (n < 4 ? 1 : 0), n < 4 ? 0 : 4 * (q == i ? near : far)};
   }
   return nodes;
 }
-inline constexpr std::array<NodeDerivatives, 10> kQuadratic = quadratic_derivatives();
+inline constexpr NodeTable kQuadratic = quadratic_derivatives(kNear, kFar);
+inline constexpr NodeTable kQuadraticCorners = quadratic_derivatives(1, 0);
 
-struct QuadraticTetBatch : BatchOf<10> {
+// The tets at the four points of a table.
+template <const NodeTable& table>
+struct QuadraticBatchAt : BatchOf<10> {
   static constexpr int kPoints = 4;
   using Points = std::array<Mat3<Pack>, kPoints>;
   using Blocks = std::array<std::array<Pack, 9>, kBlocks>;
 
-  QuadraticTetBatch() = default;
-  QuadraticTetBatch(const TetMesh& mesh, std::span<const int> tets);
+  QuadraticBatchAt() = default;
+  QuadraticBatchAt(const TetMesh& mesh, std::span<const int> tets);
 
-  Points edges(Positions x) const;                 // Ds of the corners y at each point
-  static Pack least_determinant(const Points& F);  // at the points and at the corners
+  Points edges(Positions x) const;  // Ds of the corners y at each point
   void scatter_gradient(const Points& P, Pack weight, std::span<double> g) const;
   void scatter_hessian(const std::array<Mat9<Pack>, kPoints>& A, Pack weight, BlockSparse& H) const;
   // Adds the blocks (u, v) of the corners y at each point.
@@ -77,6 +82,19 @@ struct QuadraticTetBatch : BatchOf<10> {
   void scatter(Blocks& sum, BlockSparse& H) const;
 
   std::array<uint8_t, kBlocks> transposed_;  // bit l: the matrix stores the transposed block of lane l
+};
+extern template struct QuadraticBatchAt<kQuadratic>;
+extern template struct QuadraticBatchAt<kQuadraticCorners>;
+
+struct QuadraticTetBatch : QuadraticBatchAt<kQuadratic> {
+  using QuadraticBatchAt::QuadraticBatchAt;
+  static Pack least_determinant(const Points& F);  // bound for the whole tet
+};
+
+// The corners instead of the quadrature points.
+struct QuadraticCornerBatch : QuadraticBatchAt<kQuadraticCorners> {
+  using QuadraticBatchAt::QuadraticBatchAt;
+  static Pack least_determinant(const Points& F);  // at the corners
 };
 
 }  // namespace aspic

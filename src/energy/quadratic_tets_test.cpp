@@ -237,12 +237,16 @@ TEST(QuadraticElasticity, BitsDoNotDependOnThreadCount) {
   EXPECT_EQ(results[2], results[0]);
 }
 
-void expect_parameter_derivatives(ParametersOf parameters_of) {
-  for (const char* material : {"neo_hookean", "fung"}) {
+// A material with a barrier, and a state in which it acts at corners.
+constexpr char kBarrier[] = "neo_hookean_log";
+const Mat3d kFlat = {{1, 0.1, 0, -0.1, 1, 0.05, 0, 0, 0.08}};
+
+void expect_parameter_derivatives(ParametersOf parameters_of, const std::vector<std::string>& names, const Mat3d& A) {
+  for (const std::string& material : names) {
     const MaterialInfo& info = material_info(material);
     std::vector<MaterialParameters> parameters = parameters_of(small(), info);
     const auto V = make_tet_elasticity(material, small(), 0, parameters);
-    const std::vector<double> x = positions(small(), kAffine, 0.02);
+    const std::vector<double> x = positions(small(), A, 0.02 * determinant(A));
     const int count = V->parameter_count();
     std::vector<double> change(parameters.size() * count), force(x.size(), 0.0), gradient(change.size(), 0.0);
     for (size_t i = 0; i < change.size(); ++i) change[i] = std::sin(1.0 + static_cast<double>(i));
@@ -269,14 +273,18 @@ void expect_parameter_derivatives(ParametersOf parameters_of) {
 }
 
 TEST(QuadraticElasticity, ParameterDerivativesMatchDifferences) {
-  for (const ParametersOf parameters_of : kBothParameters) expect_parameter_derivatives(parameters_of);
+  for (const ParametersOf parameters_of : kBothParameters) {
+    expect_parameter_derivatives(parameters_of, {"neo_hookean", "fung"}, kAffine);
+    expect_parameter_derivatives(parameters_of, {kBarrier}, kFlat);
+  }
 }
 
-void expect_hessian_derivatives(ParametersOf parameters_of, Definiteness definiteness) {
-  std::vector<MaterialParameters> parameters = parameters_of(small(), material_info("neo_hookean"));
-  const auto V = make_tet_elasticity("neo_hookean", small(), 0, parameters);
+void expect_hessian_derivatives(ParametersOf parameters_of, Definiteness definiteness, const std::string& material,
+                                const Mat3d& A) {
+  std::vector<MaterialParameters> parameters = parameters_of(small(), material_info(material));
+  const auto V = make_tet_elasticity(material, small(), 0, parameters);
   const BlockPattern pattern = bound_pattern(small(), *V);
-  const std::vector<double> x = positions(small(), kAffine, 0.02), u = positions(small(), kAffine, 0.5);
+  const std::vector<double> x = positions(small(), A, 0.02 * determinant(A)), u = positions(small(), A, 0.5);
   const auto direction = [](size_t i) { return std::sin(1.0 + static_cast<double>(i)); };
   std::vector<double> by_x(x.size(), 0.0), by_parameters(2 * parameters.size(), 0.0), Hu(x.size());
   V->add_hessian_derivatives(x, u, u, definiteness, {1, by_x, by_parameters});
@@ -297,14 +305,55 @@ void expect_hessian_derivatives(ParametersOf parameters_of, Definiteness definit
   double along_x = 0, along_parameters = 0;
   for (size_t i = 0; i < x.size(); ++i) along_x += by_x[i] * direction(i);
   for (size_t i = 0; i < by_parameters.size(); ++i) along_parameters += by_parameters[i] * direction(i);
-  EXPECT_NEAR((energy(1e-5, 0) - energy(-1e-5, 0)) / 2e-5, along_x, 2e-7 * std::abs(along_x));
+  const double h = 1e-5 * determinant(A);
+  EXPECT_NEAR((energy(h, 0) - energy(-h, 0)) / (2 * h), along_x, 2e-6 * std::abs(along_x));
   EXPECT_NEAR((energy(0, 1e-5) - energy(0, -1e-5)) / 2e-5, along_parameters, 2e-7 * std::abs(along_parameters));
 }
 
 TEST(QuadraticElasticity, HessianDerivativesMatchDifferences) {
   for (const ParametersOf parameters_of : kBothParameters) {
-    expect_hessian_derivatives(parameters_of, Definiteness::exact);
-    expect_hessian_derivatives(parameters_of, Definiteness::clamped);
+    for (const Definiteness definiteness : {Definiteness::exact, Definiteness::clamped}) {
+      expect_hessian_derivatives(parameters_of, definiteness, "neo_hookean", kAffine);
+      expect_hessian_derivatives(parameters_of, definiteness, kBarrier, kFlat);
+    }
+  }
+}
+
+TEST(CornerBarrier, AddsItsFormulaBelowOneTenth) {
+  const std::vector<MaterialParameters> parameters = different_parameters(small(), material_info(kBarrier));
+  const auto V = make_tet_elasticity(kBarrier, small(), 0, parameters);
+  const double near = (5 + 3 * std::sqrt(5)) / 20, far = (5 - std::sqrt(5)) / 20;
+  const std::vector<double> x = positions(small(), kFlat, 0.002);
+  double expected = 0, barrier = 0;
+  for (int t = 0; t < small().tet_count(); ++t)
+    for (int q = 0; q < 4; ++q) {
+      std::array<double, 4> l = {far, far, far, far}, corner = {0, 0, 0, 0};
+      l[q] = near, corner[q] = 1;
+      const double weight = volume(small(), t) / 4, ratio = 10 * determinant(plain_gradient(small(), t, x, corner));
+      expected += weight * NeoHookeanLog::psi(plain_gradient(small(), t, x, l), NeoHookeanLog::params(parameters[t]));
+      if (ratio < 1) barrier -= weight * parameters[t].lame.mu / 10 * std::pow(ratio - 1, 2) * std::log(ratio);
+    }
+  EXPECT_GT(barrier, 1e-6 * expected);
+  EXPECT_NEAR(V->value(x), expected + barrier, 1e-13 * expected);
+}
+
+TEST(CornerBarrier, DerivativesMatchDifferences) {
+  const auto V = make_tet_elasticity(kBarrier, small(), 0, different_parameters(small(), material_info(kBarrier)));
+  expect_derivatives(*V, positions(small(), kFlat, 0.002), kBarrier);
+}
+
+// A node at less than a quarter of its edge inverts a corner, but no quadrature point.
+TEST(CornerBarrier, InvertedCornersHaveInfiniteEnergy) {
+  const TetMesh& mesh = small();
+  std::vector<double> x = positions(mesh, identity3<double>(), 0);
+  const Vec3d &a = mesh.rest[mesh.tets[0][0]], &b = mesh.rest[mesh.tets[0][1]];
+  for (const double part : {0.27, 0.24}) {
+    set_vec(a + part * (b - a), mesh.mids[0][0], x);
+    for (const MaterialInfo& info : materials()) {
+      if (info.name == "fung" || info.name == "gent") continue;  // limited strains
+      const auto V = make_tet_elasticity(info.name, mesh, 0, different_parameters(mesh, info));
+      EXPECT_EQ(std::isfinite(V->value(x)), part > 0.25 || !info.barrier) << info.name << " " << part;
+    }
   }
 }
 

@@ -19,9 +19,10 @@ std::unique_ptr<TetElasticity> make_tet_elasticity(std::string_view material, co
     return term;
   };
   const bool ignores_lambda = material == "arap";
-  return !ignores_lambda && !parameters.empty() && is_quadratic(mesh, first)
-             ? make_mean_volume(maker, mesh, first, parameters)
-             : maker(mesh, first, parameters);
+  if (ignores_lambda || parameters.empty() || !is_quadratic(mesh, first)) return maker(mesh, first, parameters);
+  bool has_barrier = false;
+  with_material(material, [&]<class M>() { has_barrier = M::info().barrier; });
+  return make_mean_volume(maker, mesh, first, parameters, has_barrier);
 }
 
 }  // namespace aspic

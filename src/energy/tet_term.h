@@ -61,6 +61,7 @@ class TetTerm : public Base {
         batches_[i].scatter_gradient(material_.pk1(F(i, x), p[i]), Pack(scale) * batches_[i].volume, g);
       } else {
         const Points F_i = F(i, x);
+        if (is_zero(F_i)) return;
         batches_[i].scatter_gradient(at_points([&](int q) { return material_.pk1(F_i[q], p[place(i, q)]); }),
                                      Pack(scale) * batches_[i].volume, g);
       }
@@ -116,6 +117,12 @@ class TetTerm : public Base {
       for (int q = 0; q < kPoints; ++q) values[q] = of_point(q);
       return values;
     }
+  }
+  // Returns whether the law is zero around F, for laws that often are.
+  static bool is_zero(const Points& F_i) {
+    if constexpr (requires { M::is_zero(at(F_i, 0)); })
+      return std::all_of(F_i.begin(), F_i.end(), [](const Mat3<Pack>& F_q) { return M::is_zero(F_q); });
+    return false;
   }
   static int place(int batch, int point) { return kPoints * batch + point; }  // in the list of parameters
 
@@ -200,6 +207,8 @@ class TetTerm : public Base {
     const Batch& tets = batches_[batch.i];
     const Params<Pack>* p = batch.params;
     const Pack weight = batch.weight;
+    if constexpr (requires { &M::is_zero; })
+      if (is_zero(F(batch.i, x))) return 0;
     if constexpr (requires { typename M::Law; }) {
       if (projection.kind == Definiteness::exact) {
         const Points Ds = tets.edges(x);

@@ -1,9 +1,10 @@
 // Energy of a family of fibres with dispersion, beside any material [Gasser 2006]:
-//   psi = k1/(2 k2) (exp(k2 s(E)^2) - 1),   E = H : F'F - 1,   H = kappa I + (1 - 3 kappa) a a'
+//   psi = k1/(2 k2) (exp(k2 s(E)) - 1),   E = H : F'F - 1,   H = kappa I + (1 - 3 kappa) a a'
 // for fibres along the unit vector a at rest. kappa = 0: all fibres along a; kappa = 1/3: in all directions alike. The
-// fibres act in tension only: s = 0 for E < 0, E - eps/2 for E > eps, with two continuous derivatives between. E is a
-// convex function of F and psi a convex nondecreasing one of E, so Hessians are positive semidefinite. F is not split
-// into volume and shape, which would let fibres stretch a compressible body without bound [Nolan 2014].
+// fibres act in tension only: s = 0 for E < 0 and E^2 for E > eps, exactly, with a quintic between that makes two
+// derivatives continuous. E is a convex function of F and psi a convex nondecreasing one of E, so Hessians are positive
+// semidefinite. F is not split into volume and shape, which would let fibres stretch a compressible body without bound
+// [Nolan 2014].
 #pragma once
 #include "material/from_invariants.h"
 #include "math/pack.h"
@@ -11,7 +12,7 @@
 namespace aspic {
 
 struct FibreLaw {
-  static constexpr double kEps = 0.01;  // strain E over which fibres straighten
+  static constexpr double kEps = 0.002;  // strain E over which fibres straighten
 
   template <class T>
   struct Params {
@@ -66,14 +67,14 @@ struct FibreLaw {
 
   template <class T>
   static Response<T> response(const Mat3<T>& F, const Mat3<T>& H, const Params<T>& p) {
-    const T E = inner(F * H, F) - T(1.0), t = E * T(1 / kEps), zero = T(0.0), one = T(1.0);
-    const T s = piecewise(E, zero, T(kEps) * t * t * t * (one - T(0.5) * t), E - T(0.5 * kEps));
-    const T ds = piecewise(E, zero, t * t * (T(3.0) - t - t), one);
-    const T dds = piecewise(E, zero, T(6 / kEps) * t * (one - t), zero);
-    const T growth = exp(p.k2 * s * s);
-    return {.energy = T(0.5) * p.k1 / p.k2 * (growth - one),
-            .slope = p.k1 * growth * s * ds,
-            .curvature = p.k1 * growth * (ds * ds + s * dds + T(2.0) * p.k2 * s * s * ds * ds)};
+    const T E = inner(F * H, F) - T(1.0), t = E * T(1 / kEps), zero = T(0.0);
+    const T s = piecewise(E, zero, T(kEps * kEps) * t * t * t * (T(3.0) + t * (t - T(3.0))), E * E);
+    const T ds = piecewise(E, zero, T(kEps) * t * t * (T(9.0) + t * (T(5.0) * t - T(12.0))), T(2.0) * E);
+    const T dds = piecewise(E, zero, t * (T(18.0) + t * (T(20.0) * t - T(36.0))), T(2.0));
+    const T growth = exp(p.k2 * s);
+    return {.energy = T(0.5) * p.k1 / p.k2 * (growth - T(1.0)),
+            .slope = T(0.5) * p.k1 * growth * ds,
+            .curvature = T(0.5) * p.k1 * growth * (dds + p.k2 * ds * ds)};
   }
 };
 

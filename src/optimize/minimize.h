@@ -95,6 +95,7 @@ struct MinimizeReport : Work {
   double decrement = 0;                 // -g.d / 2 of the last iteration; 0 without one
   int trials = 0, fallbacks = 0, projected_hessians = 0, projected_elements = 0;
   int updates = 0;  // updates of lagged coefficients
+  int carries = 0;  // of a time step: Newton directions along which bodies moved with obstacles
 };
 
 // Called after every iteration.

@@ -35,7 +35,8 @@ struct Builder {
   std::vector<std::string>& notes;
   std::vector<PointSpring> point_springs;
   std::vector<Spring> springs;
-  int pressures = 0;  // number of added pressures
+  double duration = 0;  // of the run [s]
+  int pressures = 0;    // number of added pressures
 
   // For the selection `where` of an action.
   SelectionScope scope(const PlacedBody& body, Value& action) const {
@@ -109,45 +110,49 @@ std::string leave_out(const Value& first, const Value& second, bool leaves_any) 
   return "try where = \"(" + b.text() + ") && !(" + a.text() + ")\" in pin '" + second["name"].text() + "'";
 }
 
-// The pins of a vertex so far.
-struct Holder {
-  const Value* pin = nullptr;  // the last one
-  std::vector<Vec3d> directions;
-
-  // Returns false if the vertex is already held along a combination of the directions.
-  bool add(const Value& scene, const std::vector<Vec3d>& more) {
-    const bool is_first = !pin;
-    directions.insert(directions.end(), more.begin(), more.end());
-    if (!is_first && (more.empty() || !are_independent(directions))) return false;
-    if (more.empty()) directions.resize(3);  // no other direction is independent
-    pin = &scene;
-    return true;
+// Returns a time of the run at which the motions of the pins of a vertex contradict each other, if there is one.
+std::optional<double> time_of_conflict(std::span<const Pin* const> pins, const Vec3d& start, double duration) {
+  constexpr int kSamples = 16;
+  constexpr double kRoundOff = 1e-9;  // of positions
+  for (int i = 0; i <= kSamples; ++i) {
+    const double time = duration * i / kSamples;
+    double size = norm(start);
+    for (const Pin* pin : pins) size = std::max(size, pin->motion ? norm(pin->motion(start, time)) : 0);
+    if (!(disagreement(pins, start, time) <= kRoundOff * size)) return time;
   }
-};
+  return {};
+}
 
 void add_pins(Builder& builder, const PlacedBody& body) {
-  std::vector<Holder> holders(body.mesh.rest.size());
-  for (Value& scene : list_of(body, "pin")) {
+  std::vector<std::vector<int>> holders(body.mesh.rest.size());  // indices of the pins of each vertex
+  Array& scenes = list_of(body, "pin");
+  const size_t first = builder.model.pins.size();
+  builder.model.pins.reserve(first + scenes.size());
+  for (Value& scene : scenes) {
     const std::string name = scene["name"].text();
     const std::vector<int> vertices = select_vertices(scene["where"], builder.scope(body, scene));
     const std::vector<Vec3d> rest = chosen(body.mesh.rest, vertices), starts = chosen(body.start, vertices);
-    Pin pin{body.name() + "." + name,
-            {},
-            motion_of(body, scene, {rest, starts, name}, builder.files),
-            directions_of(scene)};
+    Pin& pin = builder.model.pins.emplace_back(Pin{body.name() + "." + name,
+                                                   {},
+                                                   motion_of(body, scene, {rest, starts, name}, builder.files),
+                                                   directions_of(scene)});
     note_jump(pin, starts, builder.notes);
-    const bool leaves_any = std::any_of(vertices.begin(), vertices.end(), [&](int v) { return !holders[v].pin; });
+    const bool leaves_any = std::any_of(vertices.begin(), vertices.end(), [&](int v) { return holders[v].empty(); });
     for (const int v : vertices) {
-      const Value* other = holders[v].pin;
-      if (!holders[v].add(scene, pin.directions))
-        throw error_at(scene["where"].place, "vertex " + std::to_string(body.user_vertex(v)) + " of body '" +
-                                                 body.name() + "' at " + point_text(body.mesh.rest[v]) +
-                                                 " is in pin '" + (*other)["name"].text() + "' and in pin '" +
-                                                 scene["name"].text() + "', which constrain the same direction; " +
-                                                 leave_out(*other, scene, leaves_any));
+      holders[v].push_back(static_cast<int>(builder.model.pins.size() - 1 - first));
       pin.vertices.push_back(body.model_vertex(v));
+      if (holders[v].size() == 1) continue;
+      std::vector<const Pin*> pins;
+      for (const int p : holders[v]) pins.push_back(&builder.model.pins[first + p]);
+      const auto time = time_of_conflict(pins, body.start[v], builder.duration);
+      const Value& other = scenes[holders[v][holders[v].size() - 2]];
+      if (time)
+        throw error_at(scene["where"].place,
+                       "vertex " + std::to_string(body.user_vertex(v)) + " of body '" + body.name() + "' at " +
+                           point_text(body.mesh.rest[v]) + " is in pin '" + other["name"].text() + "' and in pin '" +
+                           name + "', which prescribe different positions in the same direction at t = " +
+                           number_text(*time) + "; " + leave_out(other, scene, leaves_any));
     }
-    builder.model.pins.push_back(std::move(pin));
   }
 }
 
@@ -384,9 +389,9 @@ SelectionScope selection_scope(const PlacedBody& body, Value& where, const Vec3d
 }
 
 void add_actions(const SceneActions& actions, Model& model) {
-  const auto& [bodies, gravity, mass, files, notes, memory] = actions;
+  const auto& [bodies, gravity, duration, mass, files, notes, memory] = actions;
   const double g = norm(gravity);
-  Builder builder{bodies, g > 0 ? (-1 / g) * gravity : Vec3d{{0, 1, 0}}, model, files, notes, {}, {}, 0};
+  Builder builder{bodies, g > 0 ? (-1 / g) * gravity : Vec3d{{0, 1, 0}}, model, files, notes, {}, {}, duration};
   for (const PlacedBody& body : bodies) add_pins(builder, body);
   add_loads(builder, gravity);
   add_grabs(bodies, model);

@@ -36,7 +36,8 @@ SelectionScope selection_scope(const PlacedBody& body, Value& where, const Vec3d
 
 struct SceneActions {
   std::vector<PlacedBody>& bodies;
-  Vec3d gravity;  // [m/s^2]
+  Vec3d gravity;    // [m/s^2]
+  double duration;  // of the run [s]
   MassKind mass;
   SceneFiles& files;
   std::vector<std::string>& notes;  // receives notes for the user

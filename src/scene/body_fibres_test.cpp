@@ -6,7 +6,6 @@
 
 #include "base/error.h"
 #include "io/vtu.h"
-#include "material/fibre_law.h"
 #include "scene/scene_cases_test.h"
 #include "scene/value.h"
 
@@ -45,11 +44,11 @@ double stretch(const std::vector<double>& q) {
   return most;
 }
 
-// Solves E l (l^2 - 1) / 2 + 2 l k1 s exp(k2 s^2) = traction, s = l^2 - 1 - eps/2, by bisection.
+// Solves E l (l^2 - 1) / 2 + 2 l k1 s exp(k2 s^2) = traction, s = l^2 - 1, by bisection.
 double exact_stretch(double k1) {
   double low = 1, high = 2;
   for (int i = 0; i < 100; ++i) {
-    const double l = 0.5 * (low + high), s = l * l - 1 - FibreLaw::kEps / 2;
+    const double l = 0.5 * (low + high), s = l * l - 1;
     (1e5 * l * (l * l - 1) / 2 + 2 * l * k1 * s * std::exp(0.8 * s * s) > kTraction ? high : low) = l;
   }
   return low;

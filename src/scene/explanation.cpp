@@ -102,7 +102,7 @@ class Explainer {
   Explanation lost_accuracy() const {
     const auto digits = std::numeric_limits<double>::digits10;
     return {
-        "round-off hides " + text(100 * report_.lost_accuracy) + " % of the weight, the inertia or the velocities",
+        "round-off hides " + text(100 * report_.lost_accuracy) + " % of the forces or the velocities",
         "positions have " + std::to_string(digits) + " digits, and " + step_text(),
         "lengthen a tiny time.step, move a distant body to the origin, or lower an extreme stiffness (young, poisson); "
         "pin fixed parts"};

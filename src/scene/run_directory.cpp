@@ -172,7 +172,7 @@ struct RunDirectory::Impl {
     const int frame = static_cast<int>(frame_times.size());
     if (output.vtu) {
       frame_files.push_back(RunLayout::frame_file(frame));
-      write_frame(layout.root() / frame_files.back(), simulation, report, output.double_precision);
+      write_frame(layout.root() / frame_files.back(), simulation, report, {output.double_precision, output.mechanics});
     }
     skins->add_frame(frame, simulation.state().q);
     frame_times.push_back(simulation.state().time);

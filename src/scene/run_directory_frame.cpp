@@ -1,11 +1,13 @@
 #include "scene/run_directory_frame.h"
 
+#include <algorithm>
 #include <limits>
 #include <utility>
 
 #include "contact/barrier.h"
 #include "dynamics/step_fields.h"
 #include "io/vtu.h"
+#include "math/symmetric_eigen.h"
 #include "mesh/tet_nodes.h"
 #include "mesh/tet_shape.h"
 
@@ -95,10 +97,39 @@ void add_contact_fields(const Simulation& simulation, FieldType real, std::vecto
   fields.push_back(std::move(gap));
 }
 
+// Returns F at the centroid, where it is the mean over the tet.
+Mat3d deformation_gradient(const TetMesh& mesh, int tet, Positions q) {
+  const std::array<Vec3d, 4> b = shape_gradients(corners(mesh, tet));
+  Mat3d F{};
+  for (int k = 0; k < 4 && !is_quadratic(mesh, tet); ++k) F = F + outer(point(q, mesh.tets[tet][k]), b[k]);
+  for (int k = 0; k < 6 && is_quadratic(mesh, tet); ++k)
+    F = F + outer(point(q, mesh.mids[tet][k]), b[kTetEdges[k][0]] + b[kTetEdges[k][1]]);
+  return F;
+}
+
+// cauchy: 6 per tet. Writes the eigenvalues of each, largest first.
+void add_mechanics(const Simulation& simulation, std::span<const double> cauchy, FieldType real, VtuFields& fields) {
+  const TetMesh& mesh = simulation.model().mesh;
+  Field F{"F", 9, {}, real}, strain{"strain", 6, {}, real}, principal{"principal_stress", 3, {}, real};
+  for (int t = 0; t < mesh.tet_count(); ++t) {
+    const Mat3d F_t = deformation_gradient(mesh, t, simulation.state().q);
+    const Mat3d E = 0.5 * (transpose(F_t) * F_t - identity3<double>()), rows = transpose(F_t);
+    F.values.insert(F.values.end(), rows.a, rows.a + 9);
+    strain.values.insert(strain.values.end(), {E(0, 0), E(1, 1), E(2, 2), E(0, 1), E(1, 2), E(2, 0)});
+    const double* s = &cauchy[6 * static_cast<size_t>(t)];
+    std::array<double, 3> values =
+        symmetric_eigen<3, double>({s[0], s[3], s[5], s[3], s[1], s[4], s[5], s[4], s[2]}).values;
+    std::sort(values.rbegin(), values.rend());
+    principal.values.insert(principal.values.end(), values.begin(), values.end());
+  }
+  for (Field* field : {&F, &strain, &principal}) fields.cell_fields.push_back(std::move(*field));
+  fields.point_fields.push_back({"reaction", 3, simulation.reactions(), real});
+}
+
 }  // namespace
 
-VtuFields frame_fields(const Simulation& simulation, const StepReport* report, bool double_precision) {
-  const FieldType real = double_precision ? FieldType::float64 : FieldType::float32;
+VtuFields frame_fields(const Simulation& simulation, const StepReport* report, FrameContents contents) {
+  const FieldType real = contents.double_precision ? FieldType::float64 : FieldType::float32;
   const Model& model = simulation.model();
   const State& state = simulation.state();
   VtuFields fields;
@@ -108,16 +139,18 @@ VtuFields frame_fields(const Simulation& simulation, const StepReport* report, b
   if (!model.mesh.mids.empty())
     fields.point_fields.push_back({"pressure", 1, pressure_of_vertices(model.mesh, tet_fields.cauchy), real});
   add_contact_fields(simulation, real, fields.point_fields);
-  fields.cell_fields = cell_fields(simulation, std::move(tet_fields), real);
+  if (contents.mechanics) add_mechanics(simulation, tet_fields.cauchy, real, fields);
+  for (Field& field : cell_fields(simulation, std::move(tet_fields), real))
+    fields.cell_fields.push_back(std::move(field));
   fields.file_fields = file_fields(state.time, report);
   return fields;
 }
 
 void write_frame(const std::filesystem::path& path, const Simulation& simulation, const StepReport* report,
-                 bool double_precision) {
+                 FrameContents contents) {
   const Model& model = simulation.model();
   const auto& [vertex, tet] = model.numbering;
-  VtuFields fields = frame_fields(simulation, report, double_precision);
+  VtuFields fields = frame_fields(simulation, report, contents);
   for (Field& field : fields.point_fields) field.values = vertex.to_user(field.values, field.components);
   for (Field& field : fields.cell_fields) field.values = tet.to_user(field.values, field.components);
   const TetMesh mesh = to_user(model.numbering, model.mesh);

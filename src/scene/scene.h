@@ -18,6 +18,7 @@ struct OutputOptions {
   // Formats of the frames, and report.html.
   bool vtu = true, obj = false, ply = false, pc2 = true, usd = true, report = true;
   bool double_precision = false;  // all numbers of the VTU frames; positions have it always
+  bool mechanics = false;         // F, strains, principal stresses and reactions in the VTU frames
   double checkpoint_every = 1;    // seconds of wall time between checkpoints; 0: with every frame
 };
 

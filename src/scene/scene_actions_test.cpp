@@ -49,14 +49,26 @@ TEST(ScenePins, RollersLetTheBodySlide) {
   EXPECT_NEAR(center, 0.5 + slid, 1e-4 * slid);
 }
 
-TEST(ScenePins, HoldingDirectionTwiceIsRejected) {
-  const std::string roller = pin("name = \"roller\"\nwhere = \"y < 0.1\"\naxes = \"xy\"");
-  for (const char* other : {"axes = \"x\"", "direction = [1, 1, 0]", "axes = \"xyz\"", "axes = \"xz\""})
-    EXPECT_THAT(refusal(kCube + roller + pin("name = \"wall\"\nwhere = \"x < 0.1\"\n" + std::string(other))),
-                AllOf(HasSubstr("'roller'"), HasSubstr("'wall'"), HasSubstr("constrain the same direction"),
-                      HasSubstr("&& !(")))
-        << other;
-  EXPECT_EQ(refusal(kCube + roller + pin("where = \"x < 0.1\"\naxes = \"z\"")), "");
+TEST(ScenePins, SharedVerticesMustAgree) {
+  const std::string plane = pin("name = \"plane\"\nwhere = \"y < 0.1\"\naxes = \"y\"");
+  const auto grip = [](const std::string& motion, const std::string& where = "x < 0.1") {
+    return pin("name = \"grip\"\nwhere = \"" + where + "\"\nmotion = { displacement = " + motion + " }");
+  };
+  const std::string agreeing = "[\"0.1*t\", \"0.3*t*Y\", \"0.2*t\"]";
+  const std::string still = "gravity = [0, 0, -10]\n";
+  Scene shared = load(still + kCube + plane + grip(agreeing)), reversed = load(still + kCube + grip(agreeing) + plane);
+  Scene apart = load(still + kCube + grip(agreeing) + pin("where = \"y < 0.1 && !(x < 0.1)\"\naxes = \"y\""));
+  for (Scene* scene : {&shared, &reversed, &apart})
+    for (int i = 0; i < 3; ++i) EXPECT_TRUE(is_success(scene->simulation.step().status));
+  for (size_t i = 0; i < positions(apart).size(); ++i) {
+    EXPECT_NEAR(positions(shared)[i], positions(apart)[i], 1e-9);
+    EXPECT_NEAR(positions(reversed)[i], positions(apart)[i], 1e-9);
+  }
+  for (const char* motion : {"[0, \"0.1*t\", 0]", "[0, \"1e-6*t^2\", \"t\"]"})
+    EXPECT_THAT(refusal(kCube + plane + grip(motion)),
+                AllOf(HasSubstr("'plane'"), HasSubstr("'grip'"), HasSubstr("different positions"), HasSubstr("&& !(")))
+        << motion;
+  EXPECT_EQ(refusal(kCube + plane + grip("[0, 0, \"t\"]", "z > 0.9")), "");
   EXPECT_THAT(refusal(kCube + pin("where = \"all\"\ndirection = [0, 0, 0]")), HasSubstr("a direction is needed"));
   EXPECT_THAT(refusal(kCube + pin("where = \"all\"\naxes = \"yx\"")), HasSubstr("axes"));
   EXPECT_THAT(refusal(kCube + pin("where = \"all\"\naxes = \"y\"\ndirection = [0, 0, 1]")), HasSubstr("direction"));

@@ -190,7 +190,8 @@ class SceneBuilder {
     }
     model_.mass = std::make_unique<MassMatrix>(model_.mesh, model_.density, kind);
     add_actions(
-        {bodies_, source_.document.find("gravity")->vector(), kind, files_, source_.notes, options_.limit.memory},
+        {bodies_, source_.document.find("gravity")->vector(), source_.document.find("time")->find("duration")->number(),
+         kind, files_, source_.notes, options_.limit.memory},
         model_);
     MeshLoader loader = mesh_loader();
     add_scene_contact(source_.document, loader, initial_positions(), model_);
@@ -274,6 +275,7 @@ OutputOptions output_options(const Value& table) {
           .usd = table["usd"].boolean(),
           .report = table["report"].boolean(),
           .double_precision = table["precision"].text() == "double",
+          .mechanics = table["mechanics"].boolean(),
           .checkpoint_every = table["checkpoint_every"].number()};
 }
 

@@ -177,7 +177,8 @@ void add_pin_and_spring(Schema& s) {
               {"pin", "[[body.pin]]",
                "Prescribed positions (Dirichlet conditions): in all directions, along some axes (a roller: "
                "`axes = \"y\"`), or along one direction (a symmetry plane: its normal). Several pins may hold "
-               "a vertex in independent directions. Pinned vertices have the velocity of their pin."},
+               "a vertex if they prescribe the same positions along common directions; they share the reaction. Pinned "
+               "vertices have the velocity of their pin."},
               {key("name", kText, "default: pin1, pin2, ..."), where_key(),
                key("motion", kText | kTable, "prescribed motion", Choices{{"fixed"}}, Members{"motion"},
                    Usual{"\"fixed\"", "fixes the body"}),

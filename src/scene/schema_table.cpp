@@ -128,6 +128,8 @@ void add_output(Schema& s) {
   format("ply", usual.ply, "PLY skin per frame", "large; PC2 contains the same");
   format("pc2", usual.pc2, "PC2 cache for Blender", "small");
   format("usd", usual.usd, "USD text file", "opens in most 3-D programs");
+  format("mechanics", usual.mechanics, "F, strain, principal stresses and reactions of pins in VTU frames",
+         "the displacement and the stress suffice for most pictures");
   format("report", usual.report, "report.html", "opens in any browser; takes less time than the VTU frames");
   add_keys(
       s, "output",
