@@ -200,9 +200,27 @@ std::string counts(const TriMesh& mesh) {
   return fmt::format("{} vertices, {} triangles", mesh.vertex_count(), mesh.triangle_count());
 }
 
+// Names that scenes can use: surface = "outlet", regions = { inside = 1e5 }.
+void print_groups(const TetMesh& mesh) {
+  std::map<int, int> tets;
+  for (const int label : mesh.region) ++tets[label];
+  const auto print = [](const char* kind, int label, const std::string& name, const std::string& count) {
+    fmt::print("{} {}{}: {}\n", kind, label, name.empty() ? "" : fmt::format(" \"{}\"", name), count);
+  };
+  for (const auto& [label, count] : tets) {
+    const bool has_name = mesh.groups && mesh.groups->region_names.contains(label);
+    print("region", label, has_name ? mesh.groups->region_names.at(label) : "", fmt::format("{} tets", count));
+  }
+  if (!mesh.groups) return;
+  for (const SurfaceGroup& group : mesh.groups->surfaces)
+    print("surface", group.label, group.name, fmt::format("{} triangles", group.triangles.size()));
+}
+void print_groups(const TriMesh&) {}
+
 template <class Mesh>
 int check_mesh(const CheckArguments& arguments, Mesh mesh) {
   fmt::print("{}: {}\n", printable(arguments.input.string()), counts(mesh));
+  print_groups(mesh);
   std::vector<Finding> findings = examine(mesh);
   if (arguments.repair) {
     const std::vector<std::string> actions = repair(mesh);

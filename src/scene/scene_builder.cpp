@@ -88,6 +88,7 @@ class SceneBuilder {
     SceneModel scene = build_model();
     const int steps = steps_of(*scene.document.find("time"));
     const OutputOptions output = output_options(*scene.document.find("output"));
+    const Vec3d gravity = scene.document.find("gravity")->vector();
     try {
       return {std::move(scene.name),
               to_toml(scene.document),
@@ -97,7 +98,8 @@ class SceneBuilder {
               steps,
               output,
               std::move(scene.input_files),
-              std::move(scene.generated_meshes)};
+              std::move(scene.generated_meshes),
+              gravity};
     } catch (const BadInitialState& e) {
       throw InvalidInput(source_.file + ": " + e.cause + "; " + remedy_in_scene(e.kind));
     } catch (const InvalidInput& e) {
