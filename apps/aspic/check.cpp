@@ -201,26 +201,25 @@ std::string counts(const TriMesh& mesh) {
 }
 
 // Names that scenes can use: surface = "outlet", regions = { inside = 1e5 }.
-void print_groups(const TetMesh& mesh) {
+void print_groups(const TetMesh& mesh, const MeshGroups& groups) {
   std::map<int, int> tets;
   for (const int label : mesh.region) ++tets[label];
   const auto print = [](const char* kind, int label, const std::string& name, const std::string& count) {
     fmt::print("{} {}{}: {}\n", kind, label, name.empty() ? "" : fmt::format(" \"{}\"", name), count);
   };
   for (const auto& [label, count] : tets) {
-    const bool has_name = mesh.groups && mesh.groups->region_names.contains(label);
-    print("region", label, has_name ? mesh.groups->region_names.at(label) : "", fmt::format("{} tets", count));
+    const auto name = groups.region_names.find(label);
+    print("region", label, name == groups.region_names.end() ? "" : name->second, fmt::format("{} tets", count));
   }
-  if (!mesh.groups) return;
-  for (const SurfaceGroup& group : mesh.groups->surfaces)
+  for (const SurfaceGroup& group : groups.surfaces)
     print("surface", group.label, group.name, fmt::format("{} triangles", group.triangles.size()));
 }
-void print_groups(const TriMesh&) {}
+void print_groups(const TriMesh&, const MeshGroups&) {}
 
 template <class Mesh>
-int check_mesh(const CheckArguments& arguments, Mesh mesh) {
+int check_mesh(const CheckArguments& arguments, Mesh mesh, const MeshGroups& groups) {
   fmt::print("{}: {}\n", printable(arguments.input.string()), counts(mesh));
-  print_groups(mesh);
+  print_groups(mesh, groups);
   std::vector<Finding> findings = examine(mesh);
   if (arguments.repair) {
     const std::vector<std::string> actions = repair(mesh);
@@ -295,9 +294,10 @@ int check(const CheckArguments& arguments) {
   if (arguments.input.extension() == ".toml") return check_scene(arguments);
   if (!arguments.overrides.empty()) throw InvalidInput("--set needs a scene; a mesh has no values to override");
   std::vector<std::string> notes;
-  auto mesh = read_mesh(arguments.input, &notes);
+  MeshGroups groups;
+  auto mesh = read_mesh(arguments.input, &notes, &groups);
   for (const std::string& note : notes) fmt::print("note: {}\n", printable(note));
-  return std::visit([&](auto m) { return check_mesh(arguments, std::move(m)); }, std::move(mesh));
+  return std::visit([&](auto m) { return check_mesh(arguments, std::move(m), groups); }, std::move(mesh));
 }
 
 }  // namespace

@@ -114,9 +114,10 @@ std::string slivers_of(const TetMesh& mesh) {
     if (angle < smallest) smallest = angle, worst = t;
   }
   if (count == 0) return "";
-  return line("slivers         %d of %d tets have a dihedral angle within 1 degree of 0 or 180, the worst is tet %d with "
-              "%.2g; try another --size",
-              count, mesh.tet_count(), worst, smallest);
+  return line(
+      "slivers         %d of %d tets have a dihedral angle within 1 degree of 0 or 180, the worst is tet %d with "
+      "%.2g; try another --size",
+      count, mesh.tet_count(), worst, smallest);
 }
 
 std::string quality_report(const TetMesh& mesh, double seconds) {

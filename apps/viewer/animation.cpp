@@ -85,8 +85,8 @@ Motion motion_of(const ShownSide& shown, const Format& format) {
 std::string usd_text(const std::string& name, const Surface& surface, const Motion& motion, UpAxis up) {
   const TemporaryFolder folder;
   const auto path = folder.path() / "motion.usda";
-  write_usd(path, {{name, surface.triangles, [&](int k) { return motion.frames[k]; }}}, motion.times,
-            motion.per_second, up);
+  write_usd(path, {{name, surface.triangles, [&](int k) { return motion.frames[k]; }}}, motion.times, motion.per_second,
+            up);
   return read_file(path);
 }
 
@@ -114,7 +114,7 @@ void turn_upright(Motion& motion) {
 
 Json animation_reply(const ShownSide& shown, const std::string& format) {
   Motion motion = motion_of(shown, *std::find_if(std::begin(kFormats), std::end(kFormats),
-                                                       [&](const Format& f) { return format == f.name; }));
+                                                 [&](const Format& f) { return format == f.name; }));
   const std::string name = saved_name(shown.side.steered().scene);
   const UpAxis up = up_axis(shown.side.steered().scene.gravity);
   Json reply;

@@ -15,7 +15,8 @@ constexpr double kMissing = std::numeric_limits<double>::quiet_NaN();
 class NpzReader {
  public:
   NpzReader(const std::string& file, std::string_view contents)
-      : bytes_(contents.size()), entries_(unzipped(file, contents, [](const std::string& name) { return is_needed(name); })) {
+      : bytes_(contents.size()),
+        entries_(unzipped(file, contents, [](const std::string& name) { return is_needed(name); })) {
     recording_.file = file;
   }
 

@@ -160,7 +160,9 @@ TEST(Npz, UnpacksOnlyNeededFilesAndEachOnce) {
   archive[archive.find("not unpacked")] = 'N';  // its checksum is wrong
   EXPECT_EQ(parse_npz("a.npz", archive).frames.size(), 1u);
   EXPECT_THAT(
-      [&] { parse_npz("a.npz", zipped({{"positions.npy", positions}, {"positions.npy", positions}})); },
+      [&] {
+        parse_npz("a.npz", zipped({{"positions.npy", positions}, {"positions.npy", positions}}));
+      },
       testing::ThrowsMessage<InvalidInput>(HasSubstr("'positions.npy' is there twice; remove one")));
 }
 

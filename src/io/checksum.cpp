@@ -12,8 +12,7 @@
 namespace aspic {
 
 void Checksum::add(std::string_view bytes) {
-  value_ =
-      static_cast<uint32_t>(crc32_z(value_, reinterpret_cast<const Bytef*>(bytes.data()), bytes.size()));
+  value_ = static_cast<uint32_t>(crc32_z(value_, reinterpret_cast<const Bytef*>(bytes.data()), bytes.size()));
 }
 
 Checksum file_checksum(const std::filesystem::path& path, uint64_t begin, uint64_t end) {

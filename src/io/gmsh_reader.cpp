@@ -44,8 +44,7 @@ class GmshReader {
     const double version = text_.number("the version");
     is_4_ = version == 4.1;
     if (!is_4_ && !(version >= 2 && version < 3))
-      text_.fail("version " + std::to_string(version).substr(0, 3) +
-                 " is not read; " + kSaveAgain);
+      text_.fail("version " + std::to_string(version).substr(0, 3) + " is not read; " + kSaveAgain);
     const int64_t is_binary = text_.integer("the file type");
     if (is_binary != 0 && is_binary != 1)
       text_.fail("the file type is " + std::to_string(is_binary) + "; it must be 0 (text) or 1 (binary)");
@@ -172,7 +171,8 @@ class GmshReader {
         for (int g = 0; g < groups; ++g) {
           const int group = in.integer("a physical group");
           if (dimension == 3 && g == 0) volume_groups_[tag] = group;
-          if (dimension == 2) surface_groups_[tag].push_back(std::abs(std::max(group, -INT_MAX)));  // negative: reversed
+          if (dimension == 2)
+            surface_groups_[tag].push_back(std::abs(std::max(group, -INT_MAX)));  // negative: reversed
         }
         if (dimension > 0)
           in.skip_integers(in.size("the number of bounding entities"), "the number of bounding entities");
@@ -300,8 +300,7 @@ class GmshReader {
           {label, name == surface_names_.end() ? "" : name->second, std::move(triangles)});
     }
     for (const auto& [label, name] : volume_names_)
-      if (std::find(groups_.begin(), groups_.end(), label) != groups_.end())
-        content_.groups.region_names[label] = name;
+      if (std::find(groups_.begin(), groups_.end(), label) != groups_.end()) content_.groups.region_names[label] = name;
   }
 
   static constexpr const char* kSaveAgain = "save it again with 'gmsh IN.msh -save -format msh41 -o OUT.msh'";
@@ -315,8 +314,8 @@ class GmshReader {
   std::map<int, std::vector<int>> surface_groups_;  // entity -> physical groups
   std::map<int, std::string> volume_names_, surface_names_;
   std::map<int, std::vector<Triangle>> surfaces_;  // by physical group, or else by entity
-  std::vector<int> groups_, entities_;  // per tet; group 0: none
-  std::string_view lost_;               // surface elements that are skipped
+  std::vector<int> groups_, entities_;             // per tet; group 0: none
+  std::string_view lost_;                          // surface elements that are skipped
 };
 
 }  // namespace

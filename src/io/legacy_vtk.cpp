@@ -29,9 +29,9 @@ constexpr std::array<CellArray, 5> kCellArrays = {{{"cells", 0},
 
 // Attributes with a fixed number of components.
 const std::map<std::string_view, int>& attributes() {
-  static const std::map<std::string_view, int> components = {
-      {"vectors", 3},    {"normals", 3},      {"tensors", 9}, {"tensors6", 6},
-      {"global_ids", 1}, {"pedigree_ids", 1}, {"edge_flags", 1}};
+  static const std::map<std::string_view, int> components = {{"vectors", 3},   {"normals", 3},    {"tensors", 9},
+                                                             {"tensors6", 6},  {"global_ids", 1}, {"pedigree_ids", 1},
+                                                             {"edge_flags", 1}};
   return components;
 }
 
@@ -129,9 +129,12 @@ class LegacyVtkReader {
     cells.connectivity = in_.integers(type_of_corners, size);
     if (cells.offsets.empty()) return;
     fail_if(cells.offsets.front() == 0 ? "" : "the first offset is not 0; get a complete copy", cells.place);
-    fail_if(std::is_sorted(cells.offsets.begin(), cells.offsets.end()) ? "" : "the offsets of the cells do not ascend; get a complete copy",
+    fail_if(std::is_sorted(cells.offsets.begin(), cells.offsets.end())
+                ? ""
+                : "the offsets of the cells do not ascend; get a complete copy",
             cells.place);
-    fail_if(cells.offsets.back() == size ? "" : "the last offset is not the number of corners; get a complete copy", cells.place);
+    fail_if(cells.offsets.back() == size ? "" : "the last offset is not the number of corners; get a complete copy",
+            cells.place);
     cells.offsets.erase(cells.offsets.begin());
   }
 

@@ -1,4 +1,5 @@
-// Legacy VTK files (.vtk), text and binary, versions 1 to 5.1 [VTK file formats]: unstructured grids and polygonal data.
+// Legacy VTK files (.vtk), text and binary, versions 1 to 5.1 [VTK file formats]: unstructured grids and polygonal
+// data.
 #pragma once
 #include <filesystem>
 #include <string>

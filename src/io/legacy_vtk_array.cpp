@@ -101,7 +101,8 @@ std::string LegacyVtkSource::name() {
   const std::string_view word = text_.word("the name of an array");
   std::string name;
   for (size_t i = 0; i < word.size(); ++i) {
-    const bool is_code = word[i] == '%' && i + 2 < word.size() && hex_digit(word[i + 1]) >= 0 && hex_digit(word[i + 2]) >= 0;
+    const bool is_code =
+        word[i] == '%' && i + 2 < word.size() && hex_digit(word[i + 1]) >= 0 && hex_digit(word[i + 2]) >= 0;
     name += is_code ? static_cast<char>(16 * hex_digit(word[i + 1]) + hex_digit(word[i + 2])) : word[i];
     if (is_code) i += 2;
   }

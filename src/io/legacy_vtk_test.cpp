@@ -69,7 +69,7 @@ TEST(LegacyVtk, ReadsQuadraticTetsAndSkipsTheirFaces) {
 TEST(LegacyVtk, SkipsTextsBitsColorsAndTables) {
   const std::string more =
       "COLOR_SCALARS rgb 3\n0 0 1 0 1 0 1 0 0 1 1 1 0 0 0\nLOOKUP_TABLE own 1\n0 0 0 1\n"
-      "FIELD more 3\nlabels 1 5 string\nfirst label\nb\nc\nd\ne\nflags 1 5 bit\n0 1 0 1 1\nNULL_ARRAY\n"
+      "FIELD more 3\nlabels 1 5 string\nfirst label\n2\n3\n4\n5\nflags 1 5 bit\n0 1 0 1 1\nNULL_ARRAY\n"
       "SCALARS t double\nLOOKUP_TABLE own\nnan 1 2 3 4\n";
   const Vtu grid = parse_legacy_vtk(legacy_vtk(false, false) + more, "a.vtk");
   EXPECT_TRUE(std::isnan(named(grid.point_fields, "t").values[0]));

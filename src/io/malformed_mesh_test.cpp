@@ -36,9 +36,9 @@ MeshContent legacy_vtk_content(const std::string& file, std::string_view text) {
 }
 
 std::vector<Case> cases() {
-  const std::map<std::string, Parser> parsers = {{".msh", parse_gmsh}, {".mesh", parse_medit}, {".obj", parse_obj},
-                                                 {".off", parse_off},  {".ply", parse_ply},    {".stl", parse_stl},
-                                                 {".vtk", legacy_vtk_content}};
+  const std::map<std::string, Parser> parsers = {
+      {".msh", parse_gmsh}, {".mesh", parse_medit}, {".obj", parse_obj},         {".off", parse_off},
+      {".ply", parse_ply},  {".stl", parse_stl},    {".vtk", legacy_vtk_content}};
   std::vector<Case> result;
   for (const MeshExample& example : mesh_examples())
     result.push_back({example.name, example.contents, parsers.at(example.extension)});

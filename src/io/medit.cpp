@@ -106,7 +106,8 @@ class MeditReader {
     text_.small_integer("the version");
     while (!text_.at_end()) {
       const std::string_view word = text_.quoted("a keyword");
-      if (text_.text()[text_.word_position()] == '"') continue;  // a name of a file, such as that of the section Geometry
+      if (text_.text()[text_.word_position()] == '"')
+        continue;  // a name of a file, such as that of the section Geometry
       if (!std::isalpha(static_cast<unsigned char>(word[0]))) continue;  // a number of the previous section
       if (word == "End") return;
       if (word == "nan" || word == "inf" || word == "NaN" || word == "Inf")

@@ -3,6 +3,7 @@
 #include <span>
 #include <vector>
 
+#include "mesh/mesh_groups.h"
 #include "mesh/tet_mesh.h"
 
 namespace aspic {

@@ -179,18 +179,15 @@ const std::vector<MeshFormat>& mesh_formats() {
   return list;
 }
 
-std::variant<TetMesh, TriMesh> read_mesh(const std::string& path, std::vector<std::string>* notes) {
+std::variant<TetMesh, TriMesh> read_mesh(const std::string& path, std::vector<std::string>* notes, MeshGroups* groups) {
   const Format& format = format_of(path);
   check_memory(path);
   MeshContent content = format.read(path);
   const std::string note = remove_mid_nodes(content);
   if (notes && !note.empty()) notes->push_back(fs::path(path).filename().string() + ": " + note);
-  if (!content.tets.empty()) {
-    TetMesh mesh{std::move(content.vertices), std::move(content.tets), std::move(content.region)};
-    if (!content.groups.surfaces.empty() || !content.groups.region_names.empty())
-      mesh.groups = std::make_shared<MeshGroups>(std::move(content.groups));
-    return mesh;
-  }
+  if (groups) *groups = std::move(content.groups);
+  if (!content.tets.empty())
+    return TetMesh{std::move(content.vertices), std::move(content.tets), std::move(content.region)};
   if (!content.triangles.empty()) return TriMesh{std::move(content.vertices), std::move(content.triangles)};
   throw InvalidInput(path + ": holds " +
                      (format.holds_tets && format.holds_triangles ? "neither tets nor triangles"
@@ -199,8 +196,8 @@ std::variant<TetMesh, TriMesh> read_mesh(const std::string& path, std::vector<st
                      "; export the mesh again with its elements");
 }
 
-TetMesh read_tet_mesh(const std::string& path, std::vector<std::string>* notes) {
-  auto mesh = read_mesh(path, notes);
+TetMesh read_tet_mesh(const std::string& path, std::vector<std::string>* notes, MeshGroups* groups) {
+  auto mesh = read_mesh(path, notes, groups);
   if (auto* tets = std::get_if<TetMesh>(&mesh)) return std::move(*tets);
   throw InvalidInput(path + ": holds a surface, no tets; fill it with 'aspic mesh " +
                      fs::path(path).filename().string() + " -o " + fs::path(path).stem().string() + ".msh'");

@@ -39,8 +39,8 @@ TEST(Medit, ReferenceZeroOnEveryTetIsNoLabel) {
 }
 
 TEST(Medit, QuotedNamesMayContainBlanksAndKeywords) {
-  const MeshContent mesh = parse_medit(
-      "a", "MeshVersionFormatted 1\nGeometry\n\"my Vertices file.mesh\"\n" + medit_tets_first().substr(23));
+  const MeshContent mesh =
+      parse_medit("a", "MeshVersionFormatted 1\nGeometry\n\"my Vertices file.mesh\"\n" + medit_tets_first().substr(23));
   EXPECT_EQ(mesh.tets.size(), 2u);
 }
 

@@ -31,7 +31,8 @@ std::string fault_of_cell(int64_t type, int64_t corners, size_t cell) {
            "Tetrahedralize)";
   const int64_t expected = corners_of(type);
   if (expected > 0 ? corners != expected : corners < 3)
-    return which + "of type " + std::to_string(type) + " has " + std::to_string(corners) + " corners; get a complete copy";
+    return which + "of type " + std::to_string(type) + " has " + std::to_string(corners) +
+           " corners; get a complete copy";
   return "";
 }
 
@@ -89,9 +90,7 @@ bool append_fields(bool is_first, std::vector<Field> added, std::vector<Field>& 
     all = std::move(added);
     return true;
   }
-  const auto is_alike = [](const Field& a, const Field& b) {
-    return a.name == b.name && a.components == b.components;
-  };
+  const auto is_alike = [](const Field& a, const Field& b) { return a.name == b.name && a.components == b.components; };
   if (!std::equal(all.begin(), all.end(), added.begin(), added.end(), is_alike)) return false;
   for (size_t i = 0; i < all.size(); ++i)
     all[i].values.insert(all[i].values.end(), added[i].values.begin(), added[i].values.end());

@@ -156,7 +156,6 @@ size_t cancel_pairs(TriMesh& mesh) {
 std::vector<std::string> repair(TetMesh& mesh) {
   Actions actions;
   if (!indices_are_valid(mesh.tets, mesh.rest.size())) return actions;
-  mesh.groups = nullptr;  // vertices change their numbers
   record(actions, "dropped", drop_unreferenced(mesh.rest, mesh.tets), "unreferenced vertices");
   record(actions, "merged", merge_duplicates(mesh.rest, mesh.tets), "duplicate vertices into those at the same place");
   record(actions, "removed", remove_tets(mesh, [&](int t) { return has_volume(mesh, t); }), "tets of zero volume");

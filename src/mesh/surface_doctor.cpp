@@ -90,7 +90,8 @@ void examine_open_edges(const TriMesh& mesh, const SurfaceTopology& surface, Fin
   const std::vector<int> first = first_agreeing_corner(mesh);
   for (Triangle& triangle : merged.triangles)
     for (int& v : triangle) v = first[v];
-  const char* const thicken = "give it a thickness in the program that made it (in Blender: Solidify; in Gmsh: Extrude)";
+  const char* const thicken =
+      "give it a thickness in the program that made it (in Blender: Solidify; in Gmsh: Extrude)";
   if (is_planar(mesh))
     return findings.add({Severity::error, "planar_mesh",
                          "the mesh is planar: all vertices lie in a plane, and only solids are simulated", thicken,
@@ -111,8 +112,8 @@ void examine_open_edges(const TriMesh& mesh, const SurfaceTopology& surface, Fin
     finding.message += "; " + std::to_string(surface.open_edges - left) +
                        " of these edges agree with another one within 1e-6 of the diagonal, " +
                        three_digits(corner_tolerance(mesh)) + " m";
-    finding.remedy = "merge their corners with --repair (aspic mesh does so)" +
-                     (left > 0 ? "; " + finding.remedy : std::string());
+    finding.remedy =
+        "merge their corners with --repair (aspic mesh does so)" + (left > 0 ? "; " + finding.remedy : std::string());
   }
   findings.add(std::move(finding));
 }

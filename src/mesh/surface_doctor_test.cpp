@@ -89,7 +89,8 @@ TriMesh bent_square(double angle) {
   for (int i = 0; i <= n; ++i)
     for (int j = 0; j <= n; ++j) {
       const double s = static_cast<double>(i) / n, t = static_cast<double>(j) / n;
-      const double x = angle == 0 ? s : std::sin(angle * s) / angle, y = angle == 0 ? 0 : (1 - std::cos(angle * s)) / angle;
+      const double x = angle == 0 ? s : std::sin(angle * s) / angle,
+                   y = angle == 0 ? 0 : (1 - std::cos(angle * s)) / angle;
       sheet.vertices.push_back({{x, y, t}});
     }
   for (int i = 0; i < n; ++i)

@@ -1,9 +1,6 @@
 // Tetrahedral meshes at rest and triangle meshes, as plain data without adjacency or physics.
 #pragma once
 #include <array>
-#include <map>
-#include <memory>
-#include <string>
 #include <vector>
 
 #include "math/small.h"
@@ -14,19 +11,6 @@ using Tet = std::array<int, 4>;
 using Triangle = std::array<int, 3>;
 using MidNodes = std::array<int, 6>;  // one per edge of a tet, see kTetEdges
 
-// Triangles of a mesh file with a common label: a physical surface or an entity of Gmsh, or a reference of Medit.
-struct SurfaceGroup {
-  int label = 0;
-  std::string name;  // empty: only a number
-  std::vector<Triangle> triangles;
-};
-
-// Named parts of a mesh file.
-struct MeshGroups {
-  std::vector<SurfaceGroup> surfaces;
-  std::map<int, std::string> region_names;  // by region label
-};
-
 struct TetMesh {
   std::vector<Vec3d> rest;  // X, one per vertex [m]
   std::vector<Tet> tets;    // positively oriented: volume(mesh, t) > 0
@@ -34,7 +18,6 @@ struct TetMesh {
   // Mid-edge nodes of quadratic tets, one entry per tet, {-1, ...} for a linear one; empty: all are linear. Nodes are
   // vertices. Edges are straight at rest, with the nodes at their midpoints.
   std::vector<MidNodes> mids = {};
-  std::shared_ptr<const MeshGroups> groups = {};  // of its file, with these vertices; may be null
 
   int vertex_count() const { return static_cast<int>(rest.size()); }
   int tet_count() const { return static_cast<int>(tets.size()); }

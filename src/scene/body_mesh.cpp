@@ -186,11 +186,13 @@ void refuse_foreign_skin(const BodyMesh& body, const Value& skin) {
   const double of_tets = norm(tets.upper - tets.lower), of_skin = norm(own.upper - own.lower);
   const std::string which = "skin = " + shortened(toml_string(skin.text()));
   if (const double beyond = farthest(tets, own); beyond > kDiagonals * of_skin)
-    throw error_at(skin.place, which + "; the tets reach " + rounded_text(beyond) + " m beyond the skin, whose diagonal is " +
-                                   rounded_text(of_skin) + " m: give both in the same units and coordinates");
+    throw error_at(skin.place, which + "; the tets reach " + rounded_text(beyond) +
+                                   " m beyond the skin, whose diagonal is " + rounded_text(of_skin) +
+                                   " m: give both in the same units and coordinates");
   if (const double beyond = farthest(own, tets); beyond > kDiagonals * of_tets)
-    throw error_at(skin.place, which + "; the skin reaches " + rounded_text(beyond) + " m beyond the tets, whose diagonal is " +
-                                   rounded_text(of_tets) + " m: give both in the same units and coordinates");
+    throw error_at(skin.place, which + "; the skin reaches " + rounded_text(beyond) +
+                                   " m beyond the tets, whose diagonal is " + rounded_text(of_tets) +
+                                   " m: give both in the same units and coordinates");
 }
 
 // Refuses files that must exceed the limit, and announces large ones.
@@ -264,12 +266,13 @@ std::string MeshLoader::why_not_in_memory(double more_tets) const {
 
 LoadedMesh load_mesh(const fs::path& path, double size, MeshLoader& loader) {
   check_size(path, loader);
-  std::variant<TetMesh, TriMesh> mesh = read_mesh(path, &loader.notes);
+  MeshGroups groups;
+  std::variant<TetMesh, TriMesh> mesh = read_mesh(path, &loader.notes, &groups);
   if (TetMesh* tets = std::get_if<TetMesh>(&mesh)) {
     const int count = tets->tet_count();
     const std::string why = loader.limit.counts_files ? loader.why_not(count) : loader.why_not_in_memory(count);
     if (!why.empty()) throw InvalidInput(path.string() + ": " + why + " (choose a coarser mesh)");
-    return {std::move(*tets), {}};
+    return {std::move(*tets), {}, std::move(groups)};
   }
   TriMesh& surface = std::get<TriMesh>(mesh);
   repair(surface);  // as the mesher does, which reports it
@@ -289,9 +292,10 @@ LoadedMesh load_mesh(const fs::path& path, double size, MeshLoader& loader) {
   return {std::move(filled.tets), path};
 }
 
-BodyMesh make_body_mesh(Value& body, MeshLoader& loader, std::optional<LoadedMesh> loaded) {
+namespace {
+
+BodyMesh with_its_skin(Value& body, MeshLoader& loader, LoadedMesh mesh) {
   const std::string name = body["name"].text();
-  LoadedMesh mesh = resolve_mesh(body, loader, std::move(loaded));
   loader.tets += mesh.tets.tet_count();
   check_fingerprint(body.table(), "mesh_hash", fingerprint_of(mesh.tets), "the mesh of body '" + name + "'");
   const AffineMap map = placement_of(body);
@@ -312,6 +316,16 @@ BodyMesh make_body_mesh(Value& body, MeshLoader& loader, std::optional<LoadedMes
   if (!chosen) return result;
   refuse_foreign_skin(result, *chosen);
   note_outside(result, name, loader.notes);
+  return result;
+}
+
+}  // namespace
+
+BodyMesh make_body_mesh(Value& body, MeshLoader& loader, std::optional<LoadedMesh> loaded) {
+  LoadedMesh mesh = resolve_mesh(body, loader, std::move(loaded));
+  MeshGroups groups = std::move(mesh.groups);
+  BodyMesh result = with_its_skin(body, loader, std::move(mesh));
+  result.groups = std::move(groups);
   return result;
 }
 

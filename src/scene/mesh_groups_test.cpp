@@ -76,8 +76,7 @@ TEST_F(NamedParts, ResolvedSceneKeepsNames) {
 }
 
 TEST_F(NamedParts, RegionsHaveNamesAndLabels) {
-  const Scene scene =
-      load_scene(with("material = { density = { regions = { \"inside part\" = 100, 4 = 300 } } }\n"));
+  const Scene scene = load_scene(with("material = { density = { regions = { \"inside part\" = 100, 4 = 300 } } }\n"));
   const Model& model = scene.simulation.model();
   EXPECT_EQ(model.numbering.tet.to_user(model.density), (std::vector<double>{100, 300}));
 }

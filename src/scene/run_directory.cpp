@@ -200,8 +200,7 @@ struct RunDirectory::Impl {
   void restore_scene(Scene& scene) const {
     if (read_file(layout.scene()) == scene.resolved) return;
     write_file(layout.scene(), scene.resolved);
-    scene.notes.push_back(layout.scene().string() +
-                          ": its text had changed, but not its values; it was written again");
+    scene.notes.push_back(layout.scene().string() + ": its text had changed, but not its values; it was written again");
   }
 
   void add_frame(const Simulation& simulation, const StepReport* report) {

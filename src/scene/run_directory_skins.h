@@ -17,7 +17,7 @@ class RunSkins {
   static RunSkins create(const RunLayout& layout, const Scene& scene);
   static RunSkins resume(const RunLayout& layout, const Scene& scene, int frames);
 
-  void add_frame(int frame, std::span<const double> q);  // q of the model, 3 per vertex [m]
+  void add_frame(int frame, std::span<const double> q);                // q of the model, 3 per vertex [m]
   std::vector<std::filesystem::path> files_of_frame(int frame) const;  // besides the caches
   std::vector<double> checksums() const;                               // of the caches
   // Throws InvalidInput if a cache has not its checksum.
@@ -36,7 +36,7 @@ class RunSkins {
   OutputOptions output_;
   std::vector<Skin> skins_;
   std::vector<std::string> names_;
-  double frame_rate_;            // [1/s]
+  double frame_rate_;  // [1/s]
   UpAxis up_;
   std::vector<Pc2File> caches_;  // one per skin, when PC2 or USD is wanted: USD is assembled from them
   size_t frames_in_usd_ = 0;

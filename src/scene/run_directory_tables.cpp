@@ -142,8 +142,7 @@ void RunTables::require_unchanged(const Checkpoint& checkpoint) const {
                          " were written; restore the whole file, or restart the run with --force");
     if (name == kIterationChecksum)
       aspic::require_unchanged(iterations_.path(), static_cast<double>(value), iterations_.checksum());
-    if (name == kStepChecksum)
-      aspic::require_unchanged(steps_.path(), static_cast<double>(value), steps_.checksum());
+    if (name == kStepChecksum) aspic::require_unchanged(steps_.path(), static_cast<double>(value), steps_.checksum());
   }
 }
 

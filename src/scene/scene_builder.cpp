@@ -137,6 +137,7 @@ class SceneBuilder {
         loaded = std::move(known->second);
       BodyMesh mesh = make_body_mesh(scene, loader, std::move(loaded));
       PlacedBody body{scene, std::move(mesh.tets), {}, model_.mesh.vertex_count(), model_.mesh.tet_count()};
+      body.groups = std::move(mesh.groups);
       body.painted = std::make_shared<PaintedFields>(placement_of(scene), files_, body.name());
       try {
         body.start = deformed(scene, body.mesh.rest, files_, body.name());

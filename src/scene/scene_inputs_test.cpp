@@ -233,7 +233,8 @@ TEST(Scene, SkinInOtherUnitsIsRefusedWithDistance) {
   write_mesh(folder / "cage.msh", make_box({{0, 0, 0}}, {{1, 1, 1}}, {1, 1, 1}));
   folder.write("s.toml", "[[body]]\nmesh = \"cage.msh\"\nskin = \"skin.obj\"\n");
   const auto refusal_at = [&](double scale) {
-    write_mesh(folder / "skin.obj", boundary_surface(make_box({{0, 0, 0}}, {{scale, scale, scale}}, {1, 1, 1})).surface);
+    write_mesh(folder / "skin.obj",
+               boundary_surface(make_box({{0, 0, 0}}, {{scale, scale, scale}}, {1, 1, 1})).surface);
     return refusal_of(folder / "s.toml");
   };
   EXPECT_THAT(refusal_at(1e-3), AllOf(HasSubstr("s.toml:3:"), HasSubstr("the tets reach 1.73 m beyond the skin, whose "

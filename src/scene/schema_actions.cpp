@@ -139,7 +139,8 @@ void add_where(Schema& s) {
        key("hash", kText, "hash of the file, in resolved scenes")});
   s.alternatives.push_back(
       {"where",
-       {{"box"}, {"sphere"}, {"vertices"}, {"surface"}, {"lowest"}, {"highest"}, {"file", "name", "above", "hash"}}, true});
+       {{"box"}, {"sphere"}, {"vertices"}, {"surface"}, {"lowest"}, {"highest"}, {"file", "name", "above", "hash"}},
+       true});
 
   add_section(s, {"region_box", "box = { ... } in where", "A closed box."},
               {key("lower", kNumbers, "lowest corner", Units{"m"}, kRequired),

@@ -79,11 +79,12 @@ std::string group_text(const SurfaceGroup& group) {
 std::vector<Triangle> triangles_of(const Value& surface, const SelectionScope& scope) {
   const std::string which = "surface = " + shortened(inline_toml(surface));
   if (scope.whole)
-    throw error_at(surface.place, which + "; several processes do not read the surfaces of mesh files (use a formula "
-                                          "or vertices)");
+    throw error_at(surface.place, which +
+                                      "; several processes do not read the surfaces of mesh files (use a formula "
+                                      "or vertices)");
   std::vector<Triangle> triangles;
   std::string known;
-  for (const SurfaceGroup& group : scope.mesh.groups ? scope.mesh.groups->surfaces : std::vector<SurfaceGroup>()) {
+  for (const SurfaceGroup& group : scope.groups ? scope.groups->surfaces : std::vector<SurfaceGroup>()) {
     const bool is_chosen = surface.is_text() ? group.name == surface.text() : group.label == surface.integer();
     if (is_chosen) triangles.insert(triangles.end(), group.triangles.begin(), group.triangles.end());
     known += (known.empty() ? "" : ", ") + group_text(group);

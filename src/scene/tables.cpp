@@ -94,27 +94,27 @@ std::vector<double> from_file(Table& table, const FieldScope& scope, const std::
 }
 
 // Names of a region in a scene: its label and, if the file has one, its name.
-std::vector<std::string> names_of_region(int label, const TetMesh& mesh) {
+std::vector<std::string> names_of_region(int label, const MeshGroups* groups) {
   std::vector<std::string> names = {std::to_string(label)};
-  if (!mesh.groups) return names;
-  const auto name = mesh.groups->region_names.find(label);
-  if (name != mesh.groups->region_names.end()) names.push_back(name->second);
+  if (!groups) return names;
+  const auto name = groups->region_names.find(label);
+  if (name != groups->region_names.end()) names.push_back(name->second);
   return names;
 }
 
-std::vector<double> from_regions(const Value& regions, const TetMesh& mesh) {
+std::vector<double> from_regions(const Value& regions, const TetMesh& mesh, const MeshGroups* groups) {
   const std::set<int> labels(mesh.region.begin(), mesh.region.end());
   std::map<int, const Value*> values_of;
   std::set<std::string> known;
   std::string list;
   for (const int label : labels) {
-    const std::vector<std::string> names = names_of_region(label, mesh);
+    const std::vector<std::string> names = names_of_region(label, groups);
     for (const std::string& name : names) {
       known.insert(name);
       const Value* value = regions.find(name);
       if (value && !values_of.emplace(label, value).second)
-        throw error_at(value->place, "regions: region " + names[0] + " is '" + name +
-                                         "' and has two values; remove one of them");
+        throw error_at(value->place,
+                       "regions: region " + names[0] + " is '" + name + "' and has two values; remove one of them");
     }
     list += (list.empty() ? "" : ", ") + names[0] + (names.size() > 1 ? " '" + names[1] + "'" : "");
   }
@@ -126,8 +126,7 @@ std::vector<double> from_regions(const Value& regions, const TetMesh& mesh) {
       throw error_at(regions.place, "regions = " + shortened(inline_toml(regions)) + "; a value for region " +
                                         std::to_string(label) + " is missing (the mesh has: " + list + ")");
   for (const Member& m : regions.table().members) {
-    if (!known.contains(m.key))
-      throw error_at(m.place, "the mesh has no region " + m.key + " (it has: " + list + ")");
+    if (!known.contains(m.key)) throw error_at(m.place, "the mesh has no region " + m.key + " (it has: " + list + ")");
   }
   std::vector<double> values;
   for (const int label : mesh.region) values.push_back(values_of[label]->number());
@@ -192,7 +191,7 @@ std::vector<double> tet_values(Table& table, const Key& key, const FieldScope& s
   if (value.is_text()) {
     values = from_formula(value, mesh);
   } else if (const Value* regions = value.find("regions")) {
-    values = from_regions(*regions, mesh);
+    values = from_regions(*regions, mesh, scope.groups);
   } else {
     values = from_file(value.table(), scope, scope.stem + "." + key.name);
   }
