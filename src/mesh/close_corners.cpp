@@ -12,12 +12,12 @@
 namespace aspic {
 namespace {
 
-bool is_finite(const Vec3d& x) { return std::isfinite(x[0] + x[1] + x[2]); }
+bool has_finite_coordinates(const Vec3d& x) { return std::isfinite(x[0] + x[1] + x[2]); }
 
 Box box_of(const TriMesh& mesh) {
   Box box;
   for (const Vec3d& x : mesh.vertices)
-    if (is_finite(x)) box.add(x);
+    if (has_finite_coordinates(x)) box.add(x);
   return box;
 }
 
@@ -29,7 +29,7 @@ std::vector<char> on_open_edges(const TriMesh& mesh) {
   return is_open;
 }
 
-using Cell = std::array<int64_t, 3>;
+using SparseCell = std::array<int64_t, 3>;
 
 // Points that are farther apart than a distance, by cells of that size.
 class SparsePoints {
@@ -38,7 +38,7 @@ class SparsePoints {
 
   // Returns the number of the first point within the distance, or adds `x` as the point `number`.
   int first_near(const Vec3d& x, int number, const std::vector<Vec3d>& points) {
-    Cell cell;
+    SparseCell cell;
     for (int i = 0; i < 3; ++i) cell[i] = static_cast<int64_t>(std::floor((x[i] - lower_[i]) / distance_));
     int first = number;
     for (int64_t k = 0; k < 27; ++k) {
@@ -54,7 +54,7 @@ class SparsePoints {
  private:
   Vec3d lower_;
   double distance_;
-  std::map<Cell, std::vector<int>> cells_;
+  std::map<SparseCell, std::vector<int>> cells_;
 };
 
 }  // namespace
@@ -72,7 +72,7 @@ std::vector<int> first_agreeing_corner(const TriMesh& mesh) {
   const std::vector<char> is_open = on_open_edges(mesh);
   SparsePoints points(box_of(mesh), distance);
   for (int v = 0; v < mesh.vertex_count(); ++v)
-    if (is_open[v] && is_finite(mesh.vertices[v])) first[v] = points.first_near(mesh.vertices[v], v, mesh.vertices);
+    if (is_open[v] && has_finite_coordinates(mesh.vertices[v])) first[v] = points.first_near(mesh.vertices[v], v, mesh.vertices);
   return first;
 }
 
