@@ -62,10 +62,10 @@ class LegacyVtkReader {
       text_.fail("found " + shown(first) + " where '# vtk DataFile Version' should be; is this a legacy VTK file?");
     text_.skip_line();
     text_.skip_line();
-    const std::string encoding = lower_case(text_.word("'ASCII' or 'BINARY'"));
-    if (encoding == "binary")
+    const std::string_view encoding = text_.word("'ASCII' or 'BINARY'");
+    if (lower_case(encoding) == "binary")
       in_.set_binary();
-    else if (encoding != "ascii")
+    else if (lower_case(encoding) != "ascii")
       text_.fail("the third line is " + shown(encoding) + "; it must be ASCII or BINARY");
   }
 

@@ -1,6 +1,7 @@
 #include "scene/selection.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <utility>
 
@@ -82,9 +83,10 @@ std::vector<Triangle> triangles_of(const Value& surface, const SelectionScope& s
     throw error_at(surface.place, which +
                                       "; several processes do not read the surfaces of mesh files (use a formula "
                                       "or vertices)");
+  static const MeshGroups none;
   std::vector<Triangle> triangles;
   std::string known;
-  for (const SurfaceGroup& group : scope.groups ? scope.groups->surfaces : std::vector<SurfaceGroup>()) {
+  for (const SurfaceGroup& group : (scope.groups ? *scope.groups : none).surfaces) {
     const bool is_chosen = surface.is_text() ? group.name == surface.text() : group.label == surface.integer();
     if (is_chosen) triangles.insert(triangles.end(), group.triangles.begin(), group.triangles.end());
     known += (known.empty() ? "" : ", ") + group_text(group);
@@ -107,18 +109,35 @@ std::vector<Triangle> sorted_triangles(const Value& surface, const SelectionScop
   return triangles;
 }
 
+// Flags the corners of the triangles, and the mid-edge nodes of their edges.
+std::vector<char> vertices_of(const std::vector<Triangle>& triangles, const TetMesh& mesh) {
+  std::vector<char> listed(mesh.rest.size(), 0);
+  std::vector<std::array<int, 2>> edges;
+  for (const Triangle& t : triangles)
+    for (int c = 0; c < 3; ++c) {
+      listed[t[c]] = 1;
+      edges.push_back({std::min(t[c], t[(c + 1) % 3]), std::max(t[c], t[(c + 1) % 3])});
+    }
+  std::sort(edges.begin(), edges.end());
+  for (size_t t = 0; t < mesh.mids.size(); ++t)
+    for (int k = 0; k < 6; ++k) {
+      const int a = mesh.tets[t][kTetEdges[k][0]], b = mesh.tets[t][kTetEdges[k][1]];
+      if (std::binary_search(edges.begin(), edges.end(), std::array{std::min(a, b), std::max(a, b)}))
+        listed[mesh.mids[t][k]] = 1;
+    }
+  return listed;
+}
+
 // One flag per vertex of the body for a list of indices, a surface or painted values; empty for other selections.
 // Between two listed corners, the mid-edge node is listed too.
 std::vector<char> listed_vertices(const Value& where, const SelectionScope& scope) {
   if (where.is_table() && where.find("file")) return painted_vertices(where, scope);
+  if (const Value* surface = surface_in(where)) return vertices_of(triangles_of(*surface, scope), scope.mesh);
   const Value* list = where.is_table() ? where.find("vertices") : nullptr;
-  const Value* surface = surface_in(where);
-  if (!list && !surface) return {};
+  if (!list) return {};
   std::vector<char> listed(std::max<size_t>(1, scope.mesh.rest.size()), 0);  // not empty for a part without vertices
   const int count = scope.whole ? scope.whole->vertex_count() : scope.mesh.vertex_count();
-  for (const Triangle& triangle : surface ? triangles_of(*surface, scope) : std::vector<Triangle>())
-    for (const int v : triangle) listed[v] = 1;
-  for (const Value& index : list ? list->array() : Array()) {
+  for (const Value& index : list->array()) {
     const std::int64_t i = std::get<std::int64_t>(index.data);
     if (i >= count)
       throw error_at(index.place, "vertices: " + std::to_string(i) + " is beyond the last vertex of body '" +
