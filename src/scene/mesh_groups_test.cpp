@@ -47,19 +47,19 @@ class NamedParts : public ::testing::Test {
   TestFolder folder_;
 };
 
-std::vector<int> pinned(const Scene& scene) {
+std::vector<int> first_pin(const Scene& scene) {
   return scene.simulation.model().numbering.vertex.to_user(scene.simulation.model().pins.at(0).vertices);
 }
 
 TEST_F(NamedParts, SurfacePinsItsVertices) {
-  EXPECT_EQ(pinned(load_scene(with("[[body.pin]]\nwhere = { surface = \"base\" }\n"))), (std::vector<int>{0, 1, 2}));
-  EXPECT_EQ(pinned(load_scene(with("[[body.pin]]\nwhere = { surface = 6 }\n"))), (std::vector<int>{1, 2, 4}));
+  EXPECT_EQ(first_pin(load_scene(with("[[body.pin]]\nwhere = { surface = \"base\" }\n"))), (std::vector<int>{0, 1, 2}));
+  EXPECT_EQ(first_pin(load_scene(with("[[body.pin]]\nwhere = { surface = 6 }\n"))), (std::vector<int>{1, 2, 4}));
 }
 
 TEST_F(NamedParts, SurfacePinsMidEdgeNodes) {
   const Scene scene = load_scene(with("order = 2\n[[body.pin]]\nwhere = { surface = \"base\" }\n"));
-  EXPECT_EQ(pinned(scene).size(), 6u);
-  for (const int v : pinned(scene)) EXPECT_EQ(rest(scene, v)[2], 0);
+  EXPECT_EQ(first_pin(scene).size(), 6u);
+  for (const int v : first_pin(scene)) EXPECT_EQ(rest(scene, v)[2], 0);
 }
 
 TEST_F(NamedParts, LoadActsOnTrianglesOfItsSurface) {
@@ -72,7 +72,7 @@ TEST_F(NamedParts, LoadActsOnTrianglesOfItsSurface) {
 TEST_F(NamedParts, ResolvedSceneKeepsNames) {
   const Scene scene = load_scene(with("[[body.pin]]\nwhere = { surface = \"base\" }\n"));
   write_inputs(scene, folder_ / "run");
-  EXPECT_EQ(pinned(load_scene(folder_.write("run/scene.toml", scene.resolved))), pinned(scene));
+  EXPECT_EQ(first_pin(load_scene(folder_.write("run/scene.toml", scene.resolved))), first_pin(scene));
 }
 
 TEST_F(NamedParts, RegionsHaveNamesAndLabels) {
