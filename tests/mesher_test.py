@@ -160,6 +160,13 @@ class Mesher(unittest.TestCase):
         self.assertRegex(result.stdout, r"merged 16 corners of open edges .*within 1e-6 of the diagonal")
         self.expect_sound(1, 0.01, 2)
 
+    def test_slivers_are_reported(self):
+        wedge = "".join(f"v {x} {y} {z}\n" for z in (0, 0.2) for x, y in ((0, 0), (1, 0), (1, 0.012)))  # 0.7 degrees
+        (self.folder / "wedge.obj").write_text(wedge + "f 1 3 2\nf 4 5 6\nf 1 2 5 4\nf 2 3 6 5\nf 3 1 4 6\n")
+        result = run(self.folder / "wedge.obj", "-o", self.out, "--size", 0.2)
+        self.assertEqual(result.returncode, 0, result.stderr)
+        self.assertRegex(result.stdout, r"(?m)^slivers +\d+ of \d+ tets have a dihedral angle within 1 degree of 0 or 180")
+
     def test_planar_meshes_are_named(self):
         (self.folder / "flat.obj").write_text("v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nf 1 2 3 4\n")
         for options in ([], ["--fill-holes"]):
