@@ -72,7 +72,8 @@ std::vector<int> first_agreeing_corner(const TriMesh& mesh) {
   const std::vector<char> is_open = on_open_edges(mesh);
   SparsePoints points(box_of(mesh), distance);
   for (int v = 0; v < mesh.vertex_count(); ++v)
-    if (is_open[v] && has_finite_coordinates(mesh.vertices[v])) first[v] = points.first_near(mesh.vertices[v], v, mesh.vertices);
+    if (is_open[v] && has_finite_coordinates(mesh.vertices[v]))
+      first[v] = points.first_near(mesh.vertices[v], v, mesh.vertices);
   return first;
 }
 

@@ -256,6 +256,13 @@ TEST_F(RunResults, DamagedCheckpointFallsBackToPrevious) {
   EXPECT_EQ(contents(path("run")), contents(path("whole")));
 }
 
+TEST_F(RunResults, UsdSceneIsUprightForGravityAlongZ) {
+  Scene scene = sagging_scene();
+  scene.gravity = {{0, 0, -9.81}};
+  RunDirectory::create(path("run"), scene, ExistingRun::refuse).finish(scene.simulation);
+  EXPECT_THAT(read_file(path("run/run.usda")), HasSubstr("upAxis = \"Z\""));
+}
+
 TEST_F(RunResults, ResumeNamesTheDamagedFile) {
   const OutputOptions output{.obj = true, .checkpoint_every = 0};
   {
