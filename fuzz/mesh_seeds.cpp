@@ -25,7 +25,8 @@ TetMesh two_regions() {
 // Files of other programs, by purpose.
 void append_examples(std::vector<Seed>& seeds) {
   const std::map<std::string, std::string> targets = {{".msh", "gmsh"}, {".mesh", "medit"}, {".obj", "obj"},
-                                                      {".off", "off"},  {".ply", "ply"},    {".stl", "stl"}};
+                                                      {".off", "off"},  {".ply", "ply"},    {".stl", "stl"},
+                                                      {".vtk", "vtk"}};
   int number = 0;
   for (const MeshExample& example : mesh_examples())
     seeds.push_back({targets.at(example.extension), std::to_string(++number), example.contents});

@@ -5,6 +5,7 @@
 
 #include "io/gmsh.h"
 #include "io/gmsh_slices.h"
+#include "io/legacy_vtk.h"
 #include "io/medit.h"
 #include "io/mesh_content.h"
 #include "io/obj.h"
@@ -36,6 +37,11 @@ void require_valid(const MeshContent& mesh) {
   require_finite(mesh.vertices);
   require_indices(mesh.tets, mesh.vertices.size());
   require_indices(mesh.triangles, mesh.vertices.size());
+  for (const SurfaceGroup& group : mesh.groups.surfaces) {
+    require_indices(group.triangles, mesh.vertices.size());
+    fuzz::require_printable({group.name});
+  }
+  for (const auto& [label, name] : mesh.groups.region_names) fuzz::require_printable({name});
   require(mesh.region.empty() || mesh.region.size() == mesh.tets.size(), "each tet has its region");
 }
 
@@ -92,14 +98,20 @@ void tetgen(std::string_view bytes) {
   require_valid(parse_tetgen("node", bytes.substr(0, node_end), "ele", ele));
 }
 
-void vtu(std::string_view bytes) {
-  const Vtu grid = parse_vtu(bytes, "file");
+namespace {
+
+void require_grid(const Vtu& grid) {
   require_valid({grid.mesh.rest, grid.mesh.tets, grid.mesh.region, {}});
   require_valid({grid.triangles.vertices, {}, {}, grid.triangles.triangles});
   require(grid.mesh.tets.empty() || grid.triangles.triangles.empty(), "tets or triangles");
   require_lengths(grid.point_fields, std::max(grid.mesh.rest.size(), grid.triangles.vertices.size()));
   require_lengths(grid.cell_fields, std::max(grid.mesh.tets.size(), grid.triangles.triangles.size()));
 }
+
+}  // namespace
+
+void vtu(std::string_view bytes) { require_grid(parse_vtu(bytes, "file")); }
+void vtk(std::string_view bytes) { require_grid(parse_legacy_vtk(bytes, "file")); }
 
 void doctor(std::string_view bytes) {
   constexpr size_t kMax = 2000;  // limit of elements

@@ -12,6 +12,7 @@ std::span<const Target> targets() {
       {"medit", medit},
       {"tetgen", tetgen},
       {"vtu", vtu},
+      {"vtk", vtk},
       {"obj", obj},
       {"off", off},
       {"ply", ply},

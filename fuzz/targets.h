@@ -22,6 +22,7 @@ void gmsh_slices(std::string_view bytes);  // compared with gmsh()
 void medit(std::string_view bytes);
 void tetgen(std::string_view bytes);  // .node, a line "====", .ele
 void vtu(std::string_view bytes);
+void vtk(std::string_view bytes);
 void obj(std::string_view bytes);
 void off(std::string_view bytes);
 void ply(std::string_view bytes);

@@ -135,6 +135,32 @@ class Check(CommandLine):
         self.aspic("check", "bad.mesh", "--repair", "-o", "good.mesh")
         self.aspic("check", "good.mesh")
 
+    def test_surfaces_and_regions_are_listed_with_their_names(self):
+        self.write("named.msh", """$MeshFormat
+2.2 0 8
+$EndMeshFormat
+$PhysicalNames
+2
+2 1 "outlet"
+3 3 "inside"
+$EndPhysicalNames
+$Nodes
+4
+1 0 0 0
+2 1 0 0
+3 0 1 0
+4 0 0 1
+$EndNodes
+$Elements
+2
+1 2 2 1 1 1 3 2
+2 4 2 3 1 1 2 3 4
+$EndElements
+""")
+        text = self.aspic("check", "named.msh").stdout
+        self.assertIn('region 3 "inside": 1 tets\n', text)
+        self.assertIn('surface 1 "outlet": 1 triangles\n', text)
+
     def test_an_open_surface_is_an_error(self):
         self.write("open.obj", CUBE_OBJ.rsplit("f ", 1)[0])
         self.assertIn("open", self.aspic("check", "open.obj", code=2).stdout)

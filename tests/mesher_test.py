@@ -145,6 +145,33 @@ class Mesher(unittest.TestCase):
         self.assertEqual(result.returncode, 0, result.stderr)
         self.expect_sound(4 * math.pi / 3, 0.07, 2)
 
+    def test_corners_that_agree_up_to_rounding_are_merged(self):
+        corners = [(x, y, z) for x in (0, 1) for y in (0, 1) for z in (0, 1)]
+        faces = [(0, 1, 3, 2), (4, 6, 7, 5), (0, 4, 5, 1), (2, 3, 7, 6), (0, 2, 6, 4), (1, 5, 7, 3)]
+        lines, number = [], 0
+        for face in faces:
+            for corner in face:
+                number += 1
+                lines.append("v " + " ".join(f"{c + 1e-7 * math.sin(7 * number + i):.9f}" for i, c in enumerate(corners[corner])))
+            lines.append(f"f {number - 3} {number - 2} {number - 1} {number}")
+        (self.folder / "cube.obj").write_text("\n".join(lines) + "\n")
+        result = run(self.folder / "cube.obj", "-o", self.out, "--size", 0.4)
+        self.assertEqual(result.returncode, 0, result.stderr)
+        self.assertRegex(result.stdout, r"merged 16 corners of open edges .*within 1e-6 of the diagonal")
+        self.expect_sound(1, 0.01, 2)
+
+    def test_slivers_are_reported(self):
+        wedge = "".join(f"v {x} {y} {z}\n" for z in (0, 0.2) for x, y in ((0, 0), (1, 0), (1, 0.012)))  # 0.7 degrees
+        (self.folder / "wedge.obj").write_text(wedge + "f 1 3 2\nf 4 5 6\nf 1 2 5 4\nf 2 3 6 5\nf 3 1 4 6\n")
+        result = run(self.folder / "wedge.obj", "-o", self.out, "--size", 0.2)
+        self.assertEqual(result.returncode, 0, result.stderr)
+        self.assertRegex(result.stdout, r"(?m)^slivers +\d+ of \d+ tets have a dihedral angle within 1 degree of 0 or 180")
+
+    def test_planar_meshes_are_named(self):
+        (self.folder / "flat.obj").write_text("v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nf 1 2 3 4\n")
+        for options in ([], ["--fill-holes"]):
+            self.expect_error(2, ["planar", "only solids are simulated"], self.folder / "flat.obj", *options)
+
     def test_an_implicit_torus_keeps_its_hole(self):
         result = run("--implicit", "(sqrt(x^2+y^2)-1)^2+z^2-0.16", "--bounds", -2, -2, -1, 2, 2, 1, "-o", self.out,
                      "--size", 0.2)

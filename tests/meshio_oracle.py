@@ -40,6 +40,8 @@ VARIANTS = [
     Variant(".node", {"float_fmt": ".17e"}, "tet", "tetgen:ref"),
     Variant(".vtu", {"binary": False}, "tet", "region"),
     Variant(".vtu", {"binary": True}, "tet tri", "region", ("binary",)),
+    *[Variant(".vtk", {"file_format": version, "binary": binary}, "tet tri", "region", only="read")
+      for version in ("vtk42", "vtk51") for binary in (False, True)],
     Variant(".obj", {}, "tri"),
     Variant(".ply", {"binary": False}, "tri"),
     Variant(".ply", {"binary": True}, "tri", None, ("binary",)),
@@ -96,8 +98,35 @@ def compare(variant, kind, folder):
         check(meshio.read(ours), kind, variant.label if kind == "tet" else None, variant.exact)
 
 
+def compare_second_order(options, folder):
+    """Quadratic tets beside their faces become linear; the fields of cells follow the tets."""
+    corners = np.array([[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1.0]])
+    edges = [(0, 1), (1, 2), (0, 2), (0, 3), (1, 3), (2, 3)]
+    points = np.vstack([corners, [(corners[a] + corners[b]) / 2 for a, b in edges]])
+    cells = [("triangle6", [[0, 2, 1, 6, 5, 4]]), ("tetra10", [list(range(10))])]
+    data = {"region": [np.array([3]), np.array([7])]}
+    source, target = folder / options.pop("name"), folder / "linear.msh"
+    meshio.Mesh(points, cells, cell_data=data).write(source, **options)
+    copy(source, target)
+    found = meshio.read(target)
+    assert np.array_equal(found.points[found.cells_dict["tetra"][0]], corners)
+    assert found.cell_data[GMSH][0][0] == 7, found.cell_data
+
+
+SECOND_ORDER = [{"name": "q.vtk", "file_format": version, "binary": binary}
+                for version in ("vtk42", "vtk51") for binary in (False, True)] + [{"name": "q.vtu"}]
+
+
 def main():
     failures = 0
+    for options in SECOND_ORDER:
+        with tempfile.TemporaryDirectory() as folder:
+            try:
+                compare_second_order(dict(options), pathlib.Path(folder))
+                print(f"ok    second order {options}")
+            except Exception as error:
+                failures += 1
+                print(f"FAIL  second order {options}: {type(error).__name__}: {error}")
     for variant in VARIANTS:
         for kind in variant.kinds.split():
             with tempfile.TemporaryDirectory() as folder:

@@ -200,9 +200,26 @@ std::string counts(const TriMesh& mesh) {
   return fmt::format("{} vertices, {} triangles", mesh.vertex_count(), mesh.triangle_count());
 }
 
+// Names that scenes can use: surface = "outlet", regions = { inside = 1e5 }.
+void print_groups(const TetMesh& mesh, const MeshGroups& groups) {
+  std::map<int, int> tets;
+  for (const int label : mesh.region) ++tets[label];
+  const auto print = [](const char* kind, int label, const std::string& name, const std::string& count) {
+    fmt::print("{} {}{}: {}\n", kind, label, name.empty() ? "" : fmt::format(" \"{}\"", name), count);
+  };
+  for (const auto& [label, count] : tets) {
+    const auto name = groups.region_names.find(label);
+    print("region", label, name == groups.region_names.end() ? "" : name->second, fmt::format("{} tets", count));
+  }
+  for (const SurfaceGroup& group : groups.surfaces)
+    print("surface", group.label, group.name, fmt::format("{} triangles", group.triangles.size()));
+}
+void print_groups(const TriMesh&, const MeshGroups&) {}
+
 template <class Mesh>
-int check_mesh(const CheckArguments& arguments, Mesh mesh) {
+int check_mesh(const CheckArguments& arguments, Mesh mesh, const MeshGroups& groups) {
   fmt::print("{}: {}\n", printable(arguments.input.string()), counts(mesh));
+  print_groups(mesh, groups);
   std::vector<Finding> findings = examine(mesh);
   if (arguments.repair) {
     const std::vector<std::string> actions = repair(mesh);
@@ -277,9 +294,10 @@ int check(const CheckArguments& arguments) {
   if (arguments.input.extension() == ".toml") return check_scene(arguments);
   if (!arguments.overrides.empty()) throw InvalidInput("--set needs a scene; a mesh has no values to override");
   std::vector<std::string> notes;
-  auto mesh = read_mesh(arguments.input, &notes);
+  MeshGroups groups;
+  auto mesh = read_mesh(arguments.input, &notes, &groups);
   for (const std::string& note : notes) fmt::print("note: {}\n", printable(note));
-  return std::visit([&](auto m) { return check_mesh(arguments, std::move(m)); }, std::move(mesh));
+  return std::visit([&](auto m) { return check_mesh(arguments, std::move(m), groups); }, std::move(mesh));
 }
 
 }  // namespace

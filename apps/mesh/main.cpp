@@ -101,6 +101,25 @@ double average_edge(const TetMesh& mesh) {
   return sum / mesh.tet_count();
 }
 
+// Tets that are almost flat, which the optimizer could not remove; empty: there are none.
+std::string slivers_of(const TetMesh& mesh) {
+  constexpr double kSliver = 1;  // [degrees]
+  int count = 0, worst = 0;
+  double smallest = 180;
+  for (int t = 0; t < mesh.tet_count(); ++t) {
+    const auto [least, most] = dihedral_range(corners(mesh, t));
+    const double angle = std::min(least, 180 - most);
+    if (angle >= kSliver) continue;
+    ++count;
+    if (angle < smallest) smallest = angle, worst = t;
+  }
+  if (count == 0) return "";
+  return line(
+      "slivers         %d of %d tets have a dihedral angle within 1 degree of 0 or 180, the worst is tet %d with "
+      "%.2g; try another --size",
+      count, mesh.tet_count(), worst, smallest);
+}
+
 std::string quality_report(const TetMesh& mesh, double seconds) {
   const MeshQuality q = quality(mesh);
   std::string text = line("vertices        %d", mesh.vertex_count()) + line("tets            %d", mesh.tet_count());
@@ -112,7 +131,7 @@ std::string quality_report(const TetMesh& mesh, double seconds) {
   text += line("dihedral angle  smallest %.1f, largest %.1f, average of the smallest per tet %.1f degrees",
                q.min_dihedral, q.max_dihedral, average_smallest_dihedral(mesh));
   text += line("mean ratio      smallest %.3f, average %.3f (1: regular tet)", q.min_mean_ratio, q.average_mean_ratio);
-  return text + line("time            %.2f s", seconds);
+  return text + slivers_of(mesh) + line("time            %.2f s", seconds);
 }
 
 enum ExitCode { kDone = 0, kFailed = 1, kBadInput = 2 };

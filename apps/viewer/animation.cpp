@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "base/error.h"
 #include "io/atomic_file.h"
@@ -81,11 +82,11 @@ Motion motion_of(const ShownSide& shown, const Format& format) {
   return motion;
 }
 
-std::string usd_text(const std::string& name, const Surface& surface, const Motion& motion) {
+std::string usd_text(const std::string& name, const Surface& surface, const Motion& motion, UpAxis up) {
   const TemporaryFolder folder;
   const auto path = folder.path() / "motion.usda";
-  write_usd(path, {{name, surface.triangles, [&](int k) { return motion.frames[k]; }}}, motion.times,
-            motion.per_second);
+  write_usd(path, {{name, surface.triangles, [&](int k) { return motion.frames[k]; }}}, motion.times, motion.per_second,
+            up);
   return read_file(path);
 }
 
@@ -103,18 +104,26 @@ std::string pc2_archive(const std::string& name, const Surface& surface, const M
   return zipped({{name + "/" + name + ".obj", read_file(mesh_path)}, {name + "/" + name + ".pc2", read_file(cache)}});
 }
 
+// Turns the z axis to the y axis, which is up in glTF.
+void turn_upright(Motion& motion) {
+  for (std::vector<float>& frame : motion.frames)
+    for (size_t i = 0; i + 2 < frame.size(); i += 3) frame[i + 1] = std::exchange(frame[i + 2], -frame[i + 1]);
+}
+
 }  // namespace
 
 Json animation_reply(const ShownSide& shown, const std::string& format) {
-  const Motion motion = motion_of(shown, *std::find_if(std::begin(kFormats), std::end(kFormats),
-                                                       [&](const Format& f) { return format == f.name; }));
+  Motion motion = motion_of(shown, *std::find_if(std::begin(kFormats), std::end(kFormats),
+                                                 [&](const Format& f) { return format == f.name; }));
   const std::string name = saved_name(shown.side.steered().scene);
+  const UpAxis up = up_axis(shown.side.steered().scene.gravity);
   Json reply;
   if (format == "usd") {
-    reply = file_reply(name + ".usda", usd_text(name, shown.surface, motion));
+    reply = file_reply(name + ".usda", usd_text(name, shown.surface, motion, up));
   } else if (format == "pc2") {
     reply = file_reply(name + "_pc2.zip", pc2_archive(name, shown.surface, motion));
   } else {
+    if (up == UpAxis::z) turn_upright(motion);
     std::vector<double> times;
     for (const double time : motion.times) times.push_back(time - motion.times.front());
     reply = file_reply(name + ".glb", glb({name, shown.surface.triangles, motion.frames, std::move(times)}));

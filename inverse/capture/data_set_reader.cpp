@@ -91,7 +91,7 @@ class DataSetReader {
 
   void read_rest() {
     const fs::path path = settings_.file("mesh");
-    user_mesh_ = read_tet_mesh(path, &data_.notes);
+    user_mesh_ = read_tet_mesh(path, &data_.notes, &groups_);
     const double unit = settings_.unit("mesh");
     if (unit != 1)
       for (Vec3d& X : user_mesh_.rest) X = unit * X;
@@ -101,8 +101,9 @@ class DataSetReader {
     data_.experiment.mesh = from_user(data_.numbering, user_mesh_);
     size_ = size_of(user_mesh_);
     PaintedFields painted({}, settings_.files(), data_.name);
-    const std::vector<double> density = tet_values(settings_.document(), capture_schema().key("capture", "density"),
-                                                   {user_mesh_, settings_.files(), "density", painted});
+    const std::vector<double> density =
+        tet_values(settings_.document(), capture_schema().key("capture", "density"),
+                   {user_mesh_, settings_.files(), "density", painted, nullptr, &groups_});
     data_.experiment.density = data_.numbering.tet.from_user(density);
     read_fixed();
     if (const Value* gravity = settings_.find("mesh_gravity"))
@@ -117,7 +118,7 @@ class DataSetReader {
   SelectionScope scope() const {
     const Vec3d up = settings_["up"].vector();
     if (norm(up) == 0) throw error_at(settings_["up"].place, "up = [0, 0, 0]; it needs a direction");
-    return {user_mesh_, (1 / norm(up)) * up, data_.name};
+    return {user_mesh_, (1 / norm(up)) * up, data_.name, nullptr, nullptr, &groups_};
   }
 
   void read_fixed() {
@@ -503,6 +504,7 @@ class DataSetReader {
   ErrorList errors_;
   DataSet data_;
   TetMesh user_mesh_;
+  MeshGroups groups_;  // of its file
   std::optional<RegistrationKind> registers_;
   AffineMap to_mesh_;  // from the coordinates of the markers
   std::optional<ForceSeries> forces_;

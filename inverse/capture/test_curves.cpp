@@ -2,9 +2,11 @@
 
 #include <algorithm>
 #include <array>
+#include <cctype>
 #include <cmath>
 
 #include "base/error.h"
+#include "base/printable.h"
 #include "io/csv_reader.h"
 
 namespace aspic {
@@ -16,6 +18,28 @@ struct StressColumn {
   size_t index;
   double pascals;
 };
+
+// Exports of testing machines have strains or forces instead.
+void require_columns(const CsvReader& csv, const std::string& file) {
+  const auto has = [&](const char* word) {
+    return std::any_of(csv.columns().begin(), csv.columns().end(), [&](std::string column) {
+      for (char& c : column) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+      return column.find(word) != std::string::npos;
+    });
+  };
+  for (const char* column : {"test", "stretch"}) {
+    if (csv.has(column)) continue;
+    std::string list;
+    for (const std::string& name : csv.columns()) list += (list.empty() ? "" : ", ") + name;
+    std::string message = file + ":1: missing column '" + column +
+                          "'; expected test, stretch, stress_kPa, but the table has " + elided(list, 200);
+    if (!csv.has("test")) message += "; test is uniaxial, equibiaxial, planar or simple_shear in every row";
+    if (has("strain") || has("extension") || has("displacement"))
+      message += "; stretch is 1 + strain (a strain of 5 % is 1.05), or length over length at rest";
+    if (has("force") || has("load")) message += "; stress is force over area at rest";
+    throw InvalidInput(message);
+  }
+}
 
 StressColumn stress_column(const CsvReader& csv, const std::string& file) {
   struct Unit {
@@ -36,6 +60,7 @@ StressColumn stress_column(const CsvReader& csv, const std::string& file) {
 std::vector<TestCurve> read_test_curves(const std::filesystem::path& path) {
   const std::string file = path.string();
   CsvReader csv(path, CsvOrigin::foreign);
+  require_columns(csv, file);
   const size_t test = csv.column("test"), stretch = csv.column("stretch");
   const StressColumn stress = stress_column(csv, file);
   std::vector<TestCurve> curves;

@@ -15,7 +15,8 @@ constexpr double kMissing = std::numeric_limits<double>::quiet_NaN();
 class NpzReader {
  public:
   NpzReader(const std::string& file, std::string_view contents)
-      : bytes_(contents.size()), entries_(unzipped(file, contents)) {
+      : bytes_(contents.size()),
+        entries_(unzipped(file, contents, [](const std::string& name) { return is_needed(name); })) {
     recording_.file = file;
   }
 
@@ -36,6 +37,10 @@ class NpzReader {
   }
 
  private:
+  static bool is_needed(const std::string& name) {
+    return name == "positions.npy" || name == "names.npy" || name == "times.npy" || name == "unit.npy";
+  }
+
   [[noreturn]] void fail(const std::string& message) const { throw InvalidInput(recording_.file + ": " + message); }
 
   static std::string text_of(const std::vector<size_t>& shape) {

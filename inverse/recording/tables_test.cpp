@@ -154,6 +154,31 @@ TEST(Npz, ReadsBigEndianFloats) {
   EXPECT_EQ(r.frames[0].positions[0][2], 3);
 }
 
+TEST(Npz, UnpacksOnlyNeededFilesAndEachOnce) {
+  const std::string positions = npy("<f8", "(1, 1, 3)", std::string(24, '\0'));
+  std::string archive = zipped({{"unneeded.bin", "not unpacked"}, {"positions.npy", positions}});
+  archive[archive.find("unneeded.bin") + 12] ^= 0x10;  // its data are damaged
+  EXPECT_EQ(parse_npz("a.npz", archive).frames.size(), 1u);
+  EXPECT_THAT(
+      [&] {
+        parse_npz("a.npz", zipped({{"positions.npy", positions}, {"positions.npy", positions}}));
+      },
+      testing::ThrowsMessage<InvalidInput>(HasSubstr("'positions.npy' is there twice; remove one")));
+}
+
+// All names refer to the same packed bytes, which would be unpacked again and again.
+TEST(Npz, RefusesOverlappingFiles) {
+  const std::string positions = npy("<f8", "(1, 1, 3)", std::string(24, '\0'));
+  std::string archive = zipped({{"positions.npy", positions}, {"names.npy", positions}, {"times.npy", positions}});
+  const std::string entry = "PK\x01\x02";
+  for (size_t at = archive.find(entry); at != std::string::npos; at = archive.find(entry, at + 1)) {
+    const std::string size("\xff\xff\x01\0", 4);  // 131071 packed bytes of 0.5 kB
+    archive.replace(at + 20, 4, size).replace(at + 42, 4, 4, '\0');
+  }
+  EXPECT_THAT([&] { parse_npz("a.npz", archive); },
+              testing::ThrowsMessage<InvalidInput>(HasSubstr("the files of the archive overlap")));
+}
+
 TEST(Npz, RefusesDamage) {
   EXPECT_THAT(npz_refusal(npy("<f8", "(1, 1, 3)", "short")),
               HasSubstr("the number of values is 3, but the rest of the file"));

@@ -202,7 +202,9 @@ py::tuple check_python_derivatives(const py::function& value, const py::function
 }
 
 py::dict curve_of(const ObservedIteration& self, double c, int samples) {
-  if (samples < 2) throw InvalidInput("samples: at least 2 are needed");
+  constexpr int kMostSamples = 100'000;  // each evaluates E
+  if (samples < 2 || samples > kMostSamples)
+    throw InvalidInput("samples = " + std::to_string(samples) + "; must be from 2 to " + std::to_string(kMostSamples));
   std::vector<CurvePoint> points;
   {
     const LiveIteration& live = self.live();
@@ -224,7 +226,8 @@ py::dict curve_of(const ObservedIteration& self, double c, int samples) {
 }
 
 py::dict slice_of(const ObservedIteration& self, int samples) {
-  if (samples < 2 || samples > 1000) throw InvalidInput("samples: must be from 2 to 1000");
+  if (samples < 2 || samples > 1000)
+    throw InvalidInput("samples = " + std::to_string(samples) + "; must be from 2 to 1000");
   Slice slice;
   {
     const LiveIteration& live = self.live();

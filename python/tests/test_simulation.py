@@ -58,6 +58,21 @@ def test_arrays_are_in_the_order_of_the_mesh(jelly):
     assert sim.mass.sum() == pytest.approx(1000 * 1e-3)
 
 
+def test_samples_of_curves_are_bounded(jelly):
+    refused = []
+
+    def observe(it):
+        for sample in (lambda: it.curve(samples=2**31 - 1), lambda: it.curve(samples=1), lambda: it.slice(2**31 - 1)):
+            try:
+                sample()
+            except aspic.InvalidInput as error:
+                refused.append(str(error))
+
+    aspic.Simulation(jelly).step(observe=observe)
+    assert "samples = 2147483647; must be from 2 to 100000" in refused[0]
+    assert len(refused) % 3 == 0
+
+
 def test_arrays_outlive_the_simulation(jelly):
     sim, observed = aspic.Simulation(jelly), []
     sim.step(observe=lambda it: observed.extend([it.x, it.g, it.trials, it.slice(3)["value"], it]))

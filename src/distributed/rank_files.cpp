@@ -79,7 +79,7 @@ struct RankFiles::Impl {
       write_index();
       tables.sync();
       Checkpoint sizes;
-      tables.add_size(sizes);
+      tables.add_sizes(sizes);
       facts = {scene_fingerprint, frame_times, sizes.integers};
     });
     write_slices(layout.checkpoint(), simulation.local().snapshot(), simulation.user_order(), facts);
@@ -183,7 +183,7 @@ RankFiles RankFiles::resume(const RunPlan& plan, DistributedSimulation& simulati
     }
     impl->require_frames();
     impl->tables = RunTables::resume(layout, simulation.local());
-    impl->tables.require_iterations(newest.head);
+    impl->tables.require_unchanged(newest.head);
     layout.remove_unfinished();
     impl->write_index();
     layout.remove_frames_from(static_cast<int>(frames));

@@ -54,6 +54,7 @@ CsvFile CsvFile::create(const std::filesystem::path& path, const std::vector<std
   CsvFile table;
   write_file(path, head_line(columns));  // the file always has its header line
   table.file_ = OutputFile::open_existing(path);
+  table.checksum_.add(head_line(columns));
   return table;
 }
 
@@ -80,9 +81,14 @@ CsvFile CsvFile::resume(const std::filesystem::path& path, const std::vector<std
   CsvFile table;
   table.file_ = OutputFile::open_existing(path);
   table.file_.truncate(kept);
+  table.checksum_.add(std::string_view(text).substr(0, kept));
   return table;
 }
 
-void CsvFile::append(const CsvRow& row) { file_.append(row.text() + "\n"); }
+void CsvFile::append(const CsvRow& row) {
+  const std::string line = row.text() + "\n";
+  file_.append(line);
+  checksum_.add(line);
+}
 
 }  // namespace aspic

@@ -5,6 +5,7 @@
 #include <string_view>
 #include <vector>
 
+#include "io/checksum.h"
 #include "io/output_file.h"
 
 namespace aspic {
@@ -36,12 +37,14 @@ class CsvFile {
 
   void append(const CsvRow& row);                 // one write per row, so that a killed run leaves complete lines
   uint64_t size() const { return file_.size(); }  // [bytes]
+  uint32_t checksum() const { return checksum_.value(); }
   const std::filesystem::path& path() const { return file_.path(); }
   void sync() { file_.sync(); }
   void close() { file_.close(); }
 
  private:
   OutputFile file_;
+  Checksum checksum_;  // of the whole file
 };
 
 }  // namespace aspic

@@ -122,8 +122,7 @@ bool CsvReader::has(std::string_view column) const {
 size_t CsvReader::column(std::string_view name) const {
   const auto found = std::find(columns_.begin(), columns_.end(), name);
   if (found == columns_.end())
-    throw InvalidInput(path_.string() + ":1: has no column '" + std::string(name) +
-                       "'; it is another table, or damaged");
+    throw InvalidInput(path_.string() + ":1: missing column '" + std::string(name) + "'" + suggestion(name, columns_));
   return static_cast<size_t>(found - columns_.begin());
 }
 

@@ -45,6 +45,12 @@ const GmshElementType* gmsh_element_type(int number) {
   return type == std::end(kTypes) ? nullptr : type;
 }
 
+int gmsh_face_corners(int type) {
+  constexpr int kQuadraticTriangle = 9, kQuadraticQuadrangle = 10, kSerendipityQuadrangle = 16;
+  if (type == kGmshTriangle || type == kQuadraticTriangle) return 3;
+  return type == kGmshQuadrangle || type == kQuadraticQuadrangle || type == kSerendipityQuadrangle ? 4 : 0;
+}
+
 std::optional<int64_t> GmshTags::prepare() {
   // Differences of unsigned numbers cannot overflow.
   bool is_consecutive = true;

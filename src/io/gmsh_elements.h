@@ -13,6 +13,8 @@ struct GmshElementType {
   std::string_view name;
 };
 inline constexpr int kGmshTriangle = 2, kGmshQuadrangle = 3, kGmshTet = 4, kGmshQuadraticTet = 11;
+// Number of corners of a face of first or second order; 0 for other elements.
+int gmsh_face_corners(int type);
 
 const GmshElementType* gmsh_element_type(int number);  // null if unknown [Gmsh reference manual, MSH file format]
 

@@ -1,5 +1,8 @@
 #include <algorithm>
+#include <climits>
+#include <cstdlib>
 #include <map>
+#include <span>
 
 #include "io/gmsh.h"
 #include "io/gmsh_elements.h"
@@ -19,6 +22,7 @@ class GmshReader {
     if (content_.tets.empty() && content_.triangles.empty() && !lost_.empty())
       text_.fail("the mesh has " + std::string(lost_) + ", which are not read; export it in first order");
     set_regions();
+    set_groups();
     return std::move(content_);
   }
 
@@ -32,12 +36,15 @@ class GmshReader {
 
   // $MeshFormat: version, 0 (text) or 1 (binary), size of a double; in binary files then the integer 1.
   void read_format() {
+    if (text_.peek() == "$NOD") {
+      text_.word("$NOD");
+      text_.fail(std::string("this is Gmsh 1 ($NOD), which is not read; ") + kSaveAgain);
+    }
     expect("$MeshFormat");
     const double version = text_.number("the version");
     is_4_ = version == 4.1;
     if (!is_4_ && !(version >= 2 && version < 3))
-      text_.fail("version " + std::to_string(version).substr(0, 3) +
-                 " is not read; save it again with 'gmsh IN.msh -save -format msh41 -o OUT.msh'");
+      text_.fail("version " + std::to_string(version).substr(0, 3) + " is not read; " + kSaveAgain);
     const int64_t is_binary = text_.integer("the file type");
     if (is_binary != 0 && is_binary != 1)
       text_.fail("the file type is " + std::to_string(is_binary) + "; it must be 0 (text) or 1 (binary)");
@@ -61,16 +68,18 @@ class GmshReader {
     const std::string end = "$End" + name.substr(1);
     if (name == "$PartitionedEntities")
       text_.fail("the mesh is partitioned; save it in one piece (Mesh > Unpartition in Gmsh)");
-    if (name == "$Nodes") {
+    if (const bool is_parametric = name == "$ParametricNodes" && !is_4_; is_parametric || name == "$Nodes") {
       if (std::exchange(has_nodes_, true)) text_.fail("a second section $Nodes; merge it with the first");
       text_.skip_line();
-      is_4_ ? read_nodes_4() : read_nodes_2();
+      is_4_ ? read_nodes_4() : read_nodes_2(is_parametric);
       if (const auto twice = tags_.prepare())
         text_.fail("two nodes have the tag " + std::to_string(*twice) + "; renumber them");
     } else if (name == "$Elements") {
       if (!has_nodes_) text_.fail("$Elements comes before $Nodes; put the nodes first");
       text_.skip_line();
       is_4_ ? read_elements_4() : read_elements_2();
+    } else if (name == "$PhysicalNames") {
+      read_names();
     } else if (name == "$Entities" && is_4_) {
       text_.skip_line();
       read_entities();
@@ -91,8 +100,20 @@ class GmshReader {
     return point;
   }
 
-  // Version 2: a count, always as text; then tag x y z.
-  void read_nodes_2() {
+  // A count, then dimension, number and name of each group; text in every file.
+  void read_names() {
+    const int count = text_.count("the number of physical names", 6);
+    for (int i = 0; i < count; ++i) {
+      const int64_t dimension = text_.integer("the dimension of a physical group");
+      const int group = text_.small_integer("the number of a physical group");
+      const std::string name = printable(text_.quoted("a physical name"));
+      if (dimension == 2) surface_names_[group] = name;
+      if (dimension == 3) volume_names_[group] = name;
+    }
+  }
+
+  // Version 2: a count, always as text; then tag x y z, with dimension, tag and parameters of the entity if parametric.
+  void read_nodes_2(bool is_parametric) {
     const int64_t count = text_.integer("the number of nodes");
     text_.skip_line();
     GmshSource in = source();
@@ -101,6 +122,10 @@ class GmshReader {
     for (int i = 0; i < checked; ++i) {
       tags_.add(in.integer("the tag of a node"));
       content_.vertices.push_back(read_point(in));
+      if (!is_parametric) continue;
+      const int dimension = in.integer("the dimension of a node's entity");
+      in.integer("the tag of a node's entity");
+      if (dimension == 1 || dimension == 2) in.skip_numbers(dimension, "a node's parameter");
     }
     text_.seek(in.position());
   }
@@ -131,7 +156,7 @@ class GmshReader {
     text_.seek(in.position());
   }
 
-  // $Entities lists the physical groups of each entity; only those of volumes are read.
+  // $Entities lists the physical groups of each entity; those of volumes and surfaces are kept.
   void read_entities() {
     GmshSource in = source();
     int64_t counts[4];
@@ -141,11 +166,13 @@ class GmshReader {
       for (int i = 0; i < entities; ++i) {
         const int tag = in.integer("the tag of an entity");
         in.skip_numbers(dimension == 0 ? 3 : 6, "the bounding box of an entity");
-        const int64_t groups = in.size("the number of physical groups");
-        if (groups > 0) {
+        const int groups =
+            in.checked_count(in.size("the number of physical groups"), "the number of physical groups", 1, 4);
+        for (int g = 0; g < groups; ++g) {
           const int group = in.integer("a physical group");
-          if (dimension == 3) volume_groups_[tag] = group;
-          in.skip_integers(groups - 1, "the number of physical groups");
+          if (dimension == 3 && g == 0) volume_groups_[tag] = group;
+          if (dimension == 2)
+            surface_groups_[tag].push_back(std::abs(std::max(group, -INT_MAX)));  // negative: reversed
         }
         if (dimension > 0)
           in.skip_integers(in.size("the number of bounding entities"), "the number of bounding entities");
@@ -174,12 +201,13 @@ class GmshReader {
   void read_element(GmshSource& in, const GmshElementType& type, int group, int entity) {
     constexpr std::string_view kWhat = "a node of an element";
     const bool is_tet = type.number == kGmshTet || type.number == kGmshQuadraticTet;
-    if (!is_tet && type.number != kGmshTriangle && type.number != kGmshQuadrangle)
+    const int face_corners = gmsh_face_corners(type.number);
+    if (!is_tet && face_corners == 0)
       return is_4_ ? in.skip_sizes(type.nodes, kWhat) : in.skip_integers(type.nodes, kWhat);
     std::array<int, 10> nodes;
     nodes.fill(-1);
     for (int i = 0; i < type.nodes; ++i) nodes[i] = corner(in, is_4_ ? in.size(kWhat) : in.integer(kWhat));
-    if (!is_tet) return add_fan({nodes.data(), static_cast<size_t>(type.nodes)}, content_.triangles);
+    if (!is_tet) return add_face({nodes.data(), static_cast<size_t>(face_corners)}, type, group, entity);
     content_.tets.push_back({nodes[0], nodes[1], nodes[2], nodes[3]});
     if (type.number == kGmshQuadraticTet || !content_.mids.empty()) {
       content_.mids.resize(content_.tets.size(), {-1, -1, -1, -1, -1, -1});
@@ -187,6 +215,14 @@ class GmshReader {
     }
     groups_.push_back(group);
     entities_.push_back(entity);
+  }
+
+  void add_face(std::span<const int> corners, const GmshElementType& type, int group, int entity) {
+    if (type.nodes == static_cast<int>(corners.size())) add_fan(corners, content_.triangles);
+    const auto groups = surface_groups_.find(entity);
+    if (!is_4_ || groups == surface_groups_.end() || groups->second.empty())
+      return add_fan(corners, surfaces_[group != 0 ? group : entity]);
+    for (const int label : groups->second) add_fan(corners, surfaces_[label]);
   }
 
   // Element tags in version 2: physical group, elementary entity, then partitions.
@@ -256,14 +292,30 @@ class GmshReader {
     for (size_t t = 0; t < groups_.size(); ++t) content_.region.push_back(groups_[t] != 0 ? groups_[t] : entities_[t]);
   }
 
+  void set_groups() {
+    if (content_.tets.empty()) return;
+    for (auto& [label, triangles] : surfaces_) {
+      const auto name = surface_names_.find(label);
+      content_.groups.surfaces.push_back(
+          {label, name == surface_names_.end() ? "" : name->second, std::move(triangles)});
+    }
+    for (const auto& [label, name] : volume_names_)
+      if (std::find(groups_.begin(), groups_.end(), label) != groups_.end()) content_.groups.region_names[label] = name;
+  }
+
+  static constexpr const char* kSaveAgain = "save it again with 'gmsh IN.msh -save -format msh41 -o OUT.msh'";
+
   TextScanner text_;
   MeshContent content_;
   GmshData data_ = GmshData::text;
   bool is_4_ = false, has_nodes_ = false;
   GmshTags tags_;
-  std::map<int, int> volume_groups_;    // entity -> first physical group
-  std::vector<int> groups_, entities_;  // per tet; group 0: none
-  std::string_view lost_;               // surface elements that are skipped
+  std::map<int, int> volume_groups_;                // entity -> first physical group
+  std::map<int, std::vector<int>> surface_groups_;  // entity -> physical groups
+  std::map<int, std::string> volume_names_, surface_names_;
+  std::map<int, std::vector<Triangle>> surfaces_;  // by physical group, or else by entity
+  std::vector<int> groups_, entities_;             // per tet; group 0: none
+  std::string_view lost_;                          // surface elements that are skipped
 };
 
 }  // namespace

@@ -74,6 +74,53 @@ TEST(Gmsh, SkipsSecondOrderTrianglesOnlyBesideTets) {
               HasSubstr("6-node triangles (second order)"));
 }
 
+TEST(Gmsh, Version1NamesItselfAndRemedy) {
+  EXPECT_THAT(gmsh_error("$NOD\n4\n1 0 0 0\n$ENDNOD\n$ELM\n0\n$ENDELM\n"),
+              HasSubstr("a.msh:1: this is Gmsh 1 ($NOD), which is not read; save it again with 'gmsh IN.msh"));
+}
+
+TEST(Gmsh, ReadsParametricNodes) {
+  const std::string text =
+      "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$ParametricNodes\n5\n1 0 0 0 0 1\n2 1 0 0 1 2 0.25\n"
+      "3 0 1 0 2 3 0.5 0.75\n4 0 0 1 3 1\n5 1 1 1 3 1\n$EndParametricNodes\n"
+      "$Elements\n2\n1 4 2 0 1 1 2 3 4\n2 4 2 0 1 2 3 4 5\n$EndElements\n";
+  const MeshContent mesh = parse_gmsh("a.msh", text);
+  ASSERT_EQ(mesh.vertices.size(), 5u);
+  EXPECT_EQ(mesh.vertices[2][1], 1);
+  EXPECT_THAT(mesh.tets, ElementsAre(Tet{0, 1, 2, 3}, Tet{1, 2, 3, 4}));
+}
+
+TEST(Gmsh, NamesSurfacesAndRegions) {
+  const MeshGroups groups = parse_gmsh("a.msh", gmsh_22_text()).groups;
+  ASSERT_EQ(groups.surfaces.size(), 1u);
+  EXPECT_EQ(groups.surfaces[0].name, "skin");
+  EXPECT_EQ(groups.surfaces[0].label, 1);
+  EXPECT_THAT(groups.surfaces[0].triangles, ElementsAre(Triangle{0, 1, 2}));
+  EXPECT_THAT(groups.region_names, ElementsAre(testing::Pair(7, "muscle tissue")));
+}
+
+TEST(Gmsh, SurfacesOfSecondOrderAreGroups) {
+  const std::string text = replaced(gmsh_22_text(), "3 2 2 1 1 1 2 4", "3 9 2 1 1 1 2 4 8 9 20");
+  const MeshContent mesh = parse_gmsh("a.msh", text);
+  ASSERT_EQ(mesh.groups.surfaces.size(), 1u);
+  EXPECT_THAT(mesh.groups.surfaces[0].triangles, ElementsAre(Triangle{0, 1, 2}));
+}
+
+TEST(Gmsh, TriangleBelongsToEveryGroupOfItsEntity) {
+  // $Entities of version 4.1: surface 1 is in the groups -5 (reversed) and 6.
+  const std::string text =
+      "$MeshFormat\n4.1 0 8\n$EndMeshFormat\n$PhysicalNames\n1\n2 5 \"outlet\"\n$EndPhysicalNames\n"
+      "$Entities\n0 0 1 1\n1 0 0 0 1 1 0 2 -5 6 0\n1 0 0 0 1 1 1 0 0\n$EndEntities\n"
+      "$Nodes\n1 4 1 4\n3 1 0 4\n1\n2\n3\n4\n0 0 0\n1 0 0\n0 1 0\n0 0 1\n$EndNodes\n"
+      "$Elements\n2 2 1 2\n2 1 2 1\n1 1 2 3\n3 1 4 1\n2 1 2 3 4\n$EndElements\n";
+  const MeshGroups groups = parse_gmsh("a.msh", text).groups;
+  ASSERT_EQ(groups.surfaces.size(), 2u);
+  EXPECT_EQ(groups.surfaces[0].label, 5);
+  EXPECT_EQ(groups.surfaces[0].name, "outlet");
+  EXPECT_EQ(groups.surfaces[1].label, 6);
+  EXPECT_THAT(groups.surfaces[1].triangles, ElementsAre(Triangle{0, 1, 2}));
+}
+
 TEST(Gmsh, ErrorsNameLineOrByte) {
   EXPECT_THAT(gmsh_error(replaced(gmsh_22_text(), "4 0 1 0", "4 0 nan 0")),
               HasSubstr("a.msh:13: a node's coordinate is 'nan'"));

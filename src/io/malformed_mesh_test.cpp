@@ -7,6 +7,7 @@
 
 #include "base/error.h"
 #include "io/gmsh.h"
+#include "io/legacy_vtk.h"
 #include "io/medit.h"
 #include "io/mesh_examples_test.h"
 #include "io/obj.h"
@@ -27,9 +28,17 @@ struct Case {
   Parser parse;
 };
 
+MeshContent legacy_vtk_content(const std::string& file, std::string_view text) {
+  Vtu grid = parse_legacy_vtk(text, file);
+  const bool has_tets = !grid.mesh.tets.empty();
+  return {has_tets ? grid.mesh.rest : grid.triangles.vertices, grid.mesh.tets, grid.mesh.region,
+          grid.triangles.triangles};
+}
+
 std::vector<Case> cases() {
-  const std::map<std::string, Parser> parsers = {{".msh", parse_gmsh}, {".mesh", parse_medit}, {".obj", parse_obj},
-                                                 {".off", parse_off},  {".ply", parse_ply},    {".stl", parse_stl}};
+  const std::map<std::string, Parser> parsers = {
+      {".msh", parse_gmsh}, {".mesh", parse_medit}, {".obj", parse_obj},         {".off", parse_off},
+      {".ply", parse_ply},  {".stl", parse_stl},    {".vtk", legacy_vtk_content}};
   std::vector<Case> result;
   for (const MeshExample& example : mesh_examples())
     result.push_back({example.name, example.contents, parsers.at(example.extension)});

@@ -94,6 +94,7 @@ class MeditReader {
     clear_labels_of_zero();
     if (seek("Triangles")) read_polygons<3>("the number of triangles");
     if (seek("Quadrilaterals")) read_polygons<4>("the number of quadrilaterals");
+    for (auto& [label, triangles] : surfaces_) content_.groups.surfaces.push_back({label, "", std::move(triangles)});
     return std::move(content_);
   }
 
@@ -104,7 +105,9 @@ class MeditReader {
       text_.fail("found " + shown(word) + " where 'MeshVersionFormatted' should be; is this a Medit .mesh file?");
     text_.small_integer("the version");
     while (!text_.at_end()) {
-      const std::string_view word = text_.word("a keyword");
+      const std::string_view word = text_.quoted("a keyword");
+      if (text_.text()[text_.word_position()] == '"')
+        continue;  // a name of a file, such as that of the section Geometry
       if (!std::isalpha(static_cast<unsigned char>(word[0]))) continue;  // a number of the previous section
       if (word == "End") return;
       if (word == "nan" || word == "inf" || word == "NaN" || word == "Inf")
@@ -175,8 +178,10 @@ class MeditReader {
   void read_polygons(std::string_view what) {
     const int count = text_.count(what, 2 * (corners + 1));
     for (int i = 0; i < count; ++i) {
-      add_fan(read_corners<corners>(), content_.triangles);
-      text_.integer("the reference of a face");
+      const std::array<int, corners> face = read_corners<corners>();
+      add_fan(face, content_.triangles);
+      const int label = text_.small_integer("the reference of a face");
+      if (label != 0 && !content_.tets.empty()) add_fan(face, surfaces_[label]);
     }
   }
 
@@ -185,6 +190,7 @@ class MeditReader {
   TextScanner text_;
   MeshContent content_;
   std::map<std::string_view, size_t> sections_;
+  std::map<int, std::vector<Triangle>> surfaces_;  // by reference
 };
 
 void append_section(std::string& text, std::string_view keyword, size_t count) {

@@ -3,6 +3,7 @@
 #include <span>
 #include <vector>
 
+#include "mesh/mesh_groups.h"
 #include "mesh/tet_mesh.h"
 
 namespace aspic {
@@ -14,6 +15,7 @@ struct MeshContent {
   std::vector<Triangle> triangles;
   // Mid-edge nodes of each tet in any order, {-1, ...} for a linear one; empty: all are linear.
   std::vector<MidNodes> mids = {};
+  MeshGroups groups = {};  // of a mesh of tets
 };
 
 // Splits a polygon of at least three corners into a fan of triangles.

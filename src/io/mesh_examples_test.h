@@ -199,6 +199,47 @@ inline std::string binary_stl(const std::string& head) {
   return s;
 }
 
+// Two tets with fields, as VTK writes them: version 3.0 with the sizes of cells, 5.1 with offsets.
+inline std::string legacy_vtk(bool is_binary, bool has_offsets) {
+  std::string s = std::string("# vtk DataFile Version ") + (has_offsets ? "5.1" : "3.0") + "\na title\n" +
+                  (is_binary ? "BINARY" : "ASCII") + "\nDATASET UNSTRUCTURED_GRID\n";
+  const auto put = [&](const auto& numbers) {
+    for (const auto number : numbers) {
+      if (is_binary)
+        s += raw(number, std::endian::big);
+      else
+        s += std::to_string(number) + ' ';
+    }
+    s += '\n';
+  };
+  s += "POINTS 5 double\n";
+  put(std::vector<double>{0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1, 1, 1, 1});
+  if (has_offsets) {
+    s += "CELLS 3 8\nOFFSETS vtktypeint64\n";
+    put(std::vector<int64_t>{0, 4, 8});
+    s += "CONNECTIVITY vtktypeint64\n";
+    put(std::vector<int64_t>{0, 1, 2, 3, 1, 2, 3, 4});
+  } else {
+    s += "CELLS 2 10\n";
+    put(std::vector<int32_t>{4, 0, 1, 2, 3, 4, 1, 2, 3, 4});
+  }
+  s += "CELL_TYPES 2\n";
+  put(std::vector<int32_t>{10, 10});
+  s += "CELL_DATA 2\nSCALARS region int 1\nLOOKUP_TABLE default\n";
+  put(std::vector<int32_t>{7, 9});
+  s += "METADATA\nINFORMATION 0\n\nPOINT_DATA 5\nVECTORS u float\n";
+  put(std::vector<float>(15, 1.5f));
+  s += "FIELD FieldData 1\nits%20name 2 5 double\n";
+  put(std::vector<double>{1, 2, 3, 4, 5, 6, 7, 8, 9, 10});
+  return s;
+}
+
+inline std::string legacy_vtk_surface() {
+  return "# vtk DataFile Version 4.2\nsurface\nASCII\nDATASET POLYDATA\nPOINTS 4 float\n0 0 0 1 0 0 1 1 0 0 1 0\n"
+         "VERTICES 1 2\n1 0\nPOLYGONS 1 5\n4 0 1 2 3\nTRIANGLE_STRIPS 1 5\n4 0 1 3 2\n"
+         "CELL_DATA 3\nSCALARS part int\nLOOKUP_TABLE default\n1 2 3\n";
+}
+
 // All files are valid.
 inline std::vector<MeshExample> mesh_examples() {
   return {
@@ -221,6 +262,11 @@ inline std::vector<MeshExample> mesh_examples() {
        "  endloop\n endfacet\n FACET NORMAL nan nan nan\n  OUTER LOOP\n   VERTEX -0 0 0\n   VERTEX 1e0 0 0\n"
        "   VERTEX 0 0 1\n  ENDLOOP\n ENDFACET\nendsolid two words\n",
        4, 0, 2},
+      {"legacy VTK 3.0 text", ".vtk", legacy_vtk(false, false), 5, 2, 0, {7, 9}},
+      {"legacy VTK 3.0 binary", ".vtk", legacy_vtk(true, false), 5, 2, 0, {7, 9}},
+      {"legacy VTK 5.1 text", ".vtk", legacy_vtk(false, true), 5, 2, 0, {7, 9}},
+      {"legacy VTK 5.1 binary", ".vtk", legacy_vtk(true, true), 5, 2, 0, {7, 9}},
+      {"legacy VTK surface", ".vtk", legacy_vtk_surface(), 4, 0, 4},
   };
 }
 

@@ -9,7 +9,9 @@
 #include "base/error.h"
 #include "base/free_memory.h"
 #include "io/atomic_file.h"
+#include "io/foreign_formats.h"
 #include "io/gmsh.h"
+#include "io/legacy_vtk.h"
 #include "io/medit.h"
 #include "io/mesh_content.h"
 #include "io/obj.h"
@@ -85,8 +87,8 @@ void write_tetgen(const fs::path& path, const TetMesh& mesh, FileEncoding encodi
   write_file(partner(path, ".ele"), text.ele);
 }
 
-MeshContent read_vtu_mesh(const fs::path& path) {
-  Vtu vtu = read_vtu(path);
+MeshContent read_vtk_mesh(const fs::path& path) {
+  Vtu vtu = read_vtk_or_vtu(path);
   if (!vtu.mesh.tets.empty())
     return {
         std::move(vtu.mesh.rest), std::move(vtu.mesh.tets), std::move(vtu.mesh.region), {}, std::move(vtu.mesh.mids)};
@@ -108,7 +110,8 @@ const std::vector<Format>& formats() {
        write_text<TriMesh, medit_text>, true, true},
       {".node", "TetGen .node and .ele", read_tetgen, write_tetgen, nullptr, true, false},
       {".ele", "TetGen .node and .ele", read_tetgen, write_tetgen, nullptr, true, false},
-      {".vtu", "VTK XML unstructured grid", read_vtu_mesh, write_vtu_mesh, nullptr, true, true},
+      {".vtu", "VTK XML unstructured grid", read_vtk_mesh, write_vtu_mesh, nullptr, true, true},
+      {".vtk", "VTK legacy, text and binary", read_vtk_mesh, nullptr, nullptr, true, true},
       {".obj", "Wavefront OBJ", read_text<parse_obj>, nullptr, write_text<TriMesh, obj_text>, false, true},
       {".ply", "PLY, ASCII and binary", read_text<parse_ply>, nullptr, write_bytes<TriMesh, ply_bytes>, false, true},
       {".stl", "STL, ASCII and binary", read_text<parse_stl>, nullptr, write_stl, false, true},
@@ -129,6 +132,8 @@ const Format& format_of(const fs::path& path) {
     if (format.extension == extension) return format;
     known.push_back(format.extension);
   }
+  if (const std::string remedy = remedy_for_foreign_format(extension); !remedy.empty())
+    throw InvalidInput(path.string() + ": " + remedy);
   throw InvalidInput(path.string() + ": no mesh format has the extension '" + extension + "'" +
                      suggestion(extension, known));
 }
@@ -174,12 +179,13 @@ const std::vector<MeshFormat>& mesh_formats() {
   return list;
 }
 
-std::variant<TetMesh, TriMesh> read_mesh(const std::string& path, std::vector<std::string>* notes) {
+std::variant<TetMesh, TriMesh> read_mesh(const std::string& path, std::vector<std::string>* notes, MeshGroups* groups) {
   const Format& format = format_of(path);
   check_memory(path);
   MeshContent content = format.read(path);
   const std::string note = remove_mid_nodes(content);
   if (notes && !note.empty()) notes->push_back(fs::path(path).filename().string() + ": " + note);
+  if (groups) *groups = std::move(content.groups);
   if (!content.tets.empty())
     return TetMesh{std::move(content.vertices), std::move(content.tets), std::move(content.region)};
   if (!content.triangles.empty()) return TriMesh{std::move(content.vertices), std::move(content.triangles)};
@@ -190,8 +196,8 @@ std::variant<TetMesh, TriMesh> read_mesh(const std::string& path, std::vector<st
                      "; export the mesh again with its elements");
 }
 
-TetMesh read_tet_mesh(const std::string& path, std::vector<std::string>* notes) {
-  auto mesh = read_mesh(path, notes);
+TetMesh read_tet_mesh(const std::string& path, std::vector<std::string>* notes, MeshGroups* groups) {
+  auto mesh = read_mesh(path, notes, groups);
   if (auto* tets = std::get_if<TetMesh>(&mesh)) return std::move(*tets);
   throw InvalidInput(path + ": holds a surface, no tets; fill it with 'aspic mesh " +
                      fs::path(path).filename().string() + " -o " + fs::path(path).stem().string() + ".msh'");
@@ -206,7 +212,7 @@ TriMesh read_tri_mesh(const std::string& path) {
 void write_mesh(const std::string& path, const TetMesh& mesh, FileEncoding encoding) {
   const Format& format = format_of(path);
   if (!format.write_tets)
-    throw InvalidInput(path + ": " + format.name + " cannot hold tets; write .msh, .mesh, .node or .vtu");
+    throw InvalidInput(path + ": " + format.name + " is not written for tets; write .msh, .mesh, .node or .vtu");
   ASPIC_CHECK(mesh.region.empty() || mesh.region.size() == mesh.tets.size());
   ASPIC_CHECK(are_indices_valid(mesh.tets, mesh.vertex_count()));
   check_vertices(path, mesh.rest);

@@ -4,6 +4,7 @@
 #include <variant>
 #include <vector>
 
+#include "mesh/mesh_groups.h"
 #include "mesh/tet_mesh.h"
 
 namespace aspic {
@@ -18,10 +19,11 @@ const std::vector<MeshFormat>& mesh_formats();  // all, in the order of help tex
 
 // Returns the tets of the file, or its triangles if it has no tets; quads are split. Quadratic tets become linear, with
 // a note in `notes`. Either file names a .node/.ele pair. Throws InvalidInput with file, line (or byte offset) and
-// remedy.
-std::variant<TetMesh, TriMesh> read_mesh(const std::string& path, std::vector<std::string>* notes = nullptr);
+// remedy. `groups`: the named parts of tets.
+std::variant<TetMesh, TriMesh> read_mesh(const std::string& path, std::vector<std::string>* notes = nullptr,
+                                         MeshGroups* groups = nullptr);
 // Reads tets. Throws InvalidInput like read_mesh(), and if the file has no tets.
-TetMesh read_tet_mesh(const std::string& path, std::vector<std::string>* notes = nullptr);
+TetMesh read_tet_mesh(const std::string& path, std::vector<std::string>* notes = nullptr, MeshGroups* groups = nullptr);
 // Reads triangles, or the boundary of the tets. Throws InvalidInput like read_mesh().
 TriMesh read_tri_mesh(const std::string& path);
 

@@ -142,6 +142,12 @@ TEST_F(MeshFile, UnreadableFilesAreNamedWithRemedy) {
     return message_of([&] { read_mesh(folder / name); });
   };
   EXPECT_THAT(read("a.objj", ""), HasSubstr("no mesh format has the extension '.objj' (did you mean '.obj'?)"));
+  EXPECT_THAT(
+      read("a.inp", "*NODE"),
+      HasSubstr("a.inp: this is an Abaqus or CalculiX input file, which is not read; convert its tets by meshio"));
+  EXPECT_THAT(read("a.STEP", ""), HasSubstr("this is STEP geometry, which is not read; mesh it by Gmsh: gmsh"));
+  for (const char* name : {"a.feb", "a.fbx", "a.glb", "a.3mf", "a.bdf", "a.vtp", "a.nii"})
+    EXPECT_THAT(read(name, ""), HasSubstr(", which is not read; ")) << name;
   EXPECT_THAT(read("a", ""), HasSubstr("no mesh format has the extension ''"));
   EXPECT_THAT(read("a.obj", ""), HasSubstr("a.obj: holds no faces"));
   EXPECT_THAT(read("b.obj", "v 0 0 0\n"), HasSubstr("b.obj: holds no faces"));
@@ -158,7 +164,8 @@ TEST_F(MeshFile, UnreadableFilesAreNamedWithRemedy) {
 
 TEST_F(MeshFile, UnsupportedContentIsRefusedBeforeWriting) {
   TetMesh tets = awkward_tets();
-  EXPECT_THAT(message_of([&] { write_mesh(folder / "a.obj", tets); }), HasSubstr("cannot hold tets; write .msh"));
+  EXPECT_THAT(message_of([&] { write_mesh(folder / "a.obj", tets); }),
+              HasSubstr("is not written for tets; write .msh"));
   EXPECT_THAT(message_of([&] { write_mesh(folder / "a.ele", awkward_triangles()); }),
               HasSubstr("not written for triangles"));
   EXPECT_THAT(message_of([&] { write_mesh(folder / "a.off", awkward_triangles(), FileEncoding::binary); }),

@@ -60,6 +60,7 @@ Pc2File Pc2File::resume(const std::filesystem::path& path, int points, int sampl
   }
   cache.write_count();  // first, so that the header never counts truncated samples
   cache.file_.truncate(size);
+  cache.checksum_ = file_checksum(path, kPc2HeadSize, size);
   return cache;
 }
 
@@ -69,6 +70,7 @@ void Pc2File::append(std::span<const double> x) {
   bytes.reserve(sample_size());
   for (const double coordinate : x) append_bytes(bytes, static_cast<float>(coordinate));
   file_.append(bytes);
+  checksum_.add(bytes);
   ++samples_;
   write_count();
 }
@@ -100,6 +102,9 @@ Pc2Reader::Pc2Reader(const std::filesystem::path& path) : path_(path), in_(open_
   if (points_ < 0 || samples_ < 0 || !bytes.starts_with(head(points_, 0).substr(0, kStartOffset)) ||
       !std::isfinite(start_) || !(rate_ > 0 && std::isfinite(rate_)))
     throw InvalidInput(path.string() + ": is not a point cache of version 1");
+  if (points_ == 0 && samples_ > 0)
+    throw InvalidInput(path.string() + ": the point cache states " + std::to_string(samples_) +
+                       " samples of 0 points; export it again with the points of the mesh");
   in_.seekg(0, std::ios::end);
   const uint64_t whole = in_ ? (static_cast<uint64_t>(in_.tellg()) - kPc2HeadSize) / 12 : 0;  // points of all samples
   if (static_cast<uint64_t>(points_) * static_cast<uint64_t>(samples_) > whole)

@@ -7,6 +7,7 @@
 #include <span>
 #include <vector>
 
+#include "io/checksum.h"
 #include "io/output_file.h"
 
 namespace aspic {
@@ -24,6 +25,7 @@ class Pc2File {
   std::vector<float> sample(int index) const;  // positions of a sample, 3 per point [m]
   int samples() const { return samples_; }
   int points() const { return points_; }
+  uint32_t checksum() const { return checksum_.value(); }  // of all samples
   void sync() { file_.sync(); }
   void close() { file_.close(); }
 
@@ -32,6 +34,7 @@ class Pc2File {
   void write_count();
 
   OutputFile file_;
+  Checksum checksum_;
   int points_ = 0, samples_ = 0;
 };
 

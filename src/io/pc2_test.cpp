@@ -87,6 +87,9 @@ TEST_F(PointCache, ReadingRejectsDamage) {
   std::string hostile = bytes;
   hostile.replace(16, 4, "\xff\xff\xff\x7f").replace(28, 4, "\xff\xff\xff\x7f");  // 2^31 - 1 points and samples
   EXPECT_THAT(message(hostile), HasSubstr("b.pc2: the point cache is cut short"));
+  hostile.resize(32);
+  hostile.replace(16, 4, 4, '\0');  // 2^31 - 1 samples of no points need no bytes
+  EXPECT_THAT(message(hostile), HasSubstr("b.pc2: the point cache states 2147483647 samples of 0 points"));
 }
 
 }  // namespace

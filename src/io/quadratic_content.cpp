@@ -50,6 +50,8 @@ void remove_vertices(MeshContent& content) {
   const auto for_corners = [&](const auto& act) {
     for (Tet& tet : content.tets) std::for_each(tet.begin(), tet.end(), act);
     for (Triangle& triangle : content.triangles) std::for_each(triangle.begin(), triangle.end(), act);
+    for (SurfaceGroup& group : content.groups.surfaces)
+      for (Triangle& triangle : group.triangles) std::for_each(triangle.begin(), triangle.end(), act);
   };
   for_corners([&](int& v) { number[v] = kKept; });
   int count = 0;

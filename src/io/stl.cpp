@@ -55,7 +55,7 @@ class StlTextReader {
       expect("solid", "'solid'");
       text_.skip_line();
       while (next_is("facet")) read_facet();
-      expect("endsolid", "'facet' or 'endsolid'");
+      expect_end();
       text_.skip_line();
     }
     return std::move(content_);
@@ -78,6 +78,13 @@ class StlTextReader {
     expect("endloop", "'endloop' after three vertices");
     expect("endfacet", "'endfacet'");
     content_.triangles.push_back(triangle);
+  }
+
+  // "endsolid", or "end solid" as some programs write it.
+  void expect_end() {
+    if (!next_is("end")) return expect("endsolid", "'facet' or 'endsolid'");
+    expect("end", "'endsolid'");
+    expect("solid", "'endsolid'");
   }
 
   bool next_is(std::string_view word) { return lower(text_.peek(), space_) == word; }

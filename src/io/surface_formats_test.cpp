@@ -95,6 +95,15 @@ TEST(Stl, MergesCornersAtSamePosition) {
   }
 }
 
+TEST(Stl, MayEndWithEndSolid) {
+  const std::string facet =
+      "facet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1 0\nendloop\nendfacet\n";
+  EXPECT_EQ(
+      parse_stl("a", "solid part\n" + facet + "end solid part\nsolid b\n" + facet + "END SOLID\n").triangles.size(),
+      2u);
+  EXPECT_THAT(surface_error<parse_stl>("solid part\n" + facet + "end\n"), HasSubstr("'endsolid' should follow"));
+}
+
 TEST(Stl, ErrorsNameLineOrSize) {
   EXPECT_THAT(surface_error<parse_stl>("solid a\nfacet normal 0 0 1\nouter loop\nvertex 0 0\nvertex 1 0 0\n"),
               HasSubstr("a:5: a vertex coordinate is 'vertex'"));

@@ -38,6 +38,19 @@ TEST(Medit, ReferenceZeroOnEveryTetIsNoLabel) {
   EXPECT_TRUE(parse_medit("a.mesh", kHead + kVertices + "Tetrahedra 1 1 2 3 4 0 End").region.empty());
 }
 
+TEST(Medit, QuotedNamesMayContainBlanksAndKeywords) {
+  const MeshContent mesh =
+      parse_medit("a", "MeshVersionFormatted 1\nGeometry\n\"my Vertices file.mesh\"\n" + medit_tets_first().substr(23));
+  EXPECT_EQ(mesh.tets.size(), 2u);
+}
+
+TEST(Medit, ReferencesOfTrianglesAreSurfaces) {
+  const MeshGroups groups = parse_medit("a", medit_tets_first()).groups;
+  ASSERT_EQ(groups.surfaces.size(), 1u);
+  EXPECT_EQ(groups.surfaces[0].label, 1);
+  EXPECT_THAT(groups.surfaces[0].triangles, ElementsAre(Triangle{0, 1, 2}));
+}
+
 TEST(Medit, QuadrilateralsAreSplit) {
   EXPECT_THAT(parse_medit("a.mesh", kHead + kVertices + "Quadrilaterals 1 1 2 3 4 0").triangles,
               ElementsAre(Triangle{0, 1, 2}, Triangle{0, 2, 3}));

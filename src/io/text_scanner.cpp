@@ -106,6 +106,16 @@ std::string_view TextScanner::word(std::string_view what) {
   return text_.substr(word_begin_, position_ - word_begin_);
 }
 
+std::string_view TextScanner::quoted(std::string_view what) {
+  const std::string_view first = word(what);
+  if (first[0] != '"') return first;
+  const size_t begin = word_begin_ + 1, line_end = std::min(text_.find('\n', begin), text_.size());
+  const size_t end = text_.find('"', begin);
+  if (end >= line_end) fail(std::string(what) + " has no closing quote; complete it");
+  position_ = end + 1;
+  return text_.substr(begin, end - begin);
+}
+
 std::string_view TextScanner::peek() {
   if (at_end()) return {};
   const size_t begin = position_;

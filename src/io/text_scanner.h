@@ -28,7 +28,8 @@ class TextScanner {
 
   // `what` names the expected item in the message of an error.
   std::string_view word(std::string_view what);
-  std::string_view peek();  // next word without consuming it; empty at the end
+  std::string_view quoted(std::string_view what);  // a word, or the text between quotes, which may contain blanks
+  std::string_view peek();                         // next word without consuming it; empty at the end
   double number(std::string_view what);
   int64_t integer(std::string_view what);
   int small_integer(std::string_view what);  // an integer in the range of int

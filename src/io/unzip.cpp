@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <new>
 
+#include "base/free_memory.h"
 #include "base/printable.h"
 #include "io/byte_cursor.h"
 
@@ -43,7 +44,7 @@ class Archive {
  public:
   Archive(std::string file, std::string_view bytes) : file_(std::move(file)), bytes_(bytes) {}
 
-  std::vector<ZipEntry> read() {
+  std::vector<ZipEntry> read(FunctionRef<bool(const std::string& name)> is_wanted) {
     const size_t end = bytes_.rfind(kDirectoryEnd);
     if (end == std::string_view::npos || bytes_.size() - end < kEndBytes)
       at(bytes_.size())
@@ -53,11 +54,30 @@ class Archive {
     tail.skip(4, "the size of the directory");
     ByteCursor directory = at(tail.read<uint32_t>("the start of the directory"));
     std::vector<ZipEntry> entries;
-    for (int i = 0; i < count; ++i) entries.push_back(unpacked(entry(directory)));
+    for (int i = 0; i < count; ++i) {
+      const Packed packed = entry(directory);
+      if (!is_wanted(packed.name)) continue;
+      for (const ZipEntry& other : entries)
+        if (other.name == packed.name) directory.fail(shown(packed.name) + " is there twice; remove one of them");
+      count_bytes(packed, directory);
+      entries.push_back(unpacked(packed));
+    }
     return entries;
   }
 
  private:
+  void count_bytes(const Packed& e, const ByteCursor& place) {
+    constexpr uint64_t kMany = uint64_t{1} << 26;
+    constexpr int64_t kCopies = 4;  // of the bytes: unpacked, as numbers, as points
+    packed_ += e.packed;
+    unpacked_ += e.size;
+    if (packed_ > bytes_.size()) place.fail("the files of the archive overlap; it is damaged, get another copy");
+    if (unpacked_ < kMany) return;
+    if (const int64_t available = free_memory() / kCopies; static_cast<int64_t>(unpacked_) > available)
+      place.fail("unpacks to more than " + std::to_string(unpacked_) + " bytes; there is memory for " +
+                 std::to_string(available) + ". Save fewer frames or points");
+  }
+
   ByteCursor at(size_t position) const {
     ByteCursor cursor(file_, bytes_, std::min(position, bytes_.size()));
     if (position > bytes_.size())
@@ -114,12 +134,14 @@ class Archive {
 
   std::string file_;
   std::string_view bytes_;
+  uint64_t packed_ = 0, unpacked_ = 0;  // bytes of the wanted files so far
 };
 
 }  // namespace
 
-std::vector<ZipEntry> unzipped(const std::string& file, std::string_view archive) {
-  return Archive(file, archive).read();
+std::vector<ZipEntry> unzipped(const std::string& file, std::string_view archive,
+                               FunctionRef<bool(const std::string& name)> is_wanted) {
+  return Archive(file, archive).read(is_wanted);
 }
 
 }  // namespace aspic

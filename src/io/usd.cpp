@@ -66,8 +66,9 @@ double time_code(double time, double codes_per_second) {
   return std::abs(code - std::round(code)) < 1e-6 ? std::round(code) : code;
 }
 
-std::string head(const std::string& first, const std::vector<double>& codes, double codes_per_second) {
-  std::string text = "#usda 1.0\n(\n    defaultPrim = \"" + first + "\"\n    metersPerUnit = 1\n    upAxis = \"Y\"\n";
+std::string head(UpAxis up, const std::vector<double>& codes, double codes_per_second) {
+  std::string text = "#usda 1.0\n(\n    defaultPrim = \"simulation\"\n    metersPerUnit = 1\n    upAxis = ";
+  text += up == UpAxis::z ? "\"Z\"\n" : "\"Y\"\n";
   const auto add = [&](const char* key, double value) {
     text += std::string("    ") + key + " = ";
     append_number(text, value);
@@ -120,15 +121,20 @@ void write_mesh_prim(OutputFile& file, const UsdMesh& mesh, const std::string& n
 
 }  // namespace
 
+UpAxis up_axis(const Vec3d& gravity) {
+  const double z = std::abs(gravity[2]);
+  return z > std::abs(gravity[0]) && z > std::abs(gravity[1]) ? UpAxis::z : UpAxis::y;
+}
+
 void write_usd(const fs::path& path, const std::vector<UsdMesh>& meshes, const std::vector<double>& times,
-               double codes_per_second) {
+               double codes_per_second, UpAxis up) {
   std::vector<double> codes;
   for (const double time : times) codes.push_back(time_code(time, codes_per_second));
 
   const fs::path unfinished = path.string() + ".unfinished";
   OutputFile file = OutputFile::create(unfinished);
   try {
-    file.append(head("simulation", codes, codes_per_second) + "\ndef Xform \"simulation\"\n{");
+    file.append(head(up, codes, codes_per_second) + "\ndef Xform \"simulation\"\n{");
     std::set<std::string> taken;
     for (const UsdMesh& mesh : meshes) write_mesh_prim(file, mesh, identifier(mesh.name, taken), codes);
     file.append("}\n");

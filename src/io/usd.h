@@ -1,4 +1,4 @@
-// USD scene as text (.usda): one mesh per body with points sampled over time. Y is up, lengths are in meters.
+// USD scene as text (.usda): one mesh per body with points sampled over time. Lengths are in meters.
 #pragma once
 #include <filesystem>
 #include <functional>
@@ -17,10 +17,14 @@ struct UsdMesh {
   bool is_fixed = false;                                 // the first sample is that of all times
 };
 
+enum class UpAxis { y, z };
+// Returns z if gravity is along z, otherwise y.
+UpAxis up_axis(const Vec3d& gravity);
+
 // Writes times[i] [s] as the time of sample i. A time code is time times `codes_per_second`, which should be the rate
 // of the samples because players show one frame per code. Writes sample by sample, so the file may exceed memory, and
 // replaces `path` atomically. Throws InvalidInput if it cannot be written.
 void write_usd(const std::filesystem::path& path, const std::vector<UsdMesh>& meshes, const std::vector<double>& times,
-               double codes_per_second);
+               double codes_per_second, UpAxis up = UpAxis::y);
 
 }  // namespace aspic

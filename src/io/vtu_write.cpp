@@ -10,6 +10,7 @@
 #include "base/parallel.h"
 #include "io/atomic_file.h"
 #include "io/base64.h"
+#include "io/vtk_cells.h"
 #include "io/vtu.h"
 #include "io/xml.h"
 
@@ -101,8 +102,6 @@ void append_file_fields(const std::vector<Field>& fields, std::string& text) {
   }
   text += "</FieldData>\n";
 }
-
-constexpr uint8_t kVtkTriangle = 5, kVtkTet = 10, kVtkQuadraticTet = 24;
 
 struct Cells {
   std::vector<int> connectivity;

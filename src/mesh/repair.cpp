@@ -2,6 +2,8 @@
 #include <cmath>
 #include <map>
 
+#include "base/formatted.h"
+#include "mesh/close_corners.h"
 #include "mesh/doctor.h"
 #include "mesh/surface_orientation.h"
 #include "mesh/tet_shape.h"
@@ -50,6 +52,16 @@ size_t merge_duplicates(std::vector<Vec3d>& vertices, std::vector<Element>& elem
   for (Element& element : elements)
     for (int& v : element) v = first[v];
   return drop_unreferenced(vertices, elements);
+}
+
+void merge_agreeing_corners(TriMesh& mesh, Actions& actions) {
+  const double tolerance = corner_tolerance(mesh);
+  const std::vector<int> first = first_agreeing_corner(mesh);
+  for (Triangle& triangle : mesh.triangles)
+    for (int& v : triangle) v = first[v];
+  record(actions, "merged", drop_unreferenced(mesh.vertices, mesh.triangles),
+         "corners of open edges into others that agree up to rounding (within 1e-6 of the diagonal, " +
+             three_digits(tolerance) + ")");
 }
 
 template <class Keep>
@@ -160,6 +172,7 @@ std::vector<std::string> repair(TriMesh& mesh) {
   record(actions, "dropped", drop_unreferenced(mesh.vertices, mesh.triangles), "unreferenced vertices");
   record(actions, "merged", merge_duplicates(mesh.vertices, mesh.triangles),
          "duplicate vertices into those at the same place");
+  merge_agreeing_corners(mesh, actions);
   std::vector<bool> twice(mesh.triangles.size());
   for (size_t t = 0; t < mesh.triangles.size(); ++t) twice[t] = lists_vertex_twice(mesh.triangles[t]);
   record(actions, "removed", remove_triangles(mesh, twice), "triangles that list a vertex twice");

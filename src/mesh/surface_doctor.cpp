@@ -1,6 +1,11 @@
 // Examination and repair of triangle meshes.
 #include <algorithm>
+#include <array>
+#include <cmath>
 
+#include "base/formatted.h"
+#include "mesh/close_corners.h"
+#include "mesh/disjoint_sets.h"
 #include "mesh/doctor.h"
 #include "mesh/findings.h"
 #include "mesh/self_intersection.h"
@@ -38,15 +43,84 @@ bool can_be_oriented(TriMesh mesh) {
   return topology(mesh.triangles, mesh.vertex_count()).disagreeing.empty();
 }
 
+double area_of(const TriMesh& mesh, const Triangle& t) {
+  const Vec3d& a = mesh.vertices[t[0]];
+  return 0.5 * norm(cross(mesh.vertices[t[1]] - a, mesh.vertices[t[2]] - a));
+}
+
+// Whether all corners lie in the plane of the largest triangle, up to rounding.
+bool is_planar(const TriMesh& mesh) {
+  const Triangle& largest =
+      *std::max_element(mesh.triangles.begin(), mesh.triangles.end(),
+                        [&](const Triangle& a, const Triangle& b) { return area_of(mesh, a) < area_of(mesh, b); });
+  const Vec3d& a = mesh.vertices[largest[0]];
+  const Vec3d n = cross(mesh.vertices[largest[1]] - a, mesh.vertices[largest[2]] - a);
+  const double most = corner_tolerance(mesh) * norm(n);
+  return most > 0 && std::all_of(mesh.triangles.begin(), mesh.triangles.end(), [&](const Triangle& triangle) {
+           return std::all_of(triangle.begin(), triangle.end(),
+                              [&](int v) { return std::abs(dot(n, mesh.vertices[v] - a)) <= most; });
+         });
+}
+
+// Length of the longest group of connected open edges [m].
+double longest_border(const TriMesh& mesh) {
+  DisjointSets groups(mesh.vertex_count());
+  std::vector<std::array<int, 2>> open;
+  for_each_edge(edge_uses(mesh.triangles), [&](const EdgeUse* first, const EdgeUse* last) {
+    if (last - first == 1) open.push_back(first->edge);
+  });
+  for (const auto& [a, b] : open) groups.join(a, b);
+  std::vector<double> length(mesh.vertices.size(), 0);
+  for (const auto& [a, b] : open) length[groups.find(a)] += norm(mesh.vertices[a] - mesh.vertices[b]);
+  return *std::max_element(length.begin(), length.end());
+}
+
+// A disk has a squared border of 4 pi times its area, a bowl half of that, a closed surface with a hole less.
+bool is_sheet(const TriMesh& mesh) {
+  constexpr double kSquaredBorderPerArea = 10;
+  double area = 0;
+  for (const Triangle& triangle : mesh.triangles) area += area_of(mesh, triangle);
+  const double border = longest_border(mesh);
+  return border * border > kSquaredBorderPerArea * area;
+}
+
+void examine_open_edges(const TriMesh& mesh, const SurfaceTopology& surface, Findings& findings) {
+  if (surface.open.empty()) return;
+  TriMesh merged = mesh;
+  const std::vector<int> first = first_agreeing_corner(mesh);
+  for (Triangle& triangle : merged.triangles)
+    for (int& v : triangle) v = first[v];
+  const char* const thicken =
+      "give it a thickness in the program that made it (in Blender: Solidify; in Gmsh: Extrude)";
+  if (is_planar(mesh))
+    return findings.add({Severity::error, "planar_mesh",
+                         "the mesh is planar: all vertices lie in a plane, and only solids are simulated", thicken,
+                         surface.open});
+  if (is_sheet(merged))
+    return findings.add({Severity::error, "sheet",
+                         "the surface is a sheet: it encloses no volume, and only solids are simulated", thicken,
+                         surface.open});
+  Finding finding{
+      Severity::error, "open_surface",
+      "the surface is open: " + std::to_string(surface.open_edges) + " edges around " + std::to_string(surface.holes) +
+          (surface.holes == 1 ? " hole" : " holes") + " belong to only one triangle (these triangles are listed)",
+      "close the holes in the source model; aspic mesh --fill-holes closes small ones, aspic mesh --rebuild wraps "
+      "the surface in a closed one",
+      surface.open};
+  const int left = topology(merged.triangles, merged.vertex_count()).open_edges;
+  if (left < surface.open_edges) {
+    finding.message += "; " + std::to_string(surface.open_edges - left) +
+                       " of these edges agree with another one within 1e-6 of the diagonal, " +
+                       three_digits(corner_tolerance(mesh)) + " m";
+    finding.remedy =
+        "merge their corners with --repair (aspic mesh does so)" + (left > 0 ? "; " + finding.remedy : std::string());
+  }
+  findings.add(std::move(finding));
+}
+
 void examine_edges(const TriMesh& mesh, const SurfaceTopology& surface, Findings& findings) {
   const size_t total = mesh.triangles.size();
-  findings.add(
-      {Severity::error, "open_surface",
-       "the surface is open: " + std::to_string(surface.open_edges) + " edges around " + std::to_string(surface.holes) +
-           (surface.holes == 1 ? " hole" : " holes") + " belong to only one triangle (these triangles are listed)",
-       "close the holes in the source model; aspic mesh --fill-holes closes small ones, aspic mesh --rebuild wraps "
-       "the surface in a closed one",
-       surface.open});
+  examine_open_edges(mesh, surface, findings);
   findings.add(
       {Severity::error, "non_manifold_edges",
        std::to_string(surface.non_manifold_edges) +

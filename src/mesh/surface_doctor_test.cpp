@@ -1,6 +1,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <random>
@@ -45,6 +46,71 @@ TEST(DoctorOfSurfaces, FindsHole) {
   EXPECT_EQ(finding.indices.size(), 3u);
   EXPECT_THAT(finding.message, HasSubstr("3 edges around 1 hole "));
   EXPECT_TRUE(has_errors(diagnose(surface)));
+}
+
+// Every triangle has its own corners, as in an STL file with seven digits.
+TriMesh soup(const TriMesh& surface, double error) {
+  std::mt19937 random(3);
+  std::uniform_real_distribution<double> rounding(-error, error);
+  TriMesh result;
+  for (const Triangle& triangle : surface.triangles) {
+    const int first = result.vertex_count();
+    for (const int v : triangle)
+      result.vertices.push_back(surface.vertices[v] + Vec3d{{rounding(random), rounding(random), rounding(random)}});
+    result.triangles.push_back({first, first + 1, first + 2});
+  }
+  return result;
+}
+
+TEST(DoctorOfSurfaces, MergesCornersThatAgreeUpToRounding) {
+  const TriMesh clean = ball();
+  TriMesh surface = soup(clean, 2e-7);
+  const Finding finding = found(surface, "open_surface");
+  EXPECT_THAT(finding.message, HasSubstr("of these edges agree with another one within 1e-6 of the diagonal"));
+  EXPECT_THAT(finding.remedy, HasSubstr("merge their corners with --repair"));
+  EXPECT_THAT(repair(surface), ElementsAre(HasSubstr("corners of open edges into others that agree up to rounding")));
+  EXPECT_EQ(surface.vertex_count(), clean.vertex_count());
+  EXPECT_THAT(names(diagnose(surface)), IsEmpty());
+}
+
+TEST(DoctorOfSurfaces, KeepsCornersOfClosedDetails) {
+  TriMesh tiny = ball();
+  for (Vec3d& x : tiny.vertices) x = 1e-8 * x;
+  TriMesh surface = joined(ball(), tiny, {{3, 0, 0}});
+  EXPECT_THAT(repair(surface), IsEmpty());
+  TriMesh apart = soup(ball(), 1e-3);
+  EXPECT_THAT(repair(apart), IsEmpty()) << "beyond the tolerance";
+}
+
+// A square of 4 x 4 quads, bent about the z axis by the given angle.
+TriMesh bent_square(double angle) {
+  TriMesh sheet;
+  constexpr int n = 4;
+  for (int i = 0; i <= n; ++i)
+    for (int j = 0; j <= n; ++j) {
+      const double s = static_cast<double>(i) / n, t = static_cast<double>(j) / n;
+      const double x = angle == 0 ? s : std::sin(angle * s) / angle,
+                   y = angle == 0 ? 0 : (1 - std::cos(angle * s)) / angle;
+      sheet.vertices.push_back({{x, y, t}});
+    }
+  for (int i = 0; i < n; ++i)
+    for (int j = 0; j < n; ++j) {
+      const int a = i * (n + 1) + j, b = a + n + 1;
+      sheet.triangles.insert(sheet.triangles.end(), {{a, b, b + 1}, {a, b + 1, a + 1}});
+    }
+  return sheet;
+}
+
+TEST(DoctorOfSurfaces, NamesPlanarMeshesAndSheets) {
+  TriMesh planar = bent_square(0);
+  for (Vec3d& x : planar.vertices) x = turned(x);
+  EXPECT_THAT(found(planar, "planar_mesh").message, HasSubstr("only solids are simulated"));
+  EXPECT_THAT(found(bent_square(2), "sheet").message, HasSubstr("encloses no volume"));
+  TriMesh open = boundary_surface(cube_of_tets()).surface;
+  std::erase_if(open.triangles, [&](const Triangle& t) {
+    return std::all_of(t.begin(), t.end(), [&](int v) { return open.vertices[v][2] == 1; });
+  });
+  EXPECT_THAT(names(diagnose(open)), testing::Contains("open_surface"));
 }
 
 TEST(DoctorOfSurfaces, FindsAndFlipsMisorientedTriangles) {

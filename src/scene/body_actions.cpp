@@ -373,8 +373,9 @@ void add_damping(PlacedBody& body, size_t index, MassKind kind, SceneFiles& file
     model.damping.push_back(
         make_rayleigh_damping(MassMatrix(model.mesh, density, kind), a, model.elasticity[index].get(), b));
   }
-  const std::vector<double> viscosity = tet_values(damping.table(), scene_schema().key("damping", "viscosity"),
-                                                   {body.mesh, files, body.name(), *body.painted});
+  const std::vector<double> viscosity =
+      tet_values(damping.table(), scene_schema().key("damping", "viscosity"),
+                 {body.mesh, files, body.name(), *body.painted, nullptr, &body.groups});
   if (std::any_of(viscosity.begin(), viscosity.end(), [](double eta) { return eta > 0; }))
     model.damping.push_back(
         make_strain_rate_damping(model.mesh, body.first_tet, body.numbering.tet.from_user(viscosity)));
@@ -384,8 +385,9 @@ void add_damping(PlacedBody& body, size_t index, MassKind kind, SceneFiles& file
 
 SelectionScope selection_scope(const PlacedBody& body, Value& where, const Vec3d& up) {
   const bool is_painted = where.is_table() && where.find("file");
-  return {body.mesh, up, body.name(), is_painted ? &body.painted->at_vertices(where.table(), body.mesh) : nullptr,
-          body.whole};
+  return {body.mesh,   up,
+          body.name(), is_painted ? &body.painted->at_vertices(where.table(), body.mesh) : nullptr,
+          body.whole,  &body.groups};
 }
 
 void add_actions(const SceneActions& actions, Model& model) {

@@ -23,6 +23,7 @@ struct PlacedBody {
   // If the model has a part of the body: the whole body, and the vertices of the model.
   const WholeBody* whole = nullptr;
   std::vector<int> part_vertices = {};
+  MeshGroups groups = {};
 
   std::string name() const { return scene["name"].text(); }
   int model_vertex(int own) const {

@@ -61,7 +61,7 @@ void add_branches(std::vector<PlacedBody>& bodies, const BranchScope& scope, Mod
     std::vector<MaxwellBranch> branches;
     for (Value& scene : of.scenes) {
       const std::string stem = body.name() + "." + of.name + "." + std::to_string(branches.size() + 1);
-      const FieldScope fields{body.mesh, scope.files, stem, *body.painted};
+      const FieldScope fields{body.mesh, scope.files, stem, *body.painted, nullptr, &body.groups};
       branches.push_back({body.numbering.tet.from_user(shear_moduli(body, scene, fields, *model.elasticity[i])),
                           scene["relaxation_time"].number()});
     }

@@ -54,7 +54,7 @@ class FromScene {
  private:
   std::vector<double> values(const std::string& name) {
     return tet_values(material_, scene_schema().key("material", name),
-                      {body_.mesh, files_, body_.name(), *body_.painted, body_.whole});
+                      {body_.mesh, files_, body_.name(), *body_.painted, body_.whole, &body_.groups});
   }
 
   Lame checked(const Lame& lame, size_t tet) const {

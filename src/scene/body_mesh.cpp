@@ -11,6 +11,7 @@
 #include "base/printable.h"
 #include "io/mesh_file.h"
 #include "io/tetrahedralize.h"
+#include "mesh/box.h"
 #include "mesh/chamber.h"
 #include "mesh/doctor.h"
 #include "mesh/generators.h"
@@ -167,6 +168,33 @@ void note_outside(const BodyMesh& body, const std::string& name, std::vector<std
                     " skin vertices are outside the tets and follow the nearest one");
 }
 
+// Largest distance of the corners of a box from another box.
+double farthest(const Box& box, const Box& from) {
+  double most = 0;
+  for (int corner = 0; corner < 8; ++corner) {
+    Vec3d x;
+    for (int i = 0; i < 3; ++i) x[i] = corner >> i & 1 ? box.upper[i] : box.lower[i];
+    most = std::max(most, from.squared_distance(x));
+  }
+  return std::sqrt(most);
+}
+
+// Refuses a skin in other units than the tets, or elsewhere.
+void refuse_foreign_skin(const BodyMesh& body, const Value& skin) {
+  constexpr double kDiagonals = 10;
+  const Box tets = bounding_box(body.tets.rest), own = bounding_box(body.skin.vertices);
+  const double of_tets = norm(tets.upper - tets.lower), of_skin = norm(own.upper - own.lower);
+  const std::string which = "skin = " + shortened(toml_string(skin.text()));
+  if (const double beyond = farthest(tets, own); beyond > kDiagonals * of_skin)
+    throw error_at(skin.place, which + "; the tets reach " + rounded_text(beyond) +
+                                   " m beyond the skin, whose diagonal is " + rounded_text(of_skin) +
+                                   " m: give both in the same units and coordinates");
+  if (const double beyond = farthest(own, tets); beyond > kDiagonals * of_tets)
+    throw error_at(skin.place, which + "; the skin reaches " + rounded_text(beyond) +
+                                   " m beyond the tets, whose diagonal is " + rounded_text(of_tets) +
+                                   " m: give both in the same units and coordinates");
+}
+
 // Refuses files that must exceed the limit, and announces large ones.
 void check_size(const fs::path& path, const MeshLoader& loader) {
   std::error_code error;
@@ -238,14 +266,16 @@ std::string MeshLoader::why_not_in_memory(double more_tets) const {
 
 LoadedMesh load_mesh(const fs::path& path, double size, MeshLoader& loader) {
   check_size(path, loader);
-  std::variant<TetMesh, TriMesh> mesh = read_mesh(path, &loader.notes);
+  MeshGroups groups;
+  std::variant<TetMesh, TriMesh> mesh = read_mesh(path, &loader.notes, &groups);
   if (TetMesh* tets = std::get_if<TetMesh>(&mesh)) {
     const int count = tets->tet_count();
     const std::string why = loader.limit.counts_files ? loader.why_not(count) : loader.why_not_in_memory(count);
     if (!why.empty()) throw InvalidInput(path.string() + ": " + why + " (choose a coarser mesh)");
-    return {std::move(*tets), {}};
+    return {std::move(*tets), {}, std::move(groups)};
   }
-  const TriMesh& surface = std::get<TriMesh>(mesh);
+  TriMesh& surface = std::get<TriMesh>(mesh);
+  repair(surface);  // as the mesher does, which reports it
   heed(diagnose(surface), path.string(), loader.notes);
   if (size > 0)
     if (const std::string why = loader.why_not(tets_in(std::abs(enclosed_volume(surface)), size)); !why.empty())
@@ -262,9 +292,10 @@ LoadedMesh load_mesh(const fs::path& path, double size, MeshLoader& loader) {
   return {std::move(filled.tets), path};
 }
 
-BodyMesh make_body_mesh(Value& body, MeshLoader& loader, std::optional<LoadedMesh> loaded) {
+namespace {
+
+BodyMesh with_its_skin(Value& body, MeshLoader& loader, LoadedMesh mesh) {
   const std::string name = body["name"].text();
-  LoadedMesh mesh = resolve_mesh(body, loader, std::move(loaded));
   loader.tets += mesh.tets.tet_count();
   check_fingerprint(body.table(), "mesh_hash", fingerprint_of(mesh.tets), "the mesh of body '" + name + "'");
   const AffineMap map = placement_of(body);
@@ -279,10 +310,22 @@ BodyMesh make_body_mesh(Value& body, MeshLoader& loader, std::optional<LoadedMes
   const fs::path path = skin ? loader.files.find(*skin) : mesh.surface;
   TriMesh surface = read_tri_mesh(path);
   place(map, surface.vertices);
-  const bool is_chosen = skin != nullptr;
+  const std::optional<Value> chosen = skin ? std::optional(*skin) : std::nullopt;
   body.table().set("skin", {loader.files.keep(path, name + ".skin"), {}});
   BodyMesh result = with_skin(std::move(mesh.tets), std::move(surface));
-  if (is_chosen) note_outside(result, name, loader.notes);
+  if (!chosen) return result;
+  refuse_foreign_skin(result, *chosen);
+  note_outside(result, name, loader.notes);
+  return result;
+}
+
+}  // namespace
+
+BodyMesh make_body_mesh(Value& body, MeshLoader& loader, std::optional<LoadedMesh> loaded) {
+  LoadedMesh mesh = resolve_mesh(body, loader, std::move(loaded));
+  MeshGroups groups = std::move(mesh.groups);
+  BodyMesh result = with_its_skin(body, loader, std::move(mesh));
+  result.groups = std::move(groups);
   return result;
 }
 

@@ -8,6 +8,7 @@
 
 #include "mesh/embed.h"
 #include "mesh/generators.h"
+#include "mesh/mesh_groups.h"
 #include "mesh/tet_mesh.h"
 #include "scene/scene.h"
 #include "scene/scene_files.h"
@@ -19,6 +20,7 @@ namespace aspic {
 struct LoadedMesh {
   TetMesh tets;
   std::filesystem::path surface;  // the file that was filled, if any
+  MeshGroups groups = {};         // of a file of tets
 };
 
 struct MeshLoader {
@@ -56,6 +58,7 @@ struct BodyMesh {
   TetMesh tets;         // the placed rest shape, checked
   TriMesh skin;         // placed alike
   Embedding embedding;  // of the skin into the tets
+  MeshGroups groups = {};
 };
 
 // Resolves mesh, shape and skin of a body, and names the files of the results in its table. `loaded`: the mesh, if

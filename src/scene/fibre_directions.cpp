@@ -5,7 +5,7 @@
 #include <numbers>
 
 #include "base/formatted.h"
-#include "io/vtu.h"
+#include "io/legacy_vtk.h"
 #include "mesh/tet_shape.h"
 #include "scene/harmonic_extension.h"
 #include "scene/placement.h"
@@ -139,7 +139,7 @@ bool fits_vertices(size_t count, const TetMesh& mesh) {
 
 VectorTable read_vtu_vectors(const fs::path& path, const Value& table, const TetMesh& mesh) {
   const Value* name = table.find("name");
-  const Vtu vtu = read_vtu(path.string());
+  const Vtu vtu = read_vtk_or_vtu(path.string());
   std::vector<std::string> known;
   const std::string file = path.filename().string();
   const auto search = [&](const std::vector<Field>& fields) -> const Field* {
@@ -168,7 +168,7 @@ Directions from_file(const FibreSource& source) {
   Value& given = *source.scene.table().find("directions");
   const TetMesh& mesh = source.body.mesh;
   const fs::path path = source.files.find(given["file"]);
-  const bool is_vtu = path.extension() == ".vtu" || path.extension() == ".VTU";
+  const bool is_vtu = is_vtk_or_vtu(path);
   if (const Value* name = given.find("name"); name && !is_vtu)
     throw error_at(name->place, "name = " + toml_string(name->text()) + "; only VTU files have named fields");
   const VectorTable table =

@@ -6,6 +6,7 @@
 #include "base/check.h"
 #include "base/error.h"
 #include "base/parallel.h"
+#include "io/legacy_vtk.h"
 #include "io/vtu.h"
 #include "material/registry.h"
 #include "mesh/locate.h"
@@ -67,7 +68,7 @@ std::vector<std::string> quantities_of(const std::string& model) {
 }
 
 FittedMaterial read_material(const std::filesystem::path& path) {
-  Vtu vtu = read_vtu(path);
+  Vtu vtu = read_vtk_or_vtu(path);
   if (vtu.mesh.tets.empty())
     throw InvalidInput(path.string() + ": has no tets; a material file needs tets with fields");
   FittedMaterial material{.mesh = std::move(vtu.mesh), .model = model_of(vtu, path.string())};

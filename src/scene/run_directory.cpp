@@ -15,6 +15,7 @@
 #include "dynamics/internal_terms.h"
 #include "io/atomic_file.h"
 #include "io/checkpoint.h"
+#include "io/checksum.h"
 #include "io/vtu.h"
 #include "scene/run_directory_frame.h"
 #include "scene/run_directory_layout.h"
@@ -28,6 +29,9 @@ namespace {
 
 namespace fs = std::filesystem;
 using Clock = std::chrono::steady_clock;
+
+// Names in checkpoints.
+constexpr char kFrameChecksums[] = "frame_checksums", kSkinChecksums[] = "skin_checksums";
 
 State to_user(const Renumbering& vertex, const State& stored) {
   return {vertex.to_user(stored.q, 3), vertex.to_user(stored.qdot, 3), stored.time};
@@ -168,6 +172,37 @@ struct RunDirectory::Impl {
     }
   }
 
+  std::vector<fs::path> files_of_frame(int frame) const {
+    std::vector<fs::path> files = skins->files_of_frame(frame);
+    if (output.vtu) files.push_back(layout.root() / frame_files[frame]);
+    for (fs::path& file : obstacles.files_of_frame(frame)) files.push_back(std::move(file));
+    return files;
+  }
+
+  void add_checksums(int frame) {
+    for (const fs::path& file : files_of_frame(frame)) frame_checksums.push_back(file_checksum(file).value());
+  }
+
+  // Compares the frames that the checkpoint counts with their checksums. Checkpoints of several processes have none.
+  void check_frames(int count, const Checkpoint& checkpoint) {
+    const std::vector<double>* written = checkpoint.find(kFrameChecksums);
+    for (int frame = 0; frame < count; ++frame) {
+      const size_t first = frame_checksums.size();
+      add_checksums(frame);
+      const std::vector<fs::path> files = files_of_frame(frame);
+      for (size_t i = 0; i < files.size() && written && first + i < written->size(); ++i)
+        require_unchanged(files[i], (*written)[first + i], frame_checksums[first + i]);
+    }
+    if (const std::vector<double>* of_skins = checkpoint.find(kSkinChecksums)) skins->require_unchanged(*of_skins);
+  }
+
+  // The scene of the run was checked; comments may have changed.
+  void restore_scene(Scene& scene) const {
+    if (read_file(layout.scene()) == scene.resolved) return;
+    write_file(layout.scene(), scene.resolved);
+    scene.notes.push_back(layout.scene().string() + ": its text had changed, but not its values; it was written again");
+  }
+
   void add_frame(const Simulation& simulation, const StepReport* report) {
     const int frame = static_cast<int>(frame_times.size());
     if (output.vtu) {
@@ -177,6 +212,7 @@ struct RunDirectory::Impl {
     skins->add_frame(frame, simulation.state().q);
     frame_times.push_back(simulation.state().time);
     obstacles.add_frame(frame, simulation.obstacle_time());
+    add_checksums(frame);
     skins->write_usd_when_doubled(frame_times, obstacles);
   }
 
@@ -188,7 +224,9 @@ struct RunDirectory::Impl {
     skins->sync();
     Checkpoint checkpoint = to_checkpoint(simulation, scene_fingerprint, frame_times);
     if (obstacles.times != frame_times) checkpoint.arrays.emplace_back("obstacle_times", obstacles.times);
-    tables.add_size(checkpoint);
+    checkpoint.arrays.emplace_back(kFrameChecksums, frame_checksums);
+    checkpoint.arrays.emplace_back(kSkinChecksums, skins->checksums());
+    tables.add_sizes(checkpoint);
     write_checkpoint(layout.checkpoint(), checkpoint);
     last_checkpoint = Clock::now();
   }
@@ -205,6 +243,7 @@ struct RunDirectory::Impl {
   RunObstacles obstacles;
   std::vector<double> frame_times;       // [s]
   std::vector<std::string> frame_files;  // relative to the root; empty without VTU
+  std::vector<double> frame_checksums;   // of files_of_frame(), frame by frame
   RunTables tables;
   std::optional<RunSkins> skins;
   Clock::time_point last_checkpoint = Clock::now();
@@ -256,8 +295,11 @@ RunDirectory RunDirectory::resume(const std::string& path, Scene& scene) {
   const int frames = static_cast<int>(impl->frame_times.size());
   impl->require_frames(frames);
   impl->tables = RunTables::resume(layout, scene.simulation);
-  impl->tables.require_iterations(newest.checkpoint);
+  impl->tables.require_unchanged(newest.checkpoint);
   impl->skins = RunSkins::resume(layout, scene, frames);
+  impl->check_frames(frames, newest.checkpoint);
+  impl->restore_scene(scene);
+  impl->obstacles.write_start();
   layout.remove_unfinished();
   impl->write_index();
   layout.remove_frames_from(frames);

@@ -58,6 +58,15 @@ void RunObstacles::write_start() const {
   if (has_vtu) write_vtu(RunLayout::obstacle_file(), start_);
 }
 
+std::vector<std::filesystem::path> RunObstacles::files_of_frame(int frame) const {
+  std::vector<std::filesystem::path> files;
+  if (!has_motion()) return files;
+  if (output_.vtu) files.push_back(layout_.root() / RunLayout::obstacle_frame_file(frame));
+  for (size_t i = 0; i < start_.size() && (output_.obj || output_.ply); ++i)
+    if (start_[i].is_moving) files.push_back(layout_.obstacle_frame(file_names_[i], frame));
+  return files;
+}
+
 void RunObstacles::add_frame(int frame, double time) {
   times.push_back(time);
   const bool has_surfaces = output_.obj || output_.ply;

@@ -16,6 +16,7 @@ class RunObstacles {
   // If an obstacle moves, writes all of them to a VTU file of the frame, and the moving ones to OBJ files if surfaces
   // of bodies are wanted. `time`: of the obstacles [s].
   void add_frame(int frame, double time);
+  std::vector<std::filesystem::path> files_of_frame(int frame) const;  // those of add_frame()
   // The VTU file of a frame relative to the run's folder; empty: there are no obstacles.
   std::string file_of(int frame) const;
 

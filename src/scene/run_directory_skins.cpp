@@ -4,7 +4,6 @@
 #include <filesystem>
 
 #include "io/mesh_file.h"
-#include "io/usd.h"
 
 namespace aspic {
 namespace {
@@ -34,7 +33,8 @@ RunSkins::RunSkins(const RunLayout& layout, const Scene& scene)
       output_(scene.output),
       skins_(scene.skins),
       names_(names_of(scene.skins)),
-      frame_rate_(1 / std::max(scene.output.every, scene.simulation.options().h)) {}
+      frame_rate_(1 / std::max(scene.output.every, scene.simulation.options().h)),
+      up_(up_axis(scene.gravity)) {}
 
 RunSkins RunSkins::create(const RunLayout& layout, const Scene& scene) {
   RunSkins skins(layout, scene);
@@ -51,6 +51,7 @@ RunSkins RunSkins::resume(const RunLayout& layout, const Scene& scene, int frame
   RunSkins skins(layout, scene);
   for (size_t i = 0; i < skins.skins_.size(); ++i) {
     if (!skins.output_.pc2 && !skins.output_.usd) break;
+    write_mesh(layout.skin_rest(skins.names_[i]), skins.skins_[i].rest);
     skins.caches_.push_back(
         Pc2File::resume(layout.skin_cache(skins.names_[i]), skins.skins_[i].rest.vertex_count(), frames));
   }
@@ -67,6 +68,26 @@ void RunSkins::add_frame(int frame, std::span<const double> q) {
     if (output_.obj) write_mesh(layout_.skin_frame(names_[i], frame, ".obj"), mesh);
     if (output_.ply) write_mesh(layout_.skin_frame(names_[i], frame, ".ply"), mesh, FileEncoding::binary);
   }
+}
+
+std::vector<std::filesystem::path> RunSkins::files_of_frame(int frame) const {
+  std::vector<std::filesystem::path> files;
+  for (const std::string& name : names_) {
+    if (output_.obj) files.push_back(layout_.skin_frame(name, frame, ".obj"));
+    if (output_.ply) files.push_back(layout_.skin_frame(name, frame, ".ply"));
+  }
+  return files;
+}
+
+std::vector<double> RunSkins::checksums() const {
+  std::vector<double> sums;
+  for (const Pc2File& cache : caches_) sums.push_back(cache.checksum());
+  return sums;
+}
+
+void RunSkins::require_unchanged(const std::vector<double>& checksums) const {
+  for (size_t i = 0; i < std::min(caches_.size(), checksums.size()); ++i)
+    aspic::require_unchanged(layout_.skin_cache(names_[i]), checksums[i], caches_[i].checksum());
 }
 
 void RunSkins::sync() {
@@ -88,7 +109,7 @@ void RunSkins::write_usd(const std::vector<double>& frame_times, const RunObstac
                       .points = [&obstacles, i](int frame) { return flat(obstacles.at_frame(i, frame).vertices); },
                       .is_fixed = !start.is_moving});
   }
-  aspic::write_usd(layout_.usd(), meshes, frame_times, frame_rate_);
+  aspic::write_usd(layout_.usd(), meshes, frame_times, frame_rate_, up_);
   frames_in_usd_ = frame_times.size();
 }
 

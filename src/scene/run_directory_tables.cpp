@@ -76,7 +76,9 @@ const std::vector<std::string> kIterationColumns = {"step",
                                                     "linear_iterations",
                                                     "products",
                                                     "cycles"};
-constexpr char kIterationBytes[] = "iteration_bytes";  // in checkpoints: the size of iterations.csv
+// In checkpoints: the size of iterations.csv, and the checksums of the tables.
+constexpr char kIterationBytes[] = "iteration_bytes", kIterationChecksum[] = "iteration_checksum",
+               kStepChecksum[] = "step_checksum";
 const std::vector<std::string> kTimingColumns = {"step",           "seconds",       "cpu_seconds",    "hessian",
                                                  "factorize",      "solve_linear",  "line_search",    "gradient",
                                                  "contact_search", "contact_bound", "contact_forces", "distances"};
@@ -126,16 +128,22 @@ void RunTables::add(int step, const Iteration& iteration) {
   iterations_.append(row);
 }
 
-void RunTables::add_size(Checkpoint& checkpoint) const {
+void RunTables::add_sizes(Checkpoint& checkpoint) const {
   checkpoint.integers.emplace_back(kIterationBytes, static_cast<int64_t>(iterations_.size()));
+  checkpoint.integers.emplace_back(kIterationChecksum, iterations_.checksum());
+  checkpoint.integers.emplace_back(kStepChecksum, steps_.checksum());
 }
 
-void RunTables::require_iterations(const Checkpoint& checkpoint) const {
-  for (const auto& [name, bytes] : checkpoint.integers)
-    if (name == kIterationBytes && static_cast<int64_t>(iterations_.size()) != bytes)
+void RunTables::require_unchanged(const Checkpoint& checkpoint) const {
+  for (const auto& [name, value] : checkpoint.integers) {
+    if (name == kIterationBytes && static_cast<int64_t>(iterations_.size()) != value)
       throw InvalidInput(iterations_.path().string() + ": has " + std::to_string(iterations_.size()) +
-                         " bytes up to the checkpoint, and " + std::to_string(bytes) +
+                         " bytes up to the checkpoint, and " + std::to_string(value) +
                          " were written; restore the whole file, or restart the run with --force");
+    if (name == kIterationChecksum)
+      aspic::require_unchanged(iterations_.path(), static_cast<double>(value), iterations_.checksum());
+    if (name == kStepChecksum) aspic::require_unchanged(steps_.path(), static_cast<double>(value), steps_.checksum());
+  }
 }
 
 void RunTables::sync() {

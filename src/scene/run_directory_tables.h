@@ -20,8 +20,10 @@ class RunTables {
   void add_start(const StepReport& report);  // row of step 0, without wall time
   void add(const StepReport& report);
   void add(int step, const Iteration& iteration);
-  void add_size(Checkpoint& checkpoint) const;                  // the size of iterations.csv
-  void require_iterations(const Checkpoint& checkpoint) const;  // throws InvalidInput if rows are missing
+  // Sizes and checksums of the reproducible tables.
+  void add_sizes(Checkpoint& checkpoint) const;
+  // Throws InvalidInput if rows are missing or have changed.
+  void require_unchanged(const Checkpoint& checkpoint) const;
   void sync();
   void close();
 

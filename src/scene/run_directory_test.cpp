@@ -256,6 +256,47 @@ TEST_F(RunResults, DamagedCheckpointFallsBackToPrevious) {
   EXPECT_EQ(contents(path("run")), contents(path("whole")));
 }
 
+TEST_F(RunResults, UsdSceneIsUprightForGravityAlongZ) {
+  Scene scene = sagging_scene();
+  scene.gravity = {{0, 0, -9.81}};
+  RunDirectory::create(path("run"), scene, ExistingRun::refuse).finish(scene.simulation);
+  EXPECT_THAT(read_file(path("run/run.usda")), HasSubstr("upAxis = \"Z\""));
+}
+
+TEST_F(RunResults, ResumeNamesTheDamagedFile) {
+  const OutputOptions output{.obj = true, .checkpoint_every = 0};
+  {
+    Scene scene = sagging_scene(output);
+    RunDirectory run = RunDirectory::create(path("run"), scene, ExistingRun::refuse);
+    run_to(run, scene.simulation, 5);
+  }
+  for (const std::string name : {"steps.csv", "iterations.csv", "frames/body_000003.vtu",
+                                 "frames/skin_soft_bar_000002.obj", "skins/skin_soft_bar.pc2"}) {
+    const std::string whole = read_file(path("run") / name);
+    std::string damaged = whole;
+    damaged[damaged.size() / 2] ^= 1;
+    put(path("run") / name, damaged);
+    Scene scene = sagging_scene(output);
+    EXPECT_THAT(message_of<InvalidInput>([&] { RunDirectory::resume(path("run"), scene); }), HasSubstr(name)) << name;
+    put(path("run") / name, whole);
+  }
+  Scene scene = sagging_scene(output);
+  EXPECT_EQ(message_of<InvalidInput>([&] { RunDirectory::resume(path("run"), scene); }), "");
+}
+
+TEST_F(RunResults, ResumeRestoresCommentsAndRestSkin) {
+  run_whole(path("run"), {});
+  const auto before = contents(path("run"));
+  std::ofstream(path("run/scene.toml"), std::ios::app) << "# damage\n";
+  put(path("run/skins/skin_soft_bar.obj"), "v 0 0 0\n");
+  Scene scene = sagging_scene();
+  RunDirectory run = RunDirectory::resume(path("run"), scene);
+  ASSERT_EQ(scene.notes.size(), 1u);
+  EXPECT_THAT(scene.notes[0], HasSubstr("scene.toml: its text had changed"));
+  run.finish(scene.simulation);
+  EXPECT_EQ(contents(path("run")), before);
+}
+
 TEST_F(RunResults, OtherSceneIsRejectedWithDifferingLine) {
   run_whole(path("run"), {});
   Scene scene = sagging_scene();

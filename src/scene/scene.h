@@ -44,6 +44,7 @@ struct Scene {
   // surface.
   std::vector<std::pair<std::string, std::string>> input_files = {};
   std::vector<std::pair<std::string, TetMesh>> generated_meshes = {};
+  Vec3d gravity = {};  // [m/s^2]
 };
 
 // What a run needs beside its results to be repeated.

@@ -90,6 +90,7 @@ class SceneBuilder {
     SceneModel scene = build_model();
     const int steps = steps_of(*scene.document.find("time"));
     const OutputOptions output = output_options(*scene.document.find("output"));
+    const Vec3d gravity = scene.document.find("gravity")->vector();
     try {
       Simulation simulation(std::move(scene.model), std::move(scene.start), scene.options);
       std::string warning = start_warning(simulation);
@@ -103,7 +104,8 @@ class SceneBuilder {
               steps,
               output,
               std::move(scene.input_files),
-              std::move(scene.generated_meshes)};
+              std::move(scene.generated_meshes),
+              gravity};
     } catch (const BadInitialState& e) {
       throw InvalidInput(source_.file + ": " + e.cause + "; " + remedy_in_scene(e.kind));
     } catch (const InvalidInput& e) {
@@ -150,6 +152,7 @@ class SceneBuilder {
         loaded = std::move(known->second);
       BodyMesh mesh = make_body_mesh(scene, loader, std::move(loaded));
       PlacedBody body{scene, std::move(mesh.tets), {}, model_.mesh.vertex_count(), model_.mesh.tet_count()};
+      body.groups = std::move(mesh.groups);
       body.painted = std::make_shared<PaintedFields>(placement_of(scene), files_, body.name());
       try {
         body.start = deformed(scene, body.mesh.rest, files_, body.name());

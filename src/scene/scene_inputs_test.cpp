@@ -228,5 +228,20 @@ TEST(Scene, SkinIsPlacedAndCarriedWithBody) {
   EXPECT_THAT(refusal_of(folder / "s.toml"), HasSubstr("remove mesh_size"));
 }
 
+TEST(Scene, SkinInOtherUnitsIsRefusedWithDistance) {
+  const TestFolder folder;
+  write_mesh(folder / "cage.msh", make_box({{0, 0, 0}}, {{1, 1, 1}}, {1, 1, 1}));
+  folder.write("s.toml", "[[body]]\nmesh = \"cage.msh\"\nskin = \"skin.obj\"\n");
+  const auto refusal_at = [&](double scale) {
+    write_mesh(folder / "skin.obj",
+               boundary_surface(make_box({{0, 0, 0}}, {{scale, scale, scale}}, {1, 1, 1})).surface);
+    return refusal_of(folder / "s.toml");
+  };
+  EXPECT_THAT(refusal_at(1e-3), AllOf(HasSubstr("s.toml:3:"), HasSubstr("the tets reach 1.73 m beyond the skin, whose "
+                                                                        "diagonal is 0.00173 m")));
+  EXPECT_THAT(refusal_at(1e3), HasSubstr("the skin reaches 1.73e+03 m beyond the tets"));
+  EXPECT_EQ(refusal_at(0.2), "") << "a detail of the body";
+}
+
 }  // namespace
 }  // namespace aspic

@@ -127,6 +127,9 @@ void add_where(Schema& s) {
        key("sphere", kTable, "inside a sphere", Members{"region_sphere"}),
        key("vertices", kIntegers, "indices in the body, from 0; triangles and tets with all corners in the list",
            kNotNegative),
+       key("surface", kText | kInteger,
+           "name or number of a [surface of the mesh file](formats.md#names-of-surfaces-and-regions); vertices and "
+           "boundary triangles"),
        key("lowest", kNumber, "lowest fraction of the body's height, along gravity (or -y)", Range{.min = 0, .max = 1}),
        key("highest", kNumber, "highest fraction of the body's height", Range{.min = 0, .max = 1}),
        key("file", kText, "[painted surface](formats.md#painted-surfaces); triangles and tets as with `vertices`",
@@ -135,7 +138,9 @@ void add_where(Schema& s) {
        key("above", kNumber, "selects larger values", Usual{"0.5", "half of full paint"}),
        key("hash", kText, "hash of the file, in resolved scenes")});
   s.alternatives.push_back(
-      {"where", {{"box"}, {"sphere"}, {"vertices"}, {"lowest"}, {"highest"}, {"file", "name", "above", "hash"}}, true});
+      {"where",
+       {{"box"}, {"sphere"}, {"vertices"}, {"surface"}, {"lowest"}, {"highest"}, {"file", "name", "above", "hash"}},
+       true});
 
   add_section(s, {"region_box", "box = { ... } in where", "A closed box."},
               {key("lower", kNumbers, "lowest corner", Units{"m"}, kRequired),

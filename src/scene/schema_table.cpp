@@ -183,7 +183,9 @@ void add_material(Schema& s) {
       {"field", "a value per tet", "A number, a formula of the centroid (X, Y, Z) at rest, or a table:"});
   add_keys(
       s, "field",
-      {key("regions", kAnyTable, "a number per region label: { 1 = 1e5, 2 = 3e5 }"),
+      {key("regions", kAnyTable,
+           "a number per region, by label or [name](formats.md#names-of-surfaces-and-regions): { 1 = 1e5, inside = 3e5 "
+           "}"),
        key("file", kText,
            "CSV with one number per tet; VTU; or a [painted surface](formats.md#painted-surfaces), placed like `mesh`",
            kRequired),

@@ -1,6 +1,7 @@
 #include "scene/selection.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <utility>
 
@@ -69,10 +70,69 @@ std::vector<char> painted_vertices(const Value& where, const SelectionScope& sco
   return listed;
 }
 
-// One flag per vertex of the body for a list of indices or painted values; empty for other selections. Between two
-// listed corners, the mid-edge node is listed too.
+// The name of a group for messages: 'outlet' (3), or 3.
+std::string group_text(const SurfaceGroup& group) {
+  const std::string label = std::to_string(group.label);
+  return group.name.empty() ? label : "'" + group.name + "' (" + label + ")";
+}
+
+// Returns the triangles of the surfaces of the mesh file with the name or number `surface`.
+std::vector<Triangle> triangles_of(const Value& surface, const SelectionScope& scope) {
+  const std::string which = "surface = " + shortened(inline_toml(surface));
+  if (scope.whole)
+    throw error_at(surface.place, which +
+                                      "; several processes do not read the surfaces of mesh files (use a formula "
+                                      "or vertices)");
+  static const MeshGroups none;
+  std::vector<Triangle> triangles;
+  std::string known;
+  for (const SurfaceGroup& group : (scope.groups ? *scope.groups : none).surfaces) {
+    const bool is_chosen = surface.is_text() ? group.name == surface.text() : group.label == surface.integer();
+    if (is_chosen) triangles.insert(triangles.end(), group.triangles.begin(), group.triangles.end());
+    known += (known.empty() ? "" : ", ") + group_text(group);
+  }
+  if (!triangles.empty()) return triangles;
+  throw error_at(surface.place,
+                 which + "; the mesh of body '" + scope.body + "' has " +
+                     (known.empty() ? "no surfaces (save physical surfaces of Gmsh or references of Medit with it, or "
+                                      "select by a formula)"
+                                    : "the surfaces " + elided(known, 300)));
+}
+
+const Value* surface_in(const Value& where) { return where.is_table() ? where.find("surface") : nullptr; }
+
+// Corners of the selected triangles, each ascending; sorted.
+std::vector<Triangle> sorted_triangles(const Value& surface, const SelectionScope& scope) {
+  std::vector<Triangle> triangles = triangles_of(surface, scope);
+  for (Triangle& triangle : triangles) std::sort(triangle.begin(), triangle.end());
+  std::sort(triangles.begin(), triangles.end());
+  return triangles;
+}
+
+// Flags the corners of the triangles, and the mid-edge nodes of their edges.
+std::vector<char> vertices_of(const std::vector<Triangle>& triangles, const TetMesh& mesh) {
+  std::vector<char> listed(mesh.rest.size(), 0);
+  std::vector<std::array<int, 2>> edges;
+  for (const Triangle& t : triangles)
+    for (int c = 0; c < 3; ++c) {
+      listed[t[c]] = 1;
+      edges.push_back({std::min(t[c], t[(c + 1) % 3]), std::max(t[c], t[(c + 1) % 3])});
+    }
+  std::sort(edges.begin(), edges.end());
+  for (size_t t = 0; t < mesh.mids.size(); ++t)
+    for (int k = 0; k < 6; ++k) {
+      const int a = mesh.tets[t][kTetEdges[k][0]], b = mesh.tets[t][kTetEdges[k][1]];
+      if (std::binary_search(edges.begin(), edges.end(), std::array{std::min(a, b), std::max(a, b)}))
+        listed[mesh.mids[t][k]] = 1;
+    }
+  return listed;
+}
+
+// One flag per vertex of the body for a list of indices, a surface or painted values; empty for other selections.
+// Between two listed corners, the mid-edge node is listed too.
 std::vector<char> listed_vertices(const Value& where, const SelectionScope& scope) {
   if (where.is_table() && where.find("file")) return painted_vertices(where, scope);
+  if (const Value* surface = surface_in(where)) return vertices_of(triangles_of(*surface, scope), scope.mesh);
   const Value* list = where.is_table() ? where.find("vertices") : nullptr;
   if (!list) return {};
   std::vector<char> listed(std::max<size_t>(1, scope.mesh.rest.size()), 0);  // not empty for a part without vertices
@@ -135,16 +195,23 @@ const Triangle& corners_of(const Face& face) { return face.corners; }
 template <class Element>
 std::vector<Element> selected_elements(const Value& where, const SelectionScope& scope,
                                        const std::vector<Element>& boundary) {
+  const Value* surface = surface_in(where);
+  const std::vector<Triangle> of_surface = surface ? sorted_triangles(*surface, scope) : std::vector<Triangle>();
   const std::vector<char> listed = listed_vertices(where, scope);
   const std::vector<Element> selected = placed(where, [&] {
     const Predicate holds = listed.empty() ? geometric(where, scope) : nullptr;
-    const auto is_listed = [&](int v) { return listed[v] != 0; };
+    const auto is_listed = [&](const Triangle& t) {
+      if (!surface) return listed[t[0]] && listed[t[1]] && listed[t[2]];
+      Triangle ascending = t;
+      std::sort(ascending.begin(), ascending.end());
+      return std::binary_search(of_surface.begin(), of_surface.end(), ascending);
+    };
     const std::vector<Vec3d>& X = scope.mesh.rest;
     std::vector<Element> result;
     for (const Element& element : boundary) {
       const Triangle& t = corners_of(element);
       const Vec3d center = (1.0 / 3) * (X[t[0]] + X[t[1]] + X[t[2]]);
-      if (holds ? holds(center) : std::all_of(t.begin(), t.end(), is_listed)) result.push_back(element);
+      if (holds ? holds(center) : is_listed(t)) result.push_back(element);
     }
     return result;
   });
@@ -170,6 +237,9 @@ std::vector<int> select_vertices(const Value& where, const SelectionScope& scope
 }
 
 std::vector<int> select_tets(const Value& where, const SelectionScope& scope) {
+  if (const Value* surface = surface_in(where))
+    throw error_at(surface->place, "surface = " + shortened(inline_toml(*surface)) +
+                                       "; a surface has no tets (use a [[body.traction]], or a formula)");
   const std::vector<char> listed = listed_vertices(where, scope);
   const std::vector<int> selected = placed(where, [&] {
     const Predicate holds = listed.empty() ? geometric(where, scope) : nullptr;

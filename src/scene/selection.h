@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "mesh/box.h"
+#include "mesh/mesh_groups.h"
 #include "mesh/surface.h"
 #include "mesh/tet_mesh.h"
 #include "scene/value.h"
@@ -34,6 +35,7 @@ struct SelectionScope {
   std::string body;                              // for messages
   const std::vector<double>* painted = nullptr;  // the values that `where` names at each vertex, if any
   const WholeBody* whole = nullptr;              // null: the mesh is the whole body
+  const MeshGroups* groups = nullptr;            // of the mesh file; null: none
 };
 
 // An empty selection throws InvalidInput with the extent of the body.

@@ -2,12 +2,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <set>
 
 #include "base/error.h"
 #include "base/number_chars.h"
 #include "io/atomic_file.h"
-#include "io/vtu.h"
+#include "io/legacy_vtk.h"
 #include "mesh/tet_shape.h"
 #include "scene/expression.h"
 
@@ -39,7 +40,7 @@ bool parse_finite(std::string_view word, double& value) {
 
 std::vector<double> from_vtu(const fs::path& path, const Value& table, const TetMesh& mesh) {
   const Value* name = table.find("name");
-  const Vtu vtu = read_vtu(path);
+  const Vtu vtu = read_vtk_or_vtu(path);
   std::vector<std::string> known;
   for (const Field& f : vtu.cell_fields)
     if (f.components == 1) known.push_back(f.name);
@@ -69,7 +70,7 @@ std::vector<double> from_table(Table& table, const fs::path& path, const FieldSc
   Value view{table, {}};
   const Value& name = view["file"];
   std::vector<double> values;
-  if (path.extension() == ".vtu" || path.extension() == ".VTU") {
+  if (is_vtk_or_vtu(path)) {
     values = from_vtu(path, view, scope.mesh);
   } else {
     if (const Value* field = table.find("name"))
@@ -92,23 +93,43 @@ std::vector<double> from_file(Table& table, const FieldScope& scope, const std::
   return values;
 }
 
-std::vector<double> from_regions(const Value& regions, const TetMesh& mesh) {
+// Names of a region in a scene: its label and, if the file has one, its name.
+std::vector<std::string> names_of_region(int label, const MeshGroups* groups) {
+  std::vector<std::string> names = {std::to_string(label)};
+  if (!groups) return names;
+  const auto name = groups->region_names.find(label);
+  if (name != groups->region_names.end()) names.push_back(name->second);
+  return names;
+}
+
+std::vector<double> from_regions(const Value& regions, const TetMesh& mesh, const MeshGroups* groups) {
   const std::set<int> labels(mesh.region.begin(), mesh.region.end());
+  std::map<int, const Value*> values_of;
+  std::set<std::string> known;
   std::string list;
-  for (const int label : labels) list += (list.empty() ? "" : ", ") + std::to_string(label);
+  for (const int label : labels) {
+    const std::vector<std::string> names = names_of_region(label, groups);
+    for (const std::string& name : names) {
+      known.insert(name);
+      const Value* value = regions.find(name);
+      if (value && !values_of.emplace(label, value).second)
+        throw error_at(value->place,
+                       "regions: region " + names[0] + " is '" + name + "' and has two values; remove one of them");
+    }
+    list += (list.empty() ? "" : ", ") + names[0] + (names.size() > 1 ? " '" + names[1] + "'" : "");
+  }
   if (labels.empty())
     throw error_at(regions.place, "regions = " + shortened(inline_toml(regions)) +
                                       "; the mesh has no region labels (use a formula or a file)");
   for (const int label : labels)
-    if (!regions.find(std::to_string(label)))
+    if (!values_of.contains(label))
       throw error_at(regions.place, "regions = " + shortened(inline_toml(regions)) + "; a value for region " +
                                         std::to_string(label) + " is missing (the mesh has: " + list + ")");
   for (const Member& m : regions.table().members) {
-    const bool used = std::any_of(labels.begin(), labels.end(), [&](int l) { return std::to_string(l) == m.key; });
-    if (!used) throw error_at(m.place, "the mesh has no region " + m.key + " (it has: " + list + ")");
+    if (!known.contains(m.key)) throw error_at(m.place, "the mesh has no region " + m.key + " (it has: " + list + ")");
   }
   std::vector<double> values;
-  for (const int label : mesh.region) values.push_back(regions[std::to_string(label)].number());
+  for (const int label : mesh.region) values.push_back(values_of[label]->number());
   return values;
 }
 
@@ -170,7 +191,7 @@ std::vector<double> tet_values(Table& table, const Key& key, const FieldScope& s
   if (value.is_text()) {
     values = from_formula(value, mesh);
   } else if (const Value* regions = value.find("regions")) {
-    values = from_regions(*regions, mesh);
+    values = from_regions(*regions, mesh, scope.groups);
   } else {
     values = from_file(value.table(), scope, scope.stem + "." + key.name);
   }

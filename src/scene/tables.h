@@ -23,7 +23,8 @@ struct FieldScope {
   SceneFiles& files;
   std::string stem;  // name of files in the results
   PaintedFields& painted;
-  const WholeBody* whole = nullptr;  // null: the mesh is the whole body
+  const WholeBody* whole = nullptr;    // null: the mesh is the whole body
+  const MeshGroups* groups = nullptr;  // of the mesh file; null: none
 };
 
 // Returns `table[key.name]` for each tet: a number, a formula of the centroid, a number per region, or a file, checked
