@@ -307,7 +307,7 @@ int run(const FitArguments& arguments) {
   const FitVerdict judged = verdict(data, outcome);
   const std::string json = figures_json(data, outcome, judged, figures);
   write_file(folder.path() / "figures.json", json);
-  if (!arguments.quiet) print_fit(stdout, data, outcome), print_figures(stdout, figures);
+  if (!arguments.quiet) print_fit(stdout, data, outcome), print_figures(stdout, data, figures);
   if (!arguments.quiet && outcome.law_choice) print_laws(stdout, *outcome.law_choice);
   if (!arguments.quiet && outcome.relaxation) print_relaxation(stdout, *outcome.relaxation);
   if (outcome.relaxation) write_relaxation(folder.path(), *outcome.relaxation);

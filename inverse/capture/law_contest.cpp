@@ -7,6 +7,7 @@
 #include <set>
 
 #include "capture/fit_troubles.h"
+#include "capture/fit_verdict.h"
 #include "capture/fitted_values.h"
 #include "capture/material_fit.h"
 #include "fit/quantity.h"
@@ -331,8 +332,9 @@ class LawContest {
   void hold_out(FitModel& model, const Contender& c, LawTrial& trial) {
     if (!plan_.cross_validation) return;
     const CrossValidation held_out = this->held_out(model, c);
-    trial.position_error = held_out.position_error;
-    trial.force_error = held_out.force_error;
+    const PredictionErrors errors = all_groups(beyond_noise(data_, held_out.groups));
+    trial.position_error = errors.position;
+    trial.force_error = errors.force;
     for (const HeldOut& group : held_out.groups) trial.held_out.push_back(predicted(model, group));
   }
 

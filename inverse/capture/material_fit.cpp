@@ -66,6 +66,10 @@ FitModel::FitModel(const Experiment& data, const Experiment& simulated, const Fi
   with_layers.emplace(recorded());
 }
 
+void FitModel::start_from(const SimulatedData& simulated) {
+  if (const std::vector<double> x = simulated.equilibria(); !x.empty()) misfit.set_state(x);
+}
+
 Misfit& FitModel::of_all_readings() {
   if (!is_condensed) return misfit;
   whole_.emplace(simulated_, map, equilibrium_);
@@ -110,13 +114,14 @@ bool MaterialFit::has_many_values() const {
 
 // One value per quantity explains most of the data and is the initial guess of fields.
 bool MaterialFit::fit_single_values(const std::string& name) {
-  begin(FitStage::uniform, "one value for the whole body");
+  begin(FitStage::uniform, "for the whole body");
   FitOptions options = plan_.fit;
   options.method = options.weight_rule = "auto";
   options.weight = -1;
   for (const double factor : kStiffer) {
     FitModel model(data_.experiment, simulated_.fitted(), plan_, stiffer(single_values(plan_.parameters), factor),
                    {memory_, name + suffix(factor), fingerprint_});
+    model.start_from(simulated_);
     const FitReport report = fit_stage(FitStage::uniform, model, options);
     outcome_.uniform = outcome_.report = report;
     if (has_failed(report)) {
@@ -179,6 +184,7 @@ void MaterialFit::take_off_mesh_errors() {
     plan_.mesh_errors = false;
     return;
   }
+  outcome_.has_mesh_errors = true;
   outcome_.mesh_error = simulated_.mesh_error();
 }
 
@@ -192,6 +198,7 @@ void MaterialFit::fit_until_mesh_errors_settle(std::optional<FitModel>& model) {
     const std::string name = pass == 0 ? stage : stage + "_corrected" + std::to_string(pass);
     model.emplace(data_.experiment, simulated_.fitted(), plan_, plan_.parameters,
                   StoredModel{memory_, name, fingerprint_});
+    model->start_from(simulated_);
     outcome_.report = fit_stage(is_one_value ? FitStage::uniform : FitStage::field, *model, options, start);
     const std::vector<double>& p = outcome_.report.p;
     if ((!has_model_errors() && !has_corrections()) || !is_success(outcome_.report.status)) return;
@@ -235,7 +242,7 @@ void MaterialFit::fall_back(std::vector<FitReason> reasons) {
   plan_.parameters = outcome_.plan.parameters = single_values(plan_.parameters);
   plan_.fit.method = plan_.fit.weight_rule = "auto";
   plan_.fit.weight = -1;
-  begin(FitStage::uniform, "one value for the whole body, because the data do not support a field");
+  begin(FitStage::uniform, "for the whole body, because the data do not support a field");
   fit_and_describe();
 }
 

@@ -31,6 +31,9 @@ struct FitModel {
   LeastSquares& recorded() { return journal ? static_cast<LeastSquares&>(*journal) : misfit; }
   LeastSquares& data() { return *with_layers; }  // the residuals to minimize
 
+  // Starts the first evaluation from the equilibria of the data for the material of their last errors, if any.
+  void start_from(const SimulatedData& simulated);
+
   // The same model with all readings instead of condensed ones, in the same state.
   Misfit& of_all_readings();
 

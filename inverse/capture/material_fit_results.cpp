@@ -36,7 +36,7 @@ void put_layers_in(std::span<const double> r, const LoadCase& fitted, CasePredic
 
 void MaterialFit::learn_uncertainty(FitModel& model) {
   if (!plan_.uncertainty || is_stopped()) return;
-  begin(FitStage::uncertainty, "uncertainty");
+  begin(FitStage::uncertainty, has_many_values() ? "standard deviation of every tet" : "standard deviations");
   const FitReport& report = outcome_.report;
   WithUncertainLayers about_fit(model.recorded());
   outcome_.posterior = posterior(about_fit, *model.prior, report.weight, {model.map, mesh(), report.p});
@@ -220,7 +220,8 @@ CrossValidation MaterialFit::cross_validated(FitModel& model, const FitReport& r
   const HeldOutJobs jobs{jobs_, name, plan_, [this] { return is_stopped(); }};
   return cross_validate(
       simulated_.fitted(), model.map, *model.prior, report,
-      {options, plan_.equilibrium, observe, &simulated_.all(), jobs.store(simulated_.fitted(), report)});
+      {options, plan_.equilibrium, observe, &simulated_.all(), jobs.store(simulated_.fitted(), report),
+       simulated_.equilibria()});
 }
 
 // Baseline for a field.
@@ -229,6 +230,7 @@ std::optional<CrossValidation> MaterialFit::cross_validated_one_value() {
   options.method = options.weight_rule = "auto";
   options.weight = -1;
   FitModel one(data_.experiment, simulated_.fitted(), plan_, single_values(plan_.parameters), {{}, "", ""});
+  one.start_from(simulated_);
   const FitReport report = fit(one.data(), *one.prior, one.map.guess(), options);
   if (!is_success(report.status)) return std::nullopt;
   return cross_validated(one, report, options, "one_value_held_out");

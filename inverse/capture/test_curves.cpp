@@ -17,6 +17,17 @@ struct StressColumn {
   double pascals;
 };
 
+// Machines export forces and strains; their tables need other columns.
+void require_columns(const CsvReader& csv, const std::string& file) {
+  for (const char* column : {"test", "stretch"})
+    if (!csv.has(column))
+      throw InvalidInput(file + ":1: missing column '" + column +
+                         "'; expected test, stretch, and stress_Pa, stress_kPa or stress_MPa; found " +
+                         csv.column_list() +
+                         " (from a testing machine: stretch = 1 + strain, or 1 + strain / 100 of percent; stress = force / "
+                         "area at rest; test = uniaxial, equibiaxial, planar or simple_shear)");
+}
+
 StressColumn stress_column(const CsvReader& csv, const std::string& file) {
   struct Unit {
     const char* column;
@@ -36,6 +47,7 @@ StressColumn stress_column(const CsvReader& csv, const std::string& file) {
 std::vector<TestCurve> read_test_curves(const std::filesystem::path& path) {
   const std::string file = path.string();
   CsvReader csv(path, CsvOrigin::foreign);
+  require_columns(csv, file);
   const size_t test = csv.column("test"), stretch = csv.column("stretch");
   const StressColumn stress = stress_column(csv, file);
   std::vector<TestCurve> curves;

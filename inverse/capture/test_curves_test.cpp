@@ -12,6 +12,7 @@
 namespace aspic {
 namespace {
 
+using testing::AllOf;
 using testing::HasSubstr;
 
 std::vector<TestCurve> rubber(const std::string& name) {
@@ -101,6 +102,9 @@ std::string refusal(const std::string& text) {
 TEST(ReadTestCurves, NamesTheRowAndTheRemedy) {
   EXPECT_EQ(refusal("test,stretch,stress_Pa\nuniaxial,1.1,1\n"), "accepted");
   EXPECT_THAT(refusal("test,stretch,stress\nuniaxial,1.1,1\n"), HasSubstr("stress_MPa"));
+  EXPECT_THAT(refusal("Strain (%),Load (N)\n10,2\n"),
+              AllOf(HasSubstr(".csv:1: missing column 'test'; expected test, stretch, and stress_Pa"),
+                    HasSubstr("found Strain (%), Load (N)"), HasSubstr("stretch = 1 + strain")));
   EXPECT_THAT(refusal("test,stretch,stress_Pa\nuniaxial,1.1,1\nbiaxial,1.1,1\n"), HasSubstr(".csv:3: "));
   EXPECT_THAT(refusal("test,stretch,stress_Pa\nuniaxial,0,1\n"), HasSubstr("1 at rest"));
   EXPECT_THAT(refusal("test,stretch,stress_Pa\nuniaxial,1.1,nan\n"), HasSubstr("remove the row"));

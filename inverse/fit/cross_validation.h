@@ -58,6 +58,7 @@ struct CrossValidationOptions {
   CrossValidationObserver observe = {};
   const Experiment* to_predict = nullptr;  // cases for comparisons with predictions; null: those that are fitted
   HeldOutStore store = {};                 // none: everything is computed
+  std::vector<double> start = {};          // state of a Misfit of all cases near the fit; empty: none
 };
 
 // `fitted`: fit of all cases; its p is the initial guess and its weight is kept.
