@@ -157,7 +157,11 @@ class Fitter {
   void iterate(FitStage stage, const FitIteration& iteration) {
     if (jobs_.mode() != JobMode::single) folder_.add(stage, iteration);
     if (stage == FitStage::field) history_.push_back(iteration);
-    if (progress_) progress_->show(stage, iteration, residuals_);
+    if (!progress_) return;
+    if (is_first_ && !folder_.is_resumed() && jobs_.mode() == JobMode::all)
+      progress_->show_expected(expected_duration(plan_, data_.experiment));
+    is_first_ = false;
+    progress_->show(stage, iteration, residuals_);
   }
 
   bool is_interrupted() {
@@ -171,7 +175,7 @@ class Fitter {
   FitFolder& folder_;
   FitJobs jobs_;
   int residuals_;
-  bool announced_ = false;
+  bool announced_ = false, is_first_ = true;
   std::optional<FitProgress> progress_;
   std::vector<FitIteration> history_;
 };

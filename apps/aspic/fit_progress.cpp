@@ -13,7 +13,20 @@ constexpr const char* kStageTexts[] = {"one value", "the mesh",  "fit", "uncerta
 
 const char* stage_text(FitStage stage) { return kStageTexts[static_cast<size_t>(stage)]; }
 
+// In first iterations, which solve all cases from rest. Measured with fits of blocks and layers.
+constexpr double kFirstFit = 3, kLaws = 1, kFinerMesh = 6, kFields = 10, kHeldOutGroup = 0.5;
+
 }  // namespace
+
+double expected_duration(const FitPlan& plan, const Experiment& experiment) {
+  const bool is_field = std::any_of(plan.parameters.begin(), plan.parameters.end(), [](const FitParameter& u) {
+    return u.parameterization == Parameterization::tets || u.parameterization == Parameterization::handles;
+  });
+  const auto groups = static_cast<double>(groups_of(experiment).size());
+  double duration = kFirstFit + (plan.law_errors ? kLaws : 0) + (plan.mesh_errors ? kFinerMesh : 0);
+  if (plan.cross_validation && groups > 1) duration += kHeldOutGroup * groups;
+  return is_field ? kFields * duration : duration;
+}
 
 FitProgress::FitProgress(std::FILE* stream, bool every_iteration)
     : StatusLine(stream), every_iteration_(every_iteration) {}
@@ -43,6 +56,10 @@ void FitProgress::message(const std::string& line) {
   erase();
   fmt::print(stream_, "{}\n", line);
   std::fflush(stream_);
+}
+
+void FitProgress::show_expected(double factor) {
+  message(fmt::format("expected   about {} in all, from the first iteration", duration_text(factor * seconds())));
 }
 
 void FitProgress::finish() {

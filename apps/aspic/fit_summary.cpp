@@ -74,8 +74,7 @@ void print_held_out(std::FILE* stream, const DataSet& data, const FitOutcome& ou
   const auto excess = [](const PredictionErrors& e) { return e.*e.worst().beyond_noise / e.worst().limit; };
   const auto worst = std::max_element(groups.begin(), groups.end(),
                                       [&](const auto& a, const auto& b) { return excess(a) < excess(b); });
-  if (groups.size() > 1)
-    fmt::print(stream, "           worst: '{}', {}\n", worst->group, errors_text(*worst, kSingle));
+  if (groups.size() > 1) fmt::print(stream, "           worst: '{}', {}\n", worst->group, errors_text(*worst, kSingle));
 }
 
 std::string coefficient_text(const EstimatedError& e) {
@@ -126,8 +125,8 @@ std::string errors_text(const PredictionErrors& errors, double limits) {
   for (const ReadingKind& kind : kReadingKinds) {
     if (errors.*kind.beyond_noise < 0) continue;
     const std::string limit = limits > 0 ? fmt::format(" (limit {:.3g} %)", 100 * limits * kind.limit) : "";
-    texts.push_back(fmt::format("{}s within {:.3g} % of the largest {}{}", kind.name,
-                                100 * errors.*kind.beyond_noise, kind.peak, limit));
+    texts.push_back(fmt::format("{}s within {:.3g} % of the largest {}{}", kind.name, 100 * errors.*kind.beyond_noise,
+                                kind.peak, limit));
   }
   return fmt::format("{}", fmt::join(texts, ", "));
 }

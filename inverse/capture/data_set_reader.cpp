@@ -31,7 +31,7 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr size_t kMaxMarkers = 1'000'000, kMaxReadings = 5'000'000;
-constexpr double kFarOff = 0.1;      // fraction of the body's size; farther markers are errors
+constexpr double kFarOff = 0.1;  // fraction of the body's size; farther markers are errors
 
 void add_notes(const std::string& what, const std::vector<Finding>& findings, std::vector<std::string>& notes) {
   for (const Finding& f : findings) {
@@ -388,7 +388,9 @@ class DataSetReader {
     for (const Value& t : indenters->array()) {
       Indenter indenter{t["shape"].text() == "disc" ? IndenterShape::disc : IndenterShape::sphere,
                         t["contact"].text() == "bonded" ? IndenterContact::bonded : IndenterContact::sliding,
-                        settings_.unit("length") * t["radius"].number(), 0, t["friction"].number(),
+                        settings_.unit("length") * t["radius"].number(),
+                        0,
+                        t["friction"].number(),
                         read_rim(settings_, t)};
       if (const Value* k = t.find("stiffness")) indenter.stiffness = k->number();
       tip_sigmas_.emplace(t["name"].text(), read_tip_sigmas(settings_, t));

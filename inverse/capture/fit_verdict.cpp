@@ -10,9 +10,9 @@
 namespace aspic {
 namespace {
 
-constexpr double kDisagree = 1.5;  // ratio of the stiffnesses implied by two groups
-constexpr double kCoarseMesh = 1;  // relative error of a force on the mesh: a factor of 2
-constexpr double kWorse = 1.1;     // ratio of held-out errors, field to one value
+constexpr double kDisagree = 1.5;      // ratio of the stiffnesses implied by two groups
+constexpr double kCoarseMesh = 1;      // relative error of a force on the mesh: a factor of 2
+constexpr double kWorse = 1.1;         // ratio of held-out errors, field to one value
 constexpr double kLinearError = 0.05;  // relative error of the stiffness by linear tets
 
 // Compares the readings of a group with the predictions.
@@ -190,8 +190,8 @@ class Reasons {
   void add_linear_tets() {
     const std::optional<LinearTetError> error = linear_tet_error(data_, outcome_);
     if (!error) return;
-    const std::string what = "linear tets were simulated, because the mesh has more than " +
-                             std::to_string(kMaxQuadratic) + " tets, and ";
+    const std::string what =
+        "linear tets were simulated, because the mesh has more than " + std::to_string(kMaxQuadratic) + " tets, and ";
     const std::string remedy = ": use order = 2 in capture.toml, or a coarser mesh";
     if (error->of_stiffness < 0)
       add("linear_tets", what + "their error is unknown" + remedy);

@@ -18,7 +18,7 @@ struct PredictionErrors {
   std::string group;
   double position = -1, force = -1, torque = -1;
 
-  bool is_poor(double factor) const;  // exceeds a multiple of the limits
+  bool is_poor(double factor) const;        // exceeds a multiple of the limits
   const struct ReadingKind& worst() const;  // with the largest multiple of its limit
 };
 
@@ -64,10 +64,9 @@ struct LinearTetError {
 // Empty if quadratic tets were simulated, the settings choose the order, or the material is for this mesh alone.
 std::optional<LinearTetError> linear_tet_error(const DataSet& data, const FitOutcome& outcome);
 
-// Names of the reasons: interrupted, not_converged, mesh_not_settled, mesh_too_coarse, linear_tets, at_bound, group_missed,
-// held_out_worse, groups_disagree, unexplained, predicts_badly, field_rejected,
-// relaxation_failed, relaxation_undetermined, relaxation_unexplained, no_good_law,
-// fibres_undetermined.
+// Names of the reasons: interrupted, not_converged, mesh_not_settled, mesh_too_coarse, linear_tets, at_bound,
+// group_missed, held_out_worse, groups_disagree, unexplained, predicts_badly, field_rejected, relaxation_failed,
+// relaxation_undetermined, relaxation_unexplained, no_good_law, fibres_undetermined.
 FitVerdict verdict(const DataSet& data, const FitOutcome& outcome);
 
 // Reasons why one value is better than a field: mesh_not_settled, at_bound, group_missed, held_out_worse.

@@ -106,7 +106,8 @@ TEST(FitVerdict, LinearTetsByDefaultAreJudgedByTheirError) {
   EXPECT_THAT(reasons(outcome, data), ElementsAre()) << "the settings choose the order";
   data.is_order_reduced = true;
   EXPECT_THAT(reasons(outcome, data), ElementsAre("linear_tets"));
-  EXPECT_THAT(verdict(data, outcome).text, testing::AllOf(HasSubstr("may leave an error of 14 %"), HasSubstr("order = 2")));
+  EXPECT_THAT(verdict(data, outcome).text,
+              testing::AllOf(HasSubstr("may leave an error of 14 %"), HasSubstr("order = 2")));
   EXPECT_DOUBLE_EQ(verdict(data, outcome).reasons[0].value.value_or(0), 0.14);
   outcome.cases[4].relative_mesh_error = 0.04;
   EXPECT_THAT(reasons(outcome, data), ElementsAre());

@@ -9,7 +9,8 @@
 namespace aspic {
 namespace {
 
-// Change of the logarithm of a layer stiffness or a rim per pass: estimates are linearized, and those far from the last diverge.
+// Change of the logarithm of a layer stiffness or a rim per pass: estimates are linearized, and those far from the last
+// diverge.
 constexpr double kLargestStep = 1;
 
 double change_of_weights(const std::vector<CaseWeights>& before, const std::vector<CaseWeights>& after) {
@@ -78,8 +79,7 @@ void MaterialFit::list_errors(WithUncertainLayers& about_fit, std::span<const do
     const std::optional<double> stated = stated_coefficient(data_.experiment, error);
     const char* stated_unit = error.kind == ErrorKind::layer ? "Pa/m" : error.kind == ErrorKind::rim ? "m" : "";
     outcome_.errors.push_back({name_of(error), stated ? stated_unit : unit_of(error), estimates[k].value,
-                               std::min(factor * estimates[k].sigma, error.sigma), error.sigma,
-                               stated});
+                               std::min(factor * estimates[k].sigma, error.sigma), error.sigma, stated});
   }
 }
 

@@ -218,10 +218,9 @@ CrossValidation MaterialFit::cross_validated(FitModel& model, const FitReport& r
           "'" + label + "' is held out (" + std::to_string(group + 1) + " of " + std::to_string(groups) + ")");
   };
   const HeldOutJobs jobs{jobs_, name, plan_, [this] { return is_stopped(); }};
-  return cross_validate(
-      simulated_.fitted(), model.map, *model.prior, report,
-      {options, plan_.equilibrium, observe, &simulated_.all(), jobs.store(simulated_.fitted(), report),
-       simulated_.equilibria()});
+  return cross_validate(simulated_.fitted(), model.map, *model.prior, report,
+                        {options, plan_.equilibrium, observe, &simulated_.all(),
+                         jobs.store(simulated_.fitted(), report), simulated_.equilibria()});
 }
 
 // Baseline for a field.
@@ -229,8 +228,7 @@ std::optional<CrossValidation> MaterialFit::cross_validated_one_value() {
   FitOptions options = plan_.fit;
   options.method = options.weight_rule = "auto";
   options.weight = -1;
-  FitModel one(data_.experiment, simulated_.fitted(), plan_, single_values(plan_.parameters), {{}, "", ""});
-  one.start_from(simulated_);
+  FitModel one(data_.experiment, simulated_, plan_, single_values(plan_.parameters), {{}, "", ""});
   const FitReport report = fit(one.data(), *one.prior, one.map.guess(), options);
   if (!is_success(report.status)) return std::nullopt;
   return cross_validated(one, report, options, "one_value_held_out");

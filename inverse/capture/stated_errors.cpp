@@ -85,8 +85,9 @@ double read_rim(const CaptureSettings& settings, const Value& tip) {
   if (!rim) return has_rim(tip) ? kUsualRim * radius : 0;
   const double value = settings.unit("length") * rim->number();
   if (!has_rim(tip))
-    throw error_at(rim->place, "rim: only sliding discs have a rim; remove the key, or use shape = \"disc\" and "
-                               "contact = \"sliding\"");
+    throw error_at(rim->place,
+                   "rim: only sliding discs have a rim; remove the key, or use shape = \"disc\" and "
+                   "contact = \"sliding\"");
   if (value > kRoundestRim * radius)
     throw error_at(rim->place, "rim = " + number_text(rim->number()) + " is more than " + three_digits(kRoundestRim) +
                                    " of the radius of the disc; correct it (radius of the arc between the flat end "

@@ -21,11 +21,11 @@ struct StressColumn {
 void require_columns(const CsvReader& csv, const std::string& file) {
   for (const char* column : {"test", "stretch"})
     if (!csv.has(column))
-      throw InvalidInput(file + ":1: missing column '" + column +
-                         "'; expected test, stretch, and stress_Pa, stress_kPa or stress_MPa; found " +
-                         csv.column_list() +
-                         " (from a testing machine: stretch = 1 + strain, or 1 + strain / 100 of percent; stress = force / "
-                         "area at rest; test = uniaxial, equibiaxial, planar or simple_shear)");
+      throw InvalidInput(
+          file + ":1: missing column '" + column +
+          "'; expected test, stretch, and stress_Pa, stress_kPa or stress_MPa; found " + csv.column_list() +
+          " (from a testing machine: stretch = 1 + strain, or 1 + strain / 100 of percent; stress = force / "
+          "area at rest; test = uniaxial, equibiaxial, planar or simple_shear)");
 }
 
 StressColumn stress_column(const CsvReader& csv, const std::string& file) {

@@ -58,13 +58,8 @@ class FittedState {
   // For a misfit of the cases of one group, or of all others.
   void start(Misfit& misfit, const std::string& group, bool is_of_group) {
     compute();
-    const size_t size = x_.size() / experiment_.cases.size();
-    std::vector<double> part;
-    for (size_t c = 0; c < experiment_.cases.size(); ++c)
-      if ((experiment_.cases[c].group == group) == is_of_group)
-        part.insert(part.end(), x_.begin() + static_cast<std::ptrdiff_t>(c * size),
-                    x_.begin() + static_cast<std::ptrdiff_t>((c + 1) * size));
-    if (!x_.empty()) misfit.set_state(part);
+    const auto wanted = [&](const LoadCase& c) { return (c.group == group) == is_of_group; };
+    if (!x_.empty()) misfit.set_state(subset(experiment_, x_, wanted));
   }
 
  private:
@@ -144,6 +139,17 @@ Experiment subset(const Experiment& experiment, const std::function<bool(const L
   return part;
 }
 
+std::vector<double> subset(const Experiment& experiment, std::span<const double> state,
+                           const std::function<bool(const LoadCase&)>& wanted) {
+  const size_t size = state.size() / experiment.cases.size();
+  std::vector<double> part;
+  for (size_t c = 0; c < experiment.cases.size(); ++c) {
+    const std::span<const double> own = state.subspan(c * size, size);
+    if (wanted(experiment.cases[c])) part.insert(part.end(), own.begin(), own.end());
+  }
+  return part;
+}
+
 HeldOut compare(const Experiment& left_out, std::span<const CasePrediction> predicted) {
   HeldOut h{.group = left_out.cases.empty() ? "" : left_out.cases.front().group};
   for (size_t c = 0; c < left_out.cases.size(); ++c) add_case(left_out, left_out.cases[c], predicted[c], h);
@@ -166,7 +172,9 @@ CrossValidation cross_validate(const Experiment& experiment, const ParameterMap&
   for (size_t g = 0; g < groups.size(); ++g) {
     if (chosen.observe) chosen.observe(static_cast<int>(g), static_cast<int>(groups.size()), groups[g]);
     if (options.stop.stopped()) break;
-    const auto compute = [&] { return hold_out(experiment, {groups[g], map, regularizer, fitted.p, options, chosen, state}); };
+    const auto compute = [&] {
+      return hold_out(experiment, {groups[g], map, regularizer, fitted.p, options, chosen, state});
+    };
     std::optional<HeldOut> h = chosen.store ? chosen.store(static_cast<int>(g), groups[g], compute) : compute();
     if (!h) continue;
     if (!h->ok) result.warnings.push_back(h->group + " could not be predicted: " + h->failure);

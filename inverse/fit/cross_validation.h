@@ -42,6 +42,10 @@ struct CrossValidation {
 // Returns the cases for which `wanted` is true, with the same body.
 Experiment subset(const Experiment& experiment, const std::function<bool(const LoadCase&)>& wanted);
 
+// Returns the equilibria of these cases among those of all cases, which are one after another; see Misfit::state().
+std::vector<double> subset(const Experiment& experiment, std::span<const double> state,
+                           const std::function<bool(const LoadCase&)>& wanted);
+
 // Compares predictions for the cases of `left_out`, in order, with the measurements.
 HeldOut compare(const Experiment& left_out, std::span<const CasePrediction> predicted);
 

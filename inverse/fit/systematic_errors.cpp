@@ -177,9 +177,8 @@ std::vector<SystematicError> systematic_errors(const std::vector<LoadCase>& case
 }
 
 std::string name_of(const SystematicError& error) {
-  constexpr const char* kNames[] = {"position", "rotation",    "backlash",     "layer stiffness",
-                                    "tare",     "force scale", "length scale", "friction",
-                                    "rim"};
+  constexpr const char* kNames[] = {"position",     "rotation", "backlash", "layer stiffness", "tare", "force scale",
+                                    "length scale", "friction", "rim"};
   constexpr const char* kAxes[] = {" x", " y", " z", " along the axis"};
   std::string name = kNames[static_cast<size_t>(error.kind)];
   if (is_of_group(error) || error.kind == ErrorKind::tare) name += kAxes[error.axis];

@@ -72,8 +72,7 @@ double rim_of(const Indenter& disc) {
 RimChange rim_change(const Indenter& disc, const IndenterPose& pose, const Vec3d& x) {
   const DiscPoint point(disc, pose.axis, x - pose.center);
   const Rounding h = rounding(point.t);
-  return {-point.width * (h.value - point.t * h.slope),
-          (point.t * h.curvature) * (point.across.direction - pose.axis)};
+  return {-point.width * (h.value - point.t * h.slope), (point.t * h.curvature) * (point.across.direction - pose.axis)};
 }
 
 }  // namespace aspic

@@ -68,8 +68,8 @@ class Probe : public SteadyEnergy {
   virtual Wrench wrench_product(Positions x, std::span<const double> dx) const = 0;
   virtual void add_wrench_transposed(Positions x, const Wrench& wbar, double scale, std::span<double> xbar) const = 0;
   virtual int touched_points(Positions x) const = 0;  // number of surface points in contact; 0: none
-  // Adds scale times the derivative of the gradient by the logarithm of the rim of a sliding disc to g, and returns that
-  // of the wrench. Other indenters have none.
+  // Adds scale times the derivative of the gradient by the logarithm of the rim of a sliding disc to g, and returns
+  // that of the wrench. Other indenters have none.
   virtual Wrench add_rim_gradient(Positions x, double scale, std::span<double> g) const = 0;
   virtual void visit_touched(Positions x, const std::function<void(const TouchedPoint&)>& visit) const = 0;
 
