@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "capture/fit_troubles.h"
 #include "capture/local_refinement.h"
 #include "capture/surface_projection.h"
 #include "fit/law_errors.h"
