@@ -100,7 +100,7 @@ TEST(FitVerdict, ForcesThatTheMeshDoublesAreTooMany) {
 TEST(FitVerdict, LinearTetsByDefaultAreJudgedByTheirError) {
   DataSet data = three_indentations();
   FitOutcome outcome = perfect(data);
-  outcome.has_mesh_errors = true;
+  outcome.plan.mesh_errors = outcome.has_mesh_errors = true;
   outcome.mesh_error = 0.01;
   outcome.cases[4].relative_mesh_error = 0.14;
   EXPECT_THAT(reasons(outcome, data), ElementsAre()) << "the settings choose the order";
