@@ -38,7 +38,7 @@ struct Equilibrium::Impl {
         x(std::move(start)),
         pins(model.pins, x),
         E(model, pins),
-        newton(make_linear_solver(o.linear, getenv("ASPIC_NS") ? atoi(getenv("ASPIC_NS")) : o.newton_solves)),
+        newton(make_linear_solver(o.linear)),
         solver(make_linear_solver(o.adjoint, o.solves)),
         K(E.pattern()),
         theta(model) {

@@ -19,7 +19,6 @@ struct EquilibriumOptions {
   double tolerance = 1e-9;           // tolerance of the residual force, relative to the balancing forces
   int max_iterations = 200;          // maximum iterations of Newton's method
   std::string linear = "auto";       // solver of Newton steps
-  int newton_solves = 20;            // number of solves to two digits that one factorization replaces, for "auto"
   std::string adjoint = "auto";      // solver of tangents and adjoints, see linear_solver_names()
   int solves = 20;                   // approximate number of those per linearization, for "auto"
   double adjoint_tolerance = 1e-11;  // relative residual of those; above the round-off floor
