@@ -159,7 +159,7 @@ class Fitter {
     if (stage == FitStage::field) history_.push_back(iteration);
     if (!progress_) return;
     if (is_first_ && !folder_.is_resumed() && jobs_.mode() == JobMode::all)
-      progress_->show_expected(expected_duration(plan_, data_.experiment));
+      progress_->show_expected(plan_, data_.experiment);
     is_first_ = false;
     progress_->show(stage, iteration, residuals_);
   }
