@@ -10,7 +10,7 @@ namespace {
 
 constexpr double kRadius = 0.025;
 
-// Measured with rims of a fifth of the radius. The fit assumes the given rim, with a standard deviation of its logarithm.
+// Measured with rims of a fifth of the radius. The fit assumes the given rim and standard deviation of its logarithm.
 DataSet layers_under_discs(double assumed, double sigma) {
   DataSet data{.name = "layers", .experiment = indented_block(4)};
   Experiment& e = data.experiment;
