@@ -115,6 +115,9 @@ class Fit(FitCommand):
         self.assertEqual(self.fit(*QUICK, "-q").stdout, "")
         loud = self.fit(*QUICK, "-v", "--force").stdout
         self.assertEqual(loud.count("  iteration "), len(self.rows()))
+        expected, first = loud.index("expected   about"), loud.index("  iteration ")
+        self.assertRegex(loud[expected:], r"^expected   about [\d.]+( min \d+)? s in all, from the first iteration\n")
+        self.assertLess(expected, first)
 
     def test_earlier_fit_is_replaced_only_by_force(self):
         self.fit(*QUICK, "-q")
@@ -285,6 +288,7 @@ fixed = "z < 1e-6"
 [[tip]]
 shape = "disc"
 radius = 1
+rim = 0.064
 stiffness = 1e6
 friction = 0.5
 friction_deviation = 0.7

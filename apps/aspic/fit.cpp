@@ -157,7 +157,11 @@ class Fitter {
   void iterate(FitStage stage, const FitIteration& iteration) {
     if (jobs_.mode() != JobMode::single) folder_.add(stage, iteration);
     if (stage == FitStage::field) history_.push_back(iteration);
-    if (progress_) progress_->show(stage, iteration, residuals_);
+    if (!progress_) return;
+    if (is_first_ && !folder_.is_resumed() && jobs_.mode() == JobMode::all)
+      progress_->show_expected(plan_, data_.experiment);
+    is_first_ = false;
+    progress_->show(stage, iteration, residuals_);
   }
 
   bool is_interrupted() {
@@ -171,7 +175,7 @@ class Fitter {
   FitFolder& folder_;
   FitJobs jobs_;
   int residuals_;
-  bool announced_ = false;
+  bool announced_ = false, is_first_ = true;
   std::optional<FitProgress> progress_;
   std::vector<FitIteration> history_;
 };
@@ -307,7 +311,7 @@ int run(const FitArguments& arguments) {
   const FitVerdict judged = verdict(data, outcome);
   const std::string json = figures_json(data, outcome, judged, figures);
   write_file(folder.path() / "figures.json", json);
-  if (!arguments.quiet) print_fit(stdout, data, outcome), print_figures(stdout, figures);
+  if (!arguments.quiet) print_fit(stdout, data, outcome), print_figures(stdout, data, figures);
   if (!arguments.quiet && outcome.law_choice) print_laws(stdout, *outcome.law_choice);
   if (!arguments.quiet && outcome.relaxation) print_relaxation(stdout, *outcome.relaxation);
   if (outcome.relaxation) write_relaxation(folder.path(), *outcome.relaxation);

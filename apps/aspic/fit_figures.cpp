@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "aspic/fit_json.h"
+#include "aspic/fit_summary.h"
 #include "aspic/law_table.h"
 #include "aspic/relaxation_results.h"
 #include "capture/left_out.h"
@@ -66,20 +67,13 @@ void print_judgment(std::FILE* stream, const Judgment& j) {
     fmt::print(stream, "           in {} of the tets the 95 % interval contains the truth\n", percent(j.coverage));
 }
 
-void print_prediction(std::FILE* stream, const Prediction& prediction) {
+void print_prediction(std::FILE* stream, const DataSet& data, const Prediction& prediction) {
   const HeldOut& h = prediction.held_out;
-  if (!h.ok) {
-    fmt::print(stream, "held out   {}: no prediction: {}\n", prediction.method, h.failure);
-    return;
-  }
-  std::vector<std::string> errors;
-  for (const ReadingKind& kind : kReadingKinds) {
-    const ReadingErrors& e = h.*kind.errors;
-    if (e.count > 0)
-      errors.push_back(fmt::format("{}s within {} of the peak {} (noise: {})", kind.name, percent(e.relative()),
-                                   kind.peak, percent(e.relative_noise())));
-  }
-  fmt::print(stream, "held out   {}: {}\n", prediction.method, fmt::join(errors, ", "));
+  if (!h.ok)
+    fmt::print(stream, "left out   {}: no prediction: {}\n", prediction.method, h.failure);
+  else
+    fmt::print(stream, "left out   {}: {}, beyond the noise\n", prediction.method,
+               errors_text(all_groups(beyond_noise(data, {h})), 0));
 }
 
 Json json_of(const Judgment& j) {
@@ -181,9 +175,9 @@ FitFigures figures_of(const DataSet& data, const FitOutcome& outcome, const std:
   return figures;
 }
 
-void print_figures(std::FILE* stream, const FitFigures& figures) {
+void print_figures(std::FILE* stream, const DataSet& data, const FitFigures& figures) {
   for (const Judgment& j : figures.judgments) print_judgment(stream, j);
-  for (const Prediction& p : figures.predictions) print_prediction(stream, p);
+  for (const Prediction& p : figures.predictions) print_prediction(stream, data, p);
 }
 
 std::string figures_json(const DataSet& data, const FitOutcome& outcome, const FitVerdict& judged,
@@ -212,10 +206,6 @@ std::string figures_json(const DataSet& data, const FitOutcome& outcome, const F
                          {"noise_factor", outcome.posterior->noise_factor},
                          {"suggested_weight", outcome.posterior->suggested_weight},
                          {"scale_is_unknown", outcome.posterior->scale_is_unknown}};
-  if (outcome.held_out)
-    json["cross_validation"] = {{"position_error", outcome.held_out->position_error},
-                                {"force_error", outcome.held_out->force_error},
-                                {"torque_error", outcome.held_out->torque_error}};
   if (outcome.law_choice) json["laws"] = json_of(*outcome.law_choice);
   if (outcome.relaxation) json["relaxation"] = json_of(*outcome.relaxation);
   json["truth"] = Json::array();

@@ -23,7 +23,7 @@ struct FitFigures {
 // `truth` is a file; without it there are no judgments. Baselines are fitted to the same data.
 FitFigures figures_of(const DataSet& data, const FitOutcome& outcome, const std::filesystem::path& truth,
                       bool with_baselines);
-void print_figures(std::FILE* stream, const FitFigures& figures);
+void print_figures(std::FILE* stream, const DataSet& data, const FitFigures& figures);
 // Text of figures.json, whose numbers the report shows.
 std::string figures_json(const DataSet& data, const FitOutcome& outcome, const FitVerdict& judged,
                          const FitFigures& figures);

@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "capture/fit_verdict.h"
 #include "capture/fitted_values.h"
 #include "mesh/tet_nodes.h"
 
@@ -67,24 +66,15 @@ void print_parts(std::FILE* stream, const FitOutcome& outcome) {
              interval_text(contrast, ""));
 }
 
-std::string errors_text(const PredictionErrors& errors) {
-  std::vector<std::string> texts;
-  for (const ReadingKind& kind : kReadingKinds)
-    if (errors.*kind.beyond_noise >= 0)
-      texts.push_back(fmt::format("{}s within {} of the largest {}", kind.name,
-                                  two_digit_percent(errors.*kind.beyond_noise), kind.peak));
-  return fmt::format("{}", fmt::join(texts, ", "));
-}
-
 void print_held_out(std::FILE* stream, const DataSet& data, const FitOutcome& outcome) {
-  if (!outcome.held_out) return;
-  const std::vector<PredictionErrors> groups = beyond_noise(data, outcome.held_out->groups);
-  const std::string text = errors_text(all_groups(groups));
+  const std::vector<PredictionErrors> groups = beyond_noise(data, predicted_groups(data, outcome));
+  const std::string text = errors_text(held_out_errors(data, outcome), 1);
   if (text.empty()) return;
-  fmt::print(stream, "held out   each group predicted from the others: {} (beyond the noise)\n", text);
+  fmt::print(stream, "held out   each group predicted from the others: {}, beyond the noise\n", text);
+  const auto excess = [](const PredictionErrors& e) { return e.*e.worst().beyond_noise / e.worst().limit; };
   const auto worst = std::max_element(groups.begin(), groups.end(),
-                                      [](const auto& a, const auto& b) { return a.position < b.position; });
-  if (groups.size() > 1) fmt::print(stream, "           worst: '{}', {}\n", worst->group, errors_text(*worst));
+                                      [&](const auto& a, const auto& b) { return excess(a) < excess(b); });
+  if (groups.size() > 1) fmt::print(stream, "           worst: '{}', {}\n", worst->group, errors_text(*worst, kSingle));
 }
 
 std::string coefficient_text(const EstimatedError& e) {
@@ -128,6 +118,17 @@ std::string value_text(double value, const std::string& unit) {
   for (const auto& [factor, letter] : {std::pair{1e9, "G"}, {1e6, "M"}, {1e3, "k"}})
     if (std::abs(value) >= factor) return fmt::format("{:.4g} {}Pa", value / factor, letter);
   return fmt::format("{:.4g} Pa", value);
+}
+
+std::string errors_text(const PredictionErrors& errors, double limits) {
+  std::vector<std::string> texts;
+  for (const ReadingKind& kind : kReadingKinds) {
+    if (errors.*kind.beyond_noise < 0) continue;
+    const std::string limit = limits > 0 ? fmt::format(" (limit {:.3g} %)", 100 * limits * kind.limit) : "";
+    texts.push_back(fmt::format("{}s within {:.3g} % of the largest {}{}", kind.name, 100 * errors.*kind.beyond_noise,
+                                kind.peak, limit));
+  }
+  return fmt::format("{}", fmt::join(texts, ", "));
 }
 
 void print_fit(std::FILE* stream, const DataSet& data, const FitOutcome& outcome) {

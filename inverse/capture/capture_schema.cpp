@@ -60,18 +60,20 @@ void add_document(Schema& s) {
 }
 
 void add_indenters_and_patches(Schema& s) {
-  add_keys(
-      s, "tip",
-      {key("name", kText, "as the table of cases calls it", Usual{"\"tip\""}),
-       key("shape", kText, "disc: flat, with a rounded rim", Choices{{"sphere", "disc"}}, Usual{"\"sphere\""}),
-       key("contact", kText, "bonded: glued on at the touch", Choices{{"sliding", "bonded"}}, Usual{"\"sliding\""}),
-       key("radius", kNumber, "of the tip", Units{"length"}, kPositive, kRequired),
-       key("stiffness", kNumber, "of its elastic layer; default: far above the estimated stiffness of the body",
-           Units{"Pa/m"}, kPositive),
-       key("stiffness_deviation", kNumber | kText, "of the logarithm of a given stiffness", kNotNegative,
-           Choices{{"unknown"}}, Usual{"0.0"}),
-       key("friction", kNumber, "coefficient, of a sliding tip", kNotNegative, Usual{"0.0"}),
-       key("friction_deviation", kNumber, "of the logarithm of friction", kNotNegative, Usual{"0.0"})});
+  add_keys(s, "tip",
+           {key("name", kText, "as the table of cases calls it", Usual{"\"tip\""}),
+            key("shape", kText, "disc: flat, with a rounded rim", Choices{{"sphere", "disc"}}, Usual{"\"sphere\""}),
+            key("contact", kText, "bonded: follows the tip from the touch on", Choices{{"sliding", "bonded"}},
+                Usual{"\"sliding\""}),
+            key("radius", kNumber, "of the tip", Units{"length"}, kPositive, kRequired),
+            key("rim", kNumber, "radius of the rounded rim of a sliding disc; default: unknown", Units{"length"},
+                kNotNegative),
+            key("stiffness", kNumber, "of its elastic layer; default: far above the estimated stiffness of the body",
+                Units{"Pa/m"}, kPositive),
+            key("stiffness_deviation", kNumber | kText, "of the logarithm of a given stiffness", kNotNegative,
+                Choices{{"unknown"}}, Usual{"0.0"}),
+            key("friction", kNumber, "coefficient, of a sliding tip", kNotNegative, Usual{"0.0"}),
+            key("friction_deviation", kNumber, "of the logarithm of friction", kNotNegative, Usual{"0.0"})});
   add_keys(s, "grip",
            {key("name", kText, "as the table of cases calls it", Usual{"\"grip\""}),
             key("where", kExpression | kTable | kIntegers, "vertices that it moves", kRequired, Members{"where"}),

@@ -108,6 +108,7 @@ class CaseReader {
     load.tip = table_.text("tip").empty() ? scope_.indenters.begin()->first : table_.text("tip");
     load.layer_sigma = scope_.tip_sigmas.at(load.tip).layer;
     load.friction_sigma = scope_.tip_sigmas.at(load.tip).friction;
+    load.rim_sigma = scope_.tip_sigmas.at(load.tip).rim;
     if (const auto last = touch_of_.find(load.group); last != touch_of_.end() && !touch && !(center && depth)) {
       touch = last->second.center;
       if (!axis) axis = last->second.axis;

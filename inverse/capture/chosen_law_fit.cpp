@@ -72,8 +72,9 @@ class ChosenLawFit {
 
   std::string reason_against(const FitOutcome& outcome) const {
     if (!outcome.has_material()) return outcome.failure;
-    const FitVerdict judged = verdict(data_, outcome);
-    return judged.is_good() ? "" : judged.reasons.front().text;
+    for (const FitReason& reason : verdict(data_, outcome).reasons)
+      if (reason.name != "linear_tets") return reason.text;  // that of all laws
+    return "";
   }
 
   FitOutcome finished(FitOutcome outcome) {

@@ -33,11 +33,15 @@ struct CaseFrame {
   std::optional<double> time;  // [s]
 };
 
+// Tets of the largest mesh that is simulated with quadratic tets by default; a fit also solves on eight times as many.
+inline constexpr int kMaxQuadratic = 2000;
+
 struct DataSet {
   std::string name;
   Experiment experiment;                    // the mesh is renumbered for locality
   std::vector<LoadHistory> histories = {};  // on the same body
   bool histories_end_static = false;        // all cases are the last states of histories
+  bool is_order_reduced = false;            // tets are linear because there are more than kMaxQuadratic
   Numbering numbering;                      // maps to the user's vertices and tets
   std::vector<std::string> marker_names;
   std::vector<double> marker_gap;            // original distance of each marker from the surface [m]

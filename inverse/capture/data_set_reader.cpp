@@ -31,8 +31,7 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr size_t kMaxMarkers = 1'000'000, kMaxReadings = 5'000'000;
-constexpr int kMaxQuadratic = 2000;  // tets that are quadratic by default; a fit also solves on eight times as many
-constexpr double kFarOff = 0.1;      // fraction of the body's size; farther markers are errors
+constexpr double kFarOff = 0.1;  // fraction of the body's size; farther markers are errors
 
 void add_notes(const std::string& what, const std::vector<Finding>& findings, std::vector<std::string>& notes) {
   for (const Finding& f : findings) {
@@ -97,6 +96,7 @@ class DataSetReader {
       for (Vec3d& X : user_mesh_.rest) X = unit * X;
     add_notes(path.filename().string(), diagnose(user_mesh_), data_.notes);
     if (user_mesh_.mids.empty() && order() == 2) user_mesh_ = raise_order(std::move(user_mesh_));
+    data_.is_order_reduced = user_mesh_.mids.empty() && !settings_.find("order");
     data_.numbering = locality_numbering(user_mesh_);
     data_.experiment.mesh = from_user(data_.numbering, user_mesh_);
     size_ = size_of(user_mesh_);
@@ -389,7 +389,10 @@ class DataSetReader {
     for (const Value& t : indenters->array()) {
       Indenter indenter{t["shape"].text() == "disc" ? IndenterShape::disc : IndenterShape::sphere,
                         t["contact"].text() == "bonded" ? IndenterContact::bonded : IndenterContact::sliding,
-                        settings_.unit("length") * t["radius"].number(), 0, t["friction"].number()};
+                        settings_.unit("length") * t["radius"].number(),
+                        0,
+                        t["friction"].number(),
+                        read_rim(settings_, t)};
       if (const Value* k = t.find("stiffness")) indenter.stiffness = k->number();
       tip_sigmas_.emplace(t["name"].text(), read_tip_sigmas(settings_, t));
       if (!indenters_.try_emplace(t["name"].text(), indenter).second)

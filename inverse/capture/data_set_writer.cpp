@@ -5,6 +5,7 @@
 #include "capture/data_set.h"
 #include "capture/stated_errors.h"
 #include "capture/surface_projection.h"
+#include "energy/indenter_depth.h"
 #include "io/atomic_file.h"
 #include "io/csv.h"
 #include "io/mesh_file.h"
@@ -18,7 +19,7 @@ namespace fs = std::filesystem;
 bool same(const Vec3d& a, const Vec3d& b) { return a[0] == b[0] && a[1] == b[1] && a[2] == b[2]; }
 bool same(const Indenter& a, const Indenter& b) {
   return a.shape == b.shape && a.contact == b.contact && a.radius == b.radius && a.stiffness == b.stiffness &&
-         a.friction == b.friction;
+         a.friction == b.friction && a.rim == b.rim;
 }
 bool same(const Grip& a, const Grip& b) { return a.vertices == b.vertices && same(a.center, b.center); }
 
@@ -190,6 +191,17 @@ class DataSetWriter {
            "\n";
   }
 
+  // A rim that is not known is not written.
+  std::string rim_text(const Indenter& indenter) const {
+    if (indenter.shape != IndenterShape::disc || indenter.contact != IndenterContact::sliding) return "";
+    const auto is_unknown = [&](const LoadCase& load) {
+      return load.indenter && same(*load.indenter, indenter) && load.rim_sigma > 0;
+    };
+    const std::vector<LoadCase>& cases = data_.experiment.cases;
+    if (std::any_of(cases.begin(), cases.end(), is_unknown)) return "";
+    return "rim = " + inline_toml({rim_of(indenter), {}}) + "\n";
+  }
+
   void write_settings() const {
     std::string text =
         "# Measurements, in SI units: docs/capture_format.md\nversion = 1\nname = " + toml_string(data_.name) +
@@ -205,7 +217,8 @@ class DataSetWriter {
               "\ncontact = " + (indenter.contact == IndenterContact::bonded ? "\"bonded\"" : "\"sliding\"") +
               "\nradius = " + inline_toml({indenter.radius, {}}) +
               "\nstiffness = " + inline_toml({indenter.stiffness, {}}) +
-              "\nstiffness_deviation = " + layer_sigma_text(indenter) + "\n" + friction_text(indenter);
+              "\nstiffness_deviation = " + layer_sigma_text(indenter) + "\n" + rim_text(indenter) +
+              friction_text(indenter);
     for (const Grip& grip : grips_)
       text += "\n[[grip]]\nname = " + toml_string(grip_name(grip)) + "\nwhere = " + list_of(grip.vertices) +
               "\ncenter = [" + number_text(grip.center[0]) + ", " + number_text(grip.center[1]) + ", " +

@@ -291,6 +291,10 @@ std::string fingerprint_of(const Experiment& e) {
       const double friction[] = {c.indenter->friction, c.friction_sigma};
       hash.add("friction", 8), hash.add(friction, sizeof friction);
     }
+    if (c.indenter && c.indenter->rim > 0) {
+      const double rim[] = {c.indenter->rim, c.rim_sigma};
+      hash.add("rim", 3), hash.add(rim, sizeof rim);
+    }
     if (c.gauge) hash.add("gauge", 5), add_vector(*c.gauge);
     if (c.torque_gauge) hash.add("torque gauge", 12), add_vector(*c.torque_gauge);
   }

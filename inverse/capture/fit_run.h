@@ -73,7 +73,7 @@ struct EstimatedError {
   double value = 0;
   double sigma = -1;  // posterior standard deviation; < 0: unknown
   double prior_sigma = 0;
-  std::optional<double> stated = {};  // friction, or layer stiffness [Pa/m]; its logarithm has this error
+  std::optional<double> stated = {};  // friction, layer stiffness [Pa/m] or rim [m]; its logarithm has this error
 
   // Coefficient at the given number of standard deviations from its estimate.
   double coefficient(double sigmas = 0) const { return *stated * std::exp(value + sigmas * std::max(sigma, 0.0)); }
@@ -123,6 +123,7 @@ struct FitOutcome {
   std::vector<FoundCommonError> common_errors;
   std::vector<Outlier> outliers;
   std::vector<std::string> at_bound;  // quantities: "young in 3 tets"
+  bool has_mesh_errors = false;       // the data are corrected for the discretization error
   double mesh_error = -1;             // error of the positions: root mean square over the largest motion; < 0: unknown
   std::optional<Posterior> posterior;
   std::optional<FoundParts> parts;

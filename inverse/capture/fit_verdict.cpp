@@ -10,9 +10,10 @@
 namespace aspic {
 namespace {
 
-constexpr double kDisagree = 1.5;  // ratio of the stiffnesses implied by two groups
-constexpr double kCoarseMesh = 1;  // relative error of a force on the mesh: a factor of 2
-constexpr double kWorse = 1.1;     // ratio of held-out errors, field to one value
+constexpr double kDisagree = 1.5;      // ratio of the stiffnesses implied by two groups
+constexpr double kCoarseMesh = 1;      // relative error of a force on the mesh: a factor of 2
+constexpr double kWorse = 1.1;         // ratio of held-out errors, field to one value
+constexpr double kLinearError = 0.05;  // relative error of the stiffness by linear tets
 
 // Compares the readings of a group with the predictions.
 class GroupMisfit {
@@ -136,6 +137,7 @@ class Reasons {
             1 + outcome_.cases[c].relative_mesh_error, 1 + kCoarseMesh);
         break;
       }
+    add_linear_tets();
     add_disagreement();
     for (const EstimatedError& e : outcome_.errors)
       if (e.stated && e.unit.empty() && e.coefficient() > kLargestFriction)
@@ -161,7 +163,7 @@ class Reasons {
             "the readings need " + three_digits(std::abs(error.sigmas)) + " standard deviations of the error of " +
                 error.cause + ": the model is wrong, or the readings",
             std::abs(error.sigmas), kMissed);
-    add_poor_predictions(beyond_noise(data_, predicted_groups(data_, outcome_)));
+    add_poor_predictions();
   }
 
   void add_about_relaxation(const RelaxationFit& fit) {
@@ -185,8 +187,24 @@ class Reasons {
   }
 
  private:
-  void add_poor_predictions(const std::vector<PredictionErrors>& groups) {
-    const PredictionErrors all = all_groups(groups);
+  void add_linear_tets() {
+    const std::optional<LinearTetError> error = linear_tet_error(data_, outcome_);
+    if (!error) return;
+    const std::string what =
+        "linear tets were simulated, because the mesh has more than " + std::to_string(kMaxQuadratic) + " tets, and ";
+    const std::string remedy = ": use order = 2 in capture.toml, or a coarser mesh";
+    if (error->of_stiffness < 0)
+      add("linear_tets", what + "their error is unknown" + remedy);
+    else if (error->of_stiffness > kLinearError)
+      add("linear_tets",
+          what + "may leave an error of " + three_digits(100 * error->of_stiffness) +
+              " % in the stiffness, as much as the correction for the mesh" + remedy,
+          error->of_stiffness, kLinearError);
+  }
+
+  void add_poor_predictions() {
+    const std::vector<PredictionErrors> groups = beyond_noise(data_, predicted_groups(data_, outcome_));
+    const PredictionErrors all = held_out_errors(data_, outcome_);
     const std::string remedy = " beyond the noise: fit fewer values, measure more, or trust it only near pokes";
     if (all.is_poor(1)) {
       add_excess("predicts_badly", "held-out groups are predicted with errors of " + percents(all) + remedy, all, 1);
@@ -201,10 +219,7 @@ class Reasons {
 
   // Adds the error that exceeds its limit most.
   void add_excess(const std::string& name, const std::string& text, const PredictionErrors& errors, double factor) {
-    const ReadingKind& worst = *std::max_element(
-        std::begin(kReadingKinds), std::end(kReadingKinds), [&](const ReadingKind& a, const ReadingKind& b) {
-          return errors.*a.beyond_noise / a.limit < errors.*b.beyond_noise / b.limit;
-        });
+    const ReadingKind& worst = errors.worst();
     add(name, text, errors.*worst.beyond_noise, factor * worst.limit);
   }
 
@@ -225,8 +240,9 @@ class Reasons {
     };
     if (error(field) > kWorse * error(one))
       add("held_out_worse",
-          "held-out groups are predicted with errors of " +
-              percents({"", field.position_error, field.force_error, field.torque_error}) + ", by one value with " +
+          "held-out groups are predicted with errors, including the noise, of " +
+              percents({"", field.position_error, field.force_error, field.torque_error}) +
+              " of their peaks, by one value with " +
               percents({"", one.position_error, one.force_error, one.torque_error}),
           error(field), kWorse * error(one));
   }
@@ -278,6 +294,13 @@ bool PredictionErrors::is_poor(double factor) const {
                      [&](const ReadingKind& kind) { return this->*kind.beyond_noise > factor * kind.limit; });
 }
 
+const ReadingKind& PredictionErrors::worst() const {
+  return *std::max_element(std::begin(kReadingKinds), std::end(kReadingKinds),
+                           [&](const ReadingKind& a, const ReadingKind& b) {
+                             return this->*a.beyond_noise / a.limit < this->*b.beyond_noise / b.limit;
+                           });
+}
+
 std::vector<GroupError> group_errors(const DataSet& data, const FitOutcome& outcome) {
   std::vector<GroupError> errors;
   for (const GroupMisfit& g : fitted_groups(data, outcome)) {
@@ -321,6 +344,18 @@ PredictionErrors all_groups(const std::vector<PredictionErrors>& groups) {
   PredictionErrors all;
   for (const ReadingKind& kind : kReadingKinds) all.*kind.beyond_noise = root_mean_square(groups, kind.beyond_noise);
   return all;
+}
+
+PredictionErrors held_out_errors(const DataSet& data, const FitOutcome& outcome) {
+  return all_groups(beyond_noise(data, predicted_groups(data, outcome)));
+}
+
+std::optional<LinearTetError> linear_tet_error(const DataSet& data, const FitOutcome& outcome) {
+  if (!data.is_order_reduced || !outcome.plan.mesh_errors) return {};
+  if (!outcome.has_mesh_errors) return LinearTetError{};
+  LinearTetError error{std::max(outcome.mesh_error, 0.0)};
+  for (const CaseOutcome& c : outcome.cases) error.of_stiffness = std::max(error.of_stiffness, c.relative_mesh_error);
+  return error;
 }
 
 std::vector<FitReason> reasons_against_field(const DataSet& data, const FitOutcome& outcome) {

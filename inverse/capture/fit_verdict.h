@@ -18,7 +18,8 @@ struct PredictionErrors {
   std::string group;
   double position = -1, force = -1, torque = -1;
 
-  bool is_poor(double factor) const;  // exceeds a multiple of the limits
+  bool is_poor(double factor) const;        // exceeds a multiple of the limits
+  const struct ReadingKind& worst() const;  // with the largest multiple of its limit
 };
 
 // Kinds of held-out readings.
@@ -46,6 +47,8 @@ HeldOut largest_readings(const DataSet& data);  // the peaks of all groups
 std::vector<PredictionErrors> beyond_noise(const DataSet& data,
                                            const std::vector<HeldOut>& groups);  // of predicted ones
 PredictionErrors all_groups(const std::vector<PredictionErrors>& groups);        // root mean square
+// That of all predicted groups, which the verdict, the summary and the report judge.
+PredictionErrors held_out_errors(const DataSet& data, const FitOutcome& outcome);
 
 struct FitVerdict {
   std::vector<FitReason> reasons;  // reasons against the material; empty: the verdict is good
@@ -54,10 +57,16 @@ struct FitVerdict {
   bool is_good() const { return reasons.empty(); }
 };
 
-// Names of the reasons: interrupted, not_converged, mesh_not_settled, mesh_too_coarse, at_bound, group_missed,
-// held_out_worse, groups_disagree, unexplained, predicts_badly, field_rejected,
-// relaxation_failed, relaxation_undetermined, relaxation_unexplained, no_good_law,
-// fibres_undetermined.
+// Error of the stiffness that linear tets may leave, although the mesh is corrected: its largest correction.
+struct LinearTetError {
+  double of_stiffness = -1;  // relative; < 0: unknown
+};
+// Empty if quadratic tets were simulated, the settings choose the order, or the material is for this mesh alone.
+std::optional<LinearTetError> linear_tet_error(const DataSet& data, const FitOutcome& outcome);
+
+// Names of the reasons: interrupted, not_converged, mesh_not_settled, mesh_too_coarse, linear_tets, at_bound,
+// group_missed, held_out_worse, groups_disagree, unexplained, predicts_badly, field_rejected, relaxation_failed,
+// relaxation_undetermined, relaxation_unexplained, no_good_law, fibres_undetermined.
 FitVerdict verdict(const DataSet& data, const FitOutcome& outcome);
 
 // Reasons why one value is better than a field: mesh_not_settled, at_bound, group_missed, held_out_worse.

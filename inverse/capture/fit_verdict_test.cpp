@@ -96,6 +96,27 @@ TEST(FitVerdict, ForcesThatTheMeshDoublesAreTooMany) {
               HasSubstr("'poke 3, depth 1': the mesh changes the force by"));
 }
 
+// Data sets above 2000 tets are simulated with linear tets unless they say otherwise.
+TEST(FitVerdict, LinearTetsByDefaultAreJudgedByTheirError) {
+  DataSet data = three_indentations();
+  FitOutcome outcome = perfect(data);
+  outcome.plan.mesh_errors = outcome.has_mesh_errors = true;
+  outcome.mesh_error = 0.01;
+  outcome.cases[4].relative_mesh_error = 0.14;
+  EXPECT_THAT(reasons(outcome, data), ElementsAre()) << "the settings choose the order";
+  data.is_order_reduced = true;
+  EXPECT_THAT(reasons(outcome, data), ElementsAre("linear_tets"));
+  EXPECT_THAT(verdict(data, outcome).text,
+              testing::AllOf(HasSubstr("may leave an error of 14 %"), HasSubstr("order = 2")));
+  EXPECT_DOUBLE_EQ(verdict(data, outcome).reasons[0].value.value_or(0), 0.14);
+  outcome.cases[4].relative_mesh_error = 0.04;
+  EXPECT_THAT(reasons(outcome, data), ElementsAre());
+  outcome.has_mesh_errors = false;
+  EXPECT_THAT(verdict(data, outcome).text, HasSubstr("their error is unknown"));
+  outcome.plan.mesh_errors = false;
+  EXPECT_THAT(reasons(outcome, data), ElementsAre()) << "the material is for this mesh alone";
+}
+
 TEST(FitVerdict, ValuesAtTheirBoundsAreNotGood) {
   FitOutcome outcome = perfect();
   outcome.at_bound = {"young in 3 tets"};
@@ -245,6 +266,25 @@ TEST(FitVerdict, PoorPredictionsOfLeftOutGroupsAreNotGood) {
   EXPECT_THAT(reasons(outcome), ElementsAre());
   outcome.cases[5].wrench.force = 1.5 * *three_indentations().experiment.cases[5].force;
   EXPECT_THAT(reasons(outcome), ElementsAre("predicts_badly"));
+}
+
+// One figure judges, is printed and is shown: that of all predicted groups, held out in turn or left out.
+TEST(FitVerdict, HeldOutErrorsIncludeLeftOutGroups) {
+  const std::vector<LoadCase>& cases = three_indentations().experiment.cases;
+  FitOutcome outcome = perfect();
+  outcome.held_out = held_out_indentation(0.01, 0.11);
+  outcome.held_out->groups[0].group = "poke 1";
+  const double alone = held_out_errors(three_indentations(), outcome).force;
+  outcome.plan.left_out = {"poke 3"};
+  for (const size_t c : {4, 5}) {
+    outcome.cases[c].left_out = true;
+    outcome.cases[c].wrench.force = 1.02 * *cases[c].force;
+  }
+  const double all = held_out_errors(three_indentations(), outcome).force;
+  EXPECT_LT(all, 0.9 * alone);
+  const FitVerdict judged = verdict(three_indentations(), outcome);
+  for (const FitReason& reason : judged.reasons)
+    if (reason.name == "predicts_badly") EXPECT_DOUBLE_EQ(reason.value.value_or(0), all);
 }
 
 TEST(FitVerdict, OneValueInsteadOfFieldIsNotGood) {

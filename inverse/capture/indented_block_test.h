@@ -59,21 +59,24 @@ inline Experiment indented_block(int cells) {
   return e;
 }
 
-// Returns the experiment with the readings for these moduli of the layers.
-inline DataSet measured_block(int cells) {
-  DataSet data{.name = "block", .experiment = indented_block(cells)};
-  Experiment& e = data.experiment;
+// Replaces the readings by those for these moduli of the layers.
+inline void measure(Experiment& e) {
   const ParameterMap map(e.mesh, "neo_hookean",
                          std::vector<MaterialParameters>(e.mesh.tets.size(), {lame_from_young_poisson(1e4, 0.4), {}}),
                          {{.quantity = "young", .parameterization = Parameterization::regions}});
   Misfit model(e, map);
   std::vector<double> r(static_cast<size_t>(model.residual_count()));
-  if (!model.evaluate(std::vector<double>{std::log(kSoftLayer), std::log(kStiffLayer)}, r)) return data;
+  if (!model.evaluate(std::vector<double>{std::log(kSoftLayer), std::log(kStiffLayer)}, r)) return;
   for (size_t c = 0; c < e.cases.size(); ++c) {
     const CasePrediction& prediction = model.prediction(static_cast<int>(c));
     for (size_t i = 0; i < prediction.markers.size(); ++i) e.cases[c].positions[i].position = prediction.markers[i];
     e.cases[c].force = prediction.wrench.force;
   }
+}
+
+inline DataSet measured_block(int cells) {
+  DataSet data{.name = "block", .experiment = indented_block(cells)};
+  measure(data.experiment);
   return data;
 }
 

@@ -26,7 +26,7 @@ struct LawTrial {
   double squares = 0;                            // |r|^2
   double roughness = 0;                          // R of the prior
   std::vector<double> information;               // eigenvalues d of J'J relative to the prior
-  double position_error = -1, force_error = -1;  // held out, relative to the peaks; < 0: none
+  double position_error = -1, force_error = -1;  // held out, see PredictionErrors; < 0: none
   std::vector<PredictiveResiduals> held_out;     // of each held-out group; empty: none
   double evidence_loss = 0;                      // log evidence of the best law minus that of this one
   double held_out_loss = 0;                      // the same for the log probability of all held-out groups

@@ -7,6 +7,7 @@
 #include <set>
 
 #include "capture/fit_troubles.h"
+#include "capture/fit_verdict.h"
 #include "capture/fitted_values.h"
 #include "capture/material_fit.h"
 #include "fit/quantity.h"
@@ -223,7 +224,7 @@ class LawContest {
   }
 
   FitModel model_of(const Contender& c, std::vector<FitParameter> parameters) const {
-    return {data_.experiment, simulated_.fitted(), c.plan, std::move(parameters), {kNoMemory, "", ""}};
+    return {data_.experiment, simulated_, c.plan, std::move(parameters), {kNoMemory, "", ""}};
   }
 
   // Finds moduli at small strains, the initial guess of all laws.
@@ -331,8 +332,9 @@ class LawContest {
   void hold_out(FitModel& model, const Contender& c, LawTrial& trial) {
     if (!plan_.cross_validation) return;
     const CrossValidation held_out = this->held_out(model, c);
-    trial.position_error = held_out.position_error;
-    trial.force_error = held_out.force_error;
+    const PredictionErrors errors = all_groups(beyond_noise(data_, held_out.groups));
+    trial.position_error = errors.position;
+    trial.force_error = errors.force;
     for (const HeldOut& group : held_out.groups) trial.held_out.push_back(predicted(model, group));
   }
 
@@ -350,11 +352,13 @@ class LawContest {
 
   PredictiveResiduals predicted(FitModel& model, const HeldOut& group) const {
     if (!group.ok) return {};
-    const auto part = [&](bool is_seen) {
-      return subset(simulated_.fitted(), [&](const LoadCase& c) { return (c.group != group.group) == is_seen; });
-    };
-    const Experiment others = part(true), own = part(false);
+    const Experiment& all = simulated_.fitted();
+    const auto is_seen = [&](const LoadCase& c) { return c.group != group.group; };
+    const auto is_own = [&](const LoadCase& c) { return c.group == group.group; };
+    const Experiment others = subset(all, is_seen), own = subset(all, is_own);
     Misfit of_others(others, model.map, plan_.equilibrium), of_own(own, model.map, plan_.equilibrium);
+    const std::vector<double> state = model.misfit.state();
+    of_others.set_state(subset(all, state, is_seen)), of_own.set_state(subset(all, state, is_own));
     WithUncertainLayers seen(of_others), left_out(of_own);
     return predictive_residuals(seen, left_out, *model.prior, group.p);
   }

@@ -48,15 +48,16 @@ bool is_over(const FitReport& report) { return is_success(report.status) || repo
 
 }  // namespace
 
-FitModel::FitModel(const Experiment& data, const Experiment& simulated, const FitPlan& plan,
+FitModel::FitModel(const Experiment& data, const SimulatedData& simulated, const FitPlan& plan,
                    std::vector<FitParameter> parameters, const StoredModel& stored)
     : map(data.mesh, plan.model, known_parameters(plan, data), std::move(parameters)),
       prior(make_regularizer(data.mesh, map, plan.regularizer)),
-      is_condensed(!plan.robust && has_dense_readings(simulated)),
-      fitted(is_condensed ? condensed(simulated) : simulated),
+      is_condensed(!plan.robust && has_dense_readings(simulated.fitted())),
+      fitted(is_condensed ? condensed(simulated.fitted()) : simulated.fitted()),
       misfit(fitted, map, plan.equilibrium),
       simulated_(simulated),
       equilibrium_(plan.equilibrium) {
+  if (const std::vector<double> x = simulated.equilibria(); !x.empty()) misfit.set_state(x);
   const FitMemory& memory = stored.memory;
   if (!memory.folder.empty()) {
     const ModelState state{[this] { return misfit.state(); },
@@ -68,7 +69,7 @@ FitModel::FitModel(const Experiment& data, const Experiment& simulated, const Fi
 
 Misfit& FitModel::of_all_readings() {
   if (!is_condensed) return misfit;
-  whole_.emplace(simulated_, map, equilibrium_);
+  whole_.emplace(simulated_.fitted(), map, equilibrium_);
   whole_->set_state(misfit.state());
   return *whole_;
 }
@@ -90,7 +91,9 @@ FitOutcome MaterialFit::run() {
   if (fits_fibres(plan_) && !find_fibres()) return std::move(outcome_);
   if (is_field() || has_model_errors() || has_corrections()) {
     if (!fit_single_values("uniform")) return std::move(outcome_);
-    if (learn_model_errors() && !fit_single_values("uniform_corrected")) return std::move(outcome_);
+    // Without a field, fit_fields() repeats this fit.
+    const bool is_repeated = !is_field() && !has_corrections();
+    if (learn_model_errors() && !is_repeated && !fit_single_values("uniform_corrected")) return std::move(outcome_);
     if (!is_field()) outcome_.uniform.reset();
   }
   fit_fields();
@@ -110,12 +113,12 @@ bool MaterialFit::has_many_values() const {
 
 // One value per quantity explains most of the data and is the initial guess of fields.
 bool MaterialFit::fit_single_values(const std::string& name) {
-  begin(FitStage::uniform, "one value for the whole body");
+  begin(FitStage::uniform, "for the whole body");
   FitOptions options = plan_.fit;
   options.method = options.weight_rule = "auto";
   options.weight = -1;
   for (const double factor : kStiffer) {
-    FitModel model(data_.experiment, simulated_.fitted(), plan_, stiffer(single_values(plan_.parameters), factor),
+    FitModel model(data_.experiment, simulated_, plan_, stiffer(single_values(plan_.parameters), factor),
                    {memory_, name + suffix(factor), fingerprint_});
     const FitReport report = fit_stage(FitStage::uniform, model, options);
     outcome_.uniform = outcome_.report = report;
@@ -179,6 +182,7 @@ void MaterialFit::take_off_mesh_errors() {
     plan_.mesh_errors = false;
     return;
   }
+  outcome_.has_mesh_errors = true;
   outcome_.mesh_error = simulated_.mesh_error();
 }
 
@@ -190,8 +194,7 @@ void MaterialFit::fit_until_mesh_errors_settle(std::optional<FitModel>& model) {
   FitOptions options = plan_.fit;
   for (int pass = 0;; ++pass) {
     const std::string name = pass == 0 ? stage : stage + "_corrected" + std::to_string(pass);
-    model.emplace(data_.experiment, simulated_.fitted(), plan_, plan_.parameters,
-                  StoredModel{memory_, name, fingerprint_});
+    model.emplace(data_.experiment, simulated_, plan_, plan_.parameters, StoredModel{memory_, name, fingerprint_});
     outcome_.report = fit_stage(is_one_value ? FitStage::uniform : FitStage::field, *model, options, start);
     const std::vector<double>& p = outcome_.report.p;
     if ((!has_model_errors() && !has_corrections()) || !is_success(outcome_.report.status)) return;
@@ -235,7 +238,7 @@ void MaterialFit::fall_back(std::vector<FitReason> reasons) {
   plan_.parameters = outcome_.plan.parameters = single_values(plan_.parameters);
   plan_.fit.method = plan_.fit.weight_rule = "auto";
   plan_.fit.weight = -1;
-  begin(FitStage::uniform, "one value for the whole body, because the data do not support a field");
+  begin(FitStage::uniform, "for the whole body, because the data do not support a field");
   fit_and_describe();
 }
 

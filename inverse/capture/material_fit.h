@@ -24,8 +24,8 @@ struct StoredModel {
 
 // Model of one stage of a fit, with its parameters, prior and stored state.
 struct FitModel {
-  // `simulated`: the fitted cases on the simulated mesh; stored by reference.
-  FitModel(const Experiment& data, const Experiment& simulated, const FitPlan& plan,
+  // `simulated` is stored by reference. The first evaluation starts from its equilibria, if it has any.
+  FitModel(const Experiment& data, const SimulatedData& simulated, const FitPlan& plan,
            std::vector<FitParameter> parameters, const StoredModel& stored);
 
   LeastSquares& recorded() { return journal ? static_cast<LeastSquares&>(*journal) : misfit; }
@@ -43,7 +43,7 @@ struct FitModel {
   std::optional<WithUncertainLayers> with_layers;  // wraps the recorded model
 
  private:
-  const Experiment& simulated_;
+  const SimulatedData& simulated_;
   EquilibriumOptions equilibrium_;
   std::optional<Misfit> whole_;
 };

@@ -9,7 +9,8 @@
 namespace aspic {
 namespace {
 
-// Change of the logarithm of a layer stiffness per pass: estimates are linearized, and those far from the last diverge.
+// Change of the logarithm of a layer stiffness or a rim per pass: estimates are linearized, and those far from the last
+// diverge.
 constexpr double kLargestStep = 1;
 
 double change_of_weights(const std::vector<CaseWeights>& before, const std::vector<CaseWeights>& after) {
@@ -24,12 +25,13 @@ double change_of_weights(const std::vector<CaseWeights>& before, const std::vect
   return largest;
 }
 
-// The friction or layer stiffness whose logarithm has the error.
+// The friction, layer stiffness or rim whose logarithm has the error.
 std::optional<double> stated_coefficient(const Experiment& experiment, const SystematicError& error) {
   for (const LoadCase& load : experiment.cases) {
     if (!load.indenter || !concerns(error, load)) continue;
     if (error.kind == ErrorKind::friction) return load.indenter->friction;
     if (error.kind == ErrorKind::layer) return load.indenter->stiffness;
+    if (error.kind == ErrorKind::rim) return load.indenter->rim;
   }
   return {};
 }
@@ -46,7 +48,7 @@ double MaterialFit::correct_data(FitModel& model, std::span<const double> p) {
   std::vector<double> values = model.with_layers->estimates(r);
   values.resize(errors.size());  // those of common errors follow
   for (size_t k = 0; k < values.size(); ++k)
-    if (errors[k].kind == ErrorKind::layer)
+    if (errors[k].kind == ErrorKind::layer || errors[k].kind == ErrorKind::rim)
       values[k] = std::clamp(values[k], errors[k].value - kLargestStep, errors[k].value + kLargestStep);
   double largest = 0;
   for (size_t k = 0; k < values.size(); ++k)
@@ -74,10 +76,10 @@ void MaterialFit::list_errors(WithUncertainLayers& about_fit, std::span<const do
   for (size_t k = 0; k < std::min(estimates.size(), simulated_.errors().size()); ++k) {
     const SystematicError& error = simulated_.errors()[k];
     const double factor = posterior ? posterior->applied_factor : 1;
-    const char* layer_unit = error.kind == ErrorKind::layer ? "Pa/m" : "";
-    outcome_.errors.push_back({name_of(error), *layer_unit ? layer_unit : unit_of(error), estimates[k].value,
-                               std::min(factor * estimates[k].sigma, error.sigma), error.sigma,
-                               stated_coefficient(data_.experiment, error)});
+    const std::optional<double> stated = stated_coefficient(data_.experiment, error);
+    const char* stated_unit = error.kind == ErrorKind::layer ? "Pa/m" : error.kind == ErrorKind::rim ? "m" : "";
+    outcome_.errors.push_back({name_of(error), stated ? stated_unit : unit_of(error), estimates[k].value,
+                               std::min(factor * estimates[k].sigma, error.sigma), error.sigma, stated});
   }
 }
 

@@ -72,8 +72,7 @@ FibreTrial MaterialFit::fit_fibres(FitPlan& plan, const std::string& name, const
   options.starts = 1;
   options.max_iterations = std::min(options.max_iterations, kSearchIterations);
   options.tolerance = std::max(options.tolerance, kSearchTolerance);
-  FitModel model(data_.experiment, simulated_.fitted(), plan, single_values(plan.parameters),
-                 {memory_, name, fingerprint_});
+  FitModel model(data_.experiment, simulated_, plan, single_values(plan.parameters), {memory_, name, fingerprint_});
   FibreTrial trial{fit_stage(FitStage::uniform, model, options), ""};
   const FitReport& report = trial.report;
   outcome_.report = report;

@@ -36,7 +36,7 @@ void put_layers_in(std::span<const double> r, const LoadCase& fitted, CasePredic
 
 void MaterialFit::learn_uncertainty(FitModel& model) {
   if (!plan_.uncertainty || is_stopped()) return;
-  begin(FitStage::uncertainty, "uncertainty");
+  begin(FitStage::uncertainty, has_many_values() ? "standard deviation of every tet" : "standard deviations");
   const FitReport& report = outcome_.report;
   WithUncertainLayers about_fit(model.recorded());
   outcome_.posterior = posterior(about_fit, *model.prior, report.weight, {model.map, mesh(), report.p});
@@ -218,9 +218,9 @@ CrossValidation MaterialFit::cross_validated(FitModel& model, const FitReport& r
           "'" + label + "' is held out (" + std::to_string(group + 1) + " of " + std::to_string(groups) + ")");
   };
   const HeldOutJobs jobs{jobs_, name, plan_, [this] { return is_stopped(); }};
-  return cross_validate(
-      simulated_.fitted(), model.map, *model.prior, report,
-      {options, plan_.equilibrium, observe, &simulated_.all(), jobs.store(simulated_.fitted(), report)});
+  return cross_validate(simulated_.fitted(), model.map, *model.prior, report,
+                        {options, plan_.equilibrium, observe, &simulated_.all(),
+                         jobs.store(simulated_.fitted(), report), simulated_.equilibria()});
 }
 
 // Baseline for a field.
@@ -228,7 +228,7 @@ std::optional<CrossValidation> MaterialFit::cross_validated_one_value() {
   FitOptions options = plan_.fit;
   options.method = options.weight_rule = "auto";
   options.weight = -1;
-  FitModel one(data_.experiment, simulated_.fitted(), plan_, single_values(plan_.parameters), {{}, "", ""});
+  FitModel one(data_.experiment, simulated_, plan_, single_values(plan_.parameters), {{}, "", ""});
   const FitReport report = fit(one.data(), *one.prior, one.map.guess(), options);
   if (!is_success(report.status)) return std::nullopt;
   return cross_validated(one, report, options, "one_value_held_out");

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "capture/fit_troubles.h"
 #include "capture/local_refinement.h"
 #include "capture/surface_projection.h"
 #include "fit/law_errors.h"
@@ -74,6 +75,17 @@ std::string SimulatedData::add_law_errors(const FitPlan& plan, const std::vector
   law_errors_ = std::move(errors.cases);
   update();
   return "";
+}
+
+std::vector<double> SimulatedData::equilibria() const {
+  const std::vector<CasePrediction>& all = error_predictions_.on_mesh.cases;
+  std::vector<double> x;
+  for (size_t c = 0; c < all.size(); ++c) {
+    if (is_left_out(left_out_, simulated_.cases[c])) continue;
+    if (all[c].x.empty()) return {};
+    x.insert(x.end(), all[c].x.begin(), all[c].x.end());
+  }
+  return x;
 }
 
 double SimulatedData::mesh_error() const {

@@ -33,6 +33,8 @@ class SimulatedData {
   std::string take_off_mesh_errors(const FitPlan& plan, const std::vector<MaterialParameters>& material);
   // Includes the choice of the law in the errors of the measurements.
   std::string add_law_errors(const FitPlan& plan, const std::vector<MaterialParameters>& material);
+  // Positions of the fitted cases, one after another, at rest with the material of the last errors; empty: unknown.
+  std::vector<double> equilibria() const;
   // Error of the positions: root mean square over the largest motion; < 0: unknown.
   double mesh_error() const;
   // Relative discretization error of the force of case c, see MeshError; 0: unknown, or below the noise.

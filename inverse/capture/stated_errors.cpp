@@ -3,7 +3,9 @@
 #include <algorithm>
 
 #include "base/error.h"
+#include "base/formatted.h"
 #include "capture/histories.h"
+#include "energy/indenter_depth.h"
 
 namespace aspic {
 namespace {
@@ -73,10 +75,28 @@ double read_friction_sigma(const CaptureSettings& settings, const Value& tip) {
   return deviation.number();
 }
 
+bool has_rim(const Value& tip) { return tip["shape"].text() == "disc" && tip["contact"].text() == "sliding"; }
+
 }  // namespace
 
+double read_rim(const CaptureSettings& settings, const Value& tip) {
+  const double radius = settings.unit("length") * tip["radius"].number();
+  const Value* rim = tip.find("rim");
+  if (!rim) return has_rim(tip) ? kUsualRim * radius : 0;
+  const double value = settings.unit("length") * rim->number();
+  if (!has_rim(tip))
+    throw error_at(rim->place,
+                   "rim: only sliding discs have a rim; remove the key, or use shape = \"disc\" and "
+                   "contact = \"sliding\"");
+  if (value > kRoundestRim * radius)
+    throw error_at(rim->place, "rim = " + number_text(rim->number()) + " is more than " + three_digits(kRoundestRim) +
+                                   " of the radius of the disc; correct it (radius of the arc between the flat end "
+                                   "and the side), or use shape = \"sphere\"");
+  return std::max(value, kSharpestRim * radius);
+}
+
 TipSigmas read_tip_sigmas(const CaptureSettings& settings, const Value& tip) {
-  return {read_layer_sigma(tip), read_friction_sigma(settings, tip)};
+  return {read_layer_sigma(tip), read_friction_sigma(settings, tip), has_rim(tip) && !tip.find("rim") ? kRimSigma : 0};
 }
 
 std::string errors_text(const std::vector<SystematicError>& errors) {

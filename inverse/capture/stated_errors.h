@@ -19,7 +19,14 @@ std::vector<SystematicError> read_systematic_errors(const CaptureSettings& setti
 struct TipSigmas {
   std::optional<double> layer;  // of the stiffness of the layer; empty: unknown
   double friction = 0;          // of the coefficient
+  double rim = 0;               // of the rim of a sliding disc
 };
+// Standard deviation of the logarithm of a rim that is not stated: with 95 %, it is within a factor of 5.
+inline constexpr double kRimSigma = 0.8;
+
+// Radius of the rim of a tip [m]; 0 for spheres and bonded tips.
+double read_rim(const CaptureSettings& settings, const Value& tip);
+
 // Throws InvalidInput for inconsistent keys of a [[tip]].
 TipSigmas read_tip_sigmas(const CaptureSettings& settings, const Value& tip);
 

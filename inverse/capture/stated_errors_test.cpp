@@ -4,6 +4,7 @@
 #include <gmock/gmock.h>
 
 #include "capture/capture_cases_test.h"
+#include "energy/indenter_depth.h"
 
 namespace aspic {
 namespace {
@@ -73,6 +74,25 @@ TEST_F(StatedErrors, FrictionHasAPriorPerTip) {
   const DataSet copy = read_data_set(path("copy"));
   EXPECT_EQ(copy.experiment.cases[0].indenter->friction, 0.3);
   EXPECT_EQ(copy.experiment.cases[0].friction_sigma, 0.5);
+}
+
+TEST_F(StatedErrors, RimsOfDiscsAreUnknownUnlessStated) {
+  EXPECT_EQ(read("").experiment.cases[0].indenter->rim, 0.0) << "of a sphere";
+  const DataSet unknown = read("", "shape = \"disc\"\n");
+  EXPECT_DOUBLE_EQ(unknown.experiment.cases[0].indenter->rim, kUsualRim * 0.01);
+  ASSERT_EQ(unknown.experiment.errors.size(), 1u);
+  EXPECT_EQ(name_of(unknown.experiment.errors[0]), "rim of 'tip'");
+  EXPECT_EQ(unknown.experiment.errors[0].sigma, kRimSigma);
+  for (const DataSet& data : {unknown, read("units = { length = \"m\" }", "shape = \"disc\"\nrim = 0.001\n")}) {
+    write_data_set(path("copy"), data);
+    const DataSet copy = read_data_set(path("copy"));
+    EXPECT_EQ(copy.experiment.cases[0].indenter->rim, data.experiment.cases[0].indenter->rim);
+    EXPECT_EQ(copy.experiment.errors.size(), data.experiment.errors.size());
+  }
+  EXPECT_TRUE(read("", "shape = \"disc\"\nrim = 0.001\n").experiment.errors.empty()) << "known";
+  EXPECT_THAT(refusal("", "rim = 0.001\n"), HasSubstr("capture.toml:8:7: rim: only sliding discs have a rim"));
+  EXPECT_THAT(refusal("", "shape = \"disc\"\nrim = 0.007\n"),
+              HasSubstr("capture.toml:9:7: rim = 0.007 is more than 0.64 of the radius"));
 }
 
 TEST_F(StatedErrors, FrictionIsRefusedWithLineAndRemedy) {

@@ -2,11 +2,9 @@
 
 #include <algorithm>
 #include <array>
-#include <cctype>
 #include <cmath>
 
 #include "base/error.h"
-#include "base/printable.h"
 #include "io/csv_reader.h"
 
 namespace aspic {
@@ -19,26 +17,15 @@ struct StressColumn {
   double pascals;
 };
 
-// Exports of testing machines have strains or forces instead.
+// Machines export forces and strains; their tables need other columns.
 void require_columns(const CsvReader& csv, const std::string& file) {
-  const auto has = [&](const char* word) {
-    return std::any_of(csv.columns().begin(), csv.columns().end(), [&](std::string column) {
-      for (char& c : column) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-      return column.find(word) != std::string::npos;
-    });
-  };
-  for (const char* column : {"test", "stretch"}) {
-    if (csv.has(column)) continue;
-    std::string list;
-    for (const std::string& name : csv.columns()) list += (list.empty() ? "" : ", ") + name;
-    std::string message = file + ":1: missing column '" + column +
-                          "'; expected test, stretch, stress_kPa, but the table has " + elided(list, 200);
-    if (!csv.has("test")) message += "; test is uniaxial, equibiaxial, planar or simple_shear in every row";
-    if (has("strain") || has("extension") || has("displacement"))
-      message += "; stretch is 1 + strain (a strain of 5 % is 1.05), or length over length at rest";
-    if (has("force") || has("load")) message += "; stress is force over area at rest";
-    throw InvalidInput(message);
-  }
+  for (const char* column : {"test", "stretch"})
+    if (!csv.has(column))
+      throw InvalidInput(
+          file + ":1: missing column '" + column +
+          "'; expected test, stretch, and stress_Pa, stress_kPa or stress_MPa; found " + csv.column_list() +
+          " (from a testing machine: stretch = 1 + strain, or 1 + strain / 100 of percent; stress = force / "
+          "area at rest; test = uniaxial, equibiaxial, planar or simple_shear)");
 }
 
 StressColumn stress_column(const CsvReader& csv, const std::string& file) {

@@ -48,8 +48,42 @@ void finish(HeldOut& h) {
   h.ok = true;
 }
 
-void predict(const Experiment& left_out, const ParameterMap& map, const EquilibriumOptions& options, HeldOut& h) {
+// Equilibria of all cases at the fit, from which those without a group start. Computed when they are first needed.
+class FittedState {
+ public:
+  FittedState(const Experiment& experiment, const ParameterMap& map, std::span<const double> p,
+              const CrossValidationOptions& chosen)
+      : experiment_(experiment), map_(map), p_(p), chosen_(chosen) {}
+
+  // For a misfit of the cases of one group, or of all others.
+  void start(Misfit& misfit, const std::string& group, bool is_of_group) {
+    compute();
+    const auto wanted = [&](const LoadCase& c) { return (c.group == group) == is_of_group; };
+    if (!x_.empty()) misfit.set_state(subset(experiment_, x_, wanted));
+  }
+
+ private:
+  void compute() {
+    if (is_computed_) return;
+    is_computed_ = true;
+    Misfit all(experiment_, map_, chosen_.equilibrium);
+    if (!chosen_.start.empty()) all.set_state(chosen_.start);
+    std::vector<double> r(static_cast<size_t>(all.residual_count()));
+    if (all.evaluate(p_, r)) x_ = all.state();
+  }
+
+  const Experiment& experiment_;
+  const ParameterMap& map_;
+  std::span<const double> p_;
+  const CrossValidationOptions& chosen_;
+  bool is_computed_ = false;
+  std::vector<double> x_;  // empty: there are no equilibria
+};
+
+void predict(const Experiment& left_out, const ParameterMap& map, const EquilibriumOptions& options,
+             FittedState& fitted, HeldOut& h) {
   Misfit misfit(left_out, map, options);
+  fitted.start(misfit, h.group, true);
   std::vector<double> r(misfit.residual_count());
   if (!misfit.evaluate(h.p, r)) {
     h.failure = "no equilibrium was found with the material of the other cases: " + misfit.failure();
@@ -67,6 +101,7 @@ struct HoldOut {
   const std::vector<double>& guess;
   const FitOptions& options;
   const CrossValidationOptions& chosen;
+  FittedState& fitted;
 };
 
 // Fits the other groups and predicts this one.
@@ -77,11 +112,12 @@ HeldOut hold_out(const Experiment& experiment, const HoldOut& what) {
   const Experiment& whole = what.chosen.to_predict ? *what.chosen.to_predict : experiment;
   const Experiment left_out = subset(whole, [&](const LoadCase& c) { return c.group == h.group; });
   Misfit misfit(seen, what.map, equilibrium);
+  what.fitted.start(misfit, h.group, false);
   WithUncertainLayers data(misfit);
   const FitReport report = fit(data, what.regularizer, what.guess, what.options);
   h.p = report.p;
   if (is_success(report.status) || report.status == Status::iteration_limit)
-    predict(left_out, what.map, equilibrium, h);
+    predict(left_out, what.map, equilibrium, what.fitted, h);
   else
     h.failure = "the fit to the other cases failed: " + report.message;
   return h;
@@ -103,6 +139,17 @@ Experiment subset(const Experiment& experiment, const std::function<bool(const L
   return part;
 }
 
+std::vector<double> subset(const Experiment& experiment, std::span<const double> state,
+                           const std::function<bool(const LoadCase&)>& wanted) {
+  const size_t size = state.size() / experiment.cases.size();
+  std::vector<double> part;
+  for (size_t c = 0; c < experiment.cases.size(); ++c) {
+    const std::span<const double> own = state.subspan(c * size, size);
+    if (wanted(experiment.cases[c])) part.insert(part.end(), own.begin(), own.end());
+  }
+  return part;
+}
+
 HeldOut compare(const Experiment& left_out, std::span<const CasePrediction> predicted) {
   HeldOut h{.group = left_out.cases.empty() ? "" : left_out.cases.front().group};
   for (size_t c = 0; c < left_out.cases.size(); ++c) add_case(left_out, left_out.cases[c], predicted[c], h);
@@ -121,10 +168,13 @@ CrossValidation cross_validate(const Experiment& experiment, const ParameterMap&
   FitOptions options = chosen.fit;
   options.weight = fitted.weight;
   options.starts = 1;
+  FittedState state(experiment, map, fitted.p, chosen);
   for (size_t g = 0; g < groups.size(); ++g) {
     if (chosen.observe) chosen.observe(static_cast<int>(g), static_cast<int>(groups.size()), groups[g]);
     if (options.stop.stopped()) break;
-    const auto compute = [&] { return hold_out(experiment, {groups[g], map, regularizer, fitted.p, options, chosen}); };
+    const auto compute = [&] {
+      return hold_out(experiment, {groups[g], map, regularizer, fitted.p, options, chosen, state});
+    };
     std::optional<HeldOut> h = chosen.store ? chosen.store(static_cast<int>(g), groups[g], compute) : compute();
     if (!h) continue;
     if (!h->ok) result.warnings.push_back(h->group + " could not be predicted: " + h->failure);

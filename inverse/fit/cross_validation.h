@@ -42,6 +42,10 @@ struct CrossValidation {
 // Returns the cases for which `wanted` is true, with the same body.
 Experiment subset(const Experiment& experiment, const std::function<bool(const LoadCase&)>& wanted);
 
+// Returns the equilibria of these cases among those of all cases, which are one after another; see Misfit::state().
+std::vector<double> subset(const Experiment& experiment, std::span<const double> state,
+                           const std::function<bool(const LoadCase&)>& wanted);
+
 // Compares predictions for the cases of `left_out`, in order, with the measurements.
 HeldOut compare(const Experiment& left_out, std::span<const CasePrediction> predicted);
 
@@ -58,6 +62,7 @@ struct CrossValidationOptions {
   CrossValidationObserver observe = {};
   const Experiment* to_predict = nullptr;  // cases for comparisons with predictions; null: those that are fitted
   HeldOutStore store = {};                 // none: everything is computed
+  std::vector<double> start = {};          // state of a Misfit of all cases near the fit; empty: none
 };
 
 // `fitted`: fit of all cases; its p is the initial guess and its weight is kept.

@@ -113,6 +113,24 @@ TEST(CrossValidation, ComparesForcesAlongTheGauge) {
   }
 }
 
+// All fits without a group start so.
+TEST(CrossValidation, StatesOfAllCasesStartTheOthers) {
+  HeldOutStudy study;
+  study.measure(study.halves(1));
+  const Experiment& all = study.block.experiment;
+  const ParameterMap map = study.block.map({{.parameterization = Parameterization::uniform, .guess = 1e4}});
+  const auto is_seen = [](const LoadCase& c) { return c.group != "right"; };
+  const Experiment seen = subset(all, is_seen);
+  Misfit whole(all, map), cold(seen, map), warm(seen, map);
+  std::vector<double> r(static_cast<size_t>(whole.residual_count()));
+  ASSERT_TRUE(whole.evaluate(map.guess(), r));
+  warm.set_state(subset(all, whole.state(), is_seen));
+  r.resize(static_cast<size_t>(warm.residual_count()));
+  ASSERT_TRUE(cold.evaluate(map.guess(), r) && warm.evaluate(map.guess(), r));
+  EXPECT_GT(cold.counts().newton_iterations, 3 * std::ssize(seen.cases));
+  EXPECT_LE(warm.counts().newton_iterations, std::ssize(seen.cases));
+}
+
 TEST(CrossValidation, NeedsTwoGroups) {
   IndentedBlock block;
   block.add_indentation(IndentedBlock::sites()[0], 0.003, 0.01);

@@ -336,6 +336,12 @@ bool LoadedBody::multiply_by_friction(std::span<double> dr) {
   return move_along_force(friction_->wrench(x), dr);
 }
 
+bool LoadedBody::multiply_by_rim(std::span<double> dr) {
+  std::fill(xbar_.begin(), xbar_.end(), 0.0);
+  const Wrench own = probe_->add_rim_gradient(equilibrium_.linearized_x(), -1, xbar_);
+  return move_along_force(own, dr);
+}
+
 bool LoadedBody::move_along_force(Wrench own, std::span<double> dr) {
   ++counts_.solves;
   if (!solved(equilibrium_.solve_stiffness(xbar_, dx_))) return false;

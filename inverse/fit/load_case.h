@@ -50,6 +50,7 @@ class LoadedBody {
   bool has_unknown_layer() const { return probe_ && !load_.layer_sigma; }
   bool multiply_by_layer(std::span<double> dr);     // dr/dlog k, k the stiffness of the indenter's layer
   bool multiply_by_friction(std::span<double> dr);  // dr/dlog mu, mu the coefficient of friction of the indenter
+  bool multiply_by_rim(std::span<double> dr);       // dr/dlog rim of a sliding disc, without the change of its friction
   bool multiply_by_error(const SystematicError& error, std::span<double> dr);  // 0 if it does not concern the case
 
   const Misfit::Counts& counts() const { return counts_; }

@@ -29,6 +29,7 @@ bool LoadedBody::multiply_by_error(const SystematicError& error, std::span<doubl
   if (!concerns(error, load_)) return true;
   if (error.kind == ErrorKind::layer) return multiply_by_layer(dr);
   if (error.kind == ErrorKind::friction) return multiply_by_friction(dr);
+  if (error.kind == ErrorKind::rim) return multiply_by_rim(dr);
   if (error.kind >= ErrorKind::tare) {
     put_change_of_reading(error, dr);
     return true;

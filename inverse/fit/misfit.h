@@ -47,6 +47,7 @@ struct LoadCase {
   std::optional<Indenter> indenter;
   std::optional<double> layer_sigma;  // standard deviation of the logarithm of the layer's stiffness; empty: unknown
   double friction_sigma = 0;          // standard deviation of the logarithm of the indenter's friction; 0: known
+  double rim_sigma = 0;               // standard deviation of the logarithm of the rim of a disc; 0: known
   IndenterPose touch, pose;           // pose of the indenter: at rest, and in this case
   std::optional<Grip> grip;           // excludes an indenter
   Vec3d gravity{};                    // [m/s^2]

@@ -13,7 +13,8 @@ namespace aspic {
 //   force_scale   the same, also for torques                                   [1]    per session
 //   length_scale  reading of the motion of a marker = exp(e) motion            [1]    per session
 //   friction      coefficient of friction of an indenter times exp(e)          [1]    per tip
-enum class ErrorKind { position, rotation, backlash, layer, tare, force_scale, length_scale, friction };
+//   rim           radius of the rim of a disc times exp(e)                     [1]    per tip
+enum class ErrorKind { position, rotation, backlash, layer, tare, force_scale, length_scale, friction, rim };
 
 struct SystematicError {
   static constexpr int kAlongGauge = 3;

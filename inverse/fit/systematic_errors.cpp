@@ -53,16 +53,24 @@ bool is_of_pose(ErrorKind kind) {
   return kind == ErrorKind::position || kind == ErrorKind::rotation || kind == ErrorKind::backlash;
 }
 
+bool is_of_tip(ErrorKind kind) {
+  return kind == ErrorKind::layer || kind == ErrorKind::friction || kind == ErrorKind::rim;
+}
+
 const std::string& scope_of(ErrorKind kind, const LoadCase& load) {
   if (kind == ErrorKind::position || kind == ErrorKind::rotation) return load.group;
-  return kind == ErrorKind::layer || kind == ErrorKind::friction ? load.tip : load.session;
+  return is_of_tip(kind) ? load.tip : load.session;
+}
+
+double sigma_of_tip(ErrorKind kind, const LoadCase& load) {
+  if (kind == ErrorKind::layer) return load.layer_sigma.value_or(0);
+  return kind == ErrorKind::friction ? load.friction_sigma : load.rim_sigma;
 }
 
 bool can_change(ErrorKind kind, const LoadCase& load) {
   if (is_of_pose(kind) && !load.indenter && !load.grip) return false;
   if (is_of_pose(kind)) return kind != ErrorKind::backlash || norm(direction_of_motion(load)) > 0;
-  if (kind == ErrorKind::layer) return load.indenter && load.layer_sigma.value_or(0) > 0;
-  if (kind == ErrorKind::friction) return load.indenter && load.friction_sigma > 0;
+  if (is_of_tip(kind)) return load.indenter && sigma_of_tip(kind, load) > 0;
   if (kind == ErrorKind::length_scale) return !load.positions.empty();
   return load.force || (load.torque && kind == ErrorKind::force_scale);
 }
@@ -74,8 +82,7 @@ std::pair<int, int> axes_of(ErrorKind kind, const LoadCase& load) {
 }
 
 double sigma_of(ErrorKind kind, const LoadCase& load, const ErrorSigmas& sigmas) {
-  if (kind == ErrorKind::friction) return load.friction_sigma;
-  return kind == ErrorKind::layer ? load.layer_sigma.value_or(0) : sigmas[static_cast<size_t>(kind)];
+  return is_of_tip(kind) ? sigma_of_tip(kind, load) : sigmas[static_cast<size_t>(kind)];
 }
 
 // Sum of the values of the errors of one kind that concern a case.
@@ -110,6 +117,7 @@ void correct_load(const std::vector<SystematicError>& errors, LoadCase& load) {
   load.pose.rotation = rotation_after(turn, load.pose.rotation);
   load.indenter->stiffness *= std::exp(total(errors, ErrorKind::layer, load));
   load.indenter->friction *= std::exp(total(errors, ErrorKind::friction, load));
+  load.indenter->rim *= std::exp(total(errors, ErrorKind::rim, load));
 }
 
 void correct_readings(const Experiment& experiment, LoadCase& load) {
@@ -169,8 +177,8 @@ std::vector<SystematicError> systematic_errors(const std::vector<LoadCase>& case
 }
 
 std::string name_of(const SystematicError& error) {
-  constexpr const char* kNames[] = {"position", "rotation",    "backlash",     "layer stiffness",
-                                    "tare",     "force scale", "length scale", "friction"};
+  constexpr const char* kNames[] = {"position",     "rotation", "backlash", "layer stiffness", "tare", "force scale",
+                                    "length scale", "friction", "rim"};
   constexpr const char* kAxes[] = {" x", " y", " z", " along the axis"};
   std::string name = kNames[static_cast<size_t>(error.kind)];
   if (is_of_group(error) || error.kind == ErrorKind::tare) name += kAxes[error.axis];

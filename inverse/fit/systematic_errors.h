@@ -9,10 +9,10 @@
 
 namespace aspic {
 
-inline constexpr int kErrorKinds = 8;
+inline constexpr int kErrorKinds = 9;
 using ErrorSigmas = std::array<double, kErrorKinds>;  // standard deviation of each ErrorKind; 0: no such error
 
-// Errors that change the load or a reading of some case. Layers and friction have the standard deviations of
+// Errors that change the load or a reading of some case. Layers, friction and rims have the standard deviations of
 // the cases.
 std::vector<SystematicError> systematic_errors(const std::vector<LoadCase>& cases, const ErrorSigmas& sigmas);
 

@@ -31,6 +31,7 @@ struct Disturbed {
     for (int c = 1; c < 3; ++c) cases[c].indenter->stiffness /= 20, cases[c].layer_sigma = 0.3;
     for (int c = 1; c < 3; ++c)
       cases[c].indenter->friction = friction, cases[c].friction_sigma = friction > 0 ? 0.5 : 0;
+    cases[1].indenter->rim = 0.002, cases[1].rim_sigma = friction > 0 ? 0 : 0.5;
     cases[1].pose.axis = {{0.1, 0.05, -1}};
     cases[2].indenter->shape = IndenterShape::sphere;
     cases[2].touch.center[0] -= 0.012, cases[2].pose.center[0] -= 0.012;
@@ -76,6 +77,7 @@ TEST(SystematicErrors, AreListedOncePerGroupSessionAndTip) {
   EXPECT_EQ(count[static_cast<int>(ErrorKind::backlash)], 2);
   EXPECT_EQ(count[static_cast<int>(ErrorKind::layer)], 1);
   EXPECT_EQ(count[static_cast<int>(ErrorKind::friction)], 1);
+  EXPECT_EQ(count[static_cast<int>(ErrorKind::rim)], 0) << "all are known";
   EXPECT_EQ(count[static_cast<int>(ErrorKind::tare)], 3 + 1) << "a gauge has one axis";
   EXPECT_EQ(count[static_cast<int>(ErrorKind::force_scale)], 2);
   EXPECT_EQ(count[static_cast<int>(ErrorKind::length_scale)], 2);

@@ -2,13 +2,17 @@
 // the axis:
 //   sphere: d = R - |x - c|
 //   disc:   d = -m(|r| - R, s), where m(u, v) = v + w h((u - v) / w) is a maximum that is rounded, twice continuously
-//           differentiable, over the width w of the rim
+//           differentiable, over the width w of the rim; an arc of the radius 0.64 w has the same point of 45 degrees
 #pragma once
 #include "energy/probe.h"
 
 namespace aspic {
 
-inline constexpr double kRim = 0.1;  // width of the rounded rim of a disc, relative to its radius
+// Rim of a disc whose rim is not stated, and the limits of others, relative to the radius of the disc.
+inline constexpr double kUsualRim = 0.064, kSharpestRim = 0.0128, kRoundestRim = 0.64;
+
+// Radius of the rim of a disc [m], within these limits.
+double rim_of(const Indenter& disc);
 
 struct Depth {
   double value = 0;  // [m]; negative outside. 1-Lipschitz in x.
@@ -17,5 +21,12 @@ struct Depth {
 };
 
 Depth depth(const Indenter& indenter, const IndenterPose& pose, const Vec3d& x);
+
+// Derivatives of the depth and of its gradient by the logarithm of the rim of a disc.
+struct RimChange {
+  double value = 0;
+  Vec3d gradient{};
+};
+RimChange rim_change(const Indenter& disc, const IndenterPose& pose, const Vec3d& x);
 
 }  // namespace aspic

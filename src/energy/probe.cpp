@@ -167,6 +167,21 @@ class ProbeTerm : public Probe {
     });
   }
 
+  Wrench add_rim_gradient(Positions x, double scale, std::span<double> g) const override {
+    Wrench sum;
+    if (!is_sliding() || indenter_.shape != IndenterShape::disc) return sum;
+    for_each_touched(placed_, x, [&](const Patch& patch, const Barycentric& b, const Vec3d& p, const Response&) {
+      const Depth d = depth(indenter_, placed_.pose, p);
+      const RimChange change = rim_change(indenter_, placed_.pose, p);
+      const Layer layer = layer_at(d.value, indenter_.stiffness * patch.area);
+      const Vec3d dg = (layer.curvature * change.value) * d.gradient + layer.slope * change.gradient;
+      for (int i = 0; i < 3; ++i) add_at(g, patch.vertices[i], scale * b[i], dg);
+      sum.force = sum.force - dg;
+      sum.torque = sum.torque - cross(p - placed_.pose.center, dg);
+    });
+    return sum;
+  }
+
   int touched_points(Positions x) const override {
     int count = 0;
     for_each_touched(placed_, x, [&](const Patch&, const Barycentric&, const Vec3d&, const Response&) { ++count; });
@@ -232,14 +247,21 @@ class ProbeTerm : public Probe {
     }
   }
 
+  // Energy of a point at depth t > 0 and its derivatives by t.
+  struct Layer {
+    double value, slope, curvature;
+  };
+  Layer layer_at(double t, double k) const {
+    const double e = kSoftening * indenter_.radius;
+    if (t < e) return {k * (t * t * t / (6 * e)), k * (t * t / (2 * e)), k * (t / e)};
+    return {k * (t * (t - e) / 2 + e * e / 6), k * (t - e / 2), k};
+  }
+
   Response pushed(const Depth& d, double k) const {
-    const double e = kSoftening * indenter_.radius, t = d.value;
-    const bool is_soft = t < e;
-    const double phi = is_soft ? t * t * t / (6 * e) : t * (t - e) / 2 + e * e / 6;
-    const double slope = is_soft ? t * t / (2 * e) : t - e / 2, curvature = is_soft ? t / e : 1;
+    const auto [value, slope, curvature] = layer_at(d.value, k);
     const Vec3d n = d.gradient;
     const Mat3d across = from_columns(n[0] * n, n[1] * n, n[2] * n);
-    return {k * phi, (k * slope) * n, (k * curvature) * across + (k * slope) * d.hessian};
+    return {value, slope * n, curvature * across + slope * d.hessian};
   }
 
   static Response pulled(const Vec3d& u, double k) { return {k / 2 * dot(u, u), k * u, k * identity3<double>()}; }

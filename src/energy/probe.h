@@ -26,6 +26,7 @@ struct Indenter {
   double radius = 0;     // [m]
   double stiffness = 0;  // stiffness k of the layer [Pa/m]
   double friction = 0;   // coefficient, of a sliding indenter; see ProbeFriction
+  double rim = 0;        // radius of the rounded rim of a disc [m]; 0: usual_rim()
 };
 
 // Pose of an indenter: the center of the sphere or of the flat end, its axis, and its rotation since it touched the
@@ -67,6 +68,9 @@ class Probe : public SteadyEnergy {
   virtual Wrench wrench_product(Positions x, std::span<const double> dx) const = 0;
   virtual void add_wrench_transposed(Positions x, const Wrench& wbar, double scale, std::span<double> xbar) const = 0;
   virtual int touched_points(Positions x) const = 0;  // number of surface points in contact; 0: none
+  // Adds scale times the derivative of the gradient by the logarithm of the rim of a sliding disc to g, and returns
+  // that of the wrench. Other indenters have none.
+  virtual Wrench add_rim_gradient(Positions x, double scale, std::span<double> g) const = 0;
   virtual void visit_touched(Positions x, const std::function<void(const TouchedPoint&)>& visit) const = 0;
 
   // V and its derivatives for another placement of the indenter.

@@ -273,6 +273,47 @@ TEST(Probe, RejectsInvalidIndenters) {
   EXPECT_THROW(make_probe(box_mesh(), surface(), kCases[0].indenter, without_axis), InvalidInput);
 }
 
+TEST(Probe, RimGradientMatchesDifferences) {
+  const std::vector<double> x = shaken(0.02);
+  for (const double rim : {0.01, 0.05}) {
+    std::vector<double> g(x.size()), difference(x.size());
+    Wrench wrench;
+    const double h = 1e-4;
+    for (const double sign : {1.0, -1.0}) {
+      Case c = kCases[3];
+      c.indenter.rim = rim * std::exp(sign * h);
+      const auto V = probe(c);
+      V->add_gradient(x, sign / (2 * h), difference);
+      const Wrench w = V->wrench(x);
+      wrench.force = wrench.force + (sign / (2 * h)) * w.force;
+      wrench.torque = wrench.torque + (sign / (2 * h)) * w.torque;
+    }
+    Case c = kCases[3];
+    c.indenter.rim = rim;
+    const Wrench change = probe(c)->add_rim_gradient(x, 1, g);
+    double error = 0, size = 0;
+    for (size_t i = 0; i < x.size(); ++i)
+      error = std::max(error, std::abs(g[i] - difference[i])), size = std::max(size, std::abs(g[i]));
+    EXPECT_GT(size, 0) << rim;
+    EXPECT_LT(error, 1e-5 * size) << rim;
+    EXPECT_LT(norm(change.force - wrench.force), 1e-5 * norm(change.force)) << rim;
+    EXPECT_LT(norm(change.torque - wrench.torque), 1e-5 * norm(change.force)) << rim;
+  }
+}
+
+TEST(IndenterDepth, RimOfDiscIsCloseToAnArc) {
+  for (const double rim : {0.013, 0.04, 0.12}) {
+    const Indenter disc = {
+        .shape = IndenterShape::disc, .contact = IndenterContact::sliding, .radius = 0.2, .rim = rim};
+    const IndenterPose pose = {.center = {}, .axis = {{0, 0, -1}}, .rotation = {}};
+    for (int i = 0; i <= 20; ++i) {
+      const double angle = 0.5 * 3.14159265358979 * i / 20;
+      const Vec3d x = {{0.2 - rim * (1 - std::sin(angle)), 0, rim * (1 - std::cos(angle))}};
+      EXPECT_NEAR(depth(disc, pose, x).value, 0, (i == 10 ? 1e-3 : 0.03) * rim) << rim << " " << angle;
+    }
+  }
+}
+
 TEST(IndenterDepth, IsTwiceDifferentiableAcrossRimOfDisc) {
   const Indenter indenter = {IndenterShape::disc, IndenterContact::sliding, 0.2, 1};
   const IndenterPose pose = {.center = {}, .axis = {{0, 0, -1}}, .rotation = {}};

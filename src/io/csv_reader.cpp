@@ -122,8 +122,15 @@ bool CsvReader::has(std::string_view column) const {
 size_t CsvReader::column(std::string_view name) const {
   const auto found = std::find(columns_.begin(), columns_.end(), name);
   if (found == columns_.end())
-    throw InvalidInput(path_.string() + ":1: missing column '" + std::string(name) + "'" + suggestion(name, columns_));
+    throw InvalidInput(path_.string() + ":1: missing column '" + std::string(name) + "'; found " + column_list());
   return static_cast<size_t>(found - columns_.begin());
+}
+
+std::string CsvReader::column_list() const {
+  constexpr size_t kMost = 12;
+  std::string list;
+  for (size_t c = 0; c < std::min(columns_.size(), kMost); ++c) list += (c > 0 ? ", " : "") + columns_[c];
+  return list + (columns_.size() > kMost ? ", ..." : "");
 }
 
 bool CsvReader::next() {

@@ -23,6 +23,7 @@ class CsvReader {
   const std::vector<std::string>& columns() const { return columns_; }  // column names of the header
   bool has(std::string_view column) const;
   size_t column(std::string_view name) const;  // index of a column; throws InvalidInput if missing
+  std::string column_list() const;             // the first names, for messages
 
   // Reads the next row; false after the last complete one. In tables of Aspic a last line without a line break is
   // incomplete. Throws InvalidInput if the number of cells differs from the header.

@@ -73,7 +73,7 @@ TEST_F(CsvReading, IgnoresIncompleteLastLine) {
 
 TEST_F(CsvReading, RejectsDamageWithFileAndLine) {
   EXPECT_THAT(refusal(""), HasSubstr("table.csv: is empty"));
-  EXPECT_THAT(refusal("step,value\n"), HasSubstr("table.csv:1: missing column 'energy' (known: step, value)"));
+  EXPECT_THAT(refusal("step,value\n"), HasSubstr("table.csv:1: missing column 'energy'; found step, value"));
   EXPECT_THAT(refusal("step,energy\n1,2\n2\n"), HasSubstr("table.csv:3: has 1 cells; the header has 2"));
   EXPECT_THAT(refusal("step,energy\n1,two\n"), HasSubstr("table.csv:2: energy = 'two' is not a number"));
   EXPECT_THAT(refusal("step,energy\n1.5,2\n"), HasSubstr("table.csv:2: step = '1.5' is not a whole number"));

@@ -57,7 +57,7 @@ def pressed(stiffness, young=2e4):
         columns = {"case": f"{1000 * depth:g} mm", "group": "press", "touch_x": half, "touch_y": half, "touch_z": 0.03,
                    "axis_x": 0, "axis_y": 0, "axis_z": -1, "depth": depth}
         readings.append(truths.Reading(columns, markers, np.array([0, 0, 4 * solid.contact(x)[3][2]])))
-    settings = f'fixed = "z < 1e-6"\n[[tip]]\nshape = "disc"\nradius = {disc}\n'
+    settings = f'fixed = "z < 1e-6"\n[[tip]]\nshape = "disc"\nradius = {disc}\nrim = {0.064 * disc}\n'
     return truths.Truth("pressed", size, (6, 6, 3), markers, readings, settings, young, 0.4)
 
 

@@ -233,6 +233,7 @@ TIPS = """fixed = "z < 1e-6"
 name = "disc"
 shape = "disc"
 radius = {disc}
+rim = {rim}
 [[tip]]
 name = "sphere"
 shape = "sphere"
@@ -316,7 +317,7 @@ def layers(fine=1):
                        "touch_z": 0.04 + (0 if tip == "disc" else SPHERE), "axis_x": 0, "axis_y": 0, "axis_z": -1,
                        "depth": depth}
             readings.append(Reading(columns, positions + middle, np.array([0, 0, force])))
-    return Truth("layers", size, (8, 8, 5), markers, readings, TIPS.format(disc=DISC, sphere=SPHERE), FIELDS["layers"],
+    return Truth("layers", size, (8, 8, 5), markers, readings, TIPS.format(disc=DISC, rim=0.064 * DISC, sphere=SPHERE), FIELDS["layers"],
                  LAYERS_POISSON, (INTERFACE,))
 
 

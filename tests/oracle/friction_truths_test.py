@@ -36,7 +36,7 @@ def plate(mu=FRICTION, cells=3, steps=2):
                    **{"axis_" + a: n for a, n in zip("xyz", (0, 0, -1))},
                    **{"center_" + a: c for a, c in zip("xyz", touch + move)}}
         readings.append(truths.Reading(columns, read(x), force))
-    settings = f'fixed = "z < 1e-6"\n[[tip]]\nshape = "disc"\nradius = {RADIUS}\nstiffness = {LAYER}\n'
+    settings = f'fixed = "z < 1e-6"\n[[tip]]\nshape = "disc"\nradius = {RADIUS}\nrim = {0.064 * RADIUS}\nstiffness = {LAYER}\n'
     return truths.Truth("plate", size, (4, 4, 3), markers, readings, settings, YOUNG, POISSON)
 
 

@@ -126,8 +126,9 @@ function head(): FitHead {
       groups: [{ group: "a", readings: "forces", standard_deviations: 1.5 }],
       verdict: { good: true, text: "Converged.", reasons: [] },
       limits: { missed: 4, squares_per_reading: 2.25 },
-      held_out: null,
-      comparison: [{ how: "cross-validation", models: [{ model: "this fit", position: 0.012, force: 0.034, torque: null }] }],
+      held_out: { groups: [], position: 0.012, force: 0.034, torque: null, largest_motion: 1, largest_force: 1, largest_torque: 0, poor: false, limits: { position: 0.05, force: 0.1, torque: 0.1, single: 2 } },
+      // Of fewer groups; the judged errors are those above.
+      comparison: [{ how: "cross-validation", models: [{ model: "this fit", position: 0.02, force: 0.11, torque: null }] }],
       cases: [caseFigures("a, 2", "a", 0.2), caseFigures("a, 1", "a", 0.1), caseFigures("b", "b", 0.3, { left_out: true, rms: null })],
       histogram: { limit: 4, counts: [1, 2] },
     },
@@ -235,7 +236,7 @@ test("the first paragraph has errors and a judgment", () => {
   what.figures.verdict.good = false;
   assert.ok(!trust(what).includes("Trust"));
   what.figures.verdict.good = true;
-  what.figures.comparison = [];
+  what.figures.held_out = null;
   assert.ok(trust(what).includes("untested") && !trust(what).includes("Trust"));
 });
 

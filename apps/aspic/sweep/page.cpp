@@ -162,8 +162,8 @@ void add_cases(ReportPage& page, const StudyResults& study) {
 }  // namespace
 
 std::string write_study_page(const StudyResults& study) {
-  ReportPage page("Study " + fs::absolute(study.folder).lexically_normal().filename().string(),
-                  fmt::format("{} cases", study.cases.size()));
+  const std::string name = fs::absolute(study.folder).lexically_normal().filename().string();
+  ReportPage page(fmt::format("Study \"{}\", {} cases", name, study.cases.size()));
   add_failures(page, study);
   std::string missing;
   try {

@@ -95,7 +95,7 @@ export interface FoundError {
   deviation?: number;
   prior_deviation: number;
   determined_by?: string;
-  coefficient?: number; // friction, or layer stiffness in `unit`, whose logarithm has the error
+  coefficient?: number; // friction, layer stiffness or rim in `unit`, whose logarithm has the error
   coefficient_95?: [number, number];
 }
 

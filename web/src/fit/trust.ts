@@ -1,17 +1,14 @@
 // The first paragraph of a report: how far to trust its values.
-import type { MaybeNumber } from "../protocol";
 import { short } from "../plots/numbers";
 import { percent } from "./cells";
-import { kReadingKinds, type FitHead, type ReadingName } from "./data";
+import { kReadingKinds, type FitHead } from "./data";
 
 export const kQuantityNames: Record<string, string> = { young: "Young's modulus", poisson: "Poisson's ratio", density: "density" };
 
 // What held-out groups say about predictions.
-function tested({ figures: { comparison } }: FitHead): string {
-  const own = comparison.map(({ models }) => models[0]).filter((m) => m !== undefined);
-  const worst = (key: ReadingName): MaybeNumber => own.reduce<MaybeNumber>((most, m) => (m[key] === null ? most : Math.max(most ?? 0, m[key])), null);
+function tested({ figures: { held_out: heldOut } }: FitHead): string {
   const parts = kReadingKinds.flatMap(({ name, peak }) => {
-    const error = worst(name);
+    const error = heldOut?.[name] ?? null;
     return error === null ? [] : [`${percent(error)} of the largest ${peak}`];
   });
   const last = parts.pop() ?? "";
