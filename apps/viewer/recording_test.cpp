@@ -42,6 +42,21 @@ TEST(PositionRange, ExcludesFramesThatBlewUp) {
   EXPECT_EQ(code.bytes().size(), 3 * 2 * start.size());
 }
 
+TEST(ValueScale, CodesZeroExactlyAndKeepsSigns) {
+  const std::vector<float> values = {-3, -1e-6F, 0, 1e-6F, 1, 250, std::numeric_limits<float>::quiet_NaN()};
+  const ValueScale scale(values);
+  EXPECT_LE(scale.min, -3);
+  EXPECT_GE(scale.max, 250);
+  const double step = (double{scale.max} - scale.min) / 254, zero = std::round(-scale.min / step);
+  EXPECT_EQ(scale.code(0), zero);
+  EXPECT_NEAR(zero * step, -scale.min, 1e-5 * step);
+  EXPECT_LT(scale.code(-1e-6F), zero);
+  EXPECT_GT(scale.code(1e-6F), zero);
+  EXPECT_EQ(scale.code(values.back()), 255);
+  for (const float value : {-3.F, 0.F, 1.F, 250.F}) EXPECT_NEAR((scale.code(value) - zero) * step, value, step);
+  EXPECT_EQ(ValueScale(std::vector<float>{0, 5}).code(1e-9F), 1);
+}
+
 TEST_F(RunRecording, HasTheFieldsOfALiveSession) {
   const fs::path directory = run("run");
   const Decoded decoded(recording(directory).text);
