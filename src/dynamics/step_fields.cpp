@@ -176,8 +176,11 @@ std::vector<StepField>& fields() {
        StepFieldType::potentials, kTable | kJson | kViewer},
       real<&R::potential_total>({"potential_total", "J", "sum of the potential energies"}, kTable | kFrame | kJson),
       real<&R::pin_work>(
-          {"pin_work", "J", "work of moving pins, moving spring targets and time-dependent loads in this step"},
+          {"pin_work", "J", "work of moving pins, moving spring targets, time-dependent loads and muscles in this step"},
           kMeasured),
+      optional(real<&R::load_work>(
+          {"load_work", "J", "share of moving spring targets and time-dependent loads in `pin_work`"}, kMeasured)),
+      optional(real<&R::muscle_work>({"muscle_work", "J", "share of muscles in `pin_work`"}, kMeasured)),
       optional(real<&R::obstacle_work>({"obstacle_work", "J", "work of moving obstacles"}, kMeasured)),
       real<&R::damping_loss>({"damping_loss", "J", "energy dissipated by damping and friction"}, kMeasured),
       optional(real<&R::viscoelastic_loss>(

@@ -1,6 +1,6 @@
 // Colors of the page, read from the style sheet.
 const kPlain = ["background", "text", "faint", "line", "panel", "raised", "accent", "good", "bad"] as const;
-const kSeries = [1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14] as const;
+const kSeries = [1, 2, 3, 4, 5, 7, 8, 9, 10, 11, 12] as const;
 const kNames = [...kPlain, ...kSeries.map((i) => `series${i}` as const)];
 
 type Name = (typeof kNames)[number];
