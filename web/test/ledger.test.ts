@@ -132,7 +132,7 @@ test("no two curves share a family of colors", () => {
   assert.deepEqual(keys.map((key) => colors.of(key).replace(/(\d+)/, "-$1")), names, "the same at each call");
   for (const theme of [1, 2]) {
     const drawn = names.map((name) => lab(css.match(new RegExp(`--${name}: light-dark\\((#\\w+), (#\\w+)\\)`))![theme]!));
-    drawn.forEach((p, i) => drawn.slice(0, i).forEach((q, j) => assert.ok(Math.hypot(...p.map((x, c) => x - q[c]!)) > 0.1, `${names[i]} and ${names[j]}`)));
+    drawn.forEach((p, i) => drawn.slice(0, i).forEach((q, j) => assert.ok(Math.hypot(...p.map((x, c) => x - q[c]!)) > 0.08, `${names[i]} and ${names[j]}`)));
   }
 });
 
