@@ -1,6 +1,6 @@
 // Toolbar: time controls, and buttons that open everything else.
 import { button, element, icon, type ButtonOptions } from "./dom";
-import { statusName } from "./names";
+import { settingText, statusName } from "./names";
 import type { Page } from "./page";
 import type { SideName, SideState, State } from "./protocol";
 import { openShortcutList, shortcutButton } from "./shortcuts";
@@ -39,7 +39,7 @@ function makeTransport(store: Store, page: Page): HTMLElement {
   let played = false;
   store.on("state", (state) => {
     const { playing } = state;
-    if ((wanted ?? played) && !playing) explainStop(state, page);
+    if ((wanted ?? played) && !playing) explainStop(state, store, page);
     played = playing;
     if (play.getAttribute("aria-pressed") === String(playing)) return;
     play.replaceChildren(icon(playing ? "pause" : "play"));
@@ -54,11 +54,22 @@ function makeTransport(store: Store, page: Page): HTMLElement {
 }
 
 // Explains a stop that nobody requested, such as an explicit scheme that blew up.
-function explainStop(state: State, page: Page): void {
-  const words = state.a.words ?? state.b?.words;
+function explainStop(state: State, store: Store, page: Page): void {
+  const name = state.a.words ? "a" : "b";
+  const words = state[name]?.words;
   if (!words) return;
-  const who = state.b ? (state.a.words ? "A stopped" : "B stopped") : "Stopped";
-  page.notice(`${who}: ${words.cause}; ${words.place}. Remedy: ${words.remedy}`, "error");
+  const who = state.b ? `${store.title(name)} stopped` : "Stopped";
+  const { cause, place, remedy } = namedBySettings(words, store, name);
+  page.notice(`${who}: ${cause}. ${place}. ${remedy}.`, "error");
+}
+
+type Words = NonNullable<SideState["words"]>;
+
+// The explanation by the names of the settings in the page.
+function namedBySettings({ cause, place, remedy }: Words, store: Store, name: SideName): Words {
+  const settings = store.side(name)?.scene.settings ?? [];
+  const capital = (text: string): string => text.charAt(0).toUpperCase() + text.slice(1);
+  return { cause, place: capital(settingText(place, settings, false)), remedy: capital(settingText(remedy, settings, true)) };
 }
 
 function makeSpeed(store: Store): HTMLElement {
@@ -87,8 +98,8 @@ function makeStatus(store: Store): HTMLElement {
   const chips = { a: makeChip(), b: makeChip() };
   store.on("state", (state) => {
     rate.textContent = state.rate > 0 ? `${Number(state.rate.toPrecision(2))}x real time` : "";
-    showChip(chips.a, state.a, failed(store, "a"), state.b ? "A: " : "");
-    showChip(chips.b, state.b, failed(store, "b"), "B: ");
+    showChip(chips.a, store, "a");
+    showChip(chips.b, store, "b");
   });
   return element("div", { class: "group status" }, chips.a, chips.b, rate);
 }
@@ -100,11 +111,13 @@ function failed(store: Store, name: SideName): boolean {
   return row?.converged === false;
 }
 
-function showChip(chip: HTMLButtonElement, side: SideState | null, bad: boolean, before: string): void {
+function showChip(chip: HTMLButtonElement, store: Store, name: SideName): void {
+  const side = store.state?.[name] ?? null;
   chip.hidden = !side || side.status === "";
   if (!side) return;
-  const words = side.words;
-  const text = `${before}${statusName(side.status)}`;
+  const bad = failed(store, name);
+  const words = side.words && namedBySettings(side.words, store, name);
+  const text = `${store.state?.b ? `${name.toUpperCase()}: ` : ""}${statusName(side.status)}`;
   const plain = bad ? "The last step did not converge." : "The last step converged.";
   const tip = words ? `${words.cause}\n${words.place}\n${words.remedy}` : plain;
   if (chip.dataset.tip === tip && chip.textContent === text) return;

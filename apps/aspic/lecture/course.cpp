@@ -51,7 +51,7 @@ const std::vector<Demonstration>& demonstrations() {
        "M (q_(i+1) - q~) / h^2 = -dV/dq, evaluated at q_i (explicit) or at q_(i+1) (implicit)."},
       {"23_printed_forward_euler",
        {23},
-       "what is printed as forward Euler",
+       "the slide's \"forward Euler\"",
        "q_(i+1) = 2 q_i - q_(i-1) - h^2 M^-1 dV/dq(q_i), printed as \"Forward Euler\": it is symplectic Euler."},
       {"24_backward_euler",
        {24},

@@ -88,7 +88,7 @@ function addDisplay(folder: Folder, display: Display, views: () => View[]): void
   folder.add("shadows", "Shadows");
   folder.add("clip", "Cut");
   folder.slider("clipAt", "Cut at", 0, 1, 0.001);
-  folder.add("clipOther", "Keep the other half");
+  folder.add("clipOther", "Flip cut");
   addNumbers(folder.within("Numbers and marks"));
   addLook(folder.within("Colors and light"));
   folder.button("Reset display", () => display.change(kDefaults));
@@ -133,17 +133,17 @@ function addField(folder: Folder, display: Display, views: () => View[]): void {
 }
 
 function addCamera(folder: Folder, display: Display, views: () => View[]): void {
-  const modes: Record<string, CameraMode> = { "two axes, level": "turntable", orbit: "orbit", "2-D": "flat" };
+  const modes: Record<string, CameraMode> = { turntable: "turntable", free: "orbit", "2-D": "flat" };
   const each = display.eachCamera;
   const setMode = (mode: string): void => each((rig) => rig.setMode(mode as CameraMode));
-  folder.choice("Turns about", () => modes, () => display.cameras.a.mode, setMode);
+  folder.choice("Orbit", () => modes, () => display.cameras.a.mode, setMode);
   const kinds = { perspective: "no", orthographic: "yes" };
   const kind = (): string => (display.cameras.a.orthographic ? "yes" : "no");
   folder.choice("Projection", () => kinds, kind, (value) => each((rig) => rig.setOrthographic(value === "yes")));
   folder.button("Center the body", () => views().forEach((view) => view.center()));
   const look = folder.within("Look from");
   for (const name of kViewNames) look.button(name, () => each((rig) => rig.look(name)));
-  folder.add("linked", "One for both sides");
+  folder.add("linked", "Link cameras");
 }
 
 function addDisplayShortcuts(page: Page, display: Display): void {
@@ -174,7 +174,7 @@ function addCameraShortcuts(page: Page, display: Display, views: () => View[]): 
   add("0", "Center the body", center);
   add(".", "Center the body", center);
   add("o", "Orthographic or perspective", () => display.eachCamera((rig) => rig.setOrthographic(!rig.orthographic)));
-  add("v", "Camera: two axes, orbit, 2-D", () => {
+  add("v", "Camera: turntable, free orbit, 2-D", () => {
     const next = kCameraModes[(kCameraModes.indexOf(display.cameras.a.mode) + 1) % kCameraModes.length];
     display.eachCamera((rig) => rig.setMode(next));
   });

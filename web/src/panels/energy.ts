@@ -52,6 +52,10 @@ export class EnergyPanel implements Panel {
       this.redraw();
     });
     store.on("state", () => this.redraw());
+    page.on("scale", (scale) => {
+      this.log.input.checked = scale === "log";
+      this.configure();
+    });
     page.keep("energy", { save: () => this.save(), restore: (saved) => this.restore(saved) });
     for (const side of kSides) this.newScene(side);
   }

@@ -55,7 +55,7 @@ test("the recorded mouse plays until a grab", async (t) => {
   }
   assert.ok(found, "a page with a recorded mouse");
   t.diagnostic(`page ${found.pages}: ${found.title}`);
-  await page.getByText("A recorded mouse plays").waitFor();
+  await page.getByText("Replaying a recorded drag").waitFor();
   await until("steps of the recorded mouse", ({ state, pictures }) => state.replaying && state.a.step > 1 && pictures.a.step > 1);
   await setPlaying(opened, false);
   assert.ok(heard.state.replaying, "a pause does not end the recorded mouse");
