@@ -58,10 +58,10 @@ function buildPage(store: Store, page: Page, sharing: Sharing | null): void {
   const panels: Panel[] = [new EnergyPanel(store, page), new MicroscopePanel(store, page, chosen)];
   if (store.source.live) panels.push(new LandscapePanel(store, page, chosen), functions, new CapturePanel(store, page, display));
   panels.push(makeReportPanel(store, page));
-  const sidebar = new Sidebar(area("right"), page);
+  const sidebar = new Sidebar(area("right"), page, store.source.live);
   addDisplayControls(new GUI({ container: sidebar.body, title: "View" }), display, page, views.all);
   new Settings(sidebar.body, store, page);
-  new Dock(area("dock"), page, panels);
+  new Dock(area("dock"), page, panels, store.source.live);
   const lecture = new Lecture(area("left"), store, page, (question) => functions.open(question));
   const video = new Video(store, page, views.draw);
   area("views").append(video.indicator);
@@ -87,8 +87,8 @@ function openPage(source: Source, html: string | null = null): void {
 function openLive(): void {
   if (hasEngine()) {
     openPage(new LiveSource(embeddedEngine()), `<!doctype html>\n${document.documentElement.outerHTML}`);
-    if (location.hash === "") area("views").append(makeInvitation());
   } else openPage(new LiveSource(overSocket(sessionAddress())));
+  if (location.hash === "") area("views").append(makeInvitation());
 }
 
 registerColors();

@@ -13,6 +13,7 @@ const kSpeeds = [0.05, 0.1, 0.25, 0.5, 1, 2, 5, 10];
 export function makeToolbar(root: HTMLElement, store: Store, page: Page, theme: Theme, tools: HTMLElement[]): void {
   root.append(
     makeTransport(store, page),
+    makeName(store),
     makeTimeline(store, page),
     makeStatus(store),
     element("div", { class: "group" }, ...tools, ...makeReader(page, theme)),
@@ -21,6 +22,14 @@ export function makeToolbar(root: HTMLElement, store: Store, page: Page, theme: 
     const title = `${store.name} · ${state.playing ? "playing" : `paused, ${placeText(state)}`} · Aspic`;
     if (document.title !== title) document.title = title;
   });
+}
+
+function makeName(store: Store): HTMLElement {
+  const name = element("strong", { class: "scene-name" });
+  store.on("scene", () => {
+    name.textContent = name.title = store.name;
+  });
+  return name;
 }
 
 function makeTransport(store: Store, page: Page): HTMLElement {
