@@ -52,6 +52,7 @@ function buildPage(store: Store, page: Page, sharing: Sharing | null): void {
   showNotices(area("messages"), store, page);
   const theme = new Theme(page);
   const display = new Display();
+  suitScenes(store, display);
   const views = new Views(area("views"), store, page, display);
   const functions = new FunctionsPanel(store, page);
   const chosen = new Chosen(store, page);
@@ -69,6 +70,17 @@ function buildPage(store: Store, page: Page, sharing: Sharing | null): void {
   const live = store.source.live ? [makeCompareButton(store, page), lecture.opener] : [];
   makeToolbar(area("toolbar"), store, page, theme, [makeRole(store), ...live, files, sidebar.opener]);
   listenToKeys(page);
+}
+
+// Wires and pins hide fibres, so scenes with fibres open without them.
+function suitScenes(store: Store, display: Display): void {
+  let withFibres = ""; // name of the scene
+  const suit = (name: string): void => {
+    if ((withFibres !== "") !== (name !== "")) display.change({ wires: name === "", pins: name === "" });
+    withFibres = name;
+  };
+  store.on("fibres", () => store.name !== withFibres && suit(store.name));
+  store.on("scene", (side) => side === "a" && store.name !== withFibres && withFibres !== "" && suit(""));
 }
 
 function openPage(source: Source, html: string | null = null): void {

@@ -3,6 +3,7 @@ import type { GUI } from "lil-gui";
 import type { Page } from "../page";
 import type { SettingValue } from "../protocol";
 import { kCameraModes, kViewNames, type CameraMode, type ViewName } from "../view/cameras";
+import { kDifference } from "../view/difference";
 import { kChoices, kDefaults, type Amount, type Display, type DisplaySettings } from "../view/display";
 import type { View } from "../view/view";
 import { NumberRow } from "./rows";
@@ -118,11 +119,17 @@ function addLook(folder: Folder): void {
 // Adds the field that colors the body and the range of its colors.
 function addField(folder: Folder, display: Display, views: () => View[]): void {
   const fields = (): Choices => {
-    const known = display.fields.map((field) => [field.label, field.name] as const);
-    return { [display.bodies > 1 ? "body" : "none"]: "", ...Object.fromEntries(known) };
+    const shown = comparing() ? [kDifference, ...display.fields] : display.fields;
+    return { [display.bodies > 1 ? "body" : "none"]: "", ...Object.fromEntries(shown.map((field) => [field.label, field.name])) };
   };
-  const choose = (field: string): void => views()[0]?.store.source.send({ do: "color", field });
-  folder.choice("Color by", fields, () => display.field, choose);
+  const comparing = (): boolean => views().length > 1;
+  const read = (): string => (display.field === "" && comparing() && display.settings.difference ? kDifference.name : display.field);
+  const choose = (field: string): void => {
+    const difference = field === kDifference.name;
+    if (difference || field === "") display.change({ difference });
+    views()[0]?.store.source.send({ do: "color", field: difference ? "" : field });
+  };
+  folder.choice("Color by", fields, read, choose);
   const range = folder.within("Color range");
   range.add("map", "Colors");
   range.add("fixedRange", "Fixed range");

@@ -118,6 +118,10 @@ export class Body {
     this.hasPicture = this.root.visible = true;
   }
 
+  showValues(values: Float32Array): void {
+    upload(this.values, values);
+  }
+
   apply(settings: DisplaySettings): void {
     this.mesh.visible = settings.fill;
     this.wires.visible = settings.wires || !settings.fill;

@@ -33,6 +33,7 @@ export const kDefaults = {
   faceLabels: false,
   map: "auto" as "auto" | MapName,
   scale: "auto" as "auto" | "linear" | "log", // auto: the default of the field
+  difference: true, // colors both sides of a comparison by their distance, unless a field does
   fixedRange: false,
   low: 0,
   high: 1,
