@@ -95,6 +95,21 @@ export function settingText(text: string, settings: readonly Pick<Setting, "key"
   return quoted === undefined ? `Set ${label} to ${name}` : `Choose ${name}`;
 }
 
+type Explanation = { cause: string; place: string; remedy: string };
+
+// The explanation of a failed step by the names of the settings, in sentences.
+export function explanationText({ cause, place, remedy }: Explanation, settings: readonly Pick<Setting, "key" | "label">[]): string[] {
+  return [cause, settingText(place, settings, false), settingText(remedy, settings, true)].map(sentence).filter((text) => text !== "");
+}
+
+// Starts with a capital, unless the text starts with a key of a scene, and ends with a period.
+export function sentence(text: string): string {
+  const trimmed = text.trim();
+  if (trimmed === "") return "";
+  const isKey = /^\S*[._=]\S/.test(trimmed);
+  return (isKey ? trimmed[0]! : trimmed[0]!.toUpperCase()) + trimmed.slice(1) + (/[.!?]$/.test(trimmed) ? "" : ".");
+}
+
 // Text without Markdown: `code`, **strong**, [link](target).
 export function plainText(markdown: string): string {
   return markdown

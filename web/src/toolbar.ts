@@ -1,8 +1,8 @@
 // Toolbar: time controls, and buttons that open everything else.
 import { button, element, icon, type ButtonOptions } from "./dom";
-import { settingText, statusName } from "./names";
+import { explanationText, statusName } from "./names";
 import type { Page } from "./page";
-import type { SideName, SideState, State } from "./protocol";
+import type { SideName, State } from "./protocol";
 import { openShortcutList, shortcutButton } from "./shortcuts";
 import type { Store } from "./store";
 import type { Theme } from "./theme";
@@ -68,17 +68,7 @@ function explainStop(state: State, store: Store, page: Page): void {
   const words = state[name]?.words;
   if (!words) return;
   const who = state.b ? `${store.title(name)} stopped` : "Stopped";
-  const { cause, place, remedy } = namedBySettings(words, store, name);
-  page.notice(`${who}: ${cause}. ${place}. ${remedy}.`, "error");
-}
-
-type Words = NonNullable<SideState["words"]>;
-
-// The explanation by the names of the settings in the page.
-function namedBySettings({ cause, place, remedy }: Words, store: Store, name: SideName): Words {
-  const settings = store.side(name)?.scene.settings ?? [];
-  const capital = (text: string): string => text.charAt(0).toUpperCase() + text.slice(1);
-  return { cause, place: capital(settingText(place, settings, false)), remedy: capital(settingText(remedy, settings, true)) };
+  page.notice(`${who}. ${explanationText(words, store.side(name)?.scene.settings ?? []).join(" ")}`, "error");
 }
 
 function makeSpeed(store: Store): HTMLElement {
@@ -125,15 +115,14 @@ function showChip(chip: HTMLButtonElement, store: Store, name: SideName): void {
   chip.hidden = !side || side.status === "";
   if (!side) return;
   const bad = failed(store, name);
-  const words = side.words && namedBySettings(side.words, store, name);
   const text = `${store.state?.b ? `${name.toUpperCase()}: ` : ""}${statusName(side.status)}`;
   const plain = bad ? "The last step did not converge." : "The last step converged.";
-  const tip = words ? `${words.cause}\n${words.place}\n${words.remedy}` : plain;
+  const tip = side.words ? explanationText(side.words, store.side(name)?.scene.settings ?? []).join("\n") : plain;
   if (chip.dataset.tip === tip && chip.textContent === text) return;
   chip.textContent = text;
   chip.dataset.tip = tip;
   chip.setAttribute("aria-label", `Last step: ${text}. ${tip}`);
-  chip.classList.toggle("bad", bad || words !== null);
+  chip.classList.toggle("bad", bad || side.words !== null);
 }
 
 function makeReader(page: Page, theme: Theme): HTMLElement[] {

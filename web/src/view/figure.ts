@@ -80,11 +80,12 @@ export class Figure {
     const { a, b } = this.store.sides;
     const isShown = this.display.settings.difference && this.side?.scene.field === "";
     const now = isShown ? differenceOf(a, b) : null;
-    if (now !== undefined) this.difference = now;
-    if (!this.difference || !this.body) return;
+    if (now === undefined || !this.body) return;
+    const largest = now ? (extremes(now)?.[1] ?? 0) : 0;
+    this.difference = largest > 0 ? now : null; // equal sides keep the color of the body
+    if (!this.difference) return;
     this.body.showValues(this.difference);
-    const range = this.isLost() ? null : extremes(this.difference);
-    if (range) this.display.feed(this.name, kDifference, ...range);
+    if (!this.isLost()) this.display.feed(this.name, kDifference, 0, largest);
   }
 
   // A side that has blown up does not contribute to the range of the colors.
