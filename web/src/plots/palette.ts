@@ -49,5 +49,6 @@ export function palette(of: HTMLElement): Palette {
   const values = kNames.map((name) => [name, style.getPropertyValue(variableOf(name))]);
   const colors = Object.fromEntries(values) as Record<Name, string>;
   const fontSize = Number.parseFloat(style.fontSize) || 14;
-  return { ...colors, fontSize, font: `${fontSize * 0.86}px ${style.fontFamily || "sans-serif"}` };
+  const size = Math.round(fontSize * 0.86); // uPlot scales whole numbers only
+  return { ...colors, fontSize, font: `${size}px ${style.fontFamily || "sans-serif"}` };
 }
