@@ -4,7 +4,7 @@ import assert from "node:assert/strict";
 import { writeFileSync } from "node:fs";
 import { join, relative } from "node:path";
 import { test } from "node:test";
-import { answered, boxOf, frames, keepPicture, openSession, pressAndWait, root, settingOf, settled, startProgram, temporaryFolder } from "./harness.mjs";
+import { answered, boxOf, frames, keepPicture, openPage, openSession, pressAndWait, root, settingOf, settled, startProgram, temporaryFolder } from "./harness.mjs";
 
 const body = (name, x) => `[[body]]
 name = "${name}"
@@ -38,12 +38,13 @@ const hues = (page) =>
   });
 
 test("a session opens with the body, a hint and its name", async () => {
-  const { page, close } = await openSession(two, { closed: true });
+  const { page, until, close } = await openPage(two.address);
+  await until("a picture", ({ state, pictures }) => state && pictures.a);
   assert.equal(await page.locator(".scene-name").innerText(), "two");
   assert.ok(await page.locator(".invitation").isVisible());
   for (const closed of ["#right", "#left", ".dock-body"]) assert.ok(!(await page.locator(closed).isVisible()), closed);
   const view = await boxOf(page.locator("#views"));
-  assert.ok(view.width === 1024 && view.height > 560, `${view.width} x ${view.height}`);
+  assert.ok(view.width === 1024 && view.height > 480, `${view.width} x ${view.height}`);
   await page.mouse.click(view.x + 20, view.y + 20);
   assert.equal(await page.locator(".invitation").count(), 0, "the first touch removes the hint");
   await close();
@@ -64,7 +65,12 @@ test("pins have one size on screens of any density", async () => {
   const counts = [];
   for (const deviceScaleFactor of [1, 2]) {
     const opened = await openSession(two, { closed: true, keepsPixels: true, colorScheme: "light", deviceScaleFactor });
-    counts.push(await opened.until("pins", () => pinPixels(opened.page)));
+    await settled(opened);
+    counts.push(await opened.until("pins", async () => {
+      const before = await pinPixels(opened.page);
+      await frames(opened.page, 4);
+      return before > 50 && before === (await pinPixels(opened.page)) && before;
+    }));
     await opened.close();
   }
   const ratio = counts[1] / counts[0];
@@ -162,12 +168,14 @@ test("changes are undone singly or by reset", async () => {
 });
 
 test("the lecture fills a phone", async () => {
-  const { page, close } = await openSession(two, { size: [390, 844] });
+  const { page, until, close } = await openSession(two, { size: [390, 844] });
   const lecture = page.getByRole("button", { name: "Lecture", exact: true });
   if (await lecture.isVisible()) {
     await lecture.click();
-    const dock = await boxOf(page.locator("#dock"));
-    assert.ok(dock.y + dock.height >= 843, `an empty band of ${844 - dock.y - dock.height} px`);
+    await until("no empty band", async () => {
+      const dock = await boxOf(page.locator("#dock"));
+      return dock.y + dock.height >= 843;
+    });
   }
   await close();
 });
