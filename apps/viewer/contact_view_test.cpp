@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "contact/barrier.h"
 #include "mesh/self_intersection.h"
 #include "viewer/recording_test.h"
 #include "viewer/session_test.h"
