@@ -7,6 +7,7 @@
 #include "mesh/self_intersection.h"
 #include "viewer/recording_test.h"
 #include "viewer/session_test.h"
+#include "viewer/surface.h"
 
 namespace aspic::viewer {
 namespace {
