@@ -45,6 +45,7 @@ TEST_F(SceneGallery, ForgetsTemporaryScenes) {
   const RecentScenes recent(path("state/aspic/recent"));
   recent.note(path("a.toml"));
   EXPECT_THAT(recent.read(), IsEmpty());
+  std::filesystem::create_directories(path("state/aspic"));
   write_file(path("state/aspic/recent"), path("a.toml").string() + "\n");  // noted by an earlier version
   EXPECT_THAT(recent.read(), IsEmpty());
 }
