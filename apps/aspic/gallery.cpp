@@ -14,6 +14,14 @@ namespace fs = std::filesystem;
 
 constexpr size_t kLongestPath = 4096;
 
+// Scenes there are of tests and other programs, and vanish.
+bool is_temporary(const fs::path& scene) {
+  std::error_code error;
+  const fs::path folder = fs::temp_directory_path(error);
+  const fs::path inside = scene.lexically_relative(folder);
+  return !error && !inside.empty() && *inside.begin() != "..";
+}
+
 }  // namespace
 
 // The folder "lecture" distinguishes it from other folders named scenes.
@@ -34,7 +42,7 @@ fs::path RecentScenes::default_file() {
 void RecentScenes::note(const fs::path& scene) const {
   std::error_code error;
   const std::string path = fs::absolute(scene, error).lexically_normal().string();
-  if (file_.empty() || error || path.find('\n') != std::string::npos) return;
+  if (file_.empty() || error || is_temporary(path) || path.find('\n') != std::string::npos) return;
   std::string text = path + "\n";
   size_t count = 1;
   for (const fs::path& other : read())
@@ -52,7 +60,8 @@ std::vector<fs::path> RecentScenes::read() const {
   std::string line;
   std::error_code error;
   while (!file_.empty() && paths.size() < kMax && std::getline(in, line))
-    if (line.size() < kLongestPath && fs::path(line).is_absolute() && fs::is_regular_file(line, error))
+    if (line.size() < kLongestPath && fs::path(line).is_absolute() && fs::is_regular_file(line, error) &&
+        !is_temporary(line))
       paths.emplace_back(line);
   return paths;
 }

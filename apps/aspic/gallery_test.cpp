@@ -27,16 +27,27 @@ TEST_F(SceneGallery, ListsScenesWithTheirFirstComment) {
 }
 
 TEST_F(SceneGallery, RemembersWhatWasOpenedNewestFirst) {
-  for (const char* name : {"a.toml", "b.toml"}) write_file(path(name), "");
+  const std::filesystem::path scenes = std::filesystem::path(ASPIC_SOURCE_DIR) / "scenes";
+  const auto a = scenes / "bunny.toml", b = scenes / "chute.toml";
   const RecentScenes recent(path("state/aspic/recent"));
   EXPECT_THAT(recent.read(), IsEmpty());
+  recent.note(a);
+  recent.note(b);
+  recent.note(a);
+  EXPECT_THAT(recent.read(), ElementsAre(a, b));
+  write_file(path("state/aspic/recent"), (scenes / "none.toml").string() + "\n" + b.string() + "\n");
+  EXPECT_THAT(recent.read(), ElementsAre(b));
+  RecentScenes(std::filesystem::path()).note(b);
+}
+
+TEST_F(SceneGallery, ForgetsTemporaryScenes) {
+  write_file(path("a.toml"), "");
+  const RecentScenes recent(path("state/aspic/recent"));
   recent.note(path("a.toml"));
-  recent.note(path("b.toml"));
-  recent.note(path("a.toml"));
-  EXPECT_THAT(recent.read(), ElementsAre(path("a.toml"), path("b.toml")));
-  std::filesystem::remove(path("a.toml"));
-  EXPECT_THAT(recent.read(), ElementsAre(path("b.toml")));
-  RecentScenes(std::filesystem::path()).note(path("b.toml"));
+  EXPECT_THAT(recent.read(), IsEmpty());
+  std::filesystem::create_directories(path("state/aspic"));
+  write_file(path("state/aspic/recent"), path("a.toml").string() + "\n");  // noted by an earlier version
+  EXPECT_THAT(recent.read(), IsEmpty());
 }
 
 }  // namespace

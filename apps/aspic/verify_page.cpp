@@ -143,6 +143,7 @@ std::vector<Figure> drawn(const Verification& result, const fs::path& folder) {
 void write_verification(const fs::path& folder, const std::vector<Verification>& results, const std::string& how) {
   const TemporaryFolder pictures;
   ReportPage page("What is verified", how);
+  for (const std::string& style : formulas_of("style")) page.formula(style);
   page.code(version_text());
   add_overview(page, results);
   bool draws = true;

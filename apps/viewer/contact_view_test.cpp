@@ -3,9 +3,11 @@
 
 #include <algorithm>
 
+#include "contact/barrier.h"
 #include "mesh/self_intersection.h"
 #include "viewer/recording_test.h"
 #include "viewer/session_test.h"
+#include "viewer/surface.h"
 
 namespace aspic::viewer {
 namespace {
@@ -117,13 +119,42 @@ TEST(ContactView, ScenesWithoutContactHaveNoContactPoints) {
   EXPECT_TRUE(page.obstacles().is_null());
 }
 
-TEST_F(RunRecording, HasObstaclesAndContactPressure) {
-  const Decoded recorded(
-      recording(run("run", "[[obstacle]]\nname = \"floor\"\nplane = { origin = [0, -0.001, 0] }\n")).text);
-  ASSERT_EQ(recorded.head["obstacles"].size(), 1U);
+// A plate that sinks onto the beam: contact points depend on the time of the obstacle.
+TEST_F(RunRecording, HasTheContactPointsOfTheRun) {
+  const std::filesystem::path directory = run("run", R"([[obstacle]]
+name = "floor"
+plane = { origin = [0, -0.001, 0] }
+[[obstacle]]
+name = "plate"
+shape = { box = { lower = [0.5, 0.205, 0], upper = [0.9, 0.3, 0.2], cells = [2, 2, 2] } }
+motion = { displacement = [0, "-0.1 * t", 0] }
+)");
+  const Decoded recorded(recording(directory).text);
+  ASSERT_EQ(recorded.head["obstacles"].size(), 2U);
   EXPECT_EQ(recorded.head["obstacles"][0]["name"], "floor");
-  const std::vector<float> ranges = recorded.array<float>("field.contact_pressure.range");
-  EXPECT_GT(*std::max_element(ranges.begin(), ranges.end()), 500);
+  const std::vector<float> at = recorded.array<float>("contact.at");
+  const std::vector<uint32_t> point = recorded.array<uint32_t>("contact.point");
+  Scene scene = load_scene(scene_of_run(directory));
+  size_t next = 0;
+  int of_bodies = 0;
+  for (int frame = 0; frame < recorded.frame_count(); ++frame) {
+    if (frame > 0) scene.simulation.step();
+    const std::vector<ContactPoint> live =
+        scene.simulation.model().contact->contact_points(scene.simulation.state().q, scene.simulation.obstacle_time());
+    ASSERT_EQ(recorded.head["frames"]["contacts"][frame], live.size()) << frame;
+    for (const ContactPoint& contact : live) {
+      EXPECT_NEAR(at[4 * next + 1], contact.position[1], 1e-6);
+      EXPECT_NEAR(at[4 * next + 3], contact.pressure, 1e-3 * contact.pressure + 1e-3);
+      EXPECT_EQ(point[next] == kNoVertex, contact.row < 0);
+      if (contact.row >= 0) {
+        ++of_bodies;
+        EXPECT_NEAR(recorded.positions(frame)[3 * point[next] + 1], contact.position[1], 1e-4);
+      }
+      ++next;
+    }
+  }
+  EXPECT_EQ(point.size(), next);
+  EXPECT_GT(of_bodies, 20);
   EXPECT_TRUE(Decoded(recording(run("free")).text).head["obstacles"].empty());
 }
 

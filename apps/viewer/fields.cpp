@@ -47,7 +47,7 @@ const std::vector<KnownField>& known_fields() {
                     int t) { return largest_stretch(deformation_gradient(view.simulation.model().mesh, t, view.x)); }},
       {.field = {"density", "density at rest", "kg/m^3"},
        .at_tet = [](const View& view, int t) { return view.simulation.model().density[t]; }},
-      {.field = {"quality", "shape of tets at rest (1: regular)", ""},
+      {.field = {"quality", "tet quality (1 = regular)", ""},
        .at_tet = [](const View& view, int t) { return mean_ratio(corners(view.simulation.model().mesh, t)); }}};
   return list;
 }

@@ -90,10 +90,12 @@ struct Frame {
   int index = 0;
   std::vector<float> x;                    // 3 per point
   std::vector<std::vector<float>> values;  // values of kMoving fields
+  std::vector<float> contacts;             // position and pressure of each contact point
+  std::vector<uint32_t> contact_points;    // recorded point of each contact point; kNoVertex: of an obstacle
 };
 
-const std::string kDisplacement = "displacement";  // computed from the positions
-const std::set<std::string> kMoving = {"von_mises", "energy_density", "det_F", "stretch", "contact_pressure"};
+const std::set<std::string> kDerived = {"displacement", "contact_pressure"};  // from positions and contact points
+const std::set<std::string> kMoving = {"von_mises", "energy_density", "det_F", "stretch"};
 
 std::vector<float> flat(const std::vector<Vec3d>& points) {
   std::vector<float> numbers;
@@ -153,10 +155,10 @@ class Recorder {
   void choose_fields() {
     const bool has_interior = positions_->are_of_model();
     for (const Field& field : fields_of(scene_.simulation.model())) {
-      if (field.name == "speed" || (!has_interior && field.name != kDisplacement)) continue;
+      if (field.name == "speed" || (!has_interior && field.name != "displacement")) continue;
       fields_.push_back(field);
       if (kMoving.contains(field.name)) moving_.push_back(field.name);
-      if (field.name != kDisplacement && !kMoving.contains(field.name)) fixed_.push_back(field.name);
+      if (!kDerived.contains(field.name) && !kMoving.contains(field.name)) fixed_.push_back(field.name);
     }
   }
 
@@ -170,14 +172,29 @@ class Recorder {
     std::vector<Frame> frames;
     for (const int index : indices) {
       const std::vector<double> x = positions_->frame(index);
-      Frame& frame = frames.emplace_back(Frame{index, {}, {}});
+      Frame& frame = frames.emplace_back(Frame{.index = index});
       for (const int v : body_.source)
         for (size_t k = 0; k < 3; ++k) frame.x.push_back(static_cast<float>(x[3 * static_cast<size_t>(v) + k]));
       for (const std::string& field : moving_) frame.values.push_back(values(field, x));
       if (fixed_values_.empty())
         for (const std::string& field : fixed_) fixed_values_.push_back(values(field, x));
+      if (positions_->are_of_model()) add_contacts(frame, x);
     }
     return frames;
+  }
+
+  // Contact points are recorded as they are: codes would lose pairs that barely touch.
+  void add_contacts(Frame& frame, std::span<const double> x) const {
+    const Barrier* contact = scene_.simulation.model().contact;
+    if (!contact) return;
+    const double time = known_.obstacle_times[static_cast<size_t>(frame.index)];
+    for (const ContactPoint& touching : contact->contact_points(x, time)) {
+      for (int k = 0; k < 3; ++k) frame.contacts.push_back(static_cast<float>(touching.position[k]));
+      frame.contacts.push_back(static_cast<float>(touching.pressure));
+      const auto point = std::lower_bound(body_.source.begin(), body_.source.end(), touching.row);
+      const bool is_recorded = point != body_.source.end() && *point == touching.row;
+      frame.contact_points.push_back(is_recorded ? static_cast<uint32_t>(point - body_.source.begin()) : kNoVertex);
+    }
   }
 
   std::string left_out(int frames) const {
@@ -195,6 +212,8 @@ class Recorder {
     ArrayPack pack;
     add_body(pack);
     const PositionRange range = add_motion(pack, frames, chosen);
+    std::vector<float> contacts;
+    std::vector<uint32_t> contact_points;
     Json head = {{"format", 1}};
     head["hello"] = hello();
     head["scenes"] = scene_messages(box_of(std::span<const float>(frames.front().x)), note);
@@ -212,9 +231,14 @@ class Recorder {
       const size_t index = static_cast<size_t>(frames[i].index);
       head["frames"]["step"].push_back(step_of_frame_[index]);
       head["frames"]["time"].push_back(known_.frame_times[index]);
+      head["frames"]["contacts"].push_back(frames[i].contact_points.size());
+      contacts.insert(contacts.end(), frames[i].contacts.begin(), frames[i].contacts.end());
+      contact_points.insert(contact_points.end(), frames[i].contact_points.begin(), frames[i].contact_points.end());
       if (model.contact && model.contact->has_moving_obstacle())
         head["frames"]["obstacles"].push_back(obstacles_json(model, known_.obstacle_times[index]));
     }
+    pack.add("contact.at", contacts);
+    pack.add("contact.point", contact_points);
     head["lower"] = range.lower.a;
     head["size"] = range.size().a;
     std::string text;

@@ -86,22 +86,38 @@ void PositionCode::add(std::span<const float> x) {
   last_ = std::move(codes);
 }
 
-void ValueCode::add(std::span<const float> values) {
-  float min = kInfinity, max = -kInfinity;
+ValueScale::ValueScale(std::span<const float> values) {
+  min = kInfinity, max = -kInfinity;
   for (const float value : values) {
     if (!std::isfinite(value)) continue;
     min = std::min(min, value);
     max = std::max(max, value);
   }
   if (min > max) min = max = 0;  // no finite value
-  ranges_.push_back(min);
-  ranges_.push_back(max);
-  const double size = double{max} - double{min};
-  std::vector<uint8_t> codes(values.size(), kCodeOfNoNumber);
-  for (size_t i = 0; i < values.size(); ++i) {
-    if (std::isfinite(values[i]))
-      codes[i] = static_cast<uint8_t>(size > 0 ? std::lround(kLargestValue * ((double{values[i]} - min) / size)) : 0);
-    bytes_.push_back(static_cast<uint8_t>(codes[i] - (last_.empty() ? 0 : last_[i])));
+  if (!(min < 0 && max > 0)) return;
+  const double step = (double{max} - double{min}) / (kLargestValue - 1);
+  const double zero = std::ceil(-double{min} / step);
+  min = static_cast<float>(-zero * step);
+  max = static_cast<float>((kLargestValue - zero) * step);
+}
+
+uint8_t ValueScale::code(float value) const {
+  if (!std::isfinite(value)) return kCodeOfNoNumber;
+  const double step = (double{max} - double{min}) / kLargestValue;
+  if (!(step > 0)) return 0;
+  const double code = std::round((double{value} - double{min}) / step), zero = std::round(-double{min} / step);
+  const double signed_code = code == zero && value != 0 ? zero + (value > 0 ? 1 : -1) : code;
+  return static_cast<uint8_t>(std::clamp(signed_code, 0.0, kLargestValue));
+}
+
+void ValueCode::add(std::span<const float> values) {
+  const ValueScale scale(values);
+  ranges_.push_back(scale.min);
+  ranges_.push_back(scale.max);
+  std::vector<uint8_t> codes;
+  for (const float value : values) {
+    codes.push_back(scale.code(value));
+    bytes_.push_back(static_cast<uint8_t>(codes.back() - (last_.empty() ? 0 : last_[codes.size() - 1])));
   }
   last_ = std::move(codes);
 }

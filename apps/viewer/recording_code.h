@@ -55,8 +55,16 @@ class PositionCode {
   std::vector<uint8_t> bytes_;
 };
 
-// Values as integers 0 .. 254 over the range of their frame, 255 for nonfinite values. Each frame stores the
-// differences to the previous frame, modulo 256.
+// The range of the values of a frame, with codes 0 .. 254 at even intervals and 255 for nonfinite values. If the range
+// contains zero, one code is exactly zero, and other values keep their sign.
+struct ValueScale {
+  float min = 0, max = 0;
+
+  explicit ValueScale(std::span<const float> values);
+  uint8_t code(float value) const;
+};
+
+// Values as codes over the range of their frame. Each frame stores the differences to the previous frame, modulo 256.
 class ValueCode {
  public:
   void add(std::span<const float> values);

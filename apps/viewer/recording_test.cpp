@@ -42,6 +42,21 @@ TEST(PositionRange, ExcludesFramesThatBlewUp) {
   EXPECT_EQ(code.bytes().size(), 3 * 2 * start.size());
 }
 
+TEST(ValueScale, CodesZeroExactlyAndKeepsSigns) {
+  const std::vector<float> values = {-3, -1e-6F, 0, 1e-6F, 1, 250, std::numeric_limits<float>::quiet_NaN()};
+  const ValueScale scale(values);
+  EXPECT_LE(scale.min, -3);
+  EXPECT_GE(scale.max, 250);
+  const double step = (double{scale.max} - scale.min) / 254, zero = std::round(-scale.min / step);
+  EXPECT_EQ(scale.code(0), zero);
+  EXPECT_NEAR(zero * step, -scale.min, 1e-5 * step);
+  EXPECT_LT(scale.code(-1e-6F), zero);
+  EXPECT_GT(scale.code(1e-6F), zero);
+  EXPECT_EQ(scale.code(values.back()), 255);
+  for (const float value : {-3.F, 0.F, 1.F, 250.F}) EXPECT_NEAR((scale.code(value) - zero) * step, value, step);
+  EXPECT_EQ(ValueScale(std::vector<float>{0, 5}).code(1e-9F), 1);
+}
+
 TEST_F(RunRecording, HasTheFieldsOfALiveSession) {
   const fs::path directory = run("run");
   const Decoded decoded(recording(directory).text);
@@ -56,8 +71,9 @@ TEST_F(RunRecording, HasTheFieldsOfALiveSession) {
     FieldValues().evaluate(field, {scene.simulation, x}, surface, live);
     const std::vector<double> values = decoded.values(field, 7);
     const std::vector<float> range = decoded.array<float>("field." + field + ".range");
+    const double step = 1.001 * (range[15] - range[14]) / 254;  // small values keep their sign
     for (size_t v = 0; v < live.size(); ++v)
-      ASSERT_NEAR(values[place[v]], live[v], (range[15] - range[14]) / 254 / 2 * 1.001) << field;
+      ASSERT_NEAR(values[place[v]], live[v], std::abs(live[v]) < step ? step : step / 2) << field;
   }
   EXPECT_EQ(decoded.array<float>("field.young")[0], 1e5f);
   const Json& fields = decoded.head["scenes"][0]["fields"];

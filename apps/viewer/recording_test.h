@@ -2,6 +2,7 @@
 #pragma once
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <cstring>
 #include <map>
 #include <optional>
@@ -92,7 +93,8 @@ class Decoded {
     for (size_t i = 0; i < n; ++i) {
       uint8_t code = 0;
       for (int f = 0; f <= frame; ++f) code = static_cast<uint8_t>(code + codes[n * f + i]);
-      values.push_back(range[2 * frame] + (range[2 * frame + 1] - range[2 * frame]) * code / 254);
+      const double min = range[2 * frame], step = (range[2 * frame + 1] - min) / 254, zero = std::round(-min / step);
+      values.push_back(zero >= 0 && zero <= 254 ? (code - zero) * step : min + code * step);
     }
     return values;
   }

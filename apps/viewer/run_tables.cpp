@@ -92,6 +92,7 @@ std::vector<StepRow> read_steps(const fs::path& file, int last_step, std::vector
     reader.read(report);
     if (report.step != static_cast<int>(steps.size())) fail_order(file, report.step);
     row.pin_work = report.pin_work;
+    row.load_work = report.load_work;
     for (const size_t column : potential_columns) report.potential.push_back(table.number(column));
     row.pins = pins;
     for (const std::string& pin : pins)

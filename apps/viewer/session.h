@@ -27,6 +27,7 @@ struct Lesson {
   std::string id, pages, title, claim, look;
   std::string question, answer;  // for the reader; empty: none
   std::string panel = "energy";  // "energy", "microscope", "landscape" or "functions"
+  bool is_log = false;           // logarithmic energies
   std::string function;          // JSON of a question for the functions panel; empty: none
   std::string missing;           // reason why it cannot be shown; empty: none
   std::filesystem::path scene;   // empty: the scene stays

@@ -58,6 +58,7 @@ Message hello(const std::vector<Lesson>& lessons, Role role) {
     Json json = {{"id", lesson.id},       {"pages", lesson.pages}, {"title", lesson.title},
                  {"claim", lesson.claim}, {"look", lesson.look},   {"panel", lesson.panel}};
     if (!lesson.question.empty()) json["question"] = lesson.question, json["answer"] = lesson.answer;
+    if (lesson.is_log) json["log"] = true;
     if (!lesson.function.empty()) json["function"] = Json::parse(lesson.function, nullptr, false);
     if (!lesson.missing.empty()) json["missing"] = lesson.missing;
     list.push_back(std::move(json));

@@ -57,6 +57,7 @@ Progress Side::complete(const StepReport& report) {
                                 .mouse_work = by_hand + std::exchange(hand_work_, 0),
                                 .probe_work = by_tip + std::exchange(indenter_work_, 0),
                                 .pin_work = report.pin_work - by_hand - by_tip,
+                                .load_work = report.load_work - by_hand - by_tip,
                                 .pins = pin_names(model()),
                                 .why = explain(simulation(), report)});
   is_blown_up_ = report.status == Status::undefined && !simulation().integrator().is_implicit;

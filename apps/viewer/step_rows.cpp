@@ -80,6 +80,7 @@ Json to_json(const StepRow& row) {
   message["mouse_work"] = row.mouse_work;
   message["probe_work"] = row.probe_work;
   message["pin_work"] = row.pin_work;  // without the work of mouse and probe
+  message["load_work"] = row.load_work;
   message["reactions"] = reactions(row);
   message["explanation"] = to_json(row.why);
   return message;

@@ -219,6 +219,8 @@ void bind_report(py::module_& m) {
       .def_property_readonly("potential", &potential_of, "Energy of each term of V by name [J].")
       .def_readonly("potential_total", &Report::potential_total, "[J]")
       .def_readonly("pin_work", &Report::pin_work, "[J]")
+      .def_readonly("load_work", &Report::load_work, "[J]")
+      .def_readonly("muscle_work", &Report::muscle_work, "[J]")
       .def_readonly("damping_loss", &Report::damping_loss, "[J]")
       .def_readonly("nonconservative_work", &Report::nonconservative_work,
                     "Work of pressures on open patches beyond the change of their potential [J].")

@@ -110,19 +110,26 @@ double Ledger::target_work(const StepTools& tools, int order, const State& end, 
   for (auto* v : {&early_, &late_}) v->assign(loads, 0.0);
   tools.E.set_potential_step(before);
   loads_before = add_load_energies(tools, start.q, -1, early_);
-  const double at_end = order > 1 ? add_load_energies(tools, end.q, -1, late_) : 0;
+  if (order > 1) add_load_energies(tools, end.q, -1, late_);
   tools.E.set_potential_step(after);
   tools.E.move_obstacles(tools.obstacle_end);
-  const double early = add_load_energies(tools, start.q, 1, early_) - loads_before;
-  const double late = order > 1 ? add_load_energies(tools, end.q, 1, late_) - at_end : 0;
+  add_load_energies(tools, start.q, 1, early_);
+  if (order > 1) add_load_energies(tools, end.q, 1, late_);
   if (const Barrier* contact = tools.model.contact) {
     Energy::Context before_step;
     before_step.time = tools.obstacle_start;
     loads_before += contact->value(start.q, before_step);
   }
   report.target_work.resize(loads);
-  for (size_t k = 0; k < loads; ++k) report.target_work[k] += order > 1 ? (early_[k] + late_[k]) / 2 : early_[k];
-  return order > 1 ? (early + late) / 2 : early;
+  double sum = 0;  // exactly zero if no load depends on the time
+  for (size_t k = 0; k < loads; ++k) {
+    const double work = order > 1 ? (early_[k] + late_[k]) / 2 : early_[k];
+    const bool is_muscle = tools.E.loads()[k].energy().name().starts_with("muscle");
+    report.target_work[k] += work;
+    (is_muscle ? report.muscle_work : report.load_work) += work;
+    sum += work;
+  }
+  return sum;
 }
 
 void Ledger::begin(const Model& model, std::span<const double> q) {

@@ -215,7 +215,8 @@ struct Simulation::Impl {
   void restore_start(const StepTools& with, double time, StepReport& report) {
     report.residual = report.residual_threshold = report.residual_round_off = 0;
     report.worst_vertex = -1;
-    report.pin_work = report.obstacle_work = report.nonconservative_work = 0;
+    report.pin_work = report.load_work = report.muscle_work = 0;
+    report.obstacle_work = report.nonconservative_work = 0;
     report.damping_loss = report.friction_loss = report.viscoelastic_loss = 0;
     report.friction_creep = report.friction_residual = 0;
     report.friction_pair.clear();

@@ -183,9 +183,12 @@ std::vector<StepField>& fields() {
        "energy of each term of V and of viscoelastic branches; a dead load has -f . x, not zero at rest",
        StepFieldType::potentials, kTable | kJson | kViewer},
       real<&R::potential_total>({"potential_total", "J", "sum of the potential energies"}, kTable | kFrame | kJson),
-      real<&R::pin_work>(
-          {"pin_work", "J", "work of moving pins, moving spring targets and time-dependent loads in this step"},
-          kMeasured),
+      real<&R::pin_work>({"pin_work", "J",
+                          "work of moving pins, moving spring targets, time-dependent loads and muscles in this step"},
+                         kMeasured),
+      optional(real<&R::load_work>(
+          {"load_work", "J", "share of moving spring targets and time-dependent loads in `pin_work`"}, kMeasured)),
+      optional(real<&R::muscle_work>({"muscle_work", "J", "share of muscles in `pin_work`"}, kMeasured)),
       optional(real<&R::obstacle_work>({"obstacle_work", "J", "work of moving obstacles"}, kMeasured)),
       optional(real<&R::nonconservative_work>(
           {"nonconservative_work", "J", "work of pressures on open patches beyond the change of their potential"},

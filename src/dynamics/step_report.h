@@ -81,6 +81,8 @@ struct StepReport : Work {  // work of all solves of the step and of this report
   std::vector<double> potential;
   double potential_total = 0;       // sum of `potential`
   double pin_work = 0;              // work of moving pins and moving targets in this step
+  double load_work = 0;             // share of moving spring targets and time-dependent loads in pin_work
+  double muscle_work = 0;           // share of muscles with changing activation in pin_work
   double obstacle_work = 0;         // work of moving obstacles on bodies, including friction, in this step
   std::vector<double> target_work;  // share of the moving targets of each of Model::loads
   double nonconservative_work = 0;  // work of pressures on open patches beyond the loss of their potential in this step

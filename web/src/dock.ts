@@ -21,6 +21,7 @@ export class Dock {
     private readonly root: HTMLElement,
     private readonly page: Page,
     private readonly panels: Panel[],
+    isClosed: boolean, // at first
   ) {
     const list = element("div", { role: "tablist", "aria-label": "Plots" });
     for (const panel of panels) list.append(this.makeTab(panel));
@@ -45,7 +46,7 @@ export class Dock {
       restore: (saved) => this.restore(saved),
     });
     this.show(panels[0] ?? null);
-    whenNarrow((narrow) => this.show(narrow ? null : this.last));
+    whenNarrow(isClosed, (narrow) => this.show(narrow ? null : this.last));
   }
 
   show(panel: Panel | null): void {

@@ -38,7 +38,7 @@ function makePathForm(store: Store, load: (scene: string) => Promise<void>): HTM
   const path = element("input", { type: "text", required: true, spellcheck: "false", size: "50" });
   path.value = store.side("a")?.scene.path ?? "";
   const submit = element("button", { type: "submit", class: "primary" }, "Load");
-  const form = element("form", {}, labeled("Scene, mesh or run, a path on the machine of the program", path), submit);
+  const form = element("form", {}, labeled("Path on the computer that runs Aspic", path), submit);
   form.addEventListener("submit", (event) => {
     event.preventDefault();
     void load(path.value.trim());

@@ -1,4 +1,4 @@
-// First words to a reader who opens the page of ./run site: they go with the first touch or key.
+// First words to a reader who opens a simulation: they go with the first touch or key.
 import { element } from "./dom";
 
 export function makeInvitation(): HTMLElement {

@@ -33,7 +33,7 @@ export class Judge {
     this.running?.stop();
     this.running = null;
     const title = "Runs the computation of aspic lecture in this page and compares its numbers with their bounds";
-    const start = button({ text: "Judge this page by numbers", title }, () => void this.run(lesson));
+    const start = button({ text: "Check this page's claim", title }, () => void this.run(lesson));
     this.root.replaceChildren(...(hasEngine() ? [start] : []));
   }
 

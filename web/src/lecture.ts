@@ -170,13 +170,14 @@ export class Lecture {
     this.list.querySelector("[aria-current]")?.scrollIntoView({ block: "nearest" });
     document.scrollingElement?.scrollTo(0, 0); // on a phone the whole page scrolls; show the view first
     this.page.emit("panel", lesson.panel);
+    this.page.emit("scale", lesson.log ? "log" : "linear");
     if (lesson.function) this.showFunction(lesson.function);
   }
 
   private showReplay(replaying: boolean, playing: boolean): void {
-    const paused = "The recorded mouse is paused: press Space to continue, or drag the body to take over.";
-    const shown = playing ? "A recorded mouse plays. Drag the body to take over." : paused;
-    const text = replaying ? shown : "The recorded mouse has ended: the body is yours.";
+    const paused = "The recorded drag is paused: press Space to continue, or drag to take over.";
+    const shown = playing ? "Replaying a recorded drag. Drag to take over." : paused;
+    const text = replaying ? shown : "The recorded drag has ended. Drag the body yourself.";
     if (replaying === this.replaying && (!replaying || text === this.replay.textContent)) return;
     this.replaying = replaying;
     this.replay.hidden = false;

@@ -52,16 +52,17 @@ function buildPage(store: Store, page: Page, sharing: Sharing | null): void {
   showNotices(area("messages"), store, page);
   const theme = new Theme(page);
   const display = new Display();
+  suitScenes(store, display);
   const views = new Views(area("views"), store, page, display);
   const functions = new FunctionsPanel(store, page);
   const chosen = new Chosen(store, page);
   const panels: Panel[] = [new EnergyPanel(store, page), new MicroscopePanel(store, page, chosen)];
   if (store.source.live) panels.push(new LandscapePanel(store, page, chosen), functions, new CapturePanel(store, page, display));
   panels.push(makeReportPanel(store, page));
-  const sidebar = new Sidebar(area("right"), page);
+  const sidebar = new Sidebar(area("right"), page, store.source.live);
   addDisplayControls(new GUI({ container: sidebar.body, title: "View" }), display, page, views.all);
   new Settings(sidebar.body, store, page);
-  new Dock(area("dock"), page, panels);
+  new Dock(area("dock"), page, panels, store.source.live);
   const lecture = new Lecture(area("left"), store, page, (question) => functions.open(question));
   const video = new Video(store, page, views.draw);
   area("views").append(video.indicator);
@@ -69,6 +70,17 @@ function buildPage(store: Store, page: Page, sharing: Sharing | null): void {
   const live = store.source.live ? [makeCompareButton(store, page), lecture.opener] : [];
   makeToolbar(area("toolbar"), store, page, theme, [makeRole(store), ...live, files, sidebar.opener]);
   listenToKeys(page);
+}
+
+// Wires and pins hide fibres, so scenes with fibres open without them.
+function suitScenes(store: Store, display: Display): void {
+  let withFibres = ""; // name of the scene
+  const suit = (name: string): void => {
+    if ((withFibres !== "") !== (name !== "")) display.change({ wires: name === "", pins: name === "" });
+    withFibres = name;
+  };
+  store.on("fibres", () => store.name !== withFibres && suit(store.name));
+  store.on("scene", (side) => side === "a" && store.name !== withFibres && withFibres !== "" && suit(""));
 }
 
 function openPage(source: Source, html: string | null = null): void {
@@ -87,8 +99,8 @@ function openPage(source: Source, html: string | null = null): void {
 function openLive(): void {
   if (hasEngine()) {
     openPage(new LiveSource(embeddedEngine()), `<!doctype html>\n${document.documentElement.outerHTML}`);
-    if (location.hash === "") area("views").append(makeInvitation());
   } else openPage(new LiveSource(overSocket(sessionAddress())));
+  if (location.hash === "") area("views").append(makeInvitation());
 }
 
 registerColors();

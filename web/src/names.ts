@@ -1,9 +1,11 @@
-// Display names of the keys in scenes and reports. Messages contain the keys.
+// Display names of the keys in scenes and reports.
+import type { Setting } from "./protocol";
 
 // Values whose display name is not the key with a capital letter.
 const kChoices: Record<string, string> = {
   // Material models.
   neo_hookean: "Neo-Hookean",
+  neo_hookean_fibres: "Neo-Hookean with fibres",
   stable_neo_hookean: "Stable neo-Hookean",
   neo_hookean_log: "Neo-Hookean, log J",
   neo_hookean_log_j2: "Neo-Hookean, log J, quadratic J",
@@ -42,7 +44,7 @@ const kChoices: Record<string, string> = {
   accelerated: "Accelerated flight",
   scale: "Force scale",
   decrement: "Newton decrement",
-  textbook: "Textbook (Armijo)",
+  textbook: "Textbook",
   slide: "As on the slide",
 };
 
@@ -69,6 +71,43 @@ const kStatuses: Record<string, string> = {
 
 export function statusName(status: string): string {
   return kStatuses[status] ?? status.replaceAll("_", " ");
+}
+
+// "Young's modulus" of the label "Young's modulus E".
+const withoutSymbol = (label: string): string => label.replace(/ (\S|\S+_\S+)$/, "");
+
+// Message about a refused value of a setting, without the syntax of scenes and the command line.
+export function refusalText(why: string, { label }: Pick<Setting, "label">): string {
+  const limit = /must be ([^()]*?)\s*(?:\(|$)/.exec(why)?.[1];
+  if (limit === undefined) return `${withoutSymbol(label)}: ${why.replace(/^--set .*?: /, "")}`;
+  return `${withoutSymbol(label)} must be ${limit === "> 0" ? "positive" : limit}.`;
+}
+
+// The place and the remedy of an explanation: what is set, and what to choose instead, by the names of the settings.
+export function settingText(text: string, settings: readonly Pick<Setting, "key" | "label">[], isRemedy: boolean): string {
+  const [, key = "", quoted, plain] = /^([\w.]+) = (?:"(\w+)"|([-+.\w]+))$/.exec(text) ?? [];
+  const value = quoted ?? plain;
+  const label = settings.find((setting) => setting.key === key)?.label;
+  if (value === undefined || !label) return text;
+  if (key === "solver.line_search.test" && value === "none") return "Line search is off";
+  const name = quoted === undefined ? value : `"${choiceName(key, value)}"`;
+  if (!isRemedy) return `${label} is ${name}`;
+  return quoted === undefined ? `Set ${label} to ${name}` : `Choose ${name}`;
+}
+
+type Explanation = { cause: string; place: string; remedy: string };
+
+// The explanation of a failed step by the names of the settings, in sentences.
+export function explanationText({ cause, place, remedy }: Explanation, settings: readonly Pick<Setting, "key" | "label">[]): string[] {
+  return [cause, settingText(place, settings, false), settingText(remedy, settings, true)].map(sentence).filter((text) => text !== "");
+}
+
+// Starts with a capital, unless the text starts with a key of a scene, and ends with a period.
+export function sentence(text: string): string {
+  const trimmed = text.trim();
+  if (trimmed === "") return "";
+  const isKey = /^\S*[._=]\S/.test(trimmed);
+  return (isKey ? trimmed[0]! : trimmed[0]!.toUpperCase()) + trimmed.slice(1) + (/[.!?]$/.test(trimmed) ? "" : ".");
 }
 
 // Text without Markdown: `code`, **strong**, [link](target).

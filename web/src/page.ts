@@ -19,6 +19,7 @@ interface Events {
   chosen: ChosenIteration; // iteration in the microscope
   highlight: Highlight[]; // highlights on the body of side a
   panel: Panel["name"]; // the panel to open in the dock
+  scale: "linear" | "log"; // of the energies
   notice: { text: string; kind: "info" | "error" };
   cleared: void; // clears notices about the previous scene
 }
@@ -37,7 +38,7 @@ export function fieldsOf(saved: unknown): Record<string, unknown> {
 export interface Shortcut {
   key: string; // KeyboardEvent.key, with "Shift+" before it if needed: " ", "s", "Shift+R", "1"
   does: string; // description in the list of shortcuts
-  group: "Simulation" | "Camera" | "Display" | "Panels" | "File";
+  group: "Simulation" | "Camera" | "Display" | "Panels" | "File" | "Capture";
   run: () => void;
 }
 

@@ -1,5 +1,7 @@
 // Preset comparisons: overrides of side b relative to the scene of side a.
+import { choiceName } from "./names";
 import type { Scene, Setting, SettingValue } from "./protocol";
+import { valueText } from "./view/values";
 
 export interface Preset {
   title: string;
@@ -60,6 +62,21 @@ export function presets(scene: Scene): Preset[] {
   }
   all.push(choice(scene, "Another material", "material.model", "corotated", "neo_hookean"));
   return all;
+}
+
+// Name of side a: the values of the settings that side b changes.
+export function nameOfA(a: Scene, b: Scene): string {
+  const changed = a.settings.filter(({ key, value }) => {
+    const twin = b.settings.find((setting) => setting.key === key);
+    return twin && JSON.stringify(twin.value) !== JSON.stringify(value);
+  });
+  return changed.slice(0, 2).map(nameOfValue).join(", ");
+}
+
+function nameOfValue({ key, label, value, unit }: Setting): string {
+  if (typeof value === "string") return kWords[value] ?? choiceName(key, value);
+  const symbol = / (\S|\S+_\S+)$/.exec(label)?.[1] ?? label;
+  return `${symbol} = ${typeof value === "number" && unit !== "" ? valueText(value, unit) : toml(value)}`;
 }
 
 // One override per line; empty lines are ignored.

@@ -117,6 +117,7 @@ export interface Lesson {
   question?: string; // for the reader
   answer?: string;
   panel: PanelName; // panel to open
+  log?: boolean; // logarithmic energies
   function?: FunctionQuestion; // question for the functions panel
   missing?: string; // reason why it cannot be shown
 }

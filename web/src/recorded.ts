@@ -13,7 +13,6 @@ export interface Pulse {
 }
 const kScreen: Pulse = { now: () => performance.now(), next: (callback) => requestAnimationFrame(callback) };
 
-const kContactPressure = "contact_pressure"; // name of the field
 const kUnchangeable = "a recorded run cannot be changed; aspic view SCENE runs it live";
 const kNotRecorded = "a recorded run does not contain this; aspic view SCENE computes it";
 
@@ -244,17 +243,8 @@ export class RecordedSource implements Source {
       values,
       min,
       max,
-      contacts: this.contacts(positions),
+      contacts: recording.contacts(this.frame).at,
     };
-  }
-
-  // The vertices with contact pressure, as in Picture.
-  private contacts(positions: Float32Array): Float32Array {
-    const { fields } = this.surface.scene;
-    if (!fields.some(({ name }) => name === kContactPressure)) return new Float32Array(0);
-    const pressure = this.opened().values(kContactPressure, this.frame, this.surface, positions);
-    const touching = [...pressure.keys()].filter((vertex) => pressure[vertex] > 0);
-    return Float32Array.from(touching.flatMap((vertex) => [...vectorAt(positions, vertex), pressure[vertex]]));
   }
 
   private sendState(): void {

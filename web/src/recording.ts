@@ -12,7 +12,8 @@ export interface RecordingHead {
   fibres?: number[][]; // lines of each surface, as in the message "fibres"
   toml: string; // the complete scene
   steps: StepRow[];
-  frames: { step: number[]; time: number[]; obstacles?: Obstacle[][] }; // obstacles: of each frame, if any move
+  // contacts: numbers of contact points; obstacles: of each frame, if any move
+  frames: { step: number[]; time: number[]; contacts: number[]; obstacles?: Obstacle[][] };
   lower: Vec3; // bounding box of all positions of all frames
   size: Vec3;
 }
@@ -27,18 +28,22 @@ export interface RecordedSurface {
   place: Uint32Array;
 }
 
-// Code of a value that is not a number. Other codes are 0 to 254 within the range of their frame.
+// Code of a value that is not a number. Other codes are 0 to 254 within the range of their frame, in which zero has a
+// code of its own.
 const kNoNumber = 255;
+const kLargestCode = 254;
 
 export class Recording extends Pack<RecordingHead> {
   readonly surfaces: RecordedSurface[];
   readonly pointCount: number;
+  private readonly rest: Float32Array;
   private readonly codes: Uint16Array; // 3 codes per point and frame
 
   constructor(bytes: ArrayBuffer) {
     super(bytes);
     if (this.head.format !== 1) throw new Error(`the recording has format ${String(this.head.format)}; this page reads format 1`);
     this.pointCount = this.floats("point.rest").length / 3;
+    this.rest = this.roundedRest();
     this.codes = unpredicted(this.array("positions") as Uint8Array, 3 * this.pointCount);
     for (const [name, stored] of this.arrays) if (name.startsWith("field.") && stored instanceof Uint8Array) this.add(stored);
     this.surfaces = this.head.scenes.map((scene) => this.surface(scene));
@@ -54,27 +59,57 @@ export class Recording extends Pack<RecordingHead> {
 
   // Positions, 3 coordinates per point [m].
   positions(frame: number): Float32Array {
-    const { lower, size } = this.head;
     const n = 3 * this.pointCount;
-    const x = new Float32Array(n);
+    return this.decoded((i) => this.codes[frame * n + i]);
+  }
+
+  private decoded(code: (i: number) => number): Float32Array {
+    const { lower, size } = this.head;
+    const x = new Float32Array(3 * this.pointCount);
     for (let axis = 0; axis < 3; ++axis) {
       const scale = size[axis] / 65535;
-      for (let i = axis; i < n; i += 3) x[i] = lower[axis] + scale * this.codes[frame * n + i];
+      for (let i = axis; i < x.length; i += 3) x[i] = lower[axis] + scale * code(i);
     }
     return x;
   }
 
+  // Rest positions rounded like the positions, so that points at rest have no displacement.
+  private roundedRest(): Float32Array {
+    const { lower, size } = this.head;
+    const rest = this.floats("point.rest");
+    return this.decoded((i) => (size[i % 3] > 0 ? Math.round(65535 * ((rest[i] - lower[i % 3]) / size[i % 3])) : 0));
+  }
+
+  // Contact points as in Picture, with the recorded point that each one belongs to; 0xffffffff: none.
+  contacts(frame: number): { at: Float32Array; point: Uint32Array } {
+    const counts = this.head.frames.contacts;
+    const first = counts.slice(0, frame).reduce((sum, count) => sum + count, 0);
+    const end = first + counts[frame];
+    return { at: this.floats("contact.at").slice(4 * first, 4 * end), point: this.indices("contact.point").subarray(first, end) };
+  }
+
   // Values of a field at the vertices of a surface; NaN where there is none.
   values(field: string, frame: number, surface: RecordedSurface, positions: Float32Array): Float32Array {
-    if (field === "displacement") return distances(positions, surface.geometry.rest);
+    if (field === "displacement") return distances(positions, carried(surface, this.rest));
+    if (field === "contact_pressure") return this.pressure(frame, surface);
     const stored = this.array(`field.${field}`);
     if (stored instanceof Float32Array) return Float32Array.from(surface.place, (place) => stored[place]);
     const [min, max] = this.floats(`field.${field}.range`).subarray(2 * frame, 2 * frame + 2);
+    const step = (max - min) / kLargestCode;
+    const zero = Math.round(-min / step);
+    const value = (code: number): number => (zero >= 0 && zero <= kLargestCode ? (code - zero) * step : min + code * step);
     const first = (stored.length / this.frameCount) * frame;
     return Float32Array.from(surface.place, (place) => {
       const code = stored[first + place];
-      return code === kNoNumber ? NaN : min + ((max - min) * code) / 254;
+      return code === kNoNumber ? NaN : value(code);
     });
+  }
+
+  private pressure(frame: number, surface: RecordedSurface): Float32Array {
+    const { at, point } = this.contacts(frame);
+    const ofPoints = new Float32Array(3 * this.pointCount); // along the first axis
+    point.forEach((touching, i) => touching < this.pointCount && (ofPoints[3 * touching] = at[4 * i + 3]));
+    return carried(surface, ofPoints).filter((_, i) => i % 3 === 0);
   }
 
   // Adds a frame, stored as its difference to the previous one modulo 256.

@@ -15,6 +15,7 @@ export class Sidebar {
   constructor(
     private readonly root: HTMLElement,
     page: Page,
+    isClosed: boolean, // at first
   ) {
     const divider = makeDivider({
       label: "Width of the settings",
@@ -26,7 +27,7 @@ export class Sidebar {
     root.append(divider, this.body);
     const shortcut = { key: "g", does: "Settings", group: "Panels", run: () => this.hide(!root.hidden) } as const;
     this.opener = shortcutButton(page, shortcut, { text: "Settings" });
-    whenNarrow((narrow) => this.hide(narrow));
+    whenNarrow(isClosed, (narrow) => this.hide(narrow));
     page.keep("settings", {
       save: () => ({ hidden: root.hidden, width: root.offsetWidth }),
       restore: (saved) => this.restore(saved),

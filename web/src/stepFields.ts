@@ -18,7 +18,9 @@ export interface StepFields {
   friction_creep: MaybeNumber; // largest slip of a sticking contact in this step [m]
   friction_residual: MaybeNumber; // change of friction by the last update of normal forces [N]
   potential: MaybeNumber[]; // energy of each term of V and of viscoelastic branches; a dead load has -f . x, not zero at rest [J]
-  pin_work: MaybeNumber; // work of moving pins, moving spring targets and time-dependent loads in this step [J]
+  pin_work: MaybeNumber; // work of moving pins, moving spring targets, time-dependent loads and muscles in this step [J]
+  load_work: MaybeNumber; // share of moving spring targets and time-dependent loads in pin_work [J]
+  muscle_work: MaybeNumber; // share of muscles in pin_work [J]
   obstacle_work: MaybeNumber; // work of moving obstacles [J]
   nonconservative_work: MaybeNumber; // work of pressures on open patches beyond the change of their potential [J]
   damping_loss: MaybeNumber; // energy dissipated by damping and friction [J]
@@ -52,6 +54,8 @@ export const kUnknownStep: StepFields = {
   friction_residual: null,
   potential: [],
   pin_work: null,
+  load_work: null,
+  muscle_work: null,
   obstacle_work: null,
   nonconservative_work: null,
   damping_loss: null,

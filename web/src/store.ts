@@ -1,5 +1,6 @@
 // State of the page: the last message of each kind. Panels read it and subscribe to changes.
 import { Emitter } from "./emitter";
+import { nameOfA } from "./presets";
 import type { Capture, Geometry, Hello, Obstacle, Picture, Scene, SideName, State, StepRow } from "./protocol";
 import type { Incoming, Source } from "./source";
 
@@ -65,7 +66,9 @@ export class Store extends Emitter<Events> {
   }
 
   label(name: SideName): string {
-    return this.sides[name]?.scene.label || name.toUpperCase();
+    const { a, b } = this.sides;
+    const ofA = name === "a" && a && b ? nameOfA(a.scene, b.scene) : "";
+    return this.sides[name]?.scene.label || ofA || name.toUpperCase();
   }
 
   // "A: its label", or "A" without one.

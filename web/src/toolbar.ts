@@ -1,8 +1,8 @@
 // Toolbar: time controls, and buttons that open everything else.
 import { button, element, icon, type ButtonOptions } from "./dom";
-import { statusName } from "./names";
+import { explanationText, statusName } from "./names";
 import type { Page } from "./page";
-import type { SideName, SideState, State } from "./protocol";
+import type { SideName, State } from "./protocol";
 import { openShortcutList, shortcutButton } from "./shortcuts";
 import type { Store } from "./store";
 import type { Theme } from "./theme";
@@ -13,6 +13,7 @@ const kSpeeds = [0.05, 0.1, 0.25, 0.5, 1, 2, 5, 10];
 export function makeToolbar(root: HTMLElement, store: Store, page: Page, theme: Theme, tools: HTMLElement[]): void {
   root.append(
     makeTransport(store, page),
+    makeName(store),
     makeTimeline(store, page),
     makeStatus(store),
     element("div", { class: "group" }, ...tools, ...makeReader(page, theme)),
@@ -21,6 +22,14 @@ export function makeToolbar(root: HTMLElement, store: Store, page: Page, theme: 
     const title = `${store.name} · ${state.playing ? "playing" : `paused, ${placeText(state)}`} · Aspic`;
     if (document.title !== title) document.title = title;
   });
+}
+
+function makeName(store: Store): HTMLElement {
+  const name = element("strong", { class: "scene-name" });
+  store.on("scene", () => {
+    name.textContent = name.title = store.name;
+  });
+  return name;
 }
 
 function makeTransport(store: Store, page: Page): HTMLElement {
@@ -39,7 +48,7 @@ function makeTransport(store: Store, page: Page): HTMLElement {
   let played = false;
   store.on("state", (state) => {
     const { playing } = state;
-    if ((wanted ?? played) && !playing) explainStop(state, page);
+    if ((wanted ?? played) && !playing) explainStop(state, store, page);
     played = playing;
     if (play.getAttribute("aria-pressed") === String(playing)) return;
     play.replaceChildren(icon(playing ? "pause" : "play"));
@@ -54,11 +63,12 @@ function makeTransport(store: Store, page: Page): HTMLElement {
 }
 
 // Explains a stop that nobody requested, such as an explicit scheme that blew up.
-function explainStop(state: State, page: Page): void {
-  const words = state.a.words ?? state.b?.words;
+function explainStop(state: State, store: Store, page: Page): void {
+  const name = state.a.words ? "a" : "b";
+  const words = state[name]?.words;
   if (!words) return;
-  const who = state.b ? (state.a.words ? "A stopped" : "B stopped") : "Stopped";
-  page.notice(`${who}: ${words.cause}; ${words.place}. Remedy: ${words.remedy}`, "error");
+  const who = state.b ? `${store.title(name)} stopped` : "Stopped";
+  page.notice(`${who}. ${explanationText(words, store.side(name)?.scene.settings ?? []).join(" ")}`, "error");
 }
 
 function makeSpeed(store: Store): HTMLElement {
@@ -87,8 +97,8 @@ function makeStatus(store: Store): HTMLElement {
   const chips = { a: makeChip(), b: makeChip() };
   store.on("state", (state) => {
     rate.textContent = state.rate > 0 ? `${Number(state.rate.toPrecision(2))}x real time` : "";
-    showChip(chips.a, state.a, failed(store, "a"), state.b ? "A: " : "");
-    showChip(chips.b, state.b, failed(store, "b"), "B: ");
+    showChip(chips.a, store, "a");
+    showChip(chips.b, store, "b");
   });
   return element("div", { class: "group status" }, chips.a, chips.b, rate);
 }
@@ -100,18 +110,19 @@ function failed(store: Store, name: SideName): boolean {
   return row?.converged === false;
 }
 
-function showChip(chip: HTMLButtonElement, side: SideState | null, bad: boolean, before: string): void {
+function showChip(chip: HTMLButtonElement, store: Store, name: SideName): void {
+  const side = store.state?.[name] ?? null;
   chip.hidden = !side || side.status === "";
   if (!side) return;
-  const words = side.words;
-  const text = `${before}${statusName(side.status)}`;
+  const bad = failed(store, name);
+  const text = `${store.state?.b ? `${name.toUpperCase()}: ` : ""}${statusName(side.status)}`;
   const plain = bad ? "The last step did not converge." : "The last step converged.";
-  const tip = words ? `${words.cause}\n${words.place}\n${words.remedy}` : plain;
+  const tip = side.words ? explanationText(side.words, store.side(name)?.scene.settings ?? []).join("\n") : plain;
   if (chip.dataset.tip === tip && chip.textContent === text) return;
   chip.textContent = text;
   chip.dataset.tip = tip;
   chip.setAttribute("aria-label", `Last step: ${text}. ${tip}`);
-  chip.classList.toggle("bad", bad || words !== null);
+  chip.classList.toggle("bad", bad || side.words !== null);
 }
 
 function makeReader(page: Page, theme: Theme): HTMLElement[] {

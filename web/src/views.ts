@@ -36,7 +36,10 @@ export class Views {
     });
 
   private update(side: SideName): void {
-    if (this.store.side(side) && !this.shown.has(side)) this.shown.set(side, this.make(side));
+    if (this.store.side(side) && !this.shown.has(side)) {
+      this.shown.set(side, this.make(side));
+      this.display.change({}); // comparisons have further colors
+    }
     this.showLabels();
   }
 
@@ -61,6 +64,7 @@ export class Views {
     shown?.view.dispose();
     shown?.frame.remove();
     this.shown.delete(side);
+    this.display.change({});
     this.showLabels();
   }
 }

@@ -1,6 +1,7 @@
 import assert from "node:assert/strict";
+import { readFileSync } from "node:fs";
 import { test } from "node:test";
-import { balanceText, calmRange, explosionText, Ledger, ledgerColumns } from "../src/plots/ledger";
+import { balanceText, calmRange, CurveColors, explosionText, Ledger, ledgerColumns } from "../src/plots/ledger";
 import { stepRow } from "./rowsOfSteps";
 
 const potentials = ["elasticity", "gravity"];
@@ -114,9 +115,35 @@ test("zero columns are hidden until nonzero", () => {
   assert.deepEqual(ledger.used(), ["potential_elasticity", "potential_total", "total", "balance"]);
 });
 
-test("legend colors are distinct", () => {
-  const columns = ledgerColumns(Array.from({ length: 30 }, (_, i) => `term_${i}`));
-  assert.equal(new Set(columns.map(({ color }) => color)).size, columns.length);
+// Coordinates in OKLab, where distances are differences that people see.
+function lab(hex: string): number[] {
+  const [r, g, b] = [1, 3, 5].map((i) => parseInt(hex.slice(i, i + 2), 16) / 255).map((c) => (c <= 0.04045 ? c / 12.92 : ((c + 0.055) / 1.055) ** 2.4));
+  const l = Math.cbrt(0.41222147 * r! + 0.53633254 * g! + 0.05144599 * b!);
+  const m = Math.cbrt(0.2119035 * r! + 0.68069955 * g! + 0.10739696 * b!);
+  const s = Math.cbrt(0.08830246 * r! + 0.28171884 * g! + 0.6299787 * b!);
+  return [0.21045426 * l + 0.79361779 * m - 0.00407205 * s, 1.9779985 * l - 2.4285922 * m + 0.4505937 * s, 0.02590404 * l + 0.78277177 * m - 0.80867577 * s];
+}
+
+test("no two curves share a family of colors", () => {
+  const css = readFileSync(`${import.meta.dirname}/../src/style.css`, "utf8");
+  const colors = new CurveColors();
+  const keys = ledgerColumns(["a", "b", "c", "d"]).map(({ key }) => key).filter((key) => !/probe|load|muscle|obstacle/.test(key));
+  const names = keys.map((key) => colors.of(key).replace(/(\d+)/, "-$1"));
+  assert.deepEqual(keys.map((key) => colors.of(key).replace(/(\d+)/, "-$1")), names, "the same at each call");
+  for (const theme of [1, 2]) {
+    const drawn = names.map((name) => lab(css.match(new RegExp(`--${name}: light-dark\\((#\\w+), (#\\w+)\\)`))![theme]!));
+    drawn.forEach((p, i) => drawn.slice(0, i).forEach((q, j) => assert.ok(Math.hypot(...p.map((x, c) => x - q[c]!)) > 0.08, `${names[i]} and ${names[j]}`)));
+  }
+});
+
+test("works of pins, loads and muscles are apart", () => {
+  const ledger = new Ledger(potentials);
+  ledger.update([stepRow({ kinetic: 1, potential: [1, 1], pin_work: 0.3 + 1e-17, load_work: 0.1, muscle_work: 0.2 })], 0);
+  assert.deepEqual(["load_work", "muscle_work"].map((key) => at(ledger, key).at(-1)), [0.1, 0.2]);
+  assert.ok(!ledger.used().includes("pin_work"), "round-off is no work of pins");
+  ledger.update([stepRow({ kinetic: 1, potential: [1, 1], pin_work: 0.5, load_work: 0.1, muscle_work: 0.2 })], 0);
+  assert.ok(Math.abs(at(ledger, "pin_work").at(-1)! - 0.2) < 1e-15 && ledger.used().includes("pin_work"));
+  assert.ok(Math.abs(at(ledger, "balance").at(-1)! - 2.5) < 1e-12);
 });
 
 test("an explosion is no flat balance", () => {

@@ -15,7 +15,8 @@ if (!findChromium()) throw new Error("there is no Chromium (Debian: apt-get inst
 let program = null;
 async function startProgram(scene, more = []) {
   program?.kill("SIGINT");
-  const child = spawn(aspic, ["view", join(root, scene), "--no-browser", ...more]);
+  const env = { ...process.env, XDG_STATE_HOME: folder }; // isolated from this user's list of recent scenes
+  const child = spawn(aspic, ["view", join(root, scene), "--no-browser", ...more], { env });
   program = child;
   return new Promise((found, failed) => {
     let output = "";

@@ -37,6 +37,7 @@ const kScene = {
   fields: [
     { ...kField, name: "displacement", label: "displacement" },
     { ...kField, name: "stress", label: "stress" },
+    { ...kField, name: "signed", label: "signed" },
     { ...kField, name: "young", label: "E" },
   ],
 } as unknown as Scene;
@@ -47,7 +48,7 @@ function recordingText(hasContact = false): string {
   const pressure = { ...kField, name: "contact_pressure", label: "contact pressure", unit: "Pa" };
   const scene = hasContact ? { ...kScene, fields: [...kScene.fields, pressure] } : kScene;
   const arrays: [string, "u8" | "u32" | "f32", Uint8Array | Uint32Array | Float32Array][] = [
-    ["point.rest", "f32", new Float32Array(9)],
+    ["point.rest", "f32", Float32Array.of(0.00003, 0, 0, 0, 0, 0, 0, 0, 0)], // rounds to the first code
     ["point.mass", "f32", Float32Array.of(1, 2, 3)],
     ["point.pinned", "u8", Uint8Array.of(0, 1, 0)],
     ["cage.rest", "f32", new Float32Array(9)],
@@ -60,8 +61,10 @@ function recordingText(hasContact = false): string {
     ["field.stress", "u8", Uint8Array.of(0, 254, 0, 0, 255 - 0, 1, 0, 0, 0, 0)],
     ["field.stress.range", "f32", Float32Array.of(0, 10, 0, 10, 0, 20, 0, 20, 0, 20)],
     ["field.young", "f32", Float32Array.of(5, 6)],
-    ["field.contact_pressure", "u8", Uint8Array.of(0, 0, 0, 254, 0, 0, 0, 0, 0, 0)],
-    ["field.contact_pressure.range", "f32", Float32Array.of(0, 0, 0, 50, 0, 50, 0, 50, 0, 50)],
+    ["field.signed", "u8", Uint8Array.of(...[4, 5, 0, 0, 0, 0, 0, 0, 0, 0])],
+    ["field.signed.range", "f32", Float32Array.from(Array.from({ length: kFrames }, () => [-4 * 0.3, 250 * 0.3]).flat())],
+    ["contact.at", "f32", Float32Array.of(1, 2, 3, 50, 4, 5, 6, 60, 7, 8, 9, 70)],
+    ["contact.point", "u32", Uint32Array.of(1, 0xffffffff, 2)],
   ];
   let at = 0;
   const blocks: Uint8Array[] = [];
@@ -82,7 +85,7 @@ function recordingText(hasContact = false): string {
     obstacles: hasContact ? [kFloor] : [],
     toml: "name = 1\n",
     steps: all,
-    frames: { step: [0, 10, 20, 30, 40], time: [0, 0.1, 0.2, 0.3, 0.4] },
+    frames: { step: [0, 10, 20, 30, 40], time: [0, 0.1, 0.2, 0.3, 0.4], contacts: [0, 2, 1, 0, 0] },
     lower: [0, 0, 0],
     size: [kSize, kSize, kSize],
     arrays: list,
@@ -252,8 +255,25 @@ test("recordings with contact have obstacles and points", async () => {
   assert.ok(sent?.kind === "obstacles");
   assert.deepEqual(sent.obstacles, [kFloor]);
   assert.equal(reader.picture.contacts.length, 0, "nothing touches at the start");
+  await reader.source.request({ do: "color", field: "contact_pressure" });
+  reader.source.ready();
   await reader.source.request({ do: "step" });
   reader.source.ready();
-  const { contacts, positions } = reader.picture;
-  assert.deepEqual([...contacts], [...positions.slice(3, 6), 50, ...positions.slice(6, 9), 50]);
+  assert.deepEqual([...reader.picture.contacts], [1, 2, 3, 50, 4, 5, 6, 60]);
+  assert.deepEqual([...reader.picture.values!], [0, 50, 0]);
+  await reader.source.request({ do: "step" });
+  reader.source.ready();
+  assert.deepEqual([...reader.picture.contacts], [7, 8, 9, 70]);
+});
+
+test("zeros of recorded fields are exact", async () => {
+  const reader = await opened();
+  await reader.source.request({ do: "color", field: "signed" });
+  reader.source.ready();
+  assert.equal(reader.picture.values![0], 0);
+  assert.ok(Math.abs(reader.picture.values![1] - 0.3) < 1e-6);
+  await reader.source.request({ do: "color", field: "displacement" });
+  reader.source.ready();
+  assert.equal(reader.picture.values![0], 0, "no displacement at the start");
+  assert.ok(reader.picture.values![1] > 0);
 });

@@ -17,6 +17,7 @@ await build({
   format: "esm",
   outdir: out,
   outExtension: { ".js": ".mjs" },
+  define: { "import.meta.dirname": JSON.stringify(here) }, // folder of the tests, not of their bundles
   loader: { ".css": "empty" },
   plugins: [mathml],
   logLevel: "warning",

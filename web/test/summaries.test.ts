@@ -22,7 +22,7 @@ test("meaningless norms have no pace", () => {
 
 test("a converged step has residual and pace", () => {
   assert.equal(
-    stepText(withNorms([1, 1e-1, 1e-2, 1e-4]), true),
+    stepText(withNorms([1, 1e-1, 1e-2, 1e-4]), true, []),
     "Converged in 4 iterations: the residual, 100 µN, is below the threshold of 1 mN. The gradient fell faster in each iteration, the last time by a factor of 100: near the minimum each iteration about squares the error.",
   );
 });
@@ -30,13 +30,13 @@ test("a converged step has residual and pace", () => {
 test("a failure never reads like success", () => {
   const failed = stepRow({ converged: false, status: "iteration_limit", residual: 1, iterations: [iterationRow()] });
   assert.equal(
-    stepText(failed, true),
+    stepText(failed, true, []),
     "Not converged (iteration limit) after 1 iteration: the residual, 1 N, is above the threshold of 1 mN.",
   );
   const explained = { ...failed, explanation: { cause: "no trial was accepted", place: "", remedy: "lower c." } };
-  assert.equal(stepText(explained, true), "No trial was accepted. Lower c.");
+  assert.equal(stepText(explained, true, []), "No trial was accepted. Lower c.");
   const byKey = { ...failed, explanation: { cause: "slow", place: "", remedy: 'solver.method = "newton"' } };
-  assert.equal(stepText(byKey, true), `Slow. solver.method = "newton".`);
+  assert.equal(stepText(byKey, true, []), `Slow. solver.method = "newton".`);
 });
 
 test("a rejected first trial is mentioned", () => {
@@ -45,13 +45,13 @@ test("a rejected first trial is mentioned", () => {
     { alpha: 0.5, value: 0.5, bound: 1, accepted: true },
   ];
   assert.match(
-    stepText(stepRow({ iterations: [iterationRow({ trials })] }), true),
+    stepText(stepRow({ iterations: [iterationRow({ trials })] }), true, []),
     /In 1 iteration the line search rejected the first trial/,
   );
 });
 
 test("an explicit scheme minimizes nothing", () => {
-  assert.match(stepText(stepRow(), false), /does not minimize/);
+  assert.match(stepText(stepRow(), false, []), /does not minimize/);
 });
 
 test("the lowest value is omitted", () => {

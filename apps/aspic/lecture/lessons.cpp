@@ -37,6 +37,7 @@ struct Staging {
   const char* answer;
   const char* panel = "energy";
   const char* scene = "";  // scene of scenes/lecture; empty: none
+  bool is_log = false;     // logarithmic energies, because one side explodes
   const char* field = "";  // field for colors
   Shape shape = Shape::real_mesh;
   std::vector<std::string> overrides = {};
@@ -154,6 +155,7 @@ const std::vector<Staging>& stagings() {
        .answer =
            "A minimization per step, and numerical damping: T + V falls although the equation dissipates nothing.",
        .scene = "05_swing",
+       .is_log = true,
        .overrides = {"gravity=[0, 0, 0]"},
        .comparison = {{{"time.integrator=symplectic_euler"}, "explicit"}}},
       {.demonstration = "25_drag",
@@ -188,6 +190,7 @@ const std::vector<Staging>& stagings() {
        .answer =
            "No. Stable means that errors do not grow; long steps still damp the motion. Make h shorter and compare.",
        .scene = "33_mouse",
+       .is_log = true,
        .overrides = {"spring=[]"},
        .comparison = {{{"time.integrator=symplectic_euler"}, "explicit"}},
        .drag = wild_drag()},
@@ -200,6 +203,7 @@ const std::vector<Staging>& stagings() {
        .answer =
            "It is the first iteration with the full step, without a line search and without a test of the residual.",
        .scene = "33_mouse",
+       .is_log = true,
        .overrides = {"spring=[]"},
        .comparison = {{{"time.integrator=linearly_implicit_euler"}, "linearized"}},
        .drag = wild_drag()},
@@ -369,7 +373,8 @@ Lesson lesson_of(const Demonstration& demonstration, const Staging& staging, con
                 .look = staging.look,
                 .question = staging.question,
                 .answer = staging.answer,
-                .panel = staging.panel};
+                .panel = staging.panel,
+                .is_log = staging.is_log};
   if (!staging.function.is_null()) lesson.function = staging.function.dump();
   if (*staging.scene) set_scene(staging, place, lesson);
   return lesson;

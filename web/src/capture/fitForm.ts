@@ -7,10 +7,10 @@ import type { Capture, CaptureFit, Command } from "../protocol";
 import type { Store } from "../store";
 
 const kFields = [
-  ["young", "true"],
-  ["fitted_young", "fitted"],
-  ["fit_error", "error"],
-  ["young_deviation", "uncertainty"],
+  ["young", "Show true stiffness"],
+  ["fitted_young", "Show fitted stiffness"],
+  ["fit_error", "Show error"],
+  ["young_deviation", "Show standard deviation"],
 ] as const;
 
 // One-line summary of the fit.
@@ -36,7 +36,7 @@ export class FitForm {
   private readonly status = element("p", { class: "capture-status", role: "status" });
   private readonly result = element("p", { class: "capture-result" });
   private readonly bar = element("progress", { max: "1", value: "0", "aria-label": "Progress of the fit" });
-  private readonly sameMesh = checkbox("on the mesh that was measured", "Inverse crime: results are sharper than those of a real measurement. Without it, the discretization error of the coarser mesh hides details. Delete the recorded cases to change it", true, (on) =>
+  private readonly sameMesh = checkbox("Fit on the measured mesh", "Inverse crime: results are sharper than those of a real measurement. Without it, the discretization error of the coarser mesh hides details. Delete the recorded cases to change it", true, (on) =>
     this.send({ do: "bench", same_mesh: on }),
   );
   private readonly colors = element("div", { class: "capture-row", role: "group", "aria-label": "Colors of the body" });
@@ -47,7 +47,7 @@ export class FitForm {
     private readonly page: Page,
   ) {
     for (const [field, words] of kFields) {
-      const choose = button({ text: words, title: `Color the body: ${words}`, steers: true }, () => this.send({ do: "color", field }));
+      const choose = button({ text: words, title: `Color the body: ${field === "young_deviation" ? "standard deviation of every tet" : words.replace("Show ", "")}`, steers: true }, () => this.send({ do: "color", field }));
       choose.dataset.field = field;
       this.colors.append(choose);
     }

@@ -31,7 +31,7 @@ export class TipForm {
     const changeShape = (value: string): void => display.change({ tipShape: value as TipChoice["shape"] });
     const shape = choice("Tip", "Shape of the tip", valuesFirst(kChoices.tipShape), settings.tipShape, changeShape);
     const contact = choice(
-      "held",
+      "Contact",
       "Bonded: the tip sticks to the surface and can also pull. Sliding: it pushes without friction.",
       valuesFirst(kChoices.tipContact),
       settings.tipContact,
@@ -50,8 +50,8 @@ export class TipForm {
       element("div", { class: "capture-row" }, shape.element, contact.element, this.radius.element),
       element("div", { class: "capture-row capture-depth" }, this.depth.element, this.slider, this.lift),
     );
-    page.shortcut({ key: "j", does: "Press the tip one notch deeper", group: "Simulation", run: () => this.notch(1) });
-    page.shortcut({ key: "u", does: "Draw the tip one notch back", group: "Simulation", run: () => this.notch(-1) });
+    page.shortcut({ key: "j", does: "Push the indenter deeper", group: "Capture", run: () => this.notch(1) });
+    page.shortcut({ key: "u", does: "Pull the indenter back", group: "Capture", run: () => this.notch(-1) });
     this.show(null);
   }
 

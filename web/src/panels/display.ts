@@ -3,6 +3,7 @@ import type { GUI } from "lil-gui";
 import type { Page } from "../page";
 import type { SettingValue } from "../protocol";
 import { kCameraModes, kViewNames, type CameraMode, type ViewName } from "../view/cameras";
+import { kDifference } from "../view/difference";
 import { kChoices, kDefaults, type Amount, type Display, type DisplaySettings } from "../view/display";
 import type { View } from "../view/view";
 import { NumberRow } from "./rows";
@@ -88,7 +89,7 @@ function addDisplay(folder: Folder, display: Display, views: () => View[]): void
   folder.add("shadows", "Shadows");
   folder.add("clip", "Cut");
   folder.slider("clipAt", "Cut at", 0, 1, 0.001);
-  folder.add("clipOther", "Keep the other half");
+  folder.add("clipOther", "Flip cut");
   addNumbers(folder.within("Numbers and marks"));
   addLook(folder.within("Colors and light"));
   folder.button("Reset display", () => display.change(kDefaults));
@@ -118,11 +119,17 @@ function addLook(folder: Folder): void {
 // Adds the field that colors the body and the range of its colors.
 function addField(folder: Folder, display: Display, views: () => View[]): void {
   const fields = (): Choices => {
-    const known = display.fields.map((field) => [field.label, field.name] as const);
-    return { [display.bodies > 1 ? "body" : "none"]: "", ...Object.fromEntries(known) };
+    const shown = comparing() ? [kDifference, ...display.fields] : display.fields;
+    return { [display.bodies > 1 ? "body" : "none"]: "", ...Object.fromEntries(shown.map((field) => [field.label, field.name])) };
   };
-  const choose = (field: string): void => views()[0]?.store.source.send({ do: "color", field });
-  folder.choice("Color by", fields, () => display.field, choose);
+  const comparing = (): boolean => views().length > 1;
+  const read = (): string => (display.field === "" && comparing() && display.settings.difference ? kDifference.name : display.field);
+  const choose = (field: string): void => {
+    const difference = field === kDifference.name;
+    if (difference || field === "") display.change({ difference });
+    views()[0]?.store.source.send({ do: "color", field: difference ? "" : field });
+  };
+  folder.choice("Color by", fields, read, choose);
   const range = folder.within("Color range");
   range.add("map", "Colors");
   range.add("fixedRange", "Fixed range");
@@ -133,17 +140,17 @@ function addField(folder: Folder, display: Display, views: () => View[]): void {
 }
 
 function addCamera(folder: Folder, display: Display, views: () => View[]): void {
-  const modes: Record<string, CameraMode> = { "two axes, level": "turntable", orbit: "orbit", "2-D": "flat" };
+  const modes: Record<string, CameraMode> = { turntable: "turntable", free: "orbit", "2-D": "flat" };
   const each = display.eachCamera;
   const setMode = (mode: string): void => each((rig) => rig.setMode(mode as CameraMode));
-  folder.choice("Turns about", () => modes, () => display.cameras.a.mode, setMode);
+  folder.choice("Orbit", () => modes, () => display.cameras.a.mode, setMode);
   const kinds = { perspective: "no", orthographic: "yes" };
   const kind = (): string => (display.cameras.a.orthographic ? "yes" : "no");
   folder.choice("Projection", () => kinds, kind, (value) => each((rig) => rig.setOrthographic(value === "yes")));
   folder.button("Center the body", () => views().forEach((view) => view.center()));
   const look = folder.within("Look from");
   for (const name of kViewNames) look.button(name, () => each((rig) => rig.look(name)));
-  folder.add("linked", "One for both sides");
+  folder.add("linked", "Link cameras");
 }
 
 function addDisplayShortcuts(page: Page, display: Display): void {
@@ -174,7 +181,7 @@ function addCameraShortcuts(page: Page, display: Display, views: () => View[]): 
   add("0", "Center the body", center);
   add(".", "Center the body", center);
   add("o", "Orthographic or perspective", () => display.eachCamera((rig) => rig.setOrthographic(!rig.orthographic)));
-  add("v", "Camera: two axes, orbit, 2-D", () => {
+  add("v", "Camera: turntable, free orbit, 2-D", () => {
     const next = kCameraModes[(kCameraModes.indexOf(display.cameras.a.mode) + 1) % kCameraModes.length];
     display.eachCamera((rig) => rig.setMode(next));
   });

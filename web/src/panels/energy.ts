@@ -5,7 +5,7 @@ import type { Store } from "../store";
 import { Chart, type Curve } from "../plots/chart";
 import { checkbox, choice, numberField, oncePerFrame } from "../controls";
 import { button, downloadCanvas, element, fileName, saveFile } from "../dom";
-import { balanceText, calmRange, explosionText, Ledger, ledgerColumns } from "../plots/ledger";
+import { balanceText, calmRange, CurveColors, explosionText, Ledger, ledgerColumns } from "../plots/ledger";
 import { csv, short, withUnit } from "../plots/numbers";
 import type { Palette } from "../plots/palette";
 import { paintVerticalLine } from "../plots/painting";
@@ -30,6 +30,7 @@ export class EnergyPanel implements Panel {
   private range: [number, number] | null = null; // range selected with the mouse [s]
   private byStep = false; // x is the step: a static scene has no time
   private rows = new Set<string>(); // keys of the legend's rows
+  private colors = new CurveColors();
   private readonly redraw = oncePerFrame(() => this.element.isConnected && this.draw());
   readonly show = this.redraw;
 
@@ -51,6 +52,10 @@ export class EnergyPanel implements Panel {
       this.redraw();
     });
     store.on("state", () => this.redraw());
+    page.on("scale", (scale) => {
+      this.log.input.checked = scale === "log";
+      this.configure();
+    });
     page.keep("energy", { save: () => this.save(), restore: (saved) => this.restore(saved) });
     for (const side of kSides) this.newScene(side);
   }
@@ -60,6 +65,7 @@ export class EnergyPanel implements Panel {
     const known = this.ledgers[name];
     const isKnown = side && known?.potentials.join() === side.scene.potentials.join();
     if (!isKnown) this.ledgers[name] = side && new Ledger(side.scene.potentials);
+    if (!isKnown && name === "a") this.colors = new CurveColors();
     this.ledgers[name]?.update(side!.steps, isKnown ? (side.steps.at(-1)?.step ?? 0) : 0);
     this.configure(); // its label may have changed
   }
@@ -81,7 +87,8 @@ export class EnergyPanel implements Panel {
   private columnsOf(ledger: Ledger): { column: Curve; values: MaybeNumber[] }[] {
     return ledgerColumns(ledger.potentials)
       .map((column, i) => ({ column, values: ledger.columns[i]! }))
-      .filter(({ column }) => this.rows.has(column.key));
+      .filter(({ column }) => this.rows.has(column.key))
+      .map(({ column, values }) => ({ column: { ...column, color: this.colors.of(column.key) }, values }));
   }
 
   private configure(): void {
@@ -188,7 +195,7 @@ export class EnergyPanel implements Panel {
     });
     const log = this.log.input.checked;
     const dashes = this.ledgers.b && `${this.store.label("b")} is dashed`;
-    const wild = !log && this.calmRange() && "one side exceeds the plot; use log to see it";
+    const wild = !log && this.calmRange() && "one side exceeds the plot; switch to log";
     const text = [...texts, dashes, wild, log && "absolute values; zeros are omitted"].filter(Boolean).join(" · ");
     if (this.note.textContent !== text) this.note.textContent = text;
   }

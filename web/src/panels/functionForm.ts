@@ -128,7 +128,7 @@ export class FunctionForm {
       ),
       row(
         this.number("tolerance", "tolerance", "Tolerance of the gradient's norm", { min: 0 }),
-        this.number("max_iterations", "at most", "Iterations", { min: 1, max: 500, step: 1 }),
+        this.number("max_iterations", "Max. iterations", "Maximum number of iterations", { min: 1, max: 500, step: 1 }),
       ),
     );
     this.fill({ name: "rosenbrock", start: kStarts.rosenbrock, settings: {} });

@@ -7,7 +7,7 @@ import type { FunctionQuestion, FunctionReply } from "../protocol";
 import type { Store } from "../store";
 import { checkbox } from "../controls";
 import { short } from "../plots/numbers";
-import { sentence } from "../plots/summaries";
+import { sentence } from "../names";
 import { SearchChart } from "../plots/search";
 import { SurfaceView } from "../plots/surface";
 import { FunctionForm, kPresets, type Preset } from "./functionForm";

@@ -13,7 +13,7 @@ import { stepText, totalSeconds } from "../plots/summaries";
 import { excess } from "./certificate";
 import { kCharts, StepChart, type ChartName } from "./stepCharts";
 
-const kOrder: ChartName[] = ["convergence", "search", "time", "steps", "alpha", "inner"];
+const kOrder: ChartName[] = ["search", "convergence", "time", "steps", "alpha", "inner"];
 
 export class MicroscopePanel implements Panel {
   readonly name = "microscope";
@@ -140,7 +140,7 @@ export class MicroscopePanel implements Panel {
     const none = implicit ? "No step has been computed yet." : "This integrator does not minimize; no step has been computed yet.";
     if (!row) this.words.textContent = none;
     else if (this.chosen.isUnderWay()) this.words.textContent = `Step ${row.step} is under way: ${plural(row.iterations.length, "iteration")}.`;
-    else this.words.textContent = `Step ${row.step}. ${stepText(row, implicit)}`;
+    else this.words.textContent = `Step ${row.step}. ${stepText(row, implicit, this.store.side(this.chosen.side)?.scene.settings ?? [])}`;
     this.words.dataset.kind = row && !row.converged ? "bad" : "";
   }
 

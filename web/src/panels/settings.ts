@@ -1,10 +1,11 @@
 // Settings of the simulation: built from the program's list, sent while a slider moves, and restored if the program
 // refuses them.
 import { GUI, type Controller } from "lil-gui";
-import { button, element, selectOf } from "../dom";
+import { button, element, messageOf, selectOf } from "../dom";
 import { choiceFormulas, kWithFormulas } from "../formulas";
 import { backTo, History, toLoaded, type SettingChange } from "../history";
 import { kMaterials } from "../materials";
+import { refusalText } from "../names";
 import { Newest } from "../newest";
 import type { Page } from "../page";
 import type { Command, Scene, Setting, SettingValue, SideName } from "../protocol";
@@ -215,7 +216,8 @@ export class Settings {
   }
 
   private addSetting(folder: GUI, setting: Setting): void {
-    const sender = this.makeSender((value) => ({ do: "set", key: setting.key, value, ...this.side() }));
+    const refused = (reason: unknown): void => this.page.notice(refusalText(messageOf(reason), setting), "error");
+    const sender = this.makeSender((value) => ({ do: "set", key: setting.key, value, ...this.side() }), refused);
     this.senders.set(setting.key, sender);
     const changed = (value: SettingValue): void => {
       this.note(setting);
@@ -224,8 +226,8 @@ export class Settings {
     this.rows.set(setting.key, addRow(folder, setting, changed));
   }
 
-  private makeSender(command: (value: SettingValue) => Command): Newest<SettingValue> {
-    return new Newest((value) => this.store.source.request(command(value)), this.page.report, () => this.update());
+  private makeSender(command: (value: SettingValue) => Command, refused = this.page.report): Newest<SettingValue> {
+    return new Newest((value) => this.store.source.request(command(value)), refused, () => this.update());
   }
 
   private side(): { side?: SideName } {

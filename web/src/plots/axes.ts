@@ -62,6 +62,8 @@ function superscript(value: number): string {
   return `10${exponent < -0.5 ? "⁻" : ""}${digits}`;
 }
 
+const kLargestExponent = 308; // of a double
+
 export function padded(low: number | null, high: number | null, integer: boolean): [number, number] {
   if (low === null || high === null) return [0, 1];
   if (integer) return [low - 0.5, high + 0.5];
@@ -70,7 +72,7 @@ export function padded(low: number | null, high: number | null, integer: boolean
 
 export function ranged(low: number | null, high: number | null, log: boolean): [number, number] {
   if (low === null || high === null) return log ? [1e-1, 1e1] : [0, 1];
-  if (log) return [10 ** Math.floor(Math.log10(low) - 1e-9), 10 ** Math.ceil(Math.log10(high) + 1e-9)];
+  if (log) return [10 ** Math.floor(Math.log10(low) - 1e-9), 10 ** Math.min(kLargestExponent, Math.ceil(Math.log10(high) + 1e-9))];
   const margin = (high - low) * 0.06 || Math.abs(high) * 0.1 || 1;
   return [low - margin, high + margin];
 }

@@ -6,35 +6,53 @@ import { lowerBound } from "./table";
 import { finite, short, withUnit } from "./numbers";
 import { furtherColor, type Color } from "./palette";
 
-// All curves of a legend have different colors.
-const kTermColors: Color[] = ["series6", "series4", "series5", "series12", "series13", "series14", "series11"];
+// Colors of the curves that most scenes have. The others get those of the remaining families of hues, so that no two
+// curves of a plot look alike.
+const kOwnColors: Record<string, Color> = { kinetic: "series2", potential_total: "series1", total: "text", damping_loss: "series7", numerical_loss: "bad", balance: "good" };
+const kFreeColors: Color[] = ["series4", "series5", "series10", "series8", "series9", "series12"];
+
+export class CurveColors {
+  private readonly given = new Map<string, Color>();
+
+  // Color of the curve with this key; the same at each call.
+  of(key: string): Color {
+    const known = kOwnColors[key] ?? this.given.get(key);
+    if (known) return known;
+    const color = kFreeColors[this.given.size] ?? furtherColor(this.given.size);
+    this.given.set(key, color);
+    return color;
+  }
+}
 
 const kWide = { width: 2 };
 const kWider = { width: 2.5 };
 const kSum = { dash: [2, 3] }; // of sums over the steps
 
-export function ledgerColumns(potentials: readonly string[]): Curve[] {
-  const line = (key: string, label: string, meaning: string, color: Color, more: Partial<Curve>): Curve => ({ key, label, meaning, color, width: 1.5, ...more });
-  const terms = potentials.map((name, i) => {
-    const color = kTermColors[i] ?? furtherColor(i);
-    return line(`potential_${name}`, `V: ${name.replaceAll("_", " ")}`, "a term of the potential energy", color, { width: 1.25 });
-  });
+type Column = Omit<Curve, "color">;
+
+export function ledgerColumns(potentials: readonly string[]): Column[] {
+  const line = (key: string, label: string, meaning: string, more: Partial<Curve>): Column => ({ key, label, meaning, width: 1.5, ...more });
+  const terms = potentials.map((name) => line(`potential_${name}`, `V: ${name.replaceAll("_", " ")}`, "a term of the potential energy", { width: 1.25 }));
+  const summed = (key: string, label: string, meaning: string): Column => line(key, label, `${meaning}, summed over the steps`, kSum);
   return [
-    line("kinetic", "T", "kinetic energy", "series2", kWide),
+    line("kinetic", "T", "kinetic energy", kWide),
     ...terms,
-    line("potential_total", "V", "potential energy, the sum of its terms", "series1", kWide),
-    line("total", "T + V", "kinetic plus potential energy", "text", kWider),
-    line("mouse_work", "work of the mouse", "work of the mouse's spring, summed over the steps", "series8", kSum),
-    line("probe_work", "work of the probe", "work of the indenter, summed over the steps", "series10", kSum),
-    line("pin_work", "work of pins", "work of moving pins and spring targets, summed over the steps", "series9", kSum),
-    line("obstacle_work", "work of obstacles and pressures", "work of moving obstacles, and of pressures on open patches beyond the change of their potential, summed over the steps", "series3", kSum),
-    line("damping_loss", "dissipation", "dissipated by damping and friction, summed over the steps", "series7", kSum),
-    line("numerical_loss", "numerical loss", "dissipated by the integrator, summed over the steps", "bad", kSum),
-    line("balance", "balance", "T + V − works + losses: constant if every step is solved accurately", "good", kWider),
+    line("potential_total", "V", "potential energy, the sum of its terms", kWide),
+    line("total", "T + V", "kinetic plus potential energy", kWider),
+    summed("mouse_work", "work of the mouse", "work of the mouse's spring"),
+    summed("probe_work", "work of the probe", "work of the indenter"),
+    summed("pin_work", "work of pins", "work of moving pins"),
+    summed("load_work", "work of loads", "work of moving spring targets and time-dependent loads"),
+    summed("muscle_work", "work of muscles", "work of changing activations"),
+    summed("obstacle_work", "work of obstacles and pressures", "work of moving obstacles, and of pressures on open patches beyond the change of their potential"),
+    summed("damping_loss", "dissipation", "dissipated by damping and friction"),
+    summed("numerical_loss", "numerical loss", "dissipated by the integrator"),
+    line("balance", "balance", "T + V − works + losses: constant if every step is solved accurately", kWider),
   ];
 }
 
 const kAlways = ["total", "balance"];
+const kRoundOff = 1e-12; // relative to the largest energy; smaller values are zero
 const kExplosion = 1e3; // relative to the initial energy and the works
 
 // Limit of stored steps. Beyond it every other step of the older half is dropped.
@@ -51,7 +69,7 @@ export class Ledger {
   private readonly largest: number[] = []; // largest magnitude of each column so far
   private readonly peak: number[] = []; // largest T + V so far
   private readonly given: number[] = []; // largest of the initial energy and the works so far
-  private readonly first: (number | undefined)[]; // first step at which each column is nonzero
+  private readonly first: (number | undefined)[]; // first step at which each column exceeds round-off
 
   constructor(readonly potentials: readonly string[]) {
     this.columns = ledgerColumns(potentials).map(() => []);
@@ -86,7 +104,7 @@ export class Ledger {
     });
   }
 
-  // Columns to show: those that were ever nonzero or are unknown, and the sums T + V and balance.
+  // Columns to show: those that ever exceeded round-off or are unknown, and the sums T + V and balance.
   used(): string[] {
     const columns = ledgerColumns(this.potentials);
     return columns.filter(({ key }, i) => kAlways.includes(key) || this.first[i] !== undefined).map(({ key }) => key);
@@ -117,15 +135,17 @@ export class Ledger {
     const terms = this.potentials.map((_, i) => row.potential[i] ?? null);
     const potential = sum(terms);
     const total = sum([row.kinetic, potential]);
-    const flows = [row.mouse_work, row.probe_work, row.pin_work, (row.obstacle_work ?? 0) + (row.nonconservative_work ?? 0), row.damping_loss, row.numerical_loss];
+    const [loads, muscles] = [row.load_work ?? 0, row.muscle_work ?? 0];
+    const pins = sum([row.pin_work, -loads, -muscles]);
+    const flows = [row.mouse_work, row.probe_work, pins, loads, muscles, (row.obstacle_work ?? 0) + (row.nonconservative_work ?? 0), row.damping_loss, row.numerical_loss];
     const firstFlow = this.totalColumn + 1;
     const sums = flows.map((flow, i) => sum([last < 0 ? 0 : this.columns[firstFlow + i]![last]!, flow]));
-    const [mouse, probe, pins, obstacles, damping, numerical] = sums as MaybeNumber[];
-    const works = [mouse!, probe!, pins!, obstacles!];
-    const balance = sum([total, ...works.map(negated), damping!, numerical!]);
+    const works = sums.slice(0, -2);
+    const balance = sum([total, ...works.map(negated), ...sums.slice(-2)]);
     const values = [row.kinetic, ...terms, potential, total, ...sums, balance];
+    const largest = Math.max(this.largest[last] ?? 0, ...values.map((v) => Math.abs(v ?? 0)));
     values.forEach((value, i) => {
-      if (value !== 0) this.first[i] ??= this.step.length;
+      if (value === null || Math.abs(value) > kRoundOff * largest) this.first[i] ??= this.step.length;
       this.columns[i]!.push(value);
     });
     const given = works.reduce((all: number, work) => all + Math.abs(work ?? 0), 0);
@@ -133,7 +153,7 @@ export class Ledger {
     this.given.push(Math.max(this.given[last] ?? Math.abs(balance ?? 0), given));
     this.lowest.push(Math.min(this.lowest[last] ?? Infinity, balance ?? Infinity));
     this.highest.push(Math.max(this.highest[last] ?? -Infinity, balance ?? -Infinity));
-    this.largest.push(Math.max(this.largest[last] ?? 0, ...values.map((v) => Math.abs(v ?? 0))));
+    this.largest.push(largest);
     this.step.push(row.step);
     this.time.push(row.time ?? NaN);
     this.residualWork.push(row.residual_work);

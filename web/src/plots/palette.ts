@@ -1,6 +1,6 @@
 // Colors of the page, read from the style sheet.
 const kPlain = ["background", "text", "faint", "line", "panel", "raised", "accent", "good", "bad"] as const;
-const kSeries = [1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14] as const;
+const kSeries = [1, 2, 3, 4, 5, 7, 8, 9, 10, 11, 12] as const;
 const kNames = [...kPlain, ...kSeries.map((i) => `series${i}` as const)];
 
 type Name = (typeof kNames)[number];
@@ -49,5 +49,6 @@ export function palette(of: HTMLElement): Palette {
   const values = kNames.map((name) => [name, style.getPropertyValue(variableOf(name))]);
   const colors = Object.fromEntries(values) as Record<Name, string>;
   const fontSize = Number.parseFloat(style.fontSize) || 14;
-  return { ...colors, fontSize, font: `${fontSize * 0.86}px ${style.fontFamily || "sans-serif"}` };
+  const size = Math.round(fontSize * 0.86); // uPlot scales whole numbers only
+  return { ...colors, fontSize, font: `${size}px ${style.fontFamily || "sans-serif"}` };
 }

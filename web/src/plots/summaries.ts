@@ -1,6 +1,6 @@
 // Sentences about a minimization that follow from its numbers.
-import type { IterationRow, MaybeNumber, StepRow } from "../protocol";
-import { statusName } from "../names";
+import type { IterationRow, MaybeNumber, Setting, StepRow } from "../protocol";
+import { explanationText, statusName } from "../names";
 import { plural, short, withUnit } from "./numbers";
 
 export type Pace = "squaring" | "faster" | "steady" | "none";
@@ -46,11 +46,8 @@ function shortened(rows: readonly IterationRow[]): string {
   return less > 0 ? ` In ${plural(less, "iteration")} the line search rejected the first trial and accepted a shorter step.` : "";
 }
 
-export function stepText(row: StepRow, implicit: boolean): string {
-  if (row.explanation) {
-    const { cause, place, remedy } = row.explanation;
-    return [cause, place, remedy].map(sentence).filter((text) => text !== "").join(" ");
-  }
+export function stepText(row: StepRow, implicit: boolean, settings: readonly Setting[]): string {
+  if (row.explanation) return explanationText(row.explanation, settings).join(" ");
   if (!implicit) return "This integrator does not minimize: it computes the next positions from the present forces.";
   const count = plural(row.iterations.length, "iteration");
   const residual = residualText(row);
@@ -61,14 +58,6 @@ export function stepText(row: StepRow, implicit: boolean): string {
   if (row.status === "round_off")
     return `Converged to round-off after ${count}: the energy no longer changes by more than round-off.`;
   return `Converged in ${count}: ${met}.${paceText(row.iterations)}${shortened(row.iterations)}`;
-}
-
-// Starts with a capital, unless the text starts with a key of a scene, and ends with a period.
-export function sentence(text: string): string {
-  const trimmed = text.trim();
-  if (trimmed === "") return "";
-  const isKey = /^\S*[._=]\S/.test(trimmed);
-  return (isKey ? trimmed[0]! : trimmed[0]!.toUpperCase()) + trimmed.slice(1) + (/[.!?]$/.test(trimmed) ? "" : ".");
 }
 
 export function totalSeconds(row: IterationRow): number {

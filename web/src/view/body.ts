@@ -118,6 +118,10 @@ export class Body {
     this.hasPicture = this.root.visible = true;
   }
 
+  showValues(values: Float32Array): void {
+    upload(this.values, values);
+  }
+
   apply(settings: DisplaySettings): void {
     this.mesh.visible = settings.fill;
     this.wires.visible = settings.wires || !settings.fill;
@@ -197,7 +201,7 @@ export class Body {
     const density = Math.min(1, Math.max(0, (edgePixels * ratio - 2) / 10));
     this.lines.opacity = this.mesh.visible ? 0.12 + 0.5 * density : 0.35 + 0.6 * density;
     const size = Math.min(9, Math.max(4, 0.8 * edgePixels));
-    this.pinMaterial.size = size * ratio;
+    this.pinMaterial.size = size;
     this.pinMaterial.color.set(pinColor);
     this.lift.value = size * liftPerPixel;
   }

@@ -1,4 +1,4 @@
-// Contact points in 3-D, colored by pressure. They shine through bodies, which hide their undersides.
+// Contact points in 3-D, colored by pressure. Those behind a body shine through it faintly.
 import * as THREE from "three";
 import { short } from "../plots/numbers";
 import type { StepRow } from "../protocol";
@@ -8,6 +8,7 @@ import { valueText } from "./values";
 
 export const kContactMap = "viridis";
 const kSize = 10; // [px]
+const kHidden = 0.3; // opacity of points behind a body
 
 // Colors of the points, linear RGB. `largest`: pressure of the last color [Pa].
 export function contactColors(contacts: Float32Array, largest: number): Float32Array {
@@ -34,13 +35,21 @@ export function contactText(row: Pick<StepRow, "contacts" | "min_gap" | "min_gap
   return `${count}, smallest gap ${valueText(row.min_gap, "m", 3)}${pair}, largest pressure ${valueText(row.max_pressure, "Pa", 3)}`;
 }
 
-export class ContactDots extends THREE.Points<THREE.BufferGeometry, THREE.PointsMaterial> {
+export class ContactDots extends THREE.Group {
+  private readonly geometry = new THREE.BufferGeometry();
+  private readonly lift = { value: 0 };
+  readonly materials: THREE.PointsMaterial[];
+
   constructor() {
-    super(new THREE.BufferGeometry(), makePinMaterial({ value: 0 }));
-    this.material.vertexColors = true;
-    this.material.depthTest = false;
-    this.frustumCulled = false;
-    this.renderOrder = 3;
+    super();
+    const points = [THREE.GreaterDepth, THREE.LessEqualDepth].map((depthFunc, i) => {
+      const material = makePinMaterial(this.lift);
+      Object.assign(material, { size: kSize, vertexColors: true, depthWrite: false, depthFunc, opacity: i === 0 ? kHidden : 1 });
+      const dots = new THREE.Points(this.geometry, material);
+      return Object.assign(dots, { frustumCulled: false, renderOrder: 3 + i });
+    });
+    this.materials = points.map(({ material }) => material);
+    this.add(...points);
     this.show(new Float32Array(0), 0);
   }
 
@@ -52,7 +61,8 @@ export class ContactDots extends THREE.Points<THREE.BufferGeometry, THREE.Points
     this.geometry.setDrawRange(0, contacts.length / 4);
   }
 
-  adapt(ratio: number): void {
-    this.material.size = kSize * ratio;
+  // Lifts the points in front of the surface that they lie on.
+  adapt(liftPerPixel: number): void {
+    this.lift.value = kSize * liftPerPixel;
   }
 }

@@ -33,6 +33,7 @@ export const kDefaults = {
   faceLabels: false,
   map: "auto" as "auto" | MapName,
   scale: "auto" as "auto" | "linear" | "log", // auto: the default of the field
+  difference: true, // colors both sides of a comparison by their distance, unless a field does
   fixedRange: false,
   low: 0,
   high: 1,
@@ -55,7 +56,7 @@ export const kChoices = {
   scale: { "by field": "auto", linear: "linear", logarithmic: "log" },
   tool: { "drag the body": "drag", "pin by brush": "pin", "read values": "read", "press a probe in": "probe" },
   tipShape: { sphere: "sphere", "flat disc": "disc" },
-  tipContact: { "glued on": "bonded", sliding: "sliding" },
+  tipContact: { bonded: "bonded", sliding: "sliding" },
 } as const;
 const kLimits: { [K in Amount]?: [number, number] } = { shininess: [0, 200], clipAt: [0, 1], brush: [4, 200], tipRadius: [0, 1e9] };
 

@@ -4,15 +4,17 @@ import type { Side, Store } from "../store";
 import { bodyColors } from "./bodies";
 import { Body } from "./body";
 import { largestPressure } from "./contacts";
+import { differenceOf, kDifference } from "./difference";
 import type { Display } from "./display";
 import type { Style } from "./overlay";
 import type { Surface } from "./picking";
-import { RunningRange, type ColorRange } from "./ranges";
+import { extremes, RunningRange, type ColorRange } from "./ranges";
 import type { Stage } from "./stage";
 
 export class Figure {
   body: Body | null = null; // null without a stage
   private valuesOf = ""; // field of the body's values
+  private difference: Float32Array | null = null; // distance from the other side [m]
   private lost = false;
   private readonly pressures = new RunningRange(); // of the contact points [Pa]
 
@@ -64,12 +66,26 @@ export class Figure {
     body.show(side.picture);
     this.valuesOf = side.picture.values ? side.scene.field : "";
     const field = this.field();
-    if (field && !this.isLost()) this.display.feed(this.name, field, side.picture.min, side.picture.max);
+    if (side.picture.values && field && !this.isLost()) this.display.feed(this.name, field, side.picture.min, side.picture.max);
+    this.takeDifference();
     this.color();
     const { contacts } = side.picture;
     this.pressures.feed(this.name, 0, largestPressure(contacts));
     this.stage?.contacts.show(contacts, this.largestPressure());
     this.stage?.moved();
+  }
+
+  // Follows the newest pictures of both sides.
+  takeDifference(): void {
+    const { a, b } = this.store.sides;
+    const isShown = this.display.settings.difference && this.side?.scene.field === "";
+    const now = isShown ? differenceOf(a, b) : null;
+    if (now === undefined || !this.body) return;
+    const largest = now ? (extremes(now)?.[1] ?? 0) : 0;
+    this.difference = largest > 0 ? now : null; // equal sides keep the color of the body
+    if (!this.difference) return;
+    this.body.showValues(this.difference);
+    if (!this.isLost()) this.display.feed(this.name, kDifference, 0, largest);
   }
 
   // A side that has blown up does not contribute to the range of the colors.
@@ -84,6 +100,7 @@ export class Figure {
   }
 
   apply(style: Style): void {
+    this.takeDifference();
     this.body?.apply(this.display.settings);
     this.stage?.apply(this.display.settings, style);
     this.stage?.clip(this.side && this.display.clip(this.side.scene));
@@ -130,7 +147,13 @@ export class Figure {
     return this.pressures.get()?.high ?? 0;
   }
 
+  // Values of the colors at the vertices.
+  values(): Float32Array | null {
+    return this.difference ?? this.side?.picture?.values ?? null;
+  }
+
   private field(): Field | null {
+    if (this.difference) return kDifference;
     const scene = this.side?.scene;
     if (!scene || this.valuesOf !== scene.field) return null;
     return scene.fields.find((field) => field.name === scene.field) ?? null;

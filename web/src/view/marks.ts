@@ -143,16 +143,19 @@ export function axes(ink: Ink, lens: Lens): void {
   }
 }
 
-// Draws names of bodies beside samples of their colors in the upper left corner, as many as fit.
-export function bodyLegend(ink: Ink, lens: Lens, bodies: readonly { name: string; color: string }[]): void {
+// Draws names of bodies beside samples of their colors in the upper left corner, as many as fit. Returns the lower right
+// corner of the legend.
+export function bodyLegend(ink: Ink, lens: Lens, bodies: readonly { name: string; color: string }[]): Point {
   const { em } = ink;
   const room = Math.max(1, Math.floor(lens.height / (3 * em)));
-  bodies.slice(0, room).forEach(({ name, color }, i) => {
+  const names = bodies.slice(0, room).map(({ name }, i) => (bodies.length > room && i === room - 1 ? `${name} and ${bodies.length - room} more` : name));
+  names.forEach((name, i) => {
     const y = (1.6 + 1.5 * i) * em;
-    const left = bodies.length > room && i === room - 1 ? bodies.length - room : 0;
-    dot(ink, [1.4 * em, y], 0.45 * em, color);
-    text(ink, left > 0 ? `${name} and ${left} more` : name, 2.3 * em, y);
+    dot(ink, [1.4 * em, y], 0.45 * em, bodies[i]!.color);
+    text(ink, name, 2.3 * em, y);
   });
+  const widths = names.map((name) => ink.context.measureText(name).width);
+  return names.length === 0 ? [0, 0] : [2.3 * em + Math.max(...widths), (0.8 + 1.5 * names.length) * em];
 }
 
 export const kBarWidth = 8.5; // width of the strip beside the view for the color bar [em]
@@ -209,19 +212,25 @@ function gradient(context: CanvasRenderingContext2D, map: MapName, from: Point, 
   return made;
 }
 
-// Draws the colors of the contact points with a summary in the upper right corner.
-export function contactLegend(ink: Ink, lens: Lens, largest: number, row: StepRow | null): void {
+const kContactTitle = "contact pressure 0";
+
+// Draws the colors of the contact points with a summary in the upper right corner, or below what is already in the upper
+// corners: `taken` is its lower right corner.
+export function contactLegend(ink: Ink, lens: Lens, { largest, row }: { largest: number; row: StepRow | null }, taken: Point): void {
   const { context, em } = ink;
   const right = lens.width - 1.2 * em;
-  if (row) text(ink, contactText(row), right, 3.1 * em, "right");
-  const width = 8 * em;
   const most = valueText(largest, "Pa", 3);
+  const around = context.measureText(kContactTitle).width + context.measureText(most).width + em;
+  const width = Math.min(8 * em, right - 1.2 * em - around);
+  const lines = row ? wrapped(ink, contactText(row), right - 1.2 * em) : [];
+  const widest = Math.max(around + width, ...lines.map((line) => context.measureText(line).width));
+  const top = 1.1 * em + (right - widest < taken[0] + em ? taken[1] : 0);
+  lines.forEach((line, i) => text(ink, line, right, top + (2 + 1.4 * i) * em, "right"));
   const left = right - context.measureText(most).width - 0.5 * em - width;
-  const top = 1.1 * em;
   context.fillStyle = gradient(context, kContactMap, [left, 0], [left + width, 0]);
   context.fillRect(left, top, width, em);
   text(ink, most, right, top + em / 2, "right");
-  text(ink, "contact pressure 0", left - 0.5 * em, top + em / 2, "right");
+  text(ink, kContactTitle, left - 0.5 * em, top + em / 2, "right");
 }
 
 export function gridNote(ink: Ink, lens: Lens, step: number): void {

@@ -72,8 +72,8 @@ export class Overlay {
     marks.highlights(ink, lens, what.highlights ?? [], lens.width);
     if (what.axes) marks.axes(ink, lens);
     if (what.gridStep) marks.gridNote(ink, lens, what.gridStep);
-    marks.bodyLegend(ink, lens, what.bodies ?? []);
-    if (what.contact) marks.contactLegend(ink, lens, what.contact.largest, what.contact.row);
+    const taken = marks.bodyLegend(ink, lens, what.bodies ?? []);
+    if (what.contact) marks.contactLegend(ink, lens, what.contact, taken);
     for (const dot of what.dots ?? []) marks.surfaceDot(ink, lens, dot.at, dot.normal, dot.ring);
     if (what.spring) marks.spring(ink, lens, what.spring.point, what.spring.target, what.spring.force);
     if (what.brush) marks.ring(ink, what.brush.at, what.brush.radius, what.brush.words);

@@ -84,7 +84,7 @@ const kPinColor = /* glsl */ `
   float radius = length(gl_PointCoord - 0.5) * 2.0;
   float blur = fwidth(radius);
   diffuseColor.rgb = mix(diffuseColor.rgb, vec3(1.0), smoothstep(0.62 - blur, 0.62 + blur, radius));
-  diffuseColor.a = 1.0 - smoothstep(1.0 - 2.0 * blur, 1.0, radius);
+  diffuseColor.a *= 1.0 - smoothstep(1.0 - 2.0 * blur, 1.0, radius);
 `;
 
 // Ground that receives shadows, carries a grid, and fades toward its rim.

@@ -108,7 +108,7 @@ export class Stage {
   clip(clip: Clip | null): void {
     const inside = clip ? (dot(clip.normal, this.center) - clip.offset) / this.radius : 0; // depth of the scene's middle [radii]
     const planes = clip ? [new THREE.Plane(new THREE.Vector3(...clip.normal), inside)] : [];
-    for (const { material } of [this.obstacles, this.contacts]) material.clippingPlanes = planes;
+    for (const material of [this.obstacles.material, ...this.contacts.materials]) material.clippingPlanes = planes;
     this.body?.clip(planes);
     this.renderer.shadowMap.needsUpdate = true;
   }
@@ -120,7 +120,7 @@ export class Stage {
     camera.setRotationFromMatrix(new THREE.Matrix4().makeBasis(right, up, forward.clone().negate()));
     this.lamp.position.copy(camera.position);
     this.lamp.target.position.copy(camera.position).add(forward);
-    this.contacts.adapt(this.renderer.getPixelRatio());
+    this.contacts.adapt(liftPerPixel(lens, this.radius));
     if (this.body) this.adapt(this.body, lens, pinColor);
     this.renderer.render(this.scene, camera);
   }
@@ -171,13 +171,12 @@ export class Stage {
     const middle = body.box ? middleOf(body.box) : this.center;
     const depth = Math.max(dot(minus(middle, lens.eye), lens.forward), 1e-3 * this.radius);
     const pixels = pixelsPerMeter(lens, depth);
-    const lift = (lens.extent > 0 ? lens.extent / this.radius : lens.slope) / (lens.height / 2);
     // Beyond this each triangle would fill the view, which takes minutes without a GPU and shows nothing.
     const height = lens.extent > 0 ? lens.extent : lens.slope * length(minus(this.center, lens.eye));
     this.isFar = this.reach() > kFar && this.reach() * this.radius > kFar * height;
     body.root.visible = body.hasPicture && !this.isFar;
     this.hasLeft = body.box !== null && this.reach() * this.radius * pixels < lens.height && !isInside(lens, middle);
-    body.adapt(body.edge * pixels, this.renderer.getPixelRatio(), lift, pinColor);
+    body.adapt(body.edge * pixels, this.renderer.getPixelRatio(), liftPerPixel(lens, this.radius), pinColor);
   }
 
   // The shadow map covers the body and changes only when necessary, because changes make shadows crawl.
@@ -196,6 +195,11 @@ export class Stage {
     shadow.normalBias = 0.012 * radius;
     shadow.camera.updateProjectionMatrix();
   }
+}
+
+// Lift of a marker per pixel of its width, see makePinMaterial.
+function liftPerPixel(lens: Lens, radius: number): number {
+  return (lens.extent > 0 ? lens.extent / radius : lens.slope) / (lens.height / 2);
 }
 
 function middleOf(box: Box): Vec3 {

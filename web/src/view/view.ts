@@ -135,7 +135,8 @@ export class View {
       this.applyDisplay();
     };
     store.on("obstacles", mine(takeObstacles), signal);
-    store.on("picture", mine(() => this.takePicture()), signal);
+    store.on("picture", (side) => (side === this.side ? this.takePicture() : this.takeDifference()), signal);
+    store.on("gone", () => this.applyDisplay(), signal);
     store.on("pins", mine(() => this.showPins(this.figure.side?.pins ?? [])), signal);
     const takeFibres = (): void => {
       this.figure.body?.setFibres(this.figure.side?.fibres ?? []);
@@ -187,6 +188,12 @@ export class View {
     this.figure.takePicture();
     this.card.refresh();
     this.pace.came();
+  }
+
+  private takeDifference(): void {
+    this.figure.takeDifference();
+    this.figure.color();
+    this.redraw();
   }
 
   private applyDisplay(): void {
@@ -262,7 +269,7 @@ export class View {
     const { hover, cursor } = this.touch;
     if (cursor && this.touch.target && this.store.state && !this.store.state.playing)
       return { at: cursor, words: "Paused: press Space to play" };
-    const [shown, values] = [this.figure.colored(), this.figure.side?.picture?.values];
+    const [shown, values] = [this.figure.colored(), this.figure.values()];
     const triangles = this.figure.body?.geometry.triangles;
     if (!hover || !cursor || !shown || !values || !triangles || this.display.settings.tool !== "read") return null;
     return { at: cursor, words: valueText(interpolated(hover, triangles, values), shown.field.unit) };

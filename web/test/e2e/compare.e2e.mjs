@@ -91,6 +91,27 @@ test("both sides share camera, mouse and legend", async () => {
   await close();
 });
 
+test("both sides have names, and colors of their distance", async () => {
+  const opened = await openSession(program);
+  const { page, heard, until, close } = opened;
+  await compare(opened, "With or without line search");
+  for (const label of ["A: with line search", "B: without line search"]) await page.locator(".view-label").getByText(label, { exact: true }).waitFor();
+  await endCompare(opened);
+  await compare(opened, "Ten times as stiff");
+  const { step } = heard.state.a;
+  await pressAndWait(opened, "s", "a step", ({ state }) => state.a.step > step && state.b.step > step);
+  await until("the title of the color bar", () => page.evaluate(() => window.drawnTexts.includes("between A")));
+  const choice = page.locator("#right .lil-controller").filter({ hasText: "Color by" }).locator("select").first();
+  await until("its choice", async () => (await choice.inputValue()) === "distance between A and B");
+  await choice.selectOption("none");
+  await page.evaluate(() => (window.drawnTexts.length = 0));
+  await choice.selectOption("distance between A and B");
+  await until("the color bar again", () => page.evaluate(() => window.drawnTexts.includes("between A")));
+  await keepPicture(page, "compare_difference");
+  await endCompare(opened);
+  await close();
+});
+
 test("settings change per side or for both", async () => {
   const opened = await openSession(program);
   const { page, heard, until, close } = opened;

@@ -40,6 +40,10 @@ test("fibres are lines on the surface", async () => {
   assert.equal(message.lines.length % 3, 0);
   assert.ok(message.lines.length >= 3 * 64, "upper and lower side");
   await frames(page);
+  for (const label of ["Wires", "Pins"]) {
+    const box = page.locator("#right .lil-controller.lil-boolean").filter({ hasText: new RegExp(`^${label}$`) }).locator("input");
+    assert.equal(await box.evaluate((input) => input.checked), false, `fibres are visible without ${label}`);
+  }
   const shown = await red(page);
   await keepPicture(page, "fibres");
   await page.locator("#right .lil-controller").filter({ hasText: "Fibres" }).locator("input").first().evaluate((box) => box.click());

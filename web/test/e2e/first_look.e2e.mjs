@@ -4,7 +4,7 @@ import assert from "node:assert/strict";
 import { writeFileSync } from "node:fs";
 import { join, relative } from "node:path";
 import { test } from "node:test";
-import { answered, boxOf, frames, keepPicture, openSession, pressAndWait, root, settingOf, settled, startProgram, temporaryFolder } from "./harness.mjs";
+import { answered, boxOf, frames, keepPicture, openPage, openSession, pressAndWait, root, settingOf, settled, startProgram, temporaryFolder } from "./harness.mjs";
 
 const body = (name, x) => `[[body]]
 name = "${name}"
@@ -36,6 +36,46 @@ const hues = (page) =>
     }
     return { blue, green };
   });
+
+test("a session opens with the body, a hint and its name", async () => {
+  const { page, until, close } = await openPage(two.address);
+  await until("a picture", ({ state, pictures }) => state && pictures.a);
+  assert.equal(await page.locator(".scene-name").innerText(), "two");
+  assert.ok(await page.locator(".invitation").isVisible());
+  for (const closed of ["#right", "#left", ".dock-body"]) assert.ok(!(await page.locator(closed).isVisible()), closed);
+  const view = await boxOf(page.locator("#views"));
+  assert.ok(view.width === 1024 && view.height > 480, `${view.width} x ${view.height}`);
+  await page.mouse.click(view.x + 20, view.y + 20);
+  assert.equal(await page.locator(".invitation").count(), 0, "the first touch removes the hint");
+  await close();
+});
+
+// Number of pixels in the color of the pins.
+const pinPixels = (page) =>
+  page.locator("#views canvas").first().evaluate((canvas) => {
+    const copy = new OffscreenCanvas(canvas.width, canvas.height).getContext("2d");
+    copy.drawImage(canvas, 0, 0);
+    const { data } = copy.getImageData(0, 0, canvas.width, canvas.height);
+    let count = 0;
+    for (let i = 0; i < data.length; i += 4) if (data[i] > 180 && data[i + 1] < 130 && data[i + 2] < 60) ++count;
+    return count;
+  });
+
+test("pins have one size on screens of any density", async () => {
+  const counts = [];
+  for (const deviceScaleFactor of [1, 2]) {
+    const opened = await openSession(two, { closed: true, keepsPixels: true, colorScheme: "light", deviceScaleFactor });
+    await settled(opened);
+    counts.push(await opened.until("pins", async () => {
+      const before = await pinPixels(opened.page);
+      await frames(opened.page, 4);
+      return before > 50 && before === (await pinPixels(opened.page)) && before;
+    }));
+    await opened.close();
+  }
+  const ratio = counts[1] / counts[0];
+  assert.ok(ratio > 2.5 && ratio < 7, `${counts.join(" and ")} pixels; twice the density has four times as many`);
+});
 
 test("two bodies have two colors", async () => {
   const opened = await openSession(two, { keepsPixels: true });
@@ -124,6 +164,19 @@ test("changes are undone singly or by reset", async () => {
   await answered(opened, "the material's undo", isSet, () => page.keyboard.press("z"));
   await until("its end", () => heard.scenes.a.overrides.length === 0);
   assert.equal(heard.state.a.step, steps, "the motion continues from where it was");
+  await close();
+});
+
+test("the lecture fills a phone", async () => {
+  const { page, until, close } = await openSession(two, { size: [390, 844] });
+  const lecture = page.getByRole("button", { name: "Lecture", exact: true });
+  if (await lecture.isVisible()) {
+    await lecture.click();
+    await until("no empty band", async () => {
+      const dock = await boxOf(page.locator("#dock"));
+      return dock.y + dock.height >= 843;
+    });
+  }
   await close();
 });
 

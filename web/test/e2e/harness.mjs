@@ -221,11 +221,19 @@ export async function openPage(address, { size = kSize, watchRequests = true, ke
   return opened;
 }
 
-// Opens a page that steers, at the start; or one that only `watches`.
-export async function openSession(program, { watches = false, ...options } = {}) {
+// Settings and plots, which are closed at first.
+async function openPanels(page) {
+  const settings = page.locator('#toolbar [aria-keyshortcuts="G"]');
+  if ((await settings.getAttribute("aria-expanded")) === "false") await settings.click();
+  if (await page.locator("#dock.closed").count()) await page.keyboard.press("d");
+}
+
+// Opens a page that steers, at the start; or one that only `watches`. `closed`: with the panels as they are at first.
+export async function openSession(program, { watches = false, closed = false, ...options } = {}) {
   const opened = await openPage(program.address, options);
   await opened.until("a picture", ({ state, pictures }) => state && pictures.a);
   await opened.page.locator("#views canvas").first().waitFor();
+  if (!closed && (options.size ?? kSize)[0] > 768) await openPanels(opened.page);
   if (watches) return opened;
   await steering(opened);
   await tidy(opened);

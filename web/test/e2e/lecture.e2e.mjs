@@ -32,10 +32,13 @@ test("each lecture page opens scene and panel", async () => {
     await page.locator("#left .lesson h2").filter({ hasText: lesson.title }).waitFor();
     assert.ok(lesson.look.length > 20 && lesson.claim.length > 5, context);
     await page.locator(`[role=tab][aria-selected="true"]`, { hasText: { energy: "Energy", microscope: "Microscope", landscape: "Landscape", functions: "Functions" }[lesson.panel] }).waitFor();
+    if (lesson.panel === "energy") assert.equal(await page.getByRole("tabpanel", { name: "Energy" }).getByLabel("log").isChecked(), lesson.log === true, context);
     if (lesson.function) await until(`the function of ${context}`, () => heard.messages.slice(reported).some(({ reply }) => reply?.formula !== undefined));
     await until(`a picture of ${context}`, ({ pictures, geometries }) => pictures.a && pictures.a.generation === geometries.a.generation);
     if (i % 6 === 1) await keepPicture(page, `lecture_${lesson.id}`);
   }
+  assert.ok(lessons.some(({ log }) => log), "pages about explosions");
+  assert.equal(await page.evaluate(async () => (await document.fonts.load("16px 'Noto Sans Math'", "\u{1d44e}")).length), 1, "the font of formulas");
   await close();
 });
 
@@ -55,7 +58,7 @@ test("the recorded mouse plays until a grab", async (t) => {
   }
   assert.ok(found, "a page with a recorded mouse");
   t.diagnostic(`page ${found.pages}: ${found.title}`);
-  await page.getByText("A recorded mouse plays").waitFor();
+  await page.getByText("Replaying a recorded drag").waitFor();
   await until("steps of the recorded mouse", ({ state, pictures }) => state.replaying && state.a.step > 1 && pictures.a.step > 1);
   await setPlaying(opened, false);
   assert.ok(heard.state.replaying, "a pause does not end the recorded mouse");
@@ -72,7 +75,7 @@ test("the recorded mouse plays until a grab", async (t) => {
   });
   await page.mouse.up();
   await until("a release", ({ state }) => !state.a.grab);
-  await page.getByText("the body is yours").waitFor();
+  await page.getByText("Drag the body yourself").waitFor();
   await close();
 });
 

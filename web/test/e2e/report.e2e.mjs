@@ -36,6 +36,37 @@ test("`aspic report` rewrites the report of a run", () => {
   assert.doesNotMatch(readFileSync(again, "utf8").replace(/http:\/\/www\.w3\.org\/\S*/g, ""), /(src|href)="https?:/);
 });
 
+// Counts the points of each call that draws points without an index: dots of contact.
+function countPoints() {
+  window.points = [];
+  const { drawArrays } = WebGL2RenderingContext.prototype;
+  WebGL2RenderingContext.prototype.drawArrays = function (mode, first, count) {
+    if (mode === this.POINTS) window.points.push(count);
+    return drawArrays.call(this, mode, first, count);
+  };
+}
+
+test("a report of a mesh draws a dot per contact of its table", async () => {
+  const ofMesh = join(folder, "mesh");
+  make("run", join(root, "assets/bunny.mesh"), "--steps", "25", "--out", ofMesh, "--allow-unconverged");
+  const [head, ...rows] = readFileSync(join(ofMesh, "steps.csv"), "utf8").trim().split("\n").map((line) => line.split(","));
+  const [step, contacts] = ["step", "contacts"].map((name) => head.indexOf(name));
+  const { page, until, close } = await openPage(pathToFileURL(join(ofMesh, "report.html")).href, { offline: true, prepare: (page) => page.addInitScript(countPoints) });
+  await page.locator(".place").filter({ hasText: /^step \d+/ }).waitFor();
+  for (const row of rows.filter((row) => [1, 24, 25].includes(Number(row[step])))) {
+    await page.getByLabel("Timeline: rewind to a step").fill(row[step]);
+    await page.locator(".place").filter({ hasText: new RegExp(`^step ${row[step]},`) }).waitFor();
+    await page.evaluate(() => (window.points.length = 0));
+    await page.keyboard.press("h"); // draws the picture again
+    await frames(page, 3);
+    const drawn = await page.evaluate(() => window.points);
+    const expected = Number(row[contacts]);
+    await until(`${expected} dots at step ${row[step]}`, () => expected === 0 ? drawn.every((count) => count === 0) : drawn.includes(expected) && drawn.every((count) => count === expected));
+  }
+  assert.ok(rows.some((row) => Number(row[contacts]) > 0), "some step has contacts");
+  await close();
+});
+
 test("a report plays and rewinds without requests", async () => {
   const { page, until, close } = await open();
   const view = page.locator("#views canvas").first();
@@ -93,7 +124,13 @@ test("a report explains that bodies are fixed", async () => {
     await page.mouse.down();
     await page.mouse.move(box.x + box.width / 2 + 60, box.y + box.height / 2, { steps: 5 });
     await page.mouse.up();
-    if (await page.getByText("This run is recorded").isVisible()) return true;
+    const notice = page.locator(".notice").filter({ hasText: "This run is recorded" });
+    if (await notice.isVisible()) {
+      const [above, below] = [await boxOf(page.locator("#views")), await boxOf(notice)];
+      assert.ok(below.y >= above.y + above.height, "a notice does not cover the body");
+      await notice.waitFor({ state: "detached" });
+      return true;
+    }
     await page.keyboard.press("0"); // undoes the rotation by the drag
     await frames(page);
   });

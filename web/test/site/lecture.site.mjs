@@ -21,7 +21,7 @@ async function judgedByPage({ page, heard, until }, { pages, title }, address) {
   await page.getByRole("heading", { name: `${pages}: ${title}` }).waitFor();
   assert.equal(await page.evaluate(() => location.hash), address);
   heard.messages.length = 0;
-  await page.getByRole("button", { name: "Judge this page by numbers" }).click();
+  await page.getByRole("button", { name: "Check this page's claim" }).click();
   const verdict = page.locator(".judgment b, .judgment .error");
   await verdict.waitFor({ timeout: kLongest });
   assert.equal(await verdict.textContent(), "pass", `page ${pages}`);
