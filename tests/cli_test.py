@@ -26,6 +26,8 @@ class Help(CommandLine):
             self.assertIn(fact, text)
 
     def test_misspelled_command_is_corrected(self):
+        self.assertEqual(self.aspic("help", "run").stdout, self.aspic("run", "--help").stdout)
+        self.assertEqual(self.aspic("help").stdout, self.aspic("--help").stdout)
         self.assertIn("did you mean 'check'", self.aspic("chek", "x.mesh", code=2).stderr)
 
     def test_misspelled_option_is_corrected(self):

@@ -48,6 +48,14 @@ std::vector<std::string> spread_assignments(const std::vector<std::string>& argu
   return result;
 }
 
+// Replaces `help COMMAND` by `COMMAND --help`.
+std::vector<std::string> without_help_command(std::vector<std::string> arguments) {
+  if (arguments.empty() || arguments[0] != "help") return arguments;
+  arguments.erase(arguments.begin());
+  arguments.push_back("--help");
+  return arguments;
+}
+
 constexpr char kFooter[] = R"(
 Examples:
   aspic run bunny.obj                       a closed surface or tet mesh, with defaults
@@ -154,7 +162,7 @@ int run_program(int argc, char** argv) {
     return exit_bad_input;
   }
   try {
-    std::vector<std::string> spread = spread_assignments({argv + 1, argv + argc});
+    std::vector<std::string> spread = spread_assignments(without_help_command({argv + 1, argv + argc}));
     std::reverse(spread.begin(), spread.end());  // the order that CLI11 expects
     app.parse(std::move(spread));
   } catch (const CLI::ParseError& error) {

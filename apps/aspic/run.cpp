@@ -361,7 +361,7 @@ solver.time_budget ended it) or an explicit scheme blew up, which ends the run;
                    "STEP or STEP:ITERATION: with the trace, E along the direction of that iteration and over a plane "
                    "through it; can be repeated")
       ->allow_extra_args(false);
-  command->add_flag("--quiet", arguments->quiet, "Print only warnings and errors");
+  command->add_flag("-q,--quiet", arguments->quiet, "Print only warnings and errors");
   command->add_flag("--json", arguments->json, "Print one line of JSON per step on stdout, all else on stderr");
   command->add_flag("--allow-unconverged", arguments->allow_unconverged, "Exit with 0 even if a step did not converge");
   command->callback([arguments, &action] {

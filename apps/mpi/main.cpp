@@ -28,7 +28,7 @@ Exit codes: 0 done, 1 internal error, 2 bad input, 3 some step did not converge 
   command->add_flag("--force", arguments.force, "Overwrite the results of an earlier run");
   command->add_flag("--resume", arguments.resume, "Continue a run, on any number of ranks");
   command->add_flag("--allow-unconverged", arguments.allow_unconverged, "Exit with 0 even if a step did not converge");
-  command->add_flag("--quiet", arguments.quiet, "Print only warnings and errors");
+  command->add_flag("-q,--quiet", arguments.quiet, "Print only warnings and errors");
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& e) {

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <numeric>
+#include <utility>
 
 #include "base/printable.h"
 
@@ -23,6 +24,37 @@ size_t edit_distance(std::string_view a, std::string_view b) {
   return row.back();
 }
 
+// Names of the literature and of other programs, in lower case, and ours.
+constexpr std::pair<std::string_view, std::string_view> kSynonyms[] = {
+    {"e", "young"},
+    {"youngs_modulus", "young"},
+    {"young_modulus", "young"},
+    {"elastic_modulus", "young"},
+    {"nu", "poisson"},
+    {"poissons_ratio", "poisson"},
+    {"poisson_ratio", "poisson"},
+    {"rho", "density"},
+    {"k", "stiffness"},
+    {"mu", "friction"},
+    {"friction_coefficient", "friction"},
+    {"dt", "step"},
+    {"h", "step"},
+    {"timestep", "step"},
+    {"time_step", "step"},
+    {"g", "gravity"},
+    {"dhat", "reach"},
+    {"d_hat", "reach"},
+};
+
+// Returns the entry of `known` that means the same as `word`; empty if there is none.
+std::string synonym(std::string_view word, const std::vector<std::string>& known) {
+  std::string lower(word);
+  for (char& c : lower) c = c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
+  for (const auto& [other, own] : kSynonyms)
+    if (other == lower && std::find(known.begin(), known.end(), own) != known.end()) return std::string(own);
+  return "";
+}
+
 std::string lines_of(const std::vector<std::string>& messages) {
   std::string lines;
   for (const std::string& message : messages)
@@ -38,6 +70,7 @@ InvalidInput::InvalidInput(const std::vector<std::string>& messages) : std::runt
 
 std::string nearest_name(std::string_view word, const std::vector<std::string>& known) {
   if (word.size() > 64) return "";  // too long for a typing error
+  if (std::string same = synonym(word, known); !same.empty()) return same;
   const std::string* best = nullptr;
   size_t best_distance = std::max<size_t>(2, word.size() / 3) + 1;
   for (const std::string& name : known) {

@@ -15,6 +15,14 @@ TEST(NearestName, HasFewestTypingErrors) {
   EXPECT_EQ(nearest_name("bax", kKnown), "box");
 }
 
+TEST(NearestName, KnowsSynonyms) {
+  EXPECT_EQ(nearest_name("E", kKnown), "young");
+  EXPECT_EQ(nearest_name("Youngs_modulus", kKnown), "young");
+  EXPECT_EQ(nearest_name("nu", kKnown), "poisson");
+  EXPECT_EQ(nearest_name("rho", kKnown), "density");
+  EXPECT_EQ(nearest_name("rho", {"young"}), "");
+}
+
 TEST(NearestName, IsEmptyIfNoneIsClose) {
   EXPECT_EQ(nearest_name("gravity", kKnown), "");
   EXPECT_EQ(nearest_name("young", {}), "");
