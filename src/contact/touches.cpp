@@ -9,9 +9,9 @@
 namespace aspic {
 namespace {
 
-constexpr double kFacing = 0.05;    // least cosine of the angle between the outward normal of a point and the way out
+constexpr double kFacing = 0.05;  // least cosine of the angle between the outward normal of a point and the way out
 constexpr double kAlmostParallel = 1e-3;  // sine of the angle below which edges count as parallel
-constexpr double kClear = 1.001;    // relative to the reach
+constexpr double kClear = 1.001;          // relative to the reach
 
 class Touches {
  public:

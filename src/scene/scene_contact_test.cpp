@@ -97,7 +97,8 @@ TEST(SceneContact, DerivativesAreCheckedWhereBodiesTouch) {
 
 // At the start of a step nothing slips, where the second derivatives of friction have a kink.
 TEST(SceneContact, DerivativesAreCheckedFromAStartInTouch) {
-  const Scene scene = load(kCube + "[[obstacle]]\nplane = { origin = [0, -5e-4, 0] }\n[contact]\nfriction = 0.3\nreach = 0.01\n");
+  const Scene scene =
+      load(kCube + "[[obstacle]]\nplane = { origin = [0, -5e-4, 0] }\n[contact]\nfriction = 0.3\nreach = 0.01\n");
   int checked = 0;
   for (const TermDerivatives& t : check_step_derivatives(scene.simulation)) {
     EXPECT_TRUE(t.report.gradient.passed && t.report.hessian.passed) << t.term << ' ' << t.state;
@@ -122,7 +123,8 @@ TEST(SceneContact, RejectsBadInput) {
 class ObstacleFiles : public FolderTest {
  protected:
   ObstacleFiles() {
-    const std::string floor = "\n[[obstacle]]\nname = \"floor\"\nplane = { origin = [0, -1e-3, 0] }\n[contact]\nreach = 0.01\n";
+    const std::string floor =
+        "\n[[obstacle]]\nname = \"floor\"\nplane = { origin = [0, -1e-3, 0] }\n[contact]\nreach = 0.01\n";
     const std::string slab =
         "[[obstacle]]\nname = \"slab\"\nshape = { box = { lower = [2, 0, 0], upper = [3, 1, 1], cells = [1, 1, 1] } "
         "}\n";

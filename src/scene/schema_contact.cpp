@@ -15,7 +15,8 @@ void add_contact_sections(Schema& s) {
            "unless `pair` gives another",
            kNotNegative, Usual{"0.0", "none; rubber on a smooth floor has 0.3 to 0.8"}),
        key("reach", kNumber,
-           "distance at which contact forces begin; default, per pair: a fiftieth of the mean edge of the finer surface, at "
+           "distance at which contact forces begin; default, per pair: a fiftieth of the mean edge of the finer "
+           "surface, at "
            "most a fifth of the gap at the start and a tenth of the thickness of a thin part",
            Units{"m"}, kPositive),
        key("stiffness", kNumber, "pressure scale of contact forces; default: a tenth of the smaller Young's modulus",
@@ -24,7 +25,8 @@ void add_contact_sections(Schema& s) {
            "largest speed of surfaces that stick; default: 1e-4 sqrt(9.81 m/s^2 L) for bodies of size L", Units{"m/s"},
            kPositive),
        key("start", kText,
-           "`apart`: overlap is an error, but surfaces may touch; `inflate`: bodies without pins that overlap shrink, then "
+           "`apart`: overlap is an error, but surfaces may touch; `inflate`: bodies without pins that overlap shrink, "
+           "then "
            "grow back in contact",
            Choices{{"apart", "inflate"}}, Usual{"\"apart\"", "overlap is most often a mistake"}),
        key("pair", kTables, "friction of single pairs", Members{"pair"})});
