@@ -28,6 +28,17 @@ double lowest(const Simulation& simulation) {
   return bottom;
 }
 
+// Takes steps. Returns the largest rise of the highest point above the start [m].
+double largest_rise(Simulation& simulation, int steps, const std::string& what) {
+  const double start = highest(simulation);
+  double most = start;
+  for (int i = 0; i < steps; ++i) {
+    take_steps(simulation, 1, what);
+    most = std::max(most, highest(simulation));
+  }
+  return most - start;
+}
+
 // A cube of 0.1 m, nu = 0, under a plate that moves down by `travel` from `gap` above it. Returns the force [N].
 double press_force(double gap, double travel, double young, Findings& found) {
   TouchingModel given{
@@ -81,15 +92,10 @@ double stacked(double gap, const Subject& subject, Findings& found) {
     given.bodies.push_back({make_box({{0, bottom, 0}}, {{0.05, bottom + kThickness, 0.03}}, {4, 1, 3}), 1e9});
   }
   Simulation simulation = simulate(make_touching(given), {.h = 0.01, .solver = {}});
-  const double start = highest(simulation);
-  double most = start;
-  for (int i = 0; i < (subject.quick ? 20 : 60); ++i) {
-    take_steps(simulation, 1, "stack of cards");
-    most = std::max(most, highest(simulation));
-  }
+  const double rise = largest_rise(simulation, subject.quick ? 20 : 60, "stack of cards");
   const std::string name = "gaps of " + std::to_string(gap * 1e3).substr(0, 4) + " mm: ";
   expect_contact(name, simulation, found);
-  found.expect_small(name + "rise above the start", most - start, 1e-9, "nothing pushes at the start", "m");
+  found.expect_small(name + "rise above the start", rise, 1e-9, "nothing pushes at the start", "m");
   return highest(simulation);
 }
 
@@ -108,14 +114,9 @@ void check_drop(const Subject& subject, Findings& found) {
                       .has_floor = true,
                       .gravity = {{0, -kGravity, 0}}};
   Simulation simulation = simulate(make_touching(given), {.h = 0.01, .solver = {}});
-  const double start = highest(simulation);
-  double most = start;
-  for (int i = 0; i < (subject.quick ? 50 : 300); ++i) {
-    take_steps(simulation, 1, "cube on the floor");
-    most = std::max(most, highest(simulation));
-  }
+  const double rise = largest_rise(simulation, subject.quick ? 50 : 300, "cube on the floor");
   expect_contact("", simulation, found);
-  found.expect_small("rise above the start", most - start, 1e-9, "nothing pushes at the start", "m");
+  found.expect_small("rise above the start", rise, 1e-9, "nothing pushes at the start", "m");
   found.expect_small("gap at rest", lowest(simulation), kAbove / 5,
                      "at most the reach, a fifth of the gap at the start", "m");
 }
