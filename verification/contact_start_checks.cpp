@@ -49,7 +49,7 @@ double press_force(double gap, double travel, double young, Findings& found) {
   model.pins.push_back({"bottom", bottom, {}});
   const Simulation simulation = equilibrium(std::move(model), 4, "press", 1e-10);
   if (travel > gap) expect_contact("gap " + std::to_string(1e3 * gap) + " mm: ", simulation, found);
-  return -sum_over(bottom, elastic_forces(simulation))[1];
+  return sum_over(bottom, elastic_forces(simulation))[1];
 }
 
 void check_press(const Subject& subject, Findings& found) {

@@ -168,7 +168,7 @@ struct Blocks {
 constexpr double kShortened = 0.05;  // of the height of both blocks, 1
 
 Pressed pressed_blocks(const Blocks& blocks, double young, Findings& found) {
-  const double gap = 1e-3;
+  const double gap = 0.03;  // so large that the reach is a fiftieth of the edges
   const auto [n, up, only_facing] = blocks;
   TouchingModel given{.bodies = {{make_box({{0, 0, 0}}, {{1, 0.5, 1}}, {n, n, n})},
                                  {make_box({{0, 0.5 + gap, 0}}, {{1, 1 + gap, 1}}, {up, n, up})}},
