@@ -295,6 +295,22 @@ class Start(Folder):
                           for surface in exact.body_surfaces(path) for vertex in surface.points)
             self.assertLess(highest, 1.001)  # nothing is thrown off
 
+    def test_excess_of_a_pressed_force_is_estimated(self):
+        plate = ('[[obstacle]]\nname = "plate"\nplane = { origin = [0, 1.001, 0], normal = [0, -1, 0] }\n'
+                 'motion = { displacement = [0, "-0.01 * t", 0] }\n')
+        held = '[[body.pin]]\nname = "base"\nwhere = "y < 0.001"\naxes = "y"\n[[body.pin]]\nwhere = "x < 0.001"\naxes = "x"\n' \
+               '[[body.pin]]\nwhere = "z < 0.001"\naxes = "z"\n'
+        cube = self.CUBE.replace("young = 1e5", 'model = "linear", young = 1e5, poisson = 0.3')
+        done = self.run_scene('gravity = [0, 0, 0]\n[time]\nintegrator = "quasi_static"\nstep = 0.5\nduration = 1\n[output]\nreport = false\n'
+                              "[solver]\ntolerance = 1e-8\n" + cube + held + plate)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        row = self.steps()[-1]
+        exact, force = 1e5 * 0.009, abs(float(row["reaction_base_y"])) if "reaction_base_y" in row else None
+        self.assertIsNotNone(force, list(row))
+        self.assertLess(force / exact - 1, 0.0002 / 0.009)
+        self.assertAlmostEqual(float(row["contact_force_error"]), 1 - exact / force, delta=1e-4)
+        self.assertEqual(float(row["gap_error"]), 0.0002)
+
     def test_what_pierces_a_body_is_named(self):
         (self.folder / "needle.obj").write_text("v 0.3 0.3 0.3\nv 0.3 0.32 -0.2\nv 0.3 0.34 -0.7\nf 1 2 3\n")
         for obstacle in ('mesh = "needle.obj"', "capsule = { from = [0.3, 0.3, 0.3], to = [0.3, 0.35, -0.7], radius = 0.01 }"):

@@ -98,7 +98,7 @@ void print_contact(std::FILE* stream, const RunTotals& totals, const RunEnd& end
   if (totals.gap_error == 0) return;
   fmt::print(stream, "contact    gaps of at most {:.3g} m remain between surfaces in contact", totals.gap_error);
   if (totals.contact_force_error > 0)
-    fmt::print(stream, "; they make forces between prescribed motions too large by up to {:.2g} % (estimate)",
+    fmt::print(stream, "; where pins and obstacles press, they make forces too large by up to {:.2g} % (estimate)",
                100 * totals.contact_force_error);
   fmt::print(stream, "\n");
 }

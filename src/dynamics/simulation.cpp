@@ -252,14 +252,13 @@ struct Simulation::Impl {
     report.state_hash = hash();
   }
 
-  // A linear body that is shortened by s needs the force K s. Gaps g shorten it by s + g, with the energy
+  // In statics: a linear body that is shortened by s needs the force K s. Gaps g shorten it by s + g, with the energy
   // K (s + g)^2 / 2. Hence the force is too large by the fraction g / (s + g) of itself.
   double force_error(double gap_work, const StepReport& report) const {
-    const bool is_prescribed = !model.pins.empty() || model.contact->obstacle_count() > 1;
     const auto first = report.potential.begin();
     const size_t bodies = std::min(model.elasticity.size(), report.potential.size());
     const double elastic = std::accumulate(first, first + static_cast<std::ptrdiff_t>(bodies), 0.0);
-    if (!is_prescribed || !(gap_work > 0)) return 0;
+    if (!integrator->facts().is_static() || !(gap_work > 0)) return 0;
     return elastic > gap_work / 2 ? gap_work / (2 * elastic) : 1;
   }
 

@@ -168,8 +168,7 @@ std::vector<StepField>& fields() {
           {"gap_error", "m", "bound of the gap that remains between surfaces in contact: their largest reach"},
           kMeasured)),
       optional(real<&R::contact_force_error>(
-          {"contact_force_error", "1", "estimate of the relative excess of contact forces between prescribed motions"},
-          kMeasured)),
+          {"contact_force_error", "1", "statics: estimate of the relative excess of contact forces"}, kMeasured)),
       optional(real<&R::friction_loss>({"friction_loss", "J", "share of friction in `damping_loss`"}, kMeasured)),
       optional(real<&R::friction_creep>({"friction_creep", "m", "largest slip of a sticking contact in this step"},
                                         kMeasured)),

@@ -14,6 +14,8 @@ export interface StepFields {
   min_gap: MaybeNumber; // smallest distance between surfaces in contact; 0 without contacts [m]
   min_gap_pair: string; // bodies or obstacles with this gap
   max_pressure: MaybeNumber; // largest contact pressure [Pa]
+  gap_error: MaybeNumber; // bound of the gap that remains between surfaces in contact: their largest reach [m]
+  contact_force_error: MaybeNumber; // statics: estimate of the relative excess of contact forces [1]
   friction_loss: MaybeNumber; // share of friction in damping_loss [J]
   friction_creep: MaybeNumber; // largest slip of a sticking contact in this step [m]
   friction_residual: MaybeNumber; // change of friction by the last update of normal forces [N]
@@ -49,6 +51,8 @@ export const kUnknownStep: StepFields = {
   min_gap: null,
   min_gap_pair: "",
   max_pressure: null,
+  gap_error: null,
+  contact_force_error: null,
   friction_loss: null,
   friction_creep: null,
   friction_residual: null,
