@@ -18,9 +18,9 @@ constexpr int kMaxParts = 200;
 // the gap is. Afterwards, Newton directions carry the body along.
 constexpr double kSmallestApproach = 1e-8;
 constexpr int kPatience = 6;  // moves by less than kSmallestPart in a row
-// Largest rise of E in a move, relative to the energy of doubling the body. Newton's method reduces the exponent of an
-// exponential law by about 1 per iteration.
-constexpr double kMostRise = 1e3;
+// Largest rise of E when all pins move at once, and when they move in fractions, relative to the energy of doubling the
+// body. Newton's method reduces the exponent of an exponential law by about 1 per iteration.
+constexpr double kMostRise = 1e3, kMostRiseOfPart = 1;
 
 MinimizeOptions rough(const MinimizeOptions& options) {
   MinimizeOptions few = options;
@@ -174,7 +174,7 @@ Evaluation advance_boundary(const StepTools& tools, double time, std::span<const
     const double at_start = tools.E.value(from);
     ++work.values;
     if (is_possible && !(at_once.value - at_start > most)) return at_once;
-    if (!carries) boundary.limit_rise(at_start, most);
+    if (!carries) boundary.limit_rise(at_start, kMostRiseOfPart * tools.E.scales().value);
   }
   if (carries ? carry_all(boundary) : move_all(boundary)) {
     std::copy(boundary.reached().begin(), boundary.reached().end(), q.begin());
