@@ -37,7 +37,8 @@ class Touches {
   void add_edges(const Edge& a, const Edge& b) {
     const ContactLaw& law = laws_(mesh_.part[a[0]], mesh_.part[b[0]]);
     const Distance distance = edge_edge_distance({x_[a[0]], x_[a[1]], x_[b[0]], x_[b[1]]});
-    if (!touches(distance.d, law)) return;
+    // Ends of edges are points, which touch triangles.
+    if (distance.type != DistanceType::edge_edge || !touches(distance.d, law)) return;
     const Vec3d u = unit(x_[a[1]] - x_[a[0]]), v = unit(x_[b[1]] - x_[b[0]]);
     Vec3d normal = law.radius > 0 ? distance.r : cross(u, v);
     if (law.radius == 0 && norm(normal) < kAlmostParallel) return;

@@ -307,7 +307,8 @@ TEST_F(Renumbered, ExplanationsNameTheUsersVertex) {
 TEST_F(Renumbered, ErrorsNameTheUsersVerticesAndTets) {
   for (const Files* files : {&plain, &other}) {
     const std::string twice = "[[body]]\nmesh = \"bar.msh\"\n[[body.pin]]\nwhere = " + files->vertices({4, 9}) +
-                              "\n[[body.pin]]\nwhere = " + files->vertices({9, 11}) + "\n";
+                              "\n[[body.pin]]\nwhere = " + files->vertices({9, 11}) +
+                              "\nmotion = { linear = { velocity = [0, 1, 0] } }\n";
     EXPECT_THAT(refusal_of(files->write("s.toml", twice)), HasSubstr("vertex " + files->vertex(9) + " of body"));
 
     TetMesh mesh = read_tet_mesh(files->folder / "bar.msh");

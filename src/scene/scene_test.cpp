@@ -206,7 +206,7 @@ TEST(Scene, EmptySelectionIsRejectedWithExtent) {
 TEST(Scene, VertexInTwoPinsNamesBoth) {
   EXPECT_THAT(
       refusal(kCube + "[[body.pin]]\nname = \"left\"\nwhere = \"x < 0.1\"\n[[body.pin]]\nname = \"low\"\nwhere = "
-                      "\"y < 0.1\"\n"),
+                      "\"y < 0.1\"\nmotion = { linear = { velocity = [0, 1, 0] } }\n"),
       AllOf(HasSubstr("beam.toml:9:9"), HasSubstr("'left'"), HasSubstr("'low'"), HasSubstr("(0, 0, 0)")));
 }
 
