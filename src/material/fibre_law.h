@@ -1,10 +1,10 @@
 // Energy of a family of fibres with dispersion, beside any material [Gasser 2006]:
 //   psi = k1/(2 k2) (exp(k2 s(E)) - 1),   E = H : F'F - 1,   H = kappa I + (1 - 3 kappa) a a'
 // for fibres along the unit vector a at rest. kappa = 0: all fibres along a; kappa = 1/3: in all directions alike. The
-// fibres act in tension only: s = 0 for E < 0 and E^2 for E > eps, exactly, with a quintic between that makes two
-// derivatives continuous. E is a convex function of F and psi a convex nondecreasing one of E, so Hessians are positive
-// semidefinite. F is not split into volume and shape, which would let fibres stretch a compressible body without bound
-// [Nolan 2014].
+// fibres act in tension only: s = 0 for E < 0 and E^2 for E > eps, exactly, with a polynomial between that makes three
+// derivatives continuous at 0 and two at eps. E is a convex function of F and psi a convex nondecreasing one of E, so
+// Hessians are positive semidefinite. F is not split into volume and shape, which would let fibres stretch a
+// compressible body without bound [Nolan 2014].
 #pragma once
 #include "material/from_invariants.h"
 #include "math/pack.h"
@@ -12,7 +12,7 @@
 namespace aspic {
 
 struct FibreLaw {
-  static constexpr double kEps = 0.002;  // strain E over which fibres straighten
+  static constexpr double kEps = 0.01;  // strain E over which fibres straighten
 
   template <class T>
   struct Params {
@@ -68,9 +68,9 @@ struct FibreLaw {
   template <class T>
   static Response<T> response(const Mat3<T>& F, const Mat3<T>& H, const Params<T>& p) {
     const T E = inner(F * H, F) - T(1.0), t = E * T(1 / kEps), zero = T(0.0);
-    const T s = piecewise(E, zero, T(kEps * kEps) * t * t * t * (T(3.0) + t * (t - T(3.0))), E * E);
-    const T ds = piecewise(E, zero, T(kEps) * t * t * (T(9.0) + t * (T(5.0) * t - T(12.0))), T(2.0) * E);
-    const T dds = piecewise(E, zero, t * (T(18.0) + t * (T(20.0) * t - T(36.0))), T(2.0));
+    const T s = piecewise(E, zero, T(kEps * kEps) * t * t * t * t * (T(6.0) + t * (T(3.0) * t - T(8.0))), E * E);
+    const T ds = piecewise(E, zero, T(kEps) * t * t * t * (T(24.0) + t * (T(18.0) * t - T(40.0))), T(2.0) * E);
+    const T dds = piecewise(E, zero, t * t * (T(72.0) + t * (T(90.0) * t - T(160.0))), T(2.0));
     const T growth = exp(p.k2 * s);
     return {.energy = T(0.5) * p.k1 / p.k2 * (growth - T(1.0)),
             .slope = T(0.5) * p.k1 * growth * ds,
