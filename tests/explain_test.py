@@ -108,7 +108,7 @@ class Explain(Explanations):
         self.run_scene("--set", f'body.beam.pin.1.where="{where}"')
 
     def test_a_pin_within_another(self):
-        self.scene(pins='[[body.pin]]\nname = "edge"\nwhere = "x < 1e-10"')
+        self.scene(pins='[[body.pin]]\nname = "edge"\nwhere = "x < 1e-10"\nmotion = { linear = { velocity = [1, 0, 0] } }')
         text = self.run_scene(code=2)
         self.assertIn("remove pin 'edge'", text)
         self.scene()

@@ -292,7 +292,7 @@ class Lecture(CommandLine):
             self.assertRegex(str([d["remarks"] for d in summary["demonstrations"]]), why)
         page = (self.folder / "out/lecture/index.html").read_text()
         for demonstration in summary["demonstrations"]:
-            self.assertIn(demonstration["title"], page)
+            self.assertIn(demonstration["title"].replace('"', "&quot;"), page)
         self.assertNotIn("http://", page.replace("http://www.w3.org", ""))
 
     def test_step_without_single_minimization_is_refused(self):

@@ -124,17 +124,38 @@ void check_drop(const Subject& subject, Findings& found) {
 }  // namespace
 
 void add_contact_start_checks(std::vector<Check>& checks) {
-  checks.push_back({"contact", "press", "A plate presses a block",
+  checks.push_back({"contact",
+                    "press",
+                    "A plate presses a block",
                     "A block of 0.1 m, E = 1e5 Pa, nu = 0. The plate starts 0.1 mm above it and shortens it by 0.9 mm.",
-                    "F = E A 0.009, and no force of a plate that stays 0.1 mm away", check_press});
-  checks.push_back({"contact", "slot", "A block in a slot with a clearance of 0.1 mm",
-                    "It falls along the slot, or rests on one wall.", "Free fall; the clearance", check_slot});
-  checks.push_back({"contact", "cards", "A stack of cards",
+                    "F = E A 0.009, and no force of a plate that stays 0.1 mm away",
+                    check_press,
+                    {},
+                    {R"tex(F = E A \frac{0.9}{100})tex"}});
+  checks.push_back({"contact",
+                    "slot",
+                    "A block in a slot with a clearance of 0.1 mm",
+                    "It falls along the slot, or rests on one wall.",
+                    "Free fall; the clearance",
+                    check_slot,
+                    {},
+                    {R"tex(y_n = -\frac{1}{2} g h^2 n (n + 1))tex"}});
+  checks.push_back({"contact",
+                    "cards",
+                    "A stack of cards",
                     "Three cards of 0.2 mm, with elements of 10 mm, fall onto one another.",
-                    "The height of the stack is three times the thickness", check_cards});
-  checks.push_back({"contact", "drop", "A heavy cube falls by 5 mm",
-                    "A cube of 1 m and 1 t, one cell, starts 5 mm above the floor.", "It rests on the floor",
-                    check_drop});
+                    "The height of the stack is three times the thickness",
+                    check_cards,
+                    {},
+                    {R"tex(H = 3 t)tex"}});
+  checks.push_back({"contact",
+                    "drop",
+                    "A heavy cube falls by 5 mm",
+                    "A cube of 1 m and 1 t, one cell, starts 5 mm above the floor.",
+                    "It rests on the floor",
+                    check_drop,
+                    {},
+                    {R"tex(0 < d \le \frac{1}{5} d_0)tex"}});
 }
 
 }  // namespace aspic::verify

@@ -18,7 +18,7 @@ class InvalidInput : public std::runtime_error {
   explicit InvalidInput(const std::vector<std::string>& messages);  // one per line
 };
 
-// Returns the entry of `known` closest to `word` by edit distance; empty if none is close.
+// Returns the synonym of `word` in `known`, or the entry closest by edit distance; empty if none is close.
 std::string nearest_name(std::string_view word, const std::vector<std::string>& known);
 
 // Returns " (did you mean 'young'?)" or, if no known name is close, " (known: a, b, c)".

@@ -155,10 +155,6 @@ std::vector<Touch> Barrier::touches(Positions x, double time) const {
 }
 
 bool Barrier::has_moving_obstacle() const { return impl_->has_motion; }
-int Barrier::obstacle_count() const {
-  const auto& parts = impl_->mesh.parts;
-  return static_cast<int>(std::count_if(parts.begin(), parts.end(), [](const auto& part) { return part.is_obstacle; }));
-}
 ContactMeter& Barrier::meter() const { return impl_->search.meter(); }
 
 std::vector<Vec3d> Barrier::obstacle_points(double time) const { return impl_->obstacles(time); }

@@ -70,7 +70,6 @@ class Barrier : public Energy, public StepLimitingEnergy, public StoppingEnergy 
   ContactSummary summary(Positions x, double time) const;
   ContactEnergy energy(Positions x, double time) const;
   bool has_moving_obstacle() const;
-  int obstacle_count() const;
   // Returns pairs of moving obstacles and bodies, as "plate and ball", that would collide if obstacles moved and bodies
   // stayed at x.
   std::vector<std::string> blocked_parts(Positions x, double from, double to) const;
