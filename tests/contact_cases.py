@@ -127,8 +127,8 @@ def bad_surfaces(steps):
                           ("crossing obstacle", crossing), ("degenerate triangles", flat)):
         yield case(name, [falling], obstacles=[("lower", surface)], h=.01, steps=steps, check=all_of(touches, stays_above(0)), codes=(0, 2))
     for name, gap in (("coincident faces", 0.0), ("touching within round-off", 1e-16)):
-        yield case(name, [body("lower", box()), body("upper", placed(box(), (0, 1 + gap, 0)))], h=.01, steps=2, codes=(2,))
-    yield case("shared vertex", [body("lower", spike()), body("upper", placed(spike(), (0, 6, 0), flip=True))], h=.01, steps=2, codes=(2,))
+        yield case(name, [body("lower", box()), body("upper", placed(box(), (0, 1 + gap, 0)))], h=.01, steps=2, codes=(0,))
+    yield case("shared vertex", [body("lower", spike()), body("upper", placed(spike(), (0, 6, 0), flip=True))], h=.01, steps=2, codes=(0,))
     shell = lattice([(-1, -.8, .8, 1)] * 3, keep=lambda cell: cell != (1, 1, 1))
     yield case("nested bodies", [body("shell", placed(shell, (0, 1.01, 0))), body("core", placed(box(), (0, .52, 0)))], planes=FLOOR,
                h=.01, steps=steps, check=touches, codes=(0, 3))

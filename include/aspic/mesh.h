@@ -2,6 +2,7 @@
 #pragma once
 #include "io/mesh_file.h"
 #include "mesh/generators.h"
+#include "mesh/mesh_groups.h"
 #include "mesh/numbering.h"
 #include "mesh/surface.h"
 #include "mesh/tet_mesh.h"

@@ -62,8 +62,8 @@ struct StepReport : Work {  // work of all solves of the step and of this report
   std::string min_gap_pair;  // names of the parts that have it
   double max_pressure = 0;   // [Pa]
   double gap_error = 0;      // bound of the gap that remains between surfaces in contact: their largest reach [m]
-  // Statics: estimate of the relative excess of contact forces, if pins and obstacles press bodies together: work of the
-  // contact forces along their gaps over twice the elastic energy [1].
+  // Statics: estimate of the relative excess of contact forces, if pins and obstacles press bodies together: work of
+  // the contact forces along their gaps over twice the elastic energy [1].
   double contact_force_error = 0;
   double friction_loss = 0;      // share of friction in damping_loss [J]
   double friction_creep = 0;     // largest slip of sticking contacts in the step [m]
