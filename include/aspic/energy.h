@@ -6,6 +6,7 @@
 #include "energy/linear_load.h"
 #include "energy/mass.h"
 #include "energy/pressure.h"
+#include "energy/pressure_rim.h"
 #include "energy/rayleigh_damping.h"
 #include "energy/springs.h"
 #include "energy/stiff_energy.h"

@@ -2,5 +2,6 @@
 #pragma once
 #include "dynamics/model.h"
 #include "dynamics/model_builder.h"
+#include "dynamics/pressure_load.h"
 #include "dynamics/share.h"
 #include "dynamics/state.h"
