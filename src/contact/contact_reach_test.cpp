@@ -99,7 +99,8 @@ TEST(Touches, SeparateTouchingBoxes) {
   }
   EXPECT_GT(own[0], 0);
   EXPECT_GT(own[1], 0);
-  for (size_t i = 1; i < parts.q.size(); i += 3) parts.q[i] *= 1.001;
+  constexpr size_t kLower = 27;  // vertices of the lower box
+  for (size_t i = 3 * kLower + 1; i < parts.q.size(); i += 3) parts.q[i] += 0.01;
   EXPECT_EQ(Barrier(parts.mesh, {.start = parts.q}).touches(parts.q, 0).size(), 0U);
 }
 

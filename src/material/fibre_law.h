@@ -12,7 +12,7 @@
 namespace aspic {
 
 struct FibreLaw {
-  static constexpr double kEps = 0.01;  // strain E over which fibres straighten
+  static constexpr double kEps = 0.03;  // strain E over which fibres straighten
 
   template <class T>
   struct Params {
@@ -67,10 +67,10 @@ struct FibreLaw {
 
   template <class T>
   static Response<T> response(const Mat3<T>& F, const Mat3<T>& H, const Params<T>& p) {
-    const T E = inner(F * H, F) - T(1.0), t = E * T(1 / kEps), zero = T(0.0);
-    const T s = piecewise(E, zero, T(kEps * kEps) * t * t * t * t * (T(6.0) + t * (T(3.0) * t - T(8.0))), E * E);
-    const T ds = piecewise(E, zero, T(kEps) * t * t * t * (T(24.0) + t * (T(18.0) * t - T(40.0))), T(2.0) * E);
-    const T dds = piecewise(E, zero, t * t * (T(72.0) + t * (T(90.0) * t - T(160.0))), T(2.0));
+    const T E = inner(F * H, F) - T(1.0), t = E * T(1 / kEps), zero = T(0.0), t4 = t * t * t * t;
+    const T s = piecewise(E, zero, T(kEps * kEps / 3) * t4 * (T(10.0) + t * t * (T(8.0) * t - T(15.0))), E * E);
+    const T ds = piecewise(E, zero, T(kEps / 3) * t * t * t * (T(40.0) + t * t * (T(56.0) * t - T(90.0))), T(2.0) * E);
+    const T dds = piecewise(E, zero, t * t * (T(40.0) + t * t * (T(112.0) * t - T(150.0))), T(2.0));
     const T growth = exp(p.k2 * s);
     return {.energy = T(0.5) * p.k1 / p.k2 * (growth - T(1.0)),
             .slope = T(0.5) * p.k1 * growth * ds,

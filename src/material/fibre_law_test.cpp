@@ -72,6 +72,7 @@ TEST(FibreLaw, FollowsTheExponentialInTensionAndIsSlackInCompression) {
       const auto p = along({{1, 0, 0}}, kappa, k2);
       for (const double l : {1.02, 1.05, 1.3, 1.5}) {
         const double across = 1 / std::sqrt(l), E = kappa * (l * l + 2 / l) + (1 - 3 * kappa) * l * l - 1;
+        if (E < FibreLaw::kEps) continue;
         const double slope = k1 * E * std::exp(k2 * E * E);
         const Mat3d P = FibreLaw::pk1(diagonal(l, across, across), p);
         EXPECT_NEAR(P(0, 0), 2 * slope * (1 - 2 * kappa) * l, 1e-12 * (1 + slope)) << l << " " << kappa;

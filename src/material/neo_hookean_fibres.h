@@ -68,7 +68,7 @@ struct NeoHookeanFibres {
              R"tex(\bar I_1 = J^{-2/3}\, I_1, \quad K = \lambda + \tfrac23 \mu)tex",
              R"tex(\psi = \infty \quad (J \le 0))tex"},
         .remarks =
-            "One family of fibres along a, which act in tension only and straighten over E = 0.01. A direction of "
+            "One family of fibres along a, which act in tension only and straighten over E = 0.03. A direction of "
             "length 0 has no fibres. [Gasser 2006] without dispersion. +inf for J <= 0.",
         .extra = {{.name = "fibre_ratio",
                    .unit = "1",
