@@ -84,6 +84,7 @@ class Modes(CommandLine):
 
     def test_frames_open_as_results(self):
         text = self.aspic("modes", self.beam(), "--count", "3", "--time-limit", "60").stdout
+        self.assertEqual(self.aspic("modes", self.beam(), "--count", "3", "--out", "quiet", "-q").stdout, "")
         self.assertRegex(text, r"(?m)^ +3 +\d")
         with open(self.folder / "out/beam_modes/modes.csv", newline="") as file:
             rows = list(csv.DictReader(file))

@@ -627,7 +627,7 @@ class Shares(Ranks):
 
     def test_gamg_replaces_multigrid_that_does_not_converge(self):
         """Nearly incompressible linear tets: GAMG solves the same system after 500 iterations, from the same start."""
-        options = ("--set", "solver.max_iterations=1", "--set", "solver.tolerance=1e-4", "--steps", "1")
+        options = ("--set", "solver.max_iterations=1", "solver.tolerance=1e-4", "--steps", "1")
         for linear in ("auto", "multigrid"):
             scene = self.folder / self.scene(cells="24, 6, 6", young="1e7", solver=f'linear = "{linear}"')
             scene.write_text(scene.read_text().replace("poisson = 0.4", "poisson = 0.49999"))

@@ -100,6 +100,7 @@ class Ensemble(Sweep):
         self.assertTrue(all(row["status"] == "done" and row["steps"] == "40" and not row["reason"] for row in rows))
         self.assert_equal_to_single_runs(rows)
         self.assertIn("</html>", (self.folder / "study/index.html").read_text())
+        self.assertIn("reaction of ", (self.folder / "study/index.html").read_text())
 
     def aspic_fails(self, *arguments):
         return subprocess.run([ASPIC, *arguments], cwd=self.folder, capture_output=True).returncode != 0

@@ -153,6 +153,7 @@ std::string describe(const Minimization& done) {
     case Status::interrupted:
     case Status::unstable:  // only for time steps
     case Status::inaccurate:
+    case Status::inverted:
       break;
   }
   return fmt::format("interrupted after {} iterations", report.iterations);

@@ -29,7 +29,7 @@ struct ModesArguments {
   std::string about = "rest";
   int count = 10, threads = 0;  // 0: all cores
   double time_limit = 0;        // [s]; 0: none
-  bool force = false, json = false;
+  bool force = false, json = false, quiet = false;
 };
 
 constexpr double kAmplitude = 0.1;  // largest displacement of a frame, relative to the size of the model
@@ -119,7 +119,7 @@ int compute(const ModesArguments& arguments) {
   const StopToken limit = arguments.time_limit > 0 ? StopToken(clock, arguments.time_limit) : StopToken();
   if (arguments.threads > 0) set_thread_count(arguments.threads);
   Scene scene = load_scene(arguments.input, {.overrides = arguments.overrides, .mesher_seconds = arguments.time_limit});
-  if (!arguments.json)
+  if (!arguments.json && !arguments.quiet)
     for (const std::string& note : scene.notes) fmt::print("note: {}\n", note);
   if (arguments.about == "rest") move_to_rest(scene.simulation);
   const Modes found = vibration_modes(scene.simulation.model(), scene.simulation.state().q, arguments.count, limit);
@@ -129,7 +129,10 @@ int compute(const ModesArguments& arguments) {
     return found.status == ModesStatus::unconverged ? exit_unconverged : exit_bad_input;
   }
   write_frames(arguments, scene, found);
-  arguments.json ? print_json(found) : print_table(found, arguments.count);
+  if (arguments.json)
+    print_json(found);
+  else if (!arguments.quiet)
+    print_table(found, arguments.count);
   return exit_done;
 }
 
@@ -163,6 +166,7 @@ Exit codes: 0 done, 2 bad input, 3 not converged, 4 time limit.)");
   command->add_option("--threads", arguments->threads, "Threads; all cores by default; results do not depend on it")
       ->check(CLI::Range(1, 1024));
   command->add_option("--time-limit", arguments->time_limit, "Maximum wall time [s]")->check(CLI::Range(1e-3, 1e9));
+  command->add_flag("-q,--quiet", arguments->quiet, "Print only errors");
   command->add_flag("--json", arguments->json, "Print JSON instead of a table");
   command->callback([arguments, &action] { action = [arguments] { return compute(*arguments); }; });
 }

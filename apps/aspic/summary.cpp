@@ -113,7 +113,7 @@ void print_inverted(std::FILE* stream, const RunTotals& totals, const InvertedTe
   }
   fmt::print(stream, "some tet in {} of {} steps, first in step {}, with det F down to {:.3g} ({})\n",
              totals.with_inverted_tets, totals.steps, totals.first_inverted, totals.least_det_F,
-             end.are_quadratic ? "quadratic tets are checked at their corners, too: a finer mesh helps"
+             end.are_quadratic ? "quadratic tets are checked everywhere: a finer mesh helps"
                                : "material.model = \"neo_hookean_log\" keeps every tet from inverting");
 }
 

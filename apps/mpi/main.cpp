@@ -1,7 +1,11 @@
 // The program `aspic-mpi`: parses the command line and runs the command on all ranks.
 #include <CLI/CLI.hpp>
-#include <cstdio>
+#include <algorithm>
+#include <string>
+#include <utility>
+#include <vector>
 
+#include "aspic/assignments.h"
 #include "base/parallel.h"
 #include "distributed/guarded.h"
 #include "distributed/mpi_ranks.h"
@@ -20,7 +24,8 @@ int run_command(int argc, char** argv) {
 Exit codes: 0 done, 1 internal error, 2 bad input, 3 some step did not converge (unless --allow-unconverged),
 4 stopped by SIGUSR1: all complete steps are written and --resume continues.)");
   command->add_option("INPUT", arguments.input, "Scene (.toml), mesh, or with --resume a run directory")->required();
-  command->add_option("--set", arguments.overrides, "Override a value: material.young=2e5")->allow_extra_args(false);
+  command->add_option("--set", arguments.overrides, "Override values: material.young=2e5; several may follow")
+      ->allow_extra_args(false);
   command->add_option("--steps", arguments.steps, "Stop after this many steps of the run")
       ->check(CLI::Range(1, 1000000000));
   command->add_option("--out", arguments.out, "Directory for the results; out/NAME by default");
@@ -30,7 +35,9 @@ Exit codes: 0 done, 1 internal error, 2 bad input, 3 some step did not converge 
   command->add_flag("--allow-unconverged", arguments.allow_unconverged, "Exit with 0 even if a step did not converge");
   command->add_flag("-q,--quiet", arguments.quiet, "Print only warnings and errors");
   try {
-    app.parse(argc, argv);
+    std::vector<std::string> spread = aspic::cli::spread_assignments({argv + 1, argv + argc});
+    std::reverse(spread.begin(), spread.end());  // the order that CLI11 expects
+    app.parse(std::move(spread));
   } catch (const CLI::ParseError& e) {
     const bool prints = aspic::distributed::rank_of_this_process() == 0;
     const int code = prints ? app.exit(e) : e.get_exit_code();

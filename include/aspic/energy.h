@@ -1,6 +1,8 @@
 // Terms of the potential energy V(x), each with gradient and Hessian. Derive from Energy to add your own.
 #pragma once
+#include "energy/cavity.h"
 #include "energy/damping.h"
+#include "energy/dense_energy.h"
 #include "energy/energy.h"
 #include "energy/internal_variables.h"
 #include "energy/linear_load.h"

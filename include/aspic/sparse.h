@@ -4,6 +4,7 @@
 #include "base/stop_token.h"
 #include "base/stopwatch.h"
 #include "linalg/block_sparse.h"
+#include "linalg/dense_rows.h"
 #include "linalg/linear_solver.h"
 #include "linalg/projection.h"
 #include "linalg/stiff_rows.h"

@@ -37,6 +37,7 @@ class SharedElasticity : public TetElasticity {
   }
 
   double min_det_F(Positions x) const override { return share_.min(counted_->min_det_F(x)); }
+  bool excludes_inversion() const override { return counted_->excludes_inversion(); }
   void evaluate(Positions x, TetFields& fields) const override {
     counted_->evaluate(x, fields);
     halo_->evaluate(x, fields);

@@ -19,8 +19,9 @@ constexpr int kMaxParts = 200;
 constexpr double kSmallestApproach = 1e-8;
 constexpr int kPatience = 6;  // moves by less than kSmallestPart in a row
 // Largest rise of E when all pins move at once, and when they move in fractions, relative to the energy of doubling the
-// body. Newton's method reduces the exponent of an exponential law by about 1 per iteration.
-constexpr double kMostRise = 1e3, kMostRiseOfPart = 1;
+// body; or, in fractions, relative to E. Newton's method reduces the exponent of an exponential law by about 1 per
+// iteration.
+constexpr double kMostRise = 1e3, kMostRiseOfPart = 1, kMostGrowthOfPart = 20;
 
 MinimizeOptions rough(const MinimizeOptions& options) {
   MinimizeOptions few = options;
@@ -60,7 +61,8 @@ class Boundary {
     tools_.E.move_obstacles(time_at(next));
     const Evaluation there = tools_.E.evaluate(trial_);
     ++work_.values;
-    const bool is_low = std::isfinite(there.value) && there.value - here_ <= most_;
+    const double most = std::max(most_, kMostGrowthOfPart * std::abs(here_));
+    const bool is_low = std::isfinite(there.value) && there.value - here_ <= most;
     if (!is_low || !is_free(tools_, {reached_, trial_, time_at(done_), time_at(next)})) return false;
     done_ = next;
     value_ = there;

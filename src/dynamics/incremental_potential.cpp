@@ -79,6 +79,8 @@ IncrementalPotential::IncrementalPotential(const Model& model, const Pins& pins)
   for (const auto& D : model.damping) add(*D, damping_);
   for (size_t k = 0; k < potential_.size(); ++k)
     if (const auto* stiff = dynamic_cast<const StiffEnergy*>(&potential_[k].energy())) stiff_.emplace_back(stiff, k);
+  for (size_t k = 0; k < potential_.size(); ++k)
+    if (const auto* dense = dynamic_cast<const DenseEnergy*>(&potential_[k].energy())) dense_.emplace_back(dense, k);
   for (size_t k = 0; k < damping_.size(); ++k)
     if (const auto* rim = dynamic_cast<const PressureRim*>(&damping_[k].energy())) rims_.emplace_back(rim, k);
   for (auto* v : {&predicted_, &offset_, &term_}) v->resize(3 * pattern_.rows());
@@ -212,6 +214,9 @@ const BlockSparse& IncrementalPotential::evaluate_hessian(std::span<const double
   for (const auto& [stiff, k] : stiff_) stiff->add_stiff_rows(q, factor_, stiff_rows_);
   for (StiffRow& row : stiff_rows_)
     for (size_t n = 0; n < row.vertex.size(); ++n) row.g[n] = pins_.free_part(row.vertex[n], row.g[n]);
+  dense_rows_.clear();
+  for (const auto& [dense, k] : dense_) dense->add_dense_rows(q, potential_[k].context(), factor_, dense_rows_);
+  for (DenseRow& row : dense_rows_) pins_.set_zero(row.g);
 
   gradient_round_off_ = gradient_round_off_at(q);
   return H_;
@@ -275,7 +280,7 @@ void IncrementalPotential::add_part_round_off(std::span<const double> q, double 
 void IncrementalPotential::add_part_norms(std::span<const double> v, bool is_exact) {
   if (parts_.empty()) return;
   for (Part& part : parts_) part.sum = 0;
-  for (int i = 0; i < own_; ++i) parts_[part_of_[i]].sum += squared_norm(pins_.free_part(i, point(v, i)));
+  for (int i = 0; i < own_; ++i) parts_[part_of_[i]].sum += squared_norm(counted_part(i, point(v, i)));
   sum_parts();
   for (Part& part : parts_) {
     part.scale += std::sqrt(part.sum);
@@ -376,10 +381,10 @@ void IncrementalPotential::add_term_gradient(const ActiveTerm& term, std::span<c
   double squared = parallel_sum(own_, [&](int first, int last) {
     double square = 0;
     for (int i = first; i < last; ++i) {
-      const Vec3d free = pins_.free_part(i, point(term_, i));
+      const Vec3d counted = counted_part(i, point(term_, i));
       for (int r = 0; r < 3; ++r) {
         const int k = 3 * i + r;
-        square += free[r] * free[r];
+        square += counted[r] * counted[r];
         g[k] += term_[k];
         sum[k] += term_[k];
         term_[k] = 0;

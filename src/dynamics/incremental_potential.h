@@ -13,6 +13,7 @@
 #include "dynamics/internal_terms.h"
 #include "dynamics/model.h"
 #include "dynamics/pins.h"
+#include "energy/dense_energy.h"
 #include "energy/pressure_rim.h"
 #include "energy/stiff_energy.h"
 #include "optimize/objective.h"
@@ -24,6 +25,7 @@ class IncrementalPotential : public Objective,
                              public HasParts,
                              public HasStops,
                              public HasStiffRows,
+                             public HasDenseRows,
                              public HasLag {
  public:
   IncrementalPotential(const Model& model, const Pins& pins);  // both must outlive this
@@ -45,6 +47,10 @@ class IncrementalPotential : public Objective,
   void move_obstacles(double time, std::optional<double> end = {});
   // Sets q~ [m], w and f, and discards what is known about the last step. Called before the first evaluation.
   void begin_step(std::span<const double> predicted, double inertia /* w */, double factor /* f */);
+
+  // Counts forces at pinned vertices among those in balance, see Criterion::scale: at rest, nothing else may balance
+  // the motion of pins.
+  void count_pinned_forces() { counts_pinned_ = true; }
 
   // Returns whether a term of D has lagged coefficients, see LaggedEnergy.
   bool is_lagged() const override;
@@ -70,6 +76,7 @@ class IncrementalPotential : public Objective,
   const BlockSparse* add_stops(std::span<const double> q, std::span<const double> d, double max_step,
                                std::span<double> g) override;
   const StiffRows& stiff_rows() const override { return stiff_rows_; }
+  const DenseRows& dense_rows() const override { return dense_rows_; }
   void note_newton_step(std::span<const double> q, std::span<const double> d) override;
   // x: radius of the body [m]. value: energy of doubling the size of the body, in units of E, without constant offsets
   // of the potential. gradient_unit: f, because g is a force times f.
@@ -134,6 +141,7 @@ class IncrementalPotential : public Objective,
   void add_term_gradient(const ActiveTerm& term, std::span<const double> q, std::span<double> g, std::span<double> sum);
   double squared_distance_to_prediction(std::span<const double> q) const;  // (q - q~)' M (q - q~)
   double free_norm(std::span<const double> v) const;
+  Vec3d counted_part(int i, const Vec3d& force) const { return counts_pinned_ ? force : pins_.free_part(i, force); }
   double gradient_round_off_at(std::span<const double> q);
 
   struct Part {  // characteristic sizes of a part, see measure()
@@ -152,10 +160,13 @@ class IncrementalPotential : public Objective,
   std::vector<std::pair<const StiffEnergy*, size_t>> stiff_;  // with the index in potential_
   std::vector<std::pair<const PressureRim*, size_t>> rims_;   // with the index in damping_
   StiffRows stiff_rows_;
+  std::vector<std::pair<const DenseEnergy*, size_t>> dense_;  // with the index in potential_
+  DenseRows dense_rows_;
   BlockPattern pattern_;
   BlockSparse H_;
   std::optional<BlockSparse> metric_;  // computed on first use
 
+  bool counts_pinned_ = false;
   std::vector<Part> parts_;   // empty: a single part
   std::vector<int> part_of_;  // part of each vertex; empty: a single part
   std::vector<double> predicted_;

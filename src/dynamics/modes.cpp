@@ -98,11 +98,15 @@ Modes vibration_modes(const Model& model, std::span<const double> x, int count, 
   if (!cholesky.factorize(K))
     return {.status = cholesky.refused() ? ModesStatus::out_of_memory : ModesStatus::indefinite, .modes = {}};
 
+  RankOneUpdates updates;
+  SolveReport work;
+  updates.prepare(cholesky, E.dense_rows(), 1e-12, work);
   pencil.project = [&](std::span<double> u) { pins.set_zero(u); };
   pencil.multiply_mass = [&](std::span<const double> u, std::span<double> Mu) { model.mass->multiply(u, Mu); };
   pencil.solve = [&](std::span<const double> b, std::span<double> u) {
     if (stop.stopped()) throw Stopped();
     cholesky.solve(b, u, 1e-12);
+    updates.apply(u);
   };
   try {
     return to_modes(smallest_eigenpairs(pencil, count), std::max(kRigid * growth, round_off(model, pins, K)));

@@ -1,4 +1,5 @@
-// Nearly incompressible bodies of quadratic tets: iterations of Newton's method and of its linear solves.
+// Bodies of quadratic tets: iterations of Newton's method and of its linear solves if they are nearly incompressible,
+// and inversion between nodes.
 #include <gtest/gtest.h>
 
 #include "dynamics/model_builder.h"
@@ -42,6 +43,26 @@ TEST(NearlyIncompressible, SolversAgreeAndStateIsReproducible) {
   const StepReport direct = bent_beam(0.499, "cholesky"), lifted = bent_beam(0.499, "multigrid");
   EXPECT_NEAR(direct.potential_total, lifted.potential_total, 1e-6 * std::abs(direct.potential_total));
   EXPECT_EQ(lifted.state_hash, bent_beam(0.499, "multigrid").state_hash);
+}
+
+// The pins move to a map with J = (1 - 5 X) (0.4 - X), positive at all nodes, by which linear tets do not invert.
+TEST(QuadraticTets, InversionBetweenNodesIsNoSuccess) {
+  const Vec3d corners[] = {{{0, 0, 0}}, {{1, 0, 0}}, {{0, 1, 0}}, {{0, 0, 1}}};
+  for (const char* material : {"neo_hookean_log", "neo_hookean"}) {
+    Model model = ModelBuilder(raise_order({{std::begin(corners), std::end(corners)}, {{0, 1, 2, 3}}, {}}))
+                      .material(material, {.young = 1e4, .poisson = 0.3})
+                      .density(1000)
+                      .pin(
+                          "map", [](const Vec3d&) { return true; },
+                          [](const Vec3d& X, double t) {
+                            return t > 0 ? Vec3d{{X[0] - 2.5 * X[0] * X[0], X[1] * (0.4 - X[0]), X[2]}} : X;
+                          })
+                      .build();
+    Simulation simulation(std::move(model), {.h = 1, .integrator = "quasi_static"});
+    const StepReport report = simulation.step();
+    EXPECT_LE(report.min_det_F, -0.05);
+    EXPECT_EQ(report.status, material == std::string("neo_hookean") ? Status::converged : Status::inverted);
+  }
 }
 
 }  // namespace

@@ -248,7 +248,15 @@ struct Simulation::Impl {
       report.contact_force_error = force_error(contact.gap_work, report);
     }
     report.min_det_F = INFINITY;
-    for (const auto& V : model.elasticity) report.min_det_F = std::min(report.min_det_F, V->min_det_F(state.q));
+    for (const auto& V : model.elasticity) {
+      const double least = V->min_det_F(state.q);
+      report.min_det_F = std::min(report.min_det_F, least);
+      if (least <= 0 && V->excludes_inversion() && is_success(report.status)) report.status = Status::inverted;
+    }
+    report.cavities.clear();
+    for (const auto& load : model.loads)
+      if (const auto* cavity = dynamic_cast<const Cavity*>(load.get()))
+        report.cavities.push_back(cavity->state(state.q, state.time));
     report.state_hash = hash();
   }
 

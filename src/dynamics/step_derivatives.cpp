@@ -1,4 +1,5 @@
 #include "dynamics/step_derivatives.h"
+#include "energy/dense_energy.h"
 
 #include <algorithm>
 #include <cmath>
@@ -227,6 +228,10 @@ Differentiable differentiable(const ActiveTerm& V, const BlockPattern& pattern) 
                 BlockSparse H(pattern);
                 V.add_hessian(x, 1, {}, H);
                 H.multiply(d, Hd);
+                DenseRows rows;
+                if (const auto* dense = dynamic_cast<const DenseEnergy*>(&V.energy()))
+                  dense->add_dense_rows(x, V.context(), 1, rows);
+                add_product(rows, d, Hd);
               }};
 }
 

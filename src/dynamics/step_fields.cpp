@@ -78,11 +78,11 @@ StepField per_element(const Text& text) {
 
 StepField status() {
   StepField field =
-      name<&StepReport::status, Status::inaccurate>({"status", "",
-                                                     "`start` in row 0; success: `converged`, `round_off`; otherwise "
-                                                     "`budget`, `iteration_limit`, `stuck`, `no_descent`, `undefined`, "
-                                                     "`inaccurate`, `unstable`"},
-                                                    kMeasured);
+      name<&StepReport::status, Status::inverted>({"status", "",
+                                                   "`start` in row 0; success: `converged`, `round_off`; otherwise "
+                                                   "`budget`, `iteration_limit`, `stuck`, `no_descent`, `undefined`, "
+                                                   "`inaccurate`, `inverted`, `unstable`"},
+                                                  kMeasured);
   field.get = [](const StepReport& r) {
     return StepValue(r.step == 0 ? std::string("start") : std::string(to_string(r.status)));
   };
@@ -264,6 +264,7 @@ constexpr std::string_view kResultantItems =
 * `reaction_moment_PIN_x`, ... [N m]: its moment about the origin at the end of the step
 * `load_NAME_x`, ..., `load_moment_NAME_x`, ... [N, N m]: the same of each load at the end of the step
 * `body_NAME_x`, ..., `body_moment_NAME_x`, ... [N, N m]: mean of all pins and loads on the body
+* `volume_NAME` [m^3], `pressure_NAME` [Pa]: those of each cavity, the pressure above that outside
 )";
 
 }  // namespace

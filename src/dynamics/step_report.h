@@ -7,6 +7,7 @@
 
 #include "contact/contact_cost.h"
 #include "dynamics/initial_guess.h"
+#include "energy/cavity.h"
 #include "math/small.h"
 #include "optimize/minimize.h"
 
@@ -69,6 +70,7 @@ struct StepReport : Work {  // work of all solves of the step and of this report
   double friction_creep = 0;     // largest slip of sticking contacts in the step [m]
   double friction_residual = 0;  // change of the friction forces by the last update of the normal forces [N]
   std::string friction_pair;     // parts where it is largest
+  std::vector<CavityState> cavities;  // of each Cavity among Model::loads, at the end
   double step_limit = std::numeric_limits<double>::infinity();  // bound of the last step length by contact
   // Evaluations of lagged coefficients: normal forces of friction, rims of pressures. 1 without them, 0 without
   // minimization.

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "base/parallel.h"
-#include "energy/corner_barrier.h"
+#include "energy/node_barrier.h"
 #include "energy/projection_derivative.h"
 #include "energy/quadratic_batch.h"
 #include "energy/stiff_energy.h"
@@ -317,7 +317,7 @@ class MeanVolume : public TetElasticity, public StiffEnergy {
       : shape_(make_shape(mesh, first, pointwise(parameters))),
         volume_(mesh, first, parameters),
         parameters_(parameters.begin(), parameters.end()) {
-    if (has_barrier) corners_ = make_corner_barrier(mesh, first, parameters, shape_->parameter_count());
+    if (has_barrier) nodes_ = make_node_barrier(mesh, first, parameters, shape_->parameter_count());
   }
 
   using TetElasticity::add_gradient, TetElasticity::add_hessian, TetElasticity::value;
@@ -326,7 +326,7 @@ class MeanVolume : public TetElasticity, public StiffEnergy {
   void bind(const BlockPattern& pattern) override {
     shape_->bind(pattern);
     volume_.bind(pattern);
-    if (corners_) corners_->bind(pattern);
+    if (nodes_) nodes_->bind(pattern);
   }
   std::unique_ptr<Context> make_context() const override { return std::make_unique<VolumeTerm::Lag>(); }
   void begin_step(const StepContext& step, Context& context) const override {
@@ -337,18 +337,18 @@ class MeanVolume : public TetElasticity, public StiffEnergy {
   double value(Positions x, const Context& context) const override {
     double V = shape_->value(x, context);
     if (volume_.is_active()) V += volume_.value(x, context);
-    return corners_ ? V + corners_->value(x, context) : V;
+    return nodes_ ? V + nodes_->value(x, context) : V;
   }
   void add_gradient(Positions x, const Context& context, double scale, std::span<double> g) const override {
     shape_->add_gradient(x, context, scale, g);
     if (volume_.is_active()) volume_.add_gradient(x, context, scale, g);
-    if (corners_) corners_->add_gradient(x, context, scale, g);
+    if (nodes_) nodes_->add_gradient(x, context, scale, g);
   }
   int add_hessian(Positions x, const Context& context, double scale, const Projection& projection,
                   BlockSparse& H) const override {
     int projected = shape_->add_hessian(x, context, scale, projection, H);
     if (volume_.is_active()) projected += volume_.add_hessian(x, context, scale, projection, H);
-    return corners_ ? projected + corners_->add_hessian(x, context, scale, projection, H) : projected;
+    return nodes_ ? projected + nodes_->add_hessian(x, context, scale, projection, H) : projected;
   }
   void add_stiff_rows(Positions x, double scale, StiffRows& rows) const override {
     if (volume_.is_active()) volume_.add_stiff_rows(x, scale, rows);
@@ -359,6 +359,7 @@ class MeanVolume : public TetElasticity, public StiffEnergy {
   }
 
   double min_det_F(Positions x) const override { return shape_->min_det_F(x); }
+  bool excludes_inversion() const override { return nodes_ != nullptr; }
   void evaluate(Positions x, TetFields& fields) const override {
     shape_->evaluate(x, fields);
     if (!volume_.is_active()) return;
@@ -375,7 +376,7 @@ class MeanVolume : public TetElasticity, public StiffEnergy {
     std::copy(parameters.begin(), parameters.end(), parameters_.begin());
     shape_->set_parameters(pointwise(parameters));
     volume_.set_parameters(parameters);
-    if (corners_) corners_->set_parameters(parameters);
+    if (nodes_) nodes_->set_parameters(parameters);
   }
 
   void add_parameter_force(Positions x, std::span<const double> change, double scale,
@@ -389,7 +390,7 @@ class MeanVolume : public TetElasticity, public StiffEnergy {
       bulk_change[t] = change[entry(t) + 1] - lambda;
     }
     shape_->add_parameter_force(x, pointwise_change, scale, g);
-    if (corners_) corners_->add_parameter_force(x, pointwise_change, scale, g);
+    if (nodes_) nodes_->add_parameter_force(x, pointwise_change, scale, g);
     if (!volume_.is_active()) return;
     volume_.add_bulk_force(
         x, [&](int t) { return bulk_change[t]; }, scale, g);
@@ -399,7 +400,7 @@ class MeanVolume : public TetElasticity, public StiffEnergy {
                               std::span<double> gradient) const override {
     std::vector<double> own(gradient.size(), 0.0), by_bulk(parameters_.size(), 0.0);
     shape_->add_parameter_gradient(x, w, scale, own);
-    if (corners_) corners_->add_parameter_gradient(x, w, scale, own);
+    if (nodes_) nodes_->add_parameter_gradient(x, w, scale, own);
     if (volume_.is_active()) volume_.visit_bulk_gradient(x, w, [&](int t, double rate) { by_bulk[t] = scale * rate; });
     add_chained(own, by_bulk, gradient);
   }
@@ -408,7 +409,7 @@ class MeanVolume : public TetElasticity, public StiffEnergy {
                                Definiteness definiteness, const HessianDerivatives& out) const override {
     std::vector<double> own(out.parameters.size(), 0.0), by_bulk(parameters_.size(), 0.0);
     shape_->add_hessian_derivatives(x, u, w, definiteness, {out.scale, out.x, own});
-    if (corners_) corners_->add_hessian_derivatives(x, u, w, definiteness, {out.scale, out.x, own});
+    if (nodes_) nodes_->add_hessian_derivatives(x, u, w, definiteness, {out.scale, out.x, own});
     if (volume_.is_active())
       volume_.add_hessian_derivatives(x, u, w, definiteness, out.scale, out.x,
                                       [&](int t, double rate) { by_bulk[t] = rate; });
@@ -433,7 +434,7 @@ class MeanVolume : public TetElasticity, public StiffEnergy {
     }
   }
 
-  std::unique_ptr<TetElasticity> shape_, corners_;  // corners_: null without a barrier
+  std::unique_ptr<TetElasticity> shape_, nodes_;  // nodes_: null without a barrier
   VolumeTerm volume_;
   std::vector<MaterialParameters> parameters_;  // in the order of the mesh
 };

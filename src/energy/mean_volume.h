@@ -12,7 +12,7 @@
 namespace aspic {
 
 // Requires quadratic tets. Which tets are split depends on their current parameters, so that Poisson's ratio may cross
-// 0.3. `make_shape`: makes the first term for other parameters. `has_barrier`: adds corner_barrier.h.
+// 0.3. `make_shape`: makes the first term for other parameters. `has_barrier`: adds node_barrier.h.
 std::unique_ptr<TetElasticity> make_mean_volume(const ElasticityMaker& make_shape, const TetMesh& mesh, int first,
                                                 std::span<const MaterialParameters> parameters, bool has_barrier);
 

@@ -1,6 +1,7 @@
 #include "energy/quadratic_batch.h"
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
 namespace aspic {
@@ -14,7 +15,7 @@ Pack lesser(Pack a, Pack b) { return -max(-a, -b); }
 
 }  // namespace
 
-template <const NodeTable& table>
+template <const auto& table>
 QuadraticBatchAt<table>::QuadraticBatchAt(const TetMesh& mesh, std::span<const int> tets) : BatchOf<10>(tets) {
   for (int l = 0; l < W; ++l) {
     set_rest_shape(mesh, l, mesh.tets[tet[l]], kPoints);
@@ -25,7 +26,7 @@ QuadraticBatchAt<table>::QuadraticBatchAt(const TetMesh& mesh, std::span<const i
 }
 
 // Uses positions relative to the first node, so that rounding does not depend on the distance from the origin.
-template <const NodeTable& table>
+template <const auto& table>
 typename QuadraticBatchAt<table>::Points QuadraticBatchAt<table>::edges(Positions x) const {
   std::array<Vec3Pack, 10> d;
   for (int n = 0; n < 10; ++n) d[n] = gather3([&](int l) { return &x[3 * vertex[n][l]]; });
@@ -44,36 +45,63 @@ typename QuadraticBatchAt<table>::Points QuadraticBatchAt<table>::edges(Position
   return edges;
 }
 
-// F is linear: at corner q it is (F_q - kFar sum) / (kNear - kFar), where the sum contains all four points. det F is
-// cubic, and bounded by its Bernstein coefficients: products of three corners. The bound is the result unless it proves
-// that det F is positive in the whole tet.
-Pack QuadraticTetBatch::least_determinant(const Points& F) {
-  const Mat3<Pack> sum = (F[0] + F[1]) + (F[2] + F[3]);
-  Points corner;
-  Pack least = determinant(F[0]);
-  for (int q = 0; q < kPoints; ++q) {
-    corner[q] = Pack(1 / (kNear - kFar)) * (F[q] - Pack(kFar) * sum);
-    least = lesser(lesser(least, determinant(F[q])), determinant(corner[q]));
-  }
-  Pack bound = least;
-  for (int i = 0; i < kPoints; ++i)
-    for (int j = 0; j < kPoints; ++j) {
-      if (i != j) bound = lesser(bound, Pack(1.0 / 3) * inner(cofactor(corner[i]), corner[j]));
-      for (int k = 0; k < j && j < i; ++k) {
-        const Mat3<Pack> mixed = cofactor(corner[i] + corner[j]) - cofactor(corner[i]) - cofactor(corner[j]);
-        bound = lesser(bound, Pack(1.0 / 6) * inner(mixed, corner[k]));
-      }
+namespace {
+
+using Corners = std::array<Mat3d, 4>;  // F at the corners of a tet, within which F is linear
+
+// Returns the least Bernstein coefficient of the cubic det F, a lower bound: each is a product of three corners.
+double least_coefficient(const Corners& F) {
+  double least = INFINITY;
+  for (int i = 0; i < 4; ++i) {
+    const Mat3d of_i = cofactor(F[i]);
+    for (int j = 0; j < 4; ++j) {
+      least = std::min(least, inner(of_i, F[j]) / 3);
+      for (int k = 0; k < j && j < i; ++k)
+        least = std::min(least, inner(cofactor(F[i] + F[j]) - of_i - cofactor(F[j]), F[k]) / 6);
     }
-  return where_positive(bound, least, bound);
+  }
+  return least;
 }
 
-Pack QuadraticCornerBatch::least_determinant(const Points& F) {
+// Returns the least determinant at the corners if det F is positive within the tet, else a lower bound of det F. Halves
+// the tet across its edges in turn while neither is certain.
+double least_within(const Corners& F, int halvings) {
+  double least = INFINITY;
+  for (const Mat3d& F_i : F) least = std::min(least, determinant(F_i));
+  const double bound = least_coefficient(F);
+  if (bound > 0) return least;
+  if (least <= 0 || halvings == 0) return bound;
+  const auto& [a, b] = kTetEdges[halvings % 6];
+  Corners first = F, second = F;
+  first[b] = second[a] = 0.5 * (F[a] + F[b]);
+  return std::min(least_within(first, halvings - 1), least_within(second, halvings - 1));
+}
+
+}  // namespace
+
+// F is linear: at corner q it is (F_q - kFar sum) / (kNear - kFar), where the sum contains all four points.
+Pack QuadraticTetBatch::least_determinant(const Points& F) {
+  constexpr int kHalvings = 12;
+  const Mat3<Pack> sum = (F[0] + F[1]) + (F[2] + F[3]);
+  Points corner;
+  for (int q = 0; q < kPoints; ++q) corner[q] = Pack(1 / (kNear - kFar)) * (F[q] - Pack(kFar) * sum);
+  Pack least;
+  for (int l = 0; l < kPackWidth; ++l) {
+    Corners F_l;
+    for (int q = 0; q < kPoints; ++q)
+      for (int e = 0; e < 9; ++e) F_l[q].a[e] = corner[q].a[e][l];
+    least.set(l, least_within(F_l, kHalvings));
+  }
+  return least;
+}
+
+Pack QuadraticNodeBatch::least_determinant(const Points& F) {
   Pack least = determinant(F[0]);
   for (int q = 1; q < kPoints; ++q) least = lesser(least, determinant(F[q]));
   return least;
 }
 
-template <const NodeTable& table>
+template <const auto& table>
 void QuadraticBatchAt<table>::scatter_gradient(const Points& P, Pack weight, std::span<double> g) const {
   std::array<Vec3Pack, 10> force = {};
   for (int q = 0; q < kPoints; ++q) {
@@ -91,12 +119,12 @@ void QuadraticBatchAt<table>::scatter_gradient(const Points& P, Pack weight, std
   for (int n = 0; n < 10; ++n) scatter3(force[n], [&](int l) { return &g[3 * vertex[n][l]]; });
 }
 
-template <const NodeTable& table>
+template <const auto& table>
 void QuadraticBatchAt<table>::add_point(int q, const CornerBlocks& K, Blocks& sum) {
   for (int n = 0, block = 0; n < 10; ++n) {
-    const NodeDerivatives& row = table[n];
+    const auto& row = table[n];
     for (int m = 0; m <= n; ++m, ++block) {
-      const NodeDerivatives& column = table[m];
+      const auto& column = table[m];
       for (int i = 0; i < row.count; ++i)
         for (int j = 0; j < column.count; ++j) {
           const Pack weight = row.value[q][i] * column.value[q][j];
@@ -107,7 +135,7 @@ void QuadraticBatchAt<table>::add_point(int q, const CornerBlocks& K, Blocks& su
   }
 }
 
-template <const NodeTable& table>
+template <const auto& table>
 void QuadraticBatchAt<table>::scatter(Blocks& sum, BlockSparse& H) const {
   for (int k = 0; k < kBlocks; ++k) {
     std::array<Pack, 9>& K = sum[k];
@@ -123,13 +151,13 @@ void QuadraticBatchAt<table>::scatter(Blocks& sum, BlockSparse& H) const {
   }
 }
 
-template <const NodeTable& table>
+template <const auto& table>
 void QuadraticBatchAt<table>::scatter_hessian(const std::array<Mat9<Pack>, kPoints>& A, Pack weight,
                                               BlockSparse& H) const {
   scatter_blocks([&](int q) { return TangentBlocks(*this, A[q], weight); }, H);
 }
 
-template <const NodeTable& table>
+template <const auto& table>
 void QuadraticBatchAt<table>::bind(const BlockPattern& pattern) {
   transposed_ = {};
   for (int l = 0; l < W; ++l)
@@ -144,6 +172,6 @@ void QuadraticBatchAt<table>::bind(const BlockPattern& pattern) {
 }
 
 template struct QuadraticBatchAt<kQuadratic>;
-template struct QuadraticBatchAt<kQuadraticCorners>;
+template struct QuadraticBatchAt<kQuadraticNodes>;
 
 }  // namespace aspic

@@ -18,33 +18,51 @@ inline constexpr double kNear = 0.58541019662496845446, kFar = 0.138196601125010
 constexpr double point_coordinate(int point, int corner) { return point == corner ? kNear : kFar; }
 
 // The nonzero derivatives dN_n/dl_i of a shape function at the points.
+template <size_t points>
 struct NodeDerivatives {
   int count = 0;
-  std::array<int, 2> corner{};                   // i
-  std::array<std::array<double, 2>, 4> value{};  // at each point, for each corner i
+  std::array<int, 2> corner{};                        // i
+  std::array<std::array<double, 2>, points> value{};  // at each point, for each corner i
 };
 
-using NodeTable = std::array<NodeDerivatives, 10>;
+template <size_t points>
+using NodeTable = std::array<NodeDerivatives<points>, 10>;
 
-// near, far: barycentric coordinates of each point at its own corner and at the others.
-constexpr NodeTable quadratic_derivatives(double near, double far) {
-  NodeTable nodes;
+template <size_t points>
+using Barycentric = std::array<std::array<double, 4>, points>;
+
+template <size_t points>
+constexpr NodeTable<points> quadratic_derivatives(const Barycentric<points>& at) {
+  NodeTable<points> nodes;
   for (int n = 0; n < 10; ++n) {
     const int i = n < 4 ? n : kTetEdges[n - 4][0], j = n < 4 ? n : kTetEdges[n - 4][1];
     nodes[n].count = n < 4 ? 1 : 2;
     nodes[n].corner = {i, j};
-    for (int q = 0; q < 4; ++q)
-      nodes[n].value[q] = {4 * (q == j ? near : far) - (n < 4 ? 1 : 0), n < 4 ? 0 : 4 * (q == i ? near : far)};
+    for (size_t q = 0; q < points; ++q) nodes[n].value[q] = {4 * at[q][j] - (n < 4 ? 1 : 0), n < 4 ? 0 : 4 * at[q][i]};
   }
   return nodes;
 }
-inline constexpr NodeTable kQuadratic = quadratic_derivatives(kNear, kFar);
-inline constexpr NodeTable kQuadraticCorners = quadratic_derivatives(1, 0);
 
-// The tets at the four points of a table.
-template <const NodeTable& table>
+constexpr Barycentric<4> quadrature_points() {
+  Barycentric<4> points;
+  for (int q = 0; q < 4; ++q)
+    for (int i = 0; i < 4; ++i) points[q][i] = point_coordinate(q, i);
+  return points;
+}
+constexpr Barycentric<10> node_points() {
+  Barycentric<10> points{};
+  for (int n = 0; n < 4; ++n) points[n][n] = 1;
+  for (int n = 4; n < 10; ++n)
+    for (const int corner : kTetEdges[n - 4]) points[n][corner] = 0.5;
+  return points;
+}
+inline constexpr NodeTable<4> kQuadratic = quadratic_derivatives(quadrature_points());
+inline constexpr NodeTable<10> kQuadraticNodes = quadratic_derivatives(node_points());
+
+// The tets at the points of a table.
+template <const auto& table>
 struct QuadraticBatchAt : BatchOf<10> {
-  static constexpr int kPoints = 4;
+  static constexpr int kPoints = static_cast<int>(table[0].value.size());
   using Points = std::array<Mat3<Pack>, kPoints>;
   using Blocks = std::array<std::array<Pack, 9>, kBlocks>;
 
@@ -84,17 +102,17 @@ struct QuadraticBatchAt : BatchOf<10> {
   std::array<uint8_t, kBlocks> transposed_;  // bit l: the matrix stores the transposed block of lane l
 };
 extern template struct QuadraticBatchAt<kQuadratic>;
-extern template struct QuadraticBatchAt<kQuadraticCorners>;
+extern template struct QuadraticBatchAt<kQuadraticNodes>;
 
 struct QuadraticTetBatch : QuadraticBatchAt<kQuadratic> {
   using QuadraticBatchAt::QuadraticBatchAt;
-  static Pack least_determinant(const Points& F);  // bound for the whole tet
+  static Pack least_determinant(const Points& F);  // in the whole tet; a lower bound if it is inverted
 };
 
-// The corners instead of the quadrature points.
-struct QuadraticCornerBatch : QuadraticBatchAt<kQuadraticCorners> {
+// The corners and middles of edges instead of the quadrature points.
+struct QuadraticNodeBatch : QuadraticBatchAt<kQuadraticNodes> {
   using QuadraticBatchAt::QuadraticBatchAt;
-  static Pack least_determinant(const Points& F);  // at the corners
+  static Pack least_determinant(const Points& F);  // at the nodes
 };
 
 }  // namespace aspic

@@ -30,6 +30,7 @@ struct HessianDerivatives {
 class TetElasticity : public SteadyEnergy {
  public:
   virtual double min_det_F(Positions x) const = 0;                  // minimum det F over all tets [1]
+  virtual bool excludes_inversion() const { return false; }         // infinite at some points where det F <= 0
   virtual void evaluate(Positions x, TetFields& fields) const = 0;  // writes the entries of this term's tets
 
   // Derivatives with respect to the parameters theta: for each tet of this term, mu, lambda and the entries of

@@ -212,8 +212,11 @@ class Checker {
 Differentiable differentiable(Objective& E) {
   return {.value = [&E](std::span<const double> x) { return E.value(x); },
           .gradient = [&E](std::span<const double> x, std::span<double> g) { E.gradient(x, g); },
-          .hessian_times = [&E](std::span<const double> x, std::span<const double> d,
-                                std::span<double> Hd) { E.hessian(x, {}).multiply(d, Hd); }};
+          .hessian_times =
+              [&E](std::span<const double> x, std::span<const double> d, std::span<double> Hd) {
+                E.hessian(x, {}).multiply(d, Hd);
+                if (const auto* dense = dynamic_cast<HasDenseRows*>(&E)) add_product(dense->dense_rows(), d, Hd);
+              }};
 }
 
 DerivativeReport check_derivatives(const Differentiable& f, std::span<const double> x,

@@ -11,8 +11,9 @@
 namespace aspic {
 
 // In the order of Status.
-constexpr std::string_view kStatusNames[] = {"converged",  "round_off",   "budget",    "iteration_limit", "stuck",
-                                             "no_descent", "interrupted", "undefined", "unstable",        "inaccurate"};
+constexpr std::string_view kStatusNames[] = {"converged", "round_off",  "budget",      "iteration_limit",
+                                             "stuck",     "no_descent", "interrupted", "undefined",
+                                             "unstable",  "inaccurate", "inverted"};
 
 std::string_view to_string(Status status) { return kStatusNames[static_cast<size_t>(status)]; }
 

@@ -27,6 +27,7 @@ enum class Status {
   unstable,    // an explicit scheme generated most of the energy of the body
   inaccurate,  // the smallest substep of an adaptive time step exceeds its tolerance, or lagged coefficients of E do
                // not settle in kMaxUpdates updates
+  inverted,    // converged, but quadratic tets are inverted between their nodes, where their law is infinite
 };
 inline constexpr int kMaxUpdates = 50;  // of lagged coefficients in a minimization
 inline constexpr int kStatusCount = 10;

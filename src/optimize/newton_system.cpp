@@ -39,6 +39,7 @@ void NewtonSystem::begin() {
 void NewtonSystem::begin_direction(Objective& E, const StopToken& stop, bool is_first, double gradient_norm) {
   if (is_first) {
     stops_ = dynamic_cast<HasStops*>(&E);
+    dense_ = dynamic_cast<HasDenseRows*>(&E);
     stiff_ = truncates_ ? nullptr : dynamic_cast<HasStiffRows*>(&E);
   }
   stop_ = stop;
@@ -65,7 +66,7 @@ bool NewtonSystem::solve(NewtonTask& task, const Projection& projection) {
   ++report.factorizations;
   const bool is_stiff = stiff_ && !stiff_->stiff_rows().empty();
   solver_->set_stiff_rows(is_stiff ? &stiff_->stiff_rows() : nullptr);
-  const bool is_definite = solver_->factorize(H);
+  const bool is_definite = factorize(H);
   report.factorize_seconds += stopwatch.lap();
   const bool is_exact = projection.kind == Definiteness::exact;
   exact_ = is_exact ? &H : nullptr;
@@ -126,7 +127,7 @@ bool NewtonSystem::avoid_stops(NewtonTask& task) {
     ++task.report.factorizations;
     const double forcing =
         task.forcing * gradient_norm_ / std::sqrt(task.E.dot(g_, g_));  // springs increase the gradient
-    const bool is_solved = solver_->factorize(*H) && solve_factorized(task, g_, std::max(forcing, kFinest));
+    const bool is_solved = factorize(*H) && solve_factorized(task, g_, std::max(forcing, kFinest));
     const double next = is_solved && task.E.dot(task.g, task.d) < 0 ? task.E.max_step(task.x, task.d) : 0;
     if (next == 0 || next < std::min(reach, kUsefulStep)) {
       std::copy(d_.begin(), d_.end(), task.d.begin());
@@ -135,6 +136,24 @@ bool NewtonSystem::avoid_stops(NewtonTask& task) {
     reach = next;
   }
   return has_springs;
+}
+
+bool NewtonSystem::factorize(const BlockSparse& H) {
+  updates_.drop();
+  return solver_->factorize(H);
+}
+
+// Replaces the solution for H without its dense rows, in task.d, by that for H.
+bool NewtonSystem::add_dense_rows(NewtonTask& task, double forcing) {
+  if (!dense_ || dense_->dense_rows().empty()) return true;
+  if (!updates_.is_ready()) {
+    SolveReport work;
+    const bool is_ready = updates_.prepare(*solver_, dense_->dense_rows(), forcing, work);
+    task.report.add(work);
+    if (!is_ready) return false;
+  }
+  updates_.apply(task.d);
+  return true;
 }
 
 bool NewtonSystem::solve_factorized(NewtonTask& task, std::span<const double> g, double forcing) {
@@ -147,6 +166,7 @@ bool NewtonSystem::solve_factorized(NewtonTask& task, std::span<const double> g,
   report.add(solved);
   report.solve_seconds += stopwatch.lap();
   if (solved.indefinite ? !truncates_ : !solved.ok && !solved.stopped) return false;
+  if (solved.ok && !add_dense_rows(task, forcing)) return false;
   report.truncated = report.truncated || solved.indefinite;
   kept_.note_solve(gradient_norm_, solved.relative_residual);
   for (double& di : task.d) di = -di;

@@ -77,6 +77,8 @@ class NewtonSystem {
   // Solves again with added springs while the direction violates stops. Returns whether any were added.
   bool avoid_stops(NewtonTask& task);
   bool solve_semidefinite(const BlockSparse& H, NewtonTask& task);
+  bool factorize(const BlockSparse& H);
+  bool add_dense_rows(NewtonTask& task, double forcing);
 
   std::unique_ptr<LinearSolver> solver_;
   bool truncates_;
@@ -85,6 +87,8 @@ class NewtonSystem {
   KeptHessian kept_;
   HasStops* stops_ = nullptr;           // of the objective, if it has any
   HasStiffRows* stiff_ = nullptr;       // the objective, if its Hessian may have stiff rows
+  HasDenseRows* dense_ = nullptr;       // the objective, if its Hessian may have dense rows
+  RankOneUpdates updates_;              // of these rows, once the factorized matrix has solved for them
   const BlockSparse* exact_ = nullptr;  // the last Hessian of this direction, if exact
   StopToken stop_;
   bool is_first_ = true;

@@ -5,6 +5,7 @@
 #include <span>
 
 #include "linalg/block_sparse.h"
+#include "linalg/dense_rows.h"
 #include "linalg/projection.h"
 #include "linalg/stiff_rows.h"
 
@@ -102,6 +103,13 @@ class HasStiffRows {
   // Called when the minimizer moves along a Newton direction d from x. Hessians up to the next call may use the
   // linearization at x + d of the forces of these rows. Empty: none is known.
   virtual void note_newton_step(std::span<const double> x, std::span<const double> d) = 0;
+};
+
+// Interface for objectives whose Hessian has rank-one parts that couple many variables.
+class HasDenseRows {
+ public:
+  virtual ~HasDenseRows() = default;
+  virtual const DenseRows& dense_rows() const = 0;  // of the last Hessian, which does not contain them
 };
 
 // Interface for objectives with lagged coefficients, such as the normal forces in friction.

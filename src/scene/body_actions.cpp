@@ -15,6 +15,7 @@
 #include "energy/springs.h"
 #include "mesh/surface.h"
 #include "scene/body_branches.h"
+#include "scene/body_cavities.h"
 #include "scene/body_fibres.h"
 #include "scene/body_grabs.h"
 #include "scene/expression.h"
@@ -354,6 +355,7 @@ void add_loads(Builder& builder, const Vec3d& gravity) {
     add_springs(builder, body);
     add_pressures(builder, body);
   }
+  add_cavities(builder.bodies, builder.up, builder.notes, builder.model);
   add_fibres(builder.bodies, {builder.up, builder.files}, builder.model);
   Model& model = builder.model;
   add_linear_load(model, "body_force", std::move(per_volume));

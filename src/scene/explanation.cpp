@@ -62,6 +62,10 @@ class Explainer {
         return no_descent();
       case Status::inaccurate:
         return inaccurate();
+      case Status::inverted:
+        return {"quadratic tets are inverted between their nodes, down to det F = " + text(report_.min_det_F) +
+                    ", where their law is infinite",
+                "body.order", "a finer mesh where they are compressed, or body.order = 1"};
       case Status::budget:
         return {"the time budget ended after " + std::to_string(report_.iterations) +
                     " iterations; the step keeps their result",

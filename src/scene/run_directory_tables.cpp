@@ -4,6 +4,7 @@
 
 #include "base/error.h"
 #include "dynamics/step_fields.h"
+#include "energy/cavity.h"
 #include "scene/run_directory_layout.h"
 
 namespace aspic {
@@ -13,7 +14,7 @@ void add_vector_columns(const std::string& name, std::vector<std::string>& colum
   for (const char* axis : {"_x", "_y", "_z"}) columns.push_back(name + axis);
 }
 
-// In the order of add(Resultants).
+// In the order of add(StepReport).
 void add_resultant_columns(const Model& model, std::vector<std::string>& columns) {
   const auto add = [&](const std::string& kind, const std::string& name) {
     add_vector_columns(kind + "_" + name, columns);
@@ -22,13 +23,18 @@ void add_resultant_columns(const Model& model, std::vector<std::string>& columns
   for (const Pin& pin : model.pins) add("reaction", pin.name);
   for (const auto& load : model.loads) add("load", std::string(load->name()));
   for (const BodyRange& body : model.bodies) add("body", body.name);
+  for (const auto& load : model.loads)
+    if (dynamic_cast<const Cavity*>(load.get()))
+      for (const char* kind : {"volume_", "pressure_"}) columns.push_back(kind + std::string(load->name()));
 }
 
-void add(const Resultants& resultants, CsvRow& row) {
+void add(const StepReport& report, CsvRow& row) {
+  const Resultants& resultants = report.resultants;
   for (const auto* all : {&resultants.pins, &resultants.loads, &resultants.bodies})
     for (const Resultant& sum : *all)
       for (const Vec3d* v : {&sum.force, &sum.moment})
         for (int r = 0; r < 3; ++r) row.add((*v)[r]);
+  for (const CavityState& cavity : report.cavities) row.add(cavity.volume).add(cavity.pressure);
 }
 
 std::vector<std::string> step_columns(const Simulation& simulation) {
@@ -53,7 +59,7 @@ CsvRow step_row(const StepReport& report) {
     if (field.type == StepFieldType::potentials) {
       for (const double energy : report.potential) row.add(energy);
     } else if (field.type == StepFieldType::resultants) {
-      add(report.resultants, row);
+      add(report, row);
     } else {
       std::visit([&](const auto& value) { row.add(value); }, field.get(report));
     }

@@ -245,6 +245,23 @@ void add_loads(Schema& s) {
            {where_key(), key("value", kNumber | kMovingExpression, "uniform, positive inwards; function of the time t",
                              Units{"Pa"}, kRequired)});
 
+  Key inside = where_key();
+  inside.required = false;
+  inside.reason = "the only inner surface";
+  add_section(
+      s, {"cavity", "[[body.cavity]]", "Gas or liquid in the volume that an inner surface encloses."},
+      {inside,
+       key("gas", kNumber | kMovingExpression,
+           "amount of gas relative to the start; function of the time t. At a constant temperature its pressure is "
+           "pressure * gas / (volume / volume at the start)"),
+       key("pressure", kNumber, "pressure of the gas at the start, equal to that outside", Units{"Pa"}, kPositive,
+           Usual{"101325.0", "air"}),
+       key("liquid", kNumber | kMovingExpression,
+           "volume of liquid relative to the cavity at the start; function of the time t"),
+       key("bulk_modulus", kNumber, "bulk modulus of the liquid; default: 1000 times Young's modulus of the body",
+           Units{"Pa"}, kPositive)});
+  s.alternatives.push_back({"cavity", {{"gas", "pressure"}, {"liquid", "bulk_modulus"}}, true});
+
   s.sections.push_back({"force", "[[body.force]]", "A dead load: force per rest volume."});
   Key everywhere = where_key();
   everywhere.required = false;

@@ -40,6 +40,7 @@ void add_body(Schema& s) {
             key("grab", kTables, "points dragged along a path", Members{"grab"}),
             key("traction", kTables, "dead loads on the surface", Members{"traction"}),
             key("pressure", kTables, "follower pressures", Members{"pressure"}),
+            key("cavity", kTables, "gas or liquid in a cavity", Members{"cavity"}),
             key("force", kTables, "dead loads per volume", Members{"force"})});
   s.alternatives.push_back({"body", {{"mesh", "mesh_size"}, {"shape"}}, true});
 }

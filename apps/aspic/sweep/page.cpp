@@ -3,6 +3,8 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
+#include <map>
 #include <optional>
 #include <utility>
 
@@ -22,16 +24,16 @@ constexpr size_t kMaxRows = 1000, kMaxCharts = 24, kMaxSeries = 8;
 constexpr double kLogSpan = 50;  // ratio of the largest to the smallest value from which an axis is logarithmic
 
 struct Quantity {
-  const char *column, *label;
+  std::string column, label;
 };
-constexpr std::array kQuantities = {Quantity{"potential_total", "potential energy at the end [J]"},
-                                    Quantity{"kinetic", "kinetic energy at the end [J]"},
-                                    Quantity{"least_det_F", "smallest det F of the run"},
-                                    Quantity{"damping_loss", "damping loss of the last step [J]"},
-                                    Quantity{"max_pressure", "contact pressure at the end [Pa]"},
-                                    Quantity{"worst_residual", "largest residual / threshold"},
-                                    Quantity{"iterations", "iterations of the run"},
-                                    Quantity{"seconds", "wall time of the run [s]"}};
+const std::array kQuantities = {Quantity{"potential_total", "potential energy at the end [J]"},
+                                Quantity{"kinetic", "kinetic energy at the end [J]"},
+                                Quantity{"least_det_F", "smallest det F of the run"},
+                                Quantity{"damping_loss", "damping loss of the last step [J]"},
+                                Quantity{"max_pressure", "contact pressure at the end [Pa]"},
+                                Quantity{"worst_residual", "largest residual / threshold"},
+                                Quantity{"iterations", "iterations of the run"},
+                                Quantity{"seconds", "wall time of the run [s]"}};
 
 bool is_done(const CaseResult& result) { return result.state == CaseState::done; }
 
@@ -119,15 +121,36 @@ std::vector<Series> series_of(const StudyResults& study, size_t key, const Numbe
   return series;
 }
 
+// The largest component of the force of each pin.
+std::vector<Quantity> reactions(const StudyResults& study) {
+  constexpr std::string_view kForce = "reaction_", kMoment = "reaction_moment_";
+  std::map<std::string, std::pair<double, std::string>> largest;  // of each pin: its size and its column
+  for (const CaseResult& result : study.results)
+    for (const auto& [column, text] : result.values) {
+      if (!column.starts_with(kForce) || column.starts_with(kMoment)) continue;
+      auto& [size, name] = largest[column.substr(0, column.size() - 2)];
+      if (const std::optional<double> value = parse_number(text); value && std::abs(*value) > size)
+        size = std::abs(*value), name = column;
+    }
+  std::vector<Quantity> list;
+  for (const auto& [pin, found] : largest)
+    if (found.first > 0)
+      list.push_back({found.second, fmt::format("reaction of {} along {} in the last step [N]",
+                                                pin.substr(kForce.size()), found.second.back())});
+  return list;
+}
+
 void add_charts(ReportPage& page, const StudyResults& study) {
   const TemporaryFolder pictures;
+  std::vector<Quantity> quantities = reactions(study);
+  quantities.insert(quantities.end(), kQuantities.begin(), kQuantities.end());
   size_t count = 0;
   for (size_t key = 0; key < study.keys.size(); ++key) {
     const Numbers x = numbers(study, [&](size_t i) { return study.cases[i][key]; });
     if (x.empty()) continue;
     std::vector<Figure> row;
-    for (const auto& [column, label] : kQuantities) {
-      const Numbers y = numbers(study, [&, name = column](size_t i) { return study.results[i].value(name); });
+    for (const auto& [column, label] : quantities) {
+      const Numbers y = numbers(study, [&, &name = column](size_t i) { return study.results[i].value(name); });
       if (y.empty() || count == kMaxCharts) continue;
       const fs::path picture = pictures.path() / fmt::format("{}.svg", count++);
       draw(picture, Chart{"", {study.keys[key], scale_of(x)}, {label, scale_of(y)}, series_of(study, key, x, y)});

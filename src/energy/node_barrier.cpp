@@ -1,4 +1,4 @@
-#include "energy/corner_barrier.h"
+#include "energy/node_barrier.h"
 
 #include "energy/material_term.h"
 #include "energy/quadratic_batch.h"
@@ -10,7 +10,7 @@ namespace {
 
 constexpr double kStart = 0.1;  // J below which the barrier acts
 
-struct CornerBarrierLaw {
+struct NodeBarrierLaw {
   int extra = 0;  // number of entries of MaterialParameters::extra
 
   template <class T>
@@ -40,12 +40,11 @@ struct CornerBarrierLaw {
 
 }  // namespace
 
-std::unique_ptr<TetElasticity> make_corner_barrier(const TetMesh& mesh, int first,
-                                                   std::span<const MaterialParameters> parameters,
-                                                   int parameter_count) {
-  using Law = FromInvariants<CornerBarrierLaw>;
-  return std::make_unique<MaterialTerm<Law, QuadraticCornerBatch>>("corners", mesh, first, parameters,
-                                                                   Law{{.extra = parameter_count - 2}});
+std::unique_ptr<TetElasticity> make_node_barrier(const TetMesh& mesh, int first,
+                                                 std::span<const MaterialParameters> parameters, int parameter_count) {
+  using Law = FromInvariants<NodeBarrierLaw>;
+  return std::make_unique<MaterialTerm<Law, QuadraticNodeBatch>>("nodes", mesh, first, parameters,
+                                                                 Law{{.extra = parameter_count - 2}});
 }
 
 }  // namespace aspic

@@ -1,0 +1,106 @@
+#include "scene/body_cavities.h"
+
+#include <algorithm>
+
+#include "base/error.h"
+#include "dynamics/state.h"
+#include "energy/cavity.h"
+#include "energy/pressure_rim.h"
+#include "mesh/components.h"
+#include "mesh/surface.h"
+#include "scene/placement.h"
+
+namespace aspic {
+namespace {
+
+constexpr double kStiffLiquid = 1000;  // bulk modulus of a liquid over the largest Young's modulus of the body
+
+std::vector<std::vector<Face>> components_of(const TetMesh& mesh, const std::vector<Face>& faces) {
+  TriMesh surface{mesh.rest, {}};
+  for (const Face& face : faces) surface.triangles.push_back(face.corners);
+  std::vector<std::vector<Face>> components;
+  for (const std::vector<int>& list : triangle_components(surface)) {
+    std::vector<Face>& component = components.emplace_back();
+    for (const int f : list) component.push_back(faces[f]);
+  }
+  return components;
+}
+
+// The only inner surface of a body.
+std::vector<Face> inner_surface(const PlacedBody& body, const Value& scene, const std::vector<Face>& boundary) {
+  std::vector<std::vector<Face>> inner = components_of(body.mesh, boundary);
+  std::erase_if(inner, [&](const std::vector<Face>& patch) { return !(cavity_volume(body.mesh, patch) > 0); });
+  if (inner.size() == 1) return inner[0];
+  throw error_at(scene.place, "body '" + body.name() + "' has " + std::to_string(inner.size()) + " inner surfaces" +
+                                  (inner.empty() ? "; a cavity needs one that no opening connects with the outside"
+                                                 : "; select the faces of one by where"));
+}
+
+// Closed, in the body's numbering.
+std::vector<Face> patch_of(const PlacedBody& body, Value& scene, const Vec3d& up) {
+  const std::vector<Face> boundary = boundary_faces(body.mesh, 0, body.mesh.tet_count());
+  Value* where = scene.table().find("where");
+  if (!where) return inner_surface(body, scene, boundary);
+  std::vector<Face> patch = select_faces(*where, selection_scope(body, *where, up), boundary);
+  if (const size_t rim = rim_of(patch).size(); rim > 0)
+    throw error_at(where->place, "the selected faces are open, with " + std::to_string(rim) +
+                                     " edges at their rim; select all faces of an inner surface, or leave out where");
+  if (!(cavity_volume(body.mesh, patch) > 0))
+    throw error_at(where->place, "the selected faces enclose the body, not a cavity; select an inner surface");
+  return patch;
+}
+
+double largest_young(const TetElasticity& elasticity) {
+  double largest = 0;
+  for (const MaterialParameters& p : elasticity.parameters()) {
+    const auto [mu, lambda] = p.lame;
+    largest = std::max(largest, mu + lambda > 0 ? mu * (3 * lambda + 2 * mu) / (lambda + mu) : 0);
+  }
+  return largest;
+}
+
+CavityContent content_of(Value& scene, const TetElasticity& elasticity) {
+  const Value* liquid = scene.find("liquid");
+  const Value& amount = liquid ? *liquid : scene["gas"];
+  CavityContent content{liquid ? CavityContent::liquid : CavityContent::gas, 0,
+                        function_of_time(amount, "the content of a cavity is uniform, so its formula may use only t")};
+  if (const double a = content.amount(0); !(a >= 0))
+    throw error_at(amount.place, number_text(a) + " at time 0 is negative; 1 is the start");
+  if (!liquid)
+    content.modulus = scene["pressure"].number();
+  else if (const Value* bulk = scene.find("bulk_modulus"))
+    content.modulus = bulk->number();
+  else
+    content.modulus = kStiffLiquid * largest_young(elasticity);
+  if (!(content.modulus > 0)) throw error_at(scene.place, "a liquid in a body without stiffness needs a bulk_modulus");
+  return content;
+}
+
+}  // namespace
+
+void add_cavities(std::vector<PlacedBody>& bodies, const Vec3d& up, std::vector<std::string>& notes, Model& model) {
+  std::vector<double> start = at_rest(model.mesh).q;
+  for (const PlacedBody& body : bodies)
+    for (size_t v = 0; v < body.start.size(); ++v)
+      for (int r = 0; r < 3; ++r) start[3 * body.model_vertex(static_cast<int>(v)) + r] = body.start[v][r];
+  int number = 0;
+  for (size_t b = 0; b < bodies.size(); ++b) {
+    const PlacedBody& body = bodies[b];
+    Value* list = body.scene.table().find("cavity");
+    if (!list) continue;
+    for (Value& scene : list->array()) {
+      std::vector<Face> patch = patch_of(body, scene, up);
+      for (Face& face : patch) {
+        for (int& v : face.corners) v = body.model_vertex(v);
+        for (int& v : face.mids) v = v < 0 ? v : body.model_vertex(v);
+      }
+      const std::string name = ++number == 1 ? "cavity" : "cavity_" + std::to_string(number);
+      auto cavity = make_cavity(name, model.mesh, patch, content_of(scene, *model.elasticity[b]), start);
+      notes.push_back(name + " of body '" + body.name() + "': " + number_text(1e6 * cavity->state(start, 0).volume) +
+                      " ml at the start");
+      model.loads.push_back(std::move(cavity));
+    }
+  }
+}
+
+}  // namespace aspic
