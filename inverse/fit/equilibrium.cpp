@@ -45,6 +45,7 @@ struct Equilibrium::Impl {
     minimize.tolerance = o.tolerance;
     minimize.max_iterations = o.max_iterations;
     minimize.updates_lagged = true;
+    E.count_pinned_forces();
     for (const auto& D : model.damping)
       if (const auto* term = dynamic_cast<const LaggedProduct*>(D.get())) lagged.push_back(term);
     pins.place(0, x);

@@ -275,7 +275,7 @@ void IncrementalPotential::add_part_round_off(std::span<const double> q, double 
 void IncrementalPotential::add_part_norms(std::span<const double> v, bool is_exact) {
   if (parts_.empty()) return;
   for (Part& part : parts_) part.sum = 0;
-  for (int i = 0; i < own_; ++i) parts_[part_of_[i]].sum += squared_norm(pins_.free_part(i, point(v, i)));
+  for (int i = 0; i < own_; ++i) parts_[part_of_[i]].sum += squared_norm(counted_part(i, point(v, i)));
   sum_parts();
   for (Part& part : parts_) {
     part.scale += std::sqrt(part.sum);
@@ -376,10 +376,10 @@ void IncrementalPotential::add_term_gradient(const ActiveTerm& term, std::span<c
   double squared = parallel_sum(own_, [&](int first, int last) {
     double square = 0;
     for (int i = first; i < last; ++i) {
-      const Vec3d free = pins_.free_part(i, point(term_, i));
+      const Vec3d counted = counted_part(i, point(term_, i));
       for (int r = 0; r < 3; ++r) {
         const int k = 3 * i + r;
-        square += free[r] * free[r];
+        square += counted[r] * counted[r];
         g[k] += term_[k];
         sum[k] += term_[k];
         term_[k] = 0;

@@ -46,6 +46,10 @@ class IncrementalPotential : public Objective,
   // Sets q~ [m], w and f, and discards what is known about the last step. Called before the first evaluation.
   void begin_step(std::span<const double> predicted, double inertia /* w */, double factor /* f */);
 
+  // Counts forces at pinned vertices among those in balance, see Criterion::scale: at rest, nothing else may balance
+  // the motion of pins.
+  void count_pinned_forces() { counts_pinned_ = true; }
+
   // Returns whether a term of D has lagged coefficients, see LaggedEnergy.
   bool is_lagged() const override;
   // Evaluates the lagged coefficients at q.
@@ -134,6 +138,7 @@ class IncrementalPotential : public Objective,
   void add_term_gradient(const ActiveTerm& term, std::span<const double> q, std::span<double> g, std::span<double> sum);
   double squared_distance_to_prediction(std::span<const double> q) const;  // (q - q~)' M (q - q~)
   double free_norm(std::span<const double> v) const;
+  Vec3d counted_part(int i, const Vec3d& force) const { return counts_pinned_ ? force : pins_.free_part(i, force); }
   double gradient_round_off_at(std::span<const double> q);
 
   struct Part {  // characteristic sizes of a part, see measure()
@@ -156,6 +161,7 @@ class IncrementalPotential : public Objective,
   BlockSparse H_;
   std::optional<BlockSparse> metric_;  // computed on first use
 
+  bool counts_pinned_ = false;
   std::vector<Part> parts_;   // empty: a single part
   std::vector<int> part_of_;  // part of each vertex; empty: a single part
   std::vector<double> predicted_;
