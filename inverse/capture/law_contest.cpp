@@ -347,7 +347,8 @@ class LawContest {
     };
     const HeldOutJobs jobs{jobs_, "law_" + c.law.name + "_held_out", c.plan, [this] { return is_stopped(); }};
     return cross_validate(simulated_.fitted(), model.map, *model.prior, fitted,
-                          {options, plan_.equilibrium, observe, nullptr, jobs.store(simulated_.fitted(), fitted)});
+                          {options, plan_.equilibrium, observe, nullptr, jobs.store(simulated_.fitted(), fitted),
+                           simulated_.equilibria()});
   }
 
   PredictiveResiduals predicted(FitModel& model, const HeldOut& group) const {

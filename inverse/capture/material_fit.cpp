@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "capture/fit_troubles.h"
 #include "capture/fit_verdict.h"
@@ -141,6 +142,9 @@ bool MaterialFit::has_single_values(FitModel& model, const FitReport& report) {
   if (!outcome_.failure.empty()) return false;
   if (report.status != Status::interrupted) {
     correct_data(model, report.p);
+    if (model.journal) model.journal->catch_up();
+    simulated_.start_from(model.misfit.state());
+    if (!is_field() && p_of_errors_.empty()) p_of_errors_ = report.p;
     return true;
   }
   describe(model, report.p);
@@ -190,7 +194,7 @@ void MaterialFit::fit_until_mesh_errors_settle(std::optional<FitModel>& model) {
   const bool is_one_value = !outcome_.against_field.empty();
   const std::string stage = is_one_value ? "one_value" : "fit";
   outcome_.mesh_errors_settle = true;
-  std::vector<double> start;
+  std::vector<double> start, before = std::exchange(p_of_errors_, {});
   FitOptions options = plan_.fit;
   for (int pass = 0;; ++pass) {
     const std::string name = pass == 0 ? stage : stage + "_corrected" + std::to_string(pass);
@@ -198,8 +202,8 @@ void MaterialFit::fit_until_mesh_errors_settle(std::optional<FitModel>& model) {
     outcome_.report = fit_stage(is_one_value ? FitStage::uniform : FitStage::field, *model, options, start);
     const std::vector<double>& p = outcome_.report.p;
     if ((!has_model_errors() && !has_corrections()) || !is_success(outcome_.report.status)) return;
-    const double change = change_between(start, p), corrections = correct_data(*model, p);
-    if (pass > 0 && change < (is_many(p) ? kSettledField : kSettled) && corrections < kSettledCorrection) return;
+    const double change = change_between(before, p), corrections = correct_data(*model, p);
+    if (!before.empty() && change < (is_many(p) ? kSettledField : kSettled) && corrections < kSettledCorrection) return;
     if (pass == kPasses) {
       outcome_.mesh_errors_settle = false;
       return add_warnings({"corrections of the data and material do not converge: after " + std::to_string(kPasses) +
@@ -207,7 +211,7 @@ void MaterialFit::fit_until_mesh_errors_settle(std::optional<FitModel>& model) {
                            " (of log E); refine the mesh (option refine)"});
     }
     options.weight = outcome_.report.weight;
-    start = p;
+    start = before = p;
     material_ = model->map.parameters(p);
     model.reset();
     use_corrections();

@@ -138,6 +138,7 @@ class MaterialFit {
   std::vector<double> corrected_errors_;
   std::vector<CaseWeights> corrected_weights_;
   std::vector<MaterialParameters> material_;  // last fitted parameters
+  std::vector<double> p_of_errors_;           // parameters of the first errors, if they are those of the fit
   std::string fingerprint_;
   std::optional<FitModel> last_;   // model of the result
   std::vector<double> described_;  // parameters of the result

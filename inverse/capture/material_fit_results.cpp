@@ -164,6 +164,8 @@ void MaterialFit::predict_group(const std::string& group, const ParameterMap& ma
                                 const UsePrediction& use) {
   const Experiment part = subset(simulated_.all(), [&](const LoadCase& c) { return c.group == group; });
   Misfit misfit(part, map, plan_.equilibrium);
+  if (const auto x = simulated_.equilibria([&](const LoadCase& c) { return c.group == group; }); !x.empty())
+    misfit.set_state(x);
   std::vector<double> r(static_cast<size_t>(misfit.residual_count()));
   if (!misfit.evaluate(p, r)) return add_warnings({"'" + group + "' could not be predicted: " + misfit.failure()});
   int own = 0;

@@ -17,6 +17,12 @@ bool is_refined_locally(const Experiment& data, const FitPlan& plan) {
   return plan.mesh_errors && data.mesh.tet_count() <= SimulatedData::kTooFine / kMostGrowth;
 }
 
+// Errors have 2 to 3 digits.
+EquilibriumOptions rough(EquilibriumOptions options) {
+  options.tolerance = std::max(options.tolerance, 1e-7);
+  return options;
+}
+
 }  // namespace
 
 SimulatedData::SimulatedData(const Experiment& data, const FitPlan& plan)
@@ -62,7 +68,7 @@ void SimulatedData::correct(std::vector<double> errors, std::vector<CaseWeights>
 bool SimulatedData::is_too_large_for_mesh_errors() const { return mesh().tet_count() > kTooFine; }
 
 std::string SimulatedData::take_off_mesh_errors(const FitPlan& plan, const std::vector<MaterialParameters>& material) {
-  MeshErrors errors = mesh_errors(simulated_, plan.model, material, plan.equilibrium, &error_predictions_);
+  MeshErrors errors = mesh_errors(simulated_, plan.model, material, rough(plan.equilibrium), &error_predictions_);
   if (errors.cases.empty()) return errors.failure;
   errors_ = std::move(errors.cases);
   update();
@@ -70,7 +76,7 @@ std::string SimulatedData::take_off_mesh_errors(const FitPlan& plan, const std::
 }
 
 std::string SimulatedData::add_law_errors(const FitPlan& plan, const std::vector<MaterialParameters>& material) {
-  LawErrors errors = law_errors(simulated_, plan.model, material, plan.equilibrium, &error_predictions_);
+  LawErrors errors = law_errors(simulated_, plan.model, material, rough(plan.equilibrium), &error_predictions_);
   if (errors.cases.empty()) return errors.failure;
   law_errors_ = std::move(errors.cases);
   update();
@@ -78,10 +84,25 @@ std::string SimulatedData::add_law_errors(const FitPlan& plan, const std::vector
 }
 
 std::vector<double> SimulatedData::equilibria() const {
+  return equilibria([&](const LoadCase& load) { return !is_left_out(left_out_, load); });
+}
+
+void SimulatedData::start_from(std::span<const double> equilibria) {
+  const size_t size = equilibria.size() / fitted_.cases.size();
+  std::vector<CasePrediction>& all = error_predictions_.on_mesh.cases;
+  all.resize(simulated_.cases.size());
+  for (size_t c = 0; c < all.size(); ++c) {
+    if (is_left_out(left_out_, simulated_.cases[c])) continue;
+    all[c].x.assign(equilibria.begin(), equilibria.begin() + static_cast<std::ptrdiff_t>(size));
+    equilibria = equilibria.subspan(size);
+  }
+}
+
+std::vector<double> SimulatedData::equilibria(const std::function<bool(const LoadCase&)>& wanted) const {
   const std::vector<CasePrediction>& all = error_predictions_.on_mesh.cases;
   std::vector<double> x;
   for (size_t c = 0; c < all.size(); ++c) {
-    if (is_left_out(left_out_, simulated_.cases[c])) continue;
+    if (!wanted(simulated_.cases[c])) continue;
     if (all[c].x.empty()) return {};
     x.insert(x.end(), all[c].x.begin(), all[c].x.end());
   }

@@ -1,6 +1,8 @@
 // Measurements for a fit: on the simulated mesh, without systematic errors and discretization error, weighted by a
 // robust loss, and without held-out groups.
 #pragma once
+#include <functional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -33,8 +35,11 @@ class SimulatedData {
   std::string take_off_mesh_errors(const FitPlan& plan, const std::vector<MaterialParameters>& material);
   // Includes the choice of the law in the errors of the measurements.
   std::string add_law_errors(const FitPlan& plan, const std::vector<MaterialParameters>& material);
-  // Positions of the fitted cases, one after another, at rest with the material of the last errors; empty: unknown.
-  std::vector<double> equilibria() const;
+  // Positions of some cases, one after another, at rest with the material of the last errors; empty: unknown.
+  std::vector<double> equilibria(const std::function<bool(const LoadCase&)>& wanted) const;
+  std::vector<double> equilibria() const;  // of the fitted cases
+  // Equilibria of the fitted cases, from which the next errors start.
+  void start_from(std::span<const double> equilibria);
   // Error of the positions: root mean square over the largest motion; < 0: unknown.
   double mesh_error() const;
   // Relative discretization error of the force of case c, see MeshError; 0: unknown, or below the noise.

@@ -48,42 +48,84 @@ void finish(HeldOut& h) {
   h.ok = true;
 }
 
-// Equilibria of all cases at the fit, from which those without a group start. Computed when they are first needed.
-class FittedState {
- public:
-  FittedState(const Experiment& experiment, const ParameterMap& map, std::span<const double> p,
-              const CrossValidationOptions& chosen)
-      : experiment_(experiment), map_(map), p_(p), chosen_(chosen) {}
+// Distance within which J changes by about as much, and the minimum by this fraction of its standard deviation.
+constexpr double kNear = 0.02;
+constexpr double kTolerance = 0.03;  // decrement relative to the first one
 
-  // For a misfit of the cases of one group, or of all others.
-  void start(Misfit& misfit, const std::string& group, bool is_of_group) {
-    compute();
-    const auto wanted = [&](const LoadCase& c) { return (c.group == group) == is_of_group; };
-    if (!x_.empty()) misfit.set_state(subset(experiment_, x_, wanted));
+// All cases at their fit, from which those without a group are fitted. J of the fit serves parameters near it.
+class FitOfAll : public LeastSquares {
+ public:
+  FitOfAll(const Experiment& experiment, const ParameterMap& map, std::span<const double> p,
+           const CrossValidationOptions& chosen)
+      : experiment_(experiment), condensed_(condensed(experiment)), map_(map), p_(p), chosen_(chosen) {}
+
+  // Returns to the fit and leaves out a group, independently of groups before.
+  void leave_out(const std::string& group) {
+    if (!misfit_ || has_moved_) make_misfit();
+    if (!x_.empty()) misfit_->set_state(x_);
+    misfit_->use_cases([&](const LoadCase& c) { return c.group != group; });
+  }
+  // Equilibria of the cases of a group; empty: unknown.
+  std::vector<double> equilibria(const std::string& group) const {
+    if (x_.empty()) return {};
+    return subset(experiment_, x_, [&](const LoadCase& c) { return c.group == group; });
   }
 
+  int parameter_count() const override { return misfit_->parameter_count(); }
+  int residual_count() const override { return misfit_->residual_count(); }
+  bool evaluate(std::span<const double> p, std::span<double> r) override {
+    if (!misfit_->evaluate(p, r)) return false;
+    evaluated_.assign(p.begin(), p.end());
+    return true;
+  }
+  bool linearize() override {
+    if (has_jacobian_ && is_near_fit()) return true;
+    has_moved_ = true;
+    has_jacobian_ = false;
+    return misfit_->linearize();
+  }
+  void multiply(std::span<const double> dp, std::span<double> dr) override { misfit_->multiply(dp, dr); }
+  void multiply_transposed(std::span<const double> w, std::span<double> pbar) override {
+    misfit_->multiply_transposed(w, pbar);
+  }
+  int nuisance_count() const override { return misfit_->nuisance_count(); }
+  NuisancePrior nuisance_prior(int k) const override { return misfit_->nuisance_prior(k); }
+  void nuisance(int k, std::span<double> dr) override { misfit_->nuisance(k, dr); }
+  std::vector<std::pair<int, int>> residuals_by_case() const override { return misfit_->residuals_by_case(); }
+
  private:
-  void compute() {
-    if (is_computed_) return;
-    is_computed_ = true;
-    Misfit all(experiment_, map_, chosen_.equilibrium);
-    if (!chosen_.start.empty()) all.set_state(chosen_.start);
-    std::vector<double> r(static_cast<size_t>(all.residual_count()));
-    if (all.evaluate(p_, r)) x_ = all.state();
+  void make_misfit() {
+    misfit_.emplace(condensed_, map_, chosen_.equilibrium);
+    has_moved_ = has_jacobian_ = false;
+    if (!has_equilibria_) return;
+    if (!chosen_.start.empty()) misfit_->set_state(chosen_.start);
+    std::vector<double> r(static_cast<size_t>(residual_count()));
+    has_equilibria_ = misfit_->evaluate(p_, r);
+    if (!has_equilibria_) return make_misfit();
+    x_ = misfit_->state();
+    has_jacobian_ = !experiment_.scan_gravity && misfit_->linearize();  // evaluations of scans discard J
+  }
+  bool is_near_fit() const {
+    double distance = 0;
+    for (size_t i = 0; i < p_.size(); ++i) distance = std::max(distance, std::abs(evaluated_[i] - p_[i]));
+    return distance <= kNear;
   }
 
   const Experiment& experiment_;
+  Experiment condensed_;
   const ParameterMap& map_;
   std::span<const double> p_;
   const CrossValidationOptions& chosen_;
-  bool is_computed_ = false;
-  std::vector<double> x_;  // empty: there are no equilibria
+  std::optional<Misfit> misfit_;
+  bool has_equilibria_ = true;  // at the fit
+  bool has_jacobian_ = false, has_moved_ = false;
+  std::vector<double> x_, evaluated_;
 };
 
 void predict(const Experiment& left_out, const ParameterMap& map, const EquilibriumOptions& options,
-             FittedState& fitted, HeldOut& h) {
+             std::span<const double> start, HeldOut& h) {
   Misfit misfit(left_out, map, options);
-  fitted.start(misfit, h.group, true);
+  if (!start.empty()) misfit.set_state(start);
   std::vector<double> r(misfit.residual_count());
   if (!misfit.evaluate(h.p, r)) {
     h.failure = "no equilibrium was found with the material of the other cases: " + misfit.failure();
@@ -101,23 +143,20 @@ struct HoldOut {
   const std::vector<double>& guess;
   const FitOptions& options;
   const CrossValidationOptions& chosen;
-  FittedState& fitted;
+  FitOfAll& all;
 };
 
 // Fits the other groups and predicts this one.
 HeldOut hold_out(const Experiment& experiment, const HoldOut& what) {
   HeldOut h{.group = what.group};
-  const EquilibriumOptions& equilibrium = what.chosen.equilibrium;
-  const Experiment seen = condensed(subset(experiment, [&](const LoadCase& c) { return c.group != h.group; }));
   const Experiment& whole = what.chosen.to_predict ? *what.chosen.to_predict : experiment;
   const Experiment left_out = subset(whole, [&](const LoadCase& c) { return c.group == h.group; });
-  Misfit misfit(seen, what.map, equilibrium);
-  what.fitted.start(misfit, h.group, false);
-  WithUncertainLayers data(misfit);
+  what.all.leave_out(h.group);
+  WithUncertainLayers data(what.all);
   const FitReport report = fit(data, what.regularizer, what.guess, what.options);
   h.p = report.p;
   if (is_success(report.status) || report.status == Status::iteration_limit)
-    predict(left_out, what.map, equilibrium, what.fitted, h);
+    predict(left_out, what.map, what.chosen.equilibrium, what.all.equilibria(h.group), h);
   else
     h.failure = "the fit to the other cases failed: " + report.message;
   return h;
@@ -168,12 +207,13 @@ CrossValidation cross_validate(const Experiment& experiment, const ParameterMap&
   FitOptions options = chosen.fit;
   options.weight = fitted.weight;
   options.starts = 1;
-  FittedState state(experiment, map, fitted.p, chosen);
+  options.tolerance = std::max(options.tolerance, kTolerance);
+  FitOfAll all(experiment, map, fitted.p, chosen);
   for (size_t g = 0; g < groups.size(); ++g) {
     if (chosen.observe) chosen.observe(static_cast<int>(g), static_cast<int>(groups.size()), groups[g]);
     if (options.stop.stopped()) break;
     const auto compute = [&] {
-      return hold_out(experiment, {groups[g], map, regularizer, fitted.p, options, chosen, state});
+      return hold_out(experiment, {groups[g], map, regularizer, fitted.p, options, chosen, all});
     };
     std::optional<HeldOut> h = chosen.store ? chosen.store(static_cast<int>(g), groups[g], compute) : compute();
     if (!h) continue;

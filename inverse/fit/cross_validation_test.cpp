@@ -2,7 +2,9 @@
 
 #include <gmock/gmock.h>
 
+#include "fit/common_errors.h"
 #include "fit/indented_block_test.h"
+#include "math/vectors.h"
 
 namespace aspic {
 namespace {
@@ -129,6 +131,26 @@ TEST(CrossValidation, StatesOfAllCasesStartTheOthers) {
   ASSERT_TRUE(cold.evaluate(map.guess(), r) && warm.evaluate(map.guess(), r));
   EXPECT_GT(cold.counts().newton_iterations, 3 * std::ssize(seen.cases));
   EXPECT_LE(warm.counts().newton_iterations, std::ssize(seen.cases));
+}
+
+// J of the fit to all cases serves the others, whose minima are near.
+TEST(CrossValidation, FitsOtherGroupsLikeSeparateFits) {
+  HeldOutStudy study;
+  study.measure(study.halves(1));
+  const Experiment& all = study.block.experiment;
+  const ParameterMap map = study.block.map({{.parameterization = Parameterization::uniform, .guess = 1e4}});
+  const auto prior = make_regularizer(all.mesh, map, {});
+  for (const HeldOut& h : study.validate(map).groups) {
+    const Experiment seen = subset(all, [&](const LoadCase& c) { return c.group != h.group; });
+    Misfit misfit(seen, map);
+    WithUncertainLayers data(misfit);
+    const FitReport separate = fit(data, *prior, map.guess(), {.weight = 1});
+    std::vector<double> unit(1, 1.0), column(static_cast<size_t>(data.residual_count()));
+    ASSERT_TRUE(h.ok && data.linearize()) << h.failure;
+    data.multiply(unit, column);
+    const double sigma = 1 / norm(column);
+    EXPECT_NEAR(h.p[0], separate.p[0], 0.03 * sigma) << h.group;
+  }
 }
 
 TEST(CrossValidation, NeedsTwoGroups) {

@@ -41,7 +41,7 @@ class LoadedBody {
   bool linearize(std::span<const MaterialParameters> parameters);
   std::span<const double> accepted() const { return accepted_; }
   void restore(std::span<const double> x);  // as if x had been found and accepted
-  bool is_linearized() const { return !equilibrium_.linearized_x().empty(); }
+  std::span<const double> linearized_x() const { return equilibrium_.linearized_x(); }  // empty: not linearized
   // Computes linearized x + dx/dtheta dtheta; false if the solve failed.
   bool predict(std::span<const double> dtheta, std::span<double> x);
   bool multiply(std::span<const double> dtheta, std::span<double> dr);

@@ -32,7 +32,7 @@ struct Misfit::Impl {
     std::unique_ptr<LoadedBody> body;
     int first = 0;                        // index of its first residual
     std::vector<double> start, thetabar;  // scratch
-    bool ok = false;
+    bool is_used = true, ok = false;
   };
 
   Impl(const Experiment& e, const ParameterMap& m, const EquilibriumOptions& o) : experiment(e), map(m), options(o) {
@@ -70,7 +70,9 @@ struct Misfit::Impl {
   // Solves the cases in parallel if there are enough of them, otherwise one after another, each on all threads.
   template <class Body>
   void for_each_case(const Body& body) {
-    for_each(case_count(), [&](int c) { body(cases[c]); });
+    for_each(case_count(), [&](int c) {
+      if (cases[c].is_used) body(cases[c]);
+    });
   }
   template <class Body>
   static void for_each(int count, const Body& body) {
@@ -103,7 +105,7 @@ struct Misfit::Impl {
       std::fill(dtheta.begin() + static_cast<ptrdiff_t>(per_tet) * first,
                 dtheta.begin() + static_cast<ptrdiff_t>(per_tet) * last, 0.0);
       for (const Case& c : cases)
-        for (int t = first; t < last; ++t)
+        for (int t = first; c.is_used && t < last; ++t)
           for (const int part : parts_of[t])
             for (int k = 0; k < per_tet; ++k)
               dtheta[static_cast<size_t>(per_tet) * t + k] += c.thetabar[static_cast<size_t>(per_tet) * part + k];
@@ -124,7 +126,9 @@ struct Misfit::Impl {
     for_each(case_count(), [&](int c) {
       Case& own = shape.cases[c];
       if (has_solved) own.body->restore(cases[c].body->accepted());
-      own.ok = own.body->solve(parameters, {});
+      own.is_used = cases[c].is_used;
+      own.ok = !own.is_used || own.body->solve(parameters, {});
+      if (!own.is_used) return;
       own.body->accept();
     });
     if (!all_ok(shape.cases)) return {};
@@ -145,7 +149,9 @@ struct Misfit::Impl {
   }
 
   static void put_residuals(std::vector<Case>& of, std::span<double> r) {
-    for (Case& c : of) c.body->residuals(r.subspan(c.first, c.body->residual_count()));
+    std::fill(r.begin(), r.end(), 0.0);
+    for (Case& c : of)
+      if (c.is_used) c.body->residuals(r.subspan(c.first, c.body->residual_count()));
   }
 
   // shape_slopes[k] = (dr/dX) (dX/dp_k), X the unloaded shape.
@@ -171,8 +177,13 @@ struct Misfit::Impl {
     const std::vector<MaterialParameters> parameters = parameters_at(p);
     if (is_linearized) {
       for (size_t i = 0; i < dp.size(); ++i) dp[i] = p[i] - linear_p[i];
+      const bool has_moved = max_abs(dp) > 0;
       const std::vector<double>& tangent = theta_tangent(dp);
       for_each_case([&](Case& c) {
+        if (!has_moved) {
+          c.ok = c.body->solve(parameters, c.body->linearized_x());
+          return;
+        }
         c.start.resize(3 * experiment.mesh.rest.size());
         c.ok = c.body->solve(parameters, c.body->predict(tangent, c.start) ? c.start : std::span<const double>());
       });
@@ -182,10 +193,8 @@ struct Misfit::Impl {
       solve_groups(parameters);
     }
     if (!all_ok()) return false;
-    for_each_case([&](Case& c) {
-      c.body->residuals(r.subspan(c.first, c.body->residual_count()));
-      c.body->accept();
-    });
+    put_residuals(cases, r);
+    for_each_case([&](Case& c) { c.body->accept(); });
     has_solved = true;
     accepted_p.assign(p.begin(), p.end());
     accepted_parameters = parameters;
@@ -201,7 +210,8 @@ struct Misfit::Impl {
     begin.push_back(case_count());
     for_each(static_cast<int>(begin.size()) - 1, [&](int g) {
       for (int c = begin[g]; c < begin[g + 1]; ++c) {
-        const bool follows = c > begin[g] && cases[c - 1].ok;
+        if (!cases[c].is_used) continue;
+        const bool follows = c > begin[g] && cases[c - 1].is_used && cases[c - 1].ok;
         cases[c].ok = cases[c].body->solve(parameters, follows ? cases[c - 1].body->x() : std::span<const double>());
       }
     });
@@ -211,12 +221,17 @@ struct Misfit::Impl {
   bool all_ok(const std::vector<Case>& of) {
     failure.clear();
     for (const Case& c : of)
-      if (!c.ok) failure += (failure.empty() ? "" : "; ") + c.body->failure();
+      if (c.is_used && !c.ok) failure += (failure.empty() ? "" : "; ") + c.body->failure();
     return failure.empty();
   }
 
   bool linearize() {
     ASPIC_CHECK(has_solved);
+    const bool is_same = is_linearized && linear_p == accepted_p;
+    if (is_same && std::all_of(cases.begin(), cases.end(), [](const Case& c) {
+          return !c.is_used || std::ranges::equal(c.body->linearized_x(), c.body->accepted());
+        }))
+      return true;
     is_linearized = false;
     for_each_case([&](Case& c) { c.ok = c.body->linearize(accepted_parameters); });
     if (!all_ok()) return false;
@@ -228,6 +243,7 @@ struct Misfit::Impl {
   void multiply(std::span<const double> direction, std::span<double> dr) {
     ASPIC_CHECK(is_linearized);
     const std::vector<double>& tangent = theta_tangent(direction);
+    std::fill(dr.begin(), dr.end(), 0.0);
     for_each_case([&](Case& c) { c.ok = c.body->multiply(tangent, dr.subspan(c.first, c.body->residual_count())); });
     for (size_t k = 0; k < shape_slopes.size(); ++k) add_scaled(direction[k], shape_slopes[k], dr);
     mark_unless_ok(dr);
@@ -256,9 +272,9 @@ struct Misfit::Impl {
   // layers.
   void multiply_by_nuisance(int k, std::span<double> dr) {
     ASPIC_CHECK(is_linearized);
+    std::fill(dr.begin(), dr.end(), 0.0);
     for_each_case([&](Case& c) {
       const std::span<double> part = dr.subspan(c.first, c.body->residual_count());
-      std::fill(part.begin(), part.end(), 0.0);
       if (k < error_count())
         c.ok = c.body->multiply_by_error(experiment.errors[k], part);
       else if (k < bounded_count())
@@ -303,6 +319,10 @@ Misfit::Misfit(const Experiment& experiment, const ParameterMap& map, const Equi
     : impl_(std::make_unique<Impl>(experiment, map, options)) {}
 Misfit::~Misfit() = default;
 
+void Misfit::use_cases(const std::function<bool(const LoadCase&)>& wanted) {
+  for (size_t c = 0; c < impl_->cases.size(); ++c) impl_->cases[c].is_used = wanted(impl_->experiment.cases[c]);
+}
+
 int Misfit::parameter_count() const { return impl_->map.size(); }
 int Misfit::residual_count() const { return impl_->residual_count; }
 int Misfit::reading_count() const {
@@ -335,9 +355,12 @@ std::vector<double> Misfit::state() const {
 void Misfit::set_state(std::span<const double> x) {
   const size_t size = 3 * impl_->experiment.mesh.rest.size();
   ASPIC_CHECK(x.size() == size * impl_->cases.size());
-  for (size_t c = 0; c < impl_->cases.size(); ++c) impl_->cases[c].body->restore(x.subspan(c * size, size));
+  for (size_t c = 0; c < impl_->cases.size(); ++c) {
+    LoadedBody& body = *impl_->cases[c].body;
+    body.restore(x.subspan(c * size, size));
+    impl_->is_linearized = impl_->is_linearized && std::ranges::equal(body.linearized_x(), body.accepted());
+  }
   impl_->has_solved = true;
-  impl_->is_linearized = false;
 }
 
 const CasePrediction& Misfit::prediction(int c) const { return impl_->cases[c].body->prediction(); }

@@ -3,6 +3,7 @@
 // for any number of threads.
 #pragma once
 #include <array>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <span>
@@ -108,10 +109,12 @@ class Misfit : public LeastSquares {
   int parameter_count() const override;
   int residual_count() const override;
   int reading_count() const override;
+  // Restricts evaluations, linearizations and products to these cases; the residuals of all others are 0.
+  void use_cases(const std::function<bool(const LoadCase&)>& wanted);
   // Each case starts from the equilibrium of the last linearization, corrected by the tangent, or from its last one; on
   // failure by load stepping. The first time, each starts from the previous case of its group.
   bool evaluate(std::span<const double> p, std::span<double> r) override;
-  bool linearize() override;
+  bool linearize() override;  // does nothing where J is known
   // Products that cannot be computed are NaN; see failure().
   void multiply(std::span<const double> dp, std::span<double> dr) override;
   void multiply_transposed(std::span<const double> w, std::span<double> pbar) override;
@@ -124,7 +127,7 @@ class Misfit : public LeastSquares {
   std::vector<std::pair<int, int>> residuals_by_case() const override;
 
   // Equilibria of the last successful evaluate(), case by case; empty before. A misfit with this state, evaluated and
-  // linearized at the same p, continues bit-reproducibly.
+  // linearized at the same p, continues bit-reproducibly. Keeps J of the same equilibria.
   std::vector<double> state() const;
   void set_state(std::span<const double> x);
 

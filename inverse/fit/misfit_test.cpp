@@ -162,6 +162,66 @@ TEST(Misfit, JacobianHasTaylorSlope2) {
   }
 }
 
+// The top is held where nothing else loads the block, so only reactions balance the elastic forces.
+TEST(Misfit, GripsConvergeRelativeToReactions) {
+  Gel gel;
+  std::erase_if(gel.experiment.cases, [](const LoadCase& c) { return !c.grip; });
+  gel.experiment.cases[0].gravity = {};
+  const ParameterMap map = gel.map("neo_hookean");
+  Misfit misfit(gel.experiment, map);
+  std::vector<double> r(misfit.residual_count());
+  ASSERT_TRUE(misfit.evaluate(map.guess(), r)) << misfit.failure();
+  const MinimizeReport& solve = misfit.prediction(0).solve;
+  EXPECT_EQ(solve.status, Status::converged);
+  EXPECT_GT(solve.threshold, 1e-10 * norm(misfit.prediction(0).wrench.force));
+  const long before = misfit.counts().newton_iterations;
+  ASSERT_TRUE(misfit.evaluate(map.guess(), r));
+  EXPECT_EQ(misfit.counts().newton_iterations, before) << "an equilibrium is solved again";
+}
+
+TEST(Misfit, LinearizesOncePerPoint) {
+  Gel gel;
+  const ParameterMap map = gel.map();
+  Misfit misfit(gel.experiment, map);
+  std::vector<double> r(misfit.residual_count());
+  const auto factorizations_at = [&](std::span<const double> p) {
+    EXPECT_TRUE(misfit.evaluate(p, r)) << misfit.failure();
+    const long before = misfit.counts().factorizations;
+    EXPECT_TRUE(misfit.linearize());
+    return misfit.counts().factorizations - before;
+  };
+  const std::vector<double> other = stepped(map.guess(), Numbers(3)(map.size()), 0.1);
+  EXPECT_GT(factorizations_at(map.guess()), 0);
+  EXPECT_EQ(factorizations_at(map.guess()), 0);
+  EXPECT_GT(factorizations_at(other), 0);
+  EXPECT_GT(factorizations_at(map.guess()), 0);
+}
+
+TEST(Misfit, UnusedCasesHaveNoResiduals) {
+  Gel gel;
+  const ParameterMap map = gel.map();
+  Misfit all(gel.experiment, map, kMisfitExact), some(gel.experiment, map, kMisfitExact);
+  some.use_cases([](const LoadCase& c) { return c.group == "hung" || c.group == "gripped"; });
+  std::vector<double> r(all.residual_count()), of_some(r.size()), w = Numbers(7)(r.size()), masked(r.size());
+  ASSERT_TRUE(all.evaluate(map.guess(), r) && some.evaluate(map.guess(), of_some));
+  ASSERT_TRUE(all.linearize() && some.linearize());
+  const std::vector<double> dp = Numbers(6)(map.size());
+  std::vector<double> dr(r.size()), dr_of_some(r.size()), pbar(map.size()), pbar_of_some(map.size());
+  all.multiply(dp, dr), some.multiply(dp, dr_of_some);
+  for (size_t c = 0; c < gel.experiment.cases.size(); ++c) {
+    const auto [first, count] = all.residuals_of(static_cast<int>(c));
+    const std::string& group = gel.experiment.cases[c].group;
+    const bool is_used = group == "hung" || group == "gripped";
+    for (int i = first; i < first + count; ++i) {
+      masked[i] = is_used ? w[i] : 0;
+      EXPECT_NEAR(of_some[i], is_used ? r[i] : 0, 1e-6 * norm(r));
+      EXPECT_NEAR(dr_of_some[i], is_used ? dr[i] : 0, 1e-6 * norm(dr));
+    }
+  }
+  all.multiply_transposed(masked, pbar), some.multiply_transposed(w, pbar_of_some);
+  for (int k = 0; k < map.size(); ++k) EXPECT_NEAR(pbar_of_some[k], pbar[k], 1e-6 * norm(pbar));
+}
+
 // The direction of the fibres and its two tilts.
 ParameterMap map_of_fibres(const TetMesh& mesh) {
   const MaterialParameters known{lame_from_young_poisson(2e4, 0.4), {4, 2, 0.5, 0.3, 0.8}};
