@@ -103,9 +103,26 @@ def read_mesh(path):
 
 
 def box(size, cells, origin=(0, 0, 0), cut="kuhn"):
-    """A box of `size` [m] from `origin`, of cells[0] x cells[1] x cells[2] cells of six tets ("five": of five)."""
-    low = np.asarray(origin, float)
-    return Mesh(*_aspic.box(low, low + np.asarray(size, float), [int(n) for n in cells], cut))
+    """A box of `size` [m] from `origin`, of cells[0] x cells[1] x cells[2] cells of six tets ("five": of five).
+
+    One number for `size` or `cells` holds for all three axes.
+    """
+    low = _three(origin, "origin")
+    counts = _three(cells, "cells")
+    if (counts != np.floor(counts)).any() or (abs(counts) > 1e9).any():
+        raise _aspic.InvalidInput(f"cells = {cells}: must be integers")
+    return Mesh(*_aspic.box(low, low + _three(size, "size"), [int(n) for n in counts], cut))
+
+
+def _three(value, name):
+    """Three numbers, or one for all axes."""
+    try:
+        array = np.asarray(value, float)
+    except (TypeError, ValueError):
+        raise _aspic.InvalidInput(f"{name}: expected three numbers, or one for all axes") from None
+    if array.shape not in ((), (3,)) or not np.isfinite(array).all():
+        raise _aspic.InvalidInput(f"{name} = {value}; expected three finite numbers, or one for all axes")
+    return np.broadcast_to(array, 3)
 
 
 def cylinder(radius, height, size):
