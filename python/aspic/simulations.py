@@ -17,6 +17,9 @@ class NotConverged(RuntimeError):
         super().__init__(f"step {report.step}: {report.status}; {report.explanation}")
         self.report = report
 
+    def __reduce__(self):
+        return NotConverged, (self.report,)
+
 
 class Reports(list):
     """The reports of several steps. reports["iterations"] is a column as an array."""
@@ -134,8 +137,12 @@ class Simulation:
         """Quantities of each tet: energy_density [J/m^3], det_F, cauchy (m, 6) and von_mises [Pa], young, poisson."""
         return self._core.fields()
 
+    def reactions(self):
+        """Forces of the pins on the vertices in the last step, (n, 3) [N]; NaN before the first."""
+        return self._core.reactions()
+
     def snapshot(self):
-        """The state with everything that later steps depend on."""
+        """The state with everything that later steps depend on. It can be pickled."""
         return self._core.snapshot()
 
     def restore(self, snapshot):
