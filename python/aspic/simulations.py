@@ -5,6 +5,7 @@ import tempfile
 import numpy as np
 
 from . import _aspic
+from ._checks import SceneState, Strict, read_only
 from .notebook import in_notebook
 from .results import Run
 from .scenes import Scene
@@ -31,20 +32,26 @@ class Reports(list):
         return super().__getitem__(key)
 
 
-class Simulation:
+class Simulation(Strict):
     """Advances a scene in time.
 
     scene: a Scene, or the path of a scene or a mesh. h: time step [s]. solver: keys of [solver], such as
     {"method": "lbfgs"}. out: folder of the results, as of `aspic run`; without one the motion is kept in a temporary
     folder for show() and results() (record=False: not at all).
+
+    Changes of the scene afterwards raise in step(): restore(snapshot) continues in a simulation of the changed scene.
+    Arrays of properties are read-only copies; assign q or v as a whole.
     """
 
+    _advice = "the attributes q and v can be set; other settings belong to the scene or the constructor"
+
     def __init__(self, scene, h=None, solver=None, integrator=None, out=None, overwrite=False, record=True):
-        self.scene = scene if isinstance(scene, Scene) else Scene.load(scene)
+        self._scene = scene if isinstance(scene, Scene) else Scene.load(scene)
         settings = {"time.step": h, "time.integrator": integrator,
                     **{f"solver.{key}": value for key, value in (solver or {}).items()}}
         source = self.scene._source({key: value for key, value in settings.items() if value is not None})
         self._core = _aspic.Simulation(source)
+        self._scene_state = SceneState(self.scene, "simulation")
         self._inputs = self.scene._inputs  # files that the recording copies
         self._folder = out
         self._record = record
@@ -54,11 +61,16 @@ class Simulation:
     def __repr__(self):
         return f"<Simulation {self.name}: {len(self._core.rest)} vertices, step {self.steps_taken}>"
 
+    @property
+    def scene(self):
+        """The scene that this was made of."""
+        return self._scene
+
     # --- state ---------------------------------------------------------------------------------------------------------
     @property
     def q(self):
-        """Positions, (n, 3) [m]; a copy. Assigning changes the state and ends the recording."""
-        return self._core.q
+        """Positions, (n, 3) [m]. Assigning changes the state and ends the recording; fixed pins hold the new positions."""
+        return read_only(self._core.q)
 
     @q.setter
     def q(self, q):
@@ -66,8 +78,8 @@ class Simulation:
 
     @property
     def v(self):
-        """Velocities, (n, 3) [m/s]; a copy. Assigning changes the state and ends the recording."""
-        return self._core.v
+        """Velocities, (n, 3) [m/s]. Assigning changes the state and ends the recording; those of pins are 0 or as before."""
+        return read_only(self._core.v)
 
     @v.setter
     def v(self, v):
@@ -111,22 +123,22 @@ class Simulation:
     @property
     def rest(self):
         """Rest positions, (n, 3) [m]."""
-        return self._core.rest
+        return read_only(self._core.rest)
 
     @property
     def tets(self):
         """Vertices of each tet, (m, 4)."""
-        return self._core.tets
+        return read_only(self._core.tets)
 
     @property
     def mass(self):
         """Mass of each vertex, (n,) [kg]."""
-        return self._core.mass
+        return read_only(self._core.mass)
 
     @property
     def pinned(self):
         """Whether a pin holds each vertex, (n,)."""
-        return self._core.pinned
+        return read_only(self._core.pinned)
 
     @property
     def bodies(self):
@@ -158,6 +170,7 @@ class Simulation:
         direction(E, x, g) -> d and line_search(E, x, d, g) -> alpha replace those of the solver in this step. Pinned
         entries of d are set to 0. An alpha of 0 ends the step as `stuck`.
         """
+        self._scene_state.require_unchanged(": new = aspic.Simulation(scene); new.restore(sim.snapshot())")
         if self._record and self._folder is None and not self._core.is_recording and self.steps_taken == 0:
             self._temporary = tempfile.TemporaryDirectory(prefix="aspic-run-", ignore_cleanup_errors=True)
             self._core.record(os.path.join(self._temporary.name, "run"), True, True)
@@ -192,6 +205,7 @@ class Simulation:
 
     def objective(self):
         """E(q) of the next steps as a function of its own: E(q), E.gradient(q), E.hessian(q), E.begin_step(q, v, h)."""
+        self._scene_state.require_unchanged()
         return self._core.objective()
 
     # --- results -------------------------------------------------------------------------------------------------------

@@ -38,7 +38,7 @@ void bind_scene(py::module_& m) {
       .def(py::init<std::filesystem::path, std::vector<std::string>, std::vector<py::object>>())
       .def(py::init<const py::dict&, std::string, std::vector<py::object>>())
       .def("check_keys", &SceneSource::check_keys)
-      .def("check_model", [](const SceneSource& source) { source.model(std::make_shared<Callbacks>()); });
+      .def("check_model", &SceneSource::check_model);
   m.def("check_energy", [](const py::object& energy) {
     make_python_energy(energy, Renumbering(), INT_MAX, std::make_shared<Callbacks>());
   });

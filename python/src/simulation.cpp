@@ -75,6 +75,21 @@ void SceneSource::check_keys() const {
   read_scene_input(path_, options);
 }
 
+bool SceneSource::check_model(double most_tets) const {
+  const std::string too_many = "are checked before the simulation is made";
+  SceneOptions options;
+  options.allow_outside = true;
+  options.limit = {most_tets, too_many, true};
+  const ReleasedGil free;
+  try {
+    build_scene_model({*document_, name_, name_, {}, {}}, SceneFiles("", true), options);
+  } catch (const InvalidInput& e) {
+    if (std::string_view(e.what()).find(too_many) == std::string_view::npos) throw;
+    return false;
+  }
+  return true;
+}
+
 LiveSimulation::LiveSimulation(std::shared_ptr<const SceneSource> source)
     : source_(std::move(source)),
       scene_(source_->scene(callbacks_)),

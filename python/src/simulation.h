@@ -24,6 +24,8 @@ class SceneSource {
   SceneSource(const py::dict& document, std::string name, std::vector<py::object> energies);
 
   void check_keys() const;  // of the file and the overrides. Throws InvalidInput
+  // Builds the model without energies. Throws InvalidInput. Returns false if it has more tets, which takes too long.
+  bool check_model(double most_tets) const;
   bool has_energies() const { return !energies_.empty(); }
   // Require the GIL, and release it. Throw InvalidInput and what the energies raise.
   Scene scene(const std::shared_ptr<Callbacks>& callbacks) const;

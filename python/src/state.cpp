@@ -33,11 +33,12 @@ void hold_at(std::span<const double> q, const Model& model, Snapshot& snapshot) 
   const double round_off = kRoundOff * max_abs(snapshot.state.q);
   for (int v = 0; v < pins.vertex_count(); ++v) {
     const Vec3d x = vec_at(q, v), now = vec_at(snapshot.state.q, v), target = vec_at(prescribed, v);
-    const bool is_same = norm(pins.held_part(v, x - now)) <= round_off;
-    if (is_same || norm(x - target) <= round_off) continue;
-    if (pin_of(model, v, true))
+    if (norm(x - target) <= round_off) continue;
+    if (pin_of(model, v, true)) {
+      if (norm(pins.held_part(v, x - now)) <= round_off) continue;  // as after a dropped step
       throw InvalidInput(entry_of("q", model, v, x) + "prescribes " + point_text(target) +
                          " at this time; change only vertices that no pin moves");
+    }
     std::vector<double>& start = snapshot.start.q;
     set_vec(pins.free_part(v, vec_at(start, v)) + pins.held_part(v, x), v, start);
   }

@@ -37,7 +37,7 @@ def test_hash_equals_that_of_the_command_line(scene, scenes, program, tmp_path):
 def test_saved_scene_in_code_has_the_hash_of_the_command_line(program, tmp_path):
     scene = make_jelly(velocity=["Y", 0.1, 0])
     young = np.linspace(4e3, 6e3, len(scene.bodies[0].tets))
-    scene.bodies[0].table["material"]["young"] = scene._material({"young": young}, 0, scene.bodies[0].mesh)["young"]
+    scene.bodies[0].set(material=aspic.Material(young=young, poisson=.4))
     path = scene.save(tmp_path / "saved")
     subprocess.run([program, "run", path, "--steps", "3", "--out", tmp_path / "run", "--quiet"], check=True)
     reports = aspic.Simulation(scene).run(3)
