@@ -9,7 +9,8 @@ from . import _aspic
 class Strict:
     """Refuses unknown public attributes of the package's own classes."""
 
-    _attributes, _advice = (), ""
+    _attributes: tuple[str, ...] = ()
+    _advice = ""
 
     def __setattr__(self, name, value):
         cls = type(self)

@@ -41,7 +41,8 @@ class Material(Strict):
         for extreme in (np.min, np.max):
             numbers = {key: float(extreme(value)) if _is_list(value) and len(value) else value
                        for key, value in values.items()}
-            _check_keys({"body": [{**_PLACEHOLDER, "material": {"model": model, **numbers}}]}, "Material", "body.body.material.")
+            body = {**_PLACEHOLDER, "material": {"model": model, **numbers}}
+            _check_keys({"body": [body]}, "Material", "body.body.material.")
 
     @property
     def model(self):
@@ -365,6 +366,8 @@ def _toml(value):
     if isinstance(value, dict):
         return "{" + ", ".join(f"{k} = {_quoted(v)}" for k, v in value.items()) + "}"
     if isinstance(value, (list, tuple, np.ndarray)):
+        if isinstance(value, np.ndarray):
+            bounded(value, "override")
         return "[" + ", ".join(_quoted(v) for v in value) + "]"
     return repr(float(value)) if isinstance(value, (float, np.floating)) else str(value)
 

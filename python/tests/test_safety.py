@@ -6,7 +6,7 @@ import threading
 
 import numpy as np
 import pytest
-from conftest import make_jelly
+from conftest import ROOT, make_jelly
 
 import aspic
 from aspic import _aspic
@@ -220,6 +220,17 @@ BROADCAST = {
     "x0": lambda sim, body: aspic.minimize(Quadratic(), huge(0.)),
     "direction": lambda sim, body: sim.step(direction=lambda E, x, g: huge(0., 3)),
     "qbar": lambda sim, body: aspic.Equilibrium(make_jelly(1)).vjp(huge(0., 3)),
+    "mask": lambda sim, body: body.pin(huge(True)),
+    "selection": lambda sim, body: body.pin(huge(0)),
+    "material": lambda sim, body: aspic.Material(young=huge(1.)),
+    "values": lambda sim, body: body.set(material={"young": huge(1.)}),
+    "velocity": lambda sim, body: body.set(velocity=huge(0., 3)),
+    "gravity": lambda sim, body: aspic.Scene(gravity=huge(0.)),
+    "override": lambda sim, body: aspic.Scene.load(ROOT / "scenes/cantilever.toml", {"gravity": huge(0.)}),
+    "obstacle": lambda sim, body: sim.scene.obstacle(aspic.Surface(huge(0., 3), huge(0, 3))),
+    "check": lambda sim, body: aspic.check_derivatives(Quadratic(), huge(0., 3)),
+    "box": lambda sim, body: aspic.box(1, huge(2)),
+    "picture": lambda sim, body: aspic.plot.body(sim, huge(0.)),
     "start": lambda sim, body: aspic.Trajectory(make_jelly(1), 1).simulate(None, huge(0., 3), huge(0., 3)),
 }
 
