@@ -6,16 +6,12 @@ import numpy as np
 
 from . import _aspic
 from ._checks import SceneState, Strict
-from .scenes import Scene
+from .scenes import scene_of
 
 
 def lame(young, poisson):
     """The Lame constants (mu, lambda) [Pa] of Young's modulus [Pa] and Poisson's ratio; numbers, arrays or tensors."""
     return young / (2 * (1 + poisson)), young * poisson / ((1 + poisson) * (1 - 2 * poisson))
-
-
-def _loaded(scene):
-    return scene if isinstance(scene, Scene) else Scene.load(scene)
 
 
 class Equilibrium(Strict):
@@ -27,7 +23,7 @@ class Equilibrium(Strict):
     _advice = "give parameters and start to solve()"
 
     def __init__(self, scene, tolerance=1e-9):
-        scene = _loaded(scene)
+        scene = scene_of(scene)
         self._core = _aspic.Equilibrium(scene._source(), tolerance)
         self._scene_state = SceneState(scene, "equilibrium")
 
@@ -66,7 +62,7 @@ class Trajectory(Strict):
     _advice = "give parameters, q and v to simulate()"
 
     def __init__(self, scene, steps, h=0.0, tolerance=1e-9):
-        scene = _loaded(scene)
+        scene = scene_of(scene)
         self._core = _aspic.Trajectory(scene._source(), steps, h or 0.0, tolerance)
         self._scene_state = SceneState(scene, "trajectory")
 
@@ -131,7 +127,7 @@ def capture(scene, folder, **options):
     known = {"indentations", "depths", "markers", "deepest", "tip_radius", "noise", "force_noise", "regions", "seed"}
     if unknown := set(options) - known:
         raise _aspic.InvalidInput(f"unknown options {sorted(unknown)} (known: {', '.join(sorted(known))})")
-    return _aspic.capture(_loaded(scene)._source(), os.fspath(folder), options)
+    return _aspic.capture(scene_of(scene)._source(), os.fspath(folder), options)
 
 
 def verify(name="", quick=True):

@@ -10,8 +10,9 @@ def _axes(ax, **how):
 
 
 def energies(run, ax=None):
-    """Kinetic, potential and total energy over time. run: a Run or Reports."""
-    ax, rows = _axes(ax), run.steps if hasattr(run, "steps") and not isinstance(run, list) else run
+    """Kinetic, potential and total energy over time. run: Reports, a Run, or a Simulation that is recorded."""
+    run = run.results() if hasattr(run, "results") else run
+    ax, rows = _axes(ax), run if isinstance(run, list) else run.steps
     time, kinetic, potential = rows["time"], rows["kinetic"], rows["potential_total"]
     for label, values in (("kinetic", kinetic), ("potential", potential), ("total", kinetic + potential)):
         ax.plot(time, values, label=label)
@@ -34,7 +35,12 @@ def convergence(traces, ax=None):
 
 
 def line_search(curve, trials=None, ax=None):
-    """E along a search direction with its quadratic model and the bound of the decrease test. curve: it.curve()."""
+    """E along a search direction with its quadratic model and the bound of the decrease test.
+
+    curve: it.curve(), or an Iteration `it` inside its observer, with its trials.
+    """
+    if hasattr(curve, "curve"):
+        curve, trials = curve.curve(), curve.trials if trials is None else trials
     ax = _axes(ax)
     ax.plot(curve["alpha"], curve["value"], label="E")
     ax.plot(curve["alpha"], curve["model"], "--", label="quadratic model")
@@ -53,7 +59,8 @@ def line_search(curve, trials=None, ax=None):
 
 
 def landscape(plane, ax=None, levels=30):
-    """Contours of E on the plane of the search direction. plane: it.slice()."""
+    """Contours of E on the plane of the search direction. plane: it.slice(), or an Iteration inside its observer."""
+    plane = plane.slice() if hasattr(plane, "slice") else plane
     ax, value = _axes(ax, figsize=(5, 4)), np.ma.masked_invalid(plane["value"])
     picture = ax.contourf(plane["s"], plane["t"], value, levels)
     ax.figure.colorbar(picture, ax=ax, label="E")

@@ -97,6 +97,16 @@ def _is_surface(mesh):
     return is_path(mesh) and os.path.exists(mesh) and len(_aspic.read_mesh(os.fspath(mesh))) == 2
 
 
+class _Folder(tempfile.TemporaryDirectory):
+    """A folder of inputs, which copies of a scene share."""
+
+    def __deepcopy__(self, memo):
+        return self
+
+    def __reduce__(self):
+        raise TypeError("a scene with meshes cannot be pickled: pass the path of scene.save(folder), or a function that makes it")
+
+
 class Body(Strict):
     """A soft body of a scene. Methods return the body, so that calls can be chained."""
 
@@ -217,7 +227,7 @@ class Scene(Strict):
     def _file(self, name):
         """A path of an input that no earlier one has."""
         if self._inputs is None:
-            self._inputs = tempfile.TemporaryDirectory(prefix="aspic-")
+            self._inputs = _Folder(prefix="aspic-")
         return os.path.join(self._inputs.name, f"{len(os.listdir(self._inputs.name))}.{name}")
 
     def _change(self, document):
@@ -351,6 +361,15 @@ class Scene(Strict):
             section, name = key.split(".")
             document[section] = {**document.get(section, {}), name: value}
         return _aspic.SceneSource(document, self.name, self.energies)
+
+
+def scene_of(scene):
+    """A Scene, also from the path of a scene or a mesh."""
+    if isinstance(scene, Scene):
+        return scene
+    if not is_path(scene):
+        raise _aspic.InvalidInput(f"scene: this is {type(scene).__name__}; expected a Scene, or the path of a scene or a mesh")
+    return Scene.load(scene)
 
 
 def _texts(overrides):

@@ -8,7 +8,7 @@ from . import _aspic
 from ._checks import SceneState, Strict, read_only
 from .notebook import in_notebook
 from .results import Run
-from .scenes import Scene
+from .scenes import scene_of
 
 
 class NotConverged(RuntimeError):
@@ -29,14 +29,18 @@ class Reports(list):
         if isinstance(key, str):
             return np.array([report.to_dict()[key] if not hasattr(report, key) else getattr(report, key)
                              for report in self])
-        return super().__getitem__(key)
+        found = super().__getitem__(key)
+        return Reports(found) if isinstance(key, slice) else found
+
+    def __add__(self, other):
+        return Reports(super().__add__(other))
 
 
 class Simulation(Strict):
     """Advances a scene in time.
 
     scene: a Scene, or the path of a scene or a mesh. h: time step [s]. solver: keys of [solver], such as
-    {"method": "lbfgs"}. out: folder of the results, as of `aspic run`; without one the motion is kept in a temporary
+    {"method": "lbfgs"}, or a method. out: folder of the results, as of `aspic run`; without one the motion is kept in a temporary
     folder for show() and results() (record=False: not at all).
 
     Changes of the scene afterwards raise in step(): restore(snapshot) continues in a simulation of the changed scene.
@@ -46,9 +50,9 @@ class Simulation(Strict):
     _advice = "the attributes q and v can be set; other settings belong to the scene or the constructor"
 
     def __init__(self, scene, h=None, solver=None, integrator=None, out=None, overwrite=False, record=True):
-        self._scene = scene if isinstance(scene, Scene) else Scene.load(scene)
+        self._scene = scene_of(scene)
         settings = {"time.step": h, "time.integrator": integrator,
-                    **{f"solver.{key}": value for key, value in (solver or {}).items()}}
+                    **{f"solver.{key}": value for key, value in _solver_keys(solver or {}).items()}}
         source = self.scene._source({key: value for key, value in settings.items() if value is not None})
         self._core = _aspic.Simulation(source)
         self._scene_state = SceneState(self.scene, "simulation")
@@ -56,7 +60,17 @@ class Simulation(Strict):
         self._folder = out
         self._record = record
         if out is not None:
+            self._start_recording(out, overwrite)
+
+    def _start_recording(self, out, overwrite):
+        try:
             self._core.record(os.fspath(out), False, overwrite)
+        except _aspic.InvalidInput as error:
+            remedies = "--force replaces it, --resume continues it"
+            raise _aspic.InvalidInput(str(error).replace(remedies, "overwrite=True replaces it")) from None
+
+    def __reduce__(self):
+        raise TypeError("a simulation cannot be copied or pickled: restore its snapshot() in another one of the same scene")
 
     def __repr__(self):
         return f"<Simulation {self.name}: {len(self._core.rest)} vertices, step {self.steps_taken}>"
@@ -221,6 +235,15 @@ class Simulation(Strict):
         return self.results().show(height)
 
 
+def _solver_keys(solver):
+    """Keys of [solver], of which a name is the method."""
+    if isinstance(solver, str):
+        return {"method": solver}
+    if not isinstance(solver, dict):
+        raise _aspic.InvalidInput(f"solver: this is {type(solver).__name__}; expected a dict or the name of a method")
+    return solver
+
+
 def _progress(last):
     """A function that shows the last report, in a notebook or on the terminal, at most five times per second."""
     import time
@@ -281,8 +304,8 @@ def compare(scene, methods, step=1, max_seconds=60):
     fastest of up to three runs [s]; distance, the largest of a vertex from the minimizer [m]; excess, that of E
     relative to the start; same_minimizer; description.
     """
-    scene = scene if isinstance(scene, Scene) else Scene.load(scene)
-    tables = [{"method": method} if isinstance(method, str) else dict(method) for method in methods]
+    scene = scene_of(scene)
+    tables = [_solver_keys(method) for method in ([methods] if isinstance(methods, (str, dict)) else methods)]
     sources = [(", ".join(str(value) for value in table.values()),
                 scene._source({f"solver.{key}": value for key, value in table.items()})) for table in tables]
     results = _aspic.compare(scene._source(), sources, step, max_seconds)

@@ -32,6 +32,20 @@ def test_convergence_draws_traces_and_comparisons(jelly):
     assert list(lines_of(aspic.plot.convergence({"a": trace, "b": results["lbfgs"]}))) == ["a", "b"]
 
 
+def test_iterations_and_simulations_are_drawn(jelly):
+    axes, sim = [], aspic.Simulation(jelly)
+
+    def observe(it):
+        if it.index == 0:
+            axes.extend([aspic.plot.line_search(it), aspic.plot.landscape(it)])
+
+    reports = sim.run(2, observe=observe)
+    assert "accepted" in lines_of(axes[0]) and axes[1].collections
+    drawn = [lines_of(aspic.plot.energies(run))["kinetic"] for run in (reports, sim.results(), sim)]
+    np.testing.assert_array_equal(drawn[0], drawn[1][1:])
+    np.testing.assert_array_equal(drawn[1], drawn[2])
+
+
 def test_body_is_drawn_from_anything_with_tets(jelly):
     sim, body = aspic.Simulation(jelly), jelly.bodies[0]
     sim.step()

@@ -3,6 +3,7 @@ import resource
 import subprocess
 import sys
 import threading
+import time
 
 import numpy as np
 import pytest
@@ -125,8 +126,9 @@ def test_threads_of_an_observer_change_no_bit(jelly):
 
         threads.append(threading.Thread(target=evaluate))
         threads[-1].start()
+        time.sleep(.002)
 
-    for _ in range(10):
+    for _ in range(40):
         assert sims[0].step(observe=observe).state_hash == sims[1].step().state_hash
     for thread in threads:
         thread.join()

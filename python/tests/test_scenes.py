@@ -1,4 +1,6 @@
 """Errors are raised where they are made, and changes of scenes and states are never ignored."""
+import copy
+import gc
 import pickle
 
 import numpy as np
@@ -148,6 +150,54 @@ def test_bodies_copy_their_meshes():
     heights = [body.vertices[:, 1].min() for body in scene.bodies]
     np.testing.assert_allclose(heights, [0, .2, .4])
     np.testing.assert_allclose(aspic.Simulation(scene, record=False).q[::8, 1], heights)
+
+
+def test_copied_scenes_are_independent():
+    scene = make_jelly()
+    other = copy.deepcopy(scene)
+    sims = [aspic.Simulation(s, record=False) for s in (scene, other)]
+    other.bodies[0].set(material=aspic.Material(young=1e6, poisson=.4))
+    assert sims[0].step().ok
+    with pytest.raises(RuntimeError, match="was changed"):
+        sims[1].step()
+    del scene, sims
+    gc.collect()
+    assert aspic.Simulation(other, record=False).step().ok
+    with pytest.raises(TypeError, match="pass the path"):
+        pickle.dumps(other)
+
+
+@pytest.mark.parametrize("use", [copy.copy, copy.deepcopy, pickle.dumps])
+def test_simulations_are_not_copied(use, jelly):
+    with pytest.raises(TypeError, match="restore its snapshot"):
+        use(aspic.Simulation(jelly, record=False))
+
+
+@pytest.mark.parametrize("arguments, message", [
+    ({"scene": CUBE}, "this is Mesh; expected a Scene"), ({"scene": None}, "this is NoneType"),
+    ({"solver": 3}, "this is int; expected a dict"), ({"solver": "newtn"}, "did you mean 'newton'"),
+    ({"h": 0}, "step = 0"), ({"integrator": "euler"}, "unknown name"),
+])
+def test_simulations_refuse_bad_arguments(arguments, message):
+    with pytest.raises(aspic.InvalidInput, match=message):
+        aspic.Simulation(**{"scene": make_jelly(1), **arguments})
+
+
+def test_solver_may_be_a_method(jelly):
+    assert "lbfgs" in aspic.Simulation(jelly, solver="lbfgs", record=False).solver
+    assert list(aspic.compare(jelly, "newton")) == ["newton"]
+
+
+def test_existing_runs_are_kept(jelly, tmp_path):
+    aspic.Simulation(jelly, out=tmp_path / "run").run(1)
+    with pytest.raises(aspic.InvalidInput, match="already contains a run; overwrite=True replaces it"):
+        aspic.Simulation(jelly, out=tmp_path / "run")
+    assert aspic.Simulation(jelly, out=tmp_path / "run", overwrite=True).run(1)[0].ok
+
+
+def test_parts_of_reports_are_reports(jelly):
+    reports = aspic.Simulation(jelly, record=False).run(4)
+    np.testing.assert_array_equal((reports[:2] + reports[2:])["time"], reports["time"])
 
 
 def test_materials_are_pickled():
