@@ -109,6 +109,7 @@ def check_derivatives(f, x, length=None, tolerance=1e-6, fixed=None):
     x: positions, (n, 3) [m], or the point of an objective; perturb the rest shape, where many derivatives vanish.
     length: unit of the steps, by default a tenth of the size of x. fixed: mask of entries that are no variables.
     """
+    _aspic.require_bounded(np.asarray(x), "x")
     x = np.array(x, float)
     flat = x.ravel()
     if length is None:

@@ -5,7 +5,8 @@ import types
 import numpy as np
 
 from . import _aspic
-from .scenes import Scene
+from ._checks import SceneState, Strict
+from .scenes import scene_of
 
 
 def lame(young, poisson):
@@ -13,18 +14,18 @@ def lame(young, poisson):
     return young / (2 * (1 + poisson)), young * poisson / ((1 + poisson) * (1 - 2 * poisson))
 
 
-def _source(scene):
-    return (scene if isinstance(scene, Scene) else Scene.load(scene))._source()
-
-
-class Equilibrium:
+class Equilibrium(Strict):
     """The body at rest as a function of its material: x(theta) = argmin V(x; theta).
 
     theta: (m, p) parameters per tet: mu, lambda [Pa] and those of the material; `parameters` are those of the scene.
     """
 
+    _advice = "give parameters and start to solve()"
+
     def __init__(self, scene, tolerance=1e-9):
-        self._core = _aspic.Equilibrium(_source(scene), tolerance)
+        scene = scene_of(scene)
+        self._core = _aspic.Equilibrium(scene._source(), tolerance)
+        self._scene_state = SceneState(scene, "equilibrium")
 
     @property
     def parameters(self):
@@ -38,6 +39,7 @@ class Equilibrium:
 
     def solve(self, parameters=None, start=None):
         """Positions at rest, (n, 3) [m], from `start` or the last solution. Raises RuntimeError without convergence."""
+        self._scene_state.require_unchanged()
         return self._core.solve(parameters, start)
 
     def vjp(self, qbar):
@@ -54,11 +56,15 @@ class Equilibrium:
         return value, self.vjp(qbar)
 
 
-class Trajectory:
+class Trajectory(Strict):
     """The motion by backward Euler as a function of the material and the initial state."""
 
+    _advice = "give parameters, q and v to simulate()"
+
     def __init__(self, scene, steps, h=0.0, tolerance=1e-9):
-        self._core = _aspic.Trajectory(_source(scene), steps, h or 0.0, tolerance)
+        scene = scene_of(scene)
+        self._core = _aspic.Trajectory(scene._source(), steps, h or 0.0, tolerance)
+        self._scene_state = SceneState(scene, "trajectory")
 
     @property
     def parameters(self):
@@ -71,6 +77,7 @@ class Trajectory:
         return self._core.shape
 
     def _set(self, parameters, q, v):
+        self._scene_state.require_unchanged()
         if parameters is not None:
             self._core.set_parameters(parameters)
         if (q is None) != (v is None):
@@ -120,7 +127,7 @@ def capture(scene, folder, **options):
     known = {"indentations", "depths", "markers", "deepest", "tip_radius", "noise", "force_noise", "regions", "seed"}
     if unknown := set(options) - known:
         raise _aspic.InvalidInput(f"unknown options {sorted(unknown)} (known: {', '.join(sorted(known))})")
-    return _aspic.capture(_source(scene), os.fspath(folder), options)
+    return _aspic.capture(scene_of(scene)._source(), os.fspath(folder), options)
 
 
 def verify(name="", quick=True):

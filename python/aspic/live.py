@@ -8,8 +8,9 @@ import tempfile
 import urllib.parse
 
 from . import _aspic
+from ._checks import is_path
 from .notebook import in_notebook
-from .scenes import Scene
+from .scenes import scene_of
 
 _running = set()
 
@@ -104,7 +105,8 @@ def view(scene, browser=True, embed=None):
     if is_notebook and embed is None:
         embed = _notebook_site()
     folder = path = None
-    if isinstance(scene, Scene):
+    if not is_path(scene):
+        scene = scene_of(scene)
         folder = tempfile.TemporaryDirectory(prefix="aspic-view-")
         path = scene.save(folder.name)
     started = View(path or scene, browser and not is_notebook, embed, folder)

@@ -15,12 +15,28 @@ class Mesh:
     def __init__(self, vertices, tets, region=None):
         self.vertices, self.tets, self.region = _aspic.check_arrays(vertices, tets, region)
 
+    def __setattr__(self, name, value):
+        if getattr(self, "_is_constant", False):
+            raise AttributeError("the mesh of a body is constant: change a Mesh before it is added, or add another body")
+        super().__setattr__(name, value)
+
+    def _constant(self):
+        """A copy that cannot be changed."""
+        copy = Mesh(*self._arrays())
+        for array in copy._arrays():
+            if array is not None:
+                array.flags.writeable = False
+        copy._is_constant = True
+        return copy
+
     @classmethod
     def from_meshio(cls, mesh):
         """The tets of a meshio.Mesh."""
         tets = [block.data for block in mesh.cells if block.type == "tetra"]
         if not tets:
             raise _aspic.InvalidInput("the mesh has no cells of type 'tetra'")
+        for block in tets:
+            _aspic.require_bounded(np.asarray(block), "tets")
         return cls(mesh.points, np.concatenate(tets))
 
     def __repr__(self):
@@ -28,6 +44,14 @@ class Mesh:
 
     def _arrays(self):
         return self.vertices, self.tets, self.region
+
+    def _require_sound(self, what, at_least):
+        """Raises InvalidInput for errors in a mesh of more tets than `at_least`; smaller ones are checked elsewhere."""
+        if len(self.tets) <= at_least:
+            return
+        for finding in self.check():
+            if finding["severity"] == "error":
+                raise _aspic.InvalidInput(f"{what}: {finding['message']}; {finding['remedy']}")
 
     @property
     def volumes(self):
@@ -103,9 +127,28 @@ def read_mesh(path):
 
 
 def box(size, cells, origin=(0, 0, 0), cut="kuhn"):
-    """A box of `size` [m] from `origin`, of cells[0] x cells[1] x cells[2] cells of six tets ("five": of five)."""
-    low = np.asarray(origin, float)
-    return Mesh(*_aspic.box(low, low + np.asarray(size, float), [int(n) for n in cells], cut))
+    """A box of `size` [m] from `origin`, of cells[0] x cells[1] x cells[2] cells of six tets ("five": of five).
+
+    One number for `size` or `cells` holds for all three axes.
+    """
+    low = _three(origin, "origin")
+    counts = _three(cells, "cells")
+    if (counts != np.floor(counts)).any() or (abs(counts) > 1e9).any():
+        raise _aspic.InvalidInput(f"cells = {cells}: must be integers")
+    return Mesh(*_aspic.box(low, low + _three(size, "size"), [int(n) for n in counts], cut))
+
+
+def _three(value, name):
+    """Three numbers, or one for all axes."""
+    if np.ndim(value) > 1 or np.size(value) not in (1, 3):
+        raise _aspic.InvalidInput(f"{name}: shape {np.shape(value)}; expected three numbers, or one for all axes")
+    try:
+        array = np.asarray(value, float)
+    except (TypeError, ValueError):
+        raise _aspic.InvalidInput(f"{name} = {value!r}; expected three numbers, or one for all axes") from None
+    if not np.isfinite(array).all():
+        raise _aspic.InvalidInput(f"{name} = {value}; must be finite")
+    return np.broadcast_to(array, 3)
 
 
 def cylinder(radius, height, size):

@@ -1,41 +1,123 @@
-"""Scenes written in Python or read from TOML. Both pass the same checks, so docs/scene.md describes every key."""
+"""Scenes written in Python or read from TOML. Both pass the same checks, so docs/scene.md describes every key.
+
+Every call checks what it adds, and a call that raises changes nothing. Bodies of more than 20 000 tets are checked for
+defects of the mesh alone; what their selections and formulas yield is checked when a simulation is made.
+"""
 import os
 import pathlib
 import tempfile
+import types
 
 import numpy as np
 
 from . import _aspic
+from ._checks import Strict, bounded, frozen, is_path
 from .meshes import Mesh, Surface
 
+_MOST_TETS = 20_000  # of a body whose model is built for checks
+_PLACEHOLDER = {"name": "body", "shape": {"sphere": {"radius": 1.0, "size": 1.0}}}
 
-class Material:
+
+def _numbers(key, values):
+    """Values per tet as an array of their own."""
+    values = bounded(values, f"material.{key}")
+    if values.dtype.kind not in "fiu" or values.ndim != 1 or not np.isfinite(values).all():
+        raise _aspic.InvalidInput(f"material.{key}: must be finite numbers, one per tet")
+    return np.array(values)
+
+
+def _is_list(value):
+    return isinstance(value, (np.ndarray, list, tuple)) and np.ndim(value) > 0
+
+
+class Material(Strict):
     """A material by its name, see materials(). Values are numbers, formulas of X, Y, Z, or arrays with one per tet."""
 
+    _advice = "a material is constant: make another one, and give it to body.set(material=...)"
+
     def __init__(self, model="neo_hookean", **values):
-        self.model, self.values = model, values
+        values = {key: _numbers(key, value) if _is_list(value) else value for key, value in values.items()}
+        self._model, self._values = model, types.MappingProxyType(values)
+        for extreme in (np.min, np.max):
+            numbers = {key: float(extreme(value)) if _is_list(value) and len(value) else value
+                       for key, value in values.items()}
+            body = {**_PLACEHOLDER, "material": {"model": model, **numbers}}
+            _check_keys({"body": [body]}, "Material", "body.body.material.")
+
+    @property
+    def model(self):
+        """The name of the constitutive model."""
+        return self._model
+
+    @property
+    def values(self):
+        """The parameters by name."""
+        return self._values
+
+    def __reduce__(self):
+        return _material_of, (self.model, dict(self.values))
 
     def __repr__(self):
-        return f"Material({self.model!r}, " + ", ".join(f"{k}={v!r}" for k, v in self.values.items()) + ")"
+        return f"Material({self.model!r}" + "".join(f", {k}={v!r}" for k, v in self.values.items()) + ")"
 
 
-def _where(where, count):
-    """A selection as a value of `where`: a formula, a table, a mask or a list of vertices."""
-    if where is None or isinstance(where, (str, dict)):
-        return where
-    array = np.asarray(where)
-    if array.dtype == bool:
-        if array.shape != (count,):
-            raise _aspic.InvalidInput(f"where: a mask of shape {array.shape}; expected ({count},), one per vertex")
-        array = np.flatnonzero(array)
-    return {"vertices": array.ravel()}
+def _material_of(model, values):
+    return Material(model, **values)
 
 
-class Body:
+def _check_keys(document, name, prefix=""):
+    """Raises InvalidInput for unknown keys and bad values. prefix: removed from the places in the message."""
+    try:
+        return _aspic.SceneSource({"body": [_PLACEHOLDER], **document}, name, [])
+    except _aspic.InvalidInput as error:
+        raise _aspic.InvalidInput(str(error).replace(f"{name}.{prefix}", f"{name}.")) from None
+
+
+def _with(table, keys, value):
+    """A copy of a table with another value at a path of keys."""
+    key, *rest = keys
+    inner = table.get(key) or {}
+    if rest and not isinstance(inner, dict):
+        raise _aspic.InvalidInput(f"{key}: is no table, so that it has no key '{rest[0]}'")
+    return {**table, key: _with(inner, rest, value) if rest else value}
+
+
+def _listed(tables):
+    """A list of tables, which may be given as one table."""
+    return [tables] if isinstance(tables, dict) else tables or []
+
+
+def _leaves(spring):
+    """Whether a spring leads to another body, which may be added later."""
+    return isinstance(spring, dict) and "to_body" in spring
+
+
+def _is_surface(mesh):
+    """Whether this is the path of a mesh of triangles, which takes seconds to fill. Raises InvalidInput if it is damaged."""
+    return is_path(mesh) and os.path.exists(mesh) and len(_aspic.read_mesh(os.fspath(mesh))) == 2
+
+
+class _Folder(tempfile.TemporaryDirectory):
+    """A folder of inputs, which copies of a scene share."""
+
+    def __deepcopy__(self, memo):
+        return self
+
+    def __reduce__(self):
+        raise TypeError("a scene with meshes cannot be pickled: pass the path of scene.save(folder), or a function that makes it")
+
+
+class Body(Strict):
     """A soft body of a scene. Methods return the body, so that calls can be chained."""
+
+    _attributes = ("table",)
+    _advice = "use body.set({name}=...)"
 
     def __init__(self, scene, mesh, table):
         self._scene, self._mesh, self.table = scene, mesh, table
+
+    def __repr__(self):
+        return f"<Body {self.name}>"
 
     @property
     def name(self):
@@ -43,6 +125,7 @@ class Body:
 
     @property
     def mesh(self):
+        """The Mesh, which cannot be changed."""
         if self._mesh is None:
             raise _aspic.InvalidInput(f"body '{self.name}' has no Mesh: it is read when the simulation is made")
         return self._mesh
@@ -57,10 +140,27 @@ class Body:
         """Vertices of each tet, (m, 4)."""
         return self.mesh.tets
 
-    def _add(self, kind, where, values):
-        count = -1 if self._mesh is None else len(self._mesh.vertices)
-        self.table.setdefault(kind, []).append({"where": _where(where, count), **values})
+    def _where(self, where):
+        """A selection as a value of `where`: a formula, a table, a mask or a list of vertices."""
+        if where is None or isinstance(where, (str, dict)):
+            return where
+        array = bounded(where, "where")
+        if self._mesh is not None:
+            count = len(self._mesh.vertices)
+            if array.dtype == bool and array.shape != (count,):
+                raise _aspic.InvalidInput(f"where: a mask of shape {array.shape}; expected ({count},), one per vertex")
+            if array.dtype.kind in "iu" and array.size and not (0 <= array.min() and array.max() < count):
+                bad = array.max() if array.max() >= count else array.min()
+                raise _aspic.InvalidInput(f"where.vertices: {bad}; body '{self.name}' has the vertices 0 to {count - 1}")
+        return {"vertices": np.flatnonzero(array) if array.dtype == bool else array.ravel()}
+
+    def _change(self, table):
+        self._scene._check_body(table, self)
+        self.table = table
         return self
+
+    def _add(self, kind, where, values):
+        return self._change({**self.table, kind: [*_listed(self.table.get(kind)), {"where": self._where(where), **values}]})
 
     def pin(self, where, **values):
         """Prescribes positions: keys name, motion, axes, direction."""
@@ -83,26 +183,38 @@ class Body:
         return self._add("force", where, {"value": value})
 
     def set(self, **values):
-        """Sets any other key of a body: velocity, deform, damping, friction, ..."""
-        self.table.update(values)
-        return self
+        """Sets any other key of a body: velocity, deform, damping, friction, ... `material` replaces the whole material."""
+        for key in ("mesh", "shape"):
+            if key in values:
+                raise _aspic.InvalidInput(f"{key}: a body keeps its mesh; add another body")
+        if values.get("material") is not None:
+            values["material"] = self._scene._material(values["material"], self.name, self._mesh)
+        return self._change({**self.table, **values})
 
 
-class Scene:
+class Scene(Strict):
     """Bodies, obstacles and settings. Keywords are top-level keys and sections: time={...}, solver={...}, contact={...}."""
+
+    _attributes = ("name", "bodies", "document", "energies")
+    _advice = 'use scene.set("{name}", value)'
 
     def __init__(self, gravity=(0.0, -9.81, 0.0), name="scene", **sections):
         self.name, self.bodies, self.energies = name, [], []
-        self.document = {"gravity": gravity, **sections}
+        self.document = {}
         self._path, self._overrides = None, {}
         self._inputs = None  # folder of the inputs; lives as long as a simulation needs it
+        if "body" in sections:
+            raise _aspic.InvalidInput("body: add bodies with add()")
+        if not isinstance(name, str):
+            raise _aspic.InvalidInput(f"name: this is {type(name).__name__}; expected a string")
+        self._change({"gravity": gravity, **sections})
 
     @classmethod
     def load(cls, path, overrides=None):
         """Reads a .toml file, or makes a scene of a mesh. overrides: {"material.young": 2e5, "time.step": 0.005}."""
         scene = cls(name=pathlib.Path(path).stem)
-        scene._path, scene._overrides = os.fspath(path), dict(overrides or {})
-        return scene
+        scene._path = os.fspath(path)
+        return scene._override(dict(overrides or {}))
 
     def __repr__(self):
         what = self._path or ", ".join(body.name for body in self.bodies)
@@ -113,76 +225,106 @@ class Scene:
             raise _aspic.InvalidInput(f"{what} is not possible in a scene from a file; override its keys with set()")
 
     def _file(self, name):
+        """A path of an input that no earlier one has."""
         if self._inputs is None:
-            self._inputs = tempfile.TemporaryDirectory(prefix="aspic-")
-        return os.path.join(self._inputs.name, name)
+            self._inputs = _Folder(prefix="aspic-")
+        return os.path.join(self._inputs.name, f"{len(os.listdir(self._inputs.name))}.{name}")
+
+    def _change(self, document):
+        _check_keys(document, self.name)
+        self.document = document
+        return self
+
+    def _override(self, overrides):
+        _aspic.SceneSource(self._path, _texts(overrides), []).check_keys()
+        self._overrides = overrides
+        return self
+
+    def _check_body(self, table, body=None):
+        """Raises InvalidInput for a bad body. body: the one that it replaces."""
+        if any(other is not body and other.name == table["name"] for other in self.bodies):
+            raise _aspic.InvalidInput(f'{self.name}.body: name = "{table["name"]}" is taken by another body; choose another')
+        springs = _listed(table.get("spring"))
+        alone = [{**spring, "to_body": table["name"]} if _leaves(spring) else spring for spring in springs]
+        document = {"gravity": self.document["gravity"], "body": [{**table, "spring": alone}]}
+        source = _check_keys(document, self.name)
+        if alone != springs:  # the vertices of other bodies are unknown
+            document["body"] = [{**table, "spring": [spring for spring in springs if not _leaves(spring)]}]
+            source = _check_keys(document, self.name)
+        if (body and body._mesh) or not _is_surface(table.get("mesh")):
+            source.check_model(_MOST_TETS)
 
     def add(self, mesh, name=None, material=None, **values):
-        """Adds a body. mesh: a Mesh, the path of a mesh file, or a dict such as {"sphere": {"radius": 1, "size": 0.2}}."""
+        """Adds a body. mesh: a Mesh, the path of a mesh file, or a dict such as {"sphere": {"radius": 1, "size": 0.2}}.
+
+        The body has a copy of a Mesh and of arrays.
+        """
         self._require_code("add()")
         table = {"name": name or f"body{len(self.bodies) + 1}", **values}
         if isinstance(mesh, Mesh):
-            table["mesh"] = self._file(f"{len(self.bodies)}.msh")
+            table["mesh"] = self._file("msh")
+            mesh = mesh._constant()
             mesh.write(table["mesh"], binary=True)
+            mesh._require_sound(f"body '{table['name']}'", _MOST_TETS)
         else:
             table["shape" if isinstance(mesh, dict) else "mesh"] = mesh
             mesh = None
         if material is not None:
-            table["material"] = self._material(material, len(self.bodies), mesh)
+            table["material"] = self._material(material, table["name"], mesh)
+        self._check_body(table)
         self.bodies.append(Body(self, mesh, table))
         return self.bodies[-1]
 
     def _material(self, material, body, mesh):
-        table = {"model": material.model, **material.values} if isinstance(material, Material) else dict(material)
-        for key, value in table.items():
-            if isinstance(value, (np.ndarray, list)) and np.ndim(value) > 0:
-                table[key] = {"file": self._field(key, value, body, mesh)}
-        return table
+        if isinstance(material, Material):
+            material = {"model": material.model, **material.values}
+        elif not isinstance(material, dict):
+            raise _aspic.InvalidInput(f"material: this is {type(material).__name__}; expected a Material or a dict")
+        return {key: {"file": self._field(key, _numbers(key, value), body, mesh)} if _is_list(value) else value
+                for key, value in material.items()}
 
     def _field(self, key, values, body, mesh):
-        values = np.asarray(values)
-        if values.dtype.kind not in "fiu" or not np.isfinite(values).all():
-            raise _aspic.InvalidInput(f"material.{key}: must be finite numbers")
         if mesh is not None and values.shape != (len(mesh.tets),):
             raise _aspic.InvalidInput(f"material.{key}: shape {values.shape}; expected ({len(mesh.tets)},), one per tet")
-        path = self._file(f"{body}.{key}.csv")
-        np.savetxt(path, values.ravel(), fmt="%.17g")
+        path = self._file(f"{key}.csv")
+        np.savetxt(path, values, fmt="%.17g")
         return path
 
     def obstacle(self, mesh=None, **values):
         """Adds an obstacle, which switches contact on: plane={}, sphere={...}, capsule={...}, a Mesh or a Surface."""
         self._require_code("obstacle()")
-        obstacles = self.document.setdefault("obstacle", [])
         if isinstance(mesh, (Mesh, Surface)):
-            path = self._file(f"obstacle{len(obstacles)}.obj")
+            path = self._file("obj")
             _aspic.write_surface(path, mesh.vertices, mesh.triangles)
             values["mesh"] = path
         elif mesh is not None:
+            if is_path(mesh):
+                _aspic.read_mesh(os.fspath(mesh))
             values["mesh"] = mesh
-        obstacles.append(values)
-        return self
+        return self._change({**self.document, "obstacle": [*self.document.get("obstacle", []), values]})
 
     def contact(self, **values):
         """Switches contact on: keys friction, reach [m], stiffness [Pa], pair, start, ..."""
         self._require_code("contact()")
-        self.document["contact"] = values
-        return self
+        return self._change({**self.document, "contact": {**self.document.get("contact", {}), **values}})
 
     def energy(self, energy):
         """Adds a term of the potential, see Energy. Returns it."""
+        _aspic.check_energy(energy)
         self.energies.append(energy)
         return energy
 
     def set(self, key, value):
-        """Overrides a key by its path, as --set does: scene.set("solver.method", "lbfgs")."""
+        """Overrides a key by its path, as --set does: scene.set("solver.method", "lbfgs"), "body.jelly.friction"."""
         if self._path is not None:
-            self._overrides[key] = value
-            return self
-        *sections, last = key.split(".")
-        table = self.document
-        for section in sections:
-            table = table.setdefault(section, {})
-        table[last] = value
+            return self._override({**self._overrides, key: value})
+        section, *keys = key.split(".")
+        if section != "body":
+            return self._change(_with(self.document, [section, *keys], value))
+        body = next((body for body in self.bodies if keys and body.name == keys[0]), None)
+        if body is None or len(keys) < 2:
+            raise _aspic.InvalidInput(f"{key}: no such key of a body (bodies: {', '.join(b.name for b in self.bodies)})")
+        body.set(**{keys[1]: _with(body.table, keys[1:], value)[keys[1]]})
         return self
 
     def first_vertex(self, body):
@@ -205,16 +347,33 @@ class Scene:
         (folder / "scene.toml").write_text(simulation.resolved)
         return folder / "scene.toml"
 
+    def _parts(self):
+        """What simulations are made of, for comparisons."""
+        parts = {"the file": self._path, "the energies": [(id(e), frozen(np.asarray(e.elements))) for e in self.energies]}
+        parts |= {key: frozen(value) for key, value in (*self.document.items(), *self._overrides.items())}
+        return parts | {f"body '{b.name}': {key}": frozen(value) for b in self.bodies for key, value in b.table.items()}
+
     def _source(self, overrides=None):
         if self._path is not None:
-            merged = {**self._overrides, **(overrides or {})}
-            return _aspic.SceneSource(self._path, [f"{k}={_toml(v)}" for k, v in merged.items()],
-                                      self.energies)
+            return _aspic.SceneSource(self._path, _texts({**self._overrides, **(overrides or {})}), self.energies)
         document = {**self.document, "body": [body.table for body in self.bodies]}
         for key, value in (overrides or {}).items():
             section, name = key.split(".")
             document[section] = {**document.get(section, {}), name: value}
         return _aspic.SceneSource(document, self.name, self.energies)
+
+
+def scene_of(scene):
+    """A Scene, also from the path of a scene or a mesh."""
+    if isinstance(scene, Scene):
+        return scene
+    if not is_path(scene):
+        raise _aspic.InvalidInput(f"scene: this is {type(scene).__name__}; expected a Scene, or the path of a scene or a mesh")
+    return Scene.load(scene)
+
+
+def _texts(overrides):
+    return [f"{key}={_toml(value)}" for key, value in overrides.items()]
 
 
 def _toml(value):
@@ -226,6 +385,8 @@ def _toml(value):
     if isinstance(value, dict):
         return "{" + ", ".join(f"{k} = {_quoted(v)}" for k, v in value.items()) + "}"
     if isinstance(value, (list, tuple, np.ndarray)):
+        if isinstance(value, np.ndarray):
+            bounded(value, "override")
         return "[" + ", ".join(_quoted(v) for v in value) + "]"
     return repr(float(value)) if isinstance(value, (float, np.floating)) else str(value)
 

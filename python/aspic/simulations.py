@@ -5,9 +5,10 @@ import tempfile
 import numpy as np
 
 from . import _aspic
+from ._checks import SceneState, Strict, read_only
 from .notebook import in_notebook
 from .results import Run
-from .scenes import Scene
+from .scenes import scene_of
 
 
 class NotConverged(RuntimeError):
@@ -17,6 +18,9 @@ class NotConverged(RuntimeError):
         super().__init__(f"step {report.step}: {report.status}; {report.explanation}")
         self.report = report
 
+    def __reduce__(self):
+        return NotConverged, (self.report,)
+
 
 class Reports(list):
     """The reports of several steps. reports["iterations"] is a column as an array."""
@@ -25,37 +29,62 @@ class Reports(list):
         if isinstance(key, str):
             return np.array([report.to_dict()[key] if not hasattr(report, key) else getattr(report, key)
                              for report in self])
-        return super().__getitem__(key)
+        found = super().__getitem__(key)
+        return Reports(found) if isinstance(key, slice) else found
+
+    def __add__(self, other):
+        return Reports(super().__add__(other))
 
 
-class Simulation:
+class Simulation(Strict):
     """Advances a scene in time.
 
     scene: a Scene, or the path of a scene or a mesh. h: time step [s]. solver: keys of [solver], such as
-    {"method": "lbfgs"}. out: folder of the results, as of `aspic run`; without one the motion is kept in a temporary
+    {"method": "lbfgs"}, or a method. out: folder of the results, as of `aspic run`; without one the motion is kept in a temporary
     folder for show() and results() (record=False: not at all).
+
+    Changes of the scene afterwards raise in step(): restore(snapshot) continues in a simulation of the changed scene.
+    Arrays of properties are read-only copies; assign q or v as a whole.
     """
 
+    _advice = "the attributes q and v can be set; other settings belong to the scene or the constructor"
+
     def __init__(self, scene, h=None, solver=None, integrator=None, out=None, overwrite=False, record=True):
-        self.scene = scene if isinstance(scene, Scene) else Scene.load(scene)
+        self._scene = scene_of(scene)
         settings = {"time.step": h, "time.integrator": integrator,
-                    **{f"solver.{key}": value for key, value in (solver or {}).items()}}
+                    **{f"solver.{key}": value for key, value in _solver_keys(solver or {}).items()}}
         source = self.scene._source({key: value for key, value in settings.items() if value is not None})
         self._core = _aspic.Simulation(source)
+        self._scene_state = SceneState(self.scene, "simulation")
         self._inputs = self.scene._inputs  # files that the recording copies
         self._folder = out
         self._record = record
         if out is not None:
+            self._start_recording(out, overwrite)
+
+    def _start_recording(self, out, overwrite):
+        try:
             self._core.record(os.fspath(out), False, overwrite)
+        except _aspic.InvalidInput as error:
+            remedies = "--force replaces it, --resume continues it"
+            raise _aspic.InvalidInput(str(error).replace(remedies, "overwrite=True replaces it")) from None
+
+    def __reduce__(self):
+        raise TypeError("a simulation cannot be copied or pickled: restore its snapshot() in another one of the same scene")
 
     def __repr__(self):
         return f"<Simulation {self.name}: {len(self._core.rest)} vertices, step {self.steps_taken}>"
 
+    @property
+    def scene(self):
+        """The scene that this was made of."""
+        return self._scene
+
     # --- state ---------------------------------------------------------------------------------------------------------
     @property
     def q(self):
-        """Positions, (n, 3) [m]; a copy. Assigning changes the state and ends the recording."""
-        return self._core.q
+        """Positions, (n, 3) [m]. Assigning changes the state and ends the recording; fixed pins hold the new positions."""
+        return read_only(self._core.q)
 
     @q.setter
     def q(self, q):
@@ -63,8 +92,8 @@ class Simulation:
 
     @property
     def v(self):
-        """Velocities, (n, 3) [m/s]; a copy. Assigning changes the state and ends the recording."""
-        return self._core.v
+        """Velocities, (n, 3) [m/s]. Assigning changes the state and ends the recording; those of pins are 0 or as before."""
+        return read_only(self._core.v)
 
     @v.setter
     def v(self, v):
@@ -108,22 +137,22 @@ class Simulation:
     @property
     def rest(self):
         """Rest positions, (n, 3) [m]."""
-        return self._core.rest
+        return read_only(self._core.rest)
 
     @property
     def tets(self):
         """Vertices of each tet, (m, 4)."""
-        return self._core.tets
+        return read_only(self._core.tets)
 
     @property
     def mass(self):
         """Mass of each vertex, (n,) [kg]."""
-        return self._core.mass
+        return read_only(self._core.mass)
 
     @property
     def pinned(self):
         """Whether a pin holds each vertex, (n,)."""
-        return self._core.pinned
+        return read_only(self._core.pinned)
 
     @property
     def bodies(self):
@@ -134,8 +163,12 @@ class Simulation:
         """Quantities of each tet: energy_density [J/m^3], det_F, cauchy (m, 6) and von_mises [Pa], young, poisson."""
         return self._core.fields()
 
+    def reactions(self):
+        """Forces of the pins on the vertices in the last step, (n, 3) [N]; NaN before the first."""
+        return self._core.reactions()
+
     def snapshot(self):
-        """The state with everything that later steps depend on."""
+        """The state with everything that later steps depend on. It can be pickled."""
         return self._core.snapshot()
 
     def restore(self, snapshot):
@@ -151,6 +184,7 @@ class Simulation:
         direction(E, x, g) -> d and line_search(E, x, d, g) -> alpha replace those of the solver in this step. Pinned
         entries of d are set to 0. An alpha of 0 ends the step as `stuck`.
         """
+        self._scene_state.require_unchanged(": new = aspic.Simulation(scene); new.restore(sim.snapshot())")
         if self._record and self._folder is None and not self._core.is_recording and self.steps_taken == 0:
             self._temporary = tempfile.TemporaryDirectory(prefix="aspic-run-", ignore_cleanup_errors=True)
             self._core.record(os.path.join(self._temporary.name, "run"), True, True)
@@ -185,6 +219,7 @@ class Simulation:
 
     def objective(self):
         """E(q) of the next steps as a function of its own: E(q), E.gradient(q), E.hessian(q), E.begin_step(q, v, h)."""
+        self._scene_state.require_unchanged()
         return self._core.objective()
 
     # --- results -------------------------------------------------------------------------------------------------------
@@ -198,6 +233,15 @@ class Simulation:
     def show(self, height=600):
         """The recorded motion as a page for notebooks, see Run.show()."""
         return self.results().show(height)
+
+
+def _solver_keys(solver):
+    """Keys of [solver], of which a name is the method."""
+    if isinstance(solver, str):
+        return {"method": solver}
+    if not isinstance(solver, dict):
+        raise _aspic.InvalidInput(f"solver: this is {type(solver).__name__}; expected a dict or the name of a method")
+    return solver
 
 
 def _progress(last):
@@ -260,8 +304,8 @@ def compare(scene, methods, step=1, max_seconds=60):
     fastest of up to three runs [s]; distance, the largest of a vertex from the minimizer [m]; excess, that of E
     relative to the start; same_minimizer; description.
     """
-    scene = scene if isinstance(scene, Scene) else Scene.load(scene)
-    tables = [{"method": method} if isinstance(method, str) else dict(method) for method in methods]
+    scene = scene_of(scene)
+    tables = [_solver_keys(method) for method in ([methods] if isinstance(methods, (str, dict)) else methods)]
     sources = [(", ".join(str(value) for value in table.values()),
                 scene._source({f"solver.{key}": value for key, value in table.items()})) for table in tables]
     results = _aspic.compare(scene._source(), sources, step, max_seconds)

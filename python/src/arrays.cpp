@@ -10,6 +10,8 @@
 namespace aspic::python {
 namespace {
 
+constexpr double kMostRepeated = 3e7;  // numbers of an array that has fewer in memory
+
 std::string type_of(const py::handle& value) { return py::str(py::type::of(value).attr("__name__")); }
 
 py::array array_of(const py::handle& value, const std::string& name, const char* expected) {
@@ -61,11 +63,24 @@ std::string text_of(const Shape& shape) {
 
 std::span<const double> view(const Array& array) { return {array.data(), static_cast<size_t>(array.size())}; }
 
+void require_bounded(const py::array& array, const std::string& name) {
+  double size = 1, bytes = static_cast<double>(array.itemsize());
+  for (py::ssize_t axis = 0; axis < array.ndim(); ++axis) {
+    size *= static_cast<double>(array.shape(axis));
+    bytes += static_cast<double>(array.shape(axis) - 1) * std::abs(static_cast<double>(array.strides(axis)));
+  }
+  if (size > kMostRepeated && size * static_cast<double>(array.itemsize()) > bytes)
+    throw InvalidInput(name + ": shape " + text_of(shape_of(array)) +
+                       " of an array that repeats numbers, as by broadcasting; at most " + number_text(kMostRepeated) +
+                       " are accepted");
+}
+
 Array reals(const py::handle& value, const std::string& name, const Shape& shape, Finite finite) {
   const py::array array = array_of(value, name, "an array of numbers");
   if (std::string("fiu").find(array.dtype().kind()) == std::string::npos)
     throw InvalidInput(name + ": dtype " + std::string(py::str(array.dtype())) + "; expected real numbers");
   require_shape(array, name, shape);
+  require_bounded(array, name);
   const auto numbers = py::array_t<double, py::array::c_style | py::array::forcecast>::ensure(array);
   if (!numbers) throw py::error_already_set();
   const auto begin = numbers.data(), end = begin + numbers.size();
@@ -82,6 +97,7 @@ std::vector<int> indices(const py::handle& value, const std::string& name, const
   if (!is_empty && array.dtype().kind() != 'i' && array.dtype().kind() != 'u')
     throw InvalidInput(name + ": dtype " + std::string(py::str(array.dtype())) + "; expected integers");
   require_shape(array, name, shape);
+  require_bounded(array, name);
   const auto numbers = py::array_t<int64_t, py::array::c_style | py::array::forcecast>::ensure(array);
   if (!numbers) throw py::error_already_set();
   std::vector<int> result;

@@ -18,6 +18,8 @@ using Shape = std::vector<py::ssize_t>;  // -1: any extent
 
 enum class Finite { required, not_required };
 
+// Throws InvalidInput if copies of a broadcast array need far more memory than the array.
+void require_bounded(const py::array& array, const std::string& name);
 // Returns the argument `name` as an array of doubles. Throws InvalidInput, in one line, unless it holds real numbers of
 // this shape that are finite.
 Array reals(const py::handle& value, const std::string& name, const Shape& shape, Finite finite = Finite::required);

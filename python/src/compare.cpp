@@ -37,18 +37,15 @@ py::list compare(const SceneSource& source, const NamedSources& methods, int ste
   Scene scene = source.scene(callbacks);
   Comparison comparison;
   {
-    const py::gil_scoped_release free;
+    const ReleasedGil free;
     comparison = compare_methods(scene.simulation, options);
   }
   callbacks->rethrow();
   py::list results;
   for (const MethodResult& result : comparison.results) {
-    Report report;
-    static_cast<StepReport&>(report) = result.report;
-    report.potential_names = scene.simulation.potential_names();
     py::dict entry;
     entry["name"] = result.method;
-    entry["report"] = report;
+    entry["report"] = named(result.report, scene.simulation);
     entry["trace"] = trace_of(result.work);
     entry["seconds"] = result.seconds;
     entry["distance"] = result.distance;

@@ -11,24 +11,14 @@ namespace {
 std::shared_ptr<py::object> shared(const py::object& f, const char* usage) {
   if (!PyCallable_Check(f.ptr())) throw InvalidInput(std::string(usage) + ": must be callable");
   return {new py::object(f), [](py::object* owned) {
-            const py::gil_scoped_acquire lock;
+            const HeldGil lock;
             delete owned;
           }};
 }
 
-// An objective that expires at the end of a call.
-class LentObjective {
- public:
-  LentObjective(Objective& E, const MethodContext& context)
-      : function_(std::make_shared<Function>(&E, context.layout, context.callbacks)) {}
-  ~LentObjective() { function_->expire(); }
-  LentObjective(const LentObjective&) = delete;
-  LentObjective& operator=(const LentObjective&) = delete;
-  const std::shared_ptr<Function>& operator*() const { return function_; }
-
- private:
-  std::shared_ptr<Function> function_;
-};
+std::shared_ptr<Function> function_of(Objective& E, const MethodContext& context) {
+  return std::make_shared<Function>(&E, context.layout, context.callbacks);
+}
 
 class PythonDirection : public SearchDirection {
  public:
@@ -39,7 +29,7 @@ class PythonDirection : public SearchDirection {
   bool compute(const Iterate& at, std::span<double> d, DirectionReport&) override {
     const Layout& layout = context_.layout;
     return context_.callbacks->call([&] {
-      const LentObjective E(at.E, context_);
+      const Lent E(function_of(at.E, context_));
       const std::vector<double> found =
           layout.in((*compute_)(*E, layout.out(at.x), layout.out(at.g)), "the search direction");
       std::copy(found.begin(), found.end(), d.begin());
@@ -64,7 +54,7 @@ std::function<double(const SearchLine&)> make_python_line_search(const py::objec
     double alpha = 0;
     context.callbacks->call([&] {
       const Layout& layout = context.layout;
-      const LentObjective E(line.E, context);
+      const Lent E(function_of(line.E, context));
       const py::object found = (*search)(*E, layout.out(line.x), layout.out(line.d), layout.out(line.g));
       alpha = *reals(found, "the step length of the line search", {}).data();
     });

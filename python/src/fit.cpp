@@ -82,13 +82,14 @@ class PyEquilibrium {
       : PyEquilibrium(source, tolerance, std::make_shared<Callbacks>()) {}
 
   Array solve(const py::object& parameters, const py::object& start) {
+    require_idle(occupancy_, "solve");
     const Use use(occupancy_, "equilibrium");
     if (!start.is_none()) equilibrium_.set_x(layout_.in(start, "start"));
     if (!parameters.is_none()) equilibrium_.set_parameters(parameters_.in(parameters));
     MinimizeReport report;
     is_linearized_ = false;
     {
-      const py::gil_scoped_release free;
+      const ReleasedGil free;
       report = equilibrium_.solve();
     }
     callbacks_->rethrow();
@@ -97,13 +98,14 @@ class PyEquilibrium {
   }
 
   Array vjp(const py::object& qbar) {
+    require_idle(occupancy_, "vjp");
     const Use use(occupancy_, "equilibrium");
     const std::vector<double> weights = layout_.in(qbar, "qbar");
     linearize();
     std::vector<double> gradient(parameters_.size());
     SolveReport report;
     {
-      const py::gil_scoped_release free;
+      const ReleasedGil free;
       report = equilibrium_.add_adjoint(weights, gradient);
     }
     check(report);
@@ -111,13 +113,14 @@ class PyEquilibrium {
   }
 
   Array jvp(const py::object& change) {
+    require_idle(occupancy_, "jvp");
     const Use use(occupancy_, "equilibrium");
     const std::vector<double> dtheta = parameters_.change_in(change);
     linearize();
     std::vector<double> dx(3 * static_cast<size_t>(layout_.rows()));
     SolveReport report;
     {
-      const py::gil_scoped_release free;
+      const ReleasedGil free;
       report = equilibrium_.tangent(dtheta, dx);
     }
     check(report);
@@ -137,13 +140,13 @@ class PyEquilibrium {
         equilibrium_(made_from(scene, tolerance)) {}
 
   static Equilibrium made_from(SceneModel& scene, double tolerance) {
-    const py::gil_scoped_release free;
+    const ReleasedGil free;
     return Equilibrium(std::move(scene.model), std::move(scene.start.q), {.tolerance = tolerance});
   }
 
   void linearize() {
     if (is_linearized_) return;
-    const py::gil_scoped_release free;
+    const ReleasedGil free;
     is_linearized_ = equilibrium_.factorize();
     if (!is_linearized_) throw std::runtime_error("no derivatives: " + equilibrium_.failure());
   }
@@ -168,10 +171,12 @@ class PyTrajectory {
       : PyTrajectory(source, options, std::make_shared<Callbacks>()) {}
 
   void set_parameters(const py::object& parameters) {
+    require_idle(occupancy_, "set_parameters");
     const Use use(occupancy_, "trajectory");
     trajectory_->set_parameters(parameters_.in(parameters));
   }
   void set_start(const py::object& q, const py::object& v) {
+    require_idle(occupancy_, "set_start");
     const Use use(occupancy_, "trajectory");
     start_.q = layout_.in(q, "q"), start_.qdot = layout_.in(v, "v");
     trajectory_->set_start(start_);
@@ -245,15 +250,16 @@ class PyTrajectory {
     if (options_.h == 0) options_.h = scene.options.h;
     options_.integrator = scene.options.integrator;
     options_.stop = callbacks_->token();
-    const py::gil_scoped_release free;
+    const ReleasedGil free;
     trajectory_.emplace(std::move(scene.model), std::move(scene.start), options_);
   }
 
   TrajectoryReport run(const TrajectoryObjective& objective, TrajectoryGradient* gradient) {
+    require_idle(occupancy_, "simulate");
     const Use use(occupancy_, "trajectory");
     TrajectoryReport report;
     {
-      const py::gil_scoped_release free;
+      const ReleasedGil free;
       report = gradient ? trajectory_->differentiate(objective, *gradient) : trajectory_->simulate(objective);
     }
     callbacks_->rethrow();
@@ -345,7 +351,7 @@ py::dict fit_data(const std::filesystem::path& path, const std::string& model,
   DataSet data;
   FitOutcome outcome;
   {
-    const py::gil_scoped_release free;
+    const ReleasedGil free;
     data = read_data_set(path);
     outcome = fit_material(data, plan, {}, observers);
   }
@@ -368,7 +374,7 @@ std::vector<std::string> capture(const SceneSource& source, const std::filesyste
   const Scene scene = source.scene(std::make_shared<Callbacks>());
   Synthesis made;
   {
-    const py::gil_scoped_release free;
+    const ReleasedGil free;
     made = synthesize(scene, options);
     if (!made.interrupted)
       write_data_set(folder, made.data,

@@ -54,6 +54,23 @@ class Function {
   std::shared_ptr<const BlockPattern> pattern_;  // a copy of the last one
 };
 
+// Lends an objective to a function in Python, for a call. Other threads cannot use it, and nothing can afterwards,
+// because the evaluations would meet those of the minimization. Requires the GIL in the constructor and the destructor.
+class Lent {
+ public:
+  explicit Lent(std::shared_ptr<Function> f) : f_(std::move(f)), use_(f_->occupancy(), "objective") {
+    f_->occupancy().advice = "inside of an observer, a direction or a line search, call it from the same thread";
+  }
+  ~Lent() { f_->expire(); }
+  Lent(const Lent&) = delete;
+  Lent& operator=(const Lent&) = delete;
+  const std::shared_ptr<Function>& operator*() const { return f_; }
+
+ private:
+  std::shared_ptr<Function> f_;
+  Use use_;
+};
+
 Definiteness definiteness_named(const std::string& name);  // throws InvalidInput
 
 }  // namespace aspic::python

@@ -10,7 +10,7 @@ namespace aspic::python {
 class ObservedIteration : public Iteration {
  public:
   ObservedIteration(const LiveIteration& live, const Layout& layout, std::shared_ptr<Callbacks> callbacks);
-  void expire();
+  void expire() { live_ = nullptr; }
 
   const LiveIteration& live() const;  // throws std::runtime_error after the observer has returned
   std::shared_ptr<Function> objective;

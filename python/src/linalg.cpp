@@ -33,7 +33,7 @@ py::object to_scipy(const Hessian& self) {
   std::vector<int> rows, columns;
   const auto size = static_cast<int>(self.layout.size());
   {
-    const py::gil_scoped_release free;
+    const ReleasedGil free;
     for_each_block(self.H, [&](int row, int column, const Mat3d& K) {
       for (int i = 0; i < 3; ++i)
         for (int j = 0; j < 3; ++j) {
@@ -58,7 +58,7 @@ Array multiply(const Hessian& self, const py::handle& x) {
   const std::vector<double> in = self.layout.in(x, "x");
   std::vector<double> out(in.size());
   {
-    const py::gil_scoped_release free;
+    const ReleasedGil free;
     self.H.multiply(in, out);
   }
   return self.layout.out(out);
@@ -78,7 +78,7 @@ class Solver {
     const Use use(occupancy_, "solver");
     bool ok = false;
     {
-      const py::gil_scoped_release free;
+      const ReleasedGil free;
       if (!matrix_ || matrix_->pattern->version != matrix->pattern->version) {
         solver_->analyze(*matrix->pattern);
         analyzed_ = matrix->pattern;
@@ -99,7 +99,7 @@ class Solver {
     std::vector<double> x(b.size());
     SolveReport report;
     {
-      const py::gil_scoped_release free;
+      const ReleasedGil free;
       report = solver_->solve(b, x, tolerance);
     }
     last_ = report;

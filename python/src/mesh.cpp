@@ -7,6 +7,7 @@
 #include "arrays.h"
 #include "base/error.h"
 #include "bindings.h"
+#include "interpreter.h"
 #include "io/mesh_file.h"
 #include "io/tetrahedralize.h"
 #include "mesh/generators.h"
@@ -72,7 +73,7 @@ py::list list_of(const std::vector<Finding>& findings) {
 py::object read(const fs::path& path) {
   std::variant<TetMesh, TriMesh> mesh;
   {
-    const py::gil_scoped_release free;
+    const ReleasedGil free;
     mesh = read_mesh(path);
   }
   if (const auto* tets = std::get_if<TetMesh>(&mesh)) return arrays_of(*tets);
@@ -148,7 +149,7 @@ void bind_mesh(py::module_& m) {
   m.def("read_mesh", &read, "Returns (vertices, tets, region) of a file, or (vertices, triangles).");
   m.def("write_mesh", [](const fs::path& path, Handle vertices, Handle tets, Handle region, bool binary) {
     const TetMesh mesh = tet_mesh(vertices, tets, region);
-    const py::gil_scoped_release free;
+    const ReleasedGil free;
     write_mesh(path, mesh, binary ? FileEncoding::binary : FileEncoding::ascii);
   });
   m.def("write_surface", [](const fs::path& path, Handle vertices, Handle triangles) {
@@ -182,11 +183,12 @@ void bind_mesh(py::module_& m) {
   m.def("fill", [](const fs::path& surface, double size, const fs::path& program) {
     Tetrahedralization filled;
     {
-      const py::gil_scoped_release free;
+      const ReleasedGil free;
       filled = tetrahedralize(surface, {.size = size, .program = program});
     }
     return py::make_tuple(arrays_of(filled.tets), filled.notes);
   });
+  m.def("require_bounded", &require_bounded, "Raises InvalidInput for a broadcast array whose copy fills the memory.");
   m.def("box", &box);
   m.def("cylinder", &cylinder);
   m.def("sphere", &sphere);

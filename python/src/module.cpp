@@ -3,6 +3,7 @@
 
 #include "base/error.h"
 #include "bindings.h"
+#include "interpreter.h"
 
 PYBIND11_MODULE(_aspic, m) {
   using namespace aspic::python;
@@ -17,4 +18,6 @@ PYBIND11_MODULE(_aspic, m) {
   bind_results(m);
   bind_fit(m);
   bind_verification(m);
+  require_init(m);
+  watch_for_the_end();
 }

@@ -10,6 +10,7 @@ namespace aspic::python {
 struct Occupancy {
   std::thread::id thread{};
   int depth = 0;
+  const char* advice = "give each thread its own";
 
   bool is_elsewhere() const { return depth > 0 && thread != std::this_thread::get_id(); }
 };
@@ -20,7 +21,7 @@ class Use {
   // Throws std::runtime_error if another thread uses the object. The same thread may, as in a callback.
   Use(Occupancy& occupancy, const char* what) : occupancy_(occupancy) {
     if (occupancy.is_elsewhere())
-      throw std::runtime_error(std::string("another thread uses this ") + what + "; give each thread its own");
+      throw std::runtime_error(std::string("another thread uses this ") + what + "; " + occupancy.advice);
     occupancy_.thread = std::this_thread::get_id();
     ++occupancy_.depth;
   }
@@ -31,5 +32,11 @@ class Use {
  private:
   Occupancy& occupancy_;
 };
+
+// Throws std::runtime_error if this thread computes with the object, because `call` would change the computation.
+inline void require_idle(const Occupancy& occupancy, const char* call) {
+  if (occupancy.depth > 0 && !occupancy.is_elsewhere())
+    throw std::runtime_error(std::string(call) + "() was called inside a computation of the same object");
+}
 
 }  // namespace aspic::python

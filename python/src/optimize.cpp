@@ -29,10 +29,11 @@ Objective& Function::E() {
 double Function::value(const py::handle& x) {
   const Use use(occupancy_, "objective");
   const std::vector<double> in = layout_.in(x, "x");
+  Objective& f = E();
   Evaluation found;
   {
-    const py::gil_scoped_release free;
-    found = E().evaluate(in);
+    const ReleasedGil free;
+    found = f.evaluate(in);
   }
   callbacks_->rethrow();
   round_off_ = found.round_off;
@@ -43,9 +44,10 @@ Array Function::gradient(const py::handle& x) {
   const Use use(occupancy_, "objective");
   const std::vector<double> in = layout_.in(x, "x");
   std::vector<double> g(in.size());
+  Objective& f = E();
   {
-    const py::gil_scoped_release free;
-    E().gradient(in, g);
+    const ReleasedGil free;
+    f.gradient(in, g);
   }
   callbacks_->rethrow();
   return layout_.out(g);
@@ -56,9 +58,10 @@ std::shared_ptr<Hessian> Function::hessian(const py::handle& x, const std::strin
   const std::vector<double> in = layout_.in(x, "x");
   const Projection projection{definiteness_named(definiteness)};
   std::shared_ptr<Hessian> result;
+  Objective& f = E();
   {
-    const py::gil_scoped_release free;
-    const BlockSparse& H = E().hessian(in, projection);
+    const ReleasedGil free;
+    const BlockSparse& H = f.hessian(in, projection);
     if (!pattern_ || pattern_->version != H.pattern->version)
       pattern_ = std::make_shared<const BlockPattern>(*H.pattern);
     result = std::make_shared<Hessian>(H, pattern_, layout_);
@@ -70,8 +73,9 @@ std::shared_ptr<Hessian> Function::hessian(const py::handle& x, const std::strin
 double Function::max_step(const py::handle& x, const py::handle& d) {
   const Use use(occupancy_, "objective");
   const std::vector<double> from = layout_.in(x, "x"), along = layout_.in(d, "d");
-  const py::gil_scoped_release free;
-  return E().max_step(from, along);
+  Objective& f = E();
+  const ReleasedGil free;
+  return f.max_step(from, along);
 }
 
 ObservedIteration::ObservedIteration(const LiveIteration& live, const Layout& layout,
@@ -85,11 +89,6 @@ ObservedIteration::ObservedIteration(const LiveIteration& live, const Layout& la
     for (const double x :
          {trial.alpha, trial.value, trial.bound, trial.accepted ? 1.0 : 0.0, trial.by_slope ? 1.0 : 0.0})
       *row++ = x;
-}
-
-void ObservedIteration::expire() {
-  live_ = nullptr;
-  objective->expire();
 }
 
 const LiveIteration& ObservedIteration::live() const {
@@ -107,6 +106,7 @@ IterationObserver observer_of(const py::object& observe, const Layout& layout, s
         ObservedIteration& it;
         ~Expire() { it.expire(); }
       } const at_end{*iteration};
+      const Lent lent(iteration->objective);
       const py::object result = py::reinterpret_borrow<py::object>(observe)(iteration);
       if (result.ptr() == Py_False) callbacks->stop();
     });
@@ -156,7 +156,7 @@ py::dict minimize_function(Function& f, const py::object& start, const py::objec
   const IterationObserver observer = observer_of(observe, f.layout(), callbacks);
   MinimizeReport report;
   {
-    const py::gil_scoped_release free;
+    const ReleasedGil free;
     report = Minimizer().minimize(f.E(), *search, x, how, observer);
   }
   callbacks->rethrow();
@@ -181,6 +181,7 @@ py::dict dict_of(const DerivativeCheck& check) {
 // Functions of flat arrays of n numbers.
 py::tuple check_python_derivatives(const py::function& value, const py::function& gradient, const py::function& product,
                                    const py::object& at, double length, double tolerance, const py::object& fixed) {
+  const Nested nested;
   const Array x = reals(at, "x", {-1});
   const Shape shape = {x.size()};
   const auto array = [&](std::span<const double> v) { return to_array(v, shape); };
@@ -208,7 +209,8 @@ py::dict curve_of(const ObservedIteration& self, double c, int samples) {
   std::vector<CurvePoint> points;
   {
     const LiveIteration& live = self.live();
-    const py::gil_scoped_release free;
+    const Use use(self.objective->occupancy(), "iteration");
+    const ReleasedGil free;
     points = curve_along(live, c, samples);
   }
   const auto column = [&](double CurvePoint::*member) {
@@ -231,7 +233,8 @@ py::dict slice_of(const ObservedIteration& self, int samples) {
   Slice slice;
   {
     const LiveIteration& live = self.live();
-    const py::gil_scoped_release free;
+    const Use use(self.objective->occupancy(), "iteration");
+    const ReleasedGil free;
     slice = slice_through(live, samples);
   }
   const auto table = [&](double SlicePoint::*member) {

@@ -40,7 +40,7 @@ class PythonEnergy : public SteadyEnergy {
   }
 
   ~PythonEnergy() override {
-    const py::gil_scoped_acquire lock;
+    const HeldGil lock;
     energy_ = py::object();
   }
 

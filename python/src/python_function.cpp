@@ -25,7 +25,7 @@ PythonObjective::PythonObjective(py::object f, Layout layout, Callbacks& callbac
     : f_(std::move(f)), layout_(std::move(layout)), callbacks_(callbacks) {}
 
 PythonObjective::~PythonObjective() {
-  const py::gil_scoped_acquire lock;
+  const HeldGil lock;
   f_ = py::object();
 }
 

@@ -5,6 +5,7 @@
 #include "arrays.h"
 #include "base/error.h"
 #include "bindings.h"
+#include "interpreter.h"
 #include "io/pc2.h"
 #include "io/vtu.h"
 #include "scene/run_directory.h"
@@ -29,7 +30,7 @@ py::dict dict_of(const std::vector<Field>& fields) {
 py::dict read_frame(const fs::path& path) {
   Vtu vtu;
   {
-    const py::gil_scoped_release free;
+    const ReleasedGil free;
     vtu = aspic::read_frame(path);
   }
   py::array_t<int> tets({static_cast<py::ssize_t>(vtu.mesh.tets.size()), py::ssize_t{4}});
@@ -57,7 +58,7 @@ Array read_motion(const fs::path& path) {
 py::tuple page_of_run(const fs::path& run, size_t max_bytes) {
   viewer::RecordedRun page;
   {
-    const py::gil_scoped_release free;
+    const ReleasedGil free;
     page = viewer::make_report(run, load_scene(scene_of_run(run)), {.max_bytes = max_bytes});
   }
   return py::make_tuple(page.text, page.note);

@@ -7,12 +7,12 @@
 #include "base/hash.h"
 #include "bindings.h"
 #include "custom_method.h"
-#include "dynamics/step_fields.h"
 #include "iteration.h"
 #include "python_energy.h"
 #include "scene/explanation.h"
 #include "scene/scene_builder.h"
 #include "scene/scene_document.h"
+#include "state.h"
 #include "step_objective.h"
 #include "to_table.h"
 
@@ -35,11 +35,11 @@ auto SceneSource::build(const Build& build, const std::shared_ptr<Callbacks>& ca
   options.allow_outside = true;
   if (!energies_.empty())
     options.amend = [&](Model& model) {
-      const py::gil_scoped_acquire lock;
+      const HeldGil lock;
       for (const py::object& energy : energies_)
         model.loads.push_back(make_python_energy(energy, model.numbering.vertex, model.mesh.vertex_count(), callbacks));
     };
-  const py::gil_scoped_release free;
+  const ReleasedGil free;
   return build(options);
 }
 
@@ -64,6 +64,30 @@ SceneModel SceneSource::model(const std::shared_ptr<Callbacks>& callbacks) const
         return build_scene_model({*document_, name_, name_, {}, {}}, SceneFiles("", true), options);
       },
       callbacks);
+}
+
+void SceneSource::check_keys() const {
+  if (document_) return;  // the constructor has checked it
+  SceneOptions options;
+  options.overrides = overrides_;
+  options.allow_outside = true;
+  const ReleasedGil free;
+  read_scene_input(path_, options);
+}
+
+bool SceneSource::check_model(double most_tets) const {
+  const std::string too_many = "are checked before the simulation is made";
+  SceneOptions options;
+  options.allow_outside = true;
+  options.limit = {most_tets, too_many, true};
+  const ReleasedGil free;
+  try {
+    build_scene_model({*document_, name_, name_, {}, {}}, SceneFiles("", true), options);
+  } catch (const InvalidInput& e) {
+    if (std::string_view(e.what()).find(too_many) == std::string_view::npos) throw;
+    return false;
+  }
+  return true;
 }
 
 LiveSimulation::LiveSimulation(std::shared_ptr<const SceneSource> source)
@@ -128,16 +152,16 @@ Report LiveSimulation::step(const py::object& observe, const py::object& directi
     ~Idle() { is_stepping = false; }
   } const at_end{is_stepping_};
   const Simulation::Snapshot before = simulation.snapshot();
-  Report report;
+  StepReport taken;
   {
-    const py::gil_scoped_release free;
-    static_cast<StepReport&>(report) = take_step(observer);
+    const ReleasedGil free;
+    taken = take_step(observer);
     if (callbacks_->has_failed()) simulation.restore(before);
   }
   callbacks_->rethrow();
-  report.potential_names = simulation.potential_names();
+  Report report = named(taken, simulation);
   if (!is_success(report.status)) {
-    const Explanation why = explain(simulation, report);
+    const Explanation why = explain(simulation, taken);
     report.cause = why.cause, report.place = why.place, report.remedy = why.remedy;
   }
   return report;
@@ -150,7 +174,7 @@ void LiveSimulation::record(const std::filesystem::path& folder, bool is_compact
     scene_.output.pc2 = true;
     scene_.output.checkpoint_every = 1e9;
   }
-  const py::gil_scoped_release free;
+  const ReleasedGil free;
   recording_.emplace(RunDirectory::create(folder, scene_, overwrite ? ExistingRun::overwrite : ExistingRun::refuse));
 }
 
@@ -159,7 +183,7 @@ void LiveSimulation::flush() {
   const Use use(occupancy_, "simulation");
   if (is_stepping_) throw std::runtime_error("results are not available inside a step");
   if (!recording_) return;
-  const py::gil_scoped_release free;
+  const ReleasedGil free;
   recording_->finish(scene_.simulation);
   const std::filesystem::path folder = recording_->path();
   recording_.reset();
@@ -175,77 +199,11 @@ void LiveSimulation::restore(const Simulation::Snapshot& snapshot) {
 
 namespace {
 
-py::object python_of(const StepValue& value) {
-  return std::visit([](const auto& v) { return py::cast(v); }, value);
-}
-
-py::dict columns_of(const Report& report) {
-  py::dict result;
-  for (const StepField& field : step_fields())
-    if (field.get) result[py::str(std::string(field.name))] = python_of(field.get(report));
-  return result;
-}
-
-std::string explanation_of(const Report& report) {
-  if (report.cause.empty()) return "";
-  return report.cause + (report.place.empty() ? "" : "; where: " + report.place) + "; remedy: " + report.remedy;
-}
-
-py::dict potential_of(const Report& report) {
-  py::dict result;
-  for (size_t i = 0; i < report.potential.size() && i < report.potential_names.size(); ++i)
-    result[py::str(report.potential_names[i])] = report.potential[i];
-  return result;
-}
-
-void bind_report(py::module_& m) {
-  py::class_<Report> report(m, "StepReport", "The record of a time step.");
-  report.def_readonly("step", &Report::step, "1 for the first.")
-      .def_readonly("time", &Report::time, "At the end of the step [s].")
-      .def_property_readonly("status", [](const Report& r) { return std::string(to_string(r.status)); })
-      .def_property_readonly(
-          "ok", [](const Report& r) { return is_success(r.status); }, "The step converged.")
-      .def_readonly("iterations", &Report::iterations)
-      .def_readonly("trials", &Report::trials, "Evaluations by line searches.")
-      .def_readonly("projected_hessians", &Report::projected_hessians)
-      .def_readonly("objective", &Report::objective, "E at the end of the minimization.")
-      .def_readonly("gradient_norm", &Report::objective_gradient)
-      .def_readonly("residual", &Report::residual, "|M a + dV/dx + dD/dx| over the free vertices [N].")
-      .def_readonly("residual_threshold", &Report::residual_threshold, "[N]")
-      .def_readonly("min_det_F", &Report::min_det_F)
-      .def_readonly("contacts", &Report::contacts)
-      .def_readonly("min_gap", &Report::min_gap, "Smallest distance of a contact [m].")
-      .def_readonly("kinetic", &Report::kinetic, "[J]")
-      .def_property_readonly("potential", &potential_of, "Energy of each term of V by name [J].")
-      .def_readonly("potential_total", &Report::potential_total, "[J]")
-      .def_readonly("pin_work", &Report::pin_work, "[J]")
-      .def_readonly("load_work", &Report::load_work, "[J]")
-      .def_readonly("muscle_work", &Report::muscle_work, "[J]")
-      .def_readonly("damping_loss", &Report::damping_loss, "[J]")
-      .def_readonly("nonconservative_work", &Report::nonconservative_work,
-                    "Work of pressures on open patches beyond the change of their potential [J].")
-      .def_readonly("numerical_loss", &Report::numerical_loss, "Energy lost by the integrator [J].")
-      .def_readonly("ledger_error", &Report::ledger_error, "Difference of both sides of the energy balance [J].")
-      .def_readonly("seconds", &Report::seconds, "Wall time.")
-      .def_property_readonly("state_hash", [](const Report& r) { return hex_digits(r.state_hash); })
-      .def_property_readonly("explanation", &explanation_of, "Cause, place and remedy of a failure; else empty.")
-      .def("to_dict", &columns_of, "All columns of steps.csv.")
-      .def("__repr__", [](const Report& r) {
-        return "<StepReport " + std::to_string(r.step) + ": " + std::string(to_string(r.status)) + ", " +
-               std::to_string(r.iterations) + " iterations>";
-      });
-}
-
 Array state_array(LiveSimulation& self, std::vector<double> State::*member) {
   return self.layout().out(self.simulation().state().*member);
 }
 
-void set_state(LiveSimulation& self, const py::object& value, std::vector<double> State::*member) {
-  Simulation::Snapshot snapshot = self.simulation().snapshot();
-  snapshot.state.*member = self.layout().in(value, member == &State::q ? "q" : "v");
-  snapshot.previous.reset();
-  self.restore(snapshot);
-}
+Array reactions_of(LiveSimulation& self) { return self.layout().out(self.simulation().reactions()); }
 
 py::dict fields_of(LiveSimulation& self) {
   const Simulation& simulation = self.simulation();
@@ -312,16 +270,15 @@ void bind_step_objective(py::module_& m) {
 void bind_simulation(py::module_& m) {
   bind_report(m);
   bind_step_objective(m);
-  py::class_<Simulation::Snapshot>(m, "Snapshot", "A state that a simulation can return to, with the same bits.")
-      .def_property_readonly("time", [](const Simulation::Snapshot& s) { return s.state.time; });
+  bind_snapshot(m);
   py::class_<LiveSimulation, std::shared_ptr<LiveSimulation>>(m, "Simulation")
       .def(py::init([](std::shared_ptr<SceneSource> source) { return std::make_shared<LiveSimulation>(source); }))
       .def("step", &LiveSimulation::step, py::arg("observe") = py::none(), py::arg("direction") = py::none(),
            py::arg("line_search") = py::none())
       .def_property_readonly("q", [](LiveSimulation& s) { return state_array(s, &State::q); })
       .def_property_readonly("v", [](LiveSimulation& s) { return state_array(s, &State::qdot); })
-      .def("set_q", [](LiveSimulation& s, const py::object& q) { set_state(s, q, &State::q); })
-      .def("set_v", [](LiveSimulation& s, const py::object& v) { set_state(s, v, &State::qdot); })
+      .def("set_q", &set_positions)
+      .def("set_v", &set_velocities)
       .def_property_readonly("rest",
                              [](LiveSimulation& s) {
                                const Model& model = s.simulation().model();
@@ -346,6 +303,7 @@ void bind_simulation(py::module_& m) {
       .def_property_readonly("solver", [](LiveSimulation& s) { return s.simulation().solver_description(); })
       .def_property_readonly("state_hash", [](LiveSimulation& s) { return hex_digits(s.simulation().state_hash()); })
       .def("fields", &fields_of)
+      .def("reactions", &reactions_of)
       .def("snapshot", [](LiveSimulation& s) { return s.simulation().snapshot(); })
       .def("restore", &LiveSimulation::restore)
       .def("record", &LiveSimulation::record)

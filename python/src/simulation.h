@@ -23,6 +23,9 @@ class SceneSource {
   SceneSource(std::filesystem::path path, std::vector<std::string> overrides, std::vector<py::object> energies);
   SceneSource(const py::dict& document, std::string name, std::vector<py::object> energies);
 
+  void check_keys() const;  // of the file and the overrides. Throws InvalidInput
+  // Builds the model without energies. Throws InvalidInput. Returns false if it has more tets, which takes too long.
+  bool check_model(double most_tets) const;
   bool has_energies() const { return !energies_.empty(); }
   // Require the GIL, and release it. Throw InvalidInput and what the energies raise.
   Scene scene(const std::shared_ptr<Callbacks>& callbacks) const;
@@ -39,11 +42,13 @@ class SceneSource {
   std::vector<py::object> energies_;
 };
 
-// A step with what its explanation needs.
+// A step with the names of its values and what its explanation needs.
 struct Report : StepReport {
-  std::vector<std::string> potential_names;
+  std::vector<std::string> potential_names, pin_names, load_names, body_names;
   std::string cause, place, remedy;  // of a failure
 };
+Report named(const StepReport& report, const Simulation& simulation);  // with the names, and in the numbers of the user
+void bind_report(py::module_& m);
 
 class LiveSimulation {
  public:

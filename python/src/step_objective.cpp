@@ -11,7 +11,7 @@ std::shared_ptr<StepObjective> StepObjective::make(const SceneSource& source, do
   SceneModel model = source.model(callbacks);
   std::unique_ptr<Parts> parts;
   {
-    const py::gil_scoped_release free;
+    const ReleasedGil free;
     parts = std::make_unique<Parts>(std::move(model));
   }
   callbacks->rethrow();
@@ -36,6 +36,7 @@ double StepObjective::end_time(const py::object& time, double usual) {
 }
 
 Array StepObjective::begin_step(const py::object& q, const py::object& v, double h, const py::object& time) {
+  require_idle(occupancy_, "begin_step");
   const Use use(occupancy_, "objective");
   if (!(h > 0) || !std::isfinite(h)) throw InvalidInput("h: must be positive and finite [s]");
   const std::vector<double> velocity = layout().in(v, "v");
@@ -45,6 +46,7 @@ Array StepObjective::begin_step(const py::object& q, const py::object& v, double
 }
 
 Array StepObjective::begin_statics(const py::object& q, const py::object& time) {
+  require_idle(occupancy_, "begin_statics");
   const Use use(occupancy_, "objective");
   start_ = layout().in(q, "q");
   time_ = end_time(time, time_);
@@ -66,6 +68,7 @@ Array StepObjective::begin(const std::vector<double>& v, double h) {
 }
 
 void StepObjective::update_lagged(const py::object& q) {
+  require_idle(occupancy_, "update_lagged");
   const Use use(occupancy_, "objective");
   const std::vector<double> at = layout().in(q, "q");
   parts_->E.update_lagged(at, false);

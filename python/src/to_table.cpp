@@ -1,7 +1,6 @@
 #include "to_table.h"
 
-#include <pybind11/numpy.h>
-
+#include "arrays.h"
 #include "base/error.h"
 
 namespace aspic::python {
@@ -74,7 +73,10 @@ class Converter {
 
   aspic::Array array_of(const py::handle& value, const std::string& where) {
     py::object list = py::reinterpret_borrow<py::object>(value);
-    if (py::isinstance<py::array>(value)) list = value.attr("tolist")();
+    if (py::isinstance<py::array>(value)) {
+      require_bounded(py::reinterpret_borrow<py::array>(value), where);
+      list = value.attr("tolist")();
+    }
     if (!py::isinstance<py::list>(list) && !py::isinstance<py::tuple>(list))
       throw InvalidInput(where + ": this is " + std::string(py::str(py::type::of(value).attr("__name__"))) +
                          "; expected a number, a string, a list or a dict");

@@ -5,6 +5,7 @@
 
 #include "base/error.h"
 #include "bindings.h"
+#include "interpreter.h"
 
 namespace aspic::python {
 namespace {
@@ -33,7 +34,7 @@ py::dict verify_named(const std::string& name, bool quick) {
     if (!name.empty() && check.key() != name && check.family != name) continue;
     verify::Findings findings;
     {
-      const py::gil_scoped_release free;
+      const ReleasedGil free;
       findings = verify::run_check(check, {.quick = quick});
     }
     if (PyErr_CheckSignals() != 0) throw py::error_already_set();

@@ -1,6 +1,10 @@
 """Recorded runs, frames and the page that plays them."""
+import copy
 import html
+import json
+import multiprocessing
 import os
+import pickle
 import re
 import subprocess
 import sys
@@ -54,6 +58,94 @@ def write_piece(path, frame, cells):
         f'<Cells>{array("Int64", "connectivity", corners.ravel())}'
         f'{array("Int64", "offsets", 4 * np.arange(1, len(cells) + 1))}{array("UInt8", "types", np.full(len(cells), 10))}'
         '</Cells></Piece></UnstructuredGrid></VTKFile>')
+
+
+def test_report_has_every_column_of_its_table(tmp_path):
+    scene = aspic.Scene(contact={"friction": .3})
+    body = scene.add(aspic.box(.1, cells=2), name="cube", material=aspic.Material(young=1e4, poisson=.3))
+    body.pin(body.vertices[:, 1] == .1, name="top", motion={"linear": {"velocity": [.1, 0, 0]}})
+    body.traction("Y < 1e-9", value=[10, 0, 0])
+    sim = aspic.Simulation(scene, h=.01, out=tmp_path / "run")
+    reports = sim.run(2)
+    steps = sim.results().steps
+    assert {"reaction_cube.top_x", "reaction_moment_cube.top_z", "body_cube_y"} <= set(steps)
+    for row, report in enumerate(reports, 1):
+        columns = report.to_dict()
+        for name in steps:
+            assert columns[name] == steps[name][row] or columns[name] == "", name
+    np.testing.assert_array_equal(reports["reaction_cube.top_y"], steps["reaction_cube.top_y"][1:])
+
+
+def test_reactions_balance_the_weight(jelly):
+    sim = aspic.Simulation(jelly, h=.01, integrator="quasi_static", solver={"tolerance": 1e-10})
+    assert np.isnan(sim.reactions()).all()
+    report = sim.step()
+    weight = 9.81 * sim.mass.sum()
+    force, moment = report.reactions["jelly.top"], report.reaction_moments["jelly.top"]
+    np.testing.assert_allclose(force, [0, weight, 0], atol=1e-6 * weight)
+    np.testing.assert_allclose(sim.reactions().sum(axis=0), force, atol=1e-12 * weight)
+    assert not sim.reactions()[~sim.pinned].any()
+    np.testing.assert_allclose(moment, np.cross(sim.q, sim.reactions()).sum(axis=0), atol=1e-12 * weight)
+
+
+def test_vertices_of_reports_have_numbers_of_the_mesh(program, tmp_path):
+    path = make_jelly(5).save(tmp_path / "saved")
+    lines = subprocess.run([program, "run", path, "--steps", "2", "--out", tmp_path / "run", "--json"], check=True,
+                           capture_output=True, text=True).stdout.splitlines()
+    printed = [row["worst_vertex"] for row in map(json.loads, lines) if "worst_vertex" in row]
+    reports = aspic.Simulation(path, record=False).run(2)
+    assert printed == list(reports["worst_vertex"]) and len(printed) == 2
+
+
+def test_first_step_that_is_dropped_is_interrupted(jelly):
+    assert aspic.Simulation(jelly).step(observe=lambda it: False).to_dict()["status"] == "interrupted"
+
+
+def continued(snapshot):
+    sim = aspic.Simulation(make_jelly(), record=False)
+    sim.restore(snapshot)
+    return sim.run(2)
+
+
+@pytest.mark.parametrize("solver", [{}, {"initial_guess": "last_increment"}])
+def test_snapshots_and_reports_travel_between_processes(solver):
+    sim = aspic.Simulation(make_jelly(), solver=solver, record=False)
+    sim.run(3)
+    snapshot = sim.snapshot()
+    copies = [pickle.loads(pickle.dumps(snapshot)), copy.deepcopy(snapshot), copy.copy(snapshot)]
+    hashes = list(sim.run(2)["state_hash"])
+    for snapshot_copy in copies:
+        sim.restore(snapshot_copy)
+        assert list(sim.run(2)["state_hash"]) == hashes
+    if solver:
+        return
+    with multiprocessing.get_context("spawn").Pool(1) as pool:
+        reports = pool.apply_async(continued, (snapshot,)).get(60)
+    assert [report.state_hash for report in reports] == hashes
+
+
+def test_pickled_report_is_equal(jelly):
+    report = aspic.Simulation(jelly, solver={"max_iterations": 1, "tolerance": 1e-12}).run(2)[-1]
+    other = pickle.loads(pickle.dumps(report))
+    assert not report.ok and report.explanation and repr(report) == repr(other)
+    assert report.to_dict() == other.to_dict()
+    for name in [name for name in dir(report) if not name.startswith("__") and not callable(getattr(report, name))]:
+        np.testing.assert_equal(getattr(other, name), getattr(report, name), err_msg=name)
+
+
+def test_exceptions_are_pickled(jelly):
+    with pytest.raises(aspic.NotConverged) as raised:
+        aspic.Simulation(jelly, solver={"max_iterations": 1, "tolerance": 1e-12}).run(1, check=True)
+    other = pickle.loads(pickle.dumps(raised.value))
+    assert str(other) == str(raised.value) and other.report.state_hash == raised.value.report.state_hash
+    assert str(pickle.loads(pickle.dumps(aspic.InvalidInput("text")))) == "text"
+
+
+@pytest.mark.parametrize("kind", [aspic.Snapshot, aspic.StepReport])
+def test_damaged_pickles_raise(kind):
+    for state in ((), (1, 2), {}, {"status": 3}, None, "text", (None,) * 7):
+        with pytest.raises((TypeError, ValueError, RuntimeError, KeyError, IndexError)):
+            kind.__new__(kind).__setstate__(state)
 
 
 def test_pieces_of_several_ranks_are_one_frame(jelly, tmp_path):

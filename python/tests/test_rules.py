@@ -145,6 +145,21 @@ def test_bad_scene_gets_one_line(change, message):
     assert "\n" not in str(error.value)
 
 
+def test_one_number_holds_for_all_axes_of_a_box():
+    np.testing.assert_array_equal(aspic.box(.1, cells=2).vertices, aspic.box((.1,) * 3, (2,) * 3).vertices)
+    assert len(aspic.box((.1, .2, .3), 2, origin=1).tets) == 48
+
+
+@pytest.mark.parametrize("size, cells, message", [
+    ((1, 2), 2, r"size: shape \(2,\); expected three numbers, or one"), (1, 2.5, "cells = 2.5: must be integers"),
+    (1, 0, "at least 1"), (-1, 2, "above"), (np.nan, 2, "size = nan"), ("big", 2, "size = 'big'; expected three numbers"),
+    (1, np.inf, "cells = inf"), (1, 10**6, "at most 2e.07"), (None, 2, "size"),
+])
+def test_bad_boxes_get_one_line(size, cells, message):
+    with pytest.raises(aspic.InvalidInput, match=message):
+        aspic.box(size, cells)
+
+
 def test_bad_arrays_get_one_line():
     sim = aspic.Simulation(make_jelly())
     E, q = sim.objective(), sim.q

@@ -1,0 +1,99 @@
+#include "interpreter.h"
+
+#include <atomic>
+#include <chrono>
+#include <condition_variable>
+#include <mutex>
+#include <thread>
+
+namespace aspic::python {
+
+struct Departure {
+  std::mutex mutex;
+  std::condition_variable left;
+  int computing = 0;                   // threads that will take the GIL again
+  std::thread::id main = {};           // the thread that ends the program
+  std::atomic<bool> is_begun = false;  // `main` is set
+  std::atomic<bool> is_over = false;   // the interpreter ends threads that take the GIL
+};
+
+namespace {
+
+constexpr std::chrono::seconds kPatience{10};  // for callbacks and factorizations, which do not stop
+
+// Never destroyed, because threads may outlive static objects. A forked process has none of the threads of its parent,
+// and starts with a new one.
+std::atomic<Departure*>& current() {
+  static std::atomic<Departure*> pointer = new Departure;
+  return pointer;
+}
+
+// The end of a thread inside of C++ frames would abort the program, so the thread sleeps until the process ends.
+void sleep_if_over() {
+  while (is_leaving() && current().load()->is_over) std::this_thread::sleep_for(std::chrono::hours(1));
+}
+
+// Returns after all computations of other threads have stopped.
+void leave() {
+  Departure& departure = *current();
+  const py::gil_scoped_release free;
+  std::unique_lock lock(departure.mutex);
+  departure.main = std::this_thread::get_id();
+  departure.is_begun = true;
+  departure.is_over = !departure.left.wait_for(lock, kPatience, [&] { return departure.computing == 0; });
+}
+
+}  // namespace
+
+ReleasedGil::ReleasedGil() : departure_(*current()) {
+  if (is_leaving()) {
+    PyErr_SetNone(PyExc_SystemExit);  // ends a thread without a message
+    throw py::error_already_set();
+  }
+  {
+    const std::lock_guard lock(departure_.mutex);
+    ++departure_.computing;
+  }
+  thread_ = PyEval_SaveThread();
+}
+
+ReleasedGil::~ReleasedGil() {
+  sleep_if_over();
+  PyEval_RestoreThread(thread_);
+  const std::lock_guard lock(departure_.mutex);
+  --departure_.computing;
+  departure_.left.notify_all();
+}
+
+HeldGil::HeldGil() {
+  sleep_if_over();
+  state_ = PyGILState_Ensure();
+}
+
+HeldGil::~HeldGil() {
+  sleep_if_over();
+  PyGILState_Release(state_);
+}
+
+bool is_leaving() {
+  const Departure& departure = *current();
+  return departure.is_begun && departure.main != std::this_thread::get_id();
+}
+
+void watch_for_the_end() {
+  py::module_::import("atexit").attr("register")(py::cpp_function(&leave));
+  const py::object os = py::module_::import("os");
+  os.attr("register_at_fork")(py::arg("after_in_child") = py::cpp_function([] { current() = new Departure; }));
+}
+
+void require_init(const py::module_& m) {
+  for (const auto& [name, value] : py::dict(m.attr("__dict__"))) {
+    if (!PyType_Check(value.ptr())) continue;
+    if (auto* type = py::detail::get_type_info(reinterpret_cast<PyTypeObject*>(value.ptr())))
+      type->operator_new = [](size_t) -> void* {  // otherwise pybind11 reads uninitialized memory
+        throw py::type_error("__init__() was not called; objects made by __new__() alone cannot be used");
+      };
+  }
+}
+
+}  // namespace aspic::python
