@@ -61,6 +61,10 @@ void add_resultants(const Report& report, py::dict& columns) {
   add("reaction", report.pin_names, report.resultants.pins);
   add("load", report.load_names, report.resultants.loads);
   add("body", report.body_names, report.resultants.bodies);
+  for (size_t i = 0; i < report.cavities.size(); ++i) {
+    columns[py::str("volume_" + report.cavity_names[i])] = report.cavities[i].volume;
+    columns[py::str("pressure_" + report.cavity_names[i])] = report.cavities[i].pressure;
+  }
 }
 
 py::dict columns_of(const Report& report) {
@@ -106,7 +110,11 @@ py::dict dict_of_all(const Report& report) {
   state["status"] = static_cast<int>(report.status);
   state["objective"] = report.objective, state["gradient_norm"] = report.objective_gradient;
   state["potential"] = report.potential;
-  state["names"] = py::make_tuple(report.potential_names, report.pin_names, report.load_names, report.body_names);
+  state["names"] = py::make_tuple(report.potential_names, report.pin_names, report.load_names, report.body_names,
+                                  report.cavity_names);
+  std::vector<std::pair<double, double>> cavities;
+  for (const CavityState& cavity : report.cavities) cavities.emplace_back(cavity.volume, cavity.pressure);
+  state["cavities"] = cavities;
   const Resultants& sums = report.resultants;
   state["resultants"] = py::make_tuple(rows_of(sums.pins), rows_of(sums.loads), rows_of(sums.bodies));
   state["explanation"] = py::make_tuple(report.cause, report.place, report.remedy);
@@ -124,8 +132,12 @@ Report report_in(const py::dict& state) {
   report.potential = state["potential"].cast<std::vector<double>>();
   const py::tuple names = state["names"], sums = state["resultants"], explanation = state["explanation"];
   size_t i = 0;
-  for (Names* of : {&report.potential_names, &report.pin_names, &report.load_names, &report.body_names})
+  for (Names* of :
+       {&report.potential_names, &report.pin_names, &report.load_names, &report.body_names, &report.cavity_names})
     *of = names[i++].cast<Names>();
+  for (const auto& [volume, pressure] : state["cavities"].cast<std::vector<std::pair<double, double>>>())
+    report.cavities.push_back({volume, pressure});
+  if (report.cavities.size() != report.cavity_names.size()) throw InvalidInput("cavities and their names differ");
   i = 0;
   for (auto* of : {&report.resultants.pins, &report.resultants.loads, &report.resultants.bodies})
     *of = resultants_in(sums[i++]);
@@ -137,11 +149,14 @@ Report report_in(const py::dict& state) {
 }  // namespace
 
 Report named(const StepReport& report, const Simulation& simulation) {
-  Report result{report, simulation.potential_names(), {}, {}, {}, {}, {}, {}};
+  Report result{report, simulation.potential_names(), {}, {}, {}, {}, {}, {}, {}};
   const Model& model = simulation.model();
   if (report.worst_vertex >= 0) result.worst_vertex = model.numbering.vertex.to_user(report.worst_vertex);
   for (const Pin& pin : model.pins) result.pin_names.push_back(pin.name);
-  for (const auto& load : model.loads) result.load_names.emplace_back(load->name());
+  for (const auto& load : model.loads) {
+    result.load_names.emplace_back(load->name());
+    if (dynamic_cast<const Cavity*>(load.get())) result.cavity_names.emplace_back(load->name());
+  }
   for (const BodyRange& body : model.bodies) result.body_names.push_back(body.name);
   return result;
 }

@@ -44,7 +44,7 @@ class SceneSource {
 
 // A step with the names of its values and what its explanation needs.
 struct Report : StepReport {
-  std::vector<std::string> potential_names, pin_names, load_names, body_names;
+  std::vector<std::string> potential_names, pin_names, load_names, body_names, cavity_names;
   std::string cause, place, remedy;  // of a failure
 };
 Report named(const StepReport& report, const Simulation& simulation);  // with the names, and in the numbers of the user

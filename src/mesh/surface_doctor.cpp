@@ -93,13 +93,17 @@ void examine_open_edges(const TriMesh& mesh, const SurfaceTopology& surface, Fin
   const char* const thicken =
       "give it a thickness in the program that made it (in Blender: Solidify; in Gmsh: Extrude)";
   if (is_planar(mesh))
-    return findings.add({Severity::error, "planar_mesh",
-                         "the mesh is planar: all vertices lie in a plane, and only solids are simulated", thicken,
-                         surface.open});
+    return findings.add_general({Severity::error,
+                                 "planar_mesh",
+                                 "the mesh is planar: all vertices lie in a plane, and only solids are simulated",
+                                 thicken,
+                                 {}});
   if (is_sheet(merged))
-    return findings.add({Severity::error, "sheet",
-                         "the surface is a sheet: it encloses no volume, and only solids are simulated", thicken,
-                         surface.open});
+    return findings.add_general({Severity::error,
+                                 "sheet",
+                                 "the surface is a sheet: it encloses no volume, and only solids are simulated",
+                                 thicken,
+                                 {}});
   Finding finding{
       Severity::error, "open_surface",
       "the surface is open: " + std::to_string(surface.open_edges) + " edges around " + std::to_string(surface.holes) +

@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "base/error.h"
+#include "io/atomic_file.h"
 #include "io/mesh_file.h"
 #include "mesh/box.h"
 #include "mesh/generators.h"
