@@ -285,6 +285,19 @@ def test_pins_hold_assigned_positions(jelly):
     assert sim.time == pytest.approx(3 * sim.h)
 
 
+def test_assigned_motion_of_a_pin_is_its_motion():
+    given = make_jelly()
+    given.bodies[0].table["pin"][0]["motion"] = {"linear": {"velocity": [.05, 0, 0]}}
+    sims = [aspic.Simulation(scene, h=.01, solver={"tolerance": 1e-10}, record=False) for scene in (make_jelly(), given)]
+    for _ in range(20):
+        q = sims[0].q.copy()
+        q[sims[0].pinned, 0] += .0005
+        sims[0].q = q
+        forces = [sim.step().reactions["jelly.top"] for sim in sims]
+        np.testing.assert_allclose(*forces, atol=1e-5)
+    np.testing.assert_allclose(sims[0].q, sims[1].q, atol=1e-9)
+
+
 def test_pins_of_one_axis_hold_that_axis():
     scene = aspic.Scene(gravity=(0, 0, 0))
     body = scene.add(aspic.box(.1, 2), material=aspic.Material(young=1e4, poisson=.3))
