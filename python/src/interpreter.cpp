@@ -43,6 +43,15 @@ void leave() {
   departure.is_over = !departure.left.wait_for(lock, kPatience, [&] { return departure.computing == 0; });
 }
 
+// For pickle. Protocols 0 and 1 of the inherited method abort the program.
+py::tuple reduced(const py::object& self) {
+  const py::type type = py::type::of(self);
+  if (!py::hasattr(type, "__setstate__"))
+    throw py::type_error("cannot pickle '" + type.attr("__name__").cast<std::string>() + "' object");
+  return py::make_tuple(py::module_::import("copyreg").attr("__newobj__"), py::make_tuple(type),
+                        self.attr("__getstate__")());
+}
+
 }  // namespace
 
 ReleasedGil::ReleasedGil() : departure_(*current()) {
@@ -86,13 +95,15 @@ void watch_for_the_end() {
   os.attr("register_at_fork")(py::arg("after_in_child") = py::cpp_function([] { current() = new Departure; }));
 }
 
-void require_init(const py::module_& m) {
+void guard_classes(const py::module_& m) {
   for (const auto& [name, value] : py::dict(m.attr("__dict__"))) {
     if (!PyType_Check(value.ptr())) continue;
-    if (auto* type = py::detail::get_type_info(reinterpret_cast<PyTypeObject*>(value.ptr())))
-      type->operator_new = [](size_t) -> void* {  // otherwise pybind11 reads uninitialized memory
-        throw py::type_error("__init__() was not called; objects made by __new__() alone cannot be used");
-      };
+    auto* type = py::detail::get_type_info(reinterpret_cast<PyTypeObject*>(value.ptr()));
+    if (!type) continue;
+    type->operator_new = [](size_t) -> void* {  // otherwise pybind11 reads uninitialized memory
+      throw py::type_error("__init__() was not called; objects made by __new__() alone cannot be used");
+    };
+    value.attr("__reduce__") = py::cpp_function(&reduced, py::name("__reduce__"), py::is_method(value));
   }
 }
 

@@ -1,4 +1,5 @@
 """Misuse raises an exception: it neither ends the process nor fills the memory nor changes a step."""
+import pickle
 import resource
 import subprocess
 import sys
@@ -45,6 +46,18 @@ def test_objects_without_init_raise(name):
                 lambda: aspic.LinearSolver().factorize(empty), lambda: aspic.Simulation(make_jelly(1)).restore(empty)):
         with pytest.raises((TypeError, RuntimeError, ValueError, AttributeError)):
             use()
+
+
+@pytest.mark.parametrize("protocol", range(pickle.HIGHEST_PROTOCOL + 1))
+def test_pickles_of_every_protocol_raise_or_work(protocol, jelly):
+    sim = aspic.Simulation(jelly)
+    report, snapshot, E = sim.step(), sim.snapshot(), sim.objective()
+    assert pickle.loads(pickle.dumps(report, protocol)).state_hash == report.state_hash
+    assert pickle.loads(pickle.dumps(snapshot, protocol)).time == snapshot.time
+    for thing in (sim._core, E, E.hessian(sim.q), aspic.LinearSolver(), aspic.test_function("rosenbrock"),
+                  aspic.Equilibrium(jelly)._core, aspic.Trajectory(jelly, 1)._core, jelly._source()):
+        with pytest.raises(TypeError, match="cannot pickle '.*' object"):
+            pickle.dumps(thing, protocol)
 
 
 def test_subclass_without_init_raises():
