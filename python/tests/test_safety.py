@@ -60,6 +60,17 @@ def test_pickles_of_every_protocol_raise_or_work(protocol, jelly):
             pickle.dumps(thing, protocol)
 
 
+@pytest.mark.parametrize("use", [
+    lambda: aspic.LinearSolver().factorize(None), lambda: _aspic.Simulation(None), lambda: _aspic.Equilibrium(None, 1e-9),
+    lambda: _aspic.Trajectory(None, 1, 0, 1e-9), lambda: _aspic.compare(None, [], 1, 1), lambda: _aspic.capture(None, "", {}),
+    lambda: _aspic.compare(make_jelly()._source(), [("newton", None)], 1, 1), lambda: aspic.minimize(None, [1.]),
+    lambda: aspic.Simulation(make_jelly(1)).restore(None),
+])
+def test_none_is_refused(use):
+    with pytest.raises((TypeError, ValueError, AttributeError)):
+        use()
+
+
 def test_subclass_without_init_raises():
     class Solver(aspic.LinearSolver):
         def __init__(self):
