@@ -30,6 +30,7 @@ class HeldGil {
   HeldGil& operator=(const HeldGil&) = delete;
 
  private:
+  Departure& departure_;
   PyGILState_STATE state_;
 };
 
