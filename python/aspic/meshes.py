@@ -91,7 +91,8 @@ class Surface:
     """A mesh of triangles: vertices (n, 3) [m], triangles (m, 3)."""
 
     def __init__(self, vertices, triangles, path=None):
-        self.vertices, self.triangles, self._path = np.asarray(vertices), np.asarray(triangles), path
+        self.vertices, self.triangles = _aspic.check_surface(vertices, triangles)
+        self._path = path
 
     def __repr__(self):
         return f"<Surface: {len(self.vertices)} vertices, {len(self.triangles)} triangles>"

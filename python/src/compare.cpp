@@ -32,8 +32,10 @@ py::list compare(const SceneSource& source, const NamedSources& methods, int ste
   if (step < 1) throw InvalidInput("step: must be at least 1");
   const auto callbacks = std::make_shared<Callbacks>();
   ComparisonOptions options{.step = step, .max_seconds = max_seconds, .stop = callbacks->token()};
-  for (const auto& [name, with_method] : methods)
+  for (const auto& [name, with_method] : methods) {
+    if (!with_method) throw InvalidInput("methods: a scene is None");
     options.methods.push_back({name, with_method->model(callbacks).options.solver});
+  }
   Scene scene = source.scene(callbacks);
   Comparison comparison;
   {
@@ -60,8 +62,12 @@ py::list compare(const SceneSource& source, const NamedSources& methods, int ste
 }  // namespace
 
 void bind_compare(py::module_& m) {
-  m.def("compare", [](const std::shared_ptr<SceneSource>& source, const NamedSources& methods, int step,
-                      double max_seconds) { return compare(*source, methods, step, max_seconds); });
+  m.def(
+      "compare",
+      [](const std::shared_ptr<SceneSource>& source, const NamedSources& methods, int step, double max_seconds) {
+        return compare(*source, methods, step, max_seconds);
+      },
+      py::arg().none(false), py::arg(), py::arg(), py::arg());
 }
 
 }  // namespace aspic::python

@@ -395,8 +395,9 @@ TrajectoryOptions trajectory_options(int steps, double h, double tolerance) {
 void bind_fit(py::module_& m) {
   py::class_<PyEquilibrium>(m, "Equilibrium")
       .def(py::init([](const std::shared_ptr<SceneSource>& source, double tolerance) {
-        return std::make_unique<PyEquilibrium>(*source, tolerance);
-      }))
+             return std::make_unique<PyEquilibrium>(*source, tolerance);
+           }),
+           py::arg().none(false), py::arg())
       .def("solve", &PyEquilibrium::solve)
       .def("vjp", &PyEquilibrium::vjp)
       .def("jvp", &PyEquilibrium::jvp)
@@ -404,8 +405,9 @@ void bind_fit(py::module_& m) {
       .def_property_readonly("shape", [](const PyEquilibrium& e) { return py::tuple(py::cast(e.shape())); });
   py::class_<PyTrajectory>(m, "Trajectory")
       .def(py::init([](const std::shared_ptr<SceneSource>& source, int steps, double h, double tolerance) {
-        return std::make_unique<PyTrajectory>(*source, trajectory_options(steps, h, tolerance));
-      }))
+             return std::make_unique<PyTrajectory>(*source, trajectory_options(steps, h, tolerance));
+           }),
+           py::arg().none(false), py::arg(), py::arg(), py::arg())
       .def("set_parameters", &PyTrajectory::set_parameters)
       .def("set_start", &PyTrajectory::set_start)
       .def("simulate", &PyTrajectory::simulate)
@@ -414,8 +416,12 @@ void bind_fit(py::module_& m) {
       .def_property_readonly("parameters", &PyTrajectory::parameters)
       .def_property_readonly("shape", [](const PyTrajectory& t) { return py::tuple(py::cast(t.shape())); });
   m.def("fit", &fit_data);
-  m.def("capture", [](const std::shared_ptr<SceneSource>& source, const std::filesystem::path& folder,
-                      const py::dict& numbers) { return capture(*source, folder, numbers); });
+  m.def(
+      "capture",
+      [](const std::shared_ptr<SceneSource>& source, const std::filesystem::path& folder, const py::dict& numbers) {
+        return capture(*source, folder, numbers);
+      },
+      py::arg().none(false), py::arg(), py::arg());
 }
 
 }  // namespace aspic::python

@@ -11,7 +11,8 @@ namespace aspic::python {
 struct Departure {
   std::mutex mutex;
   std::condition_variable left;
-  int computing = 0;                   // threads that will take the GIL again
+  int computing = 0;                   // releases of the GIL that will take it again
+  int calling = 0;                     // calls of Python from these threads
   std::thread::id main = {};           // the thread that ends the program
   std::atomic<bool> is_begun = false;  // `main` is set
   std::atomic<bool> is_over = false;   // the interpreter ends threads that take the GIL
@@ -19,7 +20,7 @@ struct Departure {
 
 namespace {
 
-constexpr std::chrono::seconds kPatience{10};  // for callbacks and factorizations, which do not stop
+constexpr int kPatience = 10;  // seconds for computations that do not stop, such as factorizations
 
 // Never destroyed, because threads may outlive static objects. A forked process has none of the threads of its parent,
 // and starts with a new one.
@@ -40,7 +41,21 @@ void leave() {
   std::unique_lock lock(departure.mutex);
   departure.main = std::this_thread::get_id();
   departure.is_begun = true;
-  departure.is_over = !departure.left.wait_for(lock, kPatience, [&] { return departure.computing == 0; });
+  bool has_left = false;
+  for (int i = 0; i < kPatience && !has_left; ++i) {
+    has_left = departure.left.wait_for(lock, std::chrono::seconds(1), [&] { return departure.computing == 0; });
+    if (departure.computing == departure.calling) break;  // callbacks that wait, perhaps for the thread that waits here
+  }
+  departure.is_over = !has_left;
+}
+
+// For pickle. Protocols 0 and 1 of the inherited method abort the program.
+py::tuple reduced(const py::object& self) {
+  const py::type type = py::type::of(self);
+  if (!py::hasattr(type, "__setstate__"))
+    throw py::type_error("cannot pickle '" + type.attr("__name__").cast<std::string>() + "' object");
+  return py::make_tuple(py::module_::import("copyreg").attr("__newobj__"), py::make_tuple(type),
+                        self.attr("__getstate__")());
 }
 
 }  // namespace
@@ -65,13 +80,19 @@ ReleasedGil::~ReleasedGil() {
   departure_.left.notify_all();
 }
 
-HeldGil::HeldGil() {
+HeldGil::HeldGil() : departure_(*current()) {
   sleep_if_over();
   state_ = PyGILState_Ensure();
+  const std::lock_guard lock(departure_.mutex);
+  ++departure_.calling;
 }
 
 HeldGil::~HeldGil() {
   sleep_if_over();
+  {
+    const std::lock_guard lock(departure_.mutex);
+    --departure_.calling;
+  }
   PyGILState_Release(state_);
 }
 
@@ -86,13 +107,15 @@ void watch_for_the_end() {
   os.attr("register_at_fork")(py::arg("after_in_child") = py::cpp_function([] { current() = new Departure; }));
 }
 
-void require_init(const py::module_& m) {
+void guard_classes(const py::module_& m) {
   for (const auto& [name, value] : py::dict(m.attr("__dict__"))) {
     if (!PyType_Check(value.ptr())) continue;
-    if (auto* type = py::detail::get_type_info(reinterpret_cast<PyTypeObject*>(value.ptr())))
-      type->operator_new = [](size_t) -> void* {  // otherwise pybind11 reads uninitialized memory
-        throw py::type_error("__init__() was not called; objects made by __new__() alone cannot be used");
-      };
+    auto* type = py::detail::get_type_info(reinterpret_cast<PyTypeObject*>(value.ptr()));
+    if (!type) continue;
+    type->operator_new = [](size_t) -> void* {  // otherwise pybind11 reads uninitialized memory
+      throw py::type_error("__init__() was not called; objects made by __new__() alone cannot be used");
+    };
+    value.attr("__reduce__") = py::cpp_function(&reduced, py::name("__reduce__"), py::is_method(value));
   }
 }
 

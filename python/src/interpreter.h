@@ -30,6 +30,7 @@ class HeldGil {
   HeldGil& operator=(const HeldGil&) = delete;
 
  private:
+  Departure& departure_;
   PyGILState_STATE state_;
 };
 
@@ -39,7 +40,8 @@ bool is_leaving();
 // Call once, with the GIL.
 void watch_for_the_end();
 
-// Makes every use of an object whose __init__ was not called raise TypeError. Call after all classes are bound.
-void require_init(const py::module_& m);
+// Makes classes raise TypeError where they would abort: for uses of objects whose __init__ was not called, and for
+// pickles of objects without a state. Call after all classes are bound.
+void guard_classes(const py::module_& m);
 
 }  // namespace aspic::python

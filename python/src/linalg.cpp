@@ -144,7 +144,8 @@ void bind_linalg(py::module_& m) {
             self.cast<Solver&>().factorize(std::move(H));
             return self;
           },
-          py::arg("H"), "Factorizes H and returns the solver. Raises LinAlgError unless H is positive definite.")
+          py::arg("H").none(false),
+          "Factorizes H and returns the solver. Raises LinAlgError unless H is positive definite.")
       .def(
           "solve", [](Solver& self, const py::object& b, double tolerance) { return self.solve(b, tolerance); },
           py::arg("b"), py::arg("tolerance") = 1e-10,

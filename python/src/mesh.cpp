@@ -159,6 +159,13 @@ void bind_mesh(py::module_& m) {
       "check_arrays",
       [](Handle vertices, Handle tets, Handle region) { return arrays_of(tet_mesh(vertices, tets, region)); },
       "Returns the arrays of a mesh in their types; raises InvalidInput for others.");
+  m.def(
+      "check_surface",
+      [](Handle vertices, Handle triangles) {
+        const TriMesh mesh = tri_mesh(vertices, triangles);
+        return py::make_tuple(to_array(mesh.vertices), array_of(mesh.triangles));
+      },
+      "Returns the arrays of a surface in their types; raises InvalidInput for others.");
   m.def("diagnose", [](Handle vertices, Handle tets, Handle region) {
     return list_of(diagnose(tet_mesh(vertices, tets, region)));
   });

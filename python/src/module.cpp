@@ -18,6 +18,6 @@ PYBIND11_MODULE(_aspic, m) {
   bind_results(m);
   bind_fit(m);
   bind_verification(m);
-  require_init(m);
+  guard_classes(m);
   watch_for_the_end();
 }

@@ -272,7 +272,8 @@ void bind_simulation(py::module_& m) {
   bind_step_objective(m);
   bind_snapshot(m);
   py::class_<LiveSimulation, std::shared_ptr<LiveSimulation>>(m, "Simulation")
-      .def(py::init([](std::shared_ptr<SceneSource> source) { return std::make_shared<LiveSimulation>(source); }))
+      .def(py::init([](std::shared_ptr<SceneSource> source) { return std::make_shared<LiveSimulation>(source); }),
+           py::arg().none(false))
       .def("step", &LiveSimulation::step, py::arg("observe") = py::none(), py::arg("direction") = py::none(),
            py::arg("line_search") = py::none())
       .def_property_readonly("q", [](LiveSimulation& s) { return state_array(s, &State::q); })

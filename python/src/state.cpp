@@ -1,6 +1,7 @@
 #include "state.h"
 
 #include <algorithm>
+#include <vector>
 
 #include "base/error.h"
 #include "math/vectors.h"
@@ -12,17 +13,18 @@ using Snapshot = Simulation::Snapshot;
 
 constexpr double kRoundOff = 1e-12;  // of positions and velocities, relative to the largest
 
-const Pin* pin_of(const Model& model, int vertex, bool only_moving) {
-  for (const Pin& pin : model.pins) {
-    const bool holds = std::find(pin.vertices.begin(), pin.vertices.end(), vertex) != pin.vertices.end();
-    if (holds && (pin.motion || !only_moving)) return &pin;
-  }
-  return nullptr;
+// Returns the last pin of each vertex, of those with a motion if there are any. Null: none.
+std::vector<const Pin*> pins_of_vertices(const Model& model) {
+  std::vector<const Pin*> pin_of(static_cast<size_t>(model.mesh.vertex_count()));
+  for (const Pin& pin : model.pins)
+    for (const int v : pin.vertices)
+      if (!pin_of[v] || pin.motion) pin_of[v] = &pin;
+  return pin_of;
 }
 
 std::string entry_of(const char* array, const Model& model, int vertex, const Vec3d& value) {
   return std::string(array) + "[" + std::to_string(model.numbering.vertex.to_user(vertex)) +
-         "] = " + point_text(value) + "; the pin '" + pin_of(model, vertex, false)->name + "' ";
+         "] = " + point_text(value) + "; the pin '" + pins_of_vertices(model)[vertex]->name + "' ";
 }
 
 // Moves the start of fixed vertices, which their pins refer to.
@@ -30,11 +32,12 @@ void hold_at(std::span<const double> q, const Model& model, Snapshot& snapshot) 
   const Pins pins(model.pins, snapshot.start.q);
   std::vector<double> prescribed(q.begin(), q.end());
   pins.place(snapshot.state.time, prescribed);
+  const std::vector<const Pin*> pin_of = pins_of_vertices(model);
   const double round_off = kRoundOff * max_abs(snapshot.state.q);
   for (int v = 0; v < pins.vertex_count(); ++v) {
     const Vec3d x = vec_at(q, v), now = vec_at(snapshot.state.q, v), target = vec_at(prescribed, v);
     if (norm(x - target) <= round_off) continue;
-    if (pin_of(model, v, true)) {
+    if (pin_of[v] && pin_of[v]->motion) {
       if (norm(pins.held_part(v, x - now)) <= round_off) continue;  // as after a dropped step
       throw InvalidInput(entry_of("q", model, v, x) + "prescribes " + point_text(target) +
                          " at this time; change only vertices that no pin moves");

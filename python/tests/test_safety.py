@@ -1,4 +1,5 @@
 """Misuse raises an exception: it neither ends the process nor fills the memory nor changes a step."""
+import pickle
 import resource
 import subprocess
 import sys
@@ -45,6 +46,29 @@ def test_objects_without_init_raise(name):
                 lambda: aspic.LinearSolver().factorize(empty), lambda: aspic.Simulation(make_jelly(1)).restore(empty)):
         with pytest.raises((TypeError, RuntimeError, ValueError, AttributeError)):
             use()
+
+
+@pytest.mark.parametrize("protocol", range(pickle.HIGHEST_PROTOCOL + 1))
+def test_pickles_of_every_protocol_raise_or_work(protocol, jelly):
+    sim = aspic.Simulation(jelly)
+    report, snapshot, E = sim.step(), sim.snapshot(), sim.objective()
+    assert pickle.loads(pickle.dumps(report, protocol)).state_hash == report.state_hash
+    assert pickle.loads(pickle.dumps(snapshot, protocol)).time == snapshot.time
+    for thing in (sim._core, E, E.hessian(sim.q), aspic.LinearSolver(), aspic.test_function("rosenbrock"),
+                  aspic.Equilibrium(jelly)._core, aspic.Trajectory(jelly, 1)._core, jelly._source()):
+        with pytest.raises(TypeError, match="cannot pickle '.*' object"):
+            pickle.dumps(thing, protocol)
+
+
+@pytest.mark.parametrize("use", [
+    lambda: aspic.LinearSolver().factorize(None), lambda: _aspic.Simulation(None), lambda: _aspic.Equilibrium(None, 1e-9),
+    lambda: _aspic.Trajectory(None, 1, 0, 1e-9), lambda: _aspic.compare(None, [], 1, 1), lambda: _aspic.capture(None, "", {}),
+    lambda: _aspic.compare(make_jelly()._source(), [("newton", None)], 1, 1), lambda: aspic.minimize(None, [1.]),
+    lambda: aspic.Simulation(make_jelly(1)).restore(None),
+])
+def test_none_is_refused(use):
+    with pytest.raises((TypeError, ValueError, AttributeError)):
+        use()
 
 
 def test_subclass_without_init_raises():
@@ -287,10 +311,12 @@ def test_program_ends_while_daemon_threads_compute(names):
         assert "after" not in result.stderr and "terminate" not in result.stderr
 
 
-def test_exit_waits_no_longer_than_its_patience():
+def test_exit_does_not_wait_for_sleeping_callbacks():
     code = ("import threading, time, aspic\n"
             "scene = aspic.Scene(); scene.add(aspic.box(1, cells=1)); sim = aspic.Simulation(scene, record=False)\n"
             "threading.Thread(target=lambda: sim.step(observe=lambda it: time.sleep(1000)), daemon=True).start()\n"
             "time.sleep(.3)")
+    begin = time.monotonic()
     result = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, timeout=60)
     assert result.returncode == 0 and result.stderr == ""
+    assert time.monotonic() - begin < 8  # 2 s on an idle machine

@@ -26,6 +26,10 @@ def inverted(cells):
     (lambda: aspic.Material(young="X +"), "ends too early"),
     (lambda: aspic.Material(young=[1, np.nan]), "finite"),
     (lambda: aspic.Material(young=1, mu=2), "excludes"),
+    (lambda: aspic.Mesh(CUBE.vertices, CUBE.tets + 1), r"tets\[42, 3\] = 27; must be"),
+    (lambda: aspic.Mesh(CUBE.vertices * np.nan, CUBE.tets), "must be finite"),
+    (lambda: aspic.Surface(CUBE.vertices, CUBE.triangles + 1), r"triangles.* = 27; must be"),
+    (lambda: aspic.Surface(CUBE.vertices, CUBE.tets), r"triangles: shape \(48, 4\)"),
     (lambda: aspic.Scene(tim={}), "did you mean 'time'"),
     (lambda: aspic.Scene(solver={"method": "newtn"}), "did you mean 'newton'"),
     (lambda: aspic.Scene(gravity=-9.81), "three numbers"),
@@ -283,6 +287,19 @@ def test_pins_hold_assigned_positions(jelly):
         np.testing.assert_allclose(sim.q[held], sim.rest[held] + shift, atol=1e-15)
         np.testing.assert_allclose(sim.q, hanging + shift, atol=1e-8)
     assert sim.time == pytest.approx(3 * sim.h)
+
+
+def test_assigned_motion_of_a_pin_is_its_motion():
+    given = make_jelly()
+    given.bodies[0].table["pin"][0]["motion"] = {"linear": {"velocity": [.05, 0, 0]}}
+    sims = [aspic.Simulation(scene, h=.01, solver={"tolerance": 1e-10}, record=False) for scene in (make_jelly(), given)]
+    for _ in range(20):
+        q = sims[0].q.copy()
+        q[sims[0].pinned, 0] += .0005
+        sims[0].q = q
+        forces = [sim.step().reactions["jelly.top"] for sim in sims]
+        np.testing.assert_allclose(*forces, atol=1e-5)
+    np.testing.assert_allclose(sims[0].q, sims[1].q, atol=1e-9)
 
 
 def test_pins_of_one_axis_hold_that_axis():
