@@ -50,6 +50,13 @@ class Boundary {
   std::span<const double> reached() const { return reached_; }
   const Evaluation& value() const { return *value_; }  // there, after a move
 
+  // The same, and the free vertices along the secant of the last two states at which they settled.
+  bool move_along_secant(double next) {
+    if (before_.empty()) return false;
+    secant_.resize(reached_.size());
+    for (size_t i = 0; i < secant_.size(); ++i) secant_[i] = reached_[i] - before_[i];
+    return move(next, (next - done_) / (done_ - done_before_), secant_);
+  }
   // Moves them to a part of the whole way, and the free vertices by alpha d. Returns false if that is blocked.
   bool move(double next, double alpha = 0, std::span<const double> d = {}) {
     trial_ = reached_;
@@ -91,6 +98,8 @@ class Boundary {
   // A few iterations where they are. Returns false if the user interrupts.
   bool settle() {
     tools_.E.move_obstacles(time_at(done_));
+    before_ = settled_.empty() ? std::vector<double>(from_.begin(), from_.end()) : settled_;
+    done_before_ = done_settled_;
     InitialIterate at(reached_);
     at.value = value_;
     const MinimizeReport spent =
@@ -98,6 +107,8 @@ class Boundary {
     add_work(spent, work_);
     value_.reset();
     here_ = spent.value;
+    settled_ = reached_;
+    done_settled_ = done_;
     return spent.status != Status::interrupted;
   }
 
@@ -115,17 +126,21 @@ class Boundary {
   double done_ = 0;
   double here_ = 0, most_ = std::numeric_limits<double>::infinity();  // E at reached_, and its largest rise
   std::optional<Evaluation> value_;                                   // of reached_, if known
-  std::vector<double> trial_, between_, g_, d_;
+  std::vector<double> trial_, between_, g_, d_, secant_;
+  std::vector<double> before_, settled_;  // the last two states at which free vertices settled
+  double done_before_ = 0, done_settled_ = 0;
 };
 
 // Both return whether all are where they belong.
 bool move_all(Boundary& boundary) {
   double part = 0.5;  // of the whole way
-  for (int i = 0; i < kMaxParts && part >= kSmallestPart; ++i) {
-    if (!boundary.move(std::min(1.0, boundary.done() + part))) {
+  for (int i = 0; i < kMaxParts && part >= kSmallestPart;) {
+    const double next = std::min(1.0, boundary.done() + part);
+    if (!boundary.move_along_secant(next) && !boundary.move(next)) {
       part /= 2;
       continue;
     }
+    ++i;
     if (boundary.done() == 1) return true;
     if (!boundary.settle()) return false;
     part *= 2;

@@ -31,6 +31,8 @@ std::vector<Face> faces_within(const TetMesh& mesh, double radius) {
   return verify::faces_where(mesh, [radius](const Vec3d& X) { return norm(X) < radius; });
 }
 
+bool is_held(const Vec3d& X) { return X[0] > 0.9 && norm(X) > 1.99; }
+
 CavityContent content(CavityContent::Kind kind, std::function<double(double)> amount) {
   return {kind, kind == CavityContent::gas ? 2e3 : 1e6, std::move(amount)};
 }
@@ -41,7 +43,7 @@ Model filled_ball(CavityContent inside, int order = 1) {
   const TetMesh mesh = ball(order);
   return ball_builder(order)
       .load(make_cavity("cavity", mesh, faces_within(mesh, 1.01), std::move(inside), at_rest(mesh).q))
-      .pin("hold", [](const Vec3d& X) { return X[0] > 1.99; })
+      .pin("hold", is_held)
       .build();
 }
 
@@ -79,7 +81,7 @@ TEST(Cavity, PressureIsThatOfALoadWithTheSameShape) {
     const TetMesh mesh = ball(order);
     Simulation loaded(ball_builder(order)
                           .pressure("pressure", faces_within(mesh, 1.01), [p](double t) { return p * t; })
-                          .pin("hold", [](const Vec3d& X) { return X[0] > 1.99; })
+                          .pin("hold", is_held)
                           .build(),
                       statics());
     take_steps(loaded, 1, "pressure");
@@ -106,7 +108,7 @@ TEST(Cavity, LinearSolversAgreeInFewIterations) {
     Simulation simulation(filled_ball(content(CavityContent::liquid, [](double) { return 1.3; })), statics(linear));
     const StepReport report = simulation.step();
     ASSERT_TRUE(is_success(report.status)) << linear;
-    EXPECT_LE(report.iterations, 12) << linear;
+    EXPECT_LE(report.iterations, 16) << linear;
     if (first.empty()) first = simulation.state().q;
     EXPECT_LT(largest_difference(simulation.state().q, first), 1e-7) << linear;
   }

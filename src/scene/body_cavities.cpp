@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "base/error.h"
+#include "base/formatted.h"
 #include "dynamics/state.h"
 #include "energy/cavity.h"
 #include "energy/pressure_rim.h"
@@ -96,7 +97,7 @@ void add_cavities(std::vector<PlacedBody>& bodies, const Vec3d& up, std::vector<
       }
       const std::string name = ++number == 1 ? "cavity" : "cavity_" + std::to_string(number);
       auto cavity = make_cavity(name, model.mesh, patch, content_of(scene, *model.elasticity[b]), start);
-      notes.push_back(name + " of body '" + body.name() + "': " + number_text(1e6 * cavity->state(start, 0).volume) +
+      notes.push_back(name + " of body '" + body.name() + "': " + three_digits(1e6 * cavity->state(start, 0).volume) +
                       " ml at the start");
       model.loads.push_back(std::move(cavity));
     }

@@ -246,9 +246,9 @@ TEST(Explanation, AdaptiveStepDoesNotSuggestShorterSteps) {
 
 TEST(Explanation, InvertingPinsNameTet) {
   Model model = beam(2);
-  model.pins.push_back({"press", vertices_where(model.mesh, [](const Vec3d& X) { return X[0] > 4 - 1e-9; }),
+  model.pins.push_back({"mirror", vertices_where(model.mesh, [](const Vec3d& X) { return X[0] > 3 - 1e-9; }),
                         [](const Vec3d& X, double t) {
-                          return X - Vec3d{{1e3 * t, 0, 0}};
+                          return X + Vec3d{{1e2 * t * (7 - 2 * X[0]), 0, 0}};
                         }});
   Simulation simulation = simulate(std::move(model));
   const StepReport report = simulation.step();

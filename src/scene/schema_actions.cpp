@@ -247,7 +247,7 @@ void add_loads(Schema& s) {
 
   Key inside = where_key();
   inside.required = false;
-  inside.reason = "the only inner surface";
+  inside.meaning = "faces of an inner surface; default: the only one";
   add_section(
       s, {"cavity", "[[body.cavity]]", "Gas or liquid in the volume that an inner surface encloses."},
       {inside,

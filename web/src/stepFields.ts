@@ -4,7 +4,7 @@ import type { MaybeNumber } from "./protocol";
 export interface StepFields {
   step: number; // 0 is the start
   time: MaybeNumber; // time at the end of the step [s]
-  status: string; // start in row 0; success: converged, round_off; otherwise budget, iteration_limit, stuck, no_descent, undefined, inaccurate, unstable
+  status: string; // start in row 0; success: converged, round_off; otherwise budget, iteration_limit, stuck, no_descent, undefined, inaccurate, inverted, unstable
   converged: boolean; // whether the status is a success
   residual: MaybeNumber; // norm of M a + dV/dx + dD/dx over free vertices [N]
   residual_threshold: MaybeNumber; // its threshold [N]
