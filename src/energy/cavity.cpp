@@ -29,8 +29,9 @@ class FilledCavity : public Cavity {
 
   double value(Positions x, const Context& context) const override {
     const double v = volume(x), r = v / start_, a = content_.amount(context.time);
+    if (!(r > 0)) return INFINITY;
     if (is_liquid()) return content_.modulus * start_ / 2 * (r - a) * (r - a);
-    return r > 0 ? content_.modulus * start_ * (r - 1 - a * std::log(r)) : INFINITY;
+    return content_.modulus * start_ * (r - 1 - a * std::log(r));
   }
   void add_gradient(Positions x, const Context& context, double scale, std::span<double> g) const override {
     swept_.add_gradient(x, scale * pressure(volume(x), content_.amount(context.time)), g);

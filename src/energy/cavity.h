@@ -2,7 +2,8 @@
 // volume at the start, a(t) a given ratio and p the pressure above that outside,
 //   gas, isothermal: p = p_0 (a v_0 / v - 1),  V = p_0 (v - v_0) - p_0 a v_0 log(v / v_0)   p_0: pressure at the start
 //   liquid:          p = K (a - v / v_0),      V = K v_0 / 2 (v / v_0 - a)^2                K: bulk modulus
-// where a is the amount of gas, or the volume of the liquid without pressure, relative to the start.
+// where a is the amount of gas, or the volume of the liquid without pressure, relative to the start. V is infinite for
+// v <= 0.
 #pragma once
 #include <functional>
 #include <memory>

@@ -63,10 +63,15 @@ double largest_young(const TetElasticity& elasticity) {
 CavityContent content_of(Value& scene, const TetElasticity& elasticity) {
   const Value* liquid = scene.find("liquid");
   const Value& amount = liquid ? *liquid : scene["gas"];
-  CavityContent content{liquid ? CavityContent::liquid : CavityContent::gas, 0,
-                        function_of_time(amount, "the content of a cavity is uniform, so its formula may use only t")};
-  if (const double a = content.amount(0); !(a >= 0))
-    throw error_at(amount.place, number_text(a) + " at time 0 is negative; 1 is the start");
+  const auto of_time = function_of_time(amount, "the content of a cavity is uniform, so its formula may use only t");
+  const auto positive = [of_time, place = amount.place](double time) {
+    const double a = of_time(time);
+    if (!(a >= 0))
+      throw error_at(place, number_text(a) + " at t = " + number_text(time) + " s is negative; 1 is the start");
+    return a;
+  };
+  positive(0);
+  CavityContent content{liquid ? CavityContent::liquid : CavityContent::gas, 0, positive};
   if (!liquid)
     content.modulus = scene["pressure"].number();
   else if (const Value* bulk = scene.find("bulk_modulus"))

@@ -89,6 +89,8 @@ TEST_F(SceneCavities, MistakesAreNamed) {
   EXPECT_THAT(refusal_of_cavity("gas = 1\nliquid = 1\n"), AllOf(HasSubstr("gas"), HasSubstr("liquid")));
   EXPECT_THAT(refusal_of_cavity("gas = \"X\"\n"), HasSubstr("may use only t"));
   EXPECT_THAT(refusal_of_cavity("gas = \"-1\"\n"), HasSubstr("negative"));
+  Scene emptied = load_scene(scene("liquid = \"1 - 2*t\"\n"), {});
+  EXPECT_THROW(emptied.simulation.step(), InvalidInput);
   EXPECT_THAT(refusal_of_cavity("liquid = 1\nbulk_modulus = 0\n"), HasSubstr("bulk_modulus"));
 }
 
