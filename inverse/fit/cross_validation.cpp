@@ -50,7 +50,6 @@ void finish(HeldOut& h) {
 
 // Distance within which J changes by about as much, and the minimum by this fraction of its standard deviation.
 constexpr double kNear = 0.02;
-constexpr double kTolerance = 0.03;  // decrement relative to the first one
 
 // All cases at their fit, from which those without a group are fitted. J of a point serves parameters near it.
 class FitOfAll : public LeastSquares {
@@ -218,7 +217,6 @@ CrossValidation cross_validate(const Experiment& experiment, const ParameterMap&
   FitOptions options = chosen.fit;
   options.weight = fitted.weight;
   options.starts = 1;
-  options.tolerance = std::max(options.tolerance, kTolerance);
   FitOfAll all(experiment, map, fitted.p, chosen);
   for (size_t g = 0; g < groups.size(); ++g) {
     if (chosen.observe) chosen.observe(static_cast<int>(g), static_cast<int>(groups.size()), groups[g]);
