@@ -324,23 +324,6 @@ TEST(FitRun, FieldFindsLayersDespiteMeshErrors) {
   EXPECT_LT(contrast_of_layers(outcome.material), 4);
 }
 
-// The errors of the mesh are computed for one value, and once more for those of the layers, which change them little.
-TEST(FitRun, CorrectionsEndBeforeTheyChangeNothing) {
-  DataSet data = block();
-  measure_on_finer_mesh(data);
-  FitPlan plan = quick_plan();
-  plan.mesh_errors = true;
-  int computed = 0;
-  FitCallbacks callbacks;
-  callbacks.begin = [&](FitStage stage, const std::string&) { computed += stage == FitStage::mesh_errors; };
-  const FitOutcome outcome = fit_material(data, plan, {}, callbacks);
-  ASSERT_TRUE(outcome.has_material()) << outcome.failure;
-  EXPECT_TRUE(outcome.mesh_errors_settle);
-  EXPECT_EQ(computed, 2);
-  EXPECT_NEAR(young(outcome).rows[0].value, kSoftLayer, 0.05 * kSoftLayer);
-  EXPECT_NEAR(young(outcome).rows[1].value, kStiffLayer, 0.05 * kStiffLayer);
-}
-
 TEST(FitRun, RefusesToRefineBeyondWhatIsSensible) {
   FitPlan plan = quick_plan();
   plan.refine = 6;

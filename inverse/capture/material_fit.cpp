@@ -16,9 +16,7 @@ namespace {
 constexpr int kPasses = 8;
 constexpr double kSettled = 0.02;       // relative change of a value; errors of the mesh change as much
 constexpr double kSettledNext = 0.002;  // that of the next pass, if changes go on to shrink by the same factor
-// Changes of corrections, and those that may remain where values no longer change, such as of a rim that matters
-// little.
-constexpr double kSettledCorrection = 0.02, kUnimportantCorrection = 0.2;
+constexpr double kSettledCorrection = 0.02;
 constexpr double kSettledField = 0.03;  // root mean square of more than kFewValues, whose noise is larger
 constexpr size_t kFewValues = 50;
 // Initial guesses to try if the first is so soft that the loads crush the body.
@@ -142,7 +140,7 @@ bool MaterialFit::fit_single_values(const std::string& name) {
     break;
   }
   if (!outcome_.failure.empty()) return false;
-  use_corrections();
+  if (!is_field()) use_corrections();  // one value explains a field worse than wrong corrections do
   return true;
 }
 
@@ -216,9 +214,8 @@ void MaterialFit::fit_until_mesh_errors_settle(std::optional<FitModel>& model) {
     if ((!has_model_errors() && !has_corrections()) || !is_success(outcome_.report.status)) return;
     const double change = change_between(before, p), corrections = correct_data(*model, p);
     const bool has_settled_next = !is_many(p) && change * change < kSettledNext * last_change;
-    const double largest = change < kSettledNext ? kUnimportantCorrection : kSettledCorrection;
     if (!before.empty() && (has_settled_next || change < (is_many(p) ? kSettledField : kSettled)) &&
-        corrections < largest)
+        corrections < kSettledCorrection)
       return;
     if (pass == kPasses) {
       outcome_.mesh_errors_settle = false;
