@@ -15,7 +15,7 @@ namespace {
 
 constexpr int kPasses = 8;
 constexpr double kSettled = 0.02;       // relative change of a value; errors of the mesh change as much
-constexpr double kSettledNext = 0.002;  // that of the next pass, if changes go on to shrink by the same factor
+constexpr double kSettledNext = 0.002;  // that of the next pass, if changes shrink by the same factor again
 constexpr double kSettledCorrection = 0.02;
 constexpr double kSettledField = 0.03;  // root mean square of more than kFewValues, whose noise is larger
 constexpr size_t kFewValues = 50;
