@@ -14,7 +14,8 @@ namespace aspic {
 namespace {
 
 constexpr int kPasses = 8;
-constexpr double kSettled = 0.02;  // relative change of a value; errors of the mesh change as much
+constexpr double kSettled = 0.02;       // relative change of a value; errors of the mesh change as much
+constexpr double kSettledNext = 0.002;  // that of the next pass, if changes shrink by the same factor again
 constexpr double kSettledCorrection = 0.02;
 constexpr double kSettledField = 0.03;  // root mean square of more than kFewValues, whose noise is larger
 constexpr size_t kFewValues = 50;
@@ -42,6 +43,14 @@ double change_between(const std::vector<double>& before, const std::vector<doubl
     largest = std::max(largest, change), squares += change * change;
   }
   return is_many(after) ? std::sqrt(squares / static_cast<double>(after.size())) : largest;
+}
+
+double change_of_stiffness(const std::vector<MaterialParameters>& before,
+                           const std::vector<MaterialParameters>& after) {
+  double largest = 0;
+  for (size_t t = 0; t < after.size(); ++t)
+    largest = std::max(largest, std::abs(std::log(after[t].lame.mu / before[t].lame.mu)));
+  return largest;
 }
 
 bool has_failed(const FitReport& report) { return report.p.empty() || report.status == Status::undefined; }
@@ -131,7 +140,7 @@ bool MaterialFit::fit_single_values(const std::string& name) {
     break;
   }
   if (!outcome_.failure.empty()) return false;
-  use_corrections();
+  if (!is_field()) use_corrections();  // one value explains a field worse than wrong corrections do
   return true;
 }
 
@@ -195,6 +204,7 @@ void MaterialFit::fit_until_mesh_errors_settle(std::optional<FitModel>& model) {
   const std::string stage = is_one_value ? "one_value" : "fit";
   outcome_.mesh_errors_settle = true;
   std::vector<double> start, before = std::exchange(p_of_errors_, {});
+  double last_change = 0;
   FitOptions options = plan_.fit;
   for (int pass = 0;; ++pass) {
     const std::string name = pass == 0 ? stage : stage + "_corrected" + std::to_string(pass);
@@ -203,7 +213,10 @@ void MaterialFit::fit_until_mesh_errors_settle(std::optional<FitModel>& model) {
     const std::vector<double>& p = outcome_.report.p;
     if ((!has_model_errors() && !has_corrections()) || !is_success(outcome_.report.status)) return;
     const double change = change_between(before, p), corrections = correct_data(*model, p);
-    if (!before.empty() && change < (is_many(p) ? kSettledField : kSettled) && corrections < kSettledCorrection) return;
+    const bool has_settled_next = !is_many(p) && change * change < kSettledNext * last_change;
+    if (!before.empty() && (has_settled_next || change < (is_many(p) ? kSettledField : kSettled)) &&
+        corrections < kSettledCorrection)
+      return;
     if (pass == kPasses) {
       outcome_.mesh_errors_settle = false;
       return add_warnings({"corrections of the data and material do not converge: after " + std::to_string(kPasses) +
@@ -211,8 +224,9 @@ void MaterialFit::fit_until_mesh_errors_settle(std::optional<FitModel>& model) {
                            " (of log E); refine the mesh (option refine)"});
     }
     options.weight = outcome_.report.weight;
+    const std::vector<MaterialParameters> last_material = std::exchange(material_, model->map.parameters(p));
+    last_change = before.empty() ? change_of_stiffness(last_material, material_) : change;
     start = before = p;
-    material_ = model->map.parameters(p);
     model.reset();
     use_corrections();
     learn_model_errors();  // otherwise the last errors remain

@@ -135,7 +135,7 @@ class MaterialFit {
   FibreSearch fibres_;
   FitJobs all_jobs_;  // without storage
   FitJobs& jobs_;
-  std::vector<double> corrected_errors_;
+  std::vector<double> corrected_errors_, correction_steps_;
   std::vector<CaseWeights> corrected_weights_;
   std::vector<MaterialParameters> material_;  // last fitted parameters
   std::vector<double> p_of_errors_;           // parameters of the first errors, if they are those of the fit

@@ -51,8 +51,14 @@ double MaterialFit::correct_data(FitModel& model, std::span<const double> p) {
     if (errors[k].kind == ErrorKind::layer || errors[k].kind == ErrorKind::rim)
       values[k] = std::clamp(values[k], errors[k].value - kLargestStep, errors[k].value + kLargestStep);
   double largest = 0;
-  for (size_t k = 0; k < values.size(); ++k)
-    largest = std::max(largest, std::abs(values[k] - errors[k].value) / errors[k].sigma);
+  correction_steps_.resize(values.size(), 0.0);
+  for (size_t k = 0; k < values.size(); ++k) {
+    double step = values[k] - errors[k].value;
+    largest = std::max(largest, std::abs(step) / errors[k].sigma);
+    if (step * correction_steps_[k] < 0) step /= 2;  // alternates
+    correction_steps_[k] = step;
+    values[k] = errors[k].value + step;
+  }
   std::vector<CaseWeights> weights;
   if (plan_.robust) {
     model.with_layers->errors().apply_transposed(r);

@@ -242,8 +242,11 @@ void MaterialFit::find_next_indentation(FitModel& model) {
       std::any_of(cases.begin(), cases.end(), [](const LoadCase& c) { return c.indenter.has_value(); });
   if (!outcome_.posterior || !outcome_.posterior->ok || !has_indenter || is_stopped()) return;
   begin(FitStage::next_indentation, "most informative next poke");
-  NextIndentation next = next_indentation(simulated_.fitted(), {model.map, mesh(), outcome_.report.p},
-                                          *outcome_.posterior, {.equilibrium = plan_.equilibrium});
+  // The simulated mesh is fine only below the indenters of the data.
+  Experiment experiment = data_.experiment;
+  experiment.cases = cases;
+  NextIndentation next = next_indentation(experiment, {model.map, mesh(), outcome_.report.p}, *outcome_.posterior,
+                                          {.equilibrium = rough(plan_.equilibrium)});
   add_warnings(next.warnings);
   if (!next.candidates.empty() && next.candidates.front().ok) outcome_.next_indentation = next.candidates.front();
 }

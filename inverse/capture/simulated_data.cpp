@@ -17,13 +17,12 @@ bool is_refined_locally(const Experiment& data, const FitPlan& plan) {
   return plan.mesh_errors && data.mesh.tet_count() <= SimulatedData::kTooFine / kMostGrowth;
 }
 
-// Errors have 2 to 3 digits.
+}  // namespace
+
 EquilibriumOptions rough(EquilibriumOptions options) {
   options.tolerance = std::max(options.tolerance, 1e-7);
   return options;
 }
-
-}  // namespace
 
 SimulatedData::SimulatedData(const Experiment& data, const FitPlan& plan)
     : left_out_(plan.left_out),

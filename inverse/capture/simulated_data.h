@@ -13,6 +13,9 @@
 
 namespace aspic {
 
+// Options for errors and gains, of which two digits are enough.
+EquilibriumOptions rough(EquilibriumOptions options);
+
 class SimulatedData {
  public:
   static constexpr int kTooFine = 60'000;  // limit of tets for a mesh with eight times as many

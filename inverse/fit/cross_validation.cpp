@@ -50,9 +50,8 @@ void finish(HeldOut& h) {
 
 // Distance within which J changes by about as much, and the minimum by this fraction of its standard deviation.
 constexpr double kNear = 0.02;
-constexpr double kTolerance = 0.03;  // decrement relative to the first one
 
-// All cases at their fit, from which those without a group are fitted. J of the fit serves parameters near it.
+// All cases at their fit, from which those without a group are fitted. J of a point serves parameters near it.
 class FitOfAll : public LeastSquares {
  public:
   FitOfAll(const Experiment& experiment, const ParameterMap& map, std::span<const double> p,
@@ -64,7 +63,10 @@ class FitOfAll : public LeastSquares {
     if (!misfit_ || has_moved_) make_misfit();
     if (!x_.empty()) misfit_->set_state(x_);
     misfit_->use_cases([&](const LoadCase& c) { return c.group != group; });
+    is_exact_ = false;
   }
+  // Linearizes at every point from now on, until a group is left out.
+  void be_exact() { is_exact_ = true; }
   // Equilibria of the cases of a group; empty: unknown.
   std::vector<double> equilibria(const std::string& group) const {
     if (x_.empty()) return {};
@@ -79,10 +81,12 @@ class FitOfAll : public LeastSquares {
     return true;
   }
   bool linearize() override {
-    if (has_jacobian_ && is_near_fit()) return true;
+    if (!is_exact_ && !linear_p_.empty() && is_near(linear_p_)) return true;
     has_moved_ = true;
-    has_jacobian_ = false;
-    return misfit_->linearize();
+    linear_p_.clear();
+    if (!misfit_->linearize()) return false;
+    if (!experiment_.scan_gravity) linear_p_ = evaluated_;  // evaluations of scans discard J
+    return true;
   }
   void multiply(std::span<const double> dp, std::span<double> dr) override { misfit_->multiply(dp, dr); }
   void multiply_transposed(std::span<const double> w, std::span<double> pbar) override {
@@ -96,18 +100,20 @@ class FitOfAll : public LeastSquares {
  private:
   void make_misfit() {
     misfit_.emplace(condensed_, map_, chosen_.equilibrium);
-    has_moved_ = has_jacobian_ = false;
+    has_moved_ = false;
+    linear_p_.clear();
     if (!has_equilibria_) return;
     if (!chosen_.start.empty()) misfit_->set_state(chosen_.start);
     std::vector<double> r(static_cast<size_t>(residual_count()));
-    has_equilibria_ = misfit_->evaluate(p_, r);
+    has_equilibria_ = evaluate(p_, r);
     if (!has_equilibria_) return make_misfit();
     x_ = misfit_->state();
-    has_jacobian_ = !experiment_.scan_gravity && misfit_->linearize();  // evaluations of scans discard J
+    linearize();
+    has_moved_ = false;
   }
-  bool is_near_fit() const {
+  bool is_near(std::span<const double> p) const {
     double distance = 0;
-    for (size_t i = 0; i < p_.size(); ++i) distance = std::max(distance, std::abs(evaluated_[i] - p_[i]));
+    for (size_t i = 0; i < p.size(); ++i) distance = std::max(distance, std::abs(evaluated_[i] - p[i]));
     return distance <= kNear;
   }
 
@@ -117,9 +123,9 @@ class FitOfAll : public LeastSquares {
   std::span<const double> p_;
   const CrossValidationOptions& chosen_;
   std::optional<Misfit> misfit_;
-  bool has_equilibria_ = true;  // at the fit
-  bool has_jacobian_ = false, has_moved_ = false;
-  std::vector<double> x_, evaluated_;
+  bool has_equilibria_ = true;                 // at the fit
+  bool is_exact_ = false, has_moved_ = false;  // has_moved_: J is not that of the fit
+  std::vector<double> x_, evaluated_, linear_p_;
 };
 
 void predict(const Experiment& left_out, const ParameterMap& map, const EquilibriumOptions& options,
@@ -153,7 +159,11 @@ HeldOut hold_out(const Experiment& experiment, const HoldOut& what) {
   const Experiment left_out = subset(whole, [&](const LoadCase& c) { return c.group == h.group; });
   what.all.leave_out(h.group);
   WithUncertainLayers data(what.all);
-  const FitReport report = fit(data, what.regularizer, what.guess, what.options);
+  FitReport report = fit(data, what.regularizer, what.guess, what.options);
+  if (report.status == Status::stuck || report.status == Status::no_descent) {
+    what.all.be_exact();
+    report = fit(data, what.regularizer, what.guess, what.options);
+  }
   h.p = report.p;
   if (is_success(report.status) || report.status == Status::iteration_limit)
     predict(left_out, what.map, what.chosen.equilibrium, what.all.equilibria(h.group), h);
@@ -207,7 +217,6 @@ CrossValidation cross_validate(const Experiment& experiment, const ParameterMap&
   FitOptions options = chosen.fit;
   options.weight = fitted.weight;
   options.starts = 1;
-  options.tolerance = std::max(options.tolerance, kTolerance);
   FitOfAll all(experiment, map, fitted.p, chosen);
   for (size_t g = 0; g < groups.size(); ++g) {
     if (chosen.observe) chosen.observe(static_cast<int>(g), static_cast<int>(groups.size()), groups[g]);

@@ -144,7 +144,7 @@ TEST(CrossValidation, FitsOtherGroupsLikeSeparateFits) {
     const Experiment seen = subset(all, [&](const LoadCase& c) { return c.group != h.group; });
     Misfit misfit(seen, map);
     WithUncertainLayers data(misfit);
-    const FitReport separate = fit(data, *prior, map.guess(), {.weight = 1});
+    const FitReport separate = fit(data, *prior, h.p, {.weight = 1});  // common errors there
     std::vector<double> unit(1, 1.0), column(static_cast<size_t>(data.residual_count()));
     ASSERT_TRUE(h.ok && data.linearize()) << h.failure;
     data.multiply(unit, column);

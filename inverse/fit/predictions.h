@@ -21,7 +21,8 @@ Predictions predicted(const Experiment& experiment, const std::string& material,
 
 // Predictions for errors of meshes and laws. Those of the next material start from them.
 struct ErrorPredictions {
-  Predictions on_mesh, on_fine_mesh, other_law, stiffening_law;
+  Predictions on_mesh, other_law, stiffening_law;
+  Predictions on_fine_mesh, below_fine;  // below_fine: on the mesh, for the same material
 };
 
 }  // namespace aspic

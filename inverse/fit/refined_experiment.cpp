@@ -162,10 +162,18 @@ Vec3d interpolated_motion(const TetMesh& mesh, int tet, const std::array<double,
   return u;
 }
 
-Predictions prolonged(const TetMesh& mesh, const TetMesh& fine, Predictions predictions) {
-  for (CasePrediction& c : predictions.cases)
-    if (!c.x.empty()) c.x = prolonged(mesh, fine, c.x);
-  return predictions;
+// Positions on the fine mesh, from those on the mesh and both for the last material.
+Predictions start_on_fine(const TetMesh& mesh, const TetMesh& fine, const ErrorPredictions& last) {
+  Predictions start = last.on_mesh;
+  for (size_t c = 0; c < start.cases.size(); ++c) {
+    std::vector<double>& x = start.cases[c].x;
+    if (x.empty()) continue;
+    x = prolonged(mesh, fine, x);
+    if (last.on_fine_mesh.cases.empty() || last.on_fine_mesh.cases[c].x.empty()) continue;
+    const std::vector<double> before = prolonged(mesh, fine, last.below_fine.cases[c].x);
+    for (size_t i = 0; i < x.size(); ++i) x[i] += last.on_fine_mesh.cases[c].x[i] - before[i];
+  }
+  return start;
 }
 
 // On fine meshes, from that on the mesh and on the refined one; extrapolates the logarithm of its size.
@@ -230,10 +238,11 @@ MeshErrors mesh_errors(const Experiment& experiment, const std::string& material
     return predicted(e, material, of_tets(e, parameters), options, start);
   };
   ErrorPredictions first;
-  Predictions& on_mesh = (last ? *last : first).on_mesh;
-  Predictions& on_fine = (last ? *last : first).on_fine_mesh;
+  ErrorPredictions& all = last ? *last : first;
+  Predictions &on_mesh = all.on_mesh, &on_fine = all.on_fine_mesh;
   on_mesh = on(experiment, on_mesh);
-  on_fine = on(fine, on_fine.cases.empty() ? prolonged(experiment.mesh, fine.mesh, on_mesh) : on_fine);
+  on_fine = on(fine, start_on_fine(experiment.mesh, fine.mesh, all));
+  all.below_fine = on_mesh;
   MeshErrors errors{{}, on_mesh.failure.empty() ? on_fine.failure : on_mesh.failure};
   if (!errors.failure.empty()) return errors;
   const double factor = richardson(experiment.mesh);
