@@ -12,13 +12,13 @@
 #include <system_error>
 #include <vector>
 
-#include "aspic/assignments.h"
 #include "aspic/interrupt.h"
 #include "aspic/streams.h"
 #include "base/error.h"
 #include "base/printable.h"
 #include "io/external_program.h"
 #include "io/text_scanner.h"
+#include "scene/overrides.h"
 
 namespace aspic::cli {
 namespace {

@@ -5,11 +5,11 @@
 #include <utility>
 #include <vector>
 
-#include "aspic/assignments.h"
 #include "base/parallel.h"
 #include "distributed/guarded.h"
 #include "distributed/mpi_ranks.h"
 #include "mpi/run.h"
+#include "scene/overrides.h"
 
 namespace {
 
@@ -35,7 +35,7 @@ Exit codes: 0 done, 1 internal error, 2 bad input, 3 some step did not converge 
   command->add_flag("--allow-unconverged", arguments.allow_unconverged, "Exit with 0 even if a step did not converge");
   command->add_flag("-q,--quiet", arguments.quiet, "Print only warnings and errors");
   try {
-    std::vector<std::string> spread = aspic::cli::spread_assignments({argv + 1, argv + argc});
+    std::vector<std::string> spread = aspic::spread_assignments({argv + 1, argv + argc});
     std::reverse(spread.begin(), spread.end());  // the order that CLI11 expects
     app.parse(std::move(spread));
   } catch (const CLI::ParseError& e) {

@@ -25,6 +25,12 @@ namespace {
 
 constexpr double kShapeStep = 1e-3;  // of a fitted value, for the change of the unloaded shape
 
+// Whether the derivatives of the body are those at its accepted positions.
+bool has_linearized_accepted(const LoadedBody& body) {
+  const std::span<const double> at = body.linearized_x(), x = body.accepted();
+  return std::equal(at.begin(), at.end(), x.begin(), x.end());
+}
+
 }  // namespace
 
 struct Misfit::Impl {
@@ -228,9 +234,8 @@ struct Misfit::Impl {
   bool linearize() {
     ASPIC_CHECK(has_solved);
     const bool is_same = is_linearized && linear_p == accepted_p;
-    if (is_same && std::all_of(cases.begin(), cases.end(), [](const Case& c) {
-          return !c.is_used || std::ranges::equal(c.body->linearized_x(), c.body->accepted());
-        }))
+    if (is_same && std::all_of(cases.begin(), cases.end(),
+                               [](const Case& c) { return !c.is_used || has_linearized_accepted(*c.body); }))
       return true;
     is_linearized = false;
     for_each_case([&](Case& c) { c.ok = c.body->linearize(accepted_parameters); });
@@ -358,7 +363,7 @@ void Misfit::set_state(std::span<const double> x) {
   for (size_t c = 0; c < impl_->cases.size(); ++c) {
     LoadedBody& body = *impl_->cases[c].body;
     body.restore(x.subspan(c * size, size));
-    impl_->is_linearized = impl_->is_linearized && std::ranges::equal(body.linearized_x(), body.accepted());
+    impl_->is_linearized = impl_->is_linearized && has_linearized_accepted(body);
   }
   impl_->has_solved = true;
 }

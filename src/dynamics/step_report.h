@@ -66,10 +66,10 @@ struct StepReport : Work {  // work of all solves of the step and of this report
   // Statics: estimate of the relative excess of contact forces, if pins and obstacles press bodies together: work of
   // the contact forces along their gaps over twice the elastic energy [1].
   double contact_force_error = 0;
-  double friction_loss = 0;      // share of friction in damping_loss [J]
-  double friction_creep = 0;     // largest slip of sticking contacts in the step [m]
-  double friction_residual = 0;  // change of the friction forces by the last update of the normal forces [N]
-  std::string friction_pair;     // parts where it is largest
+  double friction_loss = 0;           // share of friction in damping_loss [J]
+  double friction_creep = 0;          // largest slip of sticking contacts in the step [m]
+  double friction_residual = 0;       // change of the friction forces by the last update of the normal forces [N]
+  std::string friction_pair;          // parts where it is largest
   std::vector<CavityState> cavities;  // of each Cavity among Model::loads, at the end
   double step_limit = std::numeric_limits<double>::infinity();  // bound of the last step length by contact
   // Evaluations of lagged coefficients: normal forces of friction, rims of pressures. 1 without them, 0 without
