@@ -19,9 +19,8 @@ constexpr int kMaxParts = 200;
 constexpr double kSmallestApproach = 1e-8;
 constexpr int kPatience = 6;  // moves by less than kSmallestPart in a row
 // Largest rise of E when all pins move at once, and when they move in fractions, relative to the energy of doubling the
-// body; or, in fractions, relative to E. Newton's method reduces the exponent of an exponential law by about 1 per
-// iteration.
-constexpr double kMostRise = 1e3, kMostRiseOfPart = 1, kMostGrowthOfPart = 20;
+// body. Newton's method reduces the exponent of an exponential law by about 1 per iteration.
+constexpr double kMostRise = 1e3, kMostRiseOfPart = 1;
 
 MinimizeOptions rough(const MinimizeOptions& options) {
   MinimizeOptions few = options;
@@ -50,13 +49,6 @@ class Boundary {
   std::span<const double> reached() const { return reached_; }
   const Evaluation& value() const { return *value_; }  // there, after a move
 
-  // The same, and the free vertices along the secant of the last two states at which they settled.
-  bool move_along_secant(double next) {
-    if (before_.empty()) return false;
-    secant_.resize(reached_.size());
-    for (size_t i = 0; i < secant_.size(); ++i) secant_[i] = reached_[i] - before_[i];
-    return move(next, (next - done_) / (done_ - done_before_), secant_);
-  }
   // Moves them to a part of the whole way, and the free vertices by alpha d. Returns false if that is blocked.
   bool move(double next, double alpha = 0, std::span<const double> d = {}) {
     trial_ = reached_;
@@ -68,14 +60,21 @@ class Boundary {
     tools_.E.move_obstacles(time_at(next));
     const Evaluation there = tools_.E.evaluate(trial_);
     ++work_.values;
-    const double most = std::max(most_, kMostGrowthOfPart * std::abs(here_));
-    const bool is_low = std::isfinite(there.value) && there.value - here_ <= most;
+    const bool is_low = std::isfinite(there.value) && there.value - here_ <= most_;
     if (!is_low || !is_free(tools_, {reached_, trial_, time_at(done_), time_at(next)})) return false;
     done_ = next;
     value_ = there;
     here_ = there.value;
     reached_.swap(trial_);
     return true;
+  }
+
+  // The same, and the free vertices along the secant of the last two states at which they settled.
+  bool move_along_secant(double next) {
+    if (before_.empty()) return false;
+    secant_.resize(reached_.size());
+    for (size_t i = 0; i < secant_.size(); ++i) secant_[i] = reached_[i] - before_[i];
+    return move(next, (next - done_) / (done_ - done_before_), secant_);
   }
 
   // Moves obstacles and free vertices along a Newton direction that includes the motion of the obstacles, as far as
@@ -134,13 +133,14 @@ class Boundary {
 // Both return whether all are where they belong.
 bool move_all(Boundary& boundary) {
   double part = 0.5;  // of the whole way
-  for (int i = 0; i < kMaxParts && part >= kSmallestPart;) {
+  int moves = 0;
+  while (moves < kMaxParts && part >= kSmallestPart) {
     const double next = std::min(1.0, boundary.done() + part);
     if (!boundary.move_along_secant(next) && !boundary.move(next)) {
       part /= 2;
       continue;
     }
-    ++i;
+    ++moves;
     if (boundary.done() == 1) return true;
     if (!boundary.settle()) return false;
     part *= 2;

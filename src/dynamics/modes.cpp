@@ -100,7 +100,7 @@ Modes vibration_modes(const Model& model, std::span<const double> x, int count, 
 
   RankOneUpdates updates;
   SolveReport work;
-  updates.prepare(cholesky, E.dense_rows(), 1e-12, work);
+  if (!updates.prepare(cholesky, E.dense_rows(), 1e-12, work)) return {.status = ModesStatus::unconverged, .modes = {}};
   pencil.project = [&](std::span<double> u) { pins.set_zero(u); };
   pencil.multiply_mass = [&](std::span<const double> u, std::span<double> Mu) { model.mass->multiply(u, Mu); };
   pencil.solve = [&](std::span<const double> b, std::span<double> u) {

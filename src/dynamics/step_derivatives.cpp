@@ -1,5 +1,4 @@
 #include "dynamics/step_derivatives.h"
-#include "energy/dense_energy.h"
 
 #include <algorithm>
 #include <cmath>
@@ -7,6 +6,7 @@
 
 #include "contact/barrier.h"
 #include "dynamics/incremental_potential.h"
+#include "energy/dense_energy.h"
 #include "math/vectors.h"
 #include "mesh/box.h"
 #include "mesh/tet_nodes.h"
