@@ -20,3 +20,9 @@ install(FILES ${CMAKE_BINARY_DIR}/aspic-config.cmake ${CMAKE_BINARY_DIR}/aspic-c
 install(DIRECTORY scenes DESTINATION ${CMAKE_INSTALL_DATADIR}/aspic)
 install(DIRECTORY assets DESTINATION ${CMAKE_INSTALL_DATADIR}/aspic OPTIONAL FILES_MATCHING PATTERN "bunny.*")
 install(FILES LICENSE DESTINATION ${CMAKE_INSTALL_DOCDIR})
+
+# The packages of this repository (distributed, inverse) find the core in its build folder: -Daspic_DIR=.../package.
+set(package ${CMAKE_BINARY_DIR}/package)
+export(TARGETS aspic aspic_build NAMESPACE aspic:: FILE ${package}/aspic-targets.cmake)
+configure_file(cmake/aspic-build-config.cmake.in ${package}/aspic-config.cmake @ONLY)
+file(COPY_FILE ${CMAKE_BINARY_DIR}/aspic-config-version.cmake ${package}/aspic-config-version.cmake)

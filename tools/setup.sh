@@ -133,6 +133,18 @@ build() {
   fi
 }
 
+# build_package FOLDER TARGETS...: a package that stands on the core; `build_dir` becomes its build folder.
+build_package() {
+  core=$build_dir
+  build_dir=$root/build/$1
+  package=$1
+  shift
+  [ -f "$build_dir/build.ninja" ] ||
+    logged "configure-$package" cmake -S "$root/$package" -B "$build_dir" -G Ninja -DCMAKE_BUILD_TYPE=Release \
+      -Daspic_DIR="$core/package" || die "the package $package could not be configured"
+  build "$@"
+}
+
 # preset NAME: the build folder of a preset, configured anew where that was with other settings.
 preset() {
   build_dir=$root/build/$1
