@@ -23,6 +23,10 @@ install(FILES LICENSE DESTINATION ${CMAKE_INSTALL_DOCDIR})
 
 # The packages of this repository (distributed, inverse) find the core in its build folder: -Daspic_DIR=.../package.
 set(package ${CMAKE_BINARY_DIR}/package)
-export(TARGETS aspic aspic_build NAMESPACE aspic:: FILE ${package}/aspic-targets.cmake)
+set(exported aspic aspic_build aspic_run_commands)
+if(ASPIC_VIEWER)
+  list(APPEND exported aspic_recordings aspic_viewer)
+endif()
+export(TARGETS ${exported} NAMESPACE aspic:: FILE ${package}/aspic-targets.cmake)
 configure_file(cmake/aspic-build-config.cmake.in ${package}/aspic-config.cmake @ONLY)
 file(COPY_FILE ${CMAKE_BINARY_DIR}/aspic-config-version.cmake ${package}/aspic-config-version.cmake)

@@ -1,14 +1,4 @@
 # Tests of the program's command line, written in standard Python.
-find_package(Python3 COMPONENTS Interpreter)
-
-# Adds one test PREFIX.CLASS for each test class of a file.
-function(add_python_tests prefix file)
-  foreach(case ${ARGN})
-    add_test(NAME ${prefix}.${case} COMMAND ${Python3_EXECUTABLE} ${CMAKE_CURRENT_SOURCE_DIR}/${file} ${case})
-    set_tests_properties(${prefix}.${case} PROPERTIES ENVIRONMENT ASPIC=$<TARGET_FILE:aspic_cli>)
-  endforeach()
-endfunction()
-
 if(TARGET aspic_cli AND Python3_FOUND)
   add_python_tests(cli cli_test.py Help Completion Materials Derivatives Check Convert Mesh)
   add_python_tests(cli minimize_test.py Minimize Compare Verify Lecture)
@@ -17,10 +7,6 @@ if(TARGET aspic_cli AND Python3_FOUND)
     add_python_tests(cli run_test.py Report Render)
   endif()
   add_python_tests(cli explain_test.py Explain)
-  add_python_tests(cli fit_test.py Fit FitInterruption FitWithFriction FitJobs)
-  add_python_tests(cli fit_report_test.py FitReport)
-  add_python_tests(cli fit_page_test.py FitPage)
-  add_python_tests(measured capture_test.py Capture Fit BadData MaterialFile Curves)
   add_python_tests(hostile hostile_test.py Names Rights Limits Numbers Random)
   add_python_tests(contact contact_test.py Exact Scenes Pairs Round Recorded Inflate Shapes Extremes)
   add_python_tests(contact contact_results_test.py Certificate Frames Continued Units Commands Failures)

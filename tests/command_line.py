@@ -10,6 +10,7 @@ import unittest
 
 ASPIC = os.environ["ASPIC"]
 MESHER = pathlib.Path(ASPIC).with_name("aspic-mesh")
+HAS_FIT = pathlib.Path(ASPIC).with_name("aspic-fit").exists()  # the package of inverse problems
 CUBE_OBJ = """v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 0 0 1\nv 1 0 1\nv 1 1 1\nv 0 1 1
 f 1 3 2\nf 1 4 3\nf 5 6 7\nf 5 7 8\nf 1 2 6\nf 1 6 5\nf 2 3 7\nf 2 7 6\nf 3 4 8\nf 3 8 7\nf 4 1 5\nf 4 5 8\n"""
 BEAM = """[time]

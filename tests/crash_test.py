@@ -20,8 +20,7 @@ import unittest
 import xml.etree.ElementTree
 import zlib
 
-from command_line import ASPIC, BENCH, CUBE, CommandLine
-from fit_test import QUICK, FitCommand
+from command_line import ASPIC, CommandLine
 
 RUN_KILLS, OTHER_KILLS = 200, 24
 NOBODY = 65534
@@ -164,24 +163,6 @@ class Killed(Crash):
             self.kill_at(chance.uniform(0, seconds), "report", "run")
             self.assertEqual(page.read_bytes(), whole)
 
-    def test_killed_capture_leaves_whole_files(self):
-        self.write("cube.toml", CUBE)
-        command = ("capture", "cube.toml", *BENCH)
-        seconds, chance = self.duration_of(*command, "-o", "whole"), random.Random(3)
-        self.aspic(*command, "-o", "other", "--seed", "2")
-        shutil.copytree(self.folder / "other", self.folder / "data")
-        for kill in range(OTHER_KILLS):
-            # The cases take most of the time; the files are written at the end.
-            self.kill_at(chance.uniform(0.5, 1.1) * seconds, *command, "-o", "data", "--force")
-            if (self.folder / "data/capture.toml").exists():
-                files = {p.name for p in (self.folder / "data").iterdir() if p.is_file()}
-                same = [name for name in ("whole", "other")
-                        if all(filecmp.cmp(self.folder / name / f, self.folder / "data" / f, shallow=False)
-                               for f in files if not f.startswith(".aspic"))]
-                self.assertTrue(same, f"kill {kill}: files of two data sets")
-        self.aspic(*command, "-o", "data", "--force")
-        self.assert_same_folder("whole", "data")
-
 
 @unittest.skipUnless(shutil.which("chromium"), "chromium is missing")
 class KilledRender(Crash):
@@ -195,29 +176,6 @@ class KilledRender(Crash):
             self.kill_at(chance.uniform(0.3, 1) * seconds, *command)
             for picture in (self.folder / "frames").glob("frame_*.png"):
                 self.assertEqual(picture.read_bytes(), whole[picture.name])
-
-
-class KilledFit(FitCommand, Crash):
-    def test_killed_fit_resumes_to_equal_bits(self):
-        options = ("fit", "layers", *QUICK, "-q")
-        seconds, chance = self.duration_of(*options, "-o", "whole.vtu"), random.Random(5)
-        kills, completed = 0, 0
-        part = self.folder / "part.fit"
-        while kills < OTHER_KILLS or not completed:
-            # Every second completed fit is replaced by a new one.
-            is_unfinished = (part / "options.toml").exists() and any(part.glob("*.journal"))
-            how = "--resume" if is_unfinished else "--force"
-            limit = chance.uniform(0, seconds) if kills < OTHER_KILLS else 300
-            if not self.kill_at(limit, *options, "-o", "part.vtu", how):
-                self.assertEqual(self.bytes_of("part.vtu"), self.bytes_of("whole.vtu"))
-                completed += 1
-                if completed % 2:
-                    shutil.rmtree(part)
-                    (self.folder / "part.vtu").unlink()
-                continue
-            kills += 1
-            for table in part.glob("*.csv"):
-                self.assert_whole_table(table)
 
 
 class NoRoom(Crash):
@@ -248,11 +206,8 @@ class NoRoom(Crash):
 
     def test_earlier_results_survive_a_full_disk(self):
         self.aspic("run", self.scene(), "--out", "run")
-        self.write("cube.toml", CUBE)
-        self.aspic("capture", "cube.toml", "-o", "data", *BENCH)
         before = {p: p.read_bytes() for p in self.folder.rglob("*") if p.is_file()}
         self.assert_refused(self.limited(2000, "report", "run"), "report.html")
-        self.assert_refused(self.limited(500, "capture", "cube.toml", "-o", "data", *BENCH, "--seed", "2", "--force"), "data")
         self.assertEqual({p: p.read_bytes() for p in self.folder.rglob("*") if p.is_file()}, before)
 
     @unittest.skipUnless(os.path.exists("/dev/full"), "needs a device that is always full")
@@ -278,15 +233,13 @@ class ReadOnly(Crash):
     def test_read_only_folder_is_named_and_unchanged(self):
         scene = self.scene(duration=0.05)
         self.aspic("run", scene, "--out", "run")
-        self.write("cube.toml", CUBE)
         shutil.copy(ASPIC, self.folder / "aspic")  # a folder that every user can execute from, unlike root's home
         before = {p: p.read_bytes() for p in self.folder.rglob("*") if p.is_file()}
         for folder in (self.folder, self.folder / "run"):
             os.chmod(folder, 0o555)
             self.addCleanup(os.chmod, folder, 0o755)
         for arguments, name in ((("run", scene, "--out", "new"), "new"), (("run", scene, "--out", "run", "--force"), "run/"),
-                                (("run", "run", "--resume"), "run/"), (("report", "run"), "report.html"),
-                                (("capture", "cube.toml", "-o", "data", *BENCH), "data")):
+                                (("run", "run", "--resume"), "run/"), (("report", "run"), "report.html")):
             done = self.without_rights(*arguments)
             self.assertEqual(done.returncode, 2, f"{arguments}: {done.stdout}{done.stderr}")
             self.assertIn(name, done.stderr)

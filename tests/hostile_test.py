@@ -14,6 +14,7 @@ import tempfile
 import unittest
 
 ASPIC = os.environ["ASPIC"]
+FITS = [["fit"], ["capture"], ["fit-curves"]] if pathlib.Path(ASPIC).with_name("aspic-fit").exists() else []
 NOBODY = 65534
 CUBE = """[time]
 step = 0.01
@@ -83,7 +84,7 @@ class Hostile(unittest.TestCase):
 
 class Names(Hostile):
     def test_too_long_looping_and_missing_names_are_refused(self):
-        for command in (["run"], ["check"], ["view", "--no-browser"], ["report"], ["fit"], ["capture"], ["fit-curves"],
+        for command in (["run"], ["check"], ["view", "--no-browser"], ["report"], *FITS,
                         ["compare", "--methods", "newton"], ["render", "-o", "a.png", "--step", "1"]):
             for name in (LONG, "loop", "loop/x", LONG + "/x", "tet.mesh/x"):
                 message = self.aspic(*command, name, code=2)
@@ -97,7 +98,7 @@ class Names(Hostile):
 
 class Rights(Hostile):
     def test_a_folder_without_rights_is_named(self):
-        for command in (["run"], ["check"], ["view", "--no-browser"], ["report"], ["fit"], ["capture"], ["fit-curves"]):
+        for command in (["run"], ["check"], ["view", "--no-browser"], ["report"], *FITS):
             for name in ("closed", "closed/x", "closed/x.toml"):
                 self.assertIn("closed", self.aspic(*command, name, code=2, user=NOBODY))
         for out in ("closed", "closed/out", "out"):

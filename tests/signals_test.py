@@ -8,7 +8,6 @@ import signal
 import time
 import unittest
 
-from command_line import CUBE
 from crash_test import checkpoint, state_hash, Crash
 
 
@@ -45,16 +44,6 @@ class Signals(Crash):
             self.assertEqual(got, code, said)
             self.assertIn("interrupted after", said)
             self.assert_whole_table(self.folder / "trace/iterations.csv")
-
-    def test_capture_writes_finished_cases(self):
-        self.write("cube.toml", CUBE)
-        for with_signal, code in self.CODES.items():
-            got, said = self.signalled(with_signal, "2 of", "capture", "cube.toml", "-o", "data", "--pokes", "20",
-                                       "--depths", "4", "--markers", "20", "--tip", "disc:0.02", "--force",
-                                       stream="stdout")
-            self.assertEqual(got, code, said)
-            self.assertIn("the finished cases", said)
-            self.assertNotIn("error:", self.aspic("check", "data").stdout)
 
     def test_view_ends_successfully(self):
         for with_signal in self.CODES:

@@ -17,24 +17,25 @@ LIBRARIES = {  # first part of a third-party header: the files that may include 
     "metis.h": r"src/linalg/.*\.cpp",
     "muParser.h": r"src/scene/expression\.cpp",
     "toml++": r"src/scene/.*\.cpp",
-    "nlohmann": r"src/scene/.*\.cpp|apps/.*|tests/.*|.*_test\.cpp",
+    "nlohmann": r"src/scene/.*\.cpp|apps/.*|inverse/commands/.*|tests/.*|.*_test\.cpp",
     "expat.h": r"src/io/.*\.cpp",
     "zlib.h": r"src/io/.*\.cpp|.*_test\.h|fuzz/.*",
     "emscripten.h": r"apps/engine/.*",
     "boost": r"apps/viewer/server\w*\.(h|cpp)|.*_test\.cpp",
     "CGAL": r"apps/mesh/.*",
-    "CLI": r"apps/aspic/.*|apps/mesh/.*|distributed/program/.*|bench/.*",
+    "CLI": r"apps/aspic/.*|inverse/commands/.*|apps/mesh/.*|distributed/program/.*|bench/.*",
     "mpi.h": r"distributed/ranks/.*\.cpp",
     "petscksp.h": r"distributed/ranks/petsc.*",
-    "fmt": r"apps/.*",
+    "fmt": r"apps/.*|inverse/commands/.*|distributed/program/.*",
     "spdlog": r"apps/.*",
     "cholmod.h": r".*_test\.cpp|bench/.*",
     "pybind11": r"python/src/.*",
-    "gtest": r".*_test\.cpp|tests/.*|.*_test\.h",
+    "gtest": r".*_test\.cpp|(distributed/)?tests/.*|.*_test\.h",
     "gmock": r".*_test\.cpp|tests/.*",
     "benchmark": r"bench/.*",
 }
 
+PARTS = ("src", "inverse", "distributed", "verification", "apps", "python")
 PARTLY_MISSING = r"std::(ranges::|bit_cast\b|to_chars\(|from_chars\()"  # in the library of the WebAssembly build
 
 root = pathlib.Path(__file__).resolve().parent.parent
@@ -57,14 +58,14 @@ def layers():
 def module_of(name):
     """Returns the module of a file; none for tests, examples and benchmarks, which may include everything."""
     parts = name.split("/")
-    if name.endswith(("_test.cpp", "_test.h")) or parts[0] not in ("src", "inverse", "apps", "verification", "python"):
+    if name.endswith(("_test.cpp", "_test.h")) or "tests" in parts or parts[0] not in PARTS:
         return None
     module = parts[0] if parts[0] in ("verification", "python") else parts[1]
     return {"mesh": "mesher"}.get(module, module) if parts[0] == "apps" else module
 
 
 def check_sources(may_include):
-    for folder in ("src", "inverse", "verification", "apps", "python", "bench", "tests", "examples", "fuzz"):
+    for folder in (*PARTS, "bench", "tests", "examples", "fuzz"):
         for path in sorted(p for p in (root / folder).rglob("*") if p.suffix in (".h", ".cpp")):
             name = path.relative_to(root).as_posix()
             module = module_of(name)
@@ -95,8 +96,8 @@ def check_page():
 
 def main():
     may_include = layers()
-    folders = [p for name in ("src", "inverse", "apps") for p in (root / name).iterdir() if p.is_dir()]
-    unknown = {f.name for f in folders} - {"mesh"} - may_include.keys()
+    folders = [p for name in ("src", "inverse", "apps", "distributed") for p in (root / name).glob("*") if any(p.glob("*.cpp"))]
+    unknown = {f.name for f in folders} - {"mesh", "tests"} - may_include.keys()
     violations = [f"docs/architecture.md: the diagram does not show {name}" for name in sorted(unknown)]
     violations += [*check_sources(may_include), *check_page()]
     print("\n".join(violations) or "all includes follow the diagram")

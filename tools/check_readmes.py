@@ -10,7 +10,7 @@ import re
 import subprocess
 import sys
 
-CODE = ("apps/", "bench/", "inverse/", "src/", "verification/", "web/")
+CODE = ("apps/", "bench/", "distributed/", "inverse/", "src/", "verification/", "web/")
 OTHERS = {"double", "newton_cg", "residual_threshold"}  # a type, a method, a column
 WRITTEN = {"body*.mesh", "capture.toml", "obstacle*.obj", "parameters.json", "scene.toml", "steps.csv"}  # by users or programs
 TARGETS = r"\w*aspic\w*|bench_\w+"

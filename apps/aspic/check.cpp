@@ -10,7 +10,7 @@
 #include <variant>
 
 #include "aspic/commands.h"
-#include "aspic/fit_check.h"
+#include "aspic/other_programs.h"
 #include "aspic/plot.h"
 #include "base/error.h"
 #include "base/printable.h"
@@ -272,17 +272,17 @@ bool is_data_set(const fs::path& input) {
   return fs::is_directory(input, error) || input.filename() == "capture.toml";
 }
 
-int check_measurements(const CheckArguments& arguments) {
+[[noreturn]] void check_measurements(const CheckArguments& arguments) {
   if (arguments.repair || arguments.derivatives || !arguments.overrides.empty())
     throw InvalidInput(arguments.input.string() + ": --repair, --derivatives and --set do not apply to a data set");
-  CheckDataOptions options{.charts = {}, .json = arguments.json};
-  if (!arguments.registers.empty())
-    options.registers = arguments.registers == "rigid" ? RegistrationKind::rigid : RegistrationKind::similarity;
-  return check_data(arguments.input, options);
+  std::vector<std::string> passed = {"check", arguments.input.string()};
+  if (!arguments.registers.empty()) passed.insert(passed.end(), {"--register", arguments.registers});
+  if (arguments.json) passed.emplace_back("--json");
+  become("aspic-fit", passed);
 }
 
 int check(const CheckArguments& arguments) {
-  if (is_data_set(arguments.input)) return check_measurements(arguments);
+  if (is_data_set(arguments.input)) check_measurements(arguments);
   if (!arguments.registers.empty())
     throw InvalidInput("--register needs a data set; give the folder that contains capture.toml");
   if (arguments.derivatives) {

@@ -22,17 +22,11 @@ using Action = std::function<int()>;  // returns the exit code
 
 void add_run(CLI::App& app, Action& action);
 void add_check(CLI::App& app, Action& action);
-void add_mesh(CLI::App& app, Action& action);
+void add_other_programs(CLI::App& app, Action& action);  // mesh: aspic-mesh; fit, capture and others: aspic-fit
 void add_convert(CLI::App& app, Action& action);
-void add_fit(CLI::App& app, Action& action);
-void add_fit_jobs(CLI::App& app, Action& action);
 void add_compare(CLI::App& app, Action& action);
 void add_materials(CLI::App& app, Action& action);
-void add_fit_curves(CLI::App& app, Action& action);
-void add_fit_motion(CLI::App& app, Action& action);
-void add_closed_loop(CLI::App& app, Action& action);
 void add_minimize(CLI::App& app, Action& action);
-void add_capture(CLI::App& app, Action& action);
 void add_lecture(CLI::App& app, Action& action);
 void add_modes(CLI::App& app, Action& action);
 void add_schema(CLI::App& app, Action& action);

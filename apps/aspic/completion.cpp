@@ -2,10 +2,16 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
+#include <filesystem>
+#include <fstream>
+#include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
 
 #include "aspic/commands.h"
+#include "aspic/other_programs.h"
+#include "base/error.h"
+#include "io/external_program.h"
 
 namespace aspic::cli {
 namespace {
@@ -32,9 +38,50 @@ OptionHelp help_of(const CLI::Option& option) {
   return help;
 }
 
+nlohmann::json to_json(const std::vector<CommandHelp>& commands) {
+  nlohmann::json list = nlohmann::json::array();
+  for (const CommandHelp& command : commands) {
+    nlohmann::json options = nlohmann::json::array();
+    for (const OptionHelp& o : command.options)
+      options.push_back(
+          {{"names", o.names}, {"text", o.text}, {"value", o.takes_value}, {"positional", o.is_positional}});
+    list.push_back({{"name", command.name}, {"text", command.text}, {"footer", command.footer}, {"options", options}});
+  }
+  return list;
+}
+
+// Asks another program for the help of its command.
+CommandHelp help_from(const std::string& program, const std::string& command) {
+  const TemporaryFolder folder;
+  const std::filesystem::path output = folder.path() / "commands.json";
+  run_program({.name = program,
+               .command = {program, "completion", "json"},
+               .about = command,
+               .messages = folder.path() / "messages",
+               .output = output,
+               .after_signal = "it crashed",
+               .when_unusable = "build it again",
+               .out_of_time = -1});
+  std::ifstream stream(output);
+  const nlohmann::json list = nlohmann::json::parse(stream);
+  for (const nlohmann::json& of : list) {
+    if (of["name"] != command) continue;
+    CommandHelp help{command, of["text"], of["footer"], {}};
+    for (const nlohmann::json& o : of["options"])
+      help.options.push_back({o["names"], o["text"], o["value"], o["positional"]});
+    return help;
+  }
+  throw InvalidInput(program + ": has no command " + command + "; build it again");
+}
+
 std::vector<CommandHelp> commands_of(const CLI::App& app) {
   std::vector<CommandHelp> list;
   for (const CLI::App* command : app.get_subcommands(nullptr)) {
+    if (const std::string program = command->get_prefix_command() ? program_with(command->get_name()) : "";
+        !program.empty()) {
+      list.push_back(help_from(program, command->get_name()));
+      continue;
+    }
     CommandHelp& help =
         list.emplace_back(CommandHelp{command->get_name(), command->get_description(), command->get_footer(), {}});
     for (const CLI::Option* option : command->get_options()) help.options.push_back(help_of(*option));
@@ -153,7 +200,8 @@ std::string man_page(const CLI::App& app, const std::vector<CommandHelp>& comman
 
 int print_completion(const CLI::App& app, const std::string& kind) {
   const std::vector<CommandHelp> commands = commands_of(app);
-  const std::string text = kind == "man"    ? man_page(app, commands)
+  const std::string text = kind == "json"   ? to_json(commands).dump()
+                           : kind == "man"  ? man_page(app, commands)
                            : kind == "bash" ? bash_script(commands)
                            : kind == "zsh"  ? zsh_script(commands)
                                             : fish_script(commands);
@@ -169,9 +217,9 @@ void add_completion(CLI::App& app, Action& action) {
   command->footer(
       "\nExamples:\n  aspic completion bash > ~/.local/share/bash-completion/completions/aspic\n"
       "  aspic completion man | man -l -\n'cmake --install' installs all of them.");
-  command->add_option("KIND", *kind, "Output: bash, zsh, fish, or man")
+  command->add_option("KIND", *kind, "Output: bash, zsh, fish, man, or json")
       ->required()
-      ->check(CLI::IsMember({"bash", "zsh", "fish", "man"}));
+      ->check(CLI::IsMember({"bash", "zsh", "fish", "man", "json"}));
   command->callback([kind, &app, &action] { action = [kind, &app] { return print_completion(app, *kind); }; });
 }
 

@@ -6,17 +6,11 @@ int main(int argc, char** argv) {
   return main_program(argc, argv, [](CLI::App& app, Action& action) {
     add_run(app, action);
     add_check(app, action);
-    add_mesh(app, action);
     add_convert(app, action);
-    add_fit(app, action);
-    add_fit_jobs(app, action);
+    add_other_programs(app, action);
     add_compare(app, action);
     add_materials(app, action);
-    add_fit_curves(app, action);
-    add_fit_motion(app, action);
-    add_closed_loop(app, action);
     add_minimize(app, action);
-    add_capture(app, action);
     add_modes(app, action);
     add_lecture(app, action);
     add_sweep(app, action);

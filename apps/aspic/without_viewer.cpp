@@ -1,11 +1,10 @@
 // Replacements of the viewer's functions in a build without it. The commands throw InvalidInput with the remedy; runs
-// and fits print that there is no report.
+// print that there is no report.
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
 
 #include "aspic/commands.h"
-#include "aspic/fit_report.h"
 #include "aspic/mesh_picture.h"
 #include "aspic/run_report.h"
 #include "base/error.h"
@@ -28,10 +27,6 @@ void add_viewer_commands(CLI::App& app, Action& action) {
 
 void write_run_report(const std::filesystem::path&, const Scene& scene, std::FILE* stream) {
   if (scene.output.report && stream) fmt::print(stream, "no report.html: this aspic was built without its viewer\n");
-}
-
-void write_fit_report(const std::filesystem::path&, const viewer::FitPageContent&, std::FILE* stream) {
-  if (stream) fmt::print(stream, "no report.html: this aspic was built without its viewer\n");
 }
 
 bool draw(const std::vector<MeshDrawing>&, const StopToken&) {

@@ -6,9 +6,9 @@
 #include <vector>
 
 #include "base/parallel.h"
+#include "program/run.h"
 #include "ranks/guarded.h"
 #include "ranks/mpi_ranks.h"
-#include "program/run.h"
 #include "scene/overrides.h"
 
 namespace {

@@ -4,10 +4,10 @@
 
 #include <algorithm>
 
+#include "math/vectors.h"
 #include "ranks/exchange.h"
 #include "ranks/message_size.h"
 #include "ranks/traffic.h"
-#include "math/vectors.h"
 
 namespace aspic::distributed {
 namespace {

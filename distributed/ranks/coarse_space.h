@@ -4,10 +4,10 @@
 #include <span>
 #include <vector>
 
-#include "ranks/halo.h"
 #include "dynamics/share.h"
 #include "linalg/affine_coarsening.h"
 #include "linalg/cholesky.h"
+#include "ranks/halo.h"
 
 namespace aspic::distributed {
 

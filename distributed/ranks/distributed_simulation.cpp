@@ -6,13 +6,13 @@
 #include <stdexcept>
 #include <utility>
 
+#include "dynamics/pins.h"
+#include "dynamics/simulation_checks.h"
+#include "optimize/newton.h"
 #include "ranks/guarded.h"
 #include "ranks/petsc_solver.h"
 #include "ranks/rank_auto.h"
 #include "ranks/rank_cg.h"
-#include "dynamics/pins.h"
-#include "dynamics/simulation_checks.h"
-#include "optimize/newton.h"
 #include "scene/scene_builder.h"
 
 namespace aspic::distributed {

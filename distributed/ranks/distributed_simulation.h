@@ -6,12 +6,12 @@
 #include <string>
 #include <vector>
 
+#include "dynamics/simulation.h"
 #include "ranks/halo.h"
 #include "ranks/local_model.h"
 #include "ranks/mpi_ranks.h"
 #include "ranks/rank_scene.h"
 #include "ranks/user_order.h"
-#include "dynamics/simulation.h"
 #include "scene/scene_files.h"
 #include "scene/value.h"
 

@@ -7,10 +7,10 @@
 #include <string>
 
 #include "base/error.h"
+#include "dynamics/simulation_checks.h"
 #include "ranks/exchange.h"
 #include "ranks/mpi_ranks.h"
 #include "ranks/petsc_solver.h"
-#include "dynamics/simulation_checks.h"
 
 namespace aspic::distributed {
 namespace {

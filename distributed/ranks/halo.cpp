@@ -24,8 +24,7 @@ Halo::Halo(const MeshShare& share) {
     if (wanted[r] > 0 || asked[r] > 0) neighbors_.push_back({r, std::vector<int>(asked[r]), first[r], wanted[r]});
   size_t sent = 0;
   for (Neighbor& n : neighbors_) {
-    MPI_Irecv(n.sent.data(), message_size(n.sent.size()), MPI_INT, n.rank, 0, MPI_COMM_WORLD,
-              &requests.emplace_back());
+    MPI_Irecv(n.sent.data(), message_size(n.sent.size()), MPI_INT, n.rank, 0, MPI_COMM_WORLD, &requests.emplace_back());
     MPI_Isend(share.vertex.data() + n.first_ghost, n.ghost_count, MPI_INT, n.rank, 0, MPI_COMM_WORLD,
               &requests.emplace_back());
     sent += n.sent.size();

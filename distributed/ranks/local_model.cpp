@@ -8,11 +8,11 @@
 
 #include "base/check.h"
 #include "base/error.h"
+#include "energy/linear_load.h"
+#include "math/vectors.h"
 #include "ranks/exchange.h"
 #include "ranks/guarded.h"
 #include "ranks/shared_terms.h"
-#include "energy/linear_load.h"
-#include "math/vectors.h"
 #include "scene/body_actions.h"
 #include "scene/body_material.h"
 #include "scene/placement.h"

@@ -1,8 +1,8 @@
 // Makes the model of one rank from its part of a scene.
 #pragma once
-#include "ranks/rank_scene.h"
 #include "dynamics/share.h"
 #include "dynamics/state.h"
+#include "ranks/rank_scene.h"
 #include "scene/scene_files.h"
 #include "scene/value.h"
 

@@ -6,13 +6,13 @@
 #include <cstdint>
 
 #include "base/error.h"
+#include "math/vectors.h"
+#include "mesh/doctor.h"
+#include "mesh/order.h"
 #include "ranks/exchange.h"
 #include "ranks/guarded.h"
 #include "ranks/message_size.h"
 #include "ranks/mpi_ranks.h"
-#include "math/vectors.h"
-#include "mesh/doctor.h"
-#include "mesh/order.h"
 #include "scene/placement.h"
 
 namespace aspic::distributed {

@@ -6,8 +6,8 @@
 #include <span>
 #include <vector>
 
-#include "ranks/mesh_share.h"
 #include "linalg/block_sparse.h"
+#include "ranks/mesh_share.h"
 
 namespace aspic::distributed {
 

@@ -3,8 +3,8 @@
 #include <memory>
 #include <vector>
 
-#include "ranks/halo.h"
 #include "linalg/linear_solver.h"
+#include "ranks/halo.h"
 
 namespace aspic::distributed {
 

@@ -1,9 +1,9 @@
 #include "ranks/rank_auto.h"
 
+#include "linalg/auto_solver.h"
 #include "ranks/petsc_solver.h"
 #include "ranks/rank_cg.h"
 #include "ranks/rank_multigrid.h"
-#include "linalg/auto_solver.h"
 
 namespace aspic::distributed {
 namespace {

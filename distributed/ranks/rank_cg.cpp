@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <cmath>
 
-#include "ranks/traffic.h"
 #include "linalg/block_jacobi.h"
 #include "math/vectors.h"
+#include "ranks/traffic.h"
 
 namespace aspic::distributed {
 namespace {

@@ -3,10 +3,10 @@
 #include <memory>
 #include <vector>
 
-#include "ranks/halo.h"
-#include "ranks/rank_multigrid.h"
 #include "linalg/approximate_inverse.h"
 #include "linalg/linear_solver.h"
+#include "ranks/halo.h"
+#include "ranks/rank_multigrid.h"
 
 namespace aspic::distributed {
 

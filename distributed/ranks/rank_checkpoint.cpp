@@ -10,11 +10,11 @@
 #include <stdexcept>
 
 #include "base/error.h"
+#include "io/input_file.h"
 #include "ranks/exchange.h"
 #include "ranks/guarded.h"
 #include "ranks/mpi_ranks.h"
 #include "ranks/shared_file.h"
-#include "io/input_file.h"
 
 namespace aspic::distributed {
 namespace {

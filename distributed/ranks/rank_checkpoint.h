@@ -6,9 +6,9 @@
 #include <string>
 #include <vector>
 
-#include "ranks/user_order.h"
 #include "dynamics/simulation.h"
 #include "io/checkpoint.h"
+#include "ranks/user_order.h"
 
 namespace aspic::distributed {
 

@@ -10,14 +10,14 @@
 #include <utility>
 
 #include "base/error.h"
+#include "io/atomic_file.h"
+#include "io/number_text.h"
+#include "io/vtu.h"
 #include "ranks/exchange.h"
 #include "ranks/guarded.h"
 #include "ranks/rank_checkpoint.h"
 #include "ranks/rank_frames.h"
 #include "ranks/traffic.h"
-#include "io/atomic_file.h"
-#include "io/number_text.h"
-#include "io/vtu.h"
 #include "scene/run_directory_tables.h"
 #include "scene/run_folder.h"
 #include "scene/run_lock.h"

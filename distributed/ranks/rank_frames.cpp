@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <string>
 
-#include "ranks/exchange.h"
 #include "io/vtu.h"
+#include "ranks/exchange.h"
 #include "scene/run_directory_frame.h"
 
 namespace aspic::distributed {

@@ -3,9 +3,9 @@
 #include <span>
 #include <vector>
 
-#include "ranks/coarse_space.h"
 #include "linalg/approximate_inverse.h"
 #include "linalg/multigrid.h"
+#include "ranks/coarse_space.h"
 
 namespace aspic::distributed {
 

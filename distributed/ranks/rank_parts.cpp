@@ -5,9 +5,9 @@
 #include <map>
 #include <utility>
 
-#include "ranks/exchange.h"
 #include "dynamics/stiffness_parts.h"
 #include "mesh/disjoint_sets.h"
+#include "ranks/exchange.h"
 
 namespace aspic::distributed {
 namespace {

@@ -4,9 +4,9 @@
 #include <utility>
 #include <vector>
 
-#include "ranks/mesh_share.h"
 #include "material/registry.h"
 #include "mesh/box.h"
+#include "ranks/mesh_share.h"
 
 namespace aspic::distributed {
 

@@ -6,9 +6,9 @@
 #include <type_traits>
 
 #include "base/check.h"
+#include "math/vectors.h"
 #include "ranks/exchange.h"
 #include "ranks/mpi_ranks.h"
-#include "math/vectors.h"
 
 namespace aspic::distributed {
 namespace {

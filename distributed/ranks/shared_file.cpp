@@ -57,8 +57,7 @@ void SharedFile::write_all(std::uint64_t position, const void* data, std::size_t
     const std::uint64_t here = begin < bytes ? std::min<std::uint64_t>(kChunk, bytes - begin) : 0;
     MPI_Status status;
     impl_->check(MPI_File_write_at_all(impl_->file, static_cast<MPI_Offset>(position + begin),
-                                       static_cast<const char*>(data) + begin, message_size(here), MPI_BYTE,
-                                       &status));
+                                       static_cast<const char*>(data) + begin, message_size(here), MPI_BYTE, &status));
     int written = 0;
     MPI_Get_count(&status, MPI_BYTE, &written);
     if (static_cast<std::uint64_t>(written) != here)

@@ -5,9 +5,9 @@
 #include <numeric>
 
 #include "base/hash.h"
+#include "dynamics/state.h"
 #include "ranks/exchange.h"
 #include "ranks/mpi_ranks.h"
-#include "dynamics/state.h"
 
 namespace aspic::distributed {
 namespace {

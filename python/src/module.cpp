@@ -16,7 +16,9 @@ PYBIND11_MODULE(_aspic, m) {
   bind_scene(m);
   bind_compare(m);
   bind_results(m);
+#ifdef ASPIC_HAS_FIT
   bind_fit(m);
+#endif
   bind_verification(m);
   guard_classes(m);
   watch_for_the_end();

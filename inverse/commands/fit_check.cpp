@@ -1,18 +1,19 @@
-#include "aspic/fit_check.h"
+#include "commands/fit_check.h"
 
 #include <fmt/format.h>
 
+#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <nlohmann/json.hpp>
 #include <set>
 
-#include "aspic/commands.h"
-#include "aspic/fit_summary.h"
 #include "aspic/plot.h"
 #include "base/error.h"
 #include "capture/case_table.h"
 #include "capture/data_set.h"
 #include "capture/surface_projection.h"
+#include "commands/commands.h"
+#include "commands/fit_summary.h"
 
 namespace aspic::cli {
 namespace {
@@ -139,6 +140,28 @@ int check_data(const fs::path& path, const CheckDataOptions& options) {
   const bool has_error =
       std::any_of(findings.begin(), findings.end(), [](const DataFinding& f) { return f.severity == Severity::error; });
   return has_error ? exit_bad_input : exit_done;
+}
+
+void add_check_data(CLI::App& app, Action& action) {
+  struct Arguments {
+    fs::path data;
+    std::string registers;  // empty: none
+    bool json = false;
+  };
+  const auto arguments = std::make_shared<Arguments>();
+  CLI::App* command = app.add_subcommand("check", "Reports errors and suspicious values of a data set");
+  command->add_option("DATA", arguments->data, "Folder of a data set")->required();
+  command->add_option("--register", arguments->registers, "Align markers or scan: rigid or similarity")
+      ->check(CLI::IsMember({"rigid", "similarity"}));
+  command->add_flag("--json", arguments->json, "Print findings as JSON");
+  command->callback([arguments, &action] {
+    action = [arguments] {
+      CheckDataOptions options{.charts = {}, .json = arguments->json};
+      if (!arguments->registers.empty())
+        options.registers = arguments->registers == "rigid" ? RegistrationKind::rigid : RegistrationKind::similarity;
+      return check_data(arguments->data, options);
+    };
+  });
 }
 
 }  // namespace aspic::cli

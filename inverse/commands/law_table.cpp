@@ -1,10 +1,10 @@
-#include "aspic/law_table.h"
+#include "commands/law_table.h"
 
 #include <fmt/format.h>
 
 #include <cmath>
 
-#include "aspic/fit_summary.h"
+#include "commands/fit_summary.h"
 
 namespace aspic::cli {
 namespace {

@@ -1,4 +1,4 @@
-#include "aspic/fit_json.h"
+#include "commands/fit_json.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,4 +1,4 @@
-#include "aspic/fit_options.h"
+#include "commands/fit_options.h"
 
 #include <fmt/format.h>
 

@@ -1,4 +1,4 @@
-#include "aspic/fit_curves.h"
+#include "commands/fit_curves.h"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -10,11 +10,11 @@
 #include <nlohmann/json.hpp>
 #include <sstream>
 
-#include "aspic/commands.h"
 #include "aspic/plot.h"
 #include "base/error.h"
 #include "base/printable.h"
 #include "capture/test_curves.h"
+#include "commands/commands.h"
 #include "io/csv_reader.h"
 #include "io/text_scanner.h"
 

@@ -7,9 +7,9 @@
 #include <array>
 #include <cmath>
 
-#include "aspic/commands.h"
 #include "aspic/plot.h"
 #include "base/error.h"
+#include "commands/commands.h"
 #include "dynamics/model_builder.h"
 #include "fit/incremental_elasticity.h"
 #include "mesh/generators.h"

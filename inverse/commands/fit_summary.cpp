@@ -1,4 +1,4 @@
-#include "aspic/fit_summary.h"
+#include "commands/fit_summary.h"
 
 #include <fmt/format.h>
 

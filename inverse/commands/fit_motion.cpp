@@ -1,4 +1,5 @@
 // `aspic fit-motion`: fits material, density, damping and initial velocity of a scene to a measured motion of markers.
+#include "commands/commands.h"
 #include "fit/motion_fit.h"
 
 #include <fmt/format.h>
@@ -9,8 +10,6 @@
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
-#include "aspic/commands.h"
-#include "aspic/fit_progress.h"
 #include "aspic/interrupt.h"
 #include "aspic/plot.h"
 #include "base/error.h"
@@ -18,6 +17,7 @@
 #include "base/printable.h"
 #include "capture/motion_scene.h"
 #include "capture/motion_table.h"
+#include "commands/fit_progress.h"
 #include "io/atomic_file.h"
 #include "io/csv.h"
 

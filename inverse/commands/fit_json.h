@@ -2,7 +2,7 @@
 #pragma once
 #include <nlohmann/json.hpp>
 
-#include "aspic/fit_figures.h"
+#include "commands/fit_figures.h"
 
 namespace aspic::cli {
 

@@ -1,4 +1,4 @@
-#include "aspic/fit_report.h"
+#include "commands/fit_report.h"
 
 #include <fmt/format.h>
 

@@ -1,15 +1,15 @@
-#include "aspic/fit_figures.h"
+#include "commands/fit_figures.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
 
-#include "aspic/fit_json.h"
-#include "aspic/fit_summary.h"
-#include "aspic/law_table.h"
-#include "aspic/relaxation_results.h"
 #include "capture/left_out.h"
+#include "commands/fit_json.h"
+#include "commands/fit_summary.h"
+#include "commands/law_table.h"
+#include "commands/relaxation_results.h"
 #include "fit/bickel.h"
 #include "fit/quantity.h"
 

@@ -1,4 +1,4 @@
-#include "aspic/fit_progress.h"
+#include "commands/fit_progress.h"
 
 #include <fmt/format.h>
 

@@ -6,11 +6,11 @@
 #include <cmath>
 #include <filesystem>
 
-#include "aspic/commands.h"
 #include "aspic/interrupt.h"
 #include "base/error.h"
 #include "base/parallel.h"
 #include "capture/synthesis.h"
+#include "commands/commands.h"
 #include "io/mesh_file.h"
 #include "scene/scene.h"
 #include "scene/toml_reader.h"

@@ -1,4 +1,4 @@
-#include "aspic/relaxation_results.h"
+#include "commands/relaxation_results.h"
 
 #include <fmt/format.h>
 

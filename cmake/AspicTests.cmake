@@ -1,0 +1,31 @@
+# Functions that add tests of the core and of its packages.
+include(GoogleTest)
+find_package(GTest REQUIRED)
+find_package(Eigen3 REQUIRED NO_MODULE)  # an oracle of dense algebra
+find_package(Python3 REQUIRED COMPONENTS Interpreter)
+# Debian's Python, because packages such as python3-meshio and python3-numpy are invisible to others.
+find_program(ASPIC_DEBIAN_PYTHON python3 PATHS /usr/bin NO_DEFAULT_PATH)
+cmake_path(GET CMAKE_CURRENT_LIST_DIR PARENT_PATH aspic_REPOSITORY)
+
+set(test_optimization -O1)  # compiles faster than -O3
+if(ASPIC_FUZZ)  # theirs are the inline functions that the linker takes; none of them is fuzzed
+  set(test_optimization -O2 -fno-sanitize=fuzzer-no-link)
+endif()
+
+# add_aspic_tests(NAME SOURCES...): a program of unit tests.
+function(add_aspic_tests name)
+  add_executable(${name} ${ARGN})
+  target_link_libraries(${name} PRIVATE aspic_verification aspic_build Eigen3::Eigen GTest::gmock GTest::gtest GTest::gtest_main)
+  target_include_directories(${name} PRIVATE ${aspic_REPOSITORY}/src ${aspic_REPOSITORY}/tests)
+  target_compile_options(${name} PRIVATE ${test_optimization} -Wno-uninitialized)  # false alarms in AVX-512 headers
+  gtest_discover_tests(${name} TEST_PREFIX ${name}. DISCOVERY_TIMEOUT 60 NO_PRETTY_VALUES)
+endfunction()
+
+# Adds one test PREFIX.CLASS for each test class of a file.
+function(add_python_tests prefix file)
+  foreach(case ${ARGN})
+    add_test(NAME ${prefix}.${case} COMMAND ${Python3_EXECUTABLE} ${CMAKE_CURRENT_SOURCE_DIR}/${file} ${case})
+    set_tests_properties(${prefix}.${case} PROPERTIES
+                         ENVIRONMENT "ASPIC=$<TARGET_FILE:aspic_cli>;PYTHONPATH=${aspic_REPOSITORY}/tests")
+  endforeach()
+endfunction()
