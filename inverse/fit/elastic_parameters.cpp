@@ -1,5 +1,7 @@
 #include "fit/elastic_parameters.h"
 
+#include <algorithm>
+
 #include "base/check.h"
 
 namespace aspic {
@@ -8,6 +10,7 @@ ElasticParameters::ElasticParameters(const Model& model) : start_{0}, tet_start_
   ASPIC_CHECK(model.elasticity.size() == model.bodies.size());
   for (size_t k = 0; k < model.elasticity.size(); ++k) {
     terms_.push_back(model.elasticity[k].get());
+    derivatives_.push_back(derivatives_of(*terms_[k]));
     start_.push_back(start_.back() + terms_[k]->parameter_count() * model.bodies[k].tet_count);
     tet_start_.push_back(tet_start_.back() + model.bodies[k].tet_count);
   }
@@ -29,14 +32,23 @@ void ElasticParameters::add_force(Positions x, std::span<const double> change, d
                                   std::span<double> g) const {
   ASPIC_CHECK(static_cast<int>(change.size()) == size());
   for (size_t k = 0; k < terms_.size(); ++k)
-    terms_[k]->add_parameter_force(x, change.subspan(start_[k], start_[k + 1] - start_[k]), scale, g);
+    derivatives_[k]->add_force(x, change.subspan(start_[k], start_[k + 1] - start_[k]), scale, g);
 }
 
 void ElasticParameters::add_gradient(Positions x, std::span<const double> w, double scale,
                                      std::span<double> gradient) const {
   ASPIC_CHECK(static_cast<int>(gradient.size()) == size());
   for (size_t k = 0; k < terms_.size(); ++k)
-    terms_[k]->add_parameter_gradient(x, w, scale, gradient.subspan(start_[k], start_[k + 1] - start_[k]));
+    derivatives_[k]->add_gradient(x, w, scale, gradient.subspan(start_[k], start_[k + 1] - start_[k]));
+}
+
+void ElasticParameters::add_hessian_derivatives(const TetElasticity& term, Positions x, const HessianProduct& product,
+                                                const HessianDerivatives& out) const {
+  const auto k = std::find(terms_.begin(), terms_.end(), &term) - terms_.begin();
+  ASPIC_CHECK(k < static_cast<std::ptrdiff_t>(terms_.size()));
+  HessianDerivatives own = out;
+  own.parameters = out.parameters.subspan(start_[k], start_[k + 1] - start_[k]);
+  derivatives_[k]->add_hessian_derivatives(x, product.u, product.w, product.definiteness, own);
 }
 
 }  // namespace aspic

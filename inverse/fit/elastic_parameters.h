@@ -3,9 +3,16 @@
 #include <span>
 #include <vector>
 
+#include "derivatives/parameter_derivatives.h"
 #include "dynamics/model.h"
 
 namespace aspic {
+
+// u . H w
+struct HessianProduct {
+  std::span<const double> u, w;
+  Definiteness definiteness = Definiteness::exact;
+};
 
 class ElasticParameters {
  public:
@@ -19,10 +26,14 @@ class ElasticParameters {
   // g += scale d(dV/dx)/dtheta change, and gradient += scale d(w . dV/dx)/dtheta.
   void add_force(Positions x, std::span<const double> change, double scale, std::span<double> g) const;
   void add_gradient(Positions x, std::span<const double> w, double scale, std::span<double> gradient) const;
+  // Adds scale times the derivatives of u . H w with respect to x and theta, H: the Hessian of one term in the model.
+  void add_hessian_derivatives(const TetElasticity& term, Positions x, const HessianProduct& product,
+                               const HessianDerivatives& out) const;
 
  private:
   std::vector<TetElasticity*> terms_;
-  std::vector<int> start_, tet_start_;  // one entry per term, and the end
+  std::vector<std::unique_ptr<ParameterDerivatives>> derivatives_;  // of each term
+  std::vector<int> start_, tet_start_;                              // one entry per term, and the end
 };
 
 }  // namespace aspic

@@ -210,12 +210,14 @@ struct Trajectory::Impl {
 
   void add_damping(size_t k, double f, std::span<double> coefficients, TrajectoryGradient& gradient) {
     const Damping& D = *damping[k];
-    std::span<double> elastic;
-    for (size_t b = 0; b < model.elasticity.size(); ++b)
-      if (model.elasticity[b].get() == D.elasticity())
-        elastic = std::span(gradient.elastic).subspan(theta.of_term(b), theta.of_term(b + 1) - theta.of_term(b));
-    D.add_derivatives(after.q, E.damping()[k].context(), mu, -f,
-                      {.start = qbar, .coefficients = coefficients, .elastic = elastic});
+    const Energy::Context& context = E.damping()[k].context();
+    D.add_derivatives(after.q, context, mu, -f, {.start = qbar, .coefficients = coefficients});
+    const LaggedStiffness stiffness = D.lagged_stiffness(context);
+    if (!stiffness.elasticity) return;
+    std::vector<double> u(after.q.size());
+    for (size_t i = 0; i < u.size(); ++i) u[i] = after.q[i] - now.q[i];
+    theta.add_hessian_derivatives(*stiffness.elasticity, stiffness.shape, {mu, u, stiffness.definiteness},
+                                  {-f / options.h * stiffness.factor, qbar, gradient.elastic});
   }
 
   // Adds -mu' dg/drho of inertia, weight and mass-proportional damping.

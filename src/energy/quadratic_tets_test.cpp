@@ -11,6 +11,7 @@
 #include "energy/linear_load.h"
 #include "energy/mass.h"
 #include "energy/pressure.h"
+#include "energy/quadratic_boxes_test.h"
 #include "energy/stiff_energy.h"
 #include "energy/tet_elasticity.h"
 #include "material/list.h"
@@ -22,60 +23,6 @@
 
 namespace aspic {
 namespace {
-
-const Vec3d kSize = {{1, 0.8, 0.6}};
-
-// Renumbered, so that mid-edge nodes and corners are in any order.
-TetMesh quadratic_box(std::array<int, 3> cells) {
-  const TetMesh mesh = raise_order(make_box({{0, 0, 0}}, kSize, cells));
-  return from_user(locality_numbering(mesh), mesh);
-}
-
-const TetMesh& small() {
-  static const TetMesh mesh = quadratic_box({3, 2, 1});  // 36 tets
-  return mesh;
-}
-
-std::vector<MaterialParameters> different_parameters(const TetMesh& mesh, const MaterialInfo& info) {
-  std::vector<MaterialParameters> parameters;
-  for (int t = 0; t < mesh.tet_count(); ++t) {
-    MaterialParameters p{lame_from_young_poisson(1 + 0.1 * t, 0.1 + 0.004 * (t % 60)), {}};
-    for (size_t k = 0; k < info.extra.size(); ++k) p.extra[k] = info.extra[k].fallback;
-    parameters.push_back(p);
-  }
-  return parameters;
-}
-
-// With a mean volume, except for some tets.
-std::vector<MaterialParameters> nearly_incompressible(const TetMesh& mesh, const MaterialInfo& info) {
-  constexpr double kPoisson[] = {0.49, 0.2, 0.499, 0.47};
-  std::vector<MaterialParameters> parameters = different_parameters(mesh, info);
-  for (int t = 0; t < mesh.tet_count(); ++t) parameters[t].lame = lame_from_young_poisson(1 + 0.1 * t, kPoisson[t % 4]);
-  return parameters;
-}
-
-using ParametersOf = std::vector<MaterialParameters> (*)(const TetMesh& mesh, const MaterialInfo& info);
-constexpr ParametersOf kBothParameters[] = {different_parameters, nearly_incompressible};
-
-std::vector<double> positions(const TetMesh& mesh, const Mat3d& A, double noise, const Vec3d& shift = {}) {
-  std::mt19937 random(3);
-  std::uniform_real_distribution<double> uniform(-noise, noise);
-  std::vector<double> x;
-  for (const Vec3d& X : mesh.rest) {
-    const Vec3d y = A * X + shift;
-    for (int r = 0; r < 3; ++r) x.push_back(y[r] + (noise > 0 ? uniform(random) : 0));
-  }
-  return x;
-}
-const Mat3d kAffine = {{1.1, 0.2, 0.1, -0.15, 0.95, 0.05, 0.1, 0, 1.05}};
-
-BlockPattern bound_pattern(const TetMesh& mesh, Energy& V) {
-  Couplings couplings;
-  V.add_couplings(couplings);
-  const BlockPattern pattern = make_pattern(mesh.vertex_count(), couplings);
-  V.bind(pattern);
-  return pattern;
-}
 
 void expect_derivatives(Energy& V, const std::vector<double>& x, const std::string& what,
                         const StepContext& step = {}) {
@@ -239,88 +186,6 @@ TEST(QuadraticElasticity, BitsDoNotDependOnThreadCount) {
   EXPECT_EQ(results[2], results[0]);
 }
 
-// A material with a barrier, and a state in which it acts at corners.
-constexpr char kBarrier[] = "neo_hookean_log";
-const Mat3d kFlat = {{1, 0.1, 0, -0.1, 1, 0.05, 0, 0, 0.08}};
-
-void expect_parameter_derivatives(ParametersOf parameters_of, const std::vector<std::string>& names, const Mat3d& A) {
-  for (const std::string& material : names) {
-    const MaterialInfo& info = material_info(material);
-    std::vector<MaterialParameters> parameters = parameters_of(small(), info);
-    const auto V = make_tet_elasticity(material, small(), 0, parameters);
-    const std::vector<double> x = positions(small(), A, 0.02 * determinant(A));
-    const int count = V->parameter_count();
-    std::vector<double> change(parameters.size() * count), force(x.size(), 0.0), gradient(change.size(), 0.0);
-    for (size_t i = 0; i < change.size(); ++i) change[i] = std::sin(1.0 + static_cast<double>(i));
-    V->add_parameter_force(x, change, 1, force);
-    std::vector<double> difference(x.size(), 0.0);
-    constexpr double kStep = 1e-5;
-    for (const double sign : {1.0, -1.0}) {
-      std::vector<MaterialParameters> other = parameters;
-      for (size_t t = 0; t < other.size(); ++t) {
-        other[t].lame.mu += sign * kStep * change[count * t];
-        other[t].lame.lambda += sign * kStep * change[count * t + 1];
-        for (int k = 2; k < count; ++k) other[t].extra[k - 2] += sign * kStep * change[count * t + k];
-      }
-      V->set_parameters(other);
-      V->add_gradient(x, sign / (2 * kStep), difference);
-    }
-    V->set_parameters(parameters);
-    double error = 0;
-    for (size_t i = 0; i < x.size(); ++i) error = std::max(error, std::abs(force[i] - difference[i]));
-    EXPECT_LT(error, 1e-7 * max_abs(force)) << material;
-    V->add_parameter_gradient(x, x, 1, gradient);
-    EXPECT_NEAR(dot(gradient, change), dot(force, x), 1e-12 * std::abs(dot(force, x))) << material;
-  }
-}
-
-TEST(QuadraticElasticity, ParameterDerivativesMatchDifferences) {
-  for (const ParametersOf parameters_of : kBothParameters) {
-    expect_parameter_derivatives(parameters_of, {"neo_hookean", "fung"}, kAffine);
-    expect_parameter_derivatives(parameters_of, {kBarrier}, kFlat);
-  }
-}
-
-void expect_hessian_derivatives(ParametersOf parameters_of, Definiteness definiteness, const std::string& material,
-                                const Mat3d& A) {
-  std::vector<MaterialParameters> parameters = parameters_of(small(), material_info(material));
-  const auto V = make_tet_elasticity(material, small(), 0, parameters);
-  const BlockPattern pattern = bound_pattern(small(), *V);
-  const std::vector<double> x = positions(small(), A, 0.02 * determinant(A)), u = positions(small(), A, 0.5);
-  const auto direction = [](size_t i) { return std::sin(1.0 + static_cast<double>(i)); };
-  std::vector<double> by_x(x.size(), 0.0), by_parameters(2 * parameters.size(), 0.0), Hu(x.size());
-  V->add_hessian_derivatives(x, u, u, definiteness, {1, by_x, by_parameters});
-  const auto energy = [&](double x_step, double parameter_step) {
-    std::vector<double> moved = x;
-    for (size_t i = 0; i < x.size(); ++i) moved[i] += x_step * direction(i);
-    std::vector<MaterialParameters> other = parameters;
-    for (size_t t = 0; t < other.size(); ++t) {
-      other[t].lame.mu += parameter_step * direction(2 * t);
-      other[t].lame.lambda += parameter_step * direction(2 * t + 1);
-    }
-    V->set_parameters(other);
-    BlockSparse H(pattern);
-    V->add_hessian(moved, 1, {definiteness}, H);
-    H.multiply(u, Hu);
-    return dot(u, Hu);
-  };
-  double along_x = 0, along_parameters = 0;
-  for (size_t i = 0; i < x.size(); ++i) along_x += by_x[i] * direction(i);
-  for (size_t i = 0; i < by_parameters.size(); ++i) along_parameters += by_parameters[i] * direction(i);
-  const double h = 1e-5 * determinant(A);
-  EXPECT_NEAR((energy(h, 0) - energy(-h, 0)) / (2 * h), along_x, 2e-6 * std::abs(along_x));
-  EXPECT_NEAR((energy(0, 1e-5) - energy(0, -1e-5)) / 2e-5, along_parameters, 2e-7 * std::abs(along_parameters));
-}
-
-TEST(QuadraticElasticity, HessianDerivativesMatchDifferences) {
-  for (const ParametersOf parameters_of : kBothParameters) {
-    for (const Definiteness definiteness : {Definiteness::exact, Definiteness::clamped}) {
-      expect_hessian_derivatives(parameters_of, definiteness, "neo_hookean", kAffine);
-      expect_hessian_derivatives(parameters_of, definiteness, kBarrier, kFlat);
-    }
-  }
-}
-
 TEST(NodeBarrier, AddsItsFormulaBelowOneTenth) {
   const std::vector<MaterialParameters> parameters = different_parameters(small(), material_info(kBarrier));
   const auto V = make_tet_elasticity(kBarrier, small(), 0, parameters);
@@ -448,11 +313,6 @@ TEST(MeanVolume, DependsOnCurrentPoissonsRatioAlone) {
     std::vector<double> Hx(x.size()), expected_Hx(x.size());
     H.multiply(x, Hx), expected_H.multiply(x, expected_Hx);
     for (size_t i = 0; i < x.size(); ++i) EXPECT_NEAR(Hx[i], expected_Hx[i], 1e-12 * max_abs(expected_Hx));
-    const std::vector<double> change(static_cast<size_t>(changed->parameter_count() * small().tet_count()), 1.0);
-    std::vector<double> rate(x.size(), 0.0), expected_rate(x.size(), 0.0);
-    changed->add_parameter_force(x, change, 1, rate);
-    expected->add_parameter_force(x, change, 1, expected_rate);
-    for (size_t i = 0; i < x.size(); ++i) EXPECT_NEAR(rate[i], expected_rate[i], 1e-12 * max_abs(expected_rate));
   }
 }
 

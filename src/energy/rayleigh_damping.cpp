@@ -64,7 +64,10 @@ class RayleighDamping : public Damping {
   }
 
   int coefficient_count() const override { return stiffness_factor_ > 0 ? 2 : 1; }
-  const TetElasticity* elasticity() const override { return stiffness_factor_ > 0 ? elasticity_ : nullptr; }
+  LaggedStiffness lagged_stiffness(const Context& context) const override {
+    if (stiffness_factor_ == 0) return {};
+    return {elasticity_, stiffness_factor_, static_cast<const Start&>(context).shape, kDefiniteness};
+  }
   double mass_factor(int vertex) const override { return mass_.vertex_mass()[vertex] > 0 ? mass_factor_ : 0; }
 
   // h w . dD/dx = w' (a M + b K(x_start)) u
@@ -87,9 +90,6 @@ class RayleighDamping : public Damping {
       start.C.multiply(w, product_of);
       for (size_t i = 0; i < x.size(); ++i) gradients.start[i] -= s * product_of[i];
     }
-    if (stiffness_factor_ == 0) return;
-    elasticity_->add_hessian_derivatives(start.shape, w, u, kDefiniteness,
-                                         {s * stiffness_factor_, gradients.start, gradients.elastic});
   }
 
  private:

@@ -20,34 +20,16 @@ struct TetFields {
   std::vector<double> von_mises;       // [Pa]
 };
 
-// Accumulators of derivatives. Empty spans are skipped.
-struct HessianDerivatives {
-  double scale = 1;
-  std::span<double> x;           // 3 entries per vertex
-  std::span<double> parameters;  // TetElasticity::parameter_count() entries per tet
-};
-
 class TetElasticity : public SteadyEnergy {
  public:
   virtual double min_det_F(Positions x) const = 0;                  // minimum det F over all tets [1]
   virtual bool excludes_inversion() const { return false; }         // infinite at some points where det F <= 0
   virtual void evaluate(Positions x, TetFields& fields) const = 0;  // writes the entries of this term's tets
 
-  // Derivatives with respect to the parameters theta: for each tet of this term, mu, lambda and the entries of
-  // MaterialInfo::extra, tet by tet.
+  // The parameters theta: for each tet of this term, mu, lambda and the entries of MaterialInfo::extra, tet by tet.
   virtual int parameter_count() const = 0;                                          // per tet
   virtual std::span<const MaterialParameters> parameters() const = 0;               // one per tet
   virtual void set_parameters(std::span<const MaterialParameters> parameters) = 0;  // one per tet
-  // g += scale d(dV/dx)/dtheta change, and its transpose: gradient += scale d(w . dV/dx)/dtheta. `change` and
-  // `gradient` have parameter_count() entries per tet, g and w 3 per vertex.
-  virtual void add_parameter_force(Positions x, std::span<const double> change, double scale,
-                                   std::span<double> g) const = 0;
-  virtual void add_parameter_gradient(Positions x, std::span<const double> w, double scale,
-                                      std::span<double> gradient) const = 0;
-  // Adds scale times the derivatives of u . H(x) w with respect to x and theta, where H is the Hessian of
-  // add_hessian().
-  virtual void add_hessian_derivatives(Positions x, std::span<const double> u, std::span<const double> w,
-                                       Definiteness definiteness, const HessianDerivatives& out) const = 0;
 };
 
 // Returns the elastic energy of tets [first, first + parameters.size()) of the mesh, which need not outlive it. Throws

@@ -1,4 +1,4 @@
-#include "energy/projection_derivative.h"
+#include "derivatives/projection_derivative.h"
 
 #include <algorithm>
 

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <random>
 
-#include "energy/tet_elasticity.h"
+#include "derivatives/parameter_derivatives.h"
 #include "material/list.h"
 #include "math/vectors.h"
 #include "mesh/generators.h"
@@ -81,8 +81,8 @@ TEST(ParameterDerivatives, MatchDifferencesOfForces) {
       const std::vector<double> numbers = Numbers()(bodies.parameters.size());
       for (size_t t = 0; t < numbers.size(); ++t) change[t * bodies.count() + k] = numbers[t];
       std::vector<double> dg(bodies.x.size());
-      V->add_parameter_force(bodies.x, change, 0.5, dg);
-      V->add_parameter_force(bodies.x, change, 0.5, dg);
+      derivatives_of(*V)->add_force(bodies.x, change, 0.5, dg);
+      derivatives_of(*V)->add_force(bodies.x, change, 0.5, dg);
       // Fourth order, so that a step far above round-off has an error far below the derivative.
       constexpr double kStep = 1e-3;
       const auto at = [&](double amount) {
@@ -112,9 +112,9 @@ TEST(ParameterDerivatives, MatchTransposedProducts) {
     const std::vector<double> change = numbers(bodies.parameters.size() * bodies.count());
     const std::vector<double> w = numbers(bodies.x.size());
     std::vector<double> dg(bodies.x.size()), gradient(change.size());
-    V->add_parameter_force(bodies.x, change, 3, dg);
-    V->add_parameter_gradient(bodies.x, w, 1, gradient);
-    V->add_parameter_gradient(bodies.x, w, 2, gradient);
+    derivatives_of(*V)->add_force(bodies.x, change, 3, dg);
+    derivatives_of(*V)->add_gradient(bodies.x, w, 1, gradient);
+    derivatives_of(*V)->add_gradient(bodies.x, w, 2, gradient);
     double size = 0;
     for (size_t i = 0; i < dg.size(); ++i) size += std::abs(w[i] * dg[i]);
     EXPECT_NEAR(dot(w, dg), dot(change, gradient), 1e-12 * size) << info.name;
@@ -141,8 +141,8 @@ TEST(ParameterDerivatives, UseParametersThatWereSet) {
     set->set_parameters(others);
     expect_same(bodies.force(*set), bodies.force(*made), info.name);
     std::vector<double> a(bodies.x.size()), b(bodies.x.size());
-    set->add_parameter_force(bodies.x, change, 1, a);
-    made->add_parameter_force(bodies.x, change, 1, b);
+    derivatives_of(*set)->add_force(bodies.x, change, 1, a);
+    derivatives_of(*made)->add_force(bodies.x, change, 1, b);
     expect_same(a, b, info.name);
   }
 }
@@ -160,8 +160,8 @@ void expect_hessian_derivatives(const MaterialInfo& info, Definiteness definiten
   const std::vector<double> direction = numbers(bodies.x.size());
   std::vector<double> change = numbers(bodies.parameters.size() * bodies.count());
   std::vector<double> dx(bodies.x.size()), dtheta(change.size());
-  V->add_hessian_derivatives(bodies.x, u, w, definiteness, {.x = dx});
-  V->add_hessian_derivatives(bodies.x, u, w, definiteness, {.parameters = dtheta});
+  derivatives_of(*V)->add_hessian_derivatives(bodies.x, u, w, definiteness, {.x = dx});
+  derivatives_of(*V)->add_hessian_derivatives(bodies.x, u, w, definiteness, {.parameters = dtheta});
 
   constexpr double kStep = 1e-7;  // so short that no eigenvalue crosses the threshold
   const auto difference = [&](const auto& at) {
