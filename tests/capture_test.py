@@ -107,7 +107,7 @@ class Fit(Captured):
     def test_captured_and_fitted_scene_runs(self):
         # The mesh of the data is coarse and linear, and a part of the body is far from all sites: the verdict is bad.
         done = self.aspic("fit", "data", "--allow-unconverged")
-        for part in ("converged", "misfit", "95 %", "held out", "next poke", 'material = { file = "material.vtu" }'):
+        for part in ("converged", "misfit", "95 %", "held out", 'material = { file = "material.vtu" }'):
             self.assertIn(part, done.stdout)
         self.assertNotRegex(done.stdout, r"\bnan\b|\binf\b")
         self.assertFalse({".journal", ".state"} & {p.suffix for p in (self.folder / "material.fit").iterdir()})
@@ -242,12 +242,6 @@ class Curves(CommandLine):
             self.write("pull.csv", text)
             self.assertIn(message, self.aspic("fit-curves", "pull.csv", code=2).stderr)
 
-    def test_closed_loop_work_is_zero_with_energy(self):
-        text = self.aspic("closed-loop", "--loops", "1", "--increments", "50").stdout
-        interpolated, energy = (re.search(rf"{name}.*?(-?[\d.]+) +(-?[\d.]+) ", text) for name in
-                                ("strain space", r"an energy \(corotated\)"))
-        self.assertGreater(float(interpolated[1]), 1)
-        self.assertLess(abs(float(energy[1])), 1e-4)
 
 
 if __name__ == "__main__":

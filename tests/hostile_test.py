@@ -141,7 +141,7 @@ class Random(Hostile):
         chance = random.Random(int(os.environ.get("SEED", "1")))
         for _ in range(int(os.environ.get("COUNT", "60"))):
             command = chance.choice(sorted(options))
-            if command in ("mesh", "view", "lecture", "verify", "closed-loop"):  # another program; no end; long
+            if command in ("mesh", "view", "lecture", "verify"):  # another program; no end; long
                 command = "run"
             line = [command] if chance.random() < 0.97 else []
             line += chance.sample(FILES, chance.choice([0, 1, 1, 1, 2]))

@@ -36,7 +36,6 @@ USES = {
     "fit-motion": (["--help"], ["none.toml", "none.csv", "--fit", "young"]),
     "fit-jobs": (["--help"], ["none"]),
     "fit-curves": (["curve.csv", "--material", "neo_hookean"], ["none.csv"]),
-    "closed-loop": (["--loops", "1", "--increments", "10"], ["--loops", "nan"]),
     "minimize": (["rosenbrock"], ["none"]),
     "capture": (["--help"], ["none.toml"]),
     "modes": (["cube.toml", "--out", "modes", "--force"], ["none.toml"]),

@@ -30,7 +30,6 @@ void add_compare(CLI::App& app, Action& action);
 void add_materials(CLI::App& app, Action& action);
 void add_fit_curves(CLI::App& app, Action& action);
 void add_fit_motion(CLI::App& app, Action& action);
-void add_closed_loop(CLI::App& app, Action& action);
 void add_minimize(CLI::App& app, Action& action);
 void add_capture(CLI::App& app, Action& action);
 void add_lecture(CLI::App& app, Action& action);

@@ -14,7 +14,6 @@ int main(int argc, char** argv) {
     add_materials(app, action);
     add_fit_curves(app, action);
     add_fit_motion(app, action);
-    add_closed_loop(app, action);
     add_minimize(app, action);
     add_capture(app, action);
     add_modes(app, action);
