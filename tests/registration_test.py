@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
-"""`aspic fit` and `aspic fit-motion` with measurements in the files of other programs: each must reach the figures of the
-same measurements as tables. The files are written by recording_files.py.
+"""`aspic fit` with markers in other coordinates than the mesh, and with forces from a time series: each must reach the figures of
+the same measurements as tables.
 
-usage: ASPIC=path/to/aspic recordings_test.py [CLASS]"""
+usage: ASPIC=path/to/aspic registration_test.py [CLASS]"""
 import atexit
 import csv
 import functools
@@ -14,9 +14,7 @@ import shutil
 import subprocess
 import tempfile
 import unittest
-import zipfile
 
-import recording_files as files
 from command_line import ASPIC, CommandLine
 
 CUBE = """gravity = [0, 0, 0]
@@ -34,7 +32,7 @@ FIT = ("--options", "quick.toml", "--unknown", "young=uniform", "--known", "pois
 @functools.cache
 def measured():
     """A data set as tables, created once."""
-    folder = pathlib.Path(tempfile.mkdtemp(prefix="aspic_recordings_"))
+    folder = pathlib.Path(tempfile.mkdtemp(prefix="aspic_registration_"))
     atexit.register(shutil.rmtree, folder)
     (folder / "cube.toml").write_text(CUBE)
     subprocess.run([ASPIC, "capture", "cube.toml", "-o", "data", "--pokes", "2", "--depths", "2", "--markers", "15", "--tip",
@@ -91,16 +89,14 @@ class Measured(CommandLine):
             rest[row["marker"]] = tuple(1000 * sum(w * X[axis] for w, X in zip(weights, corners)) for axis in range(3))
         return rest
 
-    def use(self, name, numbers, keys=""):
-        """Selects a recording instead of the tables, whose frames have these numbers."""
-        settings = (self.data / "capture.toml").read_text()
-        settings = re.sub(r'^(positions|markers) = .*\n', "", settings, flags=re.M)
+    def use(self, rest, frames):
+        """Replaces markers and positions of the cases [mm]."""
         sd = rows_of(self.data / "positions.csv")[0]["sd_x"]
-        self.write("data/capture.toml",
-                   f'positions = "{name}"\n{keys}deviation = {{ position = {sd} }}\n' + settings)
-        for table in ("positions.csv", "markers.csv"):
-            (self.data / table).unlink(missing_ok=True)
-        set_cells(self.data / "cases.csv", {"frame": numbers})
+        self.write("data/capture.toml", f"deviation = {{ position = {sd} }}\n" + (self.data / "capture.toml").read_text())
+        cells = lambda p: ",".join(repr(x / 1000) for x in p)
+        self.write("data/markers.csv", "marker,x,y,z\n" + "".join(f"{name},{cells(p)}\n" for name, p in rest.items()))
+        self.write("data/positions.csv", "case,marker,x,y,z\n" + "".join(
+            f'"{case}",{name},{cells(p)}\n' for case, frame in zip(self.cases, frames) for name, p in frame.items()))
 
     def fit(self, *arguments, code=0):
         done = self.aspic("fit", "data", *FIT, *arguments, code=code)
@@ -108,108 +104,6 @@ class Measured(CommandLine):
 
     def young(self, *arguments):
         return self.fit(*arguments)[1]["values"]["young"]["everywhere"]["value"]
-
-
-class Formats(Measured):
-    """One fit from each format."""
-
-    def assert_same_fit(self, reference, tolerance):
-        self.assertAlmostEqual(self.young() / reference, 1, delta=tolerance)
-
-    def setUp(self):
-        super().setUp()
-        self.reference = self.young()
-        self.numbers = range(2, 2 + len(self.cases))
-
-    def test_trc(self):
-        files.write_trc(self.data / "walk.trc", self.names, self.frames)
-        self.use("walk.trc", self.numbers)
-        self.assert_same_fit(self.reference, 1e-9)
-
-    def test_c3d_of_each_processor(self):
-        for processor in ("intel", "dec", "mips"):
-            for scale, tolerance in ((None, 1e-5), (0.004, 1e-2)):
-                with self.subTest(processor=processor, scale=scale):
-                    files.C3dWriter(processor).write(self.data / "walk.c3d", self.names, self.frames, scale=scale)
-                    if (self.data / "positions.csv").exists():
-                        self.use("walk.c3d", self.numbers)
-                    self.assert_same_fit(self.reference, tolerance)
-
-    def test_npz(self):
-        for method in (zipfile.ZIP_STORED, zipfile.ZIP_DEFLATED):
-            in_m = [{name: [x / 1000 for x in p] for name, p in frame.items()} for frame in self.frames]
-            files.write_npz(self.data / "walk.npz", self.names, in_m, method=method)
-            if (self.data / "positions.csv").exists():
-                self.use("walk.npz", range(1, 1 + len(self.cases)))
-            self.assert_same_fit(self.reference, 1e-9)
-
-    def test_tables_of_image_correlation(self):
-        in_mm = 'units = { recording = "mm" }\n'
-        for write, unit in ((files.write_dice, in_mm), (files.write_pyvale, ""), (files.write_generic, in_mm)):
-            with self.subTest(program=write.__name__):
-                shutil.rmtree(self.data)
-                shutil.copytree(measured(), self.data)
-                for f, positions in enumerate(self.frames[1:]):
-                    write(self.data / f"solution_{f}.txt", self.names, self.rest, positions)
-                self.use("solution_*.txt", range(1, 1 + len(self.cases)), unit)
-                self.assert_same_fit(self.reference, 1e-9)
-
-    def test_surfaces_with_markers(self):
-        in_m = [{name: tuple(x / 1000 for x in p) for name, p in frame.items()} for frame in self.frames]
-        for f, frame in enumerate(in_m):
-            points = [(9.0, 9.0, 9.0)] + [frame[name] for name in self.names if name in frame]
-            markers = [-1] + [i for i, name in enumerate(self.names) if name in frame]
-            files.write_ply(self.data / f"scan_{f}.ply", points, markers)
-            files.write_obj(self.data / f"scan_{f}.obj", ["m" + name for name in self.names],
-                            {"m" + name: p for name, p in frame.items()})
-        self.use("scan_*.ply", self.numbers)
-        self.assert_same_fit(self.reference, 1e-9)
-        self.write("data/capture.toml", (self.data / "capture.toml").read_text().replace("scan_*.ply", "scan_*.obj"))
-        self.assert_same_fit(self.reference, 1e-9)
-
-
-class Selection(Measured):
-    """Frames, markers and their errors."""
-
-    def setUp(self):
-        super().setUp()
-        files.write_trc(self.data / "walk.trc", self.names, self.frames)
-        self.numbers = list(range(2, 2 + len(self.cases)))
-
-    def refused(self):
-        return self.aspic("fit", "data", *FIT, code=2).stderr
-
-    def test_times_select_the_nearest_frame(self):
-        self.use("walk.trc", self.numbers)
-        by_frame = self.young()
-        set_cells(self.data / "cases.csv", {"frame": [""] * 4, "time": [(n - 1) / 50 + 0.004 for n in self.numbers]})
-        self.assertEqual(self.young(), by_frame)
-
-    def test_hidden_markers_are_left_out(self):
-        hidden = self.names[:3]
-        for frame in self.frames[1:]:
-            frame.pop(hidden[1], None)
-        self.frames[0] = {k: v for k, v in self.rest.items() if k != hidden[0]}
-        files.write_trc(self.data / "walk.trc", self.names, self.frames)
-        self.use("walk.trc", self.numbers)
-        said = self.fit()[0].stdout
-        self.assertIn("1 points were not seen at rest", said)
-        self.assertIn("14 markers", said)
-
-    def test_missing_frames_are_named(self):
-        self.use("walk.trc", ["", 99, 2, 3])
-        said = self.refused()
-        self.assertRegex(said, r"cases.csv:2: frame and time are blank; one of them selects the frame of .*walk.trc")
-        self.assertRegex(said, r"cases.csv:3: frame 99 is not in .*walk.trc, which has the frames 1 to 5")
-
-    def test_rest_frame_must_exist(self):
-        self.use("walk.trc", self.numbers, "rest_frame = 9\n")
-        self.assertRegex(self.refused(), r"capture.toml:2:\d+: rest_frame: frame 9 is not in")
-
-    def test_wrong_unit_is_recognized(self):
-        files.write_trc(self.data / "walk.trc", self.names, self.frames, unit="m")
-        self.use("walk.trc", self.numbers)
-        self.assertIn("in mm it would not", self.refused())
 
 
 class Registration(Measured):
@@ -229,14 +123,12 @@ class Registration(Measured):
         return result
 
     def use_moved(self):
-        files.write_trc(self.data / "walk.trc", self.names, [self.moved(frame) for frame in self.frames])
-        self.use("walk.trc", range(2, 2 + len(self.cases)))
+        rest, *frames = map(self.moved, self.frames)
+        self.use(rest, frames)
 
     def test_pairs_are_registered_and_reused(self):
         self.use_moved()
         self.assertIn("off the surface", self.aspic("fit", "data", *FIT, code=2).stderr)
-        self.write("data/markers.csv", "marker,vertex,x,y,z\n" + "".join(
-            f"{name},,,,\n" for name in self.names))
         corners = [0, 3, 12]
         nodes = [tuple(float(x) for x in line.split()[1:]) for line in
                  (self.data / "rest.msh").read_text().split("$Nodes\n")[1].split("\n")[1:]
@@ -244,7 +136,7 @@ class Registration(Measured):
         at = self.moved({i: [1000 * x for x in nodes[i]] for i in corners})
         self.write("data/markers.csv", "marker,vertex,x,y,z\n" + "".join(
             f"corner {i},{i},{at[i][0] / 1000!r},{at[i][1] / 1000!r},{at[i][2] / 1000!r}\n" for i in corners) + "".join(
-                f"{name},,,,\n" for name in self.names))
+                f"{name},,{x / 1000!r},{y / 1000!r},{z / 1000!r}\n" for name, (x, y, z) in self.moved(self.rest).items()))
         done, figures = self.fit("--register", "rigid")
         self.assertIn("registration of 3 points", done.stdout)
         young = figures["values"]["young"]["everywhere"]["value"]
@@ -258,8 +150,7 @@ class Registration(Measured):
     def test_collinear_markers_are_reported(self):
         self.names = self.names[:3]
         line = {name: (10.0 + 30 * i, 50.0, 100.0) for i, name in enumerate(self.names)}
-        files.write_trc(self.data / "walk.trc", self.names, [line] * 5)
-        self.use("walk.trc", range(2, 6))
+        self.use(line, [line] * len(self.cases))
         said = self.aspic("check", "data", "--register", "rigid").stdout
         self.assertIn("the points lie on a line: the rotation about it is not determined", said)
 
