@@ -29,7 +29,6 @@ std::span<const Target> targets() {
       {"journal", journal},
       {"material", material},
       {"data_set", data_set},
-      {"curves", curves},
       {"motion_table", motion_table},
       {"toml", toml},
       {"scene", scene},

@@ -41,7 +41,6 @@ void run_recording(std::string_view bytes);  // the files of a run
 void journal(std::string_view bytes);
 void material(std::string_view bytes);
 void data_set(std::string_view bytes);  // files in one text
-void curves(std::string_view bytes);
 void motion_table(std::string_view bytes);
 // Scenes.
 void toml(std::string_view bytes);

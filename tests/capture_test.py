@@ -225,24 +225,5 @@ class MaterialFile(CommandLine):
         self.assertIn("none.vtu", self.aspic("run", "use.toml", code=2).stderr)
 
 
-class Curves(CommandLine):
-    def test_spreadsheet_table_gives_parameters_and_scene_line(self):
-        rows = "\n".join(f"uniaxial;{l:g};{1e3 * (l - l ** -2):g}".replace(".", ",") for l in (1.1, 1.3, 1.6, 2.0))
-        self.write("pull.csv", "# a neo-Hookean rubber, mu = 1 kPa\ntest;stretch;stress_Pa\n" + rows)
-        text = self.aspic("fit-curves", "pull.csv", "--material", "neo_hookean_isochoric").stdout
-        self.assertRegex(text, r"young +29[78]\d|young +300\d")
-        self.assertIn('material = { model = "neo_hookean_isochoric", young = ', text)
-        listed = json.loads(self.aspic("fit-curves", "pull.csv", "--material", "fung", "--json").stdout)
-        self.assertEqual(len(listed), 1)
-
-    def test_bad_tables_name_the_row(self):
-        for text, message in (("", "empty"), ("test,stretch,stress\nuniaxial,1.1,1\n", "stress_MPa"),
-                              ("test,stretch,stress_Pa\nuniaxial,1.1,nan\n", "pull.csv:2"),
-                              ("test,stretch,stress_Pa\nuniaxal,1.1,1\n", "uniaxial")):
-            self.write("pull.csv", text)
-            self.assertIn(message, self.aspic("fit-curves", "pull.csv", code=2).stderr)
-
-
-
 if __name__ == "__main__":
     unittest.main(verbosity=2)

@@ -14,7 +14,7 @@ from command_line import CUBE_OBJ, CommandLine, MESHER, box_mesh
 
 class Help(CommandLine):
     def test_every_level_has_examples(self):
-        for arguments in ([], ["run"], ["check"], ["convert"], ["materials"], ["minimize"], ["capture"], ["fit"], ["fit-curves"],
+        for arguments in ([], ["run"], ["check"], ["convert"], ["materials"], ["minimize"], ["capture"], ["fit"],
                           ["verify"], ["modes"], ["schema"], ["sweep"], ["completion"]):
             text = self.aspic(*arguments, "--help").stdout
             self.assertIn("Examples:", text)

@@ -83,7 +83,7 @@ class Hostile(unittest.TestCase):
 
 class Names(Hostile):
     def test_too_long_looping_and_missing_names_are_refused(self):
-        for command in (["run"], ["check"], ["view", "--no-browser"], ["report"], ["fit"], ["capture"], ["fit-curves"],
+        for command in (["run"], ["check"], ["view", "--no-browser"], ["report"], ["fit"], ["capture"],
                         ["compare", "--methods", "newton"], ["render", "-o", "a.png", "--step", "1"]):
             for name in (LONG, "loop", "loop/x", LONG + "/x", "tet.mesh/x"):
                 message = self.aspic(*command, name, code=2)
@@ -97,7 +97,7 @@ class Names(Hostile):
 
 class Rights(Hostile):
     def test_a_folder_without_rights_is_named(self):
-        for command in (["run"], ["check"], ["view", "--no-browser"], ["report"], ["fit"], ["capture"], ["fit-curves"]):
+        for command in (["run"], ["check"], ["view", "--no-browser"], ["report"], ["fit"], ["capture"]):
             for name in ("closed", "closed/x", "closed/x.toml"):
                 self.assertIn("closed", self.aspic(*command, name, code=2, user=NOBODY))
         for out in ("closed", "closed/out", "out"):

@@ -28,7 +28,6 @@ void add_fit(CLI::App& app, Action& action);
 void add_fit_jobs(CLI::App& app, Action& action);
 void add_compare(CLI::App& app, Action& action);
 void add_materials(CLI::App& app, Action& action);
-void add_fit_curves(CLI::App& app, Action& action);
 void add_fit_motion(CLI::App& app, Action& action);
 void add_minimize(CLI::App& app, Action& action);
 void add_capture(CLI::App& app, Action& action);

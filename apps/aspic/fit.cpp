@@ -275,7 +275,8 @@ bool has_nothing_to_do(const FitArguments& arguments, const std::string& options
 
 int run(const FitArguments& arguments) {
   if (arguments.data.extension() == ".csv")
-    throw InvalidInput(arguments.data.string() + ": a data set is a folder; to fit curves: aspic fit-curves " +
+    throw InvalidInput(arguments.data.string() +
+                       ": a data set is a folder; to fit curves of a testing machine: python3 -m aspic.curves " +
                        arguments.data.string());
   if (arguments.threads > 0) set_thread_count(arguments.threads);
   FitPlan plan = plan_of(arguments);

@@ -12,7 +12,6 @@ int main(int argc, char** argv) {
     add_fit_jobs(app, action);
     add_compare(app, action);
     add_materials(app, action);
-    add_fit_curves(app, action);
     add_fit_motion(app, action);
     add_minimize(app, action);
     add_capture(app, action);

@@ -179,7 +179,7 @@ def test_images_need_the_size_of_a_pixel(data):
 
 def test_cases_without_a_frame_are_named(data):
     write_trc(data)
-    (data / "cases.csv").write_text("case,frame,time\na,,\nb,99,\nc,,7\nd,1.5,\n")
+    (data / "cases.csv").write_text("case,frame,time\na,,\nb,99,\nc,,7\nx,1.5,\n")
     with pytest.raises(InvalidInput) as error:
         to_data_set(data / "walk.trc", data)
     lines = str(error.value).split("\n")
