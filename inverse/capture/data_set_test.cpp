@@ -440,10 +440,11 @@ TEST_F(DataSetFile, ForcesAloneNeedNoMarkers) {
 // A coordinate that was not measured has a huge standard deviation, which turns with the registration.
 TEST_F(DataSetFile, DeviationsTurnWithTheRegistration) {
   measured("registration = \"registration.toml\"");
-  folder.write("registration.toml", "rotate = [90, 0, 0]\ntranslate = [0, 0.06, 0]\n");
-  folder.write("markers.csv", "marker,x,y,z\na,0.05,0.06,0.02\n");
-  folder.write("positions.csv", "case,marker,x,y,z,sd_x,sd_y,sd_z\n1,a,0.05,0.05,0.02,1e-4,2e-4,50\n");
-  const Vec3d sigma = read_data_set(folder).experiment.cases[0].positions[0].sigma;
+  folder.write("registration.toml", "rotate = { axis = [1, 0, 0], angle_deg = 90 }\n");
+  folder.write("markers.csv", "marker,x,y,z\na,0.05,0.06,-0.04\n");
+  folder.write("positions.csv", "case,marker,x,y,z,sd_x,sd_y,sd_z\ndeep,a,0.05,0.055,-0.04,1e-4,2e-4,50\n");
+  const Experiment e = read_data_set(folder).experiment;
+  const Vec3d sigma = e.cases[e.cases[0].name == "deep" ? 0 : 1].positions.at(0).sigma;
   EXPECT_NEAR(sigma[0], 1e-4, 1e-16);
   EXPECT_NEAR(sigma[1], 50, 1e-12);
   EXPECT_NEAR(sigma[2], 2e-4, 1e-16);

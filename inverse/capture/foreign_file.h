@@ -7,7 +7,7 @@ namespace aspic {
 // "converted by: python3 -m aspic.recordings FILE OUTPUT"
 std::string conversion(const std::string& file, const std::string& output);
 
-// Throws InvalidInput for the name of a recording or of a sequence of files. `output`: folder or table to convert it to.
+// Throws InvalidInput for the name of a recording or of a sequence of files. `output`: folder or table to write.
 void require_table(const std::string& file, const std::string& output);
 
 }  // namespace aspic
