@@ -2,9 +2,7 @@
 """From measurements to a material on the command line: capture, fit, bad data, material files, curves."""
 import csv
 import filecmp
-import json
 import os
-import re
 import subprocess
 import unittest
 

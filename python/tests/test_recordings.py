@@ -250,7 +250,7 @@ def test_damage_is_reported_with_its_place(tmp_path, name, contents, message):
         read(tmp_path, name, contents)
 
 
-def test_archives_refuse_bombs_and_infinite_values(tmp_path):
+def test_archives_refuse_bombs_and_infinite_values(tmp_path, monkeypatch):
     def refused(message, entries, method=zipfile.ZIP_STORED):
         with zipfile.ZipFile(tmp_path / "a.npz", "w", method) as archive:
             for name, data in entries.items():
@@ -272,6 +272,8 @@ def test_archives_refuse_bombs_and_infinite_values(tmp_path):
     (tmp_path / "a.npz").write_bytes(data.replace(size, huge))
     with pytest.raises(InvalidInput, match="claims 4294967294 bytes"):
         read_recording(tmp_path / "a.npz")
+    monkeypatch.setattr("aspic.recordings.npz.free_memory", lambda: 1 << 20)
+    refused("there is memory for 262144", {"positions.npy": bytes((1 << 26) + 1)}, zipfile.ZIP_DEFLATED)
 
 
 HOSTILE = r"""

@@ -2,6 +2,7 @@
 import ast
 import io
 import math
+import os
 import struct
 import warnings
 import zipfile
@@ -12,7 +13,12 @@ import numpy as np
 from .recording import InvalidInput, Recording, length_unit, printable
 
 LARGEST_RATIO = 1032  # of deflate [zlib technical details]
+MANY_BYTES, COPIES = 1 << 26, 4  # copies: unpacked, as numbers, as points
 TYPES = {"f4", "f8", "i4", "i8"}
+
+
+def free_memory():
+    return os.sysconf("SC_AVPHYS_PAGES") * os.sysconf("SC_PAGE_SIZE")
 
 
 def parse_npz(file, contents):
@@ -55,6 +61,10 @@ class _Reader:
             if info.file_size > LARGEST_RATIO * info.compress_size:
                 self.fail(f"'{info.filename}' claims {info.file_size} bytes, more than its {info.compress_size} deflated bytes can "
                           "hold; the archive is damaged")
+
+        unpacked = sum(info.file_size for info in infos)
+        if unpacked > MANY_BYTES and unpacked > (available := free_memory() // COPIES):
+            self.fail(f"unpacks to {unpacked} bytes; there is memory for {available}. Save fewer frames or points")
 
     def array(self, name):
         """None if it is missing."""
