@@ -210,7 +210,7 @@ def fit_curves(curves, material="spline", poisson=0.49, weighting="balanced", in
     tries = [minimize_within(misfit.evaluate, misfit.guess(start), lower, upper)
              for start in range(max(1, starts) if len(lower) > 1 else 1)]
     least = min(t.objective for t in tries)
-    best = next(t for t in tries if t.objective <= least * (1 + 1e-9))  # the first of equal minima
+    best = next(t for t in tries if t.objective <= least * (1 + 1e-12))  # the first of equal minima
     if best.p is None:
         raise InvalidInput(f"{material} has no state of free faces at some stretch of the curves; choose another material or its "
                            "incompressible limit")
