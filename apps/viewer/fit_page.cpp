@@ -22,8 +22,6 @@ constexpr float kNotANumber = std::numeric_limits<float>::quiet_NaN();
 
 // Returns null for infinity and NaN, which JSON cannot represent.
 Json number_json(double value) { return std::isfinite(value) ? Json(value) : Json(); }
-Json vector(const Vec3d& v) { return {number_json(v[0]), number_json(v[1]), number_json(v[2])}; }
-
 std::vector<float> floats(const std::vector<double>& values) { return {values.begin(), values.end()}; }
 
 void append(const Vec3d& v, std::vector<float>& list) {
