@@ -7,7 +7,6 @@
 #include "capture/data_set.h"
 #include "capture/journal.h"
 #include "capture/motion_table.h"
-#include "capture/test_curves.h"
 #include "io/checkpoint.h"
 #include "io/mesh_file.h"
 #include "io/pc2.h"
@@ -125,12 +124,6 @@ void data_set(std::string_view bytes) {
   for (const SurfacePoint& marker : data.experiment.markers)
     for (const int v : marker.vertices)
       require(v >= 0 && v < data.experiment.mesh.vertex_count(), "markers refer to vertices of the mesh");
-}
-
-void curves(std::string_view bytes) {
-  const fs::path path = folder_of_process() / "curves.csv";
-  put_file(path, bytes);
-  require(!read_test_curves(path).empty(), "an accepted table has a curve");
 }
 
 void motion_table(std::string_view bytes) {

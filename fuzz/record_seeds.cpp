@@ -85,9 +85,6 @@ std::vector<Seed> record_seeds() {
       {"run_folder", "checkpoint", joined_files({{"checkpoint.bin", checkpoint_bytes(run)}})},
       {"run_folder", "tables", joined_files({{"steps.csv", "step,time\n1,0.01\n"}, {"run.pvd", "<VTKFile/>\n"}})},
       {"data_set", "measured", data_set_text()},
-      {"curves", "rubber",
-       "test,stretch,stress_MPa\nuniaxial,1,0\nuniaxial,1.5,0.4\nequibiaxial,1.2,0.3\nplanar,1.1,0.1\nsimple_shear,0.2,"
-       "0.05\n"},
       {"motion_table", "tip", "time,marker,x,y,z,sigma\n0,tip,1,1,1,0.1\n0.01,tip,1,0.9,1,0.1\n"},
   };
 }

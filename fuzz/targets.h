@@ -41,14 +41,7 @@ void run_recording(std::string_view bytes);  // the files of a run
 void journal(std::string_view bytes);
 void material(std::string_view bytes);
 void data_set(std::string_view bytes);  // files in one text
-void curves(std::string_view bytes);
 void motion_table(std::string_view bytes);
-// Recordings of other programs.
-void trc(std::string_view bytes);
-void c3d(std::string_view bytes);
-void npz(std::string_view bytes);
-void dic_tables(std::string_view bytes);        // files in one text
-void surface_sequence(std::string_view bytes);  // files in one text
 // Scenes.
 void toml(std::string_view bytes);
 void scene(std::string_view bytes);     // builds the scene, with at most a few hundred tets

@@ -15,7 +15,7 @@ from command_line import CUBE_OBJ, CommandLine, HAS_FIT, MESHER, box_mesh
 class Help(CommandLine):
     def test_every_level_has_examples(self):
         for arguments in ([], ["run"], ["check"], ["convert"], ["materials"], ["minimize"], ["verify"], ["modes"], ["schema"],
-                          ["sweep"], ["completion"], *([["capture"], ["fit"], ["fit-curves"], ["closed-loop"]] if HAS_FIT else [])):
+                          ["sweep"], ["completion"], *([["capture"], ["fit"]] if HAS_FIT else [])):
             text = self.aspic(*arguments, "--help").stdout
             self.assertIn("Examples:", text)
             self.assertIn(" ".join(["  aspic", *arguments]), text)

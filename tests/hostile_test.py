@@ -14,7 +14,7 @@ import tempfile
 import unittest
 
 ASPIC = os.environ["ASPIC"]
-FITS = [["fit"], ["capture"], ["fit-curves"]] if pathlib.Path(ASPIC).with_name("aspic-fit").exists() else []
+FITS = [["fit"], ["capture"]] if pathlib.Path(ASPIC).with_name("aspic-fit").exists() else []
 NOBODY = 65534
 CUBE = """[time]
 step = 0.01
@@ -142,7 +142,7 @@ class Random(Hostile):
         chance = random.Random(int(os.environ.get("SEED", "1")))
         for _ in range(int(os.environ.get("COUNT", "60"))):
             command = chance.choice(sorted(options))
-            if command in ("mesh", "view", "lecture", "verify", "closed-loop"):  # another program; no end; long
+            if command in ("mesh", "view", "lecture", "verify"):  # another program; no end; long
                 command = "run"
             line = [command] if chance.random() < 0.97 else []
             line += chance.sample(FILES, chance.choice([0, 1, 1, 1, 2]))

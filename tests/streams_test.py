@@ -23,7 +23,6 @@ material = { young = 1e5, poisson = 0.3, density = 1000 }
 """
 TET = """MeshVersionFormatted 2\nDimension 3\nVertices\n4\n0 0 0 0\n1 0 0 0\n0 1 0 0\n0 0 1 0
 Tetrahedra\n1\n1 2 3 4 0\nEnd\n"""
-CURVE = "test,stretch,stress_Pa\nuniaxial,1.1,300\nuniaxial,1.5,1056\n"
 # A quick use of each command that prints a result, and one that fails.
 USES = {
     "run": (["cube.toml", "--out", "run", "--force"], ["none.toml"]),
@@ -35,8 +34,6 @@ USES = {
     "materials": (["--json"], ["none"]),
     "fit-motion": (["--help"], ["none.toml", "none.csv", "--fit", "young"]),
     "fit-jobs": (["--help"], ["none"]),
-    "fit-curves": (["curve.csv", "--material", "neo_hookean"], ["none.csv"]),
-    "closed-loop": (["--loops", "1", "--increments", "10"], ["--loops", "nan"]),
     "minimize": (["rosenbrock"], ["none"]),
     "capture": (["--help"], ["none.toml"]),
     "modes": (["cube.toml", "--out", "modes", "--force"], ["none.toml"]),
@@ -57,7 +54,7 @@ class Streams(unittest.TestCase):
     def setUpClass(cls):
         cls.folder = pathlib.Path(tempfile.mkdtemp(prefix="aspic_streams_"))
         cls.addClassCleanup(shutil.rmtree, cls.folder)
-        for name, text in (("cube.toml", CUBE), ("tet.mesh", TET), ("curve.csv", CURVE)):
+        for name, text in (("cube.toml", CUBE), ("tet.mesh", TET)):
             (cls.folder / name).write_text(text)
         help_text = cls.aspic("--help").stdout.decode()
         cls.expected = {}  # results with ordinary streams

@@ -24,8 +24,6 @@ constexpr OtherCommand kCommands[] = {
     {"fit", kFit, "Fits a material to measurements, with its uncertainty"},
     {"fit-jobs", kFit, "Lists the independent fits of a fit for xargs, GNU parallel or Slurm"},
     {"fit-motion", kFit, "Fits material, damping and initial velocity to a measured motion"},
-    {"fit-curves", kFit, "Fits materials to curves of uniaxial, equibiaxial, planar and shear tests"},
-    {"closed-loop", kFit, "Work of closed loops of strain"},
     {"capture", kFit, "Makes synthetic measurements of a body, for fits with known truth"},
 };
 

@@ -9,7 +9,7 @@
 #include "capture/data_set.h"
 #include "capture/surface_projection.h"
 #include "energy/held_indenter.h"
-#include "fit/next_indentation.h"
+#include "fit/indentation_sites.h"
 #include "scene/material_file.h"
 #include "scene/scene.h"
 

@@ -8,9 +8,9 @@ namespace aspic::viewer {
 namespace {
 
 // In the order of FitStage.
-constexpr const char* kFitStageTexts[] = {
-    "one value for the whole body", "discretization error, by a finer mesh", "a value for every tet",     "uncertainty",
-    "segmentation into parts",      "leave-one-out cross-validation",        "most informative next poke"};
+constexpr const char* kFitStageTexts[] = {"one value for the whole body", "discretization error, by a finer mesh",
+                                          "a value for every tet",        "uncertainty",
+                                          "segmentation into parts",      "leave-one-out cross-validation"};
 
 const char* name_of(FitStage stage) { return kFitStageTexts[static_cast<size_t>(stage)]; }
 

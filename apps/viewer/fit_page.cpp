@@ -22,8 +22,6 @@ constexpr float kNotANumber = std::numeric_limits<float>::quiet_NaN();
 
 // Returns null for infinity and NaN, which JSON cannot represent.
 Json number_json(double value) { return std::isfinite(value) ? Json(value) : Json(); }
-Json vector(const Vec3d& v) { return {number_json(v[0]), number_json(v[1]), number_json(v[2])}; }
-
 std::vector<float> floats(const std::vector<double>& values) { return {values.begin(), values.end()}; }
 
 void append(const Vec3d& v, std::vector<float>& list) {
@@ -57,8 +55,7 @@ class FitPack {
                  {"fibres", fibres()},
                  {"notes", data_.notes},
                  {"warnings", outcome_.warnings},
-                 {"markerNames", marker_names()},
-                 {"nextPoke", next_indentation()}};
+                 {"markerNames", marker_names()}};
     std::string text;
     append_base64(gzipped(pack_.bytes(std::move(head))), text);
     return text;
@@ -224,17 +221,6 @@ class FitPack {
                       {"misfit", number_json(w.misfit)},
                       {"roughness", number_json(w.roughness)}});
     return list;
-  }
-
-  Json next_indentation() const {
-    if (!outcome_.next_indentation) return {};
-    const IndentationCandidate& poke = *outcome_.next_indentation;
-    return {{"site", vector(poke.site)},
-            {"inward", vector(poke.inward)},
-            {"radius", poke.load.indenter ? poke.load.indenter->radius : 0.0},
-            {"depth", norm(poke.load.pose.center - poke.load.touch.center)},
-            {"gain", number_json(poke.gain)},
-            {"words", poke.description}};
   }
 
   const DataSet& data_;

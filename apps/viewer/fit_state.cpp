@@ -214,10 +214,6 @@ Json FitState::json() const {
     fit["softest"] = *least, fit["stiffest"] = *most;
     fit["error"] = error_of(*bench_, known_.young);
   }
-  if (known_.outcome && known_.outcome->next_indentation) {
-    const IndentationCandidate& next = *known_.outcome->next_indentation;
-    fit["next"] = {{"site", json_of(next.site)}, {"words", next.description}};
-  }
   return fit;
 }
 

@@ -35,7 +35,7 @@ class CaseReader {
                      "; give each case its own name");
       cases.push_back(std::move(load));
       data_.source.case_line.push_back(table_.line());
-      data_.case_frame.push_back(frame_);
+      data_.case_time.push_back(time_);
     }
     if (cases.empty()) throw InvalidInput(data_.source.cases + ": has no cases; a fit needs at least one");
   }
@@ -43,7 +43,7 @@ class CaseReader {
  private:
   LoadCase row() {
     LoadCase load;
-    frame_ = {table_.integer("frame"), table_.number("time")};
+    time_ = table_.number("time");
     const std::string number = std::to_string(data_.experiment.cases.size() + 1);
     load.name = table_.text("case").empty() ? "case " + number : table_.text("case");
     load.group = table_.text("group").empty() ? load.name : table_.text("group");
@@ -179,9 +179,8 @@ class CaseReader {
   void take_force_of_series(LoadCase& load) {
     if (!scope_.forces) return;
     try {
-      const std::optional<double> time = scope_.recorded ? scope_.recorded->time_of(frame_) : frame_.time;
-      if (!time) return table_.error("force and time are blank; the time selects the force in " + scope_.forces->file);
-      const std::optional<SteadyForce> steady = force_at(*time);
+      if (!time_) return table_.error("force and time are blank; the time selects the force in " + scope_.forces->file);
+      const std::optional<SteadyForce> steady = force_at(*time_);
       if (!steady) return;
       const bool is_stated = norm(load.force_sigma) > 0;
       if (!is_stated) load.force_sigma = scope_.forces->is_axial ? along_all(steady->sigma[0]) : steady->sigma;
@@ -201,8 +200,7 @@ class CaseReader {
   std::optional<SteadyForce> force_at(double time) {
     const Value* steady = settings_.find("steady");
     if (steady && steady->is_text()) {
-      const double interval = scope_.recorded ? scope_.recorded->interval() : 0;
-      return SteadyForce{true, resampled(*scope_.forces, time, interval), {}, "taken at its time"};
+      return SteadyForce{true, resampled(*scope_.forces, time), {}, "taken at its time"};
     }
     SteadyForce force =
         steady_force(*scope_.forces, time, steady ? steady->number() : default_duration(*scope_.forces));
@@ -249,7 +247,7 @@ class CaseReader {
   const CaseScope& scope_;
   DataSet& data_;
   MeasuredTable table_;
-  CaseFrame frame_;  // of the current row
+  std::optional<double> time_;  // of the current row [s]
   int steady_notes_ = 0;
   std::map<std::string, int> line_of_;
   std::map<std::string, IndenterPose> touch_of_;  // touch of each group
@@ -275,7 +273,7 @@ void sort_cases(DataSet& data) {
   });
   cases = in_order(cases, order);
   data.source.case_line = in_order(data.source.case_line, order);
-  data.case_frame = in_order(data.case_frame, order);
+  data.case_time = in_order(data.case_time, order);
 }
 
 }  // namespace

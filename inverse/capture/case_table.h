@@ -6,7 +6,6 @@
 
 #include "capture/data_set.h"
 #include "capture/force_series.h"
-#include "capture/recorded_positions.h"
 #include "capture/settings.h"
 #include "capture/stated_errors.h"
 #include "capture/surface_projection.h"
@@ -19,8 +18,7 @@ struct CaseScope {
   const std::map<std::string, Grip>& grips;            // without motion
   const std::map<std::string, std::vector<Triangle>>& patches;
   const SurfaceProjection& surface;
-  const ForceSeries* forces = nullptr;          // of cases without a force of their own
-  const RecordedPositions* recorded = nullptr;  // has the times of frames
+  const ForceSeries* forces = nullptr;  // of cases without a force of their own
 };
 
 // Appends the cases group by group, each from the smallest load on, and their lines.

@@ -20,17 +20,10 @@ struct DataSource {
   std::string settings = "capture.toml", markers = "markers.csv", cases = "cases.csv", positions = "positions.csv";
   std::vector<int> marker_line, case_line;
   std::vector<std::vector<int>> position_line;  // line per case and position
-  std::vector<std::string> frame;               // place of each case in a recording
 
   std::string marker(int m) const;           // "markers.csv:12"
   std::string load_case(int c) const;        // "cases.csv:3"
   std::string position(int c, int i) const;  // "positions.csv:40"
-};
-
-// Frame of the recording that shows a case; empty without a recording.
-struct CaseFrame {
-  std::optional<int> number;
-  std::optional<double> time;  // [s]
 };
 
 // Tets of the largest mesh that is simulated with quadratic tets by default; a fit also solves on eight times as many.
@@ -44,9 +37,9 @@ struct DataSet {
   bool is_order_reduced = false;            // tets are linear because there are more than kMaxQuadratic
   Numbering numbering;                      // maps to the user's vertices and tets
   std::vector<std::string> marker_names;
-  std::vector<double> marker_gap;            // original distance of each marker from the surface [m]
-  std::vector<CaseFrame> case_frame;         // one per case
-  std::optional<Registration> registration;  // if it was requested
+  std::vector<double> marker_gap;                // original distance of each marker from the surface [m]
+  std::vector<std::optional<double>> case_time;  // one per case [s]
+  std::optional<Registration> registration;      // if it was requested
   DataSource source;
   std::vector<std::string> notes;  // assumptions, conversions and corrections of the reader
 };

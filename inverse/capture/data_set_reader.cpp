@@ -8,9 +8,9 @@
 #include "capture/case_table.h"
 #include "capture/data_findings.h"
 #include "capture/data_set.h"
+#include "capture/foreign_file.h"
 #include "capture/histories.h"
 #include "capture/patch_table.h"
-#include "capture/recorded_positions.h"
 #include "capture/rigid_motion.h"
 #include "capture/scan_gravity.h"
 #include "capture/settings.h"
@@ -54,7 +54,6 @@ class DataSetReader {
   DataSet read() {
     read_name();
     read_rest();
-    read_recorded();
     const SurfaceProjection surface(data_.experiment.mesh);
     register_markers(surface);
     read_markers(surface);
@@ -62,10 +61,8 @@ class DataSetReader {
     read_grips();
     read_patches(surface);
     if (settings_.find("forces")) forces_ = read_force_series(settings_, errors_, data_.notes);
-    read_cases(settings_,
-               {indenters_, tip_sigmas_, grips_, patches_, surface, forces_ ? &*forces_ : nullptr,
-                recorded_ ? &*recorded_ : nullptr},
-               errors_, data_);
+    read_cases(settings_, {indenters_, tip_sigmas_, grips_, patches_, surface, forces_ ? &*forces_ : nullptr}, errors_,
+               data_);
     read_positions();
     errors_.finish();
     data_.experiment.errors = read_systematic_errors(settings_, data_.experiment.cases);
@@ -163,12 +160,6 @@ class DataSetReader {
     }
   }
 
-  void read_recorded() {
-    if (!settings_.is_given("positions")) return;
-    const fs::path path = settings_.file_or_pattern("positions");
-    if (is_recording(path)) recorded_.emplace(read_recording(path), settings_, size_, data_.notes);
-  }
-
   // The registration of the settings, or one that is found now.
   void register_markers(const SurfaceProjection& surface) {
     const Value* given = settings_.find("registration");
@@ -180,7 +171,6 @@ class DataSetReader {
       to_mesh_ = data_.registration->to_mesh;
       data_.notes.push_back(text_of(*data_.registration));
     }
-    if (recorded_) recorded_->set_registration(to_mesh_);
   }
 
   // The vertices of the triangles: others, such as those inside a body, are not on its surface. Without triangles all.
@@ -207,9 +197,6 @@ class DataSetReader {
       std::vector<std::string> notes;
       MeasuredTable table(settings_.file("markers"), settings_.columns("markers"), ignored, notes);
       while (table.next()) add_point(table, points, placed, targets);
-    } else if (recorded_) {
-      for (const std::string& name : recorded_->names())
-        if (const std::optional<Vec3d> p = recorded_->rest(name)) points.push_back(*p);
     }
     if (placed.size() >= 3) return register_to_targets(placed, targets, *registers_);
     return register_to_surface(surface, points, *registers_);
@@ -218,8 +205,7 @@ class DataSetReader {
   // A marker with coordinates and a vertex is a pair of corresponding points.
   void add_point(MeasuredTable& table, std::vector<Vec3d>& points, std::vector<Vec3d>& placed,
                  std::vector<Vec3d>& targets) {
-    std::optional<Vec3d> p = table.vector("", settings_.unit("length"));
-    if (!p && recorded_) p = recorded_->rest(table.text("marker"));
+    const std::optional<Vec3d> p = table.vector("", settings_.unit("length"));
     if (!p) return;
     points.push_back(*p);
     const std::optional<int> vertex = table.integer("vertex");
@@ -234,37 +220,13 @@ class DataSetReader {
   }
 
   void read_markers(const SurfaceProjection& surface) {
-    if (recorded_ && !has_table("markers")) {
-      read_recorded_markers(surface);
-    } else if (has_table("markers")) {
+    if (has_table("markers")) {
       read_marker_table(surface);
     } else if (has_table("positions")) {
       throw InvalidInput("there is no " + data_.source.markers + ", but " + data_.source.positions +
                          " has positions of markers; add it with the columns marker, x, y, z at rest, or remove " +
                          data_.source.positions + " to fit forces only");
     }
-  }
-
-  void read_recorded_markers(const SurfaceProjection& surface) {
-    data_.source.markers = data_.source.positions;
-    size_t hidden = 0;
-    for (const std::string& name : recorded_->names()) {
-      const std::optional<Vec3d> rest = recorded_->rest(name);
-      if (!rest) {
-        ++hidden;
-        continue;
-      }
-      Vec3d gap{};
-      const SurfacePoint point = point_near(*rest, surface, gap, [&](const std::string& text) {
-        errors_.add(recorded_->where_at_rest() + ": '" + name + "': " + text);
-      });
-      add_marker(name, point, gap);
-    }
-    if (hidden > 0)
-      data_.notes.push_back(recorded_->where_at_rest() + ": " + std::to_string(hidden) +
-                            " points were not seen at rest, where they are placed on the body; they are not used");
-    if (data_.marker_names.empty())
-      errors_.add(recorded_->where_at_rest() + ": no point was seen; choose another rest_frame");
   }
 
   void add_marker(const std::string& name, const SurfacePoint& point, const Vec3d& gap) {
@@ -278,7 +240,7 @@ class DataSetReader {
   void read_marker_table(const SurfaceProjection& surface) {
     MeasuredTable table(settings_.file("markers"), settings_.columns("markers"), errors_, data_.notes);
     const bool has_corners = table.has("corner_1"), has_points = table.has("x");
-    if (!has_corners && !has_points && !table.has("vertex") && !recorded_)
+    if (!has_corners && !has_points && !table.has("vertex"))
       throw InvalidInput(data_.source.markers +
                          ":1: has no column x, vertex or corner_1 for the position of a marker (columns in " +
                          data_.source.settings + " gives them other names)");
@@ -304,8 +266,7 @@ class DataSetReader {
     if (const std::optional<int> vertex = table.integer("vertex")) return marker_at_vertex(table, gap);
     const std::optional<Vec3d> p = position_at_rest(table);
     if (!p) {
-      table.error(recorded_ ? "the marker has no position; give x, y, z or a marker that the recording shows at rest"
-                            : "the marker has no position; give x, y, z or vertex");
+      table.error("the marker has no position; give x, y, z or vertex");
       return {};
     }
     return point_near(*p, surface, gap, [&](const std::string& text) { table.error(text); });
@@ -313,8 +274,7 @@ class DataSetReader {
 
   std::optional<Vec3d> position_at_rest(MeasuredTable& table) {
     const std::optional<Vec3d> p = table.vector("", settings_.unit("length"));
-    if (p) return to_mesh_(*p);
-    return recorded_ ? recorded_->rest(table.text("marker")) : std::nullopt;
+    return p ? std::optional(to_mesh_(*p)) : std::nullopt;
   }
 
   SurfacePoint point_near(const Vec3d& p, const SurfaceProjection& surface, Vec3d& gap,
@@ -329,12 +289,10 @@ class DataSetReader {
 
   // Suggests a unit if another one would move the point onto the body.
   std::string unit_hint(const SurfaceProjection& surface, const Vec3d& p) const {
-    const char* key = recorded_ && !has_table("markers") ? "recording" : "length";
-    const double length = recorded_ && !has_table("markers") ? recorded_->unit() : settings_.unit("length");
     for (const std::string& unit : unit_names("length")) {
-      const double factor = unit_in_si("length", unit) / length;
+      const double factor = unit_in_si("length", unit) / settings_.unit("length");
       if (surface.nearest(factor * p).distance < kFarOff * size_ && norm(factor * p) > kFarOff * size_)
-        return "in " + unit + " it would not: units = { " + key + " = \"" + unit + "\" }";
+        return "in " + unit + " it would not: units = { length = \"" + unit + "\" }";
     }
     return "correct it, or align the markers with the mesh by --register rigid";
   }
@@ -424,7 +382,6 @@ class DataSetReader {
 
   void read_positions() {
     data_.source.position_line.resize(data_.experiment.cases.size());
-    if (recorded_) return read_recorded_positions();
     const Value& name = settings_["positions"];
     std::error_code error;
     if (!settings_.is_given("positions") && !fs::exists(settings_.folder() / name.text(), error)) {
@@ -435,11 +392,13 @@ class DataSetReader {
                             " are fitted");
       return;
     }
+    require_table(name.text(), settings_.folder().string());
     MeasuredTable table(settings_.file("positions"), settings_.columns("positions"), errors_, data_.notes);
     for (const char* column : {"x", "y", "z"})
       if (!table.has(column))
         throw InvalidInput(data_.source.positions + ":1: has no column " + column + " (columns in " +
-                           data_.source.settings + " gives it another name)");
+                           data_.source.settings + " gives it another name; tables of image correlation are " +
+                           conversion(name.text(), settings_.folder().string()) + ")");
     std::map<std::string, int> case_of;
     for (size_t c = 0; c < data_.experiment.cases.size(); ++c)
       case_of[data_.experiment.cases[c].name] = static_cast<int>(c);
@@ -453,39 +412,28 @@ class DataSetReader {
       data_.notes.push_back(data_.source.positions + " has no row below its header: only forces are fitted");
   }
 
-  void read_recorded_positions() {
-    const double sd = position_sigma();
-    const std::vector<int> markers = recorded_->points(data_.marker_names);
-    size_t count = 0;
-    for (size_t c = 0; c < data_.experiment.cases.size(); ++c) {
-      const RecordedFrame* frame = nullptr;
-      try {
-        frame = &recorded_->frame(data_.case_frame[c]);
-      } catch (const InvalidInput& error) {
-        errors_.add(data_.source.load_case(static_cast<int>(c)) + ": " + error.what());
-        continue;
-      }
-      for (size_t m = 0; m < markers.size(); ++m) {
-        if (markers[m] < 0 || !is_seen(frame->positions[markers[m]])) continue;
-        if (++count > kMaxReadings) throw too_many_positions();
-        data_.experiment.cases[c].positions.push_back(
-            {static_cast<int>(m), recorded_->on_mesh(frame->positions[markers[m]]) - gap_[m], recorded_->sigma(sd)});
-      }
-      data_.source.frame.resize(data_.experiment.cases.size());
-      data_.source.frame[c] = frame->where;
-    }
-  }
-
   InvalidInput too_many_positions() const {
     return InvalidInput(data_.source.positions + ": more than " + std::to_string(kMaxReadings) +
                         " positions; remove markers or cases");
   }
 
+  // Standard deviations along the axes of the mesh. A coordinate that was not measured has a huge one, which must not
+  // reach other axes through round-off of the registration.
+  Vec3d on_mesh_axes(const Vec3d& sd) const {
+    if (sd[0] == sd[1] && sd[1] == sd[2]) return sd;
+    constexpr double kAside = 0.014;  // sine of an angle below 0.8 degrees
+    const Mat3d R = rotation_of(to_mesh_);
+    Vec3d turned{};
+    for (int i = 0; i < 3; ++i)
+      for (int j = 0; j < 3; ++j)
+        if (std::abs(R(i, j)) > kAside) turned[i] = std::hypot(turned[i], R(i, j) * sd[j]);
+    return turned;
+  }
+
   double position_sigma() const {  // [m]; 0: chosen later
     const Value* typical = settings_["deviation"].find("position");
     if (!typical) return 0;
-    const bool is_length = recorded_ && recorded_->is_in_pixels();  // otherwise in the scale of the coordinates
-    return typical->number() * settings_.unit("length") * (is_length ? 1 : scale_of(to_mesh_));
+    return typical->number() * settings_.unit("length") * scale_of(to_mesh_);
   }
 
   void read_position(MeasuredTable& table, const std::map<std::string, int>& case_of,
@@ -499,7 +447,8 @@ class DataSetReader {
       table.error("this marker was given for this case in line " + std::to_string(first->second) + " already");
     const double all = position_sigma();
     // Uses the displacement from rest, because the measured surface never matches the mesh exactly.
-    data_.experiment.cases[c].positions.push_back({m, to_mesh_(*p) - gap_[m], sd ? *sd : Vec3d{{all, all, all}}});
+    data_.experiment.cases[c].positions.push_back(
+        {m, to_mesh_(*p) - gap_[m], sd ? on_mesh_axes(*sd) : Vec3d{{all, all, all}}});
     data_.source.position_line[c].push_back(table.line());
   }
 
@@ -511,8 +460,7 @@ class DataSetReader {
   std::optional<RegistrationKind> registers_;
   AffineMap to_mesh_;  // from the coordinates of the markers
   std::optional<ForceSeries> forces_;
-  std::optional<RecordedPositions> recorded_;  // if the positions are those of a recording
-  double size_ = 0;                            // size of the body [m]
+  double size_ = 0;  // size of the body [m]
   std::map<std::string, int> marker_of_;
   std::vector<Vec3d> gap_;                             // offset of each marker at rest from its surface point [m]
   std::map<int, std::pair<Triangle, int>> corner_of_;  // a triangle of each vertex of the surface, and which corner

@@ -437,22 +437,31 @@ TEST_F(DataSetFile, ForcesAloneNeedNoMarkers) {
   EXPECT_TRUE(data.experiment.cases[1].force);
 }
 
-TEST_F(DataSetFile, PixelsAreScaledByTheRegistrationOnly) {
-  const auto first_of = [&](const std::string& unit) {
-    measured(
-        "positions = \"dic_*.csv\"\nregistration = \"registration.toml\"\nunits = { length = \"mm\", mesh = \"m\"" +
-        unit + " }\ndeviation = { position = 0.05 }");
-    for (const char* table : {"markers.csv", "positions.csv"}) std::filesystem::remove(path(table));
-    folder.write("registration.toml", "scale = 1e-4\ntranslate = [0, 0, 0.06]\n");
-    folder.write("dic_1.csv", "id,x,y,ux,uy\n0,501,400,1,0\n");
-    folder.write("cases.csv", "case,frame,touch_x,touch_y,touch_z,depth,force\n1,1,50,40,70,4,2\n");
-    return read_data_set(folder).experiment.cases[0].positions[0];
-  };
-  const MarkerReading reading = first_of("");
-  EXPECT_NEAR(reading.position[0], 0.0501, 1e-12);
-  EXPECT_NEAR(reading.sigma[0], 5e-5, 1e-15);  // 0.05 mm
-  EXPECT_GT(reading.sigma[2], 1);              // not measured
-  EXPECT_THAT(message_of([&] { first_of(", recording = \"m\""); }), "");
+// A coordinate that was not measured has a huge standard deviation, which turns with the registration.
+TEST_F(DataSetFile, DeviationsTurnWithTheRegistration) {
+  measured("registration = \"registration.toml\"");
+  folder.write("registration.toml", "rotate = { axis = [1, 0, 0], angle_deg = 90 }\n");
+  folder.write("markers.csv", "marker,x,y,z\na,0.05,0.06,-0.04\n");
+  folder.write("positions.csv", "case,marker,x,y,z,sd_x,sd_y,sd_z\ndeep,a,0.05,0.055,-0.04,1e-4,2e-4,50\n");
+  const Experiment e = read_data_set(folder).experiment;
+  const Vec3d sigma = e.cases[e.cases[0].name == "deep" ? 0 : 1].positions.at(0).sigma;
+  EXPECT_NEAR(sigma[0], 1e-4, 1e-16);
+  EXPECT_NEAR(sigma[1], 50, 1e-12);
+  EXPECT_NEAR(sigma[2], 2e-4, 1e-16);
+}
+
+TEST_F(DataSetFile, RecordingsNameTheirConverter) {
+  for (const char* name : {"walk.trc", "walk.C3D", "scan_*.ply"}) {
+    measured(std::string("positions = \"") + name + "\"");
+    EXPECT_THAT(refusal(), HasSubstr(std::string(name) +
+                                     ": is a recording of another program; it is converted by: python3 -m "
+                                     "aspic.recordings '" +
+                                     name + "'"));
+  }
+  folder.write("dic.csv", "X,Y,Z,U,V,W\n1,2,3,4,5,6\n");
+  measured("positions = \"dic.csv\"");
+  EXPECT_THAT(refusal(),
+              HasSubstr("tables of image correlation are converted by: python3 -m aspic.recordings 'dic.csv'"));
 }
 
 }  // namespace

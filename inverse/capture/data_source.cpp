@@ -12,7 +12,6 @@ std::string line_in(const std::string& file, const std::vector<int>& lines, int 
 std::string DataSource::marker(int m) const { return line_in(markers, marker_line, m); }
 std::string DataSource::load_case(int c) const { return line_in(cases, case_line, c); }
 std::string DataSource::position(int c, int i) const {
-  if (c < static_cast<int>(frame.size()) && !frame[c].empty()) return frame[c];
   return c < static_cast<int>(position_line.size()) ? line_in(positions, position_line[c], i) : positions;
 }
 

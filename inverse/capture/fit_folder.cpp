@@ -63,8 +63,8 @@ std::string difference(const std::string& then, const std::string& now) {
 }  // namespace
 
 const char* to_string(FitStage stage) {
-  constexpr const char* kNames[] = {"uniform",          "mesh_errors", "field", "uncertainty", "parts",
-                                    "cross_validation", "next_poke",   "law",   "relaxation"};
+  constexpr const char* kNames[] = {"uniform", "mesh_errors",      "field", "uncertainty",
+                                    "parts",   "cross_validation", "law",   "relaxation"};
   return kNames[static_cast<size_t>(stage)];
 }
 

@@ -44,12 +44,11 @@ const Schema& fit_options_schema() {
              Range{.min = 1, .max = kMaxBranches}, Choices{{"off", "auto"}}, Usual{"\"auto\""}),
          key("refine", kInteger, "simulates with every tet in 8^refine", Range{.min = 0, .max = 4}, Usual{"0"}),
          key("leave_out", kText | kNames, "groups of cases to predict instead of fitting", Usual{"[]"}),
-         key("baselines", kBoolean, "predicts leave_out by simpler models as well", Usual{"true"}),
          key("loss", kText, "squares, or robust: outliers count less", Choices{{"squares", "robust"}},
              Usual{"\"squares\""}),
          key("mesh_errors", kBoolean, "corrects the discretization error with a finer mesh", Usual{"true"}),
          key("law_errors", kBoolean, "includes the choice of the law in standard deviations", Usual{"true"}),
-         key("uncertainty", kBoolean, "computes standard deviations and the next poke", Usual{"true"}),
+         key("uncertainty", kBoolean, "computes standard deviations", Usual{"true"}),
          key("cross_validation", kBoolean, "predicts each group from the others", Usual{"true"}),
          key("method", kText, "minimization method", Choices{fit_method_names()}, Usual{"\"auto\""}),
          key("starts", kInteger, "number of initial guesses; the best result is kept", Range{.min = 1, .max = 1000},
@@ -62,11 +61,10 @@ const Schema& fit_options_schema() {
   return schema;
 }
 
-bool read_fit_options(Table document, const std::string& source, FitPlan& plan) {
+void read_fit_options(Table document, const std::string& source, FitPlan& plan) {
   const Value *given_weight = document.find("weight"), *given_rule = document.find("rule");
   const bool is_weight_given = given_weight && given_weight->is_number();
   const bool is_rule_given = given_rule && given_rule->is_text() && given_rule->text() != "auto";
-  const bool wants_baselines = document.find("baselines") != nullptr;
   check_and_complete(document, source, fit_options_schema(), "fit");
   const auto option = [&](const char* key) -> const Value& { return *document.find(key); };
   if (is_weight_given && is_rule_given)
@@ -95,12 +93,6 @@ bool read_fit_options(Table document, const std::string& source, FitPlan& plan) 
     plan.left_out.push_back(left_out.text());
   else
     for (const Value& group : left_out.array()) plan.left_out.push_back(group.text());
-  const Value& baselines = option("baselines");
-  if (baselines.boolean() && wants_baselines && plan.left_out.empty())
-    throw error_at(baselines.place,
-                   "baselines = true predicts the groups of leave_out; name some, such as "
-                   "leave_out = [\"poke 1\"]");
-  return baselines.boolean() && !plan.left_out.empty();
 }
 
 }  // namespace aspic

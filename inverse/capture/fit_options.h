@@ -9,8 +9,8 @@ namespace aspic {
 
 const Schema& fit_options_schema();  // its only section is "fit"
 
-// Reads a document into the plan; keys that are missing have defaults. Returns whether baselines predict the held-out
-// groups. Throws InvalidInput with place, value and remedy.
-bool read_fit_options(Table document, const std::string& source, FitPlan& plan);
+// Reads a document into the plan; keys that are missing have defaults. Throws InvalidInput with place, value and
+// remedy.
+void read_fit_options(Table document, const std::string& source, FitPlan& plan);
 
 }  // namespace aspic

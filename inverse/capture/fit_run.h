@@ -14,7 +14,6 @@
 #include "capture/journal.h"
 #include "capture/law_choice.h"
 #include "fit/cross_validation.h"
-#include "fit/next_indentation.h"
 #include "fit/relaxation_fit.h"
 #include "fit/uncertainty.h"
 #include "scene/material_file.h"
@@ -129,9 +128,8 @@ struct FitOutcome {
   std::optional<FoundParts> parts;
   std::optional<CrossValidation> held_out;
   std::optional<CrossValidation> held_out_of_one_value;  // for a fitted field
-  std::optional<IndentationCandidate> next_indentation;
-  std::optional<LawChoice> law_choice;      // for a plan with model = kAutoLaw
-  std::optional<RelaxationFit> relaxation;  // for data with histories
+  std::optional<LawChoice> law_choice;                   // for a plan with model = kAutoLaw
+  std::optional<RelaxationFit> relaxation;               // for data with histories
   std::vector<std::string> warnings;
   std::string failure;       // why there is no material; empty if there is one
   bool interrupted = false;  // the material is the current estimate; also if results of jobs are missing
@@ -142,17 +140,7 @@ struct FitOutcome {
   bool has_material() const { return failure.empty(); }
 };
 
-enum class FitStage {
-  uniform,
-  mesh_errors,
-  field,
-  uncertainty,
-  parts,
-  cross_validation,
-  next_indentation,
-  law,
-  relaxation
-};
+enum class FitStage { uniform, mesh_errors, field, uncertainty, parts, cross_validation, law, relaxation };
 
 struct FitCallbacks {
   std::function<void(FitStage, const std::string& what)> begin = {};  // called at the start of each stage and substage

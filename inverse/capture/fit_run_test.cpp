@@ -220,8 +220,6 @@ TEST(FitRun, TellsWhatIsNotKnown) {
     EXPECT_GT(row.interval->upper, row.value);
   }
   EXPECT_THAT(outcome.material.further, testing::SizeIs(2));
-  ASSERT_TRUE(outcome.next_indentation);
-  EXPECT_GT(outcome.next_indentation->gain, 0);
 }
 
 TEST(FitRun, PredictsWhatWasLeftOut) {
@@ -294,7 +292,6 @@ TEST(FitRun, SimulatesOnAFinerMeshThanItFits) {
   EXPECT_EQ(outcome.material.mesh.tet_count(), data.experiment.mesh.tet_count());
   EXPECT_THAT(young(outcome).sigma, testing::SizeIs(data.experiment.mesh.tets.size()));
   EXPECT_LT(outcome.held_out->force_error, 0.01);
-  EXPECT_TRUE(outcome.next_indentation);
 }
 
 // Ratio of the stiff to the soft layer, of geometric means by volume.

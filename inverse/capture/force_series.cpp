@@ -178,10 +178,8 @@ SteadyForce steady_force(const ForceSeries& series, double time, double duration
   return force;
 }
 
-Vec3d resampled(const ForceSeries& series, double time, double interval) {
+Vec3d resampled(const ForceSeries& series, double time) {
   require_inside(series, time);
-  const size_t begin = first_at(series, time - interval / 2), end = first_at(series, time + interval / 2);
-  if (end > begin) return mean_between(series, begin, end);
   const size_t after = first_at(series, time);
   if (after == 0) return series.values.front();
   if (after == series.times.size()) return series.values.back();

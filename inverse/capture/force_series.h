@@ -36,8 +36,7 @@ struct SteadyForce {
 SteadyForce steady_force(const ForceSeries& series, double time, double duration);
 double default_duration(const ForceSeries& series);  // [s]
 
-// The mean of the samples within half an interval [s] of a time; with none, linear interpolation. Throws InvalidInput
-// for a time outside the series.
-Vec3d resampled(const ForceSeries& series, double time, double interval);
+// Interpolates linearly between samples. Throws InvalidInput for a time outside the series.
+Vec3d resampled(const ForceSeries& series, double time);
 
 }  // namespace aspic

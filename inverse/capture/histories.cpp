@@ -25,10 +25,10 @@ std::map<std::string, Waypoints> waypoints_of(const DataSet& data) {
   std::map<std::string, Waypoints> groups;
   const std::vector<LoadCase>& cases = data.experiment.cases;
   for (size_t c = 0; c < cases.size(); ++c)
-    if (data.case_frame[c].time) groups[cases[c].group].push_back(c);
+    if (data.case_time[c]) groups[cases[c].group].push_back(c);
   for (auto& [group, members] : groups)
     std::stable_sort(members.begin(), members.end(), [&](size_t a, size_t b) {
-      const double left = *data.case_frame[a].time, right = *data.case_frame[b].time;
+      const double left = *data.case_time[a], right = *data.case_time[b];
       return left != right ? left < right : data.source.case_line[a] < data.source.case_line[b];
     });
   return groups;
@@ -69,7 +69,7 @@ class HistoryReader {
   LoadHistory history(const std::string& name, const Waypoints& members) {
     LoadHistory h{.name = name};
     for (const size_t c : members) {
-      h.times.push_back(*data_.case_frame[c].time);
+      h.times.push_back(*data_.case_time[c]);
       h.waypoints.push_back(data_.experiment.cases[c]);
       check_kind(h, c);
     }
@@ -186,8 +186,8 @@ class HistoryReader {
 
 // Samples whose mean counts as the force of the last state.
 Samples end_samples(const ForceSeries& series, const Waypoints& members, const DataSet& data) {
-  const double last = *data.case_frame[members.back()].time,
-               before = members.size() > 1 ? *data.case_frame[members[members.size() - 2]].time : last;
+  const double last = *data.case_time[members.back()],
+               before = members.size() > 1 ? *data.case_time[members[members.size() - 2]] : last;
   return samples_between(series, before + kEnd * (last - before), last);
 }
 
@@ -197,7 +197,7 @@ void use_time_of_force(const ForceSeries& series, const Waypoints& members, Data
   const Samples mean = end_samples(series, members, data);
   if (!end.force || mean.count == 0) return;
   const Vec3d force = series.is_axial ? mean.value[0] * gauge_axis(end) : mean.value;
-  if (norm(force - *end.force) <= 1e-12 * norm(force)) data.case_frame[members.back()].time = mean.time;
+  if (norm(force - *end.force) <= 1e-12 * norm(force)) data.case_time[members.back()] = mean.time;
 }
 
 void keep_cases(DataSet& data, const std::vector<bool>& is_kept) {
@@ -214,8 +214,7 @@ void keep_cases(DataSet& data, const std::vector<bool>& is_kept) {
   prune(data.experiment.cases);
   prune(data.source.case_line);
   prune(data.source.position_line);
-  prune(data.source.frame);
-  prune(data.case_frame);
+  prune(data.case_time);
 }
 
 }  // namespace

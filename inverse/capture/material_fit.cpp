@@ -251,7 +251,6 @@ void MaterialFit::fall_back(std::vector<FitReason> reasons) {
   outcome_.parts.reset();
   outcome_.held_out.reset();
   outcome_.held_out_of_one_value.reset();
-  outcome_.next_indentation.reset();
   outcome_.cases.clear();
   plan_.parameters = outcome_.plan.parameters = single_values(plan_.parameters);
   plan_.fit.method = plan_.fit.weight_rule = "auto";
@@ -280,7 +279,6 @@ void MaterialFit::fit_and_describe() {
   describe(model, p);
   predict_left_out(model.map, p);
   if (!outcome_.interrupted) cross_validate_groups(model);
-  if (!outcome_.interrupted) find_next_indentation(model);
 }
 
 FitReport MaterialFit::fit_stage(FitStage which, FitModel& model, const FitOptions& options,

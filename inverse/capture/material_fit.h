@@ -101,7 +101,6 @@ class MaterialFit {
   CrossValidation cross_validated(FitModel& model, const FitReport& report, FitOptions options,
                                   const std::string& name);
   std::optional<CrossValidation> cross_validated_one_value();
-  void find_next_indentation(FitModel& model);
   // Called with the prediction on the mesh and the one that is corrected for its discretization error.
   using UsePrediction = std::function<void(CaseOutcome&, const CasePrediction& on_mesh, const CasePrediction&)>;
   void predict_group(const std::string& group, const ParameterMap& map, std::span<const double> p,

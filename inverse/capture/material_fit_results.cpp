@@ -236,19 +236,4 @@ std::optional<CrossValidation> MaterialFit::cross_validated_one_value() {
   return cross_validated(one, report, options, "one_value_held_out");
 }
 
-void MaterialFit::find_next_indentation(FitModel& model) {
-  const std::vector<LoadCase>& cases = simulated_.fitted().cases;
-  const bool has_indenter =
-      std::any_of(cases.begin(), cases.end(), [](const LoadCase& c) { return c.indenter.has_value(); });
-  if (!outcome_.posterior || !outcome_.posterior->ok || !has_indenter || is_stopped()) return;
-  begin(FitStage::next_indentation, "most informative next poke");
-  // The simulated mesh is fine only below the indenters of the data.
-  Experiment experiment = data_.experiment;
-  experiment.cases = cases;
-  NextIndentation next = next_indentation(experiment, {model.map, mesh(), outcome_.report.p}, *outcome_.posterior,
-                                          {.equilibrium = rough(plan_.equilibrium)});
-  add_warnings(next.warnings);
-  if (!next.candidates.empty() && next.candidates.front().ok) outcome_.next_indentation = next.candidates.front();
-}
-
 }  // namespace aspic

@@ -8,12 +8,12 @@
 #include "base/error.h"
 #include "base/formatted.h"
 #include "base/printable.h"
+#include "capture/foreign_file.h"
 #include "capture/measured_table.h"
 #include "capture/surface_projection.h"
 #include "capture/units.h"
 #include "io/csv_reader.h"
 #include "mesh/box.h"
-#include "recording/recording.h"
 #include "scene/value.h"
 
 namespace aspic {
@@ -99,40 +99,6 @@ class TableReader {
   std::map<std::string, int> index_;
 };
 
-// The rows of a recording, ordered by marker and time. Markers that were not seen in the first frame are left out.
-MotionTable table_of(const Recording& recording) {
-  MotionTable table{.file = recording.file, .before_line = ": frame ", .notes = recording.notes};
-  if (!recording.has_times)
-    throw InvalidInput(recording.file + ": has no times, which a motion needs; give each frame its time");
-  if (recording.is_planar)
-    throw InvalidInput(recording.file + ": has two coordinates per point; fit-motion needs three");
-  const double unit = recording.unit.value_or(1), first = recording.frames.front().time;
-  if (!recording.unit) table.notes.push_back(recording.file + ": states no unit of length; positions count as meters");
-  if (first != 0)
-    table.notes.push_back(recording.file + ": the first frame, at " + number_text(first) + " s, is the time 0");
-  size_t hidden = 0;
-  for (size_t i = 0; i < recording.names.size(); ++i) {
-    if (!is_seen(recording.frames.front().positions[i])) {
-      ++hidden;
-      continue;
-    }
-    const int marker = static_cast<int>(table.markers.size());
-    table.markers.push_back(recording.names[i]);
-    for (const RecordedFrame& frame : recording.frames)
-      if (is_seen(frame.positions[i]))
-        table.rows.push_back({frame.time - first, marker, unit * frame.positions[i], 1, frame.number});
-  }
-  if (hidden > 0)
-    table.notes.push_back(
-        recording.file + ": " + std::to_string(hidden) +
-        " markers were not seen in the first frame, which places them on the body; they are not used");
-  if (table.markers.empty())
-    throw InvalidInput(recording.file + ": no marker was seen in the first frame; remove leading frames");
-  if (table.markers.size() > kMaxMarkers)
-    throw InvalidInput(recording.file + ": more than " + std::to_string(kMaxMarkers) + " markers; export fewer");
-  return table;
-}
-
 class Attachment {
  public:
   Attachment(const MotionTable& table, const TetMesh& mesh, const State& start, double h)
@@ -140,7 +106,6 @@ class Attachment {
 
   MotionData attach(std::vector<std::string>& notes) {
     MotionData data{.has_sigma = table_.has_sigma};
-    notes.insert(notes.end(), table_.notes.begin(), table_.notes.end());
     data.markers.resize(table_.markers.size());
     data.offset.resize(table_.markers.size());
     std::vector<int> first_line(table_.markers.size(), 0);
@@ -159,8 +124,8 @@ class Attachment {
     }
     for (size_t m = 0; m < is_placed.size(); ++m)
       if (!is_placed[m])
-        errors_.add(table_.file + table_.before_line + std::to_string(first_line[m]) + ": marker '" +
-                    table_.markers[m] + "' has no row at the start, time = " + number_text(time_) +
+        errors_.add(table_.file + ":" + std::to_string(first_line[m]) + ": marker '" + table_.markers[m] +
+                    "' has no row at the start, time = " + number_text(time_) +
                     ", which places it on the body; add one or remove the marker");
     if (data.samples.empty() && errors_.is_empty())
       errors_.add(table_.file + ": has no rows after the start, time = " + number_text(time_) + "; add the motion");
@@ -175,7 +140,7 @@ class Attachment {
       for (int axis = 0; axis < 3; ++axis) body.rest[v][axis] = start.q[3 * v + axis];
     return body;
   }
-  std::string where(const MotionRow& row) const { return table_.file + table_.before_line + std::to_string(row.line); }
+  std::string where(const MotionRow& row) const { return table_.file + ":" + std::to_string(row.line); }
 
   void refuse_time(const MotionRow& row, bool is_early) {
     errors_.add(
@@ -214,7 +179,8 @@ class Attachment {
 }  // namespace
 
 MotionTable read_motion_table(const std::filesystem::path& path) {
-  return is_recording(path) ? table_of(read_recording(path)) : TableReader(path).read();
+  require_table(path.string(), path.stem().string() + ".csv");
+  return TableReader(path).read();
 }
 
 MotionData attach_markers(const MotionTable& table, const TetMesh& mesh, const State& start, double h,

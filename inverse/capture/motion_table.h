@@ -1,5 +1,4 @@
-// Measured marker positions over time: a table with the columns time [s], marker, x, y, z [m] and optionally sigma [m],
-// or a recording of motion capture.
+// Measured marker positions over time: a table with the columns time [s], marker, x, y, z [m] and optionally sigma [m].
 #pragma once
 #include <filesystem>
 #include <string>
@@ -14,19 +13,17 @@ struct MotionRow {
   int marker = 0;  // index into MotionTable::markers
   Vec3d position{};
   double sigma = 1;
-  int line = 0;  // or number of the frame of a recording
+  int line = 0;
 };
 
 struct MotionTable {
-  std::string file;               // name for messages
-  std::string before_line = ":";  // between it and the line
+  std::string file;  // name for messages
   std::vector<std::string> markers;
   std::vector<MotionRow> rows;
   bool has_sigma = false;
-  std::vector<std::string> notes;  // assumptions of the reader
 };
 
-// Reads a table or a recording, whose first frame is at time 0. Throws InvalidInput with file, line, value and remedy.
+// Reads a table. Throws InvalidInput with file, line, value and remedy.
 MotionTable read_motion_table(const std::filesystem::path& path);
 
 // Attaches each marker to the surface point that is nearest to its position at the start. `h`: time step [s]. Adds

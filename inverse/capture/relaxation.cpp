@@ -155,9 +155,8 @@ void use_last_states(const RelaxationFit& fit, const DataSet& data, const Viscoe
       const HistoryPrediction& prediction = fit.predictions[h];
       const auto count = static_cast<std::ptrdiff_t>(load.positions.size());
       shown.markers = shown.markers_on_mesh = {prediction.markers.end() - count, prediction.markers.end()};
-      const HistoryPrediction of_force =
-          simulate(data.experiment, until(data.histories[h], data.case_frame[c].time.value_or(0)), material,
-                   outcome.plan.equilibrium);
+      const HistoryPrediction of_force = simulate(
+          data.experiment, until(data.histories[h], data.case_time[c].value_or(0)), material, outcome.plan.equilibrium);
       if (!of_force.is_ok()) continue;
       shown.wrench_on_mesh = of_force.end;
       shown.wrench = {factors[h] * of_force.end.force, factors[h] * of_force.end.torque};

@@ -42,16 +42,6 @@ fs::path CaptureSettings::file(std::string_view key) const {
   return files_.find(name);
 }
 
-fs::path CaptureSettings::file_or_pattern(std::string_view key) const {
-  const Value& name = (*this)[key];
-  if (name.text().find('*') == std::string::npos) return file(key);
-  const fs::path pattern = fs::path(name.text()).lexically_normal();
-  if (pattern.is_absolute() || *pattern.begin() == "..")
-    throw error_at(name.place, std::string(key) + " = " + toml_string(name.text()) +
-                                   " is outside the data set; copy the files into its folder");
-  return folder_ / pattern;
-}
-
 double CaptureSettings::unit(const std::string& quantity) const {
   const Value& units = (*this)["units"];
   if (const Value* name = units.find(quantity)) return unit_in_si(quantity, name->text());

@@ -19,8 +19,6 @@ class CaptureSettings {
   SceneFiles& files() { return files_; }
   bool is_given(std::string_view key) const;               // not a default
   std::filesystem::path file(std::string_view key) const;  // file named by a key; throws InvalidInput if missing
-  // The same for a key that may name a sequence of files by a pattern with *.
-  std::filesystem::path file_or_pattern(std::string_view key) const;
   const std::filesystem::path& folder() const { return folder_; }
   std::string file_name() const { return file_.filename().string(); }
 

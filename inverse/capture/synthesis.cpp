@@ -10,8 +10,8 @@
 #include "capture/data_findings.h"
 #include "capture/judge.h"
 #include "capture/unstated_values.h"
+#include "fit/indentation_sites.h"
 #include "fit/load_case.h"
-#include "fit/next_indentation.h"
 #include "mesh/tet_nodes.h"
 #include "mesh/tet_shape.h"
 

@@ -6,9 +6,7 @@ namespace aspic::cli {
 
 void add_fit(CLI::App& app, Action& action);
 void add_fit_jobs(CLI::App& app, Action& action);
-void add_fit_curves(CLI::App& app, Action& action);
 void add_fit_motion(CLI::App& app, Action& action);
-void add_closed_loop(CLI::App& app, Action& action);
 void add_capture(CLI::App& app, Action& action);
 void add_check_data(CLI::App& app, Action& action);
 

@@ -275,12 +275,13 @@ bool has_nothing_to_do(const FitArguments& arguments, const std::string& options
 
 int run(const FitArguments& arguments) {
   if (arguments.data.extension() == ".csv")
-    throw InvalidInput(arguments.data.string() + ": a data set is a folder; to fit curves: aspic fit-curves " +
+    throw InvalidInput(arguments.data.string() +
+                       ": a data set is a folder; to fit curves of a testing machine: python3 -m aspic.curves " +
                        arguments.data.string());
   if (arguments.threads > 0) set_thread_count(arguments.threads);
   FitPlan plan = plan_of(arguments);
   const fs::path options_file = options_of(arguments.data, arguments.options);
-  const bool has_baselines = read_fit_options(options_file, plan);
+  read_fit_options(options_file, plan);
   if (arguments.out.extension() != ".vtu")
     throw InvalidInput(arguments.out.string() + ": a material file is a .vtu; choose such a name with -o");
   const DataSet data = read_data_set(arguments.data, registration_kind(arguments));
@@ -307,7 +308,7 @@ int run(const FitArguments& arguments) {
   }
   write_material(arguments.out, outcome.material);
   folder.add_weights(outcome.report);
-  const FitFigures figures = figures_of(data, outcome, truth_beside(arguments.data), has_baselines);
+  const FitFigures figures = figures_of(data, outcome, truth_beside(arguments.data));
   const FitVerdict judged = verdict(data, outcome);
   const std::string json = figures_json(data, outcome, judged, figures);
   write_file(folder.path() / "figures.json", json);

@@ -10,41 +10,10 @@
 #include "commands/fit_summary.h"
 #include "commands/law_table.h"
 #include "commands/relaxation_results.h"
-#include "fit/bickel.h"
 #include "fit/quantity.h"
 
 namespace aspic::cli {
 namespace {
-
-BickelOptions baseline_options(const FitPlan& plan) {
-  BickelOptions options;
-  for (const auto& [quantity, value] : plan.known)
-    if (material_quantity(plan.model, quantity).role == QuantityRole::compressibility)
-      options.poisson = value, options.fits_poisson = false;
-  for (const FitParameter& u : plan.parameters)
-    if (is_stiffness(u.quantity) && u.guess > 0) options.young = u.guess;
-  return options;
-}
-
-// The model of increments has linear tets and no grips.
-bool can_interpolate(const Experiment& training) {
-  return training.mesh.mids.empty() && std::none_of(training.cases.begin(), training.cases.end(),
-                                                    [](const LoadCase& c) { return c.grip.has_value(); });
-}
-
-std::vector<Prediction> predictions_of(const DataSet& data, const FitOutcome& outcome, bool with_baselines) {
-  const FitPlan& plan = outcome.plan;
-  const Experiment left_out = left_out_cases(data, plan);
-  if (left_out.cases.empty()) return {};
-  std::vector<Prediction> predictions = {{"fit", left_out_errors(data, outcome)}};
-  if (!with_baselines) return predictions;
-  const Experiment training = without_groups(data.experiment, plan.left_out);
-  for (const Baseline baseline : {Baseline::homogeneous, Baseline::per_example_linear, Baseline::bickel}) {
-    if (baseline == Baseline::bickel && !can_interpolate(training)) continue;
-    predictions.push_back({std::string(name(baseline)), predict(baseline, training, left_out, baseline_options(plan))});
-  }
-  return predictions;
-}
 
 std::string percent(double part) { return fmt::format("{:.3g} %", 100 * part); }
 
@@ -67,13 +36,11 @@ void print_judgment(std::FILE* stream, const Judgment& j) {
     fmt::print(stream, "           in {} of the tets the 95 % interval contains the truth\n", percent(j.coverage));
 }
 
-void print_prediction(std::FILE* stream, const DataSet& data, const Prediction& prediction) {
-  const HeldOut& h = prediction.held_out;
+void print_left_out(std::FILE* stream, const DataSet& data, const HeldOut& h) {
   if (!h.ok)
-    fmt::print(stream, "left out   {}: no prediction: {}\n", prediction.method, h.failure);
+    fmt::print(stream, "left out   no prediction: {}\n", h.failure);
   else
-    fmt::print(stream, "left out   {}: {}, beyond the noise\n", prediction.method,
-               errors_text(all_groups(beyond_noise(data, {h})), 0));
+    fmt::print(stream, "left out   {}, beyond the noise\n", errors_text(all_groups(beyond_noise(data, {h})), 0));
 }
 
 Json json_of(const Judgment& j) {
@@ -166,18 +133,17 @@ Json outliers_of(const FitOutcome& outcome) {
 
 }  // namespace
 
-FitFigures figures_of(const DataSet& data, const FitOutcome& outcome, const std::filesystem::path& truth,
-                      bool with_baselines) {
+FitFigures figures_of(const DataSet& data, const FitOutcome& outcome, const std::filesystem::path& truth) {
   FitFigures figures;
   std::error_code error;
   if (std::filesystem::exists(truth, error)) figures.judgments = judge(outcome.material, read_material(truth));
-  figures.predictions = predictions_of(data, outcome, with_baselines);
+  if (!left_out_cases(data, outcome.plan).cases.empty()) figures.left_out = left_out_errors(data, outcome);
   return figures;
 }
 
 void print_figures(std::FILE* stream, const DataSet& data, const FitFigures& figures) {
   for (const Judgment& j : figures.judgments) print_judgment(stream, j);
-  for (const Prediction& p : figures.predictions) print_prediction(stream, data, p);
+  if (figures.left_out) print_left_out(stream, data, *figures.left_out);
 }
 
 std::string figures_json(const DataSet& data, const FitOutcome& outcome, const FitVerdict& judged,
@@ -211,11 +177,11 @@ std::string figures_json(const DataSet& data, const FitOutcome& outcome, const F
   json["truth"] = Json::array();
   for (const Judgment& j : figures.judgments) json["truth"].push_back(json_of(j));
   json["left_out"] = Json::object();
-  for (const Prediction& p : figures.predictions) json["left_out"][p.method] = json_of(p.held_out);
+  if (figures.left_out) json["left_out"]["fit"] = json_of(*figures.left_out);
   json["limits"] = {{"missed", kMissed}, {"squares_per_reading", kTooManySquares}};
   json["groups"] = groups_json(data, outcome);
   json["held_out"] = held_out_json(data, outcome);
-  json["comparison"] = comparison_json(data, outcome, figures);
+  json["comparison"] = comparison_json(data, outcome);
   json["cases"] = cases_json(data, outcome);
   json["histogram"] = histogram_json(data, outcome);
   return json.dump(1) + "\n";

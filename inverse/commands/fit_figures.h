@@ -2,6 +2,7 @@
 #pragma once
 #include <cstdio>
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -10,19 +11,13 @@
 
 namespace aspic::cli {
 
-struct Prediction {
-  std::string method;  // "fit", "one modulus", "per-example linear", "bickel"
-  HeldOut held_out;    // all held-out groups together
-};
-
 struct FitFigures {
-  std::vector<Judgment> judgments;      // empty: the data have no truth
-  std::vector<Prediction> predictions;  // empty: no held-out groups
+  std::vector<Judgment> judgments;  // empty: the data have no truth
+  std::optional<HeldOut> left_out;  // prediction of all groups of `leave_out`; empty: there are none
 };
 
-// `truth` is a file; without it there are no judgments. Baselines are fitted to the same data.
-FitFigures figures_of(const DataSet& data, const FitOutcome& outcome, const std::filesystem::path& truth,
-                      bool with_baselines);
+// `truth` is a file; without it there are no judgments.
+FitFigures figures_of(const DataSet& data, const FitOutcome& outcome, const std::filesystem::path& truth);
 void print_figures(std::FILE* stream, const DataSet& data, const FitFigures& figures);
 // Text of figures.json, whose numbers the report shows.
 std::string figures_json(const DataSet& data, const FitOutcome& outcome, const FitVerdict& judged,

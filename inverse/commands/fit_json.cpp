@@ -97,33 +97,18 @@ Json held_out_json(const DataSet& data, const FitOutcome& outcome) {
   return json;
 }
 
-Json comparison_json(const DataSet& data, const FitOutcome& outcome, const FitFigures& figures) {
-  Json list = Json::array();
-  const auto add = [&](const std::string& how, const Json& models) {
-    if (!models.empty()) list.push_back({{"how", how}, {"models", models}});
-  };
-  const auto model = [](const std::string& name, const PredictionErrors& errors) {
+Json comparison_json(const DataSet& data, const FitOutcome& outcome) {
+  if (!outcome.held_out || outcome.held_out->groups.empty()) return Json::array();
+  const auto model = [&](const std::string& name, const CrossValidation& v) {
+    const PredictionErrors errors = all_groups(beyond_noise(data, v.groups));
     Json row = {{"model", name}};
     for (const ReadingKind& kind : kReadingKinds) row[kind.name] = known(errors.*kind.beyond_noise);
     return row;
   };
-  const auto all_of = [&](const CrossValidation& v) { return all_groups(beyond_noise(data, v.groups)); };
-  Json validated = Json::array();
-  if (outcome.held_out && !outcome.held_out->groups.empty()) {
-    const bool is_field = outcome.held_out_of_one_value.has_value();
-    validated.push_back(model(is_field ? "this fit" : "this fit (one value per parameter)", all_of(*outcome.held_out)));
-    if (is_field) validated.push_back(model("one value per parameter", all_of(*outcome.held_out_of_one_value)));
-  }
-  add("cross-validation", validated);
-  Json predicted = Json::array();
-  for (const Prediction& p : figures.predictions) {
-    const PredictionErrors errors = p.held_out.ok ? all_groups(beyond_noise(data, {p.held_out})) : PredictionErrors{};
-    Json row = model(p.method == "fit" ? "this fit" : p.method, errors);
-    if (!p.held_out.ok) row["failure"] = p.held_out.failure;
-    predicted.push_back(row);
-  }
-  add("left out", predicted);
-  return list;
+  const bool is_field = outcome.held_out_of_one_value.has_value();
+  Json models = {model(is_field ? "this fit" : "this fit (one value per parameter)", *outcome.held_out)};
+  if (is_field) models.push_back(model("one value per parameter", *outcome.held_out_of_one_value));
+  return {{{"models", models}}};
 }
 
 }  // namespace aspic::cli

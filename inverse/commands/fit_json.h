@@ -15,7 +15,8 @@ Json groups_json(const DataSet& data, const FitOutcome& outcome);
 Json histogram_json(const DataSet& data, const FitOutcome& outcome);
 // Errors of each predicted group with their limits; null without any.
 Json held_out_json(const DataSet& data, const FitOutcome& outcome);
-// Errors of the fit and of simpler models for the same held-out groups, beyond the noise and relative to the peaks.
-Json comparison_json(const DataSet& data, const FitOutcome& outcome, const FitFigures& figures);
+// Errors of the fit and of one value per parameter for the same held-out groups, beyond the noise and relative to the
+// peaks.
+Json comparison_json(const DataSet& data, const FitOutcome& outcome);
 
 }  // namespace aspic::cli

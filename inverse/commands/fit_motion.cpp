@@ -211,8 +211,7 @@ Examples:
 
 POSITIONS.csv has the columns time [s], marker, x, y, z [m] and optionally sigma, the standard deviation [m], in any
 order of rows. The rows at the start of the scene, time = 0, attach the markers to the nearest surface points. Recordings of
-motion capture (.trc, .c3d, .npz) are read in the unit that they state; their first frame is at time 0. The initial
-guess is the scene, which has one body and integrator = "backward_euler".
+motion capture are converted by python3 -m aspic.recordings RECORDING POSITIONS.csv. The initial guess is the scene, which has one body and integrator = "backward_euler".
 
 Parameters: young, poisson, density (a field is scaled by one factor), mass_damping, stiffness_damping, viscosity (keys
 mass, stiffness and viscosity of damping), velocity, angular_velocity (three numbers each).
@@ -222,7 +221,7 @@ Files: fitted.toml (the scene with the fitted values), fit.json, residuals.csv, 
 Exit codes: 0 done, 2 bad input, 3 not converged, 4 --time-limit came first, 130 interrupted by Ctrl-C, 143 by kill:
 the best values so far are written.)");
   command->add_option("SCENE", arguments->scene, "Scene (.toml) or mesh")->required();
-  command->add_option("POSITIONS", arguments->positions, "Marker positions: .csv, .trc, .c3d or .npz")->required();
+  command->add_option("POSITIONS", arguments->positions, "Marker positions (.csv)")->required();
   command->add_option("--fit", arguments->names, "Parameters to fit, separated by commas")
       ->required()
       ->delimiter(',')

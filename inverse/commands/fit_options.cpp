@@ -23,8 +23,8 @@ fs::path options_of(const fs::path& data, const fs::path& given) {
   return fs::exists(beside, error) ? beside : fs::path();
 }
 
-bool read_fit_options(const fs::path& file, FitPlan& plan) {
-  return aspic::read_fit_options(document_of(file), file.string(), plan);
+void read_fit_options(const fs::path& file, FitPlan& plan) {
+  aspic::read_fit_options(document_of(file), file.string(), plan);
 }
 
 std::vector<OptionOrigin> fit_option_origins(const fs::path& file) {

@@ -13,9 +13,8 @@ inline constexpr const char* kFitOptionsFile = "aspic.fit.toml";
 // Returns `given`, or else the options file in the folder of the data set; empty if there is none.
 std::filesystem::path options_of(const std::filesystem::path& data, const std::filesystem::path& given);
 
-// Reads the file into the plan; without a file, the defaults. Returns whether baselines predict the held-out groups.
-// Throws InvalidInput with file, line, value and remedy.
-bool read_fit_options(const std::filesystem::path& file, FitPlan& plan);
+// Reads the file into the plan; without a file, the defaults. Throws InvalidInput with file, line, value and remedy.
+void read_fit_options(const std::filesystem::path& file, FitPlan& plan);
 
 struct OptionOrigin {
   std::string option, place;  // "smooth", "pillow/aspic.fit.toml:3" or "default"

@@ -8,8 +8,8 @@ namespace aspic::cli {
 namespace {
 
 // In the order of FitStage.
-constexpr const char* kStageTexts[] = {"one value", "the mesh",  "fit", "uncertainty", "parts",
-                                       "held out",  "next poke", "law", "relaxing"};
+constexpr const char* kStageTexts[] = {"one value", "the mesh", "fit", "uncertainty",
+                                       "parts",     "held out", "law", "relaxing"};
 
 const char* stage_text(FitStage stage) { return kStageTexts[static_cast<size_t>(stage)]; }
 

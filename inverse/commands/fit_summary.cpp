@@ -146,7 +146,6 @@ void print_fit(std::FILE* stream, const DataSet& data, const FitOutcome& outcome
     fmt::print(stream, "learned    the data determine {:.1f} of {} directions of the material\n",
                outcome.posterior->informed, outcome.parameter_count);
   print_held_out(stream, data, outcome);
-  if (outcome.next_indentation) fmt::print(stream, "next poke  {}\n", outcome.next_indentation->description);
   for (const std::string& warning : outcome.warnings) fmt::print(stream, "warning: {}\n", warning);
 }
 

@@ -7,9 +7,7 @@ int main(int argc, char** argv) {
   return main_program(argc, argv, [](CLI::App& app, Action& action) {
     add_fit(app, action);
     add_fit_jobs(app, action);
-    add_fit_curves(app, action);
     add_fit_motion(app, action);
-    add_closed_loop(app, action);
     add_capture(app, action);
     add_check_data(app, action);
     add_completion(app, action);

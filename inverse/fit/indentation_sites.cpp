@@ -1,7 +1,8 @@
+#include "fit/indentation_sites.h"
+
 #include <algorithm>
 #include <limits>
 
-#include "fit/next_indentation.h"
 #include "mesh/surface.h"
 
 namespace aspic {

@@ -2,9 +2,7 @@
 """From measurements to a material on the command line: capture, fit, bad data, material files, curves."""
 import csv
 import filecmp
-import json
 import os
-import re
 import subprocess
 import unittest
 
@@ -107,7 +105,7 @@ class Fit(Captured):
     def test_captured_and_fitted_scene_runs(self):
         # The mesh of the data is coarse and linear, and a part of the body is far from all sites: the verdict is bad.
         done = self.aspic("fit", "data", "--allow-unconverged")
-        for part in ("converged", "misfit", "95 %", "held out", "next poke", 'material = { file = "material.vtu" }'):
+        for part in ("converged", "misfit", "95 %", "held out", 'material = { file = "material.vtu" }'):
             self.assertIn(part, done.stdout)
         self.assertNotRegex(done.stdout, r"\bnan\b|\binf\b")
         self.assertFalse({".journal", ".state"} & {p.suffix for p in (self.folder / "material.fit").iterdir()})
@@ -223,31 +221,6 @@ class MaterialFile(CommandLine):
         self.assertIn("material.vtu", self.run_with(young="-1", poisson="0.4", code=2).stderr)
         self.write("use.toml", HOLDS_MATERIAL.replace("material.vtu", "none.vtu"))
         self.assertIn("none.vtu", self.aspic("run", "use.toml", code=2).stderr)
-
-
-class Curves(CommandLine):
-    def test_spreadsheet_table_gives_parameters_and_scene_line(self):
-        rows = "\n".join(f"uniaxial;{l:g};{1e3 * (l - l ** -2):g}".replace(".", ",") for l in (1.1, 1.3, 1.6, 2.0))
-        self.write("pull.csv", "# a neo-Hookean rubber, mu = 1 kPa\ntest;stretch;stress_Pa\n" + rows)
-        text = self.aspic("fit-curves", "pull.csv", "--material", "neo_hookean_isochoric").stdout
-        self.assertRegex(text, r"young +29[78]\d|young +300\d")
-        self.assertIn('material = { model = "neo_hookean_isochoric", young = ', text)
-        listed = json.loads(self.aspic("fit-curves", "pull.csv", "--material", "fung", "--json").stdout)
-        self.assertEqual(len(listed), 1)
-
-    def test_bad_tables_name_the_row(self):
-        for text, message in (("", "empty"), ("test,stretch,stress\nuniaxial,1.1,1\n", "stress_MPa"),
-                              ("test,stretch,stress_Pa\nuniaxial,1.1,nan\n", "pull.csv:2"),
-                              ("test,stretch,stress_Pa\nuniaxal,1.1,1\n", "uniaxial")):
-            self.write("pull.csv", text)
-            self.assertIn(message, self.aspic("fit-curves", "pull.csv", code=2).stderr)
-
-    def test_closed_loop_work_is_zero_with_energy(self):
-        text = self.aspic("closed-loop", "--loops", "1", "--increments", "50").stdout
-        interpolated, energy = (re.search(rf"{name}.*?(-?[\d.]+) +(-?[\d.]+) ", text) for name in
-                                ("strain space", r"an energy \(corotated\)"))
-        self.assertGreater(float(interpolated[1]), 1)
-        self.assertLess(abs(float(energy[1])), 1e-4)
 
 
 if __name__ == "__main__":

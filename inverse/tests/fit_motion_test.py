@@ -9,7 +9,6 @@ import struct
 import unittest
 
 import linear_beam
-import recording_files as files
 from command_line import BEAM, CommandLine
 
 STEP, GRAVITY = 0.01, (0.0, -9.81, 0.0)
@@ -146,8 +145,8 @@ class FitMotion(CommandLine):
             self.assertEqual((self.folder / "1" / name).read_bytes(), (self.folder / "2" / name).read_bytes(), name)
 
 
-class FitMotionRecordings(CommandLine):
-    """Recordings by the writers of recording_files.py."""
+class FitMotionSwing(CommandLine):
+    """Against the swings of an independent program."""
 
     SWING = """gravity = [0, 0, -0.4]
 [time]
@@ -161,69 +160,20 @@ damping = { mass = 1 }
 where = "x < 1e-9"
 """
 
-    def fit(self, scene, positions, names):
-        done = self.aspic("fit-motion", scene, positions, "--fit", names, "--json", "--force", "-o", "fit")
-        report = json.loads(done.stdout)
-        return report, {p["name"]: p for p in report["parameters"]}, done.stderr
-
-    def each_format(self, names, frames, rate):
-        """Writes positions [m] as recordings in mm (TRC, C3D) and m (NPZ)."""
-        in_mm = [{n: tuple(1000 * x for x in p) for n, p in frame.items()} for frame in frames]
-        files.write_trc(self.folder / "motion.trc", names, in_mm, rate)
-        files.C3dWriter("intel").write(self.folder / "motion.c3d", names, in_mm, rate)
-        files.write_npz(self.folder / "motion.npz", names, frames, rate)
-        return ["motion.trc", "motion.c3d", "motion.npz"]
-
-    def test_flight_of_a_recording_has_its_initial_velocity(self):
-        self.write("cube.toml", BALL)
-        flight = free_flight((1.2, 3.4, -0.7), 1.7, 20)
-        corners = {"low": (0.0, 0.0, 0.1), "right": (0.1, 0.0, 0.0), "top": (0.1, 0.1, 0.1)}  # TRC: 0 0 0 is not seen
-        frames = [{name: tuple(a + b for a, b in zip(corner, d)) for name, corner in corners.items()} for d in flight]
-        del frames[7]["top"]  # not seen
-        for recording in self.each_format(list(corners), frames, 100):
-            with self.subTest(recording):
-                report, found, _ = self.fit("cube.toml", recording, "velocity,mass_damping")
-                self.assertEqual(report["samples"], 3 * 20 - 1)
-                for name, value in (("velocity_x", 1.2), ("velocity_y", 3.4), ("velocity_z", -0.7), ("mass_damping", 1.7)):
-                    self.assertAlmostEqual(found[name]["value"], value, delta=1e-4, msg=name)  # C3D: single precision
-
-    def test_swings_of_an_independent_program_give_density_and_damping(self):
+    def test_noisy_swings_give_density_and_damping(self):
         self.write("beam.toml", self.SWING)
         vertices, positions = linear_beam.swing((0.2, 0.05, 0.05), (2, 1, 1), (4e4, 0.3, 1000, 3.0), (0, 0, -0.4), 0.01, 60)
-        noise, names = random.Random(1), [f"m{v}" for v, x in enumerate(vertices) if x[0] > 0.19]
+        noise, ends = random.Random(1), [v for v, x in enumerate(vertices) if x[0] > 0.19]
         size = max(abs(a - b) for x, X in zip(positions[20], vertices) for a, b in zip(x, X))
-        frames = [{n: tuple(c + (0.002 * size * noise.gauss(0, 1) if k else 0) for c in frame[int(n[1:])]) for n in names}
-                  for k, frame in enumerate(positions)]
-        for recording in self.each_format(names, frames, 100):
-            with self.subTest(recording):
-                _, found, _ = self.fit("beam.toml", recording, "density,mass_damping")
-                self.assertAlmostEqual(found["density"]["value"], 1000, delta=10)
-                self.assertAlmostEqual(found["mass_damping"]["value"], 3, delta=0.1)
-                for name, truth in (("density", 1000), ("mass_damping", 3)):
-                    self.assertLess(abs(found[name]["value"] - truth), 4 * found[name]["deviation"] + 2e-3 * truth, name)
-
-    def test_recording_that_starts_late_starts_the_motion(self):
-        self.write("cube.toml", BALL)
-        flight = free_flight((0.5, 1, 0), 0, 10)
-        frames = [{name: tuple(a + b for a, b in zip(corner, d)) for name, corner in CORNERS.items()} for d in flight]
-        files.write_trc(self.folder / "late.trc", list(CORNERS), frames, 100, "m")
-        text = (self.folder / "late.trc").read_text().splitlines()
-        rows = [line.split("\t") for line in text[6:]]
-        for row in rows:
-            row[1] = repr(float(row[1]) + 5)
-        (self.folder / "late.trc").write_text("\n".join(text[:6] + ["\t".join(r) for r in rows]) + "\n")
-        _, found, said = self.fit("cube.toml", "late.trc", "velocity")
-        self.assertAlmostEqual(found["velocity_y"]["value"], 1, delta=1e-6)
-        self.assertIn("is the time 0", said)
-
-    def test_tables_of_displacements_and_wrong_units_are_refused(self):
-        self.write("cube.toml", BALL)
-        files.write_generic(self.folder / "table_1.csv", ["0"], {"0": (0, 0, 0)}, {"0": (0, 0, 0)})
-        done = self.aspic("fit-motion", "cube.toml", "table_1.csv", "--fit", "velocity", code=2)
-        self.assertIn("table_1.csv", done.stderr)
-        files.write_trc(self.folder / "wrong.trc", ["top"], [{"top": (100, 100, 100)}, {"top": (100, 100, 101)}], 100, "m")
-        done = self.aspic("fit-motion", "cube.toml", "wrong.trc", "--fit", "velocity", code=2)
-        self.assertIn("the positions seem to be in mm", done.stderr)
+        rows = [(k * 0.01, f"m{v}", *(float(c + (0.002 * size * noise.gauss(0, 1) if k else 0)) for c in frame[v]))
+                for k, frame in enumerate(positions) for v in ends]
+        self.write("swing.csv", table(rows))
+        done = self.aspic("fit-motion", "beam.toml", "swing.csv", "--fit", "density,mass_damping", "--json", "-o", "fit")
+        found = {p["name"]: p for p in json.loads(done.stdout)["parameters"]}
+        self.assertAlmostEqual(found["density"]["value"], 1000, delta=10)
+        self.assertAlmostEqual(found["mass_damping"]["value"], 3, delta=0.1)
+        for name, truth in (("density", 1000), ("mass_damping", 3)):
+            self.assertLess(abs(found[name]["value"] - truth), 4 * found[name]["deviation"] + 2e-3 * truth, name)
 
 
 class FitMotionErrors(CommandLine):
@@ -272,6 +222,8 @@ class FitMotionErrors(CommandLine):
         self.refused("--time-limit", None, "--time-limit", "nan")
         self.assertIn("--fit", self.aspic("fit-motion", "cube.toml", "bad.csv", code=2).stderr)
         self.assertIn("none.csv", self.aspic("fit-motion", "cube.toml", "none.csv", "--fit", "young", code=2).stderr)
+        self.assertIn("walk.trc: is a recording of another program; it is converted by: python3 -m aspic.recordings 'walk.trc' 'walk.csv'",
+                      self.aspic("fit-motion", "cube.toml", "walk.trc", "--fit", "young", code=2).stderr)
 
     def test_keeps_results_without_force(self):
         self.write("flight.csv", table(self.rows))

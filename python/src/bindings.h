@@ -11,6 +11,7 @@ void bind_linalg(py::module_& m);
 void bind_optimize(py::module_& m);
 void bind_simulation(py::module_& m);
 void bind_scene(py::module_& m);
+void bind_material(py::module_& m);
 void bind_compare(py::module_& m);
 void bind_results(py::module_& m);
 void bind_fit(py::module_& m);

@@ -14,6 +14,7 @@ PYBIND11_MODULE(_aspic, m) {
   bind_optimize(m);
   bind_simulation(m);
   bind_scene(m);
+  bind_material(m);
   bind_compare(m);
   bind_results(m);
 #ifdef ASPIC_HAS_FIT

@@ -42,6 +42,7 @@ def test_old_processor_is_refused_in_words(tmp_path):
 def test_documentation_names_what_exists():
     text = (ROOT / "docs/python.md").read_text()
     for name in set(re.findall(r"aspic\.(\w+)", text)):
-        assert hasattr(aspic, name) or (pathlib.Path(aspic.__file__).parent / f"{name}.py").exists(), name
+        folder = pathlib.Path(aspic.__file__).parent
+        assert hasattr(aspic, name) or (folder / f"{name}.py").exists() or (folder / name / "__init__.py").exists(), name
     for link in re.findall(r"\]\((?!https?:)([^)#]+)", text):
         assert (ROOT / "docs" / link).exists(), link

@@ -101,7 +101,7 @@ TEST(MuscleVelocity, DerivativesWithRespectToTheStartAreRight) {
     };
     std::vector<double> gradient(x.size());
     const ActiveTerm active(*term, {start, 0.1, 0.1});
-    term->add_derivatives(x, active.context(), w, 2, {gradient, {}, {}});
+    term->add_derivatives(x, active.context(), w, 2, {gradient, {}});
     double rate = 0;
     for (size_t i = 0; i < d.size(); ++i) rate += gradient[i] * d[i];
     constexpr double kShift = 1e-5;

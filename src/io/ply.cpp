@@ -225,10 +225,6 @@ PaintedSurface parse_painted_ply(const std::string& file, std::string_view conte
   return painted;
 }
 
-PaintedSurface parse_painted_points(const std::string& file, std::string_view contents, const std::string& attribute) {
-  return read_ply(file, contents, attribute);
-}
-
 std::string ply_bytes(const TriMesh& mesh, FileEncoding encoding) {
   const bool is_binary = encoding == FileEncoding::binary;
   std::string out = std::string("ply\nformat ") + (is_binary ? "binary_little_endian" : "ascii") +

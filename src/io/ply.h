@@ -19,9 +19,6 @@ struct PaintedSurface {
 // Throws InvalidInput with the known names if vertices have no such property.
 PaintedSurface parse_painted_ply(const std::string& file, std::string_view contents, const std::string& attribute);
 
-// The same, but faces may be missing.
-PaintedSurface parse_painted_points(const std::string& file, std::string_view contents, const std::string& attribute);
-
 std::string ply_bytes(const TriMesh& mesh, FileEncoding encoding);
 
 }  // namespace aspic

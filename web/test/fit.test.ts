@@ -136,7 +136,6 @@ function head(): FitHead {
     weights: [],
     notes: [],
     warnings: [],
-    nextPoke: null,
   };
 }
 

@@ -76,8 +76,7 @@ export type HeldOutFigures = Record<ReadingName | `largest_${PeakName}`, MaybeNu
 };
 
 export interface Comparison {
-  how: string; // "cross-validation" or "left out"
-  models: ({ model: string; failure?: string } & Record<ReadingName, MaybeNumber>)[];
+  models: ({ model: string } & Record<ReadingName, MaybeNumber>)[];
 }
 
 export interface Reason {
@@ -183,7 +182,6 @@ export interface FitHead {
   notes: string[];
   warnings: string[];
   markerNames?: string[]; // names in the data set, in the order of the markers
-  nextPoke: { site: Vec3; inward: Vec3; words: string } | null;
 }
 
 export type Fit = Pack<FitHead>;

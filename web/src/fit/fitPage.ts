@@ -17,7 +17,7 @@ import { branchTable, errorTable, historyFigures, lawTable, outlierTable, partsT
 import { Maps } from "./maps";
 import { Misfits } from "./misfits";
 import { numberTable } from "./numberTable";
-import { caseTable, comparisonTables, heldOutTable, kLeaveOut } from "./tables";
+import { caseTable, comparisonTables, heldOutTable } from "./tables";
 import { kQuantityNames, trust } from "./trust";
 
 function section(title: string, about: string, ...children: Child[]): HTMLElement {
@@ -65,7 +65,7 @@ function report(fit: Fit): HTMLElement {
   const rig = new CameraRig();
   rig.show(fit.head.name, body.lower, body.upper, body.up);
   const varies = fit.head.quantities.some((q) => q.varies);
-  const map = varies || fit.head.nextPoke ? section(varies ? "Stiffness and its uncertainty" : "Next best poke", "", new Maps(fit, body, rig).element) : null;
+  const map = varies ? section("Stiffness and its uncertainty", "", new Maps(fit, body, rig).element) : null;
   const misfits = new Misfits(fit, body, rig);
   const sections = [result(fit), laws(fit), relaxation(fit), errors(fit), map, loads(fit), predictions(fit), residualSection(fit, misfits), made(fit)];
   return element("main", { class: "fit" }, ...sections.filter((part) => part !== null));
@@ -74,7 +74,6 @@ function report(fit: Fit): HTMLElement {
 function result(fit: Fit): HTMLElement {
   const { head } = fit;
   const judged = verdict(head.figures);
-  const next = head.nextPoke ? element("div", { class: "words next" }, element("h3", {}, "Next best poke"), element("p", {}, head.nextPoke.words)) : null;
   const isAllInformed = head.fit.informed === null || head.fit.informed > head.counts.unknowns - 0.05;
   const informed = isAllInformed ? null : element("p", { class: "hint" }, `The data determine ${short(head.fit.informed, 3)} of ${plural(head.counts.unknowns, "parameter")}; the prior determines the rest.`);
   const parts = head.figures.parts ? element("p", { class: "hint" }, partsText(head.figures.parts)) : null;
@@ -84,7 +83,7 @@ function result(fit: Fit): HTMLElement {
     element("div", { class: `verdict ${judged.kind}` }, element("p", {}, judged.title), judged.reasons.length > 0 ? listOf(judged.reasons) : null),
     element("p", { class: "about" }, trust(head)),
     element("div", { class: "columns" }, element("div", { class: "wide" }, valueTable(head.quantities), parts, informed), element("div", { class: "wide" }, checkTable(head))),
-    element("div", { class: "columns" }, words("Directions of fibres", head.fibres, ""), words("Warnings", head.warnings, "warnings"), next, words("Assumptions", head.notes, "")),
+    element("div", { class: "columns" }, words("Directions of fibres", head.fibres, ""), words("Warnings", head.warnings, "warnings"), words("Assumptions", head.notes, "")),
   );
 }
 
@@ -133,7 +132,7 @@ function loads(fit: Fit): HTMLElement {
 
 function predictions({ head: { figures } }: Fit): HTMLElement {
   const table = heldOutTable(figures);
-  if (!table) return section("Predictions of unseen groups", `No group was held out, so predictions of other loads are untested. ${kLeaveOut}`);
+  if (!table) return section("Predictions of unseen groups", "No group was held out, so predictions of other loads are untested.");
   return section(
     "Predictions of unseen groups",
     "Root mean square errors, also without the part that the noise of the readings explains. Percentages are relative to the largest motion, force and torque of all groups. This is the figure to trust.",

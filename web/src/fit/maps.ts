@@ -4,10 +4,10 @@ import { checkbox, choice } from "../controls";
 import type { Vec3 } from "../protocol";
 import { sceneAxes, type CameraRig } from "../view/cameras";
 import { short, withUnit } from "../plots/numbers";
-import { along, vectorAt } from "../view/lens";
+import { vectorAt } from "../view/lens";
 import { extremes } from "../view/ranges";
-import { makeArrows, makeBalls } from "./arrows";
-import { BodyView, type Cut, type FittedBody, type Note, type Shown } from "./bodyView";
+import { makeBalls } from "./arrows";
+import { BodyView, type Cut, type FittedBody, type Shown } from "./bodyView";
 import { percentile, type Fit } from "./data";
 import { kQuantityNames as kNames } from "./trust";
 
@@ -63,7 +63,6 @@ export class Maps {
   private cut: Cut;
   private isCut = true;
   private readonly showsMarkers = checkbox("markers", "Show the markers at rest", false, () => this.mark());
-  private readonly showsNext = checkbox("next poke", "Show the most informative site", true, () => this.mark());
 
   constructor(
     private readonly fit: Fit,
@@ -116,27 +115,14 @@ export class Maps {
       this.cut = { ...this.cut, other: on };
       slice();
     });
-    const next = this.fit.head.nextPoke ? this.showsNext.element : null;
     const wires = checkbox("edges", "Show the edges of the tets", true, (on) => this.views.forEach((view) => view.showWires(on)));
-    return element("div", { class: "map-controls plot-panel" }, axis.element, position, other.element, this.showsMarkers.element, next, wires.element);
+    return element("div", { class: "map-controls plot-panel" }, axis.element, position, other.element, this.showsMarkers.element, wires.element);
   }
 
   private mark(): void {
-    const poke = this.showsNext.input.checked ? this.fit.head.nextPoke : null;
-    const size = this.body.size;
-    for (const view of this.views) {
-      const objects = [];
-      const notes: Note[] = [];
-      const markers = this.fit.floats("markers");
-      const centers = Array.from({ length: markers.length / 3 }, (_, i) => vectorAt(markers, i));
-      if (this.showsMarkers.input.checked) objects.push(makeBalls(centers, 0.006 * size, "#1b1f27"));
-      if (poke) {
-        const from = along(poke.site, -0.2 * size, poke.inward);
-        objects.push(makeArrows([{ from, to: poke.site }], 0.008 * size, "#d55e00"));
-        notes.push({ at: from, words: "next best poke" });
-      }
-      view.mark(objects, notes);
-    }
+    const markers = this.fit.floats("markers");
+    const centers = Array.from({ length: markers.length / 3 }, (_, i) => vectorAt(markers, i));
+    for (const view of this.views) view.mark(this.showsMarkers.input.checked ? [makeBalls(centers, 0.006 * this.body.size, "#1b1f27")] : [], []);
   }
 }
 

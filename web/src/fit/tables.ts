@@ -64,27 +64,12 @@ export function heldOutTable({ held_out: heldOut }: Figures): HTMLElement | null
   return numberTable(titles, 1, element("tbody", {}, ...groups.map((g) => groupRow(g, kinds, heldOut)), all, allowed, single ?? ""));
 }
 
-const kHow: Record<string, string> = {
-  "cross-validation": "Each group predicted from all others",
-  "left out": "Groups that no model was fitted to",
-};
-
-export const kLeaveOut = "With leave_out in aspic.fit.toml, the named groups are also predicted by simpler models.";
-
 export function comparisonTables({ comparison }: Figures): Child[] {
   const compared = comparison.filter(({ models }) => models.length > 1);
-  if (compared.length === 0) return [element("p", { class: "hint" }, `No simpler model was compared. ${kLeaveOut}`)];
-  return compared.flatMap(({ how, models }) => {
+  return compared.flatMap(({ models }) => {
     const kinds = kReadingKinds.filter(({ name }) => models.some((m) => typeof m[name] === "number"));
-    const rows = models.map((m) =>
-      m.failure === undefined
-        ? row(
-            m.model,
-            kinds.map(({ name }) => percent(m[name])),
-          )
-        : failedRow(m.model, m.failure, kinds.length),
-    );
+    const rows = models.map((m) => row(m.model, kinds.map(({ name }) => percent(m[name]))));
     const titles = ["model", ...kinds.map(({ name }) => `${name}s, beyond noise`)];
-    return [element("h3", {}, `Simpler models: ${kHow[how] ?? how}`), element("div", { class: "wide" }, numberTable(titles, 1, element("tbody", {}, ...rows)))];
+    return [element("h3", {}, "Simpler models: each group predicted from all others"), element("div", { class: "wide" }, numberTable(titles, 1, element("tbody", {}, ...rows)))];
   });
 }
