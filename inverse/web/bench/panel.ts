@@ -6,7 +6,6 @@ import { button, element } from "../../../web/src/dom";
 import type { Page, Panel } from "../../../web/src/page";
 import { Chart } from "../../../web/src/plots/chart";
 import { short } from "../../../web/src/plots/numbers";
-import { merged } from "../../../web/src/plots/table";
 import type { Store } from "../../../web/src/store";
 import type { Display } from "../../../web/src/view/display";
 import { ForceCurve } from "./curve";
@@ -24,7 +23,7 @@ export class BenchPanel implements Panel {
   readonly name = "bench";
   readonly title = "Bench";
   readonly isTall = true;
-  readonly element = element("div", { class: "plot-panel bench", role: "group", "aria-label": "Virtual bench" });
+  readonly element = element("div", { class: "plot-panel", role: "group", "aria-label": "Virtual bench" });
   private readonly force = element("output", { class: "bench-force", "aria-label": "Force of the indenter" });
   private readonly place = element("p", { class: "bench-row" });
   private readonly slider = element("input", { type: "range", min: "0", max: "1", step: "any", "aria-label": "Depth, slider" });
@@ -64,12 +63,15 @@ export class BenchPanel implements Panel {
       tool.choice.contact = value as IndenterChoice["contact"];
     });
     const row = (...parts: HTMLElement[]): HTMLElement => element("div", { class: "bench-row" }, ...parts);
-    this.element.append(
+    const parts = element(
+      "div",
+      { class: "bench" },
       element("section", { "aria-label": "Indenter" }, element("p", { class: "faint" }, kHint), row(shape.element, contact.element, this.radius.element), row(this.depth.element, this.slider, this.lift), this.force, this.place, row(this.keep)),
       element("div", { class: "plot-fill bench-chart" }, this.chart.element),
       element("section", { "aria-label": "Kept readings" }, element("h3", {}, "Kept readings"), this.list),
       this.fit.element,
     );
+    this.element.append(parts);
     for (const event of ["state", "role"] as const) store.on(event, () => this.follow());
     store.on("extension", (message) => this.showReadings(message as Bench));
     this.follow();
@@ -109,10 +111,10 @@ export class BenchPanel implements Panel {
   }
 
   private drawNow(): void {
-    const column = (points: [number, number][]) => ({ x: points.map(([depth]) => 1000 * depth), columns: [points.map(([, force]) => force)] });
-    const kept = (this.bench?.readings ?? []).map(({ depth, force }): [number, number] => [depth, force]).sort((a, b) => a[0] - b[0]);
-    const { x, columns } = merged(column(this.curve.sorted()), column(kept));
-    this.chart.show(x, columns);
+    const live = this.curve.sorted().map(([depth, force]) => [1000 * depth, force, null] as const);
+    const kept = (this.bench?.readings ?? []).map(({ depth, force }) => [1000 * depth, null, force] as const);
+    const rows = [...live, ...kept].sort((a, b) => a[0] - b[0]); // readings of equal depth stay apart
+    this.chart.show(rows.map(([depth]) => depth), [rows.map((row) => row[1]), rows.map((row) => row[2])]);
   }
 
   private press(depth: number): void {
