@@ -37,10 +37,6 @@ std::vector<Seed> viewer_seeds() {
       {"session", "function",
        "{\"ask\":\"function\",\"id\":1,\"name\":\"x^2+y^2\",\"start\":[1,1],\"settings\":{\"method\":\"newton\"},"
        "\"iteration\":1,\"samples\":5}"},
-      {"session", "tip",
-       "{\"do\":\"touch\",\"side\":\"a\",\"triangle\":3,\"weights\":[0.2,0.3,0.5],\"radius\":0.3}\n{\"do\":\"press\","
-       "\"depth\":0.01}\n"
-       "{\"do\":\"step\"}\n{\"do\":\"record\"}\n{\"do\":\"fit\"}\n{\"do\":\"lift\"}"},
   };
   const auto file = [&](const std::string& name) { return std::pair(name, begun.contents(name)); };
   seeds.push_back({"run_recording", "steps", joined_files({file("steps.csv"), file("iterations.csv")})});

@@ -8,6 +8,15 @@ if(TARGET aspic_viewer)
   target_include_directories(test_viewer SYSTEM PRIVATE ${BOOST_INCLUDE})
   target_compile_definitions(test_viewer PRIVATE ASPIC_SOURCE_DIR="${CMAKE_SOURCE_DIR}")
 
+  if(TARGET aspic_bench)
+    foreach(name bench page)
+      file(GLOB sources CONFIGURE_DEPENDS ${CMAKE_SOURCE_DIR}/inverse/${name}/*_test.cpp)
+      add_aspic_tests(test_${name} ${sources})
+      target_link_libraries(test_${name} PRIVATE aspic_${name})
+    endforeach()
+    add_dependencies(test_bench aspic_cli)  # fits
+  endif()
+
   add_aspic_tests(test_lessons ${CMAKE_SOURCE_DIR}/apps/aspic/lecture/lessons_test.cpp
     ${CMAKE_SOURCE_DIR}/apps/aspic/formulas_test.cpp ${CMAKE_SOURCE_DIR}/apps/aspic/gallery_test.cpp
     ${CMAKE_SOURCE_DIR}/apps/aspic/step_fields_test.cpp)
@@ -23,7 +32,7 @@ if(TARGET aspic_viewer)
   target_link_libraries(test_mesh_pictures PRIVATE aspic_commands ZLIB::ZLIB)
 
   # The page with its program in Chromium. Each test gets two processors, because the browser renders with them, too.
-  file(GLOB page_themes CONFIGURE_DEPENDS ${web}/test/e2e/*.e2e.mjs)
+  file(GLOB page_themes CONFIGURE_DEPENDS ${web}/test/e2e/*.e2e.mjs ${CMAKE_SOURCE_DIR}/inverse/web/test/e2e/*.e2e.mjs)
   foreach(file ${page_themes})
     get_filename_component(theme ${file} NAME_WE)
     add_test(NAME page.${theme} COMMAND ${NODE} ${web}/test/e2e/run.mjs $<TARGET_FILE:aspic_cli> ${theme})

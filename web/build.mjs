@@ -1,7 +1,7 @@
 // node build.mjs OUT: the whole page, scripts and styles included, as one HTML file, packed as OUT.gz, and beside it the
 // formulas as formulas.inc. Needs no server and no network.
 import { build } from "esbuild";
-import { mkdirSync, readFileSync, writeFileSync } from "node:fs";
+import { existsSync, mkdirSync, readFileSync, writeFileSync } from "node:fs";
 import { dirname, join } from "node:path";
 import { fileURLToPath } from "node:url";
 import { gzipSync } from "node:zlib";
@@ -10,8 +10,12 @@ import { mathml, mathStyle, programFormulas } from "./mathml.mjs";
 const root = dirname(fileURLToPath(import.meta.url));
 const out = process.argv[2] ?? join(root, "page.html");
 
+// Extensions register before main.ts runs (src/extensions.ts).
+const extension = join(root, "../inverse/web/index.ts");
+const parts = [...(existsSync(extension) ? [extension] : []), join(root, "src/main.ts")];
 const result = await build({
-  entryPoints: [join(root, "src/main.ts")],
+  stdin: { contents: parts.map((part) => `import ${JSON.stringify(part)};`).join("\n"), resolveDir: root },
+  nodePaths: [join(root, "node_modules")], // for the extension
   bundle: true,
   minify: true,
   format: "iife",

@@ -22,6 +22,9 @@
 #include "viewer/recording.h"
 #include "viewer/server.h"
 #include "viewer/session.h"
+#ifdef ASPIC_HAS_BENCH
+#include "bench/bench.h"
+#endif
 
 namespace aspic::cli {
 namespace {
@@ -32,6 +35,14 @@ using viewer::Server;
 using viewer::Session;
 
 namespace fs = std::filesystem;
+
+viewer::SessionExtension extension() {
+#ifdef ASPIC_HAS_BENCH
+  return bench::bench();
+#else
+  return {};
+#endif
+}
 
 bool has_display() {
   const auto is_set = [](const char* name) {
@@ -126,7 +137,8 @@ int view_scene(const ViewArguments& arguments) {
                          return viewer::Gallery{viewer::scenes_below(shipped_scenes()), recent.read()};
                        },
                    .note_loaded = [&](const fs::path& scene) { recent.note(scene); },
-                   .announce = announce});
+                   .announce = announce,
+                   .extension = extension()});
   recent.note(arguments.input);
   print_scene(session);
   if (arguments.play) session.handle(R"({"do":"play"})", Role::steers);

@@ -62,17 +62,6 @@ SessionOptions options() {
 struct Engine {
   explicit Engine(const std::string& scene) : session(scene, {}, options()), paced(session) {}
 
-  // A fit ends before the next message is read: there is one thread.
-  void serve_fit() {
-    const std::optional<FitTask> task = session.take_fit();
-    if (!task) return;
-    const auto report = [&](FitNews news) {
-      news.task = task->number;
-      post(session.note_fit(news));
-    };
-    run_fit(*task, report, StopToken([] { return is_stop_requested(); }));
-  }
-
   Session session;
   PacedSession paced;
 };
@@ -135,7 +124,6 @@ EMSCRIPTEN_KEEPALIVE void engine_handle(const char* text) {
   const Answer answer = engine->session.handle(text, Role::steers);
   post(answer.to_all);
   post(answer.to_sender);
-  engine->serve_fit();
 }
 
 // Takes the steps that are due and posts pictures if requested.

@@ -8,13 +8,11 @@
 
 namespace aspic {
 struct Model;
-struct Indenter;
 class StopToken;
 }  // namespace aspic
 
 namespace aspic::viewer {
 
-class FitState;
 class Playback;
 class Stage;
 struct SessionOptions;
@@ -32,14 +30,9 @@ std::function<void(Arguments&)> plain(Act act) {
 using Commands = std::map<std::string, Command>;
 using Questions = std::map<std::string, std::function<Json(Arguments& arguments)>>;
 
-void add_hand_commands(Stage& stage, Commands& commands);      // grab, move, release, stiffness, pin
-void add_indenter_commands(Stage& stage, Commands& commands);  // touch, press, lift
+void add_hand_commands(Stage& stage, Commands& commands);  // grab, move, release, stiffness, pin
 // set, load, lesson, compare, end_compare, replay, color, surface
 void add_scene_commands(const SessionOptions& options, Stage& stage, Playback& playback, Commands& commands);
-void add_questions(const SessionOptions& options, Stage& stage, const Playback& playback, const FitState& fit,
-                   Questions& questions);
-
-// Returns the indenter that a command describes, with defaults for missing members. Throws InvalidInput.
-Indenter indenter_of(Arguments& arguments, const Model& model, const Surface& cage);
+void add_questions(const SessionOptions& options, Stage& stage, const Playback& playback, Questions& questions);
 
 }  // namespace aspic::viewer

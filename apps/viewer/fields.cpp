@@ -122,8 +122,6 @@ double largest_stretch(const Mat3d& F) {
 
 std::span<const double> FieldValues::tet_values(const std::string& field, const View& view) {
   const Model& model = view.simulation.model();
-  for (const TetField& own : view.further)
-    if (own.field.name == field) return own.values;
   if (const auto* values = tet_field(model, field)) return *values;
   const KnownField* known = find_field(field);
   if (!known || known->elastic) {  // a field that no longer exists shows det F

@@ -19,17 +19,10 @@ struct Field {
 std::vector<Field> fields_of(const Model& model);
 const std::vector<double>* tet_field(const Model& model, std::string_view name);  // null: none
 
-// Values per tet from outside the model, such as those of a fit.
-struct TetField {
-  Field field;
-  std::vector<double> values;  // in the order of the model
-};
-
 // The displayed state of a simulation: between steps, or at an iterate of the current step.
 struct View {
   const Simulation& simulation;
   std::span<const double> x;
-  std::span<const TetField> further = {};
 };
 
 class FieldValues {

@@ -72,16 +72,16 @@ void grab(Stage& stage, Arguments& arguments) {
 void move(Stage& stage, Arguments& arguments) {
   const Vec3d target = target_of(arguments, stage.a().side);
   arguments.finish();
-  if (!stage.a().side.tools().hand.is_grabbing()) throw InvalidInput("move: nothing is grabbed");
+  if (!stage.a().side.hand().is_grabbing()) throw InvalidInput("move: nothing is grabbed");
   stage.record({{"do", "move"}, {"target", json_of(target)}});
   for (ShownSide& shown : stage.sides()) shown.side.aim([&](Tools& tools) { tools.hand.move(target); });
 }
 
 void release(Stage& stage) {
-  if (!stage.a().side.tools().hand.is_grabbing()) return;
+  if (!stage.a().side.hand().is_grabbing()) return;
   stage.record({{"do", "release"}});
   for (ShownSide& shown : stage.sides())
-    if (shown.side.tools().hand.is_grabbing()) shown.side.edit([](Tools& tools, Positions) { tools.hand.release(); });
+    if (shown.side.hand().is_grabbing()) shown.side.edit([](Tools& tools, Positions) { tools.hand.release(); });
 }
 
 void set_stiffness(Stage& stage, Arguments& arguments) {

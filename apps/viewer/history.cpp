@@ -95,7 +95,7 @@ Snapshot History::snapshot_of(const Simulation& simulation) const {
 void History::add(Snapshot snapshot) { timeline_.add(std::move(snapshot)); }
 
 void History::add(Snapshot snapshot, StepRow row) {
-  if (snapshot.acted.stiffness > 0) pulls_.push_back({snapshot.step, snapshot.acted});
+  if (snapshot.acted.grab.stiffness > 0) pulls_.push_back({snapshot.step, snapshot.acted.grab});
   rows_.add(std::move(row));
   add(std::move(snapshot));
 }
@@ -103,7 +103,6 @@ void History::add(Snapshot snapshot, StepRow row) {
 void History::replace_last(Snapshot snapshot) {
   const Snapshot& last = timeline_.last();
   snapshot.acted = last.acted;
-  snapshot.poked = last.poked;
   snapshot.settings = last.settings;
   timeline_.drop_after(snapshot.step - 1);
   add(std::move(snapshot));

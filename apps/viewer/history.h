@@ -7,10 +7,15 @@
 
 #include "dynamics/simulation.h"
 #include "energy/grab_spring.h"
-#include "energy/held_indenter.h"
+#include "viewer/extension.h"
 #include "viewer/step_rows.h"
 
 namespace aspic::viewer {
+
+struct ToolMotions {
+  Grab grab;
+  ToolMotion tool;
+};
 
 // The state between two steps: everything except the settings that the next steps depend on.
 struct Snapshot {
@@ -23,10 +28,9 @@ struct Snapshot {
   double start_time = 0, h = 0;   // [s] see History
   std::string integrator;
   Grab grab;                                     // at rest, after the edits before the next step
-  IndenterMotion poke;                           // at rest, after these edits
+  ToolMotion tool;                               // at rest, after these edits
   std::shared_ptr<const std::vector<Pin>> pins;  // after these edits
-  Grab acted;                                    // motion in the last step
-  IndenterMotion poked;                          // motion in the last step
+  ToolMotions acted;                             // in the last step
   long settings = 0;                             // counter of settings at the last step
 
   size_t bytes() const;

@@ -8,7 +8,6 @@
 #include "io/external_program.h"
 #include "io/mesh_file.h"
 #include "viewer/commands.h"
-#include "viewer/fit_state.h"
 #include "viewer/playback.h"
 #include "viewer/replies.h"
 #include "viewer/saved_scene.h"
@@ -59,8 +58,7 @@ Json gallery_reply(const Gallery& gallery) {
 
 }  // namespace
 
-void add_questions(const SessionOptions& options, Stage& stage, const Playback& playback, const FitState& fit,
-                   Questions& questions) {
+void add_questions(const SessionOptions& options, Stage& stage, const Playback& playback, Questions& questions) {
   const auto add = [&](const char* name, auto reply) {
     questions[name] = [&stage, reply](Arguments& arguments) { return reply(stage.named(arguments), arguments); };
   };
@@ -106,7 +104,6 @@ void add_questions(const SessionOptions& options, Stage& stage, const Playback& 
   };
   questions["recording"] = [&](Arguments& arguments) {
     arguments.finish();
-    fit.require_saved_material();
     return to_json(stage.recording());
   };
 }

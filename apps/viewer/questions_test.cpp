@@ -209,7 +209,7 @@ TEST(Questions, SampleTheCurrentStep) {
 }
 
 TEST(Questions, AboutAnIterationStopOnRequest) {
-  Side side(load_steered(Page::scene_file(kBeam), {}, {}, 1e18), size_t{1} << 20);
+  Side side(load_steered(Page::scene_file(kBeam), {}, {}, SessionOptions()), size_t{1} << 20);
   side.step(StopToken());
   const std::vector<double> q = side.simulation().state().q;
   for (const int patience : {0, 1, 50, 500}) {  // before, within the curve, and within the slice

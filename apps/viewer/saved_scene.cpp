@@ -192,7 +192,7 @@ SavedScene saved_scene(const Side& side, SavedHand hand) {
   Table document = side.steered().document;
   add_pins(side, document, saved.notes);
   if (hand == SavedHand::with_drags) add_drags(side, document);
-  if (side.tools().indenter.touch()) saved.notes.emplace_back("the indenter is not saved");
+  if (side.tool().resting(side.time())) saved.notes.emplace_back("the tool on the body is not saved");
   put_in_order(document);
   saved.files.push_back({saved.name + ".toml", "# Saved by the viewer, with all values. To run it: aspic run " +
                                                    saved.name + ".toml\n" + to_toml(document)});

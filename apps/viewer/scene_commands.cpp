@@ -111,7 +111,7 @@ void set(const SessionOptions& options, Stage& stage, Arguments& arguments) {
     if (only ? only != &shown : &shown == stage.b() && is_compared()) continue;
     const SteeredScene& steered = shown.side.steered();
     const std::string change = value.is_null() ? setting_key(key) : setting_override(steered.document, key, value);
-    prepared.push_back({shown, changed_scene(steered, change, std::ref(busy))});
+    prepared.push_back({shown, changed_scene(steered, change, std::ref(busy), options)});
   }
   for (Prepared& p : prepared) {
     p.shown.side.apply(std::move(p.change));

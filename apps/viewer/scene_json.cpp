@@ -8,13 +8,6 @@ namespace aspic::viewer {
 
 Json json_of(const Vec3d& x) { return {x[0], x[1], x[2]}; }
 
-Json indenter_json(const Indenter& indenter) {
-  return {{"shape", indenter.shape == IndenterShape::disc ? "disc" : "sphere"},
-          {"contact", indenter.contact == IndenterContact::sliding ? "sliding" : "bonded"},
-          {"radius", indenter.radius},
-          {"stiffness", indenter.stiffness}};
-}
-
 namespace {
 
 // The box of the bodies and the obstacles below them, unless these are so large that the bodies would be tiny.

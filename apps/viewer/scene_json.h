@@ -1,6 +1,5 @@
 // The common parts of the messages about live and recorded scenes.
 #pragma once
-#include "energy/probe.h"
 #include "mesh/box.h"
 #include "scene/value.h"
 #include "viewer/arguments.h"
@@ -9,7 +8,6 @@
 namespace aspic::viewer {
 
 Json json_of(const Vec3d& x);
-Json indenter_json(const Indenter& indenter);  // {"shape", "contact", "radius", "stiffness"}
 
 // Returns the bounding box of points with 3 numbers each. Ignores NaN.
 template <class Real>

@@ -29,7 +29,7 @@ Urgency urgency_of(std::string_view command) {
 
 Aim aim_of(std::string_view command) {
   if (command == "move") return Aim::mouse;
-  return command == "press" ? Aim::indenter : Aim::none;
+  return command == "press" ? Aim::tool : Aim::none;
 }
 
 std::string refusal_text(const std::string& id, const std::string& why) {

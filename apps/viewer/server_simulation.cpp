@@ -20,7 +20,6 @@ SimulationThread::SimulationThread(Session& session, Audience& audience)
       const std::lock_guard lock(mutex_);
       failure_ = std::current_exception();
     }
-    fit_.reset();
     const std::lock_guard lock(mutex_);
     has_ended_ = true;
     ended_.notify_all();
@@ -87,7 +86,6 @@ void SimulationThread::run() {
       const std::lock_guard lock(mutex_);
       if (stopping_) return;
     }
-    serve_fit();
     play();
     show_pictures();
   }
@@ -139,21 +137,6 @@ void SimulationThread::carry_out(const Request& request) {
   Answer answer = interruptibly(gives_way_to, [&] { return session_.handle(request.text, request.role); });
   if (!answer.to_all.empty()) audience_.broadcast(std::move(answer.to_all));
   if (!answer.to_sender.empty() && request.page != kNoPage) audience_.reply(request.page, std::move(answer.to_sender));
-}
-
-// The fit runs in parallel with the simulation. Its news is handled between two steps.
-void SimulationThread::serve_fit() {
-  if (std::optional<FitTask> task = session_.take_fit())
-    fit_ = std::make_unique<FitJob>(*std::move(task), [this] {
-      const std::lock_guard lock(mutex_);
-      woken_ = true;
-      changed_.notify_one();
-    });
-  if (!fit_) return;
-  if (!session_.wants_fit()) fit_->stop();
-  const bool has_ended = fit_->has_ended();
-  if (const std::optional<FitNews> news = fit_->news()) audience_.broadcast(session_.note_fit(*news));
-  if (has_ended) fit_.reset();
 }
 
 void SimulationThread::play() {

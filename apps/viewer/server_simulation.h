@@ -31,7 +31,7 @@ class Audience {
 // The slow work that a request interrupts.
 enum class Urgency { none, before_questions, before_steps };
 
-enum class Aim { none, mouse, indenter };  // the tool that a request moves
+enum class Aim { none, mouse, tool };  // what a request moves
 
 struct Request {
   PageId page = kNoPage;
@@ -65,7 +65,6 @@ class SimulationThread {
   std::optional<Request> next();
   void carry_out(const Request& request);
   void play();
-  void serve_fit();
   void show_pictures();
   template <class Work>
   auto interruptibly(Urgency for_what, Work work);
@@ -75,7 +74,6 @@ class SimulationThread {
 
   // Used by the thread alone.
   PacedSession paced_;
-  std::unique_ptr<FitJob> fit_;
 
   mutable std::mutex mutex_;  // guards everything below
   std::condition_variable changed_, ended_;

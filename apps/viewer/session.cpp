@@ -7,8 +7,8 @@
 
 #include "base/error.h"
 #include "contact/barrier.h"
-#include "viewer/bench_desk.h"
 #include "viewer/picture.h"
+#include "viewer/playback.h"
 
 namespace aspic::viewer {
 namespace {
@@ -28,13 +28,14 @@ const auto& named(const Table& table, const std::string& name, const char* kind)
 
 struct Session::Impl {
   explicit Impl(SessionOptions o) : options(std::move(o)) {
-    stage.body_changed = [this] { desk.check_body(); };
+    if (options.extension.make_desk) desk = options.extension.make_desk(options, stage, playback, commands, questions);
+    stage.body_changed = [this] {
+      if (desk) desk->check_body();
+    };
     commands["take"] = {plain([] {}), false};  // the server assigns the roles
     add_hand_commands(stage, commands);
-    add_indenter_commands(stage, commands);
     add_scene_commands(options, stage, playback, commands);
-    desk.add_to(commands);
-    add_questions(options, stage, playback, desk.fit(), questions);
+    add_questions(options, stage, playback, questions);
   }
 
   Json answer(const Json& message);
@@ -45,7 +46,7 @@ struct Session::Impl {
   Questions questions;
   Stage stage{options};
   Playback playback{stage, commands, options.wants_stop};
-  BenchDesk desk{options, stage, playback};
+  std::unique_ptr<Desk> desk;  // null: none
   PictureEncoder encoder;
 };
 
@@ -80,7 +81,7 @@ Session::~Session() = default;
 Messages Session::greeting(Role role) const {
   Messages messages = {hello(impl_->options.lessons, role)};
   for (const ShownSide& shown : impl_->stage.sides()) impl_->stage.send_all(shown);
-  impl_->desk.send();
+  if (impl_->desk) impl_->desk->send();
   impl_->playback.send_state();
   for (Message& message : impl_->stage.take_messages()) messages.push_back(std::move(message));
   return messages;
@@ -114,14 +115,6 @@ Answer Session::handle(std::string_view text, Role role) {
 
 Messages Session::advance(const std::function<bool()>& is_next_due) {
   impl_->playback.advance(is_next_due);
-  return impl_->stage.take_messages();
-}
-
-std::optional<FitTask> Session::take_fit() { return impl_->desk.fit().take_task(); }
-bool Session::wants_fit() const { return impl_->desk.fit().is_running(); }
-
-Messages Session::note_fit(const FitNews& news) {
-  impl_->desk.add(news);
   return impl_->stage.take_messages();
 }
 

@@ -8,7 +8,7 @@
 #include <string_view>
 #include <vector>
 
-#include "viewer/fit_job.h"
+#include "viewer/extension.h"
 
 namespace aspic::viewer {
 
@@ -60,6 +60,7 @@ struct SessionOptions {
   double most_tets = 1e18;                                     // per side; also limited by the free memory
   std::function<bool()> wants_stop = {};                       // polled by long work in a program without threads
   std::function<void(const std::string& what)> announce = {};  // announces a long operation; "" at its end
+  SessionExtension extension = {};
 };
 
 enum class Role { steers, watches };
@@ -82,11 +83,6 @@ class Session {
   // Takes the next step of the side that is behind, and further ones while `is_next_due` returns true. Returns the
   // messages for all pages.
   Messages advance(const std::function<bool()>& is_next_due = {});
-
-  // A requested fit. The caller runs it and reports by note_fit() until it has ended or wants_fit() returns false.
-  std::optional<FitTask> take_fit();
-  bool wants_fit() const;
-  Messages note_fit(const FitNews& news);  // returns the messages for all pages
 
   Messages pictures() const;     // one for each side
   long picture_version() const;  // changes with the pictures

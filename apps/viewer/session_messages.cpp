@@ -10,27 +10,8 @@
 namespace aspic::viewer {
 namespace {
 
-Json probe_json(const Side& side) {
-  const IndenterTool& tool = side.tools().indenter;
-  const FirstContact* touch = tool.touch();
-  if (!touch) return nullptr;
-  const HeldIndenter& indenter = *side.steered().indenter;
-  const IndenterPose &begun = touch->begun, &pose = tool.place(), &wanted = tool.wanted();
-  const Wrench wrench = indenter.wrench(side.positions());
-  Json json = indenter_json(touch->indenter);
-  json.update({{"begun", json_of(begun.center)},
-               {"center", json_of(pose.center)},
-               {"axis", json_of(pose.axis)},
-               {"depth", dot(pose.center - begun.center, begun.axis)},
-               {"wanted", dot(wanted.center - begun.center, begun.axis)},
-               {"force", json_of(wrench.force)},
-               {"torque", json_of(wrench.torque)},
-               {"points", indenter.touched_points(side.positions())}});
-  return json;
-}
-
 Json grab_json(const Side& side) {
-  const Hand& hand = side.tools().hand;
+  const Hand& hand = side.hand();
   if (!hand.is_grabbing()) return nullptr;
   return {{"point", json_of(hand.point(side.positions()))},
           {"target", json_of(hand.wanted())},
@@ -38,12 +19,6 @@ Json grab_json(const Side& side) {
 }
 
 }  // namespace
-
-std::vector<Field> ShownSide::fields() const {
-  std::vector<Field> fields = fields_of(side.model());
-  for (const TetField& own : further) fields.push_back(own.field);
-  return fields;
-}
 
 bool ShownSide::has_field(const std::string& field) const {
   const std::vector<Field> all = fields();
@@ -88,7 +63,7 @@ Message scene_message(const ShownSide& shown, const std::string& field) {
                   {"solver", simulation.integrator().is_implicit ? simulation.solver_description() : ""},
                   {"potentials", simulation.potential_names()},
                   {"field", field},
-                  {"stiffness", shown.side.tools().hand.stiffness()}});
+                  {"stiffness", shown.side.hand().stiffness()}});
   return text(message);
 }
 
@@ -125,7 +100,7 @@ Message fibres_message(const ShownSide& shown) {
 Json state_of(const ShownSide& shown) {
   const Side& side = shown.side;
   const StepRow* last = side.history().rows().last();
-  Json state = {{"probe", probe_json(side)},
+  Json state = {{"tool", side.tool().state(side.positions())},
                 {"step", side.steps_taken()},
                 {"time", side.time()},
                 {"iteration", side.iteration()},

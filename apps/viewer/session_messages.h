@@ -15,12 +15,11 @@ struct ShownSide {
   uint32_t generation = 1;                                               // generation of the geometry
   int sent_steps = 0;                                                    // number of steps whose rows were sent
   std::vector<std::string> loaded_overrides = side.steered().overrides;  // before any change of settings
-  std::vector<TetField> further = {};                                    // fields in addition to those of the model
 
   int number() const { return name == "a" ? 0 : 1; }
-  std::vector<Field> fields() const;
+  std::vector<Field> fields() const { return fields_of(side.model()); }
   bool has_field(const std::string& field) const;
-  View view() const { return {side.simulation(), side.positions(), further}; }
+  View view() const { return {side.simulation(), side.positions()}; }
 };
 
 Message text(const Json& json);  // replaces invalid UTF-8, as in file names

@@ -139,11 +139,9 @@ class Page {
   }
   void advance() { hear(session_.advance()); }
 
-  void note_fit(const FitNews& news) { hear(session_.note_fit(news)); }
-
   Json state() const { return state_; }
-  Json capture() const { return capture_; }
-  Json obstacles() const { return obstacles_; }  // the latest message
+  Json heard(const std::string& kind) const { return heard_.at(kind); }  // the latest message
+  Json obstacles() const { return obstacles_; }                          // the latest message
   Json side(const std::string& name = "a") const { return state_.at(name); }
   Json scene(const std::string& name = "a") const { return scene_.at(name); }
   const std::vector<Json>& rows(const std::string& name = "a") { return rows_[name]; }
@@ -198,7 +196,7 @@ class Page {
       const Json json = Json::parse(message.bytes);
       const std::string kind = json["kind"], side = json.value("side", "");
       if (kind == "state") state_ = json;
-      if (kind == "capture") capture_ = json;
+      heard_[kind] = json;
       if (kind == "scene") scene_[side] = json;
       if (kind == "obstacles") obstacles_ = json;
       if (kind == "pins") pins_[side] = json["vertices"];
@@ -211,7 +209,7 @@ class Page {
 
   Session session_;
   int id_ = 0;
-  Json state_, capture_, obstacles_, scene_ = Json::object(), pins_ = Json::object();
+  Json state_, heard_ = Json::object(), obstacles_, scene_ = Json::object(), pins_ = Json::object();
   std::map<std::string, std::vector<Json>> rows_;
   std::map<std::string, Geometry> geometry_;
 };

@@ -3,35 +3,36 @@
 #include <utility>
 
 #include "base/error.h"
-#include "viewer/touch_place.h"
+#include "viewer/default_stiffness.h"
 
 namespace aspic::viewer {
 
 Side::Side(SteeredScene steered, size_t timeline_bytes)
     : steered_(std::move(steered)),
       pins_(model()),
-      tools_{Hand(default_stiffness(model()))},
+      hand_(default_stiffness(model())),
       history_(simulation(), timeline_bytes) {
   history_.add(snapshot());
 }
 
 Snapshot Side::snapshot() const {
   Snapshot now = history_.snapshot_of(simulation());
-  now.grab = tools_.hand.resting(time());
-  now.poke = tools_.indenter.resting(time());
+  now.grab = hand_.resting(time());
+  now.tool = tool().resting(time());
   now.pins = pins_.now();
   return now;
 }
 
 void Side::rest() {
-  steered_.mouse->set(tools_.hand.resting(time()));
-  steered_.indenter->set(tools_.indenter.resting(time()));
+  steered_.mouse->set(hand_.resting(time()));
+  steered_.tool->set(tool().resting(time()));
 }
 
 void Side::act() {
   const Interval step{time(), history_.end_of_next_step(simulation())};
-  steered_.mouse->set(tools_.hand.acting(step));
-  steered_.indenter->set(tools_.indenter.acting(step));
+  acted_ = {hand_.acting(step), tool().acting(step)};
+  steered_.mouse->set(acted_.grab);
+  steered_.tool->set(acted_.tool);
 }
 
 void Side::record_edit() {
@@ -43,21 +44,19 @@ void Side::record_edit() {
 
 Progress Side::complete(const StepReport& report) {
   iteration_ = -1;
-  const Grab acted = steered_.mouse->grab();
-  const IndenterMotion poked = steered_.indenter->poke();
-  tools_.hand.finish_step();
-  tools_.indenter.finish_step();
+  hand_.finish_step();
+  steered_.tool->finish_step();
   rest();
-  const double by_hand = report.target_work[steered_.mouse_load], by_tip = report.target_work[steered_.tip_load];
+  const double by_hand = report.target_work[steered_.mouse_load];
+  const double by_tool = steered_.tool_load == steered_.mouse_load ? 0 : report.target_work[steered_.tool_load];
   Snapshot now = snapshot();
-  now.acted = acted;
-  now.poked = poked;
+  now.acted = acted_;
   history_.add(std::move(now), {.report = report,
                                 .iterations = iterations_.take(),
                                 .mouse_work = by_hand + std::exchange(hand_work_, 0),
-                                .probe_work = by_tip + std::exchange(indenter_work_, 0),
-                                .pin_work = report.pin_work - by_hand - by_tip,
-                                .load_work = report.load_work - by_hand - by_tip,
+                                .tool_work = by_tool + std::exchange(tool_work_, 0),
+                                .pin_work = report.pin_work - by_hand - by_tool,
+                                .load_work = report.load_work - by_hand - by_tool,
                                 .pins = pin_names(model()),
                                 .why = explain(simulation(), report)});
   is_blown_up_ = report.status == Status::undefined && !simulation().integrator().is_implicit;
@@ -98,7 +97,7 @@ Progress Side::iterate(const StopToken& stop) {
 void Side::rewind(int step) {
   iteration_ = -1;
   is_blown_up_ = false;
-  hand_work_ = indenter_work_ = 0;
+  hand_work_ = tool_work_ = 0;
   const Snapshot snapshot = history_.return_to(step);
   history_.restore(snapshot, simulated());
   if (pins_.now() != snapshot.pins) {
@@ -106,23 +105,23 @@ void Side::rewind(int step) {
     pins_.set(snapshot.pins);
     simulated().set_pins(*snapshot.pins);
   }
-  tools_.hand.return_to(snapshot.grab);
-  tools_.indenter.return_to(snapshot.poke);
+  hand_.return_to(snapshot.grab);
+  steered_.tool->return_to(snapshot.tool);
   try {
     rest();
   } catch (const InvalidInput&) {  // the new shape has no surface at this place
-    tools_.indenter.lift();
+    steered_.tool->return_to(nullptr);
     rest();
   }
-  if (tools_.hand.is_grabbing()) edit([](Tools& tools, Positions) { tools.hand.release(); });
+  if (hand_.is_grabbing()) edit([](Tools& tools, Positions) { tools.hand.release(); });
 }
 
 StepReport Side::repeat(int step, const IterationObserver& observe, const StopToken& stop) {
   const Simulation::Snapshot now = simulation().snapshot();
   const Snapshot* after = history_.restore_start_of(step, simulated());
   if (after) {
-    steered_.mouse->set(after->acted);
-    steered_.indenter->set(after->poked);
+    steered_.mouse->set(after->acted.grab);
+    steered_.tool->set(after->acted.tool);
   } else {
     act();
   }
@@ -155,24 +154,23 @@ void Side::apply(SceneChange change) {
 
 void Side::edit(const std::function<void(Tools&, Positions)>& change) {
   const Positions x = simulation().state().q;
-  const double hand_energy = tools_.hand.energy(x), indenter_energy = steered_.indenter->value(x);
-  Tools changed = tools_;
-  change(changed, x);
-  steered_.indenter->set(changed.indenter.resting(time()));
-  tools_ = std::move(changed);
+  const double hand_energy = hand_.energy(x), tool_energy = tool().energy(x);
+  Tools tools{hand_, *steered_.tool};
+  change(tools, x);
   rest();
-  hand_work_ += tools_.hand.energy(x) - hand_energy;
-  indenter_work_ += steered_.indenter->value(x) - indenter_energy;
+  hand_work_ += hand_.energy(x) - hand_energy;
+  tool_work_ += tool().energy(x) - tool_energy;
   record_edit();
 }
 
 void Side::aim(const std::function<void(Tools&)>& change) {
   iteration_ = -1;
-  change(tools_);
+  Tools tools{hand_, *steered_.tool};
+  change(tools);
 }
 
 void Side::set_stiffness(double stiffness) {
-  if (!tools_.hand.is_grabbing()) return tools_.hand.set_stiffness(stiffness);
+  if (!hand_.is_grabbing()) return hand_.set_stiffness(stiffness);
   edit([&](Tools& tools, Positions) { tools.hand.set_stiffness(stiffness); });
 }
 

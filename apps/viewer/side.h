@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "energy/grab_spring.h"
-#include "energy/held_indenter.h"
+#include "viewer/held_tool.h"
 #include "viewer/history.h"
 #include "viewer/pin_set.h"
 #include "viewer/steered_scene.h"
@@ -13,41 +13,7 @@
 
 namespace aspic::viewer {
 
-struct Interval {
-  double begin = 0, end = 0;  // [s]
-};
-
-// A tool acts on a body: the hand, a spring that pulls one of its points, and the indenter.
-// A tool rests between steps. Within a step it moves from its place to its wanted place. `Held` is a load with the
-// members from, to, from_time and to_time.
-template <class Held, class Place>
-class Tool {
- public:
-  Held resting(double time) const { return moving(held_.to, {time, time}); }  // [s]
-  Held acting(const Interval& step) const { return moving(wanted_, step); }
-  const Place& place() const { return held_.to; }
-  const Place& wanted() const { return wanted_; }  // at the end of the next step
-  void move(const Place& wanted) { wanted_ = wanted; }
-  void finish_step() { held_.from = held_.to = wanted_; }
-  void return_to(const Held& held) { held_ = held, wanted_ = held.to; }
-
- protected:
-  Held held_;
-
- private:
-  Held moving(const Place& to, const Interval& interval) const {
-    Held held = held_;
-    held.from = held_.to;
-    held.to = to;
-    held.from_time = interval.begin;
-    held.to_time = interval.end;
-    return held;
-  }
-
-  Place wanted_{};
-};
-
-class Hand : public Tool<Grab, Vec3d> {
+class Hand : public HeldTool<Grab, Vec3d> {
  public:
   explicit Hand(double stiffness) : stiffness_(stiffness) {}
 
@@ -72,16 +38,9 @@ class Hand : public Tool<Grab, Vec3d> {
   double stiffness_;
 };
 
-class IndenterTool : public Tool<IndenterMotion, IndenterPose> {
- public:
-  const FirstContact* touch() const { return held_.touch.get(); }  // null: no indenter
-  void touch(const std::shared_ptr<const FirstContact>& touch) { return_to({touch, touch->begun, touch->begun}); }
-  void lift() { return_to({}); }
-};
-
 struct Tools {
-  Hand hand;
-  IndenterTool indenter = {};
+  Hand& hand;
+  SideTool& further;  // of the extension
 };
 
 enum class Progress {
@@ -99,7 +58,8 @@ class Side {
   const Simulation& simulation() const { return steered_.scene.simulation; }
   const Model& model() const { return simulation().model(); }
   const History& history() const { return history_; }
-  const Tools& tools() const { return tools_; }
+  const Hand& hand() const { return hand_; }
+  const SideTool& tool() const { return *steered_.tool; }
   const PinSet& pins() const { return pins_; }
   int steps_taken() const { return simulation().steps_taken(); }
   double time() const { return simulation().state().time; }  // [s]
@@ -117,7 +77,7 @@ class Side {
 
   // Each of these ends the current step.
   void apply(SceneChange change);
-  // Changes the tools between two steps, at positions x. Throws InvalidInput without any change.
+  // Changes the tools between two steps, at positions x. A change that throws must have changed nothing.
   void edit(const std::function<void(Tools& tools, Positions x)>& change);
   void aim(const std::function<void(Tools& tools)>& change);  // changes only the wanted places of the tools
   void pin(const std::vector<int>& vertices, bool pinned);    // vertices of the model
@@ -126,7 +86,7 @@ class Side {
 
  private:
   Simulation& simulated() { return steered_.scene.simulation; }
-  void rest();  // sets the tools of the model to their places
+  void rest();  // sets the loads of the tools to their places
   void act();   // sets them to their motion in the next step
   StepReport acted_step(const IterationObserver& observe, const StopToken& stop);
   Progress complete(const StepReport& report);
@@ -135,9 +95,10 @@ class Side {
 
   SteeredScene steered_;
   PinSet pins_;
-  Tools tools_;
+  Hand hand_;
+  ToolMotions acted_;  // in the step under way or the last one
   History history_;
-  double hand_work_ = 0, indenter_work_ = 0;  // work of the edits since the last step [J]
+  double hand_work_ = 0, tool_work_ = 0;  // work of the edits since the last step [J]
 
   int iteration_ = -1;
   std::vector<double> iterate_;

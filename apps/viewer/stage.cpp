@@ -17,8 +17,7 @@ std::vector<ShownSide> Stage::loaded(const std::filesystem::path& scene, const s
   std::vector<ShownSide> sides;
   const auto load = [&](const char* name, const std::vector<std::string>& own) {
     Busy busy(options_);
-    sides.push_back(
-        {name, {}, Side(load_steered(scene, own, std::ref(busy), options_.most_tets), options_.timeline_bytes)});
+    sides.push_back({name, {}, Side(load_steered(scene, own, std::ref(busy), options_), options_.timeline_bytes)});
   };
   load("a", overrides);
   if (of_b) load("b", *of_b);
@@ -28,7 +27,7 @@ std::vector<ShownSide> Stage::loaded(const std::filesystem::path& scene, const s
 void Stage::install(std::vector<ShownSide> sides, std::optional<Comparison> comparison) {
   const bool was_compared = b();
   sides_ = std::move(sides);
-  if (b()) b()->side.set_stiffness(a().side.tools().hand.stiffness());  // one hand, one spring
+  if (b()) b()->side.set_stiffness(a().side.hand().stiffness());  // one hand, one spring
   comparison_ = std::move(comparison);
   base_overrides_ = a().side.steered().overrides;
   log_.clear();

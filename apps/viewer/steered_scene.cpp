@@ -7,6 +7,7 @@
 #include "base/error.h"
 #include "base/free_memory.h"
 #include "scene/scene_document.h"
+#include "viewer/session.h"
 #include "viewer/settings.h"
 
 namespace aspic::viewer {
@@ -42,28 +43,27 @@ bool needs_only_solver(const std::string& key) {
 }  // namespace
 
 SteeredScene load_steered(const fs::path& path, const std::vector<std::string>& overrides, const Announce& announce,
-                          double most_tets) {
+                          const SessionOptions& options) {
   require_file(path);
   GrabSpring* mouse = nullptr;
-  HeldIndenter* indenter = nullptr;
-  size_t mouse_load = 0, tip_load = 0;
+  std::unique_ptr<SideTool> tool;
+  size_t mouse_load = 0, tool_load = 0;
   const auto amend = [&](Model& model) {
-    auto probe = std::make_unique<HeldIndenter>(model.mesh);
-    indenter = probe.get();
-    tip_load = model.loads.size();
-    model.loads.push_back(std::move(probe));
+    tool_load = model.loads.size();
+    tool = options.extension.make_tool ? options.extension.make_tool(model) : std::make_unique<SideTool>();
     auto spring = std::make_unique<GrabSpring>();
     mouse = spring.get();
     mouse_load = model.loads.size();
     model.loads.push_back(std::move(spring));
   };
   Scene scene = load_scene(
-      path, {.overrides = overrides, .announce = announce, .limit = tets_that_fit(most_tets), .amend = amend});
+      path, {.overrides = overrides, .announce = announce, .limit = tets_that_fit(options.most_tets), .amend = amend});
   Table document = read_scene_document(scene.resolved, path.string());
-  return {std::move(scene), mouse, mouse_load, indenter, tip_load, std::move(document), path, overrides, most_tets};
+  return {std::move(scene), mouse, mouse_load, std::move(tool), tool_load, std::move(document), path, overrides};
 }
 
-SceneChange changed_scene(const SteeredScene& steered, const std::string& override_text, const Announce& announce) {
+SceneChange changed_scene(const SteeredScene& steered, const std::string& override_text, const Announce& announce,
+                          const SessionOptions& session) {
   SceneChange change{.overrides = with_override(steered.overrides, override_text)};
   const bool drops = override_text.find('=') == std::string::npos;  // restores the value in the scene file
   const Simulation& simulation = steered.scene.simulation;
@@ -75,10 +75,10 @@ SceneChange changed_scene(const SteeredScene& steered, const std::string& overri
     if (const auto conflict = find_conflict(options)) throw InvalidInput(conflict->reason);
     return change;
   }
-  change.reloaded = load_steered(steered.path, change.overrides, announce, steered.most_tets);
+  change.reloaded = load_steered(steered.path, change.overrides, announce, session);
   if (change.reloaded->scene.simulation.model().mesh.vertex_count() != simulation.model().mesh.vertex_count())
     throw InvalidInput(fmt::format("{} changes the mesh; load the scene anew with it", override_text));
-  change.reloaded->indenter->set(steered.indenter->poke());
+  change.reloaded->tool->continue_from(*steered.tool);
   return change;
 }
 

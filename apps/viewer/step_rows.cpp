@@ -78,8 +78,8 @@ Json to_json(const StepRow& row) {
   message["iterations"] = Json::array();
   for (const IterationRow& iteration : row.iterations) message["iterations"].push_back(to_json(iteration));
   message["mouse_work"] = row.mouse_work;
-  message["probe_work"] = row.probe_work;
-  message["pin_work"] = row.pin_work;  // without the work of mouse and probe
+  message["tool_work"] = row.tool_work;
+  message["pin_work"] = row.pin_work;  // without the work of mouse and tool
   message["load_work"] = row.load_work;
   message["reactions"] = reactions(row);
   message["explanation"] = to_json(row.why);

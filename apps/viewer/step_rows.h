@@ -38,8 +38,8 @@ struct StepRow {
   StepReport report;
   std::vector<IterationRow> iterations;
   double mouse_work = 0;               // work of the mouse in the step and in the edits before it [J]
-  double probe_work = 0;               // work of the probe [J]
-  double pin_work = 0;                 // as in the report, without mouse and probe [J]
+  double tool_work = 0;                // work of the tool of an extension [J]
+  double pin_work = 0;                 // as in the report, without mouse and tool [J]
   double load_work = 0;                // the same
   std::vector<std::string> pins = {};  // names of report.resultants.pins
   Explanation why;

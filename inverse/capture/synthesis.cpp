@@ -36,6 +36,7 @@ class Bench {
     set_up_data(scene);
     place_markers();
     add_indentations();
+    for (const LoadCase& load : options.cases) add_indentation(load);
     add_gravity();
     if (truth_.cases.empty()) throw InvalidInput(scene.name + ": nothing is measured; give pokes or gravity");
   }
@@ -146,7 +147,6 @@ class Bench {
         add_indentation(with, truth_.mesh.rest[sites[s].vertex], sites[s].inward, static_cast<int>(s) + 1, d);
   }
 
-  // Touch and pose are relative to the surface, which may differ slightly in the mesh of the data.
   void add_indentation(const Indenter& with, const Vec3d& site, const Vec3d& inward, int number, int d) {
     LoadCase load;
     load.group = "poke " + std::to_string(number);
@@ -156,6 +156,13 @@ class Bench {
     const Vec3d back = with.shape == IndenterShape::sphere ? with.radius * inward : Vec3d{};
     load.touch = {site - back, inward, {}};
     load.pose = {site - back + depth * inward, inward, {}};
+    add_indentation(std::move(load));
+  }
+
+  // Touch and pose are relative to the surface, which may differ slightly in the mesh of the data.
+  void add_indentation(LoadCase load) {
+    const double back = load.indenter->shape == IndenterShape::sphere ? load.indenter->radius : 0;
+    const Vec3d site = load.touch.center + back * load.touch.axis;
     add_case(std::move(load), on_data_->nearest(site).position - site, site);
   }
 

@@ -27,8 +27,11 @@ struct SynthesisOptions {
   double noise = 0.01;        // standard deviation of positions, relative to the largest motion
   double force_noise = 0.01;  // noise of forces and torques, relative to the largest
   bool forces = true, torques = false;
-  bool regions = false;          // label the tets of the data by true value, as for known anatomy
-  std::vector<Vec3d> gravity;    // one case per direction, 9.81 m/s^2
+  bool regions = false;        // label the tets of the data by true value, as for known anatomy
+  std::vector<Vec3d> gravity;  // one case per direction, 9.81 m/s^2
+  // Further indentations with names, indenter, touch, pose and gravity, group by group, each from the smallest depth
+  // on.
+  std::vector<LoadCase> cases = {};
   std::optional<TetMesh> mesh;   // rest mesh of the data set, in the position of the body; empty: a coarser one is made
   std::filesystem::path mesher;  // aspic-mesh; empty: searched automatically
   uint64_t seed = 1;

@@ -4,7 +4,7 @@
 #include <filesystem>
 
 #include "capture/fit_run.h"
-#include "viewer/fit_page.h"
+#include "page/fit_page.h"
 
 namespace aspic::cli {
 

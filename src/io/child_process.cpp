@@ -141,6 +141,10 @@ bool ChildProcess::is_running() {
   return !has_ended_;
 }
 
+void ChildProcess::terminate() {
+  if (is_running()) ::kill(process_, SIGTERM);
+}
+
 int ChildProcess::wait() {
   while (!has_ended_) has_ended_ = ::waitpid(process_, &status_, 0) == process_ || errno != EINTR;
   return status_;

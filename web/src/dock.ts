@@ -5,7 +5,7 @@ import { whenNarrow } from "./narrow";
 import { fieldsOf, type Page, type Panel } from "./page";
 import { keyName } from "./shortcuts";
 
-const kKeys: Record<string, string> = { energy: "e", microscope: "m", landscape: "a", functions: "f", certificate: "q", capture: "k" };
+const kKeys: Record<string, string> = { energy: "e", microscope: "m", landscape: "a", functions: "f", certificate: "q", bench: "k" };
 const kSmallest = 120; // smallest height [px]
 const kShare = 0.62; // largest part of the window's height; the mesh keeps the rest
 
@@ -14,6 +14,7 @@ export class Dock {
   private last: Panel | null = null; // panel that the key opens again
   private height: number | null = null; // height chosen by the reader [px]; null: the default of the style sheet
   private readonly tabs = new Map<Panel, HTMLButtonElement>();
+  private readonly list = element("div", { role: "tablist", "aria-label": "Plots" });
   private readonly body = element("div", { class: "dock-body" });
   private readonly close: HTMLButtonElement;
 
@@ -23,8 +24,7 @@ export class Dock {
     private readonly panels: Panel[],
     isClosed: boolean, // at first
   ) {
-    const list = element("div", { role: "tablist", "aria-label": "Plots" });
-    for (const panel of panels) list.append(this.makeTab(panel));
+    for (const panel of panels) this.list.append(this.makeTab(panel));
     this.close = button({ icon: "close", label: "Close the plots", title: "Close the plots (D)" }, () => this.show(null));
     const divider = makeDivider({
       label: "Height of the plots",
@@ -36,8 +36,8 @@ export class Dock {
         this.resize();
       },
     });
-    root.append(divider, element("div", { class: "dock-tabs" }, list, this.close), this.body);
-    list.addEventListener("keydown", (event) => this.moveBetweenTabs(event));
+    root.append(divider, element("div", { class: "dock-tabs" }, this.list, this.close), this.body);
+    this.list.addEventListener("keydown", (event) => this.moveBetweenTabs(event));
     addEventListener("resize", () => this.resize());
     page.on("panel", (name) => this.show(this.named(name)));
     page.shortcut({ key: "d", does: "Open or close the plots", group: "Panels", run: () => this.show(this.open ? null : this.last) });
@@ -47,6 +47,13 @@ export class Dock {
     });
     this.show(panels[0] ?? null);
     whenNarrow(isClosed, (narrow) => this.show(narrow ? null : this.last));
+  }
+
+  // Adds a panel after the construction.
+  add(panel: Panel): void {
+    this.panels.push(panel);
+    this.list.append(this.makeTab(panel));
+    this.show(this.open);
   }
 
   show(panel: Panel | null): void {

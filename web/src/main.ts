@@ -6,7 +6,7 @@ import { makeCompareButton } from "./compare";
 import { Dock } from "./dock";
 import { embeddedEngine, hasEngine } from "./engine";
 import { Files } from "./files";
-import { openFit } from "./fit/fitPage";
+import { extensions } from "./extensions";
 import { Lecture } from "./lecture";
 import { makeInvitation } from "./invitation";
 import { LiveSource } from "./live";
@@ -15,7 +15,6 @@ import { showNotices, showOwnErrors } from "./notices";
 import { embedded } from "./pack";
 import { Page } from "./page";
 import type { Panel } from "./page";
-import { CapturePanel } from "./panels/capture";
 import { addDisplayControls } from "./panels/display";
 import { EnergyPanel } from "./panels/energy";
 import { FunctionsPanel } from "./panels/functions";
@@ -57,12 +56,14 @@ function buildPage(store: Store, page: Page, sharing: Sharing | null): void {
   const functions = new FunctionsPanel(store, page);
   const chosen = new Chosen(store, page);
   const panels: Panel[] = [new EnergyPanel(store, page), new MicroscopePanel(store, page, chosen)];
-  if (store.source.live) panels.push(new LandscapePanel(store, page, chosen), functions, new CapturePanel(store, page, display));
+  if (store.source.live) panels.push(new LandscapePanel(store, page, chosen), functions);
   panels.push(makeReportPanel(store, page));
+  let dock: Dock;
+  if (store.source.live) for (const extension of extensions) extension.addTo(store, page, display, () => dock);
   const sidebar = new Sidebar(area("right"), page, store.source.live);
   addDisplayControls(new GUI({ container: sidebar.body, title: "View" }), display, page, views.all);
   new Settings(sidebar.body, store, page);
-  new Dock(area("dock"), page, panels, store.source.live);
+  dock = new Dock(area("dock"), page, panels, store.source.live);
   const lecture = new Lecture(area("left"), store, page, (question) => functions.open(question));
   const video = new Video(store, page, views.draw);
   area("views").append(video.indicator);
@@ -104,11 +105,11 @@ function openLive(): void {
 }
 
 registerColors();
-const fit = embedded("fit");
+const extension = extensions.find(({ document }) => embedded(document.id) !== null);
 const query = new URL(location.href).searchParams;
 const recording = embedded("recording");
 if (query.has("meshes")) void drawForProgram(drawMeshPictures);
-else if (fit !== null) void openFit(fit);
+else if (extension) void extension.document.open(embedded(extension.document.id)!);
 else if (recording === null) openLive();
 else if (query.has("render")) void drawForProgram(renderPictures(new RecordedSource(recording)));
 else openPage(new RecordedSource(recording));

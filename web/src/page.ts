@@ -38,7 +38,7 @@ export function fieldsOf(saved: unknown): Record<string, unknown> {
 export interface Shortcut {
   key: string; // KeyboardEvent.key, with "Shift+" before it if needed: " ", "s", "Shift+R", "1"
   does: string; // description in the list of shortcuts
-  group: "Simulation" | "Camera" | "Display" | "Panels" | "File" | "Capture";
+  group: "Simulation" | "Camera" | "Display" | "Panels" | "File";
   run: () => void;
 }
 
@@ -65,7 +65,7 @@ export class Page extends Emitter<Events> {
 
 // A tab of the dock.
 export interface Panel {
-  readonly name: PanelName | "certificate" | "capture";
+  readonly name: PanelName | "certificate" | "bench";
   readonly title: string;
   readonly element: HTMLElement;
   readonly isTall?: boolean; // needs more than the usual height

@@ -29,18 +29,8 @@ export type Command = { id?: number } & (
   | { do: "release" }
   | { do: "stiffness"; value: number } // stiffness of the mouse's spring [N/m]
   | { do: "pin"; side: SideName; vertices: number[]; pinned: boolean } // vertices of the visible surface
-  // A rigid tip touches the body at that point along the inward normal. The program chooses omitted values.
-  | ({ do: "touch"; side: SideName; triangle: number; weights: Vec3; stiffness?: number } & Partial<TipChoice>)
-  | { do: "press"; depth: number; shift?: Vec3 } // indentation along the tip's axis since first contact [m]
-  | { do: "lift" } // removes the tip
-  | { do: "bench"; markers?: number; noise?: number; seed?: number; same_mesh?: boolean } // sets the virtual bench up
-  | { do: "record"; depths?: number } // records load cases up to the tip's pose, in equal steps
-  | ({ do: "poke_all"; sites: number; depths: number; depth: number } & Partial<TipChoice>) // pokes distributed over the body
-  | { do: "forget"; case?: number } // deletes a recorded case; without it all cases
-  | { do: "save_capture"; folder: string } // saves a data set; a path on the program's machine
-  | { do: "fit" } // fits Young's modulus of every tet to the recorded cases, in the background
-  | { do: "stop_fit" }
-  | { do: "simulate_fit" } // gives side b the fitted material
+  // Of an extension: inverse/web/bench/protocol.ts.
+  | { do: "touch" | "press" | "lift" | "keep" | "forget" | "fit" | "stop_fit"; [member: string]: unknown }
   | { do: "compare"; overrides: string[]; label: string } // opens side b: the scene of side a with these overrides
   | { do: "end_compare" }
   | { do: "color"; field: string } // name in Scene.fields; "": no field
@@ -52,12 +42,6 @@ export type Command = { id?: number } & (
 export interface UploadedFile {
   name: string; // relative path with "/" between folders
   gzip: string; // base64 of gzip
-}
-
-export interface TipChoice {
-  shape: "sphere" | "disc";
-  contact: "bonded" | "sliding";
-  radius: number; // [m]
 }
 
 // Query: changes nothing; any page may send it. Always has an id; answered by `reply` or `refused`.
@@ -72,7 +56,8 @@ export type Query =
   | { ask: "scene_files"; side: SideName } // the same without drags, for the command "load"
   | { ask: "animation"; side: SideName; format: "usd" | "pc2" | "glb" } // motion over the steps in the timeline
   | { ask: "gallery" } // scenes to choose from
-  | { ask: "recording" };
+  | { ask: "recording" }
+  | { ask: "fit_state" | "fit_report" }; // of an extension
 
 export interface FunctionQuestion {
   name: string; // "rosenbrock", "two_bump", "quadratic", or a formula of x and y
@@ -91,7 +76,7 @@ export type ServerMessage =
   | { kind: "end_compare" } // side b is removed
   | Obstacles
   | { kind: "steps"; side: SideName; from: number; steps: StepRow[] } // rows of steps from+1, ...; all later rows are invalid
-  | Capture
+  | { kind: "bench" } // of an extension, with further members
   | { kind: "pins"; side: SideName; vertices: number[] } // vertices of the surface
   | { kind: "fibres"; side: SideName; generation: number; lines: number[] } // triangle, shares of its edges from corner 0; ...
   | State
@@ -209,8 +194,8 @@ export interface Setting {
 
 export interface StepRow extends StepFields {
   iterations: IterationRow[];
-  mouse_work: MaybeNumber; // work of the mouse in this step [J]; pin_work excludes it and probe_work
-  probe_work: MaybeNumber;
+  mouse_work: MaybeNumber; // work of the mouse in this step [J]; pin_work excludes it and tool_work
+  tool_work: MaybeNumber; // work of the tool of an extension [J]
   reactions?: Record<string, MaybeNumber[]>; // per pin: force [N] and moment about the origin [N m], x y z
   explanation: { cause: string; place: string; remedy: string } | null; // explanation of a failed convergence
 }
@@ -252,64 +237,7 @@ export interface SideState {
   status: string; // status of the last step; "" in the initial state
   words: { cause: string; place: string; remedy: string } | null;
   grab: { point: Vec3; target: Vec3; force: Vec3 } | null; // force on the body [N]
-  probe: ProbeState | null;
-}
-
-// The virtual bench.
-export interface Capture {
-  kind: "capture";
-  radius: number; // default radius of a tip [m]
-  noise: number; // standard deviation relative to the largest motion and to the force of each case
-  seed: number;
-  words: string; // message about the last action
-  notes: string[]; // notes on the mesh of the fit
-  markers: { triangles: number[]; weights: number[] }; // points on the surface of side a; 3 weights each
-  cases: CaptureCase[];
-  tets: number; // tets in the mesh of the fit; 0: no mesh yet
-  same_mesh: boolean; // whether it is the mesh of the body (an inverse crime)
-  fit: CaptureFit | null;
-}
-
-export interface CaptureCase {
-  name: string; // "poke 3, depth 2"
-  group: string; // "poke 3"
-  shape: TipChoice["shape"];
-  radius: number;
-  center: Vec3; // center of the tip in this case [m]
-  axis: Vec3;
-  depth: number; // [m]
-  force: Vec3; // measured force with noise [N]
-  push: number; // component of the force along the axis [N]
-  deviation: number; // standard deviation of each component of the force [N]
-}
-
-export interface CaptureFit {
-  running: boolean;
-  stage: string; // current activity; "": none
-  words: string; // summary of the result
-  failure: string; // "" unless the fit has failed
-  // chi: root mean square of the residuals relative to their standard deviations; 1 is the noise level
-  iterations: { index: number; misfit: MaybeNumber; roughness: MaybeNumber; weight: MaybeNumber; chi: MaybeNumber }[];
-  residuals: number;
-  error: MaybeNumber; // root mean square of log(fitted / true modulus) over the volume
-  softest: MaybeNumber; // [Pa]
-  stiffest: MaybeNumber;
-  has_material: boolean; // whether side b can simulate it
-  warnings: string[];
-  next: { site: Vec3; words: string } | null; // most informative site of the next poke
-}
-
-// The tip that touches the body.
-export interface ProbeState extends TipChoice {
-  stiffness: number; // stiffness of the contact layer [Pa/m]
-  begun: Vec3; // center at first contact [m]: of the sphere, or of the flat end
-  center: Vec3; // present center [m]
-  axis: Vec3; // axis from the tip into the body
-  depth: number; // present depth [m]
-  wanted: number; // depth at the end of the next step [m]
-  force: Vec3; // force of the tip on the body [N]
-  torque: Vec3; // torque about its center [N m]
-  points: number; // number of surface points in contact
+  tool: unknown; // tool of an extension on the body; null: none
 }
 
 // Actions by step; enough to repeat a session bit by bit.

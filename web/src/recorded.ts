@@ -265,7 +265,7 @@ export class RecordedSource implements Source {
         status: row?.status ?? "",
         words: row?.explanation ?? null,
         grab: null,
-        probe: null,
+        tool: null,
       },
       b: null,
     };

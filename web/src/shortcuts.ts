@@ -55,7 +55,7 @@ export function shortcutButton(page: Page, shortcut: Shortcut, look: ButtonOptio
   return made;
 }
 
-export const kGroups: Shortcut["group"][] = ["Simulation", "Camera", "Display", "Panels", "File", "Capture"];
+export const kGroups: Shortcut["group"][] = ["Simulation", "Camera", "Display", "Panels", "File"];
 
 export function openShortcutList(page: Page): void {
   const groups = kGroups.map((group) => {

@@ -1,7 +1,7 @@
 // State of the page: the last message of each kind. Panels read it and subscribe to changes.
 import { Emitter } from "./emitter";
 import { nameOfA } from "./presets";
-import type { Capture, Geometry, Hello, Obstacle, Picture, Scene, SideName, State, StepRow } from "./protocol";
+import type { Geometry, Hello, Obstacle, Picture, Scene, SideName, State, StepRow } from "./protocol";
 import type { Incoming, Source } from "./source";
 
 const kMostRows = 20_000; // same limit as in the program
@@ -28,7 +28,7 @@ interface Events {
   steps: { side: SideName; from: number };
   pins: SideName;
   fibres: SideName;
-  capture: Capture;
+  extension: { kind: "bench" }; // message of an extension
   state: State;
   busy: string;
   refused: string;
@@ -41,7 +41,6 @@ export class Store extends Emitter<Events> {
   failures: number | null = null; // failed connections in a row; null before the first connection
   state: State | null = null;
   busy = "";
-  capture: Capture | null = null;
   readonly sides: { a: Side | null; b: Side | null } = { a: null, b: null };
 
   constructor(readonly source: Source) {
@@ -123,9 +122,8 @@ export class Store extends Emitter<Events> {
         side.obstacles = message.obstacles;
         return this.emit("obstacles", message.side);
       }
-      case "capture":
-        this.capture = message;
-        return this.emit("capture", message);
+      case "bench":
+        return this.emit("extension", message);
       case "state":
         this.state = message;
         return this.emit("state", message);

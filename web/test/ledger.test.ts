@@ -127,7 +127,7 @@ function lab(hex: string): number[] {
 test("no two curves share a family of colors", () => {
   const css = readFileSync(`${import.meta.dirname}/../src/style.css`, "utf8");
   const colors = new CurveColors();
-  const keys = ledgerColumns(["a", "b", "c", "d"]).map(({ key }) => key).filter((key) => !/probe|load|muscle|obstacle/.test(key));
+  const keys = ledgerColumns(["a", "b", "c", "d"]).map(({ key }) => key).filter((key) => !/tool|load|muscle|obstacle/.test(key));
   const names = keys.map((key) => colors.of(key).replace(/(\d+)/, "-$1"));
   assert.deepEqual(keys.map((key) => colors.of(key).replace(/(\d+)/, "-$1")), names, "the same at each call");
   for (const theme of [1, 2]) {

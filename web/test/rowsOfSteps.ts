@@ -17,7 +17,7 @@ export function stepRow(change: Partial<StepRow> = {}): StepRow {
     kinetic: 0,
     potential: [0],
     mouse_work: 0,
-    probe_work: 0,
+    tool_work: 0,
     pin_work: 0,
     damping_loss: 0,
     numerical_loss: 0,

@@ -1,17 +1,19 @@
-// node test/run.mjs: bundles test/*.test.ts into a temporary folder and runs them.
+// node test/run.mjs: bundles test/*.test.ts, also those of inverse/web, into a temporary folder and runs them.
 import { build } from "esbuild";
 import { spawnSync } from "node:child_process";
-import { mkdtempSync, readdirSync, rmSync } from "node:fs";
+import { existsSync, mkdtempSync, readdirSync, rmSync } from "node:fs";
 import { tmpdir } from "node:os";
-import { dirname, join } from "node:path";
+import { basename, dirname, join } from "node:path";
 import { fileURLToPath } from "node:url";
 import { mathml } from "../mathml.mjs";
 
 const here = dirname(fileURLToPath(import.meta.url));
-const tests = readdirSync(here).filter((name) => name.endsWith(".test.ts"));
+const folders = [here, join(here, "../../inverse/web/test")].filter((folder) => existsSync(folder));
+const tests = folders.flatMap((folder) => readdirSync(folder).filter((name) => name.endsWith(".test.ts")).map((name) => join(folder, name)));
 const out = mkdtempSync(join(tmpdir(), "aspic-page-"));
 await build({
-  entryPoints: tests.map((name) => join(here, name)),
+  entryPoints: Object.fromEntries(tests.map((file) => [basename(file, ".ts"), file])),
+  nodePaths: [join(here, "../node_modules")],
   bundle: true,
   external: ["node:*"], // packages are those of browsers
   format: "esm",
@@ -22,6 +24,6 @@ await build({
   plugins: [mathml],
   logLevel: "warning",
 });
-const run = spawnSync(process.execPath, ["--test", ...tests.map((name) => join(out, name.replace(/\.ts$/, ".mjs")))], { stdio: "inherit" });
+const run = spawnSync(process.execPath, ["--test", ...tests.map((file) => join(out, `${basename(file, ".ts")}.mjs`))], { stdio: "inherit" });
 rmSync(out, { recursive: true });
 process.exit(run.status ?? 1);

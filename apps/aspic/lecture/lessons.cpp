@@ -85,7 +85,8 @@ const std::vector<Staging>& stagings() {
        .look =
            "The colors show Young's modulus: stiff skin over soft fat over muscle. Play: the indenter sinks in, and "
            "the energy V in the plot grows faster than the square of its depth because the tissue stiffens. Color "
-           "by von Mises stress to see where it is loaded.",
+           "by von Mises stress to see where it is loaded. In aspic view scenes/bench.toml, the tab Bench measures a "
+           "body with an indenter of your own.",
        .question = "The indenter sinks twice as deep. Does V become four times as large?",
        .answer = "More than that. V of a linear material grows with the square of the depth; this tissue stiffens "
                  "under compression.",

@@ -224,6 +224,6 @@ export class Chosen extends Emitter<Events> {
 
 // Row of a step that is under way.
 function unfinished(step: number, time: number, iterations: IterationRow[]): StepRow {
-  const work = { mouse_work: null, probe_work: null, explanation: null };
+  const work = { mouse_work: null, tool_work: null, explanation: null };
   return { ...kUnknownStep, step, time, status: "under way", converged: true, iterations, ...work };
 }

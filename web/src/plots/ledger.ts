@@ -40,7 +40,7 @@ export function ledgerColumns(potentials: readonly string[]): Column[] {
     line("potential_total", "V", "potential energy, the sum of its terms", kWide),
     line("total", "T + V", "kinetic plus potential energy", kWider),
     summed("mouse_work", "work of the mouse", "work of the mouse's spring"),
-    summed("probe_work", "work of the probe", "work of the indenter"),
+    summed("tool_work", "work of the tool", "work of the indenter"),
     summed("pin_work", "work of pins", "work of moving pins"),
     summed("load_work", "work of loads", "work of moving spring targets and time-dependent loads"),
     summed("muscle_work", "work of muscles", "work of changing activations"),
@@ -137,7 +137,7 @@ export class Ledger {
     const total = sum([row.kinetic, potential]);
     const [loads, muscles] = [row.load_work ?? 0, row.muscle_work ?? 0];
     const pins = sum([row.pin_work, -loads, -muscles]);
-    const flows = [row.mouse_work, row.probe_work, pins, loads, muscles, (row.obstacle_work ?? 0) + (row.nonconservative_work ?? 0), row.damping_loss, row.numerical_loss];
+    const flows = [row.mouse_work, row.tool_work, pins, loads, muscles, (row.obstacle_work ?? 0) + (row.nonconservative_work ?? 0), row.damping_loss, row.numerical_loss];
     const firstFlow = this.totalColumn + 1;
     const sums = flows.map((flow, i) => sum([last < 0 ? 0 : this.columns[firstFlow + i]![last]!, flow]));
     const works = sums.slice(0, -2);

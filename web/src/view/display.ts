@@ -1,11 +1,12 @@
 // Display settings that the views of both sides share.
 import { Emitter } from "../emitter";
 import { fieldsOf, type Keeper } from "../page";
-import type { Field, Scene, SideName, TipChoice, Vec3 } from "../protocol";
+import type { Field, Scene, SideName, Vec3 } from "../protocol";
 import { CameraRig } from "./cameras";
 import type { MapName } from "./colorMaps";
 import type { Clip } from "./picking";
 import { about, logRange, RunningRange, type ColorRange } from "./ranges";
+import type { ViewTool } from "./viewTool";
 
 export const kDefaults = {
   fill: true,
@@ -37,11 +38,8 @@ export const kDefaults = {
   fixedRange: false,
   low: 0,
   high: 1,
-  tool: "drag" as "drag" | "pin" | "read" | "probe",
+  tool: "drag" as "drag" | "pin" | "read" | "extension",
   brush: 24, // radius [px]
-  tipShape: "sphere" as TipChoice["shape"],
-  tipContact: "bonded" as TipChoice["contact"],
-  tipRadius: 0, // [m]; 0: chosen by the program
   unpin: false, // the brush unpins
   linked: true, // one camera for both sides
 };
@@ -54,11 +52,9 @@ export const kChoices = {
   clip: { no: "off", "across x": "x", "across y": "y", "across z": "z" },
   map: { "by field": "auto", viridis: "viridis", cividis: "cividis", "blue to orange": "blue_orange" },
   scale: { "by field": "auto", linear: "linear", logarithmic: "log" },
-  tool: { "drag the body": "drag", "pin by brush": "pin", "read values": "read", "press a probe in": "probe" },
-  tipShape: { sphere: "sphere", "flat disc": "disc" },
-  tipContact: { bonded: "bonded", sliding: "sliding" },
+  tool: { "drag the body": "drag", "pin by brush": "pin", "read values": "read" } as Record<string, string>,
 } as const;
-const kLimits: { [K in Amount]?: [number, number] } = { shininess: [0, 200], clipAt: [0, 1], brush: [4, 200], tipRadius: [0, 1e9] };
+const kLimits: { [K in Amount]?: [number, number] } = { shininess: [0, 200], clipAt: [0, 1], brush: [4, 200] };
 
 export class Display extends Emitter<{ changed: void; camera: void; range: void }> implements Keeper {
   readonly settings: DisplaySettings = { ...kDefaults };
@@ -66,7 +62,7 @@ export class Display extends Emitter<{ changed: void; camera: void; range: void 
   fields: Field[] = []; // of side a
   field = ""; // field shown; "": none
   bodies = 1; // number of bodies of side a
-  showsBench = false; // whether the markers of the bench are visible
+  tool: ViewTool | null = null; // of an extension
   private wereLinked = true;
   private readonly running = new RunningRange();
   private measured = ""; // field of the running range
@@ -74,6 +70,12 @@ export class Display extends Emitter<{ changed: void; camera: void; range: void 
   constructor() {
     super();
     this.eachCamera((rig) => rig.on("changed", () => this.emit("camera", undefined)));
+  }
+
+  // Offers the tool of an extension; before the controls of the display are made.
+  addTool(words: string, tool: ViewTool): void {
+    kChoices.tool[words] = "extension";
+    this.tool = tool;
   }
 
   // Camera of a side: that of side a while the cameras are linked.

@@ -5,7 +5,7 @@ import type { Field, StepRow, Vec3 } from "../protocol";
 import { colorAt, type MapName } from "./colorMaps";
 import { contactText, kContactMap } from "./contacts";
 import { apart, type Box } from "./labels";
-import { dot as dotProduct, isBehind, minus, project, type Lens } from "./lens";
+import { isBehind, project, type Lens } from "./lens";
 import { fraction, logTicks, ticks, type ColorRange } from "./ranges";
 import { unitText, valueText } from "./values";
 
@@ -80,15 +80,6 @@ export function spring(ink: Ink, lens: Lens, point: Vec3, target: Vec3, force: V
   dot(ink, from, 4, ink.accent);
   const newtons = force ? Math.hypot(...force) : NaN;
   if (Number.isFinite(newtons)) text(ink, valueText(newtons, "N", 3), to[0] + ink.em, to[1] - ink.em);
-}
-
-// Draws a dot on the surface; invisible from behind.
-export function surfaceDot(ink: Ink, lens: Lens, at: Vec3, normal: Vec3, words?: string): void {
-  const sight = lens.extent > 0 ? lens.forward : minus(at, lens.eye);
-  const point = onScreen(lens, at);
-  if (!point || dotProduct(sight, normal) >= 0) return;
-  if (words === undefined) return dot(ink, point, 2.2, ink.text);
-  ring(ink, point, 0.9 * ink.em, words);
 }
 
 export function ring(ink: Ink, [x, y]: Point, radius: number, words: string): void {

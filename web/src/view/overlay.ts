@@ -17,16 +17,8 @@ export interface Marks {
   labels?: Label[];
   highlights?: Highlight[];
   spring?: { point: Vec3; target: Vec3; force: Vec3 | null } | null;
-  dots?: Dot[];
   brush?: { at: [number, number]; radius: number; words: string } | null;
   tip?: { at: [number, number]; words: string } | null;
-}
-
-// A marker on the surface, or a proposed site.
-export interface Dot {
-  at: Vec3;
-  normal: Vec3; // normal of the surface; the dot is invisible from behind
-  ring?: string; // text beside a ring
 }
 
 export interface Style {
@@ -74,7 +66,6 @@ export class Overlay {
     if (what.gridStep) marks.gridNote(ink, lens, what.gridStep);
     const taken = marks.bodyLegend(ink, lens, what.bodies ?? []);
     if (what.contact) marks.contactLegend(ink, lens, what.contact, taken);
-    for (const dot of what.dots ?? []) marks.surfaceDot(ink, lens, dot.at, dot.normal, dot.ring);
     if (what.spring) marks.spring(ink, lens, what.spring.point, what.spring.target, what.spring.force);
     if (what.brush) marks.ring(ink, what.brush.at, what.brush.radius, what.brush.words);
     if (what.bar) marks.colorBar(ink, lens, what.bar.field, what.bar.range, what.bar.map);

@@ -1,7 +1,7 @@
 // The three.js scene around a body: lights, obstacles, camera and renderer. The unit of length is the radius of the
 // scene's box, so that bodies of micrometers and of kilometers suit the GPU's single precision.
 import * as THREE from "three";
-import type { Obstacle, ProbeState, Scene, Vec3 } from "../protocol";
+import type { Obstacle, Scene, Vec3 } from "../protocol";
 import type { Body, Box } from "./body";
 import { sceneAxes } from "./cameras";
 import { ContactDots } from "./contacts";
@@ -12,7 +12,7 @@ import { ObstacleBodies } from "./obstacles";
 import type { Clip } from "./picking";
 import { roundStep } from "./ranges";
 import { kGroundRadius } from "./shading";
-import { TipBody } from "./tipBody";
+import type { ToolShape } from "./viewTool";
 
 const kFarthest = 1e4; // limit for a body that bursts; beyond it depths lose their digits
 const kFar = 30; // far plane in radii of the scene, and in heights of the view
@@ -35,7 +35,7 @@ export class Stage {
   private readonly lamp = new THREE.DirectionalLight("#ffffff", 0.55); // light at the camera
   readonly obstacles = new ObstacleBodies();
   readonly contacts = new ContactDots();
-  private readonly tip = new TipBody();
+  private tool: ToolShape | null = null;
   private readonly lit = new THREE.Sphere(new THREE.Vector3(), 0); // region that the shadow map covers
 
   constructor(canvas: HTMLCanvasElement) {
@@ -47,7 +47,7 @@ export class Stage {
     Object.assign(this.sun.shadow, { radius: 6, bias: -0.0008 });
     this.extras.matrixAutoUpdate = false;
     this.extras.add(this.contacts);
-    this.scene.add(this.extras, this.sky, this.sun, this.sun.target, this.lamp, this.lamp.target, this.obstacles, this.tip);
+    this.scene.add(this.extras, this.sky, this.sun, this.sun.target, this.lamp, this.lamp.target, this.obstacles);
   }
 
   // Places lights around the bounding box of a scene.
@@ -76,8 +76,12 @@ export class Stage {
     this.renderer.shadowMap.needsUpdate = true;
   }
 
-  showTip(tip: ProbeState | null, color: string): void {
-    if (this.tip.show(tip, color, (point) => this.toUnits(point), this.radius)) this.renderer.shadowMap.needsUpdate = true;
+  addTool(shape: ToolShape): void {
+    this.scene.add((this.tool = shape));
+  }
+
+  showTool(state: unknown, color: string): void {
+    if (this.tool?.show(state, color, (point) => this.toUnits(point), this.radius)) this.renderer.shadowMap.needsUpdate = true;
   }
 
   remove(): void {

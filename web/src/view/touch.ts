@@ -1,16 +1,29 @@
 // Pointer actions in a view: turn the camera, drag the body by a spring, pin it with a brush, read values.
+import type { Page } from "../page";
 import type { Vec3 } from "../protocol";
-import { isBehind, isFinite3, onFacingPlane, pixelsPerMeter, project, rayThrough } from "./lens";
+import type { CameraRig } from "./cameras";
+import type { Display } from "./display";
+import { isFinite3, onFacingPlane, rayThrough } from "./lens";
 import { pick, verticesInStroke, type Hit } from "./picking";
-import { depthOf, inwardNormal, wayIn, type Way } from "./pressing";
-import type { View } from "./view";
+import type { ToolGesture, TouchedView } from "./viewTool";
 
 type Gesture =
   | { kind: "turn" | "pan"; moved: number; hit: Hit | null; reads: boolean }
   | { kind: "grab"; anchor: Vec3; target: Vec3 }
   | { kind: "brush"; pinned: boolean; known: Set<number>; path: [number, number][] } // path since the last frame
   | { kind: "pinch"; distance: number }
-  | { kind: "press"; way: Way; from: number; moved: [number, number]; depth: number };
+  | { kind: "tool"; tool: ToolGesture };
+
+// The view under the pointer.
+export interface Touchable extends TouchedView {
+  readonly host: HTMLElement;
+  readonly page: Page;
+  readonly display: Display;
+  readonly rig: CameraRig;
+  redraw(): void;
+  read(hit: Hit | null): void;
+  showPins(vertices: number[]): void;
+}
 
 const kClick = 4; // shorter movements are clicks [px]
 
@@ -23,7 +36,7 @@ export class Touch {
   private waiting = false; // waiting for the next frame to send the movement
   private readonly listeners = new AbortController();
 
-  constructor(private readonly view: View) {
+  constructor(private readonly view: Touchable) {
     const host = view.host;
     const signal = this.listeners.signal;
     host.addEventListener("pointerdown", (event) => this.down(event), { signal });
@@ -75,44 +88,19 @@ export class Touch {
     const hit = pans ? null : this.pick(at);
     const { tool } = this.view.display.settings;
     const reads = !pans && (event.shiftKey || tool === "read");
-    const held = pans || reads ? null : this.heldTip(at);
-    if (held) this.gesture = held;
-    else if (hit && !reads && this.mayTouch()) this.gesture = this.touch(hit);
+    const own = tool === "extension" && !pans && !reads && this.mayTouch() ? this.view.display.tool?.begin(this.view, at, hit) : null;
+    if (own) this.gesture = { kind: "tool", tool: own };
+    else if (hit && !reads && tool !== "extension" && this.mayTouch()) this.gesture = this.touch(hit);
     else this.gesture = { kind: pans ? "pan" : "turn", moved: 0, hit, reads };
     this.schedule();
   }
 
   private touch(hit: Hit): Gesture {
     const { store, side, display } = this.view;
-    if (display.settings.tool === "probe") return this.touchWithTip(hit);
     if (display.settings.tool === "pin")
       return { kind: "brush", pinned: this.pins, known: new Set(store.side(side)?.pins), path: [this.cursor!] };
     store.source.send({ do: "grab", side, triangle: hit.triangle, weights: hit.weights, target: hit.point });
     return { kind: "grab", anchor: hit.point, target: hit.point };
-  }
-
-  // Starts a new tip at that place; further movement presses it in.
-  private touchWithTip(hit: Hit): Gesture {
-    const { store, side, display } = this.view;
-    const surface = this.view.surface()!;
-    const { tipShape: shape, tipContact: contact, tipRadius: radius } = display.settings;
-    const tip = { shape, contact, ...(radius > 0 ? { radius } : {}) };
-    store.source.send({ do: "touch", side, triangle: hit.triangle, weights: hit.weights, ...tip });
-    if (!store.state?.playing) store.source.send({ do: "play" });
-    const way = wayIn(this.view.lens(), hit.point, inwardNormal(surface.positions, surface.triangles, hit.triangle));
-    return { kind: "press", way, from: 0, moved: [0, 0], depth: 0 };
-  }
-
-  // Holds the present tip if the mouse is on it.
-  private heldTip(at: [number, number]): Gesture | null {
-    const { store, side, display } = this.view;
-    const tip = store.state?.[side]?.probe;
-    if (!tip || display.settings.tool !== "probe" || !this.mayTouch()) return null;
-    const lens = this.view.lens();
-    const [x, y, depth] = project(lens, tip.center);
-    const reach = Math.max(kClick, tip.radius * pixelsPerMeter(lens, depth));
-    if (isBehind(lens, depth) || Math.hypot(at[0] - x, at[1] - y) > reach) return null;
-    return { kind: "press", way: wayIn(lens, tip.center, tip.axis), from: tip.wanted, moved: [0, 0], depth: tip.wanted };
   }
 
   private move(event: PointerEvent): void {
@@ -139,9 +127,8 @@ export class Touch {
       const [x, y] = this.middle();
       if (distance > 0) this.zoom(gesture.distance / distance, x, y);
       gesture.distance = distance;
-    } else if (gesture.kind === "press") {
-      gesture.moved = [gesture.moved[0] + dx, gesture.moved[1] + dy];
-      gesture.depth = gesture.from + depthOf(gesture.way, gesture.moved);
+    } else if (gesture.kind === "tool") {
+      gesture.tool.move(dx, dy);
     } else if (gesture.kind === "grab") {
       const target = onFacingPlane(this.view.lens(), rayThrough(this.view.lens(), ...this.cursor!), gesture.anchor);
       if (target && isFinite3(target)) gesture.target = target;
@@ -196,8 +183,7 @@ export class Touch {
   private flush(): void {
     const { store, side } = this.view;
     if (this.gesture?.kind === "grab") store.source.send({ do: "move", target: this.gesture.target });
-    if (this.gesture?.kind === "press" && this.gesture.depth !== store.state?.[side]?.probe?.wanted)
-      store.source.send({ do: "press", depth: this.gesture.depth });
+    if (this.gesture?.kind === "tool") this.gesture.tool.flush();
     const surface = this.view.surface();
     if (this.gesture?.kind !== "brush" || !surface) return;
     const { pinned, known, path } = this.gesture;

@@ -11,9 +11,8 @@ import type { Display } from "./display";
 import { Figure } from "./figure";
 import { chooseLabels, type Label } from "./labels";
 import type { Lens } from "./lens";
-import { markersOn, nearestOn } from "./markers";
 import { kBarWidth } from "./marks";
-import { readStyle, type Dot, type Marks, type Style } from "./overlay";
+import { readStyle, type Marks, type Style } from "./overlay";
 import { Pace } from "./pace";
 import { interpolated, nearestVertex, type Hit, type Surface } from "./picking";
 import { Screen } from "./screen";
@@ -45,6 +44,7 @@ export class View {
     this.host.classList.add("view");
     this.host.replaceChildren(this.screen.canvas, this.screen.overlay.canvas, this.screen.message, this.card.element);
     this.figure = new Figure(store, side, display, this.screen.stage);
+    if (display.tool) this.screen.stage?.addTool(display.tool.makeShape());
     this.touch = new Touch(this);
     this.listen();
     this.applyDisplay();
@@ -144,7 +144,6 @@ export class View {
     };
     store.on("fibres", mine(takeFibres), signal);
     store.on("state", () => this.takeState(), signal);
-    store.on("capture", () => this.redraw(), signal);
     display.on("changed", () => this.applyDisplay(), signal);
     display.on("camera", () => this.redraw(), signal);
     const recolor = (): void => {
@@ -166,7 +165,7 @@ export class View {
 
   private takeState(): void {
     this.figure.takeState();
-    this.screen.stage?.showTip(this.store.state?.[this.side]?.probe ?? null, this.style.accent);
+    this.screen.stage?.showTool(this.store.state?.[this.side]?.tool ?? null, this.style.accent);
     this.redraw();
   }
 
@@ -238,22 +237,10 @@ export class View {
       bodies: shown ? [] : this.figure.bodies(),
       labels: this.labels(lens),
       highlights: [...this.highlights, ...this.card.marks],
-      dots: this.dots(),
       spring: grab ? { ...grab, target: target ?? grab.target } : null,
       brush: brushes ? { at: cursor, radius: settings.brush, words: this.touch.pins ? "pin" : "unpin" } : null,
       tip: this.tip(),
     };
-  }
-
-  // Markers of the bench, and the most informative site of the next poke.
-  private dots(): Dot[] {
-    const { capture } = this.store;
-    const surface = this.surface();
-    if (!capture || !surface || this.side !== "a" || !this.display.showsBench) return [];
-    const dots = markersOn(surface, capture.markers);
-    if (capture.fit?.next && !capture.fit.running)
-      dots.push({ ...nearestOn(dots, capture.fit.next.site), ring: "poke here next" });
-    return dots;
   }
 
   private labels(lens: Lens): Label[] {

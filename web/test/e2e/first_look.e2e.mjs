@@ -112,7 +112,7 @@ test("the legend hides zeros, colors are distinct", async () => {
   const entries = page.locator("#dock .chart-entry");
   await entries.filter({ hasText: "V: gravity" }).waitFor();
   const labels = await entries.locator(".chart-label").allInnerTexts();
-  for (const absent of ["work of the mouse", "work of the probe", "V: probe"]) assert.ok(!labels.includes(absent), labels.join());
+  for (const absent of ["work of the mouse", "work of the tool", "V: probe"]) assert.ok(!labels.includes(absent), labels.join());
   const colors = await entries.locator(".chart-sample").evaluateAll((samples) => samples.map((sample) => getComputedStyle(sample).borderTopColor));
   assert.equal(new Set(colors).size, colors.length, colors.join());
   await close();
