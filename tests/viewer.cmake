@@ -8,15 +8,6 @@ if(TARGET aspic_viewer)
   target_include_directories(test_viewer SYSTEM PRIVATE ${BOOST_INCLUDE})
   target_compile_definitions(test_viewer PRIVATE ASPIC_SOURCE_DIR="${CMAKE_SOURCE_DIR}")
 
-  if(TARGET aspic_bench)
-    foreach(name bench page)
-      file(GLOB sources CONFIGURE_DEPENDS ${CMAKE_SOURCE_DIR}/inverse/${name}/*_test.cpp)
-      add_aspic_tests(test_${name} ${sources})
-      target_link_libraries(test_${name} PRIVATE aspic_${name})
-    endforeach()
-    add_dependencies(test_bench aspic_cli)  # fits
-  endif()
-
   add_aspic_tests(test_lessons ${CMAKE_SOURCE_DIR}/apps/aspic/lecture/lessons_test.cpp
     ${CMAKE_SOURCE_DIR}/apps/aspic/formulas_test.cpp ${CMAKE_SOURCE_DIR}/apps/aspic/gallery_test.cpp
     ${CMAKE_SOURCE_DIR}/apps/aspic/step_fields_test.cpp)

@@ -1,7 +1,7 @@
 // The place where an indenter touches a body, a point of its surface and the inward normal, and its default
 // size.
 #pragma once
-#include "energy/held_indenter.h"
+#include "indenter/held_indenter.h"
 #include "viewer/surface.h"
 
 namespace aspic::bench {

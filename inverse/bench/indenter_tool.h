@@ -2,7 +2,7 @@
 #pragma once
 #include <memory>
 
-#include "energy/held_indenter.h"
+#include "indenter/held_indenter.h"
 #include "viewer/held_tool.h"
 
 namespace aspic::bench {

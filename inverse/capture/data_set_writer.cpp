@@ -5,7 +5,7 @@
 #include "capture/data_set.h"
 #include "capture/stated_errors.h"
 #include "capture/surface_projection.h"
-#include "energy/indenter_depth.h"
+#include "indenter/indenter_depth.h"
 #include "io/atomic_file.h"
 #include "io/csv.h"
 #include "io/mesh_file.h"

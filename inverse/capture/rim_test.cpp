@@ -3,7 +3,7 @@
 
 #include "capture/quick_plan_test.h"
 #include "capture/stated_errors.h"
-#include "energy/indenter_depth.h"
+#include "indenter/indenter_depth.h"
 
 namespace aspic {
 namespace {

@@ -5,7 +5,7 @@
 #include "base/error.h"
 #include "base/formatted.h"
 #include "capture/histories.h"
-#include "energy/indenter_depth.h"
+#include "indenter/indenter_depth.h"
 
 namespace aspic {
 namespace {

@@ -4,7 +4,7 @@
 #include <gmock/gmock.h>
 
 #include "capture/capture_cases_test.h"
-#include "energy/indenter_depth.h"
+#include "indenter/indenter_depth.h"
 
 namespace aspic {
 namespace {

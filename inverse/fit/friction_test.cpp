@@ -6,9 +6,9 @@
 #include <random>
 
 #include "dynamics/step_derivatives.h"
-#include "energy/probe_friction.h"
 #include "fit/load_case.h"
 #include "fit/misfit.h"
+#include "indenter/probe_friction.h"
 #include "math/vectors.h"
 #include "mesh/generators.h"
 #include "mesh/surface.h"

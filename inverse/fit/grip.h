@@ -4,7 +4,7 @@
 #include <span>
 #include <vector>
 
-#include "energy/probe.h"
+#include "indenter/probe.h"
 
 namespace aspic {
 

@@ -5,10 +5,10 @@
 #include <string>
 #include <vector>
 
-#include "energy/probe_friction.h"
 #include "fit/misfit.h"
 #include "fit/scaled_load.h"
 #include "fit/systematic_errors.h"
+#include "indenter/probe_friction.h"
 
 namespace aspic {
 

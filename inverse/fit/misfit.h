@@ -10,12 +10,12 @@
 #include <string>
 #include <vector>
 
-#include "energy/probe.h"
 #include "fit/equilibrium.h"
 #include "fit/grip.h"
 #include "fit/least_squares.h"
 #include "fit/parameter_map.h"
 #include "fit/systematic_error.h"
+#include "indenter/probe.h"
 
 namespace aspic {
 

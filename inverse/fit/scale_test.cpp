@@ -5,8 +5,8 @@
 #include <cmath>
 
 #include "dynamics/models_test.h"
-#include "energy/probe.h"
 #include "fit/equilibrium.h"
+#include "indenter/probe.h"
 #include "mesh/surface.h"
 
 namespace aspic {

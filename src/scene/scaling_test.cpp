@@ -6,7 +6,6 @@
 #include <regex>
 
 #include "energy/grab_spring.h"
-#include "energy/held_indenter.h"
 #include "scene/scaling_cases_test.h"
 
 namespace aspic {
@@ -214,19 +213,7 @@ std::vector<Case> hands() {
                  .to_time = 0.05 * s.of("s")});
     model.loads.push_back(std::move(spring));
   };
-  const auto poke = [](Model& model, const Scales& s) {
-    auto indenter = std::make_unique<HeldIndenter>(model.mesh);
-    const double m = s.length;
-    const IndenterPose touch{.center = m * Vec3d{{0.3, 0.1, 0.05}}, .axis = {{0, -1, 0}}};
-    const Indenter disc{.shape = IndenterShape::disc, .radius = 0.03 * m, .stiffness = 1e7 * s.of("Pa") / m};
-    IndenterMotion into{
-        .touch = std::make_shared<FirstContact>(FirstContact{disc, touch, touch}), .from = touch, .to = touch};
-    into.to.center = touch.center - m * Vec3d{{0, 0.03, 0}};
-    into.to_time = 0.05 * s.of("s");
-    indenter->set(into);
-    model.loads.push_back(std::move(indenter));
-  };
-  return {{"mouse", "", kSagging, grab}, {"probe", "", kSagging, poke}};
+  return {{"mouse", "", kSagging, grab}};
 }
 
 // Tets of a real shape, of many sizes, in the storage order of the program.

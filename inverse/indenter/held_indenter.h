@@ -2,7 +2,7 @@
 #pragma once
 #include <memory>
 
-#include "energy/probe.h"
+#include "indenter/probe.h"
 
 namespace aspic {
 

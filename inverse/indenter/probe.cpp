@@ -1,4 +1,4 @@
-#include "energy/probe.h"
+#include "indenter/probe.h"
 
 #include <algorithm>
 #include <array>
@@ -6,8 +6,8 @@
 #include <sstream>
 
 #include "base/error.h"
-#include "energy/indenter_depth.h"
 #include "energy/surface_parts.h"
+#include "indenter/indenter_depth.h"
 #include "math/symmetric_eigen.h"
 #include "mesh/vertices.h"
 

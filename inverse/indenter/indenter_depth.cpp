@@ -1,4 +1,4 @@
-#include "energy/indenter_depth.h"
+#include "indenter/indenter_depth.h"
 
 #include <algorithm>
 

@@ -1,9 +1,9 @@
-#include "energy/probe_friction.h"
+#include "indenter/probe_friction.h"
 
 #include <algorithm>
 #include <cmath>
 
-#include "energy/indenter_depth.h"
+#include "indenter/indenter_depth.h"
 #include "math/vectors.h"
 
 namespace aspic {

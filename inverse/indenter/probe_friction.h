@@ -7,7 +7,7 @@
 // of the same x, the friction of a point is the force q(p) = mu N f'(y) / y T (p - a).
 #pragma once
 #include "energy/lagged_product.h"
-#include "energy/probe.h"
+#include "indenter/probe.h"
 
 namespace aspic {
 

@@ -4,7 +4,7 @@
 //   disc:   d = -m(|r| - R, s), where m(u, v) = v + w h((u - v) / w) is a maximum that is rounded, twice continuously
 //           differentiable, over the width w of the rim; an arc of the radius 0.64 w has the same point of 45 degrees
 #pragma once
-#include "energy/probe.h"
+#include "indenter/probe.h"
 
 namespace aspic {
 

@@ -1,4 +1,4 @@
-#include "energy/held_indenter.h"
+#include "indenter/held_indenter.h"
 
 #include "mesh/surface.h"
 
