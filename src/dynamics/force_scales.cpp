@@ -13,7 +13,7 @@
 namespace aspic {
 namespace {
 
-constexpr double kEpsilon = std::numeric_limits<double>::epsilon();
+constexpr double kUnitRoundOff = std::numeric_limits<double>::epsilon();
 
 // Strain that defines the smallest characteristic force, for bodies at rest. Far above round-off and far below the
 // default tolerance.
@@ -189,9 +189,9 @@ double ForceScales::round_off_at(std::span<const double> q, const BlockSparse& H
       if (!pins_.holds(i)) part.sum += squared_norm(H.block[H.pattern->diagonal(i)]);
     }
   sum_parts();
-  for (Part& part : parts_) part.round_off = kEpsilon * model_.share.max(part.largest) * std::sqrt(part.sum);
+  for (Part& part : parts_) part.round_off = kUnitRoundOff * model_.share.max(part.largest) * std::sqrt(part.sum);
   const double size = model_.share.max(*std::max_element(largest_.begin(), largest_.end()));
-  return kEpsilon * size * std::sqrt(model_.share.sum(stiffness));
+  return kUnitRoundOff * size * std::sqrt(model_.share.sum(stiffness));
 }
 
 double ForceScales::largest_position(std::span<const double> q) const {
@@ -203,15 +203,15 @@ double ForceScales::largest_position(std::span<const double> q) const {
 void ForceScales::add_part_round_off(std::span<const double> q, double weight, std::span<double> round_offs) const {
   if (parts_.empty()) {
     const double at_rest =
-        kEpsilon * largest_position(q) * std::hypot(inertia_ * mass_norm_, factor_ * rest_stiffness_);
-    round_offs[0] += weight * ((std::max(gradient_round_off_, at_rest) + kEpsilon * gradient_scale_) / factor_);
+        kUnitRoundOff * largest_position(q) * std::hypot(inertia_ * mass_norm_, factor_ * rest_stiffness_);
+    round_offs[0] += weight * ((std::max(gradient_round_off_, at_rest) + kUnitRoundOff * gradient_scale_) / factor_);
     return;
   }
   const double size = largest_position(q);
   for (size_t k = 0; k < parts_.size(); ++k) {
     const Part& part = parts_[k];
-    const double at_rest = kEpsilon * size * std::hypot(inertia_ * part.mass_norm, factor_ * part.rest_stiffness);
-    round_offs[k] += weight * ((std::max(part.round_off, at_rest) + kEpsilon * part.scale) / factor_);
+    const double at_rest = kUnitRoundOff * size * std::hypot(inertia_ * part.mass_norm, factor_ * part.rest_stiffness);
+    round_offs[k] += weight * ((std::max(part.round_off, at_rest) + kUnitRoundOff * part.scale) / factor_);
   }
 }
 
@@ -236,7 +236,7 @@ void ForceScales::measure_parts(std::span<const double> g, std::span<GradientPar
 }
 
 double ForceScales::lost_accuracy(std::span<const double> q, std::span<const GradientPart> parts) {
-  constexpr double kPositionRoundOff = 16 * kEpsilon;  // rounding error of inertia, from positions
+  constexpr double kPositionRoundOff = 16 * kUnitRoundOff;  // rounding error of inertia, from positions
   double lost = 0;
   const double size = largest_position(q);
   for (size_t k = 0; k < parts.size(); ++k) {
