@@ -141,7 +141,7 @@ std::vector<double> recovering(IncrementalPotential& E, std::vector<double> x, c
   std::uniform_real_distribution<double> uniform(-0.03, 0.03);
   for (double& xi : x) xi += uniform(random);
   pins.place(0, x);
-  E.begin_step(start, 1, kStep * kStep);
+  E.at({.predicted = start, .factor = kStep * kStep});
   Newton newton(make_linear_solver("auto"), NewtonDefiniteness::clamped);
   MinimizeOptions options;
   options.max_iterations = 5;
@@ -160,7 +160,7 @@ void measure(const std::string& name, const TetMesh& mesh, const Case& c, const 
   } else {
     for (int v = 0; v < mesh.vertex_count(); ++v) std::copy_n(moved(c.state, mesh.rest[v]).a, 3, &x[3 * v]);
   }
-  E.begin_step(x, 1, kStep * kStep);
+  E.at({.predicted = x, .factor = kStep * kStep});
   const BlockSparse& H = E.hessian(x, {Definiteness::clamped});
   std::vector<double> b(x.size()), d(x.size());
   for (size_t i = 0; i < b.size(); ++i)

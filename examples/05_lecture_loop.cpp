@@ -41,7 +41,7 @@ int main(int count, char** arguments) {
   for (int step = 1; step <= 20; ++step) {
     const Vector before = q;
     for (size_t i = 0; i < q.size(); ++i) predicted[i] = q[i] + h * qdot[i];
-    E.begin_step(predicted, 1, h * h);
+    E.at({.predicted = predicted, .inertia = 1, .factor = h * h});
 
     int iteration = 0;  // initial guess: q
     for (E.gradient(q, g); norm(g) > 1e-10; E.gradient(q, g), ++iteration) {

@@ -45,7 +45,6 @@ struct Equilibrium::Impl {
     minimize.tolerance = o.tolerance;
     minimize.max_iterations = o.max_iterations;
     minimize.updates_lagged = true;
-    E.count_pinned_forces();
     for (const auto& D : model.damping)
       if (const auto* term = dynamic_cast<const LaggedProduct*>(D.get())) lagged.push_back(term);
     pins.place(0, x);
@@ -57,9 +56,7 @@ struct Equilibrium::Impl {
 
   void update_terms(std::span<const double> at) {
     const StepContext context{at, 0, 0};
-    E.set_potential_step(context);
-    E.set_damping_step(context);
-    E.begin_step(at, 0, 1);
+    E.at({.predicted = at, .inertia = 0, .context = context, .counts_pinned_forces = true});
   }
 
   MinimizeReport solve(const IterationObserver& observe) {
@@ -82,9 +79,9 @@ struct Equilibrium::Impl {
     K.block = E.hessian(x, {Definiteness::exact}).block;  // copied, because E may overwrite it
     if (all_rows) {
       all_rows->set_zero();
-      for (const ActiveTerm& V : E.potential()) V.add_hessian(x, 1, {Definiteness::exact}, *all_rows);
+      for (const ActiveTerm& V : E.terms().potential()) V.add_hessian(x, 1, {Definiteness::exact}, *all_rows);
     }
-    stiff_rows = E.stiff_rows();
+    stiff_rows = E.traits().stiff_rows->stiff_rows();
     solver->set_stiff_rows(stiff_rows.empty() ? nullptr : &stiff_rows);
     if (!is_analyzed) solver->analyze(E.pattern());
     is_analyzed = true;
@@ -239,7 +236,7 @@ SolveReport Equilibrium::add_adjoint(std::span<const double> xbar, std::span<dou
   return impl_->add_adjoint(xbar, thetabar);
 }
 void Equilibrium::add_forces(std::span<double> g) const {
-  for (const ActiveTerm& V : impl_->E.potential()) V.add_gradient(impl_->x, 1, g);
+  for (const ActiveTerm& V : impl_->E.terms().potential()) V.add_gradient(impl_->x, 1, g);
 }
 void Equilibrium::force_tangent(std::span<const double> dtheta, std::span<const double> dx, std::span<double> dg) {
   impl_->force_tangent(dtheta, dx, dg);

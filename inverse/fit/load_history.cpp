@@ -87,7 +87,7 @@ class HistoryBody {
         pins_(model_.pins, x_),
         E_(model_, pins_),
         newton_(make_linear_solver(options.linear)),
-        z_(E_.internal().size(), 0.0) {
+        z_(E_.terms().internal().size(), 0.0) {
     minimize_.tolerance = options.tolerance;
     minimize_.max_iterations = options.max_iterations;
     for (auto* v : {&start_, &force_}) v->resize(x_.size());
@@ -180,19 +180,16 @@ class HistoryBody {
     apply(load);
     pins_.place(0, x_);
     const StepContext context{start_, 0, 0};
-    E_.set_potential_step(context);
-    E_.set_damping_step(context);
-    E_.set_internal(z_start_, duration);
-    E_.begin_step(start_, 0, 1);
+    E_.at({.predicted = start_, .inertia = 0, .context = context, .internal = z_start_, .duration = duration});
     const bool is_valid = !grip_ || model_.elasticity[0]->min_det_F(x_) > 0;
     if (!is_valid || !is_success(minimizer_.minimize(E_, newton_, x_, minimize_, {}).status)) {
       x_ = start_;
       return false;
     }
     std::fill(force_.begin(), force_.end(), 0.0);
-    for (const ActiveTerm& V : E_.potential()) V.add_gradient(x_, 1, force_);
-    for (const ActiveTerm& D : E_.damping()) D.add_gradient(x_, 1, force_);
-    if (!z_.empty()) E_.end_internal(x_, z_);
+    for (const ActiveTerm& V : E_.terms().potential()) V.add_gradient(x_, 1, force_);
+    for (const ActiveTerm& D : E_.terms().damping()) D.add_gradient(x_, 1, force_);
+    if (!z_.empty()) E_.terms().end_internal(x_, z_);
     return true;
   }
 

@@ -191,10 +191,8 @@ struct Trajectory::Impl {
   // Prepares the terms as the integrator does.
   void begin_step() {
     const StepContext context{now.q, options.h, time_of(point + 1), now.q};
-    E.set_potential_step(context);
-    E.set_damping_step(context);
     for (size_t i = 0; i < moved.size(); ++i) moved[i] = now.q[i] + options.h * now.qdot[i];
-    E.begin_step(moved, 1, options.h * options.h);
+    E.at({.predicted = moved, .factor = options.h * options.h, .context = context});
   }
 
   bool solve() {
@@ -210,7 +208,7 @@ struct Trajectory::Impl {
 
   void add_damping(size_t k, double f, std::span<double> coefficients, TrajectoryGradient& gradient) {
     const Damping& D = *damping[k];
-    const Energy::Context& context = E.damping()[k].context();
+    const Energy::Context& context = E.terms().damping()[k].context();
     D.add_derivatives(after.q, context, mu, -f, {.start = qbar, .coefficients = coefficients});
     const LaggedStiffness stiffness = D.lagged_stiffness(context);
     if (!stiffness.elasticity) return;

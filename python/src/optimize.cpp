@@ -62,7 +62,7 @@ std::shared_ptr<Hessian> Function::hessian(const py::handle& x, const std::strin
   {
     const ReleasedGil free;
     const BlockSparse& H = f.hessian(in, projection);
-    if (const auto* dense = dynamic_cast<HasDenseRows*>(&f); dense && !dense->dense_rows().empty())
+    if (const auto* dense = f.traits().dense_rows; dense && !dense->dense_rows().empty())
       throw InvalidInput(
           "the Hessian of a closed cavity couples all vertices of its surface: it is not a sparse matrix");
     if (!pattern_ || pattern_->version != H.pattern->version)

@@ -15,8 +15,8 @@ std::shared_ptr<StepObjective> StepObjective::make(const SceneSource& source, do
     parts = std::make_unique<Parts>(std::move(model));
   }
   callbacks->rethrow();
-  if (!parts->E.internal().empty())
-    throw InvalidInput("an Objective has no history, which '" + parts->E.internal().names()[0] +
+  if (!parts->E.terms().internal().empty())
+    throw InvalidInput("an Objective has no history, which '" + parts->E.terms().internal().names()[0] +
                        "' needs; use a Simulation, or remove [[body.viscoelastic]]");
   return std::shared_ptr<StepObjective>(new StepObjective(std::move(parts), std::move(callbacks), time));
 }
@@ -56,11 +56,10 @@ Array StepObjective::begin_statics(const py::object& q, const py::object& time) 
 Array StepObjective::begin(const std::vector<double>& v, double h) {
   const bool is_static = h == 0;
   const StepContext context{start_, h, time_, start_, time_ - h};
-  parts_->E.set_potential_step(context);
-  parts_->E.set_damping_step(context);
   std::vector<double> predicted = start_;
   for (size_t i = 0; i < v.size(); ++i) predicted[i] += h * v[i];
-  parts_->E.begin_step(predicted, is_static ? 0 : 1, is_static ? 1 : h * h);
+  parts_->E.at(
+      {.predicted = predicted, .inertia = is_static ? 0.0 : 1.0, .factor = is_static ? 1 : h * h, .context = context});
   std::vector<double> first = start_;
   parts_->pins.place(time_, first);
   callbacks_->rethrow();
@@ -71,7 +70,7 @@ void StepObjective::update_lagged(const py::object& q) {
   require_idle(occupancy_, "update_lagged");
   const Use use(occupancy_, "objective");
   const std::vector<double> at = layout().in(q, "q");
-  parts_->E.update_lagged(at, false);
+  parts_->E.terms().update_lagged(at, false);
 }
 
 }  // namespace aspic::python

@@ -12,7 +12,7 @@ constexpr double kAccelerationTolerance = 1e-12;  // the mass matrix is well con
 
 void Acceleration::add_damping(const StepTools& tools, const MotionPoint& at, double h, double scale) {
   for (size_t i = 0; i < at.q.size(); ++i) drift_[i] = at.q[i] + h * at.v[i];
-  for (const ActiveTerm& D : tools.E.damping())
+  for (const ActiveTerm& D : tools.E.terms().damping())
     if (!dynamic_cast<const PressureRim*>(&D.energy())) D.add_gradient(drift_, scale, damping_);
 }
 
@@ -21,9 +21,8 @@ bool Acceleration::solve(const StepTools& tools, const MotionPoint& at, std::spa
   const size_t n = at.q.size();
   for (auto* w : {&gradient_, &damping_, &drift_, &force_, &scratch_}) w->assign(n, 0.0);
   const StepContext context{at.q, tools.h, at.time};
-  tools.E.set_potential_step(context);
-  tools.E.set_damping_step(context);
-  for (const ActiveTerm& V : tools.E.potential()) V.add_gradient(at.q, 1, gradient_);
+  tools.E.terms().begin(context);
+  for (const ActiveTerm& V : tools.E.terms().potential()) V.add_gradient(at.q, 1, gradient_);
   ++work.gradients;
   if (at.difference == DampingDifference::forward) {
     add_damping(tools, at, tools.h, 1);
@@ -32,7 +31,7 @@ bool Acceleration::solve(const StepTools& tools, const MotionPoint& at, std::spa
     add_damping(tools, at, -tools.h, -0.5);
   }
   std::fill(drift_.begin(), drift_.end(), 0.0);  // from here on the forces of rims, which do not depend on v
-  tools.E.add_rim_gradient(at.q, 1, drift_);
+  tools.E.terms().add_rim_gradient(at.q, 1, drift_);
   for (size_t i = 0; i < n; ++i) damping_[i] += drift_[i];
 
   tools.pins.copy_held(acc, scratch_);

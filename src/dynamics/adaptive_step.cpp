@@ -104,7 +104,7 @@ void AdaptiveStep::keep(Integrator& integrator, const StepTools& whole, Pair pai
   const int half = size / 2;
   const auto enter = [&](const StepTools& tools, const Substep& substep) {
     const BoundedEnergies bounded = ledger.add(tools, integrator, substep.end, substep.forces, report);
-    if (integrator.facts().is_backward_euler && !tools.E.has_rims())  // their forces have no potential
+    if (integrator.facts().is_backward_euler && !tools.E.terms().has_rims())  // their forces have no potential
       check_energy_bound(bounded, substep.solve.work.value / (tools.h * tools.h), report);
   };
   enter(tools_of_substep(whole, now_, nullptr, first, half), first_);

@@ -57,7 +57,7 @@ class Boundary {
     if (next < 1)
       for (size_t i = 0; i < to_.size(); ++i) between_[i] = from_[i] + next * (to_[i] - from_[i]);
     tools_.pins.copy_held(between_, trial_);
-    tools_.E.move_obstacles(time_at(next));
+    tools_.E.terms().move_obstacles(time_at(next));
     const Evaluation there = tools_.E.evaluate(trial_);
     ++work_.values;
     const bool is_low = std::isfinite(there.value) && there.value - here_ <= most_;
@@ -81,7 +81,7 @@ class Boundary {
   // contact allows. Returns the share of the remaining way.
   double carry() {
     g_.resize(reached_.size()), d_.resize(reached_.size());
-    tools_.E.move_obstacles(time_at(done_), time_);
+    tools_.E.terms().move_obstacles(time_at(done_), time_);
     tools_.E.gradient(reached_, g_);
     ++work_.gradients, ++work_.carries;
     tools_.direction.begin();
@@ -96,7 +96,7 @@ class Boundary {
 
   // A few iterations where they are. Returns false if the user interrupts.
   bool settle() {
-    tools_.E.move_obstacles(time_at(done_));
+    tools_.E.terms().move_obstacles(time_at(done_));
     before_ = settled_.empty() ? std::vector<double>(from_.begin(), from_.end()) : settled_;
     done_before_ = done_settled_;
     InitialIterate at(reached_);

@@ -28,7 +28,7 @@ class BackwardEuler : public Integrator {
                                .tries_last_increment = false,  // equals the extrapolated guess
                                .once = facts().takes_one_iteration};
     if (stage_.solve(tools, options, {end.q, end.qdot, acceleration_}, solve, forces))
-      tools.E.end_internal(end.q, end.internal);
+      tools.E.terms().end_internal(end.q, end.internal);
     end.time = tools.end_time;
     return solve;
   }
@@ -95,15 +95,13 @@ class QuasiStatic : public Integrator {
     forces.reset(start.q.size());
     end = start;
     const StepContext context{start.q, 0, tools.end_time, {}, tools.obstacle_start};
-    tools.E.set_potential_step(context);
-    tools.E.set_damping_step(context);
-    tools.E.set_internal(start.internal, tools.h);
-    tools.E.begin_step(start.q, 0, 1);
+    tools.E.at(
+        {.predicted = start.q, .inertia = 0, .context = context, .internal = start.internal, .duration = tools.h});
     MinimizeReport guessing;
     const Guess guess = guesser_.guess(tools, tools.guess, {start.q, start.qdot, 0, tools.end_time}, end.q, guessing);
     solve.guess = guess.used;
     if (solve.add(minimize_lagged(tools, tools.options, {end.q, guess.value}, solve)))
-      tools.E.end_internal(end.q, end.internal);
+      tools.E.terms().end_internal(end.q, end.internal);
     add_work(guessing, solve.work);
     std::fill(end.qdot.begin(), end.qdot.end(), 0.0);
     forces.add(tools.E, 1, end.q, {}, solve.work);

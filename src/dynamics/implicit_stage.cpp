@@ -82,10 +82,11 @@ bool ImplicitStage::solve(const StepTools& tools, const StageOptions& options, c
   const auto& [q, v, acc] = variables;
   predict(tools, options);
   const StepContext context{a, beta, options.time, tools.start.q, tools.obstacle_start};
-  tools.E.set_potential_step(context);
-  tools.E.set_damping_step(context);
-  tools.E.set_internal(tools.start.internal, beta);
-  tools.E.begin_step(predicted_, 1, beta * beta);
+  tools.E.at({.predicted = predicted_,
+              .factor = beta * beta,
+              .context = context,
+              .internal = tools.start.internal,
+              .duration = beta});
   if (!solve.add(minimize(tools, options, variables, solve))) return false;
 
   std::copy(q_.begin(), q_.end(), q.begin());

@@ -51,7 +51,7 @@ void StepForces::reset(size_t size) {
 }
 
 void StepForces::resize_bounds(const IncrementalPotential& E) {
-  for (auto* v : {&thresholds, &round_offs}) v->resize(E.part_count());
+  for (auto* v : {&thresholds, &round_offs}) v->resize(E.sizes().part_count());
 }
 
 void StepForces::add_round_off(const IncrementalPotential& E, double round_off) {
@@ -61,7 +61,7 @@ void StepForces::add_round_off(const IncrementalPotential& E, double round_off) 
 
 void StepForces::add_bounds(const SolveTools& tools, ResidualBound bound, double weight, Positions x) {
   resize_bounds(tools.E);
-  tools.E.add_part_round_off(x, weight, round_offs);
+  tools.E.sizes().add_part_round_off(x, weight, round_offs);
   if (bound == ResidualBound::none || tests_direction(tools.options.criterion)) return;
   const std::span<const double> bounds = tools.minimizer.thresholds();
   for (size_t k = 0; k < thresholds.size(); ++k) thresholds[k] += weight * (bounds[k] / tools.E.scales().gradient_unit);
@@ -71,10 +71,10 @@ void StepForces::add(const IncrementalPotential& E, double weight, Positions x, 
                      Work& work) {
   if (!E.add_known_forces(x, weight, gradient, damping)) {
     ++work.gradients;
-    for (const ActiveTerm& V : E.potential()) V.add_gradient(x, weight, gradient);
-    for (const ActiveTerm& D : E.damping()) D.add_gradient(x, weight, damping);
+    for (const ActiveTerm& V : E.terms().potential()) V.add_gradient(x, weight, gradient);
+    for (const ActiveTerm& D : E.terms().damping()) D.add_gradient(x, weight, damping);
   }
-  E.add_rim_gradient(x, weight, rims);
+  E.terms().add_rim_gradient(x, weight, rims);
   for (size_t i = 0; i < acc.size(); ++i) acceleration[i] += weight * acc[i];
 }
 

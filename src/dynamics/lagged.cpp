@@ -9,7 +9,7 @@ MinimizeReport minimize_lagged(const StepTools& tools, const MinimizeOptions& op
   MinimizeOptions with_updates = options;
   with_updates.updates_lagged = options.lag_at.empty();
   if (!options.lag_at.empty()) {
-    tools.E.update_lagged(options.lag_at, false);
+    tools.E.terms().update_lagged(options.lag_at, false);
     initial.value.reset();
   }
   const MinimizeReport report =

@@ -35,11 +35,11 @@ class LongSum {
 };
 
 // Adds sign * (energy of each load except contact, which may be infinite) to V. Returns their sum.
-double add_load_energies(const StepTools& tools, std::span<const double> x, double sign, std::vector<double>& V) {
-  const std::span<const ActiveTerm> loads = tools.E.loads();
+double add_load_energies(std::span<const ActiveTerm> loads, const Energy* contact, std::span<const double> x,
+                         double sign, std::vector<double>& V) {
   double sum = 0;
   for (size_t k = 0; k < loads.size(); ++k) {
-    if (&loads[k].energy() == tools.model.contact) continue;
+    if (&loads[k].energy() == contact) continue;
     const double value = loads[k].value(x);
     V[k] += sign * value;
     sum += value;
@@ -79,7 +79,7 @@ ObstacleWork work_of_obstacles(const StepTools& tools, const State& end, StepRep
   if (!tools.model.contact) return work;
   work.contact = tools.model.contact->obstacle_work(end.q, tools.obstacle_start, tools.obstacle_end);
   std::vector<double> force(end.q.size());
-  for (const ActiveTerm& D : tools.E.damping()) {
+  for (const ActiveTerm& D : tools.E.terms().damping()) {
     if (&D.energy() != tools.model.friction || tools.obstacle_start == tools.obstacle_end) continue;
     work.friction += tools.model.friction->obstacle_work(end.q, D.context());
     note_friction(tools, D, end.q, report);
@@ -91,6 +91,19 @@ ObstacleWork work_of_obstacles(const StepTools& tools, const State& end, StepRep
 }
 
 }  // namespace
+
+// Sums and counts of a step, over the own vertices.
+struct Ledger::Works {
+  LongSum inertia, gradient, damping, reaction, residual, rims;  // force . dx [J]
+  double jump = 0, round_off = 0;                                // [J]
+  bool pins_moved = false;
+
+  void sum(const Share& share) {
+    for (LongSum* part : {&inertia, &gradient, &damping, &reaction, &residual, &rims}) part->sum(share);
+    for (double* part : {&jump, &round_off}) *part = share.sum(*part);
+    pins_moved = share.max(pins_moved) > 0;
+  }
+};
 
 double kinetic_energy(const Model& model, std::span<const double> qdot, std::span<double> momentum) {
   model.mass->multiply(qdot, momentum);
@@ -106,16 +119,22 @@ double Ledger::target_work(const StepTools& tools, int order, const State& end, 
                            StepReport& report) {
   const State& start = tools.start;
   const StepContext before{start.q, tools.h, start.time}, after{start.q, tools.h, tools.end_time};
-  const size_t loads = tools.E.loads().size();
+  const Energy* contact = tools.model.contact;
+  const std::span<const ActiveTerm> at_end = tools.E.terms().loads();
+  const size_t loads = at_end.size();
   for (auto* v : {&early_, &late_}) v->assign(loads, 0.0);
-  tools.E.set_potential_step(before);
-  loads_before = add_load_energies(tools, start.q, -1, early_);
-  if (order > 1) add_load_energies(tools, end.q, -1, late_);
-  tools.E.set_potential_step(after);
-  tools.E.move_obstacles(tools.obstacle_end);
-  add_load_energies(tools, start.q, 1, early_);
-  if (order > 1) add_load_energies(tools, end.q, 1, late_);
-  if (const Barrier* contact = tools.model.contact) {
+  if (at_start_.size() != loads) {
+    at_start_.clear();
+    for (const auto& load : tools.model.loads) at_start_.emplace_back(*load);
+  }
+  for (ActiveTerm& V : at_start_) V.begin_step(before);
+  loads_before = add_load_energies(at_start_, contact, start.q, -1, early_);
+  if (order > 1) add_load_energies(at_start_, contact, end.q, -1, late_);
+  tools.E.terms().begin_potential(after);
+  tools.E.terms().move_obstacles(tools.obstacle_end);
+  add_load_energies(at_end, contact, start.q, 1, early_);
+  if (order > 1) add_load_energies(at_end, contact, end.q, 1, late_);
+  if (contact) {
     Energy::Context before_step;
     before_step.time = tools.obstacle_start;
     loads_before += contact->value(start.q, before_step);
@@ -124,7 +143,7 @@ double Ledger::target_work(const StepTools& tools, int order, const State& end, 
   double sum = 0;  // exactly zero if no load depends on the time
   for (size_t k = 0; k < loads; ++k) {
     const double work = order > 1 ? (early_[k] + late_[k]) / 2 : early_[k];
-    const bool is_muscle = tools.E.loads()[k].energy().name().starts_with("muscle");
+    const bool is_muscle = tools.E.terms().loads()[k].energy().name().starts_with("muscle");
     report.target_work[k] += work;
     (is_muscle ? report.muscle_work : report.load_work) += work;
     sum += work;
@@ -134,6 +153,7 @@ double Ledger::target_work(const StepTools& tools, int order, const State& end, 
 
 void Ledger::begin(const Model& model, std::span<const double> q) {
   Work uncounted;
+  at_start_.clear();
   last_q_.clear();
   residual_.clear();
   elastic_energies(model, q, {}, uncounted);
@@ -156,7 +176,7 @@ std::span<const double> Ledger::elastic_energies(const Model& model, std::span<c
 void Ledger::note_worst_vertex(const StepTools& tools, int part, StepReport& report) const {
   double most = 0;
   for (int v = 0; v < own_vertices(tools); ++v) {
-    if (tools.E.part_of(v) != part) continue;
+    if (tools.E.sizes().part_of(v) != part) continue;
     const Vec3d left = tools.pins.free_part(v, point(residual_, v));
     const double size = std::hypot(left[0], left[1], left[2]);
     if (size > most) most = size, report.worst_vertex = v;
@@ -172,7 +192,7 @@ void Ledger::note_residual(const StepTools& tools, const StepForces& forces, Ste
   };
   int worst = -1;
   double residual = report.residual, threshold = report.residual_threshold;
-  for (int k = 0; k < tools.E.part_count(); ++k) {
+  for (int k = 0; k < tools.E.sizes().part_count(); ++k) {
     const double r = std::sqrt(squares_[k]), limit = bound(forces.thresholds, k);
     const bool is_first = worst < 0 && report.worst_vertex < 0 && report.residual == 0;
     if (!is_first && ratio(r, limit) <= ratio(residual, threshold)) continue;  // keeps NaN
@@ -190,14 +210,14 @@ void Ledger::allow_moved_pins(const StepTools& tools, const State& end, BoundedE
   double V = 0, D = 0, T = 0;
   moved_ = start.q;
   tools.pins.copy_held(end.q, moved_);
-  for (const ActiveTerm& term : tools.E.potential()) {
+  for (const ActiveTerm& term : tools.E.terms().potential()) {
     const double value = term.value(moved_);
     V += value, bounded.magnitude += std::abs(value);
   }
   ++work.values;
-  tools.E.set_damping_step({start.q, tools.h, tools.end_time, start.q, tools.obstacle_start});
-  tools.E.set_internal(start.internal, tools.h);
-  for (const ActiveTerm& term : tools.E.damping()) D += term.value(moved_);
+  tools.E.terms().begin_damping({start.q, tools.h, tools.end_time, start.q, tools.obstacle_start});
+  tools.E.terms().set_internal(start.internal, tools.h);
+  for (const ActiveTerm& term : tools.E.terms().damping()) D += term.value(moved_);
   for (size_t i = 0; i < moved_.size(); ++i) moved_[i] = (moved_[i] - start.q[i]) / tools.h - start.qdot[i];
   T = kinetic_energy(tools.model, moved_, momentum_);
   bounded.allowed = V + D + T;
@@ -205,11 +225,11 @@ void Ledger::allow_moved_pins(const StepTools& tools, const State& end, BoundedE
 }
 
 InternalEnergies Ledger::internal_energies(const StepTools& tools, const State& end) {
-  if (tools.E.internal().empty()) return {};
+  if (tools.E.terms().internal().empty()) return {};
   const State& start = tools.start;
   const StepContext step{start.q, tools.h, tools.end_time, start.q, tools.obstacle_start};
-  tools.E.set_internal_step(step, start.internal, tools.is_dropped ? 0 : tools.h);
-  return tools.E.internal_energies({start.q, end.q, end.internal});
+  tools.E.terms().begin_internal(step, start.internal, tools.is_dropped ? 0 : tools.h);
+  return tools.E.terms().internal_energies({start.q, end.q, end.internal});
 }
 
 // Requires that residual_ is r of this step, and that the contexts of the loads are at its end.
@@ -252,8 +272,8 @@ void Ledger::add_resultants(const StepTools& tools, const State& end, const Step
   }
   load_.resize(end.q.size());
   for (size_t k = 0; k < model.loads.size(); ++k) {
-    tools.E.loads()[k].add_gradient(end.q, -1, load_);
-    tools.E.add_rim_gradient(end.q, -1, load_, model.loads[k].get());
+    tools.E.terms().loads()[k].add_gradient(end.q, -1, load_);
+    tools.E.terms().add_rim_gradient(end.q, -1, load_, model.loads[k].get());
     sums.loads[k] = {};
     for (int v = 0; v < own; ++v) add(v, point(load_, v), sums.loads[k]);
     sum(sums.loads[k]);
@@ -261,30 +281,20 @@ void Ledger::add_resultants(const StepTools& tools, const State& end, const Step
   }
 }
 
-BoundedEnergies Ledger::add(const StepTools& tools, const Integrator& integrator, const State& end,
-                            const StepForces& forces, StepReport& report) {
+// Computes r of the step and the work of its forces.
+Ledger::Works Ledger::works_of(const StepTools& tools, const State& end, const StepForces& forces) {
   const State& start = tools.start;
-  const size_t n = end.q.size();
-  for (auto* v : {&Ma_, &momentum_, &residual_}) v->assign(n, 0.0);
-  moved_.resize(n);  // before any pin moves, so that later steps do not allocate
-  double potential_before = 0;
-  const double target = target_work(tools, integrator.facts().order, end, potential_before, report);
-  for (const double V : elastic_energies(tools.model, start.q, {}, report)) potential_before += V;
-  const InternalEnergies internal = internal_energies(tools, end);
-  const double kinetic_before = kinetic_energy(tools.model, start.qdot, momentum_);
+  for (auto* v : {&Ma_, &residual_}) v->assign(end.q.size(), 0.0);
   tools.model.mass->multiply(forces.acceleration, Ma_);
-
-  double jump = 0, round_off = 0;
-  squares_.assign(tools.E.part_count(), 0.0);
-  LongSum inertia, gradient, damping, reaction, residuals, rims;
-  LongSum* const sums[] = {&inertia, &gradient, &damping};
-  bool pins_moved = false;
+  squares_.assign(tools.E.sizes().part_count(), 0.0);
+  Works works;
+  LongSum* const sums[] = {&works.inertia, &works.gradient, &works.damping};
   for (int v = 0; v < own_vertices(tools); ++v) {
     const Vec3d x = point(end.q, v), dx = x - point(start.q, v);
     for (int i = 3 * v; i < 3 * v + 3; ++i) {
       residual_[i] = Ma_[i] + forces.gradient[i] + forces.damping[i];
-      jump += 0.5 * tools.h * tools.h * forces.acceleration[i] * Ma_[i];
-      round_off += kLastDigits * std::abs(end.q[i] * Ma_[i]);
+      works.jump += 0.5 * tools.h * tools.h * forces.acceleration[i] * Ma_[i];
+      works.round_off += kLastDigits * std::abs(end.q[i] * Ma_[i]);
     }
     // Uses the same products on both sides of the balance, so that only the sums have rounding errors.
     const Vec3d acting[] = {point(Ma_, v), point(forces.gradient, v), point(forces.damping, v)};
@@ -293,46 +303,61 @@ BoundedEnergies Ledger::add(const StepTools& tools, const Integrator& integrator
     for (int r = 0; r < 3; ++r)
       for (int k = 0; k < 3; ++k) {
         sums[k]->add(acting[k][r] * dx[r]);
-        if (!tools.pins.holds(v)) residuals.add((acting[k][r] - held[k][r]) * dx[r]);
-        if (!tools.pins.is_free(v)) reaction.add(held[k][r] * dx[r]);
+        if (!tools.pins.holds(v)) works.residual.add((acting[k][r] - held[k][r]) * dx[r]);
+        if (!tools.pins.is_free(v)) works.reaction.add(held[k][r] * dx[r]);
       }
-    for (int r = 0; r < 3; ++r) rims.add(forces.rims[3 * v + r] * dx[r]);
+    for (int r = 0; r < 3; ++r) works.rims.add(forces.rims[3 * v + r] * dx[r]);
     const Vec3d left = tools.pins.free_part(v, point(residual_, v)), moved = tools.pins.held_part(v, dx);
     for (int r = 0; r < 3; ++r) {
-      squares_[tools.E.part_of(v)] += left[r] * left[r];
-      pins_moved |= std::abs(moved[r]) > std::numeric_limits<double>::epsilon() * std::abs(x[r]);
+      squares_[tools.E.sizes().part_of(v)] += left[r] * left[r];
+      works.pins_moved |= std::abs(moved[r]) > std::numeric_limits<double>::epsilon() * std::abs(x[r]);
     }
   }
-  const Share& share = tools.model.share;
-  for (LongSum* sum : {&inertia, &gradient, &damping, &reaction, &residuals, &rims}) sum->sum(share);
-  for (double* sum : {&jump, &round_off}) *sum = share.sum(*sum);
-  share.sum(squares_);
-  pins_moved = share.max(pins_moved) > 0;
-  const double reaction_work = reaction.value(), residual_work = residuals.value();
-  const double inertia_work = inertia.value(), gradient_work = gradient.value(), damping_work = damping.value();
+  works.sum(tools.model.share);
+  tools.model.share.sum(squares_);
+  return works;
+}
 
+// Returns the energy stored in internal variables.
+double Ledger::write_energies(const StepTools& tools, const State& end, StepReport& report) {
+  const StepTerms& terms = tools.E.terms();
   report.potential.clear();
-  report.potential.reserve(tools.E.potential().size());
+  report.potential.reserve(terms.potential().size());
   report.potential_total = 0;
   for (const double V : elastic_energies(tools.model, end.q, tools.E.known_values(end.q), report))
     report.potential.push_back(V);
-  for (const ActiveTerm& V : tools.E.loads()) report.potential.push_back(V.value(end.q));
-  tools.E.internal().append_stored(end.internal, report.potential);
+  for (const ActiveTerm& V : terms.loads()) report.potential.push_back(V.value(end.q));
+  terms.internal().append_stored(end.internal, report.potential);
   for (const double V : report.potential) report.potential_total += V;
-  double stored = 0;  // in internal variables
-  for (size_t k = tools.E.potential().size(); k < report.potential.size(); ++k) stored += report.potential[k];
-  const double potential_after = report.potential_total - stored;
+  double stored = 0;
+  for (size_t k = terms.potential().size(); k < report.potential.size(); ++k) stored += report.potential[k];
   report.kinetic = kinetic_energy(tools.model, end.qdot, momentum_);
+  return stored;
+}
+
+BoundedEnergies Ledger::add(const StepTools& tools, const Integrator& integrator, const State& end,
+                            const StepForces& forces, StepReport& report) {
+  const State& start = tools.start;
+  momentum_.assign(end.q.size(), 0.0);
+  moved_.resize(end.q.size());  // before any pin moves, so that later steps do not allocate
+  double potential_before = 0;
+  const double target = target_work(tools, integrator.facts().order, end, potential_before, report);
+  for (const double V : elastic_energies(tools.model, start.q, {}, report)) potential_before += V;
+  const InternalEnergies internal = internal_energies(tools, end);
+  const double kinetic_before = kinetic_energy(tools.model, start.qdot, momentum_);
+  const Works works = works_of(tools, end, forces);
+  const double stored = write_energies(tools, end, report);
+  const double potential_after = report.potential_total - stored;
 
   const double kinetic_gain = report.kinetic - kinetic_before,
                potential_gain = potential_after - potential_before + internal.gain;
-  const double pin_work = reaction_work + target;
+  const double pin_work = works.reaction.value() + target;
   const ObstacleWork obstacles = work_of_obstacles(tools, end, report);
   const double conservative = internal.work - internal.loss;  // stored or lost numerically
-  const double loss =
-      (inertia_work - kinetic_gain) + gradient_work - (potential_gain - target - obstacles.contact) + conservative;
-  const double rim_work = -rims.value();
-  const double dissipated = damping_work + rim_work + obstacles.friction - conservative;
+  const double loss = (works.inertia.value() - kinetic_gain) + works.gradient.value() -
+                      (potential_gain - target - obstacles.contact) + conservative;
+  const double rim_work = -works.rims.value();
+  const double dissipated = works.damping.value() + rim_work + obstacles.friction - conservative;
   note_residual(tools, forces, report);
   report.pin_work += pin_work;
   report.obstacle_work += obstacles.contact + obstacles.friction;
@@ -340,20 +365,20 @@ BoundedEnergies Ledger::add(const StepTools& tools, const Integrator& integrator
   report.damping_loss += dissipated;
   report.viscoelastic_loss += internal.loss;
   report.numerical_loss += loss;
-  report.residual_work += residual_work;
+  report.residual_work += works.residual.value();
   report.ledger_error += kinetic_gain + potential_gain - pin_work - (obstacles.contact + obstacles.friction) -
-                         rim_work + dissipated + loss - residual_work;
+                         rim_work + dissipated + loss - works.residual.value();
 
   add_resultants(tools, end, forces, report.resultants);
 
-  double magnitude = report.kinetic + kinetic_before + jump + std::abs(potential_before);
+  double magnitude = report.kinetic + kinetic_before + works.jump + std::abs(potential_before);
   for (const double V : report.potential) magnitude += std::abs(V);
   BoundedEnergies bounded = {.allowed = potential_before + kinetic_before + target,
-                             .reached = potential_after + internal.gain + jump,
+                             .reached = potential_after + internal.gain + works.jump,
                              .magnitude = magnitude,
-                             .round_off = round_off + kLastDigits * tools.E.growth_stiffness()};
-  pins_moved |= tools.model.contact && tools.model.contact->has_moving_obstacle();
-  if (pins_moved && integrator.facts().is_backward_euler) allow_moved_pins(tools, end, bounded, report);
+                             .round_off = works.round_off + kLastDigits * tools.E.sizes().growth_stiffness()};
+  const bool has_moved = works.pins_moved || (tools.model.contact && tools.model.contact->has_moving_obstacle());
+  if (has_moved && integrator.facts().is_backward_euler) allow_moved_pins(tools, end, bounded, report);
   return bounded;
 }
 

@@ -6,8 +6,8 @@
 // holds exactly, where the loss of the integrator itself is
 //   numerical_loss = (a' M dx - dT) + G . dx - (dV - work of moving targets):
 // zero for midpoint with linear forces, 1/2 dv' M dv + dV/dx . dx - dV for backward Euler.
-// Terms with internal variables (InternalTerms) have a stored energy, which is part of dV, and a loss. What their work
-// exceeds both is part of numerical_loss instead of C . dx.
+// Terms with internal variables (InternalTerms) have a stored energy, which is part of dV, and a loss. Their
+// work beyond gain and loss is part of numerical_loss instead of C . dx.
 // The rims of pressures on open patches are part of C; their work is reported apart from damping.
 #pragma once
 #include <vector>
@@ -32,6 +32,9 @@ class Ledger {
   std::span<const double> residual() const { return residual_; }
 
  private:
+  struct Works;
+  Works works_of(const StepTools& tools, const State& end, const StepForces& forces);
+  double write_energies(const StepTools& tools, const State& end, StepReport& report);
   double target_work(const StepTools& tools, int order, const State& end, double& loads_before, StepReport& report);
   // `known`: energies of all terms at q, elastic terms first; may be empty.
   std::span<const double> elastic_energies(const Model& model, std::span<const double> q, std::span<const double> known,
@@ -45,6 +48,7 @@ class Ledger {
   static InternalEnergies internal_energies(const StepTools& tools, const State& end);
   void add_resultants(const StepTools& tools, const State& end, const StepForces& forces, Resultants& sums);
 
+  std::vector<ActiveTerm> at_start_;  // the loads at the start of the step
   std::vector<double> Ma_, momentum_, residual_;
   std::vector<double> squares_;           // squared residual of each part
   std::vector<double> load_;              // gradient of one load; zero between uses

@@ -23,8 +23,7 @@ struct Stopped {};
 
 // Returns K + shift M without the rows of pinned vertices.
 BlockSparse shifted_stiffness(IncrementalPotential& E, std::span<const double> x, double shift) {
-  E.set_potential_step({.start = x});
-  E.begin_step(x, shift, 1);
+  E.at({.predicted = x, .inertia = shift, .context = StepContext{.start = x}});
   return E.evaluate_hessian(x, {Definiteness::exact});
 }
 
@@ -40,13 +39,14 @@ double growth_rate(const Model& model, const IncrementalPotential& E) {
       growth.push_back(X[axis] - center[axis]);
     }
   BlockSparse K(E.pattern());
-  for (size_t k = 0; k < model.elasticity.size(); ++k) E.potential()[k].add_hessian(rest, 1, {Definiteness::exact}, K);
+  for (size_t k = 0; k < model.elasticity.size(); ++k)
+    E.terms().potential()[k].add_hessian(rest, 1, {Definiteness::exact}, K);
   std::vector<double> force(growth.size()), momentum(growth.size());
   K.multiply(growth, force);
   model.mass->multiply(growth, momentum);
   const double stiffness = std::inner_product(growth.begin(), growth.end(), force.begin(), 0.0);
   const double inertia = std::inner_product(growth.begin(), growth.end(), momentum.begin(), 0.0);
-  return (stiffness > 0 ? stiffness : E.growth_stiffness()) / inertia;
+  return (stiffness > 0 ? stiffness : E.sizes().growth_stiffness()) / inertia;
 }
 
 int free_dimension(const Pins& pins) {
@@ -100,7 +100,8 @@ Modes vibration_modes(const Model& model, std::span<const double> x, int count, 
 
   RankOneUpdates updates;
   SolveReport work;
-  if (!updates.prepare(cholesky, E.dense_rows(), 1e-12, work)) return {.status = ModesStatus::unconverged, .modes = {}};
+  if (!updates.prepare(cholesky, E.traits().dense_rows->dense_rows(), 1e-12, work))
+    return {.status = ModesStatus::unconverged, .modes = {}};
   pencil.project = [&](std::span<double> u) { pins.set_zero(u); };
   pencil.multiply_mass = [&](std::span<const double> u, std::span<double> Mu) { model.mass->multiply(u, Mu); };
   pencil.solve = [&](std::span<const double> b, std::span<double> u) {

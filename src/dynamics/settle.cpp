@@ -42,12 +42,13 @@ void settle(const Model& model, const std::vector<double>& start, std::vector<do
   const double radius = E.scales().x;
   double mass = 0;
   for (const double m : model.mass->vertex_mass()) mass += m;
-  const double h2 = mass * radius * radius / E.growth_stiffness();  // square of a vibration period
+  const double h2 = mass * radius * radius / E.sizes().growth_stiffness();  // square of a vibration period
   const std::unique_ptr<SearchDirection> direction = make_search_direction({});
   for (int step = 0; step < kMaxSteps; ++step) {
     const std::vector<double> before = q;
-    E.set_potential_step({.start = before, .h = std::sqrt(h2), .time = 0, .obstacle_time = 0});
-    E.begin_step(before, 1, h2);
+    E.at({.predicted = before,
+          .factor = h2,
+          .context = StepContext{.start = before, .h = std::sqrt(h2), .time = 0, .obstacle_time = 0}});
     const MinimizeReport report = Minimizer().minimize(E, *direction, {q}, {.max_iterations = 100, .tolerance = 1e-3});
     if (!is_success(report.status)) return;
     double moved = 0;

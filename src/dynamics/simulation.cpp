@@ -51,8 +51,8 @@ struct Simulation::Impl {
       throw InvalidInput("h = " + three_digits(options.h) + "; it must be positive");
     require_possible(options);
     if (!integrator->facts().is_static()) require_mass(model, *pins);
-    E->internal().require_support(integrator->facts());
-    if (state.internal.empty()) state.internal.assign(E->internal().size(), 0.0);
+    E->terms().internal().require_support(integrator->facts());
+    if (state.internal.empty()) state.internal.assign(E->terms().internal().size(), 0.0);
     pins->place(state.time, state.q);
     require_finite_energy(model, state.q);
     require_apart(model, state, integrator->facts());
@@ -101,7 +101,7 @@ struct Simulation::Impl {
     } else {
       if (!adaptive) {
         const BoundedEnergies bounded = ledger.add(with, *integrator, state, forces, report);
-        if (integrator->facts().is_backward_euler && !E->has_rims())  // their forces have no potential
+        if (integrator->facts().is_backward_euler && !E->terms().has_rims())  // their forces have no potential
           check_energy_bound(bounded, solved.work.value / (options.h * options.h), report);
       }
       if (!integrator->facts().is_implicit) outside_work += outside_work_of(report);
@@ -136,13 +136,13 @@ struct Simulation::Impl {
     constexpr double kRoundOff = 1e-12;  // round-off of elastic energies, relative to the stiffness of the body
     set_time(start.time);
     start_force.assign(start.q.size(), 0.0);
-    start_energy = aspic::kinetic_energy(model, start.qdot, start_force) + kRoundOff * E->growth_stiffness();
+    start_energy = aspic::kinetic_energy(model, start.qdot, start_force) + kRoundOff * E->sizes().growth_stiffness();
     start_force.assign(start.q.size(), 0.0);
     for (const auto& V : model.elasticity) start_energy += std::abs(V->value(start.q));
-    for (const ActiveTerm& V : E->loads())
+    for (const ActiveTerm& V : E->terms().loads())
       if (!V.energy().has_constant_gradient()) start_energy += std::abs(V.value(start.q));  // such as springs
     // A convex V decreases by at most -dV/dx (x - x at the start).
-    for (const ActiveTerm& V : E->loads()) V.add_gradient(start.q, 1, start_force);
+    for (const ActiveTerm& V : E->terms().loads()) V.add_gradient(start.q, 1, start_force);
     // First-order schemes give a body at rest this energy in the first step.
     const std::span<const double> mass = model.mass->vertex_mass();
     for (size_t i = 0; i < start_force.size(); ++i)
@@ -162,7 +162,7 @@ struct Simulation::Impl {
     constexpr double kBlownUp = 10;
     if (integrator->facts().is_implicit) return false;
     load_force.assign(start.q.size(), 0.0);
-    for (const ActiveTerm& V : E->loads())
+    for (const ActiveTerm& V : E->terms().loads())
       if (V.energy().has_constant_gradient()) V.add_gradient(state.q, 1, load_force);
     double allowed = start_energy + outside_work, reached = report.kinetic;
     for (size_t i = 0; i < start_force.size(); ++i)
@@ -206,8 +206,8 @@ struct Simulation::Impl {
 
   // Sets the time of the terms of V between steps.
   void set_time(double time) const {
-    E->set_potential_step({state.q, integrator->facts().is_static() ? 0 : options.h, time});
-    E->move_obstacles(obstacle_time);
+    E->terms().begin_potential({state.q, integrator->facts().is_static() ? 0 : options.h, time});
+    E->terms().move_obstacles(obstacle_time);
   }
 
   // Restores the state at the start of the step, with the given time; moving targets are at that time. A multistep
@@ -232,7 +232,7 @@ struct Simulation::Impl {
     stand_still.is_dropped = true;
     set_time(time);
     forces.reset(state.q.size());
-    for (const ActiveTerm& V : E->potential()) V.add_gradient(state.q, 1, forces.gradient);
+    for (const ActiveTerm& V : E->terms().potential()) V.add_gradient(state.q, 1, forces.gradient);
     ledger.add(stand_still, *integrator, state, forces, report);
   }
 
@@ -272,7 +272,7 @@ struct Simulation::Impl {
 
   std::uint64_t hash() const {
     const std::uint64_t positions = aspic::state_hash(state, model.numbering.vertex);
-    return continued_hash(positions, E->internal().to_user(state.internal, model.numbering.tet));
+    return continued_hash(positions, E->terms().internal().to_user(state.internal, model.numbering.tet));
   }
 
   void describe(const StepSolve& solved, StepReport& report) const {
@@ -351,7 +351,7 @@ std::vector<std::string> Simulation::potential_names() const {
     names.push_back(one ? "elasticity" : "elasticity_" + impl_->model.bodies[body].name);
   }
   for (const auto& V : impl_->model.loads) names.emplace_back(V->name());
-  for (std::string& name : impl_->E->internal().names()) names.push_back(std::move(name));
+  for (std::string& name : impl_->E->terms().internal().names()) names.push_back(std::move(name));
   return names;
 }
 
@@ -381,8 +381,8 @@ double Simulation::kinetic_energy() const {
 
 std::vector<double> Simulation::potential_energies() const {
   std::vector<double> energies;
-  for (const ActiveTerm& V : impl_->E->potential()) energies.push_back(V.value(impl_->state.q));
-  impl_->E->internal().append_stored(impl_->state.internal, energies);
+  for (const ActiveTerm& V : impl_->E->terms().potential()) energies.push_back(V.value(impl_->state.q));
+  impl_->E->terms().internal().append_stored(impl_->state.internal, energies);
   return energies;
 }
 
@@ -460,10 +460,10 @@ void Simulation::restore(const Snapshot& snapshot) {
       if (v->size() != n)
         throw InvalidInput("the checkpoint has " + std::to_string(v->size()) + " entries; this scene needs " +
                            std::to_string(n));
-  require_internal(snapshot.state.internal, impl_->E->internal().size());
+  require_internal(snapshot.state.internal, impl_->E->terms().internal().size());
   if (impl_->adaptive) impl_->adaptive->set_level(snapshot.level);
   impl_->state = snapshot.state;
-  if (impl_->state.internal.empty()) impl_->state.internal.assign(impl_->E->internal().size(), 0.0);
+  if (impl_->state.internal.empty()) impl_->state.internal.assign(impl_->E->terms().internal().size(), 0.0);
   impl_->start = snapshot.start;
   impl_->steps_taken = snapshot.steps_taken;
   impl_->outside_work = snapshot.outside_work;

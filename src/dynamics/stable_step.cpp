@@ -111,14 +111,14 @@ StableStep stable_step(const IncrementalPotential& E, const Model& model, const 
   solver->analyze(E.pattern());
   if (!solver->factorize(M)) return {.h = 0};
   BlockSparse C(E.pattern()), K(E.pattern());
-  for (const ActiveTerm& D : E.damping())
+  for (const ActiveTerm& D : E.terms().damping())
     ActiveTerm(D.energy(), {.start = x, .h = 1, .shape = x}).add_hessian(x, 1, {Definiteness::clamped}, C);
-  for (const ActiveTerm& V : E.potential()) V.add_hessian(x, 1, {Definiteness::clamped}, K);
+  for (const ActiveTerm& V : E.terms().potential()) V.add_hessian(x, 1, {Definiteness::clamped}, K);
   pins.set_identity(K);
   PowerIteration iteration(M, C, K, pins, *solver);
   const bool is_rk4 = limit == StabilityLimit::rk4;
   const StableStep stable = iteration.run(x.size(), 2, is_rk4);
-  if (!is_rk4 || E.damping().empty()) return stable;
+  if (!is_rk4 || E.terms().damping().empty()) return stable;
   const StableStep fastest = iteration.run(x.size(), 0, is_rk4);
   return fastest.h < stable.h ? fastest : stable;
 }

@@ -78,25 +78,28 @@ class StepCheck {
     const double h = simulation.options().h;
     const bool is_static = simulation.integrator().is_static();
     const StepContext context{state_.q, is_static ? 0 : h, state_.time + h};
-    E_.set_potential_step(context);
-    E_.set_damping_step(context);
-    E_.set_internal(state_.internal, h);
     std::vector<double> predicted = state_.q;
     if (!is_static)
       for (size_t i = 0; i < predicted.size(); ++i) predicted[i] += h * state_.qdot[i];
     inertia_ = is_static ? 0 : 1;
-    E_.begin_step(predicted, inertia_, is_static ? 1 : h * h);
+    E_.at({.predicted = predicted,
+           .inertia = inertia_,
+           .factor = is_static ? 1 : h * h,
+           .context = context,
+           .internal = state_.internal,
+           .duration = h});
     predicted_ = std::move(predicted);
   }
 
   std::vector<TermDerivatives> run() {
     for (const NamedState& at : states()) {
-      if (at.name == kTouching) E_.update_lagged(at.q, false);
+      if (at.name == kTouching) E_.terms().update_lagged(at.q, false);
       negligible_ = kNegligible * stiffness(at.q);
       const std::vector<std::string> names = simulation_.potential_names();
-      for (size_t k = 0; k < E_.potential().size(); ++k)
-        check(names[k], at, differentiable(E_.potential()[k], E_.pattern()));
-      for (const ActiveTerm& D : E_.damping()) check(std::string(D.name()), at, differentiable(D, E_.pattern()));
+      for (size_t k = 0; k < E_.terms().potential().size(); ++k)
+        check(names[k], at, differentiable(E_.terms().potential()[k], E_.pattern()));
+      for (const ActiveTerm& D : E_.terms().damping())
+        check(std::string(D.name()), at, differentiable(D, E_.pattern()));
       if (inertia_ != 0) check("inertia", at, inertia());
       check_E(at);
     }
@@ -163,7 +166,7 @@ class StepCheck {
     std::vector<double> d(q.size()), Hd(q.size());
     std::generate(d.begin(), d.end(), Noise());
     double largest = 0;
-    for (const ActiveTerm& V : E_.potential()) {
+    for (const ActiveTerm& V : E_.terms().potential()) {
       differentiable(V, E_.pattern()).hessian_times(q, d, Hd);
       largest = std::max(largest, max_abs(Hd));
     }

@@ -11,7 +11,7 @@ namespace aspic {
 
 class VelocityForm : public Objective, public HasMetric {
  public:
-  // Requires that E.begin_step() was called; q_t is the start of the step. Both must outlive this object.
+  // Requires that E.at() was called; q_t is the start of the step. Both must outlive this object.
   VelocityForm(IncrementalPotential& E, std::span<const double> start /* q_t */, double h)
       : E_(E), start_(start), h_(h), q_(start.size()), dq_(start.size()) {}
 
@@ -28,6 +28,7 @@ class VelocityForm : public Objective, public HasMetric {
   double max_step(std::span<const double> v, std::span<const double> d) override;
 
   const BlockSparse& metric() override { return E_.metric(); }
+  ObjectiveTraits traits() override { return {.metric = this}; }
   ObjectiveScales scales() const override {
     const ObjectiveScales s = E_.scales();
     return {s.x / h_, s.value / (h_ * h_), s.gradient / h_, s.gradient_unit / h_, s.gradient_round_off / h_};

@@ -19,8 +19,7 @@ class Velocities : public ::testing::Test {
     for (size_t i = 0; i < state.qdot.size(); ++i) state.qdot[i] = 0.3 * std::sin(static_cast<double>(i));
     pins.set_zero(state.qdot);
     for (size_t i = 0; i < state.q.size(); ++i) predicted.push_back(state.q[i] + kStep * state.qdot[i]);
-    E.set_potential_step({state.q, kStep, kStep});
-    E.begin_step(predicted, 1, kStep * kStep);
+    E.at({.predicted = predicted, .factor = kStep * kStep, .context = StepContext{state.q, kStep, kStep}});
   }
 
   Model model;
@@ -38,7 +37,7 @@ TEST_F(Velocities, ValueIsKineticPlusPotentialEnergy) {
   model.mass->multiply(dv, Mdv);
   double expected = 0;
   for (size_t i = 0; i < v.size(); ++i) expected += dv[i] * Mdv[i] / 2;
-  for (const ActiveTerm& V : E.potential()) expected += V.value(form.position(v));
+  for (const ActiveTerm& V : E.terms().potential()) expected += V.value(form.position(v));
   EXPECT_NEAR(form.value(v), expected, 1e-12 * std::abs(expected));
 }
 

@@ -22,7 +22,7 @@ bool is_round_off(double gradient_norm, double scale, double round_off, double m
 void Convergence::begin(Objective& E, const MinimizeOptions& options, std::span<const double> g) {
   E_ = &E;
   options_ = &options;
-  parts_of_E_ = dynamic_cast<HasParts*>(&E);
+  parts_of_E_ = E.traits().parts;
   if (!parts_of_E_) parts_of_E_ = &whole_.emplace(E);
   is_modified_ = false;
   const size_t count = parts_of_E_->part_count();

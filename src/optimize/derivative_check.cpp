@@ -215,7 +215,7 @@ Differentiable differentiable(Objective& E) {
           .hessian_times =
               [&E](std::span<const double> x, std::span<const double> d, std::span<double> Hd) {
                 E.hessian(x, {}).multiply(d, Hd);
-                if (const auto* dense = dynamic_cast<HasDenseRows*>(&E)) add_product(dense->dense_rows(), d, Hd);
+                if (const auto* dense = E.traits().dense_rows) add_product(dense->dense_rows(), d, Hd);
               }};
 }
 

@@ -120,9 +120,9 @@ void Minimizer::Impl::begin(Progress& at) {
   for (auto* v : {&g, &d, &line.trial, &line.gradient}) v->resize(at.x.size());
   line.trials.reserve(64);
   at.direction.begin();
-  HasLag* lagged = at.options.updates_lagged ? dynamic_cast<HasLag*>(&at.E) : nullptr;
+  HasLag* lagged = at.options.updates_lagged ? at.E.traits().lag : nullptr;
   at.lag.begin(lagged && lagged->is_lagged() ? lagged : nullptr);
-  stiff = at.direction.estimates_minimizer() ? dynamic_cast<HasStiffRows*>(&at.E) : nullptr;
+  stiff = at.direction.estimates_minimizer() ? at.E.traits().stiff_rows : nullptr;
   at.E.gradient(at.x, g);
   convergence.begin(at.E, at.options, g);
   at.report.gradients = 1;

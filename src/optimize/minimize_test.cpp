@@ -109,6 +109,7 @@ class Alternating : public PlanarFunction, public HasLag {
   double at(const Planar& p) const override { return ((p[0] - c_) * (p[0] - c_) + p[1] * p[1]) / 2; }
   Planar gradient_at(const Planar& p) const override { return {p[0] - c_, p[1]}; }
   PlanarHessian hessian_at(const Planar&) const override { return {1, 0, 1}; }
+  ObjectiveTraits traits() override { return {.lag = this}; }
   bool is_lagged() const override { return true; }
   void update_lagged(std::span<const double> x, bool) override { before_ = std::exchange(c_, 3 - 2 * x[0]); }
   bool relax_lagged() override {

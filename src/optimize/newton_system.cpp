@@ -38,9 +38,9 @@ void NewtonSystem::begin() {
 
 void NewtonSystem::begin_direction(Objective& E, const StopToken& stop, bool is_first, double gradient_norm) {
   if (is_first) {
-    stops_ = dynamic_cast<HasStops*>(&E);
-    dense_ = dynamic_cast<HasDenseRows*>(&E);
-    stiff_ = truncates_ ? nullptr : dynamic_cast<HasStiffRows*>(&E);
+    stops_ = E.traits().stops;
+    dense_ = E.traits().dense_rows;
+    stiff_ = truncates_ ? nullptr : E.traits().stiff_rows;
   }
   stop_ = stop;
   is_first_ = is_first;

@@ -25,6 +25,23 @@ struct ObjectiveScales {
   double gradient_round_off = 0;  // norm of the rounding error of the last gradient
 };
 
+class HasMetric;
+class HasParts;
+class HasStops;
+class HasStiffRows;
+class HasDenseRows;
+class HasLag;
+
+// The optional interfaces of an objective, see below; null: without it.
+struct ObjectiveTraits {
+  HasMetric* metric = nullptr;
+  HasParts* parts = nullptr;
+  HasStops* stops = nullptr;
+  HasStiffRows* stiff_rows = nullptr;
+  HasDenseRows* dense_rows = nullptr;
+  HasLag* lag = nullptr;
+};
+
 // A function E of n variables, stored as n / 3 block rows of 3. Evaluations may use scratch data, so an objective must
 // not be used by several threads at once.
 class Objective {
@@ -42,6 +59,7 @@ class Objective {
   int projected_elements() const { return projected_elements_; }  // modified elements of the last Hessian
 
   virtual ObjectiveScales scales() const { return {}; }  // at the last evaluations
+  virtual ObjectiveTraits traits() { return {}; }
   // Returns an upper bound of the feasible step lengths alpha along d.
   virtual double max_step(std::span<const double> /*x*/, std::span<const double> /*d*/) {
     return std::numeric_limits<double>::infinity();
@@ -61,7 +79,7 @@ class Objective {
   uint64_t hessians_made_ = 0;
 };
 
-// Optional interfaces of an objective. Minimizers query them with dynamic_cast.
+// Optional interfaces of an objective, see ObjectiveTraits.
 
 // Interface for objectives that define the norm of steps.
 class HasMetric {

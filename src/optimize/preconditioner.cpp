@@ -61,7 +61,7 @@ bool Preconditioner::apply(Objective& E, std::span<const double> x, std::span<co
 bool Preconditioner::make(Objective& E, std::span<const double> x, DirectionReport& report) {
   own_ = kind_ == PreconditionerKind::own ? &dynamic_cast<HasPreconditioner&>(E) : nullptr;
   if (own_) return true;
-  auto* metric = kind_ == PreconditionerKind::mass ? dynamic_cast<HasMetric*>(&E) : nullptr;
+  auto* metric = kind_ == PreconditionerKind::mass ? E.traits().metric : nullptr;
   is_identity_ = kind_ == PreconditionerKind::none || (kind_ == PreconditionerKind::mass && !metric);
   if (is_identity_) return true;
   if (metric) return factorize(metric->metric(), report);

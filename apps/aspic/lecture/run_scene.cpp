@@ -17,9 +17,7 @@ OpenStep::OpenStep(Scene opened)
       pins(model().pins, scene.simulation.snapshot().start.q),
       E(model(), pins) {
   const double end = scene.simulation.state().time + h;
-  E.set_potential_step({q_t, h, end});
-  E.set_damping_step({q_t, h, end});
-  E.begin_step(predicted, 1, h * h);
+  E.at({.predicted = predicted, .factor = h * h, .context = StepContext{q_t, h, end}});
   pins.place(end, start);
   pins.place(end, predicted);
 }
