@@ -13,7 +13,7 @@ struct Interval {
   double begin = 0, end = 0;  // [s]
 };
 
-// Motion of a tool between two places, of a type that only the tool knows; null: it does not act.
+// Motion of a tool between two places, of a type private to the tool; null: it does not act.
 using ToolMotion = std::shared_ptr<const void>;
 
 // A load on the body of one side that the commands touch, press and lift move. It rests between steps. Within a step

@@ -25,7 +25,7 @@ class BenchDesk : public viewer::Desk {
   BenchDesk(const viewer::SessionOptions& options, Stage& stage, viewer::Playback& playback, viewer::Commands& commands,
             viewer::Questions& questions);
 
-  void check_body() override;  // forgets the readings if the body of side a is no longer the measured one
+  void check_body() override;  // drops the readings of another body than that of side a
   void send() const override;
 
  private:

@@ -277,7 +277,7 @@ AdditionalStepField::~AdditionalStepField() { fields().pop_back(); }
 std::string step_fields_typescript() {
   std::string text =
       "// Generated from the description of step reports (src/dynamics/step_fields.cpp). Do not edit.\n"
-      "import type { MaybeNumber } from \"./protocol\";\n\n"
+      "import type { MaybeNumber } from \"./numbers\";\n\n"
       "export interface StepFields {\n";
   for (const StepField& field : step_fields()) {
     if (!field.is_in(StepOutput::viewer)) continue;

@@ -35,7 +35,7 @@ class ChildProcess {
   bool write(std::string_view bytes);  // writes to stdin; false: the program reads no more
   void close_input();
   bool is_running();
-  void terminate();             // asks it to end
+  void terminate();             // sends SIGTERM
   int wait();                   // waits for the end; returns the status of waitpid(), 0 for success
   std::string message() const;  // end of its stderr, on one line
 

@@ -1,7 +1,7 @@
 // Judges the page of the lecture in the page: the measures of `aspic lecture`, computed by the engine of this page.
 import { button, element, messageOf } from "./dom";
 import { hasEngine, type Judging, judgeLesson } from "./engine";
-import { short } from "./plots/numbers";
+import { short } from "./numbers";
 import type { Judgment, Measure } from "./protocol";
 
 // JSON has no infinity.

@@ -2,11 +2,12 @@
 // `ServerMessage`s. Binary frames, from the program only, are geometry and pictures; all numbers are little-endian.
 // docs/viewer_protocol.md describes their meaning. A number that is not finite is null.
 
+import type { MaybeNumber } from "./numbers";
 import type { StepFields } from "./stepFields";
 
 export type SideName = "a" | "b";
 export type Vec3 = [number, number, number];
-export type MaybeNumber = number | null;
+export type { MaybeNumber };
 export type SettingValue = number | string | boolean | (number | string)[];
 
 // ---------------------------------------------------------------- page -> program

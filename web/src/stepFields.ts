@@ -1,5 +1,5 @@
 // Generated from the description of step reports (src/dynamics/step_fields.cpp). Do not edit.
-import type { MaybeNumber } from "./protocol";
+import type { MaybeNumber } from "./numbers";
 
 export interface StepFields {
   step: number; // 0 is the start

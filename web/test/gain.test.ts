@@ -1,6 +1,6 @@
 import assert from "node:assert/strict";
 import { test } from "node:test";
-import { hasBlownUp } from "../src/plots/gain";
+import { hasBlownUp } from "../src/gain";
 import type { StepRow } from "../src/protocol";
 import { stepRow } from "./rowsOfSteps";
 

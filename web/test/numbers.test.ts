@@ -1,6 +1,6 @@
 import assert from "node:assert/strict";
 import { test } from "node:test";
-import { csv, plural, prefixOf, short, tickTexts, withUnit } from "../src/plots/numbers";
+import { csv, plural, prefixOf, short, tickTexts, withUnit } from "../src/numbers";
 
 test("SI prefixes leave one to three digits", () => {
   assert.equal(withUnit(0.01234, "J"), "12.34 mJ");

@@ -15,7 +15,7 @@ export class FitForm {
   private readonly folder = element("p", { class: "faint" });
   private fit: FitState | null = null;
   private readings = 0;
-  private asks = false;
+  private isPolling = false;
 
   constructor(
     private readonly store: Store,
@@ -31,11 +31,11 @@ export class FitForm {
   follow(bench: Bench): void {
     this.readings = bench.readings.length;
     this.show();
-    if (!this.asks) void this.ask();
+    if (!this.isPolling) void this.poll();
   }
 
-  private async ask(): Promise<void> {
-    this.asks = true;
+  private async poll(): Promise<void> {
+    this.isPolling = true;
     try {
       do {
         this.fit = (await this.store.source.ask({ ask: "fit_state" })) as FitState | null;
@@ -43,9 +43,9 @@ export class FitForm {
         if (this.fit?.running) await new Promise((resolve) => setTimeout(resolve, kPeriod));
       } while (this.fit?.running);
     } catch {
-      // The connection is lost; the next message of the bench asks again.
+      // The connection is lost; the next message of the bench polls again.
     }
-    this.asks = false;
+    this.isPolling = false;
   }
 
   private show(): void {

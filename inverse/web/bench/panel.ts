@@ -5,7 +5,7 @@ import { choice, numberField, oncePerFrame } from "../../../web/src/controls";
 import { button, element } from "../../../web/src/dom";
 import type { Page, Panel } from "../../../web/src/page";
 import { Chart } from "../../../web/src/plots/chart";
-import { short } from "../../../web/src/plots/numbers";
+import { short } from "../../../web/src/numbers";
 import type { Store } from "../../../web/src/store";
 import type { Display } from "../../../web/src/view/display";
 import { ForceCurve } from "./curve";

@@ -1,6 +1,6 @@
 // Texts and rows of the tables of a fit.
 import { element } from "../../../web/src/dom";
-import { short, withUnit } from "../../../web/src/plots/numbers";
+import { short, withUnit } from "../../../web/src/numbers";
 import type { MaybeNumber } from "../../../web/src/protocol";
 
 export const percent = (part: MaybeNumber | undefined): string => (part === null || part === undefined || part < 0 ? "–" : part === 0 ? "0 %" : `${short(100 * part, 2)} %`);

@@ -1,7 +1,7 @@
 // Charts of a fit: force against depth, residuals, trial weights, convergence.
 import type uPlot from "uplot";
 import { Chart, type FilledCurve } from "../../../web/src/plots/chart";
-import { finite, short } from "../../../web/src/plots/numbers";
+import { finite, short } from "../../../web/src/numbers";
 import type { Palette } from "../../../web/src/plots/palette";
 import { inkOn } from "../../../web/src/plots/painting";
 import { nearest } from "../../../web/src/plots/table";

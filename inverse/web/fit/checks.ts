@@ -1,6 +1,6 @@
 // The checks of the verdict: every figure beside its limit.
 import { element } from "../../../web/src/dom";
-import { short } from "../../../web/src/plots/numbers";
+import { short } from "../../../web/src/numbers";
 import { kReadingKinds, type FitHead, type Reason } from "./data";
 import { percent, row } from "./cells";
 import { numberTable } from "./numberTable";

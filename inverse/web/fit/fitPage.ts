@@ -4,7 +4,7 @@ import { button, element, listOf, messageOf, type Child } from "../../../web/src
 import { formulaElements } from "../../../web/src/formulas";
 import { Page } from "../../../web/src/page";
 import type { Chart } from "../../../web/src/plots/chart";
-import { plural, short } from "../../../web/src/plots/numbers";
+import { plural, short } from "../../../web/src/numbers";
 import type { Vec3 } from "../../../web/src/protocol";
 import { Theme } from "../../../web/src/theme";
 import { CameraRig } from "../../../web/src/view/cameras";

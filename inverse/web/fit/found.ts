@@ -1,7 +1,7 @@
 // What a fit has found beside the material: systematic errors, outliers, laws, and relaxation.
 import { element, type Child } from "../../../web/src/dom";
 import { Chart, type FilledCurve } from "../../../web/src/plots/chart";
-import { short } from "../../../web/src/plots/numbers";
+import { short } from "../../../web/src/numbers";
 import { digitsOf, failedRow, intervalText, percent, row, valueText } from "./cells";
 import type { Figures, FoundError, HistoryFigures, LawFigures, PartsFigures, RelaxationFigures } from "./data";
 import { numberTable } from "./numberTable";

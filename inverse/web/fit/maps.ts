@@ -3,7 +3,7 @@ import { element } from "../../../web/src/dom";
 import { checkbox, choice } from "../../../web/src/controls";
 import type { Vec3 } from "../../../web/src/protocol";
 import { sceneAxes, type CameraRig } from "../../../web/src/view/cameras";
-import { short, withUnit } from "../../../web/src/plots/numbers";
+import { short, withUnit } from "../../../web/src/numbers";
 import { vectorAt } from "../../../web/src/view/lens";
 import { extremes } from "../../../web/src/view/ranges";
 import { makeBalls } from "./arrows";

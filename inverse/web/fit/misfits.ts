@@ -2,7 +2,7 @@
 import { element } from "../../../web/src/dom";
 import { choice } from "../../../web/src/controls";
 import { roundStep } from "../../../web/src/view/ranges";
-import { short, withUnit } from "../../../web/src/plots/numbers";
+import { short, withUnit } from "../../../web/src/numbers";
 import type { CameraRig } from "../../../web/src/view/cameras";
 import { makeArrows, makeBalls, type Arrow } from "./arrows";
 import { numberTable } from "./numberTable";

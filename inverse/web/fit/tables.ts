@@ -1,6 +1,6 @@
 // Tables of a fit: responses of all cases, errors of held-out groups, and simpler models.
 import { element, type Child } from "../../../web/src/dom";
-import { short, withUnit } from "../../../web/src/plots/numbers";
+import { short, withUnit } from "../../../web/src/numbers";
 import type { MaybeNumber } from "../../../web/src/protocol";
 import { failedRow, percent, row } from "./cells";
 import { isCorrected, kReadingKinds, stiffness, type CaseFigures, type Figures, type HeldOutFigures, type HeldOutGroup, type ReadingKind, type ReadingName } from "./data";

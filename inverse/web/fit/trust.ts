@@ -1,5 +1,5 @@
 // The first paragraph of a report: how far to trust its values.
-import { short } from "../../../web/src/plots/numbers";
+import { short } from "../../../web/src/numbers";
 import { percent } from "./cells";
 import { kReadingKinds, type FitHead } from "./data";
 

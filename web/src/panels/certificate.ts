@@ -1,6 +1,6 @@
 // Certificate of a run: convergence of its steps, residuals of the others, and the worst values with their steps.
 import { statusName } from "../names";
-import { short } from "../plots/numbers";
+import { short } from "../numbers";
 import type { MaybeNumber, StepRow } from "../protocol";
 
 // Residual relative to its threshold; above 1 the step missed it. Null if there is no threshold.

@@ -6,7 +6,7 @@ import { Chart, type Curve } from "../plots/chart";
 import { checkbox, choice, numberField, oncePerFrame } from "../controls";
 import { button, downloadCanvas, element, fileName, saveFile } from "../dom";
 import { balanceText, calmRange, CurveColors, explosionText, Ledger, ledgerColumns } from "../plots/ledger";
-import { csv, short, withUnit } from "../plots/numbers";
+import { csv, short, withUnit } from "../numbers";
 import type { Palette } from "../plots/palette";
 import { paintVerticalLine } from "../plots/painting";
 import { lowerBound, magnitude, merged, nearest, thinned, type Table } from "../plots/table";

@@ -1,7 +1,7 @@
 // Picture of the functions panel: the surface, the path on it, and the quadratic model of the chosen iteration.
 import type { FunctionReply } from "../protocol";
 import { quadraticAt, uniform, type Grid } from "../plots/grid";
-import { plural, short } from "../plots/numbers";
+import { plural, short } from "../numbers";
 import { addModelMinimum, addRejected, type SurfaceContent } from "../plots/surfaceContent";
 
 interface FunctionLook {

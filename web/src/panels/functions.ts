@@ -6,7 +6,7 @@ import { fieldsOf, type Page, type Panel } from "../page";
 import type { FunctionQuestion, FunctionReply } from "../protocol";
 import type { Store } from "../store";
 import { checkbox } from "../controls";
-import { short } from "../plots/numbers";
+import { short } from "../numbers";
 import { sentence } from "../names";
 import { SearchChart } from "../plots/search";
 import { SurfaceView } from "../plots/surface";

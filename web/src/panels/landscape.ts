@@ -6,7 +6,7 @@ import type { Chosen } from "../plots/chosen";
 import { checkbox, oncePerFrame } from "../controls";
 import { button, downloadCanvas, element } from "../dom";
 import { gridOf, quadraticFrom } from "../plots/grid";
-import { short } from "../plots/numbers";
+import { short } from "../numbers";
 import { SurfaceView } from "../plots/surface";
 import { addModelMinimum, addRejected, type SurfaceContent } from "../plots/surfaceContent";
 

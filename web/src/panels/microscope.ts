@@ -6,7 +6,7 @@ import type { Store } from "../store";
 import type { Chosen } from "../plots/chosen";
 import { checkbox, choice, oncePerFrame } from "../controls";
 import { button, element } from "../dom";
-import { plural, short, withUnit } from "../plots/numbers";
+import { plural, short, withUnit } from "../numbers";
 import { Rows, type RowColumn } from "../plots/rows";
 import type { Search } from "../plots/search";
 import { stepText, totalSeconds } from "../plots/summaries";

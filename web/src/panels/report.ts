@@ -4,7 +4,7 @@ import { button, element } from "../dom";
 import { choiceFormulas, chosen } from "../formulas";
 import { choiceName } from "../names";
 import type { Page, Panel } from "../page";
-import { plural, short } from "../plots/numbers";
+import { plural, short } from "../numbers";
 import type { MaybeNumber, Setting, StepRow, TextReply } from "../protocol";
 import type { Store } from "../store";
 import { saveReply } from "../upload";

@@ -3,7 +3,7 @@ import type { Chosen } from "../plots/chosen";
 import { Chart, type ChartOptions, type Curve, type FilledCurve } from "../plots/chart";
 import { choice } from "../controls";
 import { element } from "../dom";
-import { withUnit } from "../plots/numbers";
+import { withUnit } from "../numbers";
 import { SearchChart, type Search } from "../plots/search";
 import { nearest, thinned } from "../plots/table";
 import { paintVerticalLine } from "../plots/painting";

@@ -1,6 +1,6 @@
 // Axes of a chart: units with SI prefixes, powers of ten, and shortened numbers.
 import type uPlot from "uplot";
-import { prefixOf, tickTexts } from "./numbers";
+import { prefixOf, tickTexts } from "../numbers";
 import type { Palette } from "./palette";
 
 export interface Axis {

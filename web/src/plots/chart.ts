@@ -9,7 +9,7 @@ import { axis, padded, ranged, type Axis } from "./axes";
 import { oncePerFrame } from "../controls";
 import { element } from "../dom";
 import { titled } from "./legend";
-import { short, withUnit } from "./numbers";
+import { short, withUnit } from "../numbers";
 import { cssOf, inkOf, palette, sameLook, type Color, type Palette } from "./palette";
 import { nearest, type Table } from "./table";
 

@@ -1,6 +1,6 @@
 // Values on a plane grid: the heights of their picture, and the quadratic function through samples.
 import type { FunctionReply, IterationReply, MaybeNumber } from "../protocol";
-import { finite } from "./numbers";
+import { finite } from "../numbers";
 import { lowerBound } from "./table";
 
 export interface Grid {

@@ -3,7 +3,7 @@ import type { MaybeNumber, StepRow } from "../protocol";
 import type { Curve } from "./chart";
 import { extremes } from "../view/ranges";
 import { lowerBound } from "./table";
-import { finite, short, withUnit } from "./numbers";
+import { finite, short, withUnit } from "../numbers";
 import { furtherColor, type Color } from "./palette";
 
 // Colors of the curves that most scenes have. The others get those of the remaining families of hues, so that no two

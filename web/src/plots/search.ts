@@ -3,7 +3,7 @@ import type uPlot from "uplot";
 import type { IterationReply, MaybeNumber, TrialRow } from "../protocol";
 import { text } from "../view/marks";
 import { Chart, type Curve } from "./chart";
-import { finite, short } from "./numbers";
+import { finite, short } from "../numbers";
 import type { Palette } from "./palette";
 import { nearest } from "./table";
 import { inkOn, paintVerticalLine } from "./painting";

@@ -1,7 +1,7 @@
 // Sentences about a minimization that follow from its numbers.
 import type { IterationRow, MaybeNumber, Setting, StepRow } from "../protocol";
 import { explanationText, statusName } from "../names";
-import { plural, short, withUnit } from "./numbers";
+import { plural, short, withUnit } from "../numbers";
 
 export type Pace = "squaring" | "faster" | "steady" | "none";
 

@@ -2,7 +2,7 @@
 import type { MaybeNumber } from "../protocol";
 import { isInside, minimizerOf, quadraticAt, type Grid, type Point, type Quadratic } from "./grid";
 import type { Sign } from "./legend";
-import { plural } from "./numbers";
+import { plural } from "../numbers";
 import type { Color } from "./palette";
 
 export interface Mark extends Point {

@@ -2,7 +2,7 @@
 import * as THREE from "three";
 import { ticks } from "../view/ranges";
 import { valueAtHeight } from "./grid";
-import { short, tickTexts } from "./numbers";
+import { short, tickTexts } from "../numbers";
 import type { Color } from "./palette";
 import type { SurfaceContent } from "./surfaceContent";
 import type { Frame } from "./surfaceParts";

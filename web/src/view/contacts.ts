@@ -1,6 +1,6 @@
 // Contact points in 3-D, colored by pressure. Those behind a body shine through it faintly.
 import * as THREE from "three";
-import { short } from "../plots/numbers";
+import { short } from "../numbers";
 import type { StepRow } from "../protocol";
 import { colorAt } from "./colorMaps";
 import { makePinMaterial } from "./shading";

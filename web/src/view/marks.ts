@@ -1,5 +1,5 @@
 // Text and thin shapes over a view, drawn with a 2-D canvas and readable over any background.
-import { short, tickTexts } from "../plots/numbers";
+import { short, tickTexts } from "../numbers";
 import type { Highlight } from "../page";
 import type { Field, StepRow, Vec3 } from "../protocol";
 import { colorAt, type MapName } from "./colorMaps";

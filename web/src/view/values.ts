@@ -1,5 +1,5 @@
 // Texts for values of the body.
-import { short, withUnit } from "../plots/numbers";
+import { short, withUnit } from "../numbers";
 import type { MaybeNumber, Vec3 } from "../protocol";
 
 export function unitText(unit: string): string {

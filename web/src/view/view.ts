@@ -1,7 +1,7 @@
 // 3-D view of one side: draws its newest picture, and only after a change.
 import "./view.css";
 import type { Highlight, Page } from "../page";
-import { hasBlownUp } from "../plots/gain";
+import { hasBlownUp } from "../gain";
 import type { SideName } from "../protocol";
 import type { Store } from "../store";
 import { onLook } from "../theme";

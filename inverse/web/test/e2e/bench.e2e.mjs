@@ -34,6 +34,11 @@ async function openBench(more = {}) {
 // Touches the body at a place relative to its middle, and presses the indenter to a depth in millimeters.
 async function pressIn(opened, depth, right = 0) {
   const { page, heard, until } = opened;
+  if (heard.state.a.tool) {
+    await page.getByRole("button", { name: "Lift" }).click();
+    const step = heard.state.a.step;
+    await until("no indenter", () => heard.state.a.tool === null && heard.state.a.step > step + 2);
+  }
   const [x, y] = await findBody(opened);
   await page.mouse.move(x + right, y);
   await page.mouse.down();

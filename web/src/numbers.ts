@@ -1,5 +1,5 @@
 // Formats numbers: few digits, SI prefixes, a dash for missing values.
-import type { MaybeNumber } from "../protocol";
+export type MaybeNumber = number | null; // null: not finite
 
 const kPrefixes = [..."TGMk mµnpf"].map((letter, i) => ({ factor: Number(`1e${12 - 3 * i}`), letter: letter.trim() }));
 const kTooLarge = 1e15; // largest value with a prefix; beyond it powers of ten are clearer

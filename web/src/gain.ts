@@ -1,6 +1,6 @@
 // Detects from the energy that a motion has blown up: the integrator and the solver's residuals have added more than
 // half of the kinetic energy. A body in free fall does not do that, however far it moves.
-import type { StepRow } from "../protocol";
+import type { StepRow } from "./protocol";
 
 const kShare = 0.5; // threshold relative to the kinetic energy
 
