@@ -1,7 +1,9 @@
 // Writes the keywords of scenes and data sets for libFuzzer, from the tables that validate them.
 #include <set>
 
+#ifdef ASPIC_HAS_FIT
 #include "capture/capture_schema.h"
+#endif
 #include "scene/expression.h"
 #include "scene/schema.h"
 #include "seeds.h"
@@ -73,7 +75,9 @@ std::vector<Dictionary> dictionaries() {
   std::set<std::string> scene(kToml.begin(), kToml.end());
   std::set<std::string> capture = scene;
   add_words(scene_schema(), scene);
+#ifdef ASPIC_HAS_FIT
   add_words(capture_schema(), capture);
+#endif
   return {{"scene", text_of(scene)},
           {"toml", text_of(scene)},
           {"overrides", text_of(scene)},

@@ -1,12 +1,9 @@
-// Readers of folders: scenes with their meshes, runs, fits, measurements.
+// Readers of folders: scenes with their meshes, runs, materials.
 #include <cmath>
 #include <filesystem>
 #include <string>
 
 #include "base/stop_token.h"
-#include "capture/data_set.h"
-#include "capture/journal.h"
-#include "capture/motion_table.h"
 #include "io/checkpoint.h"
 #include "io/mesh_file.h"
 #include "io/pc2.h"
@@ -55,22 +52,6 @@ fs::path folder_with_meshes() {
   return folder;
 }
 
-// Makes the calls of a fit with the identity as its model.
-class Identity : public LeastSquares {
- public:
-  int parameter_count() const override { return 2; }
-  int residual_count() const override { return 2; }
-  bool evaluate(std::span<const double> p, std::span<double> r) override { return copy(p, r), true; }
-  bool linearize() override { return true; }
-  void multiply(std::span<const double> dp, std::span<double> dr) override { copy(dp, dr); }
-  void multiply_transposed(std::span<const double> w, std::span<double> pbar) override { copy(w, pbar); }
-
- private:
-  static void copy(std::span<const double> from, std::span<double> to) {
-    std::copy(from.begin(), from.end(), to.begin());
-  }
-};
-
 }  // namespace
 
 void scene(std::string_view bytes) {
@@ -111,46 +92,6 @@ void material(std::string_view bytes) {
   const Vec3d places[] = {{{0, 0, 0}}, {{0.3, 0.3, 0.3}}, {{1e9, 0, -1e9}}};
   for (const int tet : sampling(fitted, places).tet)
     require(tet >= 0 && tet < fitted.mesh.tet_count(), "an index of a tet is in range");
-}
-
-void data_set(std::string_view bytes) {
-  const fs::path folder = folder_of_process();
-  const Files files(folder, bytes,
-                    {"capture.toml", "markers.csv", "cases.csv", "positions.csv", "rest.msh", "patch.csv"});
-  const DataSet data = read_data_set(folder);
-  for (const DataFinding& finding : diagnose(data)) require_printable({finding.where, finding.what, finding.remedy});
-  require_printable(data.notes);
-  for (const LoadCase& measured : data.experiment.cases) require_printable({measured.name});
-  for (const SurfacePoint& marker : data.experiment.markers)
-    for (const int v : marker.vertices)
-      require(v >= 0 && v < data.experiment.mesh.vertex_count(), "markers refer to vertices of the mesh");
-}
-
-void motion_table(std::string_view bytes) {
-  const TetMesh mesh = small_box();
-  const fs::path path = folder_of_process() / "positions.csv";
-  put_file(path, bytes);
-  std::vector<std::string> notes;
-  const MotionData data = attach_markers(read_motion_table(path), mesh, at_rest(mesh), 0.01, notes);
-  require_printable(notes);
-  for (const MotionSample& sample : data.samples) require(sample.time > 0 && sample.sigma > 0, "samples are valid");
-}
-
-void journal(std::string_view bytes) {
-  const fs::path stem = folder_of_process() / "fit";
-  const Files files(folder_of_process(), bytes, {"fit.journal", "fit.state"});
-  make_checkpoint_right(folder_of_process() / "fit.state", "fuzz");
-  Identity model;
-  std::vector<double> state = {1, 2}, p = {0.5, 1}, r(2);
-  const ModelState keeps{[&] { return state; }, [&](std::span<const double> s) { state.assign(s.begin(), s.end()); }};
-  Journal log(model, keeps, stem, "fuzz", JournalStart::resume);
-  for (int i = 0; i < 3; ++i) {
-    log.evaluate(p, r);
-    log.linearize();
-    log.multiply(p, r);
-    log.multiply_transposed(r, p);
-  }
-  Journal::remove(stem);
 }
 
 void run_folder(std::string_view bytes) {

@@ -1,5 +1,4 @@
 // Runs, fits and measurements as the library writes them.
-#include "capture/data_set.h"
 #include "io/atomic_file.h"
 #include "io/checkpoint.h"
 #include "io/gmsh.h"

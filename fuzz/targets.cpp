@@ -26,10 +26,12 @@ std::span<const Target> targets() {
       {"point_cache", point_cache},
       {"run_folder", run_folder},
       {"run_recording", run_recording},
-      {"journal", journal},
       {"material", material},
+#ifdef ASPIC_HAS_FIT
+      {"journal", journal},
       {"data_set", data_set},
       {"motion_table", motion_table},
+#endif
       {"toml", toml},
       {"scene", scene},
       {"obstacle", obstacle},

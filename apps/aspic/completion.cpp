@@ -50,7 +50,7 @@ nlohmann::json to_json(const std::vector<CommandHelp>& commands) {
   return list;
 }
 
-// Asks another program for the help of its command.
+// Reads the help of a command from the program that has it.
 CommandHelp help_from(const std::string& program, const std::string& command) {
   const TemporaryFolder folder;
   const std::filesystem::path output = folder.path() / "commands.json";
