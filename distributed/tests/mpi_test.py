@@ -103,6 +103,10 @@ class Ranks(CommandLine):
             self.assertLess(time.monotonic(), end, "no steps")
             time.sleep(0.02)
 
+    def ranks(self, run):
+        with open(self.folder / run / "ranks.csv", newline="") as file:
+            return [{name: float(value) for name, value in row.items()} for row in csv.DictReader(file)]
+
 
 class Equality(Ranks):
     NUMBERS = ("kinetic", "potential_total", "pin_work", "numerical_loss", "min_det_F")
@@ -581,10 +585,6 @@ axes = "yz"
 class Shares(Ranks):
     """Memory, iterations and communication of the ranks."""
 
-    def ranks(self, run):
-        with open(self.folder / run / "ranks.csv", newline="") as file:
-            return [{name: float(value) for name, value in row.items()} for row in csv.DictReader(file)]
-
     def test_memory_halves_when_ranks_double(self):
         self.mpi(1, "run", self.scene(), "--steps", "1", "--out", "small", "--quiet")
         process = self.ranks("small")[0]["peak_bytes"]
@@ -598,19 +598,6 @@ class Shares(Ranks):
         self.assertLess(peaks[1], 12000 * 49 * 13 * 13)
         self.assertLess(peaks[2], 0.65 * peaks[1])  # ghosts and buffers of MPI come on top of one half
         self.assertLess(peaks[4], 0.70 * peaks[2])
-
-    def iterations(self, ranks, linear, before_pin):
-        scene = self.scene(cells="24, 6, 6", young="1e7", before_pin=before_pin, solver=f'linear = "{linear}"')
-        options = ("--set", "solver.max_iterations=2", "--steps", "1")
-        self.mpi(ranks, "run", scene, *options, "--out", "run", "--force", "--quiet", "--allow-unconverged")
-        return self.ranks("run")[0]["linear_iterations"]
-
-    def test_iterations_hardly_grow_with_ranks(self):
-        twist = "deform = { twist = { axis = [1, 0, 0], angle_deg = 90 } }\n"
-        for linear in ("multigrid", "auto"):  # 20 times as many without a coarse space
-            for before_pin in ("", twist):
-                counts = {n: self.iterations(n, linear, before_pin) for n in (1, 4, 16)}
-                self.assertLessEqual(max(counts.values()), 1.5 * counts[1], f"{linear} {before_pin}: {counts}")
 
     def test_auto_chooses_by_predicted_cost(self):
         """Soft bodies and short steps: block-Jacobi. Equilibria: multigrid, whose coarse space adds a gather."""
@@ -655,6 +642,21 @@ class Shares(Ranks):
         self.assertLess(time.monotonic() - begin, 60)
         said = self.mpi(1, "run", self.scene(cells="3000, 3000, 3000"), code=2).stderr
         self.assertIn("the scene has 1.62e+11 tets; at most 2147483647 are supported", said)
+
+
+class Growth(Ranks):
+    def iterations(self, ranks, linear, before_pin):
+        scene = self.scene(cells="24, 6, 6", young="1e7", before_pin=before_pin, solver=f'linear = "{linear}"')
+        options = ("--set", "solver.max_iterations=2", "--steps", "1")
+        self.mpi(ranks, "run", scene, *options, "--out", "run", "--force", "--quiet", "--allow-unconverged")
+        return self.ranks("run")[0]["linear_iterations"]
+
+    def test_iterations_hardly_grow_with_ranks(self):
+        twist = "deform = { twist = { axis = [1, 0, 0], angle_deg = 90 } }\n"
+        for linear in ("multigrid", "auto"):  # 20 times as many without a coarse space
+            for before_pin in ("", twist):
+                counts = {n: self.iterations(n, linear, before_pin) for n in (1, 4, 16)}
+                self.assertLessEqual(max(counts.values()), 1.5 * counts[1], f"{linear} {before_pin}: {counts}")
 
 
 class SameBits(Ranks):
