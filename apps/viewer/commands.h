@@ -1,4 +1,4 @@
-// The table of the commands and questions of a page. docs/viewer_protocol.md describes them.
+// The table of the commands and questions of a page. apps/viewer/protocol.md describes them.
 #pragma once
 #include <functional>
 #include <map>

@@ -1,5 +1,5 @@
 // An interactive session of one simulation, or of two in a comparison. Independent of network, threads and clocks.
-// docs/viewer_protocol.md describes the messages.
+// apps/viewer/protocol.md describes the messages.
 #pragma once
 #include <filesystem>
 #include <functional>

@@ -1,5 +1,5 @@
 // Measurements in a folder: capture.toml with the rest mesh and tables of markers, cases and positions
-// (docs/capture_format.md).
+// (inverse/docs/capture_format.md).
 #pragma once
 #include <filesystem>
 #include <functional>

@@ -337,7 +337,7 @@ TEST_F(DataSetFile, MissingColumnsOfGripsAreZeroOrUnmeasured) {
   measured("units = { length = \"mm\", mesh = \"m\" }\n[[grip]]\nname = \"clamp\"\nwhere = \"z > 0.0599\"\n");
   folder.write("markers.csv", "marker,x,y,z\nA,50,40,60\n");
   std::filesystem::remove(path("positions.csv"));
-  // The example in docs/capture_format.md.
+  // The example in inverse/docs/capture_format.md.
   folder.write("cases.csv",
                "case,grip,move_x,move_y,move_z,rotation_z,force_z,torque_z\n"
                "pull 2 mm,clamp,0,0,2,,0.61,\n"

@@ -204,7 +204,7 @@ class DataSetWriter {
 
   void write_settings() const {
     std::string text =
-        "# Measurements, in SI units: docs/capture_format.md\nversion = 1\nname = " + toml_string(data_.name) +
+        "# Measurements, in SI units: inverse/docs/capture_format.md\nversion = 1\nname = " + toml_string(data_.name) +
         "\nmesh = \"rest.msh\"" + (data_.experiment.mesh.mids.empty() ? "\norder = 1" : "\norder = 2") +
         "\ndensity = " + density_text() + "\nfixed = " + list_of(data_.experiment.fixed) + "\n";
     if (const std::optional<Vec3d>& g = data_.experiment.scan_gravity)

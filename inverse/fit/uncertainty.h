@@ -1,5 +1,5 @@
 // Uncertainty of a fit by Laplace's approximation: the posterior of p is normal about the fit with covariance (J'J +
-// weight R'')^-1. Limits: docs/fitting.md.
+// weight R'')^-1. Limits: inverse/docs/fitting.md.
 #pragma once
 #include <memory>
 #include <span>

@@ -107,7 +107,7 @@ class Trajectory(Strict):
 def fit(data, model="neo_hookean", parameters=None, known=None, observe=None, out=None, **options):
     """Fits a material to a data set, as `aspic fit` does.
 
-    data: a folder, see docs/capture_format.md. parameters: {"young": "tets"}; known: {"poisson": 0.45}.
+    data: a folder, see inverse/docs/capture_format.md. parameters: {"young": "tets"}; known: {"poisson": 0.45}.
     observe(iteration, misfit, p) is called in every iteration; out: write the material to this .vtu file.
     options: those of the command line, such as uncertainty=False. Returns an object with quantities, by name: values
     per tet, their standard deviations `sigma` and reductions; misfit, status, verdict, reasons and warnings.

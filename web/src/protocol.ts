@@ -1,6 +1,6 @@
 // Messages between the page and the program. Text frames are JSON: the page sends `Command`s and `Query`s, the program
 // `ServerMessage`s. Binary frames, from the program only, are geometry and pictures; all numbers are little-endian.
-// docs/viewer_protocol.md describes their meaning. A number that is not finite is null.
+// apps/viewer/protocol.md describes their meaning. A number that is not finite is null.
 
 import type { MaybeNumber } from "./numbers";
 import type { StepFields } from "./stepFields";

@@ -50,7 +50,7 @@ class Fits(unittest.TestCase):
         truth = truths.tensile(cells=3)
         truth.cells = (2, 2, 7)
         values, _ = self.fit(truth, "--known", "poisson=0.4", forces_alone=True)
-        self.assertAlmostEqual(values["young"]["value"] / 6e4, 1, delta=0.03)  # docs/capture_results.md: its interval misses
+        self.assertAlmostEqual(values["young"]["value"] / 6e4, 1, delta=0.03)  # inverse/docs/capture_results.md: its interval misses
 
     def test_swapped_sign_of_the_force_is_refused(self):
         truth = truths.tensile(cells=3)

@@ -89,7 +89,7 @@ class _DataSet:
                                "capture.toml") from None
         for key in ("units", "columns", "deviation"):
             if not isinstance(settings.setdefault(key, {}), dict):
-                raise InvalidInput(f"{printable(path)}: {key} is no table; see docs/capture_format.md")
+                raise InvalidInput(f"{printable(path)}: {key} is no table; see inverse/docs/capture_format.md")
         return settings
 
     def path(self, table):
