@@ -20,7 +20,8 @@ fs::path settings_file(const fs::path& path) {
   }
   const fs::path file = path / "capture.toml";
   if (!fs::exists(file, error))
-    throw InvalidInput(path.string() + ": has no capture.toml, which describes a data set (inverse/docs/capture_format.md)");
+    throw InvalidInput(path.string() +
+                       ": has no capture.toml, which describes a data set (inverse/docs/capture_format.md)");
   return file;
 }
 
