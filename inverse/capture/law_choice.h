@@ -52,8 +52,8 @@ struct LawChoice {
 
 inline constexpr char kAutoLaw[] = "auto";
 
-// Computes the losses and verdicts of the trials and chooses a law by the rule of inverse/docs/fitting.md. A law with a bad
-// verdict is chosen only if no law has a good one.
+// Computes the losses and verdicts of the trials and chooses a law by the rule of inverse/docs/fitting.md. A law with a
+// bad verdict is chosen only if no law has a good one.
 void judge_laws(LawChoice& choice);
 
 }  // namespace aspic

@@ -160,7 +160,7 @@ class LawContest {
   bool fit_all() {
     // All laws start from the moduli of the first one.
     run_job(contenders_.front(), "reference", JobKind::common, [&] { find_reference(); });
-    take_off_mesh_errors(contenders_.front());
+    subtract_mesh_errors(contenders_.front());
     for (Contender& c : contenders_) {
       const bool is_first = &c == &contenders_.front();
       run_job(c, "first", is_first ? JobKind::common : JobKind::independent, [&] { fit(c, ""); });
@@ -168,7 +168,7 @@ class LawContest {
     }
     if (is_stopped() || jobs_.is_waiting()) return false;
     if (!plan_.mesh_errors) return true;
-    take_off_mesh_errors(*std::min_element(contenders_.begin(), contenders_.end(),
+    subtract_mesh_errors(*std::min_element(contenders_.begin(), contenders_.end(),
                                            [](const auto& a, const auto& b) { return a.objective < b.objective; }));
     for (Contender& c : contenders_)
       run_job(c, "second", JobKind::independent, [&] { fit(c, " with the mesh correction of the best one"); });
@@ -290,10 +290,10 @@ class LawContest {
     return true;
   }
 
-  void take_off_mesh_errors(const Contender& c) {
+  void subtract_mesh_errors(const Contender& c) {
     if (!plan_.mesh_errors || c.material.empty() || is_stopped() || simulated_.is_too_large_for_mesh_errors()) return;
     if (callbacks_.begin) callbacks_.begin(FitStage::mesh_errors, "discretization error with " + c.law.name);
-    simulated_.take_off_mesh_errors(c.plan, c.material);  // if this fails, the last correction remains
+    simulated_.subtract_mesh_errors(c.plan, c.material);  // if this fails, the last correction remains
   }
 
   void describe(Contender& c) {

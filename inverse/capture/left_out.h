@@ -9,6 +9,6 @@ namespace aspic {
 Experiment left_out_cases(const DataSet& data, const FitPlan& plan);
 
 // Compares the predictions of all left-out cases with the measurements. Not ok without any.
-HeldOut left_out_errors(const DataSet& data, const FitOutcome& outcome);
+HeldOut held_out_errors(const DataSet& data, const FitOutcome& outcome);
 
 }  // namespace aspic

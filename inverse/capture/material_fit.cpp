@@ -164,7 +164,7 @@ bool MaterialFit::has_model_errors() const { return plan_.mesh_errors || plan_.l
 
 bool MaterialFit::learn_model_errors() {
   if (plan_.law_errors) add_law_errors();
-  if (plan_.mesh_errors) take_off_mesh_errors();
+  if (plan_.mesh_errors) subtract_mesh_errors();
   return has_model_errors() && !is_stopped();
 }
 
@@ -177,7 +177,7 @@ void MaterialFit::add_law_errors() {
   plan_.law_errors = false;
 }
 
-void MaterialFit::take_off_mesh_errors() {
+void MaterialFit::subtract_mesh_errors() {
   if (is_stopped()) return;
   if (simulated_.is_too_large_for_mesh_errors()) {
     add_warnings({"the discretization error was NOT computed: the simulated mesh has " +
@@ -189,7 +189,7 @@ void MaterialFit::take_off_mesh_errors() {
     return;
   }
   begin(FitStage::mesh_errors, "discretization error, by a mesh of eight times as many tets");
-  const std::string failure = simulated_.take_off_mesh_errors(plan_, material_);
+  const std::string failure = simulated_.subtract_mesh_errors(plan_, material_);
   if (!failure.empty()) {
     add_warnings({"the discretization error was NOT computed: on the finer mesh " + failure});
     plan_.mesh_errors = false;

@@ -70,7 +70,7 @@ class MaterialFit {
   // Errors of mesh and law for the last material; if they are unknown, the data remain unchanged. False: none, or
   // stopped.
   bool learn_model_errors();
-  void take_off_mesh_errors();
+  void subtract_mesh_errors();
   void add_law_errors();
   void fit_fields();
   void fit_and_describe();

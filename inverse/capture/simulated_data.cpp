@@ -66,7 +66,7 @@ void SimulatedData::correct(std::vector<double> errors, std::vector<CaseWeights>
 
 bool SimulatedData::is_too_large_for_mesh_errors() const { return mesh().tet_count() > kTooFine; }
 
-std::string SimulatedData::take_off_mesh_errors(const FitPlan& plan, const std::vector<MaterialParameters>& material) {
+std::string SimulatedData::subtract_mesh_errors(const FitPlan& plan, const std::vector<MaterialParameters>& material) {
   MeshErrors errors = mesh_errors(simulated_, plan.model, material, rough(plan.equilibrium), &error_predictions_);
   if (errors.cases.empty()) return errors.failure;
   errors_ = std::move(errors.cases);

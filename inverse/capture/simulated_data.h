@@ -35,7 +35,7 @@ class SimulatedData {
   bool is_too_large_for_mesh_errors() const;
   // Both are for a material. They return the reason if they are impossible, so that nothing changes; otherwise empty.
   // Corrects the measurements by the discretization error.
-  std::string take_off_mesh_errors(const FitPlan& plan, const std::vector<MaterialParameters>& material);
+  std::string subtract_mesh_errors(const FitPlan& plan, const std::vector<MaterialParameters>& material);
   // Includes the choice of the law in the errors of the measurements.
   std::string add_law_errors(const FitPlan& plan, const std::vector<MaterialParameters>& material);
   // Positions of some cases, one after another, at rest with the material of the last errors; empty: unknown.

@@ -20,8 +20,8 @@ struct StiffnessChange {
   bool differs_from(const StiffnessChange& other) const;
 };
 
-// g is the gradient of the factor of all stiffnesses that changes the readings of `ends` most alike. `ends`: last
-// states of the histories. Returns nothing if they do not depend on the stiffness or have no equilibrium.
+// g is the gradient of the common factor of all stiffnesses that has the most similar effect on the readings of `ends`,
+// the last states of the histories. Returns nothing if they do not depend on the stiffness or have no equilibrium.
 std::optional<StiffnessChange> stiffness_change(const Experiment& ends, const FittedField& fitted, Gaussian& posterior,
                                                 const EquilibriumOptions& equilibrium);
 

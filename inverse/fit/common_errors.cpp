@@ -11,7 +11,7 @@ constexpr double kRoundOff = 1e-10;
 
 }  // namespace
 
-void CommonErrors::Direction::take_off(std::span<double> r) const {
+void CommonErrors::Direction::subtract(std::span<double> r) const {
   const std::span<double> part = r.subspan(static_cast<size_t>(first), unit.size());
   add_scaled(-taken * dot(unit, part), unit, part);
 }
@@ -21,7 +21,7 @@ std::vector<double> CommonErrors::beside_others(int first, const std::vector<dou
   std::vector<double> all(static_cast<size_t>(first) + n.size(), 0.0);
   std::copy(n.begin(), n.end(), all.begin() + first);
   for (const Direction& d : directions_)
-    if (d.first >= first && d.first + d.unit.size() <= all.size()) d.take_off(all);
+    if (d.first >= first && d.first + d.unit.size() <= all.size()) d.subtract(all);
   return {all.begin() + first, all.end()};
 }
 
@@ -44,11 +44,11 @@ void CommonErrors::add_unbounded(std::vector<double> n) {
 }
 
 void CommonErrors::apply(std::span<double> r) const {
-  for (const Direction& d : directions_) d.take_off(r);
+  for (const Direction& d : directions_) d.subtract(r);
 }
 
 void CommonErrors::apply_transposed(std::span<double> w) const {
-  for (auto d = directions_.rbegin(); d != directions_.rend(); ++d) d->take_off(w);
+  for (auto d = directions_.rbegin(); d != directions_.rend(); ++d) d->subtract(w);
 }
 
 bool WithUncertainLayers::evaluate(std::span<const double> p, std::span<double> r) {

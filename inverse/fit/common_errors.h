@@ -22,7 +22,7 @@ class CommonErrors {
     int first;
     std::vector<double> unit;
     double taken;  // removed fraction along it: 0 none, 1 all
-    void take_off(std::span<double> r) const;
+    void subtract(std::span<double> r) const;
   };
   std::vector<double> beside_others(int first, const std::vector<double>& n) const;
 

@@ -60,8 +60,8 @@ struct LoadCase {
   std::optional<Vec3d> force, torque;  // measured, on the body [N, N m]
   Vec3d force_sigma{}, torque_sigma{};
   std::vector<CommonError> common_errors;    // equally many in all cases
-  std::optional<Vec3d> gauge, torque_gauge;  // axes along which alone force and torque were measured
-  // Of the correction of the pose for systematic errors: its rotation vector [rad], and the direction of backlash.
+  std::optional<Vec3d> gauge, torque_gauge;  // the only axes along which force and torque were measured
+  // Correction of the pose for systematic errors: rotation vector [rad], and direction of backlash.
   Vec3d turned{}, backward{};
 };
 

@@ -27,7 +27,7 @@ struct MeshError {
   double lever = 1;  // [m]: sizes of wrenches are |force| and |torque| / lever, so a twist without a force has one, too
 
   Wrench limit() const;
-  // Errors of another wrench on the same body, or of what was measured of it; they grow with it.
+  // Errors of another wrench on the same body, or of a measured one; they are proportional to it.
   Wrench for_wrench_on_mesh(const Wrench& other) const;
   Wrench for_measured(const LoadCase& load) const;
   double factor() const;  // size of the limit over that on the mesh; 1 without a wrench

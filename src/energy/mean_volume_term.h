@@ -152,7 +152,7 @@ class VolumeTerm : public TetTerm<GivenPressure, Energy, QuadraticTetBatch> {
     }
   }
 
-  // Calls visit(tet, volume [m^3] unused lanes excluded, mean J - 1, p).
+  // Calls visit(tet, mean J - 1, K [Pa]) for all tets.
   template <class Visit>
   void visit_pressures(Positions x, const Visit& visit) const {
     parallel_for(batch_count(), [&](int i) {

@@ -47,7 +47,7 @@ void name_tables(Array& tables, const NameOf& name_of) {
   }
 }
 
-// Of the parameters of a fitted material only the density may be replaced.
+// Rejects keys beside a fitted material, of which only the density may be replaced.
 void check_beside_file(const Value& material) {
   const std::string file = toml_string(material["file"].text());
   for (const Member& m : material.table().members) {

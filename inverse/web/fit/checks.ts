@@ -50,7 +50,7 @@ function heldOutErrors({ figures: { held_out: heldOut } }: FitHead): Check[] {
   return list;
 }
 
-// Of synthetic data: the part of the tets whose interval contains the truth.
+// Share of the tets of synthetic data whose interval contains the truth.
 function coverage({ figures: { truth } }: FitHead): Check[] {
   return (truth ?? []).filter((t) => t.coverage >= 0).map((t) => ({ what: `tets whose 95 % interval of ${kQuantityNames[t.quantity] ?? t.quantity} contains the truth`, value: percent(t.coverage), limit: "", fails: false }));
 }
