@@ -18,7 +18,7 @@ struct RunTotals {
   int out_of_time = 0;  // ended by solver.time_budget as requested; not counted as unconverged
   std::array<int, kStatusCount> by_status = {};
   int bounds_held = 0, bounds_broken = 0;  // energy bounds, where backward Euler guarantees one
-  int grew = 0;           // unbroken bounds of steps in which kinetic + potential grew by more than the work of forces
+  int grew = 0;           // steps with such a bound in which kinetic + potential grew by more than the work of forces
   double most_grown = 0;  // [J]
   std::optional<StepReport> worst;  // least successful, then largest residual over threshold
   long iterations = 0;
