@@ -4,6 +4,7 @@
 #include <map>
 #include <string>
 
+#include "base/error.h"
 #include "viewer/arguments.h"
 
 namespace aspic {
@@ -17,6 +18,11 @@ class Playback;
 class Stage;
 struct SessionOptions;
 struct Surface;
+
+// A command interrupted a question, which may be repeated.
+class Interrupted : public InvalidInput {
+  using InvalidInput::InvalidInput;
+};
 
 struct Command {
   std::function<void(Arguments& arguments)> carry_out;  // throws InvalidInput

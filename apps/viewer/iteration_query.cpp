@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "base/error.h"
+#include "viewer/commands.h"
 
 namespace aspic::viewer {
 namespace {
@@ -163,7 +164,7 @@ Json iteration_reply(Side& side, int step, int iteration, const StopToken& stop)
   Look look(iteration, c, side.model().mesh.tet_count(), stop);
   const StepReport report = side.repeat(
       step, [&](const LiveIteration& live) { look.follow(live); }, stop);
-  if (stop.stopped()) throw InvalidInput("interrupted by a command; ask again");
+  if (stop.stopped()) throw Interrupted("interrupted by a command; repeat the question");
   if (!look.is_met())
     throw InvalidInput(look.iterations() == 0 ? fmt::format("step {} minimizes nothing", step)
                                               : fmt::format("iteration {}: step {} has iterations 0 to {}", iteration,

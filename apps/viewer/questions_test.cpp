@@ -217,8 +217,7 @@ TEST(Questions, AboutAnIterationStopOnRequest) {
     try {
       iteration_reply(side, 1, 1, StopToken([&] { return asked++ >= patience; }));
       FAIL() << "was answered";
-    } catch (const InvalidInput& e) {
-      EXPECT_EQ(std::string(e.what()).find("interrupted"), 0u) << e.what();
+    } catch (const Interrupted&) {
     }
     EXPECT_LE(asked, patience + 5) << "continued after the request to stop";
   }

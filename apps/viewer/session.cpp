@@ -107,7 +107,7 @@ Answer Session::handle(std::string_view text, Role role) {
   } catch (const std::bad_alloc&) {
     answer.to_sender.push_back(refusal(id, "there is not enough memory for this; nothing was changed"));
   } catch (const std::exception& e) {
-    answer.to_sender.push_back(refusal(id, e.what()));
+    answer.to_sender.push_back(refusal(id, e.what(), dynamic_cast<const Interrupted*>(&e) != nullptr));
   }
   answer.to_all = impl_->stage.take_messages();
   return answer;

@@ -113,8 +113,10 @@ Json state_of(const ShownSide& shown) {
   return state;
 }
 
-Message refusal(const Json& id, const std::string& why) {
-  return text({{"kind", "refused"}, {"id", id}, {"why", printable_lines(why)}});
+Message refusal(const Json& id, const std::string& why, bool is_interrupted) {
+  Json json = {{"kind", "refused"}, {"id", id}, {"why", printable_lines(why)}};
+  if (is_interrupted) json["interrupted"] = true;
+  return text(json);
 }
 
 }  // namespace aspic::viewer

@@ -31,6 +31,6 @@ Message steps_message(const ShownSide& shown, int from);
 Message pins_message(const ShownSide& shown);
 Message fibres_message(const ShownSide& shown);
 Json state_of(const ShownSide& shown);
-Message refusal(const Json& id, const std::string& why);
+Message refusal(const Json& id, const std::string& why, bool is_interrupted = false);
 
 }  // namespace aspic::viewer

@@ -1,7 +1,7 @@
 // Source of messages: a running simulation at the other end of a transport. Pairs requests with their replies.
 import { decode } from "./protocol";
 import type { Command, Query, ServerMessage } from "./protocol";
-import type { Incoming, Source } from "./source";
+import { Refusal, type Incoming, type Source } from "./source";
 
 export interface TransportListener {
   opened(): void;
@@ -68,7 +68,7 @@ export class LiveSource implements Source {
     if (!isAnswer || !asked) return this.receive({ message });
     this.pending.delete(message.id as number);
     if (message.kind === "reply") asked.resolve(message.reply);
-    else asked.reject(new Error(message.why));
+    else asked.reject(new Refusal(message.why, message.interrupted === true));
   }
 
   private exchange(message: Command | Query): Promise<unknown> {

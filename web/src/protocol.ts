@@ -83,7 +83,7 @@ export type ServerMessage =
   | State
   | { kind: "busy"; what: string } // "" when finished
   | { kind: "reply"; id: number; reply: unknown }
-  | { kind: "refused"; id: number | null; why: string };
+  | { kind: "refused"; id: number | null; why: string; interrupted?: true }; // interrupted: the question may be repeated
 
 export interface Hello {
   kind: "hello";

@@ -5,6 +5,16 @@ import type { Command, Geometry, Picture, Query, ServerMessage } from "./protoco
 // failures: failed connections in a row; 0: connected; Infinity: the program has ended for good
 export type Incoming = { message: ServerMessage } | { geometry: Geometry } | { picture: Picture } | { failures: number };
 
+// The program has refused a command or a query.
+export class Refusal extends Error {
+  constructor(
+    why: string,
+    readonly isInterrupted: boolean, // by a command; a query may be repeated
+  ) {
+    super(why);
+  }
+}
+
 export interface Source {
   readonly live: boolean;
   start(receive: (incoming: Incoming) => void): void;

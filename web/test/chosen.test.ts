@@ -3,14 +3,14 @@ import { test } from "node:test";
 import { Chosen } from "../src/plots/chosen";
 import { Page } from "../src/page";
 import type { IterationReply, Query, Scene, ServerMessage, StepRow } from "../src/protocol";
-import type { Incoming, Source } from "../src/source";
+import { Refusal, type Incoming, type Source } from "../src/source";
 import { Store } from "../src/store";
 import { iterationRow, stepRow } from "./rowsOfSteps";
 
 interface Asked {
   step: number;
   iteration: number;
-  answer: (reply?: string) => void; // a text: the program refuses
+  answer: (reason?: string | Error) => void; // the program refuses
 }
 
 class Stub implements Source {
@@ -27,8 +27,8 @@ class Stub implements Source {
   ask<Reply>(query: Query): Promise<Reply> {
     const { step, iteration } = query as { step: number; iteration: number };
     return new Promise((resolve, reject) => {
-      const answer = (why?: string): void =>
-        why ? reject(new Error(why)) : resolve({ step, iteration } as IterationReply as Reply);
+      const answer = (why?: string | Error): void =>
+        why ? reject(typeof why === "string" ? new Error(why) : why) : resolve({ step, iteration } as IterationReply as Reply);
       this.asked.push({ step, iteration, answer });
     });
   }
@@ -121,7 +121,7 @@ test("an interrupted question is repeated", async () => {
   const { source, chosen } = opened();
   chosen.choose("a", 2, 0);
   chosen.look();
-  source.asked[0]!.answer("interrupted: something else is to be done");
+  source.asked[0]!.answer(new Refusal("something else is to be done", true));
   await settled();
   assert.equal(chosen.seen, null);
   chosen.look();

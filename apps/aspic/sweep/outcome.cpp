@@ -3,15 +3,13 @@
 #include <unistd.h>
 
 #include <array>
-#include <cstdlib>
-#include <fstream>
 #include <new>
 
 #include "base/error.h"
 #include "dynamics/step_report.h"
 #include "io/atomic_file.h"
 #include "io/checkpoint.h"
-#include "io/input_file.h"
+#include "io/csv_reader.h"
 #include "scene/run_directory_layout.h"
 #include "scene/run_lock.h"
 
@@ -68,17 +66,16 @@ int recorded(const fs::path& run, const std::function<int()>& action) {
 }
 
 StepCounts count_steps(const fs::path& run, int last_step) {
-  std::ifstream file = open_input(RunLayout(run).steps());
-  std::string line;
-  std::getline(file, line);  // step,time,status,...
+  CsvReader steps(RunLayout(run).steps());
+  const size_t step_column = steps.column("step"), status_column = steps.column("status");
   StepCounts counts;
-  while (std::getline(file, line)) {
-    const int step = std::atoi(line.c_str());
+  while (steps.next()) {
+    const int step = steps.integer(step_column);
     if (step == 0) continue;
     if (step > last_step) break;
     counts.last = step;
-    const auto has = [&](Status status) { return line.find("," + std::string(to_string(status)) + ",") != line.npos; };
-    if (!has(Status::converged) && !has(Status::round_off) && !has(Status::budget)) ++counts.unconverged;
+    const auto is = [&](Status status) { return steps.text(status_column) == to_string(status); };
+    if (!is(Status::converged) && !is(Status::round_off) && !is(Status::budget)) ++counts.unconverged;
   }
   return counts;
 }

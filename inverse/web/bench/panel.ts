@@ -19,6 +19,16 @@ const kHint = "Click the body to place an indenter, and drag on to press it in. 
 export const inMillimeters = (meters: number): string => `${short(1000 * meters, 3)} mm`;
 export const inNewtons = (force: number): string => `${short(force, 3)} N`;
 
+// Columns of the chart, over depths in millimeters. Equal depths get a tiny distance, because the chart needs ascending ones.
+export function columnsOf(curve: [depth: number, force: number][], readings: Bench["readings"]) {
+  const now = curve.map(([depth, force]) => ({ depth: 1000 * depth, live: force as number | null, kept: null as number | null }));
+  const before = readings.map(({ depth, force }) => ({ depth: 1000 * depth, live: null, kept: force }));
+  const rows = [...now, ...before].sort((a, b) => a.depth - b.depth);
+  let last = -Infinity;
+  const depths = rows.map(({ depth }) => (last = Math.max(depth, last + 1e-9)));
+  return { depths, live: rows.map(({ live }) => live), kept: rows.map(({ kept }) => kept) };
+}
+
 export class BenchPanel implements Panel {
   readonly name = "bench";
   readonly title = "Bench";
@@ -111,10 +121,8 @@ export class BenchPanel implements Panel {
   }
 
   private drawNow(): void {
-    const live = this.curve.sorted().map(([depth, force]) => [1000 * depth, force, null] as const);
-    const kept = (this.bench?.readings ?? []).map(({ depth, force }) => [1000 * depth, null, force] as const);
-    const rows = [...live, ...kept].sort((a, b) => a[0] - b[0]); // readings of equal depth stay apart
-    this.chart.show(rows.map(([depth]) => depth), [rows.map((row) => row[1]), rows.map((row) => row[2])]);
+    const { depths, live, kept } = columnsOf(this.curve.sorted(), this.bench?.readings ?? []);
+    this.chart.show(depths, [live, kept]);
   }
 
   private press(depth: number): void {

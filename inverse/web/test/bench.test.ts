@@ -5,7 +5,7 @@ import type { Lens } from "../../../web/src/view/lens";
 import type { Hit } from "../../../web/src/view/picking";
 import type { TouchedView } from "../../../web/src/view/viewTool";
 import { ForceCurve } from "../bench/curve";
-import { inMillimeters, inNewtons } from "../bench/panel";
+import { columnsOf, inMillimeters, inNewtons } from "../bench/panel";
 import { depthOf, inwardNormal, wayIn } from "../bench/pressing";
 import type { IndenterState } from "../bench/protocol";
 import { IndenterTool } from "../bench/tool";
@@ -68,4 +68,12 @@ test("a drag on the indenter presses it deeper", () => {
 test("readings keep one unit at any size", () => {
   assert.deepEqual([0.0000012, 0.0234, 1.5].map(inMillimeters), ["0.0012 mm", "23.4 mm", "1500 mm"]);
   assert.deepEqual([0.0123, 4.567, 12345].map(inNewtons), ["0.0123 N", "4.57 N", "12345 N"]);
+});
+
+test("readings of one depth stay apart in the chart", () => {
+  const reading = (force: number) => ({ name: "poke", radius: 0.01, depth: 0.006, force });
+  const { depths, live, kept } = columnsOf([[0, 0], [0.006, 3]], [reading(3), reading(4)]);
+  assert.ok(depths.every((depth, i) => i === 0 || depth > depths[i - 1]!));
+  assert.deepEqual(live, [0, 3, null, null]);
+  assert.deepEqual(kept, [null, null, 3, 4]);
 });

@@ -2,6 +2,7 @@
 import { Newest } from "../newest";
 import type { ChosenIteration, Page } from "../page";
 import type { IterationReply, IterationRow, SideName, StepRow } from "../protocol";
+import { Refusal } from "../source";
 import type { Store } from "../store";
 import { kUnknownStep } from "../stepFields";
 import { messageOf } from "../dom";
@@ -159,8 +160,8 @@ export class Chosen extends Emitter<Events> {
       this.take({ at, reply, why: "" });
     } catch (reason) {
       // A question that was interrupted is repeated after the next report of the program.
-      const why = messageOf(reason);
-      if (!why.startsWith("interrupted")) this.take({ at, reply: null, why });
+      const isInterrupted = reason instanceof Refusal && reason.isInterrupted;
+      if (!isInterrupted) this.take({ at, reply: null, why: messageOf(reason) });
       else if (this.asked === keyOf(at)) this.asked = "";
     }
     const now = performance.now();

@@ -37,7 +37,7 @@ async function pressIn(opened, depth, right = 0) {
   if (heard.state.a.tool) {
     await page.getByRole("button", { name: "Lift" }).click();
     const step = heard.state.a.step;
-    await until("no indenter", () => heard.state.a.tool === null && heard.state.a.step > step + 2);
+    await until("no indenter", () => heard.state.a.tool === null && (!heard.state.playing || heard.state.a.step > step + 2));
   }
   const [x, y] = await findBody(opened);
   await page.mouse.move(x + right, y);
