@@ -8,7 +8,7 @@ Experiment left_out_cases(const DataSet& data, const FitPlan& plan) {
   return subset(data.experiment, [&](const LoadCase& c) { return is_left_out(plan.left_out, c); });
 }
 
-HeldOut held_out_errors(const DataSet& data, const FitOutcome& outcome) {
+HeldOut compare_held_out(const DataSet& data, const FitOutcome& outcome) {
   const Experiment left_out = left_out_cases(data, outcome.plan);
   std::vector<CasePrediction> predictions;
   for (const CaseOutcome& c : outcome.cases) {

@@ -9,6 +9,6 @@ namespace aspic {
 Experiment left_out_cases(const DataSet& data, const FitPlan& plan);
 
 // Compares the predictions of all left-out cases with the measurements. Not ok without any.
-HeldOut held_out_errors(const DataSet& data, const FitOutcome& outcome);
+HeldOut compare_held_out(const DataSet& data, const FitOutcome& outcome);
 
 }  // namespace aspic

@@ -137,7 +137,7 @@ FitFigures figures_of(const DataSet& data, const FitOutcome& outcome, const std:
   FitFigures figures;
   std::error_code error;
   if (std::filesystem::exists(truth, error)) figures.judgments = judge(outcome.material, read_material(truth));
-  if (!left_out_cases(data, outcome.plan).cases.empty()) figures.left_out = held_out_errors(data, outcome);
+  if (!left_out_cases(data, outcome.plan).cases.empty()) figures.left_out = compare_held_out(data, outcome);
   return figures;
 }
 

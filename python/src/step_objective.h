@@ -18,7 +18,7 @@ class StepObjective : public Function {
   Array begin_statics(const py::object& q, const py::object& time);
   void set_pins_zero(std::span<double> d) const override { parts_->pins.set_zero(d); }
   void update_lagged(const py::object& q);
-  bool is_lagged() const { return parts_->E.is_lagged(); }
+  bool is_lagged() const { return parts_->E.terms().is_lagged(); }
   double time() const { return time_; }
 
  private:
