@@ -32,7 +32,7 @@ const Case kCases[] = {
     {"sliding disc", {IndenterShape::disc, IndenterContact::sliding, 0.2, 50}, kFlatTouch, kFlatPose},
 };
 std::unique_ptr<Probe> probe(const Case& c) {
-  auto V = make_probe(box_mesh(), surface(), c.indenter, c.touch);
+  auto V = make_probe(box_mesh(), box_surface(), c.indenter, c.touch);
   V->set_pose(c.pose);
   V->bind(box_pattern());
   return V;
@@ -41,7 +41,7 @@ std::unique_ptr<Probe> probe(const Case& c) {
 TEST(Probe, DerivativesMatchDifferences) {
   for (const Case& c : kCases) {
     const auto V = probe(c);
-    const std::vector<double> x = shaken(0.02);
+    const std::vector<double> x = shaken_box(0.02);
     ASSERT_GT(V->touched_points(x), 10) << c.name;
     const DerivativeReport report =
         check_derivatives(differentiable(ActiveTerm(*V), box_pattern()), x, {.length = 0.02});
@@ -53,7 +53,7 @@ TEST(Probe, DerivativesMatchDifferences) {
 TEST(Probe, WrenchBalancesForcesOnBody) {
   for (const Case& c : kCases) {
     const auto V = probe(c);
-    const std::vector<double> x = shaken(0.02);
+    const std::vector<double> x = shaken_box(0.02);
     std::vector<double> g(x.size());
     V->add_gradient(x, 1, g);
     Vec3d force{}, torque{};
@@ -73,7 +73,7 @@ TEST(Probe, WrenchBalancesForcesOnBody) {
 TEST(Probe, WrenchProductsAreDerivativesAndTransposes) {
   for (const Case& c : kCases) {
     const auto V = probe(c);
-    const std::vector<double> x = shaken(0.02), dx = shaken(0.1, 5);
+    const std::vector<double> x = shaken_box(0.02), dx = shaken_box(0.1, 5);
     const Wrench product = V->wrench_product(x, dx);
     const double h = 1e-6;
     std::vector<double> forth = x, back = x;
@@ -113,7 +113,7 @@ TEST(Probe, IsInvariantUnderRigidMotions) {
   const Mat3d quarter_turn = {0, 1, 0, -1, 0, 0, 0, 0, 1};
   for (const Case& c : {kCases[2], kCases[3]}) {
     const auto V = probe(c);
-    const std::vector<double> x = shaken(0.02);
+    const std::vector<double> x = shaken_box(0.02);
     std::vector<double> turned(x.size());
     for (size_t i = 0; i < x.size(); i += 3)
       turned[i] = 4 - x[i + 1], turned[i + 1] = x[i], turned[i + 2] = x[i + 2] - 1;
@@ -185,7 +185,7 @@ TEST(Probe, EnergyIsWorkOfIndentation) {
 }
 
 TEST(Probe, ModifiedHessiansArePositiveSemidefinite) {
-  const std::vector<double> x = shaken(0.02);
+  const std::vector<double> x = shaken_box(0.02);
   for (const Case& c : {kCases[2], kCases[3]}) {
     const auto V = probe(c);
     for (const Definiteness kind : {Definiteness::exact, Definiteness::clamped, Definiteness::absolute}) {
@@ -227,14 +227,14 @@ TEST(Probe, RejectsInvalidIndenters) {
   EXPECT_THROW(probe(c), InvalidInput);
   for (Indenter bad : {Indenter{.radius = 0, .stiffness = 1}, Indenter{.radius = 0.1, .stiffness = 0},
                        Indenter{.radius = NAN, .stiffness = 1}, Indenter{.radius = 1e-3, .stiffness = 1}})
-    EXPECT_THROW(make_probe(box_mesh(), surface(), bad, kTouch), InvalidInput);
+    EXPECT_THROW(make_probe(box_mesh(), box_surface(), bad, kTouch), InvalidInput);
   IndenterPose without_axis = kTouch;
   without_axis.axis = {};
-  EXPECT_THROW(make_probe(box_mesh(), surface(), kCases[0].indenter, without_axis), InvalidInput);
+  EXPECT_THROW(make_probe(box_mesh(), box_surface(), kCases[0].indenter, without_axis), InvalidInput);
 }
 
 TEST(Probe, RimGradientMatchesDifferences) {
-  const std::vector<double> x = shaken(0.02);
+  const std::vector<double> x = shaken_box(0.02);
   for (const double rim : {0.01, 0.05}) {
     std::vector<double> g(x.size()), difference(x.size());
     Wrench wrench;

@@ -13,7 +13,7 @@ namespace {
 
 std::vector<Triangle> top() {
   std::vector<Triangle> triangles;
-  for (const Triangle& t : surface())
+  for (const Triangle& t : box_surface())
     if (std::all_of(t.begin(), t.end(), [](int v) { return box_mesh().rest[v][2] > 0.6 - 1e-9; }))
       triangles.push_back(t);
   return triangles;
@@ -23,7 +23,7 @@ TEST(Pressure, DerivativesMatchDifferences) {
   for (const double p : {3.0, -3.0}) {
     const auto V = make_pressure(box_mesh(), linear_faces(top()), p);
     V->bind(box_pattern());
-    const std::vector<double> x = shaken(0.05);
+    const std::vector<double> x = shaken_box(0.05);
     const DerivativeReport report =
         check_derivatives(differentiable(ActiveTerm(*V), box_pattern()), x, {.length = 0.3});
     EXPECT_TRUE(report.gradient.passed) << report.gradient.smallest_error;
@@ -32,8 +32,8 @@ TEST(Pressure, DerivativesMatchDifferences) {
 }
 
 TEST(Pressure, HasNoResultantOnClosedSurface) {
-  const auto V = make_pressure(box_mesh(), linear_faces(surface()), 3);
-  const std::vector<double> x = shaken(0.05);
+  const auto V = make_pressure(box_mesh(), linear_faces(box_surface()), 3);
+  const std::vector<double> x = shaken_box(0.05);
   double volume = 0;  // volume of the deformed body
   for (const Tet& tet : box_mesh().tets) {
     const auto at = [&](int k) { return Vec3d{{x[3 * tet[k]], x[3 * tet[k] + 1], x[3 * tet[k] + 2]}}; };
@@ -66,7 +66,7 @@ TEST(Pressure, IsPressureTimesAreaOnMovingPatch) {
 
 TEST(Pressure, FollowsSurfaceInsidePatch) {
   const auto V = make_pressure(box_mesh(), linear_faces(top()), 3);
-  const std::vector<double> x = shaken(0.05);
+  const std::vector<double> x = shaken_box(0.05);
   const auto at = [&](int v) { return Vec3d{{x[3 * v], x[3 * v + 1], x[3 * v + 2]}}; };
   std::vector<double> g(x.size());
   V->add_gradient(x, -1, g);
@@ -87,13 +87,13 @@ TEST(Pressure, FollowsSurfaceInsidePatch) {
 TEST(Pressure, ModifiedHessianIsPositiveSemidefinite) {
   const auto V = make_pressure(box_mesh(), linear_faces(top()), 3);
   V->bind(box_pattern());
-  const std::vector<double> x = shaken(0.05);
+  const std::vector<double> x = shaken_box(0.05);
   for (const Definiteness kind : {Definiteness::exact, Definiteness::clamped, Definiteness::absolute}) {
     BlockSparse H(box_pattern());
     V->add_hessian(x, 1, {kind}, H);
     double least = 0;
     for (unsigned seed = 0; seed < 100; ++seed) {
-      std::vector<double> d = shaken(1, seed), Hd(x.size());
+      std::vector<double> d = shaken_box(1, seed), Hd(x.size());
       H.multiply(d, Hd);
       least = std::min(least, std::inner_product(d.begin(), d.end(), Hd.begin(), 0.0));
     }

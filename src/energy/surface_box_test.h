@@ -14,7 +14,7 @@ inline const TetMesh& box_mesh() {
   return box;
 }
 
-inline const std::vector<Triangle>& surface() {
+inline const std::vector<Triangle>& box_surface() {
   static const std::vector<Triangle> triangles = boundary_triangles(box_mesh(), 0, box_mesh().tet_count());
   return triangles;
 }
@@ -36,7 +36,7 @@ inline std::vector<double> box_at_rest() {
   return x;
 }
 
-inline std::vector<double> shaken(double amount, unsigned seed = 3) {
+inline std::vector<double> shaken_box(double amount, unsigned seed = 3) {
   std::mt19937 random(seed);
   std::uniform_real_distribution<double> uniform(-amount, amount);
   std::vector<double> x = box_at_rest();
