@@ -56,10 +56,11 @@ class Hostile(unittest.TestCase):
         shutil.rmtree(self.parent)
 
     def open_to_all(self):
-        """Copies the program to a folder that every user can execute from, unlike root's home."""
+        """Copies the programs to a folder that every user can execute from, unlike root's home."""
         program = self.parent / "aspic"
         if not program.exists():
-            shutil.copy(ASPIC, program)
+            for name in ("aspic", "aspic-fit") if FITS else ("aspic",):
+                shutil.copy(pathlib.Path(ASPIC).with_name(name), self.parent)
         return program
 
     def aspic(self, *arguments, code=None, user=0, memory=0):
