@@ -6,6 +6,7 @@
 
 #include "bench/bench_test.h"
 #include "capture/data_set.h"
+#include "io/external_program.h"
 
 namespace aspic::bench {
 namespace {
@@ -73,7 +74,7 @@ class InFolder {
 
  private:
   fs::path before_ = fs::current_path();
-  TestFolder folder_;
+  TemporaryFolder folder_;  // TestFolder is that of the scenes
 };
 
 TEST(Bench, KeepsWhatTheGaugeShows) {
