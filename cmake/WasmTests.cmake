@@ -15,7 +15,7 @@ foreach(module math linalg optimize energy mesh contact dynamics engine)
   endif()
   add_executable(test_${module} EXCLUDE_FROM_ALL ${tests})
   set_target_properties(test_${module} PROPERTIES UNITY_BUILD OFF)
-  target_link_libraries(test_${module} PRIVATE aspic_capture aspic_build Eigen3::Eigen aspic_gtest)
+  target_link_libraries(test_${module} PRIVATE aspic aspic_build Eigen3::Eigen aspic_gtest)
   target_include_directories(test_${module} PRIVATE ${PROJECT_SOURCE_DIR}/src ${PROJECT_SOURCE_DIR}/tests)
   target_compile_options(test_${module} PRIVATE -O1)
   target_link_options(test_${module} PRIVATE -O1 -sENVIRONMENT=node -sNODERAWFS=1 -sEXIT_RUNTIME=1 -sTOTAL_STACK=4MB
