@@ -31,7 +31,7 @@ export class FitForm {
   follow(bench: Bench): void {
     this.readings = bench.readings.length;
     this.show();
-    if (!this.isPolling) void this.poll();
+    if (this.readings > 0 && !this.isPolling) void this.poll(); // a page that only watches sends nothing
   }
 
   private async poll(): Promise<void> {
