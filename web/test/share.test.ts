@@ -2,6 +2,21 @@ import assert from "node:assert/strict";
 import { test } from "node:test";
 import { linkText, pageText, workspaceOfLink } from "../src/share";
 import type { Workspace } from "../src/workspace";
+import { Duplex } from "node:stream";
+import { createDeflateRaw, createInflateRaw } from "node:zlib";
+
+// Node.js 18, that of Debian 12, lacks this format of browsers.
+try {
+  new CompressionStream("deflate-raw");
+} catch {
+  const streams = globalThis as unknown as Record<string, unknown>;
+  streams.CompressionStream = function () {
+    return Duplex.toWeb(createDeflateRaw());
+  };
+  streams.DecompressionStream = function () {
+    return Duplex.toWeb(createInflateRaw());
+  };
+}
 
 const kWorkspace: Workspace = {
   aspic_workspace: 1,
