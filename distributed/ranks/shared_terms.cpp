@@ -49,30 +49,9 @@ class SharedElasticity : public TetElasticity {
     counted_->set_parameters(parameters.first(counted_tets()));
     halo_->set_parameters(parameters.subspan(counted_tets()));
   }
-  void add_parameter_force(Positions x, std::span<const double> change, double scale,
-                           std::span<double> g) const override {
-    counted_->add_parameter_force(x, change.first(counted_entries()), scale, g);
-    halo_->add_parameter_force(x, change.subspan(counted_entries()), scale, g);
-  }
-  void add_parameter_gradient(Positions x, std::span<const double> w, double scale,
-                              std::span<double> gradient) const override {
-    counted_->add_parameter_gradient(x, w, scale, gradient.first(counted_entries()));
-    halo_->add_parameter_gradient(x, w, scale, gradient.subspan(counted_entries()));
-  }
-  void add_hessian_derivatives(Positions x, std::span<const double> u, std::span<const double> w,
-                               Definiteness definiteness, const HessianDerivatives& out) const override {
-    HessianDerivatives counted = out, halo = out;
-    if (!out.parameters.empty()) {
-      counted.parameters = out.parameters.first(counted_entries());
-      halo.parameters = out.parameters.subspan(counted_entries());
-    }
-    counted_->add_hessian_derivatives(x, u, w, definiteness, counted);
-    halo_->add_hessian_derivatives(x, u, w, definiteness, halo);
-  }
 
  private:
   size_t counted_tets() const { return counted_->parameters().size(); }
-  size_t counted_entries() const { return counted_tets() * counted_->parameter_count(); }
 
   std::unique_ptr<TetElasticity> counted_, halo_;
   Share share_;
