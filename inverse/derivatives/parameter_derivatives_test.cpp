@@ -2,9 +2,9 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <random>
 
 #include "derivatives/parameter_derivatives.h"
+#include "fit/taylor_test.h"
 #include "material/list.h"
 #include "math/vectors.h"
 #include "mesh/generators.h"
@@ -12,18 +12,7 @@
 namespace aspic {
 namespace {
 
-class Numbers {
- public:
-  std::vector<double> operator()(size_t count) {
-    std::uniform_real_distribution<double> uniform(-1, 1);
-    std::vector<double> numbers(count);
-    for (double& x : numbers) x = uniform(random_);
-    return numbers;
-  }
-
- private:
-  std::mt19937 random_{5};
-};
+using taylor::Numbers;
 
 double largest(const std::vector<double>& a) {
   double size = 0;
