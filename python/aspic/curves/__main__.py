@@ -30,7 +30,10 @@ def _run(given):
     if given.table:
         print(markdown(fits))
     if given.plot:
-        plot(list(fits.values()), pathlib.Path(given.files[0]).stem).figure.savefig(given.plot)
+        import matplotlib
+        figure = plot(list(fits.values()), pathlib.Path(given.files[0]).stem).figure
+        with matplotlib.rc_context({"svg.fonttype": "none"}):  # letters stay text
+            figure.savefig(given.plot)
     return all(fit.converged for fit in fits.values())
 
 
