@@ -12,9 +12,14 @@
 Units are SI. Arrays of vertices have the shape (n, 3) and the order of the mesh; results are copies. Bad input raises
 InvalidInput, a ValueError of one line; the report of a step states whether it converged.
 """
+import weakref
+
 from ._cpu import require_processor
 
 require_processor()
+# Registers the removal of temporary folders at exit before _aspic registers its hook, which therefore runs first: other
+# threads stop computing before their files go.
+weakref.finalize(require_processor, bool).detach()
 
 from ._aspic import (  # noqa: E402
     Hessian,
