@@ -18,7 +18,6 @@ install(FILES ${CMAKE_BINARY_DIR}/aspic-config.cmake ${CMAKE_BINARY_DIR}/aspic-c
               cmake/AspicDependencies.cmake DESTINATION ${package_dir})
 # Folder in which `aspic lecture` finds its scenes, and the bunny that ./run creates.
 install(DIRECTORY scenes DESTINATION ${CMAKE_INSTALL_DATADIR}/aspic)
-install(DIRECTORY assets DESTINATION ${CMAKE_INSTALL_DATADIR}/aspic OPTIONAL FILES_MATCHING PATTERN "bunny.*")
 install(FILES LICENSE DESTINATION ${CMAKE_INSTALL_DOCDIR})
 
 # The packages of this repository (distributed, inverse) find the core in its build folder: -Daspic_DIR=.../package.

@@ -1,6 +1,6 @@
 # Benchmarks: they run, give the known results, and take the known amount of work. Times are not tested.
 if(TARGET bench_common)
-  add_aspic_tests(test_bench ${CMAKE_SOURCE_DIR}/bench/counts_test.cpp)
+  add_aspic_tests(test_bench ${CMAKE_SOURCE_DIR}/tests/bench/counts_test.cpp)
   target_link_libraries(test_bench PRIVATE bench_common)
   target_compile_definitions(test_bench PRIVATE ASPIC_SOURCE_DIR="${CMAKE_SOURCE_DIR}")
 
@@ -19,7 +19,7 @@ endif()
 find_package(Python3 COMPONENTS Interpreter)
 if(Python3_FOUND)
   add_test(NAME bench.compare COMMAND ${Python3_EXECUTABLE} ${CMAKE_CURRENT_LIST_DIR}/compare_test.py)
-  add_test(NAME bench.contact COMMAND ${Python3_EXECUTABLE} ${CMAKE_SOURCE_DIR}/bench/contact/run.py
+  add_test(NAME bench.contact COMMAND ${Python3_EXECUTABLE} ${CMAKE_SOURCE_DIR}/tests/bench/contact/run.py
                                       chute knives funnel rollers boxes --steps 1)
   set_tests_properties(bench.contact PROPERTIES ENVIRONMENT "ASPIC=$<TARGET_FILE:aspic_cli>" PASS_REGULAR_EXPRESSION
                                                 "boxes +12500 +1 +1 ")

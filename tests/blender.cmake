@@ -2,7 +2,7 @@
 find_program(ASPIC_BLENDER blender)
 mark_as_advanced(ASPIC_BLENDER)
 if(ASPIC_BLENDER AND TARGET aspic-mesh AND TARGET aspic_cli)
-  file(STRINGS ${CMAKE_SOURCE_DIR}/blender/tests/scenarios.py scenarios REGEX "^def [a-z_]+\\(\\):$")
+  file(STRINGS ${CMAKE_SOURCE_DIR}/bindings/blender/tests/scenarios.py scenarios REGEX "^def [a-z_]+\\(\\):$")
   foreach(line ${scenarios})
     string(REGEX REPLACE "^def ([a-z_]+).*" "\\1" scenario ${line})
     add_test(NAME blender.${scenario} COMMAND ${CMAKE_SOURCE_DIR}/tools/blender_test ${scenario})

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""The statistics of bench/compare.py on synthetic times, and the command with synthetic programs."""
+"""The statistics of tests/bench/compare.py on synthetic times, and the command with synthetic programs."""
 import importlib.util
 import math
 import pathlib

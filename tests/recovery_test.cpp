@@ -106,7 +106,7 @@ TEST(Recovery, HeldBoxRecoversFromDegenerateStates) {
 
 // From another minimum than the rest shape no path leads out without flat tets: its tets wind twice around an edge.
 TEST(Recovery, HeldBunnyRecoversOrStaysWoundAroundEdge) {
-  const std::string mesh = std::string(ASPIC_SOURCE_DIR) + "/assets/bunny.mesh";
+  const std::string mesh = std::string(ASPIC_SOURCE_DIR) + "/scenes/bunny.mesh";
   const TestFolder folder;
   const std::string bunny = "mesh = \"" + mesh + "\"\nscale = 0.1";
   for (const int seed : {1, 2}) {

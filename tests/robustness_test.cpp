@@ -8,7 +8,7 @@
 #include "material/registry.h"
 #include "mesh/doctor.h"
 #include "mesh/generators.h"
-#include "scene/explanation.h"
+#include "results/explanation.h"
 #include "scene/scene_cases_test.h"
 
 namespace aspic {
@@ -122,7 +122,7 @@ TEST(Robustness, ShapesRecoverFromFlatMirroredAndRandomStates) {
 }
 
 TEST(Robustness, FlatBunnyRecovers) {
-  const std::string mesh = std::string(ASPIC_SOURCE_DIR) + "/assets/bunny.mesh";
+  const std::string mesh = std::string(ASPIC_SOURCE_DIR) + "/scenes/bunny.mesh";
   const TestFolder folder;
   Scene scene = load_scene(
       folder.write("s.toml", "gravity = [0, 0, 0]\n[time]\nstep = 0.5\nduration = 10\n[[body]]\nmesh = \"" + mesh +

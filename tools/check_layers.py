@@ -10,30 +10,30 @@ WEB = {  # folder of web/src: the folders it may import besides the files direct
     "view": "",
 }
 LIBRARIES = {  # first part of a third-party header: the files that may include it
-    "Eigen": r"(src/linalg|inverse/fit)/.*\.cpp|bench/naive.*|.*_test\.(cpp|h)",
+    "Eigen": r"(src/linalg|inverse/(model|estimate))/.*\.cpp|tests/bench/naive.*|.*_test\.(cpp|h)",
     "Spectra": r"src/linalg/.*\.cpp",
     "metis.h": r"src/linalg/.*\.cpp",
     "muParser.h": r"src/scene/expression\.cpp",
     "toml++": r"src/scene/.*\.cpp",
-    "nlohmann": r"src/scene/.*\.cpp|apps/.*|inverse/commands/.*|tests/.*|.*_test\.cpp",
+    "nlohmann": r"src/(scene|results)/.*\.cpp|apps/.*|inverse/commands/.*|tests/.*|.*_test\.cpp",
     "expat.h": r"src/io/.*\.cpp",
-    "zlib.h": r"src/io/.*\.cpp|.*_test\.h|fuzz/.*",
+    "zlib.h": r"src/io/.*\.cpp|.*_test\.h|tests/fuzz/.*",
     "emscripten.h": r"apps/engine/.*",
     "boost": r"apps/viewer/server\w*\.(h|cpp)|.*_test\.cpp",
     "CGAL": r"apps/mesh/.*",
-    "CLI": r"apps/aspic/.*|inverse/commands/.*|apps/mesh/.*|distributed/program/.*|bench/.*",
+    "CLI": r"apps/aspic/.*|inverse/commands/.*|apps/mesh/.*|distributed/program/.*|tests/bench/.*",
     "mpi.h": r"distributed/ranks/.*\.cpp",
     "petscksp.h": r"distributed/ranks/petsc.*",
     "fmt": r"apps/.*|inverse/(bench|commands|page)/.*|distributed/program/.*",
     "spdlog": r"apps/.*",
-    "cholmod.h": r".*_test\.cpp|bench/.*",
-    "pybind11": r"python/src/.*",
+    "cholmod.h": r".*_test\.cpp|tests/bench/.*",
+    "pybind11": r"bindings/python/src/.*",
     "gtest": r".*_test\.cpp|(distributed/)?tests/.*|.*_test\.h",
     "gmock": r".*_test\.cpp|tests/.*",
-    "benchmark": r"bench/.*",
+    "benchmark": r"tests/bench/.*",
 }
 
-PARTS = ("src", "inverse", "distributed", "verification", "apps", "python")
+PARTS = ("src", "inverse", "distributed", "apps", "bindings/python", "tests/verification")
 PARTLY_MISSING = r"std::(ranges::|bit_cast\b|to_chars\(|from_chars\()"  # in the library of the WebAssembly build
 
 root = pathlib.Path(__file__).resolve().parent.parent
@@ -56,14 +56,13 @@ def layers():
 def module_of(name):
     """Returns the module of a file; none for tests, examples and benchmarks, which may include everything."""
     parts = name.split("/")
-    if name.endswith(("_test.cpp", "_test.h")) or "tests" in parts or parts[0] not in PARTS:
+    if name.endswith(("_test.cpp", "_test.h")) or "tests" in parts[1:] or not name.startswith(PARTS):
         return None
-    module = parts[0] if parts[0] in ("verification", "python") else parts[1]
-    return {"mesh": "mesher"}.get(module, module) if parts[0] == "apps" else module
+    return "mesher" if name.startswith("apps/mesh/") else parts[1]
 
 
 def check_sources(may_include):
-    for folder in (*PARTS, "bench", "tests", "examples", "fuzz"):
+    for folder in ("src", "inverse", "distributed", "apps", "bindings", "tests", "examples"):
         for path in sorted(p for p in (root / folder).rglob("*") if p.suffix in (".h", ".cpp")):
             name = path.relative_to(root).as_posix()
             module = module_of(name)

@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
-"""Fails if the README of a folder of code names a file that does not exist.
+"""Fails if a folder lacks a README, if one is longer than 15 lines, or if a text names a file that does not exist.
 
-Lowercase names in backticks are files: of the folder, with or without their ending, or paths from the top; `*` is any
-text. Functions end with ().
+Lowercase names in backticks of a README are files: of the folder, with or without their ending, or paths from the top; `*` is
+any text. Functions end with (). In other pages, links and paths from the top are files.
 """
 import fnmatch
 import pathlib
@@ -10,14 +10,18 @@ import re
 import subprocess
 import sys
 
-CODE = ("apps/", "bench/", "distributed/", "inverse/", "src/", "verification/", "web/")
+DIVIDED = ("apps", "bindings", "distributed", "inverse", "src")  # each of their folders has a README
+LINES = 15
+OLD = r"at [0-9a-f]{8}\b"  # a file of an earlier commit
+NEW = "docs/extending.md"  # names files that its reader makes
 OTHERS = {"double", "newton_cg", "residual_threshold"}  # a type, a method, a column
-WRITTEN = {"body*.mesh", "capture.toml", "obstacle*.obj", "parameters.json", "scene.toml", "steps.csv"}  # by users or programs
+WRITTEN = {"./run", "./test", "body*.mesh", "bunny.obj", "scenes/bunny.obj", "capture.toml", "obstacle*.obj", "parameters.json", "scene.toml", "steps.csv"}  # by users or programs
 TARGETS = r"\w*aspic\w*|bench_\w+"
 
 root = pathlib.Path(__file__).resolve().parent.parent
 tracked = [pathlib.PurePosixPath(p) for p in subprocess.check_output(["git", "ls-files"], cwd=root, text=True).split()]
 folders = {folder for path in tracked for folder in path.parents}
+top = {path.parts[0] for path in tracked if len(path.parts) > 1 and not path.parts[0].startswith(".")}
 
 
 def names_in(folder):
@@ -31,16 +35,46 @@ def names_in(folder):
     return names
 
 
+def missing_readmes():
+    wanted = {*top} | {str(folder) for folder in folders if len(folder.parts) == 2 and folder.parts[0] in DIVIDED}
+    for folder in sorted(wanted - {str(path.parent) for path in tracked if path.name == "README.md"}):
+        yield f"{folder}: a README.md is missing"
+
+
+def faults_of_readme(readme):
+    if str(readme) == "README.md" or readme.is_relative_to("examples/data"):
+        return
+    known = names_in(readme.parent)
+    lines = (root / readme).read_text().splitlines()
+    if len(lines) > LINES:
+        yield f"{readme}: {len(lines)} lines; at most {LINES}"
+    for number, line in enumerate(lines, 1):
+        for name in re.findall(r"`([a-z0-9_*./]+)`", line):
+            if name in OTHERS | WRITTEN or re.fullmatch(TARGETS, name) or fnmatch.filter(known, name.rstrip("/")):
+                continue
+            yield f"{readme}:{number}: `{name}` is no file; correct the name, or write `{name}()` for a function"
+
+
+def faults_of_page(page):
+    """Links, and paths from the top in backticks or commands; what builds and runs write is not in the tree."""
+    files = {str(path) for path in folders.union(tracked)}
+    for number, line in enumerate((root / page).read_text().splitlines(), 1):
+        for name in re.findall(rf"(?<![\w./-])(?:{'|'.join(sorted(top))})/[a-z0-9_*./-]*[a-z0-9_*](?![A-Z/])", line):
+            patterns = [name, name + ".*", str(page.parent / name)]
+            if not any(fnmatch.filter(files, pattern) for pattern in patterns) and not re.search(OLD, line) and name not in WRITTEN:
+                yield f"{page}:{number}: {name} is no file"
+        for link in re.findall(r"\]\(([^)#:\s]+)(?:#[^)]*)?\)", line):
+            if not (root / page.parent / link).exists():
+                yield f"{page}:{number}: the link {link} leads nowhere"
+
+
 def faults():
-    for readme in tracked:
-        if readme.name != "README.md" or not str(readme).startswith(CODE):
-            continue
-        known = names_in(readme.parent)
-        for number, line in enumerate((root / readme).read_text().split("\n"), 1):
-            for name in re.findall(r"`([a-z0-9_*./]+)`", line):
-                if name in OTHERS | WRITTEN or re.fullmatch(TARGETS, name) or fnmatch.filter(known, name.rstrip("/")):
-                    continue
-                yield f"{readme}:{number}: `{name}` is no file; correct the name, or write `{name}()` for a function"
+    yield from missing_readmes()
+    for page in tracked:
+        if page.suffix == ".md" and page.name != "CHANGELOG.md" and not page.is_relative_to("docs/adr") and str(page) != NEW:
+            if page.name == "README.md":
+                yield from faults_of_readme(page)
+            yield from faults_of_page(page)
 
 
 found = list(faults())

@@ -170,12 +170,12 @@ run_tests() {
   return "$(cat "$tests_log.status")"
 }
 
-# The surface of the Stanford bunny: npm package `bunny` (public domain). The default scene's mesh, assets/bunny.mesh, was made
+# The surface of the Stanford bunny: npm package `bunny` (public domain). The default scene's mesh, scenes/bunny.mesh, was made
 # from it and is part of the repository.
 bunny_package=bunny@1.0.1
 fetch_bunny() {
-  assets=$root/assets
-  [ ! -s "$assets/bunny.obj" ] || return 0
+  scenes=$root/scenes
+  [ ! -s "$scenes/bunny.obj" ] || return 0
   need "" "nodejs:node npm"
   say "Fetching the surface of the bunny: npm package $bunny_package ..."
   folder=$(mktemp -d)
@@ -185,9 +185,9 @@ fetch_bunny() {
 Only what fills this surface with tets needs it."
   fi
   tar -xzf "$folder"/bunny-*.tgz -C "$folder"
-  awk -f "$root/tools/bunny_to_obj.awk" "$folder/package/index.js" >"$assets/new.obj"
+  awk -f "$root/tools/bunny_to_obj.awk" "$folder/package/index.js" >"$scenes/new.obj"
   rm -rf "$folder"
-  mv "$assets/new.obj" "$assets/bunny.obj"
+  mv "$assets/new.obj" "$scenes/bunny.obj"
 }
 
 # Programs from npm that read our results back in the tests.
@@ -260,7 +260,7 @@ fetch_shapes() {
   mkdir -p "$shapes_dir"
   if [ ! -s "$shapes_dir/bunny.obj" ]; then
     (fetch_bunny) || say "The benchmark continues without the bunny."
-    [ ! -s "$root/assets/bunny.obj" ] || cp "$root/assets/bunny.obj" "$shapes_dir/"
+    [ ! -s "$root/scenes/bunny.obj" ] || cp "$root/scenes/bunny.obj" "$shapes_dir/"
   fi
   [ -s "$shapes_dir/liver.inr.gz" ] || fetch_cgal_shapes ||
     say "warning: the package libcgal-demo could not be fetched; the benchmark runs without its shapes"

@@ -21,8 +21,11 @@ function shippedFiles() {
   for (const folder of kFolders)
     for (const name of readdirSync(join(root, folder)))
       if (name.endsWith(".toml")) files[`/${folder}/${name}`] = readFileSync(join(root, folder, name), "utf8");
-  for (const text of Object.values({ ...files }))
-    for (const [, path] of text.matchAll(/^[^#\n]*"(?:\.\.\/)+(assets\/[\w.]+)"/gm)) files[`/${path}`] = readFileSync(join(root, path), "utf8");
+  for (const [scene, text] of Object.entries({ ...files }))
+    for (const [, mesh] of text.matchAll(/^[^#\n]*"([\w.]+\.mesh)"/gm)) {
+      const path = `${dirname(scene)}/${mesh}`;
+      files[path] = readFileSync(join(root, path), "utf8");
+    }
   return files;
 }
 

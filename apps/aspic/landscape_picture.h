@@ -1,7 +1,7 @@
 // Pictures of E around an iteration of a minimization.
 #pragma once
 #include "aspic/plot.h"
-#include "scene/trace.h"
+#include "results/trace.h"
 
 namespace aspic::cli {
 

@@ -17,7 +17,7 @@
 #include "optimize/solver.h"
 #include "optimize/test_functions.h"
 #include "scene/expression_function.h"
-#include "scene/trace.h"
+#include "results/trace.h"
 
 namespace aspic::cli {
 namespace {

@@ -15,7 +15,7 @@
 #include "base/stop_token.h"
 #include "io/csv.h"
 #include "mesh/box.h"
-#include "scene/run_directory.h"
+#include "results/run_directory.h"
 #include "scene/scene.h"
 
 namespace aspic::cli {

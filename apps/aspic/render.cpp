@@ -14,7 +14,7 @@
 #include "base/error.h"
 #include "base/number_chars.h"
 #include "io/atomic_file.h"
-#include "scene/run_directory.h"
+#include "results/run_directory.h"
 #include "viewer/recording.h"
 
 namespace aspic::cli {

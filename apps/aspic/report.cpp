@@ -12,8 +12,8 @@
 #include "aspic/run_report.h"
 #include "base/error.h"
 #include "io/atomic_file.h"
-#include "scene/run_directory.h"
-#include "scene/run_directory_layout.h"
+#include "results/run_directory.h"
+#include "results/run_directory_layout.h"
 
 namespace aspic::cli {
 namespace {

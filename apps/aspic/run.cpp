@@ -18,11 +18,11 @@
 #include "base/printable.h"
 #include "base/stop_token.h"
 #include "dynamics/state.h"
-#include "scene/explanation.h"
-#include "scene/run_directory.h"
-#include "scene/run_directory_layout.h"
+#include "results/explanation.h"
+#include "results/run_directory.h"
+#include "results/run_directory_layout.h"
 #include "scene/scene.h"
-#include "scene/trace.h"
+#include "results/trace.h"
 
 namespace aspic::cli {
 namespace {

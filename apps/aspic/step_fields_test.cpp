@@ -11,8 +11,8 @@
 #include "io/csv_reader.h"
 #include "io/folder_test.h"
 #include "io/vtu.h"
-#include "scene/run_directory.h"
-#include "scene/run_directory_layout.h"
+#include "results/run_directory.h"
+#include "results/run_directory_layout.h"
 #include "viewer/run_tables.h"
 
 namespace aspic {

@@ -1,7 +1,7 @@
 #pragma once
 #include <string>
 
-#include "scene/explanation.h"
+#include "results/explanation.h"
 
 namespace aspic::cli {
 

@@ -17,7 +17,7 @@
 #include "base/parallel.h"
 #include "io/child_process.h"
 #include "io/external_program.h"
-#include "scene/run_directory.h"
+#include "results/run_directory.h"
 #include "viewer/page.h"
 #include "viewer/recording.h"
 #include "viewer/server.h"

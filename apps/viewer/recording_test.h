@@ -14,8 +14,8 @@
 #include "io/base64.h"
 #include "io/folder_test.h"
 #include "io/gzip.h"
-#include "scene/run_directory.h"
-#include "scene/trace.h"
+#include "results/run_directory.h"
+#include "results/trace.h"
 #include "viewer/arguments.h"
 #include "viewer/recording.h"
 

@@ -3,7 +3,7 @@
 #include <memory>
 #include <vector>
 
-#include "scene/run_directory_layout.h"
+#include "results/run_directory_layout.h"
 #include "scene/scene.h"
 
 namespace aspic::viewer {

@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "scene/run_directory_layout.h"
+#include "results/run_directory_layout.h"
 #include "viewer/step_rows.h"
 
 namespace aspic::viewer {

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "dynamics/simulation.h"
-#include "scene/explanation.h"
+#include "results/explanation.h"
 #include "viewer/arguments.h"
 
 namespace aspic::viewer {

@@ -18,9 +18,9 @@
 #include "ranks/rank_checkpoint.h"
 #include "ranks/rank_frames.h"
 #include "ranks/traffic.h"
-#include "scene/run_directory_tables.h"
-#include "scene/run_folder.h"
-#include "scene/run_lock.h"
+#include "results/run_directory_tables.h"
+#include "results/run_folder.h"
+#include "results/run_lock.h"
 
 namespace aspic::distributed {
 namespace {

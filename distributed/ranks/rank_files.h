@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "ranks/distributed_simulation.h"
-#include "scene/run_directory.h"
+#include "results/run_directory.h"
 
 namespace aspic::distributed {
 

@@ -5,7 +5,7 @@
 
 #include "io/vtu.h"
 #include "ranks/exchange.h"
-#include "scene/run_directory_frame.h"
+#include "results/run_directory_frame.h"
 
 namespace aspic::distributed {
 namespace {

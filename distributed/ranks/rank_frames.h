@@ -3,7 +3,7 @@
 #include <filesystem>
 
 #include "ranks/distributed_simulation.h"
-#include "scene/run_directory_layout.h"
+#include "results/run_directory_layout.h"
 
 namespace aspic::distributed {
 

@@ -8,7 +8,7 @@
 #include "base/error.h"
 #include "bench/bench.h"
 #include "bench/indenter_place.h"
-#include "capture/synthesis.h"
+#include "data/synthesis.h"
 #include "io/atomic_file.h"
 #include "viewer/playback.h"
 #include "viewer/saved_scene.h"

@@ -6,7 +6,7 @@
 
 #include "bench/fit_process.h"
 #include "bench/indenter_tool.h"
-#include "fit/misfit.h"
+#include "model/misfit.h"
 #include "viewer/stage.h"
 
 namespace aspic::bench {

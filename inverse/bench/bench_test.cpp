@@ -5,7 +5,7 @@
 #include <thread>
 
 #include "bench/bench_test.h"
-#include "capture/data_set.h"
+#include "data/data_set.h"
 #include "io/external_program.h"
 
 namespace aspic::bench {

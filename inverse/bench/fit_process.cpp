@@ -4,7 +4,7 @@
 
 #include <numeric>
 
-#include "fit/quantity.h"
+#include "model/quantity.h"
 #include "io/atomic_file.h"
 #include "io/external_program.h"
 #include "mesh/tet_shape.h"

@@ -9,7 +9,7 @@
 #include "aspic/interrupt.h"
 #include "base/error.h"
 #include "base/parallel.h"
-#include "capture/synthesis.h"
+#include "data/synthesis.h"
 #include "commands/commands.h"
 #include "io/mesh_file.h"
 #include "scene/scene.h"

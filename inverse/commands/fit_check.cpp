@@ -9,9 +9,9 @@
 
 #include "aspic/plot.h"
 #include "base/error.h"
-#include "capture/case_table.h"
-#include "capture/data_set.h"
-#include "capture/surface_projection.h"
+#include "data/case_table.h"
+#include "data/data_set.h"
+#include "data/surface_projection.h"
 #include "commands/commands.h"
 #include "commands/fit_summary.h"
 

@@ -3,7 +3,7 @@
 #include <filesystem>
 #include <optional>
 
-#include "capture/registration.h"
+#include "data/registration.h"
 
 namespace aspic::cli {
 

@@ -5,12 +5,12 @@
 #include <algorithm>
 #include <cmath>
 
-#include "capture/left_out.h"
+#include "pipeline/left_out.h"
 #include "commands/fit_json.h"
 #include "commands/fit_summary.h"
 #include "commands/law_table.h"
 #include "commands/relaxation_results.h"
-#include "fit/quantity.h"
+#include "model/quantity.h"
 
 namespace aspic::cli {
 namespace {

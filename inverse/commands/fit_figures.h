@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "capture/fit_verdict.h"
-#include "capture/judge.h"
+#include "pipeline/fit_verdict.h"
+#include "data/judge.h"
 
 namespace aspic::cli {
 

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "capture/case_figures.h"
+#include "pipeline/case_figures.h"
 
 namespace aspic::cli {
 namespace {

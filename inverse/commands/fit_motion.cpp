@@ -1,6 +1,6 @@
 // `aspic fit-motion`: fits material, density, damping and initial velocity of a scene to a measured motion of markers.
 #include "commands/commands.h"
-#include "fit/motion_fit.h"
+#include "estimate/motion_fit.h"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -15,8 +15,8 @@
 #include "base/error.h"
 #include "base/parallel.h"
 #include "base/printable.h"
-#include "capture/motion_scene.h"
-#include "capture/motion_table.h"
+#include "pipeline/motion_scene.h"
+#include "data/motion_table.h"
 #include "commands/fit_progress.h"
 #include "io/atomic_file.h"
 #include "io/csv.h"

@@ -2,7 +2,7 @@
 
 #include <fmt/format.h>
 
-#include "capture/fit_options.h"
+#include "pipeline/fit_options.h"
 #include "scene/toml_reader.h"
 
 namespace aspic::cli {

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "capture/fit_plan.h"
+#include "pipeline/fit_plan.h"
 
 namespace aspic::cli {
 

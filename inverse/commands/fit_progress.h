@@ -4,7 +4,7 @@
 #include <string>
 
 #include "aspic/progress.h"
-#include "capture/fit_run.h"
+#include "pipeline/fit_run.h"
 
 namespace aspic::cli {
 

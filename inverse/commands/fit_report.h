@@ -3,7 +3,7 @@
 #include <cstdio>
 #include <filesystem>
 
-#include "capture/fit_run.h"
+#include "pipeline/fit_run.h"
 #include "page/fit_page.h"
 
 namespace aspic::cli {

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "capture/fitted_values.h"
+#include "pipeline/fitted_values.h"
 #include "mesh/tet_nodes.h"
 
 namespace aspic::cli {

@@ -3,7 +3,7 @@
 #include <cstdio>
 #include <string>
 
-#include "capture/fit_verdict.h"
+#include "pipeline/fit_verdict.h"
 
 namespace aspic::cli {
 

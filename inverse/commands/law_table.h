@@ -3,7 +3,7 @@
 #include <cstdio>
 #include <nlohmann/json.hpp>
 
-#include "capture/law_choice.h"
+#include "pipeline/law_choice.h"
 
 namespace aspic::cli {
 

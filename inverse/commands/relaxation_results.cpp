@@ -4,7 +4,7 @@
 
 #include "aspic/plot.h"
 #include "base/error.h"
-#include "capture/relaxation.h"
+#include "pipeline/relaxation.h"
 #include "io/atomic_file.h"
 #include "io/csv.h"
 

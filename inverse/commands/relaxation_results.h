@@ -4,7 +4,7 @@
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
-#include "fit/relaxation_fit.h"
+#include "estimate/relaxation_fit.h"
 
 namespace aspic::cli {
 

@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "derivatives/parameter_derivatives.h"
-#include "fit/taylor_test.h"
+#include "model/taylor_test.h"
 #include "material/list.h"
 #include "math/vectors.h"
 #include "mesh/generators.h"

@@ -5,9 +5,9 @@
 #include <cmath>
 #include <limits>
 
-#include "capture/case_figures.h"
-#include "capture/fitted_values.h"
-#include "fit/quantity.h"
+#include "pipeline/case_figures.h"
+#include "pipeline/fitted_values.h"
+#include "model/quantity.h"
 #include "io/base64.h"
 #include "io/gzip.h"
 #include "optimize/minimize.h"

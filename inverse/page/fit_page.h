@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "capture/fit_run.h"
+#include "pipeline/fit_run.h"
 
 namespace aspic::viewer {
 

@@ -5,8 +5,8 @@
 
 #include <cstring>
 
-#include "capture/case_figures.h"
-#include "capture/indented_block_test.h"
+#include "pipeline/case_figures.h"
+#include "pipeline/indented_block_test.h"
 #include "io/base64.h"
 #include "io/gzip.h"
 #include "viewer/arguments.h"

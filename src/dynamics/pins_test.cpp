@@ -10,7 +10,7 @@
 
 #include "base/parallel.h"
 #include "dynamics/models_test.h"
-#include "scene/explanation.h"
+#include "results/explanation.h"
 
 namespace aspic {
 namespace {

@@ -1,4 +1,4 @@
-// Order in time, measured by a motion that linear tets represent exactly: verification/integrators.h.
+// Order in time, measured by a motion that linear tets represent exactly: tests/verification/integrators.h.
 #include <gtest/gtest.h>
 
 #include <cmath>

@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-#include "scene/run_directory.h"
+#include "results/run_directory.h"
 #include "scene/scene_cases_test.h"
 #include "scene/value.h"
 

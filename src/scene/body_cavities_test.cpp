@@ -9,7 +9,7 @@
 #include "io/mesh_file.h"
 #include "mesh/box.h"
 #include "mesh/generators.h"
-#include "scene/run_directory.h"
+#include "results/run_directory.h"
 #include "scene/scene_cases_test.h"
 
 namespace aspic {

@@ -7,7 +7,7 @@
 #include "base/parallel.h"
 #include "io/vtu.h"
 #include "mesh/tet_nodes.h"
-#include "scene/run_directory.h"
+#include "results/run_directory.h"
 #include "scene/scene_cases_test.h"
 
 namespace aspic {

@@ -14,8 +14,8 @@
 #include "io/vtu.h"
 #include "mesh/generators.h"
 #include "mesh/surface.h"
-#include "scene/explanation.h"
-#include "scene/run_directory.h"
+#include "results/explanation.h"
+#include "results/run_directory.h"
 #include "scene/scene_cases_test.h"
 #include "scene/value.h"
 

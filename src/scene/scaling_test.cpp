@@ -218,7 +218,7 @@ std::vector<Case> hands() {
 
 // Tets of a real shape, of many sizes, in the storage order of the program.
 std::vector<Case> real_meshes() {
-  const std::filesystem::path file = std::filesystem::path(ASPIC_SOURCE_DIR) / "assets" / "bunny.mesh";
+  const std::filesystem::path file = std::filesystem::path(ASPIC_SOURCE_DIR) / "scenes" / "bunny.mesh";
   const std::string bunny =
       "[[body]]\nname = \"bunny\"\nmesh = \"bunny.mesh\"\nscale = <0.1 m>\nvelocity = [<1 m/s>, 0, 0]\n" + kRubber +
       "[[body.pin]]\nwhere = { lowest = 0.05 }\n";

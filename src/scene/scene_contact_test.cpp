@@ -8,7 +8,7 @@
 #include "io/folder_test.h"
 #include "io/mesh_file.h"
 #include "io/vtu.h"
-#include "scene/run_directory.h"
+#include "results/run_directory.h"
 #include "scene/scene.h"
 #include "scene/scene_cases_test.h"
 

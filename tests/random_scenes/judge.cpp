@@ -8,7 +8,7 @@
 
 #include "material/registry.h"
 #include "random_scenes/draw.h"
-#include "scene/explanation.h"
+#include "results/explanation.h"
 
 namespace aspic {
 namespace {

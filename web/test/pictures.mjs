@@ -89,7 +89,7 @@ async function drawViewer(browser) {
 
 // E over a plane through Newton's direction, in a step that needs the line search.
 async function drawLandscape(browser) {
-  const address = await startProgram("scenes/lecture/53_hard_step.toml", ["--set", `mesh=${join(root, "assets/bunny.mesh")}`, "--set", "scale=0.1"]);
+  const address = await startProgram("scenes/lecture/53_hard_step.toml", ["--set", `mesh=${join(root, "scenes/bunny.mesh")}`, "--set", "scale=0.1"]);
   const page = await openPage(browser, address, 1200);
   await page.getByRole("tab", { name: "Landscape" }).click();
   await page.keyboard.press("s");

@@ -70,8 +70,8 @@ Stage::Stage(const fs::path& mesh, fs::path cache) : scenes_(shipped_file("scene
     note_ = "real mesh: " + mesh.string() + ", made one meter large";
     return;
   }
-  surface_ = shipped_file("assets/bunny.obj");
-  mesh_ = shipped_file("assets/bunny.mesh");
+  surface_ = shipped_file("scenes/bunny.obj");
+  mesh_ = shipped_file("scenes/bunny.mesh");
   if (mesh_.empty() && !surface_.empty()) {
     try {
       mesh_ = filled(surface_, 0, cache_);
@@ -80,7 +80,7 @@ Stage::Stage(const fs::path& mesh, fs::path cache) : scenes_(shipped_file("scene
     }
   }
   note_ = mesh_.empty() ? note_ +
-                              "no real mesh: assets/bunny.mesh is not found, nor was --mesh given; "
+                              "no real mesh: scenes/bunny.mesh is not found, nor was --mesh given; "
                               "each scene keeps the shape that it describes"
                         : "real mesh: the bunny, made one meter large";
 }

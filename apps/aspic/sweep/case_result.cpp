@@ -11,8 +11,8 @@
 #include "dynamics/step_fields.h"
 #include "io/atomic_file.h"
 #include "io/csv_reader.h"
-#include "scene/run_directory_layout.h"
-#include "scene/run_lock.h"
+#include "results/run_directory_layout.h"
+#include "results/run_lock.h"
 #include "scene/scene_builder.h"
 #include "scene/scene_document.h"
 

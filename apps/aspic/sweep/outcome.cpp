@@ -10,8 +10,8 @@
 #include "io/atomic_file.h"
 #include "io/checkpoint.h"
 #include "io/csv_reader.h"
-#include "scene/run_directory_layout.h"
-#include "scene/run_lock.h"
+#include "results/run_directory_layout.h"
+#include "results/run_lock.h"
 
 namespace aspic::cli {
 namespace {

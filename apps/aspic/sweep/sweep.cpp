@@ -15,7 +15,7 @@
 #include "io/csv.h"
 #include "scene/scene.h"
 #include "scene/scene_document.h"
-#include "scene/study.h"
+#include "aspic/sweep/study.h"
 #include "scene/toml_reader.h"
 
 namespace aspic::cli {

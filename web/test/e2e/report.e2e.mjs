@@ -48,7 +48,7 @@ function countPoints() {
 
 test("a report of a mesh draws a dot per contact of its table", async () => {
   const ofMesh = join(folder, "mesh");
-  make("run", join(root, "assets/bunny.mesh"), "--steps", "25", "--out", ofMesh, "--allow-unconverged");
+  make("run", join(root, "scenes/bunny.mesh"), "--steps", "25", "--out", ofMesh, "--allow-unconverged");
   const [head, ...rows] = readFileSync(join(ofMesh, "steps.csv"), "utf8").trim().split("\n").map((line) => line.split(","));
   const [step, contacts] = ["step", "contacts"].map((name) => head.indexOf(name));
   const { page, until, close } = await openPage(pathToFileURL(join(ofMesh, "report.html")).href, { offline: true, prepare: (page) => page.addInitScript(countPoints) });

@@ -1,0 +1,212 @@
+// Selects the weight of the prior from the data [Morozov 1966; Hansen 1998; MacKay 1992]: fits with a sequence of
+// weights, each starting from the last.
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <optional>
+
+#include "base/formatted.h"
+#include "estimate/evidence.h"
+#include "estimate/fit_run.h"
+
+namespace aspic {
+namespace {
+
+constexpr double kLargestFall = 1.0 / 30;  // decrease of the weight between trials
+constexpr int kTrials = 24;
+constexpr double kStagnation = 0.02;  // change of log |r|^2 per factor e of the weight
+constexpr double kRange = 1e12;       // between the first weight and the last
+constexpr double kSettled = 0.3;      // change of the log weight of largest evidence
+constexpr int kEvidenceTrials = 8;
+constexpr int kBestSeen = 64;  // directions used to select the weight: relative error sqrt(2 / 64)
+
+// Weight at which prior and data have equal slopes along the steepest descent in the norm of the prior.
+std::optional<double> balanced_weight(FitRun& run, const FitPoint& at) {
+  if (!run.linearize(at)) return {};
+  std::vector<double> g(at.p.size()), d(g.size()), Rd(g.size(), 0.0), Jd(at.r.size());
+  run.multiply_transposed(at.r, g);
+  if (max_abs(g) == 0) return 1;
+  run.solve_prior(at.p, g, d);
+  run.multiply(d, Jd);
+  run.add_prior_product(at, d, 1, Rd);
+  const double weight = dot(Jd, Jd) / dot(d, Rd);
+  if (!(weight > 0) || !std::isfinite(weight)) return {};
+  return weight;
+}
+
+// Far above the number of residuals one step suffices for |r|^2; near it, accuracy must be within its scatter.
+constexpr double kFar = 0.5;  // distance of log (|r|^2 / number)
+
+double log_ratio(const FitRun& run, double misfit) { return std::log(std::max(2 * misfit / run.readings(), 1e-300)); }
+double scatter(const FitRun& run) { return std::sqrt(0.5 * std::sqrt(2.0 * run.readings())); }
+
+Status fit_loosely(FitRun& run, FitPoint& at, FitGoal& goal, FitMethod method) {
+  FitGoal loose = goal;
+  loose.is_new = true;
+  const bool was_far = log_ratio(run, at.misfit) > kFar;
+  loose.enough = was_far ? std::numeric_limits<double>::infinity() : std::max(goal.enough, scatter(run));
+  Status status = method(run, at, loose);
+  if (was_far && is_success(status) && log_ratio(run, at.misfit) <= kFar) {
+    loose.enough = std::max(goal.enough, scatter(run));
+    status = method(run, at, loose);
+  }
+  goal.first_decrement = loose.first_decrement;
+  return status;
+}
+
+WeightTrial trial_at(const FitRun& run, const FitPoint& at) { return {run.weight, at.misfit, at.roughness, at.p}; }
+
+bool go_to(FitRun& run, FitPoint& at, const WeightTrial& trial) {
+  run.weight = trial.weight;
+  return at.p == trial.p || run.evaluate(trial.p, at);
+}
+
+// Finds the weight with |r|^2 = number of residuals from the trials.
+class Discrepancy {
+ public:
+  explicit Discrepancy(int residuals)
+      : count_(residuals), slack_(std::log1p(std::clamp(std::sqrt(2.0 / residuals), 0.02, 0.3))) {}
+
+  enum class Verdict { fits, try_on, unexplained, explained_by_guess };
+  Verdict judge(double weight, double misfit) {
+    const Known now{std::log(weight), std::log(std::max(2 * misfit / count_, 1e-300))};
+    if (!first_) first_ = now;
+    const std::optional<Known> before = last_;
+    last_ = now;
+    if (std::abs(now.y) <= slack_) return Verdict::fits;
+    (now.y > 0 ? too_large_ : too_small_) = now;
+    if (too_large_ && too_small_) {
+      if (std::abs(too_large_->w - too_small_->w) < 0.02) return Verdict::fits;
+      // Regula falsi, away from the ends.
+      const double part = std::clamp(too_large_->y / (too_large_->y - too_small_->y), 0.1, 0.9);
+      next_ = too_large_->w + part * (too_small_->w - too_large_->w);
+      return Verdict::try_on;
+    }
+    if (std::abs(now.w - first_->w) > std::log(kRange))
+      return now.y > 0 ? Verdict::unexplained : Verdict::explained_by_guess;
+    const double moved = before ? now.w - before->w : 0;
+    const double slope = moved != 0 ? (now.y - before->y) / moved : 0.5;
+    if (moved < 0 && now.y > 0 && slope < kStagnation && now.y < 2) return Verdict::unexplained;
+    next_ = now.w - std::copysign(std::clamp(std::abs(now.y) / std::clamp(slope, 0.1, 1.0), std::log(2.0),
+                                             -std::log(kLargestFall)),
+                                  now.y);
+    return Verdict::try_on;
+  }
+  bool is_met(double misfit) const { return std::abs(std::log(std::max(2 * misfit / count_, 1e-300))) <= slack_; }
+  double next() const { return std::exp(next_); }
+
+ private:
+  struct Known {
+    double w, y;  // log weight, log (|r|^2 / count)
+  };
+  int count_;
+  double slack_, next_ = 0;
+  std::optional<Known> first_, last_, too_large_, too_small_;
+};
+
+// Largest weight whose fit is about as good as the best.
+const WeightTrial& most_cautious(const std::vector<WeightTrial>& trials) {
+  const auto less = [](const WeightTrial& a, const WeightTrial& b) { return a.misfit < b.misfit; };
+  const double best = std::min_element(trials.begin(), trials.end(), less)->misfit;
+  const WeightTrial* chosen = nullptr;
+  for (const WeightTrial& t : trials)
+    if (t.misfit <= 1.1 * best && (!chosen || t.weight > chosen->weight)) chosen = &t;
+  return *chosen;
+}
+
+// Curvature of the circle through three points, positive where the curve bends like the corner of an L traversed
+// downward and to the right, with decreasing misfit and increasing roughness.
+double curvature(const WeightTrial& a, const WeightTrial& b, const WeightTrial& c) {
+  const auto x = [](const WeightTrial& t) { return std::log(std::max(t.misfit, 1e-300)); };
+  const auto y = [](const WeightTrial& t) { return std::log(std::max(t.roughness, 1e-300)); };
+  const double ux = x(b) - x(a), uy = y(b) - y(a), vx = x(c) - x(b), vy = y(c) - y(b);
+  const double lengths = std::hypot(ux, uy) * std::hypot(vx, vy) * std::hypot(ux + vx, uy + vy);
+  return lengths > 0 ? 2 * (vx * uy - ux * vy) / lengths : 0;
+}
+
+std::string describe(Discrepancy::Verdict verdict, double squares, int residuals) {
+  const std::string found = "|r|^2 = " + three_digits(squares) + " of " + std::to_string(residuals) + " residuals";
+  switch (verdict) {
+    case Discrepancy::Verdict::fits:
+      return "the weight leaves " + found;
+    case Discrepancy::Verdict::explained_by_guess:
+      return "the guess already explains the data within their standard deviations (" + found +
+             "): they may be too large";
+    case Discrepancy::Verdict::unexplained:
+      return "no material of this model explains the data within their standard deviations (" + found +
+             "): they may be too small, or the model may be wrong";
+    case Discrepancy::Verdict::try_on:
+      break;
+  }
+  return "the search for a weight ended at " + found;
+}
+
+}  // namespace
+
+Status fit_by_discrepancy(FitRun& run, FitPoint& at, FitGoal& goal, FitMethod method) {
+  const std::optional<double> balanced = balanced_weight(run, at);
+  if (!balanced) return Status::undefined;
+  run.weight = run.options.first_weight > 0 ? run.options.first_weight : 0.1 * *balanced;
+  Discrepancy rule(run.readings());
+  std::vector<WeightTrial>& trials = run.report.weights;
+  auto verdict = Discrepancy::Verdict::try_on;
+  for (int i = 0; i < kTrials && verdict == Discrepancy::Verdict::try_on; ++i) {
+    const Status status = fit_loosely(run, at, goal, method);
+    if (!is_success(status)) return status;
+    trials.push_back(trial_at(run, at));
+    verdict = rule.judge(run.weight, at.misfit);
+    if (verdict == Discrepancy::Verdict::try_on) run.weight = rule.next();
+  }
+  if (verdict == Discrepancy::Verdict::unexplained && !go_to(run, at, most_cautious(trials))) return Status::undefined;
+  const Status status = method(run, at, goal);
+  if (rule.is_met(at.misfit)) verdict = Discrepancy::Verdict::fits;
+  run.report.message = describe(verdict, 2 * at.misfit, run.readings());
+  return status;
+}
+
+Status fit_by_evidence(FitRun& run, FitPoint& at, FitGoal& goal, FitMethod method) {
+  const std::optional<double> balanced = balanced_weight(run, at);
+  if (!balanced) return Status::undefined;
+  run.weight = run.options.first_weight > 0 ? run.options.first_weight : 0.1 * *balanced;
+  run.report.message = "the search for the weight of largest evidence did not converge";
+  for (int i = 0; i < kEvidenceTrials; ++i) {
+    if (const Status status = fit_loosely(run, at, goal, method); !is_success(status)) return status;
+    run.report.weights.push_back(trial_at(run, at));
+    if (!run.linearize(at)) return Status::undefined;
+    PriorGaussian before(run.prior(), run.weight, at.p);
+    const Spectrum s = spectrum(run.data(), before, {.dense = kBestSeen, .max_rank = kBestSeen, .negligible = 1});
+    if (!s.ok) return Status::undefined;
+    const double factor = supported_weight(run.prior(), run.weight, at.p, s).factor;
+    if (std::abs(std::log(factor)) < kSettled) {
+      run.report.message = "the weight maximizes the evidence of the data";
+      break;
+    }
+    run.weight *= std::clamp(factor, kLargestFall, 1 / kLargestFall);
+  }
+  return method(run, at, goal);
+}
+
+Status fit_by_l_curve(FitRun& run, FitPoint& at, FitGoal& goal, FitMethod method) {
+  const std::optional<double> balanced = balanced_weight(run, at);
+  if (!balanced) return Status::undefined;
+  run.weight = run.options.first_weight > 0 ? run.options.first_weight : 0.1 * *balanced;
+  std::vector<WeightTrial>& trials = run.report.weights;
+  for (int i = 0; i < kTrials; ++i, run.weight /= std::sqrt(10.0)) {
+    const Status status = fit_loosely(run, at, goal, method);
+    if (status == Status::stuck && trials.size() >= 3) break;  // the weight is too small to continue
+    if (!is_success(status)) return status;
+    trials.push_back(trial_at(run, at));
+    if (2 * at.misfit < 0.1 * run.readings()) break;  // noise is being fitted
+  }
+  size_t corner = trials.size() - 1;
+  double sharpest = 0;
+  for (size_t i = 1; i + 1 < trials.size(); ++i)
+    if (const double k = curvature(trials[i - 1], trials[i], trials[i + 1]); k > sharpest) sharpest = k, corner = i;
+  run.report.message =
+      sharpest > 0 ? "the weight is at the corner of the L-curve, of " + std::to_string(trials.size()) + " weights"
+                   : "the L-curve has no corner: the smallest weight is used";
+  if (!go_to(run, at, trials[corner])) return Status::undefined;
+  return method(run, at, goal);
+}
+
+}  // namespace aspic
