@@ -59,8 +59,10 @@ def faults_of_page(page):
     """Links, and paths from the top in backticks or commands; what builds and runs write is not in the tree."""
     files = {str(path) for path in folders.union(tracked)}
     for number, line in enumerate((root / page).read_text().splitlines(), 1):
-        for name in re.findall(rf"(?<![\w./-])(?:{'|'.join(sorted(top))})/[a-z0-9_*./-]*[a-z0-9_*](?![A-Z/])", line):
+        for name in re.findall(rf"(?<![\w./-])(?:{'|'.join(sorted(top))})/[\w*./-]*[\w*]", line):
             patterns = [name, name + ".*", str(page.parent / name)]
+            if re.search(r"/[A-Z]+$", name):  # the user's choice
+                continue
             if not any(fnmatch.filter(files, pattern) for pattern in patterns) and not re.search(OLD, line) and name not in WRITTEN:
                 yield f"{page}:{number}: {name} is no file"
         for link in re.findall(r"\]\(([^)#:\s]+)(?:#[^)]*)?\)", line):
