@@ -16,8 +16,8 @@
 #include "optimize/hessian_policy.h"
 #include "optimize/solver.h"
 #include "optimize/test_functions.h"
-#include "scene/expression_function.h"
 #include "results/trace.h"
+#include "scene/expression_function.h"
 
 namespace aspic::cli {
 namespace {

@@ -21,8 +21,8 @@
 #include "results/explanation.h"
 #include "results/run_directory.h"
 #include "results/run_directory_layout.h"
-#include "scene/scene.h"
 #include "results/trace.h"
+#include "scene/scene.h"
 
 namespace aspic::cli {
 namespace {

@@ -4,10 +4,10 @@
 
 #include <numeric>
 
-#include "model/quantity.h"
 #include "io/atomic_file.h"
 #include "io/external_program.h"
 #include "mesh/tet_shape.h"
+#include "model/quantity.h"
 
 namespace aspic::bench {
 namespace {

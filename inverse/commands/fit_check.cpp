@@ -9,11 +9,11 @@
 
 #include "aspic/plot.h"
 #include "base/error.h"
+#include "commands/commands.h"
+#include "commands/fit_summary.h"
 #include "data/case_table.h"
 #include "data/data_set.h"
 #include "data/surface_projection.h"
-#include "commands/commands.h"
-#include "commands/fit_summary.h"
 
 namespace aspic::cli {
 namespace {

@@ -5,12 +5,12 @@
 #include <algorithm>
 #include <cmath>
 
-#include "pipeline/left_out.h"
 #include "commands/fit_json.h"
 #include "commands/fit_summary.h"
 #include "commands/law_table.h"
 #include "commands/relaxation_results.h"
 #include "model/quantity.h"
+#include "pipeline/left_out.h"
 
 namespace aspic::cli {
 namespace {

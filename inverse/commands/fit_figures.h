@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "pipeline/fit_verdict.h"
 #include "data/judge.h"
+#include "pipeline/fit_verdict.h"
 
 namespace aspic::cli {
 

@@ -15,11 +15,11 @@
 #include "base/error.h"
 #include "base/parallel.h"
 #include "base/printable.h"
-#include "pipeline/motion_scene.h"
-#include "data/motion_table.h"
 #include "commands/fit_progress.h"
+#include "data/motion_table.h"
 #include "io/atomic_file.h"
 #include "io/csv.h"
+#include "pipeline/motion_scene.h"
 
 namespace aspic::cli {
 namespace {

@@ -3,8 +3,8 @@
 #include <cstdio>
 #include <filesystem>
 
-#include "pipeline/fit_run.h"
 #include "page/fit_page.h"
+#include "pipeline/fit_run.h"
 
 namespace aspic::cli {
 

@@ -5,8 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "pipeline/fitted_values.h"
 #include "mesh/tet_nodes.h"
+#include "pipeline/fitted_values.h"
 
 namespace aspic::cli {
 namespace {

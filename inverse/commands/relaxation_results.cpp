@@ -4,9 +4,9 @@
 
 #include "aspic/plot.h"
 #include "base/error.h"
-#include "pipeline/relaxation.h"
 #include "io/atomic_file.h"
 #include "io/csv.h"
+#include "pipeline/relaxation.h"
 
 namespace aspic::cli {
 namespace {

@@ -8,10 +8,10 @@
 #include <vector>
 
 #include "data/registration.h"
-#include "model/load_history.h"
-#include "model/misfit.h"
 #include "mesh/doctor.h"
 #include "mesh/numbering.h"
+#include "model/load_history.h"
+#include "model/misfit.h"
 
 namespace aspic {
 

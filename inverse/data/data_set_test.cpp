@@ -5,8 +5,8 @@
 
 #include "data/capture_cases_test.h"
 #include "data/case_table.h"
-#include "model/gauge.h"
 #include "mesh/surface.h"
+#include "model/gauge.h"
 
 namespace aspic {
 namespace {

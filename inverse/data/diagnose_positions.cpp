@@ -4,9 +4,9 @@
 #include "data/case_table.h"
 #include "data/data_findings.h"
 #include "data/surface_projection.h"
+#include "math/vectors.h"
 #include "model/gauge.h"
 #include "model/local_motion.h"
-#include "math/vectors.h"
 
 namespace aspic {
 namespace {

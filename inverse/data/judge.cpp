@@ -5,8 +5,8 @@
 #include <numeric>
 
 #include "base/check.h"
-#include "model/quantity.h"
 #include "estimate/uncertainty.h"
+#include "model/quantity.h"
 
 namespace aspic {
 namespace {

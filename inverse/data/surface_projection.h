@@ -2,9 +2,9 @@
 #pragma once
 #include <vector>
 
-#include "model/misfit.h"
 #include "mesh/surface_locator.h"
 #include "mesh/tet_mesh.h"
+#include "model/misfit.h"
 
 namespace aspic {
 

@@ -11,9 +11,9 @@
 #include "data/judge.h"
 #include "data/unstated_values.h"
 #include "estimate/indentation_sites.h"
-#include "model/load_case.h"
 #include "mesh/tet_nodes.h"
 #include "mesh/tet_shape.h"
+#include "model/load_case.h"
 
 namespace aspic {
 namespace {

@@ -4,10 +4,10 @@
 #include <cmath>
 
 #include "derivatives/parameter_derivatives.h"
-#include "model/taylor_test.h"
 #include "material/list.h"
 #include "math/vectors.h"
 #include "mesh/generators.h"
+#include "model/taylor_test.h"
 
 namespace aspic {
 namespace {

@@ -2,9 +2,9 @@
 
 #include <gmock/gmock.h>
 
+#include "math/vectors.h"
 #include "model/common_errors.h"
 #include "model/indented_block_test.h"
-#include "math/vectors.h"
 
 namespace aspic {
 namespace {

@@ -2,8 +2,8 @@
 #pragma once
 #include <span>
 
-#include "model/regularizer.h"
 #include "estimate/spectrum.h"
+#include "model/regularizer.h"
 
 namespace aspic {
 

@@ -7,8 +7,8 @@
 #include <random>
 
 #include "base/error.h"
-#include "model/parameter_map.h"
 #include "mesh/generators.h"
+#include "model/parameter_map.h"
 
 namespace aspic {
 namespace {

@@ -1,10 +1,10 @@
 // Uncertainty with real equilibria: coverage, and warnings without measured forces.
 #include <gmock/gmock.h>
 
-#include "model/common_errors.h"
 #include "estimate/fit.h"
-#include "model/indented_block_test.h"
 #include "estimate/uncertainty.h"
+#include "model/common_errors.h"
+#include "model/indented_block_test.h"
 
 namespace aspic {
 namespace {

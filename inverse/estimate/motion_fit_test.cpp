@@ -7,8 +7,8 @@
 #include "base/error.h"
 #include "base/parallel.h"
 #include "dynamics/model_builder.h"
-#include "model/taylor_test.h"
 #include "mesh/generators.h"
+#include "model/taylor_test.h"
 
 namespace aspic {
 namespace {

@@ -5,10 +5,10 @@
 
 #include "base/check.h"
 #include "base/error.h"
-#include "model/scaled_inverse.h"
 #include "estimate/spectrum.h"
 #include "math/vectors.h"
 #include "mesh/box.h"
+#include "model/scaled_inverse.h"
 
 namespace aspic {
 namespace {

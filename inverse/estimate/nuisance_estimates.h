@@ -3,8 +3,8 @@
 #include <span>
 #include <vector>
 
-#include "model/common_errors.h"
 #include "estimate/spectrum.h"
+#include "model/common_errors.h"
 
 namespace aspic {
 

@@ -3,10 +3,10 @@
 #include <span>
 #include <vector>
 
-#include "model/least_squares.h"
-#include "model/parameter_map.h"
 #include "estimate/spectrum.h"
 #include "mesh/tet_mesh.h"
+#include "model/least_squares.h"
+#include "model/parameter_map.h"
 
 namespace aspic {
 

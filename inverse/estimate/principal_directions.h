@@ -3,8 +3,8 @@
 #include <span>
 #include <vector>
 
-#include "model/parameter_map.h"
 #include "estimate/spectrum.h"
+#include "model/parameter_map.h"
 
 namespace aspic {
 

@@ -6,8 +6,8 @@
 
 #include "base/formatted.h"
 #include "estimate/fit.h"
-#include "model/history_misfit.h"
 #include "math/vectors.h"
+#include "model/history_misfit.h"
 
 namespace aspic {
 namespace {

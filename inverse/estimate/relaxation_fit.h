@@ -6,9 +6,9 @@
 #include <vector>
 
 #include "base/stop_token.h"
+#include "estimate/uncertainty.h"
 #include "model/history_curves.h"
 #include "model/load_history.h"
-#include "estimate/uncertainty.h"
 
 namespace aspic {
 

@@ -8,10 +8,10 @@
 #include <cmath>
 #include <random>
 
-#include "model/history_misfit.h"
-#include "model/indented_block_test.h"
 #include "mesh/generators.h"
 #include "mesh/surface.h"
+#include "model/history_misfit.h"
+#include "model/indented_block_test.h"
 
 namespace aspic {
 namespace {

@@ -7,9 +7,9 @@
 #include <span>
 #include <vector>
 
+#include "math/vectors.h"
 #include "model/least_squares.h"
 #include "model/regularizer.h"
-#include "math/vectors.h"
 
 namespace aspic {
 

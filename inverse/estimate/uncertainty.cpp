@@ -7,10 +7,10 @@
 #include "base/formatted.h"
 #include "estimate/evidence.h"
 #include "estimate/field_text.h"
-#include "model/handle_gaps.h"
 #include "estimate/principal_directions.h"
-#include "model/quantity.h"
 #include "mesh/tet_shape.h"
+#include "model/handle_gaps.h"
+#include "model/quantity.h"
 
 namespace aspic {
 namespace {

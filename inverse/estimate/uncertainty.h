@@ -6,10 +6,10 @@
 #include <string>
 #include <vector>
 
+#include "estimate/spectrum.h"
 #include "model/least_squares.h"
 #include "model/parameter_map.h"
 #include "model/regularizer.h"
-#include "estimate/spectrum.h"
 
 namespace aspic {
 

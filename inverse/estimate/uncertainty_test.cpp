@@ -3,10 +3,10 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "model/common_errors.h"
 #include "estimate/field_text.h"
-#include "model/linear_models_test.h"
 #include "mesh/generators.h"
+#include "model/common_errors.h"
+#include "model/linear_models_test.h"
 
 namespace aspic {
 namespace {

@@ -1,8 +1,8 @@
 #include "allocation_counter.h"
 
+#include "linalg/linear_solver.h"
 #include "model/equilibrium.h"
 #include "model/sagging_test.h"
-#include "linalg/linear_solver.h"
 
 namespace aspic {
 namespace {

@@ -4,8 +4,8 @@
 
 #include <Eigen/Dense>
 
-#include "model/indented_block_test.h"
 #include "math/vectors.h"
+#include "model/indented_block_test.h"
 
 namespace aspic {
 namespace {

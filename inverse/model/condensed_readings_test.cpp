@@ -3,11 +3,11 @@
 #include <gtest/gtest.h>
 
 #include "base/parallel.h"
-#include "model/common_errors.h"
 #include "estimate/fit.h"
+#include "math/vectors.h"
+#include "model/common_errors.h"
 #include "model/indented_block_test.h"
 #include "model/regularizer.h"
-#include "math/vectors.h"
 
 namespace aspic {
 namespace {

@@ -8,9 +8,9 @@
 #include "base/formatted.h"
 #include "dynamics/incremental_potential.h"
 #include "energy/lagged_product.h"
-#include "model/elastic_parameters.h"
 #include "linalg/auto_solver.h"
 #include "math/vectors.h"
+#include "model/elastic_parameters.h"
 #include "optimize/newton.h"
 
 namespace aspic {

@@ -6,13 +6,13 @@
 #include <random>
 
 #include "dynamics/step_derivatives.h"
-#include "model/load_case.h"
-#include "model/misfit.h"
 #include "indenter/probe_friction.h"
 #include "math/vectors.h"
 #include "mesh/generators.h"
 #include "mesh/surface.h"
 #include "mesh/vertices.h"
+#include "model/load_case.h"
+#include "model/misfit.h"
 
 namespace aspic {
 namespace {

@@ -5,9 +5,9 @@
 #include <random>
 #include <string>
 
-#include "model/misfit.h"
 #include "mesh/generators.h"
 #include "mesh/surface.h"
+#include "model/misfit.h"
 
 namespace aspic::test {
 

@@ -8,9 +8,9 @@
 #include "dynamics/model_builder.h"
 #include "energy/linear_load.h"
 #include "energy/pressure.h"
-#include "model/gauge.h"
 #include "mesh/surface.h"
 #include "mesh/vertices.h"
+#include "model/gauge.h"
 
 namespace aspic {
 namespace {

@@ -5,10 +5,10 @@
 #include <string>
 #include <vector>
 
+#include "indenter/probe_friction.h"
 #include "model/misfit.h"
 #include "model/scaled_load.h"
 #include "model/systematic_errors.h"
-#include "indenter/probe_friction.h"
 
 namespace aspic {
 

@@ -1,9 +1,9 @@
 // Derivatives of the residuals of a case with respect to systematic errors.
 #include <algorithm>
 
+#include "mesh/vertices.h"
 #include "model/gauge.h"
 #include "model/load_case.h"
-#include "mesh/vertices.h"
 
 namespace aspic {
 namespace {

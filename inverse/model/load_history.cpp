@@ -7,9 +7,9 @@
 #include "dynamics/model_builder.h"
 #include "energy/linear_load.h"
 #include "energy/maxwell_branches.h"
-#include "model/load_case.h"
 #include "linalg/auto_solver.h"
 #include "mesh/vertices.h"
+#include "model/load_case.h"
 #include "optimize/newton.h"
 
 namespace aspic {

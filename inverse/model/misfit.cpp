@@ -6,12 +6,12 @@
 #include "base/check.h"
 #include "base/error.h"
 #include "base/parallel.h"
+#include "math/vectors.h"
 #include "model/common_errors.h"
 #include "model/gauge.h"
 #include "model/load_case.h"
 #include "model/refined_experiment.h"
 #include "model/unloaded_shape.h"
-#include "math/vectors.h"
 
 namespace aspic {
 

@@ -10,12 +10,12 @@
 #include <string>
 #include <vector>
 
+#include "indenter/probe.h"
 #include "model/equilibrium.h"
 #include "model/grip.h"
 #include "model/least_squares.h"
 #include "model/parameter_map.h"
 #include "model/systematic_error.h"
-#include "indenter/probe.h"
 
 namespace aspic {
 

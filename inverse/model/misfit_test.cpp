@@ -4,11 +4,11 @@
 
 #include "base/error.h"
 #include "base/parallel.h"
+#include "mesh/generators.h"
+#include "mesh/surface.h"
 #include "model/common_errors.h"
 #include "model/refined_experiment.h"
 #include "model/taylor_test.h"
-#include "mesh/generators.h"
-#include "mesh/surface.h"
 
 namespace aspic {
 namespace {

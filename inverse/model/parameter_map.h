@@ -9,9 +9,9 @@
 #include <string>
 #include <vector>
 
-#include "model/field_basis.h"
 #include "material/registry.h"
 #include "mesh/tet_mesh.h"
+#include "model/field_basis.h"
 
 namespace aspic {
 

@@ -8,8 +8,8 @@
 #include <random>
 
 #include "base/error.h"
-#include "model/quantity_scale.h"
 #include "mesh/generators.h"
+#include "model/quantity_scale.h"
 
 namespace aspic {
 namespace {

@@ -5,10 +5,10 @@
 #include <cmath>
 #include <set>
 
-#include "model/load_case.h"
 #include "mesh/generators.h"
 #include "mesh/surface.h"
 #include "mesh/tet_nodes.h"
+#include "model/load_case.h"
 
 namespace aspic {
 namespace {

@@ -6,8 +6,8 @@
 
 #include "base/check.h"
 #include "base/error.h"
-#include "model/field_roughness.h"
 #include "linalg/scalar_cholesky.h"
+#include "model/field_roughness.h"
 
 namespace aspic {
 namespace {

@@ -8,8 +8,8 @@
 #include <random>
 
 #include "base/error.h"
-#include "model/field_roughness.h"
 #include "mesh/generators.h"
+#include "model/field_roughness.h"
 #include "optimize/derivative_check.h"
 
 namespace aspic {

@@ -3,8 +3,8 @@
 #include <cmath>
 
 #include "dynamics/models_test.h"
-#include "model/taylor_test.h"
 #include "material/registry.h"
+#include "model/taylor_test.h"
 
 namespace aspic::testing_models {
 

@@ -5,9 +5,9 @@
 #include <cmath>
 
 #include "dynamics/models_test.h"
-#include "model/equilibrium.h"
 #include "indenter/probe.h"
 #include "mesh/surface.h"
+#include "model/equilibrium.h"
 
 namespace aspic {
 namespace {

@@ -4,10 +4,10 @@
 
 #include <cmath>
 
+#include "math/vectors.h"
 #include "model/common_errors.h"
 #include "model/gauge.h"
 #include "model/indented_block_test.h"
-#include "math/vectors.h"
 
 namespace aspic {
 namespace {

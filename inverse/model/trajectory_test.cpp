@@ -4,8 +4,8 @@
 
 #include "base/error.h"
 #include "dynamics/models_test.h"
-#include "model/taylor_test.h"
 #include "material/registry.h"
+#include "model/taylor_test.h"
 
 namespace aspic {
 namespace {

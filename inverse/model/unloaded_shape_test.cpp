@@ -5,10 +5,10 @@
 #include <cmath>
 
 #include "base/error.h"
-#include "model/indented_block_test.h"
 #include "math/vectors.h"
 #include "mesh/tet_nodes.h"
 #include "mesh/vertices.h"
+#include "model/indented_block_test.h"
 
 namespace aspic {
 namespace {

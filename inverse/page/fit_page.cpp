@@ -5,12 +5,12 @@
 #include <cmath>
 #include <limits>
 
-#include "pipeline/case_figures.h"
-#include "pipeline/fitted_values.h"
-#include "model/quantity.h"
 #include "io/base64.h"
 #include "io/gzip.h"
+#include "model/quantity.h"
 #include "optimize/minimize.h"
+#include "pipeline/case_figures.h"
+#include "pipeline/fitted_values.h"
 #include "viewer/page.h"
 #include "viewer/recording_code.h"
 

@@ -5,10 +5,10 @@
 
 #include <cstring>
 
-#include "pipeline/case_figures.h"
-#include "pipeline/indented_block_test.h"
 #include "io/base64.h"
 #include "io/gzip.h"
+#include "pipeline/case_figures.h"
+#include "pipeline/indented_block_test.h"
 #include "viewer/arguments.h"
 
 namespace aspic::viewer {

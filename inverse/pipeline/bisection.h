@@ -6,8 +6,8 @@
 #include <utility>
 #include <vector>
 
-#include "model/misfit.h"
 #include "mesh/tet_mesh.h"
+#include "model/misfit.h"
 
 namespace aspic {
 

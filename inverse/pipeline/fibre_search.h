@@ -4,8 +4,8 @@
 #include <string>
 #include <vector>
 
-#include "pipeline/fit_plan.h"
 #include "estimate/fit.h"
+#include "pipeline/fit_plan.h"
 
 namespace aspic {
 

@@ -7,10 +7,10 @@
 #include <cmath>
 #include <numbers>
 
-#include "pipeline/quick_plan_test.h"
+#include "io/folder_test.h"
 #include "model/quantity.h"
 #include "model/tangent_frame.h"
-#include "io/folder_test.h"
+#include "pipeline/quick_plan_test.h"
 
 namespace aspic {
 namespace {

@@ -7,8 +7,8 @@
 #include <string>
 #include <vector>
 
-#include "pipeline/fit_plan.h"
 #include "estimate/cross_validation.h"
+#include "pipeline/fit_plan.h"
 #include "scene/scene_files.h"
 
 namespace aspic {

@@ -6,10 +6,10 @@
 #include "base/error.h"
 #include "base/number_chars.h"
 #include "data/apparent_stiffness.h"
-#include "pipeline/law_choice.h"
 #include "estimate/law_errors.h"
-#include "model/quantity.h"
 #include "material/registry.h"
+#include "model/quantity.h"
+#include "pipeline/law_choice.h"
 #include "scene/scene_files.h"
 #include "scene/schema.h"
 

@@ -5,8 +5,8 @@
 #include <vector>
 
 #include "data/data_set.h"
-#include "model/equilibrium.h"
 #include "estimate/fit.h"
+#include "model/equilibrium.h"
 #include "model/parameter_map.h"
 #include "model/regularizer.h"
 

@@ -3,9 +3,9 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "io/folder_test.h"
 #include "pipeline/fit_options.h"
 #include "pipeline/quick_plan_test.h"
-#include "io/folder_test.h"
 #include "scene/toml_reader.h"
 
 namespace aspic {

@@ -9,13 +9,13 @@
 #include <vector>
 
 #include "data/data_set.h"
+#include "estimate/cross_validation.h"
+#include "estimate/relaxation_fit.h"
+#include "estimate/uncertainty.h"
 #include "pipeline/fit_jobs.h"
 #include "pipeline/fit_plan.h"
 #include "pipeline/journal.h"
 #include "pipeline/law_choice.h"
-#include "estimate/cross_validation.h"
-#include "estimate/relaxation_fit.h"
-#include "estimate/uncertainty.h"
 #include "scene/material_file.h"
 
 namespace aspic {

@@ -5,14 +5,14 @@
 
 #include <cmath>
 
-#include "pipeline/fit_folder.h"
-#include "pipeline/fit_verdict.h"
-#include "pipeline/quick_plan_test.h"
-#include "model/refined_experiment.h"
 #include "io/atomic_file.h"
 #include "io/folder_test.h"
 #include "material/registry.h"
 #include "mesh/tet_nodes.h"
+#include "model/refined_experiment.h"
+#include "pipeline/fit_folder.h"
+#include "pipeline/fit_verdict.h"
+#include "pipeline/quick_plan_test.h"
 
 namespace aspic {
 namespace {

@@ -8,8 +8,8 @@
 #include <string>
 #include <vector>
 
-#include "model/least_squares.h"
 #include "io/output_file.h"
+#include "model/least_squares.h"
 
 namespace aspic {
 

@@ -6,13 +6,13 @@
 #include <limits>
 #include <set>
 
+#include "math/eigen3.h"
+#include "math/vectors.h"
+#include "model/quantity.h"
 #include "pipeline/fit_troubles.h"
 #include "pipeline/fit_verdict.h"
 #include "pipeline/fitted_values.h"
 #include "pipeline/material_fit.h"
-#include "model/quantity.h"
-#include "math/eigen3.h"
-#include "math/vectors.h"
 
 namespace aspic {
 namespace {

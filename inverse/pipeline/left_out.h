@@ -1,8 +1,8 @@
 // Predictions of the groups that a fit leaves out (FitPlan::left_out).
 #pragma once
 #include "data/data_set.h"
-#include "pipeline/fit_run.h"
 #include "estimate/cross_validation.h"
+#include "pipeline/fit_run.h"
 
 namespace aspic {
 

@@ -5,10 +5,10 @@
 #include <map>
 #include <utility>
 
-#include "pipeline/bisection.h"
 #include "data/surface_projection.h"
 #include "mesh/surface.h"
 #include "mesh/tet_nodes.h"
+#include "pipeline/bisection.h"
 
 namespace aspic {
 namespace {

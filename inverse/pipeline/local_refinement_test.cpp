@@ -6,11 +6,11 @@
 #include <map>
 #include <set>
 
+#include "data/surface_projection.h"
+#include "mesh/tet_nodes.h"
+#include "model/load_case.h"
 #include "pipeline/bisection.h"
 #include "pipeline/indented_block_test.h"
-#include "data/surface_projection.h"
-#include "model/load_case.h"
-#include "mesh/tet_nodes.h"
 
 namespace aspic {
 namespace {

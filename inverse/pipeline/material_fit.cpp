@@ -4,11 +4,11 @@
 #include <cmath>
 #include <utility>
 
+#include "estimate/law_errors.h"
+#include "model/condensed_readings.h"
+#include "model/quantity.h"
 #include "pipeline/fit_troubles.h"
 #include "pipeline/fit_verdict.h"
-#include "model/condensed_readings.h"
-#include "estimate/law_errors.h"
-#include "model/quantity.h"
 
 namespace aspic {
 namespace {

@@ -6,13 +6,13 @@
 #include <string>
 #include <vector>
 
+#include "estimate/parts.h"
+#include "model/common_errors.h"
+#include "model/misfit.h"
 #include "pipeline/fibre_search.h"
 #include "pipeline/fit_run.h"
 #include "pipeline/simulated_data.h"
 #include "pipeline/stiffness_change.h"
-#include "model/common_errors.h"
-#include "model/misfit.h"
-#include "estimate/parts.h"
 
 namespace aspic {
 

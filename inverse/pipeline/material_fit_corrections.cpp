@@ -2,9 +2,9 @@
 #include <algorithm>
 #include <cmath>
 
-#include "pipeline/material_fit.h"
 #include "estimate/nuisance_estimates.h"
 #include "model/systematic_errors.h"
+#include "pipeline/material_fit.h"
 
 namespace aspic {
 namespace {

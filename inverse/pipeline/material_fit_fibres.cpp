@@ -4,9 +4,9 @@
 #include <numbers>
 #include <set>
 
+#include "model/quantity.h"
 #include "pipeline/fit_troubles.h"
 #include "pipeline/material_fit.h"
-#include "model/quantity.h"
 
 namespace aspic {
 namespace {

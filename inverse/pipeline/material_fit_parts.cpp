@@ -1,9 +1,9 @@
 #include <algorithm>
 #include <cmath>
 
-#include "pipeline/material_fit.h"
-#include "model/quantity.h"
 #include "mesh/tet_mesh.h"
+#include "model/quantity.h"
+#include "pipeline/material_fit.h"
 
 namespace aspic {
 namespace {

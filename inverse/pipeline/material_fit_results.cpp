@@ -1,12 +1,12 @@
 #include <algorithm>
 #include <cmath>
 
+#include "math/vectors.h"
+#include "model/gauge.h"
+#include "model/quantity.h"
 #include "pipeline/fit_troubles.h"
 #include "pipeline/fitted_values.h"
 #include "pipeline/material_fit.h"
-#include "model/gauge.h"
-#include "model/quantity.h"
-#include "math/vectors.h"
 
 namespace aspic {
 namespace {

@@ -1,11 +1,11 @@
-// Recovers the material of scenes: virtual bench, fit, comparison with the truth. tests/bench/results/capture.md has more and
-// harder cases.
+// Recovers the material of scenes: virtual bench, fit, comparison with the truth. tests/bench/results/capture.md has
+// more and harder cases.
 #include <gtest/gtest.h>
 
 #include "data/capture_cases_test.h"
-#include "pipeline/fit_run.h"
 #include "data/judge.h"
 #include "data/synthesis.h"
+#include "pipeline/fit_run.h"
 
 namespace aspic {
 namespace {

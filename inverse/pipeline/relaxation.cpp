@@ -6,9 +6,9 @@
 
 #include "base/formatted.h"
 #include "base/number_chars.h"
-#include "pipeline/case_figures.h"
 #include "model/quantity.h"
 #include "model/refined_experiment.h"
+#include "pipeline/case_figures.h"
 
 namespace aspic {
 namespace {

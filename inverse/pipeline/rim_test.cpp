@@ -1,9 +1,9 @@
 // Layers under sliding discs, whose rims change the force.
 #include <gtest/gtest.h>
 
-#include "pipeline/quick_plan_test.h"
 #include "data/stated_errors.h"
 #include "indenter/indenter_depth.h"
+#include "pipeline/quick_plan_test.h"
 
 namespace aspic {
 namespace {

@@ -3,11 +3,11 @@
 #include <algorithm>
 #include <cmath>
 
-#include "pipeline/fit_troubles.h"
-#include "pipeline/local_refinement.h"
 #include "data/surface_projection.h"
 #include "estimate/law_errors.h"
 #include "model/systematic_errors.h"
+#include "pipeline/fit_troubles.h"
+#include "pipeline/local_refinement.h"
 
 namespace aspic {
 namespace {

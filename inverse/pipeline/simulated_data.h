@@ -6,10 +6,10 @@
 #include <string>
 #include <vector>
 
-#include "pipeline/fit_plan.h"
 #include "model/misfit.h"
 #include "model/refined_experiment.h"
 #include "model/robust_loss.h"
+#include "pipeline/fit_plan.h"
 
 namespace aspic {
 

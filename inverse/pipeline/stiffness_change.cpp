@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "model/quantity.h"
 #include "math/vectors.h"
+#include "model/quantity.h"
 
 namespace aspic {
 namespace {

@@ -3,8 +3,8 @@
 #include <optional>
 #include <vector>
 
-#include "model/misfit.h"
 #include "estimate/uncertainty.h"
+#include "model/misfit.h"
 
 namespace aspic {
 

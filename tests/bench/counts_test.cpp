@@ -48,7 +48,8 @@ Counts read_expected() {
 
 void write_expected(const Counts& counts) {
   std::ofstream file(kFile);
-  file << "# The most work that the beam with n = 7 may take: 10 falling steps, 5 bent ones (tests/bench/beam_problem.h).\n"
+  file << "# The most work that the beam with n = 7 may take: 10 falling steps, 5 bent ones "
+          "(tests/bench/beam_problem.h).\n"
           "# Lower counts are welcome. Renew after a change that is meant, and say why in its commit message:\n# "
        << kRenew << "\nbeam,solver,count,at most\n";
   for (const auto& [name, count] : counts) file << name << ',' << count << '\n';

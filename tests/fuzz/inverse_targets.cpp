@@ -4,9 +4,9 @@
 #include <string>
 
 #include "data/data_set.h"
-#include "pipeline/journal.h"
 #include "data/motion_table.h"
 #include "mesh/generators.h"
+#include "pipeline/journal.h"
 #include "run_files.h"
 #include "several_files.h"
 #include "targets.h"

@@ -2,8 +2,8 @@
 #include <string>
 
 #include "io/checkpoint.h"
-#include "run_files.h"
 #include "results/run_directory.h"
+#include "run_files.h"
 #include "several_files.h"
 #include "targets.h"
 #include "viewer/arguments.h"

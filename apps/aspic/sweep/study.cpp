@@ -4,13 +4,13 @@
 #include <cmath>
 #include <optional>
 
+#include "aspic/sweep/study_draws.h"
 #include "base/error.h"
 #include "base/formatted.h"
 #include "base/printable.h"
 #include "io/csv_reader.h"
 #include "scene/scene_document.h"
 #include "scene/schema_table.h"
-#include "aspic/sweep/study_draws.h"
 #include "scene/toml_reader.h"
 
 namespace aspic {

@@ -6,9 +6,9 @@
 #include <cmath>
 #include <set>
 
+#include "aspic/sweep/study_draws.h"
 #include "base/hash.h"
 #include "scene/scene_cases_test.h"
-#include "aspic/sweep/study_draws.h"
 
 namespace aspic {
 namespace {

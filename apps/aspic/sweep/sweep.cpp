@@ -9,13 +9,13 @@
 #include <sstream>
 
 #include "aspic/job_list.h"
+#include "aspic/sweep/study.h"
 #include "base/error.h"
 #include "base/printable.h"
 #include "io/atomic_file.h"
 #include "io/csv.h"
 #include "scene/scene.h"
 #include "scene/scene_document.h"
-#include "aspic/sweep/study.h"
 #include "scene/toml_reader.h"
 
 namespace aspic::cli {

@@ -6,9 +6,9 @@
 #include "arrays.h"
 #include "base/error.h"
 #include "bindings.h"
-#include "model/quantity.h"
 #include "material/list.h"
 #include "math/dual.h"
+#include "model/quantity.h"
 
 namespace aspic::python {
 namespace {
