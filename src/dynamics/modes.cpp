@@ -8,6 +8,7 @@
 
 #include "dynamics/incremental_potential.h"
 #include "linalg/cholesky.h"
+#include "linalg/rank_one_updates.h"
 #include "linalg/smallest_eigenpairs.h"
 
 namespace aspic {
