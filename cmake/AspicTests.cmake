@@ -15,7 +15,7 @@ endif()
 # add_aspic_tests(NAME SOURCES...): a program of unit tests.
 function(add_aspic_tests name)
   add_executable(${name} ${ARGN})
-  target_link_libraries(${name} PRIVATE aspic_verification aspic_build Eigen3::Eigen GTest::gmock GTest::gtest GTest::gtest_main)
+  target_link_libraries(${name} PRIVATE aspic_reference aspic_build Eigen3::Eigen GTest::gmock GTest::gtest GTest::gtest_main)
   target_include_directories(${name} PRIVATE ${aspic_REPOSITORY}/src ${aspic_REPOSITORY}/tests)
   target_compile_options(${name} PRIVATE ${test_optimization} -Wno-uninitialized)  # false alarms in AVX-512 headers
   gtest_discover_tests(${name} TEST_PREFIX ${name}. DISCOVERY_TIMEOUT 60 NO_PRETTY_VALUES)

@@ -23,9 +23,8 @@ foreach(module math linalg optimize energy mesh contact dynamics engine)
   add_dependencies(wasm_tests test_${module})
 endforeach()
 foreach(name affine_motion integrators models)  # shared with `aspic verify`
-  target_sources(test_dynamics PRIVATE ${PROJECT_SOURCE_DIR}/tests/verification/${name}.cpp)
+  target_sources(test_dynamics PRIVATE ${PROJECT_SOURCE_DIR}/tests/reference/${name}.cpp)
 endforeach()
-target_include_directories(test_dynamics PRIVATE ${PROJECT_SOURCE_DIR})
 
 # The engine's guard against miscompilation, also compiled with what it guards against.
 set(guard ${PROJECT_SOURCE_DIR}/apps/engine/self_test.cpp)

@@ -33,7 +33,7 @@ LIBRARIES = {  # first part of a third-party header: the files that may include 
     "benchmark": r"tests/bench/.*",
 }
 
-PARTS = ("src", "inverse", "distributed", "apps", "bindings/python", "tests/verification")
+PARTS = ("src", "inverse", "distributed", "apps", "bindings/python", "tests/reference", "tests/verification")
 PARTLY_MISSING = r"std::(ranges::|bit_cast\b|to_chars\(|from_chars\()"  # in the library of the WebAssembly build
 
 root = pathlib.Path(__file__).resolve().parent.parent
@@ -54,7 +54,7 @@ def layers():
 
 
 def module_of(name):
-    """Returns the module of a file; none for tests, examples and benchmarks, which may include everything."""
+    """Returns the module of a file; none for tests, examples and benchmarks."""
     parts = name.split("/")
     if name.endswith(("_test.cpp", "_test.h")) or "tests" in parts[1:] or not name.startswith(PARTS):
         return None
@@ -71,6 +71,8 @@ def check_sources(may_include):
                 if ours and module and ours[1] in may_include and ours[1] not in (module, name.split("/")[1]):
                     if ours[1] not in may_include[module]:
                         yield f"{name}:{number}: {module} must not include {ours[1]}"
+                if ours and ours[1] == "verification" and name.startswith(("src/", "inverse/")):
+                    yield f"{name}:{number}: unit tests share tests/reference with the verification, nothing else"
                 theirs = re.match(r"#include <([\w+.]+)", line)
                 if theirs and theirs[1] in LIBRARIES and not re.fullmatch(LIBRARIES[theirs[1]], name):
                     yield f"{name}:{number}: {theirs[1]} may not be included here"

@@ -8,9 +8,9 @@
 #include "aspic/commands.h"
 #include "aspic/interrupt.h"
 #include "aspic/landscape_picture.h"
-#include "aspic/progress.h"
 #include "aspic/run_report.h"
 #include "aspic/step_json.h"
+#include "aspic/step_loop.h"
 #include "aspic/summary.h"
 #include "aspic/sweep/outcome.h"
 #include "base/error.h"
@@ -37,14 +37,6 @@ struct RunArguments {
   bool force = false, resume = false, continues = false, trace = false, quiet = false, json = false,
        allow_unconverged = false;
 };
-
-constexpr int kWarningsShown = 5;
-
-std::string explanation_text(const Explanation& why) {
-  std::string text = fmt::format("\n  cause:  {}", why.cause);
-  if (!why.place.empty()) text += fmt::format("\n  where:  {}", why.place);
-  return text + fmt::format("\n  remedy: {}", why.remedy);
-}
 
 std::vector<LandscapeAt> landscapes(const RunArguments& arguments) {
   std::vector<LandscapeAt> places;
@@ -101,89 +93,53 @@ RunDirectory open_directory(const RunArguments& arguments, Scene& scene) {
   return RunDirectory::create(path, scene, replaces ? ExistingRun::overwrite : ExistingRun::refuse);
 }
 
-// Simulates the steps of one run and notifies the observers.
-class Runner {
+// A run in this process, with its trace.
+class LocalRun : public SteppedRun {
  public:
-  Runner(const RunArguments& arguments, Scene& scene, RunDirectory& directory, const StopToken& stop)
-      : arguments_(arguments),
-        stop_(stop),
-        scene_(scene),
-        directory_(directory),
-        human_(human_stream(arguments)),
-        last_step_(arguments.steps > 0 ? arguments.steps : scene.steps),
-        first_step_(scene.simulation.steps_taken()) {
-    if (!arguments.quiet) progress_.emplace(human_, first_step_, last_step_);
-    if (arguments.trace || !arguments.landscapes.empty()) start_trace();
+  LocalRun(const RunArguments& arguments, Scene& scene, RunDirectory& directory)
+      : arguments_(arguments), scene_(scene), directory_(directory) {
+    if (!arguments.trace && arguments.landscapes.empty()) return;
+    const LineSearchOptions& line_search = scene.simulation.options().solver.minimize.line_search;
+    trace_.emplace(directory.trace_folder(scene.simulation.steps_taken()),
+                   TraceOptions{landscapes(arguments), line_search.sufficient_decrease});
   }
 
-  // Stops early after a signal or at the time limit. Discards an unfinished step, so the output ends with a complete
-  // step.
-  void run() {
-    Simulation& simulation = scene_.simulation;
-    while (simulation.steps_taken() < last_step_ && !interrupt_signal()) {
-      has_run_out_ = stop_.expired();
-      if (has_run_out_) break;
-      iterations_.clear();
-      const auto observe = [&](const LiveIteration& iteration) {
-        iterations_.push_back(iteration);
-        if (trace_) trace_->on_iteration(simulation.steps_taken() + 1, iteration);
-        if (progress_) progress_->show(simulation.steps_taken() + 1, iteration);
-      };
-      const StepReport report = simulation.step(observe, stop_);
-      if (report.status == Status::interrupted) {
-        has_run_out_ = !interrupt_signal();
-        break;
-      }
-      record(report);
-      // The state is unchanged, so an explicit scheme, which has no fallback, would fail again.
-      has_blown_up_ = report.status == Status::undefined && !simulation.integrator().is_implicit;
-      if (has_blown_up_) break;
-    }
-    directory_.finish(simulation);
-    if (progress_) progress_->finish();
-    if (trace_) finish_trace();
-    if (has_blown_up_)
-      fmt::print(stderr, "stopped after step {} of {}: the explicit scheme blew up and left no finite state\n",
-                 simulation.steps_taken(), last_step_);
+  const Simulation& simulation() const override { return scene_.simulation; }
+  int signal() override { return interrupt_signal(); }
+
+  StepReport step(const IterationObserver& observe, const StopToken& stop) override {
+    const auto traced = [&](const LiveIteration& iteration) {
+      if (trace_) trace_->on_iteration(scene_.simulation.steps_taken() + 1, iteration);
+      observe(iteration);
+    };
+    return scene_.simulation.step(traced, stop);
   }
 
-  bool has_blown_up() const { return has_blown_up_; }
-  bool has_run_out() const { return has_run_out_; }
-  const RunTotals& totals() const { return totals_; }
-  std::FILE* human() const { return human_; }
-  int last_step() const { return last_step_; }
-
- private:
-  void record(const StepReport& report) {
-    for (const Iteration& iteration : iterations_) directory_.on_iteration(report.step, iteration);
+  Explanation record(const StepReport& report, const std::vector<Iteration>& iterations) override {
+    for (const Iteration& iteration : iterations) directory_.on_iteration(report.step, iteration);
     directory_.on_step(report, scene_.simulation);
-    totals_.add(report);
-    const Explanation why = explain(scene_.simulation, report);
-    if (!is_success(report.status) && report.status != Status::budget) warn(report, why);
-    if (is_success(report.status) && report.lost_accuracy > 0 && !has_warned_of_round_off_) {
-      has_warned_of_round_off_ = true;
-      say(fmt::format("warning: step {}: {}", report.step, explanation_text(why)));
-    }
+    Explanation why = explain(scene_.simulation, report);
     if (arguments_.json) {
       fmt::print("{}\n", step_json(report, why, scene_.simulation));
       std::fflush(stdout);
     }
-    if (progress_) progress_->show(report);
+    return why;
   }
 
-  void start_trace() {
-    const LineSearchOptions& line_search = scene_.simulation.options().solver.minimize.line_search;
-    trace_.emplace(directory_.trace_folder(first_step_),
-                   TraceOptions{landscapes(arguments_), line_search.sufficient_decrease});
+  void finish() {
+    directory_.finish(scene_.simulation);
+    if (trace_) finish_trace();
   }
 
+ private:
   void finish_trace() {
     trace_->close();
     for (const LandscapeAt& at : trace_->missed())
       fmt::print(stderr, "warning: no landscape {0}:{1}: the run has no iteration {1} of step {0}\n", at.step,
                  at.iteration);
     draw_landscapes();
-    if (!arguments_.quiet) fmt::print(human_, "trace      {}\n", printable(trace_->folder().string()));
+    if (!arguments_.quiet)
+      fmt::print(human_stream(arguments_), "trace      {}\n", printable(trace_->folder().string()));
   }
 
   void draw_landscapes() const {
@@ -198,39 +154,10 @@ class Runner {
     }
   }
 
-  void warn(const StepReport& report, const Explanation& why) {
-    const int count = totals_.unconverged;
-    if (count > kWarningsShown) return;
-    std::string line = fmt::format("warning: step {} did not converge: {}", report.step, to_string(report.status));
-    if (report.residual_threshold > 0)
-      line += fmt::format(" after {} iterations; residual {:.3g} N, tolerance {:.3g} N", report.iterations,
-                          report.residual, report.residual_threshold);
-    if (why.cause != last_cause_) line += explanation_text(why);
-    last_cause_ = why.cause;
-    if (count == kWarningsShown) line += " (further failures are only counted)";
-    say(line);
-  }
-
-  void say(const std::string& line) {
-    if (progress_) {
-      progress_->message(line);
-    } else {
-      fmt::print(stderr, "{}\n", line);
-    }
-  }
-
   const RunArguments& arguments_;
-  const StopToken stop_;
   Scene& scene_;
   RunDirectory& directory_;
-  std::FILE* human_;
-  int last_step_, first_step_;
-  bool has_blown_up_ = false, has_run_out_ = false, has_warned_of_round_off_ = false;
-  std::optional<Progress> progress_;
   std::optional<Trace> trace_;
-  std::vector<Iteration> iterations_;  // iterations of the step in progress; recorded at its end
-  RunTotals totals_;
-  std::string last_cause_;  // last explained cause
 };
 
 void print_start(std::FILE* stream, const RunArguments& arguments, const Scene& scene, const fs::path& directory) {
@@ -257,12 +184,12 @@ int exit_code(const RunArguments& arguments, bool has_run_out, int unconverged) 
   return exit_done;
 }
 
-std::string outcome(const Runner& runner, const Scene& scene, int unconverged) {
+std::string outcome(const StepLoop& loop, const Scene& scene, int unconverged) {
   const int steps = scene.simulation.steps_taken();
-  if (runner.has_blown_up()) return fmt::format("{}: the explicit scheme blew up after step {}", kFailed, steps);
-  if (steps < runner.last_step())
-    return runner.has_run_out() ? fmt::format("{}: by the time limit", kStopped)
-                                : fmt::format("{}: by signal {}", kStopped, interrupt_signal());
+  if (loop.has_blown_up()) return fmt::format("{}: the explicit scheme blew up after step {}", kFailed, steps);
+  if (steps < loop.last_step())
+    return loop.has_run_out() ? fmt::format("{}: by the time limit", kStopped)
+                              : fmt::format("{}: by signal {}", kStopped, interrupt_signal());
   return unconverged > 0 ? kUnconverged : kDone;
 }
 
@@ -290,18 +217,21 @@ int run(const RunArguments& arguments) {
 
   const int earlier = count_steps(directory.path(), scene.simulation.steps_taken()).unconverged;
 
-  Runner runner(arguments, scene, directory, stop);
-  if (!arguments.quiet) print_start(runner.human(), arguments, scene, directory.path());
+  LocalRun local(arguments, scene, directory);
+  std::FILE* const human = arguments.quiet ? nullptr : human_stream(arguments);
+  StepLoop loop(local, {.last_step = last_step, .progress = human, .stop = stop});
+  if (human) print_start(human, arguments, scene, directory.path());
   if (!scene.start_warning.empty()) fmt::print(stderr, "warning: {}\n", scene.start_warning);
-  runner.run();
-  if (!arguments.quiet) {
-    if (earlier > 0) fmt::print(runner.human(), "{} of the earlier steps did not converge\n", earlier);
-    print_summary(runner.human(), runner.totals(),
-                  {.last_step = runner.last_step(),
+  loop.run();
+  local.finish();
+  if (human) {
+    if (earlier > 0) fmt::print(human, "{} of the earlier steps did not converge\n", earlier);
+    print_summary(human, loop.totals(),
+                  {.last_step = last_step,
                    .steps_taken = scene.simulation.steps_taken(),
                    .interrupted = interrupt_signal() != 0,
-                   .time_limit = runner.has_run_out() ? arguments.time_limit : 0,
-                   .blown_up = runner.has_blown_up(),
+                   .time_limit = loop.has_run_out() ? arguments.time_limit : 0,
+                   .blown_up = loop.has_blown_up(),
                    .solver = scene.simulation.integrator().is_implicit ? scene.simulation.solver_description() : "",
                    .start_warning = scene.start_warning,
                    .inverted = inverted_tets(scene.simulation),
@@ -309,11 +239,11 @@ int run(const RunArguments& arguments) {
                    .pins = pin_names(scene.simulation.model()),
                    .directory = directory.path()});
   }
-  write_run_report(directory.path(), scene, arguments.quiet ? nullptr : runner.human());
-  if (arguments.continues)
-    write_outcome(directory.path(), outcome(runner, scene, earlier + runner.totals().unconverged));
-  if (runner.has_blown_up()) return exit_unconverged;  // --allow-unconverged does not apply to an unfinished run
-  return exit_code(arguments, runner.has_run_out(), earlier + runner.totals().unconverged);
+  write_run_report(directory.path(), scene, human);
+  const int unconverged = earlier + loop.totals().unconverged;
+  if (arguments.continues) write_outcome(directory.path(), outcome(loop, scene, unconverged));
+  if (loop.has_blown_up()) return exit_unconverged;  // --allow-unconverged does not apply to an unfinished run
+  return exit_code(arguments, loop.has_run_out(), unconverged);
 }
 
 }  // namespace

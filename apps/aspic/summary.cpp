@@ -103,18 +103,19 @@ void print_contact(std::FILE* stream, const RunTotals& totals, const RunEnd& end
   fmt::print(stream, "\n");
 }
 
-void print_inverted(std::FILE* stream, const RunTotals& totals, const InvertedTets& end) {
-  if (totals.with_inverted_tets == 0 && end.count == 0) return;
+void print_inverted(std::FILE* stream, const RunTotals& totals, const std::optional<InvertedTets>& end) {
+  if (totals.with_inverted_tets == 0 && (!end || end->count == 0)) return;
   fmt::print(stream, "inverted   ");
-  if (end.count > 0) {
-    fmt::print(stream, "{} tets at the end, the smallest det F is {:.3g} in {}; ", end.count, end.least_det, end.worst);
-  } else {
+  if (end && end->count > 0) {
+    fmt::print(stream, "{} tets at the end, the smallest det F is {:.3g} in {}; ", end->count, end->least_det,
+               end->worst);
+  } else if (end) {
     fmt::print(stream, "no tet at the end; ");
   }
   fmt::print(stream, "some tet in {} of {} steps, first in step {}, with det F down to {:.3g} ({})\n",
              totals.with_inverted_tets, totals.steps, totals.first_inverted, totals.least_det_F,
-             end.are_quadratic ? "quadratic tets are checked everywhere: a finer mesh helps"
-                               : "material.model = \"neo_hookean_log\" keeps every tet from inverting");
+             end && end->are_quadratic ? "quadratic tets are checked everywhere: a finer mesh helps"
+                                       : "material.model = \"neo_hookean_log\" keeps every tet from inverting");
 }
 
 constexpr size_t kMaxReactions = 6;
@@ -219,7 +220,7 @@ void print_summary(std::FILE* stream, const RunTotals& totals, const RunEnd& end
   fmt::print(stream, "state      {} after step {}\n", hex_digits(end.state_hash), end.steps_taken);
   print_results(stream, end.directory);
   if (end.interrupted || end.time_limit > 0) {
-    fmt::print(stream, "continue   aspic run {} --resume\n", printable(end.directory.string()));
+    fmt::print(stream, "continue   {} run {} --resume\n", end.program, printable(end.directory.string()));
   }
 }
 

@@ -48,12 +48,13 @@ struct RunEnd {
   bool interrupted = false;
   double time_limit = 0;  // limit that ended the run [s]; 0: none
   bool blown_up = false;
-  std::string solver;             // methods, their choices and the reasons; empty: no solver
-  std::string start_warning;      // see Scene::start_warning
-  InvertedTets inverted;          // in the last state
-  std::uint64_t state_hash = 0;   // hash of the last state
-  std::vector<std::string> pins;  // names of RunTotals::reactions
+  std::string solver;                    // methods, their choices and the reasons; empty: no solver
+  std::string start_warning;             // see Scene::start_warning
+  std::optional<InvertedTets> inverted;  // in the last state, if it is known
+  std::uint64_t state_hash = 0;          // hash of the last state
+  std::vector<std::string> pins;         // names of RunTotals::reactions
   std::filesystem::path directory;
+  std::string program = "aspic";  // that continues the run
 };
 
 void print_summary(std::FILE* stream, const RunTotals& totals, const RunEnd& end);

@@ -8,10 +8,11 @@
 #include <filesystem>
 #include <optional>
 
+#include "aspic/step_loop.h"
+#include "aspic/summary.h"
 #include "base/error.h"
 #include "base/free_memory.h"
 #include "base/printable.h"
-#include "base/stopwatch.h"
 #include "ranks/distributed_simulation.h"
 #include "ranks/exchange.h"
 #include "ranks/guarded.h"
@@ -155,14 +156,13 @@ const char* remedy_for(Status status) {
   return "choose a smaller time.step, or a material that tolerates inversion";
 }
 
-// Simulates the steps; rank 0 prints.
-class Runner {
+// A run on all ranks. Every function is collective unless it is const.
+class RankRun : public cli::SteppedRun {
  public:
   // `opened`: on rank 0.
-  Runner(const RunArguments& arguments, Opened opened)
-      : arguments_(arguments), opened_(std::move(opened)), prints_(distributed::rank_of_this_process() == 0) {
+  RankRun(const RunArguments& arguments, Opened opened) : arguments_(arguments), opened_(std::move(opened)) {
     Table document = share_document();
-    steps_ = arguments_.steps > 0 ? arguments_.steps : steps_of(*document.find("time"));
+    last_step_ = arguments_.steps > 0 ? arguments_.steps : steps_of(*document.find("time"));
     const OutputOptions output = output_options(*document.find("output"));
     SceneFiles files(fs::path(opened_.file).parent_path(), false);
     distributed::RankScene scene =
@@ -174,17 +174,46 @@ class Runner {
     open_files({opened_.run_directory, opened_.resolved, output});
   }
 
-  int run() {
-    if (prints_ && !arguments_.quiet) print_start();
-    while (simulation_->steps_taken() < steps_ && signal_ == 0) {
-      step();
-      signal_ = distributed::largest_of_ranks(received);
-    }
+  int last_step() const { return last_step_; }
+  const Simulation& simulation() const override { return simulation_->local(); }
+  int signal() override { return distributed::largest_of_ranks(received); }
+  StepReport step(const IterationObserver& observe, const StopToken&) override { return simulation_->step(observe); }
+
+  Explanation record(const StepReport& report, const std::vector<Iteration>& iterations) override {
+    files_->on_step(report, iterations, *simulation_);
+    if (is_success(report.status)) return {};
+    Explanation why{
+        .cause = "a force remains that the step did not balance", .place = {}, .remedy = remedy_for(report.status)};
+    if (report.worst_vertex < 0) return why;
+    const distributed::NamedPlace worst = simulation_->place_of(report.worst_vertex);
+    why.place = fmt::format("vertex {} at ({:.4g}, {:.4g}, {:.4g}) m: {:.3g} N", worst.user_vertex, worst.position[0],
+                            worst.position[1], worst.position[2], report.worst_residual);
+    return why;
+  }
+
+  void print_start() const {
+    for (const std::string& note : opened_.notes) fmt::print("note: {}\n", note);
+    const BodyRange& last = simulation_->share().of_bodies.back();
+    const Simulation& local = simulation_->local();
+    fmt::print("{}: {} vertices, {} tets; {}, {}; {} ranks, meshes in {}; into {}\n", opened_.name,
+               last.first_vertex + last.vertex_count, last.first_tet + last.tet_count, local.options().integrator,
+               local.solver_description(), distributed::rank_count(), is_sliced_ ? "slices" : "one piece",
+               printable(opened_.run_directory));
+    if (simulation_->steps_taken() > 0) fmt::print("resuming after step {}\n", simulation_->steps_taken());
+    std::fflush(stdout);
+  }
+
+  // Returns what the summary says.
+  cli::RunEnd finish(const cli::StepLoop& loop) {
     files_->finish(*simulation_);
-    finish();
-    if (signal_ == SIGUSR1) return kStopped;
-    if (signal_ != 0) return kSignal + signal_;
-    return unconverged_ > 0 && !arguments_.allow_unconverged ? kUnconverged : kDone;
+    return {.last_step = last_step_,
+            .steps_taken = simulation_->steps_taken(),
+            .interrupted = signal() != 0,
+            .blown_up = loop.has_blown_up(),
+            .solver = simulation_->local().solver_description(),
+            .state_hash = simulation_->state_hash(),
+            .directory = opened_.run_directory,
+            .program = fmt::format("mpirun -n {} aspic-mpi", distributed::rank_count())};
   }
 
  private:
@@ -221,72 +250,21 @@ class Runner {
     opened_.generated_meshes.clear();
   }
 
-  void step() {
-    std::vector<Iteration> iterations;
-    const StepReport report =
-        simulation_->step([&](const LiveIteration& iteration) { iterations.push_back(iteration); });
-    newton_ += report.iterations;
-    linear_ += report.linear_iterations;
-    files_->on_step(report, iterations, *simulation_);
-    if (!is_success(report.status)) {
-      ++unconverged_;
-      warn(report);
-    }
-  }
-
-  void warn(const StepReport& report) {
-    constexpr int kShown = 5;
-    if (unconverged_ > kShown) return;
-    std::string place;
-    if (report.worst_vertex >= 0) {
-      const distributed::NamedPlace worst = simulation_->place_of(report.worst_vertex);
-      place = fmt::format("vertex {} at ({:.4g}, {:.4g}, {:.4g}) m is farthest from balance: {:.3g} N remain; ",
-                          worst.user_vertex, worst.position[0], worst.position[1], worst.position[2],
-                          report.worst_residual);
-    }
-    if (prints_)
-      fmt::print(stderr, "warning: step {} did not converge: {}; {}{}{}\n", report.step, to_string(report.status),
-                 place, remedy_for(report.status),
-                 unconverged_ == kShown ? " (further failures are only counted)" : "");
-  }
-
-  void print_start() const {
-    for (const std::string& note : opened_.notes) fmt::print("note: {}\n", note);
-    const BodyRange& last = simulation_->share().of_bodies.back();
-    const Simulation& local = simulation_->local();
-    fmt::print("{}: {} vertices, {} tets; {}, {}; {} ranks, meshes in {}; into {}\n", opened_.name,
-               last.first_vertex + last.vertex_count, last.first_tet + last.tet_count, local.options().integrator,
-               local.solver_description(), distributed::rank_count(), is_sliced_ ? "slices" : "one piece",
-               printable(opened_.run_directory));
-    if (simulation_->steps_taken() > 0) fmt::print("resuming after step {}\n", simulation_->steps_taken());
-    std::fflush(stdout);
-  }
-
-  // The largest memory of ranks other than 0 shows what a share needs.
-  void finish() {
-    const int own = static_cast<int>(peak_megabytes());
-    const int first = distributed::largest_of_ranks(prints_ ? own : 0);
-    const int others = distributed::largest_of_ranks(prints_ ? 0 : own);
-    const std::uint64_t hash = simulation_->state_hash();
-    if (!prints_ || arguments_.quiet) return;
-    fmt::print("{} steps, {} Newton iterations, {} linear iterations, {:.2f} s\n", simulation_->steps_taken(), newton_,
-               linear_, stopwatch_.lap());
-    if (unconverged_ > 0) fmt::print("{} steps did not converge\n", unconverged_);
-    fmt::print("peak memory {} MB on rank 0, {} MB on the others\n", first, others);
-    if (signal_ != 0) fmt::print("stopped by signal {}; --resume continues\n", signal_);
-    fmt::print("state hash {:016x}\n", hash);
-  }
-
   const RunArguments& arguments_;
   Opened opened_;  // only partly on other ranks
-  bool prints_;
   bool is_sliced_ = false;
   std::optional<distributed::DistributedSimulation> simulation_;
   std::optional<distributed::RankFiles> files_;
-  Stopwatch stopwatch_;
-  int steps_ = 0, signal_ = 0;
-  int newton_ = 0, linear_ = 0, unconverged_ = 0;
+  int last_step_ = 0;
 };
+
+// The largest memory of ranks other than 0 shows what a share needs. Collective.
+void print_memory(bool prints) {
+  const int own = static_cast<int>(peak_megabytes());
+  const int first = distributed::largest_of_ranks(prints ? own : 0);
+  const int others = distributed::largest_of_ranks(prints ? 0 : own);
+  if (prints) fmt::print("memory     {} MB on rank 0, at most {} MB on the others\n", first, others);
+}
 
 }  // namespace
 
@@ -295,8 +273,19 @@ int run(const RunArguments& arguments) {
   const int ranks_here = distributed::ranks_on_this_machine();
   distributed::succeeds_on(0, [&] { opened = open(arguments, ranks_here); });
   catch_signals();
-  Runner runner(arguments, std::move(opened));
-  return runner.run();
+  RankRun all(arguments, std::move(opened));
+  const bool prints = distributed::rank_of_this_process() == 0;
+  std::FILE* const human = prints && !arguments.quiet ? stdout : nullptr;
+  if (human) all.print_start();
+  cli::StepLoop loop(all, {.last_step = all.last_step(), .warns = prints, .progress = human, .stop = {}});
+  loop.run();
+  const cli::RunEnd end = all.finish(loop);
+  if (human) cli::print_summary(human, loop.totals(), end);
+  if (!arguments.quiet) print_memory(prints);
+  const int signal = all.signal();
+  if (signal == SIGUSR1) return kStopped;
+  if (signal != 0) return kSignal + signal;
+  return loop.has_blown_up() || (loop.totals().unconverged > 0 && !arguments.allow_unconverged) ? kUnconverged : kDone;
 }
 
 }  // namespace aspic::mpi

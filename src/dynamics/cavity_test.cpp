@@ -14,8 +14,8 @@
 #include "dynamics/state.h"
 #include "dynamics/step_derivatives.h"
 #include "mesh/tet_nodes.h"
-#include "verification/hollow_sphere.h"
-#include "verification/statics.h"
+#include "reference/hollow_sphere.h"
+#include "reference/statics.h"
 
 namespace aspic {
 namespace {

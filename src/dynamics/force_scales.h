@@ -65,7 +65,7 @@ class ForceScales : public HasParts {
   };
   // Divides the vertices into parts. `growth` is scratch.
   void measure_parts(std::span<const double> modulus, const BlockSparse& H, std::span<double> growth);
-  int own() const { return model_.share.own(model_.mesh.vertex_count()); }  // see Share
+  int own() const { return model_.own_rows(); }  // see Share
   double free_norm(std::span<const double> v) const;
   double largest_position(std::span<const double> q) const;  // largest |q| of all vertices
   double round_off_at(std::span<const double> q, const BlockSparse& H);

@@ -34,7 +34,7 @@ void ImplicitStage::predict(const StepTools& tools, const StageOptions& options)
   path->place_velocity(options.time, b);
   std::fill(predicted_.begin(), predicted_.end(), 0.0);
   path->place_acceleration(options.time, predicted_);
-  for (int v = 0; v < tools.pins.vertex_count(); ++v) {
+  for (int v = 0; v < tools.pins.rows(); ++v) {
     const Vec3d velocity = point(b, v), dx = tools.pins.held_part(v, velocity), ddx = point(predicted_, v);
     const bool is_held = tools.pins.holds(v), is_free = tools.pins.is_free(v);
     for (int r = 0; r < 3; ++r) {

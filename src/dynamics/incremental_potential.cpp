@@ -17,7 +17,7 @@ BlockPattern pattern_of(const Model& model) {
   for (const auto& V : model.elasticity) V->add_couplings(couplings);
   for (const auto& V : model.loads) V->add_couplings(couplings);
   for (const auto& D : model.damping) D->add_couplings(couplings);
-  BlockPattern pattern = make_pattern(model.mesh.vertex_count(), std::move(couplings));
+  BlockPattern pattern = make_pattern(model.rows(), std::move(couplings));
   pattern.rest_position = model.mesh.rest;
   return pattern;
 }
@@ -27,7 +27,7 @@ BlockPattern pattern_of(const Model& model) {
 IncrementalPotential::IncrementalPotential(const Model& model, const Pins& pins)
     : model_(model),
       pins_(pins),
-      own_(model.share.own(model.mesh.vertex_count())),
+      own_(model.own_rows()),
       pattern_(pattern_of(model)),
       terms_(model, pattern_),
       rows_(terms_, pins),

@@ -7,7 +7,7 @@
 #include <map>
 
 #include "dynamics/models_test.h"
-#include "verification/integrators.h"
+#include "reference/integrators.h"
 
 namespace aspic {
 namespace {

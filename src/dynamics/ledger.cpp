@@ -55,7 +55,7 @@ void note_friction(const StepTools& tools, const ActiveTerm& term, std::span<con
   friction.add_change(q, term.context(), change);
   double squares = 0, most = 0;
   int worst = -1;
-  for (int v = 0; v < tools.pins.vertex_count(); ++v) {
+  for (int v = 0; v < tools.pins.rows(); ++v) {
     const Vec3d free = tools.pins.free_part(v, point(change, v));
     const double square = dot(free, free);
     squares += square;
@@ -67,7 +67,7 @@ void note_friction(const StepTools& tools, const ActiveTerm& term, std::span<con
   if (parts[0] >= 0) report.friction_pair = tools.model.contact->mesh().pair_name(parts);
 }
 
-int own_vertices(const StepTools& tools) { return tools.model.share.own(tools.pins.vertex_count()); }
+int own_vertices(const StepTools& tools) { return tools.model.own_rows(); }
 
 struct ObstacleWork {
   double contact = 0, friction = 0;  // [J]
@@ -108,7 +108,7 @@ struct Ledger::Works {
 double kinetic_energy(const Model& model, std::span<const double> qdot, std::span<double> momentum) {
   model.mass->multiply(qdot, momentum);
   double T = 0;
-  const int own = 3 * model.share.own(model.mesh.vertex_count());
+  const int own = 3 * model.own_rows();
   for (int i = 0; i < own; ++i) T += 0.5 * qdot[i] * momentum[i];
   return model.share.sum(T);
 }

@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "dynamics/models_test.h"
-#include "verification/integrators.h"
+#include "reference/integrators.h"
 
 namespace aspic {
 namespace {

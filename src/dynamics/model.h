@@ -55,6 +55,10 @@ struct Model {
   const Friction* friction = nullptr;                      // one of the damping terms; null: no friction
   // If several processes hold the model, value(), min_det_F() and the counts of its terms are those of the whole model.
   Share share;
+
+  // Rows of the state and of the Hessian, each of 3 degrees of freedom: one per vertex.
+  int rows() const { return mesh.vertex_count(); }
+  int own_rows() const { return share.own(rows()); }
 };
 
 }  // namespace aspic

@@ -10,7 +10,7 @@
 #include "energy/springs.h"
 #include "material/lame.h"
 #include "mesh/generators.h"
-#include "verification/models.h"
+#include "reference/models.h"
 
 namespace aspic::testing_models {
 

@@ -8,6 +8,7 @@
 
 #include "dynamics/incremental_potential.h"
 #include "linalg/cholesky.h"
+#include "linalg/rank_one_updates.h"
 #include "linalg/smallest_eigenpairs.h"
 
 namespace aspic {
@@ -51,7 +52,7 @@ double growth_rate(const Model& model, const IncrementalPotential& E) {
 
 int free_dimension(const Pins& pins) {
   double trace = 0;
-  for (int v = 0; v < pins.vertex_count(); ++v)
+  for (int v = 0; v < pins.rows(); ++v)
     for (int axis = 0; axis < 3; ++axis) {
       Vec3d unit{};
       unit[axis] = 1;
@@ -63,7 +64,7 @@ int free_dimension(const Pins& pins) {
 // Returns the rounding error of squared rates: the machine precision times a bound of the largest one.
 double round_off(const Model& model, const Pins& pins, const BlockSparse& K) {
   double largest = 0;
-  for (int v = 0; v < pins.vertex_count(); ++v)
+  for (int v = 0; v < pins.rows(); ++v)
     if (!pins.holds(v))
       largest = std::max(largest, trace(K.block[K.pattern->diagonal(v)]) / model.mass->vertex_mass()[v]);
   return 16 * std::numeric_limits<double>::epsilon() * largest;

@@ -33,7 +33,7 @@ void PinPath::sample(const Pins& pins, double time, double end_time, int points)
   points_ = pins.any_moves() ? points : 0;
   x_.resize(points_);
   for (int j = 0; j < points_; ++j) {
-    x_[j].assign(3 * static_cast<size_t>(pins.vertex_count()), 0.0);
+    x_[j].assign(3 * static_cast<size_t>(pins.rows()), 0.0);
     pins.place(j == points - 1 ? end_time : time + h_ * j / (points - 1), x_[j]);
   }
 }
@@ -42,7 +42,7 @@ void PinPath::differentiate(double time, int derivative, std::span<double> out) 
   std::array<double, kMaxPoints> weight{};
   for (int j = 0; j < points_; ++j)
     weight[j] = basis_derivative(j, points_, (time - time_) / h_, derivative) / (derivative == 1 ? h_ : h_ * h_);
-  for (int v = 0; v < pins_->vertex_count(); ++v) {
+  for (int v = 0; v < pins_->rows(); ++v) {
     if (pins_->is_free(v)) continue;
     Vec3d sum{};  // the weights sum to zero, so the velocity of a pin at rest is exactly zero
     Vec3d given;

@@ -123,12 +123,12 @@ void Pins::place(double time, std::span<double> x) const {
 }
 
 void Pins::set_zero(std::span<double> v) const {
-  for (int i = 0; i < vertex_count(); ++i)
+  for (int i = 0; i < rows(); ++i)
     if (kind_[i] != kFree) set_vec(free_part(i, vec_at(v, i)), i, v);
 }
 
 void Pins::copy_held(std::span<const double> from, std::span<double> to) const {
-  for (int i = 0; i < vertex_count(); ++i) {
+  for (int i = 0; i < rows(); ++i) {
     if (kind_[i] == kFree) continue;
     const Vec3d held = held_part(i, vec_at(from, i));
     set_vec(kind_[i] == kHeld ? held : free_part(i, vec_at(to, i)) + held, i, to);

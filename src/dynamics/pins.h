@@ -19,7 +19,7 @@ class Pins {
   // `start`: x at time 0, 3 per vertex [m]. `pins` must outlive this.
   Pins(const std::vector<Pin>& pins, std::span<const double> start);
 
-  int vertex_count() const { return static_cast<int>(kind_.size()); }
+  int rows() const { return static_cast<int>(kind_.size()); }        // of the model
   bool holds(int vertex) const { return kind_[vertex] == kHeld; }    // in all directions
   bool is_free(int vertex) const { return kind_[vertex] == kFree; }  // no pin holds it in any direction
   bool holds(int vertex, int axis) const;  // along a direction with a component along the axis

@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "dynamics/models_test.h"
-#include "verification/statics.h"
+#include "reference/statics.h"
 
 namespace aspic {
 namespace {

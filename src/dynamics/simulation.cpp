@@ -319,7 +319,7 @@ struct Simulation::Impl {
 };
 
 Simulation::Simulation(Model model, State initial, SimulationOptions options) {
-  const size_t n = 3 * static_cast<size_t>(model.mesh.vertex_count());
+  const size_t n = 3 * static_cast<size_t>(model.rows());
   if (initial.q.size() != n || initial.qdot.size() != n)
     throw InvalidInput("the initial state has " + std::to_string(initial.q.size()) + " and " +
                        std::to_string(initial.qdot.size()) + " entries; the model needs " + std::to_string(n));
@@ -389,7 +389,7 @@ std::vector<double> Simulation::potential_energies() const {
 std::vector<double> Simulation::reactions() const {
   const std::span<const double> residual = impl_->ledger.residual();
   std::vector<double> forces(impl_->state.q.size(), std::numeric_limits<double>::quiet_NaN());
-  for (int v = 0; v < impl_->pins->vertex_count() && !residual.empty(); ++v)
+  for (int v = 0; v < impl_->pins->rows() && !residual.empty(); ++v)
     set_vec(impl_->pins->held_part(v, point(residual, v)), v, forces);
   return forces;
 }

@@ -1,10 +1,10 @@
-// Order in time, measured by a motion that linear tets represent exactly: tests/verification/integrators.h.
+// Order in time, measured by a motion that linear tets represent exactly: tests/reference/integrators.h.
 #include <gtest/gtest.h>
 
 #include <cmath>
 
 #include "dynamics/models_test.h"
-#include "verification/integrators.h"
+#include "reference/integrators.h"
 
 namespace aspic {
 namespace {

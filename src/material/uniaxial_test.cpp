@@ -2,7 +2,7 @@
 #include <gtest/gtest.h>
 
 #include "material/states.h"
-#include "verification/uniaxial.h"
+#include "reference/uniaxial.h"
 
 namespace aspic {
 namespace {

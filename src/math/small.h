@@ -148,4 +148,9 @@ Mat3<T> outer(const Vec3<T>& a, const Vec3<T>& b) {  // a b'
   return from_columns(b[0] * a, b[1] * a, b[2] * a);
 }
 
+// Compiled once: otherwise the linker takes the code of any file that does not inline them, and files round
+// differently.
+extern template Mat3d operator*(const Mat3d& A, const Mat3d& B);
+extern template Mat3d inverse(const Mat3d& A);
+
 }  // namespace aspic

@@ -66,4 +66,7 @@ SymmetricEigen<N, T> symmetric_eigen(std::array<T, N * N> A) {
   return e;
 }
 
+extern template SymmetricEigen<3, double> symmetric_eigen<3, double>(
+    std::array<double, 9> A);  // compiled once, as in small.h
+
 }  // namespace aspic

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "linalg/conjugate_gradient.h"
+#include "linalg/rank_one_updates.h"
 #include "optimize/search_direction.h"
 
 namespace aspic {

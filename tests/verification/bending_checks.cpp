@@ -3,9 +3,9 @@
 #include <cmath>
 #include <string>
 
+#include "reference/models.h"
+#include "reference/statics.h"
 #include "verification/families.h"
-#include "verification/models.h"
-#include "verification/statics.h"
 
 namespace aspic::verify {
 namespace {

@@ -6,9 +6,9 @@
 #include <numbers>
 
 #include "mesh/generators.h"
+#include "reference/models.h"
+#include "reference/statics.h"
 #include "verification/families.h"
-#include "verification/models.h"
-#include "verification/statics.h"
 
 namespace aspic::verify {
 namespace {

@@ -5,8 +5,8 @@
 #include <vector>
 
 #include "contact/barrier.h"
+#include "reference/models.h"
 #include "verification/check.h"
-#include "verification/models.h"
 
 namespace aspic::verify {
 

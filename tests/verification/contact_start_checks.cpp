@@ -3,9 +3,9 @@
 #include <cmath>
 
 #include "mesh/generators.h"
+#include "reference/statics.h"
 #include "verification/contact_models.h"
 #include "verification/families.h"
-#include "verification/statics.h"
 
 namespace aspic::verify {
 namespace {

@@ -5,10 +5,10 @@
 
 #include "material/lame.h"
 #include "mesh/tet_nodes.h"
+#include "reference/membrane_reference.h"
+#include "reference/models.h"
+#include "reference/statics.h"
 #include "verification/families.h"
-#include "verification/membrane_reference.h"
-#include "verification/models.h"
-#include "verification/statics.h"
 
 namespace aspic::verify {
 namespace {

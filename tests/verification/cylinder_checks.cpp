@@ -2,9 +2,9 @@
 #include <cmath>
 
 #include "mesh/generators.h"
+#include "reference/radial_reference.h"
+#include "reference/statics.h"
 #include "verification/families.h"
-#include "verification/radial_reference.h"
-#include "verification/statics.h"
 
 namespace aspic::verify {
 namespace {

@@ -4,8 +4,8 @@
 
 #include "dynamics/step_derivatives.h"
 #include "mesh/generators.h"
+#include "reference/models.h"
 #include "verification/families.h"
-#include "verification/models.h"
 
 namespace aspic::verify {
 namespace {

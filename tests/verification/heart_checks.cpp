@@ -9,9 +9,9 @@
 #include "mesh/generators.h"
 #include "mesh/tet_nodes.h"
 #include "mesh/tet_shape.h"
+#include "reference/models.h"
+#include "reference/statics.h"
 #include "verification/families.h"
-#include "verification/models.h"
-#include "verification/statics.h"
 
 namespace aspic::verify {
 namespace {

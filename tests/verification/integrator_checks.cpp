@@ -2,8 +2,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "reference/integrators.h"
 #include "verification/families.h"
-#include "verification/integrators.h"
 
 namespace aspic::verify {
 namespace {

@@ -5,8 +5,8 @@
 
 #include "math/vectors.h"
 #include "mesh/generators.h"
+#include "reference/models.h"
 #include "verification/families.h"
-#include "verification/models.h"
 
 namespace aspic::verify {
 namespace {

@@ -2,9 +2,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "reference/models.h"
+#include "reference/uniaxial.h"
 #include "verification/families.h"
-#include "verification/models.h"
-#include "verification/uniaxial.h"
 
 namespace aspic::verify {
 namespace {

@@ -2,8 +2,8 @@
 #include <algorithm>
 
 #include "mesh/generators.h"
+#include "reference/models.h"
 #include "verification/families.h"
-#include "verification/models.h"
 
 namespace aspic::verify {
 

@@ -7,9 +7,9 @@
 #include "material/list.h"
 #include "mesh/generators.h"
 #include "mesh/tet_nodes.h"
+#include "reference/integrators.h"
+#include "reference/statics.h"
 #include "verification/families.h"
-#include "verification/integrators.h"
-#include "verification/statics.h"
 
 namespace aspic::verify {
 namespace {

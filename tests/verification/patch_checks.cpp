@@ -5,9 +5,9 @@
 #include "math/vectors.h"
 #include "mesh/generators.h"
 #include "mesh/tet_nodes.h"
+#include "reference/statics.h"
+#include "reference/uniaxial.h"
 #include "verification/families.h"
-#include "verification/statics.h"
-#include "verification/uniaxial.h"
 
 namespace aspic::verify {
 namespace {

@@ -14,9 +14,9 @@
 #include "math/jet.h"
 #include "math/vectors.h"
 #include "optimize/derivative_check.h"
+#include "reference/models.h"
+#include "reference/uniaxial.h"
 #include "verification/families.h"
-#include "verification/models.h"
-#include "verification/uniaxial.h"
 
 namespace aspic::verify {
 namespace {

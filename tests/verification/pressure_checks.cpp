@@ -9,11 +9,11 @@
 #include "energy/cavity.h"
 #include "mesh/generators.h"
 #include "mesh/tet_nodes.h"
+#include "reference/hollow_sphere.h"
+#include "reference/models.h"
+#include "reference/radial_reference.h"
+#include "reference/statics.h"
 #include "verification/families.h"
-#include "verification/hollow_sphere.h"
-#include "verification/models.h"
-#include "verification/radial_reference.h"
-#include "verification/statics.h"
 
 namespace aspic::verify {
 namespace {

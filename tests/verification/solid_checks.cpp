@@ -3,10 +3,10 @@
 #include <numbers>
 
 #include "mesh/generators.h"
+#include "reference/hollow_sphere.h"
+#include "reference/radial_reference.h"
+#include "reference/statics.h"
 #include "verification/families.h"
-#include "verification/hollow_sphere.h"
-#include "verification/radial_reference.h"
-#include "verification/statics.h"
 
 namespace aspic::verify {
 namespace {

@@ -10,9 +10,9 @@
 #include <string>
 #include <vector>
 
+#include "reference/membrane_reference.h"
+#include "reference/radial_reference.h"
 #include "verification/check.h"
-#include "verification/membrane_reference.h"
-#include "verification/radial_reference.h"
 
 namespace aspic::verify {
 

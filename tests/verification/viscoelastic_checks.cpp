@@ -7,8 +7,8 @@
 
 #include "mesh/generators.h"
 #include "mesh/tet_nodes.h"
+#include "reference/models.h"
 #include "verification/families.h"
-#include "verification/models.h"
 
 namespace aspic::verify {
 namespace {

@@ -4,9 +4,9 @@
 
 #include "mesh/generators.h"
 #include "mesh/tet_nodes.h"
+#include "reference/models.h"
+#include "reference/statics.h"
 #include "verification/families.h"
-#include "verification/models.h"
-#include "verification/statics.h"
 
 namespace aspic::verify {
 namespace {

@@ -34,7 +34,7 @@ void hold_at(std::span<const double> q, const Model& model, Snapshot& snapshot) 
   pins.place(snapshot.state.time, prescribed);
   const std::vector<const Pin*> pin_of = pins_of_vertices(model);
   const double round_off = kRoundOff * max_abs(snapshot.state.q);
-  for (int v = 0; v < pins.vertex_count(); ++v) {
+  for (int v = 0; v < pins.rows(); ++v) {
     const Vec3d x = vec_at(q, v), now = vec_at(snapshot.state.q, v), target = vec_at(prescribed, v);
     if (norm(x - target) <= round_off) continue;
     if (pin_of[v] && pin_of[v]->motion) {
@@ -50,7 +50,7 @@ void hold_at(std::span<const double> q, const Model& model, Snapshot& snapshot) 
 void refuse_velocities_of_pins(std::span<const double> velocity, const Model& model, const Snapshot& snapshot) {
   const Pins pins(model.pins, snapshot.start.q);
   const double round_off = kRoundOff * std::max(max_abs(snapshot.state.qdot), max_abs(velocity));
-  for (int i = 0; i < pins.vertex_count(); ++i) {
+  for (int i = 0; i < pins.rows(); ++i) {
     const Vec3d v = vec_at(velocity, i), now = vec_at(snapshot.state.qdot, i);
     if (norm(pins.held_part(i, v)) <= round_off || norm(pins.held_part(i, v - now)) <= round_off) continue;
     throw InvalidInput(entry_of("v", model, i, v) +

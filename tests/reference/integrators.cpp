@@ -1,4 +1,4 @@
-#include "verification/integrators.h"
+#include "reference/integrators.h"
 
 #include <cmath>
 #include <numbers>

@@ -1,4 +1,4 @@
-#include "verification/hollow_sphere.h"
+#include "reference/hollow_sphere.h"
 
 #include <algorithm>
 #include <map>

@@ -1,4 +1,4 @@
-#include "verification/radial_reference.h"
+#include "reference/radial_reference.h"
 
 #include <algorithm>
 #include <cmath>
@@ -6,7 +6,7 @@
 #include <numbers>
 #include <stdexcept>
 
-#include "verification/uniaxial.h"
+#include "reference/uniaxial.h"
 
 namespace aspic::verify {
 namespace {

@@ -3,7 +3,7 @@
 
 #include "energy/linear_load.h"
 #include "mesh/generators.h"
-#include "verification/integrators.h"
+#include "reference/integrators.h"
 
 namespace aspic::verify {
 namespace {

@@ -1,4 +1,4 @@
-#include "verification/statics.h"
+#include "reference/statics.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,4 +1,4 @@
-#include "verification/uniaxial.h"
+#include "reference/uniaxial.h"
 
 namespace aspic::verify {
 

@@ -1,4 +1,4 @@
-#include "verification/membrane_reference.h"
+#include "reference/membrane_reference.h"
 
 #include <algorithm>
 #include <cmath>

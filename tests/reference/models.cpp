@@ -1,4 +1,4 @@
-#include "verification/models.h"
+#include "reference/models.h"
 
 #include <algorithm>
 #include <stdexcept>

@@ -1,11 +1,11 @@
-#include "verification/uniaxial.h"
+#include "reference/uniaxial.h"
 
 #include <cmath>
 #include <functional>
 #include <stdexcept>
 
 #include "mesh/generators.h"
-#include "verification/models.h"
+#include "reference/models.h"
 
 namespace aspic::verify {
 namespace {

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "verification/models.h"
+#include "reference/models.h"
 
 namespace aspic::verify {
 

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "mesh/surface.h"
-#include "verification/models.h"
+#include "reference/models.h"
 
 namespace aspic::verify {
 
