@@ -73,7 +73,7 @@ INTEGRATOR_CHECK = """
 #include <cstdio>
 #include <numbers>
 #include "dynamics/integrator.h"
-#include "verification/integrators.h"
+#include "reference/integrators.h"
 using namespace aspic;
 int main() {
   const verify::Oscillation row = verify::expected_oscillations().at("sdirk2"), found = verify::measured_oscillation("sdirk2");
@@ -177,7 +177,7 @@ def main():
         (copy / "spin.toml").write_text(SCENE)
         edits = ["src/scene/schema_table.cpp", "src/scene/scene_builder.cpp"]
         program("scene_check", SCENE_CHECK, [energy, *edits], "test_scene", str(copy / "spin.toml"))
-        edits = ["src/dynamics/integrator.cpp", "tests/verification/integrators.cpp"]
+        edits = ["src/dynamics/integrator.cpp", "tests/reference/integrators.cpp"]
         program("integrator_check", INTEGRATOR_CHECK, edits, "test_dynamics")
         for path in touched:
             if path.startswith("inverse/"):
