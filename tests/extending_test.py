@@ -1,5 +1,6 @@
 #!/usr/bin/env python3
-"""Follows docs/extending.md: applies its files and edits to a copy of the sources, compiles them, runs its tests.
+"""Follows docs/extending.md: applies its files and edits to a copy of the sources, compiles them, and compares the added material,
+energy, scene key and integrator with formulas of its own.
 
 extending_test.py SOURCE BUILD [NODE]
 """
@@ -31,6 +32,58 @@ int main() {
   const double expected = double(NeoHookeanSimo::reference_energy(PrincipalStretches(l), {E, nu}));
   std::printf("psi %.15g, reference %.15g\\n", psi, expected);
   return std::abs(psi - expected) < 1e-12 * expected ? 0 : 1;
+}
+"""
+
+# The potential is compared with its formula, and the first step with the acceleration |w|^2 r of the center.
+SCENE_CHECK = """
+#include <cmath>
+#include <cstdio>
+#include "scene/scene.h"
+using namespace aspic;
+int main(int, char** argv) {
+  Scene scene = load_scene(argv[1]);
+  Simulation& s = scene.simulation;
+  const StepReport report = s.step();
+  const auto mass = s.model().mass->vertex_mass();
+  double V = 0, all = 0, momentum = 0;
+  for (size_t v = 0; v < mass.size(); ++v) {
+    const double x = s.state().q[3 * v], y = s.state().q[3 * v + 1];
+    V -= 0.5 * mass[v] * 4 * (x * x + y * y);
+    all += mass[v], momentum += mass[v] * s.state().qdot[3 * v];
+  }
+  double reported = 0;
+  for (const auto& [name, value] : report.potential)
+    if (name.find("centrifugal") != std::string::npos) reported = value;
+  std::printf("potential %.12g, expected %.12g; velocity %g, expected 0.04\\n", reported, V, momentum / all);
+  return is_success(report.status) && std::abs(reported / V - 1) < 1e-10 && std::abs(momentum / all / 0.04 - 1) < 0.01 ? 0 : 1;
+}
+"""
+SCENE = """gravity = [0, 0, 0]
+spin = [0, 0, 2]
+time = { step = 0.01 }
+[[body]]
+shape = { box = { lower = [0.95, -0.05, -0.05], upper = [1.05, 0.05, 0.05], cells = [2, 2, 2] } }
+"""
+
+# The oscillator with w h = 0.1 is compared with the stability function of the scheme and with the row of the page.
+INTEGRATOR_CHECK = """
+#include <cmath>
+#include <complex>
+#include <cstdio>
+#include <numbers>
+#include "dynamics/integrator.h"
+#include "reference/integrators.h"
+using namespace aspic;
+int main() {
+  const verify::Oscillation row = verify::expected_oscillations().at("sdirk2"), found = verify::measured_oscillation("sdirk2");
+  const double g = 1 - std::sqrt(0.5);
+  const std::complex<double> z(0, 0.1), r = (1. + (1 - 2 * g) * z) / ((1. - g * z) * (1. - g * z));
+  const double left = std::pow(std::norm(r), 2 * std::numbers::pi / 0.1), ratio = std::arg(r) / 0.1;
+  std::printf("energy left %.9f, expected %.9f; frequency %.9f, expected %.9f\\n", found.energy_left, left, found.frequency_ratio, ratio);
+  return std::abs(found.energy_left - left) < 1e-7 && std::abs(found.frequency_ratio - ratio) < 1e-6 &&
+         std::abs(row.energy_left - left) < 6e-7 && std::abs(row.frequency_ratio - ratio) < 6e-6 &&
+         verify::expected_oscillations().size() + 1 == integrator_names().size() ? 0 : 1;
 }
 """
 
@@ -66,11 +119,11 @@ def compiler_flags():
     sys.exit("the build has no compile command of test_lessons")
 
 
-def libraries():
-    """Returns the libraries that test_energy links."""
+def libraries(test):
+    """Returns the libraries that a test of the build links; definitions of changed sources come before those of the libraries."""
     rules = (build / "build.ninja").read_text()
-    at = re.search(r"^build bin/test_energy\b.*:", rules, re.M).end()
-    return shlex.split(re.search(r"LINK_LIBRARIES = (.*)", rules[at:])[1])
+    at = re.search(rf"^build bin/{test}\b.*:", rules, re.M).end()
+    return ["-Wl,-z,muldefs", *shlex.split(re.search(r"LINK_LIBRARIES = (.*)", rules[at:])[1])]
 
 
 def run(command, **options):
@@ -78,35 +131,56 @@ def run(command, **options):
     subprocess.run(command, check=True, timeout=600, **options)
 
 
+def apply(page, copy):
+    """Applies the page to the copy and returns the touched files."""
+    touched = []
+    for path, language, code in blocks(page):
+        file = copy / path
+        if not (source / path.split("/")[0]).exists():  # a package that was removed
+            continue
+        if language == "diff":
+            file.parent.mkdir(parents=True, exist_ok=True)
+            text = (file if file.exists() else source / path).read_text()
+            file.write_text(edited(text, code, path))
+        else:
+            assert not (source / path).exists(), f"{path} exists already; choose another name for the example"
+            file.write_text(code)
+        touched.append(path)
+    for path in re.findall(r"`((?:src|apps|web|tests|docs)/[\w./]+)`", page):
+        assert (copy / path).exists() or (source / path).exists(), f"{path} does not exist"
+    assert len(touched) >= 12, touched
+    return list(dict.fromkeys(touched))
+
+
 def main():
     with tempfile.TemporaryDirectory() as folder:
         copy = pathlib.Path(folder)
         for name in ("src", "apps", "web"):
             shutil.copytree(source / name, copy / name, symlinks=True, ignore=shutil.ignore_patterns("node_modules", "dist"))
-        touched = []
-        for path, language, code in blocks((source / "docs/extending.md").read_text()):
-            file = copy / path
-            if language == "diff":
-                file.write_text(edited(file.read_text(), code, path))
-            else:
-                assert not file.exists(), f"{path} exists already; choose another name for the example"
-                file.write_text(code)
-            touched.append(path)
-        assert len(touched) >= 13, touched
-
+        touched = apply((source / "docs/extending.md").read_text(), copy)
         directory, flags = compiler_flags()
         # The copies of headers and sources come first.
-        compiler, flags = flags[0], [f"-I{copy / 'src'}", f"-I{copy / 'apps'}", "-O0", '-DASPIC_VERSION="0"', *flags[1:]]
-        (copy / "material_check.cpp").write_text(MATERIAL_CHECK)
+        roots = [copy / "src", copy / "apps", copy / "tests", source / "tests", source / "inverse"]
+        compiler, flags = flags[0], [*(f"-I{root}" for root in roots), "-O0", '-DASPIC_VERSION="0"', *flags[1:]]
 
-        def program(name, sources, link):
-            run([compiler, *flags, "-o", str(copy / name), *map(str, sources), *link], cwd=build)
-            run([str(copy / name)])
+        def program(name, main, sources, test, *arguments):
+            sources = [copy / path for path in sources]
+            if main:
+                (copy / f"{name}.cpp").write_text(main)
+                sources.insert(0, copy / f"{name}.cpp")
+            run([compiler, *flags, "-o", str(copy / name), *map(str, sources), *(libraries(test) if test else [])], cwd=build)
+            run([str(copy / name), *arguments])
 
-        program("material_check", [copy / "material_check.cpp"], [])
-        program("energy_check", [copy / f"src/energy/centrifugal{end}.cpp" for end in ("", "_test")], libraries())
-        for path in dict.fromkeys(touched):
-            if path.endswith(".cpp") and "centrifugal" not in path:
+        program("material_check", MATERIAL_CHECK, [], None)
+        energy = "src/energy/centrifugal.cpp"
+        program("energy_check", None, [energy, "src/energy/centrifugal_test.cpp"], "test_energy")
+        (copy / "spin.toml").write_text(SCENE)
+        edits = ["src/scene/schema_table.cpp", "src/scene/scene_builder.cpp"]
+        program("scene_check", SCENE_CHECK, [energy, *edits], "test_scene", str(copy / "spin.toml"))
+        edits = ["src/dynamics/integrator.cpp", "tests/reference/integrators.cpp"]
+        program("integrator_check", INTEGRATOR_CHECK, edits, "test_dynamics")
+        for path in touched:
+            if path.startswith("inverse/"):
                 run([compiler, *flags, "-fsyntax-only", str(copy / path)], cwd=directory)
         script = f"include({copy}/src/material/materials.cmake)\nif(NOT \"neo_hookean_simo NeoHookeanSimo\" IN_LIST materials)\nmessage(FATAL_ERROR \"not listed\")\nendif()\n"
         (copy / "list.cmake").write_text("cmake_minimum_required(VERSION 3.25)\n" + script)

@@ -11,12 +11,12 @@ import sys
 import tempfile
 
 source, cmake = pathlib.Path(sys.argv[1]), sys.argv[2]
-LEFT_OUT = shutil.ignore_patterns(".git", "build", "out", "node_modules", "__pycache__")
+IGNORED = shutil.ignore_patterns(".git", "build", "out", "node_modules", "__pycache__")
 
 
 def units(folder):
     """Returns the compiled files of a build in `folder` and the text of those that include others, without the folder's name."""
-    shutil.copytree(source, folder / "aspic", ignore=LEFT_OUT)
+    shutil.copytree(source, folder / "aspic", ignore=IGNORED)
     build = folder / "aspic/build"
     subprocess.run([cmake, "-S", folder / "aspic", "-B", build, "-G", "Ninja", "-DCMAKE_BUILD_TYPE=Release", "-DASPIC_TESTS=OFF",
                     "-DASPIC_BENCH=OFF", "-DASPIC_MESHER=OFF", "-DASPIC_VIEWER=OFF"], check=True, capture_output=True)

@@ -56,7 +56,7 @@ class Schema(unittest.TestCase):
                      "pin = { where = { lowest = 0.1 } }", "material = { young = { regions = { 1 = 1e5 } } }"):
             self.assertTrue(body(line), line)
 
-    def test_knows_alternatives(self):
+    def test_describes_alternatives(self):
         self.assertFalse(body('mesh = "a.mesh"'))
         self.assertFalse(accepts("[[body]]\nname = 'none'"))
         self.assertTrue(body("material = { lambda = 1e5, mu = 1e5 }"))

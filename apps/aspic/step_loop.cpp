@@ -58,7 +58,7 @@ void StepLoop::record(const StepReport& report) {
   if (!is_success(report.status) && report.status != Status::budget) warn(report, why);
   if (is_success(report.status) && report.lost_accuracy > 0 && !has_warned_of_round_off_) {
     has_warned_of_round_off_ = true;
-    say(fmt::format("warning: step {}: {}", report.step, explanation_text(why)));
+    print(fmt::format("warning: step {}: {}", report.step, explanation_text(why)));
   }
   if (progress_) progress_->show(report);
 }
@@ -73,10 +73,10 @@ void StepLoop::warn(const StepReport& report, const Explanation& why) {
   if (why.cause != last_cause_) line += explanation_text(why);
   last_cause_ = why.cause;
   if (count == kWarningsShown) line += " (further failures are only counted)";
-  say(line);
+  print(line);
 }
 
-void StepLoop::say(const std::string& line) {
+void StepLoop::print(const std::string& line) {
   if (progress_) {
     progress_->message(line);
   } else if (options_.warns) {

@@ -49,7 +49,7 @@ class StepLoop {
   bool advance();  // false: the run ends before its last step
   void record(const StepReport& report);
   void warn(const StepReport& report, const Explanation& why);
-  void say(const std::string& line);
+  void print(const std::string& line);
 
   SteppedRun& run_;
   LoopOptions options_;

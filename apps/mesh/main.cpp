@@ -34,7 +34,7 @@ struct Farewell {
   std::string message;
   int exit_code = 0;
 
-  [[noreturn]] void say() const {
+  [[noreturn]] void print() const {
     [[maybe_unused]] const ssize_t written = ::write(STDERR_FILENO, message.data(), message.size());
     ::_exit(exit_code);
   }
@@ -46,7 +46,7 @@ Farewell out_of_time, fault;  // set before the signals can arrive
 // replaces the first.
 void limit_time(double seconds, const std::string& message) {
   out_of_time = {message, kOutOfTime};
-  std::signal(SIGALRM, [](int) { out_of_time.say(); });
+  std::signal(SIGALRM, [](int) { out_of_time.print(); });
   constexpr double kLongest = 1e9;  // [s]
   const double bounded = std::clamp(seconds, 1e-3, kLongest);
   itimerval timer{};
@@ -65,7 +65,7 @@ void end_faults(int exit_code, const std::string& message) {
   stack.ss_size = handler_stack.size();
   ::sigaltstack(&stack, nullptr);
   struct sigaction action {};
-  action.sa_handler = [](int) { fault.say(); };
+  action.sa_handler = [](int) { fault.print(); };
   action.sa_flags = SA_ONSTACK;
   for (const int signal : {SIGSEGV, SIGBUS, SIGFPE, SIGILL, SIGABRT}) ::sigaction(signal, &action, nullptr);
 }

@@ -31,9 +31,9 @@ double scalar_product(std::span<const double> a, std::span<const double> b) {
 
 // Observes a repeated step and samples E around one of its iterations. A step of several stages has several
 // minimizations: the count of iterations includes all of them, the path only the one with that iteration.
-class Look {
+class ObservedIteration {
  public:
-  Look(int iteration, double sufficient_decrease, int tets, const StopToken& stop)
+  ObservedIteration(int iteration, double sufficient_decrease, int tets, const StopToken& stop)
       : iteration_(iteration), sufficient_decrease_(sufficient_decrease), tets_(tets), stop_(stop) {}
 
   void follow(const LiveIteration& live);
@@ -66,13 +66,13 @@ class Look {
   Json path_ = Json::array(), end_;
 };
 
-void Look::follow(const LiveIteration& live) {
-  const bool is_looked_at = count_++ == iteration_;
+void ObservedIteration::follow(const LiveIteration& live) {
+  const bool is_requested = count_++ == iteration_;
   if (live.index == 0) {
     if (is_met()) is_of_path_ = false;
     before_.clear();
   }
-  if (is_looked_at) {
+  if (is_requested) {
     take(live);
     for (const Iterate& iterate : before_) path_.push_back(on_plane(iterate.x, iterate.value));
     before_.clear();
@@ -86,7 +86,7 @@ void Look::follow(const LiveIteration& live) {
   }
 }
 
-void Look::take(const LiveIteration& live) {
+void ObservedIteration::take(const LiveIteration& live) {
   value_ = live.value;
   alpha_ = live.alpha;
   tried_.assign(live.tried.begin(), live.tried.end());
@@ -97,7 +97,7 @@ void Look::take(const LiveIteration& live) {
   slice_ = slice_through(live, slice_samples(tets_), stop_);
 }
 
-Json Look::on_plane(std::span<const double> x, double value) const {
+Json ObservedIteration::on_plane(std::span<const double> x, double value) const {
   if (slice_.across.empty()) return nullptr;  // no plane
   std::vector<double> away(x.begin(), x.end());
   for (size_t i = 0; i < away.size(); ++i) away[i] -= x_[i];
@@ -132,7 +132,7 @@ Json slice_json(const Slice& slice) {
           {"blocked", blocked}};
 }
 
-Json Look::reply() && {
+Json ObservedIteration::reply() && {
   path_.push_back(std::move(end_));
   return {{"value", value_},
           {"alpha", alpha_},
@@ -161,15 +161,15 @@ Json to_json(const std::vector<CurvePoint>& curve) {
 
 Json iteration_reply(Side& side, int step, int iteration, const StopToken& stop) {
   const double c = side.simulation().options().solver.minimize.line_search.sufficient_decrease;
-  Look look(iteration, c, side.model().mesh.tet_count(), stop);
+  ObservedIteration observed(iteration, c, side.model().mesh.tet_count(), stop);
   const StepReport report = side.repeat(
-      step, [&](const LiveIteration& live) { look.follow(live); }, stop);
+      step, [&](const LiveIteration& live) { observed.follow(live); }, stop);
   if (stop.stopped()) throw Interrupted("interrupted by a command; repeat the question");
-  if (!look.is_met())
-    throw InvalidInput(look.iterations() == 0 ? fmt::format("step {} minimizes nothing", step)
-                                              : fmt::format("iteration {}: step {} has iterations 0 to {}", iteration,
-                                                            step, look.iterations() - 1));
-  Json reply = std::move(look).reply();
+  if (!observed.is_met())
+    throw InvalidInput(observed.iterations() == 0 ? fmt::format("step {} minimizes nothing", step)
+                                                  : fmt::format("iteration {}: step {} has iterations 0 to {}",
+                                                                iteration, step, observed.iterations() - 1));
+  Json reply = std::move(observed).reply();
   reply["step"] = step;
   reply["iteration"] = iteration;
   reply["text"] = describe(report, side.history().rows().find(step));

@@ -131,7 +131,7 @@ class Recorder {
     const std::vector<Frame> frames = read(evenly(frame_count(), most_in_memory()));
     for (int wanted = static_cast<int>(frames.size());;) {
       const std::vector<int> chosen = evenly(static_cast<int>(frames.size()), wanted);
-      const std::string note = left_out(wanted);
+      const std::string note = omission_note(wanted);
       std::string text = packed(frames, chosen, note);
       if (text.size() <= options_.max_bytes) return {std::move(text), frame_count(), wanted, note};
       if (wanted <= 2) refuse(text.size());
@@ -197,7 +197,7 @@ class Recorder {
     }
   }
 
-  std::string left_out(int frames) const {
+  std::string omission_note(int frames) const {
     if (frames == frame_count()) return "";
     return std::to_string(frames) + " of the run's " + std::to_string(frame_count()) +
            " frames are included, at even intervals, to respect the size limit (--max-size)";

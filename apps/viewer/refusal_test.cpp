@@ -111,7 +111,7 @@ TEST(Session, DropsAnInterruptedStep) {
 
 TEST(Session, OpensLessons) {
   const std::string scene = Page::scene_file(kBeam);
-  Lesson lesson{.id = "33", .pages = "33", .title = "Mouse", .claim = "c", .look = "l", .scene = scene};
+  Lesson lesson{.id = "33", .pages = "33", .title = "Mouse", .claim = "c", .exercise = "l", .scene = scene};
   lesson.overrides = {"time.step=0.02"};
   lesson.comparison = {{{"time.step=0.01"}, "h/2"}};
   lesson.function = R"({"name": "two_bump", "start": [0, 0], "settings": {}, "iteration": 0, "samples": 11})";

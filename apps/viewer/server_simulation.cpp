@@ -61,7 +61,7 @@ bool SimulationThread::interrupt_if_slow() {
   Urgency most = Urgency::none;
   for (const Request& request : inbox_) most = std::max(most, request.urgency);
   if (most == Urgency::none) return false;
-  if (busy_since_ && most >= gives_way_to_ && Clock::now() - *busy_since_ > kSlow) session_.interrupt();
+  if (busy_since_ && most >= interruptible_by_ && Clock::now() - *busy_since_ > kSlow) session_.interrupt();
   return true;
 }
 
@@ -123,7 +123,7 @@ auto SimulationThread::interruptibly(Urgency for_what, Work work) {
   {
     const std::lock_guard lock(mutex_);
     busy_since_ = Clock::now();
-    gives_way_to_ = for_what;
+    interruptible_by_ = for_what;
   }
   auto result = work();
   const std::lock_guard lock(mutex_);
@@ -133,8 +133,8 @@ auto SimulationThread::interruptibly(Urgency for_what, Work work) {
 
 void SimulationThread::carry_out(const Request& request) {
   if (request.text.empty()) return audience_.greet(request.page, session_.greeting(request.role));
-  const Urgency gives_way_to = request.is_question ? Urgency::before_questions : Urgency::before_steps;
-  Answer answer = interruptibly(gives_way_to, [&] { return session_.handle(request.text, request.role); });
+  const Urgency interruptible_by = request.is_question ? Urgency::before_questions : Urgency::before_steps;
+  Answer answer = interruptibly(interruptible_by, [&] { return session_.handle(request.text, request.role); });
   if (!answer.to_all.empty()) audience_.broadcast(std::move(answer.to_all));
   if (!answer.to_sender.empty() && request.page != kNoPage) audience_.reply(request.page, std::move(answer.to_sender));
 }

@@ -80,8 +80,8 @@ class SimulationThread {
   std::deque<Request> inbox_;
   size_t inbox_bytes_ = 0;
   bool woken_ = false, stopping_ = false, has_ended_ = false, pictures_wanted_ = false;
-  std::optional<Clock::time_point> busy_since_;   // start of the current interruptible work
-  Urgency gives_way_to_ = Urgency::before_steps;  // minimum urgency that interrupts this work
+  std::optional<Clock::time_point> busy_since_;       // start of the current interruptible work
+  Urgency interruptible_by_ = Urgency::before_steps;  // minimum urgency that interrupts this work
   std::exception_ptr failure_;
 
   std::thread thread_;

@@ -207,11 +207,11 @@ TEST_F(ServerTest, ContinuesWithoutADroppedPage) {
   hello(stays);
   stays.send(R"({"do":"play"})");
   for (int i = 0; i < 5; ++i) {
-    TestPage goes(*server_);
-    hello(goes);
-    goes.ready();
-    EXPECT_FALSE(goes.next("steps").is_null());
-    goes.drop();
+    TestPage leaving(*server_);
+    hello(leaving);
+    leaving.ready();
+    EXPECT_FALSE(leaving.next("steps").is_null());
+    leaving.drop();
   }
   EXPECT_FALSE(stays.next("steps").is_null());
   stays.ready();

@@ -24,7 +24,7 @@ struct Answer {
 
 // A page of a lecture in the viewer: its scene, comparison, recorded mouse and panel.
 struct Lesson {
-  std::string id, pages, title, claim, look;
+  std::string id, pages, title, claim, exercise;
   std::string question, answer;  // for the reader; empty: none
   std::string panel = "energy";  // "energy", "microscope", "landscape" or "functions"
   bool is_log = false;           // logarithmic energies

@@ -30,8 +30,8 @@ Message text(const Json& json) { return {false, json.dump(-1, ' ', false, Json::
 Message hello(const std::vector<Lesson>& lessons, Role role) {
   Json list = Json::array();
   for (const Lesson& lesson : lessons) {
-    Json json = {{"id", lesson.id},       {"pages", lesson.pages}, {"title", lesson.title},
-                 {"claim", lesson.claim}, {"look", lesson.look},   {"panel", lesson.panel}};
+    Json json = {{"id", lesson.id},       {"pages", lesson.pages},       {"title", lesson.title},
+                 {"claim", lesson.claim}, {"exercise", lesson.exercise}, {"panel", lesson.panel}};
     if (!lesson.question.empty()) json["question"] = lesson.question, json["answer"] = lesson.answer;
     if (lesson.is_log) json["log"] = true;
     if (!lesson.function.empty()) json["function"] = Json::parse(lesson.function, nullptr, false);

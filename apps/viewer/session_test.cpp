@@ -34,19 +34,19 @@ TEST(Session, StepsAndPlaysAndPauses) {
 TEST(Session, IsBitReproducibleAfterSingleIterations) {
   for (const char* integrator : {"backward_euler", "tr_bdf2", "midpoint", "symplectic_euler"}) {
     const std::vector<std::string> overrides = {std::string("time.integrator=") + integrator, "time.step=0.0005"};
-    Page whole(kBeam, overrides), looked(kBeam, overrides);
+    Page whole(kBeam, overrides), iterated(kBeam, overrides);
     whole.grab_end({1, 0.3, 0});
-    looked.grab_end({1, 0.3, 0});
+    iterated.grab_end({1, 0.3, 0});
     whole.steps(4);
     ASSERT_EQ(whole.side()["step"], 4);
-    looked.steps(1);
-    looked.send({{"do", "iterate"}});
-    looked.send({{"do", "step"}});  // the rest of step 2, if any
-    for (int i = 0; i < 500 && looked.side()["step"] < 4; ++i) looked.send({{"do", "iterate"}});
-    ASSERT_EQ(looked.side()["step"], 4);
-    if (looked.side()["iteration"] != -1) looked.send({{"do", "step"}});
-    EXPECT_EQ(looked.picture().positions, whole.picture().positions) << integrator;
-    EXPECT_EQ(looked.rows()[3]["kinetic"], whole.rows()[3]["kinetic"]) << integrator;
+    iterated.steps(1);
+    iterated.send({{"do", "iterate"}});
+    iterated.send({{"do", "step"}});  // the rest of step 2, if any
+    for (int i = 0; i < 500 && iterated.side()["step"] < 4; ++i) iterated.send({{"do", "iterate"}});
+    ASSERT_EQ(iterated.side()["step"], 4);
+    if (iterated.side()["iteration"] != -1) iterated.send({{"do", "step"}});
+    EXPECT_EQ(iterated.picture().positions, whole.picture().positions) << integrator;
+    EXPECT_EQ(iterated.rows()[3]["kinetic"], whole.rows()[3]["kinetic"]) << integrator;
   }
 }
 

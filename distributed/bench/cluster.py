@@ -158,8 +158,8 @@ def main():
     arguments.add_argument("--newton", type=int, help="limit of Newton iterations for size")
     arguments.add_argument("--linear", default="multigrid", help="solver.linear of the scenes (default: %(default)s)")
     options = arguments.parse_args()
-    if unknown := set(options.kind) - set(kinds):
-        arguments.error(f"unknown: {', '.join(unknown)}; there are {', '.join(kinds)}")
+    if other := set(options.kind) - set(kinds):
+        arguments.error(f"unknown: {', '.join(other)}; there are {', '.join(kinds)}")
     for kind in options.kind or kinds:
         print(f"\n{kind}\n")
         with tempfile.TemporaryDirectory() as folder:

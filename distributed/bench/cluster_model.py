@@ -24,7 +24,7 @@ def ghosts(vertices):
 
 
 def levels(vertices):
-    """Returns (vertices or aggregates, unknowns of each) from fine to coarse."""
+    """Returns (vertices or aggregates, dofs of each) from fine to coarse."""
     result, count = [(vertices, 3)], vertices / FIRST_AGGREGATE
     while count * 6 > 300:
         result.append((count, 6))
@@ -37,16 +37,16 @@ def iteration(nodes, per_node, per_rank):
     ranks = nodes * per_node
     all_levels = levels(per_rank * ranks)
     work = exchange = 0
-    for level, (count, unknowns) in enumerate(all_levels[:-1]):
-        active = max(1, min(ranks, count * unknowns / 50))  # GAMG keeps at least 50 equations per rank
+    for level, (count, dofs) in enumerate(all_levels[:-1]):
+        active = max(1, min(ranks, count * dofs / 50))  # GAMG keeps at least 50 equations per rank
         own = count / active
         couplings = FINE_COUPLINGS if level == 0 else COARSE_COUPLINGS
-        work += 2 * EXCHANGES * own * couplings * unknowns ** 2 * 12 / (MEMORY / per_node)
+        work += 2 * EXCHANGES * own * couplings * dofs ** 2 * 12 / (MEMORY / per_node)
         neighbors = min(FINE_NEIGHBORS if level == 0 else COARSE_NEIGHBORS, active - 1)
-        leaving = 4.6 * (per_node * own) ** (2 / 3) * unknowns * 8 if nodes > 1 else 0
-        exchange += EXCHANGES * (neighbors * LATENCY + ghosts(own) * unknowns * 8 / INSIDE + leaving / NETWORK)
-    count, unknowns = all_levels[-1]
-    coarsest = 2 * (count * unknowns) ** 2 / FLOPS + 2 * LATENCY * math.log2(max(2, ranks))
+        leaving = 4.6 * (per_node * own) ** (2 / 3) * dofs * 8 if nodes > 1 else 0
+        exchange += EXCHANGES * (neighbors * LATENCY + ghosts(own) * dofs * 8 / INSIDE + leaving / NETWORK)
+    count, dofs = all_levels[-1]
+    coarsest = 2 * (count * dofs) ** 2 / FLOPS + 2 * LATENCY * math.log2(max(2, ranks))
     return work, exchange, 3 * REDUCTION * math.log2(max(2, ranks)), coarsest
 
 

@@ -59,7 +59,7 @@ struct Opened {
 };
 
 // Frames are pieces of the volume.
-void leave_out_surfaces(Table& document) {
+void remove_surfaces(Table& document) {
   Table& output = document.find("output")->table();
   for (const char* key : {"pc2", "usd", "report"}) output.set(key, {false, {}});
 }
@@ -144,7 +144,7 @@ Opened open(const RunArguments& arguments, int ranks_here) {
   opened.file = path.string();
   opened.has_overrides = path.extension() == ".toml";
   opened.text = opened.has_overrides ? read_toml_text(path) : to_toml(document);
-  leave_out_surfaces(document);
+  remove_surfaces(document);
   if (!open_slices(input, ranks_here, opened)) open_whole(std::move(input), options, ranks_here, opened);
   if (opened.run_directory.empty()) opened.run_directory = (fs::path("out") / opened.name).string();
   return opened;
@@ -203,7 +203,7 @@ class RankRun : public cli::SteppedRun {
     std::fflush(stdout);
   }
 
-  // Returns what the summary says.
+  // Returns the facts of the summary.
   cli::RunEnd finish(const cli::StepLoop& loop) {
     files_->finish(*simulation_);
     return {.last_step = last_step_,
@@ -235,7 +235,7 @@ class RankRun : public cli::SteppedRun {
     is_sliced_ = flags[1] > 0;
     const std::vector<std::string> none;
     Table document = read_scene_document(opened_.text, opened_.file, flags[0] > 0 ? arguments_.overrides : none);
-    leave_out_surfaces(document);
+    remove_surfaces(document);
     return document;
   }
 

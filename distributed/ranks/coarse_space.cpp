@@ -7,7 +7,6 @@
 #include "math/vectors.h"
 #include "ranks/exchange.h"
 #include "ranks/message_size.h"
-#include "ranks/traffic.h"
 
 namespace aspic::distributed {
 namespace {
@@ -173,7 +172,7 @@ void CoarseSpace::add_correction(std::span<const double> r, std::span<double> z)
   }
   MPI_Allgatherv(own_b_.data(), message_size(own_b_.size()), MPI_DOUBLE, b_.data(), counts_.data(), starts_.data(),
                  MPI_DOUBLE, MPI_COMM_WORLD);
-  ++own_traffic().reductions;
+  ++halo_.traffic().all.reductions;
   cholesky_.substitute(b_, x_);
   for (int a = 0; a < own_pieces_; ++a)
     for (const int v : rows_of_own(a))

@@ -41,6 +41,7 @@ class DistributedSimulation {
   const Simulation& local() const { return *simulation_; }  // the part of this rank
   const MeshShare& share() const { return share_; }
   const UserOrder& user_order() const { return *user_order_; }
+  const LinearTraffic& linear_traffic() const { return halo_->traffic().linear; }
   const std::vector<std::string>& notes() const { return notes_; }
   int steps_taken() const { return simulation_->steps_taken(); }
 

@@ -5,7 +5,6 @@
 #include <algorithm>
 
 #include "ranks/message_size.h"
-#include "ranks/traffic.h"
 
 namespace aspic::distributed {
 
@@ -49,7 +48,7 @@ void Halo::update(std::span<double> x) {
     to_send = end;
   }
   MPI_Waitall(message_size(requests.size()), requests.data(), MPI_STATUSES_IGNORE);
-  own_traffic() += {static_cast<double>(neighbors_.size()), static_cast<double>(buffer_.size() * sizeof(double)), 0};
+  traffic_.all += {static_cast<double>(neighbors_.size()), static_cast<double>(buffer_.size() * sizeof(double)), 0};
 }
 
 }  // namespace aspic::distributed

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "ranks/mesh_share.h"
+#include "ranks/traffic.h"
 
 namespace aspic::distributed {
 
@@ -14,6 +15,8 @@ class Halo {
   // Replaces the entries of the ghosts by those of their ranks, 3 per vertex. Collective.
   void update(std::span<double> x);
 
+  TrafficCounts& traffic() { return traffic_; }
+
  private:
   struct Neighbor {
     int rank;
@@ -23,6 +26,7 @@ class Halo {
 
   std::vector<Neighbor> neighbors_;
   std::vector<double> buffer_;  // values to send, neighbor by neighbor
+  TrafficCounts traffic_;
 };
 
 }  // namespace aspic::distributed

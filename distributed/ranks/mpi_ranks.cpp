@@ -4,7 +4,6 @@
 
 #include "ranks/message_size.h"
 #include "ranks/rank_parts.h"
-#include "ranks/traffic.h"
 
 // MPI aborts the program after an error by default, so return values need no check.
 namespace aspic::distributed {
@@ -12,7 +11,7 @@ std::vector<double> MpiRanks::gather(std::span<const double> own) const {
   const int count = message_size(own.size());
   std::vector<double> all(own.size() * share_.ranks());
   MPI_Allgather(own.data(), count, MPI_DOUBLE, all.data(), count, MPI_DOUBLE, MPI_COMM_WORLD);
-  ++own_traffic().reductions;
+  ++halo_.traffic().all.reductions;
   return all;
 }
 

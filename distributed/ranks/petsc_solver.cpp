@@ -13,7 +13,6 @@
 #include "ranks/mpi_ranks.h"
 #include "ranks/petsc_matrix.h"
 #include "ranks/rank_cg.h"
-#include "ranks/traffic.h"
 
 namespace aspic::distributed {
 namespace {
@@ -144,7 +143,7 @@ SolveReport PetscSolver::solve(std::span<const double> b, std::span<double> x, d
   check(KSPSetTolerances(petsc_->ksp, tolerance, 0, PETSC_DEFAULT, kMaxIterations));
   const Traffic before = traffic_of_petsc();
   check(KSPSolve(petsc_->ksp, petsc_->b, petsc_->x));
-  linear_traffic() += traffic_of_petsc() - before;
+  halo_.traffic().linear += traffic_of_petsc() - before;
   copy_from(petsc_->x, x.first(own));
   halo_.update(x);
 
@@ -164,7 +163,7 @@ SolveReport PetscSolver::solve(std::span<const double> b, std::span<double> x, d
   report.indefinite = result[1] > 0;
   report.relative_residual = result[2];
   report.iterations = report.products = report.cycles = iterations;
-  linear_traffic().iterations += iterations;
+  halo_.traffic().linear.iterations += iterations;
   petsc_->note_rate(report);
   return report;
 }

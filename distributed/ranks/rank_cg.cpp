@@ -5,7 +5,6 @@
 
 #include "linalg/block_jacobi.h"
 #include "math/vectors.h"
-#include "ranks/traffic.h"
 
 namespace aspic::distributed {
 namespace {
@@ -95,7 +94,8 @@ void RankCg::note_rate(const SolveReport& report) {
 }
 
 SolveReport RankCg::solve(std::span<const double> b, std::span<double> x, double tolerance) {
-  const Traffic before = own_traffic();
+  TrafficCounts& traffic = halo_.traffic();
+  const Traffic before = traffic.all;
   SolveReport report;
   const double b_norm = std::sqrt(dot(b, b));
   double residual = start(b, x) ? std::sqrt(dot(r_, r_)) : b_norm;
@@ -111,8 +111,8 @@ SolveReport RankCg::solve(std::span<const double> b, std::span<double> x, double
     turn(alpha, rz);
   }
   halo_.update(x);
-  linear_traffic() += own_traffic() - before;
-  linear_traffic().iterations += report.iterations;
+  traffic.linear += traffic.all - before;
+  traffic.linear.iterations += report.iterations;
   report.relative_residual = b_norm > 0 ? residual / b_norm : 0;
   report.ok = !report.indefinite && report.relative_residual <= tolerance;
   report.cycles = multigrid_ ? report.iterations : 0;

@@ -17,7 +17,6 @@
 #include "ranks/guarded.h"
 #include "ranks/rank_checkpoint.h"
 #include "ranks/rank_frames.h"
-#include "ranks/traffic.h"
 #include "results/run_directory_tables.h"
 #include "results/run_folder.h"
 #include "results/run_lock.h"
@@ -100,7 +99,7 @@ struct RankFiles::Impl {
   // One row per rank: its share, memory and communication.
   void write_ranks(const DistributedSimulation& simulation) const {
     const MeshShare& share = simulation.share();
-    const LinearTraffic& linear = linear_traffic();
+    const LinearTraffic& linear = simulation.linear_traffic();
     const double iterations = std::max(1.0, linear.iterations);
     rusage usage{};
     getrusage(RUSAGE_SELF, &usage);

@@ -1,4 +1,4 @@
-// Counts of communication of this process.
+// Counts of communication of one rank.
 #pragma once
 
 namespace aspic::distributed {
@@ -16,19 +16,15 @@ struct Traffic {
   }
 };
 
-// By this program, not by PETSc.
-inline Traffic& own_traffic() {
-  static Traffic counts;
-  return counts;
-}
-
 // Within linear solves, by PETSc, too. Their set-up is not counted.
 struct LinearTraffic : Traffic {
   double iterations = 0;
 };
-inline LinearTraffic& linear_traffic() {
-  static LinearTraffic counts;
-  return counts;
-}
+
+// Counts of a simulation; its Halo holds them, which all solvers have.
+struct TrafficCounts {
+  Traffic all;           // by this program, not by PETSc
+  LinearTraffic linear;  // within linear solves
+};
 
 }  // namespace aspic::distributed

@@ -15,7 +15,7 @@ TEST(NearestName, HasFewestTypingErrors) {
   EXPECT_EQ(nearest_name("bax", kKnown), "box");
 }
 
-TEST(NearestName, KnowsSynonyms) {
+TEST(NearestName, FindsSynonyms) {
   EXPECT_EQ(nearest_name("E", kKnown), "young");
   EXPECT_EQ(nearest_name("Youngs_modulus", kKnown), "young");
   EXPECT_EQ(nearest_name("nu", kKnown), "poisson");

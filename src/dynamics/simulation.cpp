@@ -363,14 +363,14 @@ StepReport Simulation::start_report() const {
   report.kinetic = kinetic_energy();
   report.potential = potential_energies();
   for (const double V : report.potential) report.potential_total += V;
-  const auto unknown = [](std::vector<Resultant>& all, size_t count) {
-    constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
-    const Vec3d vector{{kUnknown, kUnknown, kUnknown}};
+  const auto set_nan = [](std::vector<Resultant>& all, size_t count) {
+    constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+    const Vec3d vector{{kNan, kNan, kNan}};
     all.assign(count, {vector, vector});
   };
-  unknown(report.resultants.pins, impl_->model.pins.size());
-  unknown(report.resultants.loads, impl_->model.loads.size());
-  unknown(report.resultants.bodies, impl_->model.bodies.size());
+  set_nan(report.resultants.pins, impl_->model.pins.size());
+  set_nan(report.resultants.loads, impl_->model.loads.size());
+  set_nan(report.resultants.bodies, impl_->model.bodies.size());
   return report;
 }
 

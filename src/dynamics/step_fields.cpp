@@ -243,7 +243,7 @@ std::string_view typescript_type(StepFieldType type) {
 }
 
 // Value of a field before its step has ended.
-std::string_view typescript_unknown(StepFieldType type) {
+std::string_view typescript_unknown_step(StepFieldType type) {
   switch (type) {
     case StepFieldType::flag:
       return "false";
@@ -288,7 +288,7 @@ std::string step_fields_typescript() {
   text += "}\n\n// Values for a step that has not ended.\nexport const kUnknownStep: StepFields = {\n";
   for (const StepField& field : step_fields())
     if (field.is_in(StepOutput::viewer))
-      text += "  " + std::string(field.name) + ": " + std::string(typescript_unknown(field.type)) + ",\n";
+      text += "  " + std::string(field.name) + ": " + std::string(typescript_unknown_step(field.type)) + ",\n";
   return text + "};\n";
 }
 

@@ -157,12 +157,12 @@ class Rim : public PressureRim {
                   BlockSparse& H) const override {
     const RimContext& own = rim(context);
     const double factor = -scale * value_(context.time);
-    int left_out = 0;
+    int omitted = 0;
     for (const Edge& edge : edges_) {
       bool is_modified = false;
       for (int n = 0; n < edge.node_count; ++n) is_modified |= projection.covers(vertex(edge, n));
       if (projection.kind != Definiteness::exact && is_modified) {
-        ++left_out;
+        ++omitted;
         continue;
       }
       for_each_pair(edge, [&](int k, int n, int m) {
@@ -174,7 +174,7 @@ class Rim : public PressureRim {
         }
       });
     }
-    return left_out;
+    return omitted;
   }
 
  private:

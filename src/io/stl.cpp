@@ -171,19 +171,19 @@ std::string bytes_of(const std::string& file, const TriMesh& mesh) {
 MeshContent parse_stl(const std::string& file, std::string_view contents) {
   const size_t first = contents.find_first_not_of(" \t\r\n");
   std::string space;
-  const bool says_solid = first != contents.npos && lower(contents.substr(first, 5), space) == "solid";
+  const bool starts_with_solid = first != contents.npos && lower(contents.substr(first, 5), space) == "solid";
   if (contents.size() >= kHeaderSize + kCountSize) {
     ByteCursor bytes(file, contents, kHeaderSize);
     const auto count = bytes.read<uint32_t>("the number of triangles");
     if (contents.size() - kHeaderSize - kCountSize == kTriangleSize * uint64_t{count})
       return parse_binary(bytes, bytes.checked_count(count, "the number of triangles", kTriangleSize));
-    if (!says_solid)
+    if (!starts_with_solid)
       bytes.fail("the header states " + std::to_string(count) + " triangles, that is " +
                  std::to_string(kHeaderSize + kCountSize + kTriangleSize * uint64_t{count}) +
                  " bytes, but the file has " + std::to_string(contents.size()) +
                  "; it is damaged or no STL file, get a complete copy");
   }
-  if (!says_solid)
+  if (!starts_with_solid)
     throw InvalidInput(file +
                        ":1: neither begins with 'solid' nor has the 84 bytes of a binary header; is this an STL file?");
   return StlTextReader(file, contents).read();

@@ -149,8 +149,8 @@ TEST(Aggregation, WorksWithoutPositions) {
   for (const int cells : {1, 5, 9}) {
     const Matrix H = spring_lattice({.nx = cells, .ny = cells, .nz = cells});
     const Graph graph = graph_of(*H.pattern);
-    const std::vector<Vec3d> unknown(H.rows());
-    const Aggregates aggregates = valid_aggregates({.graph = graph, .position = unknown});
+    const std::vector<Vec3d> no_positions(H.rows());
+    const Aggregates aggregates = valid_aggregates({.graph = graph, .position = no_positions});
     EXPECT_GE(aggregates.count(), H.rows() / 72);
   }
 }

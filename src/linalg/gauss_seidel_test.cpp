@@ -32,12 +32,12 @@ struct Groups {
   std::vector<int> of_vertex, color;
 };
 
-// Groups consecutive vertices, except those in `left_out`.
-Groups make_groups(const Graph& vertices, int size, const std::vector<int>& left_out = {}) {
+// Groups consecutive vertices, except those in `excluded`.
+Groups make_groups(const Graph& vertices, int size, const std::vector<int>& excluded = {}) {
   Groups groups;
   const int count = (vertices.vertex_count() + size - 1) / size;
   for (int v = 0; v < vertices.vertex_count(); ++v) groups.of_vertex.push_back(v / size);
-  for (const int v : left_out) groups.of_vertex[v] = -1;
+  for (const int v : excluded) groups.of_vertex[v] = -1;
   groups.color = greedy_coloring(quotient(vertices, groups.of_vertex, count));
   return groups;
 }

@@ -12,18 +12,18 @@
 namespace aspic {
 namespace {
 
-template <class Direction, class Look>
-void look_at_first_iteration(Direction&& direction, const Look& look) {
+template <class Direction, class Observer>
+void observe_first_iteration(Direction&& direction, const Observer& observe) {
   Rosenbrock f;
   std::vector<double> x = {-0.8, 0.6, 0};
   Minimizer().minimize(f, direction, x, {.max_iterations = 1},
-                       [&](const LiveIteration& iteration) { look(iteration); });
+                       [&](const LiveIteration& iteration) { observe(iteration); });
 }
 
 Newton direct_newton() { return Newton(make_linear_solver("cholesky")); }
 
 TEST(Landscape, CurveMatchesModelToThirdOrder) {
-  look_at_first_iteration(direct_newton(), [](const LiveIteration& iteration) {
+  observe_first_iteration(direct_newton(), [](const LiveIteration& iteration) {
     for (const CurvePoint& point : curve_along(iteration, 1e-4, 201))
       EXPECT_LE(std::abs(point.value - point.model),
                 (std::abs(iteration.value) + 200) * std::pow(std::abs(point.alpha), 3) * 10 + 1e-9)
@@ -32,7 +32,7 @@ TEST(Landscape, CurveMatchesModelToThirdOrder) {
 }
 
 TEST(Landscape, CurvePassesThroughTrials) {
-  look_at_first_iteration(GradientDescent(), [](const LiveIteration& iteration) {
+  observe_first_iteration(GradientDescent(), [](const LiveIteration& iteration) {
     ASSERT_GT(iteration.tried.size(), 1u);
     const double last = 1.25 * iteration.tried[0].alpha;
     const auto curve = curve_along(iteration, 0.25, 101);
@@ -49,7 +49,7 @@ TEST(Landscape, CurvePassesThroughTrials) {
 
 // Gradient descent accepts an eighth of its first trial.
 TEST(Landscape, ShortAcceptedStepHasSamplesAround) {
-  look_at_first_iteration(GradientDescent(), [](const LiveIteration& iteration) {
+  observe_first_iteration(GradientDescent(), [](const LiveIteration& iteration) {
     ASSERT_EQ(iteration.alpha, 0.125);
     const auto curve = curve_along(iteration, 1e-4, 101);
     ASSERT_EQ(curve.size(), 101u);
@@ -63,7 +63,7 @@ TEST(Landscape, ShortAcceptedStepHasSamplesAround) {
 
 // (s, t) = (1, 0) is the end of the full step, where the model of Newton's method has its minimum.
 TEST(Landscape, SliceContainsIterateAndModelMinimum) {
-  look_at_first_iteration(direct_newton(), [](const LiveIteration& iteration) {
+  observe_first_iteration(direct_newton(), [](const LiveIteration& iteration) {
     const Slice slice = slice_through(iteration, 41);
     const SlicePoint* lowest = &slice.point[0];
     for (const SlicePoint& point : slice.point) {
@@ -80,14 +80,14 @@ TEST(Landscape, SliceContainsIterateAndModelMinimum) {
 
 // The plane of gradient descent is spanned by g and H g, so it is not a line.
 TEST(Landscape, SliceOfGradientDescentIsPlane) {
-  look_at_first_iteration(GradientDescent(), [](const LiveIteration& iteration) {
+  observe_first_iteration(GradientDescent(), [](const LiveIteration& iteration) {
     const Slice slice = slice_through(iteration, 5);
     EXPECT_GT(std::abs(slice.point[0].value - slice.point[4 * 5].value), 1e-3);
   });
 }
 
 TEST(Landscape, StopsOnRequest) {
-  look_at_first_iteration(direct_newton(), [](const LiveIteration& iteration) {
+  observe_first_iteration(direct_newton(), [](const LiveIteration& iteration) {
     int asked = 0;
     const StopToken stop([&] { return ++asked >= 10; });
     EXPECT_TRUE(slice_through(iteration, 41, stop).point.empty());
@@ -98,12 +98,12 @@ TEST(Landscape, StopsOnRequest) {
 }
 
 TEST(Landscape, SamplingDoesNotChangeResult) {
-  const auto minimum = [](bool look) {
+  const auto minimum = [](bool observes) {
     Rosenbrock f;
     std::vector<double> x = {-0.8, 0.6, 0};
     Newton direction = direct_newton();
     Minimizer().minimize(f, direction, x, {}, [&](const LiveIteration& iteration) {
-      if (look) slice_through(iteration), curve_along(iteration, 1e-4);
+      if (observes) slice_through(iteration), curve_along(iteration, 1e-4);
     });
     return x;
   };
@@ -121,7 +121,7 @@ class WalledRosenbrock : public Rosenbrock {
 TEST(Landscape, MarksBlockedPoints) {
   WalledRosenbrock f;
   std::vector<double> x = {-0.8, 0.6, 0};
-  const auto look = [](const LiveIteration& iteration) {
+  const auto observe = [](const LiveIteration& iteration) {
     ASSERT_GT(iteration.d[0], 0);
     const double most = 0.1 / iteration.d[0];
     EXPECT_NEAR(largest_step(iteration, 2 * most), most, 1e-12);
@@ -146,7 +146,7 @@ TEST(Landscape, MarksBlockedPoints) {
     EXPECT_LT(blocked, 21 * 21);
   };
   GradientDescent direction;
-  Minimizer().minimize(f, direction, {x}, {.max_iterations = 1}, look);
+  Minimizer().minimize(f, direction, {x}, {.max_iterations = 1}, observe);
 }
 
 }  // namespace

@@ -152,9 +152,9 @@ TEST(Newton, CountsAdvanceEvaluations) {
     EXPECT_EQ(report.values, f.values);
     return std::pair(f.values, d);
   };
-  const auto known = evaluations(true), unknown = evaluations(false);
-  EXPECT_GE(known.first, 1);
-  EXPECT_EQ(unknown.first, 0);
+  const auto with_value = evaluations(true), without = evaluations(false);
+  EXPECT_GE(with_value.first, 1);
+  EXPECT_EQ(without.first, 0);
 
   CountedTwoBump f;
   Newton direction(make_linear_solver("block_jacobi"));

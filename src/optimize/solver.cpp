@@ -68,8 +68,8 @@ const Method* method_named(const std::string& name) {
 
 std::string quoted(const std::string& option, const std::string& value) { return option + " = '" + value + "'"; }
 
-std::optional<SolverConflict> unknown(const std::string& option, const std::string& value,
-                                      const std::vector<std::string>& known) {
+std::optional<SolverConflict> unknown_name(const std::string& option, const std::string& value,
+                                           const std::vector<std::string>& known) {
   if (std::find(known.begin(), known.end(), value) != known.end()) return std::nullopt;
   return SolverConflict{option, quoted(option, value) + " is unknown" + suggestion(value, known)};
 }
@@ -151,15 +151,15 @@ DecreaseTest decrease_test_named(const std::string& name) {
 }
 
 std::optional<SolverConflict> find_conflict(const SolverOptions& options) {
-  if (auto wrong = unknown("method", options.method, minimizer_names())) return wrong;
+  if (auto wrong = unknown_name("method", options.method, minimizer_names())) return wrong;
   std::vector<const Method*> chosen = {method_named(options.method)};
   for (const std::string& name : options.fallback) {
-    if (auto wrong = unknown("fallback", name, minimizer_names())) return wrong;
+    if (auto wrong = unknown_name("fallback", name, minimizer_names())) return wrong;
     chosen.push_back(method_named(name));
   }
-  if (auto wrong = unknown("preconditioner", options.preconditioner, preconditioner_names())) return wrong;
-  if (auto wrong = unknown("linear", options.linear, linear_solver_names())) return wrong;
-  if (auto wrong = unknown("definiteness", options.definiteness, definiteness_names())) return wrong;
+  if (auto wrong = unknown_name("preconditioner", options.preconditioner, preconditioner_names())) return wrong;
+  if (auto wrong = unknown_name("linear", options.linear, linear_solver_names())) return wrong;
+  if (auto wrong = unknown_name("definiteness", options.definiteness, definiteness_names())) return wrong;
   if (auto wrong = unused("preconditioner", options.preconditioner, chosen,
                           [](const Method* m) { return m->preconditioner.has_value(); }))
     return wrong;

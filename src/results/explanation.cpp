@@ -256,7 +256,7 @@ class Explainer {
             "raise time.adaptive.tolerance; pins that jump cannot be resolved by shorter steps"};
   }
 
-  Explanation too_much_asked(const std::string& cause) const {
+  Explanation too_strict(const std::string& cause) const {
     return {cause + ": a full Newton step lowers the energy by half of g.d, less than required",
             "solver.line_search.c = " + text(solver_.minimize.line_search.sufficient_decrease),
             "solver.line_search.c = 1e-4"};
@@ -268,7 +268,7 @@ class Explainer {
     if (search.test == DecreaseTest::slide)
       return {cause + ": the slide's test requires the decrease c g.d of a full step for any step length",
               "solver.line_search.test = \"slide\"", "solver.line_search.test = \"textbook\""};
-    if (search.sufficient_decrease > 0.5) return too_much_asked(cause);
+    if (search.sufficient_decrease > 0.5) return too_strict(cause);
     if (search.tolerance > 1e-5)
       return {cause + " before it became shorter than tol", "solver.line_search.tol = " + text(search.tolerance),
               "solver.line_search.tol = 1e-10"};
@@ -297,7 +297,7 @@ class Explainer {
       return {cause + ": methods without the Hessian need many more for stiff bodies",
               "solver.method = \"" + solver_.method + "\"",
               "solver.method = \"newton\", or raise solver.max_iterations"};
-    if (options.line_search.sufficient_decrease > 0.5) return too_much_asked(cause);
+    if (options.line_search.sufficient_decrease > 0.5) return too_strict(cause);
     if (options.line_search.test == DecreaseTest::none)
       return {cause + ": without a line search Newton's method overshoots", "solver.line_search.test = \"none\"",
               "solver.line_search.test = \"textbook\""};

@@ -104,7 +104,7 @@ void note_jump(const Pin& pin, const std::vector<Vec3d>& starts, std::vector<std
 }
 
 // Suggests a selection of the second pin without the vertices of the first.
-std::string leave_out(const Value& first, const Value& second, bool leaves_any) {
+std::string omit_one(const Value& first, const Value& second, bool leaves_any) {
   const Value &a = first["where"], &b = second["where"];
   if (!leaves_any) return "remove pin '" + second["name"].text() + "': all of its vertices are in other pins";
   if (!a.is_text() || !b.is_text()) return "exclude it from one of them";
@@ -152,7 +152,7 @@ void add_pins(Builder& builder, const PlacedBody& body) {
                        "vertex " + std::to_string(body.user_vertex(v)) + " of body '" + body.name() + "' at " +
                            point_text(body.mesh.rest[v]) + " is in pin '" + other["name"].text() + "' and in pin '" +
                            name + "', which prescribe different positions in the same direction at t = " +
-                           number_text(*time) + "; " + leave_out(other, scene, leaves_any));
+                           number_text(*time) + "; " + omit_one(other, scene, leaves_any));
     }
   }
 }

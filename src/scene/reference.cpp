@@ -8,14 +8,18 @@
 namespace aspic {
 namespace {
 
+// Hashes of files, which only resolved scenes have; the introduction describes all of them.
+bool is_hash(const std::string& name) { return name.ends_with("hash"); }
+
 std::string list_of(const std::vector<std::string>& names) {
   std::string out;
-  for (const std::string& name : names) out += (out.empty() ? "`" : ", `") + name + "`";
+  for (const std::string& name : names)
+    if (!is_hash(name)) out += (out.empty() ? "`" : ", `") + name + "`";
   return out;
 }
 
 std::string kinds(const Key& key) {
-  if (key.table == "field") return "[value per tet](#field)";
+  if (key.table == "field") return "[per tet](#field)";
   std::string out;
   const auto add = [&](unsigned kind, const std::string& text) {
     if (key.accepts & kind) out += (out.empty() ? "" : " or ") + text;
@@ -80,7 +84,7 @@ std::string items(const std::vector<Key>& keys, const std::string& section) {
   std::string out;
   for (size_t i = 0, end = 0; i < keys.size(); i = end) {
     end = end_of_series(keys, i);
-    if (keys[i].section != section) continue;
+    if (keys[i].section != section || is_hash(keys[i].name)) continue;
     const Key &first = keys[i], &last = keys[end - 1];
     const bool series = end > i + 1;
     out += "* `" + first.name + (series ? "` ... `" + last.name : "") + "` (" + facts(first) +
@@ -111,8 +115,8 @@ std::string formulas() {
 
 const char* const kIntroduction =
     "# Scenes\n\n"
-    "For everyone who writes scenes. Afterwards you know every key with its unit, range and default. A test keeps this "
-    "page equal to the schema that checks scenes.\n\n"
+    "For everyone who writes scenes. Afterwards you know every key with its unit, range and default, as the schema "
+    "checks them.\n\n"
     "A scene is a TOML file in SI units:\n\n"
     "```toml\n"
     "[[body]]\n"
@@ -126,7 +130,8 @@ const char* const kIntroduction =
     "on the command line (`--set mesh=...`, relative to the working directory).\n"
     "* `--set PATH=VALUE ...` replaces values: `time.step=0.005`, `material.young=2e5` of every body, "
     "`body.bunny.pin.0.where=\"y < 0.1\"` of one; lists by name, or index from 0.\n"
-    "* A run stores the resolved scene with all defaults, meshes and hashes. It is bit-reproducible.\n"
+    "* A run stores the resolved scene with all defaults and meshes, and beside each file name its `hash` or "
+    "`mesh_hash`. It is bit-reproducible.\n"
     "* Dead loads (gravity, `traction`, `force`) have the energy -f . x about the origin, so only differences have a "
     "meaning.\n"
     "* A mesh runs without a scene, with defaults that are printed with their reasons.\n\n";

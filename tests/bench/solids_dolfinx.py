@@ -95,7 +95,7 @@ def columns(path):
 
 
 def aspic(program, problem, mesh):
-    """Returns unknowns, displacement over traction, and CPU time [s]."""
+    """Returns dofs, displacement over traction, and CPU time [s]."""
     import meshio
 
     plane = '[[body.pin]]\nwhere = "X > 1e-9"\naxes = "z"\n' if problem.is_plane else ""
@@ -188,7 +188,7 @@ def main():
     parser.add_argument("--csv", help="Write the table to this file")
     options = parser.parse_args()
     logging.disable(logging.WARNING)  # the compiler's commands
-    rows = [["problem", "program", "cells", "unknowns", "error", "cpu_s"]]
+    rows = [["problem", "program", "cells", "dofs", "error", "cpu_s"]]
     show = lambda row: print("  ".join(f"{word!s:>9}" for word in row), flush=True)
     show(rows[0])
     for name in options.problems or PROBLEMS:
@@ -196,8 +196,8 @@ def main():
         for n in options.cells or ((4, 8, 16) if problem.is_plane else (2, 4, 8)):
             mesh = problem.mesh(n)
             for program, result in (("aspic", aspic(options.aspic, problem, mesh)), ("dolfinx", taylor_hood(problem, mesh))):
-                unknowns, compliance, seconds = result
-                rows.append([name, program, n, unknowns, f"{compliance / problem.limit - 1:.4f}", f"{seconds:.2f}"])
+                dofs, compliance, seconds = result
+                rows.append([name, program, n, dofs, f"{compliance / problem.limit - 1:.4f}", f"{seconds:.2f}"])
                 show(rows[-1])
     if options.csv:
         with open(options.csv, "w", newline="") as file:

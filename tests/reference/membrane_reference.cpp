@@ -133,7 +133,7 @@ class Membrane {
     const InvariantDerivatives f = law_(inner(F, F) + 1, J);
     for (int a = 0; a < 9; ++a)
       for (int k = 0; k < 2; ++k) {
-        const int row = unknown(nodes[a], k);
+        const int row = dof(nodes[a], k);
         if (row < 0) continue;
         Mat2 D{};  // derivative of F with respect to the displacement of this node
         D[2 * k] = point.gradients[a][0], D[2 * k + 1] = point.gradients[a][1];
@@ -145,14 +145,14 @@ class Membrane {
         for (int c = 0; c < 4; ++c) dP[c] = 2 * (f.by_I * D[c] + f_I * F[c]) + f_J * cof[c] + f.by_J * dcof[c];
         for (int b = 0; b < 9; ++b)
           for (int l = 0; l < 2; ++l) {
-            const int column = unknown(nodes[b], l);
+            const int column = dof(nodes[b], l);
             if (column < 0 || column > row) continue;
             K.at(row, column) +=
                 point.weight * (dP[2 * l] * point.gradients[b][0] + dP[2 * l + 1] * point.gradients[b][1]);
           }
       }
   }
-  int unknown(int n, int k) const { return 2 * (n - side_) + k; }
+  int dof(int n, int k) const { return 2 * (n - side_) + k; }
 
   void find_equilibrium(double traction) {
     const int size = 2 * (static_cast<int>(rest_.size()) - side_);
@@ -163,7 +163,7 @@ class Membrane {
       for (int j = 0; j + 2 < side_; j += 2) {
         const int first = node(side_ - 1, j);
         const double share = traction * (rest_[first + 2][1] - rest_[first][1]) / 6;
-        for (int a = 0; a < 3; ++a) r[unknown(first + a, 1)] -= (a == 1 ? 4 : 1) * share;
+        for (int a = 0; a < 3; ++a) r[dof(first + a, 1)] -= (a == 1 ? 4 : 1) * share;
       }
       const Vector d = K.solve(r);
       double most = 0;

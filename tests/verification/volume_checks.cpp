@@ -53,7 +53,7 @@ void add_volume_checks(std::vector<Check>& checks) {
                     "beam_incompressible",
                     "A nearly incompressible beam",
                     "A beam 2 x 1 x 1, nu = 0.4999, clamped, with a small traction on its end.",
-                    "The limit of quadratic tets on meshes of up to 52 920 unknowns",
+                    "The limit of quadratic tets on meshes of up to 52 920 degrees of freedom",
                     check_locking,
                     {"Simo1985"}});
 }

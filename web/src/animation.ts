@@ -49,14 +49,14 @@ async function repeatSession(store: Store, atEnd: () => void): Promise<void> {
   if (recording.steps === 0) throw new Error("nothing has moved yet; play first, then export");
   // A short session may end before the reply arrives, so the states are watched before the request is sent.
   let [began, accepted, ended] = [false, false, false];
-  const look = ({ replaying, a }: State): void => {
+  const follow = ({ replaying, a }: State): void => {
     began ||= replaying || a.step < recording.steps;
     if (ended || replaying || !accepted || !(began || a.step >= recording.steps)) return;
     ended = true;
     stop();
     requestAnimationFrame(() => requestAnimationFrame(atEnd));
   };
-  const stop = store.on("state", look);
+  const stop = store.on("state", follow);
   try {
     await store.source.request({ do: "replay", recording });
   } catch (reason) {
@@ -64,7 +64,7 @@ async function repeatSession(store: Store, atEnd: () => void): Promise<void> {
     throw reason;
   }
   accepted = true;
-  if (began && store.state) look(store.state);
+  if (began && store.state) follow(store.state);
 }
 
 async function videoOfSession(store: Store, video: Video): Promise<void> {

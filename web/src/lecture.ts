@@ -9,7 +9,7 @@ import { shortcutButton } from "./shortcuts";
 import type { Store } from "./store";
 
 export function matches(lesson: Lesson, words: string): boolean {
-  const text = `${lesson.pages} ${lesson.title} ${lesson.claim} ${lesson.look}`.toLowerCase();
+  const text = `${lesson.pages} ${lesson.title} ${lesson.claim} ${lesson.exercise}`.toLowerCase();
   const all = words.toLowerCase().split(/\s+/);
   return all.every((word) => text.includes(word));
 }
@@ -161,7 +161,7 @@ export class Lecture {
       element("h2", {}, `${pagesText(lesson)}: ${lesson.title}`),
       element("p", { class: "claim" }, lesson.claim),
       ...formulaElements(lesson.id),
-      element("p", {}, lesson.look),
+      element("p", {}, lesson.exercise),
       ...questionElements(lesson),
       this.judge.root,
     );

@@ -7,7 +7,7 @@ import type { Send } from "./program";
 import type { Geometry, Vec3 } from "./protocol";
 import { edgesOf, normalsOf } from "./recording";
 import { Body, type Box, boxOf } from "./view/body";
-import { lookingFrom, sceneAxes } from "./view/cameras";
+import { orientationFrom, sceneAxes } from "./view/cameras";
 import { type DisplaySettings, kDefaults } from "./view/display";
 import { along, dot, type Lens, minus } from "./view/lens";
 import { colorBar, type Ink, kBarWidth, text } from "./view/marks";
@@ -38,7 +38,7 @@ class Outlook {
 
   constructor(eye: Vec3, up: Vec3) {
     const axes = sceneAxes(up);
-    const orientation = lookingFrom(new Vector3(...eye).normalize(), axes.up, axes.right);
+    const orientation = orientationFrom(new Vector3(...eye).normalize(), axes.up, axes.right);
     const axis = (x: number, y: number, z: number): Vec3 => new Vector3(x, y, z).applyQuaternion(orientation).toArray();
     [this.right, this.up, this.forward] = [axis(1, 0, 0), axis(0, 1, 0), axis(0, 0, -1)];
   }

@@ -99,7 +99,7 @@ export interface Lesson {
   pages: string; // "33-34"
   title: string;
   claim: string; // statement of the lecture
-  look: string; // what to look at and to try
+  exercise: string; // what to look at and to try
   question?: string; // for the reader
   answer?: string;
   panel: PanelName; // panel to open

@@ -7,7 +7,7 @@ import type { Send } from "./program";
 import type { Field } from "./protocol";
 import type { RecordedSource } from "./recorded";
 import { Store } from "./store";
-import { type CameraRig, kViewNames, lookingFrom, sceneAxes, type ViewName } from "./view/cameras";
+import { type CameraRig, kViewNames, orientationFrom, sceneAxes, type ViewName } from "./view/cameras";
 import { Display } from "./view/display";
 import { View } from "./view/view";
 
@@ -62,10 +62,10 @@ export function stepsToShow(frames: { step: number[]; time: number[] }, request:
 
 function aim(rig: CameraRig, request: RenderRequest, source: RecordedSource, up: [number, number, number]): void {
   if (typeof request.view === "string") {
-    rig.look(request.view);
+    rig.setView(request.view);
   } else {
     const axes = sceneAxes(up);
-    rig.orientation.copy(lookingFrom(new Vector3(...request.view).normalize(), axes.up, axes.right));
+    rig.orientation.copy(orientationFrom(new Vector3(...request.view).normalize(), axes.up, axes.right));
   }
   rig.center(source.box.lower, source.box.upper);
 }

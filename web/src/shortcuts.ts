@@ -44,14 +44,14 @@ export function listenToKeys(page: Page): void {
 }
 
 // A shortcut with a button, whose tooltip shows the key.
-export function shortcutButton(page: Page, shortcut: Shortcut, look: ButtonOptions): HTMLButtonElement {
+export function shortcutButton(page: Page, shortcut: Shortcut, options: ButtonOptions): HTMLButtonElement {
   page.shortcut(shortcut);
   const title = `${shortcut.does} (${keyName(shortcut.key)})`;
   // The shortcut of a disabled button has no effect.
-  const made = button({ ...look, title }, shortcut.run);
+  const made = button({ ...options, title }, shortcut.run);
   page.shortcuts.set(shortcut.key, { ...shortcut, run: () => made.disabled || shortcut.run() });
   made.setAttribute("aria-keyshortcuts", keyName(shortcut.key));
-  if (!look.text && !look.label) made.setAttribute("aria-label", shortcut.does);
+  if (!options.text && !options.label) made.setAttribute("aria-label", shortcut.does);
   return made;
 }
 

@@ -34,8 +34,8 @@ function makeName(store: Store): HTMLElement {
 
 function makeTransport(store: Store, page: Page): HTMLElement {
   const { source } = store;
-  const add = (key: string, does: string, look: ButtonOptions, run: () => void): HTMLButtonElement =>
-    shortcutButton(page, { key, does, group: "Simulation", run }, { ...look, steers: source.live });
+  const add = (key: string, does: string, options: ButtonOptions, run: () => void): HTMLButtonElement =>
+    shortcutButton(page, { key, does, group: "Simulation", run }, { ...options, steers: source.live });
   let wanted: boolean | null = null; // requested value until the program answers
   const toggle = (): void => {
     wanted = !(wanted ?? store.state?.playing ?? false);

@@ -58,15 +58,15 @@ function withText<Result>(made: Engine, text: string, call: (place: number) => R
 const [kPatience, kPeriod] = [300, 150]; // [ms]
 let flag = "";
 let isStopped = false;
-let nextLook = 0; // [ms]
+let nextCheck = 0; // [ms]
 function isStopRequested(): boolean {
-  if (isStopped || performance.now() < nextLook) return isStopped;
+  if (isStopped || performance.now() < nextCheck) return isStopped;
   try {
     scope.importScripts(flag);
   } catch {
     isStopped = true;
   }
-  nextLook = performance.now() + kPeriod;
+  nextCheck = performance.now() + kPeriod;
   return isStopped;
 }
 
@@ -126,7 +126,7 @@ function carryOut(message: string): void {
 
 // An exception here is a trap of the engine: an exhausted memory, or a bug. Its state is then undefined.
 function guarded(work: () => void): void {
-  nextLook = performance.now() + kPatience;
+  nextCheck = performance.now() + kPatience;
   try {
     work();
   } catch (reason) {

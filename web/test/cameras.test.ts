@@ -43,7 +43,7 @@ test("canonical views show the whole box", () => {
     for (const name of kViewNames)
       for (const [width, height] of [[1280, 800], [300, 900]]) {
         const rig = rigFor(2, up);
-        rig.look(name);
+        rig.setView(name);
         const lens = rig.lens(width, height);
         for (let corner = 0; corner < 8; ++corner) {
           const point = [0, 1, 2].map((c) => (corner & (1 << c) ? 2 : -2)) as Vec3;
@@ -63,7 +63,7 @@ test("canonical views follow the scene's axes", () => {
     };
     for (const [name, direction] of Object.entries(toward)) {
       const rig = rigFor(1, up);
-      rig.look(name as ViewName);
+      rig.setView(name as ViewName);
       const lens = rig.lens(100, 100);
       near(dot(lens.forward, direction.toArray()), -1, 1e-12);
       if (name !== "top" && name !== "bottom") near(dot(lens.up, axes.up.toArray()), 1, 1e-12);

@@ -80,8 +80,8 @@ test("only the newest question follows an answer", async () => {
   const { source, chosen } = opened();
   for (const step of [1, 2, 3]) {
     chosen.choose("a", step, 0);
-    chosen.look();
-    chosen.look();
+    chosen.request();
+    chosen.request();
   }
   assert.deepEqual(
     source.asked.map((q) => q.step),
@@ -104,45 +104,45 @@ const playing = { kind: "state", playing: true, a: { step: 5, time: 0.05, iterat
 test("automatic questions pause, a reader's choice does not", async () => {
   const { source, chosen } = opened();
   source.emit(playing as unknown as ServerMessage);
-  chosen.look();
+  chosen.request();
   await new Promise((resolve) => setTimeout(resolve, 30));
   source.asked[0]!.answer();
   await settled();
   source.emit({ kind: "steps", side: "a", from: 5, steps: rows(5, 1) });
   chosen.follow(true);
-  chosen.look();
+  chosen.request();
   assert.equal(source.asked.length, 1);
   chosen.choose("a", 3, 1);
-  chosen.look();
+  chosen.request();
   assert.equal(source.asked.length, 2);
 });
 
 test("an interrupted question is repeated", async () => {
   const { source, chosen } = opened();
   chosen.choose("a", 2, 0);
-  chosen.look();
+  chosen.request();
   source.asked[0]!.answer(new Refusal("something else is to be done", true));
   await settled();
   assert.equal(chosen.seen, null);
-  chosen.look();
+  chosen.request();
   assert.equal(source.asked.length, 2);
 });
 
 test("answers are cached until a rewind", async () => {
   const { source, chosen } = opened();
-  const look = async (step: number, why?: string): Promise<void> => {
+  const request = async (step: number, why?: string): Promise<void> => {
     chosen.choose("a", step, 0);
-    chosen.look();
+    chosen.request();
     source.asked.at(-1)!.answer(why);
     await settled();
   };
-  await look(4);
-  await look(2, "too long ago");
+  await request(4);
+  await request(2, "too long ago");
   assert.equal(chosen.seen!.why, "too long ago");
-  await look(4);
+  await request(4);
   assert.equal(source.asked.length, 2);
   source.emit({ kind: "steps", side: "a", from: 3, steps: rows(3, 2) });
-  chosen.look();
+  chosen.request();
   assert.equal(source.asked.length, 3);
 });
 

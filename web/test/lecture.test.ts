@@ -8,7 +8,7 @@ const lesson = (id: string, more: Partial<Lesson> = {}): Lesson => ({
   pages: "33-34",
   title: "The mouse pulls",
   claim: "A spring.",
-  look: "",
+  exercise: "",
   panel: "energy",
   ...more,
 });

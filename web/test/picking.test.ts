@@ -29,7 +29,7 @@ const kBall = sphere(24, 32);
 function frontCamera(orthographic = false): CameraRig {
   const rig = new CameraRig();
   rig.show("ball", [-1, -1, -1], [1, 1, 1], [0, 1, 0]);
-  rig.look("front");
+  rig.setView("front");
   rig.setOrthographic(orthographic);
   return rig;
 }

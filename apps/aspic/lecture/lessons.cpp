@@ -32,7 +32,7 @@ enum class Shape { of_the_scene, real_mesh };
 struct Staging {
   const char* demonstration;  // its key
   const char* part = "";      // appended to the title if a demonstration has several lessons
-  const char* look;           // includes one thing to try
+  const char* exercise;       // includes one thing to try
   const char* question;       // for the reader
   const char* answer;
   const char* panel = "energy";
@@ -72,7 +72,7 @@ RecordedDrag slow_drag() {
 const std::vector<Staging>& stagings() {
   static const std::vector<Staging> list = {
       {.demonstration = "02_fine_mesh",
-       .look =
+       .exercise =
            "The thin wires are the edges of tets at the surface: come closer to see them. So that it moves while you "
            "watch, this mesh has fewer tets than the slide's; aspic lecture 2 simulates more than 100 000. Press S, "
            "and choose the chart \"Time by stage over the iterations\": it shows the wall time of the step.",
@@ -82,7 +82,7 @@ const std::vector<Staging>& stagings() {
        .panel = "microscope",
        .scene = "02_fine_mesh"},
       {.demonstration = "03_tissue",
-       .look =
+       .exercise =
            "The colors show Young's modulus: stiff skin over soft fat over muscle. Play: the indenter sinks in, and "
            "the energy V in the plot grows faster than the square of its depth because the tissue stiffens. Color "
            "by von Mises stress to see where it is loaded. In aspic view scenes/bench.toml, the tab Bench measures a "
@@ -94,13 +94,13 @@ const std::vector<Staging>& stagings() {
        .field = "young",
        .shape = Shape::of_the_scene},
       {.demonstration = "05-09_equation_of_motion",
-       .look = "Play: V falls while T rises, and vice versa, as M q'' = -dV/dq exchanges them. Shift and click "
-               "on a vertex to read where its three entries are in q.",
+       .exercise = "Play: V falls while T rises, and vice versa, as M q'' = -dV/dq exchanges them. Shift and click "
+                   "on a vertex to read where its three entries are in q.",
        .question = "At which moments is T largest?",
        .answer = "When V is smallest: T + V changes only by what the integrator dissipates.",
        .scene = "05_swing"},
       {.demonstration = "06_chutes",
-       .look =
+       .exercise =
            "Play: the bodies fall on the chutes, slide and tumble to the floor. Dots are contact points, colored by "
            "pressure. Drag a body against the other, or up a chute: nothing intersects. The energy plot has a curve "
            "for contact.",
@@ -109,7 +109,7 @@ const std::vector<Staging>& stagings() {
                  "as far as no two surfaces meet on the way.",
        .scene = "06_chutes"},
       {.demonstration = "08-10_springs_beside_elements",
-       .look =
+       .exercise =
            "Play, then drag each: elements on the left, springs along the edges on the right, on the same mesh. Both "
            "obey the same equation with another V. Springs do not resist changes of volume and sag differently.",
        .question = "On what does V depend in each of the two meshes?",
@@ -117,7 +117,7 @@ const std::vector<Staging>& stagings() {
                  "so on its change of volume det F.",
        .scene = "08_springs_beside_elements"},
       {.demonstration = "10-18_differences",
-       .look =
+       .exercise =
            "The same motion in steps of h and of h/2: differences of q approximate its derivatives, more "
            "accurately for shorter steps. Play and see how the two bodies drift apart, and how much more T the shorter "
            "steps keep.",
@@ -127,7 +127,7 @@ const std::vector<Staging>& stagings() {
        .scene = "05_swing",
        .comparison = {{{"time.step=0.005"}, "h / 2"}}},
       {.demonstration = "19-22_explicit_or_implicit",
-       .look =
+       .exercise =
            "With steps this short both schemes give the same motion; where dV/dq is evaluated hardly matters. Make h "
            "ten times as long and play again: only one of them stays stable.",
        .question = "Both schemes share M, q~ and V. What makes only one of them unstable for long steps?",
@@ -138,7 +138,7 @@ const std::vector<Staging>& stagings() {
        .overrides = {"time.step=5e-4", "solver.mass=lumped"},
        .comparison = {{{"time.integrator=symplectic_euler"}, "explicit"}}},
       {.demonstration = "23_printed_forward_euler",
-       .look =
+       .exercise =
            "Play: A is the printed formula, which is symplectic Euler, B the classical forward Euler, both with "
            "the same h. T + V of the printed one stays in a band, that of the classical one grows until it explodes.",
        .question = "Where do the two formulas evaluate dV/dq?",
@@ -149,9 +149,9 @@ const std::vector<Staging>& stagings() {
        .overrides = {"time.step=5e-4", "solver.mass=lumped", "time.integrator=symplectic_euler", "gravity=[0, 0, 0]"},
        .comparison = {{{"time.integrator=forward_euler"}, "classical"}}},
       {.demonstration = "24_backward_euler",
-       .look = "Play: A is backward Euler, B the explicit scheme with the same h = 0.01 s. The explicit one "
-               "explodes within "
-               "a few steps; backward Euler needs a minimization per step and dissipates energy.",
+       .exercise = "Play: A is backward Euler, B the explicit scheme with the same h = 0.01 s. The explicit one "
+                   "explodes within "
+                   "a few steps; backward Euler needs a minimization per step and dissipates energy.",
        .question = "What is the price of this stability?",
        .answer =
            "A minimization per step, and numerical damping: T + V falls although the equation dissipates nothing.",
@@ -160,8 +160,9 @@ const std::vector<Staging>& stagings() {
        .overrides = {"gravity=[0, 0, 0]"},
        .comparison = {{{"time.integrator=symplectic_euler"}, "explicit"}}},
       {.demonstration = "25_drag",
-       .look = "A recorded mouse pulls the highest point by a spring: the line shows the spring, the number its force. "
-               "Take over at any time and pull; the energy plot shows the work of the mouse.",
+       .exercise =
+           "A recorded mouse pulls the highest point by a spring: the line shows the spring, the number its force. "
+           "Take over at any time and pull; the energy plot shows the work of the mouse.",
        .question = "Where does the energy of the body come from?",
        .answer = "From the work of the mouse, the force of the spring times the motion of the cursor. It equals the "
                  "gain of energy plus the losses.",
@@ -169,24 +170,26 @@ const std::vector<Staging>& stagings() {
        .overrides = {"spring=[]"},
        .drag = slow_drag()},
       {.demonstration = "26-31_optimization",
-       .look = "Take single steps and choose an iteration: the gradient of E is the residual of the equation. Where it "
-               "is zero, E has its minimum and the equation holds.",
+       .exercise =
+           "Take single steps and choose an iteration: the gradient of E is the residual of the equation. Where it "
+           "is zero, E has its minimum and the equation holds.",
        .question = "Is every point where the gradient of E is zero a minimum?",
        .answer = "No, V is not convex: it may be a saddle or a maximum. For short steps the term with M dominates and "
                  "E is convex; then the solution is unique.",
        .panel = "microscope",
        .scene = "05_swing"},
       {.demonstration = "32_one_minimization_per_step",
-       .look = "Take one iteration at a time: the body moves a little and E falls at a fixed time. The step "
-               "is complete when the minimization has converged.",
+       .exercise = "Take one iteration at a time: the body moves a little and E falls at a fixed time. The step "
+                   "is complete when the minimization has converged.",
        .question = "What changes in E from one step to the next?",
        .answer = "q~, which moves the minimum of the inertia term; V changes only by moving pins and loads.",
        .panel = "microscope",
        .scene = "05_swing"},
       {.demonstration = "33-34_explosion",
        .part = "explicit",
-       .look = "The same mouse drags both: A is implicit, B explicit. The explicit scheme explodes within a few "
-               "steps and ends; the implicit one continues, and stays stable: take over and pull as hard as you can.",
+       .exercise =
+           "The same mouse drags both: A is implicit, B explicit. The explicit scheme explodes within a few "
+           "steps and ends; the implicit one continues, and stays stable: take over and pull as hard as you can.",
        .question = "The implicit scheme is stable for every h. Is it also accurate?",
        .answer =
            "No. Stable means that errors do not grow; long steps still damp the motion. Make h shorter and compare.",
@@ -197,9 +200,10 @@ const std::vector<Staging>& stagings() {
        .drag = wild_drag()},
       {.demonstration = "33-34_explosion",
        .part = "linearized",
-       .look = "The same mouse drags both: A solves one minimization per step, B one linear system per step. Where the "
-               "body bends far, the linear system is inaccurate and the energy grows. Halve h and reset: how far does "
-               "it come now?",
+       .exercise =
+           "The same mouse drags both: A solves one minimization per step, B one linear system per step. Where the "
+           "body bends far, the linear system is inaccurate and the energy grows. Halve h and reset: how far does "
+           "it come now?",
        .question = "How is the linearized scheme related to Newton's method?",
        .answer =
            "It is the first iteration with the full step, without a line search and without a test of the residual.",
@@ -209,7 +213,7 @@ const std::vector<Staging>& stagings() {
        .comparison = {{{"time.integrator=linearly_implicit_euler"}, "linearized"}},
        .drag = wild_drag()},
       {.demonstration = "36-40_velocity_form",
-       .look =
+       .exercise =
            "Choose an iteration: with q = q_i + h v the same E is a function of the velocities, its minimum the same "
            "motion. Only the labels of the axes would change.",
        .question = "The first form has h^2 in front of V, this one does not. Why is the motion the same?",
@@ -218,8 +222,8 @@ const std::vector<Staging>& stagings() {
        .scene = "05_swing"},
       {.demonstration = "38-42_gradient_descent",
        .part = "Rosenbrock's valley",
-       .look = "Each step follows the steepest descent across the valley, so the path zig-zags. 200 "
-               "iterations are not enough. Drag the start elsewhere, or choose Newton's method for the same start.",
+       .exercise = "Each step follows the steepest descent across the valley, so the path zig-zags. 200 "
+                   "iterations are not enough. Drag the start elsewhere, or choose Newton's method for the same start.",
        .question = "Why do successive steps turn by nearly right angles?",
        .answer = "A step ends about where E stops falling along its direction. There the gradient has no component "
                  "along that direction.",
@@ -227,8 +231,9 @@ const std::vector<Staging>& stagings() {
        .function = question("rosenbrock", -1, -0.5, {{"method", "gradient_descent"}})},
       {.demonstration = "38-42_gradient_descent",
        .part = "two bumps",
-       .look = "Where the level lines are nearly circles the gradient points at the minimum and a few dozen iterations "
-               "are enough. Drag the start to the other side of the bump and compare the paths.",
+       .exercise =
+           "Where the level lines are nearly circles the gradient points at the minimum and a few dozen iterations "
+           "are enough. Drag the start to the other side of the bump and compare the paths.",
        .question = "Which number decides how fast gradient descent converges near a minimum?",
        .answer = "The condition number of the Hessian, its largest divided by its smallest eigenvalue. It is 1 if the "
                  "level lines are circles.",
@@ -236,8 +241,9 @@ const std::vector<Staging>& stagings() {
        .function = question("two_bump", -0.3, 0.9, {{"method", "gradient_descent"}})},
       {.demonstration = "38-42_gradient_descent",
        .part = "a step of a body",
-       .look = "Play: A is Newton's method, B gradient descent on the same steps, to the same tolerance. Compare the "
-               "number of iterations and the time that each step takes.",
+       .exercise =
+           "Play: A is Newton's method, B gradient descent on the same steps, to the same tolerance. Compare the "
+           "number of iterations and the time that each step takes.",
        .question = "An iteration of gradient descent is cheaper. Why does its step take longer?",
        .answer = "It needs far more iterations: stiff and soft deformations together make the condition number of the "
                  "Hessian large.",
@@ -247,17 +253,17 @@ const std::vector<Staging>& stagings() {
        .overrides = {"solver.tolerance=1e-3", "solver.max_iterations=20000"},
        .comparison = {{{"solver.method=gradient_descent"}, "gradient descent"}}},
       {.demonstration = "43-51_quadratic_model",
-       .look = "The second surface is the quadratic model: it touches E at the iterate and has the same slope and "
-               "curvature there. Newton's step goes to the model's lowest point; step through the iterations.",
+       .exercise = "The second surface is the quadratic model: it touches E at the iterate and has the same slope and "
+                   "curvature there. Newton's step goes to the model's lowest point; step through the iterations.",
        .question = "For which E is one iteration of Newton's method enough?",
        .answer = "For a quadratic E with a positive definite Hessian: the model is then E itself.",
        .panel = "functions",
        .function = question("rosenbrock", -0.8, 0.3, {{"method", "newton"}})},
       {.demonstration = "53+62_pure_newton",
-       .look = "Take one step (S): A is Newton's method with a line search, B without. The E of A falls in every "
-               "iteration. Choose B above the table: its E jumps far up in the first iteration, the iterates end "
-               "outside the range "
-               "of numbers, and the body stays squashed because its step has no result.",
+       .exercise = "Take one step (S): A is Newton's method with a line search, B without. The E of A falls in every "
+                   "iteration. Choose B above the table: its E jumps far up in the first iteration, the iterates end "
+                   "outside the range "
+                   "of numbers, and the body stays squashed because its step has no result.",
        .question = "Both start at the same point with the same direction. Why does E rise without a line search?",
        .answer = "The model is accurate only near the iterate. The full step leaves this region and inverts tets; a "
                  "shorter one does not.",
@@ -265,18 +271,20 @@ const std::vector<Staging>& stagings() {
        .scene = "53_hard_step",
        .comparison = {{{"solver.line_search.test=none"}, "without line search"}}},
       {.demonstration = "54-59_overshoot",
-       .look = "The minimum of the model is E = 0, but the true E there is a hundred times as high as at the start. "
-               "A quarter of the same step lies lower: the line search finds it. Drag the start along the valley to "
-               "where the full step succeeds.",
+       .exercise =
+           "The minimum of the model is E = 0, but the true E there is a hundred times as high as at the start. "
+           "A quarter of the same step lies lower: the line search finds it. Drag the start along the valley to "
+           "where the full step succeeds.",
        .question = "Why does a short enough step along this direction always lower E?",
        .answer =
            "The slope of E along d is d'g = -d'H d, which is negative if H is positive definite: E falls at first.",
        .panel = "functions",
        .function = question("rosenbrock", 0, 0, {{"method", "newton"}})},
       {.demonstration = "60-61_backtracking",
-       .look = "Take one step and choose an iteration with several trials: those above the line are rejected, alpha "
-               "shrinks by p until one lies below. Change \u03b1_max, c and p in the settings, Line search, and step "
-               "again.",
+       .exercise =
+           "Take one step and choose an iteration with several trials: those above the line are rejected, alpha "
+           "shrinks by p until one lies below. Change \u03b1_max, c and p in the settings, Line search, and step "
+           "again.",
        .question = "What happens for c = 0, and for c > 1/2?",
        .answer = "c = 0 accepts any decrease, however small, so the iterates may stall. c > 1/2 rejects Newton's full "
                  "step even on a quadratic E, which lowers E by half of its slope.",
@@ -371,7 +379,7 @@ Lesson lesson_of(const Demonstration& demonstration, const Staging& staging, con
                 .pages = pages_text(demonstration.pages),
                 .title = demonstration.title + (part.empty() ? "" : ": " + part),
                 .claim = demonstration.claim,
-                .look = staging.look,
+                .exercise = staging.exercise,
                 .question = staging.question,
                 .answer = staging.answer,
                 .panel = staging.panel,

@@ -125,8 +125,8 @@ def capture(scene, folder, **options):
     options: indentations, depths, markers, deepest, tip_radius [m], noise, force_noise, regions, seed.
     """
     known = {"indentations", "depths", "markers", "deepest", "tip_radius", "noise", "force_noise", "regions", "seed"}
-    if unknown := set(options) - known:
-        raise _aspic.InvalidInput(f"unknown options {sorted(unknown)} (known: {', '.join(sorted(known))})")
+    if unknown_options := set(options) - known:
+        raise _aspic.InvalidInput(f"unknown options {sorted(unknown_options)} (known: {', '.join(sorted(known))})")
     return _aspic.capture(scene_of(scene)._source(), os.fspath(folder), options)
 
 

@@ -75,8 +75,8 @@ class Callbacks {
   bool is_requested() {
     if (has_failed() || is_stopped_ || is_leaving()) return true;
     const auto now = std::chrono::steady_clock::now();
-    if (now - last_look_ < std::chrono::milliseconds(20)) return false;
-    last_look_ = now;
+    if (now - last_check_ < std::chrono::milliseconds(20)) return false;
+    last_check_ = now;
     call([] {
       if (PyErr_CheckSignals() != 0) throw py::error_already_set();
     });
@@ -85,7 +85,7 @@ class Callbacks {
 
   std::exception_ptr error_;
   bool is_stopped_ = false;
-  std::chrono::steady_clock::time_point last_look_{};
+  std::chrono::steady_clock::time_point last_check_{};
 };
 
 }  // namespace aspic::python

@@ -201,7 +201,7 @@ def test_page_plays_in_a_frame_without_a_server(jelly):
     assert not re.search(r"""(src|href)=["']?https?://""", page)
 
 
-def test_page_goes_on_after_more_steps(jelly):
+def test_page_continues_after_more_steps(jelly):
     sim = aspic.Simulation(jelly)
     sim.run(2)
     assert len(sim.results().steps["step"]) == 3

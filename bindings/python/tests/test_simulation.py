@@ -138,7 +138,7 @@ def test_failed_step_raises_if_asked(jelly):
         sim.run(3, check=True)
 
 
-def test_observer_sees_every_iteration(jelly):
+def test_observer_receives_every_iteration(jelly):
     sim, trace = aspic.Simulation(jelly), aspic.Trace(landscape=True, samples=5)
     report = sim.step(observe=trace)
     assert len(trace) >= report.iterations

@@ -71,9 +71,9 @@ def main():
     parser.add_argument("--write-only", action="store_true", help="write the files of the scenes without running them")
     parser.add_argument("--refine", type=int, nargs="?", const=4, metavar="N", help="run the chute with N finer and finer meshes; default: 4")
     arguments = parser.parse_args()
-    unknown = set(arguments.scene) - set(scenes.PROBLEMS)
-    if unknown:
-        parser.error(f"unknown scene {', '.join(unknown)}; known: {', '.join(scenes.PROBLEMS)}")
+    unknown_scenes = set(arguments.scene) - set(scenes.PROBLEMS)
+    if unknown_scenes:
+        parser.error(f"unknown scene {', '.join(unknown_scenes)}; known: {', '.join(scenes.PROBLEMS)}")
     if arguments.refine:
         wanted = [(f"chute{cells}", scenes.chute(cells)) for cells in (9, 13, 20, 30, 46)[:arguments.refine]]
     else:

@@ -17,7 +17,7 @@ export interface Column {
   whole?: (row: StepRow) => string; // complete value, where the cell is shortened
 }
 
-const kUnknown = -Infinity;
+const kNoValue = -Infinity;
 
 // Whether the energy bound was checked. Steps without a guarantee have only the slack.
 function isBounded(row: StepRow): boolean {
@@ -31,7 +31,7 @@ function boundText(row: StepRow): string {
 }
 
 function boundBadness(row: StepRow): number {
-  if (row.energy_bound === "none") return kUnknown;
+  if (row.energy_bound === "none") return kNoValue;
   if (row.energy_bound === "holds") return -(row.energy_slack ?? 0);
   return row.energy_bound === "broken" ? Infinity : Number.MAX_VALUE;
 }
@@ -44,7 +44,7 @@ function reactionText(row: StepRow, first: 0 | 3): string | null {
 }
 
 function largestFirst(title: string, meaning: string, value: (row: StepRow) => MaybeNumber): Column {
-  return { title, meaning, value, worse: (row) => value(row) ?? kUnknown };
+  return { title, meaning, value, worse: (row) => value(row) ?? kNoValue };
 }
 
 export const kColumns: Column[] = [

@@ -91,7 +91,7 @@ function addDisplay(folder: Folder, display: Display, views: () => View[]): void
   folder.slider("clipAt", "Cut at", 0, 1, 0.001);
   folder.add("clipOther", "Flip cut");
   addNumbers(folder.within("Numbers and marks"));
-  addLook(folder.within("Colors and light"));
+  addAppearance(folder.within("Colors and light"));
   folder.button("Reset display", () => display.change(kDefaults));
 }
 
@@ -103,7 +103,7 @@ function addNumbers(folder: Folder): void {
   folder.add("axes", "Axes");
 }
 
-function addLook(folder: Folder): void {
+function addAppearance(folder: Folder): void {
   folder.add("smooth", "Smooth shading");
   folder.add("bodyColor", "Body");
   folder.add("lineColor", "Wires");
@@ -148,8 +148,8 @@ function addCamera(folder: Folder, display: Display, views: () => View[]): void 
   const kind = (): string => (display.cameras.a.orthographic ? "yes" : "no");
   folder.choice("Projection", () => kinds, kind, (value) => each((rig) => rig.setOrthographic(value === "yes")));
   folder.button("Center the body", () => views().forEach((view) => view.center()));
-  const look = folder.within("Look from");
-  for (const name of kViewNames) look.button(name, () => each((rig) => rig.look(name)));
+  const buttons = folder.within("Look from");
+  for (const name of kViewNames) buttons.button(name, () => each((rig) => rig.setView(name)));
   folder.add("linked", "Link cameras");
 }
 
@@ -175,8 +175,8 @@ function addDisplayShortcuts(page: Page, display: Display): void {
 
 function addCameraShortcuts(page: Page, display: Display, views: () => View[]): void {
   const add = (key: string, does: string, run: () => void): void => page.shortcut({ key, does, group: "Camera", run });
-  const look = (name: ViewName): void => display.eachCamera((rig) => rig.look(name));
-  kViewNames.forEach((name, i) => add(String(i + 1), `Look from: ${name}`, () => look(name)));
+  const setView = (name: ViewName): void => display.eachCamera((rig) => rig.setView(name));
+  kViewNames.forEach((name, i) => add(String(i + 1), `Look from: ${name}`, () => setView(name)));
   const center = (): void => views().forEach((view) => view.center());
   add("0", "Center the body", center);
   add(".", "Center the body", center);

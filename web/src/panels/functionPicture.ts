@@ -4,7 +4,7 @@ import { quadraticAt, uniform, type Grid } from "../plots/grid";
 import { plural, short } from "../numbers";
 import { addModelMinimum, addRejected, type SurfaceContent } from "../plots/surfaceContent";
 
-interface FunctionLook {
+interface FunctionDisplay {
   iteration: number;
   wholePath: boolean; // draw the path beyond that iteration
   start: [number, number];
@@ -12,33 +12,33 @@ interface FunctionLook {
   log: boolean;
 }
 
-export function pictureOf(reply: FunctionReply, look: FunctionLook): SurfaceContent {
+export function pictureOf(reply: FunctionReply, display: FunctionDisplay): SurfaceContent {
   const grid: Grid = {
     x: uniform(reply.lower[0], reply.upper[0], reply.samples),
     y: uniform(reply.lower[1], reply.upper[1], reply.samples),
     value: reply.value,
   };
-  const model = look.model && reply.iterations.length > 0;
+  const model = display.model && reply.iterations.length > 0;
   const content: SurfaceContent = {
     label: `f = ${reply.formula}, with the path of ${plural(reply.iterations.length, "iteration")}`,
     grid,
     axes: { x: "x", y: "y", value: "f" },
     model: model ? modelOn(grid, reply) : null,
-    path: reply.path.slice(0, look.wholePath ? undefined : look.iteration + 2),
+    path: reply.path.slice(0, display.wholePath ? undefined : display.iteration + 2),
     draped: true,
     direction: null,
     marks: [],
     signs: [{ sign: "▇", color: "series3", text: `f = ${reply.formula}` }],
-    keep: [reply.path[look.iteration]?.value ?? null],
-    log: look.log,
+    keep: [reply.path[display.iteration]?.value ?? null],
+    log: display.log,
   };
-  addTrials(content, reply, look.iteration);
+  addTrials(content, reply, display.iteration);
   if (model) {
     content.signs.push({ sign: "▇", color: "series2", text: "quadratic model of this iteration" });
     addModelMinimum(content, reply.model, ({ x, y }) => `(${short(x, 3)}, ${short(y, 3)})`);
   }
   addMinimum(content, reply);
-  addEnds(content, reply, look);
+  addEnds(content, reply, display);
   return content;
 }
 
@@ -63,11 +63,11 @@ function addMinimum({ marks, signs }: SurfaceContent, { minimizer }: FunctionRep
 }
 
 // Adds the ends of the iteration and the initial point.
-function addEnds({ marks, signs }: SurfaceContent, reply: FunctionReply, look: FunctionLook): void {
-  const [from, to] = [reply.path[look.iteration], reply.path[look.iteration + 1]];
+function addEnds({ marks, signs }: SurfaceContent, reply: FunctionReply, display: FunctionDisplay): void {
+  const [from, to] = [reply.path[display.iteration], reply.path[display.iteration + 1]];
   if (from) marks.push({ ...from, shape: "dot", color: "accent", size: 12 });
   if (to) marks.push({ ...to, shape: "dot", color: "good", size: 12 });
-  const [x, y] = look.start;
+  const [x, y] = display.start;
   marks.push({ x, y, value: null, shape: "ring", color: "bad", size: 13, label: "start: drag me" });
   signs.push({ sign: "●", color: "accent", text: "this iteration begins here" });
   signs.push({ sign: "●", color: "good", text: "this iteration ends here" });

@@ -46,7 +46,7 @@ export class LandscapePanel implements Panel {
     const side = element("div", { class: "surface-side" }, element("div", { class: "surface-texts" }, this.view.legend, this.text));
     const fill = element("div", { class: "plot-fill" }, this.view.element);
     this.element.append(bar, element("div", { class: "plot-columns plot-fill" }, fill, side));
-    for (const event of ["changed", "rows", "looked"] as const) this.chosen.on(event, this.refresh);
+    for (const event of ["changed", "rows", "answered"] as const) this.chosen.on(event, this.refresh);
     page.keep("landscape", {
       save: () => ({ model: this.model.input.checked, log: this.log.input.checked }),
       restore: (saved) => this.restore(saved),
@@ -61,7 +61,7 @@ export class LandscapePanel implements Panel {
       count > 0 ? `step ${step}, iteration ${iteration} of 0 to ${count - 1}` : step > 0 ? `step ${step}` : "no step yet";
     const none = "This integrator does not minimize, so there is no landscape.";
     if (count === 0) return this.settle(null, this.chosen.isImplicit() ? "No iteration has been computed yet." : none);
-    this.chosen.look();
+    this.chosen.request();
     const seen = this.chosen.seen;
     if (!seen) return this.settle(null, "Computing E around the iteration ...");
     if (!seen.reply) return this.settle(null, `Not available: ${seen.why}`);

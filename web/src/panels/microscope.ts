@@ -53,7 +53,7 @@ export class MicroscopePanel implements Panel {
     const bar = element("div", { class: "plot-bar" }, this.sides.element, this.follow.element, worst, this.words);
     const tables = element("div", { class: "microscope-tables" }, this.steps.element, this.iterations.element);
     this.element.append(bar, this.worst, element("div", { class: "microscope plot-fill" }, tables, this.grid));
-    for (const event of ["changed", "rows", "looked"] as const) this.chosen.on(event, this.redraw);
+    for (const event of ["changed", "rows", "answered"] as const) this.chosen.on(event, this.redraw);
     for (const event of ["scene", "gone"] as const) store.on(event, this.redraw);
     page.keep("microscope", { save: () => ({ charts: this.names }), restore: (saved) => this.restore(saved) });
     new ResizeObserver(() => this.arrange()).observe(this.grid);
@@ -149,7 +149,7 @@ export class MicroscopePanel implements Panel {
     if (!this.charts.some((chart) => chart.name === "search")) return "";
     if (!this.chosen.iterationRow())
       return this.chosen.isImplicit() ? "No iteration is chosen." : "This integrator does not minimize, so there is no line search.";
-    this.chosen.look();
+    this.chosen.request();
     const seen = this.chosen.seen;
     if (!seen) return "Computing E along d ...";
     if (!seen.reply) return `E along d is not available: ${seen.why}`;

@@ -178,9 +178,9 @@ export class Settings {
 
   private note(setting: Setting): void {
     const now = performance.now();
-    const goesOn = this.newest.key === setting.key && now - this.newest.at < kOneChange;
+    const continues = this.newest.key === setting.key && now - this.newest.at < kOneChange;
     this.newest = { key: setting.key, at: now };
-    if (!goesOn) this.history.add(this.back(setting.key));
+    if (!continues) this.history.add(this.back(setting.key));
   }
 
   private async undo(): Promise<void> {

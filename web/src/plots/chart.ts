@@ -10,7 +10,7 @@ import { oncePerFrame } from "../controls";
 import { element } from "../dom";
 import { titled } from "./legend";
 import { short, withUnit } from "../numbers";
-import { cssOf, inkOf, palette, sameLook, type Color, type Palette } from "./palette";
+import { cssOf, inkOf, palette, samePalette, type Color, type Palette } from "./palette";
 import { nearest, type Table } from "./table";
 
 export interface Curve {
@@ -58,7 +58,7 @@ export class Chart {
   private chart: uPlot | null = null;
   private entries: Entry[] = [];
   private cursor: number | null = null;
-  private look: Palette | null = null;
+  private colors: Palette | null = null;
   private readonly resize = oncePerFrame(() => this.fit());
 
   constructor() {
@@ -101,7 +101,7 @@ export class Chart {
     const [width, height] = [this.plot.clientWidth, this.plot.clientHeight];
     const options = this.options;
     if (!options || width < 60 || height < 40 || this.data.columns.length !== options.curves.length) return;
-    const colors = (this.look = palette(this.element));
+    const colors = (this.colors = palette(this.element));
     this.chart = new uPlot(
       this.settings(options, colors, width, height),
       [this.data.x, ...this.data.columns],
@@ -209,7 +209,7 @@ export class Chart {
   private fit(): void {
     const [width, height] = [this.plot.clientWidth, this.plot.clientHeight];
     if (width < 60 || height < 40) return;
-    if (this.chart && sameLook(this.look, palette(this.element))) this.chart.setSize({ width, height });
+    if (this.chart && samePalette(this.colors, palette(this.element))) this.chart.setSize({ width, height });
     else this.rebuild();
   }
 

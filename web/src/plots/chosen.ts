@@ -15,7 +15,7 @@ const kRemembered = 12;
 interface Events {
   changed: void; // another iteration was chosen
   rows: void; // the list of steps has changed
-  looked: void; // the program has answered about an iteration
+  answered: void; // the program has answered about an iteration
 }
 
 export interface Seen {
@@ -128,9 +128,9 @@ export class Chosen extends Emitter<Events> {
     this.emit("changed", undefined);
   }
 
-  // Requests the chosen iteration from the program once and emits `looked` with the answer. While steps arrive fast the
+  // Requests the chosen iteration from the program once and emits `answered` with the answer. While steps arrive fast the
   // answer may be about an earlier choice: the program interrupts its steps for each question.
-  look(): void {
+  request(): void {
     const at = { side: this.side, step: this.step, iteration: this.iteration };
     const key = keyOf(at);
     if (key === this.asked || !this.iterationRow() || this.isResting()) return;
@@ -170,7 +170,7 @@ export class Chosen extends Emitter<Events> {
 
   private take(seen: Seen): void {
     this.seen = seen;
-    this.emit("looked", undefined);
+    this.emit("answered", undefined);
   }
 
   private rowOf(step: number): StepRow | null {

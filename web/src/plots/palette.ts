@@ -40,7 +40,7 @@ export interface Palette extends Record<Name, string> {
   fontSize: number; // [CSS px]
 }
 
-export function sameLook(a: Palette | null, b: Palette): boolean {
+export function samePalette(a: Palette | null, b: Palette): boolean {
   return a !== null && Object.entries(b).every(([name, value]) => a[name as keyof Palette] === value);
 }
 

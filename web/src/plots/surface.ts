@@ -7,7 +7,7 @@ import { oncePerFrame } from "../controls";
 import { element } from "../dom";
 import { sample, type Point } from "./grid";
 import { legendOf, titled } from "./legend";
-import { cssOf, inkOf, palette, sameLook, type Palette } from "./palette";
+import { cssOf, inkOf, palette, samePalette, type Palette } from "./palette";
 import { SurfaceBody } from "./surfaceBody";
 import type { Mark, SurfaceContent } from "./surfaceContent";
 import { axisLabels, placed, type Placed } from "./surfaceLabels";
@@ -128,7 +128,7 @@ export class SurfaceView {
     if (!this.renderer) return;
     this.renderer.setSize(width, height, false);
     const isStretched = Math.abs(this.wantedStretch() - this.stretch) > 0.1;
-    if (isStretched || !sameLook(this.colors, palette(this.element))) this.build();
+    if (isStretched || !samePalette(this.colors, palette(this.element))) this.build();
     this.camera.aspect = width / height;
     this.camera.updateProjectionMatrix();
     const distance = this.distanceThatShowsAll();

@@ -26,7 +26,7 @@ export function sceneAxes(up: Vec3): { right: Vector3; front: Vector3; up: Vecto
 }
 
 // Orientation of a camera that looks from a direction, with `up` as far upward on the screen as possible.
-export function lookingFrom(from: Vector3, up: Vector3, right: Vector3): Quaternion {
+export function orientationFrom(from: Vector3, up: Vector3, right: Vector3): Quaternion {
   const across = new Vector3().crossVectors(up, from);
   if (across.length() < 1e-6) across.copy(right);
   across.normalize();
@@ -64,14 +64,14 @@ export class CameraRig extends Emitter<{ changed: void }> implements Keeper {
     this.emit("changed", undefined);
   }
 
-  look(name: ViewName): void {
+  setView(name: ViewName): void {
     this.orientation.copy(this.viewOrientation(name));
     this.emit("changed", undefined);
   }
 
   setMode(mode: CameraMode): void {
     this.mode = mode;
-    if (mode === "turntable") this.orientation.copy(lookingFrom(this.axis(2), sceneAxes(this.up).up, this.axis(0))); // levels the horizon
+    if (mode === "turntable") this.orientation.copy(orientationFrom(this.axis(2), sceneAxes(this.up).up, this.axis(0))); // levels the horizon
     if (mode === "flat") {
       this.faceAxis();
       this.orthographic = true;
@@ -175,7 +175,7 @@ export class CameraRig extends Emitter<{ changed: void }> implements Keeper {
       bottom: up.clone().negate(),
       isometric: front.clone().multiplyScalar(1.5).add(right).addScaledVector(up, 0.8),
     };
-    return lookingFrom(from[name].normalize(), up, right);
+    return orientationFrom(from[name].normalize(), up, right);
   }
 
   // Turns to the canonical view nearest to the present direction.

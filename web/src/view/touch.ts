@@ -175,7 +175,7 @@ export class Touch {
       this.waiting = false;
       if (this.listeners.signal.aborted) return;
       this.flush();
-      if (!this.gesture) this.look();
+      if (!this.gesture) this.pointAt();
       this.view.redraw();
     });
   }
@@ -197,7 +197,7 @@ export class Touch {
     this.view.showPins([...known]); // until the program answers
   }
 
-  private look(): void {
+  private pointAt(): void {
     this.hover = this.cursor ? this.pick(this.cursor) : null;
     const { tool } = this.view.display.settings;
     const touches = tool === "read" ? "help" : tool === "drag" ? "grab" : "crosshair";

@@ -30,7 +30,7 @@ test("each lecture page opens scene and panel", async () => {
     const answer = await answered(opened, context, isLesson, () => entry.click());
     assert.equal(answer.kind, "reply", `${context}: ${answer.why}`);
     await page.locator("#left .lesson h2").filter({ hasText: lesson.title }).waitFor();
-    assert.ok(lesson.look.length > 20 && lesson.claim.length > 5, context);
+    assert.ok(lesson.exercise.length > 20 && lesson.claim.length > 5, context);
     await page.locator(`[role=tab][aria-selected="true"]`, { hasText: { energy: "Energy", microscope: "Microscope", landscape: "Landscape", functions: "Functions" }[lesson.panel] }).waitFor();
     if (lesson.panel === "energy") assert.equal(await page.getByRole("tabpanel", { name: "Energy" }).getByLabel("log").isChecked(), lesson.log === true, context);
     if (lesson.function) await until(`the function of ${context}`, () => heard.messages.slice(reported).some(({ reply }) => reply?.formula !== undefined));

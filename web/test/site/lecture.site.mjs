@@ -10,7 +10,7 @@ test("each page of the lecture has formulas, something to try, and a question wi
   const { messages } = await engineInNode("/scenes/cantilever.toml");
   const { lessons } = messages.find(({ kind }) => kind === "hello");
   const { formulasOf } = await pageModule("formulas.ts");
-  for (const { id, look, question, answer } of lessons) assert.ok(formulasOf(id).length > 0 && look && question && answer, id);
+  for (const { id, exercise, question, answer } of lessons) assert.ok(formulasOf(id).length > 0 && exercise && question && answer, id);
 });
 
 const kLongest = 3600e3; // a judgment [ms]

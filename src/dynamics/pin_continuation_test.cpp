@@ -20,7 +20,7 @@ Model carried(double distance) {
   return model;
 }
 
-TEST(LeadPins, MovesPinsInFractionsWithBarrierMaterial) {
+TEST(PinContinuation, MovesPinsInFractionsWithBarrierMaterial) {
   for (const std::string integrator : {"backward_euler", "quasi_static"}) {
     Simulation simulation = simulate(carried(1.2), {.h = 1, .integrator = integrator, .solver = {}});
     const StepReport report = simulation.step();
@@ -33,7 +33,7 @@ TEST(LeadPins, MovesPinsInFractionsWithBarrierMaterial) {
 
 // A single move of the pins raises the energy of the fibres to 1e300 J, which Newton's method would reduce by a
 // constant factor per iteration.
-TEST(LeadPins, OneLargeStepOfExponentialFibresEndsLikeSmallOnes) {
+TEST(PinContinuation, OneLargeStepOfExponentialFibresEndsLikeSmallOnes) {
   const auto stretched = [](int steps, double distance) {
     const TetMesh mesh = raise_order(make_box({}, {{0.04, 0.01, 0.01}}, {8, 2, 2}));
     Fibre fibre{{}, 2e3, 20, 0};
@@ -62,7 +62,7 @@ TEST(LeadPins, OneLargeStepOfExponentialFibresEndsLikeSmallOnes) {
   }
 }
 
-TEST(LeadPins, InvertingPinsEndUndefined) {
+TEST(PinContinuation, InvertingPinsEndUndefined) {
   Model model = beam(2, {.gravity = {}});
   model.pins.push_back({"mirror", vertices_where(model.mesh, [](const Vec3d& X) { return X[0] > 3 - 1e-9; }),
                         [](const Vec3d& X, double t) {
