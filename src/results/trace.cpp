@@ -16,7 +16,7 @@ using Json = nlohmann::ordered_json;
 template <class T>
 using Columns = std::vector<std::pair<std::string, Json (*)(const T&)>>;
 
-const Columns<LiveIteration> kIterationColumns = {
+const Columns<LiveIteration> kTraceIterationColumns = {
     {"value", [](const LiveIteration& i) -> Json { return i.value; }},
     {"gradient_norm", [](const LiveIteration& i) -> Json { return i.gradient_norm; }},
     {"decrement", [](const LiveIteration& i) -> Json { return i.decrement; }},
@@ -31,12 +31,12 @@ const Columns<LiveIteration> kIterationColumns = {
     {"linear_iterations", [](const LiveIteration& i) -> Json { return i.direction.linear_iterations; }},
     {"products", [](const LiveIteration& i) -> Json { return i.direction.products; }},
     {"cycles", [](const LiveIteration& i) -> Json { return i.direction.cycles; }}};
-const Columns<Trial> kTrialColumns = {{"alpha", [](const Trial& t) -> Json { return t.alpha; }},
-                                      {"value", [](const Trial& t) -> Json { return t.value; }},
-                                      {"bound", [](const Trial& t) -> Json { return t.bound; }},
-                                      {"by_slope", [](const Trial& t) -> Json { return t.by_slope; }},
-                                      {"accepted", [](const Trial& t) -> Json { return t.accepted; }}};
-const Columns<LiveIteration> kTimingColumns = {
+const Columns<Trial> kTraceTrialColumns = {{"alpha", [](const Trial& t) -> Json { return t.alpha; }},
+                                           {"value", [](const Trial& t) -> Json { return t.value; }},
+                                           {"bound", [](const Trial& t) -> Json { return t.bound; }},
+                                           {"by_slope", [](const Trial& t) -> Json { return t.by_slope; }},
+                                           {"accepted", [](const Trial& t) -> Json { return t.accepted; }}};
+const Columns<LiveIteration> kTraceTimingColumns = {
     {"hessian", [](const LiveIteration& i) -> Json { return i.direction.hessian_seconds; }},
     {"factorize", [](const LiveIteration& i) -> Json { return i.direction.factorize_seconds; }},
     {"solve_linear", [](const LiveIteration& i) -> Json { return i.direction.solve_seconds; }},
@@ -119,9 +119,9 @@ Trace::Trace(std::filesystem::path folder, TraceOptions options)
   std::error_code error;
   std::filesystem::create_directories(folder_, error);
   if (error) throw InvalidInput(folder_.string() + ": cannot be created: " + error.message());
-  iterations_ = table(folder_ / "iterations.csv", {"step", "solve", "iteration"}, kIterationColumns);
-  trials_ = table(folder_ / "trials.csv", {"step", "solve", "iteration", "trial"}, kTrialColumns);
-  timings_ = table(folder_ / "timings.csv", {"step", "solve", "iteration"}, kTimingColumns);
+  iterations_ = table(folder_ / "iterations.csv", {"step", "solve", "iteration"}, kTraceIterationColumns);
+  trials_ = table(folder_ / "trials.csv", {"step", "solve", "iteration", "trial"}, kTraceTrialColumns);
+  timings_ = table(folder_ / "timings.csv", {"step", "solve", "iteration"}, kTraceTimingColumns);
   json_ = OutputFile::create(folder_ / "trace.jsonl");
 }
 
@@ -139,19 +139,19 @@ void Trace::on_iteration(int step, const LiveIteration& iteration) {
 
 void Trace::add_rows(int step, const LiveIteration& iteration) {
   const CsvRow row = row_of(step, solve_, iteration.index);
-  append(iteration, kIterationColumns, row, iterations_);
-  append(iteration, kTimingColumns, row, timings_);
+  append(iteration, kTraceIterationColumns, row, iterations_);
+  append(iteration, kTraceTimingColumns, row, timings_);
   Json trials = Json::array();
   for (const Trial& trial : iteration.tried) {
     CsvRow tried = row;
-    append(trial, kTrialColumns, tried.add(static_cast<int>(trials.size())), trials_);
-    trials.push_back(json_of(trial, kTrialColumns));
+    append(trial, kTraceTrialColumns, tried.add(static_cast<int>(trials.size())), trials_);
+    trials.push_back(json_of(trial, kTraceTrialColumns));
   }
 
   Json line = {{"step", step}, {"solve", solve_}, {"iteration", iteration.index}};
-  line.update(json_of(iteration, kIterationColumns));
+  line.update(json_of(iteration, kTraceIterationColumns));
   line["trials"] = std::move(trials);
-  line["seconds"] = json_of(iteration, kTimingColumns);
+  line["seconds"] = json_of(iteration, kTraceTimingColumns);
   json_.append(line.dump() + "\n");
 }
 
