@@ -22,11 +22,11 @@ if(TARGET aspic_viewer)
   add_aspic_tests(test_mesh_pictures ${CMAKE_SOURCE_DIR}/apps/aspic/mesh_picture_test.cpp)
   target_link_libraries(test_mesh_pictures PRIVATE aspic_commands ZLIB::ZLIB)
 
-  # The page with its program in Chromium. Each test gets two processors, because the browser renders with them, too.
+  # The page with its program in Chromium, one browser at a time, beside other tests: it renders without a graphics card.
   file(GLOB page_themes CONFIGURE_DEPENDS ${web}/test/e2e/*.e2e.mjs ${CMAKE_SOURCE_DIR}/inverse/web/test/e2e/*.e2e.mjs)
   foreach(file ${page_themes})
     get_filename_component(theme ${file} NAME_WE)
     add_test(NAME page.${theme} COMMAND ${NODE} ${web}/test/e2e/run.mjs $<TARGET_FILE:aspic_cli> ${theme})
-    set_tests_properties(page.${theme} PROPERTIES SKIP_RETURN_CODE 77 PROCESSORS 2)
+    set_tests_properties(page.${theme} PROPERTIES SKIP_RETURN_CODE 77 RESOURCE_LOCK browser)
   endforeach()
 endif()

@@ -75,14 +75,15 @@ class Problem:
 
     def __init__(self, h, E, nu, rho, mu, steps, gravity=-9.81):
         self.given = {"time_step_s": h, "young_Pa": E, "poisson": nu, "density_kg_m3": rho, "friction": mu, "steps": steps,
-                      "gravity_y_m_s2": gravity, "material": "Neo-Hookean"}
+                      "gravity_y_m_s2": gravity, "tolerance": 1e-4, "material": "Neo-Hookean"}
         self.bodies, self.obstacles = [], []
 
     def write(self, folder):
         g = self.given
         folder.mkdir(parents=True, exist_ok=True)
         text = (f"gravity = [0, {g['gravity_y_m_s2']}, 0]\n[time]\nstep = {g['time_step_s']}\nduration = {g['time_step_s'] * g['steps']}\n"
-                f"[output]\nevery = {g['time_step_s'] * 10}\n[contact]\nfriction = {g['friction']}\n")
+                f"[output]\nevery = {g['time_step_s'] * 10}\n[solver]\ntolerance = {g['tolerance']}\n"
+                f"[contact]\nfriction = {g['friction']}\n")
         written = {}
         for number, (mesh, keys) in enumerate(self.bodies):
             name = written.setdefault(id(mesh), f"body{number}.mesh")
