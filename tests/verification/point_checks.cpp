@@ -8,7 +8,6 @@
 #include <vector>
 
 #include "material/list.h"
-#include "material/reference.h"
 #include "material/registry.h"
 #include "material/states.h"
 #include "math/jet.h"
@@ -28,9 +27,7 @@ struct Law {
   Mat3d (*pk1)(const Mat3d& F);                   // as implemented by the library [Pa]
   Mat9d (*hessian)(const Mat3d& F);               //
   Jet<double> (*differentiated)(const Mat3d& F);  // psi and its derivatives by automatic differentiation of psi
-  // Energy density from principal stretches by the documented formula of the material [J/m^3].
-  long double (*reference)(const PrincipalStretches& s, const ReferenceModuli& m);
-  std::vector<NamedState> states;  // states where psi is twice differentiable
+  std::vector<NamedState> states;                 // states where psi is twice differentiable
 };
 
 template <class M>
@@ -41,7 +38,6 @@ Law make_law() {
       [](const Mat3d& F) { return M::pk1(F, ordinary_params<M>()); },
       [](const Mat3d& F) { return M::hessian(F, ordinary_params<M>()); },
       [](const Mat3d& F) { return M::psi(jet_variables(F), broadcast_params<M, Jet<double>>(ordinary_params<M>())); },
-      M::reference_energy,
       smooth_states<M>()};
 }
 
@@ -176,11 +172,6 @@ void check_slopes(const Subject& subject, Findings& found) {
 }
 
 }  // namespace
-
-long double principal_energy(const std::string& material, const std::array<long double, 3>& stretch, double young,
-                             double poisson) {
-  return law(material).reference(PrincipalStretches(stretch), {young, poisson});
-}
 
 void add_point_checks(std::vector<Check>& checks) {
   const std::string states =
