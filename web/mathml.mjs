@@ -39,7 +39,7 @@ function integrators() {
 
 // Formulas of the program as [key, list of MathML]: named ones by name, the others by their TeX.
 export function programFormulas() {
-  const tex = new Set([...materials(), ...integrators(), ...literals("verification", "_checks.cpp")].flatMap(([, list]) => list));
+  const tex = new Set([...materials(), ...integrators(), ...literals("tests/verification", "_checks.cpp")].flatMap(([, list]) => list));
   return [...Object.entries(named).map(([name, list]) => [name, list.map(rendered)]), ...[...tex].map((one) => [one, [rendered(one)]])];
 }
 

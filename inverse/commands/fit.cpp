@@ -144,8 +144,10 @@ class Fitter {
  private:
   static int residual_count(const DataSet& data, const FitPlan& plan) {
     size_t count = 0;
-    for (const LoadCase& c : without_groups(data.experiment, plan.left_out).cases)
+    for (const LoadCase& c : data.experiment.cases) {
+      if (is_left_out(plan.left_out, c)) continue;
       count += 3 * (c.positions.size() + (c.force ? 1 : 0) + (c.torque ? 1 : 0));
+    }
     return static_cast<int>(count);
   }
 

@@ -18,7 +18,7 @@ constexpr double kFirstFit = 3.5, kLaws = 2, kFinerMesh = 7, kHeldOutGroup = 1.5
 
 }  // namespace
 
-double least_duration(const FitPlan& plan, const Experiment& experiment) {
+double least_duration(const FitPlan& plan, const Measured& experiment) {
   const auto groups = static_cast<double>(groups_of(experiment).size());
   const double held_out = plan.cross_validation && groups > 1 ? kHeldOutGroup * groups : 0;
   return kFirstFit + (plan.law_errors ? kLaws : 0) + (plan.mesh_errors ? kFinerMesh : 0) + held_out;
@@ -54,11 +54,8 @@ void FitProgress::message(const std::string& line) {
   std::fflush(stream_);
 }
 
-void FitProgress::show_expected(const FitPlan& plan, const Experiment& experiment) {
-  const bool is_longer = plan.parts != 0 || plan.model == kAutoLaw ||
-                         std::any_of(plan.parameters.begin(), plan.parameters.end(), [](const FitParameter& u) {
-                           return u.parameterization != Parameterization::uniform;
-                         });
+void FitProgress::show_expected(const FitPlan& plan, const Measured& experiment) {
+  const bool is_longer = plan.parts != 0 || plan.model == kAutoLaw || is_field(plan);
   message(fmt::format("expected   {} {} in all, from the first iteration", is_longer ? "more than" : "about",
                       duration_text(seconds() * least_duration(plan, experiment))));
 }

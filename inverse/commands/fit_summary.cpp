@@ -143,7 +143,7 @@ void print_fit(std::FILE* stream, const DataSet& data, const FitOutcome& outcome
   print_errors(stream, outcome);
   print_outliers(stream, outcome);
   if (outcome.posterior && outcome.posterior->ok)
-    fmt::print(stream, "learned    the data determine {:.1f} of {} directions of the material\n",
+    fmt::print(stream, "informed   the data determine {:.1f} of {} directions of the material\n",
                outcome.posterior->informed, outcome.parameter_count);
   print_held_out(stream, data, outcome);
   for (const std::string& warning : outcome.warnings) fmt::print(stream, "warning: {}\n", warning);

@@ -27,7 +27,7 @@ std::optional<double> apparent_young(const LoadCase& load) {
   return force * (1 - kPoisson * kPoisson) / (2 * footprint(*load.indenter, depth) * depth);
 }
 
-std::optional<double> apparent_young(const Experiment& experiment) {
+std::optional<double> apparent_young(const Measured& experiment) {
   std::vector<double> values;
   for (const LoadCase& load : experiment.cases)
     if (const auto E = apparent_young(load)) values.push_back(*E);

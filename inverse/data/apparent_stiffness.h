@@ -10,6 +10,6 @@ namespace aspic {
 // nu = 0.4. Empty without indenter, force or depth. [Johnson 1985, section 3.4]
 std::optional<double> apparent_young(const LoadCase& load);
 // Median over all cases; empty without cases.
-std::optional<double> apparent_young(const Experiment& experiment);
+std::optional<double> apparent_young(const Measured& experiment);
 
 }  // namespace aspic

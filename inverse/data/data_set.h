@@ -31,7 +31,7 @@ inline constexpr int kMaxQuadratic = 2000;
 
 struct DataSet {
   std::string name;
-  Experiment experiment;                    // the mesh is renumbered for locality
+  Measured experiment;                      // the mesh is renumbered for locality
   std::vector<LoadHistory> histories = {};  // on the same body
   bool histories_end_static = false;        // all cases are the last states of histories
   bool is_order_reduced = false;            // tets are linear because there are more than kMaxQuadratic

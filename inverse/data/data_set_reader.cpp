@@ -31,7 +31,6 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr size_t kMaxMarkers = 1'000'000, kMaxReadings = 5'000'000;
-constexpr double kFarOff = 0.1;  // fraction of the body's size; farther markers are errors
 
 void add_notes(const std::string& what, const std::vector<Finding>& findings, std::vector<std::string>& notes) {
   for (const Finding& f : findings) {
@@ -306,7 +305,7 @@ class DataSetReader {
     return std::nullopt;
   }
 
-  // Of a marker that also has a position, only the motion counts.
+  // For a marker with a vertex and a position, only the measured motion counts.
   SurfacePoint marker_at_vertex(MeasuredTable& table, Vec3d& gap) {
     const std::optional<int> v = stored_vertex(table, "vertex");
     if (!v) return {};

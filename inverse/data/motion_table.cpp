@@ -19,10 +19,10 @@
 namespace aspic {
 namespace {
 
-constexpr double kFarOff = 0.1, kOff = 0.01;  // distances from the surface over the size of the body: error, note
-constexpr double kAtStart = 1e-6;             // fraction of a time step
-constexpr double kLongest = 1e6;              // motion, in time steps
-constexpr size_t kMaxMarkers = 100'000;
+constexpr double kOff = 0.01;      // fraction of the size of the body; markers farther from its surface get a note
+constexpr double kAtStart = 1e-6;  // fraction of a time step
+constexpr double kLongest = 1e6;   // motion, in time steps
+constexpr size_t kMaxTracked = 100'000;
 
 const std::vector<std::string> kColumns = {"time", "marker", "x", "y", "z", "sigma"};
 
@@ -75,8 +75,8 @@ class TableReader {
     if (!time || !x || !y || !z || !sigma) return;
     const auto [marker, is_new] = index_.try_emplace(name, static_cast<int>(index_.size()));
     if (is_new) table_.markers.push_back(name);
-    if (table_.markers.size() > kMaxMarkers)
-      throw InvalidInput(csv_.where() + ": more than " + std::to_string(kMaxMarkers) +
+    if (table_.markers.size() > kMaxTracked)
+      throw InvalidInput(csv_.where() + ": more than " + std::to_string(kMaxTracked) +
                          " markers; the column marker holds a name per marker");
     table_.rows.push_back({*time, marker->second, {{*x, *y, *z}}, *sigma, csv_.line()});
   }

@@ -21,7 +21,7 @@ constexpr size_t kFewPoints = 200, kManyPoints = 20'000;  // for the search of a
 constexpr int kSearch = 30, kFinal = 200;                 // iterations
 constexpr double kUndetermined = 0.02;  // a motion that moves points off the surface by less, relative to its size
 constexpr double kAsGood = 1.5;         // ratio of distances of poses that fit equally well
-constexpr double kSame = 1.1;           // the same of poses that differ by noise only
+constexpr double kSamePose = 1.1;       // the same of poses that differ by noise only
 constexpr double kExact = 1e-4;         // distances over the size of the body that count as none
 constexpr double kOther = 0.05;         // distance of two poses over the spread of the points
 constexpr double kCollinear = 1e-3;     // spread across a line over the spread along it
@@ -100,7 +100,7 @@ class SurfaceRegistration {
   double own_rms(const PoseFit& fit) const { return fit.rms / scale_of(fit.map); }  // in the scale of the points
   // The best pose, but one near the given coordinates, the first guess, if its distance is not larger except for noise.
   const PoseFit& chosen_of(const std::vector<std::pair<double, PoseFit>>& found, double best) const {
-    if (found[0].first <= kSame * best + kExact * spread_of(few_)) return found[0].second;
+    if (found[0].first <= kSamePose * best + kExact * spread_of(few_)) return found[0].second;
     const auto by_rms = [](const auto& a, const auto& b) { return a.first < b.first; };
     return std::min_element(found.begin(), found.end(), by_rms)->second;
   }

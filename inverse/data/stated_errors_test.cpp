@@ -76,7 +76,7 @@ TEST_F(StatedErrors, FrictionHasAPriorPerTip) {
   EXPECT_EQ(copy.experiment.cases[0].friction_sigma, 0.5);
 }
 
-TEST_F(StatedErrors, RimsOfDiscsAreUnknownUnlessStated) {
+TEST_F(StatedErrors, RimsOfDiscsAreUncertainUnlessStated) {
   EXPECT_EQ(read("").experiment.cases[0].indenter->rim, 0.0) << "of a sphere";
   const DataSet unknown = read("", "shape = \"disc\"\n");
   EXPECT_DOUBLE_EQ(unknown.experiment.cases[0].indenter->rim, kUsualRim * 0.01);

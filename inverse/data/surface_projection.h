@@ -8,6 +8,8 @@
 
 namespace aspic {
 
+inline constexpr double kFarOff = 0.1;  // fraction of the size of a body; markers farther from its surface are errors
+
 struct ProjectedPoint {
   SurfacePoint point;
   Vec3d position{};  // [m]

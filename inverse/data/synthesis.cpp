@@ -48,7 +48,7 @@ class Bench {
   }
 
  private:
-  Experiment& data() { return result_.data.experiment; }
+  Measured& data() { return result_.data.experiment; }
 
   // Uses the body of the scene without its springs, weights and motions.
   void set_up_truth() {

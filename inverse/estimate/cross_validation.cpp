@@ -10,13 +10,6 @@
 namespace aspic {
 namespace {
 
-std::vector<std::string> groups_of(const Experiment& experiment) {
-  std::vector<std::string> groups;
-  for (const LoadCase& c : experiment.cases)
-    if (std::find(groups.begin(), groups.end(), c.group) == groups.end()) groups.push_back(c.group);
-  return groups;
-}
-
 // Adds squares of the measured components, see finish().
 void add(const Vec3d& error, const Vec3d& sigma, double measured, ReadingErrors& errors) {
   errors.peak = std::max(errors.peak, measured);
@@ -54,7 +47,7 @@ constexpr double kNear = 0.02;
 // All cases at their fit, from which those without a group are fitted. J of a point serves parameters near it.
 class FitOfAll : public LeastSquares {
  public:
-  FitOfAll(const Experiment& experiment, const ParameterMap& map, std::span<const double> p,
+  FitOfAll(const Corrected& experiment, const ParameterMap& map, std::span<const double> p,
            const CrossValidationOptions& chosen)
       : experiment_(experiment), condensed_(condensed(experiment)), map_(map), p_(p), chosen_(chosen) {}
 
@@ -117,8 +110,8 @@ class FitOfAll : public LeastSquares {
     return distance <= kNear;
   }
 
-  const Experiment& experiment_;
-  Experiment condensed_;
+  const Corrected& experiment_;
+  Condensed condensed_;
   const ParameterMap& map_;
   std::span<const double> p_;
   const CrossValidationOptions& chosen_;
@@ -128,7 +121,7 @@ class FitOfAll : public LeastSquares {
   std::vector<double> x_, evaluated_, linear_p_;
 };
 
-void predict(const Experiment& left_out, const ParameterMap& map, const EquilibriumOptions& options,
+void predict(const Corrected& left_out, const ParameterMap& map, const EquilibriumOptions& options,
              std::span<const double> start, HeldOut& h) {
   Misfit misfit(left_out, map, options);
   if (!start.empty()) misfit.set_state(start);
@@ -153,10 +146,10 @@ struct HoldOut {
 };
 
 // Fits the other groups and predicts this one.
-HeldOut hold_out(const Experiment& experiment, const HoldOut& what) {
+HeldOut hold_out(const Corrected& experiment, const HoldOut& what) {
   HeldOut h{.group = what.group};
-  const Experiment& whole = what.chosen.to_predict ? *what.chosen.to_predict : experiment;
-  const Experiment left_out = subset(whole, [&](const LoadCase& c) { return c.group == h.group; });
+  const Corrected& whole = what.chosen.to_predict ? *what.chosen.to_predict : experiment;
+  const Corrected left_out = subset(whole, [&](const LoadCase& c) { return c.group == h.group; });
   what.all.leave_out(h.group);
   WithUncertainLayers data(what.all);
   FitReport report = fit(data, what.regularizer, what.guess, what.options);
@@ -182,10 +175,11 @@ double root_mean_square(const std::vector<HeldOut>& groups, ReadingErrors HeldOu
 
 }  // namespace
 
-Experiment subset(const Experiment& experiment, const std::function<bool(const LoadCase&)>& wanted) {
-  Experiment part = experiment;
-  std::erase_if(part.cases, [&](const LoadCase& c) { return !wanted(c); });
-  return part;
+std::vector<std::string> groups_of(const Experiment& experiment) {
+  std::vector<std::string> groups;
+  for (const LoadCase& c : experiment.cases)
+    if (std::find(groups.begin(), groups.end(), c.group) == groups.end()) groups.push_back(c.group);
+  return groups;
 }
 
 std::vector<double> subset(const Experiment& experiment, std::span<const double> state,
@@ -206,7 +200,7 @@ HeldOut compare(const Experiment& left_out, std::span<const CasePrediction> pred
   return h;
 }
 
-CrossValidation cross_validate(const Experiment& experiment, const ParameterMap& map, Regularizer& regularizer,
+CrossValidation cross_validate(const Corrected& experiment, const ParameterMap& map, Regularizer& regularizer,
                                const FitReport& fitted, const CrossValidationOptions& chosen) {
   CrossValidation result;
   const std::vector<std::string> groups = groups_of(experiment);

@@ -39,8 +39,7 @@ struct CrossValidation {
   std::vector<std::string> warnings;
 };
 
-// Returns the cases for which `wanted` is true, with the same body.
-Experiment subset(const Experiment& experiment, const std::function<bool(const LoadCase&)>& wanted);
+std::vector<std::string> groups_of(const Experiment& experiment);  // in order of appearance
 
 // Returns the equilibria of these cases among those of all cases, which are one after another; see Misfit::state().
 std::vector<double> subset(const Experiment& experiment, std::span<const double> state,
@@ -60,13 +59,13 @@ struct CrossValidationOptions {
   FitOptions fit = {};
   EquilibriumOptions equilibrium = {};
   CrossValidationObserver observe = {};
-  const Experiment* to_predict = nullptr;  // cases for comparisons with predictions; null: those that are fitted
-  HeldOutStore store = {};                 // none: everything is computed
-  std::vector<double> start = {};          // state of a Misfit of all cases near the fit; empty: none
+  const Corrected* to_predict = nullptr;  // cases for comparisons with predictions; null: those that are fitted
+  HeldOutStore store = {};                // none: everything is computed
+  std::vector<double> start = {};         // state of a Misfit of all cases near the fit; empty: none
 };
 
 // `fitted`: fit of all cases; its p is the initial guess and its weight is kept.
-CrossValidation cross_validate(const Experiment& experiment, const ParameterMap& map, Regularizer& regularizer,
+CrossValidation cross_validate(const Corrected& experiment, const ParameterMap& map, Regularizer& regularizer,
                                const FitReport& fitted, const CrossValidationOptions& options = {});
 
 }  // namespace aspic

@@ -24,7 +24,7 @@ struct HeldOutStudy {
     Misfit misfit(block.experiment, map);
     const FitReport fitted = fit(misfit, *prior, map.guess(), {.weight = weight});
     EXPECT_TRUE(is_success(fitted.status)) << fitted.message;
-    return cross_validate(block.experiment, map, *prior, fitted);
+    return cross_validate({block.experiment}, map, *prior, fitted);
   }
   void measure(const std::vector<double>& log_young) {
     std::mt19937_64 random(1);
@@ -63,7 +63,7 @@ TEST(CrossValidation, OfTheRightModelLeavesTheNoise) {
   EXPECT_LT(result.force_error, 0.05);
 }
 
-TEST(CrossValidation, TellsAModelThatIsTooSimple) {
+TEST(CrossValidation, DetectsTooSimpleModels) {
   HeldOutStudy study(0.005);
   study.measure(study.halves(4));
   const CrossValidation uniform =
@@ -87,9 +87,9 @@ TEST(CrossValidation, ReportsAGroupThatCannotBePredicted) {
     EXPECT_EQ(name == "left", group == 0);
     is_done = group == 1;
   };
-  const CrossValidation result =
-      cross_validate(study.block.experiment, map, *prior, {.p = {map.guess().begin(), map.guess().end()}, .weight = 1},
-                     {{.stop = StopToken([&] { return is_done; })}, {.max_iterations = 20}, observe});
+  const CrossValidation result = cross_validate(
+      {study.block.experiment}, map, *prior, {.p = {map.guess().begin(), map.guess().end()}, .weight = 1},
+      {{.stop = StopToken([&] { return is_done; })}, {.max_iterations = 20}, observe});
   ASSERT_EQ(result.groups.size(), 1u);
   EXPECT_FALSE(result.groups[0].ok);
   EXPECT_THAT(result.warnings, ElementsAre(HasSubstr("left could not be predicted")));
@@ -159,7 +159,7 @@ TEST(CrossValidation, NeedsTwoGroups) {
   block.add_indentation(IndentedBlock::sites()[0], 0.006, 0.01);
   const ParameterMap map = block.map({{.parameterization = Parameterization::uniform, .guess = 1e4}});
   const auto prior = make_regularizer(block.experiment.mesh, map, {});
-  const CrossValidation result = cross_validate(block.experiment, map, *prior, {});
+  const CrossValidation result = cross_validate({block.experiment}, map, *prior, {});
   EXPECT_TRUE(result.groups.empty());
   EXPECT_THAT(result.warnings, ElementsAre(HasSubstr("one group")));
 }

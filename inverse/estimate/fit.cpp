@@ -18,8 +18,7 @@ struct NamedMethod {
   const char* name;
   FitMethod method;
 };
-constexpr NamedMethod kMethods[] = {
-    {"levenberg_marquardt", levenberg_marquardt}, {"gauss_newton_cg", gauss_newton_cg}, {"lbfgs", fit_by_lbfgs}};
+constexpr NamedMethod kMethods[] = {{"levenberg_marquardt", levenberg_marquardt}, {"gauss_newton_cg", gauss_newton_cg}};
 
 using WeightRule = Status (*)(FitRun&, FitPoint&, FitGoal&, FitMethod);
 
@@ -31,8 +30,7 @@ struct NamedRule {
 };
 constexpr NamedRule kRules[] = {{"prior", fit_with_weight},
                                 {"discrepancy", fit_by_discrepancy},
-                                {"evidence", fit_by_evidence},
-                                {"l_curve", fit_by_l_curve}};
+                                {"evidence", fit_by_evidence}};
 
 template <class Named>
 const Named& named(std::span<const Named> all, const std::string& what, const std::string& name) {

@@ -12,7 +12,7 @@
 namespace aspic {
 
 struct FitOptions {
-  std::string method = "auto";       // "levenberg_marquardt" (few parameters), "gauss_newton_cg", "lbfgs" (fields)
+  std::string method = "auto";       // "levenberg_marquardt" (few parameters), "gauss_newton_cg" (fields)
   double tolerance = 1e-3;           // tolerance of FitIteration::decrement, relative to the first one
   double enough = 0.3;               // absolute threshold for fields, in standard deviations of the posterior
   int max_iterations = 100;          // total over all stages
@@ -38,7 +38,7 @@ struct FitIteration {
 };
 using FitObserver = std::function<void(const FitIteration&, std::span<const double> p)>;
 
-struct WeightTrial {  // point of the L-curve
+struct WeightTrial {
   double weight = 0, misfit = 0, roughness = 0;
   std::vector<double> p;
 };
@@ -53,6 +53,8 @@ struct FitReport {
   std::vector<WeightTrial> weights;  // all tried weights, ascending
   std::vector<double> starts;        // final objective per initial guess; NaN: failed
   std::string message;               // reason for the end, as a sentence
+
+  bool has_material() const { return !p.empty() && status != Status::undefined; }
 };
 
 // Starts from `guess`, or from the p of a stopped fit (with its weight as `first_weight`). Throws InvalidInput for

@@ -73,15 +73,12 @@ struct FitGoal {
 // Each method minimizes from `at` with the weight of the run, and writes the best point to `at`.
 Status levenberg_marquardt(FitRun& run, FitPoint& at, FitGoal& goal);
 Status gauss_newton_cg(FitRun& run, FitPoint& at, FitGoal& goal);
-Status fit_by_lbfgs(FitRun& run, FitPoint& at, FitGoal& goal);
 
 using FitMethod = Status (*)(FitRun&, FitPoint&, FitGoal&);
 
-// Choose the weight and return its p: |r|^2 equal to the number of residuals, largest evidence, or the corner of the
-// curve (log misfit, log roughness).
+// Choose the weight and return its p: |r|^2 equal to the number of residuals, or largest evidence.
 Status fit_by_discrepancy(FitRun& run, FitPoint& at, FitGoal& goal, FitMethod method);
 Status fit_by_evidence(FitRun& run, FitPoint& at, FitGoal& goal, FitMethod method);
-Status fit_by_l_curve(FitRun& run, FitPoint& at, FitGoal& goal, FitMethod method);
 
 // Step along d from `at`, with backtracking if f decreases too little or is undefined. False: no step found.
 struct FitStep {

@@ -1,4 +1,4 @@
-// Selects the weight of the prior from the data [Morozov 1966; Hansen 1998; MacKay 1992]: fits with a sequence of
+// Selects the weight of the prior from the data [Morozov 1966; MacKay 1992]: fits with a sequence of
 // weights, each starting from the last.
 #include <algorithm>
 #include <cmath>
@@ -114,16 +114,6 @@ const WeightTrial& most_cautious(const std::vector<WeightTrial>& trials) {
   return *chosen;
 }
 
-// Curvature of the circle through three points, positive where the curve bends like the corner of an L traversed
-// downward and to the right, with decreasing misfit and increasing roughness.
-double curvature(const WeightTrial& a, const WeightTrial& b, const WeightTrial& c) {
-  const auto x = [](const WeightTrial& t) { return std::log(std::max(t.misfit, 1e-300)); };
-  const auto y = [](const WeightTrial& t) { return std::log(std::max(t.roughness, 1e-300)); };
-  const double ux = x(b) - x(a), uy = y(b) - y(a), vx = x(c) - x(b), vy = y(c) - y(b);
-  const double lengths = std::hypot(ux, uy) * std::hypot(vx, vy) * std::hypot(ux + vx, uy + vy);
-  return lengths > 0 ? 2 * (vx * uy - ux * vy) / lengths : 0;
-}
-
 std::string describe(Discrepancy::Verdict verdict, double squares, int residuals) {
   const std::string found = "|r|^2 = " + three_digits(squares) + " of " + std::to_string(residuals) + " residuals";
   switch (verdict) {
@@ -183,29 +173,6 @@ Status fit_by_evidence(FitRun& run, FitPoint& at, FitGoal& goal, FitMethod metho
     }
     run.weight *= std::clamp(factor, kLargestFall, 1 / kLargestFall);
   }
-  return method(run, at, goal);
-}
-
-Status fit_by_l_curve(FitRun& run, FitPoint& at, FitGoal& goal, FitMethod method) {
-  const std::optional<double> balanced = balanced_weight(run, at);
-  if (!balanced) return Status::undefined;
-  run.weight = run.options.first_weight > 0 ? run.options.first_weight : 0.1 * *balanced;
-  std::vector<WeightTrial>& trials = run.report.weights;
-  for (int i = 0; i < kTrials; ++i, run.weight /= std::sqrt(10.0)) {
-    const Status status = fit_loosely(run, at, goal, method);
-    if (status == Status::stuck && trials.size() >= 3) break;  // the weight is too small to continue
-    if (!is_success(status)) return status;
-    trials.push_back(trial_at(run, at));
-    if (2 * at.misfit < 0.1 * run.readings()) break;  // noise is being fitted
-  }
-  size_t corner = trials.size() - 1;
-  double sharpest = 0;
-  for (size_t i = 1; i + 1 < trials.size(); ++i)
-    if (const double k = curvature(trials[i - 1], trials[i], trials[i + 1]); k > sharpest) sharpest = k, corner = i;
-  run.report.message =
-      sharpest > 0 ? "the weight is at the corner of the L-curve, of " + std::to_string(trials.size()) + " weights"
-                   : "the L-curve has no corner: the smallest weight is used";
-  if (!go_to(run, at, trials[corner])) return Status::undefined;
   return method(run, at, goal);
 }
 

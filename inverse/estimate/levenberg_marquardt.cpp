@@ -14,7 +14,7 @@ namespace {
 // Decrement, in posterior standard deviations, if no step is found. Jacobians with differences, such as those of scans
 // under gravity, have errors of about 1e-6 |r|.
 constexpr double kNegligibleDecrement = 1e-3;
-constexpr double kNear = 0.01;  // distance from the minimum in standard deviations; cheap for few parameters
+constexpr double kNearMinimum = 0.01;  // distance from the minimum in standard deviations; cheap for few parameters
 
 constexpr double kFirstDamping = 1e-3, kMinDamping = 1e-14, kLargestDamping = 1e12;
 constexpr double kUnseen = 1e-14;  // relative to the largest diagonal entry; smaller ones count as 0
@@ -99,7 +99,7 @@ Status levenberg_marquardt(FitRun& run, FitPoint& at, FitGoal& goal) {
     if (max_abs(g) == 0) return Status::converged;
     const double decrement = std::sqrt(squared_decrement(A, g, d));
     if (!std::isfinite(decrement)) return Status::no_descent;
-    if (goal.is_reached(decrement) && decrement <= kNear) return Status::converged;
+    if (goal.is_reached(decrement) && decrement <= kNearMinimum) return Status::converged;
     if (is_lost_in_noise(decrement, at.objective(run.weight))) return Status::round_off;
     if (run.iterations_left() <= 0) return Status::iteration_limit;
 

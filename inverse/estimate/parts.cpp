@@ -60,7 +60,7 @@ int nearest(const std::vector<double>& levels, double z) {
 }
 
 // Mean and standard deviation of weighted samples.
-class Moments {
+class RunningMoments {
  public:
   void add(double value, double weight) {
     weight_ += weight, sum_ += weight * value, squares_ += weight * value * value;
@@ -107,9 +107,9 @@ class Sampler {
     PartsEstimate e{.share = std::vector<std::vector<double>>(K, std::vector<double>(tets_, 0.0))};
     level_.resize(K), z_.resize(tets_);
     for (const Surface& surface : kSurfaces) add_samples(surface, e);
-    for (const Moments& level : level_) e.levels.push_back(level.mean()), e.level_sigma.push_back(level.sigma());
+    for (const RunningMoments& level : level_) e.levels.push_back(level.mean()), e.level_sigma.push_back(level.sigma());
     e.contrast_sigma = contrast_.sigma();
-    for (const Moments& z : z_) e.mean.push_back(z.mean()), e.sigma.push_back(z.sigma());
+    for (const RunningMoments& z : z_) e.mean.push_back(z.mean()), e.sigma.push_back(z.sigma());
     return e;
   }
 
@@ -238,8 +238,8 @@ class Sampler {
   std::vector<double> rows_, own_, volume_;         // per tet: directions; own curvature; volume
   std::vector<double> size_, area_, neutral_;  // of each part: volume; interface; part of it without penalty, by scale
   double total_ = 0;                           // volume of the body
-  std::vector<Moments> level_, z_;             // over the samples: of each part, and in each tet
-  Moments contrast_;                           // levels_.back() - levels_.front()
+  std::vector<RunningMoments> level_, z_;      // over the samples: of each part, and in each tet
+  RunningMoments contrast_;                    // levels_.back() - levels_.front()
   std::vector<int> label_;
   std::mt19937_64 random_;
   std::normal_distribution<double> normal_;
@@ -262,8 +262,8 @@ class Independent : public Gaussian {
   std::vector<double> precision_;
 };
 
-Independent one_by_one(const ParameterMap& map, int unknown, const std::vector<double>& volumes, double total) {
-  const auto [first, tets] = map.range(unknown);
+Independent one_by_one(const ParameterMap& map, int parameter, const std::vector<double>& volumes, double total) {
+  const auto [first, tets] = map.range(parameter);
   std::vector<double> precision(static_cast<size_t>(map.size()), 1.0);
   for (int t = 0; t < tets; ++t) precision[first + t] = volumes[t] * tets / total;
   return Independent(std::move(precision));
@@ -305,13 +305,13 @@ PartsEstimate sample_parts(const LinearizedField& field, std::vector<double> lev
   return Sampler(field, std::move(levels), options).run();
 }
 
-Parts find_parts(LeastSquares& model, const FittedField& field, int unknown, int count, const PartsOptions& options) {
+Parts find_parts(LeastSquares& model, const FittedField& field, int parameter, int count, const PartsOptions& options) {
   const auto& [map, mesh, p] = field;
-  const auto [first, tets] = map.range(unknown);
+  const auto [first, tets] = map.range(parameter);
   std::vector<double> volumes;
   double total = 0;
   for (int t = 0; t < tets; ++t) total += volumes.emplace_back(volume(mesh, t));
-  Independent prior = one_by_one(map, unknown, volumes, total);
+  Independent prior = one_by_one(map, parameter, volumes, total);
   Parts parts{.p = std::vector<double>(p.begin(), p.end())};
   const std::span<double> z = std::span(parts.p).subspan(first, tets);
   std::vector<double> r(model.residual_count()), g(p.size());

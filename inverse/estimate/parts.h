@@ -16,10 +16,10 @@ namespace aspic {
 // with |r|^2 in the directions determined by the data. The mean is the best estimate in mean square. Tets near an
 // interface get intermediate values and larger standard deviations.
 //
-// Data often determine the stiffness of an inclusion times its volume far better than either of them. Then A decides:
-// it makes inclusions too small and too stiff. Therefore a quarter of the samples has another prior, in which A counts
-// only in excess of that of a part of the same shape with another size; it makes them too large and too soft. The mean
-// is between both, and their difference is part of the standard deviation.
+// Data often determine the product of stiffness and volume of an inclusion far better than either factor. Then the
+// penalty on A makes inclusions too small and too stiff. A quarter of the samples therefore uses a second prior, which
+// penalizes only the excess of A over that of the same shape at another size; it makes inclusions too large and too
+// soft. The mean lies between both, and their difference is part of the standard deviation.
 struct PartsOptions {
   int passes = 5;     // linearizations
   int rank = 400;     // maximum directions of the last one; a quarter of that before
@@ -61,7 +61,7 @@ struct Parts {
 
 // Finds `count` parts of `parameter`, a value per tet, starting from the clusters of the field p. Each pass linearizes
 // the model at the mean of the previous samples; the change of the last pass increases all standard deviations.
-Parts find_parts(LeastSquares& model, const FittedField& field, int unknown, int count,
+Parts find_parts(LeastSquares& model, const FittedField& field, int parameter, int count,
                  const PartsOptions& options = {});
 
 // Whether the parts fit the measurements about as well as the field, with |r|^2 = `field_squares`, or within the noise.

@@ -77,7 +77,7 @@ TEST(PartsSampler, FindsThreeLayers) {
   for (int k = 0; k < 3; ++k) EXPECT_NEAR(e.levels[k], k, 0.08);
 }
 
-TEST(PartsSampler, TellsHowFarItMayBeOff) {
+TEST(PartsSampler, ReportsItsSamplingError) {
   double squares = 0, expected = 0;
   for (unsigned seed = 1; seed <= 5; ++seed) {
     const Body body(1, seed);

@@ -40,7 +40,7 @@ double PredictiveResiduals::log_probability(double noise_factor) const {
   const auto n = static_cast<Eigen::Index>(Jr.size());
   const auto matrix = [n](const std::vector<double>& m) { return Eigen::Map<const Eigen::MatrixXd>(m.data(), n, n); };
   const double variance = noise_factor * noise_factor;
-  const Eigen::MatrixXd before = matrix(seen) / variance + matrix(prior), after = before + matrix(JJ) / variance;
+  const Eigen::MatrixXd before = matrix(fitted) / variance + matrix(prior), after = before + matrix(JJ) / variance;
   const Eigen::LDLT<Eigen::MatrixXd> factor_before(before), factor_after(after);
   const auto b = Eigen::Map<const Eigen::VectorXd>(Jr.data(), n) / variance;
   const double explained = b.dot(factor_after.solve(b));
@@ -49,16 +49,16 @@ double PredictiveResiduals::log_probability(double noise_factor) const {
   return std::isfinite(value) ? value : -std::numeric_limits<double>::infinity();
 }
 
-PredictiveResiduals predictive_residuals(LeastSquares& seen, LeastSquares& held_out, Regularizer& prior,
+PredictiveResiduals predictive_residuals(LeastSquares& fitted, LeastSquares& held_out, Regularizer& prior,
                                          std::span<const double> p) {
   PredictiveResiduals result;
   std::vector<double> r, unit(p.size(), 0.0);
-  const Columns2 of_seen = jacobian(seen, p, r), own = jacobian(held_out, p, r);
-  if (of_seen.empty() || own.empty()) return result;
+  const Columns2 of_fitted = jacobian(fitted, p, r), own = jacobian(held_out, p, r);
+  if (of_fitted.empty() || own.empty()) return result;
   result.squares = dot(r, r);
   for (const auto& column : own) result.Jr.push_back(dot(column, r));
   result.JJ = gram(own);
-  result.seen = gram(of_seen);
+  result.fitted = gram(of_fitted);
   result.prior.assign(p.size() * p.size(), 0.0);
   for (size_t k = 0; k < p.size(); ++k) {
     unit[k] = 1;

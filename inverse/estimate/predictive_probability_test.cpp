@@ -37,10 +37,10 @@ class LinearData : public LeastSquares {
 TEST(PredictiveProbability, MatchesDenseNormalDistribution) {
   const Eigen::MatrixXd A = Eigen::MatrixXd::Random(6, 2), B = Eigen::MatrixXd::Random(4, 2);
   const Eigen::VectorXd y = Eigen::VectorXd::Random(6), z = 3 * Eigen::VectorXd::Random(4);
-  LinearData seen(A, y), held_out(B, z);
+  LinearData fitted(A, y), held_out(B, z);
   IndependentPriors prior({0, 0}, {2, 0.5});
   const std::vector<double> p = {0.3, -0.2};
-  const PredictiveResiduals residuals = predictive_residuals(seen, held_out, prior, p);
+  const PredictiveResiduals residuals = predictive_residuals(fitted, held_out, prior, p);
   for (const double factor : {1.0, 1.7}) {
     const double v = factor * factor;
     Eigen::MatrixXd precision = A.transpose() * A / v;

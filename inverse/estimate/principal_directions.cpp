@@ -99,11 +99,11 @@ std::vector<PrincipalDirection> principal_directions(PosteriorGaussian& gaussian
   std::vector<double> z(gaussian.size());
   for (int j = 0; j < std::min(count, X.count()); ++j) {
     G.multiply_transposed(X[j], a);
-    gaussian.before().covariance(a, z);
-    PrincipalDirection d{.before = dot(a, z), .p = std::vector<double>(gaussian.size())};
+    gaussian.prior().covariance(a, z);
+    PrincipalDirection d{.prior = dot(a, z), .p = std::vector<double>(gaussian.size())};
     gaussian.covariance(a, d.p);
-    d.after = dot(a, d.p);
-    if (d.after > 0) directions.push_back(std::move(d));
+    d.posterior = dot(a, d.p);
+    if (d.posterior > 0) directions.push_back(std::move(d));
   }
   return directions;
 }

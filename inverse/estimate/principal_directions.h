@@ -9,11 +9,11 @@
 namespace aspic {
 
 struct PrincipalDirection {
-  double before = 0, after = 0;  // variance of the amplitude, prior and posterior; mean over the body
-  std::vector<double> p;         // change of p with the amplitude
+  double prior = 0, posterior = 0;  // variances of the amplitude; mean over the body
+  std::vector<double> p;            // change of p with the amplitude
 };
 
-// The `count` largest components, descending by `after`.
+// The `count` largest components, descending by `posterior`.
 std::vector<PrincipalDirection> principal_directions(PosteriorGaussian& gaussian, const ParameterMap& map,
                                                      const TetMesh& mesh, int count);
 

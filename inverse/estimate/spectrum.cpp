@@ -86,12 +86,12 @@ Columns dense_products(LeastSquares& data, const Columns& V) {
 }
 
 // All eigenpairs: with C^-1 = U diag(l) U', the columns of Q = U diag(l)^-1/2 are orthonormal in the norm of C^-1.
-Spectrum all_eigenpairs(LeastSquares& data, Gaussian& before) {
+Spectrum all_eigenpairs(LeastSquares& data, Gaussian& prior) {
   const int n = data.parameter_count();
   std::vector<double> precision(static_cast<size_t>(n) * n), unit(n, 0.0);
   for (int j = 0; j < n; ++j) {
     unit[j] = 1;
-    before.precision(unit, std::span(precision).subspan(static_cast<size_t>(n) * j, n));
+    prior.precision(unit, std::span(precision).subspan(static_cast<size_t>(n) * j, n));
     unit[j] = 0;
   }
   DenseEigen l = dense_eigen(n, precision);
@@ -108,11 +108,11 @@ Spectrum all_eigenpairs(LeastSquares& data, Gaussian& before) {
 }
 
 // Eigenpairs of B B' w = d C^-1 w from those of the small matrix B' C B.
-Spectrum of_factor(const Columns& B, Gaussian& before) {
+Spectrum of_factor(const Columns& B, Gaussian& prior) {
   const int count = B.count();
   if (!all_finite(B)) return nothing(B.rows(), false);
   Columns Z(B.rows(), count);
-  for (int j = 0; j < count; ++j) before.covariance(B[j], Z[j]);
+  for (int j = 0; j < count; ++j) prior.covariance(B[j], Z[j]);
   const DenseEigen e = truncated(dense_eigen(count, product_transposed(B, Z)), count, 1e-13);
   const int rank = static_cast<int>(e.values.size());
   Spectrum s{.d = e.values, .W = product(Z, e.vectors, rank), .dual = product(B, e.vectors, rank)};
@@ -124,9 +124,9 @@ Spectrum of_factor(const Columns& B, Gaussian& before) {
 // Growing basis Q of the range of C J', orthonormal in the norm of C^-1.
 class RandomRange {
  public:
-  RandomRange(LeastSquares& data, Gaussian& before, unsigned seed)
+  RandomRange(LeastSquares& data, Gaussian& prior, unsigned seed)
       : data_(data),
-        before_(before),
+        prior_(prior),
         random_(seed),
         Q_(data.parameter_count()),
         dual_(data.parameter_count()),
@@ -139,12 +139,12 @@ class RandomRange {
     std::vector<double> q(n), y(n), r(data_.residual_count());
     for (double& value : r) value = normal(random_);
     data_.multiply_transposed(r, y);
-    before_.covariance(y, q);
+    prior_.covariance(y, q);
     is_finite_ = is_finite_ && all_finite(y);
     if (!is_finite_) return false;
     const double length = std::sqrt(std::max(dot(q, y), 0.0));
     for (int pass = 0; pass < 2; ++pass) add_product(Q_, product_transposed(dual_, q), -1, q);
-    before_.precision(q, y);
+    prior_.precision(q, y);
     const double rest = std::sqrt(std::max(dot(q, y), 0.0));
     if (!(rest > 1e-10 * length)) return false;
     for (double& value : q) value /= rest;
@@ -172,15 +172,15 @@ class RandomRange {
 
  private:
   LeastSquares& data_;
-  Gaussian& before_;
+  Gaussian& prior_;
   std::mt19937_64 random_;
   Columns Q_, dual_, JQ_;
   bool is_finite_ = true;
 };
 
-Spectrum leading_eigenpairs(LeastSquares& data, Gaussian& before, const SpectrumOptions& options) {
+Spectrum leading_eigenpairs(LeastSquares& data, Gaussian& prior, const SpectrumOptions& options) {
   constexpr int kBatch = 24, kSpare = 8;  // kSpare negligible values imply that the rest is negligible
-  RandomRange range(data, before, options.seed);
+  RandomRange range(data, prior, options.seed);
   const int limit = std::min({options.max_rank + kSpare, data.parameter_count(), data.residual_count()});
   double missed = 0;
   for (bool more = true; more;) {
@@ -192,7 +192,7 @@ Spectrum leading_eigenpairs(LeastSquares& data, Gaussian& before, const Spectrum
                  : 0;
     more = more && missed > options.negligible;
   }
-  Spectrum s = of_factor(range.nystroem_factor(), before);
+  Spectrum s = of_factor(range.nystroem_factor(), prior);
   s.missed = missed;
   return s;
 }
@@ -258,18 +258,18 @@ void PriorGaussian::sample(std::mt19937_64& random, std::span<double> x) {
   covariance(g, x);
 }
 
-Spectrum spectrum(LeastSquares& data, Gaussian& before, const SpectrumOptions& options) {
-  ASPIC_CHECK(data.parameter_count() == before.size());
-  if (data.parameter_count() <= options.dense) return all_eigenpairs(data, before);
-  if (data.residual_count() <= options.dense) return of_factor(columns_of_transposed(data), before);
-  return leading_eigenpairs(data, before, options);
+Spectrum spectrum(LeastSquares& data, Gaussian& prior, const SpectrumOptions& options) {
+  ASPIC_CHECK(data.parameter_count() == prior.size());
+  if (data.parameter_count() <= options.dense) return all_eigenpairs(data, prior);
+  if (data.residual_count() <= options.dense) return of_factor(columns_of_transposed(data), prior);
+  return leading_eigenpairs(data, prior, options);
 }
 
-PosteriorGaussian::PosteriorGaussian(PriorGaussian before, Spectrum spectrum)
-    : before_(std::move(before)), spectrum_(std::move(spectrum)) {}
+PosteriorGaussian::PosteriorGaussian(PriorGaussian prior, Spectrum spectrum)
+    : prior_(std::move(prior)), spectrum_(std::move(spectrum)) {}
 
 void PosteriorGaussian::precision(std::span<const double> v, std::span<double> y) {
-  before_.precision(v, y);
+  prior_.precision(v, y);
   std::vector<double> c = product_transposed(spectrum_.dual, v);
   for (size_t k = 0; k < c.size(); ++k) c[k] *= spectrum_.d[k];
   // J'J = (C^-1 W) d (C^-1 W)' with W'(C^-1)v = dual' v
@@ -277,7 +277,7 @@ void PosteriorGaussian::precision(std::span<const double> v, std::span<double> y
 }
 
 void PosteriorGaussian::covariance(std::span<const double> v, std::span<double> z) {
-  before_.covariance(v, z);
+  prior_.covariance(v, z);
   std::vector<double> c = product_transposed(spectrum_.W, v);
   for (size_t k = 0; k < c.size(); ++k) c[k] *= spectrum_.d[k] / (1 + spectrum_.d[k]);
   add_product(spectrum_.W, c, -1, z);

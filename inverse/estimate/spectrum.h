@@ -85,20 +85,20 @@ struct SpectrumOptions {
 
 // At the linearization of `data`. Beyond `dense`, random sampling [Halko 2011] finds directions and Nystroem's
 // approximation their values. It never overestimates the information: omissions make the posterior wider.
-Spectrum spectrum(LeastSquares& data, Gaussian& before, const SpectrumOptions& options = {});
+Spectrum spectrum(LeastSquares& data, Gaussian& prior, const SpectrumOptions& options = {});
 
-// Posterior distribution. Stores a reference to the prior `before`.
+// Posterior distribution. Stores a reference to the prior.
 class PosteriorGaussian : public Gaussian {
  public:
-  PosteriorGaussian(PriorGaussian before, Spectrum spectrum);
-  int size() const override { return before_.size(); }
+  PosteriorGaussian(PriorGaussian prior, Spectrum spectrum);
+  int size() const override { return prior_.size(); }
   void precision(std::span<const double> v, std::span<double> y) override;
   void covariance(std::span<const double> v, std::span<double> z) override;
-  PriorGaussian& before() { return before_; }
+  PriorGaussian& prior() { return prior_; }
   const Spectrum& spectrum() const { return spectrum_; }
 
  private:
-  PriorGaussian before_;
+  PriorGaussian prior_;
   Spectrum spectrum_;
 };
 

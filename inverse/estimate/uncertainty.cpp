@@ -34,35 +34,35 @@ void add_squares(const ParameterMap& map, std::span<const double> v, double scal
 }
 
 // diag F (C - W W') F': the variance outside the directions W.
-Fields unseen_exactly(PosteriorGaussian& gaussian, const ParameterMap& map) {
-  Fields unseen = zero_fields(map);
+Fields undetermined_exactly(PosteriorGaussian& gaussian, const ParameterMap& map) {
+  Fields undetermined = zero_fields(map);
   std::vector<double> a(gaussian.size()), z(gaussian.size());
-  for (size_t u = 0; u < unseen.size(); ++u) {
-    std::vector<double> unit(unseen[u].size(), 0.0);
+  for (size_t u = 0; u < undetermined.size(); ++u) {
+    std::vector<double> unit(undetermined[u].size(), 0.0);
     for (size_t t = 0; t < unit.size(); ++t) {
       std::fill(a.begin(), a.end(), 0.0);
       unit[t] = 1;
       map.add_fitted_transposed(static_cast<int>(u), unit, a);
       unit[t] = 0;
-      gaussian.before().covariance(a, z);
-      const std::vector<double> seen = product_transposed(gaussian.spectrum().W, a);
-      unseen[u][t] = std::max(dot(a, z) - dot(seen, seen), 0.0);
+      gaussian.prior().covariance(a, z);
+      const std::vector<double> determined = product_transposed(gaussian.spectrum().W, a);
+      undetermined[u][t] = std::max(dot(a, z) - dot(determined, determined), 0.0);
     }
   }
-  return unseen;
+  return undetermined;
 }
 
 // Mean square of prior samples without their part in W.
-Fields unseen_by_samples(PosteriorGaussian& gaussian, const ParameterMap& map, const MarginalOptions& options) {
-  Fields unseen = zero_fields(map);
+Fields undetermined_by_samples(PosteriorGaussian& gaussian, const ParameterMap& map, const MarginalOptions& options) {
+  Fields undetermined = zero_fields(map);
   std::mt19937_64 random(options.seed);
   std::vector<double> x(gaussian.size());
   for (int s = 0; s < options.samples; ++s) {
-    gaussian.before().sample(random, x);
+    gaussian.prior().sample(random, x);
     add_product(gaussian.spectrum().W, product_transposed(gaussian.spectrum().dual, x), -1, x);
-    add_squares(map, x, 1.0 / options.samples, unseen);
+    add_squares(map, x, 1.0 / options.samples, undetermined);
   }
-  return unseen;
+  return undetermined;
 }
 
 // |J e|^2 for a common shift of log E: scaled stiffness of the whole body.
@@ -151,33 +151,33 @@ void describe_seen(const ParameterMap& map, const TetMesh& mesh, int count, Post
     Direction direction{.information = s.d[k], .p = {s.W[k].begin(), s.W[k].end()}};
     direction.sigma = root_mean_square(map, mesh, s.W[k]) / std::sqrt(1 + s.d[k]);
     direction.description = describe_direction(mesh, map, direction.p);
-    result.seen.push_back(std::move(direction));
+    result.determined.push_back(std::move(direction));
   }
 }
 
 void describe_unseen(const ParameterMap& map, const TetMesh& mesh, int count, Posterior& result) {
   PosteriorGaussian& gaussian = *result.gaussian;
   for (PrincipalDirection& principal : principal_directions(gaussian, map, mesh, count)) {
-    Direction direction{.information = principal.before / principal.after - 1,
-                        .sigma = std::sqrt(principal.after),
+    Direction direction{.information = principal.prior / principal.posterior - 1,
+                        .sigma = std::sqrt(principal.posterior),
                         .p = std::move(principal.p)};
     std::vector<double> y(direction.p.size());
-    gaussian.before().precision(direction.p, y);
+    gaussian.prior().precision(direction.p, y);
     const double length = std::sqrt(dot(direction.p, y));
     for (double& x : direction.p) x /= length;
     direction.description = describe_direction(mesh, map, direction.p);
-    result.unseen.push_back(std::move(direction));
+    result.undetermined.push_back(std::move(direction));
   }
 }
 
 void set_fields(const Marginals& m, Posterior& result) {
   result.sigma_error = m.relative_error;
-  for (size_t u = 0; u < m.after.size(); ++u) {
+  for (size_t u = 0; u < m.posterior.size(); ++u) {
     std::vector<double>& sigma = result.sigma.emplace_back();
     std::vector<double>& reduction = result.reduction.emplace_back();
-    for (size_t t = 0; t < m.after[u].size(); ++t) {
-      sigma.push_back(std::sqrt(m.after[u][t]));
-      reduction.push_back(m.before[u][t] > 0 ? 1 - m.after[u][t] / m.before[u][t] : 0);
+    for (size_t t = 0; t < m.posterior[u].size(); ++t) {
+      sigma.push_back(std::sqrt(m.posterior[u][t]));
+      reduction.push_back(m.prior[u][t] > 0 ? 1 - m.posterior[u][t] / m.prior[u][t] : 0);
     }
   }
 }
@@ -193,11 +193,11 @@ double variance_over_body(const TetMesh& mesh, std::span<const double> z) {
 
 // Adds the variance that a field may have between its handles, if it varies there as much as over the body.
 void add_handle_gaps(const FittedField& fitted, Marginals& m) {
-  for (int u = 0; u < static_cast<int>(m.after.size()); ++u) {
+  for (int u = 0; u < static_cast<int>(m.posterior.size()); ++u) {
     const std::vector<double> gaps = handle_gaps(fitted.mesh, fitted.map.basis(u));
     if (gaps.empty()) continue;
     const double field = variance_over_body(fitted.mesh, fitted.map.fitted_values(u, fitted.p));
-    for (size_t t = 0; t < gaps.size(); ++t) m.before[u][t] += field * gaps[t], m.after[u][t] += field * gaps[t];
+    for (size_t t = 0; t < gaps.size(); ++t) m.prior[u][t] += field * gaps[t], m.posterior[u][t] += field * gaps[t];
   }
 }
 
@@ -211,23 +211,25 @@ double log_evidence(double misfit, double weight, double roughness, const Spectr
 
 Marginals marginals(PosteriorGaussian& gaussian, const ParameterMap& map, const MarginalOptions& options) {
   const Spectrum& s = gaussian.spectrum();
-  Marginals m{.before = zero_fields(map), .after = zero_fields(map)};
+  Marginals m{.prior = zero_fields(map), .posterior = zero_fields(map)};
   for (int k = 0; k < s.W.count(); ++k) {
-    add_squares(map, s.W[k], 1, m.before);
-    add_squares(map, s.W[k], 1 / (1 + s.d[k]), m.after);
+    add_squares(map, s.W[k], 1, m.prior);
+    add_squares(map, s.W[k], 1 / (1 + s.d[k]), m.posterior);
   }
   if (s.complete) return m;
   size_t values = 0;
-  for (const auto& field : m.before) values += field.size();
+  for (const auto& field : m.prior) values += field.size();
   const bool exact = values <= static_cast<size_t>(options.exact);
-  const Fields unseen = exact ? unseen_exactly(gaussian, map) : unseen_by_samples(gaussian, map, options);
-  for (size_t u = 0; u < unseen.size(); ++u)
-    for (size_t t = 0; t < unseen[u].size(); ++t) {
-      m.before[u][t] += unseen[u][t];
-      m.after[u][t] += unseen[u][t];
+  const Fields undetermined =
+      exact ? undetermined_exactly(gaussian, map) : undetermined_by_samples(gaussian, map, options);
+  for (size_t u = 0; u < undetermined.size(); ++u)
+    for (size_t t = 0; t < undetermined[u].size(); ++t) {
+      m.prior[u][t] += undetermined[u][t];
+      m.posterior[u][t] += undetermined[u][t];
       // The variance of N squares of a normal number is 2 / N of its square; that of the root is half as much.
-      if (!exact && m.after[u][t] > 0)
-        m.relative_error = std::max(m.relative_error, std::sqrt(0.5 / options.samples) * unseen[u][t] / m.after[u][t]);
+      if (!exact && m.posterior[u][t] > 0)
+        m.relative_error =
+            std::max(m.relative_error, std::sqrt(0.5 / options.samples) * undetermined[u][t] / m.posterior[u][t]);
     }
   return m;
 }
@@ -243,8 +245,8 @@ Posterior posterior(LeastSquares& data, Regularizer& prior, double weight, const
     return result;
   }
   warn_of_scale(data, map, result);
-  PriorGaussian before(prior, weight, p);
-  Spectrum s = spectrum(data, before, options.spectrum);
+  PriorGaussian gaussian_prior(prior, weight, p);
+  Spectrum s = spectrum(data, gaussian_prior, options.spectrum);
   if (!s.ok) {
     result.warnings.push_back("the uncertainty is unknown: a derivative at the fit could not be computed");
     return result;
@@ -254,7 +256,7 @@ Posterior posterior(LeastSquares& data, Regularizer& prior, double weight, const
   judge_weight(prior, weight, p, s, result);
   judge_noise(squares, data.reading_count(), result, s);
   result.informed = informed(s);
-  result.gaussian = std::make_shared<PosteriorGaussian>(std::move(before), std::move(s));
+  result.gaussian = std::make_shared<PosteriorGaussian>(std::move(gaussian_prior), std::move(s));
   warn_of_rank(result);
   Marginals m = marginals(*result.gaussian, map, options.marginals);
   add_handle_gaps(fitted, m);

@@ -21,8 +21,9 @@ struct MarginalOptions {
 
 // Prior and posterior variances of the fitted quantities in every tet.
 struct Marginals {
-  std::vector<std::vector<double>> before, after;  // sigma of each parameter in each tet, on the fitted scale (log E)
-  double relative_error = 0;                       // largest standard error of a standard deviation; 0: exact
+  std::vector<std::vector<double>> prior,
+      posterior;              // sigma of each parameter in each tet, on the fitted scale (log E)
+  double relative_error = 0;  // largest standard error of a standard deviation; 0: exact
 };
 
 Marginals marginals(PosteriorGaussian& gaussian, const ParameterMap& map, const MarginalOptions& options = {});
@@ -46,14 +47,15 @@ struct Posterior {
   std::vector<std::vector<double>> reduction;  // 1 - posterior / prior variance: 0 no information, 1 complete
   double sigma_error = 0;                      // largest relative standard error of `sigma`; 0: exact
   double informed = 0;                         // number of directions determined by the data: sum of d / (1 + d)
-  std::vector<Direction> seen, unseen;         // best determined ones; those with the largest remaining uncertainty
-  bool scale_is_unknown = false;               // no force, weight or pressure: only ratios of stiffness are determined
-  double noise_factor = 1;                     // scatter of the measurements relative to their standard deviations
-  double applied_factor = 1;                   // applied factor of the standard deviations
-  double suggested_weight = 0;                 // weight of the regularizer supported by the data; 0: none
-  double log_evidence = 0;                     // log evidence of the weight, up to a constant
-  std::vector<std::string> warnings;           // messages for users
-  // Those of `warnings` about the misfit and about the weight of the regularizer; empty: none.
+  std::vector<Direction> determined,
+      undetermined;                   // best determined ones; those with the largest remaining uncertainty
+  bool scale_is_unknown = false;      // no force, weight or pressure: only ratios of stiffness are determined
+  double noise_factor = 1;            // scatter of the measurements relative to their standard deviations
+  double applied_factor = 1;          // applied factor of the standard deviations
+  double suggested_weight = 0;        // weight of the regularizer supported by the data; 0: none
+  double log_evidence = 0;            // log evidence of the weight, up to a constant
+  std::vector<std::string> warnings;  // messages for users
+  // The entries of `warnings` about the misfit and about the weight of the regularizer; empty: none.
   std::string misfit_warning, weight_warning;
   std::shared_ptr<PosteriorGaussian> gaussian;
 };
@@ -66,7 +68,7 @@ Posterior posterior(LeastSquares& data, Regularizer& prior, double weight, const
 inline constexpr double kSigmas95 = 1.959964;  // quantile of the normal distribution: 95 %, two-sided
 
 struct TetQuantity {
-  int unknown, tet;
+  int parameter, tet;
 };
 
 struct Interval {

@@ -142,13 +142,13 @@ Field ratios_only() {
   return f;
 }
 
-TEST(Posterior, TellsThatOnlyRatiosOfStiffnessAreKnown) {
+TEST(Posterior, ReportsThatOnlyRatiosOfStiffnessAreDetermined) {
   Field f = ratios_only();
   const Posterior blind = f.posterior();
   EXPECT_TRUE(blind.scale_is_unknown);
-  ASSERT_FALSE(blind.unseen.empty());
-  EXPECT_EQ(blind.unseen[0].description, "young of the whole body");
-  EXPECT_LT(blind.unseen[0].information, 0.5);
+  ASSERT_FALSE(blind.undetermined.empty());
+  EXPECT_EQ(blind.undetermined[0].description, "young of the whole body");
+  EXPECT_LT(blind.undetermined[0].information, 0.5);
   EXPECT_THAT(blind.warnings, testing::Contains(HasSubstr("measure one force")));
 
   f.data.J.row(0).setConstant(10.0 / f.map.size());  // a force known to 10 %
@@ -169,7 +169,7 @@ TEST(Posterior, ContactStiffnessIsNoForceInformation) {
   WithUncertainLayers data(f.data);
   const Posterior posterior = aspic::posterior(data, f.prior, 1, {f.map, f.mesh, f.fit()});
   EXPECT_TRUE(posterior.scale_is_unknown);
-  EXPECT_LT(posterior.unseen[0].information, 0.5);
+  EXPECT_LT(posterior.undetermined[0].information, 0.5);
 }
 
 // ---------------------------------------------------------------------------------------------------- judgment
@@ -211,7 +211,7 @@ TEST(Posterior, DoesNotNarrowWhenTheyScatterLess) {
   EXPECT_THAT(posterior.warnings, testing::Contains(HasSubstr("per reading, clearly less than 1")));
 }
 
-TEST(Posterior, TellsWhichWeightTheDataSupport) {
+TEST(Posterior, SuggestsTheWeightThatDataSupport) {
   Field f(30, 300, 20);
   f.measure(1);
   for (const double weight : {0.01, 1.0, 100.0}) {  // the suggested weight does not depend on it for linear residuals
@@ -243,19 +243,19 @@ TEST(Posterior, WithoutAnEquilibriumIsNone) {
   EXPECT_THAT(posterior.warnings, ElementsAre(HasSubstr("no stable equilibrium")));
 }
 
-TEST(Posterior, TellsWhereTheDataSeeAndWhereNot) {
+TEST(Posterior, ReportsDeterminedAndUndeterminedDirections) {
   Field f(20, 25);
   f.data.J.setZero();
   for (int t = 0; t < 25; ++t) f.data.J(t, t) = 50;  // the first quarter of the bar
   f.measure(1);
   const Posterior posterior = f.posterior();
-  ASSERT_EQ(posterior.seen.size(), 3u);
-  ASSERT_EQ(posterior.unseen.size(), 3u);
-  EXPECT_GT(posterior.seen[0].information, 100);
-  EXPECT_LT(posterior.unseen[0].information, 1);
-  EXPECT_GT(posterior.unseen[0].sigma, posterior.seen[0].sigma);
-  EXPECT_THAT(posterior.seen[0].description, HasSubstr("young around (0.0"));
-  EXPECT_THAT(posterior.unseen[0].description, HasSubstr("young around (0.1"));
+  ASSERT_EQ(posterior.determined.size(), 3u);
+  ASSERT_EQ(posterior.undetermined.size(), 3u);
+  EXPECT_GT(posterior.determined[0].information, 100);
+  EXPECT_LT(posterior.undetermined[0].information, 1);
+  EXPECT_GT(posterior.undetermined[0].sigma, posterior.determined[0].sigma);
+  EXPECT_THAT(posterior.determined[0].description, HasSubstr("young around (0.0"));
+  EXPECT_THAT(posterior.undetermined[0].description, HasSubstr("young around (0.1"));
   EXPECT_GT(posterior.reduction[0][3], 0.9);
   EXPECT_LT(posterior.reduction[0][99], 0.01);
 }

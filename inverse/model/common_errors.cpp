@@ -54,13 +54,13 @@ void CommonErrors::apply_transposed(std::span<double> w) const {
 bool WithUncertainLayers::evaluate(std::span<const double> p, std::span<double> r) {
   is_linearized_ = false;
   if (!data_.evaluate(p, r)) return false;
-  if (!is_known_) learn();
+  if (!is_known_) find_directions();
   if (!shift_.empty()) add_scaled(1, shift_, r);
   errors_.apply(r);
   return true;
 }
 
-void WithUncertainLayers::learn() {
+void WithUncertainLayers::find_directions() {
   is_known_ = true;
   const bool has_nuisances = data_.nuisance_count() > 0 && linearize();
   const int nuisances = has_nuisances ? data_.nuisance_count() : 0;

@@ -66,7 +66,7 @@ class WithUncertainLayers : public LeastSquares {
     double sigma;
     std::vector<double> dr;
   };
-  void learn();
+  void find_directions();
   void add_bounded(const std::vector<double>& dr, const NuisancePrior& prior);
 
   LeastSquares& data_;

@@ -165,16 +165,16 @@ void replace_markers(std::vector<MarkerReading>& positions, const std::vector<Su
 }  // namespace
 
 // Estimates of systematic errors need each reading.
-bool has_dense_readings(const Experiment& experiment) {
+bool has_dense_readings(const Corrected& experiment) {
   return experiment.errors.empty() && std::any_of(experiment.cases.begin(), experiment.cases.end(),
                                                   [](const LoadCase& load) { return load.positions.size() >= kMany; });
 }
 
-Experiment condensed(const Experiment& experiment) {
-  if (!has_dense_readings(experiment)) return experiment;
+Condensed condensed(const Corrected& experiment) {
+  Condensed result{experiment};
+  if (!has_dense_readings(experiment)) return result;
   std::vector<std::optional<CondensedCase>> cases(experiment.cases.size());
   parallel_for(static_cast<int>(cases.size()), [&](int c) { cases[c].emplace(experiment, experiment.cases[c]); });
-  Experiment result = experiment;
   result.markers.clear();
   for (size_t c = 0; c < cases.size(); ++c) {
     LoadCase& load = result.cases[c];

@@ -9,9 +9,9 @@ namespace aspic {
 
 // Returns the experiment with condensed readings in the cases that have many, and other markers; see LoadCase::merged.
 // The result is independent of the number of threads, and its size is bounded by that of the surface.
-Experiment condensed(const Experiment& experiment);
+Condensed condensed(const Corrected& experiment);
 
 // Whether condensed() changes the readings of some case.
-bool has_dense_readings(const Experiment& experiment);
+bool has_dense_readings(const Corrected& experiment);
 
 }  // namespace aspic

@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <type_traits>
+
 #include "base/parallel.h"
 #include "estimate/fit.h"
 #include "math/vectors.h"
@@ -10,6 +12,8 @@
 #include "model/regularizer.h"
 
 namespace aspic {
+static_assert(!std::is_convertible_v<Condensed, Corrected> && !std::is_convertible_v<Measured, Corrected>);
+
 namespace {
 
 using test::IndentedBlock;
@@ -76,8 +80,8 @@ TEST(CondensedReadings, HaveEqualValuesAndProducts) {
   const std::span<const double> guess = map.guess();
   std::vector<double> p(guess.begin(), guess.end());
   for (size_t i = 0; i < p.size(); ++i) p[i] += 0.2 * std::cos(static_cast<double>(i));
-  ASSERT_TRUE(has_dense_readings(block.experiment));
-  const Experiment fewer = condensed(block.experiment);
+  ASSERT_TRUE(has_dense_readings({block.experiment}));
+  const Experiment fewer = condensed({block.experiment});
   const Products all = products_of(block.experiment, map, p), few = products_of(fewer, map, p);
   EXPECT_EQ(few.readings, all.residuals) << "the expectation of |r|^2 remains";
   EXPECT_LT(2 * few.residuals, all.residuals);
@@ -91,7 +95,7 @@ TEST(CondensedReadings, GiveTheSameFit) {
   const IndentedBlock block = dense_block(40);
   const ParameterMap map = block.map({{.guess = 0.7 * IndentedBlock::kYoung}});
   const auto prior = make_regularizer(block.experiment.mesh, map, {});
-  const Experiment fewer = condensed(block.experiment);
+  const Experiment fewer = condensed({block.experiment});
   const auto fitted = [&](const Experiment& experiment) {
     Misfit misfit(experiment, map);
     WithUncertainLayers data(misfit);
@@ -105,7 +109,7 @@ TEST(CondensedReadings, GiveTheSameFit) {
 
 TEST(CondensedReadings, AreBoundedByTheSurface) {
   const IndentedBlock some = dense_block(40), more = dense_block(400);
-  const Experiment few = condensed(some.experiment), many = condensed(more.experiment);
+  const Experiment few = condensed({some.experiment}), many = condensed({more.experiment});
   for (size_t c = 0; c < 2; ++c) {
     EXPECT_EQ(many.cases[c].positions.size(), few.cases[c].positions.size());
     EXPECT_LT(40 * few.cases[c].positions.size(), more.experiment.cases[c].positions.size());
@@ -114,8 +118,8 @@ TEST(CondensedReadings, AreBoundedByTheSurface) {
 
 TEST(CondensedReadings, LeaveSparseReadingsUnchanged) {
   const IndentedBlock block = dense_block(9);
-  EXPECT_FALSE(has_dense_readings(block.experiment));
-  const Experiment same = condensed(block.experiment);
+  EXPECT_FALSE(has_dense_readings({block.experiment}));
+  const Experiment same = condensed({block.experiment});
   EXPECT_EQ(same.markers.size(), block.experiment.markers.size());
   EXPECT_EQ(same.cases[0].merged, 0);
 }
@@ -126,7 +130,7 @@ TEST(CondensedReadings, AreIndependentOfThreads) {
   std::vector<Experiment> results;
   for (const int threads : {1, 3}) {
     set_thread_count(threads);
-    results.push_back(condensed(block.experiment));
+    results.push_back(condensed({block.experiment}));
   }
   set_thread_count(before);
   for (size_t c = 0; c < 2; ++c) {
@@ -145,7 +149,7 @@ TEST(CondensedReadings, KeepTheConstantOfNoise) {
   Experiment exact = block.experiment;
   block.experiment.cases[0].positions[100].position[1] += 0.01;
   const ParameterMap map = block.map();
-  const Products with = products_of(condensed(block.experiment), map, map.guess());
+  const Products with = products_of(condensed({block.experiment}), map, map.guess());
   const Products all = products_of(block.experiment, map, map.guess()), without = products_of(exact, map, map.guess());
   EXPECT_GT(all.squares, 1.5 * without.squares);
   EXPECT_NEAR(with.squares, all.squares, 1e-9 * all.squares);

@@ -56,7 +56,7 @@ struct LoadCase {
   bool is_dead_pressure = false;
   std::vector<Triangle> pressed;
   std::vector<MarkerReading> positions;
-  int merged = 0;  // coordinates of readings that `positions` represent beyond their own, see condensed()
+  int merged = 0;  // number of measured coordinates that condensed() removed from `positions`
   std::optional<Vec3d> force, torque;  // measured, on the body [N, N m]
   Vec3d force_sigma{}, torque_sigma{};
   std::vector<CommonError> common_errors;    // equally many in all cases
@@ -83,6 +83,20 @@ struct Experiment {
   // Acceleration of gravity when the mesh was scanned [m/s^2]; empty: the mesh is unloaded (unloaded_shape.h).
   std::optional<Vec3d> scan_gravity;
 };
+
+// What an experiment contains, as types. Functions that accept any of them accept an Experiment.
+struct Measured : Experiment {};   // a data set, on its mesh
+struct OnMesh : Experiment {};     // the same on the mesh that is simulated
+struct Corrected : Experiment {};  // actual loads, and readings without estimated errors
+// Few readings per triangle in place of many, see condensed(). Only squares of their residuals have a meaning.
+struct Condensed : Experiment {};
+
+// Returns the cases for which `wanted` is true, with the same body.
+template <class T, class Wanted>
+T subset(T experiment, const Wanted& wanted) {
+  std::erase_if(experiment.cases, [&](const LoadCase& c) { return !wanted(c); });
+  return experiment;
+}
 
 // Parameters of each tet of the experiment's mesh, from those of each tet of the material's mesh.
 std::vector<MaterialParameters> of_tets(const Experiment& experiment, std::span<const MaterialParameters> parameters);

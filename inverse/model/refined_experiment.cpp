@@ -259,7 +259,7 @@ MeshErrors mesh_errors(const Experiment& experiment, const std::string& material
   return errors;
 }
 
-Experiment without_mesh_errors(Experiment experiment, const MeshErrors& errors) {
+Corrected without_mesh_errors(Corrected experiment, const MeshErrors& errors) {
   if (errors.cases.empty()) return experiment;
   ASPIC_CHECK(errors.cases.size() == experiment.cases.size());
   for (size_t c = 0; c < errors.cases.size(); ++c) {

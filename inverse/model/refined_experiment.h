@@ -49,6 +49,6 @@ MeshErrors mesh_errors(const Experiment& experiment, const std::string& material
 // Corrects the measurements to a body like the mesh; standard deviations grow by kUncertain of the error, and so does
 // an error with one factor for all readings, because the error of a mesh is systematic.
 inline constexpr double kUncertain = 1.0 / 3;
-Experiment without_mesh_errors(Experiment experiment, const MeshErrors& errors);
+Corrected without_mesh_errors(Corrected experiment, const MeshErrors& errors);
 
 }  // namespace aspic

@@ -22,7 +22,7 @@ double robust_weight(double squared) {
 
 bool is_outlier(double weight) { return weight < robust_weight(kOutlier * kOutlier); }
 
-Experiment weighted(Experiment experiment, std::span<const CaseWeights> weights) {
+Corrected weighted(Corrected experiment, std::span<const CaseWeights> weights) {
   if (weights.empty()) return experiment;
   ASPIC_CHECK(weights.size() == experiment.cases.size());
   for (size_t c = 0; c < weights.size(); ++c) {
@@ -38,7 +38,7 @@ Experiment weighted(Experiment experiment, std::span<const CaseWeights> weights)
   return experiment;
 }
 
-std::vector<CaseWeights> robust_weights(const Experiment& fitted, std::span<const double> r,
+std::vector<CaseWeights> robust_weights(const Corrected& fitted, std::span<const double> r,
                                         std::span<const CaseWeights> present) {
   std::vector<CaseWeights> weights;
   size_t i = 0;

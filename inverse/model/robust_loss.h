@@ -23,9 +23,9 @@ struct CaseWeights {
 };
 
 // Divides standard deviations by the roots of the weights, and marks outliers among the positions.
-Experiment weighted(Experiment experiment, std::span<const CaseWeights> weights);
+Corrected weighted(Corrected experiment, std::span<const CaseWeights> weights);
 // Weights of the readings of the fitted cases, which have the residuals r with the present weights.
-std::vector<CaseWeights> robust_weights(const Experiment& fitted, std::span<const double> r,
+std::vector<CaseWeights> robust_weights(const Corrected& fitted, std::span<const double> r,
                                         std::span<const CaseWeights> present);
 
 }  // namespace aspic

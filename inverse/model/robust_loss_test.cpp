@@ -27,14 +27,14 @@ TEST(RobustLoss, WeightsOfWeightedReadingsAreThoseOfTheirErrors) {
   load.positions = {{0, {}, {{1, 1, 1}}}, {1, {}, {{1, 1, 1}}}};
   load.force = Vec3d{}, load.force_sigma = {{1, 1, 1}};
   const std::vector<double> r = {1, 0, 0, 12, 0, 5, 0, 3, 0};
-  const std::vector<CaseWeights> first = robust_weights(experiment, r, {});
-  const Experiment lighter = weighted(experiment, first);
+  const std::vector<CaseWeights> first = robust_weights({experiment}, r, {});
+  const Experiment lighter = weighted({experiment}, first);
   EXPECT_FALSE(lighter.cases[0].positions[0].is_outlier);
   EXPECT_TRUE(lighter.cases[0].positions[1].is_outlier);
   std::vector<double> now = r;
   for (size_t i = 3; i < 6; ++i) now[i] /= lighter.cases[0].positions[1].sigma[0];
   for (size_t i = 6; i < 9; ++i) now[i] /= lighter.cases[0].force_sigma[0];
-  const std::vector<CaseWeights> second = robust_weights(lighter, now, first);
+  const std::vector<CaseWeights> second = robust_weights({lighter}, now, first);
   EXPECT_DOUBLE_EQ(first[0].positions[0], 1);
   EXPECT_NEAR(second[0].positions[1], robust_weight(169), 1e-12);
   EXPECT_NEAR(second[0].force, robust_weight(9), 1e-12);

@@ -199,17 +199,17 @@ Vec3d tare_of(const std::vector<SystematicError>& errors, const LoadCase& load) 
   return sum;
 }
 
-Experiment without_errors(Experiment measured, std::span<const double> values) {
+Corrected without_errors(OnMesh measured, std::span<const double> values) {
   ASPIC_CHECK(values.size() == measured.errors.size());
   for (size_t k = 0; k < values.size(); ++k) measured.errors[k].value = values[k];
   for (LoadCase& load : measured.cases) {
     correct_load(measured.errors, load);
     correct_readings(measured, load);
   }
-  return measured;
+  return {std::move(measured)};
 }
 
-CasePrediction as_read(const Experiment& experiment, const LoadCase& load, CasePrediction prediction) {
+CasePrediction as_read(const Corrected& experiment, const LoadCase& load, CasePrediction prediction) {
   const double force = std::exp(total(experiment.errors, ErrorKind::force_scale, load)),
                length = std::exp(total(experiment.errors, ErrorKind::length_scale, load));
   for (size_t i = 0; i < prediction.markers.size(); ++i) {

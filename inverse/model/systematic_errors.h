@@ -23,10 +23,10 @@ std::string name_of(const SystematicError& error);  // "position x of 'poke 1'"
 std::string unit_of(const SystematicError& error);  // empty: dimensionless
 
 // Actual loads, and readings without the given errors, from those measured (errors of value 0).
-Experiment without_errors(Experiment measured, std::span<const double> values);
+Corrected without_errors(OnMesh measured, std::span<const double> values);
 
 // Readings that instruments with the errors of the experiment show of a prediction for the case.
-CasePrediction as_read(const Experiment& experiment, const LoadCase& load, CasePrediction prediction);
+CasePrediction as_read(const Corrected& experiment, const LoadCase& load, CasePrediction prediction);
 
 // Offset of the force of a case, before scaling [N].
 Vec3d tare_of(const std::vector<SystematicError>& errors, const LoadCase& load);

@@ -53,7 +53,7 @@ struct Disturbed {
   }
 
   std::vector<double> residuals(const std::vector<double>& values) const {
-    const Experiment actual = without_errors(block.experiment, values);
+    const Corrected actual = without_errors({block.experiment}, values);
     Misfit misfit(actual, map, kExactErrors);
     std::vector<double> r(static_cast<size_t>(misfit.residual_count()));
     EXPECT_TRUE(misfit.evaluate(map.guess(), r)) << misfit.failure();
@@ -88,7 +88,7 @@ void expect_derivatives(double friction) {
   const double tolerance = friction > 0 ? 1e-4 : 2e-5;
   const Disturbed body(friction);
   const std::vector<double> values = body.values(0.5);
-  const Experiment actual = without_errors(body.block.experiment, values);
+  const Corrected actual = without_errors({body.block.experiment}, values);
   Misfit misfit(actual, body.map, kExactErrors);
   std::vector<double> r(static_cast<size_t>(misfit.residual_count())), dr = r;
   ASSERT_TRUE(misfit.evaluate(body.map.guess(), r) && misfit.linearize()) << misfit.failure();
@@ -116,7 +116,7 @@ TEST(SystematicErrors, DerivativesWithFrictionMatchDifferences) { expect_derivat
 
 TEST(SystematicErrors, ReadingsInvertTheirCorrection) {
   const Disturbed body(0.4);
-  const Experiment actual = without_errors(body.block.experiment, body.values(1));
+  const Corrected actual = without_errors({body.block.experiment}, body.values(1));
   Misfit misfit(actual, body.map, kExactErrors);
   std::vector<double> r(static_cast<size_t>(misfit.residual_count()));
   ASSERT_TRUE(misfit.evaluate(body.map.guess(), r));

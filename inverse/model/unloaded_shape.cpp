@@ -14,8 +14,8 @@ namespace aspic {
 namespace {
 
 constexpr int kMaxRounds = 100;
-constexpr double kClose = 1e-10;    // largest distance of a vertex from the scan, relative to the largest sag
-constexpr double kRoundOff = 1e-7;  // the same, accepted if it does not decrease any more
+constexpr double kClose = 1e-10;   // largest distance of a vertex from the scan, relative to the largest sag
+constexpr double kStalled = 1e-7;  // the same, accepted if it does not decrease any more
 constexpr double kTolerance = 1e-12;
 
 void center(const std::vector<Midpoint>& midpoints, TetMesh& mesh) {
@@ -54,7 +54,7 @@ class Unloading {
       if (!failure.empty()) return failed(failure);
       const double distance = correct(shape.mesh, x);
       sag = std::max(sag, distance);
-      if (distance <= kClose * sag || (distance <= kRoundOff * sag && distance >= 0.5 * before)) {
+      if (distance <= kClose * sag || (distance <= kStalled * sag && distance >= 0.5 * before)) {
         shape.scan_gravity.reset();
         for (const SurfacePoint& marker : scanned_.markers) shape.marker_offset.push_back(offset(marker, x));
         return {std::move(shape), ""};

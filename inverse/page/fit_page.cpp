@@ -125,7 +125,7 @@ class FitPack {
             {"tets", e.mesh.tet_count()},
             {"markers", e.markers.size()},
             {"cases", e.cases.size()},
-            {"unknowns", outcome_.parameter_count},
+            {"parameters", outcome_.parameter_count},
             {"residuals", outcome_.residuals},
             {"equilibria", outcome_.counts.equilibria}};
   }

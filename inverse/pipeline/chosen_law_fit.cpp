@@ -3,8 +3,9 @@
 #include <map>
 
 #include "base/formatted.h"
+#include "pipeline/compared_laws.h"
 #include "pipeline/fit_verdict.h"
-#include "pipeline/law_contest.h"
+#include "pipeline/law_comparison.h"
 
 namespace aspic {
 namespace {

@@ -95,7 +95,7 @@ std::optional<JobResult> FitJobs::result(const std::string& job, const Fingerpri
   return computed;
 }
 
-HeldOutStore HeldOutJobs::store(const Experiment& experiment, const FitReport& fitted) const {
+HeldOutStore HeldOutJobs::store(const Corrected& experiment, const FitReport& fitted) const {
   Fingerprint question;
   const std::string text = text_of(plan) + fingerprint_of(experiment);
   question.add(text.data(), text.size());

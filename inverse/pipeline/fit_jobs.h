@@ -65,7 +65,7 @@ struct HeldOutJobs {
   const FitPlan& plan;
   std::function<bool()> is_stopped;
 
-  HeldOutStore store(const Experiment& experiment, const FitReport& fitted) const;
+  HeldOutStore store(const Corrected& experiment, const FitReport& fitted) const;
 };
 
 }  // namespace aspic

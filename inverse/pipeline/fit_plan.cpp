@@ -6,6 +6,7 @@
 #include "base/error.h"
 #include "base/number_chars.h"
 #include "data/apparent_stiffness.h"
+#include "estimate/cross_validation.h"
 #include "estimate/law_errors.h"
 #include "material/registry.h"
 #include "model/quantity.h"
@@ -38,7 +39,7 @@ bool is_known(const FitPlan& plan, const std::string& quantity) {
   return std::any_of(plan.known.begin(), plan.known.end(), [&](const auto& k) { return k.first == quantity; });
 }
 
-double default_value(const Quantity& quantity, const Experiment& experiment) {
+double default_value(const Quantity& quantity, const Measured& experiment) {
   return quantity.role == QuantityRole::stiffness ? apparent_young(experiment).value_or(quantity.typical)
                                                   : quantity.typical;
 }
@@ -161,7 +162,7 @@ std::vector<FitParameter> single_values(std::vector<FitParameter> parameters) {
   return parameters;
 }
 
-FitPlan completed(FitPlan plan, const Experiment& experiment) {
+FitPlan completed(FitPlan plan, const Measured& experiment) {
   if (plan.model == kAutoLaw) {
     plan.model = "neo_hookean";  // has E and nu only, as all laws do
     for (const FitParameter& u : plan.parameters) require_common(u.quantity);
@@ -216,9 +217,37 @@ FitPlan completed(FitPlan plan, const Experiment& experiment) {
   for (const std::string& group : plan.left_out)
     if (!has(groups, group))
       throw InvalidInput("leave_out '" + group + "': the data have no such group" + suggestion(group, groups));
-  if (!plan.left_out.empty() && without_groups(experiment, plan.left_out).cases.empty())
+  if (std::all_of(experiment.cases.begin(), experiment.cases.end(),
+                  [&](const LoadCase& c) { return is_left_out(plan.left_out, c); }))
     throw InvalidInput("leave_out leaves no case to fit; name fewer groups");
   return plan;
+}
+
+std::vector<FitParameter> stiffer(std::vector<FitParameter> parameters, double factor) {
+  for (FitParameter& u : parameters)
+    if (is_stiffness(u.quantity)) u.guess *= factor;
+  return parameters;
+}
+
+FitOptions for_single_values(FitOptions options) {
+  options.method = options.weight_rule = "auto";
+  options.weight = -1;
+  return options;
+}
+
+bool is_field(const FitPlan& plan) {
+  return std::any_of(plan.parameters.begin(), plan.parameters.end(),
+                     [](const FitParameter& u) { return u.parameterization != Parameterization::uniform; });
+}
+
+bool has_many_values(const FitParameter& parameter) {
+  return parameter.parameterization == Parameterization::tets ||
+         parameter.parameterization == Parameterization::handles;
+}
+
+bool has_many_values(const FitPlan& plan) {
+  return std::any_of(plan.parameters.begin(), plan.parameters.end(),
+                     [](const FitParameter& u) { return has_many_values(u); });
 }
 
 std::string text_of(const FitPlan& plan) {
@@ -308,7 +337,7 @@ std::string fingerprint_of(const Experiment& e) {
   return hash.text();
 }
 
-std::vector<MaterialParameters> known_parameters(const FitPlan& plan, const Experiment& experiment) {
+std::vector<MaterialParameters> known_parameters(const FitPlan& plan, const Measured& experiment) {
   const auto value = [&](const Quantity& quantity) {
     for (const auto& [known, number] : plan.known)
       if (known == quantity.name) return number;
@@ -325,17 +354,6 @@ std::vector<MaterialParameters> known_parameters(const FitPlan& plan, const Expe
   return all;
 }
 
-Experiment without_groups(const Experiment& experiment, const std::vector<std::string>& groups) {
-  Experiment kept = experiment;
-  std::erase_if(kept.cases, [&](const LoadCase& c) { return has(groups, c.group); });
-  return kept;
-}
-
-std::vector<std::string> groups_of(const Experiment& experiment) {
-  std::vector<std::string> groups;
-  for (const LoadCase& c : experiment.cases)
-    if (!has(groups, c.group)) groups.push_back(c.group);
-  return groups;
-}
+bool is_left_out(const std::vector<std::string>& left_out, const LoadCase& load) { return has(left_out, load.group); }
 
 }  // namespace aspic

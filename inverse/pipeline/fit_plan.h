@@ -44,19 +44,29 @@ inline constexpr int kMaxParts = 4;
 // The same parameters, each uniform over the body but the tilts.
 std::vector<FitParameter> single_values(std::vector<FitParameter> parameters);
 
+// Factors of the guesses of stiffness to try if the first is so soft that the loads crush the body.
+inline constexpr double kGuessFactors[] = {1, 10, 100, 0.1};
+std::vector<FitParameter> stiffer(std::vector<FitParameter> parameters, double factor);
+
+// Options of a fit of single values: those for fields are automatic.
+FitOptions for_single_values(FitOptions options);
+
+bool is_field(const FitPlan& plan);                   // a quantity is not uniform
+bool has_many_values(const FitParameter& parameter);  // a value per tet or handle
+bool has_many_values(const FitPlan& plan);
+
 // Returns the plan with all choices that depend on data and model. Throws InvalidInput for names that the model or the
 // data do not have. With model = kAutoLaw only E and nu can be named; the law adds its own.
-FitPlan completed(FitPlan plan, const Experiment& experiment);
+FitPlan completed(FitPlan plan, const Measured& experiment);
 
 // One "key = value" per line. Fits with equal text and data are bit-reproducible.
 std::string text_of(const FitPlan& plan);
 std::string fingerprint_of(const Experiment& experiment);
 
 // Parameters of every tet before fitting.
-std::vector<MaterialParameters> known_parameters(const FitPlan& plan, const Experiment& experiment);
+std::vector<MaterialParameters> known_parameters(const FitPlan& plan, const Measured& experiment);
 
-// Returns the cases without some groups, or only those.
-Experiment without_groups(const Experiment& experiment, const std::vector<std::string>& groups);
-std::vector<std::string> groups_of(const Experiment& experiment);  // in order of appearance
+// Whether a plan with these FitPlan::left_out predicts a case instead of fitting it.
+bool is_left_out(const std::vector<std::string>& left_out, const LoadCase& load);
 
 }  // namespace aspic

@@ -14,7 +14,7 @@ namespace {
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 
-TEST(FitPlan, UnknownsAreRead) {
+TEST(FitPlan, ParametersAreRead) {
   EXPECT_EQ(text_of(parse_parameter("young=tets")), "young=tets");
   EXPECT_EQ(text_of(parse_parameter("b=handles:40")), "b=handles:40");
   EXPECT_EQ(parse_known("poisson=0.45").second, 0.45);
@@ -30,8 +30,8 @@ TEST(FitPlan, CorrectedFieldsAreWeighedByTheirEvidence) {
   EXPECT_EQ(completed(plan, block().experiment).fit.weight_rule, "auto");
   plan.mesh_errors = true;
   EXPECT_EQ(completed(plan, block().experiment).fit.weight_rule, "evidence");
-  plan.fit.weight_rule = "l_curve";
-  EXPECT_EQ(completed(plan, block().experiment).fit.weight_rule, "l_curve");
+  plan.fit.weight_rule = "discrepancy";
+  EXPECT_EQ(completed(plan, block().experiment).fit.weight_rule, "discrepancy");
   EXPECT_EQ(completed(quick_plan({"young=regions"}), block().experiment).fit.weight_rule, "auto");
 }
 
@@ -64,7 +64,7 @@ TEST(FitPlan, WhatDoesNotFitTogetherIsRefused) {
   plan = quick_plan();
   plan.model = "neo_hokean";
   EXPECT_THAT(refused(plan), HasSubstr("did you mean 'neo_hookean'?"));
-  Experiment bare = block().experiment;
+  Measured bare = block().experiment;
   bare.mesh.region.clear();
   EXPECT_THAT(message_of([&] { completed(quick_plan(), bare); }), HasSubstr("no region labels"));
   EXPECT_THAT(groups_of(block().experiment), ElementsAre("poke 1", "poke 2", "poke 3"));

@@ -138,6 +138,7 @@ struct FitOutcome {
   Misfit::Counts counts;
 
   bool has_material() const { return failure.empty(); }
+  const Posterior* known_posterior() const { return posterior && posterior->ok ? &*posterior : nullptr; }
 };
 
 enum class FitStage { uniform, mesh_errors, field, uncertainty, parts, cross_validation, law, relaxation };

@@ -209,7 +209,7 @@ TEST(FitRun, EveryModelBeginsInsideOfItsRanges) {
   }
 }
 
-TEST(FitRun, TellsWhatIsNotKnown) {
+TEST(FitRun, ReportsUndeterminedValues) {
   FitPlan plan = quick_plan();
   plan.uncertainty = true;
   const FitOutcome outcome = fit_material(block(), plan, {}, {});

@@ -55,8 +55,4 @@ std::string describe_worst_row(const DataSet& data, const std::vector<std::strin
          " standard deviations; check this row, or give standard deviations that cover the errors of mesh and model";
 }
 
-bool is_left_out(const std::vector<std::string>& left_out, const LoadCase& c) {
-  return std::find(left_out.begin(), left_out.end(), c.group) != left_out.end();
-}
-
 }  // namespace aspic

@@ -7,6 +7,7 @@
 #include "data/data_set.h"
 #include "estimate/fit.h"
 #include "model/misfit.h"
+#include "pipeline/fit_plan.h"
 
 namespace aspic {
 
@@ -20,7 +21,5 @@ std::string describe_failure(const DataSet& data, const FitReport& report, const
 // Names the row with the largest residual r of the fitted cases if it is far above the noise; otherwise empty.
 std::string describe_worst_row(const DataSet& data, const std::vector<std::string>& left_out, const Misfit& misfit,
                                std::span<const double> r);
-
-bool is_left_out(const std::vector<std::string>& left_out, const LoadCase& c);
 
 }  // namespace aspic

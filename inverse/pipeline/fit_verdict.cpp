@@ -273,7 +273,7 @@ class Reasons {
 };
 
 HeldOut left_out_group(const DataSet& data, const FitOutcome& outcome, const std::string& name) {
-  const Experiment group = subset(data.experiment, [&](const LoadCase& c) { return c.group == name; });
+  const Measured group = subset(data.experiment, [&](const LoadCase& c) { return c.group == name; });
   std::vector<CasePrediction> predictions;
   for (size_t c = 0; c < outcome.cases.size(); ++c) {
     if (data.experiment.cases[c].group != name) continue;

@@ -47,7 +47,7 @@ HeldOut largest_readings(const DataSet& data);  // the peaks of all groups
 std::vector<PredictionErrors> beyond_noise(const DataSet& data,
                                            const std::vector<HeldOut>& groups);  // of predicted ones
 PredictionErrors all_groups(const std::vector<PredictionErrors>& groups);        // root mean square
-// That of all predicted groups, which the verdict, the summary and the report judge.
+// The errors of all predicted groups, which the verdict, the summary and the report judge.
 PredictionErrors held_out_errors(const DataSet& data, const FitOutcome& outcome);
 
 struct FitVerdict {

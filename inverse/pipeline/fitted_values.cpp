@@ -37,14 +37,10 @@ std::vector<std::pair<std::string, int>> telling_tets(const FittedQuantity& quan
 constexpr double kAtEnd = 0.9995;  // end of a range from -1 to 1
 constexpr double kNearWall = 0.9;  // fraction of the largest distance of a field from its guess
 
-bool is_field_of_powers(const FitParameter& u) {
-  return is_stiffness(u.quantity) &&
-         (u.parameterization == Parameterization::tets || u.parameterization == Parameterization::handles);
-}
-
 bool is_at_bound(const ParameterMap& map, int parameter, double fitted) {
   const FitParameter& u = map.fitted_parameters()[static_cast<size_t>(parameter)];
-  if (is_field_of_powers(u)) return std::abs(fitted - std::log(u.guess)) > kNearWall * kFarthestOfField;
+  if (is_stiffness(u.quantity) && has_many_values(u))
+    return std::abs(fitted - std::log(u.guess)) > kNearWall * kFarthestOfField;
   return std::abs(map.place_in_range(parameter, fitted)) > kAtEnd;
 }
 

@@ -75,7 +75,7 @@ inline void measure(Experiment& e) {
 }
 
 inline DataSet measured_block(int cells) {
-  DataSet data{.name = "block", .experiment = indented_block(cells)};
+  DataSet data{.name = "block", .experiment = {indented_block(cells)}};
   measure(data.experiment);
   return data;
 }

@@ -16,7 +16,7 @@ LawTrial trial(std::string law, int parameters, double squares, std::vector<doub
   t.squares = squares;
   t.information.assign(static_cast<size_t>(parameters), 1e3);
   for (const double squares_of_group : held_out) {
-    PredictiveResiduals group{.squares = squares_of_group, .Jr = {0}, .JJ = {0}, .seen = {1}, .prior = {1}};
+    PredictiveResiduals group{.squares = squares_of_group, .Jr = {0}, .JJ = {0}, .fitted = {1}, .prior = {1}};
     group.is_valid = std::isfinite(squares_of_group);
     t.held_out.push_back(std::move(group));
   }

@@ -4,12 +4,12 @@
 
 namespace aspic {
 
-Experiment left_out_cases(const DataSet& data, const FitPlan& plan) {
+Measured left_out_cases(const DataSet& data, const FitPlan& plan) {
   return subset(data.experiment, [&](const LoadCase& c) { return is_left_out(plan.left_out, c); });
 }
 
 HeldOut compare_held_out(const DataSet& data, const FitOutcome& outcome) {
-  const Experiment left_out = left_out_cases(data, outcome.plan);
+  const Measured left_out = left_out_cases(data, outcome.plan);
   std::vector<CasePrediction> predictions;
   for (const CaseOutcome& c : outcome.cases) {
     if (!c.left_out) continue;

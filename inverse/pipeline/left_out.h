@@ -6,7 +6,7 @@
 
 namespace aspic {
 
-Experiment left_out_cases(const DataSet& data, const FitPlan& plan);
+Measured left_out_cases(const DataSet& data, const FitPlan& plan);
 
 // Compares the predictions of all left-out cases with the measurements. Not ok without any.
 HeldOut compare_held_out(const DataSet& data, const FitOutcome& outcome);

@@ -1,5 +1,5 @@
 // Refines the simulated mesh where stresses vary fastest: below indenters, and along the rims of held surfaces. The
-// unknowns stay on the mesh of the data (Experiment::parent).
+// parameters stay on the mesh of the data (Experiment::parent).
 #pragma once
 #include "model/misfit.h"
 

@@ -9,6 +9,7 @@
 #include "model/quantity.h"
 #include "model/refined_experiment.h"
 #include "pipeline/case_figures.h"
+#include "pipeline/stiffness_scale.h"
 
 namespace aspic {
 namespace {
@@ -175,8 +176,11 @@ ViscoelasticMaterial fitted(ViscoelasticMaterial material, const RelaxationFit& 
 
 }  // namespace
 
-void add_relaxation(const DataSet& data, const FitCallbacks& callbacks, MaterialFit& material_fit,
-                    FitOutcome& outcome) {
+void add_relaxation(FitState& state) {
+  const DataSet& data = state.data;
+  const FitCallbacks& callbacks = state.callbacks;
+  FitOutcome& outcome = state.outcome;
+  StiffnessScale stiffness(state);
   if (callbacks.begin) callbacks.begin(FitStage::relaxation, "relaxation times");
   if (data.experiment.mesh.tet_count() > kMaxTetsForSlowest)
     outcome.warnings.push_back("relaxation times are fitted by hundreds of simulations of " +
@@ -186,7 +190,7 @@ void add_relaxation(const DataSet& data, const FitCallbacks& callbacks, Material
   const std::vector<double> factors = mesh_factors(data, outcome, material.parameters);
   const std::vector<LoadHistory> histories = on_mesh(data.histories, factors);
   const Experiment ends = last_states(data);
-  const bool is_related = !data.histories_end_static && material_fit.relate_stiffness(ends, 0, outcome);
+  const bool is_related = !data.histories_end_static && stiffness.relate(ends, 0);
   RelaxationOptions options{.branches = outcome.plan.branches,
                             .scale_sigma = scale_sigma(data, outcome),
                             .equilibrium = outcome.plan.equilibrium,
@@ -194,14 +198,13 @@ void add_relaxation(const DataSet& data, const FitCallbacks& callbacks, Material
                             .begin = [&](const std::string& what) {
                               if (callbacks.begin) callbacks.begin(FitStage::relaxation, what);
                             }};
-  if (is_related) options.material_at = [&](double log_scale) { return material_fit.material_at(log_scale); };
+  if (is_related) options.material_at = [&](double log_scale) { return stiffness.material_at(log_scale); };
   RelaxationFit fit;
   int passes = 0;
   do {
-    if (is_related) options.scale_sigma = material_fit.stiffness_change()->sigma;
+    if (is_related) options.scale_sigma = stiffness.change()->sigma;
     fit = fit_relaxation(data.experiment, histories, material, options);
-  } while (is_related && fit.is_ok() && ++passes < kMaxPasses &&
-           material_fit.relate_stiffness(ends, std::log(fit.scale), outcome));
+  } while (is_related && fit.is_ok() && ++passes < kMaxPasses && stiffness.relate(ends, std::log(fit.scale)));
   if (passes == kMaxPasses)
     outcome.warnings.push_back("the histories and the values of stiffness did not settle in " +
                                std::to_string(kMaxPasses) + " fits: intervals of the stiffness may be too narrow");
@@ -209,7 +212,7 @@ void add_relaxation(const DataSet& data, const FitCallbacks& callbacks, Material
   name_curves(data, factors, fit);
   if (fit.is_ok()) {
     const std::vector<FoundCommonError> common_errors = outcome.common_errors;
-    if ((fit.scale != 1 || is_related) && !material_fit.multiply_stiffness(fit.scale, fit.scale_sigma, outcome))
+    if ((fit.scale != 1 || is_related) && !stiffness.multiply(fit.scale, fit.scale_sigma))
       fit.failure = "no equilibrium exists with the long-term stiffness, " + three_digits(fit.scale) +
                     " times that of the first fit";
     use_deviation(fit, data, outcome);

@@ -12,7 +12,7 @@ constexpr double kRadius = 0.025;
 
 // Measured with rims of a fifth of the radius. The fit assumes the given rim and standard deviation of its logarithm.
 DataSet layers_under_discs(double assumed, double sigma) {
-  DataSet data{.name = "layers", .experiment = indented_block(4)};
+  DataSet data{.name = "layers", .experiment = {indented_block(4)}};
   Experiment& e = data.experiment;
   for (LoadCase& load : e.cases) {
     load.indenter = Indenter{.shape = IndenterShape::disc,
@@ -56,7 +56,7 @@ TEST(Rims, StatedRimsFindTheLayers) {
   EXPECT_NEAR(outcome.quantities[0].rows[1].value, kStiffLayer, 0.005 * kStiffLayer);
 }
 
-TEST(Rims, IntervalsContainWhatUnknownRimsMayDo) {
+TEST(Rims, IntervalsContainTheEffectOfUnstatedRims) {
   const FitOutcome outcome = fitted(layers_under_discs(kUsualRim * kRadius, kRimSigma));
   ASSERT_TRUE(outcome.has_material()) << outcome.failure;
   EXPECT_EQ(contained(outcome), 2);

@@ -13,7 +13,7 @@ namespace aspic {
 namespace {
 
 // Data without discretization errors come from the same mesh.
-bool is_refined_locally(const Experiment& data, const FitPlan& plan) {
+bool is_refined_locally(const Measured& data, const FitPlan& plan) {
   return plan.mesh_errors && data.mesh.tet_count() <= SimulatedData::kTooFine / kMostGrowth;
 }
 
@@ -24,10 +24,10 @@ EquilibriumOptions rough(EquilibriumOptions options) {
   return options;
 }
 
-SimulatedData::SimulatedData(const Experiment& data, const FitPlan& plan)
+SimulatedData::SimulatedData(const Measured& data, const FitPlan& plan)
     : left_out_(plan.left_out),
-      measured_(refined(is_refined_locally(data, plan) ? locally_refined(data) : data, plan.refine)),
-      simulated_(measured_) {
+      measured_{refined(is_refined_locally(data, plan) ? locally_refined(data) : Experiment(data), plan.refine)},
+      simulated_{measured_} {
   update();
 }
 
@@ -39,7 +39,9 @@ void SimulatedData::update() {
     common.push_back(is_of_group(e) ? 0 : e.value);
   }
   simulated_ = without_errors(measured_, all);
-  fitted_ = weighted(without_groups(without_model_errors(simulated_), left_out_), weights_);
+  fitted_ =
+      weighted(subset(without_model_errors(simulated_), [&](const LoadCase& c) { return !is_left_out(left_out_, c); }),
+               weights_);
   predicted_ = without_model_errors(without_errors(measured_, common));
   size_t fitted = 0;
   for (LoadCase& load : predicted_.cases)
@@ -49,8 +51,8 @@ void SimulatedData::update() {
     }
 }
 
-Experiment SimulatedData::without_model_errors(const Experiment& experiment) const {
-  Experiment corrected = without_mesh_errors(experiment, {errors_, {}});
+Corrected SimulatedData::without_model_errors(const Corrected& experiment) const {
+  Corrected corrected = without_mesh_errors(experiment, {errors_, {}});
   for (size_t c = 0; c < law_errors_.size(); ++c) {
     std::vector<CommonError>& all = corrected.cases[c].common_errors;
     all.insert(all.end(), law_errors_[c].begin(), law_errors_[c].end());

@@ -20,12 +20,12 @@ class SimulatedData {
  public:
   static constexpr int kTooFine = 60'000;  // limit of tets for a mesh with eight times as many
 
-  SimulatedData(const Experiment& data, const FitPlan& plan);
+  SimulatedData(const Measured& data, const FitPlan& plan);
 
   const TetMesh& mesh() const { return simulated_.mesh; }
   // For predictions of groups that were not fitted: with the systematic errors of sessions and tips alone.
-  const Experiment& all() const { return predicted_; }
-  const Experiment& fitted() const { return fitted_; }
+  const Corrected& all() const { return predicted_; }
+  const Corrected& fitted() const { return fitted_; }
   const std::vector<SystematicError>& errors() const { return simulated_.errors; }
   const std::vector<CaseWeights>& weights() const { return weights_; }  // of the fitted cases; empty: 1
 
@@ -33,10 +33,10 @@ class SimulatedData {
   void correct(std::vector<double> errors, std::vector<CaseWeights> weights);
 
   bool is_too_large_for_mesh_errors() const;
-  // Both are for a material. They return the reason if they are impossible, so that nothing changes; otherwise empty.
-  // Corrects the measurements by the discretization error.
+  // Corrects the measurements by the discretization error with a material. Returns the reason if this is impossible and
+  // nothing changes; otherwise an empty string.
   std::string subtract_mesh_errors(const FitPlan& plan, const std::vector<MaterialParameters>& material);
-  // Includes the choice of the law in the errors of the measurements.
+  // The same for the choice of the law, which becomes part of the errors of the measurements.
   std::string add_law_errors(const FitPlan& plan, const std::vector<MaterialParameters>& material);
   // Positions of some cases, one after another, at rest with the material of the last errors; empty: unknown.
   std::vector<double> equilibria(const std::function<bool(const LoadCase&)>& wanted) const;
@@ -53,10 +53,12 @@ class SimulatedData {
 
  private:
   void update();
-  Experiment without_model_errors(const Experiment& experiment) const;
+  Corrected without_model_errors(const Corrected& experiment) const;
 
   std::vector<std::string> left_out_;
-  Experiment measured_, simulated_, predicted_, fitted_;
+  OnMesh measured_;
+  Corrected simulated_;  // not for errors of mesh and law
+  Corrected predicted_, fitted_;
   std::vector<CaseWeights> weights_;
   ErrorPredictions error_predictions_;                // for the last material
   std::vector<MeshError> errors_;                     // per case; empty: unknown

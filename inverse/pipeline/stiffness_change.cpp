@@ -9,21 +9,21 @@
 namespace aspic {
 namespace {
 
-constexpr double kSettled = 0.05;  // relative difference of g
+constexpr double kUnchanged = 0.05;  // relative difference of g
 
 }  // namespace
 
 bool StiffnessChange::differs_from(const StiffnessChange& other) const {
   double squares = 0;
   for (size_t i = 0; i < g.size(); ++i) squares += (g[i] - other.g[i]) * (g[i] - other.g[i]);
-  return squares > kSettled * kSettled * dot(g, g);
+  return squares > kUnchanged * kSettled * dot(g, g);
 }
 
 std::optional<StiffnessChange> stiffness_change(const Experiment& ends, const FittedField& fitted, Gaussian& posterior,
                                                 const EquilibriumOptions& equilibrium) {
   const ParameterMap& map = fitted.map;
   Misfit misfit(ends, map, equilibrium);
-  std::vector<double> r(static_cast<size_t>(misfit.residual_count())), seen(r.size());
+  std::vector<double> r(static_cast<size_t>(misfit.residual_count())), effect(r.size());
   if (!misfit.evaluate(fitted.p, r) || !misfit.linearize()) return std::nullopt;
   const auto size = static_cast<size_t>(map.size());
   std::vector<double> common(size, 0.0), g(size, 0.0);
@@ -32,9 +32,9 @@ std::optional<StiffnessChange> stiffness_change(const Experiment& ends, const Fi
     const auto [first, count] = map.range(static_cast<int>(u));
     std::fill_n(common.begin() + first, count, 1.0);
   }
-  misfit.multiply(common, seen);
-  misfit.multiply_transposed(seen, g);
-  const double squares = dot(seen, seen);
+  misfit.multiply(common, effect);
+  misfit.multiply_transposed(effect, g);
+  const double squares = dot(effect, effect);
   if (!(squares > 0)) return std::nullopt;
   for (double& x : g) x /= squares;
   StiffnessChange change{.g = std::move(g), .p = std::vector<double>(size, 0.0)};

@@ -12,7 +12,7 @@ namespace aspic {
 // Gaps up to this fraction of the mean edge of the finer surface count as touching.
 inline constexpr double kTouching = 1e-5;
 
-// Returns the reach of surfaces that touch at the start [m]: a tenth of that of others, because surfaces in contact
+// Returns the reach of surfaces that touch at the start [m]: a fiftieth of that of others, because surfaces in contact
 // stay apart by up to the reach.
 double touching_reach(const ContactLaw& law);
 

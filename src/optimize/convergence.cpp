@@ -86,6 +86,12 @@ bool Convergence::is_near_minimum(double size, const DirectionReport& made) {
                                       [](const GradientPart& part) { return part.norm <= kBalanced * part.scale; });
 }
 
+double Convergence::lost_accuracy(std::span<const double> x) {
+  constexpr double kAllowed = 100;  // exact forces are a hundredth of all in soft bodies under their weight
+  const double lost = parts_of_E_->lost_accuracy(x, parts_);
+  return lost > kAllowed * options_->tolerance ? lost : 0;
+}
+
 bool Convergence::is_at_round_off(double margin) const {
   for (size_t k = 0; k < parts_.size(); ++k) {
     const auto& [norm, scale] = parts_[k];

@@ -22,8 +22,8 @@ class Convergence {
   double size_of_direction(std::span<const double> g, std::span<const double> d);
   // Returns whether a direction of this size, computed as reported, implies convergence.
   bool is_near_minimum(double size, const DirectionReport& made);
-  // See HasParts::lost_accuracy().
-  double lost_accuracy(std::span<const double> x) { return parts_of_E_->lost_accuracy(x, parts_); }
+  // See HasParts::lost_accuracy(). 0 if the tolerance allows as much.
+  double lost_accuracy(std::span<const double> x);
   // Returns whether every part has converged or is within `margin` times its round-off.
   bool is_at_round_off(double margin) const;
   // Accounts for the share of unconverged parts in g, because linear solves measure the residual of all parts together.

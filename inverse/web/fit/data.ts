@@ -162,7 +162,7 @@ export interface FitHead {
   name: string;
   version: string;
   model: string;
-  counts: Record<"tets" | "markers" | "cases" | "unknowns" | "residuals" | "equilibria", number>;
+  counts: Record<"tets" | "markers" | "cases" | "parameters" | "residuals" | "equilibria", number>;
   fit: WeightTrial & {
     words: string;
     success: boolean;

@@ -74,8 +74,8 @@ function report(fit: Fit): HTMLElement {
 function result(fit: Fit): HTMLElement {
   const { head } = fit;
   const judged = verdict(head.figures);
-  const isAllInformed = head.fit.informed === null || head.fit.informed > head.counts.unknowns - 0.05;
-  const informed = isAllInformed ? null : element("p", { class: "hint" }, `The data determine ${short(head.fit.informed, 3)} of ${plural(head.counts.unknowns, "parameter")}; the prior determines the rest.`);
+  const isAllInformed = head.fit.informed === null || head.fit.informed > head.counts.parameters - 0.05;
+  const informed = isAllInformed ? null : element("p", { class: "hint" }, `The data determine ${short(head.fit.informed, 3)} of ${plural(head.counts.parameters, "parameter")}; the prior determines the rest.`);
   const parts = head.figures.parts ? element("p", { class: "hint" }, partsText(head.figures.parts)) : null;
   return section(
     "Result",
@@ -164,7 +164,7 @@ const kSymbols =
 function made({ head }: Fit): HTMLElement {
   const [weights, history] = [weightChart(head), historyChart(head)];
   const { fit, counts } = head;
-  const facts = `${head.model}, ${fit.method}: ${fit.words} after ${plural(fit.iterations, "iteration")} and ${counts.equilibria} equilibria; ${plural(counts.unknowns, "parameter")}, ${plural(counts.residuals, "reading")}, weight ${short(fit.weight, 3)}; ${fit.mesh}.`;
+  const facts = `${head.model}, ${fit.method}: ${fit.words} after ${plural(fit.iterations, "iteration")} and ${counts.equilibria} equilibria; ${plural(counts.parameters, "parameter")}, ${plural(counts.residuals, "reading")}, weight ${short(fit.weight, 3)}; ${fit.mesh}.`;
   return section(
     "How it was fitted",
     facts,

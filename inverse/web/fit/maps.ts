@@ -40,7 +40,7 @@ function fieldsOf(fit: Fit): { values: Field[]; doubts: Field[] } {
   const array = (name: string): Float32Array | null => (fit.arrays.has(`tet.${name}`) ? fit.floats(`tet.${name}`) : null);
   for (const { name: key, unit, isLog: log } of fit.head.quantities) {
     const name = kNames[key] ?? key;
-    const [value, sigma, learned] = [array(key), array(`${key}_deviation`), array(`${key}_reduction`)];
+    const [value, sigma, reduction] = [array(key), array(`${key}_deviation`), array(`${key}_reduction`)];
     if (!value) continue;
     values.push({ key, title: name, shown: { label: key === "young" ? "E" : key, unit, values: value, map: "viridis", log, range: clipped(value) } });
     if (sigma) {
@@ -49,9 +49,9 @@ function fieldsOf(fit: Fit): { values: Field[]; doubts: Field[] } {
       const shown: Shown = { label: log ? "factor" : "deviation", unit: "", values: numbers, map: "cividis", log: false, range: clipped(numbers) };
       doubts.push({ key: `${key}.deviation`, title, shown });
     }
-    if (learned) {
-      const shown: Shown = { label: "learned", unit: "", values: learned, map: "blue_orange", log: false, range: [0, 1] };
-      doubts.push({ key: `${key}.reduction`, title: `${name}: learned from the data, 0 to 1`, shown });
+    if (reduction) {
+      const shown: Shown = { label: "determined", unit: "", values: reduction, map: "blue_orange", log: false, range: [0, 1] };
+      doubts.push({ key: `${key}.reduction`, title: `${name}: determined by the data, 0 to 1`, shown });
     }
   }
   return { values, doubts };

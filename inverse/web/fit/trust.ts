@@ -19,6 +19,6 @@ export function trust(head: FitHead): string {
   const errors = tested(head);
   const predicted = errors === "" ? "Nothing was held out, so predictions of other loads are untested." : `Groups of cases that a fit had not seen are predicted with errors of ${errors} beyond the noise of the readings.`;
   if (!head.figures.verdict.good || errors === "") return predicted;
-  const field = head.quantities.some((q) => q.varies) && head.fit.informed !== null ? ` Of ${head.counts.unknowns} values, the data determine ${short(head.fit.informed, 3)}; trust the map where its uncertainty is small.` : "";
+  const field = head.quantities.some((q) => q.varies) && head.fit.informed !== null ? ` Of ${head.counts.parameters} values, the data determine ${short(head.fit.informed, 3)}; trust the map where its uncertainty is small.` : "";
   return `${predicted} Trust predictions for loads, places and depths like the measured ones.${field}`;
 }

@@ -113,7 +113,7 @@ function head(): FitHead {
     name: "block",
     version: "1",
     model: "neo_hookean",
-    counts: { tets: 1, markers: 2, cases: 3, unknowns: 1, residuals: 12, equilibria: 9 },
+    counts: { tets: 1, markers: 2, cases: 3, parameters: 1, residuals: 12, equilibria: 9 },
     fit: { words: "converged", success: true, interrupted: false, mesh: "a material per tet of 6, simulated on 6 tets", method: "lm", iterations: 3, weight: 1, misfit: 6, roughness: 1, uniformMisfit: null, informed: null },
     quantities: [
       { name: "young", unit: "Pa", isLog: true, varies: false, rows: [{ where: "everywhere", value: 12_000, lower: 11_000, upper: 13_000 }] },
@@ -127,7 +127,7 @@ function head(): FitHead {
       verdict: { good: true, text: "Converged.", reasons: [] },
       limits: { missed: 4, squares_per_reading: 2.25 },
       held_out: { groups: [], position: 0.012, force: 0.034, torque: null, largest_motion: 1, largest_force: 1, largest_torque: 0, poor: false, limits: { position: 0.05, force: 0.1, torque: 0.1, single: 2 } },
-      // Of fewer groups; the judged errors are those above.
+      // Errors of fewer groups; the errors above are judged.
       comparison: [{ how: "cross-validation", models: [{ model: "this fit", position: 0.02, force: 0.11, torque: null }] }],
       cases: [caseFigures("a, 2", "a", 0.2), caseFigures("a, 1", "a", 0.1), caseFigures("b", "b", 0.3, { left_out: true, rms: null })],
       histogram: { limit: 4, counts: [1, 2] },

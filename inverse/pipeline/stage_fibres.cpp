@@ -5,8 +5,8 @@
 #include <set>
 
 #include "model/quantity.h"
+#include "pipeline/fit_stages.h"
 #include "pipeline/fit_troubles.h"
-#include "pipeline/material_fit.h"
 
 namespace aspic {
 namespace {
@@ -42,49 +42,25 @@ bool may_have_no_effect(const std::vector<FittedQuantity>& quantities, size_t re
   return false;
 }
 
-}  // namespace
-
-bool MaterialFit::find_fibres() {
-  FitPlan plan = plan_;
-  const auto tilt = std::find_if(plan.parameters.begin(), plan.parameters.end(),
-                                 [](const FitParameter& u) { return is_tilt(u.quantity); });
-  const bool is_regional = tilt->parameterization == Parameterization::regions;
-  const std::set<int> labels(mesh().region.begin(), mesh().region.end());
-  const int regions = is_regional ? static_cast<int>(labels.size()) : 1;
-  fibres_ = search_fibres(plan, regions, [this](FitPlan& trial, const std::string& name, const std::string& what) {
-    return fit_fibres(trial, name, what);
-  });
-  if (is_stopped())
-    outcome_.failure = "stopped before the directions of the fibres were found; --resume continues the search";
-  else
-    outcome_.failure = fibres_.failure;
-  if (!outcome_.failure.empty()) return false;
-  plan_.fibre_directions = plan.fibre_directions;
-  for (size_t u = 0; u < plan_.parameters.size(); ++u) plan_.parameters[u].guess = plan.parameters[u].guess;
-  return true;
-}
-
-FibreTrial MaterialFit::fit_fibres(FitPlan& plan, const std::string& name, const std::string& what) {
-  begin(FitStage::uniform, "direction of the fibres, " + what);
-  FitOptions options = plan_.fit;
-  options.method = options.weight_rule = "auto";
-  options.weight = -1;
+FibreTrial fit_fibres(FitState& state, FitPlan& plan, const std::string& name, const std::string& what) {
+  state.begin(FitStage::uniform, "direction of the fibres, " + what);
+  FitOptions options = for_single_values(state.plan.fit);
   options.starts = 1;
   options.max_iterations = std::min(options.max_iterations, kSearchIterations);
   options.tolerance = std::max(options.tolerance, kSearchTolerance);
-  FitModel model(data_.experiment, simulated_, plan, single_values(plan.parameters), {memory_, name, fingerprint_});
-  FibreTrial trial{fit_stage(FitStage::uniform, model, options), ""};
+  FitModel model = state.model_of(plan, single_values(plan.parameters), name);
+  FibreTrial trial{fit_model(state, FitStage::uniform, model, options), ""};
   const FitReport& report = trial.report;
-  outcome_.report = report;
+  state.outcome.report = report;
   if (is_success(report.status) || report.status == Status::iteration_limit)
     adopt_values(model.map, report.p, plan);
   else
-    trial.failure = describe_failure(data_, report, model.misfit.failure());
+    trial.failure = describe_failure(state.data, report, model.misfit.failure());
   return trial;
 }
 
-double MaterialFit::cone_of_fibres(const ParameterMap& map, std::span<const double> p, size_t region) {
-  if (!outcome_.posterior || !outcome_.posterior->ok || !outcome_.posterior->gaussian) return -1;
+double cone_of_fibres(const Posterior* posterior, const ParameterMap& map, std::span<const double> p, size_t region) {
+  if (!posterior || !posterior->gaussian) return -1;
   const FibreTilts tilts = fibre_tilts(map);
   const size_t count = static_cast<size_t>(map.size());
   std::vector<double> unit(count), u(count), v(count);
@@ -92,7 +68,7 @@ double MaterialFit::cone_of_fibres(const ParameterMap& map, std::span<const doub
   const auto covariance = [&](int k, std::vector<double>& column) {
     std::fill(unit.begin(), unit.end(), 0.0);
     unit[entry(k)] = 1;
-    outcome_.posterior->gaussian->covariance(unit, column);
+    posterior->gaussian->covariance(unit, column);
   };
   covariance(0, u), covariance(1, v);
   // Derivatives of the direction.
@@ -108,29 +84,50 @@ double MaterialFit::cone_of_fibres(const ParameterMap& map, std::span<const doub
   return cone_of({u[entry(0)], v[entry(0)], v[entry(1)]}, slope[0], slope[1]);
 }
 
-void MaterialFit::describe_fibres(const ParameterMap& map, std::span<const double> p) {
-  outcome_.fibres.clear();
-  if (!fits_fibres(plan_)) return;
+}  // namespace
+
+bool find_fibres(FitState& state) {
+  FitPlan plan = state.plan;
+  const auto tilt = std::find_if(plan.parameters.begin(), plan.parameters.end(),
+                                 [](const FitParameter& u) { return is_tilt(u.quantity); });
+  const bool is_regional = tilt->parameterization == Parameterization::regions;
+  const std::set<int> labels(state.mesh().region.begin(), state.mesh().region.end());
+  const int regions = is_regional ? static_cast<int>(labels.size()) : 1;
+  state.fibres = search_fibres(plan, regions, [&](FitPlan& trial, const std::string& name, const std::string& what) {
+    return fit_fibres(state, trial, name, what);
+  });
+  if (state.is_stopped())
+    state.outcome.failure = "stopped before the directions of the fibres were found; --resume continues the search";
+  else
+    state.outcome.failure = state.fibres.failure;
+  if (!state.outcome.failure.empty()) return false;
+  state.plan.fibre_directions = plan.fibre_directions;
+  for (size_t u = 0; u < state.plan.parameters.size(); ++u) state.plan.parameters[u].guess = plan.parameters[u].guess;
+  return true;
+}
+
+std::vector<FoundFibres> found_fibres(const FitState& state, const ParameterMap& map, std::span<const double> p) {
+  std::vector<FoundFibres> all;
   const std::vector<Vec3d> directions = fibre_directions(map, p);
-  outcome_.plan.fibre_directions = directions;
-  const std::vector<std::string> names = names_of_regions(mesh(), directions.size());
-  const double factor = outcome_.posterior && outcome_.posterior->ok ? outcome_.posterior->applied_factor : 1;
+  const std::vector<std::string> names = names_of_regions(state.mesh(), directions.size());
+  const Posterior* posterior = state.outcome.known_posterior();
+  const double factor = posterior ? posterior->applied_factor : 1;
   for (size_t r = 0; r < directions.size(); ++r) {
-    FoundFibres& found =
-        outcome_.fibres.emplace_back(FoundFibres{.where = names[r], .direction = as_axis(directions[r])});
-    double cone = cone_of_fibres(map, p, r);
+    FoundFibres& found = all.emplace_back(FoundFibres{.where = names[r], .direction = as_axis(directions[r])});
+    double cone = cone_of_fibres(posterior, map, p, r);
     const double own = cone;
-    for (const FibreMinimum& other : fibres_.minima) {
+    for (const FibreMinimum& other : state.fibres.minima) {
       const double angle = angle_between(other.directions[r], directions[r]);
-      const bool is_as_good = other.objective - fibres_.minima.front().objective < kAsGood * factor * factor;
+      const bool is_as_good = other.objective - state.fibres.minima.front().objective < kAsGood * factor * factor;
       if (own < 0 || !is_as_good || angle <= own || angle <= kSameFibres) continue;
       found.others.push_back(as_axis(other.directions[r]));
       cone = std::max(cone, std::min(angle + own, std::numbers::pi / 2));
     }
     // A cone is that of the fitted ratio.
-    if (cone >= 0 && may_have_no_effect(outcome_.quantities, r)) cone = std::numbers::pi / 2;
+    if (cone >= 0 && may_have_no_effect(state.outcome.quantities, r)) cone = std::numbers::pi / 2;
     found.cone = cone < 0 ? -1 : kDegrees * cone;
   }
+  return all;
 }
 
 }  // namespace aspic
