@@ -1,5 +1,6 @@
 #!/usr/bin/env python3
-"""Fails if a folder lacks a README, if one is longer than 15 lines, or if a text names a file that does not exist.
+"""Fails if a folder lacks a README, if one is longer than 15 lines, if docs/*.md are too long, or if a text names a file that does not
+exist.
 
 Lowercase names in backticks of a README are files: of the folder, with or without their ending, or paths from the top; `*` is
 any text. Functions end with (). In other pages, paths from the top are files, and links lead to files and headings.
@@ -13,6 +14,7 @@ import sys
 
 DIVIDED = ("apps", "bindings", "distributed", "inverse", "src")  # each of their folders has a README
 LINES = 15
+WORDS = 20_000  # of the pages in docs
 OLD = r"at [0-9a-f]{8}\b"  # a file of an earlier commit
 NEW = "docs/extending.md"  # names files that its reader makes
 OTHERS = {"double", "newton_cg", "residual_threshold"}  # a type, a method, a column
@@ -79,8 +81,15 @@ def faults_of_page(page):
                 yield f"{page}:{number}: the link {link}{anchor and '#'}{anchor} leads nowhere"
 
 
+def too_many_words():
+    count = sum(len((root / page).read_text().split()) for page in tracked if str(page.parent) == "docs" and page.suffix == ".md")
+    if count > WORDS:
+        yield f"docs: {count} words; at most {WORDS}: cut what another page, a table or `--help` states"
+
+
 def faults():
     yield from missing_readmes()
+    yield from too_many_words()
     for page in tracked:
         if page.suffix == ".md" and page.name != "CHANGELOG.md" and not page.is_relative_to("docs/adr") and str(page) != NEW:
             if page.name == "README.md":
