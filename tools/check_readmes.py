@@ -1,10 +1,12 @@
 #!/usr/bin/env python3
-"""Fails if a folder lacks a README, if one is longer than 15 lines, or if a text names a file that does not exist.
+"""Fails if a folder lacks a README, if one is longer than 15 lines, if docs/*.md are too long, or if a text names a file that does not
+exist.
 
 Lowercase names in backticks of a README are files: of the folder, with or without their ending, or paths from the top; `*` is
-any text. Functions end with (). In other pages, links and paths from the top are files.
+any text. Functions end with (). In other pages, paths from the top are files, and links lead to files and headings.
 """
 import fnmatch
+import functools
 import pathlib
 import re
 import subprocess
@@ -12,6 +14,7 @@ import sys
 
 DIVIDED = ("apps", "bindings", "distributed", "inverse", "src")  # each of their folders has a README
 LINES = 15
+WORDS = 20_000  # of the pages in docs
 OLD = r"at [0-9a-f]{8}\b"  # a file of an earlier commit
 NEW = "docs/extending.md"  # names files that its reader makes
 OTHERS = {"double", "newton_cg", "residual_threshold"}  # a type, a method, a column
@@ -55,6 +58,13 @@ def faults_of_readme(readme):
             yield f"{readme}:{number}: `{name}` is no file; correct the name, or write `{name}()` for a function"
 
 
+@functools.cache
+def anchors(page):
+    """Names of the headings of a page in links."""
+    headings = re.findall(r"^#+ (.*)", page.read_text(), re.M)
+    return {re.sub(r"[^\w -]", "", heading.lower()).replace(" ", "-") for heading in headings}
+
+
 def faults_of_page(page):
     """Links, and paths from the top in backticks or commands; what builds and runs write is not in the tree."""
     files = {str(path) for path in folders.union(tracked)}
@@ -65,13 +75,21 @@ def faults_of_page(page):
                 continue
             if not any(fnmatch.filter(files, pattern) for pattern in patterns) and not re.search(OLD, line) and name not in WRITTEN:
                 yield f"{page}:{number}: {name} is no file"
-        for link in re.findall(r"\]\(([^)#:\s]+)(?:#[^)]*)?\)", line):
-            if not (root / page.parent / link).exists():
-                yield f"{page}:{number}: the link {link} leads nowhere"
+        for link, anchor in re.findall(r"\]\(([^)#:\s]*)(?:#([^)\s]*))?\)", line):
+            target = root / page.parent / link if link else root / page
+            if not target.exists() or anchor and target.suffix == ".md" and anchor not in anchors(target):
+                yield f"{page}:{number}: the link {link}{anchor and '#'}{anchor} leads nowhere"
+
+
+def too_many_words():
+    count = sum(len((root / page).read_text().split()) for page in tracked if str(page.parent) == "docs" and page.suffix == ".md")
+    if count > WORDS:
+        yield f"docs: {count} words; at most {WORDS}: cut what another page, a table or `--help` states"
 
 
 def faults():
     yield from missing_readmes()
+    yield from too_many_words()
     for page in tracked:
         if page.suffix == ".md" and page.name != "CHANGELOG.md" and not page.is_relative_to("docs/adr") and str(page) != NEW:
             if page.name == "README.md":

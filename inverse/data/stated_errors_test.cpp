@@ -78,12 +78,12 @@ TEST_F(StatedErrors, FrictionHasAPriorPerTip) {
 
 TEST_F(StatedErrors, RimsOfDiscsAreUncertainUnlessStated) {
   EXPECT_EQ(read("").experiment.cases[0].indenter->rim, 0.0) << "of a sphere";
-  const DataSet unknown = read("", "shape = \"disc\"\n");
-  EXPECT_DOUBLE_EQ(unknown.experiment.cases[0].indenter->rim, kUsualRim * 0.01);
-  ASSERT_EQ(unknown.experiment.errors.size(), 1u);
-  EXPECT_EQ(name_of(unknown.experiment.errors[0]), "rim of 'tip'");
-  EXPECT_EQ(unknown.experiment.errors[0].sigma, kRimSigma);
-  for (const DataSet& data : {unknown, read("units = { length = \"m\" }", "shape = \"disc\"\nrim = 0.001\n")}) {
+  const DataSet unstated = read("", "shape = \"disc\"\n");
+  EXPECT_DOUBLE_EQ(unstated.experiment.cases[0].indenter->rim, kUsualRim * 0.01);
+  ASSERT_EQ(unstated.experiment.errors.size(), 1u);
+  EXPECT_EQ(name_of(unstated.experiment.errors[0]), "rim of 'tip'");
+  EXPECT_EQ(unstated.experiment.errors[0].sigma, kRimSigma);
+  for (const DataSet& data : {unstated, read("units = { length = \"m\" }", "shape = \"disc\"\nrim = 0.001\n")}) {
     write_data_set(path("copy"), data);
     const DataSet copy = read_data_set(path("copy"));
     EXPECT_EQ(copy.experiment.cases[0].indenter->rim, data.experiment.cases[0].indenter->rim);

@@ -28,9 +28,8 @@ struct NamedRule {
   const char* name;
   WeightRule rule;
 };
-constexpr NamedRule kRules[] = {{"prior", fit_with_weight},
-                                {"discrepancy", fit_by_discrepancy},
-                                {"evidence", fit_by_evidence}};
+constexpr NamedRule kRules[] = {
+    {"prior", fit_with_weight}, {"discrepancy", fit_by_discrepancy}, {"evidence", fit_by_evidence}};
 
 template <class Named>
 const Named& named(std::span<const Named> all, const std::string& what, const std::string& name) {

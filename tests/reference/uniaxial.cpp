@@ -4,6 +4,8 @@
 #include <functional>
 #include <stdexcept>
 
+#include "material/list.h"
+#include "material/reference.h"
 #include "mesh/generators.h"
 #include "reference/models.h"
 
@@ -54,6 +56,15 @@ double root_near(double t, const std::function<double(double)>& f, const std::st
 }
 
 }  // namespace
+
+long double principal_energy(const std::string& material, const std::array<long double, 3>& stretch, double young,
+                             double poisson) {
+  long double energy = 0;
+  with_material(material, [&]<class M>() {
+    energy = M::reference_energy(PrincipalStretches(stretch), {young, poisson});
+  });
+  return energy;
+}
 
 StretchedBox stretched_box(const std::string& material, const MaterialParameters& parameters, double l, double guess) {
   const TetMesh mesh = distorted_box();

@@ -60,21 +60,21 @@ def write(folder, branches, statics, has_hold=True, marker=None):
 
 
 class Regions(unittest.TestCase):
-    def fit(self, unknown="regions", **data):
+    def fit(self, young="regions", **data):
         """Returns logarithms of moduli over the true ones, their standard deviations, and the branch."""
         with tempfile.TemporaryDirectory() as name:
             folder = pathlib.Path(name)
             write(folder / "data", **data)
             branches = "branches = 1\n" if data.get("has_hold", True) else ""
             (folder / "options.toml").write_text("cross_validation = false\nmesh_errors = false\n" + branches)
-            done = subprocess.run([os.environ["ASPIC"], "fit", "data", "--unknown", f"young={unknown}", "--known",
+            done = subprocess.run([os.environ["ASPIC"], "fit", "data", "--unknown", f"young={young}", "--known",
                                    "poisson=0", "--options", "options.toml", "--allow-unconverged"],
                                   cwd=folder, capture_output=True, text=True)
             self.assertEqual(done.returncode, 0, done.stdout + done.stderr)
             figures = json.loads((folder / "material.fit" / "figures.json").read_text())
         values = figures["values"]["young"]
-        found = [values[f"region {k}"] for k in (1, 2)] if unknown == "regions" else [values["everywhere"]]
-        logs = np.log([v["value"] for v in found]) - np.log([SOFT, STIFF] if unknown == "regions" else [SERIES])
+        found = [values[f"region {k}"] for k in (1, 2)] if young == "regions" else [values["everywhere"]]
+        logs = np.log([v["value"] for v in found]) - np.log([SOFT, STIFF] if young == "regions" else [SERIES])
         sigmas = np.array([np.log(v["upper"] / v["lower"]) / 2 / 1.96 for v in found])
         return logs, sigmas, (figures["relaxation"]["branches"] if branches else [None])[0]
 
@@ -105,12 +105,12 @@ class Regions(unittest.TestCase):
     def test_hold_determines_the_region_that_static_cases_miss(self):
         # The force at the interface depends on the soft region alone.
         statics = [static_case("middle", "middle", MIDDLE, 2 * bar.SIDE ** 2 * SOFT * MIDDLE / bar.LENGTH, 0.005 * FORCE)]
-        _, unknown, _ = self.fit(branches=(), statics=statics, has_hold=False)
-        self.assertGreater(unknown[1], 0.5)
+        _, without_history, _ = self.fit(branches=(), statics=statics, has_hold=False)
+        self.assertGreater(without_history[1], 0.5)
         logs, sigma, branch = self.fit(branches=((0.6, 30.0),), statics=statics)
         self.assertLess(abs(logs[0]), 0.002)
         self.assertLess(abs(logs[1]), 0.01)
-        np.testing.assert_allclose(sigma[0], unknown[0], rtol=0.1)
+        np.testing.assert_allclose(sigma[0], without_history[0], rtol=0.1)
         # E2 = 1 / (2 / E - 1 / E1): 1 / SERIES_SLOPES[1] - 1 = 4 times the relative error of E1.
         np.testing.assert_allclose(sigma[1], SERIES_SLOPES[0] / SERIES_SLOPES[1] * sigma[0], rtol=0.15)
         self.assert_branch(branch, 0.6, 30, 0.005)
