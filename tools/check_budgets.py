@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Fails if a folder has more lines of code, or of tests, than its budget in tools/budgets.csv.
 
-A change that needs more raises the budget and says in its message what the lines are worth. --update writes the
+A change that needs more raises the budget and gives the reason in its message. --update writes the
 present lines, rounded up to 50.
 """
 import collections
