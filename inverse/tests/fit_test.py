@@ -29,7 +29,7 @@ shape = { box = { upper = [0.12, 0.12, 0.06], cells = [%s] } }
 [[body.pin]]
 where = "Z < 1e-6"
 """
-TRUTH = BODY % ("6, 6, 4", 'material = { young = "Z < 0.03 ? 4e4 : 1e4", poisson = 0.4 }')
+TRUTH = BODY % ("5, 5, 4", 'material = { young = "Z < 0.03 ? 4e4 : 1e4", poisson = 0.4 }')
 
 
 @functools.cache
