@@ -56,7 +56,7 @@ struct LoadCase {
   bool is_dead_pressure = false;
   std::vector<Triangle> pressed;
   std::vector<MarkerReading> positions;
-  int merged = 0;  // number of measured coordinates that condensed() removed from `positions`
+  int merged = 0;                      // number of measured coordinates that condensed() removed from `positions`
   std::optional<Vec3d> force, torque;  // measured, on the body [N, N m]
   Vec3d force_sigma{}, torque_sigma{};
   std::vector<CommonError> common_errors;    // equally many in all cases
