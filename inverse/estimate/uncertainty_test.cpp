@@ -116,7 +116,7 @@ TEST(Posterior, IntervalsContainTruthAtStatedRate) {
   for (unsigned seed = 0; seed < kSeeds; ++seed) {
     f.measure(seed);
     const std::vector<double> p = f.fit();
-    const Posterior posterior = aspic::posterior(f.data, f.prior, 1, {f.map, f.mesh, p}, {.directions = 0});
+    const Posterior posterior = aspic::posterior(f.data, f.prior, 1, {f.map, f.mesh, p});
     for (int t = 0; t < f.map.size(); ++t) {
       const Interval i = interval(posterior, f.map, p, {0, t});
       const double E = std::exp(f.truth(t));
