@@ -178,7 +178,7 @@ std::string figures_json(const DataSet& data, const FitOutcome& outcome, const F
   for (const Judgment& j : figures.judgments) json["truth"].push_back(json_of(j));
   json["left_out"] = Json::object();
   if (figures.left_out) json["left_out"]["fit"] = json_of(*figures.left_out);
-  json["limits"] = {{"missed", kMissed}, {"squares_per_reading", kTooManySquares}};
+  json["limits"] = {{"missed", kManySigmas}, {"squares_per_reading", kTooManySquares}};
   json["groups"] = groups_json(data, outcome);
   json["held_out"] = held_out_json(data, outcome);
   json["comparison"] = comparison_json(data, outcome);

@@ -19,12 +19,11 @@
 #include "data/motion_table.h"
 #include "io/atomic_file.h"
 #include "io/csv.h"
+#include "model/limits.h"
 #include "pipeline/motion_scene.h"
 
 namespace aspic::cli {
 namespace {
-
-constexpr double kLargeChiSquared = 2;  // residuals 1.4 times the stated sigma
 
 namespace fs = std::filesystem;
 
@@ -62,7 +61,7 @@ void print_table(const MotionFitReport& report, bool has_sigma) {
     fmt::print("{:<20} {:>12.6g} {:>12.6g} {:>10}  {}{}\n", v.parameter.name, v.parameter.guess, v.value, sigma_text(v),
                v.parameter.unit, v.message.empty() ? "" : "  not determined: " + v.message);
   fmt::print("root mean square distance {:.4g} m before, {:.4g} m after\n", report.before.rms, report.after.rms);
-  if (has_sigma && report.chi_squared > kLargeChiSquared)
+  if (has_sigma && report.chi_squared > kTooManySquares)
     fmt::print(
         "residuals are {:.3g} times the stated sigma, and standard deviations are multiplied by this factor: the model "
         "does not explain the motion (check mesh, fitted parameters and markers)\n",

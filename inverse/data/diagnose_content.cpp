@@ -5,11 +5,11 @@
 #include "data/data_findings.h"
 #include "data/surface_projection.h"
 #include "model/gauge.h"
+#include "model/limits.h"
 
 namespace aspic {
 namespace {
 
-constexpr double kStill = 4;          // standard deviations of the mean motion of fixed parts
 constexpr size_t kMaxCompared = 300;  // limit of compared motions
 constexpr double kSameMotion = 0.02;  // smallest relative difference between two distinct motions
 constexpr int kFewNumbers = 30;
@@ -141,7 +141,8 @@ class ContentDiagnosis {
     const bool turns = X.size() >= 3 && determinant(J) > 1e-9 * scale * scale * scale;
     const Vec3d w = turns ? inverse(J) * moment : Vec3d{};
     // Both over their standard deviations: that of w is sd J^-1/2, large for markers that are close together.
-    const bool has_moved = norm(t) > kStill * sd / std::sqrt(n), has_turned = dot(w, moment) > std::pow(kStill * sd, 2);
+    const bool has_moved = norm(t) > kManySigmas * sd / std::sqrt(n),
+               has_turned = dot(w, moment) > std::pow(kManySigmas * sd, 2);
     if (!has_moved && !has_turned) return;
     const std::string shift = has_moved ? three_digits(norm(t)) + " m" : "",
                       turn = has_turned ? three_digits(norm(w)) + " rad" : "";

@@ -7,6 +7,7 @@
 #include "data/data_findings.h"
 #include "data/units.h"
 #include "math/vectors.h"
+#include "model/limits.h"
 
 namespace aspic {
 namespace {
@@ -15,7 +16,7 @@ constexpr double kMinTypicalYoung = 50, kLargestTypicalYoung = 1.5e7;  // typica
 constexpr double kUnlike = 30;                         // implausible ratio of apparent moduli in one body
 constexpr double kStriking = 2.5;                      // suspicious ratio: a wrong force, or an inclusion
 constexpr double kSamePlace = 0.1, kSameDepth = 0.05;  // tolerances of equal indentations, relative to radius and depth
-constexpr double kOtherForce = 0.2, kOtherSigmas = 4;  // limits of force differences between equal indentations
+constexpr double kOtherForce = 0.2;                    // relative difference of forces between equal indentations
 constexpr double kFalling = 0.8;  // ratio of a force to the previous one below which it falls with depth
 constexpr double kLargest = 1e9, kFinestForce = 1e-12;  // largest plausible force, and finest sigma [N]
 constexpr int kEnough = 6;                              // forces needed to detect rounding by a gauge
@@ -209,7 +210,7 @@ class ForceDiagnosis {
         if (!is_same_indentation(cases_[first], cases_[c])) continue;
         const double before = norm(*cases_[first].force), now = norm(*cases_[c].force);
         const double difference = norm(*cases_[c].force - *cases_[first].force);
-        const double noise = kOtherSigmas * (sigma_along(cases_[first]) + sigma_along(cases_[c]));
+        const double noise = kManySigmas * (sigma_along(cases_[first]) + sigma_along(cases_[c]));
         if (difference > std::max(noise, kOtherForce * std::max(before, now)))
           findings_.warning(where(c),
                             "the force is " + three_digits(now) + " N, but " + three_digits(before) +

@@ -13,7 +13,6 @@ namespace aspic {
 namespace {
 
 constexpr double kDeep = 0.5;        // fraction of the body's size; deeper indentations are implausible
-constexpr double kGripFar = 2;       // fraction of the body's size; grips that move farther are implausible
 constexpr double kLoose = 0.05;      // fraction of the body's size; larger gaps at the touch are not round-off
 constexpr double kHuge = 100;        // fraction of the body's size; larger radii are in another unit
 constexpr double kTurned = 1;        // [rad] implausible rotation of a bonded indenter
@@ -75,7 +74,7 @@ class LoadDiagnosis {
 
   void examine_grip(const LoadCase& load) {
     const double way = norm(load.grip->displacement);
-    if (way > kGripFar * size_)
+    if (way > size_)
       findings_.error(where_, "the grip moves " + three_digits(way) + " m on a body of " + three_digits(size_) + " m",
                       "check units: length = \"mm\" or \"cm\"; move_x, move_y, move_z are a displacement from rest");
     else if (load_size(load) == 0)

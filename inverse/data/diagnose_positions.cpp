@@ -12,12 +12,10 @@ namespace aspic {
 namespace {
 
 constexpr size_t kMaxListed = 5;      // listed findings per kind; others are counted
-constexpr double kOffSurface = 0.02;  // fraction of the body's size
 constexpr double kSuspicious = 6;     // multiple of the differences between neighbors
 constexpr double kAgreeing = 3;       // standard deviations within which a motion agrees with its neighbors
 constexpr double kNoticeable = 0.05;  // fraction of the largest motion of the case
 constexpr double kReach = 2;          // radii around an indenter within which the surface follows it
-constexpr double kFar = 1;            // fraction of the body's size; larger motions are implausible
 constexpr double kFarthest = 10;      // the same for a single marker; larger motions are errors
 constexpr double kLever = 3;  // multiple of the indenter's displacement; larger median motions have another cause
 constexpr double kFinestPosition = 1e-9;  // fraction of the body's size; no instrument has smaller deviations
@@ -62,7 +60,7 @@ class PositionDiagnosis {
     std::vector<double> motion;
     for (const LoadCase& load : experiment_.cases)
       for (const MarkerReading& r : load.positions) motion.push_back(norm(displacement(experiment_, r)));
-    if (motion.empty() || median(motion) < kFar * size_) return true;
+    if (motion.empty() || median(motion) < size_) return true;
     std::string remedy = "positions and the mesh must share one unit and one coordinate system";
     for (const double factor : {1e-3, 1e-2}) {
       std::vector<double> scaled;

@@ -6,12 +6,12 @@
 #include "base/error.h"
 #include "base/formatted.h"
 #include "math/vectors.h"
+#include "model/limits.h"
 
 namespace aspic {
 namespace {
 
 constexpr double kBand = 0.01;              // deviation of a steady force over the range of the series
-constexpr double kNoiseBand = 4;            // the same over the standard deviation of the noise
 constexpr double kDriftOfForce = 0.005;     // drift of a steady force over the force itself
 constexpr double kDriftOfRange = 0.002;     // the same over the range of the series, for forces near 0
 constexpr double kDuration = 0.05;          // of a steady state over that of the series
@@ -66,7 +66,7 @@ Vec3d mean_between(const ForceSeries& s, size_t begin, size_t end) {
 
 struct Spread {
   double range = 0, noise = 0;
-  double band() const { return kBand * range + kNoiseBand * noise; }
+  double band() const { return kBand * range + kManySigmas * noise; }
 };
 
 // Largest difference of the means of the two halves of a window of a steady force [N].

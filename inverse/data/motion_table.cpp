@@ -14,14 +14,12 @@
 #include "data/units.h"
 #include "io/csv_reader.h"
 #include "mesh/box.h"
+#include "model/limits.h"
 #include "scene/value.h"
 
 namespace aspic {
 namespace {
 
-constexpr double kOff = 0.01;      // fraction of the size of the body; markers farther from its surface get a note
-constexpr double kAtStart = 1e-6;  // fraction of a time step
-constexpr double kLongest = 1e6;   // motion, in time steps
 constexpr size_t kMaxTracked = 100'000;
 
 const std::vector<std::string> kColumns = {"time", "marker", "x", "y", "z", "sigma"};
@@ -113,9 +111,9 @@ class Attachment {
     for (const MotionRow& row : table_.rows) {
       if (first_line[row.marker] == 0) first_line[row.marker] = row.line;
       const double steps = (row.time - time_) / h_;
-      if (steps < -kAtStart || steps > kLongest) {
+      if (steps < -kSameTime || steps > kMaxTimeSteps) {
         refuse_time(row, steps < 0);
-      } else if (steps <= kAtStart) {
+      } else if (steps <= kSameTime) {
         place(row, data, notes);
         is_placed[row.marker] = true;
       } else {
@@ -158,7 +156,7 @@ class Attachment {
                             formatted("%.3g", size_) + " m";
     if (projected.distance > kFarOff * size_)
       errors_.add(where(row) + ": " + off + "; " + remedy(row.position, projected.distance));
-    else if (projected.distance > kOff * size_)
+    else if (projected.distance > kOffSurface * size_)
       notes.push_back(off + "; this offset is kept constant");
   }
 

@@ -9,6 +9,7 @@
 namespace aspic {
 
 inline constexpr double kFarOff = 0.1;  // fraction of the size of a body; markers farther from its surface are errors
+inline constexpr double kOffSurface = 0.02;  // the same for a finding
 
 struct ProjectedPoint {
   SurfacePoint point;

@@ -13,6 +13,7 @@
 #include "estimate/indentation_sites.h"
 #include "mesh/tet_nodes.h"
 #include "mesh/tet_shape.h"
+#include "model/limits.h"
 #include "model/load_case.h"
 
 namespace aspic {
@@ -21,7 +22,6 @@ namespace {
 constexpr double kIndenterRadius = 0.08;  // relative to the size of the body
 constexpr double kGravity = 9.81;         // [m/s^2]
 constexpr double kMinArm = 0.01;          // lever arm of a force about the indenter's center, relative to its radius
-constexpr double kMinSigma = 1e-4;        // minimum sigma of exact data, relative to the largest motion or force
 
 class Bench {
  public:
@@ -246,7 +246,7 @@ class Bench {
     std::mt19937_64 random(options_.seed + 1);
     std::normal_distribution<double> normal;
     const auto disturb = [&](Vec3d& value, Vec3d& sigma, double noise, double largest) {
-      const double sd = std::max(noise, kMinSigma) * (largest > 0 ? largest : 1);
+      const double sd = std::max(noise, kExactSigma) * (largest > 0 ? largest : 1);
       for (int i = 0; i < 3; ++i) value[i] += noise * largest * normal(random);
       sigma = {{sd, sd, sd}};
     };

@@ -20,7 +20,6 @@ struct ReadingErrors {
   double noise = 0;  // expected part from the standard deviations alone
 
   double relative() const { return peak > 0 ? error / peak : 0; }
-  double relative_noise() const { return peak > 0 ? noise / peak : 0; }
 };
 
 struct HeldOut {

@@ -8,11 +8,10 @@
 #include "base/check.h"
 #include "base/error.h"
 #include "estimate/fit_run.h"
+#include "model/limits.h"
 
 namespace aspic {
 namespace {
-
-constexpr int kFew = 50;  // parameters up to which a dense Jacobian is efficient
 
 struct NamedMethod {
   const char* name;
@@ -118,7 +117,7 @@ FitReport fit(LeastSquares& misfit, Regularizer& regularizer, std::span<const do
               const FitObserver& observe) {
   ASPIC_CHECK(static_cast<int>(guess.size()) == misfit.parameter_count());
   check(options);
-  const bool few = misfit.parameter_count() <= kFew;
+  const bool few = misfit.parameter_count() <= kFewParameters;
   const NamedMethod method =
       options.method == "auto" ? kMethods[few ? 0 : 1] : named<NamedMethod>(kMethods, "method", options.method);
   const NamedRule rule = options.weight_rule == "auto" ? kRules[few ? 0 : 1]

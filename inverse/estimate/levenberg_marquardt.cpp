@@ -17,7 +17,6 @@ constexpr double kNegligibleDecrement = 1e-3;
 constexpr double kNearMinimum = 0.01;  // distance from the minimum in standard deviations; cheap for few parameters
 
 constexpr double kFirstDamping = 1e-3, kMinDamping = 1e-14, kLargestDamping = 1e12;
-constexpr double kUnseen = 1e-14;  // relative to the largest diagonal entry; smaller ones count as 0
 
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
@@ -27,7 +26,7 @@ Eigen::Map<const VectorXd> as_vector(std::span<const double> v) { return {v.data
 // d = -(A + damping D)^-1 g; false: not positive definite.
 bool find_step(const MatrixXd& A, std::span<const double> g, double damping, std::span<double> d) {
   MatrixXd damped = A;
-  damped.diagonal() += damping * A.diagonal().cwiseMax(kUnseen * A.diagonal().maxCoeff());
+  damped.diagonal() += damping * A.diagonal().cwiseMax(kMinDamping * A.diagonal().maxCoeff());
   const Eigen::LLT<MatrixXd> factor(damped);
   if (factor.info() != Eigen::Success) return false;
   Eigen::Map<VectorXd>(d.data(), std::ssize(d)) = -factor.solve(as_vector(g));

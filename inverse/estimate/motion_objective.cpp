@@ -8,16 +8,14 @@
 #include "estimate/spectrum.h"
 #include "math/vectors.h"
 #include "mesh/box.h"
+#include "model/limits.h"
 #include "model/scaled_inverse.h"
 
 namespace aspic {
 namespace {
 
-constexpr double kDifference = 1e-4;  // difference of p, for J
-constexpr double kFloor = 1e-7;       // eigenvalue of the scaled J'J: weaker combinations of parameters are held
-constexpr double kLargestMove = 1;    // largest change of p in one iteration
-constexpr double kAtStep = 1e-6;      // fraction of a time step: samples this close to a step are at the step
-constexpr double kSteps = 1e6;        // maximum number
+constexpr double kFloor = 1e-7;     // eigenvalue of the scaled J'J: weaker combinations of parameters are held
+constexpr double kLargestMove = 1;  // largest change of p in one iteration
 
 Vec3d point_at(const SurfacePoint& marker, const State& state) {
   Vec3d x{};
@@ -65,11 +63,11 @@ MotionObjective::MotionObjective(MotionModel model, MotionData data, const std::
   double square = 0;
   for (const MotionSample& sample : data_.samples) {
     const double steps = (sample.time - start.time) / options_.h;
-    if (!(steps > kAtStep && steps < kSteps))
+    if (!(steps > kSameTime && steps < kMaxTimeSteps))
       throw InvalidInput("time = " + std::to_string(sample.time) + " s is " + std::to_string(steps) +
                          " time steps after the start; it must be between 0 and 1e6 (choose another time.step)");
-    const double whole = std::abs(steps - std::round(steps)) < kAtStep ? std::round(steps) : std::floor(steps);
-    places_.push_back({static_cast<int>(whole), std::max(0.0, steps - whole) < kAtStep ? 0 : steps - whole});
+    const double whole = std::abs(steps - std::round(steps)) < kSameTime ? std::round(steps) : std::floor(steps);
+    places_.push_back({static_cast<int>(whole), std::max(0.0, steps - whole) < kSameTime ? 0 : steps - whole});
     const Vec3d path = sample.position - data_.offset[sample.marker] - point_at(data_.markers[sample.marker], start);
     square += squared_norm(path);
     resting_ += squared_norm(path) / (2 * sample.sigma * sample.sigma);
@@ -148,11 +146,11 @@ bool MotionObjective::linearize(const MotionPoint& at) {
   const std::vector<bool> before = held_;
   for (int i = 0; i < n; ++i) {
     std::vector<double> p = at.p;
-    double move = kDifference;
+    double move = kParameterStep;
     p[i] = at.p[i] + move;
     MotionPoint ahead = simulate(p);
     if (!ahead.ok) {
-      move = -kDifference;
+      move = -kParameterStep;
       p[i] = at.p[i] + move;
       ahead = simulate(p);
     }

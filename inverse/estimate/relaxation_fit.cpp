@@ -8,15 +8,14 @@
 #include "estimate/fit.h"
 #include "math/vectors.h"
 #include "model/history_misfit.h"
+#include "model/limits.h"
 
 namespace aspic {
 namespace {
 
-constexpr double kStrong = 3;            // difference of log evidence with a ratio of 20 to 1 [Kass and Raftery 1995]
-constexpr int kIterationsPerStart = 40;  // per initial guess
-constexpr double kDistinct = 1.5;        // smallest ratio of two relaxation times
+constexpr int kIterationsPerStart = 40;          // per initial guess
+constexpr double kDistinct = 1.5;                // smallest ratio of two relaxation times
 constexpr double kRatio = 0.3, kRatioSigma = 2;  // prior of the ratios: median, and standard deviation of the logarithm
-constexpr double kSigmas = 1.96;                 // of a 95 % interval
 constexpr double kUndeterminedLog = 1.5;         // standard deviation of a logarithm
 constexpr double kFarOutside = 3;                // relaxation times beyond the range of the readings by this factor
 
@@ -118,7 +117,7 @@ class RelaxationFitter {
   bool has_last_fit() const { return !candidates_.empty() && candidates_.back().failure.empty(); }
   // Whether another branch in two places has reduced |r|^2 too little to make its evidence decisive.
   bool is_hopeless(const Candidate& best) const {
-    return has_last_fit() && best.failure.empty() && candidates_.back().squares - best.squares < 2 * kStrong;
+    return has_last_fit() && best.failure.empty() && candidates_.back().squares - best.squares < 2 * kStrongEvidence;
   }
 
   Candidate fitted(int count) {
@@ -192,14 +191,14 @@ class RelaxationFitter {
       if (c.failure.empty()) best = std::max(best, trial.evidence = log_evidence(c, factor));
     }
     for (size_t k = 0; k < candidates_.size(); ++k)
-      if (candidates_[k].failure.empty() && result_.trials[k].evidence >= best - kStrong)
+      if (candidates_[k].failure.empty() && result_.trials[k].evidence >= best - kStrongEvidence)
         return describe(candidates_[k], factor);
     result_.failure = "no relaxation times were found: " + candidates_.front().failure;
   }
 
   void describe(const Candidate& c, double factor) {
     const auto interval = [&](size_t i) {
-      const double width = kSigmas * factor * c.sigma[i];
+      const double width = kSigmas95 * factor * c.sigma[i];
       return Interval{std::exp(c.p[i] - width), std::exp(c.p[i] + width)};
     };
     result_.squares = c.squares;

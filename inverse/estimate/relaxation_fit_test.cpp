@@ -18,14 +18,14 @@ namespace {
 
 constexpr double kYoung = 2e4, kLength = 0.04, kSide = 0.01, kStrain = 1e-4, kRamp = 0.5;
 
-struct Bar {
+struct RelaxingBar {
   Experiment body;
   ViscoelasticMaterial material{"neo_hookean", {}, {}};
 };
 
 // Between slippery ends: the lower end is held where it stays by symmetry.
-Bar bar() {
-  Bar b;
+RelaxingBar bar() {
+  RelaxingBar b;
   b.body.mesh = make_box({{0, 0, 0}}, {{kSide, kSide, kLength}}, {1, 1, 2});
   b.body.density.assign(b.body.mesh.tets.size(), 1000);
   for (int v = 0; v < b.body.mesh.vertex_count(); ++v)
@@ -36,7 +36,7 @@ Bar bar() {
   return b;
 }
 
-LoadCase stretched(const Bar& b, double strain) {
+LoadCase stretched(const RelaxingBar& b, double strain) {
   LoadCase c{.name = "stretch"};
   Grip grip;
   for (int v = 0; v < b.body.mesh.vertex_count(); ++v)
@@ -57,7 +57,8 @@ double force_at(double t, const std::vector<RelaxationBranch>& branches) {
   return kSide * kSide * kYoung * rate * sum;
 }
 
-LoadHistory ramp_and_hold(const Bar& b, const std::vector<RelaxationBranch>& branches, double noise, unsigned seed) {
+LoadHistory ramp_and_hold(const RelaxingBar& b, const std::vector<RelaxationBranch>& branches, double noise,
+                          unsigned seed) {
   LoadHistory history{.name = "hold", .times = {0, kRamp, 200}};
   history.waypoints = {stretched(b, 0), stretched(b, kStrain), stretched(b, kStrain)};
   std::mt19937_64 random(seed);
@@ -75,7 +76,7 @@ LoadHistory ramp_and_hold(const Bar& b, const std::vector<RelaxationBranch>& bra
 const std::vector<RelaxationBranch> kOne = {{0.6, 4}}, kTwo = {{0.5, 1.5}, {0.8, 30}};
 
 TEST(LoadHistory, MatchesRampAndHoldOfMaxwellSolid) {
-  const Bar b = bar();
+  const RelaxingBar b = bar();
   const LoadHistory history = ramp_and_hold(b, kTwo, 0, 1);
   ViscoelasticMaterial material = b.material;
   material.branches = kTwo;
@@ -89,7 +90,7 @@ TEST(LoadHistory, MatchesRampAndHoldOfMaxwellSolid) {
 // A step of the load: the strain is the load over E times the creep function of a standard linear solid,
 //   1 - ratio / (1 + ratio) exp(-t / (tau (1 + ratio))).
 TEST(LoadHistory, MatchesCreepOfStandardLinearSolid) {
-  Bar b = bar();
+  RelaxingBar b = bar();
   LoadHistory history{.name = "creep", .times = {0}};
   LoadCase load{.name = "weight"};
   const double pull = kStrain * kYoung;
@@ -145,7 +146,7 @@ TEST(LoadHistory, LongHoldOfIndenterEndsLikeStatics) {
 
 // Loads beyond one Newton solve are divided; the path has no effect on a body without branches.
 TEST(LoadHistory, SuddenLoadIsDividedUntilItConverges) {
-  const Bar b = bar();
+  const RelaxingBar b = bar();
   LoadHistory history{.name = "pull", .times = {0, 1}, .waypoints = {stretched(b, 1.5), stretched(b, 1.5)}};
   history.forces.push_back({0.5, {{0, 0, 1}}, 0, 1});
   const HistoryPrediction sudden = simulate(b.body, history, b.material, {});
@@ -160,7 +161,7 @@ TEST(LoadHistory, SuddenLoadIsDividedUntilItConverges) {
 }
 
 TEST(LoadHistory, CollapsedGripHasNoEquilibrium) {
-  const Bar b = bar();
+  const RelaxingBar b = bar();
   LoadHistory history{.name = "crush", .times = {0, 1}, .waypoints = {stretched(b, 0), stretched(b, -1.5)}};
   history.forces.push_back({1, {{0, 0, 1}}, 0, 1});
   const HistoryPrediction prediction = simulate(b.body, history, b.material, {});
@@ -169,7 +170,7 @@ TEST(LoadHistory, CollapsedGripHasNoEquilibrium) {
 }
 
 TEST(HistoryMisfit, JacobianMatchesCentralDifferences) {
-  const Bar b = bar();
+  const RelaxingBar b = bar();
   const std::vector<LoadHistory> histories = {ramp_and_hold(b, kTwo, 0, 1)};
   const EquilibriumOptions options;
   HistoryMisfit misfit(b.body, histories, b.material, 2, options);
@@ -187,7 +188,7 @@ TEST(HistoryMisfit, JacobianMatchesCentralDifferences) {
 }
 
 TEST(RelaxationFit, FindsTwoBranchesAndTheirNumber) {
-  const Bar b = bar();
+  const RelaxingBar b = bar();
   const RelaxationFit fit = fit_relaxation(b.body, {ramp_and_hold(b, kTwo, 0.003, 1)}, b.material, {});
   ASSERT_TRUE(fit.is_ok()) << fit.failure;
   ASSERT_EQ(fit.branches.size(), 2u);
@@ -200,7 +201,7 @@ TEST(RelaxationFit, FindsTwoBranchesAndTheirNumber) {
 }
 
 TEST(RelaxationFit, OneBranchIsEnoughForOne) {
-  const Bar b = bar();
+  const RelaxingBar b = bar();
   const RelaxationFit fit = fit_relaxation(b.body, {ramp_and_hold(b, kOne, 0.003, 2)}, b.material, {});
   ASSERT_TRUE(fit.is_ok()) << fit.failure;
   ASSERT_EQ(fit.branches.size(), 1u);
@@ -209,7 +210,7 @@ TEST(RelaxationFit, OneBranchIsEnoughForOne) {
 
 // 40 data sets with other noise: values within 3 %, and intervals that contain the truth in about 95 %.
 TEST(RelaxationFit, IntervalsCoverTheTruth) {
-  const Bar b = bar();
+  const RelaxingBar b = bar();
   int inside = 0, total = 0;
   for (unsigned seed = 1; seed <= 40; ++seed) {
     const RelaxationFit fit =

@@ -235,7 +235,7 @@ Columns product(const Columns& A, std::span<const double> C, int count) {
 PriorGaussian::PriorGaussian(Regularizer& regularizer, double weight, std::span<const double> p)
     : regularizer_(regularizer),
       weight_(weight),
-      floor_(1 / (kWidest * kWidest * static_cast<double>(std::max<size_t>(p.size(), 1)))),
+      floor_(1 / (kUninformative * kUninformative * static_cast<double>(std::max<size_t>(p.size(), 1)))),
       p_(p.begin(), p.end()) {
   ASPIC_CHECK(weight >= 0);
 }

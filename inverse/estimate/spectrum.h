@@ -9,6 +9,7 @@
 
 #include "math/vectors.h"
 #include "model/least_squares.h"
+#include "model/limits.h"
 #include "model/regularizer.h"
 
 namespace aspic {
@@ -47,12 +48,10 @@ class Gaussian {
   virtual void covariance(std::span<const double> v, std::span<double> z) = 0;  // z = C v
 };
 
-// Prior exp(-weight R) with the curvature of R at p. Directions without curvature get a standard deviation of kWidest,
-// so that the distribution is proper.
+// Prior exp(-weight R) with the curvature of R at p. Directions without curvature get a standard deviation of
+// kUninformative, so that the distribution is proper.
 class PriorGaussian : public Gaussian {
  public:
-  static constexpr double kWidest = 100;  // standard deviation without information from R: log E +- 100
-
   // Stores a reference to the regularizer. Requires weight >= 0.
   PriorGaussian(Regularizer& regularizer, double weight, std::span<const double> p);
 

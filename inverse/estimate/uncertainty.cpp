@@ -6,8 +6,6 @@
 #include "base/check.h"
 #include "base/formatted.h"
 #include "estimate/evidence.h"
-#include "estimate/field_text.h"
-#include "estimate/principal_directions.h"
 #include "mesh/tet_shape.h"
 #include "model/handle_gaps.h"
 #include "model/quantity.h"
@@ -145,31 +143,6 @@ void warn_of_rank(Posterior& result) {
         s.W.count(), std::sqrt(1 + s.missed)));
 }
 
-void describe_seen(const ParameterMap& map, const TetMesh& mesh, int count, Posterior& result) {
-  const Spectrum& s = result.gaussian->spectrum();
-  for (int k = 0; k < std::min(count, s.W.count()) && s.d[k] >= 1; ++k) {
-    Direction direction{.information = s.d[k], .p = {s.W[k].begin(), s.W[k].end()}};
-    direction.sigma = root_mean_square(map, mesh, s.W[k]) / std::sqrt(1 + s.d[k]);
-    direction.description = describe_direction(mesh, map, direction.p);
-    result.determined.push_back(std::move(direction));
-  }
-}
-
-void describe_unseen(const ParameterMap& map, const TetMesh& mesh, int count, Posterior& result) {
-  PosteriorGaussian& gaussian = *result.gaussian;
-  for (PrincipalDirection& principal : principal_directions(gaussian, map, mesh, count)) {
-    Direction direction{.information = principal.prior / principal.posterior - 1,
-                        .sigma = std::sqrt(principal.posterior),
-                        .p = std::move(principal.p)};
-    std::vector<double> y(direction.p.size());
-    gaussian.prior().precision(direction.p, y);
-    const double length = std::sqrt(dot(direction.p, y));
-    for (double& x : direction.p) x /= length;
-    direction.description = describe_direction(mesh, map, direction.p);
-    result.undetermined.push_back(std::move(direction));
-  }
-}
-
 void set_fields(const Marginals& m, Posterior& result) {
   result.sigma_error = m.relative_error;
   for (size_t u = 0; u < m.posterior.size(); ++u) {
@@ -261,8 +234,6 @@ Posterior posterior(LeastSquares& data, Regularizer& prior, double weight, const
   Marginals m = marginals(*result.gaussian, map, options.marginals);
   add_handle_gaps(fitted, m);
   set_fields(m, result);
-  describe_seen(map, mesh, options.directions, result);
-  describe_unseen(map, mesh, options.directions, result);
   result.ok = true;
   return result;
 }

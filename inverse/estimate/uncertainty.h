@@ -28,17 +28,9 @@ struct Marginals {
 
 Marginals marginals(PosteriorGaussian& gaussian, const ParameterMap& map, const MarginalOptions& options = {});
 
-struct Direction {
-  double information = 0;   // prior variance / posterior variance - 1 along it; < 1: not determined by the data
-  double sigma = 0;         // posterior standard deviation along it: root mean square over the body on the fitted scale
-  std::vector<double> p;    // unit length in the norm of the prior
-  std::string description;  // "young of the whole body"
-};
-
 struct PosteriorOptions {
   SpectrumOptions spectrum;
   MarginalOptions marginals;
-  int directions = 3;  // number of reported directions
 };
 
 struct Posterior {
@@ -47,14 +39,12 @@ struct Posterior {
   std::vector<std::vector<double>> reduction;  // 1 - posterior / prior variance: 0 no information, 1 complete
   double sigma_error = 0;                      // largest relative standard error of `sigma`; 0: exact
   double informed = 0;                         // number of directions determined by the data: sum of d / (1 + d)
-  std::vector<Direction> determined,
-      undetermined;                   // best determined ones; those with the largest remaining uncertainty
-  bool scale_is_unknown = false;      // no force, weight or pressure: only ratios of stiffness are determined
-  double noise_factor = 1;            // scatter of the measurements relative to their standard deviations
-  double applied_factor = 1;          // applied factor of the standard deviations
-  double suggested_weight = 0;        // weight of the regularizer supported by the data; 0: none
-  double log_evidence = 0;            // log evidence of the weight, up to a constant
-  std::vector<std::string> warnings;  // messages for users
+  bool scale_is_unknown = false;               // no force, weight or pressure: only ratios of stiffness are determined
+  double noise_factor = 1;                     // scatter of the measurements relative to their standard deviations
+  double applied_factor = 1;                   // applied factor of the standard deviations
+  double suggested_weight = 0;                 // weight of the regularizer supported by the data; 0: none
+  double log_evidence = 0;                     // log evidence of the weight, up to a constant
+  std::vector<std::string> warnings;           // messages for users
   // The entries of `warnings` about the misfit and about the weight of the regularizer; empty: none.
   std::string misfit_warning, weight_warning;
   std::shared_ptr<PosteriorGaussian> gaussian;

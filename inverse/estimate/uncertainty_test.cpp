@@ -3,7 +3,6 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "estimate/field_text.h"
 #include "mesh/generators.h"
 #include "model/common_errors.h"
 #include "model/linear_models_test.h"
@@ -117,7 +116,7 @@ TEST(Posterior, IntervalsContainTruthAtStatedRate) {
   for (unsigned seed = 0; seed < kSeeds; ++seed) {
     f.measure(seed);
     const std::vector<double> p = f.fit();
-    const Posterior posterior = aspic::posterior(f.data, f.prior, 1, {f.map, f.mesh, p}, {.directions = 0});
+    const Posterior posterior = aspic::posterior(f.data, f.prior, 1, {f.map, f.mesh, p});
     for (int t = 0; t < f.map.size(); ++t) {
       const Interval i = interval(posterior, f.map, p, {0, t});
       const double E = std::exp(f.truth(t));
@@ -146,9 +145,6 @@ TEST(Posterior, ReportsThatOnlyRatiosOfStiffnessAreDetermined) {
   Field f = ratios_only();
   const Posterior blind = f.posterior();
   EXPECT_TRUE(blind.scale_is_unknown);
-  ASSERT_FALSE(blind.undetermined.empty());
-  EXPECT_EQ(blind.undetermined[0].description, "young of the whole body");
-  EXPECT_LT(blind.undetermined[0].information, 0.5);
   EXPECT_THAT(blind.warnings, testing::Contains(HasSubstr("measure one force")));
 
   f.data.J.row(0).setConstant(10.0 / f.map.size());  // a force known to 10 %
@@ -169,7 +165,6 @@ TEST(Posterior, ContactStiffnessIsNoForceInformation) {
   WithUncertainLayers data(f.data);
   const Posterior posterior = aspic::posterior(data, f.prior, 1, {f.map, f.mesh, f.fit()});
   EXPECT_TRUE(posterior.scale_is_unknown);
-  EXPECT_LT(posterior.undetermined[0].information, 0.5);
 }
 
 // ---------------------------------------------------------------------------------------------------- judgment
@@ -243,19 +238,12 @@ TEST(Posterior, WithoutAnEquilibriumIsNone) {
   EXPECT_THAT(posterior.warnings, ElementsAre(HasSubstr("no stable equilibrium")));
 }
 
-TEST(Posterior, ReportsDeterminedAndUndeterminedDirections) {
+TEST(Posterior, ReducesTheVarianceWhereDataAre) {
   Field f(20, 25);
   f.data.J.setZero();
   for (int t = 0; t < 25; ++t) f.data.J(t, t) = 50;  // the first quarter of the bar
   f.measure(1);
   const Posterior posterior = f.posterior();
-  ASSERT_EQ(posterior.determined.size(), 3u);
-  ASSERT_EQ(posterior.undetermined.size(), 3u);
-  EXPECT_GT(posterior.determined[0].information, 100);
-  EXPECT_LT(posterior.undetermined[0].information, 1);
-  EXPECT_GT(posterior.undetermined[0].sigma, posterior.determined[0].sigma);
-  EXPECT_THAT(posterior.determined[0].description, HasSubstr("young around (0.0"));
-  EXPECT_THAT(posterior.undetermined[0].description, HasSubstr("young around (0.1"));
   EXPECT_GT(posterior.reduction[0][3], 0.9);
   EXPECT_LT(posterior.reduction[0][99], 0.01);
 }
@@ -268,37 +256,6 @@ TEST(Interval, IsInUnitsOfTheQuantity) {
   const Interval i = interval(posterior, map, map.guess(), {0, 2}, 1);
   EXPECT_NEAR(i.lower, 1e5 / 1.3, 1e-6);
   EXPECT_NEAR(i.upper, 1.3e5, 1e-6);
-}
-
-// ---------------------------------------------------------------------------------------------------- descriptions
-
-TEST(DirectionWords, NamePlacesRegionsAndContrasts) {
-  TetMesh mesh = bar(10);  // five tets per cell
-  for (int t = 0; t < mesh.tet_count(); ++t) mesh.region.push_back(t < 25 ? 1 : 7);
-  const ParameterMap tets = make_map(mesh, {{.guess = 1}}),
-                     regions = make_map(mesh, {{.parameterization = Parameterization::regions, .guess = 1}});
-  std::vector<double> p(tets.size(), -0.3);
-  EXPECT_EQ(describe_direction(mesh, tets, p), "young of the whole body");
-  p.assign(p.size(), 0);
-  for (int t = 45; t < 50; ++t) p[t] = -2;
-  EXPECT_THAT(describe_direction(mesh, tets, p),
-              testing::MatchesRegex("young around \\(0\\.09.*\\) m \\(10 % of the body\\)"));
-  for (int t = 0; t < 5; ++t) p[t] = 2.1;
-  EXPECT_THAT(describe_direction(mesh, tets, p),
-              testing::MatchesRegex("young around \\(0\\.00.*\\) m .* against around \\(0\\.09.*"));
-  EXPECT_EQ(describe_direction(mesh, regions, std::vector<double>{1, 1}), "young of the whole body");
-  EXPECT_EQ(describe_direction(mesh, regions, std::vector<double>{0, -1}), "young of region 7");
-  EXPECT_EQ(describe_direction(mesh, regions, std::vector<double>{1, -1.1}), "young of region 7 against region 1");
-}
-
-TEST(DirectionWords, NameEveryQuantityThatTakesPart) {
-  const TetMesh mesh = bar(2);
-  const ParameterMap map =
-      make_map(mesh, {{.parameterization = Parameterization::uniform, .guess = 1},
-                      {.quantity = "poisson", .parameterization = Parameterization::uniform, .guess = 0.3}});
-  EXPECT_EQ(describe_direction(mesh, map, std::vector<double>{1, 0.1}), "young of the whole body");
-  EXPECT_EQ(describe_direction(mesh, map, std::vector<double>{1, 0.9}),
-            "young of the whole body with poisson of the whole body");
 }
 
 }  // namespace

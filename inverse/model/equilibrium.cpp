@@ -11,6 +11,7 @@
 #include "linalg/auto_solver.h"
 #include "math/vectors.h"
 #include "model/elastic_parameters.h"
+#include "model/limits.h"
 #include "optimize/newton.h"
 
 namespace aspic {
@@ -120,7 +121,7 @@ struct Equilibrium::Impl {
   SolveReport solve_symmetric(std::span<double> result) {
     pins.set_zero(b);
     SolveReport report = solver->solve(b, result, options.adjoint_tolerance);
-    report.ok = report.ok || (!report.indefinite && report.relative_residual <= kUsable);
+    report.ok = report.ok || (!report.indefinite && report.relative_residual <= kStagnated);
     return report;
   }
 
@@ -137,7 +138,7 @@ struct Equilibrium::Impl {
       report.relative_residual = norm(term) / norm(result);
       if (!(report.relative_residual > options.adjoint_tolerance)) return report;
     }
-    report.ok = report.relative_residual <= kUsable;
+    report.ok = report.relative_residual <= kStagnated;
     return report;
   }
 
@@ -177,8 +178,7 @@ struct Equilibrium::Impl {
     in_force = &wanted;
   }
 
-  static constexpr double kUsable = 1e-9;  // residual of a solve that stagnates in round-off
-  static constexpr int kMaxTerms = 100;    // see add_lagged()
+  static constexpr int kMaxTerms = 100;  // see add_lagged()
 
   EquilibriumOptions options;
   Model model;

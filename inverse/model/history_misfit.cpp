@@ -4,11 +4,10 @@
 
 #include "base/parallel.h"
 #include "math/vectors.h"
+#include "model/limits.h"
 
 namespace aspic {
 namespace {
-
-constexpr double kParameterDifference = 1e-4;  // of p; residuals are accurate to about 1e-9 of their size
 
 int readings_of(const LoadHistory& history) {
   size_t count = history.forces.size();
@@ -77,13 +76,13 @@ bool HistoryMisfit::linearize() {
   std::vector<std::vector<HistoryPrediction>> changed(p_.size());
   parallel_for(static_cast<int>(p_.size()), [&](int k) {
     std::vector<double> p = p_;
-    p[static_cast<size_t>(k)] += kParameterDifference;
+    p[static_cast<size_t>(k)] += kParameterStep;
     changed[static_cast<size_t>(k)] = predicted(p);
   });
   columns_.assign(p_.size(), std::vector<double>(r_.size()));
   for (size_t k = 0; k < p_.size(); ++k) {
     if (!residuals(changed[k], columns_[k])) return false;
-    for (size_t i = 0; i < r_.size(); ++i) columns_[k][i] = (columns_[k][i] - r_[i]) / kParameterDifference;
+    for (size_t i = 0; i < r_.size(); ++i) columns_[k][i] = (columns_[k][i] - r_[i]) / kParameterStep;
   }
   return true;
 }

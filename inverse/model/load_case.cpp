@@ -11,11 +11,11 @@
 #include "mesh/surface.h"
 #include "mesh/vertices.h"
 #include "model/gauge.h"
+#include "model/limits.h"
 
 namespace aspic {
 namespace {
 
-constexpr double kSmallestPart = 1.0 / 64;  // smallest load step
 constexpr char kAxis[] = "xyz";
 
 Vec3d at(const SurfacePoint& point, std::span<const double> x) {
@@ -178,7 +178,7 @@ bool LoadedBody::load_in_parts() {
       part *= 2;
     } else {
       part /= 2;
-      if (part < kSmallestPart) break;
+      if (part < std::ldexp(1.0, -kMaxHalvings)) break;
     }
   }
   failure_ = done < 1

@@ -9,16 +9,16 @@
 #include "energy/maxwell_branches.h"
 #include "linalg/auto_solver.h"
 #include "mesh/vertices.h"
+#include "model/limits.h"
 #include "model/load_case.h"
 #include "optimize/newton.h"
 
 namespace aspic {
 namespace {
 
-constexpr int kRampSteps = 8;       // minimum number per ramp
-constexpr int kHoldSteps = 10;      // first step of a hold: its length / 2^kHoldSteps; then lengths double
-constexpr int kMaxBisections = 6;   // of a step without an equilibrium
-constexpr double kSameTime = 1e-9;  // relative to the duration of the history
+constexpr int kRampSteps = 8;           // minimum number per ramp
+constexpr int kHoldSteps = 10;          // first step of a hold: its length / 2^kHoldSteps; then lengths double
+constexpr double kTimeRoundOff = 1e-9;  // relative to the duration of the history
 
 Vec3d blend(const Vec3d& a, const Vec3d& b, double part) { return (1 - part) * a + part * b; }
 
@@ -52,7 +52,7 @@ struct Stop {
 // The times at which steps end, segment by segment.
 std::vector<Stop> stops_of(const LoadHistory& history) {
   const std::vector<double>& times = history.times;
-  const double same = kSameTime * (times.back() - times.front());
+  const double same = kTimeRoundOff * (times.back() - times.front());
   std::vector<Stop> stops = {{times.front(), 0, 0}};
   for (size_t k = 0; k + 1 < times.size(); ++k) {
     const double begin = times[k], length = times[k + 1] - begin;
@@ -97,7 +97,7 @@ class HistoryBody {
   // Advances from one load to another in a duration [s]. Returns false without an equilibrium.
   bool advance(const LoadCase& from, const LoadCase& to, double duration, int halvings = 0) {
     if (step(to, duration)) return true;
-    if (halvings == kMaxBisections) return false;
+    if (halvings == kMaxHalvings) return false;
     const LoadCase middle = load_between(from, to, 0.5);
     return advance(from, middle, duration / 2, halvings + 1) && advance(middle, to, duration / 2, halvings + 1);
   }
@@ -235,7 +235,7 @@ HistoryPrediction simulate(const Experiment& body, const LoadHistory& history, c
                            const EquilibriumOptions& options) {
   HistoryPrediction prediction;
   HistoryBody now(body, history, material, options);
-  const double same = kSameTime * (history.times.back() - history.times.front());
+  const double same = kTimeRoundOff * (history.times.back() - history.times.front());
   const auto read_markers = [&](const LoadCase& load) {
     for (const MarkerReading& reading : load.positions)
       prediction.markers.push_back(marker_at(body.markers[static_cast<size_t>(reading.marker)], now.x()));

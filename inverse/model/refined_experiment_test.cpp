@@ -163,7 +163,7 @@ MeshErrors errors_of_force(double on_mesh, double in_limit) {
 TEST(RefinedExperiment, CorrectedForcesKeepTheirSign) {
   for (const double on_mesh : {-0.8, -2.5})
     for (const double measured : {-24.2, -2.0, -0.2, -0.01, 0.0}) {
-      const LoadCase load = without_mesh_errors(pushed(measured), errors_of_force(on_mesh, -1)).cases[0];
+      const LoadCase load = without_mesh_errors({pushed(measured)}, errors_of_force(on_mesh, -1)).cases[0];
       EXPECT_LE((*load.force)[2], 0) << measured << " N where the mesh has " << on_mesh << " N of -1 N";
       EXPECT_LE(std::abs((*load.force)[2]), 2.5 * std::abs(measured) + 1e-12);
     }
@@ -172,7 +172,7 @@ TEST(RefinedExperiment, CorrectedForcesKeepTheirSign) {
 TEST(RefinedExperiment, CorrectionsScaleWithTheForce) {
   const MeshErrors errors = errors_of_force(-0.8, -1);
   for (const double measured : {-0.05, -1.0, -5.0}) {
-    const LoadCase load = without_mesh_errors(pushed(measured), errors).cases[0];
+    const LoadCase load = without_mesh_errors({pushed(measured)}, errors).cases[0];
     EXPECT_NEAR((*load.force)[2], 0.8 * measured, 1e-12);
     EXPECT_NEAR(load.force_sigma[2], std::hypot(0.1, 0.2 * measured / 3), 1e-12);
     EXPECT_NEAR(errors.cases[0].for_wrench_on_mesh({{{0, 0, 0.8 * measured}}, {}}).force[2], 0.2 * measured, 1e-12)

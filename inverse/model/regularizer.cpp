@@ -8,17 +8,16 @@
 #include "base/error.h"
 #include "linalg/scalar_cholesky.h"
 #include "model/field_roughness.h"
+#include "model/limits.h"
 
 namespace aspic {
 namespace {
 
-constexpr double kSigmaWithoutPrior = 100;
-
 // A penalty limits values of fields to a factor of 100 from the guess (4.6 in log E) for any weight. With small
 // weights, poorly determined tets would otherwise diverge to 0 or infinity.
-constexpr double kFarthest = kFarthestOfField, kWall = 1e4;
+constexpr double kWall = 1e4;
 
-double excess(double distance) { return std::copysign(std::max(0.0, std::abs(distance) - kFarthest), distance); }
+double excess(double distance) { return std::copysign(std::max(0.0, std::abs(distance) - kFarthestOfField), distance); }
 
 double inverse_square(double x) { return 1 / (x * x); }
 
@@ -36,7 +35,7 @@ class Prior {
 
  protected:
   double invertible_precision(double shift) const {
-    return precision_ > 0 || shift > 0 ? precision_ : inverse_square(kSigmaWithoutPrior);
+    return precision_ > 0 || shift > 0 ? precision_ : inverse_square(kUninformative);
   }
 
   double guess_, precision_;

@@ -11,6 +11,7 @@
 #include "dynamics/simulation_checks.h"
 #include "model/checkpointing.h"
 #include "model/elastic_parameters.h"
+#include "model/limits.h"
 #include "model/sequence_solver.h"
 #include "optimize/newton.h"
 
@@ -18,8 +19,6 @@ namespace aspic {
 namespace {
 
 constexpr char kIntegrator[] = "backward_euler";
-constexpr double kUsable = 1e-9;  // relative residual at which a solve may stagnate in round-off
-
 void require_gradient(const TrajectoryOptions& options) {
   if (options.integrator != kIntegrator)
     throw InvalidInput("a trajectory has a gradient for integrator = 'backward_euler', not for '" + options.integrator +
@@ -201,7 +200,7 @@ struct Trajectory::Impl {
     ++report.adjoint_solves;
     report.adjoint_factorizations += factorized;
     report.adjoint_iterations += solved.iterations;
-    if (solved.ok || (!solved.indefinite && solved.relative_residual <= kUsable)) return true;
+    if (solved.ok || (!solved.indefinite && solved.relative_residual <= kStagnated)) return true;
     return fail(point, solved.indefinite ? "the matrix of the step is not positive definite"
                                          : "the adjoint system was not solved");
   }

@@ -4,13 +4,13 @@
 #include <cmath>
 
 #include "estimate/fit_run.h"
+#include "model/limits.h"
 #include "scene/value.h"
 
 namespace aspic {
 namespace {
 
 constexpr double kSoftest = 1e-2, kStiffest = 1e13;  // plausible Young's moduli [Pa]
-constexpr double kUnexplained = 4;                   // |r|^2 per reading: twice the standard deviations
 
 }  // namespace
 
@@ -40,7 +40,7 @@ std::string describe_failure(const DataSet& data, const FitReport& report, const
 std::string describe_worst_row(const DataSet& data, const std::vector<std::string>& left_out, const Misfit& misfit,
                                std::span<const double> r) {
   const double count = static_cast<double>(r.size()), typical = dot(r, r) / count;
-  if (!(typical > std::max(kUnexplained, 1 + 5 * std::sqrt(2 / count)))) return "";
+  if (!(typical > std::max(kTooManySquares, 1 + 5 * std::sqrt(2 / count)))) return "";
   double worst = 0;
   int worst_case = 0, fitted = 0;
   for (size_t c = 0; c < data.experiment.cases.size(); ++c) {

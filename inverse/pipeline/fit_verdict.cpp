@@ -158,11 +158,11 @@ class Reasons {
               " per reading: the model is too simple, or the standard deviations are too small",
           squares, kTooManySquares);
     for (const FoundCommonError& error : outcome_.common_errors)
-      if (std::abs(error.sigmas) > kMissed)
+      if (std::abs(error.sigmas) > kManySigmas)
         add("unexplained",
             "the readings need " + three_digits(std::abs(error.sigmas)) + " standard deviations of the error of " +
                 error.cause + ": the model is wrong, or the readings",
-            std::abs(error.sigmas), kMissed);
+            std::abs(error.sigmas), kManySigmas);
     add_poor_predictions();
   }
 
@@ -225,11 +225,11 @@ class Reasons {
 
   void add_missed_groups() {
     for (const GroupError& e : group_errors(data_, outcome_))
-      if (e.sigmas > kMissed)
+      if (e.sigmas > kManySigmas)
         add("group_missed",
             "the " + e.readings + " of '" + e.group + "' are missed by " + three_digits(e.sigmas) +
                 " standard deviations",
-            e.sigmas, kMissed);
+            e.sigmas, kManySigmas);
   }
 
   void add_worse_than_one_value() {
@@ -259,7 +259,7 @@ class Reasons {
     const double ratio = stiffest->stiffness() / softest->stiffness();
     const double sigma = std::hypot(stiffest->stiffness_sigma() / stiffest->stiffness(),
                                     softest->stiffness_sigma() / softest->stiffness());
-    if (ratio > kDisagree && std::log(ratio) > kMissed * sigma)
+    if (ratio > kDisagree && std::log(ratio) > kManySigmas * sigma)
       add("groups_disagree",
           "the forces of '" + stiffest->name() + "' imply a body " + three_digits(ratio) +
               " times as stiff as those of '" + softest->name() +

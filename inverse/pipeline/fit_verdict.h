@@ -3,14 +3,13 @@
 #include <string>
 #include <vector>
 
+#include "model/limits.h"
 #include "pipeline/fit_run.h"
 
 namespace aspic {
 
-// Limits of figures under a good verdict.
-inline constexpr double kMissed = 4;             // standard deviations, root mean square over a group
-inline constexpr double kTooManySquares = 2.25;  // |r|^2 per reading
-inline constexpr double kSingle = 2;             // multiple of the limits of held-out errors for a single group
+// Limit of figures under a good verdict; others: model/limits.h.
+inline constexpr double kSingle = 2;  // multiple of the limits of held-out errors for a single group
 
 // Errors of a held-out group beyond the noise of its readings, relative to the largest motion, force and torque of the
 // data, or to 10 standard deviations if that is more; < 0: none.

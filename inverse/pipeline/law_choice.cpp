@@ -5,11 +5,10 @@
 #include <limits>
 
 #include "base/formatted.h"
+#include "model/limits.h"
 
 namespace aspic {
 namespace {
-
-constexpr double kStrong = 3;  // difference of log probabilities with a ratio of 20 to 1 [Kass and Raftery 1995]
 
 double informed(const LawTrial& trial) {
   double sum = 0;
@@ -82,7 +81,7 @@ double least_loss(const LawChoice& choice, double LawTrial::*loss) {
 
 // Losses are NaN if no law predicts all groups.
 bool predicts_as_well(const LawTrial& trial, const LawChoice& choice) {
-  return !(trial.held_out_loss > least_loss(choice, &LawTrial::held_out_loss) + kStrong);
+  return !(trial.held_out_loss > least_loss(choice, &LawTrial::held_out_loss) + kStrongEvidence);
 }
 
 // Marks the candidates that predict held-out groups as well as the best one and, among these, have about the best
@@ -93,7 +92,7 @@ void mark_best(LawChoice& choice) {
   for (const LawTrial& trial : choice.trials)
     if (is_predictor(trial)) least = std::min(least, trial.evidence_loss);
   for (LawTrial& trial : choice.trials)
-    trial.is_as_good = is_predictor(trial) && trial.evidence_loss <= least + kStrong;
+    trial.is_as_good = is_predictor(trial) && trial.evidence_loss <= least + kStrongEvidence;
 }
 
 std::string verdict_of(const LawTrial& trial, const LawChoice& choice) {

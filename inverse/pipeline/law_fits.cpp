@@ -3,12 +3,11 @@
 #include <algorithm>
 #include <array>
 
+#include "model/limits.h"
 #include "pipeline/fit_troubles.h"
 
 namespace aspic {
 namespace {
-
-constexpr double kWellFitted = 2.25;  // |r|^2 per reading above which further initial guesses are tried
 
 constexpr int kNumbersOfIteration = 10;
 
@@ -137,7 +136,7 @@ void LawFits::fit(FittedLaw& c, const std::string& how) {
   for (const std::vector<double>& start : starts_of(c)) {
     FitModel model = model_of(c, c.plan.parameters);
     minimize(c, model, start);
-    if (is_stopped() || 2 * c.objective < kWellFitted * model.misfit.residual_count()) return;
+    if (is_stopped() || 2 * c.objective < kTooManySquares * model.misfit.residual_count()) return;
   }
 }
 

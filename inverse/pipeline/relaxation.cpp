@@ -14,8 +14,7 @@
 namespace aspic {
 namespace {
 
-constexpr double kUnknownScale = 2;  // prior standard deviation of the logarithm of the stiffness without other cases
-constexpr int kMaxPasses = 6;        // fits of the branches, each with the stiffness of the last one
+constexpr int kMaxPasses = 6;             // fits of the branches, each with the stiffness of the last one
 constexpr int kMaxTetsForSlowest = 3000;  // tets up to which the simulations take minutes
 
 // Parameters of every tet, in the order of the data.
@@ -38,14 +37,14 @@ double scale_sigma(const DataSet& data, const FitOutcome& outcome) {
   if (std::none_of(outcome.quantities.begin(), outcome.quantities.end(),
                    [](const FittedQuantity& q) { return is_stiffness(q.name); }))
     return 0;  // given
-  if (data.histories_end_static) return kUnknownScale;
+  if (data.histories_end_static) return RegularizerOptions{}.prior_sigma;
   for (const FittedQuantity& q : outcome.quantities)
     if (is_stiffness(q.name) && !q.sigma.empty()) {
       double squares = 0;
       for (const double sigma : q.sigma) squares += sigma * sigma / static_cast<double>(q.sigma.size());
       return std::sqrt(squares);
     }
-  return kUnknownScale;
+  return RegularizerOptions{}.prior_sigma;
 }
 
 // Last state of each history as a static case with the standard deviations of its history.

@@ -4,6 +4,7 @@
 #include <numbers>
 #include <set>
 
+#include "model/limits.h"
 #include "model/quantity.h"
 #include "pipeline/fit_stages.h"
 #include "pipeline/fit_troubles.h"
@@ -12,7 +13,6 @@ namespace aspic {
 namespace {
 
 constexpr double kDegrees = 180 / std::numbers::pi;
-constexpr double kAsGood = 3;          // log probability by which another minimum may be worse
 constexpr int kSearchIterations = 10;  // maximum per start
 constexpr double kSearchTolerance = 1e-2;
 constexpr double kWeakestRatio = 10;  // upper over lower end of the interval of fibre_ratio: fibres may have no effect
@@ -118,7 +118,8 @@ std::vector<FoundFibres> found_fibres(const FitState& state, const ParameterMap&
     const double own = cone;
     for (const FibreMinimum& other : state.fibres.minima) {
       const double angle = angle_between(other.directions[r], directions[r]);
-      const bool is_as_good = other.objective - state.fibres.minima.front().objective < kAsGood * factor * factor;
+      const bool is_as_good =
+          other.objective - state.fibres.minima.front().objective < kStrongEvidence * factor * factor;
       if (own < 0 || !is_as_good || angle <= own || angle <= kSameFibres) continue;
       found.others.push_back(as_axis(other.directions[r]));
       cone = std::max(cone, std::min(angle + own, std::numbers::pi / 2));

@@ -2,6 +2,7 @@
 #include <cmath>
 #include <utility>
 
+#include "model/limits.h"
 #include "pipeline/fit_stages.h"
 #include "pipeline/fit_troubles.h"
 #include "pipeline/fit_verdict.h"
@@ -12,10 +13,8 @@ namespace {
 constexpr int kPasses = 8;
 constexpr double kSettled = 0.02;       // relative change of a value; errors of the mesh change as much
 constexpr double kSettledNext = 0.002;  // that of the next pass, if changes shrink by the same factor again
-constexpr double kSettledCorrection = 0.02;
-constexpr double kSettledField = 0.03;  // root mean square of more than kFewValues, whose noise is larger
-constexpr size_t kFewValues = 50;
-bool is_many(const std::vector<double>& p) { return p.size() > kFewValues; }
+constexpr double kSettledField = 0.03;  // root mean square of many values, whose noise is larger
+bool is_many(const std::vector<double>& p) { return p.size() > kFewParameters; }
 
 // Largest change of a few values. Among many values, single ones are determined less accurately than fits converge.
 double change_between(const std::vector<double>& before, const std::vector<double>& after) {
@@ -56,7 +55,7 @@ void fit_until_mesh_errors_settle(FitState& state) {
     const double change = change_between(before, p), corrections = state.estimate_corrections(*state.model, p);
     const bool has_settled_next = !is_many(p) && change * change < kSettledNext * last_change;
     if (!before.empty() && (has_settled_next || change < (is_many(p) ? kSettledField : kSettled)) &&
-        corrections < kSettledCorrection)
+        corrections < kSettled)
       return;
     if (pass == kPasses) {
       state.outcome.mesh_errors_settle = false;

@@ -29,35 +29,37 @@ shape = { box = { upper = [0.12, 0.12, 0.06], cells = [%s] } }
 [[body.pin]]
 where = "Z < 1e-6"
 """
-TRUTH = BODY % ("6, 6, 4", 'material = { young = "Z < 0.03 ? 4e4 : 1e4", poisson = 0.4 }')
+TRUTH = BODY % ("CELLS", 'material = { young = "Z < 0.03 ? 4e4 : 1e4", poisson = 0.4 }')
 
 
 @functools.cache
-def measured():
-    """A small data set, created once: two indentations of two depths on two layers."""
+def measured(cells="5, 5, 4", depths=2):
+    """A small data set, created once: two indentations on two layers."""
     folder = pathlib.Path(tempfile.mkdtemp(prefix="aspic_fit_"))
     atexit.register(shutil.rmtree, folder)
-    (folder / "truth.toml").write_text(TRUTH)
-    subprocess.run([ASPIC, "capture", "truth.toml", "-o", "layers", "--pokes", "2", "--depths", "2", "--markers", "30",
+    (folder / "truth.toml").write_text(TRUTH.replace("CELLS", cells))
+    subprocess.run([ASPIC, "capture", "truth.toml", "-o", "layers", "--pokes", "2", "--depths", str(depths), "--markers", "30",
                     "--noise", "0.002", "--force-noise", "0.002", "-q"], cwd=folder, check=True, timeout=120)
     return folder / "layers"
 
 
 @functools.cache
-def fitted(options, lines):
+def fitted(options, lines, *data):
     """A fit of the same data without interruption, created once: a folder with whole.vtu and whole.fit."""
     folder = pathlib.Path(tempfile.mkdtemp(prefix="aspic_fit_"))
     (folder / options[1]).write_text("\n".join(lines) + "\n")
     atexit.register(shutil.rmtree, folder)
-    subprocess.run([ASPIC, "fit", str(measured()), *options, "-o", str(folder / "whole.vtu")], check=True, timeout=300,
+    subprocess.run([ASPIC, "fit", str(measured(*data)), *options, "-o", str(folder / "whole.vtu")], check=True, timeout=300,
                    capture_output=True, cwd=folder)
     return folder
 
 
 class FitCommand(CommandLine):
+    DATA = ()  # arguments of measured()
+
     def setUp(self):
         super().setUp()
-        shutil.copytree(measured(), self.folder / "layers")
+        shutil.copytree(measured(*self.DATA), self.folder / "layers")
         self.write("quick.toml", QUICK_OPTIONS)
 
     def options(self, *lines):
@@ -381,6 +383,7 @@ class FitWithLayer(CommandLine):
 class FitJobs(FitCommand):
     """Other processes compute the independent fits, in any order, and some are killed: the bits are those of one process."""
 
+    DATA = ("4, 4, 3", 1)  # dozens of fits
     LINES = ("mesh_errors = false", "iterations = 12")
     FIELD = ("--options", "jobs.toml", "--unknown", "young=handles:6", "--known", "poisson=0.4", "--allow-unconverged")
     LAWS = ("--options", "jobs.toml", "--unknown", "young=uniform", "--known", "poisson=0.4", "--allow-unconverged",
@@ -446,13 +449,13 @@ class FitJobs(FitCommand):
                          sorted(p.name for p in (self.folder / "whole.fit").iterdir()), "no jobs remain")
 
     def test_groups_of_a_field(self):
-        shutil.copytree(fitted(self.FIELD, self.LINES), self.folder, dirs_exist_ok=True)
+        shutil.copytree(fitted(self.FIELD, self.LINES, *self.DATA), self.folder, dirs_exist_ok=True)
         rounds = self.run_rounds(self.FIELD)
         self.assertEqual(rounds[0], {"held_out_1", "held_out_2", "one_value_held_out_1", "one_value_held_out_2"})
         self.assert_equal_fits()
 
     def test_laws(self):
-        shutil.copytree(fitted(self.LAWS, self.LINES), self.folder, dirs_exist_ok=True)
+        shutil.copytree(fitted(self.LAWS, self.LINES, *self.DATA), self.folder, dirs_exist_ok=True)
         rounds = self.run_rounds(self.LAWS)
         self.assertIn("law_yeoh_first", rounds[0])
         self.assertIn("law_yeoh_held_out_2", rounds[1])
