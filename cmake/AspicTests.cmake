@@ -21,9 +21,20 @@ function(add_aspic_tests name)
   gtest_discover_tests(${name} TEST_PREFIX ${name}. DISCOVERY_TIMEOUT 60 NO_PRETTY_VALUES)
 endfunction()
 
-# Adds one test PREFIX.CLASS for each test class of a file.
+# add_python_tests(PREFIX FILE [CLASS...]): a test PREFIX.CLASS for each class of a file that has tests, but those named.
 function(add_python_tests prefix file)
-  foreach(case ${ARGN})
+  set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${file})
+  file(STRINGS ${file} lines REGEX "^class |^    def test_")
+  foreach(line ${lines})
+    if(line MATCHES "^class ([A-Za-z]+)")
+      set(class ${CMAKE_MATCH_1})
+    else()
+      list(APPEND cases ${class})
+    endif()
+  endforeach()
+  list(REMOVE_DUPLICATES cases)
+  list(REMOVE_ITEM cases ${ARGN})
+  foreach(case ${cases})
     add_test(NAME ${prefix}.${case} COMMAND ${Python3_EXECUTABLE} ${CMAKE_CURRENT_SOURCE_DIR}/${file} ${case})
     set_tests_properties(${prefix}.${case} PROPERTIES
                          ENVIRONMENT "ASPIC=$<TARGET_FILE:aspic_cli>;PYTHONPATH=${aspic_REPOSITORY}/tests")

@@ -3,6 +3,7 @@ of a run as VTK files, extracts the surfaces, and compares edges with triangles.
 import base64
 import collections
 import fractions
+import functools
 import pathlib
 import re
 import struct
@@ -36,19 +37,27 @@ def read_frame(path):
 
 
 def boundary(tets):
-    """The faces of exactly one tet."""
+    """The faces of exactly one tet, as a tuple."""
     faces = {}
     for a, b, c, d in tets:
         for face in ((a, c, b), (a, b, d), (a, d, c), (b, c, d)):
             key = tuple(sorted(face))
             faces[key] = None if key in faces else face
-    return [face for face in faces.values() if face]
+    return tuple(face for face in faces.values() if face)
+
+
+@functools.lru_cache(maxsize=4)
+def boundaries(tets, body):
+    """{body: its boundary}, equal in all frames of a run."""
+    owned = collections.defaultdict(list)
+    for tet, owner in zip(tets, body):
+        owned[owner].append(tet)
+    return {owner: boundary(tets) for owner, tets in sorted(owned.items())}
 
 
 def body_surfaces(path):
     points, tets, body = read_frame(path)
-    return [Surface(f"body {b}", points, boundary([t for t, owner in zip(tets, body) if owner == b]), False)
-            for b in sorted(set(body))]
+    return [Surface(f"body {b}", points, triangles, False) for b, triangles in boundaries(tuple(tets), body).items()]
 
 
 def read_surface(path):
@@ -161,12 +170,17 @@ def overlaps(first, second):
                 yield i, j
 
 
+@functools.lru_cache(maxsize=64)
+def edges_of(triangles):
+    return {tuple(sorted((t[k], t[k - 2]))) for t in triangles for k in range(3)}
+
+
 def intersections(surfaces):
     """Descriptions of all pairs of an edge and a triangle that meet without a common corner. Pairs of two obstacles do
     not count."""
     edges, triangles = [], []
     for s, surface in enumerate(surfaces):
-        edges += [(s, *e) for e in {tuple(sorted((t[k], t[k - 2]))) for t in surface.triangles for k in range(3)}]
+        edges += [(s, *e) for e in edges_of(tuple(surface.triangles))]
         triangles += [(s, *t) for t in surface.triangles]
     at = lambda s, *corners: [surfaces[s].points[c] for c in corners]
     found = []
@@ -181,23 +195,31 @@ def intersections(surfaces):
 
 def components(surface):
     """The connected parts of a surface, such as the outside of a body and the wall of its cavity."""
-    root = {c: c for t in surface.triangles for c in t}
+    return [surface._replace(triangles=triangles) for triangles in parts_of(tuple(surface.triangles))]
+
+
+@functools.lru_cache(maxsize=64)
+def parts_of(triangles):
+    root = {c: c for t in triangles for c in t}
 
     def find(c):
         while root[c] != c:
             root[c] = c = root[root[c]]
         return c
 
-    for a, b, c in surface.triangles:
+    for a, b, c in triangles:
         root[find(b)] = root[find(c)] = find(a)
     parts = collections.defaultdict(list)
-    for t in surface.triangles:
+    for t in triangles:
         parts[find(t[0])].append(t)
-    return [surface._replace(triangles=triangles) for triangles in parts.values()]
+    return list(parts.values())
 
 
 def is_inside(point, surface):
     """Whether a closed surface surrounds the point, by the parity of crossings of a ray."""
+    used = [surface.points[c] for c in {c for t in surface.triangles for c in t}]
+    if not all(min(p[k] for p in used) <= point[k] <= max(p[k] for p in used) for k in range(3)):
+        return False
     high = [max(p[k] for p in surface.points) + 1.0 for k in range(3)]
     for attempt in range(1, 20):
         far = (high[0] + 0.37 * attempt, high[1] + 0.71 * attempt ** 2, high[2] + 0.13 * attempt)
@@ -226,5 +248,11 @@ def behind_plane(surface, origin, normal):
     """Points that are not in the open half-space."""
     exact = lambda v: [fractions.Fraction(x) for x in v]
     o, n = exact(origin), exact(normal)
-    used = {c for t in surface.triangles for c in t}
-    return [c for c in sorted(used) if sum(a * (b - d) for a, b, d in zip(n, exact(surface.points[c]), o)) <= 0]
+
+    def is_behind(x):
+        products = [float(a) * (b - float(d)) for a, b, d in zip(normal, x, origin)]
+        if sum(products) > 1e-14 * sum(abs(a) * (abs(b) + abs(d)) for a, b, d in zip(normal, x, origin)):
+            return False  # by more than the rounding errors
+        return sum(a * (b - d) for a, b, d in zip(n, exact(x), o)) <= 0
+
+    return [c for c in sorted({c for t in surface.triangles for c in t}) if is_behind(surface.points[c])]
