@@ -1,8 +1,7 @@
-"""Exact tests of surfaces for intersections, in Python with rational numbers. Shares no code with Aspic: reads the frames
+"""Exact tests of surfaces for intersections, in Python with integers. Shares no code with Aspic: reads the frames
 of a run as VTK files, extracts the surfaces, and compares edges with triangles."""
 import base64
 import collections
-import fractions
 import functools
 import pathlib
 import re
@@ -87,6 +86,13 @@ def determinant(u, v, w):
     return (u[0] * (v[1] * w[2] - v[2] * w[1]) + u[1] * (v[2] * w[0] - v[0] * w[2]) + u[2] * (v[0] * w[1] - v[1] * w[0]))
 
 
+def integers(points):
+    """The points times a power of two, exactly."""
+    ratios = [[x.as_integer_ratio() for x in p] for p in points]
+    scale = max(below for p in ratios for _, below in p)
+    return [[above * (scale // below) for above, below in p] for p in ratios]
+
+
 def side(a, b, c, d):
     """The exact sign of det [a - d, b - d, c - d]."""
     rows = [[p[k] - d[k] for k in range(3)] for p in (a, b, c)]
@@ -96,13 +102,13 @@ def side(a, b, c, d):
     value = determinant(*rows)
     if 1e-290 < size and abs(value) > 1e-14 * size:  # 6 products, each with an error below 8 rounding units of size
         return sign(value)
-    exact = [[fractions.Fraction(x) for x in p] for p in (a, b, c, d)]
+    exact = integers((a, b, c, d))
     return sign(determinant(*[[p[k] - exact[3][k] for k in range(3)] for p in exact[:3]]))
 
 
 def side_in_plane(a, b, c, axes):
     """The exact sign of the area of a triangle in the plane of two axes."""
-    (ax, ay), (bx, by), (cx, cy) = [[fractions.Fraction(p[k]) for k in axes] for p in (a, b, c)]
+    (ax, ay), (bx, by), (cx, cy) = integers([[p[k] for k in axes] for p in (a, b, c)])
     return sign((ax - cx) * (by - cy) - (ay - cy) * (bx - cx))
 
 
@@ -246,13 +252,12 @@ def is_closed(surface):
 
 def behind_plane(surface, origin, normal):
     """Points that are not in the open half-space."""
-    exact = lambda v: [fractions.Fraction(x) for x in v]
-    o, n = exact(origin), exact(normal)
+    n, = integers([normal])
 
     def is_behind(x):
         products = [float(a) * (b - float(d)) for a, b, d in zip(normal, x, origin)]
         if sum(products) > 1e-14 * sum(abs(a) * (abs(b) + abs(d)) for a, b, d in zip(normal, x, origin)):
             return False  # by more than the rounding errors
-        return sum(a * (b - d) for a, b, d in zip(n, exact(x), o)) <= 0
+        return sum(a * (b - d) for a, b, d in zip(n, *integers((x, origin)))) <= 0
 
     return [c for c in sorted({c for t in surface.triangles for c in t}) if is_behind(surface.points[c])]
