@@ -9,7 +9,7 @@ import sys
 import tempfile
 import unittest
 
-SCRIPT = pathlib.Path(__file__).resolve().parent.parent / "bench" / "compare.py"
+SCRIPT = pathlib.Path(__file__).resolve().parent / "bench" / "compare.py"
 specification = importlib.util.spec_from_file_location("compare", SCRIPT)
 compare = importlib.util.module_from_spec(specification)
 specification.loader.exec_module(compare)

@@ -27,6 +27,12 @@ folders = {folder for path in tracked for folder in path.parents}
 top = {path.parts[0] for path in tracked if len(path.parts) > 1 and not path.parts[0].startswith(".")}
 
 
+def is_of_missing_package(path):
+    """Whether a folder of the top was removed, such as `inverse`: the core is complete without it."""
+    inside = path.resolve().relative_to(root).parts
+    return len(inside) > 0 and inside[0] in top and not (root / inside[0]).exists()
+
+
 def names_in(folder):
     """Names by which a README may call files and folders: paths from the top, modules, and what is below the folder."""
     names = {str(path) for path in folders.union(tracked)} | {path.name for path in folders}
@@ -77,6 +83,8 @@ def faults_of_page(page):
                 yield f"{page}:{number}: {name} is no file"
         for link, anchor in re.findall(r"\]\(([^)#:\s]*)(?:#([^)\s]*))?\)", line):
             target = root / page.parent / link if link else root / page
+            if is_of_missing_package(target):
+                continue
             if not target.exists() or anchor and target.suffix == ".md" and anchor not in anchors(target):
                 yield f"{page}:{number}: the link {link}{anchor and '#'}{anchor} leads nowhere"
 
@@ -91,6 +99,8 @@ def faults():
     yield from missing_readmes()
     yield from too_many_words()
     for page in tracked:
+        if is_of_missing_package(root / page):
+            continue
         if page.suffix == ".md" and page.name != "CHANGELOG.md" and not page.is_relative_to("docs/adr") and str(page) != NEW:
             if page.name == "README.md":
                 yield from faults_of_readme(page)

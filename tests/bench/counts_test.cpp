@@ -19,7 +19,7 @@
 namespace aspic::bench {
 namespace {
 
-constexpr char kFile[] = ASPIC_SOURCE_DIR "/bench/expected_counts.csv";
+constexpr char kFile[] = ASPIC_SOURCE_DIR "/tests/bench/expected_counts.csv";
 constexpr char kRenew[] = "ASPIC_UPDATE_COUNTS=1 build/release/bin/test_bench";
 bool is_renewed() { return std::getenv("ASPIC_UPDATE_COUNTS") != nullptr; }
 
