@@ -57,7 +57,7 @@ def faults(files):
 
 def main():
     files = sys.argv[1:] or subprocess.check_output(["git", "ls-files", "*.cpp", "*.h", "*.ts", "*.mjs", "*.py"], cwd=root, text=True).split()
-    found = list(faults(files))
+    found = list(faults([path for path in files if (root / path).is_file()]))
     print("\n".join(found), end="\n" if found else "")
     return 1 if found else 0
 
