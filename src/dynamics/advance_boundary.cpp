@@ -17,7 +17,7 @@ constexpr int kMaxParts = 200;
 // Obstacles that approach a body from a distance beyond the reach of contact move by the small share of their way that
 // the gap is. Afterwards, Newton directions carry the body along.
 constexpr double kSmallestApproach = 1e-8;
-constexpr int kPatience = 6;  // moves by less than kSmallestPart in a row
+constexpr int kPatience = 20;  // moves by less than kSmallestPart in a row
 // Largest rise of E when all pins move at once, and when they move in fractions, relative to the energy of doubling the
 // body. Newton's method reduces the exponent of an exponential law by about 1 per iteration.
 constexpr double kMostRise = 1e3, kMostRiseOfPart = 1;
