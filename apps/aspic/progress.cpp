@@ -6,6 +6,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdlib>
+#include <string_view>
 
 #include "aspic/streams.h"
 
@@ -16,6 +18,12 @@ constexpr double kRedrawInterval = 0.1;  // on a terminal [s]
 constexpr double kLongStep = 1;          // time of a step after which its iterations are shown on a terminal [s]
 constexpr double kLineFraction = 0.05;   // fraction of the run between lines in a pipe
 constexpr int kBarWidth = 20;
+
+// Terminals without escape sequences, such as an editor's shell, are called dumb.
+bool can_redraw() {
+  const char* name = std::getenv("TERM");
+  return !name || std::string_view(name) != "dumb";
+}
 
 size_t terminal_width(std::FILE* stream) {  // [characters]
   winsize size{};
@@ -38,7 +46,8 @@ std::string duration_text(double seconds) {
   return fmt::format("{} h {:02} min", total / 3600, total / 60 % 60);
 }
 
-StatusLine::StatusLine(std::FILE* stream) : stream_(stream), terminal_(isatty(descriptor(stream)) != 0) {}
+StatusLine::StatusLine(std::FILE* stream)
+    : stream_(stream), terminal_(isatty(descriptor(stream)) != 0 && can_redraw()) {}
 
 double StatusLine::seconds() const { return std::chrono::duration<double>(Clock::now() - start_).count(); }
 

@@ -276,6 +276,7 @@ int run(const RunArguments& arguments) {
   RankRun all(arguments, std::move(opened));
   const bool prints = distributed::rank_of_this_process() == 0;
   std::FILE* const human = prints && !arguments.quiet ? stdout : nullptr;
+  setenv("TERM", "dumb", 1);  // mpirun gives the ranks a terminal whose output may go to a file
   if (human) all.print_start();
   cli::StepLoop loop(all, {.last_step = all.last_step(), .warns = prints, .progress = human, .stop = {}});
   loop.run();

@@ -756,7 +756,8 @@ class Faults(Ranks):
         process.send_signal(signal.SIGUSR1)  # mpirun forwards it
         out, err = process.communicate(timeout=self.SECONDS)
         self.assertEqual(process.returncode, 4, out + err)
-        self.assertIn("--resume continues", out)
+        self.assertIn("continue   mpirun -n 2 aspic-mpi run run --resume", out)
+        self.assertNotIn("\x1b", out)
         steps = len(self.steps("run"))
         process = self.start_mpi(2, "run", "run", "--resume")
         self.addCleanup(process.kill)
