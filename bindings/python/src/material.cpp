@@ -3,12 +3,13 @@
 
 #include <pybind11/stl.h>
 
+#include <algorithm>
+
 #include "arrays.h"
 #include "base/error.h"
 #include "bindings.h"
 #include "material/list.h"
 #include "math/dual.h"
-#include "model/quantity.h"
 
 namespace aspic::python {
 namespace {
@@ -75,7 +76,10 @@ py::list material_parameters(const std::string& model) {
 void bind_material(py::module_& m) {
   m.def("material_stress", &material_stress);
   m.def("material_parameters", &material_parameters, "Name, unit, default and range of each parameter besides moduli.");
-  m.def("is_isotropic", [](const std::string& model) { return !fibre_components(material_info(model).name); });
+  m.def("is_isotropic", [](const std::string& model) {
+    const auto& extra = material_info(model).extra;
+    return std::none_of(extra.begin(), extra.end(), [](const auto& e) { return e.name == "fibre_x"; });
+  });
 }
 
 }  // namespace aspic::python
