@@ -23,6 +23,14 @@ def program():
 
 
 @pytest.fixture
+def program_of_fits(program):
+    """The same where the package `inverse` is built, too."""
+    if not program.with_name("aspic-fit").exists():
+        pytest.skip("the package inverse is not built")
+    return program
+
+
+@pytest.fixture
 def jelly():
     """A scene of one cube that hangs from its top."""
     return make_jelly()

