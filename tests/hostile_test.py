@@ -101,7 +101,8 @@ class Rights(Hostile):
     def test_a_folder_without_rights_is_named(self):
         for command in (["run"], ["check"], ["view", "--no-browser"], ["report"], *FITS):
             for name in ("closed", "closed/x", "closed/x.toml"):
-                self.assertIn("closed", self.aspic(*command, name, code=2, user=NOBODY))
+                if FITS or command != ["check"] or name != "closed":  # a folder is a data set, which aspic-fit checks
+                    self.assertIn("closed", self.aspic(*command, name, code=2, user=NOBODY))
         for out in ("closed", "closed/out", "out"):
             self.assertIn(out, self.aspic("run", "cube.toml", "--out", out, code=2, user=NOBODY))
 
