@@ -6,6 +6,13 @@ import sys
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 errors, pages = [], set()
+
+
+def is_absent(file):
+    """Whether the file is of the package of inverse problems, which is not here as a whole."""
+    return file.startswith("inverse/") and not (ROOT / "inverse").exists()
+
+
 for line in (ROOT / "docs" / "lecture_to_code.md").read_text().splitlines():
     row = re.match(r"\| ([\d, -]+) \|(.*)\|(.*)\|(.*)\|$", line)
     if not row:
@@ -14,12 +21,12 @@ for line in (ROOT / "docs" / "lecture_to_code.md").read_text().splitlines():
         pages.update(range(int(first), int(last or first) + 1))
     for names, file in re.findall(r"((?:`\w+`(?:, | and )?)+)[^`]*?\bin `([\w/.]+)`", row[3]):
         text = (ROOT / file).read_text() if (ROOT / file).is_file() else ""
-        if not text:
+        if not text and not is_absent(file):
             errors.append(f"page {row[1]}: there is no file {file}")
         errors += [f"page {row[1]}: {file} has no {name}" for name in re.findall(r"`(\w+)`", names)
                    if text and not re.search(rf"\b{name}\b", text)]
-    for file in re.findall(r"(?:scenes|src|inverse|verification|apps|docs)/[\w/.]+\w", row[3] + row[4]):
-        if not (ROOT / file).exists():
+    for file in re.findall(r"(?:scenes|src|inverse|tests|apps|docs)/[\w/.]+\w", row[3] + row[4]):
+        if not (ROOT / file).exists() and not is_absent(file):
             errors.append(f"page {row[1]}: there is no {file}")
     for page in re.findall(r"aspic lecture (\d+)", row[4]):
         if int(page) not in pages:
