@@ -16,7 +16,7 @@ constexpr double kUnchanged = 0.05;  // relative difference of g
 bool StiffnessChange::differs_from(const StiffnessChange& other) const {
   double squares = 0;
   for (size_t i = 0; i < g.size(); ++i) squares += (g[i] - other.g[i]) * (g[i] - other.g[i]);
-  return squares > kUnchanged * kSettled * dot(g, g);
+  return squares > kUnchanged * kUnchanged * dot(g, g);
 }
 
 std::optional<StiffnessChange> stiffness_change(const Experiment& ends, const FittedField& fitted, Gaussian& posterior,
