@@ -81,12 +81,19 @@ Mat3<T> operator*(const T& s, const Mat3<T>& A) {
   return B;
 }
 template <class T>
-Mat3<T> operator*(const Mat3<T>& A, const Mat3<T>& B) {
+[[gnu::always_inline]] inline Mat3<T> product(const Mat3<T>& A, const Mat3<T>& B) {
   Mat3<T> C;
   for (int c = 0; c < 3; ++c)
     for (int r = 0; r < 3; ++r) C(r, c) = A(r, 0) * B(0, c) + A(r, 1) * B(1, c) + A(r, 2) * B(2, c);
   return C;
 }
+template <class T>
+Mat3<T> operator*(const Mat3<T>& A, const Mat3<T>& B) {
+  return product(A, B);
+}
+// Always inlined. A call would get the code of any file, because the linker keeps one of them, and files round
+// differently.
+[[gnu::always_inline]] inline Mat3d operator*(const Mat3d& A, const Mat3d& B) { return product(A, B); }
 template <class T>
 Vec3<T> operator*(const Mat3<T>& A, const Vec3<T>& x) {
   Vec3<T> y;
@@ -148,9 +155,7 @@ Mat3<T> outer(const Vec3<T>& a, const Vec3<T>& b) {  // a b'
   return from_columns(b[0] * a, b[1] * a, b[2] * a);
 }
 
-// Compiled once: otherwise the linker takes the code of any file that does not inline them, and files round
-// differently.
-extern template Mat3d operator*(const Mat3d& A, const Mat3d& B);
+// Compiled once, for the same reason as the product of doubles.
 extern template Mat3d inverse(const Mat3d& A);
 
 }  // namespace aspic
