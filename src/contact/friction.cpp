@@ -92,6 +92,7 @@ struct FrictionContext : Energy::Context {
   std::optional<std::vector<Slider>> before;   // the sliders before the last update of this step
   std::optional<std::vector<Slider>> updated;  // the sliders of the last update, if it was relaxed
   std::map<ContactName, Slider> known;         // sliders of earlier updates
+  std::map<ContactName, double> predicted;     // mu lambda after the last Newton step [N]
   Update earlier_update, last_update;
 };
 
@@ -251,6 +252,7 @@ void Friction::begin_step(const StepContext& step, Context& context) const {
   own.updated.reset();
   own.last_update = {};
   own.known.clear();
+  own.predicted.clear();
   lag(step.shape.empty() ? step.start : step.shape, own.obstacle_time, false, context);
 }
 
@@ -277,37 +279,66 @@ bool Friction::relax_lagged(Context& context) const {
   return true;
 }
 
-void Friction::lag(Positions x, double time, bool keeps_directions, Context& context) const {
-  auto& own = static_cast<FrictionContext&>(context);
+// Visits the normal force between each point and part, and between two edges, with its stencils.
+template <class Visit>
+void Friction::visit_tractions(Positions x, double time, const Visit& visit) const {
   const std::vector<Vec3d> points = barrier_.points(x, time);
   const auto stencils = barrier_.stencils(x, time);
   const ContactMeter::Span span(barrier_.meter(), ContactMeter::forces);
+  for (size_t k = 0; k < stencils->size();) {
+    const size_t first = k;
+    for (++k; k < stencils->size() && is_of_same_point((*stencils)[first], (*stencils)[k]);) ++k;
+    const auto& [a, b] = (*stencils)[first].parts;
+    if (barrier_.laws()(a, b).friction == 0) continue;
+    const Traction traction = traction_of(std::span(*stencils).subspan(first, k - first), points);
+    if (squared_norm(traction.force) > 0) visit(traction, barrier_.laws()(a, b));
+  }
+}
+
+// The closest points of a stencil move by u, so its force grows by the factor 1 + b'' (n . u) / b'.
+void Friction::note_newton_step(Positions x, std::span<const double> d, double alpha, Context& context) const {
+  auto& own = static_cast<FrictionContext&>(context);
+  own.predicted.clear();
+  if (x.empty()) return;
+  const ContactMesh& mesh = barrier_.mesh();
+  visit_tractions(x, context.time, [&](const Traction& traction, const ContactLaw& law) {
+    double growth = 0;
+    for (size_t s = 0; s < traction.stencils.size(); ++s) {
+      const ContactStencil& stencil = traction.stencils[s];
+      double opening = 0;
+      for (int k = 0; k < stencil.distance.count; ++k)
+        if (const int p = stencil.point[stencil.distance.point[k]]; p >= 0 && mesh.row[p] >= 0)
+          opening += stencil.distance.c[k] * dot(stencil.distance.normal(), point(d, mesh.row[p]));
+      if (const BarrierValue b = stencil.b(); b.first < 0)
+        growth += traction.share[s] * alpha * b.second / b.first * opening;
+    }
+    own.predicted[name_of(traction.stencils[0])] = law.friction * norm(traction.force) * std::max(0.0, 1 + growth);
+  });
+}
+
+void Friction::lag(Positions x, double time, bool keeps_directions, Context& context) const {
+  auto& own = static_cast<FrictionContext&>(context);
   std::vector<Vec3d> start, end;
   if (barrier_.has_moving_obstacle())
     start = barrier_.points(x, own.obstacle_time), end = barrier_.points(x, context.time);
   own.sliders.clear();
-  for (size_t k = 0; k < stencils->size();) {
-    const size_t first = k;
-    for (++k; k < stencils->size() && is_of_same_point((*stencils)[first], (*stencils)[k]);) ++k;
-    const Traction traction = traction_of(std::span(*stencils).subspan(first, k - first), points);
-    const ContactLaw& law = barrier_.laws()((*stencils)[first].parts[0], (*stencils)[first].parts[1]);
-    const double force = law.friction * norm(traction.force);
-    if (!(force > 0)) continue;
+  visit_tractions(x, time, [&](const Traction& traction, const ContactLaw& law) {
+    const ContactName name = name_of(traction.stencils[0]);
+    const auto predicted = own.predicted.find(name);
+    const double force = predicted != own.predicted.end() ? predicted->second : law.friction * norm(traction.force);
     const double width = context.h > 0 ? speed_ * context.h : kStaticReach * law.reach;
     Slider& slider = own.sliders.emplace_back(slider_of(barrier_.mesh(), traction, force, width));
-    slider.parts = (*stencils)[first].parts;
-    slider.name = name_of((*stencils)[first]);
-    for (size_t s = first; s < k && !start.empty(); ++s) {
-      const ContactStencil& stencil = (*stencils)[s];
-      slider.moved = slider.moved + traction.share[s - first] * side(barrier_.mesh(), stencil) *
-                                        barrier_.obstacle_displacement(stencil, start, end);
-    }
-    Slider& known = own.known.try_emplace(slider.name, slider).first->second;
+    slider.parts = traction.stencils[0].parts;
+    slider.name = name;
+    for (size_t s = 0; s < traction.stencils.size() && !start.empty(); ++s)
+      slider.moved = slider.moved + traction.share[s] * side(barrier_.mesh(), traction.stencils[s]) *
+                                        barrier_.obstacle_displacement(traction.stencils[s], start, end);
+    Slider& known = own.known.try_emplace(name, slider).first->second;
     if (keeps_directions)
       slider = known, slider.force = force;
     else
       known = slider;
-  }
+  });
 }
 
 double Friction::obstacle_work(Positions x, const Context& context) const {

@@ -8,7 +8,7 @@
 
 namespace aspic {
 
-class Friction : public Energy, public LaggedEnergy, public StoppingEnergy {
+class Friction : public Energy, public LaggedEnergy, public PredictingEnergy, public StoppingEnergy {
  public:
   // `speed`: maximum creep speed of sticking surfaces [m/s]. `barrier` must outlive this.
   Friction(const Barrier& barrier, double speed) : barrier_(barrier), speed_(speed) {}
@@ -17,6 +17,9 @@ class Friction : public Energy, public LaggedEnergy, public StoppingEnergy {
   std::unique_ptr<Context> make_context() const override;
   void begin_step(const StepContext& step, Context& context) const override;
   void update_lagged(Positions x, bool keeps_directions, Context& context) const override;
+  // Predicts normal forces for the next update: those at the next x jump with its small gaps, their linearizations do
+  // not.
+  void note_newton_step(Positions x, std::span<const double> d, double alpha, Context& context) const override;
   bool relax_lagged(Context& context) const override;
   double value(Positions x, const Context& context) const override;
   void add_gradient(Positions x, const Context& context, double scale, std::span<double> g) const override;
@@ -35,6 +38,8 @@ class Friction : public Energy, public LaggedEnergy, public StoppingEnergy {
                 const ScaledModel& model) const override;
 
  private:
+  template <class Visit>
+  void visit_tractions(Positions x, double time, const Visit& visit) const;
   void lag(Positions x, double time, bool keeps_directions, Context& context) const;
 
   const Barrier& barrier_;

@@ -33,6 +33,9 @@ class IncrementalPotential : public Objective, public HasMetric, public HasStops
   // Computes w M + f (d2V/dq2 + d2D/dq2) and the rounding error of the gradient.
   const BlockSparse& evaluate_hessian(std::span<const double> q, const Projection& projection) override;
   // Keeps the values and forces of the last evaluation as those at q.
+  void note_newton_step(std::span<const double> q, std::span<const double> d, double alpha) override {
+    terms_.note_newton_step(q, d, alpha);
+  }
   void note_iterate(std::span<const double> q) override;
   double dot(std::span<const double> a, std::span<const double> b) override;
   double largest(double value) override { return model_.share.max(value); }

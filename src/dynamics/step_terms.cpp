@@ -42,6 +42,11 @@ void StepTerms::add_rim_gradient(Positions q, double weight, std::span<double> g
     if (!pressure || pressure == &rim->pressure()) damping_[k].add_gradient(q, weight, g);
 }
 
+void StepTerms::note_newton_step(std::span<const double> q, std::span<const double> d, double alpha) {
+  for (auto* terms : {&potential_, &damping_})
+    for (ActiveTerm& term : *terms) term.note_newton_step(q, d, alpha);
+}
+
 bool StepTerms::is_lagged() const {
   return std::any_of(damping_.begin(), damping_.end(), [](const ActiveTerm& D) { return D.is_lagged(); });
 }

@@ -44,6 +44,8 @@ class StepTerms : public HasLag {
   // Adds the forces of the terms of D that are rims of pressures: of all, or of one pressure.
   void add_rim_gradient(Positions q, double weight, std::span<double> g, const Energy* pressure = nullptr) const;
 
+  void note_newton_step(std::span<const double> q, std::span<const double> d, double alpha);
+
   bool is_lagged() const override;
   void update_lagged(std::span<const double> q, bool keeps_directions) override;
   bool relax_lagged() override;

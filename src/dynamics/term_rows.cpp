@@ -20,8 +20,4 @@ void TermRows::evaluate(std::span<const double> q, double factor) {
   for (DenseRow& row : dense_rows_) pins_.set_zero(row.g);
 }
 
-void TermRows::note_newton_step(std::span<const double> q, std::span<const double> d) {
-  for (const auto& [stiff, k] : stiff_) stiff->note_newton_step(q, d, terms_.potential()[k].context());
-}
-
 }  // namespace aspic

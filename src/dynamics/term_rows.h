@@ -20,7 +20,6 @@ class TermRows : public HasStiffRows, public HasDenseRows {
 
   const StiffRows& stiff_rows() const override { return stiff_rows_; }
   const DenseRows& dense_rows() const override { return dense_rows_; }
-  void note_newton_step(std::span<const double> q, std::span<const double> d) override;
 
  private:
   const StepTerms& terms_;

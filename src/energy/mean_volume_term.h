@@ -75,7 +75,7 @@ class VolumeTerm : public TetTerm<GivenPressure, Energy, QuadraticTetBatch> {
     std::vector<GivenPressure::Params<Pack>> at_points;
   };
   struct Lag : Context {
-    mutable std::vector<Pack> pressure;  // of each batch; empty: none. Changed by note_newton_step() only.
+    std::vector<Pack> pressure;  // of each batch, linearized at the last iterate; empty: none
   };
 
   VolumeTerm(const TetMesh& mesh, int first, std::span<const MaterialParameters> parameters)
@@ -121,7 +121,7 @@ class VolumeTerm : public TetTerm<GivenPressure, Energy, QuadraticTetBatch> {
     return projected;
   }
 
-  void note_newton_step(Positions x, std::span<const double> d, const Lag& lag) const {
+  void note_newton_step(Positions x, std::span<const double> d, Lag& lag) const {
     lag.pressure.resize(x.empty() ? 0 : batches_.size());
     parallel_for(static_cast<int>(lag.pressure.size()), [&](int i) {
       const Points F_i = F(i, x);
@@ -222,7 +222,7 @@ class VolumeTerm : public TetTerm<GivenPressure, Energy, QuadraticTetBatch> {
   std::vector<Pack> bulk_, compliance_;  // of each batch
 };
 
-class MeanVolume : public TetElasticity, public StiffEnergy {
+class MeanVolume : public TetElasticity, public StiffEnergy, public PredictingEnergy {
  public:
   MeanVolume(const ElasticityMaker& make_shape, const TetMesh& mesh, int first,
              std::span<const MaterialParameters> parameters, bool has_barrier)
@@ -243,7 +243,7 @@ class MeanVolume : public TetElasticity, public StiffEnergy {
   std::unique_ptr<Context> make_context() const override { return std::make_unique<VolumeTerm::Lag>(); }
   void begin_step(const StepContext& step, Context& context) const override {
     TetElasticity::begin_step(step, context);
-    note_newton_step({}, {}, context);
+    note_newton_step({}, {}, 0, context);
   }
 
   double value(Positions x, const Context& context) const override {
@@ -265,8 +265,9 @@ class MeanVolume : public TetElasticity, public StiffEnergy {
   void add_stiff_rows(Positions x, double scale, StiffRows& rows) const override {
     if (volume_.is_active()) volume_.add_stiff_rows(x, scale, rows);
   }
-  void note_newton_step(Positions x, std::span<const double> d, const Context& context) const override {
-    const auto* lag = dynamic_cast<const VolumeTerm::Lag*>(&context);
+  // Linearizes pressures for x + d.
+  void note_newton_step(Positions x, std::span<const double> d, double, Context& context) const override {
+    auto* lag = dynamic_cast<VolumeTerm::Lag*>(&context);
     if (lag && volume_.is_active()) volume_.note_newton_step(x, d, *lag);
   }
 

@@ -9,8 +9,7 @@
 namespace aspic {
 
 // The minimizer is that of E with the coefficients evaluated there. Before, coefficients are updated at the first
-// iterate and where the forces have fallen to a part of those after the last update: a smaller part after each update
-// that did not reduce the forces, since updates would alternate.
+// iterate and where the forces have fallen below those after the last update.
 class LagUpdates {
  public:
   using End = std::optional<Status>;  // empty: the minimization continues
@@ -27,7 +26,7 @@ class LagUpdates {
   // Returns whether to update at x, where the minimization would continue or end otherwise.
   bool is_due(const MinimizeReport& report, End end) const {
     if (is_current_) return false;
-    return end ? is_success(*end) : report.reached <= next_ * report.threshold;
+    return end ? is_success(*end) : report.reached <= kProgress * changed_;
   }
   void update(std::span<const double> x) {
     E_->update_lagged(x, ++counted_ > kTurning);
@@ -36,12 +35,8 @@ class LagUpdates {
   // Returns how the minimization ends after an update. before, after: its ends without and with the update.
   End end_after(const MinimizeReport& report, double round_off, End before, End after) {
     is_reduced_ = report.reached < kProgress * changed_;
-    if (!is_reduced_) {
-      reduction_ *= kLess;
-      counted_ += kWithoutProgress;
-    }
+    if (!is_reduced_) counted_ += kWithoutProgress;
     changed_ = report.reached;
-    next_ = report.threshold > 0 ? std::max(1.0, reduction_ * report.reached / report.threshold) : 1;
     if (after) return after;
     if (report.updates == kMaxUpdates) return Status::inaccurate;
     if (!before) return {};
@@ -59,25 +54,20 @@ class LagUpdates {
   }
 
  private:
-  // Updates in every iteration would cycle: contact forces jump between short steps.
-  static constexpr double kReduction = 0.5;  // of the forces until the next update
-  static constexpr double kLess = 0.3;       // factor of this reduction after an update without progress
   // Updates with all directions. Normals rotate within a small gap around an edge, and updates would alternate.
   static constexpr int kTurning = 12;
   static constexpr int kWithoutProgress = 2;  // added to the count for one that did not reduce the forces
-  static constexpr double kProgress = 0.9;    // updates at minimizers that reduce the forces by less are stalled
+  static constexpr double kProgress = 0.9;    // factor of the forces that counts as progress
   static constexpr double kNoise = 100;       // forces below this multiple of their rounding error are noise
   static constexpr int kStalled = 3;          // updates that end in noise before the minimization ends there
 
   HasLag* E_ = nullptr;
   bool is_current_ = true;
   static constexpr double kInfinity = std::numeric_limits<double>::infinity();
-  double next_ = kInfinity;  // ratio of the forces to their threshold at the next update
   double least_ = kInfinity;
   double changed_ = kInfinity;  // forces after the last update
-  double reduction_ = kReduction;
-  bool is_reduced_ = true;  // whether the last update reduced the forces
-  int counted_ = 0;         // updates, and kWithoutProgress for each that did not reduce the forces
+  bool is_reduced_ = true;      // whether the last update reduced the forces
+  int counted_ = 0;             // updates, and kWithoutProgress for each that did not reduce the forces
   int stalled_ = 0;
 };
 

@@ -85,7 +85,6 @@ struct Minimizer::Impl {
   void take_step(Progress& at, Iteration& iteration);
 
   std::vector<double> g, d;
-  HasStiffRows* stiff = nullptr;
   LineSearchScratch line;
   Convergence convergence;
   Cost cost;  // kept between minimizations
@@ -122,7 +121,6 @@ void Minimizer::Impl::begin(Progress& at) {
   at.direction.begin();
   HasLag* lagged = at.options.updates_lagged ? at.E.traits().lag : nullptr;
   at.lag.begin(lagged && lagged->is_lagged() ? lagged : nullptr);
-  stiff = at.direction.estimates_minimizer() ? at.E.traits().stiff_rows : nullptr;
   at.E.gradient(at.x, g);
   convergence.begin(at.E, at.options, g);
   at.report.gradients = 1;
@@ -133,6 +131,7 @@ void Minimizer::Impl::begin(Progress& at) {
 Minimizer::Impl::End Minimizer::Impl::update_lagged(Progress& at, End end) {
   MinimizeReport& report = at.report;
   if (!at.lag.is_due(report, end)) return end;
+  if (end) at.E.note_newton_step({}, {}, 0);  // the minimizer is that of E with the coefficients at x
   at.lag.update(at.x);
   ++report.updates;
   evaluate_lagged(at);
@@ -237,7 +236,7 @@ void Minimizer::Impl::take_step(Progress& at, Iteration& iteration) {
   const double begin = at.options.stop.now();
   at.report.gradient_round_off = at.E.scales().gradient_round_off;  // uses the last Hessian
   convergence.note_hessian();
-  if (stiff) stiff->note_newton_step(at.x, d);
+  if (at.direction.estimates_minimizer()) at.E.note_newton_step(at.x, d, at.step.alpha);
   std::swap_ranges(line.trial.begin(), line.trial.end(), at.x.begin());
   at.value = at.step.value;
   at.lag.note_step();
@@ -269,7 +268,7 @@ MinimizeReport Minimizer::minimize(Objective& E, SearchDirection& direction, Ini
   const Evaluation value = initial.value ? *initial.value : E.evaluate(initial.x);
   Progress at{E, direction, initial.x, options, value};
   MinimizeReport report = impl_->minimize(at, observe);
-  if (impl_->stiff) impl_->stiff->note_newton_step({}, {});
+  E.note_newton_step({}, {}, 0);
   if (!initial.value) ++report.values;
   return report;
 }

@@ -66,6 +66,9 @@ class Objective {
   }
   // Called when the minimizer has moved to x, where it evaluated the last value and the last gradient.
   virtual void note_iterate(std::span<const double> /*x*/) {}
+  // Called before the minimizer moves by alpha d from x, where d is a Newton direction. Up to the next call, Hessians
+  // and lagged coefficients may use forces that are linearized at x. Empty: none are known.
+  virtual void note_newton_step(std::span<const double> /*x*/, std::span<const double> /*d*/, double /*alpha*/) {}
   // Overrides of these two combine the results of the processes that share x.
   virtual double dot(std::span<const double> a, std::span<const double> b);
   virtual double largest(double value) { return value; }  // the maximum of the values of these processes
@@ -118,9 +121,6 @@ class HasStiffRows {
  public:
   virtual ~HasStiffRows() = default;
   virtual const StiffRows& stiff_rows() const = 0;  // of the last Hessian
-  // Called when the minimizer moves along a Newton direction d from x. Hessians up to the next call may use the
-  // linearization at x + d of the forces of these rows. Empty: none is known.
-  virtual void note_newton_step(std::span<const double> x, std::span<const double> d) = 0;
 };
 
 // Interface for objectives whose Hessian has rank-one parts that couple many variables.
@@ -135,7 +135,8 @@ class HasLag {
  public:
   virtual ~HasLag() = default;
   virtual bool is_lagged() const = 0;  // whether there are any
-  // Evaluates them at x. keeps_directions: not the directions of forces, where they are known from earlier updates.
+  // Evaluates them at x, or estimates them there, see Objective::note_newton_step(). keeps_directions: not the
+  // directions of forces, where they are known from earlier updates.
   virtual void update_lagged(std::span<const double> x, bool keeps_directions) = 0;
   // Undoes a part of the last update if the last two alternate. Returns whether it did.
   virtual bool relax_lagged() = 0;
