@@ -43,7 +43,7 @@ ContactLaws::ContactLaws(const ContactMesh& mesh, const ContactOptions& options)
       const ContactPart &a = mesh.parts[i], &b = mesh.parts[j];
       if (a.is_obstacle && b.is_obstacle) continue;
       const double edge = std::min(a.mean_edge, b.mean_edge);
-      const double reach = options.reach > 0 ? options.reach : kReachPerEdge * edge;
+      const double widest = options.reach_per_edge * edge, reach = options.reach > 0 ? options.reach : widest;
       const double radius = a.radius + b.radius;
       law_[i * parts_ + j] = {.reach = reach,
                               .edge_reach = radius > 0 ? reach : kGuardReach * reach,
@@ -53,6 +53,7 @@ ContactLaws::ContactLaws(const ContactMesh& mesh, const ContactOptions& options)
                               .radius = radius,
                               .guard = i == j ? 0 : std::min(a.mean_triangle, b.mean_triangle),
                               .edge = edge,
+                              .widest = widest,
                               .basis = options.reach > 0 ? ReachBasis::given : ReachBasis::edge,
                               .length = edge};
     }

@@ -11,7 +11,9 @@ namespace aspic {
 // Reach of the guards between two edges, and of points of the coarser surface, relative to the reach of their surfaces.
 inline constexpr double kGuardReach = 0.25;
 
-inline constexpr double kReachPerEdge = 1.0 / 50;  // default reach relative to the mean edge of the finer surface
+// Default reach relative to the mean edge of the finer surface. Sliding surfaces need fewer iterations with a larger
+// one; in statics, where bodies are pressed, gaps change forces.
+inline constexpr double kReachPerEdge = 1.0 / 10, kStaticReachPerEdge = 1.0 / 50;
 
 // What a reach is derived from: contact.reach, the mean edge, the gap at the start, or the thickness of a part.
 // `touching`: the mean edge, for surfaces that touch at the start.
@@ -26,6 +28,7 @@ struct ContactLaw {
   double radius = 0;      // radius of a capsule [m]; gaps are distances minus this
   double guard = 0;       // minimum area of a point within the guards' reach [m^2]
   double edge = 0;        // mean edge of the finer surface [m]
+  double widest = 0;      // default reach of parts that are thick and far apart [m]
   ReachBasis basis = ReachBasis::given;
   double length = 0;  // edge, gap or thickness of which the reach is a fraction [m]
 };
@@ -42,6 +45,7 @@ struct ContactOptions {
   std::vector<PairFriction> pairs = {};
   std::vector<double> start = {};                 // 3 per vertex of the model, at the start [m]; empty: at rest
   std::set<std::array<int, 2>> overlapping = {};  // pairs of parts (ascending) that overlap at the start
+  double reach_per_edge = kReachPerEdge;          // if `reach` is 0
 };
 
 // Parameters of all pairs of parts, for points of the first part near the second one.

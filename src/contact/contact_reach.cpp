@@ -135,7 +135,7 @@ double least_thickness(const ContactMesh& mesh, int part, double limit) {
   return kInfinity;
 }
 
-double touching_reach(const ContactLaw& law) { return kPerTouching * kReachPerEdge * law.edge; }
+double touching_reach(const ContactLaw& law) { return kPerTouching * law.widest; }
 
 void bound_reaches(const ContactMesh& mesh, std::span<const Vec3d> start,
                    const std::set<std::array<int, 2>>& overlapping, ContactLaws& laws) {
@@ -155,7 +155,7 @@ void bound_reaches(const ContactMesh& mesh, std::span<const Vec3d> start,
     for (const int part : {a, b}) reduce(laws, {a, b}, kPerThickness, ReachBasis::thickness, thickness[part]);
     if (a == b || overlapping.count({a, b}) > 0) return;
     if (gaps(a, b) <= kTouching * laws(a, b).edge)
-      reduce(laws, {a, b}, kPerTouching, ReachBasis::touching, kReachPerEdge * laws(a, b).edge);
+      reduce(laws, {a, b}, kPerTouching, ReachBasis::touching, laws(a, b).widest);
     else
       reduce(laws, {a, b}, kPerGap, ReachBasis::gap, gaps(a, b));
   });
@@ -167,11 +167,11 @@ std::string reason_of(const ContactLaw& law) {
     case ReachBasis::given:
       return "contact.reach";
     case ReachBasis::edge:
-      return "a fiftieth of the mean edge of the finer surface";
+      return formatted("1/%.0f", law.length / law.reach) + " of the mean edge of the finer surface";
     case ReachBasis::gap:
       return "a fifth of their gap at the start, " + length;
     case ReachBasis::touching:
-      return "they touch at the start; a fiftieth of the reach of other surfaces, " + length;
+      return "they touch at the start; 1/50 of the reach of other surfaces, " + length;
     case ReachBasis::thickness:
       return "a tenth of the thickness of the thinner one, " + length;
   }

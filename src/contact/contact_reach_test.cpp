@@ -31,12 +31,15 @@ struct Parts {
   ContactLaw law(int a, int b) const { return Barrier(mesh, {}).laws()(a, b); }
 };
 
-TEST(ContactReach, IsFiftiethOfEdgeWhenNothingIsClose) {
+TEST(ContactReach, IsTenthOfEdgeWhenNothingIsClose) {
   Parts parts;
   parts.add_box("lower", {}, {{1, 1, 1}}, 2);
   parts.add_box("upper", {{0, 2, 0}}, {{1, 3, 1}}, 4);
   EXPECT_EQ(parts.law(0, 1).basis, ReachBasis::edge);
-  EXPECT_DOUBLE_EQ(parts.law(0, 1).reach, parts.mesh.parts[1].mean_edge / 50);
+  EXPECT_DOUBLE_EQ(parts.law(0, 1).reach, parts.mesh.parts[1].mean_edge / 10);
+  EXPECT_EQ(reason_of(parts.law(0, 1)), "1/10 of the mean edge of the finer surface");
+  const double in_statics = Barrier(parts.mesh, {.reach_per_edge = kStaticReachPerEdge}).laws()(0, 1).reach;
+  EXPECT_DOUBLE_EQ(in_statics, parts.mesh.parts[1].mean_edge / 50);
 }
 
 TEST(ContactReach, IsFifthOfGapAtStart) {

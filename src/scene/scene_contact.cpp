@@ -9,6 +9,7 @@
 #include "contact/contact_reach.h"
 #include "contact/overlaps.h"
 #include "dynamics/contact.h"
+#include "dynamics/integrator.h"
 #include "io/mesh_file.h"
 #include "math/vectors.h"
 #include "mesh/surface.h"
@@ -212,6 +213,10 @@ void note_reaches(const Barrier& contact, MeshLoader& loader) {
                            three_digits(bounded.back().law->reach) + " m, for such reasons");
 }
 
+bool is_static(const Table& document) {
+  return make_integrator((*document.find("time"))["integrator"].text())->facts().is_static();
+}
+
 }  // namespace
 
 void add_scene_contact(Table& document, MeshLoader& loader, const std::vector<double>& q, Model& model) {
@@ -242,15 +247,18 @@ void add_scene_contact(Table& document, MeshLoader& loader, const std::vector<do
     complete_names(obstacles->array(), model);
     for (Value& obstacle : obstacles->array()) add_obstacle(obstacle, friction_of(obstacle, friction), loader, contact);
   }
-  ContactOptions given{
-      .reach = number("reach"), .stiffness = number("stiffness"), .pairs = pairs_of(options, contact), .start = q};
+  ContactOptions given{.reach = number("reach"),
+                       .stiffness = number("stiffness"),
+                       .pairs = pairs_of(options, contact),
+                       .start = q,
+                       .reach_per_edge = is_static(document) ? kStaticReachPerEdge : kReachPerEdge};
   if (options["start"].text() == "inflate") given.overlapping = overlapping_parts(contact, q);
   for (const ContactPart& part : contact.parts)
     if (!part.is_obstacle && given.reach > part.mean_edge)
       throw error_at(options["reach"].place, "reach = " + number_text(given.reach) + "; body '" + part.name +
                                                  "' has edges of " + number_text(part.mean_edge) +
                                                  " m, and contact must begin closer than that (try " +
-                                                 number_text(part.mean_edge / 50) + ")");
+                                                 number_text(kReachPerEdge * part.mean_edge) + ")");
   if (given.stiffness == 0)
     for (const ContactPart& part : contact.parts)
       if (!part.is_obstacle && part.young == 0)

@@ -15,7 +15,8 @@ void add_contact_sections(Schema& s) {
            "unless `pair` gives another",
            kNotNegative, Usual{"0.0", "none; rubber on a smooth floor has 0.3 to 0.8"}),
        key("reach", kNumber,
-           "distance at which contact forces begin; default, per pair: a fiftieth of the mean edge of the finer "
+           "distance at which contact forces begin; default, per pair: a tenth (in statics a fiftieth) of the mean "
+           "edge of the finer "
            "surface, at "
            "most a fifth of the gap at the start and a tenth of the thickness of a thin part",
            Units{"m"}, kPositive),

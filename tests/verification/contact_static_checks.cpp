@@ -168,12 +168,13 @@ struct Blocks {
 constexpr double kShortened = 0.05;  // of the height of both blocks, 1
 
 Pressed pressed_blocks(const Blocks& blocks, double young, Findings& found) {
-  const double gap = 0.03;  // so large that the reach is a fiftieth of the edges
+  const double gap = 0.03;  // so large that it does not limit the reach
   const auto [n, up, only_facing] = blocks;
   TouchingModel given{.bodies = {{make_box({{0, 0, 0}}, {{1, 0.5, 1}}, {n, n, n})},
                                  {make_box({{0, 0.5 + gap, 0}}, {{1, 1 + gap, 1}}, {up, n, up})}},
                       .material = "linear",
                       .poisson = 0};
+  given.contact.reach_per_edge = kStaticReachPerEdge;
   for (TouchingBody& body : given.bodies) {
     body.young = young;
     if (only_facing) body.touches = [=](const Vec3d& X) { return std::abs(X[1] - 0.5) < 1.5 * gap; };
