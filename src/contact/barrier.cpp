@@ -228,11 +228,13 @@ int Barrier::add_hessian(Positions x, const Context& context, double scale, cons
   const std::vector<Vec3d> p = impl_->points(x, context.time);
   const auto stencils = impl_->search.at(p);
   const ContactMeter::Span span(meter(), ContactMeter::forces);
+  const Definiteness usual = projection.clamps_stencils ? Definiteness::clamped : Definiteness::exact;
+  const Definiteness kind = projection.kind == Definiteness::exact ? usual : projection.kind;
   const auto kind_of = [&](const ContactStencil& stencil) {
     if (stencil.is_over_plane()) return Definiteness::exact;
     for (const int own : stencil.point)
-      if (own >= 0 && impl_->mesh.row[own] >= 0 && projection.covers(impl_->mesh.row[own])) return projection.kind;
-    return Definiteness::exact;
+      if (own >= 0 && impl_->mesh.row[own] >= 0 && projection.covers(impl_->mesh.row[own])) return kind;
+    return usual;
   };
   std::vector<DistanceHessian> hessians(stencils->size());
   parallel_chunks(static_cast<int>(stencils->size()), [&](int first, int last) {

@@ -12,6 +12,8 @@ struct Projection {
   Definiteness kind = Definiteness::exact;
   std::span<const char> vertices = {};  // only elements with a marked vertex are modified; empty: all elements
 
+  bool clamps_stencils = false;  // whether Hessians of stencils, such as contact, are clamped even if kind is exact
+
   bool covers(int vertex) const { return vertices.empty() || vertices[vertex]; }
 };
 

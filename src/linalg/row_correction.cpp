@@ -48,61 +48,42 @@ bool RowCorrection::factorize(const BlockSparse& H) {
   if (H.stencils.empty()) return true;
   collect_rows(H);
   for (auto* v : {&b_, &x_}) v->resize(3 * rows_.size());
-  for (auto* v : {&r_, &y_}) v->resize(3 * static_cast<size_t>(H.pattern->rows()));
+  r_.resize(3 * static_cast<size_t>(H.pattern->rows()));
   return factorize_rows(H);
 }
 
-void RowCorrection::residual_on_rows(std::span<const double> r, std::span<const double> z) {
+// Visits the blocks of H that couple the k-th of the rows with a row without stencils: visit(k, row, block).
+template <class Visit>
+void RowCorrection::visit_outside(int k, const Visit& visit) const {
   const BlockPattern& p = *H_->pattern;
-  parallel_chunks(static_cast<int>(rows_.size()), [&](int first, int last) {
-    for (int k = first; k < last; ++k) {
-      const int row = rows_[k];
-      Vec3d sum = vec_at(r, row);
-      for (int64_t s = p.row_start[row]; s < p.row_start[row + 1]; ++s)
-        sum = sum - H_->block[s] * vec_at(z, p.column[s]);
-      for (int64_t u = p.upper_start[row]; u < p.upper_start[row + 1]; ++u)
-        sum = sum - transpose(H_->block[p.upper_slot[u]]) * vec_at(z, p.upper_row[u]);
-      set_vec(sum, k, b_);
-    }
-  });
-  for (const Stencil& stencil : H_->stencils)
-    for_each_block(stencil, [&](int i, int j, const Mat3d& K) {
-      add_vec(-1.0 * (K * vec_at(z, j)), place_[i], b_);
-      add_vec(-1.0 * (transpose(K) * vec_at(z, i)), place_[j], b_);
-    });
+  const int row = rows_[k];
+  for (int64_t s = p.row_start[row]; s < p.diagonal(row); ++s)
+    if (place_[p.column[s]] < 0) visit(p.column[s], H_->block[s]);
+  for (int64_t u = p.upper_start[row]; u < p.upper_start[row + 1]; ++u)
+    if (place_[p.upper_row[u]] < 0) visit(p.upper_row[u], transpose(H_->block[p.upper_slot[u]]));
 }
 
-// The other numbers of y_ are zero.
-void RowCorrection::subtract_product() {
-  const BlockPattern& p = *H_->pattern;
-  for (const int row : rows_) {
-    const Vec3d y = vec_at(y_, row);
-    for (int64_t s = p.row_start[row]; s < p.diagonal(row); ++s)
-      add_vec(-1.0 * (transpose(H_->block[s]) * y), p.column[s], r_);
-    add_vec(-1.0 * (H_->block[p.diagonal(row)] * y), row, r_);
-    for (int64_t u = p.upper_start[row]; u < p.upper_start[row + 1]; ++u)
-      add_vec(-1.0 * (H_->block[p.upper_slot[u]] * y), p.upper_row[u], r_);
-  }
-  for (const Stencil& stencil : H_->stencils)
-    for_each_block(stencil, [&](int i, int j, const Mat3d& K) {
-      add_vec(-1.0 * (K * vec_at(y_, j)), i, r_);
-      add_vec(-1.0 * (transpose(K) * vec_at(y_, i)), j, r_);
-    });
-}
-
+// With the rows c of the stencils and the others o: solves H_cc y = r_c, lets the preconditioner compute p from r_o -
+// H_oc y and zeros, and returns p_o and the solution of H_cc z_c = r_c - H_co p_o.
 void RowCorrection::apply(ApproximateInverse& preconditioner, std::span<const double> r, std::span<double> z) {
   if (!is_needed()) return preconditioner.apply(r, z);
-  for (size_t k = 0; k < rows_.size(); ++k) set_vec(vec_at(r, rows_[k]), static_cast<int>(k), b_);
+  const int count = static_cast<int>(rows_.size());
+  for (int k = 0; k < count; ++k) set_vec(vec_at(r, rows_[k]), k, b_);
   solve_rows();
-  std::fill(y_.begin(), y_.end(), 0.0);
-  for (size_t k = 0; k < rows_.size(); ++k) set_vec(vec_at(x_, static_cast<int>(k)), rows_[k], y_);
   std::copy(r.begin(), r.end(), r_.begin());
-  subtract_product();
+  for (int k = 0; k < count; ++k) {
+    set_vec({}, rows_[k], r_);
+    const Vec3d y = vec_at(x_, k);
+    visit_outside(k, [&](int row, const Mat3d& K) { add_vec(-1.0 * (transpose(K) * y), row, r_); });
+  }
   preconditioner.apply(r_, z);
-  for (size_t i = 0; i < y_.size(); ++i) z[i] += y_[i];
-  residual_on_rows(r, z);
+  parallel_for(count, [&](int k) {
+    Vec3d sum = vec_at(r, rows_[k]);
+    visit_outside(k, [&](int row, const Mat3d& K) { sum = sum - K * vec_at(z, row); });
+    set_vec(sum, k, b_);
+  });
   solve_rows();
-  for (size_t k = 0; k < rows_.size(); ++k) add_vec(vec_at(x_, static_cast<int>(k)), rows_[k], z);
+  for (int k = 0; k < count; ++k) set_vec(vec_at(x_, k), rows_[k], z);
 }
 
 }  // namespace aspic

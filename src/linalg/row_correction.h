@@ -25,9 +25,8 @@ class RowCorrection {
  private:
   void collect_rows(const BlockSparse& H);
   bool factorize_rows(const BlockSparse& H);
-  void residual_on_rows(std::span<const double> r,
-                        std::span<const double> z);  // b_ = r - H z on the rows of the stencils
-  void subtract_product();                           // r_ -= H y_ for y_ on the rows of the stencils
+  template <class Visit>
+  void visit_outside(int k, const Visit& visit) const;
   void solve_rows() { cholesky_.substitute(b_, x_); }
 
   const BlockSparse* H_ = nullptr;
@@ -37,7 +36,7 @@ class RowCorrection {
   std::optional<BlockSparse> A_;  // rows and columns rows_ of H
   Cholesky cholesky_;
   std::vector<double> b_, x_;  // restricted to rows_
-  std::vector<double> r_, y_;  // all rows
+  std::vector<double> r_;      // all rows
 };
 
 }  // namespace aspic

@@ -53,7 +53,7 @@ class ProgressiveHessian : public HessianPolicy {
 class HessianOnDemand : public HessianPolicy {
  public:
   void begin() override {
-    skip_exact_ = is_modified_ = false;
+    skip_exact_ = is_modified_ = clamps_stencils_ = false;
     absolute_left_ = 0;
     absolute_span_ = kAbsoluteSpan;
     modified_in_a_row_ = 0;
@@ -61,7 +61,7 @@ class HessianOnDemand : public HessianPolicy {
 
   bool compute(NewtonSystem& system, NewtonTask& task) override {
     is_modified_ = std::exchange(skip_exact_, false);
-    if (!is_modified_ && system.solve(task, {Definiteness::exact})) {
+    if (!is_modified_ && solve_exact(system, task)) {
       modified_in_a_row_ = 0;
       return true;
     }
@@ -82,6 +82,15 @@ class HessianOnDemand : public HessianPolicy {
   static constexpr int kAbsoluteSpan = 8;  // number of directions; doubles after each overshoot
   static constexpr int kModifiedBeforeTruncated =
       2;  // successive directions of modified Hessians before truncated ones
+
+  // Contact forces bend around small gaps, which makes Hessians indefinite where bodies are not. To clamp contact is
+  // then enough, also for the rest of the minimization.
+  bool solve_exact(NewtonSystem& system, NewtonTask& task) {
+    if (!clamps_stencils_ && system.solve(task, {Definiteness::exact})) return true;
+    if (!system.has_stencils() || system.is_late(task.report)) return false;
+    clamps_stencils_ = true;
+    return system.solve(task, {.clamps_stencils = true});
+  }
 
   // Modified Hessians are too stiff near a saddle, so iterates leave it slowly. Uses a truncated direction of the exact
   // Hessian if it decreases E as much as the last step did.
@@ -135,7 +144,8 @@ class HessianOnDemand : public HessianPolicy {
     return task.E.value(ahead_);
   }
 
-  bool skip_exact_ = false;    // for the next direction, after a fallback
+  bool skip_exact_ = false;  // for the next direction, after a fallback
+  bool clamps_stencils_ = false;
   bool is_modified_ = false;   // whether the last direction used a modified Hessian
   int absolute_left_ = 0;      // number of upcoming modified Hessians that use absolute eigenvalues
   int absolute_span_ = 0;      // next value of absolute_left_ after an overshoot

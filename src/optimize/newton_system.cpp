@@ -68,7 +68,8 @@ bool NewtonSystem::solve(NewtonTask& task, const Projection& projection) {
   solver_->set_stiff_rows(is_stiff ? &stiff_->stiff_rows() : nullptr);
   const bool is_definite = factorize(H);
   report.factorize_seconds += stopwatch.lap();
-  const bool is_exact = projection.kind == Definiteness::exact;
+  has_stencils_ = !H.stencils.empty();
+  const bool is_exact = projection.kind == Definiteness::exact && !projection.clamps_stencils;
   exact_ = is_exact ? &H : nullptr;
   if (is_definite && solve_factorized(task)) {
     if (avoid_stops(task)) {
@@ -78,7 +79,7 @@ bool NewtonSystem::solve(NewtonTask& task, const Projection& projection) {
     }
     return true;
   }
-  const bool is_modified = !is_exact && projection.vertices.empty();
+  const bool is_modified = projection.kind != Definiteness::exact && projection.vertices.empty();
   return is_modified && !truncates_ && !is_late(report) && solve_semidefinite(H, task);
 }
 

@@ -59,6 +59,7 @@ class NewtonSystem {
   void begin_direction(Objective& E, const StopToken& stop, bool is_first, double gradient_norm);
 
   bool solve(NewtonTask& task, const Projection& projection);
+  bool has_stencils() const { return has_stencils_; }  // whether the last Hessian has any
   // Solves with the exact Hessian that solve() computed for this direction, and truncates at negative curvature.
   // Returns false if there is no exact Hessian or the solve failed.
   bool solve_truncated(NewtonTask& task);
@@ -91,6 +92,7 @@ class NewtonSystem {
   HasDenseRows* dense_ = nullptr;       // the objective, if its Hessian may have dense rows
   RankOneUpdates updates_;              // of these rows, once the factorized matrix has solved for them
   const BlockSparse* exact_ = nullptr;  // the last Hessian of this direction, if exact
+  bool has_stencils_ = false;
   StopToken stop_;
   bool is_first_ = true;
   double gradient_norm_ = 0;
