@@ -27,7 +27,8 @@ struct Slider {
   std::array<Vec3d, 2> tangent = {};
   double force = 0;  // mu lambda [N]
   double width = 0;  // e [m]
-  Vec3d moved = {};  // displacement of the obstacle during the step [m]
+  Vec3d moved = {};  // displacement of the obstacle from StepContext::start [m]
+  Vec3d way = {};    // displacement of the obstacle during the step [m]
   std::array<int, 2> parts = {};
   ContactName name = {};
 };
@@ -87,7 +88,8 @@ double relaxation(const Update& first, const Update& second) {
 
 struct FrictionContext : Energy::Context {
   std::vector<double> start;
-  double obstacle_time = 0;  // time of the obstacles at the start [s]
+  double obstacle_time = 0;               // time of the obstacles at the start [s]
+  std::optional<double> obstacle_before;  // see StepContext
   std::vector<Slider> sliders;
   std::optional<std::vector<Slider>> before;   // the sliders before the last update of this step
   std::optional<std::vector<Slider>> updated;  // the sliders of the last update, if it was relaxed
@@ -247,6 +249,7 @@ void Friction::begin_step(const StepContext& step, Context& context) const {
   auto& own = static_cast<FrictionContext&>(context);
   own.start.assign(step.start.begin(), step.start.end());
   own.obstacle_time = step.obstacle_time.value_or(step.time - step.h);
+  own.obstacle_before = step.obstacle_before;
   own.before.reset();
   own.updated.reset();
   own.last_update = {};
@@ -282,9 +285,14 @@ void Friction::lag(Positions x, double time, bool keeps_directions, Context& con
   const std::vector<Vec3d> points = barrier_.points(x, time);
   const auto stencils = barrier_.stencils(x, time);
   const ContactMeter::Span span(barrier_.meter(), ContactMeter::forces);
-  std::vector<Vec3d> start, end;
-  if (barrier_.has_moving_obstacle())
-    start = barrier_.points(x, own.obstacle_time), end = barrier_.points(x, context.time);
+  std::vector<Vec3d> start, end, extrapolated;
+  if (barrier_.has_moving_obstacle()) {
+    start = extrapolated = barrier_.points(x, own.obstacle_time), end = barrier_.points(x, context.time);
+    if (own.obstacle_before) {
+      const std::vector<Vec3d> before = barrier_.points(x, *own.obstacle_before);
+      for (size_t p = 0; p < start.size(); ++p) extrapolated[p] = start[p] + (1.0 / 3) * (start[p] - before[p]);
+    }
+  }
   own.sliders.clear();
   for (size_t k = 0; k < stencils->size();) {
     const size_t first = k;
@@ -299,8 +307,9 @@ void Friction::lag(Positions x, double time, bool keeps_directions, Context& con
     slider.name = name_of((*stencils)[first]);
     for (size_t s = first; s < k && !start.empty(); ++s) {
       const ContactStencil& stencil = (*stencils)[s];
-      slider.moved = slider.moved + traction.share[s - first] * side(barrier_.mesh(), stencil) *
-                                        barrier_.obstacle_displacement(stencil, start, end);
+      const double share = traction.share[s - first] * side(barrier_.mesh(), stencil);
+      slider.moved = slider.moved + share * barrier_.obstacle_displacement(stencil, extrapolated, end);
+      slider.way = slider.way + share * barrier_.obstacle_displacement(stencil, start, end);
     }
     Slider& known = own.known.try_emplace(slider.name, slider).first->second;
     if (keeps_directions)
@@ -318,7 +327,7 @@ double Friction::obstacle_work(Positions x, const Context& context) const {
     const double y = std::hypot(u[0], u[1]);
     if (y == 0) continue;
     const double size = slider.force * dissipation(y, slider.width).first / y;
-    for (int a = 0; a < 2; ++a) work -= size * u[a] * dot(slider.tangent[a], slider.moved);
+    for (int a = 0; a < 2; ++a) work -= size * u[a] * dot(slider.tangent[a], slider.way);
   }
   return work;
 }
