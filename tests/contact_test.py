@@ -102,6 +102,17 @@ class Bdf2(Folder):
         self.assertAlmostEqual(left["backward_euler"], 1 / math.sqrt(1 + 2 * h * omega ** 2 * h * steps), delta=.03)
         self.assertGreater(left["bdf2"], .99)
 
+    def test_moving_obstacles_give_equal_bits_in_any_threads_and_after_a_restart(self):
+        def state(*options):
+            done = subprocess.run([ASPIC, "run", *options], cwd=self.folder, capture_output=True, text=True, timeout=600)
+            self.assertEqual(done.returncode, 0, done.stderr)
+            return [line for line in done.stdout.splitlines() if line.startswith("state")]
+        scene = [str(SCENES / "rollers.toml"), "--set", "time.integrator=bdf2"]
+        expected = state(*scene, "--steps", "16", "--threads", "1", "--out", "one")
+        self.assertEqual(state(*scene, "--steps", "16", "--threads", "3", "--out", "three"), expected)
+        state(*scene, "--steps", "9", "--out", "halves")
+        self.assertEqual(state("halves", "--resume", "--steps", "16"), expected)
+
 
 def toml_text(value):
     if isinstance(value, dict):

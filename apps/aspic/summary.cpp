@@ -94,7 +94,7 @@ void print_certificate(std::FILE* stream, const RunTotals& totals) {
 }
 
 // Losses by impacts are sudden and no matter of the scheme.
-constexpr double kSignificantLoss = 0.05, kSuddenLoss = 0.02;  // relative to the energy of motion
+constexpr double kSignificantLoss = 0.05, kSuddenLoss = 0.1;  // relative to the energy of motion
 
 double energy_of_motion(const RunTotals& totals) { return std::max(totals.most_kinetic, totals.most_changed); }
 
