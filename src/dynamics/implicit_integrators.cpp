@@ -82,8 +82,8 @@ bool gains_energy(const StepTools& tools, const State& end, const StepForces& fo
 // [Hairer 1996, section V.1]. The first step is one of TR-BDF2, which has the same order, is also L-stable and, like
 // BDF2, exact for constant acceleration. With contact it is one of backward Euler: TR-BDF2 begins with the forces at
 // the start, where friction of bodies at rest has no direction. Extrapolation of velocities across an impact repeats
-// half of it: a rigid body may rebound 1.25 times as fast. Therefore, steps in contact that would gain energy are taken
-// again with backward Euler.
+// half of it: a rigid body may rebound 1.25 times as fast. Therefore, steps that fail or, in contact, would gain
+// energy are taken again with backward Euler.
 class Bdf2 : public Integrator {
  public:
   Bdf2()
@@ -102,7 +102,9 @@ class Bdf2 : public Integrator {
     path_.sample(tools.pins, tools.start.time, tools.end_time, pin_path_points(facts().order));
     StepSolve solve;
     const bool is_solved = take(tools, tools.previous, end, forces, solve);
-    if (is_solved && tools.previous && tools.model.contact && gains_energy(tools, end, forces)) {
+    const bool has_time = solve.work.status != Status::interrupted && solve.work.status != Status::budget;
+    const bool may_repeat = tools.previous && tools.model.contact && has_time;
+    if (may_repeat && (!is_solved || gains_energy(tools, end, forces))) {
       solve.work.status = Status::converged;
       take(tools, nullptr, end, forces, solve);
     }
