@@ -67,6 +67,53 @@ class Exact(Folder):
         self.assertTrue(any("intersections" in fault for fault in faults), faults)
 
 
+class Bdf2(Folder):
+    """Motions measured in the frames, with the formulas of the scheme."""
+
+    def positions(self, integrator, h, steps, gravity, contact="", more=""):
+        one = case("block", [body("block", box((-.05, .0005, -.05), (.05, .0255, .05), (4, 1, 4)), 1e7, .3, more=more)],
+                   planes=[((0., 0., 0.), (0., 1., 0.))], h=h, steps=steps, gravity=gravity, contact=contact)
+        one.scene = one.scene.replace("[time]\n", f'[time]\nintegrator = "{integrator}"\n')
+        outcome = contact_scenes.run(one, self.folder / integrator)
+        self.assertEqual(outcome.faults, [], outcome.line())
+        return [frame[0].points for frame in outcome.frames]
+
+    def test_a_block_slides_with_the_acceleration_of_coulomb(self):
+        h, mu, slope, g = .01, .5, math.atan(.6), 9.81
+        frames = self.positions("bdf2", h, 50, (g * math.sin(slope), -g * math.cos(slope), 0), f"friction = {mu}")
+        x = [sum(p[0] for p in points) / len(points) for points in frames]
+        rate = lambda values, n: (3 * values[n] - 4 * values[n - 1] + values[n - 2]) / (2 * h)  # of order 2, as in the scheme
+        v = [0., 0.] + [rate(x, n) for n in range(2, len(x))]
+        expected = g * (math.sin(slope) - mu * math.cos(slope))
+        for n in range(40, 51):
+            self.assertAlmostEqual(rate(v, n), expected, delta=5e-3 * expected)
+
+    def test_a_spinning_block_keeps_its_angular_velocity(self):
+        h, omega, steps = .01, 2 * math.pi, 100
+        left = {}
+        for integrator in ("backward_euler", "bdf2"):
+            frames = self.positions(integrator, h, steps, (0, -9.81, 0), more=f"angular_velocity = [0, {omega}, 0]")
+
+            def angle(before, after):  # of the rotation about y that fits best
+                center = [[sum(p[k] for p in points) / len(points) for k in range(3)] for points in (before, after)]
+                a, b = ([(p[2] - c[2], p[0] - c[0]) for p in points] for points, c in zip((before, after), center))
+                return math.atan2(sum(p[0] * q[1] - p[1] * q[0] for p, q in zip(a, b)), sum(p[0] * q[0] + p[1] * q[1] for p, q in zip(a, b)))
+            left[integrator] = angle(frames[-2], frames[-1]) / (h * omega)
+        self.assertAlmostEqual(left["backward_euler"], 1 / math.sqrt(1 + 2 * h * omega ** 2 * h * steps), delta=.03)
+        self.assertGreater(left["bdf2"], .99)
+
+    def test_moving_obstacles_give_equal_bits_in_any_threads_and_after_a_restart(self):
+        def state(*options):
+            done = subprocess.run([ASPIC, "run", *options], cwd=self.folder, capture_output=True, text=True, timeout=600)
+            self.assertEqual(done.returncode, 0, done.stderr)
+            return [line for line in done.stdout.splitlines() if line.startswith("state")]
+        scene = [str(SCENES / "rollers.toml"), "--set", "time.integrator=bdf2"]
+        expected = state(*scene, "--steps", "16", "--threads", "1", "--out", "one")
+        self.assertEqual(state(*scene, "--steps", "16", "--threads", "3", "--out", "three"), expected)
+        state(*scene, "--steps", "9", "--out", "halves")
+        self.assertEqual(state("halves", "--resume", "--steps", "16"), expected)
+
+
 def toml_text(value):
     if isinstance(value, dict):
         return "{ " + ", ".join(f"{key} = {toml_text(v)}" for key, v in value.items()) + " }"

@@ -37,6 +37,14 @@ class Run(CommandLine):
         self.assertRegex(text, r"inverted   \d+ tets at the end, the smallest det F is -0\.\d+ in tet \d+ at \(")
         self.assertRegex(text, r"some tet in 2 of 2 steps, first in step 1")
 
+    def test_the_summary_states_what_the_integrator_removed(self):
+        self.write("spin.toml", 'gravity = [0, 0, 0]\n[time]\nstep = 0.01\nduration = 1\n[output]\nvtu = false\n'
+                   '[[body]]\nshape = { box = { lower = [-1, 0, -1], upper = [1, 1, 1], cells = [1, 1, 1] } }\n'
+                   'angular_velocity = [0, 6.28, 0]\nmaterial = { young = 1e9, poisson = 0.3, density = 1000 }\n')
+        text = self.aspic("run", "spin.toml").stdout
+        self.assertRegex(text, r"loss       numerical loss \S+ J, 4[34] % of the energy of motion; bdf2 loses less")
+        self.assertNotIn("loss  ", self.aspic("run", "spin.toml", "--force", "--set", 'time.integrator="bdf2"').stdout)
+
     def test_an_existing_run_is_kept_unless_forced(self):
         scene = self.beam()
         self.aspic("run", scene)

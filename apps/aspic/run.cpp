@@ -17,6 +17,7 @@
 #include "base/parallel.h"
 #include "base/printable.h"
 #include "base/stop_token.h"
+#include "dynamics/internal_terms.h"
 #include "dynamics/state.h"
 #include "results/explanation.h"
 #include "results/run_directory.h"
@@ -193,6 +194,12 @@ std::string outcome(const StepLoop& loop, const Scene& scene, int unconverged) {
   return unconverged > 0 ? kUnconverged : kDone;
 }
 
+// Returns an integrator of order 2 that supports the model, if the present one is backward Euler.
+std::string better_scheme(const Simulation& simulation) {
+  if (!simulation.integrator().is_backward_euler || !InternalTerms(simulation.model()).empty()) return "";
+  return simulation.options().adaptive.tolerance > 0 ? "tr_bdf2" : "bdf2";
+}
+
 int report_complete(const RunArguments& arguments, const fs::path& directory, int last_step) {
   const int unconverged = count_steps(directory, last_step).unconverged;
   const std::string failures = unconverged > 0 ? fmt::format("; {} did not converge", unconverged) : "";
@@ -234,6 +241,7 @@ int run(const RunArguments& arguments) {
                    .blown_up = loop.has_blown_up(),
                    .solver = scene.simulation.integrator().is_implicit ? scene.simulation.solver_description() : "",
                    .start_warning = scene.start_warning,
+                   .better_scheme = better_scheme(scene.simulation),
                    .inverted = inverted_tets(scene.simulation),
                    .state_hash = scene.simulation.state_hash(),
                    .pins = pin_names(scene.simulation.model()),

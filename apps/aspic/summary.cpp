@@ -93,6 +93,19 @@ void print_certificate(std::FILE* stream, const RunTotals& totals) {
                totals.grew, totals.most_grown);
 }
 
+// Losses by impacts are sudden and no matter of the scheme.
+constexpr double kSignificantLoss = 0.05, kSuddenLoss = 0.1;  // relative to the energy of motion
+
+double energy_of_motion(const RunTotals& totals) { return std::max(totals.most_kinetic, totals.most_changed); }
+
+void print_loss(std::FILE* stream, const RunTotals& totals, const std::string& better_scheme) {
+  const double share = totals.numerical_loss / energy_of_motion(totals);
+  if (totals.most_kinetic == 0 || !(share > kSignificantLoss)) return;
+  const bool is_gradual = totals.gradual_loss > totals.numerical_loss / 2;
+  fmt::print(stream, "loss       numerical loss {:.3g} J, {:.0f} % of the energy of motion{}\n", totals.numerical_loss,
+             100 * share, is_gradual && !better_scheme.empty() ? "; " + better_scheme + " loses less" : "");
+}
+
 void print_contact(std::FILE* stream, const RunTotals& totals, const RunEnd& end) {
   if (!end.start_warning.empty()) fmt::print(stream, "start      {}\n", end.start_warning);
   if (totals.gap_error == 0) return;
@@ -141,6 +154,12 @@ void RunTotals::add(const StepReport& report) {
     ++grew;
     most_grown = std::max(most_grown, -report.numerical_loss);
   }
+  if (steps == 1) first_potential = report.potential_total;
+  if (report.kinetic > 0)  // else a static scheme
+    most_kinetic = std::max(most_kinetic, report.kinetic + std::max(report.numerical_loss, 0.0));
+  most_changed = std::max(most_changed, std::abs(report.potential_total - first_potential));
+  numerical_loss += report.numerical_loss;
+  if (report.numerical_loss < kSuddenLoss * energy_of_motion(*this)) gradual_loss += report.numerical_loss;
   if (!worst || badness(report) > badness(*worst)) worst = report;
   if (report.status == Status::budget) {
     ++out_of_time;
@@ -199,6 +218,7 @@ void print_summary(std::FILE* stream, const RunTotals& totals, const RunEnd& end
       fmt::print(stream, "budget     {} steps ended by solver.time_budget: these results depend on the clock\n",
                  totals.out_of_time);
     print_certificate(stream, totals);
+    print_loss(stream, totals, end.better_scheme);
     print_contact(stream, totals, end);
     print_inverted(stream, totals, end.inverted);
     print_reactions(stream, totals, end);

@@ -27,7 +27,8 @@ struct Slider {
   std::array<Vec3d, 2> tangent = {};
   double force = 0;  // mu lambda [N]
   double width = 0;  // e [m]
-  Vec3d moved = {};  // displacement of the obstacle during the step [m]
+  Vec3d moved = {};  // displacement of the obstacle from StepContext::start [m]
+  Vec3d way = {};    // displacement of the obstacle during the step [m]
   std::array<int, 2> parts = {};
   ContactName name = {};
 };
@@ -87,7 +88,8 @@ double relaxation(const Update& first, const Update& second) {
 
 struct FrictionContext : Energy::Context {
   std::vector<double> start;
-  double obstacle_time = 0;  // time of the obstacles at the start [s]
+  double obstacle_time = 0;               // time of the obstacles at the start [s]
+  std::optional<double> obstacle_before;  // see StepContext
   std::vector<Slider> sliders;
   std::optional<std::vector<Slider>> before;   // the sliders before the last update of this step
   std::optional<std::vector<Slider>> updated;  // the sliders of the last update, if it was relaxed
@@ -248,6 +250,7 @@ void Friction::begin_step(const StepContext& step, Context& context) const {
   auto& own = static_cast<FrictionContext&>(context);
   own.start.assign(step.start.begin(), step.start.end());
   own.obstacle_time = step.obstacle_time.value_or(step.time - step.h);
+  own.obstacle_before = step.obstacle_before;
   own.before.reset();
   own.updated.reset();
   own.last_update = {};
@@ -318,9 +321,14 @@ void Friction::note_newton_step(Positions x, std::span<const double> d, double a
 
 void Friction::lag(Positions x, double time, bool keeps_directions, Context& context) const {
   auto& own = static_cast<FrictionContext&>(context);
-  std::vector<Vec3d> start, end;
-  if (barrier_.has_moving_obstacle())
-    start = barrier_.points(x, own.obstacle_time), end = barrier_.points(x, context.time);
+  std::vector<Vec3d> start, end, extrapolated;
+  if (barrier_.has_moving_obstacle()) {
+    start = extrapolated = barrier_.points(x, own.obstacle_time), end = barrier_.points(x, context.time);
+    if (own.obstacle_before) {
+      const std::vector<Vec3d> before = barrier_.points(x, *own.obstacle_before);
+      for (size_t p = 0; p < start.size(); ++p) extrapolated[p] = start[p] + (1.0 / 3) * (start[p] - before[p]);
+    }
+  }
   own.sliders.clear();
   visit_tractions(x, time, [&](const Traction& traction, const ContactLaw& law) {
     const ContactName name = name_of(traction.stencils[0]);
@@ -330,9 +338,12 @@ void Friction::lag(Positions x, double time, bool keeps_directions, Context& con
     Slider& slider = own.sliders.emplace_back(slider_of(barrier_.mesh(), traction, force, width));
     slider.parts = traction.stencils[0].parts;
     slider.name = name;
-    for (size_t s = 0; s < traction.stencils.size() && !start.empty(); ++s)
-      slider.moved = slider.moved + traction.share[s] * side(barrier_.mesh(), traction.stencils[s]) *
-                                        barrier_.obstacle_displacement(traction.stencils[s], start, end);
+    for (size_t s = 0; s < traction.stencils.size() && !start.empty(); ++s) {
+      const ContactStencil& stencil = traction.stencils[s];
+      const double share = traction.share[s] * side(barrier_.mesh(), stencil);
+      slider.moved = slider.moved + share * barrier_.obstacle_displacement(stencil, extrapolated, end);
+      slider.way = slider.way + share * barrier_.obstacle_displacement(stencil, start, end);
+    }
     Slider& known = own.known.try_emplace(name, slider).first->second;
     if (keeps_directions)
       slider = known, slider.force = force;
@@ -349,7 +360,7 @@ double Friction::obstacle_work(Positions x, const Context& context) const {
     const double y = std::hypot(u[0], u[1]);
     if (y == 0) continue;
     const double size = slider.force * dissipation(y, slider.width).first / y;
-    for (int a = 0; a < 2; ++a) work -= size * u[a] * dot(slider.tangent[a], slider.moved);
+    for (int a = 0; a < 2; ++a) work -= size * u[a] * dot(slider.tangent[a], slider.way);
   }
   return work;
 }

@@ -109,6 +109,34 @@ TEST(Friction, CreaseFacesShareForce) {
   for (const size_t vertex : {3, 4, 5, 6}) EXPECT_NE(g[3 * vertex + 1], 0) << vertex;
 }
 
+// The start of BDF2 is extrapolated from two steps, and so are the positions of moving obstacles there.
+TEST(Friction, BodyMovesWithObstacleFromExtrapolatedStart) {
+  const Vec3d velocity{{0.2, 0.1, 0}};
+  ContactPart belt = part("belt");
+  belt.motion = [velocity](double t, std::span<const Vec3d> start, std::span<Vec3d> x) {
+    for (size_t i = 0; i < x.size(); ++i) x[i] = start[i] + t * velocity;
+  };
+  const std::vector<double> x = {0, 0, 5e-3, 1, 0, 5e-3, 0, 1, 5e-3};
+  ContactMesh mesh;
+  mesh.add(part("body"), std::vector<Vec3d>{point(x, 0), point(x, 1), point(x, 2)}, std::vector<Triangle>{{0, 1, 2}},
+           std::vector<int>{0, 1, 2});
+  mesh.add_plane(belt, {}, {{0, 0, 1}});
+  const Sliding at(x, std::move(mesh));
+  const auto carried = [&](double t) {
+    std::vector<double> moved = x;
+    for (size_t i = 0; i < x.size(); ++i) moved[i] += t * velocity[static_cast<int>(i % 3)];
+    return moved;
+  };
+  const std::vector<double> start = carried(4 * kStep / 3), now = carried(kStep);
+  StepContext step{.start = start, .h = 2 * kStep / 3, .time = 2 * kStep, .shape = now, .obstacle_time = kStep};
+  at.friction->begin_step(step, *at.context);
+  EXPECT_GT(max_abs(at.gradient(carried(2 * kStep))), 0);
+  step.obstacle_before = 0;
+  at.friction->begin_step(step, *at.context);
+  const double sliding = max_abs(at.gradient(now));
+  EXPECT_LT(max_abs(at.gradient(carried(2 * kStep))), 1e-9 * sliding);
+}
+
 // A resumed run starts with a new context and must yield the same result.
 TEST(Friction, StepIsIndependentOfPreviousStep) {
   const Sliding at = over_crease(2e-4, 20 * kWidth);

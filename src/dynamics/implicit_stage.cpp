@@ -81,7 +81,8 @@ bool ImplicitStage::solve(const StepTools& tools, const StageOptions& options, c
   const double beta = options.beta;
   const auto& [q, v, acc] = variables;
   predict(tools, options);
-  const StepContext context{a, beta, options.time, tools.start.q, tools.obstacle_start};
+  StepContext context{a, beta, options.time, tools.start.q, tools.obstacle_start};
+  if (options.previous) context.obstacle_before = options.previous->time;
   tools.E.at({.predicted = predicted_,
               .factor = beta * beta,
               .context = context,

@@ -19,6 +19,7 @@ struct StageOptions {
   bool tries_last_increment = true;  // see GuessContext
   double budget_fraction = 1;        // fraction of the step's time budget at which this stage ends
   bool once = false;                 // one Newton iteration from the known positions, without line search
+  const State* previous = nullptr;   // state before the start, if a is extrapolated from both; see StepContext
   const PinPath* path = nullptr;     // velocities and accelerations of pinned vertices; null: differences of positions
 };
 

@@ -62,7 +62,9 @@ void note_friction(const StepTools& tools, const ActiveTerm& term, std::span<con
     if (square > most) most = square, worst = v;
   }
   report.friction_residual = std::sqrt(squares);
-  report.friction_creep = friction.creep(q, term.context());
+  // Slips refer to a step of length beta.
+  const double beta = term.context().h;
+  report.friction_creep = friction.creep(q, term.context()) * (beta > 0 ? tools.h / beta : 1);
   const auto parts = friction.parts_at(worst, term.context());
   if (parts[0] >= 0) report.friction_pair = tools.model.contact->mesh().pair_name(parts);
 }

@@ -117,7 +117,8 @@ struct Simulation::Impl {
         } else if (needs_previous()) {
           previous = adaptive ? adaptive->previous() : before;
           previous.internal.clear();  // not needed
-          has_previous = true;
+          // Obstacles that were blocked have another history.
+          has_previous = !integrator->facts().is_multistep || with.obstacle_start == before.time;
         }
       }
     }

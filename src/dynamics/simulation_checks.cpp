@@ -134,7 +134,8 @@ void require_apart(const Model& model, const State& start, const IntegratorFacts
   const double time = start.time;
   if (!integrator.is_implicit || integrator.takes_one_iteration || integrator.ends_beyond_minimum)
     throw InvalidInput("contact needs an integrator that minimizes and ends at the minimum, not '" +
-                       std::string(integrator.name) + "'; choose backward_euler, or quasi_static for equilibria");
+                       std::string(integrator.name) +
+                       "'; choose backward_euler, bdf2 (order 2), or quasi_static for equilibria");
   const ContactMesh& contact = model.contact->mesh();
   Energy::Context at_start;
   at_start.time = time;

@@ -22,6 +22,8 @@ struct StepContext {
   // Positions at which coefficients that depend on x are evaluated. Empty: `start`.
   Positions shape = {};
   std::optional<double> obstacle_time = {};  // time of moving obstacles at the start [s]; empty: time - h
+  // Time of the obstacles one step before the start [s], if `start` is extrapolated as x + (x - x of that time) / 3.
+  std::optional<double> obstacle_before = {};
   // Time to which moving obstacles advance along the next direction [s], see Barrier. Empty: `time`.
   std::optional<double> obstacle_end = {};
 };

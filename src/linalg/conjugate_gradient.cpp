@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "base/check.h"
 #include "base/parallel.h"
@@ -126,6 +127,7 @@ SolveReport ConjugateGradient::solve_lifted(std::span<const double> b, std::span
 }
 
 void ConjugateGradient::note_rate(const SolveReport& report) {
+  if (report.indefinite) return void(rate_ = std::numeric_limits<double>::infinity());  // the next one is made anew
   rate_ = report.iterations / std::max(1e-3, -std::log10(report.relative_residual));
   if (first_rate_ == 0) first_rate_ = rate_;
 }

@@ -1,6 +1,7 @@
 // Impacts: forces and times, momenta, energies, units.
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 #include "math/vectors.h"
 #include "mesh/generators.h"
@@ -64,18 +65,91 @@ TouchingModel flying_boxes(double size, double young, double density) {
   return given;
 }
 
-Simulation flying(const TouchingModel& given, double h, double tolerance, const Mat3d& turn = identity3<double>()) {
+struct Flight {
+  Mat3d turn = identity3<double>();
+  std::string integrator = "backward_euler";
+};
+
+Simulation flying(const TouchingModel& given, double h, double tolerance, const Flight& flight = {}) {
   Model model = make_touching(given);
   State start = at_rest(model.mesh);
   for (const size_t body : {0, 1}) {
     const auto [first, end] = vertices_of(given, body);
-    const Vec3d velocity = turn * (body == 0 ? Vec3d{{1, 0.5, 0}} : Vec3d{{-1, 0, 0}});
+    const Vec3d velocity = flight.turn * (body == 0 ? Vec3d{{1, 0.5, 0}} : Vec3d{{-1, 0, 0}});
     for (int v = first; v < end; ++v)
       for (int k = 0; k < 3; ++k) start.qdot[3 * v + k] = velocity[k];
   }
-  SimulationOptions options{.h = h, .solver = {}};
+  SimulationOptions options{.h = h, .integrator = flight.integrator, .solver = {}};
   options.solver.minimize.tolerance = tolerance;
   return Simulation(std::move(model), start, options);
+}
+
+// Sum of x_i x (M v)_i.
+Vec3d moment(const Model& model, std::span<const double> x, std::span<const double> v) {
+  std::vector<double> momentum(v.size());
+  model.mass->multiply(v, momentum);
+  Vec3d sum{};
+  for (int i = 0; i < model.mesh.vertex_count(); ++i) sum = sum + cross(point(x, i), point(momentum, i));
+  return sum;
+}
+
+// The boxes collide obliquely. Contact conserves the angular momentum L, friction up to its moment over the gap.
+void check_angular_momentum(const Subject& subject, Findings& found) {
+  const double t = 0.04, h = subject.quick ? 1e-3 : 5e-4;
+  for (const std::string scheme : {"backward_euler", "bdf2"})
+    for (const double friction : {0.0, 0.3}) {
+      TouchingModel given = flying_boxes(1, 1e5, 1000);
+      given.friction = friction;
+      Simulation simulation = flying(given, h, 1e-11, {.integrator = subject.replacement(scheme)});
+      const Model& model = simulation.model();
+      const State& state = simulation.state();
+      const Vec3d start = moment(model, state.q, state.qdot);
+      const auto [first, end] = vertices_of(given, 0);
+      const Vec3d flight = mass_mean(model, state.qdot, first, end);
+      Vec3d by_scheme{};
+      for (int i = 0; i < std::lround(t / h); ++i) {
+        const std::vector<double> v = state.qdot;
+        take_steps(simulation, 1, "boxes");
+        by_scheme = by_scheme + h * moment(model, state.qdot, v);
+      }
+      const Vec3d change = moment(model, state.q, state.qdot) - start;
+      const double impulse = norm(mass_mean(model, state.qdot, first, end) - flight);  // the mass is 1 kg
+      const std::string name = scheme + ", mu = " + std::to_string(friction).substr(0, 3) + ": change of L / L";
+      const double of_friction = friction > 0 ? model.contact->laws()(0, 1).reach * impulse / norm(start) : 0;
+      if (scheme == "backward_euler")
+        found.expect_small(name + ", without that of the scheme", norm(change - by_scheme) / norm(start),
+                           1e-9 + of_friction, "residual of the solves; moment of friction: its impulse times the gap");
+      else
+        found.expect_small(name, norm(change) / norm(start), 5e-3, "some steps of the impact are backward Euler");
+      found.expect("impact exists", {impulse > 0.1 ? 1.0 : 0.0, 1, 0}, "yes or no");
+    }
+}
+
+// A stiff box that turns once per second about a vertical axis, in flight and on a floor without friction.
+void check_spin(const Subject& subject, Findings& found) {
+  const double h = 0.01, omega = 2 * std::numbers::pi;
+  const int steps = subject.quick ? 30 : 100;
+  for (const std::string scheme : {"backward_euler", "bdf2"})
+    for (const bool has_floor : {false, true}) {
+      TouchingModel given{.bodies = {{make_box({{-0.05, 1e-4, -0.05}}, {{0.05, 0.0501, 0.05}}, {2, 1, 2}), 1e7}},
+                          .has_floor = has_floor,
+                          .gravity = {{0, has_floor ? -kGravity : 0, 0}}};
+      Model model = make_touching(given);
+      State start = at_rest(model.mesh);
+      for (int v = 0; v < model.mesh.vertex_count(); ++v)
+        set_vec(cross(Vec3d{{0, omega, 0}}, model.mesh.rest[v]), v, start.qdot);
+      SimulationOptions options{.h = h, .integrator = subject.replacement(scheme), .solver = {}};
+      Simulation simulation(std::move(model), start, options);
+      const auto spin = [&] { return moment(simulation.model(), simulation.state().q, simulation.state().qdot)[1]; };
+      const double before = spin();
+      take_steps(simulation, steps, "spinning box");
+      const double left = 1 / std::sqrt(1 + 2 * h * omega * omega * steps * h);
+      const std::string name = scheme + (has_floor ? ", on a floor" : ", in flight") + ": angular momentum left";
+      if (scheme == "backward_euler")
+        found.expect(name, {spin() / before, left, 5e-3}, "the formula is the limit of small steps");
+      else
+        found.expect(name, {spin() / before, 1, 0.01}, "0.4 % in the first step, which is one of backward Euler");
+    }
 }
 
 struct Resultant {
@@ -137,7 +211,9 @@ void check_third_law(const Subject& subject, Findings& found) {
 
 // A soft box that falls onto the floor askew and bounces.
 void check_bounce(const Subject& subject, Findings& found) {
-  for (const double friction : {0.0, 0.4}) {
+  for (const auto& [scheme, friction] :
+       {std::pair("backward_euler", 0.0), std::pair("backward_euler", 0.4), std::pair("bdf2", 0.4)}) {
+    const bool only_loses = std::string(scheme) == "backward_euler";
     const double h = 1e-3;
     TetMesh mesh = make_box({{-0.05, 0, -0.05}}, {{0.05, 0.1, 0.05}}, {2, 2, 2});
     for (Vec3d& X : mesh.rest) X = {{0.8 * X[0] - 0.6 * X[1], 0.6 * X[0] + 0.8 * X[1] + 0.032, X[2] + 0.1 * X[1]}};
@@ -145,7 +221,7 @@ void check_bounce(const Subject& subject, Findings& found) {
     Model model = make_touching(given);
     State start = at_rest(model.mesh);
     for (size_t i = 0; i < start.qdot.size(); i += 3) start.qdot[i] = 1, start.qdot[i + 1] = -2;
-    SimulationOptions options{.h = h, .integrator = subject.replacement("backward_euler"), .solver = {}};
+    SimulationOptions options{.h = h, .integrator = subject.replacement(scheme), .solver = {}};
     Simulation simulation(std::move(model), start, options);
     const StepReport first = simulation.start_report();
     double total = first.potential_total + first.kinetic, gained = 0, ledger = 0, lost = 0;
@@ -163,9 +239,11 @@ void check_bounce(const Subject& subject, Findings& found) {
       total = now;
       contacts += report.contacts;
     }
-    const std::string name = friction > 0 ? "with friction: " : "without friction: ";
-    found.expect_small(name + "largest gain of energy in a step / energy", std::max(gained, 0.0), 1e-12,
-                       "round-off: backward Euler only loses");
+    const std::string name = std::string(scheme) + (friction > 0 ? ", with friction: " : ", without friction: ");
+    found.expect_small(name + "largest gain of energy in a step / energy", std::max(gained, 0.0),
+                       only_loses ? 1e-12 : 0.01,
+                       only_loses ? "round-off: backward Euler only loses" : "larger gains repeat the step");
+    found.expect_small(name + "energy at the end / energy", total / initial, 1, "contact adds no energy");
     found.expect_small(name + "largest ledger error / largest term", ledger, 1e-9, "round-off of the energies");
     found.expect(name + "friction dissipates energy, and contacts exist",
                  {(lost > 0) == (friction > 0) && lost >= 0 && contacts > 10 ? 1.0 : 0.0, 1, 0}, "yes or no");
@@ -212,7 +290,7 @@ void check_frames(const Subject& subject, Findings& found) {
   const Vec3d shift{{0.3, -0.2, 0.1}};
   const int steps = subject.quick ? 10 : 20;
   const auto end_of = [steps](const TouchingModel& given, const Mat3d& turn) {
-    Simulation simulation = flying(given, 1e-3, 1e-11, turn);
+    Simulation simulation = flying(given, 1e-3, 1e-11, {.turn = turn});
     take_steps(simulation, steps, "boxes in another frame");
     return simulation.state().q;
   };
@@ -260,10 +338,26 @@ void add_contact_motion_checks(std::vector<Check>& checks) {
                     {},
                     {R"tex(\sum_i f_i = 0, \quad \sum_i x_i \times f_i = 0)tex"}});
   checks.push_back({"contact",
+                    "angular_momentum",
+                    "Contact conserves angular momentum",
+                    "Two soft boxes collide obliquely, with and without friction.",
+                    "Backward Euler changes the angular momentum L by the cross products of successive velocities",
+                    check_angular_momentum,
+                    {},
+                    {R"tex(L_{n+1} - L_n = h \sum v_{n+1} \times M v_n)tex"}});
+  checks.push_back({"contact",
+                    "spin",
+                    "Spinning bodies keep their angular momentum",
+                    "A stiff box turns once per second, in flight and on a floor without friction, h = 10 ms.",
+                    "Backward Euler loses rotation; bdf2 has order 2",
+                    check_spin,
+                    {},
+                    {R"tex(\omega = \frac{\omega_0}{\sqrt{1 + 2 h \omega_0^2 t}} \quad (\text{backward Euler}))tex"}});
+  checks.push_back({"contact",
                     "bounce",
                     "A bounce gains no energy",
                     "A soft box falls askew onto the floor.",
-                    "Backward Euler loses energy in every step; the ledger closes",
+                    "Backward Euler loses energy in every step, bdf2 in all; the ledger closes",
                     check_bounce,
                     {},
                     {R"tex(E_{n+1} \le E_n)tex"}});

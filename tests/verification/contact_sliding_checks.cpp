@@ -52,10 +52,16 @@ double creep_of(const Simulation& simulation) {  // the default of [contact] cre
   return 1e-4 * std::sqrt(kGravity * norm(upper - lower));
 }
 
-void check_incline(const Subject& subject, Findings& found) {
+// Distance after n steps with the acceleration a from rest. The first step of bdf2 is one of backward Euler.
+double fallen(const std::string& integrator, double a, double h, int n) {
+  if (integrator == "backward_euler") return a * h * h * n * (n + 1) / 2;
+  return a * h * h * (n * n / 2.0 + 0.75 * (1 - std::pow(3.0, -n)));
+}
+
+void check_slope(const Subject& subject, const std::string& scheme, Findings& found) {
   const double mu = 0.5;
   const int steps = subject.quick ? 20 : 100;
-  const std::string integrator = subject.replacement("backward_euler");
+  const std::string integrator = subject.replacement(scheme);
   for (const double share : {0.995, 0.9}) {  // of the critical slope
     Simulation simulation = block_on_slope({.tangent = share * mu, .friction = mu, .integrator = integrator});
     take_steps(simulation, 5, "sticking block");
@@ -63,23 +69,47 @@ void check_incline(const Subject& subject, Findings& found) {
     take_steps(simulation, steps, "sticking block");
     const double speed = (along(simulation) - before) / (steps * h);
     const double creep = creep_of(simulation) * (1 - std::sqrt(1 - share));
-    found.expect(
-        "tan(angle) = " + std::to_string(share).substr(0, 5) + " mu: creep of the block", {speed, creep, 0.02 * creep},
-        "the smoothed law slides at speed * (1 - sqrt(1 - tan / mu)); pressure is not uniform under the block", "m/s");
+    found.expect(scheme + ", tan(angle) = " + std::to_string(share).substr(0, 5) + " mu: creep of the block",
+                 {speed, creep, 0.02 * creep},
+                 "the smoothed law slides at speed * (1 - sqrt(1 - tan / mu)); pressure is not uniform under the block",
+                 "m/s");
   }
   for (const double share : {1.005, 1.2}) {
     Simulation simulation = block_on_slope({.tangent = share * mu, .friction = mu, .integrator = integrator});
     const double before = along(simulation), h = simulation.options().h, angle = std::atan(share * mu);
     take_steps(simulation, steps, "sliding block");
     const double a = kGravity * (std::sin(angle) - mu * std::cos(angle));
-    const double expected = a * h * h * steps * (steps + 1) / 2;
+    const double expected = fallen(scheme, a, h, steps);
     const double allowed = 1e-3 * expected + (share < 1.1 ? 2 : 0) * creep_of(simulation) * h * steps;
-    found.expect("tan(angle) = " + std::to_string(share).substr(0, 5) + " mu: distance",
-                 {along(simulation) - before, expected, allowed},
+    const std::string name = scheme + ", tan(angle) = " + std::to_string(share).substr(0, 5) + " mu: ";
+    found.expect(name + "distance", {along(simulation) - before, expected, allowed},
                  share < 1.1 ? "1e-3, and a fifth of a percent above the threshold speeds pass the smoothed range"
                              : "1e-3: shear of the block and the solver's tolerance",
                  "m");
-    expect_contact("tan(angle) = " + std::to_string(share).substr(0, 5) + " mu: ", simulation, found);
+    expect_contact(name, simulation, found);
+  }
+}
+
+void check_incline(const Subject& subject, Findings& found) {
+  for (const char* scheme : {"backward_euler", "bdf2"}) check_slope(subject, scheme, found);
+}
+
+// The distance after a fixed time converges to a t^2 / 2.
+void check_sliding_order(const Subject& subject, Findings& found) {
+  const double mu = 0.5, tangent = 0.6, angle = std::atan(tangent), t = 0.2;
+  const double exact = kGravity * (std::sin(angle) - mu * std::cos(angle)) * t * t / 2;
+  for (const auto& [scheme, order] : {std::pair("backward_euler", 1), std::pair("bdf2", 2)}) {
+    double error[2] = {};
+    for (const int k : {0, 1}) {
+      const int steps = 5 << k;
+      Simulation simulation = block_on_slope(
+          {.tangent = tangent, .friction = mu, .h = t / steps, .integrator = subject.replacement(scheme)});
+      const double before = along(simulation);
+      take_steps(simulation, steps, "sliding block");
+      error[k] = along(simulation) - before - exact;
+    }
+    found.expect(std::string(scheme) + ": order of the distance", {std::log2(error[0] / error[1]), double(order), 0.2},
+                 "two step lengths");
   }
 }
 
@@ -87,24 +117,30 @@ void check_slide_to_rest(const Subject& subject, Findings& found) {
   const double mu = 0.3, speed = 1, a = mu * kGravity;
   const int steps = subject.quick ? 20 : 80;
   const double h = speed / (a * steps);  // so that it stops at the end of a step
-  Simulation simulation =
-      block_on_slope({.friction = mu, .speed = speed, .h = h, .integrator = subject.replacement("backward_euler")});
-  const double before = along(simulation);
-  double loss = 0;
-  for (int i = 0; i < steps + 10; ++i) {
-    const StepReport report = simulation.step();
-    if (!is_success(report.status)) throw std::runtime_error("sliding block: a step did not converge");
-    loss += report.friction_loss;
+  for (const std::string scheme : {"backward_euler", "bdf2"}) {
+    Simulation simulation =
+        block_on_slope({.friction = mu, .speed = speed, .h = h, .integrator = subject.replacement(scheme)});
+    const double before = along(simulation);
+    double loss = 0;
+    for (int i = 0; i < steps + 10; ++i) {
+      const StepReport report = simulation.step();
+      if (!is_success(report.status)) throw std::runtime_error("sliding block: a step did not converge");
+      loss += report.friction_loss;
+    }
+    // With bdf2, the first step adds -3/4 a h^2.
+    const double stop = speed * speed / (2 * a);
+    const double expected = scheme == "backward_euler" ? stop - speed * h / 2 : stop - 0.75 * a * h * h;
+    found.expect(scheme + ": distance", {along(simulation) - before, expected, 1e-3 * expected},
+                 "1e-3: the block shears and its pressure is uneven", "m");
+    const double weight = 1000 * 0.1 * 0.025 * 0.1 * kGravity;  // of the block [N]
+    found.expect(scheme + ": loss by friction / (mu m g distance)",
+                 {loss / (mu * weight * (along(simulation) - before)), 1, 1e-3},
+                 "1e-3: the block shears and its pressure is uneven");
+    found.expect_small(scheme + ": speed at the end",
+                       std::abs(mass_mean(simulation.model(), simulation.state().qdot)[0]), creep_of(simulation),
+                       "a block at rest creeps slower than the limit", "m/s");
+    expect_contact(scheme + ": ", simulation, found);
   }
-  const double expected = speed * speed / (2 * a) - speed * h / 2;
-  found.expect("distance", {along(simulation) - before, expected, 1e-3 * expected},
-               "1e-3: the block shears and its pressure is uneven", "m");
-  const double weight = 1000 * 0.1 * 0.025 * 0.1 * kGravity;  // of the block [N]
-  found.expect("loss by friction / (mu m g distance)", {loss / (mu * weight * (along(simulation) - before)), 1, 1e-3},
-               "1e-3: the block shears and its pressure is uneven");
-  found.expect_small("speed at the end", std::abs(mass_mean(simulation.model(), simulation.state().qdot)[0]),
-                     creep_of(simulation), "a block at rest creeps slower than the limit", "m/s");
-  expect_contact("", simulation, found);
 }
 
 // Boxes on each other on a slight slope.
@@ -157,19 +193,30 @@ void add_contact_sliding_checks(std::vector<Check>& checks) {
        "incline",
        "A block on an incline sticks below the angle of friction and slides above it",
        "mu = 0.5; slopes of 0.9, 0.995, 1.005 and 1.2 mu.",
-       "Coulomb's law with backward Euler; below the angle of friction, the smoothed law creeps, s is its speed",
+       "Coulomb's law with backward Euler and BDF2; below the angle of friction, the smoothed law creeps, s is its "
+       "speed",
        check_incline,
        {},
        {R"tex(x_n = \tfrac12 a h^2\, n (n + 1), \quad a = g (\sin \alpha - \mu \cos \alpha) \quad (\tan \alpha > \mu))tex",
+        R"tex(x_n = a h^2 \left( \tfrac12 n^2 + \tfrac34 (1 - 3^{-n}) \right) \quad (\text{BDF2}))tex",
         R"tex(\dot x = s \left(1 - \sqrt{1 - \tan \alpha / \mu}\right) \quad (\tan \alpha < \mu))tex"}});
+  checks.push_back(
+      {"contact",
+       "slide_to_rest",
+       "A sliding block comes to rest",
+       "1 m/s on a level floor, mu = 0.3.",
+       "Coulomb's law with backward Euler and BDF2",
+       check_slide_to_rest,
+       {},
+       {R"tex(x = \frac{v^2}{2 \mu g} - \frac{v h}{2}, \quad x = \frac{v^2}{2 \mu g} - \tfrac34 \mu g h^2 \quad (\text{BDF2}))tex"}});
   checks.push_back({"contact",
-                    "slide_to_rest",
-                    "A sliding block comes to rest",
-                    "1 m/s on a level floor, mu = 0.3.",
-                    "Coulomb's law with backward Euler",
-                    check_slide_to_rest,
+                    "sliding_order",
+                    "Sliding converges with the order of the integrator",
+                    "A block slides down a slope of 1.2 mu, mu = 0.5.",
+                    "Coulomb's law",
+                    check_sliding_order,
                     {},
-                    {R"tex(x = \frac{v^2}{2 \mu g} - \frac{v h}{2})tex"}});
+                    {R"tex(x = \tfrac12 g (\sin \alpha - \mu \cos \alpha)\, t^2)tex"}});
   checks.push_back({"contact",
                     "stack",
                     "A stack of boxes stays at rest",
