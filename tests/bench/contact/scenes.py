@@ -155,4 +155,13 @@ def boxes(steps=100):
     return p
 
 
-PROBLEMS = {"chute": chute, "knives": knives, "funnel": funnel, "rollers": rollers, "twist": twist, "boxes": boxes}
+def slab(cells=34, steps=50):
+    """One layer of tets falls onto a sphere and drapes over it."""
+    p = Problem(.01, 1e5, .3, 1000, .3, steps)
+    p.bodies = [(grid((cells, 1, cells), (-.5, 0, -.5), (.5, .01, .5)), "translate = [0, 0.31, 0]\n")]
+    p.obstacles = [(None, "sphere = { center = [0, 0, 0], radius = 0.3 }\n")]
+    return p
+
+
+PROBLEMS = {"chute": chute, "knives": knives, "funnel": funnel, "rollers": rollers, "twist": twist, "boxes": boxes, "slab": slab,
+            "slab_fine": lambda: slab(70)}
