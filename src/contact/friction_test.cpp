@@ -165,6 +165,28 @@ TEST(Friction, KeepsDirectionsOfKnownContacts) {
   EXPECT_GT(std::abs(direction(false) - g[2] / g[1]), 1e-3);
 }
 
+// After a Newton step, updates use the linearized normal force, which differs from that at the next iterate.
+TEST(Friction, PredictsNormalForcesOfNewtonStep) {
+  constexpr double kAlpha = 0.5;
+  const Sliding at = over_plane(20 * kWidth, 0);
+  std::vector<double> d(at.x.size());
+  for (size_t k = 2; k < d.size(); k += 3) d[k] = 2e-3;
+  const auto force = [&](double part) {  // of friction, with normal forces at x + part d
+    std::vector<double> lifted = at.x;
+    for (size_t i = 0; i < d.size(); ++i) lifted[i] += part * d[i];
+    at.friction->update_lagged(lifted, false, *at.context);
+    return at.gradient(at.x)[0];
+  };
+  constexpr double kStepSize = 1e-4;
+  const double linear = force(0) + kAlpha * (force(kStepSize) - force(-kStepSize)) / (2 * kStepSize);
+  const double next = force(kAlpha);
+  at.friction->note_newton_step(at.x, d, kAlpha, *at.context);
+  EXPECT_NEAR(force(kAlpha), linear, 1e-6 * linear);
+  EXPECT_GT(std::abs(next - linear), 0.05 * next);
+  at.friction->note_newton_step({}, {}, 0, *at.context);
+  EXPECT_EQ(force(kAlpha), next);
+}
+
 // The second of two opposite updates is halved, also where contacts vanish.
 TEST(Friction, RelaxesAlternatingForces) {
   for (const double lift : {1e-3, 1.0}) {

@@ -127,7 +127,11 @@ SolveReport ConjugateGradient::solve_lifted(std::span<const double> b, std::span
 }
 
 void ConjugateGradient::note_rate(const SolveReport& report) {
-  if (report.indefinite) return void(rate_ = std::numeric_limits<double>::infinity());  // the next one is made anew
+  // Contact may make H indefinite: its rate would keep a hierarchy that was made for it.
+  if (report.indefinite && !H_->stencils.empty()) {
+    if (first_rate_ == 0) rate_ = std::numeric_limits<double>::infinity();
+    return;
+  }
   rate_ = report.iterations / std::max(1e-3, -std::log10(report.relative_residual));
   if (first_rate_ == 0) first_rate_ = rate_;
 }
