@@ -148,12 +148,13 @@ bool move_all(Boundary& boundary) {
   return false;
 }
 
-bool carry_all(Boundary& boundary) {
+// is_patient: also by many short moves.
+bool carry_all(Boundary& boundary, bool is_patient) {
   for (int i = 0, short_moves = 0; i < kMaxParts && short_moves < kPatience; ++i) {
     const double before = boundary.done(), part = boundary.carry();
     if (boundary.done() == 1) return true;
     short_moves = boundary.done() - before < kSmallestPart ? short_moves + 1 : 0;
-    if (part < kShortPart && !boundary.settle()) return false;
+    if (part < kShortPart && (!is_patient || !boundary.settle())) return false;
   }
   return false;
 }
@@ -193,7 +194,9 @@ Evaluation advance_boundary(const StepTools& tools, double time, std::span<const
     if (is_possible && !(at_once.value - at_start > most)) return at_once;
     if (!carries) boundary.limit_rise(at_start, kMostRiseOfPart * tools.E.scales().value);
   }
-  if (carries ? carry_all(boundary) : move_all(boundary)) {
+  // A step that failed left body and obstacles where they were, so they block each other unless the obstacles return.
+  const bool were_blocked = tools.obstacle_start != tools.start.time;
+  if (carries ? carry_all(boundary, !were_blocked) : move_all(boundary)) {
     std::copy(boundary.reached().begin(), boundary.reached().end(), q.begin());
     return boundary.value();
   }

@@ -239,6 +239,24 @@ TEST(Criteria, ReportsForcesHiddenByRoundOff) {
   EXPECT_GT(report.lost_accuracy, 0);
 }
 
+// The residual exceeds a hundredth of inertia, the only exactly known force, because the tolerance is coarse.
+TEST(Criteria, CoarseToleranceIsNoRoundOff) {
+  const TetMesh mesh = make_box({}, {{0.4, 0.1, 0.1}}, {8, 2, 2});
+  Model model = make_model(mesh, {.material = "neo_hookean", .young = 1e5, .poisson = 0.4});
+  model.loads.clear();
+  State state = at_rest(model.mesh);
+  for (size_t i = 0; i < state.q.size(); i += 3) state.q[i] *= 1.5;  // between its pins
+  std::vector<int> held;
+  for (int v = 0; v < mesh.vertex_count(); ++v)
+    if (mesh.rest[v][0] == 0 || mesh.rest[v][0] == 0.4) held.push_back(v);
+  model.pins = {{"ends", held, {}}};
+  SimulationOptions options;
+  options.h = 0.02;
+  options.solver.minimize.tolerance = 1e-4;
+  Simulation simulation(std::move(model), state, options);
+  for (int i = 0; i < 40; ++i) EXPECT_EQ(simulation.step().status, Status::converged) << i;
+}
+
 TEST(Criteria, ReportsVelocitiesLostInTinySteps) {
   const TetMesh mesh = make_box({}, {{1, 0.2, 0.2}}, {4, 1, 1});
   for (const double h : {1e-17, 1e-3}) {

@@ -86,10 +86,15 @@ bool Convergence::is_near_minimum(double size, const DirectionReport& made) {
                                       [](const GradientPart& part) { return part.norm <= kBalanced * part.scale; });
 }
 
+// Exactly known forces are a hundredth of all forces in soft bodies under their weight. A coarse tolerance may exceed
+// them, so only round-off counts then.
 double Convergence::lost_accuracy(std::span<const double> x) {
-  constexpr double kAllowed = 100;  // exact forces are a hundredth of all in soft bodies under their weight
+  constexpr double kAllowed = 100, kCoarse = 1e-4;
   const double lost = parts_of_E_->lost_accuracy(x, parts_);
-  return lost > kAllowed * options_->tolerance ? lost : 0;
+  if (lost <= kAllowed * options_->tolerance) return 0;
+  for (size_t k = 0; k < parts_.size() && options_->tolerance >= kCoarse; ++k)
+    if (parts_[k].norm > kRoundOffMargin * round_offs_[k]) return 0;
+  return lost;
 }
 
 bool Convergence::is_at_round_off(double margin) const {

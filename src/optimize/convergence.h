@@ -24,6 +24,8 @@ class Convergence {
   bool is_near_minimum(double size, const DirectionReport& made);
   // See HasParts::lost_accuracy(). 0 if the tolerance allows as much.
   double lost_accuracy(std::span<const double> x);
+  // Failed line searches count as round-off where gradients are within this multiple of their rounding errors.
+  static constexpr double kRoundOffMargin = 100;
   // Returns whether every part has converged or is within `margin` times its round-off.
   bool is_at_round_off(double margin) const;
   // Accounts for the share of unconverged parts in g, because linear solves measure the residual of all parts together.

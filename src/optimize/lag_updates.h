@@ -26,7 +26,7 @@ class LagUpdates {
   // Returns whether to update at x, where the minimization would continue or end otherwise.
   bool is_due(const MinimizeReport& report, End end) const {
     if (is_current_) return false;
-    return end ? is_success(*end) : report.reached <= kProgress * changed_;
+    return end ? is_success(*end) : report.reached <= std::max(kProgress * changed_, report.threshold);
   }
   void update(std::span<const double> x) {
     E_->update_lagged(x, ++counted_ > kTurning);

@@ -30,9 +30,6 @@ std::vector<Criterion> all_criteria() {
 
 namespace {
 
-// A failed line search counts as round-off if the gradient is below this multiple of its rounding error.
-constexpr double kRoundOffMargin = 100;
-
 void add(const Iteration& iteration, MinimizeReport& report) {
   const DirectionReport& direction = iteration.direction;
   report.add(direction);
@@ -199,7 +196,7 @@ Minimizer::Impl::End Minimizer::Impl::find_step(Progress& at, Iteration& iterati
       if (found) return std::nullopt;
       if (at.last_direction) return Status::converged;
       convergence.note_hessian();
-      if (convergence.is_at_round_off(kRoundOffMargin)) return Status::round_off;
+      if (convergence.is_at_round_off(Convergence::kRoundOffMargin)) return Status::round_off;
       failure = Status::stuck;
     }
     if (iteration.direction.stopped || stop.stopped()) return Status::budget;
