@@ -54,7 +54,7 @@ struct ForceChange {
 
 struct Update {
   std::map<ContactName, ForceChange> changes;
-  double part = 1;  // that was kept
+  double part = 1;  // of the changes that was made
 
   double change(const ContactName& name) const {
     const auto found = changes.find(name);
@@ -69,21 +69,25 @@ Update update_between(std::span<const Slider> before, std::span<const Slider> af
   return update;
 }
 
-// Returns the part to keep of the second of two updates: less than 1 if they are nearly opposite, or the first was
-// relaxed, too. By the secant through both, the next update then changes nothing [Irons 1969].
+// Returns the part to make of the second of two updates by the secant through both, after which the next update changes
+// nothing [Irons 1969]: less than 1 if they are nearly opposite, or the first was relaxed, too, and more if they are
+// nearly equal.
 double relaxation(const Update& first, const Update& second) {
-  constexpr double kOpposite = -0.5;  // cosine
-  constexpr double kLeast = 0.1;
+  constexpr double kOpposite = -0.5, kEqual = 0.99;  // cosines
+  constexpr double kLeast = 0.1, kMost = 20;
   double squares[2] = {}, product = 0;
   for (const auto& [name, change] : first.changes) squares[0] += change.size() * change.size();
   for (const auto& [name, change] : second.changes) {
     squares[1] += change.size() * change.size();
     product += change.size() * first.change(name);
   }
-  const bool are_opposite = product < kOpposite * std::sqrt(squares[0] * squares[1]);
-  if (first.part == 1 && !are_opposite) return 1;
-  const double part = first.part * (squares[0] - product) / (squares[0] + squares[1] - 2 * product);
-  return std::clamp(part, kLeast, 1.0);
+  const double size = std::sqrt(squares[0] * squares[1]);
+  const bool are_opposite = product < kOpposite * size, are_equal = first.part == 1 && product > kEqual * size;
+  if (first.part >= 1 && !are_opposite && !are_equal) return 1;
+  const double difference = squares[0] + squares[1] - 2 * product;
+  if (!(difference > 0)) return 1;
+  const double part = first.part * (squares[0] - product) / difference;
+  return are_equal ? std::clamp(part, 1.0, kMost) : std::clamp(part, kLeast, 1.0);
 }
 
 struct FrictionContext : Energy::Context {
@@ -273,9 +277,10 @@ bool Friction::relax_lagged(Context& context) const {
   const double part = own.last_update.part = relaxation(own.earlier_update, own.last_update);
   if (part == 1) return false;
   own.updated = own.sliders;
-  for (Slider& slider : own.sliders) slider.force -= (1 - part) * own.last_update.changes[slider.name].size();
+  for (Slider& slider : own.sliders)
+    slider.force = std::max(0.0, slider.force - (1 - part) * own.last_update.changes[slider.name].size());
   for (const Slider& slider : *own.before)
-    if (own.last_update.changes[slider.name].after == 0) {
+    if (part < 1 && own.last_update.changes[slider.name].after == 0) {
       own.sliders.push_back(slider);
       own.sliders.back().force *= 1 - part;
     }

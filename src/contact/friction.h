@@ -2,7 +2,7 @@
 // stencils of a barrier, where u is the tangential relative displacement since the start of the step and lambda is the
 // normal force. f(y) = y^2 / e - y^3 / (3 e^2) for y < e = speed * h, and y - e / 3 beyond. Bodies at rest creep at
 // less than this speed. Normal forces and tangents are lagged, see LaggedEnergy. Updates
-// of normal forces that alternate are relaxed [Irons 1969].
+// of normal forces that alternate are relaxed, those that repeat extrapolated [Irons 1969].
 #pragma once
 #include "contact/barrier.h"
 

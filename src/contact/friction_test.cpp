@@ -211,6 +211,24 @@ TEST(Friction, RelaxesAlternatingForces) {
   }
 }
 
+// The second of two updates in one direction is extended to the limit of the geometric series.
+TEST(Friction, ExtrapolatesRepeatingForces) {
+  const Sliding at = over_plane(20 * kWidth, 0);
+  std::vector<std::vector<double>> force = {at.gradient(at.x)};
+  for (const double lift : {1e-4, 1.9e-4}) {
+    std::vector<double> lifted = at.start;
+    for (size_t k = 2; k < lifted.size(); k += 3) lifted[k] += lift;
+    at.friction->update_lagged(lifted, false, *at.context);
+    force.push_back(at.gradient(at.x));
+  }
+  EXPECT_TRUE(at.friction->relax_lagged(*at.context));
+  const std::vector<double> extrapolated = at.gradient(at.x);
+  const double first = force[1][0] - force[0][0], second = force[2][0] - force[1][0];
+  const double limit = force[1][0] + second / (1 - second / first);
+  EXPECT_NEAR(extrapolated[0], std::max(limit, 0.0), 1e-9 * force[0][0]);
+  EXPECT_LT(extrapolated[0], 0.9 * force[2][0]);
+}
+
 // Coulomb friction: while all contacts slide, the force is mu times the normal force.
 TEST(Friction, SlidingForceMatchesCoulomb) {
   const Sliding at = over_plane(0.1, 0);

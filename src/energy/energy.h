@@ -77,7 +77,7 @@ class LaggedEnergy {
   virtual ~LaggedEnergy() = default;
   // Evaluates them at x. keeps_directions: not the directions, where they are known from earlier in the step.
   virtual void update_lagged(Positions x, bool keeps_directions, Energy::Context& context) const = 0;
-  // Undoes a part of the last update if the last two alternate. Returns whether it did.
+  // Scales the last update if the last two alternate or repeat. Returns whether it did.
   virtual bool relax_lagged(Energy::Context& context) const = 0;
 };
 

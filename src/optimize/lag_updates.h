@@ -45,10 +45,11 @@ class LagUpdates {
     const bool is_noise = *before == Status::round_off && report.reached <= kNoise * round_off;
     return is_noise && stalled_ >= kStalled ? End(Status::round_off) : std::nullopt;
   }
-  // Relaxes an update at a minimizer, or one that did not reduce the forces, if updates alternate. Returns whether it
-  // did.
+  // Scales an update if updates alternate or repeat: at a minimizer, after many updates, or one that did not reduce the
+  // forces. Returns whether it did.
   bool relax(bool is_minimizer) {
-    if ((!is_minimizer && is_reduced_) || !E_->relax_lagged()) return false;
+    const bool is_early = !is_minimizer && is_reduced_ && counted_ <= kTurning;
+    if (is_early || !E_->relax_lagged()) return false;
     is_current_ = false;
     return true;
   }

@@ -138,7 +138,7 @@ class HasLag {
   // Evaluates them at x, or estimates them there, see Objective::note_newton_step(). keeps_directions: not the
   // directions of forces, where they are known from earlier updates.
   virtual void update_lagged(std::span<const double> x, bool keeps_directions) = 0;
-  // Undoes a part of the last update if the last two alternate. Returns whether it did.
+  // Scales the last update if the last two alternate or repeat. Returns whether it did.
   virtual bool relax_lagged() = 0;
 };
 
