@@ -114,6 +114,10 @@ class Certificate(Crash):
         self.assertIn("the bound of backward Euler holds in 10 of 10 steps", done.stderr)
         self.assertRegex(done.stderr, r"status     10 converged; worst: step \d+, converged, residual .* N \(tolerance .* N\)")
 
+    def test_criterion_of_directions_is_stated(self):
+        done = self.aspic("run", self.scene(duration=0.1), "--set", "solver.criterion=velocity", "solver.tolerance=1e-3")
+        self.assertIn("converged  10 of 10 to 0.001 m/s; iterations per step", done.stdout)
+
     def test_the_worst_step_is_named(self):
         done = self.aspic("run", self.scene(duration=0.1), "--set", "solver.max_iterations=1", "--allow-unconverged")
         self.assertRegex(done.stdout, r"status     .*iteration_limit; worst: step \d+, iteration_limit, residual")

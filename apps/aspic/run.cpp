@@ -200,6 +200,15 @@ std::string better_scheme(const Simulation& simulation) {
   return simulation.options().adaptive.tolerance > 0 ? "tr_bdf2" : "bdf2";
 }
 
+// Returns what `converged` means where it is no residual: " to 0.001 m/s".
+std::string precision_of(const MinimizeOptions& options) {
+  if (!tests_direction(options.criterion)) return "";
+  const char* unit = options.criterion == Criterion::velocity       ? " m/s"
+                     : options.criterion == Criterion::acceleration ? " m/s^2"
+                                                                    : " (relative decrement)";
+  return fmt::format(" to {:g}{}", options.tolerance, unit);
+}
+
 int report_complete(const RunArguments& arguments, const fs::path& directory, int last_step) {
   const int unconverged = count_steps(directory, last_step).unconverged;
   const std::string failures = unconverged > 0 ? fmt::format("; {} did not converge", unconverged) : "";
@@ -240,6 +249,7 @@ int run(const RunArguments& arguments) {
                    .time_limit = loop.has_run_out() ? arguments.time_limit : 0,
                    .blown_up = loop.has_blown_up(),
                    .solver = scene.simulation.integrator().is_implicit ? scene.simulation.solver_description() : "",
+                   .precision = precision_of(scene.simulation.options().solver.minimize),
                    .start_warning = scene.start_warning,
                    .better_scheme = better_scheme(scene.simulation),
                    .inverted = inverted_tets(scene.simulation),

@@ -211,8 +211,8 @@ void print_summary(std::FILE* stream, const RunTotals& totals, const RunEnd& end
     if (end.time_limit > 0) fmt::print(stream, "limit      --time-limit of {:g} s\n", end.time_limit);
   }
   if (totals.steps > 0) {
-    fmt::print(stream, "converged  {} of {}; iterations per step: mean {:.1f}, maximum {}\n",
-               totals.steps - totals.unconverged - totals.out_of_time, totals.steps,
+    fmt::print(stream, "converged  {} of {}{}; iterations per step: mean {:.1f}, maximum {}\n",
+               totals.steps - totals.unconverged - totals.out_of_time, totals.steps, end.precision,
                static_cast<double>(totals.iterations) / totals.steps, totals.most_iterations);
     if (totals.out_of_time > 0)
       fmt::print(stream, "budget     {} steps ended by solver.time_budget: these results depend on the clock\n",
