@@ -8,10 +8,11 @@
 namespace aspic {
 namespace {
 
-constexpr double kAlong = 0.05;       // weight of the distance along the surface: keeps the system definite
-constexpr double kLargestScale = 2;   // change of the scale
-constexpr double kStationary = 1e-9;  // step over the length
-constexpr int kMaxDamping = 12;
+constexpr double kAlong = 0.05;  // weight of the distance along the surface: keeps the system definite
+constexpr double kLargestScale =
+    2;  // change of the scale; at the bound a guess is dropped. The least ratio of units is 2.54
+constexpr double kStationary = 1e-9;  // step over the length: coordinates of measurements have fewer digits
+constexpr int kMaxDamping = 12;       // trials that raise the damping tenfold each, from its least value to its largest
 
 // Solves (A + damping I) x = b by elimination; A is symmetric and positive semidefinite.
 std::array<double, 7> solved(std::array<double, 49> A, std::array<double, 7> b, double damping) {

@@ -67,7 +67,7 @@ class MotionObjective : public Objective, public HasPreconditioner {
   double max_step(std::span<const double> x, std::span<const double> d) override;
   bool precondition(std::span<const double> r, std::span<double> z) override;
 
-  static constexpr double kInsensitive = 1e-6;
+  static constexpr double kInsensitive = 1e-6;  // chosen; simulations have errors of 1e-9
 
  private:
   struct Place {  // place of a sample in time: between point `step` and the next one, with the weight of the latter

@@ -16,9 +16,10 @@
 namespace aspic {
 namespace {
 
-constexpr int kRampSteps = 8;           // minimum number per ramp
-constexpr int kHoldSteps = 10;          // first step of a hold: its length / 2^kHoldSteps; then lengths double
-constexpr double kTimeRoundOff = 1e-9;  // relative to the duration of the history
+constexpr int kRampSteps = 8;   // minimum number per ramp. Chosen
+constexpr int kHoldSteps = 10;  // first step of a hold: its length / 2^kHoldSteps; then lengths double. Chosen
+constexpr double kTimeRoundOff =
+    1e-9;  // of times relative to the duration of the history, above that of double precision
 
 Vec3d blend(const Vec3d& a, const Vec3d& b, double part) { return (1 - part) * a + part * b; }
 
