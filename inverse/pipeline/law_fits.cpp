@@ -37,7 +37,7 @@ FitIteration iteration_of(const double* n) {
           .trials = static_cast<int>(n[9])};
 }
 
-JobResult result_of(const FittedLaw& c, const std::vector<FitIteration>& iterations) {
+JobResult job_result_of(const FittedLaw& c, const std::vector<FitIteration>& iterations) {
   JobResult result{{c.objective, static_cast<double>(c.p.size())}, c.failure};
   result.numbers.insert(result.numbers.end(), c.p.begin(), c.p.end());
   for (const FitIteration& i : iterations)
@@ -82,7 +82,7 @@ void LawFits::run_job(FittedLaw& c, const std::string& stage, JobKind kind, cons
         is_computed = true;
         iterations_.clear();
         action();
-        return is_stopped() ? std::nullopt : std::optional(result_of(c, iterations_));
+        return is_stopped() ? std::nullopt : std::optional(job_result_of(c, iterations_));
       });
   if (result && !is_computed) restore(*result, c);
 }
