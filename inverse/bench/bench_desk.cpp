@@ -22,8 +22,8 @@ namespace {
 namespace fs = std::filesystem;
 using viewer::ShownSide, viewer::Side, viewer::Tools, viewer::refuse;
 
-constexpr double kAtRest =
-    1e-4;  // kinetic energy relative to the work of the indenter: the force is within 1 %, its root
+// Kinetic energy relative to the work of the indenter: the force is within 1 %, its root.
+constexpr double kAtRest = 1e-4;
 constexpr size_t kMaxReadings = 200;  // chosen
 // The law is that of the body. Fits of held-out readings would take several times as long.
 constexpr std::string_view kFitOptions = "law_errors = false\ncross_validation = false\n";

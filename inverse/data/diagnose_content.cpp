@@ -10,7 +10,7 @@
 namespace aspic {
 namespace {
 
-// Limits of findings are chosen: they decide about messages, not about results.
+// Limits of findings are chosen: they decide about messages and refusals, not about results.
 constexpr size_t kMaxCompared = 300;  // motions; their comparison is quadratic in the number
 constexpr double kSameMotion = 0.02;  // smallest relative difference between two distinct motions
 constexpr int kFewNumbers = 30;       // measured numbers

@@ -12,7 +12,7 @@
 namespace aspic {
 namespace {
 
-// Limits of findings are chosen: they decide about messages, not about results.
+// Limits of findings are chosen: they decide about messages and refusals, not about results.
 constexpr double kMinTypicalYoung = 50, kLargestTypicalYoung = 1.5e7;  // typical Young's moduli of soft bodies [Pa]
 constexpr double kStriking = 2.5;    // suspicious ratio: a wrong force, or an inclusion
 constexpr double kSamePlace = 0.1;   // tolerance of equal places of an indenter, relative to its radius

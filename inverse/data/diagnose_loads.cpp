@@ -14,7 +14,7 @@
 namespace aspic {
 namespace {
 
-// Limits of findings are chosen: they decide about messages, not about results.
+// Limits of findings are chosen: they decide about messages and refusals, not about results.
 constexpr double kDeep = 0.5;        // fraction of the body's size; deeper indentations are implausible
 constexpr double kHuge = 100;        // fraction of the body's size; larger radii are in another unit
 constexpr double kTurned = 1;        // [rad] implausible rotation of a bonded indenter

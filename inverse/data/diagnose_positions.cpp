@@ -12,11 +12,10 @@
 namespace aspic {
 namespace {
 
-// Limits of findings are chosen: they decide about messages, not about results.
+// Limits of findings are chosen: they decide about messages and refusals, not about results.
 constexpr double kSuspicious = 6;  // multiple of the differences between neighbors
 constexpr double kReach = 2;       // radii around an indenter within which the surface follows it
 constexpr double kLever = 3;       // multiple of the indenter's displacement; larger median motions have another cause
-constexpr double kFinestPosition = 1e-9;  // fraction of the body's size; no instrument has smaller deviations
 
 class PositionDiagnosis {
  public:
@@ -89,7 +88,7 @@ class PositionDiagnosis {
           return refuse(where(), who() + " is far outside the body of size " + three_digits(size_) + " m",
                         "correct its position, or remove the row");
         const double finest = std::min({r.sigma[0], r.sigma[1], r.sigma[2]});
-        if (finest < kFinestPosition * size_)
+        if (finest < kFinest * size_)
           return refuse(
               where(),
               who() + " has a standard deviation of " + three_digits(finest) + " m, which no instrument attains",

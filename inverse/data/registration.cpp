@@ -21,8 +21,8 @@ namespace {
 // Points and iterations for the search among poses, and for the final one. Chosen.
 constexpr size_t kFewPoints = 200, kManyPoints = 20'000;
 constexpr int kSearch = 30, kFinal = 200;
-constexpr double kCollinear =
-    1e-3;  // spread across a line over the spread along it; chosen between round-off and noise
+// Spread across a line over the spread along it; chosen between round-off and noise.
+constexpr double kCollinear = 1e-3;
 constexpr double kDegrees = 180 / std::numbers::pi;
 
 std::vector<Vec3d> thinned(std::span<const Vec3d> points, size_t most) {

@@ -14,10 +14,10 @@ namespace aspic {
 namespace {
 
 constexpr double kLargestFall = 1.0 / 30;  // decrease of the weight between trials, which start from the last one
-constexpr double kStagnation =
-    0.02;  // change of log |r|^2 per factor e of the weight. Chosen: judge() expects 0.1 to 1
-constexpr double kRange =
-    1e12;  // between the first weight and the last: a million times in standard deviations of the prior
+// Change of log |r|^2 per factor e of the weight. Chosen: judge() expects 0.1 to 1.
+constexpr double kStagnation = 0.02;
+// Between the first weight and the last: a million times in standard deviations of the prior.
+constexpr double kRange = 1e12;
 constexpr int kBestSeen = 64;           // directions used to select the weight: relative error sqrt(2 / 64) = 0.18
 constexpr double kSettledWeight = 0.3;  // change of the log weight of largest evidence, less than twice this error
 

@@ -10,13 +10,13 @@
 namespace aspic {
 namespace {
 
-constexpr int kIterations =
-    4;  // minimum number per preconditioner, which costs as many simulations as parameters. Chosen
-// Largest predicted decrease at the solution, relative to the value without any motion, whose simulation has relative
-// errors of 1e-9, and, for noisy data, to the value per degree of freedom: a twentieth of a standard deviation.
-constexpr double kDecrease = 1e-18, kDecreaseInNoise = 1e-3;
-// The same if the line search found no step: errors of a millionth, or a seventh of a standard deviation.
-constexpr double kRoundOff = 1e-12, kRoundOffInNoise = 1e-2;
+// Minimum number per preconditioner, which costs as many simulations as parameters. Chosen.
+constexpr int kIterations = 4;
+// Largest predicted decrease at the solution, relative to the value without any motion and, for noisy data, to the
+// value per degree of freedom: a twentieth of a standard deviation.
+constexpr double kDecrease = kStagnated * kStagnated, kDecreaseInNoise = 1e-3;
+// The same if the line search found no step: a seventh of a standard deviation.
+constexpr double kRoundOff = kSame * kSame, kRoundOffInNoise = 1e-2;
 // Eigenvalue of the scaled Hessian, whose central differences have errors of 1e-6, below which a direction is not
 // determined.
 constexpr double kWeakest = 1e-5;
@@ -118,7 +118,7 @@ double noise(const MotionObjective& f, const MotionPoint& at) {
 void find_sigmas(MotionObjective& f, MotionFitReport& report) {
   const int n = f.parameters().size();
   std::vector<double> H = hessian(f, report.after);
-  const double least = std::pow(MotionObjective::kInsensitive, 2) * 2 * f.resting_value();
+  const double least = std::pow(kSame, 2) * 2 * f.resting_value();
   for (int i = 0; i < n; ++i)
     if (f.is_held(i) || !(H[static_cast<size_t>(n) * i + i] > least))
       for (int j = 0; j < n; ++j) H[static_cast<size_t>(n) * i + j] = H[static_cast<size_t>(n) * j + i] = 0;

@@ -161,7 +161,7 @@ bool MotionObjective::linearize(const MotionPoint& at) {
       square += squared_norm(rate);
       for (int axis = 0; axis < 3; ++axis) J[i][3 * s + axis] = rate[axis] / data_.samples[s].sigma;
     }
-    held_[i] = std::sqrt(square / static_cast<double>(data_.samples.size())) <= kInsensitive * travel_;
+    held_[i] = std::sqrt(square / static_cast<double>(data_.samples.size())) <= kSame * travel_;
     if (held_[i]) std::fill(J[i].begin(), J[i].end(), 0.0);
   }
   inverse_ = scaled_inverse(n, product_transposed(J, J), kFloor, Weak::dropped).inverse;

@@ -16,8 +16,8 @@ namespace {
 constexpr int kIterationsPerStart = 40;   // per initial guess; other guesses follow one that takes more. Chosen
 constexpr double kRatio = 0.3;            // median of the prior of the ratios, 0.006 to 15 with 95 %. Chosen
 constexpr double kUndeterminedLog = 1.5;  // standard deviation of a logarithm, chosen; the prior of a ratio has 2
-constexpr double kFarOutside =
-    3;  // of the range of times, as a ratio: e^(-1/3) = 72 % of the branch is left at the end
+// Of the range of times, as a ratio: e^(-1/3) = 72 % of the branch is left at the end.
+constexpr double kFarOutside = 3;
 
 // Times between which relaxation is visible: from the shortest distance of two readings to the longest duration [s].
 struct TimeRange {

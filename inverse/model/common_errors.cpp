@@ -7,8 +7,8 @@
 namespace aspic {
 namespace {
 
-constexpr double kRoundOff =
-    1e-10;  // what other directions leave of a dependent one, relative to it: J has errors of 1e-9
+// What other directions leave of a dependent one, relative to it: J has errors of 1e-9.
+constexpr double kRoundOff = 1e-10;
 
 }  // namespace
 

@@ -178,8 +178,8 @@ struct Equilibrium::Impl {
     in_force = &wanted;
   }
 
-  static constexpr int kMaxTerms =
-      100;  // of add_lagged(): terms that shrink by 20 % reach 1e-9. Slower ones are refused
+  // Of add_lagged(): terms that shrink by 20 % reach 1e-9. Slower ones are refused.
+  static constexpr int kMaxTerms = 100;
 
   EquilibriumOptions options;
   Model model;

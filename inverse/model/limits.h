@@ -14,6 +14,7 @@ inline constexpr double kNegligible = 0.05;  // relative difference without cons
 inline constexpr double kSettled = 0.02;     // change of log E per pass; errors of meshes change as much. Chosen
 inline constexpr double kLinearRange = 1;  // change of a logarithm [1] or direction [rad] up to which a model is linear
 inline constexpr double kSame = 1e-6;      // relative difference of equal values; of times, relative to a step. Chosen
+inline constexpr double kFinest = 1e-9;    // relative accuracy that no measurement has. Chosen
 inline constexpr double kExactError = 1e-4;  // error of exact readings over the largest one. Chosen
 inline constexpr double kTooFar = 10;        // lengths, relative to the size of a body, that are mistakes. Chosen
 inline constexpr size_t kMaxListed = 10;     // errors, findings or notes of one kind; others are counted. Chosen
