@@ -13,10 +13,11 @@
 namespace aspic {
 namespace {
 
-constexpr int kRampBins = 10;     // per ramp. Chosen
+constexpr int kRampBins = 10;     // per ramp. Chosen: half and double move values by 0.004 standard deviations
 constexpr double kGrowth = 1.15;  // of successive bins of a hold: 55 bins; an exponential decays by 5 % per bin at most
-constexpr double kFirstBin = 5e-4;  // length of its first bin over its duration. Chosen
-constexpr double kEnd = 0.9;        // fraction of a hold after which the force counts as that of the last state. Chosen
+constexpr double kFirstBin =
+    5e-4;                     // length of its first bin over its duration. Chosen: half and double move values by 0.04
+constexpr double kEnd = 0.9;  // fraction of a hold after which the force counts as that of the last state. Chosen
 
 // Cases of one history in the order of time.
 using Waypoints = std::vector<size_t>;

@@ -1,4 +1,5 @@
-// Limits that several files share, with their sources. "Chosen": a convention without a derivation.
+// Limits that several files share, with their sources. "Chosen", here and elsewhere: a convention without a derivation;
+// tests/bench/results/fitting.md has the effects of half and double on fits.
 #pragma once
 #include <cstddef>
 

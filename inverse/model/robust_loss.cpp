@@ -7,7 +7,7 @@
 namespace aspic {
 namespace {
 
-constexpr double kFreedom = 4;    // degrees of freedom; chosen, a common value
+constexpr double kFreedom = 4;    // degrees of freedom. Chosen: half and double move values by 0.3 standard deviations
 constexpr double kQuadratic = 3;  // mean square of a normal vector
 constexpr double kOutlier = 5;    // standard deviations; one of 65 000 normal vectors is longer
 
