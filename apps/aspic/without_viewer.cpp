@@ -1,12 +1,10 @@
-// Replacements of the viewer's functions in a build without it. The commands throw InvalidInput with the remedy; runs
-// print that there is no report.
+// Replacements of the viewer's functions in a build without it. The commands throw InvalidInput with the remedy.
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
 
 #include "aspic/commands.h"
 #include "aspic/mesh_picture.h"
-#include "aspic/run_report.h"
 #include "base/error.h"
 
 namespace aspic::cli {
@@ -23,10 +21,6 @@ void add_viewer_commands(CLI::App& app, Action& action) {
       };
     });
   }
-}
-
-void write_run_report(const std::filesystem::path&, const Scene& scene, std::FILE* stream) {
-  if (scene.output.report && stream) fmt::print(stream, "no report.html: this aspic was built without its viewer\n");
 }
 
 bool draw(const std::vector<MeshDrawing>&, const StopToken&) {

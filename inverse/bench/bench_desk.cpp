@@ -10,6 +10,7 @@
 #include "bench/indenter_place.h"
 #include "data/synthesis.h"
 #include "io/atomic_file.h"
+#include "model/limits.h"
 #include "viewer/playback.h"
 #include "viewer/saved_scene.h"
 #include "viewer/scene_json.h"
@@ -21,9 +22,9 @@ namespace {
 namespace fs = std::filesystem;
 using viewer::ShownSide, viewer::Side, viewer::Tools, viewer::refuse;
 
-constexpr double kLargest = 10;   // of radius and depth, relative to the size of the body
-constexpr double kAtRest = 1e-4;  // kinetic energy relative to the work of the indenter: the force is within 1 %
-constexpr size_t kMaxReadings = 200;
+// Kinetic energy relative to the work of the indenter: the force is within 1 %, its root.
+constexpr double kAtRest = 1e-4;
+constexpr size_t kMaxReadings = 200;  // chosen
 // The law is that of the body. Fits of held-out readings would take several times as long.
 constexpr std::string_view kFitOptions = "law_errors = false\ncross_validation = false\n";
 
@@ -43,7 +44,7 @@ Indenter indenter_of(Arguments& touch, const Model& model, const Surface& cage) 
   if (touch.has("shape") && touch.choice("shape", {"sphere", "disc"}) == "disc") indenter.shape = IndenterShape::disc;
   if (touch.has("contact") && touch.choice("contact", {"bonded", "sliding"}) == "sliding")
     indenter.contact = IndenterContact::sliding;
-  if (touch.has("radius")) indenter.radius = positive(touch, "radius", kLargest * size_of(cage));
+  if (touch.has("radius")) indenter.radius = positive(touch, "radius", kTooFar * size_of(cage));
   indenter.stiffness =
       touch.has("stiffness") ? positive(touch, "stiffness", 1e20) : default_layer(model, indenter.radius);
   return indenter;
@@ -145,7 +146,7 @@ void BenchDesk::touch(Arguments& arguments) {
 }
 
 void BenchDesk::press(Arguments& arguments) {
-  const double depth = arguments.number("depth"), most = kLargest * size_of(stage_.a().surface);
+  const double depth = arguments.number("depth"), most = kTooFar * size_of(stage_.a().surface);
   arguments.finish();
   if (!tool().touch()) throw InvalidInput("press: there is no indenter; place it on the body first");
   if (!(std::abs(depth) <= most)) refuse("press.depth", depth, fmt::format("at most {:g} m is expected", most));

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "data/unstated_values.h"
 #include "math/polar3.h"
 #include "mesh/tet_shape.h"
 #include "viewer/default_stiffness.h"
@@ -11,9 +12,8 @@
 namespace aspic::bench {
 namespace {
 
-constexpr double kShareOfBody = 0.08;  // radius / diagonal
 constexpr double kEdges = 0.8;  // minimum of radius / mean edge: an indenter between vertices would touch one tet only
-constexpr double kLayer = 100;
+constexpr double kLayer = 100;  // stiffness times radius over E: gives way by 1 / 130 of the depth of a flat punch
 
 Vec3d unit(const Vec3d& v) { return (1 / norm(v)) * v; }
 
@@ -23,7 +23,7 @@ double default_radius(const Surface& cage) {
   double edges = 0;
   for (const auto& [a, b] : cage.edges) edges += norm(cage.rest[a] - cage.rest[b]);
   const double edge = edges / std::max<double>(1, static_cast<double>(cage.edges.size()));
-  return std::max(kShareOfBody * viewer::size_of(cage), kEdges * edge);
+  return std::max(kUsualRadius * viewer::size_of(cage), kEdges * edge);
 }
 
 double default_layer(const Model& model, double radius) {

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "model/limits.h"
 #include "pipeline/case_figures.h"
 
 namespace aspic::cli {
@@ -69,15 +70,15 @@ Json groups_json(const DataSet& data, const FitOutcome& outcome) {
 }
 
 Json histogram_json(const DataSet& data, const FitOutcome& outcome) {
-  constexpr double kLimit = 4;
   constexpr int kBins = 32;
   std::vector<int> counts(kBins, 0);
   for (size_t c = 0; c < outcome.cases.size(); ++c)
     for_each_residual(data.experiment.cases[c], outcome.cases[c], [&](double r) {
       if (std::isfinite(r))
-        ++counts[static_cast<size_t>(std::clamp(std::floor((r + kLimit) / (2 * kLimit) * kBins), 0.0, kBins - 1.0))];
+        ++counts[static_cast<size_t>(
+            std::clamp(std::floor((r + kManySigmas) / (2 * kManySigmas) * kBins), 0.0, kBins - 1.0))];
     });
-  return {{"limit", kLimit}, {"counts", counts}};
+  return {{"limit", kManySigmas}, {"counts", counts}};
 }
 
 Json held_out_json(const DataSet& data, const FitOutcome& outcome) {

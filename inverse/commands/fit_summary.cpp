@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "mesh/tet_nodes.h"
+#include "model/limits.h"
 #include "pipeline/fitted_values.h"
 
 namespace aspic::cli {
@@ -97,12 +98,11 @@ void print_errors(std::FILE* stream, const FitOutcome& outcome) {
 }
 
 void print_outliers(std::FILE* stream, const FitOutcome& outcome) {
-  constexpr size_t kMost = 10;
-  for (size_t i = 0; i < std::min(outcome.outliers.size(), kMost); ++i)
+  for (size_t i = 0; i < std::min(outcome.outliers.size(), kMaxListed); ++i)
     fmt::print(stream, "{:<10} {} in '{}' counts {:.2g}\n", i == 0 ? "outliers" : "", outcome.outliers[i].reading,
                outcome.outliers[i].load_case, outcome.outliers[i].weight);
-  if (outcome.outliers.size() > kMost)
-    fmt::print(stream, "           and {} more, see figures.json\n", outcome.outliers.size() - kMost);
+  if (outcome.outliers.size() > kMaxListed)
+    fmt::print(stream, "           and {} more, see figures.json\n", outcome.outliers.size() - kMaxListed);
 }
 
 }  // namespace

@@ -9,8 +9,10 @@
 namespace aspic {
 namespace {
 
-constexpr double kPoisson = 0.4;
-constexpr double kBondedFootprint = 0.94;  // contact radius of a sphere, relative to its radius: see kGlue
+constexpr double kPoisson = 0.4;  // the initial guess of a fit, see material_quantities()
+// Contact radius of a sphere, relative to its radius, where the glue has half its strength:
+// sqrt((1 + 3/4 kGlue)^2 - 1).
+constexpr double kBondedFootprint = 0.94;
 
 double footprint(const Indenter& indenter, double depth) {
   if (indenter.shape == IndenterShape::disc) return indenter.radius;

@@ -10,7 +10,8 @@
 namespace aspic {
 namespace {
 
-constexpr int kCandidates = 20;  // per marker
+// Per marker; markers are the candidates that are farthest from each other. Chosen.
+constexpr int kCandidates = 20;
 
 double triangle_area(const TetMesh& mesh, const Triangle& t) {
   const Vec3d n = cross(mesh.rest[t[1]] - mesh.rest[t[0]], mesh.rest[t[2]] - mesh.rest[t[0]]);

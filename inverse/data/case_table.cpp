@@ -8,12 +8,13 @@
 #include "data/data_findings.h"
 #include "data/histories.h"
 #include "model/gauge.h"
+#include "model/limits.h"
 #include "scene/placement.h"
 
 namespace aspic {
 namespace {
 
-constexpr int kMaxCases = 20'000, kMaxSteadyNotes = 20;
+constexpr int kMaxCases = 20'000;  // chosen
 
 class CaseReader {
  public:
@@ -210,7 +211,7 @@ class CaseReader {
           ". steady = SECONDS in capture.toml changes the duration, steady = \"off\" takes the force as it is");
       return std::nullopt;
     }
-    if (++steady_notes_ <= kMaxSteadyNotes)
+    if (++steady_notes_ <= kMaxListed)
       data_.notes.push_back(table_.where() + ": force of " + scope_.forces->file + " at " + number_text(time) +
                             " s: " + force.reason);
     return force;
@@ -248,7 +249,7 @@ class CaseReader {
   DataSet& data_;
   MeasuredTable table_;
   std::optional<double> time_;  // of the current row [s]
-  int steady_notes_ = 0;
+  size_t steady_notes_ = 0;
   std::map<std::string, int> line_of_;
   std::map<std::string, IndenterPose> touch_of_;  // touch of each group
 };

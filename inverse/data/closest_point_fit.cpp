@@ -4,14 +4,15 @@
 #include <cmath>
 
 #include "data/rigid_motion.h"
+#include "model/limits.h"
 
 namespace aspic {
 namespace {
 
-constexpr double kAlong = 0.05;       // weight of the distance along the surface: keeps the system definite
-constexpr double kLargestScale = 2;   // change of the scale
-constexpr double kStationary = 1e-9;  // step over the length
-constexpr int kMaxDamping = 12;
+constexpr double kAlong = 0.05;  // weight of the distance along the surface: keeps the system definite
+// Change of the scale; at the bound a guess is dropped. The least ratio of units is 2.54.
+constexpr double kLargestScale = 2;
+constexpr int kMaxDamping = 12;  // trials that raise the damping tenfold each, from its least value to its largest
 
 // Solves (A + damping I) x = b by elimination; A is symmetric and positive semidefinite.
 std::array<double, 7> solved(std::array<double, 49> A, std::array<double, 7> b, double damping) {
@@ -114,7 +115,7 @@ PoseFit ClosestPointFit::run(const AffineMap& guess, int iterations) const {
       map = next;
       for (const double s : step) size = std::max(size, std::abs(s));
     }
-    if (!is_better || size < kStationary * length) iterations = i + 1;
+    if (!is_better || size < kFinest * length) iterations = i + 1;
   }
 }
 

@@ -9,6 +9,10 @@
 
 namespace aspic {
 
+// Implausible ratio of a modulus or of gravity to the usual one. Chosen: units of forces and lengths usually differ by
+// 1000.
+inline constexpr double kUnlike = 30;
+
 class DataFindings {
  public:
   void error(std::string where, std::string what, std::string remedy) {

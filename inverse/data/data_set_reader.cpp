@@ -30,6 +30,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
+// A million readings take 1.3 GB (docs/fitting.md).
 constexpr size_t kMaxMarkers = 1'000'000, kMaxReadings = 5'000'000;
 
 void add_notes(const std::string& what, const std::vector<Finding>& findings, std::vector<std::string>& notes) {
@@ -420,7 +421,7 @@ class DataSetReader {
   // reach other axes through round-off of the registration.
   Vec3d on_mesh_axes(const Vec3d& sd) const {
     if (sd[0] == sd[1] && sd[1] == sd[2]) return sd;
-    constexpr double kAside = 0.014;  // sine of an angle below 0.8 degrees
+    constexpr double kAside = 0.014;  // sine of 0.8 degrees, chosen between the round-off and a deliberate rotation
     const Mat3d R = rotation_of(to_mesh_);
     Vec3d turned{};
     for (int i = 0; i < 3; ++i)

@@ -10,9 +10,10 @@
 namespace aspic {
 namespace {
 
-constexpr size_t kMaxCompared = 300;  // limit of compared motions
+// Limits of findings are chosen: they decide about messages and refusals, not about results.
+constexpr size_t kMaxCompared = 300;  // motions; their comparison is quadratic in the number
 constexpr double kSameMotion = 0.02;  // smallest relative difference between two distinct motions
-constexpr int kFewNumbers = 30;
+constexpr int kFewNumbers = 30;       // measured numbers
 
 bool nearly_same(const Vec3d& a, const Vec3d& b) { return norm(a - b) <= 1e-9 * (norm(a) + norm(b)); }
 

@@ -12,14 +12,13 @@
 namespace aspic {
 namespace {
 
+// Limits of findings are chosen: they decide about messages and refusals, not about results.
 constexpr double kMinTypicalYoung = 50, kLargestTypicalYoung = 1.5e7;  // typical Young's moduli of soft bodies [Pa]
-constexpr double kUnlike = 30;                         // implausible ratio of apparent moduli in one body
-constexpr double kStriking = 2.5;                      // suspicious ratio: a wrong force, or an inclusion
-constexpr double kSamePlace = 0.1, kSameDepth = 0.05;  // tolerances of equal indentations, relative to radius and depth
-constexpr double kOtherForce = 0.2;                    // relative difference of forces between equal indentations
-constexpr double kFalling = 0.8;  // ratio of a force to the previous one below which it falls with depth
+constexpr double kStriking = 2.5;    // suspicious ratio: a wrong force, or an inclusion
+constexpr double kSamePlace = 0.1;   // tolerance of equal places of an indenter, relative to its radius
+constexpr double kOtherForce = 0.2;  // relative difference of forces that contradict
 constexpr double kLargest = 1e9, kFinestForce = 1e-12;  // largest plausible force, and finest sigma [N]
-constexpr int kEnough = 6;                              // forces needed to detect rounding by a gauge
+constexpr int kEnough = 6;  // forces with a decimal that are whole by chance once in a million
 
 class ForceDiagnosis {
  public:
@@ -226,7 +225,7 @@ class ForceDiagnosis {
     const double radius = a.indenter->radius, depth = load_size(a);
     return std::abs(b.indenter->radius - radius) < kSamePlace * radius &&
            norm(b.touch.center - a.touch.center) < kSamePlace * radius &&
-           norm((b.pose.center - b.touch.center) - (a.pose.center - a.touch.center)) < kSameDepth * depth;
+           norm((b.pose.center - b.touch.center) - (a.pose.center - a.touch.center)) < kNegligible * depth;
   }
 
   static std::string unit_of_ratio(double ratio) {
@@ -243,7 +242,7 @@ class ForceDiagnosis {
       if (load.group != last.group || !load.force || !last.force || !load.indenter || !last.indenter) continue;
       const double noise = 3 * (sigma_along(load) + sigma_along(last));
       const bool is_deeper = load_size(load) > 1.001 * load_size(last);
-      if (is_deeper && norm(*load.force) < kFalling * norm(*last.force) - noise)
+      if (is_deeper && norm(*load.force) < (1 - kOtherForce) * norm(*last.force) - noise)
         findings_.warning(where(c),
                           "the force falls from " + three_digits(norm(*last.force)) + " N to " +
                               three_digits(norm(*load.force)) + " N although the indenter is deeper than in '" +

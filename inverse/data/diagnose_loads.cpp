@@ -6,19 +6,20 @@
 #include "data/case_table.h"
 #include "data/data_findings.h"
 #include "data/surface_projection.h"
+#include "data/units.h"
 #include "mesh/box.h"
+#include "model/limits.h"
 #include "scene/placement.h"
 
 namespace aspic {
 namespace {
 
+// Limits of findings are chosen: they decide about messages and refusals, not about results.
 constexpr double kDeep = 0.5;        // fraction of the body's size; deeper indentations are implausible
-constexpr double kLoose = 0.05;      // fraction of the body's size; larger gaps at the touch are not round-off
 constexpr double kHuge = 100;        // fraction of the body's size; larger radii are in another unit
 constexpr double kTurned = 1;        // [rad] implausible rotation of a bonded indenter
 constexpr double kBackwards = -0.5;  // cosine between the indenter's axis and the direction into the body
 constexpr double kCoarse = 4;        // ratio of surface edges to the indenter's radius that is too coarse
-constexpr double kStrongest = 200, kWeakest = 0.1;  // [m/s^2] range of plausible gravity
 
 class LoadDiagnosis {
  public:
@@ -132,12 +133,12 @@ class LoadDiagnosis {
       return;
     }
     const double gap = indenter.shape == IndenterShape::sphere ? off - indenter.radius : off;
-    if (indenter.contact == IndenterContact::sliding && gap > std::max(kLoose * size_, load_size(load)))
+    if (indenter.contact == IndenterContact::sliding && gap > std::max(kNegligible * size_, load_size(load)))
       return findings_.error(where_,
                              "the indenter does not touch the body: it was " + three_digits(gap) +
                                  " m from the surface at the touch, and moves " + three_digits(load_size(load)) + " m",
                              "touch is the center of the indenter (of a disc: of its flat end) at first contact");
-    if (indenter.contact == IndenterContact::sliding && gap > kLoose * size_)
+    if (indenter.contact == IndenterContact::sliding && gap > kNegligible * size_)
       findings_.warning(where_,
                         "the indenter was " + three_digits(gap) + " m from the surface at the touch, and then moves " +
                             three_digits(load_size(load)) + " m",
@@ -146,7 +147,7 @@ class LoadDiagnosis {
 
   void examine_gravity(const LoadCase& load) {
     const double g = norm(load.gravity);
-    if (g == 0 || (g > kWeakest && g < kStrongest)) return;
+    if (g == 0 || (g > kStandardGravity / kUnlike && g < kStandardGravity * kUnlike)) return;
     findings_.warning(where_, "gravity is " + three_digits(g) + " m/s^2",
                       "on Earth it is 9.81; units = { gravity = \"g\" } reads multiples of it");
   }

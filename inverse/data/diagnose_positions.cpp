@@ -6,19 +6,16 @@
 #include "data/surface_projection.h"
 #include "math/vectors.h"
 #include "model/gauge.h"
+#include "model/limits.h"
 #include "model/local_motion.h"
 
 namespace aspic {
 namespace {
 
-constexpr size_t kMaxListed = 5;      // listed findings per kind; others are counted
-constexpr double kSuspicious = 6;     // multiple of the differences between neighbors
-constexpr double kAgreeing = 3;       // standard deviations within which a motion agrees with its neighbors
-constexpr double kNoticeable = 0.05;  // fraction of the largest motion of the case
-constexpr double kReach = 2;          // radii around an indenter within which the surface follows it
-constexpr double kFarthest = 10;      // the same for a single marker; larger motions are errors
-constexpr double kLever = 3;  // multiple of the indenter's displacement; larger median motions have another cause
-constexpr double kFinestPosition = 1e-9;  // fraction of the body's size; no instrument has smaller deviations
+// Limits of findings are chosen: they decide about messages and refusals, not about results.
+constexpr double kSuspicious = 6;  // multiple of the differences between neighbors
+constexpr double kReach = 2;       // radii around an indenter within which the surface follows it
+constexpr double kLever = 3;       // multiple of the indenter's displacement; larger median motions have another cause
 
 class PositionDiagnosis {
  public:
@@ -87,11 +84,11 @@ class PositionDiagnosis {
         const MarkerReading& r = readings[i];
         const auto where = [&] { return data_.source.position(static_cast<int>(c), static_cast<int>(i)); };
         const auto who = [&] { return name(r.marker) + " in '" + experiment_.cases[c].name + "'"; };
-        if (!(norm(displacement(experiment_, r)) < kFarthest * size_))
+        if (!(norm(displacement(experiment_, r)) < kTooFar * size_))
           return refuse(where(), who() + " is far outside the body of size " + three_digits(size_) + " m",
                         "correct its position, or remove the row");
         const double finest = std::min({r.sigma[0], r.sigma[1], r.sigma[2]});
-        if (finest < kFinestPosition * size_)
+        if (finest < kFinest * size_)
           return refuse(
               where(),
               who() + " has a standard deviation of " + three_digits(finest) + " m, which no instrument attains",
@@ -166,9 +163,10 @@ class PositionDiagnosis {
     return neighbors_;
   }
 
-  // Whether a motion agrees with those of all neighbors; then no field through them is needed.
+  // Whether a motion agrees with those of all neighbors within half the tolerance; then no field through them is
+  // needed.
   static bool agrees(const std::vector<Vec3d>& u, size_t i, const MotionNeighbors& near, double sigma) {
-    return std::all_of(near.begin(), near.end(), [&](int j) { return norm(u[j] - u[i]) <= kAgreeing * sigma; });
+    return std::all_of(near.begin(), near.end(), [&](int j) { return norm(u[j] - u[i]) <= kSuspicious / 2 * sigma; });
   }
 
   void examine_outliers(int c) {
@@ -194,7 +192,7 @@ class PositionDiagnosis {
       const double tolerated = kSuspicious * (typical[i].spread + norm(readings[i].sigma));
       // The top of a sharp dent differs from its neighbors, but not by more than they differ from each other, nor by
       // more than the estimated motion by the indenter.
-      if (excess > std::max({tolerated, kNoticeable * largest, typical[i].range, by_tip(load, X[i])}) &&
+      if (excess > std::max({tolerated, kNegligible * largest, typical[i].range, by_tip(load, X[i])}) &&
           ++outliers_ <= kMaxListed)
         findings_.warning(data_.source.position(c, static_cast<int>(i)),
                           name(readings[i].marker) + " in '" + load.name + "' is " + three_digits(excess) +

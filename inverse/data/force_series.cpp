@@ -11,13 +11,14 @@
 namespace aspic {
 namespace {
 
-constexpr double kBand = 0.01;              // deviation of a steady force over the range of the series
-constexpr double kDriftOfForce = 0.005;     // drift of a steady force over the force itself
-constexpr double kDriftOfRange = 0.002;     // the same over the range of the series, for forces near 0
-constexpr double kDuration = 0.05;          // of a steady state over that of the series
-constexpr size_t kLeastSamples = 5;         // of a steady state
-constexpr size_t kMaxSamples = 50'000'000;  // of a series
-constexpr int kTries = 200;                 // times at which another steady state is searched
+// Which forces count as steady is a convention; docs/capture_format.md states it.
+constexpr double kBand = 0.01;                            // deviation of a steady force over the range of the series
+constexpr double kDriftOfForce = 0.005;                   // drift of a steady force over the force itself
+constexpr double kDriftOfRange = 0.002;                   // the same over the range of the series, for forces near 0
+constexpr double kDuration = 0.05;                        // of a steady state over that of the series
+constexpr size_t kLeastSamples = 5;                       // of a steady state
+constexpr size_t kMaxSamples = 50'000'000;                // of a series: 1.6 GB
+constexpr int kTries = static_cast<int>(10 / kDuration);  // times at which a message searches another steady state
 
 double entry_norm(const Vec3d& v) { return std::max({std::abs(v[0]), std::abs(v[1]), std::abs(v[2])}); }
 
@@ -131,7 +132,7 @@ double largest_force(const ForceSeries& s) {
 }
 
 double noise_of(const ForceSeries& s) {
-  constexpr double kMedianOfNormal = 0.6745;
+  constexpr double kMedianOfNormal = 0.6745;  // median of the magnitude of a normal number
   double noise = 0;
   for (int axis = 0; axis < 3; ++axis) {
     std::vector<double> bends;

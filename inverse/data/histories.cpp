@@ -13,10 +13,11 @@
 namespace aspic {
 namespace {
 
-constexpr int kRampBins = 10;       // per ramp
-constexpr double kGrowth = 1.15;    // of successive bins of a hold
-constexpr double kFirstBin = 5e-4;  // length of its first bin over its duration
-constexpr double kEnd = 0.9;        // fraction of a hold after which the force counts as that of the last state
+constexpr int kRampBins = 10;     // per ramp. Chosen: half and double move values by 0.004 standard deviations
+constexpr double kGrowth = 1.15;  // of successive bins of a hold: 55 bins; an exponential decays by 5 % per bin at most
+constexpr double kFirstBin =
+    5e-4;                     // length of its first bin over its duration. Chosen: half and double move values by 0.04
+constexpr double kEnd = 0.9;  // fraction of a hold after which the force counts as that of the last state. Chosen
 
 // Cases of one history in the order of time.
 using Waypoints = std::vector<size_t>;
@@ -174,7 +175,7 @@ class HistoryReader {
   // The stated standard deviation, or the noise of the series.
   double sample_sigma(const LoadHistory& h) const {
     const Vec3d& stated = h.waypoints.back().force_sigma;
-    const double floor = kExactSigma * largest_force(*series_);
+    const double floor = kExactError * largest_force(*series_);
     if (series_->has_stated_sigma && norm(stated) > 0) return std::max(sigma_along(h.waypoints.back()), floor);
     return std::max(noise_of(*series_), floor);
   }
@@ -234,7 +235,7 @@ void add_end_forces(const ForceSeries* series, DataSet& data) {
     if (mean.count == 0 || (series->is_axial && norm(gauge) == 0)) continue;
     end.force = series->is_axial ? mean.value[0] * gauge : mean.value;
     const double sigma =
-        std::max(noise_of(*series), kExactSigma * largest_force(*series)) / std::sqrt(static_cast<double>(mean.count));
+        std::max(noise_of(*series), kExactError * largest_force(*series)) / std::sqrt(static_cast<double>(mean.count));
     if (series->is_axial) end.gauge = gauge;
     if (!(norm(end.force_sigma) > 0)) end.force_sigma = {{sigma, sigma, sigma}};
   }

@@ -6,14 +6,13 @@
 
 #include "base/check.h"
 #include "estimate/uncertainty.h"
+#include "model/limits.h"
 #include "model/quantity.h"
 
 namespace aspic {
 namespace {
 
-constexpr int kPoints = 20;     // points per tet of the fit at which the truth is evaluated
-constexpr size_t kPhases = 8;   // more values are treated as a field
-constexpr double kSame = 1e-6;  // relative difference of values of one phase
+constexpr int kPoints = 20;  // points per tet of the fit at which the truth is evaluated, see points_of()
 
 // Evenly spread over a tet: barycentric coordinates (i + 1/4) / 4 with i + j + k + l = 3.
 std::vector<Vec3d> points_of(const TetMesh& mesh) {
@@ -160,7 +159,7 @@ std::vector<double> levels_of(std::vector<double> values) {
   std::vector<double> levels;
   for (const double v : values) {
     if (levels.empty() || v - levels.back() > kSame * std::abs(v)) levels.push_back(v);
-    if (levels.size() > kPhases) return {};
+    if (levels.size() > kMaxPhases) return {};
   }
   return levels;
 }

@@ -4,16 +4,11 @@
 
 #include "base/error.h"
 #include "base/printable.h"
+#include "model/limits.h"
 
 namespace aspic {
-namespace {
-
-constexpr size_t kMaxErrors = 10;  // the first ones explain the rest
-
-}  // namespace
-
 void ErrorList::add(const std::string& error) {
-  if (lines_.size() < kMaxErrors) {
+  if (lines_.size() < kMaxListed) {
     lines_.push_back(error);
   } else {
     ++further_;

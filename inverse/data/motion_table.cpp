@@ -20,8 +20,6 @@
 namespace aspic {
 namespace {
 
-constexpr size_t kMaxTracked = 100'000;
-
 const std::vector<std::string> kColumns = {"time", "marker", "x", "y", "z", "sigma"};
 
 void require_columns(const CsvReader& csv, const std::string& file) {
@@ -73,9 +71,6 @@ class TableReader {
     if (!time || !x || !y || !z || !sigma) return;
     const auto [marker, is_new] = index_.try_emplace(name, static_cast<int>(index_.size()));
     if (is_new) table_.markers.push_back(name);
-    if (table_.markers.size() > kMaxTracked)
-      throw InvalidInput(csv_.where() + ": more than " + std::to_string(kMaxTracked) +
-                         " markers; the column marker holds a name per marker");
     table_.rows.push_back({*time, marker->second, {{*x, *y, *z}}, *sigma, csv_.line()});
   }
 
@@ -111,9 +106,9 @@ class Attachment {
     for (const MotionRow& row : table_.rows) {
       if (first_line[row.marker] == 0) first_line[row.marker] = row.line;
       const double steps = (row.time - time_) / h_;
-      if (steps < -kSameTime || steps > kMaxTimeSteps) {
+      if (steps < -kSame || steps > kMaxTimeSteps) {
         refuse_time(row, steps < 0);
-      } else if (steps <= kSameTime) {
+      } else if (steps <= kSame) {
         place(row, data, notes);
         is_placed[row.marker] = true;
       } else {

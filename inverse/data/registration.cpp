@@ -11,20 +11,18 @@
 #include "io/atomic_file.h"
 #include "math/symmetric_eigen.h"
 #include "mesh/box.h"
+#include "model/limits.h"
 #include "scene/schema_table.h"
 #include "scene/toml_reader.h"
 
 namespace aspic {
 namespace {
 
-constexpr size_t kFewPoints = 200, kManyPoints = 20'000;  // for the search of a pose, and for the final one
-constexpr int kSearch = 30, kFinal = 200;                 // iterations
-constexpr double kUndetermined = 0.02;  // a motion that moves points off the surface by less, relative to its size
-constexpr double kAsGood = 1.5;         // ratio of distances of poses that fit equally well
-constexpr double kSamePose = 1.1;       // the same of poses that differ by noise only
-constexpr double kExact = 1e-4;         // distances over the size of the body that count as none
-constexpr double kOther = 0.05;         // distance of two poses over the spread of the points
-constexpr double kCollinear = 1e-3;     // spread across a line over the spread along it
+// Points and iterations for the search among poses, and for the final one. Chosen.
+constexpr size_t kFewPoints = 200, kManyPoints = 20'000;
+constexpr int kSearch = 30, kFinal = 200;
+// Spread across a line over the spread along it; chosen between round-off and noise.
+constexpr double kCollinear = 1e-3;
 constexpr double kDegrees = 180 / std::numbers::pi;
 
 std::vector<Vec3d> thinned(std::span<const Vec3d> points, size_t most) {
@@ -100,11 +98,11 @@ class SurfaceRegistration {
   double own_rms(const PoseFit& fit) const { return fit.rms / scale_of(fit.map); }  // in the scale of the points
   // The best pose, but one near the given coordinates, the first guess, if its distance is not larger except for noise.
   const PoseFit& chosen_of(const std::vector<std::pair<double, PoseFit>>& found, double best) const {
-    if (found[0].first <= kSamePose * best + kExact * spread_of(few_)) return found[0].second;
+    if (found[0].first <= kNoiseRatio * best + kExactError * spread_of(few_)) return found[0].second;
     const auto by_rms = [](const auto& a, const auto& b) { return a.first < b.first; };
     return std::min_element(found.begin(), found.end(), by_rms)->second;
   }
-  bool is_as_good(double rms, double best) const { return rms <= kAsGood * best + kExact * spread_of(few_); }
+  bool is_as_good(double rms, double best) const { return rms <= kClearRatio * best + kExactError * spread_of(few_); }
 
   std::vector<AffineMap> initial_guesses() const {
     std::vector<AffineMap> guesses = {AffineMap{}};
@@ -142,7 +140,7 @@ class SurfaceRegistration {
       std::array<double, 7> v{};
       std::copy_n(e.vectors.begin() + 7 * k, 7, v.begin());
       if (!scales_ && std::abs(v[6]) > 0.5) continue;
-      if (e.values[k] < kUndetermined * kUndetermined) result.ambiguities.push_back(free_text(v, fit.map));
+      if (e.values[k] < kOffSurface * kOffSurface) result.ambiguities.push_back(free_text(v, fit.map));
     }
   }
 
@@ -166,7 +164,7 @@ class SurfaceRegistration {
     std::vector<AffineMap> listed = {chosen.map};
     for (const auto& [rms, fit] : found) {
       const auto is_same = [&, &map = fit.map](const AffineMap& other) {
-        return distance(map, other) < kOther * spread_of(few_);
+        return distance(map, other) < kNegligible * spread_of(few_);
       };
       if (!is_as_good(rms, best) || std::any_of(listed.begin(), listed.end(), is_same)) continue;
       listed.push_back(fit.map);

@@ -9,7 +9,8 @@
 
 namespace aspic {
 
-// Largest coefficient of friction of a tip. Measured ones are below 1 on tissue and skin, and reach 3 on dry silicone.
+// Largest coefficient of friction of a tip, chosen. Measured ones are below 1 on tissue and skin, and reach 3 on dry
+// silicone.
 inline constexpr double kLargestFriction = 5;
 
 // Throws InvalidInput for errors that concern no case.
@@ -21,7 +22,8 @@ struct TipSigmas {
   double friction = 0;          // of the coefficient
   double rim = 0;               // of the rim of a sliding disc
 };
-// Standard deviation of the logarithm of a rim that is not stated: with 95 %, it is within a factor of 5.
+// Standard deviation of the logarithm of a rim that is not stated, about log(5) / 2: with 95 %, it is within a factor
+// of 5, as far as its limits.
 inline constexpr double kRimSigma = 0.8;
 
 // Radius of the rim of a tip [m]; 0 for spheres and bonded tips.

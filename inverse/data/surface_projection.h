@@ -8,6 +8,7 @@
 
 namespace aspic {
 
+// Chosen: scans and markers are placed within some percent of the size of a body.
 inline constexpr double kFarOff = 0.1;  // fraction of the size of a body; markers farther from its surface are errors
 inline constexpr double kOffSurface = 0.02;  // the same for a finding
 

@@ -19,9 +19,9 @@
 namespace aspic {
 namespace {
 
-constexpr double kIndenterRadius = 0.08;  // relative to the size of the body
-constexpr double kGravity = 9.81;         // [m/s^2]
-constexpr double kMinArm = 0.01;          // lever arm of a force about the indenter's center, relative to its radius
+constexpr double kGravity = 9.81;  // on Earth [m/s^2]
+// Lever arm of a force about the center of an indenter, relative to its radius, for the noise of torques. Chosen.
+constexpr double kMinArm = 0.01;
 
 class Bench {
  public:
@@ -94,7 +94,7 @@ class Bench {
     if (levels.empty()) throw InvalidInput("the stiffness varies from tet to tet; there are no regions to label");
     data().mesh.region.clear();
     for (const double E : sample(result_.truth, young, data().mesh)) {
-      const auto next = std::lower_bound(levels.begin(), levels.end(), E * (1 - 1e-6));
+      const auto next = std::lower_bound(levels.begin(), levels.end(), E * (1 - kSame));
       data().mesh.region.push_back(static_cast<int>(next - levels.begin()) + 1);
     }
   }
@@ -115,7 +115,7 @@ class Bench {
 
   Indenter indenter() const {
     return {options_.shape, options_.contact,
-            options_.indenter_radius > 0 ? options_.indenter_radius : kIndenterRadius * size_, 0};
+            options_.indenter_radius > 0 ? options_.indenter_radius : kUsualRadius * size_, 0};
   }
 
   // Largest Young's modulus around the sites.
@@ -246,7 +246,7 @@ class Bench {
     std::mt19937_64 random(options_.seed + 1);
     std::normal_distribution<double> normal;
     const auto disturb = [&](Vec3d& value, Vec3d& sigma, double noise, double largest) {
-      const double sd = std::max(noise, kExactSigma) * (largest > 0 ? largest : 1);
+      const double sd = std::max(noise, kExactError) * (largest > 0 ? largest : 1);
       for (int i = 0; i < 3; ++i) value[i] += noise * largest * normal(random);
       sigma = {{sd, sd, sd}};
     };

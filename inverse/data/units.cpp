@@ -7,8 +7,6 @@
 namespace aspic {
 namespace {
 
-constexpr double kStandardGravity = 9.80665;  // standard gravity [m/s^2], which scales use to convert forces to masses
-
 struct Unit {
   const char* quantity;
   const char* name;

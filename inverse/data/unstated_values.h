@@ -4,6 +4,9 @@
 
 namespace aspic {
 
+// Radius of an indenter, relative to the size of the body: wider than a tet of the example scenes. Chosen.
+inline constexpr double kUsualRadius = 0.08;
+
 // Replaces standard deviations of 0 by a fraction of the largest motion, force and torque.
 void choose_sigmas(DataSet& data);
 

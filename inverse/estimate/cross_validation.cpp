@@ -6,6 +6,7 @@
 #include "model/common_errors.h"
 #include "model/condensed_readings.h"
 #include "model/gauge.h"
+#include "model/limits.h"
 
 namespace aspic {
 namespace {
@@ -40,9 +41,6 @@ void finish(HeldOut& h) {
     for (double* sum : {&errors->error, &errors->noise}) *sum = std::sqrt(*sum / std::max(errors->count, 1));
   h.ok = true;
 }
-
-// Distance within which J changes by about as much, and the minimum by this fraction of its standard deviation.
-constexpr double kNear = 0.02;
 
 // All cases at their fit, from which those without a group are fitted. J of a point serves parameters near it.
 class FitOfAll : public LeastSquares {
@@ -107,7 +105,7 @@ class FitOfAll : public LeastSquares {
   bool is_near(std::span<const double> p) const {
     double distance = 0;
     for (size_t i = 0; i < p.size(); ++i) distance = std::max(distance, std::abs(evaluated_[i] - p[i]));
-    return distance <= kNear;
+    return distance <= kSettled;
   }
 
   const Corrected& experiment_;

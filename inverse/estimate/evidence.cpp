@@ -25,7 +25,7 @@ SupportedWeight supported_weight(Regularizer& prior, double weight, std::span<co
   std::vector<double> g(p.size(), 0.0);
   prior.add_gradient(p, weight, g);
   const std::vector<double> amplitudes = product_transposed(s.W, g);
-  constexpr double kRange = 14, kStep = 0.1;  // from e^-14 to e^14
+  constexpr double kRange = 14, kStep = 0.1;  // of log weight: a million times more or less, within 5 %
   const double now = surprise(1, s, amplitudes);
   SupportedWeight best;
   for (double x = -kRange; x <= kRange; x += kStep)

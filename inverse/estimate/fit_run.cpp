@@ -6,10 +6,9 @@
 namespace aspic {
 namespace {
 
-// Relative to |r|^2: equilibria have residual forces of 1e-9.
-constexpr double kNoise = 1e-10;
-constexpr double kSufficientDecrease = 1e-4;
-constexpr double kShortest = 1e-6;
+constexpr double kNoise = 1e-10;              // of |r|^2, relative: equilibria have residual forces of 1e-9
+constexpr double kSufficientDecrease = 1e-4;  // [Nocedal and Wright 2006, section 3.1]
+constexpr double kShortest = 1e-6;            // step: 20 halvings. Chosen
 
 bool is_finite(std::span<const double> v) {
   return std::all_of(v.begin(), v.end(), [](double x) { return std::isfinite(x); });

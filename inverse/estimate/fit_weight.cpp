@@ -8,17 +8,18 @@
 #include "base/formatted.h"
 #include "estimate/evidence.h"
 #include "estimate/fit_run.h"
+#include "model/limits.h"
 
 namespace aspic {
 namespace {
 
-constexpr double kLargestFall = 1.0 / 30;  // decrease of the weight between trials
-constexpr int kTrials = 24;
-constexpr double kStagnation = 0.02;  // change of log |r|^2 per factor e of the weight
-constexpr double kRange = 1e12;       // between the first weight and the last
-constexpr double kSettled = 0.3;      // change of the log weight of largest evidence
-constexpr int kEvidenceTrials = 8;
-constexpr int kBestSeen = 64;  // directions used to select the weight: relative error sqrt(2 / 64)
+constexpr double kLargestFall = 1.0 / 30;  // decrease of the weight between trials, which start from the last one
+// Change of log |r|^2 per factor e of the weight. Chosen: judge() expects 0.1 to 1.
+constexpr double kStagnation = 0.02;
+// Between the first weight and the last: a million times in standard deviations of the prior.
+constexpr double kRange = 1e12;
+constexpr int kBestSeen = 64;           // directions used to select the weight: relative error sqrt(2 / 64) = 0.18
+constexpr double kSettledWeight = 0.3;  // change of the log weight of largest evidence, less than twice this error
 
 // Weight at which prior and data have equal slopes along the steepest descent in the norm of the prior.
 std::optional<double> balanced_weight(FitRun& run, const FitPoint& at) {
@@ -116,19 +117,12 @@ const WeightTrial& most_cautious(const std::vector<WeightTrial>& trials) {
 
 std::string describe(Discrepancy::Verdict verdict, double squares, int residuals) {
   const std::string found = "|r|^2 = " + three_digits(squares) + " of " + std::to_string(residuals) + " residuals";
-  switch (verdict) {
-    case Discrepancy::Verdict::fits:
-      return "the weight leaves " + found;
-    case Discrepancy::Verdict::explained_by_guess:
-      return "the guess already explains the data within their standard deviations (" + found +
-             "): they may be too large";
-    case Discrepancy::Verdict::unexplained:
-      return "no material of this model explains the data within their standard deviations (" + found +
-             "): they may be too small, or the model may be wrong";
-    case Discrepancy::Verdict::try_on:
-      break;
-  }
-  return "the search for a weight ended at " + found;
+  if (verdict == Discrepancy::Verdict::fits) return "the weight leaves " + found;
+  if (verdict == Discrepancy::Verdict::explained_by_guess)
+    return "the guess already explains the data within their standard deviations (" + found +
+           "): they may be too large";
+  return "no material of this model explains the data within their standard deviations (" + found +
+         "): they may be too small, or the model may be wrong";
 }
 
 }  // namespace
@@ -140,7 +134,7 @@ Status fit_by_discrepancy(FitRun& run, FitPoint& at, FitGoal& goal, FitMethod me
   Discrepancy rule(run.readings());
   std::vector<WeightTrial>& trials = run.report.weights;
   auto verdict = Discrepancy::Verdict::try_on;
-  for (int i = 0; i < kTrials && verdict == Discrepancy::Verdict::try_on; ++i) {
+  while (verdict == Discrepancy::Verdict::try_on) {  // each trial moves the weight, or shortens the bracket by a tenth
     const Status status = fit_loosely(run, at, goal, method);
     if (!is_success(status)) return status;
     trials.push_back(trial_at(run, at));
@@ -159,7 +153,7 @@ Status fit_by_evidence(FitRun& run, FitPoint& at, FitGoal& goal, FitMethod metho
   if (!balanced) return Status::undefined;
   run.weight = run.options.first_weight > 0 ? run.options.first_weight : 0.1 * *balanced;
   run.report.message = "the search for the weight of largest evidence did not converge";
-  for (int i = 0; i < kEvidenceTrials; ++i) {
+  for (int i = 0; i < kFixedPointPasses; ++i) {
     if (const Status status = fit_loosely(run, at, goal, method); !is_success(status)) return status;
     run.report.weights.push_back(trial_at(run, at));
     if (!run.linearize(at)) return Status::undefined;
@@ -167,7 +161,7 @@ Status fit_by_evidence(FitRun& run, FitPoint& at, FitGoal& goal, FitMethod metho
     const Spectrum s = spectrum(run.data(), before, {.dense = kBestSeen, .max_rank = kBestSeen, .negligible = 1});
     if (!s.ok) return Status::undefined;
     const double factor = supported_weight(run.prior(), run.weight, at.p, s).factor;
-    if (std::abs(std::log(factor)) < kSettled) {
+    if (std::abs(std::log(factor)) < kSettledWeight) {
       run.report.message = "the weight maximizes the evidence of the data";
       break;
     }

@@ -10,7 +10,7 @@ namespace {
 
 // Continues while iteration k contributes more than this, relative to the average so far, to the predicted decrease
 // [Nash 2000, sec. 6]. The residual is no criterion: well determined directions dominate it and converge first. A step
-// costs about twenty inner iterations, so these are accurate.
+// costs about twenty inner iterations, so one must contribute a twentieth.
 constexpr double kWorthwhile = 0.05;
 
 struct Solution {

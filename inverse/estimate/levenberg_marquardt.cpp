@@ -14,9 +14,10 @@ namespace {
 // Decrement, in posterior standard deviations, if no step is found. Jacobians with differences, such as those of scans
 // under gravity, have errors of about 1e-6 |r|.
 constexpr double kNegligibleDecrement = 1e-3;
-constexpr double kNearMinimum = 0.01;  // distance from the minimum in standard deviations; cheap for few parameters
-
-constexpr double kFirstDamping = 1e-3, kMinDamping = 1e-14, kLargestDamping = 1e12;
+constexpr double kNearMinimum = 0.01;   // distance from the minimum in standard deviations; cheap for few parameters
+constexpr double kFirstDamping = 1e-3;  // for acceptable guesses [Madsen et al. 2004, section 3.2]
+// A smaller damping vanishes in the round-off of sums of some 50 terms; a larger one makes steps shorter than 1e-12.
+constexpr double kMinDamping = 1e-14, kLargestDamping = 1e12;
 
 using Eigen::MatrixXd;
 using Eigen::VectorXd;

@@ -3,21 +3,24 @@
 #include <algorithm>
 #include <cmath>
 
+#include "model/limits.h"
 #include "model/scaled_inverse.h"
 #include "optimize/lbfgs.h"
 
 namespace aspic {
 namespace {
 
-constexpr int kIterations = 4;  // minimum number per preconditioner
+// Minimum number per preconditioner, which costs as many simulations as parameters. Chosen.
+constexpr int kIterations = 4;
 // Largest predicted decrease at the solution, relative to the value without any motion and, for noisy data, to the
 // value per degree of freedom: a twentieth of a standard deviation.
-constexpr double kDecrease = 1e-18, kDecreaseInNoise = 1e-3;
-constexpr double kRoundOff = 1e-12, kRoundOffInNoise = 1e-2;  // the same if the line search found no step
-constexpr double kHessianDifference = 1e-3;                   // difference of p
-constexpr double kWeakest = 1e-5;    // eigenvalue of the scaled Hessian below which a direction is not determined
-constexpr double kLargestSigma = 1;  // sigma of p: a factor of e
-constexpr double kVanished = -5;     // p of a damping coefficient that has fallen to less than 1 % of its guess
+constexpr double kDecrease = kStagnated * kStagnated, kDecreaseInNoise = 1e-3;
+// The same if the line search found no step: a seventh of a standard deviation.
+constexpr double kRoundOff = kSame * kSame, kRoundOffInNoise = 1e-2;
+// Eigenvalue of the scaled Hessian, whose central differences have errors of 1e-6, below which a direction is not
+// determined.
+constexpr double kWeakest = 1e-5;
+constexpr double kVanished = -5;  // p of a damping coefficient that has fallen to 0.7 % of its guess. Chosen
 
 double redundancy(const MotionObjective& f) {  // degrees of freedom
   return 3.0 * static_cast<double>(f.data().samples.size()) - f.parameters().size();
@@ -92,12 +95,12 @@ std::vector<double> hessian(MotionObjective& f, const MotionPoint& at) {
   std::vector<double> H(static_cast<size_t>(n) * n, 0.0);
   for (int i = 0; i < n && !f.stop().stopped(); ++i) {
     std::vector<double> p = at.p;
-    p[i] = at.p[i] + kHessianDifference;
+    p[i] = at.p[i] + kCentralStep;
     const MotionPoint ahead = f.differentiate(p);
-    p[i] = at.p[i] - kHessianDifference;
+    p[i] = at.p[i] - kCentralStep;
     const MotionPoint behind = f.differentiate(p);
     for (int j = 0; j < n && ahead.ok && behind.ok; ++j) {
-      const double slope = (ahead.gradient[j] - behind.gradient[j]) / (2 * kHessianDifference);
+      const double slope = (ahead.gradient[j] - behind.gradient[j]) / (2 * kCentralStep);
       H[static_cast<size_t>(n) * i + j] += slope / 2, H[static_cast<size_t>(n) * j + i] += slope / 2;
     }
   }
@@ -115,7 +118,7 @@ double noise(const MotionObjective& f, const MotionPoint& at) {
 void find_sigmas(MotionObjective& f, MotionFitReport& report) {
   const int n = f.parameters().size();
   std::vector<double> H = hessian(f, report.after);
-  const double least = std::pow(MotionObjective::kInsensitive, 2) * 2 * f.resting_value();
+  const double least = std::pow(kSame, 2) * 2 * f.resting_value();
   for (int i = 0; i < n; ++i)
     if (f.is_held(i) || !(H[static_cast<size_t>(n) * i + i] > least))
       for (int j = 0; j < n; ++j) H[static_cast<size_t>(n) * i + j] = H[static_cast<size_t>(n) * j + i] = 0;
@@ -128,7 +131,7 @@ void find_sigmas(MotionObjective& f, MotionFitReport& report) {
       value.message = "the motion does not depend on it";
     else if (covariance.weakest[i] < kWeakest)
       value.message = "only determined together with another parameter";
-    else if (!(sigma < kLargestSigma))
+    else if (!(sigma < kLinearRange))
       value.message = "the noise is too large";
     else
       value.sigma = std::abs(f.parameters().slope(i, report.p[i])) * sigma;

@@ -14,8 +14,9 @@
 namespace aspic {
 namespace {
 
-constexpr double kFloor = 1e-7;     // eigenvalue of the scaled J'J: weaker combinations of parameters are held
-constexpr double kLargestMove = 1;  // largest change of p in one iteration
+// Eigenvalue of the scaled J'J: weaker combinations of parameters are held. The columns have errors of kParameterStep,
+// whose squares are a tenth of it.
+constexpr double kFloor = 1e-7;
 
 Vec3d point_at(const SurfacePoint& marker, const State& state) {
   Vec3d x{};
@@ -63,11 +64,11 @@ MotionObjective::MotionObjective(MotionModel model, MotionData data, const std::
   double square = 0;
   for (const MotionSample& sample : data_.samples) {
     const double steps = (sample.time - start.time) / options_.h;
-    if (!(steps > kSameTime && steps < kMaxTimeSteps))
+    if (!(steps > kSame && steps < kMaxTimeSteps))
       throw InvalidInput("time = " + std::to_string(sample.time) + " s is " + std::to_string(steps) +
                          " time steps after the start; it must be between 0 and 1e6 (choose another time.step)");
-    const double whole = std::abs(steps - std::round(steps)) < kSameTime ? std::round(steps) : std::floor(steps);
-    places_.push_back({static_cast<int>(whole), std::max(0.0, steps - whole) < kSameTime ? 0 : steps - whole});
+    const double whole = std::abs(steps - std::round(steps)) < kSame ? std::round(steps) : std::floor(steps);
+    places_.push_back({static_cast<int>(whole), std::max(0.0, steps - whole) < kSame ? 0 : steps - whole});
     const Vec3d path = sample.position - data_.offset[sample.marker] - point_at(data_.markers[sample.marker], start);
     square += squared_norm(path);
     resting_ += squared_norm(path) / (2 * sample.sigma * sample.sigma);
@@ -160,7 +161,7 @@ bool MotionObjective::linearize(const MotionPoint& at) {
       square += squared_norm(rate);
       for (int axis = 0; axis < 3; ++axis) J[i][3 * s + axis] = rate[axis] / data_.samples[s].sigma;
     }
-    held_[i] = std::sqrt(square / static_cast<double>(data_.samples.size())) <= kInsensitive * travel_;
+    held_[i] = std::sqrt(square / static_cast<double>(data_.samples.size())) <= kSame * travel_;
     if (held_[i]) std::fill(J[i].begin(), J[i].end(), 0.0);
   }
   inverse_ = scaled_inverse(n, product_transposed(J, J), kFloor, Weak::dropped).inverse;
@@ -191,7 +192,7 @@ void MotionObjective::note_iterate(std::span<const double> x) {
 }
 
 double MotionObjective::max_step(std::span<const double>, std::span<const double> d) {
-  return kLargestMove / std::max(max_abs(d), 1e-300);
+  return kLinearRange / std::max(max_abs(d), 1e-300);
 }
 
 bool MotionObjective::precondition(std::span<const double> r, std::span<double> z) {

@@ -52,7 +52,7 @@ class MotionObjective : public Objective, public HasPreconditioner {
   MotionPoint simulate(std::span<const double> p);       // without gradient
   MotionPoint differentiate(std::span<const double> p);  // value and gradient
   // Computes the preconditioner at a point: J'J, J by differences of simulations. Parameters that move no marker by
-  // more than kInsensitive of the travel per unit of p are held until the next call. Returns whether the set of held
+  // more than kSame of the travel per unit of p are held until the next call. Returns whether the set of held
   // ones changed.
   bool linearize(const MotionPoint& at);
   bool is_held(int i) const { return held_[i]; }
@@ -66,8 +66,6 @@ class MotionObjective : public Objective, public HasPreconditioner {
   void note_iterate(std::span<const double> x) override;
   double max_step(std::span<const double> x, std::span<const double> d) override;
   bool precondition(std::span<const double> r, std::span<double> z) override;
-
-  static constexpr double kInsensitive = 1e-6;
 
  private:
   struct Place {  // place of a sample in time: between point `step` and the next one, with the weight of the latter

@@ -7,12 +7,10 @@
 
 #include "linalg/dense_eigen.h"
 #include "mesh/grouped_elements.h"
+#include "model/limits.h"
 
 namespace aspic {
 namespace {
-
-constexpr double kWidest = 2;            // standard deviation of a level (log E) about its initial value
-constexpr double kLargestLevelMove = 1;  // limit of the change of a level between linearizations
 
 // Prior of the surface between parts.
 struct Surface {
@@ -177,9 +175,9 @@ class Sampler {
     std::vector<double> A(static_cast<size_t>(K) * K), b(K);
     for (int k = 0; k < K; ++k) {
       for (int j = 0; j < rank_; ++j) b[k] += S[k][j] * (d_[j] * origin_[j] - slope_[j]);
-      b[k] += start_[k] / (kWidest * kWidest);
+      b[k] += start_[k] / (kPriorSigma * kPriorSigma);
       for (int l = 0; l < K; ++l) {
-        double sum = k == l ? 1 / (kWidest * kWidest) : 0;
+        double sum = k == l ? 1 / (kPriorSigma * kPriorSigma) : 0;
         for (int j = 0; j < rank_; ++j) sum += S[k][j] * d_[j] * S[l][j];
         A[static_cast<size_t>(l) * K + k] = sum;
       }
@@ -192,7 +190,7 @@ class Sampler {
       y = y / e.values[i] + normal_(random_) / std::sqrt(e.values[i]);
       for (int k = 0; k < K; ++k) a[k] += e.vectors[static_cast<size_t>(i) * K + k] * y;
     }
-    for (int k = 0; k < K; ++k) a[k] = std::clamp(a[k], start_[k] - kLargestLevelMove, start_[k] + kLargestLevelMove);
+    for (int k = 0; k < K; ++k) a[k] = std::clamp(a[k], start_[k] - kLinearRange, start_[k] + kLinearRange);
     if (std::is_sorted(a.begin(), a.end())) levels_ = a;
     force_.assign(rank_, 0.0);  // slope + d c
     for (int k = 0; k < K; ++k)

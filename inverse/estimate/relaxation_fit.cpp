@@ -13,11 +13,11 @@
 namespace aspic {
 namespace {
 
-constexpr int kIterationsPerStart = 40;          // per initial guess
-constexpr double kDistinct = 1.5;                // smallest ratio of two relaxation times
-constexpr double kRatio = 0.3, kRatioSigma = 2;  // prior of the ratios: median, and standard deviation of the logarithm
-constexpr double kUndeterminedLog = 1.5;         // standard deviation of a logarithm
-constexpr double kFarOutside = 3;                // relaxation times beyond the range of the readings by this factor
+constexpr int kIterationsPerStart = 40;   // per initial guess; other guesses follow one that takes more. Chosen
+constexpr double kRatio = 0.3;            // median of the prior of the ratios, 0.006 to 15 with 95 %. Chosen
+constexpr double kUndeterminedLog = 1.5;  // standard deviation of a logarithm, chosen; the prior of a ratio has 2
+// Of the range of times, as a ratio: e^(-1/3) = 72 % of the branch is left at the end.
+constexpr double kFarOutside = 3;
 
 // Times between which relaxation is visible: from the shortest distance of two readings to the longest duration [s].
 struct TimeRange {
@@ -94,7 +94,7 @@ class RelaxationFitter {
     std::vector<double> means = {0}, sigmas = {is_scale_known() ? 1 : options_.scale_sigma};
     for (int b = 0; b < count; ++b) {
       means.insert(means.end(), {std::log(kRatio), std::log(range_.at(0.5))});
-      sigmas.insert(sigmas.end(), {kRatioSigma, std::log(range_.longest / range_.shortest) / 2});
+      sigmas.insert(sigmas.end(), {kPriorSigma, std::log(range_.longest / range_.shortest) / 2});
     }
     return {std::move(means), std::move(sigmas)};
   }
@@ -168,7 +168,7 @@ class RelaxationFitter {
     for (size_t i = 2; i < c.p.size(); i += 2) times.push_back(c.p[i]);
     std::sort(times.begin(), times.end());
     for (size_t i = 1; i < times.size(); ++i)
-      if (times[i] - times[i - 1] < std::log(kDistinct)) c.failure = "two branches have the same relaxation time";
+      if (times[i] - times[i - 1] < std::log(kClearRatio)) c.failure = "two branches have the same relaxation time";
   }
 
   // Factor by which the standard deviations are too small, even for the best candidate.

@@ -79,7 +79,7 @@ int stiffness_of(const ParameterMap& map) {
 }
 
 void warn_of_scale(LeastSquares& data, const ParameterMap& map, Posterior& result) {
-  constexpr double kNothing = 1e-2;  // limit at which data alone determine E up to a factor of e^10
+  constexpr double kNothing = 1e-2;  // information 1 / sigma^2 of log E: a factor of e^10
   const int young = stiffness_of(map);
   if (young < 0) return;
   result.scale_is_unknown = information_of_scale(data, map, young) < kNothing;
@@ -134,7 +134,7 @@ void judge_weight(Regularizer& prior, double weight, std::span<const double> p, 
 }
 
 void warn_of_rank(Posterior& result) {
-  constexpr double kMuch = 3;  // standard deviations that are twice too large
+  constexpr double kMuch = 3;  // d of a direction whose standard deviation is sqrt(1 + d) = 2 times too large
   const Spectrum& s = result.gaussian->spectrum();
   if (s.missed > kMuch)
     result.warnings.push_back(formatted(

@@ -5,8 +5,6 @@
 namespace aspic {
 namespace {
 
-constexpr double kArc = 0.64;  // radius of the arc / width of the rounding
-
 // Length and direction. The direction is zero at the origin, where that of a point inside an indenter is irrelevant.
 struct Polar {
   double length;

@@ -8,8 +8,10 @@
 
 namespace aspic {
 
+// Radius of an arc over the width w of the rounding, whose middle is as far from the corner, 3 sqrt(2) / 16 w.
+inline constexpr double kArc = 0.64;
 // Rim of a disc whose rim is not stated, and the limits of others, relative to the radius of the disc.
-inline constexpr double kUsualRim = 0.064, kSharpestRim = 0.0128, kRoundestRim = 0.64;
+inline constexpr double kUsualRim = 0.1 * kArc, kSharpestRim = kUsualRim / 5, kRoundestRim = kArc;
 
 // Radius of the rim of a disc [m], within these limits.
 double rim_of(const Indenter& disc);

@@ -14,10 +14,10 @@
 namespace aspic {
 namespace {
 
-constexpr double kSoftening = 0.02;  // e / radius
-constexpr double kEdge = 0.125;      // width of the glue of a disc / radius
-constexpr double kLongestEdge = 64;  // longest edge of a triangle near the indenter / radius
-constexpr int kMaxFarCuts = 64;      // maximum cuts of an edge of a triangle that the indenter does not touch at rest
+constexpr double kSoftening = 0.02;  // e / radius; chosen, as wide as the sharpest rim of a disc
+constexpr double kEdge = 0.125;      // width of the glue of a disc / radius: a cut of the triangles
+constexpr double kLongestEdge = 64;  // longest edge of a triangle near the indenter / radius: 2^20 points per triangle
+constexpr int kMaxFarCuts = 64;      // of an edge of a triangle that the indenter does not touch at rest: 4096 points
 
 using Corners = std::array<Vec3d, 3>;
 

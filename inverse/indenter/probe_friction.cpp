@@ -9,8 +9,7 @@
 namespace aspic {
 namespace {
 
-constexpr double kWidth = 1e-3;  // e / radius
-constexpr int kRimIterations = 30;
+constexpr double kWidth = 1e-3;  // e / radius: the creep of points that stick
 
 // f'(y) / y, and its derivative divided by y
 struct Slope {
@@ -38,10 +37,11 @@ double height(const Indenter& indenter, double r) {
   const double R = indenter.radius;
   if (indenter.shape == IndenterShape::sphere) return std::sqrt(R * R - r * r);
   const IndenterPose upright{.axis = {{0, 0, 1}}};
-  double s = 0;  // Newton's method, monotone because the depth is concave
-  for (int k = 0; k < kRimIterations; ++k) {
+  double s = 0, last = 1;  // Newton's method, which descends up to round-off because the depth is concave
+  while (s < last) {
     const Depth d = depth(indenter, upright, {{r, 0, s}});
     if (!(d.value < 0) || !(d.gradient[2] < 0)) break;
+    last = s;
     s -= d.value / d.gradient[2];
   }
   return s;

@@ -66,11 +66,4 @@ bool reverse_chain(int steps, int slots, const ChainOperations& chain) {
   return reverse(0, steps, 0, slots, chain);
 }
 
-// r steps - beta(s + 1, r - 1) [Griewank and Walther 2000].
-int64_t checkpointing_advances(int steps, int slots) {
-  if (steps <= 1) return 0;
-  const int r = repeats_for(steps, slots);
-  return int64_t{r} * steps - reach(slots + 1, r - 1);
-}
-
 }  // namespace aspic

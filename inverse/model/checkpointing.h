@@ -18,10 +18,7 @@ struct ChainOperations {
 
 // Calls reverse(steps - 1), reverse(steps - 2) ... reverse(0). The current state is at point 0 at first. At most
 // `slots` (at least 1) states are stored at a time, in slots 0 ... slots - 1, with the minimum number of calls of
-// advance() for that. Returns false if a callback failed.
+// advance() for that [Griewank and Walther 2000]. Returns false if a callback failed.
 bool reverse_chain(int steps, int slots, const ChainOperations& chain);
-
-// Returns the number of calls of advance().
-int64_t checkpointing_advances(int steps, int slots);
 
 }  // namespace aspic

@@ -31,9 +31,8 @@ class CommonErrors {
 
 // The stiffness k of an indenter's layer is a convention, so log k is unknown. A mesh that is too stiff around the
 // indenter also acts like another layer, independently in each case. So log k, common to all cases, gets a normal
-// error per case with the standard deviation kLayerSigma, unless the data state it. All fitted and compared models are
+// error per case with the standard deviation kWeakPrior, unless the data state it. All fitted and compared models are
 // treated this way.
-inline constexpr double kLayerSigma = 3;  // a factor of 20
 
 // r as a function of p alone, for the most probable nuisance parameters q of each p. With r(p, q) linear in q,
 //   min over q of |r(p, q)|^2 + |q / sigma|^2 = |L (r - N q_now)|^2,    N = dr/dq, q_now: the values in r,

@@ -11,8 +11,9 @@
 namespace aspic {
 namespace {
 
-constexpr size_t kMany = 1000;         // readings of a case from which on it is condensed
-constexpr double kUnmeasured = 1e100;  // standard deviation of an axis that a condensed reading does not contain
+// Readings of a case from which on it is condensed, which changes fits by round-off only. Fewer cost little.
+constexpr size_t kMany = 1000;
+constexpr double kUnmeasured = 1e100;  // standard deviation of an axis without a reading: its square is finite
 
 // Triangular factor of rows, updated row by row with Givens rotations.
 class Factor {

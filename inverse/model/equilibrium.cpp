@@ -178,7 +178,8 @@ struct Equilibrium::Impl {
     in_force = &wanted;
   }
 
-  static constexpr int kMaxTerms = 100;  // see add_lagged()
+  // Of add_lagged(): terms that shrink by 20 % reach 1e-9. Slower ones are refused.
+  static constexpr int kMaxTerms = 100;
 
   EquilibriumOptions options;
   Model model;

@@ -11,7 +11,7 @@ namespace aspic {
 namespace {
 
 // Radius of a radial function, relative to the largest distance of a tet from the nearest center. Every tet is well
-// inside the support of a function, and functions overlap.
+// inside the support of a function, and functions overlap. Chosen.
 constexpr double kReach = 2.5;
 
 struct Centers {

@@ -27,7 +27,7 @@ inline Vec3d gauge_sigma(const std::optional<Vec3d>& gauge, const Vec3d& sigma) 
 
 // Whether component k of a reading was measured. Recordings of one camera lack one; its standard deviation is huge.
 inline bool is_measured(const Vec3d& sigma, int k) {
-  constexpr double kUnmeasured = 1e3;
+  constexpr double kUnmeasured = 1e3;  // chosen, above ratios of measured components
   return sigma[k] < kUnmeasured * std::min({sigma[0], sigma[1], sigma[2]});
 }
 

@@ -7,7 +7,9 @@
 namespace aspic {
 namespace {
 
-constexpr double kCorrelation = 0.5;  // correlation length, relative to the cube root of the volume
+// Correlation length, relative to the cube root of the volume. Two layers with 8 handles: 93 % of the intervals contain
+// the truth (docs/fitting.md).
+constexpr double kCorrelation = 0.5;
 
 double correlation_length(const TetMesh& mesh) {
   double all = 0;

@@ -16,9 +16,8 @@
 namespace aspic {
 namespace {
 
-constexpr int kRampSteps = 8;           // minimum number per ramp
-constexpr int kHoldSteps = 10;          // first step of a hold: its length / 2^kHoldSteps; then lengths double
-constexpr double kTimeRoundOff = 1e-9;  // relative to the duration of the history
+constexpr int kRampSteps = 8;   // minimum number per ramp. Chosen
+constexpr int kHoldSteps = 10;  // first step of a hold: its length / 2^kHoldSteps; then lengths double. Chosen
 
 Vec3d blend(const Vec3d& a, const Vec3d& b, double part) { return (1 - part) * a + part * b; }
 
@@ -52,7 +51,7 @@ struct Stop {
 // The times at which steps end, segment by segment.
 std::vector<Stop> stops_of(const LoadHistory& history) {
   const std::vector<double>& times = history.times;
-  const double same = kTimeRoundOff * (times.back() - times.front());
+  const double same = kFinest * (times.back() - times.front());
   std::vector<Stop> stops = {{times.front(), 0, 0}};
   for (size_t k = 0; k + 1 < times.size(); ++k) {
     const double begin = times[k], length = times[k + 1] - begin;
@@ -235,7 +234,7 @@ HistoryPrediction simulate(const Experiment& body, const LoadHistory& history, c
                            const EquilibriumOptions& options) {
   HistoryPrediction prediction;
   HistoryBody now(body, history, material, options);
-  const double same = kTimeRoundOff * (history.times.back() - history.times.front());
+  const double same = kFinest * (history.times.back() - history.times.front());
   const auto read_markers = [&](const LoadCase& load) {
     for (const MarkerReading& reading : load.positions)
       prediction.markers.push_back(marker_at(body.markers[static_cast<size_t>(reading.marker)], now.x()));

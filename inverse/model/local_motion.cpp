@@ -31,7 +31,7 @@ class PointTree {
   }
 
  private:
-  static constexpr int kLeaf = 8;
+  static constexpr int kLeaf = 8;  // points; the result does not depend on it
   struct Node {
     int begin, end, right = -1;  // right < 0: a leaf; the left child follows its parent
     int axis = 0;
@@ -120,7 +120,7 @@ double middle_of(PerNeighbor values) {
 
 // Weighted least squares for u = c[0] + c[1] t[1] + c[2] t[2] + c[3] t[3].
 std::array<Vec3d, 4> field(std::span<const Row4> terms, std::span<const Vec3d> motion, const PerNeighbor& weight) {
-  constexpr double kSlopeRidge = 1e-3;  // regularizes the normal slope for coplanar neighbors
+  constexpr double kSlopeRidge = 1e-3;  // beside sums over 12 neighbors; coplanar ones have no normal slope
   std::array<Row4, 4> A{};
   std::array<Vec3d, 4> b{};
   for (int k = 1; k < 4; ++k) A[k][k] = kSlopeRidge;
@@ -146,7 +146,7 @@ std::vector<MotionNeighbors> nearest_points(std::span<const Vec3d> points) {
 }
 
 ExpectedMotion expected_motion(std::span<const Vec3d> X, std::span<const Vec3d> u, int i, const MotionNeighbors& near) {
-  constexpr int kSweeps = 8;
+  constexpr int kSweeps = 8;  // chosen
   const double reach = norm(X[near.back()] - X[i]), scale = reach > 0 ? 1 / reach : 0;
   std::array<Row4, kMotionNeighbors> terms;
   std::array<Vec3d, kMotionNeighbors> motion;

@@ -8,7 +8,7 @@
 
 namespace aspic {
 
-inline constexpr int kMotionNeighbors = 12;
+inline constexpr int kMotionNeighbors = 12;  // three times the coefficients of the field; even, for a median
 using MotionNeighbors = std::array<int, kMotionNeighbors>;  // indices by ascending distance
 
 // Returns the nearest other points of each point, by ascending distance and index. Requires more than kMotionNeighbors

@@ -9,6 +9,7 @@
 #include "math/vectors.h"
 #include "model/common_errors.h"
 #include "model/gauge.h"
+#include "model/limits.h"
 #include "model/load_case.h"
 #include "model/refined_experiment.h"
 #include "model/unloaded_shape.h"
@@ -22,8 +23,6 @@ Vec3d at_rest(const Experiment& experiment, const SurfacePoint& point) {
 }
 
 namespace {
-
-constexpr double kShapeStep = 1e-3;  // of a fitted value, for the change of the unloaded shape
 
 // Whether the derivatives of the body are those at its accepted positions.
 bool has_linearized_accepted(const LoadedBody& body) {
@@ -166,14 +165,14 @@ struct Misfit::Impl {
     std::vector<double> p = accepted_p, ahead(static_cast<size_t>(residual_count)), back = ahead;
     for (size_t k = 0; k < p.size(); ++k) {
       for (const double sign : {1.0, -1.0}) {
-        p[k] = accepted_p[k] + sign * kShapeStep;
+        p[k] = accepted_p[k] + sign * kCentralStep;
         std::optional<Shape> shape = unloaded_at(p, accepted_parameters);
         p[k] = accepted_p[k];
         if (!shape) return false;
         put_residuals(shape->cases, sign > 0 ? ahead : back);
       }
       std::vector<double>& slope = shape_slopes.emplace_back(ahead);
-      for (size_t i = 0; i < slope.size(); ++i) slope[i] = (ahead[i] - back[i]) / (2 * kShapeStep);
+      for (size_t i = 0; i < slope.size(); ++i) slope[i] = (ahead[i] - back[i]) / (2 * kCentralStep);
     }
     return true;
   }
@@ -345,7 +344,7 @@ void Misfit::multiply_transposed(std::span<const double> w, std::span<double> pb
 int Misfit::nuisance_count() const { return impl_->bounded_count() + (impl_->has_unknown_layers() ? 1 : 0); }
 void Misfit::nuisance(int k, std::span<double> dr) { impl_->multiply_by_nuisance(k, dr); }
 NuisancePrior Misfit::nuisance_prior(int k) const {
-  if (k == impl_->bounded_count()) return {.case_sigma = kLayerSigma};
+  if (k == impl_->bounded_count()) return {.case_sigma = kWeakPrior};
   if (k >= impl_->error_count()) return {.sigma = 1};
   const SystematicError& error = impl_->experiment.errors[k];
   return {.sigma = error.sigma, .value = error.value};

@@ -116,7 +116,7 @@ class Misfit : public LeastSquares {
   // Stores references to both. The experiment's mesh is that of the map, or a refinement of it. A scanned mesh is
   // unloaded for each p; J includes the change of its shape by differences, so at most kMaxUnloaded parameters are
   // accepted. Throws InvalidInput for a case without residuals.
-  static constexpr int kMaxUnloaded = 20;
+  static constexpr int kMaxUnloaded = 20;  // chosen: each costs two unloadings per iteration
   Misfit(const Experiment& experiment, const ParameterMap& map, const EquilibriumOptions& options = {});
   ~Misfit() override;
 

@@ -51,7 +51,7 @@ void check_guess(const FitParameter& u, const Quantity& q) {
                      ", and not at an end");
 }
 
-// Ranges over several powers of ten use logarithms.
+// Ranges over two powers of ten or more use logarithms.
 QuantityScale scale_of(const ExtraParameter& extra) {
   constexpr double kPowers = 100;
   if (extra.min == 0 && extra.max > kPowers) return QuantityScale::powers_from_zero(extra.max);

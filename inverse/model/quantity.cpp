@@ -8,8 +8,7 @@ namespace aspic {
 namespace {
 
 constexpr char kStiffness[] = "young", kFirstComponent[] = "fibre_x";
-constexpr double kTypicalRatio = 1;  // without fibres, the direction has no effect
-constexpr double kAnyTilt = 1e300;
+constexpr double kAnyTilt = 1e300;  // no limit; twice as much is finite
 
 double inside(const ExtraParameter& extra) {
   if (extra.fallback > extra.min && extra.fallback < extra.max) return extra.fallback;
@@ -29,7 +28,7 @@ std::vector<Quantity> material_quantities(const std::string& material) {
                                 {"poisson", "", QuantityRole::compressibility, -1, 0.5, 0.4}};
   for (const ExtraParameter& extra : material_info(material).extra)
     list.push_back({extra.name, extra.unit == "1" ? "" : extra.unit, QuantityRole::own, extra.min, extra.max,
-                    extra.name == kFibreRatio ? kTypicalRatio : inside(extra), static_cast<int>(list.size()) - 2});
+                    extra.name == kFibreRatio ? 1 : inside(extra), static_cast<int>(list.size()) - 2});
   if (const std::optional<int> first = fibre_components(material))
     for (int r = 0; r < 3; ++r) list[2 + *first + r].role = QuantityRole::component;
   return list;

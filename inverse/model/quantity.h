@@ -17,7 +17,6 @@ enum class QuantityRole { stiffness, compressibility, own, component, tilt };
 inline constexpr const char* kFibreRatio = "fibre_ratio";
 inline constexpr const char* kFibreDirection = "fibre_direction";  // both tilts, in a plan
 inline constexpr const char* kFibreTilts[] = {"fibre_tilt_1", "fibre_tilt_2"};
-inline constexpr double kTiltSigma = 3;  // standard deviation of the prior of a tilt: hardly any prior
 
 struct Quantity {
   std::string name, unit;  // unit: empty if dimensionless

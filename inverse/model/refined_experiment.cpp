@@ -14,7 +14,7 @@
 namespace aspic {
 namespace {
 
-constexpr double kMaxMultiple = 10;  // multiple of the force with known error
+constexpr double kMaxMultiple = 10;  // of the force whose error is known; chosen, for predictions that are far off
 
 // Factor 1 / (1 - 1/2^p) for errors of order p.
 double richardson(const TetMesh& mesh) { return mesh.mids.empty() ? 4.0 / 3 : 8.0 / 7; }

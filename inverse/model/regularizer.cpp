@@ -15,7 +15,7 @@ namespace {
 
 // A penalty limits values of fields to a factor of 100 from the guess (4.6 in log E) for any weight. With small
 // weights, poorly determined tets would otherwise diverge to 0 or infinity.
-constexpr double kWall = 1e4;
+constexpr double kWall = 1e4;  // 1 / variance of the excess of a whole field: a hundredth of log E
 
 double excess(double distance) { return std::copysign(std::max(0.0, std::abs(distance) - kFarthestOfField), distance); }
 

@@ -15,7 +15,7 @@ namespace aspic {
 
 enum class Smoothness { none, h1, total_variation };
 
-// Distance of a positive field (log E) from its guess at which the penalty begins: a factor of 100.
+// Distance of a positive field (log E) from its guess at which the penalty begins: log 100.
 inline constexpr double kFarthestOfField = 4.6;
 
 struct RegularizerOptions {

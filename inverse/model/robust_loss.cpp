@@ -7,7 +7,9 @@
 namespace aspic {
 namespace {
 
-constexpr double kFreedom = 4, kQuadratic = 3, kOutlier = 5;
+constexpr double kFreedom = 4;    // degrees of freedom. Chosen: half and double move values by 0.3 standard deviations
+constexpr double kQuadratic = 3;  // mean square of a normal vector
+constexpr double kOutlier = 5;    // standard deviations; one of 65 000 normal vectors is longer
 
 }  // namespace
 

@@ -8,7 +8,7 @@
 namespace aspic {
 
 ScaledInverse scaled_inverse(int n, std::span<const double> A, double floor, Weak weak) {
-  constexpr double kTakesPart = 0.1;  // smallest absolute entry of a unit eigenvector
+  constexpr double kTakesPart = 0.1;  // absolute entry of a unit eigenvector: 1 % of its square
   std::vector<int> kept;
   std::vector<double> scale(n, 0.0);
   for (int i = 0; i < n; ++i)

@@ -10,8 +10,8 @@
 namespace aspic {
 namespace {
 
-constexpr size_t kRemembered = 6;     // more solutions cost as many products as they save
-constexpr int kMaxCgIterations = 50;  // with a factor of another matrix
+constexpr size_t kRemembered = 6;     // solutions save two to four digits (tests/bench/results/adjoint.md)
+constexpr int kMaxCgIterations = 50;  // with a factor of another matrix; a new one costs a dozen or more (adjoint.md)
 
 // y += s x
 void add(double s, std::span<const double> x, std::span<double> y) {

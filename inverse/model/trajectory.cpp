@@ -162,7 +162,6 @@ struct Trajectory::Impl {
   void reset(TrajectoryGradient& gradient) const {
     gradient.elastic.assign(theta.size(), 0.0);
     gradient.density.assign(gravity ? model.mesh.tet_count() : 0, 0.0);
-    gradient.density_message = gravity ? "" : "the load 'gravity' is not the weight of the body";
     gradient.damping.resize(damping.size());
     for (size_t k = 0; k < damping.size(); ++k) gradient.damping[k].assign(damping[k]->coefficient_count(), 0.0);
   }

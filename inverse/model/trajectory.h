@@ -38,8 +38,7 @@ using TrajectoryObjective = std::function<double(int point, const State& state, 
 
 struct TrajectoryGradient {
   std::vector<double> elastic;               // with respect to mu, lambda, ... of every tet, as in ElasticParameters
-  std::vector<double> density;               // value per tet; empty if it cannot be computed, see density_message
-  std::string density_message;               // the reason
+  std::vector<double> density;               // value per tet; empty if the load "gravity" is not the weight of the body
   std::vector<std::vector<double>> damping;  // with respect to the coefficients of each term of Model::damping
   std::vector<double> q, qdot;               // with respect to the initial state; 0 at pinned vertices
 };

@@ -331,7 +331,6 @@ TEST(Trajectory, LoadOtherThanWeightHasNoDensityGradient) {
   TrajectoryGradient gradient;
   EXPECT_TRUE(trajectory.differentiate(distance_from_rest(body.mesh, options.steps), gradient).ok);
   EXPECT_TRUE(gradient.density.empty());
-  EXPECT_NE(gradient.density_message, "");
 }
 
 }  // namespace

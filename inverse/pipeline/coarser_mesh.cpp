@@ -13,7 +13,7 @@
 namespace aspic {
 namespace {
 
-constexpr double kCoarser = 1.5;
+constexpr double kCoarser = 1.5;  // ratio of edges. Chosen
 
 // Lengthens the edges of a resolved shape.
 void coarsen(Value& shape) {

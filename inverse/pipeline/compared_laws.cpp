@@ -3,10 +3,11 @@
 #include <algorithm>
 #include <set>
 
+#include "model/limits.h"
+
 namespace aspic {
 namespace {
 
-constexpr int kMaxRegions = 8;  // regions with one value each, for the comparison
 constexpr char kReference[] = "neo_hookean";
 
 const Law& law_named(const std::string& name) {
@@ -46,7 +47,7 @@ FitPlan with_law(FitPlan plan, const Law& law) {
 
 FitPlan simplified(FitPlan plan, const TetMesh& mesh, std::string* what) {
   const int regions = region_count(mesh);
-  const bool has_regions = regions > 1 && regions <= kMaxRegions;
+  const bool has_regions = regions > 1 && regions <= kMaxPhases;
   for (FitParameter& u : plan.parameters) {
     if (!has_many_values(u)) continue;
     u.parameterization = has_regions ? Parameterization::regions : Parameterization::uniform;

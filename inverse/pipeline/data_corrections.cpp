@@ -3,15 +3,12 @@
 #include <cmath>
 
 #include "estimate/nuisance_estimates.h"
+#include "model/limits.h"
 #include "model/systematic_errors.h"
 #include "pipeline/data_corrections.h"
 
 namespace aspic {
 namespace {
-
-// Change of the logarithm of a layer stiffness or a rim per pass: estimates are linearized, and those far from the last
-// diverge.
-constexpr double kLargestStep = 1;
 
 double change_of_weights(const std::vector<CaseWeights>& before, const std::vector<CaseWeights>& after) {
   double largest = 0;
@@ -42,12 +39,13 @@ double DataCorrections::estimate(FitModel& model, std::span<const double> p, con
                                  bool is_robust) {
   std::vector<double> r(static_cast<size_t>(model.misfit.residual_count()));
   if (!model.data().evaluate(p, r)) return 0;
-  const std::vector<SystematicError>& errors = simulated.errors();
+  const std::vector<SystematicError>& errors = simulated.simulated().errors;
   std::vector<double> values = model.with_layers->estimates(r);
   values.resize(errors.size());  // those of common errors follow
   for (size_t k = 0; k < values.size(); ++k)
+    // Logarithms: estimates are linearized, and those far from the last diverge.
     if (errors[k].kind == ErrorKind::layer || errors[k].kind == ErrorKind::rim)
-      values[k] = std::clamp(values[k], errors[k].value - kLargestStep, errors[k].value + kLargestStep);
+      values[k] = std::clamp(values[k], errors[k].value - kLinearRange, errors[k].value + kLinearRange);
   double largest = 0;
   steps_.resize(values.size(), 0.0);
   for (size_t k = 0; k < values.size(); ++k) {
@@ -74,8 +72,8 @@ std::vector<EstimatedError> estimated_errors(WithUncertainLayers& about_fit, std
   const std::vector<NuisanceEstimate> estimates =
       nuisance_estimates(about_fit, p, posterior ? posterior->gaussian.get() : nullptr);
   std::vector<EstimatedError> all;
-  for (size_t k = 0; k < std::min(estimates.size(), simulated.errors().size()); ++k) {
-    const SystematicError& error = simulated.errors()[k];
+  for (size_t k = 0; k < std::min(estimates.size(), simulated.simulated().errors.size()); ++k) {
+    const SystematicError& error = simulated.simulated().errors[k];
     const double factor = posterior ? posterior->applied_factor : 1;
     const std::optional<double> stated = stated_coefficient(measured, error);
     const char* stated_unit = error.kind == ErrorKind::layer ? "Pa/m" : error.kind == ErrorKind::rim ? "m" : "";
@@ -90,8 +88,8 @@ std::vector<FoundCommonError> common_errors(const SimulatedData& simulated, cons
   std::vector<FoundCommonError> found;
   const std::vector<double> all = about_fit.estimates(r);
   const std::vector<CommonError>& errors = simulated.fitted().cases.front().common_errors;
-  for (size_t k = 0; k < errors.size() && simulated.errors().size() + k < all.size(); ++k)
-    found.push_back({errors[k].cause, all[simulated.errors().size() + k]});
+  for (size_t k = 0; k < errors.size() && simulated.simulated().errors.size() + k < all.size(); ++k)
+    found.push_back({errors[k].cause, all[simulated.simulated().errors.size() + k]});
   return found;
 }
 

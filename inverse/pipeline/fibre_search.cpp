@@ -5,14 +5,15 @@
 #include <numbers>
 #include <optional>
 
+#include "model/limits.h"
 #include "model/quantity.h"
 
 namespace aspic {
 namespace {
 
-constexpr double kNewStart = 30 * std::numbers::pi / 180;  // smallest angle of another start from the best direction
-constexpr double kCone95 = 2.447747;                       // quantile of Rayleigh's distribution
-constexpr double kWidestCone = 1;                          // beyond it the linear model of the direction is invalid
+// Smallest angle of another start from the best direction: below the 37.4 degrees within which a start is.
+constexpr double kNewStart = 30 * std::numbers::pi / 180;
+constexpr double kCone95 = 2.447747;  // quantile of Rayleigh's distribution, sqrt(-2 log 0.05)
 
 // The six axes of an icosahedron. Every axis is within 37.4 degrees of one of them.
 std::vector<Vec3d> first_directions() {
@@ -152,7 +153,7 @@ double cone_of(const TiltCovariance& c, const Vec3d& du, const Vec3d& dv) {
   const double determinant = (a * d - b * b) * (c.uu * c.vv - c.uv * c.uv);
   const double largest = (trace + std::sqrt(std::max(trace * trace - 4 * determinant, 0.0))) / 2;
   const double cone = kCone95 * std::sqrt(largest);
-  return cone <= kWidestCone ? cone : std::numbers::pi / 2;
+  return cone <= kLinearRange ? cone : std::numbers::pi / 2;
 }
 
 }  // namespace aspic

@@ -26,7 +26,8 @@ std::vector<Vec3d> fibre_directions(const ParameterMap& map, std::span<const dou
 // Makes p the guess of the plan, with its directions as reference directions.
 void adopt_values(const ParameterMap& map, std::span<const double> p, FitPlan& plan);
 
-inline constexpr double kSameFibres = 0.087;  // largest angle between directions of the same minimum [rad]
+// Largest angle between directions of the same minimum [rad]: 5 degrees. Chosen.
+inline constexpr double kSameFibres = 0.087;
 
 // Angle between two axes [rad]: 0 to pi/2; their signs are irrelevant.
 double angle_between(const Vec3d& a, const Vec3d& b);

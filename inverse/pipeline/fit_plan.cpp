@@ -9,6 +9,7 @@
 #include "estimate/cross_validation.h"
 #include "estimate/law_errors.h"
 #include "material/registry.h"
+#include "model/limits.h"
 #include "model/quantity.h"
 #include "pipeline/law_choice.h"
 #include "scene/scene_files.h"
@@ -17,7 +18,7 @@
 namespace aspic {
 namespace {
 
-constexpr int kMaxTets = 5'000'000;  // limit of a refined mesh
+constexpr int kMaxTets = 5'000'000;  // of a refined mesh, chosen: steps on as many take 6 GB (docs/performance.md)
 
 // Splits "young=tets".
 std::pair<std::string, std::string> halves(const std::string& text, const std::string& example) {
@@ -94,7 +95,7 @@ void complete_direction(FitPlan& plan) {
                                .parameterization = direction.parameterization,
                                .handles = 0,
                                .guess = 0,
-                               .prior_sigma = kTiltSigma});
+                               .prior_sigma = kWeakPrior});
 }
 
 // Index of the region of each tet among the ascending labels.

@@ -10,7 +10,7 @@
 namespace aspic {
 namespace {
 
-constexpr double kSoftest = 1e-2, kStiffest = 1e13;  // plausible Young's moduli [Pa]
+constexpr double kSoftest = 1e-2, kStiffest = 1e13;  // Young's moduli [Pa]: below weak gels, above diamond
 
 }  // namespace
 

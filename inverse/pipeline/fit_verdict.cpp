@@ -6,14 +6,10 @@
 #include "base/formatted.h"
 #include "data/stated_errors.h"
 #include "model/gauge.h"
+#include "model/limits.h"
 
 namespace aspic {
 namespace {
-
-constexpr double kDisagree = 1.5;      // ratio of the stiffnesses implied by two groups
-constexpr double kCoarseMesh = 1;      // relative error of a force on the mesh: a factor of 2
-constexpr double kWorse = 1.1;         // ratio of held-out errors, field to one value
-constexpr double kLinearError = 0.05;  // relative error of the stiffness by linear tets
 
 // Compares the readings of a group with the predictions.
 class GroupMisfit {
@@ -88,7 +84,7 @@ double root_mean_square(const std::vector<PredictionErrors>& groups, double Pred
 }
 
 double beyond_noise(const ReadingErrors& e, double largest) {
-  constexpr double kLeastPeak = 10;  // standard deviations; smaller peaks may be noise
+  constexpr double kLeastPeak = 10;  // standard deviations; the limit of 10 % of a smaller peak is below the noise
   if (!(e.peak > 0)) return -1;
   return std::sqrt(std::max(e.error * e.error - e.noise * e.noise, 0.0)) /
          std::max({largest, e.peak, kLeastPeak * e.noise});
@@ -129,12 +125,12 @@ class Reasons {
 
   void add_others() {
     for (size_t c = 0; c < outcome_.cases.size(); ++c)
-      if (outcome_.cases[c].relative_mesh_error > kCoarseMesh) {
+      if (outcome_.cases[c].relative_mesh_error > kLinearRange) {
         add("mesh_too_coarse",
             "'" + data_.experiment.cases[c].name + "': the mesh changes the force by a factor of " +
                 three_digits(1 + outcome_.cases[c].relative_mesh_error) +
                 "; refine it around the indenter (option refine) or use a wider one",
-            1 + outcome_.cases[c].relative_mesh_error, 1 + kCoarseMesh);
+            1 + outcome_.cases[c].relative_mesh_error, 1 + kLinearRange);
         break;
       }
     add_linear_tets();
@@ -195,11 +191,11 @@ class Reasons {
     const std::string remedy = ": use order = 2 in capture.toml, or a coarser mesh";
     if (error->of_stiffness < 0)
       add("linear_tets", what + "their error is unknown" + remedy);
-    else if (error->of_stiffness > kLinearError)
+    else if (error->of_stiffness > kNegligible)
       add("linear_tets",
           what + "may leave an error of " + three_digits(100 * error->of_stiffness) +
               " % in the stiffness, as much as the correction for the mesh" + remedy,
-          error->of_stiffness, kLinearError);
+          error->of_stiffness, kNegligible);
   }
 
   void add_poor_predictions() {
@@ -238,13 +234,13 @@ class Reasons {
     const auto error = [](const CrossValidation& v) {
       return std::hypot(std::max(v.position_error, 0.0), std::max(v.force_error, 0.0), std::max(v.torque_error, 0.0));
     };
-    if (error(field) > kWorse * error(one))
+    if (error(field) > kNoiseRatio * error(one))
       add("held_out_worse",
           "held-out groups are predicted with errors, including the noise, of " +
               percents({"", field.position_error, field.force_error, field.torque_error}) +
               " of their peaks, by one value with " +
               percents({"", one.position_error, one.force_error, one.torque_error}),
-          error(field), kWorse * error(one));
+          error(field), kNoiseRatio * error(one));
   }
 
   void add_disagreement() {
@@ -259,12 +255,12 @@ class Reasons {
     const double ratio = stiffest->stiffness() / softest->stiffness();
     const double sigma = std::hypot(stiffest->stiffness_sigma() / stiffest->stiffness(),
                                     softest->stiffness_sigma() / softest->stiffness());
-    if (ratio > kDisagree && std::log(ratio) > kManySigmas * sigma)
+    if (ratio > kClearRatio && std::log(ratio) > kManySigmas * sigma)
       add("groups_disagree",
           "the forces of '" + stiffest->name() + "' imply a body " + three_digits(ratio) +
               " times as stiff as those of '" + softest->name() +
               "': one of them is wrong, or the model does not fit the body",
-          ratio, kDisagree);
+          ratio, kClearRatio);
   }
 
   const DataSet& data_;

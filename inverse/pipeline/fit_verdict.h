@@ -9,7 +9,7 @@
 namespace aspic {
 
 // Limit of figures under a good verdict; others: model/limits.h.
-inline constexpr double kSingle = 2;  // multiple of the limits of held-out errors for a single group
+inline constexpr double kSingle = 2;  // multiple of the limits of held-out errors for a single group. Chosen
 
 // Errors of a held-out group beyond the noise of its readings, relative to the largest motion, force and torque of the
 // data, or to 10 standard deviations if that is more; < 0: none.

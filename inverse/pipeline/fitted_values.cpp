@@ -34,8 +34,8 @@ std::vector<std::pair<std::string, int>> telling_tets(const FittedQuantity& quan
           {is_young ? "stiffest tet" : "highest", order.back()}};
 }
 
-constexpr double kAtEnd = 0.9995;  // end of a range from -1 to 1
-constexpr double kNearWall = 0.9;  // fraction of the largest distance of a field from its guess
+// End of a range from -1 to 1, and fraction of the largest distance of a field from its guess. Chosen.
+constexpr double kAtEnd = 0.9995, kNearWall = 0.9;
 
 bool is_at_bound(const ParameterMap& map, int parameter, double fitted) {
   const FitParameter& u = map.fitted_parameters()[static_cast<size_t>(parameter)];

@@ -12,7 +12,7 @@
 namespace aspic {
 namespace {
 
-constexpr double kReached = 0.95;  // fraction of the body
+constexpr double kReached = 0.95;  // fraction of the body; a convention
 
 // Largest |principal stretch - 1| of a tet.
 double strain_of(const TetMesh& mesh, std::span<const double> x, int t) {

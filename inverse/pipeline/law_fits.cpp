@@ -37,6 +37,14 @@ FitIteration iteration_of(const double* n) {
           .trials = static_cast<int>(n[9])};
 }
 
+JobResult job_result_of(const FittedLaw& c, const std::vector<FitIteration>& iterations) {
+  JobResult result{{c.objective, static_cast<double>(c.p.size())}, c.failure};
+  result.numbers.insert(result.numbers.end(), c.p.begin(), c.p.end());
+  for (const FitIteration& i : iterations)
+    for (const double number : numbers_of(i)) result.numbers.push_back(number);
+  return result;
+}
+
 }  // namespace
 
 LawFits::LawFits(const DataSet& data, const FitPlan& plan, FitJobs& jobs, const FitCallbacks& callbacks)
@@ -74,17 +82,9 @@ void LawFits::run_job(FittedLaw& c, const std::string& stage, JobKind kind, cons
         is_computed = true;
         iterations_.clear();
         action();
-        return is_stopped() ? std::nullopt : std::optional(result_of(c));
+        return is_stopped() ? std::nullopt : std::optional(job_result_of(c, iterations_));
       });
   if (result && !is_computed) restore(*result, c);
-}
-
-JobResult LawFits::result_of(const FittedLaw& c) const {
-  JobResult result{{c.objective, static_cast<double>(c.p.size())}, c.failure};
-  result.numbers.insert(result.numbers.end(), c.p.begin(), c.p.end());
-  for (const FitIteration& i : iterations_)
-    for (const double number : numbers_of(i)) result.numbers.push_back(number);
-  return result;
 }
 
 void LawFits::restore(const JobResult& result, FittedLaw& c) {
@@ -162,7 +162,8 @@ bool LawFits::minimize(FittedLaw& c, FitModel& model, std::span<const double> st
 }
 
 void LawFits::subtract_mesh_errors(const FittedLaw& c) {
-  if (!plan_.mesh_errors || c.material.empty() || is_stopped() || simulated_.is_too_large_for_mesh_errors()) return;
+  if (!plan_.mesh_errors || c.material.empty() || is_stopped() || is_too_large_for_mesh_errors(simulated_.mesh()))
+    return;
   if (callbacks_.begin) callbacks_.begin(FitStage::mesh_errors, "discretization error with " + c.law.name);
   simulated_.subtract_mesh_errors(c.plan, c.material);  // if this fails, the last correction remains
 }

@@ -33,7 +33,6 @@ class LawFits {
  private:
   // Changes the law by `action` or by the stored result of an earlier one, with the same iterations.
   void run_job(FittedLaw& law, const std::string& stage, JobKind kind, const std::function<void()>& action);
-  JobResult result_of(const FittedLaw& law) const;
   void restore(const JobResult& result, FittedLaw& law);
   void find_reference();  // moduli at small strains, the initial guess of all laws
   std::vector<std::vector<double>> starts_of(const FittedLaw& law) const;

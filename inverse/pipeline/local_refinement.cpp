@@ -13,9 +13,9 @@
 namespace aspic {
 namespace {
 
-constexpr double kEdge = 0.5;                  // longest edge below an indenter, relative to its radius
-constexpr double kReach = 1.1, kDepth = 0.25;  // of the refined surface layer, relative to the radius
-constexpr int kRimGenerations = 3;             // bisections that halve a tet
+constexpr double kEdge = 0.5;                  // longest edge below an indenter, relative to its radius. Chosen
+constexpr double kReach = 1.1, kDepth = 0.25;  // of the refined surface layer, relative to the radius. Chosen
+constexpr int kRimGenerations = 3;             // bisections that halve all edges of a tet
 
 // Corners of the tets of a mesh; those of quadratic tets are not their mid-edge nodes.
 struct Corners {

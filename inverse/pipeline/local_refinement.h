@@ -5,7 +5,7 @@
 
 namespace aspic {
 
-inline constexpr int kMostGrowth = 3;  // limit of the number of tets, relative to the mesh of the data
+inline constexpr int kMostGrowth = 3;  // limit of the number of tets, relative to the mesh of the data. Chosen
 
 // Bisects longest edges [Rivara 1984] until the edges within the radius of an indenter are at most half of it and the
 // tets at rims have half their size, and then where neighbors would not match. Without indenters and grips, and with

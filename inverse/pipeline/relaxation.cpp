@@ -6,6 +6,7 @@
 
 #include "base/formatted.h"
 #include "base/number_chars.h"
+#include "data/data_set.h"
 #include "model/quantity.h"
 #include "model/refined_experiment.h"
 #include "pipeline/case_figures.h"
@@ -14,8 +15,7 @@
 namespace aspic {
 namespace {
 
-constexpr int kMaxPasses = 6;             // fits of the branches, each with the stiffness of the last one
-constexpr int kMaxTetsForSlowest = 3000;  // tets up to which the simulations take minutes
+constexpr int kMaxPasses = 6;  // fits of the branches, each with the stiffness of the last one. Chosen
 
 // Parameters of every tet, in the order of the data.
 std::vector<MaterialParameters> parameters_of(const DataSet& data, const FitOutcome& outcome) {
@@ -181,7 +181,7 @@ void add_relaxation(FitState& state) {
   FitOutcome& outcome = state.outcome;
   StiffnessScale stiffness(state);
   if (callbacks.begin) callbacks.begin(FitStage::relaxation, "relaxation times");
-  if (data.experiment.mesh.tet_count() > kMaxTetsForSlowest)
+  if (data.experiment.mesh.tet_count() > kMaxQuadratic)
     outcome.warnings.push_back("relaxation times are fitted by hundreds of simulations of " +
                                std::to_string(data.experiment.mesh.tet_count()) +
                                " tets: a coarser mesh is much faster");

@@ -17,6 +17,16 @@ bool is_refined_locally(const Measured& data, const FitPlan& plan) {
   return plan.mesh_errors && data.mesh.tet_count() <= SimulatedData::kTooFine / kMostGrowth;
 }
 
+Corrected without_model_errors(const Corrected& experiment, const std::vector<MeshError>& of_mesh,
+                               const std::vector<std::vector<CommonError>>& of_law) {
+  Corrected corrected = without_mesh_errors(experiment, {of_mesh, {}});
+  for (size_t c = 0; c < of_law.size(); ++c) {
+    std::vector<CommonError>& all = corrected.cases[c].common_errors;
+    all.insert(all.end(), of_law[c].begin(), of_law[c].end());
+  }
+  return corrected;
+}
+
 }  // namespace
 
 EquilibriumOptions rough(EquilibriumOptions options) {
@@ -39,10 +49,10 @@ void SimulatedData::update() {
     common.push_back(is_of_group(e) ? 0 : e.value);
   }
   simulated_ = without_errors(measured_, all);
-  fitted_ =
-      weighted(subset(without_model_errors(simulated_), [&](const LoadCase& c) { return !is_left_out(left_out_, c); }),
-               weights_);
-  predicted_ = without_model_errors(without_errors(measured_, common));
+  fitted_ = weighted(subset(without_model_errors(simulated_, mesh_errors_, law_errors_),
+                            [&](const LoadCase& c) { return !is_left_out(left_out_, c); }),
+                     weights_);
+  predicted_ = without_model_errors(without_errors(measured_, common), mesh_errors_, law_errors_);
   size_t fitted = 0;
   for (LoadCase& load : predicted_.cases)
     if (fitted < fitted_.cases.size() && load.name == fitted_.cases[fitted].name) {
@@ -51,27 +61,17 @@ void SimulatedData::update() {
     }
 }
 
-Corrected SimulatedData::without_model_errors(const Corrected& experiment) const {
-  Corrected corrected = without_mesh_errors(experiment, {errors_, {}});
-  for (size_t c = 0; c < law_errors_.size(); ++c) {
-    std::vector<CommonError>& all = corrected.cases[c].common_errors;
-    all.insert(all.end(), law_errors_[c].begin(), law_errors_[c].end());
-  }
-  return corrected;
-}
-
 void SimulatedData::correct(std::vector<double> errors, std::vector<CaseWeights> weights) {
   for (size_t k = 0; k < errors.size(); ++k) simulated_.errors[k].value = errors[k];
   weights_ = std::move(weights);
   update();
 }
 
-bool SimulatedData::is_too_large_for_mesh_errors() const { return mesh().tet_count() > kTooFine; }
-
 std::string SimulatedData::subtract_mesh_errors(const FitPlan& plan, const std::vector<MaterialParameters>& material) {
-  MeshErrors errors = mesh_errors(simulated_, plan.model, material, rough(plan.equilibrium), &error_predictions_);
+  MeshErrors errors =
+      aspic::mesh_errors(simulated_, plan.model, material, rough(plan.equilibrium), &error_predictions_);
   if (errors.cases.empty()) return errors.failure;
-  errors_ = std::move(errors.cases);
+  mesh_errors_ = std::move(errors.cases);
   update();
   return "";
 }
@@ -82,10 +82,6 @@ std::string SimulatedData::add_law_errors(const FitPlan& plan, const std::vector
   law_errors_ = std::move(errors.cases);
   update();
   return "";
-}
-
-std::vector<double> SimulatedData::equilibria() const {
-  return equilibria([&](const LoadCase& load) { return !is_left_out(left_out_, load); });
 }
 
 void SimulatedData::start_from(std::span<const double> equilibria) {
@@ -103,40 +99,50 @@ std::vector<double> SimulatedData::equilibria(const std::function<bool(const Loa
   const std::vector<CasePrediction>& all = error_predictions_.on_mesh.cases;
   std::vector<double> x;
   for (size_t c = 0; c < all.size(); ++c) {
-    if (!wanted(simulated_.cases[c])) continue;
+    const LoadCase& load = simulated_.cases[c];
+    if (wanted ? !wanted(load) : is_left_out(left_out_, load)) continue;
     if (all[c].x.empty()) return {};
     x.insert(x.end(), all[c].x.begin(), all[c].x.end());
   }
   return x;
 }
 
-double SimulatedData::mesh_error() const {
+bool is_too_large_for_mesh_errors(const TetMesh& mesh) { return mesh.tet_count() > SimulatedData::kTooFine; }
+
+double mesh_error(const SimulatedData& data) {
+  const std::vector<MeshError>& errors = data.mesh_errors();
+  const Corrected& simulated = data.simulated();
   double sum = 0, largest = 0;
   int count = 0;
-  for (size_t c = 0; c < errors_.size(); ++c)
-    for (size_t k = 0; k < errors_[c].markers.size(); ++k, ++count) {
-      const MarkerReading& reading = simulated_.cases[c].positions[k];
-      const Vec3d motion = reading.position - position(simulated_.markers[reading.marker], mesh().rest);
-      sum += dot(errors_[c].markers[k], errors_[c].markers[k]);
+  for (size_t c = 0; c < errors.size(); ++c)
+    for (size_t k = 0; k < errors[c].markers.size(); ++k, ++count) {
+      const MarkerReading& reading = simulated.cases[c].positions[k];
+      const Vec3d motion = reading.position - position(simulated.markers[reading.marker], data.mesh().rest);
+      sum += dot(errors[c].markers[k], errors[c].markers[k]);
       largest = std::max(largest, dot(motion, motion));
     }
   return largest > 0 ? std::sqrt(sum / count / largest) : -1;
 }
 
-double SimulatedData::relative_force_error(size_t c) const {
-  const bool is_noise = errors_.empty() || norm(errors_[c].wrench.force) < norm(measured_.cases[c].force_sigma);
-  return is_noise ? 0 : errors_[c].relative_force_error();
+double relative_force_error(const SimulatedData& data, size_t c, double noise) {
+  const std::vector<MeshError>& errors = data.mesh_errors();
+  return errors.empty() || norm(errors[c].wrench.force) < noise ? 0 : errors[c].relative_force_error();
 }
 
-CasePrediction SimulatedData::as_read_on_finer_mesh(size_t c, const CasePrediction& prediction) const {
-  CasePrediction finer = prediction;
-  if (!errors_.empty()) {
-    for (size_t k = 0; k < finer.markers.size(); ++k) finer.markers[k] = finer.markers[k] + errors_[c].markers[k];
-    const Wrench error = errors_[c].for_wrench_on_mesh(finer.wrench);
-    finer.wrench.force = finer.wrench.force + error.force;
-    finer.wrench.torque = finer.wrench.torque + error.torque;
+double wrench_factor(const SimulatedData& data, size_t c) {
+  return data.mesh_errors().empty() ? 1 : data.mesh_errors()[c].factor();
+}
+
+CasePrediction as_read_on_finer_mesh(const SimulatedData& data, size_t c, CasePrediction prediction) {
+  if (!data.mesh_errors().empty()) {
+    const MeshError& error = data.mesh_errors()[c];
+    for (size_t k = 0; k < prediction.markers.size(); ++k)
+      prediction.markers[k] = prediction.markers[k] + error.markers[k];
+    const Wrench of_wrench = error.for_wrench_on_mesh(prediction.wrench);
+    prediction.wrench.force = prediction.wrench.force + of_wrench.force;
+    prediction.wrench.torque = prediction.wrench.torque + of_wrench.torque;
   }
-  return as_read(simulated_, simulated_.cases[c], std::move(finer));
+  return as_read(data.simulated(), data.simulated().cases[c], std::move(prediction));
 }
 
 }  // namespace aspic

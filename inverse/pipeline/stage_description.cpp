@@ -69,15 +69,17 @@ void describe(FitState& state, FitModel& model, std::span<const double> p) {
     put_layers_in(std::span(r).subspan(first, count), load, prediction);
     shown.markers_on_mesh = prediction.markers;
     shown.wrench_on_mesh = prediction.wrench;
-    prediction = state.simulated.as_read_on_finer_mesh(c, prediction);
+    prediction = as_read_on_finer_mesh(state.simulated, c, std::move(prediction));
     shown.ok = true;
     shown.markers = std::move(prediction.markers);
     shown.wrench = prediction.wrench;
     shown.marker_sigma.clear();
     for (const MarkerReading& reading : load.positions) shown.marker_sigma.push_back(reading.sigma);
-    shown.force_sigma = state.simulated.wrench_factor(c) * load.force_sigma;
-    shown.torque_sigma = state.simulated.wrench_factor(c) * load.torque_sigma;
-    if (load.force) shown.relative_mesh_error = state.simulated.relative_force_error(c);
+    shown.force_sigma = wrench_factor(state.simulated, c) * load.force_sigma;
+    shown.torque_sigma = wrench_factor(state.simulated, c) * load.torque_sigma;
+    if (load.force)
+      shown.relative_mesh_error =
+          relative_force_error(state.simulated, c, norm(state.data.experiment.cases[c].force_sigma));
   }
 }
 

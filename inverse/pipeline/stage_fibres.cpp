@@ -13,9 +13,11 @@ namespace aspic {
 namespace {
 
 constexpr double kDegrees = 180 / std::numbers::pi;
-constexpr int kSearchIterations = 10;  // maximum per start
+// Maximum per start, and relative decrement, for a choice among starts whose best one is fitted again. Chosen.
+constexpr int kSearchIterations = 10;
 constexpr double kSearchTolerance = 1e-2;
-constexpr double kWeakestRatio = 10;  // upper over lower end of the interval of fibre_ratio: fibres may have no effect
+// Upper over lower end of the interval of fibre_ratio: fibres may have no effect. Chosen.
+constexpr double kWeakestRatio = 10;
 
 std::vector<std::string> names_of_regions(const TetMesh& mesh, size_t count) {
   std::vector<std::string> names;

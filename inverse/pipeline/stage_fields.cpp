@@ -10,10 +10,7 @@
 namespace aspic {
 namespace {
 
-constexpr int kPasses = 8;
-constexpr double kSettled = 0.02;       // relative change of a value; errors of the mesh change as much
-constexpr double kSettledNext = 0.002;  // that of the next pass, if changes shrink by the same factor again
-constexpr double kSettledField = 0.03;  // root mean square of many values, whose noise is larger
+constexpr double kSettledField = 0.03;  // root mean square of many values, whose fits are less accurate. Chosen
 bool is_many(const std::vector<double>& p) { return p.size() > kFewParameters; }
 
 // Largest change of a few values. Among many values, single ones are determined less accurately than fits converge.
@@ -53,14 +50,15 @@ void fit_until_mesh_errors_settle(FitState& state) {
     const std::vector<double>& p = state.outcome.report.p;
     if ((!state.has_model_errors() && !state.has_corrections()) || !is_success(state.outcome.report.status)) return;
     const double change = change_between(before, p), corrections = state.estimate_corrections(*state.model, p);
-    const bool has_settled_next = !is_many(p) && change * change < kSettledNext * last_change;
+    // If changes shrink by the same factor again, the next one is a tenth of what counts as settled.
+    const bool has_settled_next = !is_many(p) && change * change < kSettled / 10 * last_change;
     if (!before.empty() && (has_settled_next || change < (is_many(p) ? kSettledField : kSettled)) &&
         corrections < kSettled)
       return;
-    if (pass == kPasses) {
+    if (pass == kFixedPointPasses) {
       state.outcome.mesh_errors_settle = false;
-      return state.warn("corrections of the data and material do not converge: after " + std::to_string(kPasses) +
-                        " rounds it still changes by " + std::to_string(change) +
+      return state.warn("corrections of the data and material do not converge: after " +
+                        std::to_string(kFixedPointPasses) + " rounds it still changes by " + std::to_string(change) +
                         " (of log E); refine the mesh (option refine)");
     }
     options.weight = state.outcome.report.weight;

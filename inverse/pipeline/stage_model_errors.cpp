@@ -14,7 +14,7 @@ void add_law_errors(FitState& state) {
 
 void subtract_mesh_errors(FitState& state) {
   if (state.is_stopped()) return;
-  if (state.simulated.is_too_large_for_mesh_errors()) {
+  if (is_too_large_for_mesh_errors(state.simulated.mesh())) {
     state.warn("the discretization error was NOT computed: the simulated mesh has " +
                std::to_string(state.simulated.mesh().tet_count()) + " tets, and " +
                std::to_string(SimulatedData::kTooFine) +
@@ -31,7 +31,7 @@ void subtract_mesh_errors(FitState& state) {
     return;
   }
   state.outcome.has_mesh_errors = true;
-  state.outcome.mesh_error = state.simulated.mesh_error();
+  state.outcome.mesh_error = mesh_error(state.simulated);
 }
 
 }  // namespace

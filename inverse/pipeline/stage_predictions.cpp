@@ -19,7 +19,7 @@ void predict_group(FitState& state, const std::string& group, std::span<const do
   for (size_t c = 0; c < state.data.experiment.cases.size(); ++c) {
     if (state.data.experiment.cases[c].group != group) continue;
     const CasePrediction& on_mesh = misfit.prediction(own++);
-    use(state.outcome.cases[c], on_mesh, state.simulated.as_read_on_finer_mesh(c, on_mesh));
+    use(state.outcome.cases[c], on_mesh, as_read_on_finer_mesh(state.simulated, c, on_mesh));
   }
 }
 

@@ -1,11 +1,6 @@
 #include "pipeline/fit_stages.h"
 
 namespace aspic {
-namespace {
-
-constexpr double kInformed = 1;  // number of determined directions below which the data are uninformative
-
-}  // namespace
 
 void quantify_uncertainty(FitState& state) {
   if (!state.plan.uncertainty || state.is_stopped()) return;
@@ -17,7 +12,7 @@ void quantify_uncertainty(FitState& state) {
   WithUncertainLayers about_fit(model.recorded());
   posterior = aspic::posterior(about_fit, *model.prior, report.weight, {model.map, state.mesh(), report.p});
   // If the initial guess already explains the data, weight rules raise the weight, and the prior would look like data.
-  const bool is_informed = !posterior->ok || posterior->informed >= kInformed;
+  const bool is_informed = !posterior->ok || posterior->informed >= 1;
   if (!is_informed && state.plan.fit.weight <= 0 && report.weight > 1) {
     posterior = aspic::posterior(about_fit, *model.prior, 1, {model.map, state.mesh(), report.p});
     std::erase(posterior->warnings, posterior->weight_warning);

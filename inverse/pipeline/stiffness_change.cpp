@@ -4,19 +4,14 @@
 #include <cmath>
 
 #include "math/vectors.h"
+#include "model/limits.h"
 #include "model/quantity.h"
 
 namespace aspic {
-namespace {
-
-constexpr double kUnchanged = 0.05;  // relative difference of g
-
-}  // namespace
-
 bool StiffnessChange::differs_from(const StiffnessChange& other) const {
   double squares = 0;
   for (size_t i = 0; i < g.size(); ++i) squares += (g[i] - other.g[i]) * (g[i] - other.g[i]);
-  return squares > kUnchanged * kUnchanged * dot(g, g);
+  return squares > kNegligible * kNegligible * dot(g, g);
 }
 
 std::optional<StiffnessChange> stiffness_change(const Experiment& ends, const FittedField& fitted, Gaussian& posterior,
