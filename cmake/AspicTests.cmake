@@ -11,6 +11,8 @@ set(test_optimization -O1)  # compiles faster than -O3
 if(ASPIC_FUZZ)  # theirs are the inline functions that the linker takes; none of them is fuzzed
   set(test_optimization -O2 -fno-sanitize=fuzzer-no-link)
 endif()
+# Tests that run for more than a few seconds. The others compile in half the time without optimization.
+set(long_programs linalg scene verification crossing fit_model fit_estimate fit_pipeline)
 
 # add_aspic_tests(NAME SOURCES...): a program of unit tests.
 function(add_aspic_tests name)
@@ -18,10 +20,15 @@ function(add_aspic_tests name)
   target_link_libraries(${name} PRIVATE aspic_reference aspic_build Eigen3::Eigen GTest::gmock GTest::gtest GTest::gtest_main)
   target_include_directories(${name} PRIVATE ${aspic_REPOSITORY}/src ${aspic_REPOSITORY}/tests)
   target_compile_options(${name} PRIVATE ${test_optimization} -Wno-uninitialized)  # false alarms in AVX-512 headers
+  string(REPLACE "test_" "" module ${name})
+  if(NOT ASPIC_SANITIZE AND NOT module IN_LIST long_programs)
+    target_compile_options(${name} PRIVATE -O0)
+  endif()
   gtest_discover_tests(${name} TEST_PREFIX ${name}. DISCOVERY_TIMEOUT 60 NO_PRETTY_VALUES)
 endfunction()
 
 # add_python_tests(PREFIX FILE [CLASS...]): a test PREFIX.CLASS for each class of a file that has tests, but those named.
+# COST: the first run of ctest, which has no times, starts them before the short tests, so that none ends alone.
 function(add_python_tests prefix file)
   set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${file})
   file(STRINGS ${file} lines REGEX "^class |^    def test_")
@@ -36,7 +43,7 @@ function(add_python_tests prefix file)
   list(REMOVE_ITEM cases ${ARGN})
   foreach(case ${cases})
     add_test(NAME ${prefix}.${case} COMMAND ${Python3_EXECUTABLE} ${CMAKE_CURRENT_SOURCE_DIR}/${file} ${case})
-    set_tests_properties(${prefix}.${case} PROPERTIES
+    set_tests_properties(${prefix}.${case} PROPERTIES COST 1
                          ENVIRONMENT "ASPIC=$<TARGET_FILE:aspic_cli>;PYTHONPATH=${aspic_REPOSITORY}/tests")
   endforeach()
 endfunction()

@@ -384,7 +384,7 @@ class FitJobs(FitCommand):
     """Other processes compute the independent fits, in any order, and some are killed: the bits are those of one process."""
 
     DATA = ("4, 4, 3", 1)  # dozens of fits
-    LINES = ("mesh_errors = false", "iterations = 12")
+    LINES = ("mesh_errors = false", "iterations = 5")
     FIELD = ("--options", "jobs.toml", "--unknown", "young=handles:6", "--known", "poisson=0.4", "--allow-unconverged")
     LAWS = ("--options", "jobs.toml", "--unknown", "young=uniform", "--known", "poisson=0.4", "--allow-unconverged",
             "--model", "auto")
