@@ -254,6 +254,29 @@ class Commands(CommandLine):
                 self.assertRegex(text, rf"(?m)^{term} +{state} .* passed$")
 
 
+class Materials(CommandLine):
+    """Contact with quadratic tets, fibres and Maxwell branches."""
+
+    TISSUE = ('[[body.fibre]]\ndirection = ["1", "0.5", "0"]\nstiffness = 3e4\nexponent = 2\n'
+              "[[body.viscoelastic]]\nshear = 3e4\nrelaxation_time = 0.05\n")
+
+    def test_no_intersections_and_equal_bits_in_any_threads_and_after_a_restart(self):
+        for order, tissue in ((2, ""), (1, self.TISSUE), (2, self.TISSUE)):
+            with self.subTest(order=order, tissue=tissue):
+                self.write("scene.toml", in_units(1, 1).replace("velocity = [0, -1, 0]\n", f"order = {order}\nvelocity = [0, -1, 0]\n{tissue}"))
+                run = lambda out, *options: self.aspic("run", "scene.toml", "--out", out, "--force", *options)
+                run("whole", "--threads", "1")
+                for threads in ("2", "4"):
+                    run("other", "--threads", threads)
+                    self.assert_same_results("whole", "other")
+                run("other", "--threads", "2", "--steps", "17")
+                self.assertGreater(int(self.steps("other")[-1]["contacts"]), 0)
+                self.aspic("run", "scene.toml", "--out", "other", "--resume")
+                self.assert_same_results("whole", "other")
+                frames = [exact.body_surfaces(p) for p in sorted((self.folder / "whole/frames").glob("body_*.vtu"))]
+                self.assertEqual(contact_scenes.surface_faults(frames, [], [((0, 0, 0), (0, 1, 0))]), [])
+
+
 class Failures(CommandLine):
     """Steps that contact makes fail are explained by it, with numbers."""
 

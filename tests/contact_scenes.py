@@ -36,6 +36,7 @@ class Outcome:
     rows: list = dataclasses.field(default_factory=list)
     frames: list = dataclasses.field(default_factory=list)  # surfaces of the bodies
     message: str = ""
+    note: str = ""  # of the case's check
 
     def line(self):
         total = lambda key: sum(int(r[key]) for r in self.rows)
@@ -45,7 +46,7 @@ class Outcome:
         most = max(self.rows, key=lambda r: int(r["iterations"]))
         return (f"exit {self.code}, {self.seconds:.1f} s, {len(self.rows) - 1} steps, {total('iterations')} iterations (most "
                 f"{most['iterations']} in step {most['step']}), {total('friction_passes')} passes, smallest gap "
-                f"{min(gaps, default=math.nan):.2g}, " + " ".join(sorted({r['status'] for r in self.rows} - {'start'})))
+                f"{min(gaps, default=math.nan):.2g}, " + " ".join(sorted({r['status'] for r in self.rows} - {'start'}) + [self.note]))
 
 
 def body(name, mesh, young=1e5, poisson=.4, density=1000, more=""):
@@ -60,7 +61,7 @@ def pin(where='"all"', motion=""):
 def case(name, bodies, obstacles=(), planes=(), h=.005, steps=20, contact="", gravity=(0, -9.81, 0), **rest):
     """`bodies`: results of body(), or pairs of such a result and text to append. `obstacles`: name, OBJ text and perhaps motion."""
     text = (f"gravity = [{gravity[0]}, {gravity[1]}, {gravity[2]}]\n[time]\nstep = {h!r}\nduration = {h * steps!r}\n"
-            f"[contact]\n{contact}\n")
+            f"[output]\nreport = false\nusd = false\npc2 = false\n[contact]\n{contact}\n")
     files = {}
     for part, own in bodies:
         text += part

@@ -474,6 +474,9 @@ class Extremes(Folder):
     def test_random_impacts(self):
         self.run_cases(contact_cases.GROUPS["impacts"](8))
 
+    def test_crowds_and_tumbling_boxes(self):
+        self.run_cases([*map(contact_cases.crowd, range(6)), contact_cases.tumble(0, 100)])
+
 
 if __name__ == "__main__":
     unittest.main()

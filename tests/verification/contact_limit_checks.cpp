@@ -10,14 +10,17 @@
 namespace aspic::verify {
 namespace {
 
-// A cross section of a leaning stone: foot on the floor from x = 0 to kFoot, upright face at x = kSpan.
-constexpr double kFoot = 0.04, kSpan = 0.1, kLow = 0.09, kHigh = 0.12;  // heights of the upright face [m]
+// A cross section of a leaning body: foot on the floor from x = 0 to `foot`, upright face at x = `span`.
+struct Leaning {
+  std::string name;
+  double foot, span, low, high;  // the last two: heights of the upright face [m]
+};
 
-TetMesh leaning_stone(bool is_mirrored) {
+TetMesh leaning_body(const Leaning& shape, bool is_mirrored) {
   TetMesh mesh = make_box({{0, 0, 0}}, {{1, 1, 1}}, {2, 4, 2});
   for (Vec3d& X : mesh.rest) {
     const double s = X[0], t = X[1];
-    const double x = (1 - t) * s * kFoot + t * kSpan, y = t * (s * kLow + (1 - s) * kHigh);
+    const double x = (1 - t) * s * shape.foot + t * shape.span, y = t * (s * shape.low + (1 - s) * shape.high);
     X = {{is_mirrored ? -x : x, y, 0.1 * X[2]}};
   }
   if (is_mirrored)
@@ -25,17 +28,17 @@ TetMesh leaning_stone(bool is_mirrored) {
   return mesh;
 }
 
-// Two stones lean against each other. With the thrust H at its highest point and the force on the foot at its inner
+// Two bodies lean against each other. With the thrust H at its highest point and the force on the foot at its inner
 // edge, the moment of the weight gives H = m g (x - foot) / high for the center of mass x: the least friction.
-TouchingModel arch(double friction) {
-  TouchingModel given{.bodies = {{leaning_stone(false), 1e8}, {leaning_stone(true), 1e8}},
+TouchingModel arch(const Leaning& shape, double friction) {
+  TouchingModel given{.bodies = {{leaning_body(shape, false), 1e8}, {leaning_body(shape, true), 1e8}},
                       .has_floor = true,
                       .friction = friction,
                       .gravity = {{0, -kGravity, 0}}};
   constexpr double kStart = 4e-5;                     // gaps at the start [m]
   given.contact = {.reach = 5e-5, .stiffness = 1e7};  // a smaller reach, so that stones tilt little on their edges
-  for (Vec3d& X : given.bodies[0].mesh.rest) X = X + Vec3d{{-kSpan - kStart / 2, kStart, 0}};
-  for (Vec3d& X : given.bodies[1].mesh.rest) X = X + Vec3d{{kSpan + kStart / 2, kStart, 0}};
+  for (Vec3d& X : given.bodies[0].mesh.rest) X = X + Vec3d{{-shape.span - kStart / 2, kStart, 0}};
+  for (Vec3d& X : given.bodies[1].mesh.rest) X = X + Vec3d{{shape.span + kStart / 2, kStart, 0}};
   return given;
 }
 
@@ -46,23 +49,26 @@ double height_of_top(const Simulation& simulation) {
 }
 
 void check_arch(const Subject& subject, Findings& found) {
-  const TouchingModel any = arch(1);
-  const Model model = make_touching(any);
-  const auto [first, end] = vertices_of(any, 0);
-  const double arm = mass_mean(model, at_rest(model.mesh).q, first, end)[0] + kSpan - kFoot, least = arm / kHigh;
   const int steps = subject.quick ? 60 : 150;
-  for (const double share : {0.95, 1.05}) {
-    SimulationOptions options{.h = 0.01, .solver = {}};
-    Simulation simulation = simulate(make_touching(arch(share * least)), options);
-    const double before = height_of_top(simulation);
-    take_steps(simulation, steps, "arch of two stones");
-    const double fallen = before - height_of_top(simulation);
-    const std::string name = "mu = " + std::to_string(share).substr(0, 4) + " of the least: ";
-    expect_contact(name, simulation, found);
-    if (share > 1)
-      found.expect_small(name + "fall of the top", fallen, 0.001, "an arch that stands settles by a few gaps", "m");
-    else
-      found.expect(name + "falls by a tenth of its height", {fallen > 0.1 * kHigh ? 1.0 : 0.0, 1, 0}, "yes or no");
+  for (const Leaning& shape : {Leaning{"stones", 0.04, 0.1, 0.09, 0.12}, {"cards", 0.002, 0.05, 0.097, 0.1}}) {
+    const TouchingModel any = arch(shape, 1);
+    const Model model = make_touching(any);
+    const auto [first, end] = vertices_of(any, 0);
+    const double arm = mass_mean(model, at_rest(model.mesh).q, first, end)[0] + shape.span - shape.foot;
+    for (const double share : {0.95, 1.05}) {
+      SimulationOptions options{.h = 0.01, .solver = {}};
+      Simulation simulation = simulate(make_touching(arch(shape, share * arm / shape.high)), options);
+      const double before = height_of_top(simulation);
+      take_steps(simulation, steps, "arch of two " + shape.name);
+      const double fallen = before - height_of_top(simulation);
+      const std::string name = shape.name + ", mu = " + std::to_string(share).substr(0, 4) + " of the least: ";
+      expect_contact(name, simulation, found);
+      if (share > 1)
+        found.expect_small(name + "fall of the top", fallen, 0.001, "an arch that stands settles by a few gaps", "m");
+      else
+        found.expect(name + "falls by a tenth of its height", {fallen > 0.1 * shape.high ? 1.0 : 0.0, 1, 0},
+                     "yes or no");
+    }
   }
 }
 
@@ -146,16 +152,15 @@ void check_bullet(const Subject& subject, Findings& found) {
 }  // namespace
 
 void add_contact_limit_checks(std::vector<Check>& checks) {
-  checks.push_back(
-      {"contact",
-       "arch",
-       "An arch of two stones stands if friction suffices",
-       "Coefficients of friction of 0.95 and 1.05 of the least one, mu.",
-       "Limit analysis: the thrust acts at the highest point y of contact between the stones, the floor at "
-       "the inner edge f of the foot; x is the center of mass",
-       check_arch,
-       {},
-       {R"tex(\mu = \frac{x - f}{y})tex"}});
+  checks.push_back({"contact",
+                    "arch",
+                    "Two stones, or two cards, lean against each other if friction suffices",
+                    "Coefficients of friction of 0.95 and 1.05 of the least one, mu. Cards of 1 mm lean at 27 degrees.",
+                    "Limit analysis: the thrust acts at the highest point y of contact between them, the floor at "
+                    "the inner edge f of the foot; x is the center of mass",
+                    check_arch,
+                    {},
+                    {R"tex(\mu = \frac{x - f}{y})tex"}});
   checks.push_back({"contact",
                     "corner",
                     "Edges slide along parallel edges",
