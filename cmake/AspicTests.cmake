@@ -12,7 +12,7 @@ if(ASPIC_FUZZ)  # theirs are the inline functions that the linker takes; none of
   set(test_optimization -O2 -fno-sanitize=fuzzer-no-link)
 endif()
 # Tests that run for more than a few seconds. The others compile in half the time without optimization.
-set(long_programs linalg scene verification crossing fit_model fit_estimate fit_pipeline)
+set(long_programs bench cholmod linalg scene verification crossing viewer lessons fit_data fit_model fit_estimate fit_pipeline)
 
 # add_aspic_tests(NAME SOURCES...): a program of unit tests.
 function(add_aspic_tests name)
