@@ -177,7 +177,7 @@ def impacts(rows):
 
 
 def loses_energy(outcome):
-    """Backward Euler may gain energy in a step whose contact jumps, but not on the whole."""
+    """A step in which edges pass each other may gain energy, but none exceeds the energy at the start."""
     energy = [float(row["kinetic"]) + float(row["potential_total"]) for row in outcome.rows]
     gain = max(after / before for before, after in zip(energy, energy[1:])) - 1
     outcome.note = f"{impacts(outcome.rows)} impacts, largest gain {gain:.2g}, {energy[-1] / energy[0]:.2g} left"
