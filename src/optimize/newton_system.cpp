@@ -33,6 +33,7 @@ void KeptHessian::restore(Objective& E) {
 
 void NewtonSystem::begin() {
   kept_.drop();
+  sprung_.d.clear();
   solver_->begin();
 }
 
@@ -113,10 +114,21 @@ bool NewtonSystem::solve_with_kept(NewtonTask& task, const InnerAccuracy& accura
   return false;
 }
 
+// Springs may turn a direction until E hardly falls along it. Returns whether the last step shows that, once.
+bool NewtonSystem::has_misled(NewtonTask& task) {
+  constexpr double kPoor = 0.125;  // step length relative to the feasible one
+  if (sprung_.d.empty()) return false;
+  d_.resize(task.x.size());
+  for (size_t i = 0; i < d_.size(); ++i) d_[i] = task.x[i] - sprung_.x[i];
+  const double step = task.E.dot(d_, sprung_.d) / task.E.dot(sprung_.d, sprung_.d);
+  sprung_.d.clear();
+  return step > 0 && step < kPoor * std::min(1.0, sprung_.reach);
+}
+
 bool NewtonSystem::avoid_stops(NewtonTask& task) {
   constexpr int kRounds = 2;
   constexpr double kFinest = 1e-9;  // relative residual
-  if (!stops_ || task.report.truncated) return false;
+  if (!stops_ || task.report.truncated || has_misled(task)) return false;
   bool has_springs = false;
   g_.assign(task.g.begin(), task.g.end());
   double reach = task.E.max_step(task.x, task.d);
@@ -135,6 +147,11 @@ bool NewtonSystem::avoid_stops(NewtonTask& task) {
       break;
     }
     reach = next;
+  }
+  if (has_springs) {
+    sprung_.x.assign(task.x.begin(), task.x.end());
+    sprung_.d.assign(task.d.begin(), task.d.end());
+    sprung_.reach = reach;
   }
   return has_springs;
 }

@@ -78,6 +78,7 @@ class NewtonSystem {
   bool solve_factorized(NewtonTask& task, std::span<const double> g, double forcing);
   // Solves again with added springs while the direction violates stops. Returns whether any were added.
   bool avoid_stops(NewtonTask& task);
+  bool has_misled(NewtonTask& task);
   bool solve_semidefinite(const BlockSparse& H, NewtonTask& task);
   bool factorize(const BlockSparse& H);
   bool add_dense_rows(NewtonTask& task, double forcing);
@@ -97,6 +98,11 @@ class NewtonSystem {
   bool is_first_ = true;
   double gradient_norm_ = 0;
   std::vector<double> g_, d_;  // g with springs; the last direction
+  // The last direction with springs: its start, and the largest feasible step along it.
+  struct Sprung {
+    std::vector<double> x, d;
+    double reach = 0;
+  } sprung_;
 };
 
 }  // namespace aspic
