@@ -297,7 +297,7 @@ class Failures(CommandLine):
         case = next(c for c in contact_cases.moving(12) if c.name == "press without end")
         self.explained(case, "obstacles cannot move to their next positions", "press and cube")
 
-    def test_springs_that_turn_directions_away_are_left_out(self):
+    def test_directions_that_springs_spoil_are_followed_by_others(self):
         outcome = contact_scenes.run(contact_cases.crowd(36), self.folder / "case")
         self.assertEqual((outcome.faults, outcome.code), ([], 0), outcome.line())
 

@@ -53,7 +53,7 @@ struct RunEnd {
   double time_limit = 0;  // limit that ended the run [s]; 0: none
   bool blown_up = false;
   std::string solver;                    // methods, their choices and the reasons; empty: no solver
-  std::string precision;                 // of converged steps: " to 0.001 m/s"; empty: their residuals tell
+  std::string precision;                 // of converged steps: " to 0.001 m/s"; empty: see their residuals
   std::string start_warning;             // see Scene::start_warning
   std::string better_scheme;             // integrator that loses less energy of smooth motion; empty: none
   std::optional<InvertedTets> inverted;  // in the last state, if it is known
