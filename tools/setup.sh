@@ -185,9 +185,9 @@ fetch_bunny() {
 Only what fills this surface with tets needs it."
   fi
   tar -xzf "$folder"/bunny-*.tgz -C "$folder"
-  awk -f "$root/tools/bunny_to_obj.awk" "$folder/package/index.js" >"$scenes/new.obj"
+  awk -f "$root/tools/bunny_to_obj.awk" "$folder/package/index.js" >"$folder/bunny.obj"
+  mv "$folder/bunny.obj" "$scenes/bunny.obj"
   rm -rf "$folder"
-  mv "$assets/new.obj" "$scenes/bunny.obj"
 }
 
 # Programs from npm that read our results back in the tests.
