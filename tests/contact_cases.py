@@ -283,7 +283,7 @@ def driven(steps):
                 continue  # nothing else holds the body
             one = case(f"{name} through a sheet, {integrator}", [(text + pull, files)], obstacles=[("sheet", sheet(5))], h=.01, steps=steps,
                        codes=(0, 3), check=stays_above(0))
-            one.scene = one.scene.replace("[contact]", f'integrator = "{integrator}"\n[contact]')
+            one.scene = one.scene.replace("[time]\n", f'[time]\nintegrator = "{integrator}"\n')
             yield one
 
 
