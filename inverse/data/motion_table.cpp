@@ -20,6 +20,8 @@
 namespace aspic {
 namespace {
 
+constexpr size_t kMaxTracked = 100'000;  // chosen: above any camera system; more are positions instead of names
+
 const std::vector<std::string> kColumns = {"time", "marker", "x", "y", "z", "sigma"};
 
 void require_columns(const CsvReader& csv, const std::string& file) {
@@ -71,6 +73,9 @@ class TableReader {
     if (!time || !x || !y || !z || !sigma) return;
     const auto [marker, is_new] = index_.try_emplace(name, static_cast<int>(index_.size()));
     if (is_new) table_.markers.push_back(name);
+    if (table_.markers.size() > kMaxTracked)
+      throw InvalidInput(csv_.where() + ": more than " + std::to_string(kMaxTracked) +
+                         " markers; the column marker holds a name per marker");
     table_.rows.push_back({*time, marker->second, {{*x, *y, *z}}, *sigma, csv_.line()});
   }
 
