@@ -21,7 +21,7 @@ function(add_aspic_tests name)
   target_include_directories(${name} PRIVATE ${aspic_REPOSITORY}/src ${aspic_REPOSITORY}/tests)
   target_compile_options(${name} PRIVATE ${test_optimization} -Wno-uninitialized)  # false alarms in AVX-512 headers
   string(REPLACE "test_" "" module ${name})
-  if(NOT ASPIC_SANITIZE AND NOT module IN_LIST long_programs)
+  if(NOT ASPIC_SANITIZE AND NOT ASPIC_FUZZ AND NOT module IN_LIST long_programs)
     target_compile_options(${name} PRIVATE -O0)
   endif()
   gtest_discover_tests(${name} TEST_PREFIX ${name}. DISCOVERY_TIMEOUT 60 NO_PRETTY_VALUES)

@@ -200,15 +200,6 @@ std::string better_scheme(const Simulation& simulation) {
   return simulation.options().adaptive.tolerance > 0 ? "tr_bdf2" : "bdf2";
 }
 
-// Returns what `converged` means where it is no residual: " to 0.001 m/s".
-std::string precision_of(const MinimizeOptions& options) {
-  if (!tests_direction(options.criterion)) return "";
-  const char* unit = options.criterion == Criterion::velocity       ? " m/s"
-                     : options.criterion == Criterion::acceleration ? " m/s^2"
-                                                                    : " (relative decrement)";
-  return fmt::format(" to {:g}{}", options.tolerance, unit);
-}
-
 int report_complete(const RunArguments& arguments, const fs::path& directory, int last_step) {
   const int unconverged = count_steps(directory, last_step).unconverged;
   const std::string failures = unconverged > 0 ? fmt::format("; {} did not converge", unconverged) : "";

@@ -201,6 +201,14 @@ InvertedTets inverted_tets(const Simulation& simulation) {
   return found;
 }
 
+std::string precision_of(const MinimizeOptions& options) {
+  if (!tests_direction(options.criterion)) return "";
+  const char* unit = options.criterion == Criterion::velocity       ? " m/s"
+                     : options.criterion == Criterion::acceleration ? " m/s^2"
+                                                                    : " (relative decrement)";
+  return fmt::format(" to {:g}{}", options.tolerance, unit);
+}
+
 void print_summary(std::FILE* stream, const RunTotals& totals, const RunEnd& end) {
   if (totals.steps == 0 && !end.interrupted && end.time_limit == 0) {
     fmt::print(stream, "nothing to do: step {} is already complete\n", end.steps_taken);

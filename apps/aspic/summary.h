@@ -53,7 +53,7 @@ struct RunEnd {
   double time_limit = 0;  // limit that ended the run [s]; 0: none
   bool blown_up = false;
   std::string solver;                    // methods, their choices and the reasons; empty: no solver
-  std::string precision;                 // of converged steps: " to 0.001 m/s"; empty: see their residuals
+  std::string precision;                 // see precision_of()
   std::string start_warning;             // see Scene::start_warning
   std::string better_scheme;             // integrator that loses less energy of smooth motion; empty: none
   std::optional<InvertedTets> inverted;  // in the last state, if it is known
@@ -63,6 +63,8 @@ struct RunEnd {
   std::string program = "aspic";  // that continues the run
 };
 
+// Returns what `converged` means where it is no residual: " to 0.001 m/s".
+std::string precision_of(const MinimizeOptions& options);
 void print_summary(std::FILE* stream, const RunTotals& totals, const RunEnd& end);
 
 }  // namespace aspic::cli

@@ -211,6 +211,7 @@ class RankRun : public cli::SteppedRun {
             .interrupted = signal() != 0,
             .blown_up = loop.has_blown_up(),
             .solver = simulation_->local().solver_description(),
+            .precision = cli::precision_of(simulation_->local().options().solver.minimize),
             .state_hash = simulation_->state_hash(),
             .directory = opened_.run_directory,
             .program = fmt::format("mpirun -n {} aspic-mpi", distributed::rank_count())};
