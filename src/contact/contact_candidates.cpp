@@ -14,6 +14,7 @@ namespace {
 constexpr double kMargin = 0.05;        // relative to the mean edge at a point
 constexpr double kMarginWithin = 0.15;  // the same for pairs of one part
 constexpr double kLonger = 0.1;         // relative to the displacement of a point
+constexpr double kKept = 0.25;          // squared part of the margin within which points are not searched again
 constexpr double kMostMargins = 4;      // the most that kLonger adds within a part, relative to the margin
 constexpr double kRounding = 1e-6;
 constexpr double kMinShrink = 0.995;  // minimum shrink for which candidates are complete
@@ -149,33 +150,53 @@ double CandidateSearch::least_shrink() const { return scope_ == PairScope::withi
 // the factor above, |z - M y| = t (1 - t) |(I - R) (y1 - y0)| <= twist |y1 - y0|.
 double CandidateSearch::twist() const { return std::sqrt(1 - least_shrink() * least_shrink()) / 2; }
 
-// Returns whether the candidates are complete at x, which has the least squared distance to start_ + t move_ where it
-// is tested.
-bool CandidateSearch::covers(std::span<const Vec3d> x) const {
+// Marks the points that come close to the end of their margin, because they would soon cause another search. Returns
+// the largest squared displacement relative to the margin from start_ + t move_, with the t of the least squares.
+double CandidateSearch::mark_new(std::span<const Vec3d> x) {
   double along = 0, square = 0;
   for (size_t p = 0; p < x.size(); ++p) along += dot(move_[p], x[p] - start_[p]), square += squared_norm(move_[p]);
   const double t = square > 0 ? std::clamp(along / square, 0.0, 1.0) : 0.0;
-  for (size_t p = 0; p < x.size(); ++p)
-    if (!(squared_norm(x[p] - start_[p] - t * move_[p]) <= by_[p] * by_[p])) return false;
-  return true;
+  double most = 0;
+  for (size_t p = 0; p < x.size(); ++p) {
+    const double used = squared_norm(x[p] - start_[p] - t * move_[p]) / (by_[p] * by_[p]);
+    if (!(used <= kKept)) is_new_[p] = true;
+    if (!(used <= most)) most = used;
+  }
+  return most;
 }
 
-// Selects the positions that the next candidates cover.
-void CandidateSearch::surround(const Path& path) {
+// Returns whether the candidates are complete on the path. If not, marks the points whose pairs are to be searched for.
+// Points with a line are among them, because its t is common to all.
+bool CandidateSearch::covers(const Path& path) {
   const size_t n = path.from.size();
-  start_ = path.from;
-  move_.resize(n);
-  by_.resize(n);
-  for (size_t p = 0; p < n; ++p) {
-    move_[p] = path.to[p] - path.from[p];
+  is_new_.assign(n, !candidates_);
+  if (!candidates_) {
+    start_.resize(n), move_.resize(n), by_.resize(n);
+    return false;
+  }
+  const double start = mark_new(path.from), end = mark_new(path.to);
+  if (start <= 1 && end <= 1) return true;
+  for (size_t p = 0; p < n; ++p) is_new_[p] |= squared_norm(move_[p]) > 0;
+  return false;
+}
+
+// Selects the positions of new points that the next candidates cover: a ball around a short path, or balls on a line.
+void CandidateSearch::surround(const Path& path) {
+  for (size_t p = 0; p < path.from.size(); ++p) {
+    if (!is_new_[p]) continue;
+    const Vec3d move = path.to[p] - path.from[p];
+    const double length = norm(move);
+    const bool is_short = length <= margin_[p];
+    start_[p] = is_short ? path.from[p] + 0.5 * move : path.from[p];
+    move_[p] = is_short ? Vec3d{} : move;
     const double most = scope_ == PairScope::within_parts ? kMostMargins * margin_[p] : Box::kInfinity;
-    by_[p] = margin_[p] + std::min(kLonger * norm(move_[p]), most);
+    by_[p] = margin_[p] + (is_short ? length / 2 : std::min(kLonger * length, most));
   }
 }
 
 std::optional<PathCandidates> CandidateSearch::along(std::span<const Vec3d> x, std::span<const Vec3d> d) {
   Path wanted = path(x, d);
-  if (!candidates_ || !covers(wanted.from) || !covers(wanted.to)) {
+  if (!covers(wanted)) {
     surround(wanted);
     candidates_ = find();
   }
@@ -190,13 +211,14 @@ std::optional<PathCandidates> CandidateSearch::along(std::span<const Vec3d> x, s
 
 // Returns a box around the positions of a part that the next candidates cover, inflated by its radius and `radius`.
 SweptBox CandidateSearch::bounds_of(int part, double radius) const {
-  SweptBox box;
+  SweptBox box{.is_new = false};
   const int first = mesh_.parts[part].first_point;
   for (int p = first; p < first + mesh_.parts[part].point_count; ++p) {
     const double by = (1 + kRounding) * (by_[p] + radius + mesh_.parts[part].radius);
     box.start.add(start_[p] - Vec3d{{by, by, by}});
     box.start.add(start_[p] + Vec3d{{by, by, by}});
     box.move.add(move_[p]);
+    box.is_new |= is_new_[p];
   }
   return box;
 }
@@ -227,11 +249,12 @@ bool CandidateSearch::find_pairs(ClosePairs& all) {
                      .vertex_radius = std::span(radii).first(own.vertices.size()),
                      .edge_radius = std::span(radii).first(own.edges.size()),
                      .triangle_radius = std::span(radii).first(own.triangles.size()),
+                     .is_new = is_new_,
                      .filter = filter};
   };
   if (scope_ == PairScope::within_parts) {
     for (int a = 0; a < parts; ++a) {
-      if (mesh_.parts[a].is_obstacle) continue;
+      if (mesh_.parts[a].is_obstacle || !bounds_of(a, radius).is_new) continue;
       const Near near(*this, a, a);
       if (!append(surfaces_[a].finder.find(query_of(a, &near)), a, a)) return false;
     }
@@ -255,28 +278,45 @@ bool CandidateSearch::find_pairs(ClosePairs& all) {
   return true;
 }
 
+bool CandidateSearch::is_kept(const NearTriangle& pair) const {
+  const auto& [a, b, c] = mesh_.triangles[pair.triangle];
+  return !(is_new_[pair.point] || is_new_[a] || is_new_[b] || is_new_[c]);
+}
+
+bool CandidateSearch::is_kept(const EdgePair& pair) const {
+  const Edge &a = mesh_.edges[pair.first], &b = mesh_.edges[pair.second];
+  return !(is_new_[a[0]] || is_new_[a[1]] || is_new_[b[0]] || is_new_[b[1]]);
+}
+
+// Keeps the pairs without new points, and finds the others.
 std::shared_ptr<const ContactCandidates> CandidateSearch::find() {
   ClosePairs pairs;
   if (!find_pairs(pairs)) return nullptr;
-  std::sort(pairs.vertex_triangle.begin(), pairs.vertex_triangle.end());
-  std::sort(pairs.edge_edge.begin(), pairs.edge_edge.end());
-  ContactCandidates candidates;
-  candidates.start.assign(mesh_.rest.size() + 1, 0);
-  candidates.triangles.reserve(pairs.vertex_triangle.size());
-  candidates.edge_pairs.reserve(pairs.edge_edge.size());
+  ContactCandidates found;
+  auto& [start, triangles, edges] = found;
   const auto& x = start_;
   for (const auto& [p, t] : pairs.vertex_triangle) {
     const auto& [a, b, c] = mesh_.triangles[t];
-    ++candidates.start[p + 1];
-    candidates.triangles.push_back({t, (1 - kRounding) * point_triangle_distance({x[p], x[a], x[b], x[c]}).d});
+    triangles.push_back({p, t, (1 - kRounding) * point_triangle_distance({x[p], x[a], x[b], x[c]}).d});
   }
-  std::partial_sum(candidates.start.begin(), candidates.start.end(), candidates.start.begin());
   for (const auto& [first, second] : pairs.edge_edge) {
     const Edge &a = mesh_.edges[first], &b = mesh_.edges[second];
     const double gap = (1 - kRounding) * edge_edge_distance({x[a[0]], x[a[1]], x[b[0]], x[b[1]]}).d;
-    candidates.edge_pairs.push_back({first, second, gap});
+    edges.push_back({first, second, gap});
   }
-  return std::make_shared<const ContactCandidates>(std::move(candidates));
+  if (candidates_) {
+    for (const NearTriangle& pair : candidates_->triangles)
+      if (is_kept(pair)) triangles.push_back(pair);
+    for (const EdgePair& pair : candidates_->edge_pairs)
+      if (is_kept(pair)) edges.push_back(pair);
+  }
+  if (std::max(triangles.size(), edges.size()) > PairQuery{}.limit) return nullptr;
+  std::sort(triangles.begin(), triangles.end());
+  std::sort(edges.begin(), edges.end());
+  start.assign(mesh_.rest.size() + 1, 0);
+  for (const NearTriangle& pair : triangles) ++start[pair.point + 1];
+  std::partial_sum(start.begin(), start.end(), start.begin());
+  return std::make_shared<const ContactCandidates>(std::move(found));
 }
 
 }  // namespace aspic

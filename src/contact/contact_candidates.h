@@ -15,18 +15,26 @@ namespace aspic {
 
 // Gaps are measured at the time of the search [m].
 struct NearTriangle {
-  int triangle;
+  int point, triangle;
   double gap;
+
+  bool operator<(const NearTriangle& other) const {
+    return point != other.point ? point < other.point : triangle < other.triangle;
+  }
 };
 
 struct EdgePair {
   int first, second;  // edges, first < second
   double gap;
+
+  bool operator<(const EdgePair& other) const {
+    return first != other.first ? first < other.first : second < other.second;
+  }
 };
 
 struct ContactCandidates {
   std::vector<int> start;               // offset of each point in `triangles`, and the end
-  std::vector<NearTriangle> triangles;  // near each point, ascending
+  std::vector<NearTriangle> triangles;  // ascending
   std::vector<EdgePair> edge_pairs;     // ascending
 
   std::span<const NearTriangle> near(int point) const {
@@ -44,8 +52,9 @@ struct PathCandidates {
   std::vector<double> shrink;   // cos(a / 2) of the part of each point
 
   // Return lower bounds of the gap along the path.
-  double least_gap(int point, const NearTriangle& near, const Triangle& t) const {
-    return shrink[point] * near.gap - std::max({apart(point, t[0]), apart(point, t[1]), apart(point, t[2])});
+  double least_gap(const NearTriangle& near, const Triangle& t) const {
+    const int p = near.point;
+    return shrink[p] * near.gap - std::max({apart(p, t[0]), apart(p, t[1]), apart(p, t[2])});
   }
   double least_gap(const EdgePair& pair, const Edge& a, const Edge& b) const {
     return shrink[a[0]] * pair.gap -
@@ -89,10 +98,13 @@ class CandidateSearch {
   Path path(std::span<const Vec3d> x, std::span<const Vec3d> d) const;
   double least_shrink() const;
   double twist() const;
-  bool covers(std::span<const Vec3d> x) const;
+  double mark_new(std::span<const Vec3d> x);
+  bool covers(const Path& path);
   void surround(const Path& path);
   SweptBox bounds_of(int part, double radius) const;
   bool find_pairs(ClosePairs& all);
+  bool is_kept(const NearTriangle& pair) const;
+  bool is_kept(const EdgePair& pair) const;
   std::shared_ptr<const ContactCandidates> find();
 
   PairScope scope_;
@@ -103,6 +115,7 @@ class CandidateSearch {
   // The candidates are complete while there is a t in [0, 1] such that all points are within by_ of start_ + t move_.
   std::vector<Vec3d> start_, move_;
   std::vector<double> by_;
+  std::vector<char> is_new_;  // points whose pairs are searched for next
   std::shared_ptr<const ContactCandidates> candidates_;
 };
 

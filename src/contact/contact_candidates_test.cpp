@@ -47,6 +47,31 @@ std::vector<Vec3d> pose(const ContactMesh& mesh, double angle, double bend, std:
   return x;
 }
 
+// Counts the pairs of a point and a triangle that come close on the way from x to x + d. Requires that all are found,
+// with bounds of their gaps.
+int expect_complete(const PathCandidates& found, const ContactMesh& mesh, std::span<const Vec3d> x,
+                    std::span<const Vec3d> d) {
+  int close = 0;
+  for (const double t : {0.0, 0.2, 0.5, 0.7, 1.0})
+    for (int p = 0; p < mesh.point_count(); ++p)
+      for (int k = 0; k < mesh.triangle_count(); ++k) {
+        const auto& [a, b, c] = mesh.triangles[k];
+        if (p == a || p == b || p == c) continue;
+        const auto at = [&](int i) { return x[i] + t * d[i]; };
+        const double gap = point_triangle_distance({at(p), at(a), at(b), at(c)}).d;
+        if (gap >= kReach) continue;
+        ++close;
+        const auto near = found.pairs->near(p);
+        const auto place = std::find_if(near.begin(), near.end(), [&](const auto& n) { return n.triangle == k; });
+        if (place == near.end()) {
+          ADD_FAILURE() << "t " << t << " point " << p << " triangle " << k;
+          return close;
+        }
+        EXPECT_LE(found.least_gap(*place, mesh.triangles[k]), gap);
+      }
+  return close;
+}
+
 // Candidates of a path, or of an earlier one that covers it, contain all pairs that come close on it, and bound their
 // gaps, although their frame turns.
 TEST(CandidateSearch, FindsAllPairsOfABodyThatTurns) {
@@ -65,21 +90,30 @@ TEST(CandidateSearch, FindsAllPairsOfABodyThatTurns) {
       for (Vec3d& di : d) di = scale * di;
       const auto found = search.along(x, d);
       ASSERT_TRUE(found);
-      for (const double t : {0.0, 0.2, 0.5, 0.7, 1.0})
-        for (int p = 0; p < mesh.point_count(); ++p)
-          for (int k = 0; k < mesh.triangle_count(); ++k) {
-            const auto& [a, b, c] = mesh.triangles[k];
-            if (p == a || p == b || p == c) continue;
-            const auto at = [&](int i) { return x[i] + t * d[i]; };
-            const double gap = point_triangle_distance({at(p), at(a), at(b), at(c)}).d;
-            if (gap >= laws(0, 0).reach) continue;
-            ++close;
-            const auto near = found->pairs->near(p);
-            const auto place = std::find_if(near.begin(), near.end(), [&](const auto& n) { return n.triangle == k; });
-            ASSERT_TRUE(place != near.end()) << path << " t " << t << " point " << p << " triangle " << k;
-            EXPECT_LE(found->least_gap(p, *place, mesh.triangles[k]), gap);
-          }
+      close += expect_complete(*found, mesh, x, d);
     }
+  }
+  EXPECT_GT(close, 1000);
+}
+
+// Points of one corner move back and forth. Pairs of the others stay, and those that the corner leaves are dropped.
+TEST(CandidateSearch, FindsPairsOfACornerThatMoves) {
+  const ContactMesh mesh = one_part();
+  const ContactLaws laws(mesh, {.reach = kReach});
+  CandidateSearch search(PairScope::within_parts, mesh, laws);
+  std::mt19937 random(6);
+  std::uniform_real_distribution<double> uniform(-0.05, 0.05);
+  int close = 0;
+  for (int path = 0; path < 40; ++path) {
+    std::vector<Vec3d> x = mesh.rest, d(x.size());
+    for (size_t i = 0; i < x.size(); ++i)
+      if (x[i][0] + x[i][1] < 0.05)
+        for (int axis = 0; axis < 3; ++axis) x[i][axis] += uniform(random), d[i][axis] = 0.1 * uniform(random);
+    const auto found = search.along(x, d);
+    ASSERT_TRUE(found);
+    close += expect_complete(*found, mesh, x, d);
+    const auto fresh = CandidateSearch(PairScope::within_parts, mesh, laws).along(x, d);
+    EXPECT_LT(found->pairs->edge_pairs.size(), 2 * fresh->pairs->edge_pairs.size()) << path;
   }
   EXPECT_GT(close, 1000);
 }

@@ -39,8 +39,8 @@ class Gaps {
       : mesh_(mesh), gap_(mesh.parts.size() * mesh.parts.size(), kInfinity) {
     const auto found = CandidateSearch(PairScope::between_parts, mesh, laws).along(start, {});
     if (!found) throw std::length_error("contact: too many features are close to each other at the start");
-    for (int p = 0; p < mesh.point_count(); ++p)
-      for (const auto& [t, gap] : found->pairs->near(p)) add(mesh.part[p], mesh.part[mesh.triangles[t][0]], gap, laws);
+    for (const auto& [p, t, gap] : found->pairs->triangles)
+      add(mesh.part[p], mesh.part[mesh.triangles[t][0]], gap, laws);
     for (const auto& [a, b, gap] : found->pairs->edge_pairs)
       add(mesh.part[mesh.edges[a][0]], mesh.part[mesh.edges[b][0]], gap, laws);
     for (const ContactPlane& plane : mesh.planes)

@@ -71,12 +71,11 @@ StencilSearch::StencilSearch(const ContactMesh& mesh, const ContactLaws& laws)
       between_(PairScope::between_parts, mesh, laws) {
   const auto near = within_.along(mesh.rest, {});
   if (!near) throw std::length_error(kTooMany);
-  for (int p = 0; p < mesh.point_count(); ++p)
-    for (const auto& [t, gap] : near->pairs->near(p)) {
-      const auto& [a, b, c] = mesh.triangles[t];
-      const auto& X = mesh.rest;
-      cap_[p] = std::min(cap_[p], point_triangle_distance({X[p], X[a], X[b], X[c]}).d / 2);
-    }
+  for (const auto& [p, t, gap] : near->pairs->triangles) {
+    const auto& [a, b, c] = mesh.triangles[t];
+    const auto& X = mesh.rest;
+    cap_[p] = std::min(cap_[p], point_triangle_distance({X[p], X[a], X[b], X[c]}).d / 2);
+  }
 }
 
 int StencilSearch::self_touching_point() const {
@@ -167,7 +166,7 @@ void StencilSearch::add_point(const PathCandidates& candidates, std::span<const 
       reach = laws_(own, other).reach, radius = laws_(own, other).radius;
       if (own == other) reach = std::min(reach, cap_[p]);
     }
-    if (laws_(own, other).stiffness == 0 || candidates.least_gap(p, candidate, corner) >= radius + reach) continue;
+    if (laws_(own, other).stiffness == 0 || candidates.least_gap(candidate, corner) >= radius + reach) continue;
     ++distances;
     const Distance to_triangle = point_triangle_distance({x[p], x[corner[0]], x[corner[1]], x[corner[2]]});
     if (!(to_triangle.d < radius + reach)) continue;

@@ -79,7 +79,7 @@ double StepBound::step_of(const MovingPair& pair, const StepRule& rule) const {
 double StepBound::to_triangle(const Line& line, int i, const NearTriangle& near, double step) const {
   const Triangle& t = mesh_.triangles[near.triangle];
   const ContactLaw& law = laws_(mesh_.part[i], mesh_.part[t[0]]);
-  if (line.candidates.least_gap(i, near, t) > law.radius + law.reach) return step;
+  if (line.candidates.least_gap(near, t) > law.radius + law.reach) return step;
   return step_of(pair(line, PairKind::point_triangle, {i, t[0], t[1], t[2]}),
                  {.landing = kLanding * law.reach, .offset = law.radius, .horizon = step});
 }

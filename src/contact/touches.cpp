@@ -98,7 +98,7 @@ std::vector<Touch> touches(const ContactMesh& mesh, const ContactLaws& laws, con
   if (!near) throw std::length_error("contact: too many features touch each other at the start");
   Touches found(mesh, laws, x);
   for (int p = 0; p < mesh.point_count(); ++p) {
-    for (const auto& [t, gap] : near->pairs->near(p)) found.add_point_triangle(p, t);
+    for (const NearTriangle& pair : near->pairs->near(p)) found.add_point_triangle(p, pair.triangle);
     for (const ContactPlane& plane : mesh.planes) found.add_plane(p, plane);
   }
   for (const auto& [a, b, gap] : near->pairs->edge_pairs) found.add_edges(mesh.edges[a], mesh.edges[b]);

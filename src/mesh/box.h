@@ -35,6 +35,9 @@ struct Box {
       apart = std::max(apart, std::max(lower[axis] - other.upper[axis], other.lower[axis] - upper[axis]));
     return !(apart > 0);
   }
+  bool operator==(const Box& other) const {
+    return std::equal(lower.a, lower.a + 3, other.lower.a) && std::equal(upper.a, upper.a + 3, other.upper.a);
+  }
   bool contains(const Vec3d& x) const { return overlaps({x, x}); }
   double squared_distance(const Vec3d& x) const {
     double sum = 0;

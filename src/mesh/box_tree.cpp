@@ -20,7 +20,12 @@ BoxTreeOf<B>::BoxTreeOf(std::span<const B> boxes) {
 
 template <class B>
 void BoxTreeOf<B>::refit(std::span<const B> boxes) {
-  parallel_for(part_count(), [&](int part) { bound(parts_[part], boxes, 0); });
+  parallel_for(part_count(), [&](int part) {
+    const auto [index, begin, end] = parts_[part];
+    bool is_equal = true;
+    for (int i = begin; i < end && is_equal; ++i) is_equal = leaves_[i] == boxes[items_[i]];
+    if (!is_equal) bound(parts_[part], boxes, 0);
+  });
   if (!items_.empty()) bound(root(), boxes, kPart);
 }
 

@@ -34,7 +34,7 @@ bool is_finite(const Vec3d& x) {
 
 template <class Points>
 SweptBox primitive_box(const Points& points, const PairQuery& query, double radius) {
-  SweptBox box;
+  SweptBox box{.is_new = query.is_new.empty()};
   double by = 0, length = 0;
   for (const int point : points) {
     const Vec3d move = query.dx.empty() ? Vec3d{} : query.dx[point];
@@ -43,6 +43,7 @@ SweptBox primitive_box(const Points& points, const PairQuery& query, double radi
     box.move.add(move);
     length = std::max(length, largest_component(move));
     if (!query.by.empty()) by = std::max(by, query.by[point]);
+    box.is_new |= !query.is_new.empty() && query.is_new[point];
   }
   inflate(box.start, radius + by, length);
   return box;

@@ -37,6 +37,7 @@ struct PairQuery {
   std::span<const double> by = {};  // radius of the ball around each moving position [m]; empty: 0
   // Radius of each primitive, by which its box is inflated in addition [m]; empty: 0.
   std::span<const double> vertex_radius, edge_radius, triangle_radius;
+  std::span<const char> is_new = {};   // of each position; pairs without a new one are not found; empty: all are new
   const PairFilter* filter = nullptr;  // null: accepts all
   size_t limit = size_t{1} << 25;      // maximum number of pairs of each kind
 };

@@ -21,6 +21,7 @@ struct Scene {
   SurfacePrimitives primitives;
   std::vector<Vec3d> x, dx;
   std::vector<double> vertex_radius, edge_radius, triangle_radius;
+  std::vector<char> is_new;
 
   void add(const TriMesh& mesh, const Vec3d& shift) {
     const int first = static_cast<int>(x.size());
@@ -46,6 +47,7 @@ ClosePairs find(PairFinder& finder, const Scene& scene, const PairFilter* filter
                       .vertex_radius = scene.vertex_radius,
                       .edge_radius = scene.edge_radius,
                       .triangle_radius = scene.triangle_radius,
+                      .is_new = scene.is_new,
                       .filter = filter,
                       .limit = limit});
 }
@@ -113,6 +115,25 @@ TEST(PairFinder, AgreesWithBruteForceWhileSurfacesMove) {
     EXPECT_GT(pairs.vertex_triangle.size(), 10);
     EXPECT_GT(pairs.edge_edge.size(), 100);
     for (size_t i = 0; i < scene.x.size(); ++i) scene.x[i] = scene.x[i] + scene.dx[i];
+  }
+}
+
+TEST(PairFinder, FindsOnlyPairsOfNewPositions) {
+  Scene scene = two_spheres(2, 0.02);
+  PairFinder finder(scene.primitives);
+  std::mt19937 random(3);
+  for (const int share : {1, 30, 4000}) {  // one of `share` positions is new
+    scene.is_new.clear();
+    for (size_t i = 0; i < scene.x.size(); ++i) scene.is_new.push_back(random() % share == 0);
+    const auto is_known = [&](const auto& points) {
+      return std::none_of(points.begin(), points.end(), [&](int p) { return scene.is_new[p]; });
+    };
+    const auto& [vertices, edges, triangles] = scene.primitives;
+    ClosePairs expected = brute_force(scene);
+    std::erase_if(expected.vertex_triangle,
+                  [&](auto& k) { return !scene.is_new[vertices[k[0]]] && is_known(triangles[k[1]]); });
+    std::erase_if(expected.edge_edge, [&](auto& k) { return is_known(edges[k[0]]) && is_known(edges[k[1]]); });
+    expect_equal(find(finder, scene), expected);
   }
 }
 
