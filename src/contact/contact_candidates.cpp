@@ -150,19 +150,19 @@ double CandidateSearch::least_shrink() const { return scope_ == PairScope::withi
 // the factor above, |z - M y| = t (1 - t) |(I - R) (y1 - y0)| <= twist |y1 - y0|.
 double CandidateSearch::twist() const { return std::sqrt(1 - least_shrink() * least_shrink()) / 2; }
 
-// Marks the points that come close to the end of their margin, because they would soon cause another search. Returns
-// the largest squared displacement relative to the margin from start_ + t move_, with the t of the least squares.
-double CandidateSearch::mark_new(std::span<const Vec3d> x) {
+// Returns whether the candidates are complete at x. Marks the points that come close to the end of their margin around
+// start_ + t move_, because they would soon cause another search. t is that of the least squared distance.
+bool CandidateSearch::mark_new(std::span<const Vec3d> x) {
   double along = 0, square = 0;
   for (size_t p = 0; p < x.size(); ++p) along += dot(move_[p], x[p] - start_[p]), square += squared_norm(move_[p]);
   const double t = square > 0 ? std::clamp(along / square, 0.0, 1.0) : 0.0;
-  double most = 0;
+  bool is_complete = true;
   for (size_t p = 0; p < x.size(); ++p) {
     const double used = squared_norm(x[p] - start_[p] - t * move_[p]) / (by_[p] * by_[p]);
     if (!(used <= kKept)) is_new_[p] = true;
-    if (!(used <= most)) most = used;
+    is_complete &= used <= 1;
   }
-  return most;
+  return is_complete;
 }
 
 // Returns whether the candidates are complete on the path. If not, marks the points whose pairs are to be searched for.
@@ -174,8 +174,8 @@ bool CandidateSearch::covers(const Path& path) {
     start_.resize(n), move_.resize(n), by_.resize(n);
     return false;
   }
-  const double start = mark_new(path.from), end = mark_new(path.to);
-  if (start <= 1 && end <= 1) return true;
+  const bool at_start = mark_new(path.from), at_end = mark_new(path.to);
+  if (at_start && at_end) return true;
   for (size_t p = 0; p < n; ++p) is_new_[p] |= squared_norm(move_[p]) > 0;
   return false;
 }

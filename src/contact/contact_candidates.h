@@ -98,7 +98,7 @@ class CandidateSearch {
   Path path(std::span<const Vec3d> x, std::span<const Vec3d> d) const;
   double least_shrink() const;
   double twist() const;
-  double mark_new(std::span<const Vec3d> x);
+  bool mark_new(std::span<const Vec3d> x);
   bool covers(const Path& path);
   void surround(const Path& path);
   SweptBox bounds_of(int part, double radius) const;
