@@ -14,6 +14,7 @@
 #include "aspic/plot.h"
 #include "base/error.h"
 #include "base/printable.h"
+#include "dynamics/mesh_error_text.h"
 #include "dynamics/step_derivatives.h"
 #include "io/mesh_file.h"
 #include "mesh/doctor.h"
@@ -144,7 +145,7 @@ struct CheckArguments {
   std::vector<std::string> overrides;
   std::string registers;    // registration of a data set; empty: none
   double tolerance = 1e-6;  // tolerance of derivatives
-  bool repair = false, derivatives = false, json = false;
+  bool repair = false, derivatives = false, json = false, mesh_error = false;
 };
 
 constexpr size_t kIndicesShown = 8;
@@ -267,6 +268,28 @@ int check_scene(const CheckArguments& arguments) {
   return wrong ? exit_bad_input : exit_done;
 }
 
+// Estimates the error of the mesh in static equilibrium under the loads and pins at the end of the scene, which the
+// steps approach. Prints, and returns the exit code.
+int check_mesh_error(const CheckArguments& arguments) {
+  constexpr int kSteps = 10;
+  std::vector<std::string> overrides = arguments.overrides;
+  overrides.emplace_back("time.integrator=quasi_static");
+  Scene scene = load_scene(arguments.input, {.overrides = overrides, .mesher = {}});
+  const double step = scene.simulation.options().h * std::max(1, scene.steps) / kSteps;
+  overrides.push_back(fmt::format("time.step={}", step));
+  scene = load_scene(arguments.input, {.overrides = overrides, .mesher = {}});
+  StepReport report;
+  for (int i = 0; i < kSteps; ++i) report = scene.simulation.step();
+  if (!is_success(report.status))
+    throw InvalidInput(
+        fmt::format("{}: no static equilibrium was found ({}); pin the body, or estimate in a run: "
+                    "solver.mesh_error = \"end\"",
+                    printable(arguments.input.string()), to_string(report.status)));
+  add_mesh_error(scene.simulation, {}, report);
+  fmt::print("{}: in static equilibrium, the mesh {}\n", scene.name, printable(report.mesh_error));
+  return exit_done;
+}
+
 bool is_data_set(const fs::path& input) {
   std::error_code error;
   return fs::is_directory(input, error) || input.filename() == "capture.toml";
@@ -291,6 +314,10 @@ int check(const CheckArguments& arguments) {
     return check_derivatives(scene, {.plot = arguments.plot, .tolerance = arguments.tolerance, .json = arguments.json});
   }
   if (!arguments.plot.empty() || arguments.json) throw InvalidInput("--plot and --json require --derivatives");
+  if (arguments.mesh_error) {
+    if (arguments.repair) throw InvalidInput("--repair and --mesh-error cannot be combined");
+    return check_mesh_error(arguments);
+  }
   if (arguments.input.extension() == ".toml") return check_scene(arguments);
   if (!arguments.overrides.empty()) throw InvalidInput("--set needs a scene; a mesh has no values to override");
   std::vector<std::string> notes;
@@ -311,6 +338,7 @@ void add_check(CLI::App& app, Action& action) {
       "  aspic check pillow                           a data set of measurements\n"
       "  aspic check broken.mesh --repair -o mended.mesh\n"
       "  aspic check scenes/bunny.toml --derivatives --plot errors.svg\n"
+      "  aspic check scenes/cantilever.toml --mesh-error\n"
       "Exit code 2 if there are errors (after a repair, if requested), 3 if a derivative is wrong.");
   command->add_option("INPUT", arguments->input, "Scene (.toml), mesh, or folder of a data set")->required();
   command
@@ -325,6 +353,8 @@ void add_check(CLI::App& app, Action& action) {
   output->needs(repair);
   command->add_flag("--derivatives", arguments->derivatives,
                     "Compare gradient and Hessian of every term of the next step with central differences");
+  command->add_flag("--mesh-error", arguments->mesh_error,
+                    "Estimate by how much the mesh is too stiff, in static equilibrium at the end of the scene");
   command->add_option("--tolerance", arguments->tolerance, "With --derivatives: relative tolerance; 1e-6 by default")
       ->check(CLI::PositiveNumber);
   command->add_option("--plot", arguments->plot, "With --derivatives: plot error over step (.svg or .png)");

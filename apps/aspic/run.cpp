@@ -18,6 +18,7 @@
 #include "base/printable.h"
 #include "base/stop_token.h"
 #include "dynamics/internal_terms.h"
+#include "dynamics/mesh_error_text.h"
 #include "dynamics/state.h"
 #include "results/explanation.h"
 #include "results/run_directory.h"
@@ -113,7 +114,9 @@ class LocalRun : public SteppedRun {
       if (trace_) trace_->on_iteration(scene_.simulation.steps_taken() + 1, iteration);
       observe(iteration);
     };
-    return scene_.simulation.step(traced, stop);
+    StepReport report = scene_.simulation.step(traced, stop);
+    if (is_success(report.status) && wants_mesh_error(report)) add_mesh_error(scene_.simulation, stop, report);
+    return report;
   }
 
   Explanation record(const StepReport& report, const std::vector<Iteration>& iterations) override {
@@ -133,6 +136,12 @@ class LocalRun : public SteppedRun {
   }
 
  private:
+  // The last step of the scene, whatever --steps says: the rows of a run do not depend on where it was interrupted.
+  bool wants_mesh_error(const StepReport& report) const {
+    return (scene_.mesh_error == "frames" && directory_.is_frame_due(report.time)) ||
+           (scene_.mesh_error != "off" && report.step == scene_.steps);
+  }
+
   void finish_trace() {
     trace_->close();
     for (const LandscapeAt& at : trace_->missed())

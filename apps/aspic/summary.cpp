@@ -183,6 +183,7 @@ void RunTotals::add(const StepReport& report) {
   seconds += report.seconds;
   time = report.time;
   reactions = report.resultants.pins;
+  if (!report.mesh_error.empty()) mesh_error = report.mesh_error;
 }
 
 InvertedTets inverted_tets(const Simulation& simulation) {
@@ -229,6 +230,7 @@ void print_summary(std::FILE* stream, const RunTotals& totals, const RunEnd& end
     print_loss(stream, totals, end.better_scheme);
     print_contact(stream, totals, end);
     print_inverted(stream, totals, end.inverted);
+    if (!totals.mesh_error.empty()) fmt::print(stream, "mesh       {}\n", printable(totals.mesh_error));
     print_reactions(stream, totals, end);
     const auto per_step = [&](long count) { return static_cast<double>(count) / totals.steps; };
     fmt::print(stream,

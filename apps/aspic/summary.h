@@ -35,6 +35,7 @@ struct RunTotals {
   double first_potential = 0;                      // potential energy after the first step [J]
   double most_changed = 0;                         // largest difference from it [J]
   std::vector<Resultant> reactions;                // reaction of each pin in the last step
+  std::string mesh_error;                          // the last one in words; empty: none was computed
 
   void add(const StepReport& report);
 };

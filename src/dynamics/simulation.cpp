@@ -395,6 +395,14 @@ std::vector<double> Simulation::reactions() const {
   return forces;
 }
 
+MeshErrorEstimate Simulation::mesh_error(const StopToken& stop) const {
+  const Impl& s = *impl_;
+  const double h = s.options.h;
+  return estimate_mesh_error({s.model, *s.pins, s.E->terms(), s.E->pattern(), s.state,
+                              s.integrator->facts().is_static(), h, s.state.time - s.start.time},
+                             stop);
+}
+
 TetFields Simulation::tet_fields() const {
   const size_t tets = impl_->model.mesh.tets.size();
   TetFields fields{std::vector<double>(tets), std::vector<double>(tets, 1.0), std::vector<double>(6 * tets),

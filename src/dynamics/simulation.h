@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "dynamics/integrator_facts.h"
+#include "dynamics/mesh_error.h"
 #include "dynamics/model.h"
 #include "dynamics/stable_step.h"
 #include "dynamics/state.h"
@@ -75,6 +76,7 @@ class Simulation {
   std::vector<double> potential_energies() const;    // of the current state, one per potential_names() [J]
   // Returns the forces of the pins on the vertices in the last step or substep; NaN if no step was taken [N].
   std::vector<double> reactions() const;
+  MeshErrorEstimate mesh_error(const StopToken& stop = {}) const;  // estimate at the current state
   TetFields tet_fields() const;               // one value per tet at the current state, in the model's order
   const IntegratorFacts& integrator() const;  // properties of the selected integrator
   StableStep stable_step() const;             // for an explicit integrator, at the initial state

@@ -178,6 +178,15 @@ std::vector<StepField>& fields() {
           {"friction_passes", "", "evaluations of lagged coefficients: friction, rims of pressures"}, kCount)),
       optional(count<&R::carries>(
           {"carries", "", "Newton directions along which bodies moved with obstacles before the iterations"}, kCount)),
+      optional(real<&R::mesh_stiffness>(
+          {"mesh_stiffness", "1",
+           "estimate: stiffness of the mesh over that of the worst body, minus 1; 0 where not computed"},
+          kMeasured)),
+      optional(real<&R::mesh_energy>({"mesh_energy", "J", "estimate: energy above that of the minimum without a mesh"},
+                                     kMeasured)),
+      optional(count<&R::mesh_worst_tet>(
+          {"mesh_worst_tet", "", "tet with the largest density of `mesh_energy`; -1: none"}, kMeasured)),
+      optional(word<&R::mesh_error>({"mesh_error", "", "the estimate in words; empty where not computed"}, kWord)),
       {"potential", "J",
        "energy of each term of V and of viscoelastic branches; a dead load has -f . x, not zero at rest",
        StepFieldType::potentials, kTable | kJson | kViewer},

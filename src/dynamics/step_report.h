@@ -95,10 +95,16 @@ struct StepReport : Work {  // work of all solves of the step and of this report
   double ledger_error = 0;          // difference of both sides
   Resultants resultants;            // external forces on pins, loads and bodies
   EnergyBound energy_bound = EnergyBound::none;
-  double energy_slack = 0;       // bound minus energy; 0 without a bound [J]
-  std::uint64_t state_hash = 0;  // hash of the state at the end, see state_hash()
-  double seconds = 0;            // wall time of the step
-  double cpu_seconds = 0;        // CPU time of the process
+  double energy_slack = 0;  // bound minus energy; 0 without a bound [J]
+  // Estimate of the discretization error, see MeshErrorEstimate: of the worst body, and of all; 0: none was computed.
+  double mesh_stiffness = 0;         // [1]
+  double mesh_energy = 0;            // [J]
+  int mesh_worst_tet = -1;           // in the user's numbers
+  std::string mesh_error;            // in words; empty: none was computed
+  std::vector<double> mesh_density;  // of each tet of the model [J/m^3]
+  std::uint64_t state_hash = 0;      // hash of the state at the end, see state_hash()
+  double seconds = 0;                // wall time of the step
+  double cpu_seconds = 0;            // CPU time of the process
   ContactCost contact_cost;
 };
 

@@ -11,6 +11,8 @@
 
 namespace aspic {
 
+struct TetMesh;
+
 using Positions = std::span<const double>;  // x, 3 per vertex [m]
 inline Vec3d point(Positions x, int vertex) { return {{x[3 * vertex], x[3 * vertex + 1], x[3 * vertex + 2]}}; }
 
@@ -98,6 +100,14 @@ class StepLimitingEnergy {
   virtual ~StepLimitingEnergy() = default;
   // Returns an upper bound of the step lengths alpha for which the term allows the path from x to x + alpha d.
   virtual double max_step(Positions x, const Energy::Context& context, std::span<const double> d) const = 0;
+};
+
+// A term in the tets of a body besides its elasticity, such as fibres.
+class TetEnergy {
+ public:
+  virtual ~TetEnergy() = default;
+  // Returns the energy of the same tets of another mesh, such as one of quadratic tets.
+  virtual std::unique_ptr<Energy> on(const TetMesh& mesh) const = 0;
 };
 
 // The quadratic model scale (g'd + d'Hd / 2) of V around x; g and H include the scale.

@@ -1,8 +1,10 @@
 // Terms of fibres, whose directions vary between the quadrature points of a tet. Included only where it is
 // instantiated.
 #pragma once
+#include <functional>
 #include <memory>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "energy/fibres.h"
@@ -13,7 +15,7 @@ namespace aspic {
 
 // Fibres are elements with the member `directions`. own(fibre): parameters of the law without the direction.
 template <class Law, class Base, class Batch>
-class FibreTerm : public TetTerm<Law, Base, Batch> {
+class FibreTerm : public TetTerm<Law, Base, Batch>, public TetEnergy {
  public:
   using Term = TetTerm<Law, Base, Batch>;
   using Params = typename Law::template Params<double>;
@@ -30,7 +32,14 @@ class FibreTerm : public TetTerm<Law, Base, Batch> {
         }
   }
 
+  // Makes the term of the same fibres on another mesh.
+  using Maker = std::function<std::unique_ptr<Energy>(const TetMesh&)>;
+  void set_maker(Maker maker) { maker_ = std::move(maker); }
+  std::unique_ptr<Energy> on(const TetMesh& mesh) const override { return maker_ ? maker_(mesh) : nullptr; }
+
  private:
+  Maker maker_;  // null: none
+
   template <class Fibre, class Own>
   static std::vector<Params> parameters(std::span<const Fibre> fibres, const Own& own) {
     std::vector<Params> list;

@@ -1,5 +1,8 @@
 #include "energy/fibres.h"
 
+#include <utility>
+#include <vector>
+
 #include "energy/fibre_term.h"
 #include "material/fibre_law.h"
 #include "material/guccione_law.h"
@@ -10,10 +13,22 @@
 namespace aspic {
 namespace {
 
+// Returns the fibres of linear tets, with one direction per tet, for tets with more points.
+template <class Fibre>
+std::vector<Fibre> uniform(std::span<const Fibre> fibres) {
+  std::vector<Fibre> list(fibres.begin(), fibres.end());
+  for (Fibre& fibre : list) fibre.directions.fill(fibre.directions[0]);
+  return list;
+}
+
 template <class Law, class Fibre, class Own>
 std::unique_ptr<Energy> passive(const FibrePlace& place, std::span<const Fibre> fibres, const Own& own) {
   return for_order_of(place, fibres, [&]<class Batch>() -> std::unique_ptr<Energy> {
-    return std::make_unique<FibreTerm<Law, Energy, Batch>>(place, fibres, own);
+    auto term = std::make_unique<FibreTerm<Law, Energy, Batch>>(place, fibres, own);
+    term->set_maker([name = place.name, first = place.first, list = uniform(fibres), own](const TetMesh& mesh) {
+      return passive<Law>(FibrePlace{name, mesh, first}, std::span<const Fibre>(list), own);
+    });
+    return term;
   });
 }
 
@@ -57,7 +72,12 @@ template <class Law, class Fibre, class Own>
 std::unique_ptr<Energy> active(const FibrePlace& place, std::span<const Fibre> fibres, const Own& own,
                                Activation activation) {
   return for_order_of(place, fibres, [&]<class Batch>() -> std::unique_ptr<Energy> {
-    return std::make_unique<Muscle<Law, Batch>>(place, fibres, own, std::move(activation));
+    auto term = std::make_unique<Muscle<Law, Batch>>(place, fibres, own, activation);
+    term->set_maker(
+        [name = place.name, first = place.first, list = uniform(fibres), own, activation](const TetMesh& mesh) {
+          return active<Law>(FibrePlace{name, mesh, first}, std::span<const Fibre>(list), own, activation);
+        });
+    return term;
   });
 }
 

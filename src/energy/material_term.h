@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "energy/custom_elasticity.h"
 #include "energy/make_tet_term.h"
 #include "energy/tet_elasticity.h"
 #include "energy/tet_term.h"
@@ -45,6 +46,15 @@ class MaterialTerm : public TetTerm<M, TetElasticity, Batch> {
       const Pack J = Batch::least_determinant(F_i);
       for (int l = 0; l < batches_[i].count; ++l) write(batches_[i].tet[l], l, psi, J, Pack(kShare) * cauchy, fields);
     });
+  }
+
+  std::unique_ptr<TetElasticity> on(const TetMesh& mesh) const override {
+    if constexpr (requires { M::info(); })
+      return make_tet_elasticity(M::info().name, mesh, first_, parameters_);
+    else if constexpr (requires(M m) { m.density; })
+      return custom_material(std::string(this->name()), material_.extra, material_.density)(mesh, first_, parameters_);
+    else
+      return nullptr;
   }
 
   int parameter_count() const override { return parameter_count_; }

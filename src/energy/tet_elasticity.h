@@ -26,6 +26,9 @@ class TetElasticity : public SteadyEnergy {
   virtual bool excludes_inversion() const { return false; }         // infinite at some points where det F <= 0
   virtual void evaluate(Positions x, TetFields& fields) const = 0;  // writes the entries of this term's tets
 
+  // Returns the energy of the same tets of another mesh, such as one of quadratic tets; null: there is none.
+  virtual std::unique_ptr<TetElasticity> on(const TetMesh&) const { return nullptr; }
+
   // The parameters theta: for each tet of this term, mu, lambda and the entries of MaterialInfo::extra, tet by tet.
   virtual int parameter_count() const = 0;                                          // per tet
   virtual std::span<const MaterialParameters> parameters() const = 0;               // one per tet

@@ -324,6 +324,7 @@ void RunDirectory::finish(const Simulation& simulation) {
   impl_->tables.close();
 }
 
+bool RunDirectory::is_frame_due(double time) const { return impl_->is_frame_due(time); }
 std::string RunDirectory::path() const { return impl_->layout.root(); }
 std::string RunDirectory::trace_folder(int first_step) const { return impl_->layout.trace(first_step); }
 

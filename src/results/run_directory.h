@@ -24,6 +24,7 @@ class RunDirectory {
   void on_step(const StepReport& report, const Simulation& simulation);  // steps.csv, frames, checkpoint
   void finish(const Simulation& simulation);                             // last checkpoint, indices, closes files
 
+  bool is_frame_due(double time) const;            // whether on_step() writes a frame at this time [s]
   std::string path() const;                        // of the directory
   std::string trace_folder(int first_step) const;  // folder of a trace that begins after the step
 

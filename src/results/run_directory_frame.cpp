@@ -142,6 +142,8 @@ VtuFields frame_fields(const Simulation& simulation, const StepReport* report, F
   if (contents.mechanics) add_mechanics(simulation, tet_fields.cauchy, real, fields);
   for (Field& field : cell_fields(simulation, std::move(tet_fields), real))
     fields.cell_fields.push_back(std::move(field));
+  if (report && !report->mesh_density.empty())
+    fields.cell_fields.push_back({"mesh_error", 1, report->mesh_density, real});
   fields.file_fields = file_fields(state.time, report);
   return fields;
 }

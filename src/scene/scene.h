@@ -44,7 +44,8 @@ struct Scene {
   // surface.
   std::vector<std::pair<std::string, std::string>> input_files = {};
   std::vector<std::pair<std::string, TetMesh>> generated_meshes = {};
-  Vec3d gravity = {};  // [m/s^2]
+  Vec3d gravity = {};              // [m/s^2]
+  std::string mesh_error = "end";  // when to estimate the discretization error: "end", "frames" or "off"
 };
 
 // What a run needs beside its results to be repeated.

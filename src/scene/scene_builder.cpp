@@ -91,6 +91,7 @@ class SceneBuilder {
     const int steps = steps_of(*scene.document.find("time"));
     const OutputOptions output = output_options(*scene.document.find("output"));
     const Vec3d gravity = scene.document.find("gravity")->vector();
+    const std::string mesh_error = (*scene.document.find("solver"))["mesh_error"].text();
     try {
       Simulation simulation(std::move(scene.model), std::move(scene.start), scene.options);
       std::string warning = start_warning(simulation);
@@ -105,7 +106,8 @@ class SceneBuilder {
               output,
               std::move(scene.input_files),
               std::move(scene.generated_meshes),
-              gravity};
+              gravity,
+              mesh_error};
     } catch (const BadInitialState& e) {
       throw InvalidInput(source_.file + ": " + e.cause + "; " + remedy_in_scene(e.kind));
     } catch (const InvalidInput& e) {

@@ -72,6 +72,10 @@ void add_solver(Schema& s) {
        key("max_iterations", kInteger, "maximum iterations per step; beyond, the step has not converged",
            Range{.min = 1, .max = 1e9},
            Usual{std::to_string(usual.minimize.max_iterations), "far more than Newton's method usually needs"}),
+       key("mesh_error", kText,
+           "when to estimate the error of the mesh: after the last step (`end`), with each frame (`frames`), or not "
+           "(`off`)",
+           Choices{{"end", "frames", "off"}}, Usual{"\"end\"", "costs about as much as 20 iterations"}),
        key("time_budget", kNumber,
            "wall time per step; beyond, the step ends with its best iterate and the status `budget`; 0: no limit. "
            "Results are then not reproducible",

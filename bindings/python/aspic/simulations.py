@@ -167,6 +167,16 @@ class Simulation(Strict):
         """Forces of the pins on the vertices in the last step, (n, 3) [N]; NaN before the first."""
         return self._core.reactions()
 
+    def mesh_error(self):
+        """Estimates by how much linear tets are too stiff at the current state, see docs/verification.md.
+
+        Returns a dict: "text"; "reliable"; and unless the text says that there is no estimate, {body: value} for
+        "stiffness" (that of the mesh over that of the body, minus 1; NaN: not strained) and "energy" [J], "density" of
+        each tet, (m,) [J/m^3], and "direction" d, (n, 3) [m]: the estimated error of any function f(q), such as the
+        position of a probe, is -(df/dq * d).sum().
+        """
+        return self._core.mesh_error()
+
     def snapshot(self):
         """The state with everything that later steps depend on. It can be pickled."""
         return self._core.snapshot()

@@ -7,6 +7,7 @@
 #include "base/hash.h"
 #include "bindings.h"
 #include "custom_method.h"
+#include "dynamics/mesh_error_text.h"
 #include "iteration.h"
 #include "python_energy.h"
 #include "results/explanation.h"
@@ -220,6 +221,29 @@ py::dict fields_of(LiveSimulation& self) {
   return result;
 }
 
+py::dict mesh_error_of(LiveSimulation& self) {
+  const Simulation& simulation = self.simulation();
+  const MeshErrorEstimate error = [&] {
+    const py::gil_scoped_release release;
+    return simulation.mesh_error();
+  }();
+  const Model& model = simulation.model();
+  py::dict result;
+  result["text"] = mesh_error_text(error, simulation);
+  result["reliable"] = error.is_reliable;
+  if (!error.reason.empty()) return result;
+  py::dict stiffness, energy;
+  for (size_t b = 0; b < error.bodies.size(); ++b) {
+    stiffness[py::str(model.bodies[b].name)] = error.bodies[b].stiffness;
+    energy[py::str(model.bodies[b].name)] = error.bodies[b].energy;
+  }
+  result["stiffness"] = stiffness;
+  result["energy"] = energy;
+  result["density"] = to_array(model.numbering.tet.to_user(error.density), {py::ssize_t{model.mesh.tet_count()}});
+  result["direction"] = self.layout().out(error.correction);
+  return result;
+}
+
 py::list bodies_of(LiveSimulation& self) {
   py::list list;
   for (const BodyRange& body : self.simulation().model().bodies) {
@@ -305,6 +329,7 @@ void bind_simulation(py::module_& m) {
       .def_property_readonly("state_hash", [](LiveSimulation& s) { return hex_digits(s.simulation().state_hash()); })
       .def("fields", &fields_of)
       .def("reactions", &reactions_of)
+      .def("mesh_error", &mesh_error_of)
       .def("snapshot", [](LiveSimulation& s) { return s.simulation().snapshot(); })
       .def("restore", &LiveSimulation::restore)
       .def("record", &LiveSimulation::record)

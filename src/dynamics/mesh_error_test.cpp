@@ -1,0 +1,108 @@
+#include "dynamics/mesh_error.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "base/parallel.h"
+#include "dynamics/models_test.h"
+#include "mesh/tet_nodes.h"
+
+namespace aspic {
+namespace {
+
+using namespace testing_models;
+
+Simulation statics(Model model, double h = 1) {
+  SimulationOptions options{.h = h, .integrator = "quasi_static"};
+  options.solver.minimize.tolerance = 1e-10;
+  return Simulation(std::move(model), std::move(options));
+}
+
+// Forces of a traction [Pa] on the faces of a box at the given x.
+std::unique_ptr<Energy> traction(const TetMesh& mesh, double x, const Vec3d& t) {
+  std::vector<double> force(3 * mesh.rest.size(), 0.0);
+  for (const Triangle& face : boundary_triangles(mesh, 0, mesh.tet_count())) {
+    const auto& X = mesh.rest;
+    if (X[face[0]][0] != x || X[face[1]][0] != x || X[face[2]][0] != x) continue;
+    const double area = norm(cross(X[face[1]] - X[face[0]], X[face[2]] - X[face[0]])) / 2;
+    for (const int v : face)
+      for (int r = 0; r < 3; ++r) force[3 * v + r] += area / 3 * t[r];
+  }
+  return make_linear_load("traction", std::move(force));
+}
+
+// 6 x 1 x 1 m, with `cells` across, clamped at x = 0.
+ModelBuilder beam_of(int cells, double poisson, double young = 1e5) {
+  const TetMesh mesh = make_box({{0, 0, 0}}, {{6, 1, 1}}, {6 * cells, cells, cells});
+  ModelBuilder builder(mesh);
+  builder.material("neo_hookean_log_j2", {.young = young, .poisson = poisson})
+      .density(1000)
+      .pin("clamp", [](const Vec3d& X) { return X[0] == 0; });
+  return builder;
+}
+
+MeshErrorEstimate error_after(Simulation simulation, int steps = 1) {
+  take_steps(simulation, steps, "equilibrium");
+  return simulation.mesh_error();
+}
+
+// The exact solution is in the space of the linear tets: a bar under a traction, held without lateral constraint.
+TEST(MeshError, IsZeroInThePatchTest) {
+  const TetMesh mesh = make_box({{0, 0, 0}}, {{2, 1, 1}}, {3, 2, 2});
+  ModelBuilder builder(mesh);
+  builder.material("neo_hookean", {.young = 1e5, .poisson = 0.3}).density(0);
+  for (int axis = 0; axis < 3; ++axis) {
+    Vec3d normal{};
+    normal[axis] = 1;
+    builder.pin("plane", [axis](const Vec3d& X) { return X[axis] == 0; }, {}, {normal});
+  }
+  builder.load(traction(mesh, 2, {{2e4, 0, 0}}));
+  const MeshErrorEstimate error = error_after(statics(builder.build()));
+  ASSERT_EQ(error.reason, "");
+  EXPECT_TRUE(error.is_reliable);
+  EXPECT_LT(std::abs(error.bodies[0].stiffness), 1e-12);
+}
+
+// A column under its weight, Poisson's ratio 0: u is quadratic, so the estimate is exact. The body stores
+// (density g)^2 A L^3 / (6 E).
+TEST(MeshError, IsExactForAColumnUnderItsWeight) {
+  for (const int n : {2, 5}) {
+    ModelBuilder builder(make_box({{0, 0, 0}}, {{0.1, 0.1, 1}}, {1, 1, n}));
+    builder.material("linear", {.young = 1e7, .poisson = 0})
+        .density(1000)
+        .gravity({{0, 0, -10}})
+        .pin("foot", [](const Vec3d& X) { return X[2] == 0; })
+        .pin("lateral", [](const Vec3d&) { return true; }, {}, {Vec3d{{1, 0, 0}}, Vec3d{{0, 1, 0}}});
+    Model model = builder.build();
+    model.pins[1].vertices = vertices_where(model.mesh, [](const Vec3d& X) { return X[2] > 0; });
+    Simulation simulation = statics(std::move(model));
+    take_steps(simulation, 1, "equilibrium");
+    const MeshErrorEstimate error = simulation.mesh_error();
+    ASSERT_EQ(error.reason, "");
+    const double stored = simulation.potential_energies()[0], exact = 1e8 * 0.01 / 6e7;
+    EXPECT_NEAR(error.bodies[0].energy / (exact - stored), 1, 1e-4) << n;
+    EXPECT_NEAR(error.bodies[0].stiffness / (exact / stored - 1), 1, 1e-4) << n;
+  }
+}
+
+// Values of an independent program in Python with the same meshes; see the note on discretization errors.
+TEST(MeshError, AgreesWithAnotherProgramForBeams) {
+  const struct {
+    int cells;
+    double poisson, stiffness, truth;
+  } cases[] = {{2, 0.3, 0.9430, 0.9571}, {2, 0.45, 2.2135, 2.2178}, {2, 0.49, 7.3047, 7.3255},
+               {3, 0.3, 0.4458, 0.4507}, {3, 0.45, 1.0816, 1.0851}, {3, 0.49, 3.7873, 3.8019}};
+  for (const auto& [cells, poisson, stiffness, truth] : cases) {
+    ModelBuilder builder = beam_of(cells, poisson);
+    builder.load(traction(make_box({{0, 0, 0}}, {{6, 1, 1}}, {6 * cells, cells, cells}), 6, {{0, 0, -2}}));
+    const MeshErrorEstimate error = error_after(statics(builder.build()));
+    ASSERT_EQ(error.reason, "");
+    EXPECT_TRUE(error.is_reliable);
+    EXPECT_NEAR(error.bodies[0].stiffness / stiffness, 1, 0.02) << cells << " cells, " << poisson;
+    EXPECT_NEAR(error.bodies[0].stiffness / truth, 1, 0.05) << cells << " cells, " << poisson;
+  }
+}
+
+}  // namespace
+}  // namespace aspic

@@ -1,0 +1,104 @@
+#include "dynamics/mesh_error_text.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+#include <vector>
+
+#include "base/formatted.h"
+#include "material/lame.h"
+#include "mesh/tet_nodes.h"
+
+namespace aspic {
+namespace {
+
+constexpr double kEnough = 0.02;   // error that needs no remedy; quadratic tets reach it
+constexpr double kLocking = 0.45;  // Poisson's ratio above which finer linear tets help slowly
+constexpr double kFarFromIt = 1;   // error above which the prediction of the edges is too optimistic
+constexpr size_t kBodiesShown = 3;
+
+// In percent, with two digits: "less than 1 %", "9 %", "220 %".
+std::string percent(double fraction) {
+  const double value = 100 * fraction;
+  if (!(value >= 0.5)) return "less than 1 %";
+  const double unit = value < 100 ? 1 : std::pow(10, std::floor(std::log10(value)) - 1);
+  return formatted("%.0f %%", unit * std::round(value / unit));
+}
+
+// Rounds down to one digit.
+double finer(double length) {
+  const double unit = std::pow(10, std::floor(std::log10(length)));
+  return unit * std::floor(length / unit * (1 + 1e-9));
+}
+
+double mean_edge(const TetMesh& mesh, const BodyRange& body) {
+  double sum = 0;
+  for (int t = body.first_tet; t < body.first_tet + body.tet_count; ++t)
+    for (const auto& [a, b] : kTetEdges) sum += norm(mesh.rest[mesh.tets[t][a]] - mesh.rest[mesh.tets[t][b]]);
+  return sum / (6.0 * body.tet_count);
+}
+
+double largest_poisson(const TetElasticity& V) {
+  double largest = 0;
+  for (const MaterialParameters& p : V.parameters())
+    if (p.lame.mu > 0) largest = std::max(largest, poisson_ratio(p.lame));
+  return largest;
+}
+
+std::string remedy(const Model& model, size_t body, double k) {
+  if (k <= kEnough) return "";
+  const std::string reach = " would reach about 2 %.";
+  if (k > kFarFromIt || largest_poisson(*model.elasticity[body]) > kLocking) return " `order = 2`" + reach;
+  const double edge = mean_edge(model.mesh, model.bodies[body]);
+  return formatted(" `order = 2`, or edges of %.1g m instead of %.2g m,", finer(edge * edge_factor(k, kEnough)), edge) +
+         reach;
+}
+
+std::string effect(double k, bool swings) {
+  std::string text = " (moves " + percent(k / (1 + k)) + " too little";
+  if (swings) text += ", swings " + percent(std::sqrt(1 + k) - 1) + " too fast";
+  return text + ")";
+}
+
+}  // namespace
+
+std::string mesh_error_text(const MeshErrorEstimate& error, const Simulation& simulation) {
+  if (!error.reason.empty()) return "no estimate: " + error.reason;
+  const Model& model = simulation.model();
+  std::vector<size_t> order;  // strained bodies, the worst first
+  for (size_t b = 0; b < error.bodies.size(); ++b)
+    if (!std::isnan(error.bodies[b].stiffness)) order.push_back(b);
+  if (order.empty()) return "no estimate: nothing is strained";
+  std::stable_sort(order.begin(), order.end(),
+                   [&](size_t a, size_t b) { return error.bodies[a].stiffness > error.bodies[b].stiffness; });
+  const double worst = error.bodies[order[0]].stiffness;
+  std::string text = "makes";
+  for (size_t i = 0; i < std::min(order.size(), kBodiesShown); ++i)
+    text += std::string(i > 0 ? "," : "") + " '" + model.bodies[order[i]].name + "' about " +
+            percent(error.bodies[order[i]].stiffness);
+  text += " too stiff";
+  if (order.size() == 1 && worst > kEnough) text += effect(worst, !simulation.integrator().is_static());
+  if (order.size() > kBodiesShown)
+    text += formatted("; %d more bodies less", static_cast<int>(order.size() - kBodiesShown));
+  text += "." + remedy(model, order[0], worst);
+  if (!error.is_reliable) text += " Unreliable: in quadratic tets this state is unstable, as in buckling.";
+  return text + " An estimate; the error may be larger.";
+}
+
+void add_mesh_error(const Simulation& simulation, const StopToken& stop, StepReport& report) {
+  MeshErrorEstimate error = simulation.mesh_error(stop);
+  report.mesh_error = mesh_error_text(error, simulation);
+  if (!error.reason.empty()) return;
+  const Renumbering& user = simulation.model().numbering.tet;
+  double most = 0;
+  for (const BodyMeshError& body : error.bodies) {
+    report.mesh_energy += body.energy;
+    if (body.stiffness > report.mesh_stiffness) report.mesh_stiffness = body.stiffness;
+    if (body.worst_tet < 0 || error.density[body.worst_tet] <= most) continue;
+    most = error.density[body.worst_tet];
+    report.mesh_worst_tet = user.to_user(body.worst_tet);
+  }
+  report.mesh_density = std::move(error.density);
+}
+
+}  // namespace aspic
