@@ -17,12 +17,13 @@
 namespace aspic {
 namespace {
 
-constexpr double kResidual = 1e-3;      // relative residual of the linear solve; the error of e is about its square
-constexpr double kProportional = 1e-6;  // relative deviation of a load from a multiple of the mass
-constexpr double kSmallForce = 1e-2;    // damping forces in tets that do not matter, relative to the elastic ones
-constexpr double kBytesPerTet = 3000;   // of quadratic tets with their matrix
-constexpr double kUnstrained = 1e-6;    // strains below this are round-off
-constexpr double kProbe = 1e-3;         // displacement for second differences, relative to an edge
+constexpr double kResidual = 1e-3;       // relative residual of the linear solve; the error of e is about its square
+constexpr double kProportional = 1e-6;   // relative deviation of a load from a multiple of the mass
+constexpr double kSmallForce = 1e-2;     // damping forces in tets that do not matter, relative to the elastic ones
+constexpr double kBytesPerTet = 3000;    // of quadratic tets with their matrix
+constexpr double kStaticInertia = 1e-8;  // relative to the rate of uniform growth
+constexpr double kUnstrained = 1e-6;     // strains below this are round-off
+constexpr double kProbe = 1e-3;          // displacement for second differences, relative to an edge
 
 using Vector = std::vector<double>;
 
@@ -302,8 +303,7 @@ class Estimator {
   MeshErrorEstimate solve(const StopToken& stop) {
     const Pins pins(raised_.pins, y_);
     IncrementalPotential E(raised_, pins);
-    const double tau = std::max(in_.since, in_.h);
-    E.at({.predicted = y_, .inertia = in_.is_static ? 0 : 1 / (tau * tau), .context = step()});
+    E.at({.predicted = y_, .inertia = inertia(E.sizes().growth_stiffness()), .context = step()});
     Vector g(y_.size()), d(y_.size(), 0.0);
     E.evaluate(y_);
     E.gradient(y_, g);
@@ -315,6 +315,20 @@ class Estimator {
     if (!is_solved) return refused("the linear system of quadratic tets was not solved");
     pins.set_zero(r_);
     return report(d, !work.projected);
+  }
+
+  // Returns a factor of the mass that keeps free bodies in place: in dynamics, the time that d had to develop; in
+  // statics, a small part of the squared rate of uniform growth.
+  double inertia(double growth_stiffness) const {
+    const double tau = std::max(in_.since, in_.h);
+    if (!in_.is_static) return 1 / (tau * tau);
+    Vec3d center{};
+    const std::vector<Vec3d>& X = in_.model.mesh.rest;
+    for (const Vec3d& Xv : X) center = center + (1.0 / in_.pins.rows()) * Xv;
+    double growth_inertia = 0;
+    for (int v = 0; v < in_.pins.rows(); ++v)
+      growth_inertia += in_.model.mass->vertex_mass()[v] * squared_norm(X[v] - center);
+    return growth_inertia > 0 ? kStaticInertia * growth_stiffness / growth_inertia : 0;
   }
 
   MeshErrorEstimate report(const Vector& d, bool is_reliable) const {

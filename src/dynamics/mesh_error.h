@@ -26,7 +26,7 @@ struct BodyMeshError {
 
 struct MeshErrorEstimate {
   std::string reason;        // why there is no estimate; empty: there is one
-  bool is_reliable = false;  // false: the quadratic tets are not in a stable equilibrium, as in buckling
+  bool is_reliable = false;  // false: quadratic tets are unstable in this state, as in buckling
   std::vector<BodyMeshError> bodies;
   std::vector<double> density;     // energy of the correction inside of each tet, over its volume [J/m^3]
   std::vector<double> correction;  // d at the vertices, 3 per vertex [m]

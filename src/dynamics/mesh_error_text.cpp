@@ -81,7 +81,7 @@ std::string mesh_error_text(const MeshErrorEstimate& error, const Simulation& si
   if (order.size() > kBodiesShown)
     text += formatted("; %d more bodies less", static_cast<int>(order.size() - kBodiesShown));
   text += "." + remedy(model, order[0], worst);
-  if (!error.is_reliable) text += " Unreliable: in quadratic tets this state is unstable, as in buckling.";
+  if (!error.is_reliable) text += " Unreliable: quadratic tets are unstable in this state.";
   return text + " An estimate; the error may be larger.";
 }
 

@@ -16,6 +16,7 @@ const std::vector<Check>& checks() {
     add_order_checks(list);
     add_bending_checks(list);
     add_cook_checks(list);
+    add_mesh_error_checks(list);
     add_pressure_checks(list);
     add_solid_checks(list);
     add_volume_checks(list);
