@@ -353,12 +353,22 @@ class Estimator {
         stiffness += volume(model.mesh, t) * model.elasticity[b]->parameters()[t - body.first_tet].lame.mu;
         if (found.density[t] > (error.worst_tet < 0 ? 0 : found.density[error.worst_tet])) error.worst_tet = t;
       }
-      const double V = model.elasticity[b]->value(x_), least = std::min(V, V + fd - error.energy);
+      const double V = elastic_energy(b), least = std::min(V, V + fd - error.energy);
       error.stiffness = V > kUnstrained * kUnstrained * stiffness && least > 0
                             ? error.energy / least
                             : std::numeric_limits<double>::quiet_NaN();
     }
     return found;
+  }
+
+  double elastic_energy(size_t body) const {
+    const BodyRange& range = in_.model.bodies[body];
+    double V = in_.model.elasticity[body]->value(x_);
+    for (const ActiveTerm& term : in_.terms.loads())
+      if (const auto* in_tets = dynamic_cast<const TetEnergy*>(&term.energy()))
+        if (in_tets->first_tet() >= range.first_tet && in_tets->first_tet() < range.first_tet + range.tet_count)
+          V += term.value(x_);
+    return V;
   }
 
   // Returns the energy of the part of d that is not linear, by second differences.

@@ -106,6 +106,7 @@ class StepLimitingEnergy {
 class TetEnergy {
  public:
   virtual ~TetEnergy() = default;
+  virtual int first_tet() const = 0;  // of its consecutive tets in the mesh
   // Returns the energy of the same tets of another mesh, such as one of quadratic tets.
   virtual std::unique_ptr<Energy> on(const TetMesh& mesh) const = 0;
 };

@@ -22,7 +22,7 @@ class FibreTerm : public TetTerm<Law, Base, Batch>, public TetEnergy {
 
   template <class Fibre, class Own>
   FibreTerm(const FibrePlace& place, std::span<const Fibre> fibres, const Own& own)
-      : Term(place.name, place.mesh, place.first, parameters(fibres, own)) {
+      : Term(place.name, place.mesh, place.first, parameters(fibres, own)), first_(place.first) {
     for (int i = 0; i < Term::batch_count(); ++i)
       for (int q = 0; q < Term::kPoints; ++q)
         for (int l = 0; l < kPackWidth; ++l) {
@@ -35,10 +35,12 @@ class FibreTerm : public TetTerm<Law, Base, Batch>, public TetEnergy {
   // Makes the term of the same fibres on another mesh.
   using Maker = std::function<std::unique_ptr<Energy>(const TetMesh&)>;
   void set_maker(Maker maker) { maker_ = std::move(maker); }
-  std::unique_ptr<Energy> on(const TetMesh& mesh) const override { return maker_ ? maker_(mesh) : nullptr; }
+  std::unique_ptr<Energy> on(const TetMesh& mesh) const override { return maker_(mesh); }
+  int first_tet() const override { return first_; }
 
  private:
-  Maker maker_;  // null: none
+  Maker maker_;
+  int first_;
 
   template <class Fibre, class Own>
   static std::vector<Params> parameters(std::span<const Fibre> fibres, const Own& own) {
