@@ -115,7 +115,11 @@ class LocalRun : public SteppedRun {
       observe(iteration);
     };
     StepReport report = scene_.simulation.step(traced, stop);
-    if (is_success(report.status) && wants_mesh_error(report)) add_mesh_error(scene_.simulation, stop, report);
+    if (!is_success(report.status) || !wants_mesh_error(report)) return report;
+    if (is_short())
+      report.mesh_error = "no estimate: it would take longer than the run; aspic check SCENE --mesh-error computes it";
+    else
+      add_mesh_error(scene_.simulation, stop, report);
     return report;
   }
 
@@ -136,10 +140,16 @@ class LocalRun : public SteppedRun {
   }
 
  private:
-  // The last step of the scene, whatever --steps says: the rows of a run do not depend on where it was interrupted.
+  // Not after --steps: the rows of a run do not depend on where it was interrupted.
   bool wants_mesh_error(const StepReport& report) const {
     return (scene_.mesh_error == "frames" && directory_.is_frame_due(report.time)) ||
            (scene_.mesh_error != "off" && report.step == scene_.steps);
+  }
+
+  // An estimate costs about as much as 60 iterations.
+  bool is_short() const {
+    constexpr int kSteps = 12, kManyTets = 20'000;
+    return scene_.steps < kSteps && scene_.simulation.model().mesh.tet_count() > kManyTets;
   }
 
   void finish_trace() {

@@ -17,7 +17,7 @@
 namespace aspic {
 namespace {
 
-constexpr double kResidual = 1e-3;       // relative residual of the linear solve; the error of e is about its square
+constexpr double kResidual = 1e-2;       // relative residual of the linear solve; the error of e is about its square
 constexpr double kProportional = 1e-6;   // relative deviation of a load from a multiple of the mass
 constexpr double kSmallForce = 1e-2;     // damping forces in tets that do not matter, relative to the elastic ones
 constexpr double kBytesPerTet = 3000;    // of quadratic tets with their matrix

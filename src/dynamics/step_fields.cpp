@@ -179,14 +179,10 @@ std::vector<StepField>& fields() {
       optional(count<&R::carries>(
           {"carries", "", "Newton directions along which bodies moved with obstacles before the iterations"}, kCount)),
       optional(real<&R::mesh_stiffness>(
-          {"mesh_stiffness", "1",
-           "estimate: stiffness of the mesh over that of the worst body, minus 1; 0 where not computed"},
-          kMeasured)),
-      optional(real<&R::mesh_energy>({"mesh_energy", "J", "estimate: energy above that of the minimum without a mesh"},
-                                     kMeasured)),
-      optional(count<&R::mesh_worst_tet>(
-          {"mesh_worst_tet", "", "tet with the largest density of `mesh_energy`; -1: none"}, kMeasured)),
-      optional(word<&R::mesh_error>({"mesh_error", "", "the estimate in words; empty where not computed"}, kWord)),
+          {"mesh_stiffness", "1", "estimated excess of stiffness of the worst body; 0: not computed"}, kMeasured)),
+      optional(real<&R::mesh_energy>({"mesh_energy", "J", "estimated energy above the minimum"}, kMeasured)),
+      optional(count<&R::mesh_worst_tet>({"mesh_worst_tet", "", "tet with its largest density; -1: none"}, kMeasured)),
+      optional(word<&R::mesh_error>({"mesh_error", "", "the estimate in words"}, kWord)),
       {"potential", "J",
        "energy of each term of V and of viscoelastic branches; a dead load has -f . x, not zero at rest",
        StepFieldType::potentials, kTable | kJson | kViewer},

@@ -73,9 +73,9 @@ void add_solver(Schema& s) {
            Range{.min = 1, .max = 1e9},
            Usual{std::to_string(usual.minimize.max_iterations), "far more than Newton's method usually needs"}),
        key("mesh_error", kText,
-           "when to estimate the error of the mesh: after the last step (`end`), with each frame (`frames`), or not "
-           "(`off`)",
-           Choices{{"end", "frames", "off"}}, Usual{"\"end\"", "costs about as much as 20 iterations"}),
+           "estimate the [error of the mesh](verification.md#the-error-of-the-mesh) after the last step, or with each "
+           "frame",
+           Choices{{"end", "frames", "off"}}, Usual{"\"end\"", "costs about as much as 60 iterations"}),
        key("time_budget", kNumber,
            "wall time per step; beyond, the step ends with its best iterate and the status `budget`; 0: no limit. "
            "Results are then not reproducible",

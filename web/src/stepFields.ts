@@ -19,10 +19,10 @@ export interface StepFields {
   friction_loss: MaybeNumber; // share of friction in damping_loss [J]
   friction_creep: MaybeNumber; // largest slip of a sticking contact in this step [m]
   friction_residual: MaybeNumber; // change of friction by the last update of normal forces [N]
-  mesh_stiffness: MaybeNumber; // estimate: stiffness of the mesh over that of the worst body, minus 1; 0 where not computed [1]
-  mesh_energy: MaybeNumber; // estimate: energy above that of the minimum without a mesh [J]
-  mesh_worst_tet: number; // tet with the largest density of mesh_energy; -1: none
-  mesh_error: string; // the estimate in words; empty where not computed
+  mesh_stiffness: MaybeNumber; // estimated excess of stiffness of the worst body; 0: not computed [1]
+  mesh_energy: MaybeNumber; // estimated energy above the minimum [J]
+  mesh_worst_tet: number; // tet with its largest density; -1: none
+  mesh_error: string; // the estimate in words
   potential: MaybeNumber[]; // energy of each term of V and of viscoelastic branches; a dead load has -f . x, not zero at rest [J]
   pin_work: MaybeNumber; // work of moving pins, moving spring targets, time-dependent loads and muscles in this step [J]
   load_work: MaybeNumber; // share of moving spring targets and time-dependent loads in pin_work [J]

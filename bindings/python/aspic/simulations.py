@@ -170,7 +170,7 @@ class Simulation(Strict):
     def mesh_error(self):
         """Estimates by how much linear tets are too stiff at the current state, see docs/verification.md.
 
-        Returns a dict: "text"; "reliable"; and unless the text says that there is no estimate, {body: value} for
+        Returns a dict: "text"; "reliable"; and if there is an estimate, {body: value} for
         "stiffness" (that of the mesh over that of the body, minus 1; NaN: not strained) and "energy" [J], "density" of
         each tet, (m,) [J/m^3], and "direction" d, (n, 3) [m]: the estimated error of any function f(q), such as the
         position of a probe, is -(df/dq * d).sum().
