@@ -54,6 +54,8 @@ TEST(Formulas, EveryClosedFormReferenceIsRendered) {
                                          "contact/frames",
                                          "contact/units",
                                          "statics/cook_incompressible",
+                                         "statics/mesh_error",
+                                         "statics/mesh_error_invariance",
                                          "statics/beam_incompressible",
                                          "tissue/heart_beam",
                                          "tissue/heart_inflation",

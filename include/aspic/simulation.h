@@ -7,6 +7,7 @@
 #include "dynamics/initial_guess.h"
 #include "dynamics/integrator_facts.h"
 #include "dynamics/internal_terms.h"
+#include "dynamics/mesh_error.h"
 #include "dynamics/pins.h"
 #include "dynamics/simulation.h"
 #include "dynamics/stable_step.h"

@@ -105,7 +105,11 @@ std::string of_poisson(const std::string& what, double poisson) {
 }
 
 void check_clamped_beam(const Subject& subject, Findings& found) {
-  Plot plot{"a clamped beam of linear tets is too stiff", "cells across", "stiffer than the body by [%]", Scales::logarithmic, {}};
+  Plot plot{"a clamped beam of linear tets is too stiff",
+            "cells across",
+            "stiffer than the body by [%]",
+            Scales::logarithmic,
+            {}};
   int color = 0;
   for (const double poisson : {0.3, 0.45, 0.49}) {
     Curve truth{of_poisson("true", poisson), {}, {}, CurveStyle::line, color};
