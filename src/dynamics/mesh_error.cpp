@@ -10,6 +10,7 @@
 #include "base/free_memory.h"
 #include "contact/friction.h"
 #include "dynamics/incremental_potential.h"
+#include "energy/damping.h"
 #include "mesh/surface.h"
 #include "mesh/tet_nodes.h"
 #include "optimize/newton.h"
@@ -17,13 +18,13 @@
 namespace aspic {
 namespace {
 
-constexpr double kResidual = 1e-2;       // relative residual of the linear solve; the error of e is about its square
-constexpr double kProportional = 1e-6;   // relative deviation of a load from a multiple of the mass
-constexpr double kSmallForce = 1e-2;     // damping forces in tets that do not matter, relative to the elastic ones
-constexpr double kBytesPerTet = 3000;    // of quadratic tets with their matrix
-constexpr double kStaticInertia = 1e-8;  // relative to the rate of uniform growth
-constexpr double kUnstrained = 1e-6;     // strains below this are round-off
-constexpr double kProbe = 1e-3;          // displacement for second differences, relative to an edge
+constexpr double kResidual = 1e-2;      // relative residual of the linear solve; the error of e is about its square
+constexpr double kProportional = 1e-6;  // relative deviation of a load from a multiple of the mass
+constexpr double kSmallForce = 1e-2;    // damping forces in tets that do not matter, relative to the elastic ones
+constexpr double kBytesPerTet = 3000;   // of quadratic tets with their matrix
+constexpr double kSmallInertia = 1e-8;  // relative to the rate of uniform growth
+constexpr double kUnstrained = 1e-6;    // strains below this are round-off
+constexpr double kProbe = 1e-3;         // displacement for second differences, relative to an edge
 
 using Vector = std::vector<double>;
 
@@ -272,6 +273,7 @@ class Estimator {
         continue;
       }
       force_of(term);
+      move_mass_damping(term, f, forces);
       if (norm_of(f) > kSmallForce * norm_of(elastic))
         return "the forces of '" + std::string(term.name()) + "' are not small at this time";
     }
@@ -283,6 +285,17 @@ class Estimator {
     for (size_t i = 0; i < all.size(); ++i) all[i] += inner_[i];
     raised_.loads.push_back(std::make_unique<HeldTerms>(std::move(all), std::move(held)));
     return "";
+  }
+
+  // Moves the share -a M v of a damping force to the accelerations.
+  void move_mass_damping(const ActiveTerm& term, std::span<double> f, ForceLift& forces) const {
+    const auto* damping = dynamic_cast<const Damping*>(&term.energy());
+    if (!damping) return;
+    Vector rate(in_.state.qdot), product(f.size());
+    for (size_t i = 0; i < rate.size(); ++i) rate[i] *= damping->mass_factor(static_cast<int>(i / 3));
+    in_.model.mass->multiply(rate, product);
+    for (size_t i = 0; i < f.size(); ++i) f[i] += product[i];
+    forces.add_acceleration(rate, -1);
   }
 
   // Returns the accelerations of free vertices from their forces -dV/dx, and those of pins from their motion.
@@ -317,18 +330,26 @@ class Estimator {
     return report(d, !work.projected);
   }
 
-  // Returns a factor of the mass that keeps free bodies in place: in dynamics, the time that d had to develop; in
-  // statics, a small part of the squared rate of uniform growth.
+  bool all_are_pinned() const {
+    return std::all_of(in_.model.bodies.begin(), in_.model.bodies.end(), [&](const BodyRange& body) {
+      for (int v = body.first_vertex; v < body.first_vertex + body.vertex_count; ++v)
+        if (!in_.pins.is_free(v)) return true;
+      return false;
+    });
+  }
+
+  // Returns a factor of the mass that keeps free bodies in place: in dynamics, the time that d had to develop; else, a
+  // small part of the squared rate of uniform growth.
   double inertia(double growth_stiffness) const {
     const double tau = std::max(in_.since, in_.h);
-    if (!in_.is_static) return 1 / (tau * tau);
+    if (!in_.is_static && !all_are_pinned()) return 1 / (tau * tau);
     Vec3d center{};
     const std::vector<Vec3d>& X = in_.model.mesh.rest;
     for (const Vec3d& Xv : X) center = center + (1.0 / in_.pins.rows()) * Xv;
     double growth_inertia = 0;
     for (int v = 0; v < in_.pins.rows(); ++v)
       growth_inertia += in_.model.mass->vertex_mass()[v] * squared_norm(X[v] - center);
-    return growth_inertia > 0 ? kStaticInertia * growth_stiffness / growth_inertia : 0;
+    return growth_inertia > 0 ? kSmallInertia * growth_stiffness / growth_inertia : 0;
   }
 
   MeshErrorEstimate report(const Vector& d, bool is_reliable) const {

@@ -1,10 +1,11 @@
 #include "dynamics/mesh_error.h"
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
 
-#include "base/parallel.h"
+#include "dynamics/mesh_error_text.h"
 #include "dynamics/models_test.h"
 #include "mesh/tet_nodes.h"
 
@@ -12,6 +13,8 @@ namespace aspic {
 namespace {
 
 using namespace testing_models;
+using testing::HasSubstr;
+using testing::StartsWith;
 
 Simulation statics(Model model, double h = 1) {
   SimulationOptions options{.h = h, .integrator = "quasi_static"};
@@ -102,6 +105,46 @@ TEST(MeshError, AgreesWithAnotherProgramForBeams) {
     EXPECT_NEAR(error.bodies[0].stiffness / stiffness, 1, 0.02) << cells << " cells, " << poisson;
     EXPECT_NEAR(error.bodies[0].stiffness / truth, 1, 0.05) << cells << " cells, " << poisson;
   }
+}
+
+// A beam that swings with mass damping. The forces of its inertia and its damping are weights of the quadratic tets.
+TEST(MeshError, CountsInertiaAndMassDampingAsWeights) {
+  const auto stiffness = [](double factor) {
+    ModelBuilder builder = beam_of(2, 0.3);
+    builder.gravity({{0, 0, -1e-3}}).rayleigh_damping(factor, 0);
+    return error_after(Simulation(builder.build(), {.h = 0.2}), 20).bodies.at(0).stiffness;
+  };
+  EXPECT_NEAR(stiffness(0) / 0.95, 1, 0.15);
+  EXPECT_NEAR(stiffness(1) / 0.95, 1, 0.15);
+}
+
+TEST(MeshError, StatesWhyThereIsNone) {
+  ModelBuilder quadratic(raise_order(make_box({{0, 0, 0}}, {{1, 1, 1}}, {1, 1, 1})));
+  quadratic.material("neo_hookean", {.young = 1e5, .poisson = 0.3}).density(1000);
+  EXPECT_THAT(Simulation(quadratic.build()).mesh_error().reason, HasSubstr("order = 2"));
+  ModelBuilder viscous = beam_of(1, 0.3);
+  viscous.gravity({{0, 0, -10}}).strain_rate_damping(1e4);
+  EXPECT_THAT(error_after(Simulation(viscous.build()), 3).reason, HasSubstr("'strain_rate_damping'"));
+  const Simulation at_rest(beam_of(1, 0.3).build());
+  EXPECT_TRUE(std::isnan(at_rest.mesh_error().bodies.at(0).stiffness));
+  EXPECT_EQ(mesh_error_text(at_rest.mesh_error(), at_rest), "no estimate: nothing is strained");
+}
+
+TEST(MeshError, IsOneSentenceWithRemedy) {
+  const Simulation bar(beam_of(1, 0.3).build());  // mean edge 1.3 m
+  MeshErrorEstimate error{.is_reliable = true, .bodies = {{1, 0.18, 0}}};
+  EXPECT_THAT(
+      mesh_error_text(error, bar),
+      StartsWith("makes 'body' about 18 % too stiff (moves 15 % too little, swings 9 % too fast). `order = 2`, or "
+                 "edges of 0.4 m instead of 1.3 m, would reach about 2 %. An estimate;"));
+  error.bodies[0].stiffness = 7.33;
+  EXPECT_THAT(mesh_error_text(error, bar), HasSubstr("about 730 % too stiff (moves 88 % too little, swings 190 % too "
+                                                     "fast). `order = 2` would reach"));
+  error.bodies[0].stiffness = 0.004;
+  error.is_reliable = false;
+  EXPECT_EQ(mesh_error_text(error, bar),
+            "makes 'body' less than 1 % too stiff. Unreliable: quadratic tets are "
+            "unstable in this state. An estimate; the error may be larger.");
 }
 
 }  // namespace

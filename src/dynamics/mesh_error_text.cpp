@@ -17,10 +17,9 @@ constexpr double kLocking = 0.45;  // Poisson's ratio above which finer linear t
 constexpr double kFarFromIt = 1;   // error above which the prediction of the edges is too optimistic
 constexpr size_t kBodiesShown = 3;
 
-// In percent, with two digits: "less than 1 %", "9 %", "220 %".
+// In percent, with two digits: "9 %", "220 %".
 std::string percent(double fraction) {
   const double value = 100 * fraction;
-  if (!(value >= 0.5)) return "less than 1 %";
   const double unit = value < 100 ? 1 : std::pow(10, std::floor(std::log10(value)) - 1);
   return formatted("%.0f %%", unit * std::round(value / unit));
 }
@@ -54,6 +53,8 @@ std::string remedy(const Model& model, size_t body, double k) {
          reach;
 }
 
+std::string about(double k) { return k < 0.005 ? "less than 1 %" : "about " + percent(k); }
+
 std::string effect(double k, bool swings) {
   std::string text = " (moves " + percent(k / (1 + k)) + " too little";
   if (swings) text += ", swings " + percent(std::sqrt(1 + k) - 1) + " too fast";
@@ -74,8 +75,8 @@ std::string mesh_error_text(const MeshErrorEstimate& error, const Simulation& si
   const double worst = error.bodies[order[0]].stiffness;
   std::string text = "makes";
   for (size_t i = 0; i < std::min(order.size(), kBodiesShown); ++i)
-    text += std::string(i > 0 ? "," : "") + " '" + model.bodies[order[i]].name + "' about " +
-            percent(error.bodies[order[i]].stiffness);
+    text += std::string(i > 0 ? "," : "") + " '" + model.bodies[order[i]].name + "' " +
+            about(error.bodies[order[i]].stiffness);
   text += " too stiff";
   if (order.size() == 1 && worst > kEnough) text += effect(worst, !simulation.integrator().is_static());
   if (order.size() > kBodiesShown)
