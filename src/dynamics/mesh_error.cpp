@@ -248,6 +248,7 @@ class Estimator {
     ForceLift forces(model, lift_);
     Vector elastic(x_.size(), 0.0), total(x_.size());
     for (const auto& V : model.elasticity) V->add_gradient(x_, 1, elastic);
+    if (norm_of(elastic) == 0) return "nothing is strained";
     total = elastic;
     BlockSparse held(in_.pattern);
     Vector f(x_.size());

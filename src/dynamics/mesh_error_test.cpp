@@ -126,7 +126,6 @@ TEST(MeshError, StatesWhyThereIsNone) {
   viscous.gravity({{0, 0, -10}}).strain_rate_damping(1e4);
   EXPECT_THAT(error_after(Simulation(viscous.build()), 3).reason, HasSubstr("'strain_rate_damping'"));
   const Simulation at_rest(beam_of(1, 0.3).build());
-  EXPECT_TRUE(std::isnan(at_rest.mesh_error().bodies.at(0).stiffness));
   EXPECT_EQ(mesh_error_text(at_rest.mesh_error(), at_rest), "no estimate: nothing is strained");
 }
 
