@@ -218,8 +218,8 @@ TEST(Questions, EstimateTheErrorOfTheMesh) {
   page.send({{"do", "color"}, {"field", "mesh_error"}});
   std::vector<float> values(page.geometry().vertex.size());
   const Surface surface = boundary_of(twin.model());
-  FieldValues().evaluate(
-      "mesh_error", {twin.scene.simulation, twin.scene.simulation.state().q, report.mesh_density}, surface, values);
+  FieldValues().evaluate("mesh_error", {twin.scene.simulation, twin.scene.simulation.state().q, report.mesh_density},
+                         surface, values);
   const Picture picture = page.picture();
   EXPECT_GT(picture.max, 0);
   for (size_t v = 0; v < values.size(); ++v) EXPECT_NEAR(picture.values[v], values[v], 1e-4 * picture.max);

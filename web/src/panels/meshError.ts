@@ -14,7 +14,7 @@ export function estimatedStep(steps: readonly StepRow[]): StepRow | null {
 
 export function meshErrorText(row: StepRow | null): string {
   if (!row) return "mesh: its error is not estimated";
-  return `mesh: ${plainText(row.mesh_error).replace(/(\d) (?=%|m )/g, "$1\u00a0")} (step ${row.step})`;
+  return `mesh: ${plainText(row.mesh_error).replace(/(\d) (?=%|m )/g, "$1\u00a0")} (step\u00a0${row.step})`;
 }
 
 // A recorded run without an estimate has no line.
