@@ -118,7 +118,7 @@ test("a report shows the error of its mesh", async () => {
   const estimated = join(folder, "estimated");
   make("run", join(root, "scenes/cantilever.toml"), "--set", "time.duration=0.2", "--out", estimated);
   const { page, until, close } = await openPage(pathToFileURL(join(estimated, "report.html")).href, { offline: true, keepsPixels: true });
-  const line = page.locator(".mesh-error").filter({ hasText: /^mesh: makes 'beam' about \d+\s% too stiff.* \(step 20\)/ });
+  const line = page.locator(".mesh-error").filter({ hasText: /^mesh: makes 'beam' about \d+\s% too stiff.* \(step\s20\)/ });
   await line.waitFor();
   const view = page.locator("#views canvas").first();
   await until("a picture", () => isDrawn(view));
