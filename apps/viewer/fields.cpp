@@ -67,10 +67,11 @@ const Field kMaterialFields[] = {{.name = "young", .label = "Young's modulus", .
 
 }  // namespace
 
-std::vector<Field> fields_of(const Model& model) {
+std::vector<Field> fields_of(const Model& model, bool has_mesh_error) {
   std::vector<Field> fields;
   for (const KnownField& known : known_fields()) fields.push_back(known.field);
   if (model.contact) fields.push_back({kContactPressure, "contact pressure", "Pa"});
+  if (has_mesh_error) fields.push_back({std::string(kMeshError), "mesh error", "J/m^3"});
   for (const auto& [name, unused] : model.tet_fields) {
     Field& field = fields.emplace_back(Field{name, name, ""});
     for (const Field& labeled : kMaterialFields)
@@ -122,6 +123,7 @@ double largest_stretch(const Mat3d& F) {
 
 std::span<const double> FieldValues::tet_values(const std::string& field, const View& view) {
   const Model& model = view.simulation.model();
+  if (field == kMeshError && !view.mesh_error.empty()) return view.mesh_error;
   if (const auto* values = tet_field(model, field)) return *values;
   const KnownField* known = find_field(field);
   if (!known || known->elastic) {  // a field that no longer exists shows det F

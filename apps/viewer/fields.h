@@ -16,13 +16,16 @@ struct Field {
   double center = 0;    // center of a diverging color map
   bool is_log = false;  // displayed on a logarithmic scale
 };
-std::vector<Field> fields_of(const Model& model);
+// The density of the estimated error of the mesh. A model alone does not determine it.
+inline constexpr std::string_view kMeshError = "mesh_error";
+std::vector<Field> fields_of(const Model& model, bool has_mesh_error = false);
 const std::vector<double>* tet_field(const Model& model, std::string_view name);  // null: none
 
 // The displayed state of a simulation: between steps, or at an iterate of the current step.
 struct View {
   const Simulation& simulation;
   std::span<const double> x;
+  std::span<const double> mesh_error = {};  // of each tet [J/m^3]; empty: not estimated
 };
 
 class FieldValues {

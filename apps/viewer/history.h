@@ -74,6 +74,7 @@ class History {
   void add(Snapshot snapshot);
   void add(Snapshot snapshot, StepRow row);
   void replace_last(Snapshot snapshot);  // after an edit
+  void set_mesh_error(StepReport estimate) { rows_.set_mesh_error(std::move(estimate)); }
   // Drops all later snapshots and returns the latest one up to that step.
   Snapshot return_to(int step);
   void restore(const Snapshot& snapshot, Simulation& simulation);

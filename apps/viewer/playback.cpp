@@ -30,6 +30,7 @@ StopToken Playback::stop_token() const {
 }
 
 void Playback::send_state() {
+  stage_.send_new_fields();
   Json state = {{"kind", "state"},
                 {"playing", is_playing_},
                 {"speed", speed_},

@@ -48,6 +48,14 @@ Json mesh_reply(const ShownSide& shown, const std::string& format) {
           {"text", mesh_text(shown, format)}};
 }
 
+Json mesh_error_reply(Stage& stage, ShownSide& shown, const StopToken& stop) {
+  shown.side.estimate_mesh_error(stop);
+  if (stop.stopped()) throw Interrupted("interrupted by a command; repeat the question");
+  stage.send(steps_message(shown, shown.side.steps_taken() - 1));
+  stage.send_new_fields();
+  return shown.side.history().rows().last()->report.mesh_error;
+}
+
 Json gallery_reply(const Gallery& gallery) {
   Json reply = {{"scenes", Json::array()}, {"recent", Json::array()}};
   for (const OfferedScene& scene : gallery.scenes)
@@ -94,6 +102,7 @@ void add_questions(const SessionOptions& options, Stage& stage, const Playback& 
     });
   };
   add_plain("worst", worst_reply);
+  add_plain("mesh_error", [&](ShownSide& s) { return mesh_error_reply(stage, s, playback.stop_token()); });
   add_plain("scene", [](ShownSide& s) { return scene_reply(saved_scene(s.side, SavedHand::with_drags)); });
   add_plain("scene_files",
             [](ShownSide& s) { return scene_files_reply(saved_scene(s.side, SavedHand::without_drags)); });

@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "base/error.h"
+#include "dynamics/mesh_error_text.h"
 #include "scene/scene.h"
 #include "viewer/replies.h"
 #include "viewer/session_test.h"
@@ -195,6 +196,54 @@ TEST(Questions, AboutIterationsOfStoredStepsChangeNothing) {
   page.send({{"do", "set"}, {"key", "material.young"}, {"value", 2e5}});
   EXPECT_NE(page.refused({{"ask", "iteration"}, {"side", "a"}, {"step", 3}, {"iteration", 0}}).find("other settings"),
             std::string::npos);
+}
+
+TEST(Questions, EstimateTheErrorOfTheMesh) {
+  Page page, untouched;
+  Twin twin(kBeam, 2);
+  const Json question = {{"ask", "mesh_error"}, {"side", "a"}};
+  EXPECT_NE(page.refused(question).find("take one first"), std::string::npos);
+  const auto offers = [&] { return page.scene()["fields"].dump().find("mesh_error") != std::string::npos; };
+  page.steps(3);
+  EXPECT_FALSE(offers());
+  const std::string text = page.send(question);
+  StepReport report = twin.scene.simulation.step();
+  add_mesh_error(twin.scene.simulation, {}, report);
+  EXPECT_EQ(text, report.mesh_error);  // without an idle mouse
+  ASSERT_EQ(page.rows().size(), 3u);
+  EXPECT_EQ(page.rows()[2]["mesh_error"], text);
+  EXPECT_EQ(page.rows()[2]["mesh_worst_tet"], report.mesh_worst_tet);
+  EXPECT_EQ(page.rows()[1]["mesh_error"], "");
+  EXPECT_TRUE(offers());
+  page.send({{"do", "color"}, {"field", "mesh_error"}});
+  std::vector<float> values(page.geometry().vertex.size());
+  const Surface surface = boundary_of(twin.model());
+  FieldValues().evaluate("mesh_error", {twin.scene.simulation, twin.scene.simulation.state().q, report.mesh_density},
+                         surface, values);
+  const Picture picture = page.picture();
+  EXPECT_GT(picture.max, 0);
+  for (size_t v = 0; v < values.size(); ++v) EXPECT_NEAR(picture.values[v], values[v], 1e-4 * picture.max);
+
+  untouched.steps(5);
+  page.steps(2);
+  EXPECT_FALSE(offers());  // it was the error of another state
+  EXPECT_EQ(page.scene()["field"], "");
+  EXPECT_EQ(page.picture().positions, untouched.picture().positions);
+  page.send({{"do", "rewind"}, {"step", 3}});
+  EXPECT_TRUE(offers());
+  EXPECT_EQ(page.send(question), text);
+  EXPECT_EQ(page.rows()[2]["mesh_energy"].get<double>(), report.mesh_energy);
+  page.send({{"do", "set"}, {"key", "material.young"}, {"value", 2e5}});
+  EXPECT_NE(page.refused(question).find("other settings"), std::string::npos);
+}
+
+TEST(Questions, AboutTheErrorOfTheMeshStopOnRequest) {
+  Side side(load_steered(Page::scene_file(kBeam), {}, {}, SessionOptions()), size_t{1} << 20);
+  side.step(StopToken());
+  const std::vector<double> q = side.simulation().state().q;
+  side.estimate_mesh_error(StopToken([] { return true; }));
+  EXPECT_TRUE(side.mesh_error().empty());
+  EXPECT_EQ(side.simulation().state().q, q);
 }
 
 TEST(Questions, SampleTheCurrentStep) {

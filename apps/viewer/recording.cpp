@@ -95,7 +95,7 @@ struct Frame {
 };
 
 const std::set<std::string> kDerived = {"displacement", "contact_pressure"};  // from positions and contact points
-const std::set<std::string> kMoving = {"von_mises", "energy_density", "det_F", "stretch"};
+const std::set<std::string> kMoving = {"von_mises", "energy_density", "det_F", "stretch", std::string(kMeshError)};
 
 std::vector<float> flat(const std::vector<Vec3d>& points) {
   std::vector<float> numbers;
@@ -154,7 +154,9 @@ class Recorder {
   // Chooses the fields of a live session that positions determine.
   void choose_fields() {
     const bool has_interior = positions_->are_of_model();
-    for (const Field& field : fields_of(scene_.simulation.model())) {
+    bool has_mesh_error = false;
+    for (int frame = 0; frame < frame_count(); ++frame) has_mesh_error = has_mesh_error || is_estimated(frame);
+    for (const Field& field : fields_of(scene_.simulation.model(), has_mesh_error)) {
       if (field.name == "speed" || (!has_interior && field.name != "displacement")) continue;
       fields_.push_back(field);
       if (kMoving.contains(field.name)) moving_.push_back(field.name);
@@ -162,9 +164,17 @@ class Recorder {
     }
   }
 
-  std::vector<float> values(const std::string& field, std::span<const double> x) {
-    std::vector<float> result(body_.places.rest.size());
-    evaluator_.evaluate(field, {scene_.simulation, x}, body_.places, result);
+  // Whether the error of the mesh was estimated in the step of a frame.
+  bool is_estimated(int frame) const {
+    const int step = step_of_frame_[static_cast<size_t>(frame)];
+    return step > 0 && tables_.steps[static_cast<size_t>(step) - 1].report.mesh_worst_tet >= 0;
+  }
+
+  // Returns NaN where there is no mesh error.
+  std::vector<float> values(const std::string& field, std::span<const double> x, std::span<const double> mesh_error) {
+    std::vector<float> result(body_.places.rest.size(), std::numeric_limits<float>::quiet_NaN());
+    if (field == kMeshError && mesh_error.empty()) return result;
+    evaluator_.evaluate(field, {scene_.simulation, x, mesh_error}, body_.places, result);
     return result;
   }
 
@@ -172,12 +182,14 @@ class Recorder {
     std::vector<Frame> frames;
     for (const int index : indices) {
       const std::vector<double> x = positions_->frame(index);
+      std::vector<double> mesh_error;
+      if (is_estimated(index)) mesh_error = positions_->mesh_error(index);
       Frame& frame = frames.emplace_back(Frame{.index = index});
       for (const int v : body_.source)
         for (size_t k = 0; k < 3; ++k) frame.x.push_back(static_cast<float>(x[3 * static_cast<size_t>(v) + k]));
-      for (const std::string& field : moving_) frame.values.push_back(values(field, x));
+      for (const std::string& field : moving_) frame.values.push_back(values(field, x, mesh_error));
       if (fixed_values_.empty())
-        for (const std::string& field : fixed_) fixed_values_.push_back(values(field, x));
+        for (const std::string& field : fixed_) fixed_values_.push_back(values(field, x, mesh_error));
       if (positions_->are_of_model()) add_contacts(frame, x);
     }
     return frames;

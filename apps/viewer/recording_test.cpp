@@ -2,6 +2,7 @@
 
 #include <gmock/gmock.h>
 
+#include "dynamics/mesh_error_text.h"
 #include "io/vtu.h"
 #include "viewer/fields.h"
 #include "viewer/recording_code.h"
@@ -98,6 +99,34 @@ TEST_F(RunRecording, HasTheMessagesOfALiveSession) {
   EXPECT_GT(steps[0]["iterations"][0]["gradient_norm"].get<double>(), 0);
   EXPECT_EQ(steps[0]["iterations"][0]["trials"].size(), 0u);
   EXPECT_EQ(decoded.head["frames"]["step"][12], 12);
+}
+
+TEST_F(RunRecording, HasTheErrorOfTheMeshWhereEstimated) {
+  write_file(path("beam.toml"), kRecordedBeam);
+  Scene scene = load_scene(path("beam.toml"));
+  RunDirectory directory = RunDirectory::create(path("run"), scene, ExistingRun::refuse);
+  StepReport report;
+  for (int step = 1; step <= 3; ++step) {
+    report = scene.simulation.step();
+    if (step == 3) add_mesh_error(scene.simulation, {}, report);
+    directory.on_step(report, scene.simulation);
+  }
+  directory.finish(scene.simulation);
+  const Decoded decoded(recording(path("run")).text);
+  EXPECT_EQ(decoded.head["steps"][1]["mesh_error"], "");
+  EXPECT_EQ(decoded.head["steps"][2]["mesh_error"], report.mesh_error);
+  EXPECT_THAT(decoded.head["scenes"][0]["fields"].dump(), HasSubstr("mesh error"));
+  const std::vector<uint8_t> codes = decoded.array<uint8_t>("field.mesh_error");
+  EXPECT_EQ(codes[0], 255);  // no value
+  const Surface surface = boundary_of(scene.simulation.model());
+  std::vector<float> expected(surface.rest.size());
+  const View view{scene.simulation, scene.simulation.state().q, report.mesh_density};
+  FieldValues().evaluate("mesh_error", view, surface, expected);
+  const std::vector<double> values = decoded.values("mesh_error", 3);
+  const std::vector<uint32_t> place = decoded.array<uint32_t>("cage.place");
+  const float largest = *std::max_element(expected.begin(), expected.end());
+  EXPECT_GT(largest, 0);
+  for (size_t v = 0; v < expected.size(); ++v) EXPECT_NEAR(values[place[v]], expected[v], largest / 250);
 }
 
 TEST_F(RunRecording, HasNoWallTimes) {

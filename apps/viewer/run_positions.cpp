@@ -24,6 +24,17 @@ class BodyFrames : public RunPositions {
                          std::to_string(expected / 3) + " vertices");
     return model_.numbering.vertex.from_user(x, 3);
   }
+  std::vector<double> mesh_error(int index) override {
+    const fs::path file = layout_.root() / layout_.file_of_frame(index);
+    for (const aspic::Field& field : read_frame(file).cell_fields) {
+      if (field.name != "mesh_error") continue;
+      if (field.values.size() != model_.mesh.tets.size())
+        throw InvalidInput(file.string() + ": mesh_error has " + std::to_string(field.values.size()) +
+                           " values; the scene has " + std::to_string(model_.mesh.tets.size()) + " tets");
+      return model_.numbering.tet.from_user(field.values);
+    }
+    return {};
+  }
   bool are_of_model() const override { return true; }
 
  private:
@@ -63,6 +74,7 @@ class SkinCaches : public RunPositions {
     }
     return x;
   }
+  std::vector<double> mesh_error(int) override { return {}; }
   bool are_of_model() const override { return false; }
 
  private:

@@ -1,4 +1,4 @@
-// The positions in each frame of a run, read from its directory frame by frame.
+// The positions in each frame of a run, read from its directory frame by frame, and the estimated error of the mesh.
 #pragma once
 #include <memory>
 #include <vector>
@@ -12,6 +12,8 @@ class RunPositions {
  public:
   virtual ~RunPositions() = default;
   virtual std::vector<double> frame(int index) = 0;  // 3 coordinates per point [m]; throws InvalidInput with the file
+  // The density of the estimated error of the mesh in each tet of the model [J/m^3]; empty: the frame has none.
+  virtual std::vector<double> mesh_error(int index) = 0;
   // true: vertices of the model in the order of its mesh. false: vertices of the skins, without the interior.
   virtual bool are_of_model() const = 0;
 };

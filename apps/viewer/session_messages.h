@@ -15,11 +15,12 @@ struct ShownSide {
   uint32_t generation = 1;                                               // generation of the geometry
   int sent_steps = 0;                                                    // number of steps whose rows were sent
   std::vector<std::string> loaded_overrides = side.steered().overrides;  // before any change of settings
+  bool offers_mesh_error = false;                                        // in the last message "scene"
 
   int number() const { return name == "a" ? 0 : 1; }
-  std::vector<Field> fields() const { return fields_of(side.model()); }
+  std::vector<Field> fields() const { return fields_of(side.model(), !side.mesh_error().empty()); }
   bool has_field(const std::string& field) const;
-  View view() const { return {side.simulation(), side.positions()}; }
+  View view() const { return {side.simulation(), side.positions(), side.mesh_error()}; }
 };
 
 Message text(const Json& json);  // replaces invalid UTF-8, as in file names

@@ -3,6 +3,7 @@
 #include <utility>
 
 #include "base/error.h"
+#include "dynamics/mesh_error_text.h"
 #include "viewer/default_stiffness.h"
 
 namespace aspic::viewer {
@@ -116,7 +117,8 @@ void Side::rewind(int step) {
   if (hand_.is_grabbing()) edit([](Tools& tools, Positions) { tools.hand.release(); });
 }
 
-StepReport Side::repeat(int step, const IterationObserver& observe, const StopToken& stop) {
+StepReport Side::repeat(int step, const IterationObserver& observe, const StopToken& stop,
+                        const std::function<void()>& finish) {
   const Simulation::Snapshot now = simulation().snapshot();
   const Snapshot* after = history_.restore_start_of(step, simulated());
   if (after) {
@@ -126,9 +128,26 @@ StepReport Side::repeat(int step, const IterationObserver& observe, const StopTo
     act();
   }
   const StepReport report = simulated().step(observe, stop);
+  if (finish && report.status != Status::interrupted) finish();
   simulated().restore(now);
   rest();
   return report;
+}
+
+void Side::estimate_mesh_error(const StopToken& stop) {
+  const StepRow* last = history_.rows().last();
+  if (!last) throw InvalidInput("the error of the mesh is estimated after a step; take one first");
+  if (!is_success(last->report.status))
+    throw InvalidInput("the last step did not converge; the error of the mesh is estimated after a converged step");
+  StepReport estimate;
+  repeat(steps_taken(), {}, stop, [&] { add_mesh_error(simulation(), stop, estimate); });
+  if (!stop.stopped()) history_.set_mesh_error(std::move(estimate));
+}
+
+std::span<const double> Side::mesh_error() const {
+  const StepRow* last = history_.rows().last();
+  if (!last || iteration_ >= 0) return {};
+  return last->report.mesh_density;
 }
 
 // ---------------------------------------------------------------- edits

@@ -73,7 +73,14 @@ class Side {
   // Restores the latest snapshot up to that step, and releases the hand.
   void rewind(int step);
   // Repeats a step with an observer, and restores the current state. Throws InvalidInput if it cannot be repeated.
-  StepReport repeat(int step, const IterationObserver& observe, const StopToken& stop);
+  // `finish` is called at the end of the step.
+  StepReport repeat(int step, const IterationObserver& observe, const StopToken& stop,
+                    const std::function<void()>& finish = {});
+  // Estimates the error of the mesh after the last step and writes it into its row. Repeats the step, which defines the
+  // forces. Throws InvalidInput if the step cannot be repeated or did not converge.
+  void estimate_mesh_error(const StopToken& stop);
+  // Density of the estimate in each tet [J/m^3]. Empty: there is none of the current state.
+  std::span<const double> mesh_error() const;
 
   // Each of these ends the current step.
   void apply(SceneChange change);

@@ -93,6 +93,17 @@ Recording Stage::recording() {
   return {a().side.steered().path.string(), base_overrides_, comparison_, log_.events(), a().side.steps_taken()};
 }
 
+void Stage::send_new_fields() {
+  bool is_changed = false;
+  for (ShownSide& shown : sides_) {
+    const bool offers = !shown.side.mesh_error().empty();
+    is_changed = std::exchange(shown.offers_mesh_error, offers) != offers || is_changed;
+  }
+  if (!is_changed) return;
+  if (!a().has_field(field_)) field_.clear();
+  for (const ShownSide& shown : sides_) send_scene(shown);
+}
+
 void Stage::send_shape(const ShownSide& shown) {
   send(geometry_message(shown));
   if (has_fibres(shown.side.model())) send(fibres_message(shown));

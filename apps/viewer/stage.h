@@ -65,6 +65,7 @@ class Stage {
   // ---- messages for all pages
   void send(Message message) { outgoing_.push_back(std::move(message)); }
   void send_scene(const ShownSide& shown) { send(scene_message(shown, field_)); }
+  void send_new_fields();                   // the scenes, if the color `mesh_error` has come or gone
   void send_shape(const ShownSide& shown);  // geometry and obstacles
   void send_all(const ShownSide& shown);    // scene, geometry, steps and pins
   Messages take_messages() { return std::exchange(outgoing_, {}); }

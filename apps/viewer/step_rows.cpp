@@ -112,6 +112,15 @@ void StepRows::drop_after(int step) {
   }
 }
 
+void StepRows::set_mesh_error(StepReport estimate) {
+  StepReport& last = rows_.back().report;
+  last.mesh_stiffness = estimate.mesh_stiffness;
+  last.mesh_energy = estimate.mesh_energy;
+  last.mesh_worst_tet = estimate.mesh_worst_tet;
+  last.mesh_error = std::move(estimate.mesh_error);
+  last.mesh_density = std::move(estimate.mesh_density);
+}
+
 const StepRow* StepRows::find(int step) const {
   if (rows_.empty()) return nullptr;
   const int first = rows_.front().report.step;

@@ -54,6 +54,7 @@ class StepRows {
 
   void add(StepRow row);
   void drop_after(int step);
+  void set_mesh_error(StepReport estimate);  // of the last row
   const StepRow* last() const { return rows_.empty() ? nullptr : &rows_.back(); }
   const StepRow* find(int step) const;
   Json after(int step) const;  // an array of rows

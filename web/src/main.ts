@@ -19,6 +19,7 @@ import { addDisplayControls } from "./panels/display";
 import { EnergyPanel } from "./panels/energy";
 import { FunctionsPanel } from "./panels/functions";
 import { LandscapePanel } from "./panels/landscape";
+import { makeMeshError } from "./panels/meshError";
 import { MicroscopePanel } from "./panels/microscope";
 import { makeReportPanel } from "./panels/report";
 import { Settings } from "./panels/settings";
@@ -48,6 +49,7 @@ function area(id: string): HTMLElement {
 
 // `sharing`: null without an engine.
 function buildPage(store: Store, page: Page, sharing: Sharing | null): void {
+  if (!store.source.live) area("messages").append(makeMeshError(store, page));
   showNotices(area("messages"), store, page);
   const theme = new Theme(page);
   const display = new Display();

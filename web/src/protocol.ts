@@ -51,6 +51,7 @@ export type Query =
   | { ask: "tet"; side: SideName; triangle: number } // the tet behind a triangle of the surface
   | { ask: "iteration"; side: SideName; step: number; iteration: number } // landscape around the iteration
   | { ask: "worst"; side: SideName }
+  | { ask: "mesh_error"; side: SideName } // adds the estimate after the last step to its row; the reply is its text
   | ({ ask: "function" } & FunctionQuestion)
   | { ask: "mesh"; side: SideName; format: "obj" | "ply" | "vtu" | "msh" | "mesh" } // mesh as deformed now
   | { ask: "scene"; side: SideName } // the complete scene for `aspic run`, including drags

@@ -2,6 +2,7 @@
 import assert from "node:assert/strict";
 import { test } from "node:test";
 import { excess, kColumns, listed, totals } from "../src/panels/certificate";
+import { estimatedStep, meshErrorText } from "../src/panels/meshError";
 import type { StepRow } from "../src/protocol";
 import { stepRow } from "./rowsOfSteps";
 
@@ -65,6 +66,14 @@ test("bad values are marked", () => {
   assert.deepEqual(bad(kSteps[0]), []);
   assert.deepEqual(bad(kSteps[1]), ["status", "residual / threshold", "energy bound [J]"]);
   assert.deepEqual(bad(row(4, { min_det_F: -0.5 })), ["min det F"]);
+});
+
+test("the last estimate of the mesh error is shown", () => {
+  const text = "makes 'bar' about 9 % too stiff. `order = 2` would reach about 2 %.";
+  const steps = [row(1, { mesh_error: "an earlier one" }), row(2, { mesh_error: text }), row(3, {})];
+  assert.equal(estimatedStep(steps)?.step, 2);
+  assert.equal(meshErrorText(steps[1]).replaceAll("\u00a0", " "), "mesh: makes 'bar' about 9 % too stiff. order = 2 would reach about 2 %. (step 2)");
+  assert.equal(estimatedStep(kSteps), null);
 });
 
 test("moments have the name of their pin", () => {

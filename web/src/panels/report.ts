@@ -9,6 +9,7 @@ import type { MaybeNumber, Setting, StepRow, TextReply } from "../protocol";
 import type { Store } from "../store";
 import { saveReply } from "../upload";
 import { excess, kColumns, listed, totals } from "./certificate";
+import { makeMeshError } from "./meshError";
 
 const kRowsPerPage = 100;
 const kPause = 500; // time between two drawings [ms]; steps may arrive faster
@@ -129,7 +130,8 @@ export function makeReportPanel(store: Store, page: Page): Panel {
   const aboutScene = element("details", {}, notesTitle, notes);
   const [material, integrator] = [element("details", { open: true }), element("details", { open: true })];
   const table = new StepTable(store);
-  const panel = element("div", { class: "report" }, list, material, integrator, aboutScene, makeScene(store, page), table.element);
+  const meshError = store.source.live ? makeMeshError(store, page) : null; // a recorded run shows it beside the view
+  const panel = element("div", { class: "report" }, list, meshError, material, integrator, aboutScene, makeScene(store, page), table.element);
   let due = false;
   let drawn = -kPause; // time of the last drawing
   const draw = (): void => {

@@ -114,6 +114,21 @@ test("a report has certificate, energies and scene", async () => {
   await close();
 });
 
+test("a report shows the error of its mesh", async () => {
+  const estimated = join(folder, "estimated");
+  make("run", join(root, "scenes/cantilever.toml"), "--set", "time.duration=0.2", "--out", estimated);
+  const { page, until, close } = await openPage(pathToFileURL(join(estimated, "report.html")).href, { offline: true, keepsPixels: true });
+  const line = page.locator(".mesh-error").filter({ hasText: /^mesh: makes 'beam' about \d+\s% too stiff.* \(step\s20\)/ });
+  await line.waitFor();
+  const view = page.locator("#views canvas").first();
+  await until("a picture", () => isDrawn(view));
+  await line.getByRole("button", { name: "Show as color" }).click();
+  await page.locator(".place").filter({ hasText: /^step 20,/ }).waitFor();
+  await line.getByRole("button", { name: "Show as color", pressed: true }).waitFor();
+  await keepPicture(page, "report_mesh_error");
+  await close();
+});
+
 test("a report explains that bodies are fixed", async () => {
   const { page, until, close } = await open();
   await until("a picture", () => isDrawn(page.locator("#views canvas").first()));

@@ -48,6 +48,21 @@ test("single iterations have a row each", async () => {
   await close();
 });
 
+test("the error of the mesh is estimated on request", async () => {
+  const opened = await open("Certificate");
+  const { page, heard, until, close } = opened;
+  for (let step = 1; step <= 5; ++step) await pressAndWait(opened, "s", "a step", ({ state }) => state.a.step === step);
+  await page.getByRole("button", { name: "Estimate" }).click();
+  await page.locator(".mesh-error").filter({ hasText: /makes 'beam' about .*\(step\s5\)/ }).waitFor();
+  await page.getByRole("button", { name: "Show as color" }).click();
+  await until("its color", () => heard.scenes.a.field === "mesh_error" && heard.pictures.a.values?.some((value) => value > 0));
+  await keepPicture(page, "mesh_error");
+  await pressAndWait(opened, "s", "a step", ({ state }) => state.a.step === 6);
+  await until("no color", () => heard.scenes.a.field === "");
+  await toTheStart(opened);
+  await close();
+});
+
 test("a step by iterations is bit-identical", async () => {
   const opened = await open("Microscope");
   const { heard, until, close } = opened;
