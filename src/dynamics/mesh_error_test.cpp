@@ -107,15 +107,26 @@ TEST(MeshError, AgreesWithAnotherProgramForBeams) {
   }
 }
 
-// A beam that swings with mass damping. The forces of its inertia and its damping are weights of the quadratic tets.
-TEST(MeshError, CountsInertiaAndMassDampingAsWeights) {
-  const auto stiffness = [](double factor) {
+// A beam that swings with damping. The forces of its inertia and its mass damping are weights of the quadratic tets.
+TEST(MeshError, CountsInertiaAndDamping) {
+  const auto stiffness = [](double mass, double stiff) {
     ModelBuilder builder = beam_of(2, 0.3);
-    builder.gravity({{0, 0, -1e-3}}).rayleigh_damping(factor, 0);
-    return error_after(Simulation(builder.build(), {.h = 0.2}), 20).bodies.at(0).stiffness;
+    builder.gravity({{0, 0, -1e-3}}).rayleigh_damping(mass, stiff);
+    const MeshErrorEstimate error = error_after(Simulation(builder.build(), {.h = 0.2}), 20);
+    return error.reason.empty() ? error.bodies.at(0).stiffness : 0;
   };
-  EXPECT_NEAR(stiffness(0) / 0.95, 1, 0.15);
-  EXPECT_NEAR(stiffness(1) / 0.95, 1, 0.15);
+  EXPECT_NEAR(stiffness(0, 0) / 0.95, 1, 0.15);
+  EXPECT_NEAR(stiffness(1, 0) / 0.95, 1, 0.15);
+  EXPECT_NEAR(stiffness(0, 0.2) / 0.95, 1, 0.15);
+}
+
+TEST(MeshError, NeedsAStepWithDamping) {
+  ModelBuilder builder = beam_of(1, 0.3);
+  Simulation simulation(builder.gravity({{0, 0, -1}}).rayleigh_damping(1, 0).build());
+  take_steps(simulation, 2, "swing");
+  EXPECT_EQ(simulation.mesh_error().reason, "");
+  simulation.restore(simulation.snapshot());
+  EXPECT_THAT(simulation.mesh_error().reason, HasSubstr("take one first"));
 }
 
 TEST(MeshError, StatesWhyThereIsNone) {

@@ -92,6 +92,8 @@ void add_mesh_error(const Simulation& simulation, const StopToken& stop, StepRep
   if (!error.reason.empty()) return;
   const Renumbering& user = simulation.model().numbering.tet;
   double most = 0;
+  report.mesh_stiffness = report.mesh_energy = 0;
+  report.mesh_worst_tet = -1;
   for (const BodyMeshError& body : error.bodies) {
     report.mesh_energy += body.energy;
     if (body.stiffness > report.mesh_stiffness) report.mesh_stiffness = body.stiffness;

@@ -123,6 +123,7 @@ struct Simulation::Impl {
       }
     }
     if (!is_interrupted) report.step = ++steps_taken;
+    has_stepped = !is_interrupted;
     describe_state(report);
     report_seconds = minimize.stop.now() - advanced;
     report.seconds = stopwatch.lap();
@@ -314,6 +315,7 @@ struct Simulation::Impl {
   double outside_work = 0;          // see Snapshot
   Ledger ledger;
   int steps_taken = 0;
+  bool has_stepped = false;           // since the construction or restore()
   double obstacle_time = state.time;  // see Simulation::obstacle_time()
   MinimizeOptions minimize;           // options of the current step
   double report_seconds = 0;          // duration of the last report, with a time budget [s]
@@ -397,6 +399,11 @@ std::vector<double> Simulation::reactions() const {
 
 MeshErrorEstimate Simulation::mesh_error(const StopToken& stop) const {
   const Impl& s = *impl_;
+  if (!s.model.damping.empty() && !s.has_stepped) {
+    MeshErrorEstimate none;
+    none.reason = "friction and damping are those of a step; take one first";
+    return none;
+  }
   const double h = s.options.h;
   return estimate_mesh_error({s.model, *s.pins, s.E->terms(), s.E->pattern(), s.state,
                               s.integrator->facts().is_static(), h, s.state.time - s.start.time},
@@ -439,6 +446,7 @@ void Simulation::set_pins(std::vector<Pin> pins) {
   impl_->direction = make_search_direction(impl_->options.solver);
   impl_->integrator = make_integrator(impl_->options.integrator);
   impl_->set_time(impl_->state.time);
+  impl_->has_stepped = false;
 }
 
 const IntegratorFacts& Simulation::integrator() const { return impl_->integrator->facts(); }
@@ -483,6 +491,7 @@ void Simulation::restore(const Snapshot& snapshot) {
   impl_->ledger.begin(impl_->model, impl_->state.q);
   impl_->measure_start();
   impl_->set_time(impl_->state.time);  // restores moving targets
+  impl_->has_stepped = false;
 }
 
 }  // namespace aspic
