@@ -222,7 +222,6 @@ class Estimator {
       if (!raised_.elasticity.emplace_back(V->on(raised_.mesh))) return refused("a material has no quadratic tets");
     y_ = lift_(x_);
     inner_.assign(y_.size(), 0.0);
-    viscous_.assign(y_.size(), 0.0);
     for (const auto& V : raised_.elasticity) V->add_gradient(y_, 1, inner_);
     for (const auto& load : model.loads) {
       const auto* in_tets = dynamic_cast<const TetEnergy*>(load.get());
@@ -275,13 +274,13 @@ class Estimator {
         continue;
       }
       force_of(term);
-      move_rayleigh_damping(term, f, forces);
+      move_mass_damping(term, f, forces);
       if (norm_of(f) > kSmallForce * norm_of(elastic))
         return "the forces of '" + std::string(term.name()) + "' are not small at this time";
     }
     if (!in_.is_static) forces.add_acceleration(accelerations(total), -1);
     r_ = forces.take(*raised_.mass);
-    for (size_t i = 3 * static_cast<size_t>(lift_.vertices()); i < r_.size(); ++i) r_[i] -= inner_[i] + viscous_[i];
+    for (size_t i = 3 * static_cast<size_t>(lift_.vertices()); i < r_.size(); ++i) r_[i] -= inner_[i];
     lift_.balance(r_);
     Vector all(r_);
     for (size_t i = 0; i < all.size(); ++i) all[i] += inner_[i];
@@ -289,8 +288,8 @@ class Estimator {
     return "";
   }
 
-  // Removes the shares -a M v and -b K v from a damping force on vertices, and adds them to those of quadratic tets.
-  void move_rayleigh_damping(const ActiveTerm& term, std::span<double> f, ForceLift& forces) {
+  // Moves the share -a M v of a damping force to the accelerations.
+  void move_mass_damping(const ActiveTerm& term, std::span<double> f, ForceLift& forces) const {
     const auto* damping = dynamic_cast<const Damping*>(&term.energy());
     if (!damping) return;
     Vector rate(in_.state.qdot), product(f.size());
@@ -298,28 +297,6 @@ class Estimator {
     in_.model.mass->multiply(rate, product);
     for (size_t i = 0; i < f.size(); ++i) f[i] += product[i];
     forces.add_acceleration(rate, -1);
-    const LaggedStiffness stiffness = damping->lagged_stiffness(term.context());
-    for (size_t b = 0; b < in_.model.elasticity.size(); ++b) {
-      if (in_.model.elasticity[b].get() != stiffness.elasticity) continue;
-      add_rate_of_gradient(*stiffness.elasticity, x_, in_.state.qdot, stiffness.factor, f);
-      add_rate_of_gradient(*raised_.elasticity[b], y_, lift_(in_.state.qdot), stiffness.factor, viscous_);
-    }
-  }
-
-  // g += factor d/dt dV/dx at the velocity v, by central differences.
-  static void add_rate_of_gradient(const TetElasticity& V, const Vector& x, const Vector& v, double factor,
-                                   std::span<double> g) {
-    const auto largest = [](const Vector& a) {
-      return std::abs(
-          *std::max_element(a.begin(), a.end(), [](double l, double r) { return std::abs(l) < std::abs(r); }));
-    };
-    if (largest(v) == 0) return;
-    const double step = 1e-6 * largest(x) / largest(v);
-    for (const double t : {step, -step}) {
-      Vector moved(x);
-      for (size_t i = 0; i < x.size(); ++i) moved[i] += t * v[i];
-      V.add_gradient(moved, factor / (2 * t), g);
-    }
   }
 
   // Returns the accelerations of free vertices from their forces -dV/dx, and those of pins from their motion.
@@ -448,7 +425,7 @@ class Estimator {
   Lift lift_;
   const Vector& x_;
   Model raised_;
-  Vector y_, inner_, viscous_, r_;  // positions, dV2/dy, forces of stiffness damping and r of all nodes
+  Vector y_, inner_, r_;  // positions, dV2/dy and r of all nodes
 };
 
 }  // namespace
