@@ -282,11 +282,13 @@ int check_mesh_error(const CheckArguments& arguments) {
   for (int i = 0; i < kSteps; ++i) report = scene.simulation.step();
   if (!is_success(report.status))
     throw InvalidInput(
-        fmt::format("{}: no static equilibrium was found ({}); pin the body, or estimate in a run: "
-                    "solver.mesh_error = \"end\"",
+        fmt::format("{}: no static equilibrium was found ({}); pin the body, or estimate in motion: "
+                    "aspic run SCENE",
                     printable(arguments.input.string()), to_string(report.status)));
   add_mesh_error(scene.simulation, {}, report);
-  fmt::print("{}: in static equilibrium, the mesh {}\n", scene.name, printable(report.mesh_error));
+  const bool has_estimate = report.mesh_stiffness > 0;
+  fmt::print("{}: {}{}\n", scene.name, has_estimate ? "in static equilibrium, the mesh " : "",
+             printable(report.mesh_error));
   return exit_done;
 }
 
@@ -308,6 +310,8 @@ int check(const CheckArguments& arguments) {
   if (is_data_set(arguments.input)) check_measurements(arguments);
   if (!arguments.registers.empty())
     throw InvalidInput("--register needs a data set; give the folder that contains capture.toml");
+  if (arguments.mesh_error && (arguments.derivatives || arguments.json))
+    throw InvalidInput("--mesh-error cannot be combined with --derivatives or --json");
   if (arguments.derivatives) {
     if (arguments.repair) throw InvalidInput("--repair and --derivatives cannot be combined");
     const Scene scene = load_scene(arguments.input, {.overrides = arguments.overrides, .mesher = {}});

@@ -8,6 +8,7 @@
 #include "dynamics/mesh_error_text.h"
 #include "dynamics/models_test.h"
 #include "mesh/tet_nodes.h"
+#include "reference/statics.h"
 
 namespace aspic {
 namespace {
@@ -149,19 +150,71 @@ TEST(MeshError, StatesWhyThereIsNone) {
 
 TEST(MeshError, IsOneSentenceWithRemedy) {
   const Simulation bar(beam_of(1, 0.3).build());  // mean edge 1.3 m
-  MeshErrorEstimate error{.is_reliable = true, .bodies = {{1, 0.18, 0}}};
-  EXPECT_THAT(
+  MeshErrorEstimate error{.is_reliable = true, .bodies = {{.energy = 1, .stiffness = 0.18, .motion = 0.15}}};
+  EXPECT_EQ(
       mesh_error_text(error, bar),
-      StartsWith("makes 'body' about 18 % too stiff (moves 15 % too little, swings 9 % too fast). `order = 2`, or "
-                 "edges of 0.4 m instead of 1.3 m, would reach about 2 %. An estimate;"));
+      "makes 'body' about 18 % too stiff (displacements err by 15 %, frequencies by 9 %). `order = 2`, or edges of "
+      "0.42 m instead of 1.3 m, would reach about 2 % where the solution is smooth. An estimate.");
   error.bodies[0].stiffness = 7.33;
-  EXPECT_THAT(mesh_error_text(error, bar), HasSubstr("about 730 % too stiff (moves 88 % too little, swings 190 % too "
-                                                     "fast). `order = 2` would reach"));
-  error.bodies[0].stiffness = 0.004;
+  error.bodies[0].motion = std::nan("");
+  EXPECT_THAT(mesh_error_text(error, bar), HasSubstr("about 730 % too stiff (displacements err by 88 %, frequencies by "
+                                                     "190 %). `order = 2` would reach"));
+  error.bodies[0] = {.stiffness = 0.06, .motion = 0.57};
+  EXPECT_THAT(mesh_error_text(error, bar),
+              HasSubstr("about 6 % too stiff (displacements err by 57 %, frequencies by 3 %). "
+                        "`order = 2` would reach"));
+  error.bodies[0] = {.stiffness = 0.004};
   error.is_reliable = false;
   EXPECT_EQ(mesh_error_text(error, bar),
-            "makes 'body' less than 1 % too stiff. Unreliable: quadratic tets are "
-            "unstable in this state. An estimate; the error may be larger.");
+            "makes 'body' less than 1 % too stiff. Unreliable: quadratic tets are unstable in "
+            "this state. An estimate.");
+}
+
+// Tractions that differ between adjacent faces: an exact solution of linear tets.
+TEST(MeshError, IsZeroUnderLoadsOnAdjacentFaces) {
+  const TetMesh mesh = make_box({{0, 0, 0}}, {{1, 1, 1}}, {2, 2, 2});
+  std::vector<double> force(3 * mesh.rest.size(), 0.0);
+  for (const Face& face : boundary_faces(mesh, 0, mesh.tet_count())) {
+    const auto& [a, b, c] = face.corners;
+    const Vec3d normal = cross(mesh.rest[b] - mesh.rest[a], mesh.rest[c] - mesh.rest[a]);
+    add_traction(mesh.rest, face, (1 / norm(normal)) * Vec3d{{-2 * normal[0], 3 * normal[1], 0}}, force);
+  }
+  ModelBuilder builder(mesh);
+  builder.material("linear", {.young = 1e5, .poisson = 0.3}).density(1).load(make_linear_load("traction", force));
+  for (int axis = 0; axis < 3; ++axis) {
+    Vec3d normal{};
+    normal[axis] = 1;
+    builder.pin("middle", [axis](const Vec3d& X) { return X[axis] == 0.5; }, {}, {normal});
+  }
+  const MeshErrorEstimate error = error_after(statics(builder.build()));
+  ASSERT_EQ(error.reason, "");
+  EXPECT_LT(std::abs(error.bodies[0].stiffness), 1e-6);
+}
+
+// A bar under a large pull along its axis and a small load across: k is small, but not the error of the displacement.
+TEST(MeshError, OfDisplacementsSeesASmallLoadBesideALargeOne) {
+  const TetMesh mesh = make_box({{0, 0, 0}}, {{6, 1, 1}}, {6, 1, 1});
+  const auto tip = [](TetMesh of) {
+    ModelBuilder builder(of);
+    builder.material("linear", {.young = 1e5, .poisson = 0.3})
+        .density(1000)
+        .pin("clamp", [](const Vec3d& X) { return X[0] == 0; })
+        .load(make_linear_load("traction",
+                               verify::traction_on(of, [](const Vec3d& X) { return X[0] == 6; }, {{500, 0, -10}})));
+    return builder.build();
+  };
+  const auto sag = [](const Simulation& simulation) {  // at a corner of the end
+    const auto& X = simulation.model().mesh.rest;
+    for (size_t v = 0; v < X.size(); ++v)
+      if (X[v][0] == 6 && X[v][1] == 0 && X[v][2] == 0) return simulation.state().q[3 * v + 2];
+    return 0.0;
+  };
+  Simulation linear = statics(tip(mesh)), quadratic = statics(tip(raise_order(mesh)));
+  take_steps(linear, 1, "pull");
+  take_steps(quadratic, 1, "pull");
+  const BodyMeshError error = linear.mesh_error().bodies.at(0);
+  EXPECT_LT(error.stiffness, 0.3);
+  EXPECT_NEAR(error.motion, 1 - sag(linear) / sag(quadratic), 0.1);
 }
 
 }  // namespace

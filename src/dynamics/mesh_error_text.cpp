@@ -15,6 +15,7 @@ namespace {
 constexpr double kEnough = 0.02;   // error that needs no remedy; quadratic tets reach it
 constexpr double kLocking = 0.45;  // Poisson's ratio above which finer linear tets help slowly
 constexpr double kFarFromIt = 1;   // error above which the prediction of the edges is too optimistic
+constexpr double kClose = 0.85;    // edges that are no remedy, relative to the present ones
 constexpr size_t kBodiesShown = 3;
 
 // In percent, with two digits: "9 %", "220 %".
@@ -24,9 +25,9 @@ std::string percent(double fraction) {
   return formatted("%.0f %%", unit * std::round(value / unit));
 }
 
-// Rounds down to one digit.
+// Rounds down to two digits.
 double finer(double length) {
-  const double unit = std::pow(10, std::floor(std::log10(length)));
+  const double unit = std::pow(10, std::floor(std::log10(length)) - 1);
   return unit * std::floor(length / unit * (1 + 1e-9));
 }
 
@@ -44,20 +45,26 @@ double largest_poisson(const TetElasticity& V) {
   return largest;
 }
 
+// An error of the motion under some load shows in k only if this load stores most of the energy.
+double largest_error(const BodyMeshError& body) {
+  return body.motion < 1 ? std::max(body.stiffness, body.motion / (1 - body.motion)) : body.stiffness;
+}
+
 std::string remedy(const Model& model, size_t body, double k) {
   if (k <= kEnough) return "";
-  const std::string reach = " would reach about 2 %.";
-  if (k > kFarFromIt || largest_poisson(*model.elasticity[body]) > kLocking) return " `order = 2`" + reach;
-  const double edge = mean_edge(model.mesh, model.bodies[body]);
-  return formatted(" `order = 2`, or edges of %.1g m instead of %.2g m,", finer(edge * edge_factor(k, kEnough)), edge) +
-         reach;
+  const std::string reach = " would reach about 2 % where the solution is smooth.";
+  const double edge = mean_edge(model.mesh, model.bodies[body]), fine = finer(edge * edge_factor(k, kEnough));
+  if (k > kFarFromIt || largest_poisson(*model.elasticity[body]) > kLocking || fine > kClose * edge)
+    return " `order = 2`" + reach;
+  return formatted(" `order = 2`, or edges of %.2g m instead of %.2g m,", fine, edge) + reach;
 }
 
 std::string about(double k) { return k < 0.005 ? "less than 1 %" : "about " + percent(k); }
 
-std::string effect(double k, bool swings) {
-  std::string text = " (moves " + percent(k / (1 + k)) + " too little";
-  if (swings) text += ", swings " + percent(std::sqrt(1 + k) - 1) + " too fast";
+std::string effect(const BodyMeshError& body, bool swings) {
+  const double k = body.stiffness, motion = std::isnan(body.motion) ? k / (1 + k) : body.motion;
+  std::string text = " (displacements err by " + percent(motion);
+  if (swings) text += ", frequencies by " + percent(std::sqrt(1 + k) - 1);
   return text + ")";
 }
 
@@ -71,19 +78,20 @@ std::string mesh_error_text(const MeshErrorEstimate& error, const Simulation& si
     if (!std::isnan(error.bodies[b].stiffness)) order.push_back(b);
   if (order.empty()) return "no estimate: nothing is strained";
   std::stable_sort(order.begin(), order.end(),
-                   [&](size_t a, size_t b) { return error.bodies[a].stiffness > error.bodies[b].stiffness; });
-  const double worst = error.bodies[order[0]].stiffness;
+                   [&](size_t a, size_t b) { return largest_error(error.bodies[a]) > largest_error(error.bodies[b]); });
+  const double worst = largest_error(error.bodies[order[0]]);
   std::string text = "makes";
   for (size_t i = 0; i < std::min(order.size(), kBodiesShown); ++i)
     text += std::string(i > 0 ? "," : "") + " '" + model.bodies[order[i]].name + "' " +
             about(error.bodies[order[i]].stiffness);
   text += " too stiff";
-  if (order.size() == 1 && worst > kEnough) text += effect(worst, !simulation.integrator().is_static());
+  if (order.size() == 1 && worst > kEnough)
+    text += effect(error.bodies[order[0]], !simulation.integrator().is_static());
   if (order.size() > kBodiesShown)
     text += formatted("; %d more bodies less", static_cast<int>(order.size() - kBodiesShown));
   text += "." + remedy(model, order[0], worst);
   if (!error.is_reliable) text += " Unreliable: quadratic tets are unstable in this state.";
-  return text + " An estimate; the error may be larger.";
+  return text + " An estimate.";
 }
 
 void add_mesh_error(const Simulation& simulation, const StopToken& stop, StepReport& report) {
