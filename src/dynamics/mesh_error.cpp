@@ -179,7 +179,7 @@ class FaceTractions {
 
  private:
   static constexpr double kSmooth = 0.8;        // cosine between normals without an edge
-  static constexpr double kDifferences = 1e-4;  // weight
+  static constexpr double kDifferences = 1e-1;  // weight
   static constexpr double kTractionResidual = 1e-8;
   static constexpr int kMostIterations = 500;
 
