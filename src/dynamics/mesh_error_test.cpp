@@ -192,7 +192,7 @@ TEST(MeshError, IsZeroUnderLoadsOnAdjacentFaces) {
 }
 
 // A bar under a large pull along its axis and a small load across: k is small, but not the error of the displacement.
-TEST(MeshError, OfDisplacementsSeesASmallLoadBesideALargeOne) {
+TEST(MeshError, OfDisplacementsCountsASmallLoadBesideALargeOne) {
   const TetMesh mesh = make_box({{0, 0, 0}}, {{6, 1, 1}}, {6, 1, 1});
   const auto tip = [](TetMesh of) {
     ModelBuilder builder(of);
