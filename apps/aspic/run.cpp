@@ -119,7 +119,7 @@ class LocalRun : public SteppedRun {
     if (is_short())
       report.mesh_error = "no estimate: it would take longer than the run; aspic check SCENE --mesh-error computes it";
     else
-      add_mesh_error(scene_.simulation, stop, report);
+      add_mesh_error(scene_.simulation, {}, report);  // not interrupted: a resumed run has the same bits
     return report;
   }
 
