@@ -448,7 +448,7 @@ class Estimator {
     return found;
   }
 
-  // NaN for bodies without pins: their motion is mostly rigid.
+  // NaN in motion, where the displacement may be small at any time, and for bodies without pins, which move rigidly.
   double motion_of(const BodyRange& body, const Vector& d) const {
     bool is_pinned = false;
     double correction = 0, displacement = 0;
@@ -457,7 +457,8 @@ class Estimator {
       correction = std::max(correction, norm(point(d, v)));
       displacement = std::max(displacement, norm(point(x_, v) + point(d, v) - in_.model.mesh.rest[v]));
     }
-    return is_pinned && displacement > 0 ? correction / displacement : std::numeric_limits<double>::quiet_NaN();
+    return in_.is_static && is_pinned && displacement > 0 ? correction / displacement
+                                                          : std::numeric_limits<double>::quiet_NaN();
   }
 
   double elastic_energy(size_t body) const {

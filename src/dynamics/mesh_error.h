@@ -21,7 +21,7 @@ struct BodyMeshError {
   // k / (1 + k); pins that move it need a force too large by k; frequencies are too high by sqrt(1 + k) - 1. NaN: the
   // body is not strained.
   double stiffness = 0;
-  // Largest correction of a vertex over its largest corrected displacement from rest; NaN: the body has no pins.
+  // Statics: largest correction of a vertex over the largest corrected displacement; NaN: in motion, or without pins.
   double motion = 0;
   int worst_tet = -1;  // the tet of the model with the largest density; -1: none
 };
