@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <iterator>
 #include <limits>
 #include <numeric>
 
@@ -92,7 +93,7 @@ class Lift {
       for (int r = 0; r < 3; ++r) y.push_back(0.5 * (x[3 * a + r] + x[3 * b + r]));
     return y;
   }
-  // Returns the forces f on the middles as forces on all nodes whose work on linear functions is zero.
+  // Replaces the forces on vertices by those with which the forces f on middles do no work on linear functions.
   void balance(std::span<double> f) const {
     std::fill_n(f.begin(), 3 * vertices_, 0.0);
     for (size_t e = 0; e < ends_.size(); ++e)
@@ -106,25 +107,38 @@ class Lift {
   std::vector<std::array<int, 2>> ends_;
 };
 
+// Returns the common entries of ascending lists.
+std::vector<int> common(const std::vector<int>& a, const std::vector<int>& b) {
+  std::vector<int> both;
+  std::set_intersection(a.begin(), a.end(), b.begin(), b.end(), std::back_inserter(both));
+  return both;
+}
+
 // Pins hold the middle of an edge if they hold both ends, and the edge is in the boundary or in a held tet.
 std::vector<Pin> lifted_pins(const Lift& lift, const std::vector<Pin>& pins) {
   const TetMesh& mesh = lift.mesh();
-  std::vector<char> is_boundary(lift.ends().size(), false);
-  for (const Face& face : boundary_faces(mesh, 0, mesh.tet_count()))
-    for (const int mid : face.mids) is_boundary[mid - lift.vertices()] = true;
   std::vector<Pin> lifted;
-  for (const Pin& pin : pins) {
-    std::vector<char> is_pinned(lift.vertices(), false), has_held_tet(lift.ends().size(), false);
-    for (const int v : pin.vertices) is_pinned[v] = true;
-    for (int t = 0; t < mesh.tet_count(); ++t)
-      if (std::all_of(mesh.tets[t].begin(), mesh.tets[t].end(), [&](int v) { return is_pinned[v]; }))
-        for (const int mid : mesh.mids[t]) has_held_tet[mid - lift.vertices()] = true;
-    Pin& added = lifted.emplace_back(Pin{pin.name, pin.vertices, {}, pin.directions});
-    for (size_t e = 0; e < lift.ends().size(); ++e) {
-      const auto [a, b] = lift.ends()[e];
-      if (is_pinned[a] && is_pinned[b] && (is_boundary[e] || has_held_tet[e]))
-        added.vertices.push_back(lift.middle(static_cast<int>(e)));
-    }
+  std::vector<std::vector<int>> pins_at(mesh.rest.size());  // of vertices; of middles: those that hold a tet there
+  for (size_t k = 0; k < pins.size(); ++k) {
+    lifted.push_back({pins[k].name, pins[k].vertices, {}, pins[k].directions});
+    for (const int v : pins[k].vertices) pins_at[v].push_back(static_cast<int>(k));
+  }
+  for (int t = 0; t < mesh.tet_count(); ++t) {
+    const auto& [a, b, c, d] = mesh.tets[t];
+    if (pins_at[a].empty()) continue;
+    const std::vector<int> held = common(common(pins_at[a], pins_at[b]), common(pins_at[c], pins_at[d]));
+    for (const int mid : mesh.mids[t]) pins_at[mid].insert(pins_at[mid].end(), held.begin(), held.end());
+  }
+  std::vector<char> is_boundary(mesh.rest.size(), false);
+  for (const Face& face : boundary_faces(mesh, 0, mesh.tet_count()))
+    for (const int mid : face.mids) is_boundary[mid] = true;
+  for (size_t e = 0; e < lift.ends().size(); ++e) {
+    const auto& [a, b] = lift.ends()[e];
+    const int middle = lift.middle(static_cast<int>(e));
+    const std::vector<int>& holding = pins_at[middle];
+    for (const int k : common(pins_at[a], pins_at[b]))
+      if (is_boundary[middle] || std::find(holding.begin(), holding.end(), k) != holding.end())
+        lifted[k].vertices.push_back(middle);
   }
   return lifted;
 }
@@ -209,8 +223,7 @@ class FaceTractions {
   mutable std::vector<Vec3d> at_vertex_;  // scratch
 };
 
-// A force on vertices as the sum of a multiple of the mass of each body, an interpolated traction on its surface, and
-// forces at points.
+// Forces on vertices as sums of a multiple of the mass of each body, tractions on surfaces, and forces at points.
 class ForceLift {
  public:
   ForceLift(const Model& model, const Lift& lift)
@@ -220,8 +233,16 @@ class ForceLift {
   }
 
   void add(std::span<const double> f) {
-    for (size_t b = 0; b < model_.bodies.size(); ++b)
-      if (!add_weight(model_.bodies[b], f)) add_tractions(faces_[b], f);
+    std::vector<Face> loaded;
+    for (size_t b = 0; b < model_.bodies.size(); ++b) {
+      if (add_weight(model_.bodies[b], f)) continue;
+      for (const Face& face : faces_[b])
+        if (std::all_of(face.corners.begin(), face.corners.end(), [&](int v) { return norm(point(f, v)) > 0; }))
+          loaded.push_back(face);
+    }
+    if (loaded.empty()) return;
+    const FaceTractions tractions(lift_.mesh(), std::move(loaded));
+    tractions.add_forces(tractions.of(f), force_);
   }
   void add_acceleration(std::span<const double> a, double factor) {
     for (size_t i = 0; i < a.size(); ++i) acceleration_[i] += factor * a[i];
@@ -253,15 +274,6 @@ class ForceLift {
     for (int v = body.first_vertex; v < last; ++v)
       for (int r = 0; r < 3; ++r) acceleration_[3 * v + r] += g[r];
     return true;
-  }
-
-  void add_tractions(const std::vector<Face>& faces, std::span<const double> f) {
-    std::vector<Face> loaded;
-    for (const Face& face : faces)
-      if (std::all_of(face.corners.begin(), face.corners.end(), [&](int v) { return norm(point(f, v)) > 0; }))
-        loaded.push_back(face);
-    const FaceTractions tractions(lift_.mesh(), std::move(loaded));
-    tractions.add_forces(tractions.of(f), force_);
   }
 
   const Model& model_;
@@ -423,24 +435,26 @@ class Estimator {
     found.is_reliable = is_reliable;
     found.correction.assign(d.begin(), d.begin() + static_cast<std::ptrdiff_t>(x_.size()));
     found.density = densities(d);
+    std::vector<int> body_of;  // of each vertex
+    for (size_t b = 0; b < model.bodies.size(); ++b)
+      body_of.resize(body_of.size() + model.bodies[b].vertex_count, static_cast<int>(b));
+    std::vector<double> energy(model.bodies.size(), 0.0), work(model.bodies.size(), 0.0);  // r . d / 2 and f . d
+    const auto add = [&](int node, int vertex) {
+      energy[body_of[vertex]] += 0.5 * dot(point(r_, node), point(d, node));
+      work[body_of[vertex]] += dot(point(r_, node) + point(inner_, node), point(d, node));
+    };
+    for (int v = 0; v < lift_.vertices(); ++v) add(v, v);
+    for (size_t e = 0; e < lift_.ends().size(); ++e) add(lift_.middle(static_cast<int>(e)), lift_.ends()[e][0]);
     for (size_t b = 0; b < model.bodies.size(); ++b) {
       const BodyRange& body = model.bodies[b];
-      BodyMeshError& error = found.bodies.emplace_back();
-      double fd = 0, stiffness = 0;
-      const auto add = [&](int node) {
-        error.energy += 0.5 * dot(point(r_, node), point(d, node));
-        fd += dot(point(r_, node) + point(inner_, node), point(d, node));
-      };
-      for (int v = body.first_vertex; v < body.first_vertex + body.vertex_count; ++v) add(v);
-      for (size_t e = 0; e < lift_.ends().size(); ++e)
-        if (const int v = lift_.ends()[e][0]; v >= body.first_vertex && v < body.first_vertex + body.vertex_count)
-          add(lift_.middle(static_cast<int>(e)));
+      BodyMeshError& error = found.bodies.emplace_back(BodyMeshError{.energy = energy[b]});
+      double stiffness = 0;
       for (int t = body.first_tet; t < body.first_tet + body.tet_count; ++t) {
         stiffness += volume(model.mesh, t) * model.elasticity[b]->parameters()[t - body.first_tet].lame.mu;
         if (found.density[t] > (error.worst_tet < 0 ? 0 : found.density[error.worst_tet])) error.worst_tet = t;
       }
       error.motion = motion_of(body, d);
-      const double V = elastic_energy(b), least = std::min(V, V + fd - error.energy);
+      const double V = elastic_energy(b), least = std::min(V, V + work[b] - error.energy);
       error.stiffness = V > kUnstrained * kUnstrained * stiffness && least > 0
                             ? error.energy / least
                             : std::numeric_limits<double>::quiet_NaN();
