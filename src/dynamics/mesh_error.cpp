@@ -31,10 +31,10 @@ using Vector = std::vector<double>;
 
 double norm_of(std::span<const double> v) { return std::sqrt(std::inner_product(v.begin(), v.end(), v.begin(), 0.0)); }
 
-// The forces and the Hessian of other terms at y, as constants. Their rows are the first ones.
-class HeldTerms : public SteadyEnergy {
+// The Hessian of other terms as a constant, whose rows are the first ones: d' K d / 2 of the displacement from y.
+class HeldStiffness : public SteadyEnergy {
  public:
-  HeldTerms(Vector force, BlockSparse stiffness) : force_(std::move(force)), K_(std::move(stiffness)) {}
+  explicit HeldStiffness(BlockSparse stiffness) : K_(std::move(stiffness)) {}
 
   std::string_view name() const override { return "held"; }
   bool has_constant_gradient() const override { return true; }
@@ -49,12 +49,8 @@ class HeldTerms : public SteadyEnergy {
       for (int64_t k = K_.pattern->row_start[row]; k < K_.pattern->row_start[row + 1]; ++k)
         slot_.push_back(pattern.slot(row, K_.pattern->column[k]));
   }
-  double value(Positions x, const Context&) const override {
-    return -std::inner_product(x.begin(), x.end(), force_.begin(), 0.0);
-  }
-  void add_gradient(Positions, const Context&, double scale, std::span<double> g) const override {
-    for (size_t i = 0; i < g.size(); ++i) g[i] -= scale * force_[i];
-  }
+  double value(Positions, const Context&) const override { return 0; }  // at y, as is the gradient
+  void add_gradient(Positions, const Context&, double, std::span<double>) const override {}
   int add_hessian(Positions, const Context&, double scale, const Projection&, BlockSparse& H) const override {
     for (size_t k = 0; k < slot_.size(); ++k) H.block[slot_[k]] = H.block[slot_[k]] + scale * K_.block[k];
     for (Stencil stencil : K_.stencils) {
@@ -65,7 +61,6 @@ class HeldTerms : public SteadyEnergy {
   }
 
  private:
-  Vector force_;
   BlockSparse K_;
   std::vector<int64_t> slot_;
 };
@@ -317,7 +312,7 @@ class Estimator {
 
   StepContext step() const { return {.start = y_, .h = in_.is_static ? 0 : in_.h, .time = in_.state.time}; }
 
-  // Computes r_ and the held terms. Returns why it cannot.
+  // Computes r_ and the held stiffness. Returns why it cannot.
   std::string find_forces() {
     const Model& model = in_.model;
     ForceLift forces(model, lift_);
@@ -358,9 +353,7 @@ class Estimator {
     r_ = forces.take(*raised_.mass);
     for (size_t i = 3 * static_cast<size_t>(lift_.vertices()); i < r_.size(); ++i) r_[i] -= inner_[i];
     lift_.balance(r_);
-    Vector all(r_);
-    for (size_t i = 0; i < all.size(); ++i) all[i] += inner_[i];
-    raised_.loads.push_back(std::make_unique<HeldTerms>(std::move(all), std::move(held)));
+    raised_.loads.push_back(std::make_unique<HeldStiffness>(std::move(held)));
     return "";
   }
 
@@ -394,16 +387,15 @@ class Estimator {
     const Pins pins(raised_.pins, y_);
     IncrementalPotential E(raised_, pins);
     E.at({.predicted = y_, .inertia = inertia(E.sizes().growth_stiffness()), .context = step()});
+    pins.set_zero(r_);
     Vector g(y_.size()), d(y_.size(), 0.0);
-    E.evaluate(y_);
-    E.gradient(y_, g);
+    for (size_t i = 0; i < g.size(); ++i) g[i] = -r_[i];
     Newton newton(make_linear_solver("auto"));
     newton.begin();
     DirectionReport work;
     const bool is_solved = newton.compute({E, y_, g, {.loosest = kResidual, .enough = kResidual}, stop}, d, work);
     if (work.stopped) return refused("it was interrupted");
     if (!is_solved) return refused("the linear system of quadratic tets was not solved");
-    pins.set_zero(r_);
     return report(d, !work.projected);
   }
 
