@@ -1,5 +1,5 @@
-// node build.mjs OUT: the whole page, scripts and styles included, as one HTML file, packed as OUT.gz, and beside it the
-// formulas as formulas.inc. Needs no server and no network.
+// node build.mjs OUT: the whole page, scripts and styles included, as one HTML file, and for the program, beside it, the
+// packed page as page.inc and the formulas as formulas.inc. Needs no server and no network.
 import { build } from "esbuild";
 import { existsSync, mkdirSync, readFileSync, writeFileSync } from "node:fs";
 import { dirname, join } from "node:path";
@@ -40,4 +40,5 @@ const literal = (text) => `R"math(${text})math"`;
 const entries = [["style", [`<style>${style}</style>`]], ...programFormulas()].map(([key, list]) => `{${literal(key)}, {${list.map(literal).join(", ")}}},\n`);
 writeFileSync(join(dirname(out), "formulas.inc"), entries.join(""));
 writeFileSync(out, page);
-writeFileSync(`${out}.gz`, gzipSync(page, { level: 9 }));
+const octal = (byte) => `\\${byte.toString(8).padStart(3, "0")}`;
+writeFileSync(join(dirname(out), "page.inc"), `"${Array.from(gzipSync(page, { level: 9 }), octal).join("")}"\n`);

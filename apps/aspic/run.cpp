@@ -148,8 +148,8 @@ class LocalRun : public SteppedRun {
 
   // An estimate costs about as much as 60 iterations.
   bool is_short() const {
-    constexpr int kSteps = 12, kManyTets = 20'000;
-    return scene_.steps < kSteps && scene_.simulation.model().mesh.tet_count() > kManyTets;
+    constexpr int kFewSteps = 12, kMostTets = 20'000;
+    return scene_.steps < kFewSteps && scene_.simulation.model().mesh.tet_count() > kMostTets;
   }
 
   void finish_trace() {
