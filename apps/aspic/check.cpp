@@ -18,6 +18,7 @@
 #include "dynamics/step_derivatives.h"
 #include "io/mesh_file.h"
 #include "mesh/doctor.h"
+#include "mesh/elements.h"
 #include "mesh/tet_nodes.h"
 #include "scene/scene.h"
 
@@ -132,7 +133,7 @@ int check_derivatives(const Scene& scene, const CheckDerivativesOptions& options
   if (options.json) {
     print_json(results, model);
   } else {
-    fmt::print("{}: {} vertices, {} tets\n\n", scene.name, model.mesh.vertex_count(), model.mesh.tet_count());
+    fmt::print("{}: {}\n\n", scene.name, size_text(model.mesh));
     print_table(results, model, options.tolerance);
   }
   if (!options.plot.empty()) draw(options.plot, chart_of(results, scene.name));
@@ -194,9 +195,7 @@ std::vector<Finding> examine(const Mesh& mesh) {
   return findings;
 }
 
-std::string counts(const TetMesh& mesh) {
-  return fmt::format("{} vertices, {} tets", mesh.vertex_count(), mesh.tet_count());
-}
+std::string counts(const TetMesh& mesh) { return size_text(mesh); }
 std::string counts(const TriMesh& mesh) {
   return fmt::format("{} vertices, {} triangles", mesh.vertex_count(), mesh.triangle_count());
 }
@@ -261,6 +260,10 @@ int check_scene(const CheckArguments& arguments) {
   bool wrong = false;
   const TetMesh all = to_user(model.numbering, model.mesh);
   for (const BodyRange& body : model.bodies) {
+    if (body.is_sheet()) {
+      fmt::print("\n{}: {} vertices, {} triangles\n", body.name, body.vertex_count, body.triangle_count);
+      continue;
+    }
     const TetMesh mesh = body_mesh(all, body);
     fmt::print("\n{}: {}\n", body.name, counts(mesh));
     wrong = has_errors(examine(mesh)) || wrong;

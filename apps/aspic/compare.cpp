@@ -18,6 +18,7 @@
 #include "dynamics/method_comparison.h"
 #include "io/atomic_file.h"
 #include "io/csv.h"
+#include "mesh/elements.h"
 #include "scene/scene.h"
 
 namespace aspic::cli {
@@ -199,8 +200,8 @@ int compare(const CompareArguments& arguments) {
   const fs::path folder = arguments.out.empty() ? fs::path("out") / ("compare_" + scene.name) : arguments.out;
   create(folder);
   const Model& model = scene.simulation.model();
-  fmt::print("{}: {} vertices, {} tets; step {} by each method, {} threads\n", scene.name, model.mesh.vertex_count(),
-             model.mesh.tet_count(), arguments.step, thread_count());
+  fmt::print("{}: {}; step {} by each method, {} threads\n", scene.name, size_text(model.mesh), arguments.step,
+             thread_count());
   std::fflush(stdout);
   const auto begun = [](const std::string& method) { fmt::print(stderr, "{} ...\n", method); };
   catch_interrupts();

@@ -9,6 +9,7 @@
 #include "base/error.h"
 #include "base/printable.h"
 #include "io/mesh_file.h"
+#include "mesh/elements.h"
 #include "mesh/surface.h"
 
 namespace aspic::cli {
@@ -21,9 +22,7 @@ struct ConvertArguments {
   bool surface = false, binary = false;
 };
 
-std::string describe(const TetMesh& mesh) {
-  return fmt::format("{} vertices, {} tets", mesh.vertex_count(), mesh.tet_count());
-}
+std::string describe(const TetMesh& mesh) { return size_text(mesh); }
 std::string describe(const TriMesh& mesh) {
   return fmt::format("{} vertices, {} triangles", mesh.vertex_count(), mesh.triangle_count());
 }

@@ -20,6 +20,7 @@
 #include "dynamics/internal_terms.h"
 #include "dynamics/mesh_error_text.h"
 #include "dynamics/state.h"
+#include "mesh/elements.h"
 #include "results/explanation.h"
 #include "results/run_directory.h"
 #include "results/run_directory_layout.h"
@@ -183,8 +184,7 @@ class LocalRun : public SteppedRun {
 void print_start(std::FILE* stream, const RunArguments& arguments, const Scene& scene, const fs::path& directory) {
   const Simulation& simulation = scene.simulation;
   for (const std::string& note : scene.notes) fmt::print(stream, "note: {}\n", note);
-  fmt::print(stream, "{}: {} vertices, {} tets; {}, {}; {} threads; into {}\n", scene.name,
-             simulation.model().mesh.vertex_count(), simulation.model().mesh.tet_count(),
+  fmt::print(stream, "{}: {}; {}, {}; {} threads; into {}\n", scene.name, size_text(simulation.model().mesh),
              simulation.options().integrator, simulation.solver_description(), thread_count(), directory.string());
   if (arguments.resume || simulation.steps_taken() > 0)
     fmt::print(stream, "resuming after step {}\n", simulation.steps_taken());

@@ -3,15 +3,15 @@
 #include <algorithm>
 #include <cmath>
 
-#include "mesh/tet_shape.h"
+#include "mesh/elements.h"
 #include "viewer/fields.h"
 
 namespace aspic::viewer {
 namespace {
 
-// The volume and Young's modulus of the elastic tets.
+// The volume and Young's modulus of the elastic elements.
 struct Elastic {
-  int tets = 0;
+  int elements = 0;
   double volume = 0, logs = 0;  // [m^3], integral of log E
 
   double young() const { return std::exp(logs / volume); }
@@ -20,12 +20,12 @@ struct Elastic {
 Elastic elastic_part(const Model& model) {
   Elastic part;
   const std::vector<double>* young = tet_field(model, "young");
-  for (int t = 0; young && t < model.mesh.tet_count(); ++t) {
+  for (int t = 0; young && t < model.mesh.element_count(); ++t) {
     if (!((*young)[t] > 0)) continue;
-    const double v = volume(model.mesh, t);
+    const double v = element_volume(model.mesh, t);
     part.logs += v * std::log((*young)[t]);
     part.volume += v;
-    ++part.tets;
+    ++part.elements;
   }
   return part;
 }
@@ -34,12 +34,12 @@ Elastic elastic_part(const Model& model) {
 
 std::optional<double> mean_young(const Model& model) {
   const Elastic part = elastic_part(model);
-  return part.tets > 0 ? std::optional(part.young()) : std::nullopt;
+  return part.elements > 0 ? std::optional(part.young()) : std::nullopt;
 }
 
 double default_stiffness(const Model& model) {
   const Elastic part = elastic_part(model);
-  if (part.tets > 0) return part.young() * std::cbrt(6 * std::sqrt(2.0) * part.volume / part.tets);
+  if (part.elements > 0) return part.young() * std::cbrt(6 * std::sqrt(2.0) * part.volume / part.elements);
   // Without elasticity: an oscillation of about 2 Hz.
   double mass = 0;
   for (const double m : model.mass->vertex_mass()) mass += m;

@@ -6,8 +6,7 @@
 #include "base/parallel.h"
 #include "energy/energy.h"
 #include "math/eigen3.h"
-#include "mesh/tet_nodes.h"
-#include "mesh/tet_shape.h"
+#include "mesh/elements.h"
 
 namespace aspic::viewer {
 namespace {
@@ -15,7 +14,7 @@ namespace {
 const std::string kContactPressure = "contact_pressure";
 
 void evaluate_elasticity(const View& view, TetFields& fields) {
-  const size_t tets = view.simulation.model().mesh.tets.size();
+  const auto tets = static_cast<size_t>(view.simulation.model().mesh.element_count());
   fields.energy_density.assign(tets, 0.0);
   fields.det_F.assign(tets, 1.0);
   fields.cauchy.assign(6 * tets, 0.0);
@@ -47,8 +46,8 @@ const std::vector<KnownField>& known_fields() {
                     int t) { return largest_stretch(deformation_gradient(view.simulation.model().mesh, t, view.x)); }},
       {.field = {"density", "density at rest", "kg/m^3"},
        .at_tet = [](const View& view, int t) { return view.simulation.model().density[t]; }},
-      {.field = {"quality", "tet quality (1 = regular)", ""},
-       .at_tet = [](const View& view, int t) { return mean_ratio(corners(view.simulation.model().mesh, t)); }}};
+      {.field = {"quality", "quality of elements (1 = regular)", ""},
+       .at_tet = [](const View& view, int t) { return element_quality(view.simulation.model().mesh, t); }}};
   return list;
 }
 
@@ -97,11 +96,6 @@ TetFields tet_fields_at(const View& view) {
   return fields;
 }
 
-Mat3d deformation_gradient(const TetMesh& mesh, int tet, std::span<const double> x) {
-  const auto [a, b, c, d] = center_corners(mesh, tet, x);
-  return from_columns(b - a, c - a, d - a) * inverse(edge_matrix(mesh, tet));
-}
-
 Vec3d stretches(const Mat3d& F) {
   const Mat3d C = transpose(F) * F;
   for (const double entry : C.a)
@@ -130,9 +124,9 @@ std::span<const double> FieldValues::tet_values(const std::string& field, const 
     evaluate_elasticity(view, fields_);
     return fields_.*(known ? known->elastic : &TetFields::det_F);
   }
-  const int tets = model.mesh.tet_count();
-  tet_.resize(tets);
-  parallel_for(tets, [&](int t) { tet_[t] = known->at_tet(view, t); });
+  const int elements = model.mesh.element_count();
+  tet_.resize(elements);
+  parallel_for(elements, [&](int t) { tet_[t] = known->at_tet(view, t); });
   return tet_;
 }
 
@@ -154,7 +148,7 @@ void FieldValues::evaluate(const std::string& field, const View& view, const Sur
   for (int v = 0; v < surface.vertex_count(); ++v) {
     double sum = 0, weight = 0;
     for (const int t : surface.tets_at(v)) {
-      const double w = volume(mesh, t);
+      const double w = element_volume(mesh, t);
       sum += w * of_tet[t];
       weight += w;
     }

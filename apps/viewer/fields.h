@@ -42,7 +42,6 @@ class FieldValues {
 
 std::vector<ContactPoint> contact_points(const View& view);  // empty without contact
 TetFields tet_fields_at(const View& view);
-Mat3d deformation_gradient(const TetMesh& mesh, int tet, std::span<const double> x);
 Vec3d stretches(const Mat3d& F);  // in descending order, never negative
 // The largest stretch by the cosine formula for eigenvalues of F'F [Smith 1961]. Accurate to 1e-8, six times faster.
 double largest_stretch(const Mat3d& F);

@@ -1,7 +1,8 @@
 #include "viewer/replies.h"
 
 #include "energy/energy.h"
-#include "mesh/tet_shape.h"
+#include "mesh/elements.h"
+#include "mesh/tet_nodes.h"
 #include "viewer/scene_json.h"
 
 namespace aspic::viewer {
@@ -13,9 +14,13 @@ Json rows_of(const Mat3d& A) {
   return rows;
 }
 
-Json corner_positions(const Side& side, int tet) {
+// The corners of a tet or a triangle.
+std::span<const int> corners_of(const TetNodes& nodes) { return std::span(nodes.node).first(std::min(nodes.count, 4)); }
+
+Json corner_positions(const Side& side, int element) {
   Json list = Json::array();
-  for (const int v : side.model().mesh.tets[tet]) list.push_back(json_of(aspic::point(side.positions(), v)));
+  const TetNodes nodes = nodes_of(side.model().mesh, element);
+  for (const int v : corners_of(nodes)) list.push_back(json_of(aspic::point(side.positions(), v)));
   return list;
 }
 
@@ -64,8 +69,9 @@ Json tet_reply(const ShownSide& shown, int triangle) {
   const TetFields fields = tet_fields_at(shown.view());
   const Mat3d F = deformation_gradient(model.mesh, t, side.positions());
   Json vertices = Json::array();
-  for (const int v : model.mesh.tets[t]) vertices.push_back(model.numbering.vertex.to_user(v));
-  const double size = volume(model.mesh, t);
+  const TetNodes nodes = nodes_of(model.mesh, t);
+  for (const int v : corners_of(nodes)) vertices.push_back(model.numbering.vertex.to_user(v));
+  const double size = element_volume(model.mesh, t);
   return {{"tet", model.numbering.tet.to_user(t)},
           {"corners", std::move(vertices)},
           {"positions", corner_positions(side, t)},
@@ -77,7 +83,7 @@ Json tet_reply(const ShownSide& shown, int triangle) {
           {"energy_density", fields.energy_density[t]},
           {"energy", size * fields.energy_density[t]},
           {"volume", size},
-          {"quality", mean_ratio(corners(model.mesh, t))},
+          {"quality", element_quality(model.mesh, t)},
           {"young", value_of(model, "young", t)},
           {"poisson", value_of(model, "poisson", t)},
           {"density", model.density[t]}};
@@ -90,7 +96,7 @@ Json worst_reply(const ShownSide& shown) {
   Json items = Json::array();
   const auto add_tet = [&](const char* what, const char* unit, const std::vector<double>& values, double sign) {
     int worst = 0;
-    for (int t = 1; t < model.mesh.tet_count(); ++t)
+    for (int t = 1; t < model.mesh.element_count(); ++t)
       if (sign * values[t] > sign * values[worst]) worst = t;
     items.push_back({{"what", what},
                      {"value", values[worst]},
@@ -100,7 +106,7 @@ Json worst_reply(const ShownSide& shown) {
                      {"positions", corner_positions(side, worst)}});
   };
   std::vector<double> quality;
-  for (int t = 0; t < model.mesh.tet_count(); ++t) quality.push_back(mean_ratio(corners(model.mesh, t)));
+  for (int t = 0; t < model.mesh.element_count(); ++t) quality.push_back(element_quality(model.mesh, t));
   add_tet("smallest det F", "", fields.det_F, -1);
   add_tet("largest energy density", "J/m^3", fields.energy_density, 1);
   add_tet("largest von Mises stress", "Pa", fields.von_mises, 1);

@@ -75,6 +75,7 @@ Json scene_json(const Scene& scene, const Table& document, const Box& start, con
                   {"has_skin", has_fine_skin(scene)},
                   {"vertices", model.mesh.vertex_count()},
                   {"tets", model.mesh.tet_count()},
+                  {"triangles", model.mesh.sheet.size()},
                   {"bodies", Json::array()},
                   {"body_tets", Json::array()},
                   {"lower", json_of(seen.lower)},
@@ -86,7 +87,7 @@ Json scene_json(const Scene& scene, const Table& document, const Box& start, con
                   {"settings", settings_json(document)}};
   for (const BodyRange& body : model.bodies) {
     message["bodies"].push_back(body.name);
-    message["body_tets"].push_back(body.first_tet);
+    message["body_tets"].push_back(body.first_element(model.mesh));
   }
   return message;
 }

@@ -41,7 +41,7 @@ Incidence::Incidence(int vertex_count, std::span<const std::pair<int, int>> vert
 Incidence tets_of_vertices(const TetMesh& mesh) {
   std::vector<std::pair<int, int>> pairs;
   pairs.reserve((mesh.mids.empty() ? 4 : 10) * mesh.tets.size());
-  for (int t = 0; t < mesh.tet_count(); ++t)
+  for (int t = 0; t < mesh.element_count(); ++t)
     for (const int v : nodes_of(mesh, t)) pairs.emplace_back(v, t);
   return {mesh.vertex_count(), pairs};
 }
@@ -140,6 +140,12 @@ Surface boundary_of(const Model& model) {
 
 TetPoint tet_point(const Surface& surface, const TetMesh& mesh, int triangle, const Vec3d& corner_weights) {
   const Triangle& corners = surface.triangles[triangle];
+  if (!mesh.is_tet(surface.tet[triangle])) {
+    TetPoint point{{}, {corner_weights[0], corner_weights[1], corner_weights[2], 0}};
+    for (int c = 0; c < 3; ++c) point.vertices[c] = surface.anchor(corners[c]);
+    point.vertices[3] = point.vertices[0];
+    return point;
+  }
   if (!surface.is_fine) {
     const TetMesh parts = parts_of(mesh, surface.tet[triangle]);
     const auto has_corners = [&](const Tet& part) {

@@ -34,7 +34,7 @@ bool has_fine_skin(const Scene& scene);
 Surface fine_surface(const Scene& scene);  // fine skins of all bodies
 Surface boundary_of(const Model& model);   // boundary of the tets of all bodies
 
-// A point of the surface in barycentric coordinates of a tet.
+// A point of the surface in barycentric coordinates of a tet, or of a triangle with its first corner repeated.
 struct TetPoint {
   Tet vertices{};
   std::array<double, 4> weights{};

@@ -50,7 +50,8 @@ void refuse_surfaces(const Value& output) {
 }
 
 void require_supported_body(const Value& body) {
-  refuse_keys(body.table(), {"friction", "viscoelastic", "fibre", "muscle", "spring", "grab", "pressure", "cavity"});
+  refuse_keys(body.table(),
+              {"shell", "friction", "viscoelastic", "fibre", "muscle", "spring", "grab", "pressure", "cavity"});
   const Value& viscosity = body["damping"]["viscosity"];
   if (!viscosity.is_number() || viscosity.number() != 0)
     throw not_supported(viscosity.place, "damping.viscosity", "use damping.mass and damping.stiffness, or aspic run");

@@ -5,6 +5,7 @@
 
 #include "data/unstated_values.h"
 #include "math/polar3.h"
+#include "mesh/elements.h"
 #include "mesh/tet_shape.h"
 #include "viewer/default_stiffness.h"
 #include "viewer/fields.h"
@@ -55,7 +56,7 @@ FirstContact touch_at(const Model& model, const Surface& cage, const SurfacePoin
   const Triangle& corners = cage.triangles[point.triangle];
   const Vec3d &A = cage.rest[corners[0]], &B = cage.rest[corners[1]], &C = cage.rest[corners[2]];
   const Vec3d inward = -1.0 * unit(cross(B - A, C - A));
-  const Mat3d R = closest_rotation(viewer::deformation_gradient(model.mesh, cage.tet[point.triangle], x));
+  const Mat3d R = closest_rotation(deformation_gradient(model.mesh, cage.tet[point.triangle], x));
   Vec3d rest{}, here{};
   for (int c = 0; c < 3; ++c) {
     rest = rest + point.weights[c] * cage.rest[corners[c]];

@@ -99,8 +99,8 @@ class DataSetReader {
     size_ = size_of(user_mesh_);
     PaintedFields painted({}, settings_.files(), data_.name);
     const std::vector<double> density =
-        tet_values(settings_.document(), capture_schema().key("capture", "density"),
-                   {user_mesh_, settings_.files(), "density", painted, nullptr, &groups_});
+        element_values(settings_.document(), capture_schema().key("capture", "density"),
+                       {user_mesh_, settings_.files(), "density", painted, nullptr, &groups_});
     data_.experiment.density = data_.numbering.tet.from_user(density);
     read_fixed();
     if (const Value* gravity = settings_.find("mesh_gravity"))

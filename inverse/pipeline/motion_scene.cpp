@@ -60,7 +60,7 @@ std::vector<double> viscosity_of(const SceneModel& scene, const Value& body) {
   PaintedFields painted(placement_of(body), files, body["name"].text());
   const TetMesh mesh = to_user(numbering, scene.model.mesh);
   return numbering.tet.from_user(
-      tet_values(damping, scene_schema().key("damping", "viscosity"), {mesh, files, "viscosity", painted}));
+      element_values(damping, scene_schema().key("damping", "viscosity"), {mesh, files, "viscosity", painted}));
 }
 
 bool are_equal(const std::vector<double>& values) {

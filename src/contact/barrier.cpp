@@ -326,7 +326,7 @@ std::vector<ContactPoint> Barrier::contact_points(Positions x, double time) cons
   std::vector<ContactPoint> at(p.size()), round;
   for (const ContactStencil& stencil : *stencils) {
     if (stencil.area == 0) continue;
-    if (stencil.radius > 0) {
+    if (stencil.is_round) {
       round.push_back(foot_of(stencil, impl_->mesh, p));
       continue;
     }

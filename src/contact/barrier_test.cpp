@@ -94,9 +94,9 @@ TEST(Barrier, RoundObstaclesHaveExactDerivatives) {
   ContactMesh mesh;
   const std::vector<Vec3d> X = {{{0, 0, 0}}, {{1, 0.05, 0}}, {{0.1, 1, 0.02}}};
   mesh.add({.name = "body", .young = 1e5}, X, std::vector<Triangle>{{0, 1, 2}}, std::vector<int>{0, 1, 2});
-  mesh.add_capsule({.name = "ball", .radius = 0.5}, {Vec3d{{0.3, 0.3, 0.56}}, Vec3d{{0.3, 0.3, 0.56}}});
-  mesh.add_capsule({.name = "rod", .radius = 0.2}, {Vec3d{{0.2, -0.3, 0.22}}, Vec3d{{0.9, 0.8, 0.26}}});
-  mesh.add_capsule({.name = "end", .radius = 0.1}, {Vec3d{{0.25, 0.35, -0.15}}, Vec3d{{0.3, 0.3, -1}}});
+  mesh.add_capsule({.name = "ball", .offset = 0.5}, {Vec3d{{0.3, 0.3, 0.56}}, Vec3d{{0.3, 0.3, 0.56}}});
+  mesh.add_capsule({.name = "rod", .offset = 0.2}, {Vec3d{{0.2, -0.3, 0.22}}, Vec3d{{0.9, 0.8, 0.26}}});
+  mesh.add_capsule({.name = "end", .offset = 0.1}, {Vec3d{{0.25, 0.35, -0.15}}, Vec3d{{0.3, 0.3, -1}}});
   const Barrier barrier(std::move(mesh), {.reach = 0.1});
   std::vector<double> x, v = {0.3, -0.7, 0.2, 0.5, 0.1, -0.4, -0.6, 0.9, 0.8};
   for (const Vec3d& at : X) x.insert(x.end(), at.a, at.a + 3);
@@ -137,7 +137,7 @@ TEST(Barrier, ObstacleMotionChangesGradientToFirstOrder) {
   mesh.add({.name = "body", .young = 1e5}, X, std::vector<Triangle>{{0, 1, 2}}, std::vector<int>{0, 1, 2});
   mesh.add_plane(moving("plane", {{0.2, 1, 0}}), {{0, 0, 0}}, {{0, 1, 0}});
   ContactPart ball = moving("ball", {{0.5, -1, 0.1}});
-  ball.radius = 0.5;
+  ball.offset = 0.5;
   mesh.add_capsule(ball, {Vec3d{{0.3, 0.62, 0.3}}, Vec3d{{0.3, 0.62, 0.3}}});
   mesh.add(moving("plate", {{0, 0.7, 0.3}}), plate, std::vector<Triangle>{{0, 2, 1}}, {});
   const Barrier barrier(std::move(mesh), {.reach = 0.1});

@@ -57,10 +57,10 @@ Frame frame_of(std::span<const Vec3d> X, std::span<const Vec3d> x) {
 double edge_reach(const ContactMesh& mesh, const ContactLaws& laws, const EdgePair& pair) {
   const auto& [a, b] = mesh.edges[pair.first];
   const auto& [e, f] = mesh.edges[pair.second];
-  const double reach = laws(mesh.part[a], mesh.part[e]).edge_reach;
-  if (mesh.part[a] != mesh.part[e]) return reach;
+  const ContactLaw& law = laws(mesh.part[a], mesh.part[e]);
+  if (mesh.part[a] != mesh.part[e]) return law.edge_reach;
   const auto& X = mesh.rest;
-  return std::min(reach, pair_distance(PairKind::edge_edge, {X[a], X[b], X[e], X[f]}).d / 2);
+  return std::min(law.edge_reach, (pair_distance(PairKind::edge_edge, {X[a], X[b], X[e], X[f]}).d - law.offset) / 2);
 }
 
 // Accepts pairs that can come closer than their reach.
@@ -72,8 +72,8 @@ class CandidateSearch::Near : public PairFilter {
         edges_a_(std::span(search.mesh_.edges).subspan(search.surfaces_[a].first_edge)),
         edges_b_(std::span(search.mesh_.edges).subspan(search.surfaces_[b].first_edge)),
         triangles_b_(std::span(search.mesh_.triangles).subspan(search.surfaces_[b].first_triangle)),
-        reach_((1 + kRounding) * (search.laws_(a, b).radius + search.laws_(a, b).reach)),
-        edge_reach_((1 + kRounding) * (search.laws_(a, b).radius + search.laws_(a, b).edge_reach)),
+        reach_((1 + kRounding) * (search.laws_(a, b).offset + search.laws_(a, b).reach)),
+        edge_reach_((1 + kRounding) * (search.laws_(a, b).offset + search.laws_(a, b).edge_reach)),
         shrink_(search.least_shrink()) {}
 
   bool accepts_vertex_triangle(int v, int t) const override {
@@ -214,7 +214,7 @@ SweptBox CandidateSearch::bounds_of(int part, double radius) const {
   SweptBox box{.is_new = false};
   const int first = mesh_.parts[part].first_point;
   for (int p = first; p < first + mesh_.parts[part].point_count; ++p) {
-    const double by = (1 + kRounding) * (by_[p] + radius + mesh_.parts[part].radius);
+    const double by = (1 + kRounding) * (by_[p] + radius + mesh_.parts[part].offset);
     box.start.add(start_[p] - Vec3d{{by, by, by}});
     box.start.add(start_[p] + Vec3d{{by, by, by}});
     box.move.add(move_[p]);
@@ -242,7 +242,7 @@ bool CandidateSearch::find_pairs(ClosePairs& all) {
   const auto query_of = [&](int part, const PairFilter* filter) {
     const SurfacePrimitives& own = surfaces_[part].finder.primitives();
     const size_t count = std::max({own.vertices.size(), own.edges.size(), own.triangles.size()});
-    std::fill_n(radii.begin(), count, radius + mesh_.parts[part].radius);
+    std::fill_n(radii.begin(), count, radius + mesh_.parts[part].offset);
     return PairQuery{.x = start_,
                      .dx = move_,
                      .by = by,

@@ -23,8 +23,8 @@ double share_of_finer(double own, double other) {
 double share_over_points(const ContactPart& round) { return round.point_count == 1 ? 0 : 0.5; }
 
 double share_of(const ContactPart& own, const ContactPart& other) {
-  if (other.radius > 0) return share_over_points(other);
-  if (own.radius > 0) return 1 - share_over_points(own);
+  if (other.is_round) return share_over_points(other);
+  if (own.is_round) return 1 - share_over_points(own);
   return share_of_finer(own.mean_triangle, other.mean_triangle);
 }
 
@@ -44,13 +44,14 @@ ContactLaws::ContactLaws(const ContactMesh& mesh, const ContactOptions& options)
       if (a.is_obstacle && b.is_obstacle) continue;
       const double edge = std::min(a.mean_edge, b.mean_edge);
       const double widest = options.reach_per_edge * edge, reach = options.reach > 0 ? options.reach : widest;
-      const double radius = a.radius + b.radius;
+      const bool is_round = a.is_round || b.is_round;
       law_[i * parts_ + j] = {.reach = reach,
-                              .edge_reach = radius > 0 ? reach : kGuardReach * reach,
+                              .edge_reach = is_round ? reach : kGuardReach * reach,
                               .stiffness = options.stiffness > 0 ? options.stiffness : kStiffness * smaller_young(a, b),
                               .share = i == j ? 0.5 : share_of(a, b),
                               .friction = std::sqrt(a.friction * b.friction),
-                              .radius = radius,
+                              .offset = i == j ? a.self_offset : a.offset + b.offset,
+                              .is_round = is_round,
                               .guard = i == j ? 0 : std::min(a.mean_triangle, b.mean_triangle),
                               .edge = edge,
                               .widest = widest,

@@ -63,7 +63,7 @@ void ContactMesh::add(const ContactPart& given, std::span<const Vec3d> X, std::s
 // Represents the capsule by a triangle without area whose corners are the ends.
 void ContactMesh::add_capsule(const ContactPart& given, const std::array<Vec3d, 2>& ends) {
   ContactPart own = given;
-  own.is_obstacle = true;
+  own.is_obstacle = own.is_round = true;
   own.first_point = point_count();
   own.point_count = norm(ends[1] - ends[0]) > 0 ? 2 : 1;
   own.mean_edge = own.mean_triangle = std::numeric_limits<double>::infinity();

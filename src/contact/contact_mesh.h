@@ -24,7 +24,10 @@ struct ContactPart {
   double mean_triangle = 0;  // [m^2]
   double young = 0;          // smallest Young's modulus of the tets of a body [Pa]
   double friction = 0;       // coefficient
-  double radius = 0;         // radius of a capsule or a sphere about its points [m]; 0: another surface
+  double offset = 0;         // distance of the surface from the points: half the thickness of a sheet, or the radius of
+                             // a capsule or a sphere [m]
+  bool is_round = false;     // a capsule or a sphere
+  double self_offset = 0;    // least gap of a sheet to itself, see allowed_self_offset() [m]
   ObstacleMotion motion;     // motion of an obstacle; empty: at rest
 };
 
@@ -61,7 +64,7 @@ struct ContactMesh {
   // without triangles are omitted.
   void add(const ContactPart& part, std::span<const Vec3d> X, std::span<const Triangle> surface,
            std::span<const int> row);
-  // Adds an obstacle that consists of the points within part.radius of the segment between the ends, which may be
+  // Adds an obstacle that consists of the points within part.offset of the segment between the ends, which may be
   // equal.
   void add_capsule(const ContactPart& part, const std::array<Vec3d, 2>& ends);
   // Adds a plane. Its motion moves its origin.

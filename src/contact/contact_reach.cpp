@@ -52,7 +52,7 @@ class Gaps {
  private:
   void add(int a, int b, double distance, const ContactLaws& laws) {
     double& gap = gap_[std::min(a, b) * mesh_.parts.size() + std::max(a, b)];
-    gap = std::min(gap, distance - laws(a, b).radius);
+    gap = std::min(gap, distance - laws(a, b).offset);
   }
 
   const ContactMesh& mesh_;
@@ -67,6 +67,15 @@ void reduce(ContactLaws& laws, const std::array<int, 2>& pair, double fraction, 
     law->basis = basis;
     law->length = length;
   }
+}
+
+// The vertices and triangles of a part.
+SurfacePrimitives primitives_of(const ContactMesh& mesh, int part) {
+  SurfacePrimitives primitives{.vertices = std::vector<int>(mesh.parts[part].point_count)};
+  std::iota(primitives.vertices.begin(), primitives.vertices.end(), mesh.parts[part].first_point);
+  for (const Triangle& t : mesh.triangles)
+    if (mesh.part[t[0]] == part) primitives.triangles.push_back(t);
+  return primitives;
 }
 
 Vec3d area_vector(const ContactMesh& mesh, const Triangle& t) {
@@ -109,11 +118,8 @@ class Opposite : public PairFilter {
 
 double least_thickness(const ContactMesh& mesh, int part, double limit) {
   const ContactPart& own = mesh.parts[part];
-  if (own.radius > 0) return 2 * own.radius < limit ? 2 * own.radius : kInfinity;
-  SurfacePrimitives primitives{.vertices = std::vector<int>(own.point_count)};
-  std::iota(primitives.vertices.begin(), primitives.vertices.end(), own.first_point);
-  for (const Triangle& t : mesh.triangles)
-    if (mesh.part[t[0]] == part) primitives.triangles.push_back(t);
+  if (own.is_round) return 2 * own.offset < limit ? 2 * own.offset : kInfinity;
+  const SurfacePrimitives primitives = primitives_of(mesh, part);
   if (primitives.triangles.empty()) return kInfinity;
   const std::vector<double> radius(std::max(primitives.vertices.size(), primitives.triangles.size()), limit / 2);
   const Opposite opposite(mesh, own, primitives.triangles, limit);
@@ -133,6 +139,33 @@ double least_thickness(const ContactMesh& mesh, int part, double limit) {
   for (const int v : order)
     if ((thinner += mesh.area[own.first_point + v]) > kThinArea * total) return thickness[v];
   return kInfinity;
+}
+
+double allowed_self_offset(const ContactMesh& mesh, int part, double thickness) {
+  constexpr double kPerDistance = 0.4;
+  SurfacePrimitives primitives = primitives_of(mesh, part);
+  for (const Edge& edge : mesh.edges)
+    if (mesh.part[edge[0]] == part) primitives.edges.push_back(edge);
+  const size_t most = std::max({primitives.vertices.size(), primitives.edges.size(), primitives.triangles.size()});
+  const std::vector<double> radius(most, thickness / kPerDistance / 2);
+  PairQuery query{.x = mesh.rest};
+  query.vertex_radius = std::span(radius).first(primitives.vertices.size());
+  query.edge_radius = std::span(radius).first(primitives.edges.size());
+  query.triangle_radius = std::span(radius).first(primitives.triangles.size());
+  PairFinder finder(primitives);
+  const ClosePairs pairs = finder.find(query);
+  if (!pairs.is_complete) throw std::length_error("contact: the thickness of a sheet is far above its edges");
+  const auto& X = mesh.rest;
+  double least = thickness / kPerDistance;
+  for (const auto& [v, t] : pairs.vertex_triangle) {
+    const auto& [a, b, c] = primitives.triangles[t];
+    least = std::min(least, point_triangle_distance({X[primitives.vertices[v]], X[a], X[b], X[c]}).d);
+  }
+  for (const auto& [e, f] : pairs.edge_edge) {
+    const Edge &a = primitives.edges[e], &b = primitives.edges[f];
+    least = std::min(least, edge_edge_distance({X[a[0]], X[a[1]], X[b[0]], X[b[1]]}).d);
+  }
+  return kPerDistance * least;
 }
 
 double touching_reach(const ContactLaw& law) { return kPerTouching * law.widest; }

@@ -28,6 +28,10 @@ void bound_reaches(const ContactMesh& mesh, std::span<const Vec3d> start,
 // otherwise infinity. The thickness at a vertex is its distance to the opposite side [m].
 double least_thickness(const ContactMesh& mesh, int part, double limit);
 
+// Returns the distance that points of a sheet of this thickness keep from other places of the sheet [m]: the thickness,
+// but at most .4 times the least distance at rest of features that are not adjacent.
+double allowed_self_offset(const ContactMesh& mesh, int part, double thickness);
+
 // Returns why a pair has its reach, such as "a fifth of their gap at the start, 0.005 m".
 std::string reason_of(const ContactLaw& law);
 

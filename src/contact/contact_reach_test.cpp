@@ -117,10 +117,10 @@ TEST(Overlaps, NeedleAndCapsulePierceFace) {
   ASSERT_EQ(overlaps(needle.mesh, needle.mesh.rest).pairs.size(), 1U);
   EXPECT_EQ(overlaps(needle.mesh, needle.mesh.rest).pairs[0].parts, (std::array{0, 1}));
   Parts capsule = parts;
-  capsule.mesh.add_capsule({.name = "capsule", .radius = 0.01}, {line[0], line[2]});
+  capsule.mesh.add_capsule({.name = "capsule", .offset = 0.01}, {line[0], line[2]});
   EXPECT_EQ(overlaps(capsule.mesh, capsule.mesh.rest).pairs.size(), 1U);
   Parts beside = parts;
-  beside.mesh.add_capsule({.name = "capsule", .radius = 0.01}, {Vec3d{{2, 0, 0}}, Vec3d{{2, 1, 0}}});
+  beside.mesh.add_capsule({.name = "capsule", .offset = 0.01}, {Vec3d{{2, 0, 0}}, Vec3d{{2, 1, 0}}});
   EXPECT_TRUE(overlaps(beside.mesh, beside.mesh.rest).pairs.empty());
 }
 
@@ -128,7 +128,7 @@ TEST(Overlaps, EnclosedPartsAreNamed) {
   Parts parts;
   parts.add_box("cube", {}, {{1, 1, 1}}, 2);
   parts.add_box("core", {{0.4, 0.4, 0.4}}, {{0.6, 0.6, 0.6}}, 1, true);
-  parts.mesh.add_capsule({.name = "ball", .radius = 0.05}, {Vec3d{{0.2, 0.2, 0.2}}, Vec3d{{0.2, 0.2, 0.2}}});
+  parts.mesh.add_capsule({.name = "ball", .offset = 0.05}, {Vec3d{{0.2, 0.2, 0.2}}, Vec3d{{0.2, 0.2, 0.2}}});
   parts.add_box("drum", {{-1, -1, -1}}, {{2, 2, 2}}, 1, true);
   parts.add_box("outside", {{3, 0, 0}}, {{4, 1, 1}}, 1);
   const std::vector<Enclosed> found = enclosed_parts(parts.mesh, parts.mesh.rest);

@@ -41,7 +41,7 @@ struct Traction {
 };
 
 ContactName name_of(const ContactStencil& stencil) {
-  if (stencil.radius > 0 || stencil.is_of_edges())
+  if (stencil.is_round || stencil.is_of_edges())
     return {stencil.point[0], stencil.point[1], stencil.point[2], stencil.point[3], stencil.parts[1]};
   return {stencil.point[0], -1, -1, -1, stencil.parts[1]};
 }
@@ -117,7 +117,7 @@ Dissipation dissipation(double y, double e) {
 // Returns whether both stencils belong to the same point and the same other part. The center of a sphere has many
 // contacts.
 bool is_of_same_point(const ContactStencil& a, const ContactStencil& b) {
-  return a.radius == 0 && !a.is_of_edges() && !b.is_of_edges() && a.point[0] == b.point[0] && a.parts == b.parts;
+  return !a.is_round && !a.is_of_edges() && !b.is_of_edges() && a.point[0] == b.point[0] && a.parts == b.parts;
 }
 
 // Returns the normal force between a point and a part, or between two edges. In a concave crease it is the sum over two

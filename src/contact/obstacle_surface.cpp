@@ -60,8 +60,8 @@ std::vector<ObstacleSurface> obstacle_surfaces(const ContactMesh& mesh, std::spa
       own.surface = square(*own.plane, bodies);
       continue;
     }
-    if (part.radius > 0) {
-      own.surface = capsule(points[part.first_point], points[part.first_point + part.point_count - 1], part.radius);
+    if (part.is_round) {
+      own.surface = capsule(points[part.first_point], points[part.first_point + part.point_count - 1], part.offset);
       continue;
     }
     const auto first = points.begin() + part.first_point;

@@ -74,7 +74,8 @@ StencilSearch::StencilSearch(const ContactMesh& mesh, const ContactLaws& laws)
   for (const auto& [p, t, gap] : near->pairs->triangles) {
     const auto& [a, b, c] = mesh.triangles[t];
     const auto& X = mesh.rest;
-    cap_[p] = std::min(cap_[p], point_triangle_distance({X[p], X[a], X[b], X[c]}).d / 2);
+    const double offset = laws(mesh.part[p], mesh.part[p]).offset;
+    cap_[p] = std::min(cap_[p], (point_triangle_distance({X[p], X[a], X[b], X[c]}).d - offset) / 2);
   }
 }
 
@@ -121,7 +122,7 @@ ContactStencils StencilSearch::stencils(const Candidates& candidates, std::span<
     append(collect(static_cast<int>(pairs.size()), [&](int k, ContactStencils& found) {
       const Edge &a = mesh_.edges[pairs[k].first], &b = mesh_.edges[pairs[k].second];
       const ContactLaw& law = laws_(mesh_.part[a[0]], mesh_.part[b[0]]);
-      if (of_scope.least_gap(pairs[k], a, b) < law.radius + law.edge_reach) add_edges(pairs[k], points, found);
+      if (of_scope.least_gap(pairs[k], a, b) < law.offset + law.edge_reach) add_edges(pairs[k], points, found);
     }));
   }
   return all;
@@ -133,7 +134,7 @@ void StencilSearch::add_point(const PathCandidates& candidates, std::span<const 
   NearFeatures near;
   int other = -1;
   int distances = 0;
-  double reach = 0, radius = 0;
+  double reach = 0, offset = 0;
   const auto finish = [&] {
     for (const NearFeatures::Entry& entry : near.entries()) {
       const ContactLaw& law = laws_(own, other);
@@ -143,16 +144,18 @@ void StencilSearch::add_point(const PathCandidates& candidates, std::span<const 
                        .point = entry.point,
                        .weight = law.stiffness * area,
                        .reach = reach,
-                       .radius = radius,
+                       .offset = offset,
+                       .is_round = law.is_round,
                        .area = area,
                        .parts = {own, other}});
       // Points of a much coarser surface have almost no share, so a tip would pierce the other surface without a guard.
       const double guard = std::min(law.guard, mesh_.area[p]) - law.share * mesh_.area[p];
-      if (guard > 0 && radius == 0 && entry.distance.d < kGuardReach * reach)
+      if (guard > 0 && !law.is_round && entry.distance.d < offset + kGuardReach * reach)
         found.push_back({.distance = entry.distance,
                          .point = entry.point,
                          .weight = law.stiffness * guard * entry.share,
                          .reach = kGuardReach * reach,
+                         .offset = offset,
                          .parts = {own, other}});
     }
     near.clear();
@@ -163,20 +166,21 @@ void StencilSearch::add_point(const PathCandidates& candidates, std::span<const 
     if (mesh_.part[corner[0]] != other) {
       finish();
       other = mesh_.part[corner[0]];
-      reach = laws_(own, other).reach, radius = laws_(own, other).radius;
+      reach = laws_(own, other).reach, offset = laws_(own, other).offset;
       if (own == other) reach = std::min(reach, cap_[p]);
     }
-    if (laws_(own, other).stiffness == 0 || candidates.least_gap(candidate, corner) >= radius + reach) continue;
+    if (laws_(own, other).stiffness == 0 || candidates.least_gap(candidate, corner) >= offset + reach) continue;
     ++distances;
     const Distance to_triangle = point_triangle_distance({x[p], x[corner[0]], x[corner[1]], x[corner[2]]});
-    if (!(to_triangle.d < radius + reach)) continue;
-    if (mesh_.parts[own].radius > 0) {
+    if (!(to_triangle.d < offset + reach)) continue;
+    if (mesh_.parts[own].is_round) {
       const double area = laws_(own, other).share * mesh_.area_at_rest(corner);
       found.push_back({.distance = to_triangle,
                        .point = {p, corner[0], corner[1], corner[2]},
                        .weight = laws_(own, other).stiffness * area,
                        .reach = reach,
-                       .radius = radius,
+                       .offset = offset,
+                       .is_round = true,
                        .area = area,
                        .parts = {own, other}});
       continue;
@@ -188,13 +192,13 @@ void StencilSearch::add_point(const PathCandidates& candidates, std::span<const 
       if (a == p || b == p || !near.visits_edge(e)) continue;
       ++distances;
       const Distance to_edge = point_edge_distance({x[p], x[a], x[b]});
-      if (to_edge.d < radius + reach) near.add(to_edge, {p, a, b, -1}, mesh_.edge_share[e]);
+      if (to_edge.d < offset + reach) near.add(to_edge, {p, a, b, -1}, mesh_.edge_share[e]);
     }
     for (const int q : corner) {
       if (mesh_.point_share[q] == 0 || !near.visits_point(q)) continue;
       ++distances;
       const Distance to_point = point_point_distance(x[p], x[q]);
-      if (to_point.d < radius + reach) near.add(to_point, {p, q, -1, -1}, mesh_.point_share[q]);
+      if (to_point.d < offset + reach) near.add(to_point, {p, q, -1, -1}, mesh_.point_share[q]);
     }
   }
   finish();
@@ -206,14 +210,15 @@ void StencilSearch::add_planes(std::span<const Vec3d> x, int p, ContactStencils&
   if (mesh_.row[p] < 0) return;
   for (const ContactPlane& plane : mesh_.planes) {
     const ContactLaw& law = laws_(mesh_.part[p], plane.part);
-    const double gap = dot(plane.normal, x[p] - x[plane.point]);
-    if (!(gap < law.reach)) continue;
-    const Distance distance{.r = gap * plane.normal, .d = gap};
+    const double height = dot(plane.normal, x[p] - x[plane.point]);
+    if (!(height - law.offset < law.reach)) continue;
+    const Distance distance{.r = height * plane.normal, .d = height};
     const double area = law.share * mesh_.area[p];
     found.push_back({.distance = distance,
                      .point = {p, -1, -1, -1},
                      .weight = law.stiffness * area,
                      .reach = law.reach,
+                     .offset = law.offset,
                      .area = area,
                      .parts = {mesh_.part[p], plane.part}});
   }
@@ -225,16 +230,17 @@ void StencilSearch::add_edges(const EdgePair& pair, std::span<const Vec3d> x, Co
   const Distance distance = edge_edge_distance({x[a[0]], x[a[1]], x[b[0]], x[b[1]]});
   const double reach = edge_reach(mesh_, laws_, pair);
   const int i = mesh_.part[a[0]], j = mesh_.part[b[0]];
-  const double radius = laws_(i, j).radius;
-  if (!(distance.d < radius + reach)) return;
+  const auto& [offset, is_round] = std::pair(laws_(i, j).offset, laws_(i, j).is_round);
+  if (!(distance.d < offset + reach)) return;
   const auto& X = mesh_.rest;
-  const double area = (mesh_.edge_area[pair.first] + mesh_.edge_area[pair.second]) / (radius > 0 ? 2 : 4);
+  const double area = (mesh_.edge_area[pair.first] + mesh_.edge_area[pair.second]) / (is_round ? 2 : 4);
   found.push_back({.distance = distance,
                    .point = {a[0], a[1], b[0], b[1]},
                    .weight = laws_(i, j).stiffness * area,
                    .reach = reach,
-                   .radius = radius,
-                   .area = radius > 0 ? area : 0,
+                   .offset = offset,
+                   .is_round = is_round,
+                   .area = is_round ? area : 0,
                    .parts = {i, j},
                    .parallel = kParallel * squared_norm(X[a[1]] - X[a[0]]) * squared_norm(X[b[1]] - X[b[0]])});
 }

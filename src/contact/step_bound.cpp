@@ -56,10 +56,10 @@ double StepBound::longest(std::span<const Vec3d> u) const {
 double StepBound::to_planes(std::span<const Vec3d> p, std::span<const Vec3d> u, int i, double step) const {
   if (mesh_.row[i] < 0) return step;
   for (const ContactPlane& plane : mesh_.planes) {
-    const double gap = dot(plane.normal, p[i] - p[plane.point]);
+    const ContactLaw& law = laws_(mesh_.part[i], plane.part);
+    const double gap = dot(plane.normal, p[i] - p[plane.point]) - law.offset;
     const double rate = dot(plane.normal, u[i] - u[plane.point]);
-    const double reach = laws_(mesh_.part[i], plane.part).reach;
-    if (rate < 0) step = std::min(step, std::max(0.0, (gap - landing_gap(gap, reach)) / -rate));
+    if (rate < 0) step = std::min(step, std::max(0.0, (gap - landing_gap(gap, law.reach)) / -rate));
   }
   return step;
 }
@@ -79,17 +79,17 @@ double StepBound::step_of(const MovingPair& pair, const StepRule& rule) const {
 double StepBound::to_triangle(const Line& line, int i, const NearTriangle& near, double step) const {
   const Triangle& t = mesh_.triangles[near.triangle];
   const ContactLaw& law = laws_(mesh_.part[i], mesh_.part[t[0]]);
-  if (line.candidates.least_gap(near, t) > law.radius + law.reach) return step;
+  if (line.candidates.least_gap(near, t) > law.offset + law.reach) return step;
   return step_of(pair(line, PairKind::point_triangle, {i, t[0], t[1], t[2]}),
-                 {.landing = kLanding * law.reach, .offset = law.radius, .horizon = step});
+                 {.landing = kLanding * law.reach, .offset = law.offset, .horizon = step});
 }
 
 double StepBound::of_edges(const Line& line, const EdgePair& edges, double step) const {
   const Edge &a = mesh_.edges[edges.first], &b = mesh_.edges[edges.second];
   const ContactLaw& law = laws_(mesh_.part[a[0]], mesh_.part[b[0]]);
-  if (line.candidates.least_gap(edges, a, b) > law.radius + law.edge_reach) return step;
+  if (line.candidates.least_gap(edges, a, b) > law.offset + law.edge_reach) return step;
   return step_of(pair(line, PairKind::edge_edge, {a[0], a[1], b[0], b[1]}),
-                 {.landing = kLanding * edge_reach(mesh_, laws_, edges), .offset = law.radius, .horizon = step});
+                 {.landing = kLanding * edge_reach(mesh_, laws_, edges), .offset = law.offset, .horizon = step});
 }
 
 // Scales u, and `factor` with it, to a line with few enough candidates. Returns nothing if the line would be too short.
@@ -139,11 +139,11 @@ std::vector<Impact> StepBound::with_planes(std::span<const Vec3d> p, std::span<c
     for (int i = 0; i < mesh_.point_count(); ++i) {
       if (mesh_.row[i] < 0) continue;
       const ContactLaw& law = laws_(mesh_.part[i], plane.part);
-      const double gap = dot(plane.normal, p[i] - p[plane.point]), landing = landing_gap(gap, law.reach);
+      const double gap = dot(plane.normal, p[i] - p[plane.point]) - law.offset, landing = landing_gap(gap, law.reach);
       if (!(gap + dot(plane.normal, u[i] - u[plane.point]) < landing)) continue;
       found.push_back({.point = {i, -1, -1, -1},
                        .distance = {.r = plane.normal, .d = 1},
-                       .offset = dot(plane.normal, p[plane.point] + u[plane.point]),
+                       .offset = dot(plane.normal, p[plane.point] + u[plane.point]) + law.offset,
                        .landing = landing,
                        .stiffness = kSpring * law.stiffness * mesh_.area[i] / law.reach});
     }

@@ -26,11 +26,11 @@ class Touches {
     const ContactLaw& law = laws_(mesh_.part[p], mesh_.part[t[0]]);
     const Distance distance = point_triangle_distance({x_[p], x_[t[0]], x_[t[1]], x_[t[2]]});
     if (!touches(distance.d, law)) return;
-    const Vec3d normal = unit(law.radius > 0 ? distance.r : area_vector(t));  // from the triangle to the point
-    const double side = is_body(t[0]) || law.radius > 0 ? 1 : -sign(dot(normal, outward_[p]));
+    const Vec3d normal = unit(law.is_round ? distance.r : area_vector(t));  // from the triangle to the point
+    const double side = is_body(t[0]) || law.is_round ? 1 : -sign(dot(normal, outward_[p]));
     if (is_body(p) && faces(p, side * normal)) add({p}, side * normal, mesh_.part[t[0]]);
     const bool is_facing =
-        law.radius > 0 || (is_body(p) ? faces(p, normal) : faces(p, normal) || faces(p, -1.0 * normal));
+        law.is_round || (is_body(p) ? faces(p, normal) : faces(p, normal) || faces(p, -1.0 * normal));
     if (is_body(t[0]) && is_facing) add(t, -1.0 * normal, mesh_.part[p]);
   }
 
@@ -40,17 +40,18 @@ class Touches {
     // Ends of edges are points, which touch triangles.
     if (distance.type != DistanceType::edge_edge || !touches(distance.d, law)) return;
     const Vec3d u = unit(x_[a[1]] - x_[a[0]]), v = unit(x_[b[1]] - x_[b[0]]);
-    Vec3d normal = law.radius > 0 ? distance.r : cross(u, v);
-    if (law.radius == 0 && norm(normal) < kAlmostParallel) return;
+    Vec3d normal = law.is_round ? distance.r : cross(u, v);
+    if (!law.is_round && norm(normal) < kAlmostParallel) return;
     normal = unit(normal);
     const double from_b = side_of(a, normal), from_a = side_of(b, normal);
-    if (law.radius == 0 && is_body(a[0]) && is_body(b[0]) && from_a == from_b) return;
+    if (!law.is_round && is_body(a[0]) && is_body(b[0]) && from_a == from_b) return;
     if (is_body(a[0])) add(a, from_b * normal, mesh_.part[b[0]]);
     if (is_body(b[0])) add(b, from_a * normal, mesh_.part[a[0]]);
   }
 
   void add_plane(int p, const ContactPlane& plane) {
-    if (is_body(p) && touches(std::abs(dot(plane.normal, x_[p] - x_[plane.point])), laws_(mesh_.part[p], plane.part)))
+    const ContactLaw& law = laws_(mesh_.part[p], plane.part);
+    if (is_body(p) && touches(std::abs(dot(plane.normal, x_[p] - x_[plane.point])), law))
       add({p}, plane.normal, plane.part);
   }
 
@@ -62,7 +63,7 @@ class Touches {
   Vec3d area_vector(const Triangle& t) const { return 0.5 * cross(x_[t[1]] - x_[t[0]], x_[t[2]] - x_[t[0]]); }
   bool is_body(int p) const { return mesh_.row[p] >= 0; }
   static bool touches(double distance, const ContactLaw& law) {
-    return std::abs(distance - law.radius) <= kTouching * law.edge;
+    return std::abs(distance - law.offset) <= kTouching * law.edge;
   }
   // Returns whether a way away from the other surface leads into the point's own body.
   bool faces(int p, const Vec3d& away) const { return dot(outward_[p], away) < -kFacing * norm(outward_[p]); }

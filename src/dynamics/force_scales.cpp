@@ -31,8 +31,8 @@ void add_quadratic_stiffness(const TetMesh& mesh, int tet, std::vector<double>& 
   }
 }
 
-// Returns for each vertex v the sum over its tets of volume |grad N_v|^2: the diagonal of the stiffness matrix for a
-// unit modulus [m].
+// Returns for each vertex v the sum over its elements of volume |grad N_v|^2: the diagonal of the stiffness matrix for
+// a unit modulus [m].
 std::vector<double> unit_stiffness(const TetMesh& mesh) {
   std::vector<double> stiffness(mesh.vertex_count(), 0.0);
   for (int t = 0; t < mesh.tet_count(); ++t) {
@@ -45,6 +45,13 @@ std::vector<double> unit_stiffness(const TetMesh& mesh) {
       if (six_volumes > 0) stiffness[tet[k]] += dot(normal, normal) / (6 * six_volumes);
     }
   }
+  for (size_t t = 0; t < mesh.sheet.size(); ++t)
+    for (int k = 0; k < 3; ++k) {
+      const Vec3d &A = mesh.rest[mesh.sheet[t][k]], &B = mesh.rest[mesh.sheet[t][(k + 1) % 3]],
+                  &C = mesh.rest[mesh.sheet[t][(k + 2) % 3]];
+      const double four_areas = 2 * norm(cross(B - A, C - A));
+      if (four_areas > 0) stiffness[mesh.sheet[t][k]] += mesh.thickness[t] * squared_norm(C - B) / four_areas;
+    }
   return stiffness;
 }
 

@@ -522,6 +522,8 @@ MeshErrorEstimate estimate_mesh_error(const MeshErrorInput& input, const StopTok
     none.reason = "the mesh is distributed over processes";
   } else if (!input.model.mesh.mids.empty()) {
     none.reason = "order = 2 (its error is 0 to 4 % with two tets across, more with one)";
+  } else if (!input.model.mesh.sheet.empty()) {
+    none.reason = "the scene has sheets";
   } else if (gigabytes > available) {
     none.reason = formatted("quadratic tets need about %.2g GB; %.2g GB of memory are free", gigabytes, available);
   } else {

@@ -18,11 +18,16 @@ namespace aspic {
 class Barrier;
 class Friction;
 
-// Range of a body in the mesh. Its vertices and tets are consecutive.
+// Range of a body in the mesh. Its vertices and elements are consecutive. A body has tets, or is a sheet.
 struct BodyRange {
   std::string name;  // in reports and files
   int first_vertex = 0, vertex_count = 0;
   int first_tet = 0, tet_count = 0;
+  int first_triangle = 0, triangle_count = 0;  // in TetMesh::sheet
+
+  bool is_sheet() const { return triangle_count > 0; }
+  int first_element(const TetMesh& mesh) const { return is_sheet() ? mesh.tet_count() + first_triangle : first_tet; }
+  int element_count() const { return tet_count + triangle_count; }
 };
 
 // Returns the position of a point at the time [s], given its position at the start [m].
@@ -43,8 +48,8 @@ struct Model {
   // order of the mesh.
   Numbering numbering;
   std::vector<BodyRange> bodies;  // cover the mesh, or the own vertices of a share, ascending
-  std::vector<double> density;    // one per tet [kg/m^3]
-  // Fields to export with the results, by name, one value per tet: "young" [Pa], "poisson" [1].
+  std::vector<double> density;    // one per element [kg/m^3]
+  // Fields to export with the results, by name, one value per element: "young" [Pa], "poisson" [1].
   std::vector<std::pair<std::string, std::vector<double>>> tet_fields;
   std::unique_ptr<MassMatrix> mass;                        // of all bodies
   std::vector<std::unique_ptr<TetElasticity>> elasticity;  // one per body

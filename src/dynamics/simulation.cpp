@@ -411,7 +411,7 @@ MeshErrorEstimate Simulation::mesh_error(const StopToken& stop) const {
 }
 
 TetFields Simulation::tet_fields() const {
-  const size_t tets = impl_->model.mesh.tets.size();
+  const auto tets = static_cast<size_t>(impl_->model.mesh.element_count());
   TetFields fields{std::vector<double>(tets), std::vector<double>(tets, 1.0), std::vector<double>(6 * tets),
                    std::vector<double>(tets)};
   for (const auto& V : impl_->model.elasticity) V->evaluate(impl_->state.q, fields);

@@ -76,12 +76,13 @@ void require_before_planes(const Model& model, std::span<const Vec3d> x) {
   for (const ContactPlane& plane : contact.planes)
     for (int p = 0; p < contact.point_count(); ++p) {
       if (contact.row[p] < 0) continue;
-      const double height = dot(plane.normal, x[p] - x[plane.point]);
+      const ContactLaw& law = model.contact->laws()(contact.part[p], plane.part);
+      const double height = dot(plane.normal, x[p] - x[plane.point]) - law.offset;
       if (height > 0) continue;
       const std::string body = "body '" + contact.parts[contact.part[p]].name + "'",
                         floor = "'" + contact.parts[plane.part].name + "'";
       const std::string vertex = "vertex " + std::to_string(model.numbering.vertex.to_user(contact.row[p]));
-      const bool is_touching = -height <= kTouching * model.contact->laws()(contact.part[p], plane.part).edge;
+      const bool is_touching = -height <= kTouching * law.edge;
       throw InvalidInput(is_touching
                              ? body + " touches the plane " + floor + " at the start, at " + vertex + "; leave a gap"
                              : body + " starts behind the plane " + floor + ": " + vertex + " by " +

@@ -20,14 +20,14 @@ struct NamedState {
 };
 
 double mean_edge(const TetMesh& mesh) {
-  double sum = 0;
-  for (const Tet& t : mesh.tets)
-    for (size_t i = 0; i < 4; ++i)
-      for (size_t j = 0; j < i; ++j) {
-        const Vec3d e = mesh.rest[t[i]] - mesh.rest[t[j]];
-        sum += norm(e);
-      }
-  return mesh.tets.empty() ? 1 : sum / (6 * static_cast<double>(mesh.tets.size()));
+  double sum = 0, count = 0;
+  const auto add = [&](const auto& corners) {
+    for (size_t i = 0; i < corners.size(); ++i)
+      for (size_t j = 0; j < i; ++j) sum += norm(mesh.rest[corners[i]] - mesh.rest[corners[j]]), ++count;
+  };
+  for (const Tet& tet : mesh.tets) add(tet);
+  for (const Triangle& triangle : mesh.sheet) add(triangle);
+  return count == 0 ? 1 : sum / count;
 }
 
 // Random values, uniform in [-1, 1], equal on all systems.
@@ -247,7 +247,7 @@ std::string entry_name(int entry) {
 }
 
 int tet_with(const TetMesh& mesh, int vertex, int other) {
-  for (int t = 0; t < mesh.tet_count(); ++t) {
+  for (int t = 0; t < mesh.element_count(); ++t) {
     const TetNodes tet = nodes_of(mesh, t);
     const auto holds = [&](int v) { return std::find(tet.begin(), tet.end(), v) != tet.end(); };
     if (holds(vertex) && holds(other)) return t;

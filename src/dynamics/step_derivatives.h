@@ -27,7 +27,7 @@ std::vector<TermDerivatives> check_step_derivatives(const Simulation& simulation
 
 // Returns the name of an entry of q: "vertex 12, y".
 std::string entry_name(int entry);
-// Returns a tet with both vertices, or -1.
+// Returns an element with both vertices, or -1.
 int tet_with(const TetMesh& mesh, int vertex, int other);
 
 }  // namespace aspic

@@ -37,6 +37,12 @@ std::vector<double> longest_edge(const TetMesh& mesh) {
       for (int b = 0; b < a; ++b) square = std::max(square, squared_norm(mesh.rest[tet[a]] - mesh.rest[tet[b]]));
     for (const int v : tet) longest[v] = std::max(longest[v], std::sqrt(square));
   }
+  for (const Triangle& triangle : mesh.sheet)
+    for (int c = 0; c < 3; ++c) {
+      const int a = triangle[c], b = triangle[(c + 1) % 3];
+      const double edge = norm(mesh.rest[a] - mesh.rest[b]);
+      for (const int v : triangle) longest[v] = std::max(longest[v], edge);
+    }
   return longest;
 }
 
@@ -50,7 +56,7 @@ std::vector<int> parts_of(const TetMesh& mesh, std::span<const double> modulus) 
   std::vector<double> stiffness = longest_edge(linear_parts(mesh).mesh);
   for (int v = 0; v < mesh.vertex_count(); ++v) stiffness[v] *= modulus[v];
   share_in_quadratic_tets(mesh, stiffness);
-  const std::vector<std::vector<int>> components = tet_components(mesh);
+  const std::vector<std::vector<int>> components = element_components(mesh);
   std::vector<int> component(mesh.vertex_count(), 0);
   std::vector<double> stiffest(components.size() + 1, 0.0);
   for (size_t c = 0; c < components.size(); ++c)

@@ -6,13 +6,25 @@
 #include "base/check.h"
 #include "base/parallel.h"
 #include "energy/tet_integrals.h"
+#include "mesh/elements.h"
 #include "mesh/tet_nodes.h"
 
 namespace aspic {
+namespace {
+
+// Returns the lumped mass of the sheets at each vertex [kg].
+std::vector<double> sheet_mass(const TetMesh& mesh, std::span<const double> density) {
+  std::vector<double> mass(mesh.rest.size(), 0.0);
+  for (int e = mesh.tet_count(); e < mesh.element_count(); ++e)
+    for (const int v : mesh.triangle(e)) mass[v] += density[e] * element_volume(mesh, e) / 3;
+  return mass;
+}
+
+}  // namespace
 
 MassMatrix::MassMatrix(const TetMesh& mesh, std::span<const double> density, MassKind kind)
     : kind_(kind), lumped_(mesh.vertex_count(), 0.0), row_sums_(mesh.vertex_count(), 0.0) {
-  ASPIC_CHECK(static_cast<int>(density.size()) == mesh.tet_count());
+  ASPIC_CHECK(static_cast<int>(density.size()) == mesh.element_count());
   Couplings couplings;
   couplings.reserve(kind == MassKind::lumped ? 0 : (mesh.mids.empty() ? 6 : 45) * mesh.tets.size());
   for (int t = 0; t < mesh.tet_count(); ++t) {
@@ -24,6 +36,11 @@ MassMatrix::MassMatrix(const TetMesh& mesh, std::span<const double> density, Mas
       row_sums_[nodes[u]] += integrals.mean[u] * mass / integrals.mean_sum;
       for (int v = 0; v < u && kind == MassKind::consistent; ++v) couplings.emplace_back(nodes[u], nodes[v]);
     }
+  }
+  const std::vector<double> of_sheets = sheet_mass(mesh, density);
+  for (int v = 0; v < rows(); ++v) {
+    lumped_[v] += of_sheets[v];
+    row_sums_[v] += of_sheets[v];
   }
   const BlockPattern pattern = make_pattern(rows(), std::move(couplings));
   if (kind == MassKind::lumped) {
@@ -40,6 +57,7 @@ MassMatrix::MassMatrix(const TetMesh& mesh, std::span<const double> density, Mas
       for (int v = 0; v <= u; ++v)
         lower[pattern.slot(std::max(nodes[u], nodes[v]), std::min(nodes[u], nodes[v]))] += integrals.products[u][v] * m;
   }
+  for (int v = 0; v < rows(); ++v) lower[pattern.diagonal(v)] += of_sheets[v];
   store_rows(pattern, lower);
 }
 

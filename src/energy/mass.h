@@ -1,4 +1,4 @@
-// Mass matrix M of tetrahedra: one scalar per vertex pair, the same for x, y and z.
+// Mass matrix M of tets and sheets: one scalar per vertex pair, the same for x, y and z.
 #pragma once
 #include <span>
 #include <vector>
@@ -15,7 +15,7 @@ enum class MassKind {
 
 class MassMatrix {
  public:
-  // `density`: one per tet [kg/m^3]. The mesh need not outlive this.
+  // `density`: one per element [kg/m^3]. The masses of sheets are always lumped. The mesh need not outlive this.
   MassMatrix(const TetMesh& mesh, std::span<const double> density, MassKind kind);
 
   MassKind kind() const { return kind_; }

@@ -99,7 +99,7 @@ void write_vtu_mesh(const fs::path& path, const TetMesh& mesh, FileEncoding) {
   const std::span<const double> points(mesh.rest.empty() ? nullptr : mesh.rest[0].a, 3 * mesh.rest.size());
   std::vector<Field> cell_fields;
   if (!mesh.region.empty()) cell_fields.push_back({"region", 1, {mesh.region.begin(), mesh.region.end()}});
-  write_vtu(path, points, mesh.tets, {.cell_fields = cell_fields});
+  write_vtu(path, points, mesh, {.cell_fields = cell_fields});
 }
 
 const std::vector<Format>& formats() {

@@ -82,7 +82,7 @@ TEST_F(QuadraticFile, IsStraightenedWithANote) {
   const TetMesh mesh = curved_box();
   write_file(folder / "a.msh", gmsh_text(mesh));
   write_file(folder / "a.mesh", medit_text(mesh));
-  write_vtu(folder / "a.vtu", {mesh.rest[0].a, 3 * mesh.rest.size()}, mesh.tets, {}, mesh.mids);
+  write_vtu(folder / "a.vtu", {mesh.rest[0].a, 3 * mesh.rest.size()}, mesh);
   for (const std::string name : {"a.msh", "a.mesh", "a.vtu"}) {
     std::vector<std::string> notes;
     expect_linear_box(folder / name, notes);

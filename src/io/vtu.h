@@ -44,11 +44,13 @@ Vtu read_pvtu(const std::string& path);
 // Returns the grid of a frame of a run, a .vtu or .pvtu.
 Vtu read_frame(const std::string& path);
 
-// Writes inline base64, zlib-compressed. `points`: 3 coordinates per point [m], in double precision; tets index points.
-// Point fields have one entry of `components` values per point, cell fields one per tet. `mids`: see TetMesh. The
-// output is reproducible. Throws InvalidInput if the file cannot be written.
+// Writes the elements of a mesh in inline base64, zlib-compressed. `points`: 3 coordinates per point [m], in double
+// precision. Point fields have one entry of `components` values per point, cell fields one per element. The output is
+// reproducible. Throws InvalidInput if the file cannot be written.
+void write_vtu(const std::string& path, std::span<const double> points, const TetMesh& mesh,
+               const VtuFields& fields = {});
 void write_vtu(const std::string& path, std::span<const double> points, const std::vector<Tet>& tets,
-               const VtuFields& fields = {}, const std::vector<MidNodes>& mids = {});
+               const VtuFields& fields = {});
 
 // Writes a surface in the same way; cell fields have one entry per triangle.
 void write_surface_vtu(const std::string& path, const TriMesh& surface, const VtuFields& fields = {});

@@ -158,7 +158,7 @@ TEST_F(VtuFile, ThePointsAloneAreThoseOfTheWhole) {
 }
 
 TEST_F(VtuFile, EmptyGridsAreWrittenAndRead) {
-  write_vtu(path("a.vtu"), {}, {});
+  write_vtu(path("a.vtu"), {}, TetMesh{});
   const Vtu vtu = read_vtu(path("a.vtu"));
   EXPECT_EQ(vtu.mesh.tet_count(), 0);
   EXPECT_EQ(vtu.triangles.vertex_count(), 0);
@@ -326,7 +326,7 @@ TEST_F(VtuFile, RefusesCompressedSizesThatDoNotFit) {
 
 TEST_F(VtuFile, AMissingFileIsNamed) {
   EXPECT_THROW(read_vtu(path("missing.vtu")), InvalidInput);
-  EXPECT_THROW(write_vtu(path("no/such/folder.vtu"), {}, {}), InvalidInput);
+  EXPECT_THROW(write_vtu(path("no/such/folder.vtu"), {}, TetMesh{}), InvalidInput);
 }
 
 TEST_F(VtuFile, WrittenSurfacesReadBack) {

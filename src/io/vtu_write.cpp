@@ -13,6 +13,7 @@
 #include "io/vtk_cells.h"
 #include "io/vtu.h"
 #include "io/xml.h"
+#include "mesh/tet_nodes.h"
 
 namespace aspic {
 namespace {
@@ -180,17 +181,18 @@ void write_pvtu(const std::string& path, const std::vector<std::string>& pieces,
   write_file(path, text);
 }
 
-void write_vtu(const std::string& path, std::span<const double> points, const std::vector<Tet>& tets,
-               const VtuFields& fields, const std::vector<MidNodes>& mids) {
+void write_vtu(const std::string& path, std::span<const double> points, const TetMesh& mesh, const VtuFields& fields) {
   Cells cells;
-  for (size_t t = 0; t < tets.size(); ++t) {
-    cells.connectivity.insert(cells.connectivity.end(), tets[t].begin(), tets[t].end());
-    if (mids.empty() || mids[t][0] < 0)
-      cells.add(std::span<const int>(), kVtkTet);
-    else
-      cells.add(mids[t], kVtkQuadraticTet);
+  for (int e = 0; e < mesh.element_count(); ++e) {
+    const TetNodes nodes = nodes_of(mesh, e);
+    cells.add(nodes, nodes.count == 3 ? kVtkTriangle : nodes.count == 4 ? kVtkTet : kVtkQuadraticTet);
   }
   write(path, points, cells, fields);
+}
+
+void write_vtu(const std::string& path, std::span<const double> points, const std::vector<Tet>& tets,
+               const VtuFields& fields) {
+  write_vtu(path, points, TetMesh{.rest = {}, .tets = tets, .region = {}}, fields);
 }
 
 void write_surface_vtu(const std::string& path, const TriMesh& surface, const VtuFields& fields) {

@@ -40,6 +40,11 @@ TetMesh rearranged(const TetMesh& mesh, const VertexSource& vertex_source, const
     for (int& node : mids) node = node < 0 ? node : vertex_name(node);
     result.mids.push_back(mids);
   }
+  for (Triangle triangle : mesh.sheet) {
+    for (int& corner : triangle) corner = vertex_name(corner);
+    result.sheet.push_back(triangle);
+  }
+  result.thickness = mesh.thickness;
   return result;
 }
 

@@ -8,7 +8,7 @@
 
 namespace aspic {
 
-// Permutation of the vertices or the tets; the identity by default.
+// Permutation of the vertices or the elements; the identity by default.
 class Renumbering {
  public:
   Renumbering() = default;
@@ -38,7 +38,7 @@ struct Numbering {
 // Returns an order along a Hilbert curve. `mesh` is in the user's order.
 Numbering locality_numbering(const TetMesh& mesh);
 
-// Reorder a mesh. The corners of each tet keep their order.
+// Reorder a mesh. The corners of each tet and the triangles of sheets keep their order.
 TetMesh from_user(const Numbering& numbering, const TetMesh& user);
 TetMesh to_user(const Numbering& numbering, const TetMesh& stored);
 

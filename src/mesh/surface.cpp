@@ -63,6 +63,12 @@ std::vector<Face> boundary_faces(const TetMesh& mesh, int first, int count) {
   return boundary;
 }
 
+std::vector<Face> surface_faces(const TetMesh& mesh) {
+  std::vector<Face> faces = boundary_faces(mesh, 0, mesh.tet_count());
+  for (const Triangle& triangle : mesh.sheet) faces.push_back({triangle});
+  return faces;
+}
+
 std::vector<Face> faces_of(const TetMesh& mesh, std::span<const Triangle> triangles) {
   if (mesh.mids.empty()) return linear_faces(triangles);
   const auto from_least = [](Triangle t) {
@@ -95,6 +101,7 @@ std::vector<Triangle> boundary_triangles(const TetMesh& mesh, int first, int cou
 BoundarySurface boundary_surface(const TetMesh& mesh) {
   BoundarySurface boundary;
   boundary.surface.triangles = boundary_triangles(mesh, 0, mesh.tet_count());
+  boundary.surface.triangles.insert(boundary.surface.triangles.end(), mesh.sheet.begin(), mesh.sheet.end());
   std::vector<int> surface_vertex(mesh.rest.size(), -1);
   for (const Triangle& triangle : boundary.surface.triangles)
     for (int v : triangle) surface_vertex[v] = 0;

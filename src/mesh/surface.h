@@ -31,6 +31,9 @@ struct BoundarySurface {
   TriMesh surface;              // only the boundary vertices
   std::vector<int> tet_vertex;  // vertex of the tet mesh for each surface vertex
 };
-BoundarySurface boundary_surface(const TetMesh& mesh);
+BoundarySurface boundary_surface(const TetMesh& mesh);  // of all tets, and the sheets
+
+// Returns the boundary faces of all tets, then the triangles of the sheets.
+std::vector<Face> surface_faces(const TetMesh& mesh);
 
 }  // namespace aspic

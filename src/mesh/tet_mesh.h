@@ -1,4 +1,4 @@
-// Tetrahedral meshes at rest and triangle meshes, as plain data without adjacency or physics.
+// Meshes of tets and sheets at rest, and triangle meshes, as plain data without adjacency or physics.
 #pragma once
 #include <array>
 #include <vector>
@@ -18,9 +18,15 @@ struct TetMesh {
   // Mid-edge nodes of quadratic tets, one entry per tet, {-1, ...} for a linear one; empty: all are linear. Nodes are
   // vertices. Edges are straight at rest, with the nodes at their midpoints.
   std::vector<MidNodes> mids = {};
+  std::vector<Triangle> sheet = {};    // triangles of sheets, which have no tets
+  std::vector<double> thickness = {};  // of each triangle of `sheet` [m]
 
   int vertex_count() const { return static_cast<int>(rest.size()); }
   int tet_count() const { return static_cast<int>(tets.size()); }
+  // Elements are the tets, then the triangles of sheets.
+  int element_count() const { return tet_count() + static_cast<int>(sheet.size()); }
+  bool is_tet(int element) const { return element < tet_count(); }
+  const Triangle& triangle(int element) const { return sheet[element - tet_count()]; }
 };
 
 struct TriMesh {

@@ -14,11 +14,15 @@ constexpr int kParts[8][4] = {{0, 4, 6, 7}, {4, 1, 5, 8}, {6, 5, 2, 9}, {7, 8, 9
 
 }  // namespace
 
-TetNodes nodes_of(const TetMesh& mesh, int tet) {
+TetNodes nodes_of(const TetMesh& mesh, int element) {
+  if (!mesh.is_tet(element)) {
+    const auto& [a, b, c] = mesh.triangle(element);
+    return {{a, b, c}, 3};
+  }
   TetNodes nodes{{}, 4};
-  std::copy_n(mesh.tets[tet].begin(), 4, nodes.node.begin());
-  if (!is_quadratic(mesh, tet)) return nodes;
-  std::copy_n(mesh.mids[tet].begin(), 6, nodes.node.begin() + 4);
+  std::copy_n(mesh.tets[element].begin(), 4, nodes.node.begin());
+  if (!is_quadratic(mesh, element)) return nodes;
+  std::copy_n(mesh.mids[element].begin(), 6, nodes.node.begin() + 4);
   nodes.count = 10;
   return nodes;
 }
@@ -99,6 +103,8 @@ std::array<Vec3d, 4> center_corners(const TetMesh& mesh, int tet, std::span<cons
 LinearParts linear_parts(const TetMesh& mesh) {
   LinearParts parts;
   parts.mesh.rest = mesh.rest;
+  parts.mesh.sheet = mesh.sheet;
+  parts.mesh.thickness = mesh.thickness;
   const auto add = [&](int t, const Tet& part) {
     parts.mesh.tets.push_back(part);
     parts.tet.push_back(t);

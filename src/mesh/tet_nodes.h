@@ -1,4 +1,4 @@
-// Nodes of linear and quadratic tets. Code that handles both loops over nodes_of() instead of the corners.
+// Nodes of linear and quadratic tets, and of triangles of sheets. Code that handles all loops over nodes_of().
 #pragma once
 #include <array>
 #include <span>
@@ -10,7 +10,7 @@ namespace aspic {
 
 inline constexpr int kTetEdges[6][2] = {{0, 1}, {1, 2}, {2, 0}, {0, 3}, {1, 3}, {2, 3}};  // as in VTK files
 
-// The nodes of a tet: four corners, then the mid-edge nodes of a quadratic tet.
+// The nodes of an element: three corners of a triangle, or four of a tet, then the mid-edge nodes of a quadratic tet.
 struct TetNodes {
   std::array<int, 10> node;
   int count;
@@ -21,7 +21,7 @@ struct TetNodes {
 };
 
 inline bool is_quadratic(const TetMesh& mesh, int tet) { return !mesh.mids.empty() && mesh.mids[tet][0] >= 0; }
-TetNodes nodes_of(const TetMesh& mesh, int tet);
+TetNodes nodes_of(const TetMesh& mesh, int element);
 
 // Returns the shape functions N_n of a quadratic tet at barycentric coordinates l, and dN_n/dl_i.
 std::array<double, 10> quadratic_shapes(const std::array<double, 4>& l);
@@ -40,7 +40,8 @@ void straighten_edges(const TetMesh& mesh, std::vector<Vec3d>& positions);
 // entries per vertex.
 std::array<Vec3d, 4> center_corners(const TetMesh& mesh, int tet, std::span<const double> x);
 
-// A mesh of linear tets with the same vertices: the linear tets themselves, and eight parts of each quadratic tet.
+// A mesh with the same vertices and sheets, of linear tets: the linear tets themselves, and eight parts of each
+// quadratic tet.
 struct LinearParts {
   TetMesh mesh;
   std::vector<int> tet;  // tet that contains each part

@@ -8,8 +8,8 @@
 #include "dynamics/step_fields.h"
 #include "io/vtu.h"
 #include "math/symmetric_eigen.h"
+#include "mesh/elements.h"
 #include "mesh/tet_nodes.h"
-#include "mesh/tet_shape.h"
 
 namespace aspic {
 namespace {
@@ -20,19 +20,23 @@ std::vector<double> displacement(const TetMesh& mesh, const std::vector<double>&
   return u;
 }
 
-// The index of the body of each tet.
-std::vector<double> body_of_tets(const Model& model) {
-  std::vector<double> body(static_cast<size_t>(model.mesh.tet_count()), -1);
+// The index of the body of each element.
+std::vector<double> body_of_elements(const Model& model) {
+  std::vector<double> body(static_cast<size_t>(model.mesh.element_count()), -1);
   for (size_t b = 0; b < model.bodies.size(); ++b) {
     const BodyRange& range = model.bodies[b];
-    for (int t = range.first_tet; t < range.first_tet + range.tet_count; ++t) body[t] = static_cast<double>(b);
+    const auto index = static_cast<double>(b);
+    std::fill_n(body.begin() + range.first_tet, range.tet_count, index);
+    std::fill_n(body.begin() + model.mesh.tet_count() + range.first_triangle, range.triangle_count, index);
   }
   return body;
 }
 
-std::vector<double> region_of_tets(const TetMesh& mesh) {
-  if (mesh.region.empty()) return std::vector<double>(static_cast<size_t>(mesh.tet_count()), 0);
-  return {mesh.region.begin(), mesh.region.end()};
+// The label of each tet; 0 for sheets.
+std::vector<double> region_of_elements(const TetMesh& mesh) {
+  std::vector<double> region(mesh.region.begin(), mesh.region.end());
+  region.resize(static_cast<size_t>(mesh.element_count()), 0);
+  return region;
 }
 
 // Returns the pressure, minus a third of the trace of the stress, averaged by volume over the tets at each vertex:
@@ -60,8 +64,8 @@ std::vector<Field> cell_fields(const Simulation& simulation, TetFields tet, Fiel
   fields.push_back({"det_F", 1, std::move(tet.det_F), real});
   fields.push_back({"cauchy", 6, std::move(tet.cauchy), real});
   fields.push_back({"von_mises", 1, std::move(tet.von_mises), real});
-  fields.push_back({"body", 1, body_of_tets(model), kLabel});
-  fields.push_back({"region", 1, region_of_tets(model.mesh), kLabel});
+  fields.push_back({"body", 1, body_of_elements(model), kLabel});
+  fields.push_back({"region", 1, region_of_elements(model.mesh), kLabel});
   if (!model.density.empty()) fields.push_back({"density", 1, model.density, real});
   for (const auto& [name, values] : model.tet_fields) fields.push_back({name, 1, values, real});
   return fields;
@@ -97,21 +101,11 @@ void add_contact_fields(const Simulation& simulation, FieldType real, std::vecto
   fields.push_back(std::move(gap));
 }
 
-// Returns F at the centroid, where it is the mean over the tet.
-Mat3d deformation_gradient(const TetMesh& mesh, int tet, Positions q) {
-  const std::array<Vec3d, 4> b = shape_gradients(corners(mesh, tet));
-  Mat3d F{};
-  for (int k = 0; k < 4 && !is_quadratic(mesh, tet); ++k) F = F + outer(point(q, mesh.tets[tet][k]), b[k]);
-  for (int k = 0; k < 6 && is_quadratic(mesh, tet); ++k)
-    F = F + outer(point(q, mesh.mids[tet][k]), b[kTetEdges[k][0]] + b[kTetEdges[k][1]]);
-  return F;
-}
-
-// cauchy: 6 per tet. Writes the eigenvalues of each, largest first.
+// cauchy: 6 per element. Writes the eigenvalues of each, largest first.
 void add_mechanics(const Simulation& simulation, std::span<const double> cauchy, FieldType real, VtuFields& fields) {
   const TetMesh& mesh = simulation.model().mesh;
   Field F{"F", 9, {}, real}, strain{"strain", 6, {}, real}, principal{"principal_stress", 3, {}, real};
-  for (int t = 0; t < mesh.tet_count(); ++t) {
+  for (int t = 0; t < mesh.element_count(); ++t) {
     const Mat3d F_t = deformation_gradient(mesh, t, simulation.state().q);
     const Mat3d E = 0.5 * (transpose(F_t) * F_t - identity3<double>()), rows = transpose(F_t);
     F.values.insert(F.values.end(), rows.a, rows.a + 9);
@@ -156,7 +150,7 @@ void write_frame(const std::filesystem::path& path, const Simulation& simulation
   for (Field& field : fields.point_fields) field.values = vertex.to_user(field.values, field.components);
   for (Field& field : fields.cell_fields) field.values = tet.to_user(field.values, field.components);
   const TetMesh mesh = to_user(model.numbering, model.mesh);
-  write_vtu(path, vertex.to_user(simulation.state().q, 3), mesh.tets, fields, mesh.mids);
+  write_vtu(path, vertex.to_user(simulation.state().q, 3), mesh, fields);
 }
 
 }  // namespace aspic

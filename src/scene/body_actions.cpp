@@ -278,7 +278,7 @@ struct LoadGroup {
 void add_tractions(const Builder& builder, const PlacedBody& body, std::vector<LoadGroup>& groups) {
   Array& tractions = list_of(body, "traction");
   if (tractions.empty()) return;
-  const std::vector<Face> boundary = boundary_faces(body.mesh, 0, body.mesh.tet_count());
+  const std::vector<Face> boundary = surface_faces(body.mesh);
   for (Value& scene : tractions) {
     LoadGroup group{LoadDensity(scene), {}};
     for (const Face& face : select_faces(scene["where"], builder.scope(body, scene), boundary))
@@ -296,7 +296,7 @@ bool starts_at_rest(const PlacedBody& body) {
 void add_pressures(Builder& builder, const PlacedBody& body) {
   Array& pressures = list_of(body, "pressure");
   if (pressures.empty()) return;
-  const std::vector<Face> boundary = boundary_faces(body.mesh, 0, body.mesh.tet_count());
+  const std::vector<Face> boundary = surface_faces(body.mesh);
   for (Value& scene : pressures) {
     const Value& value = scene["value"];
     const auto of_time = function_of_time(value,
@@ -370,14 +370,16 @@ void add_damping(PlacedBody& body, size_t index, MassKind kind, SceneFiles& file
   const double a = damping["mass"].number(), b = damping["stiffness"].number();
   if (a > 0 || b > 0) {
     std::vector<double> density(model.density.size(), 0.0);  // densities of this body, zero elsewhere
-    const auto first = model.density.begin() + body.first_tet;
-    std::copy(first, first + body.mesh.tet_count(), density.begin() + body.first_tet);
+    const std::ptrdiff_t first =
+        body.mesh.sheet.empty() ? body.first_tet : model.mesh.tet_count() + body.first_triangle;
+    std::copy_n(model.density.begin() + first, body.mesh.element_count(), density.begin() + first);
     model.damping.push_back(
         make_rayleigh_damping(MassMatrix(model.mesh, density, kind), a, model.elasticity[index].get(), b));
   }
+  if (!body.mesh.sheet.empty()) return;
   const std::vector<double> viscosity =
-      tet_values(damping.table(), scene_schema().key("damping", "viscosity"),
-                 {body.mesh, files, body.name(), *body.painted, nullptr, &body.groups});
+      element_values(damping.table(), scene_schema().key("damping", "viscosity"),
+                     {body.mesh, files, body.name(), *body.painted, nullptr, &body.groups});
   if (std::any_of(viscosity.begin(), viscosity.end(), [](double eta) { return eta > 0; }))
     model.damping.push_back(
         make_strain_rate_damping(model.mesh, body.first_tet, body.numbering.tet.from_user(viscosity)));

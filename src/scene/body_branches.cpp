@@ -37,7 +37,7 @@ void require_memory(const BodyBranches& of, std::int64_t memory) {
 std::vector<double> shear_moduli(PlacedBody& body, Value& scene, const FieldScope& fields,
                                  const TetElasticity& elastic) {
   const char* key = scene.find("shear") ? "shear" : "ratio";
-  std::vector<double> shear = tet_values(scene.table(), scene_schema().key("viscoelastic", key), fields);
+  std::vector<double> shear = element_values(scene.table(), scene_schema().key("viscoelastic", key), fields);
   if (scene.find("shear")) return shear;
   if (!body.scene["elastic"].boolean())
     throw error_at(

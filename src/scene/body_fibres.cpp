@@ -70,8 +70,8 @@ class BodyFibre {
 
   // Values of a key, one per tet of the user.
   std::vector<double> values(const char* section, const char* key) const {
-    return tet_values(scene_.table(), scene_schema().key(section, key),
-                      {body_.mesh, scope_.files, stem(), *body_.painted, nullptr, &body_.groups});
+    return element_values(scene_.table(), scene_schema().key(section, key),
+                          {body_.mesh, scope_.files, stem(), *body_.painted, nullptr, &body_.groups});
   }
 
   // of_user(t): the fibre of a tet of the user. Returns them in the order of the model.

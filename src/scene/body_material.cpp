@@ -32,7 +32,7 @@ class FromScene {
   std::vector<double> density() { return values("density"); }
 
   std::vector<MaterialParameters> parameters() {
-    std::vector<MaterialParameters> parameters(body_.mesh.tets.size());
+    std::vector<MaterialParameters> parameters(body_.mesh.element_count());
     if (material_.find("young")) {
       const std::vector<double> E = values("young"), nu = values("poisson");
       for (size_t t = 0; t < parameters.size(); ++t) parameters[t].lame = lame_from_young_poisson(E[t], nu[t]);
@@ -53,8 +53,8 @@ class FromScene {
 
  private:
   std::vector<double> values(const std::string& name) {
-    return tet_values(material_, scene_schema().key("material", name),
-                      {body_.mesh, files_, body_.name(), *body_.painted, body_.whole, &body_.groups});
+    return element_values(material_, scene_schema().key("material", name),
+                          {body_.mesh, files_, body_.name(), *body_.painted, body_.whole, &body_.groups});
   }
 
   Lame checked(const Lame& lame, size_t tet) const {
@@ -206,7 +206,7 @@ BodyMaterial material_from(Source& source, const std::string& model, const Place
   BodyMaterial material{model, {}, source.density()};
   if (body.scene["elastic"].boolean()) {
     material.parameters = source.parameters();
-    if (body.mesh.mids.empty()) note_locking(material.parameters, body.name(), notes);
+    if (body.mesh.mids.empty() && body.mesh.sheet.empty()) note_locking(material.parameters, body.name(), notes);
   } else {
     material.model = kModelOfNothing;
     material.parameters.resize(body.mesh.tets.size());  // all stiffness is zero

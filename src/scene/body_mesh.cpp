@@ -15,9 +15,11 @@
 #include "mesh/chamber.h"
 #include "mesh/doctor.h"
 #include "mesh/generators.h"
+#include "mesh/sheet_shapes.h"
 #include "mesh/surface.h"
 #include "mesh/surface_orientation.h"
 #include "mesh/tet_nodes.h"
+#include "scene/body_sheet.h"
 #include "scene/placement.h"
 
 namespace aspic {
@@ -223,7 +225,31 @@ BoxCells cells_of(const Value& box) {
   return cells;
 }
 
+TriMesh shape_surface(const Value& shape, const MeshLoader& loader) {
+  const auto number = [](const Value& table, const char* key) { return table[key].number(); };
+  if (const Value* s = shape.find("rectangle")) {
+    const double w = number(*s, "width"), h = number(*s, "height"), size = number(*s, "size");
+    check_count(triangles_in_rectangle(w, h, size), *s, loader);
+    return make_rectangle(w, h, size);
+  }
+  if (const Value* s = shape.find("disc")) {
+    const double r = number(*s, "radius"), size = number(*s, "size");
+    check_count(triangles_in_disc(r, size), *s, loader);
+    return make_disc(r, size);
+  }
+  if (const Value* s = shape.find("tube")) {
+    const double r = number(*s, "radius"), h = number(*s, "height"), size = number(*s, "size");
+    check_count(triangles_in_tube(r, h, size), *s, loader);
+    return make_tube(r, h, size);
+  }
+  return boundary_surface(shape_mesh(shape, loader)).surface;
+}
+
 TetMesh shape_mesh(const Value& shape, const MeshLoader& loader) {
+  for (const char* sheet : {"rectangle", "disc", "tube"})
+    if (const Value* s = shape.find(sheet))
+      throw error_at(s->place, std::string(sheet) + ": a sheet encloses no volume (add shell = { thickness = 0.001 } " +
+                                   "to the body)");
   const auto number = [](const Value& table, const char* key) { return table[key].number(); };
   if (const Value* box = shape.find("box")) return box_mesh(*box, loader);
   if (const Value* c = shape.find("cylinder")) {
@@ -322,6 +348,7 @@ BodyMesh with_its_skin(Value& body, MeshLoader& loader, LoadedMesh mesh) {
 }  // namespace
 
 BodyMesh make_body_mesh(Value& body, MeshLoader& loader, std::optional<LoadedMesh> loaded) {
+  if (body.find("shell")) return make_sheet_mesh(body, loader);
   LoadedMesh mesh = resolve_mesh(body, loader, std::move(loaded));
   MeshGroups groups = std::move(mesh.groups);
   BodyMesh result = with_its_skin(body, loader, std::move(mesh));

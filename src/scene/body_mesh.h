@@ -52,10 +52,11 @@ struct BoxCells {
 };
 BoxCells cells_of(const Value& box);
 
-TetMesh shape_mesh(const Value& shape, const MeshLoader& loader);  // generates one of the table's shapes
+TetMesh shape_mesh(const Value& shape, const MeshLoader& loader);     // generates one of the table's solids
+TriMesh shape_surface(const Value& shape, const MeshLoader& loader);  // a sheet, or the boundary of a solid
 
 struct BodyMesh {
-  TetMesh tets;         // the placed rest shape, checked
+  TetMesh tets;         // the placed rest shape, checked; or a sheet
   TriMesh skin;         // placed alike
   Embedding embedding;  // of the skin into the tets
   MeshGroups groups = {};

@@ -5,6 +5,7 @@
 
 #include "energy/tet_elasticity.h"
 #include "mesh/components.h"
+#include "mesh/elements.h"
 #include "mesh/generators.h"
 #include "scene/placement.h"
 
@@ -48,8 +49,8 @@ struct Means {
 Means means(const TetMesh& mesh, const BodyMaterial& material) {
   Means sum;
   double whole = 0;
-  for (int t = 0; t < mesh.tet_count(); ++t) {
-    const double part = volume(mesh, t);
+  for (int t = 0; t < mesh.element_count(); ++t) {
+    const double part = element_volume(mesh, t);
     whole += part;
     sum.young += part * young_modulus(material.parameters[t].lame);
     sum.density += part * material.density[t];

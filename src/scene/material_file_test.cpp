@@ -217,7 +217,7 @@ TEST_F(MaterialFile, BadFilesNameValueAndRemedy) {
   for (const Vec3d& X : mesh.rest) points.insert(points.end(), {X[0], X[1], X[2]});
   write_vtu(path("bad.vtu"), points, mesh.tets, {{}, {{"young", 3, Values(18, 1)}}, {{"model linear", 1, {1}}}});
   EXPECT_THAT(message_of([&] { read_material(path("bad.vtu")); }), HasSubstr("'young' has 3 components"));
-  write_vtu(path("bad.vtu"), points, {});
+  write_vtu(path("bad.vtu"), points, TetMesh{});
   EXPECT_THAT(message_of([&] { read_material(path("bad.vtu")); }), HasSubstr("has no tets"));
   write_file(path("material.vtu"), "not XML");
   EXPECT_THAT(refusal_with(box + file), AllOf(HasSubstr("s.toml:4:"), HasSubstr("material.vtu")));

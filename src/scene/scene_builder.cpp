@@ -12,9 +12,11 @@
 #include "dynamics/internal_terms.h"
 #include "dynamics/simulation_checks.h"
 #include "dynamics/touching.h"
+#include "mesh/elements.h"
 #include "scene/body_actions.h"
 #include "scene/body_material.h"
 #include "scene/body_notes.h"
+#include "scene/body_sheet.h"
 #include "scene/placement.h"
 #include "scene/scene_contact.h"
 #include "scene/schema.h"
@@ -30,30 +32,9 @@ std::vector<MaterialParameters> from_user(const Renumbering& tet, const std::vec
   return stored;
 }
 
-struct Offsets {
-  int tets, vertices;
-};
-
-void append_mids(const TetMesh& mesh, const Offsets& offsets, TetMesh& all) {
-  constexpr MidNodes kLinear = {-1, -1, -1, -1, -1, -1};
-  if (mesh.mids.empty() && all.mids.empty()) return;
-  all.mids.resize(offsets.tets, kLinear);
-  for (MidNodes mids : mesh.mids) {
-    for (int& node : mids) node += offsets.vertices;
-    all.mids.push_back(mids);
-  }
-  all.mids.resize(all.tets.size(), kLinear);
-}
-
-void append(const TetMesh& mesh, TetMesh& all) {
-  const int offset = all.vertex_count(), first_tet = all.tet_count();
-  all.rest.insert(all.rest.end(), mesh.rest.begin(), mesh.rest.end());
-  for (const Tet& t : mesh.tets) all.tets.push_back({t[0] + offset, t[1] + offset, t[2] + offset, t[3] + offset});
-  append_mids(mesh, {first_tet, offset}, all);
-  if (mesh.region.empty() && all.region.empty()) return;
-  all.region.resize(first_tet, 0);  // bodies without labels have 0
-  all.region.insert(all.region.end(), mesh.region.begin(), mesh.region.end());
-  all.region.resize(all.tets.size(), 0);
+template <class T>
+void append_to(std::vector<T>& all, const std::vector<T>& more) {
+  all.insert(all.end(), more.begin(), more.end());
 }
 
 class SceneBuilder {
@@ -154,6 +135,7 @@ class SceneBuilder {
         loaded = std::move(known->second);
       BodyMesh mesh = make_body_mesh(scene, loader, std::move(loaded));
       PlacedBody body{scene, std::move(mesh.tets), {}, model_.mesh.vertex_count(), model_.mesh.tet_count()};
+      body.first_triangle = static_cast<int>(model_.mesh.sheet.size());
       body.groups = std::move(mesh.groups);
       body.painted = std::make_shared<PaintedFields>(placement_of(scene), files_, body.name());
       try {
@@ -177,22 +159,33 @@ class SceneBuilder {
     append(from_user(body.numbering, body.mesh), model_.mesh);
     model_.numbering.vertex.append(body.first_vertex, body.numbering.vertex, vertices);
     model_.numbering.tet.append(body.first_tet, body.numbering.tet, tets);
-    model_.bodies.push_back({body.name(), body.first_vertex, vertices, body.first_tet, tets});
+    model_.bodies.push_back({body.name(), body.first_vertex, vertices, body.first_tet, tets, body.first_triangle,
+                             static_cast<int>(body.mesh.sheet.size())});
   }
 
   void add_model() {
     const Value& solver = *source_.document.find("solver");
     const MassKind kind = solver["mass"].text() == "lumped" ? MassKind::lumped : MassKind::consistent;
+    std::vector<MaterialParameters> of_sheets;
+    std::vector<double> density_of_sheets;
     for (PlacedBody& body : bodies_) {
       const Renumbering& tet = body.numbering.tet;
       const BodyMaterial material = body_material(body, files_, source_.notes);
       note_stiffness(body, material, source_.document.find("gravity")->vector(), source_.notes);
-      const std::vector<double> density = tet.from_user(material.density);
-      model_.density.insert(model_.density.end(), density.begin(), density.end());
+      if (!body.mesh.sheet.empty()) {
+        model_.elasticity.push_back(sheet_elasticity(body, model_.mesh, material.parameters));
+        append_to(density_of_sheets, material.density);
+        append_to(of_sheets, material.parameters);
+        continue;
+      }
+      append_to(model_.density, tet.from_user(material.density));
       const std::vector<MaterialParameters> parameters = from_user(tet, material.parameters);
       model_.elasticity.push_back(make_tet_elasticity(material.model, model_.mesh, body.first_tet, parameters));
       export_moduli(parameters, model_);
     }
+    append_to(model_.density, density_of_sheets);
+    export_moduli(of_sheets, model_);
+    model_.numbering.tet.append(model_.mesh.tet_count(), {}, static_cast<int>(model_.mesh.sheet.size()));
     model_.mass = std::make_unique<MassMatrix>(model_.mesh, model_.density, kind);
     add_actions(
         {bodies_, source_.document.find("gravity")->vector(), source_.document.find("time")->find("duration")->number(),

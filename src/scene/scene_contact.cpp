@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <set>
 
 #include "base/error.h"
@@ -45,14 +46,31 @@ ObstacleMotion recorded_motion(Value& obstacle, const AffineMap& place, SceneFil
   };
 }
 
-// Smallest Young's modulus of the elastic tets of a body; 0 without any.
+// Smallest Young's modulus of the elastic elements of a body; 0 without any.
 double smallest_young(const Model& model, const BodyRange& body) {
   double smallest = 0;
-  for (int t = body.first_tet; t < body.first_tet + body.tet_count; ++t) {
-    const double E = model.tet_fields[0].second[t];
+  const int first = body.first_element(model.mesh);
+  for (int e = first; e < first + body.element_count(); ++e) {
+    const double E = model.tet_fields[0].second[e];
     if (E > 0 && (smallest == 0 || E < smallest)) smallest = E;
   }
   return smallest;
+}
+
+// Adds the surface of a body. A sheet resists pressure by bending and stretching: its stiffness is E t / edge, and its
+// surface lies half the thickness from its triangles.
+void add_body(ContactPart part, const Model& model, const BodyRange& body, ContactMesh& contact) {
+  std::vector<int> rows(model.mesh.rest.size());
+  std::iota(rows.begin(), rows.end(), 0);
+  if (!body.is_sheet())
+    return contact.add(part, model.mesh.rest, boundary_triangles(model.mesh, body.first_tet, body.tet_count), rows);
+  const double thickness = model.mesh.thickness[body.first_triangle];
+  part.offset = thickness / 2;
+  contact.add(part, model.mesh.rest, std::span(model.mesh.sheet).subspan(body.first_triangle, body.triangle_count),
+              rows);
+  ContactPart& own = contact.parts.back();
+  own.young *= thickness / own.mean_edge;
+  own.self_offset = allowed_self_offset(contact, static_cast<int>(contact.parts.size()) - 1, thickness);
 }
 
 double friction_of(const Value& table, double fallback) {
@@ -61,7 +79,7 @@ double friction_of(const Value& table, double fallback) {
 }
 
 TriMesh surface_of(Value& obstacle, MeshLoader& loader) {
-  if (const Value* shape = obstacle.find("shape")) return boundary_surface(shape_mesh(*shape, loader)).surface;
+  if (const Value* shape = obstacle.find("shape")) return shape_surface(*shape, loader);
   const Value mesh = obstacle["mesh"];
   const std::filesystem::path path = loader.files.find(mesh);
   try {
@@ -93,7 +111,7 @@ void add_round_obstacle(const Value& obstacle, const Value& table, ContactPart p
   refuse_rotation(obstacle);
   const Vec3d from = table[table.find("center") ? "center" : "from"].vector();
   const Vec3d to = table.find("center") ? from : table["to"].vector();
-  part.radius = table["radius"].number();
+  part.offset = table["radius"].number();
   part.motion = motion_of(obstacle, {from, to});
   contact.add_capsule(part, {from, to});
 }
@@ -238,10 +256,8 @@ void add_scene_contact(Table& document, MeshLoader& loader, const std::vector<do
   const std::vector<Value>& bodies = document.find("body")->array();
   for (size_t b = 0; b < model.bodies.size(); ++b) {
     const BodyRange& body = model.bodies[b];
-    std::vector<int> rows(model.mesh.rest.size());
-    for (size_t v = 0; v < rows.size(); ++v) rows[v] = static_cast<int>(v);
-    contact.add({.name = body.name, .young = smallest_young(model, body), .friction = friction_of(bodies[b], friction)},
-                model.mesh.rest, boundary_triangles(model.mesh, body.first_tet, body.tet_count), rows);
+    add_body({.name = body.name, .young = smallest_young(model, body), .friction = friction_of(bodies[b], friction)},
+             model, body, contact);
   }
   if (obstacles) {
     complete_names(obstacles->array(), model);

@@ -40,6 +40,7 @@ std::string fingerprint_of(const TetMesh& mesh) {
   hash.add(mesh.rest.data(), mesh.rest.size() * sizeof(Vec3d));
   hash.add(mesh.tets.data(), mesh.tets.size() * sizeof(Tet));
   hash.add(mesh.region.data(), mesh.region.size() * sizeof(int));
+  hash.add(mesh.sheet.data(), mesh.sheet.size() * sizeof(Triangle));
   return hash.text();
 }
 

@@ -25,6 +25,7 @@ void add_body(Schema& s) {
             key("order", kInteger, "2: quadratic tets", Range{.min = 1, .max = 2}, Usual{"1", "linear tets"}),
             key("elastic", kBoolean, "false: no elastic energy, as for a mass-spring body",
                 Usual{"true", "a body is a continuum"}),
+            key("shell", kTable, "makes the body a sheet", Members{"shell"}),
             key("material", kTable, "material", Members{"material"}, Usual{"{}"}),
             key("deform", kTable, "initial shape; default: at rest", Members{"deform"}),
             key("velocity", kExpressions, "initial velocity of free vertices, a function of the rest position",
@@ -42,6 +43,23 @@ void add_body(Schema& s) {
             key("pressure", kTables, "follower pressures", Members{"pressure"}),
             key("cavity", kTables, "gas or liquid in a cavity", Members{"cavity"}),
             key("force", kTables, "dead loads per volume", Members{"force"})});
+  add_section(
+      s,
+      {"shell", "shell = { ... } in a [[body]]",
+       "A sheet, such as cloth: the triangles of `mesh` or `shape`, neo-Hookean in plane stress."},
+      {key("thickness", kNumber, "thickness", Units{"m"}, kPositive, kRequired),
+       key("moment", kNumber, "bending stiffness D; default: E t^3 / (12 (1 - nu^2))", Units{"N m"}, kNotNegative),
+       key("rest", kText, "angles between triangles at rest", Choices{{"mesh", "flat"}},
+           Usual{"\"mesh\"", "those of the mesh"}),
+       key("weave", kTable, "orthotropic fabric", Members{"weave"})});
+  add_section(s,
+              {"weave", "weave = { ... } in a shell",
+               "Orthotropic Saint Venant-Kirchhoff material: `young` of the material along the warp, `poisson` for "
+               "stretch along the warp."},
+              {key("weft", kNumber, "Young's modulus of the weft", Units{"Pa"}, kPositive, kRequired),
+               key("shear", kNumber, "shear modulus of warp and weft", Units{"Pa"}, kPositive, kRequired),
+               key("warp", kNumbers, "direction of the warp in the rest shape, projected onto each triangle",
+                   Usual{"[1.0, 0.0, 0.0]", "along x"})});
   s.alternatives.push_back({"body", {{"mesh", "mesh_size"}, {"shape"}}, true});
 }
 
@@ -58,7 +76,11 @@ void add_shapes(Schema& s) {
   shape("sphere", "about the origin");
   shape("torus", "about the z axis");
   shape("chamber", "a hollow ellipsoid about the z axis, open above");
-  s.alternatives.push_back({"shape", {{"box"}, {"cylinder"}, {"sphere"}, {"torus"}, {"chamber"}}, true});
+  shape("rectangle", "a sheet about the origin, normal to z");
+  shape("disc", "a round sheet about the origin, normal to z");
+  shape("tube", "an open tube from z = 0 to z = height, a sheet");
+  s.alternatives.push_back(
+      {"shape", {{"box"}, {"cylinder"}, {"sphere"}, {"torus"}, {"chamber"}, {"rectangle"}, {"disc"}, {"tube"}}, true});
 
   add_section(s, {"box", "box = { ... }", "A box cut into cells, each into tets."},
               {key("lower", kNumbers, "lowest corner", Units{"m"}, Usual{"[0.0, 0.0, 0.0]", "the origin"}),
@@ -89,6 +111,17 @@ void add_shapes(Schema& s) {
   length("chamber", "outer_length", "semi-axis of the outer surface along z");
   add_keys(s, "chamber", {key("base", kNumber, "z of the cut", Units{"m"}, Usual{"0.0", "half an ellipsoid"})});
   length("chamber", "size", "approximate edge length along the axis");
+  s.sections.push_back({"rectangle", "rectangle = { ... }", "A sheet in the plane z = 0 about the origin."});
+  length("rectangle", "width", "length along x");
+  length("rectangle", "height", "length along y");
+  length("rectangle", "size", "approximate edge length");
+  s.sections.push_back({"disc", "disc = { ... }", "A round sheet in the plane z = 0 about the origin."});
+  length("disc", "radius", "radius");
+  length("disc", "size", "approximate edge length");
+  s.sections.push_back({"tube", "tube = { ... }", "An open tube about the z axis, a sheet."});
+  length("tube", "radius", "radius");
+  length("tube", "height", "length along z");
+  length("tube", "size", "approximate edge length");
 }
 
 void add_placement(Schema& s) {

@@ -9,7 +9,8 @@
 #include "base/number_chars.h"
 #include "io/atomic_file.h"
 #include "io/legacy_vtk.h"
-#include "mesh/tet_shape.h"
+#include "mesh/elements.h"
+
 #include "scene/expression.h"
 
 namespace aspic {
@@ -38,6 +39,8 @@ bool parse_finite(std::string_view word, double& value) {
   return error == std::errc() && end == word.data() + word.size() && std::isfinite(value);
 }
 
+const char* elements_of(const TetMesh& mesh) { return mesh.sheet.empty() ? "tets" : "triangles"; }
+
 std::vector<double> from_vtu(const fs::path& path, const Value& table, const TetMesh& mesh) {
   const Value* name = table.find("name");
   const Vtu vtu = read_vtk_or_vtu(path);
@@ -49,20 +52,22 @@ std::vector<double> from_vtu(const fs::path& path, const Value& table, const Tet
                    path.filename().string() + " needs `name`, its cell field" + suggestion("", known));
   for (const Field& f : vtu.cell_fields) {
     if (f.name != name->text() || f.components != 1) continue;
-    if (f.values.size() != mesh.tets.size())
+    if (f.values.size() != static_cast<size_t>(mesh.element_count()))
       throw error_at(name->place, path.filename().string() + " has " + std::to_string(f.values.size()) +
-                                      " cells; the body has " + std::to_string(mesh.tets.size()) + " tets");
+                                      " cells; the body has " + std::to_string(mesh.element_count()) + " " +
+                                      elements_of(mesh));
     return f.values;
   }
   throw error_at(name->place, path.filename().string() + " has no cell field " + toml_string(name->text()) +
                                   " of one component" + suggestion(name->text(), known));
 }
 
-// The value of a painted tet is the mean of its corners, that of the linear field at the centroid.
+// The value of a painted element is the mean of its corners, that of the linear field at the centroid.
 std::vector<double> from_painting(Table& table, const FieldScope& scope) {
   const std::vector<double>& at = scope.painted.at_vertices(table, scope.mesh);
   std::vector<double> values;
   for (const auto& [a, b, c, d] : scope.mesh.tets) values.push_back(0.25 * ((at[a] + at[b]) + (at[c] + at[d])));
+  for (const auto& [a, b, c] : scope.mesh.sheet) values.push_back((at[a] + at[b] + at[c]) / 3);
   return values;
 }
 
@@ -76,7 +81,8 @@ std::vector<double> from_table(Table& table, const fs::path& path, const FieldSc
     if (const Value* field = table.find("name"))
       throw error_at(field->place,
                      "name = " + toml_string(field->text()) + "; only VTU and PLY files have named fields");
-    values = read_number_table(path, 1, scope.mesh.tets.size(), "a tet", name.place);
+    values = read_number_table(path, 1, static_cast<size_t>(scope.mesh.element_count()),
+                               scope.mesh.sheet.empty() ? "a tet" : "a triangle", name.place);
   }
   check_fingerprint(table, "hash", fingerprint_of_file(path), path.string());
   table.set("file", {scope.files.keep(path, stem), {}});
@@ -137,7 +143,7 @@ std::vector<double> from_formula(const Value& value, const TetMesh& mesh) {
   const Expression formula(value.text());
   std::vector<double> values;
   try {
-    for (int t = 0; t < mesh.tet_count(); ++t) values.push_back(formula.at(centroid(mesh, t)));
+    for (int e = 0; e < mesh.element_count(); ++e) values.push_back(formula.at(element_center(mesh, e)));
   } catch (const InvalidInput& e) {
     throw error_at(value.place, e.what());
   }
@@ -183,10 +189,10 @@ std::vector<double> read_number_table(const fs::path& path, size_t columns, size
   return values;
 }
 
-std::vector<double> tet_values(Table& table, const Key& key, const FieldScope& scope) {
+std::vector<double> element_values(Table& table, const Key& key, const FieldScope& scope) {
   const TetMesh& mesh = scope.mesh;
   Value& value = *table.find(key.name);
-  if (value.is_number()) return std::vector<double>(mesh.tets.size(), value.number());
+  if (value.is_number()) return std::vector<double>(mesh.element_count(), value.number());
   std::vector<double> values;
   if (value.is_text()) {
     values = from_formula(value, mesh);
@@ -195,11 +201,12 @@ std::vector<double> tet_values(Table& table, const Key& key, const FieldScope& s
   } else {
     values = from_file(value.table(), scope, scope.stem + "." + key.name);
   }
-  for (int t = 0; t < mesh.tet_count(); ++t)
-    if (!key.range.contains(values[t]))
-      throw error_at(value.place, key.name + " = " + number_text(values[t]) + " in tet " +
-                                      std::to_string(scope.whole ? scope.whole->number_of_tet(t) : t) + " at " +
-                                      point_text(centroid(mesh, t)) + "; must be " + key.range.text());
+  for (int e = 0; e < mesh.element_count(); ++e)
+    if (!key.range.contains(values[e]))
+      throw error_at(value.place, key.name + " = " + number_text(values[e]) +
+                                      (mesh.is_tet(e) ? " in tet " : " in triangle ") +
+                                      std::to_string(scope.whole ? scope.whole->number_of_tet(e) : e) + " at " +
+                                      point_text(element_center(mesh, e)) + "; must be " + key.range.text());
   return values;
 }
 

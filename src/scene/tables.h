@@ -1,4 +1,4 @@
-// Reads tables of numbers and values per tet.
+// Reads tables of numbers and values per element of a body: its tets, or the triangles of a sheet.
 #pragma once
 #include <filesystem>
 #include <string>
@@ -27,8 +27,8 @@ struct FieldScope {
   const MeshGroups* groups = nullptr;  // of the mesh file; null: none
 };
 
-// Returns `table[key.name]` for each tet: a number, a formula of the centroid, a number per region, or a file, checked
-// against the range of the key. Files are added to the results.
-std::vector<double> tet_values(Table& table, const Key& key, const FieldScope& scope);
+// Returns `table[key.name]` for each element: a number, a formula of the centroid, a number per region, or a file,
+// checked against the range of the key. Files are added to the results.
+std::vector<double> element_values(Table& table, const Key& key, const FieldScope& scope);
 
 }  // namespace aspic

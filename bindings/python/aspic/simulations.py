@@ -145,6 +145,11 @@ class Simulation(Strict):
         return read_only(self._core.tets)
 
     @property
+    def triangles(self):
+        """Vertices of each triangle of the sheets, (k, 3)."""
+        return read_only(self._core.triangles)
+
+    @property
     def mass(self):
         """Mass of each vertex, (n,) [kg]."""
         return read_only(self._core.mass)
@@ -156,8 +161,9 @@ class Simulation(Strict):
 
     @property
     def bodies(self):
-        """{name: {"vertices": slice, "tets": slice}}: sim.q[sim.bodies["jelly"]["vertices"]]."""
-        return {b["name"]: {"vertices": b["vertices"], "tets": b["tets"]} for b in self._core.bodies}
+        """{name: {"vertices": slice, "tets": slice, "triangles": slice}}: sim.q[sim.bodies["jelly"]["vertices"]]."""
+        keys = ("vertices", "tets", "triangles")
+        return {b["name"]: {key: b[key] for key in keys} for b in self._core.bodies}
 
     def fields(self):
         """Quantities of each tet: energy_density [J/m^3], det_F, cauchy (m, 6) and von_mises [Pa], young, poisson."""

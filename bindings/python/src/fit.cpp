@@ -26,6 +26,8 @@ namespace {
 class ParameterArrays {
  public:
   explicit ParameterArrays(const Model& model) : tet_(model.numbering.tet) {
+    if (!model.mesh.sheet.empty())
+      throw InvalidInput("the scene has sheets; derivatives by material parameters need bodies of tets");
     for (const auto& term : model.elasticity) {
       if (count_ != 0 && term->parameter_count() != count_)
         throw InvalidInput("the bodies have materials with different numbers of parameters; give them one material");

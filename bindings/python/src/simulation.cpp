@@ -210,7 +210,7 @@ py::dict fields_of(LiveSimulation& self) {
   const Simulation& simulation = self.simulation();
   const Renumbering& tet = simulation.model().numbering.tet;
   const TetFields fields = simulation.tet_fields();
-  const py::ssize_t tets = simulation.model().mesh.tet_count();
+  const py::ssize_t tets = simulation.model().mesh.element_count();
   py::dict result;
   result["energy_density"] = to_array(tet.to_user(fields.energy_density), {tets});
   result["det_F"] = to_array(tet.to_user(fields.det_F), {tets});
@@ -251,6 +251,7 @@ py::list bodies_of(LiveSimulation& self) {
     entry["name"] = body.name;
     entry["vertices"] = py::slice(body.first_vertex, body.first_vertex + body.vertex_count, 1);
     entry["tets"] = py::slice(body.first_tet, body.first_tet + body.tet_count, 1);
+    entry["triangles"] = py::slice(body.first_triangle, body.first_triangle + body.triangle_count, 1);
     list.append(entry);
   }
   return list;
@@ -260,8 +261,16 @@ py::array_t<int> tets_of(LiveSimulation& self) {
   const Model& model = self.simulation().model();
   const TetMesh mesh = to_user(model.numbering, model.mesh);
   py::array_t<int> tets({static_cast<py::ssize_t>(mesh.tets.size()), py::ssize_t{4}});
-  std::copy_n(mesh.tets.data()->data(), tets.size(), tets.mutable_data());
+  if (!mesh.tets.empty()) std::copy_n(mesh.tets.data()->data(), tets.size(), tets.mutable_data());
   return tets;
+}
+
+py::array_t<int> triangles_of(LiveSimulation& self) {
+  const Model& model = self.simulation().model();
+  const TetMesh mesh = to_user(model.numbering, model.mesh);
+  py::array_t<int> triangles({static_cast<py::ssize_t>(mesh.sheet.size()), py::ssize_t{3}});
+  if (!mesh.sheet.empty()) std::copy_n(mesh.sheet.data()->data(), triangles.size(), triangles.mutable_data());
+  return triangles;
 }
 
 py::array pinned_of(LiveSimulation& self) {
@@ -310,6 +319,7 @@ void bind_simulation(py::module_& m) {
                                return to_array(to_user(model.numbering, model.mesh).rest);
                              })
       .def_property_readonly("tets", &tets_of)
+      .def_property_readonly("triangles", &triangles_of)
       .def_property_readonly("pinned", &pinned_of)
       .def_property_readonly("mass",
                              [](LiveSimulation& s) {

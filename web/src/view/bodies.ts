@@ -6,8 +6,10 @@ import type { Geometry } from "../protocol";
 const kFurther = ["#56a35a", "#c9699f", "#d8c23f", "#7a68c4", "#3fb0b5", "#b5543f", "#8a929e"];
 
 export function bodyOfTet(tet: number, bodyTets: readonly number[]): number {
-  let body = bodyTets.length - 1;
-  while (body > 0 && tet < bodyTets[body]) --body;
+  let body = -1;
+  bodyTets.forEach((first, other) => {
+    if (first <= tet && (body < 0 || first >= bodyTets[body])) body = other;
+  });
   return Math.max(0, body);
 }
 

@@ -52,6 +52,16 @@ function upload(attribute: THREE.BufferAttribute, array: THREE.TypedArray): void
   attribute.needsUpdate = true;
 }
 
+// One per vertex: 1 in a sheet.
+function sheetFlags(geometry: Geometry, tets: number): THREE.BufferAttribute {
+  const flags = new Float32Array(geometry.rest.length / 3);
+  geometry.tet.forEach((element, t) => {
+    if (element < tets) return;
+    for (let c = 0; c < 3; ++c) flags[geometry.triangles[3 * t + c]] = 1;
+  });
+  return new THREE.BufferAttribute(flags, 1);
+}
+
 export class Body {
   readonly root = new THREE.Group(); // meters inside, units of the stage outside
   readonly edge: number; // mean edge length at rest [m]
@@ -78,6 +88,7 @@ export class Body {
   constructor(
     readonly geometry: Geometry,
     bodyTets: readonly number[] = [],
+    tets = Infinity, // number of tets; elements from there on are triangles of sheets, which have no inside
   ) {
     this.bodyCount = bodyTets.length;
     this.bodies = this.bodyCount > 1 ? bodiesOf(geometry, bodyTets) : null;
@@ -96,6 +107,7 @@ export class Body {
     this.wires.renderOrder = 1;
     this.pins.renderOrder = 2;
     for (const object of [this.mesh, this.wires, this.pins]) object.frustumCulled = false;
+    if (geometry.tet.some((element) => element >= tets)) this.mesh.geometry.setAttribute("isSheet", sheetFlags(geometry, tets));
     this.root.add(this.mesh, this.wires, this.pins, this.fibres);
     this.root.visible = false;
     this.root.matrixAutoUpdate = false;

@@ -34,7 +34,7 @@ const kFieldPars = /* glsl */ `
   uniform float fieldLow, fieldScale;
   uniform bool fieldLog, fieldShown, insideOwn, inverted;
   uniform vec3 insideColor;
-  varying float vFieldValue;
+  varying float vFieldValue, vIsSheet;
 `;
 
 const kFieldColor = /* glsl */ `
@@ -45,7 +45,7 @@ const kFieldColor = /* glsl */ `
     diffuseColor.rgb = texture2D(fieldMap, vec2((at * (texels - 1.0) + 0.5) / texels, 0.5)).rgb;
     if (isnan(vFieldValue)) diffuseColor.rgb = vec3(0.3);
   }
-  if (insideOwn && gl_FrontFacing == inverted) diffuseColor.rgb = insideColor;
+  if (insideOwn && vIsSheet < 0.5 && gl_FrontFacing == inverted) diffuseColor.rgb = insideColor;
 `;
 
 export function makeSurfaceMaterial(uniforms: FieldUniforms): THREE.MeshPhongMaterial {
@@ -54,8 +54,8 @@ export function makeSurfaceMaterial(uniforms: FieldUniforms): THREE.MeshPhongMat
   material.polygonOffsetFactor = 1;
   material.polygonOffsetUnits = 2;
   const vertex = {
-    "#include <common>": "#include <common>\nattribute float fieldValue;\nvarying float vFieldValue;",
-    "#include <begin_vertex>": "#include <begin_vertex>\nvFieldValue = fieldValue;",
+    "#include <common>": "#include <common>\nattribute float fieldValue, isSheet;\nvarying float vFieldValue, vIsSheet;",
+    "#include <begin_vertex>": "#include <begin_vertex>\nvFieldValue = fieldValue;\nvIsSheet = isSheet;",
   };
   const fragment = { "#include <common>": `#include <common>\n${kFieldPars}`, "#include <color_fragment>": kFieldColor };
   return extend(material, uniforms, vertex, fragment);

@@ -1,0 +1,100 @@
+#include "energy/sheet_elasticity.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <span>
+
+#include "base/parallel.h"
+#include "energy/membrane_law.h"
+
+namespace aspic {
+namespace {
+
+class SheetElasticity : public TetElasticity {
+ public:
+  SheetElasticity(const TetMesh& mesh, int first, const SheetMaterial& material)
+      : first_element_(mesh.tet_count() + first) {
+    const auto corners = std::span(mesh.sheet).subspan(first, material.laws.size());
+    const auto& X = mesh.rest;
+    for (const Triangle& t : corners) triangles_.push_back(make_sheet_triangle(t, {X[t[0]], X[t[1]], X[t[2]]}));
+    for (const MembraneLaw& law : material.laws) moduli_.emplace_back(law);
+    membrane_ = make_membrane(triangles_, material.laws);
+    bending_ = make_hinge_bending(X, corners, material.moment, material.rest);
+  }
+
+  std::string_view name() const override { return "elastic"; }
+  void add_couplings(Couplings& couplings) const override {
+    membrane_->add_couplings(couplings);
+    bending_->add_couplings(couplings);
+  }
+  void bind(const BlockPattern& pattern) override {
+    membrane_->bind(pattern);
+    bending_->bind(pattern);
+  }
+  double value(Positions x, const Context& context) const override {
+    return membrane_->value(x, context) + bending_->value(x, context);
+  }
+  void add_gradient(Positions x, const Context& context, double scale, std::span<double> g) const override {
+    membrane_->add_gradient(x, context, scale, g);
+    bending_->add_gradient(x, context, scale, g);
+  }
+  int add_hessian(Positions x, const Context& context, double scale, const Projection& projection,
+                  BlockSparse& H) const override {
+    return membrane_->add_hessian(x, context, scale, projection, H) +
+           bending_->add_hessian(x, context, scale, projection, H);
+  }
+
+  double min_det_F(Positions x) const override {
+    double least = std::numeric_limits<double>::infinity();
+    for (size_t t = 0; t < triangles_.size(); ++t) least = std::min(least, deformation(t, x).J);
+    return least;
+  }
+  bool excludes_inversion() const override { return true; }
+  void evaluate(Positions x, TetFields& fields) const override {
+    parallel_for(static_cast<int>(triangles_.size()), [&](int t) { evaluate_triangle(t, x, fields); });
+  }
+
+  int parameter_count() const override { return 0; }
+  std::span<const MaterialParameters> parameters() const override { return {}; }
+  void set_parameters(std::span<const MaterialParameters>) override {}
+
+ private:
+  SheetDeformation deformation(size_t t, Positions x) const {
+    const auto& [a, b, c] = triangles_[t].corners;
+    const auto& B = triangles_[t].rest_inverse;
+    const Vec3d p = point(x, b) - point(x, a), q = point(x, c) - point(x, a);
+    return {B[0] * p + B[1] * q, B[2] * p + B[3] * q};
+  }
+
+  void evaluate_triangle(int t, Positions x, TetFields& fields) const {
+    const size_t e = static_cast<size_t>(first_element_) + t;
+    const SheetDeformation d = deformation(t, x);
+    fields.energy_density[e] = moduli_[t].density(d);
+    fields.det_F[e] = d.J;
+    const Sym2 S = moduli_[t].stress(d);
+    Mat3d cauchy =
+        S.xx * outer(d.f1, d.f1) + S.yy * outer(d.f2, d.f2) + S.xy * (outer(d.f1, d.f2) + outer(d.f2, d.f1));  // F S F'
+    cauchy = (1 / d.J) * cauchy;
+    double* stress = &fields.cauchy[6 * e];
+    constexpr int kRow[6] = {0, 1, 2, 0, 1, 2}, kColumn[6] = {0, 1, 2, 1, 2, 0};
+    for (int k = 0; k < 6; ++k) stress[k] = cauchy(kRow[k], kColumn[k]);
+    const double mean = trace(cauchy) / 3;
+    for (int i = 0; i < 3; ++i) cauchy(i, i) -= mean;
+    fields.von_mises[e] = std::sqrt(1.5 * squared_norm(cauchy));
+  }
+
+  int first_element_;
+  std::vector<SheetTriangle> triangles_;
+  std::vector<SheetModuli> moduli_;
+  std::unique_ptr<Membrane> membrane_;
+  std::unique_ptr<HingeBending> bending_;
+};
+
+}  // namespace
+
+std::unique_ptr<TetElasticity> make_sheet_elasticity(const TetMesh& mesh, int first, const SheetMaterial& material) {
+  return std::make_unique<SheetElasticity>(mesh, first, material);
+}
+
+}  // namespace aspic

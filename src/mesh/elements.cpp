@@ -1,0 +1,87 @@
+#include "mesh/elements.h"
+
+#include <cmath>
+
+#include "mesh/tet_nodes.h"
+#include "mesh/tet_shape.h"
+
+namespace aspic {
+namespace {
+
+// The edges of a triangle and its unit normal.
+Mat3d with_normal(const Vec3d& a, const Vec3d& b) {
+  const Vec3d n = cross(a, b);
+  return from_columns(a, b, (1 / norm(n)) * n);
+}
+
+struct Offsets {
+  int tets, vertices;
+};
+
+void append_mids(const TetMesh& body, const Offsets& offsets, TetMesh& all) {
+  constexpr MidNodes kLinear = {-1, -1, -1, -1, -1, -1};
+  if (body.mids.empty() && all.mids.empty()) return;
+  all.mids.resize(offsets.tets, kLinear);
+  for (MidNodes mids : body.mids) {
+    for (int& node : mids) node += offsets.vertices;
+    all.mids.push_back(mids);
+  }
+  all.mids.resize(all.tets.size(), kLinear);
+}
+
+}  // namespace
+
+double element_volume(const TetMesh& mesh, int element) {
+  if (mesh.is_tet(element)) return volume(mesh, element);
+  const auto& [a, b, c] = mesh.triangle(element);
+  const auto& X = mesh.rest;
+  return mesh.thickness[element - mesh.tet_count()] * norm(cross(X[b] - X[a], X[c] - X[a])) / 2;
+}
+
+Vec3d element_center(const TetMesh& mesh, int element) {
+  if (mesh.is_tet(element)) return centroid(mesh, element);
+  const auto& [a, b, c] = mesh.triangle(element);
+  return (1.0 / 3) * (mesh.rest[a] + mesh.rest[b] + mesh.rest[c]);
+}
+
+double element_quality(const TetMesh& mesh, int element) {
+  if (mesh.is_tet(element)) return mean_ratio(corners(mesh, element));
+  const auto& [a, b, c] = mesh.triangle(element);
+  const auto& X = mesh.rest;
+  const Vec3d ab = X[b] - X[a], ac = X[c] - X[a];
+  const double squares = squared_norm(ab) + squared_norm(ac) + squared_norm(X[c] - X[b]);
+  return squares > 0 ? 2 * std::sqrt(3.0) * norm(cross(ab, ac)) / squares : 0;
+}
+
+Mat3d deformation_gradient(const TetMesh& mesh, int element, std::span<const double> x) {
+  if (mesh.is_tet(element)) {
+    const auto [a, b, c, d] = center_corners(mesh, element, x);
+    return from_columns(b - a, c - a, d - a) * inverse(edge_matrix(mesh, element));
+  }
+  const auto& [i, j, k] = mesh.triangle(element);
+  const auto at = [&](int v) { return Vec3d{{x[3 * v], x[3 * v + 1], x[3 * v + 2]}}; };
+  const auto& X = mesh.rest;
+  return with_normal(at(j) - at(i), at(k) - at(i)) * inverse(with_normal(X[j] - X[i], X[k] - X[i]));
+}
+
+std::string size_text(const TetMesh& mesh) {
+  std::string text = std::to_string(mesh.vertex_count()) + " vertices";
+  if (!mesh.tets.empty() || mesh.sheet.empty()) text += ", " + std::to_string(mesh.tet_count()) + " tets";
+  if (!mesh.sheet.empty()) text += ", " + std::to_string(mesh.sheet.size()) + " triangles";
+  return text;
+}
+
+void append(const TetMesh& body, TetMesh& all) {
+  const int offset = all.vertex_count(), first_tet = all.tet_count();
+  all.rest.insert(all.rest.end(), body.rest.begin(), body.rest.end());
+  for (const Tet& t : body.tets) all.tets.push_back({t[0] + offset, t[1] + offset, t[2] + offset, t[3] + offset});
+  append_mids(body, {first_tet, offset}, all);
+  for (const Triangle& t : body.sheet) all.sheet.push_back({t[0] + offset, t[1] + offset, t[2] + offset});
+  all.thickness.insert(all.thickness.end(), body.thickness.begin(), body.thickness.end());
+  if (body.region.empty() && all.region.empty()) return;
+  all.region.resize(first_tet, 0);
+  all.region.insert(all.region.end(), body.region.begin(), body.region.end());
+  all.region.resize(all.tets.size(), 0);
+}
+
+}  // namespace aspic

@@ -1,0 +1,136 @@
+#include "scene/body_sheet.h"
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+
+#include "base/error.h"
+#include "energy/sheet_elasticity.h"
+#include "io/mesh_file.h"
+#include "mesh/sheet_shapes.h"
+#include "mesh/surface.h"
+#include "mesh/topology.h"
+#include "mesh/triangle_shape.h"
+#include "scene/placement.h"
+#include "scene/schema.h"
+
+namespace aspic {
+namespace {
+
+// Keys of a body that need tets.
+void refuse_keys_of_solids(const Value& body) {
+  const auto refuse = [&](const Value& value, const std::string& key) {
+    throw error_at(value.place, key + ": body '" + body["name"].text() + "' has `shell`, and " + key +
+                                    " needs a solid (remove one of the two)");
+  };
+  for (const char* key : {"skin", "mesh_size", "viscoelastic", "fibre", "muscle", "cavity", "force", "grab"})
+    if (const Value* value = body.find(key)) refuse(*value, key);
+  if (const Value& order = body["order"]; order.number() != 1) refuse(order, "order = 2");
+  if (const Value& elastic = body["elastic"]; !elastic.boolean()) refuse(elastic, "elastic = false");
+  const Value& material = body["material"];
+  if (const Value* file = material.find("file")) refuse(*file, "material.file");
+  if (const Value& model = material["model"]; model.text() != "neo_hookean")
+    throw error_at(model.place,
+                   "model = " + toml_string(model.text()) + "; a shell is neo_hookean, or has shell.weave");
+  const Value& viscosity = body["damping"]["viscosity"];
+  if (!viscosity.is_number() || viscosity.number() != 0) refuse(viscosity, "damping.viscosity");
+  if (const Value* springs = body.find("spring"))
+    for (const Value& spring : springs->array())
+      if (const Value* edges = spring.find("edges")) refuse(*edges, "spring.edges");
+}
+
+TriMesh sheet_from_file(Value& body, MeshLoader& loader) {
+  const Value mesh = body["mesh"];
+  const std::filesystem::path path = loader.files.find(mesh);
+  try {
+    TriMesh surface = read_tri_mesh(path.string());
+    body.table().set("mesh", {loader.files.keep(path, body["name"].text()), {}});
+    return surface;
+  } catch (const InvalidInput& e) {
+    throw error_at(mesh.place, std::string("mesh = ") + toml_string(mesh.text()) + ": " + e.what());
+  }
+}
+
+std::string list_of(const std::vector<int>& triangles) {
+  std::string text;
+  for (size_t i = 0; i < std::min<size_t>(triangles.size(), 5); ++i)
+    text += (i ? ", " : " (") + std::to_string(triangles[i]);
+  return text + (triangles.size() > 5 ? ", ...)" : ")");
+}
+
+// Throws InvalidInput for triangles that have no shape, and for vertices of no triangle.
+void check(const TriMesh& mesh, const Value& body) {
+  const std::string which = "body '" + body["name"].text() + "': ";
+  const Place place = (body.find("mesh") ? body["mesh"] : body["shape"]).place;
+  if (mesh.triangles.empty()) throw error_at(place, which + "the mesh has no triangles");
+  std::vector<int> flat;
+  std::vector<char> is_used(mesh.vertices.size(), 0);
+  for (int t = 0; t < mesh.triangle_count(); ++t) {
+    const auto& [a, b, c] = mesh.triangles[t];
+    for (const int v : mesh.triangles[t]) is_used[v] = 1;
+    if (lists_vertex_twice(mesh.triangles[t]) || is_degenerate({mesh.vertices[a], mesh.vertices[b], mesh.vertices[c]}))
+      flat.push_back(t);
+  }
+  if (!flat.empty())
+    throw error_at(place, which + std::to_string(flat.size()) + " triangles have no area" + list_of(flat) +
+                              "; remove them in the source model, or with aspic check MESH --repair -o MENDED");
+  if (const std::vector<int> repeated = repeated_elements(mesh.triangles); !repeated.empty())
+    throw error_at(place, which + std::to_string(repeated.size()) + " triangles have the vertices of an earlier one" +
+                              list_of(repeated) + "; remove them, or run aspic check MESH --repair -o MENDED");
+  if (const auto unused = std::count(is_used.begin(), is_used.end(), 0); unused > 0)
+    throw error_at(place, which + std::to_string(unused) +
+                              " vertices belong to no triangle; remove them (aspic check MESH --repair -o MENDED)");
+}
+
+}  // namespace
+
+BodyMesh make_sheet_mesh(Value& body, MeshLoader& loader) {
+  refuse_keys_of_solids(body);
+  const Value* shape = body.find("shape");
+  TriMesh surface = shape ? shape_surface(*shape, loader) : sheet_from_file(body, loader);
+  check(surface, body);
+  if (const std::string why = loader.why_not(surface.triangle_count()); !why.empty())
+    throw error_at(body.place, why + " (choose a coarser mesh)");
+  loader.tets += surface.triangle_count();
+  place(placement_of(body), surface.vertices);
+  TetMesh mesh{.rest = surface.vertices, .tets = {}, .region = {}};
+  mesh.sheet = surface.triangles;
+  mesh.thickness.assign(mesh.sheet.size(), body["shell"]["thickness"].number());
+  check_fingerprint(body.table(), "mesh_hash", fingerprint_of(mesh), "the mesh of body '" + body["name"].text() + "'");
+  BodyMesh result;
+  for (int v = 0; v < surface.vertex_count(); ++v) result.embedding.carriers.push_back(Carrier::of_vertex(v));
+  result.skin = std::move(surface);
+  result.tets = std::move(mesh);
+  return result;
+}
+
+std::unique_ptr<TetElasticity> sheet_elasticity(const PlacedBody& body, const TetMesh& mesh,
+                                                std::span<const MaterialParameters> parameters) {
+  const Value& shell = body.scene["shell"];
+  const double thickness = shell["thickness"].number();
+  const Value *moment = shell.find("moment"), *weave = shell.find("weave");
+  SheetMaterial material;
+  material.rest = shell["rest"].text() == "flat" ? RestAngles::flat : RestAngles::of_rest;
+  for (size_t t = 0; t < parameters.size(); ++t) {
+    const double E = young_modulus(parameters[t].lame), nu = poisson_ratio(parameters[t].lame);
+    if (nu < 0)
+      throw error_at(body.scene["material"].place, "Poisson's ratio is " + number_text(nu) + " in triangle " +
+                                                       std::to_string(t) + "; that of a shell must be at least 0");
+    material.moment.push_back(moment ? moment->number() : E * std::pow(thickness, 3) / (12 * (1 - nu * nu)));
+    if (!weave) {
+      material.laws.push_back(IsotropicSheet{E, nu, thickness});
+      continue;
+    }
+    const double weft = (*weave)["weft"].number();
+    if (!(nu * nu * weft < E))
+      throw error_at((*weave)["weft"].place, "weft = " + number_text(weft) +
+                                                 "; must be below young / poisson^2 = " + number_text(E / (nu * nu)));
+    const Triangle& corners = mesh.sheet[body.first_triangle + t];
+    const PlaneVector warp = direction_in_plane({mesh.rest[corners[0]], mesh.rest[corners[1]], mesh.rest[corners[2]]},
+                                                (*weave)["warp"].vector());
+    material.laws.push_back(OrthotropicSheet{E, weft, nu, (*weave)["shear"].number(), thickness, warp});
+  }
+  return make_sheet_elasticity(mesh, body.first_triangle, material);
+}
+
+}  // namespace aspic

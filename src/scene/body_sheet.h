@@ -1,0 +1,20 @@
+// Bodies that are sheets: their mesh and their elasticity.
+#pragma once
+#include <memory>
+#include <optional>
+#include <span>
+
+#include "energy/tet_elasticity.h"
+#include "scene/body_actions.h"
+#include "scene/body_mesh.h"
+
+namespace aspic {
+
+// Resolves mesh or shape of a body with `shell`, and names its file in the results. Throws InvalidInput.
+BodyMesh make_sheet_mesh(Value& body, MeshLoader& loader);
+
+// Returns the elastic energy of a body with `shell`. `parameters`: one per triangle. Throws InvalidInput.
+std::unique_ptr<TetElasticity> sheet_elasticity(const PlacedBody& body, const TetMesh& mesh,
+                                                std::span<const MaterialParameters> parameters);
+
+}  // namespace aspic
