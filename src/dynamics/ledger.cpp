@@ -6,6 +6,7 @@
 
 #include "contact/barrier.h"
 #include "contact/friction.h"
+#include "energy/wind.h"
 
 namespace aspic {
 namespace {
@@ -90,6 +91,16 @@ ObstacleWork work_of_obstacles(const StepTools& tools, const State& end, StepRep
   report.friction_loss = work.friction;
   for (size_t i = 0; i < force.size(); ++i) report.friction_loss += force[i] * (end.q[i] - tools.start.q[i]);
   return work;
+}
+
+// Returns the work of the moving air in the step [J].
+double work_of_wind(const StepTools& tools, const State& end) {
+  for (const ActiveTerm& D : tools.E.terms().damping()) {
+    if (&D.energy() != tools.model.wind) continue;
+    const double h = D.context().h;  // of a stage
+    return h > 0 ? tools.h / h * tools.model.wind->work(end.q, D.context()).wind : 0;
+  }
+  return 0;
 }
 
 }  // namespace
@@ -358,18 +369,18 @@ BoundedEnergies Ledger::add(const StepTools& tools, const Integrator& integrator
   const double conservative = internal.work - internal.loss;  // stored or lost numerically
   const double loss = (works.inertia.value() - kinetic_gain) + works.gradient.value() -
                       (potential_gain - target - obstacles.contact) + conservative;
-  const double rim_work = -works.rims.value();
-  const double dissipated = works.damping.value() + rim_work + obstacles.friction - conservative;
+  const double driven = -works.rims.value() + work_of_wind(tools, end);
+  const double dissipated = works.damping.value() + driven + obstacles.friction - conservative;
   note_residual(tools, forces, report);
   report.pin_work += pin_work;
   report.obstacle_work += obstacles.contact + obstacles.friction;
-  report.nonconservative_work += rim_work;
+  report.nonconservative_work += driven;
   report.damping_loss += dissipated;
   report.viscoelastic_loss += internal.loss;
   report.numerical_loss += loss;
   report.residual_work += works.residual.value();
-  report.ledger_error += kinetic_gain + potential_gain - pin_work - (obstacles.contact + obstacles.friction) -
-                         rim_work + dissipated + loss - works.residual.value();
+  report.ledger_error += kinetic_gain + potential_gain - pin_work - (obstacles.contact + obstacles.friction) - driven +
+                         dissipated + loss - works.residual.value();
 
   add_resultants(tools, end, forces, report.resultants);
 
@@ -379,7 +390,8 @@ BoundedEnergies Ledger::add(const StepTools& tools, const Integrator& integrator
                              .reached = potential_after + internal.gain + works.jump,
                              .magnitude = magnitude,
                              .round_off = works.round_off + kLastDigits * tools.E.sizes().growth_stiffness()};
-  const bool has_moved = works.pins_moved || (tools.model.contact && tools.model.contact->has_moving_obstacle());
+  const bool has_moved =
+      works.pins_moved || tools.model.wind || (tools.model.contact && tools.model.contact->has_moving_obstacle());
   if (has_moved && integrator.facts().is_backward_euler) allow_moved_pins(tools, end, bounded, report);
   return bounded;
 }

@@ -8,7 +8,7 @@
 // zero for midpoint with linear forces, 1/2 dv' M dv + dV/dx . dx - dV for backward Euler.
 // Terms with internal variables (InternalTerms) have a stored energy, which is part of dV, and a loss. Their
 // work beyond gain and loss is part of numerical_loss instead of C . dx.
-// The rims of pressures on open patches are part of C; their work is reported apart from damping.
+// The rims of pressures on open patches and the wind are part of C; their work is reported apart from damping.
 #pragma once
 #include <vector>
 

@@ -17,6 +17,7 @@ namespace aspic {
 
 class Barrier;
 class Friction;
+class Wind;
 
 // Range of a body in the mesh. Its vertices and elements are consecutive. A body has tets, or is a sheet.
 struct BodyRange {
@@ -58,6 +59,7 @@ struct Model {
   std::vector<Pin> pins;                                   // Dirichlet conditions
   const Barrier* contact = nullptr;                        // one of the loads; null: no contact
   const Friction* friction = nullptr;                      // one of the damping terms; null: no friction
+  const Wind* wind = nullptr;                              // one of the damping terms; null: no wind
   // If several processes hold the model, value(), min_det_F() and the counts of its terms are those of the whole model.
   Share share;
 

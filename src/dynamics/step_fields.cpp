@@ -195,7 +195,8 @@ std::vector<StepField>& fields() {
       optional(real<&R::muscle_work>({"muscle_work", "J", "share of muscles in `pin_work`"}, kMeasured)),
       optional(real<&R::obstacle_work>({"obstacle_work", "J", "work of moving obstacles"}, kMeasured)),
       optional(real<&R::nonconservative_work>(
-          {"nonconservative_work", "J", "work of pressures on open patches beyond the change of their potential"},
+          {"nonconservative_work", "J",
+           "work of wind, and of pressures on open patches beyond the change of their potential"},
           kMeasured)),
       real<&R::damping_loss>({"damping_loss", "J", "energy dissipated by damping and friction"}, kMeasured),
       optional(real<&R::viscoelastic_loss>(

@@ -87,7 +87,7 @@ struct StepReport : Work {  // work of all solves of the step and of this report
   double muscle_work = 0;           // share of muscles with changing activation in pin_work
   double obstacle_work = 0;         // work of moving obstacles on bodies, including friction, in this step
   std::vector<double> target_work;  // share of the moving targets of each of Model::loads
-  double nonconservative_work = 0;  // work of pressures on open patches beyond the loss of their potential in this step
+  double nonconservative_work = 0;  // work of wind, and of pressures on open patches beyond the loss of their potential
   double damping_loss = 0;          // energy dissipated by damping and friction in this step
   double viscoelastic_loss = 0;     // share of the terms with internal variables in damping_loss
   double numerical_loss = 0;        // energy dissipated by the integrator in this step

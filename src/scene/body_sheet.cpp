@@ -6,6 +6,7 @@
 
 #include "base/error.h"
 #include "energy/sheet_elasticity.h"
+#include "energy/wind.h"
 #include "io/mesh_file.h"
 #include "mesh/sheet_shapes.h"
 #include "mesh/surface.h"
@@ -131,6 +132,26 @@ std::unique_ptr<TetElasticity> sheet_elasticity(const PlacedBody& body, const Te
     material.laws.push_back(OrthotropicSheet{E, weft, nu, (*weave)["shear"].number(), thickness, warp});
   }
   return make_sheet_elasticity(mesh, body.first_triangle, material);
+}
+
+void add_wind(const Table& document, Model& model) {
+  const Value* table = document.find("wind");
+  if (!table) return;
+  if (model.mesh.sheet.empty())
+    throw error_at(table->place, "wind: no body is a sheet (wind drags only bodies with `shell`)");
+  const Value& velocity = (*table)["velocity"];
+  const WindLaw law{(*table)["density"].number(), (*table)["normal"].number(), (*table)["tangential"].number()};
+  const auto field = [formula = VectorField(velocity, ExpressionVariables::position_and_time), place = velocity.place](
+                         const Vec3d& x, double time) {
+    try {
+      return formula.at(x, time);
+    } catch (const InvalidInput& e) {  // possibly long after the scene was read
+      throw error_at(place, e.what());
+    }
+  };
+  auto wind = make_wind(model.mesh.sheet, law, field);
+  model.wind = wind.get();
+  model.damping.push_back(std::move(wind));
 }
 
 }  // namespace aspic

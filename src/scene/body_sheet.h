@@ -17,4 +17,7 @@ BodyMesh make_sheet_mesh(Value& body, MeshLoader& loader);
 std::unique_ptr<TetElasticity> sheet_elasticity(const PlacedBody& body, const TetMesh& mesh,
                                                 std::span<const MaterialParameters> parameters);
 
+// Adds the drag of `wind`, if the document has one, on all sheets. Throws InvalidInput.
+void add_wind(const Table& document, Model& model);
+
 }  // namespace aspic

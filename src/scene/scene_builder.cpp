@@ -191,6 +191,7 @@ class SceneBuilder {
         {bodies_, source_.document.find("gravity")->vector(), source_.document.find("time")->find("duration")->number(),
          kind, files_, source_.notes, options_.limit.memory},
         model_);
+    add_wind(source_.document, model_);
     MeshLoader loader = mesh_loader();
     add_scene_contact(source_.document, loader, initial_positions(), model_);
     for (const PlacedBody& body : bodies_) note_parts(body, model_, source_.notes);

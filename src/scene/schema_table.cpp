@@ -3,6 +3,7 @@
 
 #include "dynamics/initial_guess.h"
 #include "dynamics/simulation.h"
+#include "energy/wind.h"
 #include "linalg/linear_solver.h"
 #include "material/registry.h"
 #include "scene/scene.h"
@@ -24,8 +25,26 @@ void add_scene(Schema& s) {
                    Usual{"[0.0, -9.81, 0.0]", "standard gravity along -y, the usual 'down'"}),
                key("time", kTable, "time steps", Members{"time"}, Usual{"{}"}),
                key("solver", kTable, "minimization of each step", Members{"solver"}, Usual{"{}"}),
+               key("wind", kTable, "moving air around sheets", Members{"wind"}),
                key("output", kTable, "output files", Members{"output"}, Usual{"{}"}),
                key("body", kTables, "the bodies", Members{"body"}, kRequired)});
+}
+
+void add_wind(Schema& s) {
+  const WindLaw usual;
+  add_section(
+      s,
+      {"wind", "[wind]",
+       "Drag on every triangle of a sheet: rho/2 times its area, the coefficients, and the square of the velocity "
+       "of the air relative to it. Sheets do not shelter each other."},
+      {key("velocity", kMovingExpressions, "velocity of the air, a function of the place (x, y, z) and t", Units{"m/s"},
+           kRequired),
+       key("density", kNumber, "density of the air", Units{"kg/m^3"}, kPositive,
+           Usual{number_text(usual.density), "air at 20 degrees"}),
+       key("normal", kNumber, "coefficient of drag across the sheet", kNotNegative,
+           Usual{number_text(usual.normal_coefficient), "a square plate"}),
+       key("tangential", kNumber, "coefficient of drag along the sheet", kNotNegative,
+           Usual{number_text(usual.tangential_coefficient), "a smooth plate"})});
 }
 
 void add_time(Schema& s) {
@@ -205,6 +224,7 @@ const Schema& scene_schema() {
   static const Schema schema = [] {
     Schema s;
     add_scene(s);
+    add_wind(s);
     add_time(s);
     add_solver(s);
     add_line_search(s);

@@ -94,6 +94,19 @@ class Surface:
         self.vertices, self.triangles = _aspic.check_surface(vertices, triangles)
         self._path = path
 
+    def __setattr__(self, name, value):
+        if getattr(self, "_is_constant", False):
+            raise AttributeError("the surface of a body is constant: change it before it is added, or add another body")
+        super().__setattr__(name, value)
+
+    def _constant(self):
+        """A copy that cannot be changed."""
+        copy = Surface(self.vertices, self.triangles)
+        for array in (copy.vertices, copy.triangles):
+            array.flags.writeable = False
+        copy._is_constant = True
+        return copy
+
     def __repr__(self):
         return f"<Surface: {len(self.vertices)} vertices, {len(self.triangles)} triangles>"
 

@@ -251,13 +251,14 @@ class Scene(Strict):
         if alone != springs:  # the vertices of other bodies are unknown
             document["body"] = [{**table, "spring": [spring for spring in springs if not _leaves(spring)]}]
             source = _check_keys(document, self.name)
-        if (body and body._mesh) or not _is_surface(table.get("mesh")):
+        if (body and body._mesh) or "shell" in table or not _is_surface(table.get("mesh")):
             source.check_model(_MOST_TETS)
 
     def add(self, mesh, name=None, material=None, **values):
         """Adds a body. mesh: a Mesh, the path of a mesh file, or a dict such as {"sphere": {"radius": 1, "size": 0.2}}.
 
-        The body has a copy of a Mesh and of arrays.
+        With shell={"thickness": 1e-3} the body is a sheet; mesh is then a Surface, a file, or a shape such as
+        {"rectangle": {"width": 1, "height": 1, "size": 0.05}}. The body has a copy of a mesh and of arrays.
         """
         self._require_code("add()")
         table = {"name": name or f"body{len(self.bodies) + 1}", **values}
@@ -266,6 +267,10 @@ class Scene(Strict):
             mesh = mesh._constant()
             mesh.write(table["mesh"], binary=True)
             mesh._require_sound(f"body '{table['name']}'", _MOST_TETS)
+        elif isinstance(mesh, Surface):
+            table["mesh"] = self._file("obj")
+            mesh = mesh._constant()
+            mesh.write(table["mesh"])
         else:
             table["shape" if isinstance(mesh, dict) else "mesh"] = mesh
             mesh = None
@@ -284,8 +289,9 @@ class Scene(Strict):
                 for key, value in material.items()}
 
     def _field(self, key, values, body, mesh):
-        if mesh is not None and values.shape != (len(mesh.tets),):
-            raise _aspic.InvalidInput(f"material.{key}: shape {values.shape}; expected ({len(mesh.tets)},), one per tet")
+        elements = None if mesh is None else mesh.triangles if isinstance(mesh, Surface) else mesh.tets
+        if elements is not None and values.shape != (len(elements),):
+            raise _aspic.InvalidInput(f"material.{key}: shape {values.shape}; expected ({len(elements)},), one per element")
         path = self._file(f"{key}.csv")
         np.savetxt(path, values, fmt="%.17g")
         return path
