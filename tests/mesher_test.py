@@ -170,7 +170,7 @@ class Mesher(unittest.TestCase):
     def test_planar_meshes_are_named(self):
         (self.folder / "flat.obj").write_text("v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nf 1 2 3 4\n")
         for options in ([], ["--fill-holes"]):
-            self.expect_error(2, ["planar", "only solids are simulated"], self.folder / "flat.obj", *options)
+            self.expect_error(2, ["planar", "encloses no volume"], self.folder / "flat.obj", *options)
 
     def test_an_implicit_torus_keeps_its_hole(self):
         result = run("--implicit", "(sqrt(x^2+y^2)-1)^2+z^2-0.16", "--bounds", -2, -2, -1, 2, 2, 1, "-o", self.out,

@@ -31,6 +31,7 @@ struct MeshQuality {
 
 std::vector<Finding> diagnose(const TetMesh& mesh);
 std::vector<Finding> diagnose(const TriMesh& mesh);  // open, non-manifold, self-intersecting, orientation, degenerate
+bool is_sheet(const TriMesh& mesh);                  // planar, or with a border so long that it encloses little
 MeshQuality quality(const TetMesh& mesh);
 
 // Performs the unambiguous repairs: flips inverted tets, removes zero-volume tets, merges duplicate vertices and

@@ -76,7 +76,7 @@ double longest_border(const TriMesh& mesh) {
 }
 
 // A disk has a squared border of 4 pi times its area, a bowl half of that, a closed surface with a hole less.
-bool is_sheet(const TriMesh& mesh) {
+bool has_long_border(const TriMesh& mesh) {
   constexpr double kSquaredBorderPerArea = 10;
   double area = 0;
   for (const Triangle& triangle : mesh.triangles) area += area_of(mesh, triangle);
@@ -84,26 +84,29 @@ bool is_sheet(const TriMesh& mesh) {
   return border * border > kSquaredBorderPerArea * area;
 }
 
-void examine_open_edges(const TriMesh& mesh, const SurfaceTopology& surface, Findings& findings) {
-  if (surface.open.empty()) return;
+TriMesh with_merged_corners(const TriMesh& mesh) {
   TriMesh merged = mesh;
   const std::vector<int> first = first_agreeing_corner(mesh);
   for (Triangle& triangle : merged.triangles)
     for (int& v : triangle) v = first[v];
+  return merged;
+}
+
+void examine_open_edges(const TriMesh& mesh, const SurfaceTopology& surface, Findings& findings) {
+  if (surface.open.empty()) return;
+  const TriMesh merged = with_merged_corners(mesh);
   const char* const thicken =
-      "give it a thickness in the program that made it (in Blender: Solidify; in Gmsh: Extrude)";
+      "give its body in a scene shell = { thickness = 0.001 }, or make it solid (in Blender: Solidify; in Gmsh: "
+      "Extrude)";
   if (is_planar(mesh))
     return findings.add_general({Severity::error,
                                  "planar_mesh",
-                                 "the mesh is planar: all vertices lie in a plane, and only solids are simulated",
+                                 "the mesh is planar: all vertices lie in a plane, and it encloses no volume",
                                  thicken,
                                  {}});
-  if (is_sheet(merged))
-    return findings.add_general({Severity::error,
-                                 "sheet",
-                                 "the surface is a sheet: it encloses no volume, and only solids are simulated",
-                                 thicken,
-                                 {}});
+  if (has_long_border(merged))
+    return findings.add_general(
+        {Severity::error, "sheet", "the surface is a sheet: it encloses no volume", thicken, {}});
   Finding finding{
       Severity::error, "open_surface",
       "the surface is open: " + std::to_string(surface.open_edges) + " edges around " + std::to_string(surface.holes) +
@@ -162,6 +165,12 @@ void examine_intersections(const TriMesh& mesh, Findings& findings) {
 }
 
 }  // namespace
+
+bool is_sheet(const TriMesh& mesh) {
+  const TriMesh merged = with_merged_corners(mesh);
+  if (mesh.triangles.empty() || topology(merged.triangles, merged.vertex_count()).open.empty()) return false;
+  return is_planar(mesh) || has_long_border(merged);
+}
 
 std::vector<Finding> diagnose(const TriMesh& mesh) {
   Findings findings;

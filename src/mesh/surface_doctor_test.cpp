@@ -104,7 +104,7 @@ TriMesh bent_square(double angle) {
 TEST(DoctorOfSurfaces, NamesPlanarMeshesAndSheets) {
   TriMesh planar = bent_square(0);
   for (Vec3d& x : planar.vertices) x = turned(x);
-  EXPECT_THAT(found(planar, "planar_mesh").message, HasSubstr("only solids are simulated"));
+  EXPECT_THAT(found(planar, "planar_mesh").message, HasSubstr("encloses no volume"));
   EXPECT_THAT(found(bent_square(2), "sheet").message, HasSubstr("encloses no volume"));
   TriMesh open = boundary_surface(cube_of_tets()).surface;
   std::erase_if(open.triangles, [&](const Triangle& t) {

@@ -16,6 +16,7 @@
 #include "mesh/surface.h"
 #include "mesh/tet_mesh.h"
 #include "mesh/vertices.h"
+#include "scene/mesh_defaults.h"
 #include "scene/placement.h"
 #include "scene/scene_document.h"
 
@@ -76,21 +77,14 @@ double sag(TetMesh mesh, std::vector<int> held, const SagOptions& options) {
   return largest;
 }
 
-constexpr double kSmallest = 0.3, kLargest = 3;  // [m] extents that are not scaled
-constexpr double kStrain = 0.05;                 // rho g H / E: strain of the base of a column under its weight
-constexpr double kSag = 0.05;                    // displacement under the body's weight / largest extent
-constexpr double kStiffest = 10;                 // upper limit of E by the sag / E by the strain
-constexpr double kDensity = 1000;                // [kg/m^3]
+constexpr double kStrain = 0.05;   // rho g H / E: strain of the base of a column under its weight
+constexpr double kSag = 0.05;      // displacement under the body's weight / largest extent
+constexpr double kStiffest = 10;   // upper limit of E by the sag / E by the strain
+constexpr double kDensity = 1000;  // [kg/m^3]
 constexpr double kPoisson = 0.4;
 constexpr double kGravity = 9.81;  // [m/s^2]
 constexpr double kPull = 0.25;     // sideways displacement of the top / height
 constexpr double kFall = 0.2;      // height of the fall / largest extent
-
-// Rounds to one significant digit.
-double one_digit(double x) {
-  const double unit = std::pow(10.0, std::floor(std::log10(x)));
-  return std::round(x / unit) * unit;
-}
 
 // Returns a fraction of the height that contains more than one point of the body.
 double base_fraction(const std::vector<Vec3d>& X, const Box& box) {
@@ -124,21 +118,6 @@ Stiffness stiffness_for(const TetMesh& mesh, double base) {
           "ten times the value for a column of its height; thin parts sink by more than 5 % of its size"};
 }
 
-struct Choice {
-  std::string key, text;  // "material.young"
-};
-
-// Whether an override replaces this key, a key inside it, or a table around it.
-bool is_overridden(const std::string& key, const std::vector<std::string>& overrides) {
-  for (const std::string& o : overrides) {
-    const std::string path = o.substr(0, o.find('='));
-    if (path == key || path.ends_with("." + key) || key.starts_with(path + ".") ||
-        path.find("." + key + ".") != std::string::npos || path.starts_with(key + "."))
-      return true;
-  }
-  return false;
-}
-
 // Returns why the mesh cannot have contact; empty if it can.
 std::string contact_obstacle(const TetMesh& mesh) {
   const TriMesh surface = boundary_surface(mesh).surface;
@@ -167,11 +146,6 @@ Support support_for(const TetMesh& mesh, const std::vector<std::string>& overrid
   const std::string obstacle = contact_obstacle(mesh);
   return {obstacle.empty(), obstacle};
 }
-
-struct Defaults {
-  std::string toml;
-  std::vector<Choice> choices;
-};
 
 // Returns the part of the scene that supports the body, and its notes.
 Defaults floor_below(const Box& box) {
@@ -213,17 +187,7 @@ Defaults defaults_for(const std::filesystem::path& path, TetMesh mesh, double sc
            toml_string(path.string()) + "\nscale = " + number_text(scale) + "\nmaterial = { " +
            (has_file ? "" : "model = \"neo_hookean_log\", ") + "young = " + number_text(young) +
            ", poisson = 0.4, density = 1000.0 }\n" + held.toml;
-  const std::string size = number_text(extent);
-  if (scale == 1) {
-    d.choices.push_back(
-        {"scale", "scale = 1: a mesh has no unit; its largest extent, " + size + ", is read as meters"});
-  } else {
-    d.choices.push_back({"scale", "scale = " + number_text(scale) + ": a mesh has no unit; its largest extent, " +
-                                      size +
-                                      ", becomes 1 m, so that the motion is visible (scale=1 keeps meters, "
-                                      "scale=0.001 is for millimeters)"});
-  }
-  d.choices.push_back({"gravity", "gravity = 9.81 m/s^2 along -y: y is up (gravity=[0,0,-9.81] for z)"});
+  d.choices = choices_of_space(scale, extent);
   d.choices.push_back({"material.model",
                        "material.model = neo_hookean_log: its energy is infinite for flat tets, so that none inverts"});
   d.choices.push_back({"material.young", "material.young = " + number_text(young) + " Pa: " + reason});
@@ -235,11 +199,6 @@ Defaults defaults_for(const std::filesystem::path& path, TetMesh mesh, double sc
   d.choices.push_back({"time.step", "time.step = 0.01 s: resolves oscillations of a few hertz"});
   d.choices.push_back({"time.duration", "time.duration = 2 s: several oscillations"});
   return d;
-}
-
-double guessed_scale(const std::vector<Vec3d>& X) {
-  const double extent = longest_side(bounding_box(X));
-  return extent >= kSmallest && extent <= kLargest ? 1 : 1 / extent;
 }
 
 }  // namespace
@@ -257,6 +216,12 @@ SceneSource scene_of_mesh(const std::filesystem::path& path, const std::vector<s
       "\"base\"\nwhere = { lowest = 0.05 }\n[contact]\n[[obstacle]]\nplane = {}\n";
   const Table first = read(minimal);
   const Value& body = first.find("body")->array().front();
+  const bool has_scale = is_overridden("scale", overrides) && body["scale"].is_number();
+  if (const std::optional<TriMesh> sheet = sheet_in(path)) {
+    const double scale = has_scale ? body["scale"].number() : guessed_scale(sheet->vertices);
+    const Defaults defaults = defaults_for_sheet(path, *sheet, scale);
+    return {read(defaults.toml), path.stem().string(), file, {}, notes_of(defaults, overrides)};
+  }
   const Value* size = body.find("mesh_size");
   LoadedMesh mesh = load_mesh(path, size ? size->number() : 0, loader);
   if (mesh.tets.rest.empty() || mesh.tets.tets.empty())
@@ -264,12 +229,9 @@ SceneSource scene_of_mesh(const std::filesystem::path& path, const std::vector<s
   const double extent = longest_side(bounding_box(mesh.tets.rest));
   if (!(extent > 0) || !std::isfinite(extent)) throw InvalidInput(file + ": all vertices coincide; use another mesh");
 
-  double scale = guessed_scale(mesh.tets.rest);
-  if (is_overridden("scale", overrides) && body["scale"].is_number()) scale = body["scale"].number();
+  const double scale = has_scale ? body["scale"].number() : guessed_scale(mesh.tets.rest);
   const Defaults defaults = defaults_for(path, mesh.tets, scale, overrides);
-  SceneSource source{read(defaults.toml), path.stem().string(), file, {}, {}};
-  for (const Choice& c : defaults.choices)
-    if (!is_overridden(c.key, overrides)) source.notes.push_back(c.text);
+  SceneSource source{read(defaults.toml), path.stem().string(), file, {}, notes_of(defaults, overrides)};
   const std::string name = source.document.find("body")->array().front()["name"].text();
   source.meshes.emplace(name, std::move(mesh));
   return source;
