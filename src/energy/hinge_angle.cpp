@@ -33,6 +33,15 @@ double hinge_angle(const HingeCorners& x) {
   return std::atan2(norm(e) * dot(N1, q), dot(N1, N2));
 }
 
+// dtheta = sum normal . delta / height, see HingeShape; normal / height = |e| N / (N . N).
+HingeGradient hinge_gradient(const HingeCorners& x) {
+  const Vec3d e = x[1] - x[0], p = x[2] - x[0], q = x[3] - x[0], N1 = cross(e, p), N2 = cross(q, e);
+  const double squared_length = dot(e, e), length = std::sqrt(squared_length), inverse = 1 / squared_length;
+  const double s = dot(p, e) * inverse, r = dot(q, e) * inverse;
+  const Vec3d g_c = (length / dot(N1, N1)) * N1, g_d = (length / dot(N2, N2)) * N2;
+  return {std::atan2(length * dot(N1, q), dot(N1, N2)), {(s - 1) * g_c + (r - 1) * g_d, -s * g_c - r * g_d, g_c, g_d}};
+}
+
 HingeShape::HingeShape(const HingeCorners& x) {
   const Vec3d e = x[1] - x[0], p = x[2] - x[0], q = x[3] - x[0], N1 = cross(e, p), N2 = cross(q, e);
   length = norm(e);
@@ -44,31 +53,24 @@ HingeShape::HingeShape(const HingeCorners& x) {
   wing[1] = {dot(q, axis) / length, area2 / length, n2, cross(axis, n2)};
 }
 
-// theta changes by sum normal . delta / height.
-HingeCorners HingeShape::gradient() const {
-  const double s = wing[0].share, r = wing[1].share;
-  const Vec3d g_c = (1 / wing[0].height) * wing[0].normal, g_d = (1 / wing[1].height) * wing[1].normal;
-  return {(s - 1) * g_c + (r - 1) * g_d, -s * g_c - r * g_d, g_c, g_d};
-}
-
 HingeHessian::HingeHessian(const HingeShape& shape, double change, Definiteness kind)
     : is_modified_(kind != Definiteness::exact && std::abs(change) > kNegligible) {
-  const double root2 = std::sqrt(2.0), sin = std::sin(shape.angle);
+  const HalfAngle half = {std::cos(0.5 * shape.angle), std::sin(0.5 * shape.angle)};
+  const double root2 = std::sqrt(2.0), sin = 2 * half.sin * half.cos;
   std::array<Sym2, 4> parts = {{{2, 0, -change},
                                 {0, 0, -change},
-                                {-change * sin, 0, -change * root2 * std::cos(0.5 * shape.angle)},
-                                {change * sin, 0, -change * root2 * std::sin(0.5 * shape.angle)}}};
+                                {-change * sin, 0, -change * root2 * half.cos},
+                                {change * sin, 0, -change * root2 * half.sin}}};
   if (is_modified_)
     for (Sym2& part : parts) part = modified(part, kind);
-  assemble(shape, parts);
+  assemble(shape, half, parts);
 }
 
-void HingeHessian::assemble(const HingeShape& shape, const std::array<Sym2, 4>& parts) {
+void HingeHessian::assemble(const HingeShape& shape, const HalfAngle& half, const std::array<Sym2, 4>& parts) {
   const auto& [plus, minus, along_x, along_y] = parts;
   const auto& [w1, w2] = shape.wing;
   const Vec3d axis = shape.axis;
-  const double cos = std::cos(0.5 * shape.angle), sin = std::sin(0.5 * shape.angle);
-  const Vec3d x = cos * w1.normal + sin * w1.outward, y = sin * w1.normal - cos * w1.outward;
+  const Vec3d x = half.cos * w1.normal + half.sin * w1.outward, y = half.sin * w1.normal - half.cos * w1.outward;
 
   // Blocks of (delta_1, delta_2, epsilon).
   const Sym2 same = half_sum(plus, minus, 1), other = half_sum(plus, minus, -1);

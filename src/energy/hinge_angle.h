@@ -15,6 +15,12 @@ using HingeCorners = std::array<Vec3d, 4>;  // a, b, c, d
 // Returns theta; NaN if a triangle is collapsed.
 double hinge_angle(const HingeCorners& x);
 
+struct HingeGradient {
+  double angle;
+  HingeCorners gradient;  // dtheta/dx [1/m]
+};
+HingeGradient hinge_gradient(const HingeCorners& x);
+
 // A triangle at the edge: with p = c - a, the height h, and the foot a + share (b - a) of c.
 struct HingeWing {
   double share, height;
@@ -29,8 +35,6 @@ struct HingeShape {
   std::array<HingeWing, 2> wing;
 
   explicit HingeShape(const HingeCorners& x);
-
-  HingeCorners gradient() const;  // dtheta/dx
 };
 
 // Hessian of (theta - theta0)^2 / 2, theta - theta0 = change.
@@ -54,7 +58,10 @@ class HingeHessian {
   const Mat3d& operator()(int u, int v) const { return K_[u][v]; }  // block of corners u and v
 
  private:
-  void assemble(const HingeShape& shape, const std::array<Sym2, 4>& parts);
+  struct HalfAngle {
+    double cos, sin;  // of theta / 2
+  };
+  void assemble(const HingeShape& shape, const HalfAngle& half, const std::array<Sym2, 4>& parts);
 
   bool is_modified_;
   Mat3d K_[4][4];

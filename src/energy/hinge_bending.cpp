@@ -118,9 +118,8 @@ class SheetBending : public HingeBending {
   void add_gradient(Positions x, const Context&, double scale, std::span<double> g) const override {
     groups_.for_each([&](int i) {
       const Hinge& hinge = hinges_[i];
-      const HingeShape shape(corners_at(x, hinge.vertices));
-      const double torque = scale * hinge.stiffness * (shape.angle - hinge.rest_angle);
-      const HingeCorners gradient = shape.gradient();
+      const auto [angle, gradient] = hinge_gradient(corners_at(x, hinge.vertices));
+      const double torque = scale * hinge.stiffness * (angle - hinge.rest_angle);
       for (int u = 0; u < 4; ++u) add_vec(torque * gradient[u], hinge.vertices[u], g);
     });
   }
