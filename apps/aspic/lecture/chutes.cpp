@@ -6,8 +6,6 @@
 
 #include "aspic/lecture/course.h"
 #include "aspic/lecture/run_scene.h"
-#include "contact/barrier.h"
-#include "contact/obstacle_surface.h"
 #include "mesh/box.h"
 #include "mesh/self_intersection.h"
 #include "mesh/surface.h"
@@ -32,28 +30,6 @@ std::vector<std::string> centered(const Stage& stage) {
     overrides.push_back(fmt::format("body.{}.translate=[{}, {}, {}]", overrides.size(), t[0], t[1], t[2]));
   }
   return overrides;
-}
-
-// Bodies and chutes as one surface, and the speed of each vertex; NaN for obstacles.
-ShadedSurface all_surfaces(const Simulation& simulation) {
-  const Model& model = simulation.model();
-  const State& state = simulation.state();
-  const BoundarySurface bodies = boundary_surface(model.mesh);
-  ShadedSurface all{.caption = fmt::format("t = {:.1f} s", state.time), .surface = surface_at(model, state.q)};
-  for (const int v : bodies.tet_vertex) all.values.push_back(norm(point(state.qdot, v)));
-  const Barrier& contact = *model.contact;
-  const std::vector<Vec3d> points = contact.obstacle_points(simulation.obstacle_time());
-  for (const ObstacleSurface& obstacle : obstacle_surfaces(contact.mesh(), points)) {
-    if (obstacle.plane) continue;
-    const int first = static_cast<int>(all.surface.vertices.size());
-    for (const Triangle& t : obstacle.surface.triangles)
-      all.surface.triangles.push_back({t[0] + first, t[1] + first, t[2] + first});
-    for (const Vec3d& x : obstacle.surface.vertices) {
-      all.surface.vertices.push_back(x);
-      all.values.push_back(std::numeric_limits<double>::quiet_NaN());
-    }
-  }
-  return all;
 }
 
 }  // namespace

@@ -18,6 +18,11 @@ std::vector<int> range(int first, int last) {
 
 const std::vector<Demonstration>& demonstrations() {
   static const std::vector<Demonstration> list = {
+      {"01_cape",
+       {1},
+       "a cape in the wind",
+       "A cape hangs from the shoulders of a walking figure and flutters in gusts: a sheet of triangles whose V is "
+       "that of stretching and bending. Drag and contact are further terms of the same minimization."},
       {"02_fine_mesh",
        {2},
        "a very fine mesh",

@@ -54,6 +54,7 @@ void run_demonstration(const Demonstration& demonstration, const Stage& stage, S
 std::string reason_for_none(int page);
 
 // The demonstrations, by file.
+void show_cape(const Stage& stage, Sheet& sheet);
 void show_fine_mesh(const Stage& stage, Sheet& sheet);
 void show_tissue(const Stage& stage, Sheet& sheet);
 void show_equation_of_motion(const Stage& stage, Sheet& sheet);

@@ -11,6 +11,7 @@ using Computation = void (*)(const Stage&, Sheet&);
 
 const std::map<std::string_view, Computation>& computations() {
   static const std::map<std::string_view, Computation> map = {
+      {"01_cape", show_cape},
       {"02_fine_mesh", show_fine_mesh},
       {"03_tissue", show_tissue},
       {"05-09_equation_of_motion", show_equation_of_motion},

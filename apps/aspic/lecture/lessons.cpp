@@ -71,6 +71,15 @@ RecordedDrag slow_drag() {
 
 const std::vector<Staging>& stagings() {
   static const std::vector<Staging> list = {
+      {.demonstration = "01_cape",
+       .exercise =
+           "Play: the gusts lift the cape, and it falls back against the figure. Drag a corner of the hem with the "
+           "mouse. In the settings, set body.cape.shell.moment to 2e-3, and play again.",
+       .question = "Which of the two energies of the cape, of stretching or of bending, decides how many folds it has?",
+       .answer =
+           "Their ratio. Stretching is a thousand times stiffer, so that the cape bends wherever it can; the more it "
+           "resists bending, the fewer and wider are its folds.",
+       .scene = "01_cape"},
       {.demonstration = "02_fine_mesh",
        .exercise =
            "The thin wires are the edges of tets at the surface: come closer to see them. So that it moves while you "

@@ -1,8 +1,13 @@
 #include "aspic/lecture/run_scene.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
+#include "contact/barrier.h"
+#include "contact/obstacle_surface.h"
 #include "mesh/surface.h"
 
 namespace aspic::cli::lecture {
@@ -120,6 +125,27 @@ Run run(Simulation& simulation, int steps, const AfterStep& after, const Iterati
 Scene in_motion(Scene scene, int steps) {
   for (int i = 0; i < steps; ++i) scene.simulation.step();
   return scene;
+}
+
+ShadedSurface all_surfaces(const Simulation& simulation) {
+  const Model& model = simulation.model();
+  const State& state = simulation.state();
+  const BoundarySurface bodies = boundary_surface(model.mesh);
+  ShadedSurface all{.caption = fmt::format("t = {:.1f} s", state.time), .surface = surface_at(model, state.q)};
+  for (const int v : bodies.tet_vertex) all.values.push_back(norm(point(state.qdot, v)));
+  const Barrier& contact = *model.contact;
+  const std::vector<Vec3d> points = contact.obstacle_points(simulation.obstacle_time());
+  for (const ObstacleSurface& obstacle : obstacle_surfaces(contact.mesh(), points)) {
+    if (obstacle.plane) continue;
+    const int first = static_cast<int>(all.surface.vertices.size());
+    for (const Triangle& t : obstacle.surface.triangles)
+      all.surface.triangles.push_back({t[0] + first, t[1] + first, t[2] + first});
+    for (const Vec3d& x : obstacle.surface.vertices) {
+      all.surface.vertices.push_back(x);
+      all.values.push_back(std::numeric_limits<double>::quiet_NaN());
+    }
+  }
+  return all;
 }
 
 }  // namespace aspic::cli::lecture

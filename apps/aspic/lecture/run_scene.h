@@ -4,6 +4,7 @@
 #include <limits>
 #include <vector>
 
+#include "aspic/mesh_picture.h"
 #include "dynamics/incremental_potential.h"
 #include "dynamics/step_report.h"
 #include "math/vectors.h"
@@ -52,6 +53,9 @@ double observed_order(const Vector& step, const Vector& error);
 
 // Boundary at the given positions, for pictures.
 TriMesh surface_at(const Model& model, std::span<const double> q);
+
+// Bodies and obstacles as one surface, and the speed of each vertex; NaN for obstacles.
+ShadedSurface all_surfaces(const Simulation& simulation);
 
 inline constexpr double kEpsilon = std::numeric_limits<double>::epsilon();  // for bounds of round-off
 
