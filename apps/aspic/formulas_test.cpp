@@ -57,6 +57,7 @@ TEST(Formulas, EveryClosedFormReferenceIsRendered) {
                                          "statics/mesh_error",
                                          "statics/mesh_error_invariance",
                                          "statics/beam_incompressible",
+                                         "sheets/strip",
                                          "tissue/heart_beam",
                                          "tissue/heart_inflation",
                                          "tissue/heart_contraction",

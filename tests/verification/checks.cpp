@@ -17,6 +17,7 @@ const std::vector<Check>& checks() {
     add_bending_checks(list);
     add_cook_checks(list);
     add_mesh_error_checks(list);
+    add_sheet_checks(list);
     add_pressure_checks(list);
     add_solid_checks(list);
     add_volume_checks(list);

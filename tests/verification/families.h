@@ -30,6 +30,7 @@ void add_volume_checks(std::vector<Check>& checks);
 void add_viscoelastic_checks(std::vector<Check>& checks);
 void add_heart_checks(std::vector<Check>& checks);
 void add_mesh_error_checks(std::vector<Check>& checks);
+void add_sheet_checks(std::vector<Check>& checks);
 void add_tissue_checks(std::vector<Check>& checks);
 
 }  // namespace aspic::verify
