@@ -1,13 +1,16 @@
 #include "scene/body_sheet.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <string>
 
 #include "base/error.h"
+#include "base/formatted.h"
 #include "energy/sheet_elasticity.h"
 #include "energy/wind.h"
 #include "io/mesh_file.h"
+#include "mesh/box.h"
 #include "mesh/sheet_shapes.h"
 #include "mesh/surface.h"
 #include "mesh/topology.h"
@@ -17,6 +20,9 @@
 
 namespace aspic {
 namespace {
+
+constexpr double kAcross = 1e-6;  // least sine between the warp and the normal of a triangle
+constexpr double kThick = 0.1;    // thickness relative to the extent, above which a body is no sheet
 
 // Keys of a body that need tets.
 void refuse_keys_of_solids(const Value& body) {
@@ -60,9 +66,8 @@ std::string list_of(const std::vector<int>& triangles) {
 }
 
 // Throws InvalidInput for triangles that have no shape, and for vertices of no triangle.
-void check(const TriMesh& mesh, const Value& body) {
+void check(const TriMesh& mesh, const Value& body, const Place& place) {
   const std::string which = "body '" + body["name"].text() + "': ";
-  const Place place = (body.find("mesh") ? body["mesh"] : body["shape"]).place;
   if (mesh.triangles.empty()) throw error_at(place, which + "the mesh has no triangles");
   std::vector<int> flat;
   std::vector<char> is_used(mesh.vertices.size(), 0);
@@ -88,15 +93,21 @@ void check(const TriMesh& mesh, const Value& body) {
 BodyMesh make_sheet_mesh(Value& body, MeshLoader& loader) {
   refuse_keys_of_solids(body);
   const Value* shape = body.find("shape");
+  const Place place = (shape ? *shape : body["mesh"]).place;
   TriMesh surface = shape ? shape_surface(*shape, loader) : sheet_from_file(body, loader);
-  check(surface, body);
+  check(surface, body, place);
   if (const std::string why = loader.why_not(surface.triangle_count()); !why.empty())
     throw error_at(body.place, why + " (choose a coarser mesh)");
   loader.tets += surface.triangle_count();
-  place(placement_of(body), surface.vertices);
+  aspic::place(placement_of(body), surface.vertices);
   TetMesh mesh{.rest = surface.vertices, .tets = {}, .region = {}};
   mesh.sheet = surface.triangles;
-  mesh.thickness.assign(mesh.sheet.size(), body["shell"]["thickness"].number());
+  const double thickness = body["shell"]["thickness"].number();
+  mesh.thickness.assign(mesh.sheet.size(), thickness);
+  if (const double extent = longest_side(bounding_box(mesh.rest)); thickness > kThick * extent)
+    loader.notes.push_back("body '" + body["name"].text() + "': its thickness of " + number_text(thickness) +
+                           " m is much for a sheet of " + three_digits(extent) +
+                           " m: shells bend by less than a tenth of that (model it by tets)");
   check_fingerprint(body.table(), "mesh_hash", fingerprint_of(mesh), "the mesh of body '" + body["name"].text() + "'");
   BodyMesh result;
   for (int v = 0; v < surface.vertex_count(); ++v) result.embedding.carriers.push_back(Carrier::of_vertex(v));
@@ -127,8 +138,13 @@ std::unique_ptr<TetElasticity> sheet_elasticity(const PlacedBody& body, const Te
       throw error_at((*weave)["weft"].place, "weft = " + number_text(weft) +
                                                  "; must be below young / poisson^2 = " + number_text(E / (nu * nu)));
     const Triangle& corners = mesh.sheet[body.first_triangle + t];
-    const PlaneVector warp = direction_in_plane({mesh.rest[corners[0]], mesh.rest[corners[1]], mesh.rest[corners[2]]},
-                                                (*weave)["warp"].vector());
+    const std::array<Vec3d, 3> X = {mesh.rest[corners[0]], mesh.rest[corners[1]], mesh.rest[corners[2]]};
+    const Value& along = (*weave)["warp"];
+    if (const Vec3d n = cross(X[1] - X[0], X[2] - X[0]), d = along.vector();
+        !(norm(cross(n, d)) > kAcross * norm(n) * norm(d)))
+      throw error_at(along.place, "warp is normal to triangle " + std::to_string(t) + " of body '" + body.name() +
+                                      "'; give a direction along the sheet");
+    const PlaneVector warp = direction_in_plane(X, along.vector());
     material.laws.push_back(OrthotropicSheet{E, weft, nu, (*weave)["shear"].number(), thickness, warp});
   }
   return make_sheet_elasticity(mesh, body.first_triangle, material);

@@ -285,6 +285,10 @@ void add_scene_contact(Table& document, MeshLoader& loader, const std::vector<do
   const double creep = options.find("creep") || weight == 0 ? number("creep") : default_creep(weight, model);
   add_contact(std::move(contact), given, creep, model);
   note_reaches(*model.contact, loader);
+  for (const ContactPart& part : model.contact->mesh().parts)
+    if (part.self_offset < 2 * part.offset && !part.is_obstacle)
+      loader.notes.push_back("body '" + part.name + "' keeps " + three_digits(part.self_offset) +
+                             " m from itself instead of its thickness, because its triangles are smaller");
   const ContactMesh& mesh = model.contact->mesh();
   for (const auto& [inner, outer, place] : enclosed_parts(mesh, model.contact->points(q, 0)))
     if (mesh.parts[outer].is_obstacle)
