@@ -53,11 +53,11 @@ HingeShape::HingeShape(const HingeCorners& x) {
   wing[1] = {dot(q, axis) / length, area2 / length, n2, cross(axis, n2)};
 }
 
-HingeHessian::HingeHessian(const HingeShape& shape, double change, Definiteness kind)
+HingeHessian::HingeHessian(const HingeShape& shape, double change, Definiteness kind, double slope_weight)
     : is_modified_(kind != Definiteness::exact && std::abs(change) > kNegligible) {
   const HalfAngle half = {std::cos(0.5 * shape.angle), std::sin(0.5 * shape.angle)};
   const double root2 = std::sqrt(2.0), sin = 2 * half.sin * half.cos;
-  std::array<Sym2, 4> parts = {{{2, 0, -change},
+  std::array<Sym2, 4> parts = {{{2 * slope_weight, 0, -change},
                                 {0, 0, -change},
                                 {-change * sin, 0, -change * root2 * half.cos},
                                 {change * sin, 0, -change * root2 * half.sin}}};

@@ -37,7 +37,8 @@ struct HingeShape {
   explicit HingeShape(const HingeCorners& x);
 };
 
-// Hessian of (theta - theta0)^2 / 2, theta - theta0 = change.
+// Hessian of (theta - theta0)^2 / 2, theta - theta0 = change: the square of dtheta/dx and change times the Hessian of
+// theta.
 //
 // With the natural units delta_i / h_i and epsilon / length it splits into four 2x2 matrices. Let alpha_i, beta_i and
 // tau_i be the components of delta_i / h_i along the normal, outward and along the axis. Let x be the mean of both
@@ -51,8 +52,8 @@ struct HingeShape {
 // Euclidean norm.
 class HingeHessian {
  public:
-  // Modifies it according to `kind`.
-  HingeHessian(const HingeShape& shape, double change, Definiteness kind);
+  // Modifies it according to `kind`. slope_weight: factor of the square of dtheta/dx, in [0, 1].
+  HingeHessian(const HingeShape& shape, double change, Definiteness kind, double slope_weight = 1);
 
   bool is_modified() const { return is_modified_; }
   const Mat3d& operator()(int u, int v) const { return K_[u][v]; }  // block of corners u and v
